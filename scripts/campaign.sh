@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# Runs the tests of one campaign at their full counts and writes the table to docs/campaigns/NAME.md.
+#
+#   scripts/campaign.sh NAME     one of the names below
+#
+# A campaign is a filter on test names; the tests print their figures as lines that begin with `| `.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+declare -A filters=(
+  [certificate]="certificate"
+  [predicates]="predicates"
+  [contacts]="contacts"
+  [formats]="formats"
+  [analysis]="analysis"
+  [repair]="repair"
+  [corpus]="corpus"
+  [cancel]="cancel"
+  [determinism]="determinism"
+)
+
+name=${1:-}
+filter=${filters[$name]:-}
+if [ -z "$filter" ]; then
+  echo "usage: scripts/campaign.sh NAME, where NAME is one of: $(printf '%s\n' "${!filters[@]}" | sort | tr '\n' ' ')" >&2
+  exit 2
+fi
+
+commit=$(git rev-parse --short HEAD)
+[ -z "$(git status --porcelain)" ] || commit="$commit with local changes"
+log=target/campaign-$name.log
+mkdir -p docs/campaigns target
+begin=$SECONDS
+result=passed
+MESHMEND_CAMPAIGN=1 cargo test --release --locked --no-fail-fast --lib --tests -- "$filter" --nocapture --test-threads=1 \
+  2>&1 | tee "$log" || result=FAILED
+
+{
+  echo "# Campaign \`$name\`"
+  echo
+  echo "Made by \`scripts/campaign.sh $name\` at commit $commit: $result in $((SECONDS - begin)) s on $(nproc) cores."
+  echo "Seeds are fixed in the tests."
+  echo
+  grep -h '^| ' "$log" || true
+  echo
+  echo '```'
+  grep -hE '^test .* \.\.\. |^test result: .* [1-9][0-9]* passed|^test result: FAILED' "$log" | sed -E 's/; finished in .*//' || true
+  echo '```'
+} > "docs/campaigns/$name.md"
+echo "wrote docs/campaigns/$name.md"
+[ "$result" = passed ]

@@ -1,0 +1,145 @@
+#!/usr/bin/env bash
+# Installs what the tests need and runs all of them at their small, fixed-seed size.
+#
+#   scripts/test.sh              every step
+#   scripts/test.sh STEP...      only these (see `steps` below)
+#
+# Needs Rust (rustup or Debian) and a C linker; python3 with venv is installed where it is missing and root or sudo
+# allows it. Everything else lands under target/.
+set -uo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never} CARGO_INCREMENTAL=0 PYTHONDONTWRITEBYTECODE=1
+# Settings of the caller's own service must not reach the tests.
+for name in $(compgen -e | grep '^MESHMEND_' | grep -v -e '^MESHMEND_CORPUS$'); do unset "$name"; done
+
+steps=(format lint lint_engine build tests doc_tests fixtures contract fuzz_contract licences)
+scratch=target/test-run
+python=target/python/bin
+server_pid=
+
+note() { printf '\n== %s\n' "$*"; }
+
+as_root() {
+  if [ "$(id -u)" = 0 ]; then "$@"; elif command -v sudo >/dev/null; then sudo -n "$@"; else return 1; fi
+}
+
+# --- what the tests need -------------------------------------------------------------------------------------------
+
+set_up() {
+  command -v cargo >/dev/null || { echo "cargo is missing: install Rust from https://rustup.rs"; return 1; }
+  local missing=()
+  command -v cc >/dev/null || missing+=(gcc libc6-dev)
+  python3 -c 'import venv, ensurepip' 2>/dev/null || missing+=(python3 python3-venv)
+  if [ ${#missing[@]} -gt 0 ]; then
+    echo "installing ${missing[*]}"
+    as_root apt-get update -q && as_root env DEBIAN_FRONTEND=noninteractive apt-get install -qy --no-install-recommends "${missing[@]}" ||
+      { echo "cannot install ${missing[*]}: install them and run this again"; return 1; }
+  fi
+  cmp -s scripts/requirements.txt target/python/requirements.txt && return 0
+  rm -rf target/python && python3 -m venv target/python &&
+    $python/pip install -q --disable-pip-version-check --retries 5 -r scripts/requirements.txt &&
+    cp scripts/requirements.txt target/python/requirements.txt
+}
+
+# --- steps ---------------------------------------------------------------------------------------------------------
+
+format() { cargo fmt --check; }
+lint() { cargo clippy --locked --all-targets -- -D warnings; }
+lint_engine() { cargo clippy --locked --no-default-features --all-targets -- -D warnings; }
+build() { cargo build --locked; }
+
+tests() {
+  if command -v cargo-nextest >/dev/null; then
+    cargo nextest run --locked
+  else
+    cargo test --locked --no-fail-fast --lib --bins --tests
+  fi
+}
+doc_tests() { cargo test --locked --doc; }
+
+# Fixtures are made by a script of the project; what is committed must be what it makes.
+fixtures() {
+  rm -rf "$scratch/fixtures" && mkdir -p "$scratch/fixtures" || return 1
+  python3 scripts/make_fixtures.py "$scratch/fixtures" || return 1
+  local made
+  made=$(cd "$scratch/fixtures" && find . -type f | sort)
+  for file in $made; do
+    cmp "$scratch/fixtures/$file" "fixtures/$file" || return 1
+  done
+  echo "$(wc -l <<<"$made") files are as committed"
+}
+
+# The committed openapi.yaml is compared with the routes by a test; here it is checked against the OpenAPI rules.
+contract() { $python/openapi-spec-validator openapi.yaml; }
+
+# Requests made from openapi.yaml, right and wrong ones, against the built server.
+fuzz_contract() {
+  local port admin_port log=$scratch/server.log data=$scratch/data
+  read -r port admin_port < <(free_ports) || return 1
+  rm -rf "$data" && mkdir -p "$data" || return 1
+  MESHMEND_LISTEN=127.0.0.1:$port MESHMEND_ADMIN_LISTEN=127.0.0.1:$admin_port MESHMEND_DATA_DIR=$data \
+    target/debug/meshmend serve >"$log" 2>&1 &
+  server_pid=$!
+  wait_until_ready "$admin_port" || { tail -20 "$log"; return 1; }
+  $python/schemathesis --config-file tests/service/schemathesis.toml \
+    run openapi.yaml --url "http://127.0.0.1:$port"
+  local result=$?
+  stop_server || { echo "the server did not stop cleanly"; tail -20 "$log"; return 1; }
+  return $result
+}
+
+licences() {
+  if command -v cargo-deny >/dev/null; then cargo deny --locked check licenses bans sources; else python3 scripts/licences.py; fi
+}
+
+# --- the server under test -----------------------------------------------------------------------------------------
+
+free_ports() {
+  python3 - <<'PY'
+import socket
+sockets = [socket.socket() for _ in range(2)]
+for s in sockets:
+    s.bind(("127.0.0.1", 0))
+print(*(s.getsockname()[1] for s in sockets))
+PY
+}
+
+wait_until_ready() {
+  for _ in $(seq 100); do
+    MESHMEND_ADMIN_LISTEN=127.0.0.1:$1 target/debug/meshmend healthcheck >/dev/null 2>&1 && return 0
+    kill -0 "$server_pid" 2>/dev/null || return 1
+    sleep 0.1
+  done
+  return 1
+}
+
+stop_server() {
+  [ -n "$server_pid" ] || return 0
+  kill -TERM "$server_pid" 2>/dev/null
+  wait "$server_pid"
+  local result=$?
+  server_pid=
+  return $result
+}
+trap stop_server EXIT
+
+# --- run -----------------------------------------------------------------------------------------------------------
+
+chosen=("${@:-${steps[@]}}")
+for step in "${chosen[@]}"; do
+  [[ " ${steps[*]} " == *" $step "* ]] || { echo "no step $step; there are: ${steps[*]}"; exit 2; }
+done
+mkdir -p "$scratch"
+summary=()
+failures=0
+for step in set_up "${chosen[@]}"; do
+  note "$step"
+  begin=$SECONDS
+  if $step </dev/null; then word=ok; else word=FAILED failures=$((failures + 1)); fi
+  summary+=("$(printf '%-14s %-7s %4d s' "$step" "$word" $((SECONDS - begin)))")
+  [ "$step" = set_up ] && [ "$word" = FAILED ] && break
+done
+note "summary"
+printf '%s\n' "${summary[@]}"
+if [ $failures -gt 0 ]; then echo "$failures of ${#summary[@]} steps failed"; exit 1; fi
+echo "all ${#summary[@]} steps passed"

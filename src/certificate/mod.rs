@@ -1,0 +1,124 @@
+//! The judge: final bytes in, claims with witnesses out.
+//!
+//! Decides P0 (topology), P1 (embedding) and P2 (solid) of the contract exactly, on the bytes that are sent. Imports no
+//! code that changes a mesh: only predicates, search structures, the soup and the readers.
+
+mod claims;
+mod judge;
+mod solid;
+mod surface;
+mod topology;
+mod verdict;
+
+pub use claims::{Certificate, Condition, Reading, Shell, Violation, ViolationCounts};
+
+use crate::budget::{Budget, Stopped};
+use crate::formats::{self, Encoding, ReadError, ReadErrorKind, ReadOptions};
+use crate::mesh::Soup;
+use crate::par;
+use crate::spatial::Contacts;
+use sha2::{Digest, Sha256};
+
+/// How much to find out about an invalid file. A valid one costs the same either way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Depth {
+    /// End at the first violation, keep it as the only witness. P0 is cheap and always counted in full.
+    FirstViolation,
+    /// Count every violation and keep up to this many witnesses of each condition.
+    Count {
+        /// Witnesses to keep of each condition.
+        samples: usize,
+    },
+}
+
+/// A file that could not be judged.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum CertifyError {
+    /// It could not be read.
+    #[error("{0}")]
+    Unreadable(ReadError),
+    /// The run was stopped.
+    #[error("{0}")]
+    Stopped(#[from] Stopped),
+}
+
+impl From<ReadError> for CertifyError {
+    fn from(error: ReadError) -> Self {
+        match error.kind {
+            ReadErrorKind::Stopped(stopped) => Self::Stopped(stopped),
+            _ => Self::Unreadable(error),
+        }
+    }
+}
+
+/// A certificate with what the check found on the way, so that a report need not find it again.
+#[derive(Debug, Clone)]
+pub struct Examination {
+    /// What was proved.
+    pub certificate: Certificate,
+    /// Contacts of the welded f64 reading in our own triangulation, between triangles of the soup; degenerate ones and
+    /// duplicates are left out. `None` when not evaluated.
+    pub contacts: Option<Contacts>,
+}
+
+/// Reads `bytes` and judges them.
+///
+/// # Errors
+/// Unreadable bytes, or a stopped budget. An invalid mesh is no error.
+pub fn certify(
+    bytes: &[u8],
+    encoding: Encoding,
+    options: &ReadOptions,
+    depth: Depth,
+    budget: &Budget,
+) -> Result<Certificate, CertifyError> {
+    let soup = formats::read(bytes, encoding, options, budget)?;
+    Ok(examine(&soup, bytes, encoding, options, depth, budget)?.certificate)
+}
+
+/// As [`certify`] where the caller has the f64 reading of `bytes` already: `soup` must be what
+/// [`formats::read`](crate::formats::read) gives for them.
+///
+/// # Errors
+/// As [`certify`].
+pub fn examine(
+    soup: &Soup,
+    bytes: &[u8],
+    encoding: Encoding,
+    options: &ReadOptions,
+    depth: Depth,
+    budget: &Budget,
+) -> Result<Examination, CertifyError> {
+    let (sha256, judged) =
+        par::join(|| digest(bytes, budget), || judge::judge(soup, bytes, encoding, options, depth, budget));
+    let (sha256, judged) = (sha256?, judged?);
+    let (census, verdict) = (judged.census, judged.verdict);
+    let certificate = Certificate {
+        sha256,
+        bytes: bytes.len() as u64,
+        encoding,
+        p0: verdict.p0(),
+        p1: verdict.p1(),
+        p2: verdict.p2(),
+        violations: verdict.counts(),
+        triangles: soup.triangles.len() as u64,
+        vertices: census.vertices,
+        euler_characteristic: census.euler_characteristic(),
+        shells: if verdict.is_valid() { judged.shells } else { Vec::new() },
+        witnesses: verdict.witnesses,
+        readings: verdict.readings,
+    };
+    Ok(Examination { certificate, contacts: judged.contacts })
+}
+
+/// Bytes hashed between two looks at the budget: about a millisecond.
+const HASH_BLOCK_BYTES: usize = 1 << 18;
+
+fn digest(bytes: &[u8], budget: &Budget) -> Result<[u8; 32], Stopped> {
+    let mut hasher = Sha256::new();
+    for block in bytes.chunks(HASH_BLOCK_BYTES) {
+        budget.check()?;
+        hasher.update(block);
+    }
+    Ok(hasher.finalize().into())
+}

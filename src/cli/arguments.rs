@@ -1,0 +1,174 @@
+//! The commands and what they take.
+
+use super::files::Place;
+use super::flags::{EngineSettingFlags, OptionFlags, SettingFlags};
+use crate::config::Sources;
+use crate::pipeline::Operation;
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+
+/// Repairs 3D meshes for printing and proves it: every returned file carries an exact certificate.
+#[derive(Debug, Parser)]
+#[command(name = "meshmend", version, disable_help_subcommand = true)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Run the service (the default command).
+    Serve(ServiceArguments),
+    /// Report what is wrong with a mesh.
+    #[command(arg_required_else_help = true)]
+    Analyze(AnalyzeArguments),
+    /// Repair a mesh and certify the result; nothing is written unless it is certified.
+    #[command(arg_required_else_help = true)]
+    Repair(RepairArguments),
+    /// Prove that a file is a valid solid, or show where it is not.
+    #[command(arg_required_else_help = true)]
+    Verify(VerifyArguments),
+    /// Write a mesh in another format.
+    #[command(arg_required_else_help = true)]
+    Convert(ConvertArguments),
+    /// Exit with 0 if the service on this machine is ready (for containers).
+    Healthcheck(ServiceArguments),
+    /// Show or check the configuration.
+    #[command(subcommand)]
+    Config(SettingsCommand),
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum SettingsCommand {
+    /// Print every setting with its value and where that is from.
+    Show(ServiceArguments),
+    /// Exit with 2 if the service could not start with this configuration.
+    Check {
+        #[command(flatten)]
+        given: ServiceArguments,
+        /// Take warnings, such as an unknown MESHMEND_ variable, as errors.
+        #[arg(long)]
+        strict: bool,
+    },
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ServiceArguments {
+    /// Configuration file (TOML) [MESHMEND_CONFIG].
+    #[arg(long, value_name = "FILE", help_heading = "Settings", hide_short_help = true)]
+    config: Option<PathBuf>,
+    #[command(flatten)]
+    settings: SettingFlags,
+}
+
+impl ServiceArguments {
+    pub(super) fn sources(self) -> Sources {
+        Sources::of_process(self.settings.0, self.config)
+    }
+}
+
+/// What every operation on a file takes.
+#[derive(Debug, Args)]
+struct InputArguments {
+    /// Mesh file, or - for standard input, which needs --format.
+    #[arg(value_name = "IN")]
+    input: Place,
+    /// Print the report as JSON on standard output.
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    options: OptionFlags,
+    /// Configuration file (TOML) [MESHMEND_CONFIG].
+    #[arg(long, value_name = "FILE", help_heading = "Settings", hide_short_help = true)]
+    config: Option<PathBuf>,
+    #[command(flatten)]
+    settings: EngineSettingFlags,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct AnalyzeArguments {
+    #[command(flatten)]
+    given: InputArguments,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct VerifyArguments {
+    #[command(flatten)]
+    given: InputArguments,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct RepairArguments {
+    #[command(flatten)]
+    given: InputArguments,
+    /// File to write, or - for standard output, which needs --output-format. Its extension names the format unless
+    /// --output-format does.
+    #[arg(short, long, value_name = "OUT")]
+    output: Place,
+    /// Write the best result there is although it is not certified (--require best_effort); the exit code stays 1.
+    #[arg(long)]
+    best_effort: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ConvertArguments {
+    #[command(flatten)]
+    given: InputArguments,
+    /// File to write, or - for standard output, which needs --output-format. Its extension names the format unless
+    /// --output-format does.
+    #[arg(short, long, value_name = "OUT")]
+    output: Place,
+}
+
+/// An operation on a file, whichever command named it.
+#[derive(Debug)]
+pub(super) struct Request {
+    pub operation: Operation,
+    pub input: Place,
+    pub output: Option<Place>,
+    pub is_json: bool,
+    /// Names and values of options.
+    pub options: Vec<(String, String)>,
+    pub sources: Sources,
+}
+
+impl InputArguments {
+    fn request(self, operation: Operation, output: Option<Place>) -> Request {
+        Request {
+            operation,
+            input: self.input,
+            output,
+            is_json: self.json,
+            options: self.options.0,
+            sources: Sources::of_process(self.settings.0, self.config),
+        }
+    }
+}
+
+impl From<AnalyzeArguments> for Request {
+    fn from(given: AnalyzeArguments) -> Self {
+        given.given.request(Operation::Analyze, None)
+    }
+}
+
+impl From<VerifyArguments> for Request {
+    fn from(given: VerifyArguments) -> Self {
+        given.given.request(Operation::Verify, None)
+    }
+}
+
+impl From<RepairArguments> for Request {
+    fn from(given: RepairArguments) -> Self {
+        let mut request = given.given.request(Operation::Repair, Some(given.output));
+        if given.best_effort {
+            request.options.push(("require".to_owned(), "best_effort".to_owned()));
+        }
+        request
+    }
+}
+
+impl From<ConvertArguments> for Request {
+    fn from(given: ConvertArguments) -> Self {
+        given.given.request(Operation::Convert, Some(given.output))
+    }
+}

@@ -1,0 +1,149 @@
+//! Flags made from the tables of options and settings, so that names and values cannot differ from theirs.
+
+use crate::config::{SETTINGS, Setting};
+use crate::wire::{OptionKind, OptionSpec, SPECS};
+use clap::builder::PossibleValuesParser;
+use clap::{Arg, ArgMatches, Command};
+
+/// Settings that mean something without a service.
+const ENGINE_SETTINGS: [&str; 7] = [
+    "triangles_max",
+    "vertices_max",
+    "polygon_corners_max",
+    "deadline_max",
+    "engine_bytes_max",
+    "engine_work_max",
+    "engine_threads",
+];
+
+/// Every option of the engine, as given: names and values.
+#[derive(Debug, Clone, Default)]
+pub(super) struct OptionFlags(pub Vec<(String, String)>);
+
+/// Every setting, as given: names and values.
+#[derive(Debug, Clone, Default)]
+pub(super) struct SettingFlags(pub Vec<(String, String)>);
+
+/// The settings that mean something without a service.
+#[derive(Debug, Clone, Default)]
+pub(super) struct EngineSettingFlags(pub Vec<(String, String)>);
+
+fn options() -> impl Iterator<Item = &'static OptionSpec> {
+    SPECS.iter().filter(|spec| !spec.is_for_service_only)
+}
+
+fn engine_settings() -> impl Iterator<Item = &'static Setting> {
+    SETTINGS.iter().filter(|setting| ENGINE_SETTINGS.contains(&setting.name))
+}
+
+fn option_flag(spec: &'static OptionSpec) -> Arg {
+    let flag = Arg::new(spec.name).long(spec.flag()).help(spec.about).help_heading("Mesh options");
+    // The name as it stands in JSON is understood as well.
+    let flag = if spec.name.contains('_') { flag.alias(spec.name) } else { flag };
+    match spec.kind {
+        OptionKind::Word(words) => flag.value_name("WORD").value_parser(PossibleValuesParser::new(words)),
+        OptionKind::Integer { .. } => flag.value_name("NUMBER"),
+        OptionKind::Input => flag.value_name("JSON"),
+    }
+}
+
+fn setting_flag(setting: &'static Setting) -> Arg {
+    let default = if setting.default.is_empty() { "none" } else { setting.default };
+    let flag = Arg::new(setting.name)
+        .long(setting.flag())
+        .value_name("VALUE")
+        .help(format!("{} [{}: {default}]", setting.about, setting.variable()))
+        .help_heading("Settings")
+        .hide_short_help(true);
+    match (setting.name, setting.expected) {
+        ("engine_threads", _) => flag.alias("threads"),
+        // A switch needs no value.
+        (_, "true or false") => flag.num_args(0..=1).require_equals(true).default_missing_value("true"),
+        _ => flag,
+    }
+}
+
+/// The values of the flags `names` that were given.
+fn given(matches: &ArgMatches, names: impl Iterator<Item = &'static str>) -> Vec<(String, String)> {
+    let value = |name: &str| matches.get_one::<String>(name).cloned();
+    names.filter_map(|name| Some((name.to_owned(), value(name)?))).collect()
+}
+
+/// Implements clap's traits for a list of flags.
+macro_rules! flags {
+    ($type:ident, $rows:expr, $flag:expr) => {
+        impl clap::Args for $type {
+            fn augment_args(command: Command) -> Command {
+                $rows.map($flag).fold(command, Command::arg)
+            }
+
+            fn augment_args_for_update(command: Command) -> Command {
+                Self::augment_args(command)
+            }
+        }
+
+        impl clap::FromArgMatches for $type {
+            fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+                Ok(Self(given(matches, $rows.map(|row| row.name))))
+            }
+
+            fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+                self.0.extend(given(matches, $rows.map(|row| row.name)));
+                Ok(())
+            }
+        }
+    };
+}
+
+flags!(OptionFlags, options(), option_flag);
+flags!(SettingFlags, SETTINGS.iter(), setting_flag);
+flags!(EngineSettingFlags, engine_settings(), setting_flag);
+
+#[cfg(test)]
+mod tests {
+    use super::super::arguments::Arguments;
+    use super::*;
+    use clap::CommandFactory as _;
+
+    fn has_flag(command: &Command, flag: &str) -> bool {
+        command.get_arguments().any(|arg| arg.get_long() == Some(flag))
+    }
+
+    #[test]
+    fn every_option_of_the_schema_is_a_flag_of_every_operation() {
+        let command = Arguments::command();
+        for operation in crate::wire::Operation::WORDS {
+            let subcommand = command.find_subcommand(operation).unwrap();
+            for spec in options() {
+                assert!(has_flag(subcommand, &spec.flag()), "{operation} --{}", spec.flag());
+            }
+        }
+    }
+
+    #[test]
+    fn every_setting_is_a_flag_of_serve_and_config() {
+        let command = Arguments::command();
+        let config = command.find_subcommand("config").unwrap();
+        for subcommand in [
+            command.find_subcommand("serve").unwrap(),
+            command.find_subcommand("healthcheck").unwrap(),
+            config.find_subcommand("show").unwrap(),
+            config.find_subcommand("check").unwrap(),
+        ] {
+            for setting in SETTINGS {
+                assert!(
+                    has_flag(subcommand, &setting.flag()),
+                    "{} --{}",
+                    subcommand.get_name(),
+                    setting.flag()
+                );
+            }
+        }
+        assert_eq!(engine_settings().count(), ENGINE_SETTINGS.len());
+    }
+
+    #[test]
+    fn the_command_line_is_put_together_well() {
+        Arguments::command().debug_assert();
+    }
+}

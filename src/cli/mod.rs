@@ -1,0 +1,92 @@
+//! The command line: the same engine, options and report as the service.
+
+mod arguments;
+mod exit;
+mod files;
+mod flags;
+mod settings;
+mod summary;
+mod watch;
+mod work;
+
+use crate::config::{Config, Loaded};
+use arguments::{Arguments, Command, SettingsCommand};
+use clap::Parser as _;
+use exit::Exit;
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+/// What `main` brings from the service, so that this module knows no HTTP.
+#[derive(Debug, Clone, Copy)]
+pub struct Service {
+    /// Serves until it is told to stop.
+    pub serve: fn(&Loaded) -> anyhow::Result<()>,
+    /// Fails unless the service of this configuration is ready.
+    pub healthcheck: fn(&Config) -> anyhow::Result<()>,
+}
+
+/// Runs the command line `args`, the program's name first.
+///
+/// Exit codes: 0 did what was asked; 1 no certified result, or the file is not valid; 2 unreadable or wrong usage;
+/// 3 limit, deadline or cancelled; 4 internal.
+pub fn run(args: impl IntoIterator<Item = OsString>, service: Service) -> ExitCode {
+    let exit = match Arguments::try_parse_from(with_default_command(args)) {
+        Ok(arguments) => execute(arguments.command, service),
+        Err(error) => {
+            // A closed pipe is all that can go wrong here, and then nobody reads on.
+            let _ = error.print();
+            if error.use_stderr() { Exit::Usage } else { Exit::Done }
+        }
+    };
+    exit.into()
+}
+
+/// `serve` is meant when the command line is empty or begins with one of its flags.
+fn with_default_command(args: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+    let mut args: Vec<OsString> = args.into_iter().collect();
+    let is_own = |flag: &OsString| ["-h", "--help", "-V", "--version"].iter().any(|own| flag == own);
+    let is_flag = |arg: &OsString| arg.to_string_lossy().starts_with('-') && !is_own(arg);
+    if args.get(1).is_none_or(is_flag) {
+        args.insert(1.min(args.len()), "serve".into());
+    }
+    args
+}
+
+fn execute(command: Command, service: Service) -> Exit {
+    match command {
+        Command::Serve(given) => settings::with_loaded(&given.sources(), |loaded| (service.serve)(loaded)),
+        Command::Healthcheck(given) => {
+            match settings::with_loaded(&given.sources(), |loaded| (service.healthcheck)(&loaded.config)) {
+                // Container runtimes know 0 and 1 only.
+                Exit::Done => Exit::Done,
+                _ => Exit::Negative,
+            }
+        }
+        Command::Config(SettingsCommand::Show(given)) => settings::show(&given.sources()),
+        Command::Config(SettingsCommand::Check { given, strict }) => {
+            settings::check(&given.sources(), strict)
+        }
+        Command::Analyze(given) => work::run(&given.into()),
+        Command::Verify(given) => work::run(&given.into()),
+        Command::Repair(given) => work::run(&given.into()),
+        Command::Convert(given) => work::run(&given.into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn words(args: &[&str]) -> Vec<String> {
+        let args = with_default_command(args.iter().map(OsString::from));
+        args.into_iter().map(|arg| arg.into_string().unwrap()).collect()
+    }
+
+    #[test]
+    fn serve_is_the_default_command() {
+        assert_eq!(words(&["meshmend"]), ["meshmend", "serve"]);
+        assert_eq!(words(&["meshmend", "--listen", "[::1]:1"]), ["meshmend", "serve", "--listen", "[::1]:1"]);
+        assert_eq!(words(&["meshmend", "--help"]), ["meshmend", "--help"]);
+        assert_eq!(words(&["meshmend", "verify", "-"]), ["meshmend", "verify", "-"]);
+    }
+}

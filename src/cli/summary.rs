@@ -1,0 +1,245 @@
+//! The report for people: a screen of text, the most telling things first.
+
+use crate::wire::{Action, Certificate, Claim, Defect, MeshInfo, Report, Severity, Witness};
+use std::fmt::Write as _;
+
+/// What a report is about, as the user calls it.
+#[derive(Debug)]
+pub(super) struct Subject {
+    /// The input.
+    pub input: String,
+    /// Where the result was written; `None`: it was not.
+    pub written: Option<String>,
+}
+
+/// The report as text, with a line end.
+pub(super) fn summary(report: &Report, subject: &Subject) -> String {
+    let mut text = String::new();
+    put(&mut text, &head(report, subject));
+    if let Some(mesh) = &report.before {
+        put(&mut text, &format!("  {}", size(mesh)));
+        put_table(&mut text, "defects", &mesh.defects.iter().map(defect_row).collect::<Vec<_>>());
+    }
+    let done: Vec<_> =
+        report.actions.iter().filter(|a| a.changes.iter().any(|c| c.count > 0)).map(action_row).collect();
+    put_table(&mut text, "done", &done);
+    if let Some(mesh) = &report.after {
+        put(&mut text, &format!("result\n  {}", size(mesh)));
+        put_table(&mut text, "defects that remain", &mesh.defects.iter().map(defect_row).collect::<Vec<_>>());
+    }
+    let judged = report.certificate.as_ref().unwrap_or(&report.input_certificate);
+    put_table(&mut text, "certificate", &claim_rows(judged));
+    put(&mut text, &verdict(report, subject));
+    text
+}
+
+fn put(text: &mut String, line: &str) {
+    text.push_str(line);
+    text.push('\n');
+}
+
+/// A heading and its rows, columns aligned; nothing when there are no rows.
+fn put_table<const N: usize>(text: &mut String, heading: &str, rows: &[[String; N]]) {
+    if rows.is_empty() {
+        return;
+    }
+    put(text, heading);
+    let widths: [usize; N] =
+        std::array::from_fn(|column| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0));
+    for row in rows {
+        let mut line = String::from(" ");
+        for (cell, width) in row.iter().zip(widths) {
+            let _ = write!(line, " {cell:width$} ");
+        }
+        put(text, line.trim_end());
+    }
+}
+
+fn head(report: &Report, subject: &Subject) -> String {
+    let input = &report.input;
+    let known = if input.units.is_stated { "" } else { " (assumed)" };
+    format!("{}: {}, {} bytes, unit {}{known}", subject.input, input.encoding, input.bytes, input.units.unit)
+}
+
+fn size(mesh: &MeshInfo) -> String {
+    let counts = &mesh.counts;
+    let mut text = format!(
+        "{}, {}, {}",
+        counted(counts.triangles, "triangle"),
+        counted(counts.welded_vertices, "vertex"),
+        counted(counts.components, "component"),
+    );
+    if let Some(bounds) = &mesh.measures.bounds {
+        let [x, y, z] = std::array::from_fn(|i| figure(bounds.max[i] - bounds.min[i]));
+        let _ = write!(text, "; {x} x {y} x {z}");
+    }
+    for (name, value) in [("area", mesh.measures.area), ("volume", mesh.measures.volume)] {
+        if let Some(value) = value {
+            let _ = write!(text, "; {name} {}", figure(value));
+        }
+    }
+    text
+}
+
+fn defect_row(defect: &Defect) -> [String; 4] {
+    let severity = match defect.severity {
+        Severity::Error => "error",
+        Severity::Warning => "warning",
+        Severity::Info => "info",
+    };
+    let first = defect.witnesses.first().map(witness).unwrap_or_default();
+    [defect.code.to_string(), defect.count.to_string(), severity.to_owned(), first]
+}
+
+/// The first place to look at.
+fn witness(witness: &Witness) -> String {
+    let mut parts = Vec::new();
+    let elements = [("face", &witness.faces), ("vertex", &witness.vertices)];
+    if let Some((name, element)) = elements.iter().find_map(|(name, list)| Some((name, list.first()?))) {
+        let line = element.line.map_or_else(String::new, |line| format!(" (line {line})"));
+        parts.push(format!("{name} {}{line}", element.index));
+    }
+    if let Some(position) = witness.position {
+        parts.push(format!("at {}", position.map(figure).join(" ")));
+    }
+    parts.extend(witness.figures.iter().filter_map(|f| Some(format!("{} {}", f.name, figure(f.value?)))));
+    parts.join(", ")
+}
+
+fn action_row(action: &Action) -> [String; 3] {
+    let changes = action.changes.iter().filter(|c| c.count > 0).map(|c| format!("{} {}", c.name, c.count));
+    let causes = action.causes.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+    let why = match (causes.as_str(), action.reason.as_str()) {
+        ("", reason) => reason.to_owned(),
+        (causes, "") => format!("because of {causes}"),
+        (causes, reason) => format!("because of {causes}; {reason}"),
+    };
+    [action.step.to_owned(), changes.collect::<Vec<_>>().join(", "), why]
+}
+
+fn claim_rows(certificate: &Certificate) -> Vec<[String; 2]> {
+    let claims =
+        [("P0 topology", &certificate.p0), ("P1 embedding", &certificate.p1), ("P2 solid", &certificate.p2)];
+    claims.map(|(name, claim)| [name.to_owned(), claim_text(claim)]).into()
+}
+
+fn claim_text(claim: &Claim) -> String {
+    let broken = claim.violations.iter().filter_map(|v| Some((v.condition, v.count.filter(|&n| n > 0)?)));
+    let broken = broken.map(|(condition, count)| format!("{condition} {count}")).collect::<Vec<_>>();
+    match claim.holds {
+        Some(true) => "holds".to_owned(),
+        Some(false) if broken.is_empty() => "broken".to_owned(),
+        Some(false) => format!("broken: {}", broken.join(", ")),
+        None => "not decided".to_owned(),
+    }
+}
+
+fn verdict(report: &Report, subject: &Subject) -> String {
+    let verdict = &report.verdict;
+    let outcome = verdict.outcome.map_or_else(String::new, |outcome| format!("{outcome}, "));
+    let printable = if verdict.printable { "printable: a valid solid" } else { "not printable" };
+    let mut text = format!("verdict: {outcome}{printable}");
+    if let Some(reason) = verdict.reasons.first() {
+        let _ = write!(text, "; {}", reason.message);
+    }
+    match &subject.written {
+        Some(place) => text.push_str(&format!("\nwritten: {place}")),
+        None if verdict.outcome.is_some() => text.push_str("\nnothing written"),
+        None => {}
+    }
+    text
+}
+
+fn counted(count: u64, name: &str) -> String {
+    let plural = match name {
+        "vertex" => "vertices".to_owned(),
+        name => format!("{name}s"),
+    };
+    if count == 1 { format!("1 {name}") } else { format!("{count} {plural}") }
+}
+
+/// A number for people: six significant digits.
+fn figure(value: f64) -> String {
+    let magnitude = value.abs();
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if !(1e-4..1e9).contains(&magnitude) {
+        return format!("{value:.5e}");
+    }
+    let digits_before = magnitude.log10().floor() as i32 + 1;
+    let decimals = usize::try_from(6 - digits_before).unwrap_or(0);
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::Answer;
+    use crate::wire::{TimingMs, sample};
+
+    fn of(answer: &Answer, written: Option<&str>) -> String {
+        let report = Report::new(&answer.report, TimingMs::default());
+        summary(&report, &Subject { input: "part.stl".into(), written: written.map(str::to_owned) })
+    }
+
+    #[test]
+    fn a_repair_is_told_from_defect_to_verdict() {
+        let want = "\
+part.stl: stl-binary, 234 bytes, unit mm (assumed)
+  3 triangles, 0 vertices, 0 components; 1 x 1 x 1; area 1
+defects
+  boundary-loop  1  error  face 2 (line 17), edges 3
+done
+  fill-holes  faces_added 1  because of boundary-loop
+result
+  4 triangles, 0 vertices, 0 components; 1 x 1 x 1; area 2; volume 0.5
+certificate
+  P0 topology   holds
+  P1 embedding  holds
+  P2 solid      holds
+verdict: repaired, printable: a valid solid
+written: out.stl
+";
+        assert_eq!(of(&sample::repaired(), Some("out.stl")), want);
+    }
+
+    #[test]
+    fn a_refusal_says_why_and_that_nothing_was_written() {
+        let text = of(&sample::refused(), None);
+        assert!(text.contains("verdict: refused, not printable; "), "{text}");
+        assert!(text.ends_with("nothing written\n"), "{text}");
+    }
+
+    #[test]
+    fn figures_have_six_significant_digits() {
+        for (value, text) in [
+            (0.0, "0"),
+            (1.0, "1"),
+            (-12.5, "-12.5"),
+            (1.0 / 3.0, "0.333333"),
+            (1234.56789, "1234.57"),
+            (123_456_789.0, "123456789"),
+            (1e30, "1.00000e30"),
+            (1.5e-7, "1.50000e-7"),
+        ] {
+            assert_eq!(figure(value), text);
+        }
+    }
+
+    #[test]
+    fn columns_are_aligned_and_empty_tables_leave_no_heading() {
+        let mut text = String::new();
+        put_table::<2>(&mut text, "none", &[]);
+        put_table(&mut text, "some", &[["a".into(), "1".into()], ["long".into(), "22".into()]]);
+        assert_eq!(text, "some\n  a     1\n  long  22\n");
+    }
+
+    #[test]
+    fn one_is_not_a_plural() {
+        assert_eq!(counted(1, "vertex"), "1 vertex");
+        assert_eq!(counted(0, "triangle"), "0 triangles");
+        assert_eq!(counted(8, "vertex"), "8 vertices");
+    }
+}

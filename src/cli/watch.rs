@@ -1,0 +1,140 @@
+//! What happens beside a run: Ctrl-C, the deadline, and the progress line of a terminal.
+
+use crate::budget::StopFlag;
+use std::io::{IsTerminal as _, Write as _};
+use std::time::Duration;
+use tokio::sync::oneshot;
+
+/// Pause between two progress lines.
+const PROGRESS_EVERY: Duration = Duration::from_millis(100);
+
+/// Runs `body` while a second thread raises `stop` on Ctrl-C, on SIGTERM or after `deadline`, and shows `progress` if
+/// standard error is a terminal.
+pub(super) fn watched<T>(
+    stop: &StopFlag,
+    deadline: Option<Duration>,
+    progress: impl Fn() -> String + Send,
+    body: impl FnOnce() -> T,
+) -> T {
+    let (done, is_done) = oneshot::channel::<()>();
+    let stop = stop.clone();
+    std::thread::scope(|scope| {
+        scope.spawn(move || watch(&stop, deadline, progress, is_done));
+        let result = body();
+        drop(done);
+        result
+    })
+}
+
+fn watch(
+    stop: &StopFlag,
+    deadline: Option<Duration>,
+    progress: impl Fn() -> String,
+    mut is_done: oneshot::Receiver<()>,
+) {
+    // Without a runtime the run still works; it only cannot be stopped gently.
+    let Ok(runtime) = tokio::runtime::Builder::new_current_thread().enable_all().build() else { return };
+    runtime.block_on(async {
+        let mut ticks = tokio::time::interval(PROGRESS_EVERY);
+        // The first tick is at once; short runs show nothing.
+        ticks.tick().await;
+        let mut line = ProgressLine { is_on: std::io::stderr().is_terminal(), is_drawn: false };
+        let mut stopping = std::pin::pin!(interrupted());
+        let mut out_of_time = std::pin::pin!(passed(deadline));
+        let mut is_stopping = false;
+        loop {
+            tokio::select! {
+                biased;
+                _ = &mut is_done => break,
+                () = &mut stopping, if !is_stopping => {
+                    stop.cancel();
+                    is_stopping = true;
+                }
+                () = &mut out_of_time, if !is_stopping => {
+                    stop.pass_deadline();
+                    is_stopping = true;
+                }
+                _ = ticks.tick() => line.draw(&progress()),
+            }
+        }
+        line.clear();
+    });
+}
+
+async fn passed(deadline: Option<Duration>) {
+    match deadline {
+        Some(deadline) => tokio::time::sleep(deadline).await,
+        None => std::future::pending().await,
+    }
+}
+
+/// Ends when the user or the system asks the process to end.
+async fn interrupted() {
+    #[cfg(unix)]
+    let terminated = async {
+        match tokio::signal::unix::signal(tokio::signal::unix::SignalKind::terminate()) {
+            Ok(mut signals) => {
+                signals.recv().await;
+            }
+            Err(_) => std::future::pending().await,
+        }
+    };
+    #[cfg(not(unix))]
+    let terminated = std::future::pending::<()>();
+    tokio::select! {
+        Ok(()) = tokio::signal::ctrl_c() => {}
+        () = terminated => {}
+        else => std::future::pending().await,
+    }
+}
+
+/// A line that is drawn over itself.
+struct ProgressLine {
+    is_on: bool,
+    is_drawn: bool,
+}
+
+impl ProgressLine {
+    /// Carriage return and "erase to the end of the line" (ECMA-48).
+    const ERASE: &str = "\r\x1b[K";
+
+    fn draw(&mut self, text: &str) {
+        if self.is_on {
+            let _ = write!(std::io::stderr(), "{}{text}", Self::ERASE);
+            self.is_drawn = true;
+        }
+    }
+
+    fn clear(&mut self) {
+        if self.is_drawn {
+            let _ = write!(std::io::stderr(), "{}", Self::ERASE);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::budget::Stopped;
+
+    #[test]
+    fn the_deadline_raises_the_flag_of_a_run_that_goes_on() {
+        let stop = StopFlag::default();
+        let reason = watched(&stop, Some(Duration::from_millis(1)), String::new, || {
+            loop {
+                if let Some(reason) = stop.raised() {
+                    break reason;
+                }
+                std::thread::yield_now();
+            }
+        });
+        assert_eq!(reason, Stopped::Deadline);
+    }
+
+    #[test]
+    fn a_run_that_ends_first_is_not_stopped() {
+        let stop = StopFlag::default();
+        assert_eq!(watched(&stop, Some(Duration::from_secs(3600)), String::new, || 7), 7);
+        assert_eq!(stop.raised(), None);
+    }
+}

@@ -1,0 +1,164 @@
+//! One operation on one file.
+
+use super::arguments::Request;
+use super::exit::{Exit, print, say};
+use super::files::Place;
+use super::summary::{Subject, summary};
+use super::watch::watched;
+use crate::budget::{Budget, StopFlag};
+use crate::config::{Config, Loaded};
+use crate::formats::{self, ReadLimits};
+use crate::jobs::StageClock;
+use crate::par;
+use crate::pipeline::{self, Answer, Operation, Require};
+use crate::wire::{Options, Problem, ProblemCode, Progress, Report, TimingMs};
+use std::io;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// Does what was asked, says what came of it, and gives the exit code.
+pub(super) fn run(request: &Request) -> Exit {
+    let crashed = |_| {
+        Err(Problem::new(ProblemCode::EngineCrashed, "the engine failed on this file; that is our error"))
+    };
+    catch_unwind(AssertUnwindSafe(|| attempt(request))).unwrap_or_else(crashed).unwrap_or_else(|problem| {
+        say(&problem.detail);
+        if request.is_json {
+            print_json(&problem);
+        }
+        Exit::of(&problem)
+    })
+}
+
+fn attempt(request: &Request) -> Result<Exit, Problem> {
+    check_streams(request)?;
+    let options =
+        Options::from_pairs(request.options.iter().map(|(n, v)| (n, v))).map_err(|e| Problem::from(&e))?;
+    let loaded = request.sources.load().map_err(|e| wrong(e.to_string()))?;
+    if let Some(output) = &request.output {
+        output.check_writable().map_err(|e| wrong(format!("{output} cannot be written: {e}")))?;
+    }
+    let bytes = request.input.read().map_err(|e| unreadable(&request.input, &e))?;
+    let engine_options = engine_options(request, &options, &loaded.config, &bytes);
+    let (answer, timing) = execute(request.operation, &bytes, &engine_options, &loaded)
+        .map_err(|problem| Problem { detail: format!("{}: {}", request.input, problem.detail), ..problem })?;
+    deliver(request, engine_options.require, &bytes, &answer, timing)
+}
+
+/// Streams have no extension that could name their format, and standard output holds one thing only.
+fn check_streams(request: &Request) -> Result<(), Problem> {
+    let is_named = |name: &str| request.options.iter().any(|(given, _)| given == name);
+    if request.input == Place::Stream && !is_named("format") {
+        return Err(wrong("standard input needs --format"));
+    }
+    if request.output == Some(Place::Stream) && !is_named("output_format") {
+        return Err(wrong("standard output needs --output-format"));
+    }
+    if request.output == Some(Place::Stream) && request.is_json {
+        return Err(wrong("--json and --output - both want standard output"));
+    }
+    let has_format = |place: &Place| place.format().is_some() || is_named("output_format");
+    match &request.output {
+        Some(output) if request.operation == Operation::Convert && !has_format(output) => {
+            Err(wrong(format!("{output} names no format: --output-format is needed")))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn wrong(detail: impl Into<String>) -> Problem {
+    Problem::new(ProblemCode::InvalidParameter, detail)
+}
+
+fn unreadable(input: &Place, error: &io::Error) -> Problem {
+    Problem::new(ProblemCode::NotFound, format!("{input} cannot be read: {error}"))
+}
+
+fn engine_options(request: &Request, options: &Options, config: &Config, bytes: &[u8]) -> pipeline::Options {
+    let limits = ReadLimits {
+        triangles_max: config.triangles_max,
+        vertices_max: config.vertices_max,
+        polygon_corners_max: config.polygon_corners_max,
+    };
+    let engine = options.to_engine(limits);
+    // The content decides; the extension only where the content leaves it open.
+    let by_extension = || request.input.format().filter(|_| formats::sniff(bytes, None).is_err());
+    pipeline::Options {
+        format: engine.format.or_else(by_extension),
+        output_format: engine.output_format.or_else(|| request.output.as_ref()?.format()),
+        ..engine
+    }
+}
+
+/// Runs the engine under the configured limits.
+fn execute(
+    operation: Operation,
+    bytes: &[u8],
+    options: &pipeline::Options,
+    loaded: &Loaded,
+) -> Result<(Answer, TimingMs), Problem> {
+    let config = &loaded.config;
+    // The default deadline protects a service from its guests; here the guest is at home.
+    let deadline = loaded.is_given("deadline_max").then_some(config.deadline_max);
+    let stop = StopFlag::default();
+    let clock = StageClock::start(operation.into());
+    let budget = Budget::new(stop.clone(), config.engine_work_max, config.engine_bytes_max.0)
+        .observed_by(clock.observer());
+    let engine =
+        || par::with_threads(config.engine_threads, || pipeline::run(operation, bytes, options, &budget));
+    let progress = || progress_line(operation, clock.progress());
+    let answer = watched(&stop, deadline, progress, engine).map_err(|failure| Problem::from(&failure))?;
+    Ok((answer, clock.timing_ms()))
+}
+
+fn progress_line(operation: Operation, progress: Progress) -> String {
+    let stage = progress.stage.map_or("", |stage| stage.word());
+    format!("{}: {:.0} % {stage}", operation.name(), progress.fraction * 100.0)
+}
+
+/// Writes the result, if there is one, and the report.
+fn deliver(
+    request: &Request,
+    require: Option<Require>,
+    bytes: &[u8],
+    answer: &Answer,
+    timing: TimingMs,
+) -> Result<Exit, Problem> {
+    let result = answer.output.as_ref().map(|output| output.bytes.as_deref().unwrap_or(bytes));
+    let written = result.and_then(|result| Some((result, request.output.as_ref()?)));
+    if let Some((result, place)) = written {
+        place
+            .write(result)
+            .map_err(|e| Problem::new(ProblemCode::StorageFull, format!("{place} cannot be written: {e}")))?;
+    }
+    let report = Report::new(&answer.report, timing);
+    if request.is_json {
+        print_json(&report);
+    } else {
+        let written = written.map(|(_, place)| place.to_string());
+        let text = summary(&report, &Subject { input: request.input.to_string(), written });
+        if request.output == Some(Place::Stream) { say_text(&text) } else { print(&text) }
+    }
+    Ok(verdict(request.operation, require, &report, result.is_some()))
+}
+
+fn verdict(operation: Operation, require: Option<Require>, report: &Report, has_result: bool) -> Exit {
+    let is_done = match operation {
+        Operation::Repair => has_result && report.verdict.printable,
+        Operation::Verify => report.verdict.printable,
+        Operation::Analyze => require != Some(Require::Printable) || report.verdict.printable,
+        Operation::Convert => has_result && (require != Some(Require::Printable) || report.verdict.printable),
+    };
+    if is_done { Exit::Done } else { Exit::Negative }
+}
+
+fn print_json(value: &impl serde::Serialize) {
+    match serde_json::to_string_pretty(value) {
+        Ok(text) => print(&format!("{text}\n")),
+        Err(error) => say(&error.to_string()),
+    }
+}
+
+/// The report, where the mesh has standard output for itself.
+fn say_text(text: &str) {
+    let _ = io::Write::write_all(&mut io::stderr(), text.as_bytes());
+}

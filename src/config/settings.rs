@@ -1,0 +1,159 @@
+//! Every setting: its name, type, default and meaning.
+
+use super::error::ConfigError;
+use super::sources::Entry;
+use super::values::{Bytes, LogFormat, Value};
+use std::net::{IpAddr, SocketAddr};
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// One row of the table of settings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Setting {
+    /// Name, as in TOML.
+    pub name: &'static str,
+    /// What it is for.
+    pub about: &'static str,
+    /// The value when nothing is given.
+    pub default: &'static str,
+    /// What values it takes.
+    pub expected: &'static str,
+}
+
+impl Setting {
+    /// The environment variable.
+    pub fn variable(&self) -> String {
+        format!("MESHMEND_{}", self.name.to_ascii_uppercase())
+    }
+
+    /// The flag, without the leading hyphens.
+    pub fn flag(&self) -> String {
+        self.name.replace('_', "-")
+    }
+}
+
+/// Makes the struct, the table and the conversion from one list.
+macro_rules! settings {
+    ($($(#[doc = $about:literal])+ $name:ident: $type:ty = $default:literal,)*) => {
+        /// The configuration, every value valid by itself.
+        #[derive(Debug, Clone)]
+        pub struct Config {
+            $($(#[doc = $about])+ pub $name: $type,)*
+        }
+
+        /// Every setting.
+        pub const SETTINGS: &[Setting] = &[$(Setting {
+            name: stringify!($name),
+            about: concat!($($about),+).trim_ascii_start(),
+            default: $default,
+            expected: <$type as Value>::EXPECTED,
+        },)*];
+
+        impl Config {
+            /// The values of `entries`, which are in the order of [`SETTINGS`].
+            pub(super) fn from_entries(entries: &[Entry]) -> Result<Self, ConfigError> {
+                let mut entries = entries.iter();
+                Ok(Self { $($name: value(entries.next(), stringify!($name))?,)* })
+            }
+        }
+    };
+}
+
+fn value<T: Value>(entry: Option<&Entry>, name: &'static str) -> Result<T, ConfigError> {
+    let entry = entry.filter(|e| e.setting.name == name).expect("one entry for each setting, in order");
+    T::parse(entry.value.trim()).ok_or_else(|| ConfigError::Invalid {
+        name,
+        origin: entry.origin.clone(),
+        value: entry.value.clone(),
+        expected: T::EXPECTED,
+    })
+}
+
+settings! {
+    /// Where the API listens.
+    listen: SocketAddr = "127.0.0.1:8080",
+    /// Where health and metrics listen; off: nowhere.
+    admin_listen: Option<SocketAddr> = "127.0.0.1:8081",
+    /// Folder for uploads and results; one server owns it.
+    data_dir: PathBuf = "meshmend-data",
+
+    /// File of API keys, one a line: a key, or NAME:SHA-256 of a key in hexadecimal.
+    api_keys_file: Option<PathBuf> = "",
+    /// Lets everybody who reaches the service use it, also from other machines.
+    allow_anonymous: bool = "false",
+    /// Host names under which an anonymous service may be addressed beside loopback, and from whose pages.
+    allowed_hosts: Vec<String> = "",
+    /// Addresses of proxies whose forwarding headers are believed.
+    trusted_proxies: Vec<IpAddr> = "",
+
+    /// Jobs that run at one time; auto: half the cores.
+    slots: Option<NonZeroUsize> = "auto",
+    /// Most queued jobs.
+    queue_max: NonZeroUsize = "64",
+    /// Most jobs kept, whatever their state; the oldest finished ones go first.
+    jobs_max: NonZeroUsize = "20_000",
+    /// Time for which a finished job is kept.
+    result_ttl: Duration = "24h",
+    /// Most bytes of uploads and results on disk; the oldest finished jobs go first.
+    data_bytes_max: Bytes = "20GiB",
+    /// Time that running jobs get when the server shuts down.
+    drain_grace: Duration = "25s",
+
+    /// Largest upload.
+    upload_bytes_max: Bytes = "512MiB",
+    /// Most triangles of a mesh after polygons are split.
+    triangles_max: u32 = "100_000_000",
+    /// Most vertices of a mesh.
+    vertices_max: u32 = "300_000_000",
+    /// Most corners of one polygon.
+    polygon_corners_max: u32 = "65_536",
+    /// Longest run of one job. The command line has no deadline unless this is set.
+    deadline_max: Duration = "10min",
+    /// Most memory that one job may charge.
+    engine_bytes_max: Bytes = "4GiB",
+    /// Most work units of one job.
+    engine_work_max: u64 = "9_007_199_254_740_991",
+    /// Engine threads of one job; 0: all jobs share one thread for each core.
+    engine_threads: usize = "0",
+
+    /// Most open connections of each listener; more wait in the system's backlog.
+    connections_max: NonZeroUsize = "1024",
+    /// Time for a request's head, and for which a connection may be idle.
+    header_timeout: Duration = "15s",
+    /// Longest pause between two pieces of an upload.
+    upload_timeout: Duration = "30s",
+    /// Longest time for a whole upload.
+    upload_total_timeout: Duration = "1h",
+    /// Time for which a client may take no byte of an answer.
+    write_timeout: Duration = "60s",
+
+    /// Which log lines are written, as in RUST_LOG: error, warn, info, debug, or by module.
+    log: String = "info",
+    /// How log lines look.
+    log_format: LogFormat = "text",
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_setting_has_a_name_that_kubernetes_injects() {
+        for setting in SETTINGS {
+            let variable = setting.variable();
+            assert!(
+                !variable.starts_with("MESHMEND_SERVICE_") && !variable.starts_with("MESHMEND_PORT"),
+                "{variable}"
+            );
+        }
+    }
+
+    #[test]
+    fn settings_are_named_once_and_explained_in_a_sentence() {
+        for (i, setting) in SETTINGS.iter().enumerate() {
+            assert!(SETTINGS[..i].iter().all(|other| other.name != setting.name), "{}", setting.name);
+            assert!(setting.about.ends_with('.'), "{}", setting.about);
+        }
+    }
+}

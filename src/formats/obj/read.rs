@@ -1,0 +1,256 @@
+//! OBJ input.
+
+use super::statements::{Counts, Statements};
+use crate::budget::Budget;
+use crate::formats::faces::Faces;
+use crate::formats::{ReadError, ReadOptions};
+use crate::geom::DVec3;
+use crate::mesh::{Color, Places, Soup};
+use crate::par;
+use memchr::memchr2;
+
+/// Parts of a file that are read at the same time have about this many bytes.
+const PART_BYTES: usize = 1 << 20;
+
+/// Reads vertices with their colours and faces; groups, materials, normals and all else are ignored. Indices may point
+/// to vertices further down.
+///
+/// Twice through the file: first to count, so that every part knows its first line and vertex, then to read the parts
+/// at the same time.
+pub(in crate::formats) fn read(
+    bytes: &[u8],
+    options: &ReadOptions,
+    budget: &Budget,
+) -> Result<Soup, ReadError> {
+    read_parts(&cut(bytes, PART_BYTES), options, budget)
+}
+
+/// Cuts at line breaks where no line is continued, after about `part_bytes` each.
+fn cut(bytes: &[u8], part_bytes: usize) -> Vec<&[u8]> {
+    let mut parts = Vec::new();
+    let mut rest = bytes;
+    while rest.len() > part_bytes {
+        let (part, later) = rest.split_at(line_start(rest, part_bytes));
+        parts.push(part);
+        rest = later;
+    }
+    parts.push(rest);
+    parts
+}
+
+/// The first start of a line at or after `from` whose line before it does not go on; the end if there is none.
+fn line_start(bytes: &[u8], mut from: usize) -> usize {
+    while let Some(skipped) = memchr2(b'\n', b'\r', &bytes[from..]) {
+        let end = from + skipped;
+        from = end + if bytes[end..].starts_with(b"\r\n") { 2 } else { 1 };
+        // The search may have begun between CR and LF.
+        let line = if bytes[end] == b'\n' { bytes[..end].strip_suffix(b"\r") } else { None };
+        if !line.unwrap_or(&bytes[..end]).ends_with(b"\\") {
+            return from;
+        }
+    }
+    bytes.len()
+}
+
+fn read_parts(parts: &[&[u8]], options: &ReadOptions, budget: &Budget) -> Result<Soup, ReadError> {
+    let counts = par::try_map_ranges(parts.len(), 1, |i| Counts::of(parts[i.start], budget))?;
+    let mut before = Vec::with_capacity(parts.len());
+    let mut total = Counts::default();
+    for &inside in &counts {
+        before.push(total);
+        total = total.plus(inside);
+    }
+    options.limits.check_vertices(total.vertices)?;
+    options.limits.check_triangles(total.faces)?;
+
+    // Charged here at once: what is in use at one time inside depends on the number of threads.
+    let bytes_of_parts =
+        total.vertices * size_of::<(DVec3, u32)>() as u64 + total.faces * size_of::<[u32; 4]>() as u64;
+    let _charged = budget.charge(bytes_of_parts)?;
+
+    let bytes_of_parts =
+        total.vertices * size_of::<(DVec3, u32)>() as u64 + total.faces * size_of::<[u32; 4]>() as u64;
+    let _charged = budget.charge(bytes_of_parts)?;
+    let read = par::try_map_ranges(parts.len(), 1, |i| {
+        let i = i.start;
+        Statements::read(parts[i], before[i], counts[i], options, budget)
+    })?;
+    join(read, total, options, budget)
+}
+
+fn join(
+    parts: Vec<Statements>,
+    total: Counts,
+    options: &ReadOptions,
+    budget: &Budget,
+) -> Result<Soup, ReadError> {
+    let (vertex_count, face_count) = (total.vertices as usize, total.faces as usize);
+    let (mut positions, _charged) = budget.vec::<DVec3>(vertex_count)?;
+    let (mut vertex_lines, _charged) = budget.vec(vertex_count)?;
+    let (mut face_lines, _charged) = budget.vec(face_count)?;
+    let mut faces = Faces::default();
+    let _charged = faces.reserve(face_count, budget)?;
+    let has_colors = parts.iter().any(|part| !part.colors.is_empty());
+    let mut vertex_colors: Vec<Option<Color>> = Vec::new();
+    for part in parts {
+        budget.check()?;
+        positions.extend_from_slice(&part.positions);
+        vertex_lines.extend_from_slice(&part.vertex_lines);
+        face_lines.extend_from_slice(&part.face_lines);
+        faces.append(&part.faces);
+        if has_colors {
+            vertex_colors.extend_from_slice(&part.colors);
+            vertex_colors.resize(positions.len(), None);
+        }
+    }
+    let soup = faces.into_soup(positions, &options.limits, budget)?;
+    Ok(Soup { places: Places { face_lines, vertex_lines }, vertex_colors, ..soup })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::Precision;
+    use crate::mesh::FaceFaultReason;
+
+    fn read(text: &str) -> Result<Soup, ReadError> {
+        super::read(text.as_bytes(), &ReadOptions::default(), &Budget::unlimited())
+    }
+
+    fn error(text: &str) -> String {
+        read(text).unwrap_err().to_string()
+    }
+
+    const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+    #[test]
+    fn all_forms_of_a_corner_name_the_same_vertex() {
+        for face in [
+            "1 2 3",
+            "1/1 2/9 3/7",
+            "1//1 2//2 3//3",
+            "1/1/1 2/2/2 3/3/3",
+            "-3 -2 -1",
+            "1// 2/ 3//-1",
+            "+1 2 3",
+        ] {
+            assert_eq!(read(&format!("{TRIANGLE}f {face}\n")).unwrap().triangles, [[0, 1, 2]], "{face}");
+        }
+    }
+
+    #[test]
+    fn negative_indices_count_from_the_vertices_so_far() {
+        let soup = read(&format!("{TRIANGLE}f -3 -2 -1\nv 0 0 1\nf -1 -4 -2\nf 1 2 -5")).unwrap();
+        assert_eq!(soup.triangles, [[0, 1, 2], [3, 0, 2]]);
+        assert_eq!(
+            (soup.face_faults[0].face, soup.face_faults[0].reason),
+            (2, FaceFaultReason::IndexOutOfRange)
+        );
+    }
+
+    #[test]
+    fn indices_may_point_forward_and_unused_vertices_stay() {
+        let soup = read(&format!("f 1 2 3\n{TRIANGLE}v 9 9 9\n")).unwrap();
+        assert_eq!((soup.triangles.len(), soup.positions.len()), (1, 4));
+        assert_eq!((soup.places.face_lines, soup.places.vertex_lines), (vec![1], vec![2, 3, 4, 5]));
+    }
+
+    #[test]
+    fn bad_indices_are_findings_and_words_that_are_no_index_are_errors() {
+        let soup = read(&format!("{TRIANGLE}f 0 1 2\nf 1 2 99\nf 1 2\nf 1 2 3\nf 99999999999999999999 1 2"))
+            .unwrap();
+        assert_eq!((soup.face_faults.len(), soup.triangle_face), (4, vec![3]));
+        assert_eq!(error(&format!("{TRIANGLE}f 1 2 x")), "line 4: found \"x\"; expected a vertex index");
+        assert_eq!(error("\nv 1 2\nv 3"), "line 2: found the end of the line; expected a coordinate");
+        assert_eq!(error("v 1 2"), "line 1: the file ends here; expected a coordinate");
+        assert_eq!(error("v 1 2 3,5"), "line 1: found \"3,5\"; expected a coordinate");
+    }
+
+    #[test]
+    fn line_ends_blanks_comments_and_joined_lines_do_not_matter() {
+        let text = format!("{TRIANGLE}f 1 2 3\n");
+        let expected = read(&text).unwrap().triangles;
+        for other in [
+            text.replace('\n', "\r\n"),
+            text.replace('\n', "\r"),
+            text.replace(' ', " \t  "),
+            text.replace('\n', " # v 5 5 5\n"),
+            text.replace(' ', " \\\n "),
+            text.replace(' ', "\\\r\n"),
+            format!("\u{feff}{text}"),
+            text.trim_end().to_owned(),
+        ] {
+            assert_eq!(read(&other).unwrap().triangles, expected, "{other}");
+        }
+    }
+
+    #[test]
+    fn latin_1_names_are_ignored_as_everything_else_that_is_no_mesh() {
+        let mut text =
+            b"# gr\xFC\xDFe\no B\xFC\nmtllib a\\\ng x\\y\ns 1\nvt 0 0\nvn 0 0 1\nl 1 2\np 1\ncstype bezier\n"
+                .to_vec();
+        text.extend(TRIANGLE.bytes());
+        text.extend(b"usemtl \xE4\nf 1 2 3");
+        let soup = super::read(&text, &ReadOptions::default(), &Budget::unlimited()).unwrap();
+        assert_eq!((soup.positions.len(), soup.triangles.len()), (3, 1));
+    }
+
+    #[test]
+    fn colours_follow_positions_and_a_weight_is_no_colour() {
+        let soup = read("v 0 0 0\nv 1 0 0 1\nv 0 1 0 0.5 0.25 1\nv 0 0 1 1 0 0 0.5\nv 0 0 2\n").unwrap();
+        let (rgb, rgba) = (Color::Floats([0.5, 0.25, 1.0], None), Color::Floats([1.0, 0.0, 0.0], Some(0.5)));
+        assert_eq!(soup.vertex_colors, [None, None, Some(rgb), Some(rgba), None]);
+        assert!(read(TRIANGLE).unwrap().vertex_colors.is_empty());
+    }
+
+    #[test]
+    fn nan_is_a_finding_with_its_line() {
+        let soup = read("v 0 0 0\nv nan 0 0\nv 0 1e999 0\nf 1 2 3\n").unwrap();
+        assert_eq!(
+            (soup.non_finite_vertices, soup.face_faults[0].reason),
+            (vec![1, 2], FaceFaultReason::NonFinite)
+        );
+    }
+
+    #[test]
+    fn coordinates_follow_the_precision_asked() {
+        let options = ReadOptions { precision: Precision::F32, ..ReadOptions::default() };
+        let soup = super::read(b"v 0.1 0 0", &options, &Budget::unlimited()).unwrap();
+        assert_eq!((soup.positions[0].x, soup.is_f32_exact), (f64::from(0.1f32), true));
+        assert!(!read("v 0.1 0 0").unwrap().is_f32_exact);
+    }
+
+    #[test]
+    fn limits_are_errors_with_their_names() {
+        let limits = crate::formats::ReadLimits { polygon_corners_max: 4, ..Default::default() };
+        let options = ReadOptions { limits, ..ReadOptions::default() };
+        let text = b"v 0 0 0\nf 1 1 1 1 1 1 1 1";
+        let error = super::read(text, &options, &Budget::unlimited()).unwrap_err().to_string();
+        assert_eq!(error, "line 2: 5 corners of one polygon is over the limit polygon_corners_max = 4");
+    }
+
+    #[test]
+    fn a_file_without_mesh_is_empty_and_points_alone_are_a_soup() {
+        assert!(error("# nothing\n").contains("empty"));
+        assert_eq!(read("v 1 2 3").unwrap().positions.len(), 1);
+    }
+
+    /// The same soup and the same error, wherever the file is cut.
+    #[test]
+    fn parts_of_any_size_make_the_same_soup() {
+        let text = "# a\\\nv 0 0 0\r\nv 1 0 0 1 0 0\r\rv 0 \\\r\n1 0\nf -3 \\\n-2 \\\n-1\nf 1 2 3 1\n# b\nf 1 2 9\nv 5 5 5\nf -4 -3 -1 # c\nf 1 1";
+        let options = ReadOptions::default();
+        for text in [text.to_owned(), format!("{text}\nf x\nf y")] {
+            let whole = read_parts(&[text.as_bytes()], &options, &Budget::unlimited());
+            for part_bytes in 1..text.len() {
+                let parts = cut(text.as_bytes(), part_bytes);
+                assert_eq!(parts.concat(), text.as_bytes());
+                assert_eq!(
+                    read_parts(&parts, &options, &Budget::unlimited()),
+                    whole,
+                    "parts of {part_bytes}"
+                );
+            }
+        }
+    }
+}

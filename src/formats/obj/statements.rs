@@ -1,0 +1,152 @@
+//! The statements of a part of an OBJ file that make its mesh.
+
+use crate::budget::Stopped;
+use crate::budget::{Budget, CHECK_EVERY};
+use crate::formats::colors::note_color;
+use crate::formats::faces::Faces;
+use crate::formats::numbers::{coordinate, index, integer};
+use crate::formats::words::{Dialect, Words};
+use crate::formats::{Precision, ReadError, ReadOptions};
+use crate::geom::DVec3;
+use crate::mesh::Color;
+
+/// How OBJ text is cut into words.
+pub(super) const DIALECT: Dialect = Dialect { comments: true, continued_lines: true };
+
+/// Lines, vertices and faces of a part of a file, or of all parts before one.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Counts {
+    pub(super) lines: u64,
+    pub(super) vertices: u64,
+    pub(super) faces: u64,
+}
+
+impl Counts {
+    /// Counts what stands in `part`, which begins at the start of a line and ends with a line break or the file.
+    pub(super) fn of(part: &[u8], budget: &Budget) -> Result<Self, Stopped> {
+        let mut counts = Self::default();
+        let mut words = Words::new(part, 0, DIALECT);
+        let mut statements = 0usize;
+        while let Some(keyword) = words.next_word() {
+            match keyword {
+                b"v" => counts.vertices += 1,
+                b"f" => counts.faces += 1,
+                _ => {}
+            }
+            words.next_line();
+            statements += 1;
+            if statements.is_multiple_of(CHECK_EVERY) {
+                budget.check()?;
+            }
+        }
+        counts.lines = words.line();
+        Ok(counts)
+    }
+
+    /// The counts of both.
+    pub(super) fn plus(self, other: Self) -> Self {
+        Self {
+            lines: self.lines + other.lines,
+            vertices: self.vertices + other.vertices,
+            faces: self.faces + other.faces,
+        }
+    }
+}
+
+/// Vertices and faces of a part of a file.
+#[derive(Debug, Default)]
+pub(super) struct Statements {
+    pub(super) positions: Vec<DVec3>,
+    pub(super) vertex_lines: Vec<u32>,
+    /// As long as `positions` from the first colour on; empty without one.
+    pub(super) colors: Vec<Option<Color>>,
+    pub(super) faces: Faces,
+    pub(super) face_lines: Vec<u32>,
+}
+
+impl Statements {
+    /// Reads `part`, before which the file holds `before` and in which it holds `inside`.
+    pub(super) fn read(
+        part: &[u8],
+        before: Counts,
+        inside: Counts,
+        options: &ReadOptions,
+        budget: &Budget,
+    ) -> Result<Self, ReadError> {
+        let (vertices, faces) = (inside.vertices as usize, inside.faces as usize);
+        let mut read = Self {
+            positions: Vec::with_capacity(vertices),
+            vertex_lines: Vec::with_capacity(vertices),
+            faces: Faces::of_triangles(Vec::with_capacity(faces)),
+            face_lines: Vec::with_capacity(faces),
+            ..Self::default()
+        };
+        let mut corners = Vec::new();
+        let mut words = Words::new(part, before.lines + 1, DIALECT);
+        let mut statements = 0usize;
+        while let Some(keyword) = words.next_word() {
+            let line = words.line() as u32;
+            match keyword {
+                b"v" => {
+                    read.vertex_lines.push(line);
+                    read.read_vertex(&mut words, options.precision)?;
+                }
+                b"f" => {
+                    read.face_lines.push(line);
+                    let vertices_before = before.vertices as i64 + read.positions.len() as i64;
+                    read_corners(&mut words, vertices_before, options, &mut corners)?;
+                    read.faces.push(&corners);
+                }
+                _ => {}
+            }
+            words.next_line();
+            statements += 1;
+            if statements.is_multiple_of(CHECK_EVERY) {
+                budget.check()?;
+            }
+        }
+        Ok(read)
+    }
+
+    /// `x y z`, `x y z w`, `x y z r g b` or `x y z r g b a`; the weight and anything else after z are ignored.
+    fn read_vertex(&mut self, words: &mut Words<'_>, precision: Precision) -> Result<(), ReadError> {
+        let mut xyz = [0.0; 3];
+        for c in &mut xyz {
+            let word = words.next_in_line();
+            *c = word
+                .and_then(|word| coordinate(word, precision))
+                .ok_or_else(|| words.wrong(word, "a coordinate"))?;
+        }
+        self.positions.push(DVec3::from(xyz));
+        note_color(&mut self.colors, self.positions.len() - 1, read_color(words));
+        Ok(())
+    }
+}
+
+/// The colour that stands after a position, if there is one.
+fn read_color(words: &mut Words<'_>) -> Option<Color> {
+    let mut channel = || words.next_in_line().and_then(|word| fast_float2::parse::<f32, _>(word).ok());
+    let rgb = [channel()?, channel()?, channel()?];
+    Some(Color::Floats(rgb, channel()))
+}
+
+/// The corners of a face: `v`, `v/vt`, `v//vn` or `v/vt/vn`, of which only `v` matters. Negative numbers count back
+/// from the last of the vertices before the face.
+fn read_corners(
+    words: &mut Words<'_>,
+    vertices_before: i64,
+    options: &ReadOptions,
+    corners: &mut Vec<u32>,
+) -> Result<(), ReadError> {
+    corners.clear();
+    while let Some(word) = words.next_in_line() {
+        let end = word.iter().position(|&b| b == b'/').unwrap_or(word.len());
+        let number = integer(&word[..end]).ok_or_else(|| words.wrong(Some(word), "a vertex index"))?;
+        // 0 is nobody's index and becomes one that is out of range.
+        corners.push(index(if number < 0 { vertices_before + number } else { number - 1 }));
+        if corners.len() as u64 > u64::from(options.limits.polygon_corners_max) {
+            options.limits.check_polygon(corners.len() as u64, words.place())?;
+        }
+    }
+    Ok(())
+}

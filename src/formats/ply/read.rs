@@ -1,0 +1,349 @@
+//! PLY input.
+
+use super::header::{Element, Header, Kind, Layout, Scalar};
+use super::roles::{ColorKind, Plan, Role};
+use super::values::{Ascii, Binary, Values};
+use crate::budget::{Budget, CHECK_EVERY};
+use crate::formats::colors::note_color;
+use crate::formats::faces::Faces;
+use crate::formats::numbers::index;
+use crate::formats::{Precision, ReadError, ReadOptions};
+use crate::geom::DVec3;
+use crate::mesh::{Color, Places, Soup};
+
+/// Reads the elements `vertex` and `face` (or `tristrips`, each of whose triangles becomes a face) with their colours, in
+/// the layout that the header states. Other elements and properties are skipped.
+pub(in crate::formats) fn read(
+    bytes: &[u8],
+    options: &ReadOptions,
+    budget: &Budget,
+) -> Result<Soup, ReadError> {
+    let header = Header::read(bytes)?;
+    let (begin, line) = (header.end, header.end_line);
+    match header.layout {
+        Layout::Ascii => read_body(&header, Ascii::new(&bytes[begin..], line, budget), options, budget),
+        Layout::LittleEndian => read_body(&header, Binary::<false>::new(bytes, begin), options, budget),
+        Layout::BigEndian => read_body(&header, Binary::<true>::new(bytes, begin), options, budget),
+    }
+}
+
+fn read_body(
+    header: &Header<'_>,
+    values: impl Values,
+    options: &ReadOptions,
+    budget: &Budget,
+) -> Result<Soup, ReadError> {
+    let mut source = Source { values, layout: header.layout, options, budget };
+    let mut mesh = Mesh::default();
+    for element in &header.elements {
+        match element.name {
+            _ if element.count == 0 => {}
+            b"vertex" => mesh.read_vertices(element, &mut source)?,
+            b"face" => mesh.read_faces(element, &mut source)?,
+            b"tristrips" => mesh.read_strips(element, &mut source)?,
+            _ if element.properties.is_empty() => {}
+            _ => source.read_items(element, &Plan::new(element), |_, _| ())?,
+        }
+    }
+    let soup = mesh.faces.into_soup(mesh.positions, &options.limits, budget)?;
+    let Mesh { vertex_colors, face_colors, places, .. } = mesh;
+    Ok(Soup { vertex_colors, face_colors, places, ..soup })
+}
+
+/// What was read so far.
+#[derive(Default)]
+struct Mesh {
+    positions: Vec<DVec3>,
+    vertex_colors: Vec<Option<Color>>,
+    faces: Faces,
+    face_colors: Vec<Option<Color>>,
+    places: Places,
+}
+
+impl Mesh {
+    fn read_vertices<V: Values>(
+        &mut self,
+        element: &Element<'_>,
+        source: &mut Source<'_, V>,
+    ) -> Result<(), ReadError> {
+        source.options.limits.check_vertices(element.count)?;
+        let plan = Plan::new(element).with_coordinates(element)?.with_colors(element);
+        let _charged = source.budget.reserve(&mut self.positions, source.fitting(element))?;
+        source.read_items(element, &plan, |line, item| {
+            note_color(&mut self.vertex_colors, self.positions.len(), item.color(plan.colors));
+            self.positions.push(DVec3::from(item.xyz));
+            self.places.vertex_lines.extend(line);
+        })
+    }
+
+    fn read_faces<V: Values>(
+        &mut self,
+        element: &Element<'_>,
+        source: &mut Source<'_, V>,
+    ) -> Result<(), ReadError> {
+        source.options.limits.check_triangles(element.count)?;
+        let plan = Plan::new(element).with_vertices(element, Role::Corners)?.with_colors(element);
+        let _charged = self.faces.reserve(source.fitting(element), source.budget)?;
+        source.read_items(element, &plan, |line, item| {
+            note_color(&mut self.face_colors, self.faces.len(), item.color(plan.colors));
+            self.faces.push(&item.vertices);
+            self.places.face_lines.extend(line);
+        })
+    }
+
+    fn read_strips<V: Values>(
+        &mut self,
+        element: &Element<'_>,
+        source: &mut Source<'_, V>,
+    ) -> Result<(), ReadError> {
+        let plan = Plan::new(element).with_vertices(element, Role::Strips)?;
+        source.read_items(element, &plan, |line, item| {
+            // -1 ends a strip.
+            for strip in item.vertices.split(|&v| v == u32::MAX) {
+                for (i, &[a, b, c]) in strip.array_windows().enumerate() {
+                    // A strip repeats a vertex to turn a corner; that triangle is not meant.
+                    if a != b && b != c && c != a {
+                        self.faces.push(&if i % 2 == 0 { [a, b, c] } else { [b, a, c] });
+                        self.places.face_lines.extend(line);
+                    }
+                }
+            }
+        })
+    }
+}
+
+/// The values of a file and what reading them is subject to.
+struct Source<'a, V> {
+    values: V,
+    layout: Layout,
+    options: &'a ReadOptions,
+    budget: &'a Budget,
+}
+
+impl<V: Values> Source<'_, V> {
+    /// How many of `element` the rest of the file can hold, at most as many as are announced.
+    fn fitting(&self, element: &Element<'_>) -> usize {
+        let held = self.values.remaining() / element.bytes_min(self.layout).max(1) + 1;
+        element.count.min(held as u64) as usize
+    }
+
+    /// Calls `take` with the line (in text) and the values of each item of `element`.
+    fn read_items(
+        &mut self,
+        element: &Element<'_>,
+        plan: &Plan,
+        mut take: impl FnMut(Option<u32>, &Item),
+    ) -> Result<(), ReadError> {
+        let mut item = Item::default();
+        for i in 0..element.count {
+            if i.is_multiple_of(CHECK_EVERY as u64) {
+                self.budget.check()?;
+            }
+            self.values.begin_item();
+            for &(role, kind) in &plan.properties {
+                self.read_property(role, kind, &mut item)?;
+            }
+            take(self.values.item_line(), &item);
+        }
+        Ok(())
+    }
+
+    #[inline]
+    fn read_property(&mut self, role: Role, kind: Kind, item: &mut Item) -> Result<(), ReadError> {
+        match (role, kind) {
+            (Role::Coordinate(k), Kind::One(scalar)) => {
+                item.xyz[k] = self.values.number(scalar, self.options.precision)?;
+            }
+            (Role::Channel(k), Kind::One(scalar)) => {
+                item.channels[k] = self.values.number(scalar, Precision::F32)? as f32;
+            }
+            (_, Kind::One(scalar)) => self.values.skip(scalar, 1)?,
+            (_, Kind::List { count, item: scalar }) => {
+                let place = self.values.place();
+                let length = self.values.integer(count)?;
+                let length = u64::try_from(length)
+                    .map_err(|_| ReadError::unparseable(place, length.to_string(), "the length of a list"))?;
+                match role {
+                    Role::Corners => {
+                        self.options.limits.check_polygon(length, place)?;
+                        self.read_vertices(length, scalar, &mut item.vertices)?;
+                    }
+                    Role::Strips => self.read_vertices(length, scalar, &mut item.vertices)?,
+                    _ => self.values.skip(scalar, length)?,
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn read_vertices(&mut self, count: u64, kind: Scalar, vertices: &mut Vec<u32>) -> Result<(), ReadError> {
+        vertices.clear();
+        for i in 0..count {
+            if (i + 1).is_multiple_of(CHECK_EVERY as u64) {
+                self.budget.check()?;
+            }
+            vertices.push(index(self.values.integer(kind)?));
+        }
+        Ok(())
+    }
+}
+
+/// The values of one item that have a role.
+#[derive(Default)]
+struct Item {
+    xyz: [f64; 3],
+    channels: [f32; 4],
+    vertices: Vec<u32>,
+}
+
+impl Item {
+    fn color(&self, kind: ColorKind) -> Option<Color> {
+        let [r, g, b, a] = self.channels;
+        match kind {
+            ColorKind::None => None,
+            ColorKind::Bytes { has_alpha } => {
+                Some(Color::Bytes([r, g, b].map(|c| c as u8), has_alpha.then_some(a as u8)))
+            }
+            ColorKind::Floats { has_alpha } => Some(Color::Floats([r, g, b], has_alpha.then_some(a))),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::FaceFaultReason;
+
+    fn read_bytes(bytes: &[u8]) -> Result<Soup, ReadError> {
+        super::read(bytes, &ReadOptions::default(), &Budget::unlimited())
+    }
+
+    fn read(header: &str, body: &str) -> Result<Soup, ReadError> {
+        read_bytes(format!("ply\nformat ascii 1.0\n{header}end_header\n{body}").as_bytes())
+    }
+
+    fn error(header: &str, body: &str) -> String {
+        read(header, body).unwrap_err().to_string()
+    }
+
+    const XYZ: &str = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+    const FACE: &str = "element face 1\nproperty list uchar int vertex_indices\n";
+    #[test]
+    fn an_element_without_items_needs_no_properties() {
+        assert_eq!(read(&format!("{XYZ}element face 0\n"), "0 0 0 1 0 0 0 1 0").unwrap().positions.len(), 3);
+        assert!(error(&format!("{XYZ}element face 1\n"), TRIANGLE).contains("element face without"));
+    }
+
+    const TRIANGLE: &str = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+
+    #[test]
+    fn properties_come_in_any_order_and_type_and_the_rest_is_skipped() {
+        let header = "element camera 2\nproperty int id\nproperty list short double values\n\
+            element face 1\nproperty uchar kind\nproperty list ushort uint vertex_index\nproperty list int float uv\n\
+            element vertex 3\nproperty float nx\nproperty double z\nproperty short x\nproperty float y\n\
+            element nothing 4000000000\n";
+        let body = "1 2 0.5 0.5\n2 0\n7 3 0 1 2 1 9\n0 5 0 0\n0 5 1 0\n0 5 0 1.5\n";
+        let soup = read(header, body).unwrap();
+        assert_eq!(soup.triangles, [[0, 1, 2]]);
+        assert_eq!(soup.positions[2], DVec3::new(0.0, 1.5, 5.0));
+        assert_eq!((soup.places.face_lines, soup.places.vertex_lines), (vec![19], vec![20, 21, 22]));
+    }
+
+    #[test]
+    fn both_byte_orders_make_the_same_soup() {
+        let header = |order: &str| {
+            format!(
+                "ply\nformat binary_{order}_endian 1.0\nelement vertex 3\nproperty double x\nproperty float y\n\
+                property short z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nelement face 2\n\
+                property list uchar ushort vertex_indices\nproperty char flag\nend_header\n"
+            )
+        };
+        let (mut little, mut big) = (header("little").into_bytes(), header("big").into_bytes());
+        for (x, y, z) in [(0.1f64, 0.0f32, 10i16), (1.0, 0.5, 10), (0.0, 1.0, -300)] {
+            little.extend([&x.to_le_bytes()[..], &y.to_le_bytes(), &z.to_le_bytes(), &[1, 2, 3]].concat());
+            big.extend([&x.to_be_bytes()[..], &y.to_be_bytes(), &z.to_be_bytes(), &[1, 2, 3]].concat());
+        }
+        for corners in [&[0u16, 1, 2][..], &[1, 2]] {
+            little.push(corners.len() as u8);
+            big.push(corners.len() as u8);
+            for corner in corners {
+                little.extend(corner.to_le_bytes());
+                big.extend(corner.to_be_bytes());
+            }
+            little.push(255);
+            big.push(255);
+        }
+        let soup = read_bytes(&little).unwrap();
+        assert_eq!(soup, read_bytes(&big).unwrap());
+        assert_eq!(soup.positions[2], DVec3::new(0.0, 1.0, -300.0));
+        assert_eq!((&soup.triangles[..], soup.face_faults.len()), (&[[0, 1, 2]][..], 1));
+        assert_eq!(soup.vertex_colors, [Some(Color::Bytes([1, 2, 3], None)); 3]);
+        let start = header("little").len();
+        for keep in start..little.len() {
+            let error = read_bytes(&little[..keep]).unwrap_err().to_string();
+            assert!(error.starts_with(&format!("byte {keep}: the file ends here")), "{error}");
+        }
+    }
+
+    #[test]
+    fn colours_are_bytes_or_floats_as_their_type_says() {
+        let colors = "property float red\nproperty float green\nproperty float blue\nproperty float alpha\n";
+        let soup =
+            read(&format!("{XYZ}{colors}"), "0 0 0 1 0 0.1 1\n1 0 0 0 0 0 0\n0 1 0 0 0 0 0\n").unwrap();
+        assert_eq!(soup.vertex_colors[0], Some(Color::Floats([1.0, 0.0, 0.1], Some(1.0))));
+        let bytes = colors.replace("float", "uchar");
+        let soup =
+            read(&format!("{XYZ}{FACE}{bytes}"), &TRIANGLE.replace("3 0 1 2", "3 0 1 2 255 0 7 9")).unwrap();
+        assert_eq!(soup.face_colors, [Some(Color::Bytes([255, 0, 7], Some(9)))]);
+        let mixed = bytes.replacen("uchar", "int", 1);
+        let soup =
+            read(&format!("{XYZ}{FACE}{mixed}"), &TRIANGLE.replace("3 0 1 2", "3 0 1 2 255 0 7 9")).unwrap();
+        assert!(soup.face_colors.is_empty());
+    }
+
+    #[test]
+    fn triangle_strips_become_faces_with_the_same_side_up() {
+        let header =
+            format!("{}element tristrips 1\nproperty list int int vertex_indices\n", XYZ.replace('3', "5"));
+        let soup = read(&header, "0 0 0 1 0 0 0 1 0 1 1 0 0 2 0\n9 0 1 2 3 -1 2 3 4 4").unwrap();
+        assert_eq!(soup.triangles, [[0, 1, 2], [2, 1, 3], [2, 3, 4]]);
+    }
+
+    #[test]
+    fn polygons_and_bad_indices_are_kept_apart() {
+        let soup = read(
+            &format!("{XYZ}{}", FACE.replace('1', "3")),
+            "0 0 0 1 0 0 0 1 0\n4 0 1 2 0\n3 0 1 3\n3 -1 0 1",
+        )
+        .unwrap();
+        assert_eq!(soup.polygons.faces, [0]);
+        assert!(soup.face_faults.iter().all(|f| f.reason == FaceFaultReason::IndexOutOfRange));
+    }
+
+    #[test]
+    fn what_is_missing_or_wrong_is_named_with_its_place() {
+        let header = format!("{XYZ}{FACE}");
+        assert_eq!(error(&header, "0 0 0\n1 0 x"), "line 11: found \"x\"; expected a number");
+        assert_eq!(
+            error(&header, "0 0 0\n1 0 0\n0 1 0\n3 0 1"),
+            "line 13: the file ends here; expected an integer"
+        );
+        assert_eq!(
+            error(&header, "0 0 0\n1 0 0\n0 1 0\n-3 0"),
+            "line 12: found -3; expected the length of a list"
+        );
+        assert!(
+            error("element vertex 1\nproperty float x\n", "0")
+                .starts_with("line 3: found element vertex without")
+        );
+        assert!(
+            error("element face 1\nproperty int vertex_indices\n", "0")
+                .contains("expected a list of integers")
+        );
+        assert!(error(&header.replace("vertex 3", "vertex 4294967295"), TRIANGLE).contains("vertices_max"));
+        assert!(
+            error(&header.replace("vertex 3", "vertex 300000000"), TRIANGLE).contains("the file ends here")
+        );
+        assert!(error(&header, &TRIANGLE.replace("3 0 1 2", "70000 0 1 2")).contains("polygon_corners_max"));
+    }
+}

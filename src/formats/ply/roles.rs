@@ -1,0 +1,99 @@
+//! Which properties of a PLY file mean something to us.
+
+use super::header::{Element, Kind, Scalar};
+use crate::formats::{Place, ReadError};
+
+/// What a property means to us.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Role {
+    /// x, y or z.
+    Coordinate(usize),
+    /// Red, green, blue or alpha.
+    Channel(usize),
+    /// The corners of a face.
+    Corners,
+    /// The vertices of triangle strips.
+    Strips,
+    Other,
+}
+
+/// The properties of an element with their roles.
+pub(super) struct Plan {
+    pub(super) properties: Vec<(Role, Kind)>,
+    pub(super) colors: ColorKind,
+}
+
+/// What the colour channels of an element make.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum ColorKind {
+    None,
+    Bytes { has_alpha: bool },
+    Floats { has_alpha: bool },
+}
+
+impl Plan {
+    /// Nothing has a role yet.
+    pub(super) fn new(element: &Element<'_>) -> Self {
+        let roles = element.properties.iter().map(|property| (Role::Other, property.kind));
+        Self { properties: roles.collect(), colors: ColorKind::None }
+    }
+
+    /// Notes x, y and z.
+    pub(super) fn with_coordinates(mut self, element: &Element<'_>) -> Result<Self, ReadError> {
+        for (k, name) in ["x", "y", "z"].into_iter().enumerate() {
+            match element.find(&[name]) {
+                Some(i) if matches!(self.properties[i].1, Kind::One(_)) => {
+                    self.properties[i].0 = Role::Coordinate(k);
+                }
+                _ => return Err(lacks(element, "the properties x, y and z")),
+            }
+        }
+        Ok(self)
+    }
+
+    /// Notes the list of vertices as `role`.
+    pub(super) fn with_vertices(mut self, element: &Element<'_>, role: Role) -> Result<Self, ReadError> {
+        match element.find(&["vertex_indices", "vertex_index"]) {
+            Some(i) if matches!(self.properties[i].1, Kind::List { item, .. } if item.is_integer()) => {
+                self.properties[i].0 = role;
+                Ok(self)
+            }
+            _ => Err(lacks(element, "a list of integers vertex_indices")),
+        }
+    }
+
+    /// Notes the colour channels, if red, green and blue are there and all channels are bytes or all are floats.
+    pub(super) fn with_colors(mut self, element: &Element<'_>) -> Self {
+        const NAMES: [[&str; 2]; 4] = [
+            ["red", "diffuse_red"],
+            ["green", "diffuse_green"],
+            ["blue", "diffuse_blue"],
+            ["alpha", "diffuse_alpha"],
+        ];
+        let found = NAMES.map(|names| element.find(&names));
+        let kinds: Vec<Kind> = found.iter().flatten().map(|&i| self.properties[i].1).collect();
+        let has_alpha = found[3].is_some();
+        self.colors = if found[..3].iter().any(Option::is_none) {
+            ColorKind::None
+        } else if kinds.iter().all(|&kind| kind == Kind::One(Scalar::U8)) {
+            ColorKind::Bytes { has_alpha }
+        } else if kinds.iter().all(|kind| matches!(kind, Kind::One(Scalar::F32 | Scalar::F64))) {
+            ColorKind::Floats { has_alpha }
+        } else {
+            ColorKind::None
+        };
+        if self.colors != ColorKind::None {
+            for (channel, i) in found.into_iter().enumerate() {
+                if let Some(i) = i {
+                    self.properties[i].0 = Role::Channel(channel);
+                }
+            }
+        }
+        self
+    }
+}
+
+fn lacks(element: &Element<'_>, expected: &str) -> ReadError {
+    let found = format!("element {} without", String::from_utf8_lossy(element.name));
+    ReadError::unparseable(Place::Line(element.line), found, expected)
+}

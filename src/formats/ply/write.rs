@@ -1,0 +1,224 @@
+//! PLY output, text and binary.
+
+use crate::budget::{Budget, CHECK_EVERY};
+use crate::formats::colors::{ColorLayout, as_bytes, as_floats};
+use crate::formats::decimals::Text;
+use crate::formats::{Encoding, WriteError};
+use crate::mesh::{Color, Soup};
+
+/// Vertices and faces with their colours. Coordinates are `float` if that holds all of them exactly, otherwise `double`.
+pub(in crate::formats) fn write(
+    soup: &Soup,
+    encoding: Encoding,
+    budget: &Budget,
+) -> Result<Vec<u8>, WriteError> {
+    let plan = Plan::new(soup);
+    match encoding {
+        Encoding::PlyBinaryLittleEndian => binary::<false>(soup, &plan, encoding, budget),
+        Encoding::PlyBinaryBigEndian => binary::<true>(soup, &plan, encoding, budget),
+        _ => text(soup, &plan, encoding, budget),
+    }
+}
+
+/// The types of all properties.
+struct Plan {
+    is_float32: bool,
+    is_signed_index: bool,
+    vertex_colors: Option<ColorLayout>,
+    face_colors: Option<ColorLayout>,
+}
+
+impl Plan {
+    fn new(soup: &Soup) -> Self {
+        let is_exact = |&c: &f64| f64::from(c as f32) == c;
+        Self {
+            is_float32: soup.positions.iter().all(|p| p.to_array().iter().all(is_exact)),
+            // Older readers know no other type.
+            is_signed_index: i32::try_from(soup.positions.len()).is_ok(),
+            vertex_colors: ColorLayout::of(&soup.vertex_colors),
+            face_colors: ColorLayout::of(&soup.face_colors),
+        }
+    }
+
+    fn header(&self, soup: &Soup, encoding: Encoding) -> String {
+        let layout = match encoding {
+            Encoding::PlyBinaryLittleEndian => "binary_little_endian",
+            Encoding::PlyBinaryBigEndian => "binary_big_endian",
+            _ => "ascii",
+        };
+        let real = if self.is_float32 { "float" } else { "double" };
+        let index = if self.is_signed_index { "int" } else { "uint" };
+        format!(
+            "ply\nformat {layout} 1.0\n\
+            element vertex {}\nproperty {real} x\nproperty {real} y\nproperty {real} z\n{}\
+            element face {}\nproperty list uchar {index} vertex_indices\n{}\
+            end_header\n",
+            soup.positions.len(),
+            color_properties(self.vertex_colors),
+            soup.triangles.len(),
+            color_properties(self.face_colors),
+        )
+    }
+}
+
+fn color_properties(layout: Option<ColorLayout>) -> String {
+    let Some(layout) = layout else { return String::new() };
+    let kind = if layout.is_bytes { "uchar" } else { "float" };
+    let names = &["red", "green", "blue", "alpha"][..layout.channels()];
+    names.iter().map(|name| format!("property {kind} {name}\n")).collect()
+}
+
+fn vertex_color(soup: &Soup, vertex: usize) -> Option<Color> {
+    soup.vertex_colors.get(vertex).copied().flatten()
+}
+
+fn face_color(soup: &Soup, triangle: usize) -> Option<Color> {
+    soup.face_colors.get(soup.face_of(triangle as u32) as usize).copied().flatten()
+}
+
+fn text(soup: &Soup, plan: &Plan, encoding: Encoding, budget: &Budget) -> Result<Vec<u8>, WriteError> {
+    const VERTEX_BYTES_MAX: usize = 160;
+    const FACE_BYTES_MAX: usize = 120;
+    let mut text = Text::new(budget);
+    text.word(&plan.header(soup, encoding));
+    for (i, p) in soup.positions.iter().enumerate() {
+        text.before_item(i, VERTEX_BYTES_MAX)?;
+        text.point(i as u32, *p, encoding.name())?;
+        if let Some(layout) = plan.vertex_colors {
+            text.color(vertex_color(soup, i), layout);
+        }
+        text.word("\n");
+    }
+    for (t, corners) in soup.triangles.iter().enumerate() {
+        text.before_item(t, FACE_BYTES_MAX)?;
+        text.word("3");
+        for &v in corners {
+            text.word(" ");
+            text.integer(i64::from(v));
+        }
+        if let Some(layout) = plan.face_colors {
+            text.color(face_color(soup, t), layout);
+        }
+        text.word("\n");
+    }
+    Ok(text.into_bytes())
+}
+
+fn binary<const BIG: bool>(
+    soup: &Soup,
+    plan: &Plan,
+    encoding: Encoding,
+    budget: &Budget,
+) -> Result<Vec<u8>, WriteError> {
+    let header = plan.header(soup, encoding);
+    let vertex_bytes = if plan.is_float32 { 12 } else { 24 } + color_bytes(plan.vertex_colors);
+    let face_bytes = 13 + color_bytes(plan.face_colors);
+    let length = header.len() + vertex_bytes * soup.positions.len() + face_bytes * soup.triangles.len();
+    let (mut out, _charged) = budget.vec::<u8>(length)?;
+    out.extend_from_slice(header.as_bytes());
+    for (i, p) in soup.positions.iter().enumerate() {
+        if i.is_multiple_of(CHECK_EVERY) {
+            budget.check()?;
+        }
+        for value in p.to_array() {
+            if !value.is_finite() {
+                let encoding = encoding.name();
+                return Err(WriteError::NotRepresentable { vertex: i as u32, value, encoding });
+            }
+            if plan.is_float32 {
+                put::<BIG, 4>(&mut out, (value as f32).to_le_bytes());
+            } else {
+                put::<BIG, 8>(&mut out, value.to_le_bytes());
+            }
+        }
+        put_color::<BIG>(&mut out, plan.vertex_colors, || vertex_color(soup, i));
+    }
+    for (t, corners) in soup.triangles.iter().enumerate() {
+        if t.is_multiple_of(CHECK_EVERY) {
+            budget.check()?;
+        }
+        out.push(3);
+        for v in corners {
+            put::<BIG, 4>(&mut out, v.to_le_bytes());
+        }
+        put_color::<BIG>(&mut out, plan.face_colors, || face_color(soup, t));
+    }
+    Ok(out)
+}
+
+fn color_bytes(layout: Option<ColorLayout>) -> usize {
+    layout.map_or(0, |layout| layout.channels() * if layout.is_bytes { 1 } else { 4 })
+}
+
+fn put_color<const BIG: bool>(
+    out: &mut Vec<u8>,
+    layout: Option<ColorLayout>,
+    color: impl FnOnce() -> Option<Color>,
+) {
+    match layout {
+        None => {}
+        Some(layout) if layout.is_bytes => out.extend_from_slice(&as_bytes(color())[..layout.channels()]),
+        Some(layout) => {
+            for channel in &as_floats(color())[..layout.channels()] {
+                put::<BIG, 4>(out, channel.to_le_bytes());
+            }
+        }
+    }
+}
+
+/// Appends a value that is given with the least significant byte first.
+fn put<const BIG: bool, const N: usize>(out: &mut Vec<u8>, mut bytes: [u8; N]) {
+    if BIG {
+        bytes.reverse();
+    }
+    out.extend_from_slice(&bytes);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geom::DVec3;
+
+    fn soup(x: f64) -> Soup {
+        Soup {
+            positions: vec![DVec3::ZERO, DVec3::X * x, DVec3::Y],
+            triangles: vec![[0, 1, 2]],
+            face_count: 1,
+            ..Soup::default()
+        }
+    }
+
+    fn header_of(bytes: &[u8]) -> String {
+        let text = String::from_utf8_lossy(bytes);
+        text[..text.find("end_header\n").unwrap()].to_owned()
+    }
+
+    #[test]
+    fn coordinates_are_float_only_if_that_is_exact() {
+        let bytes = |x| write(&soup(x), Encoding::PlyBinaryLittleEndian, &Budget::unlimited()).unwrap();
+        assert!(header_of(&bytes(0.5)).contains("property float x\n"));
+        assert!(header_of(&bytes(0.1)).contains("property double x\n"));
+        assert_eq!(bytes(0.1).len() - bytes(0.5).len(), 36 + 3);
+    }
+
+    #[test]
+    fn text_has_colours_after_what_they_belong_to() {
+        let mut soup = soup(0.1);
+        soup.vertex_colors =
+            vec![Some(Color::Bytes([1, 2, 3], None)), None, Some(Color::Bytes([4, 5, 6], None))];
+        soup.face_colors = vec![Some(Color::Floats([1.0, 0.5, 0.0], Some(0.25)))];
+        let bytes = write(&soup, Encoding::PlyAscii, &Budget::unlimited()).unwrap();
+        let header = header_of(&bytes);
+        assert!(header.contains("property uchar blue\nelement face 1\n"), "{header}");
+        assert!(header.ends_with("property float alpha\n"), "{header}");
+        let body = String::from_utf8_lossy(&bytes)[header.len() + "end_header\n".len()..].to_owned();
+        assert_eq!(body, "0 0 0 1 2 3\n0.1 0 0 255 255 255\n0 1 0 4 5 6\n3 0 1 2 1.0 0.5 0.0 0.25\n");
+    }
+
+    #[test]
+    fn nan_cannot_be_written() {
+        for encoding in [Encoding::PlyAscii, Encoding::PlyBinaryBigEndian] {
+            assert!(write(&soup(f64::NAN), encoding, &Budget::unlimited()).is_err());
+        }
+    }
+}

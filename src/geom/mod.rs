@@ -1,0 +1,52 @@
+//! Points, exact predicates and triangle-triangle classification. Knows no mesh, only coordinates.
+
+mod exact;
+mod predicates;
+mod projection;
+mod ray;
+mod sign;
+mod tri_tri;
+mod volume;
+
+pub use glam::{DVec2, DVec3};
+pub use predicates::{Plane, orient2d, orient3d};
+pub use projection::{Projection, are_collinear, is_on_segment};
+pub use ray::upward_crossing;
+pub use sign::Sign;
+pub use tri_tri::{ContactKind, Shared, contact};
+pub use volume::{signed_volume, triangle_area, volume_sign};
+
+/// Axis-aligned box of a point set; empty when `min > max`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Aabb {
+    /// Smallest coordinates.
+    pub min: DVec3,
+    /// Largest coordinates.
+    pub max: DVec3,
+}
+
+impl Aabb {
+    /// The box of nothing.
+    pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
+
+    /// The box of `points`, which must be finite.
+    pub fn of(points: impl IntoIterator<Item = DVec3>) -> Self {
+        points.into_iter().fold(Self::EMPTY, |b, p| Self { min: b.min.min(p), max: b.max.max(p) })
+    }
+
+    /// The smallest box around both.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// True for the box of nothing.
+    pub fn is_empty(self) -> bool {
+        self.min.x > self.max.x
+    }
+
+    /// Length of the diagonal, in the unit of the coordinates; 0 for the box of nothing.
+    pub fn diagonal(self) -> f64 {
+        if self.is_empty() { 0.0 } else { (self.max - self.min).length() }
+    }
+}

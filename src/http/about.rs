@@ -1,0 +1,53 @@
+//! What the service says about itself.
+
+use axum::extract::Request;
+use axum::http::header;
+use axum::response::IntoResponse as _;
+
+use super::answer::json_answer;
+use super::problem::Handled;
+use super::query;
+use super::representation::json_only;
+use super::state::State;
+use crate::wire::{self, ErrorInfo, FormatInfo, Limits, Version};
+
+/// List the problems there are.
+#[utoipa::path(get, path = "/v1/errors", tag = "service",
+    responses((status = 200, description = "Every stable code, with its status and what to do.", body = Vec<ErrorInfo>)))]
+pub(super) async fn errors(request: Request) -> Handled {
+    json(&request, &wire::errors())
+}
+
+/// Show the limits.
+#[utoipa::path(get, path = "/v1/limits", tag = "service",
+    responses((status = 200, description = "Every limit, under the name that problems use.", body = Limits)))]
+pub(super) async fn limits(state: State, request: Request) -> Handled {
+    json(&request, &state.limits())
+}
+
+/// List the formats.
+#[utoipa::path(get, path = "/v1/formats", tag = "service",
+    responses((status = 200, description = "Every format, with its media types.", body = Vec<FormatInfo>)))]
+pub(super) async fn formats(request: Request) -> Handled {
+    json(&request, &wire::formats())
+}
+
+/// Show the version.
+#[utoipa::path(get, path = "/v1/version", tag = "service",
+    responses((status = 200, description = "The version that runs.", body = Version)))]
+pub(super) async fn version(request: Request) -> Handled {
+    json(&request, &Version::current())
+}
+
+fn json(request: &Request, value: &impl serde::Serialize) -> Handled {
+    json_only(request.headers())?;
+    query::none(request.uri())?;
+    Ok(json_answer(value))
+}
+
+/// This contract.
+#[utoipa::path(get, path = "/openapi.yaml", tag = "service",
+    responses((status = 200, description = "The contract, generated from routes and types.", content_type = "application/yaml", body = Object)))]
+pub(super) async fn openapi(state: State) -> Handled {
+    Ok(([(header::CONTENT_TYPE, "application/yaml")], state.openapi.clone()).into_response())
+}

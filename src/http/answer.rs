@@ -1,0 +1,146 @@
+//! Answers about jobs: accepted, as they stand, and finished.
+
+use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse as _, Response};
+use sha2::{Digest as _, Sha256};
+
+use super::both::Both;
+use super::mesh_file;
+use super::problem::{Handled, json};
+use super::representation::{OCTET_STREAM, Representation};
+use crate::jobs::{JobId, Jobs, StoredFile};
+use crate::wire::{Job, Problem, ProblemCode, Stage};
+
+const JSON: HeaderValue = HeaderValue::from_static("application/json");
+const OUTCOME: HeaderName = HeaderName::from_static("meshmend-outcome");
+const SERVER_TIMING: HeaderName = HeaderName::from_static("server-timing");
+const PREFERENCE_APPLIED: HeaderName = HeaderName::from_static("preference-applied");
+
+/// `value` as `application/json`.
+pub(super) fn json_answer(value: &impl serde::Serialize) -> Response {
+    ([(header::CONTENT_TYPE, JSON)], json(value)).into_response()
+}
+
+/// 202: the job is under way, and where it is.
+pub(super) fn accepted(job: &Job, applied: Option<HeaderValue>) -> Response {
+    let mut response = (StatusCode::ACCEPTED, json_answer(job)).into_response();
+    put(response.headers_mut(), header::LOCATION, &job.links.this);
+    tell_applied(&mut response, applied);
+    response
+}
+
+/// Tells which of the client's preferences were followed.
+pub(super) fn tell_applied(response: &mut Response, applied: Option<HeaderValue>) {
+    if let Some(applied) = applied {
+        response.headers_mut().insert(PREFERENCE_APPLIED, applied);
+    }
+}
+
+/// The job as it stands; 304 when the client has seen it so.
+pub(super) fn job_as_it_stands(job: &Job, request: &HeaderMap) -> Response {
+    let body = json(job);
+    let digest: [u8; 32] = Sha256::digest(&body).into();
+    let etag = format!("\"{}\"", mesh_file::base64(&digest[..12]));
+    let mut response = if mesh_file::matches_etag(request, &etag) {
+        StatusCode::NOT_MODIFIED.into_response()
+    } else {
+        ([(header::CONTENT_TYPE, JSON)], body).into_response()
+    };
+    put(response.headers_mut(), header::ETAG, &etag);
+    response.headers_mut().insert(header::CACHE_CONTROL, HeaderValue::from_static("private, no-cache"));
+    response
+}
+
+/// A stored report.
+pub(super) async fn report(stored: StoredFile) -> Handled {
+    Ok(([(header::CONTENT_TYPE, JSON)], stored.read().await?).into_response())
+}
+
+/// A job that has ended.
+pub(super) struct Finished<'j> {
+    pub(super) jobs: &'j Jobs,
+    pub(super) id: JobId,
+    pub(super) job: &'j Job,
+}
+
+impl Finished<'_> {
+    /// What the job was asked for, or its problem.
+    pub(super) async fn respond(&self, representation: Representation) -> Handled {
+        let mut response = match representation {
+            Representation::Report => self.report().await?,
+            Representation::Mesh { is_opaque, .. } => {
+                let mesh = self.jobs.result(self.id).await?;
+                let media_type = if is_opaque { OCTET_STREAM } else { mesh_file::media_type(&mesh) };
+                mesh_file::whole(mesh, media_type)
+            }
+            Representation::Multipart => {
+                // Nobody who chose the mesh knew the id, so the boundary does not occur in it.
+                let boundary = format!("meshmend-{}", self.id);
+                let (body, len) = self.both().await?.into_multipart(&boundary);
+                let media_type = format!("multipart/mixed; boundary={boundary}");
+                let headers = [(header::CONTENT_TYPE, media_type), (header::CONTENT_LENGTH, len.to_string())];
+                (headers, body).into_response()
+            }
+            Representation::Zip => {
+                let both = self.both().await?;
+                let disposition = mesh_file::disposition(&format!("{}.zip", both.file_name));
+                let headers = [
+                    (header::CONTENT_TYPE, "application/zip".to_owned()),
+                    (header::CONTENT_DISPOSITION, disposition),
+                ];
+                let body = both.into_zip().map_err(|error| {
+                    Problem::new(ProblemCode::Internal, format!("the archive cannot be begun: {error}"))
+                })?;
+                (headers, body).into_response()
+            }
+        };
+        self.describe(response.headers_mut());
+        Ok(response)
+    }
+
+    /// The report; of a job that failed, its problem, which has the report inside.
+    async fn report(&self) -> Handled {
+        if self.job.problem.is_some() {
+            let of_result = self.jobs.result(self.id).await.err();
+            return Err(of_result.or_else(|| self.job.problem.clone()).unwrap_or_else(unfinished).into());
+        }
+        report(self.jobs.report(self.id).await?).await
+    }
+
+    async fn both(&self) -> Result<Both<tokio::fs::File>, Problem> {
+        let mesh = self.jobs.result(self.id).await?;
+        let report = self.jobs.report(self.id).await?.read().await?;
+        let media_type = mesh_file::media_type(&mesh);
+        Ok(Both { report, mesh: mesh.file, mesh_len: mesh.bytes, media_type, file_name: mesh.file_name })
+    }
+
+    /// Adds what is known about the job: its outcome, where its report is, and how long its passes took.
+    fn describe(&self, headers: &mut HeaderMap) {
+        if let Some(outcome) = self.job.outcome {
+            put(headers, OUTCOME, outcome.word());
+        }
+        if let Some(report) = &self.job.links.report {
+            put(headers, header::LINK, &format!("<{report}>; rel=\"describedby\""));
+        }
+        if let Some(timing) = &self.job.timing_ms {
+            let pass = |&stage: &Stage| Some(format!("{};dur={:.3}", stage.word(), timing.of(stage)?));
+            let passes: Vec<_> = Stage::ALL.iter().filter_map(pass).collect();
+            put(
+                headers,
+                SERVER_TIMING,
+                &[passes, vec![format!("engine;dur={:.3}", timing.total)]].concat().join(", "),
+            );
+        }
+    }
+}
+
+fn unfinished() -> Problem {
+    Problem::new(ProblemCode::Internal, "a failed job without a problem")
+}
+
+/// Sets a header; what is no header text (it never is) is left out.
+fn put(headers: &mut HeaderMap, name: HeaderName, value: &str) {
+    if let Ok(value) = HeaderValue::from_str(value) {
+        headers.insert(name, value);
+    }
+}

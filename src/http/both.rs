@@ -1,0 +1,161 @@
+//! Report and mesh in one answer: as `multipart/mixed`, or as a zip archive.
+
+use std::io::{self, Write};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use axum::body::Body;
+use bytes::{Bytes, BytesMut};
+use futures_util::StreamExt as _;
+use tokio::io::{AsyncRead, AsyncReadExt as _};
+use tokio_util::io::ReaderStream;
+use zip::write::{SimpleFileOptions, StreamWriter};
+use zip::{CompressionMethod, ZipWriter};
+
+/// Bytes of a mesh handled at a time.
+const PIECE_BYTES: usize = 64 << 10;
+/// Name of the report in an archive.
+const REPORT_NAME: &str = "report.json";
+
+/// What goes into the answer.
+pub(super) struct Both<R> {
+    /// The report, as JSON.
+    pub(super) report: Vec<u8>,
+    /// The mesh.
+    pub(super) mesh: R,
+    /// Length of the mesh in bytes.
+    pub(super) mesh_len: u64,
+    /// Media type of the mesh.
+    pub(super) media_type: &'static str,
+    /// File name of the mesh.
+    pub(super) file_name: String,
+}
+
+impl<R: AsyncRead + Send + Unpin + 'static> Both<R> {
+    /// The two parts as `multipart/mixed` with this boundary, which must occur in neither; and the whole length.
+    pub(super) fn into_multipart(self, boundary: &str) -> (Body, u64) {
+        let report_head = format!("--{boundary}\r\nContent-Type: application/json\r\n\r\n");
+        let mesh_head = format!(
+            "\r\n--{boundary}\r\nContent-Type: {}\r\nContent-Disposition: attachment; filename=\"{}\"\r\n\r\n",
+            self.media_type, self.file_name
+        );
+        let head = [report_head.as_bytes(), &self.report, mesh_head.as_bytes()].concat();
+        let tail = format!("\r\n--{boundary}--\r\n");
+        let len = head.len() as u64 + self.mesh_len + tail.len() as u64;
+        let once = |bytes: Vec<u8>| futures_util::stream::iter([Ok::<_, io::Error>(Bytes::from(bytes))]);
+        let pieces = ReaderStream::with_capacity(self.mesh, PIECE_BYTES);
+        (Body::from_stream(once(head).chain(pieces).chain(once(tail.into_bytes()))), len)
+    }
+
+    /// Both as a zip archive, packed while it is sent.
+    pub(super) fn into_zip(self) -> io::Result<Body> {
+        let spill = Spill::default();
+        let mut packer = Packer { zip: ZipWriter::new_stream(spill.clone()), spill, mesh: self.mesh };
+        let begun = packer.begin(&self.report, self.file_name, self.mesh_len)?;
+        let rest = futures_util::stream::try_unfold(Some(packer), Packer::step);
+        Ok(Body::from_stream(futures_util::stream::iter([Ok(begun)]).chain(rest)))
+    }
+}
+
+/// Takes what the archive writer writes until it is sent.
+#[derive(Clone, Default)]
+struct Spill(Arc<Mutex<BytesMut>>);
+
+impl Spill {
+    fn take(&self) -> Bytes {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).split().freeze()
+    }
+}
+
+impl Write for Spill {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Packs an archive piece by piece, so that it is never in memory as a whole.
+struct Packer<R> {
+    zip: ZipWriter<StreamWriter<Spill>>,
+    spill: Spill,
+    mesh: R,
+}
+
+impl<R: AsyncRead + Unpin> Packer<R> {
+    /// Everything up to the first byte of the mesh.
+    fn begin(&mut self, report: &[u8], mesh_name: String, mesh_len: u64) -> io::Result<Bytes> {
+        // Level 1: meshes shrink to a half already there, and the client waits.
+        let options = SimpleFileOptions::default()
+            .compression_method(CompressionMethod::Deflated)
+            .compression_level(Some(1))
+            .large_file(mesh_len >= u64::from(u32::MAX));
+        self.zip.start_file(REPORT_NAME, options.large_file(false))?;
+        self.zip.write_all(report)?;
+        self.zip.start_file(mesh_name, options)?;
+        Ok(self.spill.take())
+    }
+
+    /// The next piece of the mesh, packed; after the last one the archive's directory.
+    async fn step(packer: Option<Self>) -> io::Result<Option<(Bytes, Option<Self>)>> {
+        let Some(mut packer) = packer else { return Ok(None) };
+        let mut piece = vec![0; PIECE_BYTES];
+        let len = packer.mesh.read(&mut piece).await?;
+        if len == 0 {
+            packer.zip.finish()?;
+            return Ok(Some((packer.spill.take(), None)));
+        }
+        packer.zip.write_all(&piece[..len])?;
+        let packed = packer.spill.take();
+        Ok(Some((packed, Some(packer))))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use http_body_util::BodyExt as _;
+    use std::io::Read as _;
+
+    fn both(mesh: &[u8]) -> Both<io::Cursor<Vec<u8>>> {
+        Both {
+            report: b"{\"a\":1}".to_vec(),
+            mesh: io::Cursor::new(mesh.to_vec()),
+            mesh_len: mesh.len() as u64,
+            media_type: "model/stl",
+            file_name: "repaired.stl".into(),
+        }
+    }
+
+    async fn bytes_of(body: Body) -> Vec<u8> {
+        body.collect().await.unwrap().to_bytes().to_vec()
+    }
+
+    #[tokio::test]
+    async fn the_archive_holds_report_and_mesh() {
+        let mesh: Vec<u8> = (0..200_000_u32).map(|i| i.to_le_bytes()[0]).collect();
+        let packed = bytes_of(both(&mesh).into_zip().unwrap()).await;
+        let mut archive = zip::ZipArchive::new(io::Cursor::new(packed)).unwrap();
+        let mut content = |name: &str| {
+            let mut bytes = Vec::new();
+            archive.by_name(name).unwrap().read_to_end(&mut bytes).unwrap();
+            bytes
+        };
+        assert_eq!(content("report.json"), b"{\"a\":1}");
+        assert_eq!(content("repaired.stl"), mesh);
+    }
+
+    #[tokio::test]
+    async fn the_multipart_answer_has_the_length_that_it_announces() {
+        let (body, len) = both(b"solid").into_multipart("cut");
+        let text = String::from_utf8(bytes_of(body).await).unwrap();
+        assert_eq!(text.len() as u64, len);
+        assert_eq!(
+            text,
+            "--cut\r\nContent-Type: application/json\r\n\r\n{\"a\":1}\r\n--cut\r\nContent-Type: model/stl\r\n\
+             Content-Disposition: attachment; filename=\"repaired.stl\"\r\n\r\nsolid\r\n--cut--\r\n"
+        );
+    }
+}

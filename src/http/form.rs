@@ -1,0 +1,95 @@
+//! Uploads as `multipart/form-data`: parts `mesh`, `params` and `material`.
+
+use super::body::IncomingBody;
+use super::intake::{Intake, JSON_BYTES_MAX};
+use super::multipart::{Multipart, PartHead};
+use super::state::Service;
+use crate::jobs::Uploaded;
+use crate::wire::{Operation, Problem, ProblemCode, format_of_media_type};
+
+/// Largest `material` part, in bytes. It is taken so that tools may send what belongs to an OBJ; a repair does not
+/// need it.
+pub(super) const MATERIAL_BYTES_MAX: u64 = 4 << 20;
+/// What a form may have beside the mesh: the other parts, and the lines between them.
+pub(super) const EXTRA_BYTES_MAX: u64 = MATERIAL_BYTES_MAX + JSON_BYTES_MAX + (64 << 10);
+
+const PARTS: &[&str] = &["mesh", "params", "material"];
+/// `/v1/jobs` also takes the request as `job`, which names the operation.
+const PARTS_WITH_JOB: &[&str] = &["mesh", "params", "job", "material"];
+
+/// Receives the parts in any order, the mesh streamed to disk.
+pub(super) async fn receive(
+    service: &Service,
+    body: IncomingBody,
+    boundary: &str,
+    operation: Option<Operation>,
+) -> Result<Intake, Problem> {
+    let parts = if operation.is_some() { PARTS } else { PARTS_WITH_JOB };
+    let mut form = Multipart::new(body, boundary);
+    let mut intake = Intake::default();
+    let mut seen = Vec::new();
+    while let Some(head) = form.next_part().await? {
+        let Some(&part) = parts.iter().find(|part| **part == head.name) else {
+            return Err(unknown(&head.name, parts));
+        };
+        if seen.contains(&part) {
+            return Err(about(part, format!("the part `{part}` is there twice")));
+        }
+        seen.push(part);
+        match part {
+            "mesh" => {
+                intake.upload = receive_mesh(service, &mut form).await?;
+                intake.take_names(head);
+            }
+            "material" => drop(receive_small(&mut form, MATERIAL_BYTES_MAX, "material_bytes_max").await?),
+            _ => {
+                let text = receive_small(&mut form, JSON_BYTES_MAX, "json_bytes_max").await?;
+                intake.take_json(&text, operation)?;
+            }
+        }
+    }
+    Ok(intake)
+}
+
+impl Intake {
+    fn take_names(&mut self, head: PartHead) {
+        // Browsers make up media types for file extensions, so one that is not a mesh's says nothing.
+        self.named = head.media_type.and_then(|media| format_of_media_type(&media));
+        self.file_name = head.file_name.filter(|name| !name.is_empty());
+    }
+}
+
+/// `None` when the part has no byte: browsers send one for a file input that was left empty.
+async fn receive_mesh(service: &Service, form: &mut Multipart) -> Result<Option<Uploaded>, Problem> {
+    let Some(first) = form.next_piece().await? else { return Ok(None) };
+    let mut upload = service.jobs.upload(None).await?;
+    upload.write(&first).await?;
+    while let Some(piece) = form.next_piece().await? {
+        upload.write(&piece).await?;
+    }
+    upload.finish().await.map(Some)
+}
+
+async fn receive_small(form: &mut Multipart, bytes_max: u64, name: &'static str) -> Result<Vec<u8>, Problem> {
+    let mut bytes = Vec::new();
+    while let Some(piece) = form.next_piece().await? {
+        bytes.extend_from_slice(&piece);
+        if bytes.len() as u64 > bytes_max {
+            let detail = format!("a part is over the limit of {bytes_max} bytes");
+            return Err(Problem::new(ProblemCode::BodyTooLarge, detail).with_limit(name, bytes_max, None));
+        }
+    }
+    Ok(bytes)
+}
+
+fn unknown(name: &str, parts: &[&str]) -> Problem {
+    let detail = format!(
+        "there is no part `{name}`; the parts are {}, options belong into `params`",
+        parts.join(", ")
+    );
+    Problem { parameter: Some(name.to_owned()), ..Problem::new(ProblemCode::UnknownParameter, detail) }
+}
+
+fn about(part: &str, detail: String) -> Problem {
+    Problem { parameter: Some(part.to_owned()), ..Problem::new(ProblemCode::InvalidParameter, detail) }
+}

@@ -1,0 +1,92 @@
+//! `/v1/jobs/{id}` and below: the life of a job after it was accepted.
+
+use axum::Extension;
+use axum::extract::{Path, Request};
+use axum::http::StatusCode;
+use axum::response::IntoResponse as _;
+
+use super::prefer::Wait;
+use super::problem::{Handled, ProblemAnswer};
+use super::representation::{OCTET_STREAM, json_only, one_of};
+use super::state::{Caller, Service, State};
+use super::{answer, mesh_file, query};
+use crate::jobs::JobId;
+use crate::wire::{Job, ProblemCode, Report};
+
+/// The `{id}` of a path. What does not decode to text cannot be an id.
+type Id = Result<Path<String>, axum::extract::rejection::PathRejection>;
+
+/// Show a job.
+///
+/// With `wait`, the answer comes when the job has ended or after that many seconds, at most 300.
+#[utoipa::path(get, path = "/v1/jobs/{id}", tag = "jobs",
+    params(("id" = String, Path, description = "Id of the job."),
+           ("wait" = Option<u64>, Query, description = "Seconds to wait for the job's end. Default: 0.")),
+    responses((status = 200, description = "The job.", body = Job), (status = 304, description = "Not changed.")))]
+pub(super) async fn show(state: State, caller: Extension<Caller>, id: Id, request: Request) -> Handled {
+    json_only(request.headers())?;
+    let wait = Wait::of_seconds(query::wait(request.uri())?);
+    let id = visible(&state, &caller, id).await?;
+    let job = state.jobs.wait(id, wait.duration).await?;
+    let mut response = answer::job_as_it_stands(&job, request.headers());
+    answer::tell_applied(&mut response, wait.applied_header());
+    Ok(response)
+}
+
+/// Cancel a job.
+///
+/// A queued job ends at once, a running one within moments; one that has ended stays as it is.
+#[utoipa::path(post, path = "/v1/jobs/{id}/cancel", tag = "jobs",
+    params(("id" = String, Path, description = "Id of the job.")),
+    responses((status = 200, description = "The job has ended.", body = Job),
+              (status = 202, description = "The job will end.", body = Job)))]
+pub(super) async fn cancel(state: State, caller: Extension<Caller>, id: Id, request: Request) -> Handled {
+    json_only(request.headers())?;
+    query::none(request.uri())?;
+    let job = state.jobs.cancel(visible(&state, &caller, id).await?).await?;
+    let status = if job.state.is_final() { StatusCode::OK } else { StatusCode::ACCEPTED };
+    Ok((status, answer::json_answer(&job)).into_response())
+}
+
+/// Delete a job.
+///
+/// The job goes with its upload, report and result; one that is running is cancelled first.
+#[utoipa::path(delete, path = "/v1/jobs/{id}", tag = "jobs",
+    params(("id" = String, Path, description = "Id of the job.")),
+    responses((status = 204, description = "The job is gone.")))]
+pub(super) async fn delete(state: State, caller: Extension<Caller>, id: Id, request: Request) -> Handled {
+    query::none(request.uri())?;
+    state.jobs.delete(visible(&state, &caller, id).await?).await?;
+    Ok(StatusCode::NO_CONTENT.into_response())
+}
+
+/// Read a job's report.
+///
+/// Also of a refused repair, whose report says why.
+#[utoipa::path(get, path = "/v1/jobs/{id}/report", tag = "jobs",
+    params(("id" = String, Path, description = "Id of the job.")),
+    responses((status = 200, description = "The report.", body = Report)))]
+pub(super) async fn report(state: State, caller: Extension<Caller>, id: Id, request: Request) -> Handled {
+    json_only(request.headers())?;
+    query::none(request.uri())?;
+    answer::report(state.jobs.report(visible(&state, &caller, id).await?).await?).await
+}
+
+/// Download a job's mesh.
+///
+/// Whole or in part (`Range`); of a refused repair the same problem that the repair was answered with.
+#[utoipa::path(get, path = "/v1/jobs/{id}/result", tag = "jobs",
+    params(("id" = String, Path, description = "Id of the job.")))]
+pub(super) async fn result(state: State, caller: Extension<Caller>, id: Id, request: Request) -> Handled {
+    query::none(request.uri())?;
+    let stored = state.jobs.result(visible(&state, &caller, id).await?).await?;
+    let media_type = one_of(request.headers(), &[mesh_file::media_type(&stored), OCTET_STREAM])?;
+    Ok(mesh_file::asked_for(stored, media_type, request.headers()).await)
+}
+
+async fn visible(service: &Service, caller: &Caller, id: Id) -> Result<JobId, ProblemAnswer> {
+    let Ok(Path(text)) = id else {
+        return Err(ProblemAnswer::new(ProblemCode::NotFound, "there is no such job"));
+    };
+    Ok(service.visible(&text, caller).await?)
+}

@@ -1,0 +1,52 @@
+//! The only place that knows HTTP: requests come in here, become jobs, and jobs go out as answers.
+//!
+//! [`start`] opens the public listener and, if there is one, the admin listener. The routes are one table in
+//! `router.rs`; the contract, `openapi.yaml`, is made from them.
+
+mod about;
+mod accept;
+mod access;
+mod admin;
+mod answer;
+mod body;
+mod both;
+mod connection;
+mod contract;
+mod docs;
+mod envelope;
+mod form;
+mod healthcheck;
+mod intake;
+mod keys;
+mod lifecycle;
+mod listen;
+mod mesh_file;
+mod metrics;
+mod multipart;
+mod operations;
+mod page;
+mod prefer;
+mod problem;
+mod query;
+mod range;
+mod representation;
+mod router;
+mod server;
+mod settings;
+mod shutdown;
+mod start;
+mod state;
+
+pub use access::{Access, Neighbours};
+pub use healthcheck::healthcheck;
+pub use keys::{ApiKeys, KeyFileError};
+pub use server::Server;
+pub use settings::HttpSettings;
+pub use shutdown::Shutdown;
+pub use start::start;
+
+/// The contract, as it is committed and served.
+pub fn openapi_yaml() -> String {
+    // The document is made of types that all have a form in YAML.
+    router::openapi().to_yaml().unwrap_or_default()
+}

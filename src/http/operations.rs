@@ -1,0 +1,220 @@
+//! `POST /v1/analyze`, `/v1/repair`, `/v1/convert`, `/v1/verify` and `/v1/jobs`: a mesh comes in and becomes a job.
+//!
+//! There is one model: every request makes a job, and all but `/v1/jobs` wait for it a while.
+
+use std::time::Duration;
+
+use axum::Extension;
+use axum::extract::Request;
+use axum::http::{HeaderMap, header, request};
+
+use super::answer::{self, Finished};
+use super::intake::{self, Intake};
+use super::prefer::{Wait, seconds_of};
+use super::problem::Handled;
+use super::query;
+use super::representation::{Representation, json_only};
+use super::state::{Caller, Service, State};
+use crate::jobs::{JobId, Jobs, Submission};
+use crate::wire::{Job, Operation, Options, Problem, ProblemCode, Report};
+
+/// Describe a mesh.
+///
+/// Mesh in, report out: counts, measures, defects with witnesses, and the certificate of the file as it is.
+#[utoipa::path(post, path = "/v1/analyze", tag = "operations", params(Options), responses(
+    (status = 200, description = "The report.", body = Report)))]
+pub(super) async fn analyze(state: State, caller: Extension<Caller>, request: Request) -> Handled {
+    report_of(&state, &caller, Operation::Analyze, request).await
+}
+
+/// Judge a mesh as it is.
+///
+/// Mesh in, report with its certificate out: which of P0, P1 and P2 hold, and the first violations.
+#[utoipa::path(post, path = "/v1/verify", tag = "operations", params(Options), responses(
+    (status = 200, description = "The report.", body = Report)))]
+pub(super) async fn verify(state: State, caller: Extension<Caller>, request: Request) -> Handled {
+    report_of(&state, &caller, Operation::Verify, request).await
+}
+
+/// Repair a mesh.
+///
+/// Mesh in, certified mesh out, or a refusal that says why. `Accept` chooses the mesh, the report, or both.
+#[utoipa::path(post, path = "/v1/repair", tag = "operations", params(Options))]
+pub(super) async fn repair(state: State, caller: Extension<Caller>, request: Request) -> Handled {
+    result_of(&state, &caller, Operation::Repair, request).await
+}
+
+/// Write a mesh in another format.
+///
+/// The same mesh in `output_format`; its certificate states what holds.
+#[utoipa::path(post, path = "/v1/convert", tag = "operations", params(Options))]
+pub(super) async fn convert(state: State, caller: Extension<Caller>, request: Request) -> Handled {
+    result_of(&state, &caller, Operation::Convert, request).await
+}
+
+/// Make a job and do not wait for it.
+#[utoipa::path(post, path = "/v1/jobs", tag = "jobs", params(Options,
+    ("operation" = Option<Operation>, Query, description = "What to do, unless the body says it.")))]
+pub(super) async fn create_job(state: State, caller: Extension<Caller>, request: Request) -> Handled {
+    let (head, body) = request.into_parts();
+    json_only(&head.headers)?;
+    let (options, in_query) = query::options_and_operation(&head.uri)?;
+    let intake = intake::receive(&state, &head.headers, body, None).await?;
+    let operation = one_operation(in_query, intake.operation)?;
+    let submission = submission(&state, &caller, operation, options, intake, &head.headers).await?;
+    let job = state.jobs.submit(submission).await?;
+    Ok(answer::accepted(&job, None))
+}
+
+/// The answer of an operation whose product is its report.
+async fn report_of(service: &Service, caller: &Caller, operation: Operation, request: Request) -> Handled {
+    let (head, body) = request.into_parts();
+    json_only(&head.headers)?;
+    let options = query::options(&head.uri)?;
+    let intake = intake::receive(service, &head.headers, body, Some(operation)).await?;
+    let submission = submission(service, caller, operation, options, intake, &head.headers).await?;
+    finish(service, submission, Representation::Report, &head).await
+}
+
+/// The answer of an operation whose product is a mesh.
+async fn result_of(service: &Service, caller: &Caller, operation: Operation, request: Request) -> Handled {
+    let (head, body) = request.into_parts();
+    let options = query::options(&head.uri)?;
+    // Asked before the upload, so that a client that cannot be served does not send it in vain.
+    Representation::choose(&head.headers, options.output_format)?;
+    let intake = intake::receive(service, &head.headers, body, Some(operation)).await?;
+    let mut submission = submission(service, caller, operation, options, intake, &head.headers).await?;
+    let representation = Representation::choose(&head.headers, submission.options.output_format)?;
+    if let Representation::Mesh { format: Some(format), .. } = representation {
+        submission.options.output_format = Some(format);
+    }
+    finish(service, submission, representation, &head).await
+}
+
+/// Submits the job, waits for it, and answers with what there is then.
+async fn finish(
+    service: &Service,
+    submission: Submission,
+    representation: Representation,
+    head: &request::Parts,
+) -> Handled {
+    let wait = Wait::from_headers(&head.headers);
+    let job = service.jobs.submit(submission).await?;
+    let id = id_of(&job)?;
+    if wait.duration.is_zero() {
+        return Ok(answer::accepted(&job, wait.applied_header()));
+    }
+    let abandoned = CancelWhenDropped { jobs: &service.jobs, id: Some(id) };
+    let job = service.jobs.wait(id, wait.duration).await;
+    abandoned.disarm();
+    let job = job?;
+    let mut response = if job.state.is_final() {
+        Finished { jobs: &service.jobs, id, job: &job }.respond(representation).await?
+    } else {
+        answer::accepted(&job, None)
+    };
+    if let Some(applied) = wait.applied_header() {
+        response.headers_mut().insert("preference-applied", applied);
+    }
+    Ok(response)
+}
+
+fn id_of(job: &Job) -> Result<JobId, Problem> {
+    job.id.parse().map_err(|_| Problem::new(ProblemCode::Internal, "a job has no valid id"))
+}
+
+/// A client that goes away while its job is waited for never learned the job's id, so nobody can want the result.
+struct CancelWhenDropped<'s> {
+    jobs: &'s Jobs,
+    id: Option<JobId>,
+}
+
+impl CancelWhenDropped<'_> {
+    fn disarm(mut self) {
+        self.id = None;
+    }
+}
+
+impl Drop for CancelWhenDropped<'_> {
+    fn drop(&mut self) {
+        if let Some(id) = self.id {
+            let jobs = self.jobs.clone();
+            tokio::spawn(async move { jobs.cancel(id).await.map(drop) });
+        }
+    }
+}
+
+/// Joins what path, query, headers and body say.
+async fn submission(
+    service: &Service,
+    caller: &Caller,
+    operation: Operation,
+    in_query: Options,
+    intake: Intake,
+    headers: &HeaderMap,
+) -> Result<Submission, Problem> {
+    let mut options = in_query.join(intake.options).map_err(|error| Problem::from(&error))?;
+    options.format = options.format.or(intake.named);
+    match (&intake.upload, &options.input) {
+        (None, None) => return Err(no_mesh(headers)),
+        (_, Some(input)) => drop(service.visible(&input.job, caller).await?),
+        _ => {}
+    }
+    Ok(Submission {
+        operation,
+        options,
+        upload: intake.upload,
+        file_name: intake.file_name,
+        cancel_after: cancel_after(headers)?,
+        owner: caller.0.clone(),
+    })
+}
+
+fn no_mesh(headers: &HeaderMap) -> Problem {
+    let content_type =
+        headers.get(header::CONTENT_TYPE).and_then(|value| value.to_str().ok()).unwrap_or_default();
+    if content_type.starts_with("multipart/form-data") {
+        let detail = "the form has no part `mesh`, or it is empty; send the file there, or name an earlier job in `input`";
+        return Problem {
+            parameter: Some("mesh".to_owned()),
+            ..Problem::new(ProblemCode::InvalidParameter, detail)
+        };
+    }
+    if content_type.starts_with("application/json") {
+        let detail =
+            "JSON brings options only: name an earlier job in `input`, or send the mesh itself as the body";
+        return Problem {
+            parameter: Some("input".to_owned()),
+            ..Problem::new(ProblemCode::InvalidParameter, detail)
+        };
+    }
+    Problem::new(
+        ProblemCode::MeshEmpty,
+        "the request has no body; send the mesh, for example with `curl --data-binary @FILE`",
+    )
+}
+
+/// The seconds of `Cancel-After`.
+fn cancel_after(headers: &HeaderMap) -> Result<Option<Duration>, Problem> {
+    let Some(value) = headers.get("cancel-after") else { return Ok(None) };
+    match value.to_str().ok().map(str::trim).and_then(seconds_of) {
+        Some(seconds) => Ok(Some(Duration::from_secs(seconds))),
+        None => Err(Problem {
+            parameter: Some("Cancel-After".to_owned()),
+            ..Problem::new(ProblemCode::InvalidParameter, "`Cancel-After` is a whole number of seconds")
+        }),
+    }
+}
+
+fn one_operation(in_query: Option<Operation>, in_body: Option<Operation>) -> Result<Operation, Problem> {
+    let about = |detail: &str| Problem {
+        parameter: Some("operation".to_owned()),
+        allowed: Operation::WORDS.to_vec(),
+        ..Problem::new(ProblemCode::InvalidParameter, detail)
+    };
+    match (in_query, in_body) {
+        (Some(a), Some(b)) if a != b => Err(about("`operation` is given twice with different values")),
+        (Some(operation), _) | (None, Some(operation)) => Ok(operation),
+        (None, None) => Err(about("`operation` is missing")),
+    }
+}

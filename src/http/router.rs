@@ -1,0 +1,106 @@
+//! Every route, in one table.
+
+use std::sync::Arc;
+
+use axum::Router;
+use axum::body::Bytes;
+use axum::extract::Request;
+use axum::middleware::{self, Next};
+use axum::response::{IntoResponse as _, Response};
+use axum::routing::get;
+use utoipa::openapi::OpenApi;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+use super::envelope::{self, Peer};
+use super::problem::{self, ProblemAnswer};
+use super::settings::HttpSettings;
+use super::state::{Caller, Service, State};
+use super::{about, contract, docs, lifecycle, operations, page};
+use crate::jobs::Jobs;
+use crate::wire::ProblemCode;
+
+/// The API, with its contract.
+fn api() -> OpenApiRouter<Arc<Service>> {
+    OpenApiRouter::new()
+        .routes(routes!(operations::analyze))
+        .routes(routes!(operations::repair))
+        .routes(routes!(operations::convert))
+        .routes(routes!(operations::verify))
+        .routes(routes!(operations::create_job))
+        .routes(routes!(lifecycle::show, lifecycle::delete))
+        .routes(routes!(lifecycle::cancel))
+        .routes(routes!(lifecycle::report))
+        .routes(routes!(lifecycle::result))
+        .routes(routes!(about::errors))
+        .routes(routes!(about::limits))
+        .routes(routes!(about::formats))
+        .routes(routes!(about::version))
+        .routes(routes!(about::openapi))
+}
+
+/// Pages and what they load: embedded, from no other host.
+fn pages() -> Router<Arc<Service>> {
+    Router::new()
+        .route("/", get(page::index))
+        .route("/page.js", get(page::script))
+        .route("/style.css", get(page::style))
+        .route("/docs", get(docs::show))
+}
+
+/// The contract.
+pub(super) fn openapi() -> OpenApi {
+    contract::complete(api().into_openapi())
+}
+
+/// What handlers share, with the contract made once.
+pub(super) fn service(settings: HttpSettings, jobs: Jobs) -> Arc<Service> {
+    let document = openapi();
+    let yaml = super::openapi_yaml();
+    Arc::new(Service {
+        jobs,
+        settings,
+        docs: Bytes::from(docs::render(&document)),
+        openapi: Bytes::from(yaml),
+    })
+}
+
+/// The router of the public listener.
+pub(super) fn router(service: Arc<Service>) -> Router {
+    let (api, _) = api().split_for_parts();
+    let let_in = middleware::from_fn_with_state(Arc::clone(&service), let_in);
+    enveloped(complete(api.merge(pages()).with_state(service)).layer(let_in))
+}
+
+/// `routes` with problems for the paths and methods that they do not know.
+pub(super) fn complete(routes: Router) -> Router {
+    routes.fallback(not_found).method_not_allowed_fallback(method_not_allowed)
+}
+
+/// `routes` with what every answer has in common.
+pub(super) fn enveloped(routes: Router) -> Router {
+    routes.layer(middleware::from_fn(envelope::envelop))
+}
+
+/// Lets in who may use the service. With keys, the pages are for everybody: they ask for the key.
+async fn let_in(service: State, mut request: Request, next: Next) -> Response {
+    let peer = request.extensions().get::<Peer>().map(|peer| peer.0);
+    let is_open = service.settings.access.has_keys() && !request.uri().path().starts_with("/v1/");
+    let caller = if is_open { Ok(None) } else { service.settings.access.check(request.headers(), peer) };
+    match caller {
+        Ok(name) => {
+            request.extensions_mut().insert(Caller(name));
+            next.run(request).await
+        }
+        Err(problem) => problem::respond(problem),
+    }
+}
+
+async fn not_found() -> Response {
+    ProblemAnswer::new(ProblemCode::NotFound, "there is nothing at this path").into_response()
+}
+
+async fn method_not_allowed() -> Response {
+    ProblemAnswer::new(ProblemCode::MethodNotAllowed, "`Allow` lists the methods of this path")
+        .into_response()
+}

@@ -1,0 +1,78 @@
+//! What handlers share.
+
+use std::sync::Arc;
+
+use axum::body::Bytes;
+
+use super::body::BodyLimits;
+use super::prefer::{WAIT_DEFAULT, WAIT_MAX};
+use super::settings::HttpSettings;
+use crate::jobs::{JobId, Jobs};
+use crate::wire::{Limits, Problem, ProblemCode};
+
+/// The state of the router.
+pub(super) type State = axum::extract::State<Arc<Service>>;
+
+/// The service as handlers see it.
+#[derive(Debug)]
+pub(super) struct Service {
+    pub(super) jobs: Jobs,
+    pub(super) settings: HttpSettings,
+    /// The contract, as YAML.
+    pub(super) openapi: Bytes,
+    /// The contract, as a page.
+    pub(super) docs: Bytes,
+}
+
+/// Who sent a request; `None`: nobody by name. Jobs of one caller are invisible to others.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(super) struct Caller(pub(super) Option<String>);
+
+impl Service {
+    /// Limits of a body that brings a mesh and `extra` bytes beside it.
+    pub(super) fn upload_limits(&self, extra: u64) -> BodyLimits {
+        BodyLimits {
+            idle_timeout: self.settings.upload_timeout,
+            total_timeout: self.settings.upload_total_timeout,
+            bytes_max: self.jobs.settings().upload_bytes_max.saturating_add(extra),
+            bytes_max_name: "upload_bytes_max",
+        }
+    }
+
+    /// The id that `text` is, if the caller may see such a job.
+    pub(super) async fn visible(&self, text: &str, caller: &Caller) -> Result<JobId, Problem> {
+        let unknown = || Problem::new(ProblemCode::NotFound, "there is no such job");
+        let id = text.parse::<JobId>().map_err(|_| unknown())?;
+        let owner = self.jobs.owner(id).await?;
+        if owner == caller.0 { Ok(id) } else { Err(unknown()) }
+    }
+
+    /// Every limit, as `/v1/limits` shows them.
+    pub(super) fn limits(&self) -> Limits {
+        let (jobs, http) = (self.jobs.settings(), &self.settings);
+        Limits {
+            upload_bytes_max: jobs.upload_bytes_max,
+            triangles_max: jobs.read_limits.triangles_max,
+            vertices_max: jobs.read_limits.vertices_max,
+            polygon_corners_max: jobs.read_limits.polygon_corners_max,
+            engine_bytes_max: jobs.engine_bytes_max,
+            engine_work_max: jobs.engine_work_max,
+            deadline_max_s: jobs.deadline_max.as_secs(),
+            wait_max_s: WAIT_MAX.as_secs(),
+            wait_default_s: WAIT_DEFAULT.as_secs(),
+            queue_max: jobs.queue_max,
+            slots: jobs.slots,
+            connections_max: http.connections_max,
+            header_timeout_s: http.header_timeout.as_secs(),
+            upload_timeout_s: http.upload_timeout.as_secs(),
+            upload_total_timeout_s: http.upload_total_timeout.as_secs(),
+            write_timeout_s: http.write_timeout.as_secs(),
+            head_bytes_max: super::envelope::HEAD_BYTES_MAX,
+            json_bytes_max: super::intake::JSON_BYTES_MAX,
+            material_bytes_max: super::form::MATERIAL_BYTES_MAX,
+            result_ttl_s: jobs.result_ttl.as_secs(),
+            data_bytes_max: jobs.data_bytes_max,
+            jobs_max: jobs.jobs_max,
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! What the operator may set.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use crate::formats::ReadLimits;
+
+/// Limits and places of the job service. The names are those of the configuration and of `/v1/limits`.
+#[derive(Debug, Clone)]
+pub struct JobsSettings {
+    /// Directory for uploads and results; one server owns it.
+    pub data_dir: PathBuf,
+    /// Jobs that run at one time. Default: half the cores, because the engine's passes use several themselves.
+    pub slots: usize,
+    /// Most queued jobs. Default 64.
+    pub queue_max: usize,
+    /// Most jobs kept, whatever their state; the oldest finished ones go first. Default 20,000.
+    pub jobs_max: usize,
+    /// Largest upload, in bytes. Default 512 MiB.
+    pub upload_bytes_max: u64,
+    /// Most bytes of uploads and results on disk; the oldest finished jobs go first. Default 20 GiB.
+    pub data_bytes_max: u64,
+    /// Time for which a finished job is kept. Default 24 h.
+    pub result_ttl: Duration,
+    /// Longest run of one job. Default 10 min.
+    pub deadline_max: Duration,
+    /// Most memory that one job may charge, in bytes. Default 4 GiB.
+    pub engine_bytes_max: u64,
+    /// Most work units of one job. Default 2^53 - 1, the largest integer that every JSON reader keeps.
+    pub engine_work_max: u64,
+    /// Engine threads of one job; 0: all jobs share one thread for each core. Default 0.
+    pub engine_threads: usize,
+    /// Limits on counts in a mesh.
+    pub read_limits: ReadLimits,
+    /// Time that running jobs get when the server shuts down. Default 25 s: less than the 30 s that container
+    /// runtimes wait before they kill.
+    pub drain_grace: Duration,
+}
+
+impl JobsSettings {
+    /// The defaults, for the given data directory.
+    pub fn new(data_dir: impl Into<PathBuf>) -> Self {
+        let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        Self {
+            data_dir: data_dir.into(),
+            slots: (cores / 2).max(1),
+            queue_max: 64,
+            jobs_max: 20_000,
+            upload_bytes_max: 512 << 20,
+            data_bytes_max: 20 << 30,
+            result_ttl: Duration::from_secs(24 * 60 * 60),
+            deadline_max: Duration::from_secs(10 * 60),
+            engine_bytes_max: 4 << 30,
+            engine_work_max: (1 << 53) - 1,
+            engine_threads: 0,
+            read_limits: ReadLimits::default(),
+            drain_grace: Duration::from_secs(25),
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! A job as others see it: the public view of its row, and its files to send.
+
+use super::live::Live;
+use super::spool::Spool;
+use super::store::{BlobRef, JobRow};
+use super::upload::disk_problem;
+use crate::wire::{self, Encoding, Job, JobState, Links, Outcome, Problem, ProblemCode, Progress};
+
+/// A file that can be sent.
+#[derive(Debug)]
+pub struct StoredFile {
+    /// The open file. It stays readable although the job is deleted meanwhile.
+    pub file: tokio::fs::File,
+    /// Number of bytes.
+    pub bytes: u64,
+    /// SHA-256 of the bytes.
+    pub sha256: [u8; 32],
+    /// How a mesh is laid out; `None` for a report (JSON).
+    pub encoding: Option<Encoding>,
+    /// Name to save it under: letters, digits, dots, hyphens and underscores only.
+    pub file_name: String,
+}
+
+impl StoredFile {
+    pub(super) async fn open(
+        spool: &Spool,
+        blob: &BlobRef,
+        encoding: Option<Encoding>,
+        file_name: String,
+    ) -> Result<Self, Problem> {
+        let file = match tokio::fs::File::open(spool.path(&blob.key)).await {
+            Ok(file) => file,
+            // Expired or deleted between the look at the row and this one.
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Err(expired()),
+            Err(error) => return Err(disk_problem(&error)),
+        };
+        Ok(Self { file, bytes: blob.bytes, sha256: blob.sha256, encoding, file_name })
+    }
+
+    /// The whole content.
+    ///
+    /// # Errors
+    /// `internal` when the disk fails.
+    pub async fn read(mut self) -> Result<Vec<u8>, Problem> {
+        let mut content = Vec::with_capacity(self.bytes as usize);
+        match tokio::io::AsyncReadExt::read_to_end(&mut self.file, &mut content).await {
+            Ok(_) => Ok(content),
+            Err(error) => Err(disk_problem(&error)),
+        }
+    }
+}
+
+/// The public view of `row`; `live` is what this process knows of a running job.
+pub(super) fn job(row: &JobRow, live: Option<&Live>) -> Job {
+    let id = row.id.to_string();
+    let finish = row.finish.as_ref();
+    let has_files = row.state != JobState::Expired;
+    let has_report = has_files && finish.is_some_and(|finish| finish.report.is_some());
+    let has_result = has_files && finish.is_some_and(|finish| finish.result.is_some());
+    let links = Links::new(&id, has_report, has_result);
+    Job {
+        state: row.state,
+        operation: row.operation,
+        created_at: row.created_at,
+        started_at: row.started_at,
+        finished_at: finish.map(|finish| finish.at),
+        expires_at: finish.map(|finish| finish.expires_at),
+        progress: progress(row, live),
+        outcome: finish.and_then(|finish| finish.outcome),
+        problem: finish
+            .and_then(|finish| finish.problem.clone())
+            .map(|problem| problem.with_instance(&links.this)),
+        timing_ms: finish.and_then(|finish| finish.timing_ms),
+        cached: row.is_cached,
+        id,
+        links,
+    }
+}
+
+fn progress(row: &JobRow, live: Option<&Live>) -> Progress {
+    let clock = live.and_then(|live| live.clock.get());
+    match (&row.finish, clock) {
+        (Some(finish), _) => finish.progress,
+        (None, Some(clock)) => clock.progress(),
+        (None, None) => Progress { stage: None, fraction: 0.0 },
+    }
+}
+
+/// Name for the mesh of a job: that of the upload, marked when it was changed.
+pub(super) fn result_name(row: &JobRow, encoding: Encoding) -> String {
+    let mark = match row.finish.as_ref().and_then(|finish| finish.outcome) {
+        Some(Outcome::Repaired) => "-repaired",
+        Some(Outcome::Partial) => "-partial",
+        _ => "",
+    };
+    let format = crate::formats::Encoding::from(encoding).format().into();
+    format!("{}{mark}.{}", stem(row), wire::extension_of(format))
+}
+
+/// Name for the report of a job.
+pub(super) fn report_name(row: &JobRow) -> String {
+    format!("{}.report.json", stem(row))
+}
+
+/// The uploaded file's name without directories and extension, in harmless characters.
+fn stem(row: &JobRow) -> String {
+    let name = row.file_name.as_deref().unwrap_or_default();
+    let base = name.rsplit(['/', '\\']).next().unwrap_or_default();
+    let stem = base.rsplit_once('.').map_or(base, |(stem, _)| stem);
+    let is_harmless = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_');
+    let stem: String = stem.chars().take(100).map(|c| if is_harmless(c) { c } else { '_' }).collect();
+    let stem = stem.trim_start_matches('.');
+    if stem.is_empty() { format!("mesh-{}", row.id) } else { stem.to_owned() }
+}
+
+/// The problem of asking for what is kept no longer.
+pub(super) fn expired() -> Problem {
+    Problem::new(ProblemCode::Expired, "the job's files are kept no longer")
+}

@@ -1,0 +1,8 @@
+//! The `meshmend` binary: assembles the parts and holds no logic.
+
+use meshmend::cli::{self, Service};
+use meshmend::http;
+
+fn main() -> std::process::ExitCode {
+    cli::run(std::env::args_os(), Service { serve: http::start, healthcheck: http::healthcheck })
+}

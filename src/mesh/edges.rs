@@ -1,0 +1,203 @@
+//! Half-edges of a triangle list, grouped by undirected edge.
+//!
+//! Half-edge `h = 3 t + c` runs from corner `c` of triangle `t` to the next corner. No coordinates here.
+
+use crate::budget::{Budget, Stopped};
+use crate::par;
+
+/// The triangle of half-edge `h`.
+pub fn triangle_of(h: u32) -> u32 {
+    h / 3
+}
+
+/// The half-edge after `h` in its triangle.
+pub fn next_corner(h: u32) -> u32 {
+    if h % 3 == 2 { h - 2 } else { h + 1 }
+}
+
+/// The half-edge before `h` in its triangle.
+pub fn prev_corner(h: u32) -> u32 {
+    if h.is_multiple_of(3) { h + 2 } else { h - 1 }
+}
+
+/// The ends of half-edge `h`: where it starts and where it goes.
+pub fn edge_of(triangles: &[[u32; 3]], h: u32) -> [u32; 2] {
+    let corners = triangles[triangle_of(h) as usize];
+    [corners[(h % 3) as usize], corners[(next_corner(h) % 3) as usize]]
+}
+
+/// All half-edges grouped by undirected edge, edges ordered by (smaller vertex, larger vertex), half-edges inside a
+/// group by id. Any number of triangles may share an edge; a triangle with a repeated corner gives an edge with two
+/// equal ends.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct EdgeGroups {
+    half_edges: Vec<u32>,
+    starts: Vec<u32>,
+}
+
+/// Parts of the vertex range that are grouped at the same time; fixed, so that the result is too.
+const PARTS: usize = 8;
+
+impl EdgeGroups {
+    /// Groups the half-edges of `triangles`, whose indices must be below `vertex_count`. O(n) by counting sort on the
+    /// smaller vertex, then a sort inside each vertex.
+    ///
+    /// # Errors
+    /// When the budget stops the run.
+    ///
+    /// # Panics
+    /// With 2^32 / 3 triangles or more; the readers' limits keep counts below.
+    pub fn build(triangles: &[[u32; 3]], vertex_count: usize, budget: &Budget) -> Result<Self, Stopped> {
+        assert!(triangles.len() < (u32::MAX / 3) as usize, "too many triangles for 32-bit half-edges");
+        let _charge = budget.charge(triangles.len() as u64 * 3 * 12)?;
+        let part_len = vertex_count.div_ceil(PARTS).max(1);
+        let parts = par::try_map_ranges(vertex_count, part_len, |range| {
+            group_part(triangles, range.start as u32, range.len(), budget)
+        })?;
+        let mut half_edges = Vec::with_capacity(triangles.len() * 3);
+        let mut starts = Vec::with_capacity(triangles.len() * 3 / 2 + 2);
+        for (part, part_starts) in parts {
+            let offset = half_edges.len() as u32;
+            starts.extend(part_starts.iter().map(|s| s + offset));
+            half_edges.extend(part);
+        }
+        starts.push(half_edges.len() as u32);
+        Ok(Self { half_edges, starts })
+    }
+
+    /// Number of undirected edges.
+    pub fn len(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// True when there is no edge.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The half-edges of edge `e`.
+    pub fn group(&self, e: usize) -> &[u32] {
+        &self.half_edges[self.starts[e] as usize..self.starts[e + 1] as usize]
+    }
+
+    /// The edge with these ends (the smaller first) of the `triangles` it was built from, if there is one. O(log n).
+    pub fn find(&self, triangles: &[[u32; 3]], ends: [u32; 2]) -> Option<usize> {
+        let (mut low, mut high) = (0, self.len());
+        while low < high {
+            let middle = low + (high - low) / 2;
+            let [a, b] = edge_of(triangles, self.group(middle)[0]);
+            match [a.min(b), a.max(b)].cmp(&ends) {
+                std::cmp::Ordering::Less => low = middle + 1,
+                std::cmp::Ordering::Equal => return Some(middle),
+                std::cmp::Ordering::Greater => high = middle,
+            }
+        }
+        None
+    }
+
+    /// The half-edges of every edge, in edge order.
+    pub fn iter(&self) -> impl Iterator<Item = &[u32]> {
+        self.starts.windows(2).map(|w| &self.half_edges[w[0] as usize..w[1] as usize])
+    }
+}
+
+/// Groups the edges whose smaller vertex is in `first..first + len`: their half-edges, and where each group starts.
+fn group_part(
+    triangles: &[[u32; 3]],
+    first: u32,
+    len: usize,
+    budget: &Budget,
+) -> Result<(Vec<u32>, Vec<u32>), Stopped> {
+    let mut offsets = vec![0u32; len + 1];
+    for_each_edge(triangles, first, len, budget, |_, min, _| offsets[min + 1] += 1)?;
+    for v in 0..len {
+        offsets[v + 1] += offsets[v];
+    }
+    let mut cursor = offsets.clone();
+    let mut keyed = vec![(0u32, 0u32); offsets[len] as usize];
+    for_each_edge(triangles, first, len, budget, |h, min, max| {
+        keyed[cursor[min] as usize] = (max, h);
+        cursor[min] += 1;
+    })?;
+    let mut starts = Vec::with_capacity(keyed.len() / 2 + 1);
+    for v in 0..len {
+        let (begin, end) = (offsets[v] as usize, offsets[v + 1] as usize);
+        let star = &mut keyed[begin..end];
+        star.sort_unstable();
+        for (i, &(max, _)) in star.iter().enumerate() {
+            if i == 0 || star[i - 1].0 != max {
+                starts.push((begin + i) as u32);
+            }
+        }
+    }
+    Ok((keyed.into_iter().map(|(_, h)| h).collect(), starts))
+}
+
+fn for_each_edge(
+    triangles: &[[u32; 3]],
+    first: u32,
+    len: usize,
+    budget: &Budget,
+    mut visit: impl FnMut(u32, usize, u32),
+) -> Result<(), Stopped> {
+    for (block, corners) in triangles.chunks(crate::budget::CHECK_EVERY).enumerate() {
+        budget.check()?;
+        let base = (block * crate::budget::CHECK_EVERY) as u32;
+        for (i, &[a, b, c]) in corners.iter().enumerate() {
+            let h = (base + i as u32) * 3;
+            for (k, (from, to)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
+                let min = from.min(to).wrapping_sub(first) as usize;
+                if min < len {
+                    visit(h + k as u32, min, from.max(to));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeMap;
+
+    fn by_map(triangles: &[[u32; 3]]) -> Vec<Vec<u32>> {
+        let mut groups: BTreeMap<(u32, u32), Vec<u32>> = BTreeMap::new();
+        for h in 0..triangles.len() as u32 * 3 {
+            let [a, b] = edge_of(triangles, h);
+            groups.entry((a.min(b), a.max(b))).or_default().push(h);
+        }
+        groups.into_values().collect()
+    }
+
+    #[test]
+    fn groups_equal_those_of_an_ordered_map_on_random_soups() {
+        let mut state = 7u32;
+        let mut random = |below: u32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) % below
+        };
+        for round in 0..500 {
+            let vertex_count = 1 + random(30);
+            let triangles: Vec<[u32; 3]> =
+                (0..random(60)).map(|_| std::array::from_fn(|_| random(vertex_count))).collect();
+            let groups = EdgeGroups::build(&triangles, vertex_count as usize, &Budget::unlimited()).unwrap();
+            let listed: Vec<Vec<u32>> = groups.iter().map(<[u32]>::to_vec).collect();
+            assert_eq!(listed, by_map(&triangles), "round {round}: {triangles:?}");
+            assert_eq!(groups.len(), listed.len());
+            for (e, group) in listed.iter().enumerate() {
+                let [a, b] = edge_of(&triangles, group[0]);
+                assert_eq!(groups.find(&triangles, [a.min(b), a.max(b)]), Some(e));
+            }
+            assert_eq!(groups.find(&triangles, [vertex_count, vertex_count]), None);
+        }
+    }
+
+    #[test]
+    fn corners_turn_around_their_triangle() {
+        for h in 0..9 {
+            assert_eq!(triangle_of(next_corner(h)), triangle_of(h));
+            assert_eq!(prev_corner(next_corner(h)), h);
+        }
+    }
+}

@@ -1,0 +1,19 @@
+//! Triangle soups as read from files, and their connectivity.
+
+mod components;
+mod cut;
+mod divide;
+mod edges;
+mod fans;
+mod parity;
+mod soup;
+mod stitch;
+
+pub use components::{Components, UnionFind};
+pub use cut::{Cut, cut_singular};
+pub use divide::divide;
+pub use edges::{EdgeGroups, edge_of, next_corner, prev_corner, triangle_of};
+pub use fans::{Fan, NO_TWIN, fan_heads, singular_vertices, twins};
+pub use parity::ParityUnionFind;
+pub use soup::{Color, FaceFault, FaceFaultReason, Places, Polygons, Soup};
+pub use stitch::{Stitched, stitch};

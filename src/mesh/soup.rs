@@ -1,0 +1,134 @@
+//! What a file says, before anyone judges it.
+
+use crate::geom::DVec3;
+
+/// A colour as a file gives it; absent channels are not invented.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Color {
+    /// Red, green, blue and, if given, alpha, each 0 to 255.
+    Bytes([u8; 3], Option<u8>),
+    /// Red, green, blue and, if given, alpha, each 0 to 1 in most files.
+    Floats([f32; 3], Option<f32>),
+    /// An index into a colour map of the reader's choice (OFF with one number).
+    Index(i32),
+}
+
+/// Why a face of the file has no triangles in the soup.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum FaceFaultReason {
+    /// A corner's coordinates are NaN or infinite.
+    NonFinite,
+    /// A corner names a vertex that the file does not have.
+    IndexOutOfRange,
+    /// Fewer than three corners.
+    TooFewCorners,
+}
+
+/// A face of the file that could not be used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FaceFault {
+    /// Number of the face in the file, from 0.
+    pub face: u32,
+    /// What is wrong with it.
+    pub reason: FaceFaultReason,
+}
+
+/// The faces with more than three corners, in file order, with their corners as the file lists them.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Polygons {
+    /// Number of the face in the file, from 0.
+    pub faces: Vec<u32>,
+    /// Where the corners of polygon `i` begin in `corners`; one more entry than polygons, or none at all.
+    pub starts: Vec<u32>,
+    /// Vertex ids.
+    pub corners: Vec<u32>,
+    /// First triangle of polygon `i` in the soup; a polygon of `n` corners has `n - 2` consecutive triangles.
+    pub first_triangles: Vec<u32>,
+    /// Polygons (indices into the lists here) whose triangles are not the fan around their first corner.
+    pub not_fans: Vec<u32>,
+}
+
+/// Where elements stand in a text file: 1-based lines. Empty lists when the format is not made of lines.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Places {
+    /// Line of each face of the file.
+    pub face_lines: Vec<u32>,
+    /// Line of each vertex of the file.
+    pub vertex_lines: Vec<u32>,
+}
+
+/// Triangles as a file gives them: any set of points and index triples, possibly broken in every way.
+///
+/// Invariants: every index in `triangles` is in range and its position finite; indices inside a triangle may repeat.
+/// Unused positions may be NaN or infinite.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Soup {
+    /// Vertex positions, in the unit of the file.
+    pub positions: Vec<DVec3>,
+    /// Vertex ids of each triangle's corners.
+    pub triangles: Vec<[u32; 3]>,
+    /// Face of the file behind each triangle; empty when triangle `t` is face `t`.
+    pub triangle_face: Vec<u32>,
+    /// Number of faces in the file, used or not.
+    pub face_count: u32,
+    /// Faces with more than three corners.
+    pub polygons: Polygons,
+    /// Faces that have no triangle here, in file order.
+    pub face_faults: Vec<FaceFault>,
+    /// Vertices whose coordinates are NaN or infinite, in file order.
+    pub non_finite_vertices: Vec<u32>,
+    /// Lines of faces and vertices.
+    pub places: Places,
+    /// True when the format has no indices (STL), so that bit-equal corners are one vertex, numbered by first use.
+    pub is_welded_by_format: bool,
+    /// True when every coordinate is exactly a float32, so both readings of the contract are the same.
+    pub is_f32_exact: bool,
+    /// Colour of each vertex; empty when the file has none.
+    pub vertex_colors: Vec<Option<Color>>,
+    /// Colour of each face of the file; empty when the file has none.
+    pub face_colors: Vec<Option<Color>>,
+}
+
+impl Soup {
+    /// The face of the file behind triangle `t`.
+    pub fn face_of(&self, t: u32) -> u32 {
+        if self.triangle_face.is_empty() { t } else { self.triangle_face[t as usize] }
+    }
+
+    /// The three corners of triangle `t`.
+    pub fn corners(&self, t: u32) -> [DVec3; 3] {
+        self.triangles[t as usize].map(|v| self.positions[v as usize])
+    }
+
+    /// Broken invariants, as sentences; empty when all hold.
+    pub fn check(&self) -> Vec<String> {
+        let mut broken = Vec::new();
+        let vertex_count = self.positions.len();
+        for (t, corners) in self.triangles.iter().enumerate() {
+            for &v in corners {
+                if v as usize >= vertex_count {
+                    broken.push(format!("triangle {t} names vertex {v} of {vertex_count}"));
+                } else if !self.positions[v as usize].is_finite() {
+                    broken.push(format!("triangle {t} uses vertex {v}, which is not finite"));
+                }
+            }
+        }
+        if !self.triangle_face.is_empty() && self.triangle_face.len() != self.triangles.len() {
+            broken.push("triangle_face has another length than triangles".to_owned());
+        }
+        if let Some(f) = self.triangle_face.iter().find(|&&f| f >= self.face_count) {
+            broken.push(format!("a triangle belongs to face {f} of {}", self.face_count));
+        }
+        for (name, len, want) in [
+            ("vertex_colors", self.vertex_colors.len(), vertex_count),
+            ("face_colors", self.face_colors.len(), self.face_count as usize),
+            ("places.face_lines", self.places.face_lines.len(), self.face_count as usize),
+            ("places.vertex_lines", self.places.vertex_lines.len(), vertex_count),
+        ] {
+            if len != 0 && len != want {
+                broken.push(format!("{name} has {len} entries for {want}"));
+            }
+        }
+        broken
+    }
+}

@@ -1,0 +1,111 @@
+//! The uploaded file: read, judged and described once for every operation.
+
+use super::describe::describe;
+use super::{Answer, Failure, InputFacts, Operation, Options, Outcome, Output, Refusal, Report};
+use crate::analysis::Analysis;
+use crate::budget::{Budget, Stage, Stopped};
+use crate::certificate::{self, CertifyError, Depth, Examination};
+use crate::formats::{self, Encoding};
+use crate::mesh::Soup;
+
+/// Witnesses to keep of each defect when the caller does not say.
+const SAMPLES_DEFAULT: usize = 16;
+
+pub(super) struct Input {
+    pub(super) facts: InputFacts,
+    pub(super) soup: Soup,
+    pub(super) examination: Examination,
+    pub(super) samples: usize,
+}
+
+impl Input {
+    /// Reads and judges `bytes`.
+    pub(super) fn read(bytes: &[u8], options: &Options, budget: &Budget) -> Result<Self, Failure> {
+        let (encoding, soup) = budget.stage(Stage::Read, || {
+            let encoding = formats::sniff(bytes, options.format)?;
+            formats::read(bytes, encoding, &options.read, budget).map(|soup| (encoding, soup))
+        })?;
+        let samples = options.samples.unwrap_or(SAMPLES_DEFAULT);
+        let examination = budget.stage(Stage::Certify, || {
+            certificate::examine(&soup, bytes, encoding, &options.read, Depth::Count { samples }, budget)
+        })?;
+        let facts = InputFacts {
+            encoding,
+            bytes: bytes.len() as u64,
+            sha256: examination.certificate.sha256,
+            units: options.units.unwrap_or_default(),
+            units_are_stated: options.units.is_some(),
+        };
+        Ok(Self { facts, soup, examination, samples })
+    }
+
+    /// Describes the mesh as uploaded.
+    pub(super) fn analyze(&self, budget: &Budget) -> Result<Analysis, Stopped> {
+        describe(&self.soup, &self.examination, self.samples, budget)
+    }
+
+    /// The account of a run that has judged the input and done nothing else.
+    pub(super) fn verification(&self) -> Report {
+        Report {
+            operation: Operation::Verify,
+            input: self.facts.clone(),
+            before: None,
+            input_certificate: self.examination.certificate.clone(),
+            actions: Vec::new(),
+            after: None,
+            certificate: None,
+            identical_triangle_share: None,
+            outcome: None,
+            refusal: None,
+            work_used: 0,
+            bytes_peak: 0,
+        }
+    }
+
+    /// The account of `operation` as far as the input is concerned.
+    pub(super) fn report(&self, operation: Operation, budget: &Budget) -> Result<Report, Stopped> {
+        Ok(Report { operation, before: Some(self.analyze(budget)?), ..self.verification() })
+    }
+
+    /// The encoding of the output: the input's own unless another format is asked.
+    pub(super) fn output_encoding(&self, options: &Options) -> Encoding {
+        match options.output_format {
+            Some(format) if format != self.facts.encoding.format() => format.default_encoding(),
+            _ => self.facts.encoding,
+        }
+    }
+
+    /// The input's own bytes as the answer.
+    pub(super) fn returned_as_it_is(&self, report: Report, outcome: Outcome) -> Answer {
+        Answer {
+            report: Report {
+                certificate: Some(self.examination.certificate.clone()),
+                identical_triangle_share: Some(1.0),
+                outcome: Some(outcome),
+                ..report
+            },
+            output: Some(Output { bytes: None, encoding: self.facts.encoding }),
+        }
+    }
+}
+
+impl Report {
+    /// An answer without a file.
+    pub(super) fn into_answer(self) -> Answer {
+        Answer { report: self, output: None }
+    }
+
+    /// An answer that refuses a file.
+    pub(super) fn refused(self, refusal: Refusal) -> Answer {
+        Self { outcome: Some(Outcome::Refused), refusal: Some(refusal), ..self }.into_answer()
+    }
+}
+
+impl From<CertifyError> for Failure {
+    fn from(error: CertifyError) -> Self {
+        match error {
+            CertifyError::Unreadable(error) => error.into(),
+            CertifyError::Stopped(stopped) => Self::Stopped(stopped),
+        }
+    }
+}

@@ -1,0 +1,248 @@
+//! Operations from bytes to bytes: read, analyze, repair by a plan that the client can read, write, certify.
+
+mod convert;
+mod describe;
+mod identical;
+mod input;
+mod output;
+mod plan;
+mod repair;
+
+use self::input::Input;
+use crate::analysis::{Analysis, DefectCode};
+use crate::budget::{Budget, Stopped};
+use crate::certificate::{Certificate, Violation};
+use crate::formats::{Encoding, Format, ReadError, ReadOptions, WriteError};
+
+/// What to do with a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Operation {
+    /// Report only.
+    Analyze,
+    /// Report and a certified repair.
+    Repair,
+    /// The same mesh in another format; its certificate states what holds.
+    Convert,
+    /// The certificate of the file as it is.
+    Verify,
+}
+
+impl Operation {
+    /// Every operation.
+    pub const ALL: [Self; 4] = [Self::Analyze, Self::Repair, Self::Convert, Self::Verify];
+
+    /// Name in paths, options and reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Analyze => "analyze",
+            Self::Repair => "repair",
+            Self::Convert => "convert",
+            Self::Verify => "verify",
+        }
+    }
+}
+
+/// What the caller demands of a result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Require {
+    /// P0, P1 and P2 hold, or the answer is a refusal. Default of `repair`.
+    Printable,
+    /// The best result there is, called `partial` when it is not printable.
+    BestEffort,
+    /// Whatever the operation gives; the certificate says what holds. Default of all other operations.
+    None,
+}
+
+/// The length of one unit of the file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Units {
+    /// Millimetre.
+    #[default]
+    Millimetre,
+    /// Centimetre.
+    Centimetre,
+    /// Metre.
+    Metre,
+    /// Inch.
+    Inch,
+}
+
+/// Whether simple holes are filled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum FillHoles {
+    /// Leave boundary loops as they are.
+    None,
+    /// Planar loops by triangulation, others by ears or a fan, each kept only where it adds no contact.
+    #[default]
+    Simple,
+}
+
+/// Options of every operation; those that do not apply are ignored.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// The caller's word for the input format.
+    pub format: Option<Format>,
+    /// Format of the output; the input's own encoding when `None`.
+    pub output_format: Option<Format>,
+    /// Limits and choice of reader.
+    pub read: ReadOptions,
+    /// Unit as the caller stated it; `None`: assumed to be millimetres.
+    pub units: Option<Units>,
+    /// What the result must be; `None`: the operation's default.
+    pub require: Option<Require>,
+    /// Hole filling of `repair`.
+    pub fill_holes: FillHoles,
+    /// Witnesses to keep of each defect; `None`: 16.
+    pub samples: Option<usize>,
+}
+
+/// What became of the file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Outcome {
+    /// Already valid; the same bytes.
+    Identical,
+    /// Valid; another format.
+    Converted,
+    /// Valid after local edits.
+    Repaired,
+    /// Not valid; only on request.
+    Partial,
+    /// No result.
+    Refused,
+}
+
+/// Why there is no result.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Refusal {
+    /// No finite non-degenerate triangle.
+    NothingToRepair,
+    /// No step of the plan led to a valid solid; the first violation of the last attempt.
+    NotRepairable {
+        /// What still breaks the contract.
+        witness: Option<Violation>,
+    },
+    /// A coordinate cannot be written in the output format.
+    NotRepresentable {
+        /// Which, and why.
+        reason: WriteError,
+    },
+}
+
+/// One step of a repair: what it was asked to do, why, and what it changed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Action {
+    /// Name of the step.
+    pub step: &'static str,
+    /// The defects that caused it.
+    pub causes: Vec<DefectCode>,
+    /// Named counts of what changed; all zero: nothing to do.
+    pub changes: Vec<(&'static str, u64)>,
+    /// Largest distance that a vertex moved, in the unit of the file.
+    pub move_max: f64,
+    /// What was decided, in a sentence, where there was a choice; empty otherwise.
+    pub reason: String,
+}
+
+/// Facts about the uploaded bytes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct InputFacts {
+    /// How the bytes are laid out.
+    pub encoding: Encoding,
+    /// Number of bytes.
+    pub bytes: u64,
+    /// SHA-256 of the bytes.
+    pub sha256: [u8; 32],
+    /// Unit of the coordinates.
+    pub units: Units,
+    /// True when the caller stated the unit, false when it is assumed.
+    pub units_are_stated: bool,
+}
+
+/// The full account of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Report {
+    /// What was asked.
+    pub operation: Operation,
+    /// The uploaded bytes.
+    pub input: InputFacts,
+    /// The mesh as uploaded; `None` for `verify`.
+    pub before: Option<Analysis>,
+    /// The uploaded bytes, judged.
+    pub input_certificate: Certificate,
+    /// Steps in the order they ran; empty when none did.
+    pub actions: Vec<Action>,
+    /// The mesh as returned; `None` when it is the same or there is none.
+    pub after: Option<Analysis>,
+    /// The returned bytes, judged; `None` when there are none.
+    pub certificate: Option<Certificate>,
+    /// Share of the input's triangles that are bit-identical in the output; `None` without an output.
+    pub identical_triangle_share: Option<f64>,
+    /// What became of the file; `None` for `analyze` and `verify`.
+    pub outcome: Option<Outcome>,
+    /// Why there is no result.
+    pub refusal: Option<Refusal>,
+    /// Work units used (deterministic).
+    pub work_used: u64,
+    /// Largest number of bytes charged at one time (deterministic).
+    pub bytes_peak: u64,
+}
+
+/// A file that is returned.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Output {
+    /// The bytes; `None`: the very bytes that were uploaded.
+    pub bytes: Option<Vec<u8>>,
+    /// How they are laid out.
+    pub encoding: Encoding,
+}
+
+/// The result of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Answer {
+    /// The account.
+    pub report: Report,
+    /// The file, if the operation returns one and it was not refused.
+    pub output: Option<Output>,
+}
+
+/// A run without a report.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Failure {
+    /// The input could not be read.
+    #[error("{0}")]
+    Unreadable(ReadError),
+    /// The run was stopped.
+    #[error("{0}")]
+    Stopped(#[from] Stopped),
+}
+
+impl From<ReadError> for Failure {
+    fn from(error: ReadError) -> Self {
+        match error.kind {
+            crate::formats::ReadErrorKind::Stopped(stopped) => Self::Stopped(stopped),
+            _ => Self::Unreadable(error),
+        }
+    }
+}
+
+/// Runs `operation` on `bytes`. A pure function: the same arguments give the same answer, whatever the thread count.
+///
+/// # Errors
+/// Only unreadable input and a stopped budget; a broken mesh is a successful analysis, a refusal part of the report.
+pub fn run(
+    operation: Operation,
+    bytes: &[u8],
+    options: &Options,
+    budget: &Budget,
+) -> Result<Answer, Failure> {
+    let input = Input::read(bytes, options, budget)?;
+    let mut answer = match operation {
+        Operation::Analyze => input.report(operation, budget)?.into_answer(),
+        Operation::Verify => input.verification().into_answer(),
+        Operation::Convert => convert::convert(&input, options, budget)?,
+        Operation::Repair => repair::repair(&input, options, budget)?,
+    };
+    answer.report.work_used = budget.work_used();
+    answer.report.bytes_peak = budget.bytes_peak();
+    Ok(answer)
+}

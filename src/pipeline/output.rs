@@ -1,0 +1,81 @@
+//! A mesh on its way out: written, read back, judged on its bytes and compared with the input.
+
+use super::describe::describe;
+use super::identical::identical_triangle_share;
+use super::input::Input;
+use super::{Answer, Failure, Outcome, Output, Refusal, Report};
+use crate::budget::{Budget, Stage, Stopped};
+use crate::certificate::{self, Certificate, Depth, Examination};
+use crate::formats::{self, Encoding, ReadLimits, ReadOptions, WriteError};
+use crate::mesh::Soup;
+
+/// Bytes that may be returned, with the judgement on them.
+pub(super) struct Candidate {
+    pub(super) bytes: Vec<u8>,
+    pub(super) encoding: Encoding,
+    /// The bytes, read back.
+    soup: Soup,
+    examination: Examination,
+}
+
+/// Why there is no candidate.
+pub(super) enum NoCandidate {
+    Refused(Refusal),
+    Failed(Failure),
+}
+
+impl<E: Into<Failure>> From<E> for NoCandidate {
+    fn from(error: E) -> Self {
+        Self::Failed(error.into())
+    }
+}
+
+impl Candidate {
+    /// Writes `soup` and judges the bytes.
+    pub(super) fn write(
+        soup: &Soup,
+        encoding: Encoding,
+        depth: Depth,
+        budget: &Budget,
+    ) -> Result<Self, NoCandidate> {
+        let bytes = match budget.stage(Stage::Write, || formats::write(soup, encoding, budget)) {
+            Ok(bytes) => bytes,
+            Err(WriteError::Stopped(stopped)) => return Err(stopped.into()),
+            Err(reason) => return Err(NoCandidate::Refused(Refusal::NotRepresentable { reason })),
+        };
+        // What we write may be larger than what we would take in.
+        let limits =
+            ReadLimits { triangles_max: u32::MAX, vertices_max: u32::MAX, polygon_corners_max: u32::MAX };
+        let options = ReadOptions { limits, ..ReadOptions::default() };
+        budget.stage(Stage::Certify, || {
+            let soup = formats::read(&bytes, encoding, &options, budget).map_err(Failure::from)?;
+            let examination = certificate::examine(&soup, &bytes, encoding, &options, depth, budget)?;
+            Ok(Self { bytes, encoding, soup, examination })
+        })
+    }
+
+    pub(super) fn certificate(&self) -> &Certificate {
+        &self.examination.certificate
+    }
+
+    /// The candidate as the answer. `origins` name the input's triangle behind each of its triangles ([`NEW`](crate::repair::NEW): none).
+    pub(super) fn returned(
+        self,
+        input: &Input,
+        origins: &[u32],
+        report: Report,
+        outcome: Outcome,
+        budget: &Budget,
+    ) -> Result<Answer, Stopped> {
+        let after = describe(&self.soup, &self.examination, input.samples, budget)?;
+        let share = identical_triangle_share(&input.soup, &self.soup, origins, budget)?;
+        let report = Report {
+            after: Some(after),
+            certificate: Some(self.examination.certificate),
+            identical_triangle_share: Some(share),
+            outcome: Some(outcome),
+            ..report
+        };
+        Ok(Answer { report, output: Some(Output { bytes: Some(self.bytes), encoding: self.encoding }) })
+    }
+}

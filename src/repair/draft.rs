@@ -1,0 +1,179 @@
+//! The mesh that repair steps work on: a plain triangle list that remembers where everything came from.
+
+use super::Changes;
+use crate::geom::DVec3;
+use crate::mesh::{Color, Soup};
+
+/// In the place of an origin: made by a repair step.
+pub const NEW: u32 = u32::MAX;
+
+/// Triangles under repair.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Draft {
+    /// Vertex positions, all finite, in the unit of the file.
+    pub positions: Vec<DVec3>,
+    /// The vertex of the soup behind each vertex; of welded vertices, the first.
+    pub vertex_origin: Vec<u32>,
+    /// Vertex ids of each triangle's corners.
+    pub triangles: Vec<[u32; 3]>,
+    /// The triangle of the soup behind each triangle, also of the parts of a split one; [`NEW`] for patches of holes.
+    pub triangle_origin: Vec<u32>,
+    /// Triangles of the soup, ascending, that it holds in both directions, so that they do not say where outside is.
+    pub two_sided: Vec<u32>,
+}
+
+impl Draft {
+    /// The triangles of `soup` and the vertices they use; counts what of the file that leaves out.
+    pub fn from_soup(soup: &Soup) -> (Self, Changes) {
+        let mut draft = Self {
+            positions: soup.positions.clone(),
+            vertex_origin: (0..soup.positions.len() as u32).collect(),
+            triangles: soup.triangles.clone(),
+            triangle_origin: (0..soup.triangles.len() as u32).collect(),
+            two_sided: Vec::new(),
+        };
+        let dropped = draft.drop_unused_vertices();
+        let changes = Changes::counted([
+            ("polygons_split", soup.polygons.faces.len() as u64),
+            ("unusable_faces_dropped", soup.face_faults.len() as u64),
+            ("unused_vertices_dropped", dropped),
+        ]);
+        (draft, changes)
+    }
+
+    /// Bytes that it takes, for a budget.
+    pub fn bytes(&self) -> u64 {
+        let per_vertex = size_of::<DVec3>() + size_of::<u32>();
+        let per_triangle = size_of::<[u32; 3]>() + size_of::<u32>();
+        (self.positions.len() * per_vertex + self.triangles.len() * per_triangle) as u64
+    }
+
+    /// The corners of triangle `t`.
+    pub fn corners(&self, t: usize) -> [DVec3; 3] {
+        self.triangles[t].map(|v| self.positions[v as usize])
+    }
+
+    /// Keeps the triangles that are marked.
+    pub fn retain_triangles(&mut self, is_kept: &[bool]) {
+        retain_marked(&mut self.triangles, is_kept);
+        retain_marked(&mut self.triangle_origin, is_kept);
+    }
+
+    /// Drops vertices that no triangle uses and gives their number; the others keep their order.
+    pub fn drop_unused_vertices(&mut self) -> u64 {
+        let mut is_used = vec![false; self.positions.len()];
+        for &v in self.triangles.as_flattened() {
+            is_used[v as usize] = true;
+        }
+        let mut used = 0;
+        let renumbered: Vec<u32> = is_used
+            .iter()
+            .map(|&is_used| {
+                used += u32::from(is_used);
+                used.wrapping_sub(1)
+            })
+            .collect();
+        let dropped = self.positions.len() as u64 - u64::from(used);
+        if dropped > 0 {
+            for v in self.triangles.as_flattened_mut() {
+                *v = renumbered[*v as usize];
+            }
+            retain_marked(&mut self.positions, &is_used);
+            retain_marked(&mut self.vertex_origin, &is_used);
+        }
+        dropped
+    }
+
+    /// Turns triangle `t` around.
+    pub fn flip(&mut self, t: usize) {
+        self.triangles[t].swap(1, 2);
+    }
+
+    /// The draft as a soup to be written; `source` is the soup it was made from and gives the colours.
+    pub fn to_soup(&self, source: &Soup) -> Soup {
+        let color_of_face = |&t: &u32| -> Option<Color> {
+            if t == NEW { None } else { source.face_colors[source.face_of(t) as usize] }
+        };
+        Soup {
+            positions: self.positions.clone(),
+            triangles: self.triangles.clone(),
+            face_count: self.triangles.len() as u32,
+            is_f32_exact: self.positions.iter().all(|p| p.as_vec3().as_dvec3() == *p),
+            vertex_colors: match source.vertex_colors.is_empty() {
+                true => Vec::new(),
+                false => self.vertex_origin.iter().map(|&v| source.vertex_colors[v as usize]).collect(),
+            },
+            face_colors: match source.face_colors.is_empty() {
+                true => Vec::new(),
+                false => self.triangle_origin.iter().map(color_of_face).collect(),
+            },
+            ..Soup::default()
+        }
+    }
+
+    /// Broken invariants, as sentences; empty when all hold.
+    pub fn check(&self) -> Vec<String> {
+        let mut broken = Vec::new();
+        if self.vertex_origin.len() != self.positions.len() {
+            broken.push("vertex_origin has another length than positions".to_owned());
+        }
+        if self.triangle_origin.len() != self.triangles.len() {
+            broken.push("triangle_origin has another length than triangles".to_owned());
+        }
+        for (t, corners) in self.triangles.iter().enumerate() {
+            if corners.iter().any(|&v| v as usize >= self.positions.len()) {
+                broken.push(format!("triangle {t} names a vertex that is not there: {corners:?}"));
+            }
+        }
+        if let Some(v) = self.positions.iter().position(|p| !p.is_finite()) {
+            broken.push(format!("vertex {v} is not finite"));
+        }
+        broken
+    }
+}
+
+/// Keeps the items that are marked, in their order.
+fn retain_marked<T>(items: &mut Vec<T>, is_kept: &[bool]) {
+    let mut marks = is_kept.iter();
+    items.retain(|_| marks.next() == Some(&true));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn soup() -> Soup {
+        Soup {
+            positions: [[f64::NAN; 3], [0.0; 3], [1.0, 0.0, 0.0], [9.0; 3], [0.0, 1.0, 0.0]]
+                .map(DVec3::from_array)
+                .to_vec(),
+            triangles: vec![[1, 2, 4], [2, 1, 4]],
+            face_count: 2,
+            face_colors: vec![Some(Color::Index(5)), Some(Color::Index(6))],
+            vertex_colors: [0, 1, 2, 3, 4].map(|i| Some(Color::Index(i))).to_vec(),
+            ..Soup::default()
+        }
+    }
+
+    #[test]
+    fn unused_vertices_are_dropped_and_counted_and_the_others_keep_their_order() {
+        let (draft, changes) = Draft::from_soup(&soup());
+        assert_eq!(changes.count("unused_vertices_dropped"), 2);
+        assert_eq!(draft.vertex_origin, [1, 2, 4]);
+        assert_eq!(draft.triangles, [[0, 1, 2], [1, 0, 2]]);
+        assert!(draft.check().is_empty());
+    }
+
+    #[test]
+    fn colors_follow_their_triangles_and_vertices() {
+        let source = soup();
+        let (mut draft, _) = Draft::from_soup(&source);
+        draft.retain_triangles(&[false, true]);
+        draft.triangles.push([0, 1, 2]);
+        draft.triangle_origin.push(NEW);
+        let written = draft.to_soup(&source);
+        assert_eq!(written.face_colors, [Some(Color::Index(6)), None]);
+        assert_eq!(written.vertex_colors, [1, 2, 4].map(|i| Some(Color::Index(i))));
+        assert!(written.check().is_empty());
+    }
+}

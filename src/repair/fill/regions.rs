@@ -1,0 +1,168 @@
+//! What a patch has to cover: a boundary loop, or flat loops that lie in each other like the rims of a pipe's end.
+
+use super::loops::BoundaryLoop;
+use super::planar;
+use crate::budget::{Budget, Stopped};
+use crate::geom::{Aabb, DVec2, DVec3, Sign, orient2d};
+
+/// How far from its mean plane a loop may be to count as flat, as a share of its size: some float32 steps of a
+/// coordinate ten times that size.
+const FLAT_SHARE_MAX: f64 = 1e-5;
+/// How far the normals of loops in one plane may differ, as the cosine of the angle (0.08 degrees).
+const PARALLEL_COS_MIN: f64 = 0.999_999;
+/// Most flat loops that are searched for islands, in time that grows with their square.
+const FLAT_LOOPS_MAX: usize = 4096;
+
+/// One region to cover.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Region {
+    /// The outer loop, then those of islands in it.
+    pub(super) loops: Vec<BoundaryLoop>,
+    /// Unit normal of the outer loop, counter-clockwise around it; zero when it has none.
+    pub(super) normal: DVec3,
+    /// True when all loops lie in one plane, as nearly as float32 can say.
+    pub(super) is_flat: bool,
+}
+
+impl Region {
+    /// Its loops as regions of their own. An island runs the other way around.
+    pub(super) fn into_single_loops(self) -> impl Iterator<Item = Self> {
+        let (normal, is_flat) = (self.normal, self.is_flat);
+        self.loops.into_iter().enumerate().map(move |(i, only)| Self {
+            loops: vec![only],
+            normal: if i == 0 { normal } else { -normal },
+            is_flat,
+        })
+    }
+}
+
+struct Shape {
+    normal: DVec3,
+    area: f64,
+    bounds: Aabb,
+    is_flat: bool,
+    points: Vec<DVec3>,
+}
+
+/// Groups the loops into regions, in the order of the loops. `corner(h)` is the corner of a loop at half-edge `h`.
+pub(super) fn regions(
+    loops: Vec<BoundaryLoop>,
+    corner: impl Fn(u32) -> DVec3,
+    budget: &Budget,
+) -> Result<Vec<Region>, Stopped> {
+    let shapes: Vec<Shape> = loops.iter().map(|l| shape(l.iter().map(|&h| corner(h)).collect())).collect();
+    let container = containers(&shapes, budget)?;
+    let mut regions: Vec<Option<Region>> = loops
+        .iter()
+        .zip(&shapes)
+        .zip(&container)
+        .map(|((outer, shape), container)| {
+            container.is_none().then(|| Region {
+                loops: vec![outer.clone()],
+                normal: shape.normal,
+                is_flat: shape.is_flat,
+            })
+        })
+        .collect();
+    for (island, container) in loops.into_iter().zip(container) {
+        if let Some(region) = container.and_then(|c| regions[c].as_mut()) {
+            region.loops.push(island);
+        }
+    }
+    Ok(regions.into_iter().flatten().collect())
+}
+
+/// Newell's normal and what else is asked of a loop.
+fn shape(points: Vec<DVec3>) -> Shape {
+    let bounds = Aabb::of(points.iter().copied());
+    let (origin, size) = (points[0], bounds.diagonal());
+    let next = points.iter().cycle().skip(1);
+    let cross: DVec3 =
+        points.iter().zip(next).map(|(a, b)| ((a - origin) / size).cross((b - origin) / size)).sum();
+    let normal = cross.try_normalize().unwrap_or(DVec3::ZERO);
+    let is_flat = normal != DVec3::ZERO
+        && points.iter().all(|p| (p - origin).dot(normal).abs() <= FLAT_SHARE_MAX * size);
+    Shape { normal, area: cross.length() * size * size, bounds, is_flat, points }
+}
+
+/// For each loop the one whose island it is: the smallest flat loop around it, if that is not an island itself and runs
+/// the other way around.
+fn containers(shapes: &[Shape], budget: &Budget) -> Result<Vec<Option<usize>>, Stopped> {
+    let mut container = vec![None; shapes.len()];
+    let mut flat: Vec<usize> = (0..shapes.len()).filter(|&i| shapes[i].is_flat).collect();
+    if flat.len() > FLAT_LOOPS_MAX {
+        return Ok(container);
+    }
+    flat.sort_by(|&a, &b| shapes[b].area.total_cmp(&shapes[a].area).then(a.cmp(&b)));
+    for (rank, &inner) in flat.iter().enumerate() {
+        budget.spend(rank as u64 / 64)?;
+        let around = flat[..rank].iter().rev().find(|&&outer| contains(&shapes[outer], &shapes[inner]));
+        container[inner] = around.copied().filter(|&outer| {
+            container[outer].is_none() && shapes[outer].normal.dot(shapes[inner].normal) < 0.0
+        });
+    }
+    Ok(container)
+}
+
+/// True when `inner` lies in the plane of `outer` and inside it.
+fn contains(outer: &Shape, inner: &Shape) -> bool {
+    let tolerance = FLAT_SHARE_MAX * outer.bounds.diagonal();
+    outer.normal.dot(inner.normal).abs() >= PARALLEL_COS_MIN
+        && inner.bounds.min.cmpge(outer.bounds.min - tolerance).all()
+        && inner.bounds.max.cmple(outer.bounds.max + tolerance).all()
+        && inner.points.iter().all(|p| (p - outer.points[0]).dot(outer.normal).abs() <= tolerance)
+        && is_inside(inner.points[0], outer)
+}
+
+/// Crossing test of a point in the view of the loop; exact but for points on the loop itself.
+fn is_inside(point: DVec3, outer: &Shape) -> bool {
+    let view = planar::view(outer.normal);
+    let p = view(point);
+    let crosses = |a: DVec2, b: DVec2| {
+        let is_upward = a.y <= p.y && p.y < b.y;
+        let is_downward = b.y <= p.y && p.y < a.y;
+        (is_upward && orient2d(a, b, p) == Sign::Positive)
+            || (is_downward && orient2d(a, b, p) == Sign::Negative)
+    };
+    let next = outer.points.iter().cycle().skip(1);
+    outer.points.iter().zip(next).filter(|&(&a, &b)| crosses(view(a), view(b))).count() % 2 == 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Squares in the plane z = 0 as (half side, is counter-clockwise); half-edges number the corners of all.
+    fn grouped(squares: &[(f64, bool)]) -> Vec<Vec<u32>> {
+        let corners: Vec<DVec3> = squares
+            .iter()
+            .flat_map(|&(half, is_ccw)| {
+                let ring = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+                (0..4)
+                    .map(move |i| ring[if is_ccw { i } else { 3 - i }])
+                    .map(move |[x, y]| DVec3::new(x, y, 0.0) * half)
+            })
+            .collect();
+        let loops = (0..squares.len() as u32).map(|s| (4 * s..4 * s + 4).collect()).collect();
+        regions(loops, |h| corners[h as usize], &Budget::unlimited())
+            .unwrap()
+            .into_iter()
+            .map(|region| region.loops.iter().map(|l| l[0] / 4).collect())
+            .collect()
+    }
+
+    #[test]
+    fn the_inner_rim_of_a_pipe_is_an_island_of_the_outer_one() {
+        assert_eq!(grouped(&[(1.0, false), (2.0, true)]), [[1, 0]]);
+    }
+
+    #[test]
+    fn a_loop_of_the_same_direction_is_a_region_of_its_own() {
+        assert_eq!(grouped(&[(2.0, true), (1.0, true)]), [[0], [1]]);
+    }
+
+    #[test]
+    fn a_pipe_in_a_pipe_gives_two_regions() {
+        assert_eq!(grouped(&[(4.0, true), (3.0, false), (2.0, true), (1.0, false)]), [[0, 1], [2, 3]]);
+    }
+}

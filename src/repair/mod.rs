@@ -1,0 +1,45 @@
+//! Operations that change a mesh: one operation, one file; options in, what changed out. No step calls another.
+//!
+//! The steps work on a [`Draft`]. None of them moves a vertex except [`round`] and [`noise`], which say how far.
+
+pub mod collinear;
+pub mod cut;
+pub mod degenerate;
+pub mod draft;
+pub mod duplicates;
+
+pub mod fill;
+pub mod nest;
+pub mod noise;
+pub mod orient;
+pub mod round;
+pub mod stitch;
+pub mod t_vertices;
+pub mod weld;
+
+pub use draft::{Draft, NEW};
+
+/// What a step changed.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Changes {
+    /// Named counts; all zero: nothing to do.
+    pub counts: Vec<(&'static str, u64)>,
+    /// Largest distance that a vertex moved, in the unit of the file.
+    pub move_max: f64,
+    /// What was decided, in a sentence, where there was a choice; empty otherwise.
+    pub reason: String,
+    /// A triangle of the soup out of each part that is gone as a whole.
+    pub removed_parts: Vec<u32>,
+}
+
+impl Changes {
+    /// Changes that are counts alone.
+    pub fn counted(counts: impl Into<Vec<(&'static str, u64)>>) -> Self {
+        Self { counts: counts.into(), ..Self::default() }
+    }
+
+    /// The count of this name; 0 when the step does not count it.
+    pub fn count(&self, name: &str) -> u64 {
+        self.counts.iter().find(|(n, _)| *n == name).map_or(0, |&(_, count)| count)
+    }
+}

@@ -1,0 +1,214 @@
+//! Turns and drops closed shells so that nested ones alternate, by what their directions say (policy `as_oriented`).
+//!
+//! From outside inward, every shell is met in the void or in the solid, and points outward or inward:
+//!
+//! | met in | outward | inward |
+//! |---|---|---|
+//! | void | a body: stays | contradiction |
+//! | solid | a hidden wall: dropped, the solid is the same without it | a cavity: stays |
+//!
+//! An outermost shell that points inward says that everything in it is inside out: its whole tree is turned first. A
+//! tree with a contradiction stays as it is. Nothing becomes a cavity that was not one.
+
+use super::{Changes, Draft};
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::mesh::{Components, EdgeGroups, UnionFind, edge_of, triangle_of};
+use crate::spatial::{self, Bvh, Nesting, Search};
+
+/// Turns inverted trees of shells and drops hidden walls. Needs a welded draft of closed, oriented shells that do not
+/// meet; any other is left as it is, for the certificate to judge. `is_embedded`: it is known that no two triangles meet
+/// beyond common vertices and edges, so that need not be tested.
+///
+/// # Errors
+/// When the budget stops the run.
+pub fn nest(draft: &mut Draft, is_embedded: bool, budget: &Budget) -> Result<Changes, Stopped> {
+    let Some(shells) = disjoint_closed_shells(draft, budget)? else {
+        return Ok(left_alone("the surface is not one of closed shells apart from each other"));
+    };
+    let bvh = Bvh::build(&draft.positions, &draft.triangles, None, budget)?;
+    let is_embedded = is_embedded
+        || shells.count == 1
+        || spatial::self_contacts(&draft.positions, &draft.triangles, &bvh, Search::First, budget)?.count
+            == 0;
+    if !is_embedded {
+        return Ok(left_alone("triangles pass through each other or touch"));
+    }
+    let nesting = spatial::nest(&draft.positions, &draft.triangles, &shells.of, shells.count, &bvh, budget)?;
+    let says_nothing = two_sided_shells(draft, &shells);
+    apply(&decide(&nesting, &says_nothing), draft, &shells, budget)
+}
+
+fn left_alone(why: &str) -> Changes {
+    Changes { reason: format!("shells were not nested: {why}"), ..counted(0, 0) }
+}
+
+fn counted(turned: u64, dropped: u64) -> Changes {
+    Changes::counted([("shells_turned", turned), ("hidden_shells_dropped", dropped)])
+}
+
+/// The shells, if every edge has two triangles in opposite directions and no two shells share a vertex.
+fn disjoint_closed_shells(draft: &Draft, budget: &Budget) -> Result<Option<Components>, Stopped> {
+    let groups = EdgeGroups::build(&draft.triangles, draft.positions.len(), budget)?;
+    let mut shells = UnionFind::new(draft.triangles.len());
+    for (e, group) in groups.iter().enumerate() {
+        if e % CHECK_EVERY == 0 {
+            budget.check()?;
+        }
+        match *group {
+            [g, h] if edge_of(&draft.triangles, g)[0] != edge_of(&draft.triangles, h)[0] => {
+                shells.unite(triangle_of(g), triangle_of(h));
+            }
+            _ => return Ok(None),
+        }
+    }
+    let shells = shells.into_components();
+    let mut shell_at = vec![u32::MAX; draft.positions.len()];
+    for (corners, &shell) in draft.triangles.iter().zip(&shells.of) {
+        for &v in corners {
+            let known = std::mem::replace(&mut shell_at[v as usize], shell);
+            if known != u32::MAX && known != shell {
+                return Ok(None);
+            }
+        }
+    }
+    Ok(Some(shells))
+}
+
+/// Shells all of whose triangles the file gives in both directions.
+fn two_sided_shells(draft: &Draft, shells: &Components) -> Vec<bool> {
+    let mut says_nothing = vec![!draft.two_sided.is_empty(); shells.count as usize];
+    for (origin, &shell) in draft.triangle_origin.iter().zip(&shells.of) {
+        says_nothing[shell as usize] &= draft.two_sided.binary_search(origin).is_ok();
+    }
+    says_nothing
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Fate {
+    Stays,
+    Turns,
+    Goes,
+}
+
+/// What becomes of each shell.
+fn decide(nesting: &Nesting, says_nothing: &[bool]) -> Vec<Fate> {
+    let shell_count = nesting.parent.len();
+    let mut from_outside_in: Vec<usize> = (0..shell_count).collect();
+    from_outside_in.sort_by_key(|&s| nesting.depth[s]);
+    let mut root: Vec<usize> = (0..shell_count).collect();
+    let mut is_solid_inside = vec![true; shell_count];
+    let mut is_contradictory = vec![false; shell_count];
+    let mut fates = vec![Fate::Stays; shell_count];
+    for s in from_outside_in {
+        let is_met_in_solid = nesting.parent[s].is_some_and(|p| is_solid_inside[p as usize]);
+        root[s] = nesting.parent[s].map_or(s, |p| root[p as usize]);
+        let is_tree_inverted = !nesting.is_outward[root[s]] && !says_nothing[root[s]];
+        let is_outward = says_nothing[s] || nesting.is_outward[s] != is_tree_inverted;
+        is_contradictory[root[s]] |= !is_outward && !is_met_in_solid;
+        is_solid_inside[s] = is_outward;
+        fates[s] = match (is_met_in_solid, is_outward) {
+            (true, true) => Fate::Goes,
+            _ if is_outward != nesting.is_outward[s] => Fate::Turns,
+            _ => Fate::Stays,
+        };
+    }
+    for s in 0..shell_count {
+        if is_contradictory[root[s]] {
+            fates[s] = Fate::Stays;
+        }
+    }
+    fates
+}
+
+fn apply(
+    fates: &[Fate],
+    draft: &mut Draft,
+    shells: &Components,
+    budget: &Budget,
+) -> Result<Changes, Stopped> {
+    let count = |fate: Fate| fates.iter().filter(|&&f| f == fate).count() as u64;
+    let (turned, dropped) = (count(Fate::Turns), count(Fate::Goes));
+    let fate_of = |t: usize| fates[shells.of[t] as usize];
+    let mut removed_parts = Vec::new();
+    let mut is_listed = vec![false; fates.len()];
+    let mut is_kept = vec![true; draft.triangles.len()];
+    for t in 0..draft.triangles.len() {
+        if t % CHECK_EVERY == 0 {
+            budget.check()?;
+        }
+        match fate_of(t) {
+            Fate::Stays => {}
+            Fate::Turns => draft.flip(t),
+            Fate::Goes => {
+                is_kept[t] = false;
+                if !std::mem::replace(&mut is_listed[shells.of[t] as usize], true) {
+                    removed_parts.push(draft.triangle_origin[t]);
+                }
+            }
+        }
+    }
+    draft.retain_triangles(&is_kept);
+    draft.drop_unused_vertices();
+    Ok(Changes { reason: reason(turned, dropped), removed_parts, ..counted(turned, dropped) })
+}
+
+fn reason(turned: u64, dropped: u64) -> String {
+    let turned = (turned > 0).then(|| format!("{turned} shells were inside out and turned"));
+    let dropped = (dropped > 0).then(|| format!("{dropped} shells were walls inside a solid and dropped"));
+    turned.into_iter().chain(dropped).collect::<Vec<_>>().join("; ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Shells in a row, each inside the one before.
+    fn nested(is_outward: &[bool]) -> Nesting {
+        let n = is_outward.len() as u32;
+        Nesting {
+            is_outward: is_outward.to_vec(),
+            parent: (0..n).map(|s| s.checked_sub(1)).collect(),
+            depth: (0..n).collect(),
+        }
+    }
+
+    fn fates(is_outward: &[bool]) -> Vec<Fate> {
+        decide(&nested(is_outward), &vec![false; is_outward.len()])
+    }
+
+    #[test]
+    fn a_body_with_a_cavity_and_a_body_in_it_stays() {
+        assert_eq!(fates(&[true, false, true]), [Fate::Stays; 3]);
+    }
+
+    #[test]
+    fn an_inverted_body_turns_together_with_its_cavity() {
+        assert_eq!(fates(&[false, true]), [Fate::Turns; 2]);
+    }
+
+    #[test]
+    fn an_outward_shell_inside_a_solid_is_dropped_and_its_cavity_stays() {
+        assert_eq!(fates(&[true, true]), [Fate::Stays, Fate::Goes]);
+        assert_eq!(fates(&[true, true, false]), [Fate::Stays, Fate::Goes, Fate::Stays]);
+    }
+
+    #[test]
+    fn a_cavity_inside_a_cavity_is_a_contradiction_and_left_alone() {
+        assert_eq!(fates(&[true, false, false]), [Fate::Stays; 3]);
+        assert_eq!(fates(&[false, true, true]), [Fate::Stays; 3]);
+    }
+
+    #[test]
+    fn a_contradiction_in_one_tree_does_not_keep_another_from_turning() {
+        let mut two_trees = nested(&[true, false, false, false]);
+        two_trees.parent[3] = None;
+        two_trees.depth[3] = 0;
+        assert_eq!(decide(&two_trees, &[false; 4]), [Fate::Stays, Fate::Stays, Fate::Stays, Fate::Turns]);
+    }
+
+    #[test]
+    fn a_shell_given_in_both_directions_is_a_body_in_the_void_and_a_wall_in_the_solid() {
+        assert_eq!(decide(&nested(&[false, false]), &[true, true]), [Fate::Turns, Fate::Goes]);
+        assert_eq!(decide(&nested(&[true, false]), &[false, true]), [Fate::Stays, Fate::Goes]);
+    }
+}

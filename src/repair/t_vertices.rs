@@ -1,0 +1,140 @@
+//! Divides triangles at boundary vertices that lie exactly inside their boundary edges, so that a crack without width
+//! closes. No vertex moves.
+//!
+//! ```text
+//!         c                     c
+//!        / \                   /|\
+//!       /   \                 / | \
+//!      a-----b      gives    a--m--b      a-b was one boundary edge, a-m and m-b two others
+//!      a--m--b               |  |  |
+//!      |  |  |
+//! ```
+
+use super::{Changes, Draft};
+use crate::budget::{Budget, Stopped};
+use crate::geom::{Aabb, are_collinear, is_on_segment};
+use crate::mesh::{EdgeGroups, divide, edge_of};
+use crate::spatial::Bvh;
+
+/// Divides at every boundary vertex inside a boundary edge. The draft must be welded; collinear triangles are left alone.
+///
+/// # Errors
+/// When the budget stops the run.
+pub fn split_t_vertices(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
+    let boundary = boundary_half_edges(draft, budget)?;
+    let inside = vertices_inside(draft, &boundary, budget)?;
+    let split = replace(draft, &inside, budget)?;
+    Ok(Changes::counted([("edges_divided", count_edges(&inside)), ("triangles_split", split)]))
+}
+
+fn boundary_half_edges(draft: &Draft, budget: &Budget) -> Result<Vec<u32>, Stopped> {
+    let groups = EdgeGroups::build(&draft.triangles, draft.positions.len(), budget)?;
+    let boundary = groups.iter().filter_map(|group| if let [h] = *group { Some(h) } else { None });
+    let is_proper = |h: &u32| {
+        let [a, b, c] = draft.corners(*h as usize / 3);
+        !are_collinear(a, b, c)
+    };
+    Ok(boundary.filter(is_proper).collect())
+}
+
+/// Boundary half-edges and the vertices inside them, by half-edge, then in its direction.
+fn vertices_inside(draft: &Draft, boundary: &[u32], budget: &Budget) -> Result<Vec<(u32, u32)>, Stopped> {
+    // An edge is searched as the triangle that is folded onto it.
+    let edges: Vec<[u32; 3]> =
+        boundary.iter().map(|&h| edge_of(&draft.triangles, h)).map(|[a, b]| [a, b, b]).collect();
+    let bvh = Bvh::build(&draft.positions, &edges, None, budget)?;
+    let mut vertices: Vec<u32> = edges.iter().flat_map(|&[a, b, _]| [a, b]).collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    let mut inside = Vec::new();
+    for v in vertices {
+        budget.spend(1)?;
+        let p = draft.positions[v as usize];
+        bvh.visit_box(Aabb::of([p]), budget, |e| {
+            let [a, b, _] = edges[e as usize];
+            let is_end = v == a || v == b;
+            if !is_end && is_on_segment(p, draft.positions[a as usize], draft.positions[b as usize]) {
+                inside.push((boundary[e as usize], v));
+            }
+        })?;
+    }
+    sort_along_edges(&mut inside, draft);
+    Ok(inside)
+}
+
+/// Sorts by half-edge, then along it. On a line, coordinates in the order x, y, z say where a point is.
+fn sort_along_edges(inside: &mut [(u32, u32)], draft: &Draft) {
+    let place = |v: u32| draft.positions[v as usize].to_array();
+    inside.sort_by(|&(g, u), &(h, v)| {
+        let [from, to] = edge_of(&draft.triangles, g);
+        let (u, v) = if place(from) < place(to) { (u, v) } else { (v, u) };
+        g.cmp(&h).then_with(|| place(u).partial_cmp(&place(v)).unwrap_or(std::cmp::Ordering::Equal))
+    });
+}
+
+fn count_edges(inside: &[(u32, u32)]) -> u64 {
+    inside.chunk_by(|a, b| a.0 == b.0).count() as u64
+}
+
+/// Divides the triangles of the half-edges; gives their number. Parts take the place of the triangle and of new ones.
+fn replace(draft: &mut Draft, inside: &[(u32, u32)], budget: &Budget) -> Result<u64, Stopped> {
+    let mut split = 0;
+    for of_triangle in inside.chunk_by(|a, b| a.0 / 3 == b.0 / 3) {
+        budget.spend(of_triangle.len() as u64)?;
+        let t = of_triangle[0].0 / 3;
+        let on = [0, 1, 2].map(|c| {
+            of_triangle.iter().filter(|&&(h, _)| h == 3 * t + c).map(|&(_, v)| v).collect::<Vec<u32>>()
+        });
+        let parts = divide(draft.triangles[t as usize], on.each_ref().map(Vec::as_slice));
+        let origin = draft.triangle_origin[t as usize];
+        draft.triangles[t as usize] = parts[0];
+        draft.triangles.extend(&parts[1..]);
+        draft.triangle_origin.extend(std::iter::repeat_n(origin, parts.len() - 1));
+        split += 1;
+    }
+    Ok(split)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geom::DVec3;
+
+    #[test]
+    fn a_crack_with_vertices_on_one_side_closes() {
+        let points = [[0, 0], [3, 0], [1, 2], [1, 0], [2, 0], [1, -1]];
+        let triangles = vec![[0, 1, 2], [0, 5, 3], [3, 5, 4], [4, 5, 1]];
+        let mut draft = Draft {
+            positions: points.map(|[x, y]| DVec3::new(f64::from(x), f64::from(y), 0.0)).to_vec(),
+            vertex_origin: (0..6).collect(),
+            triangle_origin: (0..4).collect(),
+            triangles,
+            two_sided: Vec::new(),
+        };
+        let changes = split_t_vertices(&mut draft, &Budget::unlimited()).unwrap();
+        assert_eq!((changes.count("edges_divided"), changes.count("triangles_split")), (1, 1));
+        assert_eq!(draft.triangles.len(), 6);
+        assert_eq!(draft.triangle_origin, [0, 1, 2, 3, 0, 0]);
+        let groups = EdgeGroups::build(&draft.triangles, 6, &Budget::unlimited()).unwrap();
+        for ends in [[0, 3], [3, 4], [1, 4]] {
+            let e = groups.find(&draft.triangles, ends).unwrap();
+            assert_eq!(groups.group(e).len(), 2, "{ends:?}");
+        }
+    }
+
+    #[test]
+    fn a_vertex_beside_an_edge_divides_nothing() {
+        let mut draft = Draft {
+            positions: [[0.0, 0.0], [3.0, 0.0], [1.0, 2.0], [1.0, 1e-30], [2.0, -1.0], [1.0, -1.0]]
+                .map(|[x, y]| DVec3::new(x, y, 0.0))
+                .to_vec(),
+            vertex_origin: (0..6).collect(),
+            triangles: vec![[0, 1, 2], [3, 4, 5]],
+            triangle_origin: vec![0, 1],
+            two_sided: Vec::new(),
+        };
+        let before = draft.clone();
+        let changes = split_t_vertices(&mut draft, &Budget::unlimited()).unwrap();
+        assert_eq!((changes.count("edges_divided"), draft), (0, before));
+    }
+}

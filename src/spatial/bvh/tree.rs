@@ -1,0 +1,144 @@
+//! A tree of boxes, stored flat.
+
+use super::build::{self, Elements};
+use super::{Box32, Leaf};
+use crate::budget::{Budget, Stopped};
+
+/// A box and what is inside it.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::spatial) struct Node {
+    pub(in crate::spatial) bounds: Box32,
+    /// Left child, or `NO_CHILD` in a leaf.
+    left: u32,
+    /// Right child, with the mark of a star; in a leaf its number.
+    right: u32,
+}
+
+const NO_CHILD: u32 = u32::MAX;
+
+/// Mark on the top node of a star. There are fewer nodes than triangles, hence fewer than 2^31.
+const STAR: u32 = 1 << 31;
+
+impl Node {
+    pub(super) const UNSET: Self = Self::leaf(Box32::EMPTY, 0);
+
+    pub(super) const fn leaf(bounds: Box32, number: u32) -> Self {
+        Self { bounds, left: NO_CHILD, right: number }
+    }
+
+    pub(super) const fn inner(bounds: Box32, [left, right]: [u32; 2]) -> Self {
+        Self { bounds, left, right }
+    }
+
+    /// Both children, unless it is a leaf.
+    #[inline]
+    pub(in crate::spatial) fn children(&self) -> Option<[u32; 2]> {
+        (self.left != NO_CHILD).then_some([self.left, self.right & !STAR])
+    }
+
+    /// True for the top node of a star.
+    #[inline]
+    pub(in crate::spatial) fn is_star(&self) -> bool {
+        self.left != NO_CHILD && self.right & STAR != 0
+    }
+
+    fn moved(self, nodes_by: u32, leaves_by: u32) -> Self {
+        match self.children() {
+            Some([left, right]) => Self::inner(self.bounds, [left + nodes_by, right + nodes_by]),
+            None => Self::leaf(self.bounds, self.right + leaves_by),
+        }
+    }
+}
+
+/// Boxes of elements with ids. The root, if there is one, is node 0.
+#[derive(Debug, Clone, Default)]
+pub(in crate::spatial) struct Tree {
+    pub(super) nodes: Vec<Node>,
+    pub(super) leaves: Vec<Leaf>,
+}
+
+impl Tree {
+    /// Most nodes from the root to a leaf: halving takes at most 32 steps, in a forest and again in one of its trees,
+    /// and above both is one joint.
+    pub(in crate::spatial) const DEPTH_MAX: usize = 66;
+
+    /// Builds over `elements`. O(n log n).
+    pub(in crate::spatial) fn build(elements: &impl Elements, budget: &Budget) -> Result<Self, Stopped> {
+        build::tree(elements, super::leaf::LEAF_LEN, budget)
+    }
+
+    /// A tree of trees, none of them a single leaf, each marked as a star.
+    pub(super) fn forest(trees: &[Self], budget: &Budget) -> Result<Self, Stopped> {
+        let top = build::tree(&Roots(trees), 1, budget)?;
+        let mut forest = Self { nodes: top.nodes, leaves: Vec::new() };
+        for place in 0..forest.nodes.len() {
+            if forest.nodes[place].children().is_none() {
+                let tree = &trees[top.leaves[forest.nodes[place].right as usize].id(0) as usize];
+                let root = forest.append(tree);
+                forest.nodes[place] = forest.nodes[root as usize];
+                forest.nodes[place].right |= STAR;
+            }
+        }
+        Ok(forest)
+    }
+
+    /// One tree of both, of which the second is not empty.
+    pub(super) fn join(first: &Self, second: &Self) -> Self {
+        if first.is_empty() {
+            return second.clone();
+        }
+        let mut joint = Self { nodes: vec![Node::UNSET], leaves: Vec::new() };
+        let children = [joint.append(first), joint.append(second)];
+        let bounds = first.nodes[0].bounds.union(&second.nodes[0].bounds);
+        joint.nodes[0] = Node::inner(bounds, children);
+        joint
+    }
+
+    /// Adds the nodes of another tree; gives the place of its root.
+    fn append(&mut self, tree: &Self) -> u32 {
+        let (nodes_by, leaves_by) = (self.nodes.len() as u32, self.leaves.len() as u32);
+        let is_star = |node: &Node| if node.is_star() { STAR } else { 0 };
+        self.nodes.extend(tree.nodes.iter().map(|node| {
+            let moved = node.moved(nodes_by, leaves_by);
+            Node { right: moved.right | is_star(node), ..moved }
+        }));
+        self.leaves.extend(&tree.leaves);
+        nodes_by
+    }
+
+    pub(in crate::spatial) fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    #[inline]
+    pub(in crate::spatial) fn node(&self, id: u32) -> &Node {
+        &self.nodes[id as usize]
+    }
+
+    /// The triangles of a node without children.
+    #[inline]
+    pub(in crate::spatial) fn leaf(&self, node: &Node) -> &Leaf {
+        &self.leaves[node.right as usize]
+    }
+}
+
+/// Trees as the elements of a tree.
+struct Roots<'t>(&'t [Tree]);
+
+impl Elements for Roots<'_> {
+    fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    fn id(&self, place: usize) -> u32 {
+        place as u32
+    }
+
+    fn bounds(&self, id: u32) -> Box32 {
+        self.0[id as usize].nodes[0].bounds
+    }
+
+    fn corners(&self, _: u32) -> [u32; 3] {
+        [0; 3]
+    }
+}

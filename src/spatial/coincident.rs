@@ -1,0 +1,373 @@
+//! Points with equal coordinates.
+//!
+//! Radix partition by hash, then one small table for each part: the parts fit the cache and are independent, and what
+//! they find does not depend on the order in which they run.
+
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::geom::DVec3;
+use crate::par;
+
+/// Points grouped by equal coordinates; -0 equals +0.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Coincident {
+    /// Group of each point; groups are numbered by first occurrence.
+    pub group: Vec<u32>,
+    /// First point of each group.
+    pub first: Vec<u32>,
+}
+
+/// Groups `points` by equal coordinates. NaN equals itself bit for bit. O(n).
+///
+/// # Errors
+/// When the budget stops the run.
+///
+/// # Panics
+/// With 2^32 points or more.
+pub fn coincident_f64(points: &[DVec3], budget: &Budget) -> Result<Coincident, Stopped> {
+    group_by_key(
+        points.len(),
+        |i| points[i].to_array().map(|x| without_sign_of_zero(x.to_bits(), 1 << 63)),
+        budget,
+    )
+}
+
+/// As [`coincident_f64`] for `len` float32 points that `point` gives by index.
+///
+/// # Errors
+/// When the budget stops the run.
+///
+/// # Panics
+/// With 2^32 points or more.
+pub fn coincident_f32(
+    len: usize,
+    point: impl Fn(usize) -> [f32; 3] + Sync,
+    budget: &Budget,
+) -> Result<Coincident, Stopped> {
+    group_by_key(len, |i| point(i).map(|x| without_sign_of_zero(x.to_bits(), 1 << 31)), budget)
+}
+
+fn without_sign_of_zero<T: Copy + PartialEq + Default>(bits: T, negative_zero: T) -> T {
+    if bits == negative_zero { T::default() } else { bits }
+}
+
+/// Coordinates as bits; equal points have equal keys.
+trait Key: Copy + Ord + Default + Send + Sync {
+    fn hash(self) -> u64;
+}
+
+impl Key for [u32; 3] {
+    fn hash(self) -> u64 {
+        let [x, y, z] = self.map(u64::from);
+        fold(fold(x << 32 | y, SEEDS[0]) ^ z, SEEDS[1])
+    }
+}
+
+impl Key for [u64; 3] {
+    fn hash(self) -> u64 {
+        let [x, y, z] = self;
+        fold(fold(fold(x, SEEDS[0]) ^ y, SEEDS[1]) ^ z, SEEDS[2])
+    }
+}
+
+/// Digits of pi, as good as any.
+const SEEDS: [u64; 3] = [0x243f_6a88_85a3_08d3, 0x1319_8a2e_0370_7344, 0xa409_3822_299f_31d0];
+
+/// Both halves of the product, so that high and low bits reach each other.
+fn fold(value: u64, seed: u64) -> u64 {
+    let product = u128::from(value ^ seed) * u128::from(0x9e37_79b9_7f4a_7c15_u64);
+    (product as u64) ^ (product >> 64) as u64
+}
+
+/// Points that are partitioned together: their entries fit the second-level cache.
+const CHUNK: usize = 1 << 16;
+
+/// Points aimed at for a part: its table fits the second-level cache.
+const PART_LEN: usize = 1 << 13;
+
+/// Most parts; more would need more places to write to than the first-level cache holds.
+const PARTS_MAX: usize = 512;
+
+/// Steps through a table at half load after which the hashes are taken for crafted.
+const PROBES_MAX: usize = 256;
+
+fn group_by_key<K: Key>(
+    len: usize,
+    key: impl Fn(usize) -> K + Sync,
+    budget: &Budget,
+) -> Result<Coincident, Stopped> {
+    assert!(u32::try_from(len).is_ok(), "too many points for 32-bit ids");
+    let _charge = budget.charge(len as u64 * (size_of::<Entry<K>>() as u64 + 4 + 4 + 4))?;
+    let parts = Parts { bits: (len / PART_LEN).clamp(1, PARTS_MAX).next_power_of_two().trailing_zeros() };
+    let mut chunks = par::try_map_ranges(len, CHUNK, |range| {
+        budget.check()?;
+        Ok(Chunk::partition(range, &key, parts))
+    })?;
+    count_earlier(&mut chunks, parts);
+    let firsts = par::try_map_ranges(parts.count(), 1, |range| first_points(&chunks, range.start, budget))?;
+    let mut first_of = vec![0; len];
+    par::for_each_chunk_mut(&mut first_of, CHUNK, |begin, out| {
+        collect_firsts(&chunks[begin / CHUNK], &firsts, begin, out);
+    });
+    drop((chunks, firsts));
+    number_by_first(first_of, budget)
+}
+
+#[derive(Clone, Copy)]
+struct Parts {
+    bits: u32,
+}
+
+impl Parts {
+    fn count(self) -> usize {
+        1 << self.bits
+    }
+
+    /// By the highest bits of the hash; the tables use the lowest.
+    fn of(self, hash: u64) -> usize {
+        (hash >> 32 >> (32 - self.bits)) as usize
+    }
+}
+
+#[derive(Clone, Copy, Default)]
+struct Entry<K> {
+    key: K,
+    id: u32,
+}
+
+/// A range of points, sorted by part.
+struct Chunk<K> {
+    entries: Vec<Entry<K>>,
+    /// Where each part begins, and the end.
+    starts: Vec<u32>,
+    /// How many points of each part earlier ranges have.
+    earlier: Vec<u32>,
+}
+
+impl<K: Key> Chunk<K> {
+    fn partition(range: std::ops::Range<usize>, key: impl Fn(usize) -> K, parts: Parts) -> Self {
+        let entries: Vec<Entry<K>> = range.map(|i| Entry { key: key(i), id: i as u32 }).collect();
+        let part_of: Vec<u16> = entries.iter().map(|e| parts.of(e.key.hash()) as u16).collect();
+        let mut starts = vec![0u32; parts.count() + 1];
+        for &part in &part_of {
+            starts[part as usize + 1] += 1;
+        }
+        for part in 0..parts.count() {
+            starts[part + 1] += starts[part];
+        }
+        let mut cursor = starts.clone();
+        let mut sorted = vec![Entry::default(); entries.len()];
+        for (entry, &part) in entries.iter().zip(&part_of) {
+            let place = &mut cursor[part as usize];
+            sorted[*place as usize] = *entry;
+            *place += 1;
+        }
+        Self { entries: sorted, starts, earlier: Vec::new() }
+    }
+
+    fn part(&self, part: usize) -> &[Entry<K>] {
+        &self.entries[self.starts[part] as usize..self.starts[part + 1] as usize]
+    }
+}
+
+fn count_earlier<K: Key>(chunks: &mut [Chunk<K>], parts: Parts) {
+    let mut earlier = vec![0; parts.count()];
+    for chunk in chunks {
+        chunk.earlier.clone_from(&earlier);
+        for (part, count) in earlier.iter_mut().enumerate() {
+            *count += chunk.part(part).len() as u32;
+        }
+    }
+}
+
+/// For each point of the part, in order, the first point with the same key.
+fn first_points<K: Key>(chunks: &[Chunk<K>], part: usize, budget: &Budget) -> Result<Vec<u32>, Stopped> {
+    let mut table = Table::default();
+    let mut firsts = Vec::with_capacity(chunks.iter().map(|c| c.part(part).len()).sum());
+    for chunk in chunks {
+        for entries in chunk.part(part).chunks(CHECK_EVERY) {
+            budget.check()?;
+            for &entry in entries {
+                match table.first_with_key_of(entry) {
+                    Some(first) => firsts.push(first),
+                    None => return first_points_by_sorting(chunks, part, budget),
+                }
+            }
+        }
+    }
+    Ok(firsts)
+}
+
+/// As [`first_points`] for keys whose hashes collide: O(n log n) whatever the keys.
+fn first_points_by_sorting<K: Key>(
+    chunks: &[Chunk<K>],
+    part: usize,
+    budget: &Budget,
+) -> Result<Vec<u32>, Stopped> {
+    let keys = chunks.iter().flat_map(|c| c.part(part)).map(|e| e.key);
+    let mut by_key: Vec<(K, u32)> = keys.zip(0..).collect();
+    let ids: Vec<u32> = chunks.iter().flat_map(|c| c.part(part)).map(|e| e.id).collect();
+    budget.check()?;
+    par::sort_unstable(&mut by_key);
+    budget.check()?;
+    let mut firsts = vec![0; ids.len()];
+    for run in by_key.chunk_by(|a, b| a.0 == b.0) {
+        for &(_, i) in run {
+            firsts[i as usize] = ids[run[0].1 as usize];
+        }
+    }
+    Ok(firsts)
+}
+
+/// Open addressing with linear probing at most half full; it grows with the number of different keys.
+#[derive(Default)]
+struct Table<K> {
+    slots: Vec<Entry<K>>,
+    used: usize,
+}
+
+const EMPTY: u32 = u32::MAX;
+
+impl<K: Key> Table<K> {
+    /// The id that came first with the entry's key; `None` when the search takes too long.
+    fn first_with_key_of(&mut self, entry: Entry<K>) -> Option<u32> {
+        if self.used * 2 >= self.slots.len() {
+            self.grow()?;
+        }
+        let slot = self.slot_of(entry.key)?;
+        if slot.id == EMPTY {
+            *slot = entry;
+            self.used += 1;
+            return Some(entry.id);
+        }
+        Some(slot.id)
+    }
+
+    fn slot_of(&mut self, key: K) -> Option<&mut Entry<K>> {
+        let mask = self.slots.len() - 1;
+        let home = key.hash() as usize;
+        let place = (0..PROBES_MAX)
+            .map(|step| home.wrapping_add(step) & mask)
+            .find(|&place| self.slots[place].id == EMPTY || self.slots[place].key == key)?;
+        Some(&mut self.slots[place])
+    }
+
+    fn grow(&mut self) -> Option<()> {
+        let empty = Entry { key: K::default(), id: EMPTY };
+        let size = (self.slots.len() * 2).max(2 * PROBES_MAX);
+        let old = std::mem::replace(&mut self.slots, vec![empty; size]);
+        for entry in old.into_iter().filter(|e| e.id != EMPTY) {
+            *self.slot_of(entry.key)? = entry;
+        }
+        Some(())
+    }
+}
+
+/// Puts what the parts found for the points of a chunk in the order of the points.
+fn collect_firsts<K: Key>(chunk: &Chunk<K>, firsts: &[Vec<u32>], begin: usize, out: &mut [u32]) {
+    for (part, firsts) in firsts.iter().enumerate() {
+        let firsts = &firsts[chunk.earlier[part] as usize..];
+        for (entry, &first) in chunk.part(part).iter().zip(firsts) {
+            out[entry.id as usize - begin] = first;
+        }
+    }
+}
+
+/// Turns the first point of each point's group into the group's number.
+fn number_by_first(mut group: Vec<u32>, budget: &Budget) -> Result<Coincident, Stopped> {
+    let mut first = Vec::new();
+    for begin in (0..group.len()).step_by(CHECK_EVERY) {
+        budget.check()?;
+        for i in begin..(begin + CHECK_EVERY).min(group.len()) {
+            let f = group[i] as usize;
+            if f == i {
+                group[i] = first.len() as u32;
+                first.push(i as u32);
+            } else {
+                group[i] = group[f];
+            }
+        }
+    }
+    Ok(Coincident { group, first })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashMap;
+
+    fn by_map<K: Key + std::hash::Hash>(keys: &[K]) -> Coincident {
+        let mut seen = HashMap::new();
+        let mut first = Vec::new();
+        let group = (0..keys.len() as u32)
+            .map(|i| {
+                *seen.entry(keys[i as usize]).or_insert_with(|| {
+                    first.push(i);
+                    first.len() as u32 - 1
+                })
+            })
+            .collect();
+        Coincident { group, first }
+    }
+
+    fn lattice_points(len: usize, side: u32) -> Vec<DVec3> {
+        let mut state = 1u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from((state >> 8) % side)
+        };
+        (0..len).map(|_| DVec3::new(random(), random(), random())).collect()
+    }
+
+    #[test]
+    fn groups_are_numbered_by_first_occurrence_whatever_the_thread_count() {
+        for (len, side) in [(0, 1), (1, 1), (5000, 9), (200_000, 40), (300_000, 1)] {
+            let points = lattice_points(len, side);
+            let keys: Vec<[u64; 3]> = points.iter().map(|p| p.to_array().map(f64::to_bits)).collect();
+            let expected = by_map(&keys);
+            for threads in [1, 2, 8] {
+                let budget = Budget::unlimited();
+                let found = par::with_threads(threads, || {
+                    let wide = coincident_f64(&points, &budget).unwrap();
+                    let narrow =
+                        coincident_f32(len, |i| points[i].to_array().map(|x| x as f32), &budget).unwrap();
+                    (wide, narrow)
+                });
+                assert!(found == (expected.clone(), expected.clone()), "{len} points, {threads} threads");
+            }
+        }
+    }
+
+    #[test]
+    fn minus_zero_is_zero_and_nan_equals_itself_bit_for_bit() {
+        let other_nan = f64::from_bits(f64::NAN.to_bits() ^ 1);
+        let points = [-0.0, f64::NAN, 0.0, other_nan, f64::NAN].map(DVec3::splat);
+        let found = coincident_f64(&points, &Budget::unlimited()).unwrap();
+        assert_eq!(found.group, [0, 1, 0, 2, 1]);
+        assert_eq!(found.first, [0, 1, 3]);
+    }
+
+    /// A key with the worst hash there is.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+    struct Colliding(u32);
+
+    impl Key for Colliding {
+        fn hash(self) -> u64 {
+            7
+        }
+    }
+
+    #[test]
+    fn colliding_hashes_are_grouped_by_sorting() {
+        let keys: Vec<Colliding> = (0..200_000).map(|i| Colliding(i * 7919 % 60_000)).collect();
+        let found = group_by_key(keys.len(), |i| keys[i], &Budget::unlimited()).unwrap();
+        assert_eq!(found, by_map(&keys));
+    }
+
+    #[test]
+    fn a_raised_stop_flag_ends_the_grouping() {
+        let stop = crate::budget::StopFlag::default();
+        stop.cancel();
+        let budget = Budget::new(stop, u64::MAX, u64::MAX);
+        assert_eq!(coincident_f64(&lattice_points(10, 2), &budget), Err(Stopped::Cancelled));
+    }
+}

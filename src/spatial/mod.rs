@@ -1,0 +1,12 @@
+//! Search structures over ids and boxes; they know no mesh, only positions and index triples.
+
+mod bvh;
+mod coincident;
+mod contacts;
+mod nesting;
+
+pub use crate::geom::ContactKind;
+pub use bvh::Bvh;
+pub use coincident::{Coincident, coincident_f32, coincident_f64};
+pub use contacts::{Contact, Contacts, Search, self_contacts};
+pub use nesting::{NO_SHELL, Nesting, ShellTriangles, nest};

@@ -1,0 +1,53 @@
+//! The limits that apply, as `/v1/limits` shows them and problems name them.
+
+use serde::Serialize;
+use utoipa::ToSchema;
+
+/// Every limit of the service. The names are those of the configuration.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct Limits {
+    /// Largest upload, in bytes.
+    pub upload_bytes_max: u64,
+    /// Most triangles of a mesh after polygons are split.
+    pub triangles_max: u32,
+    /// Most vertices of a mesh.
+    pub vertices_max: u32,
+    /// Most corners of one polygon.
+    pub polygon_corners_max: u32,
+    /// Most memory that one job may charge, in bytes.
+    pub engine_bytes_max: u64,
+    /// Most work units of one job.
+    pub engine_work_max: u64,
+    /// Longest run of one job, in seconds.
+    pub deadline_max_s: u64,
+    /// Longest wait for a job in one request, in seconds.
+    pub wait_max_s: u64,
+    /// Wait for a job when the request does not say, in seconds.
+    pub wait_default_s: u64,
+    /// Most queued jobs.
+    pub queue_max: usize,
+    /// Jobs that run at one time.
+    pub slots: usize,
+    /// Most open connections.
+    pub connections_max: usize,
+    /// Time for a request's header, in seconds.
+    pub header_timeout_s: u64,
+    /// Longest pause between two pieces of an upload, in seconds.
+    pub upload_timeout_s: u64,
+    /// Longest time for a whole upload, in seconds.
+    pub upload_total_timeout_s: u64,
+    /// Time for which a client may take no byte of an answer, in seconds.
+    pub write_timeout_s: u64,
+    /// Largest path, query and header fields of a request together, in bytes.
+    pub head_bytes_max: u64,
+    /// Largest body or part that is JSON, in bytes.
+    pub json_bytes_max: u64,
+    /// Largest `material` part, in bytes.
+    pub material_bytes_max: u64,
+    /// Time for which a finished job is kept, in seconds.
+    pub result_ttl_s: u64,
+    /// Most bytes of uploads and results kept on disk.
+    pub data_bytes_max: u64,
+    /// Most jobs kept, whatever their state.
+    pub jobs_max: usize,
+}

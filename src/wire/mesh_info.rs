@@ -1,0 +1,230 @@
+//! A mesh described as JSON: counts, sizes, properties and defects.
+
+use glam::DVec3;
+use serde::Serialize;
+use utoipa::ToSchema;
+
+use super::words::{DefectCode, Severity};
+use crate::analysis;
+
+/// A mesh described.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct MeshInfo {
+    /// Numbers of elements.
+    pub counts: Counts,
+    /// Sizes.
+    pub measures: Measures,
+    /// Properties by name.
+    pub properties: Properties,
+    /// Defects by kind.
+    pub defects: Vec<Defect>,
+}
+
+/// Numbers of elements.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct Counts {
+    /// Vertices in the file; for STL: distinct positions.
+    pub vertices: u64,
+    /// Faces in the file.
+    pub faces: u64,
+    /// Triangles after polygons are split.
+    pub triangles: u64,
+    /// Distinct positions that a triangle uses.
+    pub welded_vertices: u64,
+    /// Edges after welding.
+    pub edges: u64,
+    /// Parts connected by edges after welding.
+    pub components: u64,
+    /// Components without boundary and without non-manifold edges.
+    pub closed_components: u64,
+    /// Loops of boundary edges.
+    pub boundary_loops: u64,
+    /// Edges with one triangle.
+    pub boundary_edges: u64,
+}
+
+/// A box.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct Bounds {
+    /// Smallest coordinates.
+    pub min: [f64; 3],
+    /// Largest coordinates.
+    pub max: [f64; 3],
+}
+
+/// Sizes, in the unit of the file.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct Measures {
+    /// Box of the positions that a triangle uses; null: no triangles.
+    #[schema(required)]
+    pub bounds: Option<Bounds>,
+    /// Sum of the triangles' areas.
+    #[schema(required)]
+    pub area: Option<f64>,
+    /// Enclosed volume; null unless every component is closed and coherently oriented.
+    #[schema(required)]
+    pub volume: Option<f64>,
+    /// V - E + F after welding.
+    pub euler_characteristic: i64,
+}
+
+/// Properties that hold after welding.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct Properties {
+    /// Every edge has exactly two triangles.
+    pub closed: bool,
+    /// No edge has three triangles or more.
+    pub edge_manifold: bool,
+    /// Every vertex has one fan.
+    pub vertex_manifold: bool,
+    /// No edge is run through twice in one direction.
+    pub oriented: bool,
+    /// No two triangles meet beyond common vertices and edges; null: not searched.
+    #[schema(required)]
+    pub embedded: Option<bool>,
+}
+
+/// All defects of one kind.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct Defect {
+    /// The kind.
+    pub code: DefectCode,
+    /// How bad.
+    pub severity: Severity,
+    /// How many.
+    pub count: u64,
+    /// How many of them the result has no longer; null: there is no result to compare with.
+    #[schema(required)]
+    pub fixed: Option<u64>,
+    /// The first ones, at most `samples`.
+    pub witnesses: Vec<Witness>,
+}
+
+/// Where a defect is.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct Witness {
+    /// Faces of the file that show it.
+    pub faces: Vec<Element>,
+    /// Vertices of the file that show it; empty for STL.
+    pub vertices: Vec<Element>,
+    /// A point of it, in the unit of the file; null: not finite.
+    #[schema(required)]
+    pub position: Option<[f64; 3]>,
+    /// Its own measures.
+    pub figures: Vec<Figure>,
+}
+
+/// An element of the uploaded file, in its own numbering.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct Element {
+    /// Number in the file, from 0.
+    pub index: u32,
+    /// Line in the file, from 1; null: the format has no lines.
+    #[schema(required)]
+    pub line: Option<u32>,
+}
+
+/// A measure by name.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct Figure {
+    /// What is measured.
+    pub name: &'static str,
+    /// The value.
+    #[schema(required)]
+    pub value: Option<f64>,
+}
+
+impl MeshInfo {
+    /// `remaining`: the mesh that is returned, against which fixed defects are counted.
+    pub(super) fn new(inner: &analysis::Analysis, remaining: Option<&analysis::Analysis>) -> Self {
+        let defect = |finding: &analysis::Finding| Defect {
+            code: finding.code.into(),
+            severity: finding.severity.into(),
+            count: finding.count,
+            fixed: remaining.map(|mesh| finding.count.saturating_sub(count_of(mesh, finding.code))),
+            witnesses: finding.witnesses.iter().map(Witness::from).collect(),
+        };
+        Self {
+            counts: Counts::from(&inner.counts),
+            measures: Measures::from(&inner.measures),
+            properties: Properties::from(&inner.properties),
+            defects: inner.findings.iter().map(defect).collect(),
+        }
+    }
+}
+
+fn count_of(mesh: &analysis::Analysis, code: analysis::DefectCode) -> u64 {
+    mesh.findings.iter().filter(|finding| finding.code == code).map(|finding| finding.count).sum()
+}
+
+impl From<&analysis::Counts> for Counts {
+    fn from(inner: &analysis::Counts) -> Self {
+        Self {
+            vertices: inner.vertices,
+            faces: inner.faces,
+            triangles: inner.triangles,
+            welded_vertices: inner.welded_vertices,
+            edges: inner.edges,
+            components: inner.components,
+            closed_components: inner.closed_components,
+            boundary_loops: inner.boundary_loops,
+            boundary_edges: inner.boundary_edges,
+        }
+    }
+}
+
+impl From<&analysis::Measures> for Measures {
+    fn from(inner: &analysis::Measures) -> Self {
+        let bounds = inner.bounds.and_then(|b| Some(Bounds { min: point(&b.min)?, max: point(&b.max)? }));
+        Self {
+            bounds,
+            area: finite(inner.area),
+            volume: inner.volume.and_then(finite),
+            euler_characteristic: inner.euler_characteristic,
+        }
+    }
+}
+
+impl From<&analysis::Properties> for Properties {
+    fn from(inner: &analysis::Properties) -> Self {
+        Self {
+            closed: inner.is_closed,
+            edge_manifold: inner.is_edge_manifold,
+            vertex_manifold: inner.is_vertex_manifold,
+            oriented: inner.is_oriented,
+            embedded: inner.is_embedded,
+        }
+    }
+}
+
+impl From<&analysis::Witness> for Witness {
+    fn from(inner: &analysis::Witness) -> Self {
+        let elements = |list: &[analysis::Element]| list.iter().copied().map(Element::from).collect();
+        Self {
+            faces: elements(&inner.faces),
+            vertices: elements(&inner.vertices),
+            position: inner.position.and_then(|p| point(&p)),
+            figures: inner
+                .figures
+                .iter()
+                .map(|&(name, value)| Figure { name, value: finite(value) })
+                .collect(),
+        }
+    }
+}
+
+impl From<analysis::Element> for Element {
+    fn from(inner: analysis::Element) -> Self {
+        Self { index: inner.index, line: inner.line }
+    }
+}
+
+/// The number, if JSON can hold it.
+pub(super) fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}
+
+/// The point, if JSON can hold it.
+pub(super) fn point(position: &DVec3) -> Option<[f64; 3]> {
+    position.is_finite().then(|| position.to_array())
+}

@@ -1,0 +1,37 @@
+//! The public words: options, reports, jobs and problems as JSON, shared by the service and the command line.
+//!
+//! Everything here mirrors an engine type, so that a rename inside cannot change the contract; exhaustive matches make
+//! the compiler ask for a public word when the engine learns a new one.
+
+mod certificate;
+mod formats;
+mod job;
+mod limits;
+mod mesh_info;
+mod option_schema;
+mod options;
+mod problem;
+mod report;
+mod request;
+mod verdict;
+mod version;
+mod words;
+
+#[cfg(test)]
+pub(crate) mod sample;
+
+pub use certificate::{Certificate, Claim, Reading, Shell, Violation, ViolationCount};
+pub use formats::{FormatInfo, extension_of, format_of_media_type, formats, media_type_of};
+pub use job::{Job, JobState, Links, Progress};
+pub use limits::Limits;
+pub use mesh_info::{Bounds, Counts, Defect, Element, Figure, Measures, MeshInfo, Properties, Witness};
+pub use options::{OptionError, OptionKind, OptionSpec, Options, SPECS};
+pub use problem::{ErrorInfo, Problem, ProblemCode, errors};
+pub use report::{Action, Change, Deviation, EngineInfo, InputInfo, Report, Resources, TimingMs, UnitsInfo};
+pub use request::{InputRef, JobRequest};
+pub use verdict::{Reason, Verdict};
+pub use version::{ENGINE_NAME, ENGINE_VERSION, REPORT_SCHEMA, Version};
+pub use words::{
+    Condition, DefectCode, Encoding, FillHoles, Format, Nesting, Operation, Outcome, Reader, ReasonCode,
+    Require, Severity, Stage, Units,
+};

@@ -1,0 +1,335 @@
+//! The report as JSON, schema `meshmend.report/1`: what the file is, what was done, what came out, and why.
+//!
+//! null means not computed, never zero. Numbers that are not finite become null as well.
+
+use serde::Serialize;
+use utoipa::ToSchema;
+
+use super::certificate::{Certificate, hex};
+use super::mesh_info::{MeshInfo, finite};
+use super::verdict::Verdict;
+use super::words::{DefectCode, Encoding, Format, Operation, Stage, Units};
+use crate::{analysis, pipeline};
+
+/// The account of a run.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct Report {
+    /// Name of this schema: `meshmend.report/1`.
+    pub schema: &'static str,
+    /// What was asked.
+    pub operation: Operation,
+    /// Who made it.
+    pub engine: EngineInfo,
+    /// The uploaded bytes.
+    pub input: InputInfo,
+    /// The mesh as uploaded; null: not analyzed.
+    #[schema(required)]
+    pub before: Option<MeshInfo>,
+    /// The steps of the plan in the order they ran.
+    pub actions: Vec<Action>,
+    /// The mesh as returned; null: the same as before, or none.
+    #[schema(required)]
+    pub after: Option<MeshInfo>,
+    /// How far the result is from the input.
+    pub deviation: Deviation,
+    /// The conclusion.
+    pub verdict: Verdict,
+    /// The uploaded bytes, judged.
+    pub input_certificate: Certificate,
+    /// The returned bytes, judged; null: no bytes are returned.
+    #[schema(required)]
+    pub certificate: Option<Certificate>,
+    /// Time of each pass.
+    pub timing_ms: TimingMs,
+    /// What the run used.
+    pub resources: Resources,
+}
+
+/// Who made a report.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct EngineInfo {
+    /// Name.
+    pub name: &'static str,
+    /// Version.
+    pub version: &'static str,
+}
+
+/// Facts about the uploaded bytes.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct InputInfo {
+    /// Format.
+    pub format: Format,
+    /// Layout of the bytes.
+    pub encoding: Encoding,
+    /// Number of bytes.
+    pub bytes: u64,
+    /// SHA-256 of the bytes, in hexadecimal.
+    pub sha256: String,
+    /// Unit of the coordinates and how it is known.
+    pub units: UnitsInfo,
+}
+
+/// A unit and how it is known.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct UnitsInfo {
+    /// The unit.
+    pub unit: Units,
+    /// The caller stated it; false: it is assumed.
+    pub is_stated: bool,
+}
+
+/// One step of a repair.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct Action {
+    /// Name of the step.
+    pub step: &'static str,
+    /// The defects that caused it.
+    pub causes: Vec<DefectCode>,
+    /// What it changed; all zero: there was nothing to do.
+    pub changes: Vec<Change>,
+    /// Largest distance that a vertex moved, in the unit of the file.
+    #[schema(required)]
+    pub move_max: Option<f64>,
+    /// What was decided where there was a choice; empty otherwise.
+    pub reason: String,
+}
+
+/// How many elements a step changed.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct Change {
+    /// What was changed.
+    pub name: &'static str,
+    /// How many.
+    pub count: u64,
+}
+
+/// How far the result is from the input.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct Deviation {
+    /// Upper bound of the two-sided Hausdorff distance, in the unit of the file.
+    #[schema(required)]
+    pub hausdorff_max: Option<f64>,
+    /// Difference of the volumes, in cubic units of the file; null unless both are defined.
+    #[schema(required)]
+    pub volume_change: Option<f64>,
+    /// Difference of the areas, in square units of the file; null without a result.
+    #[schema(required)]
+    pub area_change: Option<f64>,
+    /// Share of the input's triangles that are bit-identical in the result, from 0 to 1.
+    #[schema(required)]
+    pub identical_triangle_share: Option<f64>,
+}
+
+/// Milliseconds by the clock; null: the pass did not run.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, ToSchema)]
+pub struct TimingMs {
+    /// Bytes to mesh.
+    #[schema(required)]
+    pub read: Option<f64>,
+    /// Report of the mesh.
+    #[schema(required)]
+    pub analyze: Option<f64>,
+    /// Repair steps.
+    #[schema(required)]
+    pub repair: Option<f64>,
+    /// Mesh to bytes.
+    #[schema(required)]
+    pub write: Option<f64>,
+    /// The exact check.
+    #[schema(required)]
+    pub certify: Option<f64>,
+    /// The whole run of the engine.
+    pub total: f64,
+}
+
+impl TimingMs {
+    /// Time of one pass.
+    pub fn of(&self, stage: Stage) -> Option<f64> {
+        match stage {
+            Stage::Read => self.read,
+            Stage::Analyze => self.analyze,
+            Stage::Repair => self.repair,
+            Stage::Write => self.write,
+            Stage::Certify => self.certify,
+        }
+    }
+
+    /// Place of the time of one pass.
+    pub fn of_mut(&mut self, stage: Stage) -> &mut Option<f64> {
+        match stage {
+            Stage::Read => &mut self.read,
+            Stage::Analyze => &mut self.analyze,
+            Stage::Repair => &mut self.repair,
+            Stage::Write => &mut self.write,
+            Stage::Certify => &mut self.certify,
+        }
+    }
+}
+
+/// What a run used, in counts that are the same on every machine.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct Resources {
+    /// Work units.
+    pub work_units: u64,
+    /// Most bytes charged at one time.
+    pub charged_bytes_peak: u64,
+}
+
+impl Report {
+    /// The public form of the engine's report, with the times that the caller measured.
+    pub fn new(inner: &pipeline::Report, timing_ms: TimingMs) -> Self {
+        let remaining = remaining_of(inner);
+        Self {
+            schema: super::REPORT_SCHEMA,
+            operation: inner.operation.into(),
+            engine: EngineInfo { name: super::ENGINE_NAME, version: super::ENGINE_VERSION },
+            input: InputInfo::from(&inner.input),
+            before: inner.before.as_ref().map(|mesh| MeshInfo::new(mesh, remaining)),
+            actions: inner.actions.iter().map(Action::from).collect(),
+            after: inner.after.as_ref().map(|mesh| MeshInfo::new(mesh, None)),
+            deviation: Deviation::of(inner),
+            verdict: Verdict::of(inner),
+            input_certificate: Certificate::from(&inner.input_certificate),
+            certificate: inner.certificate.as_ref().map(Certificate::from),
+            timing_ms,
+            resources: Resources { work_units: inner.work_used, charged_bytes_peak: inner.bytes_peak },
+        }
+    }
+}
+
+/// The mesh that is returned: a new one, the uploaded one when its bytes are returned, none when none is.
+fn remaining_of(inner: &pipeline::Report) -> Option<&analysis::Analysis> {
+    inner.certificate.as_ref()?;
+    inner.after.as_ref().or(inner.before.as_ref())
+}
+
+impl From<&pipeline::InputFacts> for InputInfo {
+    fn from(inner: &pipeline::InputFacts) -> Self {
+        Self {
+            format: inner.encoding.format().into(),
+            encoding: inner.encoding.into(),
+            bytes: inner.bytes,
+            sha256: hex(&inner.sha256),
+            units: UnitsInfo { unit: inner.units.into(), is_stated: inner.units_are_stated },
+        }
+    }
+}
+
+impl From<&pipeline::Action> for Action {
+    fn from(inner: &pipeline::Action) -> Self {
+        Self {
+            step: inner.step,
+            causes: inner.causes.iter().copied().map(DefectCode::from).collect(),
+            changes: inner.changes.iter().map(|&(name, count)| Change { name, count }).collect(),
+            move_max: finite(inner.move_max),
+            reason: inner.reason.clone(),
+        }
+    }
+}
+
+impl Deviation {
+    fn of(inner: &pipeline::Report) -> Self {
+        let measures = |mesh: Option<&analysis::Analysis>| mesh.map(|mesh| mesh.measures);
+        let (before, after) = (measures(inner.before.as_ref()), measures(remaining_of(inner)));
+        let change = |of: fn(&analysis::Measures) -> Option<f64>| finite(of(&after?)? - of(&before?)?);
+        Self {
+            hausdorff_max: None,
+            volume_change: change(|measures| measures.volume),
+            area_change: change(|measures| Some(measures.area)),
+            identical_triangle_share: inner.identical_triangle_share.and_then(finite),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wire::sample;
+    use serde_json::{Value, json};
+
+    fn json_of(answer: &pipeline::Answer) -> Value {
+        serde_json::to_value(Report::new(&answer.report, TimingMs::default())).unwrap()
+    }
+
+    fn members(value: &Value) -> Vec<&str> {
+        value.as_object().unwrap().keys().map(String::as_str).collect()
+    }
+
+    #[test]
+    fn a_report_has_the_same_members_whatever_came_out() {
+        let expected = [
+            "schema",
+            "operation",
+            "engine",
+            "input",
+            "before",
+            "actions",
+            "after",
+            "deviation",
+            "verdict",
+            "input_certificate",
+            "certificate",
+            "timing_ms",
+            "resources",
+        ];
+        for answer in [sample::repaired(), sample::identical(), sample::refused()] {
+            let report = json_of(&answer);
+            assert_eq!(members(&report), expected);
+            assert_eq!(
+                members(&report["deviation"]),
+                ["hausdorff_max", "volume_change", "area_change", "identical_triangle_share"]
+            );
+            assert_eq!(members(&report["verdict"]), ["printable", "outcome", "reasons"]);
+            assert_eq!(
+                members(&report["timing_ms"]),
+                ["read", "analyze", "repair", "write", "certify", "total"]
+            );
+        }
+    }
+
+    #[test]
+    fn what_was_not_computed_or_is_not_finite_is_null() {
+        let report = json_of(&sample::repaired());
+        assert_eq!(report["deviation"]["hausdorff_max"], Value::Null);
+        assert_eq!(report["deviation"]["volume_change"], Value::Null, "the input has no volume");
+        assert_eq!(report["deviation"]["area_change"], json!(1.0));
+        assert_eq!(report["timing_ms"]["repair"], Value::Null);
+        let defect = &report["before"]["defects"][0];
+        assert_eq!(defect["witnesses"][0]["position"], Value::Null);
+        assert_eq!(defect["witnesses"][0]["figures"][1], json!({"name": "length", "value": null}));
+        assert_eq!(report["input_certificate"]["witnesses"][0]["position"], Value::Null);
+        assert_eq!(report["input_certificate"]["p1"]["holds"], Value::Null);
+    }
+
+    #[test]
+    fn a_defect_speaks_the_file_s_numbering_and_says_how_many_are_fixed() {
+        let defect = &json_of(&sample::repaired())["before"]["defects"][0];
+        assert_eq!(defect["code"], "boundary-loop");
+        assert_eq!(defect["severity"], "error");
+        assert_eq!((&defect["count"], &defect["fixed"]), (&json!(1), &json!(1)));
+        assert_eq!(defect["witnesses"][0]["faces"], json!([{"index": 2, "line": 17}]));
+        let refused = json_of(&sample::refused());
+        assert_eq!(
+            refused["before"]["defects"][0]["fixed"],
+            Value::Null,
+            "there is no result to compare with"
+        );
+    }
+
+    #[test]
+    fn a_verdict_gives_its_reasons_each_condition_once() {
+        let refused = &json_of(&sample::refused())["verdict"];
+        assert_eq!((&refused["printable"], &refused["outcome"]), (&json!(false), &json!("refused")));
+        let codes: Vec<_> =
+            refused["reasons"].as_array().unwrap().iter().map(|reason| &reason["code"]).collect();
+        assert_eq!(codes, ["not-repairable", "condition-broken"]);
+        assert_eq!(refused["reasons"][1]["condition"], "two-triangles-per-edge");
+        let repaired = &json_of(&sample::repaired())["verdict"];
+        assert_eq!(repaired, &json!({"printable": true, "outcome": "repaired", "reasons": []}));
+    }
+
+    #[test]
+    fn digests_are_lower_case_hexadecimal() {
+        assert_eq!(json_of(&sample::repaired())["input"]["sha256"], "ab".repeat(32));
+    }
+}

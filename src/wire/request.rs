@@ -1,0 +1,169 @@
+//! The request that makes a job, as JSON.
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use utoipa::openapi::RefOr;
+use utoipa::openapi::schema::{ObjectBuilder, Schema, Type};
+use utoipa::{PartialSchema, ToSchema};
+
+use super::option_schema::object_of_options;
+use super::options::{Options, nearest};
+use super::problem::{Problem, ProblemCode};
+use super::words::Operation;
+
+/// An earlier job whose upload is used again.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct InputRef {
+    /// Id of the job.
+    pub job: String,
+}
+
+/// What to do, with options: `{"operation":"repair","units":"mm"}`. Options may also stand in a member `params`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct JobRequest {
+    /// What to do.
+    pub operation: Operation,
+    /// How.
+    pub options: Options,
+}
+
+impl JobRequest {
+    /// Reads the request of `/v1/jobs`.
+    ///
+    /// # Errors
+    /// A problem with code `invalid-parameter` or `unknown-parameter`.
+    pub fn from_json(text: &[u8]) -> Result<Self, Problem> {
+        let (operation, options) = read(text)?;
+        match operation {
+            Some(operation) => Ok(Self { operation, options }),
+            None => Err(about_operation("`operation` is missing", None)),
+        }
+    }
+
+    /// Reads the `params` of a path that names the operation itself; `operation` may be repeated there, not changed.
+    ///
+    /// # Errors
+    /// As [`from_json`](Self::from_json).
+    pub fn params_from_json(text: &[u8], operation: Operation) -> Result<Options, Problem> {
+        match read(text)? {
+            (Some(named), _) if named != operation => Err(about_operation(
+                &format!("the path means `{operation}`, `operation` says `{named}`"),
+                None,
+            )),
+            (_, options) => Ok(options),
+        }
+    }
+}
+
+fn read(text: &[u8]) -> Result<(Option<Operation>, Options), Problem> {
+    let members = object(text)?;
+    let mut operation = None;
+    let mut options = Options::default();
+    for (name, value) in &members {
+        match (name.as_str(), value) {
+            ("operation", value) => operation = Some(read_operation(value)?),
+            ("params", Value::Object(inner)) => {
+                for (name, value) in inner {
+                    options.set_json(name, value)?;
+                }
+            }
+            ("params", _) => {
+                return Err(Problem {
+                    parameter: Some("params".to_owned()),
+                    ..Problem::new(ProblemCode::InvalidParameter, "`params` must be an object")
+                });
+            }
+            _ => options.set_json(name, value)?,
+        }
+    }
+    Ok((operation, options))
+}
+
+fn object(text: &[u8]) -> Result<serde_json::Map<String, Value>, Problem> {
+    match serde_json::from_slice(text) {
+        Ok(Value::Object(members)) => Ok(members),
+        Ok(_) => Err(Problem::new(ProblemCode::InvalidParameter, "expected a JSON object")),
+        Err(error) => Err(Problem {
+            line: Some(error.line() as u64),
+            expected: Some("a JSON object".to_owned()),
+            ..Problem::new(ProblemCode::InvalidParameter, format!("the JSON cannot be read: {error}"))
+        }),
+    }
+}
+
+fn read_operation(value: &Value) -> Result<Operation, Problem> {
+    let word = value.as_str().unwrap_or_default();
+    Operation::from_word(word).ok_or_else(|| {
+        let suggestion = nearest(word, Operation::WORDS.iter().copied());
+        about_operation(&format!("`operation` cannot be {value}"), suggestion)
+    })
+}
+
+fn about_operation(detail: &str, suggestion: Option<&'static str>) -> Problem {
+    Problem {
+        parameter: Some("operation".to_owned()),
+        allowed: Operation::WORDS.to_vec(),
+        suggestion,
+        ..Problem::new(ProblemCode::InvalidParameter, detail)
+    }
+}
+
+impl PartialSchema for JobRequest {
+    fn schema() -> RefOr<Schema> {
+        let operation = ObjectBuilder::new()
+            .schema_type(Type::String)
+            .description(Some("What to do."))
+            .enum_values(Some(Operation::WORDS.iter().copied()));
+        let object = object_of_options()
+            .description(Some("What to do, with options, which may also stand together in `params`."))
+            .property("operation", operation)
+            .property("params", Options::schema())
+            .required("operation");
+        RefOr::T(Schema::Object(object.build()))
+    }
+}
+
+impl ToSchema for JobRequest {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wire::Units;
+
+    #[test]
+    fn options_stand_beside_the_operation_or_in_params() {
+        let flat =
+            JobRequest::from_json(br#"{"operation":"repair","units":"cm","input":{"job":"7"}}"#).unwrap();
+        let nested =
+            JobRequest::from_json(br#"{"params":{"units":"cm"},"operation":"repair","input":{"job":"7"}}"#);
+        assert_eq!(flat, nested.unwrap());
+        assert_eq!(flat.options.units, Some(Units::Centimetre));
+        assert_eq!(flat.options.input, Some(InputRef { job: "7".into() }));
+    }
+
+    #[test]
+    fn a_request_without_a_known_operation_is_refused() {
+        for text in [&br#"{}"#[..], br#"{"operation":"repiar"}"#, br#"{"operation":7}"#] {
+            let problem = JobRequest::from_json(text).unwrap_err();
+            assert_eq!(problem.code, ProblemCode::InvalidParameter);
+            assert_eq!(problem.parameter.as_deref(), Some("operation"));
+        }
+        let problem = JobRequest::from_json(br#"{"operation":"repiar"}"#).unwrap_err();
+        assert_eq!(problem.suggestion, Some("repair"));
+    }
+
+    #[test]
+    fn params_may_repeat_the_operation_of_the_path_but_not_change_it() {
+        assert!(JobRequest::params_from_json(br#"{"operation":"repair"}"#, Operation::Repair).is_ok());
+        assert!(JobRequest::params_from_json(br#"{}"#, Operation::Repair).is_ok());
+        assert!(JobRequest::params_from_json(br#"{"operation":"verify"}"#, Operation::Repair).is_err());
+    }
+
+    #[test]
+    fn broken_json_is_told_with_its_line() {
+        let problem = JobRequest::from_json(b"{\n\"operation\":}").unwrap_err();
+        assert_eq!(problem.line, Some(2));
+        assert!(JobRequest::from_json(b"[]").is_err());
+    }
+}

@@ -1,0 +1,108 @@
+//! The conclusion of a report, with its reasons.
+
+use serde::Serialize;
+use utoipa::ToSchema;
+
+use super::words::{Condition, Outcome, ReasonCode};
+use crate::{certificate as judge, pipeline};
+
+/// The conclusion.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct Verdict {
+    /// The result (without one: the input) is a valid solid.
+    pub printable: bool,
+    /// What became of the file; null: the operation returns no file.
+    #[schema(required)]
+    pub outcome: Option<Outcome>,
+    /// Why it is not printable or was refused; empty otherwise.
+    pub reasons: Vec<Reason>,
+}
+
+/// Why a verdict is as it is.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+pub struct Reason {
+    /// What kind of reason.
+    pub code: ReasonCode,
+    /// The condition that does not hold; null: the reason is another one.
+    #[schema(required)]
+    pub condition: Option<Condition>,
+    /// The reason in a sentence.
+    pub message: String,
+}
+
+impl Verdict {
+    pub(super) fn of(inner: &pipeline::Report) -> Self {
+        let judged = inner.certificate.as_ref().unwrap_or(&inner.input_certificate);
+        let refusal = inner.refusal.iter().map(Reason::from);
+        Self {
+            printable: judged.is_printable(),
+            outcome: inner.outcome.map(Outcome::from),
+            reasons: refusal.chain(broken_conditions(judged)).collect(),
+        }
+    }
+}
+
+/// One reason for each condition of which `judged` holds a witness, in the order of the conditions.
+fn broken_conditions(judged: &judge::Certificate) -> Vec<Reason> {
+    let mut firsts: Vec<&judge::Violation> = Vec::new();
+    for violation in &judged.witnesses {
+        if firsts.iter().all(|first| first.condition != violation.condition) {
+            firsts.push(violation);
+        }
+    }
+    let reason = |violation: &judge::Violation| Reason {
+        code: ReasonCode::ConditionBroken,
+        condition: Some(violation.condition.into()),
+        message: sentence(violation),
+    };
+    firsts.into_iter().map(reason).collect()
+}
+
+impl From<&pipeline::Refusal> for Reason {
+    fn from(refusal: &pipeline::Refusal) -> Self {
+        let (code, condition, message) = match refusal {
+            pipeline::Refusal::NothingToRepair => (
+                ReasonCode::NothingToRepair,
+                None,
+                "there is no finite triangle with three distinct corners off one line".to_owned(),
+            ),
+            pipeline::Refusal::NotRepairable { witness } => (
+                ReasonCode::NotRepairable,
+                witness.as_ref().map(|violation| violation.condition.into()),
+                match witness {
+                    Some(violation) => {
+                        format!("no step led to a valid solid; what remains: {}", sentence(violation))
+                    }
+                    None => "no step led to a valid solid".to_owned(),
+                },
+            ),
+            pipeline::Refusal::NotRepresentable { reason } => {
+                (ReasonCode::NotRepresentable, None, reason.to_string())
+            }
+        };
+        Self { code, condition, message }
+    }
+}
+
+/// A violation in a sentence, with its place.
+fn sentence(violation: &judge::Violation) -> String {
+    let what = match violation.condition {
+        judge::Condition::Usable => "a face or coordinate cannot be used",
+        judge::Condition::NonDegenerate => "a triangle is degenerate",
+        judge::Condition::Distinct => "two triangles have the same three vertices",
+        judge::Condition::TwoTrianglesPerEdge => "an edge does not have exactly two triangles",
+        judge::Condition::OppositeDirections => {
+            "the two triangles of an edge run through it in one direction"
+        }
+        judge::Condition::OneFanPerVertex => "the triangles of a vertex form more than one fan",
+        judge::Condition::Embedded => "two triangles meet beyond a common vertex or edge",
+        judge::Condition::NotEmpty => "there is no triangle",
+        judge::Condition::Alternating => "a shell is inverted or nested wrongly",
+    };
+    let faces = match violation.faces.as_slice() {
+        [] => String::new(),
+        [face] => format!(" (face {face})"),
+        faces => format!(" (faces {})", faces.iter().map(u32::to_string).collect::<Vec<_>>().join(", ")),
+    };
+    format!("{what}{faces}")
+}

@@ -1,0 +1,389 @@
+//! One public word for each value of the engine's enumerations.
+
+use crate::{analysis, budget, certificate, formats, pipeline};
+
+/// An enumeration whose values have public words.
+macro_rules! words {
+    ($(#[doc = $description:literal])+ $name:ident {
+        $($(#[doc = $about:literal])+ $variant:ident = $word:literal,)+
+    }) => {
+        $(#[doc = $description])+
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
+        pub enum $name {
+            $($(#[doc = $about])+ #[serde(rename = $word)] $variant,)+
+        }
+
+        // Written out, because the derive does not see words that come out of a macro.
+        impl utoipa::PartialSchema for $name {
+            fn schema() -> utoipa::openapi::RefOr<utoipa::openapi::schema::Schema> {
+                let mut description = String::from(concat!($($description),+).trim());
+                for (word, about) in [$(($word, concat!($($about),+).trim())),+] {
+                    description.push_str(&format!("\n- `{word}`: {about}"));
+                }
+                let object = utoipa::openapi::schema::ObjectBuilder::new()
+                    .schema_type(utoipa::openapi::schema::Type::String)
+                    .description(Some(description))
+                    .enum_values(Some(Self::WORDS.iter().copied()));
+                utoipa::openapi::RefOr::T(utoipa::openapi::schema::Schema::Object(object.build()))
+            }
+        }
+
+        impl utoipa::ToSchema for $name {}
+
+        impl $name {
+            /// Every value.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),+];
+            /// The words of all values, in the same order.
+            pub const WORDS: &'static [&'static str] = &[$($word),+];
+
+            /// The public word.
+            pub fn word(self) -> &'static str {
+                match self { $(Self::$variant => $word),+ }
+            }
+
+            /// The value of this word.
+            pub fn from_word(word: &str) -> Option<Self> {
+                match word { $($word => Some(Self::$variant),)+ _ => None }
+            }
+        }
+
+        impl std::fmt::Display for $name {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str(self.word())
+            }
+        }
+    };
+}
+
+/// As `words!` for a type of the engine, whose values it mirrors one to one.
+macro_rules! mirror {
+    ($engine:ty => $(#[doc = $description:literal])+ $name:ident {
+        $($(#[doc = $about:literal])+ $variant:ident = $word:literal,)+
+    }) => {
+        words! { $(#[doc = $description])+ $name { $($(#[doc = $about])+ $variant = $word,)+ } }
+
+        impl From<$engine> for $name {
+            fn from(inner: $engine) -> Self {
+                type Inner = $engine;
+                match inner { $(Inner::$variant => Self::$variant),+ }
+            }
+        }
+
+        impl From<$name> for $engine {
+            fn from(word: $name) -> Self {
+                match word { $($name::$variant => Self::$variant),+ }
+            }
+        }
+    };
+}
+
+pub(super) use words;
+
+mirror! { pipeline::Operation =>
+    /// What to do with a file.
+    Operation {
+        /// Report only.
+        Analyze = "analyze",
+        /// Report and a certified repair.
+        Repair = "repair",
+        /// The same mesh in another format.
+        Convert = "convert",
+        /// The certificate of the file as it is.
+        Verify = "verify",
+    }
+}
+
+mirror! { formats::Format =>
+    /// A file format.
+    Format {
+        /// Wavefront OBJ.
+        Obj = "obj",
+        /// STL, binary or ASCII.
+        Stl = "stl",
+        /// Object file format.
+        Off = "off",
+        /// Polygon file format.
+        Ply = "ply",
+    }
+}
+
+mirror! { formats::Encoding =>
+    /// A format together with the way its bytes are laid out.
+    Encoding {
+        /// OBJ text.
+        Obj = "obj",
+        /// Binary STL.
+        StlBinary = "stl-binary",
+        /// ASCII STL.
+        StlAscii = "stl-ascii",
+        /// OFF text.
+        Off = "off",
+        /// Binary OFF.
+        OffBinary = "off-binary",
+        /// PLY text.
+        PlyAscii = "ply-ascii",
+        /// Binary little-endian PLY.
+        PlyBinaryLittleEndian = "ply-binary-little-endian",
+        /// Binary big-endian PLY.
+        PlyBinaryBigEndian = "ply-binary-big-endian",
+    }
+}
+
+mirror! { formats::ObjReader =>
+    /// The reader of OBJ files.
+    Reader {
+        /// Our own: speaks of lines and keeps the file's numbering.
+        Own = "own",
+        /// The `tobj` crate: as other programs read the file.
+        Tobj = "tobj",
+    }
+}
+
+mirror! { pipeline::Units =>
+    /// The length of one unit of the file.
+    Units {
+        /// Millimetre.
+        Millimetre = "mm",
+        /// Centimetre.
+        Centimetre = "cm",
+        /// Metre.
+        Metre = "m",
+        /// Inch.
+        Inch = "in",
+    }
+}
+
+mirror! { pipeline::Require =>
+    /// What the result must be.
+    Require {
+        /// A valid solid, or a refusal.
+        Printable = "printable",
+        /// The best there is, called `partial` when it is not printable.
+        BestEffort = "best_effort",
+        /// Whatever the operation gives; the certificate says what holds.
+        None = "none",
+    }
+}
+
+mirror! { pipeline::FillHoles =>
+    /// Whether simple holes are filled.
+    FillHoles {
+        /// Boundary loops stay as they are.
+        None = "none",
+        /// Planar loops and those that close by ears or a fan without a contact.
+        Simple = "simple",
+    }
+}
+
+words! {
+    /// How shells inside shells are taken.
+    Nesting {
+        /// As they point: only a globally consistent inversion is flipped, cavities stay.
+        AsOriented = "as_oriented",
+    }
+}
+
+mirror! { pipeline::Outcome =>
+    /// What became of the file.
+    Outcome {
+        /// Already valid; the same bytes.
+        Identical = "identical",
+        /// Valid; another format.
+        Converted = "converted",
+        /// Valid after local edits.
+        Repaired = "repaired",
+        /// Not valid; only on request.
+        Partial = "partial",
+        /// No result.
+        Refused = "refused",
+    }
+}
+
+mirror! { budget::Stage =>
+    /// A pass of the engine.
+    Stage {
+        /// Bytes to mesh.
+        Read = "read",
+        /// Report of the mesh as it is.
+        Analyze = "analyze",
+        /// Repair steps.
+        Repair = "repair",
+        /// Mesh to bytes.
+        Write = "write",
+        /// The exact check of bytes.
+        Certify = "certify",
+    }
+}
+
+mirror! { analysis::Severity =>
+    /// How bad a defect is for printing.
+    Severity {
+        /// Good to know; valid all the same.
+        Info = "info",
+        /// Some readers will take it differently.
+        Warning = "warning",
+        /// The file is not a valid solid.
+        Error = "error",
+    }
+}
+
+mirror! { analysis::DefectCode =>
+    /// A kind of defect.
+    DefectCode {
+        /// No triangle at all: nothing that could be solid.
+        NoTriangle = "no-triangle",
+        /// Vertex with a NaN or infinite coordinate.
+        NonFiniteVertex = "non-finite-vertex",
+        /// Face that uses such a vertex.
+        NonFiniteFace = "non-finite-face",
+        /// Face that names a vertex the file does not have.
+        IndexOutOfRange = "index-out-of-range",
+        /// Face with fewer than three corners.
+        TooFewCorners = "too-few-corners",
+        /// Polygon whose corners are not in one plane.
+        NonPlanarPolygon = "non-planar-polygon",
+        /// Polygon that is not convex.
+        ConcavePolygon = "concave-polygon",
+        /// Triangle with two or three corners at one position.
+        CoincidentCorners = "coincident-corners",
+        /// Triangle whose three distinct corners are on one line.
+        CollinearFace = "collinear-face",
+        /// Triangle with the same three vertices as an earlier one in the same direction.
+        DuplicateFace = "duplicate-face",
+        /// Triangle with the same three vertices as an earlier one, the first in the opposite direction.
+        OppositeDuplicateFace = "opposite-duplicate-face",
+        /// Vertex that no face uses.
+        IsolatedVertex = "isolated-vertex",
+        /// Vertex at the position of an earlier one.
+        DuplicateVertex = "duplicate-vertex",
+        /// Face that shares no edge with another face.
+        IsolatedFace = "isolated-face",
+        /// Loop of edges with one triangle.
+        BoundaryLoop = "boundary-loop",
+        /// Edge with three triangles or more.
+        NonManifoldEdge = "non-manifold-edge",
+        /// Vertex whose triangles form more than one fan.
+        NonManifoldVertex = "non-manifold-vertex",
+        /// Edge whose two triangles run in the same direction.
+        OrientationConflict = "orientation-conflict",
+        /// Component that cannot be oriented coherently.
+        NonOrientable = "non-orientable",
+        /// Closed outermost shell that points inward.
+        InvertedShell = "inverted-shell",
+        /// Closed shell nested so that the winding number is neither 0 nor 1.
+        MisnestedShell = "misnested-shell",
+        /// Closed shell with exactly no volume.
+        ZeroVolumeShell = "zero-volume-shell",
+        /// Two triangles that pass through each other.
+        SelfIntersection = "self-intersection",
+        /// Two triangles that overlap in one plane.
+        Overlap = "overlap",
+        /// Two triangles that touch in a point or segment they do not share.
+        Touch = "touch",
+        /// Sound as described here, but not with coordinates rounded to float32 or polygons split as simple fans.
+        UnsoundReading = "unsound-reading",
+    }
+}
+
+mirror! { certificate::Condition =>
+    /// A condition that a valid solid must meet.
+    Condition {
+        /// P0: every face is usable and all coordinates are finite.
+        Usable = "usable",
+        /// P0: no triangle has a repeated or exactly collinear corner.
+        NonDegenerate = "non-degenerate",
+        /// P0: no two triangles have the same three vertices.
+        Distinct = "distinct",
+        /// P0: every edge has exactly two triangles.
+        TwoTrianglesPerEdge = "two-triangles-per-edge",
+        /// P0: the two triangles of an edge run through it in opposite directions.
+        OppositeDirections = "opposite-directions",
+        /// P0: the link of every vertex is one cycle.
+        OneFanPerVertex = "one-fan-per-vertex",
+        /// P1: no two triangles meet except in a common vertex or edge.
+        Embedded = "embedded",
+        /// P2: there is at least one triangle.
+        NotEmpty = "not-empty",
+        /// P2: nested shells alternate and the outermost ones point outward.
+        Alternating = "alternating",
+    }
+}
+
+words! {
+    /// Why a verdict is as it is: a refusal, or a condition that does not hold.
+    ReasonCode {
+        /// There is no finite non-degenerate triangle.
+        NothingToRepair = "nothing-to-repair",
+        /// No step of the plan led to a valid solid.
+        NotRepairable = "not-repairable",
+        /// A coordinate cannot be written in the output format.
+        NotRepresentable = "not-representable",
+        /// A condition of P0, P1 or P2 does not hold in the judged bytes.
+        ConditionBroken = "condition-broken",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    fn are_distinct(words: &[&str]) -> bool {
+        words.iter().collect::<HashSet<_>>().len() == words.len()
+    }
+
+    #[test]
+    fn the_schema_lists_the_words_that_are_sent() {
+        let schema = serde_json::to_value(<Units as utoipa::PartialSchema>::schema()).unwrap();
+        assert_eq!(schema["enum"], serde_json::json!(Units::WORDS));
+        assert_eq!(serde_json::to_value(Units::ALL).unwrap(), schema["enum"]);
+    }
+
+    #[test]
+    fn every_value_has_a_word_of_its_own() {
+        for words in [
+            Operation::WORDS,
+            Format::WORDS,
+            Encoding::WORDS,
+            Reader::WORDS,
+            Units::WORDS,
+            Require::WORDS,
+            FillHoles::WORDS,
+            Nesting::WORDS,
+            Outcome::WORDS,
+            Stage::WORDS,
+            Severity::WORDS,
+            DefectCode::WORDS,
+            Condition::WORDS,
+            ReasonCode::WORDS,
+        ] {
+            assert!(are_distinct(words), "{words:?}");
+        }
+    }
+
+    #[test]
+    fn a_word_leads_back_to_its_value_and_to_the_engine() {
+        for &code in DefectCode::ALL {
+            assert_eq!(DefectCode::from_word(code.word()), Some(code));
+            assert_eq!(DefectCode::from(analysis::DefectCode::from(code)), code);
+            assert_eq!(serde_json::to_value(code).unwrap(), code.word());
+        }
+        assert_eq!(DefectCode::from_word("hole"), None);
+    }
+
+    #[test]
+    fn the_engine_uses_the_same_words_where_it_has_names() {
+        for format in formats::Format::ALL {
+            assert_eq!(Format::from(format).word(), format.name());
+        }
+        for operation in pipeline::Operation::ALL {
+            assert_eq!(Operation::from(operation).word(), operation.name());
+        }
+        for stage in budget::Stage::ALL {
+            assert_eq!(Stage::from(stage).word(), stage.name());
+        }
+        for &encoding in Encoding::ALL {
+            assert_eq!(encoding.word(), formats::Encoding::from(encoding).name());
+        }
+    }
+}

@@ -1,0 +1,28 @@
+//! One linked binary for this folder; each module is a group of tests.
+
+#[path = "../support/mod.rs"]
+#[allow(dead_code, reason = "each folder uses a part of it")]
+mod support;
+
+#[path = "../properties/oracle.rs"]
+#[allow(dead_code, reason = "only the plain soup is used here")]
+mod oracle;
+#[path = "../properties/random.rs"]
+#[allow(dead_code, reason = "solids are made by it")]
+mod random;
+#[path = "../properties/rational.rs"]
+#[allow(dead_code, reason = "the second opinion calculates with it")]
+mod rational;
+#[path = "../properties/raw_files.rs"]
+#[allow(dead_code, reason = "not every encoding is used")]
+mod raw_files;
+#[path = "../properties/solids.rs"]
+#[allow(dead_code, reason = "not every solid is used")]
+mod solids;
+
+mod bad_input;
+#[cfg(feature = "server")]
+mod fixtures;
+mod operations;
+mod real_files;
+mod repair;

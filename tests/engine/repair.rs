@@ -1,0 +1,331 @@
+//! Whole repairs, from bytes to bytes, on the smallest solids.
+
+use crate::oracle::RawSoup;
+use crate::raw_files::encode;
+use crate::solids::{cube, cuboid};
+use meshmend::budget::Budget;
+use meshmend::formats::{self, Encoding, Format, ReadOptions};
+use meshmend::mesh::Soup;
+use meshmend::par;
+use meshmend::pipeline::{Answer, FillHoles, Operation, Options, Outcome, Refusal, Require, run};
+
+fn answer(bytes: &[u8], options: &Options) -> Answer {
+    run(Operation::Repair, bytes, options, &Budget::unlimited()).unwrap()
+}
+
+fn repaired(soup: &RawSoup) -> Answer {
+    answer(&encode(soup, Encoding::Obj), &Options::default())
+}
+
+/// Sum of a named count over all actions.
+fn count(answer: &Answer, name: &str) -> u64 {
+    let changes = answer.report.actions.iter().flat_map(|action| &action.changes);
+    changes.filter(|(n, _)| *n == name).map(|(_, count)| count).sum()
+}
+
+/// The returned mesh, which must be certified, with the number of its shells.
+fn certified(answer: &Answer) -> (Soup, usize) {
+    assert_eq!(answer.report.outcome, Some(Outcome::Repaired), "{:?}", answer.report.refusal);
+    let certificate = answer.report.certificate.as_ref().unwrap();
+    assert!(certificate.is_printable());
+    let output = answer.output.as_ref().unwrap();
+    let bytes = output.bytes.as_ref().unwrap();
+    let soup = formats::read(bytes, output.encoding, &ReadOptions::default(), &Budget::unlimited()).unwrap();
+    (soup, certificate.shells.len())
+}
+
+fn refused(answer: &Answer) -> &Refusal {
+    assert_eq!(answer.report.outcome, Some(Outcome::Refused));
+    assert!(answer.output.is_none() && answer.report.certificate.is_none());
+    answer.report.refusal.as_ref().unwrap()
+}
+
+/// The soup without the triangles of these numbers.
+fn without(mut soup: RawSoup, gone: &[usize]) -> RawSoup {
+    let mut t = 0;
+    soup.triangles.retain(|_| {
+        t += 1;
+        !gone.contains(&(t - 1))
+    });
+    soup
+}
+
+fn flat(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> RawSoup {
+    RawSoup { positions: points.iter().map(|&[x, y]| [x, y, 0.0]).collect(), triangles: triangles.to_vec() }
+}
+
+/// A cube of side 3 with a cube of side 1 in its middle, which points inward: a cavity.
+fn hollow_cube() -> RawSoup {
+    cuboid([3.0; 3]).with(&cube().moved([1.0; 3]).inside_out())
+}
+
+#[test]
+fn a_valid_file_comes_back_as_the_same_bytes() {
+    for soup in [cube(), hollow_cube()] {
+        let answer = repaired(&soup);
+        assert_eq!(answer.report.outcome, Some(Outcome::Identical));
+        assert_eq!(answer.output.unwrap().bytes, None);
+        assert_eq!(answer.report.identical_triangle_share, Some(1.0));
+        assert!(answer.report.actions.is_empty() && answer.report.after.is_none());
+    }
+}
+
+#[test]
+fn a_valid_file_in_another_format_is_converted() {
+    let options = Options { output_format: Some(Format::Stl), ..Options::default() };
+    let answer = answer(&encode(&hollow_cube(), Encoding::Obj), &options);
+    assert_eq!(answer.report.outcome, Some(Outcome::Converted));
+    assert_eq!(answer.report.identical_triangle_share, Some(1.0));
+    assert!(answer.report.certificate.unwrap().is_printable());
+    assert_eq!(answer.output.unwrap().encoding, Encoding::StlBinary);
+}
+
+#[test]
+fn a_cube_without_a_face_gets_it_back_and_nothing_else_changes() {
+    for encoding in
+        [Encoding::Obj, Encoding::StlBinary, Encoding::StlAscii, Encoding::Off, Encoding::PlyAscii]
+    {
+        let answer = answer(&encode(&without(cube(), &[2, 3]), encoding), &Options::default());
+        let (soup, shells) = certified(&answer);
+        assert_eq!((soup.triangles.len(), shells), (12, 1));
+        assert_eq!(answer.output.as_ref().unwrap().encoding, encoding);
+        assert_eq!((count(&answer, "holes_filled"), count(&answer, "triangles_added")), (1, 2));
+        assert_eq!(answer.report.identical_triangle_share, Some(1.0));
+        assert!(answer.report.actions.iter().all(|action| action.move_max == 0.0));
+    }
+}
+
+#[test]
+fn holes_stay_open_when_that_is_asked() {
+    let options = Options { fill_holes: FillHoles::None, ..Options::default() };
+    let answer = answer(&encode(&without(cube(), &[2, 3]), Encoding::Obj), &options);
+    assert!(matches!(refused(&answer), Refusal::NotRepairable { witness: Some(_) }));
+}
+
+#[test]
+fn a_cube_without_a_corner_is_closed_across_a_loop_that_is_not_flat() {
+    let mut soup = cube();
+    soup.triangles.retain(|t| !t.contains(&0));
+    let answer = repaired(&soup);
+    let (_, shells) = certified(&answer);
+    assert_eq!(
+        (shells, count(&answer, "holes_filled"), count(&answer, "unused_vertices_dropped")),
+        (1, 1, 1)
+    );
+}
+
+#[test]
+fn flipped_faces_turn_back() {
+    let mut soup = cube();
+    for t in [0, 5, 6] {
+        soup.triangles[t].swap(0, 1);
+    }
+    let answer = repaired(&soup);
+    assert_eq!(certified(&answer).0.triangles.len(), 12);
+    assert_eq!(count(&answer, "triangles_flipped"), 3);
+    assert_eq!(answer.report.identical_triangle_share, Some(0.75));
+}
+
+#[test]
+fn an_inverted_cube_turns_and_so_does_an_inverted_one_with_a_cavity() {
+    assert_eq!(certified(&repaired(&cube().inside_out())).1, 1);
+    let answer = repaired(&hollow_cube().inside_out());
+    assert_eq!(certified(&answer).1, 2);
+    assert_eq!(count(&answer, "shells_turned"), 2);
+    assert_eq!(answer.report.certificate.unwrap().shells.iter().map(|s| s.depth).collect::<Vec<_>>(), [0, 1]);
+}
+
+#[test]
+fn a_cavity_stays_when_the_body_around_it_is_repaired() {
+    let answer = repaired(&without(hollow_cube(), &[0, 1]));
+    assert_eq!(certified(&answer).1, 2);
+    assert_eq!(count(&answer, "shells_turned"), 0);
+}
+
+#[test]
+fn an_outward_shell_inside_a_body_is_dropped_and_listed_by_a_face_of_the_file() {
+    let answer = repaired(&cuboid([3.0; 3]).with(&cube().moved([1.0; 3])));
+    assert_eq!(certified(&answer).0.triangles.len(), 12);
+    assert_eq!(count(&answer, "hidden_shells_dropped"), 1);
+    let nest = answer.report.actions.iter().find(|action| action.step == "nest").unwrap();
+    assert!(nest.reason.contains("those with faces 12"), "{}", nest.reason);
+}
+
+#[test]
+fn the_double_wall_between_two_cubes_goes_and_one_box_is_left() {
+    let upper = RawSoup { positions: cube().moved([0.0, 0.0, 1.0]).positions, triangles: cube().triangles };
+    let mut both = cube().with(&upper);
+    // The lower cube's top and the upper cube's bottom have other diagonals; give them the same one.
+    both.triangles[12] = [8, 11, 9];
+    both.triangles[13] = [8, 10, 11];
+    let answer = repaired(&both);
+    let (soup, shells) = certified(&answer);
+    assert_eq!((soup.triangles.len(), shells), (20, 1));
+    assert_eq!(count(&answer, "opposite_pairs_cancelled"), 2);
+}
+
+#[test]
+fn a_cube_given_in_both_directions_is_a_cube() {
+    let answer = repaired(&cube().with(&cube().inside_out()));
+    assert_eq!(certified(&answer).0.triangles.len(), 12);
+    assert_eq!(count(&answer, "copies_dropped"), 12);
+}
+
+#[test]
+fn a_cube_given_in_both_directions_but_for_one_face_is_a_cube_by_the_second_plan() {
+    let both = cube().with(&without(cube().inside_out(), &[4]));
+    assert_eq!(certified(&repaired(&both)).0.triangles.len(), 12);
+}
+
+#[test]
+fn a_body_that_fills_a_cavity_exactly_leaves_a_full_body() {
+    for filling_first in [false, true] {
+        let filling = cube().moved([1.0; 3]);
+        let soup = if filling_first { filling.with(&hollow_cube()) } else { hollow_cube().with(&filling) };
+        let answer = repaired(&soup);
+        assert_eq!(certified(&answer).0.triangles.len(), 12, "filling first: {filling_first}");
+        assert_eq!(answer.report.certificate.unwrap().shells[0].volume, 27.0);
+    }
+}
+
+#[test]
+fn duplicate_faces_are_dropped() {
+    let mut soup = cube();
+    soup.triangles.extend([soup.triangles[3], soup.triangles[7]]);
+    let answer = repaired(&soup);
+    assert_eq!(certified(&answer).0.triangles.len(), 12);
+    assert_eq!(answer.report.identical_triangle_share, Some(12.0 / 14.0));
+}
+
+#[test]
+fn a_collinear_face_goes_and_its_neighbour_is_split() {
+    let mut soup = cube();
+    // A vertex in the middle of edge 0-1; the triangle on one side is split there, the other has a sliver instead.
+    soup.positions.push([0.5, 0.0, 0.0]);
+    let split = soup.triangles.iter().position(|t| (0..3).any(|c| [t[c], t[(c + 1) % 3]] == [0, 1])).unwrap();
+    let apex = *soup.triangles[split].iter().find(|&&v| v > 1).unwrap();
+    soup.triangles[split] = [0, 8, apex];
+    soup.triangles.extend([[8, 1, apex], [0, 1, 8]]);
+    let answer = repaired(&soup);
+    assert_eq!(certified(&answer).0.triangles.len(), 14);
+    assert_eq!((count(&answer, "triangles_split"), count(&answer, "holes_filled")), (1, 0));
+}
+
+#[test]
+fn a_mesh_split_along_seams_is_welded() {
+    let cube = cube();
+    let split = RawSoup {
+        positions: cube.triangles.iter().flatten().map(|&v| cube.positions[v as usize]).collect(),
+        triangles: (0..12).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect(),
+    };
+    let answer = repaired(&split);
+    assert_eq!(certified(&answer).0.positions.len(), 8);
+    assert_eq!(count(&answer, "vertices_joined"), 28);
+    assert_eq!(answer.report.identical_triangle_share, Some(1.0));
+}
+
+#[test]
+fn both_open_ends_of_a_pipe_are_closed_around_its_bore() {
+    let side = |size: f64| {
+        let mut tube = cuboid([size, size, 4.0]).moved([-size / 2.0, -size / 2.0, 0.0]);
+        tube.triangles.retain(|t| {
+            let z = t.map(|v| tube.positions[v as usize][2]);
+            z.contains(&0.0) && z.contains(&4.0)
+        });
+        tube
+    };
+    let answer = repaired(&side(4.0).with(&side(2.0).inside_out()));
+    let (soup, shells) = certified(&answer);
+    assert_eq!((soup.triangles.len(), shells), (32, 1));
+    assert_eq!(answer.report.certificate.unwrap().shells[0].genus, 1);
+}
+
+#[test]
+fn the_patch_of_an_inverted_body_runs_with_its_rim_and_turns_with_it() {
+    let answer = repaired(&without(cube(), &[6]).inside_out());
+    assert_eq!(certified(&answer).0.triangles.len(), 12);
+    assert_eq!((count(&answer, "holes_filled"), count(&answer, "shells_turned")), (1, 1));
+    assert_eq!(answer.report.certificate.unwrap().shells[0].volume, 1.0);
+}
+
+#[test]
+fn a_stray_triangle_beside_a_body_is_neither_deleted_nor_doubled() {
+    let options = Options { require: Some(Require::BestEffort), ..Options::default() };
+    let stray = flat(&[[5.0, 0.0], [6.0, 0.0], [5.0, 1.0]], &[[0, 1, 2]]);
+    let answer = answer(&encode(&cube().with(&stray), Encoding::Obj), &options);
+    assert_eq!(answer.report.outcome, Some(Outcome::Partial));
+    assert_eq!(answer.report.after.unwrap().counts.triangles, 13);
+}
+
+#[test]
+fn walls_with_crossing_diagonals_are_not_taken_for_copies() {
+    // The two triangulations of the common square are four different triangles that overlap.
+    let answer = repaired(&cube().with(&cube().moved([0.0, 0.0, 1.0])));
+    assert!(matches!(refused(&answer), Refusal::NotRepairable { witness: Some(_) }));
+    assert_eq!(count(&answer, "copies_dropped") + count(&answer, "opposite_pairs_cancelled"), 0);
+}
+
+#[test]
+fn a_face_with_nan_is_replaced() {
+    let mut text = String::from_utf8(encode(&cube(), Encoding::Obj)).unwrap();
+    text.push_str("v nan 0 0\nf 1 2 9\n");
+    let answer = answer(text.as_bytes(), &Options::default());
+    assert_eq!(certified(&answer).0.triangles.len(), 12);
+    assert_eq!(count(&answer, "unusable_faces_dropped"), 1);
+}
+
+#[test]
+fn what_is_no_solid_is_refused_with_a_witness() {
+    let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.4, 0.5]];
+    let moebius = RawSoup {
+        positions: vec![
+            [3.0, 0.0, 0.0],
+            [1.0, 2.0, 1.0],
+            [-2.0, 1.0, -1.0],
+            [-2.0, -2.0, 2.0],
+            [1.0, -2.0, 0.0],
+        ],
+        triangles: vec![[0, 1, 2], [1, 2, 3], [2, 3, 4], [3, 4, 0], [4, 0, 1]],
+    };
+    for (name, soup) in [
+        ("a triangle", flat(&square, &[[0, 1, 2]])),
+        ("two triangles in a square", flat(&square, &[[0, 1, 2], [0, 2, 3]])),
+        ("a fan in a square", flat(&square, &[[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])),
+        ("a Möbius band", moebius),
+        ("two cubes that share an edge", cube().with(&cube().moved([1.0, 1.0, 0.0]))),
+        ("two cubes that pass through each other", cube().with(&cube().moved([0.5; 3]))),
+    ] {
+        let answer = repaired(&soup);
+        assert!(matches!(refused(&answer), Refusal::NotRepairable { witness: Some(_) }), "{name}");
+        assert!(!answer.report.actions.is_empty(), "{name}");
+    }
+}
+
+#[test]
+fn nothing_but_degenerate_triangles_is_nothing_to_repair() {
+    let line = flat(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]], &[[0, 1, 2], [0, 0, 1]]);
+    assert_eq!(refused(&repaired(&line)), &Refusal::NothingToRepair);
+}
+
+#[test]
+fn the_best_effort_is_written_and_says_what_does_not_hold() {
+    let options = Options { require: Some(Require::BestEffort), ..Options::default() };
+    let sheet = flat(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [5.0, 5.0]], &[[0, 1, 2], [0, 1, 2]]);
+    let answer = answer(&encode(&sheet, Encoding::Obj), &options);
+    assert_eq!(answer.report.outcome, Some(Outcome::Partial));
+    assert!(!answer.report.certificate.as_ref().unwrap().is_printable());
+    assert_eq!(answer.report.after.unwrap().counts.triangles, 1);
+    assert!(answer.output.unwrap().bytes.is_some());
+}
+
+#[test]
+fn the_number_of_threads_does_not_change_a_byte() {
+    let mut soup = without(hollow_cube(), &[0, 1, 14]).with(&without(cube().moved([7.0, 0.0, 0.0]), &[5]));
+    soup.triangles.push(soup.triangles[8]);
+    let bytes = encode(&soup, Encoding::PlyBinaryLittleEndian);
+    let answers: Vec<Answer> =
+        [1, 2, 8].map(|threads| par::with_threads(threads, || answer(&bytes, &Options::default()))).to_vec();
+    certified(&answers[0]);
+    assert_eq!(answers[0], answers[1]);
+    assert_eq!(answers[0], answers[2]);
+}

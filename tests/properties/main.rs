@@ -1,0 +1,27 @@
+//! One linked binary for this folder; each module is a group of tests.
+
+#[path = "../support/mod.rs"]
+#[allow(dead_code, reason = "each folder uses a part of it")]
+mod support;
+
+mod analysis;
+mod certificate_exponents;
+mod certificate_mutations;
+mod certificate_nesting;
+mod certificate_prisms;
+mod certificate_readings;
+mod certificate_soups;
+mod contacts;
+mod cut_and_stitch;
+mod fill;
+mod naive;
+mod obj_readers;
+mod oracle;
+mod predicates;
+mod random;
+mod rational;
+mod raw_files;
+mod repair_pipeline;
+mod repair_steps;
+mod round_trip;
+mod solids;

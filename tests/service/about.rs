@@ -1,0 +1,80 @@
+//! What the service says about itself, and its pages.
+
+use crate::server::{Server, header};
+use serde_json::Value;
+use std::process::Command;
+
+#[test]
+fn it_describes_its_errors_limits_formats_and_version() {
+    let server = Server::with(&["--upload-bytes-max", "12345B", "--slots", "3"]);
+    let get = |path| server.get(path).send().unwrap().json::<Value>().unwrap();
+    let errors = get("/v1/errors");
+    let refused = errors.as_array().unwrap().iter().find(|row| row["code"] == "not-repairable").unwrap();
+    assert_eq!(refused["status"], 422);
+    let limits = get("/v1/limits");
+    assert_eq!((&limits["upload_bytes_max"], &limits["slots"]), (&12345.into(), &3.into()));
+    let formats = get("/v1/formats");
+    let names: Vec<_> = formats.as_array().unwrap().iter().map(|row| row["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["obj", "stl", "off", "ply"]);
+    assert_eq!(get("/v1/version")["version"], env!("CARGO_PKG_VERSION"));
+}
+
+#[test]
+fn the_contract_is_served_as_committed() {
+    let server = Server::start();
+    let response = server.get("/openapi.yaml").send().unwrap();
+    assert_eq!(header(&response, "content-type"), "application/yaml");
+    let committed = concat!(env!("CARGO_MANIFEST_DIR"), "/openapi.yaml");
+    assert_eq!(response.text().unwrap(), std::fs::read_to_string(committed).unwrap());
+}
+
+#[test]
+fn pages_load_nothing_from_other_hosts() {
+    let server = Server::start();
+    for (path, media_type) in [
+        ("/", "text/html; charset=utf-8"),
+        ("/docs", "text/html; charset=utf-8"),
+        ("/page.js", "text/javascript; charset=utf-8"),
+        ("/style.css", "text/css; charset=utf-8"),
+    ] {
+        let response = server.get(path).send().unwrap();
+        assert_eq!(
+            (response.status().as_u16(), header(&response, "content-type")),
+            (200, media_type),
+            "{path}"
+        );
+        let policy = header(&response, "content-security-policy");
+        assert!(policy.starts_with("default-src 'none'") && !policy.contains("unsafe"), "{policy}");
+        assert_eq!(header(&response, "x-content-type-options"), "nosniff");
+        assert_eq!(header(&response, "referrer-policy"), "no-referrer");
+        assert!(response.headers().get("access-control-allow-origin").is_none());
+        let text = response.text().unwrap();
+        assert!(!text.contains("http://") && !text.contains("https://"), "{path}");
+    }
+}
+
+#[test]
+fn health_and_metrics_are_not_on_the_public_listener() {
+    let server = Server::start();
+    for path in ["/livez", "/readyz", "/metrics"] {
+        assert_eq!(server.admin(path).status(), 200, "{path}");
+        assert_eq!(server.get(path).send().unwrap().status(), 404, "{path}");
+    }
+    let metrics = server.admin("/metrics").text().unwrap();
+    assert!(metrics.contains("meshmend_http_requests_total"), "{metrics}");
+    assert!(metrics.contains("route=\"/livez\"") && metrics.contains("status=\"404\""), "{metrics}");
+}
+
+#[test]
+fn the_health_check_asks_the_admin_listener() {
+    let server = Server::start();
+    let check = |address: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_meshmend"));
+        command.args(["healthcheck", "--admin-listen", address]).env_remove("MESHMEND_ADMIN_LISTEN");
+        command.output().unwrap().status.success()
+    };
+    assert!(check(&server.admin));
+    // The public listener does not know the question.
+    assert!(!check(&server.address));
+    assert!(!check("off"));
+}

@@ -1,0 +1,416 @@
+//! The command line from outside: exit codes, streams, and files that appear whole or not at all.
+
+use serde_json::Value;
+use std::fs;
+use std::io::{Read as _, Write as _};
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+use std::time::Duration;
+
+/// A tetrahedron, valid.
+const SOLID: &str = "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+/// The same without its last face.
+const OPEN: &str = "OFF\n4 3 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n";
+/// Two tetrahedra, one pierced by the other: without new vertices nothing can be done.
+const CROSSING: &str = "OFF\n8 8 12\n0 0 0\n4 0 0\n0 4 0\n0 0 4\n1 1 -1\n2 1 -1\n1 2 -1\n1 1 9\n\
+                        3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n3 4 6 5\n3 4 5 7\n3 4 7 6\n3 5 6 7\n";
+
+/// A folder with the meshes above, and the binary run in it.
+struct Desk {
+    folder: tempfile::TempDir,
+}
+
+impl Desk {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, text) in [
+            ("solid.off", SOLID),
+            ("open.off", OPEN),
+            ("crossing.off", CROSSING),
+            ("broken.off", "OFF\n4 4 6\n0 0 zero\n"),
+            ("noise.stl", "neither this nor that"),
+            ("empty.obj", ""),
+        ] {
+            fs::write(folder.path().join(name), text).unwrap();
+        }
+        Self { folder }
+    }
+
+    fn path(&self) -> &Path {
+        self.folder.path()
+    }
+
+    fn command(&self, args: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_meshmend"));
+        for (name, _) in std::env::vars_os() {
+            if name.to_string_lossy().starts_with("MESHMEND_") {
+                command.env_remove(name);
+            }
+        }
+        command.current_dir(self.path()).args(args).stdin(Stdio::null());
+        command
+    }
+
+    fn run(&self, args: &[&str]) -> Output {
+        self.command(args).output().unwrap()
+    }
+
+    fn run_with_input(&self, args: &[&str], input: &str) -> Output {
+        let mut child = spawn(self.command(args).stdin(Stdio::piped()));
+        // A run that fails early does not read.
+        let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
+        child.wait_with_output().unwrap()
+    }
+
+    fn read(&self, name: &str) -> String {
+        fs::read_to_string(self.path().join(name)).unwrap()
+    }
+
+    /// Files that were not there at the beginning.
+    fn new_files(&self) -> Vec<String> {
+        let names = fs::read_dir(self.path()).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap());
+        let begun = ["solid.off", "open.off", "crossing.off", "broken.off", "noise.stl", "empty.obj"];
+        let mut names: Vec<_> = names.filter(|name| !begun.contains(&name.as_str())).collect();
+        names.sort();
+        names
+    }
+}
+
+fn spawn(command: &mut Command) -> Child {
+    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn json(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|e| panic!("{e}: {}", stdout(output)))
+}
+
+#[test]
+fn exit_codes_say_what_happened() {
+    let table: &[(i32, &[&str])] = &[
+        (0, &["--version"]),
+        (0, &["repair", "--help"]),
+        (0, &["analyze", "solid.off"]),
+        (0, &["analyze", "open.off"]),
+        (0, &["analyze", "crossing.off", "--require", "best_effort"]),
+        (0, &["analyze", "solid.off", "--require", "printable"]),
+        (0, &["verify", "solid.off"]),
+        (0, &["repair", "solid.off", "-o", "out.off"]),
+        (0, &["repair", "open.off", "-o", "out.stl"]),
+        (0, &["convert", "solid.off", "-o", "out.ply"]),
+        (0, &["convert", "open.off", "-o", "out.obj"]),
+        (1, &["analyze", "open.off", "--require", "printable"]),
+        (1, &["convert", "open.off", "-o", "out.stl", "--require", "printable"]),
+        (1, &["verify", "open.off"]),
+        (1, &["verify", "crossing.off"]),
+        (1, &["repair", "crossing.off", "-o", "out.off"]),
+        (1, &["repair", "crossing.off", "-o", "out.off", "--best-effort"]),
+        (2, &["repair"]),
+        (2, &["repair", "solid.off"]),
+        (2, &["analyze", "absent.off"]),
+        (2, &["analyze", "."]),
+        (2, &["analyze", "broken.off"]),
+        (2, &["analyze", "noise.stl"]),
+        (2, &["analyze", "empty.obj"]),
+        (2, &["analyze", "solid.off", "--unknown"]),
+        (2, &["analyze", "solid.off", "--units", "parsec"]),
+        (2, &["analyze", "solid.off", "--samples", "many"]),
+        (2, &["frobnicate", "solid.off"]),
+        (2, &["repair", "solid.off", "-o", "absent/out.off"]),
+        (2, &["repair", "solid.off", "-o", "."]),
+        (2, &["convert", "solid.off", "-o", "out.unknown"]),
+        (2, &["convert", "solid.off", "-o", "-"]),
+        (2, &["convert", "solid.off", "-o", "-", "--output-format", "stl", "--json"]),
+        (2, &["verify", "-"]),
+        (2, &["verify", "solid.off", "--config", "absent.toml"]),
+        (3, &["analyze", "solid.off", "--triangles-max", "3"]),
+        (3, &["repair", "solid.off", "-o", "out.off", "--engine-bytes-max", "1B"]),
+        (3, &["verify", "solid.off", "--engine-work-max", "0"]),
+    ];
+    for (code, args) in table {
+        let output = Desk::new().run(args);
+        assert_eq!(output.status.code(), Some(*code), "{args:?}: {}{}", stdout(&output), stderr(&output));
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_result_that_cannot_be_stored_is_an_internal_error() {
+    let output = Desk::new().run(&["repair", "solid.off", "-o", "/dev/full", "--output-format", "off"]);
+    assert_eq!(output.status.code(), Some(4), "{}", stderr(&output));
+}
+
+#[test]
+fn a_command_without_arguments_prints_a_short_help() {
+    for command in ["analyze", "repair", "verify", "convert"] {
+        let output = Desk::new().run(&[command]);
+        assert!(stderr(&output).contains(&format!("Usage: meshmend {command}")), "{}", stderr(&output));
+        assert!(stderr(&output).lines().count() < 45, "it is short");
+    }
+}
+
+#[test]
+fn a_misspelt_flag_value_or_command_is_answered_with_the_nearest_one() {
+    let desk = Desk::new();
+    for (args, hint) in [
+        (&["analyse", "solid.off"][..], "'analyze'"),
+        (&["analyze", "solid.off", "--unit", "mm"], "'--units'"),
+        (&["analyze", "solid.off", "--require", "printible"], "'printable'"),
+        (&["serve", "--admin-listn", "off"], "'--admin-listen'"),
+    ] {
+        let output = desk.run(args);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains(hint), "{args:?}: {}", stderr(&output));
+    }
+}
+
+#[test]
+fn an_unreadable_file_is_told_with_its_line_and_what_was_expected() {
+    let output = Desk::new().run(&["analyze", "broken.off"]);
+    assert!(
+        stderr(&output).contains("line 3") && stderr(&output).contains("expected"),
+        "{}",
+        stderr(&output)
+    );
+    assert_eq!(stdout(&output), "");
+}
+
+#[test]
+fn a_valid_file_comes_back_as_the_same_bytes() {
+    let desk = Desk::new();
+    desk.run(&["repair", "solid.off", "-o", "out.off"]);
+    assert_eq!(desk.read("out.off"), SOLID);
+}
+
+#[test]
+fn the_extension_of_the_output_names_its_format() {
+    let desk = Desk::new();
+    assert!(desk.run(&["convert", "solid.off", "-o", "out.obj"]).status.success());
+    assert!(desk.read("out.obj").contains("\nf ") || desk.read("out.obj").starts_with("f "));
+    assert!(desk.run(&["convert", "solid.off", "-o", "out.obj", "--output-format", "off"]).status.success());
+    assert!(desk.read("out.obj").starts_with("OFF"));
+}
+
+#[test]
+fn nothing_is_written_without_a_certificate() {
+    let desk = Desk::new();
+    fs::write(desk.path().join("out.off"), "what was there before").unwrap();
+    let output = desk.run(&["repair", "crossing.off", "-o", "out.off"]);
+    assert!(
+        stdout(&output).contains("refused") && stdout(&output).contains("nothing written"),
+        "{}",
+        stdout(&output)
+    );
+    assert_eq!(desk.read("out.off"), "what was there before");
+    assert_eq!(desk.new_files(), ["out.off"]);
+}
+
+#[test]
+fn best_effort_writes_what_there_is_and_still_says_no() {
+    let desk = Desk::new();
+    let output = desk.run(&["repair", "crossing.off", "-o", "out.off", "--best-effort"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stdout(&output).contains("partial"), "{}", stdout(&output));
+    assert!(desk.read("out.off").starts_with("OFF"));
+    assert_eq!(desk.new_files(), ["out.off"]);
+}
+
+#[test]
+fn a_file_can_be_repaired_in_place() {
+    let desk = Desk::new();
+    assert!(desk.run(&["repair", "open.off", "-o", "open.off"]).status.success());
+    assert!(desk.run(&["verify", "open.off"]).status.success());
+    assert_eq!(desk.new_files(), Vec::<String>::new());
+}
+
+#[test]
+fn streams_work_where_their_formats_are_named() {
+    let desk = Desk::new();
+    let args = ["repair", "-", "--format", "off", "-o", "-", "--output-format", "obj"];
+    let output = desk.run_with_input(&args, OPEN);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(stdout(&output).lines().any(|line| line.starts_with("f ")));
+    assert!(stderr(&output).contains("verdict: repaired"), "{}", stderr(&output));
+    let output = desk.run_with_input(&["verify", "-", "--format", "obj"], &stdout(&output));
+    assert!(output.status.success(), "{}", stdout(&output));
+}
+
+#[test]
+fn json_is_the_report_and_nothing_else() {
+    let desk = Desk::new();
+    let report = json(&desk.run(&["repair", "open.off", "-o", "out.off", "--json"]));
+    assert_eq!(report["schema"], "meshmend.report/1");
+    assert_eq!(report["verdict"]["outcome"], "repaired");
+    assert_eq!(report["certificate"]["printable"], true);
+    let report = json(&desk.run(&["analyze", "open.off", "--json"]));
+    assert_eq!(report["before"]["counts"]["boundary_loops"], 1);
+    assert_eq!(report["verdict"]["printable"], false);
+}
+
+#[test]
+fn json_of_a_failure_is_a_problem() {
+    let desk = Desk::new();
+    let problem = json(&desk.run(&["analyze", "broken.off", "--json"]));
+    assert_eq!((problem["code"].as_str(), problem["line"].as_u64()), (Some("mesh-unparseable"), Some(3)));
+    let problem = json(&desk.run(&["analyze", "solid.off", "--json", "--triangles-max", "3"]));
+    assert_eq!(problem["limit_name"], "triangles_max");
+    assert_eq!(problem["limit"], 3);
+}
+
+#[test]
+fn options_are_understood_in_both_spellings() {
+    let desk = Desk::new();
+    for flag in ["--fill-holes", "--fill_holes"] {
+        let output = desk.run(&["repair", "open.off", "-o", "out.off", flag, "none"]);
+        assert_eq!(output.status.code(), Some(1), "a hole that is not filled stays: {}", stderr(&output));
+    }
+}
+
+#[test]
+fn the_output_does_not_depend_on_the_number_of_threads() {
+    let desk = Desk::new();
+    for threads in ["1", "2", "8"] {
+        let out = format!("out{threads}.stl");
+        assert!(desk.run(&["repair", "open.off", "-o", &out, "--threads", threads]).status.success());
+    }
+    let bytes = |threads: u8| fs::read(desk.path().join(format!("out{threads}.stl"))).unwrap();
+    assert!(bytes(1) == bytes(2) && bytes(1) == bytes(8));
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_error() {
+    let desk = Desk::new();
+    let mut child = spawn(&mut desk.command(&["analyze", "open.off", "--json"]));
+    drop(child.stdout.take());
+    let mut said = String::new();
+    child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
+    assert_eq!((child.wait().unwrap().code(), said.as_str()), (Some(0), ""));
+}
+
+/// A closed surface of many triangles as OFF: enough work that a signal arrives before its end.
+fn large_solid(side: usize) -> String {
+    let at = |x: usize, y: usize, z: usize| (z * side + y) * side + x;
+    let mut text = format!("OFF\n{} {} 0\n", 2 * side * side, 4 * (side - 1) * (side - 1) + 8 * (side - 1));
+    for z in 0..2 {
+        for y in 0..side {
+            for x in 0..side {
+                text.push_str(&format!("{x} {y} {z}\n"));
+            }
+        }
+    }
+    let mut quad = |corners: [usize; 4]| {
+        let [a, b, c, d] = corners;
+        text.push_str(&format!("3 {a} {b} {c}\n3 {a} {c} {d}\n"));
+    };
+    let end = side - 1;
+    for i in 0..end {
+        for j in 0..end {
+            quad([at(i, j, 0), at(i, j + 1, 0), at(i + 1, j + 1, 0), at(i + 1, j, 0)]);
+            quad([at(i, j, 1), at(i + 1, j, 1), at(i + 1, j + 1, 1), at(i, j + 1, 1)]);
+        }
+        quad([at(i, 0, 0), at(i + 1, 0, 0), at(i + 1, 0, 1), at(i, 0, 1)]);
+        quad([at(i + 1, end, 0), at(i, end, 0), at(i, end, 1), at(i + 1, end, 1)]);
+        quad([at(0, i + 1, 0), at(0, i, 0), at(0, i, 1), at(0, i + 1, 1)]);
+        quad([at(end, i, 0), at(end, i + 1, 0), at(end, i + 1, 1), at(end, i, 1)]);
+    }
+    text
+}
+
+#[test]
+fn the_large_solid_of_these_tests_is_one() {
+    let desk = Desk::new();
+    fs::write(desk.path().join("large.off"), large_solid(4)).unwrap();
+    let output = desk.run(&["verify", "large.off"]);
+    assert!(output.status.success(), "{}", stdout(&output));
+}
+
+#[test]
+fn a_deadline_ends_a_run() {
+    let desk = Desk::new();
+    fs::write(desk.path().join("large.off"), large_solid(300)).unwrap();
+    let output = desk.run(&["analyze", "large.off", "--deadline-max", "1ms"]);
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+    assert!(stderr(&output).contains("deadline"), "{}", stderr(&output));
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_cancels_a_run_and_leaves_no_file() {
+    let desk = Desk::new();
+    fs::write(desk.path().join("large.off"), large_solid(400)).unwrap();
+    // Too early the signal meets a process that does not listen yet, too late one that is gone.
+    let codes: Vec<_> = [200, 100, 400, 50, 800]
+        .into_iter()
+        .map(|wait_ms| {
+            let mut child = spawn(&mut desk.command(&["repair", "large.off", "-o", "out.stl"]));
+            std::thread::sleep(Duration::from_millis(wait_ms));
+            Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status().unwrap();
+            let code = child.wait().unwrap().code();
+            let _ = fs::remove_file(desk.path().join("out.stl")).map_err(|_| ());
+            code
+        })
+        .collect();
+    assert!(codes.contains(&Some(3)), "{codes:?}");
+    assert_eq!(desk.new_files(), ["large.off"]);
+}
+
+#[test]
+fn settings_show_their_origin() {
+    let desk = Desk::new();
+    fs::write(desk.path().join("meshmend.toml"), "queue_max = 7\n").unwrap();
+    let output = desk
+        .command(&["config", "show", "--config", "meshmend.toml", "--result-ttl", "1h"])
+        .env("MESHMEND_SLOTS", "3")
+        .output()
+        .unwrap();
+    let text = stdout(&output);
+    let row = |name: &str| {
+        let line = text.lines().find(|line| line.starts_with(&format!("{name} "))).unwrap();
+        line.split_whitespace().skip(1).collect::<Vec<_>>().join(" ")
+    };
+    assert_eq!(row("queue_max"), "7 file meshmend.toml");
+    assert_eq!(row("slots"), "3 environment MESHMEND_SLOTS");
+    assert_eq!(row("result_ttl"), "1h flag --result-ttl");
+    assert_eq!(row("connections_max"), "1024 default");
+}
+
+#[test]
+fn a_strict_check_takes_warnings_as_errors() {
+    let desk = Desk::new();
+    let check = |args: &[&str], variable: &str| {
+        let output = desk.command(args).env(variable, "1").output().unwrap();
+        (output.status.code().unwrap(), stderr(&output))
+    };
+    let (code, said) = check(&["config", "check"], "MESHMEND_SLOT");
+    assert!(code == 0 && said.contains("did you mean `MESHMEND_SLOTS`?"), "{said}");
+    assert_eq!(check(&["config", "check", "--strict"], "MESHMEND_SLOT").0, 2);
+    assert_eq!(check(&["config", "check", "--strict"], "MESHMEND_SERVICE_PORT").0, 0);
+}
+
+#[test]
+fn an_address_for_all_needs_a_decision_about_keys() {
+    let desk = Desk::new();
+    for command in [&["serve"][..], &["config", "check"]] {
+        let output = desk.run(&[command, &["--listen", "0.0.0.0:0"]].concat());
+        assert_eq!(output.status.code(), Some(2));
+        let said = stderr(&output);
+        assert!(
+            said.contains("MESHMEND_API_KEYS_FILE") && said.contains("MESHMEND_ALLOW_ANONYMOUS=true"),
+            "{said}"
+        );
+    }
+}
+
+#[test]
+fn a_service_that_is_not_there_is_not_healthy() {
+    // Port 1 of loopback: nothing listens there.
+    let output = Desk::new().run(&["healthcheck", "--admin-listen", "127.0.0.1:1"]);
+    assert_eq!(output.status.code(), Some(1));
+}

@@ -1,0 +1,17 @@
+//! One linked binary for this folder; each module is a group of tests that drive the built binary.
+
+#[path = "../support/mod.rs"]
+#[allow(dead_code, reason = "each folder uses a part of it")]
+mod support;
+
+mod about;
+mod access;
+mod cli;
+mod connections;
+mod contract;
+mod lifecycle;
+mod meshes;
+mod operations;
+mod problems;
+mod server;
+mod uploads;

@@ -1,0 +1,182 @@
+//! A mesh in, its report or its repair out.
+
+use crate::meshes::{BROKEN, CROSSING, OPEN, SOLID};
+use crate::server::{Server, header, link, problem};
+use reqwest::blocking::Response;
+use serde_json::Value;
+use std::io::Read as _;
+
+#[test]
+fn a_valid_mesh_comes_back_as_the_very_bytes() {
+    let server = Server::start();
+    let response = server.post("/v1/repair").body(SOLID).send().unwrap();
+    assert_eq!(response.status(), 200);
+    assert_eq!(header(&response, "content-type"), "text/off");
+    assert_eq!(header(&response, "meshmend-outcome"), "identical");
+    assert!(header(&response, "content-disposition").starts_with("attachment; filename="));
+    let report = header(&response, "link").strip_prefix('<').unwrap().split('>').next().unwrap().to_owned();
+    assert!(header(&response, "link").ends_with("; rel=\"describedby\""));
+    assert!(header(&response, "server-timing").contains("certify;dur="));
+    assert_eq!(response.text().unwrap(), SOLID);
+    let report: Value = server.get(&report).send().unwrap().json().unwrap();
+    assert_eq!(report["verdict"]["outcome"], "identical");
+}
+
+#[test]
+fn an_open_mesh_is_closed_and_certified() {
+    let server = Server::start();
+    let response = server.post("/v1/repair?output_format=stl").body(OPEN).send().unwrap();
+    assert_eq!((response.status().as_u16(), header(&response, "meshmend-outcome")), (200, "repaired"));
+    assert_eq!(header(&response, "content-type"), "model/stl");
+    let repaired = response.bytes().unwrap().to_vec();
+    assert_eq!(repaired.len(), 84 + 4 * 50);
+    let verified: Value = server.post("/v1/verify").body(repaired).send().unwrap().json().unwrap();
+    assert_eq!(verified["verdict"]["printable"], true);
+}
+
+#[test]
+fn analyze_and_verify_answer_for_any_readable_mesh() {
+    let server = Server::start();
+    for mesh in [SOLID, OPEN, CROSSING] {
+        for path in ["/v1/analyze", "/v1/verify"] {
+            let response = server.post(path).body(mesh).send().unwrap();
+            assert_eq!(
+                (response.status().as_u16(), header(&response, "content-type")),
+                (200, "application/json")
+            );
+            let report: Value = response.json().unwrap();
+            assert_eq!(report["verdict"]["printable"], mesh == SOLID, "{path}");
+        }
+    }
+}
+
+#[test]
+fn convert_writes_another_format() {
+    let server = Server::start();
+    let response = server.post("/v1/convert?output_format=obj").body(OPEN).send().unwrap();
+    assert_eq!((response.status().as_u16(), header(&response, "content-type")), (200, "model/obj"));
+    let text = response.text().unwrap();
+    assert_eq!(text.lines().filter(|line| line.starts_with("f ")).count(), 3, "{text}");
+}
+
+#[test]
+fn what_curl_sends_by_default_is_understood() {
+    let server = Server::start();
+    for content_type in ["application/x-www-form-urlencoded", "application/octet-stream", "text/off"] {
+        let request = server.post("/v1/verify").header("content-type", content_type).body(SOLID);
+        assert_eq!(request.send().unwrap().status(), 200, "{content_type}");
+    }
+}
+
+#[test]
+fn a_mesh_of_another_format_than_named_is_refused_unless_format_says_otherwise() {
+    let server = Server::start();
+    let named = |path| server.post(path).header("content-type", "application/x-ply").body(SOLID);
+    let (status, code, _) = problem(named("/v1/verify").send().unwrap());
+    assert_eq!((status, code.as_str()), (422, "mesh-unparseable"));
+    assert_eq!(named("/v1/verify?format=off").send().unwrap().status(), 200);
+}
+
+#[test]
+fn an_unreadable_mesh_is_a_problem_with_its_place() {
+    let server = Server::start();
+    for path in ["/v1/analyze", "/v1/repair", "/v1/convert", "/v1/verify"] {
+        let (status, code, problem) = problem(server.post(path).body(BROKEN).send().unwrap());
+        assert_eq!((status, code.as_str()), (422, "mesh-unparseable"), "{path}");
+        assert_eq!(problem["line"], 3, "{problem}");
+    }
+}
+
+#[test]
+fn a_refused_repair_says_why_with_its_report() {
+    let server = Server::start();
+    for accept in ["*/*", "application/json", "application/zip", "multipart/mixed", "text/off"] {
+        let request = server.post("/v1/repair").header("accept", accept).body(CROSSING);
+        let (status, code, problem) = problem(request.send().unwrap());
+        assert_eq!((status, code.as_str()), (422, "not-repairable"), "{accept}");
+        assert_eq!(problem["report"]["verdict"]["outcome"], "refused", "{accept}");
+        let job: Value = server.get(problem["instance"].as_str().unwrap()).send().unwrap().json().unwrap();
+        assert_eq!(job["state"], "failed");
+    }
+    let job = server.ended(&server.job("repair", CROSSING));
+    let report = server.get(link(&job, "report")).send().unwrap();
+    assert_eq!(report.status(), 200);
+    let (status, code, _) = problem(server.get(&format!("{}/result", link(&job, "self"))).send().unwrap());
+    assert_eq!((status, code.as_str()), (422, "not-repairable"));
+}
+
+#[test]
+fn best_effort_gives_what_there_is() {
+    let server = Server::start();
+    let response = server.post("/v1/repair?require=best_effort").body(CROSSING).send().unwrap();
+    assert_eq!((response.status().as_u16(), header(&response, "meshmend-outcome")), (200, "partial"));
+}
+
+/// What of an answer shows which representation it is.
+fn kind(response: Response) -> String {
+    let status = response.status().as_u16();
+    if status != 200 {
+        return format!("{status} {}", problem(response).1);
+    }
+    header(&response, "content-type").split(';').next().unwrap().to_owned()
+}
+
+#[test]
+fn accept_chooses_the_mesh_the_report_or_both() {
+    let server = Server::start();
+    let table = [
+        (None, "", "text/off"),
+        (Some("*/*"), "", "text/off"),
+        (Some("model/*"), "", "text/off"),
+        (Some("*/*"), "?output_format=ply", "application/x-ply"),
+        (Some("model/stl"), "", "model/stl"),
+        (Some("model/obj, application/json;q=0.9"), "", "model/obj"),
+        (Some("model/stl"), "?output_format=obj", "406 not-acceptable"),
+        (Some("model/stl, application/json;q=0.1"), "?output_format=obj", "application/json"),
+        (Some("application/octet-stream"), "", "application/octet-stream"),
+        (Some("application/json"), "", "application/json"),
+        (Some("application/json, */*;q=0.1"), "", "application/json"),
+        (Some("multipart/mixed"), "", "multipart/mixed"),
+        (Some("application/zip"), "", "application/zip"),
+        (Some("text/html"), "", "406 not-acceptable"),
+    ];
+    for path in ["/v1/repair", "/v1/convert"] {
+        for (accept, query, expected) in table {
+            let request = server.post(&format!("{path}{query}")).body(SOLID);
+            let request = match accept {
+                Some(accept) => request.header("accept", accept),
+                None => request,
+            };
+            assert_eq!(kind(request.send().unwrap()), expected, "{path}{query} {accept:?}");
+        }
+    }
+    for path in ["/v1/analyze", "/v1/verify"] {
+        let request = server.post(path).header("accept", "model/stl").body(SOLID);
+        assert_eq!(kind(request.send().unwrap()), "406 not-acceptable");
+    }
+}
+
+#[test]
+fn both_parts_of_an_answer_are_whole() {
+    let server = Server::start();
+    let both = |accept| server.post("/v1/repair").header("accept", accept).body(SOLID).send().unwrap();
+    let response = both("multipart/mixed");
+    let boundary = header(&response, "content-type").split_once("boundary=").unwrap().1.to_owned();
+    let text = response.text().unwrap();
+    let parts: Vec<_> = text.split(&format!("--{boundary}")).collect();
+    let [before, report, mesh, after] = parts[..] else { panic!("two parts: {text}") };
+    assert_eq!((before, after), ("", "--\r\n"));
+    let report: Value = serde_json::from_str(report.split_once("\r\n\r\n").unwrap().1).unwrap();
+    assert_eq!(report["verdict"]["outcome"], "identical");
+    assert_eq!(mesh.split_once("\r\n\r\n").unwrap().1.strip_suffix("\r\n").unwrap(), SOLID);
+
+    let archive = both("application/zip").bytes().unwrap();
+    let mut archive = zip::ZipArchive::new(std::io::Cursor::new(archive)).unwrap();
+    let mut file = |at| {
+        let mut text = String::new();
+        archive.by_index(at).unwrap().read_to_string(&mut text).unwrap();
+        text
+    };
+    assert_eq!(serde_json::from_str::<Value>(&file(0)).unwrap()["verdict"]["outcome"], "identical");
+    assert_eq!(file(1), SOLID);
+}

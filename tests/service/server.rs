@@ -1,0 +1,191 @@
+//! A server of the built binary for one test, and what a client does with it.
+
+use reqwest::blocking::{Client, RequestBuilder, Response};
+use serde_json::Value;
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::net::TcpStream;
+use std::process::{Child, ChildStderr, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// Patience of the tests; only what hangs meets it.
+pub(crate) const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A server on free ports, with a data folder of its own. Killed when dropped.
+pub(crate) struct Server {
+    child: Child,
+    pub(crate) address: String,
+    pub(crate) admin: String,
+    client: Client,
+    _data: tempfile::TempDir,
+}
+
+impl Server {
+    pub(crate) fn start() -> Self {
+        Self::with(&[])
+    }
+
+    /// A server with further settings, as flags.
+    pub(crate) fn with(settings: &[&str]) -> Self {
+        let data = tempfile::tempdir().unwrap();
+        let mut command = Command::new(env!("CARGO_BIN_EXE_meshmend"));
+        for (name, _) in std::env::vars_os() {
+            if name.to_string_lossy().starts_with("MESHMEND_") {
+                command.env_remove(name);
+            }
+        }
+        command.args(["serve", "--listen", "127.0.0.1:0", "--admin-listen", "127.0.0.1:0", "--data-dir"]);
+        command.arg(data.path().join("data")).args(settings).stdin(Stdio::null()).stderr(Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        let mut log = BufReader::new(child.stderr.take().unwrap());
+        let address = bound(&mut log, "listening on http://");
+        let admin = bound(&mut log, "health and metrics on http://");
+        // The pipe must not fill up.
+        std::thread::spawn(move || std::io::copy(&mut log, &mut std::io::sink()));
+        let client = Client::builder().timeout(PATIENCE).build().unwrap();
+        Self { child, address, admin, client, _data: data }
+    }
+
+    pub(crate) fn url(&self, path: &str) -> String {
+        format!("http://{}{path}", self.address)
+    }
+
+    pub(crate) fn get(&self, path: &str) -> RequestBuilder {
+        self.client.get(self.url(path))
+    }
+
+    pub(crate) fn post(&self, path: &str) -> RequestBuilder {
+        self.client.post(self.url(path))
+    }
+
+    pub(crate) fn request(&self, method: &str, path: &str) -> RequestBuilder {
+        self.client.request(method.parse().unwrap(), self.url(path))
+    }
+
+    /// An answer of the admin listener.
+    pub(crate) fn admin(&self, path: &str) -> Response {
+        self.client.get(format!("http://{}{path}", self.admin)).send().unwrap()
+    }
+
+    /// A connection on which a test speaks for itself.
+    pub(crate) fn connect(&self) -> Line {
+        let stream = TcpStream::connect(&self.address).unwrap();
+        stream.set_read_timeout(Some(PATIENCE)).unwrap();
+        Line(stream)
+    }
+
+    /// Makes a job and does not wait for it.
+    pub(crate) fn job(&self, operation: &str, mesh: impl Into<Vec<u8>>) -> Value {
+        let path = format!("/v1/jobs?operation={operation}");
+        let response = self.post(&path).body(mesh.into()).send().unwrap();
+        assert_eq!(response.status(), 202);
+        response.json().unwrap()
+    }
+
+    /// The job when it has ended.
+    pub(crate) fn ended(&self, job: &Value) -> Value {
+        self.get(&format!("{}?wait=60", link(job, "self"))).send().unwrap().json().unwrap()
+    }
+
+    /// Asks until `is_so`.
+    pub(crate) fn until(&self, job: &Value, is_so: impl Fn(&Value) -> bool) -> Value {
+        let begun = Instant::now();
+        loop {
+            let job: Value = self.get(link(job, "self")).send().unwrap().json().unwrap();
+            if is_so(&job) {
+                return job;
+            }
+            assert!(begun.elapsed() < PATIENCE, "{job}");
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+
+    /// Sends a signal by its name.
+    pub(crate) fn signal(&self, name: &str) {
+        let line = format!("kill -{name} {}", self.child.id());
+        assert!(Command::new("sh").args(["-c", &line]).status().unwrap().success());
+    }
+
+    /// The exit code, once it has ended by itself.
+    pub(crate) fn exit_code(&mut self) -> Option<i32> {
+        let begun = Instant::now();
+        loop {
+            if let Some(status) = self.child.try_wait().unwrap() {
+                return status.code();
+            }
+            assert!(begun.elapsed() < PATIENCE, "the server does not end");
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        // It may have ended already.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// The address that the log tells behind `words`.
+fn bound(log: &mut BufReader<ChildStderr>, words: &str) -> String {
+    let mut seen = String::new();
+    loop {
+        let mut line = String::new();
+        assert!(log.read_line(&mut line).unwrap() > 0, "the server did not start: {seen}");
+        if let Some((_, address)) = line.trim().split_once(words) {
+            return address.to_owned();
+        }
+        seen.push_str(&line);
+    }
+}
+
+pub(crate) fn link<'j>(job: &'j Value, name: &str) -> &'j str {
+    job["links"][name].as_str().unwrap_or_else(|| panic!("no link {name}: {job}"))
+}
+
+pub(crate) fn header<'r>(response: &'r Response, name: &str) -> &'r str {
+    response.headers().get(name).map_or("", |value| value.to_str().unwrap())
+}
+
+/// The problem that an answer must be, with its code. Every problem is checked for what all have in common.
+pub(crate) fn problem(response: Response) -> (u16, String, Value) {
+    let status = response.status().as_u16();
+    assert_eq!(header(&response, "content-type"), "application/problem+json", "status {status}");
+    assert!(!header(&response, "x-request-id").is_empty());
+    let problem: Value = response.json().unwrap();
+    let code = problem["code"].as_str().unwrap().to_owned();
+    assert_eq!(problem["status"], status, "{problem}");
+    assert_eq!(problem["type"], format!("/v1/errors#{code}"), "{problem}");
+    assert!(
+        !problem["title"].as_str().unwrap().is_empty() && !problem["detail"].as_str().unwrap().is_empty()
+    );
+    (status, code, problem)
+}
+
+/// A connection on which every byte is said by the test.
+pub(crate) struct Line(TcpStream);
+
+impl Line {
+    pub(crate) fn say(&mut self, bytes: impl AsRef<[u8]>) {
+        self.0.write_all(bytes.as_ref()).unwrap();
+    }
+
+    /// As [`say`](Self::say); false when the other end does not listen any more.
+    pub(crate) fn try_say(&mut self, bytes: impl AsRef<[u8]>) -> bool {
+        self.0.write_all(bytes.as_ref()).is_ok()
+    }
+
+    /// Everything until the other end closes.
+    pub(crate) fn hear_all(&mut self) -> String {
+        let mut bytes = Vec::new();
+        self.0.read_to_end(&mut bytes).unwrap();
+        String::from_utf8_lossy(&bytes).into_owned()
+    }
+
+    /// The next `len` bytes.
+    pub(crate) fn hear(&mut self, len: usize) -> String {
+        let mut bytes = vec![0; len];
+        self.0.read_exact(&mut bytes).unwrap();
+        String::from_utf8_lossy(&bytes).into_owned()
+    }
+}

@@ -1,0 +1,254 @@
+//! How a mesh comes in, and what stops it.
+
+use crate::meshes::SOLID;
+use crate::server::{Server, link, problem};
+use reqwest::blocking::multipart::{Form, Part};
+use serde_json::{Value, json};
+use std::time::Duration;
+
+fn mesh() -> Part {
+    Part::text(SOLID).file_name("part one.off")
+}
+
+fn params(text: &str) -> Part {
+    Part::text(text.to_owned())
+}
+
+/// Status and code of the problem that `form` makes at `path`.
+fn refused(server: &Server, path: &str, form: Form) -> (u16, String, Value) {
+    problem(server.post(path).multipart(form).send().unwrap())
+}
+
+#[test]
+fn a_form_brings_the_mesh_and_its_options_in_any_order() {
+    let server = Server::start();
+    let options = || params(r#"{"output_format":"stl","units":"cm"}"#);
+    for form in [
+        Form::new().part("mesh", mesh()).part("params", options()),
+        Form::new().part("params", options()).part("mesh", mesh()),
+        Form::new().part("material", Part::text("newmtl a\n")).part("params", options()).part("mesh", mesh()),
+    ] {
+        let response = server.post("/v1/repair").multipart(form).send().unwrap();
+        assert_eq!(response.status(), 200);
+        assert_eq!(response.headers()["content-type"], "model/stl");
+        let name = response.headers()["content-disposition"].to_str().unwrap();
+        assert!(name.contains("part_one") && name.contains(".stl"), "{name}");
+    }
+}
+
+#[test]
+fn a_form_that_is_not_as_it_should_be_is_a_problem() {
+    let server = Server::start();
+    let code = |form| {
+        let (status, code, problem) = refused(&server, "/v1/repair", form);
+        (status, code, problem["parameter"].as_str().unwrap_or_default().to_owned())
+    };
+    let is = |code: &str, parameter: &str| (400, code.to_owned(), parameter.to_owned());
+    let whole = || Form::new().part("mesh", mesh());
+    assert_eq!(code(Form::new()), is("body-incomplete", ""));
+    assert_eq!(code(Form::new().part("params", params("{}"))), is("invalid-parameter", "mesh"));
+    assert_eq!(code(Form::new().part("mesh", Part::text(""))), is("invalid-parameter", "mesh"));
+    assert_eq!(code(whole().part("mesh", mesh())), is("invalid-parameter", "mesh"));
+    assert_eq!(code(whole().part("units", params("cm"))), is("unknown-parameter", "units"));
+    assert_eq!(code(whole().part("params", params("{"))), is("invalid-parameter", ""));
+    assert_eq!(code(whole().part("params", params(r#"{"unit":"cm"}"#))), is("unknown-parameter", "unit"));
+    assert_eq!(code(whole().part("params", params(r#"{"units":7}"#))), is("invalid-parameter", "units"));
+    assert_eq!(
+        code(whole().part("params", params(r#"{"operation":"verify"}"#))),
+        is("invalid-parameter", "operation")
+    );
+}
+
+#[test]
+fn query_and_body_may_agree_but_not_contradict_each_other() {
+    let server = Server::start();
+    let send = |query: &str, text: &str| {
+        let form = Form::new().part("mesh", mesh()).part("params", params(text));
+        server.post(&format!("/v1/verify?{query}")).multipart(form).send().unwrap()
+    };
+    assert_eq!(send("units=cm&samples=3", r#"{"units":"cm"}"#).status(), 200);
+    let (status, code, problem) = problem(send("units=cm", r#"{"units":"mm"}"#));
+    assert_eq!((status, code.as_str(), &problem["parameter"]), (400, "invalid-parameter", &json!("units")));
+}
+
+#[test]
+fn an_earlier_upload_is_used_again() {
+    let server = Server::start();
+    let first = server.ended(&server.job("analyze", SOLID));
+    let input = json!({ "job": first["id"] });
+    let again = server.post("/v1/repair").json(&json!({ "input": input, "output_format": "stl" }));
+    let response = again.send().unwrap();
+    assert_eq!(
+        (response.status().as_u16(), &response.headers()["content-type"]),
+        (200, &"model/stl".parse().unwrap())
+    );
+    let query = format!("/v1/verify?input=%7B%22job%22:{}%7D", first["id"]).replace('"', "%22");
+    assert_eq!(server.post(&query).send().unwrap().status(), 200);
+    let job = server.post("/v1/jobs").json(&json!({ "operation": "verify", "params": { "input": input } }));
+    assert_eq!(job.send().unwrap().status(), 202);
+
+    let unknown = json!({ "input": { "job": "00000000-0000-7000-8000-000000000000" } });
+    let (status, code, _) = problem(server.post("/v1/repair").json(&unknown).send().unwrap());
+    assert_eq!((status, code.as_str()), (404, "not-found"));
+    let (status, code, _) = problem(server.post("/v1/repair").json(&json!({})).send().unwrap());
+    assert_eq!((status, code.as_str()), (400, "invalid-parameter"));
+    let both = server.post(&query).body(SOLID);
+    assert_eq!(problem(both.send().unwrap()).1, "invalid-parameter");
+}
+
+#[test]
+fn a_job_says_its_operation_in_the_query_the_form_or_json() {
+    let server = Server::start();
+    let job = |part: &'static str, text: &str| {
+        let form = Form::new().part("mesh", mesh()).part(part, params(text));
+        server.post("/v1/jobs").multipart(form).send().unwrap()
+    };
+    for response in [
+        job("job", r#"{"operation":"verify"}"#),
+        job("params", r#"{"operation":"verify","units":"in"}"#),
+        server.post("/v1/jobs?operation=verify").body(SOLID).send().unwrap(),
+    ] {
+        assert_eq!(response.status(), 202);
+        let location = response.headers()["location"].to_str().unwrap().to_owned();
+        let job: Value = response.json().unwrap();
+        assert_eq!(location, link(&job, "self"));
+        assert_eq!(
+            (&job["operation"], &server.ended(&job)["state"]),
+            (&json!("verify"), &json!("succeeded"))
+        );
+    }
+    for response in [
+        server.post("/v1/jobs").body(SOLID).send().unwrap(),
+        server.post("/v1/jobs?operation=repiar").body(SOLID).send().unwrap(),
+        job("job", r#"{"units":"mm"}"#),
+    ] {
+        let (status, code, problem) = problem(response);
+        assert_eq!(
+            (status, code.as_str(), &problem["parameter"]),
+            (400, "invalid-parameter", &json!("operation"))
+        );
+    }
+}
+
+#[test]
+fn a_request_without_a_mesh_is_told_how_to_send_one() {
+    let server = Server::start();
+    let (status, code, problem) = problem(server.post("/v1/repair").send().unwrap());
+    assert_eq!((status, code.as_str()), (422, "mesh-empty"));
+    assert!(problem["detail"].as_str().unwrap().contains("--data-binary"));
+}
+
+#[test]
+fn a_media_type_that_is_not_read_is_refused() {
+    let server = Server::start();
+    for content_type in ["text/html", "image/png", "multipart/form-data", "application/xml"] {
+        let request = server.post("/v1/repair").header("content-type", content_type).body(SOLID);
+        let (status, code, _) = problem(request.send().unwrap());
+        assert_eq!((status, code.as_str()), (415, "unsupported-media-type"), "{content_type}");
+    }
+}
+
+#[test]
+fn a_body_that_is_announced_too_large_is_refused_before_it_is_sent() {
+    let server = Server::with(&["--upload-bytes-max", "1000B"]);
+    let mut line = server.connect();
+    line.say(
+        "POST /v1/repair HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1001\r\nExpect: 100-continue\r\n\r\n",
+    );
+    let answer = line.hear_all();
+    assert!(answer.starts_with("HTTP/1.1 413 "), "no 100 Continue: {answer}");
+    assert!(
+        answer.contains("body-too-large") && answer.contains("\"limit\":1000,\"actual\":1001"),
+        "{answer}"
+    );
+}
+
+#[test]
+fn a_client_that_is_told_to_go_on_goes_on() {
+    let server = Server::start();
+    let mut line = server.connect();
+    line.say(format!(
+        "POST /v1/verify HTTP/1.1\r\nHost: localhost\r\nContent-Length: {}\r\nExpect: 100-continue\r\n\
+         Connection: close\r\n\r\n",
+        SOLID.len()
+    ));
+    let go_on = "HTTP/1.1 100 Continue\r\n\r\n";
+    assert_eq!(line.hear(go_on.len()), go_on);
+    line.say(SOLID);
+    assert!(line.hear_all().starts_with("HTTP/1.1 200 "));
+}
+
+#[test]
+fn a_client_that_sends_too_much_reads_its_413_all_the_same() {
+    let server = Server::with(&["--upload-bytes-max", "100KiB"]);
+    let heads = [
+        "Transfer-Encoding: chunked\r\n\r\n".to_owned(),
+        // Announced, but without waiting for leave.
+        format!("Content-Length: {}\r\n\r\n", 400 << 10),
+    ];
+    for head in heads {
+        let mut line = server.connect();
+        line.say(format!("POST /v1/repair HTTP/1.1\r\nHost: localhost\r\n{head}"));
+        let piece = if head.starts_with('T') {
+            format!("10000\r\n{}\r\n", "0".repeat(0x10000))
+        } else {
+            "0".repeat(0x10000)
+        };
+        // All of it is said before anything is heard, as many clients do.
+        for _ in 0..6 {
+            assert!(line.try_say(&piece), "the server hung up");
+        }
+        let answer = line.hear_all();
+        assert!(answer.starts_with("HTTP/1.1 413 ") && answer.contains("body-too-large"), "{answer}");
+        assert!(answer.contains("application/problem+json"));
+    }
+}
+
+#[test]
+fn a_form_over_the_limit_is_refused_while_it_comes_in() {
+    let server = Server::with(&["--upload-bytes-max", "100KiB"]);
+    let large = Part::bytes(vec![b'0'; 200 << 10]).file_name("large.stl");
+    let (status, code, problem) = refused(&server, "/v1/repair", Form::new().part("mesh", large));
+    assert_eq!((status, code.as_str(), &problem["limit"]), (413, "body-too-large", &json!(100 << 10)));
+    let long = params(&" ".repeat((1 << 20) + 4096));
+    let (status, code, problem) = refused(&server, "/v1/repair", Form::new().part("params", long));
+    assert_eq!(
+        (status, code.as_str(), &problem["limit_name"]),
+        (413, "body-too-large", &json!("json_bytes_max"))
+    );
+}
+
+#[test]
+fn a_body_that_pauses_for_too_long_is_given_up() {
+    let server = Server::with(&["--upload-timeout", "300ms"]);
+    let mut line = server.connect();
+    line.say("POST /v1/repair HTTP/1.1\r\nHost: localhost\r\nContent-Length: 100\r\n\r\nOFF\n");
+    let answer = line.hear_all();
+    assert!(answer.starts_with("HTTP/1.1 408 ") && answer.contains("upload-timeout"), "{answer}");
+}
+
+#[test]
+fn a_body_that_drips_for_too_long_is_given_up() {
+    let server = Server::with(&["--upload-total-timeout", "500ms"]);
+    let mut line = server.connect();
+    line.say("POST /v1/repair HTTP/1.1\r\nHost: localhost\r\nContent-Length: 100\r\n\r\n");
+    for _ in 0..20 {
+        if !line.try_say("0") {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    let answer = line.hear_all();
+    assert!(answer.starts_with("HTTP/1.1 408 ") && answer.contains("upload_total_timeout_s"), "{answer}");
+}
+
+#[test]
+fn a_body_with_broken_chunks_is_a_problem() {
+    let server = Server::start();
+    let mut line = server.connect();
+    line.say(
+        "POST /v1/repair HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\nxyz\r\nOFF\r\n",
+    );
+    let answer = line.hear_all();
+    assert!(answer.starts_with("HTTP/1.1 400 ") && answer.contains("body-incomplete"), "{answer}");
+}
