@@ -76,6 +76,9 @@ struct InputArguments {
     /// Print the report as JSON on standard output.
     #[arg(long)]
     json: bool,
+    /// Material file (MTL) of an OBJ: its diffuse colours become face colours, which OFF and PLY hold.
+    #[arg(long, value_name = "FILE")]
+    material: Option<PathBuf>,
     #[command(flatten)]
     options: OptionFlags,
     /// Configuration file (TOML) [MESHMEND_CONFIG].
@@ -127,6 +130,7 @@ pub(super) struct Request {
     pub input: Place,
     pub output: Option<Place>,
     pub is_json: bool,
+    pub material: Option<PathBuf>,
     /// Names and values of options.
     pub options: Vec<(String, String)>,
     pub sources: Sources,
@@ -139,6 +143,7 @@ impl InputArguments {
             input: self.input,
             output,
             is_json: self.json,
+            material: self.material,
             options: self.options.0,
             sources: Sources::of_process(self.settings.0, self.config),
         }

@@ -38,10 +38,15 @@ fn attempt(request: &Request) -> Result<Exit, Problem> {
         output.check_writable().map_err(|e| wrong(format!("{output} cannot be written: {e}")))?;
     }
     let bytes = request.input.read().map_err(|e| unreadable(&request.input, &e))?;
-    let engine_options = engine_options(request, &options, &loaded.config, &bytes);
-    let (answer, timing) = execute(request.operation, &bytes, &engine_options, &loaded)
+    let material = match &request.material {
+        Some(path) => Some(std::fs::read(path).map_err(|e| unreadable(&path.display(), &e))?),
+        None => None,
+    };
+    let options = engine_options(request, &options, &loaded.config, &bytes);
+    let options = pipeline::Options { material, ..options };
+    let (answer, timing) = execute(request.operation, &bytes, &options, &loaded)
         .map_err(|problem| Problem { detail: format!("{}: {}", request.input, problem.detail), ..problem })?;
-    deliver(request, engine_options.require, &bytes, &answer, timing)
+    deliver(request, options.require, &bytes, &answer, timing)
 }
 
 /// Streams have no extension that could name their format, and standard output holds one thing only.
@@ -69,7 +74,7 @@ fn wrong(detail: impl Into<String>) -> Problem {
     Problem::new(ProblemCode::InvalidParameter, detail)
 }
 
-fn unreadable(input: &Place, error: &io::Error) -> Problem {
+fn unreadable(input: &dyn std::fmt::Display, error: &io::Error) -> Problem {
     Problem::new(ProblemCode::NotFound, format!("{input} cannot be read: {error}"))
 }
 

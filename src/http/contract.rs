@@ -11,7 +11,9 @@ use utoipa::openapi::header::HeaderBuilder;
 use utoipa::openapi::path::{Operation, Parameter, ParameterBuilder, ParameterIn};
 use utoipa::openapi::request_body::{RequestBody, RequestBodyBuilder};
 use utoipa::openapi::response::{Response, ResponseBuilder};
-use utoipa::openapi::schema::{KnownFormat, ObjectBuilder, Schema, SchemaFormat, Type};
+use utoipa::openapi::schema::{
+    AdditionalProperties, KnownFormat, Object, ObjectBuilder, Schema, SchemaFormat, Type,
+};
 use utoipa::openapi::security::{
     ApiKey, ApiKeyValue, Http, HttpAuthScheme, SecurityRequirement, SecurityScheme,
 };
@@ -70,12 +72,12 @@ const PRODUCT: &[ProblemCode] = &[ProblemCode::JobNotFinished, ProblemCode::Expi
 #[allow(dead_code, reason = "describes the parts of a form, which are read one by one")]
 pub(super) struct MeshForm {
     /// The mesh.
-    #[schema(value_type = String, format = Binary)]
+    #[schema(value_type = String, format = Binary, min_length = 1)]
     mesh: Vec<u8>,
     /// Options.
-    #[schema(value_type = Options, required = false)]
+    #[schema(schema_with = options_without_input, required = false)]
     params: Option<Options>,
-    /// The MTL file of an OBJ. Taken so that tools may send it; the result does not depend on it.
+    /// The MTL file of an OBJ: its diffuse colours become face colours, which OFF and PLY hold.
     #[schema(value_type = String, format = Binary, required = false)]
     material: Option<Vec<u8>>,
 }
@@ -85,11 +87,15 @@ pub(super) struct MeshForm {
 #[allow(dead_code, reason = "describes the parts of a form, which are read one by one")]
 pub(super) struct JobForm {
     /// The mesh.
-    #[schema(value_type = String, format = Binary)]
+    #[schema(value_type = String, format = Binary, min_length = 1)]
     mesh: Vec<u8>,
-    /// What to do, with options.
+    /// What to do, with options. Instead, `params` may name the `operation`.
+    #[schema(schema_with = request_without_input)]
     job: JobRequest,
-    /// The MTL file of an OBJ. Taken so that tools may send it; the result does not depend on it.
+    /// Options.
+    #[schema(schema_with = options_without_input, required = false)]
+    params: Option<Options>,
+    /// The MTL file of an OBJ: its diffuse colours become face colours, which OFF and PLY hold.
     #[schema(value_type = String, format = Binary, required = false)]
     material: Option<Vec<u8>>,
 }
@@ -130,7 +136,16 @@ fn schemas() -> Vec<(String, RefOr<Schema>)> {
         )+ };
     }
     add!(MeshForm, JobForm, JobRequest, Options, Job, Report, Problem);
+    let is_form = |name: &str| name == MeshForm::name() || name == JobForm::name();
+    let closed = |schema| {
+        changed(schema, |form| {
+            form.additional_properties = Some(Box::new(AdditionalProperties::FreeForm(false)))
+        })
+    };
     schemas
+        .into_iter()
+        .map(|(name, schema)| if is_form(&name) { (name, closed(schema)) } else { (name, schema) })
+        .collect()
 }
 
 fn complete_operation(path: &str, operation: &mut Operation) {
@@ -151,7 +166,7 @@ fn complete_operation(path: &str, operation: &mut Operation) {
             add_answer(operation, "200", mesh_answer().build());
         }
         "create_job" => {
-            operation.request_body = Some(RefOr::T(upload_body::<JobForm>(reference::<JobRequest>())));
+            operation.request_body = Some(RefOr::T(upload_body::<JobForm>(requiring_input::<JobRequest>())));
             add_parameter(operation, cancel_after());
             add_problems(operation, UPLOAD);
             add_answer(operation, "202", accepted());
@@ -176,7 +191,7 @@ fn complete_operation(path: &str, operation: &mut Operation) {
 
 /// An operation that runs an upload.
 fn complete_run(operation: &mut Operation, more_problems: &[ProblemCode]) {
-    operation.request_body = Some(RefOr::T(upload_body::<MeshForm>(options_with_input())));
+    operation.request_body = Some(RefOr::T(upload_body::<MeshForm>(requiring_input::<Options>())));
     add_parameter(
         operation,
         header_parameter(
@@ -212,11 +227,32 @@ fn upload_body<Form: ToSchema>(json: impl Into<RefOr<Schema>>) -> RequestBody {
         .build()
 }
 
-/// Options with the earlier job whose upload is used again.
-fn options_with_input() -> RefOr<Schema> {
-    match Options::schema() {
+/// JSON that comes without a mesh: it must name the earlier job whose upload is used again.
+fn requiring_input<T: ToSchema>() -> RefOr<Schema> {
+    changed(T::schema(), |object| object.required.push("input".to_owned()))
+}
+
+/// Options that come beside a mesh.
+fn options_without_input() -> RefOr<Schema> {
+    changed(Options::schema(), without_input)
+}
+
+/// A request that comes beside a mesh.
+fn request_without_input() -> RefOr<Schema> {
+    changed(JobRequest::schema(), |object| {
+        without_input(object);
+        object.properties.insert("params".to_owned(), options_without_input());
+    })
+}
+
+fn without_input(object: &mut Object) {
+    object.properties.shift_remove("input");
+}
+
+fn changed(schema: RefOr<Schema>, change: impl FnOnce(&mut Object)) -> RefOr<Schema> {
+    match schema {
         RefOr::T(Schema::Object(mut object)) => {
-            object.required.push("input".to_owned());
+            change(&mut object);
             RefOr::T(Schema::Object(object))
         }
         other => other,

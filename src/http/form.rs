@@ -7,8 +7,7 @@ use super::state::Service;
 use crate::jobs::Uploaded;
 use crate::wire::{Operation, Problem, ProblemCode, format_of_media_type};
 
-/// Largest `material` part, in bytes. It is taken so that tools may send what belongs to an OBJ; a repair does not
-/// need it.
+/// Largest `material` part, in bytes.
 pub(super) const MATERIAL_BYTES_MAX: u64 = 4 << 20;
 /// What a form may have beside the mesh: the other parts, and the lines between them.
 pub(super) const EXTRA_BYTES_MAX: u64 = MATERIAL_BYTES_MAX + JSON_BYTES_MAX + (64 << 10);
@@ -41,7 +40,7 @@ pub(super) async fn receive(
                 intake.upload = receive_mesh(service, &mut form).await?;
                 intake.take_names(head);
             }
-            "material" => drop(receive_small(&mut form, MATERIAL_BYTES_MAX, "material_bytes_max").await?),
+            "material" => intake.material = receive_material(service, &mut form).await?,
             _ => {
                 let text = receive_small(&mut form, JSON_BYTES_MAX, "json_bytes_max").await?;
                 intake.take_json(&text, operation)?;
@@ -67,6 +66,17 @@ async fn receive_mesh(service: &Service, form: &mut Multipart) -> Result<Option<
     while let Some(piece) = form.next_piece().await? {
         upload.write(&piece).await?;
     }
+    upload.finish().await.map(Some)
+}
+
+/// `None` when the part has no byte.
+async fn receive_material(service: &Service, form: &mut Multipart) -> Result<Option<Uploaded>, Problem> {
+    let bytes = receive_small(form, MATERIAL_BYTES_MAX, "material_bytes_max").await?;
+    if bytes.is_empty() {
+        return Ok(None);
+    }
+    let mut upload = service.jobs.upload(None).await?;
+    upload.write(&bytes).await?;
     upload.finish().await.map(Some)
 }
 

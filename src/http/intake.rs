@@ -18,6 +18,8 @@ pub(super) const JSON_BYTES_MAX: u64 = 1 << 20;
 pub(super) struct Intake {
     /// The mesh, on disk.
     pub(super) upload: Option<Uploaded>,
+    /// The MTL file of an OBJ, on disk.
+    pub(super) material: Option<Uploaded>,
     /// The name that the client gave the mesh.
     pub(super) file_name: Option<String>,
     /// The format that the mesh's media type names.

@@ -164,6 +164,7 @@ async fn submission(
         operation,
         options,
         upload: intake.upload,
+        material: intake.material,
         file_name: intake.file_name,
         cancel_after: cancel_after(headers)?,
         owner: caller.0.clone(),

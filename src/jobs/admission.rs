@@ -24,6 +24,8 @@ pub struct Submission {
     pub options: Options,
     /// The mesh.
     pub upload: Option<Uploaded>,
+    /// The MTL file of an OBJ.
+    pub material: Option<Uploaded>,
     /// Name of the uploaded file, if the caller gave one.
     pub file_name: Option<String>,
     /// Time from now after which the job must have ended (`Cancel-After`).
@@ -48,7 +50,8 @@ impl Jobs {
             _ => None,
         };
         let Some(input) = input else { return Err(no_single_mesh()) };
-        let Submission { operation, options, upload, file_name, cancel_after, owner } = submission;
+        let Submission { operation, options, upload, material, file_name, cancel_after, owner } = submission;
+        let own_material = material.as_ref().and_then(Uploaded::blob).cloned();
         let mut row = JobRow {
             id: JobId::unique(),
             operation,
@@ -56,6 +59,7 @@ impl Jobs {
             file_name: file_name.or_else(|| source.as_ref()?.file_name.clone()),
             owner,
             input,
+            material: own_material.or_else(|| source.as_ref()?.material.clone()),
             state: JobState::Queued,
             epoch: 0,
             created_at: now(),
@@ -72,8 +76,8 @@ impl Jobs {
             service.live.end(id);
             return Err(service.not_admitted(&error));
         }
-        // From here on the row owns the file.
-        drop(upload.map(Uploaded::keep));
+        // From here on the row owns the files.
+        [upload, material].into_iter().flatten().for_each(|upload| drop(upload.keep()));
         if let Some(patience) = cancel_after {
             tokio::spawn(end_after(Arc::clone(service), row.clone(), live, patience));
         }
@@ -99,13 +103,13 @@ impl Service {
 
     /// A new job that ends at once, because an earlier one did the same with the same bytes.
     async fn answer_from_cache(&self, row: &mut JobRow) -> Option<Job> {
-        let equal =
-            self.store.find_equal(row.operation, row.input.sha256, row.options.clone()).await.ok()??;
+        let equal = self.store.find_equal(row).await.ok()??;
         let found = equal.finish?;
         let at = now();
         let finish = Finish { at, expires_at: self.expiry(row, at), ..found };
         let cached = JobRow {
             input: equal.input,
+            material: equal.material,
             state: finish.state,
             started_at: Some(at),
             finish: Some(finish),

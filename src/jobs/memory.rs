@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 use jiff::Timestamp;
 
 use super::store::{BlobRef, Finish, JobCounts, JobId, JobRow, JobStore, Kept, StoreError, StoreFuture};
-use crate::wire::{JobState, Operation, Options};
+use crate::wire::JobState;
 
 /// A store for one process.
 #[derive(Debug, Default)]
@@ -131,19 +131,12 @@ impl JobStore for MemoryStore {
         })
     }
 
-    fn find_equal(
-        &self,
-        operation: Operation,
-        sha256: [u8; 32],
-        options: Options,
-    ) -> StoreFuture<'_, Option<JobRow>> {
+    fn find_equal(&self, row: &JobRow) -> StoreFuture<'_, Option<JobRow>> {
         self.with(|rows| {
-            let ids = rows.by_input.get(&sha256).into_iter().flatten();
-            let mut equal = ids.filter_map(|id| rows.by_id.get(id)).filter(|row| {
-                row.state == JobState::Succeeded
-                    && row.operation == operation
-                    && row.options.give_the_same_as(&options)
-            });
+            let ids = rows.by_input.get(&row.input.sha256).into_iter().flatten();
+            let mut equal = ids
+                .filter_map(|id| rows.by_id.get(id))
+                .filter(|found| found.state == JobState::Succeeded && found.does_the_same_as(row));
             Ok(equal.next_back().cloned())
         })
     }

@@ -80,20 +80,25 @@ async fn run(service: &Arc<Service>, row: JobRow) {
 /// Runs the engine on the blocking pool and ends it when its time is over.
 async fn attempt(service: &Arc<Service>, row: &JobRow, live: &Live, clock: StageClock) -> Ended {
     let path = service.spool.path(&row.input.key);
+    let material_path = row.material.as_ref().map(|material| service.spool.path(&material.key));
     let (bytes, operation) = (row.input.bytes, row.operation.into());
-    let options = row.options.to_engine(service.settings.read_limits);
+    let mut options = row.options.to_engine(service.settings.read_limits);
     let settings = &service.settings;
     let budget = Budget::new(live.stop.clone(), settings.engine_work_max, settings.engine_bytes_max)
         .observed_by(clock.observer());
     let (engine, threads) = (Arc::clone(&service.engine), settings.engine_threads);
     let mut task = tokio::task::spawn_blocking(move || {
-        let run = || {
+        let run = move || {
             let (mut content, _charge) = match budget.vec(bytes as usize) {
                 Ok(room) => room,
                 Err(stopped) => return Ended::Failed(stopped.into()),
             };
             if let Err(error) = File::open(&path).and_then(|mut file| file.read_to_end(&mut content)) {
                 return Ended::InputLost(error);
+            }
+            match material_path.map(std::fs::read).transpose() {
+                Ok(material) => options.material = material,
+                Err(error) => return Ended::InputLost(error),
             }
             match engine(operation, &content, &options, &budget) {
                 Ok(answer) => Ended::Answered(Box::new(answer)),

@@ -69,6 +69,8 @@ pub struct JobRow {
     pub owner: Option<String>,
     /// The uploaded bytes.
     pub input: BlobRef,
+    /// The MTL file that came with them.
+    pub material: Option<BlobRef>,
     /// Where it stands.
     pub state: JobState,
     /// Number of times it was claimed; only the latest claim may finish it.
@@ -107,6 +109,15 @@ pub struct Finish {
 }
 
 impl JobRow {
+    /// True when `other` has the same input and asks for the same.
+    pub fn does_the_same_as(&self, other: &Self) -> bool {
+        let digest = |blob: &BlobRef| blob.sha256;
+        self.operation == other.operation
+            && self.input.sha256 == other.input.sha256
+            && self.material.as_ref().map(digest) == other.material.as_ref().map(digest)
+            && self.options.give_the_same_as(&other.options)
+    }
+
     /// The files it keeps; none once it has expired.
     pub fn blobs(&self) -> Vec<&BlobRef> {
         if self.state == JobState::Expired {
@@ -115,7 +126,7 @@ impl JobRow {
         let report = self.finish.iter().filter_map(|finish| finish.report.as_ref());
         let result =
             self.finish.iter().filter_map(|finish| finish.result.as_ref().map(|result| &result.blob));
-        std::iter::once(&self.input).chain(report).chain(result).collect()
+        std::iter::once(&self.input).chain(&self.material).chain(report).chain(result).collect()
     }
 }
 
@@ -195,13 +206,8 @@ pub trait JobStore: Send + Sync {
     /// The job that ended first.
     fn oldest_ended(&self, kept: Kept) -> StoreFuture<'_, Option<JobId>>;
 
-    /// A succeeded job with files that did the same with the same bytes.
-    fn find_equal(
-        &self,
-        operation: Operation,
-        sha256: [u8; 32],
-        options: Options,
-    ) -> StoreFuture<'_, Option<JobRow>>;
+    /// A succeeded job with files that did the same as `row` is to do, with the same bytes.
+    fn find_equal(&self, row: &JobRow) -> StoreFuture<'_, Option<JobRow>>;
 
     /// Numbers of jobs.
     fn counts(&self) -> StoreFuture<'_, JobCounts>;

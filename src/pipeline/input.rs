@@ -5,7 +5,7 @@ use super::{Answer, Failure, InputFacts, Operation, Options, Outcome, Output, Re
 use crate::analysis::Analysis;
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::{self, CertifyError, Depth, Examination};
-use crate::formats::{self, Encoding};
+use crate::formats::{self, Encoding, ReadError};
 use crate::mesh::Soup;
 
 /// Witnesses to keep of each defect when the caller does not say.
@@ -23,7 +23,11 @@ impl Input {
     pub(super) fn read(bytes: &[u8], options: &Options, budget: &Budget) -> Result<Self, Failure> {
         let (encoding, soup) = budget.stage(Stage::Read, || {
             let encoding = formats::sniff(bytes, options.format)?;
-            formats::read(bytes, encoding, &options.read, budget).map(|soup| (encoding, soup))
+            let mut soup = formats::read(bytes, encoding, &options.read, budget)?;
+            if let (Encoding::Obj, Some(material)) = (encoding, &options.material) {
+                formats::color_faces(&mut soup, bytes, material, budget)?;
+            }
+            Ok::<_, ReadError>((encoding, soup))
         })?;
         let samples = options.samples.unwrap_or(SAMPLES_DEFAULT);
         let examination = budget.stage(Stage::Certify, || {

@@ -94,6 +94,8 @@ pub struct Options {
     pub fill_holes: FillHoles,
     /// Witnesses to keep of each defect; `None`: 16.
     pub samples: Option<usize>,
+    /// The MTL file of an OBJ: its diffuse colours become face colours, which OFF and PLY can hold.
+    pub material: Option<Vec<u8>>,
 }
 
 /// What became of the file.

@@ -269,6 +269,7 @@ impl Options {
             require: self.require.map(Into::into),
             fill_holes: self.fill_holes.map(Into::into).unwrap_or_default(),
             samples: self.samples.map(|n| n as usize),
+            material: None,
         }
     }
 }

@@ -414,3 +414,17 @@ fn a_service_that_is_not_there_is_not_healthy() {
     let output = Desk::new().run(&["healthcheck", "--admin-listen", "127.0.0.1:1"]);
     assert_eq!(output.status.code(), Some(1));
 }
+
+#[test]
+fn the_material_of_an_obj_colours_the_faces_of_another_format() {
+    let desk = Desk::new();
+    let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n";
+    fs::write(desk.path().join("part.obj"), obj).unwrap();
+    fs::write(desk.path().join("part.mtl"), "newmtl red\nKd 1 0 0.5\n").unwrap();
+    let run = desk.run(&["convert", "part.obj", "--material", "part.mtl", "-o", "part.off"]);
+    assert_eq!(run.status.code(), Some(0));
+    assert!(desk.read("part.off").contains("3 0 1 2 1.0 0.0 0.5\n"), "{}", desk.read("part.off"));
+    let missing = desk.run(&["convert", "part.obj", "--material", "no.mtl", "-o", "part.off"]);
+    assert_eq!(missing.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&missing.stderr).contains("no.mtl"));
+}

@@ -60,6 +60,37 @@ fn a_form_that_is_not_as_it_should_be_is_a_problem() {
 }
 
 #[test]
+fn the_material_of_an_obj_colours_its_faces() {
+    let server = Server::start();
+    let obj =
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl red\nf 1 3 2\nf 1 2 4\nusemtl none\nf 1 4 3\nf 2 3 4\n";
+    let job = |material: &'static str| {
+        let form = Form::new()
+            .part("mesh", Part::text(obj))
+            .part("params", params(r#"{"operation":"convert","output_format":"off"}"#))
+            .part("material", Part::text(material));
+        let response = server.post("/v1/jobs").multipart(form).send().unwrap();
+        server.ended(&response.json().unwrap())
+    };
+    let result = |job: &Value| server.get(&link(job, "result")).send().unwrap().text().unwrap();
+    let red = job("newmtl red\nKd 1 0 0\n");
+    assert!(result(&red).contains("3 0 2 1 1.0 0.0 0.0\n"), "{}", result(&red));
+    // Another material is another job, and an upload is used again with its material.
+    assert!(result(&job("newmtl red\nKd 0 0 1\n")).contains("3 0 2 1 0.0 0.0 1.0\n"));
+    let input = json!({ "job": red["id"] });
+    let again =
+        server.post("/v1/convert").json(&json!({ "input": input, "output_format": "off", "samples": 1 }));
+    assert_eq!(again.send().unwrap().text().unwrap(), result(&red));
+
+    let broken = job("newmtl red\nKd 1.0\n");
+    assert_eq!(
+        (&broken["state"], &broken["problem"]["code"]),
+        (&json!("failed"), &json!("mesh-unparseable"))
+    );
+    assert!(broken["problem"]["detail"].as_str().unwrap().contains("material"), "{broken}");
+}
+
+#[test]
 fn query_and_body_may_agree_but_not_contradict_each_other() {
     let server = Server::start();
     let send = |query: &str, text: &str| {
