@@ -260,7 +260,9 @@ fn a_stray_triangle_beside_a_body_is_neither_deleted_nor_doubled() {
 #[test]
 fn walls_with_crossing_diagonals_are_not_taken_for_copies() {
     // The two triangulations of the common square are four different triangles that overlap.
-    let answer = repaired(&cube().with(&cube().moved([0.0, 0.0, 1.0])));
+    let quarter_turn = |[x, y, z]: [f64; 3]| [1.0 - y, x, z + 1.0];
+    let above = RawSoup { positions: cube().positions.into_iter().map(quarter_turn).collect(), ..cube() };
+    let answer = repaired(&cube().with(&above));
     assert!(matches!(refused(&answer), Refusal::NotRepairable { witness: Some(_) }));
     assert_eq!(count(&answer, "copies_dropped") + count(&answer, "opposite_pairs_cancelled"), 0);
 }
