@@ -89,12 +89,12 @@ pub(super) struct JobForm {
     /// The mesh.
     #[schema(value_type = String, format = Binary, min_length = 1)]
     mesh: Vec<u8>,
-    /// What to do, with options. Instead, `params` may name the `operation`.
-    #[schema(schema_with = request_without_input)]
-    job: JobRequest,
-    /// Options.
-    #[schema(schema_with = options_without_input, required = false)]
-    params: Option<Options>,
+    /// What to do, with options.
+    #[schema(schema_with = request_without_input, required = false)]
+    job: Option<JobRequest>,
+    /// As `job`.
+    #[schema(schema_with = request_without_input, required = false)]
+    params: Option<JobRequest>,
     /// The MTL file of an OBJ: its diffuse colours become face colours, which OFF and PLY hold.
     #[schema(value_type = String, format = Binary, required = false)]
     material: Option<Vec<u8>>,

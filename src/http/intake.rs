@@ -115,11 +115,31 @@ impl Intake {
             Some(operation) => self.options = JobRequest::params_from_json(text, operation)?,
             None => {
                 let request = JobRequest::from_json(text)?;
-                self.operation = Some(request.operation);
-                self.options = request.options;
+                self.operation = agreed(self.operation, request.operation)?;
+                let said_before = std::mem::take(&mut self.options);
+                self.options = said_before.join(request.options).map_err(|error| Problem::from(&error))?;
             }
         }
         Ok(())
+    }
+}
+
+/// The operation that two parts of a request name: one of them, or both the same.
+pub(super) fn agreed(a: Option<Operation>, b: Option<Operation>) -> Result<Option<Operation>, Problem> {
+    match (a, b) {
+        (Some(a), Some(b)) if a != b => {
+            Err(about_operation("`operation` is given twice with different values"))
+        }
+        _ => Ok(a.or(b)),
+    }
+}
+
+/// A problem with the operation that a request names.
+pub(super) fn about_operation(detail: &str) -> Problem {
+    Problem {
+        parameter: Some("operation".to_owned()),
+        allowed: Operation::WORDS.to_vec(),
+        ..Problem::new(ProblemCode::InvalidParameter, detail)
     }
 }
 

@@ -60,7 +60,8 @@ pub(super) async fn create_job(state: State, caller: Extension<Caller>, request:
     json_only(&head.headers)?;
     let (options, in_query) = query::options_and_operation(&head.uri)?;
     let intake = intake::receive(&state, &head.headers, body, None).await?;
-    let operation = one_operation(in_query, intake.operation)?;
+    let operation = intake::agreed(in_query, intake.operation)?;
+    let operation = operation.ok_or_else(|| intake::about_operation("`operation` is missing"))?;
     let submission = submission(&state, &caller, operation, options, intake, &head.headers).await?;
     let job = state.jobs.submit(submission).await?;
     Ok(answer::accepted(&job, None))
@@ -204,18 +205,5 @@ fn cancel_after(headers: &HeaderMap) -> Result<Option<Duration>, Problem> {
             parameter: Some("Cancel-After".to_owned()),
             ..Problem::new(ProblemCode::InvalidParameter, "`Cancel-After` is a whole number of seconds")
         }),
-    }
-}
-
-fn one_operation(in_query: Option<Operation>, in_body: Option<Operation>) -> Result<Operation, Problem> {
-    let about = |detail: &str| Problem {
-        parameter: Some("operation".to_owned()),
-        allowed: Operation::WORDS.to_vec(),
-        ..Problem::new(ProblemCode::InvalidParameter, detail)
-    };
-    match (in_query, in_body) {
-        (Some(a), Some(b)) if a != b => Err(about("`operation` is given twice with different values")),
-        (Some(operation), _) | (None, Some(operation)) => Ok(operation),
-        (None, None) => Err(about("`operation` is missing")),
     }
 }

@@ -22,8 +22,8 @@ pub struct InputRef {
 /// What to do, with options: `{"operation":"repair","units":"mm"}`. Options may also stand in a member `params`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct JobRequest {
-    /// What to do.
-    pub operation: Operation,
+    /// What to do; `None`: another part of the request says it.
+    pub operation: Option<Operation>,
     /// How.
     pub options: Options,
 }
@@ -35,10 +35,7 @@ impl JobRequest {
     /// A problem with code `invalid-parameter` or `unknown-parameter`.
     pub fn from_json(text: &[u8]) -> Result<Self, Problem> {
         let (operation, options) = read(text)?;
-        match operation {
-            Some(operation) => Ok(Self { operation, options }),
-            None => Err(about_operation("`operation` is missing", None)),
-        }
+        Ok(Self { operation, options })
     }
 
     /// Reads the `params` of a path that names the operation itself; `operation` may be repeated there, not changed.
@@ -113,13 +110,12 @@ impl PartialSchema for JobRequest {
     fn schema() -> RefOr<Schema> {
         let operation = ObjectBuilder::new()
             .schema_type(Type::String)
-            .description(Some("What to do."))
+            .description(Some("What to do, unless the query or another part of the form says it."))
             .enum_values(Some(Operation::WORDS.iter().copied()));
         let object = object_of_options()
             .description(Some("What to do, with options, which may also stand together in `params`."))
             .property("operation", operation)
-            .property("params", Options::schema())
-            .required("operation");
+            .property("params", Options::schema());
         RefOr::T(Schema::Object(object.build()))
     }
 }
@@ -143,8 +139,8 @@ mod tests {
     }
 
     #[test]
-    fn a_request_without_a_known_operation_is_refused() {
-        for text in [&br#"{}"#[..], br#"{"operation":"repiar"}"#, br#"{"operation":7}"#] {
+    fn an_unknown_operation_is_refused() {
+        for text in [&br#"{"operation":"repiar"}"#[..], br#"{"operation":7}"#] {
             let problem = JobRequest::from_json(text).unwrap_err();
             assert_eq!(problem.code, ProblemCode::InvalidParameter);
             assert_eq!(problem.parameter.as_deref(), Some("operation"));

@@ -25,14 +25,22 @@ for media_type in ["application/octet-stream", "application/x-www-form-urlencode
 
 @schemathesis.hook
 def before_call(context, case, kwargs):
-    """An option may stand in the query, in the body and in its `params`, but not with different values, which a schema
-    cannot say: well-formed requests name each once."""
-    if not (case.meta and case.meta.generation.mode.is_positive and isinstance(case.body, dict)):
+    """An option, and the operation of a job, may stand in the query, in the body and in parts of it, but not with
+    different values, which a schema cannot say: well-formed requests name each once."""
+    if not (case.meta and case.meta.generation.mode.is_positive):
         return
-    is_form = "mesh" in case.body
-    outer = case.body.get("job", {}) if is_form else case.body
-    inner = (case.body if is_form and "job" not in case.body else outer).get("params", {})
-    for name in [name for name in inner if name in outer and inner is not outer]:
-        del inner[name]
-    for name in [*outer, *inner]:
+    named = set()
+    for place in places(case.body if isinstance(case.body, dict) else {}):
+        for name in [name for name in place if name in named]:
+            del place[name]
+        named.update(place)
+    for name in named:
         case.query.pop(name, None)
+    if case.path == "/v1/jobs" and case.method == "POST" and "operation" not in named:
+        case.query.setdefault("operation", "verify")
+
+
+def places(body):
+    """The objects of a body that hold options."""
+    parts = [body.get("job", {}), body.get("params", {})] if "mesh" in body else [body]
+    return [place for part in parts for place in (part, part.get("params", {})) if isinstance(place, dict)]
