@@ -21,7 +21,7 @@ type Id = Result<Path<String>, axum::extract::rejection::PathRejection>;
 /// With `wait`, the answer comes when the job has ended or after that many seconds, at most 300.
 #[utoipa::path(get, path = "/v1/jobs/{id}", tag = "jobs",
     params(("id" = String, Path, description = "Id of the job."),
-           ("wait" = Option<u64>, Query, description = "Seconds to wait for the job's end. Default: 0.")),
+           ("wait" = Option<usize>, Query, description = "Seconds to wait for the job's end, at most 300; more are taken for 300. Default: 0.")),
     responses((status = 200, description = "The job.", body = Job), (status = 304, description = "Not changed.")))]
 pub(super) async fn show(state: State, caller: Extension<Caller>, id: Id, request: Request) -> Handled {
     json_only(request.headers())?;
