@@ -1,7 +1,8 @@
 //! Points with equal coordinates.
 //!
-//! Radix partition by hash, then one small table for each part: the parts fit the cache and are independent, and what
-//! they find does not depend on the order in which they run.
+//! Most points of a mesh without indices repeat a point a few triangles before: a small cache of recent points finds
+//! those. What is left goes through a radix partition by hash, then one small table for each part: the parts fit the
+//! processor's cache and are independent. What is found does not depend on the order in which ranges and parts run.
 
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
@@ -43,7 +44,12 @@ pub fn coincident_f32(
     point: impl Fn(usize) -> [f32; 3] + Sync,
     budget: &Budget,
 ) -> Result<Coincident, Stopped> {
-    group_by_key(len, |i| point(i).map(|x| without_sign_of_zero(x.to_bits(), 1 << 31)), budget)
+    let key = |i| {
+        let [x, y, z] = point(i);
+        let bits = |x: f32| without_sign_of_zero(x.to_bits(), 1 << 31);
+        [bits(x), bits(y), bits(z)]
+    };
+    group_by_key(len, key, budget)
 }
 
 fn without_sign_of_zero<T: Copy + PartialEq + Default>(bits: T, negative_zero: T) -> T {
@@ -57,8 +63,8 @@ trait Key: Copy + Ord + Default + Send + Sync {
 
 impl Key for [u32; 3] {
     fn hash(self) -> u64 {
-        let [x, y, z] = self.map(u64::from);
-        fold(fold(x << 32 | y, SEEDS[0]) ^ z, SEEDS[1])
+        let [x, y, z] = self;
+        fold(fold(u64::from(x) << 32 | u64::from(y), SEEDS[0]) ^ u64::from(z), SEEDS[1])
     }
 }
 
@@ -90,12 +96,61 @@ const PARTS_MAX: usize = 512;
 /// Steps through a table at half load after which the hashes are taken for crafted.
 const PROBES_MAX: usize = 256;
 
+/// Points that share a cache of recent points.
+const RECENT_CHUNK: usize = 1 << 17;
+
+/// Recent points that are remembered: as many as fit the second-level cache.
+const RECENT_LEN: usize = 1 << 14;
+
 fn group_by_key<K: Key>(
     len: usize,
     key: impl Fn(usize) -> K + Sync,
     budget: &Budget,
 ) -> Result<Coincident, Stopped> {
     assert!(u32::try_from(len).is_ok(), "too many points for 32-bit ids");
+    let (mut group, _charge) = budget.vec::<u32>(len)?;
+    group.resize(len, 0);
+    let ranges = group.chunks_mut(RECENT_CHUNK).collect();
+    let news = par::map_items(ranges, |range, new_of| {
+        budget.check()?;
+        Ok(points_not_repeated(range * RECENT_CHUNK, &key, new_of))
+    });
+    let news = news.into_iter().collect::<Result<Vec<_>, Stopped>>()?;
+    let begins = news.iter().scan(0, |end, news| Some(std::mem::replace(end, *end + news.len())));
+    let begins: Vec<usize> = begins.collect();
+    let news = news.concat();
+    let of_news = group_by_parts(news.len(), |new| key(news[new] as usize), budget)?;
+    par::for_each_chunk_mut(&mut group, RECENT_CHUNK, |begin, groups| {
+        let of_news = &of_news.group[begins[begin / RECENT_CHUNK]..];
+        for group in groups {
+            *group = of_news[*group as usize];
+        }
+    });
+    Ok(Coincident { group, first: of_news.first.into_iter().map(|new| news[new as usize]).collect() })
+}
+
+/// The points from `begin` on that repeat none of the range which is remembered, among them the first of every group.
+/// `new_of` is told for each point of the range which of them has its key.
+fn points_not_repeated<K: Key>(begin: usize, key: impl Fn(usize) -> K, new_of: &mut [u32]) -> Vec<u32> {
+    let mut slots = vec![Entry { key: K::default(), id: EMPTY }; RECENT_LEN];
+    let mut news = Vec::with_capacity(new_of.len() / 4);
+    for (i, new_of) in (begin..).zip(new_of) {
+        let key = key(i);
+        let slot = &mut slots[key.hash() as usize % RECENT_LEN];
+        if slot.key != key || slot.id == EMPTY {
+            *slot = Entry { key, id: news.len() as u32 };
+            news.push(i as u32);
+        }
+        *new_of = slot.id;
+    }
+    news
+}
+
+fn group_by_parts<K: Key>(
+    len: usize,
+    key: impl Fn(usize) -> K + Sync,
+    budget: &Budget,
+) -> Result<Coincident, Stopped> {
     let _charge = budget.charge(len as u64 * (size_of::<Entry<K>>() as u64 + 4 + 4 + 4))?;
     let parts = Parts { bits: (len / PART_LEN).clamp(1, PARTS_MAX).next_power_of_two().trailing_zeros() };
     let mut chunks = par::try_map_ranges(len, CHUNK, |range| {

@@ -66,7 +66,11 @@ pub(in crate::formats) fn read(
 fn corner(records: &[u8], i: usize) -> [f32; 3] {
     let at = i / 3 * TRIANGLE_BYTES + NORMAL_BYTES + i % 3 * CORNER_BYTES;
     match records[at..].first_chunk::<CORNER_BYTES>() {
-        Some(b) => [0, 4, 8].map(|k| f32::from_le_bytes([b[k], b[k + 1], b[k + 2], b[k + 3]])),
+        Some(&[a, b, c, d, e, f, g, h, i, j, k, l]) => [
+            f32::from_le_bytes([a, b, c, d]),
+            f32::from_le_bytes([e, f, g, h]),
+            f32::from_le_bytes([i, j, k, l]),
+        ],
         None => [f32::NAN; 3],
     }
 }
