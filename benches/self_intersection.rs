@@ -76,7 +76,8 @@ fn benches(criterion: &mut Criterion) {
     group.sample_size(10).throughput(Throughput::Elements(sphere.triangles.len() as u64));
     group.bench_function("weld", |b| {
         b.iter(|| {
-            coincident_f32(corners.len(), |i| corners[i], &Budget::unlimited()).expect("no limit").first.len()
+            let mut group = vec![0; corners.len()];
+            coincident_f32(|i| corners[i], &mut group, &Budget::unlimited()).expect("no limit").len()
         });
     });
     group.bench_function("tree", |b| b.iter_with_large_drop(|| tree(&sphere)));

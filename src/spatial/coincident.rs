@@ -25,14 +25,15 @@ pub struct Coincident {
 /// # Panics
 /// With 2^32 points or more.
 pub fn coincident_f64(points: &[DVec3], budget: &Budget) -> Result<Coincident, Stopped> {
-    group_by_key(
-        points.len(),
-        |i| points[i].to_array().map(|x| without_sign_of_zero(x.to_bits(), 1 << 63)),
-        budget,
-    )
+    let key = |i: usize| points[i].to_array().map(|x| without_sign_of_zero(x.to_bits(), 1 << 63));
+    let (mut group, _charge) = budget.vec::<u32>(points.len())?;
+    group.resize(points.len(), 0);
+    let first = group_by_key(key, &mut group, budget)?;
+    Ok(Coincident { group, first })
 }
 
-/// As [`coincident_f64`] for `len` float32 points that `point` gives by index.
+/// As [`coincident_f64`] for float32 points that `point` gives by index: fills in the `group` of each and returns the
+/// first point of each group.
 ///
 /// # Errors
 /// When the budget stops the run.
@@ -40,16 +41,16 @@ pub fn coincident_f64(points: &[DVec3], budget: &Budget) -> Result<Coincident, S
 /// # Panics
 /// With 2^32 points or more.
 pub fn coincident_f32(
-    len: usize,
     point: impl Fn(usize) -> [f32; 3] + Sync,
+    group: &mut [u32],
     budget: &Budget,
-) -> Result<Coincident, Stopped> {
+) -> Result<Vec<u32>, Stopped> {
     let key = |i| {
         let [x, y, z] = point(i);
         let bits = |x: f32| without_sign_of_zero(x.to_bits(), 1 << 31);
         [bits(x), bits(y), bits(z)]
     };
-    group_by_key(len, key, budget)
+    group_by_key(key, group, budget)
 }
 
 fn without_sign_of_zero<T: Copy + PartialEq + Default>(bits: T, negative_zero: T) -> T {
@@ -100,16 +101,14 @@ const PROBES_MAX: usize = 256;
 const RECENT_CHUNK: usize = 1 << 17;
 
 /// Recent points that are remembered: as many as fit the second-level cache.
-const RECENT_LEN: usize = 1 << 14;
+const RECENT_LEN: usize = 1 << 13;
 
 fn group_by_key<K: Key>(
-    len: usize,
     key: impl Fn(usize) -> K + Sync,
+    group: &mut [u32],
     budget: &Budget,
-) -> Result<Coincident, Stopped> {
-    assert!(u32::try_from(len).is_ok(), "too many points for 32-bit ids");
-    let (mut group, _charge) = budget.vec::<u32>(len)?;
-    group.resize(len, 0);
+) -> Result<Vec<u32>, Stopped> {
+    assert!(u32::try_from(group.len()).is_ok(), "too many points for 32-bit ids");
     let ranges = group.chunks_mut(RECENT_CHUNK).collect();
     let news = par::map_items(ranges, |range, new_of| {
         budget.check()?;
@@ -120,13 +119,13 @@ fn group_by_key<K: Key>(
     let begins: Vec<usize> = begins.collect();
     let news = news.concat();
     let of_news = group_by_parts(news.len(), |new| key(news[new] as usize), budget)?;
-    par::for_each_chunk_mut(&mut group, RECENT_CHUNK, |begin, groups| {
+    par::for_each_chunk_mut(group, RECENT_CHUNK, |begin, groups| {
         let of_news = &of_news.group[begins[begin / RECENT_CHUNK]..];
         for group in groups {
             *group = of_news[*group as usize];
         }
     });
-    Ok(Coincident { group, first: of_news.first.into_iter().map(|new| news[new as usize]).collect() })
+    Ok(of_news.first.into_iter().map(|new| news[new as usize]).collect())
 }
 
 /// The points from `begin` on that repeat none of the range which is remembered, among them the first of every group.
@@ -383,9 +382,10 @@ mod tests {
                 let budget = Budget::unlimited();
                 let found = par::with_threads(threads, || {
                     let wide = coincident_f64(&points, &budget).unwrap();
-                    let narrow =
-                        coincident_f32(len, |i| points[i].to_array().map(|x| x as f32), &budget).unwrap();
-                    (wide, narrow)
+                    let mut group = vec![0; len];
+                    let narrow = |i: usize| points[i].to_array().map(|x| x as f32);
+                    let first = coincident_f32(narrow, &mut group, &budget).unwrap();
+                    (wide, Coincident { group, first })
                 });
                 assert!(found == (expected.clone(), expected.clone()), "{len} points, {threads} threads");
             }
@@ -414,8 +414,9 @@ mod tests {
     #[test]
     fn colliding_hashes_are_grouped_by_sorting() {
         let keys: Vec<Colliding> = (0..200_000).map(|i| Colliding(i * 7919 % 60_000)).collect();
-        let found = group_by_key(keys.len(), |i| keys[i], &Budget::unlimited()).unwrap();
-        assert_eq!(found, by_map(&keys));
+        let mut group = vec![0; keys.len()];
+        let first = group_by_key(|i| keys[i], &mut group, &Budget::unlimited()).unwrap();
+        assert_eq!(Coincident { group, first }, by_map(&keys));
     }
 
     #[test]

@@ -1,10 +1,11 @@
 //! Binary STL: 80 free bytes, the number of triangles, then 50 bytes for each.
 
-use crate::budget::Budget;
+use crate::budget::{Budget, CHECK_EVERY};
 use crate::formats::faces::Faces;
 use crate::formats::{Place, ReadError, ReadOptions};
 use crate::geom::DVec3;
 use crate::mesh::Soup;
+use crate::par;
 use crate::spatial::coincident_f32;
 
 const HEADER_BYTES: usize = 84;
@@ -48,14 +49,17 @@ pub(in crate::formats) fn read(
     options.limits.check_triangles(u64::from(count))?;
 
     let records = &bytes[HEADER_BYTES..length as usize];
-    let corner_count = 3 * count as usize;
-    let welded = coincident_f32(corner_count, |i| corner(records, i), budget)?;
-    options.limits.check_vertices(welded.first.len() as u64)?;
-    let (mut positions, _charged) = budget.vec::<DVec3>(welded.first.len())?;
-    positions.extend(welded.first.iter().map(|&i| DVec3::from(corner(records, i as usize).map(f64::from))));
     let (mut triangles, _charged) = budget.vec::<[u32; 3]>(count as usize)?;
-    triangles.extend_from_slice(welded.group.as_chunks::<3>().0);
-    drop(welded);
+    triangles.resize(count as usize, [0; 3]);
+    let first = coincident_f32(|i| corner(records, i), triangles.as_flattened_mut(), budget)?;
+    options.limits.check_vertices(first.len() as u64)?;
+    let (mut positions, _charged) = budget.vec::<DVec3>(first.len())?;
+    positions.resize(first.len(), DVec3::ZERO);
+    par::for_each_chunk_mut(&mut positions, CHECK_EVERY, |begin, positions| {
+        for (position, &i) in positions.iter_mut().zip(&first[begin..]) {
+            *position = DVec3::from(corner(records, i as usize).map(f64::from));
+        }
+    });
 
     let soup = Faces::of_triangles(triangles).into_soup(positions, &options.limits, budget)?;
     Ok(Soup { is_welded_by_format: true, ..soup })
