@@ -43,7 +43,7 @@ for line in open(os.path.join(shared, "corpus/MANIFEST.tsv")):
         except Exception as e: before = {"error": str(e)[:100]}
         after = judged(readable(src, d, "in.msh"), readable(dst, d, "out.msh")) if os.path.exists(dst) else {}
         same = os.path.exists(dst) and open(src, "rb").read() == open(dst, "rb").read()
-    rows.append(dict(id=id, classes=classes, code=code, seconds=seconds, report=report, before=before, after=after, same=same,
+    rows.append(dict(id=id, src=src, classes=classes, code=code, seconds=seconds, report=report, before=before, after=after, same=same,
                      error=(run.stderr.decode("utf-8", "replace").strip().splitlines() or [""])[0] if code != "timeout" else "timeout"))
 outcome = lambda r: ((r["report"] or {}).get("verdict") or {}).get("outcome") or ("unreadable" if r["code"] == 2 else f"exit {r['code']}")
 valid = [r for r in rows if good(r["before"])]; broken = [r for r in rows if not good(r["before"])]
@@ -64,7 +64,14 @@ for k, n in sorted(collections.Counter(map(outcome, rows)).items()): print(f"| {
 print("\n## Disagreements with the judge\n")
 disagree = [r for r in rows if good(r["before"]) != (outcome(r) == "identical") or (r["after"] and not good(r["after"]))]
 print("None: `identical` exactly where the judge calls the input valid, and every returned file is printable to it." if not disagree else "| file | classes | ours | judge |\n|---|---|---|---|")
-for r in disagree: print(f"| {r['id']} | {r['classes']} | {outcome(r)} | {'valid' if good(r['before']) else 'not valid'} before, {json.dumps({k: v for k, v in r['before'].items() if v})[:200]} |")
+for r in disagree:
+    with tempfile.TemporaryDirectory() as d:
+        # Whether it is the judge's reader of the format that takes the file otherwise: the same indices as OFF, which it reads itself.
+        copy = os.path.join(d, "copy.off"); subprocess.run([binary, "convert", r["src"], "-o", copy], capture_output=True)
+        again = judged(copy, "--only")
+    said = {k: r["before"].get(k) for k in ("nv", "nf", "boundary", "nm_verts", "comps", "si")}
+    print(f"| {r['id']} | {r['classes']} | {outcome(r)} | {'valid' if good(r['before']) else 'not valid'} before ({said}); the same vertices and indices as an OFF file: "
+          f"{'valid' if good(again) else 'not valid'}, {again.get('nv')} vertices |")
 print("\n## Broken files\n\n| file | classes | outcome | first reason | bit-identical triangles | visible surface lost |\n|---|---|---|---|---|---|")
 for r in broken:
     reasons = ((r["report"] or {}).get("verdict") or {}).get("reasons") or [r["error"]]

@@ -44,15 +44,20 @@ pub enum Stage {
     Analyze,
     /// Repair steps.
     Repair,
+    /// Fewer triangles.
+    Simplify,
     /// Mesh to bytes.
     Write,
     /// The exact check of bytes.
     Certify,
+    /// How far the result is from the input.
+    Measure,
 }
 
 impl Stage {
     /// Every stage, in the order of a full run.
-    pub const ALL: [Self; 5] = [Self::Read, Self::Analyze, Self::Repair, Self::Write, Self::Certify];
+    pub const ALL: [Self; 7] =
+        [Self::Read, Self::Analyze, Self::Repair, Self::Simplify, Self::Write, Self::Certify, Self::Measure];
 
     /// The stage's name in reports and metrics.
     pub fn name(self) -> &'static str {
@@ -60,8 +65,10 @@ impl Stage {
             Self::Read => "read",
             Self::Analyze => "analyze",
             Self::Repair => "repair",
+            Self::Simplify => "simplify",
             Self::Write => "write",
             Self::Certify => "certify",
+            Self::Measure => "measure",
         }
     }
 }

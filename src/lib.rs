@@ -12,9 +12,11 @@ pub mod par;
 pub mod mesh;
 pub mod spatial;
 
+pub mod distance;
 pub mod formats;
 
 pub mod analysis;
+pub mod simplify;
 
 pub mod certificate;
 pub mod repair;

@@ -31,6 +31,19 @@ pub(super) enum Command {
     /// Write a mesh in another format.
     #[command(arg_required_else_help = true)]
     Convert(ConvertArguments),
+    /// Write a mesh with fewer triangles; its certificate says what holds.
+    #[command(arg_required_else_help = true)]
+    Simplify(SimplifyArguments),
+    /// Say whether the faces of a file, as indexed, make a half-edge mesh (a manifold, coherently oriented).
+    #[command(arg_required_else_help = true)]
+    Check {
+        /// Mesh file, or - for standard input.
+        #[arg(value_name = "IN")]
+        input: Place,
+        /// Format of the input. Default: told by the content.
+        #[arg(long, value_name = "WORD", value_parser = clap::builder::PossibleValuesParser::new(crate::wire::Format::WORDS))]
+        format: Option<String>,
+    },
     /// Exit with 0 if the service on this machine is ready (for containers).
     Healthcheck(ServiceArguments),
     /// Show or check the configuration.
@@ -123,6 +136,16 @@ pub(super) struct ConvertArguments {
     output: Place,
 }
 
+#[derive(Debug, Args)]
+pub(super) struct SimplifyArguments {
+    #[command(flatten)]
+    given: InputArguments,
+    /// File to write, or - for standard output, which needs --output-format. Its extension names the format unless
+    /// --output-format does. With several --targets each has its own file: OUT-1, OUT-2 and so on.
+    #[arg(short, long, value_name = "OUT")]
+    output: Place,
+}
+
 /// An operation on a file, whichever command named it.
 #[derive(Debug)]
 pub(super) struct Request {
@@ -169,6 +192,12 @@ impl From<RepairArguments> for Request {
             request.options.push(("require".to_owned(), "best_effort".to_owned()));
         }
         request
+    }
+}
+
+impl From<SimplifyArguments> for Request {
+    fn from(given: SimplifyArguments) -> Self {
+        given.given.request(Operation::Simplify, Some(given.output))
     }
 }
 

@@ -40,6 +40,18 @@ impl Place {
         }
     }
 
+    /// The file beside it for the result of this number: `part-2.stl` for `part.stl`.
+    pub(super) fn numbered(&self, number: usize) -> Self {
+        let Self::File(path) = self else { return self.clone() };
+        let mut name = path.file_stem().unwrap_or_default().to_owned();
+        name.push(format!("-{number}"));
+        if let Some(extension) = path.extension() {
+            name.push(".");
+            name.push(extension);
+        }
+        Self::File(path.with_file_name(name))
+    }
+
     /// All bytes of the file or standard input.
     pub(super) fn read(&self) -> io::Result<Vec<u8>> {
         match self {
@@ -143,6 +155,13 @@ mod tests {
         assert!(Place::File(folder.path().join("no/out.stl")).check_writable().is_err());
         assert!(Place::File(folder.path().join("out.stl")).check_writable().is_ok());
         assert!(Place::File("out.stl".into()).check_writable().is_ok());
+    }
+
+    #[test]
+    fn results_of_several_targets_are_numbered_before_the_extension() {
+        let numbered = |path: &str| Place::File(path.into()).numbered(2).to_string();
+        assert_eq!(numbered("a.b/part.v1.stl"), "a.b/part.v1-2.stl");
+        assert_eq!(numbered("part"), "part-2");
     }
 
     #[test]

@@ -42,8 +42,8 @@ fn option_flag(spec: &'static OptionSpec) -> Arg {
     let flag = if spec.name.contains('_') { flag.alias(spec.name) } else { flag };
     match spec.kind {
         OptionKind::Word(words) => flag.value_name("WORD").value_parser(PossibleValuesParser::new(words)),
-        OptionKind::Integer { .. } => flag.value_name("NUMBER"),
-        OptionKind::Input => flag.value_name("JSON"),
+        OptionKind::Integer { .. } | OptionKind::Number { .. } => flag.value_name("NUMBER"),
+        OptionKind::Input | OptionKind::Targets => flag.value_name("JSON"),
     }
 }
 

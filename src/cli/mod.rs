@@ -1,6 +1,7 @@
 //! The command line: the same engine, options and report as the service.
 
 mod arguments;
+mod check;
 mod exit;
 mod files;
 mod flags;
@@ -10,6 +11,7 @@ mod watch;
 mod work;
 
 use crate::config::{Config, Loaded};
+use crate::formats::Format;
 use arguments::{Arguments, Command, SettingsCommand};
 use clap::Parser as _;
 use exit::Exit;
@@ -70,6 +72,10 @@ fn execute(command: Command, service: Service) -> Exit {
         Command::Verify(given) => work::run(&given.into()),
         Command::Repair(given) => work::run(&given.into()),
         Command::Convert(given) => work::run(&given.into()),
+        Command::Simplify(given) => work::run(&given.into()),
+        Command::Check { input, format } => {
+            check::run(&input, format.and_then(|word| Format::from_name(&word)))
+        }
     }
 }
 

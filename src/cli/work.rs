@@ -33,6 +33,10 @@ fn attempt(request: &Request) -> Result<Exit, Problem> {
     check_streams(request)?;
     let options =
         Options::from_pairs(request.options.iter().map(|(n, v)| (n, v))).map_err(|e| Problem::from(&e))?;
+    options.check().map_err(|e| Problem::from(&e))?;
+    if request.output == Some(Place::Stream) && options.targets.as_ref().is_some_and(|t| t.len() > 1) {
+        return Err(wrong("standard output holds one mesh; several --targets need a file name"));
+    }
     let loaded = request.sources.load().map_err(|e| wrong(e.to_string()))?;
     if let Some(output) = &request.output {
         output.check_writable().map_err(|e| wrong(format!("{output} cannot be written: {e}")))?;
@@ -128,22 +132,24 @@ fn deliver(
     answer: &Answer,
     timing: TimingMs,
 ) -> Result<Exit, Problem> {
-    let result = answer.output.as_ref().map(|output| output.bytes.as_deref().unwrap_or(bytes));
-    let written = result.and_then(|result| Some((result, request.output.as_ref()?)));
-    if let Some((result, place)) = written {
+    let mut written = Vec::new();
+    for (i, output) in answer.output.iter().chain(&answer.levels).enumerate() {
+        let Some(place) = &request.output else { continue };
+        let place = if answer.levels.is_empty() { place.clone() } else { place.numbered(i + 1) };
         place
-            .write(result)
+            .write(output.bytes.as_deref().unwrap_or(bytes))
             .map_err(|e| Problem::new(ProblemCode::StorageFull, format!("{place} cannot be written: {e}")))?;
+        written.push(place.to_string());
     }
     let report = Report::new(&answer.report, timing);
     if request.is_json {
         print_json(&report);
     } else {
-        let written = written.map(|(_, place)| place.to_string());
+        let written = (!written.is_empty()).then(|| written.join(", "));
         let text = summary(&report, &Subject { input: request.input.to_string(), written });
         if request.output == Some(Place::Stream) { say_text(&text) } else { print(&text) }
     }
-    Ok(verdict(request.operation, require, &report, result.is_some()))
+    Ok(verdict(request.operation, require, &report, answer.output.is_some()))
 }
 
 fn verdict(operation: Operation, require: Option<Require>, report: &Report, has_result: bool) -> Exit {
@@ -151,7 +157,9 @@ fn verdict(operation: Operation, require: Option<Require>, report: &Report, has_
         Operation::Repair => has_result && report.verdict.printable,
         Operation::Verify => report.verdict.printable,
         Operation::Analyze => require != Some(Require::Printable) || report.verdict.printable,
-        Operation::Convert => has_result && (require != Some(Require::Printable) || report.verdict.printable),
+        Operation::Convert | Operation::Simplify => {
+            has_result && (require != Some(Require::Printable) || report.verdict.printable)
+        }
     };
     if is_done { Exit::Done } else { Exit::Negative }
 }

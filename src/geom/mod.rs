@@ -1,5 +1,6 @@
 //! Points, exact predicates and triangle-triangle classification. Knows no mesh, only coordinates.
 
+mod closest;
 mod exact;
 mod predicates;
 mod projection;
@@ -8,6 +9,7 @@ mod sign;
 mod tri_tri;
 mod volume;
 
+pub use closest::closest_point_on_triangle;
 pub use glam::{DVec2, DVec3};
 pub use predicates::{Plane, orient2d, orient3d};
 pub use projection::{Projection, are_collinear, is_on_segment};

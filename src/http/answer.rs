@@ -4,7 +4,7 @@ use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse as _, Response};
 use sha2::{Digest as _, Sha256};
 
-use super::both::Both;
+use super::both::{Both, Mesh};
 use super::mesh_file;
 use super::problem::{Handled, json};
 use super::representation::{OCTET_STREAM, Representation};
@@ -83,7 +83,8 @@ impl Finished<'_> {
             }
             Representation::Zip => {
                 let both = self.both().await?;
-                let disposition = mesh_file::disposition(&format!("{}.zip", both.file_name));
+                let first = both.meshes.first().map_or("mesh", |mesh| &mesh.file_name);
+                let disposition = mesh_file::disposition(&format!("{first}.zip"));
                 let headers = [
                     (header::CONTENT_TYPE, "application/zip".to_owned()),
                     (header::CONTENT_DISPOSITION, disposition),
@@ -108,10 +109,15 @@ impl Finished<'_> {
     }
 
     async fn both(&self) -> Result<Both<tokio::fs::File>, Problem> {
-        let mesh = self.jobs.result(self.id).await?;
+        let stored = self.jobs.results(self.id).await?;
         let report = self.jobs.report(self.id).await?.read().await?;
-        let media_type = mesh_file::media_type(&mesh);
-        Ok(Both { report, mesh: mesh.file, mesh_len: mesh.bytes, media_type, file_name: mesh.file_name })
+        let mesh = |stored: StoredFile| Mesh {
+            media_type: mesh_file::media_type(&stored),
+            len: stored.bytes,
+            file_name: stored.file_name,
+            content: stored.file,
+        };
+        Ok(Both { report, meshes: stored.into_iter().map(mesh).collect() })
     }
 
     /// Adds what is known about the job: its outcome, where its report is, and how long its passes took.

@@ -1,7 +1,8 @@
-//! Report and mesh in one answer: as `multipart/mixed`, or as a zip archive.
+//! Report and meshes in one answer: as `multipart/mixed`, or as a zip archive.
 
 use std::io::{self, Write};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::vec::IntoIter;
 
 use axum::body::Body;
 use bytes::{Bytes, BytesMut};
@@ -20,37 +21,61 @@ const REPORT_NAME: &str = "report.json";
 pub(super) struct Both<R> {
     /// The report, as JSON.
     pub(super) report: Vec<u8>,
-    /// The mesh.
-    pub(super) mesh: R,
-    /// Length of the mesh in bytes.
-    pub(super) mesh_len: u64,
-    /// Media type of the mesh.
+    /// The meshes: one, or one for each target of a simplification.
+    pub(super) meshes: Vec<Mesh<R>>,
+}
+
+/// A mesh to be sent.
+pub(super) struct Mesh<R> {
+    /// Its bytes.
+    pub(super) content: R,
+    /// Their number.
+    pub(super) len: u64,
+    /// Media type.
     pub(super) media_type: &'static str,
-    /// File name of the mesh.
+    /// File name.
     pub(super) file_name: String,
 }
 
-impl<R: AsyncRead + Send + Unpin + 'static> Both<R> {
-    /// The two parts as `multipart/mixed` with this boundary, which must occur in neither; and the whole length.
-    pub(super) fn into_multipart(self, boundary: &str) -> (Body, u64) {
-        let report_head = format!("--{boundary}\r\nContent-Type: application/json\r\n\r\n");
-        let mesh_head = format!(
+impl<R> Mesh<R> {
+    /// What stands before it in a `multipart/mixed` body.
+    fn head(&self, boundary: &str) -> String {
+        format!(
             "\r\n--{boundary}\r\nContent-Type: {}\r\nContent-Disposition: attachment; filename=\"{}\"\r\n\r\n",
             self.media_type, self.file_name
-        );
-        let head = [report_head.as_bytes(), &self.report, mesh_head.as_bytes()].concat();
+        )
+    }
+}
+
+impl<R: AsyncRead + Send + Unpin + 'static> Both<R> {
+    /// The parts as `multipart/mixed` with this boundary, which must occur in none; and the whole length.
+    pub(super) fn into_multipart(self, boundary: &str) -> (Body, u64) {
+        let report_head = format!("--{boundary}\r\nContent-Type: application/json\r\n\r\n");
+        let head = [report_head.as_bytes(), &self.report].concat();
         let tail = format!("\r\n--{boundary}--\r\n");
-        let len = head.len() as u64 + self.mesh_len + tail.len() as u64;
+        let mut len = (head.len() + tail.len()) as u64;
         let once = |bytes: Vec<u8>| futures_util::stream::iter([Ok::<_, io::Error>(Bytes::from(bytes))]);
-        let pieces = ReaderStream::with_capacity(self.mesh, PIECE_BYTES);
-        (Body::from_stream(once(head).chain(pieces).chain(once(tail.into_bytes()))), len)
+        let mut meshes = Vec::with_capacity(self.meshes.len());
+        for mesh in self.meshes {
+            let head = mesh.head(boundary);
+            len += head.len() as u64 + mesh.len;
+            let pieces = ReaderStream::with_capacity(mesh.content, PIECE_BYTES);
+            meshes.push(once(head.into_bytes()).chain(pieces));
+        }
+        let meshes = futures_util::stream::iter(meshes).flatten();
+        (Body::from_stream(once(head).chain(meshes).chain(once(tail.into_bytes()))), len)
     }
 
-    /// Both as a zip archive, packed while it is sent.
+    /// All as a zip archive, packed while it is sent.
     pub(super) fn into_zip(self) -> io::Result<Body> {
         let spill = Spill::default();
-        let mut packer = Packer { zip: ZipWriter::new_stream(spill.clone()), spill, mesh: self.mesh };
-        let begun = packer.begin(&self.report, self.file_name, self.mesh_len)?;
+        let mut packer = Packer {
+            zip: ZipWriter::new_stream(spill.clone()),
+            spill,
+            mesh: None,
+            waiting: self.meshes.into_iter(),
+        };
+        let begun = packer.begin(&self.report)?;
         let rest = futures_util::stream::try_unfold(Some(packer), Packer::step);
         Ok(Body::from_stream(futures_util::stream::iter([Ok(begun)]).chain(rest)))
     }
@@ -81,33 +106,44 @@ impl Write for Spill {
 struct Packer<R> {
     zip: ZipWriter<StreamWriter<Spill>>,
     spill: Spill,
-    mesh: R,
+    /// The mesh that is being packed.
+    mesh: Option<R>,
+    waiting: IntoIter<Mesh<R>>,
 }
 
 impl<R: AsyncRead + Unpin> Packer<R> {
-    /// Everything up to the first byte of the mesh.
-    fn begin(&mut self, report: &[u8], mesh_name: String, mesh_len: u64) -> io::Result<Bytes> {
-        // Level 1: meshes shrink to a half already there, and the client waits.
-        let options = SimpleFileOptions::default()
+    /// Level 1: meshes shrink to a half already there, and the client waits.
+    fn options(len: u64) -> SimpleFileOptions {
+        SimpleFileOptions::default()
             .compression_method(CompressionMethod::Deflated)
             .compression_level(Some(1))
-            .large_file(mesh_len >= u64::from(u32::MAX));
-        self.zip.start_file(REPORT_NAME, options.large_file(false))?;
+            .large_file(len >= u64::from(u32::MAX))
+    }
+
+    /// The report.
+    fn begin(&mut self, report: &[u8]) -> io::Result<Bytes> {
+        self.zip.start_file(REPORT_NAME, Self::options(0))?;
         self.zip.write_all(report)?;
-        self.zip.start_file(mesh_name, options)?;
         Ok(self.spill.take())
     }
 
-    /// The next piece of the mesh, packed; after the last one the archive's directory.
+    /// The next piece of a mesh, packed; after the last mesh the archive's directory.
     async fn step(packer: Option<Self>) -> io::Result<Option<(Bytes, Option<Self>)>> {
         let Some(mut packer) = packer else { return Ok(None) };
         let mut piece = vec![0; PIECE_BYTES];
-        let len = packer.mesh.read(&mut piece).await?;
-        if len == 0 {
+        let len = match &mut packer.mesh {
+            Some(mesh) => mesh.read(&mut piece).await?,
+            None => 0,
+        };
+        if len > 0 {
+            packer.zip.write_all(&piece[..len])?;
+        } else if let Some(next) = packer.waiting.next() {
+            packer.zip.start_file(next.file_name, Self::options(next.len))?;
+            packer.mesh = Some(next.content);
+        } else {
             packer.zip.finish()?;
             return Ok(Some((packer.spill.take(), None)));
         }
-        packer.zip.write_all(&piece[..len])?;
         let packed = packer.spill.take();
         Ok(Some((packed, Some(packer))))
     }
@@ -120,13 +156,13 @@ mod tests {
     use std::io::Read as _;
 
     fn both(mesh: &[u8]) -> Both<io::Cursor<Vec<u8>>> {
-        Both {
-            report: b"{\"a\":1}".to_vec(),
-            mesh: io::Cursor::new(mesh.to_vec()),
-            mesh_len: mesh.len() as u64,
+        let mesh = |file_name: &str| Mesh {
+            content: io::Cursor::new(mesh.to_vec()),
+            len: mesh.len() as u64,
             media_type: "model/stl",
-            file_name: "repaired.stl".into(),
-        }
+            file_name: file_name.to_owned(),
+        };
+        Both { report: b"{\"a\":1}".to_vec(), meshes: vec![mesh("one.stl"), mesh("two.stl")] }
     }
 
     async fn bytes_of(body: Body) -> Vec<u8> {
@@ -134,7 +170,7 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn the_archive_holds_report_and_mesh() {
+    async fn the_archive_holds_report_and_meshes() {
         let mesh: Vec<u8> = (0..200_000_u32).map(|i| i.to_le_bytes()[0]).collect();
         let packed = bytes_of(both(&mesh).into_zip().unwrap()).await;
         let mut archive = zip::ZipArchive::new(io::Cursor::new(packed)).unwrap();
@@ -144,7 +180,8 @@ mod tests {
             bytes
         };
         assert_eq!(content("report.json"), b"{\"a\":1}");
-        assert_eq!(content("repaired.stl"), mesh);
+        assert_eq!(content("one.stl"), mesh);
+        assert_eq!(content("two.stl"), mesh);
     }
 
     #[tokio::test]
@@ -155,7 +192,8 @@ mod tests {
         assert_eq!(
             text,
             "--cut\r\nContent-Type: application/json\r\n\r\n{\"a\":1}\r\n--cut\r\nContent-Type: model/stl\r\n\
-             Content-Disposition: attachment; filename=\"repaired.stl\"\r\n\r\nsolid\r\n--cut--\r\n"
+             Content-Disposition: attachment; filename=\"one.stl\"\r\n\r\nsolid\r\n--cut\r\nContent-Type: model/stl\r\n\
+             Content-Disposition: attachment; filename=\"two.stl\"\r\n\r\nsolid\r\n--cut--\r\n"
         );
     }
 }

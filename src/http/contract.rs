@@ -139,7 +139,7 @@ fn schemas() -> Vec<(String, RefOr<Schema>)> {
     let is_form = |name: &str| name == MeshForm::name() || name == JobForm::name();
     let closed = |schema| {
         changed(schema, |form| {
-            form.additional_properties = Some(Box::new(AdditionalProperties::FreeForm(false)))
+            form.additional_properties = Some(Box::new(AdditionalProperties::FreeForm(false)));
         })
     };
     schemas
@@ -161,7 +161,7 @@ fn complete_operation(path: &str, operation: &mut Operation) {
     add_problems(operation, COMMON);
     match id.as_str() {
         "analyze" | "verify" => complete_run(operation, &[]),
-        "repair" | "convert" => {
+        "repair" | "convert" | "simplify" => {
             complete_run(operation, MESH_OUT);
             add_answer(operation, "200", mesh_answer().build());
         }

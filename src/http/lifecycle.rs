@@ -76,10 +76,12 @@ pub(super) async fn report(state: State, caller: Extension<Caller>, id: Id, requ
 ///
 /// Whole or in part (`Range`); of a refused repair the same problem that the repair was answered with.
 #[utoipa::path(get, path = "/v1/jobs/{id}/result", tag = "jobs",
-    params(("id" = String, Path, description = "Id of the job.")))]
+    params(("id" = String, Path, description = "Id of the job."),
+           ("level" = Option<usize>, Query, minimum = 1,
+            description = "Which target's mesh of a simplification, from 1. Default: 1.")))]
 pub(super) async fn result(state: State, caller: Extension<Caller>, id: Id, request: Request) -> Handled {
-    query::none(request.uri())?;
-    let stored = state.jobs.result(visible(&state, &caller, id).await?).await?;
+    let level = query::level(request.uri())?;
+    let stored = state.jobs.level(visible(&state, &caller, id).await?, level - 1).await?;
     let media_type = one_of(request.headers(), &[mesh_file::media_type(&stored), OCTET_STREAM])?;
     Ok(mesh_file::asked_for(stored, media_type, request.headers()).await)
 }

@@ -52,6 +52,15 @@ pub(super) async fn convert(state: State, caller: Extension<Caller>, request: Re
     result_of(&state, &caller, Operation::Convert, request).await
 }
 
+/// Simplify a mesh.
+///
+/// Fewer triangles of the same shape, of the same topology after singular edges were cut; the certificate states what
+/// holds. With several `targets` the mesh is the first of them, and `multipart/mixed` and `application/zip` hold all.
+#[utoipa::path(post, path = "/v1/simplify", tag = "operations", params(Options))]
+pub(super) async fn simplify(state: State, caller: Extension<Caller>, request: Request) -> Handled {
+    result_of(&state, &caller, Operation::Simplify, request).await
+}
+
 /// Make a job and do not wait for it.
 #[utoipa::path(post, path = "/v1/jobs", tag = "jobs", params(Options,
     ("operation" = Option<Operation>, Query, description = "What to do, unless the body says it.")))]
@@ -155,6 +164,7 @@ async fn submission(
     headers: &HeaderMap,
 ) -> Result<Submission, Problem> {
     let mut options = in_query.join(intake.options).map_err(|error| Problem::from(&error))?;
+    options.check().map_err(|error| Problem::from(&error))?;
     options.format = options.format.or(intake.named);
     match (&intake.upload, &options.input) {
         (None, None) => return Err(no_mesh(headers)),

@@ -50,6 +50,24 @@ pub(super) fn wait(uri: &Uri) -> Result<Option<u64>, Problem> {
     Ok(seconds)
 }
 
+/// The number of `?level=`, the only parameter; 1 without it.
+pub(super) fn level(uri: &Uri) -> Result<usize, Problem> {
+    let mut level = None;
+    for (name, value) in pairs(uri)? {
+        if name != "level" {
+            return Err(unknown(&name, &["level"]));
+        }
+        // More than can be counted is more than there are.
+        let is_number = !value.is_empty() && value.bytes().all(|b| b.is_ascii_digit());
+        let given = is_number.then(|| value.parse().unwrap_or(usize::MAX)).filter(|&level| level > 0);
+        if given.is_none() || (level.is_some() && level != given) {
+            return Err(invalid("level", "`level` is one whole number from 1"));
+        }
+        level = given;
+    }
+    Ok(level.unwrap_or(1))
+}
+
 /// Refuses any parameter, for paths that take none.
 pub(super) fn none(uri: &Uri) -> Result<(), Problem> {
     match pairs(uri)?.first() {

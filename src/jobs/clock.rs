@@ -32,6 +32,7 @@ impl StageClock {
             Operation::Analyze => 3.0,
             Operation::Convert => 5.0,
             Operation::Repair => 8.0,
+            Operation::Simplify => 9.0,
         };
         Self { started: Instant::now(), passes, heard: Arc::default() }
     }

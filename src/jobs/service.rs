@@ -212,20 +212,48 @@ impl Jobs {
         }
     }
 
-    /// The job's mesh.
+    /// The job's mesh; of several, the first.
     ///
     /// # Errors
     /// `not-found` (also when the operation gives no mesh), `job-not-finished`, `expired`, or the problem for which
     /// the job has none (with the report of a refused repair inside).
     pub async fn result(&self, id: JobId) -> Result<StoredFile, Problem> {
+        self.level(id, 0).await
+    }
+
+    /// One of the job's meshes, by the place of its target, from 0.
+    ///
+    /// # Errors
+    /// As [`result`](Self::result); `not-found` when there are fewer.
+    pub async fn level(&self, id: JobId, level: usize) -> Result<StoredFile, Problem> {
         let row = self.0.row(id).await?;
-        match &ended(&row)?.result {
+        let finish = ended(&row)?;
+        if finish.result.is_none() {
+            return Err(self.with_report(reason_for_nothing(&row, "mesh"), id).await);
+        }
+        match finish.results().nth(level) {
             Some(result) => {
-                let name = view::result_name(&row, result.encoding);
+                let name = view::result_name(&row, result.encoding, level);
                 StoredFile::open(&self.0.spool, &result.blob, Some(result.encoding), name).await
             }
-            None => Err(self.with_report(reason_for_nothing(&row, "mesh"), id).await),
+            None => {
+                let detail = format!("the job has {} meshes", finish.results().count());
+                Err(Problem::new(ProblemCode::NotFound, detail))
+            }
         }
+    }
+
+    /// All of the job's meshes.
+    ///
+    /// # Errors
+    /// As [`result`](Self::result).
+    pub async fn results(&self, id: JobId) -> Result<Vec<StoredFile>, Problem> {
+        let mut files = vec![self.result(id).await?];
+        let row = self.0.row(id).await?;
+        for level in 1..ended(&row)?.results().count() {
+            files.push(self.level(id, level).await?);
+        }
+        Ok(files)
     }
 
     /// The same problem with the job's report inside, when it is a refusal.
@@ -293,6 +321,7 @@ impl Service {
             timing_ms: None,
             report: None,
             result: None,
+            levels: Vec::new(),
         }
     }
 

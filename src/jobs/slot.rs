@@ -155,7 +155,7 @@ async fn keep_files(
     answer: Answer,
     timing: wire::TimingMs,
 ) -> Result<Finish, Problem> {
-    let Answer { report, output } = answer;
+    let Answer { report, output, levels } = answer;
     let problem =
         report.refusal.as_ref().map(Problem::from).filter(|_| report.outcome == Some(Outcome::Refused));
     let outcome = report.outcome.map(wire::Outcome::from);
@@ -171,10 +171,24 @@ async fn keep_files(
         }
         None => None,
     };
+    let mut kept = Vec::with_capacity(levels.len());
+    for level in levels {
+        let written = match level.bytes {
+            Some(bytes) => service.write(bytes).await,
+            None => Ok(row.input.clone()),
+        };
+        match written {
+            Ok(blob) => kept.push(ResultRef { blob, encoding: level.encoding.into() }),
+            Err(problem) => {
+                service.remove_own(row, result.iter().chain(&kept).map(|result| &result.blob));
+                return Err(problem);
+            }
+        }
+    }
     let report = match service.write(text).await {
         Ok(report) => report,
         Err(problem) => {
-            service.remove_own(row, result.iter().map(|result| &result.blob));
+            service.remove_own(row, result.iter().chain(&kept).map(|result| &result.blob));
             return Err(problem);
         }
     };
@@ -185,6 +199,7 @@ async fn keep_files(
         outcome,
         report: Some(report),
         result,
+        levels: kept,
         ..service.finish(row, state, problem)
     })
 }
@@ -192,7 +207,7 @@ async fn keep_files(
 /// Makes the end known, unless the job was deleted meanwhile: then its files go.
 async fn commit(service: &Service, row: &JobRow, finish: Finish) {
     let written: Vec<BlobRef> =
-        finish.report.iter().chain(finish.result.iter().map(|result| &result.blob)).cloned().collect();
+        finish.report.iter().chain(finish.results().map(|result| &result.blob)).cloned().collect();
     loop {
         match service.store.finish(row.id, row.epoch, finish.clone()).await {
             Ok(()) => return super::meters::finished(row.operation, &finish),

@@ -106,6 +106,15 @@ pub struct Finish {
     pub report: Option<BlobRef>,
     /// Its mesh.
     pub result: Option<ResultRef>,
+    /// The meshes of further targets of a simplification.
+    pub levels: Vec<ResultRef>,
+}
+
+impl Finish {
+    /// Its meshes.
+    pub fn results(&self) -> impl Iterator<Item = &ResultRef> {
+        self.result.iter().chain(&self.levels)
+    }
 }
 
 impl JobRow {
@@ -124,9 +133,8 @@ impl JobRow {
             return Vec::new();
         }
         let report = self.finish.iter().filter_map(|finish| finish.report.as_ref());
-        let result =
-            self.finish.iter().filter_map(|finish| finish.result.as_ref().map(|result| &result.blob));
-        std::iter::once(&self.input).chain(&self.material).chain(report).chain(result).collect()
+        let results = self.finish.iter().flat_map(Finish::results).map(|result| &result.blob);
+        std::iter::once(&self.input).chain(&self.material).chain(report).chain(results).collect()
     }
 }
 

@@ -86,15 +86,19 @@ fn progress(row: &JobRow, live: Option<&Live>) -> Progress {
     }
 }
 
-/// Name for the mesh of a job: that of the upload, marked when it was changed.
-pub(super) fn result_name(row: &JobRow, encoding: Encoding) -> String {
-    let mark = match row.finish.as_ref().and_then(|finish| finish.outcome) {
+/// Name for a mesh of a job: that of the upload, marked when it was changed, with a number when there are several.
+pub(super) fn result_name(row: &JobRow, encoding: Encoding, level: usize) -> String {
+    let finish = row.finish.as_ref();
+    let mark = match finish.and_then(|finish| finish.outcome) {
+        Some(Outcome::Simplified) => "-simplified",
         Some(Outcome::Repaired) => "-repaired",
         Some(Outcome::Partial) => "-partial",
         _ => "",
     };
     let format = crate::formats::Encoding::from(encoding).format().into();
-    format!("{}{mark}.{}", stem(row), wire::extension_of(format))
+    let has_levels = finish.is_some_and(|finish| !finish.levels.is_empty());
+    let number = if has_levels { format!("-{}", level + 1) } else { String::new() };
+    format!("{}{mark}{number}.{}", stem(row), wire::extension_of(format))
 }
 
 /// Name for the report of a job.

@@ -1,10 +1,12 @@
 //! Triangle soups as read from files, and their connectivity.
 
 mod components;
+pub mod corner_table;
 mod cut;
 mod divide;
 mod edges;
 mod fans;
+pub mod half_edge;
 mod parity;
 mod soup;
 mod stitch;

@@ -56,9 +56,11 @@ impl Input {
             before: None,
             input_certificate: self.examination.certificate.clone(),
             actions: Vec::new(),
+            levels: Vec::new(),
             after: None,
             certificate: None,
             identical_triangle_share: None,
+            distance: None,
             outcome: None,
             refusal: None,
             work_used: 0,
@@ -89,6 +91,7 @@ impl Input {
                 ..report
             },
             output: Some(Output { bytes: None, encoding: self.facts.encoding }),
+            levels: Vec::new(),
         }
     }
 }
@@ -96,7 +99,7 @@ impl Input {
 impl Report {
     /// An answer without a file.
     pub(super) fn into_answer(self) -> Answer {
-        Answer { report: self, output: None }
+        Answer { report: self, output: None, levels: Vec::new() }
     }
 
     /// An answer that refuses a file.

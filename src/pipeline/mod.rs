@@ -7,12 +7,15 @@ mod input;
 mod output;
 mod plan;
 mod repair;
+mod simplify;
 
 use self::input::Input;
 use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stopped};
 use crate::certificate::{Certificate, Violation};
+use crate::distance::SurfaceDistance;
 use crate::formats::{Encoding, Format, ReadError, ReadOptions, WriteError};
+use crate::simplify::{CriterionKind, Mode, Placement, Report as SimplifyReport, Target};
 
 /// What to do with a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -25,11 +28,13 @@ pub enum Operation {
     Convert,
     /// The certificate of the file as it is.
     Verify,
+    /// Fewer triangles; the certificate states what holds.
+    Simplify,
 }
 
 impl Operation {
     /// Every operation.
-    pub const ALL: [Self; 4] = [Self::Analyze, Self::Repair, Self::Convert, Self::Verify];
+    pub const ALL: [Self; 5] = [Self::Analyze, Self::Repair, Self::Convert, Self::Verify, Self::Simplify];
 
     /// Name in paths, options and reports.
     pub fn name(self) -> &'static str {
@@ -38,6 +43,7 @@ impl Operation {
             Self::Repair => "repair",
             Self::Convert => "convert",
             Self::Verify => "verify",
+            Self::Simplify => "simplify",
         }
     }
 }
@@ -92,10 +98,48 @@ pub struct Options {
     pub require: Option<Require>,
     /// Hole filling of `repair`.
     pub fill_holes: FillHoles,
+    /// How `simplify` works, and how far; a repair ends with it when it has targets.
+    pub simplify: SimplifyChoices,
     /// Witnesses to keep of each defect; `None`: 16.
     pub samples: Option<usize>,
     /// The MTL file of an OBJ: its diffuse colours become face colours, which OFF and PLY can hold.
     pub material: Option<Vec<u8>>,
+}
+
+/// How far to simplify, and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SimplifyChoices {
+    /// One result for each, from one run, finest first; errors in the unit of the file. None: a `simplify` halves the
+    /// number of faces, a repair leaves it.
+    pub targets: Vec<Target>,
+    /// Which guarantees and what speed; `None`: guarded.
+    pub mode: Option<Mode>,
+    /// What a collapse costs.
+    pub criterion: CriterionKind,
+    /// Where the merged vertex goes.
+    pub placement: Placement,
+}
+
+impl Default for SimplifyChoices {
+    fn default() -> Self {
+        Self {
+            targets: Vec::new(),
+            mode: None,
+            criterion: CriterionKind::Quadric,
+            placement: Placement::Optimal,
+        }
+    }
+}
+
+/// One result of a simplification.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Level {
+    /// What was asked and how far it came.
+    pub simplified: SimplifyReport,
+    /// The bytes, judged.
+    pub certificate: Certificate,
+    /// How far the surface is from the one that was simplified.
+    pub distance: Option<SurfaceDistance>,
 }
 
 /// What became of the file.
@@ -107,6 +151,8 @@ pub enum Outcome {
     Converted,
     /// Valid after local edits.
     Repaired,
+    /// Fewer triangles, as asked; the certificate says what holds.
+    Simplified,
     /// Not valid; only on request.
     Partial,
     /// No result.
@@ -173,12 +219,17 @@ pub struct Report {
     pub input_certificate: Certificate,
     /// Steps in the order they ran; empty when none did.
     pub actions: Vec<Action>,
+    /// The results of a simplification, in the order of the targets; the first is the one that `after`, `certificate`
+    /// and `distance` are about.
+    pub levels: Vec<Level>,
     /// The mesh as returned; `None` when it is the same or there is none.
     pub after: Option<Analysis>,
     /// The returned bytes, judged; `None` when there are none.
     pub certificate: Option<Certificate>,
     /// Share of the input's triangles that are bit-identical in the output; `None` without an output.
     pub identical_triangle_share: Option<f64>,
+    /// How far the returned surface is from the input's; `None` where it was not measured.
+    pub distance: Option<SurfaceDistance>,
     /// What became of the file; `None` for `analyze` and `verify`.
     pub outcome: Option<Outcome>,
     /// Why there is no result.
@@ -205,6 +256,8 @@ pub struct Answer {
     pub report: Report,
     /// The file, if the operation returns one and it was not refused.
     pub output: Option<Output>,
+    /// The files of further targets of a simplification.
+    pub levels: Vec<Output>,
 }
 
 /// A run without a report.
@@ -243,6 +296,7 @@ pub fn run(
         Operation::Verify => input.verification().into_answer(),
         Operation::Convert => convert::convert(&input, options, budget)?,
         Operation::Repair => repair::repair(&input, options, budget)?,
+        Operation::Simplify => simplify::simplify(&input, options, budget)?,
     };
     answer.report.work_used = budget.work_used();
     answer.report.bytes_peak = budget.bytes_peak();

@@ -76,6 +76,7 @@ impl Candidate {
             outcome: Some(outcome),
             ..report
         };
-        Ok(Answer { report, output: Some(Output { bytes: Some(self.bytes), encoding: self.encoding }) })
+        let output = Some(Output { bytes: Some(self.bytes), encoding: self.encoding });
+        Ok(Answer { report, output, levels: Vec::new() })
     }
 }

@@ -3,7 +3,7 @@
 use super::input::Input;
 use super::output::{Candidate, NoCandidate};
 use super::plan::{Attempt, Variant};
-use super::{Answer, Failure, Operation, Options, Outcome, Refusal, Report, Require};
+use super::{Answer, Failure, Operation, Options, Outcome, Refusal, Report, Require, simplify};
 use crate::analysis::Analysis;
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::Depth;
@@ -16,10 +16,15 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
     let report = input.report(Operation::Repair, budget)?;
     let encoding = input.output_encoding(options);
     if input.examination.certificate.is_printable() {
+        let (draft, _) = Draft::from_soup(&input.soup);
+        if let Some((candidate, origins, action)) = simplify::of_certified(&draft, input, options, budget)? {
+            let origins = origins_in_input(&draft, &origins);
+            let report = Report { actions: vec![action], ..report };
+            return Ok(candidate.returned(input, &origins, report, Outcome::Simplified, budget)?);
+        }
         if encoding == input.facts.encoding {
             return Ok(input.returned_as_it_is(report, Outcome::Identical));
         }
-        let (draft, _) = Draft::from_soup(&input.soup);
         match write(&draft, input, encoding, Depth::FirstViolation, budget) {
             Ok(candidate) if candidate.certificate().is_printable() => {
                 let origins = &draft.triangle_origin;
@@ -33,18 +38,31 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
     }
     let search = Search { input, encoding, options, before: report.before.as_ref(), budget };
     match search.run()? {
-        Found::Certified(attempt, candidate) => {
-            let origins = &attempt.draft.triangle_origin;
+        Found::Certified(found) => {
+            let (mut attempt, candidate) = *found;
+            let draft = &attempt.draft;
+            let (candidate, origins) = match simplify::of_certified(draft, input, options, budget)? {
+                Some((candidate, origins, action)) => {
+                    attempt.actions.push(action);
+                    (candidate, origins_in_input(draft, &origins))
+                }
+                None => (candidate, draft.triangle_origin.clone()),
+            };
             let report = Report { actions: attempt.actions, ..report };
-            Ok(candidate.returned(input, origins, report, Outcome::Repaired, budget)?)
+            Ok(candidate.returned(input, &origins, report, Outcome::Repaired, budget)?)
         }
         Found::Nothing { refusal: Refusal::NotRepairable { .. }, mended: Some(mended), .. } => {
-            partial(input, encoding, report, mended, budget)
+            partial(input, encoding, report, *mended, budget)
         }
         Found::Nothing { refusal, last, .. } => {
             Ok(Report { actions: last.actions, ..report }.refused(refusal))
         }
     }
+}
+
+/// The triangle of the input behind each of `triangles` of the draft.
+fn origins_in_input(draft: &Draft, triangles: &[u32]) -> Vec<u32> {
+    triangles.iter().map(|&t| draft.triangle_origin[t as usize]).collect()
 }
 
 /// The search for a plan that leads to certified bytes.
@@ -57,14 +75,20 @@ struct Search<'a> {
 }
 
 enum Found {
-    Certified(Attempt, Candidate),
+    Certified(Box<(Attempt, Candidate)>),
     Nothing {
         refusal: Refusal,
         /// The last plan, run to its end.
-        last: Attempt,
+        last: Box<Attempt>,
         /// The last plan without the steps that join what was cut, if the best effort was asked for.
-        mended: Option<Attempt>,
+        mended: Option<Box<Attempt>>,
     },
+}
+
+impl Found {
+    fn nothing(refusal: Refusal, last: Attempt, mended: Option<Attempt>) -> Self {
+        Self::Nothing { refusal, last: Box::new(last), mended: mended.map(Box::new) }
+    }
 }
 
 impl Search<'_> {
@@ -76,23 +100,23 @@ impl Search<'_> {
         loop {
             let (mended, last) = self.attempt(variant)?;
             if last.draft.triangles.is_empty() {
-                return Ok(Found::Nothing { refusal: Refusal::NothingToRepair, last, mended });
+                return Ok(Found::nothing(Refusal::NothingToRepair, last, mended));
             }
             let candidate =
                 match write(&last.draft, self.input, self.encoding, Depth::FirstViolation, self.budget) {
                     Ok(candidate) if candidate.certificate().is_printable() => {
-                        return Ok(Found::Certified(last, candidate));
+                        return Ok(Found::Certified(Box::new((last, candidate))));
                     }
                     Ok(candidate) => candidate,
                     Err(NoCandidate::Refused(refusal)) => {
-                        return Ok(Found::Nothing { refusal, last, mended });
+                        return Ok(Found::nothing(refusal, last, mended));
                     }
                     Err(NoCandidate::Failed(failure)) => return Err(failure),
                 };
             let witness = candidate.certificate().witnesses.first().cloned();
             fails_in_f32 |= witness.as_ref().is_some_and(|violation| violation.reading.is_f32);
             let Some(next) = self.next(variant, clears_noise, &last, fails_in_f32) else {
-                return Ok(Found::Nothing { refusal: Refusal::NotRepairable { witness }, last, mended });
+                return Ok(Found::nothing(Refusal::NotRepairable { witness }, last, mended));
             };
             variant = next;
         }

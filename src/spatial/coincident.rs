@@ -131,7 +131,9 @@ fn group_by_key<K: Key>(
 /// The points from `begin` on that repeat none of the range which is remembered, among them the first of every group.
 /// `new_of` is told for each point of the range which of them has its key.
 fn points_not_repeated<K: Key>(begin: usize, key: impl Fn(usize) -> K, new_of: &mut [u32]) -> Vec<u32> {
-    let mut slots = vec![Entry { key: K::default(), id: EMPTY }; RECENT_LEN];
+    // On the heap: a worker's stack may be small.
+    let mut slots = Vec::new();
+    slots.resize(RECENT_LEN, Entry { key: K::default(), id: EMPTY });
     let mut news = Vec::with_capacity(new_of.len() / 4);
     for (i, new_of) in (begin..).zip(new_of) {
         let key = key(i);

@@ -6,6 +6,7 @@
 mod certificate;
 mod formats;
 mod job;
+mod level;
 mod limits;
 mod mesh_info;
 mod option_schema;
@@ -13,6 +14,7 @@ mod options;
 mod problem;
 mod report;
 mod request;
+mod target;
 mod verdict;
 mod version;
 mod words;
@@ -23,15 +25,20 @@ pub(crate) mod sample;
 pub use certificate::{Certificate, Claim, Reading, Shell, Violation, ViolationCount};
 pub use formats::{FormatInfo, extension_of, format_of_media_type, formats, media_type_of};
 pub use job::{Job, JobState, Links, Progress};
+pub use level::Level;
 pub use limits::Limits;
 pub use mesh_info::{Bounds, Counts, Defect, Element, Figure, Measures, MeshInfo, Properties, Witness};
 pub use options::{OptionError, OptionKind, OptionSpec, Options, SPECS};
 pub use problem::{ErrorInfo, Problem, ProblemCode, errors};
-pub use report::{Action, Change, Deviation, EngineInfo, InputInfo, Report, Resources, TimingMs, UnitsInfo};
+pub use report::{
+    Action, Change, Deviation, DirectedDistance, Distance, EngineInfo, InputInfo, Report, Resources,
+    TimingMs, UnitsInfo,
+};
 pub use request::{InputRef, JobRequest};
+pub use target::TargetSpec;
 pub use verdict::{Reason, Verdict};
 pub use version::{ENGINE_NAME, ENGINE_VERSION, REPORT_SCHEMA, Version};
 pub use words::{
-    Condition, DefectCode, Encoding, FillHoles, Format, Nesting, Operation, Outcome, Reader, ReasonCode,
-    Require, Severity, Stage, Units,
+    Condition, Criterion, DefectCode, Encoding, FillHoles, Format, Mode, Nesting, Operation, Outcome,
+    Placement, Reader, ReasonCode, Require, Severity, Stage, Units,
 };

@@ -1,11 +1,12 @@
 //! The table of options in the words of OpenAPI.
 
 use utoipa::openapi::path::{Parameter, ParameterBuilder, ParameterIn};
-use utoipa::openapi::schema::{AdditionalProperties, ObjectBuilder, Schema, SchemaType, Type};
-use utoipa::openapi::{RefOr, Required};
+use utoipa::openapi::schema::{AdditionalProperties, ArrayBuilder, ObjectBuilder, Schema, SchemaType, Type};
+use utoipa::openapi::{Ref, RefOr, Required};
 use utoipa::{IntoParams, PartialSchema, ToSchema};
 
 use super::options::{OptionKind, OptionSpec, Options, SPECS};
+use super::target::TargetSpec;
 
 impl OptionSpec {
     /// Schema of the value in JSON.
@@ -18,6 +19,10 @@ impl OptionSpec {
             OptionKind::Integer { min, max } => {
                 described.schema_type(Type::Integer).minimum(Some(min as f64)).maximum(Some(max as f64))
             }
+            OptionKind::Number { min, max } => {
+                described.schema_type(Type::Number).minimum(Some(min)).maximum(Some(max))
+            }
+            OptionKind::Targets => return targets_schema(self.about),
             OptionKind::Input => described
                 .schema_type(Type::Object)
                 .property(
@@ -39,9 +44,28 @@ impl OptionSpec {
                     .pattern(Some(r#"^\{"job":"[0-9a-f-]{36}"\}$"#))
                     .build(),
             ),
+            OptionKind::Targets => Schema::Object(
+                ObjectBuilder::new()
+                    .schema_type(Type::String)
+                    .pattern(Some(r#"^\[\{"ratio":0\.[0-9]{1,3}\}\]$"#))
+                    .description(Some("JSON text of the list."))
+                    .build(),
+            ),
             _ => self.schema(),
         }
     }
+}
+
+/// A list of targets, each an object with one member.
+fn targets_schema(about: &str) -> Schema {
+    Schema::Array(
+        ArrayBuilder::new()
+            .description(Some(about))
+            .items(RefOr::from(Ref::from_schema_name(TargetSpec::name())))
+            .min_items(Some(1))
+            .max_items(Some(16))
+            .build(),
+    )
 }
 
 impl PartialSchema for Options {

@@ -6,12 +6,13 @@ use serde_json::{Map, Value};
 
 use super::problem::{Problem, ProblemCode};
 use super::request::InputRef;
-use super::words::{FillHoles, Format, Nesting, Reader, Require, Units};
+use super::target::{self, TargetSpec};
+use super::words::{Criterion, FillHoles, Format, Mode, Nesting, Placement, Reader, Require, Units};
 use crate::formats::{ReadLimits, ReadOptions};
-use crate::pipeline;
+use crate::{pipeline, simplify};
 
 /// What values an option takes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum OptionKind {
     /// One of these words.
     Word(&'static [&'static str]),
@@ -22,12 +23,21 @@ pub enum OptionKind {
         /// Largest value.
         max: u64,
     },
+    /// A number in this range.
+    Number {
+        /// Smallest value.
+        min: f64,
+        /// Largest value.
+        max: f64,
+    },
+    /// A list of targets of a simplification.
+    Targets,
     /// An earlier job: `{"job":"ID"}`.
     Input,
 }
 
 /// One option.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OptionSpec {
     /// Name in queries and JSON; as a flag with hyphens.
     pub name: &'static str,
@@ -73,6 +83,41 @@ pub const SPECS: &[OptionSpec] = &[
         "How shells inside shells are taken. Default: as_oriented.",
     ),
     option(
+        "faces",
+        OptionKind::Integer { min: 1, max: u32::MAX as u64 },
+        "Simplify to at most this many faces. At most one of faces, ratio, error_mm and targets.",
+    ),
+    option(
+        "ratio",
+        OptionKind::Number { min: 0.0, max: 1.0 },
+        "Simplify to at most this share of the faces. Default of simplify: 0.5.",
+    ),
+    option(
+        "error_mm",
+        OptionKind::Number { min: 0.0, max: 1e30 },
+        "Simplify as far as no collapse has an error above this, in millimetres.",
+    ),
+    option(
+        "targets",
+        OptionKind::Targets,
+        "Several results from one run: [{\"ratio\":0.5},{\"faces\":1000},{\"error_mm\":0.1}].",
+    ),
+    option(
+        "mode",
+        OptionKind::Word(Mode::WORDS),
+        "How a simplification works. Default: guarded, which a repair always uses.",
+    ),
+    option(
+        "criterion",
+        OptionKind::Word(Criterion::WORDS),
+        "What the collapse of an edge costs. Default: quadric.",
+    ),
+    option(
+        "placement",
+        OptionKind::Word(Placement::WORDS),
+        "Where the vertex goes that an edge becomes. Default: optimal.",
+    ),
+    option(
         "samples",
         OptionKind::Integer { min: 0, max: 10_000 },
         "Witnesses that the report keeps of each defect. Default: 16.",
@@ -92,7 +137,7 @@ pub const SPECS: &[OptionSpec] = &[
 ];
 
 /// The options of a request; `None`: not given.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Options {
     /// Format of the input.
     pub format: Option<Format>,
@@ -108,6 +153,20 @@ pub struct Options {
     pub fill_holes: Option<FillHoles>,
     /// How shells inside shells are taken.
     pub nesting: Option<Nesting>,
+    /// Faces to simplify to.
+    pub faces: Option<u32>,
+    /// Share of the faces to simplify to.
+    pub ratio: Option<f64>,
+    /// Error to simplify up to, in millimetres.
+    pub error_mm: Option<f64>,
+    /// Several targets of a simplification.
+    pub targets: Option<Vec<TargetSpec>>,
+    /// How a simplification works.
+    pub mode: Option<Mode>,
+    /// What the collapse of an edge costs.
+    pub criterion: Option<Criterion>,
+    /// Where the vertex goes that an edge becomes.
+    pub placement: Option<Placement>,
     /// Witnesses to keep of each defect.
     pub samples: Option<u32>,
     /// Seconds for which the result is kept.
@@ -117,7 +176,7 @@ pub struct Options {
 }
 
 /// An option that cannot be taken.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum OptionError {
     /// There is no such option.
     Unknown {
@@ -132,6 +191,13 @@ pub enum OptionError {
         spec: &'static OptionSpec,
         /// The value that was given.
         value: String,
+    },
+    /// It does not go with another one that is given.
+    Excluded {
+        /// The option.
+        spec: &'static OptionSpec,
+        /// The other one.
+        by: &'static str,
     },
     /// It is given twice with different values.
     Contradictory {
@@ -180,6 +246,13 @@ impl Options {
                 Some(number) => self.set_integer(spec, number),
                 None => Taken::Invalid,
             },
+            OptionKind::Number { min, max } => {
+                match parse_number(value).filter(|n| (min..=max).contains(n)) {
+                    Some(number) => self.set_number(spec, number),
+                    None => Taken::Invalid,
+                }
+            }
+            OptionKind::Targets => put(&mut self.targets, target::targets_from_json(value)),
             OptionKind::Input => match serde_json::from_str(value) {
                 Ok(input) => put(&mut self.input, Some(input)),
                 Err(_) => Taken::Invalid,
@@ -199,7 +272,10 @@ impl Options {
             (OptionKind::Integer { .. }, Value::Number(number)) => {
                 number.to_string().trim_end_matches(".0").to_owned()
             }
-            (OptionKind::Input, Value::Object(_)) => value.to_string(),
+            (OptionKind::Number { .. }, Value::Number(number)) => number.to_string(),
+            (OptionKind::Input, Value::Object(_)) | (OptionKind::Targets, Value::Array(_)) => {
+                value.to_string()
+            }
             _ => return Err(OptionError::Invalid { spec, value: value.to_string() }),
         };
         self.set(name, &text)
@@ -218,6 +294,13 @@ impl Options {
             ("require", put_if_given(&mut self.require, other.require)),
             ("fill_holes", put_if_given(&mut self.fill_holes, other.fill_holes)),
             ("nesting", put_if_given(&mut self.nesting, other.nesting)),
+            ("faces", put_if_given(&mut self.faces, other.faces)),
+            ("ratio", put_if_given(&mut self.ratio, other.ratio)),
+            ("error_mm", put_if_given(&mut self.error_mm, other.error_mm)),
+            ("targets", put_if_given(&mut self.targets, other.targets)),
+            ("mode", put_if_given(&mut self.mode, other.mode)),
+            ("criterion", put_if_given(&mut self.criterion, other.criterion)),
+            ("placement", put_if_given(&mut self.placement, other.placement)),
             ("samples", put_if_given(&mut self.samples, other.samples)),
             ("result_ttl", put_if_given(&mut self.result_ttl, other.result_ttl)),
             ("input", put_if_given(&mut self.input, other.input)),
@@ -237,16 +320,58 @@ impl Options {
             "require" => put(&mut self.require, Require::from_word(value)),
             "fill_holes" => put(&mut self.fill_holes, FillHoles::from_word(value)),
             "nesting" => put(&mut self.nesting, Nesting::from_word(value)),
+            "mode" => put(&mut self.mode, Mode::from_word(value)),
+            "criterion" => put(&mut self.criterion, Criterion::from_word(value)),
+            "placement" => put(&mut self.placement, Placement::from_word(value)),
             _ => Taken::Invalid,
         }
     }
 
     fn set_integer(&mut self, spec: &OptionSpec, value: u64) -> Taken {
         match spec.name {
+            "faces" => put(&mut self.faces, u32::try_from(value).ok()),
             "samples" => put(&mut self.samples, u32::try_from(value).ok()),
             "result_ttl" => put(&mut self.result_ttl, Some(value)),
             _ => Taken::Invalid,
         }
+    }
+
+    fn set_number(&mut self, spec: &OptionSpec, value: f64) -> Taken {
+        match spec.name {
+            "ratio" => put(&mut self.ratio, Some(value)),
+            "error_mm" => put(&mut self.error_mm, Some(value)),
+            _ => Taken::Invalid,
+        }
+    }
+
+    /// What no single option can say: that options go together.
+    ///
+    /// # Errors
+    /// Two options that exclude each other.
+    pub fn check(&self) -> Result<(), OptionError> {
+        let given = [
+            ("faces", self.faces.is_some()),
+            ("ratio", self.ratio.is_some()),
+            ("error_mm", self.error_mm.is_some()),
+            ("targets", self.targets.is_some()),
+        ];
+        let mut given = given.into_iter().filter(|&(_, is_given)| is_given).map(|(name, _)| name);
+        match (given.next(), given.next()) {
+            (Some(by), Some(name)) => Err(OptionError::Excluded { spec: spec_of(name)?, by }),
+            _ => Ok(()),
+        }
+    }
+
+    /// The targets of a simplification, errors in the unit of the file.
+    fn targets(&self) -> Vec<simplify::Target> {
+        let single = [
+            self.faces.map(TargetSpec::Faces),
+            self.ratio.map(TargetSpec::Ratio),
+            self.error_mm.map(TargetSpec::ErrorMm),
+        ];
+        let millimetres = self.units.unwrap_or(Units::Millimetre).millimetres();
+        let all = single.into_iter().flatten().chain(self.targets.iter().flatten().copied());
+        all.map(|target| target.to_engine(millimetres)).collect()
     }
 
     /// Both ask the engine for the same; how long the result is kept and where the bytes come from do not matter.
@@ -268,6 +393,12 @@ impl Options {
             units: self.units.map(Into::into),
             require: self.require.map(Into::into),
             fill_holes: self.fill_holes.map(Into::into).unwrap_or_default(),
+            simplify: pipeline::SimplifyChoices {
+                targets: self.targets(),
+                mode: self.mode.map(Into::into),
+                criterion: self.criterion.unwrap_or(Criterion::Quadric).into(),
+                placement: self.placement.unwrap_or(Placement::Optimal).into(),
+            },
             samples: self.samples.map(|n| n as usize),
             material: None,
         }
@@ -302,6 +433,12 @@ fn put<T: PartialEq>(place: &mut Option<T>, value: Option<T>) -> Taken {
 
 fn put_if_given<T: PartialEq>(place: &mut Option<T>, value: Option<T>) -> Taken {
     if value.is_none() { Taken::Yes } else { put(place, value) }
+}
+
+/// A plain decimal number: no sign, no blank, no words such as `inf`.
+fn parse_number(text: &str) -> Option<f64> {
+    let is_plain = text.starts_with(|c: char| c.is_ascii_digit()) && !text.contains(' ');
+    text.parse().ok().filter(|number: &f64| is_plain && number.is_finite())
 }
 
 /// A number written in digits only: no sign, no blank.
@@ -346,6 +483,10 @@ impl OptionSpec {
         match self.kind {
             OptionKind::Word(words) => words.join(", "),
             OptionKind::Integer { min, max } => format!("a whole number from {min} to {max}"),
+            OptionKind::Number { min, max } => format!("a number from {min} to {max:e}"),
+            OptionKind::Targets => {
+                "1 to 16 of {\"faces\":N}, {\"ratio\":X} and {\"error_mm\":X} in a list".to_owned()
+            }
             OptionKind::Input => "{\"job\":\"ID\"}".to_owned(),
         }
     }
@@ -365,6 +506,7 @@ impl fmt::Display for OptionError {
                     None => Ok(()),
                 }
             }
+            Self::Excluded { spec, by } => write!(f, "`{}` does not go with `{by}`", spec.name),
             Self::Contradictory { spec } => write!(f, "`{}` is given twice with different values", spec.name),
         }
     }
@@ -388,7 +530,9 @@ impl From<&OptionError> for Problem {
                 suggestion: nearest(value, spec.words().iter().copied()),
                 ..of(ProblemCode::InvalidParameter, spec.name)
             },
-            OptionError::Contradictory { spec } => of(ProblemCode::InvalidParameter, spec.name),
+            OptionError::Contradictory { spec } | OptionError::Excluded { spec, .. } => {
+                of(ProblemCode::InvalidParameter, spec.name)
+            }
         }
     }
 }
@@ -409,6 +553,8 @@ mod tests {
         match spec.kind {
             OptionKind::Word(words) => json!(words[words.len() - 1]),
             OptionKind::Integer { min, .. } => json!(min),
+            OptionKind::Number { max, .. } => json!(max),
+            OptionKind::Targets => json!([{"ratio": 0.5}, {"faces": 10}]),
             OptionKind::Input => json!({"job": "x"}),
         }
     }
@@ -488,6 +634,27 @@ mod tests {
         let of = |units| Options::from_pairs([("units", units)]).unwrap();
         let error = of("cm").join(of("mm")).unwrap_err();
         assert!(matches!(error, OptionError::Contradictory { spec } if spec.name == "units"));
+    }
+
+    #[test]
+    fn one_target_excludes_the_others_and_errors_are_in_the_unit_of_the_file() {
+        let of = |pairs: &[(&str, &str)]| Options::from_pairs(pairs.iter().copied()).unwrap();
+        let both = of(&[("faces", "10"), ("targets", r#"[{"ratio":0.5}]"#)]);
+        assert!(
+            matches!(both.check(), Err(OptionError::Excluded { spec, by: "faces" }) if spec.name == "targets")
+        );
+        let inches = of(&[("error_mm", "2.54"), ("units", "in")]);
+        assert!(inches.check().is_ok());
+        let targets = inches.to_engine(ReadLimits::default()).simplify.targets;
+        assert!(matches!(targets[..], [simplify::Target::Error(e)] if (e - 0.1).abs() < 1e-12));
+        for wrong in
+            ["[]", "[{}]", r#"[{"ratio":2}]"#, r#"[{"faces":0}]"#, r#"[{"ratio":0.5,"faces":1}]"#, "[5]"]
+        {
+            assert!(Options::from_pairs([("targets", wrong)]).is_err(), "{wrong}");
+        }
+        for wrong in ["nan", "inf", "-1", "1e400", "0x1", ""] {
+            assert!(Options::from_pairs([("error_mm", wrong)]).is_err(), "{wrong}");
+        }
     }
 
     #[test]

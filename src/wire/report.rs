@@ -6,6 +6,7 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::certificate::{Certificate, hex};
+use super::level::Level;
 use super::mesh_info::{MeshInfo, finite};
 use super::verdict::Verdict;
 use super::words::{DefectCode, Encoding, Format, Operation, Stage, Units};
@@ -27,6 +28,9 @@ pub struct Report {
     pub before: Option<MeshInfo>,
     /// The steps of the plan in the order they ran.
     pub actions: Vec<Action>,
+    /// The results of a simplification, in the order of its targets; the first is what `after`, `deviation` and
+    /// `certificate` are about. Empty for other operations.
+    pub levels: Vec<Level>,
     /// The mesh as returned; null: the same as before, or none.
     #[schema(required)]
     pub after: Option<MeshInfo>,
@@ -109,6 +113,9 @@ pub struct Deviation {
     /// Upper bound of the two-sided Hausdorff distance, in the unit of the file.
     #[schema(required)]
     pub hausdorff_max: Option<f64>,
+    /// How far the surfaces are from each other, with places; null: not measured.
+    #[schema(required)]
+    pub distance: Option<Distance>,
     /// Difference of the volumes, in cubic units of the file; null unless both are defined.
     #[schema(required)]
     pub volume_change: Option<f64>,
@@ -118,6 +125,35 @@ pub struct Deviation {
     /// Share of the input's triangles that are bit-identical in the result, from 0 to 1.
     #[schema(required)]
     pub identical_triangle_share: Option<f64>,
+}
+
+/// How far two surfaces are from each other, in the unit of the file.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct Distance {
+    /// From the input to the result.
+    pub input_to_result: DirectedDistance,
+    /// From the result to the input.
+    pub result_to_input: DirectedDistance,
+}
+
+/// How far one surface is from another, in the unit of the file.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct DirectedDistance {
+    /// No point of the surface is farther away than this.
+    #[schema(required)]
+    pub max: Option<f64>,
+    /// The distance at `place`; the largest one lies between this and `max`.
+    #[schema(required)]
+    pub found: Option<f64>,
+    /// The farthest point that was found.
+    #[schema(required)]
+    pub place: Option<[f64; 3]>,
+    /// Mean over the area, by sampling.
+    #[schema(required)]
+    pub mean: Option<f64>,
+    /// Root of the mean square over the area, by sampling.
+    #[schema(required)]
+    pub root_mean_square: Option<f64>,
 }
 
 /// Milliseconds by the clock; null: the pass did not run.
@@ -132,12 +168,18 @@ pub struct TimingMs {
     /// Repair steps.
     #[schema(required)]
     pub repair: Option<f64>,
+    /// Fewer triangles.
+    #[schema(required)]
+    pub simplify: Option<f64>,
     /// Mesh to bytes.
     #[schema(required)]
     pub write: Option<f64>,
     /// The exact check.
     #[schema(required)]
     pub certify: Option<f64>,
+    /// How far the result is from the input.
+    #[schema(required)]
+    pub measure: Option<f64>,
     /// The whole run of the engine.
     pub total: f64,
 }
@@ -149,8 +191,10 @@ impl TimingMs {
             Stage::Read => self.read,
             Stage::Analyze => self.analyze,
             Stage::Repair => self.repair,
+            Stage::Simplify => self.simplify,
             Stage::Write => self.write,
             Stage::Certify => self.certify,
+            Stage::Measure => self.measure,
         }
     }
 
@@ -160,8 +204,10 @@ impl TimingMs {
             Stage::Read => &mut self.read,
             Stage::Analyze => &mut self.analyze,
             Stage::Repair => &mut self.repair,
+            Stage::Simplify => &mut self.simplify,
             Stage::Write => &mut self.write,
             Stage::Certify => &mut self.certify,
+            Stage::Measure => &mut self.measure,
         }
     }
 }
@@ -186,6 +232,7 @@ impl Report {
             input: InputInfo::from(&inner.input),
             before: inner.before.as_ref().map(|mesh| MeshInfo::new(mesh, remaining)),
             actions: inner.actions.iter().map(Action::from).collect(),
+            levels: inner.levels.iter().map(|level| Level::new(level, inner.input.units.into())).collect(),
             after: inner.after.as_ref().map(|mesh| MeshInfo::new(mesh, None)),
             deviation: Deviation::of(inner),
             verdict: Verdict::of(inner),
@@ -233,10 +280,32 @@ impl Deviation {
         let (before, after) = (measures(inner.before.as_ref()), measures(remaining_of(inner)));
         let change = |of: fn(&analysis::Measures) -> Option<f64>| finite(of(&after?)? - of(&before?)?);
         Self {
-            hausdorff_max: None,
+            hausdorff_max: inner.distance.and_then(|distance| finite(distance.upper())),
+            distance: inner.distance.as_ref().map(Distance::from),
             volume_change: change(|measures| measures.volume),
             area_change: change(|measures| Some(measures.area)),
             identical_triangle_share: inner.identical_triangle_share.and_then(finite),
+        }
+    }
+}
+
+impl From<&crate::distance::SurfaceDistance> for Distance {
+    fn from(inner: &crate::distance::SurfaceDistance) -> Self {
+        Self {
+            input_to_result: DirectedDistance::from(&inner.forward),
+            result_to_input: DirectedDistance::from(&inner.backward),
+        }
+    }
+}
+
+impl From<&crate::distance::DirectedDistance> for DirectedDistance {
+    fn from(inner: &crate::distance::DirectedDistance) -> Self {
+        Self {
+            max: finite(inner.upper),
+            found: finite(inner.lower),
+            place: inner.farthest.place.is_finite().then(|| inner.farthest.place.to_array()),
+            mean: inner.mean.and_then(finite),
+            root_mean_square: inner.root_mean_square.and_then(finite),
         }
     }
 }
@@ -264,6 +333,7 @@ mod tests {
             "input",
             "before",
             "actions",
+            "levels",
             "after",
             "deviation",
             "verdict",
@@ -277,12 +347,12 @@ mod tests {
             assert_eq!(members(&report), expected);
             assert_eq!(
                 members(&report["deviation"]),
-                ["hausdorff_max", "volume_change", "area_change", "identical_triangle_share"]
+                ["hausdorff_max", "distance", "volume_change", "area_change", "identical_triangle_share"]
             );
             assert_eq!(members(&report["verdict"]), ["printable", "outcome", "reasons"]);
             assert_eq!(
                 members(&report["timing_ms"]),
-                ["read", "analyze", "repair", "write", "certify", "total"]
+                ["read", "analyze", "repair", "simplify", "write", "certify", "measure", "total"]
             );
         }
     }

@@ -20,7 +20,7 @@ pub struct InputRef {
 }
 
 /// What to do, with options: `{"operation":"repair","units":"mm"}`. Options may also stand in a member `params`.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct JobRequest {
     /// What to do; `None`: another part of the request says it.
     pub operation: Option<Operation>,

@@ -87,20 +87,23 @@ pub(crate) fn repaired() -> Answer {
             move_max: 0.0,
             reason: String::new(),
         }],
+        levels: Vec::new(),
         after: Some(analysis(0)),
         certificate: Some(certificate(true)),
         identical_triangle_share: Some(1.0),
+        distance: None,
         outcome: Some(Outcome::Repaired),
         refusal: None,
         work_used: 7,
         bytes_peak: 1000,
     };
-    Answer { report, output: Some(Output { bytes: Some(b"mended".to_vec()), encoding: Encoding::StlBinary }) }
+    let output = Some(Output { bytes: Some(b"mended".to_vec()), encoding: Encoding::StlBinary });
+    Answer { report, output, levels: Vec::new() }
 }
 
 /// The answer to a repair of a mesh that was valid already.
 pub(crate) fn identical() -> Answer {
-    let Answer { report, output } = repaired();
+    let Answer { report, output, levels } = repaired();
     let report = Report {
         before: Some(analysis(0)),
         input_certificate: certificate(true),
@@ -109,7 +112,7 @@ pub(crate) fn identical() -> Answer {
         outcome: Some(Outcome::Identical),
         ..report
     };
-    Answer { report, output: output.map(|output| Output { bytes: None, ..output }) }
+    Answer { report, output: output.map(|output| Output { bytes: None, ..output }), levels }
 }
 
 /// The answer to a repair without a valid result.
@@ -124,5 +127,5 @@ pub(crate) fn refused() -> Answer {
         refusal: Some(Refusal::NotRepairable { witness }),
         ..report
     };
-    Answer { report, output: None }
+    Answer { report, output: None, levels: Vec::new() }
 }

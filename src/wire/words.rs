@@ -1,6 +1,6 @@
 //! One public word for each value of the engine's enumerations.
 
-use crate::{analysis, budget, certificate, formats, pipeline};
+use crate::{analysis, budget, certificate, formats, pipeline, simplify};
 
 /// An enumeration whose values have public words.
 macro_rules! words {
@@ -90,6 +90,8 @@ mirror! { pipeline::Operation =>
         Convert = "convert",
         /// The certificate of the file as it is.
         Verify = "verify",
+        /// Fewer triangles; the certificate states what holds.
+        Simplify = "simplify",
     }
 }
 
@@ -153,6 +155,18 @@ mirror! { pipeline::Units =>
     }
 }
 
+impl Units {
+    /// Length of the unit in millimetres.
+    pub fn millimetres(self) -> f64 {
+        match self {
+            Self::Millimetre => 1.0,
+            Self::Centimetre => 10.0,
+            Self::Metre => 1000.0,
+            Self::Inch => 25.4,
+        }
+    }
+}
+
 mirror! { pipeline::Require =>
     /// What the result must be.
     Require {
@@ -183,6 +197,40 @@ words! {
     }
 }
 
+mirror! { simplify::Mode =>
+    /// How a simplification works.
+    Mode {
+        /// Always the cheapest collapse of all that are possible.
+        Strict = "strict",
+        /// Cheap collapses in independent sets, many at a time.
+        Fast = "fast",
+        /// As fast, and surfaces neither meet nor pass through each other: valid in, valid out.
+        Guarded = "guarded",
+    }
+}
+
+mirror! { simplify::CriterionKind =>
+    /// What the collapse of an edge costs.
+    Criterion {
+        /// Squared distances from the planes of the triangles that a vertex stands for.
+        Quadric = "quadric",
+        /// Change of volume and shape by this collapse alone.
+        Memoryless = "memoryless",
+        /// The length of the edge.
+        Length = "length",
+    }
+}
+
+mirror! { simplify::Placement =>
+    /// Where the vertex goes that an edge becomes.
+    Placement {
+        /// Where the criterion is smallest.
+        Optimal = "optimal",
+        /// Onto an end of the edge: no new positions.
+        OntoEnd = "onto_end",
+    }
+}
+
 mirror! { pipeline::Outcome =>
     /// What became of the file.
     Outcome {
@@ -192,6 +240,8 @@ mirror! { pipeline::Outcome =>
         Converted = "converted",
         /// Valid after local edits.
         Repaired = "repaired",
+        /// Fewer triangles, as asked; the certificate says what holds.
+        Simplified = "simplified",
         /// Not valid; only on request.
         Partial = "partial",
         /// No result.
@@ -208,10 +258,14 @@ mirror! { budget::Stage =>
         Analyze = "analyze",
         /// Repair steps.
         Repair = "repair",
+        /// Fewer triangles.
+        Simplify = "simplify",
         /// Mesh to bytes.
         Write = "write",
         /// The exact check of bytes.
         Certify = "certify",
+        /// How far the result is from the input.
+        Measure = "measure",
     }
 }
 

@@ -6,7 +6,7 @@ use crate::scan::{Mention, SourceFile};
 const LEVELS: [&[&str]; 9] = [
     &["budget", "par", "geom"],
     &["spatial", "mesh"],
-    &["formats"],
+    &["formats", "distance"],
     &["analysis", "implicit", "simplify", "modeller", "arrangement"],
     &["repair", "certificate"],
     &["pipeline"],
@@ -264,8 +264,14 @@ fn steps_do_not_call_steps(file: &SourceFile) -> Vec<String> {
 }
 
 fn topology_without_coordinates(file: &SourceFile) -> Vec<String> {
-    let topology =
-        ["src/mesh/half_edge", "src/mesh/cut", "src/mesh/stitch", "src/mesh/edges", "src/mesh/components"];
+    let topology = [
+        "src/mesh/half_edge",
+        "src/mesh/corner_table",
+        "src/mesh/cut",
+        "src/mesh/stitch",
+        "src/mesh/edges",
+        "src/mesh/components",
+    ];
     if !topology.iter().any(|name| file.path.starts_with(name)) {
         return vec![];
     }

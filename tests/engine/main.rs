@@ -26,3 +26,4 @@ mod fixtures;
 mod operations;
 mod real_files;
 mod repair;
+mod simplify;

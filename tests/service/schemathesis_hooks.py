@@ -23,21 +23,24 @@ for media_type in ["application/octet-stream", "application/x-www-form-urlencode
     schemathesis.openapi.media_type(media_type, meshes("stl", "obj", "off", "ply"))
 
 
+# At most one of these may be given.
+TARGETS = {"faces", "ratio", "error_mm", "targets"}
+
+
 @schemathesis.hook
 def before_call(context, case, kwargs):
     """An option, and the operation of a job, may stand in the query, in the body and in parts of it, but not with
-    different values, which a schema cannot say: well-formed requests name each once."""
+    different values, which a schema cannot say: well-formed requests name each once, and one target at most."""
     if not (case.meta and case.meta.generation.mode.is_positive):
         return
     named = set()
-    for place in places(case.body if isinstance(case.body, dict) else {}):
-        for name in [name for name in place if name in named]:
-            del place[name]
-        named.update(place)
-    for name in named:
-        case.query.pop(name, None)
+    for place in [*places(case.body if isinstance(case.body, dict) else {}), case.query]:
+        for name in list(place):
+            if name in named or (name in TARGETS and named & TARGETS):
+                del place[name]
+            named.add(name)
     if case.path == "/v1/jobs" and case.method == "POST" and "operation" not in named:
-        case.query.setdefault("operation", "verify")
+        case.query["operation"] = "verify"
 
 
 def places(body):

@@ -72,7 +72,7 @@ fn the_material_of_an_obj_colours_its_faces() {
         let response = server.post("/v1/jobs").multipart(form).send().unwrap();
         server.ended(&response.json().unwrap())
     };
-    let result = |job: &Value| server.get(&link(job, "result")).send().unwrap().text().unwrap();
+    let result = |job: &Value| server.get(link(job, "result")).send().unwrap().text().unwrap();
     let red = job("newmtl red\nKd 1 0 0\n");
     assert!(result(&red).contains("3 0 2 1 1.0 0.0 0.0\n"), "{}", result(&red));
     // Another material is another job, and an upload is used again with its material.

@@ -29,6 +29,15 @@ impl Box32 {
         (0..3).fold(true, |meets, k| meets & (self.min[k] <= other.max[k]) & (other.min[k] <= self.max[k]))
     }
 
+    /// The squared distance of the box from the point.
+    #[inline]
+    pub(in crate::spatial) fn squared_gap(&self, p: [f32; 3]) -> f32 {
+        (0..3).fold(0.0, |sum, k| {
+            let gap = larger(larger(self.min[k] - p[k], p[k] - self.max[k]), 0.0);
+            sum + gap * gap
+        })
+    }
+
     pub(super) fn center(&self) -> [f32; 3] {
         std::array::from_fn(|k| self.min[k] * 0.5 + self.max[k] * 0.5)
     }
@@ -79,8 +88,14 @@ impl Frame {
         (p - self.origin) * self.scale
     }
 
+    /// A length in the mapped coordinates.
     #[inline]
-    fn map(&self, p: DVec3) -> [f32; 3] {
+    pub(in crate::spatial) fn scaled(&self, length: f64) -> f64 {
+        length * self.scale
+    }
+
+    #[inline]
+    pub(in crate::spatial) fn map(&self, p: DVec3) -> [f32; 3] {
         let map =
             |x: f64, origin: f64| smaller(larger(((x - origin) * self.scale) as f32, f32::MIN), f32::MAX);
         [map(p.x, self.origin.x), map(p.y, self.origin.y), map(p.z, self.origin.z)]

@@ -75,6 +75,19 @@ impl Leaf {
         Lanes(gap.iter().enumerate().fold(0, |lanes, (k, &gap)| lanes | u32::from(gap <= 0.0) << k))
     }
 
+    /// The squared distance of each triangle's box from the point; infinite for absent ones.
+    #[inline]
+    pub(in crate::spatial) fn squared_gaps(&self, p: [f32; 3]) -> [f32; LEAF_LEN] {
+        let mut squares = [0.0; LEAF_LEN];
+        for (axis, &x) in p.iter().enumerate() {
+            for (k, square) in squares.iter_mut().enumerate() {
+                let gap = larger(larger(self.min[axis][k] - x, x - self.max[axis][k]), 0.0);
+                *square += gap * gap;
+            }
+        }
+        squares
+    }
+
     /// For each triangle, where its corners are among `corners`: bit `3 i + j` says that its corner `j` is
     /// `corners[i]`.
     #[inline]

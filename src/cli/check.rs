@@ -1,0 +1,106 @@
+//! `meshmend check`: is a file's mesh, face by face as it is indexed, a half-edge mesh, and what kind of one?
+
+use super::exit::{Exit, print, say};
+use super::files::Place;
+use crate::budget::Budget;
+use crate::formats::{self, Format, ReadOptions};
+use crate::mesh::Soup;
+use crate::mesh::half_edge::{BuildError, Claims, HalfEdgeMesh};
+use crate::wire::Problem;
+
+/// Says what the mesh is; [`Exit::Negative`] when it is no half-edge mesh.
+pub(super) fn run(input: &Place, format: Option<Format>) -> Exit {
+    match described(input, format) {
+        Ok((text, is_sound)) => {
+            print(&text);
+            if is_sound { Exit::Done } else { Exit::Negative }
+        }
+        Err(problem) => {
+            say(&format!("{input}: {}", problem.detail));
+            Exit::of(&problem)
+        }
+    }
+}
+
+fn described(input: &Place, format: Option<Format>) -> Result<(String, bool), Problem> {
+    let budget = Budget::unlimited();
+    let bytes = input.read().map_err(|error| {
+        Problem::new(crate::wire::ProblemCode::NotFound, format!("it cannot be read: {error}"))
+    })?;
+    let unreadable = |error: formats::ReadError| Problem::from(&crate::pipeline::Failure::from(error));
+    let encoding = formats::sniff(&bytes, format.or(input.format())).map_err(unreadable)?;
+    let soup = formats::read(&bytes, encoding, &ReadOptions::default(), &budget).map_err(unreadable)?;
+    let (corners, starts) = loops_of(&soup);
+    match HalfEdgeMesh::from_polygons(&corners, &starts, soup.positions.len(), &budget) {
+        Ok(mesh) => {
+            let faults =
+                mesh.check(&Claims::default(), &budget).map_err(|stopped| Problem::from(&stopped))?;
+            let counts = mesh.counts();
+            let mut text = format!(
+                "{input}: a half-edge mesh\n  {} vertices, {} edges, {} faces, {} boundary loops; Euler characteristic {}\n",
+                counts.vertices,
+                counts.edges,
+                counts.faces,
+                counts.boundary_loops,
+                counts.euler()
+            );
+            for fault in &faults {
+                text.push_str(&format!("  {fault}\n"));
+            }
+            Ok((text, faults.is_empty()))
+        }
+        Err(BuildError::Stopped(stopped)) => Err(Problem::from(&stopped)),
+        Err(error) => Ok((format!("{input}: no half-edge mesh: {error}\n"), false)),
+    }
+}
+
+/// The corners of the usable faces as the file lists them, polygons whole, and where each face begins.
+fn loops_of(soup: &Soup) -> (Vec<u32>, Vec<u32>) {
+    let mut polygons = soup.polygons.first_triangles.iter().zip(soup.polygons.starts.windows(2)).peekable();
+    let (mut all, mut starts) = (Vec::with_capacity(3 * soup.triangles.len()), vec![0]);
+    let mut t = 0;
+    while t < soup.triangles.len() {
+        match polygons.next_if(|&(&first, _)| first as usize == t) {
+            Some((_, ends)) => {
+                let corners = &soup.polygons.corners[ends[0] as usize..ends[1] as usize];
+                t += corners.len() - 2;
+                all.extend_from_slice(corners);
+            }
+            None => {
+                all.extend_from_slice(&soup.triangles[t]);
+                t += 1;
+            }
+        }
+        starts.push(all.len() as u32);
+    }
+    (all, starts)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(text: &str) -> (String, bool) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("mesh.off");
+        std::fs::write(&path, text).unwrap();
+        described(&Place::File(path), None).unwrap()
+    }
+
+    #[test]
+    fn polygons_are_faces_and_a_mesh_is_counted() {
+        let pyramid = "OFF\n5 5 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0.5 0.5 1\n4 3 2 1 0\n3 0 1 4\n3 1 2 4\n3 2 3 4\n3 3 0 4\n";
+        let (text, is_sound) = check(pyramid);
+        assert!(
+            is_sound
+                && text.contains("5 vertices, 8 edges, 5 faces, 0 boundary loops; Euler characteristic 2"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn what_is_no_half_edge_mesh_is_told_with_the_element() {
+        let (text, is_sound) = check("OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n");
+        assert!(!is_sound && text.contains("two faces run from vertex 0 to vertex 1"), "{text}");
+    }
+}

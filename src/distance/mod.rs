@@ -1,0 +1,132 @@
+//! How far two surfaces are from each other.
+//!
+//! The distance of a point from a surface is that to its closest point. The *directed* distance from one surface to
+//! another is the largest over the points of the first, the *Hausdorff* distance is the larger of both directions. It is
+//! enclosed between a lower bound, which is a distance at a place that is named, and an upper bound that no point of the
+//! surface exceeds: branch and bound over ever smaller pieces of triangles (as Guthe, Borodin and Klein 2005, with other
+//! bounds; see [`bound`]). The mean is over the area, by systematic sampling.
+
+mod bound;
+mod pieces;
+mod samples;
+mod scale;
+mod search;
+
+use crate::budget::{Budget, Stopped};
+use crate::geom::DVec3;
+use crate::par;
+use crate::spatial::NearestSearch;
+use scale::Common;
+use search::Directed;
+
+/// The triangles of a surface, by reference. Triangles may be degenerate, open, or meet in any way.
+#[derive(Debug, Clone, Copy)]
+pub struct Surface<'s> {
+    /// Vertex positions. Those that a triangle uses must be finite.
+    pub positions: &'s [DVec3],
+    /// Vertex ids of each triangle's corners.
+    pub triangles: &'s [[u32; 3]],
+}
+
+/// How closely to enclose a distance, and how much to spend on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DistanceOptions {
+    /// The upper bound may exceed the lower one by this share of it.
+    pub tolerance_relative: f64,
+    /// And by this share of the diagonal of the box around both surfaces.
+    pub tolerance_of_diagonal: f64,
+    /// Samples for the mean, for each direction; none: no mean.
+    pub samples: u32,
+    /// Closest points to find, for each direction, beyond one for each vertex, sample and triangle. When they are used
+    /// up the upper bound still holds, but may be farther from the lower one than the tolerances.
+    pub refinements_max: u64,
+}
+
+impl Default for DistanceOptions {
+    fn default() -> Self {
+        Self {
+            tolerance_relative: 0.01,
+            tolerance_of_diagonal: 1e-6,
+            samples: 1 << 17,
+            refinements_max: 1 << 26,
+        }
+    }
+}
+
+/// The place where a distance was measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FarPoint {
+    /// A point of the first surface.
+    pub place: DVec3,
+    /// Its triangle there.
+    pub triangle: u32,
+    /// The closest point of the other surface.
+    pub closest: DVec3,
+    /// A triangle of the other surface that the closest point is on.
+    pub closest_triangle: u32,
+}
+
+/// The distance from one surface to another. Lengths are in the unit of the coordinates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DirectedDistance {
+    /// No point of the first surface is farther from the other than this.
+    pub upper: f64,
+    /// The distance at `farthest`; the true maximum is at least this, up to rounding.
+    pub lower: f64,
+    /// The farthest point that was looked at.
+    pub farthest: FarPoint,
+    /// The mean over the area of the first surface; `None` without samples.
+    pub mean: Option<f64>,
+    /// The root of the mean square over the area of the first surface; `None` without samples.
+    pub root_mean_square: Option<f64>,
+}
+
+/// The distance between two surfaces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfaceDistance {
+    /// From the first to the second.
+    pub forward: DirectedDistance,
+    /// From the second to the first.
+    pub backward: DirectedDistance,
+}
+
+impl SurfaceDistance {
+    /// The Hausdorff distance is at most this.
+    pub fn upper(&self) -> f64 {
+        self.forward.upper.max(self.backward.upper)
+    }
+
+    /// The Hausdorff distance is at least this.
+    pub fn lower(&self) -> f64 {
+        self.forward.lower.max(self.backward.lower)
+    }
+}
+
+/// The two-sided distance between surfaces `a` and `b`; `None` when one of them has no triangle.
+///
+/// Spends one work unit for each closest point. The same whatever the thread count.
+///
+/// # Errors
+/// When the budget stops the run.
+pub fn surface_distance(
+    a: Surface<'_>,
+    b: Surface<'_>,
+    options: &DistanceOptions,
+    budget: &Budget,
+) -> Result<Option<SurfaceDistance>, Stopped> {
+    if a.triangles.is_empty() || b.triangles.is_empty() {
+        return Ok(None);
+    }
+    let common = Common::of(a, b, budget)?;
+    let (a, b) = common.surfaces();
+    let (near_a, near_b) = par::join(|| prepare(a, budget), || prepare(b, budget));
+    let (near_a, near_b) = (near_a?, near_b?);
+    let directed = |from, to| Directed { from, to, common: &common, options, budget }.measure();
+    let forward = directed(a, &near_b)?;
+    let backward = directed(b, &near_a)?;
+    Ok(Some(SurfaceDistance { forward: common.unscale(forward), backward: common.unscale(backward) }))
+}
+
+fn prepare<'s>(surface: Surface<'s>, budget: &Budget) -> Result<NearestSearch<'s>, Stopped> {
+    NearestSearch::build(surface.positions, surface.triangles, budget)
+}

@@ -1,0 +1,114 @@
+//! Pieces of triangles that may hold the farthest point, cut smaller until they do not.
+
+use super::FarPoint;
+use super::bound::{Corner, upper_bound};
+use crate::budget::{Budget, Stopped};
+use crate::geom::DVec3;
+use crate::spatial::{Nearest, NearestSearch};
+
+/// A part of a triangle and the largest distance that a point of it can have.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Piece {
+    pub(super) corners: [Corner; 3],
+    pub(super) triangle: u32,
+    pub(super) upper: f64,
+}
+
+/// The farthest point known.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Farthest {
+    pub(super) distance: f64,
+    pub(super) point: FarPoint,
+}
+
+impl Farthest {
+    /// Farther than nothing, so that the first point replaces it.
+    pub(super) const NONE: Self = Self {
+        distance: f64::NEG_INFINITY,
+        point: FarPoint { place: DVec3::ZERO, triangle: 0, closest: DVec3::ZERO, closest_triangle: 0 },
+    };
+
+    pub(super) fn at(place: DVec3, triangle: u32, nearest: &Nearest) -> Self {
+        let (closest, closest_triangle) = (nearest.point, nearest.triangle);
+        Self { distance: nearest.distance, point: FarPoint { place, triangle, closest, closest_triangle } }
+    }
+
+    /// The farther one, or this one when both are as far.
+    pub(super) fn or(self, other: Self) -> Self {
+        if other.distance > self.distance { other } else { self }
+    }
+}
+
+/// The bounds that end a search.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Tolerance {
+    pub(super) relative: f64,
+    pub(super) absolute: f64,
+}
+
+impl Tolerance {
+    /// Pieces that stay below this cannot raise the distance by more than the tolerance.
+    pub(super) fn enough(self, lower: f64) -> f64 {
+        lower + (lower * self.relative).max(self.absolute)
+    }
+}
+
+/// What a piece turned out to hold.
+#[derive(Debug, Clone)]
+pub(super) struct Refined {
+    pub(super) farthest: Farthest,
+    /// Largest upper bound among the pieces that were put aside.
+    pub(super) upper: f64,
+    /// Pieces that were not looked at.
+    pub(super) left: Vec<Piece>,
+    /// Closest points that were found.
+    pub(super) work: u64,
+}
+
+/// Closest points found for a piece before what is left of it is handed back.
+const WORK_MAX: u64 = 1024;
+
+/// Cuts `piece` until no part can be farther than the tolerance beyond the farthest point, or the work is used up.
+pub(super) fn refine(
+    to: &NearestSearch<'_>,
+    piece: Piece,
+    farthest: Farthest,
+    tolerance: Tolerance,
+    budget: &Budget,
+) -> Result<Refined, Stopped> {
+    let mut refined = Refined { farthest, upper: 0.0, left: vec![piece], work: 0 };
+    while refined.work < WORK_MAX {
+        let Some(piece) = refined.left.pop() else { break };
+        if piece.upper <= tolerance.enough(refined.farthest.distance) {
+            refined.upper = refined.upper.max(piece.upper);
+        } else {
+            split(to, &piece, &mut refined, tolerance, budget)?;
+        }
+    }
+    Ok(refined)
+}
+
+/// Cuts a piece at the middles of its edges in four.
+fn split(
+    to: &NearestSearch<'_>,
+    piece: &Piece,
+    refined: &mut Refined,
+    tolerance: Tolerance,
+    budget: &Budget,
+) -> Result<(), Stopped> {
+    let [p, q, r] = piece.corners;
+    let mut middle = |a: Corner, b: Corner| {
+        let place = (a.place + b.place) / 2.0;
+        refined.work += 1;
+        let Some(nearest) = to.find(place, Some(a.closest_triangle), budget)? else { return Ok(a) };
+        refined.farthest = refined.farthest.or(Farthest::at(place, piece.triangle, &nearest));
+        Ok(Corner { place, closest_triangle: nearest.triangle, distance: nearest.distance })
+    };
+    let (pq, qr, rp) = (middle(p, q)?, middle(q, r)?, middle(r, p)?);
+    let enough = tolerance.enough(refined.farthest.distance);
+    for corners in [[p, pq, rp], [pq, q, qr], [rp, qr, r], [qr, rp, pq]] {
+        let upper = upper_bound(to, &corners, enough).min(piece.upper);
+        refined.left.push(Piece { corners, upper, ..*piece });
+    }
+    Ok(())
+}

@@ -1,0 +1,255 @@
+//! Fewer triangles: a manifold from the file, simplified, written and judged at each target.
+
+use super::input::Input;
+use super::output::{Candidate, NoCandidate};
+use super::plan::{Attempt, Step};
+use super::{
+    Action, Answer, Failure, Level, Operation, Options, Outcome, Output, Refusal, Report, Require,
+    SimplifyChoices,
+};
+use crate::budget::{Budget, Stage, Stopped};
+use crate::certificate::Depth;
+use crate::distance::{DistanceOptions, Surface, SurfaceDistance, surface_distance};
+use crate::mesh::{Color, Soup};
+use crate::repair::Draft;
+use crate::repair::duplicates::OppositePairs;
+use crate::simplify::{
+    self, Mode, Refusal as CollapseRefusal, Simplified, SimplifyError, SimplifyOptions, Target,
+};
+use rustc_hash::FxHashMap;
+
+/// What makes a manifold of any mesh, without moving a vertex.
+const MANIFOLD: [Step; 5] = [
+    Step::Weld,
+    Step::DropDegenerate,
+    Step::DropDuplicates(OppositePairs::KeepFirst),
+    Step::Orient,
+    Step::CutSingular,
+];
+
+/// Share of the faces that is left when no target is given.
+const RATIO_DEFAULT: f64 = 0.5;
+
+/// Simplifies `input`; one file for each target.
+pub(super) fn simplify(input: &Input, options: &Options, budget: &Budget) -> Result<Answer, Failure> {
+    let report = input.report(Operation::Simplify, budget)?;
+    let mut attempt = Attempt::start(&input.soup, report.before.as_ref());
+    let _charge = budget.charge(2 * attempt.draft.bytes())?;
+    budget.stage(Stage::Repair, || attempt.run(&MANIFOLD, &input.soup, report.before.as_ref(), budget))?;
+    let Attempt { draft, actions } = attempt;
+    let report = Report { actions, ..report };
+    if draft.triangles.is_empty() {
+        return Ok(report.refused(Refusal::NothingToRepair));
+    }
+    let mesh = draft.to_soup(&input.soup);
+    let results = match run(&mesh, &options.simplify, budget) {
+        Ok(results) => results,
+        Err(SimplifyError::Stopped(stopped)) => return Err(stopped.into()),
+        Err(SimplifyError::NotManifold(_)) => {
+            return Ok(report.refused(Refusal::NotRepairable { witness: None }));
+        }
+    };
+    Writer { input, options, draft: &draft, mesh: &mesh, budget }.answer(results, report)
+}
+
+/// Writes results and gives the account of them.
+struct Writer<'a> {
+    input: &'a Input,
+    options: &'a Options,
+    draft: &'a Draft,
+    mesh: &'a Soup,
+    budget: &'a Budget,
+}
+
+impl Writer<'_> {
+    fn answer(&self, results: Vec<Simplified>, mut report: Report) -> Result<Answer, Failure> {
+        let mut first = None;
+        let mut others = Vec::new();
+        for result in results {
+            let candidate = match self.write(&result) {
+                Ok(candidate) => candidate,
+                Err(NoCandidate::Refused(refusal)) => return Ok(report.refused(refusal)),
+                Err(NoCandidate::Failed(failure)) => return Err(failure),
+            };
+            let certificate = candidate.certificate().clone();
+            if self.options.require == Some(Require::Printable) && !certificate.is_printable() {
+                let witness = certificate.witnesses.first().cloned();
+                return Ok(report.refused(Refusal::NotRepairable { witness }));
+            }
+            let distance = distance(self.mesh, &result, self.budget)?;
+            report.levels.push(Level { simplified: result.report, certificate, distance });
+            match &first {
+                None => first = Some((candidate, result.triangle_origin)),
+                Some(_) => others.push(Output { encoding: candidate.encoding, bytes: Some(candidate.bytes) }),
+            }
+        }
+        let Some((candidate, origins)) = first else {
+            return Ok(report.refused(Refusal::NothingToRepair));
+        };
+        report.distance = report.levels[0].distance;
+        let origins: Vec<u32> = origins.iter().map(|&t| self.draft.triangle_origin[t as usize]).collect();
+        let answer = candidate.returned(self.input, &origins, report, Outcome::Simplified, self.budget)?;
+        Ok(Answer { levels: others, ..answer })
+    }
+
+    fn write(&self, result: &Simplified) -> Result<Candidate, NoCandidate> {
+        let encoding = self.input.output_encoding(self.options);
+        let depth = Depth::Count { samples: self.input.samples };
+        Candidate::write(&soup_of(result, self.mesh), encoding, depth, self.budget)
+    }
+}
+
+/// The certified mesh of a repair with fewer triangles, if that is asked for and stays certified: its bytes, the
+/// triangle of `draft` that each of its triangles was, and what was done.
+pub(super) fn of_certified(
+    draft: &Draft,
+    input: &Input,
+    options: &Options,
+    budget: &Budget,
+) -> Result<Option<(Candidate, Vec<u32>, Action)>, Failure> {
+    let choices = &options.simplify;
+    let Some(&target) = choices.targets.first() else { return Ok(None) };
+    let mesh = draft.to_soup(&input.soup);
+    let one = SimplifyChoices { targets: vec![target], mode: Some(Mode::Guarded), ..choices.clone() };
+    let result = match run(&mesh, &one, budget) {
+        Ok(results) => results.into_iter().next(),
+        Err(SimplifyError::Stopped(stopped)) => return Err(stopped.into()),
+        Err(SimplifyError::NotManifold(_)) => None,
+    };
+    let Some(result) = result else { return Ok(None) };
+    let encoding = input.output_encoding(options);
+    match Candidate::write(&soup_of(&result, &mesh), encoding, Depth::FirstViolation, budget) {
+        Ok(candidate) if candidate.certificate().is_printable() => {
+            Ok(Some((candidate, result.triangle_origin, action(&result.report))))
+        }
+        Ok(_) | Err(NoCandidate::Refused(_)) => Ok(None),
+        Err(NoCandidate::Failed(failure)) => Err(failure),
+    }
+}
+
+/// What a simplification did, as a step of a plan.
+fn action(report: &simplify::Report) -> Action {
+    let refused = CollapseRefusal::ALL.map(|reason| (reason.name(), report.refusals.count(reason)));
+    let counts = [
+        ("faces_removed", (report.faces_before - report.faces_after) as u64),
+        ("edges_collapsed", report.collapses),
+    ];
+    Action {
+        step: "simplify",
+        causes: Vec::new(),
+        changes: counts.into_iter().chain(refused).collect(),
+        move_max: 0.0,
+        reason: if report.is_reached { String::new() } else { "the target was not reached".to_owned() },
+    }
+}
+
+/// Runs the simplification of a manifold; results in the order of the targets.
+fn run(mesh: &Soup, choices: &SimplifyChoices, budget: &Budget) -> Result<Vec<Simplified>, SimplifyError> {
+    let targets = match choices.targets.as_slice() {
+        [] => vec![Target::Ratio(RATIO_DEFAULT)],
+        targets => targets.to_vec(),
+    };
+    let order = finest_first(&targets, mesh.triangles.len());
+    let groups = face_groups(mesh);
+    let input = simplify::Input {
+        positions: &mesh.positions,
+        triangles: &mesh.triangles,
+        face_groups: &groups,
+        vertex_colors: &mesh.vertex_colors,
+    };
+    let options = SimplifyOptions {
+        targets: order.iter().map(|&i| targets[i]).collect(),
+        criterion: choices.criterion,
+        placement: choices.placement,
+        ..SimplifyOptions::default()
+    };
+    let mode = choices.mode.unwrap_or(Mode::Guarded);
+    let results = budget.stage(Stage::Simplify, || simplify::simplify(&input, mode, &options, budget))?;
+    let mut by_target: Vec<_> = order.into_iter().zip(results).collect();
+    by_target.sort_by_key(|&(i, _)| i);
+    Ok(by_target.into_iter().map(|(_, result)| result).collect())
+}
+
+/// The order in which one run meets the targets. Errors and counts cannot be compared before the run: among targets of
+/// both kinds, the order is the caller's.
+fn finest_first(targets: &[Target], faces: usize) -> Vec<usize> {
+    let count = |target: &Target| match *target {
+        Target::Faces(count) => Some(count as f64),
+        Target::Ratio(ratio) => Some(ratio * faces as f64),
+        Target::Error(_) => None,
+    };
+    let error = |target: &Target| match *target {
+        Target::Error(error) => Some(error),
+        _ => None,
+    };
+    let mut order: Vec<usize> = (0..targets.len()).collect();
+    if let Some(counts) = targets.iter().map(count).collect::<Option<Vec<_>>>() {
+        order.sort_by(|&a, &b| counts[b].total_cmp(&counts[a]));
+    } else if let Some(errors) = targets.iter().map(error).collect::<Option<Vec<_>>>() {
+        order.sort_by(|&a, &b| errors[a].total_cmp(&errors[b]));
+    }
+    order
+}
+
+/// A number for each triangle, the same for the same face colour; empty when there are no colours.
+fn face_groups(mesh: &Soup) -> Vec<u32> {
+    let mut numbers = FxHashMap::default();
+    let key = |color: &Option<Color>| match *color {
+        None => (0, [0; 4]),
+        Some(Color::Bytes([r, g, b], a)) => (1, [r, g, b, a.unwrap_or(255)].map(u32::from)),
+        Some(Color::Floats([r, g, b], a)) => (2, [r, g, b, a.unwrap_or(1.0)].map(f32::to_bits)),
+        Some(Color::Index(index)) => (3, [index as u32, 0, 0, 0]),
+    };
+    let mut number = |color| {
+        let next = numbers.len() as u32;
+        *numbers.entry(key(color)).or_insert(next)
+    };
+    mesh.face_colors.iter().map(&mut number).collect()
+}
+
+/// The result with the colours that its faces had in `mesh`.
+fn soup_of(result: &Simplified, mesh: &Soup) -> Soup {
+    let color = |&t: &u32| mesh.face_colors.get(t as usize).copied().flatten();
+    Soup {
+        is_f32_exact: result.positions.iter().all(|p| p.as_vec3().as_dvec3() == *p),
+        positions: result.positions.clone(),
+        triangles: result.triangles.clone(),
+        face_count: result.triangles.len() as u32,
+        vertex_colors: result.vertex_colors.clone(),
+        face_colors: match mesh.face_colors.is_empty() {
+            true => Vec::new(),
+            false => result.triangle_origin.iter().map(color).collect(),
+        },
+        ..Soup::default()
+    }
+}
+
+fn distance(mesh: &Soup, result: &Simplified, budget: &Budget) -> Result<Option<SurfaceDistance>, Stopped> {
+    let before = Surface { positions: &mesh.positions, triangles: &mesh.triangles };
+    let after = Surface { positions: &result.positions, triangles: &result.triangles };
+    // Enough for a mean, and no more than large meshes are worth.
+    let most = DistanceOptions::default().samples;
+    let samples = (8 * mesh.triangles.len()).clamp(1 << 10, most as usize) as u32;
+    let options = DistanceOptions { samples, ..DistanceOptions::default() };
+    budget.stage(Stage::Measure, || surface_distance(before, after, &options, budget))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn targets_are_met_from_the_finest_to_the_coarsest() {
+        let order = |targets: &[Target]| finest_first(targets, 1000);
+        assert_eq!(order(&[Target::Faces(10), Target::Ratio(0.5), Target::Faces(600)]), [2, 1, 0]);
+        assert_eq!(order(&[Target::Error(0.2), Target::Error(0.1)]), [1, 0]);
+        assert_eq!(order(&[Target::Error(0.2), Target::Faces(10), Target::Error(0.1)]), [0, 1, 2]);
+    }
+
+    #[test]
+    fn faces_of_one_colour_are_one_group() {
+        let (red, other) = (Some(Color::Bytes([255, 0, 0], None)), Some(Color::Index(7)));
+        let mesh = Soup { face_colors: vec![red, other, None, red], ..Soup::default() };
+        assert_eq!(face_groups(&mesh), [0, 1, 2, 0]);
+    }
+}

@@ -1,0 +1,51 @@
+//! What a collapse costs and where the merged vertex goes: the one trait of all criteria.
+
+use super::options::Placement;
+use super::surface::{Rule, Surface, Vertex};
+use crate::budget::{Budget, Stopped};
+use crate::geom::DVec3;
+
+/// A place for the vertex that an edge becomes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Placed {
+    pub position: DVec3,
+    /// Decides the order.
+    pub cost: f64,
+    /// Squared error, in squared working units.
+    pub error_squared: f64,
+}
+
+/// Which edges cost something else after a collapse.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Reach {
+    /// Those of the merged vertex, and they only cost more: a cost from before is a lower bound, and it is enough to
+    /// look again when an edge's turn comes.
+    StarGrows,
+    /// Those of the merged vertex.
+    Star,
+    /// Those of the merged vertex and of its neighbours.
+    Neighbours,
+}
+
+/// Costs of collapses. `Sync` because the first costs are computed on all cores.
+pub(super) trait Criterion: Sync {
+    /// What the criterion keeps at each vertex.
+    type State: Copy + Default + Send + Sync;
+
+    const REACH: Reach;
+
+    /// Fills in the states of all vertices.
+    fn prepare(&self, surface: &mut Surface<Self::State>, budget: &Budget) -> Result<(), Stopped>;
+
+    /// The place for the edge of `h` under `rule`.
+    fn place(&self, surface: &Surface<Self::State>, h: u32, rule: Rule, placement: Placement) -> Placed;
+
+    /// The state of the vertex at `position` that `ends` became.
+    fn merged(&self, ends: [&Vertex<Self::State>; 2], position: DVec3) -> Self::State;
+}
+
+/// The better of two places; the second when they cost the same.
+#[inline]
+pub(super) fn cheaper(a: Placed, b: Placed) -> Placed {
+    if a.cost < b.cost { a } else { b }
+}

@@ -1,0 +1,119 @@
+//! The mesh between two rounds: compact arrays, cut in parts along a space-filling curve.
+
+use super::order::along_curve;
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::geom::DVec3;
+use crate::mesh::Color;
+use crate::par;
+use crate::simplify::surface::Vertex;
+
+/// What is left of the input, and some vertices without triangles.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Mesh<S> {
+    pub(super) vertices: Vec<Vertex<S>>,
+    /// Of the vertices; empty when the input has none.
+    pub(super) colors: Vec<Option<Color>>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// Numbers that the triangles have in the input.
+    pub(super) numbers: Vec<u32>,
+    /// For each triangle, bit `k` is set when the edge from corner `k` is a line.
+    pub(super) lines: Vec<u8>,
+}
+
+/// A mesh cut in parts.
+pub(super) struct Division {
+    /// Vertices of a part; the last has fewer.
+    pub(super) part_len: usize,
+    /// The vertices of all parts, one part after the other. Triangles name vertices by their place here.
+    pub(super) order: Vec<u32>,
+    /// Where the triangles of each part begin, and after them those between parts.
+    pub(super) starts: Vec<usize>,
+    /// For each place in `order`, whether a triangle between parts uses the vertex.
+    pub(super) is_between: Vec<bool>,
+}
+
+impl Division {
+    /// The first triangle between parts.
+    pub(super) fn first_between(&self) -> usize {
+        self.starts.last().copied().unwrap_or(0)
+    }
+
+    /// The vertices of part `i`.
+    pub(super) fn vertices(&self, i: usize) -> &[u32] {
+        &self.order[i * self.part_len..self.order.len().min((i + 1) * self.part_len)]
+    }
+}
+
+impl<S: Copy + Send + Sync> Mesh<S> {
+    /// Cuts the mesh in parts of `part_len` vertices, which are neighbours along a curve that `shift` moves. The
+    /// triangles are sorted by part, those between parts last.
+    pub(super) fn divide(
+        &mut self,
+        part_len: usize,
+        shift: DVec3,
+        budget: &Budget,
+    ) -> Result<Division, Stopped> {
+        let mut used = vec![false; self.vertices.len()];
+        for block in self.triangles.chunks(CHECK_EVERY) {
+            budget.check()?;
+            block.as_flattened().iter().for_each(|&v| used[v as usize] = true);
+        }
+        let order = along_curve(|v| self.vertices[v].position, &used, shift, budget)?;
+        drop(used);
+        let mut place = vec![0u32; self.vertices.len()];
+        for (new, &old) in order.iter().enumerate() {
+            place[old as usize] = new as u32;
+        }
+        par::for_each_chunk_mut(&mut self.triangles, CHECK_EVERY, |_, triangles| {
+            triangles.as_flattened_mut().iter_mut().for_each(|v| *v = place[*v as usize]);
+        });
+        drop(place);
+        let part_len = part_len.min(order.len()).max(1);
+        let (starts, is_between) = self.sort_triangles(part_len, order.len(), budget)?;
+        Ok(Division { part_len, order, starts, is_between })
+    }
+
+    fn sort_triangles(
+        &mut self,
+        part_len: usize,
+        vertex_count: usize,
+        budget: &Budget,
+    ) -> Result<(Vec<usize>, Vec<bool>), Stopped> {
+        let parts = vertex_count.div_ceil(part_len);
+        let part_of = |corners: &[u32; 3]| {
+            let [a, b, c] = corners.map(|v| v as usize / part_len);
+            if a == b && b == c { a } else { parts }
+        };
+        let mut starts = vec![0usize; parts + 2];
+        let mut is_between = vec![false; vertex_count];
+        for block in self.triangles.chunks(CHECK_EVERY) {
+            budget.check()?;
+            for corners in block {
+                let part = part_of(corners);
+                starts[part + 1] += 1;
+                if part == parts {
+                    corners.iter().for_each(|&v| is_between[v as usize] = true);
+                }
+            }
+        }
+        for part in 0..=parts {
+            starts[part + 1] += starts[part];
+        }
+        let mut next = starts.clone();
+        let count = self.triangles.len();
+        let (mut triangles, mut numbers, mut lines) = (vec![[0; 3]; count], vec![0; count], vec![0; count]);
+        for (t, corners) in self.triangles.iter().enumerate() {
+            if t % CHECK_EVERY == 0 {
+                budget.check()?;
+            }
+            let place = &mut next[part_of(corners)];
+            triangles[*place] = *corners;
+            numbers[*place] = self.numbers[t];
+            lines[*place] = self.lines[t];
+            *place += 1;
+        }
+        (self.triangles, self.numbers, self.lines) = (triangles, numbers, lines);
+        starts.pop();
+        Ok((starts, is_between))
+    }
+}

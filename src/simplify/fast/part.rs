@@ -1,0 +1,286 @@
+//! Collapses inside one part of the mesh, in the order of their costs.
+//!
+//! A vertex is *free* when all its triangles are in the part and are one fan. Only edges between free vertices are
+//! collapsed, so no part changes what another part reads.
+//!
+//! A sum of squares only grows when others are added to it, so what an edge was known to cost bounds from below what it
+//! costs now. So nothing is evaluated again when a neighbour merges; an edge that comes up is evaluated as it is then,
+//! and put back if it turns out to be more expensive. For a criterion of which this is not true an edge may come up
+//! later than it could.
+
+use super::buckets::{Buckets, CLASSES, class_of};
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::mesh::Color;
+use crate::mesh::corner_table::{CornerTable, EdgeRings, NONE, next, prev, triangle_of};
+use crate::simplify::criterion::{Criterion, Placed};
+use crate::simplify::guard::check_faces;
+use crate::simplify::options::SimplifyOptions;
+use crate::simplify::report::{Refusal, Refusals};
+use crate::simplify::surface::{LINE, Rule, Surface};
+
+/// The topology of a part.
+#[derive(Debug)]
+pub(super) struct Piece {
+    pub(super) table: CornerTable,
+    /// For each vertex, whether it is free.
+    pub(super) is_free: Vec<bool>,
+}
+
+/// What is counted over all parts and rounds.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Tally {
+    pub(super) collapses: u64,
+    pub(super) refusals: Refusals,
+    /// In squared working units.
+    pub(super) error_squared_max: f64,
+}
+
+impl Tally {
+    pub(super) fn add(&mut self, other: &Self) {
+        self.collapses += other.collapses;
+        self.refusals.add_all(&other.refusals);
+        self.error_squared_max = self.error_squared_max.max(other.error_squared_max);
+    }
+}
+
+/// What all parts are simplified by.
+pub(super) struct Rules<'r, C> {
+    pub(super) criterion: &'r C,
+    pub(super) options: &'r SimplifyOptions<'r>,
+    /// In squared working units.
+    pub(super) error_squared_limit: f64,
+    /// Collapses may be taken back.
+    pub(super) is_guarded: bool,
+}
+
+impl<C> Clone for Rules<'_, C> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<C> Copy for Rules<'_, C> {}
+
+/// A part that is being simplified.
+pub(super) struct Part<'r, C: Criterion> {
+    pub(super) surface: Surface<C::State>,
+    /// Of the vertices; empty when the input has none.
+    pub(super) colors: Vec<Option<Color>>,
+    pub(super) tally: Tally,
+    /// Number of edges of each class at the start.
+    pub(super) class_sizes: Vec<u32>,
+    is_free: Vec<bool>,
+    /// The vertex that each one was merged into, or itself; empty when nobody asks.
+    merged_into: Vec<u32>,
+    queue: Buckets,
+    rings: EdgeRings,
+    rules: Rules<'r, C>,
+}
+
+impl<'r, C: Criterion> Part<'r, C> {
+    /// A part of which nothing is collapsed yet, with all its edges between free vertices in the queue.
+    pub(super) fn new(
+        surface: Surface<C::State>,
+        is_free: Vec<bool>,
+        colors: Vec<Option<Color>>,
+        rules: Rules<'r, C>,
+        budget: &Budget,
+    ) -> Result<Self, Stopped> {
+        let bound = surface.table.triangle_bound();
+        let vertex_count = if rules.is_guarded { surface.vertices.len() as u32 } else { 0 };
+        let merged_into = (0..vertex_count).collect();
+        let mut part = Self {
+            surface,
+            colors,
+            tally: Tally::default(),
+            class_sizes: vec![0; CLASSES],
+            is_free,
+            merged_into,
+            queue: Buckets::new(4 * bound),
+            rings: EdgeRings::default(),
+            rules,
+        };
+        for t in 0..bound as u32 {
+            if (t as usize).is_multiple_of(CHECK_EVERY) {
+                budget.check()?;
+            }
+            (4 * t..4 * t + 3).for_each(|h| part.enter(h));
+        }
+        Ok(part)
+    }
+
+    /// Puts the edge of `h` in the queue, if `h` stands for it and it is between free vertices.
+    fn enter(&mut self, h: u32) {
+        let table = &self.surface.table;
+        let is_free = |v: u32| self.is_free[v as usize];
+        if table.edge(h) == h && is_free(table.origin(h)) && is_free(table.destination(h)) {
+            match self.placed(h) {
+                Ok((_, _, class)) => {
+                    self.class_sizes[class] += 1;
+                    self.queue.push(h, class);
+                }
+                Err(reason) => self.set_aside(h, reason),
+            }
+        }
+    }
+
+    /// The place for the edge of `h`, and the class of its cost.
+    #[inline]
+    fn placed(&self, h: u32) -> Result<(Rule, Placed, usize), Refusal> {
+        let rule = self.surface.rule(h).ok_or(Refusal::Held)?;
+        let placed = self.rules.criterion.place(&self.surface, h, rule, self.rules.options.placement);
+        let class = class_of(placed.cost).ok_or(Refusal::NotFinite)?;
+        Ok((rule, placed, class))
+    }
+
+    fn set_aside(&mut self, h: u32, reason: Refusal) {
+        self.tally.refusals.add(reason);
+        self.queue.set_aside(h);
+    }
+
+    /// Number of triangles that are left.
+    pub(super) fn triangle_count(&self) -> usize {
+        self.surface.table.triangle_count()
+    }
+
+    /// The smallest class that may have an edge.
+    pub(super) fn lowest(&self) -> usize {
+        self.queue.lowest()
+    }
+
+    /// Collapses edges of classes up to `class_max` until at most `triangles_min` triangles are left.
+    pub(super) fn advance(
+        &mut self,
+        class_max: usize,
+        triangles_min: usize,
+        budget: &Budget,
+    ) -> Result<(), Stopped> {
+        let mut count = 0usize;
+        while self.triangle_count() > triangles_min {
+            if count.is_multiple_of(CHECK_EVERY) {
+                budget.check()?;
+            }
+            count += 1;
+            let Some((h, class)) = self.queue.pop(class_max) else { break };
+            // The triangle has gone, or the twin stands for the edge too.
+            if self.surface.table.corners(triangle_of(h)).is_none() || self.is_twin_queued(h) {
+                continue;
+            }
+            match self.placed(h) {
+                Ok((_, _, now)) if now > class => self.queue.push(h, now),
+                Ok((rule, placed, _)) => {
+                    if let Err(reason) = self.attempt(h, rule, placed) {
+                        self.set_aside(h, reason);
+                    }
+                }
+                Err(reason) => self.set_aside(h, reason),
+            }
+        }
+        budget.spend(count as u64)
+    }
+
+    fn is_twin_queued(&self, h: u32) -> bool {
+        let twin = self.surface.table.twin(h);
+        twin != NONE && self.queue.is_queued(twin)
+    }
+
+    /// Collapses the edge of `h`, unless something speaks against it.
+    fn attempt(&mut self, h: u32, rule: Rule, placed: Placed) -> Result<(), Refusal> {
+        let Rules { criterion, options, error_squared_limit, .. } = self.rules;
+        if placed.error_squared > error_squared_limit {
+            return Err(Refusal::Error);
+        }
+        let (position, origin) = self.surface.landing(h, rule, placed.position, options.round)?;
+        self.rings.walk(&self.surface.table, h);
+        self.surface.table.link_condition(h, &self.rings).map_err(Refusal::Link)?;
+        check_faces(&self.surface, h, &self.rings, position, &options.guards)?;
+        self.tally.collapses += 1;
+        self.tally.error_squared_max = self.tally.error_squared_max.max(placed.error_squared);
+        self.surface.merge_colors(h, position, &mut self.colors);
+        self.surface.merge_vertices(criterion, h, position, origin);
+        self.merge_edges(h);
+        self.look_around();
+        Ok(())
+    }
+
+    /// Collapses the edge of `h` in the table. The edges that become one stay in the queue when one of them was.
+    fn merge_edges(&mut self, h: u32) {
+        let table = &self.surface.table;
+        if let Some(into) = self.merged_into.get_mut(table.origin(h) as usize) {
+            *into = table.destination(h);
+        }
+        let sides =
+            [h, table.twin(h)].map(|side| (side != NONE).then(|| Joint::of(table, &self.queue, side)));
+        self.surface.table.collapse(h, &self.rings);
+        let class = self.queue.lowest().min(CLASSES - 1);
+        for joint in sides.into_iter().flatten() {
+            joint.keep(&mut self.queue, class);
+        }
+    }
+
+    /// Puts the edges around the merged vertex that had been set aside back into the queue.
+    fn look_around(&mut self) {
+        let class = self.queue.lowest().min(CLASSES - 1);
+        for corners in [&self.rings.origin.corners, &self.rings.destination.corners] {
+            for &corner in corners {
+                if self.surface.table.corners(triangle_of(corner)).is_some() {
+                    for g in [corner, prev(corner)] {
+                        if self.queue.is_aside(g) {
+                            self.queue.push(g, class);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// For each vertex, the one that is left of it. Only for a part whose collapses may be taken back.
+    pub(super) fn roots(&self) -> Vec<u32> {
+        let mut roots = self.merged_into.clone();
+        for v in 0..roots.len() {
+            let mut root = roots[v];
+            while roots[root as usize] != root {
+                // Shorter for the next one.
+                roots[root as usize] = roots[roots[root as usize] as usize];
+                root = roots[root as usize];
+            }
+            roots[v] = root;
+        }
+        roots
+    }
+
+    /// The triangles that are left, by their numbers in the part, with bits for their edges that are lines.
+    pub(super) fn triangles(&self) -> impl Iterator<Item = (u32, [u32; 3], u8)> {
+        let table = &self.surface.table;
+        (0..table.triangle_bound() as u32).filter_map(move |t| {
+            let lines = (0..3).map(|k| (table.marks(4 * t + k) & LINE) << k).sum();
+            table.corners(t).map(|corners| (t, corners, lines))
+        })
+    }
+}
+
+/// The two edges that become one when a triangle of the collapsed edge goes.
+struct Joint {
+    /// Their half-edges outside the triangle.
+    outer: [u32; 2],
+    /// One of the edges is known to the queue by its half-edge inside.
+    is_known_inside: bool,
+}
+
+impl Joint {
+    fn of(table: &CornerTable, queue: &Buckets, side: u32) -> Self {
+        let inner = [next(side), prev(side)];
+        Self {
+            outer: inner.map(|g| table.twin(g)),
+            is_known_inside: inner.into_iter().any(|g| queue.is_queued(g) || queue.is_aside(g)),
+        }
+    }
+
+    /// Puts the edge in the queue again if the half-edge that stood for it has gone.
+    fn keep(&self, queue: &mut Buckets, class: usize) {
+        let mut outer = self.outer.into_iter().filter(|&g| g != NONE);
+        if self.is_known_inside && !outer.clone().any(|g| queue.is_queued(g)) {
+            outer.next().into_iter().for_each(|g| queue.push(g, class));
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! The guarded mode: a round's collapses are taken back where the surface would meet itself.
+//!
+//! After a round the triangles that meet others where they must not are found exactly, and also closed shells that are
+//! inside out or have others around them than in the input: such a shell has jumped, although nothing meets. The
+//! vertices that were merged into the corners of these triangles are locked, and the parts they are in are done again
+//! without them. Every try locks at least one more vertex, and with all of them locked the surface is that of the round
+//! before, so it ends, with a surface that is as sound as the input.
+//!
+//! Where the input meets itself its triangles stay as they are.
+
+use super::check::{Check, Found, Left};
+use super::mesh::Division;
+use super::part::Part;
+use super::rounds::Rounds;
+use super::shells::Shells;
+use crate::budget::Stopped;
+use crate::par;
+use crate::simplify::criterion::Criterion;
+use crate::simplify::report::Refusal;
+use crate::simplify::surface::NEW;
+
+/// Tries after which one more ring around what must be locked is locked too.
+const TRIES_TO_RING: usize = 4;
+/// Tries after which whole parts are locked.
+const TRIES_MAX: usize = 40;
+
+/// What the guarded mode knows of the input.
+pub(super) struct Guard {
+    shells: Shells,
+    /// For each reading that the surface must be sound in, whether coordinates are rounded to f32 in it.
+    roundings: Vec<bool>,
+}
+
+impl Guard {
+    pub(super) fn new(shells: Shells, is_f32_exact: bool) -> Self {
+        Self { shells, roundings: if is_f32_exact { vec![false] } else { vec![false, true] } }
+    }
+}
+
+/// How a round was run.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Course {
+    /// The first round prepares the vertices.
+    pub(super) is_first: bool,
+    /// The last class that parts went to.
+    pub(super) class_max: usize,
+}
+
+impl<'r, C: Criterion> Rounds<'r, C> {
+    /// Does parts again until the surface they leave is sound.
+    pub(super) fn roll_back(
+        &self,
+        guard: &mut Guard,
+        division: &Division,
+        parts: &mut [Part<'r, C>],
+        course: Course,
+    ) -> Result<(), Stopped> {
+        let left =
+            par::map_ranges(parts.len(), 1, |range| self.left(division, range.start, &parts[range.start]));
+        let between = self.between(division);
+        let mut check = Check::new(division, left, between, &guard.roundings, self.budget)?;
+        let mut locked = vec![false; division.order.len()];
+        let mut tries = 0;
+        loop {
+            let Found { mut offenders, unsound } = check.look()?;
+            guard.shells.exclude(&unsound);
+            let mut reason = Refusal::SelfIntersection;
+            if offenders.is_empty() {
+                let moved = guard.shells.moved(&self.input, &check, &guard.roundings, self.budget)?;
+                if !moved.is_empty() {
+                    offenders = guard.shells.offenders(&moved, &check);
+                    reason = Refusal::Nesting;
+                }
+            }
+            if offenders.is_empty() {
+                return Ok(());
+            }
+            tries += 1;
+            let again = lock(division, parts, &offenders, tries, &mut locked);
+            self.redo(division, parts, &again, &locked, course)?;
+            for (i, count) in again {
+                parts[i].tally.refusals.add_times(reason, count);
+                check.replace(i, self.left(division, i, &parts[i]), &guard.roundings);
+            }
+        }
+    }
+
+    /// Does parts again, without the locked vertices and no further than before.
+    fn redo(
+        &self,
+        division: &Division,
+        parts: &mut [Part<'r, C>],
+        again: &[(usize, u64)],
+        locked: &[bool],
+        course: Course,
+    ) -> Result<(), Stopped> {
+        let done = par::try_map_ranges(again.len(), 1, |range| {
+            let i = again[range.start].0;
+            let mut piece = self.piece(division, i)?;
+            for (is_free, is_locked) in piece.is_free.iter_mut().zip(&locked[i * division.part_len..]) {
+                *is_free &= !is_locked;
+            }
+            let mut part = self.part(division, i, piece, course.is_first)?;
+            part.advance(course.class_max, parts[i].triangle_count(), self.budget)?;
+            Ok(part)
+        })?;
+        for (&(i, _), mut part) in again.iter().zip(done) {
+            part.tally.refusals.add_all(&parts[i].tally.refusals);
+            parts[i] = part;
+        }
+        Ok(())
+    }
+
+    /// What part `i` leaves.
+    fn left(&self, division: &Division, i: usize, part: &Part<'r, C>) -> Left {
+        let (first_vertex, first_triangle) = ((i * division.part_len) as u32, division.starts[i]);
+        let mut left = Left::default();
+        for (t, corners, _) in part.triangles() {
+            left.triangles.push(corners.map(|v| v + first_vertex));
+            left.numbers.push(self.mesh.numbers[first_triangle + t as usize]);
+        }
+        left.positions = part
+            .surface
+            .vertices
+            .iter()
+            .map(|vertex| match vertex.origin {
+                NEW => vertex.position / self.frame.scale,
+                origin => self.input.positions[origin as usize],
+            })
+            .collect();
+        left.is_merged = vec![false; left.positions.len()];
+        for (v, root) in part.roots().into_iter().enumerate() {
+            left.is_merged[root as usize] |= v != root as usize;
+        }
+        left
+    }
+
+    /// The triangles between parts.
+    fn between(&self, division: &Division) -> Left {
+        let first = division.first_between();
+        Left {
+            triangles: self.mesh.triangles[first..].to_vec(),
+            numbers: self.mesh.numbers[first..].to_vec(),
+            ..Left::default()
+        }
+    }
+}
+
+/// Locks what was merged into the offenders; gives the parts in which it is, with the number of vertices. After
+/// some tries also what was merged into their neighbours, then those of these, and in the end all of a part.
+fn lock<C: Criterion>(
+    division: &Division,
+    parts: &[Part<'_, C>],
+    offenders: &[u32],
+    tries: usize,
+    locked: &mut [bool],
+) -> Vec<(usize, u64)> {
+    let mut again = Vec::new();
+    for own in offenders.chunk_by(|&a, &b| a as usize / division.part_len == b as usize / division.part_len) {
+        let i = own[0] as usize / division.part_len;
+        let first = i * division.part_len;
+        let part = &parts[i];
+        let mut is_meant = vec![tries > TRIES_MAX; part.surface.vertices.len()];
+        own.iter().for_each(|&v| is_meant[v as usize - first] = true);
+        for _ in 0..(tries - 1) / TRIES_TO_RING {
+            let before = is_meant.clone();
+            for (_, corners, _) in part.triangles() {
+                if corners.iter().any(|&v| before[v as usize]) {
+                    corners.iter().for_each(|&v| is_meant[v as usize] = true);
+                }
+            }
+        }
+        let mut count = 0;
+        for (v, root) in part.roots().into_iter().enumerate() {
+            if is_meant[root as usize] && !std::mem::replace(&mut locked[first + v], true) {
+                count += 1;
+            }
+        }
+        again.push((i, count));
+    }
+    again
+}

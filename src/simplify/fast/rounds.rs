@@ -1,0 +1,307 @@
+//! Rounds: cut the mesh in parts, collapse edges inside them in step, put the rest together.
+
+use super::Settings;
+use super::buckets::CLASSES;
+use super::lines::Lines;
+use super::mesh::{Division, Mesh};
+use super::part::{Part, Piece, Rules, Tally};
+use super::rollback::{Course, Guard};
+use super::shells::Shells;
+use crate::budget::{Budget, Stopped};
+use crate::geom::DVec3;
+use crate::mesh::corner_table::CornerTable;
+use crate::par;
+use crate::simplify::criterion::Criterion;
+use crate::simplify::options::{SimplifyOptions, Target};
+use crate::simplify::result::{Input, SimplifyError};
+use crate::simplify::surface::{LINE, Surface};
+
+/// Share of the triangles that a round leaves, so that what is between parts does not fall far behind.
+const LEFT_BY_ROUND: f64 = 0.45;
+
+/// Rounds end this far above the target; the rest is done in one part.
+const ABOVE_TARGET: f64 = 1.04;
+
+/// Rounds end when one leaves more than this share of the triangles.
+const LITTLE_LEFT: f64 = 0.95;
+
+/// Rounds in one part that the guarded mode does at the end, while they find something to collapse.
+const LAST_ROUNDS_GUARDED: usize = 4;
+
+/// Classes that parts go through between two looks at their total.
+const CLASSES_AT_A_TIME: usize = 8;
+
+const FIRST_EDGES: usize = 100;
+
+/// A run of rounds.
+pub(super) struct Rounds<'r, C: Criterion> {
+    pub(super) mesh: Mesh<C::State>,
+    pub(super) tally: Tally,
+    /// A surface without triangles, for the working units.
+    pub(super) frame: Surface<C::State>,
+    rules: Rules<'r, C>,
+    pub(super) input: Input<'r>,
+    /// Vertices of a part.
+    part_len: usize,
+    /// Rounds so far.
+    count: u32,
+    /// In the guarded mode, from the first round on.
+    guard: Option<Guard>,
+    pub(super) budget: &'r Budget,
+}
+
+impl<'r, C: Criterion> Rounds<'r, C> {
+    /// Prepares a run.
+    pub(super) fn begin(
+        input: &Input<'r>,
+        options: &'r SimplifyOptions<'r>,
+        criterion: &'r C,
+        settings: Settings,
+        budget: &'r Budget,
+    ) -> Result<Self, Stopped> {
+        let mut frame = Surface::new(input.positions, CornerTable::unpaired(&[], 0), budget)?;
+        let mesh = Mesh {
+            vertices: std::mem::take(&mut frame.vertices),
+            colors: input.vertex_colors.to_vec(),
+            triangles: input.triangles.to_vec(),
+            numbers: (0..input.triangles.len() as u32).collect(),
+            lines: vec![0; input.triangles.len()],
+        };
+        let rules =
+            Rules { criterion, options, error_squared_limit: f64::INFINITY, is_guarded: settings.is_guarded };
+        let tally = Tally::default();
+        Ok(Self {
+            mesh,
+            tally,
+            frame,
+            rules,
+            input: *input,
+            count: 0,
+            part_len: settings.part_len,
+            guard: None,
+            budget,
+        })
+    }
+
+    /// Collapses until `target` is reached or nothing more can be collapsed; true when it is reached.
+    pub(super) fn reach(&mut self, target: Target, faces_before: usize) -> Result<bool, SimplifyError> {
+        let wanted = match target {
+            Target::Faces(count) => count,
+            Target::Ratio(share) => (faces_before as f64 * share.clamp(0.0, 1.0)) as usize,
+            Target::Error(_) => 0,
+        };
+        self.rules.error_squared_limit = match target {
+            Target::Error(limit) => (limit * self.frame.scale).powi(2),
+            _ => f64::INFINITY,
+        };
+        let near = ((wanted as f64 * ABOVE_TARGET) as usize).max(wanted);
+        let mut is_whole = false;
+        while self.mesh.triangles.len() > near {
+            let before = self.mesh.triangles.len();
+            is_whole |= before <= 4 * self.part_len;
+            if is_whole && !self.rules.is_guarded {
+                break;
+            }
+            let goal = near.max((before as f64 * LEFT_BY_ROUND) as usize);
+            self.round(if is_whole { usize::MAX } else { self.part_len }, goal)?;
+            // A round that leaves nearly all: little is inside of parts, or little can be collapsed at all.
+            if self.mesh.triangles.len() as f64 > before as f64 * LITTLE_LEFT {
+                if is_whole {
+                    break;
+                }
+                is_whole = true;
+            }
+        }
+        let last_rounds = if self.rules.is_guarded { LAST_ROUNDS_GUARDED } else { 1 };
+        let mut before = usize::MAX;
+        for _ in 0..last_rounds {
+            if self.mesh.triangles.len() > wanted && self.mesh.triangles.len() < before {
+                before = self.mesh.triangles.len();
+                self.round(usize::MAX, wanted)?;
+            }
+        }
+        Ok(self.mesh.triangles.len() <= wanted || matches!(target, Target::Error(_)))
+    }
+
+    /// Cuts the mesh in parts, collapses edges inside them, and puts what is left together.
+    fn round(&mut self, part_len: usize, goal: usize) -> Result<(), SimplifyError> {
+        let division = self.mesh.divide(part_len, self.shift(), self.budget)?;
+        let pieces = self.pieces(&division)?;
+        let is_first = self.count == 0;
+        self.count += 1;
+        if is_first {
+            self.mark_lines(&division, &pieces)?;
+            self.prepare_between(&division)?;
+        }
+        let parts = par::map_items(pieces, |i, piece| self.part(&division, i, piece, is_first));
+        let mut parts = parts.into_iter().collect::<Result<Vec<_>, Stopped>>()?;
+        let between = self.mesh.triangles.len() - division.first_between();
+        let class_max = advance(&mut parts, between, goal, self.budget)?;
+        if let Some(mut guard) = self.guard.take() {
+            self.roll_back(&mut guard, &division, &mut parts, Course { is_first, class_max })?;
+            self.guard = Some(guard);
+        }
+        self.collect(&division, parts);
+        Ok(())
+    }
+
+    /// Where the curve of a round begins: multiples of the powers of the reciprocal of the plastic number are spread
+    /// evenly (Roberts 2018).
+    fn shift(&self) -> DVec3 {
+        let spread = |step: f64| (f64::from(self.count) * step).fract();
+        DVec3::new(
+            spread(0.819_172_513_396_164_4),
+            spread(0.671_043_606_703_789_3),
+            spread(0.549_700_477_901_970_3),
+        )
+    }
+
+    fn pieces(&self, division: &Division) -> Result<Vec<Piece>, Stopped> {
+        par::try_map_ranges(division.starts.len() - 1, 1, |range| self.piece(division, range.start))
+    }
+
+    /// The topology of part `i`.
+    pub(super) fn piece(&self, division: &Division, i: usize) -> Result<Piece, Stopped> {
+        let triangles = division.starts[i]..division.starts[i + 1];
+        let (first, count) = (i * division.part_len, division.vertices(i).len());
+        let (mut table, mut is_free) = CornerTable::build_part(
+            &self.mesh.triangles[triangles.clone()],
+            first as u32,
+            count,
+            self.budget,
+        )?;
+        mark(&mut table, &self.mesh.lines[triangles]);
+        for (is_free, is_between) in is_free.iter_mut().zip(&division.is_between[first..]) {
+            *is_free &= !is_between;
+        }
+        Ok(Piece { table, is_free })
+    }
+
+    fn mark_lines(&mut self, division: &Division, pieces: &[Piece]) -> Result<(), SimplifyError> {
+        let free_or_between = |(i, piece): (usize, &Piece)| {
+            let between = &division.is_between[i * division.part_len..];
+            piece.is_free.iter().zip(between).all(|(is_free, is_between)| *is_free || *is_between)
+        };
+        let lines = Lines {
+            mesh: &mut self.mesh,
+            division,
+            pieces,
+            groups: self.input.face_groups,
+            options: self.rules.options,
+            budget: self.budget,
+        };
+        let borders = if pieces.iter().enumerate().all(free_or_between) { lines.mark()? } else { None };
+        if borders.is_none() {
+            // Says what is wrong and where.
+            CornerTable::build(self.input.triangles, self.input.positions.len(), self.budget)?;
+        }
+        if self.rules.is_guarded {
+            let shells = Shells::of(&self.input, &borders.unwrap_or_default(), self.budget)?;
+            let is_f32 = |p: &DVec3| p.as_vec3().as_dvec3() == *p || !p.is_finite();
+            let is_f32_exact = self.rules.options.round && self.input.positions.iter().all(is_f32);
+            self.guard = Some(Guard::new(shells, is_f32_exact));
+        }
+        Ok(())
+    }
+
+    /// Gives the vertices of triangles between parts what these triangles add to their states.
+    fn prepare_between(&mut self, division: &Division) -> Result<(), Stopped> {
+        let first = division.first_between();
+        let triangles: Vec<[u32; 3]> =
+            self.mesh.triangles[first..].iter().map(|t| t.map(|v| division.order[v as usize])).collect();
+        let mut table = CornerTable::unpaired(&triangles, 0);
+        mark(&mut table, &self.mesh.lines[first..]);
+        let vertices = std::mem::take(&mut self.mesh.vertices);
+        let mut surface = self.frame.of_part(table, vertices);
+        let prepared = self.rules.criterion.prepare(&mut surface, self.budget);
+        self.mesh.vertices = surface.vertices;
+        prepared
+    }
+
+    pub(super) fn part(
+        &self,
+        division: &Division,
+        i: usize,
+        Piece { mut table, is_free }: Piece,
+        is_first: bool,
+    ) -> Result<Part<'r, C>, Stopped> {
+        self.budget.check()?;
+        if is_first {
+            mark(&mut table, &self.mesh.lines[division.starts[i]..division.starts[i + 1]]);
+        }
+        let own = division.vertices(i);
+        let vertices = own.iter().map(|&v| self.mesh.vertices[v as usize]).collect();
+        let colors = own.iter().filter_map(|&v| self.mesh.colors.get(v as usize).copied()).collect();
+        let mut surface = self.frame.of_part(table, vertices);
+        if is_first {
+            self.rules.criterion.prepare(&mut surface, self.budget)?;
+        }
+        Part::new(surface, is_free, colors, self.rules, self.budget)
+    }
+
+    fn collect(&mut self, division: &Division, parts: Vec<Part<'r, C>>) {
+        let mut left = Mesh::default();
+        for (i, part) in parts.into_iter().enumerate() {
+            let (first_vertex, first_triangle) = ((i * division.part_len) as u32, division.starts[i]);
+            for (t, corners, lines) in part.triangles() {
+                left.triangles.push(corners.map(|v| v + first_vertex));
+                left.numbers.push(self.mesh.numbers[first_triangle + t as usize]);
+                left.lines.push(lines);
+            }
+            self.tally.add(&part.tally);
+            left.vertices.extend(part.surface.vertices);
+            left.colors.extend(part.colors);
+        }
+        let first = division.first_between();
+        left.triangles.extend(&self.mesh.triangles[first..]);
+        left.numbers.extend(&self.mesh.numbers[first..]);
+        left.lines.extend(&self.mesh.lines[first..]);
+        self.mesh = left;
+    }
+}
+
+/// Marks the edges of a table for whose triangles `lines` has bits.
+fn mark(table: &mut CornerTable, lines: &[u8]) {
+    for (t, &lines) in lines.iter().enumerate().filter(|(_, lines)| **lines != 0) {
+        (0..3).filter(|k| lines >> k & 1 != 0).for_each(|k| table.mark(4 * t as u32 + k, LINE));
+    }
+}
+
+/// Collapses edges class by class, in all parts before the next, until at most `goal` are left with the
+/// `between` ones that are in no part. At each look a part may take its share of what is above the goal.
+fn advance<C: Criterion>(
+    parts: &mut [Part<'_, C>],
+    between: usize,
+    goal: usize,
+    budget: &Budget,
+) -> Result<usize, Stopped> {
+    let lowest = |parts: &[Part<'_, C>]| parts.iter().map(Part::lowest).min().unwrap_or(CLASSES);
+    let total = |parts: &[Part<'_, C>]| between + parts.iter().map(Part::triangle_count).sum::<usize>();
+    let mut class_max = first_stop(parts, total(parts).saturating_sub(goal));
+    while total(parts) > goal && lowest(parts) < CLASSES {
+        let all = total(parts);
+        let above = all - goal;
+        let advanced = par::map_items(parts.iter_mut().collect(), |_, part: &mut Part<'_, C>| {
+            let triangles = part.triangle_count();
+            let share = (above * triangles).div_ceil(all - between);
+            part.advance(class_max, triangles.saturating_sub(share), budget)
+        });
+        advanced.into_iter().collect::<Result<(), Stopped>>()?;
+        if lowest(parts) > class_max {
+            class_max = lowest(parts) + CLASSES_AT_A_TIME;
+        }
+    }
+    Ok(class_max)
+}
+
+/// A class at which certainly no more than `triangles` are gone, so that the parts can go there without a look at one
+/// another: a collapse takes two triangles and three edges, most of them dear ones.
+fn first_stop<C: Criterion>(parts: &[Part<'_, C>], triangles: usize) -> usize {
+    let mut edges = 0;
+    let mut class = 0;
+    while class < CLASSES && edges < triangles * FIRST_EDGES / 100 {
+        edges += parts.iter().map(|part| part.class_sizes[class] as usize).sum::<usize>();
+        class += 1;
+    }
+    class
+}

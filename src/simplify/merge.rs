@@ -1,0 +1,80 @@
+//! What becomes of the two ends of a collapsed edge.
+
+use super::blend::blend;
+use super::criterion::Criterion;
+use super::report::Refusal;
+use super::surface::{LINE, NEW, Rule, Surface};
+use crate::geom::DVec3;
+use crate::mesh::Color;
+use crate::mesh::corner_table::{NONE, next, prev};
+
+impl<S: Copy + Default> Surface<S> {
+    /// The very position for the vertex that the edge of `h` becomes, and the input's vertex there, if there is one.
+    #[inline]
+    pub(super) fn landing(
+        &self,
+        h: u32,
+        rule: Rule,
+        position: DVec3,
+        round: bool,
+    ) -> Result<(DVec3, u32), Refusal> {
+        let [a, b] = self.ends(h);
+        let kept = match rule {
+            Rule::OntoOrigin => Some(a),
+            Rule::OntoDestination => Some(b),
+            Rule::Anywhere => [b, a].into_iter().find(|end| end.position == position),
+        };
+        if let Some(end) = kept {
+            return Ok((end.position, end.origin));
+        }
+        let position = if round { self.on_lattice(position) } else { position };
+        if position.is_finite() { Ok((position, NEW)) } else { Err(Refusal::NotFinite) }
+    }
+
+    /// Gives the destination of `h` the colour of both ends, mixed as near as `position` is to them. `colors` are those
+    /// of all vertices, or none.
+    pub(super) fn merge_colors(&self, h: u32, position: DVec3, colors: &mut [Option<Color>]) {
+        if colors.is_empty() {
+            return;
+        }
+        let ends = [h, next(h)].map(|g| self.table.origin(g));
+        let [a, b] = ends.map(|v| self.position(v));
+        let length_squared = a.distance_squared(b);
+        let share = if length_squared > 0.0 { (position - a).dot(b - a) / length_squared } else { 0.5 };
+        let [from, to] = ends.map(|v| colors[v as usize]);
+        colors[ends[1] as usize] = blend(from, to, share.clamp(0.0, 1.0));
+    }
+
+    /// Makes the destination of `h` what both ends become.
+    #[inline]
+    pub(super) fn merge_vertices<C: Criterion<State = S>>(
+        &mut self,
+        criterion: &C,
+        h: u32,
+        position: DVec3,
+        origin: u32,
+    ) {
+        let [a, b] = self.ends(h);
+        let is_line = |h: u32| self.table.marks(h) & LINE != 0;
+        let mut merged = *b;
+        merged.position = position;
+        merged.origin = origin;
+        merged.state = criterion.merged([a, b], position);
+        merged.is_held |= a.is_held;
+        merged.has_aside |= a.has_aside;
+        if a.lines != 0 || b.lines != 0 {
+            merged.lines += a.lines;
+            merged.lines -= if is_line(h) { 2 } else { 0 };
+            // Two lines that become one are one less, at both their ends.
+            let sides = [h, self.table.twin(h)];
+            let doubled = |&side: &u32| side != NONE && is_line(next(side)) && is_line(prev(side));
+            let apexes = sides.map(|side| doubled(&side).then(|| self.table.origin(prev(side))));
+            for apex in apexes.into_iter().flatten() {
+                merged.lines -= 1;
+                self.vertices[apex as usize].lines -= 1;
+            }
+        }
+        let b = self.table.destination(h);
+        self.vertices[b as usize] = merged;
+    }
+}

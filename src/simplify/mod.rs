@@ -1,0 +1,34 @@
+//! Fewer triangles, the same shape: edge collapses in the order of the error that they make.
+//!
+//! Every collapse passes the link condition, so what comes out has the topology of what went in: the same components,
+//! boundary loops and Euler characteristic, and it is a manifold. Three modes: [`simplify_strict`] takes the cheapest
+//! collapse each time, [`simplify_fast`] cheap ones in many places at the same time, [`simplify_guarded`] sees to it that
+//! surfaces do not meet.
+
+mod blend;
+mod criterion;
+mod fast;
+mod guard;
+mod key;
+mod length;
+mod lines;
+mod memoryless;
+mod merge;
+mod mode;
+mod options;
+mod quadric;
+mod quadric_error;
+mod queue;
+mod report;
+mod result;
+mod strict;
+mod surface;
+
+pub use fast::{simplify_fast, simplify_guarded};
+pub use mode::{Mode, simplify};
+pub use options::{Borders, CriterionKind, Envelope, Guards, Placement, SimplifyOptions, Target};
+pub use quadric::{Minimum, Quadric};
+pub use report::{Refusal, Refusals, Report};
+pub use result::{Input, Simplified, SimplifyError};
+pub use strict::simplify_strict;
+pub use surface::NEW;

@@ -1,0 +1,87 @@
+//! The quadric criterion: Garland and Heckbert (1997), area weighted.
+
+use super::criterion::{Criterion, Placed, Reach, cheaper};
+use super::options::Placement;
+use super::quadric::Quadric;
+use super::surface::{LINE, Rule, Surface, Vertex};
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::geom::DVec3;
+use crate::mesh::corner_table::next;
+
+/// Share of the squared length of an edge that is added to the squared error: where the surface is flat, short edges
+/// go first instead of whatever rounding says. Far below the error of any curved area.
+const LENGTH_SHARE: f64 = 1e-7;
+
+/// Costs by quadrics. A vertex keeps its quadric about its own position.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct QuadricError {
+    /// Weight of the walls on lines.
+    pub wall_weight: f64,
+}
+
+impl Criterion for QuadricError {
+    type State = Quadric;
+
+    const REACH: Reach = Reach::StarGrows;
+
+    fn prepare(&self, surface: &mut Surface<Quadric>, budget: &Budget) -> Result<(), Stopped> {
+        for t in 0..surface.table.triangle_bound() as u32 {
+            if (t as usize).is_multiple_of(CHECK_EVERY) {
+                budget.check()?;
+            }
+            let Some(vertices) = surface.table.corners(t) else { continue };
+            let corners = surface.corners(4 * t);
+            // The plane goes through all three corners, so its quadric is the same about each.
+            let plane = Quadric::of_triangle(corners);
+            vertices.iter().for_each(|&v| surface.vertices[v as usize].state += plane);
+            for h in [4 * t, 4 * t + 1, 4 * t + 2] {
+                if surface.table.marks(h) & LINE != 0 {
+                    self.add_wall(surface, h);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    #[inline]
+    fn place(&self, surface: &Surface<Quadric>, h: u32, rule: Rule, placement: Placement) -> Placed {
+        let [a, b] = surface.ends(h);
+        let to_a = a.position - b.position;
+        let both = a.state.about(-to_a) + b.state;
+        let weight = both.weight();
+        let length_cost = LENGTH_SHARE * weight * to_a.length_squared();
+        let placed = |position: DVec3, value: f64| Placed {
+            position,
+            cost: value + length_cost,
+            error_squared: if weight > 0.0 { value / weight } else { 0.0 },
+        };
+        let onto_a = || placed(a.position, both.value(to_a));
+        let onto_b = || placed(b.position, both.value_here());
+        match (rule, placement) {
+            (Rule::OntoOrigin, _) => onto_a(),
+            (Rule::OntoDestination, _) => onto_b(),
+            (Rule::Anywhere, Placement::OntoEnd) => cheaper(onto_a(), onto_b()),
+            (Rule::Anywhere, Placement::Optimal) => {
+                let offset = both.minimum(0.5 * to_a).position;
+                placed(b.position + offset, both.value(offset))
+            }
+        }
+    }
+
+    #[inline]
+    fn merged(&self, ends: [&Vertex<Quadric>; 2], position: DVec3) -> Quadric {
+        let [a, b] = ends.map(|end| end.state.about(position - end.position));
+        a + b
+    }
+}
+
+impl QuadricError {
+    /// Adds the wall on the edge of `h`, across the triangle of `h`, to both ends.
+    fn add_wall(&self, surface: &mut Surface<Quadric>, h: u32) {
+        let [p, q, r] = surface.corners(h);
+        let wall = Quadric::of_wall(p, q, (q - p).cross(r - p), self.wall_weight);
+        for v in [h, next(h)].map(|g| surface.table.origin(g)) {
+            surface.vertices[v as usize].state += wall;
+        }
+    }
+}

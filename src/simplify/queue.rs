@@ -1,0 +1,230 @@
+//! A priority queue of numbered items whose keys change.
+//!
+//! The order is total and exact: by key, then by item. Only the items whose turn is near are in a heap; the others lie
+//! unsorted in buckets by the leading bits of their keys. When the turn of a bucket comes, its owner may look at all its
+//! keys together before they go into the heap. A list by item says which key is the valid one, so that a changed key costs one more entry and old entries are
+//! dropped when they are met. The usual indexed heap holds millions of entries, and each of its steps writes to another
+//! cache line of the index; here the heap stays in the nearest cache (`docs/decisions/0012-bucketed-queue.md`).
+
+use super::key::Key;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// Not in the queue, and not set aside. Keys of finite costs are below it, as the bits of floats.
+const OUT: u32 = u32::MAX;
+/// Not in the queue until it is put back.
+const ASIDE: u32 = u32::MAX - 1;
+/// A key's leading bits: the exponent and six bits of the mantissa.
+const BUCKET_SHIFT: u32 = 17;
+/// One more than the bucket of the largest finite key.
+const BUCKETS: usize = 0x7f80_0000 >> BUCKET_SHIFT;
+
+/// Items `0..bound` with keys, the smallest first; among equal keys the smallest item.
+#[derive(Debug, Clone)]
+pub(super) struct Queue {
+    /// The valid key of each item, or [`OUT`] or [`ASIDE`].
+    keys: Vec<u32>,
+    /// Items in buckets from `next_bucket` on; those whose valid key belongs to another bucket are not in this one.
+    buckets: Vec<Vec<u32>>,
+    next_bucket: usize,
+    /// Key and item of what belongs to earlier buckets; entries whose key is not the item's valid one do not count.
+    near: BinaryHeap<Reverse<(u32, u32)>>,
+}
+
+fn bucket_of(key: u32) -> usize {
+    (key >> BUCKET_SHIFT) as usize
+}
+
+impl Queue {
+    /// A queue of `items`, each at most once and below `bound`. O(n).
+    pub(super) fn new(items: &[(u32, Key)], bound: usize) -> Self {
+        let mut sizes = vec![0usize; BUCKETS];
+        items.iter().for_each(|&(_, key)| sizes[bucket_of(key.bits())] += 1);
+        let mut queue = Self {
+            keys: vec![OUT; bound],
+            buckets: sizes.into_iter().map(Vec::with_capacity).collect(),
+            next_bucket: 0,
+            near: BinaryHeap::new(),
+        };
+        for &(item, key) in items {
+            queue.keys[item as usize] = key.bits();
+            queue.buckets[bucket_of(key.bits())].push(item);
+        }
+        queue
+    }
+
+    /// Takes the smallest entry out of those near; nothing when none is left, then ask for the
+    /// [next bucket](Self::next_bucket).
+    #[inline]
+    pub(super) fn pop(&mut self) -> Option<(u32, Key)> {
+        while let Some(Reverse((key, item))) = self.near.pop() {
+            let valid = &mut self.keys[item as usize];
+            if *valid == key {
+                *valid = OUT;
+                return Some((item, Key::from_bits(key)));
+            }
+        }
+        None
+    }
+
+    /// Takes out the items of the first bucket that has some, in no order; nothing when the queue is empty. Give them
+    /// back with keys that are not lower. Call it only when [`pop`](Self::pop) has nothing.
+    pub(super) fn next_bucket(&mut self) -> Option<Vec<(u32, Key)>> {
+        while self.next_bucket < BUCKETS {
+            let bucket = self.next_bucket;
+            self.next_bucket += 1;
+            let mut items = Vec::with_capacity(self.buckets[bucket].len());
+            for item in std::mem::take(&mut self.buckets[bucket]) {
+                let valid = &mut self.keys[item as usize];
+                if *valid < ASIDE && bucket_of(*valid) == bucket {
+                    items.push((item, Key::from_bits(*valid)));
+                    *valid = OUT;
+                }
+            }
+            if !items.is_empty() {
+                return Some(items);
+            }
+        }
+        None
+    }
+
+    /// True when an entry with this key and item would be the first.
+    #[inline]
+    pub(super) fn is_first(&self, item: u32, key: Key) -> bool {
+        // Entries that do not count make it an answer of "perhaps not"; then the caller asks again by `pop`.
+        let new = (key.bits(), item);
+        bucket_of(key.bits()) < self.next_bucket && self.near.peek().is_none_or(|&Reverse(first)| new < first)
+    }
+
+    /// The key of an item, if it is in the queue.
+    #[inline]
+    pub(super) fn key(&self, item: u32) -> Option<Key> {
+        Some(self.keys[item as usize]).filter(|&key| key < ASIDE).map(Key::from_bits)
+    }
+
+    /// Puts an item in, or gives it another key.
+    #[inline]
+    pub(super) fn set(&mut self, item: u32, key: Key) {
+        let new = key.bits();
+        if std::mem::replace(&mut self.keys[item as usize], new) == new {
+            return;
+        }
+        let bucket = bucket_of(new);
+        if bucket < self.next_bucket {
+            self.near.push(Reverse((new, item)));
+        } else {
+            self.buckets[bucket].push(item);
+        }
+    }
+
+    /// Takes an item out, wherever it is.
+    #[inline]
+    pub(super) fn take_out(&mut self, item: u32) {
+        self.keys[item as usize] = OUT;
+    }
+
+    /// Takes an item out and marks it as set aside.
+    #[inline]
+    pub(super) fn set_aside(&mut self, item: u32) {
+        self.keys[item as usize] = ASIDE;
+    }
+
+    /// True for an item whose turn is near: it is in the heap.
+    #[inline]
+    pub(super) fn is_near(&self, item: u32) -> bool {
+        self.key(item).is_some_and(|key| bucket_of(key.bits()) < self.next_bucket)
+    }
+
+    /// True for an item that is set aside.
+    #[inline]
+    pub(super) fn is_aside(&self, item: u32) -> bool {
+        self.keys[item as usize] == ASIDE
+    }
+
+    /// The items that are set aside, ascending.
+    pub(super) fn aside(&self) -> Vec<u32> {
+        (0..self.keys.len() as u32).filter(|&item| self.is_aside(item)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeMap;
+
+    fn key(x: f64) -> Key {
+        Key::of(x).unwrap()
+    }
+
+    fn pop(queue: &mut Queue) -> Option<(u32, Key)> {
+        loop {
+            if let Some(first) = queue.pop() {
+                return Some(first);
+            }
+            queue.next_bucket()?.into_iter().for_each(|(item, key)| queue.set(item, key));
+        }
+    }
+
+    fn smallest(model: &BTreeMap<u32, Key>) -> Option<(u32, Key)> {
+        model.iter().map(|(&item, &key)| (item, key)).min_by_key(|&(item, key)| (key, item))
+    }
+
+    #[test]
+    fn random_changes_give_what_an_ordered_map_gives() {
+        let mut state = 5u32;
+        let mut random = |below: u32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) % below
+        };
+        for round in 0..400 {
+            let bound = 1 + random(60);
+            // Few different keys, near to one another or in different buckets.
+            let step = [0.001, 1.0, 1e5][round % 3];
+            let mut items = Vec::new();
+            for item in 0..bound {
+                if random(2) == 0 {
+                    items.push((item, key(1.0 + step * f64::from(random(9)))));
+                }
+            }
+            let mut model: BTreeMap<u32, Key> = items.iter().copied().collect();
+            let mut queue = Queue::new(&items, bound as usize);
+            for _ in 0..300 {
+                let item = random(bound);
+                match random(5) {
+                    0 | 1 => {
+                        let first = smallest(&model);
+                        assert_eq!(pop(&mut queue), first, "round {round}");
+                        first.map(|(item, _)| model.remove(&item));
+                    }
+                    2 => {
+                        queue.take_out(item);
+                        model.remove(&item);
+                    }
+                    _ => {
+                        let key = key(1.0 + step * f64::from(random(9)));
+                        queue.set(item, key);
+                        model.insert(item, key);
+                    }
+                }
+                assert_eq!(queue.key(item), model.get(&item).copied());
+                let probe = key(1.0 + step * f64::from(random(9)));
+                if queue.is_first(item, probe) {
+                    assert!(smallest(&model).is_none_or(|(i, k)| (probe, item) <= (k, i)), "round {round}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_set_aside_is_not_in_the_queue_until_it_is_put_back() {
+        let mut queue = Queue::new(&[(0, key(1.0)), (1, key(2.0))], 3);
+        assert_eq!(pop(&mut queue), Some((0, key(1.0))));
+        queue.set_aside(0);
+        assert_eq!((queue.aside(), queue.key(0)), (vec![0], None));
+        queue.set(0, key(5.0));
+        assert!(!queue.is_aside(0));
+        assert_eq!(pop(&mut queue), Some((1, key(2.0))));
+        assert_eq!(pop(&mut queue), Some((0, key(5.0))));
+        assert_eq!(pop(&mut queue), None);
+    }
+}

@@ -1,0 +1,106 @@
+//! What goes in and what comes out.
+
+use super::report::Report;
+use super::surface::{NEW, Surface};
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::geom::DVec3;
+use crate::mesh::Color;
+use crate::mesh::corner_table::NONE;
+use crate::mesh::half_edge::BuildError;
+
+/// A manifold mesh to simplify.
+#[derive(Debug, Clone, Copy)]
+pub struct Input<'a> {
+    /// Vertex positions.
+    pub positions: &'a [DVec3],
+    /// Vertex ids of each triangle's corners; a coherently oriented manifold with or without boundary. Positions that
+    /// it uses are finite.
+    pub triangles: &'a [[u32; 3]],
+    /// A number for each triangle: between triangles with different numbers (face colours, say) the border is kept as
+    /// borders are. Empty when all are one.
+    pub face_groups: &'a [u32],
+    /// Colour of each vertex; empty when there are none.
+    pub vertex_colors: &'a [Option<Color>],
+}
+
+/// A simplified mesh.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Simplified {
+    /// Vertex positions, in the unit of the input. Vertices that did not move have the input's very numbers.
+    pub positions: Vec<DVec3>,
+    /// The vertex of the input at each position, or [`NEW`].
+    pub vertex_origin: Vec<u32>,
+    /// Colour of each vertex; empty when the input has none.
+    pub vertex_colors: Vec<Option<Color>>,
+    /// Vertex ids of each triangle's corners.
+    pub triangles: Vec<[u32; 3]>,
+    /// The triangle of the input that each triangle was.
+    pub triangle_origin: Vec<u32>,
+    /// How it came to be.
+    pub report: Report,
+}
+
+/// Why there is no result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum SimplifyError {
+    /// The input is no manifold; cut it first.
+    #[error("not a manifold: {0}")]
+    NotManifold(BuildError),
+    /// The budget stopped the run.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+}
+
+impl From<BuildError> for SimplifyError {
+    fn from(error: BuildError) -> Self {
+        match error {
+            BuildError::Stopped(stopped) => Self::Stopped(stopped),
+            other => Self::NotManifold(other),
+        }
+    }
+}
+
+impl Simplified {
+    /// The state of `surface`, with the vertices that it uses in their order and so the triangles.
+    pub(super) fn snapshot<S: Copy + Default>(
+        surface: &Surface<S>,
+        input: &Input<'_>,
+        colors: &[Option<Color>],
+        report: Report,
+        budget: &Budget,
+    ) -> Result<Self, Stopped> {
+        let mut renumbered = vec![NONE; surface.vertices.len()];
+        let mut result = Self {
+            positions: Vec::new(),
+            vertex_origin: Vec::new(),
+            vertex_colors: Vec::new(),
+            triangles: Vec::with_capacity(surface.table.triangle_count()),
+            triangle_origin: Vec::with_capacity(surface.table.triangle_count()),
+            report,
+        };
+        for t in 0..surface.table.triangle_bound() as u32 {
+            if (t as usize).is_multiple_of(CHECK_EVERY) {
+                budget.check()?;
+            }
+            if let Some(corners) = surface.table.corners(t) {
+                corners.iter().for_each(|&v| renumbered[v as usize] = 0);
+                result.triangles.push(corners);
+                result.triangle_origin.push(t);
+            }
+        }
+        for (v, number) in renumbered.iter_mut().enumerate().filter(|(_, number)| **number != NONE) {
+            *number = result.positions.len() as u32;
+            let vertex = &surface.vertices[v];
+            result.vertex_origin.push(vertex.origin);
+            result.positions.push(match vertex.origin {
+                NEW => vertex.position / surface.scale,
+                origin => input.positions[origin as usize],
+            });
+            result.vertex_colors.extend(colors.get(v));
+        }
+        for v in result.triangles.as_flattened_mut() {
+            *v = renumbered[*v as usize];
+        }
+        Ok(result)
+    }
+}

@@ -1,0 +1,142 @@
+//! One collapse: what it changes, and which edges are looked at again.
+
+use super::Strict;
+use crate::geom::DVec3;
+use crate::mesh::corner_table::{NONE, next, prev, triangle_of};
+use crate::simplify::blend::blend;
+use crate::simplify::criterion::{Criterion, Reach};
+use crate::simplify::report::Refusal;
+use crate::simplify::surface::LINE;
+
+impl<C: Criterion> Strict<'_, C> {
+    pub(super) fn merge_colors(&mut self, h: u32, position: DVec3) {
+        if self.colors.is_empty() {
+            return;
+        }
+        let ends = [h, next(h)].map(|g| self.surface.table.origin(g));
+        let [a, b] = ends.map(|v| self.surface.position(v));
+        let length_squared = a.distance_squared(b);
+        let share = if length_squared > 0.0 { (position - a).dot(b - a) / length_squared } else { 0.5 };
+        let [from, to] = ends.map(|v| self.colors[v as usize]);
+        self.colors[ends[1] as usize] = blend(from, to, share.clamp(0.0, 1.0));
+    }
+
+    /// Makes the destination of `h` what both ends become.
+    #[inline]
+    pub(super) fn merge_vertices(&mut self, h: u32, position: DVec3, origin: u32) {
+        let surface = &self.surface;
+        let [a, b] = surface.ends(h);
+        let is_line = |h: u32| surface.table.marks(h) & LINE != 0;
+        let mut merged = *b;
+        merged.position = position;
+        merged.origin = origin;
+        merged.state = self.criterion.merged([a, b], position);
+        merged.is_held |= a.is_held;
+        merged.has_aside |= a.has_aside;
+        if a.lines != 0 || b.lines != 0 {
+            merged.lines += a.lines;
+            merged.lines -= if is_line(h) { 2 } else { 0 };
+            // Two lines that become one are one less, at both their ends.
+            let sides = [h, surface.table.twin(h)];
+            let doubled = |&side: &u32| side != NONE && is_line(next(side)) && is_line(prev(side));
+            let apexes: Vec<u32> =
+                sides.into_iter().filter(doubled).map(|side| surface.table.origin(prev(side))).collect();
+            for apex in apexes {
+                merged.lines -= 1;
+                self.surface.vertices[apex as usize].lines -= 1;
+            }
+        }
+        let b = self.surface.table.destination(h);
+        self.surface.vertices[b as usize] = merged;
+    }
+
+    /// Collapses the edge of `h` in the table; in the queue, the edges that become one become one entry.
+    #[inline]
+    pub(super) fn merge_edges(&mut self, h: u32) {
+        let table = &self.surface.table;
+        let twin = table.twin(h);
+        for side in [h, twin].into_iter().filter(|&side| side != NONE) {
+            let before = [next(side), prev(side)];
+            let after = before.map(|g| table.twin(g)).into_iter().min().unwrap_or(NONE);
+            let keys = before.map(|g| {
+                let edge = table.edge(g);
+                let key = self.queue.key(edge);
+                self.queue.take_out(edge);
+                key
+            });
+            // The merged edge costs at least as much as each of the two.
+            match keys.into_iter().max().flatten() {
+                Some(key) => self.queue.set(after, key),
+                // Both were set aside.
+                None => {
+                    self.queue.set_aside(after);
+                    self.surface.vertices[table.destination(h) as usize].has_aside = true;
+                }
+            }
+        }
+        self.surface.table.collapse(h, &self.rings);
+    }
+
+    /// Gives the edges around the merged vertex new costs where these may be lower now, and takes back what was set
+    /// aside: whether an edge can be collapsed depends on the faces around its ends, so on all edges of the merged
+    /// vertex and of its neighbours.
+    pub(super) fn look_around(&mut self) {
+        let rings = std::mem::take(&mut self.rings);
+        let mut affected = std::mem::take(&mut self.affected);
+        for &corner in rings.origin.corners.iter().chain(&rings.destination.corners) {
+            if self.surface.table.corners(triangle_of(corner)).is_none() {
+                continue;
+            }
+            self.list_affected(corner, next(corner), &mut affected);
+            let last = prev(corner);
+            if self.surface.table.twin(last) == NONE {
+                self.list_affected(last, last, &mut affected);
+            }
+        }
+        if C::REACH == Reach::Neighbours {
+            affected.sort_unstable();
+            affected.dedup();
+        }
+        for edge in affected.drain(..) {
+            self.reconsider(edge);
+        }
+        (self.rings, self.affected) = (rings, affected);
+    }
+
+    /// Lists what is to be considered anew of the edge of the half-edge `spoke` of the merged vertex and of the edges
+    /// of its other end, which `outer` leaves.
+    #[inline]
+    fn list_affected(&mut self, spoke: u32, outer: u32, affected: &mut Vec<u32>) {
+        if C::REACH == Reach::Star {
+            affected.push(self.surface.table.edge(spoke));
+        }
+        // Both ends of an edge that is set aside say so.
+        let neighbour = self.surface.table.origin(outer) as usize;
+        let has_aside = std::mem::replace(&mut self.surface.vertices[neighbour].has_aside, false);
+        if has_aside || C::REACH == Reach::Neighbours {
+            let is_due = |edge: &u32| C::REACH == Reach::Neighbours || self.queue.is_aside(*edge);
+            affected.extend(self.surface.star(outer).filter(is_due));
+        }
+    }
+
+    /// Computes the cost of an edge anew and puts it in the queue.
+    pub(super) fn reconsider(&mut self, edge: u32) {
+        match self.cost(edge) {
+            Ok(key) => self.queue.set(edge, key),
+            Err(reason) => self.set_aside(edge, reason),
+        }
+    }
+
+    /// Sets an edge aside.
+    pub(super) fn set_aside(&mut self, edge: u32, reason: Refusal) {
+        self.refusals.add(reason);
+        self.queue.set_aside(edge);
+        // An error that only grows is no reason to look again.
+        if reason == Refusal::Error && C::REACH == Reach::StarGrows {
+            return;
+        }
+        for v in [edge, next(edge)].map(|g| self.surface.table.origin(g)) {
+            self.surface.vertices[v as usize].has_aside = true;
+        }
+    }
+}

@@ -1,0 +1,214 @@
+//! The strict mode: always the cheapest collapse of all that are possible.
+
+mod merge;
+mod near;
+
+use super::criterion::{Criterion, Placed, Reach};
+use super::guard::check_faces;
+use super::key::Key;
+use super::length::Length;
+use super::lines::mark_lines;
+use super::memoryless::Memoryless;
+use super::options::{CriterionKind, SimplifyOptions, Target};
+use super::quadric_error::QuadricError;
+use super::queue::Queue;
+use super::report::{Refusal, Refusals, Report};
+use super::result::{Input, Simplified, SimplifyError};
+use super::surface::{NEW, Rule, Surface, Vertex};
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::geom::DVec3;
+use crate::mesh::Color;
+use crate::mesh::corner_table::{CornerTable, EdgeRings};
+
+/// Simplifies `input` by collapsing the cheapest edge again and again: by the exact order of costs (to 24 bits, then by
+/// edge). One result for each target, from one run. The topology of the input is kept: its Euler characteristic, its
+/// components, its boundary loops. A collapse that is refused is set aside and tried again when something around it
+/// has changed.
+///
+/// # Errors
+/// When the input is not a manifold, or the budget stops the run.
+pub fn simplify_strict(
+    input: &Input<'_>,
+    options: &SimplifyOptions<'_>,
+    budget: &Budget,
+) -> Result<Vec<Simplified>, SimplifyError> {
+    match options.criterion {
+        CriterionKind::Quadric => {
+            run(input, options, QuadricError { wall_weight: options.wall_weight }, budget)
+        }
+        CriterionKind::Memoryless => run(input, options, Memoryless, budget),
+        CriterionKind::Length => run(input, options, Length, budget),
+    }
+}
+
+fn run<C: Criterion>(
+    input: &Input<'_>,
+    options: &SimplifyOptions<'_>,
+    criterion: C,
+    budget: &Budget,
+) -> Result<Vec<Simplified>, SimplifyError> {
+    let _charge = budget.charge(bytes_of::<C>(input))?;
+    let table = CornerTable::build(input.triangles, input.positions.len(), budget)?;
+    let mut surface = Surface::<C::State>::new(input.positions, table, budget)?;
+    mark_lines(&mut surface, input.face_groups, options, budget)?;
+    criterion.prepare(&mut surface, budget)?;
+    let mut strict = Strict {
+        queue: Queue::new(&[], 0),
+        rings: EdgeRings::default(),
+        affected: Vec::new(),
+        collapses: 0,
+        refusals: Refusals::default(),
+        error_squared_max: 0.0,
+        error_squared_limit: f64::INFINITY,
+        colors: input.vertex_colors.to_vec(),
+        surface,
+        criterion,
+        options,
+        budget,
+    };
+    strict.fill_queue()?;
+    let levels = options.targets.iter().map(|&target| {
+        let report = strict.run_to(target, input.triangles.len())?;
+        Simplified::snapshot(&strict.surface, input, &strict.colors, report, budget)
+    });
+    Ok(levels.collect::<Result<Vec<_>, Stopped>>()?)
+}
+
+/// What a run takes beside its input and its results.
+fn bytes_of<C: Criterion>(input: &Input<'_>) -> u64 {
+    // The table and the keys; for each edge a place in a bucket, and its first cost, listed twice.
+    let per_triangle = 32 + 4 * size_of::<u32>() + 3 * (size_of::<u32>() + 2 * size_of::<(u32, Key)>()) / 2;
+    let per_vertex = size_of::<Vertex<C::State>>();
+    (input.triangles.len() * per_triangle + input.positions.len() * per_vertex) as u64
+}
+
+struct Strict<'a, C: Criterion> {
+    surface: Surface<C::State>,
+    criterion: C,
+    options: &'a SimplifyOptions<'a>,
+    budget: &'a Budget,
+    /// The edges that may be collapsed, by cost.
+    queue: Queue,
+    /// Around the edge that is being collapsed.
+    rings: EdgeRings,
+    /// Edges to be considered anew after a collapse; empty in between.
+    affected: Vec<u32>,
+    collapses: u64,
+    refusals: Refusals,
+    error_squared_max: f64,
+    error_squared_limit: f64,
+    /// Of the vertices; empty when the input has none.
+    colors: Vec<Option<Color>>,
+}
+
+impl<C: Criterion> Strict<'_, C> {
+    /// Collapses until `target` is reached or nothing more can be collapsed.
+    fn run_to(&mut self, target: Target, faces_before: usize) -> Result<Report, Stopped> {
+        let faces_wanted = match target {
+            Target::Faces(count) => count,
+            Target::Ratio(share) => (faces_before as f64 * share.clamp(0.0, 1.0)) as usize,
+            Target::Error(_) => 0,
+        };
+        self.limit_error(target);
+        let mut since_check = 0;
+        let mut is_exhausted = false;
+        while self.surface.table.triangle_count() > faces_wanted && !is_exhausted {
+            since_check += 1;
+            if since_check == CHECK_EVERY {
+                self.budget.spend(CHECK_EVERY as u64)?;
+                since_check = 0;
+            }
+            is_exhausted = !self.step()?;
+        }
+        Ok(Report {
+            target,
+            is_reached: !is_exhausted || matches!(target, Target::Error(_)),
+            faces_before,
+            faces_after: self.surface.table.triangle_count(),
+            collapses: self.collapses,
+            refusals: self.refusals,
+            error_max: self.error_squared_max.sqrt() / self.surface.scale,
+        })
+    }
+
+    /// Sets the limit on the error that `target` implies, and lets in what an earlier limit kept out.
+    fn limit_error(&mut self, target: Target) {
+        let before = self.error_squared_limit;
+        self.error_squared_limit = match target {
+            Target::Error(limit) => (limit * self.surface.scale).powi(2),
+            _ => f64::INFINITY,
+        };
+        if self.error_squared_limit > before {
+            for h in self.queue.aside() {
+                self.reconsider(h);
+            }
+        }
+    }
+
+    /// Handles the edge whose turn it is; false when there is none.
+    fn step(&mut self) -> Result<bool, Stopped> {
+        let Some((h, key)) = self.queue.pop() else { return self.bring_near() };
+        let (rule, placed, now) = match self.placed(h) {
+            Ok(found) => found,
+            Err(reason) => {
+                self.set_aside(h, reason);
+                return Ok(true);
+            }
+        };
+        // The cost may have grown since it was computed; then perhaps it is not this edge's turn.
+        if C::REACH == Reach::StarGrows && now > key && !self.queue.is_first(h, now) {
+            self.queue.set(h, now);
+            return Ok(true);
+        }
+        match self.attempt(h, rule, placed) {
+            Ok(()) => self.collapses += 1,
+            Err(reason) => self.set_aside(h, reason),
+        }
+        Ok(true)
+    }
+
+    /// The place for the edge of `h` and its key.
+    #[inline]
+    fn placed(&self, h: u32) -> Result<(Rule, Placed, Key), Refusal> {
+        let rule = self.surface.rule(h).ok_or(Refusal::Held)?;
+        let placed = self.criterion.place(&self.surface, h, rule, self.options.placement);
+        let key = Key::of(placed.cost).ok_or(Refusal::NotFinite)?;
+        Ok((rule, placed, key))
+    }
+
+    fn cost(&self, h: u32) -> Result<Key, Refusal> {
+        self.placed(h).map(|(_, _, key)| key)
+    }
+
+    /// Collapses the edge of `h`, unless something speaks against it.
+    fn attempt(&mut self, h: u32, rule: Rule, placed: Placed) -> Result<(), Refusal> {
+        if placed.error_squared > self.error_squared_limit {
+            return Err(Refusal::Error);
+        }
+        let (position, origin) = self.landing(h, rule, placed.position)?;
+        self.rings.walk(&self.surface.table, h);
+        self.surface.table.link_condition(h, &self.rings).map_err(Refusal::Link)?;
+        check_faces(&self.surface, h, &self.rings, position, &self.options.guards)?;
+        self.error_squared_max = self.error_squared_max.max(placed.error_squared);
+        self.merge_colors(h, position);
+        self.merge_vertices(h, position, origin);
+        self.merge_edges(h);
+        self.look_around();
+        Ok(())
+    }
+
+    /// The very position for the merged vertex, and the input's vertex there, if there is one.
+    fn landing(&self, h: u32, rule: Rule, position: DVec3) -> Result<(DVec3, u32), Refusal> {
+        let [a, b] = self.surface.ends(h);
+        let kept = match rule {
+            Rule::OntoOrigin => Some(a),
+            Rule::OntoDestination => Some(b),
+            Rule::Anywhere => [b, a].into_iter().find(|end| end.position == position),
+        };
+        if let Some(end) = kept {
+            return Ok((end.position, end.origin));
+        }
+        let position = if self.options.round { self.surface.on_lattice(position) } else { position };
+        if position.is_finite() { Ok((position, NEW)) } else { Err(Refusal::NotFinite) }
+    }
+}

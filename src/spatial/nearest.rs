@@ -1,0 +1,229 @@
+//! The triangle closest to a point.
+
+use super::Bvh;
+use super::bvh::{Leaf, Tree};
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::geom::{DVec3, closest_point_on_triangle};
+
+/// The closest point of a set of triangles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Nearest {
+    /// A triangle that the point is on.
+    pub triangle: u32,
+    /// The point.
+    pub point: DVec3,
+    /// Its distance, in the unit of the coordinates.
+    pub distance: f64,
+}
+
+/// Triangles prepared for questions about the closest of them.
+#[derive(Debug, Clone)]
+pub struct NearestSearch<'m> {
+    positions: &'m [DVec3],
+    triangles: &'m [[u32; 3]],
+    bvh: Bvh,
+}
+
+impl<'m> NearestSearch<'m> {
+    /// Prepares `triangles`, whose positions must be finite. O(n log n).
+    ///
+    /// # Errors
+    /// When the budget stops the run.
+    pub fn build(
+        positions: &'m [DVec3],
+        triangles: &'m [[u32; 3]],
+        budget: &Budget,
+    ) -> Result<Self, Stopped> {
+        Ok(Self { positions, triangles, bvh: Bvh::build(positions, triangles, None, budget)? })
+    }
+
+    /// True when there are no triangles.
+    pub fn is_empty(&self) -> bool {
+        self.triangles.is_empty()
+    }
+
+    /// The corners of triangle `t`.
+    pub fn corners(&self, t: u32) -> [DVec3; 3] {
+        self.triangles[t as usize].map(|v| self.positions[v as usize])
+    }
+
+    /// The closest point of triangle `t` to `p`.
+    pub fn on_triangle(&self, p: DVec3, t: u32) -> Nearest {
+        let point = closest_point_on_triangle(p, self.corners(t));
+        Nearest { triangle: t, point, distance: point.distance(p) }
+    }
+
+    /// The closest point to `p`; `hint` is a triangle that may be close. Of several triangles at the same distance any
+    /// may be named, but always the same for the same `p` and `hint`. O(log n) for points near the surface.
+    ///
+    /// `None` when there are no triangles. Differences of coordinates must have squares in the range of f64.
+    ///
+    /// # Errors
+    /// When the budget stops the run.
+    pub fn find(&self, p: DVec3, hint: Option<u32>, budget: &Budget) -> Result<Option<Nearest>, Stopped> {
+        let tree = self.bvh.tree();
+        if tree.is_empty() {
+            return Ok(None);
+        }
+        let first = hint.unwrap_or_else(|| self.descend(p));
+        let mut query = Query::new(self, p, self.on_triangle(p, first));
+        let mut stack = [(0.0f32, 0u32); Tree::DEPTH_MAX + 1];
+        let (mut depth, mut visited) = (1, 0usize);
+        while depth > 0 {
+            depth -= 1;
+            let (gap, id) = stack[depth];
+            if visited.is_multiple_of(CHECK_EVERY) {
+                budget.check()?;
+            }
+            visited += 1;
+            if gap > query.reach {
+                continue;
+            }
+            let node = tree.node(id);
+            let Some([left, right]) = node.children() else {
+                query.look_at(tree.leaf(node));
+                continue;
+            };
+            let gaps = [left, right].map(|child| (tree.node(child).bounds.squared_gap(query.place), child));
+            let [near, far] = if gaps[1].0 < gaps[0].0 { [gaps[1], gaps[0]] } else { gaps };
+            for entry in [far, near] {
+                if entry.0 <= query.reach {
+                    stack[depth] = entry;
+                    depth += 1;
+                }
+            }
+        }
+        Ok(Some(query.best))
+    }
+
+    /// A triangle that may be close: always down into the nearer box.
+    fn descend(&self, p: DVec3) -> u32 {
+        let (tree, place) = (self.bvh.tree(), self.bvh.frame().map(p));
+        let mut node = tree.node(0);
+        while let Some([left, right]) = node.children() {
+            let [left, right] = [left, right].map(|child| tree.node(child));
+            let is_right = right.bounds.squared_gap(place) < left.bounds.squared_gap(place);
+            node = if is_right { right } else { left };
+        }
+        tree.leaf(node).id(0)
+    }
+}
+
+/// More than twice the relative error of a coordinate rounded to f32, and of the few f32 operations behind a gap.
+const ROUNDING_32: f32 = 1e-6;
+
+/// A search that is under way.
+struct Query<'q> {
+    search: &'q NearestSearch<'q>,
+    p: DVec3,
+    /// `p` in the coordinates of the boxes.
+    place: [f32; 3],
+    /// How far the rounding of `p` and of a box no farther from the origin than `p` can move them in relation to each
+    /// other. What a box is farther away grows its rounding and its gap alike; the factor in [`Self::shrink`] covers it.
+    blur: f32,
+    best: Nearest,
+    /// Boxes with larger squared gaps hold nothing closer than `best`.
+    reach: f32,
+}
+
+impl<'q> Query<'q> {
+    fn new(search: &'q NearestSearch<'q>, p: DVec3, best: Nearest) -> Self {
+        let place = search.bvh.frame().map(p);
+        let blur = place.iter().fold(f32::MIN_POSITIVE, |most, x| most.max(x.abs())) * ROUNDING_32;
+        let mut query = Self { search, p, place, blur, best, reach: f32::INFINITY };
+        query.shrink();
+        query
+    }
+
+    fn shrink(&mut self) {
+        let reach = (self.search.bvh.frame().scaled(self.best.distance) as f32 + self.blur * 2.0)
+            * (1.0 + 4.0 * ROUNDING_32);
+        self.reach = reach * reach;
+    }
+
+    fn look_at(&mut self, leaf: &Leaf) {
+        let gaps = leaf.squared_gaps(self.place);
+        for (k, &gap) in gaps.iter().enumerate().take(leaf.len()) {
+            if gap <= self.reach {
+                let corners = leaf.corners(k).map(|v| self.search.positions[v as usize]);
+                let point = closest_point_on_triangle(self.p, corners);
+                let distance = point.distance(self.p);
+                if distance < self.best.distance {
+                    self.best = Nearest { triangle: leaf.id(k), point, distance };
+                    self.shrink();
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Random(u32);
+
+    impl Random {
+        fn unit(&mut self) -> f64 {
+            self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(self.0 >> 8) / f64::from(1 << 24)
+        }
+
+        fn point(&mut self) -> DVec3 {
+            DVec3::new(self.unit(), self.unit(), self.unit())
+        }
+    }
+
+    fn triangles_of(count: u32) -> Vec<[u32; 3]> {
+        (0..count).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect()
+    }
+
+    #[test]
+    fn the_tree_finds_what_looking_at_every_triangle_finds_at_every_place_and_scale() {
+        let mut random = Random(5);
+        for (origin, scale) in [(0.0, 1.0), (1e6, 1.0), (-3e3, 1e-3), (0.0, 1e30), (0.0, 1e-30), (1e9, 1e-2)]
+        {
+            for count in [1, 3, 40, 500] {
+                let mut at = |spread: f64| (random.point() * spread + origin / scale) * scale;
+                let positions: Vec<DVec3> = (0..count).flat_map(|_| [at(1.0), at(0.3), at(0.05)]).collect();
+                let triangles = triangles_of(count);
+                let search = NearestSearch::build(&positions, &triangles, &Budget::unlimited()).unwrap();
+                for i in 0..60 {
+                    let p = if i % 3 == 0 { positions[i % positions.len()] } else { at(1.5) };
+                    let hint = (i % 2 == 0).then_some(i as u32 % count);
+                    let found = search.find(p, hint, &Budget::unlimited()).unwrap().unwrap();
+                    let least =
+                        (0..count).map(|t| search.on_triangle(p, t).distance).fold(f64::MAX, f64::min);
+                    assert_eq!(found.distance, least, "{origin} {scale} {count} {i}");
+                    assert_eq!(search.on_triangle(p, found.triangle), found);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_stray_triangle_far_away_does_not_hide_a_near_one() {
+        let mut random = Random(9);
+        let mut positions: Vec<DVec3> = (0..300).map(|_| random.point()).collect();
+        positions.extend([DVec3::splat(1e30), DVec3::splat(-1e30), DVec3::splat(1e20)]);
+        let triangles = triangles_of(101);
+        let search = NearestSearch::build(&positions, &triangles, &Budget::unlimited()).unwrap();
+        for p in [DVec3::splat(0.5), DVec3::splat(1e29), DVec3::new(1e20, -1e20, 0.0)] {
+            let found = search.find(p, None, &Budget::unlimited()).unwrap().unwrap();
+            let least = (0..101).map(|t| search.on_triangle(p, t).distance).fold(f64::MAX, f64::min);
+            assert_eq!(found.distance, least);
+        }
+    }
+
+    #[test]
+    fn nothing_has_no_closest_triangle_and_a_raised_flag_ends_the_search() {
+        let search = NearestSearch::build(&[], &[], &Budget::unlimited()).unwrap();
+        assert!(search.is_empty());
+        assert_eq!(search.find(DVec3::ZERO, None, &Budget::unlimited()), Ok(None));
+        let stop = crate::budget::StopFlag::default();
+        stop.cancel();
+        let positions = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let search = NearestSearch::build(&positions, &[[0, 1, 2]], &Budget::unlimited()).unwrap();
+        assert!(search.find(DVec3::ZERO, None, &Budget::new(stop, 1, 1)).is_err());
+    }
+}
