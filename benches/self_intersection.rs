@@ -58,7 +58,7 @@ fn tree(mesh: &Mesh) -> Bvh {
 
 fn contacts(mesh: &Mesh, bvh: &Bvh) -> u64 {
     let all = Search::All { keep: 100 };
-    let found = self_contacts(&mesh.positions, &mesh.triangles, bvh, all, &Budget::unlimited());
+    let found = self_contacts(&mesh.positions, &mesh.triangles, bvh, None, all, &Budget::unlimited());
     found.expect("no limit").count
 }
 

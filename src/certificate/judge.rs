@@ -8,7 +8,8 @@ use super::{CertifyError, Condition, Depth, Shell, Violation};
 use crate::budget::{Budget, Stopped};
 use crate::formats::{self, Encoding, Precision, ReadOptions};
 use crate::mesh::Soup;
-use crate::spatial::{Bvh, Contacts, Search, self_contacts};
+use crate::par;
+use crate::spatial::{Bvh, Contacts, Search, Terrains, self_contacts};
 use std::borrow::Cow;
 
 /// Contacts to keep for a report, so that it finds enough of each kind among them.
@@ -60,6 +61,8 @@ struct First {
 struct ListFaults {
     is_clean: bool,
     duplicates: Vec<u32>,
+    /// Ends of the edges that have not exactly two triangles, one in each direction.
+    open_vertices: Vec<u32>,
 }
 
 struct Judge<'a> {
@@ -116,7 +119,7 @@ impl<'a> Judge<'a> {
         } else {
             let is_p0 = surface.is_usable() && degenerate.is_empty() && faults.is_clean;
             let left_out = [&degenerate[..], &faults.duplicates].concat();
-            self.judge_embedding(&surface, is_p0, left_out)?;
+            self.judge_embedding(&surface, is_p0, left_out, &faults.open_vertices)?;
         }
         self.keep_list(surface, faults);
         Ok(())
@@ -130,7 +133,11 @@ impl<'a> Judge<'a> {
         let topology = Topology::of(&surface.triangles, surface.positions.len(), self.budget)?;
         topology.note(surface, &mut self.verdict, self.budget)?;
         self.first.get_or_insert_with(|| First { census: topology.census(), ..First::default() });
-        Ok(ListFaults { is_clean: topology.is_clean(), duplicates: topology.duplicates() })
+        Ok(ListFaults {
+            is_clean: topology.is_clean(),
+            duplicates: topology.duplicates(),
+            open_vertices: topology.open_vertices(),
+        })
     }
 
     fn keep_list(&mut self, surface: Surface<'a>, faults: ListFaults) {
@@ -145,15 +152,21 @@ impl<'a> Judge<'a> {
         surface: &Surface<'_>,
         is_p0: bool,
         left_out: Vec<u32>,
+        open_vertices: &[u32],
     ) -> Result<(), Stopped> {
         let ids = (!is_p0).then(|| all_but(surface.triangles.len() as u32, left_out));
-        let bvh = Bvh::build(&surface.positions, &surface.triangles, ids.as_deref(), self.budget)?;
+        let (positions, triangles, budget) = (&surface.positions, &surface.triangles, self.budget);
+        let (bvh, terrains) = par::join(
+            || Bvh::build(positions, triangles, ids.as_deref(), budget),
+            || Terrains::find(positions, triangles, open_vertices, budget),
+        );
+        let (bvh, terrains) = (bvh?, terrains?);
         let search = if self.verdict.is_brief() {
             Search::First
         } else {
             Search::All { keep: self.verdict.samples().max(CONTACTS_KEPT_MIN) }
         };
-        let contacts = self_contacts(&surface.positions, &surface.triangles, &bvh, search, self.budget)?;
+        let contacts = self_contacts(positions, triangles, &bvh, Some(&terrains), search, budget)?;
         let is_p1 = contacts.count == 0;
         self.verdict.note(Condition::Embedded, contacts.count, |samples| {
             let first = contacts.list.iter().take(samples);

@@ -102,6 +102,13 @@ impl<'a> Topology<'a> {
         self.faults.duplicates.iter().map(|d| self.id(d.triangle)).collect()
     }
 
+    /// The ends of the edges that have not exactly two triangles, one in each direction; some of them repeatedly.
+    pub(super) fn open_vertices(&self) -> Vec<u32> {
+        let EdgeFaults { without_two_triangles, in_one_direction, .. } = &self.faults;
+        let edges = without_two_triangles.iter().chain(in_one_direction);
+        edges.flat_map(|&e| edge_of(&self.triangles, self.groups.group(e as usize)[0])).collect()
+    }
+
     pub(super) fn census(&self) -> Census {
         let (edges, triangles) = (self.groups.len() as u64, self.triangles.len() as u64);
         Census { vertices: self.vertices, edges, triangles }

@@ -11,7 +11,7 @@ mod volume;
 
 pub use closest::closest_point_on_triangle;
 pub use glam::{DVec2, DVec3};
-pub use predicates::{Plane, orient2d, orient3d};
+pub use predicates::{Plane, certain_turns, orient2d, orient3d};
 pub use projection::{Projection, are_collinear, is_on_segment};
 pub use ray::upward_crossing;
 pub use sign::Sign;

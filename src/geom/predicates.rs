@@ -51,6 +51,18 @@ pub fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> Sign {
     beyond(left - right, error).unwrap_or_else(|| exact::orient2d([a, b, c]))
 }
 
+/// How a triangle turns along the three coordinate axes as far as f64 is certain: bit `2 k` is set when its normal has a
+/// positive component `k`, bit `2 k + 1` when it has a negative one, neither when it may be zero.
+#[inline]
+pub fn certain_turns(corners: [DVec3; 3]) -> u8 {
+    let Plane { normal, spread, .. } = Plane::through(corners);
+    (0..3).fold(0, |turns, k| {
+        let error = BOUND_2D * spread[k] + UNDERFLOW;
+        let (is_positive, is_negative) = (normal[k] > error, -normal[k] > error);
+        turns | u8::from(is_positive) << (2 * k) | u8::from(is_negative) << (2 * k + 1)
+    })
+}
+
 /// Sign of `det(b - a, c - a, d - a)`: positive when `d` is on the side from which `a`, `b`, `c` are seen
 /// counter-clockwise, zero when the four are coplanar.
 #[inline]
@@ -117,6 +129,16 @@ mod tests {
         assert_eq!(orient3d(DVec3::ZERO, x, y, x + y), Sign::Zero);
         assert_eq!(orient2d(DVec2::ZERO, DVec2::X, DVec2::Y), Sign::Positive);
         assert_eq!(orient2d(DVec2::ZERO, DVec2::Y, DVec2::X), Sign::Negative);
+    }
+
+    #[test]
+    fn turns_are_told_where_they_are_certain() {
+        let turns = |a, b, c| certain_turns([a, b, c]);
+        assert_eq!(turns(DVec3::ZERO, DVec3::X, DVec3::Y), 0b01_00_00);
+        assert_eq!(turns(DVec3::ZERO, DVec3::Y, DVec3::X), 0b10_00_00);
+        assert_eq!(turns(DVec3::X, DVec3::Y, DVec3::Z), 0b01_01_01);
+        assert_eq!(turns(DVec3::ZERO, DVec3::X * TINY, DVec3::Y * TINY), 0);
+        assert_eq!(turns(DVec3::MIN, DVec3::MAX, DVec3::X), 0);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //!
 //! Half-edge `h = 3 t + c` runs from corner `c` of triangle `t` to the next corner. No coordinates here.
 
-use crate::budget::{Budget, Stopped};
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::par;
 
 /// The triangle of half-edge `h`.
@@ -49,17 +49,25 @@ impl EdgeGroups {
     /// With 2^32 / 3 triangles or more; the readers' limits keep counts below.
     pub fn build(triangles: &[[u32; 3]], vertex_count: usize, budget: &Budget) -> Result<Self, Stopped> {
         assert!(triangles.len() < (u32::MAX / 3) as usize, "too many triangles for 32-bit half-edges");
-        let _charge = budget.charge(triangles.len() as u64 * 3 * 12)?;
+        // Half-edges, group starts of the parts and of all, and where each vertex begins, twice.
+        let _charge = budget.charge(triangles.len() as u64 * 3 * 8 + vertex_count as u64 * 8)?;
+        let offsets = offsets_by_smaller_vertex(triangles, vertex_count, budget)?;
+        let mut half_edges = vec![0u32; triangles.len() * 3];
         let part_len = vertex_count.div_ceil(PARTS).max(1);
-        let parts = par::try_map_ranges(vertex_count, part_len, |range| {
-            group_part(triangles, range.start as u32, range.len(), budget)
-        })?;
-        let mut half_edges = Vec::with_capacity(triangles.len() * 3);
+        let mut parts = Vec::with_capacity(PARTS);
+        let mut rest = &mut half_edges[..];
+        for first in (0..vertex_count).step_by(part_len) {
+            let offsets = &offsets[first..=(first + part_len).min(vertex_count)];
+            let (part, others) = rest.split_at_mut((offsets[offsets.len() - 1] - offsets[0]) as usize);
+            parts.push((offsets, part));
+            rest = others;
+        }
+        let starts_of_parts = par::map_items(parts, |part, (offsets, half_edges)| {
+            group_part(triangles, (part * part_len) as u32, offsets, half_edges, budget)
+        });
         let mut starts = Vec::with_capacity(triangles.len() * 3 / 2 + 2);
-        for (part, part_starts) in parts {
-            let offset = half_edges.len() as u32;
-            starts.extend(part_starts.iter().map(|s| s + offset));
-            half_edges.extend(part);
+        for part in starts_of_parts {
+            starts.extend(part?);
         }
         starts.push(half_edges.len() as u32);
         Ok(Self { half_edges, starts })
@@ -101,36 +109,57 @@ impl EdgeGroups {
     }
 }
 
-/// Groups the edges whose smaller vertex is in `first..first + len`: their half-edges, and where each group starts.
+/// Where the half-edges of each smaller vertex begin, and the end.
+fn offsets_by_smaller_vertex(
+    triangles: &[[u32; 3]],
+    vertex_count: usize,
+    budget: &Budget,
+) -> Result<Vec<u32>, Stopped> {
+    let mut offsets = vec![0u32; vertex_count + 1];
+    for_each_edge(triangles, 0, vertex_count, budget, |_, min, _| offsets[min + 1] += 1)?;
+    for v in 0..vertex_count {
+        offsets[v + 1] += offsets[v];
+    }
+    Ok(offsets)
+}
+
+/// Fills `half_edges` with those whose smaller vertices are `first` and those after it, of which `offsets` tell where
+/// each begins among all; gives where each group starts among all.
 fn group_part(
     triangles: &[[u32; 3]],
     first: u32,
-    len: usize,
+    offsets: &[u32],
+    half_edges: &mut [u32],
     budget: &Budget,
-) -> Result<(Vec<u32>, Vec<u32>), Stopped> {
-    let mut offsets = vec![0u32; len + 1];
-    for_each_edge(triangles, first, len, budget, |_, min, _| offsets[min + 1] += 1)?;
-    for v in 0..len {
-        offsets[v + 1] += offsets[v];
-    }
-    let mut cursor = offsets.clone();
-    let mut keyed = vec![(0u32, 0u32); offsets[len] as usize];
-    for_each_edge(triangles, first, len, budget, |h, min, max| {
-        keyed[cursor[min] as usize] = (max, h);
+) -> Result<Vec<u32>, Stopped> {
+    let (begin, len) = (offsets[0], offsets.len() - 1);
+    let mut cursor = offsets[..len].to_vec();
+    for_each_edge(triangles, first, len, budget, |h, min, _| {
+        half_edges[(cursor[min] - begin) as usize] = h;
         cursor[min] += 1;
     })?;
-    let mut starts = Vec::with_capacity(keyed.len() / 2 + 1);
-    for v in 0..len {
-        let (begin, end) = (offsets[v] as usize, offsets[v + 1] as usize);
-        let star = &mut keyed[begin..end];
+    let mut starts = Vec::with_capacity(half_edges.len() / 2 + 1);
+    let mut star = Vec::new();
+    for (v, range) in offsets.windows(2).enumerate() {
+        if v % CHECK_EVERY == 0 {
+            budget.check()?;
+        }
+        let of_vertex = &mut half_edges[(range[0] - begin) as usize..(range[1] - begin) as usize];
+        star.clear();
+        star.extend(of_vertex.iter().map(|&h| {
+            let [a, b] = edge_of(triangles, h);
+            (a.max(b), h)
+        }));
         star.sort_unstable();
-        for (i, &(max, _)) in star.iter().enumerate() {
-            if i == 0 || star[i - 1].0 != max {
-                starts.push((begin + i) as u32);
+        let mut last = None;
+        for ((place, at), &(max, h)) in of_vertex.iter_mut().zip(range[0]..).zip(&star) {
+            *place = h;
+            if last.replace(max) != Some(max) {
+                starts.push(at);
             }
         }
     }
-    Ok((keyed.into_iter().map(|(_, h)| h).collect(), starts))
+    Ok(starts)
 }
 
 fn for_each_edge(
@@ -140,9 +169,9 @@ fn for_each_edge(
     budget: &Budget,
     mut visit: impl FnMut(u32, usize, u32),
 ) -> Result<(), Stopped> {
-    for (block, corners) in triangles.chunks(crate::budget::CHECK_EVERY).enumerate() {
+    for (block, corners) in triangles.chunks(CHECK_EVERY).enumerate() {
         budget.check()?;
-        let base = (block * crate::budget::CHECK_EVERY) as u32;
+        let base = (block * CHECK_EVERY) as u32;
         for (i, &[a, b, c]) in corners.iter().enumerate() {
             let h = (base + i as u32) * 3;
             for (k, (from, to)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {

@@ -30,7 +30,7 @@ pub(super) fn convert(input: &Input, options: &Options, budget: &Budget) -> Resu
         return Ok(report.refused(Refusal::NothingToRepair));
     }
     let depth = Depth::Count { samples: input.samples };
-    let candidate = match Candidate::write(&draft.to_soup(&input.soup), encoding, depth, budget) {
+    let candidate = match Candidate::write(draft.to_soup(&input.soup), encoding, depth, budget) {
         Ok(candidate) => candidate,
         Err(NoCandidate::Refused(refusal)) => return Ok(report.refused(refusal)),
         Err(NoCandidate::Failed(failure)) => return Err(failure),

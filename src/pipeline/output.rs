@@ -31,18 +31,19 @@ impl<E: Into<Failure>> From<E> for NoCandidate {
 }
 
 impl Candidate {
-    /// Writes `soup` and judges the bytes.
+    /// Writes `soup` and judges the bytes. The soup is gone by then: the largest buffers never live at the same time.
     pub(super) fn write(
-        soup: &Soup,
+        soup: Soup,
         encoding: Encoding,
         depth: Depth,
         budget: &Budget,
     ) -> Result<Self, NoCandidate> {
-        let bytes = match budget.stage(Stage::Write, || formats::write(soup, encoding, budget)) {
+        let bytes = match budget.stage(Stage::Write, || formats::write(&soup, encoding, budget)) {
             Ok(bytes) => bytes,
             Err(WriteError::Stopped(stopped)) => return Err(stopped.into()),
             Err(reason) => return Err(NoCandidate::Refused(Refusal::NotRepresentable { reason })),
         };
+        drop(soup);
         // What we write may be larger than what we would take in.
         let limits =
             ReadLimits { triangles_max: u32::MAX, vertices_max: u32::MAX, polygon_corners_max: u32::MAX };

@@ -95,7 +95,7 @@ impl Writer<'_> {
     fn write(&self, result: &Simplified) -> Result<Candidate, NoCandidate> {
         let encoding = self.input.output_encoding(self.options);
         let depth = Depth::Count { samples: self.input.samples };
-        Candidate::write(&soup_of(result, self.mesh), encoding, depth, self.budget)
+        Candidate::write(soup_of(result, self.mesh), encoding, depth, self.budget)
     }
 }
 
@@ -118,7 +118,7 @@ pub(super) fn of_certified(
     };
     let Some(result) = result else { return Ok(None) };
     let encoding = input.output_encoding(options);
-    match Candidate::write(&soup_of(&result, &mesh), encoding, Depth::FirstViolation, budget) {
+    match Candidate::write(soup_of(&result, &mesh), encoding, Depth::FirstViolation, budget) {
         Ok(candidate) if candidate.certificate().is_printable() => {
             Ok(Some((candidate, result.triangle_origin, action(&result.report))))
         }

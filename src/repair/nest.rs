@@ -28,7 +28,8 @@ pub fn nest(draft: &mut Draft, is_embedded: bool, budget: &Budget) -> Result<Cha
     let bvh = Bvh::build(&draft.positions, &draft.triangles, None, budget)?;
     let is_embedded = is_embedded
         || shells.count == 1
-        || spatial::self_contacts(&draft.positions, &draft.triangles, &bvh, Search::First, budget)?.count
+        || spatial::self_contacts(&draft.positions, &draft.triangles, &bvh, None, Search::First, budget)?
+            .count
             == 0;
     if !is_embedded {
         return Ok(left_alone("triangles pass through each other or touch"));

@@ -59,13 +59,23 @@ fn without_sign_of_zero<T: Copy + PartialEq + Default>(bits: T, negative_zero: T
 
 /// Coordinates as bits; equal points have equal keys.
 trait Key: Copy + Ord + Default + Send + Sync {
+    /// Depends on every bit; equal keys have equal hashes.
     fn hash(self) -> u64;
+
+    /// As [`hash`](Self::hash) where collisions do little harm: cheaper, and mixed less well.
+    fn quick_hash(self) -> u64;
 }
 
 impl Key for [u32; 3] {
     fn hash(self) -> u64 {
         let [x, y, z] = self;
         fold(fold(u64::from(x) << 32 | u64::from(y), SEEDS[0]) ^ u64::from(z), SEEDS[1])
+    }
+
+    #[inline]
+    fn quick_hash(self) -> u64 {
+        let [x, y, z] = self.map(u64::from);
+        top_bits((x << 32 | y).wrapping_add(z.wrapping_mul(SEEDS[1])))
     }
 }
 
@@ -74,15 +84,29 @@ impl Key for [u64; 3] {
         let [x, y, z] = self;
         fold(fold(fold(x, SEEDS[0]) ^ y, SEEDS[1]) ^ z, SEEDS[2])
     }
+
+    #[inline]
+    fn quick_hash(self) -> u64 {
+        let [x, y, z] = self;
+        top_bits(x.wrapping_add(y.wrapping_mul(SEEDS[1])).wrapping_add(z.wrapping_mul(SEEDS[2])))
+    }
 }
 
-/// Digits of pi, as good as any.
-const SEEDS: [u64; 3] = [0x243f_6a88_85a3_08d3, 0x1319_8a2e_0370_7344, 0xa409_3822_299f_31d0];
+/// Digits of pi, as good as any, odd.
+const SEEDS: [u64; 3] = [0x243f_6a88_85a3_08d3, 0x1319_8a2e_0370_7345, 0xa409_3822_299f_31d1];
+
+/// The golden ratio's bits.
+const FACTOR: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// Both halves of the product, so that high and low bits reach each other.
 fn fold(value: u64, seed: u64) -> u64 {
-    let product = u128::from(value ^ seed) * u128::from(0x9e37_79b9_7f4a_7c15_u64);
+    let product = u128::from(value ^ seed) * u128::from(FACTOR);
     (product as u64) ^ (product >> 64) as u64
+}
+
+/// The upper half of a product, which all lower bits of the value reach.
+fn top_bits(value: u64) -> u64 {
+    value.wrapping_mul(FACTOR) >> 32
 }
 
 /// Points that are partitioned together: their entries fit the second-level cache.
@@ -94,6 +118,9 @@ const PART_LEN: usize = 1 << 13;
 /// Most parts; more would need more places to write to than the first-level cache holds.
 const PARTS_MAX: usize = 512;
 
+/// Parts that share a table, one after the other.
+const PARTS_AT_A_TIME: usize = 8;
+
 /// Steps through a table at half load after which the hashes are taken for crafted.
 const PROBES_MAX: usize = 256;
 
@@ -101,7 +128,7 @@ const PROBES_MAX: usize = 256;
 const RECENT_CHUNK: usize = 1 << 17;
 
 /// Recent points that are remembered: as many as fit the second-level cache.
-const RECENT_LEN: usize = 1 << 13;
+const RECENT_LEN: usize = 1 << 14;
 
 fn group_by_key<K: Key>(
     key: impl Fn(usize) -> K + Sync,
@@ -137,7 +164,7 @@ fn points_not_repeated<K: Key>(begin: usize, key: impl Fn(usize) -> K, new_of: &
     let mut news = Vec::with_capacity(new_of.len() / 4);
     for (i, new_of) in (begin..).zip(new_of) {
         let key = key(i);
-        let slot = &mut slots[key.hash() as usize % RECENT_LEN];
+        let slot = &mut slots[key.quick_hash() as usize % RECENT_LEN];
         if slot.key != key || slot.id == EMPTY {
             *slot = Entry { key, id: news.len() as u32 };
             news.push(i as u32);
@@ -159,7 +186,11 @@ fn group_by_parts<K: Key>(
         Ok(Chunk::partition(range, &key, parts))
     })?;
     count_earlier(&mut chunks, parts);
-    let firsts = par::try_map_ranges(parts.count(), 1, |range| first_points(&chunks, range.start, budget))?;
+    let firsts = par::try_map_ranges(parts.count(), PARTS_AT_A_TIME, |range| {
+        let mut table = Table::default();
+        range.map(|part| first_points(&chunks, part, &mut table, budget)).collect::<Result<Vec<_>, _>>()
+    })?;
+    let firsts: Vec<Vec<u32>> = firsts.into_iter().flatten().collect();
     let mut first_of = vec![0; len];
     par::for_each_chunk_mut(&mut first_of, CHUNK, |begin, out| {
         collect_firsts(&chunks[begin / CHUNK], &firsts, begin, out);
@@ -236,9 +267,15 @@ fn count_earlier<K: Key>(chunks: &mut [Chunk<K>], parts: Parts) {
 }
 
 /// For each point of the part, in order, the first point with the same key.
-fn first_points<K: Key>(chunks: &[Chunk<K>], part: usize, budget: &Budget) -> Result<Vec<u32>, Stopped> {
-    let mut table = Table::default();
-    let mut firsts = Vec::with_capacity(chunks.iter().map(|c| c.part(part).len()).sum());
+fn first_points<K: Key>(
+    chunks: &[Chunk<K>],
+    part: usize,
+    table: &mut Table<K>,
+    budget: &Budget,
+) -> Result<Vec<u32>, Stopped> {
+    let len = chunks.iter().map(|c| c.part(part).len()).sum();
+    table.clear(len);
+    let mut firsts = Vec::with_capacity(len);
     for chunk in chunks {
         for entries in chunk.part(part).chunks(CHECK_EVERY) {
             budget.check()?;
@@ -274,47 +311,35 @@ fn first_points_by_sorting<K: Key>(
     Ok(firsts)
 }
 
-/// Open addressing with linear probing at most half full; it grows with the number of different keys.
+/// Open addressing with linear probing, at most half full.
 #[derive(Default)]
 struct Table<K> {
     slots: Vec<Entry<K>>,
-    used: usize,
 }
 
 const EMPTY: u32 = u32::MAX;
 
 impl<K: Key> Table<K> {
+    /// Empties it, with room for `len` keys.
+    fn clear(&mut self, len: usize) {
+        self.slots.clear();
+        self.slots.resize((len * 2).next_power_of_two(), Entry { key: K::default(), id: EMPTY });
+    }
+
     /// The id that came first with the entry's key; `None` when the search takes too long.
     fn first_with_key_of(&mut self, entry: Entry<K>) -> Option<u32> {
-        if self.used * 2 >= self.slots.len() {
-            self.grow()?;
-        }
-        let slot = self.slot_of(entry.key)?;
-        if slot.id == EMPTY {
-            *slot = entry;
-            self.used += 1;
-            return Some(entry.id);
-        }
-        Some(slot.id)
-    }
-
-    fn slot_of(&mut self, key: K) -> Option<&mut Entry<K>> {
         let mask = self.slots.len() - 1;
-        let home = key.hash() as usize;
-        let place = (0..PROBES_MAX)
-            .map(|step| home.wrapping_add(step) & mask)
-            .find(|&place| self.slots[place].id == EMPTY || self.slots[place].key == key)?;
-        Some(&mut self.slots[place])
-    }
-
-    fn grow(&mut self) -> Option<()> {
-        let empty = Entry { key: K::default(), id: EMPTY };
-        let size = (self.slots.len() * 2).max(2 * PROBES_MAX);
-        let old = std::mem::replace(&mut self.slots, vec![empty; size]);
-        for entry in old.into_iter().filter(|e| e.id != EMPTY) {
-            *self.slot_of(entry.key)? = entry;
+        let home = entry.key.hash() as usize;
+        for step in 0..PROBES_MAX {
+            let slot = &mut self.slots[home.wrapping_add(step) & mask];
+            if slot.id == EMPTY {
+                *slot = entry;
+            } else if slot.key != entry.key {
+                continue;
+            }
+            return Some(slot.id);
         }
-        Some(())
+        None
     }
 }
 
@@ -409,6 +434,10 @@ mod tests {
 
     impl Key for Colliding {
         fn hash(self) -> u64 {
+            7
+        }
+
+        fn quick_hash(self) -> u64 {
             7
         }
     }

@@ -9,6 +9,6 @@ mod nesting;
 pub use crate::geom::ContactKind;
 pub use bvh::Bvh;
 pub use coincident::{Coincident, coincident_f32, coincident_f64};
-pub use contacts::{Contact, Contacts, Search, self_contacts};
+pub use contacts::{Contact, Contacts, Search, Terrains, self_contacts};
 pub use nearest::{Nearest, NearestSearch};
 pub use nesting::{NO_SHELL, Nesting, ShellTriangles, nest};

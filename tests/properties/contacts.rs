@@ -10,7 +10,7 @@ use dashu_ratio::RBig;
 use meshmend::budget::Budget;
 use meshmend::geom::{ContactKind, DVec3, Sign, are_collinear};
 use meshmend::par;
-use meshmend::spatial::{Bvh, Contact, Contacts, Search, self_contacts};
+use meshmend::spatial::{Bvh, Contact, Contacts, Search, Terrains, self_contacts};
 
 struct Soup {
     positions: Vec<DVec3>,
@@ -48,7 +48,37 @@ impl Soup {
     fn search(&self, search: Search) -> Contacts {
         let budget = Budget::unlimited();
         let bvh = Bvh::build(&self.positions, &self.triangles, None, &budget).unwrap();
-        self_contacts(&self.positions, &self.triangles, &bvh, search, &budget).unwrap()
+        self_contacts(&self.positions, &self.triangles, &bvh, None, search, &budget).unwrap()
+    }
+
+    /// A closed double cone with its corners moved about, equal positions welded, degenerate triangles among the others.
+    fn crumpled(random: &mut Random) -> Self {
+        let rim = 3 + random.below(5) as u32;
+        let ring = |i: u32| {
+            let angle = std::f64::consts::TAU * f64::from(i) / f64::from(rim);
+            DVec3::new((4.0 * angle.cos()).round(), (4.0 * angle.sin()).round(), 0.0)
+        };
+        let mut positions: Vec<DVec3> =
+            (0..rim).map(ring).chain([DVec3::Z * 2.0, DVec3::NEG_Z * 2.0]).collect();
+        for p in &mut positions {
+            if random.one_in(2) {
+                *p += DVec3::from_array([0; 3].map(|_| f64::from(random.between(-2, 2))));
+            }
+        }
+        let next = |i: u32| (i + 1) % rim;
+        let sides = (0..rim).flat_map(|i| [[i, next(i), rim], [next(i), i, rim + 1]]);
+        let first = |v: u32| positions.iter().position(|p| *p == positions[v as usize]).unwrap() as u32;
+        let triangles = sides.map(|t| t.map(first)).collect();
+        Self { positions, triangles }
+    }
+
+    /// The ends of the edges without exactly two triangles, one in each direction.
+    fn open_vertices(&self) -> Vec<u32> {
+        let sides: Vec<[u32; 2]> =
+            self.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
+        let count = |side: [u32; 2]| sides.iter().filter(|&&other| other == side).count();
+        let is_open = |&[a, b]: &[u32; 2]| [count([a, b]), count([b, a])] != [1, 1];
+        sides.iter().copied().filter(is_open).flatten().collect()
     }
 
     /// The truth, for every pair.
@@ -199,6 +229,32 @@ fn double_cone(count: u32, bottom: DVec3) -> Soup {
 }
 
 #[test]
+fn contacts_beside_terrains_are_all_contacts() {
+    let (mut terrains_seen, mut contacts_seen) = (0, 0);
+    for seed in 0..cases(3_000, 100_000) {
+        let soup = Soup::crumpled(&mut Random::new(seed as u64));
+        let budget = Budget::unlimited();
+        let (positions, triangles) = (&soup.positions, &soup.triangles);
+        let has_area = |&t: &u32| {
+            let [a, b, c] = triangles[t as usize].map(|v| positions[v as usize]);
+            !are_collinear(a, b, c)
+        };
+        let ids: Vec<u32> = (0..triangles.len() as u32).filter(has_area).collect();
+        let bvh = Bvh::build(positions, triangles, Some(&ids), &budget).unwrap();
+        let terrains = Terrains::find(positions, triangles, &soup.open_vertices(), &budget).unwrap();
+        let search = |terrains| {
+            let all = Search::All { keep: usize::MAX };
+            self_contacts(positions, triangles, &bvh, terrains, all, &budget).unwrap()
+        };
+        let found = search(Some(&terrains));
+        assert_eq!(found, search(None), "seed {seed}");
+        terrains_seen += (0..positions.len() as u32).filter(|&v| terrains.holds(v)).count();
+        contacts_seen += found.list.len();
+    }
+    assert!(terrains_seen > 1_000 && contacts_seen > 1_000, "{terrains_seen} {contacts_seen}");
+}
+
+#[test]
 fn large_fans_are_searched_without_looking_at_their_pairs() {
     let count = 1 << 16;
     for bottom in [DVec3::ZERO, -DVec3::Z] {
@@ -207,7 +263,7 @@ fn large_fans_are_searched_without_looking_at_their_pairs() {
             let budget = Budget::unlimited();
             let bvh = Bvh::build(&soup.positions, &soup.triangles, None, &budget).unwrap();
             let all = Search::All { keep: 10 };
-            let found = self_contacts(&soup.positions, &soup.triangles, &bvh, all, &budget).unwrap();
+            let found = self_contacts(&soup.positions, &soup.triangles, &bvh, None, all, &budget).unwrap();
             (found, budget.work_used())
         };
         let (found, work) = search(&soup);

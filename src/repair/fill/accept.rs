@@ -139,7 +139,7 @@ impl Surface {
         triangles.extend(&self.patches);
         let bvh = Bvh::build(&self.positions, &triangles, None, budget)?;
         let search = Search::All { keep: CONTACTS_MAX };
-        let contacts = spatial::self_contacts(&self.positions, &triangles, &bvh, search, budget)?;
+        let contacts = spatial::self_contacts(&self.positions, &triangles, &bvh, None, search, budget)?;
         let mut between = Vec::new();
         for contact in &contacts.list {
             match (owner.get(contact.a as usize), owner.get(contact.b as usize)) {

@@ -181,7 +181,7 @@ impl<'c> Check<'c> {
             self.note(&[(triangles[t], numbers[t])], found);
         }
         let search = Search::All { keep: CONTACTS_KEPT };
-        let contacts = self_contacts(positions, triangles, bvh.unwrap_or(first), search, self.budget)?;
+        let contacts = self_contacts(positions, triangles, bvh.unwrap_or(first), None, search, self.budget)?;
         for contact in &contacts.list {
             let pair = [contact.a, contact.b].map(|t| (triangles[t as usize], numbers[t as usize]));
             self.note(&pair, found);

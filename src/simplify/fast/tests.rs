@@ -74,7 +74,7 @@ fn contacts(mesh: &Simplified) -> u64 {
     let budget = Budget::unlimited();
     let bvh = Bvh::build(&mesh.positions, &mesh.triangles, None, &budget).unwrap();
     let all = Search::All { keep: 0 };
-    self_contacts(&mesh.positions, &mesh.triangles, &bvh, all, &budget).unwrap().count
+    self_contacts(&mesh.positions, &mesh.triangles, &bvh, None, all, &budget).unwrap().count
 }
 
 fn run(

@@ -115,6 +115,12 @@ impl Lanes {
         Self(self.0 & !((2 << k) - 1))
     }
 
+    /// Those of them for which `is_wanted` holds.
+    #[inline]
+    pub(in crate::spatial) fn only(self, is_wanted: impl Fn(usize) -> bool) -> Self {
+        Self((0..LEAF_LEN).fold(0, |lanes, k| lanes | u32::from(is_wanted(k)) << k) & self.0)
+    }
+
     #[inline]
     pub(in crate::spatial) fn is_empty(self) -> bool {
         self.0 == 0

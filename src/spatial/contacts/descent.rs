@@ -235,6 +235,11 @@ impl Descent<'_> {
         }
         let corners = x.corners(i);
         let pairs = y.pairs_with(corners);
+        let harmless = self.surface.harmless_pairs(corners);
+        let meeting = meeting.only(|j| pairs[j] & harmless == 0);
+        if meeting.is_empty() {
+            return Ok(());
+        }
         let plane = Plane::through(self.surface.points(corners).map(|p| *p));
         for j in meeting {
             self.count(1)?;

@@ -2,6 +2,7 @@
 
 mod descent;
 mod directions;
+mod terrains;
 
 use super::Bvh;
 use super::bvh::{Frame, Star, Tree};
@@ -9,6 +10,7 @@ use crate::budget::{Budget, Stopped};
 use crate::geom::{ContactKind, DVec3};
 use crate::par;
 use directions::Directions;
+pub use terrains::Terrains;
 
 /// A pair of triangles that meet beyond what they share by their indices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -47,7 +49,7 @@ pub enum Search {
 /// Finds the pairs of triangles in `bvh` that meet in more than a common vertex or a common edge, exactly.
 ///
 /// Equal positions must have equal indices, triangles must not be degenerate. Two triangles with the same three
-/// vertices are not reported.
+/// vertices are not reported. Pairs at a vertex of `terrains`, if there are any, are not looked at.
 ///
 /// Spends one work unit for each pair of boxes and of triangles it looks at.
 ///
@@ -57,10 +59,11 @@ pub fn self_contacts(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
     bvh: &Bvh,
+    terrains: Option<&Terrains>,
     search: Search,
     budget: &Budget,
 ) -> Result<Contacts, Stopped> {
-    let surface = Surface { positions, triangles, frame: bvh.frame() };
+    let surface = Surface { positions, triangles, terrains, frame: bvh.frame() };
     let found = descent::pairs(bvh.tree(), surface, search, budget)?;
     if search == Search::First && found.count > 0 {
         return Ok(found);
@@ -89,6 +92,9 @@ fn star_contacts(
     search: Search,
     budget: &Budget,
 ) -> Result<Contacts, Stopped> {
+    if surface.terrains.is_some_and(|terrains| terrains.holds(star.hub)) {
+        return Ok(Contacts::default());
+    }
     let directions = Tree::build(&Directions { surface, star }, budget)?;
     descent::pairs(&directions, surface, search, budget)
 }
@@ -98,6 +104,7 @@ fn star_contacts(
 struct Surface<'s> {
     positions: &'s [DVec3],
     triangles: &'s [[u32; 3]],
+    terrains: Option<&'s Terrains>,
     frame: Frame,
 }
 
@@ -105,6 +112,14 @@ impl<'s> Surface<'s> {
     #[inline]
     fn points(&self, corners: [u32; 3]) -> [&'s DVec3; 3] {
         corners.map(|v| &self.positions[v as usize])
+    }
+
+    /// The pairs of equal corners, see [`crate::geom::Shared::by_pairs`], that say of another triangle that it meets
+    /// this one in what they share only.
+    #[inline]
+    fn harmless_pairs(&self, corners: [u32; 3]) -> u32 {
+        let Some(terrains) = self.terrains else { return 0 };
+        (0..3).fold(0, |pairs, i| pairs | u32::from(terrains.holds(corners[i])) * (7 << (3 * i)))
     }
 }
 
