@@ -17,6 +17,7 @@ declare -A filters=(
   [corpus]="corpus"
   [cancel]="cancel"
   [determinism]="determinism"
+  [simplify]="simplify"
 )
 
 name=${1:-}

@@ -27,3 +27,4 @@ mod operations;
 mod real_files;
 mod repair;
 mod simplify;
+mod simplify_real_files;
