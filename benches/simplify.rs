@@ -1,5 +1,6 @@
 //! Speed of simplification on a given mesh file, as a line of JSON:
-//! `cargo bench --bench simplify -- FILE [SHARE] [quadric|memoryless|length] [optimal|onto-end] [OUT.off]`.
+//! `cargo bench --bench simplify -- FILE [SHARE] [quadric|memoryless|length] [optimal|onto-end]
+//! [strict|fast|guarded] [OUT.off]`.
 //!
 //! `seconds`: from the triangles in memory to the simplified triangles in memory, the best of three runs. `peak_bytes`:
 //! what the engine charged to its budget, beside the input and the result. Cut first where the file is no manifold
@@ -11,7 +12,7 @@ use meshmend::budget::Budget;
 use meshmend::formats::{ReadOptions, read, sniff};
 use meshmend::mesh::{Soup, cut_singular};
 use meshmend::simplify::{
-    CriterionKind, Input, Placement, Simplified, SimplifyOptions, Target, simplify_strict,
+    CriterionKind, Input, Mode, Placement, Simplified, SimplifyOptions, Target, simplify,
 };
 use std::fmt::Write;
 use std::time::Instant;
@@ -42,7 +43,7 @@ fn off(mesh: &Simplified) -> String {
 fn main() {
     let args: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
     let Some(file) = args.first() else {
-        println!("usage: cargo bench --bench simplify -- FILE [SHARE] [CRITERION] [PLACEMENT] [OUT.off]");
+        println!("usage: cargo bench --bench simplify -- FILE [SHARE] [CRITERION] [PLACEMENT] [MODE] [OUT.off]");
         return;
     };
     let word = |i: usize, default: &str| args.get(i).map_or(default.to_owned(), Clone::clone);
@@ -60,6 +61,11 @@ fn main() {
         },
         ..SimplifyOptions::default()
     };
+    let mode = match word(4, "strict").as_str() {
+        "fast" => Mode::Fast,
+        "guarded" => Mode::Guarded,
+        _ => Mode::Strict,
+    };
     let input = Input {
         positions: &soup.positions,
         triangles: &soup.triangles,
@@ -71,7 +77,7 @@ fn main() {
     for _ in 0..3 {
         let budget = Budget::unlimited();
         let start = Instant::now();
-        let levels = simplify_strict(&input, &options, &budget).expect("a manifold");
+        let levels = simplify(&input, mode, &options, &budget).expect("a manifold");
         best = best.min(start.elapsed().as_secs_f64());
         last = levels.into_iter().next().map(|level| (level, budget.bytes_peak()));
     }
@@ -87,7 +93,7 @@ fn main() {
         level.report.refusals.total(),
         level.report.error_max,
     );
-    if let Some(path) = args.get(4) {
+    if let Some(path) = args.get(5) {
         std::fs::write(path, off(&level)).expect("OUT can be written");
     }
 }

@@ -1,55 +1,11 @@
-//! One collapse: what it changes, and which edges are looked at again.
+//! What one collapse changes in the queue, and which edges are looked at again.
 
 use super::Strict;
-use crate::geom::DVec3;
 use crate::mesh::corner_table::{NONE, next, prev, triangle_of};
-use crate::simplify::blend::blend;
 use crate::simplify::criterion::{Criterion, Reach};
 use crate::simplify::report::Refusal;
-use crate::simplify::surface::LINE;
 
 impl<C: Criterion> Strict<'_, C> {
-    pub(super) fn merge_colors(&mut self, h: u32, position: DVec3) {
-        if self.colors.is_empty() {
-            return;
-        }
-        let ends = [h, next(h)].map(|g| self.surface.table.origin(g));
-        let [a, b] = ends.map(|v| self.surface.position(v));
-        let length_squared = a.distance_squared(b);
-        let share = if length_squared > 0.0 { (position - a).dot(b - a) / length_squared } else { 0.5 };
-        let [from, to] = ends.map(|v| self.colors[v as usize]);
-        self.colors[ends[1] as usize] = blend(from, to, share.clamp(0.0, 1.0));
-    }
-
-    /// Makes the destination of `h` what both ends become.
-    #[inline]
-    pub(super) fn merge_vertices(&mut self, h: u32, position: DVec3, origin: u32) {
-        let surface = &self.surface;
-        let [a, b] = surface.ends(h);
-        let is_line = |h: u32| surface.table.marks(h) & LINE != 0;
-        let mut merged = *b;
-        merged.position = position;
-        merged.origin = origin;
-        merged.state = self.criterion.merged([a, b], position);
-        merged.is_held |= a.is_held;
-        merged.has_aside |= a.has_aside;
-        if a.lines != 0 || b.lines != 0 {
-            merged.lines += a.lines;
-            merged.lines -= if is_line(h) { 2 } else { 0 };
-            // Two lines that become one are one less, at both their ends.
-            let sides = [h, surface.table.twin(h)];
-            let doubled = |&side: &u32| side != NONE && is_line(next(side)) && is_line(prev(side));
-            let apexes: Vec<u32> =
-                sides.into_iter().filter(doubled).map(|side| surface.table.origin(prev(side))).collect();
-            for apex in apexes {
-                merged.lines -= 1;
-                self.surface.vertices[apex as usize].lines -= 1;
-            }
-        }
-        let b = self.surface.table.destination(h);
-        self.surface.vertices[b as usize] = merged;
-    }
-
     /// Collapses the edge of `h` in the table; in the queue, the edges that become one become one entry.
     #[inline]
     pub(super) fn merge_edges(&mut self, h: u32) {

@@ -14,9 +14,8 @@ use super::quadric_error::QuadricError;
 use super::queue::Queue;
 use super::report::{Refusal, Refusals, Report};
 use super::result::{Input, Simplified, SimplifyError};
-use super::surface::{NEW, Rule, Surface, Vertex};
+use super::surface::{Rule, Surface, Vertex};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
-use crate::geom::DVec3;
 use crate::mesh::Color;
 use crate::mesh::corner_table::{CornerTable, EdgeRings};
 
@@ -185,30 +184,15 @@ impl<C: Criterion> Strict<'_, C> {
         if placed.error_squared > self.error_squared_limit {
             return Err(Refusal::Error);
         }
-        let (position, origin) = self.landing(h, rule, placed.position)?;
+        let (position, origin) = self.surface.landing(h, rule, placed.position, self.options.round)?;
         self.rings.walk(&self.surface.table, h);
         self.surface.table.link_condition(h, &self.rings).map_err(Refusal::Link)?;
         check_faces(&self.surface, h, &self.rings, position, &self.options.guards)?;
         self.error_squared_max = self.error_squared_max.max(placed.error_squared);
-        self.merge_colors(h, position);
-        self.merge_vertices(h, position, origin);
+        self.surface.merge_colors(h, position, &mut self.colors);
+        self.surface.merge_vertices(&self.criterion, h, position, origin);
         self.merge_edges(h);
         self.look_around();
         Ok(())
-    }
-
-    /// The very position for the merged vertex, and the input's vertex there, if there is one.
-    fn landing(&self, h: u32, rule: Rule, position: DVec3) -> Result<(DVec3, u32), Refusal> {
-        let [a, b] = self.surface.ends(h);
-        let kept = match rule {
-            Rule::OntoOrigin => Some(a),
-            Rule::OntoDestination => Some(b),
-            Rule::Anywhere => [b, a].into_iter().find(|end| end.position == position),
-        };
-        if let Some(end) = kept {
-            return Ok((end.position, end.origin));
-        }
-        let position = if self.options.round { self.surface.on_lattice(position) } else { position };
-        if position.is_finite() { Ok((position, NEW)) } else { Err(Refusal::NotFinite) }
     }
 }
