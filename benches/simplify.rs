@@ -43,7 +43,9 @@ fn off(mesh: &Simplified) -> String {
 fn main() {
     let args: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
     let Some(file) = args.first() else {
-        println!("usage: cargo bench --bench simplify -- FILE [SHARE] [CRITERION] [PLACEMENT] [MODE] [OUT.off]");
+        println!(
+            "usage: cargo bench --bench simplify -- FILE [SHARE] [CRITERION] [PLACEMENT] [MODE] [OUT.off]"
+        );
         return;
     };
     let word = |i: usize, default: &str| args.get(i).map_or(default.to_owned(), Clone::clone);

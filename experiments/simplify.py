@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Simplification beside the peers at equal numbers of faces, on real meshes; prints Markdown.
 
-usage: simplify.py quality [--share 0.1] [--models 40]     distance of the results from the original, in every mode
+usage: simplify.py quality [--share 0.1] [--models 40] [--cache FILE]     distance of the results from the original, in every mode
        simplify.py speed [--rounds 3] [--mesh m1]          seconds to a tenth of the faces, alternating in one run
 with MESHMEND_SHARED and the peers' own set-up done (see its README). Ours is `cargo bench --bench simplify`.
 Distances are measured by Open3D: 60,000 random points of each surface and all its vertices against the other surface.
@@ -13,7 +13,7 @@ shared = os.environ.get("MESHMEND_SHARED", os.path.join(root, "../shared"))
 peers = os.environ.get("MESH_PEERS_DIR") or os.path.join(tempfile.gettempdir(), "meshmend-peers")
 judge = os.environ.get("MESH_JUDGE_DIR") or os.path.join(tempfile.gettempdir(), "meshmend-judge")
 p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-p.add_argument("what", choices=("quality", "speed")); p.add_argument("--share", type=float, default=0.1); p.add_argument("--models", type=int, default=40)
+p.add_argument("what", choices=("quality", "speed")); p.add_argument("--share", type=float, default=0.1); p.add_argument("--models", type=int, default=40); p.add_argument("--cache", help="file that keeps what was measured of the peers")
 p.add_argument("--rounds", type=int, default=3); p.add_argument("--mesh", default="m1"); o = p.parse_args()
 sys.path.insert(0, os.path.join(shared, "judge"))
 from meshfile import load_any, read_msh, write_msh
@@ -72,18 +72,20 @@ PEERS = dict(pymeshlab=by_pymeshlab, cgal=by_cgal, meshlib=by_meshlib, open3d=by
 
 def quality():
     names, ratios, wins = [], {m: ([], []) for m in MODES}, {}
+    cache = json.load(open(o.cache)) if o.cache and os.path.exists(o.cache) else {}
     for line in open(os.path.join(shared, "corpus/MANIFEST.tsv")):
         if line.startswith("#") or len(names) == o.models: continue
         id, path, *_, vertices, faces, classes, licence = line.rstrip("\n").split("\t")
         if "clean" not in classes or not FACES[0] <= int(faces) <= FACES[1] or path.lower().endswith(".3mf"): continue
         V, F, _ = load_any(os.path.join(shared, "corpus", path)); V, F = np.asarray(V, float), np.asarray(F, np.int64); k = int(len(F) * o.share)
         with tempfile.TemporaryDirectory() as d:
-            write_off(d + "/in.off", V, F); found = {}
-            for name, run in PEERS.items():
+            write_off(d + "/in.off", V, F); found = cache.setdefault(f"{id} {o.share}", {}); todo = {} if found else PEERS
+            for name, run in todo.items():
                 try: a, b = run(V, F, k, d)
                 except Exception as e: print(f"{id} {name}: {str(e)[:80]}", file=sys.stderr); continue
                 # Equal counts: one that keeps far more faces than asked is not compared.
                 if 0 < len(b) <= 1.02 * k: found[name] = measure(V, F, np.asarray(a, float), np.asarray(b, np.int64))
+            if o.cache: json.dump(cache, open(o.cache, "w"))
             if not found: continue
             best = [min(found, key=lambda n: found[n][i]) for i in (0, 1)]
             for name in best: wins[name] = wins.get(name, 0) + 1

@@ -82,6 +82,16 @@ impl Buckets {
         self.next[h as usize] = ASIDE;
     }
 
+    /// Puts those that are set aside back into the queue.
+    #[inline]
+    pub(super) fn put_back(&mut self, half_edges: [u32; 2], class: usize) {
+        for h in half_edges {
+            if self.is_aside(h) {
+                self.push(h, class);
+            }
+        }
+    }
+
     #[inline]
     pub(super) fn is_aside(&self, h: u32) -> bool {
         self.next[h as usize] == ASIDE

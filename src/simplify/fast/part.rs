@@ -136,6 +136,9 @@ impl<'r, C: Criterion> Part<'r, C> {
     fn set_aside(&mut self, h: u32, reason: Refusal) {
         self.tally.refusals.add(reason);
         self.queue.set_aside(h);
+        for v in [h, next(h)].map(|g| self.surface.table.origin(g)) {
+            self.surface.vertices[v as usize].has_aside = true;
+        }
     }
 
     /// Number of triangles that are left.
@@ -218,17 +221,22 @@ impl<'r, C: Criterion> Part<'r, C> {
         }
     }
 
-    /// Puts the edges around the merged vertex that had been set aside back into the queue.
+    /// Puts back into the queue what had been set aside and may have become possible: whether an edge can be collapsed
+    /// depends on the faces around its ends, so on all edges of the merged vertex and of its neighbours.
     fn look_around(&mut self) {
         let class = self.queue.lowest().min(CLASSES - 1);
-        for corners in [&self.rings.origin.corners, &self.rings.destination.corners] {
-            for &corner in corners {
-                if self.surface.table.corners(triangle_of(corner)).is_some() {
-                    for g in [corner, prev(corner)] {
-                        if self.queue.is_aside(g) {
-                            self.queue.push(g, class);
-                        }
-                    }
+        let Self { rings, queue, surface, .. } = self;
+        let Surface { table, vertices, .. } = surface;
+        for &corner in rings.origin.corners.iter().chain(&rings.destination.corners) {
+            if table.corners(triangle_of(corner)).is_none() {
+                continue;
+            }
+            queue.put_back([corner, prev(corner)], class);
+            // Both ends of an edge that is set aside say so.
+            for outer in [next(corner), prev(corner)] {
+                let neighbour = &mut vertices[table.origin(outer) as usize];
+                if std::mem::take(&mut neighbour.has_aside) {
+                    table.fan(outer).for_each(|c| queue.put_back([c, prev(c)], class));
                 }
             }
         }
