@@ -8,6 +8,7 @@
 
 mod columns;
 mod cut;
+mod fit;
 mod lattice;
 mod raster;
 mod shells;
@@ -22,6 +23,7 @@ mod tests;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3};
 use cut::Cut;
+pub use fit::FitCounts;
 use lattice::Lattice;
 pub use lattice::TooCoarse;
 use signs::Signs;
@@ -51,11 +53,19 @@ pub struct WrapOptions {
     pub vertices_max: usize,
     /// Most cubes and columns to go through for all triangles together.
     pub visits_max: u64,
+    /// Whether vertices move onto the input and its creases.
+    pub is_fitted: bool,
 }
 
 impl Default for WrapOptions {
     fn default() -> Self {
-        Self { cells: 256, open_shells: OpenShells::Auto, vertices_max: 1 << 25, visits_max: 1 << 27 }
+        Self {
+            cells: 256,
+            open_shells: OpenShells::Auto,
+            vertices_max: 1 << 25,
+            visits_max: 1 << 27,
+            is_fitted: true,
+        }
     }
 }
 
@@ -64,6 +74,8 @@ impl Default for WrapOptions {
 pub struct Wrapped {
     /// Vertex positions, all float32, in the unit of the input.
     pub positions: Vec<DVec3>,
+    /// Positions before the fit: with these the surface is valid by construction. Empty without a fit.
+    pub unfitted: Vec<DVec3>,
     /// Vertex ids of each triangle's corners, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
     /// How it came to be.
@@ -89,6 +101,8 @@ pub struct Account {
     pub thin_triangles: u64,
     /// How clearly open parts bound a volume: 1 for a closed shell, 0 for a flat sheet. `None`: there are none.
     pub closedness: Option<f64>,
+    /// What the fit did.
+    pub fit: FitCounts,
 }
 
 /// Why there is no wrap.
@@ -135,15 +149,21 @@ pub fn wrap(
         sheet_parts: shells.parts[2],
         thin_triangles: 0,
         closedness: shells.closedness,
+        fit: FitCounts::default(),
     };
     let surface = InputSurface::new(shells, budget)?;
     let signs = Signs::decide(&lattice, &surface, budget)?;
     account.thin_triangles = signs.thin.len() as u64;
     let patches = tetrahedra::march(&lattice, &signs, budget)?;
     let cuts = cut::cuts(&lattice, &signs, &surface, &patches.edges, budget)?;
-    let positions = places(&lattice, &patches, &cuts);
+    let mut positions = places(&lattice, &patches, &cuts);
     let triangles = triangulate(&patches, &positions, budget)?;
-    Ok(Wrapped { positions, triangles, account })
+    let mut unfitted = Vec::new();
+    if options.is_fitted {
+        unfitted.clone_from(&positions);
+        account.fit = fit::fit(&lattice, &signs, &surface, &cuts, &mut positions, &triangles, budget)?;
+    }
+    Ok(Wrapped { positions, unfitted, triangles, account })
 }
 
 /// The finest lattice up to what is asked that the limits allow.

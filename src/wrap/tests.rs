@@ -21,6 +21,8 @@ pub(super) fn certificate_of(positions: &[DVec3], triangles: &[[u32; 3]]) -> Cer
 fn wrapped(positions: &[DVec3], triangles: &[[u32; 3]], cells: u32) -> (Wrapped, Certificate) {
     let options = WrapOptions { cells, ..WrapOptions::default() };
     let wrapped = wrap(positions, triangles, &options, &Budget::unlimited()).unwrap();
+    let unfitted = certificate_of(&wrapped.unfitted, &wrapped.triangles);
+    assert!(unfitted.is_printable(), "{:?}", unfitted.witnesses);
     let certificate = certificate_of(&wrapped.positions, &wrapped.triangles);
     assert!(certificate.is_printable(), "{:?}", certificate.witnesses);
     (wrapped, certificate)
@@ -50,7 +52,12 @@ fn a_box_comes_back_with_its_volume() {
     let (positions, triangles) = cuboid([0.0; 3], [10.0, 8.0, 6.0]);
     let (wrap, certificate) = wrapped(&positions, &triangles, 32);
     assert_eq!(certificate.shells.len(), 1);
-    assert!((certificate.shells[0].volume - 480.0).abs() < 5.0, "{:?}", certificate.shells);
+    assert!((certificate.shells[0].volume - 480.0).abs() < 0.5, "{:?}", certificate.shells);
+    assert!(wrap.account.fit.onto_creases > 100, "{:?}", wrap.account);
+    for p in &wrap.positions {
+        let beyond = (p.max(DVec3::new(10.0, 8.0, 6.0)) - p.min(DVec3::ZERO)) - DVec3::new(10.0, 8.0, 6.0);
+        assert!(beyond.abs().max_element() < 1e-2 * wrap.account.spacing, "{p}");
+    }
     assert_eq!((wrap.account.closed_parts, wrap.account.thin_triangles), (1, 0));
 }
 
@@ -243,8 +250,10 @@ fn every_bad_soup_is_certified_or_rightly_refused() {
         let options = WrapOptions { cells: 16, open_shells, ..WrapOptions::default() };
         match wrap(&positions, &triangles, &options, &budget) {
             Ok(wrapped) => {
-                let certificate = certificate_of(&wrapped.positions, &wrapped.triangles);
+                let certificate = certificate_of(&wrapped.unfitted, &wrapped.triangles);
                 assert!(certificate.is_printable(), "{round}: {:?}", certificate.witnesses);
+                let certificate = certificate_of(&wrapped.positions, &wrapped.triangles);
+                assert!(certificate.is_printable(), "{round} fitted: {:?}", certificate.witnesses);
             }
             Err(WrapError::NotRepresentable(coarse)) => {
                 assert!(coarse.pitch * 16384.0 > coarse.diagonal, "{round}: {coarse:?}");
