@@ -57,7 +57,8 @@ pub enum Require {
     Printable,
     /// The best result there is, called `partial` when it is not printable.
     BestEffort,
-    /// Whatever the operation gives; the certificate says what holds. Default of all other operations.
+    /// Whatever the operation gives, and nothing is rebuilt; the certificate says what holds. Default of all other
+    /// operations.
     None,
 }
 

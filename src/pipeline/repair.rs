@@ -51,6 +51,11 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
             let report = Report { actions: attempt.actions, ..report };
             Ok(candidate.returned(input, &origins, report, Outcome::Repaired, budget)?)
         }
+        Found::Nothing { refusal: Refusal::NotRepairable { .. }, mended: Some(mended), .. }
+            if options.require == Some(Require::None) =>
+        {
+            partial(input, encoding, report, *mended, budget)
+        }
         Found::Nothing {
             refusal: Refusal::NotRepairable { .. } | Refusal::NothingToRepair, mended, ..
         } => {

@@ -263,30 +263,30 @@ impl<'l> Signs<'l> {
     /// Puts vertices inside where the surface would be lost; gives those that are inside by this.
     fn keep_what_is_lost(&mut self, surface: &InputSurface, budget: &Budget) -> Result<Vec<u32>, Stopped> {
         let mut changed = Vec::new();
-        if self.mark_thin(budget)? {
-            for triangles in [surface.closed(), surface.open()] {
-                for &corners in triangles {
-                    let (mut count, mut is_thin) = (1, false);
-                    raster::cubes(corners, self.lattice.dims, |cube| {
-                        is_thin |= self.state[self.lattice.index(cube)] & THIN_SIDE != 0;
-                        count += 1;
-                    });
-                    budget.spend(count)?;
-                    if is_thin {
-                        self.thin.push(corners);
-                    }
-                }
-            }
-            let near = self.near(THIN_SIDE, budget)?;
-            self.state.iter_mut().for_each(|state| *state &= !THIN_SIDE);
-            let thin = std::mem::take(&mut self.thin);
-            self.grow(&near, &thin, false, &mut changed, budget)?;
-            self.thin = thin;
-        }
         if !surface.sheets().is_empty() {
             let near = self.near(TOUCHED_BY_SHEET, budget)?;
             self.grow(&near, surface.sheets(), true, &mut changed, budget)?;
         }
+        // Also sheets that grew into each other's front and so not at all.
+        if !self.mark_thin(budget)? {
+            return Ok(changed);
+        }
+        for &corners in &surface.corners {
+            let (mut count, mut is_thin) = (1, false);
+            raster::cubes(corners, self.lattice.dims, |cube| {
+                is_thin |= self.state[self.lattice.index(cube)] & THIN_SIDE != 0;
+                count += 1;
+            });
+            budget.spend(count)?;
+            if is_thin {
+                self.thin.push(corners);
+            }
+        }
+        let near = self.near(THIN_SIDE, budget)?;
+        self.state.iter_mut().for_each(|state| *state &= !THIN_SIDE);
+        let thin = std::mem::take(&mut self.thin);
+        self.grow(&near, &thin, false, &mut changed, budget)?;
+        self.thin = thin;
         Ok(changed)
     }
 
@@ -297,7 +297,7 @@ impl<'l> Signs<'l> {
             if cube % CHECK_EVERY == 0 {
                 budget.check()?;
             }
-            if self.state[cube] & TOUCHED != 0 {
+            if self.state[cube] & (TOUCHED | TOUCHED_BY_SHEET) != 0 {
                 let mut all = 0;
                 self.around_cube(cube, |state, _| all |= *state);
                 if all & INSIDE == 0 {

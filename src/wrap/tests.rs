@@ -239,6 +239,16 @@ fn soup(random: &mut Random) -> (Vec<DVec3>, Vec<[u32; 3]>) {
 }
 
 #[test]
+fn sheets_back_to_back_are_not_lost() {
+    let at = |z: f64| [[0.0, 0.0, z], [10.0, 0.0, z], [0.0, 10.0, z]].map(DVec3::from_array);
+    let positions = [at(0.0), at(1e-4)].concat();
+    let (_, certificate) = wrapped(&positions, &[[0, 2, 1], [3, 4, 5]], 32);
+    assert_eq!(certificate.shells.len(), 1);
+    let (_, certificate) = wrapped(&positions, &[[0, 1, 2], [3, 5, 4]], 32);
+    assert_eq!(certificate.shells.len(), 1);
+}
+
+#[test]
 fn every_bad_soup_is_certified_or_rightly_refused() {
     let mut random = Random(11);
     let budget = Budget::unlimited();
