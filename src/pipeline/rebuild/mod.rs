@@ -1,5 +1,7 @@
 //! The last rung: a surface rebuilt around what no local edit could make a solid.
 
+mod parts;
+
 use super::input::Input;
 use super::output::{Candidate, NoCandidate};
 use super::plan::{Attempt, Step, Variant};
@@ -12,7 +14,7 @@ use crate::formats::Encoding;
 use crate::geom::DVec3;
 use crate::mesh::Soup;
 use crate::repair::duplicates::OppositePairs;
-use crate::repair::{Draft, NEW};
+use crate::repair::{Draft, NEW, nest};
 use crate::simplify::{self, Mode, SimplifyError, SimplifyOptions, Target};
 use crate::wrap::{self, Account, OpenShells, WrapError, WrapOptions, Wrapped};
 
@@ -71,71 +73,122 @@ pub(super) fn rebuild(
         open_shells: choices.open_shells,
         ..WrapOptions::default()
     };
-    let draft = &attempt.draft;
-    let wrapped =
-        budget.stage(Stage::Repair, || wrap::wrap(&draft.positions, &draft.triangles, &wrap_options, budget));
-    let wrapped = match wrapped {
-        Ok(wrapped) => wrapped,
-        Err(WrapError::Stopped(stopped)) => return Err(stopped.into()),
-        Err(WrapError::Empty) => {
-            return Ok(Report { actions: attempt.actions, ..report }.refused(Refusal::NothingToRepair));
-        }
-        Err(WrapError::NotRepresentable(coarse)) => {
-            let refusal = Refusal::BeyondFloat32 { pitch: coarse.pitch, diagonal: coarse.diagonal };
+    let rebuilding = Rebuilding { input, encoding, options, wrap_options, budget };
+    let split = budget.stage(Stage::Repair, || parts::split(&attempt.draft, budget))?;
+    let mut rebuilt = None;
+    if let Some(split) = split {
+        rebuilt = match rebuilding.beside(split) {
+            Ok(rebuilt) => Some(rebuilt),
+            // Not with these parts kept; without them then.
+            Err(NoCandidate::Refused(_)) => None,
+            Err(NoCandidate::Failed(failure)) => return Err(failure),
+        };
+    }
+    let rebuilt = match rebuilt.map_or_else(|| rebuilding.all(&attempt.draft), Ok) {
+        Ok(rebuilt) => rebuilt,
+        Err(NoCandidate::Refused(refusal)) => {
             return Ok(Report { actions: attempt.actions, ..report }.refused(refusal));
         }
-    };
-    let (candidate, simplified) = match certified(&wrapped, encoding, options, budget) {
-        Ok(found) => found,
-        Err(NoCandidate::Refused(refusal)) => return Ok(report.refused(refusal)),
         Err(NoCandidate::Failed(failure)) => return Err(failure),
     };
     let mut actions = attempt.actions;
-    actions.push(action(&wrapped.account, choices.open_shells, before.as_ref()));
-    actions.extend(simplified);
-    let distance = distance(input, candidate.soup(), budget)?;
-    let origins = vec![NEW; candidate.soup().triangles.len()];
+    actions.push(action(&rebuilt, choices.open_shells, before.as_ref()));
+    actions.extend(rebuilt.simplified);
+    let distance = distance(input, rebuilt.candidate.soup(), budget)?;
     let report = Report { actions, distance, ..report };
-    Ok(candidate.returned(input, &origins, report, Outcome::Rebuilt, budget)?)
+    Ok(rebuilt.candidate.returned(input, &rebuilt.origins, report, Outcome::Rebuilt, budget)?)
 }
 
-/// The first of the simplified, the fitted and the bare surface whose bytes are certified, the last in any case.
-fn certified(
-    wrapped: &Wrapped,
+/// A certified mesh, and how it came to be.
+struct Rebuilt {
+    candidate: Candidate,
+    /// The triangle of the input that each triangle is, or [`NEW`].
+    origins: Vec<u32>,
+    account: Account,
+    simplified: Option<Action>,
+}
+
+/// What every attempt to rebuild needs.
+struct Rebuilding<'a> {
+    input: &'a Input,
     encoding: Encoding,
-    options: &Options,
-    budget: &Budget,
-) -> Result<(Candidate, Option<Action>), NoCandidate> {
-    let write = |soup: &Soup| Candidate::write(soup, encoding, Depth::FirstViolation, budget);
-    if let Some((soup, action)) = simplified(wrapped, options, budget)? {
-        let candidate = write(&soup)?;
-        if candidate.certificate().is_printable() {
-            return Ok((candidate, Some(action)));
+    options: &'a Options,
+    wrap_options: WrapOptions,
+    budget: &'a Budget,
+}
+
+impl Rebuilding<'_> {
+    /// Everything is rebuilt.
+    fn all(&self, draft: &Draft) -> Result<Rebuilt, NoCandidate> {
+        let wrapped = self.wrap(draft)?;
+        self.certified(&wrapped, &Draft::default())
+    }
+
+    /// Some parts keep their bits.
+    fn beside(&self, split: parts::Split) -> Result<Rebuilt, NoCandidate> {
+        let parts::Split { mut kept, broken } = split;
+        nest::nest(&mut kept, true, self.budget)?;
+        let wrapped = self.wrap(&broken)?;
+        self.certified(&wrapped, &kept)
+    }
+
+    fn wrap(&self, draft: &Draft) -> Result<Wrapped, NoCandidate> {
+        let options = &self.wrap_options;
+        let wrap = || wrap::wrap(&draft.positions, &draft.triangles, options, self.budget);
+        self.budget.stage(Stage::Repair, wrap).map_err(|error| match error {
+            WrapError::Stopped(stopped) => stopped.into(),
+            WrapError::Empty => NoCandidate::Refused(Refusal::NothingToRepair),
+            WrapError::NotRepresentable(coarse) => NoCandidate::Refused(Refusal::BeyondFloat32 {
+                pitch: coarse.pitch,
+                diagonal: coarse.diagonal,
+            }),
+        })
+    }
+
+    /// The first of the simplified, the fitted and the bare surface whose bytes are certified, beside `kept`.
+    fn certified(&self, wrapped: &Wrapped, kept: &Draft) -> Result<Rebuilt, NoCandidate> {
+        let origins = |count: usize| {
+            kept.triangle_origin.iter().copied().chain(std::iter::repeat_n(NEW, count)).collect()
+        };
+        let account = wrapped.account;
+        if let Some((positions, triangles, action)) = simplified(wrapped, self.options, self.budget)? {
+            let candidate = self.write(&positions, &triangles, kept)?;
+            if candidate.certificate().is_printable() {
+                let origins = origins(triangles.len());
+                return Ok(Rebuilt { candidate, origins, account, simplified: Some(action) });
+            }
         }
+        let mut witness = None;
+        for positions in [&wrapped.positions, &wrapped.unfitted] {
+            let candidate = self.write(positions, &wrapped.triangles, kept)?;
+            if candidate.certificate().is_printable() {
+                let origins = origins(wrapped.triangles.len());
+                return Ok(Rebuilt { candidate, origins, account, simplified: None });
+            }
+            witness = candidate.certificate().witnesses.first().cloned();
+        }
+        Err(NoCandidate::Refused(Refusal::NotRepairable { witness }))
     }
-    let candidate = write(&soup_of(&wrapped.positions, &wrapped.triangles))?;
-    if candidate.certificate().is_printable() || wrapped.unfitted.is_empty() {
-        return judged(candidate);
-    }
-    judged(write(&soup_of(&wrapped.unfitted, &wrapped.triangles))?)
-}
 
-/// A candidate that is certified, or the refusal.
-fn judged(candidate: Candidate) -> Result<(Candidate, Option<Action>), NoCandidate> {
-    if candidate.certificate().is_printable() {
-        return Ok((candidate, None));
-    }
-    let witness = candidate.certificate().witnesses.first().cloned();
-    Err(NoCandidate::Refused(Refusal::NotRepairable { witness }))
-}
-
-fn soup_of(positions: &[DVec3], triangles: &[[u32; 3]]) -> Soup {
-    Soup {
-        positions: positions.to_vec(),
-        triangles: triangles.to_vec(),
-        face_count: triangles.len() as u32,
-        is_f32_exact: true,
-        ..Soup::default()
+    fn write(
+        &self,
+        positions: &[DVec3],
+        triangles: &[[u32; 3]],
+        kept: &Draft,
+    ) -> Result<Candidate, NoCandidate> {
+        let mut soup = kept.to_soup(&self.input.soup);
+        let base = soup.positions.len() as u32;
+        soup.positions.extend(positions);
+        soup.triangles.extend(triangles.iter().map(|t| t.map(|v| v + base)));
+        soup.face_count = soup.triangles.len() as u32;
+        // What is new has no colour.
+        if !soup.vertex_colors.is_empty() {
+            soup.vertex_colors.resize(soup.positions.len(), None);
+        }
+        if !soup.face_colors.is_empty() {
+            soup.face_colors.resize(soup.triangles.len(), None);
+        }
+        Candidate::write(&soup, self.encoding, Depth::FirstViolation, self.budget)
     }
 }
 
@@ -144,7 +197,7 @@ fn simplified(
     wrapped: &Wrapped,
     options: &Options,
     budget: &Budget,
-) -> Result<Option<(Soup, Action)>, Stopped> {
+) -> Result<Option<(Vec<DVec3>, Vec<[u32; 3]>, Action)>, Stopped> {
     let input = simplify::Input {
         positions: &wrapped.positions,
         triangles: &wrapped.triangles,
@@ -164,7 +217,7 @@ fn simplified(
     match results {
         Ok(results) => Ok(results.into_iter().next().map(|result| {
             let action = super::simplify::action(&result.report);
-            (soup_of(&result.positions, &result.triangles), action)
+            (result.positions, result.triangles, action)
         })),
         Err(SimplifyError::Stopped(stopped)) => Err(stopped),
         Err(SimplifyError::NotManifold(_)) => Ok(None),
@@ -179,7 +232,9 @@ fn distance(input: &Input, result: &Soup, budget: &Budget) -> Result<Option<Surf
 }
 
 /// The wrap as a step of the plan, with the reading that it took.
-fn action(account: &Account, open_shells: OpenShells, before: Option<&crate::analysis::Analysis>) -> Action {
+fn action(rebuilt: &Rebuilt, open_shells: OpenShells, before: Option<&crate::analysis::Analysis>) -> Action {
+    let account = &rebuilt.account;
+    let kept = rebuilt.origins.iter().filter(|&&origin| origin != NEW).count() as u64;
     let findings = before.map_or(&[][..], |analysis| &analysis.findings);
     let has = |code: &DefectCode| findings.iter().any(|f| f.code == *code && f.count > 0);
     Action {
@@ -187,6 +242,7 @@ fn action(account: &Account, open_shells: OpenShells, before: Option<&crate::ana
         causes: CAUSES.into_iter().filter(has).collect(),
         changes: vec![
             ("cells", u64::from(account.cells)),
+            ("triangles_kept", kept),
             ("closed_parts", u64::from(account.closed_parts)),
             ("open_parts_closed", u64::from(account.open_parts)),
             ("sheets_thickened", u64::from(account.sheet_parts)),
