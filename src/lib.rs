@@ -17,6 +17,7 @@ pub mod formats;
 
 pub mod analysis;
 pub mod simplify;
+pub mod wrap;
 
 pub mod certificate;
 pub mod repair;

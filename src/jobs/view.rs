@@ -92,6 +92,7 @@ pub(super) fn result_name(row: &JobRow, encoding: Encoding, level: usize) -> Str
     let mark = match finish.and_then(|finish| finish.outcome) {
         Some(Outcome::Simplified) => "-simplified",
         Some(Outcome::Repaired) => "-repaired",
+        Some(Outcome::Rebuilt) => "-rebuilt",
         Some(Outcome::Partial) => "-partial",
         _ => "",
     };

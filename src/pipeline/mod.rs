@@ -6,10 +6,12 @@ mod identical;
 mod input;
 mod output;
 mod plan;
+mod rebuild;
 mod repair;
 mod simplify;
 
 use self::input::Input;
+pub use self::rebuild::WrapChoices;
 use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stopped};
 use crate::certificate::{Certificate, Violation};
@@ -55,7 +57,8 @@ pub enum Require {
     Printable,
     /// The best result there is, called `partial` when it is not printable.
     BestEffort,
-    /// Whatever the operation gives; the certificate says what holds. Default of all other operations.
+    /// Whatever the operation gives, and nothing is rebuilt; the certificate says what holds. Default of all other
+    /// operations.
     None,
 }
 
@@ -98,6 +101,8 @@ pub struct Options {
     pub require: Option<Require>,
     /// Hole filling of `repair`.
     pub fill_holes: FillHoles,
+    /// How a mesh is rebuilt that no step of `repair` makes a solid.
+    pub wrap: WrapChoices,
     /// How `simplify` works, and how far; a repair ends with it when it has targets.
     pub simplify: SimplifyChoices,
     /// Witnesses to keep of each defect; `None`: 16.
@@ -151,6 +156,8 @@ pub enum Outcome {
     Converted,
     /// Valid after local edits.
     Repaired,
+    /// Valid; the surface was rebuilt within the distance that is reported.
+    Rebuilt,
     /// Fewer triangles, as asked; the certificate says what holds.
     Simplified,
     /// Not valid; only on request.
@@ -168,6 +175,13 @@ pub enum Refusal {
     NotRepairable {
         /// What still breaks the contract.
         witness: Option<Violation>,
+    },
+    /// The pitch of float32 is too coarse for a part that must be rebuilt: more than 2^-14 of its diagonal.
+    BeyondFloat32 {
+        /// The pitch, in the unit of the file.
+        pitch: f64,
+        /// The diagonal of the part, in the same unit.
+        diagonal: f64,
     },
     /// A coordinate cannot be written in the output format.
     NotRepresentable {

@@ -55,6 +55,11 @@ impl Candidate {
         })
     }
 
+    /// The bytes, read back.
+    pub(super) fn soup(&self) -> &Soup {
+        &self.soup
+    }
+
     pub(super) fn certificate(&self) -> &Certificate {
         &self.examination.certificate
     }

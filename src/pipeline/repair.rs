@@ -3,7 +3,7 @@
 use super::input::Input;
 use super::output::{Candidate, NoCandidate};
 use super::plan::{Attempt, Variant};
-use super::{Answer, Failure, Operation, Options, Outcome, Refusal, Report, Require, simplify};
+use super::{Answer, Failure, Operation, Options, Outcome, Refusal, Report, Require, rebuild, simplify};
 use crate::analysis::Analysis;
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::Depth;
@@ -51,8 +51,21 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
             let report = Report { actions: attempt.actions, ..report };
             Ok(candidate.returned(input, &origins, report, Outcome::Repaired, budget)?)
         }
-        Found::Nothing { refusal: Refusal::NotRepairable { .. }, mended: Some(mended), .. } => {
+        Found::Nothing { refusal: Refusal::NotRepairable { .. }, mended: Some(mended), .. }
+            if options.require == Some(Require::None) =>
+        {
             partial(input, encoding, report, *mended, budget)
+        }
+        Found::Nothing {
+            refusal: Refusal::NotRepairable { .. } | Refusal::NothingToRepair, mended, ..
+        } => {
+            let answer = rebuild::rebuild(input, encoding, options, report.clone(), budget)?;
+            match (&answer.report.refusal, mended) {
+                (Some(refusal), Some(mended)) if *refusal != Refusal::NothingToRepair => {
+                    partial(input, encoding, report, *mended, budget)
+                }
+                _ => Ok(answer),
+            }
         }
         Found::Nothing { refusal, last, .. } => {
             Ok(Report { actions: last.actions, ..report }.refused(refusal))

@@ -7,7 +7,9 @@ use serde_json::{Map, Value};
 use super::problem::{Problem, ProblemCode};
 use super::request::InputRef;
 use super::target::{self, TargetSpec};
-use super::words::{Criterion, FillHoles, Format, Mode, Nesting, Placement, Reader, Require, Units};
+use super::words::{
+    Criterion, FillHoles, Format, Mode, Nesting, OpenShells, Placement, Reader, Require, Units,
+};
 use crate::formats::{ReadLimits, ReadOptions};
 use crate::{pipeline, simplify};
 
@@ -76,6 +78,16 @@ pub const SPECS: &[OptionSpec] = &[
         "fill_holes",
         OptionKind::Word(FillHoles::WORDS),
         "Whether repair fills simple holes. Default: simple.",
+    ),
+    option(
+        "open_shells",
+        OptionKind::Word(OpenShells::WORDS),
+        "How open shells are read where repair must rebuild the surface. Default: auto.",
+    ),
+    option(
+        "wrap_cells",
+        OptionKind::Integer { min: 16, max: 1024 },
+        "Cells along the longest side of a surface that repair must rebuild. Default: 256.",
     ),
     option(
         "nesting",
@@ -151,6 +163,10 @@ pub struct Options {
     pub require: Option<Require>,
     /// Whether repair fills simple holes.
     pub fill_holes: Option<FillHoles>,
+    /// How open shells are read where a surface is rebuilt.
+    pub open_shells: Option<OpenShells>,
+    /// Cells along the longest side of a surface that is rebuilt.
+    pub wrap_cells: Option<u32>,
     /// How shells inside shells are taken.
     pub nesting: Option<Nesting>,
     /// Faces to simplify to.
@@ -293,6 +309,8 @@ impl Options {
             ("units", put_if_given(&mut self.units, other.units)),
             ("require", put_if_given(&mut self.require, other.require)),
             ("fill_holes", put_if_given(&mut self.fill_holes, other.fill_holes)),
+            ("open_shells", put_if_given(&mut self.open_shells, other.open_shells)),
+            ("wrap_cells", put_if_given(&mut self.wrap_cells, other.wrap_cells)),
             ("nesting", put_if_given(&mut self.nesting, other.nesting)),
             ("faces", put_if_given(&mut self.faces, other.faces)),
             ("ratio", put_if_given(&mut self.ratio, other.ratio)),
@@ -319,6 +337,7 @@ impl Options {
             "units" => put(&mut self.units, Units::from_word(value)),
             "require" => put(&mut self.require, Require::from_word(value)),
             "fill_holes" => put(&mut self.fill_holes, FillHoles::from_word(value)),
+            "open_shells" => put(&mut self.open_shells, OpenShells::from_word(value)),
             "nesting" => put(&mut self.nesting, Nesting::from_word(value)),
             "mode" => put(&mut self.mode, Mode::from_word(value)),
             "criterion" => put(&mut self.criterion, Criterion::from_word(value)),
@@ -330,6 +349,7 @@ impl Options {
     fn set_integer(&mut self, spec: &OptionSpec, value: u64) -> Taken {
         match spec.name {
             "faces" => put(&mut self.faces, u32::try_from(value).ok()),
+            "wrap_cells" => put(&mut self.wrap_cells, u32::try_from(value).ok()),
             "samples" => put(&mut self.samples, u32::try_from(value).ok()),
             "result_ttl" => put(&mut self.result_ttl, Some(value)),
             _ => Taken::Invalid,
@@ -393,6 +413,10 @@ impl Options {
             units: self.units.map(Into::into),
             require: self.require.map(Into::into),
             fill_holes: self.fill_holes.map(Into::into).unwrap_or_default(),
+            wrap: pipeline::WrapChoices {
+                open_shells: self.open_shells.map(Into::into).unwrap_or_default(),
+                cells: self.wrap_cells,
+            },
             simplify: pipeline::SimplifyChoices {
                 targets: self.targets(),
                 mode: self.mode.map(Into::into),

@@ -76,6 +76,14 @@ impl From<&pipeline::Refusal> for Reason {
                     None => "no step led to a valid solid".to_owned(),
                 },
             ),
+            pipeline::Refusal::BeyondFloat32 { pitch, diagonal } => (
+                ReasonCode::NotRepresentable,
+                None,
+                format!(
+                    "the mesh must be rebuilt, but coordinates of float32 are {pitch:e} apart there: too coarse for \
+                     a part with a diagonal of {diagonal:e}; move it to the origin"
+                ),
+            ),
             pipeline::Refusal::NotRepresentable { reason } => {
                 (ReasonCode::NotRepresentable, None, reason.to_string())
             }

@@ -1,6 +1,6 @@
 //! One public word for each value of the engine's enumerations.
 
-use crate::{analysis, budget, certificate, formats, pipeline, simplify};
+use crate::{analysis, budget, certificate, formats, pipeline, simplify, wrap};
 
 /// An enumeration whose values have public words.
 macro_rules! words {
@@ -189,6 +189,18 @@ mirror! { pipeline::FillHoles =>
     }
 }
 
+mirror! { wrap::OpenShells =>
+    /// How open shells are read where a mesh must be rebuilt.
+    OpenShells {
+        /// Those that nearly bound a volume are closed, others become walls.
+        Auto = "auto",
+        /// As the boundary of a volume, open only by mistake.
+        Close = "close",
+        /// As walls of no thickness.
+        Thicken = "thicken",
+    }
+}
+
 words! {
     /// How shells inside shells are taken.
     Nesting {
@@ -240,6 +252,8 @@ mirror! { pipeline::Outcome =>
         Converted = "converted",
         /// Valid after local edits.
         Repaired = "repaired",
+        /// Valid; the surface was rebuilt within the distance that is reported.
+        Rebuilt = "rebuilt",
         /// Fewer triangles, as asked; the certificate says what holds.
         Simplified = "simplified",
         /// Not valid; only on request.
@@ -404,6 +418,7 @@ mod tests {
             Require::WORDS,
             FillHoles::WORDS,
             Nesting::WORDS,
+            OpenShells::WORDS,
             Outcome::WORDS,
             Stage::WORDS,
             Severity::WORDS,

@@ -7,7 +7,7 @@ const LEVELS: [&[&str]; 9] = [
     &["budget", "par", "geom"],
     &["spatial", "mesh"],
     &["formats", "distance"],
-    &["analysis", "implicit", "simplify", "modeller", "arrangement"],
+    &["analysis", "implicit", "simplify", "modeller", "arrangement", "wrap"],
     &["repair", "certificate"],
     &["pipeline"],
     &["wire", "config"],

@@ -5,7 +5,9 @@ use crate::raw_files::encode;
 use crate::solids::{cube, cuboid, prism};
 use meshmend::budget::{Budget, Event, Stage, StopFlag, Stopped};
 use meshmend::formats::{Encoding, Format};
-use meshmend::pipeline::{Answer, Failure, Operation, Options, Outcome, Refusal, Require, Units, run};
+use meshmend::pipeline::{
+    Answer, Failure, Operation, Options, Outcome, Refusal, Require, Units, WrapChoices, run,
+};
 use std::sync::{Arc, Mutex};
 
 fn answer(operation: Operation, bytes: &[u8], options: &Options) -> Answer {
@@ -94,10 +96,12 @@ fn flat_in_float32() -> RawSoup {
 }
 
 #[test]
-fn a_solid_that_is_none_in_float32_is_refused_with_that_reading() {
-    let answer = answer(Operation::Repair, &encode(&flat_in_float32(), Encoding::Obj), &Options::default());
-    assert_eq!(answer.report.outcome, Some(Outcome::Refused));
-    assert!(answer.report.actions.iter().any(|action| action.step == "round-to-float32"));
+fn a_solid_that_is_none_in_float32_is_rebuilt_thicker() {
+    let wrap = WrapChoices { cells: Some(24), ..WrapChoices::default() };
+    let options = Options { wrap, ..Options::default() };
+    let answer = answer(Operation::Repair, &encode(&flat_in_float32(), Encoding::Obj), &options);
+    assert_eq!(answer.report.outcome, Some(Outcome::Rebuilt));
+    assert!(answer.report.certificate.unwrap().is_printable());
 }
 
 #[test]

@@ -7,14 +7,32 @@ use meshmend::budget::Budget;
 use meshmend::formats::{self, Encoding, Format, ReadOptions};
 use meshmend::mesh::Soup;
 use meshmend::par;
-use meshmend::pipeline::{Answer, FillHoles, Operation, Options, Outcome, Refusal, Require, run};
+use meshmend::pipeline::{
+    Answer, FillHoles, Operation, Options, Outcome, Refusal, Require, WrapChoices, run,
+};
+use meshmend::wrap::OpenShells;
 
 fn answer(bytes: &[u8], options: &Options) -> Answer {
     run(Operation::Repair, bytes, options, &Budget::unlimited()).unwrap()
 }
 
 fn repaired(soup: &RawSoup) -> Answer {
-    answer(&encode(soup, Encoding::Obj), &Options::default())
+    answer(&encode(soup, Encoding::Obj), &coarse())
+}
+
+/// Options with which a rebuilt surface has few cells.
+fn coarse() -> Options {
+    Options { wrap: WrapChoices { cells: Some(24), ..WrapChoices::default() }, ..Options::default() }
+}
+
+/// The volume of a rebuilt mesh, which must be certified, with the number of its shells.
+fn rebuilt(answer: &Answer) -> (f64, usize) {
+    assert_eq!(answer.report.outcome, Some(Outcome::Rebuilt), "{:?}", answer.report.refusal);
+    let certificate = answer.report.certificate.as_ref().unwrap();
+    assert!(certificate.is_printable());
+    assert!(answer.report.distance.is_some());
+    assert!(answer.report.actions.iter().any(|action| action.step == "wrap" && !action.reason.is_empty()));
+    (certificate.shells.iter().map(|shell| shell.volume).sum(), certificate.shells.len())
 }
 
 /// Sum of a named count over all actions.
@@ -97,9 +115,14 @@ fn a_cube_without_a_face_gets_it_back_and_nothing_else_changes() {
 
 #[test]
 fn holes_stay_open_when_that_is_asked() {
-    let options = Options { fill_holes: FillHoles::None, ..Options::default() };
-    let answer = answer(&encode(&without(cube(), &[2, 3]), Encoding::Obj), &options);
-    assert!(matches!(refused(&answer), Refusal::NotRepairable { witness: Some(_) }));
+    let bytes = encode(&without(cube(), &[2, 3]), Encoding::Obj);
+    let options = Options { fill_holes: FillHoles::None, require: Some(Require::None), ..coarse() };
+    let open = answer(&bytes, &options);
+    assert_eq!(open.report.outcome, Some(Outcome::Partial));
+    assert_eq!(open.report.after.unwrap().counts.triangles, 10);
+    let options = Options { fill_holes: FillHoles::None, ..coarse() };
+    let (volume, shells) = rebuilt(&answer(&bytes, &options));
+    assert!(shells == 1 && (0.8..1.1).contains(&volume), "{volume}");
 }
 
 #[test]
@@ -250,7 +273,7 @@ fn the_patch_of_an_inverted_body_runs_with_its_rim_and_turns_with_it() {
 
 #[test]
 fn a_stray_triangle_beside_a_body_is_neither_deleted_nor_doubled() {
-    let options = Options { require: Some(Require::BestEffort), ..Options::default() };
+    let options = Options { require: Some(Require::None), ..Options::default() };
     let stray = flat(&[[5.0, 0.0], [6.0, 0.0], [5.0, 1.0]], &[[0, 1, 2]]);
     let answer = answer(&encode(&cube().with(&stray), Encoding::Obj), &options);
     assert_eq!(answer.report.outcome, Some(Outcome::Partial));
@@ -263,7 +286,8 @@ fn walls_with_crossing_diagonals_are_not_taken_for_copies() {
     let quarter_turn = |[x, y, z]: [f64; 3]| [1.0 - y, x, z + 1.0];
     let above = RawSoup { positions: cube().positions.into_iter().map(quarter_turn).collect(), ..cube() };
     let answer = repaired(&cube().with(&above));
-    assert!(matches!(refused(&answer), Refusal::NotRepairable { witness: Some(_) }));
+    let (volume, shells) = rebuilt(&answer);
+    assert!(shells == 1 && (volume - 2.0).abs() < 0.1, "{volume}");
     assert_eq!(count(&answer, "copies_dropped") + count(&answer, "opposite_pairs_cancelled"), 0);
 }
 
@@ -277,7 +301,7 @@ fn a_face_with_nan_is_replaced() {
 }
 
 #[test]
-fn what_is_no_solid_is_refused_with_a_witness() {
+fn what_no_step_makes_a_solid_is_rebuilt() {
     let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.4, 0.5]];
     let moebius = RawSoup {
         positions: vec![
@@ -298,9 +322,29 @@ fn what_is_no_solid_is_refused_with_a_witness() {
         ("two cubes that pass through each other", cube().with(&cube().moved([0.5; 3]))),
     ] {
         let answer = repaired(&soup);
-        assert!(matches!(refused(&answer), Refusal::NotRepairable { witness: Some(_) }), "{name}");
-        assert!(!answer.report.actions.is_empty(), "{name}");
+        let (volume, shells) = rebuilt(&answer);
+        assert!(volume > 0.0 && shells == 1, "{name}: {volume} in {shells}");
     }
+}
+
+#[test]
+fn open_shells_are_closed_or_thickened_as_asked() {
+    let bytes = encode(&without(cube(), &[2, 3]), Encoding::Obj);
+    let volume = |open_shells| {
+        let wrap = WrapChoices { cells: Some(32), open_shells };
+        let options = Options { fill_holes: FillHoles::None, wrap, ..Options::default() };
+        rebuilt(&answer(&bytes, &options)).0
+    };
+    let [auto, close, thicken] = [OpenShells::Auto, OpenShells::Close, OpenShells::Thicken].map(volume);
+    assert_eq!(auto, close);
+    assert!(close > 0.8 && thicken < 0.5, "{close} {thicken}");
+}
+
+#[test]
+fn what_float32_cannot_hold_is_not_rebuilt() {
+    let crossing = cube().with(&cube().moved([0.5; 3]));
+    let answer = repaired(&crossing.moved([1e6, 0.0, 0.0]));
+    assert!(matches!(refused(&answer), Refusal::BeyondFloat32 { .. }));
 }
 
 #[test]
@@ -310,8 +354,8 @@ fn nothing_but_degenerate_triangles_is_nothing_to_repair() {
 }
 
 #[test]
-fn the_best_effort_is_written_and_says_what_does_not_hold() {
-    let options = Options { require: Some(Require::BestEffort), ..Options::default() };
+fn what_is_mended_is_written_when_nothing_is_required_and_says_what_does_not_hold() {
+    let options = Options { require: Some(Require::None), ..Options::default() };
     let sheet = flat(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [5.0, 5.0]], &[[0, 1, 2], [0, 1, 2]]);
     let answer = answer(&encode(&sheet, Encoding::Obj), &options);
     assert_eq!(answer.report.outcome, Some(Outcome::Partial));

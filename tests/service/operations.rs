@@ -1,6 +1,6 @@
 //! A mesh in, its report or its repair out.
 
-use crate::meshes::{BROKEN, CROSSING, OPEN, SOLID};
+use crate::meshes::{BROKEN, CROSSING, LINE, OPEN, SOLID};
 use crate::server::{Server, header, link, problem};
 use reqwest::blocking::Response;
 use serde_json::Value;
@@ -91,14 +91,14 @@ fn an_unreadable_mesh_is_a_problem_with_its_place() {
 fn a_refused_repair_says_why_with_its_report() {
     let server = Server::start();
     for accept in ["*/*", "application/json", "application/zip", "multipart/mixed", "text/off"] {
-        let request = server.post("/v1/repair").header("accept", accept).body(CROSSING);
+        let request = server.post("/v1/repair").header("accept", accept).body(LINE);
         let (status, code, problem) = problem(request.send().unwrap());
         assert_eq!((status, code.as_str()), (422, "not-repairable"), "{accept}");
         assert_eq!(problem["report"]["verdict"]["outcome"], "refused", "{accept}");
         let job: Value = server.get(problem["instance"].as_str().unwrap()).send().unwrap().json().unwrap();
         assert_eq!(job["state"], "failed");
     }
-    let job = server.ended(&server.job("repair", CROSSING));
+    let job = server.ended(&server.job("repair", LINE));
     let report = server.get(link(&job, "report")).send().unwrap();
     assert_eq!(report.status(), 200);
     let (status, code, _) = problem(server.get(&format!("{}/result", link(&job, "self"))).send().unwrap());
@@ -106,10 +106,13 @@ fn a_refused_repair_says_why_with_its_report() {
 }
 
 #[test]
-fn best_effort_gives_what_there_is() {
+fn what_is_mended_or_rebuilt_is_told() {
     let server = Server::start();
-    let response = server.post("/v1/repair?require=best_effort").body(CROSSING).send().unwrap();
-    assert_eq!((response.status().as_u16(), header(&response, "meshmend-outcome")), (200, "partial"));
+    for (require, outcome) in [("none", "partial"), ("best_effort", "rebuilt"), ("printable", "rebuilt")] {
+        let path = format!("/v1/repair?wrap_cells=24&require={require}");
+        let response = server.post(&path).body(CROSSING).send().unwrap();
+        assert_eq!((response.status().as_u16(), header(&response, "meshmend-outcome")), (200, outcome));
+    }
 }
 
 /// What of an answer shows which representation it is.

@@ -1,0 +1,206 @@
+//! Moves the vertices of a wrap onto the input and its creases.
+//!
+//! A vertex whose cut was clamped goes to the point of the input that it stands for; one beside a crease to the point
+//! that is nearest to the planes of the input around it (a quadratic error function, as in Kobbelt et al. 2001 and Ju et
+//! al. 2002); one that grew from a thin wall back to that wall. A move must not turn a triangle around, and what then
+//! meets anything is taken back, until nothing does.
+
+mod normals;
+mod undo;
+
+use super::cut::{Cut, NONE};
+use super::lattice::Lattice;
+use super::signs::{Signs, THIN};
+use super::surface::{InputSurface, separate};
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::geom::DVec3;
+use crate::par;
+use crate::spatial::NearestSearch;
+use normals::Stars;
+
+/// Normals around a vertex that differ by more than 30 degrees make it a vertex beside a crease.
+const CREASE_COS: f64 = 0.866;
+
+/// A vertex farther than this from a crease, in cells, leaves it to its neighbours.
+const CREASE_REACH: f64 = 0.6;
+
+/// Weight that keeps the point near the middle of those around it where planes do not determine it.
+const HOLD: f64 = 1e-3;
+
+/// What a fit did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct FitCounts {
+    /// Vertices that moved.
+    pub moved: u64,
+    /// Of those, onto a crease or corner.
+    pub onto_creases: u64,
+    /// Vertices whose move was taken back, because the surface would have met itself.
+    pub taken_back: u64,
+}
+
+/// Moves `positions` of the wrap with these cuts.
+///
+/// # Errors
+/// When the budget stops the run.
+pub(super) fn fit(
+    lattice: &Lattice,
+    signs: &Signs<'_>,
+    surface: &InputSurface,
+    cuts: &[Cut],
+    positions: &mut [DVec3],
+    triangles: &[[u32; 3]],
+    budget: &Budget,
+) -> Result<FitCounts, Stopped> {
+    let _charge = budget.charge(positions.len() as u64 * 64 + triangles.len() as u64 * 16)?;
+    let before = positions.to_vec();
+    let stars = Stars::of(triangles, positions.len(), budget)?;
+    let mut places: Vec<DVec3> = positions.iter().map(|&p| lattice.to_units(p)).collect();
+    // Clamped cuts, and thin walls.
+    let goals = plain_goals(signs, cuts, &places, budget)?;
+    let mut moved = move_all(&stars, triangles, &mut places, &goals, budget)?;
+    let goals = crease_goals(surface, cuts, &stars, triangles, &places, budget)?;
+    let onto = move_all(&stars, triangles, &mut places, &goals, budget)?;
+    moved.iter_mut().zip(&onto).for_each(|(all, &one)| *all |= one);
+    for (v, place) in places.iter().enumerate().filter(|&(v, _)| moved[v]) {
+        positions[v] = lattice.nearest(*place);
+    }
+    let taken_back = undo::until_nothing_meets(positions, &before, triangles, &stars, budget)?;
+    let count = |flags: &[bool]| flags.iter().filter(|&&flag| flag).count() as u64;
+    Ok(FitCounts { moved: count(&moved), onto_creases: count(&onto), taken_back })
+}
+
+/// Where each vertex belongs by itself.
+fn plain_goals(
+    signs: &Signs<'_>,
+    cuts: &[Cut],
+    places: &[DVec3],
+    budget: &Budget,
+) -> Result<Vec<Option<DVec3>>, Stopped> {
+    let names = separate(signs.thin.len());
+    let thin = NearestSearch::build(signs.thin.as_flattened(), &names, budget)?;
+    let goals = par::try_map_ranges(places.len(), 1024, |range| {
+        budget.spend(range.len() as u64)?;
+        range.map(|v| goal(&thin, &cuts[v], places[v], budget)).collect::<Result<Vec<_>, Stopped>>()
+    })?;
+    Ok(goals.concat())
+}
+
+fn goal(
+    thin: &NearestSearch<'_>,
+    cut: &Cut,
+    place: DVec3,
+    budget: &Budget,
+) -> Result<Option<DVec3>, Stopped> {
+    if cut.triangle != NONE {
+        let is_clamped = cut.point.distance_squared(place) > 1e-6;
+        return Ok(is_clamped.then_some(cut.point));
+    }
+    let Some(nearest) = thin.find(place, None, budget)? else { return Ok(None) };
+    let [a, b, c] = thin.corners(nearest.triangle);
+    let is_before = (b - a).cross(c - a).dot(place - nearest.point) > 0.0;
+    Ok((is_before && nearest.distance < THIN * 1.5).then_some(nearest.point))
+}
+
+/// Where vertices beside creases belong.
+fn crease_goals(
+    surface: &InputSurface,
+    cuts: &[Cut],
+    stars: &Stars,
+    triangles: &[[u32; 3]],
+    places: &[DVec3],
+    budget: &Budget,
+) -> Result<Vec<Option<DVec3>>, Stopped> {
+    let goals = par::try_map_ranges(places.len(), 1024, |range| {
+        budget.spend(range.len() as u64)?;
+        let mut planes = Vec::new();
+        Ok(range
+            .map(|v| {
+                planes.clear();
+                let mut add = |v: usize| {
+                    let cut = &cuts[v];
+                    if cut.triangle != NONE {
+                        planes.push((cut.point, surface.normal(cut.triangle)));
+                    }
+                };
+                add(v);
+                for &t in stars.of_vertex(v) {
+                    triangles[t as usize].iter().filter(|&&w| w as usize != v).for_each(|&w| add(w as usize));
+                }
+                let goal = crease_point(&planes)?;
+                (goal.distance(places[v]) <= CREASE_REACH).then_some(goal)
+            })
+            .collect::<Vec<_>>())
+    })?;
+    Ok(goals.concat())
+}
+
+/// The point nearest to the planes (a point and a unit normal each), unless they are all about the same.
+fn crease_point(planes: &[(DVec3, DVec3)]) -> Option<DVec3> {
+    let least =
+        planes.iter().flat_map(|(_, n)| planes.iter().map(move |(_, m)| n.dot(*m))).fold(1.0f64, f64::min);
+    if least > CREASE_COS {
+        return None;
+    }
+    let middle = planes.iter().map(|&(p, _)| p).sum::<DVec3>() / planes.len() as f64;
+    let hold = HOLD * planes.len() as f64;
+    let mut columns = [DVec3::X * hold, DVec3::Y * hold, DVec3::Z * hold];
+    let mut right = DVec3::ZERO;
+    for &(p, n) in planes {
+        columns[0] += n * n.x;
+        columns[1] += n * n.y;
+        columns[2] += n * n.z;
+        right += n * n.dot(p - middle);
+    }
+    // Cramer's rule; the hold keeps the determinant positive.
+    let [x, y, z] = columns;
+    let determinant = x.dot(y.cross(z));
+    let shift = DVec3::new(right.dot(y.cross(z)), x.dot(right.cross(z)), x.dot(y.cross(right))) / determinant;
+    shift.is_finite().then_some(middle + shift)
+}
+
+/// Moves each vertex to its goal, or half the way, where no triangle turns around; tells which moved.
+fn move_all(
+    stars: &Stars,
+    triangles: &[[u32; 3]],
+    places: &mut [DVec3],
+    goals: &[Option<DVec3>],
+    budget: &Budget,
+) -> Result<Vec<bool>, Stopped> {
+    let mut moved = vec![false; places.len()];
+    for v in 0..places.len() {
+        if v % CHECK_EVERY == 0 {
+            budget.check()?;
+        }
+        let Some(goal) = goals[v] else { continue };
+        let from = places[v];
+        for share in [1.0, 0.5] {
+            let to = from.lerp(goal, share);
+            if stars.may_move(v, to, triangles, places) {
+                places[v] = to;
+                moved[v] = true;
+                break;
+            }
+        }
+    }
+    Ok(moved)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn planes_of_an_edge_and_of_a_corner_give_points_on_them() {
+        let planes = [
+            (DVec3::new(0.2, 0.0, 0.3), DVec3::NEG_Y),
+            (DVec3::new(0.9, 0.5, 0.0), DVec3::X),
+            (DVec3::new(0.4, 0.0, 0.6), DVec3::NEG_Y),
+        ];
+        let on_edge = crease_point(&planes).unwrap();
+        assert!((on_edge.x - 0.9).abs() < 0.01 && on_edge.y.abs() < 0.01, "{on_edge}");
+        let with_top = [planes[0], planes[1], planes[2], (DVec3::new(0.1, 0.3, 0.7), DVec3::Z)];
+        let corner = crease_point(&with_top).unwrap();
+        assert!(corner.distance(DVec3::new(0.9, 0.0, 0.7)) < 0.01, "{corner}");
+        assert_eq!(crease_point(&planes[..1]), None);
+    }
+}

@@ -1,0 +1,219 @@
+//! What each part of the input says about inside and outside: closed shells, open ones that nearly bound a volume, and
+//! sheets that bound none.
+
+use super::OpenShells;
+use super::winding_tree::WindingTree;
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::geom::{DVec3, Sign, upward_crossing};
+use crate::mesh::{Components, EdgeGroups, UnionFind, edge_of, triangle_of};
+use crate::par;
+use crate::spatial::Bvh;
+
+/// Triangles by what they say, in lattice units.
+#[derive(Debug, Default)]
+pub(super) struct Shells {
+    /// Closed, outward where they bound a body and inward where a cavity.
+    pub(super) closed: Vec<[DVec3; 3]>,
+    /// Open, read as the boundary of a volume.
+    pub(super) open: Vec<[DVec3; 3]>,
+    /// Open, read as sheets.
+    pub(super) sheets: Vec<[DVec3; 3]>,
+    /// Number of parts in each list.
+    pub(super) parts: [u32; 3],
+    /// How clearly the open parts bound a volume, by area: 1 for a closed shell, 0 for a flat sheet.
+    pub(super) closedness: Option<f64>,
+}
+
+/// An open part is the boundary of a volume when on average the winding numbers of both of its sides are not around
+/// zero, as for a sheet (-1/2 and 1/2), but nearer to 0 and 1.
+const BOUNDS_A_VOLUME: f64 = 0.25;
+
+/// Samples of an open part.
+const SAMPLES_OF_PART: usize = 64;
+
+/// Places beside a triangle are this far from it, in cells.
+const BESIDE: f64 = 1e-3;
+
+/// Sorts the triangles by what they say. `positions` are in lattice units, bit-equal ones welded.
+///
+/// # Errors
+/// When the budget stops the run.
+pub(super) fn sort(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    open_shells: OpenShells,
+    budget: &Budget,
+) -> Result<Shells, Stopped> {
+    let (parts, is_closed) = parts(positions.len(), triangles, budget)?;
+    let corners = |t: usize| triangles[t].map(|v| positions[v as usize]);
+    let turns = turned(positions, triangles, &parts, &is_closed, budget)?;
+    let mut shells = Shells::default();
+    let (mut open, mut open_part) = (Vec::new(), Vec::new());
+    for t in 0..triangles.len() {
+        if t % CHECK_EVERY == 0 {
+            budget.check()?;
+        }
+        let part = parts.of[t] as usize;
+        let [a, b, c] = corners(t);
+        if is_closed[part] {
+            shells.closed.push(if turns[part] { [a, c, b] } else { [a, b, c] });
+        } else {
+            open.push([a, b, c]);
+            open_part.push(part as u32);
+        }
+    }
+    shells.parts[0] = is_closed.iter().filter(|&&is_closed| is_closed).count() as u32;
+    read_open(open, &open_part, parts.count as usize, open_shells, &mut shells, budget)?;
+    Ok(shells)
+}
+
+/// Parts connected by edges, and whether each edge of a part is run through as often one way as the other.
+fn parts(
+    vertex_count: usize,
+    triangles: &[[u32; 3]],
+    budget: &Budget,
+) -> Result<(Components, Vec<bool>), Stopped> {
+    let groups = EdgeGroups::build(triangles, vertex_count, budget)?;
+    let mut sets = UnionFind::new(triangles.len());
+    let mut unbalanced = Vec::new();
+    for (e, group) in groups.iter().enumerate() {
+        if e % CHECK_EVERY == 0 {
+            budget.check()?;
+        }
+        let mut balance = 0i64;
+        for &h in group {
+            sets.unite(triangle_of(group[0]), triangle_of(h));
+            let [from, to] = edge_of(triangles, h);
+            balance += i64::from(from < to) - i64::from(from > to);
+        }
+        if balance != 0 {
+            unbalanced.push(triangle_of(group[0]));
+        }
+    }
+    let parts = sets.into_components();
+    let mut is_closed = vec![true; parts.count as usize];
+    for t in unbalanced {
+        is_closed[parts.of[t as usize] as usize] = false;
+    }
+    Ok((parts, is_closed))
+}
+
+/// Closed parts that must be turned around: those of a tree whose outermost part points inward.
+fn turned(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    parts: &Components,
+    is_closed: &[bool],
+    budget: &Budget,
+) -> Result<Vec<bool>, Stopped> {
+    let count = is_closed.len();
+    let mut volume = vec![0.0; count];
+    let mut top = vec![DVec3::NEG_INFINITY; count];
+    for (t, &part) in parts.of.iter().enumerate() {
+        if t % CHECK_EVERY == 0 {
+            budget.check()?;
+        }
+        let corners = triangles[t].map(|v| positions[v as usize]);
+        let base = top[part as usize];
+        top[part as usize] = corners.into_iter().fold(base, |top, p| if p.z > top.z { p } else { top });
+        volume[part as usize] += corners[0].dot(corners[1].cross(corners[2]));
+    }
+    if volume.iter().zip(is_closed).all(|(&v, &is_closed)| v >= 0.0 || !is_closed) {
+        return Ok(vec![false; count]);
+    }
+    let bvh = Bvh::build(positions, triangles, None, budget)?;
+    // The outermost part around each, and itself when there is none.
+    let around = par::try_map_ranges(count, 1, |range| {
+        let part = range.start;
+        let mut crossings: Vec<(u32, i32)> = Vec::new();
+        if is_closed[part] {
+            bvh.visit_upward_ray(top[part], budget, |t| {
+                let other = parts.of[t as usize];
+                if other as usize != part && is_closed[other as usize] {
+                    let corners = triangles[t as usize].map(|v| positions[v as usize]);
+                    if let Some(turn) = upward_crossing(top[part], corners) {
+                        crossings.push((other, if turn == Sign::Positive { 1 } else { -1 }));
+                    }
+                }
+            })?;
+        }
+        crossings.sort_unstable();
+        let sums = crossings.chunk_by(|a, b| a.0 == b.0);
+        let around: Vec<u32> =
+            sums.filter(|same| same.iter().map(|c| c.1).sum::<i32>() != 0).map(|same| same[0].0).collect();
+        Ok(around)
+    })?;
+    let root = |part: usize| {
+        around[part].iter().copied().find(|&o| around[o as usize].is_empty()).map_or(part, |o| o as usize)
+    };
+    Ok((0..count).map(|part| volume[root(part)] < 0.0).collect())
+}
+
+/// Sorts the open parts into those that bound a volume and sheets.
+fn read_open(
+    open: Vec<[DVec3; 3]>,
+    part: &[u32],
+    part_count: usize,
+    open_shells: OpenShells,
+    shells: &mut Shells,
+    budget: &Budget,
+) -> Result<(), Stopped> {
+    if open.is_empty() {
+        return Ok(());
+    }
+    let tree = WindingTree::build(open.clone(), budget)?;
+    let mut taken = vec![0usize; part_count];
+    let mut of_part = vec![0usize; part_count];
+    part.iter().for_each(|&p| of_part[p as usize] += 1);
+    // Every n-th triangle of a part.
+    let mut samples = Vec::new();
+    for (t, &p) in part.iter().enumerate() {
+        let step = of_part[p as usize].div_ceil(SAMPLES_OF_PART);
+        if taken[p as usize].is_multiple_of(step) {
+            samples.push(t);
+        }
+        taken[p as usize] += 1;
+    }
+    let sides = par::try_map_ranges(samples.len(), 256, |range| {
+        budget.spend(range.len() as u64 * 8)?;
+        Ok(samples[range].iter().map(|&t| both_sides(&tree, open[t])).collect::<Vec<_>>())
+    })?;
+    let (mut sum, mut area) = (vec![0.0; part_count], vec![0.0; part_count]);
+    for (&t, (mean, size)) in samples.iter().zip(sides.into_iter().flatten()) {
+        sum[part[t] as usize] += mean * size;
+        area[part[t] as usize] += size;
+    }
+    let overall = sum.iter().sum::<f64>() / area.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+    // As a whole inside out.
+    let is_turned = overall < -BOUNDS_A_VOLUME;
+    let sign = if is_turned { -1.0 } else { 1.0 };
+    let of_volume = |p: usize| match open_shells {
+        OpenShells::Close => true,
+        OpenShells::Thicken => false,
+        OpenShells::Auto => sign * sum[p] / area[p].max(f64::MIN_POSITIVE) >= BOUNDS_A_VOLUME,
+    };
+    let bounds: Vec<bool> = (0..part_count).map(of_volume).collect();
+    for p in (0..part_count).filter(|&p| of_part[p] > 0) {
+        shells.parts[if bounds[p] { 1 } else { 2 }] += 1;
+    }
+    for ([a, b, c], &p) in open.into_iter().zip(part) {
+        if bounds[p as usize] {
+            shells.open.push(if is_turned { [a, c, b] } else { [a, b, c] });
+        } else {
+            shells.sheets.push([a, b, c]);
+        }
+    }
+    shells.closedness = Some((2.0 * overall.abs()).clamp(0.0, 1.0));
+    Ok(())
+}
+
+/// The mean of the winding numbers on both sides of a triangle, and its area.
+fn both_sides(tree: &WindingTree, [a, b, c]: [DVec3; 3]) -> (f64, f64) {
+    let normal = (b - a).cross(c - a);
+    let twice_area = normal.length();
+    if twice_area == 0.0 {
+        return (0.0, 0.0);
+    }
+    let (middle, step) = ((a + b + c) / 3.0, normal * (BESIDE / twice_area));
+    ((tree.at(middle + step, 0.0) + tree.at(middle - step, 0.0)) / 2.0, twice_area)
+}

@@ -1,0 +1,359 @@
+//! Which vertices of the lattice are inside.
+//!
+//! A vertex is inside when the surface winds around it at least half a time, or when it is close to a part of the surface
+//! that would otherwise be lost: a sheet, or a wall thinner than a cell. Signs are known at all vertices when every shell
+//! is closed. Otherwise they are evaluated near the surface, and from there on wherever signs differ, until no cube with
+//! a known vertex of each sign has an unknown one: the surface between the signs is then closed.
+
+use super::lattice::Lattice;
+use super::surface::{InputSurface, separate};
+use super::winding_tree::WindingTree;
+use super::{columns, raster};
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::geom::DVec3;
+use crate::par;
+use crate::spatial::NearestSearch;
+
+/// Thickness of a sheet in cells: what the vertices of every cube that it goes through are within. It grows behind the
+/// sheet, so that the sheet itself remains one side.
+pub(super) const SHEET: f64 = 1.733;
+
+/// Distance in cells up to which a thin wall grows to both sides. The plane in the middle of a slab twice as thick, and
+/// a line in a tube, have vertices of the lattice that hang together beside them everywhere.
+pub(super) const THIN: f64 = 1.0;
+
+const KNOWN: u8 = 1;
+const INSIDE: u8 = 2;
+/// The cube above this vertex meets a triangle that bounds a volume, or a sheet.
+const TOUCHED: u8 = 4;
+const TOUCHED_BY_SHEET: u8 = 8;
+const SHEET_SIDE: u8 = 16;
+const THIN_SIDE: u8 = 32;
+const LISTED: u8 = 64;
+
+/// Why a vertex is inside.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Inside {
+    /// The surface winds around it.
+    Wound,
+    /// It is close behind a sheet.
+    NearSheet,
+    /// It is close to a wall that is thinner than a cell.
+    NearThin,
+}
+
+/// Signs, and what they were made of.
+#[derive(Debug)]
+pub(super) struct Signs<'l> {
+    lattice: &'l Lattice,
+    state: Vec<u8>,
+    /// Winding number of the closed shells.
+    closed: Vec<i8>,
+    /// The open shells that bound a volume.
+    open: WindingTree,
+    /// Triangles of walls thinner than a cell.
+    pub(super) thin: Vec<[DVec3; 3]>,
+}
+
+impl<'l> Signs<'l> {
+    /// Decides the signs.
+    ///
+    /// # Errors
+    /// When the budget stops the run.
+    pub(super) fn decide(
+        lattice: &'l Lattice,
+        surface: &InputSurface,
+        budget: &Budget,
+    ) -> Result<Self, Stopped> {
+        let (closed, open) = par::join(
+            || columns::winding(lattice, surface.closed(), budget),
+            || WindingTree::build(surface.open().to_vec(), budget),
+        );
+        let state = vec![0u8; lattice.len()];
+        let mut signs = Self { lattice, state, closed: closed?, open: open?, thin: Vec::new() };
+        signs.border();
+        signs.touch(surface.closed(), TOUCHED, budget)?;
+        signs.touch(surface.open(), TOUCHED, budget)?;
+        signs.touch(surface.sheets(), TOUCHED_BY_SHEET, budget)?;
+        if signs.open.is_empty() {
+            signs.take_closed(budget)?;
+        } else {
+            let near = signs.near(TOUCHED | TOUCHED_BY_SHEET, budget)?;
+            signs.evaluate_from(near, budget)?;
+        }
+        let changed = signs.keep_what_is_lost(surface, budget)?;
+        signs.evaluate_from_known(changed, budget)?;
+        Ok(signs)
+    }
+
+    /// Signs as they are told.
+    #[cfg(test)]
+    pub(super) fn of_field(lattice: &'l Lattice, inside: &[bool]) -> Self {
+        let state = inside.iter().map(|&is_inside| if is_inside { KNOWN | INSIDE } else { KNOWN }).collect();
+        Self { lattice, state, closed: Vec::new(), open: WindingTree::default(), thin: Vec::new() }
+    }
+
+    /// True when the vertex is known to be inside.
+    pub(super) fn is_inside(&self, index: usize) -> bool {
+        self.state[index] & INSIDE != 0
+    }
+
+    pub(super) fn is_known(&self, index: usize) -> bool {
+        self.state[index] & KNOWN != 0
+    }
+
+    /// Why it is inside, for one that is.
+    pub(super) fn why(&self, index: usize) -> Inside {
+        match self.state[index] {
+            state if state & SHEET_SIDE != 0 => Inside::NearSheet,
+            state if state & THIN_SIDE != 0 => Inside::NearThin,
+            _ => Inside::Wound,
+        }
+    }
+
+    /// Winding number at a vertex.
+    pub(super) fn winding(&self, index: usize) -> f64 {
+        let place = DVec3::from_array(self.lattice.coordinates(index).map(|n| n as f64));
+        self.open.at(place, f64::from(self.closed[index]))
+    }
+
+    /// The outermost vertices are outside, whatever winds around them.
+    fn border(&mut self) {
+        let [x, y, z] = self.lattice.dims;
+        for i in 0..x {
+            for j in 0..y {
+                let start = self.lattice.index([i, j, 0]);
+                if i == 0 || j == 0 || i == x - 1 || j == y - 1 {
+                    self.state[start..start + z].fill(KNOWN);
+                    self.closed[start..start + z].fill(0);
+                } else {
+                    for k in [start, start + z - 1] {
+                        self.state[k] = KNOWN;
+                        self.closed[k] = 0;
+                    }
+                }
+            }
+        }
+    }
+
+    fn touch(&mut self, triangles: &[[DVec3; 3]], mark: u8, budget: &Budget) -> Result<(), Stopped> {
+        let (lattice, state) = (self.lattice, &mut self.state);
+        for &corners in triangles {
+            let mut count = 1;
+            raster::cubes(corners, lattice.dims, |cube| {
+                state[lattice.index(cube)] |= mark;
+                count += 1;
+            });
+            budget.spend(count)?;
+        }
+        Ok(())
+    }
+
+    /// Every vertex by the closed shells alone.
+    fn take_closed(&mut self, budget: &Budget) -> Result<(), Stopped> {
+        for (states, windings) in self.state.chunks_mut(CHECK_EVERY).zip(self.closed.chunks(CHECK_EVERY)) {
+            budget.check()?;
+            for (state, &winding) in states.iter_mut().zip(windings) {
+                *state |= if winding >= 1 { KNOWN | INSIDE } else { KNOWN };
+            }
+        }
+        Ok(())
+    }
+
+    /// The vertices of the marked cubes and of their neighbours, each once, ascending in blocks.
+    fn near(&mut self, marks: u8, budget: &Budget) -> Result<Vec<u32>, Stopped> {
+        let mut near = Vec::new();
+        for start in (0..self.state.len()).step_by(CHECK_EVERY) {
+            budget.check()?;
+            for cube in start..(start + CHECK_EVERY).min(self.state.len()) {
+                if self.state[cube] & marks != 0 {
+                    self.around_cube(cube, |state, index| {
+                        if *state & LISTED == 0 {
+                            *state |= LISTED;
+                            near.push(index as u32);
+                        }
+                    });
+                }
+            }
+        }
+        near.iter().for_each(|&v| self.state[v as usize] &= !LISTED);
+        Ok(near)
+    }
+
+    /// Calls `body` with each of the 64 vertices of a cube and its neighbours. Marked cubes are never at the border.
+    fn around_cube(&mut self, cube: usize, mut body: impl FnMut(&mut u8, usize)) {
+        for i in -1..=2 {
+            for j in -1..=2 {
+                let start = cube.wrapping_add_signed(self.lattice.stride([i, j, -1]));
+                for (n, state) in self.state[start..start + 4].iter_mut().enumerate() {
+                    body(state, start + n);
+                }
+            }
+        }
+    }
+
+    /// Evaluates the vertices of `wanted` that are unknown, and from there on.
+    fn evaluate_from(&mut self, mut wanted: Vec<u32>, budget: &Budget) -> Result<(), Stopped> {
+        wanted.retain(|&v| self.state[v as usize] & KNOWN == 0);
+        let _charge = budget.charge(wanted.len() as u64 * 8)?;
+        let signs = par::try_map_ranges(wanted.len(), 1024, |range| {
+            budget.spend(range.len() as u64 * 8)?;
+            let is_inside = |&v: &u32| self.winding(v as usize) >= 0.5;
+            Ok(wanted[range].iter().map(is_inside).collect::<Vec<bool>>())
+        })?;
+        for (&v, is_inside) in wanted.iter().zip(signs.into_iter().flatten()) {
+            self.state[v as usize] |= if is_inside { KNOWN | INSIDE } else { KNOWN };
+        }
+        self.evaluate_from_known(wanted, budget)
+    }
+
+    /// Evaluates every unknown vertex of a cube that has known ones of both signs, starting around `known`.
+    fn evaluate_from_known(&mut self, known: Vec<u32>, budget: &Budget) -> Result<(), Stopped> {
+        if self.open.is_empty() {
+            return Ok(());
+        }
+        let mut known = known;
+        while !known.is_empty() {
+            let mut wanted = Vec::new();
+            for (n, &v) in known.iter().enumerate() {
+                if n % CHECK_EVERY == 0 {
+                    budget.check()?;
+                }
+                if !self.lattice_border(v as usize) && self.has_other_sign_beside(v as usize) {
+                    self.list_unknown_beside(v as usize, &mut wanted);
+                }
+            }
+            wanted.iter().for_each(|&v| self.state[v as usize] &= !LISTED);
+            let signs = par::try_map_ranges(wanted.len(), 1024, |range| {
+                budget.spend(range.len() as u64 * 8)?;
+                let is_inside = |&v: &u32| self.winding(v as usize) >= 0.5;
+                Ok(wanted[range].iter().map(is_inside).collect::<Vec<bool>>())
+            })?;
+            for (&v, is_inside) in wanted.iter().zip(signs.into_iter().flatten()) {
+                self.state[v as usize] |= if is_inside { KNOWN | INSIDE } else { KNOWN };
+            }
+            known = wanted;
+        }
+        Ok(())
+    }
+
+    fn lattice_border(&self, index: usize) -> bool {
+        let place = self.lattice.coordinates(index);
+        (0..3).any(|a| place[a] == 0 || place[a] == self.lattice.dims[a] - 1)
+    }
+
+    fn has_other_sign_beside(&self, index: usize) -> bool {
+        let other = if self.is_inside(index) { KNOWN } else { KNOWN | INSIDE };
+        beside().any(|offset| {
+            let beside = self.state[index.wrapping_add_signed(self.lattice.stride(offset))];
+            beside & (KNOWN | INSIDE) == other
+        })
+    }
+
+    fn list_unknown_beside(&mut self, index: usize, wanted: &mut Vec<u32>) {
+        for offset in beside() {
+            let beside = index.wrapping_add_signed(self.lattice.stride(offset));
+            if self.state[beside] & (KNOWN | LISTED) == 0 {
+                self.state[beside] |= LISTED;
+                wanted.push(beside as u32);
+            }
+        }
+    }
+
+    /// Puts vertices inside where the surface would be lost; gives those that are inside by this.
+    fn keep_what_is_lost(&mut self, surface: &InputSurface, budget: &Budget) -> Result<Vec<u32>, Stopped> {
+        let mut changed = Vec::new();
+        if !surface.sheets().is_empty() {
+            let near = self.near(TOUCHED_BY_SHEET, budget)?;
+            self.grow(&near, surface.sheets(), true, &mut changed, budget)?;
+        }
+        // Also sheets that grew into each other's front and so not at all.
+        if !self.mark_thin(budget)? {
+            return Ok(changed);
+        }
+        for &corners in &surface.corners {
+            let (mut count, mut is_thin) = (1, false);
+            raster::cubes(corners, self.lattice.dims, |cube| {
+                is_thin |= self.state[self.lattice.index(cube)] & THIN_SIDE != 0;
+                count += 1;
+            });
+            budget.spend(count)?;
+            if is_thin {
+                self.thin.push(corners);
+            }
+        }
+        let near = self.near(THIN_SIDE, budget)?;
+        self.state.iter_mut().for_each(|state| *state &= !THIN_SIDE);
+        let thin = std::mem::take(&mut self.thin);
+        self.grow(&near, &thin, false, &mut changed, budget)?;
+        self.thin = thin;
+        Ok(changed)
+    }
+
+    /// Marks the touched cubes with no vertex inside in them and their neighbours; true when there is one.
+    fn mark_thin(&mut self, budget: &Budget) -> Result<bool, Stopped> {
+        let mut is_any = false;
+        for cube in 0..self.state.len() {
+            if cube % CHECK_EVERY == 0 {
+                budget.check()?;
+            }
+            if self.state[cube] & (TOUCHED | TOUCHED_BY_SHEET) != 0 {
+                let mut all = 0;
+                self.around_cube(cube, |state, _| all |= *state);
+                if all & INSIDE == 0 {
+                    self.state[cube] |= THIN_SIDE;
+                    is_any = true;
+                }
+            }
+        }
+        Ok(is_any)
+    }
+
+    /// Puts those of `near` inside that are close to `triangles`.
+    fn grow(
+        &mut self,
+        near: &[u32],
+        triangles: &[[DVec3; 3]],
+        is_sheet: bool,
+        changed: &mut Vec<u32>,
+        budget: &Budget,
+    ) -> Result<(), Stopped> {
+        let names = separate(triangles.len());
+        let search = NearestSearch::build(triangles.as_flattened(), &names, budget)?;
+        let (reach, mark) = if is_sheet { (SHEET, SHEET_SIDE) } else { (THIN, THIN_SIDE) };
+        let grown = par::try_map_ranges(near.len(), 1024, |range| {
+            budget.spend(range.len() as u64 * 4)?;
+            let mut hint = None;
+            let mut grown = Vec::new();
+            for &v in near[range].iter().filter(|&&v| !self.is_inside(v as usize)) {
+                let place = DVec3::from_array(self.lattice.coordinates(v as usize).map(|n| n as f64));
+                let Some(nearest) = search.find(place, hint, budget)? else { continue };
+                hint = Some(nearest.triangle);
+                if nearest.distance <= reach
+                    && (!is_sheet || is_behind(place, nearest.point, &search, nearest.triangle))
+                {
+                    grown.push(v);
+                }
+            }
+            Ok(grown)
+        })?;
+        for v in grown.into_iter().flatten() {
+            if !self.lattice_border(v as usize) {
+                self.state[v as usize] |= KNOWN | INSIDE | mark;
+                changed.push(v);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether `place`, whose closest point is `closest` of a triangle, is behind that triangle or in its plane.
+fn is_behind(place: DVec3, closest: DVec3, search: &NearestSearch<'_>, triangle: u32) -> bool {
+    let [a, b, c] = search.corners(triangle);
+    (b - a).cross(c - a).dot(place - closest) <= 0.0
+}
+
+/// The 26 neighbours of a vertex.
+fn beside() -> impl Iterator<Item = [isize; 3]> {
+    (0..27).filter(|&n| n != 13).map(|n| [n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1])
+}

@@ -1,0 +1,134 @@
+//! The input as the wrap sees it: triangles in lattice units, by what they say about inside and outside.
+
+use super::shells::Shells;
+use crate::budget::{Budget, Stopped};
+use crate::geom::{Aabb, DVec3};
+use crate::spatial::Bvh;
+
+/// What a triangle says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Says {
+    /// Inside is behind it.
+    Boundary,
+    /// It bounds no volume.
+    Sheet,
+}
+
+/// All triangles: closed shells, then open ones that bound a volume, then sheets.
+#[derive(Debug)]
+pub(super) struct InputSurface {
+    /// Corners in lattice units.
+    pub(super) corners: Vec<[DVec3; 3]>,
+    closed: usize,
+    boundary: usize,
+    bvh: Bvh,
+}
+
+/// Where a segment meets a triangle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Crossing {
+    /// Share of the segment before it.
+    pub(super) share: f64,
+    /// Triangle.
+    pub(super) triangle: u32,
+    /// The segment comes from behind the triangle.
+    pub(super) is_exit: bool,
+}
+
+impl InputSurface {
+    pub(super) fn new(shells: Shells, budget: &Budget) -> Result<Self, Stopped> {
+        let (closed, boundary) = (shells.closed.len(), shells.closed.len() + shells.open.len());
+        let mut corners = shells.closed;
+        corners.extend(shells.open);
+        corners.extend(shells.sheets);
+        let bvh = Bvh::build(corners.as_flattened(), &separate(corners.len()), None, budget)?;
+        Ok(Self { corners, closed, boundary, bvh })
+    }
+
+    pub(super) fn closed(&self) -> &[[DVec3; 3]] {
+        &self.corners[..self.closed]
+    }
+
+    pub(super) fn open(&self) -> &[[DVec3; 3]] {
+        &self.corners[self.closed..self.boundary]
+    }
+
+    pub(super) fn sheets(&self) -> &[[DVec3; 3]] {
+        &self.corners[self.boundary..]
+    }
+
+    pub(super) fn says(&self, triangle: u32) -> Says {
+        if (triangle as usize) < self.boundary { Says::Boundary } else { Says::Sheet }
+    }
+
+    /// Unit normal, zero for a triangle without area.
+    pub(super) fn normal(&self, triangle: u32) -> DVec3 {
+        let [a, b, c] = self.corners[triangle as usize];
+        (b - a).cross(c - a).normalize_or_zero()
+    }
+
+    /// Every crossing of the segment, in no particular order.
+    pub(super) fn crossings(
+        &self,
+        from: DVec3,
+        to: DVec3,
+        budget: &Budget,
+        found: &mut Vec<Crossing>,
+    ) -> Result<(), Stopped> {
+        found.clear();
+        self.bvh.visit_box(Aabb::of([from, to]), budget, |triangle| {
+            if let Some((share, is_exit)) = crossing(from, to, self.corners[triangle as usize]) {
+                found.push(Crossing { share, triangle, is_exit });
+            }
+        })
+    }
+}
+
+/// Index triples of triangles that share no vertex.
+pub(super) fn separate(count: usize) -> Vec<[u32; 3]> {
+    (0..count as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect()
+}
+
+/// What rounding may hide at the edges of a triangle, in lattice units.
+const SLACK: f64 = 1e-9;
+
+/// Where a segment meets a triangle, rounded, and whether it comes from behind.
+fn crossing(from: DVec3, to: DVec3, [a, b, c]: [DVec3; 3]) -> Option<(f64, bool)> {
+    let (ab, ac, along) = (b - a, c - a, to - from);
+    let normal = ab.cross(ac);
+    let slope = normal.dot(along);
+    if slope == 0.0 {
+        return None;
+    }
+    let offset = from - a;
+    let share = -normal.dot(offset) / slope;
+    if !(-SLACK..=1.0 + SLACK).contains(&share) {
+        return None;
+    }
+    let turn = along.cross(offset);
+    let (v, w) = (ac.dot(turn) / slope, -ab.dot(turn) / slope);
+    let is_in = v >= -SLACK && w >= -SLACK && v + w <= 1.0 + SLACK;
+    is_in.then_some((share.clamp(0.0, 1.0), slope > 0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_segment_meets_a_triangle_where_it_should() {
+        let triangle = [[1.0, 1.0, 2.0], [5.0, 1.0, 2.0], [1.0, 5.0, 2.0]].map(DVec3::from_array);
+        let meets = |x: f64, y: f64| {
+            crossing(DVec3::new(x, y, 1.0), DVec3::new(x, y, 5.0), triangle).map(|(share, _)| share)
+        };
+        assert_eq!(meets(2.0, 2.0), Some(0.25));
+        assert_eq!(meets(4.5, 1.2), Some(0.25));
+        assert_eq!(meets(1.2, 4.5), Some(0.25));
+        assert_eq!(meets(4.0, 4.0), None);
+        assert_eq!(meets(0.9, 2.0), None);
+        let [a, b, c] = triangle;
+        let (low, high) = (DVec3::new(2.0, 2.0, 1.0), DVec3::new(2.0, 2.0, 3.0));
+        assert_eq!(crossing(low, high, [a, b, c]), Some((0.5, true)));
+        assert_eq!(crossing(low, high, [a, c, b]), Some((0.5, false)));
+    }
+}

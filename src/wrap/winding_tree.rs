@@ -1,0 +1,237 @@
+//! Generalized winding numbers of open surfaces: near triangles exactly, far ones together (Barill, Dickson, Schmidt,
+//! Levin and Jacobson 2018, "Fast winding numbers for soups and clouds", with their first two terms).
+
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::geom::DVec3;
+
+/// Triangles in a leaf.
+const LEAF: usize = 8;
+
+/// A group is far when its distance exceeds its radius by this factor. The share of the winding number that the third
+/// term would add falls with its cube.
+const FAR: f64 = 3.5;
+
+/// How much farther for places whose winding number is close to the threshold.
+const FAR_IN_DOUBT: f64 = 8.0;
+
+/// Closer to 1/2 than this is in doubt.
+const DOUBT: f64 = 0.05;
+
+/// What a group of triangles is from afar.
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    center: DVec3,
+    radius: f64,
+    /// Sum of the area vectors.
+    dipole: DVec3,
+    /// Sum of (centre of triangle - `center`) times area vector: columns by component of the area vector.
+    moment: [DVec3; 3],
+    first: u32,
+    len: u32,
+    /// Node after this one's subtree; the first child is the next node.
+    skip: u32,
+}
+
+/// Triangles prepared for questions about how often they wind around a point. Coordinates are lattice units.
+#[derive(Debug, Default)]
+pub(super) struct WindingTree {
+    nodes: Vec<Node>,
+    /// In the order of the leaves.
+    triangles: Vec<[DVec3; 3]>,
+}
+
+impl WindingTree {
+    /// Prepares `triangles`. O(n log n).
+    ///
+    /// # Errors
+    /// When the budget stops the run.
+    pub(super) fn build(mut triangles: Vec<[DVec3; 3]>, budget: &Budget) -> Result<Self, Stopped> {
+        let mut nodes = Vec::new();
+        if triangles.is_empty() {
+            return Ok(Self::default());
+        }
+        // Ranges still to be split, each with the nodes whose subtree ends with it.
+        let mut open = vec![(0, triangles.len(), Vec::new())];
+        let mut done = 0usize;
+        while let Some((first, len, mut ends)) = open.pop() {
+            if done.is_multiple_of(CHECK_EVERY / 64) {
+                budget.check()?;
+            }
+            done += 1;
+            let range = &mut triangles[first..first + len];
+            ends.push(nodes.len());
+            nodes.push(summary(range, first));
+            if len <= LEAF {
+                for &n in &ends {
+                    nodes[n].skip = nodes.len() as u32;
+                }
+                continue;
+            }
+            split(range);
+            let half = len / 2;
+            open.push((first + half, len - half, ends));
+            open.push((first, half, Vec::new()));
+        }
+        budget.spend(triangles.len() as u64)?;
+        Ok(Self { nodes, triangles })
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// The winding number at `p` plus `more`, evaluated more closely where that sum is near 1/2.
+    pub(super) fn at(&self, p: DVec3, more: f64) -> f64 {
+        let first = self.evaluate(p, FAR) + more;
+        if (first - 0.5).abs() < DOUBT { self.evaluate(p, FAR_IN_DOUBT) + more } else { first }
+    }
+
+    fn evaluate(&self, p: DVec3, far: f64) -> f64 {
+        let (mut dipoles, mut angles) = (0.0, 0.0);
+        let mut n = 0;
+        while let Some(node) = self.nodes.get(n) {
+            let r = node.center - p;
+            let square = r.length_squared();
+            let reach = node.radius * far;
+            if square > reach * reach {
+                dipoles += node.seen_from(r, square);
+                n = node.skip as usize;
+                continue;
+            }
+            let is_leaf = node.len as usize <= LEAF;
+            if is_leaf {
+                let range = node.first as usize..(node.first + node.len) as usize;
+                angles += self.triangles[range].iter().map(|&t| half_solid_angle(p, t)).sum::<f64>();
+            }
+            n += 1;
+        }
+        dipoles / (4.0 * std::f64::consts::PI) + angles / (2.0 * std::f64::consts::PI)
+    }
+}
+
+impl Node {
+    /// Solid angle of the group's first two terms; `r` goes from the place to the centre.
+    fn seen_from(&self, r: DVec3, square: f64) -> f64 {
+        let by_square = 1.0 / square;
+        let by_cube = by_square / square.sqrt();
+        let [x, y, z] = self.moment;
+        let trace = x.x + y.y + z.z;
+        // r^T M r
+        let twice = r.dot(x) * r.x + r.dot(y) * r.y + r.dot(z) * r.z;
+        by_cube * (r.dot(self.dipole) + trace - 3.0 * twice * by_square)
+    }
+}
+
+fn area_vector([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a) * 0.5
+}
+
+fn middle([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (a + b + c) / 3.0
+}
+
+fn summary(triangles: &[[DVec3; 3]], first: usize) -> Node {
+    let (mut weighted, mut weight) = (DVec3::ZERO, 0.0);
+    for &t in triangles {
+        let area = area_vector(t).length() + f64::MIN_POSITIVE;
+        weighted += middle(t) * area;
+        weight += area;
+    }
+    let center = weighted / weight;
+    let (mut dipole, mut moment, mut square) = (DVec3::ZERO, [DVec3::ZERO; 3], 0.0f64);
+    for &t in triangles {
+        let (area, offset) = (area_vector(t), middle(t) - center);
+        dipole += area;
+        for (column, share) in moment.iter_mut().zip(area.to_array()) {
+            *column += offset * share;
+        }
+        square = t.into_iter().fold(square, |most, p| most.max(p.distance_squared(center)));
+    }
+    Node {
+        center,
+        radius: square.sqrt(),
+        dipole,
+        moment,
+        first: first as u32,
+        len: triangles.len() as u32,
+        skip: 0,
+    }
+}
+
+/// Puts the half with the smaller centres along the longest extent first.
+fn split(triangles: &mut [[DVec3; 3]]) {
+    let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for &t in triangles.iter() {
+        (min, max) = (min.min(middle(t)), max.max(middle(t)));
+    }
+    let extent = max - min;
+    let axis = if extent.x >= extent.y.max(extent.z) { 0 } else { usize::from(extent.y < extent.z) + 1 };
+    let half = triangles.len() / 2;
+    let key = |t: &[DVec3; 3]| middle(*t)[axis];
+    triangles.select_nth_unstable_by(half, |a, b| key(a).total_cmp(&key(b)));
+}
+
+/// Half the signed solid angle of a triangle seen from `p`, positive from behind (van Oosterom and Strackee 1983). Zero
+/// in its plane.
+fn half_solid_angle(p: DVec3, corners: [DVec3; 3]) -> f64 {
+    let [a, b, c] = corners.map(|q| q - p);
+    let (x, y, z) = (a.length(), b.length(), c.length());
+    let determinant = a.dot(b.cross(c));
+    if determinant == 0.0 {
+        return 0.0;
+    }
+    let rest = x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y;
+    libm::atan2(determinant, rest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sphere of quarter degrees with the cap above `height` open.
+    fn bowl(rings: usize, height: f64) -> Vec<[DVec3; 3]> {
+        let at = |i: usize, j: usize| {
+            let (u, v) = (
+                i as f64 / rings as f64 * std::f64::consts::PI,
+                j as f64 / rings as f64 * std::f64::consts::TAU,
+            );
+            DVec3::new(libm::sin(u) * libm::cos(v), libm::sin(u) * libm::sin(v), -libm::cos(u)) * 10.0
+        };
+        let mut all = Vec::new();
+        for i in 0..rings {
+            for j in 0..rings {
+                let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
+                all.extend([[a, c, b], [a, d, c]]);
+            }
+        }
+        all.retain(|t| t.iter().all(|p| p.z <= height) && area_vector(*t).length() > 0.0);
+        for t in &mut all {
+            if area_vector(*t).dot(middle(*t)) < 0.0 {
+                t.swap(1, 2);
+            }
+        }
+        all
+    }
+
+    #[test]
+    fn groups_seen_from_afar_give_what_their_triangles_give() {
+        let triangles = bowl(60, 5.0);
+        let tree = WindingTree::build(triangles.clone(), &Budget::unlimited()).unwrap();
+        let mut worst = 0.0f64;
+        for i in 0..1000 {
+            let p = DVec3::new((i % 10) as f64, (i / 10 % 10) as f64, (i / 100) as f64) * 3.1 - 14.0;
+            let exact =
+                triangles.iter().map(|&t| half_solid_angle(p, t)).sum::<f64>() / (2.0 * std::f64::consts::PI);
+            worst = worst.max((tree.at(p, 0.0) - exact).abs());
+        }
+        assert!(worst < 0.02, "{worst}");
+    }
+
+    #[test]
+    fn a_closed_surface_winds_once_around_what_is_inside() {
+        let tree = WindingTree::build(bowl(40, 11.0), &Budget::unlimited()).unwrap();
+        assert!((tree.at(DVec3::new(1.0, 2.0, 3.0), 0.0) - 1.0).abs() < 0.03);
+        assert!(tree.at(DVec3::new(1.0, 12.0, 3.0), 0.0).abs() < 0.03);
+        assert_eq!(WindingTree::default().at(DVec3::ZERO, 0.0), 0.0);
+    }
+}
