@@ -107,8 +107,14 @@ fn broken_parts(draft: &Draft, parts: &Components, budget: &Budget) -> Result<Ve
         }
     }
     let bvh = Bvh::build(&draft.positions, triangles, Some(&sound), budget)?;
-    let contacts =
-        spatial::self_contacts(&draft.positions, triangles, &bvh, Search::All { keep: CONTACTS }, budget)?;
+    let contacts = spatial::self_contacts(
+        &draft.positions,
+        triangles,
+        &bvh,
+        None,
+        Search::All { keep: CONTACTS },
+        budget,
+    )?;
     for contact in &contacts.list {
         is_broken[parts.of[contact.a as usize] as usize] = true;
         is_broken[parts.of[contact.b as usize] as usize] = true;

@@ -77,7 +77,7 @@ fn offenders(positions: &[DVec3], triangles: &[[u32; 3]], budget: &Budget) -> Re
     if bad.is_empty() {
         let bvh = Bvh::build(positions, triangles, None, budget)?;
         let contacts =
-            spatial::self_contacts(positions, triangles, &bvh, Search::All { keep: CONTACTS }, budget)?;
+            spatial::self_contacts(positions, triangles, &bvh, None, Search::All { keep: CONTACTS }, budget)?;
         bad.extend(contacts.list.iter().flat_map(|c| [c.a, c.b]).flat_map(|t| triangles[t as usize]));
     }
     bad.sort_unstable();
