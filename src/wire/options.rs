@@ -87,7 +87,7 @@ pub const SPECS: &[OptionSpec] = &[
     option(
         "wrap_cells",
         OptionKind::Integer { min: 16, max: 1024 },
-        "Cells along the longest side of a surface that repair must rebuild. Default: 256.",
+        "Cells along the longest side of a surface that repair must rebuild. Default: up to 256, by its area.",
     ),
     option(
         "nesting",

@@ -102,7 +102,7 @@ impl Lattice {
     }
 
     /// `p` in lattice units, rounded.
-    pub(super) fn to_units(&self, p: DVec3) -> DVec3 {
+    pub(super) fn units_of(&self, p: DVec3) -> DVec3 {
         let spacing = self.spacing as f64;
         let along = |x: f64, a: usize| (x / self.pitch - self.origin[a] as f64) / spacing;
         DVec3::new(along(p.x, 0), along(p.y, 1), along(p.z, 2))
@@ -179,9 +179,9 @@ mod tests {
             for steps in [[0; 3], last, [1, 2, 3], [last[0] - 1, 5, last[2] / 3]] {
                 assert!(is_float32(lattice.place(steps)), "{offset} {size} {steps:?}");
             }
-            let units = lattice.to_units(bounds.min);
+            let units = lattice.units_of(bounds.min);
             assert!(units.min_element() >= MARGIN as f64);
-            let end = lattice.to_units(bounds.max) + MARGIN as f64;
+            let end = lattice.units_of(bounds.max) + MARGIN as f64;
             assert!((0..3).all(|a| end[a] <= (lattice.dims[a] - 1) as f64));
             assert!(is_float32(lattice.nearest(units)));
         }

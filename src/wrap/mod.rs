@@ -21,7 +21,7 @@ mod winding_tree;
 mod tests;
 
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
-use crate::geom::{Aabb, DVec3};
+use crate::geom::{Aabb, DVec3, triangle_area};
 use cut::Cut;
 pub use fit::FitCounts;
 use lattice::Lattice;
@@ -53,6 +53,8 @@ pub struct WrapOptions {
     pub vertices_max: usize,
     /// Most cubes and columns to go through for all triangles together.
     pub visits_max: u64,
+    /// Most cubes that the area of the triangles would cover; about six triangles come out for each.
+    pub area_max: f64,
     /// Whether vertices move onto the input and its creases.
     pub is_fitted: bool,
 }
@@ -64,6 +66,7 @@ impl Default for WrapOptions {
             open_shells: OpenShells::Auto,
             vertices_max: 1 << 25,
             visits_max: 1 << 27,
+            area_max: 120_000.0,
             is_fitted: true,
         }
     }
@@ -138,7 +141,7 @@ pub fn wrap(
     }
     let lattice = choose(bounds, positions, triangles, options, budget)?;
     let _charge = budget.charge(lattice.len() as u64 * 2 + triangles.len() as u64 * 200)?;
-    let units: Vec<DVec3> = positions.iter().map(|&p| lattice.to_units(p)).collect();
+    let units: Vec<DVec3> = positions.iter().map(|&p| lattice.units_of(p)).collect();
     let shells = shells::sort(&units, triangles, options.open_shells, budget)?;
     let mut account = Account {
         spacing: lattice.side(),
@@ -175,16 +178,23 @@ fn choose(
     budget: &Budget,
 ) -> Result<Lattice, WrapError> {
     let mut cells = options.cells;
+    let mut is_first = true;
     loop {
         let lattice =
             Lattice::around(bounds, cells, options.vertices_max).map_err(WrapError::NotRepresentable)?;
-        let mut visits = 0u64;
+        let (mut visits, mut area) = (0u64, 0.0);
         for block in triangles.chunks(CHECK_EVERY) {
             budget.check()?;
-            visits += block
-                .iter()
-                .map(|t| raster::cost(t.map(|v| lattice.to_units(positions[v as usize]))))
-                .sum::<u64>();
+            for corners in block {
+                let corners = corners.map(|v| lattice.units_of(positions[v as usize]));
+                visits += raster::cost(corners);
+                area += triangle_area(corners);
+            }
+        }
+        if std::mem::take(&mut is_first) && area > options.area_max {
+            let fewer = f64::from(cells) * (options.area_max / area).sqrt();
+            cells = (fewer as u32).max(CELLS_LEAST).min(cells);
+            continue;
         }
         if visits <= options.visits_max || cells <= CELLS_LEAST {
             return Ok(lattice);

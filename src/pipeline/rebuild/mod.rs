@@ -15,7 +15,7 @@ use crate::geom::DVec3;
 use crate::mesh::Soup;
 use crate::repair::duplicates::OppositePairs;
 use crate::repair::{Draft, NEW, nest};
-use crate::simplify::{self, Mode, SimplifyError, SimplifyOptions, Target};
+use crate::simplify::{self, Mode, Simplified, SimplifyError, SimplifyOptions, Target};
 use crate::wrap::{self, Account, OpenShells, WrapError, WrapOptions, Wrapped};
 
 /// How a broken mesh is rebuilt.
@@ -23,7 +23,7 @@ use crate::wrap::{self, Account, OpenShells, WrapError, WrapOptions, Wrapped};
 pub struct WrapChoices {
     /// How open shells are read.
     pub open_shells: OpenShells,
-    /// Cells along the longest side; `None`: 256.
+    /// Cells along the longest side; `None`: up to 256, as many as the area of the surface allows.
     pub cells: Option<u32>,
 }
 
@@ -71,6 +71,8 @@ pub(super) fn rebuild(
     let wrap_options = WrapOptions {
         cells: choices.cells.unwrap_or(WrapOptions::default().cells),
         open_shells: choices.open_shells,
+        // Who asks for a number of cells gets it.
+        area_max: choices.cells.map_or(WrapOptions::default().area_max, |_| f64::INFINITY),
         ..WrapOptions::default()
     };
     let rebuilding = Rebuilding { input, encoding, options, wrap_options, budget };
@@ -151,10 +153,10 @@ impl Rebuilding<'_> {
             kept.triangle_origin.iter().copied().chain(std::iter::repeat_n(NEW, count)).collect()
         };
         let account = wrapped.account;
-        if let Some((positions, triangles, action)) = simplified(wrapped, self.options, self.budget)? {
-            let candidate = self.write(&positions, &triangles, kept)?;
+        if let Some((simplified, action)) = simplified(wrapped, self.options, self.budget)? {
+            let candidate = self.write(&simplified.positions, &simplified.triangles, kept)?;
             if candidate.certificate().is_printable() {
-                let origins = origins(triangles.len());
+                let origins = origins(simplified.triangles.len());
                 return Ok(Rebuilt { candidate, origins, account, simplified: Some(action) });
             }
         }
@@ -197,7 +199,7 @@ fn simplified(
     wrapped: &Wrapped,
     options: &Options,
     budget: &Budget,
-) -> Result<Option<(Vec<DVec3>, Vec<[u32; 3]>, Action)>, Stopped> {
+) -> Result<Option<(Simplified, Action)>, Stopped> {
     let input = simplify::Input {
         positions: &wrapped.positions,
         triangles: &wrapped.triangles,
@@ -217,7 +219,7 @@ fn simplified(
     match results {
         Ok(results) => Ok(results.into_iter().next().map(|result| {
             let action = super::simplify::action(&result.report);
-            (result.positions, result.triangles, action)
+            (result, action)
         })),
         Err(SimplifyError::Stopped(stopped)) => Err(stopped),
         Err(SimplifyError::NotManifold(_)) => Ok(None),

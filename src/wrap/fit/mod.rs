@@ -54,7 +54,7 @@ pub(super) fn fit(
     let _charge = budget.charge(positions.len() as u64 * 64 + triangles.len() as u64 * 16)?;
     let before = positions.to_vec();
     let stars = Stars::of(triangles, positions.len(), budget)?;
-    let mut places: Vec<DVec3> = positions.iter().map(|&p| lattice.to_units(p)).collect();
+    let mut places: Vec<DVec3> = positions.iter().map(|&p| lattice.units_of(p)).collect();
     // Clamped cuts, and thin walls.
     let goals = plain_goals(signs, cuts, &places, budget)?;
     let mut moved = move_all(&stars, triangles, &mut places, &goals, budget)?;

@@ -2,7 +2,7 @@
 
 use super::normals::Stars;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
-use crate::geom::{DVec3, are_collinear};
+use crate::geom::{Aabb, DVec3, Plane, Shared, are_collinear, contact};
 use crate::par;
 use crate::spatial::{self, Bvh, Search, coincident_f64};
 
@@ -28,26 +28,28 @@ pub(super) fn until_nothing_meets(
     budget: &Budget,
 ) -> Result<u64, Stopped> {
     let mut taken_back = 0;
+    // After the first search only triangles around a vertex that went back can have begun to meet others.
+    let mut changed: Option<Vec<u32>> = None;
     for round in 0..ROUNDS {
-        let mut bad = offenders(positions, triangles, budget)?;
+        let mut bad = offenders(positions, triangles, changed.as_deref(), budget)?;
         if bad.is_empty() {
             return Ok(taken_back);
         }
         for _ in ROUNDS_NEAR..=round {
-            let wider: Vec<u32> = bad
-                .iter()
-                .flat_map(|&v| stars.of_vertex(v as usize).iter().flat_map(|&t| triangles[t as usize]))
-                .collect();
-            bad = wider;
+            bad = around(&bad, stars).flat_map(|t| triangles[t as usize]).collect();
             bad.sort_unstable();
             bad.dedup();
         }
-        for v in bad.into_iter().map(|v| v as usize) {
-            taken_back += u64::from(positions[v] != before[v]);
-            positions[v] = before[v];
+        for &v in &bad {
+            taken_back += u64::from(positions[v as usize] != before[v as usize]);
+            positions[v as usize] = before[v as usize];
         }
+        let mut stale: Vec<u32> = around(&bad, stars).collect();
+        stale.sort_unstable();
+        stale.dedup();
+        changed = Some(stale);
     }
-    if !offenders(positions, triangles, budget)?.is_empty() {
+    if !offenders(positions, triangles, None, budget)?.is_empty() {
         for (position, &before) in positions.iter_mut().zip(before) {
             taken_back += u64::from(*position != before);
             *position = before;
@@ -56,31 +58,126 @@ pub(super) fn until_nothing_meets(
     Ok(taken_back)
 }
 
-/// The vertices of what breaks P0 or P1, ascending.
-fn offenders(positions: &[DVec3], triangles: &[[u32; 3]], budget: &Budget) -> Result<Vec<u32>, Stopped> {
-    let coincident = coincident_f64(positions, budget)?;
-    let mut bad: Vec<u32> = (0..positions.len() as u32)
-        .filter(|&v| coincident.first[coincident.group[v as usize] as usize] != v)
-        .collect();
-    let firsts: Vec<u32> =
-        bad.iter().map(|&v| coincident.first[coincident.group[v as usize] as usize]).collect();
-    bad.extend(firsts);
-    let flat = par::try_map_ranges(triangles.len(), CHECK_EVERY, |range| {
-        budget.check()?;
-        let is_flat = |t: &[u32; 3]| {
-            let [a, b, c] = t.map(|v| positions[v as usize]);
-            are_collinear(a, b, c)
-        };
-        Ok(triangles[range].iter().filter(|t| is_flat(t)).flatten().copied().collect::<Vec<u32>>())
-    })?;
-    bad.extend(flat.into_iter().flatten());
+/// The triangles around these vertices, those around several of them repeatedly.
+fn around<'s>(vertices: &'s [u32], stars: &'s Stars) -> impl Iterator<Item = u32> + 's {
+    vertices.iter().flat_map(|&v| stars.of_vertex(v as usize)).copied()
+}
+
+/// The vertices of what breaks P0 or P1, ascending; `among` these triangles and all others, or everywhere.
+fn offenders(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    among: Option<&[u32]>,
+    budget: &Budget,
+) -> Result<Vec<u32>, Stopped> {
+    let mut bad = at_one_place(positions, budget)?;
+    bad.extend(flat(positions, triangles, among, budget)?);
     if bad.is_empty() {
         let bvh = Bvh::build(positions, triangles, None, budget)?;
-        let contacts =
-            spatial::self_contacts(positions, triangles, &bvh, None, Search::All { keep: CONTACTS }, budget)?;
-        bad.extend(contacts.list.iter().flat_map(|c| [c.a, c.b]).flat_map(|t| triangles[t as usize]));
+        let meeting = match among {
+            None => everywhere(positions, triangles, &bvh, budget)?,
+            Some(among) => of_these(positions, triangles, among, &bvh, budget)?,
+        };
+        bad.extend(meeting.into_iter().flat_map(|t| triangles[t as usize]));
     }
     bad.sort_unstable();
     bad.dedup();
     Ok(bad)
+}
+
+/// Vertices that are where another one is.
+fn at_one_place(positions: &[DVec3], budget: &Budget) -> Result<Vec<u32>, Stopped> {
+    let coincident = coincident_f64(positions, budget)?;
+    let first = |v: u32| coincident.first[coincident.group[v as usize] as usize];
+    Ok((0..positions.len() as u32).filter(|&v| first(v) != v).flat_map(|v| [v, first(v)]).collect())
+}
+
+/// Vertices of triangles without an area.
+fn flat(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    among: Option<&[u32]>,
+    budget: &Budget,
+) -> Result<Vec<u32>, Stopped> {
+    let count = among.map_or(triangles.len(), <[u32]>::len);
+    let flat = par::try_map_ranges(count, CHECK_EVERY, |range| {
+        budget.check()?;
+        let mut flat = Vec::new();
+        for place in range {
+            let corners = triangles[among.map_or(place, |among| among[place] as usize)];
+            let [a, b, c] = corners.map(|v| positions[v as usize]);
+            if are_collinear(a, b, c) {
+                flat.extend(corners);
+            }
+        }
+        Ok(flat)
+    })?;
+    Ok(flat.concat())
+}
+
+/// Triangles that meet others.
+fn everywhere(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    bvh: &Bvh,
+    budget: &Budget,
+) -> Result<Vec<u32>, Stopped> {
+    let search = Search::All { keep: CONTACTS };
+    let contacts = spatial::self_contacts(positions, triangles, bvh, None, search, budget)?;
+    Ok(contacts.list.iter().flat_map(|contact| [contact.a, contact.b]).collect())
+}
+
+/// Triangles that meet one of `these`, and those of these that do.
+fn of_these(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    these: &[u32],
+    bvh: &Bvh,
+    budget: &Budget,
+) -> Result<Vec<u32>, Stopped> {
+    let found = par::try_map_ranges(these.len(), 256, |range| {
+        let mut found = Vec::new();
+        for &t in &these[range] {
+            let corners = triangles[t as usize];
+            let plane = Plane::through(corners.map(|v| positions[v as usize]));
+            let bounds = Aabb::of(corners.map(|v| positions[v as usize]));
+            bvh.visit_box(bounds, budget, |other| {
+                let others = triangles[other as usize];
+                let shared = Shared::between(corners, others);
+                let points = others.map(|v| &positions[v as usize]);
+                if other != t && contact(&plane, points, shared).is_some() {
+                    found.extend([t, other]);
+                }
+            })?;
+        }
+        budget.spend(4)?;
+        Ok(found)
+    })?;
+    Ok(found.concat())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_corner_that_went_through_the_base_comes_back() {
+        let corners =
+            [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0]].map(DVec3::from_array);
+        // Two tetrahedra, apart before; then a corner of the second is inside the first.
+        let before: Vec<DVec3> = corners.into_iter().chain(corners.map(|p| p + 9.0)).collect();
+        let tetrahedron = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        let triangles: Vec<[u32; 3]> =
+            tetrahedron.into_iter().chain(tetrahedron.map(|t| t.map(|v| v + 4))).collect();
+        let budget = Budget::unlimited();
+        let stars = Stars::of(&triangles, 8, &budget).unwrap();
+        let mut positions = before.clone();
+        positions[4] = DVec3::splat(0.5);
+        positions[1] = DVec3::new(4.5, 0.0, 0.0);
+        let taken_back = until_nothing_meets(&mut positions, &before, &triangles, &stars, &budget).unwrap();
+        assert!(taken_back >= 1 && positions[4] == before[4]);
+        positions[1] = positions[0];
+        until_nothing_meets(&mut positions, &before, &triangles, &stars, &budget).unwrap();
+        assert_eq!(positions[1], before[1]);
+    }
 }
