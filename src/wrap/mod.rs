@@ -66,7 +66,7 @@ impl Default for WrapOptions {
             open_shells: OpenShells::Auto,
             vertices_max: 1 << 25,
             visits_max: 1 << 27,
-            area_max: 120_000.0,
+            area_max: 200_000.0,
             is_fitted: true,
         }
     }
