@@ -72,6 +72,7 @@ fn main() {
         positions: &soup.positions,
         triangles: &soup.triangles,
         face_groups: &[],
+        texture: &[],
         vertex_colors: &[],
     };
     let mut best = f64::INFINITY;

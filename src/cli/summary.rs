@@ -1,6 +1,8 @@
 //! The report for people: a screen of text, the most telling things first.
 
-use crate::wire::{Action, Certificate, Claim, Defect, MeshInfo, Report, Severity, Witness};
+use crate::wire::{
+    Action, Certificate, Claim, Defect, Level, MeshInfo, Report, Severity, TargetSpec, Witness,
+};
 use std::fmt::Write as _;
 
 /// What a report is about, as the user calls it.
@@ -23,6 +25,8 @@ pub(super) fn summary(report: &Report, subject: &Subject) -> String {
     let done: Vec<_> =
         report.actions.iter().filter(|a| a.changes.iter().any(|c| c.count > 0)).map(action_row).collect();
     put_table(&mut text, "done", &done);
+    let missed: Vec<_> = report.levels.iter().filter(|level| !level.is_reached).map(missed_row).collect();
+    put_table(&mut text, "targets not reached", &missed);
     if let Some(mesh) = &report.after {
         put(&mut text, &format!("result\n  {}", size(mesh)));
         put_table(&mut text, "defects that remain", &mesh.defects.iter().map(defect_row).collect::<Vec<_>>());
@@ -115,6 +119,23 @@ fn action_row(action: &Action) -> [String; 3] {
         (causes, reason) => format!("because of {causes}; {reason}"),
     };
     [action.step.to_owned(), changes.collect::<Vec<_>>().join(", "), why]
+}
+
+/// What was asked, how far it came, and what spoke against collapses, the most frequent first.
+fn missed_row(level: &Level) -> [String; 3] {
+    let asked = match level.target {
+        TargetSpec::Faces(count) => counted(count.into(), "face"),
+        TargetSpec::Ratio(share) => format!("{} of the faces", figure(share)),
+        TargetSpec::ErrorMm(error) => format!("error of {} mm", figure(error)),
+    };
+    let mut refusals: Vec<_> = level.refusals.iter().filter(|refusal| refusal.count > 0).collect();
+    refusals.sort_by_key(|refusal| std::cmp::Reverse(refusal.count));
+    let reasons: Vec<String> = refusals.iter().map(|r| format!("{} {}", r.name, r.count)).collect();
+    let why = match reasons.as_slice() {
+        [] => "no edge is left to collapse".to_owned(),
+        reasons => format!("collapses refused: {}", reasons.join(", ")),
+    };
+    [asked, format!("{} left", counted(level.faces_after, "face")), why]
 }
 
 fn claim_rows(certificate: &Certificate) -> Vec<[String; 2]> {
@@ -210,6 +231,40 @@ written: out.stl
         let text = of(&sample::refused(), None);
         assert!(text.contains("verdict: refused, not printable; "), "{text}");
         assert!(text.ends_with("nothing written\n"), "{text}");
+    }
+
+    #[test]
+    fn a_target_that_was_not_reached_is_told_with_the_reasons() {
+        use crate::pipeline::Level;
+        use crate::simplify::{Refusal, Refusals, Report, Target};
+        let level = |target, refused: &[(Refusal, u64)], is_reached| {
+            let mut refusals = Refusals::default();
+            refused.iter().for_each(|&(reason, count)| refusals.add_times(reason, count));
+            let simplified = Report {
+                target,
+                is_reached,
+                faces_before: 100,
+                faces_after: 40,
+                collapses: 30,
+                refusals,
+                error_max: 0.5,
+            };
+            let certificate = sample::repaired().report.input_certificate;
+            Level { simplified, certificate, distance: None }
+        };
+        let mut answer = sample::repaired();
+        answer.report.levels = vec![
+            level(Target::Faces(50), &[], true),
+            level(Target::Faces(10), &[(Refusal::Held, 2), (Refusal::NormalTurns, 7)], false),
+            level(Target::Ratio(0.25), &[], false),
+        ];
+        let want = "\
+targets not reached
+  10 faces           40 faces left  collapses refused: normal_turns 7, held 2
+  0.25 of the faces  40 faces left  no edge is left to collapse
+";
+        let text = of(&answer, None);
+        assert!(text.contains(want), "{text}");
     }
 
     #[test]

@@ -92,6 +92,39 @@ impl Faces {
         Ok(soup)
     }
 
+    /// What these faces have at the corners of the triangles of `soup`, which was made of faces with the same numbers of
+    /// corners: a value of its own for each corner, as texture points are. Where a polygon has a vertex twice, it is the
+    /// value at the first.
+    pub(super) fn corners_of(self, soup: &Soup, budget: &Budget) -> Result<Vec<[u32; 3]>, Stopped> {
+        if self.others.is_empty() && soup.triangles.len() == self.triangles.len() {
+            return Ok(self.triangles);
+        }
+        let polygons = &soup.polygons;
+        let (mut polygon, mut other, mut start) = (0, 0, 0);
+        let mut values = Vec::with_capacity(soup.triangles.len());
+        for (t, corners) in soup.triangles.iter().enumerate() {
+            if t.is_multiple_of(CHECK_EVERY) {
+                budget.check()?;
+            }
+            let face = soup.face_of(t as u32);
+            while self.others.get(other).is_some_and(|&number| number < face) {
+                start += self.other_sizes[other] as usize;
+                other += 1;
+            }
+            if self.others.get(other) != Some(&face) {
+                values.push(self.triangles[face as usize - other]);
+                continue;
+            }
+            while polygons.faces[polygon] < face {
+                polygon += 1;
+            }
+            let vertices = &polygons.corners[polygons.starts[polygon] as usize..];
+            let place = |v: u32| vertices.iter().position(|&u| u == v).unwrap_or(0);
+            values.push(corners.map(|v| self.other_corners[start + place(v)]));
+        }
+        Ok(values)
+    }
+
     /// Triangles after splitting, if no face is at fault.
     fn triangle_count(&self) -> u64 {
         let split: u64 = self.other_sizes.iter().map(|&size| u64::from(size.saturating_sub(2))).sum();

@@ -10,6 +10,7 @@ pub mod half_edge;
 mod parity;
 mod soup;
 mod stitch;
+mod texture;
 
 pub use components::{Components, UnionFind};
 pub use cut::{Cut, cut_singular};
@@ -19,3 +20,4 @@ pub use fans::{Fan, NO_TWIN, fan_heads, singular_vertices, twins};
 pub use parity::ParityUnionFind;
 pub use soup::{Color, FaceFault, FaceFaultReason, Places, Polygons, Soup};
 pub use stitch::{Stitched, stitch};
+pub use texture::{NO_POINT, Texture};

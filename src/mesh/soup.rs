@@ -1,5 +1,6 @@
 //! What a file says, before anyone judges it.
 
+use super::texture::{NO_POINT, Texture};
 use crate::geom::DVec3;
 
 /// A colour as a file gives it; absent channels are not invented.
@@ -87,6 +88,8 @@ pub struct Soup {
     pub vertex_colors: Vec<Option<Color>>,
     /// Colour of each face of the file; empty when the file has none.
     pub face_colors: Vec<Option<Color>>,
+    /// Texture coordinates of the corners of triangles.
+    pub texture: Texture,
 }
 
 impl Soup {
@@ -127,6 +130,17 @@ impl Soup {
         ] {
             if len != 0 && len != want {
                 broken.push(format!("{name} has {len} entries for {want}"));
+            }
+        }
+        let texture = &self.texture;
+        if !texture.is_empty() && texture.corners.len() != self.triangles.len() {
+            broken.push("texture.corners has another length than triangles".to_owned());
+        }
+        for (t, corners) in texture.corners.iter().enumerate() {
+            let is_good =
+                |&i: &u32| texture.points.get(i as usize).is_some_and(|p| p.iter().all(|c| c.is_finite()));
+            if *corners != [NO_POINT; 3] && !corners.iter().all(is_good) {
+                broken.push(format!("triangle {t} has texture points that are none"));
             }
         }
         broken

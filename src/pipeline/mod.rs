@@ -6,9 +6,11 @@ mod identical;
 mod input;
 mod output;
 mod plan;
+mod priority;
 mod rebuild;
 mod repair;
 mod simplify;
+mod texture;
 
 use self::input::Input;
 pub use self::rebuild::WrapChoices;
@@ -123,6 +125,18 @@ pub struct SimplifyChoices {
     pub criterion: CriterionKind,
     /// Where the merged vertex goes.
     pub placement: Placement,
+    /// What colours the vertices of the results have.
+    pub vertex_colors: VertexColors,
+}
+
+/// What colours the vertices of a simplified mesh have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum VertexColors {
+    /// Those of the file, mixed where vertices were merged.
+    #[default]
+    Kept,
+    /// The order in which they would go, from blue to red.
+    Priority,
 }
 
 impl Default for SimplifyChoices {
@@ -132,6 +146,7 @@ impl Default for SimplifyChoices {
             mode: None,
             criterion: CriterionKind::Quadric,
             placement: Placement::Optimal,
+            vertex_colors: VertexColors::Kept,
         }
     }
 }

@@ -17,10 +17,8 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
     let encoding = input.output_encoding(options);
     if input.examination.certificate.is_printable() {
         let (draft, _) = Draft::from_soup(&input.soup);
-        if let Some((candidate, origins, action)) = simplify::of_certified(&draft, input, options, budget)? {
-            let origins = origins_in_input(&draft, &origins);
-            let report = Report { actions: vec![action], ..report };
-            return Ok(candidate.returned(input, &origins, report, Outcome::Simplified, budget)?);
+        if let Some(fewer) = simplify::of_certified(&draft, input, options, budget)? {
+            return fewer.returned(input, &draft, report, Vec::new(), Outcome::Simplified, budget);
         }
         if encoding == input.facts.encoding {
             return Ok(input.returned_as_it_is(report, Outcome::Identical));
@@ -39,17 +37,12 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
     let search = Search { input, encoding, options, before: report.before.as_ref(), budget };
     match search.run()? {
         Found::Certified(found) => {
-            let (mut attempt, candidate) = *found;
-            let draft = &attempt.draft;
-            let (candidate, origins) = match simplify::of_certified(draft, input, options, budget)? {
-                Some((candidate, origins, action)) => {
-                    attempt.actions.push(action);
-                    (candidate, origins_in_input(draft, &origins))
-                }
-                None => (candidate, draft.triangle_origin.clone()),
-            };
-            let report = Report { actions: attempt.actions, ..report };
-            Ok(candidate.returned(input, &origins, report, Outcome::Repaired, budget)?)
+            let (Attempt { draft, actions }, candidate) = *found;
+            if let Some(fewer) = simplify::of_certified(&draft, input, options, budget)? {
+                return fewer.returned(input, &draft, report, actions, Outcome::Repaired, budget);
+            }
+            let report = Report { actions, ..report };
+            Ok(candidate.returned(input, &draft.triangle_origin, report, Outcome::Repaired, budget)?)
         }
         Found::Nothing { refusal: Refusal::NotRepairable { .. }, mended: Some(mended), .. }
             if options.require == Some(Require::None) =>
@@ -71,11 +64,6 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
             Ok(Report { actions: last.actions, ..report }.refused(refusal))
         }
     }
-}
-
-/// The triangle of the input behind each of `triangles` of the draft.
-fn origins_in_input(draft: &Draft, triangles: &[u32]) -> Vec<u32> {
-    triangles.iter().map(|&t| draft.triangle_origin[t as usize]).collect()
 }
 
 /// The search for a plan that leads to certified bytes.

@@ -3,9 +3,10 @@
 use super::input::Input;
 use super::output::{Candidate, NoCandidate};
 use super::plan::{Attempt, Step};
+use super::texture::{points_of, texture_of};
 use super::{
     Action, Answer, Failure, Level, Operation, Options, Outcome, Output, Refusal, Report, Require,
-    SimplifyChoices,
+    SimplifyChoices, VertexColors, priority,
 };
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::Depth;
@@ -99,32 +100,81 @@ impl Writer<'_> {
     }
 }
 
-/// The certified mesh of a repair with fewer triangles, if that is asked for and stays certified: its bytes, the
-/// triangle of `draft` that each of its triangles was, and what was done.
+/// A certified mesh with fewer triangles, the end of a repair.
+pub(super) struct Fewer {
+    /// That of the first target.
+    candidate: Candidate,
+    /// The triangle of the draft that each of its triangles was.
+    origins: Vec<u32>,
+    /// What was done for the first target.
+    action: Action,
+    /// One for each target.
+    levels: Vec<Level>,
+    /// The files of further targets.
+    others: Vec<Output>,
+}
+
+impl Fewer {
+    /// The answer of a repair that led to `draft` by `actions` before.
+    pub(super) fn returned(
+        self,
+        input: &Input,
+        draft: &Draft,
+        report: Report,
+        mut actions: Vec<Action>,
+        outcome: Outcome,
+        budget: &Budget,
+    ) -> Result<Answer, Failure> {
+        let Self { candidate, origins, action, levels, others } = self;
+        actions.push(action);
+        let origins: Vec<u32> = origins.iter().map(|&t| draft.triangle_origin[t as usize]).collect();
+        let report = Report { actions, levels, ..report };
+        let answer = candidate.returned(input, &origins, report, outcome, budget)?;
+        Ok(Answer { levels: others, ..answer })
+    }
+}
+
+/// The certified mesh of a repair with fewer triangles, for each target, if that is asked for and all stay certified.
 pub(super) fn of_certified(
     draft: &Draft,
     input: &Input,
     options: &Options,
     budget: &Budget,
-) -> Result<Option<(Candidate, Vec<u32>, Action)>, Failure> {
-    let choices = &options.simplify;
-    let Some(&target) = choices.targets.first() else { return Ok(None) };
-    let mesh = draft.to_soup(&input.soup);
-    let one = SimplifyChoices { targets: vec![target], mode: Some(Mode::Guarded), ..choices.clone() };
-    let result = match run(&mesh, &one, budget) {
-        Ok(results) => results.into_iter().next(),
-        Err(SimplifyError::Stopped(stopped)) => return Err(stopped.into()),
-        Err(SimplifyError::NotManifold(_)) => None,
-    };
-    let Some(result) = result else { return Ok(None) };
-    let encoding = input.output_encoding(options);
-    match Candidate::write(soup_of(&result, &mesh), encoding, Depth::FirstViolation, budget) {
-        Ok(candidate) if candidate.certificate().is_printable() => {
-            Ok(Some((candidate, result.triangle_origin, action(&result.report))))
-        }
-        Ok(_) | Err(NoCandidate::Refused(_)) => Ok(None),
-        Err(NoCandidate::Failed(failure)) => Err(failure),
+) -> Result<Option<Fewer>, Failure> {
+    if options.simplify.targets.is_empty() {
+        return Ok(None);
     }
+    let mesh = draft.to_soup(&input.soup);
+    let guarded = SimplifyChoices { mode: Some(Mode::Guarded), ..options.simplify.clone() };
+    let results = match run(&mesh, &guarded, budget) {
+        Ok(results) => results,
+        Err(SimplifyError::Stopped(stopped)) => return Err(stopped.into()),
+        Err(SimplifyError::NotManifold(_)) => return Ok(None),
+    };
+    let encoding = input.output_encoding(options);
+    let mut fewer: Option<Fewer> = None;
+    for result in results {
+        let soup = soup_of(&result, &mesh);
+        let candidate = match Candidate::write(soup, encoding, Depth::FirstViolation, budget) {
+            Ok(candidate) if candidate.certificate().is_printable() => candidate,
+            Ok(_) | Err(NoCandidate::Refused(_)) => return Ok(None),
+            Err(NoCandidate::Failed(failure)) => return Err(failure),
+        };
+        let distance = distance(&mesh, &result, budget)?;
+        let level =
+            Level { simplified: result.report, certificate: candidate.certificate().clone(), distance };
+        match &mut fewer {
+            None => {
+                let (action, origins) = (action(&result.report), result.triangle_origin);
+                fewer = Some(Fewer { candidate, origins, action, levels: vec![level], others: Vec::new() });
+            }
+            Some(fewer) => {
+                fewer.levels.push(level);
+                fewer.others.push(Output { encoding, bytes: Some(candidate.bytes) });
+            }
+        }
+    }
+    Ok(fewer)
 }
 
 /// What a simplification did, as a step of a plan.
@@ -151,16 +201,20 @@ fn run(mesh: &Soup, choices: &SimplifyChoices, budget: &Budget) -> Result<Vec<Si
     };
     let order = finest_first(&targets, mesh.triangles.len());
     let groups = face_groups(mesh);
+    let texture = points_of(mesh);
+    let _charge = budget.charge(size_of_val(&texture[..]) as u64)?;
     let input = simplify::Input {
         positions: &mesh.positions,
         triangles: &mesh.triangles,
         face_groups: &groups,
         vertex_colors: &mesh.vertex_colors,
+        texture: &texture,
     };
     let options = SimplifyOptions {
         targets: order.iter().map(|&i| targets[i]).collect(),
         criterion: choices.criterion,
         placement: choices.placement,
+        priorities: choices.vertex_colors == VertexColors::Priority,
         ..SimplifyOptions::default()
     };
     let mode = choices.mode.unwrap_or(Mode::Guarded);
@@ -207,7 +261,7 @@ fn face_groups(mesh: &Soup) -> Vec<u32> {
     mesh.face_colors.iter().map(&mut number).collect()
 }
 
-/// The result with the colours that its faces had in `mesh`.
+/// The result with the colours that its faces had in `mesh`, and the texture of its corners.
 fn soup_of(result: &Simplified, mesh: &Soup) -> Soup {
     let color = |&t: &u32| mesh.face_colors.get(t as usize).copied().flatten();
     Soup {
@@ -215,7 +269,11 @@ fn soup_of(result: &Simplified, mesh: &Soup) -> Soup {
         positions: result.positions.clone(),
         triangles: result.triangles.clone(),
         face_count: result.triangles.len() as u32,
-        vertex_colors: result.vertex_colors.clone(),
+        vertex_colors: match result.priorities.is_empty() {
+            true => result.vertex_colors.clone(),
+            false => priority::colors_of(&result.priorities),
+        },
+        texture: texture_of(&result.texture),
         face_colors: match mesh.face_colors.is_empty() {
             true => Vec::new(),
             false => result.triangle_origin.iter().map(color).collect(),

@@ -2,7 +2,7 @@
 
 use super::Changes;
 use crate::geom::DVec3;
-use crate::mesh::{Color, Soup};
+use crate::mesh::{Color, NO_POINT, Soup, Texture};
 
 /// In the place of an origin: made by a repair step.
 pub const NEW: u32 = u32::MAX;
@@ -89,7 +89,8 @@ impl Draft {
         self.triangles[t].swap(1, 2);
     }
 
-    /// The draft as a soup to be written; `source` is the soup it was made from and gives the colours.
+    /// The draft as a soup to be written; `source` is the soup it was made from and gives the
+    /// colours and the texture coordinates.
     pub fn to_soup(&self, source: &Soup) -> Soup {
         let color_of_face = |&t: &u32| -> Option<Color> {
             if t == NEW { None } else { source.face_colors[source.face_of(t) as usize] }
@@ -107,8 +108,30 @@ impl Draft {
                 true => Vec::new(),
                 false => self.triangle_origin.iter().map(color_of_face).collect(),
             },
+            texture: self.texture(&source.texture, source),
             ..Soup::default()
         }
+    }
+
+    /// The texture of the triangles whose corners are still at vertices of their triangle in `source`, or where these
+    /// were before they moved; other triangles have none.
+    fn texture(&self, texture: &Texture, source: &Soup) -> Texture {
+        if texture.is_empty() {
+            return Texture::default();
+        }
+        let of_triangle = |t: usize| {
+            let origin = self.triangle_origin[t] as usize;
+            let (was, points) = (source.triangles.get(origin)?, texture.corners.get(origin)?);
+            let place = |v: u32| source.positions.get(v as usize);
+            let point = |v: u32| {
+                let k = (0..3).find(|&k| place(was[k]) == place(self.vertex_origin[v as usize]))?;
+                Some(points[k])
+            };
+            let [a, b, c] = self.triangles[t].map(point);
+            Some([a?, b?, c?])
+        };
+        let corners = (0..self.triangles.len()).map(|t| of_triangle(t).unwrap_or([NO_POINT; 3])).collect();
+        Texture { points: texture.points.clone(), corners }
     }
 
     /// Broken invariants, as sentences; empty when all hold.

@@ -1,4 +1,4 @@
-//! Finds the edges along which vertices must stay: borders, creases and borders between face groups.
+//! Finds the edges along which vertices must stay: borders, creases, seams and borders between face groups.
 
 use super::options::{Borders, SimplifyOptions};
 use super::surface::{LINE, Surface};
@@ -41,6 +41,9 @@ fn is_line<S: Copy + Default>(
     crease_cos_max: f64,
 ) -> bool {
     if twin == NONE {
+        return true;
+    }
+    if surface.wedges.is_seam(h, twin) {
         return true;
     }
     let group = |h: u32| groups.get(triangle_of(h) as usize);

@@ -74,9 +74,51 @@ impl Criterion for Memoryless {
 }
 
 impl Around {
+    const NOTHING: Self =
+        Self { quadric: Quadric::ZERO, normal: DVec3::ZERO, volume: 0.0, area: 0.0, has_border: false };
+
     fn edge(surface: &Surface<()>, h: u32, about: DVec3) -> Self {
-        let mut sums =
-            Self { quadric: Quadric::ZERO, normal: DVec3::ZERO, volume: 0.0, area: 0.0, has_border: false };
+        Self::inside(surface, h, about).unwrap_or_else(|| Self::at_border(surface, h, about))
+    }
+
+    /// The sums for an edge whose ends are not on a border; nothing for another one. Each vertex around is read once.
+    fn inside(surface: &Surface<()>, h: u32, about: DVec3) -> Option<Self> {
+        let table = &surface.table;
+        let twin = table.twin(h);
+        let mut sums = Self::NOTHING;
+        // All triangles of the destination, which is where the sums are about.
+        let mut corner = next(h);
+        let mut p = surface.position(table.destination(corner)) - about;
+        loop {
+            let r = surface.position(table.origin(prev(corner))) - about;
+            sums.add_normal_through_zero(p.cross(r));
+            p = r;
+            corner = table.twin(prev(corner));
+            if corner == NONE {
+                return None;
+            }
+            if corner == next(h) {
+                break;
+            }
+        }
+        // Those of the origin but the two of the edge: the twin is there, or the loop had ended.
+        let a = surface.position(table.origin(h)) - about;
+        let mut p = surface.position(table.origin(prev(h))) - about;
+        corner = table.twin(prev(h));
+        while corner != next(twin) {
+            if corner == NONE {
+                return None;
+            }
+            let r = surface.position(table.origin(prev(corner))) - about;
+            sums.add_normal((p - a).cross(r - a), a);
+            p = r;
+            corner = table.twin(prev(corner));
+        }
+        Some(sums)
+    }
+
+    fn at_border(surface: &Surface<()>, h: u32, about: DVec3) -> Self {
+        let mut sums = Self::NOTHING;
         let twin = surface.table.twin(h);
         for corner in surface.table.fan(h) {
             sums.add_triangle(surface, corner, about);
@@ -95,14 +137,25 @@ impl Around {
 
     fn add_triangle(&mut self, surface: &Surface<()>, corner: u32, about: DVec3) {
         let [p, q, r] = surface.corners(corner).map(|p| p - about);
-        let cross = (q - p).cross(r - p);
-        let length = cross.length();
-        self.normal += cross;
-        self.area += length;
-        self.volume += cross.dot(p);
-        if length > 0.0 {
-            self.quadric += Quadric::of_plane(cross / length, p, length * length);
-        }
+        self.add_normal((q - p).cross(r - p), p);
+    }
+
+    /// Adds the triangle through `p` with a normal that is twice as long as its area.
+    #[inline]
+    fn add_normal(&mut self, normal: DVec3, p: DVec3) {
+        let height = normal.dot(p);
+        self.normal += normal;
+        self.area += normal.length();
+        self.volume += height;
+        self.quadric += Quadric::of_normal(normal, height);
+    }
+
+    /// Adds a triangle that has a corner where the sums are about.
+    #[inline]
+    fn add_normal_through_zero(&mut self, normal: DVec3) {
+        self.normal += normal;
+        self.area += normal.length();
+        self.quadric += Quadric::of_normal(normal, 0.0);
     }
 
     /// The border edges at the origin of `corner`, held by two planes each.

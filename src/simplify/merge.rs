@@ -6,7 +6,7 @@ use super::report::Refusal;
 use super::surface::{LINE, NEW, Rule, Surface};
 use crate::geom::DVec3;
 use crate::mesh::Color;
-use crate::mesh::corner_table::{NONE, next, prev};
+use crate::mesh::corner_table::{EdgeRings, NONE, next, prev};
 
 impl<S: Copy + Default> Surface<S> {
     /// The very position for the vertex that the edge of `h` becomes, and the input's vertex there, if there is one.
@@ -38,11 +38,24 @@ impl<S: Copy + Default> Surface<S> {
             return;
         }
         let ends = [h, next(h)].map(|g| self.table.origin(g));
-        let [a, b] = ends.map(|v| self.position(v));
+        let [from, to] = ends.map(|v| colors[v as usize]);
+        colors[ends[1] as usize] = blend(from, to, self.share(h, position));
+    }
+
+    /// Gives the corners around both ends of `h` the texture coordinates of `position`, as near as it is to the ends.
+    pub(super) fn merge_wedges(&mut self, h: u32, rings: &EdgeRings, position: DVec3) {
+        if !self.wedges.0.is_empty() {
+            let share = self.share(h, position);
+            self.wedges.merge(&self.table, rings, h, share);
+        }
+    }
+
+    /// How far along the edge of `h` a position is: 0 at its origin and before, 1 at its destination and beyond.
+    fn share(&self, h: u32, position: DVec3) -> f64 {
+        let [a, b] = self.ends(h).map(|end| end.position);
         let length_squared = a.distance_squared(b);
         let share = if length_squared > 0.0 { (position - a).dot(b - a) / length_squared } else { 0.5 };
-        let [from, to] = ends.map(|v| colors[v as usize]);
-        colors[ends[1] as usize] = blend(from, to, share.clamp(0.0, 1.0));
+        share.clamp(0.0, 1.0)
     }
 
     /// Makes the destination of `h` what both ends become.

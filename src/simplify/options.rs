@@ -91,6 +91,8 @@ pub struct SimplifyOptions<'a> {
     /// Put new positions on the lattice of pitch `2^(ceil(log2 M) - 23)`, `M` the largest magnitude of a coordinate:
     /// all its points are float32, so that a file of float32 holds the very result.
     pub round: bool,
+    /// Give the results the costs of the collapses that would follow.
+    pub priorities: bool,
 }
 
 impl Default for SimplifyOptions<'_> {
@@ -104,6 +106,7 @@ impl Default for SimplifyOptions<'_> {
             crease_cos_max: -2.0,
             wall_weight: 1.0,
             round: true,
+            priorities: false,
         }
     }
 }

@@ -60,6 +60,18 @@ impl Quadric {
         }
     }
 
+    /// The squared distance from the plane of the points whose product with `normal` is `height`, weighted with the
+    /// squared length of `normal`.
+    #[inline]
+    pub(super) fn of_normal(normal: DVec3, height: f64) -> Self {
+        let n = normal;
+        Self {
+            a: [n.x * n.x, n.y * n.y, n.z * n.z, n.x * n.y, n.x * n.z, n.y * n.z],
+            b: n * -height,
+            c: height * height,
+        }
+    }
+
     /// The plane of a triangle, weighted with its area, about the first corner; [`ZERO`](Self::ZERO) when the triangle
     /// has no area in f64.
     #[inline]

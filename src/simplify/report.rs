@@ -22,8 +22,12 @@ pub enum Refusal {
     Error,
     /// The cost or the position is not a finite number.
     NotFinite,
-    /// The surface met itself, so what was merged here was taken back (guarded mode; counted by vertices).
+    /// A face would meet another (guarded mode). Where only coordinates rounded to f32 do, what was merged is taken back,
+    /// and counted by vertices.
     SelfIntersection,
+    /// The surface would pass through a part of itself or another shell, though it would meet nothing after (guarded
+    /// mode).
+    Swept,
     /// A closed shell was inside out or had others around it, so what was merged here was taken back (guarded mode;
     /// counted by vertices).
     Nesting,
@@ -31,7 +35,7 @@ pub enum Refusal {
 
 impl Refusal {
     /// Every reason, in the order of the report.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Link(LinkRefusal::InnerEdgeBetweenBoundaries),
         Self::Link(LinkRefusal::CommonNeighbour),
         Self::Link(LinkRefusal::Ear),
@@ -45,6 +49,7 @@ impl Refusal {
         Self::Error,
         Self::NotFinite,
         Self::SelfIntersection,
+        Self::Swept,
         Self::Nesting,
     ];
 
@@ -64,6 +69,7 @@ impl Refusal {
             Self::Error => "error",
             Self::NotFinite => "not_finite",
             Self::SelfIntersection => "self_intersection",
+            Self::Swept => "swept",
             Self::Nesting => "nesting",
         }
     }
@@ -83,7 +89,8 @@ impl Refusal {
             Self::Error => 10,
             Self::NotFinite => 11,
             Self::SelfIntersection => 12,
-            Self::Nesting => 13,
+            Self::Swept => 13,
+            Self::Nesting => 14,
         }
     }
 }
@@ -153,6 +160,6 @@ mod tests {
             assert_eq!(refusals.count(reason), i as u64 + 1);
             assert_eq!(Refusal::ALL.iter().filter(|r| r.name() == reason.name()).count(), 1);
         }
-        assert_eq!(refusals.total(), 105);
+        assert_eq!(refusals.total(), 120);
     }
 }

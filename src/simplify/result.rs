@@ -21,6 +21,9 @@ pub struct Input<'a> {
     pub face_groups: &'a [u32],
     /// Colour of each vertex; empty when there are none.
     pub vertex_colors: &'a [Option<Color>],
+    /// Texture coordinates of each triangle's corners, or [`NO_TEXTURE`](super::NO_TEXTURE) at all three; empty when there are none. Edges
+    /// whose triangles differ in them are kept as borders are.
+    pub texture: &'a [[[f64; 2]; 3]],
 }
 
 /// A simplified mesh.
@@ -32,10 +35,15 @@ pub struct Simplified {
     pub vertex_origin: Vec<u32>,
     /// Colour of each vertex; empty when the input has none.
     pub vertex_colors: Vec<Option<Color>>,
+    /// For each vertex the least cost of the collapses of its edges, infinite where it must stay; empty unless it was
+    /// [asked for](super::SimplifyOptions::priorities).
+    pub priorities: Vec<f64>,
     /// Vertex ids of each triangle's corners.
     pub triangles: Vec<[u32; 3]>,
     /// The triangle of the input that each triangle was.
     pub triangle_origin: Vec<u32>,
+    /// Texture coordinates of each triangle's corners; empty when the input has none.
+    pub texture: Vec<[[f64; 2]; 3]>,
     /// How it came to be.
     pub report: Report,
 }
@@ -61,11 +69,13 @@ impl From<BuildError> for SimplifyError {
 }
 
 impl Simplified {
-    /// The state of `surface`, with the vertices that it uses in their order and so the triangles.
+    /// The state of `surface`, with the vertices that it uses in their order and so the triangles. `colors` and
+    /// `priorities` are those of all its vertices, or none.
     pub(super) fn snapshot<S: Copy + Default>(
         surface: &Surface<S>,
         input: &Input<'_>,
         colors: &[Option<Color>],
+        priorities: &[f64],
         report: Report,
         budget: &Budget,
     ) -> Result<Self, Stopped> {
@@ -74,8 +84,10 @@ impl Simplified {
             positions: Vec::new(),
             vertex_origin: Vec::new(),
             vertex_colors: Vec::new(),
+            priorities: Vec::new(),
             triangles: Vec::with_capacity(surface.table.triangle_count()),
             triangle_origin: Vec::with_capacity(surface.table.triangle_count()),
+            texture: Vec::new(),
             report,
         };
         for t in 0..surface.table.triangle_bound() as u32 {
@@ -86,6 +98,7 @@ impl Simplified {
                 corners.iter().for_each(|&v| renumbered[v as usize] = 0);
                 result.triangles.push(corners);
                 result.triangle_origin.push(t);
+                result.texture.extend(surface.wedges.0.get(t as usize));
             }
         }
         for (v, number) in renumbered.iter_mut().enumerate().filter(|(_, number)| **number != NONE) {
@@ -97,6 +110,7 @@ impl Simplified {
                 origin => input.positions[origin as usize],
             });
             result.vertex_colors.extend(colors.get(v));
+            result.priorities.extend(priorities.get(v));
         }
         for v in result.triangles.as_flattened_mut() {
             *v = renumbered[*v as usize];

@@ -1,5 +1,6 @@
 //! The mesh under simplification: triangles, and what each vertex carries.
 
+use super::wedges::Wedges;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3};
 use crate::mesh::corner_table::{CornerTable, NONE, next, prev};
@@ -30,6 +31,7 @@ pub(super) struct Vertex<S> {
 pub(super) struct Surface<S> {
     pub table: CornerTable,
     pub vertices: Vec<Vertex<S>>,
+    pub wedges: Wedges,
     /// A power of two: the working copy is about a thousand units large, so that no square or fourth power leaves the
     /// range of f64, nor its order of magnitude that of f32.
     pub scale: f64,
@@ -63,12 +65,13 @@ impl<S: Copy + Default> Surface<S> {
                 has_aside: false,
             });
         }
-        Ok(Self { table, vertices, scale, rounder: rounder(bounds, scale) })
+        let wedges = Wedges::default();
+        Ok(Self { table, vertices, wedges, scale, rounder: rounder(bounds, scale) })
     }
 
     /// Some of its vertices and triangles, in the same units and on the same lattice.
     pub(super) fn of_part(&self, table: CornerTable, vertices: Vec<Vertex<S>>) -> Self {
-        Self { table, vertices, ..*self }
+        Self { table, vertices, wedges: Wedges::default(), scale: self.scale, rounder: self.rounder }
     }
 
     #[inline]

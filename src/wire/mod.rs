@@ -40,5 +40,5 @@ pub use verdict::{Reason, Verdict};
 pub use version::{ENGINE_NAME, ENGINE_VERSION, REPORT_SCHEMA, Version};
 pub use words::{
     Condition, Criterion, DefectCode, Encoding, FillHoles, Format, Mode, Nesting, OpenShells, Operation,
-    Outcome, Placement, Reader, ReasonCode, Require, Severity, Stage, Units,
+    Outcome, Placement, Reader, ReasonCode, Require, Severity, Stage, Units, VertexColors,
 };

@@ -243,6 +243,16 @@ mirror! { simplify::Placement =>
     }
 }
 
+mirror! { pipeline::VertexColors =>
+    /// What colours the vertices of a simplified mesh have.
+    VertexColors {
+        /// Those of the file, mixed where vertices were merged.
+        Kept = "kept",
+        /// The order in which they would go next, from blue to red: a picture for OFF and PLY.
+        Priority = "priority",
+    }
+}
+
 mirror! { pipeline::Outcome =>
     /// What became of the file.
     Outcome {

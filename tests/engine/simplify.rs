@@ -7,9 +7,9 @@ use meshmend::budget::Budget;
 use meshmend::formats::{self, Encoding, Format, ReadOptions};
 use meshmend::mesh::{Color, Soup};
 use meshmend::pipeline::{
-    Answer, Operation, Options, Outcome, Output, Refusal, Require, SimplifyChoices, run,
+    Answer, Operation, Options, Outcome, Output, Refusal, Require, SimplifyChoices, VertexColors, run,
 };
-use meshmend::simplify::{Mode, Target};
+use meshmend::simplify::{Mode, Placement, Target};
 
 /// A cube whose faces are grids of `n` by `n` squares.
 fn grid_cube(n: u32) -> RawSoup {
@@ -150,5 +150,102 @@ fn a_target_that_cannot_be_reached_is_told_with_the_reasons() {
         let level = &answer.report.levels[0].simplified;
         assert!(!level.is_reached && level.faces_after >= 4, "{mode:?}: {level:?}");
         assert!(level.refusals.total() > 0, "{mode:?}");
+    }
+}
+
+#[test]
+fn a_repair_with_several_targets_gives_a_certified_file_for_each() {
+    let whole = grid_cube(8);
+    let mut holed = whole.clone();
+    holed.triangles.truncate(holed.triangles.len() - 1);
+    for (soup, outcome) in [(whole, Outcome::Simplified), (holed, Outcome::Repaired)] {
+        let targets = vec![Target::Faces(12), Target::Faces(400), Target::Ratio(0.25)];
+        let simplify = SimplifyChoices { targets, ..SimplifyChoices::default() };
+        let options = Options { simplify, ..Options::default() };
+        let bytes = encode(&soup, Encoding::StlBinary);
+        let answer = run(Operation::Repair, &bytes, &options, &Budget::unlimited()).unwrap();
+        assert_eq!(answer.report.outcome, Some(outcome));
+        let faces: Vec<usize> = answer.report.levels.iter().map(|l| l.simplified.faces_after).collect();
+        assert_eq!((faces.len(), faces[0]), (3, 12));
+        assert!(answer.report.levels.iter().all(|level| level.certificate.is_printable()));
+        let outputs: Vec<usize> =
+            answer.output.iter().chain(&answer.levels).map(|output| read(output).triangles.len()).collect();
+        assert_eq!(outputs, faces);
+        assert!(answer.report.actions.iter().filter(|action| action.step == "simplify").count() == 1);
+    }
+}
+
+/// The OBJ text of a cube of grids, each side a chart of its own: its points are where the corners are on the side.
+fn textured_cube(n: u32) -> (String, impl Fn(&Soup, usize, usize) -> [f64; 2]) {
+    let soup = grid_cube(n);
+    let per_side = soup.positions.len() / 6;
+    let point = |side: usize, p: [f64; 3]| [p[(side / 2 + 1) % 3] + 2.0 * side as f64, p[(side / 2 + 2) % 3]];
+    let mut text = String::new();
+    for (i, p) in soup.positions.iter().enumerate() {
+        let [u, v] = point(i / per_side, *p);
+        text += &format!("v {} {} {}\nvt {u} {v}\n", p[0], p[1], p[2]);
+    }
+    for t in &soup.triangles {
+        let [a, b, c] = t.map(|v| v + 1);
+        text += &format!("f {a}/{a} {b}/{b} {c}/{c}\n");
+    }
+    let want = move |soup: &Soup, t: usize, k: usize| {
+        let [a, b, c] = soup.corners(t as u32);
+        let normal = (b - a).cross(c - a).to_array();
+        let axis = (0..3).find(|&axis| normal[axis].abs() > 1e-9).unwrap();
+        point(2 * axis + usize::from(normal[axis] > 0.0), soup.corners(t as u32)[k].to_array())
+    };
+    (text, want)
+}
+
+#[test]
+fn texture_coordinates_of_an_obj_are_kept_on_their_side_of_seams() {
+    let (text, want) = textured_cube(6);
+    let choices = |mode| SimplifyChoices { placement: Placement::OntoEnd, ..to(&[Target::Faces(40)], mode) };
+    for mode in MODES {
+        let answer = simplified(text.as_bytes(), choices(mode));
+        let soup = read(answer.output.as_ref().unwrap());
+        assert!((12..=40).contains(&soup.triangles.len()), "{mode:?}");
+        assert_eq!(soup.positions.len(), soup.triangles.len() / 2 + 2, "the sides are one surface");
+        for t in 0..soup.triangles.len() {
+            let points = soup.texture.of_triangle(t).unwrap();
+            assert_eq!(points, [0, 1, 2].map(|k| want(&soup, t, k)), "{mode:?}");
+        }
+    }
+    let stl =
+        Options { output_format: Some(Format::Stl), simplify: choices(Mode::Fast), ..Options::default() };
+    let answer = run(Operation::Simplify, text.as_bytes(), &stl, &Budget::unlimited()).unwrap();
+    assert!(read(answer.output.as_ref().unwrap()).texture.is_empty());
+    // A repair keeps the points of the triangles that it keeps.
+    let repair =
+        |text: &str| run(Operation::Repair, text.as_bytes(), &Options::default(), &Budget::unlimited());
+    let mended = repair(text.trim_end().rsplit_once('\n').unwrap().0).unwrap();
+    let soup = read(mended.output.as_ref().unwrap());
+    let with_points = (0..soup.triangles.len()).filter(|&t| soup.texture.of_triangle(t).is_some()).count();
+    assert_eq!((soup.triangles.len(), with_points), (6 * 6 * 2 * 6, 6 * 6 * 2 * 6 - 1));
+}
+
+#[test]
+fn priorities_are_colours_from_blue_to_red() {
+    let soup = grid_cube(6);
+    for (mode, format) in MODES.into_iter().zip([Format::Off, Format::Ply, Format::Off]) {
+        let choices = SimplifyChoices {
+            vertex_colors: VertexColors::Priority,
+            ..to(&[Target::Faces(100), Target::Faces(60)], mode)
+        };
+        let options = Options { simplify: choices, output_format: Some(format), ..Options::default() };
+        let answer =
+            run(Operation::Simplify, &encode(&soup, Encoding::StlBinary), &options, &Budget::unlimited());
+        let answer = answer.unwrap();
+        for output in answer.output.iter().chain(&answer.levels) {
+            let colors = read(output).vertex_colors;
+            let red = |color: &Option<Color>| match color {
+                Some(Color::Bytes([r, 0, b], None)) if r + b == 255 => *r,
+                other => panic!("{mode:?}: {other:?}"),
+            };
+            let reds: Vec<u8> = colors.iter().map(red).collect();
+            assert_eq!(reds.iter().min(), Some(&0), "{mode:?}");
+            assert!(reds.iter().max() > Some(&200), "{mode:?}: {reds:?}");
+        }
     }
 }

@@ -98,6 +98,7 @@ fn look_at(soup: &Soup, is_valid: bool, mode: Mode) -> Result<Tally, String> {
         triangles: &soup.triangles,
         face_groups: &[],
         vertex_colors: &[],
+        texture: &[],
     };
     let targets = RATIOS.map(Target::Ratio).to_vec();
     let options = SimplifyOptions { targets, ..SimplifyOptions::default() };

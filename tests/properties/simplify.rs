@@ -24,7 +24,7 @@ const PLACEMENTS: [Placement; 2] = [Placement::Optimal, Placement::OntoEnd];
 const UNGUARDED: Guards<'static> = Guards { normal_cos_min: -1.0, aspect_min: 0.0, envelope: None };
 
 fn input<'a>(positions: &'a [DVec3], triangles: &'a [Triangle]) -> Input<'a> {
-    Input { positions, triangles, face_groups: &[], vertex_colors: &[] }
+    Input { positions, triangles, face_groups: &[], vertex_colors: &[], texture: &[] }
 }
 
 fn strict(input: &Input<'_>, options: &SimplifyOptions<'_>) -> Vec<Simplified> {
@@ -264,8 +264,13 @@ fn colors_of_faces_keep_their_borders_and_colors_of_vertices_are_mixed() {
     let shade = |p: DVec3| Some(Color::Floats([p.x as f32 / 16.0, 0.5, 0.0], None));
     let colors: Vec<Option<Color>> = positions.iter().map(|&p| shade(p)).collect();
     let flat: Vec<DVec3> = positions.iter().map(|p| DVec3::new(p.x, p.y, 0.0)).collect();
-    let input =
-        Input { positions: &flat, triangles: &triangles, face_groups: &groups, vertex_colors: &colors };
+    let input = Input {
+        positions: &flat,
+        triangles: &triangles,
+        face_groups: &groups,
+        vertex_colors: &colors,
+        texture: &[],
+    };
     let options = SimplifyOptions { targets: vec![Target::Ratio(0.1)], ..SimplifyOptions::default() };
     let level = &strict(&input, &options)[0];
     assert_kept(&input, level);

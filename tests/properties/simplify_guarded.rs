@@ -3,12 +3,12 @@
 use crate::certificate_soups::verify;
 use crate::oracle::RawSoup;
 use crate::random::Random;
-use crate::solids::{any_solid, cuboid, ring, tetrahedron};
+use crate::solids::{any_solid, cuboid, ring, star, tetrahedron};
 use crate::support::{cases, on_all_cores};
 use meshmend::budget::Budget;
 use meshmend::certificate::{Certificate, Depth};
 use meshmend::formats::Encoding;
-use meshmend::geom::DVec3;
+use meshmend::geom::{DVec3, upward_crossing};
 use meshmend::simplify::{
     CriterionKind, Guards, Input, Placement, Simplified, SimplifyOptions, Target, simplify_fast,
     simplify_guarded,
@@ -73,9 +73,69 @@ fn bent_plate(random: &mut Random, thickness: f64) -> RawSoup {
     })
 }
 
+/// A star and, just inside of it, its copy: a thin wall around a cavity, sometimes with a core and a neighbour.
+fn thin_walled(random: &mut Random) -> RawSoup {
+    let radii: Vec<f64> = (0..32).map(|_| 0.5 + random.unit()).collect();
+    let shell = || {
+        let mut radii = radii.iter().copied().cycle();
+        star(&mut || radii.next().unwrap_or(1.0))
+    };
+    let thickness = random.pick(&[0.3, 0.1, 0.03]);
+    let mut soup = shell().with(&shell().scaled(1.0 - thickness).inside_out());
+    if random.one_in(2) {
+        soup = soup.with(&shell().scaled(0.5));
+    }
+    if random.one_in(2) {
+        soup = soup.with(&shell().scaled(0.4).moved([1.1, 0.9, 0.2]));
+    }
+    soup.map(|p| p.map(|x| f64::from(x as f32)))
+}
+
+/// A thin plate with a dent upward in its middle, and a pebble below the dent: above the height of the plate's rim, so
+/// that a plate without the dent would have it on the other side. The pebble's first vertex comes last.
+fn dented_plate(random: &mut Random) -> RawSoup {
+    let n = 8 + random.below(10) as u32;
+    let (height, width) = (0.1 + 0.5 * random.unit(), 0.15 + 0.3 * random.unit());
+    let thickness = random.pick(&[1.0 / 16.0, 1.0 / 64.0, 1.0 / 256.0]);
+    let at = |i: u32, j: u32, lift: f64| {
+        let [x, y] = [i, j].map(|k| 2.0 * f64::from(k) / f64::from(n) - 1.0);
+        let dent = height * (-(x * x + y * y) / (width * width)).exp();
+        [x, y, lift + dent].map(|x| f64::from(x as f32))
+    };
+    let id = |side: u32, i: u32, j: u32| (side * (n + 1) + i) * (n + 1) + j;
+    let mut plate = RawSoup::default();
+    for (lift, (i, j)) in [0.0, thickness]
+        .into_iter()
+        .flat_map(|lift| (0..=n).flat_map(move |i| (0..=n).map(move |j| (lift, (i, j)))))
+    {
+        plate.positions.push(at(i, j, lift));
+    }
+    let mut add = |[a, b, c, d]: [u32; 4]| plate.triangles.extend([[a, b, c], [a, c, d]]);
+    for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+        let square = |side| [id(side, i, j), id(side, i + 1, j), id(side, i + 1, j + 1), id(side, i, j + 1)];
+        add(square(1));
+        let [a, b, c, d] = square(0);
+        add([d, c, b, a]);
+    }
+    for k in 0..n {
+        for [from, to] in [
+            [(k, 0), (k + 1, 0)],
+            [(n, k), (n, k + 1)],
+            [(n - k, n), (n - k - 1, n)],
+            [(0, n - k), (0, n - k - 1)],
+        ] {
+            add([id(0, from.0, from.1), id(0, to.0, to.1), id(1, to.0, to.1), id(1, from.0, from.1)]);
+        }
+    }
+    let size = 1.0 / 128.0;
+    let below = (thickness + height) * 0.5;
+    let pebble = tetrahedron().map(|p| p.map(|x| 1.0 - x)).inside_out().scaled(size);
+    plate.with(&pebble.moved([0.01, 0.02, below]).map(|p| p.map(|x| f64::from(x as f32))))
+}
+
 /// One of many solids of some hundred triangles in which a careless collapse goes wrong.
 fn any_delicate_solid(random: &mut Random) -> RawSoup {
-    match random.below(7) {
+    match random.below(8) {
         // A shell with a thin wall.
         0 => {
             let gap = random.pick(&[0.02, 0.05, 0.1]);
@@ -97,6 +157,7 @@ fn any_delicate_solid(random: &mut Random) -> RawSoup {
         3 => bent_plate(random, 1.0 / 128.0),
         4 => ball(random, 3, 1.0, 0.3),
         5 => refined_times(ring(), 1),
+        6 => thin_walled(random),
         _ => refined_times(any_solid(random), 2),
     }
 }
@@ -165,8 +226,13 @@ fn certified_solids_stay_certified_and_keep_their_shells() {
         solids.fetch_add(1, Ordering::Relaxed);
         let mut options = options(random);
         options.round |= is_float32;
-        let input =
-            Input { positions: &positions, triangles: &soup.triangles, face_groups: &[], vertex_colors: &[] };
+        let input = Input {
+            positions: &positions,
+            triangles: &soup.triangles,
+            face_groups: &[],
+            vertex_colors: &[],
+            texture: &[],
+        };
         let judge = |level: &Simplified| certified(&level.positions, &level.triangles, is_float32);
         for level in simplify_guarded(&input, &options, &Budget::unlimited()).unwrap() {
             let after = judge(&level);
@@ -187,4 +253,57 @@ fn certified_solids_stay_certified_and_keep_their_shells() {
     assert!(solids > cases(900, 30_000) as u32, "{solids} certified");
     assert!(careless > solids / 4, "the solids are not delicate: {careless} of {solids} went wrong");
     assert!(smaller > solids * 2 && reached > solids, "{smaller} smaller, {reached} reached of {solids}");
+}
+
+/// How often the ray upward from `p` crosses the surface.
+fn crossings_above(p: DVec3, positions: &[DVec3], triangles: &[[u32; 3]]) -> usize {
+    let corners = |t: &[u32; 3]| t.map(|v| positions[v as usize]);
+    triangles.iter().filter(|t| upward_crossing(p, corners(t)).is_some()).count()
+}
+
+#[test]
+fn a_pebble_in_the_dent_of_a_thin_plate_stays_on_its_side() {
+    let counts = [const { AtomicU32::new(0) }; 3];
+    let [plates, passed, smaller] = &counts;
+    on_all_cores(cases(400, 20_000), |case| {
+        let random = &mut Random::new(case as u64);
+        let soup = dented_plate(random);
+        let positions: Vec<DVec3> = soup.positions.iter().map(|&p| DVec3::from_array(p)).collect();
+        if !is_valid(&certified(&positions, &soup.triangles, true)) {
+            return;
+        }
+        // The highest vertex of the pebble, the last shell of four vertices.
+        let above = |positions: &[DVec3], triangles: &[[u32; 3]]| {
+            let pebble =
+                triangles[triangles.len() - 4..].as_flattened().iter().map(|&v| positions[v as usize]);
+            let top = pebble.max_by(|a, b| a.z.total_cmp(&b.z)).unwrap_or_default();
+            crossings_above(top + DVec3::Z * 1e-6, positions, triangles)
+        };
+        assert_eq!(above(&positions, &soup.triangles), 2, "{case}");
+        plates.fetch_add(1, Ordering::Relaxed);
+        let options = SimplifyOptions { round: true, ..options(random) };
+        let input = Input {
+            positions: &positions,
+            triangles: &soup.triangles,
+            face_groups: &[],
+            vertex_colors: &[],
+            texture: &[],
+        };
+        for level in simplify_guarded(&input, &options, &Budget::unlimited()).unwrap() {
+            assert!(is_valid(&certified(&level.positions, &level.triangles, true)), "{case}");
+            assert_eq!(above(&level.positions, &level.triangles), 2, "{case}: {:?}", level.report);
+            smaller.fetch_add(u32::from(level.triangles.len() * 2 < soup.triangles.len()), Ordering::Relaxed);
+        }
+        // What a look at the end alone would let through.
+        let went_through = |level: &&Simplified| {
+            above(&level.positions, &level.triangles) == 0
+                && is_valid(&certified(&level.positions, &level.triangles, true))
+        };
+        let fast = simplify_fast(&input, &options, &Budget::unlimited()).unwrap();
+        passed.fetch_add(u32::from(fast.iter().any(|level| went_through(&level))), Ordering::Relaxed);
+    });
+    let [plates, passed, smaller] = counts.map(AtomicU32::into_inner);
+    assert!(plates > cases(200, 10_000) as u32, "{plates} plates");
+    assert!(passed > plates / 20, "{passed} of {plates} pass in the fast mode");
+    assert!(smaller > plates, "{smaller} results are much smaller");
 }

@@ -4,4 +4,5 @@ pub(super) mod materials;
 pub(super) mod read;
 pub(super) mod read_with_tobj;
 mod statements;
+mod texture;
 pub(super) mod write;

@@ -1,19 +1,20 @@
 //! OBJ input.
 
 use super::statements::{Counts, Statements};
+use super::texture::TextureOfFile;
 use crate::budget::Budget;
 use crate::formats::faces::Faces;
 use crate::formats::{ReadError, ReadOptions};
 use crate::geom::DVec3;
-use crate::mesh::{Color, Places, Soup};
+use crate::mesh::{Color, Places, Soup, Texture};
 use crate::par;
 use memchr::memchr2;
 
 /// Parts of a file that are read at the same time have about this many bytes.
 const PART_BYTES: usize = 1 << 20;
 
-/// Reads vertices with their colours and faces; groups, materials, normals and all else are ignored. Indices may point
-/// to vertices further down.
+/// Reads vertices with their colours, and faces with their texture coordinates; groups, materials, normals and all else
+/// are ignored. Indices may point to vertices further down.
 ///
 /// Twice through the file: first to count, so that every part knows its first line and vertex, then to read the parts
 /// at the same time.
@@ -64,16 +65,15 @@ fn read_parts(parts: &[&[u8]], options: &ReadOptions, budget: &Budget) -> Result
     options.limits.check_triangles(total.faces)?;
 
     // Charged here at once: what is in use at one time inside depends on the number of threads.
-    let bytes_of_parts =
-        total.vertices * size_of::<(DVec3, u32)>() as u64 + total.faces * size_of::<[u32; 4]>() as u64;
-    let _charged = budget.charge(bytes_of_parts)?;
-
-    let bytes_of_parts =
-        total.vertices * size_of::<(DVec3, u32)>() as u64 + total.faces * size_of::<[u32; 4]>() as u64;
+    let has_texture = total.texture_points > 0;
+    let of_texture = if has_texture { 16 * total.texture_points + 12 * total.faces } else { 0 };
+    let bytes_of_parts = total.vertices * size_of::<(DVec3, u32)>() as u64
+        + total.faces * size_of::<[u32; 4]>() as u64
+        + of_texture;
     let _charged = budget.charge(bytes_of_parts)?;
     let read = par::try_map_ranges(parts.len(), 1, |i| {
         let i = i.start;
-        Statements::read(parts[i], before[i], counts[i], options, budget)
+        Statements::read(parts[i], before[i], counts[i], has_texture, options, budget)
     })?;
     join(read, total, options, budget)
 }
@@ -90,6 +90,12 @@ fn join(
     let (mut face_lines, _charged) = budget.vec(face_count)?;
     let mut faces = Faces::default();
     let _charged = faces.reserve(face_count, budget)?;
+    let mut texture = TextureOfFile::default();
+    let has_texture = total.texture_points > 0;
+    let _charged = match has_texture {
+        true => Some(texture.reserve(face_count, total.texture_points as usize, budget)?),
+        false => None,
+    };
     let has_colors = parts.iter().any(|part| !part.colors.is_empty());
     let mut vertex_colors: Vec<Option<Color>> = Vec::new();
     for part in parts {
@@ -98,13 +104,15 @@ fn join(
         vertex_lines.extend_from_slice(&part.vertex_lines);
         face_lines.extend_from_slice(&part.face_lines);
         faces.append(&part.faces);
+        texture.append(&part.texture);
         if has_colors {
             vertex_colors.extend_from_slice(&part.colors);
             vertex_colors.resize(positions.len(), None);
         }
     }
     let soup = faces.into_soup(positions, &options.limits, budget)?;
-    Ok(Soup { places: Places { face_lines, vertex_lines }, vertex_colors, ..soup })
+    let texture = if has_texture { texture.into_texture(&soup, budget)? } else { Texture::default() };
+    Ok(Soup { places: Places { face_lines, vertex_lines }, vertex_colors, texture, ..soup })
 }
 
 #[cfg(test)]
@@ -238,7 +246,7 @@ mod tests {
     /// The same soup and the same error, wherever the file is cut.
     #[test]
     fn parts_of_any_size_make_the_same_soup() {
-        let text = "# a\\\nv 0 0 0\r\nv 1 0 0 1 0 0\r\rv 0 \\\r\n1 0\nf -3 \\\n-2 \\\n-1\nf 1 2 3 1\n# b\nf 1 2 9\nv 5 5 5\nf -4 -3 -1 # c\nf 1 1";
+        let text = "# a\\\nvt 0 1\nv 0 0 0\r\nv 1 0 0 1 0 0\r\rv 0 \\\r\n1 0\nf -3 \\\n-2 \\\n-1\nf 1/1 2/2 3/-1 1/1\nvt 1 0.5\n# b\nf 1 2 9\nv 5 5 5\nf -4 -3 -1 # c\nf 1 1";
         let options = ReadOptions::default();
         for text in [text.to_owned(), format!("{text}\nf x\nf y")] {
             let whole = read_parts(&[text.as_bytes()], &options, &Budget::unlimited());

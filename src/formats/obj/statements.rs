@@ -1,5 +1,6 @@
 //! The statements of a part of an OBJ file that make its mesh.
 
+use super::texture::{TextureStatements, read_texture_point, texture_index};
 use crate::budget::Stopped;
 use crate::budget::{Budget, CHECK_EVERY};
 use crate::formats::colors::note_color;
@@ -19,6 +20,7 @@ pub(super) struct Counts {
     pub(super) lines: u64,
     pub(super) vertices: u64,
     pub(super) faces: u64,
+    pub(super) texture_points: u64,
 }
 
 impl Counts {
@@ -31,6 +33,7 @@ impl Counts {
             match keyword {
                 b"v" => counts.vertices += 1,
                 b"f" => counts.faces += 1,
+                b"vt" => counts.texture_points += 1,
                 _ => {}
             }
             words.next_line();
@@ -49,6 +52,7 @@ impl Counts {
             lines: self.lines + other.lines,
             vertices: self.vertices + other.vertices,
             faces: self.faces + other.faces,
+            texture_points: self.texture_points + other.texture_points,
         }
     }
 }
@@ -62,14 +66,17 @@ pub(super) struct Statements {
     pub(super) colors: Vec<Option<Color>>,
     pub(super) faces: Faces,
     pub(super) face_lines: Vec<u32>,
+    pub(super) texture: TextureStatements,
 }
 
 impl Statements {
-    /// Reads `part`, before which the file holds `before` and in which it holds `inside`.
+    /// Reads `part`, before which the file holds `before` and in which it holds `inside`; `has_texture`: somewhere in it
+    /// are texture coordinates.
     pub(super) fn read(
         part: &[u8],
         before: Counts,
         inside: Counts,
+        has_texture: bool,
         options: &ReadOptions,
         budget: &Budget,
     ) -> Result<Self, ReadError> {
@@ -82,6 +89,7 @@ impl Statements {
             ..Self::default()
         };
         let mut corners = Vec::new();
+        let mut texture_corners = has_texture.then(Vec::new);
         let mut words = Words::new(part, before.lines + 1, DIALECT);
         let mut statements = 0usize;
         while let Some(keyword) = words.next_word() {
@@ -94,9 +102,18 @@ impl Statements {
                 b"f" => {
                     read.face_lines.push(line);
                     let vertices_before = before.vertices as i64 + read.positions.len() as i64;
-                    read_corners(&mut words, vertices_before, options, &mut corners)?;
+                    let points_before = before.texture_points as i64 + read.texture.points.len() as i64;
+                    if let Some(points) = &mut texture_corners {
+                        points.clear();
+                    }
+                    let mut texture = texture_corners.as_mut().map(|list| (points_before, list));
+                    read_corners(&mut words, vertices_before, options, &mut corners, &mut texture)?;
                     read.faces.push(&corners);
+                    if let Some(points) = &texture_corners {
+                        read.texture.faces.push(points);
+                    }
                 }
+                b"vt" if has_texture => read.texture.points.push(read_texture_point(&mut words)),
                 _ => {}
             }
             words.next_line();
@@ -130,13 +147,15 @@ fn read_color(words: &mut Words<'_>) -> Option<Color> {
     Some(Color::Floats(rgb, channel()))
 }
 
-/// The corners of a face: `v`, `v/vt`, `v//vn` or `v/vt/vn`, of which only `v` matters. Negative numbers count back
-/// from the last of the vertices before the face.
+/// The corners of a face: `v`, `v/vt`, `v//vn` or `v/vt/vn`, of which `v` matters, and `vt` for `texture`: the number of
+/// texture points before the face, and the list for those of the corners. Negative numbers count back from the last
+/// before the face.
 fn read_corners(
     words: &mut Words<'_>,
     vertices_before: i64,
     options: &ReadOptions,
     corners: &mut Vec<u32>,
+    texture: &mut Option<(i64, &mut Vec<u32>)>,
 ) -> Result<(), ReadError> {
     corners.clear();
     while let Some(word) = words.next_in_line() {
@@ -144,6 +163,9 @@ fn read_corners(
         let number = integer(&word[..end]).ok_or_else(|| words.wrong(Some(word), "a vertex index"))?;
         // 0 is nobody's index and becomes one that is out of range.
         corners.push(index(if number < 0 { vertices_before + number } else { number - 1 }));
+        if let Some((points_before, points)) = texture {
+            points.push(texture_index(word.get(end + 1..).unwrap_or_default(), *points_before));
+        }
         if corners.len() as u64 > u64::from(options.limits.polygon_corners_max) {
             options.limits.check_polygon(corners.len() as u64, words.place())?;
         }

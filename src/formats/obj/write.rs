@@ -4,15 +4,17 @@ use crate::budget::Budget;
 use crate::formats::WriteError;
 use crate::formats::colors::ColorLayout;
 use crate::formats::decimals::Text;
-use crate::mesh::{Color, Soup};
+use crate::mesh::{Color, NO_POINT, Soup};
 
 /// The only one that other readers know.
 const COLORS: ColorLayout = ColorLayout { is_bytes: false, has_alpha: false };
 
-/// Vertices, with red, green and blue after the coordinates of those that have a colour, then faces.
+/// Vertices, with red, green and blue after the coordinates of those that have a colour, texture coordinates if there
+/// are some, then faces.
 pub(in crate::formats) fn write(soup: &Soup, budget: &Budget) -> Result<Vec<u8>, WriteError> {
     const VERTEX_BYTES_MAX: usize = 160;
-    const FACE_BYTES_MAX: usize = 40;
+    const FACE_BYTES_MAX: usize = 80;
+    const TEXTURE_BYTES_MAX: usize = 60;
     let mut text = Text::new(budget);
     for (i, p) in soup.positions.iter().enumerate() {
         text.before_item(i, VERTEX_BYTES_MAX)?;
@@ -23,12 +25,27 @@ pub(in crate::formats) fn write(soup: &Soup, budget: &Budget) -> Result<Vec<u8>,
         }
         text.word("\n");
     }
+    for (i, point) in soup.texture.points.iter().enumerate() {
+        text.before_item(i, TEXTURE_BYTES_MAX)?;
+        text.word("vt");
+        for &c in point {
+            text.word(" ");
+            // A point that cannot be used keeps its number.
+            text.coordinate(if c.is_finite() { c } else { 0.0 });
+        }
+        text.word("\n");
+    }
     for (t, corners) in soup.triangles.iter().enumerate() {
         text.before_item(t, FACE_BYTES_MAX)?;
+        let points = soup.texture.corners.get(t).filter(|points| points[0] != NO_POINT);
         text.word("f");
-        for &v in corners {
+        for (k, &v) in corners.iter().enumerate() {
             text.word(" ");
             text.integer(i64::from(v) + 1);
+            if let Some(points) = points {
+                text.word("/");
+                text.integer(i64::from(points[k]) + 1);
+            }
         }
         text.word("\n");
     }

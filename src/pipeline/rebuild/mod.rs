@@ -205,6 +205,7 @@ fn simplified(
         triangles: &wrapped.triangles,
         face_groups: &[],
         vertex_colors: &[],
+        texture: &[],
     };
     let choices = &options.simplify;
     let target = choices.targets.first().copied();

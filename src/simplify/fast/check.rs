@@ -1,7 +1,7 @@
 //! Whether the surface that a round would leave meets itself.
 
 use super::mesh::Division;
-use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::budget::{Budget, CHECK_EVERY, Charge, Stopped};
 use crate::geom::{Aabb, DVec3, Plane, Shared, are_collinear, contact};
 use crate::par;
 use crate::spatial::{Bvh, Search, self_contacts};
@@ -43,6 +43,7 @@ pub(super) struct Check<'c> {
     /// There were more contacts than are kept.
     is_truncated: bool,
     budget: &'c Budget,
+    _charge: Charge<'c>,
 }
 
 /// What a look at the surface found.
@@ -63,6 +64,14 @@ impl<'c> Check<'c> {
         roundings: &[bool],
         budget: &'c Budget,
     ) -> Result<Self, Stopped> {
+        let (triangles, vertices) =
+            parts.iter().chain([&between]).fold((0, 0), |(triangles, vertices), left| {
+                (triangles + left.triangles.len() as u64, vertices + left.positions.len() as u64)
+            });
+        // What is left, in parts and together, and for each reading positions and a hierarchy.
+        let of_left = 2 * (16 * triangles + 25 * vertices);
+        let of_reading = 24 * vertices + triangles * Bvh::BYTES_PER_TRIANGLE;
+        let charge = budget.charge(of_left + roundings.len() as u64 * of_reading)?;
         let (mut first, mut starts) = (Left::default(), Vec::with_capacity(parts.len() + 1));
         let again = parts.iter().map(|_| None).collect();
         for part in parts.into_iter().chain([between]) {
@@ -73,8 +82,16 @@ impl<'c> Check<'c> {
             first.is_merged.extend(part.is_merged);
         }
         let positions = std::mem::take(&mut first.positions);
-        let mut check =
-            Self { division, first, starts, again, readings: Vec::new(), is_truncated: false, budget };
+        let mut check = Self {
+            division,
+            first,
+            starts,
+            again,
+            readings: Vec::new(),
+            is_truncated: false,
+            budget,
+            _charge: charge,
+        };
         for &is_rounded in roundings {
             let positions = if is_rounded { rounded(&positions) } else { positions.clone() };
             let with_area = with_area(&positions, &check.first.triangles, budget)?;

@@ -106,6 +106,15 @@ impl<S: Copy + Send + Sync> Lines<'_, S> {
 
     /// True when an edge with two triangles is a line.
     fn is_seam(&self, sides: [(u32, u32); 2]) -> bool {
+        if !self.mesh.texture.is_empty() {
+            let [a, b] = sides.map(|(t, k)| {
+                let points = self.mesh.texture[t as usize];
+                [points[k as usize], points[(k as usize + 1) % 3]]
+            });
+            if a != [b[1], b[0]] {
+                return true;
+            }
+        }
         if !self.groups.is_empty() {
             let [a, b] = sides.map(|(t, _)| self.groups[self.mesh.numbers[t as usize] as usize]);
             if a != b {

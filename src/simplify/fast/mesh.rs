@@ -1,6 +1,7 @@
 //! The mesh between two rounds: compact arrays, cut in parts along a space-filling curve.
 
-use super::order::along_curve;
+use super::order::{Curve, along_curve};
+use super::region::Region;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::Color;
@@ -18,6 +19,8 @@ pub(super) struct Mesh<S> {
     pub(super) numbers: Vec<u32>,
     /// For each triangle, bit `k` is set when the edge from corner `k` is a line.
     pub(super) lines: Vec<u8>,
+    /// Texture coordinates of the triangles' corners; empty when the input has none.
+    pub(super) texture: Vec<[[f64; 2]; 3]>,
 }
 
 /// A mesh cut in parts.
@@ -30,6 +33,10 @@ pub(super) struct Division {
     pub(super) starts: Vec<usize>,
     /// For each place in `order`, whether a triangle between parts uses the vertex.
     pub(super) is_between: Vec<bool>,
+    /// What `order` follows.
+    curve: Curve,
+    /// The first and the last code of each part.
+    codes: Vec<[u32; 2]>,
 }
 
 impl Division {
@@ -41,6 +48,16 @@ impl Division {
     /// The vertices of part `i`.
     pub(super) fn vertices(&self, i: usize) -> &[u32] {
         &self.order[i * self.part_len..self.order.len().min((i + 1) * self.part_len)]
+    }
+
+    /// The space of part `i`.
+    pub(super) fn region(&self, i: usize) -> Region {
+        let before = |i: usize| i.checked_sub(1).and_then(|i| self.codes.get(i));
+        Region {
+            curve: self.curve,
+            after: before(i).map(|codes| codes[1]),
+            before: self.codes.get(i + 1).map(|codes| codes[0]),
+        }
     }
 }
 
@@ -58,7 +75,7 @@ impl<S: Copy + Send + Sync> Mesh<S> {
             budget.check()?;
             block.as_flattened().iter().for_each(|&v| used[v as usize] = true);
         }
-        let order = along_curve(|v| self.vertices[v].position, &used, shift, budget)?;
+        let (order, curve) = along_curve(|v| self.vertices[v].position, &used, shift, budget)?;
         drop(used);
         let mut place = vec![0u32; self.vertices.len()];
         for (new, &old) in order.iter().enumerate() {
@@ -70,7 +87,10 @@ impl<S: Copy + Send + Sync> Mesh<S> {
         drop(place);
         let part_len = part_len.min(order.len()).max(1);
         let (starts, is_between) = self.sort_triangles(part_len, order.len(), budget)?;
-        Ok(Division { part_len, order, starts, is_between })
+        let code = |&v: &u32| curve.code(self.vertices[v as usize].position);
+        let ends = |part: &[u32]| [part.first().map_or(0, code), part.last().map_or(0, code)];
+        let codes = order.chunks(part_len).map(ends).collect();
+        Ok(Division { part_len, order, starts, is_between, curve, codes })
     }
 
     fn sort_triangles(
@@ -102,6 +122,7 @@ impl<S: Copy + Send + Sync> Mesh<S> {
         let mut next = starts.clone();
         let count = self.triangles.len();
         let (mut triangles, mut numbers, mut lines) = (vec![[0; 3]; count], vec![0; count], vec![0; count]);
+        let mut texture = vec![[[0.0; 2]; 3]; self.texture.len()];
         for (t, corners) in self.triangles.iter().enumerate() {
             if t % CHECK_EVERY == 0 {
                 budget.check()?;
@@ -110,9 +131,12 @@ impl<S: Copy + Send + Sync> Mesh<S> {
             triangles[*place] = *corners;
             numbers[*place] = self.numbers[t];
             lines[*place] = self.lines[t];
+            if let Some(points) = self.texture.get(t) {
+                texture[*place] = *points;
+            }
             *place += 1;
         }
-        (self.triangles, self.numbers, self.lines) = (triangles, numbers, lines);
+        (self.triangles, self.numbers, self.lines, self.texture) = (triangles, numbers, lines, texture);
         starts.pop();
         Ok((starts, is_between))
     }

@@ -6,15 +6,20 @@
 //! done in one part that is the whole mesh, up to the exact target. Parts, their order and the steps depend on the mesh
 //! alone, so the result is the same whatever the thread count.
 
+mod boxes;
 mod buckets;
 mod check;
+mod fans;
 mod lines;
 mod mesh;
 mod order;
 mod part;
+mod region;
 mod rollback;
 mod rounds;
 mod shells;
+mod strays;
+mod sweep;
 #[cfg(test)]
 mod tests;
 
@@ -98,7 +103,9 @@ fn run<C: Criterion>(
     settings: Settings,
     budget: &Budget,
 ) -> Result<Vec<Simplified>, SimplifyError> {
-    let _charge = budget.charge(bytes_of::<C>(input))?;
+    // The components of the input, and what vertices were merged into.
+    let guarded = if settings.is_guarded { input.triangles.len() + input.positions.len() } else { 0 };
+    let _charge = budget.charge(bytes_of::<C>(input) + 4 * guarded as u64)?;
     let mut rounds = Rounds::begin(input, options, criterion, settings, budget)?;
     let mut levels = Vec::with_capacity(options.targets.len());
     for &target in &options.targets {
@@ -112,7 +119,8 @@ fn run<C: Criterion>(
             refusals: rounds.tally.refusals,
             error_max: rounds.tally.error_squared_max.sqrt() / rounds.frame.scale,
         };
-        levels.push(snapshot(&rounds.mesh, rounds.frame.scale, input, report));
+        let priorities = if options.priorities { rounds.priorities()? } else { Vec::new() };
+        levels.push(snapshot(&rounds.mesh, rounds.frame.scale, &priorities, input, report));
     }
     Ok(levels)
 }
@@ -122,11 +130,18 @@ fn run<C: Criterion>(
 fn bytes_of<C: Criterion>(input: &Input<'_>) -> u64 {
     let per_triangle = 2 * (12 + 4 + 1) + 32 + 16;
     let per_vertex = 2 * size_of::<super::surface::Vertex<C::State>>() + 4 + 8;
-    (input.triangles.len() * per_triangle + input.positions.len() * per_vertex) as u64
+    let texture = 3 * size_of_val(input.texture);
+    (input.triangles.len() * per_triangle + input.positions.len() * per_vertex + texture) as u64
 }
 
 /// The mesh as a result: triangles in the order of the input, vertices in the order of their first use.
-fn snapshot<S>(mesh: &Mesh<S>, scale: f64, input: &Input<'_>, report: Report) -> Simplified {
+fn snapshot<S>(
+    mesh: &Mesh<S>,
+    scale: f64,
+    priorities: &[f64],
+    input: &Input<'_>,
+    report: Report,
+) -> Simplified {
     let mut order: Vec<(u32, u32)> = mesh.numbers.iter().copied().zip(0..).collect();
     order.sort_unstable();
     let mut renumbered = vec![NONE; mesh.vertices.len()];
@@ -134,8 +149,10 @@ fn snapshot<S>(mesh: &Mesh<S>, scale: f64, input: &Input<'_>, report: Report) ->
         positions: Vec::new(),
         vertex_origin: Vec::new(),
         vertex_colors: Vec::new(),
+        priorities: Vec::new(),
         triangles: Vec::with_capacity(order.len()),
         triangle_origin: Vec::with_capacity(order.len()),
+        texture: Vec::new(),
         report,
     };
     for (number, t) in order {
@@ -150,11 +167,13 @@ fn snapshot<S>(mesh: &Mesh<S>, scale: f64, input: &Input<'_>, report: Report) ->
                     origin => input.positions[origin as usize],
                 });
                 result.vertex_colors.extend(mesh.colors.get(v as usize));
+                result.priorities.extend(priorities.get(v as usize));
             }
             *renumbered
         });
         result.triangles.push(corners);
         result.triangle_origin.push(number);
+        result.texture.extend(mesh.texture.get(t as usize));
     }
     result
 }

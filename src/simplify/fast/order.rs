@@ -7,34 +7,56 @@ use crate::par;
 /// Cells of the curve along each axis.
 const CELLS_LOG2: u32 = 10;
 
-/// The vertices `used` in the order of a Morton curve; of vertices in one cell the one with the smaller id first. The
-/// grid is moved by `shift` (0 to 1 in each coordinate) of half its size, so that another shift cuts space elsewhere.
+/// A Morton curve through a grid of cells.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Curve {
+    min: DVec3,
+    /// Cells to a unit of length.
+    scale: f64,
+    /// In cells.
+    shift: DVec3,
+}
+
+impl Curve {
+    /// The curve through the cells of `bounds`. The grid is moved by `shift` (0 to 1 in each coordinate) of half its
+    /// size, so that another shift cuts space elsewhere.
+    pub(super) fn over(bounds: Aabb, shift: DVec3) -> Self {
+        // Half of the grid on the box, half to move in.
+        let cells = f64::from(1 << (CELLS_LOG2 - 1));
+        let size = (bounds.max - bounds.min).max_element();
+        Self { min: bounds.min, scale: if size > 0.0 { cells / size } else { 0.0 }, shift: shift * cells }
+    }
+
+    /// The number of the cell of `p` along the curve, or of the nearest cell in each coordinate. It never falls when a
+    /// coordinate grows.
+    #[inline]
+    pub(super) fn code(&self, p: DVec3) -> u32 {
+        let cell = (p - self.min) * self.scale + self.shift;
+        interleaved(cell.to_array().map(|x| x as u32))
+    }
+}
+
+/// The vertices `used` in the order of a curve that `shift` moves; of vertices in one cell the one with the smaller id
+/// first.
 pub(super) fn along_curve(
     position_of: impl Fn(usize) -> DVec3 + Sync,
     used: &[bool],
     shift: DVec3,
     budget: &Budget,
-) -> Result<Vec<u32>, Stopped> {
+) -> Result<(Vec<u32>, Curve), Stopped> {
     let boxes = par::try_map_ranges(used.len(), CHECK_EVERY, |range| {
         budget.check()?;
         Ok(Aabb::of(range.filter(|&v| used[v]).map(&position_of)))
     })?;
-    let bounds = boxes.into_iter().fold(Aabb::EMPTY, Aabb::union);
-    // Half of the grid on the box, half to move in.
-    let cells = f64::from(1 << (CELLS_LOG2 - 1));
-    let size = (bounds.max - bounds.min).max_element();
-    let scale = if size > 0.0 { cells / size } else { 0.0 };
+    let curve = Curve::over(boxes.into_iter().fold(Aabb::EMPTY, Aabb::union), shift);
     let keys = par::try_map_ranges(used.len(), CHECK_EVERY, |range| {
         budget.check()?;
-        let key = |v: usize| {
-            let cell = (position_of(v) - bounds.min) * scale + shift * cells;
-            u64::from(interleaved(cell.to_array().map(|x| x as u32))) << 32 | v as u64
-        };
+        let key = |v: usize| u64::from(curve.code(position_of(v))) << 32 | v as u64;
         Ok(range.filter(|&v| used[v]).map(key).collect::<Vec<_>>())
     })?;
     let mut keys = keys.concat();
     par::sort_unstable(&mut keys);
-    Ok(keys.into_iter().map(|key| key as u32).collect())
+    Ok((keys.into_iter().map(|key| key as u32).collect(), curve))
 }
 
 /// The bits of three numbers in turn.
@@ -70,7 +92,7 @@ mod tests {
         let mut used = vec![true; 512];
         used[77] = false;
         for shift in [DVec3::ZERO, DVec3::new(0.3, 0.7, 0.99)] {
-            let order = along_curve(|v| positions[v], &used, shift, &Budget::unlimited()).unwrap();
+            let order = along_curve(|v| positions[v], &used, shift, &Budget::unlimited()).unwrap().0;
             let mut sorted = order.clone();
             sorted.sort_unstable();
             assert!(sorted.into_iter().eq((0..512).filter(|&v| v != 77)));
@@ -83,6 +105,6 @@ mod tests {
     #[test]
     fn one_place_for_all_vertices_is_an_order_too() {
         let order = along_curve(|_| DVec3::ONE, &[true; 3], DVec3::splat(0.5), &Budget::unlimited()).unwrap();
-        assert_eq!(order, [0, 1, 2]);
+        assert_eq!(order.0, [0, 1, 2]);
     }
 }

@@ -8,8 +8,13 @@
 //! and put back if it turns out to be more expensive. For a criterion of which this is not true an edge may come up
 //! later than it could.
 
+use super::boxes::GrowingBoxes;
 use super::buckets::{Buckets, CLASSES, class_of};
+use super::region::Region;
+use super::strays::Strays;
+use super::sweep::{Outside, Sweep};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::geom::{Aabb, DVec3};
 use crate::mesh::Color;
 use crate::mesh::corner_table::{CornerTable, EdgeRings, NONE, next, prev, triangle_of};
 use crate::simplify::criterion::{Criterion, Placed};
@@ -17,6 +22,7 @@ use crate::simplify::guard::check_faces;
 use crate::simplify::options::SimplifyOptions;
 use crate::simplify::report::{Refusal, Refusals};
 use crate::simplify::surface::{LINE, Rule, Surface};
+use std::sync::Arc;
 
 /// The topology of a part.
 #[derive(Debug)]
@@ -49,7 +55,7 @@ pub(super) struct Rules<'r, C> {
     pub(super) options: &'r SimplifyOptions<'r>,
     /// In squared working units.
     pub(super) error_squared_limit: f64,
-    /// Collapses may be taken back.
+    /// Surface must not go through surface.
     pub(super) is_guarded: bool,
 }
 
@@ -60,6 +66,38 @@ impl<C> Clone for Rules<'_, C> {
 }
 
 impl<C> Copy for Rules<'_, C> {}
+
+/// What a part in the guarded mode knows of space.
+pub(super) struct Room {
+    /// Number of the part.
+    pub(super) part: u32,
+    /// Place of the part's first vertex.
+    pub(super) first_vertex: u32,
+    /// What is swept must be inside of it.
+    pub(super) region: Region,
+    /// Of all parts.
+    pub(super) strays: Arc<Strays>,
+}
+
+/// [`Room`], with the part's own triangles.
+struct Watch {
+    room: Room,
+    boxes: GrowingBoxes,
+    sweep: Sweep,
+}
+
+/// Why nothing is collapsed here and now.
+enum No {
+    Refused(Refusal),
+    /// It would leave the part's region: another round may do it.
+    Elsewhere,
+}
+
+impl From<Refusal> for No {
+    fn from(reason: Refusal) -> Self {
+        Self::Refused(reason)
+    }
+}
 
 /// A part that is being simplified.
 pub(super) struct Part<'r, C: Criterion> {
@@ -74,6 +112,7 @@ pub(super) struct Part<'r, C: Criterion> {
     merged_into: Vec<u32>,
     queue: Buckets,
     rings: EdgeRings,
+    watch: Option<Watch>,
     rules: Rules<'r, C>,
 }
 
@@ -83,12 +122,14 @@ impl<'r, C: Criterion> Part<'r, C> {
         surface: Surface<C::State>,
         is_free: Vec<bool>,
         colors: Vec<Option<Color>>,
+        room: Option<Room>,
         rules: Rules<'r, C>,
         budget: &Budget,
     ) -> Result<Self, Stopped> {
         let bound = surface.table.triangle_bound();
-        let vertex_count = if rules.is_guarded { surface.vertices.len() as u32 } else { 0 };
+        let vertex_count = if room.is_some() { surface.vertices.len() as u32 } else { 0 };
         let merged_into = (0..vertex_count).collect();
+        let watch = room.map(|room| Watch { room, boxes: boxes_of(&surface), sweep: Sweep::default() });
         let mut part = Self {
             surface,
             colors,
@@ -98,6 +139,7 @@ impl<'r, C: Criterion> Part<'r, C> {
             merged_into,
             queue: Buckets::new(4 * bound),
             rings: EdgeRings::default(),
+            watch,
             rules,
         };
         for t in 0..bound as u32 {
@@ -171,11 +213,11 @@ impl<'r, C: Criterion> Part<'r, C> {
             }
             match self.placed(h) {
                 Ok((_, _, now)) if now > class => self.queue.push(h, now),
-                Ok((rule, placed, _)) => {
-                    if let Err(reason) = self.attempt(h, rule, placed) {
-                        self.set_aside(h, reason);
-                    }
-                }
+                Ok((rule, placed, _)) => match self.attempt(h, rule, placed, budget) {
+                    Ok(()) => {}
+                    Err(No::Refused(reason)) => self.set_aside(h, reason),
+                    Err(No::Elsewhere) => self.queue.set_aside(h),
+                },
                 Err(reason) => self.set_aside(h, reason),
             }
         }
@@ -188,20 +230,31 @@ impl<'r, C: Criterion> Part<'r, C> {
     }
 
     /// Collapses the edge of `h`, unless something speaks against it.
-    fn attempt(&mut self, h: u32, rule: Rule, placed: Placed) -> Result<(), Refusal> {
+    fn attempt(&mut self, h: u32, rule: Rule, placed: Placed, budget: &Budget) -> Result<(), No> {
         let Rules { criterion, options, error_squared_limit, .. } = self.rules;
         if placed.error_squared > error_squared_limit {
-            return Err(Refusal::Error);
+            return Err(Refusal::Error.into());
         }
         let (position, origin) = self.surface.landing(h, rule, placed.position, options.round)?;
         self.rings.walk(&self.surface.table, h);
         self.surface.table.link_condition(h, &self.rings).map_err(Refusal::Link)?;
+        if !self.surface.wedges.keep_charts(&self.surface.table, h) {
+            return Err(Refusal::Held.into());
+        }
         check_faces(&self.surface, h, &self.rings, position, &options.guards)?;
+        if let Some(watch) = &mut self.watch {
+            let bounds = watch.sweep(&self.surface, h, &self.rings, position);
+            watch.check(&self.surface, h, bounds, budget)?;
+        }
         self.tally.collapses += 1;
         self.tally.error_squared_max = self.tally.error_squared_max.max(placed.error_squared);
         self.surface.merge_colors(h, position, &mut self.colors);
+        self.surface.merge_wedges(h, &self.rings, position);
         self.surface.merge_vertices(criterion, h, position, origin);
         self.merge_edges(h);
+        if let Some(watch) = &mut self.watch {
+            watch.grow(&self.surface, &self.rings);
+        }
         self.look_around();
         Ok(())
     }
@@ -242,6 +295,11 @@ impl<'r, C: Criterion> Part<'r, C> {
         }
     }
 
+    /// Gives back what is only needed for collapses: none follows.
+    pub(super) fn leave_room(&mut self) {
+        self.watch = None;
+    }
+
     /// For each vertex, the one that is left of it. Only for a part whose collapses may be taken back.
     pub(super) fn roots(&self) -> Vec<u32> {
         let mut roots = self.merged_into.clone();
@@ -264,6 +322,90 @@ impl<'r, C: Criterion> Part<'r, C> {
             let lines = (0..3).map(|k| (table.marks(4 * t + k) & LINE) << k).sum();
             table.corners(t).map(|corners| (t, corners, lines))
         })
+    }
+}
+
+/// The boxes of the triangles of a part.
+fn boxes_of<S: Copy + Default>(surface: &Surface<S>) -> GrowingBoxes {
+    let table = &surface.table;
+    let corners = |t: u32| [4 * t, 4 * t + 1, 4 * t + 2].map(|h| table.origin(h));
+    let triangles: Vec<[u32; 3]> = (0..table.triangle_bound() as u32).map(corners).collect();
+    GrowingBoxes::new(&triangles, |v| surface.position(v))
+}
+
+impl Watch {
+    /// Notes what the collapse of `h` to `position` sweeps; gives its box.
+    fn sweep<S: Copy + Default>(
+        &mut self,
+        surface: &Surface<S>,
+        h: u32,
+        rings: &EdgeRings,
+        position: DVec3,
+    ) -> Aabb {
+        let table = &surface.table;
+        let twin = table.twin(h);
+        let removed = [triangle_of(h), if twin == NONE { NONE } else { triangle_of(twin) }];
+        self.sweep.begin(position, table.destination(h));
+        for (ring, is_first) in [(&rings.origin, true), (&rings.destination, false)] {
+            for &corner in &ring.corners {
+                let stays = !removed.contains(&triangle_of(corner));
+                // What goes is swept by the first move, and has no area in the second.
+                if stays || is_first {
+                    let [q, r] = [table.origin(next(corner)), table.origin(prev(corner))];
+                    let from = surface.position(table.origin(corner));
+                    self.sweep.add(from, [surface.position(q), surface.position(r)], [q, r], stays);
+                }
+            }
+        }
+        self.sweep.finish()
+    }
+
+    /// Whether what is swept is free.
+    fn check<S: Copy + Default>(
+        &self,
+        surface: &Surface<S>,
+        h: u32,
+        bounds: Aabb,
+        budget: &Budget,
+    ) -> Result<(), No> {
+        let Self { room, boxes, sweep } = self;
+        let table = &surface.table;
+        if bounds.is_empty() {
+            return Ok(());
+        }
+        if !room.region.holds(bounds) {
+            return Err(No::Elsewhere);
+        }
+        let ends = [table.origin(h), table.destination(h)];
+        let mut answer = Ok(());
+        boxes.visit(bounds, |t| {
+            let Some(ids) = table.corners(t).filter(|_| answer.is_ok()) else { return };
+            if !ids.iter().any(|v| ends.contains(v)) {
+                let [a, b, c] = ids;
+                let corners = [surface.position(a), surface.position(b), surface.position(c)];
+                answer = sweep.passes(&Outside { ids, corners });
+            }
+        });
+        answer?;
+        let visited = room.strays.visit(room.part, bounds, budget, |stray| {
+            if answer.is_ok() {
+                let ids = stray.places.map(|place| place.wrapping_sub(room.first_vertex));
+                answer = sweep.passes(&Outside { ids, corners: stray.corners });
+            }
+        });
+        // The caller will see that the run was stopped.
+        visited.map_err(|_| No::Elsewhere)?;
+        Ok(answer?)
+    }
+
+    /// Makes room for the triangles around the merged vertex.
+    fn grow<S: Copy + Default>(&mut self, surface: &Surface<S>, rings: &EdgeRings) {
+        for &corner in rings.origin.corners.iter().chain(&rings.destination.corners) {
+            let t = triangle_of(corner);
+            if let Some(corners) = surface.table.corners(t) {
+                self.boxes.grow(t, Aabb::of(corners.map(|v| surface.position(v))));
+            }
+        }
     }
 }
 

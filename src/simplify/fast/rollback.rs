@@ -13,11 +13,13 @@ use super::mesh::Division;
 use super::part::Part;
 use super::rounds::Rounds;
 use super::shells::Shells;
+use super::strays::Strays;
 use crate::budget::Stopped;
 use crate::par;
 use crate::simplify::criterion::Criterion;
 use crate::simplify::report::Refusal;
 use crate::simplify::surface::NEW;
+use std::sync::Arc;
 
 /// Tries after which one more ring around what must be locked is locked too.
 const TRIES_TO_RING: usize = 4;
@@ -38,12 +40,14 @@ impl Guard {
 }
 
 /// How a round was run.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone)]
 pub(super) struct Course {
     /// The first round prepares the vertices.
     pub(super) is_first: bool,
     /// The last class that parts went to.
     pub(super) class_max: usize,
+    /// What parts must not meet.
+    pub(super) strays: Option<Arc<Strays>>,
 }
 
 impl<'r, C: Criterion> Rounds<'r, C> {
@@ -53,7 +57,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         guard: &mut Guard,
         division: &Division,
         parts: &mut [Part<'r, C>],
-        course: Course,
+        course: &Course,
     ) -> Result<(), Stopped> {
         let left =
             par::map_ranges(parts.len(), 1, |range| self.left(division, range.start, &parts[range.start]));
@@ -92,7 +96,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         parts: &mut [Part<'r, C>],
         again: &[(usize, u64)],
         locked: &[bool],
-        course: Course,
+        course: &Course,
     ) -> Result<(), Stopped> {
         let done = par::try_map_ranges(again.len(), 1, |range| {
             let i = again[range.start].0;
@@ -100,7 +104,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
             for (is_free, is_locked) in piece.is_free.iter_mut().zip(&locked[i * division.part_len..]) {
                 *is_free &= !is_locked;
             }
-            let mut part = self.part(division, i, piece, course.is_first)?;
+            let mut part = self.part(division, i, piece, &course.strays, course.is_first)?;
             part.advance(course.class_max, parts[i].triangle_count(), self.budget)?;
             Ok(part)
         })?;

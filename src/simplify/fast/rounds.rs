@@ -1,20 +1,25 @@
 //! Rounds: cut the mesh in parts, collapse edges inside them in step, put the rest together.
 
 use super::Settings;
+use super::boxes::GrowingBoxes;
 use super::buckets::CLASSES;
+use super::fans::are_fans_between;
 use super::lines::Lines;
 use super::mesh::{Division, Mesh};
-use super::part::{Part, Piece, Rules, Tally};
+use super::part::{Part, Piece, Room, Rules, Tally};
 use super::rollback::{Course, Guard};
 use super::shells::Shells;
+use super::strays::Strays;
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::corner_table::CornerTable;
 use crate::par;
 use crate::simplify::criterion::Criterion;
 use crate::simplify::options::{SimplifyOptions, Target};
+use crate::simplify::priority::costs_of_vertices;
 use crate::simplify::result::{Input, SimplifyError};
 use crate::simplify::surface::{LINE, Surface};
+use std::sync::Arc;
 
 /// Share of the triangles that a round leaves, so that what is between parts does not fall far behind.
 const LEFT_BY_ROUND: f64 = 0.45;
@@ -66,6 +71,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
             triangles: input.triangles.to_vec(),
             numbers: (0..input.triangles.len() as u32).collect(),
             lines: vec![0; input.triangles.len()],
+            texture: input.texture.to_vec(),
         };
         let rules =
             Rules { criterion, options, error_squared_limit: f64::INFINITY, is_guarded: settings.is_guarded };
@@ -123,6 +129,15 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         Ok(self.mesh.triangles.len() <= wanted || matches!(target, Target::Error(_)))
     }
 
+    /// For each vertex the least cost of the collapses of its edges.
+    pub(super) fn priorities(&self) -> Result<Vec<f64>, SimplifyError> {
+        let (mesh, budget) = (&self.mesh, self.budget);
+        let mut table = CornerTable::build(&mesh.triangles, mesh.vertices.len(), budget)?;
+        mark(&mut table, &mesh.lines);
+        let surface = self.frame.of_part(table, mesh.vertices.clone());
+        Ok(costs_of_vertices(&surface, self.rules.criterion, self.rules.options.placement, budget)?)
+    }
+
     /// Cuts the mesh in parts, collapses edges inside them, and puts what is left together.
     fn round(&mut self, part_len: usize, goal: usize) -> Result<(), SimplifyError> {
         let division = self.mesh.divide(part_len, self.shift(), self.budget)?;
@@ -133,12 +148,22 @@ impl<'r, C: Criterion> Rounds<'r, C> {
             self.mark_lines(&division, &pieces)?;
             self.prepare_between(&division)?;
         }
-        let parts = par::map_items(pieces, |i, piece| self.part(&division, i, piece, is_first));
+        let strays = match self.rules.is_guarded {
+            true => Some(Arc::new(Strays::of(&self.mesh, &division, self.budget)?)),
+            false => None,
+        };
+        let of_boxes =
+            if strays.is_some() { GrowingBoxes::bytes(self.mesh.triangles.len() as u64) } else { 0 };
+        let of_strays = strays.as_ref().map_or(0, |strays| strays.bytes());
+        let charge = self.budget.charge(of_boxes + of_strays)?;
+        let parts = par::map_items(pieces, |i, piece| self.part(&division, i, piece, &strays, is_first));
         let mut parts = parts.into_iter().collect::<Result<Vec<_>, Stopped>>()?;
         let between = self.mesh.triangles.len() - division.first_between();
         let class_max = advance(&mut parts, between, goal, self.budget)?;
+        parts.iter_mut().for_each(Part::leave_room);
+        drop(charge);
         if let Some(mut guard) = self.guard.take() {
-            self.roll_back(&mut guard, &division, &mut parts, Course { is_first, class_max })?;
+            self.roll_back(&mut guard, &division, &mut parts, &Course { is_first, class_max, strays })?;
             self.guard = Some(guard);
         }
         self.collect(&division, parts);
@@ -191,7 +216,8 @@ impl<'r, C: Criterion> Rounds<'r, C> {
             budget: self.budget,
         };
         let borders = if pieces.iter().enumerate().all(free_or_between) { lines.mark()? } else { None };
-        if borders.is_none() {
+        let are_fans = borders.is_some() && are_fans_between(&self.mesh, division, self.budget)?;
+        if !are_fans {
             // Says what is wrong and where.
             CornerTable::build(self.input.triangles, self.input.positions.len(), self.budget)?;
         }
@@ -223,6 +249,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         division: &Division,
         i: usize,
         Piece { mut table, is_free }: Piece,
+        strays: &Option<Arc<Strays>>,
         is_first: bool,
     ) -> Result<Part<'r, C>, Stopped> {
         self.budget.check()?;
@@ -233,10 +260,22 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         let vertices = own.iter().map(|&v| self.mesh.vertices[v as usize]).collect();
         let colors = own.iter().filter_map(|&v| self.mesh.colors.get(v as usize).copied()).collect();
         let mut surface = self.frame.of_part(table, vertices);
+        if !self.mesh.texture.is_empty() {
+            surface
+                .wedges
+                .0
+                .extend_from_slice(&self.mesh.texture[division.starts[i]..division.starts[i + 1]]);
+        }
         if is_first {
             self.rules.criterion.prepare(&mut surface, self.budget)?;
         }
-        Part::new(surface, is_free, colors, self.rules, self.budget)
+        let room = strays.as_ref().map(|strays| Room {
+            part: i as u32,
+            first_vertex: (i * division.part_len) as u32,
+            region: division.region(i),
+            strays: Arc::clone(strays),
+        });
+        Part::new(surface, is_free, colors, room, self.rules, self.budget)
     }
 
     fn collect(&mut self, division: &Division, parts: Vec<Part<'r, C>>) {
@@ -247,6 +286,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
                 left.triangles.push(corners.map(|v| v + first_vertex));
                 left.numbers.push(self.mesh.numbers[first_triangle + t as usize]);
                 left.lines.push(lines);
+                left.texture.extend(part.surface.wedges.0.get(t as usize));
             }
             self.tally.add(&part.tally);
             left.vertices.extend(part.surface.vertices);
@@ -256,6 +296,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         left.triangles.extend(&self.mesh.triangles[first..]);
         left.numbers.extend(&self.mesh.numbers[first..]);
         left.lines.extend(&self.mesh.lines[first..]);
+        left.texture.extend(self.mesh.texture.get(first..).unwrap_or_default());
         self.mesh = left;
     }
 }

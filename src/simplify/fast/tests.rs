@@ -82,7 +82,7 @@ fn run(
     targets: &[Target],
     settings: Settings,
 ) -> Vec<Simplified> {
-    let input = Input { positions, triangles, face_groups: &[], vertex_colors: &[] };
+    let input = Input { positions, triangles, face_groups: &[], vertex_colors: &[], texture: &[] };
     let options = SimplifyOptions { targets: targets.to_vec(), ..SimplifyOptions::default() };
     by_criterion(&input, &options, settings, &Budget::unlimited()).unwrap()
 }
@@ -166,7 +166,13 @@ fn an_error_target_holds_in_parts_and_goes_on_with_a_larger_one() {
             criterion,
             ..SimplifyOptions::default()
         };
-        let input = Input { positions: &mesh.0, triangles: &mesh.1, face_groups: &[], vertex_colors: &[] };
+        let input = Input {
+            positions: &mesh.0,
+            triangles: &mesh.1,
+            face_groups: &[],
+            vertex_colors: &[],
+            texture: &[],
+        };
         let levels = by_criterion(&input, &options, FAST, &Budget::unlimited()).unwrap();
         for (level, limit) in levels.iter().zip(limits) {
             assert!(level.report.is_reached && level.report.error_max <= limit, "{:?}", level.report);
@@ -183,7 +189,13 @@ fn what_is_no_manifold_is_refused_wherever_it_is_cut() {
         let mut bad = good.clone();
         let again = bad.1[t];
         bad.1.push(again);
-        let input = Input { positions: &bad.0, triangles: &bad.1, face_groups: &[], vertex_colors: &[] };
+        let input = Input {
+            positions: &bad.0,
+            triangles: &bad.1,
+            face_groups: &[],
+            vertex_colors: &[],
+            texture: &[],
+        };
         let options = SimplifyOptions::default();
         let refused = by_criterion(&input, &options, FAST, &Budget::unlimited());
         assert!(matches!(refused, Err(SimplifyError::NotManifold(_))), "{t}");
@@ -191,9 +203,32 @@ fn what_is_no_manifold_is_refused_wherever_it_is_cut() {
 }
 
 #[test]
+fn two_fans_at_a_vertex_are_refused_wherever_it_is_cut() {
+    let good = torus(24, 1.0, 0.0, DVec3::ZERO);
+    for v in (0..good.0.len() as u32).step_by(17) {
+        let mut bad = joined(&[good.clone(), torus(12, 0.5, 0.0, DVec3::X * 9.0)]);
+        let other = good.0.len() as u32 + v % 100;
+        bad.1.as_flattened_mut().iter_mut().filter(|u| **u == other).for_each(|u| *u = v);
+        let input = Input {
+            positions: &bad.0,
+            triangles: &bad.1,
+            face_groups: &[],
+            vertex_colors: &[],
+            texture: &[],
+        };
+        for settings in [FAST, GUARDED, Settings { part_len: 6144, ..FAST }] {
+            let options = SimplifyOptions::default();
+            let refused = by_criterion(&input, &options, settings, &Budget::unlimited());
+            assert!(matches!(refused, Err(SimplifyError::NotManifold(_))), "{v}");
+        }
+    }
+}
+
+#[test]
 fn a_raised_stop_flag_and_a_small_memory_limit_end_the_run() {
     let mesh = torus(24, 1.0, 0.0, DVec3::ZERO);
-    let input = Input { positions: &mesh.0, triangles: &mesh.1, face_groups: &[], vertex_colors: &[] };
+    let input =
+        Input { positions: &mesh.0, triangles: &mesh.1, face_groups: &[], vertex_colors: &[], texture: &[] };
     let options = SimplifyOptions::default();
     let stop = StopFlag::default();
     stop.cancel();

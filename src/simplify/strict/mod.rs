@@ -10,6 +10,7 @@ use super::length::Length;
 use super::lines::mark_lines;
 use super::memoryless::Memoryless;
 use super::options::{CriterionKind, SimplifyOptions, Target};
+use super::priority::costs_of_vertices;
 use super::quadric_error::QuadricError;
 use super::queue::Queue;
 use super::report::{Refusal, Refusals, Report};
@@ -49,6 +50,7 @@ fn run<C: Criterion>(
     let _charge = budget.charge(bytes_of::<C>(input))?;
     let table = CornerTable::build(input.triangles, input.positions.len(), budget)?;
     let mut surface = Surface::<C::State>::new(input.positions, table, budget)?;
+    surface.wedges.0.extend_from_slice(input.texture);
     mark_lines(&mut surface, input.face_groups, options, budget)?;
     criterion.prepare(&mut surface, budget)?;
     let mut strict = Strict {
@@ -68,7 +70,11 @@ fn run<C: Criterion>(
     strict.fill_queue()?;
     let levels = options.targets.iter().map(|&target| {
         let report = strict.run_to(target, input.triangles.len())?;
-        Simplified::snapshot(&strict.surface, input, &strict.colors, report, budget)
+        let priorities = match options.priorities {
+            true => costs_of_vertices(&strict.surface, &strict.criterion, options.placement, budget)?,
+            false => Vec::new(),
+        };
+        Simplified::snapshot(&strict.surface, input, &strict.colors, &priorities, report, budget)
     });
     Ok(levels.collect::<Result<Vec<_>, Stopped>>()?)
 }
@@ -78,7 +84,8 @@ fn bytes_of<C: Criterion>(input: &Input<'_>) -> u64 {
     // The table and the keys; for each edge a place in a bucket, and its first cost, listed twice.
     let per_triangle = 32 + 4 * size_of::<u32>() + 3 * (size_of::<u32>() + 2 * size_of::<(u32, Key)>()) / 2;
     let per_vertex = size_of::<Vertex<C::State>>();
-    (input.triangles.len() * per_triangle + input.positions.len() * per_vertex) as u64
+    (input.triangles.len() * per_triangle + input.positions.len() * per_vertex + size_of_val(input.texture))
+        as u64
 }
 
 struct Strict<'a, C: Criterion> {
@@ -187,9 +194,13 @@ impl<C: Criterion> Strict<'_, C> {
         let (position, origin) = self.surface.landing(h, rule, placed.position, self.options.round)?;
         self.rings.walk(&self.surface.table, h);
         self.surface.table.link_condition(h, &self.rings).map_err(Refusal::Link)?;
+        if !self.surface.wedges.keep_charts(&self.surface.table, h) {
+            return Err(Refusal::Held);
+        }
         check_faces(&self.surface, h, &self.rings, position, &self.options.guards)?;
         self.error_squared_max = self.error_squared_max.max(placed.error_squared);
         self.surface.merge_colors(h, position, &mut self.colors);
+        self.surface.merge_wedges(h, &self.rings, position);
         self.surface.merge_vertices(&self.criterion, h, position, origin);
         self.merge_edges(h);
         self.look_around();

@@ -29,6 +29,9 @@ pub struct Bvh {
 }
 
 impl Bvh {
+    /// Bytes for each triangle: a leaf's share, and that of the nodes above, of which some are half empty.
+    pub const BYTES_PER_TRIANGLE: u64 = 64;
+
     /// Builds over the triangles `ids` (all when `None`), whose positions must be finite. O(n log n).
     ///
     /// # Errors

@@ -1,0 +1,131 @@
+//! The rules of a job's life, each on the smallest case that shows it, with engines made for the purpose.
+
+mod keeping;
+mod running;
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, mpsc};
+use std::time::Duration;
+
+use super::*;
+use crate::budget::Budget;
+use crate::formats::{Place, ReadError, ReadErrorKind};
+use crate::pipeline::{Answer, Failure, Operation as Asked};
+use crate::wire::{InputRef, Job, JobState, Operation, Options, Outcome, Problem, ProblemCode, sample};
+
+/// Longest wait for something that must happen.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// A service in a directory of its own.
+struct House {
+    jobs: Jobs,
+    _dir: tempfile::TempDir,
+}
+
+impl std::ops::Deref for House {
+    type Target = Jobs;
+
+    fn deref(&self) -> &Jobs {
+        &self.jobs
+    }
+}
+
+fn house(
+    change: impl FnOnce(&mut JobsSettings),
+    engine: impl Fn(&[u8], &Budget) -> Result<Answer, Failure> + Send + Sync + 'static,
+) -> House {
+    let dir = tempfile::tempdir().unwrap();
+    let mut settings = JobsSettings { slots: 1, queue_max: 4, ..JobsSettings::new(dir.path()) };
+    change(&mut settings);
+    let engine: Engine = Arc::new(move |_: Asked, bytes, _, budget| engine(bytes, budget));
+    let jobs = Jobs::start_with(settings, Arc::<MemoryStore>::default(), engine).unwrap();
+    House { jobs, _dir: dir }
+}
+
+impl House {
+    async fn send(&self, bytes: &[u8]) -> Result<Uploaded, Problem> {
+        let mut upload = self.upload(Some(bytes.len() as u64)).await?;
+        upload.write(bytes).await?;
+        upload.finish().await
+    }
+
+    async fn order_with(
+        &self,
+        bytes: &[u8],
+        options: Options,
+        after: Option<Duration>,
+    ) -> Result<Job, Problem> {
+        let upload = Some(self.send(bytes).await?);
+        let file_name = Some("C:\\parts\\part one.stl".to_owned());
+        self.submit(Submission {
+            operation: Operation::Repair,
+            options,
+            upload,
+            material: None,
+            file_name,
+            cancel_after: after,
+            owner: None,
+        })
+        .await
+    }
+
+    async fn order(&self, bytes: &[u8]) -> Result<Job, Problem> {
+        self.order_with(bytes, Options::default(), None).await
+    }
+
+    async fn end_of(&self, job: &Job) -> Job {
+        let ended = self.wait(id(job), PATIENCE).await.unwrap();
+        assert!(ended.state.is_final(), "{ended:?}");
+        ended
+    }
+
+    async fn run(&self, bytes: &[u8]) -> Job {
+        let job = self.order(bytes).await.unwrap();
+        self.end_of(&job).await
+    }
+
+    async fn until(&self, what: &str, holds: impl Fn(Load) -> bool) {
+        for _ in 0..PATIENCE.as_millis() / 5 {
+            if holds(self.load().await) {
+                return;
+            }
+            tokio::time::sleep(Duration::from_millis(5)).await;
+        }
+        panic!("{what} never held");
+    }
+
+    fn spool_files(&self) -> usize {
+        std::fs::read_dir(self.settings().data_dir.join("spool")).unwrap().count()
+    }
+}
+
+fn id(job: &Job) -> JobId {
+    job.id.parse().unwrap()
+}
+
+fn code(job: &Job) -> Option<ProblemCode> {
+    job.problem.as_ref().map(|problem| problem.code)
+}
+
+fn mend(_: &[u8], _: &Budget) -> Result<Answer, Failure> {
+    Ok(sample::repaired())
+}
+
+/// Works until it is stopped.
+fn work_forever(_: &[u8], budget: &Budget) -> Result<Answer, Failure> {
+    loop {
+        budget.check()?;
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// An engine that works until it is told to end, or until it is stopped.
+fn work_until_told(told: mpsc::Receiver<()>) -> impl Fn(&[u8], &Budget) -> Result<Answer, Failure> {
+    let told = Mutex::new(told);
+    move |_, budget| loop {
+        budget.check()?;
+        if told.lock().unwrap().recv_timeout(Duration::from_millis(1)).is_ok() {
+            return Ok(sample::repaired());
+        }
+    }
+}

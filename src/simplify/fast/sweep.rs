@@ -1,0 +1,254 @@
+//! Whether a collapse moves surface through other surface.
+//!
+//! A collapse is two moves: one end of the edge goes to the new place, then the other. Each move sweeps the tetrahedra
+//! of its old place, the new place and the edges around it. When the new triangles meet no triangle outside, and none
+//! lies in the tetrahedra, then the old star can be bent into the new one without touching anything: what is outside
+//! and meets neither star is wholly inside of what is swept or wholly outside, so one point of it decides.
+
+use crate::geom::{Aabb, DVec3, Plane, Shared, Sign, are_collinear, contact, orient3d};
+use crate::simplify::report::Refusal;
+
+/// One triangle of the star before: its vertex that moves, and the side that stays.
+#[derive(Debug, Clone, Copy)]
+struct Sector {
+    from: DVec3,
+    /// The other two corners, in the order of the triangle.
+    side: [DVec3; 2],
+    /// Their numbers.
+    ids: [u32; 2],
+    /// The collapse does not remove it.
+    stays: bool,
+}
+
+/// The two moves of a collapse. Kept from one to the next, so that nothing is allocated.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Sweep {
+    sectors: Vec<Sector>,
+    to: DVec3,
+    /// Number of the merged vertex.
+    merged: u32,
+    /// The other vertices of the stars; some come twice.
+    rim: Vec<u32>,
+    /// Where they are, and then the places of what moves.
+    points: Vec<DVec3>,
+    /// The middle of the points.
+    middle: DVec3,
+}
+
+/// A triangle that is not in the stars of the edge.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Outside {
+    /// Numbers of the corners; they only need to be the same where vertices are.
+    pub(super) ids: [u32; 3],
+    pub(super) corners: [DVec3; 3],
+}
+
+impl Sweep {
+    /// Begins with a collapse that moves both ends to `to`; the vertex there is called `merged`.
+    pub(super) fn begin(&mut self, to: DVec3, merged: u32) {
+        self.sectors.clear();
+        self.rim.clear();
+        self.points.clear();
+        (self.to, self.merged) = (to, merged);
+    }
+
+    /// Adds a triangle of the star of the vertex at `from`. `stays`: the collapse does not remove it.
+    #[inline]
+    pub(super) fn add(&mut self, from: DVec3, side: [DVec3; 2], ids: [u32; 2], stays: bool) {
+        if from == self.to {
+            return;
+        }
+        self.sectors.push(Sector { from, side, ids, stays });
+        // Most triangles follow one another around their vertex.
+        if self.rim.last() != Some(&ids[0]) {
+            self.rim.push(ids[0]);
+            self.points.push(side[0]);
+        }
+        self.rim.push(ids[1]);
+        self.points.push(side[1]);
+    }
+
+    /// To be called after the last triangle: the box of all that is swept.
+    pub(super) fn finish(&mut self) -> Aabb {
+        let mut last = self.to;
+        for sector in &self.sectors {
+            if sector.from != last {
+                last = sector.from;
+                self.points.push(last);
+            }
+        }
+        if self.sectors.is_empty() {
+            return Aabb::EMPTY;
+        }
+        self.points.push(self.to);
+        self.middle = self.points.iter().sum::<DVec3>() / self.points.len() as f64;
+        Aabb::of(self.points.iter().copied())
+    }
+
+    /// Whether `other` stays untouched.
+    #[inline]
+    pub(super) fn passes(&self, other: &Outside) -> Result<(), Refusal> {
+        if self.is_beside(other) { Ok(()) } else { self.meets_nothing_of(other) }
+    }
+
+    /// True when there is a plane, through the vertex or the edge that `other` shares with the rim if it does, that has
+    /// all that moves on one side and the rest of `other` on the other: they meet nowhere else. For most there is.
+    fn is_beside(&self, other: &Outside) -> bool {
+        let [a, b, c] = other.corners;
+        let shared = other.ids.map(|id| self.rim.contains(&id));
+        let (base, edge) = match shared {
+            [false, false, false] => return self.is_apart([a, b, c]),
+            [true, false, false] => (a, DVec3::ZERO),
+            [false, true, false] => (b, DVec3::ZERO),
+            [false, false, true] => (c, DVec3::ZERO),
+            [true, true, false] => (a, b - a),
+            [false, true, true] => (b, c - b),
+            [true, false, true] => (c, a - c),
+            [true, true, true] => return false,
+        };
+        let length_squared = edge.length_squared();
+        let mut normal = self.middle - base;
+        // What rounding can make of a product with a difference, by far, and what the edge is off the plane.
+        let mut doubt = 1e-13 * size(normal);
+        if length_squared > 0.0 {
+            normal -= edge * (normal.dot(edge) / length_squared);
+            doubt += 2.0 * normal.dot(edge).abs() / length_squared.sqrt();
+        }
+        let is_within = |p: DVec3| normal.dot(p - base) > doubt * size(p - base);
+        let is_beyond = |p: DVec3| -normal.dot(p - base) > doubt * size(p - base);
+        let is_shared = |i: usize| self.rim.get(i).is_some_and(|id| other.ids.contains(id));
+        (0..3).all(|k| shared[k] || is_beyond(other.corners[k]))
+            && self.points.iter().enumerate().all(|(i, &p)| is_within(p) || is_shared(i))
+    }
+
+    /// True when a plane between the middle of what moves and that of the triangle has them on its two sides.
+    fn is_apart(&self, [a, b, c]: [DVec3; 3]) -> bool {
+        let normal = (a + b + c) / 3.0 - self.middle;
+        let beyond = |p: DVec3| normal.dot(p - self.middle);
+        let nearest = beyond(a).min(beyond(b)).min(beyond(c));
+        let reach = size(a - self.middle).max(size(b - self.middle)).max(size(c - self.middle));
+        let doubt = |p: DVec3| 1e-13 * size(normal) * (reach + size(p - self.middle));
+        self.points.iter().all(|&p| nearest - beyond(p) > doubt(p))
+    }
+
+    fn meets_nothing_of(&self, other: &Outside) -> Result<(), Refusal> {
+        let bounds = Aabb::of(other.corners);
+        // A point of it that does not move with the star, and what the star is multiplied with to match.
+        let on_rim = |id: &u32| self.rim.contains(id);
+        let free = (0..3).find(|&k| !on_rim(&other.ids[k]));
+        let (point, factor) = match free {
+            Some(k) => (other.corners[k], 1.0),
+            None => (other.corners.iter().sum(), 3.0),
+        };
+        for sector in &self.sectors {
+            let [q, r] = sector.side;
+            if !overlap(bounds, Aabb::of([sector.from, self.to, q, r])) {
+                continue;
+            }
+            if sector.stays && has_area(other.corners) {
+                let ids = [self.merged, sector.ids[0], sector.ids[1]];
+                let plane = Plane::through([self.to, q, r]);
+                if contact(&plane, other.corners.each_ref(), Shared::between(ids, other.ids)).is_some() {
+                    return Err(Refusal::SelfIntersection);
+                }
+            }
+            let tetrahedron = [sector.from * factor, self.to * factor, q * factor, r * factor];
+            if is_inside(point, tetrahedron) {
+                return Err(Refusal::Swept);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The sum of the magnitudes of the coordinates.
+#[inline]
+fn size(v: DVec3) -> f64 {
+    v.x.abs() + v.y.abs() + v.z.abs()
+}
+
+#[inline]
+fn overlap(a: Aabb, b: Aabb) -> bool {
+    a.min.cmple(b.max).all() && b.min.cmple(a.max).all()
+}
+
+/// True unless the corners are exactly on a line.
+#[inline]
+fn has_area([a, b, c]: [DVec3; 3]) -> bool {
+    let (u, v) = (b - a, c - a);
+    // A sine that rounding cannot have made of zero.
+    u.cross(v).length_squared() > 1e-24 * u.length_squared() * v.length_squared() || !are_collinear(a, b, c)
+}
+
+/// True when `p` is in the tetrahedron or on its border. Nothing is in one without a volume.
+fn is_inside(p: DVec3, [a, b, c, d]: [DVec3; 4]) -> bool {
+    let bounds = Aabb::of([a, b, c, d]);
+    if !overlap(bounds, Aabb { min: p, max: p }) {
+        return false;
+    }
+    let turn = orient3d(a, b, c, d);
+    let agrees = |sign: Sign| sign == turn || sign == Sign::Zero;
+    turn != Sign::Zero
+        && agrees(orient3d(p, b, c, d))
+        && agrees(orient3d(a, p, c, d))
+        && agrees(orient3d(a, b, p, d))
+        && agrees(orient3d(a, b, c, p))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A pyramid without its base: the apex goes from height 1 to `height`.
+    fn pyramid(height: f64) -> Sweep {
+        let rim = [DVec3::X, DVec3::Y, -DVec3::X, -DVec3::Y];
+        let mut sweep = Sweep::default();
+        sweep.begin(DVec3::Z * height, 9);
+        for k in 0..4 {
+            sweep.add(DVec3::Z, [rim[k], rim[(k + 1) % 4]], [k as u32, (k as u32 + 1) % 4], true);
+        }
+        sweep.finish();
+        sweep
+    }
+
+    fn triangle(at: DVec3, size: f64) -> Outside {
+        Outside { ids: [20, 21, 22], corners: [at, at + DVec3::X * size, at + DVec3::Y * size] }
+    }
+
+    #[test]
+    fn what_lies_in_the_swept_volume_is_swept_and_what_is_cut_is_met() {
+        let down = pyramid(-1.0);
+        assert_eq!(down.passes(&triangle(DVec3::new(0.1, 0.1, 0.0), 0.1)), Err(Refusal::Swept));
+        assert_eq!(down.passes(&triangle(DVec3::new(0.1, 0.1, -0.3), 9.0)), Err(Refusal::SelfIntersection));
+        assert_eq!(down.passes(&triangle(DVec3::new(0.0, 0.0, 1.1), 9.0)), Ok(()));
+        assert_eq!(down.passes(&triangle(DVec3::new(0.5, 0.5, -0.6), 0.1)), Ok(()));
+        // The same above what remains.
+        let little = pyramid(0.9);
+        assert_eq!(little.passes(&triangle(DVec3::new(0.1, 0.1, 0.0), 0.1)), Ok(()));
+        assert_eq!(little.passes(&triangle(DVec3::new(0.0, 0.0, 0.95), 0.001)), Err(Refusal::Swept));
+    }
+
+    #[test]
+    fn what_shares_the_rim_may_stay_where_it_is() {
+        let neighbour =
+            |z: f64| Outside { ids: [1, 0, 30], corners: [DVec3::Y, DVec3::X, DVec3::new(1.0, 1.0, z)] };
+        let floor = Outside { ids: [0, 2, 1], corners: [DVec3::X, -DVec3::X, DVec3::Y] };
+        for height in [0.5, 0.01, 3.0] {
+            let sweep = pyramid(height);
+            assert_eq!(sweep.passes(&neighbour(0.0)), Ok(()));
+            assert_eq!(sweep.passes(&neighbour(-5.0)), Ok(()));
+            assert_eq!(sweep.passes(&floor), Ok(()));
+        }
+        assert_eq!(pyramid(-1.0).passes(&floor), Err(Refusal::Swept), "all its corners are on the rim");
+        let inner = Outside { ids: [1, 0, 30], corners: [DVec3::Y, DVec3::X, DVec3::ZERO] };
+        assert_eq!(pyramid(-0.5).passes(&inner), Err(Refusal::Swept));
+        assert_eq!(pyramid(0.5).passes(&inner), Ok(()));
+    }
+
+    #[test]
+    fn a_vertex_that_stays_sweeps_nothing() {
+        let mut sweep = pyramid(1.0);
+        assert!(sweep.finish().is_empty());
+        assert_eq!(sweep.passes(&triangle(DVec3::new(-1.0, -1.0, 0.5), 9.0)), Ok(()));
+    }
+}

@@ -1,0 +1,96 @@
+//! Options that cannot be taken.
+
+use std::fmt;
+
+use super::table::{OptionSpec, nearest};
+use crate::wire::problem::{Problem, ProblemCode};
+
+/// An option that cannot be taken.
+#[derive(Debug, Clone, PartialEq)]
+pub enum OptionError {
+    /// There is no such option.
+    Unknown {
+        /// The name that was given.
+        name: String,
+        /// The nearest name there is.
+        suggestion: Option<&'static str>,
+    },
+    /// The value is not one of the option's.
+    Invalid {
+        /// The option.
+        spec: &'static OptionSpec,
+        /// The value that was given.
+        value: String,
+    },
+    /// It does not go with another one that is given.
+    Excluded {
+        /// The option.
+        spec: &'static OptionSpec,
+        /// The other one.
+        by: &'static str,
+    },
+    /// It has no meaning without something else.
+    Lacking {
+        /// The option.
+        spec: &'static OptionSpec,
+        /// What it needs.
+        needs: &'static str,
+    },
+    /// It is given twice with different values.
+    Contradictory {
+        /// The option.
+        spec: &'static OptionSpec,
+    },
+}
+
+impl fmt::Display for OptionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unknown { name, suggestion: Some(near) } => {
+                write!(f, "unknown option `{name}`; did you mean `{near}`?")
+            }
+            Self::Unknown { name, suggestion: None } => write!(f, "unknown option `{name}`"),
+            Self::Invalid { spec, value } => {
+                write!(f, "`{}` cannot be `{value}`; expected {}", spec.name, spec.expected())?;
+                match nearest(value, spec.words().iter().copied()) {
+                    Some(near) => write!(f, "; did you mean `{near}`?"),
+                    None => Ok(()),
+                }
+            }
+            Self::Excluded { spec, by } => write!(f, "`{}` does not go with `{by}`", spec.name),
+            Self::Lacking { spec, needs } => write!(f, "this `{}` needs {needs}", spec.name),
+            Self::Contradictory { spec } => write!(f, "`{}` is given twice with different values", spec.name),
+        }
+    }
+}
+
+impl std::error::Error for OptionError {}
+
+impl From<&OptionError> for Problem {
+    fn from(error: &OptionError) -> Self {
+        let of = |code, parameter: &str| Self {
+            parameter: Some(parameter.to_owned()),
+            ..Self::new(code, error.to_string())
+        };
+        match error {
+            OptionError::Unknown { name, suggestion } => {
+                Self { suggestion: *suggestion, ..of(ProblemCode::UnknownParameter, name) }
+            }
+            OptionError::Invalid { spec, value } => Self {
+                allowed: spec.words().to_vec(),
+                expected: Some(spec.expected()),
+                suggestion: nearest(value, spec.words().iter().copied()),
+                ..of(ProblemCode::InvalidParameter, spec.name)
+            },
+            OptionError::Contradictory { spec }
+            | OptionError::Excluded { spec, .. }
+            | OptionError::Lacking { spec, .. } => of(ProblemCode::InvalidParameter, spec.name),
+        }
+    }
+}
+
+impl From<OptionError> for Problem {
+    fn from(error: OptionError) -> Self {
+        Self::from(&error)
+    }
+}

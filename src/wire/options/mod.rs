@@ -1,0 +1,136 @@
+//! The options of every operation: one table for query parameters, JSON members and command-line flags.
+
+mod error;
+mod parse;
+mod table;
+#[cfg(test)]
+mod tests;
+
+use super::request::InputRef;
+use super::target::TargetSpec;
+use super::words::{
+    Criterion, FillHoles, Format, Mode, Nesting, OpenShells, Placement, Reader, Require, Units, VertexColors,
+};
+use crate::formats::{ReadLimits, ReadOptions};
+use crate::{pipeline, simplify};
+pub use error::OptionError;
+pub(super) use table::nearest;
+pub use table::{OptionKind, OptionSpec, SPECS};
+
+/// The options of a request; `None`: not given.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Options {
+    /// Format of the input.
+    pub format: Option<Format>,
+    /// Format of the output.
+    pub output_format: Option<Format>,
+    /// Reader of OBJ files.
+    pub reader: Option<Reader>,
+    /// Unit of the coordinates.
+    pub units: Option<Units>,
+    /// What the result must be.
+    pub require: Option<Require>,
+    /// Whether repair fills simple holes.
+    pub fill_holes: Option<FillHoles>,
+    /// How open shells are read where a surface is rebuilt.
+    pub open_shells: Option<OpenShells>,
+    /// Cells along the longest side of a surface that is rebuilt.
+    pub wrap_cells: Option<u32>,
+    /// How shells inside shells are taken.
+    pub nesting: Option<Nesting>,
+    /// Faces to simplify to.
+    pub faces: Option<u32>,
+    /// Share of the faces to simplify to.
+    pub ratio: Option<f64>,
+    /// Error to simplify up to, in millimetres.
+    pub error_mm: Option<f64>,
+    /// Several targets of a simplification.
+    pub targets: Option<Vec<TargetSpec>>,
+    /// How a simplification works.
+    pub mode: Option<Mode>,
+    /// What the collapse of an edge costs.
+    pub criterion: Option<Criterion>,
+    /// Where the vertex goes that an edge becomes.
+    pub placement: Option<Placement>,
+    /// What colours the vertices of a simplified mesh have.
+    pub vertex_colors: Option<VertexColors>,
+    /// Witnesses to keep of each defect.
+    pub samples: Option<u32>,
+    /// Seconds for which the result is kept.
+    pub result_ttl: Option<u64>,
+    /// An earlier job whose upload is used again.
+    pub input: Option<InputRef>,
+}
+
+impl Options {
+    /// What no single option can say: that options go together.
+    ///
+    /// # Errors
+    /// Two options that exclude each other, or one that lacks another.
+    pub fn check(&self) -> Result<(), OptionError> {
+        let given = [
+            ("faces", self.faces.is_some()),
+            ("ratio", self.ratio.is_some()),
+            ("error_mm", self.error_mm.is_some()),
+            ("targets", self.targets.is_some()),
+        ];
+        let mut given = given.into_iter().filter(|&(_, is_given)| is_given).map(|(name, _)| name);
+        if let (Some(by), Some(name)) = (given.next(), given.next()) {
+            return Err(OptionError::Excluded { spec: table::spec_of(name)?, by });
+        }
+        let written = self.output_format.or(self.format);
+        let shows_colors = matches!(written, Some(Format::Off | Format::Ply));
+        if self.vertex_colors == Some(VertexColors::Priority) && !shows_colors {
+            let needs = "a `format` or `output_format` of off or ply";
+            return Err(OptionError::Lacking { spec: table::spec_of("vertex_colors")?, needs });
+        }
+        Ok(())
+    }
+
+    /// The targets of a simplification, errors in the unit of the file.
+    fn targets(&self) -> Vec<simplify::Target> {
+        let single = [
+            self.faces.map(TargetSpec::Faces),
+            self.ratio.map(TargetSpec::Ratio),
+            self.error_mm.map(TargetSpec::ErrorMm),
+        ];
+        let millimetres = self.units.unwrap_or(Units::Millimetre).millimetres();
+        let all = single.into_iter().flatten().chain(self.targets.iter().flatten().copied());
+        all.map(|target| target.to_engine(millimetres)).collect()
+    }
+
+    /// Both ask the engine for the same; how long the result is kept and where the bytes come from do not matter.
+    pub fn give_the_same_as(&self, other: &Self) -> bool {
+        let essence = |options: &Self| Self { result_ttl: None, input: None, ..options.clone() };
+        essence(self) == essence(other)
+    }
+
+    /// The engine's options, under the configured limits on counts.
+    pub fn to_engine(&self, limits: ReadLimits) -> pipeline::Options {
+        pipeline::Options {
+            format: self.format.map(Into::into),
+            output_format: self.output_format.map(Into::into),
+            read: ReadOptions {
+                limits,
+                obj_reader: self.reader.map(Into::into).unwrap_or_default(),
+                ..ReadOptions::default()
+            },
+            units: self.units.map(Into::into),
+            require: self.require.map(Into::into),
+            fill_holes: self.fill_holes.map(Into::into).unwrap_or_default(),
+            wrap: pipeline::WrapChoices {
+                open_shells: self.open_shells.map(Into::into).unwrap_or_default(),
+                cells: self.wrap_cells,
+            },
+            simplify: pipeline::SimplifyChoices {
+                targets: self.targets(),
+                mode: self.mode.map(Into::into),
+                criterion: self.criterion.unwrap_or(Criterion::Quadric).into(),
+                placement: self.placement.unwrap_or(Placement::Optimal).into(),
+                vertex_colors: self.vertex_colors.map(Into::into).unwrap_or_default(),
+            },
+            samples: self.samples.map(|n| n as usize),
+            material: None,
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! The table of options: their names, their values, and what they do.
+
+use super::OptionError;
+use crate::wire::words::{
+    Criterion, FillHoles, Format, Mode, Nesting, OpenShells, Placement, Reader, Require, Units, VertexColors,
+};
+
+/// What values an option takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum OptionKind {
+    /// One of these words.
+    Word(&'static [&'static str]),
+    /// A whole number in this range.
+    Integer {
+        /// Smallest value.
+        min: u64,
+        /// Largest value.
+        max: u64,
+    },
+    /// A number in this range.
+    Number {
+        /// Smallest value.
+        min: f64,
+        /// Largest value.
+        max: f64,
+    },
+    /// A list of targets of a simplification.
+    Targets,
+    /// An earlier job: `{"job":"ID"}`.
+    Input,
+}
+
+/// One option.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OptionSpec {
+    /// Name in queries and JSON; as a flag with hyphens.
+    pub name: &'static str,
+    /// Values.
+    pub kind: OptionKind,
+    /// What it does, and what holds when it is absent.
+    pub about: &'static str,
+    /// It has no meaning on the command line.
+    pub is_for_service_only: bool,
+}
+
+const fn option(name: &'static str, kind: OptionKind, about: &'static str) -> OptionSpec {
+    OptionSpec { name, kind, about, is_for_service_only: false }
+}
+
+/// Every option.
+pub const SPECS: &[OptionSpec] = &[
+    option("format", OptionKind::Word(Format::WORDS), "Format of the input. Default: told by the content."),
+    option(
+        "output_format",
+        OptionKind::Word(Format::WORDS),
+        "Format of the output. Default: that of the input.",
+    ),
+    option("reader", OptionKind::Word(Reader::WORDS), "Reader of OBJ files. Default: own."),
+    option(
+        "units",
+        OptionKind::Word(Units::WORDS),
+        "Unit of the coordinates. Default: mm, reported as assumed.",
+    ),
+    option(
+        "require",
+        OptionKind::Word(Require::WORDS),
+        "What the result must be. Default: printable for repair, none for the other operations.",
+    ),
+    option(
+        "fill_holes",
+        OptionKind::Word(FillHoles::WORDS),
+        "Whether repair fills simple holes. Default: simple.",
+    ),
+    option(
+        "open_shells",
+        OptionKind::Word(OpenShells::WORDS),
+        "How open shells are read where repair must rebuild the surface. Default: auto.",
+    ),
+    option(
+        "wrap_cells",
+        OptionKind::Integer { min: 16, max: 1024 },
+        "Cells along the longest side of a surface that repair must rebuild. Default: up to 256, by its area.",
+    ),
+    option(
+        "nesting",
+        OptionKind::Word(Nesting::WORDS),
+        "How shells inside shells are taken. Default: as_oriented.",
+    ),
+    option(
+        "faces",
+        OptionKind::Integer { min: 1, max: u32::MAX as u64 },
+        "Simplify to at most this many faces. At most one of faces, ratio, error_mm and targets.",
+    ),
+    option(
+        "ratio",
+        OptionKind::Number { min: 0.0, max: 1.0 },
+        "Simplify to at most this share of the faces. Default of simplify: 0.5.",
+    ),
+    option(
+        "error_mm",
+        OptionKind::Number { min: 0.0, max: 1e30 },
+        "Simplify as far as no collapse has an error above this, in millimetres.",
+    ),
+    option(
+        "targets",
+        OptionKind::Targets,
+        "Several results from one run: [{\"ratio\":0.5},{\"faces\":1000},{\"error_mm\":0.1}].",
+    ),
+    option(
+        "mode",
+        OptionKind::Word(Mode::WORDS),
+        "How a simplification works. Default: guarded, which a repair always uses.",
+    ),
+    option(
+        "criterion",
+        OptionKind::Word(Criterion::WORDS),
+        "What the collapse of an edge costs. Default: quadric.",
+    ),
+    option(
+        "placement",
+        OptionKind::Word(Placement::WORDS),
+        "Where the vertex goes that an edge becomes. Default: optimal.",
+    ),
+    option(
+        "vertex_colors",
+        OptionKind::Word(VertexColors::WORDS),
+        "Colours of the vertices of a simplified mesh; priority needs format or output_format off or ply. Default: kept.",
+    ),
+    option(
+        "samples",
+        OptionKind::Integer { min: 0, max: 10_000 },
+        "Witnesses that the report keeps of each defect. Default: 16.",
+    ),
+    OptionSpec {
+        is_for_service_only: true,
+        ..option(
+            "result_ttl",
+            OptionKind::Integer { min: 1, max: 31_536_000 },
+            "Seconds for which the result is kept, at most the server's own limit. Default: that limit.",
+        )
+    },
+    OptionSpec {
+        is_for_service_only: true,
+        ..option("input", OptionKind::Input, "An earlier job whose upload is used again: {\"job\":\"ID\"}.")
+    },
+];
+
+pub(super) fn spec_of(name: &str) -> Result<&'static OptionSpec, OptionError> {
+    let names = || SPECS.iter().map(|spec| spec.name);
+    SPECS
+        .iter()
+        .find(|spec| spec.name == name)
+        .ok_or_else(|| OptionError::Unknown { name: name.to_owned(), suggestion: nearest(name, names()) })
+}
+
+/// The candidate that `word` was probably meant to be. The threshold is that of common command-line parsers: below a
+/// Jaro similarity of 0.7 suggestions are noise.
+pub(in crate::wire) fn nearest(
+    word: &str,
+    candidates: impl Iterator<Item = &'static str>,
+) -> Option<&'static str> {
+    let word = word.to_ascii_lowercase().replace('-', "_");
+    candidates
+        .map(|candidate| (strsim::jaro(&word, candidate), candidate))
+        .filter(|&(similarity, _)| similarity > 0.7)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, candidate)| candidate)
+}
+
+impl OptionSpec {
+    /// The option's name as a command-line flag, without the leading hyphens.
+    pub fn flag(&self) -> String {
+        self.name.replace('_', "-")
+    }
+
+    /// The words it takes; empty when it takes something else.
+    pub fn words(&self) -> &'static [&'static str] {
+        match self.kind {
+            OptionKind::Word(words) => words,
+            _ => &[],
+        }
+    }
+
+    pub(super) fn expected(&self) -> String {
+        match self.kind {
+            OptionKind::Word(words) => words.join(", "),
+            OptionKind::Integer { min, max } => format!("a whole number from {min} to {max}"),
+            OptionKind::Number { min, max } => format!("a number from {min} to {max:e}"),
+            OptionKind::Targets => {
+                "1 to 16 of {\"faces\":N}, {\"ratio\":X} and {\"error_mm\":X} in a list".to_owned()
+            }
+            OptionKind::Input => "{\"job\":\"ID\"}".to_owned(),
+        }
+    }
+}

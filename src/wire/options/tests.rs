@@ -1,0 +1,146 @@
+//! Options from text, and what they become.
+
+use serde_json::{Map, Value, json};
+
+use super::*;
+use crate::wire::problem::{Problem, ProblemCode};
+
+/// A value that the option takes, as JSON.
+fn some_value(spec: &OptionSpec) -> Value {
+    match spec.kind {
+        OptionKind::Word(words) => json!(words[words.len() - 1]),
+        OptionKind::Integer { min, .. } => json!(min),
+        OptionKind::Number { max, .. } => json!(max),
+        OptionKind::Targets => json!([{"ratio": 0.5}, {"faces": 10}]),
+        OptionKind::Input => json!({"job": "x"}),
+    }
+}
+
+#[test]
+fn every_option_reads_the_same_from_a_query_and_from_json() {
+    let members: Map<_, _> = SPECS.iter().map(|spec| (spec.name.to_owned(), some_value(spec))).collect();
+    let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+    let pairs = members.iter().map(|(name, value)| (name.clone(), text(value)));
+    let from_query = Options::from_pairs(pairs).unwrap();
+    assert_eq!(from_query, Options::from_json(&members).unwrap());
+    for spec in SPECS {
+        let one = Options::from_pairs([(spec.name, text(&members[spec.name]))]).unwrap();
+        assert_ne!(one, Options::default(), "{} is taken and kept", spec.name);
+    }
+}
+
+#[test]
+fn every_word_of_an_option_is_taken_and_no_other() {
+    for spec in SPECS {
+        for word in spec.words() {
+            assert!(Options::from_pairs([(spec.name, word)]).is_ok(), "{}={word}", spec.name);
+        }
+        assert!(matches!(Options::from_pairs([(spec.name, "xyzzy")]), Err(OptionError::Invalid { .. })));
+    }
+}
+
+#[test]
+fn an_unknown_option_is_named_with_the_nearest_one() {
+    let error = Options::from_pairs([("outptu-format", "stl")]).unwrap_err();
+    assert_eq!(
+        error,
+        OptionError::Unknown { name: "outptu-format".into(), suggestion: Some("output_format") }
+    );
+    let problem = Problem::from(&error);
+    assert_eq!(problem.code, ProblemCode::UnknownParameter);
+    assert_eq!(problem.suggestion, Some("output_format"));
+    let error = Options::from_pairs([("qqq", "1")]).unwrap_err();
+    assert_eq!(error, OptionError::Unknown { name: "qqq".into(), suggestion: None });
+}
+
+#[test]
+fn a_wrong_value_is_answered_with_the_allowed_ones() {
+    let error = Options::from_pairs([("require", "printible")]).unwrap_err();
+    let problem = Problem::from(&error);
+    assert_eq!(problem.allowed, Require::WORDS);
+    assert_eq!(problem.suggestion, Some("printable"));
+    assert_eq!(problem.parameter.as_deref(), Some("require"));
+}
+
+#[test]
+fn numbers_out_of_range_or_not_in_digits_are_refused() {
+    for value in ["-1", "+1", "", " 1", "1.5", "10001", "99999999999999999999"] {
+        assert!(Options::from_pairs([("samples", value)]).is_err(), "samples={value}");
+    }
+    for value in [json!(-1), json!("1"), json!(1.5), json!(null), json!(10001)] {
+        assert!(Options::default().set_json("samples", &value).is_err(), "{value}");
+    }
+    assert!(Options::default().set_json("samples", &json!(16.0)).is_ok());
+}
+
+#[test]
+fn an_option_may_be_repeated_but_not_contradicted() {
+    assert!(Options::from_pairs([("units", "cm"), ("units", "cm")]).is_ok());
+    let error = Options::from_pairs([("units", "cm"), ("units", "mm")]).unwrap_err();
+    assert!(matches!(error, OptionError::Contradictory { spec } if spec.name == "units"));
+}
+
+#[test]
+fn options_of_two_places_are_joined_unless_they_contradict_each_other() {
+    for spec in SPECS {
+        let mut one = Options::default();
+        one.set_json(spec.name, &some_value(spec)).unwrap();
+        assert_eq!(one.clone().join(Options::default()).unwrap(), one);
+        assert_eq!(Options::default().join(one.clone()).unwrap(), one, "{} is joined", spec.name);
+    }
+    let of = |units| Options::from_pairs([("units", units)]).unwrap();
+    let error = of("cm").join(of("mm")).unwrap_err();
+    assert!(matches!(error, OptionError::Contradictory { spec } if spec.name == "units"));
+}
+
+#[test]
+fn one_target_excludes_the_others_and_errors_are_in_the_unit_of_the_file() {
+    let of = |pairs: &[(&str, &str)]| Options::from_pairs(pairs.iter().copied()).unwrap();
+    let both = of(&[("faces", "10"), ("targets", r#"[{"ratio":0.5}]"#)]);
+    assert!(
+        matches!(both.check(), Err(OptionError::Excluded { spec, by: "faces" }) if spec.name == "targets")
+    );
+    let inches = of(&[("error_mm", "2.54"), ("units", "in")]);
+    assert!(inches.check().is_ok());
+    let targets = inches.to_engine(ReadLimits::default()).simplify.targets;
+    assert!(matches!(targets[..], [simplify::Target::Error(e)] if (e - 0.1).abs() < 1e-12));
+    for wrong in ["[]", "[{}]", r#"[{"ratio":2}]"#, r#"[{"faces":0}]"#, r#"[{"ratio":0.5,"faces":1}]"#, "[5]"]
+    {
+        assert!(Options::from_pairs([("targets", wrong)]).is_err(), "{wrong}");
+    }
+    for wrong in ["nan", "inf", "-1", "1e400", "0x1", ""] {
+        assert!(Options::from_pairs([("error_mm", wrong)]).is_err(), "{wrong}");
+    }
+}
+
+#[test]
+fn colours_of_priorities_need_a_format_that_shows_them() {
+    let check = |pairs: &[(&str, &str)]| Options::from_pairs(pairs.iter().copied()).unwrap().check();
+    let color = ("vertex_colors", "priority");
+    for wrong in [
+        &[color][..],
+        &[color, ("output_format", "stl")],
+        &[color, ("format", "off"), ("output_format", "obj")],
+    ] {
+        let error = check(wrong).unwrap_err();
+        assert!(
+            matches!(error, OptionError::Lacking { spec, .. } if spec.name == "vertex_colors"),
+            "{wrong:?}"
+        );
+        assert_eq!(Problem::from(&error).code, ProblemCode::InvalidParameter);
+    }
+    assert_eq!(check(&[color, ("output_format", "ply")]), Ok(()));
+    assert_eq!(check(&[color, ("format", "off")]), Ok(()));
+    assert_eq!(check(&[("vertex_colors", "kept")]), Ok(()));
+}
+
+#[test]
+fn options_reach_the_engine() {
+    let options =
+        Options::from_pairs([("reader", "tobj"), ("samples", "3"), ("output_format", "ply")]).unwrap();
+    let engine = options.to_engine(ReadLimits { triangles_max: 7, ..ReadLimits::default() });
+    assert_eq!(engine.read.obj_reader, crate::formats::ObjReader::Tobj);
+    assert_eq!(engine.read.limits.triangles_max, 7);
+    assert_eq!(engine.samples, Some(3));
+    assert_eq!(engine.output_format, Some(crate::formats::Format::Ply));
+}
