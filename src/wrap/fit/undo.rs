@@ -28,10 +28,11 @@ pub(super) fn until_nothing_meets(
     budget: &Budget,
 ) -> Result<u64, Stopped> {
     let mut taken_back = 0;
-    // After the first search only triangles around a vertex that went back can have begun to meet others.
+    // After a search for contacts only triangles around a vertex that went back since can have begun to meet others.
     let mut changed: Option<Vec<u32>> = None;
     for round in 0..ROUNDS {
-        let mut bad = offenders(positions, triangles, changed.as_deref(), budget)?;
+        let Offenders { vertices: mut bad, are_contacts } =
+            offenders(positions, triangles, changed.as_deref(), budget)?;
         if bad.is_empty() {
             return Ok(taken_back);
         }
@@ -44,12 +45,16 @@ pub(super) fn until_nothing_meets(
             taken_back += u64::from(positions[v as usize] != before[v as usize]);
             positions[v as usize] = before[v as usize];
         }
-        let mut stale: Vec<u32> = around(&bad, stars).collect();
-        stale.sort_unstable();
-        stale.dedup();
-        changed = Some(stale);
+        if are_contacts {
+            changed = Some(Vec::new());
+        }
+        if let Some(changed) = &mut changed {
+            changed.extend(around(&bad, stars));
+            changed.sort_unstable();
+            changed.dedup();
+        }
     }
-    if !offenders(positions, triangles, None, budget)?.is_empty() {
+    if !offenders(positions, triangles, None, budget)?.vertices.is_empty() {
         for (position, &before) in positions.iter_mut().zip(before) {
             taken_back += u64::from(*position != before);
             *position = before;
@@ -63,16 +68,25 @@ fn around<'s>(vertices: &'s [u32], stars: &'s Stars) -> impl Iterator<Item = u32
     vertices.iter().flat_map(|&v| stars.of_vertex(v as usize)).copied()
 }
 
-/// The vertices of what breaks P0 or P1, ascending; `among` these triangles and all others, or everywhere.
+/// What breaks P0 or P1.
+struct Offenders {
+    /// Its vertices, ascending.
+    vertices: Vec<u32>,
+    /// Contacts were searched, which takes triangles with an area and vertices at places of their own.
+    are_contacts: bool,
+}
+
+/// What breaks P0 or P1 `among` these triangles and all others, or everywhere.
 fn offenders(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
     among: Option<&[u32]>,
     budget: &Budget,
-) -> Result<Vec<u32>, Stopped> {
+) -> Result<Offenders, Stopped> {
     let mut bad = at_one_place(positions, budget)?;
     bad.extend(flat(positions, triangles, among, budget)?);
-    if bad.is_empty() {
+    let are_contacts = bad.is_empty();
+    if are_contacts {
         let bvh = Bvh::build(positions, triangles, None, budget)?;
         let meeting = match among {
             None => everywhere(positions, triangles, &bvh, budget)?,
@@ -82,7 +96,7 @@ fn offenders(
     }
     bad.sort_unstable();
     bad.dedup();
-    Ok(bad)
+    Ok(Offenders { vertices: bad, are_contacts })
 }
 
 /// Vertices that are where another one is.
