@@ -3,12 +3,15 @@
 //! `MESHMEND_BLESS=1` writes the expected files anew; read what changed before you keep it.
 
 use meshmend::budget::Budget;
-use meshmend::pipeline::{Operation, Options, run};
+use meshmend::pipeline::{Operation, Options, WrapChoices, run};
 use meshmend::wire::{DefectCode, Report, TimingMs};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+
+/// What is rebuilt is rebuilt coarsely here, because that is quick.
+const WRAP_CELLS: u32 = 32;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures")
@@ -31,7 +34,9 @@ fn expected_path(mesh: &Path) -> PathBuf {
 
 /// The report of `operation`, or why there is none.
 fn report(bytes: &[u8], operation: Operation) -> Value {
-    match run(operation, bytes, &Options::default(), &Budget::unlimited()) {
+    let wrap = WrapChoices { cells: Some(WRAP_CELLS), ..WrapChoices::default() };
+    let options = Options { wrap, ..Options::default() };
+    match run(operation, bytes, &options, &Budget::unlimited()) {
         Ok(answer) => serde_json::to_value(Report::new(&answer.report, TimingMs::default())).unwrap(),
         Err(failure) => json!({ "error": failure.to_string() }),
     }
