@@ -9,6 +9,7 @@ use meshmend::budget::Budget;
 use meshmend::certificate::{Certificate, Depth};
 use meshmend::formats::Encoding;
 use meshmend::geom::{DVec3, upward_crossing};
+use meshmend::mesh::UnionFind;
 use meshmend::simplify::{
     CriterionKind, Guards, Input, Placement, Simplified, SimplifyOptions, Target, simplify_fast,
     simplify_guarded,
@@ -272,10 +273,19 @@ fn a_pebble_in_the_dent_of_a_thin_plate_stays_on_its_side() {
         if !is_valid(&certified(&positions, &soup.triangles, true)) {
             return;
         }
-        // The highest vertex of the pebble, the last shell of four vertices.
+        // From the highest vertex of the pebble, the shell of four triangles.
         let above = |positions: &[DVec3], triangles: &[[u32; 3]]| {
-            let pebble =
-                triangles[triangles.len() - 4..].as_flattened().iter().map(|&v| positions[v as usize]);
+            let mut parts = UnionFind::new(positions.len());
+            for &[a, b, c] in triangles {
+                parts.unite(a, b);
+                parts.unite(b, c);
+            }
+            let parts = parts.into_components();
+            let part_of = |t: &[u32; 3]| parts.of[t[0] as usize];
+            let mut sizes = vec![0; parts.count as usize];
+            triangles.iter().for_each(|t| sizes[part_of(t) as usize] += 1);
+            let of_pebble = triangles.iter().filter(|t| sizes[part_of(t) as usize] == 4);
+            let pebble = of_pebble.flatten().map(|&v| positions[v as usize]);
             let top = pebble.max_by(|a, b| a.z.total_cmp(&b.z)).unwrap_or_default();
             crossings_above(top + DVec3::Z * 1e-6, positions, triangles)
         };

@@ -63,6 +63,11 @@ fn charts_stay_apart_and_none_is_lost_in_any_mode() {
         if random.one_in(3) {
             triangles.truncate(triangles.len() * 9 / 10);
         }
+        let budget = Budget::unlimited();
+        // A single triangle of a row that is left touches the next row in a vertex only.
+        if HalfEdgeMesh::from_triangles(&triangles, positions.len(), &budget).is_err() {
+            return;
+        }
         // Charts of any form: nearest of some centres, and sometimes single triangles of their own.
         let centres: Vec<DVec3> = (0..1 + random.below(9))
             .map(|_| {
@@ -105,7 +110,6 @@ fn charts_stay_apart_and_none_is_lost_in_any_mode() {
             placement,
             ..SimplifyOptions::default()
         };
-        let budget = Budget::unlimited();
         let want = charts(&triangles, &texture);
         for mode in [Mode::Strict, Mode::Fast, Mode::Guarded] {
             for level in simplify(&input, mode, &options, &budget).unwrap() {
