@@ -61,12 +61,8 @@ fn charts_stay_apart_and_none_is_lost_in_any_mode() {
         let n = 6 + random.below(14) as u32;
         let (positions, mut triangles) = torus(random, n);
         if random.one_in(3) {
-            triangles.truncate(triangles.len() * 9 / 10);
-        }
-        let budget = Budget::unlimited();
-        // A single triangle of a row that is left touches the next row in a vertex only.
-        if HalfEdgeMesh::from_triangles(&triangles, positions.len(), &budget).is_err() {
-            return;
+            // Whole rows, so that it stays a manifold.
+            triangles.truncate((2 * n * (n - 2)) as usize);
         }
         // Charts of any form: nearest of some centres, and sometimes single triangles of their own.
         let centres: Vec<DVec3> = (0..1 + random.below(9))
@@ -110,6 +106,7 @@ fn charts_stay_apart_and_none_is_lost_in_any_mode() {
             placement,
             ..SimplifyOptions::default()
         };
+        let budget = Budget::unlimited();
         let want = charts(&triangles, &texture);
         for mode in [Mode::Strict, Mode::Fast, Mode::Guarded] {
             for level in simplify(&input, mode, &options, &budget).unwrap() {

@@ -1,9 +1,10 @@
 //! Whether a collapse moves surface through other surface.
 //!
 //! A collapse is two moves: one end of the edge goes to the new place, then the other. Each move sweeps the tetrahedra
-//! of its old place, the new place and the edges around it. When the new triangles meet no triangle outside, and none
-//! lies in the tetrahedra, then the old star can be bent into the new one without touching anything: what is outside
-//! and meets neither star is wholly inside of what is swept or wholly outside, so one point of it decides.
+//! of its old place, the new place and the edges around it. No triangle outside may meet them except where it shares the
+//! edges around: neither their sides, which are the triangles before and after and the walls between, nor the inside.
+//! Triangles before are known to meet nothing. What meets no side is wholly in a tetrahedron or in none, so one point
+//! of it decides.
 
 use crate::geom::{Aabb, DVec3, Plane, Shared, Sign, are_collinear, contact, orient3d};
 use crate::simplify::report::Refusal;
@@ -152,6 +153,17 @@ impl Sweep {
                     return Err(Refusal::SelfIntersection);
                 }
             }
+            for (q, id) in sector.side.into_iter().zip(sector.ids) {
+                let wall = [sector.from, self.to, q];
+                // The merged vertex and the one that moves are no corners of `other`.
+                let shared = Shared::between([self.merged, self.merged, id], other.ids);
+                if has_area(wall)
+                    && has_area(other.corners)
+                    && contact(&Plane::through(wall), other.corners.each_ref(), shared).is_some()
+                {
+                    return Err(Refusal::Swept);
+                }
+            }
             let tetrahedron = [sector.from * factor, self.to * factor, q * factor, r * factor];
             if is_inside(point, tetrahedron) {
                 return Err(Refusal::Swept);
@@ -243,6 +255,23 @@ mod tests {
         let inner = Outside { ids: [1, 0, 30], corners: [DVec3::Y, DVec3::X, DVec3::ZERO] };
         assert_eq!(pyramid(-0.5).passes(&inner), Err(Refusal::Swept));
         assert_eq!(pyramid(0.5).passes(&inner), Ok(()));
+    }
+
+    #[test]
+    fn what_is_passed_sideways_is_swept_too() {
+        let rim = [DVec3::X, DVec3::Y, -DVec3::X, -DVec3::Y];
+        let mut sweep = Sweep::default();
+        sweep.begin(DVec3::new(3.0, 0.0, 2.0), 9);
+        for k in 0..4 {
+            let ids = [k as u32, (k as u32 + 1) % 4];
+            sweep.add(DVec3::new(-3.0, 0.0, 2.0), [rim[k], rim[(k + 1) % 4]], ids, true);
+        }
+        assert!(!sweep.finish().is_empty());
+        // A pole across the way of the apex, between the places that the pyramid has before and after.
+        let at = [DVec3::new(0.0, -9.0, 1.5), DVec3::new(0.0, 9.0, 1.5), DVec3::new(0.0, 9.0, 1.6)];
+        assert_eq!(sweep.passes(&Outside { ids: [20, 21, 22], corners: at }), Err(Refusal::Swept));
+        let above = at.map(|p| p + DVec3::Z);
+        assert_eq!(sweep.passes(&Outside { ids: [20, 21, 22], corners: above }), Ok(()));
     }
 
     #[test]
