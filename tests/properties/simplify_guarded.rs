@@ -291,7 +291,14 @@ fn a_pebble_in_the_dent_of_a_thin_plate_stays_on_its_side() {
         };
         assert_eq!(above(&positions, &soup.triangles), 2, "{case}");
         plates.fetch_add(1, Ordering::Relaxed);
-        let options = SimplifyOptions { round: true, ..options(random) };
+        // A plate that may fold or shrink can go around the pebble; one that keeps its form stays above it.
+        let options = SimplifyOptions {
+            round: true,
+            guards: Guards::default(),
+            criterion: random.pick(&[CriterionKind::Quadric, CriterionKind::Memoryless]),
+            targets: [0.5, 0.2].map(Target::Ratio).to_vec(),
+            ..options(random)
+        };
         let input = Input {
             positions: &positions,
             triangles: &soup.triangles,
@@ -313,7 +320,7 @@ fn a_pebble_in_the_dent_of_a_thin_plate_stays_on_its_side() {
         passed.fetch_add(u32::from(fast.iter().any(|level| went_through(&level))), Ordering::Relaxed);
     });
     let [plates, passed, smaller] = counts.map(AtomicU32::into_inner);
-    assert!(plates > cases(200, 10_000) as u32, "{plates} plates");
+    assert!(plates > cases(100, 5_000) as u32, "{plates} plates");
     assert!(passed > plates / 20, "{passed} of {plates} pass in the fast mode");
     assert!(smaller > plates, "{smaller} results are much smaller");
 }
