@@ -119,7 +119,7 @@ impl<'s> Surface<'s> {
     #[inline]
     fn harmless_pairs(&self, corners: [u32; 3]) -> u32 {
         let Some(terrains) = self.terrains else { return 0 };
-        (0..3).fold(0, |pairs, i| pairs | u32::from(terrains.holds(corners[i])) * (7 << (3 * i)))
+        (0..3).filter(|&i| terrains.holds(corners[i])).fold(0, |pairs, i| pairs | 7 << (3 * i))
     }
 }
 

@@ -4,7 +4,7 @@ use super::normals::Stars;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3, Plane, Shared, are_collinear, contact};
 use crate::par;
-use crate::spatial::{self, Bvh, Search, coincident_f64};
+use crate::spatial::{self, Bvh, Search, Terrains, coincident_f64};
 
 /// Rounds in which only the vertices of what meets go back.
 const ROUNDS_NEAR: usize = 4;
@@ -137,7 +137,9 @@ fn everywhere(
     budget: &Budget,
 ) -> Result<Vec<u32>, Stopped> {
     let search = Search::All { keep: CONTACTS };
-    let contacts = spatial::self_contacts(positions, triangles, bvh, None, search, budget)?;
+    // The surface is closed: every edge has its two triangles.
+    let terrains = Terrains::find(positions, triangles, &[], budget)?;
+    let contacts = spatial::self_contacts(positions, triangles, bvh, Some(&terrains), search, budget)?;
     Ok(contacts.list.iter().flat_map(|contact| [contact.a, contact.b]).collect())
 }
 
