@@ -14,6 +14,7 @@ pub mod spatial;
 
 pub mod distance;
 pub mod formats;
+pub mod winding;
 
 pub mod analysis;
 pub mod simplify;

@@ -43,6 +43,9 @@ fn option_flag(spec: &'static OptionSpec) -> Arg {
     match spec.kind {
         OptionKind::Word(words) => flag.value_name("WORD").value_parser(PossibleValuesParser::new(words)),
         OptionKind::Integer { .. } | OptionKind::Number { .. } => flag.value_name("NUMBER"),
+        OptionKind::Flag => {
+            flag.value_name("true|false").value_parser(PossibleValuesParser::new(["true", "false"]))
+        }
         OptionKind::Input | OptionKind::Targets => flag.value_name("JSON"),
     }
 }

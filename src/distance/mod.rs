@@ -11,6 +11,7 @@ mod pieces;
 mod samples;
 mod scale;
 mod search;
+mod view;
 
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
@@ -18,6 +19,7 @@ use crate::par;
 use crate::spatial::NearestSearch;
 use scale::Common;
 use search::Directed;
+use view::View;
 
 /// The triangles of a surface, by reference. Triangles may be degenerate, open, or meet in any way.
 #[derive(Debug, Clone, Copy)]
@@ -53,6 +55,25 @@ impl Default for DistanceOptions {
     }
 }
 
+/// What of a surface counts. The distance is then that of the places that can be seen: of a piece of a triangle that is
+/// farther than others some places are asked about, and it counts unless all are hidden.
+#[derive(Clone, Copy)]
+pub struct Sight<'v> {
+    /// Whether a place on a triangle of the first surface is hidden.
+    pub hides: &'v (dyn Fn(DVec3, u32) -> Result<bool, Stopped> + Sync),
+    /// What can be seen and is farther than this from the second surface is lost, in the unit of the coordinates.
+    pub lost_beyond: f64,
+}
+
+/// Shares of the area of a surface, by sampling.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Seen {
+    /// What is hidden.
+    pub hidden_share: f64,
+    /// What is lost, of what can be seen.
+    pub lost_share: f64,
+}
+
 /// The place where a distance was measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FarPoint {
@@ -79,6 +100,8 @@ pub struct DirectedDistance {
     pub mean: Option<f64>,
     /// The root of the mean square over the area of the first surface; `None` without samples.
     pub root_mean_square: Option<f64>,
+    /// What is hidden and lost; `None` where everything counts.
+    pub seen: Option<Seen>,
 }
 
 /// The distance between two surfaces.
@@ -121,10 +144,33 @@ pub fn surface_distance(
     let (a, b) = common.surfaces();
     let (near_a, near_b) = par::join(|| prepare(a, budget), || prepare(b, budget));
     let (near_a, near_b) = (near_a?, near_b?);
-    let directed = |from, to| Directed { from, to, common: &common, options, budget }.measure();
+    let view = View { sight: None, factor: common.factor, diagonal: common.diagonal };
+    let directed = |from, to| Directed { from, to, view, common: &common, options, budget }.measure();
     let forward = directed(a, &near_b)?;
     let backward = directed(b, &near_a)?;
     Ok(Some(SurfaceDistance { forward: common.unscale(forward), backward: common.unscale(backward) }))
+}
+
+/// The distance from what of `from` can be seen to surface `to`, one direction of [`surface_distance`].
+///
+/// # Errors
+/// When the budget stops the run.
+pub fn directed_distance(
+    from: Surface<'_>,
+    to: Surface<'_>,
+    sight: Option<Sight<'_>>,
+    options: &DistanceOptions,
+    budget: &Budget,
+) -> Result<Option<DirectedDistance>, Stopped> {
+    if from.triangles.is_empty() || to.triangles.is_empty() {
+        return Ok(None);
+    }
+    let common = Common::of(from, to, budget)?;
+    let (from, to) = common.surfaces();
+    let near = prepare(to, budget)?;
+    let view = View { sight, factor: common.factor, diagonal: common.diagonal };
+    let found = Directed { from, to: &near, view, common: &common, options, budget }.measure()?;
+    Ok(Some(common.unscale(found)))
 }
 
 fn prepare<'s>(surface: Surface<'s>, budget: &Budget) -> Result<NearestSearch<'s>, Stopped> {

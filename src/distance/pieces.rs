@@ -2,6 +2,7 @@
 
 use super::FarPoint;
 use super::bound::{Corner, upper_bound};
+use super::view::View;
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use crate::spatial::{Nearest, NearestSearch};
@@ -71,6 +72,7 @@ const WORK_MAX: u64 = 1024;
 /// Cuts `piece` until no part can be farther than the tolerance beyond the farthest point, or the work is used up.
 pub(super) fn refine(
     to: &NearestSearch<'_>,
+    view: &View<'_>,
     piece: Piece,
     farthest: Farthest,
     tolerance: Tolerance,
@@ -82,7 +84,7 @@ pub(super) fn refine(
         if piece.upper <= tolerance.enough(refined.farthest.distance) {
             refined.upper = refined.upper.max(piece.upper);
         } else {
-            split(to, &piece, &mut refined, tolerance, budget)?;
+            split(to, view, &piece, &mut refined, tolerance, budget)?;
         }
     }
     Ok(refined)
@@ -91,6 +93,7 @@ pub(super) fn refine(
 /// Cuts a piece at the middles of its edges in four.
 fn split(
     to: &NearestSearch<'_>,
+    view: &View<'_>,
     piece: &Piece,
     refined: &mut Refined,
     tolerance: Tolerance,
@@ -101,14 +104,18 @@ fn split(
         let place = (a.place + b.place) / 2.0;
         refined.work += 1;
         let Some(nearest) = to.find(place, Some(a.closest_triangle), budget)? else { return Ok(a) };
-        refined.farthest = refined.farthest.or(Farthest::at(place, piece.triangle, &nearest));
+        if nearest.distance > refined.farthest.distance && view.counts(place, piece.triangle)? {
+            refined.farthest = Farthest::at(place, piece.triangle, &nearest);
+        }
         Ok(Corner { place, closest_triangle: nearest.triangle, distance: nearest.distance })
     };
     let (pq, qr, rp) = (middle(p, q)?, middle(q, r)?, middle(r, p)?);
     let enough = tolerance.enough(refined.farthest.distance);
     for corners in [[p, pq, rp], [pq, q, qr], [rp, qr, r], [qr, rp, pq]] {
         let upper = upper_bound(to, &corners, enough).min(piece.upper);
-        refined.left.push(Piece { corners, upper, ..*piece });
+        if upper <= enough || !view.hides(&corners, piece.triangle)? {
+            refined.left.push(Piece { corners, upper, ..*piece });
+        }
     }
     Ok(())
 }

@@ -12,7 +12,7 @@ pub(super) struct Common<'s> {
     /// Positions of both when they had to be multiplied.
     scaled: Option<[Vec<DVec3>; 2]>,
     /// What they were multiplied by.
-    factor: f64,
+    pub(super) factor: f64,
     /// Diagonal of the box around both, in the new coordinates.
     pub(super) diagonal: f64,
     /// More than rounding can take from a distance, in the new coordinates: corners of pieces and closest points are
@@ -54,6 +54,7 @@ impl<'s> Common<'s> {
             farthest: FarPoint { place: place / self.factor, closest: closest / self.factor, ..of.farthest },
             mean: of.mean.map(back),
             root_mean_square: of.root_mean_square.map(back),
+            seen: of.seen,
         }
     }
 }

@@ -4,7 +4,8 @@ use super::bound::{Corner, upper_bound};
 use super::pieces::{Farthest, Piece, Refined, Tolerance, refine};
 use super::samples::Areas;
 use super::scale::Common;
-use super::{DirectedDistance, DistanceOptions, Surface};
+use super::view::View;
+use super::{DirectedDistance, DistanceOptions, Seen, Surface};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::par;
 use crate::spatial::NearestSearch;
@@ -13,6 +14,7 @@ use crate::spatial::NearestSearch;
 pub(super) struct Directed<'d> {
     pub(super) from: Surface<'d>,
     pub(super) to: &'d NearestSearch<'d>,
+    pub(super) view: View<'d>,
     pub(super) common: &'d Common<'d>,
     pub(super) options: &'d DistanceOptions,
     pub(super) budget: &'d Budget,
@@ -28,9 +30,17 @@ struct AtVertex {
 /// Sums over samples.
 #[derive(Debug, Clone, Copy)]
 struct Sampled {
+    /// Samples that count.
+    count: u32,
+    /// Of those, what is lost.
+    lost: u32,
     sum: f64,
     sum_of_squares: f64,
     farthest: Farthest,
+}
+
+impl Sampled {
+    const NONE: Self = Self { count: 0, lost: 0, sum: 0.0, sum_of_squares: 0.0, farthest: Farthest::NONE };
 }
 
 /// Vertices or samples looked at by one task.
@@ -43,19 +53,26 @@ impl Directed<'_> {
     pub(super) fn measure(&self) -> Result<DirectedDistance, Stopped> {
         let _charge = self.budget.charge(self.from.positions.len() as u64 * 16)?;
         let (vertices, at_vertices) = self.at_vertices()?;
-        let (sampled, count) = self.at_samples()?;
+        let sampled = self.at_samples()?;
         let known = at_vertices.or(sampled.farthest);
         let mut upper = 0.0;
         let (candidates, farthest) = self.candidates(&vertices, known, &mut upper)?;
         let _charge = self.budget.charge(candidates.len() as u64 * 16)?;
         let farthest = self.refine_all(&vertices, &candidates, farthest, &mut upper)?;
-        let mean_of = |sum: f64| (count > 0).then(|| sum / count as f64);
+        let share = |part: f64, all: u32| (all > 0).then(|| part / f64::from(all));
+        let mean_of = |sum: f64| share(sum, sampled.count);
+        let seen = self.view.sight.map(|_| Seen {
+            hidden_share: share(f64::from(self.options.samples - sampled.count), self.options.samples)
+                .unwrap_or(0.0),
+            lost_share: share(f64::from(sampled.lost), sampled.count).unwrap_or(0.0),
+        });
         Ok(DirectedDistance {
             upper: upper.max(farthest.distance) + self.common.slack,
-            lower: farthest.distance,
+            lower: farthest.distance.max(0.0),
             farthest: farthest.point,
             mean: mean_of(sampled.sum),
             root_mean_square: mean_of(sampled.sum_of_squares).map(f64::sqrt),
+            seen,
         })
     }
 
@@ -84,7 +101,10 @@ impl Directed<'_> {
                 };
                 if let Some(nearest) = nearest {
                     hint = Some(nearest.triangle);
-                    farthest = farthest.or(Farthest::at(self.from.positions[v], triangle_of[v], &nearest));
+                    let (place, triangle) = (self.from.positions[v], triangle_of[v]);
+                    if nearest.distance > farthest.distance && self.view.counts(place, triangle)? {
+                        farthest = Farthest::at(place, triangle, &nearest);
+                    }
                 }
                 let (closest_triangle, distance) = nearest.map_or((0, 0.0), |n| (n.triangle, n.distance));
                 found.push(AtVertex { closest_triangle, distance });
@@ -95,18 +115,23 @@ impl Directed<'_> {
         Ok((parts.into_iter().flat_map(|(found, _)| found).collect(), farthest))
     }
 
-    /// The distances at the samples.
-    fn at_samples(&self) -> Result<(Sampled, usize), Stopped> {
+    /// The distances at the samples that count.
+    fn at_samples(&self) -> Result<Sampled, Stopped> {
         let count = self.options.samples as usize;
         let areas = Areas::of(self.from, self.budget)?;
         let parts = par::try_map_ranges(count, POINTS_OF_TASK, |range| {
             self.budget.spend(range.len() as u64)?;
-            let mut of = Sampled { sum: 0.0, sum_of_squares: 0.0, farthest: Farthest::NONE };
+            let mut of = Sampled::NONE;
             let mut hint = None;
             for k in range {
                 let sample = areas.sample(self.from, k, count);
+                if !self.view.counts(sample.place, sample.triangle)? {
+                    continue;
+                }
                 if let Some(nearest) = self.to.find(sample.place, hint, self.budget)? {
                     hint = Some(nearest.triangle);
+                    of.count += 1;
+                    of.lost += u32::from(self.view.loses(nearest.distance));
                     of.sum += nearest.distance;
                     of.sum_of_squares += nearest.distance * nearest.distance;
                     of.farthest = of.farthest.or(Farthest::at(sample.place, sample.triangle, &nearest));
@@ -114,13 +139,13 @@ impl Directed<'_> {
             }
             Ok(of)
         })?;
-        let none = Sampled { sum: 0.0, sum_of_squares: 0.0, farthest: Farthest::NONE };
-        let all = parts.into_iter().fold(none, |all, part| Sampled {
+        Ok(parts.into_iter().fold(Sampled::NONE, |all, part| Sampled {
+            count: all.count + part.count,
+            lost: all.lost + part.lost,
             sum: all.sum + part.sum,
             sum_of_squares: all.sum_of_squares + part.sum_of_squares,
             farthest: all.farthest.or(part.farthest),
-        });
-        Ok((all, count))
+        }))
     }
 
     fn corners(&self, vertices: &[AtVertex], t: u32) -> [Corner; 3] {
@@ -173,7 +198,12 @@ impl Directed<'_> {
         let Some(nearest) = self.to.find(middle, Some(corners[0].closest_triangle), self.budget)? else {
             return Ok(bound);
         };
-        *farthest = farthest.or(Farthest::at(middle, t, &nearest));
+        if self.view.hides(&corners, t)? {
+            return Ok(0.0);
+        }
+        if nearest.distance > farthest.distance && self.view.counts(middle, t)? {
+            *farthest = Farthest::at(middle, t, &nearest);
+        }
         let from_one = corners.map(|c| self.to.on_triangle(c.place, nearest.triangle).distance);
         Ok(bound.min(from_one.into_iter().fold(0.0, f64::max)))
     }
@@ -219,7 +249,7 @@ impl Directed<'_> {
     fn refine_wave(&self, wave: &[Piece], farthest: Farthest) -> Result<Vec<Refined>, Stopped> {
         par::try_map_ranges(wave.len(), 1, |range| {
             let piece = wave[range.start];
-            let refined = refine(self.to, piece, farthest, self.tolerance(), self.budget)?;
+            let refined = refine(self.to, &self.view, piece, farthest, self.tolerance(), self.budget)?;
             self.budget.spend(refined.work)?;
             Ok(refined)
         })

@@ -61,6 +61,7 @@ impl Input {
             certificate: None,
             identical_triangle_share: None,
             distance: None,
+            losses: None,
             outcome: None,
             refusal: None,
             work_used: 0,

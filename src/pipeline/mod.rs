@@ -2,6 +2,7 @@
 
 mod convert;
 mod describe;
+mod fidelity;
 mod identical;
 mod input;
 mod output;
@@ -12,8 +13,9 @@ mod repair;
 mod simplify;
 mod texture;
 
+pub use self::fidelity::Losses;
 use self::input::Input;
-pub use self::rebuild::WrapChoices;
+pub use self::rebuild::{Effort, WrapChoices};
 use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stopped};
 use crate::certificate::{Certificate, Violation};
@@ -103,6 +105,8 @@ pub struct Options {
     pub require: Option<Require>,
     /// Hole filling of `repair`.
     pub fill_holes: FillHoles,
+    /// How far the result of a repair may be from the file.
+    pub limits: Limits,
     /// How a mesh is rebuilt that no step of `repair` makes a solid.
     pub wrap: WrapChoices,
     /// How `simplify` works, and how far; a repair ends with it when it has targets.
@@ -111,6 +115,16 @@ pub struct Options {
     pub samples: Option<usize>,
     /// The MTL file of an OBJ: its diffuse colours become face colours, which OFF and PLY can hold.
     pub material: Option<Vec<u8>>,
+}
+
+/// How far a result may be from the file.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Limits {
+    /// Largest distance, in the unit of the file, of a place of the result from the file and of a visible place of the
+    /// file from the result.
+    pub deviation_max: Option<f64>,
+    /// Largest share by which the volume may change, where the file's is defined.
+    pub volume_change_max: Option<f64>,
 }
 
 /// How far to simplify, and how.
@@ -198,6 +212,20 @@ pub enum Refusal {
         /// The diagonal of the part, in the same unit.
         diagonal: f64,
     },
+    /// No result is as close to the file as the caller demands.
+    DeviationBeyondLimit {
+        /// The least deviation that was reached, in the unit of the file.
+        deviation: f64,
+        /// What was demanded, in the same unit.
+        limit: f64,
+    },
+    /// No result keeps the volume as the caller demands.
+    VolumeChangeBeyondLimit {
+        /// The least change that was reached, as a share of the volume of the file.
+        change: f64,
+        /// What was demanded.
+        limit: f64,
+    },
     /// A coordinate cannot be written in the output format.
     NotRepresentable {
         /// Which, and why.
@@ -259,6 +287,8 @@ pub struct Report {
     pub identical_triangle_share: Option<f64>,
     /// How far the returned surface is from the input's; `None` where it was not measured.
     pub distance: Option<SurfaceDistance>,
+    /// What a repair lost of the input; `None` where it was not measured.
+    pub losses: Option<Losses>,
     /// What became of the file; `None` for `analyze` and `verify`.
     pub outcome: Option<Outcome>,
     /// Why there is no result.

@@ -1,8 +1,10 @@
 //! A broken file to a certified one: plans in order, the first whose bytes are certified wins.
 
+use super::fidelity::Original;
 use super::input::Input;
 use super::output::{Candidate, NoCandidate};
 use super::plan::{Attempt, Variant};
+use super::rebuild::NotRebuilt;
 use super::{Answer, Failure, Operation, Options, Outcome, Refusal, Report, Require, rebuild, simplify};
 use crate::analysis::Analysis;
 use crate::budget::{Budget, Stage, Stopped};
@@ -36,14 +38,7 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
     }
     let search = Search { input, encoding, options, before: report.before.as_ref(), budget };
     match search.run()? {
-        Found::Certified(found) => {
-            let (Attempt { draft, actions }, candidate) = *found;
-            if let Some(fewer) = simplify::of_certified(&draft, input, options, budget)? {
-                return fewer.returned(input, &draft, report, actions, Outcome::Repaired, budget);
-            }
-            let report = Report { actions, ..report };
-            Ok(candidate.returned(input, &draft.triangle_origin, report, Outcome::Repaired, budget)?)
-        }
+        Found::Certified(found) => certified(*found, input, encoding, options, report, budget),
         Found::Nothing { refusal: Refusal::NotRepairable { .. }, mended: Some(mended), .. }
             if options.require == Some(Require::None) =>
         {
@@ -51,19 +46,60 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
         }
         Found::Nothing {
             refusal: Refusal::NotRepairable { .. } | Refusal::NothingToRepair, mended, ..
-        } => {
-            let answer = rebuild::rebuild(input, encoding, options, report.clone(), budget)?;
-            match (&answer.report.refusal, mended) {
-                (Some(refusal), Some(mended)) if *refusal != Refusal::NothingToRepair => {
-                    partial(input, encoding, report, *mended, budget)
-                }
-                _ => Ok(answer),
+        } => match (rebuild::rebuild(input, encoding, options, report.before.as_ref(), budget), mended) {
+            (Ok(rebuilt), _) => Ok(rebuilt.returned(input, report, budget)?),
+            (Err(NotRebuilt::Failed(failure)), _) => Err(failure),
+            (Err(NotRebuilt::Refused { refusal, .. }), Some(mended))
+                if refusal != Refusal::NothingToRepair =>
+            {
+                partial(input, encoding, report, *mended, budget)
             }
-        }
+            (Err(NotRebuilt::Refused { refusal, actions }), _) => {
+                Ok(Report { actions, ..report }.refused(refusal))
+            }
+        },
         Found::Nothing { refusal, last, .. } => {
             Ok(Report { actions: last.actions, ..report }.refused(refusal))
         }
     }
+}
+
+/// A result of local steps, unless it lost too much and one that is rebuilt is closer.
+fn certified(
+    (attempt, candidate): (Attempt, Candidate),
+    input: &Input,
+    encoding: Encoding,
+    options: &Options,
+    report: Report,
+    budget: &Budget,
+) -> Result<Answer, Failure> {
+    let before = report.before.as_ref();
+    let volume = before.and_then(|analysis| analysis.measures.volume);
+    let Attempt { draft, actions } = attempt;
+    let origins = &draft.triangle_origin;
+    // Local steps hide nothing.
+    let original = Original::new(&input.soup, volume, None);
+    let fidelity = original.measure(candidate.soup(), origins, budget)?;
+    if !fidelity.passes(&options.limits) {
+        let rebuilt = match rebuild::rebuild(input, encoding, options, before, budget) {
+            Ok(rebuilt) => Some(rebuilt),
+            Err(NotRebuilt::Refused { .. }) => None,
+            Err(NotRebuilt::Failed(failure)) => return Err(failure),
+        };
+        let closer = rebuilt.filter(|rebuilt| !fidelity.is_no_worse(&rebuilt.fidelity, &options.limits));
+        if let Some(rebuilt) = closer {
+            return Ok(rebuilt.returned(input, report, budget)?);
+        }
+        if let Some(refusal) = fidelity.breach(&options.limits) {
+            return Ok(Report { actions, ..report }.refused(refusal));
+        }
+    }
+    let report = Report { losses: Some(fidelity.losses), distance: fidelity.distance, ..report };
+    if let Some(fewer) = simplify::of_certified(&draft, input, options, budget)? {
+        return fewer.returned(input, &draft, report, actions, Outcome::Repaired, budget);
+    }
+    let report = Report { actions, ..report };
+    Ok(candidate.returned(input, origins, report, Outcome::Repaired, budget)?)
 }
 
 /// The search for a plan that leads to certified bytes.

@@ -91,6 +91,9 @@ pub struct SimplifyOptions<'a> {
     /// Put new positions on the lattice of pitch `2^(ceil(log2 M) - 23)`, `M` the largest magnitude of a coordinate:
     /// all its points are float32, so that a file of float32 holds the very result.
     pub round: bool,
+    /// In the guarded mode also refuse collapses that sweep over something. Otherwise the surface is looked at after each
+    /// round only: what is valid stays valid, but a plate may go over a pebble on the way.
+    pub sweeps: bool,
     /// Give the results the costs of the collapses that would follow.
     pub priorities: bool,
 }
@@ -106,6 +109,7 @@ impl Default for SimplifyOptions<'_> {
             crease_cos_max: -2.0,
             wall_weight: 1.0,
             round: true,
+            sweeps: true,
             priorities: false,
         }
     }

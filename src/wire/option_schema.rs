@@ -22,6 +22,7 @@ impl OptionSpec {
             OptionKind::Number { min, max } => {
                 described.schema_type(Type::Number).minimum(Some(min)).maximum(Some(max))
             }
+            OptionKind::Flag => described.schema_type(Type::Boolean),
             OptionKind::Targets => return targets_schema(self.about),
             OptionKind::Input => described
                 .schema_type(Type::Object)

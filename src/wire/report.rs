@@ -110,7 +110,8 @@ pub struct Change {
 /// How far the result is from the input.
 #[derive(Debug, Clone, Serialize, ToSchema)]
 pub struct Deviation {
-    /// Upper bound of the two-sided Hausdorff distance, in the unit of the file.
+    /// Upper bound of the two-sided Hausdorff distance between the result and what can be seen of the input, in the unit
+    /// of the file.
     #[schema(required)]
     pub hausdorff_max: Option<f64>,
     /// How far the surfaces are from each other, with places; null: not measured.
@@ -122,6 +123,20 @@ pub struct Deviation {
     /// Difference of the areas, in square units of the file; null without a result.
     #[schema(required)]
     pub area_change: Option<f64>,
+    /// Share by which the volume changed; null unless that of the input is defined.
+    #[schema(required)]
+    pub volume_change_share: Option<f64>,
+    /// Share of the visible surface of the input, from 0 to 1, that is farther from the result than 0.2 % of the
+    /// diagonal, by sampling; null: not measured.
+    #[schema(required)]
+    pub visible_loss: Option<f64>,
+    /// Area of the input inside of it, which a rebuilt surface leaves out, in square units of the file; null: not
+    /// measured.
+    #[schema(required)]
+    pub hidden_area: Option<f64>,
+    /// Bodies of the input that can be seen and are lost as a whole; null: not measured.
+    #[schema(required)]
+    pub bodies_lost: Option<u32>,
     /// Share of the input's triangles that are bit-identical in the result, from 0 to 1.
     #[schema(required)]
     pub identical_triangle_share: Option<f64>,
@@ -284,6 +299,10 @@ impl Deviation {
             distance: inner.distance.as_ref().map(Distance::from),
             volume_change: change(|measures| measures.volume),
             area_change: change(|measures| Some(measures.area)),
+            volume_change_share: inner.losses.and_then(|losses| finite(losses.volume_change?)),
+            visible_loss: inner.losses.and_then(|losses| finite(losses.visible_loss)),
+            hidden_area: inner.losses.and_then(|losses| finite(losses.hidden_area)),
+            bodies_lost: inner.losses.map(|losses| losses.bodies_lost),
             identical_triangle_share: inner.identical_triangle_share.and_then(finite),
         }
     }
@@ -347,7 +366,17 @@ mod tests {
             assert_eq!(members(&report), expected);
             assert_eq!(
                 members(&report["deviation"]),
-                ["hausdorff_max", "distance", "volume_change", "area_change", "identical_triangle_share"]
+                [
+                    "hausdorff_max",
+                    "distance",
+                    "volume_change",
+                    "area_change",
+                    "volume_change_share",
+                    "visible_loss",
+                    "hidden_area",
+                    "bodies_lost",
+                    "identical_triangle_share"
+                ]
             );
             assert_eq!(members(&report["verdict"]), ["printable", "outcome", "reasons"]);
             assert_eq!(

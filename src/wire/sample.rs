@@ -92,6 +92,7 @@ pub(crate) fn repaired() -> Answer {
         certificate: Some(certificate(true)),
         identical_triangle_share: Some(1.0),
         distance: None,
+        losses: None,
         outcome: Some(Outcome::Repaired),
         refusal: None,
         work_used: 7,

@@ -81,7 +81,24 @@ impl From<&pipeline::Refusal> for Reason {
                 None,
                 format!(
                     "the mesh must be rebuilt, but coordinates of float32 are {pitch:e} apart there: too coarse for \
-                     a part with a diagonal of {diagonal:e}; move it to the origin"
+                     a part with a diagonal of {diagonal:e}; move it to the origin, or set `recenter=true`"
+                ),
+            ),
+            pipeline::Refusal::DeviationBeyondLimit { deviation, limit } => (
+                ReasonCode::LimitExceeded,
+                None,
+                format!(
+                    "the closest valid result is up to {deviation:.3e} away, in the unit of the file; \
+                     `max_deviation_mm` allows {limit:.3e}"
+                ),
+            ),
+            pipeline::Refusal::VolumeChangeBeyondLimit { change, limit } => (
+                ReasonCode::LimitExceeded,
+                None,
+                format!(
+                    "the closest valid result changes the volume by {:.2} %; `max_volume_change` allows {:.2} %",
+                    change * 100.0,
+                    limit * 100.0
                 ),
             ),
             pipeline::Refusal::NotRepresentable { reason } => {

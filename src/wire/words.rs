@@ -1,6 +1,6 @@
 //! One public word for each value of the engine's enumerations.
 
-use crate::{analysis, budget, certificate, formats, pipeline, simplify, wrap};
+use crate::{analysis, budget, certificate, formats, pipeline, simplify, winding};
 
 /// An enumeration whose values have public words.
 macro_rules! words {
@@ -189,7 +189,7 @@ mirror! { pipeline::FillHoles =>
     }
 }
 
-mirror! { wrap::OpenShells =>
+mirror! { winding::OpenShells =>
     /// How open shells are read where a mesh must be rebuilt.
     OpenShells {
         /// Those that nearly bound a volume are closed, others become walls.
@@ -198,6 +198,18 @@ mirror! { wrap::OpenShells =>
         Close = "close",
         /// As walls of no thickness.
         Thicken = "thicken",
+    }
+}
+
+mirror! { pipeline::Effort =>
+    /// How fine and so how long a mesh is rebuilt that no step of a repair makes a solid.
+    Effort {
+        /// The coarsest lattice that usually shows what is to be seen.
+        Low = "low",
+        /// That, and a finer one where too much is lost.
+        Normal = "normal",
+        /// Ever finer ones.
+        High = "high",
     }
 }
 
@@ -396,6 +408,8 @@ words! {
         NotRepairable = "not-repairable",
         /// A coordinate cannot be written in the output format.
         NotRepresentable = "not-representable",
+        /// No result keeps the caller's own limits.
+        LimitExceeded = "limit-exceeded",
         /// A condition of P0, P1 or P2 does not hold in the judged bytes.
         ConditionBroken = "condition-broken",
     }

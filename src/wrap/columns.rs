@@ -9,8 +9,8 @@ use crate::par;
 /// Triangles whose crossings are found at a time.
 const CHUNK: usize = 1024;
 
-/// For each vertex how often the closed surface winds around it, within -127 to 127. `corners` are in lattice units and
-/// counter-clockwise seen from outside.
+/// For each vertex how often the closed surface of both lists winds around it, within -127 to 127. Corners are in lattice
+/// units and counter-clockwise seen from outside.
 ///
 /// A line through the vertices of a column crosses a closed surface as often upward as downward, whatever the position,
 /// because every crossing is decided by exact predicates for a line moved by an infinitesimal amount. So a rounded
@@ -20,14 +20,16 @@ const CHUNK: usize = 1024;
 /// When the budget stops the run.
 pub(super) fn winding(
     lattice: &Lattice,
-    corners: &[[DVec3; 3]],
+    corners: [&[[DVec3; 3]]; 2],
     budget: &Budget,
 ) -> Result<Vec<i8>, Stopped> {
-    let found = par::try_map_ranges(corners.len(), CHUNK, |range| {
+    let [first, second] = corners;
+    let found = par::try_map_ranges(first.len() + second.len(), CHUNK, |range| {
         let mut crossings = Vec::new();
-        for &triangle in &corners[range] {
+        for t in range {
             budget.check()?;
-            cross(lattice, triangle, &mut crossings);
+            let triangle = first.get(t).unwrap_or_else(|| &second[t - first.len()]);
+            cross(lattice, *triangle, &mut crossings);
         }
         budget.spend(crossings.len() as u64)?;
         Ok(crossings)
@@ -119,7 +121,7 @@ mod tests {
         for (min, max) in [(6.5, 12.25), (6.0, 12.0)] {
             let mut all = cuboid(DVec3::splat(min), DVec3::splat(max));
             all.extend(cuboid(DVec3::splat(8.5), DVec3::splat(9.5)).into_iter().map(|[a, b, c]| [a, c, b]));
-            let winding = winding(&lattice, &all, &Budget::unlimited()).unwrap();
+            let winding = winding(&lattice, [&all, &[]], &Budget::unlimited()).unwrap();
             for (index, &w) in winding.iter().enumerate() {
                 let place = lattice.coordinates(index).map(|n| n as f64);
                 let inside = |low: f64, high: f64| place.iter().all(|&x| x > low && x < high);
@@ -138,7 +140,7 @@ mod tests {
         let [a, b, c, d] = [[6.0, 6.0, 6.0], [20.0, 6.0, 27.0], [6.0 + 1e-9, 22.0, 9.0], [20.0, 20.0, 8.0]]
             .map(DVec3::from_array);
         let solid = [[a, c, b], [a, b, d], [b, c, d], [c, a, d]];
-        let winding = winding(&lattice, &solid, &Budget::unlimited()).unwrap();
+        let winding = winding(&lattice, [&solid, &[]], &Budget::unlimited()).unwrap();
         for column in winding.chunks(lattice.dims[2]) {
             assert_eq!((column[0], column[lattice.dims[2] - 1]), (0, 0));
         }

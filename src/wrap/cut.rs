@@ -1,7 +1,7 @@
 //! Where the edges of the lattice are cut: on the input surface, as near as the clamped steps allow.
 
 use super::lattice::Lattice;
-use super::signs::{Inside, SHEET, Signs, THIN};
+use super::signs::{Inside, Signs, THIN};
 use super::surface::{Crossing, InputSurface, Says, separate};
 use super::tetrahedra::CutEdge;
 use crate::budget::{Budget, Stopped};
@@ -21,6 +21,8 @@ pub(super) struct Cut {
     pub(super) point: DVec3,
     /// The triangle of the input that the point is on, or [`NONE`].
     pub(super) triangle: u32,
+    /// Why the inner end of the edge is inside.
+    pub(super) why: Inside,
 }
 
 /// The cut of every edge.
@@ -90,7 +92,7 @@ impl Cutter<'_> {
         let upward = if is_up { share } else { 1.0 - share };
         let clamped = (upward * steps).round().clamp(steps / 8.0, steps * 0.875);
         let point = from.lerp(to, share);
-        Ok(Cut { steps: clamped as u16, point, triangle })
+        Ok(Cut { steps: clamped as u16, point, triangle, why })
     }
 
     /// Share of the way from inside to outside where a value falls below its threshold, taken as linear.
@@ -102,7 +104,7 @@ impl Cutter<'_> {
     ) -> Result<f64, Stopped> {
         let (values, threshold) = match why {
             Inside::Wound => (indices.map(|index| self.signs.winding(index)), 0.5),
-            Inside::NearSheet => (self.distances(&self.sheets, places)?, -SHEET),
+            Inside::NearSheet => (self.distances(&self.sheets, places)?, -self.signs.sheet_reach),
             Inside::NearThin => (self.distances(&self.thin, places)?, -THIN),
         };
         let [high, low] = values.map(|value| value - threshold);

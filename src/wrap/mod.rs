@@ -11,17 +11,16 @@ mod cut;
 mod fit;
 mod lattice;
 mod raster;
-mod shells;
 mod signs;
 mod surface;
 mod tetrahedra;
-mod winding_tree;
 
 #[cfg(test)]
 mod tests;
 
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3, triangle_area};
+use crate::winding::{self, OpenShells};
 use cut::Cut;
 pub use fit::FitCounts;
 use lattice::Lattice;
@@ -30,18 +29,6 @@ use signs::Signs;
 use surface::InputSurface;
 use tetrahedra::Patches;
 
-/// How open shells are read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum OpenShells {
-    /// Those that nearly bound a volume are closed, others become walls.
-    #[default]
-    Auto,
-    /// As the boundary of a volume, open only by mistake.
-    Close,
-    /// As walls of no thickness.
-    Thicken,
-}
-
 /// The settings of a wrap.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WrapOptions {
@@ -49,6 +36,8 @@ pub struct WrapOptions {
     pub cells: u32,
     /// How open shells are read.
     pub open_shells: OpenShells,
+    /// Thickness of the walls that sheets become, in the unit of the input; `None`: 0.4 % of the diagonal.
+    pub wall: Option<f64>,
     /// Most vertices of the lattice, each of which takes two bytes.
     pub vertices_max: usize,
     /// Most cubes and columns to go through for all triangles together.
@@ -64,6 +53,7 @@ impl Default for WrapOptions {
         Self {
             cells: 256,
             open_shells: OpenShells::Auto,
+            wall: None,
             vertices_max: 1 << 25,
             visits_max: 1 << 27,
             area_max: 30_000.0,
@@ -102,6 +92,8 @@ pub struct Account {
     pub sheet_parts: u32,
     /// Triangles of walls thinner than a cube, which grew.
     pub thin_triangles: u64,
+    /// Thickness of the walls that sheets became, in the unit of the input.
+    pub wall: f64,
     /// How clearly open parts bound a volume: 1 for a closed shell, 0 for a flat sheet. `None`: there are none.
     pub closedness: Option<f64>,
     /// What the fit did.
@@ -121,6 +113,15 @@ pub enum WrapError {
     #[error(transparent)]
     Stopped(#[from] Stopped),
 }
+
+/// How far beside a triangle its sides are looked at, in cells.
+const BESIDE: f64 = 1e-3;
+
+/// Thickness of walls when the caller does not say.
+const WALL_OF_DIAGONAL: f64 = 0.004;
+
+/// Thinnest and thickest walls, in cells.
+const WALLS: [f64; 2] = [0.25, 16.0];
 
 /// Cells below which no crowd of triangles pushes the resolution.
 const CELLS_LEAST: u32 = 24;
@@ -142,7 +143,7 @@ pub fn wrap(
     let lattice = choose(bounds, positions, triangles, options, budget)?;
     let _charge = budget.charge(lattice.len() as u64 * 2 + triangles.len() as u64 * 200)?;
     let units: Vec<DVec3> = positions.iter().map(|&p| lattice.units_of(p)).collect();
-    let shells = shells::sort(&units, triangles, options.open_shells, budget)?;
+    let shells = winding::sort(&units, triangles, options.open_shells, BESIDE, budget)?;
     let mut account = Account {
         spacing: lattice.side(),
         pitch: lattice.pitch,
@@ -151,11 +152,13 @@ pub fn wrap(
         open_parts: shells.parts[1],
         sheet_parts: shells.parts[2],
         thin_triangles: 0,
+        wall: wall_of(options, bounds, &lattice) * lattice.side(),
         closedness: shells.closedness,
         fit: FitCounts::default(),
     };
     let surface = InputSurface::new(shells, budget)?;
-    let signs = Signs::decide(&lattice, &surface, budget)?;
+    let wall = wall_of(options, bounds, &lattice);
+    let signs = Signs::decide(&lattice, &surface, wall, budget)?;
     account.thin_triangles = signs.thin.len() as u64;
     let patches = tetrahedra::march(&lattice, &signs, budget)?;
     let cuts = cut::cuts(&lattice, &signs, &surface, &patches.edges, budget)?;
@@ -164,9 +167,15 @@ pub fn wrap(
     let mut unfitted = Vec::new();
     if options.is_fitted {
         unfitted.clone_from(&positions);
-        account.fit = fit::fit(&lattice, &signs, &surface, &cuts, &mut positions, &triangles, budget)?;
+        account.fit = fit::fit(&lattice, &signs, &surface, wall, &cuts, &mut positions, &triangles, budget)?;
     }
     Ok(Wrapped { positions, unfitted, triangles, account })
+}
+
+/// Thickness of the walls that sheets become, in cells.
+fn wall_of(options: &WrapOptions, bounds: Aabb, lattice: &Lattice) -> f64 {
+    let wall = options.wall.unwrap_or((bounds.max - bounds.min).length() * WALL_OF_DIAGONAL);
+    (wall / lattice.side()).clamp(WALLS[0], WALLS[1])
 }
 
 /// The finest lattice up to what is asked that the limits allow.

@@ -7,16 +7,16 @@
 
 use super::lattice::Lattice;
 use super::surface::{InputSurface, separate};
-use super::winding_tree::WindingTree;
 use super::{columns, raster};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 use crate::par;
 use crate::spatial::NearestSearch;
+use crate::winding::{WindingTree, turned};
 
-/// Thickness of a sheet in cells: what the vertices of every cube that it goes through are within. It grows behind the
-/// sheet, so that the sheet itself remains one side.
-pub(super) const SHEET: f64 = 1.733;
+/// Least distance in cells up to which a sheet grows: what the vertices of every cube that it goes through are within. It
+/// grows behind the sheet, so that the sheet itself remains one side.
+const SHEET: f64 = 1.733;
 
 /// Distance in cells up to which a thin wall grows to both sides. The plane in the middle of a slab twice as thick, and
 /// a line in a tube, have vertices of the lattice that hang together beside them everywhere.
@@ -47,30 +47,34 @@ pub(super) enum Inside {
 pub(super) struct Signs<'l> {
     lattice: &'l Lattice,
     state: Vec<u8>,
-    /// Winding number of the closed shells.
+    /// Distance in cells up to which sheets grew.
+    pub(super) sheet_reach: f64,
+    /// Winding number of all that bounds a volume, closed by cones.
     closed: Vec<i8>,
-    /// The open shells that bound a volume.
+    /// The cones, turned around.
     open: WindingTree,
     /// Triangles of walls thinner than a cell.
     pub(super) thin: Vec<[DVec3; 3]>,
 }
 
 impl<'l> Signs<'l> {
-    /// Decides the signs.
+    /// Decides the signs; sheets become walls of a thickness of `wall` cells or more, which the fit makes thinner.
     ///
     /// # Errors
     /// When the budget stops the run.
     pub(super) fn decide(
         lattice: &'l Lattice,
         surface: &InputSurface,
+        wall: f64,
         budget: &Budget,
     ) -> Result<Self, Stopped> {
         let (closed, open) = par::join(
-            || columns::winding(lattice, surface.closed(), budget),
-            || WindingTree::build(surface.open().to_vec(), budget),
+            || columns::winding(lattice, [surface.boundary(), &surface.cones], budget),
+            || WindingTree::build(turned(&surface.cones), budget),
         );
         let state = vec![0u8; lattice.len()];
-        let mut signs = Self { lattice, state, closed: closed?, open: open?, thin: Vec::new() };
+        let sheet_reach = wall.max(SHEET);
+        let mut signs = Self { lattice, state, sheet_reach, closed: closed?, open: open?, thin: Vec::new() };
         signs.border();
         signs.touch(surface.closed(), TOUCHED, budget)?;
         signs.touch(surface.open(), TOUCHED, budget)?;
@@ -90,7 +94,8 @@ impl<'l> Signs<'l> {
     #[cfg(test)]
     pub(super) fn of_field(lattice: &'l Lattice, inside: &[bool]) -> Self {
         let state = inside.iter().map(|&is_inside| if is_inside { KNOWN | INSIDE } else { KNOWN }).collect();
-        Self { lattice, state, closed: Vec::new(), open: WindingTree::default(), thin: Vec::new() }
+        let (closed, open) = (Vec::new(), WindingTree::default());
+        Self { lattice, state, sheet_reach: SHEET, closed, open, thin: Vec::new() }
     }
 
     /// True when the vertex is known to be inside.
@@ -175,6 +180,34 @@ impl<'l> Signs<'l> {
                     });
                 }
             }
+        }
+        near.iter().for_each(|&v| self.state[v as usize] &= !LISTED);
+        Ok(near)
+    }
+
+    /// Adds to a list what is beside it, and again, as many `times`.
+    fn widen(&mut self, mut near: Vec<u32>, times: usize, budget: &Budget) -> Result<Vec<u32>, Stopped> {
+        near.iter().for_each(|&v| self.state[v as usize] |= LISTED);
+        let mut last = 0;
+        for _ in 0..times {
+            let end = near.len();
+            for n in last..end {
+                if n % CHECK_EVERY == 0 {
+                    budget.check()?;
+                }
+                let index = near[n] as usize;
+                if self.lattice_border(index) {
+                    continue;
+                }
+                for offset in beside() {
+                    let beside = index.wrapping_add_signed(self.lattice.stride(offset));
+                    if self.state[beside] & LISTED == 0 {
+                        self.state[beside] |= LISTED;
+                        near.push(beside as u32);
+                    }
+                }
+            }
+            last = end;
         }
         near.iter().for_each(|&v| self.state[v as usize] &= !LISTED);
         Ok(near)
@@ -265,6 +298,7 @@ impl<'l> Signs<'l> {
         let mut changed = Vec::new();
         if !surface.sheets().is_empty() {
             let near = self.near(TOUCHED_BY_SHEET, budget)?;
+            let near = self.widen(near, (self.sheet_reach - SHEET).ceil() as usize, budget)?;
             self.grow(&near, surface.sheets(), true, &mut changed, budget)?;
         }
         // Also sheets that grew into each other's front and so not at all.
@@ -320,7 +354,7 @@ impl<'l> Signs<'l> {
     ) -> Result<(), Stopped> {
         let names = separate(triangles.len());
         let search = NearestSearch::build(triangles.as_flattened(), &names, budget)?;
-        let (reach, mark) = if is_sheet { (SHEET, SHEET_SIDE) } else { (THIN, THIN_SIDE) };
+        let (reach, mark) = if is_sheet { (self.sheet_reach, SHEET_SIDE) } else { (THIN, THIN_SIDE) };
         let grown = par::try_map_ranges(near.len(), 1024, |range| {
             budget.spend(range.len() as u64 * 4)?;
             let mut hint = None;

@@ -1,9 +1,9 @@
 //! The input as the wrap sees it: triangles in lattice units, by what they say about inside and outside.
 
-use super::shells::Shells;
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3};
 use crate::spatial::Bvh;
+use crate::winding::Shells;
 
 /// What a triangle says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,6 +21,8 @@ pub(super) struct InputSurface {
     pub(super) corners: Vec<[DVec3; 3]>,
     closed: usize,
     boundary: usize,
+    /// What closes the open ones.
+    pub(super) cones: Vec<[DVec3; 3]>,
     bvh: Bvh,
 }
 
@@ -42,7 +44,12 @@ impl InputSurface {
         corners.extend(shells.open);
         corners.extend(shells.sheets);
         let bvh = Bvh::build(corners.as_flattened(), &separate(corners.len()), None, budget)?;
-        Ok(Self { corners, closed, boundary, bvh })
+        Ok(Self { corners, closed, boundary, cones: shells.cones, bvh })
+    }
+
+    /// Those that bound a volume.
+    pub(super) fn boundary(&self) -> &[[DVec3; 3]] {
+        &self.corners[..self.boundary]
     }
 
     pub(super) fn closed(&self) -> &[[DVec3; 3]] {

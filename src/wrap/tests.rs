@@ -306,7 +306,12 @@ fn any_signs_give_a_surface_that_is_certified() {
                     0 => [least, most][random.below(2) as usize],
                     _ => least + random.below(most - least + 1),
                 };
-                Cut { steps: steps as u16, point: DVec3::ZERO, triangle: cut::NONE }
+                Cut {
+                    steps: steps as u16,
+                    point: DVec3::ZERO,
+                    triangle: cut::NONE,
+                    why: signs::Inside::Wound,
+                }
             })
             .collect();
         let positions = places(&lattice, &patches, &cuts);

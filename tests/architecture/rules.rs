@@ -6,7 +6,7 @@ use crate::scan::{Mention, SourceFile};
 const LEVELS: [&[&str]; 9] = [
     &["budget", "par", "geom"],
     &["spatial", "mesh"],
-    &["formats", "distance"],
+    &["formats", "distance", "winding"],
     &["analysis", "implicit", "simplify", "modeller", "arrangement"],
     &["repair", "certificate", "wrap"],
     &["pipeline"],

@@ -10,7 +10,7 @@ use meshmend::par;
 use meshmend::pipeline::{
     Answer, FillHoles, Operation, Options, Outcome, Refusal, Require, WrapChoices, run,
 };
-use meshmend::wrap::OpenShells;
+use meshmend::winding::OpenShells;
 
 fn answer(bytes: &[u8], options: &Options) -> Answer {
     run(Operation::Repair, bytes, options, &Budget::unlimited()).unwrap()
@@ -331,7 +331,7 @@ fn what_no_step_makes_a_solid_is_rebuilt() {
 fn open_shells_are_closed_or_thickened_as_asked() {
     let bytes = encode(&without(cube(), &[2, 3]), Encoding::Obj);
     let volume = |open_shells| {
-        let wrap = WrapChoices { cells: Some(32), open_shells };
+        let wrap = WrapChoices { cells: Some(32), open_shells, ..WrapChoices::default() };
         let options = Options { fill_holes: FillHoles::None, wrap, ..Options::default() };
         rebuilt(&answer(&bytes, &options)).0
     };

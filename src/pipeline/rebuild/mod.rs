@@ -2,42 +2,41 @@
 
 mod parts;
 
+use super::fidelity::{Fidelity, Original};
 use super::input::Input;
 use super::output::{Candidate, NoCandidate};
 use super::plan::{Attempt, Step, Variant};
 use super::{Action, Answer, Failure, Options, Outcome, Refusal, Report};
-use crate::analysis::DefectCode;
+use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::Depth;
-use crate::distance::{DistanceOptions, Surface, SurfaceDistance, surface_distance};
 use crate::formats::Encoding;
-use crate::geom::DVec3;
+use crate::geom::{Aabb, DVec3};
 use crate::mesh::Soup;
 use crate::repair::duplicates::OppositePairs;
 use crate::repair::{Draft, NEW, nest};
 use crate::simplify::{self, Mode, Simplified, SimplifyError, SimplifyOptions, Target};
-use crate::wrap::{self, Account, OpenShells, WrapError, WrapOptions, Wrapped};
+use crate::winding::{OpenShells, Solid};
+use crate::wrap::{self, Account, WrapError, WrapOptions, Wrapped};
 
 /// How a broken mesh is rebuilt.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct WrapChoices {
     /// How open shells are read.
     pub open_shells: OpenShells,
-    /// Cells along the longest side; `None`: up to 256, as many as the area of the surface allows.
+    /// Cells along the longest side; `None`: by the effort, as many as the area of the surface allows.
     pub cells: Option<u32>,
+    /// How fine and so how long to try, where no number of cells is given.
+    pub effort: Effort,
+    /// Thickness of the walls that sheets become, in the unit of the file; `None`: 0.4 % of the diagonal.
+    pub wall: Option<f64>,
+    /// A mesh too far from the origin for float32 is moved there.
+    pub may_recenter: bool,
 }
 
 /// Collapses of a rebuilt surface have errors up to this share of a cell, unless the caller has targets: what can be
 /// seen comes from the lattice's cells, and flat faces need few triangles.
 const ERROR_OF_CELL: f64 = 0.05;
-
-/// What the distance of a rebuilt surface from its input may cost, and how close it is enclosed.
-const DISTANCE: DistanceOptions = DistanceOptions {
-    tolerance_relative: 0.05,
-    tolerance_of_diagonal: 1e-5,
-    samples: 1 << 14,
-    refinements_max: 1 << 21,
-};
 
 /// Defects that lead here when no step cures them.
 const CAUSES: [DefectCode; 9] = [
@@ -52,57 +51,188 @@ const CAUSES: [DefectCode; 9] = [
     DefectCode::MisnestedShell,
 ];
 
-/// Rebuilds `input`; `report` is the account so far, without actions.
+/// How fine and so how long to try.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Effort {
+    /// The coarsest lattice that usually shows what is to be seen.
+    Low,
+    /// That, and a finer one where too much is lost.
+    #[default]
+    Normal,
+    /// Ever finer ones.
+    High,
+}
+
+impl Effort {
+    /// The lattices to try, one after the other: cells along the longest side, and most cubes for the area.
+    fn lattices(self) -> &'static [(u32, f64)] {
+        const ALL: [(u32, f64); 3] = [(256, 3e4), (512, 1.5e5), (1024, 6e5)];
+        match self {
+            Self::Low => &ALL[..1],
+            Self::Normal => &ALL[..2],
+            Self::High => &ALL,
+        }
+    }
+}
+
+/// A certified mesh, how it came to be, and how far it is from the input.
+pub(super) struct Rebuilt {
+    candidate: Candidate,
+    /// The triangle of the input that each triangle is, or [`NEW`].
+    origins: Vec<u32>,
+    pub(super) fidelity: Fidelity,
+    actions: Vec<Action>,
+}
+
+impl Rebuilt {
+    pub(super) fn returned(self, input: &Input, report: Report, budget: &Budget) -> Result<Answer, Stopped> {
+        let Fidelity { distance, losses } = self.fidelity;
+        let report = Report { actions: self.actions, distance, losses: Some(losses), ..report };
+        self.candidate.returned(input, &self.origins, report, Outcome::Rebuilt, budget)
+    }
+}
+
+/// Rebuilds `input`, ever finer until a result passes; the best one there is.
+///
+/// # Errors
+/// When there is none, or the budget stops the run.
 pub(super) fn rebuild(
     input: &Input,
     encoding: Encoding,
     options: &Options,
-    report: Report,
+    before: Option<&Analysis>,
     budget: &Budget,
-) -> Result<Answer, Failure> {
-    let before = report.before.clone();
-    let mut attempt = Attempt::start(&input.soup, before.as_ref());
+) -> Result<Rebuilt, NotRebuilt> {
+    let mut attempt = Attempt::start(&input.soup, before);
     let _charge = budget.charge(attempt.draft.bytes())?;
     let variant = Variant { opposite: OppositePairs::KeepFirst, ..Variant::default() };
     let steps: Vec<Step> =
         variant.mending(options.fill_holes).into_iter().chain([Step::JoinCopies]).collect();
-    budget.stage(Stage::Repair, || attempt.run(&steps, &input.soup, before.as_ref(), budget))?;
-    let choices = options.wrap;
-    let wrap_options = WrapOptions {
-        cells: choices.cells.unwrap_or(WrapOptions::default().cells),
-        open_shells: choices.open_shells,
-        // Who asks for a number of cells gets it.
-        area_max: choices.cells.map_or(WrapOptions::default().area_max, |_| f64::INFINITY),
-        ..WrapOptions::default()
-    };
-    let rebuilding = Rebuilding { input, encoding, options, wrap_options, budget };
-    let split = budget.stage(Stage::Repair, || parts::split(&attempt.draft, budget))?;
-    let mut rebuilt = None;
-    if let Some(split) = split {
-        rebuilt = match rebuilding.beside(split) {
-            Ok(rebuilt) => Some(rebuilt),
-            // Not with these parts kept; without them then.
-            Err(NoCandidate::Refused(_)) => None,
-            Err(NoCandidate::Failed(failure)) => return Err(failure),
-        };
-    }
-    let rebuilt = match rebuilt.map_or_else(|| rebuilding.all(&attempt.draft), Ok) {
-        Ok(rebuilt) => rebuilt,
-        Err(NoCandidate::Refused(refusal)) => {
-            return Ok(Report { actions: attempt.actions, ..report }.refused(refusal));
+    budget.stage(Stage::Repair, || attempt.run(&steps, &input.soup, before, budget))?;
+    let Attempt { draft, actions } = attempt;
+    let search = Search { input, encoding, options, before, budget };
+    match search.run(&input.soup, &draft, &actions) {
+        Err(NotRebuilt::Refused { refusal: Refusal::BeyondFloat32 { .. }, .. })
+            if options.wrap.may_recenter =>
+        {
+            let center = middle(&draft);
+            let soup = Soup { positions: moved(&input.soup.positions, center), ..input.soup.clone() };
+            let draft = Draft { positions: moved(&draft.positions, center), ..draft };
+            search.run(&soup, &draft, &[actions, vec![recentered(center)]].concat())
         }
-        Err(NoCandidate::Failed(failure)) => return Err(failure),
-    };
-    let mut actions = attempt.actions;
-    actions.push(action(&rebuilt, choices.open_shells, before.as_ref()));
-    actions.extend(rebuilt.simplified);
-    let distance = distance(input, rebuilt.candidate.soup(), budget)?;
-    let report = Report { actions, distance, ..report };
-    Ok(rebuilt.candidate.returned(input, &rebuilt.origins, report, Outcome::Rebuilt, budget)?)
+        found => found,
+    }
+}
+
+/// The search for a lattice whose result is close enough.
+struct Search<'a> {
+    input: &'a Input,
+    encoding: Encoding,
+    options: &'a Options,
+    before: Option<&'a Analysis>,
+    budget: &'a Budget,
+}
+
+impl Search<'_> {
+    /// Tries ever finer lattices for a draft made of `soup` by `actions`.
+    fn run(&self, soup: &Soup, draft: &Draft, actions: &[Action]) -> Result<Rebuilt, NotRebuilt> {
+        let (choices, limits, budget) = (&self.options.wrap, &self.options.limits, self.budget);
+        let refused = |refusal| NotRebuilt::Refused { refusal, actions: actions.to_vec() };
+        let split = budget.stage(Stage::Repair, || parts::split(draft, budget))?;
+        let solid = budget.stage(Stage::Measure, || {
+            Solid::of(&draft.positions, &draft.triangles, choices.open_shells, budget)
+        })?;
+        let volume = self.before.and_then(|analysis| analysis.measures.volume);
+        let original = Original::new(soup, volume, Some(solid));
+        let asked = choices.cells.map(|cells| [(cells, f64::INFINITY)]);
+        let lattices = asked.as_ref().map_or_else(|| choices.effort.lattices(), |one| one);
+        let mut best: Option<Rebuilt> = None;
+        let mut cells_before = 0;
+        for &(cells, area_max) in lattices {
+            let wrap_options = WrapOptions {
+                cells,
+                open_shells: choices.open_shells,
+                wall: choices.wall,
+                area_max,
+                ..WrapOptions::default()
+            };
+            let (input, encoding, options) = (self.input, self.encoding, self.options);
+            let rebuilding = Rebuilding { input, encoding, options, wrap_options, budget };
+            let made = match rebuilding.run(draft, split.as_ref()) {
+                Ok(made) => made,
+                // Finer was too much; what there is stays.
+                Err(NoCandidate::Refused(_)) if best.is_some() => break,
+                Err(NoCandidate::Refused(refusal)) => return Err(refused(refusal)),
+                Err(NoCandidate::Failed(failure)) => return Err(failure.into()),
+            };
+            // The limits of the lattice allow no finer one.
+            if made.account.cells <= cells_before {
+                break;
+            }
+            cells_before = made.account.cells;
+            let fidelity = original.measure(made.candidate.soup(), &made.origins, budget)?;
+            let is_better = |best: &Rebuilt| !best.fidelity.is_no_worse(&fidelity, limits);
+            if best.as_ref().is_none_or(is_better) {
+                let wrap = action(&made, choices.open_shells, self.before);
+                let actions = actions.iter().cloned().chain([wrap]).chain(made.simplified).collect();
+                let Made { candidate, origins, .. } = made;
+                best = Some(Rebuilt { candidate, origins, fidelity, actions });
+            }
+            if fidelity.passes(limits) {
+                break;
+            }
+        }
+        let best = best.ok_or_else(|| refused(Refusal::NotRepairable { witness: None }))?;
+        match best.fidelity.breach(limits) {
+            None => Ok(best),
+            Some(refusal) => Err(NotRebuilt::Refused { refusal, actions: best.actions }),
+        }
+    }
+}
+
+/// The middle of a mesh, rounded so that small coordinates stay exact.
+fn middle(draft: &Draft) -> DVec3 {
+    let bounds = Aabb::of(draft.triangles.as_flattened().iter().map(|&v| draft.positions[v as usize]));
+    (bounds.min / 2.0 + bounds.max / 2.0).round()
+}
+
+/// `positions` as seen from `center`.
+fn moved(positions: &[DVec3], center: DVec3) -> Vec<DVec3> {
+    positions.iter().map(|&p| p - center).collect()
+}
+
+/// The step that moved everything to the origin.
+fn recentered(center: DVec3) -> Action {
+    Action {
+        step: "recenter",
+        causes: Vec::new(),
+        changes: Vec::new(),
+        move_max: center.length(),
+        reason: format!(
+            "moved by [{:e}, {:e}, {:e}] as allowed: float32 is too coarse where it was; distances do not count this",
+            -center.x, -center.y, -center.z
+        ),
+    }
+}
+
+/// Why nothing was rebuilt.
+pub(super) enum NotRebuilt {
+    /// With the steps that ran.
+    Refused {
+        refusal: Refusal,
+        actions: Vec<Action>,
+    },
+    Failed(Failure),
+}
+
+impl<E: Into<Failure>> From<E> for NotRebuilt {
+    fn from(error: E) -> Self {
+        Self::Failed(error.into())
+    }
 }
 
 /// A certified mesh, and how it came to be.
-struct Rebuilt {
+struct Made {
     candidate: Candidate,
     /// The triangle of the input that each triangle is, or [`NEW`].
     origins: Vec<u32>,
@@ -120,17 +250,25 @@ struct Rebuilding<'a> {
 }
 
 impl Rebuilding<'_> {
+    /// Beside the parts that can keep their bits, or without them.
+    fn run(&self, draft: &Draft, split: Option<&parts::Split>) -> Result<Made, NoCandidate> {
+        match split.map(|split| self.beside(split)) {
+            None | Some(Err(NoCandidate::Refused(_))) => self.all(draft),
+            Some(made) => made,
+        }
+    }
+
     /// Everything is rebuilt.
-    fn all(&self, draft: &Draft) -> Result<Rebuilt, NoCandidate> {
+    fn all(&self, draft: &Draft) -> Result<Made, NoCandidate> {
         let wrapped = self.wrap(draft)?;
         self.certified(&wrapped, &Draft::default())
     }
 
     /// Some parts keep their bits.
-    fn beside(&self, split: parts::Split) -> Result<Rebuilt, NoCandidate> {
-        let parts::Split { mut kept, broken } = split;
+    fn beside(&self, split: &parts::Split) -> Result<Made, NoCandidate> {
+        let mut kept = split.kept.clone();
         nest::nest(&mut kept, true, self.budget)?;
-        let wrapped = self.wrap(&broken)?;
+        let wrapped = self.wrap(&split.broken)?;
         self.certified(&wrapped, &kept)
     }
 
@@ -148,16 +286,20 @@ impl Rebuilding<'_> {
     }
 
     /// The first of the simplified, the fitted and the bare surface whose bytes are certified, beside `kept`.
-    fn certified(&self, wrapped: &Wrapped, kept: &Draft) -> Result<Rebuilt, NoCandidate> {
+    fn certified(&self, wrapped: &Wrapped, kept: &Draft) -> Result<Made, NoCandidate> {
         let origins = |count: usize| {
             kept.triangle_origin.iter().copied().chain(std::iter::repeat_n(NEW, count)).collect()
         };
         let account = wrapped.account;
-        if let Some((simplified, action)) = simplified(wrapped, self.options, self.budget)? {
+        // What the fast mode gives is nearly always valid, and the certificate says whether it is.
+        for mode in [Mode::Fast, Mode::Guarded] {
+            let Some((simplified, action)) = simplified(wrapped, mode, self.options, self.budget)? else {
+                break;
+            };
             let candidate = self.write(&simplified.positions, &simplified.triangles, kept)?;
             if candidate.certificate().is_printable() {
                 let origins = origins(simplified.triangles.len());
-                return Ok(Rebuilt { candidate, origins, account, simplified: Some(action) });
+                return Ok(Made { candidate, origins, account, simplified: Some(action) });
             }
         }
         let mut witness = None;
@@ -165,7 +307,7 @@ impl Rebuilding<'_> {
             let candidate = self.write(positions, &wrapped.triangles, kept)?;
             if candidate.certificate().is_printable() {
                 let origins = origins(wrapped.triangles.len());
-                return Ok(Rebuilt { candidate, origins, account, simplified: None });
+                return Ok(Made { candidate, origins, account, simplified: None });
             }
             witness = candidate.certificate().witnesses.first().cloned();
         }
@@ -197,6 +339,7 @@ impl Rebuilding<'_> {
 /// The surface with fewer triangles: to the caller's first target, or as far as it does not show.
 fn simplified(
     wrapped: &Wrapped,
+    mode: Mode,
     options: &Options,
     budget: &Budget,
 ) -> Result<Option<(Simplified, Action)>, Stopped> {
@@ -213,10 +356,11 @@ fn simplified(
         targets: vec![target.unwrap_or(Target::Error(wrapped.account.spacing * ERROR_OF_CELL))],
         criterion: choices.criterion,
         placement: choices.placement,
+        // The distance of the result is measured, whatever went over what on the way.
+        sweeps: false,
         ..SimplifyOptions::default()
     };
-    let results =
-        budget.stage(Stage::Simplify, || simplify::simplify(&input, Mode::Guarded, &settings, budget));
+    let results = budget.stage(Stage::Simplify, || simplify::simplify(&input, mode, &settings, budget));
     match results {
         Ok(results) => Ok(results.into_iter().next().map(|result| {
             let action = super::simplify::action(&result.report);
@@ -227,17 +371,10 @@ fn simplified(
     }
 }
 
-fn distance(input: &Input, result: &Soup, budget: &Budget) -> Result<Option<SurfaceDistance>, Stopped> {
-    let (draft, _) = Draft::from_soup(&input.soup);
-    let before = Surface { positions: &draft.positions, triangles: &draft.triangles };
-    let after = Surface { positions: &result.positions, triangles: &result.triangles };
-    budget.stage(Stage::Measure, || surface_distance(before, after, &DISTANCE, budget))
-}
-
 /// The wrap as a step of the plan, with the reading that it took.
-fn action(rebuilt: &Rebuilt, open_shells: OpenShells, before: Option<&crate::analysis::Analysis>) -> Action {
-    let account = &rebuilt.account;
-    let kept = rebuilt.origins.iter().filter(|&&origin| origin != NEW).count() as u64;
+fn action(made: &Made, open_shells: OpenShells, before: Option<&Analysis>) -> Action {
+    let account = &made.account;
+    let kept = made.origins.iter().filter(|&&origin| origin != NEW).count() as u64;
     let findings = before.map_or(&[][..], |analysis| &analysis.findings);
     let has = |code: &DefectCode| findings.iter().any(|f| f.code == *code && f.count > 0);
     Action {

@@ -127,7 +127,7 @@ impl<'r, C: Criterion> Part<'r, C> {
         budget: &Budget,
     ) -> Result<Self, Stopped> {
         let bound = surface.table.triangle_bound();
-        let vertex_count = if room.is_some() { surface.vertices.len() as u32 } else { 0 };
+        let vertex_count = if rules.is_guarded { surface.vertices.len() as u32 } else { 0 };
         let merged_into = (0..vertex_count).collect();
         let watch = room.map(|room| Watch { room, boxes: boxes_of(&surface), sweep: Sweep::default() });
         let mut part = Self {

@@ -148,7 +148,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
             self.mark_lines(&division, &pieces)?;
             self.prepare_between(&division)?;
         }
-        let strays = match self.rules.is_guarded {
+        let strays = match self.rules.is_guarded && self.rules.options.sweeps {
             true => Some(Arc::new(Strays::of(&self.mesh, &division, self.budget)?)),
             false => None,
         };

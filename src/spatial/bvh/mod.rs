@@ -7,6 +7,7 @@
 mod build;
 mod frame;
 mod leaf;
+mod line;
 mod sliver;
 mod stars;
 mod tree;
@@ -16,6 +17,7 @@ use crate::geom::{Aabb, DVec3};
 pub(super) use build::Elements;
 pub(super) use frame::{Box32, Frame};
 pub(super) use leaf::{Lanes, Leaf};
+use line::Line;
 pub(super) use sliver::Sliver;
 pub(super) use stars::Star;
 pub(super) use tree::Tree;
@@ -65,7 +67,22 @@ impl Bvh {
     /// # Errors
     /// When the budget stops the run.
     pub fn visit_box(&self, query: Aabb, budget: &Budget, visit: impl FnMut(u32)) -> Result<(), Stopped> {
-        self.visit(self.frame.box_of([query.min, query.max]), budget, visit)
+        let query = self.frame.box_of([query.min, query.max]);
+        self.visit(|bounds| bounds.meets(&query), query, budget, all(visit))
+    }
+
+    /// As [`visit_box`](Self::visit_box) for the segment between two points, until `visit` is false.
+    ///
+    /// # Errors
+    /// When the budget stops the run.
+    pub fn visit_segment(
+        &self,
+        [from, to]: [DVec3; 2],
+        budget: &Budget,
+        visit: impl FnMut(u32) -> bool,
+    ) -> Result<(), Stopped> {
+        let (query, line) = (self.frame.box_of([from, to]), Line::new(&self.frame, [from, to]));
+        self.visit(|bounds| bounds.meets(&query) && line.may_meet(bounds), query, budget, visit)
     }
 
     /// As [`visit_box`](Self::visit_box) for the ray from `start` towards +z.
@@ -78,10 +95,18 @@ impl Bvh {
         budget: &Budget,
         visit: impl FnMut(u32),
     ) -> Result<(), Stopped> {
-        self.visit(self.frame.box_of([start, start.with_z(f64::MAX)]), budget, visit)
+        let query = self.frame.box_of([start, start.with_z(f64::MAX)]);
+        self.visit(|bounds| bounds.meets(&query), query, budget, all(visit))
     }
 
-    fn visit(&self, query: Box32, budget: &Budget, mut visit: impl FnMut(u32)) -> Result<(), Stopped> {
+    /// Calls `visit` with the triangles whose boxes meet `query` in nodes that may hold what is looked for.
+    fn visit(
+        &self,
+        may_hold: impl Fn(&Box32) -> bool,
+        query: Box32,
+        budget: &Budget,
+        mut visit: impl FnMut(u32) -> bool,
+    ) -> Result<(), Stopped> {
         let mut stack = [0u32; Tree::DEPTH_MAX + 1];
         let mut depth = usize::from(!self.tree.is_empty());
         let mut visited = 0usize;
@@ -92,7 +117,7 @@ impl Bvh {
                 budget.check()?;
             }
             visited += 1;
-            if !node.bounds.meets(&query) {
+            if !may_hold(&node.bounds) {
                 continue;
             }
             match node.children() {
@@ -103,7 +128,9 @@ impl Bvh {
                 }
                 None => {
                     let leaf = self.tree.leaf(node);
-                    leaf.meeting(&query).for_each(|k| visit(leaf.id(k)));
+                    if !leaf.meeting(&query).all(|k| visit(leaf.id(k))) {
+                        return Ok(());
+                    }
                 }
             }
         }
@@ -120,6 +147,14 @@ impl Bvh {
 
     pub(super) fn stars(&self) -> &[Star] {
         &self.stars
+    }
+}
+
+/// A visit that never ends early.
+fn all(mut visit: impl FnMut(u32)) -> impl FnMut(u32) -> bool {
+    move |triangle| {
+        visit(triangle);
+        true
     }
 }
 

@@ -9,7 +9,8 @@ mod tests;
 use super::request::InputRef;
 use super::target::TargetSpec;
 use super::words::{
-    Criterion, FillHoles, Format, Mode, Nesting, OpenShells, Placement, Reader, Require, Units, VertexColors,
+    Criterion, Effort, FillHoles, Format, Mode, Nesting, OpenShells, Placement, Reader, Require, Units,
+    VertexColors,
 };
 use crate::formats::{ReadLimits, ReadOptions};
 use crate::{pipeline, simplify};
@@ -36,6 +37,16 @@ pub struct Options {
     pub open_shells: Option<OpenShells>,
     /// Cells along the longest side of a surface that is rebuilt.
     pub wrap_cells: Option<u32>,
+    /// How fine and so how long a surface is rebuilt.
+    pub effort: Option<Effort>,
+    /// Thickness of the walls that sheets become, in millimetres.
+    pub wall_mm: Option<f64>,
+    /// Whether a mesh too far from the origin for float32 may be moved there.
+    pub recenter: Option<bool>,
+    /// Largest distance between the file and the result of a repair, in millimetres.
+    pub max_deviation_mm: Option<f64>,
+    /// Largest share by which a repair may change the volume.
+    pub max_volume_change: Option<f64>,
     /// How shells inside shells are taken.
     pub nesting: Option<Nesting>,
     /// Faces to simplify to.
@@ -107,6 +118,7 @@ impl Options {
 
     /// The engine's options, under the configured limits on counts.
     pub fn to_engine(&self, limits: ReadLimits) -> pipeline::Options {
+        let millimetres = self.units.unwrap_or(Units::Millimetre).millimetres();
         pipeline::Options {
             format: self.format.map(Into::into),
             output_format: self.output_format.map(Into::into),
@@ -121,6 +133,13 @@ impl Options {
             wrap: pipeline::WrapChoices {
                 open_shells: self.open_shells.map(Into::into).unwrap_or_default(),
                 cells: self.wrap_cells,
+                effort: self.effort.map(Into::into).unwrap_or_default(),
+                wall: self.wall_mm.map(|length| length / millimetres),
+                may_recenter: self.recenter.unwrap_or(false),
+            },
+            limits: pipeline::Limits {
+                deviation_max: self.max_deviation_mm.map(|length| length / millimetres),
+                volume_change_max: self.max_volume_change,
             },
             simplify: pipeline::SimplifyChoices {
                 targets: self.targets(),

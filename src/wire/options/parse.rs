@@ -6,7 +6,8 @@ use super::table::{OptionKind, OptionSpec, spec_of};
 use super::{OptionError, Options};
 use crate::wire::target;
 use crate::wire::words::{
-    Criterion, FillHoles, Format, Mode, Nesting, OpenShells, Placement, Reader, Require, Units, VertexColors,
+    Criterion, Effort, FillHoles, Format, Mode, Nesting, OpenShells, Placement, Reader, Require, Units,
+    VertexColors,
 };
 
 impl Options {
@@ -55,6 +56,7 @@ impl Options {
                     None => Taken::Invalid,
                 }
             }
+            OptionKind::Flag => self.set_flag(spec, value),
             OptionKind::Targets => put(&mut self.targets, target::targets_from_json(value)),
             OptionKind::Input => match serde_json::from_str(value) {
                 Ok(input) => put(&mut self.input, Some(input)),
@@ -76,6 +78,7 @@ impl Options {
                 number.to_string().trim_end_matches(".0").to_owned()
             }
             (OptionKind::Number { .. }, Value::Number(number)) => number.to_string(),
+            (OptionKind::Flag, Value::Bool(flag)) => flag.to_string(),
             (OptionKind::Input, Value::Object(_)) | (OptionKind::Targets, Value::Array(_)) => {
                 value.to_string()
             }
@@ -98,6 +101,11 @@ impl Options {
             ("fill_holes", put_if_given(&mut self.fill_holes, other.fill_holes)),
             ("open_shells", put_if_given(&mut self.open_shells, other.open_shells)),
             ("wrap_cells", put_if_given(&mut self.wrap_cells, other.wrap_cells)),
+            ("effort", put_if_given(&mut self.effort, other.effort)),
+            ("wall_mm", put_if_given(&mut self.wall_mm, other.wall_mm)),
+            ("recenter", put_if_given(&mut self.recenter, other.recenter)),
+            ("max_deviation_mm", put_if_given(&mut self.max_deviation_mm, other.max_deviation_mm)),
+            ("max_volume_change", put_if_given(&mut self.max_volume_change, other.max_volume_change)),
             ("nesting", put_if_given(&mut self.nesting, other.nesting)),
             ("faces", put_if_given(&mut self.faces, other.faces)),
             ("ratio", put_if_given(&mut self.ratio, other.ratio)),
@@ -126,11 +134,19 @@ impl Options {
             "require" => put(&mut self.require, Require::from_word(value)),
             "fill_holes" => put(&mut self.fill_holes, FillHoles::from_word(value)),
             "open_shells" => put(&mut self.open_shells, OpenShells::from_word(value)),
+            "effort" => put(&mut self.effort, Effort::from_word(value)),
             "nesting" => put(&mut self.nesting, Nesting::from_word(value)),
             "mode" => put(&mut self.mode, Mode::from_word(value)),
             "criterion" => put(&mut self.criterion, Criterion::from_word(value)),
             "placement" => put(&mut self.placement, Placement::from_word(value)),
             "vertex_colors" => put(&mut self.vertex_colors, VertexColors::from_word(value)),
+            _ => Taken::Invalid,
+        }
+    }
+
+    fn set_flag(&mut self, spec: &OptionSpec, value: &str) -> Taken {
+        match spec.name {
+            "recenter" => put(&mut self.recenter, value.parse().ok()),
             _ => Taken::Invalid,
         }
     }
@@ -148,6 +164,9 @@ impl Options {
     fn set_number(&mut self, spec: &OptionSpec, value: f64) -> Taken {
         match spec.name {
             "ratio" => put(&mut self.ratio, Some(value)),
+            "wall_mm" => put(&mut self.wall_mm, Some(value)),
+            "max_deviation_mm" => put(&mut self.max_deviation_mm, Some(value)),
+            "max_volume_change" => put(&mut self.max_volume_change, Some(value)),
             "error_mm" => put(&mut self.error_mm, Some(value)),
             _ => Taken::Invalid,
         }

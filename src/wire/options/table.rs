@@ -2,7 +2,8 @@
 
 use super::OptionError;
 use crate::wire::words::{
-    Criterion, FillHoles, Format, Mode, Nesting, OpenShells, Placement, Reader, Require, Units, VertexColors,
+    Criterion, Effort, FillHoles, Format, Mode, Nesting, OpenShells, Placement, Reader, Require, Units,
+    VertexColors,
 };
 
 /// What values an option takes.
@@ -24,6 +25,8 @@ pub enum OptionKind {
         /// Largest value.
         max: f64,
     },
+    /// `true` or `false`.
+    Flag,
     /// A list of targets of a simplification.
     Targets,
     /// An earlier job: `{"job":"ID"}`.
@@ -79,7 +82,32 @@ pub const SPECS: &[OptionSpec] = &[
     option(
         "wrap_cells",
         OptionKind::Integer { min: 16, max: 1024 },
-        "Cells along the longest side of a surface that repair must rebuild. Default: up to 256, by its area.",
+        "Cells along the longest side of a surface that repair must rebuild. Default: by the effort and its area.",
+    ),
+    option(
+        "effort",
+        OptionKind::Word(Effort::WORDS),
+        "How fine and so how long to try where repair must rebuild the surface. Default: normal.",
+    ),
+    option(
+        "wall_mm",
+        OptionKind::Number { min: 0.0, max: 1e30 },
+        "Thickness of the walls that open surfaces become, in millimetres. Default: 0.4 % of the diagonal.",
+    ),
+    option(
+        "recenter",
+        OptionKind::Flag,
+        "Move a mesh that is too far from the origin for float32 there, instead of refusing it. Default: false.",
+    ),
+    option(
+        "max_deviation_mm",
+        OptionKind::Number { min: 0.0, max: 1e30 },
+        "Refuse a repair farther than this from the file, in millimetres. Default: no limit.",
+    ),
+    option(
+        "max_volume_change",
+        OptionKind::Number { min: 0.0, max: 1.0 },
+        "Refuse a repair that changes a defined volume by more than this share. Default: no limit.",
     ),
     option(
         "nesting",
@@ -186,6 +214,7 @@ impl OptionSpec {
             OptionKind::Word(words) => words.join(", "),
             OptionKind::Integer { min, max } => format!("a whole number from {min} to {max}"),
             OptionKind::Number { min, max } => format!("a number from {min} to {max:e}"),
+            OptionKind::Flag => "true or false".to_owned(),
             OptionKind::Targets => {
                 "1 to 16 of {\"faces\":N}, {\"ratio\":X} and {\"error_mm\":X} in a list".to_owned()
             }

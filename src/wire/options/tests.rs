@@ -11,6 +11,7 @@ fn some_value(spec: &OptionSpec) -> Value {
         OptionKind::Word(words) => json!(words[words.len() - 1]),
         OptionKind::Integer { min, .. } => json!(min),
         OptionKind::Number { max, .. } => json!(max),
+        OptionKind::Flag => json!(true),
         OptionKind::Targets => json!([{"ratio": 0.5}, {"faces": 10}]),
         OptionKind::Input => json!({"job": "x"}),
     }

@@ -2,7 +2,7 @@
 //!
 //! A vertex whose cut was clamped goes to the point of the input that it stands for; one beside a crease to the point
 //! that is nearest to the planes of the input around it (a quadratic error function, as in Kobbelt et al. 2001 and Ju et
-//! al. 2002); one that grew from a thin wall back to that wall. A move must not turn a triangle around, and what then
+//! al. 2002); one that grew from a thin wall back to that wall; one behind a sheet to the thickness of walls. A move must not turn a triangle around, and what then
 //! meets anything is taken back, until nothing does.
 
 mod normals;
@@ -10,7 +10,7 @@ mod undo;
 
 use super::cut::{Cut, NONE};
 use super::lattice::Lattice;
-use super::signs::{Signs, THIN};
+use super::signs::{Inside, Signs, THIN};
 use super::surface::{InputSurface, separate};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
@@ -38,7 +38,7 @@ pub struct FitCounts {
     pub taken_back: u64,
 }
 
-/// Moves `positions` of the wrap with these cuts.
+/// Moves `positions` of the wrap with these cuts; sheets become walls of a thickness of `wall` cells.
 ///
 /// # Errors
 /// When the budget stops the run.
@@ -46,6 +46,7 @@ pub(super) fn fit(
     lattice: &Lattice,
     signs: &Signs<'_>,
     surface: &InputSurface,
+    wall: f64,
     cuts: &[Cut],
     positions: &mut [DVec3],
     triangles: &[[u32; 3]],
@@ -56,7 +57,7 @@ pub(super) fn fit(
     let stars = Stars::of(triangles, positions.len(), budget)?;
     let mut places: Vec<DVec3> = positions.iter().map(|&p| lattice.units_of(p)).collect();
     // Clamped cuts, and thin walls.
-    let goals = plain_goals(signs, cuts, &places, budget)?;
+    let goals = plain_goals(signs, surface, wall, cuts, &places, budget)?;
     let mut moved = move_all(&stars, triangles, &mut places, &goals, budget)?;
     let goals = crease_goals(surface, cuts, &stars, triangles, &places, budget)?;
     let onto = move_all(&stars, triangles, &mut places, &goals, budget)?;
@@ -72,29 +73,46 @@ pub(super) fn fit(
 /// Where each vertex belongs by itself.
 fn plain_goals(
     signs: &Signs<'_>,
+    surface: &InputSurface,
+    wall: f64,
     cuts: &[Cut],
     places: &[DVec3],
     budget: &Budget,
 ) -> Result<Vec<Option<DVec3>>, Stopped> {
-    let names = separate(signs.thin.len());
-    let thin = NearestSearch::build(signs.thin.as_flattened(), &names, budget)?;
+    let (thin_names, sheet_names) = (separate(signs.thin.len()), separate(surface.sheets().len()));
+    let thin = NearestSearch::build(signs.thin.as_flattened(), &thin_names, budget)?;
+    let sheets = NearestSearch::build(surface.sheets().as_flattened(), &sheet_names, budget)?;
     let goals = par::try_map_ranges(places.len(), 1024, |range| {
         budget.spend(range.len() as u64)?;
-        range.map(|v| goal(&thin, &cuts[v], places[v], budget)).collect::<Result<Vec<_>, Stopped>>()
+        let goal = |v: usize| {
+            let (cut, place) = (&cuts[v], places[v]);
+            if cut.triangle != NONE {
+                let is_clamped = cut.point.distance_squared(place) > 1e-6;
+                return Ok(is_clamped.then_some(cut.point));
+            }
+            match cut.why {
+                Inside::NearSheet => behind_sheet(&sheets, wall, place, budget),
+                Inside::Wound | Inside::NearThin => onto_thin(&thin, place, budget),
+            }
+        };
+        range.map(goal).collect::<Result<Vec<_>, Stopped>>()
     })?;
     Ok(goals.concat())
 }
 
-fn goal(
-    thin: &NearestSearch<'_>,
-    cut: &Cut,
+/// The place at the thickness of a `wall` from the sheet.
+fn behind_sheet(
+    sheets: &NearestSearch<'_>,
+    wall: f64,
     place: DVec3,
     budget: &Budget,
 ) -> Result<Option<DVec3>, Stopped> {
-    if cut.triangle != NONE {
-        let is_clamped = cut.point.distance_squared(place) > 1e-6;
-        return Ok(is_clamped.then_some(cut.point));
-    }
+    let nearest = sheets.find(place, None, budget)?.filter(|nearest| nearest.distance > wall);
+    Ok(nearest.map(|nearest| nearest.point.lerp(place, wall / nearest.distance)))
+}
+
+/// The place on a thin wall that a vertex before it grew from.
+fn onto_thin(thin: &NearestSearch<'_>, place: DVec3, budget: &Budget) -> Result<Option<DVec3>, Stopped> {
     let Some(nearest) = thin.find(place, None, budget)? else { return Ok(None) };
     let [a, b, c] = thin.corners(nearest.triangle);
     let is_before = (b - a).cross(c - a).dot(place - nearest.point) > 0.0;

@@ -32,9 +32,9 @@ struct Node {
     skip: u32,
 }
 
-/// Triangles prepared for questions about how often they wind around a point. Coordinates are lattice units.
+/// Triangles prepared for questions about how often they wind around a point.
 #[derive(Debug, Default)]
-pub(super) struct WindingTree {
+pub struct WindingTree {
     nodes: Vec<Node>,
     /// In the order of the leaves.
     triangles: Vec<[DVec3; 3]>,
@@ -45,7 +45,7 @@ impl WindingTree {
     ///
     /// # Errors
     /// When the budget stops the run.
-    pub(super) fn build(mut triangles: Vec<[DVec3; 3]>, budget: &Budget) -> Result<Self, Stopped> {
+    pub fn build(mut triangles: Vec<[DVec3; 3]>, budget: &Budget) -> Result<Self, Stopped> {
         let mut nodes = Vec::new();
         if triangles.is_empty() {
             return Ok(Self::default());
@@ -76,12 +76,13 @@ impl WindingTree {
         Ok(Self { nodes, triangles })
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    /// True when there is no triangle: nothing winds around anything.
+    pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }
 
     /// The winding number at `p` plus `more`, evaluated more closely where that sum is near 1/2.
-    pub(super) fn at(&self, p: DVec3, more: f64) -> f64 {
+    pub fn at(&self, p: DVec3, more: f64) -> f64 {
         let first = self.evaluate(p, FAR) + more;
         if (first - 0.5).abs() < DOUBT { self.evaluate(p, FAR_IN_DOUBT) + more } else { first }
     }
@@ -120,6 +121,11 @@ impl Node {
         let twice = r.dot(x) * r.x + r.dot(y) * r.y + r.dot(z) * r.z;
         by_cube * (r.dot(self.dipole) + trace - 3.0 * twice * by_square)
     }
+}
+
+/// The same triangles the other way around.
+pub fn turned(triangles: &[[DVec3; 3]]) -> Vec<[DVec3; 3]> {
+    triangles.iter().map(|&[a, b, c]| [a, c, b]).collect()
 }
 
 fn area_vector([a, b, c]: [DVec3; 3]) -> DVec3 {

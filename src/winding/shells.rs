@@ -2,26 +2,31 @@
 //! sheets that bound none.
 
 use super::OpenShells;
-use super::winding_tree::WindingTree;
+use super::WindingTree;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{DVec3, Sign, upward_crossing};
 use crate::mesh::{Components, EdgeGroups, UnionFind, edge_of, triangle_of};
 use crate::par;
 use crate::spatial::Bvh;
+use rustc_hash::FxHashMap;
 
-/// Triangles by what they say, in lattice units.
+/// Triangles by what they say.
 #[derive(Debug, Default)]
-pub(super) struct Shells {
+pub struct Shells {
     /// Closed, outward where they bound a body and inward where a cavity.
-    pub(super) closed: Vec<[DVec3; 3]>,
+    pub closed: Vec<[DVec3; 3]>,
+    /// The part of each.
+    pub closed_part: Vec<u32>,
     /// Open, read as the boundary of a volume.
-    pub(super) open: Vec<[DVec3; 3]>,
+    pub open: Vec<[DVec3; 3]>,
+    /// Cones over the rims of the open ones; with them they are closed.
+    pub cones: Vec<[DVec3; 3]>,
     /// Open, read as sheets.
-    pub(super) sheets: Vec<[DVec3; 3]>,
+    pub sheets: Vec<[DVec3; 3]>,
     /// Number of parts in each list.
-    pub(super) parts: [u32; 3],
+    pub parts: [u32; 3],
     /// How clearly the open parts bound a volume, by area: 1 for a closed shell, 0 for a flat sheet.
-    pub(super) closedness: Option<f64>,
+    pub closedness: Option<f64>,
 }
 
 /// An open part is the boundary of a volume when on average the winding numbers of both of its sides are not around
@@ -31,20 +36,19 @@ const BOUNDS_A_VOLUME: f64 = 0.25;
 /// Samples of an open part.
 const SAMPLES_OF_PART: usize = 64;
 
-/// Places beside a triangle are this far from it, in cells.
-const BESIDE: f64 = 1e-3;
-
-/// Sorts the triangles by what they say. `positions` are in lattice units, bit-equal ones welded.
+/// Sorts the triangles by what they say. Bit-equal `positions` must be one. The sides of a triangle are looked at `beside`
+/// it, a length far below that of any feature.
 ///
 /// # Errors
 /// When the budget stops the run.
-pub(super) fn sort(
+pub fn sort(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
     open_shells: OpenShells,
+    beside: f64,
     budget: &Budget,
 ) -> Result<Shells, Stopped> {
-    let (parts, is_closed) = parts(positions.len(), triangles, budget)?;
+    let Parts { parts, is_closed, rims } = parts(positions.len(), triangles, budget)?;
     let corners = |t: usize| triangles[t].map(|v| positions[v as usize]);
     let turns = turned(positions, triangles, &parts, &is_closed, budget)?;
     let mut shells = Shells::default();
@@ -56,6 +60,7 @@ pub(super) fn sort(
         let part = parts.of[t] as usize;
         let [a, b, c] = corners(t);
         if is_closed[part] {
+            shells.closed_part.push(part as u32);
             shells.closed.push(if turns[part] { [a, c, b] } else { [a, b, c] });
         } else {
             open.push([a, b, c]);
@@ -63,19 +68,35 @@ pub(super) fn sort(
         }
     }
     shells.parts[0] = is_closed.iter().filter(|&&is_closed| is_closed).count() as u32;
-    read_open(open, &open_part, parts.count as usize, open_shells, &mut shells, budget)?;
+    let is_volume =
+        read_open(open, &open_part, parts.count as usize, (open_shells, beside), &mut shells, budget)?;
+    shells.cones = cones(positions, &rims, &is_volume, beside);
     Ok(shells)
 }
 
-/// Parts connected by edges, and whether each edge of a part is run through as often one way as the other.
-fn parts(
-    vertex_count: usize,
-    triangles: &[[u32; 3]],
-    budget: &Budget,
-) -> Result<(Components, Vec<bool>), Stopped> {
+/// Parts connected by edges.
+struct Parts {
+    parts: Components,
+    /// Whether each edge of a part is run through as often one way as the other.
+    is_closed: Vec<bool>,
+    /// The edges that are not.
+    rims: Vec<Rim>,
+}
+
+/// An edge that its triangles run through more often one way than the other.
+#[derive(Debug, Clone, Copy)]
+struct Rim {
+    from: u32,
+    to: u32,
+    /// How much more often.
+    times: u32,
+    part: u32,
+}
+
+fn parts(vertex_count: usize, triangles: &[[u32; 3]], budget: &Budget) -> Result<Parts, Stopped> {
     let groups = EdgeGroups::build(triangles, vertex_count, budget)?;
     let mut sets = UnionFind::new(triangles.len());
-    let mut unbalanced = Vec::new();
+    let mut rims = Vec::new();
     for (e, group) in groups.iter().enumerate() {
         if e % CHECK_EVERY == 0 {
             budget.check()?;
@@ -87,15 +108,47 @@ fn parts(
             balance += i64::from(from < to) - i64::from(from > to);
         }
         if balance != 0 {
-            unbalanced.push(triangle_of(group[0]));
+            let [a, b] = edge_of(triangles, group[0]);
+            let (from, to) = if balance > 0 { (a.min(b), a.max(b)) } else { (a.max(b), a.min(b)) };
+            let part = triangle_of(group[0]);
+            rims.push(Rim { from, to, times: balance.unsigned_abs() as u32, part });
         }
     }
     let parts = sets.into_components();
     let mut is_closed = vec![true; parts.count as usize];
-    for t in unbalanced {
-        is_closed[parts.of[t as usize] as usize] = false;
+    for rim in &mut rims {
+        rim.part = parts.of[rim.part as usize];
+        is_closed[rim.part as usize] = false;
     }
-    Ok((parts, is_closed))
+    Ok(Parts { parts, is_closed, rims })
+}
+
+/// Triangles that close the parts that bound a volume: from each rim edge to a place in the middle of the rim edges that
+/// it is connected with, which form a cycle of their own. `is_volume` says which parts, and whether inside out.
+fn cones(positions: &[DVec3], rims: &[Rim], is_volume: &[Option<bool>], beside: f64) -> Vec<[DVec3; 3]> {
+    let mut sets = UnionFind::new(positions.len());
+    let rims: Vec<&Rim> = rims.iter().filter(|rim| is_volume[rim.part as usize].is_some()).collect();
+    for rim in &rims {
+        sets.unite(rim.from, rim.to);
+    }
+    let mut middles: FxHashMap<u32, (DVec3, f64)> = FxHashMap::default();
+    for rim in &rims {
+        let [a, b] = [rim.from, rim.to].map(|v| positions[v as usize]);
+        let length = a.distance(b) + f64::MIN_POSITIVE;
+        let (sum, weight) = middles.entry(sets.find(rim.from)).or_insert((DVec3::ZERO, 0.0));
+        (*sum, *weight) = (*sum + (a + b) / 2.0 * length, *weight + length);
+    }
+    let mut cones = Vec::new();
+    for rim in &rims {
+        let (sum, weight) = middles[&sets.find(rim.from)];
+        // Off every plane that others are likely to lie in.
+        let apex = sum / weight + DVec3::new(0.37, 0.61, 0.47) * beside;
+        let [a, b] = [rim.from, rim.to].map(|v| positions[v as usize]);
+        let is_turned = is_volume[rim.part as usize] == Some(true);
+        let cone = if is_turned { [a, b, apex] } else { [b, a, apex] };
+        cones.extend(std::iter::repeat_n(cone, rim.times as usize));
+    }
+    cones
 }
 
 /// Closed parts that must be turned around: those of a tree whose outermost part points inward.
@@ -149,17 +202,18 @@ fn turned(
     Ok((0..count).map(|part| volume[root(part)] < 0.0).collect())
 }
 
-/// Sorts the open parts into those that bound a volume and sheets.
+/// Sorts the open parts into those that bound a volume and sheets. Says of each part whether it bounds one, and if so
+/// whether it was turned.
 fn read_open(
     open: Vec<[DVec3; 3]>,
     part: &[u32],
     part_count: usize,
-    open_shells: OpenShells,
+    (open_shells, beside): (OpenShells, f64),
     shells: &mut Shells,
     budget: &Budget,
-) -> Result<(), Stopped> {
+) -> Result<Vec<Option<bool>>, Stopped> {
     if open.is_empty() {
-        return Ok(());
+        return Ok(vec![None; part_count]);
     }
     let tree = WindingTree::build(open.clone(), budget)?;
     let mut taken = vec![0usize; part_count];
@@ -176,7 +230,7 @@ fn read_open(
     }
     let sides = par::try_map_ranges(samples.len(), 256, |range| {
         budget.spend(range.len() as u64 * 8)?;
-        Ok(samples[range].iter().map(|&t| both_sides(&tree, open[t])).collect::<Vec<_>>())
+        Ok(samples[range].iter().map(|&t| both_sides(&tree, open[t], beside)).collect::<Vec<_>>())
     })?;
     let (mut sum, mut area) = (vec![0.0; part_count], vec![0.0; part_count]);
     for (&t, (mean, size)) in samples.iter().zip(sides.into_iter().flatten()) {
@@ -204,16 +258,16 @@ fn read_open(
         }
     }
     shells.closedness = Some((2.0 * overall.abs()).clamp(0.0, 1.0));
-    Ok(())
+    Ok(bounds.into_iter().map(|is_volume| is_volume.then_some(is_turned)).collect())
 }
 
 /// The mean of the winding numbers on both sides of a triangle, and its area.
-fn both_sides(tree: &WindingTree, [a, b, c]: [DVec3; 3]) -> (f64, f64) {
+fn both_sides(tree: &WindingTree, [a, b, c]: [DVec3; 3], beside: f64) -> (f64, f64) {
     let normal = (b - a).cross(c - a);
     let twice_area = normal.length();
     if twice_area == 0.0 {
         return (0.0, 0.0);
     }
-    let (middle, step) = ((a + b + c) / 3.0, normal * (BESIDE / twice_area));
+    let (middle, step) = ((a + b + c) / 3.0, normal * (beside / twice_area));
     ((tree.at(middle + step, 0.0) + tree.at(middle - step, 0.0)) / 2.0, twice_area)
 }

@@ -1,0 +1,61 @@
+//! What of the first surface counts.
+
+use super::Sight;
+use super::bound::Corner;
+use crate::budget::Stopped;
+use crate::geom::DVec3;
+
+/// A piece is asked about at places about this far from each other, as a share of the diagonal.
+const RESOLUTION: f64 = 2e-3;
+
+/// Rows of places on a piece.
+const ROWS_MAX: usize = 3;
+
+/// A sight, in the coordinates of the search.
+#[derive(Clone, Copy)]
+pub(super) struct View<'v> {
+    pub(super) sight: Option<Sight<'v>>,
+    /// What the caller's coordinates were multiplied by.
+    pub(super) factor: f64,
+    /// Diagonal of the box around both surfaces.
+    pub(super) diagonal: f64,
+}
+
+impl View<'_> {
+    /// Whether a place of a triangle counts.
+    pub(super) fn counts(&self, place: DVec3, triangle: u32) -> Result<bool, Stopped> {
+        match self.sight {
+            None => Ok(true),
+            Some(sight) => Ok(!(sight.hides)(place / self.factor, triangle)?),
+        }
+    }
+
+    /// Whether all places of a piece that are asked about are hidden.
+    pub(super) fn hides(&self, corners: &[Corner; 3], triangle: u32) -> Result<bool, Stopped> {
+        if self.sight.is_none() {
+            return Ok(false);
+        }
+        let [a, b, c] = corners.map(|corner| corner.place);
+        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        let rows = ((longest / (RESOLUTION * self.diagonal)).ceil() as usize).clamp(1, ROWS_MAX);
+        let place = |i: usize, j: usize, third: f64| {
+            let share = |n: usize| (n as f64 + third) / rows as f64;
+            a + (b - a) * share(i) + (c - a) * share(j)
+        };
+        // The middles of the triangles into which the rows cut the piece: those like it, and those upside down.
+        for (i, j) in (0..rows).flat_map(|i| (0..rows - i).map(move |j| (i, j))) {
+            let is_last = i + j + 1 == rows;
+            if self.counts(place(i, j, 1.0 / 3.0), triangle)?
+                || (!is_last && self.counts(place(i, j, 2.0 / 3.0), triangle)?)
+            {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Whether something at this distance is lost.
+    pub(super) fn loses(&self, distance: f64) -> bool {
+        self.sight.is_some_and(|sight| distance > sight.lost_beyond * self.factor)
+    }
+}

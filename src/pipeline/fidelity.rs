@@ -1,0 +1,363 @@
+//! How far a result is from its input, what of the input it lost, and whether that is little enough.
+
+use super::{Limits, Refusal};
+use crate::budget::{Budget, CHECK_EVERY, Stage, Stopped};
+use crate::distance::{
+    DirectedDistance, DistanceOptions, FarPoint, Sight, Surface, SurfaceDistance, directed_distance,
+};
+use crate::geom::{Aabb, DVec3, signed_volume, triangle_area};
+use crate::mesh::{Components, Soup, UnionFind};
+use crate::repair::NEW;
+use crate::spatial::{NearestSearch, coincident_f64};
+use crate::winding::Solid;
+
+/// Visible surface farther than this from the result is lost, as a share of the diagonal of the input.
+const LOST_BEYOND: f64 = 2e-3;
+
+/// Most of the visible surface that a result may lose for no other to be looked for.
+const LOSS_MAX: f64 = 0.01;
+
+/// What a measurement may cost, and how close it encloses a distance.
+const DISTANCE: DistanceOptions = DistanceOptions {
+    tolerance_relative: 0.05,
+    tolerance_of_diagonal: 1e-5,
+    samples: 1 << 14,
+    refinements_max: 1 << 20,
+};
+
+/// Bodies beyond which none is looked at alone.
+const BODIES_MAX: u32 = 4096;
+
+/// Places of a body that are looked at.
+const PLACES_OF_BODY: usize = 8;
+
+/// How far a result is from its input, and what it lost.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Fidelity {
+    /// Of what can be seen of the input to the result, and back. `None`: one of them has no triangle.
+    pub(super) distance: Option<SurfaceDistance>,
+    pub(super) losses: Losses,
+}
+
+/// What of its input a result lost.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Losses {
+    /// Share of the visible surface of the input that is farther from the result than 0.2 % of the diagonal.
+    pub visible_loss: f64,
+    /// Area of the input that is inside of it, in square units of the file.
+    pub hidden_area: f64,
+    /// Bodies of the input that can be seen and are lost as a whole.
+    pub bodies_lost: u32,
+    /// Share by which the volume changed; `None` where that of the input is not defined.
+    pub volume_change: Option<f64>,
+}
+
+impl Fidelity {
+    /// True when no other result needs to be looked for.
+    pub(super) fn passes(&self, limits: &Limits) -> bool {
+        self.losses.visible_loss <= LOSS_MAX && self.losses.bodies_lost == 0 && self.breach(limits).is_none()
+    }
+
+    /// The limit of the caller that this exceeds.
+    pub(super) fn breach(&self, limits: &Limits) -> Option<Refusal> {
+        let deviation = self.distance.map_or(0.0, |distance| distance.upper());
+        if let Some(limit) = limits.deviation_max.filter(|&limit| deviation > limit) {
+            return Some(Refusal::DeviationBeyondLimit { deviation, limit });
+        }
+        let (change, limit) = (self.losses.volume_change?.abs(), limits.volume_change_max?);
+        (change > limit).then_some(Refusal::VolumeChangeBeyondLimit { change, limit })
+    }
+
+    /// What makes one result worse than another, the first first.
+    fn rank(&self, limits: &Limits) -> (bool, u32, f64, f64) {
+        let deviation = self.distance.map_or(0.0, |distance| distance.upper());
+        (self.breach(limits).is_some(), self.losses.bodies_lost, self.losses.visible_loss, deviation)
+    }
+
+    /// True when this is to be preferred to a later `other`.
+    pub(super) fn is_no_worse(&self, other: &Self, limits: &Limits) -> bool {
+        let (a, b) = (self.rank(limits), other.rank(limits));
+        let order = a.0.cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.total_cmp(&b.2)).then(a.3.total_cmp(&b.3));
+        order.is_le()
+    }
+}
+
+/// An input to measure results against.
+pub(super) struct Original<'i> {
+    input: &'i Soup,
+    /// Volume, where it is defined.
+    volume: Option<f64>,
+    /// What hides parts of it; `None`: nothing does.
+    solid: Option<Solid>,
+    /// Visible surface farther away than this is lost.
+    lost_beyond: f64,
+}
+
+impl<'i> Original<'i> {
+    pub(super) fn new(input: &'i Soup, volume: Option<f64>, solid: Option<Solid>) -> Self {
+        let bounds = Aabb::of(input.triangles.as_flattened().iter().map(|&v| input.positions[v as usize]));
+        Self { input, volume, solid, lost_beyond: LOST_BEYOND * (bounds.max - bounds.min).length() }
+    }
+
+    /// Measures a result; `origins` name the triangle of the input that each of its triangles is, or [`NEW`].
+    pub(super) fn measure(
+        &self,
+        result: &Soup,
+        origins: &[u32],
+        budget: &Budget,
+    ) -> Result<Fidelity, Stopped> {
+        budget.stage(Stage::Measure, || {
+            let changed = Changed::of(self.input, result, origins, budget)?;
+            let gone_area = area_of(self.input, &changed.gone);
+            let area = gone_area + changed.stayed_area;
+            let forward = self.forward(result, &changed.gone, budget)?;
+            let seen = forward.and_then(|forward| forward.seen);
+            let hidden_area = gone_area * seen.map_or(0.0, |seen| seen.hidden_share);
+            let lost_area = (gone_area - hidden_area) * seen.map_or(0.0, |seen| seen.lost_share);
+            let backward = backward(self.input, result, &changed.new, budget)?;
+            let new_area = area_of(result, &changed.new);
+            let share = |part: f64, all: f64| if all > 0.0 { part / all } else { 0.0 };
+            let still = |mesh: &Soup| mesh.positions.first().map(|&place| at_rest(place));
+            let forward = forward.map(|f| spread(f, share(gone_area - hidden_area, area - hidden_area)));
+            let backward = backward.map(|b| spread(b, share(new_area, new_area + changed.stayed_area)));
+            let directions = forward.or_else(|| still(self.input)).zip(backward.or_else(|| still(result)));
+            let losses = Losses {
+                visible_loss: share(lost_area, area - hidden_area),
+                hidden_area,
+                bodies_lost: self.bodies_lost(result, &changed.gone, budget)?,
+                volume_change: self.volume_change(result),
+            };
+            let distance = directions.map(|(forward, backward)| SurfaceDistance { forward, backward });
+            Ok(Fidelity { distance, losses })
+        })
+    }
+
+    fn is_hidden(&self, place: DVec3, triangle: u32, budget: &Budget) -> Result<bool, Stopped> {
+        match &self.solid {
+            None => Ok(false),
+            Some(solid) => solid.hides(place, self.input.corners(triangle), budget),
+        }
+    }
+
+    /// The distance of what is gone from the result.
+    fn forward(
+        &self,
+        result: &Soup,
+        gone: &[u32],
+        budget: &Budget,
+    ) -> Result<Option<DirectedDistance>, Stopped> {
+        let triangles: Vec<[u32; 3]> = gone.iter().map(|&t| self.input.triangles[t as usize]).collect();
+        let hides = |place: DVec3, triangle: u32| self.is_hidden(place, gone[triangle as usize], budget);
+        let sight = Sight { hides: &hides, lost_beyond: self.lost_beyond };
+        let from = Surface { positions: &self.input.positions, triangles: &triangles };
+        directed_distance(from, surface(result), Some(sight), &DISTANCE, budget)
+    }
+
+    fn volume_change(&self, result: &Soup) -> Option<f64> {
+        let before = self.volume.filter(|&volume| volume != 0.0)?;
+        let after = signed_volume((0..result.triangles.len() as u32).map(|t| result.corners(t)));
+        Some((after - before) / before.abs())
+    }
+
+    /// Parts of which every visible place that is looked at is lost. `gone` ascends.
+    fn bodies_lost(&self, result: &Soup, gone: &[u32], budget: &Budget) -> Result<u32, Stopped> {
+        if gone.is_empty() {
+            return Ok(0);
+        }
+        let parts = parts(self.input, budget)?;
+        let mut of_part = vec![Vec::new(); parts.count as usize];
+        for (n, &t) in gone.iter().enumerate() {
+            if n % CHECK_EVERY == 0 {
+                budget.check()?;
+            }
+            of_part[parts.of[t as usize] as usize].push(t);
+        }
+        // A part of which something stayed is not lost.
+        for (t, &part) in parts.of.iter().enumerate() {
+            if gone.binary_search(&(t as u32)).is_err() {
+                of_part[part as usize].clear();
+            }
+        }
+        if parts.count > BODIES_MAX {
+            return Ok(0);
+        }
+        let near = NearestSearch::build(&result.positions, &result.triangles, budget)?;
+        let mut lost = 0;
+        for part in of_part.iter().filter(|part| !part.is_empty()) {
+            let (mut seen, mut found) = (0, 0);
+            for &t in part.iter().step_by(part.len().div_ceil(PLACES_OF_BODY)) {
+                let place = self.input.corners(t).iter().sum::<DVec3>() / 3.0;
+                if !self.is_hidden(place, t, budget)? {
+                    budget.spend(1)?;
+                    let nearest = near.find(place, None, budget)?;
+                    seen += 1;
+                    found += u32::from(nearest.is_some_and(|nearest| nearest.distance <= self.lost_beyond));
+                }
+            }
+            lost += u32::from(seen > 0 && found == 0);
+        }
+        Ok(lost)
+    }
+}
+
+/// What is not the same in an input and a result.
+struct Changed {
+    /// Triangles of the input that the result does not have, ascending.
+    gone: Vec<u32>,
+    /// Triangles of the result that the input does not have.
+    new: Vec<u32>,
+    /// Area of the others.
+    stayed_area: f64,
+}
+
+impl Changed {
+    fn of(input: &Soup, result: &Soup, origins: &[u32], budget: &Budget) -> Result<Self, Stopped> {
+        let mut stays = vec![false; input.triangles.len()];
+        let mut new = Vec::new();
+        for (t, &origin) in origins.iter().enumerate().take(result.triangles.len()) {
+            if t % CHECK_EVERY == 0 {
+                budget.check()?;
+            }
+            let is_same = origin != NEW && {
+                let before = input.corners(origin);
+                result.corners(t as u32).iter().all(|corner| before.contains(corner))
+            };
+            if is_same {
+                stays[origin as usize] = true;
+            } else {
+                new.push(t as u32);
+            }
+        }
+        let all = 0..input.triangles.len() as u32;
+        let (stayed, gone): (Vec<u32>, Vec<u32>) = all.partition(|&t| stays[t as usize]);
+        Ok(Self { stayed_area: area_of(input, &stayed), gone, new })
+    }
+}
+
+fn surface(mesh: &Soup) -> Surface<'_> {
+    Surface { positions: &mesh.positions, triangles: &mesh.triangles }
+}
+
+/// The distance of what is new from the input.
+fn backward(
+    input: &Soup,
+    result: &Soup,
+    new: &[u32],
+    budget: &Budget,
+) -> Result<Option<DirectedDistance>, Stopped> {
+    let triangles: Vec<[u32; 3]> = new.iter().map(|&t| result.triangles[t as usize]).collect();
+    let from = Surface { positions: &result.positions, triangles: &triangles };
+    directed_distance(from, surface(input), None, &DISTANCE, budget)
+}
+
+fn area_of(mesh: &Soup, triangles: &[u32]) -> f64 {
+    triangles.iter().map(|&t| triangle_area(mesh.corners(t))).sum()
+}
+
+/// The distance of a surface of which nothing changed.
+fn at_rest(place: DVec3) -> DirectedDistance {
+    DirectedDistance {
+        upper: 0.0,
+        lower: 0.0,
+        farthest: FarPoint { place, triangle: 0, closest: place, closest_triangle: 0 },
+        mean: Some(0.0),
+        root_mean_square: Some(0.0),
+        seen: None,
+    }
+}
+
+/// Means over a part of a surface as means over all of it, of which the rest is at no distance.
+fn spread(of: DirectedDistance, share: f64) -> DirectedDistance {
+    DirectedDistance {
+        mean: of.mean.map(|mean| mean * share),
+        root_mean_square: of.root_mean_square.map(|root| root * share.sqrt()),
+        ..of
+    }
+}
+
+/// Triangles connected by places that they share.
+fn parts(mesh: &Soup, budget: &Budget) -> Result<Components, Stopped> {
+    let group = coincident_f64(&mesh.positions, budget)?.group;
+    let mut sets = UnionFind::new(mesh.positions.len());
+    for block in mesh.triangles.chunks(CHECK_EVERY) {
+        budget.check()?;
+        for corners in block {
+            let [a, b, c] = corners.map(|v| group[v as usize]);
+            sets.unite(a, b);
+            sets.unite(b, c);
+        }
+    }
+    let places = sets.into_components();
+    let of = mesh.triangles.iter().map(|t| places.of[group[t[0] as usize] as usize]).collect();
+    Ok(Components { of, count: places.count })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::winding::OpenShells;
+
+    /// Cubes with these lowest corners and sizes.
+    fn cubes(of: &[([f64; 3], f64)]) -> Soup {
+        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let mut soup = Soup::default();
+        for &(low, size) in of {
+            let base = soup.positions.len() as u32;
+            let corner = |i: u32| [i & 1, i >> 1 & 1, i >> 2].map(f64::from);
+            soup.positions.extend((0..8).map(|i| DVec3::from(corner(i)) * size + DVec3::from(low)));
+            let split = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+            soup.triangles.extend(split.map(|t: [u32; 3]| t.map(|v| v + base)));
+        }
+        soup
+    }
+
+    fn measured(input: &Soup, result: &Soup, origins: &[u32]) -> Fidelity {
+        let budget = Budget::unlimited();
+        let solid = Solid::of(&input.positions, &input.triangles, OpenShells::Auto, &budget).unwrap();
+        let volume = signed_volume((0..input.triangles.len() as u32).map(|t| input.corners(t)));
+        Original::new(input, Some(volume), Some(solid)).measure(result, origins, &budget).unwrap()
+    }
+
+    #[test]
+    fn what_stays_is_at_no_distance_and_loses_nothing() {
+        let cube = cubes(&[([0.0; 3], 10.0)]);
+        let found = measured(&cube, &cube, &(0..12).collect::<Vec<_>>());
+        assert_eq!(found.distance.unwrap().upper(), 0.0);
+        assert_eq!(
+            (found.losses.visible_loss, found.losses.hidden_area, found.losses.bodies_lost),
+            (0.0, 0.0, 0)
+        );
+        assert_eq!(found.losses.volume_change, Some(0.0));
+        let again = measured(&cube, &cube, &[NEW; 12]);
+        assert!(again.distance.unwrap().upper() < 1e-9 && again.losses.visible_loss == 0.0);
+    }
+
+    #[test]
+    fn a_hidden_body_may_go_and_a_visible_one_may_not() {
+        let outer = cubes(&[([0.0; 3], 10.0)]);
+        let kept: Vec<u32> = (0..12).collect();
+        let hidden = measured(&cubes(&[([0.0; 3], 10.0), ([4.0; 3], 2.0)]), &outer, &kept);
+        assert_eq!((hidden.losses.visible_loss, hidden.losses.bodies_lost), (0.0, 0));
+        assert!((hidden.losses.hidden_area - 24.0).abs() < 1e-9 && hidden.distance.unwrap().upper() == 0.0);
+        assert!(hidden.passes(&Limits::default()));
+        let visible = measured(&cubes(&[([0.0; 3], 10.0), ([14.0; 3], 2.0)]), &outer, &kept);
+        assert!((visible.losses.visible_loss - 24.0 / 624.0).abs() < 1e-9, "{}", visible.losses.visible_loss);
+        assert_eq!(visible.losses.bodies_lost, 1);
+        let farthest = 6.0 * 3.0f64.sqrt();
+        assert!((visible.distance.unwrap().upper() - farthest).abs() < 0.06 * farthest);
+        assert!(!visible.passes(&Limits::default()));
+    }
+
+    #[test]
+    fn limits_name_what_exceeds_them() {
+        let (cube, larger) = (cubes(&[([0.0; 3], 10.0)]), cubes(&[([0.0; 3], 11.0)]));
+        let found = measured(&cube, &larger, &[NEW; 12]);
+        assert!((found.losses.volume_change.unwrap() - 0.331).abs() < 1e-9);
+        let far = Limits { deviation_max: Some(1.0), ..Limits::default() };
+        assert!(matches!(found.breach(&far), Some(Refusal::DeviationBeyondLimit { limit: 1.0, .. })));
+        let more = Limits { volume_change_max: Some(0.1), ..Limits::default() };
+        assert!(matches!(found.breach(&more), Some(Refusal::VolumeChangeBeyondLimit { limit: 0.1, .. })));
+        let both = Limits { deviation_max: Some(2.0), volume_change_max: Some(0.4) };
+        assert_eq!(found.breach(&both), None);
+    }
+}
