@@ -12,6 +12,7 @@ use crate::certificate::Depth;
 use crate::formats::Encoding;
 use crate::repair::duplicates::OppositePairs;
 use crate::repair::{self, Draft};
+use crate::winding::Solid;
 
 /// Repairs `input`. A valid one comes back as it is, or converted.
 pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Result<Answer, Failure> {
@@ -77,9 +78,15 @@ fn certified(
     let volume = before.and_then(|analysis| analysis.measures.volume);
     let Attempt { draft, actions } = attempt;
     let origins = &draft.triangle_origin;
-    // Local steps hide nothing.
-    let original = Original::new(&input.soup, volume, None);
-    let fidelity = original.measure(candidate.soup(), origins, budget)?;
+    // Mostly nothing is gone, and what is hidden does not matter.
+    let all = Original::new(&input.soup, volume, None);
+    let mut fidelity = all.measure(candidate.soup(), origins, budget)?;
+    if !fidelity.passes(&options.limits) {
+        let read = || Solid::of(&draft.positions, &draft.triangles, options.wrap.open_shells, budget);
+        let solid = budget.stage(Stage::Measure, read)?;
+        let visible = Original::new(&input.soup, volume, Some(solid));
+        fidelity = visible.measure(candidate.soup(), origins, budget)?;
+    }
     if !fidelity.passes(&options.limits) {
         let rebuilt = match rebuild::rebuild(input, encoding, options, before, budget) {
             Ok(rebuilt) => Some(rebuilt),

@@ -106,7 +106,7 @@ impl Solid {
                 of_parts.extend(self.part.get(t as usize).map(|&part| (part, turn)));
             }
         })?;
-        if self.cones.at(place, f64::from(count)) >= 0.5 {
+        if self.cones.is_inside(place, f64::from(count)) {
             return Ok(Surroundings::Inside);
         }
         of_parts.sort_unstable();

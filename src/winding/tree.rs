@@ -14,8 +14,14 @@ const FAR: f64 = 3.5;
 /// How much farther for places whose winding number is close to the threshold.
 const FAR_IN_DOUBT: f64 = 8.0;
 
+/// How near groups may be for places whose winding number is far from the threshold.
+const FAR_AT_FIRST: f64 = 2.0;
+
 /// Closer to 1/2 than this is in doubt.
 const DOUBT: f64 = 0.05;
+
+/// And this when groups were near.
+const DOUBT_AT_FIRST: f64 = 0.2;
 
 /// What a group of triangles is from afar.
 #[derive(Debug, Clone, Copy)]
@@ -85,6 +91,16 @@ impl WindingTree {
     pub fn at(&self, p: DVec3, more: f64) -> f64 {
         let first = self.evaluate(p, FAR) + more;
         if (first - 0.5).abs() < DOUBT { self.evaluate(p, FAR_IN_DOUBT) + more } else { first }
+    }
+
+    /// Whether the winding number at `p` plus `more` is at least 1/2, with no more care than that takes.
+    pub fn is_inside(&self, p: DVec3, more: f64) -> bool {
+        if self.is_empty() {
+            return more >= 0.5;
+        }
+        let first = self.evaluate(p, FAR_AT_FIRST) + more;
+        let is_clear = (first - 0.5).abs() >= DOUBT_AT_FIRST;
+        (if is_clear { first } else { self.at(p, more) }) >= 0.5
     }
 
     fn evaluate(&self, p: DVec3, far: f64) -> f64 {
@@ -231,6 +247,21 @@ mod tests {
             worst = worst.max((tree.at(p, 0.0) - exact).abs());
         }
         assert!(worst < 0.02, "{worst}");
+    }
+
+    #[test]
+    fn inside_is_where_the_winding_number_is_at_least_a_half() {
+        let tree = WindingTree::build(bowl(60, 5.0), &Budget::unlimited()).unwrap();
+        let mut inside = 0;
+        for i in 0..8000 {
+            let p = DVec3::new((i % 20) as f64, (i / 20 % 20) as f64, (i / 400) as f64) * 1.3 - 12.7;
+            let w = tree.at(p, 0.0);
+            if (w - 0.5).abs() > 1e-3 {
+                assert_eq!(tree.is_inside(p, 0.0), w >= 0.5, "{p} {w}");
+            }
+            inside += usize::from(w >= 0.5);
+        }
+        assert!(inside > 800, "{inside}");
     }
 
     #[test]

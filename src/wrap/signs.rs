@@ -122,6 +122,12 @@ impl<'l> Signs<'l> {
         self.open.at(place, f64::from(self.closed[index]))
     }
 
+    /// Whether the winding number at a vertex is at least 1/2.
+    fn is_wound(&self, index: usize) -> bool {
+        let place = DVec3::from_array(self.lattice.coordinates(index).map(|n| n as f64));
+        self.open.is_inside(place, f64::from(self.closed[index]))
+    }
+
     /// The outermost vertices are outside, whatever winds around them.
     fn border(&mut self) {
         let [x, y, z] = self.lattice.dims;
@@ -231,7 +237,7 @@ impl<'l> Signs<'l> {
         let _charge = budget.charge(wanted.len() as u64 * 8)?;
         let signs = par::try_map_ranges(wanted.len(), 1024, |range| {
             budget.spend(range.len() as u64 * 8)?;
-            let is_inside = |&v: &u32| self.winding(v as usize) >= 0.5;
+            let is_inside = |&v: &u32| self.is_wound(v as usize);
             Ok(wanted[range].iter().map(is_inside).collect::<Vec<bool>>())
         })?;
         for (&v, is_inside) in wanted.iter().zip(signs.into_iter().flatten()) {
@@ -259,7 +265,7 @@ impl<'l> Signs<'l> {
             wanted.iter().for_each(|&v| self.state[v as usize] &= !LISTED);
             let signs = par::try_map_ranges(wanted.len(), 1024, |range| {
                 budget.spend(range.len() as u64 * 8)?;
-                let is_inside = |&v: &u32| self.winding(v as usize) >= 0.5;
+                let is_inside = |&v: &u32| self.is_wound(v as usize);
                 Ok(wanted[range].iter().map(is_inside).collect::<Vec<bool>>())
             })?;
             for (&v, is_inside) in wanted.iter().zip(signs.into_iter().flatten()) {

@@ -25,6 +25,7 @@ mod bad_input;
 mod fixtures;
 mod operations;
 mod real_files;
+mod rebuild;
 mod repair;
 mod simplify;
 mod simplify_real_files;

@@ -10,33 +10,22 @@ use meshmend::par;
 use meshmend::pipeline::{
     Answer, FillHoles, Operation, Options, Outcome, Refusal, Require, WrapChoices, run,
 };
-use meshmend::winding::OpenShells;
 
-fn answer(bytes: &[u8], options: &Options) -> Answer {
+pub(crate) fn answer(bytes: &[u8], options: &Options) -> Answer {
     run(Operation::Repair, bytes, options, &Budget::unlimited()).unwrap()
 }
 
-fn repaired(soup: &RawSoup) -> Answer {
+pub(crate) fn repaired(soup: &RawSoup) -> Answer {
     answer(&encode(soup, Encoding::Obj), &coarse())
 }
 
 /// Options with which a rebuilt surface has few cells.
-fn coarse() -> Options {
+pub(crate) fn coarse() -> Options {
     Options { wrap: WrapChoices { cells: Some(24), ..WrapChoices::default() }, ..Options::default() }
 }
 
-/// The volume of a rebuilt mesh, which must be certified, with the number of its shells.
-fn rebuilt(answer: &Answer) -> (f64, usize) {
-    assert_eq!(answer.report.outcome, Some(Outcome::Rebuilt), "{:?}", answer.report.refusal);
-    let certificate = answer.report.certificate.as_ref().unwrap();
-    assert!(certificate.is_printable());
-    assert!(answer.report.distance.is_some());
-    assert!(answer.report.actions.iter().any(|action| action.step == "wrap" && !action.reason.is_empty()));
-    (certificate.shells.iter().map(|shell| shell.volume).sum(), certificate.shells.len())
-}
-
 /// Sum of a named count over all actions.
-fn count(answer: &Answer, name: &str) -> u64 {
+pub(crate) fn count(answer: &Answer, name: &str) -> u64 {
     let changes = answer.report.actions.iter().flat_map(|action| &action.changes);
     changes.filter(|(n, _)| *n == name).map(|(_, count)| count).sum()
 }
@@ -52,14 +41,14 @@ fn certified(answer: &Answer) -> (Soup, usize) {
     (soup, certificate.shells.len())
 }
 
-fn refused(answer: &Answer) -> &Refusal {
+pub(crate) fn refused(answer: &Answer) -> &Refusal {
     assert_eq!(answer.report.outcome, Some(Outcome::Refused));
     assert!(answer.output.is_none() && answer.report.certificate.is_none());
     answer.report.refusal.as_ref().unwrap()
 }
 
 /// The soup without the triangles of these numbers.
-fn without(mut soup: RawSoup, gone: &[usize]) -> RawSoup {
+pub(crate) fn without(mut soup: RawSoup, gone: &[usize]) -> RawSoup {
     let mut t = 0;
     soup.triangles.retain(|_| {
         t += 1;
@@ -68,7 +57,7 @@ fn without(mut soup: RawSoup, gone: &[usize]) -> RawSoup {
     soup
 }
 
-fn flat(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> RawSoup {
+pub(crate) fn flat(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> RawSoup {
     RawSoup { positions: points.iter().map(|&[x, y]| [x, y, 0.0]).collect(), triangles: triangles.to_vec() }
 }
 
@@ -121,7 +110,7 @@ fn holes_stay_open_when_that_is_asked() {
     assert_eq!(open.report.outcome, Some(Outcome::Partial));
     assert_eq!(open.report.after.unwrap().counts.triangles, 10);
     let options = Options { fill_holes: FillHoles::None, ..coarse() };
-    let (volume, shells) = rebuilt(&answer(&bytes, &options));
+    let (volume, shells) = crate::rebuild::rebuilt(&answer(&bytes, &options));
     assert!(shells == 1 && (0.8..1.1).contains(&volume), "{volume}");
 }
 
@@ -286,7 +275,7 @@ fn walls_with_crossing_diagonals_are_not_taken_for_copies() {
     let quarter_turn = |[x, y, z]: [f64; 3]| [1.0 - y, x, z + 1.0];
     let above = RawSoup { positions: cube().positions.into_iter().map(quarter_turn).collect(), ..cube() };
     let answer = repaired(&cube().with(&above));
-    let (volume, shells) = rebuilt(&answer);
+    let (volume, shells) = crate::rebuild::rebuilt(&answer);
     assert!(shells == 1 && (volume - 2.0).abs() < 0.1, "{volume}");
     assert_eq!(count(&answer, "copies_dropped") + count(&answer, "opposite_pairs_cancelled"), 0);
 }
@@ -298,53 +287,6 @@ fn a_face_with_nan_is_replaced() {
     let answer = answer(text.as_bytes(), &Options::default());
     assert_eq!(certified(&answer).0.triangles.len(), 12);
     assert_eq!(count(&answer, "unusable_faces_dropped"), 1);
-}
-
-#[test]
-fn what_no_step_makes_a_solid_is_rebuilt() {
-    let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.4, 0.5]];
-    let moebius = RawSoup {
-        positions: vec![
-            [3.0, 0.0, 0.0],
-            [1.0, 2.0, 1.0],
-            [-2.0, 1.0, -1.0],
-            [-2.0, -2.0, 2.0],
-            [1.0, -2.0, 0.0],
-        ],
-        triangles: vec![[0, 1, 2], [1, 2, 3], [2, 3, 4], [3, 4, 0], [4, 0, 1]],
-    };
-    for (name, soup) in [
-        ("a triangle", flat(&square, &[[0, 1, 2]])),
-        ("two triangles in a square", flat(&square, &[[0, 1, 2], [0, 2, 3]])),
-        ("a fan in a square", flat(&square, &[[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])),
-        ("a Möbius band", moebius),
-        ("two cubes that share an edge", cube().with(&cube().moved([1.0, 1.0, 0.0]))),
-        ("two cubes that pass through each other", cube().with(&cube().moved([0.5; 3]))),
-    ] {
-        let answer = repaired(&soup);
-        let (volume, shells) = rebuilt(&answer);
-        assert!(volume > 0.0 && shells == 1, "{name}: {volume} in {shells}");
-    }
-}
-
-#[test]
-fn open_shells_are_closed_or_thickened_as_asked() {
-    let bytes = encode(&without(cube(), &[2, 3]), Encoding::Obj);
-    let volume = |open_shells| {
-        let wrap = WrapChoices { cells: Some(32), open_shells, ..WrapChoices::default() };
-        let options = Options { fill_holes: FillHoles::None, wrap, ..Options::default() };
-        rebuilt(&answer(&bytes, &options)).0
-    };
-    let [auto, close, thicken] = [OpenShells::Auto, OpenShells::Close, OpenShells::Thicken].map(volume);
-    assert_eq!(auto, close);
-    assert!(close > 0.8 && thicken < 0.5, "{close} {thicken}");
-}
-
-#[test]
-fn what_float32_cannot_hold_is_not_rebuilt() {
-    let crossing = cube().with(&cube().moved([0.5; 3]));
-    let answer = repaired(&crossing.moved([1e6, 0.0, 0.0]));
-    assert!(matches!(refused(&answer), Refusal::BeyondFloat32 { .. }));
 }
 
 #[test]

@@ -1,0 +1,173 @@
+//! Repairs that rebuild the surface, from bytes to bytes.
+
+use crate::oracle::RawSoup;
+use crate::raw_files::encode;
+use crate::repair::{answer, coarse, count, flat, refused, repaired, without};
+use crate::solids::cube;
+use meshmend::formats::Encoding;
+use meshmend::pipeline::{Answer, Effort, FillHoles, Limits, Options, Outcome, Refusal, WrapChoices};
+use meshmend::winding::OpenShells;
+
+/// The volume of a rebuilt mesh, which must be certified, with the number of its shells.
+pub(crate) fn rebuilt(answer: &Answer) -> (f64, usize) {
+    assert_eq!(answer.report.outcome, Some(Outcome::Rebuilt), "{:?}", answer.report.refusal);
+    let certificate = answer.report.certificate.as_ref().unwrap();
+    assert!(certificate.is_printable());
+    assert!(answer.report.distance.is_some() && answer.report.losses.is_some());
+    assert!(answer.report.actions.iter().any(|action| action.step == "wrap" && !action.reason.is_empty()));
+    (certificate.shells.iter().map(|shell| shell.volume).sum(), certificate.shells.len())
+}
+
+/// Two cubes that pass through each other.
+fn crossing() -> RawSoup {
+    cube().with(&cube().moved([0.5; 3]))
+}
+
+fn square() -> RawSoup {
+    flat(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], &[[0, 1, 2], [0, 2, 3]])
+}
+
+#[test]
+fn what_no_step_makes_a_solid_is_rebuilt() {
+    let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.4, 0.5]];
+    let moebius = RawSoup {
+        positions: vec![
+            [3.0, 0.0, 0.0],
+            [1.0, 2.0, 1.0],
+            [-2.0, 1.0, -1.0],
+            [-2.0, -2.0, 2.0],
+            [1.0, -2.0, 0.0],
+        ],
+        triangles: vec![[0, 1, 2], [1, 2, 3], [2, 3, 4], [3, 4, 0], [4, 0, 1]],
+    };
+    for (name, soup) in [
+        ("a triangle", flat(&square, &[[0, 1, 2]])),
+        ("two triangles in a square", flat(&square, &[[0, 1, 2], [0, 2, 3]])),
+        ("a fan in a square", flat(&square, &[[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])),
+        ("a Möbius band", moebius),
+        ("two cubes that share an edge", cube().with(&cube().moved([1.0, 1.0, 0.0]))),
+        ("two cubes that pass through each other", cube().with(&cube().moved([0.5; 3]))),
+    ] {
+        let answer = repaired(&soup);
+        let (volume, shells) = rebuilt(&answer);
+        assert!(volume > 0.0 && shells == 1, "{name}: {volume} in {shells}");
+    }
+}
+
+#[test]
+fn open_shells_are_closed_or_thickened_as_asked() {
+    let bytes = encode(&without(cube(), &[2, 3]), Encoding::Obj);
+    let volume = |open_shells| {
+        let wrap = WrapChoices { cells: Some(32), open_shells, ..WrapChoices::default() };
+        let options = Options { fill_holes: FillHoles::None, wrap, ..Options::default() };
+        rebuilt(&answer(&bytes, &options)).0
+    };
+    let [auto, close, thicken] = [OpenShells::Auto, OpenShells::Close, OpenShells::Thicken].map(volume);
+    assert_eq!(auto, close);
+    assert!(close > 0.8 && thicken < 0.5, "{close} {thicken}");
+}
+
+#[test]
+fn what_float32_cannot_hold_is_not_rebuilt() {
+    let crossing = cube().with(&cube().moved([0.5; 3]));
+    let answer = repaired(&crossing.moved([1e6, 0.0, 0.0]));
+    assert!(matches!(refused(&answer), Refusal::BeyondFloat32 { .. }));
+}
+
+#[test]
+fn what_is_too_far_away_is_moved_to_the_origin_where_that_is_allowed() {
+    let bytes = encode(&crossing().moved([1e6, -3e7, 0.0]), Encoding::Obj);
+    let wrap = WrapChoices { may_recenter: true, ..coarse().wrap };
+    let answer = answer(&bytes, &Options { wrap, ..Options::default() });
+    let (volume, shells) = rebuilt(&answer);
+    assert!((volume - 1.875).abs() < 0.05 && shells == 1, "{volume}");
+    let moved = answer.report.actions.iter().find(|action| action.step == "recenter").unwrap();
+    assert!((moved.move_max - 3.0017e7).abs() < 1e4, "{}", moved.move_max);
+    let bounds = answer.report.after.as_ref().unwrap().measures.bounds.unwrap();
+    assert!(bounds.min.abs().max(bounds.max.abs()).max_element() < 2.0);
+    assert!(answer.report.distance.unwrap().upper() < 0.1);
+}
+
+#[test]
+fn what_is_farther_than_the_caller_allows_is_refused_with_the_least_there_is() {
+    let bytes = encode(&crossing(), Encoding::Obj);
+    let with = |limits| answer(&bytes, &Options { limits, ..coarse() });
+    let deviation = |limit| with(Limits { deviation_max: Some(limit), ..Limits::default() });
+    let Refusal::DeviationBeyondLimit { deviation: least, limit } = *refused(&deviation(1e-6)) else {
+        panic!("another refusal")
+    };
+    assert!(limit == 1e-6 && least > 1e-6 && least < 0.1, "{least}");
+    rebuilt(&deviation(least * 1.01));
+    // The file says 2, the union is 1.875.
+    let change = |limit| with(Limits { volume_change_max: Some(limit), ..Limits::default() });
+    let Refusal::VolumeChangeBeyondLimit { change: least, .. } = *refused(&change(0.01)) else {
+        panic!("another refusal")
+    };
+    assert!((least - 0.0625).abs() < 0.02, "{least}");
+    rebuilt(&change(0.1));
+}
+
+#[test]
+fn a_sheet_becomes_a_wall_of_the_thickness_that_is_asked_for() {
+    let bytes = encode(&square(), Encoding::Obj);
+    let volume = |wall| {
+        let wrap = WrapChoices { cells: Some(64), wall, ..WrapChoices::default() };
+        let answer = answer(&bytes, &Options { wrap, ..Options::default() });
+        let bounds = answer.report.after.as_ref().unwrap().measures.bounds.unwrap();
+        assert!(bounds.max.z.abs() < 5e-4, "the sheet remains a side: {}", bounds.max.z);
+        rebuilt(&answer).0
+    };
+    // The rim is rounded, half a wall to each side.
+    for wall in [0.02, 0.1] {
+        let got = volume(Some(wall));
+        let least = wall;
+        let most = wall * (1.0 + 2.0 * wall) * (1.0 + 2.0 * wall);
+        assert!((0.9 * least..1.1 * most).contains(&got), "{wall}: {got}");
+    }
+    // 0.4 % of the diagonal.
+    let got = volume(None);
+    assert!((0.0050..0.0066).contains(&got), "{got}");
+}
+
+#[test]
+fn a_sheet_on_both_sides_beside_a_cube_is_not_dropped_with_its_copies() {
+    let mut sheet = square().moved([3.0, 0.0, 0.0]);
+    let back: Vec<[u32; 3]> = sheet.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
+    sheet.triangles.extend(back);
+    let answer = repaired(&cube().with(&sheet));
+    let (_, shells) = rebuilt(&answer);
+    assert_eq!((shells, count(&answer, "triangles_kept")), (2, 12));
+    let losses = answer.report.losses.unwrap();
+    assert!(losses.visible_loss < 0.01 && losses.bodies_lost == 0, "{losses:?}");
+}
+
+#[test]
+fn a_wall_between_two_bodies_is_hidden_and_its_removal_no_loss() {
+    // Two cubes face to face: the common face is there in both directions.
+    let answer = repaired(&cube().with(&cube().moved([1.0, 0.0, 0.0])));
+    assert_eq!(answer.report.outcome, Some(Outcome::Repaired));
+    let losses = answer.report.losses.unwrap();
+    assert_eq!((losses.visible_loss, losses.bodies_lost), (0.0, 0));
+    assert!((losses.hidden_area - 2.0).abs() < 1e-9, "{}", losses.hidden_area);
+}
+
+#[test]
+fn more_effort_is_finer_where_detail_is_lost() {
+    // A body that crosses another and a comb of plates too thin for the first lattice, and too close to each other.
+    let mut soup = crossing();
+    for k in 0..24 {
+        let plate = cube();
+        let squeeze = |p: [f64; 3]| [0.004 * p[0] + 0.01 * f64::from(k) - 0.6, p[1], p[2]];
+        let positions = plate.positions.iter().map(|&p| squeeze(p)).collect();
+        soup = soup.with(&RawSoup { positions, ..plate });
+    }
+    let bytes = encode(&soup, Encoding::Obj);
+    let with = |effort| {
+        let wrap = WrapChoices { effort, ..WrapChoices::default() };
+        let answer = answer(&bytes, &Options { wrap, ..Options::default() });
+        rebuilt(&answer);
+        (count(&answer, "cells"), answer.report.losses.unwrap().visible_loss)
+    };
+    let (low, normal) = (with(Effort::Low), with(Effort::Normal));
+    assert!(low.0 <= normal.0 && low.1 >= normal.1, "{low:?} {normal:?}");
+}
