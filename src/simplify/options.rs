@@ -1,6 +1,6 @@
 //! What the caller chooses: how far, by which measure, and what must not happen on the way.
 
-use crate::geom::DVec3;
+use crate::geom::{Aabb, DVec3};
 
 /// How far to simplify.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,6 +91,8 @@ pub struct SimplifyOptions<'a> {
     /// Put new positions on the lattice of pitch `2^(ceil(log2 M) - 23)`, `M` the largest magnitude of a coordinate:
     /// all its points are float32, so that a file of float32 holds the very result.
     pub round: bool,
+    /// In the fast and the guarded mode, vertices in these boxes stay, in the unit of the input.
+    pub held: &'a [Aabb],
     /// In the guarded mode also refuse collapses that sweep over something. Otherwise the surface is looked at after each
     /// round only: what is valid stays valid, but a plate may go over a pebble on the way.
     pub sweeps: bool,
@@ -109,6 +111,7 @@ impl Default for SimplifyOptions<'_> {
             crease_cos_max: -2.0,
             wall_weight: 1.0,
             round: true,
+            held: &[],
             sweeps: true,
             priorities: false,
         }

@@ -120,7 +120,7 @@ const BESIDE: f64 = 1e-3;
 /// Thickness of walls when the caller does not say.
 const WALL_OF_DIAGONAL: f64 = 0.004;
 
-/// Thinnest and thickest walls, in cells.
+/// Thinnest and thickest walls, in cells; for a thicker one the cells are larger.
 const WALLS: [f64; 2] = [0.25, 16.0];
 
 /// Cells below which no crowd of triangles pushes the resolution.
@@ -186,7 +186,11 @@ fn choose(
     options: &WrapOptions,
     budget: &Budget,
 ) -> Result<Lattice, WrapError> {
-    let mut cells = options.cells;
+    // Room for thick walls, which are no more than so many cells.
+    let longest = (bounds.max - bounds.min).max_element();
+    let wall = options.wall.unwrap_or(0.0).min(longest);
+    let bounds = Aabb { min: bounds.min - wall, max: bounds.max + wall };
+    let mut cells = options.cells.min((WALLS[1] * longest / wall) as u32);
     let mut is_first = true;
     loop {
         let lattice =

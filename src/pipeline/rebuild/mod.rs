@@ -1,7 +1,9 @@
 //! The last rung: a surface rebuilt around what no local edit could make a solid.
 
+mod fewer;
 mod parts;
 
+use self::fewer::Fewer;
 use super::fidelity::{Fidelity, Original};
 use super::input::Input;
 use super::output::{Candidate, NoCandidate};
@@ -15,7 +17,7 @@ use crate::geom::{Aabb, DVec3};
 use crate::mesh::Soup;
 use crate::repair::duplicates::OppositePairs;
 use crate::repair::{Draft, NEW, nest};
-use crate::simplify::{self, Mode, Simplified, SimplifyError, SimplifyOptions, Target};
+use crate::simplify::Mode;
 use crate::winding::{OpenShells, Solid};
 use crate::wrap::{self, Account, WrapError, WrapOptions, Wrapped};
 
@@ -33,10 +35,6 @@ pub struct WrapChoices {
     /// A mesh too far from the origin for float32 is moved there.
     pub may_recenter: bool,
 }
-
-/// Collapses of a rebuilt surface have errors up to this share of a cell, unless the caller has targets: what can be
-/// seen comes from the lattice's cells, and flat faces need few triangles.
-const ERROR_OF_CELL: f64 = 0.05;
 
 /// Defects that lead here when no step cures them.
 const CAUSES: [DefectCode; 9] = [
@@ -291,11 +289,9 @@ impl Rebuilding<'_> {
             kept.triangle_origin.iter().copied().chain(std::iter::repeat_n(NEW, count)).collect()
         };
         let account = wrapped.account;
-        // What the fast mode gives is nearly always valid, and the certificate says whether it is.
+        let fewer = Fewer { wrapped, choices: &self.options.simplify, budget: self.budget };
         for mode in [Mode::Fast, Mode::Guarded] {
-            let Some((simplified, action)) = simplified(wrapped, mode, self.options, self.budget)? else {
-                break;
-            };
+            let Some((simplified, action)) = fewer.triangles(mode)? else { continue };
             let candidate = self.write(&simplified.positions, &simplified.triangles, kept)?;
             if candidate.certificate().is_printable() {
                 let origins = origins(simplified.triangles.len());
@@ -333,41 +329,6 @@ impl Rebuilding<'_> {
             soup.face_colors.resize(soup.triangles.len(), None);
         }
         Candidate::write(soup, self.encoding, Depth::FirstViolation, self.budget)
-    }
-}
-
-/// The surface with fewer triangles: to the caller's first target, or as far as it does not show.
-fn simplified(
-    wrapped: &Wrapped,
-    mode: Mode,
-    options: &Options,
-    budget: &Budget,
-) -> Result<Option<(Simplified, Action)>, Stopped> {
-    let input = simplify::Input {
-        positions: &wrapped.positions,
-        triangles: &wrapped.triangles,
-        face_groups: &[],
-        vertex_colors: &[],
-        texture: &[],
-    };
-    let choices = &options.simplify;
-    let target = choices.targets.first().copied();
-    let settings = SimplifyOptions {
-        targets: vec![target.unwrap_or(Target::Error(wrapped.account.spacing * ERROR_OF_CELL))],
-        criterion: choices.criterion,
-        placement: choices.placement,
-        // The distance of the result is measured, whatever went over what on the way.
-        sweeps: false,
-        ..SimplifyOptions::default()
-    };
-    let results = budget.stage(Stage::Simplify, || simplify::simplify(&input, mode, &settings, budget));
-    match results {
-        Ok(results) => Ok(results.into_iter().next().map(|result| {
-            let action = super::simplify::action(&result.report);
-            (result, action)
-        })),
-        Err(SimplifyError::Stopped(stopped)) => Err(stopped),
-        Err(SimplifyError::NotManifold(_)) => Ok(None),
     }
 }
 
@@ -412,8 +373,12 @@ fn reason(account: &Account, open_shells: OpenShells) -> String {
     };
     // The decision is at a half; the farther, the surer.
     let confidence = account.closedness.map_or(1.0, |closedness| (2.0 * closedness - 1.0).abs());
+    let walls = match account.sheet_parts {
+        0 => String::new(),
+        _ => format!(", with walls of {:.3e}", account.wall),
+    };
     format!(
-        "rebuilt on a lattice with a spacing of {:e}; read as {reading}: {why} (confidence {confidence:.2})",
+        "rebuilt on a lattice with a spacing of {:e}; read as {reading}{walls}: {why} (confidence {confidence:.2})",
         account.spacing
     )
 }

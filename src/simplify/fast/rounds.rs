@@ -11,7 +11,7 @@ use super::rollback::{Course, Guard};
 use super::shells::Shells;
 use super::strays::Strays;
 use crate::budget::{Budget, Stopped};
-use crate::geom::DVec3;
+use crate::geom::{Aabb, DVec3};
 use crate::mesh::corner_table::CornerTable;
 use crate::par;
 use crate::simplify::criterion::Criterion;
@@ -19,6 +19,7 @@ use crate::simplify::options::{SimplifyOptions, Target};
 use crate::simplify::priority::costs_of_vertices;
 use crate::simplify::result::{Input, SimplifyError};
 use crate::simplify::surface::{LINE, Surface};
+use crate::spatial::Bvh;
 use std::sync::Arc;
 
 /// Share of the triangles that a round leaves, so that what is between parts does not fall far behind.
@@ -46,6 +47,8 @@ pub(super) struct Rounds<'r, C: Criterion> {
     pub(super) frame: Surface<C::State>,
     rules: Rules<'r, C>,
     pub(super) input: Input<'r>,
+    /// Where vertices stay; `None`: nowhere.
+    held: Option<Bvh>,
     /// Vertices of a part.
     part_len: usize,
     /// Rounds so far.
@@ -76,7 +79,9 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         let rules =
             Rules { criterion, options, error_squared_limit: f64::INFINITY, is_guarded: settings.is_guarded };
         let tally = Tally::default();
+        let held = held_boxes(options.held, frame.scale, budget)?;
         Ok(Self {
+            held,
             mesh,
             tally,
             frame,
@@ -248,7 +253,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         &self,
         division: &Division,
         i: usize,
-        Piece { mut table, is_free }: Piece,
+        Piece { mut table, mut is_free }: Piece,
         strays: &Option<Arc<Strays>>,
         is_first: bool,
     ) -> Result<Part<'r, C>, Stopped> {
@@ -257,7 +262,12 @@ impl<'r, C: Criterion> Rounds<'r, C> {
             mark(&mut table, &self.mesh.lines[division.starts[i]..division.starts[i + 1]]);
         }
         let own = division.vertices(i);
-        let vertices = own.iter().map(|&v| self.mesh.vertices[v as usize]).collect();
+        let vertices: Vec<_> = own.iter().map(|&v| self.mesh.vertices[v as usize]).collect();
+        if let Some(held) = &self.held {
+            for (vertex, is_free) in vertices.iter().zip(&mut is_free) {
+                held.visit_box(Aabb::of([vertex.position]), self.budget, |_| *is_free = false)?;
+            }
+        }
         let colors = own.iter().filter_map(|&v| self.mesh.colors.get(v as usize).copied()).collect();
         let mut surface = self.frame.of_part(table, vertices);
         if !self.mesh.texture.is_empty() {
@@ -345,4 +355,14 @@ fn first_stop<C: Criterion>(parts: &[Part<'_, C>], triangles: usize) -> usize {
         class += 1;
     }
     class
+}
+
+/// The boxes in which vertices stay, in the coordinates of the run. A box is that of a triangle with two corners in one.
+fn held_boxes(boxes: &[Aabb], scale: f64, budget: &Budget) -> Result<Option<Bvh>, Stopped> {
+    if boxes.is_empty() {
+        return Ok(None);
+    }
+    let corners: Vec<DVec3> = boxes.iter().flat_map(|b| [b.min * scale, b.max * scale]).collect();
+    let triangles: Vec<[u32; 3]> = (0..boxes.len() as u32).map(|n| [2 * n, 2 * n + 1, 2 * n + 1]).collect();
+    Bvh::build(&corners, &triangles, None, budget).map(Some)
 }

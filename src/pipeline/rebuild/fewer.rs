@@ -1,0 +1,95 @@
+//! A rebuilt surface with fewer triangles, which meets itself nowhere.
+
+use crate::budget::{Budget, Stage, Stopped};
+use crate::geom::{Aabb, DVec3};
+use crate::pipeline::{Action, SimplifyChoices};
+use crate::simplify::{self, Mode, Simplified, SimplifyError, SimplifyOptions, Target};
+use crate::spatial::{self, Bvh, Search, Terrains};
+use crate::wrap::Wrapped;
+
+/// Collapses of a rebuilt surface have errors up to this share of a cell, unless the caller has targets: what can be
+/// seen comes from the lattice's cells, and flat faces need few triangles.
+const ERROR_OF_CELL: f64 = 0.05;
+
+/// Runs of the fast mode, each with more of the surface held.
+const RUNS: usize = 5;
+
+/// Room around contacts in which the surface is held, in cells.
+const ROOM: f64 = 2.0;
+
+/// Contacts to hold the surface around after a run.
+const CONTACTS: usize = 1 << 14;
+
+/// The surface to simplify, to the caller's first target, or as far as it does not show.
+pub(super) struct Fewer<'f> {
+    pub(super) wrapped: &'f Wrapped,
+    pub(super) choices: &'f SimplifyChoices,
+    pub(super) budget: &'f Budget,
+}
+
+impl Fewer<'_> {
+    /// What the mode gives. Of the fast one, which does not look at what meets, a result without contacts: where there were
+    /// some, the surface is held in the next run. `None`: contacts remained.
+    pub(super) fn triangles(&self, mode: Mode) -> Result<Option<(Simplified, Action)>, Stopped> {
+        let (mut held, mut before) = (Vec::new(), usize::MAX);
+        for _ in 0..RUNS {
+            let Some(found) = self.run(mode, &held)? else { return Ok(None) };
+            if mode != Mode::Fast {
+                return Ok(Some(found));
+            }
+            let met = self.budget.stage(Stage::Simplify, || self.places_of_contacts(&found.0))?;
+            if met.is_empty() {
+                return Ok(Some(found));
+            }
+            // More of the surface held does not help everywhere.
+            if met.len() > before / 2 {
+                return Ok(None);
+            }
+            before = met.len();
+            held.extend(met);
+        }
+        Ok(None)
+    }
+
+    fn run(&self, mode: Mode, held: &[Aabb]) -> Result<Option<(Simplified, Action)>, Stopped> {
+        let Wrapped { positions, triangles, account, .. } = self.wrapped;
+        let input =
+            simplify::Input { positions, triangles, face_groups: &[], vertex_colors: &[], texture: &[] };
+        let target = self.choices.targets.first().copied();
+        let settings = SimplifyOptions {
+            targets: vec![target.unwrap_or(Target::Error(account.spacing * ERROR_OF_CELL))],
+            criterion: self.choices.criterion,
+            placement: self.choices.placement,
+            held,
+            // The distance of the result is measured, whatever went over what on the way.
+            sweeps: false,
+            ..SimplifyOptions::default()
+        };
+        let run = || simplify::simplify(&input, mode, &settings, self.budget);
+        match self.budget.stage(Stage::Simplify, run) {
+            Ok(results) => Ok(results.into_iter().next().map(|result| {
+                let action = crate::pipeline::simplify::action(&result.report);
+                (result, action)
+            })),
+            Err(SimplifyError::Stopped(stopped)) => Err(stopped),
+            Err(SimplifyError::NotManifold(_)) => Ok(None),
+        }
+    }
+
+    /// Boxes around the places where triangles meet.
+    fn places_of_contacts(&self, result: &Simplified) -> Result<Vec<Aabb>, Stopped> {
+        let Simplified { positions, triangles, .. } = result;
+        let bvh = Bvh::build(positions, triangles, None, self.budget)?;
+        let terrains = Terrains::find(positions, triangles, &[], self.budget)?;
+        let search = Search::All { keep: CONTACTS };
+        let contacts =
+            spatial::self_contacts(positions, triangles, &bvh, Some(&terrains), search, self.budget)?;
+        let room = DVec3::splat(ROOM * self.wrapped.account.spacing);
+        let bounds = |t: u32| Aabb::of(triangles[t as usize].map(|v| positions[v as usize]));
+        let place = |contact: &spatial::Contact| {
+            let (a, b) = (bounds(contact.a), bounds(contact.b));
+            Aabb { min: a.min.max(b.min) - room, max: a.max.min(b.max) + room }
+        };
+        Ok(contacts.list.iter().map(place).collect())
+    }
+}
