@@ -3,6 +3,7 @@
 
 usage: simplify.py quality [--share 0.1] [--models 40] [--cache FILE]     distance of the results from the original, in every mode
        simplify.py speed [--rounds 3] [--mesh m1]          seconds to a tenth of the faces, alternating in one run
+       simplify.py judge                                   guarded results of sound corpus files before the judge; needs `cargo build --release`
 with MESHMEND_SHARED and the peers' own set-up done (see its README). Ours is `cargo bench --bench simplify`.
 Distances are measured by Open3D: 60,000 random points of each surface and all its vertices against the other surface.
 """
@@ -13,13 +14,13 @@ shared = os.environ.get("MESHMEND_SHARED", os.path.join(root, "../shared"))
 peers = os.environ.get("MESH_PEERS_DIR") or os.path.join(tempfile.gettempdir(), "meshmend-peers")
 judge = os.environ.get("MESH_JUDGE_DIR") or os.path.join(tempfile.gettempdir(), "meshmend-judge")
 p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-p.add_argument("what", choices=("quality", "speed")); p.add_argument("--share", type=float, default=0.1); p.add_argument("--models", type=int, default=40); p.add_argument("--cache", help="file that keeps what was measured of the peers")
+p.add_argument("what", choices=("quality", "speed", "judge")); p.add_argument("--share", type=float, default=0.1); p.add_argument("--models", type=int, default=40); p.add_argument("--cache", help="file that keeps what was measured of the peers")
 p.add_argument("--rounds", type=int, default=3); p.add_argument("--mesh", default="m1"); o = p.parse_args()
 sys.path.insert(0, os.path.join(shared, "judge"))
 from meshfile import load_any, read_msh, write_msh
 MODES, FACES = ("strict", "fast", "guarded"), (2_000, 130_000)
 commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=root, capture_output=True, text=True).stdout.strip()
-subprocess.run(["cargo", "bench", "--locked", "--bench", "simplify", "--no-run", "-q"], cwd=root, check=True)
+if o.what != "judge": subprocess.run(["cargo", "bench", "--locked", "--bench", "simplify", "--no-run", "-q"], cwd=root, check=True)
 
 def ours(path, share, mode, out=None):
     args = [path, repr(share), "quadric", "optimal", mode] + ([out] if out else [])
@@ -119,4 +120,29 @@ def speed():
         if name in seconds: t = med(seconds[name]); print(f"| {name} | {t:.2f} | {t / fast:.2f} | {n / t:,.0f} | |")
         else: print(f"| {name} | failed | | | |")
 
-{"quality": quality, "speed": speed}[o.what]()
+def judged():
+    tool, shares = os.path.join(judge, "judge"), (0.5, 0.1, 0.01); counts, inputs = {s: [0, 0, 0, 0] for s in shares}, 0
+    def look(path):
+        with tempfile.NamedTemporaryFile(suffix=".msh") as f:
+            V, F, _ = load_any(path); write_msh(f.name, np.asarray(V, float), np.asarray(F, np.int64))
+            return json.loads(subprocess.run([tool, f.name, "--only"], capture_output=True, text=True).stdout)
+    for line in open(os.path.join(shared, "corpus/MANIFEST.tsv")):
+        id, path, *_, classes, licence = line.rstrip("\n").split("\t")
+        if line.startswith("#") or classes != "clean" or path.lower().endswith(".3mf"): continue
+        path = os.path.join(shared, "corpus", path)
+        if not look(path)["printable"]: continue
+        inputs += 1
+        for share in shares:
+            with tempfile.TemporaryDirectory() as d:
+                out = d + "/out" + os.path.splitext(path)[1].lower(); c = counts[share]
+                args = [os.path.join(root, "target/release/meshmend"), "simplify", path, "-o", out, "--ratio", repr(share), "--mode", "guarded", "--json"]
+                run = subprocess.run(args, capture_output=True, text=True)
+                if not os.path.exists(out): c[0] += 1; print(f"{id} {share}: {run.stderr.strip()[:150]}", file=sys.stderr); continue
+                verdict = look(out); c[1] += 1; c[2] += verdict["printable"]; c[3] += verdict["si"]
+                if not verdict["printable"]: print(f"{id} {share}: {verdict}", file=sys.stderr)
+        print(id, counts, file=sys.stderr, flush=True)
+    print(f"## Guarded results before the judge\n\n{inputs} clean corpus files that the judge calls printable, commit {commit}; made by `experiments/simplify.py judge`.\n")
+    print("| share of the faces | results | printable | pairs of triangles that meet | no result |\n|---|---|---|---|---|")
+    for s, (failed, results, printable, pairs) in counts.items(): print(f"| {s:.0%} | {results} | {printable} | {pairs} | {failed} |")
+
+{"quality": quality, "speed": speed, "judge": judged}[o.what]()

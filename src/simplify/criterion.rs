@@ -18,9 +18,6 @@ pub(super) struct Placed {
 /// Which edges cost something else after a collapse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Reach {
-    /// Those of the merged vertex, and they only cost more: a cost from before is a lower bound, and it is enough to
-    /// look again when an edge's turn comes.
-    StarGrows,
     /// Those of the merged vertex.
     Star,
     /// Those of the merged vertex and of its neighbours.

@@ -1,10 +1,10 @@
 //! A priority queue of numbered items whose keys change.
 //!
-//! The order is total and exact: by key, then by item. Only the items whose turn is near are in a heap; the others lie
-//! unsorted in buckets by the leading bits of their keys. When the turn of a bucket comes, its owner may look at all its
-//! keys together before they go into the heap. A list by item says which key is the valid one, so that a changed key costs one more entry and old entries are
-//! dropped when they are met. The usual indexed heap holds millions of entries, and each of its steps writes to another
-//! cache line of the index; here the heap stays in the nearest cache (`docs/decisions/0012-bucketed-queue.md`).
+//! The order is total and exact: by key, then by item. Only the items whose turn is near are in order; the others lie
+//! unsorted in buckets by the leading bits of their keys. When the turn of a bucket comes it is sorted, and only what comes
+//! to it later is in a heap. A list by item says which key is the valid one, so that a changed key costs one more entry
+//! and old entries are dropped when they are met. The usual indexed heap holds millions of entries, and each of its steps
+//! writes to another cache line of the index (`docs/decisions/0012-bucketed-queue.md`).
 
 use super::key::Key;
 use std::cmp::Reverse;
@@ -19,6 +19,9 @@ const BUCKET_SHIFT: u32 = 17;
 /// One more than the bucket of the largest finite key.
 const BUCKETS: usize = 0x7f80_0000 >> BUCKET_SHIFT;
 
+/// Entries that are named ahead of their turn, together.
+pub(super) const AHEAD: usize = 32;
+
 /// Items `0..bound` with keys, the smallest first; among equal keys the smallest item.
 #[derive(Debug, Clone)]
 pub(super) struct Queue {
@@ -27,8 +30,19 @@ pub(super) struct Queue {
     /// Items in buckets from `next_bucket` on; those whose valid key belongs to another bucket are not in this one.
     buckets: Vec<Vec<u32>>,
     next_bucket: usize,
-    /// Key and item of what belongs to earlier buckets; entries whose key is not the item's valid one do not count.
-    near: BinaryHeap<Reverse<(u32, u32)>>,
+    /// What was in the bucket before, descending; entries whose key is not the item's valid one do not count.
+    sorted: Vec<Entry>,
+    /// The first so many of `sorted` have not been named ahead.
+    unnamed: usize,
+    /// What came to earlier buckets when their turn had come; entries whose key is not the item's valid one do not count.
+    near: BinaryHeap<Reverse<Entry>>,
+}
+
+/// A key and, in the lower half, its item.
+type Entry = u64;
+
+fn entry(key: u32, item: u32) -> Entry {
+    u64::from(key) << 32 | u64::from(item)
 }
 
 fn bucket_of(key: u32) -> usize {
@@ -44,6 +58,8 @@ impl Queue {
             keys: vec![OUT; bound],
             buckets: sizes.into_iter().map(Vec::with_capacity).collect(),
             next_bucket: 0,
+            sorted: Vec::new(),
+            unnamed: 0,
             near: BinaryHeap::new(),
         };
         for &(item, key) in items {
@@ -53,47 +69,58 @@ impl Queue {
         queue
     }
 
-    /// Takes the smallest entry out of those near; nothing when none is left, then ask for the
-    /// [next bucket](Self::next_bucket).
+    /// Takes the smallest entry out; nothing when the queue is empty.
     #[inline]
     pub(super) fn pop(&mut self) -> Option<(u32, Key)> {
-        while let Some(Reverse((key, item))) = self.near.pop() {
+        loop {
+            let first = match (self.sorted.last(), self.near.peek()) {
+                (None, None) => {
+                    self.next_bucket()?;
+                    continue;
+                }
+                (Some(sorted), Some(Reverse(near))) if sorted < near => self.sorted.pop(),
+                (Some(_), None) => self.sorted.pop(),
+                _ => self.near.pop().map(|Reverse(first)| first),
+            }?;
+            let (key, item) = ((first >> 32) as u32, first as u32);
             let valid = &mut self.keys[item as usize];
             if *valid == key {
                 *valid = OUT;
                 return Some((item, Key::from_bits(key)));
             }
         }
-        None
     }
 
-    /// Takes out the items of the first bucket that has some, in no order; nothing when the queue is empty. Give them
-    /// back with keys that are not lower. Call it only when [`pop`](Self::pop) has nothing.
-    pub(super) fn next_bucket(&mut self) -> Option<Vec<(u32, Key)>> {
-        while self.next_bucket < BUCKETS {
+    /// Sorts the first bucket that has items; nothing when there is none.
+    fn next_bucket(&mut self) -> Option<()> {
+        while self.sorted.is_empty() {
             let bucket = self.next_bucket;
+            let items = std::mem::take(self.buckets.get_mut(bucket)?);
             self.next_bucket += 1;
-            let mut items = Vec::with_capacity(self.buckets[bucket].len());
-            for item in std::mem::take(&mut self.buckets[bucket]) {
-                let valid = &mut self.keys[item as usize];
-                if *valid < ASIDE && bucket_of(*valid) == bucket {
-                    items.push((item, Key::from_bits(*valid)));
-                    *valid = OUT;
-                }
-            }
-            if !items.is_empty() {
-                return Some(items);
-            }
+            let with_key = |item: u32| (self.keys[item as usize], item);
+            let is_here = |&(key, _): &(u32, u32)| key < ASIDE && bucket_of(key) == bucket;
+            let entries = items.into_iter().map(with_key).filter(is_here);
+            self.sorted.extend(entries.map(|(key, item)| entry(key, item)));
         }
-        None
+        self.sorted.sort_unstable_by(|a, b| b.cmp(a));
+        self.unnamed = self.sorted.len();
+        Some(())
     }
 
-    /// True when an entry with this key and item would be the first.
+    /// Items whose turn is near, unless they have been named before: their owner may read what it will need of all of
+    /// them at once. None of them when nothing is new.
     #[inline]
-    pub(super) fn is_first(&self, item: u32, key: Key) -> bool {
-        // Entries that do not count make it an answer of "perhaps not"; then the caller asks again by `pop`.
-        let new = (key.bits(), item);
-        bucket_of(key.bits()) < self.next_bucket && self.near.peek().is_none_or(|&Reverse(first)| new < first)
+    pub(super) fn ahead(&mut self) -> impl Iterator<Item = u32> {
+        let end = self.unnamed;
+        if self.sorted.len() <= end {
+            self.unnamed = end.saturating_sub(AHEAD);
+        }
+        let named = self.unnamed.min(self.sorted.len())..end.min(self.sorted.len());
+        let keys = &self.keys;
+        self.sorted[named].iter().filter_map(|&entry| {
+            let (key, item) = ((entry >> 32) as u32, entry as u32);
+            (keys[item as usize] == key).then_some(item)
+        })
     }
 
     /// The key of an item, if it is in the queue.
@@ -111,7 +138,7 @@ impl Queue {
         }
         let bucket = bucket_of(new);
         if bucket < self.next_bucket {
-            self.near.push(Reverse((new, item)));
+            self.near.push(Reverse(entry(new, item)));
         } else {
             self.buckets[bucket].push(item);
         }
@@ -127,12 +154,6 @@ impl Queue {
     #[inline]
     pub(super) fn set_aside(&mut self, item: u32) {
         self.keys[item as usize] = ASIDE;
-    }
-
-    /// True for an item whose turn is near: it is in the heap.
-    #[inline]
-    pub(super) fn is_near(&self, item: u32) -> bool {
-        self.key(item).is_some_and(|key| bucket_of(key.bits()) < self.next_bucket)
     }
 
     /// True for an item that is set aside.
@@ -154,15 +175,6 @@ mod tests {
 
     fn key(x: f64) -> Key {
         Key::of(x).unwrap()
-    }
-
-    fn pop(queue: &mut Queue) -> Option<(u32, Key)> {
-        loop {
-            if let Some(first) = queue.pop() {
-                return Some(first);
-            }
-            queue.next_bucket()?.into_iter().for_each(|(item, key)| queue.set(item, key));
-        }
     }
 
     fn smallest(model: &BTreeMap<u32, Key>) -> Option<(u32, Key)> {
@@ -193,7 +205,7 @@ mod tests {
                 match random(5) {
                     0 | 1 => {
                         let first = smallest(&model);
-                        assert_eq!(pop(&mut queue), first, "round {round}");
+                        assert_eq!(queue.pop(), first, "round {round}");
                         first.map(|(item, _)| model.remove(&item));
                     }
                     2 => {
@@ -207,10 +219,6 @@ mod tests {
                     }
                 }
                 assert_eq!(queue.key(item), model.get(&item).copied());
-                let probe = key(1.0 + step * f64::from(random(9)));
-                if queue.is_first(item, probe) {
-                    assert!(smallest(&model).is_none_or(|(i, k)| (probe, item) <= (k, i)), "round {round}");
-                }
             }
         }
     }
@@ -218,13 +226,13 @@ mod tests {
     #[test]
     fn what_is_set_aside_is_not_in_the_queue_until_it_is_put_back() {
         let mut queue = Queue::new(&[(0, key(1.0)), (1, key(2.0))], 3);
-        assert_eq!(pop(&mut queue), Some((0, key(1.0))));
+        assert_eq!(queue.pop(), Some((0, key(1.0))));
         queue.set_aside(0);
         assert_eq!((queue.aside(), queue.key(0)), (vec![0], None));
         queue.set(0, key(5.0));
         assert!(!queue.is_aside(0));
-        assert_eq!(pop(&mut queue), Some((1, key(2.0))));
-        assert_eq!(pop(&mut queue), Some((0, key(5.0))));
-        assert_eq!(pop(&mut queue), None);
+        assert_eq!(queue.pop(), Some((1, key(2.0))));
+        assert_eq!(queue.pop(), Some((0, key(5.0))));
+        assert_eq!(queue.pop(), None);
     }
 }

@@ -1,5 +1,6 @@
 //! What goes in and what comes out.
 
+use super::layout::Layout;
 use super::report::Report;
 use super::surface::{NEW, Surface};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
@@ -7,6 +8,7 @@ use crate::geom::DVec3;
 use crate::mesh::Color;
 use crate::mesh::corner_table::NONE;
 use crate::mesh::half_edge::BuildError;
+use crate::par;
 
 /// A manifold mesh to simplify.
 #[derive(Debug, Clone, Copy)]
@@ -69,10 +71,11 @@ impl From<BuildError> for SimplifyError {
 }
 
 impl Simplified {
-    /// The state of `surface`, with the vertices that it uses in their order and so the triangles. `colors` and
-    /// `priorities` are those of all its vertices, or none.
+    /// The state of `surface`, with the vertices that it uses in the order of the input and so the triangles. `colors`
+    /// and `priorities` are those of all its vertices, or none.
     pub(super) fn snapshot<S: Copy + Default>(
         surface: &Surface<S>,
+        layout: &Layout,
         input: &Input<'_>,
         colors: &[Option<Color>],
         priorities: &[f64],
@@ -90,19 +93,21 @@ impl Simplified {
             texture: Vec::new(),
             report,
         };
-        for t in 0..surface.table.triangle_bound() as u32 {
-            if (t as usize).is_multiple_of(CHECK_EVERY) {
+        let is_left = |&t: &u32| surface.table.corners(t).is_some();
+        for t in in_order_of(&layout.triangles, is_left) {
+            if result.triangles.len().is_multiple_of(CHECK_EVERY) {
                 budget.check()?;
             }
             if let Some(corners) = surface.table.corners(t) {
                 corners.iter().for_each(|&v| renumbered[v as usize] = 0);
                 result.triangles.push(corners);
-                result.triangle_origin.push(t);
+                result.triangle_origin.push(layout.triangles[t as usize]);
                 result.texture.extend(surface.wedges.0.get(t as usize));
             }
         }
-        for (v, number) in renumbered.iter_mut().enumerate().filter(|(_, number)| **number != NONE) {
-            *number = result.positions.len() as u32;
+        for v in in_order_of(&layout.vertices, |&v| renumbered[v as usize] != NONE) {
+            let v = v as usize;
+            renumbered[v] = result.positions.len() as u32;
             let vertex = &surface.vertices[v];
             result.vertex_origin.push(vertex.origin);
             result.positions.push(match vertex.origin {
@@ -117,4 +122,14 @@ impl Simplified {
         }
         Ok(result)
     }
+}
+
+/// The places that `is_meant`, in the order of the `numbers` there.
+fn in_order_of(numbers: &[u32], is_meant: impl Fn(&u32) -> bool) -> Vec<u32> {
+    let mut places: Vec<u64> = (0..numbers.len() as u32)
+        .filter(is_meant)
+        .map(|place| u64::from(numbers[place as usize]) << 32 | u64::from(place))
+        .collect();
+    par::sort_unstable(&mut places);
+    places.into_iter().map(|place| place as u32).collect()
 }

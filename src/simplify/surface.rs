@@ -48,18 +48,24 @@ pub(super) enum Rule {
 }
 
 impl<S: Copy + Default> Surface<S> {
-    pub(super) fn new(positions: &[DVec3], table: CornerTable, budget: &Budget) -> Result<Self, Stopped> {
+    /// The vertices of `order`, one after the other.
+    pub(super) fn new(
+        positions: &[DVec3],
+        order: impl ExactSizeIterator<Item = u32>,
+        table: CornerTable,
+        budget: &Budget,
+    ) -> Result<Self, Stopped> {
         let bounds = Aabb::of(positions.iter().copied().filter(|p| p.is_finite()));
         let scale = working_scale(bounds);
-        let mut vertices = Vec::with_capacity(positions.len());
-        for (v, &p) in positions.iter().enumerate() {
-            if v % CHECK_EVERY == 0 {
+        let mut vertices = Vec::with_capacity(order.len());
+        for (i, origin) in order.enumerate() {
+            if i % CHECK_EVERY == 0 {
                 budget.check()?;
             }
             vertices.push(Vertex {
-                position: p * scale,
+                position: positions[origin as usize] * scale,
                 state: S::default(),
-                origin: v as u32,
+                origin,
                 lines: 0,
                 is_held: false,
                 has_aside: false,

@@ -167,7 +167,7 @@ pub fn wrap(
     let mut unfitted = Vec::new();
     if options.is_fitted {
         unfitted.clone_from(&positions);
-        account.fit = fit::fit(&lattice, &signs, &surface, wall, &cuts, &mut positions, &triangles, budget)?;
+        account.fit = fit::fit(&lattice, &signs, &surface, &cuts, &mut positions, &triangles, budget)?;
     }
     Ok(Wrapped { positions, unfitted, triangles, account })
 }

@@ -47,6 +47,8 @@ pub(super) enum Inside {
 pub(super) struct Signs<'l> {
     lattice: &'l Lattice,
     state: Vec<u8>,
+    /// Thickness in cells of the walls that sheets become.
+    pub(super) wall: f64,
     /// Distance in cells up to which sheets grew.
     pub(super) sheet_reach: f64,
     /// Winding number of all that bounds a volume, closed by cones.
@@ -74,7 +76,8 @@ impl<'l> Signs<'l> {
         );
         let state = vec![0u8; lattice.len()];
         let sheet_reach = wall.max(SHEET);
-        let mut signs = Self { lattice, state, sheet_reach, closed: closed?, open: open?, thin: Vec::new() };
+        let mut signs =
+            Self { lattice, state, wall, sheet_reach, closed: closed?, open: open?, thin: Vec::new() };
         signs.border();
         signs.touch(surface.closed(), TOUCHED, budget)?;
         signs.touch(surface.open(), TOUCHED, budget)?;
@@ -95,7 +98,7 @@ impl<'l> Signs<'l> {
     pub(super) fn of_field(lattice: &'l Lattice, inside: &[bool]) -> Self {
         let state = inside.iter().map(|&is_inside| if is_inside { KNOWN | INSIDE } else { KNOWN }).collect();
         let (closed, open) = (Vec::new(), WindingTree::default());
-        Self { lattice, state, sheet_reach: SHEET, closed, open, thin: Vec::new() }
+        Self { lattice, state, wall: SHEET, sheet_reach: SHEET, closed, open, thin: Vec::new() }
     }
 
     /// True when the vertex is known to be inside.

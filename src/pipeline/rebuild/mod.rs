@@ -143,7 +143,10 @@ impl Search<'_> {
         let volume = self.before.and_then(|analysis| analysis.measures.volume);
         let original = Original::new(soup, volume, Some(solid));
         let asked = choices.cells.map(|cells| [(cells, f64::INFINITY)]);
-        let lattices = asked.as_ref().map_or_else(|| choices.effort.lattices(), |one| one);
+        let lattices = match &asked {
+            Some(one) => one,
+            None => choices.effort.lattices(),
+        };
         let mut best: Option<Rebuilt> = None;
         let mut cells_before = 0;
         for &(cells, area_max) in lattices {

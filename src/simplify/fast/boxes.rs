@@ -1,22 +1,16 @@
-//! Boxes of triangles that move: a tree that is built once and only grows.
+//! Boxes of triangles that move: a tree that is built once and follows them.
 
 use crate::geom::{Aabb, DVec3};
 
-/// A box of f32, rounded outward.
+/// A box in steps of a grid. Rounding never turns the order of two coordinates around, so boxes that meet still do.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Box32 {
-    min: [f32; 3],
-    max: [f32; 3],
+struct GridBox {
+    min: [u16; 3],
+    max: [u16; 3],
 }
 
-impl Box32 {
-    const EMPTY: Self = Self { min: [f32::INFINITY; 3], max: [f32::NEG_INFINITY; 3] };
-
-    fn around(bounds: Aabb) -> Self {
-        let down = |x: f64| if f64::from(x as f32) > x { (x as f32).next_down() } else { x as f32 };
-        let up = |x: f64| if f64::from(x as f32) < x { (x as f32).next_up() } else { x as f32 };
-        Self { min: bounds.min.to_array().map(down), max: bounds.max.to_array().map(up) }
-    }
+impl GridBox {
+    const EMPTY: Self = Self { min: [u16::MAX; 3], max: [0; 3] };
 
     #[inline]
     fn union(self, other: Self) -> Self {
@@ -26,9 +20,32 @@ impl Box32 {
         }
     }
 
+    /// Only what goes from one end of the grid to the other meets an empty box.
     #[inline]
     fn meets(&self, other: &Self) -> bool {
-        (0..3).all(|k| self.min[k] <= other.max[k] && other.min[k] <= self.max[k])
+        // No branches: which side decides is not to be foreseen.
+        (0..3).fold(true, |meets, k| meets & (self.min[k] <= other.max[k]) & (other.min[k] <= self.max[k]))
+    }
+}
+
+/// Cubes over the box of all triangles at the start; what is beyond counts to the ends.
+#[derive(Debug, Clone, Copy)]
+struct Grid {
+    min: DVec3,
+    /// Steps to a unit of length.
+    scale: f64,
+}
+
+impl Grid {
+    fn over(bounds: Aabb) -> Self {
+        let size = (bounds.max - bounds.min).max_element();
+        Self { min: bounds.min, scale: if size > 0.0 { f64::from(u16::MAX) / size } else { 0.0 } }
+    }
+
+    #[inline]
+    fn around(&self, bounds: Aabb) -> GridBox {
+        let steps = |p: DVec3| ((p - self.min) * self.scale).to_array().map(|x| x as u16);
+        GridBox { min: steps(bounds.min), max: steps(bounds.max) }
     }
 }
 
@@ -37,15 +54,16 @@ impl Box32 {
 /// A binary tree in one array: node `i` has the children `2 i` and `2 i + 1`, and the second half are the leaves, one
 /// for each triangle.
 #[derive(Debug, Clone)]
-pub(super) struct GrowingBoxes {
-    nodes: Vec<Box32>,
+pub(super) struct MovingBoxes {
+    grid: Grid,
+    nodes: Vec<GridBox>,
     /// The triangle of each leaf.
     order: Vec<u32>,
     /// The place of each triangle in `order`.
     place: Vec<u32>,
 }
 
-impl GrowingBoxes {
+impl MovingBoxes {
     /// The boxes of `triangles` whose vertices are numbered along a space-filling curve. O(n).
     pub(super) fn new(triangles: &[[u32; 3]], position: impl Fn(u32) -> DVec3) -> Self {
         let first = |t: &[u32; 3]| t[0].min(t[1]).min(t[2]) as usize;
@@ -65,56 +83,60 @@ impl GrowingBoxes {
             })
             .collect();
         let leaves = triangles.len();
-        let mut nodes = vec![Box32::EMPTY; 2 * leaves];
+        let grid = Grid::over(Aabb::of(triangles.as_flattened().iter().map(|&v| position(v))));
+        let mut nodes = vec![GridBox::EMPTY; 2 * leaves];
         for (leaf, &t) in order.iter().enumerate() {
             let [a, b, c] = triangles[t as usize];
-            nodes[leaves + leaf] = Box32::around(Aabb::of([position(a), position(b), position(c)]));
+            nodes[leaves + leaf] = grid.around(Aabb::of([position(a), position(b), position(c)]));
         }
         for node in (1..leaves).rev() {
             nodes[node] = nodes[2 * node].union(nodes[2 * node + 1]);
         }
-        Self { nodes, order, place }
+        Self { grid, nodes, order, place }
     }
 
     /// Bytes that the boxes of `triangles` take.
     pub(super) const fn bytes(triangles: u64) -> u64 {
-        triangles * (8 + 2 * size_of::<Box32>() as u64)
+        triangles * (8 + 2 * size_of::<GridBox>() as u64)
     }
 
-    /// Makes room for a triangle where it is now.
-    pub(super) fn grow(&mut self, triangle: u32, bounds: Aabb) {
-        let bounds = Box32::around(bounds);
+    /// Says where a triangle is now.
+    pub(super) fn set(&mut self, triangle: u32, bounds: Aabb) {
+        self.replace(triangle, self.grid.around(bounds));
+    }
+
+    /// Says that a triangle is gone.
+    pub(super) fn forget(&mut self, triangle: u32) {
+        self.replace(triangle, GridBox::EMPTY);
+    }
+
+    fn replace(&mut self, triangle: u32, bounds: GridBox) {
         let mut node = self.order.len() + self.place[triangle as usize] as usize;
-        while node > 0 {
-            let grown = self.nodes[node].union(bounds);
-            if grown == self.nodes[node] {
-                return;
-            }
-            self.nodes[node] = grown;
+        let mut now = bounds;
+        while std::mem::replace(&mut self.nodes[node], now) != now && node > 1 {
             node /= 2;
+            now = self.nodes[2 * node].union(self.nodes[2 * node + 1]);
         }
     }
 
-    /// Calls `visit` with all triangles whose boxes, as large as they have grown, meet `query`.
-    pub(super) fn visit(&self, query: Aabb, mut visit: impl FnMut(u32)) {
-        let query = Box32::around(query);
+    /// Calls `visit` with all triangles whose boxes may meet `query`, until it says false.
+    pub(super) fn visit(&self, query: Aabb, mut visit: impl FnMut(u32) -> bool) {
+        let query = self.grid.around(query);
         let leaves = self.order.len();
         let mut stack = [0usize; 64];
         // Without triangles there is no root; with one it is the leaf.
-        let mut depth = usize::from(leaves > 0);
+        let mut depth = usize::from(self.nodes.get(1).is_some_and(|root| root.meets(&query)));
         stack[0] = 1;
         while depth > 0 {
             depth -= 1;
             let node = stack[depth];
-            if !self.nodes[node].meets(&query) {
-                continue;
-            }
             if node < leaves {
-                stack[depth] = 2 * node + 1;
-                stack[depth + 1] = 2 * node;
-                depth += 2;
-            } else {
-                visit(self.order[node - leaves]);
+                for child in [2 * node + 1, 2 * node] {
+                    stack[depth] = child;
+                    depth += usize::from(self.nodes[child].meets(&query));
+                }
+            } else if !visit(self.order[node - leaves]) {
+                return;
             }
         }
     }
@@ -133,32 +155,37 @@ mod tests {
         (0..n).map(|v| [v, v + 1, v + 2]).collect()
     }
 
-    fn found(boxes: &GrowingBoxes, at: DVec3) -> Vec<u32> {
+    fn found(boxes: &MovingBoxes, at: DVec3) -> Vec<u32> {
         let mut found = Vec::new();
-        boxes.visit(Aabb::of([at]), |t| found.push(t));
+        boxes.visit(Aabb::of([at]), |t| {
+            found.push(t);
+            true
+        });
         found
     }
 
     #[test]
     fn no_triangle_at_a_place_is_left_out_and_few_others_are_named() {
         for n in [1, 4, 5, 100, 1000] {
-            let boxes = GrowingBoxes::new(&strip(n), position);
+            let boxes = MovingBoxes::new(&strip(n), position);
             for t in 0..n {
                 let all = found(&boxes, position(t + 1));
                 assert!(all.contains(&t) && all.len() <= 9, "{t} of {n}: {all:?}");
             }
             assert!(found(&boxes, DVec3::Z).is_empty());
         }
-        assert!(found(&GrowingBoxes::new(&[], position), DVec3::ZERO).is_empty());
+        assert!(found(&MovingBoxes::new(&[], position), DVec3::ZERO).is_empty());
     }
 
     #[test]
     fn a_triangle_that_moved_is_found_where_it_is_now() {
-        let mut boxes = GrowingBoxes::new(&strip(1000), position);
-        let away = DVec3::new(3.0, 3.0, 77.7);
-        assert!(found(&boxes, away).is_empty());
-        boxes.grow(500, Aabb::of([away]));
-        assert!(found(&boxes, away).contains(&500));
-        assert!(found(&boxes, position(501)).contains(&500));
+        let mut boxes = MovingBoxes::new(&strip(1000), position);
+        let away = DVec3::new(700.0, 3.0, 77.7);
+        boxes.set(500, Aabb::of([away, position(501)]));
+        assert!(found(&boxes, away).contains(&500) && found(&boxes, position(501)).contains(&500));
+        boxes.set(500, Aabb::of([position(1)]));
+        assert!(found(&boxes, position(1)).contains(&500) && !found(&boxes, position(501)).contains(&500));
+        boxes.forget(500);
+        assert!(!found(&boxes, position(1)).contains(&500));
     }
 }

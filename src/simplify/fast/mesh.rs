@@ -1,11 +1,11 @@
 //! The mesh between two rounds: compact arrays, cut in parts along a space-filling curve.
 
-use super::order::{Curve, along_curve};
 use super::region::Region;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::Color;
 use crate::par;
+use crate::simplify::order::{Curve, along_curve};
 use crate::simplify::surface::Vertex;
 
 /// What is left of the input, and some vertices without triangles.

@@ -12,7 +12,6 @@ mod check;
 mod fans;
 mod lines;
 mod mesh;
-mod order;
 mod part;
 mod region;
 mod rollback;

@@ -8,7 +8,7 @@
 //! and put back if it turns out to be more expensive. For a criterion of which this is not true an edge may come up
 //! later than it could.
 
-use super::boxes::GrowingBoxes;
+use super::boxes::MovingBoxes;
 use super::buckets::{Buckets, CLASSES, class_of};
 use super::region::Region;
 use super::strays::Strays;
@@ -82,7 +82,7 @@ pub(super) struct Room {
 /// [`Room`], with the part's own triangles.
 struct Watch {
     room: Room,
-    boxes: GrowingBoxes,
+    boxes: MovingBoxes,
     sweep: Sweep,
 }
 
@@ -253,7 +253,7 @@ impl<'r, C: Criterion> Part<'r, C> {
         self.surface.merge_vertices(criterion, h, position, origin);
         self.merge_edges(h);
         if let Some(watch) = &mut self.watch {
-            watch.grow(&self.surface, &self.rings);
+            watch.follow(&self.surface, &self.rings);
         }
         self.look_around();
         Ok(())
@@ -326,11 +326,11 @@ impl<'r, C: Criterion> Part<'r, C> {
 }
 
 /// The boxes of the triangles of a part.
-fn boxes_of<S: Copy + Default>(surface: &Surface<S>) -> GrowingBoxes {
+fn boxes_of<S: Copy + Default>(surface: &Surface<S>) -> MovingBoxes {
     let table = &surface.table;
     let corners = |t: u32| [4 * t, 4 * t + 1, 4 * t + 2].map(|h| table.origin(h));
     let triangles: Vec<[u32; 3]> = (0..table.triangle_bound() as u32).map(corners).collect();
-    GrowingBoxes::new(&triangles, |v| surface.position(v))
+    MovingBoxes::new(&triangles, |v| surface.position(v))
 }
 
 impl Watch {
@@ -379,18 +379,19 @@ impl Watch {
         let ends = [table.origin(h), table.destination(h)];
         let mut answer = Ok(());
         boxes.visit(bounds, |t| {
-            let Some(ids) = table.corners(t).filter(|_| answer.is_ok()) else { return };
+            let Some(ids) = table.corners(t) else { return true };
             if !ids.iter().any(|v| ends.contains(v)) {
                 let [a, b, c] = ids;
                 let corners = [surface.position(a), surface.position(b), surface.position(c)];
                 answer = sweep.passes(&Outside { ids, corners });
             }
+            answer.is_ok()
         });
         answer?;
-        let visited = room.strays.visit(room.part, bounds, budget, |stray| {
+        let visited = room.strays.visit(room.part, bounds, budget, |stray, corners| {
             if answer.is_ok() {
                 let ids = stray.places.map(|place| place.wrapping_sub(room.first_vertex));
-                answer = sweep.passes(&Outside { ids, corners: stray.corners });
+                answer = sweep.passes(&Outside { ids, corners });
             }
         });
         // The caller will see that the run was stopped.
@@ -398,12 +399,16 @@ impl Watch {
         Ok(answer?)
     }
 
-    /// Makes room for the triangles around the merged vertex.
-    fn grow<S: Copy + Default>(&mut self, surface: &Surface<S>, rings: &EdgeRings) {
+    /// Has the boxes follow the triangles around the merged vertex.
+    fn follow<S: Copy + Default>(&mut self, surface: &Surface<S>, rings: &EdgeRings) {
         for &corner in rings.origin.corners.iter().chain(&rings.destination.corners) {
             let t = triangle_of(corner);
-            if let Some(corners) = surface.table.corners(t) {
-                self.boxes.grow(t, Aabb::of(corners.map(|v| surface.position(v))));
+            match surface.table.corners(t) {
+                Some([a, b, c]) => {
+                    let corners = [surface.position(a), surface.position(b), surface.position(c)];
+                    self.boxes.set(t, Aabb::of(corners));
+                }
+                None => self.boxes.forget(t),
             }
         }
     }

@@ -3,8 +3,8 @@
 //! The code of a cell never falls when a coordinate grows. So when both corners of a box, the one with the smallest and
 //! the one with the largest coordinates, have codes between those of the neighbouring parts, all of the box has.
 
-use super::order::Curve;
 use crate::geom::Aabb;
+use crate::simplify::order::Curve;
 
 /// The space whose codes are between those of the parts before and after: no two parts have a point in common.
 #[derive(Debug, Clone, Copy)]

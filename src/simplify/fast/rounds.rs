@@ -1,7 +1,7 @@
 //! Rounds: cut the mesh in parts, collapse edges inside them in step, put the rest together.
 
 use super::Settings;
-use super::boxes::GrowingBoxes;
+use super::boxes::MovingBoxes;
 use super::buckets::CLASSES;
 use super::fans::are_fans_between;
 use super::lines::Lines;
@@ -67,7 +67,12 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         settings: Settings,
         budget: &'r Budget,
     ) -> Result<Self, Stopped> {
-        let mut frame = Surface::new(input.positions, CornerTable::unpaired(&[], 0), budget)?;
+        let mut frame = Surface::new(
+            input.positions,
+            0..input.positions.len() as u32,
+            CornerTable::unpaired(&[], 0),
+            budget,
+        )?;
         let mesh = Mesh {
             vertices: std::mem::take(&mut frame.vertices),
             colors: input.vertex_colors.to_vec(),
@@ -158,7 +163,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
             false => None,
         };
         let of_boxes =
-            if strays.is_some() { GrowingBoxes::bytes(self.mesh.triangles.len() as u64) } else { 0 };
+            if strays.is_some() { MovingBoxes::bytes(self.mesh.triangles.len() as u64) } else { 0 };
         let of_strays = strays.as_ref().map_or(0, |strays| strays.bytes());
         let charge = self.budget.charge(of_boxes + of_strays)?;
         let parts = par::map_items(pieces, |i, piece| self.part(&division, i, piece, &strays, is_first));

@@ -16,6 +16,8 @@ const NO_PART: u32 = u32::MAX;
 /// The triangles between parts, and those of parts that are not inside of their part's region.
 pub(super) struct Strays {
     triangles: Vec<Stray>,
+    /// Three for each of the triangles.
+    corners: Vec<DVec3>,
     /// Over the triangles; empty when there is one part only.
     bvh: Option<Bvh>,
 }
@@ -25,7 +27,6 @@ pub(super) struct Strays {
 pub(super) struct Stray {
     /// Places of the corners in the division.
     pub(super) places: [u32; 3],
-    pub(super) corners: [DVec3; 3],
     part: u32,
 }
 
@@ -43,7 +44,7 @@ impl Strays {
     ) -> Result<Self, Stopped> {
         let parts = division.starts.len() - 1;
         if parts <= 1 {
-            return Ok(Self { triangles: Vec::new(), bvh: None });
+            return Ok(Self { triangles: Vec::new(), corners: Vec::new(), bvh: None });
         }
         let position = |place: u32| mesh.vertices[division.order[place as usize] as usize].position;
         let of_part = par::try_map_ranges(parts + 1, 1, |range| {
@@ -52,32 +53,31 @@ impl Strays {
             let end = division.starts.get(i + 1).copied().unwrap_or(mesh.triangles.len());
             let region = (i < parts).then(|| division.region(i));
             let part = if i < parts { i as u32 } else { NO_PART };
-            let all = mesh.triangles[division.starts[i]..end].iter();
-            let strays = all.map(|&places| Stray { places, corners: places.map(position), part });
-            let strays = strays.filter(|stray| region.is_none_or(|r| !r.holds(Aabb::of(stray.corners))));
-            Ok(strays.collect::<Vec<_>>())
+            let all = mesh.triangles[division.starts[i]..end].iter().copied();
+            let strays = all.filter(|places| region.is_none_or(|r| !r.holds(Aabb::of(places.map(position)))));
+            Ok(strays.map(|places| Stray { places, part }).collect::<Vec<_>>())
         })?;
         let triangles = of_part.concat();
-        let positions: Vec<DVec3> = triangles.iter().flat_map(|stray| stray.corners).collect();
-        let corners: Vec<[u32; 3]> =
-            (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-        let bvh = Some(Bvh::build(&positions, &corners, None, budget)?);
-        Ok(Self { triangles, bvh })
+        let corners: Vec<DVec3> = triangles.iter().flat_map(|stray| stray.places.map(position)).collect();
+        let ids: Vec<[u32; 3]> = (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let bvh = Some(Bvh::build(&corners, &ids, None, budget)?);
+        Ok(Self { triangles, corners, bvh })
     }
 
-    /// Calls `visit` with the strays of other parts than `part` whose boxes may meet `query`.
+    /// Calls `visit` with the strays of other parts than `part` whose boxes may meet `query`, and their corners.
     pub(super) fn visit(
         &self,
         part: u32,
         query: Aabb,
         budget: &Budget,
-        mut visit: impl FnMut(&Stray),
+        mut visit: impl FnMut(&Stray, [DVec3; 3]),
     ) -> Result<(), Stopped> {
         let Some(bvh) = &self.bvh else { return Ok(()) };
         bvh.visit_box(query, budget, |t| {
             let stray = &self.triangles[t as usize];
             if stray.part != part {
-                visit(stray);
+                let first = 3 * t as usize;
+                visit(stray, [self.corners[first], self.corners[first + 1], self.corners[first + 2]]);
             }
         })
     }

@@ -107,8 +107,24 @@ impl Sweep {
             [true, false, true] => (c, a - c),
             [true, true, true] => return false,
         };
+        let inward = self.middle - base;
+        let outward = (other.corners[0] + other.corners[1] + other.corners[2]) / 3.0 - base;
+        // The plane across the way to the middle, or the one halfway between the two.
+        self.is_parted(other, shared, base, edge, inward)
+            || self.is_parted(other, shared, base, edge, halfway(edge, inward, outward))
+    }
+
+    /// True when the plane through `base` and along `edge` across `normal` has all that moves on one side and the rest
+    /// of `other` on the other.
+    fn is_parted(
+        &self,
+        other: &Outside,
+        shared: [bool; 3],
+        base: DVec3,
+        edge: DVec3,
+        mut normal: DVec3,
+    ) -> bool {
         let length_squared = edge.length_squared();
-        let mut normal = self.middle - base;
         // What rounding can make of a product with a difference, by far, and what the edge is off the plane.
         let mut doubt = 1e-13 * size(normal);
         if length_squared > 0.0 {
@@ -171,6 +187,13 @@ impl Sweep {
         }
         Ok(())
     }
+}
+
+/// The difference of the directions `inward` and `outward`, both across `edge`.
+fn halfway(edge: DVec3, inward: DVec3, outward: DVec3) -> DVec3 {
+    let length_squared = edge.length_squared();
+    let across = |v: DVec3| if length_squared > 0.0 { v - edge * (v.dot(edge) / length_squared) } else { v };
+    across(inward).normalize_or_zero() - across(outward).normalize_or_zero()
 }
 
 /// The sum of the magnitudes of the coordinates.

@@ -87,10 +87,6 @@ impl<C: Criterion> Strict<'_, C> {
     pub(super) fn set_aside(&mut self, edge: u32, reason: Refusal) {
         self.refusals.add(reason);
         self.queue.set_aside(edge);
-        // An error that only grows is no reason to look again.
-        if reason == Refusal::Error && C::REACH == Reach::StarGrows {
-            return;
-        }
         for v in [edge, next(edge)].map(|g| self.surface.table.origin(g)) {
             self.surface.vertices[v as usize].has_aside = true;
         }

@@ -3,9 +3,10 @@
 mod merge;
 mod near;
 
-use super::criterion::{Criterion, Placed, Reach};
+use super::criterion::{Criterion, Placed};
 use super::guard::check_faces;
 use super::key::Key;
+use super::layout::Layout;
 use super::length::Length;
 use super::lines::mark_lines;
 use super::memoryless::Memoryless;
@@ -48,10 +49,11 @@ fn run<C: Criterion>(
     budget: &Budget,
 ) -> Result<Vec<Simplified>, SimplifyError> {
     let _charge = budget.charge(bytes_of::<C>(input))?;
-    let table = CornerTable::build(input.triangles, input.positions.len(), budget)?;
-    let mut surface = Surface::<C::State>::new(input.positions, table, budget)?;
-    surface.wedges.0.extend_from_slice(input.texture);
-    mark_lines(&mut surface, input.face_groups, options, budget)?;
+    let (layout, table) = laid_out(input, budget)?;
+    let order = layout.vertices.iter().copied();
+    let mut surface = Surface::<C::State>::new(input.positions, order, table, budget)?;
+    surface.wedges.0 = layout.of_triangles(input.texture);
+    mark_lines(&mut surface, &layout.of_triangles(input.face_groups), options, budget)?;
     criterion.prepare(&mut surface, budget)?;
     let mut strict = Strict {
         queue: Queue::new(&[], 0),
@@ -61,7 +63,7 @@ fn run<C: Criterion>(
         refusals: Refusals::default(),
         error_squared_max: 0.0,
         error_squared_limit: f64::INFINITY,
-        colors: input.vertex_colors.to_vec(),
+        colors: layout.of_vertices(input.vertex_colors),
         surface,
         criterion,
         options,
@@ -74,9 +76,25 @@ fn run<C: Criterion>(
             true => costs_of_vertices(&strict.surface, &strict.criterion, options.placement, budget)?,
             false => Vec::new(),
         };
-        Simplified::snapshot(&strict.surface, input, &strict.colors, &priorities, report, budget)
+        Simplified::snapshot(&strict.surface, &layout, input, &strict.colors, &priorities, report, budget)
     });
     Ok(levels.collect::<Result<Vec<_>, Stopped>>()?)
+}
+
+/// The table of the input's triangles along a curve.
+fn laid_out(input: &Input<'_>, budget: &Budget) -> Result<(Layout, CornerTable), SimplifyError> {
+    let Input { positions, triangles, .. } = *input;
+    let in_input = || CornerTable::build(triangles, positions.len(), budget);
+    if triangles.as_flattened().iter().any(|&v| v as usize >= positions.len()) {
+        in_input()?;
+    }
+    let _charge = budget.charge(size_of_val(triangles) as u64)?;
+    let (layout, sorted) = Layout::of(positions, triangles, budget)?;
+    match CornerTable::build(&sorted, layout.vertices.len(), budget) {
+        Ok(table) => Ok((layout, table)),
+        // Said with the numbers of the input.
+        Err(error) => Err(in_input().err().unwrap_or(error).into()),
+    }
 }
 
 /// What a run takes beside its input and its results.
@@ -84,8 +102,9 @@ fn bytes_of<C: Criterion>(input: &Input<'_>) -> u64 {
     // The table and the keys; for each edge a place in a bucket, and its first cost, listed twice.
     let per_triangle = 32 + 4 * size_of::<u32>() + 3 * (size_of::<u32>() + 2 * size_of::<(u32, Key)>()) / 2;
     let per_vertex = size_of::<Vertex<C::State>>();
-    (input.triangles.len() * per_triangle + input.positions.len() * per_vertex + size_of_val(input.texture))
-        as u64
+    let layout = Layout::bytes(input.positions.len(), input.triangles.len());
+    let own = input.triangles.len() * per_triangle + input.positions.len() * per_vertex;
+    layout + own as u64 + size_of_val(input.texture) as u64
 }
 
 struct Strict<'a, C: Criterion> {
@@ -124,7 +143,7 @@ impl<C: Criterion> Strict<'_, C> {
                 self.budget.spend(CHECK_EVERY as u64)?;
                 since_check = 0;
             }
-            is_exhausted = !self.step()?;
+            is_exhausted = !self.step();
         }
         Ok(Report {
             target,
@@ -152,25 +171,15 @@ impl<C: Criterion> Strict<'_, C> {
     }
 
     /// Handles the edge whose turn it is; false when there is none.
-    fn step(&mut self) -> Result<bool, Stopped> {
-        let Some((h, key)) = self.queue.pop() else { return self.bring_near() };
-        let (rule, placed, now) = match self.placed(h) {
-            Ok(found) => found,
-            Err(reason) => {
-                self.set_aside(h, reason);
-                return Ok(true);
-            }
-        };
-        // The cost may have grown since it was computed; then perhaps it is not this edge's turn.
-        if C::REACH == Reach::StarGrows && now > key && !self.queue.is_first(h, now) {
-            self.queue.set(h, now);
-            return Ok(true);
-        }
-        match self.attempt(h, rule, placed) {
+    fn step(&mut self) -> bool {
+        self.fetch_ahead();
+        let Some((h, _)) = self.queue.pop() else { return false };
+        let attempt = self.placed(h).and_then(|(rule, placed, _)| self.attempt(h, rule, placed));
+        match attempt {
             Ok(()) => self.collapses += 1,
             Err(reason) => self.set_aside(h, reason),
         }
-        Ok(true)
+        true
     }
 
     /// The place for the edge of `h` and its key.

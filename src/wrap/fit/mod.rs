@@ -38,7 +38,7 @@ pub struct FitCounts {
     pub taken_back: u64,
 }
 
-/// Moves `positions` of the wrap with these cuts; sheets become walls of a thickness of `wall` cells.
+/// Moves `positions` of the wrap with these cuts.
 ///
 /// # Errors
 /// When the budget stops the run.
@@ -46,7 +46,6 @@ pub(super) fn fit(
     lattice: &Lattice,
     signs: &Signs<'_>,
     surface: &InputSurface,
-    wall: f64,
     cuts: &[Cut],
     positions: &mut [DVec3],
     triangles: &[[u32; 3]],
@@ -57,7 +56,7 @@ pub(super) fn fit(
     let stars = Stars::of(triangles, positions.len(), budget)?;
     let mut places: Vec<DVec3> = positions.iter().map(|&p| lattice.units_of(p)).collect();
     // Clamped cuts, and thin walls.
-    let goals = plain_goals(signs, surface, wall, cuts, &places, budget)?;
+    let goals = plain_goals(signs, surface, cuts, &places, budget)?;
     let mut moved = move_all(&stars, triangles, &mut places, &goals, budget)?;
     let goals = crease_goals(surface, cuts, &stars, triangles, &places, budget)?;
     let onto = move_all(&stars, triangles, &mut places, &goals, budget)?;
@@ -74,7 +73,6 @@ pub(super) fn fit(
 fn plain_goals(
     signs: &Signs<'_>,
     surface: &InputSurface,
-    wall: f64,
     cuts: &[Cut],
     places: &[DVec3],
     budget: &Budget,
@@ -91,7 +89,7 @@ fn plain_goals(
                 return Ok(is_clamped.then_some(cut.point));
             }
             match cut.why {
-                Inside::NearSheet => behind_sheet(&sheets, wall, place, budget),
+                Inside::NearSheet => behind_sheet(&sheets, signs.wall, place, budget),
                 Inside::Wound | Inside::NearThin => onto_thin(&thin, place, budget),
             }
         };
