@@ -18,6 +18,7 @@ declare -A filters=(
   [cancel]="cancel"
   [determinism]="determinism"
   [simplify]="simplify"
+  [wrap]="bad_soup"
 )
 
 name=${1:-}

@@ -1,7 +1,7 @@
 //! The report for people: a screen of text, the most telling things first.
 
 use crate::wire::{
-    Action, Certificate, Claim, Defect, Level, MeshInfo, Report, Severity, TargetSpec, Witness,
+    Action, Certificate, Claim, Defect, Deviation, Level, MeshInfo, Report, Severity, TargetSpec, Witness,
 };
 use std::fmt::Write as _;
 
@@ -29,6 +29,9 @@ pub(super) fn summary(report: &Report, subject: &Subject) -> String {
     put_table(&mut text, "targets not reached", &missed);
     if let Some(mesh) = &report.after {
         put(&mut text, &format!("result\n  {}", size(mesh)));
+        if let Some(kept) = closeness(&report.deviation) {
+            put(&mut text, &format!("  {kept}"));
+        }
         put_table(&mut text, "defects that remain", &mesh.defects.iter().map(defect_row).collect::<Vec<_>>());
     }
     let judged = report.certificate.as_ref().unwrap_or(&report.input_certificate);
@@ -83,6 +86,23 @@ fn size(mesh: &MeshInfo) -> String {
         }
     }
     text
+}
+
+/// How far a repair is from its file, and what it lost; `None`: it was not measured.
+fn closeness(deviation: &Deviation) -> Option<String> {
+    let (most, lost) = (deviation.hausdorff_max?, deviation.visible_loss?);
+    let mut text = format!(
+        "at most {} from the file; {} % of the visible surface lost",
+        figure(most),
+        figure(lost * 100.0)
+    );
+    if let Some(area) = deviation.hidden_area.filter(|&area| area > 0.0) {
+        let _ = write!(text, "; hidden area {} left out", figure(area));
+    }
+    if let Some(count) = deviation.bodies_lost.filter(|&count| count > 0) {
+        let _ = write!(text, "; bodies lost: {count}");
+    }
+    Some(text)
 }
 
 fn defect_row(defect: &Defect) -> [String; 4] {
@@ -197,7 +217,9 @@ fn figure(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pipeline::Answer;
+    use crate::distance::{DirectedDistance, FarPoint, SurfaceDistance};
+    use crate::geom::DVec3;
+    use crate::pipeline::{Answer, Losses};
     use crate::wire::{TimingMs, sample};
 
     fn of(answer: &Answer, written: Option<&str>) -> String {
@@ -224,6 +246,27 @@ verdict: repaired, printable: a valid solid
 written: out.stl
 ";
         assert_eq!(of(&sample::repaired(), Some("out.stl")), want);
+    }
+
+    #[test]
+    fn a_measured_repair_tells_how_close_it_is() {
+        let mut answer = sample::repaired();
+        assert!(!of(&answer, None).contains("from the file"));
+        let losses = Losses { visible_loss: 0.012, hidden_area: 2.5, bodies_lost: 1, volume_change: None };
+        answer.report.losses = Some(losses);
+        let place = FarPoint { place: DVec3::ZERO, triangle: 0, closest: DVec3::ZERO, closest_triangle: 0 };
+        let one = DirectedDistance {
+            upper: 0.25,
+            lower: 0.2,
+            farthest: place,
+            mean: None,
+            root_mean_square: None,
+            seen: None,
+        };
+        answer.report.distance = Some(SurfaceDistance { forward: one, backward: one });
+        let want = "  at most 0.25 from the file; 1.2 % of the visible surface lost; hidden area 2.5 left out; bodies lost: 1\n";
+        let text = of(&answer, None);
+        assert!(text.contains(want), "{text}");
     }
 
     #[test]

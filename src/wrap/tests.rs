@@ -111,131 +111,14 @@ fn a_plate_thinner_than_a_cell_is_not_lost() {
     assert_eq!(certificate.shells[0].genus, 0);
 }
 
+/// A linear congruential generator (Knuth's multiplier): signs need no better.
 struct Random(u64);
 
 impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        self.0 >> 33
-    }
-
     fn below(&mut self, n: u64) -> u64 {
-        self.next() % n
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) % n
     }
-
-    fn unit(&mut self) -> f64 {
-        self.next() as f64 / (1u64 << 31) as f64
-    }
-
-    fn point(&mut self) -> DVec3 {
-        DVec3::new(self.unit(), self.unit(), self.unit())
-    }
-}
-
-/// A soup of one of many bad kinds.
-fn soup(random: &mut Random) -> (Vec<DVec3>, Vec<[u32; 3]>) {
-    let mut mesh = (Vec::new(), Vec::new());
-    let grid = |u: u32, v: u32, columns: u32| v * columns + u;
-    match random.below(10) {
-        0 => {
-            for t in 0..1 + random.below(12) as u32 {
-                mesh.0.extend((0..3).map(|_| random.point()));
-                mesh.1.push([3 * t, 3 * t + 1, 3 * t + 2]);
-            }
-        }
-        1 => {
-            mesh.0.extend((0..3).map(|_| random.point()));
-            mesh.1.push([0, 1, 2]);
-        }
-        2 => {
-            // A closed strip with a half turn.
-            let n = 5 + random.below(12) as u32;
-            for i in 0..n {
-                let angle = f64::from(i) / f64::from(n) * std::f64::consts::TAU;
-                for side in [-0.3, 0.3] {
-                    let reach = 1.0 + side * libm::cos(angle / 2.0);
-                    mesh.0.push(DVec3::new(
-                        reach * libm::cos(angle),
-                        reach * libm::sin(angle),
-                        side * libm::sin(angle / 2.0),
-                    ));
-                }
-            }
-            for i in 0..n {
-                let [a, b] = [2 * i, 2 * i + 1];
-                let [c, d] = if i + 1 < n { [a + 2, b + 2] } else { [1, 0] };
-                mesh.1.extend([[a, c, b], [b, c, d]]);
-            }
-        }
-        3 => {
-            // A figure-eight Klein bottle.
-            let n = 8;
-            for v in 0..n {
-                for u in 0..n {
-                    let [u, v] = [u, v].map(|x| f64::from(x) / f64::from(n) * std::f64::consts::TAU);
-                    let reach =
-                        2.0 + libm::cos(u / 2.0) * libm::sin(v) - libm::sin(u / 2.0) * libm::sin(2.0 * v);
-                    mesh.0.push(DVec3::new(
-                        reach * libm::cos(u),
-                        reach * libm::sin(u),
-                        libm::sin(u / 2.0) * libm::sin(v) + libm::cos(u / 2.0) * libm::sin(2.0 * v),
-                    ));
-                }
-            }
-            for v in 0..n {
-                for u in 0..n {
-                    let far =
-                        |v: u32| if u + 1 == n { grid(0, (n - v) % n, n) } else { grid(u + 1, v % n, n) };
-                    let [a, b, c, d] = [grid(u, v, n), far(v), far(v + 1), grid(u, (v + 1) % n, n)];
-                    mesh.1.extend([[a, b, c], [a, c, d]]);
-                }
-            }
-        }
-        4 => {
-            // Stacks in one plane, also on the planes of a lattice.
-            for i in 0..2 + random.below(4) {
-                let z = [0.0, 0.5, 1e-7][random.below(3) as usize];
-                let base = mesh.0.len() as u32;
-                mesh.0.extend((0..3).map(|_| random.point().with_z(z)));
-                mesh.1.push(if i % 2 == 0 { [base, base + 1, base + 2] } else { [base, base + 2, base + 1] });
-            }
-        }
-        5..=7 => {
-            for _ in 0..1 + random.below(4) {
-                let (a, b) = (random.point(), random.point());
-                let (min, max) = (a.min(b), a.max(b) + 1e-3);
-                let mut cuboid = cuboid(min.to_array(), max.to_array());
-                if random.below(4) == 0 {
-                    cuboid.1.truncate(1 + random.below(12) as usize);
-                }
-                add(&mut mesh, &cuboid, random.below(2) == 0);
-            }
-        }
-        8 => {
-            // Slivers.
-            for t in 0..1 + random.below(6) as u32 {
-                let (a, b) = (random.point(), random.point());
-                mesh.0.extend([a, b, a.lerp(b, random.unit()) + random.point() * 1e-9]);
-                mesh.1.push([3 * t, 3 * t + 1, 3 * t + 2]);
-            }
-        }
-        _ => {
-            mesh = cuboid([0.0; 3], [1.0; 3]);
-            for v in &mut mesh.0 {
-                *v += random.point() * 0.9;
-            }
-        }
-    }
-    let scale = [1.0, 1e-30, 1e30, 1e-3, 37.0][random.below(5) as usize];
-    let offset = random.point() * [0.0, 0.0, 0.0, 10.0, 1e4][random.below(5) as usize];
-    for p in &mut mesh.0 {
-        *p = (*p + offset) * scale;
-    }
-    // A vertex that nothing uses.
-    if random.below(5) == 0 {
-        mesh.0.push(DVec3::splat(1e6 * scale));
-    }
-    mesh
 }
 
 #[test]
@@ -249,44 +132,18 @@ fn sheets_back_to_back_are_not_lost() {
 }
 
 #[test]
-fn every_bad_soup_is_certified_or_rightly_refused() {
-    let mut random = Random(11);
-    let budget = Budget::unlimited();
-    let mut refused = 0;
-    for round in 0..120 {
-        let (positions, triangles) = soup(&mut random);
-        let open_shells =
-            [OpenShells::Auto, OpenShells::Close, OpenShells::Thicken][random.below(3) as usize];
-        let options = WrapOptions { cells: 16, open_shells, ..WrapOptions::default() };
-        match wrap(&positions, &triangles, &options, &budget) {
-            Ok(wrapped) => {
-                let certificate = certificate_of(&wrapped.unfitted, &wrapped.triangles);
-                assert!(certificate.is_printable(), "{round}: {:?}", certificate.witnesses);
-                let certificate = certificate_of(&wrapped.positions, &wrapped.triangles);
-                assert!(certificate.is_printable(), "{round} fitted: {:?}", certificate.witnesses);
-            }
-            Err(WrapError::NotRepresentable(coarse)) => {
-                assert!(coarse.pitch * 16384.0 > coarse.diagonal, "{round}: {coarse:?}");
-                refused += 1;
-            }
-            Err(error) => panic!("{round}: {error}"),
-        }
-    }
-    assert!(refused < 40, "{refused}");
-}
-
-#[test]
 fn any_signs_give_a_surface_that_is_certified() {
     let bounds = Aabb { min: DVec3::ZERO, max: DVec3::ONE };
     let lattice = Lattice::around(bounds, 4, usize::MAX).unwrap();
     let mut random = Random(3);
-    // Every pattern of a cube in the middle, the rest outside; then random fields.
-    for round in 1..256 + 60 {
+    // Every pattern of two cubes side by side in the middle, the rest outside: how cubes are cut does not depend on the
+    // order of the axes, so that one side is enough. Then random fields.
+    for round in 1..4096 + 60 {
         let inside = |index: usize| {
-            let place = lattice.coordinates(index).map(|n| n.wrapping_sub(5));
-            place.iter().all(|&n| n < 2) && round >> (place[0] | place[1] << 1 | place[2] << 2) & 1 == 1
+            let [i, j, k] = lattice.coordinates(index).map(|n| n.wrapping_sub(5));
+            i < 3 && j < 2 && k < 2 && round >> (4 * i + 2 * j + k) & 1 == 1
         };
-        let field: Vec<bool> = if round < 256 {
+        let field: Vec<bool> = if round < 4096 {
             (0..lattice.len()).map(inside).collect()
         } else {
             let share = random.below(9) + 1;

@@ -30,3 +30,4 @@ mod simplify;
 mod simplify_guarded;
 mod simplify_seams;
 mod solids;
+mod wrap;

@@ -116,7 +116,7 @@ pub(super) fn rebuild(
             let center = middle(&draft);
             let soup = Soup { positions: moved(&input.soup.positions, center), ..input.soup.clone() };
             let draft = Draft { positions: moved(&draft.positions, center), ..draft };
-            search.run(&soup, &draft, &[actions, vec![recentered(center)]].concat())
+            search.run(&soup, &draft, &[actions, vec![recentered(center, draft.positions.len())]].concat())
         }
         found => found,
     }
@@ -203,11 +203,11 @@ fn moved(positions: &[DVec3], center: DVec3) -> Vec<DVec3> {
 }
 
 /// The step that moved everything to the origin.
-fn recentered(center: DVec3) -> Action {
+fn recentered(center: DVec3, vertices: usize) -> Action {
     Action {
         step: "recenter",
         causes: Vec::new(),
-        changes: Vec::new(),
+        changes: vec![("vertices_moved", vertices as u64)],
         move_max: center.length(),
         reason: format!(
             "moved by [{:e}, {:e}, {:e}] as allowed: float32 is too coarse where it was; distances do not count this",
