@@ -97,9 +97,8 @@ fn a_single_triangle_becomes_a_thin_body_behind_it() {
     let (wrap, certificate) = wrapped(&positions, &[[0, 1, 2]], 64);
     assert_eq!((wrap.account.open_parts, wrap.account.sheet_parts), (0, 1));
     assert_eq!(certificate.shells.len(), 1);
-    let spacing = wrap.account.spacing;
-    let thickness = certificate.shells[0].volume / 50.0 / spacing;
-    assert!((1.0..3.0).contains(&thickness), "{thickness}");
+    let thickness = certificate.shells[0].volume / 50.0 / wrap.account.wall;
+    assert!((0.9..1.5).contains(&thickness), "{thickness}");
 }
 
 #[test]

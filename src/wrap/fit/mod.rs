@@ -24,6 +24,9 @@ const CREASE_COS: f64 = 0.866;
 /// A vertex farther than this from a crease, in cells, leaves it to its neighbours.
 const CREASE_REACH: f64 = 0.6;
 
+/// Times that vertices are moved toward their own goals.
+const PASSES: usize = 4;
+
 /// Weight that keeps the point near the middle of those around it where planes do not determine it.
 const HOLD: f64 = 1e-3;
 
@@ -58,6 +61,11 @@ pub(super) fn fit(
     // Clamped cuts, and thin walls.
     let goals = plain_goals(signs, surface, cuts, &places, budget)?;
     let mut moved = move_all(&stars, triangles, &mut places, &goals, budget)?;
+    // Long ways, of walls that grew, are gone in steps, each with its neighbours.
+    for _ in 1..PASSES {
+        let again = move_all(&stars, triangles, &mut places, &goals, budget)?;
+        moved.iter_mut().zip(&again).for_each(|(all, &one)| *all |= one);
+    }
     let goals = crease_goals(surface, cuts, &stars, triangles, &places, budget)?;
     let onto = move_all(&stars, triangles, &mut places, &goals, budget)?;
     moved.iter_mut().zip(&onto).for_each(|(all, &one)| *all |= one);
@@ -187,9 +195,9 @@ fn move_all(
         if v % CHECK_EVERY == 0 {
             budget.check()?;
         }
-        let Some(goal) = goals[v] else { continue };
+        let Some(goal) = goals[v].filter(|&goal| goal != places[v]) else { continue };
         let from = places[v];
-        for share in [1.0, 0.5] {
+        for share in [1.0, 0.5, 0.25] {
             let to = from.lerp(goal, share);
             if stars.may_move(v, to, triangles, places) {
                 places[v] = to;
