@@ -113,7 +113,7 @@ fn soup(random: &mut Random) -> (Vec<DVec3>, Vec<[u32; 3]>) {
                 let (min, max) = (a.min(b), a.max(b) + 1e-3);
                 let mut cuboid = cuboid(min.to_array(), max.to_array());
                 if random.below(4) == 0 {
-                    cuboid.1.truncate(1 + random.below(12) as usize);
+                    cuboid.1.truncate(1 + random.below(12));
                 }
                 add(&mut mesh, &cuboid, random.below(2) == 0);
             }
@@ -193,7 +193,7 @@ fn every_bad_soup_is_repaired_or_rightly_refused_at_the_default_resolution() {
     let mut outcomes = std::collections::BTreeMap::<String, usize>::new();
     for round in 0..count {
         let (positions, triangles) = soup(&mut random);
-        let raw = RawSoup { positions: positions.iter().map(|p| p.to_array()).collect(), triangles };
+        let raw = RawSoup { positions: positions.iter().map(DVec3::to_array).collect(), triangles };
         let bytes = encode(&raw, Encoding::Obj);
         let answer = run(Operation::Repair, &bytes, &Options::default(), &Budget::unlimited()).unwrap();
         let report = &answer.report;
