@@ -165,6 +165,9 @@ impl<'i> Original<'i> {
             return Ok(0);
         }
         let parts = parts(self.input, budget)?;
+        if parts.count > BODIES_MAX {
+            return Ok(0);
+        }
         let mut of_part = vec![Vec::new(); parts.count as usize];
         for (n, &t) in gone.iter().enumerate() {
             if n % CHECK_EVERY == 0 {
@@ -177,9 +180,6 @@ impl<'i> Original<'i> {
             if gone.binary_search(&(t as u32)).is_err() {
                 of_part[part as usize].clear();
             }
-        }
-        if parts.count > BODIES_MAX {
-            return Ok(0);
         }
         let near = NearestSearch::build(&result.positions, &result.triangles, budget)?;
         let mut lost = 0;

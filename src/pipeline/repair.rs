@@ -21,7 +21,7 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
     if input.examination.certificate.is_printable() {
         let (draft, _) = Draft::from_soup(&input.soup);
         if let Some(fewer) = simplify::of_certified(&draft, input, options, budget)? {
-            return fewer.returned(input, &draft, report, Vec::new(), Outcome::Simplified, budget);
+            return fewer.returned(input, &draft, report, Outcome::Simplified, options, budget);
         }
         if encoding == input.facts.encoding {
             return Ok(input.returned_as_it_is(report, Outcome::Identical));
@@ -101,11 +101,10 @@ fn certified(
             return Ok(Report { actions, ..report }.refused(refusal));
         }
     }
-    let report = Report { losses: Some(fidelity.losses), distance: fidelity.distance, ..report };
+    let report = Report { actions, losses: Some(fidelity.losses), distance: fidelity.distance, ..report };
     if let Some(fewer) = simplify::of_certified(&draft, input, options, budget)? {
-        return fewer.returned(input, &draft, report, actions, Outcome::Repaired, budget);
+        return fewer.returned(input, &draft, report, Outcome::Repaired, options, budget);
     }
-    let report = Report { actions, ..report };
     Ok(candidate.returned(input, origins, report, Outcome::Repaired, budget)?)
 }
 

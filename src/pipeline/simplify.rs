@@ -1,5 +1,6 @@
 //! Fewer triangles: a manifold from the file, simplified, written and judged at each target.
 
+use super::fidelity::Original;
 use super::input::Input;
 use super::output::{Candidate, NoCandidate};
 use super::plan::{Attempt, Step};
@@ -17,6 +18,7 @@ use crate::repair::duplicates::OppositePairs;
 use crate::simplify::{
     self, Mode, Refusal as CollapseRefusal, Simplified, SimplifyError, SimplifyOptions, Target,
 };
+use crate::winding::Solid;
 use rustc_hash::FxHashMap;
 
 /// What makes a manifold of any mesh, without moving a vertex.
@@ -115,20 +117,37 @@ pub(super) struct Fewer {
 }
 
 impl Fewer {
-    /// The answer of a repair that led to `draft` by `actions` before.
+    /// The answer of a repair whose `report` so far is about the certified `draft`, unless a result is farther from the
+    /// input than `limits` allow.
     pub(super) fn returned(
         self,
         input: &Input,
         draft: &Draft,
         report: Report,
-        mut actions: Vec<Action>,
         outcome: Outcome,
+        options: &Options,
         budget: &Budget,
     ) -> Result<Answer, Failure> {
         let Self { candidate, origins, action, levels, others } = self;
-        actions.push(action);
         let origins: Vec<u32> = origins.iter().map(|&t| draft.triangle_origin[t as usize]).collect();
-        let report = Report { actions, levels, ..report };
+        let volume = report.before.as_ref().and_then(|analysis| analysis.measures.volume);
+        let solid = budget.stage(Stage::Measure, || {
+            Solid::of(&draft.positions, &draft.triangles, options.wrap.open_shells, budget)
+        })?;
+        let original = Original::new(&input.soup, volume, Some(solid));
+        let fidelity = original.measure(candidate.soup(), &origins, budget)?;
+        let of_draft = report.distance.map_or(0.0, |distance| distance.upper());
+        let actions = [report.actions, vec![action]].concat();
+        let (distance, losses) = (fidelity.distance, Some(fidelity.losses));
+        let report = Report { actions, levels, distance, losses, ..report };
+        // Further results are at most as far as they are from the draft and the draft is from the input.
+        let bounds = report.levels.iter().skip(1).filter_map(|level| level.distance);
+        let farthest = bounds.map(|distance| distance.upper() + of_draft).fold(0.0, f64::max);
+        let exceeded = options.limits.deviation_max.filter(|&limit| farthest > limit);
+        let too_far = exceeded.map(|limit| Refusal::DeviationBeyondLimit { deviation: farthest, limit });
+        if let Some(refusal) = fidelity.breach(&options.limits).or(too_far) {
+            return Ok(Report { levels: Vec::new(), ..report }.refused(refusal));
+        }
         let answer = candidate.returned(input, &origins, report, outcome, budget)?;
         Ok(Answer { levels: others, ..answer })
     }

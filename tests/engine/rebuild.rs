@@ -152,22 +152,17 @@ fn a_wall_between_two_bodies_is_hidden_and_its_removal_no_loss() {
 }
 
 #[test]
-fn more_effort_is_finer_where_detail_is_lost() {
-    // A body that crosses another and a comb of plates too thin for the first lattice, and too close to each other.
-    let mut soup = crossing();
-    for k in 0..24 {
-        let plate = cube();
-        let squeeze = |p: [f64; 3]| [0.004 * p[0] + 0.01 * f64::from(k) - 0.6, p[1], p[2]];
-        let positions = plate.positions.iter().map(|&p| squeeze(p)).collect();
-        soup = soup.with(&RawSoup { positions, ..plate });
-    }
-    let bytes = encode(&soup, Encoding::Obj);
-    let with = |effort| {
+fn more_effort_comes_closer_where_the_caller_demands_it() {
+    let bytes = encode(&crossing(), Encoding::Obj);
+    let least = |effort| {
         let wrap = WrapChoices { effort, ..WrapChoices::default() };
-        let answer = answer(&bytes, &Options { wrap, ..Options::default() });
-        rebuilt(&answer);
-        (count(&answer, "cells"), answer.report.losses.unwrap().visible_loss)
+        let limits = Limits { deviation_max: Some(1e-9), ..Limits::default() };
+        let answer = answer(&bytes, &Options { wrap, limits, ..Options::default() });
+        let Refusal::DeviationBeyondLimit { deviation, .. } = *refused(&answer) else {
+            panic!("another refusal")
+        };
+        deviation
     };
-    let (low, normal) = (with(Effort::Low), with(Effort::Normal));
-    assert!(low.0 <= normal.0 && low.1 >= normal.1, "{low:?} {normal:?}");
+    let (low, normal) = (least(Effort::Low), least(Effort::Normal));
+    assert!(normal < 0.8 * low, "{low} {normal}");
 }

@@ -7,7 +7,7 @@ use meshmend::budget::Budget;
 use meshmend::formats::{self, Encoding, Format, ReadOptions};
 use meshmend::mesh::{Color, Soup};
 use meshmend::pipeline::{
-    Answer, Operation, Options, Outcome, Output, Refusal, Require, SimplifyChoices, VertexColors, run,
+    Answer, Limits, Operation, Options, Outcome, Output, Refusal, Require, SimplifyChoices, VertexColors, run,
 };
 use meshmend::simplify::{Mode, Placement, Target};
 
@@ -172,6 +172,36 @@ fn a_repair_with_several_targets_gives_a_certified_file_for_each() {
             answer.output.iter().chain(&answer.levels).map(|output| read(output).triangles.len()).collect();
         assert_eq!(outputs, faces);
         assert!(answer.report.actions.iter().filter(|action| action.step == "simplify").count() == 1);
+    }
+}
+
+#[test]
+fn a_simplified_repair_says_how_far_it_is_and_keeps_the_limits_of_the_caller() {
+    // A ball of 768 triangles.
+    let ball = grid_cube(8).map(|p| {
+        let q = p.map(|x| x - 0.5);
+        let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
+        q.map(|x| x / length)
+    });
+    let bytes = encode(&ball, Encoding::Off);
+    let repaired = |targets: &[usize], limit| {
+        let targets = targets.iter().map(|&count| Target::Faces(count)).collect();
+        let simplify = SimplifyChoices { targets, ..SimplifyChoices::default() };
+        let limits = Limits { deviation_max: limit, ..Limits::default() };
+        let options = Options { simplify, limits, ..Options::default() };
+        run(Operation::Repair, &bytes, &options, &Budget::unlimited()).unwrap()
+    };
+    let far = |answer: &Answer| answer.report.distance.unwrap().upper();
+    let (fine, coarse) = (repaired(&[300], None), repaired(&[40], None));
+    assert_eq!(coarse.report.outcome, Some(Outcome::Repaired), "sides share no vertex");
+    assert!(far(&fine) > 0.001 && far(&coarse) > 2.0 * far(&fine), "{} {}", far(&fine), far(&coarse));
+    assert!(coarse.report.losses.unwrap().visible_loss > 0.5);
+    let between = Some((far(&fine) + far(&coarse)) / 2.0);
+    assert!(repaired(&[300], between).output.is_some());
+    for targets in [&[40][..], &[300, 40]] {
+        let answer = repaired(targets, between);
+        assert!(matches!(answer.report.refusal, Some(Refusal::DeviationBeyondLimit { .. })), "{targets:?}");
+        assert!(answer.output.is_none() && answer.levels.is_empty() && answer.report.levels.is_empty());
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Settings, by_criterion};
 use crate::budget::{Budget, StopFlag};
-use crate::geom::DVec3;
+use crate::geom::{Aabb, DVec3};
 use crate::mesh::corner_table::CornerTable;
 use crate::mesh::{EdgeGroups, UnionFind};
 use crate::par::with_threads;
@@ -154,6 +154,34 @@ fn where_the_input_meets_itself_the_guarded_mode_leaves_it_and_simplifies_the_re
     let level = run(&mesh, &[Target::Ratio(0.3)], GUARDED).remove(0);
     assert_eq!(contacts(&level), before);
     assert!(level.triangles.len() < mesh.1.len() / 2, "{:?}", level.report);
+}
+
+#[test]
+fn vertices_in_held_boxes_stay_and_others_go() {
+    let torus = torus(40, 1.0, 0.1, DVec3::ZERO);
+    let held = [Aabb { min: DVec3::splat(-9.0), max: DVec3::new(-1.0, 9.0, 9.0) }];
+    let input = Input {
+        positions: &torus.0,
+        triangles: &torus.1,
+        face_groups: &[],
+        vertex_colors: &[],
+        texture: &[],
+    };
+    let targets = vec![Target::Ratio(0.05)];
+    let options = SimplifyOptions { targets, held: &held, ..SimplifyOptions::default() };
+    let in_box = |positions: &[DVec3]| -> Vec<[u64; 3]> {
+        let inside = positions.iter().filter(|p| p.x <= -1.0);
+        let mut bits: Vec<_> = inside.map(|p| p.to_array().map(f64::to_bits)).collect();
+        bits.sort_unstable();
+        bits
+    };
+    for settings in [FAST, GUARDED] {
+        let results = by_criterion(&input, &options, settings, &Budget::unlimited()).unwrap();
+        let left = &results[0].positions;
+        let (before, after) = (in_box(&torus.0), in_box(left));
+        assert!(before.iter().all(|p| after.binary_search(p).is_ok()), "{settings:?}");
+        assert!(left.len() < torus.0.len() * 3 / 4, "{settings:?}: {} of {}", left.len(), torus.0.len());
+    }
 }
 
 #[test]

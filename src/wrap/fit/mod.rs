@@ -2,8 +2,8 @@
 //!
 //! A vertex whose cut was clamped goes to the point of the input that it stands for; one beside a crease to the point
 //! that is nearest to the planes of the input around it (a quadratic error function, as in Kobbelt et al. 2001 and Ju et
-//! al. 2002); one that grew from a thin wall back to that wall; one behind a sheet to the thickness of walls. A move must not turn a triangle around, and what then
-//! meets anything is taken back, until nothing does.
+//! al. 2002); one that grew from a thin wall back to that wall; one behind a sheet to the thickness of walls. A move must not
+//! turn a triangle around, and what then meets anything is taken back, until nothing does.
 
 mod normals;
 mod undo;
