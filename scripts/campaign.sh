@@ -18,6 +18,7 @@ declare -A filters=(
   [cancel]="cancel"
   [determinism]="determinism"
   [simplify]="simplify"
+  [cut]="cut_and_stitch"
   [wrap]="bad_soup"
 )
 

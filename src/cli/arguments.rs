@@ -34,6 +34,9 @@ pub(super) enum Command {
     /// Write a mesh with fewer triangles; its certificate says what holds.
     #[command(arg_required_else_help = true)]
     Simplify(SimplifyArguments),
+    /// Cut singular edges and vertices and join boundary edges; the certificate of the result says what holds.
+    #[command(arg_required_else_help = true)]
+    CutStitch(CutStitchArguments),
     /// Say whether the faces of a file, as indexed, make a half-edge mesh (a manifold, coherently oriented).
     #[command(arg_required_else_help = true)]
     Check {
@@ -146,6 +149,16 @@ pub(super) struct SimplifyArguments {
     output: Place,
 }
 
+#[derive(Debug, Args)]
+pub(super) struct CutStitchArguments {
+    #[command(flatten)]
+    given: InputArguments,
+    /// File to write, or - for standard output, which needs --output-format. Its extension names the format unless
+    /// --output-format does.
+    #[arg(short, long, value_name = "OUT")]
+    output: Place,
+}
+
 /// An operation on a file, whichever command named it.
 #[derive(Debug)]
 pub(super) struct Request {
@@ -198,6 +211,12 @@ impl From<RepairArguments> for Request {
 impl From<SimplifyArguments> for Request {
     fn from(given: SimplifyArguments) -> Self {
         given.given.request(Operation::Simplify, Some(given.output))
+    }
+}
+
+impl From<CutStitchArguments> for Request {
+    fn from(given: CutStitchArguments) -> Self {
+        given.given.request(Operation::CutStitch, Some(given.output))
     }
 }
 

@@ -20,6 +20,7 @@ mod words;
 
 pub use error::{Place, ReadError, ReadErrorKind, WriteError};
 pub use obj::materials::color_faces;
+pub use polygons::split_polygon;
 pub use sniff::sniff;
 
 use crate::budget::{Budget, Stopped};

@@ -41,6 +41,19 @@ enum Rank {
     EarBesideStraight,
 }
 
+/// Appends triangles over the polygon with these `corners` (three or more) to `triangles`. All positions are finite.
+///
+/// # Errors
+/// When the budget stops the run.
+pub fn split_polygon(
+    corners: &[u32],
+    positions: &[DVec3],
+    triangles: &mut Vec<[u32; 3]>,
+    budget: &Budget,
+) -> Result<(), Stopped> {
+    Splitter::default().split(corners, positions, triangles, budget).map(|_| ())
+}
+
 impl Splitter {
     /// Appends `corners.len() - 2` triangles over `corners` to `triangles`; true if they are the fan around the first
     /// corner. All positions are finite. Up to O(n²) steps on an n-gon that is far from convex.

@@ -1,4 +1,4 @@
-//! `POST /v1/analyze`, `/v1/repair`, `/v1/convert`, `/v1/verify` and `/v1/jobs`: a mesh comes in and becomes a job.
+//! `POST /v1/analyze`, `/v1/repair`, `/v1/cut-stitch`, … and `/v1/jobs`: a mesh comes in and becomes a job.
 //!
 //! There is one model: every request makes a job, and all but `/v1/jobs` wait for it a while.
 
@@ -59,6 +59,15 @@ pub(super) async fn convert(state: State, caller: Extension<Caller>, request: Re
 #[utoipa::path(post, path = "/v1/simplify", tag = "operations", params(Options))]
 pub(super) async fn simplify(state: State, caller: Extension<Caller>, request: Request) -> Handled {
     result_of(&state, &caller, Operation::Simplify, request).await
+}
+
+/// Cut and stitch a mesh.
+///
+/// Singular edges and vertices are cut, so that a coherently oriented manifold with boundary is left; then boundary
+/// edges are joined, as `stitch` says. The certificate states what holds: readers that weld join cut vertices again.
+#[utoipa::path(post, path = "/v1/cut-stitch", tag = "operations", params(Options))]
+pub(super) async fn cut_stitch(state: State, caller: Extension<Caller>, request: Request) -> Handled {
+    result_of(&state, &caller, Operation::CutStitch, request).await
 }
 
 /// Make a job and do not wait for it.

@@ -91,6 +91,7 @@ pub(super) fn result_name(row: &JobRow, encoding: Encoding, level: usize) -> Str
     let finish = row.finish.as_ref();
     let mark = match finish.and_then(|finish| finish.outcome) {
         Some(Outcome::Simplified) => "-simplified",
+        Some(Outcome::CutStitched) => "-cut-stitched",
         Some(Outcome::Repaired) => "-repaired",
         Some(Outcome::Rebuilt) => "-rebuilt",
         Some(Outcome::Partial) => "-partial",

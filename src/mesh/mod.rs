@@ -1,5 +1,6 @@
 //! Triangle soups as read from files, and their connectivity.
 
+mod boundary;
 mod components;
 pub mod corner_table;
 mod cut;
@@ -12,12 +13,13 @@ mod soup;
 mod stitch;
 mod texture;
 
+pub use boundary::{Boundary, BoundaryLoop};
 pub use components::{Components, UnionFind};
-pub use cut::{Cut, cut_singular};
+pub use cut::{ChosenEdges, Cut, CutMethod, Marks, cut, cut_singular};
 pub use divide::divide;
 pub use edges::{EdgeGroups, edge_of, next_corner, prev_corner, triangle_of};
 pub use fans::{Fan, NO_TWIN, fan_heads, singular_vertices, twins};
 pub use parity::ParityUnionFind;
 pub use soup::{Color, FaceFault, FaceFaultReason, Places, Polygons, Soup};
-pub use stitch::{Stitched, stitch};
+pub use stitch::{AnyJoin, JoinRule, Stitched, Validity, stitch};
 pub use texture::{NO_POINT, Texture};

@@ -1,6 +1,7 @@
 //! Operations from bytes to bytes: read, analyze, repair by a plan that the client can read, write, certify.
 
 mod convert;
+mod cut_stitch;
 mod describe;
 mod fidelity;
 mod identical;
@@ -13,6 +14,7 @@ mod repair;
 mod simplify;
 mod texture;
 
+pub use self::cut_stitch::{CutStitchChoices, Stitching};
 pub use self::fidelity::Losses;
 use self::input::Input;
 pub use self::rebuild::{Effort, WrapChoices};
@@ -36,11 +38,14 @@ pub enum Operation {
     Verify,
     /// Fewer triangles; the certificate states what holds.
     Simplify,
+    /// A manifold with boundary; the certificate states what holds.
+    CutStitch,
 }
 
 impl Operation {
     /// Every operation.
-    pub const ALL: [Self; 5] = [Self::Analyze, Self::Repair, Self::Convert, Self::Verify, Self::Simplify];
+    pub const ALL: [Self; 6] =
+        [Self::Analyze, Self::Repair, Self::Convert, Self::Verify, Self::Simplify, Self::CutStitch];
 
     /// Name in paths, options and reports.
     pub fn name(self) -> &'static str {
@@ -50,6 +55,7 @@ impl Operation {
             Self::Convert => "convert",
             Self::Verify => "verify",
             Self::Simplify => "simplify",
+            Self::CutStitch => "cut-stitch",
         }
     }
 }
@@ -111,6 +117,8 @@ pub struct Options {
     pub wrap: WrapChoices,
     /// How `simplify` works, and how far; a repair ends with it when it has targets.
     pub simplify: SimplifyChoices,
+    /// How `cut-stitch` works.
+    pub cut_stitch: CutStitchChoices,
     /// Witnesses to keep of each defect; `None`: 16.
     pub samples: Option<usize>,
     /// The MTL file of an OBJ: its diffuse colours become face colours, which OFF and PLY can hold.
@@ -189,6 +197,8 @@ pub enum Outcome {
     Rebuilt,
     /// Fewer triangles, as asked; the certificate says what holds.
     Simplified,
+    /// Cut and stitched, as asked; the certificate says what holds.
+    CutStitched,
     /// Not valid; only on request.
     Partial,
     /// No result.
@@ -356,6 +366,7 @@ pub fn run(
         Operation::Convert => convert::convert(&input, options, budget)?,
         Operation::Repair => repair::repair(&input, options, budget)?,
         Operation::Simplify => simplify::simplify(&input, options, budget)?,
+        Operation::CutStitch => cut_stitch::cut_stitch(&input, options, budget)?,
     };
     answer.report.work_used = budget.work_used();
     answer.report.bytes_peak = budget.bytes_peak();

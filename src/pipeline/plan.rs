@@ -3,13 +3,17 @@
 use super::{Action, FillHoles};
 use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stopped};
-use crate::mesh::Soup;
+use crate::mesh::{ChosenEdges, Soup, Validity};
+use crate::repair::cut::CutOptions;
 use crate::repair::duplicates::OppositePairs;
+use crate::repair::polygons::DegenerateFaces;
+use crate::repair::snap::SnapOptions;
 use crate::repair::{self, Changes, Draft};
 
 /// One step of a plan, with its parameters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) enum Step {
+    SplitPolygons(DegenerateFaces),
     ClearNoise,
     RoundToF32,
     Weld,
@@ -18,8 +22,9 @@ pub(super) enum Step {
     SplitTVertices,
     DropDuplicates(OppositePairs),
     Orient,
-    CutSingular,
-    Stitch,
+    Cut(CutOptions),
+    Pinch(ChosenEdges, Validity),
+    Snap(SnapOptions),
     FillHoles,
     JoinCopies,
     Nest { is_embedded: bool },
@@ -48,11 +53,13 @@ impl Variant {
             Step::SplitTVertices,
             Step::DropDuplicates(self.opposite),
             Step::Orient,
-            Step::CutSingular,
-            Step::Stitch,
+            Step::Cut(CutOptions::default()),
+            // Only what coincides: no vertex moves.
+            Step::Snap(SnapOptions { epsilon: Some(0.0), ..SnapOptions::default() }),
         ];
         let fill = (fill_holes == FillHoles::Simple).then_some(Step::FillHoles);
-        clear.into_iter().chain(round).chain(surface).chain(fill).collect()
+        let split = Step::SplitPolygons(DegenerateFaces::Split);
+        std::iter::once(split).chain(clear).chain(round).chain(surface).chain(fill).collect()
     }
 
     /// The steps that make it a solid. Readers weld, so that copies of a vertex would be one again: what is to be
@@ -65,8 +72,9 @@ impl Variant {
 
 impl Step {
     /// Name in reports.
-    fn name(self) -> &'static str {
+    fn name(&self) -> &'static str {
         match self {
+            Self::SplitPolygons(_) => "split-polygons",
             Self::ClearNoise => "clear-noise",
             Self::RoundToF32 => "round-to-float32",
             Self::Weld => "weld",
@@ -75,8 +83,9 @@ impl Step {
             Self::SplitTVertices => "split-t-vertices",
             Self::DropDuplicates(_) => "drop-duplicates",
             Self::Orient => "orient",
-            Self::CutSingular => "cut-singular",
-            Self::Stitch => "stitch",
+            Self::Cut(_) => "cut",
+            Self::Pinch(..) => "pinch",
+            Self::Snap(_) => "snap",
             Self::FillHoles => "fill-holes",
             Self::JoinCopies => "join-copies",
             Self::Nest { .. } => "nest",
@@ -84,7 +93,7 @@ impl Step {
     }
 
     /// The defects that the step is for.
-    fn cures(self) -> &'static [DefectCode] {
+    fn cures(&self) -> &'static [DefectCode] {
         match self {
             Self::ClearNoise => &[
                 DefectCode::BoundaryLoop,
@@ -94,33 +103,38 @@ impl Step {
             ],
             Self::RoundToF32 => &[DefectCode::UnsoundReading],
             Self::JoinCopies => &[],
+            Self::SplitPolygons(_) => &[DefectCode::CoincidentCorners, DefectCode::DuplicateVertex],
             Self::Weld => &[DefectCode::DuplicateVertex],
             Self::DropDegenerate => &[DefectCode::CoincidentCorners],
             Self::SplitCollinear => &[DefectCode::CollinearFace],
             Self::DropDuplicates(_) => &[DefectCode::DuplicateFace, DefectCode::OppositeDuplicateFace],
             Self::Orient => &[DefectCode::OrientationConflict, DefectCode::NonOrientable],
-            Self::CutSingular => {
+            Self::Cut(_) => {
                 &[DefectCode::NonManifoldEdge, DefectCode::NonManifoldVertex, DefectCode::NonOrientable]
             }
-            Self::SplitTVertices | Self::Stitch | Self::FillHoles => &[DefectCode::BoundaryLoop],
+            Self::SplitTVertices | Self::Pinch(..) | Self::Snap(_) | Self::FillHoles => {
+                &[DefectCode::BoundaryLoop]
+            }
             Self::Nest { .. } => &[DefectCode::InvertedShell, DefectCode::MisnestedShell],
         }
     }
 
-    fn run(self, draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
+    fn run(&self, draft: &mut Draft, soup: &Soup, budget: &Budget) -> Result<Changes, Stopped> {
         match self {
+            Self::SplitPolygons(how) => repair::polygons::split_polygons(draft, soup, *how, budget),
             Self::ClearNoise => Ok(repair::noise::clear_noise(draft)),
             Self::RoundToF32 => Ok(repair::round::round_to_f32(draft)),
             Self::Weld | Self::JoinCopies => repair::weld::weld(draft, budget),
             Self::DropDegenerate => Ok(repair::degenerate::drop_degenerate(draft)),
             Self::SplitCollinear => repair::collinear::split_collinear(draft, budget),
             Self::SplitTVertices => repair::t_vertices::split_t_vertices(draft, budget),
-            Self::DropDuplicates(opposite) => repair::duplicates::drop_duplicates(draft, opposite, budget),
+            Self::DropDuplicates(opposite) => repair::duplicates::drop_duplicates(draft, *opposite, budget),
             Self::Orient => repair::orient::orient(draft, budget),
-            Self::CutSingular => repair::cut::cut_singular(draft, budget),
-            Self::Stitch => repair::stitch::stitch(draft, budget),
+            Self::Cut(options) => repair::cut::cut(draft, options, budget),
+            Self::Pinch(chosen, validity) => repair::pinch::pinch(draft, chosen, *validity, budget),
+            Self::Snap(options) => repair::snap::snap(draft, options, budget),
             Self::FillHoles => repair::fill::fill_holes(draft, budget),
-            Self::Nest { is_embedded } => repair::nest::nest(draft, is_embedded, budget),
+            Self::Nest { is_embedded } => repair::nest::nest(draft, *is_embedded, budget),
         }
     }
 }
@@ -150,7 +164,7 @@ impl Attempt {
     ) -> Result<(), Stopped> {
         for step in steps {
             budget.check()?;
-            let changes = step.run(&mut self.draft, budget)?;
+            let changes = step.run(&mut self.draft, soup, budget)?;
             debug_assert_eq!(self.draft.check(), Vec::<String>::new(), "after {step:?}");
             self.actions.push(action(step.name(), step.cures(), changes, soup, before));
         }

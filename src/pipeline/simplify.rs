@@ -14,6 +14,7 @@ use crate::certificate::Depth;
 use crate::distance::{DistanceOptions, Surface, SurfaceDistance, surface_distance};
 use crate::mesh::{Color, Soup};
 use crate::repair::Draft;
+use crate::repair::cut::CutOptions;
 use crate::repair::duplicates::OppositePairs;
 use crate::simplify::{
     self, Mode, Refusal as CollapseRefusal, Simplified, SimplifyError, SimplifyOptions, Target,
@@ -22,13 +23,15 @@ use crate::winding::Solid;
 use rustc_hash::FxHashMap;
 
 /// What makes a manifold of any mesh, without moving a vertex.
-const MANIFOLD: [Step; 5] = [
-    Step::Weld,
-    Step::DropDegenerate,
-    Step::DropDuplicates(OppositePairs::KeepFirst),
-    Step::Orient,
-    Step::CutSingular,
-];
+fn manifold() -> [Step; 5] {
+    [
+        Step::Weld,
+        Step::DropDegenerate,
+        Step::DropDuplicates(OppositePairs::KeepFirst),
+        Step::Orient,
+        Step::Cut(CutOptions::default()),
+    ]
+}
 
 /// Share of the faces that is left when no target is given.
 const RATIO_DEFAULT: f64 = 0.5;
@@ -38,7 +41,7 @@ pub(super) fn simplify(input: &Input, options: &Options, budget: &Budget) -> Res
     let report = input.report(Operation::Simplify, budget)?;
     let mut attempt = Attempt::start(&input.soup, report.before.as_ref());
     let _charge = budget.charge(2 * attempt.draft.bytes())?;
-    budget.stage(Stage::Repair, || attempt.run(&MANIFOLD, &input.soup, report.before.as_ref(), budget))?;
+    budget.stage(Stage::Repair, || attempt.run(&manifold(), &input.soup, report.before.as_ref(), budget))?;
     let Attempt { draft, actions } = attempt;
     let report = Report { actions, ..report };
     if draft.triangles.is_empty() {

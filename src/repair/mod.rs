@@ -1,6 +1,7 @@
 //! Operations that change a mesh: one operation, one file; options in, what changed out. No step calls another.
 //!
-//! The steps work on a [`Draft`]. None of them moves a vertex except [`round`] and [`noise`], which say how far.
+//! The steps work on a [`Draft`]. None of them moves a vertex except [`round`],
+//! [`noise`] and [`snap`], which say how far.
 
 pub mod collinear;
 pub mod cut;
@@ -12,8 +13,10 @@ pub mod fill;
 pub mod nest;
 pub mod noise;
 pub mod orient;
+pub mod pinch;
+pub mod polygons;
 pub mod round;
-pub mod stitch;
+pub mod snap;
 pub mod t_vertices;
 pub mod weld;
 

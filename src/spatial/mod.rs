@@ -5,6 +5,7 @@ mod coincident;
 mod contacts;
 mod nearest;
 mod nesting;
+mod octree;
 
 pub use crate::geom::ContactKind;
 pub use bvh::Bvh;
@@ -12,3 +13,4 @@ pub use coincident::{Coincident, coincident_f32, coincident_f64};
 pub use contacts::{Contact, Contacts, Search, Terrains, self_contacts};
 pub use nearest::{Nearest, NearestSearch};
 pub use nesting::{NO_SHELL, Nesting, ShellTriangles, nest};
+pub use octree::{Octree, is_within};

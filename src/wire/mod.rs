@@ -4,6 +4,7 @@
 //! the compiler ask for a public word when the engine learns a new one.
 
 mod certificate;
+mod edges;
 mod formats;
 mod job;
 mod level;
@@ -39,6 +40,7 @@ pub use target::TargetSpec;
 pub use verdict::{Reason, Verdict};
 pub use version::{ENGINE_NAME, ENGINE_VERSION, REPORT_SCHEMA, Version};
 pub use words::{
-    Condition, Criterion, DefectCode, Encoding, FillHoles, Format, Mode, Nesting, OpenShells, Operation,
-    Outcome, Placement, Reader, ReasonCode, Require, Severity, Stage, Units, VertexColors,
+    Condition, Criterion, Cut, DefectCode, Degenerate, Encoding, FillHoles, Format, Mode, Nesting,
+    OpenShells, Operation, Outcome, Placement, Reader, ReasonCode, Require, Severity, Stage, Stitch,
+    StitchValidity, Units, VertexColors,
 };

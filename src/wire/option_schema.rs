@@ -5,6 +5,7 @@ use utoipa::openapi::schema::{AdditionalProperties, ArrayBuilder, ObjectBuilder,
 use utoipa::openapi::{Ref, RefOr, Required};
 use utoipa::{IntoParams, PartialSchema, ToSchema};
 
+use super::edges::edges_schema;
 use super::options::{OptionKind, OptionSpec, Options, SPECS};
 use super::target::TargetSpec;
 
@@ -24,6 +25,7 @@ impl OptionSpec {
             }
             OptionKind::Flag => described.schema_type(Type::Boolean),
             OptionKind::Targets => return targets_schema(self.about),
+            OptionKind::Edges => return edges_schema(self.about),
             OptionKind::Input => described
                 .schema_type(Type::Object)
                 .property(
@@ -49,6 +51,13 @@ impl OptionSpec {
                 ObjectBuilder::new()
                     .schema_type(Type::String)
                     .pattern(Some(r#"^\[\{"ratio":0\.[0-9]{1,3}\}\]$"#))
+                    .description(Some("JSON text of the list."))
+                    .build(),
+            ),
+            OptionKind::Edges => Schema::Object(
+                ObjectBuilder::new()
+                    .schema_type(Type::String)
+                    .pattern(Some(r"^\[\[0,[1-9][0-9]{0,5}\](,\[1,[2-9]\])?\]$"))
                     .description(Some("JSON text of the list."))
                     .build(),
             ),

@@ -1,6 +1,6 @@
 //! One public word for each value of the engine's enumerations.
 
-use crate::{analysis, budget, certificate, formats, pipeline, simplify, winding};
+use crate::{analysis, budget, certificate, formats, mesh, pipeline, repair, simplify, winding};
 
 /// An enumeration whose values have public words.
 macro_rules! words {
@@ -92,6 +92,8 @@ mirror! { pipeline::Operation =>
         Verify = "verify",
         /// Fewer triangles; the certificate states what holds.
         Simplify = "simplify",
+        /// A manifold with boundary; the certificate states what holds.
+        CutStitch = "cut-stitch",
     }
 }
 
@@ -189,6 +191,60 @@ mirror! { pipeline::FillHoles =>
     }
 }
 
+words! {
+    /// How a cut is made. The result is the same.
+    Cut {
+        /// Whichever costs less.
+        Auto = "auto",
+        /// The stars of singular vertices are taken apart.
+        Local = "local",
+        /// All corners start apart and are united across unmarked edges.
+        Global = "global",
+    }
+}
+
+impl From<Cut> for Option<mesh::CutMethod> {
+    fn from(word: Cut) -> Self {
+        match word {
+            Cut::Auto => None,
+            Cut::Local => Some(mesh::CutMethod::Local),
+            Cut::Global => Some(mesh::CutMethod::Global),
+        }
+    }
+}
+
+mirror! { pipeline::Stitching =>
+    /// Which boundary edges are joined after a cut.
+    Stitch {
+        /// None.
+        None = "none",
+        /// Those that the cut has parted, along each boundary from where it turns back on itself. No vertex moves.
+        Pinch = "pinch",
+        /// All whose ends are close to each other.
+        Snap = "snap",
+    }
+}
+
+mirror! { mesh::Validity =>
+    /// When two boundary edges may be joined.
+    StitchValidity {
+        /// When the mesh is a manifold afterwards.
+        Exact = "exact",
+        /// When the published conditions hold as well.
+        Paper = "paper",
+    }
+}
+
+mirror! { repair::polygons::DegenerateFaces =>
+    /// What becomes of faces that pass a vertex more than once.
+    Degenerate {
+        /// The simple cycles that they are made of become faces of their own.
+        Split = "split",
+        /// They go.
+        Drop = "drop",
+    }
+}
+
 mirror! { winding::OpenShells =>
     /// How open shells are read where a mesh must be rebuilt.
     OpenShells {
@@ -278,6 +334,8 @@ mirror! { pipeline::Outcome =>
         Rebuilt = "rebuilt",
         /// Fewer triangles, as asked; the certificate says what holds.
         Simplified = "simplified",
+        /// Cut and stitched, as asked; the certificate says what holds.
+        CutStitched = "cut-stitched",
         /// Not valid; only on request.
         Partial = "partial",
         /// No result.
@@ -443,6 +501,10 @@ mod tests {
             FillHoles::WORDS,
             Nesting::WORDS,
             OpenShells::WORDS,
+            Cut::WORDS,
+            Stitch::WORDS,
+            StitchValidity::WORDS,
+            Degenerate::WORDS,
             Outcome::WORDS,
             Stage::WORDS,
             Severity::WORDS,

@@ -21,6 +21,7 @@ mod raw_files;
 mod solids;
 
 mod bad_input;
+mod cut_stitch;
 #[cfg(feature = "server")]
 mod fixtures;
 mod operations;

@@ -3,7 +3,10 @@
 use crate::random::Random;
 use crate::support::cases;
 use meshmend::budget::Budget;
-use meshmend::mesh::{cut_singular, stitch};
+use meshmend::mesh::{
+    AnyJoin, ChosenEdges, CutMethod, EdgeGroups, JoinRule, Marks, Stitched, Validity, cut as cut_at,
+    cut_singular, stitch,
+};
 use std::collections::{BTreeMap, BTreeSet};
 
 type Triangle = [u32; 3];
@@ -82,7 +85,7 @@ fn cut(triangles: &[Triangle], vertex_count: usize) -> (Vec<Triangle>, Vec<u32>)
 fn what_is_cut_is_a_manifold_of_the_same_triangles_and_components() {
     let mut random = Random::new(1);
     let mut singular = 0;
-    for case in 0..cases(5_000, 100_000) {
+    for case in 0..cases(20_000, 100_000) {
         let (before, vertex_count) = random_soup(&mut random);
         let (after, copies) = cut(&before, vertex_count);
         singular += usize::from(!is_manifold(&before));
@@ -134,19 +137,168 @@ fn pairs_of_copies(after: &[Triangle], original: impl Fn(u32) -> u32) -> Vec<(u3
     pairs
 }
 
+fn stitched(mesh: &mut [Triangle], vertex_count: usize, pairs: &[(u32, u32)]) -> Stitched {
+    stitch(mesh, vertex_count, pairs, Validity::Exact, &mut AnyJoin, &Budget::unlimited()).unwrap()
+}
+
+fn marks(triangles: &[Triangle], vertex_count: usize, chosen: &[[u32; 2]]) -> Marks {
+    let budget = Budget::unlimited();
+    let groups = EdgeGroups::build(triangles, vertex_count, &budget).unwrap();
+    Marks::find(triangles, vertex_count, &groups, &ChosenEdges::of(chosen.iter().copied()), &budget).unwrap()
+}
+
+fn cut_by(
+    method: CutMethod,
+    triangles: &[Triangle],
+    vertex_count: usize,
+    chosen: &[[u32; 2]],
+) -> (Vec<Triangle>, Vec<u32>) {
+    let mut after = triangles.to_vec();
+    let marks = marks(triangles, vertex_count, chosen);
+    let copies = cut_at(&mut after, vertex_count, &marks, method, &Budget::unlimited()).unwrap();
+    (after, copies)
+}
+
+/// A few edges by their ends, some of which the mesh has not.
+fn random_edges(random: &mut Random, vertex_count: usize) -> Vec<[u32; 2]> {
+    let ends = |random: &mut Random| std::array::from_fn(|_| random.below(vertex_count) as u32);
+    (0..random.below(6)).map(|_| ends(random)).filter(|[a, b]| a != b).collect()
+}
+
+#[test]
+fn the_local_and_the_global_cut_are_the_same_and_leave_a_manifold_whatever_is_chosen() {
+    let mut random = Random::new(4);
+    let mut with_chosen = 0;
+    for case in 0..cases(20_000, 100_000) {
+        let (before, vertex_count) = random_soup(&mut random);
+        let chosen = random_edges(&mut random, vertex_count);
+        let (global, copies) = cut_by(CutMethod::Global, &before, vertex_count, &chosen);
+        let local = cut_by(CutMethod::Local, &before, vertex_count, &chosen);
+        assert_eq!(local, (global.clone(), copies), "case {case}: {before:?} along {chosen:?}");
+        assert!(is_manifold(&global), "case {case}: {before:?} along {chosen:?} became {global:?}");
+        with_chosen += u64::from(marks(&before, vertex_count, &chosen).chosen_edges > 0);
+    }
+    assert!(with_chosen > 1_000, "only {with_chosen} soups had an edge that was chosen");
+}
+
+#[test]
+fn parts_after_a_cut_are_those_that_unmarked_edges_join() {
+    let mut random = Random::new(5);
+    for case in 0..cases(20_000, 100_000) {
+        let (before, vertex_count) = random_soup(&mut random);
+        let chosen = random_edges(&mut random, vertex_count);
+        let (after, _) = cut_by(CutMethod::Local, &before, vertex_count, &chosen);
+        // A chosen edge may come back where both its ends stay whole: adjacency is that of the marks, not of the result.
+        let marks = marks(&before, vertex_count, &chosen);
+        let mut part: Vec<usize> = (0..before.len()).collect();
+        for (g, &h) in marks.twins().iter().enumerate().filter(|&(_, &h)| h != u32::MAX) {
+            let (a, b) = (part[g / 3], part[h as usize / 3]);
+            part.iter_mut().filter(|p| **p == a.max(b)).for_each(|p| *p = a.min(b));
+        }
+        let joined: BTreeSet<usize> = part.into_iter().collect();
+        assert!(regular_components(&after) <= joined.len(), "case {case}: {before:?} along {chosen:?}");
+        if chosen.is_empty() {
+            assert_eq!(regular_components(&after), joined.len(), "case {case}: {before:?}");
+        }
+    }
+}
+
+#[test]
+fn without_the_isolated_singular_vertices_many_soups_stay_singular() {
+    let mut random = Random::new(6);
+    let (mut isolated, mut broken) = (0, 0);
+    for _ in 0..cases(20_000, 100_000) {
+        let (before, vertex_count) = random_soup(&mut random);
+        let marks = marks(&before, vertex_count, &[]);
+        let (mut after, copies) = cut_by(CutMethod::Local, &before, vertex_count, &[]);
+        isolated += usize::from(marks.isolated_vertices > 0);
+        // The ends of edges with three triangles or more, or with two in one direction.
+        let edges = directed(&before);
+        let count = |edge| edges.get(&edge).map_or(0, Vec::len);
+        let is_marked = |a, b| count((a, b)) > 1 || count((a, b)) + count((b, a)) > 2;
+        let ends: BTreeSet<u32> = edges
+            .keys()
+            .filter(|&&(a, b)| is_marked(a, b) || is_marked(b, a))
+            .flat_map(|&(a, b)| [a, b])
+            .collect();
+        for v in after.as_flattened_mut().iter_mut().filter(|v| **v as usize >= vertex_count) {
+            let old = copies[*v as usize - vertex_count];
+            *v = if ends.contains(&old) { *v } else { old };
+        }
+        broken += usize::from(!is_manifold(&after));
+    }
+    assert_eq!(broken, isolated);
+    assert!(broken > 1_000, "only {broken} soups tell the difference");
+}
+
+/// Copies of one vertex may become one.
+struct CopiesOnly<'a>(&'a dyn Fn(u32) -> u32);
+
+impl JoinRule for CopiesOnly<'_> {
+    fn may_merge(&self, kept: u32, gone: u32) -> bool {
+        (self.0)(kept) == (self.0)(gone)
+    }
+
+    fn may_change(&self, _before: Triangle, _after: Triangle) -> bool {
+        true
+    }
+
+    fn merged(&mut self, kept: u32, gone: u32) {
+        assert_eq!((self.0)(kept), (self.0)(gone));
+    }
+}
+
+#[test]
+fn every_edge_that_a_stitch_closes_is_recorded_once_and_the_paper_joins_no_more_than_the_exact_test() {
+    let mut random = Random::new(7);
+    let (mut implicit, mut stricter) = (0, 0);
+    for case in 0..cases(20_000, 100_000) {
+        let (before, vertex_count) = random_soup(&mut random);
+        let (mesh, copies) = cut(&before, vertex_count);
+        let original =
+            |v: u32| if (v as usize) < vertex_count { v } else { copies[v as usize - vertex_count] };
+        let pairs = pairs_of_copies(&mesh, original);
+        let boundary = |mesh: &[Triangle]| {
+            let edges = directed(mesh);
+            edges.keys().filter(|&&(a, b)| !edges.contains_key(&(b, a))).count()
+        };
+        let joined = [Validity::Exact, Validity::Paper].map(|validity| {
+            let mut after = mesh.clone();
+            let (count, budget) = (vertex_count + copies.len(), Budget::unlimited());
+            let mut rule = CopiesOnly(&original);
+            let done = stitch(&mut after, count, &pairs, validity, &mut rule, &budget).unwrap();
+            assert!(is_manifold(&after), "case {case} by {validity:?}: {before:?} became {after:?}");
+            let recorded: Vec<(u32, u32)> = [done.explicit, done.implicit.clone()].concat();
+            for &(g, h) in &recorded {
+                let ((a, b), other) = (ends(&after, g), ends(&after, h));
+                assert_eq!(other, (b, a), "case {case}: {g} and {h} of {after:?}");
+            }
+            let half_edges: BTreeSet<u32> = recorded.iter().flat_map(|&(g, h)| [g, h]).collect();
+            assert_eq!(half_edges.len(), 2 * recorded.len(), "case {case}: {recorded:?}");
+            assert_eq!(boundary(&after) + 2 * recorded.len(), boundary(&mesh), "case {case}: {recorded:?}");
+            implicit += done.implicit.len();
+            recorded.len()
+        });
+        stricter += usize::from(joined[1] < joined[0]);
+        assert!(joined[1] <= joined[0], "case {case}: {joined:?} of {mesh:?}");
+    }
+    assert!(implicit > 200, "only {implicit} implicit stitches");
+    assert_eq!(stricter, 0, "an edge of two copies has no end that is a copy of the other end");
+}
+
 #[test]
 fn stitching_keeps_a_manifold_and_leaves_no_pair_that_could_be_joined() {
     let mut random = Random::new(3);
     let (mut joined, mut refused) = (0, 0);
-    for case in 0..cases(5_000, 100_000) {
+    for case in 0..cases(20_000, 100_000) {
         let (before, vertex_count) = random_soup(&mut random);
         let (mut mesh, copies) = cut(&before, vertex_count);
         let original =
             |v: u32| if (v as usize) < vertex_count { v } else { copies[v as usize - vertex_count] };
         let pairs = pairs_of_copies(&mesh, original);
-        let done = stitch(&mut mesh, vertex_count + copies.len(), &pairs, &Budget::unlimited()).unwrap();
+        let done = stitched(&mut mesh, vertex_count + copies.len(), &pairs);
         assert!(is_manifold(&mesh), "case {case}: {before:?} became {mesh:?}");
-        joined += done.explicit;
+        joined += done.explicit.len();
         // Every pair that is left was rightly refused: joining it would break the manifold or double a triangle.
         for (g, h) in pairs_of_copies(&mesh, original) {
             let ((a, b), (c, d)) = (ends(&mesh, g), ends(&mesh, h));

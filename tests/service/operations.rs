@@ -183,3 +183,24 @@ fn both_parts_of_an_answer_are_whole() {
     assert_eq!(serde_json::from_str::<Value>(&file(0)).unwrap()["verdict"]["outcome"], "identical");
     assert_eq!(file(1), SOLID);
 }
+
+#[test]
+fn cutting_and_stitching_parts_what_only_touches_and_says_what_ran() {
+    // Two tetrahedra that share one vertex.
+    let touching = "OFF\n7 8 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n-1 0 0\n0 -1 0\n0 0 -1\n\
+        3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n3 0 4 5\n3 0 6 4\n3 0 5 6\n3 4 6 5\n";
+    let server = Server::start();
+    let response = server.post("/v1/cut-stitch?cut=local&stitch=pinch").body(touching).send().unwrap();
+    assert_eq!((response.status().as_u16(), header(&response, "meshmend-outcome")), (200, "cut-stitched"));
+    assert!(header(&response, "content-disposition").contains("-cut-stitched.off"));
+    let report = header(&response, "link").strip_prefix('<').unwrap().split('>').next().unwrap().to_owned();
+    assert!(response.text().unwrap().starts_with("OFF\n8 8 0\n"));
+    let report: Value = server.get(&report).send().unwrap().json().unwrap();
+    let actions = report["actions"].as_array().unwrap();
+    let cut = actions.iter().find(|action| action["step"] == "cut").unwrap();
+    assert!(cut["reason"].as_str().unwrap().starts_with("cut locally, as asked: 1 of 7 vertices"));
+    assert_eq!(report["certificate"]["printable"], false, "a reader that welds joins the two again");
+    let wrong = server.post("/v1/cut-stitch?cut_edges=[[1,1]]").body(touching).send().unwrap();
+    let (status, code, body) = problem(wrong);
+    assert_eq!((status, &code[..], &body["parameter"]), (400, "invalid-parameter", &"cut_edges".into()));
+}

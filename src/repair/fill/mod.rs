@@ -6,18 +6,16 @@
 
 mod accept;
 mod ears;
-mod loops;
 mod minimal;
 mod planar;
 mod regions;
 
 use self::accept::{Proposal, Surface};
-use self::loops::Boundary;
 use self::regions::{Region, regions};
 use super::{Changes, Draft, NEW};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec3, triangle_area};
-use crate::mesh::edge_of;
+use crate::mesh::{Boundary, edge_of};
 use crate::spatial::coincident_f64;
 use std::ops::Range;
 

@@ -1,9 +1,9 @@
 //! What a patch has to cover: a boundary loop, or flat loops that lie in each other like the rims of a pipe's end.
 
-use super::loops::BoundaryLoop;
 use super::planar;
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec2, DVec3, Sign, orient2d};
+use crate::mesh::BoundaryLoop;
 
 /// How far from its mean plane a loop may be to count as flat, as a share of its size: some float32 steps of a
 /// coordinate ten times that size.

@@ -9,8 +9,8 @@ mod tests;
 use super::request::InputRef;
 use super::target::TargetSpec;
 use super::words::{
-    Criterion, Effort, FillHoles, Format, Mode, Nesting, OpenShells, Placement, Reader, Require, Units,
-    VertexColors,
+    Criterion, Cut, Degenerate, Effort, FillHoles, Format, Mode, Nesting, OpenShells, Placement, Reader,
+    Require, Stitch, StitchValidity, Units, VertexColors,
 };
 use crate::formats::{ReadLimits, ReadOptions};
 use crate::{pipeline, simplify};
@@ -65,6 +65,18 @@ pub struct Options {
     pub placement: Option<Placement>,
     /// What colours the vertices of a simplified mesh have.
     pub vertex_colors: Option<VertexColors>,
+    /// How a cut is made.
+    pub cut: Option<Cut>,
+    /// Which boundary edges are joined after a cut.
+    pub stitch: Option<Stitch>,
+    /// Largest distance of vertices that a stitch joins, in millimetres.
+    pub snap_epsilon_mm: Option<f64>,
+    /// When two boundary edges may be joined.
+    pub stitch_validity: Option<StitchValidity>,
+    /// What becomes of faces that pass a vertex more than once.
+    pub degenerate: Option<Degenerate>,
+    /// Edges to be cut besides those that must be.
+    pub cut_edges: Option<Vec<[u32; 2]>>,
     /// Witnesses to keep of each defect.
     pub samples: Option<u32>,
     /// Seconds for which the result is kept.
@@ -147,6 +159,14 @@ impl Options {
                 criterion: self.criterion.unwrap_or(Criterion::Quadric).into(),
                 placement: self.placement.unwrap_or(Placement::Optimal).into(),
                 vertex_colors: self.vertex_colors.map(Into::into).unwrap_or_default(),
+            },
+            cut_stitch: pipeline::CutStitchChoices {
+                method: self.cut.and_then(Into::into),
+                stitching: self.stitch.map(Into::into).unwrap_or_default(),
+                epsilon: self.snap_epsilon_mm.map(|length| length / millimetres),
+                validity: self.stitch_validity.map(Into::into).unwrap_or_default(),
+                degenerate: self.degenerate.map(Into::into).unwrap_or_default(),
+                chosen: self.cut_edges.clone().unwrap_or_default(),
             },
             samples: self.samples.map(|n| n as usize),
             material: None,

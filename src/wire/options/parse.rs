@@ -4,10 +4,11 @@ use serde_json::{Map, Value};
 
 use super::table::{OptionKind, OptionSpec, spec_of};
 use super::{OptionError, Options};
+use crate::wire::edges::edges_from_json;
 use crate::wire::target;
 use crate::wire::words::{
-    Criterion, Effort, FillHoles, Format, Mode, Nesting, OpenShells, Placement, Reader, Require, Units,
-    VertexColors,
+    Criterion, Cut, Degenerate, Effort, FillHoles, Format, Mode, Nesting, OpenShells, Placement, Reader,
+    Require, Stitch, StitchValidity, Units, VertexColors,
 };
 
 impl Options {
@@ -58,6 +59,7 @@ impl Options {
             }
             OptionKind::Flag => self.set_flag(spec, value),
             OptionKind::Targets => put(&mut self.targets, target::targets_from_json(value)),
+            OptionKind::Edges => put(&mut self.cut_edges, edges_from_json(value)),
             OptionKind::Input => match serde_json::from_str(value) {
                 Ok(input) => put(&mut self.input, Some(input)),
                 Err(_) => Taken::Invalid,
@@ -79,9 +81,8 @@ impl Options {
             }
             (OptionKind::Number { .. }, Value::Number(number)) => number.to_string(),
             (OptionKind::Flag, Value::Bool(flag)) => flag.to_string(),
-            (OptionKind::Input, Value::Object(_)) | (OptionKind::Targets, Value::Array(_)) => {
-                value.to_string()
-            }
+            (OptionKind::Input, Value::Object(_))
+            | (OptionKind::Targets | OptionKind::Edges, Value::Array(_)) => value.to_string(),
             _ => return Err(OptionError::Invalid { spec, value: value.to_string() }),
         };
         self.set(name, &text)
@@ -115,6 +116,12 @@ impl Options {
             ("criterion", put_if_given(&mut self.criterion, other.criterion)),
             ("placement", put_if_given(&mut self.placement, other.placement)),
             ("vertex_colors", put_if_given(&mut self.vertex_colors, other.vertex_colors)),
+            ("cut", put_if_given(&mut self.cut, other.cut)),
+            ("stitch", put_if_given(&mut self.stitch, other.stitch)),
+            ("snap_epsilon_mm", put_if_given(&mut self.snap_epsilon_mm, other.snap_epsilon_mm)),
+            ("stitch_validity", put_if_given(&mut self.stitch_validity, other.stitch_validity)),
+            ("degenerate", put_if_given(&mut self.degenerate, other.degenerate)),
+            ("cut_edges", put_if_given(&mut self.cut_edges, other.cut_edges)),
             ("samples", put_if_given(&mut self.samples, other.samples)),
             ("result_ttl", put_if_given(&mut self.result_ttl, other.result_ttl)),
             ("input", put_if_given(&mut self.input, other.input)),
@@ -140,6 +147,10 @@ impl Options {
             "criterion" => put(&mut self.criterion, Criterion::from_word(value)),
             "placement" => put(&mut self.placement, Placement::from_word(value)),
             "vertex_colors" => put(&mut self.vertex_colors, VertexColors::from_word(value)),
+            "cut" => put(&mut self.cut, Cut::from_word(value)),
+            "stitch" => put(&mut self.stitch, Stitch::from_word(value)),
+            "stitch_validity" => put(&mut self.stitch_validity, StitchValidity::from_word(value)),
+            "degenerate" => put(&mut self.degenerate, Degenerate::from_word(value)),
             _ => Taken::Invalid,
         }
     }
@@ -168,6 +179,7 @@ impl Options {
             "max_deviation_mm" => put(&mut self.max_deviation_mm, Some(value)),
             "max_volume_change" => put(&mut self.max_volume_change, Some(value)),
             "error_mm" => put(&mut self.error_mm, Some(value)),
+            "snap_epsilon_mm" => put(&mut self.snap_epsilon_mm, Some(value)),
             _ => Taken::Invalid,
         }
     }

@@ -2,8 +2,8 @@
 
 use super::OptionError;
 use crate::wire::words::{
-    Criterion, Effort, FillHoles, Format, Mode, Nesting, OpenShells, Placement, Reader, Require, Units,
-    VertexColors,
+    Criterion, Cut, Degenerate, Effort, FillHoles, Format, Mode, Nesting, OpenShells, Placement, Reader,
+    Require, Stitch, StitchValidity, Units, VertexColors,
 };
 
 /// What values an option takes.
@@ -29,6 +29,8 @@ pub enum OptionKind {
     Flag,
     /// A list of targets of a simplification.
     Targets,
+    /// A list of edges by the numbers of their vertices.
+    Edges,
     /// An earlier job: `{"job":"ID"}`.
     Input,
 }
@@ -155,6 +157,36 @@ pub const SPECS: &[OptionSpec] = &[
         "Colours of the vertices of a simplified mesh; priority needs format or output_format off or ply. Default: kept.",
     ),
     option(
+        "cut",
+        OptionKind::Word(Cut::WORDS),
+        "How cut-stitch makes its cut; the result is the same. Default: auto.",
+    ),
+    option(
+        "stitch",
+        OptionKind::Word(Stitch::WORDS),
+        "Which boundary edges cut-stitch joins after the cut. Default: pinch.",
+    ),
+    option(
+        "snap_epsilon_mm",
+        OptionKind::Number { min: 0.0, max: 1e30 },
+        "How far apart vertices may be that stitch=snap joins, in millimetres, but never more than half the shortest boundary edge. Default: 1e-5 of the diagonal.",
+    ),
+    option(
+        "stitch_validity",
+        OptionKind::Word(StitchValidity::WORDS),
+        "When cut-stitch may join two boundary edges. Default: exact.",
+    ),
+    option(
+        "degenerate",
+        OptionKind::Word(Degenerate::WORDS),
+        "What cut-stitch does with faces that pass a vertex more than once. Default: split.",
+    ),
+    option(
+        "cut_edges",
+        OptionKind::Edges,
+        "Edges that cut-stitch cuts besides those that must be, by the numbers of their vertices from 0: [[0,1],[1,2]].",
+    ),
+    option(
         "samples",
         OptionKind::Integer { min: 0, max: 10_000 },
         "Witnesses that the report keeps of each defect. Default: 16.",
@@ -215,6 +247,7 @@ impl OptionSpec {
             OptionKind::Integer { min, max } => format!("a whole number from {min} to {max}"),
             OptionKind::Number { min, max } => format!("a number from {min} to {max:e}"),
             OptionKind::Flag => "true or false".to_owned(),
+            OptionKind::Edges => "1 to 100000 pairs of different vertex numbers in a list".to_owned(),
             OptionKind::Targets => {
                 "1 to 16 of {\"faces\":N}, {\"ratio\":X} and {\"error_mm\":X} in a list".to_owned()
             }

@@ -1,18 +1,19 @@
 //! Boundary loops: closed walks along edges of one triangle that pass each place once.
 
+use super::{EdgeGroups, edge_of};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
-use crate::mesh::{EdgeGroups, edge_of};
 
 /// A boundary loop as its half-edges, in the direction of the patch that would close it. The half-edges themselves run
 /// against that direction: corner `i` of the loop is where half-edge `i` goes to.
-pub(super) type BoundaryLoop = Vec<u32>;
+pub type BoundaryLoop = Vec<u32>;
 
 /// The boundary of a mesh.
-#[derive(Debug, Default, PartialEq)]
-pub(super) struct Boundary {
-    pub(super) loops: Vec<BoundaryLoop>,
+#[derive(Debug, Default, PartialEq, Eq)]
+pub struct Boundary {
+    /// Each with at least two edges.
+    pub loops: Vec<BoundaryLoop>,
     /// Boundary edges that are in no loop, because the walk ends where directions or more than two triangles meet.
-    pub(super) stray_edges: u64,
+    pub stray_edges: u64,
 }
 
 /// No step on the walk.
@@ -21,7 +22,10 @@ const NOWHERE: u32 = u32::MAX;
 impl Boundary {
     /// Traces all boundary edges of `triangles`. Where several loops meet in a vertex, the walk is parted there, so that
     /// each passes it once.
-    pub(super) fn trace(
+    ///
+    /// # Errors
+    /// When the budget stops the run.
+    pub fn trace(
         triangles: &[[u32; 3]],
         vertex_count: usize,
         groups: &EdgeGroups,

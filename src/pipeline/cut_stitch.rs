@@ -1,0 +1,101 @@
+//! Cutting and stitching: a manifold with boundary from any mesh, written and judged as it is.
+
+use super::input::Input;
+use super::output::{Candidate, NoCandidate};
+use super::plan::{Attempt, Step};
+use super::{Answer, Failure, Operation, Options, Outcome, Refusal, Report, Require};
+use crate::budget::{Budget, Stage};
+use crate::certificate::Depth;
+use crate::mesh::{ChosenEdges, CutMethod, Validity};
+use crate::repair::cut::CutOptions;
+use crate::repair::duplicates::OppositePairs;
+use crate::repair::polygons::DegenerateFaces;
+use crate::repair::snap::SnapOptions;
+
+/// How a mesh is cut and stitched.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CutStitchChoices {
+    /// How the cut is made; `None`: whichever costs less. The result is the same.
+    pub method: Option<CutMethod>,
+    /// Which boundary edges are joined.
+    pub stitching: Stitching,
+    /// Largest distance of vertices that snapping joins, in the unit of the file; `None`: 1e-5 of the diagonal.
+    pub epsilon: Option<f64>,
+    /// When two edges may be joined.
+    pub validity: Validity,
+    /// What becomes of faces that pass a vertex more than once.
+    pub degenerate: DegenerateFaces,
+    /// Edges to be cut besides those that must be, by the numbers of their vertices in the file. They stay cut.
+    pub chosen: Vec<[u32; 2]>,
+}
+
+/// Which boundary edges are joined after a cut.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Stitching {
+    /// None.
+    None,
+    /// Those that the cut has parted, along each boundary from where it turns back on itself.
+    #[default]
+    Pinch,
+    /// All whose ends are close to each other.
+    Snap,
+}
+
+impl CutStitchChoices {
+    /// The steps, in their order.
+    fn steps(&self) -> Vec<Step> {
+        let chosen = ChosenEdges::of(self.chosen.iter().copied());
+        let before = [
+            Step::SplitPolygons(self.degenerate),
+            Step::Weld,
+            Step::DropDegenerate,
+            Step::DropDuplicates(OppositePairs::KeepFirst),
+        ];
+        let cut = Step::Cut(CutOptions { method: self.method, chosen: chosen.clone() });
+        let snap = SnapOptions { epsilon: self.epsilon, validity: self.validity, chosen: chosen.clone() };
+        let (insert, join) = match self.stitching {
+            Stitching::None => (None, None),
+            Stitching::Pinch => (None, Some(Step::Pinch(chosen, self.validity))),
+            Stitching::Snap => (Some(Step::SplitTVertices), Some(Step::Snap(snap))),
+        };
+        before.into_iter().chain(insert).chain([Step::Orient, cut]).chain(join).collect()
+    }
+}
+
+/// Cuts and stitches `input`; one that this does not change comes back as it is.
+pub(super) fn cut_stitch(input: &Input, options: &Options, budget: &Budget) -> Result<Answer, Failure> {
+    let report = input.report(Operation::CutStitch, budget)?;
+    let before = report.before.as_ref();
+    let mut attempt = Attempt::start(&input.soup, before);
+    let _charge = budget.charge(2 * attempt.draft.bytes())?;
+    let steps = options.cut_stitch.steps();
+    budget.stage(Stage::Repair, || attempt.run(&steps, &input.soup, before, budget))?;
+    let Attempt { draft, actions } = attempt;
+    let has_changed = actions.iter().any(|action| action.changes.iter().any(|&(_, count)| count > 0));
+    let report = Report { actions, ..report };
+    let encoding = input.output_encoding(options);
+    let is_refused = |is_printable: bool| options.require == Some(Require::Printable) && !is_printable;
+    if !has_changed && encoding == input.facts.encoding {
+        let certificate = &input.examination.certificate;
+        if is_refused(certificate.is_printable()) {
+            let witness = certificate.witnesses.first().cloned();
+            return Ok(report.refused(Refusal::NotRepairable { witness }));
+        }
+        let outcome = if certificate.is_printable() { Outcome::Identical } else { Outcome::CutStitched };
+        return Ok(input.returned_as_it_is(report, outcome));
+    }
+    if draft.triangles.is_empty() {
+        return Ok(report.refused(Refusal::NothingToRepair));
+    }
+    let depth = Depth::Count { samples: input.samples };
+    let candidate = match Candidate::write(draft.to_soup(&input.soup), encoding, depth, budget) {
+        Ok(candidate) => candidate,
+        Err(NoCandidate::Refused(refusal)) => return Ok(report.refused(refusal)),
+        Err(NoCandidate::Failed(failure)) => return Err(failure),
+    };
+    if is_refused(candidate.certificate().is_printable()) {
+        let witness = candidate.certificate().witnesses.first().cloned();
+        return Ok(report.refused(Refusal::NotRepairable { witness }));
+    }
+    Ok(candidate.returned(input, &draft.triangle_origin, report, Outcome::CutStitched, budget)?)
+}

@@ -1,0 +1,176 @@
+//! Splits polygons that pass a vertex more than once into simple ones.
+//!
+//! The first step of Guéziec, Taubin, Lazarus and Horn, "Cutting and stitching" (2001), who drop such faces; splitting
+//! keeps the surface.
+
+use super::{Changes, Draft};
+use crate::budget::{Budget, Stopped};
+use crate::formats::split_polygon;
+use crate::mesh::Soup;
+use crate::spatial::coincident_f64;
+
+/// What becomes of a face that passes a vertex more than once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum DegenerateFaces {
+    /// The simple cycles that it is made of become faces of their own; what has fewer than three corners goes.
+    #[default]
+    Split,
+    /// The whole face goes.
+    Drop,
+}
+
+/// Replaces the triangles of each polygon of `soup` that has two corners at one position. The draft must be as it was
+/// taken from `soup`.
+///
+/// ```text
+///      b---c   f                  b---c   a'--f
+///       \ /   / \      gives       \ /     \ / \      a b c a f e is passed through a twice
+///        a---e---f                  a       e---
+/// ```
+///
+/// # Errors
+/// When the budget stops the run.
+pub fn split_polygons(
+    draft: &mut Draft,
+    soup: &Soup,
+    how: DegenerateFaces,
+    budget: &Budget,
+) -> Result<Changes, Stopped> {
+    let polygons = &soup.polygons;
+    if polygons.faces.is_empty() {
+        return Ok(Changes::counted([("polygons_split", 0), ("polygons_dropped", 0)]));
+    }
+    let places = coincident_f64(&soup.positions, budget)?.group;
+    let mut is_kept = vec![true; draft.triangles.len()];
+    let mut parts = Vec::new();
+    let (mut split, mut dropped, mut faces) = (0, 0, Vec::new());
+    for (i, range) in polygons.starts.windows(2).enumerate() {
+        let corners = &polygons.corners[range[0] as usize..range[1] as usize];
+        budget.spend(corners.len() as u64 / 8 + 1)?;
+        if !has_repeat(corners, &places) {
+            continue;
+        }
+        let first = polygons.first_triangles[i];
+        is_kept[first as usize..first as usize + corners.len() - 2].fill(false);
+        faces.push(polygons.faces[i]);
+        let before = parts.len();
+        if how == DegenerateFaces::Split {
+            let mut triangles = Vec::new();
+            for cycle in simple_cycles(corners, &places) {
+                split_polygon(&cycle, &soup.positions, &mut triangles, budget)?;
+            }
+            parts.extend(triangles.into_iter().map(|t| (t, first)));
+        }
+        if parts.len() > before {
+            split += 1;
+        } else {
+            dropped += 1;
+        }
+    }
+    if !faces.is_empty() {
+        draft.retain_triangles(&is_kept);
+        append(draft, &parts);
+    }
+    let changes = Changes::counted([("polygons_split", split), ("polygons_dropped", dropped)]);
+    Ok(Changes { reason: reason(&faces), ..changes })
+}
+
+/// Adds triangles over vertices of the soup, each with the triangle of the soup in whose place it is.
+fn append(draft: &mut Draft, parts: &[([u32; 3], u32)]) {
+    for &(corners, origin) in parts {
+        // Ascending, as the draft was taken from the soup and vertices keep their order.
+        draft.triangles.push(corners.map(|v| draft.vertex_origin.partition_point(|&o| o < v) as u32));
+        draft.triangle_origin.push(origin);
+    }
+    draft.drop_unused_vertices();
+}
+
+fn has_repeat(corners: &[u32], places: &[u32]) -> bool {
+    let mut at: Vec<u32> = corners.iter().map(|&v| places[v as usize]).collect();
+    at.sort_unstable();
+    at.windows(2).any(|pair| pair[0] == pair[1])
+}
+
+/// The cycles of a closed walk that pass each place once, with three corners or more, innermost first.
+fn simple_cycles(corners: &[u32], places: &[u32]) -> Vec<Vec<u32>> {
+    let mut cycles = Vec::new();
+    let mut path: Vec<u32> = Vec::new();
+    for &v in corners {
+        let here = places[v as usize];
+        if let Some(step) = path.iter().position(|&u| places[u as usize] == here) {
+            cycles.push(path.split_off(step));
+        }
+        path.push(v);
+    }
+    cycles.push(path);
+    cycles.retain(|cycle| cycle.len() >= 3);
+    cycles
+}
+
+/// Faces that a reason names.
+const FACES_NAMED_MAX: usize = 16;
+
+fn reason(faces: &[u32]) -> String {
+    if faces.is_empty() {
+        return String::new();
+    }
+    let named: Vec<String> = faces.iter().take(FACES_NAMED_MAX).map(u32::to_string).collect();
+    let more = if faces.len() > FACES_NAMED_MAX { " and others" } else { "" };
+    format!("faces {}{more} pass a vertex more than once", named.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::{Encoding, ReadOptions, read};
+
+    fn soup(faces: &str) -> Soup {
+        let points = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 -2 0\nv -2 -2 0\nv 0 0 0\n";
+        let text = format!("{points}{faces}");
+        read(text.as_bytes(), Encoding::Obj, &ReadOptions::default(), &Budget::unlimited()).unwrap()
+    }
+
+    fn split(soup: &Soup, how: DegenerateFaces) -> (Draft, Changes) {
+        let (mut draft, _) = Draft::from_soup(soup);
+        let changes = split_polygons(&mut draft, soup, how, &Budget::unlimited()).unwrap();
+        assert!(draft.check().is_empty());
+        (draft, changes)
+    }
+
+    #[test]
+    fn a_bow_tie_becomes_its_two_triangles() {
+        for faces in ["f 1 2 3 1 4 5\n", "f 1 2 3 6 4 5\n"] {
+            let soup = soup(faces);
+            let (draft, changes) = split(&soup, DegenerateFaces::Split);
+            assert_eq!(changes.count("polygons_split"), 1);
+            assert_eq!(changes.reason, "faces 0 pass a vertex more than once");
+            let area = |t: usize| {
+                let [a, b, c] = draft.corners(t);
+                (b - a).cross(c - a).length() / 2.0
+            };
+            assert_eq!((draft.triangles.len(), area(0), area(1)), (2, 2.0, 2.0), "{faces}");
+            assert_eq!(draft.triangle_origin, [0, 0]);
+        }
+    }
+
+    #[test]
+    fn dropping_takes_the_whole_face_and_leaves_others() {
+        let soup = soup("f 1 2 3 1 4 5\nf 1 2 3\n");
+        let (draft, changes) = split(&soup, DegenerateFaces::Drop);
+        assert_eq!((changes.count("polygons_dropped"), draft.triangle_origin), (1, vec![4]));
+    }
+
+    #[test]
+    fn a_walk_there_and_back_leaves_nothing() {
+        let (draft, changes) = split(&soup("f 1 2 3 2\nf 1 2 3\n"), DegenerateFaces::Split);
+        assert_eq!((changes.count("polygons_split"), changes.count("polygons_dropped")), (0, 1));
+        assert_eq!(draft.triangles.len(), 1);
+    }
+
+    #[test]
+    fn a_simple_polygon_stays_as_the_reader_split_it() {
+        let soup = soup("f 1 2 3 5\n");
+        let (draft, changes) = split(&soup, DegenerateFaces::Split);
+        assert_eq!((draft, changes.reason), (Draft::from_soup(&soup).0, String::new()));
+    }
+}

@@ -1,0 +1,269 @@
+//! Cutting and stitching from bytes to bytes: the textbook cases, and what is told about them.
+
+use meshmend::budget::Budget;
+use meshmend::formats::{Encoding, Format, ReadOptions, read};
+use meshmend::mesh::{CutMethod, EdgeGroups, Soup, singular_vertices, twins};
+use meshmend::pipeline::{
+    Answer, CutStitchChoices, Operation, Options, Outcome, Refusal, Require, Stitching, run,
+};
+use std::fmt::Write as _;
+
+type Points = Vec<[f64; 3]>;
+type Triangles = Vec<[u32; 3]>;
+
+fn obj((points, triangles): &(Points, Triangles)) -> String {
+    let mut text = String::new();
+    for [x, y, z] in points {
+        writeln!(text, "v {x} {y} {z}").unwrap();
+    }
+    for [a, b, c] in triangles {
+        writeln!(text, "f {} {} {}", a + 1, b + 1, c + 1).unwrap();
+    }
+    text
+}
+
+/// The unit cube at these coordinates: vertex `4 z + 2 y + x`.
+fn cube(at: [f64; 3]) -> (Points, Triangles) {
+    let corner = |i: u32| [0, 1, 2].map(|k| at[k] + f64::from(i >> k & 1));
+    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles = quads.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    ((0..8).map(corner).collect(), triangles)
+}
+
+fn both(first: (Points, Triangles), second: (Points, Triangles)) -> (Points, Triangles) {
+    let shift = first.0.len() as u32;
+    let moved = second.1.into_iter().map(|t| t.map(|v| v + shift));
+    ([first.0, second.0].concat(), first.1.into_iter().chain(moved).collect())
+}
+
+/// Half-planes that meet in the z axis, each of one quad.
+fn book(pages: u32) -> (Points, Triangles) {
+    let leaf = |i: u32| {
+        let angle = f64::from(i) * std::f64::consts::TAU / f64::from(pages);
+        let (y, x) = angle.sin_cos();
+        [[x, y, 0.0], [x, y, 1.0]]
+    };
+    let points = [[[0.0; 3], [0.0, 0.0, 1.0]]].into_iter().chain((0..pages).map(leaf)).flatten().collect();
+    let quad = |i: u32| [[0, 2 * i + 2, 2 * i + 3], [0, 2 * i + 3, 1]];
+    (points, (0..pages).flat_map(quad).collect())
+}
+
+/// Tetrahedra that share their apex and nothing else.
+fn cones(count: u32) -> (Points, Triangles) {
+    let mut mesh = (vec![[0.0; 3]], Vec::new());
+    for i in 0..count {
+        let (z, first) = (f64::from(i + 1), mesh.0.len() as u32);
+        mesh.0.extend([[1.0, z, 0.0], [1.0, z, 0.4], [1.3, z, 0.2]]);
+        let [a, b, c] = [first, first + 1, first + 2];
+        mesh.1.extend([[0, b, a], [0, c, b], [0, a, c], [a, b, c]]);
+    }
+    mesh
+}
+
+fn cut_stitch(bytes: &[u8], choices: CutStitchChoices) -> Answer {
+    let options = Options { cut_stitch: choices, ..Options::default() };
+    run(Operation::CutStitch, bytes, &options, &Budget::unlimited()).unwrap()
+}
+
+fn stitching(stitching: Stitching) -> CutStitchChoices {
+    CutStitchChoices { stitching, ..CutStitchChoices::default() }
+}
+
+fn count(answer: &Answer, step: &str, name: &str) -> u64 {
+    let action = answer.report.actions.iter().find(|action| action.step == step).unwrap();
+    action.changes.iter().find(|(n, _)| *n == name).unwrap().1
+}
+
+/// The result as its indices say, without welding.
+fn result(answer: &Answer) -> Soup {
+    let bytes = answer.output.as_ref().unwrap().bytes.as_ref().unwrap();
+    read(bytes, Encoding::Obj, &ReadOptions::default(), &Budget::unlimited()).unwrap()
+}
+
+fn assert_manifold(soup: &Soup) {
+    let budget = Budget::unlimited();
+    let groups = EdgeGroups::build(&soup.triangles, soup.positions.len(), &budget).unwrap();
+    assert!(groups.iter().all(|group| group.len() <= 2));
+    let twins = twins(&groups, soup.triangles.len(), &budget).unwrap();
+    assert_eq!(singular_vertices(&soup.triangles, soup.positions.len(), &twins, &budget).unwrap(), [0u32; 0]);
+}
+
+#[test]
+fn two_cubes_that_share_an_edge_are_parted_and_the_certificate_says_what_a_welding_reader_sees() {
+    let mesh = both(cube([0.0; 3]), cube([1.0, 1.0, 0.0]));
+    let answer = cut_stitch(obj(&mesh).as_bytes(), CutStitchChoices::default());
+    assert_eq!(answer.report.outcome, Some(Outcome::CutStitched));
+    assert_eq!((count(&answer, "cut", "singular_edges"), count(&answer, "cut", "vertices_copied")), (1, 2));
+    let soup = result(&answer);
+    assert_eq!((soup.positions.len(), soup.triangles.len()), (16, 24));
+    assert_manifold(&soup);
+    assert!(
+        !answer.report.certificate.unwrap().is_printable(),
+        "its two copies of the edge are at one place"
+    );
+}
+
+#[test]
+fn two_cubes_that_share_a_vertex_are_parted_there() {
+    let mesh = both(cube([0.0; 3]), cube([1.0; 3]));
+    let answer = cut_stitch(obj(&mesh).as_bytes(), CutStitchChoices::default());
+    assert_eq!(count(&answer, "cut", "singular_edges"), 0);
+    assert_eq!(count(&answer, "cut", "isolated_singular_vertices"), 1);
+    assert_eq!(result(&answer).positions.len(), 16);
+}
+
+#[test]
+fn a_book_falls_into_its_pages_and_snapping_binds_pairs_of_them() {
+    for pages in [3, 4, 5] {
+        let bytes = obj(&book(pages));
+        let cut = cut_stitch(bytes.as_bytes(), stitching(Stitching::None));
+        assert_eq!(result(&cut).positions.len() as u32, 4 * pages);
+        let snapped = cut_stitch(bytes.as_bytes(), stitching(Stitching::Snap));
+        assert_manifold(&result(&snapped));
+        // All pages run out from the spine the same way, so no two of them run along it in opposite directions.
+        assert_eq!(count(&snapped, "snap", "edges_joined"), 0);
+        let mut turned = book(pages);
+        for t in &mut turned.1[..2] {
+            t.swap(1, 2);
+        }
+        let snapped = cut_stitch(obj(&turned).as_bytes(), stitching(Stitching::Snap));
+        assert_eq!(count(&snapped, "snap", "edges_joined"), 1, "{pages} pages, one of them turned");
+        assert_eq!(result(&snapped).positions.len() as u32, 4 * pages - 2);
+        assert_manifold(&result(&snapped));
+    }
+}
+
+#[test]
+fn a_fan_of_cones_gets_an_apex_each() {
+    let answer = cut_stitch(obj(&cones(6)).as_bytes(), CutStitchChoices::default());
+    assert_eq!(count(&answer, "cut", "vertices_copied"), 5);
+    assert_manifold(&result(&answer));
+}
+
+#[test]
+fn a_moebius_band_is_cut_across_once_and_what_hangs_on_its_rim_comes_off() {
+    // Ten vertices around in two rows; the seam joins the rows crosswise. Two triangles hang on one edge of the rim.
+    let mut points: Points = Vec::new();
+    for i in 0..10u32 {
+        let turn = f64::from(i) * std::f64::consts::TAU / 10.0;
+        for side in [-0.3, 0.3] {
+            let (up, out) = (turn / 2.0).sin_cos();
+            let r = 1.0 + side * out;
+            points.push([r * turn.cos(), r * turn.sin(), side * up]);
+        }
+    }
+    points.extend([[3.0, 0.0, 0.5], [3.0, 1.0, 0.0]]);
+    let v = |i: u32, side: u32| if i == 10 { 1 - side } else { 2 * i + side };
+    let mut triangles: Triangles = (0..10)
+        .flat_map(|i| [[v(i, 0), v(i + 1, 0), v(i + 1, 1)], [v(i, 0), v(i + 1, 1), v(i, 1)]])
+        .collect();
+    triangles.extend([[v(2, 0), v(3, 0), 20], [v(3, 0), v(2, 0), 21]]);
+    let answer = cut_stitch(obj(&(points, triangles)).as_bytes(), stitching(Stitching::None));
+    assert_eq!(count(&answer, "cut", "edges_in_conflict"), 1);
+    assert_eq!(count(&answer, "cut", "singular_edges"), 1);
+    let soup = result(&answer);
+    assert_manifold(&soup);
+    let groups = EdgeGroups::build(&soup.triangles, soup.positions.len(), &Budget::unlimited()).unwrap();
+    let is_coherent = |group: &[u32]| {
+        let ends = |h: u32| meshmend::mesh::edge_of(&soup.triangles, h);
+        group.len() == 1 || ends(group[0])[0] == ends(group[1])[1]
+    };
+    assert!(groups.iter().all(is_coherent));
+}
+
+#[test]
+fn a_valid_solid_comes_back_as_its_bytes_and_an_open_one_too() {
+    let solid = obj(&cube([0.0; 3]));
+    let mut open = cube([0.0; 3]);
+    open.1.truncate(10);
+    for (text, outcome) in [(solid, Outcome::Identical), (obj(&open), Outcome::CutStitched)] {
+        for stitching in [Stitching::None, Stitching::Pinch, Stitching::Snap] {
+            let choices = CutStitchChoices { stitching, ..CutStitchChoices::default() };
+            let answer = cut_stitch(text.as_bytes(), choices);
+            assert_eq!((answer.report.outcome, answer.output.unwrap().bytes), (Some(outcome), None));
+        }
+    }
+}
+
+#[test]
+fn the_local_and_the_global_cut_give_the_same_bytes_and_say_what_ran() {
+    let bytes = obj(&both(book(5), cones(4)));
+    let [local, global] = [CutMethod::Local, CutMethod::Global].map(|method| {
+        let choices = CutStitchChoices { method: Some(method), ..CutStitchChoices::default() };
+        let answer = cut_stitch(bytes.as_bytes(), choices);
+        let reason = answer.report.actions.iter().find(|a| a.step == "cut").unwrap().reason.clone();
+        (answer.output.unwrap().bytes, reason)
+    });
+    assert_eq!(local.0, global.0);
+    assert!(local.1.starts_with("cut locally, as asked"), "{}", local.1);
+    assert!(global.1.starts_with("cut globally, as asked"), "{}", global.1);
+}
+
+#[test]
+fn chosen_edges_of_the_file_are_cut_and_stay_so() {
+    // Around the top of a cube: its lid comes off.
+    let chosen = vec![[4, 5], [5, 7], [7, 6], [6, 4], [100, 2]];
+    for stitching in [Stitching::None, Stitching::Pinch, Stitching::Snap] {
+        let choices = CutStitchChoices { chosen: chosen.clone(), stitching, ..CutStitchChoices::default() };
+        let answer = cut_stitch(obj(&cube([0.0; 3])).as_bytes(), choices);
+        assert_eq!(count(&answer, "cut", "chosen_edges"), 4);
+        assert_eq!(result(&answer).positions.len(), 12, "{stitching:?}");
+    }
+}
+
+#[test]
+fn snapping_closes_a_gap_of_a_stated_width_and_says_how_far_vertices_moved() {
+    // A cube whose lid floats a little above it, with vertices of its own.
+    let mut mesh = cube([0.0; 3]);
+    for i in 4..8 {
+        let [x, y, z] = mesh.0[i];
+        mesh.0.push([x, y, z + 0.001]);
+    }
+    for t in &mut mesh.1[2..4] {
+        *t = t.map(|v| v + 4);
+    }
+    let bytes = obj(&mesh);
+    let choices = |epsilon| CutStitchChoices { epsilon, ..stitching(Stitching::Snap) };
+    let answer = cut_stitch(bytes.as_bytes(), choices(Some(0.002)));
+    assert!(answer.report.certificate.as_ref().unwrap().is_printable());
+    assert_eq!(count(&answer, "snap", "vertices_moved"), 4);
+    let snap = answer.report.actions.iter().find(|action| action.step == "snap").unwrap();
+    assert!((snap.move_max - 0.001).abs() < 1e-12);
+    assert_eq!(result(&answer).positions.len(), 8);
+    let left = cut_stitch(bytes.as_bytes(), choices(Some(0.0005)));
+    assert_eq!(left.output.unwrap().bytes, None, "nothing is near enough, so nothing changes");
+}
+
+#[test]
+fn a_vertex_inside_a_boundary_edge_is_inserted_before_snapping() {
+    // One side of a crack has a vertex that the other side lacks.
+    let points = [[0.0, 0.0], [2.0, 0.0], [1.0, 2.0], [1.0, -2.0], [1.0, 0.0], [0.0, 0.0], [2.0, 0.0]];
+    let points = points.map(|[x, y]| [x, y, 0.0]).to_vec();
+    let triangles = vec![[0, 1, 2], [5, 3, 4], [4, 3, 6]];
+    let answer = cut_stitch(obj(&(points, triangles)).as_bytes(), stitching(Stitching::Snap));
+    assert_eq!(count(&answer, "split-t-vertices", "triangles_split"), 1);
+    let soup = result(&answer);
+    assert_eq!((soup.positions.len(), soup.triangles.len()), (5, 4));
+    assert_manifold(&soup);
+}
+
+#[test]
+fn a_polygon_that_passes_a_vertex_twice_is_split_or_dropped() {
+    use meshmend::repair::polygons::DegenerateFaces;
+    let text = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 -2 0\nv -2 -2 0\nf 1 2 3 1 4 5\nf 1 3 5\n";
+    for (degenerate, left) in [(DegenerateFaces::Split, 3), (DegenerateFaces::Drop, 1)] {
+        let answer =
+            cut_stitch(text.as_bytes(), CutStitchChoices { degenerate, ..CutStitchChoices::default() });
+        assert_eq!(result(&answer).triangles.len(), left);
+    }
+}
+
+#[test]
+fn nothing_is_returned_where_a_solid_is_demanded_and_there_is_none() {
+    let options =
+        Options { require: Some(Require::Printable), output_format: Some(Format::Stl), ..Options::default() };
+    let bytes = obj(&book(3));
+    let answer = run(Operation::CutStitch, bytes.as_bytes(), &options, &Budget::unlimited()).unwrap();
+    assert!(matches!(answer.report.refusal, Some(Refusal::NotRepairable { witness: Some(_) })));
+    assert_eq!(answer.output, None);
+}
