@@ -92,6 +92,9 @@ struct InputArguments {
     /// Print the report as JSON on standard output.
     #[arg(long)]
     json: bool,
+    /// Write the report for people to this file: one page that loads nothing.
+    #[arg(long, value_name = "FILE")]
+    report_html: Option<PathBuf>,
     /// Material file (MTL) of an OBJ: its diffuse colours become face colours, which OFF and PLY hold.
     #[arg(long, value_name = "FILE")]
     material: Option<PathBuf>,
@@ -166,6 +169,7 @@ pub(super) struct Request {
     pub input: Place,
     pub output: Option<Place>,
     pub is_json: bool,
+    pub report_html: Option<PathBuf>,
     pub material: Option<PathBuf>,
     /// Names and values of options.
     pub options: Vec<(String, String)>,
@@ -179,6 +183,7 @@ impl InputArguments {
             input: self.input,
             output,
             is_json: self.json,
+            report_html: self.report_html,
             material: self.material,
             options: self.options.0,
             sources: Sources::of_process(self.settings.0, self.config),

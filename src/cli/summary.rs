@@ -1,7 +1,8 @@
 //! The report for people: a screen of text, the most telling things first.
 
 use crate::wire::{
-    Action, Certificate, Claim, Defect, Deviation, Level, MeshInfo, Report, Severity, TargetSpec, Witness,
+    Action, Certificate, Claim, Defect, Deviation, Level, MeshInfo, PrintingCheck, Report, Severity,
+    TargetSpec, Witness,
 };
 use std::fmt::Write as _;
 
@@ -33,6 +34,10 @@ pub(super) fn summary(report: &Report, subject: &Subject) -> String {
             put(&mut text, &format!("  {kept}"));
         }
         put_table(&mut text, "defects that remain", &mesh.defects.iter().map(defect_row).collect::<Vec<_>>());
+    }
+    if let Some(printing) = &report.printing {
+        let heading = format!("printing ({}, {} up)", printing.policy, printing.build_direction);
+        put_table(&mut text, &heading, &printing.checks.iter().map(check_row).collect::<Vec<_>>());
     }
     let judged = report.certificate.as_ref().unwrap_or(&report.input_certificate);
     put_table(&mut text, "certificate", &claim_rows(judged));
@@ -113,6 +118,11 @@ fn defect_row(defect: &Defect) -> [String; 4] {
     };
     let first = defect.witnesses.first().map(witness).unwrap_or_default();
     [defect.code.to_string(), defect.count.to_string(), severity.to_owned(), first]
+}
+
+fn check_row(check: &PrintingCheck) -> [String; 3] {
+    let status = check.status.map_or_else(|| "not told".to_owned(), |status| status.to_string());
+    [check.code.to_string(), status, check.message.clone()]
 }
 
 /// The first place to look at.

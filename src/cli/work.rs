@@ -11,7 +11,7 @@ use crate::formats::{self, ReadLimits};
 use crate::jobs::StageClock;
 use crate::par;
 use crate::pipeline::{self, Answer, Operation, Require};
-use crate::wire::{Options, Problem, ProblemCode, Progress, Report, TimingMs};
+use crate::wire::{Options, Problem, ProblemCode, Progress, Report, TimingMs, report_page};
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -40,6 +40,10 @@ fn attempt(request: &Request) -> Result<Exit, Problem> {
     let loaded = request.sources.load().map_err(|e| wrong(e.to_string()))?;
     if let Some(output) = &request.output {
         output.check_writable().map_err(|e| wrong(format!("{output} cannot be written: {e}")))?;
+    }
+    if let Some(page) = &request.report_html {
+        let place = Place::File(page.clone());
+        place.check_writable().map_err(|e| wrong(format!("{place} cannot be written: {e}")))?;
     }
     let bytes = request.input.read().map_err(|e| unreadable(&request.input, &e))?;
     let material = match &request.material {
@@ -142,6 +146,13 @@ fn deliver(
         written.push(place.to_string());
     }
     let report = Report::new(&answer.report, timing);
+    if let Some(path) = &request.report_html {
+        let value = serde_json::to_value(&report).unwrap_or_default();
+        let place = Place::File(path.clone());
+        place
+            .write(report_page(&value).as_bytes())
+            .map_err(|e| Problem::new(ProblemCode::StorageFull, format!("{place} cannot be written: {e}")))?;
+    }
     if request.is_json {
         print_json(&report);
     } else {

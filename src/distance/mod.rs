@@ -17,6 +17,7 @@ use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use crate::par;
 use crate::spatial::NearestSearch;
+pub use samples::{Areas, Sample};
 use scale::Common;
 use search::Directed;
 use view::View;

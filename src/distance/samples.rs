@@ -9,19 +9,26 @@ use crate::geom::{DVec3, triangle_area};
 use crate::par;
 
 /// The area of all triangles up to and with each one.
-pub(super) struct Areas {
+#[derive(Debug, Clone)]
+pub struct Areas {
     sums: Vec<f64>,
 }
 
 /// A point of a surface.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Sample {
-    pub(super) place: DVec3,
-    pub(super) triangle: u32,
+pub struct Sample {
+    /// Where it is.
+    pub place: DVec3,
+    /// A triangle that it is on.
+    pub triangle: u32,
 }
 
 impl Areas {
-    pub(super) fn of(surface: Surface<'_>, budget: &Budget) -> Result<Self, Stopped> {
+    /// Sums up the areas of `surface`.
+    ///
+    /// # Errors
+    /// When the budget stops the run.
+    pub fn of(surface: Surface<'_>, budget: &Budget) -> Result<Self, Stopped> {
         let areas = par::try_map_ranges(surface.triangles.len(), CHECK_EVERY, |range| {
             budget.check()?;
             let corners = |t: &[u32; 3]| t.map(|v| surface.positions[v as usize]);
@@ -35,10 +42,14 @@ impl Areas {
         Ok(Self { sums: sums.collect() })
     }
 
-    /// Sample `k` of `count` on the same surface.
-    pub(super) fn sample(&self, surface: Surface<'_>, k: usize, count: usize) -> Sample {
-        let total = self.sums.last().copied().unwrap_or(0.0);
-        let share = total * ((k as f64 + 0.5) / count as f64);
+    /// The area of all triangles.
+    pub fn total(&self) -> f64 {
+        self.sums.last().copied().unwrap_or(0.0)
+    }
+
+    /// Sample `k` of `count` on the same surface, which must have a triangle.
+    pub fn sample(&self, surface: Surface<'_>, k: usize, count: usize) -> Sample {
+        let share = self.total() * ((k as f64 + 0.5) / count as f64);
         let triangle = self.sums.partition_point(|&sum| sum <= share).min(self.sums.len() - 1);
         let [a, b, c] = surface.triangles[triangle].map(|v| surface.positions[v as usize]);
         // Powers of the reciprocal of the plastic number, the real root of x^3 = x + 1.

@@ -2,6 +2,7 @@
 
 mod closest;
 mod exact;
+mod pitch;
 mod predicates;
 mod projection;
 mod ray;
@@ -11,6 +12,7 @@ mod volume;
 
 pub use closest::closest_point_on_triangle;
 pub use glam::{DVec2, DVec3};
+pub use pitch::{exponent_above, power_of_two, print_pitch};
 pub use predicates::{Plane, certain_turns, orient2d, orient3d};
 pub use projection::{Projection, are_collinear, is_on_segment};
 pub use ray::upward_crossing;

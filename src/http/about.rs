@@ -9,7 +9,7 @@ use super::problem::Handled;
 use super::query;
 use super::representation::json_only;
 use super::state::State;
-use crate::wire::{self, ErrorInfo, FormatInfo, Limits, Version};
+use crate::wire::{self, ErrorInfo, FormatInfo, Limits, PolicyInfo, Version};
 
 /// List the problems there are.
 #[utoipa::path(get, path = "/v1/errors", tag = "service",
@@ -30,6 +30,15 @@ pub(super) async fn limits(state: State, request: Request) -> Handled {
     responses((status = 200, description = "Every format, with its media types.", body = Vec<FormatInfo>)))]
 pub(super) async fn formats(request: Request) -> Handled {
     json(&request, &wire::formats())
+}
+
+/// List the printing policies.
+///
+/// The limits of each process that the option `policy` names, in millimetres and degrees, with where they are from.
+#[utoipa::path(get, path = "/v1/policies", tag = "service",
+    responses((status = 200, description = "Every policy, with every limit.", body = Vec<PolicyInfo>)))]
+pub(super) async fn policies(request: Request) -> Handled {
+    json(&request, &wire::policies())
 }
 
 /// Show the version.

@@ -9,7 +9,7 @@ use super::mesh_file;
 use super::problem::{Handled, json};
 use super::representation::{OCTET_STREAM, Representation};
 use crate::jobs::{JobId, Jobs, StoredFile};
-use crate::wire::{Job, Problem, ProblemCode, Stage};
+use crate::wire::{self, Job, Problem, ProblemCode, Stage};
 
 const JSON: HeaderValue = HeaderValue::from_static("application/json");
 const OUTCOME: HeaderName = HeaderName::from_static("meshmend-outcome");
@@ -54,6 +54,18 @@ pub(super) fn job_as_it_stands(job: &Job, request: &HeaderMap) -> Response {
 /// A stored report.
 pub(super) async fn report(stored: StoredFile) -> Handled {
     Ok(([(header::CONTENT_TYPE, JSON)], stored.read().await?).into_response())
+}
+
+/// A stored report as a page for people.
+pub(super) async fn report_page(stored: StoredFile) -> Handled {
+    let report = serde_json::from_slice(&stored.read().await?).map_err(|error| {
+        Problem::new(ProblemCode::Internal, format!("a stored report cannot be read: {error}"))
+    })?;
+    let headers = [
+        (header::CONTENT_TYPE, "text/html; charset=utf-8"),
+        (header::CONTENT_SECURITY_POLICY, wire::REPORT_PAGE_CSP),
+    ];
+    Ok((headers, wire::report_page(&report)).into_response())
 }
 
 /// A job that has ended.
@@ -148,5 +160,19 @@ fn unfinished() -> Problem {
 fn put(headers: &mut HeaderMap, name: HeaderName, value: &str) {
     if let Ok(value) = HeaderValue::from_str(value) {
         headers.insert(name, value);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_style_of_a_report_is_the_one_that_its_policy_allows() {
+        let page = wire::report_page(&serde_json::Value::Null);
+        let style = page.split("<style>").nth(1).and_then(|rest| rest.split("</style>").next()).unwrap();
+        let digest = mesh_file::base64(&Sha256::digest(style.as_bytes()));
+        assert!(wire::REPORT_PAGE_CSP.contains(&format!("'sha256-{digest}'")), "{digest}");
+        assert!(page.contains(wire::REPORT_PAGE_CSP));
     }
 }

@@ -173,6 +173,7 @@ fn complete_operation(path: &str, operation: &mut Operation) {
         }
         "report" => {
             add_problems(operation, &[JOB, PRODUCT, RUN].concat());
+            add_answer(operation, "200", report_answer());
         }
         "result" => {
             add_problems(
@@ -292,6 +293,15 @@ fn mesh_answer() -> ResponseBuilder {
         .header("Link", header("The report, as `describedby`."))
         .header("Preference-Applied", header("Which preferences were followed."))
         .header("Server-Timing", header("Time of each pass."))
+}
+
+/// 200 of a kept report: for programs, or for people.
+fn report_answer() -> Response {
+    ResponseBuilder::new()
+        .description("The report, as `Accept` asks for.")
+        .content("application/json", Content::new(Some(reference::<Report>())))
+        .content("text/html", Content::new(Some(Schema::Object(text().build()))))
+        .build()
 }
 
 fn file_answer(description: &str) -> Response {

@@ -13,6 +13,9 @@ use super::{answer, mesh_file, query};
 use crate::jobs::JobId;
 use crate::wire::{Job, ProblemCode, Report};
 
+/// Media type of a report for people.
+const HTML: &str = "text/html";
+
 /// The `{id}` of a path. What does not decode to text cannot be an id.
 type Id = Result<Path<String>, axum::extract::rejection::PathRejection>;
 
@@ -62,14 +65,16 @@ pub(super) async fn delete(state: State, caller: Extension<Caller>, id: Id, requ
 
 /// Read a job's report.
 ///
-/// Also of a refused repair, whose report says why.
+/// Also of a refused repair, whose report says why. As JSON, or with `Accept: text/html` as a page for people: one file
+/// that loads nothing.
 #[utoipa::path(get, path = "/v1/jobs/{id}/report", tag = "jobs",
     params(("id" = String, Path, description = "Id of the job.")),
     responses((status = 200, description = "The report.", body = Report)))]
 pub(super) async fn report(state: State, caller: Extension<Caller>, id: Id, request: Request) -> Handled {
-    json_only(request.headers())?;
+    let media_type = one_of(request.headers(), &["application/json", HTML])?;
     query::none(request.uri())?;
-    answer::report(state.jobs.report(visible(&state, &caller, id).await?).await?).await
+    let stored = state.jobs.report(visible(&state, &caller, id).await?).await?;
+    if media_type == HTML { answer::report_page(stored).await } else { answer::report(stored).await }
 }
 
 /// Download a job's mesh.

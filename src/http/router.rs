@@ -37,6 +37,7 @@ fn api() -> OpenApiRouter<Arc<Service>> {
         .routes(routes!(about::errors))
         .routes(routes!(about::limits))
         .routes(routes!(about::formats))
+        .routes(routes!(about::policies))
         .routes(routes!(about::version))
         .routes(routes!(about::openapi))
 }

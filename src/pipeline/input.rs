@@ -64,6 +64,7 @@ impl Input {
             losses: None,
             outcome: None,
             refusal: None,
+            printing: None,
             work_used: 0,
             bytes_peak: 0,
         }

@@ -8,6 +8,7 @@ mod identical;
 mod input;
 mod output;
 mod plan;
+mod printing;
 mod priority;
 mod rebuild;
 mod repair;
@@ -17,12 +18,14 @@ mod texture;
 pub use self::cut_stitch::{CutStitchChoices, Stitching};
 pub use self::fidelity::Losses;
 use self::input::Input;
+pub use self::printing::PrintingReport;
 pub use self::rebuild::{Effort, WrapChoices};
 use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stopped};
 use crate::certificate::{Certificate, Violation};
 use crate::distance::SurfaceDistance;
 use crate::formats::{Encoding, Format, ReadError, ReadOptions, WriteError};
+use crate::printing::Policy;
 use crate::simplify::{CriterionKind, Mode, Placement, Report as SimplifyReport, Target};
 
 /// What to do with a file.
@@ -121,6 +124,8 @@ pub struct Options {
     pub cut_stitch: CutStitchChoices,
     /// Witnesses to keep of each defect; `None`: 16.
     pub samples: Option<usize>,
+    /// What the process can do that the mesh is to be printed with; `None`: the mesh is not measured for printing.
+    pub policy: Option<Policy>,
     /// The MTL file of an OBJ: its diffuse colours become face colours, which OFF and PLY can hold.
     pub material: Option<Vec<u8>>,
 }
@@ -303,6 +308,8 @@ pub struct Report {
     pub outcome: Option<Outcome>,
     /// Why there is no result.
     pub refusal: Option<Refusal>,
+    /// The result, or else the input, measured for printing; `None`: no policy was given, or nothing can be measured.
+    pub printing: Option<PrintingReport>,
     /// Work units used (deterministic).
     pub work_used: u64,
     /// Largest number of bytes charged at one time (deterministic).
@@ -368,6 +375,9 @@ pub fn run(
         Operation::Simplify => simplify::simplify(&input, options, budget)?,
         Operation::CutStitch => cut_stitch::cut_stitch(&input, options, budget)?,
     };
+    if let Some(policy) = &options.policy {
+        answer.report.printing = printing::measure(&input, &answer, policy, budget)?;
+    }
     answer.report.work_used = budget.work_used();
     answer.report.bytes_peak = budget.bytes_peak();
     Ok(answer)

@@ -21,11 +21,13 @@ pub(super) enum Step {
     SplitCollinear,
     SplitTVertices,
     DropDuplicates(OppositePairs),
+    RemoveCrossing { rings: u32 },
     Orient,
     Cut(CutOptions),
     Pinch(ChosenEdges, Validity),
     Snap(SnapOptions),
     FillHoles,
+    OpenContacts,
     JoinCopies,
     Nest { is_embedded: bool },
 }
@@ -39,6 +41,10 @@ pub(super) struct Variant {
     pub(super) rounds: bool,
     /// What becomes of opposite duplicates.
     pub(super) opposite: OppositePairs,
+    /// Triangles that meet others go first, with this many rings around them.
+    pub(super) removes_crossing: Option<u32>,
+    /// Bodies that touch are drawn apart.
+    pub(super) opens_contacts: bool,
 }
 
 impl Variant {
@@ -46,27 +52,33 @@ impl Variant {
     pub(super) fn mending(self, fill_holes: FillHoles) -> Vec<Step> {
         let clear = self.clears_noise.then_some(Step::ClearNoise);
         let round = self.rounds.then_some(Step::RoundToF32);
-        let surface = [
+        let split = Step::SplitPolygons(DegenerateFaces::Split);
+        let welded = [
             Step::Weld,
             Step::DropDegenerate,
             Step::SplitCollinear,
             Step::SplitTVertices,
             Step::DropDuplicates(self.opposite),
-            Step::Orient,
-            Step::Cut(CutOptions::default()),
-            // Only what coincides: no vertex moves.
-            Step::Snap(SnapOptions { epsilon: Some(0.0), ..SnapOptions::default() }),
         ];
+        let remove = self.removes_crossing.map(|rings| Step::RemoveCrossing { rings });
+        let cut = [Step::Orient, Step::Cut(CutOptions::default())];
+        // Which copies belong together matters only where they are drawn apart.
+        let pinch = self.opens_contacts.then(|| Step::Pinch(ChosenEdges::default(), Validity::Exact));
+        // Only what coincides: no vertex moves.
+        let snap = Step::Snap(SnapOptions { epsilon: Some(0.0), ..SnapOptions::default() });
         let fill = (fill_holes == FillHoles::Simple).then_some(Step::FillHoles);
-        let split = Step::SplitPolygons(DegenerateFaces::Split);
-        std::iter::once(split).chain(clear).chain(round).chain(surface).chain(fill).collect()
+        let start = [split].into_iter().chain(clear).chain(round).chain(welded);
+        start.chain(remove).chain(cut).chain(pinch).chain([snap]).chain(fill).collect()
     }
 
     /// The steps that make it a solid. Readers weld, so that copies of a vertex would be one again: what is to be
     /// certified has none. `has_contacts`: triangles of the input meet beyond common vertices and edges. Nothing that
     /// mends adds a contact, but moving vertices can.
-    pub(super) fn solidifying(self, has_contacts: bool) -> [Step; 2] {
-        [Step::JoinCopies, Step::Nest { is_embedded: !has_contacts && !self.rounds && !self.clears_noise }]
+    pub(super) fn solidifying(self, has_contacts: bool) -> Vec<Step> {
+        let moves = self.rounds || self.clears_noise || self.opens_contacts;
+        let open = self.opens_contacts.then_some(Step::OpenContacts);
+        let nest = Step::Nest { is_embedded: !has_contacts && !moves };
+        open.into_iter().chain([Step::JoinCopies, nest]).collect()
     }
 }
 
@@ -86,6 +98,8 @@ impl Step {
             Self::Cut(_) => "cut",
             Self::Pinch(..) => "pinch",
             Self::Snap(_) => "snap",
+            Self::RemoveCrossing { .. } => "remove-crossing",
+            Self::OpenContacts => "open-contacts",
             Self::FillHoles => "fill-holes",
             Self::JoinCopies => "join-copies",
             Self::Nest { .. } => "nest",
@@ -103,6 +117,10 @@ impl Step {
             ],
             Self::RoundToF32 => &[DefectCode::UnsoundReading],
             Self::JoinCopies => &[],
+            Self::RemoveCrossing { .. } => {
+                &[DefectCode::SelfIntersection, DefectCode::Overlap, DefectCode::Touch]
+            }
+            Self::OpenContacts => &[DefectCode::NonManifoldEdge, DefectCode::NonManifoldVertex],
             Self::SplitPolygons(_) => &[DefectCode::CoincidentCorners, DefectCode::DuplicateVertex],
             Self::Weld => &[DefectCode::DuplicateVertex],
             Self::DropDegenerate => &[DefectCode::CoincidentCorners],
@@ -133,6 +151,8 @@ impl Step {
             Self::Cut(options) => repair::cut::cut(draft, options, budget),
             Self::Pinch(chosen, validity) => repair::pinch::pinch(draft, chosen, *validity, budget),
             Self::Snap(options) => repair::snap::snap(draft, options, budget),
+            Self::RemoveCrossing { rings } => repair::crossing::remove_crossing(draft, *rings, budget),
+            Self::OpenContacts => repair::contact::open_contacts(draft, budget),
             Self::FillHoles => repair::fill::fill_holes(draft, budget),
             Self::Nest { is_embedded } => repair::nest::nest(draft, *is_embedded, budget),
         }

@@ -117,6 +117,9 @@ struct Search<'a> {
     budget: &'a Budget,
 }
 
+/// Rings that are removed around triangles that meet others, at most.
+const RINGS_MAX: u32 = 2;
+
 enum Found {
     Certified(Box<(Attempt, Candidate)>),
     Nothing {
@@ -195,6 +198,10 @@ impl Search<'_> {
         last: &Attempt,
         fails_in_f32: bool,
     ) -> Option<Variant> {
+        if let Some(rings) = variant.removes_crossing {
+            let may_help = rings < RINGS_MAX && last.count("triangles_removed") > 0;
+            return may_help.then_some(Variant { removes_crossing: Some(rings + 1), ..variant });
+        }
         if last.count("opposite_pairs_cancelled") > 0 {
             return Some(Variant { opposite: OppositePairs::KeepFirst, ..variant });
         }
@@ -203,11 +210,21 @@ impl Search<'_> {
             return Some(Variant { rounds: true, ..first });
         }
         let is_second_try = variant.clears_noise != first_clears;
-        (!is_second_try && repair::noise::has_noise(&self.input.soup.positions)).then_some(Variant {
-            clears_noise: !first_clears,
-            rounds: self.needs_f32(),
-            ..first
-        })
+        if !is_second_try && repair::noise::has_noise(&self.input.soup.positions) {
+            return Some(Variant { clears_noise: !first_clears, rounds: self.needs_f32(), ..first });
+        }
+        // Bodies that lie on each other would be parted by a gap that nobody wants.
+        let only_touches = self.before.is_some_and(|before| before.properties.is_embedded == Some(true));
+        if only_touches && !variant.opens_contacts && last.count("vertices_copied") > 0 {
+            return Some(Variant { opens_contacts: true, ..first });
+        }
+        self.may_cross_locally().then_some(Variant { removes_crossing: Some(0), ..first })
+    }
+
+    /// True unless it is known that no triangles meet others, or that a large share of them does.
+    fn may_cross_locally(&self) -> bool {
+        let most = self.input.soup.triangles.len() as u64 / 20;
+        self.input.examination.contacts.as_ref().is_none_or(|contacts| (1..=most).contains(&contacts.count))
     }
 
     /// True when the encoding holds no more than float32, so that every plan has to round.

@@ -1,9 +1,11 @@
 //! Operations that change a mesh: one operation, one file; options in, what changed out. No step calls another.
 //!
 //! The steps work on a [`Draft`]. None of them moves a vertex except [`round`],
-//! [`noise`] and [`snap`], which say how far.
+//! [`noise`], [`snap`] and [`contact`], which say how far.
 
 pub mod collinear;
+pub mod contact;
+pub mod crossing;
 pub mod cut;
 pub mod degenerate;
 pub mod draft;

@@ -42,6 +42,11 @@ impl<'m> NearestSearch<'m> {
         self.triangles.is_empty()
     }
 
+    /// The boxes of the triangles.
+    pub fn bvh(&self) -> &Bvh {
+        &self.bvh
+    }
+
     /// The corners of triangle `t`.
     pub fn corners(&self, t: u32) -> [DVec3; 3] {
         self.triangles[t as usize].map(|v| self.positions[v as usize])

@@ -2,7 +2,7 @@
 
 use super::{OpenShells, Shells, WindingTree, sort, turned};
 use crate::budget::{Budget, Stopped};
-use crate::geom::{Aabb, DVec3, Sign, upward_crossing};
+use crate::geom::{Aabb, DVec3, Sign, triangle_area, upward_crossing};
 use crate::spatial::Bvh;
 
 /// Sides of a triangle are looked at this far from it, as a share of the longest side of the box around all.
@@ -37,6 +37,8 @@ pub struct Solid {
     cones: WindingTree,
     center: DVec3,
     scale: f64,
+    /// Area of the open parts that bound a volume, and of those that are sheets.
+    open_areas: [f64; 2],
 }
 
 impl Solid {
@@ -55,15 +57,22 @@ impl Solid {
         let scale = if size > 0.0 && size.is_finite() { 1.0 / size } else { 1.0 };
         let _charge = budget.charge((positions.len() * 24 + triangles.len() * 160) as u64)?;
         let unit: Vec<DVec3> = positions.iter().map(|&p| (p - center) * scale).collect();
-        let Shells { closed: mut corners, closed_part: part, open, cones, .. } =
+        let Shells { closed: mut corners, closed_part: part, open, cones, sheets, .. } =
             sort(&unit, triangles, open_shells, BESIDE, budget)?;
+        let open_areas = [&open, &sheets].map(|part| part.iter().map(|&t| triangle_area(t)).sum());
         corners.extend(open);
         corners.extend(&cones);
         let names: Vec<[u32; 3]> = (0..corners.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
         let bvh = Bvh::build(corners.as_flattened(), &names, None, budget)?;
         let cone_count = cones.len();
         let cones = WindingTree::build(turned(&cones), budget)?;
-        Ok(Self { corners, part, cone_count, bvh, cones, center, scale })
+        Ok(Self { corners, part, cone_count, bvh, cones, center, scale, open_areas })
+    }
+
+    /// Whether most of the open surface is read as sheets, which bound no volume.
+    pub fn is_mostly_sheets(&self) -> bool {
+        let [of_volumes, of_sheets] = self.open_areas;
+        of_sheets > of_volumes
     }
 
     /// Whether nobody sees a triangle at a `place` on it: both sides are inside, or a side that is not is a gap between

@@ -12,8 +12,10 @@ mod limits;
 mod mesh_info;
 mod option_schema;
 mod options;
+mod printing;
 mod problem;
 mod report;
+mod report_page;
 mod request;
 mod target;
 mod verdict;
@@ -30,11 +32,17 @@ pub use level::Level;
 pub use limits::Limits;
 pub use mesh_info::{Bounds, Counts, Defect, Element, Figure, Measures, MeshInfo, Properties, Witness};
 pub use options::{OptionError, OptionKind, OptionSpec, Options, SPECS};
+pub use printing::{
+    BoundKind, BuildDirection, CheckCode, Edges, Fit, OrientedBox, Overhang, Parts, PolicyInfo, PolicyLimit,
+    PolicyName, PolicyVolume, PrintedMesh, Printing, PrintingCheck, PrintingUnit, PrintingWitness, Quote,
+    Spread, Status, Thickness, policies,
+};
 pub use problem::{ErrorInfo, Problem, ProblemCode, errors};
 pub use report::{
     Action, Change, Deviation, DirectedDistance, Distance, EngineInfo, InputInfo, Report, Resources,
     TimingMs, UnitsInfo,
 };
+pub use report_page::{Escaped, REPORT_PAGE_CSP, report_page};
 pub use request::{InputRef, JobRequest};
 pub use target::TargetSpec;
 pub use verdict::{Reason, Verdict};

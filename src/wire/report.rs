@@ -8,6 +8,7 @@ use utoipa::ToSchema;
 use super::certificate::{Certificate, hex};
 use super::level::Level;
 use super::mesh_info::{MeshInfo, finite};
+use super::printing::Printing;
 use super::verdict::Verdict;
 use super::words::{DefectCode, Encoding, Format, Operation, Stage, Units};
 use crate::{analysis, pipeline};
@@ -43,6 +44,9 @@ pub struct Report {
     /// The returned bytes, judged; null: no bytes are returned.
     #[schema(required)]
     pub certificate: Option<Certificate>,
+    /// The result, or else the input, measured for printing; null: no policy was asked for, or there is nothing to measure.
+    #[schema(required)]
+    pub printing: Option<Printing>,
     /// Time of each pass.
     pub timing_ms: TimingMs,
     /// What the run used.
@@ -253,6 +257,10 @@ impl Report {
             verdict: Verdict::of(inner),
             input_certificate: Certificate::from(&inner.input_certificate),
             certificate: inner.certificate.as_ref().map(Certificate::from),
+            printing: inner
+                .printing
+                .as_ref()
+                .map(|printing| Printing::new(printing, Units::from(inner.input.units).millimetres())),
             timing_ms,
             resources: Resources { work_units: inner.work_used, charged_bytes_peak: inner.bytes_peak },
         }
@@ -358,6 +366,7 @@ mod tests {
             "verdict",
             "input_certificate",
             "certificate",
+            "printing",
             "timing_ms",
             "resources",
         ];

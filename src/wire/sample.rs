@@ -95,6 +95,7 @@ pub(crate) fn repaired() -> Answer {
         losses: None,
         outcome: Some(Outcome::Repaired),
         refusal: None,
+        printing: None,
         work_used: 7,
         bytes_peak: 1000,
     };

@@ -77,7 +77,7 @@ macro_rules! mirror {
     };
 }
 
-pub(super) use words;
+pub(super) use {mirror, words};
 
 mirror! { pipeline::Operation =>
     /// What to do with a file.

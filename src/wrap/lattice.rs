@@ -1,6 +1,6 @@
 //! The lattice: whole multiples of a pitch that are all float32, with room around the surface.
 
-use crate::geom::{Aabb, DVec3};
+use crate::geom::{Aabb, DVec3, exponent_above, power_of_two};
 
 /// Cells between the surface and the border of the lattice. More than the thickness of a sheet (at most `sqrt(3)`
 /// cells) and two cells, so that the border is outside.
@@ -138,21 +138,6 @@ impl Lattice {
     pub(super) fn stride(&self, [i, j, k]: [isize; 3]) -> isize {
         (i * self.dims[1] as isize + j) * self.dims[2] as isize + k
     }
-}
-
-/// Least `e` with `2^e >= x`, for positive finite `x`.
-fn exponent_above(x: f64) -> i32 {
-    let bits = x.to_bits();
-    let biased = (bits >> 52) as i32;
-    if biased == 0 {
-        return -1022;
-    }
-    biased - 1023 + i32::from(bits << 12 != 0)
-}
-
-/// `2^exponent` for a normal number.
-fn power_of_two(exponent: i32) -> f64 {
-    f64::from_bits(((exponent + 1023) as u64) << 52)
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ const LEVELS: [&[&str]; 9] = [
     &["budget", "par", "geom"],
     &["spatial", "mesh"],
     &["formats", "distance", "winding"],
-    &["analysis", "implicit", "simplify", "modeller", "arrangement"],
+    &["analysis", "printing", "implicit", "simplify", "modeller", "arrangement"],
     &["repair", "certificate", "wrap"],
     &["pipeline"],
     &["wire", "config"],

@@ -45,7 +45,6 @@ fn what_no_step_makes_a_solid_is_rebuilt() {
         ("two triangles in a square", flat(&square, &[[0, 1, 2], [0, 2, 3]])),
         ("a fan in a square", flat(&square, &[[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])),
         ("a Möbius band", moebius),
-        ("two cubes that share an edge", cube().with(&cube().moved([1.0, 1.0, 0.0]))),
         ("two cubes that pass through each other", cube().with(&cube().moved([0.5; 3]))),
     ] {
         let answer = repaired(&soup);
@@ -165,4 +164,19 @@ fn more_effort_comes_closer_where_the_caller_demands_it() {
     };
     let (low, normal) = (least(Effort::Low), least(Effort::Normal));
     assert!(normal < 0.8 * low, "{low} {normal}");
+}
+
+#[test]
+fn a_hole_in_a_sheet_is_a_part_of_its_shape_and_one_in_a_shell_is_closed() {
+    // A square frame, two wide and three tenths of that inside.
+    let ring = |r: f64| [[-r, -r], [r, -r], [r, r], [-r, r]];
+    let points = [ring(1.0), ring(0.3)].concat();
+    let quad = |i: u32| [[i, (i + 1) % 4, (i + 1) % 4 + 4], [i, (i + 1) % 4 + 4, i + 4]];
+    let triangles: Vec<[u32; 3]> = (0..4).flat_map(quad).collect();
+    let answer = answer(&encode(&flat(&points, &triangles), Encoding::Off), &coarse());
+    let (volume, shells) = rebuilt(&answer);
+    assert_eq!((shells, count(&answer, "triangles_added")), (1, 0));
+    let genus = answer.report.certificate.as_ref().unwrap().shells[0].genus;
+    assert_eq!(genus, 1, "the hole goes through");
+    assert!(volume > 0.0);
 }

@@ -3,6 +3,8 @@
 use crate::oracle::RawSoup;
 use crate::raw_files::encode;
 use crate::solids::{cube, cuboid};
+use std::f64::consts::PI;
+
 use meshmend::budget::Budget;
 use meshmend::formats::{self, Encoding, Format, ReadOptions};
 use meshmend::mesh::Soup;
@@ -304,6 +306,60 @@ fn what_is_mended_is_written_when_nothing_is_required_and_says_what_does_not_hol
     assert!(!answer.report.certificate.as_ref().unwrap().is_printable());
     assert_eq!(answer.report.after.unwrap().counts.triangles, 1);
     assert!(answer.output.unwrap().bytes.is_some());
+}
+
+#[test]
+fn cubes_that_touch_are_drawn_apart_and_all_but_the_touching_corners_keep_their_bits() {
+    for (at, moved) in [([1.0, 1.0, 1.0], 1), ([1.0, 1.0, 0.0], 2)] {
+        let answer =
+            answer(&encode(&cube().with(&cube().moved(at)), Encoding::StlBinary), &Options::default());
+        let (soup, shells) = certified(&answer);
+        assert_eq!((shells, soup.positions.len()), (2, 16));
+        let open = answer.report.actions.iter().find(|action| action.step == "open-contacts").unwrap();
+        assert_eq!(open.changes, [("vertices_moved", moved)]);
+        assert!(open.move_max > 0.0 && open.move_max < 1e-5, "{}", open.move_max);
+        assert!(answer.report.distance.unwrap().upper() < 1e-5);
+    }
+}
+
+/// A unit ball of `2 n (n - 1)` triangles: poles, and `n` columns of `n - 1` vertices row by row.
+fn globe(n: u32) -> RawSoup {
+    let angle = |k: u32, whole: f64| f64::from(k) / f64::from(n) * whole;
+    let ring = |row: u32| {
+        let (r, z) = angle(row, PI).sin_cos();
+        (0..n).map(move |column| {
+            let (y, x) = angle(column, 2.0 * PI).sin_cos();
+            [r * x, r * y, z].map(|x| f64::from(x as f32))
+        })
+    };
+    let vertex = |row: u32, column: u32| match row {
+        0 => 0,
+        row if row == n => 1 + (n - 1) * n,
+        row => 1 + (row - 1) * n + column % n,
+    };
+    let positions = [[0.0, 0.0, 1.0]].into_iter().chain((1..n).flat_map(ring)).chain([[0.0, 0.0, -1.0]]);
+    let triangles =
+        (0..n).flat_map(|row| (0..n).map(move |column| (row, column))).flat_map(|(row, column)| {
+            let [a, b] = [vertex(row, column), vertex(row, column + 1)];
+            let [c, d] = [vertex(row + 1, column), vertex(row + 1, column + 1)];
+            [[a, c, d], [a, d, b]]
+        });
+    let is_proper = |t: &[u32; 3]| t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
+    RawSoup { positions: positions.collect(), triangles: triangles.filter(is_proper).collect() }
+}
+
+#[test]
+fn a_spike_through_a_large_surface_goes_and_both_places_are_closed() {
+    // One vertex of a ball is pulled through the ball and out on the other side.
+    let mut soup = globe(48);
+    let vertex = &mut soup.positions[1 + 23 * 48];
+    *vertex = vertex.map(|x| f64::from((-1.1 * x + 0.01) as f32));
+    let answer = answer(&encode(&soup, Encoding::Off), &Options::default());
+    let (_, shells) = certified(&answer);
+    assert_eq!(shells, 1);
+    assert!(count(&answer, "triangles_removed") > 6, "{:?}", answer.report.actions);
+    assert!(answer.report.identical_triangle_share.unwrap() > 0.9);
+    assert!(answer.report.losses.unwrap().visible_loss < 0.01);
 }
 
 #[test]

@@ -20,6 +20,7 @@ mod naive;
 mod obj_readers;
 mod oracle;
 mod predicates;
+mod printing;
 mod random;
 mod rational;
 mod raw_files;

@@ -433,3 +433,20 @@ fn the_material_of_an_obj_colours_the_faces_of_another_format() {
     assert_eq!(missing.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&missing.stderr).contains("no.mtl"));
 }
+
+#[test]
+fn a_policy_is_told_in_text_and_json_and_the_page_is_written() {
+    let desk = Desk::new();
+    let output = desk.run(&["analyze", "solid.off", "--policy", "fdm", "--report-html", "page.html"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let text = stdout(&output);
+    assert!(text.contains("printing (fdm, z up)") && text.contains("build-volume"), "{text}");
+    let page = fs::read_to_string(desk.path().join("page.html")).unwrap();
+    assert!(page.contains("Printing by FDM") && page.ends_with("</html>\n"), "{page}");
+    let output =
+        desk.run(&["verify", "solid.off", "--policy", "sla", "--build-direction", "minus_x", "--json"]);
+    let printing = &json(&output)["printing"];
+    assert_eq!((&printing["policy"], &printing["build_direction"]), (&"sla".into(), &"minus_x".into()));
+    let nowhere = desk.run(&["analyze", "solid.off", "--report-html", "no/such/folder/page.html"]);
+    assert_eq!(nowhere.status.code(), Some(2), "{}", stderr(&nowhere));
+}

@@ -12,6 +12,7 @@ mod contract;
 mod lifecycle;
 mod meshes;
 mod operations;
+mod printing;
 mod problems;
 mod server;
 mod uploads;

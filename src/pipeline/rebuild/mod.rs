@@ -8,7 +8,7 @@ use super::fidelity::{Fidelity, Original};
 use super::input::Input;
 use super::output::{Candidate, NoCandidate};
 use super::plan::{Attempt, Step, Variant};
-use super::{Action, Answer, Failure, Options, Outcome, Refusal, Report};
+use super::{Action, Answer, Failure, FillHoles, Options, Outcome, Refusal, Report};
 use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::Depth;
@@ -16,7 +16,7 @@ use crate::formats::Encoding;
 use crate::geom::{Aabb, DVec3};
 use crate::mesh::Soup;
 use crate::repair::duplicates::OppositePairs;
-use crate::repair::{Draft, NEW, nest};
+use crate::repair::{Draft, NEW, nest, weld};
 use crate::simplify::Mode;
 use crate::winding::{OpenShells, Solid};
 use crate::wrap::{self, Account, WrapError, WrapOptions, Wrapped};
@@ -104,9 +104,14 @@ pub(super) fn rebuild(
     let mut attempt = Attempt::start(&input.soup, before);
     let _charge = budget.charge(attempt.draft.bytes())?;
     let variant = Variant { opposite: OppositePairs::KeepFirst, ..Variant::default() };
-    let steps: Vec<Step> =
-        variant.mending(options.fill_holes).into_iter().chain([Step::JoinCopies]).collect();
-    budget.stage(Stage::Repair, || attempt.run(&steps, &input.soup, before, budget))?;
+    budget.stage(Stage::Repair, || {
+        attempt.run(&variant.mending(FillHoles::None), &input.soup, before, budget)?;
+        // A hole in a sheet is a part of its shape; one in a shell around a volume is a defect.
+        let fill =
+            options.fill_holes == FillHoles::Simple && !is_mostly_sheets(&attempt.draft, options, budget)?;
+        let steps = fill.then_some(Step::FillHoles).into_iter().chain([Step::JoinCopies]);
+        attempt.run(&steps.collect::<Vec<_>>(), &input.soup, before, budget)
+    })?;
     let Attempt { draft, actions } = attempt;
     let search = Search { input, encoding, options, before, budget };
     match search.run(&input.soup, &draft, &actions) {
@@ -189,6 +194,14 @@ impl Search<'_> {
             Some(refusal) => Err(NotRebuilt::Refused { refusal, actions: best.actions }),
         }
     }
+}
+
+/// Whether most of the open surface of `draft` is read as sheets.
+fn is_mostly_sheets(draft: &Draft, options: &Options, budget: &Budget) -> Result<bool, Stopped> {
+    let mut welded = draft.clone();
+    weld::weld(&mut welded, budget)?;
+    let solid = Solid::of(&welded.positions, &welded.triangles, options.wrap.open_shells, budget)?;
+    Ok(solid.is_mostly_sheets())
 }
 
 /// The middle of a mesh, rounded so that small coordinates stay exact.

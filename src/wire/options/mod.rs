@@ -6,6 +6,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 
+use super::printing::{BuildDirection, PolicyInfo, PolicyName};
 use super::request::InputRef;
 use super::target::TargetSpec;
 use super::words::{
@@ -77,6 +78,10 @@ pub struct Options {
     pub degenerate: Option<Degenerate>,
     /// Edges to be cut besides those that must be.
     pub cut_edges: Option<Vec<[u32; 2]>>,
+    /// Process that the mesh is to be printed with.
+    pub policy: Option<PolicyName>,
+    /// What is up in the machine.
+    pub build_direction: Option<BuildDirection>,
     /// Witnesses to keep of each defect.
     pub samples: Option<u32>,
     /// Seconds for which the result is kept.
@@ -120,6 +125,12 @@ impl Options {
         let millimetres = self.units.unwrap_or(Units::Millimetre).millimetres();
         let all = single.into_iter().flatten().chain(self.targets.iter().flatten().copied());
         all.map(|target| target.to_engine(millimetres)).collect()
+    }
+
+    /// The limits of the process, in the unit of the file.
+    fn policy(&self, millimetres: f64) -> Option<crate::printing::Policy> {
+        let up = self.build_direction.unwrap_or(BuildDirection::Z);
+        Some(PolicyInfo::of(self.policy?)?.to_engine(millimetres, up))
     }
 
     /// Both ask the engine for the same; how long the result is kept and where the bytes come from do not matter.
@@ -169,6 +180,7 @@ impl Options {
                 chosen: self.cut_edges.clone().unwrap_or_default(),
             },
             samples: self.samples.map(|n| n as usize),
+            policy: self.policy(millimetres),
             material: None,
         }
     }

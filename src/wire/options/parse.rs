@@ -5,6 +5,7 @@ use serde_json::{Map, Value};
 use super::table::{OptionKind, OptionSpec, spec_of};
 use super::{OptionError, Options};
 use crate::wire::edges::edges_from_json;
+use crate::wire::printing::{BuildDirection, PolicyName};
 use crate::wire::target;
 use crate::wire::words::{
     Criterion, Cut, Degenerate, Effort, FillHoles, Format, Mode, Nesting, OpenShells, Placement, Reader,
@@ -122,6 +123,8 @@ impl Options {
             ("stitch_validity", put_if_given(&mut self.stitch_validity, other.stitch_validity)),
             ("degenerate", put_if_given(&mut self.degenerate, other.degenerate)),
             ("cut_edges", put_if_given(&mut self.cut_edges, other.cut_edges)),
+            ("policy", put_if_given(&mut self.policy, other.policy)),
+            ("build_direction", put_if_given(&mut self.build_direction, other.build_direction)),
             ("samples", put_if_given(&mut self.samples, other.samples)),
             ("result_ttl", put_if_given(&mut self.result_ttl, other.result_ttl)),
             ("input", put_if_given(&mut self.input, other.input)),
@@ -151,6 +154,8 @@ impl Options {
             "stitch" => put(&mut self.stitch, Stitch::from_word(value)),
             "stitch_validity" => put(&mut self.stitch_validity, StitchValidity::from_word(value)),
             "degenerate" => put(&mut self.degenerate, Degenerate::from_word(value)),
+            "policy" => put(&mut self.policy, PolicyName::from_word(value)),
+            "build_direction" => put(&mut self.build_direction, BuildDirection::from_word(value)),
             _ => Taken::Invalid,
         }
     }

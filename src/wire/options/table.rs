@@ -1,6 +1,7 @@
 //! The table of options: their names, their values, and what they do.
 
 use super::OptionError;
+use crate::wire::printing::{BuildDirection, PolicyName};
 use crate::wire::words::{
     Criterion, Cut, Degenerate, Effort, FillHoles, Format, Mode, Nesting, OpenShells, Placement, Reader,
     Require, Stitch, StitchValidity, Units, VertexColors,
@@ -185,6 +186,16 @@ pub const SPECS: &[OptionSpec] = &[
         "cut_edges",
         OptionKind::Edges,
         "Edges that cut-stitch cuts besides those that must be, by the numbers of their vertices from 0: [[0,1],[1,2]].",
+    ),
+    option(
+        "policy",
+        OptionKind::Word(PolicyName::WORDS),
+        "Process whose limits the result, or else the file, is measured against; see /v1/policies. Default: none.",
+    ),
+    option(
+        "build_direction",
+        OptionKind::Word(BuildDirection::WORDS),
+        "Direction of the file that is up in the machine; matters with policy. Default: z.",
     ),
     option(
         "samples",

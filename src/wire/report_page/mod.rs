@@ -1,0 +1,216 @@
+//! The report as a page for people: one file that loads nothing, with a style sheet inside.
+//!
+//! It is made from the report's JSON, so that a kept report and a fresh one look the same. Every text is escaped.
+
+mod markup;
+mod plain;
+mod printing;
+
+pub use markup::Escaped;
+
+use markup::{Cell, Page, Tone, figure, items, measured, text};
+use serde_json::Value;
+
+const STYLE: &str = include_str!("style.css");
+
+/// What a browser may do with the page: show it in its own style. The digest is that of the style sheet.
+pub const REPORT_PAGE_CSP: &str = "default-src 'none'; style-src 'sha256-7lm2/sSwmGLzLosgE5rg2lyExM19zNNaohyKXgcmTIo='; base-uri 'none'; form-action 'none'";
+
+/// Witnesses that are shown of each defect.
+const PLACES: usize = 3;
+
+/// The page of a report, which is `report` as JSON.
+pub fn report_page(report: &Value) -> String {
+    let mut page = Page(String::new());
+    page.add(format_args!(
+        "<!doctype html><html lang=en><head><meta charset=utf-8>\
+         <meta name=viewport content=\"width=device-width\">\
+         <meta http-equiv=Content-Security-Policy content=\"{REPORT_PAGE_CSP}\">\
+         <title>Report on a 3D file</title><style>{STYLE}</style></head><body><main>"
+    ));
+    head(&mut page, report);
+    verdict(&mut page, report);
+    found(&mut page, report);
+    done(&mut page, report);
+    moved(&mut page, report);
+    printing::add(&mut page, &report["printing"]);
+    certificate(&mut page, report);
+    page.add(format_args!("</main></body></html>\n"));
+    page.0
+}
+
+fn head(page: &mut Page, report: &Value) {
+    let input = &report["input"];
+    let known = if input["units"]["is_stated"] == true { "" } else { " (assumed)" };
+    page.add(format_args!("<h1>Report on your 3D file</h1>"));
+    page.add(format_args!(
+        "<p class=quiet>{}, {} bytes, unit {}{known}. Made by {} {}.</p>",
+        Escaped(text(&input["encoding"])),
+        input["bytes"],
+        Escaped(text(&input["units"]["unit"])),
+        Escaped(text(&report["engine"]["name"])),
+        Escaped(text(&report["engine"]["version"])),
+    ));
+}
+
+fn verdict(page: &mut Page, report: &Value) {
+    let verdict = &report["verdict"];
+    let printing = &report["printing"];
+    let is_printable = verdict["printable"] == true;
+    let (tone, title) = match (is_printable, text(&printing["verdict"])) {
+        (false, _) => (Tone::Bad, "Not a valid solid"),
+        (true, "error") => (Tone::Bad, "A valid solid, but not for this process"),
+        (true, "warning") => (Tone::Fair, "A valid solid, with warnings for this process"),
+        (true, _) => (Tone::Good, "A valid solid"),
+    };
+    page.add(format_args!("<div class=\"verdict {}\"><strong>{title}</strong>", tone.class()));
+    page.paragraph(plain::outcome(text(&verdict["outcome"])));
+    for reason in items(&verdict["reasons"]) {
+        page.paragraph(&sentence(text(&reason["message"])));
+    }
+    page.add(format_args!("</div>"));
+}
+
+/// With a capital letter and a full stop.
+fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
+}
+
+fn found(page: &mut Page, report: &Value) {
+    let before = &report["before"];
+    if before.is_null() {
+        return;
+    }
+    page.heading("What was found");
+    let (counts, measures) = (&before["counts"], &before["measures"]);
+    page.paragraph(&format!(
+        "Triangles: {}. Parts: {}, of which closed: {}. Surface: {} square units.",
+        counts["triangles"],
+        counts["components"],
+        counts["closed_components"],
+        measured(&measures["area"], ""),
+    ));
+    let defects = items(&before["defects"]);
+    if defects.is_empty() {
+        page.paragraph("No defects.");
+    }
+    let row = |defect: &Value| {
+        let (tone, word) = match text(&defect["severity"]) {
+            "error" => (Tone::Bad, "error"),
+            "warning" => (Tone::Fair, "warning"),
+            _ => (Tone::Open, "note"),
+        };
+        let places: Vec<String> = items(&defect["witnesses"]).iter().take(PLACES).map(place).collect();
+        vec![
+            Cell::Mark(tone, word),
+            Cell::Text(plain::defect(text(&defect["code"])).to_owned()),
+            Cell::Number(defect["count"].to_string()),
+            Cell::Text(places.join("; ")),
+        ]
+    };
+    let rows = defects.iter().map(row).collect();
+    page.table(&["", "Defect", "How many", "First places"], rows);
+}
+
+/// Where a defect is: a face or vertex with its line, and coordinates.
+fn place(witness: &Value) -> String {
+    let element = |name: &str, list: &Value| {
+        let first = items(list).first()?;
+        let line = first["line"].as_u64().map_or_else(String::new, |line| format!(" (line {line})"));
+        Some(format!("{name} {}{line}", first["index"]))
+    };
+    let named = element("face", &witness["faces"]).or_else(|| element("vertex", &witness["vertices"]));
+    let at = coordinates(&witness["position"]).map(|at| format!("at {at}"));
+    [named, at].into_iter().flatten().collect::<Vec<_>>().join(" ")
+}
+
+fn coordinates(position: &Value) -> Option<String> {
+    let numbers: Vec<String> = items(position).iter().filter_map(Value::as_f64).map(figure).collect();
+    (numbers.len() == 3).then(|| numbers.join(", "))
+}
+
+fn done(page: &mut Page, report: &Value) {
+    let changed = |action: &&Value| items(&action["changes"]).iter().any(|change| change["count"] != 0);
+    let actions: Vec<&Value> = items(&report["actions"]).iter().filter(changed).collect();
+    if actions.is_empty() {
+        return;
+    }
+    page.heading("What was done");
+    let row = |action: &&Value| {
+        let changes = items(&action["changes"]).iter().filter(|change| change["count"] != 0);
+        let changes = changes.map(|change| format!("{} {}", words(text(&change["name"])), change["count"]));
+        let causes = items(&action["causes"]).iter().map(|cause| words(text(cause)));
+        vec![
+            Cell::Text(words(text(&action["step"]))),
+            Cell::Text(changes.collect::<Vec<_>>().join(", ")),
+            Cell::Text(causes.collect::<Vec<_>>().join(", ")),
+            Cell::Text(text(&action["reason"]).to_owned()),
+        ]
+    };
+    let rows = actions.iter().map(row).collect();
+    page.table(&["Step", "Changes", "Because of", "Choice"], rows);
+}
+
+/// A code as words.
+fn words(code: &str) -> String {
+    code.replace(['-', '_'], " ")
+}
+
+fn moved(page: &mut Page, report: &Value) {
+    let deviation = &report["deviation"];
+    if report["certificate"].is_null() {
+        return;
+    }
+    page.heading("How far the result is from your file");
+    let unit = format!(" {}", text(&report["input"]["units"]["unit"]));
+    let percent = |value: &Value| match value.as_f64() {
+        Some(share) => format!("{} %", figure(share * 100.0)),
+        None => "\u{2013}".to_owned(),
+    };
+    let rows = [
+        ("Largest distance from what can be seen of your file", measured(&deviation["hausdorff_max"], &unit)),
+        ("Triangles that are exactly the same", percent(&deviation["identical_triangle_share"])),
+        ("Change of the volume", percent(&deviation["volume_change_share"])),
+        ("Visible surface that was lost", percent(&deviation["visible_loss"])),
+        ("Bodies that were lost", measured(&deviation["bodies_lost"], "")),
+    ];
+    let row = |(name, value): (&str, String)| vec![Cell::Text(name.to_owned()), Cell::Number(value)];
+    page.table(&[], rows.into_iter().map(row).collect());
+}
+
+fn certificate(page: &mut Page, report: &Value) {
+    let (judged, about) = match &report["certificate"] {
+        Value::Null => (&report["input_certificate"], "your file"),
+        certificate => (certificate, "the returned file"),
+    };
+    page.heading("Certificate");
+    page.paragraph(&format!(
+        "Checked exactly on the bytes of {about}, in every way in which programs read them."
+    ));
+    let claims = [
+        ("p0", "Topology: every edge has exactly two faces, and none is degenerate or there twice."),
+        ("p1", "Embedding: no two faces pass through, lie on or touch each other."),
+        ("p2", "Solid: every point is clearly inside or outside."),
+    ];
+    let mark = |holds: &Value| match holds.as_bool() {
+        Some(true) => Cell::Mark(Tone::Good, "holds"),
+        Some(false) => Cell::Mark(Tone::Bad, "broken"),
+        None => Cell::Mark(Tone::Open, "not told"),
+    };
+    let row =
+        |(name, meaning): (&str, &str)| vec![mark(&judged[name]["holds"]), Cell::Text(meaning.to_owned())];
+    let mut rows: Vec<Vec<Cell>> = claims.into_iter().map(row).collect();
+    if report["printing"].is_object() {
+        let meaning = "Manufacturable: within the limits of the process. Measured, not proved.";
+        rows.push(vec![mark(&report["printing"]["p3_holds"]), Cell::Text(meaning.to_owned())]);
+    }
+    page.table(&[], rows);
+    page.add(format_args!(
+        "<p class=quiet>SHA-256 of those bytes: <code>{}</code></p>",
+        Escaped(text(&judged["sha256"]))
+    ));
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,76 @@
+//! Codes of reports in the words of somebody who wants a print.
+
+/// What a defect means for the print.
+pub(super) fn defect(code: &str) -> &'static str {
+    match code {
+        "no-triangle" => "The file has no surface at all.",
+        "non-finite-vertex" => "Some points have no proper position.",
+        "non-finite-face" => "Some faces use points without a proper position.",
+        "index-out-of-range" => "Some faces name points that are not in the file.",
+        "too-few-corners" => "Some faces have fewer than three corners.",
+        "non-planar-polygon" => "Some faces are not flat, so programs may read them differently.",
+        "concave-polygon" => "Some faces have notches, so programs may read them differently.",
+        "coincident-corners" => "Some faces have two corners at one place.",
+        "collinear-face" => "Some faces are as thin as a line.",
+        "duplicate-face" => "Some faces are there more than once.",
+        "opposite-duplicate-face" => "Some walls have two sides and nothing between them.",
+        "isolated-vertex" => "Some points belong to no face.",
+        "duplicate-vertex" => "Some points are there more than once.",
+        "isolated-face" => "Some faces hang in the air on their own.",
+        "boundary-loop" => "The surface has holes or open rims: it is not watertight.",
+        "non-manifold-edge" => "At some edges more than two faces meet.",
+        "non-manifold-vertex" => "At some points several parts touch in nothing but the point.",
+        "orientation-conflict" => "Neighbouring faces do not agree which side is outside.",
+        "non-orientable" => "The surface has one side only, like a twisted band.",
+        "inverted-shell" => "A part is inside out.",
+        "misnested-shell" => "A part lies hidden inside another one.",
+        "zero-volume-shell" => "A part encloses no volume.",
+        "self-intersection" => "Parts of the surface pass through each other.",
+        "overlap" => "Parts of the surface lie on each other.",
+        "touch" => "Parts of the surface touch each other.",
+        "unsound-reading" => "The file is sound only for some programs.",
+        _ => "Something else is wrong.",
+    }
+}
+
+/// What became of the file.
+pub(super) fn outcome(word: &str) -> &'static str {
+    match word {
+        "identical" => "The file was sound already and is returned unchanged.",
+        "converted" => "The file was sound and is returned in another format.",
+        "repaired" => "The file was mended in a few places.",
+        "rebuilt" => "The surface was rebuilt, because mending single places was not enough.",
+        "simplified" => "The file was written with fewer triangles.",
+        "cut-stitched" => "The surface was cut where more than two faces meet, and joined again as asked.",
+        "partial" => "The best result there is was returned, although it is not sound.",
+        "refused" => "No result is returned.",
+        _ => "The file was only looked at.",
+    }
+}
+
+/// What a check for printing is about.
+pub(super) fn check(code: &str) -> &'static str {
+    match code {
+        "wall-thickness" => "Wall thickness",
+        "gap" => "Gaps",
+        "small-feature" => "Small parts",
+        "overhang" => "Overhangs",
+        "sharp-edge" => "Sharp edges",
+        "trapped-cavity" => "Trapped cavities",
+        "build-volume" => "Size",
+        _ => "Other",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wire::{CheckCode, DefectCode, Outcome};
+
+    #[test]
+    fn every_code_has_plain_words_of_its_own() {
+        assert!(DefectCode::WORDS.iter().all(|code| defect(code) != defect("")));
+        assert!(Outcome::WORDS.iter().all(|word| outcome(word) != outcome("")));
+        assert!(CheckCode::WORDS.iter().all(|code| check(code) != check("")));
+    }
+}

@@ -1,0 +1,70 @@
+//! The page of a few reports.
+
+use super::*;
+use crate::wire::{Report, TimingMs, sample};
+use serde_json::json;
+
+fn page_of(answer: &crate::pipeline::Answer) -> String {
+    report_page(&serde_json::to_value(Report::new(&answer.report, TimingMs::default())).unwrap())
+}
+
+#[test]
+fn a_repair_is_told_from_verdict_to_certificate() {
+    let page = page_of(&sample::repaired());
+    let wanted = [
+        "<strong>A valid solid</strong>",
+        "The file was mended in a few places.",
+        "The surface has holes or open rims: it is not watertight.",
+        "face 2 (line 17)",
+        "fill holes",
+        "faces added 1",
+        "How far the result is from your file",
+        "of the returned file",
+    ];
+    let mut from = 0;
+    for part in wanted {
+        let at = page[from..].find(part).unwrap_or_else(|| panic!("{part} after {from} in {page}"));
+        from += at;
+    }
+    assert!(!page.contains("Printing by"), "no policy was asked for");
+}
+
+#[test]
+fn a_refusal_says_why() {
+    let page = page_of(&sample::refused());
+    assert!(page.contains("Not a valid solid") && page.contains("No result is returned."), "{page}");
+    assert!(!page.contains("How far the result"), "there is none");
+}
+
+#[test]
+fn text_of_a_report_cannot_become_markup_and_nothing_is_loaded() {
+    let mut report =
+        serde_json::to_value(Report::new(&sample::repaired().report, TimingMs::default())).unwrap();
+    let evil = "<script src=//x>\"'&";
+    report["verdict"]["reasons"] = json!([{"message": evil}]);
+    report["actions"][0]["step"] = json!(evil);
+    report["actions"][0]["reason"] = json!(evil);
+    report["input"]["units"]["unit"] = json!(evil);
+    report["engine"]["name"] = json!(evil);
+    report["certificate"]["sha256"] = json!(evil);
+    report["printing"] = json!({"policy": evil, "checks": [{"message": evil, "code": evil}]});
+    let page = report_page(&report);
+    assert!(!page.to_lowercase().contains("<script"), "{page}");
+    assert_eq!(page.matches('<').count(), page.matches('>').count());
+    for word in ["src=", "href=", "url(", "@import", "http:", "https:"] {
+        let outside = page.replace("src=//x", "");
+        assert!(!outside.contains(word), "{word}");
+    }
+}
+
+#[test]
+fn text_cannot_become_markup() {
+    assert_eq!(Escaped("<a href=\"x\">&").to_string(), "&lt;a href=&quot;x&quot;&gt;&amp;");
+}
+
+#[test]
+fn whatever_json_it_is_given_there_is_a_page() {
+    for report in [json!(null), json!({}), json!([1]), json!({"before": 5, "printing": {"quote": []}})] {
+        assert!(report_page(&report).ends_with("</html>\n"));
+    }
+}
