@@ -65,8 +65,8 @@ pub struct Check {
 pub(super) fn checks(figures: &Figures, policy: &Policy, overhangs: Vec<Witness>) -> Vec<Check> {
     let parts = &figures.parts;
     let all = [
-        thin(CheckCode::Wall, &figures.walls, policy.wall),
-        thin(CheckCode::Gap, &figures.gaps, policy.gap),
+        thin(CheckCode::Wall, &figures.walls, policy.wall, figures.quote.area),
+        thin(CheckCode::Gap, &figures.gaps, policy.gap, figures.quote.area),
         below(CheckCode::Feature, parts.smallest_side, policy.feature, parts.small.clone()),
         below(CheckCode::Overhang, overhang_angle(figures, policy), policy.overhang, overhangs),
         below(
@@ -98,11 +98,16 @@ fn below(code: CheckCode, measured: Option<f64>, limit: Limit, witnesses: Vec<Wi
 /// cone with an angle of 30 degrees is 3 where it is below the limit. Sharper ones are pins.
 const TIP_AREA: f64 = 4.0;
 
+/// Share of the whole surface beyond which too thin is no tip either, however small the part.
+const TIP_SHARE: f64 = 0.05;
+
 /// A wall or gap. Tips run out to nothing, and printers round them: what is too thin is an error only where its area is
-/// larger than that of a tip.
-fn thin(code: CheckCode, thickness: &Thickness, limit: Limit) -> Check {
+/// larger than that of a tip, which is a small share of a part.
+fn thin(code: CheckCode, thickness: &Thickness, limit: Limit, area_of_all: f64) -> Check {
     let check = below(code, thickness.least(), limit, thickness.witnesses.clone());
-    let is_small = matches!((thickness.area_below_error, limit.error), (Some(area), Some(b)) if area <= TIP_AREA * b * b);
+    let is_tip = |area: f64, b: f64| area <= TIP_AREA * b * b && area <= TIP_SHARE * area_of_all;
+    let is_small =
+        thickness.area_below_error.zip(limit.error).is_some_and(|(area, bound)| is_tip(area, bound));
     let status = check.status.map(|status| if is_small { status.min(Status::Warning) } else { status });
     Check { status, ..check }
 }

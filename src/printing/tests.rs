@@ -145,6 +145,9 @@ fn a_knife_runs_out_to_nothing_and_a_tip_is_only_a_warning() {
         ..Soup::default()
     };
     assert_eq!(status(&measured(&tip), CheckCode::Wall), Some(Status::Warning));
+    // A plate that is smaller than a tip may be is thin all the same.
+    let plate = prism(&[[0.0, 0.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]], 0.02);
+    assert_eq!(status(&measured(&plate), CheckCode::Wall), Some(Status::Error));
 }
 
 #[test]
