@@ -161,7 +161,7 @@ fn complete_operation(path: &str, operation: &mut Operation) {
     add_problems(operation, COMMON);
     match id.as_str() {
         "analyze" | "verify" => complete_run(operation, &[]),
-        "repair" | "convert" | "simplify" | "cut-stitch" => {
+        "repair" | "convert" | "simplify" | "cut_stitch" => {
             complete_run(operation, MESH_OUT);
             add_answer(operation, "200", mesh_answer().build());
         }

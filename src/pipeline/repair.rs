@@ -213,6 +213,7 @@ impl Search<'_> {
         if !is_second_try && repair::noise::has_noise(&self.input.soup.positions) {
             return Some(Variant { clears_noise: !first_clears, rounds: self.needs_f32(), ..first });
         }
+        let first = Variant { clears_noise: first_clears, ..first };
         // Bodies that lie on each other would be parted by a gap that nobody wants.
         let only_touches = self.before.is_some_and(|before| before.properties.is_embedded == Some(true));
         if only_touches && !variant.opens_contacts && last.count("vertices_copied") > 0 {
