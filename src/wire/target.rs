@@ -25,9 +25,13 @@ pub enum TargetSpec {
 
 /// A whole number, also one that JSON writes with a fraction of zero.
 fn whole<'de, D: Deserializer<'de>>(from: D) -> Result<u32, D::Error> {
-    let number = f64::deserialize(from)?;
+    whole_number(f64::deserialize(from)?).ok_or_else(|| D::Error::custom("not a whole number of faces"))
+}
+
+/// The number, if it is whole and in range.
+pub(super) fn whole_number(number: f64) -> Option<u32> {
     let is_whole = number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&number);
-    if is_whole { Ok(number as u32) } else { Err(D::Error::custom("not a whole number of faces")) }
+    is_whole.then_some(number as u32)
 }
 
 impl TargetSpec {
