@@ -95,7 +95,7 @@ mod tests {
         for (method, words) in [
             (Some(CutMethod::Global), "cut globally, as asked: 1 of 5 vertices come apart"),
             (Some(CutMethod::Local), "cut locally, as asked: 1 of 5 vertices come apart"),
-            (None, "cut globally, which costs less here: 1 of 5 vertices come apart"),
+            (None, "cut locally, which costs less here: 1 of 5 vertices come apart"),
         ] {
             let options = CutOptions { method, ..CutOptions::default() };
             assert_eq!(cut(&mut two_fans(), &options, &Budget::unlimited()).unwrap().reason, words);

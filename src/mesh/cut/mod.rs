@@ -29,14 +29,17 @@ impl CutMethod {
     /// The method that costs less for these marks. The global one has to go through all corners whatever is marked, so
     /// the local one wins unless a large share of the corners is at singular vertices.
     pub fn cheaper(marks: &Marks, triangle_count: usize) -> Self {
-        let is_local = marks.corner_count() * LOCAL_IN_MAX <= triangle_count * 3;
+        let is_local = marks.corner_count() * LOCAL_OF <= triangle_count * 3 * LOCAL_MAX;
         if is_local { Self::Local } else { Self::Global }
     }
 }
 
-/// One in so many corners may be at a singular vertex before taking stars apart costs more than uniting all corners
-/// (`benches/cut.rs`).
-const LOCAL_IN_MAX: usize = 4;
+/// So many of [`LOCAL_OF`] corners may be at singular vertices for the local cut: up to there it was measured, and cost less
+/// everywhere (`benches/cut.rs`).
+const LOCAL_MAX: usize = 2;
+
+/// See [`LOCAL_MAX`].
+const LOCAL_OF: usize = 3;
 
 /// What [`cut_singular`] did.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
