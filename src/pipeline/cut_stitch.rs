@@ -4,13 +4,15 @@ use super::input::Input;
 use super::output::{Candidate, NoCandidate};
 use super::plan::{Attempt, Step};
 use super::{Answer, Failure, Operation, Options, Outcome, Refusal, Report, Require};
-use crate::budget::{Budget, Stage};
+use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::Depth;
 use crate::mesh::{ChosenEdges, CutMethod, Validity};
+use crate::repair::Draft;
 use crate::repair::cut::CutOptions;
 use crate::repair::duplicates::OppositePairs;
 use crate::repair::polygons::DegenerateFaces;
 use crate::repair::snap::SnapOptions;
+use crate::spatial::coincident_f64;
 
 /// How a mesh is cut and stitched.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -42,9 +44,8 @@ pub enum Stitching {
 }
 
 impl CutStitchChoices {
-    /// The steps, in their order.
-    fn steps(&self) -> Vec<Step> {
-        let chosen = ChosenEdges::of(self.chosen.iter().copied());
+    /// The steps, in their order; `chosen` are the edges as [`Step::Weld`] leaves them.
+    fn steps(&self, chosen: ChosenEdges) -> Vec<Step> {
         let before = [
             Step::SplitPolygons(self.degenerate),
             Step::Weld,
@@ -67,11 +68,13 @@ pub(super) fn cut_stitch(input: &Input, options: &Options, budget: &Budget) -> R
     let report = input.report(Operation::CutStitch, budget)?;
     let before = report.before.as_ref();
     let mut attempt = Attempt::start(&input.soup, before);
-    let _charge = budget.charge(2 * attempt.draft.bytes())?;
-    let steps = options.cut_stitch.steps();
+    let _charge = budget.charge(3 * attempt.draft.bytes())?;
+    let (whole, _) = Draft::from_soup(&input.soup);
+    let steps = options.cut_stitch.steps(welded(&options.cut_stitch.chosen, &whole, budget)?);
     budget.stage(Stage::Repair, || attempt.run(&steps, &input.soup, before, budget))?;
     let Attempt { draft, actions } = attempt;
-    let has_changed = actions.iter().any(|action| action.changes.iter().any(|&(_, count)| count > 0));
+    let has_changed = draft != whole || !input.soup.face_faults.is_empty();
+    drop(whole);
     let report = Report { actions, ..report };
     let encoding = input.output_encoding(options);
     let is_refused = |is_printable: bool| options.require == Some(Require::Printable) && !is_printable;
@@ -98,4 +101,19 @@ pub(super) fn cut_stitch(input: &Input, options: &Options, budget: &Budget) -> R
         return Ok(report.refused(Refusal::NotRepairable { witness }));
     }
     Ok(candidate.returned(input, &draft.triangle_origin, report, Outcome::CutStitched, budget)?)
+}
+
+/// The `chosen` edges by the vertices that stand for theirs after the weld: of those at one position, the first that a
+/// triangle of `whole` uses. Edges of other vertices are left out.
+fn welded(chosen: &[[u32; 2]], whole: &Draft, budget: &Budget) -> Result<ChosenEdges, Stopped> {
+    if chosen.is_empty() {
+        return Ok(ChosenEdges::default());
+    }
+    let places = coincident_f64(&whole.positions, budget)?;
+    let find = |v: u32| {
+        // Ascending: vertices that no triangle uses are left out and the others keep their order.
+        let used = whole.vertex_origin.binary_search(&v).ok()?;
+        Some(whole.vertex_origin[places.first[places.group[used] as usize] as usize])
+    };
+    Ok(ChosenEdges::of(chosen.iter().filter_map(|&[a, b]| Some([find(a)?, find(b)?]))))
 }

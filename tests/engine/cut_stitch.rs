@@ -186,6 +186,33 @@ fn a_valid_solid_comes_back_as_its_bytes_and_an_open_one_too() {
 }
 
 #[test]
+fn a_valid_solid_of_quads_with_a_spare_vertex_comes_back_as_its_bytes() {
+    let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nv 9 9 9\n\
+        f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    let answer = cut_stitch(text.as_bytes(), CutStitchChoices::default());
+    assert_eq!((answer.report.outcome, answer.output.unwrap().bytes), (Some(Outcome::Identical), None));
+}
+
+#[test]
+fn chosen_edges_are_found_by_any_of_the_vertices_at_their_ends() {
+    // A cube whose lid has vertices of its own, 8 to 11, and an unused copy of one of them in front of all.
+    let mut mesh = cube([0.0; 3]);
+    mesh.0.extend((4..8).map(|i| mesh.0[i]).collect::<Vec<_>>());
+    for t in &mut mesh.1[2..4] {
+        *t = t.map(|v| v + 4);
+    }
+    mesh.0.insert(0, [0.0, 0.0, 1.0]);
+    for v in mesh.1.as_flattened_mut() {
+        *v += 1;
+    }
+    let chosen = vec![[9, 10], [10, 12], [8, 7], [11, 5]];
+    let choices = CutStitchChoices { chosen, ..stitching(Stitching::None) };
+    let answer = cut_stitch(obj(&mesh).as_bytes(), choices);
+    assert_eq!(count(&answer, "cut", "chosen_edges"), 4);
+    assert_eq!(result(&answer).positions.len(), 12);
+}
+
+#[test]
 fn the_local_and_the_global_cut_give_the_same_bytes_and_say_what_ran() {
     let bytes = obj(&both(book(5), cones(4)));
     let [local, global] = [CutMethod::Local, CutMethod::Global].map(|method| {
