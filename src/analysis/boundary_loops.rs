@@ -130,6 +130,8 @@ impl Rims {
             ("distance_from_plane", plane.deviation),
             ("is_closed", f64::from(u8::from(is_closed))),
         ];
+        let h = self.half_edges[(chain[0] / 2) as usize];
+        witness.anchor = Some(3 * mesh.source(triangle_of(h)) + h % 3);
         witness
     }
 }

@@ -103,6 +103,9 @@ pub struct Witness {
     pub position: Option<DVec3>,
     /// What else is to be said, in the defect's own measures, e.g. `("edges", 12.0)` for a boundary loop.
     pub figures: Vec<(&'static str, f64)>,
+    /// Of loops and parts, a half-edge of the soup in it (see [`edge_of`](crate::mesh::edge_of)), by which repair steps
+    /// find it again.
+    pub anchor: Option<u32>,
 }
 
 /// All defects of one kind.

@@ -1,7 +1,7 @@
 //! Isolated faces: they share no edge with another face of the file.
 
 use super::names::middle;
-use super::{Context, DefectCode, Finding};
+use super::{Context, DefectCode, Finding, Witness};
 use crate::budget::{CHECK_EVERY, Stopped};
 
 pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
@@ -23,7 +23,9 @@ pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
         .map(|(part, _)| part.first);
     let isolated: Vec<u32> = firsts.collect();
     Ok(Finding::of(DefectCode::IsolatedFace, &isolated, cx.samples, |&t| {
-        mesh.names().triangles(&[mesh.source(t)], middle(mesh.corners(t)))
+        let t = mesh.source(t);
+        let middle = middle(mesh.soup.triangles[t as usize].map(|v| mesh.position(v)));
+        Witness { anchor: Some(3 * t), ..mesh.names().triangles(&[t], middle) }
     }))
 }
 

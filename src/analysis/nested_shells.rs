@@ -31,6 +31,7 @@ fn witness(cx: &Context<'_>, shell: &Shell) -> Witness {
     let corners = cx.mesh.triangles[first as usize];
     let mut witness = cx.mesh.names().witness(faces, corners, middle(cx.mesh.corners(first)));
     witness.figures = vec![("triangles", members.len() as f64), ("volume", shell.volume)];
+    witness.anchor = Some(3 * cx.mesh.source(first));
     witness
 }
 

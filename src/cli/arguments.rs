@@ -22,6 +22,9 @@ pub(super) enum Command {
     /// Report what is wrong with a mesh.
     #[command(arg_required_else_help = true)]
     Analyze(AnalyzeArguments),
+    /// Report what is wrong with a mesh and what repair would do about it.
+    #[command(arg_required_else_help = true)]
+    Plan(AnalyzeArguments),
     /// Repair a mesh and certify the result; nothing is written unless it is certified.
     #[command(arg_required_else_help = true)]
     Repair(RepairArguments),
@@ -191,9 +194,9 @@ impl InputArguments {
     }
 }
 
-impl From<AnalyzeArguments> for Request {
-    fn from(given: AnalyzeArguments) -> Self {
-        given.given.request(Operation::Analyze, None)
+impl AnalyzeArguments {
+    pub(super) fn request(self, operation: Operation) -> Request {
+        self.given.request(operation, None)
     }
 }
 

@@ -46,7 +46,9 @@ fn option_flag(spec: &'static OptionSpec) -> Arg {
         OptionKind::Flag => {
             flag.value_name("true|false").value_parser(PossibleValuesParser::new(["true", "false"]))
         }
-        OptionKind::Input | OptionKind::Targets | OptionKind::Edges => flag.value_name("JSON"),
+        OptionKind::Input | OptionKind::Targets | OptionKind::Edges | OptionKind::Plan => {
+            flag.value_name("JSON")
+        }
     }
 }
 

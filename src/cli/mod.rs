@@ -12,6 +12,7 @@ mod work;
 
 use crate::config::{Config, Loaded};
 use crate::formats::Format;
+use crate::pipeline::Operation;
 use arguments::{Arguments, Command, SettingsCommand};
 use clap::Parser as _;
 use exit::Exit;
@@ -68,7 +69,8 @@ fn execute(command: Command, service: Service) -> Exit {
         Command::Config(SettingsCommand::Check { given, strict }) => {
             settings::check(&given.sources(), strict)
         }
-        Command::Analyze(given) => work::run(&given.into()),
+        Command::Analyze(given) => work::run(&given.request(Operation::Analyze)),
+        Command::Plan(given) => work::run(&given.request(Operation::Plan)),
         Command::Verify(given) => work::run(&given.into()),
         Command::Repair(given) => work::run(&given.into()),
         Command::Convert(given) => work::run(&given.into()),

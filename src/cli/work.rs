@@ -167,7 +167,9 @@ fn verdict(operation: Operation, require: Option<Require>, report: &Report, has_
     let is_done = match operation {
         Operation::Repair => has_result && report.verdict.printable,
         Operation::Verify => report.verdict.printable,
-        Operation::Analyze => require != Some(Require::Printable) || report.verdict.printable,
+        Operation::Analyze | Operation::Plan => {
+            require != Some(Require::Printable) || report.verdict.printable
+        }
         Operation::Convert | Operation::Simplify | Operation::CutStitch => {
             has_result && (require != Some(Require::Printable) || report.verdict.printable)
         }

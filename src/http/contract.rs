@@ -21,7 +21,9 @@ use utoipa::openapi::{Content, Header, InfoBuilder, OpenApi, Ref, RefOr, Require
 use utoipa::{PartialSchema as _, ToSchema};
 
 use super::representation::OCTET_STREAM;
-use crate::wire::{self, Format, Job, JobRequest, Options, Outcome, Problem, ProblemCode, Report};
+use crate::wire::{
+    self, Format, Job, JobRequest, Options, Outcome, PlanRequest, Problem, ProblemCode, Report,
+};
 
 /// Problems that any path may answer with.
 const COMMON: &[ProblemCode] = &[
@@ -50,6 +52,7 @@ const UPLOAD: &[ProblemCode] = &[
 /// Problems of a job that was run.
 const RUN: &[ProblemCode] = &[
     ProblemCode::Cancelled,
+    ProblemCode::PlanMismatch,
     ProblemCode::MeshTooLarge,
     ProblemCode::EngineOutOfMemory,
     ProblemCode::MeshUnparseable,
@@ -135,7 +138,7 @@ fn schemas() -> Vec<(String, RefOr<Schema>)> {
             <$type>::schemas(&mut schemas);
         )+ };
     }
-    add!(MeshForm, JobForm, JobRequest, Options, Job, Report, Problem);
+    add!(MeshForm, JobForm, JobRequest, Options, PlanRequest, Job, Report, Problem);
     let is_form = |name: &str| name == MeshForm::name() || name == JobForm::name();
     let closed = |schema| {
         changed(schema, |form| {
@@ -160,7 +163,7 @@ fn complete_operation(path: &str, operation: &mut Operation) {
     ]);
     add_problems(operation, COMMON);
     match id.as_str() {
-        "analyze" | "verify" => complete_run(operation, &[]),
+        "analyze" | "plan" | "verify" => complete_run(operation, &[]),
         "repair" | "convert" | "simplify" | "cut_stitch" => {
             complete_run(operation, MESH_OUT);
             add_answer(operation, "200", mesh_answer().build());

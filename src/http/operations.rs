@@ -36,6 +36,16 @@ pub(super) async fn verify(state: State, caller: Extension<Caller>, request: Req
     report_of(&state, &caller, Operation::Verify, request).await
 }
 
+/// Plan a repair.
+///
+/// Mesh in, report out, with a `plan`: what a repair would do about each defect, what else could be done, and how sure
+/// that is. Edit it and send it to `/v1/repair` as `plan`.
+#[utoipa::path(post, path = "/v1/plan", tag = "operations", params(Options), responses(
+    (status = 200, description = "The report.", body = Report)))]
+pub(super) async fn plan(state: State, caller: Extension<Caller>, request: Request) -> Handled {
+    report_of(&state, &caller, Operation::Plan, request).await
+}
+
 /// Repair a mesh.
 ///
 /// Mesh in, certified mesh out, or a refusal that says why. `Accept` chooses the mesh, the report, or both.

@@ -28,6 +28,7 @@ fn api() -> OpenApiRouter<Arc<Service>> {
         .routes(routes!(operations::convert))
         .routes(routes!(operations::verify))
         .routes(routes!(operations::simplify))
+        .routes(routes!(operations::plan))
         .routes(routes!(operations::cut_stitch))
         .routes(routes!(operations::create_job))
         .routes(routes!(lifecycle::show, lifecycle::delete))

@@ -29,7 +29,7 @@ impl StageClock {
         // Read, certify and analyze the input; two lists of steps; write, certify and analyze the output.
         let passes = match operation {
             Operation::Verify => 2.0,
-            Operation::Analyze => 3.0,
+            Operation::Analyze | Operation::Plan => 3.0,
             Operation::Convert => 5.0,
             Operation::CutStitch => 7.0,
             Operation::Repair => 8.0,

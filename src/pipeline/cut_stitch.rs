@@ -72,7 +72,7 @@ pub(super) fn cut_stitch(input: &Input, options: &Options, budget: &Budget) -> R
     let (whole, _) = Draft::from_soup(&input.soup);
     let steps = options.cut_stitch.steps(welded(&options.cut_stitch.chosen, &whole, budget)?);
     budget.stage(Stage::Repair, || attempt.run(&steps, &input.soup, before, budget))?;
-    let Attempt { draft, actions } = attempt;
+    let Attempt { draft, actions, .. } = attempt;
     let has_changed = draft != whole || !input.soup.face_faults.is_empty();
     drop(whole);
     let report = Report { actions, ..report };

@@ -1,7 +1,10 @@
 //! The uploaded file: read, judged and described once for every operation.
 
 use super::describe::describe;
-use super::{Answer, Failure, InputFacts, Operation, Options, Outcome, Output, Refusal, Report};
+use super::remedies::proposals;
+use super::{
+    Answer, ChosenPlan, Failure, InputFacts, Operation, Options, Outcome, Output, Plan, Refusal, Report, Step,
+};
 use crate::analysis::Analysis;
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::{self, CertifyError, Depth, Examination};
@@ -29,7 +32,8 @@ impl Input {
             }
             Ok::<_, ReadError>((encoding, soup))
         })?;
-        let samples = options.samples.unwrap_or(SAMPLES_DEFAULT);
+        let of_plan = options.plan.as_ref().map_or(0, ChosenPlan::samples_min);
+        let samples = options.samples.unwrap_or(SAMPLES_DEFAULT).max(of_plan);
         let examination = budget.stage(Stage::Certify, || {
             certificate::examine(&soup, bytes, encoding, &options.read, Depth::Count { samples }, budget)
         })?;
@@ -55,6 +59,7 @@ impl Input {
             input: self.facts.clone(),
             before: None,
             input_certificate: self.examination.certificate.clone(),
+            plan: None,
             actions: Vec::new(),
             levels: Vec::new(),
             after: None,
@@ -73,6 +78,17 @@ impl Input {
     /// The account of `operation` as far as the input is concerned.
     pub(super) fn report(&self, operation: Operation, budget: &Budget) -> Result<Report, Stopped> {
         Ok(Report { operation, before: Some(self.analyze(budget)?), ..self.verification() })
+    }
+
+    /// The same with what is proposed for each defect.
+    pub(super) fn planned(&self, operation: Operation, budget: &Budget) -> Result<Report, Stopped> {
+        let report = self.report(operation, budget)?;
+        let plan = Plan {
+            input_sha256: self.facts.sha256,
+            findings: report.before.as_ref().map(proposals).unwrap_or_default(),
+            steps: None,
+        };
+        Ok(Report { plan: Some(plan), ..report })
     }
 
     /// The encoding of the output: the input's own unless another format is asked.
@@ -99,6 +115,14 @@ impl Input {
 }
 
 impl Report {
+    /// With the steps that made the result.
+    pub(super) fn made_by(mut self, steps: Vec<Step>) -> Self {
+        if let Some(plan) = &mut self.plan {
+            plan.steps = Some(steps);
+        }
+        self
+    }
+
     /// An answer without a file.
     pub(super) fn into_answer(self) -> Answer {
         Answer { report: self, output: None, levels: Vec::new() }

@@ -11,6 +11,7 @@ mod plan;
 mod printing;
 mod priority;
 mod rebuild;
+mod remedies;
 mod repair;
 mod simplify;
 mod texture;
@@ -18,14 +19,17 @@ mod texture;
 pub use self::cut_stitch::{CutStitchChoices, Stitching};
 pub use self::fidelity::Losses;
 use self::input::Input;
+pub use self::plan::Step;
 pub use self::printing::PrintingReport;
 pub use self::rebuild::{Effort, WrapChoices};
+pub use self::remedies::{ChosenPlan, ChosenRemedy, ElementProposal, Plan, PlanMismatch, Proposal, Remedy};
 use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stopped};
 use crate::certificate::{Certificate, Violation};
 use crate::distance::SurfaceDistance;
 use crate::formats::{Encoding, Format, ReadError, ReadOptions, WriteError};
 use crate::printing::Policy;
+use crate::repair::nest;
 use crate::simplify::{CriterionKind, Mode, Placement, Report as SimplifyReport, Target};
 
 /// What to do with a file.
@@ -33,6 +37,8 @@ use crate::simplify::{CriterionKind, Mode, Placement, Report as SimplifyReport, 
 pub enum Operation {
     /// Report only.
     Analyze,
+    /// Report and what a repair would do about each defect.
+    Plan,
     /// Report and a certified repair.
     Repair,
     /// The same mesh in another format; its certificate states what holds.
@@ -47,13 +53,21 @@ pub enum Operation {
 
 impl Operation {
     /// Every operation.
-    pub const ALL: [Self; 6] =
-        [Self::Analyze, Self::Repair, Self::Convert, Self::Verify, Self::Simplify, Self::CutStitch];
+    pub const ALL: [Self; 7] = [
+        Self::Analyze,
+        Self::Plan,
+        Self::Repair,
+        Self::Convert,
+        Self::Verify,
+        Self::Simplify,
+        Self::CutStitch,
+    ];
 
     /// Name in paths, options and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Analyze => "analyze",
+            Self::Plan => "plan",
             Self::Repair => "repair",
             Self::Convert => "convert",
             Self::Verify => "verify",
@@ -114,6 +128,10 @@ pub struct Options {
     pub require: Option<Require>,
     /// Hole filling of `repair`.
     pub fill_holes: FillHoles,
+    /// What shells inside shells mean to `repair`.
+    pub nesting: nest::Policy,
+    /// What `repair` is to do about each defect; `None`: as proposed.
+    pub plan: Option<ChosenPlan>,
     /// How far the result of a repair may be from the file.
     pub limits: Limits,
     /// How a mesh is rebuilt that no step of `repair` makes a solid.
@@ -289,6 +307,8 @@ pub struct Report {
     pub before: Option<Analysis>,
     /// The uploaded bytes, judged.
     pub input_certificate: Certificate,
+    /// What may be done about each defect, and what was; `None` for operations other than `plan` and `repair`.
+    pub plan: Option<Plan>,
     /// Steps in the order they ran; empty when none did.
     pub actions: Vec<Action>,
     /// The results of a simplification, in the order of the targets; the first is the one that `after`, `certificate`
@@ -345,6 +365,15 @@ pub enum Failure {
     /// The run was stopped.
     #[error("{0}")]
     Stopped(#[from] Stopped),
+    /// The plan is not for this file.
+    #[error("the plan is not for this file")]
+    PlanMismatch(PlanMismatch),
+}
+
+impl From<PlanMismatch> for Failure {
+    fn from(mismatch: PlanMismatch) -> Self {
+        Self::PlanMismatch(mismatch)
+    }
 }
 
 impl From<ReadError> for Failure {
@@ -369,6 +398,7 @@ pub fn run(
     let input = Input::read(bytes, options, budget)?;
     let mut answer = match operation {
         Operation::Analyze => input.report(operation, budget)?.into_answer(),
+        Operation::Plan => input.planned(operation, budget)?.into_answer(),
         Operation::Verify => input.verification().into_answer(),
         Operation::Convert => convert::convert(&input, options, budget)?,
         Operation::Repair => repair::repair(&input, options, budget)?,

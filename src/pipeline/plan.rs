@@ -1,35 +1,68 @@
 //! The repair plan: a list of steps that a client can read, and the loop that runs it.
 
-use super::{Action, FillHoles};
+use super::Action;
+use super::remedies::Choices;
 use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stopped};
 use crate::mesh::{ChosenEdges, Soup, Validity};
 use crate::repair::cut::CutOptions;
 use crate::repair::duplicates::OppositePairs;
+use crate::repair::nest::NestOptions;
 use crate::repair::polygons::DegenerateFaces;
 use crate::repair::snap::SnapOptions;
-use crate::repair::{self, Changes, Draft};
+use crate::repair::{self, Changes, Draft, Selection};
 
 /// One step of a plan, with its parameters.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Step {
+pub enum Step {
+    /// Polygons that pass a vertex more than once become simple ones, or go.
     SplitPolygons(DegenerateFaces),
+    /// Coordinates that are all but zero become zero.
     ClearNoise,
+    /// Coordinates become float32.
     RoundToF32,
+    /// Vertices at one position become one.
     Weld,
+    /// Triangles with a repeated vertex go.
     DropDegenerate,
+    /// Collinear triangles go and their neighbours are divided.
     SplitCollinear,
+    /// Boundary edges are divided where a boundary vertex lies on them.
     SplitTVertices,
+    /// The parts in which these triangles of the soup are go.
+    RemoveParts(Vec<u32>),
+    /// Copies of triangles go.
     DropDuplicates(OppositePairs),
-    RemoveCrossing { rings: u32 },
+    /// Triangles that meet others go.
+    RemoveCrossing {
+        /// Rings of triangles around them that go too.
+        rings: u32,
+    },
+    /// Faces are turned so that neighbours agree.
     Orient,
+    /// Singular edges and vertices are cut.
     Cut(CutOptions),
+    /// Edges that the cut has parted are joined from where boundaries turn back on themselves.
     Pinch(ChosenEdges, Validity),
+    /// Boundary edges that are close are joined.
     Snap(SnapOptions),
-    FillHoles,
+    /// Holes are closed.
+    FillHoles(Selection),
+    /// Open parts get a wall behind them.
+    Thicken {
+        /// Thickness, in the unit of the file.
+        wall: f64,
+    },
+    /// Bodies that touch are drawn apart.
     OpenContacts,
+    /// Vertices at one position become one again.
     JoinCopies,
-    Nest { is_embedded: bool },
+    /// Shells are turned and dropped so that they alternate.
+    Nest(NestOptions),
+    /// The surface is rebuilt on a lattice.
+    Rebuild,
+    /// The certified mesh gets fewer triangles.
+    Simplify,
 }
 
 /// What distinguishes the plans that are tried for one file.
@@ -45,46 +78,57 @@ pub(super) struct Variant {
     pub(super) removes_crossing: Option<u32>,
     /// Bodies that touch are drawn apart.
     pub(super) opens_contacts: bool,
+    /// Open parts get walls, and no hole is filled.
+    pub(super) thickens: bool,
 }
 
 impl Variant {
     /// The steps that mend the surface, least invasive first; each finds what those before it leave.
-    pub(super) fn mending(self, fill_holes: FillHoles) -> Vec<Step> {
+    pub(super) fn mending(self, choices: &Choices) -> Vec<Step> {
         let clear = self.clears_noise.then_some(Step::ClearNoise);
         let round = self.rounds.then_some(Step::RoundToF32);
         let split = Step::SplitPolygons(DegenerateFaces::Split);
-        let welded = [
-            Step::Weld,
-            Step::DropDegenerate,
-            Step::SplitCollinear,
-            Step::SplitTVertices,
-            Step::DropDuplicates(self.opposite),
-        ];
+        let collinear = choices.splits_collinear.then_some(Step::SplitCollinear);
+        let welded = [Step::Weld, Step::DropDegenerate].into_iter().chain(collinear);
+        let parts =
+            (!choices.removed_parts.is_empty()).then(|| Step::RemoveParts(choices.removed_parts.clone()));
+        let single = [Step::SplitTVertices, Step::DropDuplicates(self.opposite)];
         let remove = self.removes_crossing.map(|rings| Step::RemoveCrossing { rings });
-        let cut = [Step::Orient, Step::Cut(CutOptions::default())];
-        // Which copies belong together matters only where they are drawn apart.
-        let pinch = self.opens_contacts.then(|| Step::Pinch(ChosenEdges::default(), Validity::Exact));
-        // Only what coincides: no vertex moves.
-        let snap = Step::Snap(SnapOptions { epsilon: Some(0.0), ..SnapOptions::default() });
-        let fill = (fill_holes == FillHoles::Simple).then_some(Step::FillHoles);
-        let start = [split].into_iter().chain(clear).chain(round).chain(welded);
-        start.chain(remove).chain(cut).chain(pinch).chain([snap]).chain(fill).collect()
+        let orient = choices.orients.then_some(Step::Orient);
+        // What is not cut cannot be joined by the rules of a manifold.
+        let join = choices.cuts.then(|| {
+            // Which copies belong together matters only where they are drawn apart.
+            let pinch = self.opens_contacts.then(|| Step::Pinch(ChosenEdges::default(), Validity::Exact));
+            // Only what coincides: no vertex moves.
+            let snap = Step::Snap(SnapOptions { epsilon: Some(0.0), ..SnapOptions::default() });
+            [Step::Cut(CutOptions::default())].into_iter().chain(pinch).chain([snap])
+        });
+        let fill = match self.thickens {
+            true => Some(Step::Thicken { wall: choices.wall }),
+            false => choices.fills_holes.then(|| Step::FillHoles(choices.holes.clone())),
+        };
+        let start = [split].into_iter().chain(clear).chain(round).chain(welded).chain(parts).chain(single);
+        start.chain(remove).chain(orient).chain(join.into_iter().flatten()).chain(fill).collect()
     }
 
     /// The steps that make it a solid. Readers weld, so that copies of a vertex would be one again: what is to be
     /// certified has none. `has_contacts`: triangles of the input meet beyond common vertices and edges. Nothing that
     /// mends adds a contact, but moving vertices can.
-    pub(super) fn solidifying(self, has_contacts: bool) -> Vec<Step> {
-        let moves = self.rounds || self.clears_noise || self.opens_contacts;
+    pub(super) fn solidifying(self, choices: &Choices, has_contacts: bool) -> Vec<Step> {
+        let moves = self.thickens || self.rounds || self.clears_noise || self.opens_contacts;
         let open = self.opens_contacts.then_some(Step::OpenContacts);
-        let nest = Step::Nest { is_embedded: !has_contacts && !moves };
+        let nest = Step::Nest(NestOptions {
+            policy: choices.nesting,
+            is_embedded: !has_contacts && !moves,
+            chosen: choices.shells.clone(),
+        });
         open.into_iter().chain([Step::JoinCopies, nest]).collect()
     }
 }
 
 impl Step {
     /// Name in reports.
-    fn name(&self) -> &'static str {
+    pub fn name(&self) -> &'static str {
         match self {
             Self::SplitPolygons(_) => "split-polygons",
             Self::ClearNoise => "clear-noise",
@@ -100,9 +144,13 @@ impl Step {
             Self::Snap(_) => "snap",
             Self::RemoveCrossing { .. } => "remove-crossing",
             Self::OpenContacts => "open-contacts",
-            Self::FillHoles => "fill-holes",
+            Self::FillHoles(_) => "fill-holes",
+            Self::Thicken { .. } => "thicken",
             Self::JoinCopies => "join-copies",
-            Self::Nest { .. } => "nest",
+            Self::Nest(_) => "nest",
+            Self::RemoveParts(_) => "remove-parts",
+            Self::Rebuild => "rebuild",
+            Self::Simplify => "simplify",
         }
     }
 
@@ -116,7 +164,14 @@ impl Step {
                 DefectCode::Touch,
             ],
             Self::RoundToF32 => &[DefectCode::UnsoundReading],
-            Self::JoinCopies => &[],
+            Self::JoinCopies | Self::Rebuild | Self::Simplify => &[],
+            Self::Thicken { .. } => &[DefectCode::IsolatedFace, DefectCode::BoundaryLoop],
+            Self::RemoveParts(_) => &[
+                DefectCode::IsolatedFace,
+                DefectCode::InvertedShell,
+                DefectCode::MisnestedShell,
+                DefectCode::ZeroVolumeShell,
+            ],
             Self::RemoveCrossing { .. } => {
                 &[DefectCode::SelfIntersection, DefectCode::Overlap, DefectCode::Touch]
             }
@@ -130,10 +185,10 @@ impl Step {
             Self::Cut(_) => {
                 &[DefectCode::NonManifoldEdge, DefectCode::NonManifoldVertex, DefectCode::NonOrientable]
             }
-            Self::SplitTVertices | Self::Pinch(..) | Self::Snap(_) | Self::FillHoles => {
+            Self::SplitTVertices | Self::Pinch(..) | Self::Snap(_) | Self::FillHoles(_) => {
                 &[DefectCode::BoundaryLoop]
             }
-            Self::Nest { .. } => &[DefectCode::InvertedShell, DefectCode::MisnestedShell],
+            Self::Nest(_) => &[DefectCode::InvertedShell, DefectCode::MisnestedShell],
         }
     }
 
@@ -153,8 +208,12 @@ impl Step {
             Self::Snap(options) => repair::snap::snap(draft, options, budget),
             Self::RemoveCrossing { rings } => repair::crossing::remove_crossing(draft, *rings, budget),
             Self::OpenContacts => repair::contact::open_contacts(draft, budget),
-            Self::FillHoles => repair::fill::fill_holes(draft, budget),
-            Self::Nest { is_embedded } => repair::nest::nest(draft, *is_embedded, budget),
+            Self::FillHoles(chosen) => repair::fill::fill_chosen_holes(draft, soup, chosen, budget),
+            Self::Thicken { wall } => repair::thicken::thicken(draft, *wall, budget),
+            Self::Nest(options) => repair::nest::nest(draft, options, budget),
+            Self::RemoveParts(triangles) => repair::parts::remove_parts(draft, triangles, budget),
+            // These make new meshes and are not for a draft; see `replay`.
+            Self::Rebuild | Self::Simplify => Ok(Changes::default()),
         }
     }
 }
@@ -165,13 +224,16 @@ pub(super) struct Attempt {
     pub(super) draft: Draft,
     /// What the steps did, in their order.
     pub(super) actions: Vec<Action>,
+    /// The steps that ran.
+    pub(super) steps: Vec<Step>,
 }
 
 impl Attempt {
     /// The usable triangles of `soup`.
     pub(super) fn start(soup: &Soup, before: Option<&Analysis>) -> Self {
         let (draft, changes) = Draft::from_soup(soup);
-        Self { draft, actions: vec![action("take-usable", &UNUSABLE, changes, soup, before)] }
+        let actions = vec![action("take-usable", &UNUSABLE, changes, soup, before)];
+        Self { draft, actions, steps: Vec::new() }
     }
 
     /// Runs `steps`, and notes what each did, and why by the defects found `before`.
@@ -187,6 +249,7 @@ impl Attempt {
             let changes = step.run(&mut self.draft, soup, budget)?;
             debug_assert_eq!(self.draft.check(), Vec::<String>::new(), "after {step:?}");
             self.actions.push(action(step.name(), step.cures(), changes, soup, before));
+            self.steps.push(step.clone());
         }
         Ok(())
     }

@@ -1,28 +1,42 @@
 //! A broken file to a certified one: plans in order, the first whose bytes are certified wins.
 
-use super::fidelity::Original;
+use super::fidelity::{Fidelity, Original};
 use super::input::Input;
 use super::output::{Candidate, NoCandidate};
-use super::plan::{Attempt, Variant};
-use super::rebuild::NotRebuilt;
+use super::plan::{Attempt, Step, Variant};
+use super::rebuild::{NotRebuilt, Rebuilt};
+use super::remedies::{Choices, PlanMismatch, Walls};
 use super::{Answer, Failure, Operation, Options, Outcome, Refusal, Report, Require, rebuild, simplify};
 use crate::analysis::Analysis;
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::Depth;
 use crate::formats::Encoding;
 use crate::repair::duplicates::OppositePairs;
+use crate::repair::nest::Policy;
 use crate::repair::{self, Draft};
-use crate::winding::Solid;
+use crate::winding::{OpenShells, Solid};
 
 /// Repairs `input`. A valid one comes back as it is, or converted.
 pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Result<Answer, Failure> {
-    let report = input.report(Operation::Repair, budget)?;
+    let report = input.planned(Operation::Repair, budget)?;
+    let plan = options.plan.as_ref();
+    if plan.and_then(|plan| plan.input_sha256).is_some_and(|asked| asked != input.facts.sha256) {
+        return Err(PlanMismatch::OtherFile.into());
+    }
+    let choices = Choices::of(options, report.before.as_ref())?;
+    if let Some(steps) = plan.and_then(|plan| plan.steps.as_deref()) {
+        return replay(input, steps, options, report, budget);
+    }
     let encoding = input.output_encoding(options);
-    if input.examination.certificate.is_printable() {
+    // Cavities make no mesh invalid, but the caller may want them filled.
+    let is_as_asked = || choices.nesting != Policy::Fill || !has_cavities(input);
+    if input.examination.certificate.is_printable() && is_as_asked() {
         let (draft, _) = Draft::from_soup(&input.soup);
         if let Some(fewer) = simplify::of_certified(&draft, input, options, budget)? {
+            let report = report.made_by(vec![Step::Simplify]);
             return fewer.returned(input, &draft, report, Outcome::Simplified, options, budget);
         }
+        let report = report.clone().made_by(Vec::new());
         if encoding == input.facts.encoding {
             return Ok(input.returned_as_it_is(report, Outcome::Identical));
         }
@@ -37,9 +51,10 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
             Err(NoCandidate::Failed(failure)) => return Err(failure),
         }
     }
-    let search = Search { input, encoding, options, before: report.before.as_ref(), budget };
+    let before = report.before.clone();
+    let search = Search { input, encoding, options, choices: &choices, before: before.as_ref(), budget };
     match search.run()? {
-        Found::Certified(found) => certified(*found, input, encoding, options, report, budget),
+        Found::Certified(found) => certified(*found, &search, report),
         Found::Nothing { refusal: Refusal::NotRepairable { .. }, mended: Some(mended), .. }
             if options.require == Some(Require::None) =>
         {
@@ -47,8 +62,11 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
         }
         Found::Nothing {
             refusal: Refusal::NotRepairable { .. } | Refusal::NothingToRepair, mended, ..
-        } => match (rebuild::rebuild(input, encoding, options, report.before.as_ref(), budget), mended) {
-            (Ok(rebuilt), _) => Ok(rebuilt.returned(input, report, budget)?),
+        } if choices.rebuilds => match (search.rebuild(), mended) {
+            (Ok(rebuilt), _) => {
+                let report = report.made_by(rebuilding(&choices));
+                Ok(rebuilt.returned(input, report, budget)?)
+            }
             (Err(NotRebuilt::Failed(failure)), _) => Err(failure),
             (Err(NotRebuilt::Refused { refusal, .. }), Some(mended))
                 if refusal != Refusal::NothingToRepair =>
@@ -59,6 +77,9 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
                 Ok(Report { actions, ..report }.refused(refusal))
             }
         },
+        Found::Nothing { refusal: Refusal::NotRepairable { .. }, mended: Some(mended), .. } => {
+            partial(input, encoding, report, *mended, budget)
+        }
         Found::Nothing { refusal, last, .. } => {
             Ok(Report { actions: last.actions, ..report }.refused(refusal))
         }
@@ -68,44 +89,140 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
 /// A result of local steps, unless it lost too much and one that is rebuilt is closer.
 fn certified(
     (attempt, candidate): (Attempt, Candidate),
-    input: &Input,
-    encoding: Encoding,
-    options: &Options,
+    search: &Search<'_>,
     report: Report,
-    budget: &Budget,
 ) -> Result<Answer, Failure> {
-    let before = report.before.as_ref();
-    let volume = before.and_then(|analysis| analysis.measures.volume);
-    let Attempt { draft, actions } = attempt;
-    let origins = &draft.triangle_origin;
-    // Mostly nothing is gone, and what is hidden does not matter.
-    let all = Original::new(&input.soup, volume, None);
-    let mut fidelity = all.measure(candidate.soup(), origins, budget)?;
-    if !fidelity.passes(&options.limits) {
-        let read = || Solid::of(&draft.positions, &draft.triangles, options.wrap.open_shells, budget);
-        let solid = budget.stage(Stage::Measure, read)?;
-        let visible = Original::new(&input.soup, volume, Some(solid));
-        fidelity = visible.measure(candidate.soup(), origins, budget)?;
-    }
-    if !fidelity.passes(&options.limits) {
-        let rebuilt = match rebuild::rebuild(input, encoding, options, before, budget) {
+    let Search { input, options, budget, .. } = *search;
+    let fidelity = fidelity_of(&attempt, &candidate, search)?;
+    // What was removed as chosen is no loss that a rebuilt surface could make good.
+    if !fidelity.passes(&options.limits) && search.choices.rebuilds && !search.choices.removes() {
+        let rebuilt = match search.rebuild() {
             Ok(rebuilt) => Some(rebuilt),
             Err(NotRebuilt::Refused { .. }) => None,
             Err(NotRebuilt::Failed(failure)) => return Err(failure),
         };
         let closer = rebuilt.filter(|rebuilt| !fidelity.is_no_worse(&rebuilt.fidelity, &options.limits));
         if let Some(rebuilt) = closer {
-            return Ok(rebuilt.returned(input, report, budget)?);
+            return Ok(rebuilt.returned(input, report.made_by(rebuilding(search.choices)), budget)?);
         }
-        if let Some(refusal) = fidelity.breach(&options.limits) {
-            return Ok(Report { actions, ..report }.refused(refusal));
-        }
+    }
+    finished((attempt, candidate), fidelity, Outcome::Repaired, search, report)
+}
+
+/// How far a result of local steps is from the file.
+fn fidelity_of(attempt: &Attempt, candidate: &Candidate, search: &Search<'_>) -> Result<Fidelity, Failure> {
+    let Search { input, options, before, budget, .. } = *search;
+    let (draft, volume) = (&attempt.draft, before.and_then(|analysis| analysis.measures.volume));
+    // Mostly nothing is gone, and what is hidden does not matter.
+    let all = Original::new(&input.soup, volume, None);
+    let fidelity = all.measure(candidate.soup(), &draft.triangle_origin, budget)?;
+    if fidelity.passes(&options.limits) {
+        return Ok(fidelity);
+    }
+    let read = || Solid::of(&draft.positions, &draft.triangles, options.wrap.open_shells, budget);
+    let solid = budget.stage(Stage::Measure, read)?;
+    let visible = Original::new(&input.soup, volume, Some(solid));
+    Ok(visible.measure(candidate.soup(), &draft.triangle_origin, budget)?)
+}
+
+/// A result of local steps as the answer, with fewer triangles if that is asked, unless it is beyond the caller's limits.
+fn finished(
+    (attempt, candidate): (Attempt, Candidate),
+    fidelity: Fidelity,
+    outcome: Outcome,
+    search: &Search<'_>,
+    report: Report,
+) -> Result<Answer, Failure> {
+    let Search { input, options, budget, .. } = *search;
+    let Attempt { draft, actions, steps } = attempt;
+    if let Some(refusal) = fidelity.breach(&options.limits) {
+        return Ok(Report { actions, ..report }.refused(refusal));
     }
     let report = Report { actions, losses: Some(fidelity.losses), distance: fidelity.distance, ..report };
     if let Some(fewer) = simplify::of_certified(&draft, input, options, budget)? {
-        return fewer.returned(input, &draft, report, Outcome::Repaired, options, budget);
+        let report = report.made_by([steps, vec![Step::Simplify]].concat());
+        return fewer.returned(input, &draft, report, outcome, options, budget);
     }
-    Ok(candidate.returned(input, origins, report, Outcome::Repaired, budget)?)
+    Ok(candidate.returned(input, &draft.triangle_origin, report.made_by(steps), outcome, budget)?)
+}
+
+/// Runs exactly `steps`, as a plan gives them.
+fn replay(
+    input: &Input,
+    steps: &[Step],
+    options: &Options,
+    report: Report,
+    budget: &Budget,
+) -> Result<Answer, Failure> {
+    let before = report.before.clone();
+    let encoding = input.output_encoding(options);
+    let removed = |step: &Step| if let Step::RemoveParts(parts) = step { parts.clone() } else { Vec::new() };
+    let choices = &Choices { removed_parts: steps.iter().flat_map(removed).collect(), ..Choices::default() };
+    let is_simplified = steps.contains(&Step::Simplify);
+    let mut settings = options.clone();
+    if !is_simplified && !steps.contains(&Step::Rebuild) {
+        settings.simplify.targets.clear();
+    }
+    let options = &settings;
+    let search = Search { input, encoding, options, choices, before: before.as_ref(), budget };
+    if steps.contains(&Step::Rebuild) {
+        return match search.rebuild() {
+            Ok(rebuilt) => Ok(rebuilt.returned(input, report.made_by(rebuilding(choices)), budget)?),
+            Err(NotRebuilt::Failed(failure)) => Err(failure),
+            Err(NotRebuilt::Refused { refusal, actions }) => {
+                Ok(Report { actions, ..report }.refused(refusal))
+            }
+        };
+    }
+    if steps.is_empty() && encoding == input.facts.encoding {
+        let is_valid = input.examination.certificate.is_printable();
+        let outcome = if is_valid { Outcome::Identical } else { Outcome::Partial };
+        return Ok(input.returned_as_it_is(report.made_by(Vec::new()), outcome));
+    }
+    let local: Vec<Step> = steps.iter().filter(|&step| *step != Step::Simplify).cloned().collect();
+    let attempt = budget.stage(Stage::Repair, || {
+        let mut attempt = Attempt::start(&input.soup, before.as_ref());
+        let _charge = budget.charge(attempt.draft.bytes())?;
+        attempt.run(&local, &input.soup, before.as_ref(), budget)?;
+        Ok::<_, Stopped>(attempt)
+    })?;
+    if attempt.draft.triangles.is_empty() {
+        return Ok(Report { actions: attempt.actions, ..report }.refused(Refusal::NothingToRepair));
+    }
+    let candidate = match write(&attempt.draft, input, encoding, Depth::FirstViolation, budget) {
+        Ok(candidate) => candidate,
+        Err(NoCandidate::Refused(refusal)) => {
+            return Ok(Report { actions: attempt.actions, ..report }.refused(refusal));
+        }
+        Err(NoCandidate::Failed(failure)) => return Err(failure),
+    };
+    if !candidate.certificate().is_printable() {
+        if options.require.unwrap_or(Require::Printable) == Require::Printable {
+            let witness = candidate.certificate().witnesses.first().cloned();
+            let refusal = Refusal::NotRepairable { witness };
+            return Ok(Report { actions: attempt.actions, ..report }.refused(refusal));
+        }
+        return partial(input, encoding, report, attempt, budget);
+    }
+    let outcome = match (local.is_empty(), is_simplified) {
+        (false, _) => Outcome::Repaired,
+        (true, true) => Outcome::Simplified,
+        (true, false) => Outcome::Converted,
+    };
+    let fidelity = fidelity_of(&attempt, &candidate, &search)?;
+    finished((attempt, candidate), fidelity, outcome, &search, report)
+}
+
+/// The steps of a surface that is rebuilt: what was removed as chosen is not there any more.
+fn rebuilding(choices: &Choices) -> Vec<Step> {
+    let removed = choices.before_rebuilding().removed_parts;
+    let remove = (!removed.is_empty()).then_some(Step::RemoveParts(removed));
+    remove.into_iter().chain([Step::Rebuild]).collect()
+}
+
+/// True when a shell of the valid `input` lies in another.
+fn has_cavities(input: &Input) -> bool {
+    input.examination.certificate.shells.iter().any(|shell| shell.depth > 0)
 }
 
 /// The search for a plan that leads to certified bytes.
@@ -113,6 +230,7 @@ struct Search<'a> {
     input: &'a Input,
     encoding: Encoding,
     options: &'a Options,
+    choices: &'a Choices,
     before: Option<&'a Analysis>,
     budget: &'a Budget,
 }
@@ -141,7 +259,9 @@ impl Search<'_> {
     /// Tries the plans, least invasive first.
     fn run(&self) -> Result<Found, Failure> {
         let clears_noise = self.starts_with_clearing()?;
-        let mut variant = Variant { clears_noise, rounds: self.needs_f32(), ..Variant::default() };
+        let first = Variant { opposite: self.choices.opposite, ..Variant::default() };
+        let thickens = self.choices.walls == Walls::First;
+        let mut variant = Variant { clears_noise, rounds: self.needs_f32(), thickens, ..first };
         let mut fails_in_f32 = false;
         loop {
             let (mended, last) = self.attempt(variant)?;
@@ -161,7 +281,7 @@ impl Search<'_> {
                 };
             let witness = candidate.certificate().witnesses.first().cloned();
             fails_in_f32 |= witness.as_ref().is_some_and(|violation| violation.reading.is_f32);
-            let Some(next) = self.next(variant, clears_noise, &last, fails_in_f32) else {
+            let Some(next) = self.next(variant, clears_noise, &last, fails_in_f32)? else {
                 return Ok(Found::nothing(Refusal::NotRepairable { witness }, last, mended));
             };
             variant = next;
@@ -176,9 +296,14 @@ impl Search<'_> {
         budget.stage(Stage::Repair, || {
             let mut attempt = Attempt::start(&input.soup, self.before);
             let _charge = budget.charge(attempt.draft.bytes() * if is_best_effort { 2 } else { 1 })?;
-            attempt.run(&variant.mending(self.options.fill_holes), &input.soup, self.before, budget)?;
+            attempt.run(&variant.mending(self.choices), &input.soup, self.before, budget)?;
             let mended = is_best_effort.then(|| attempt.clone());
-            attempt.run(&variant.solidifying(has_contacts), &input.soup, self.before, budget)?;
+            attempt.run(
+                &variant.solidifying(self.choices, has_contacts),
+                &input.soup,
+                self.before,
+                budget,
+            )?;
             Ok((mended, attempt))
         })
     }
@@ -197,35 +322,59 @@ impl Search<'_> {
         first_clears: bool,
         last: &Attempt,
         fails_in_f32: bool,
-    ) -> Option<Variant> {
+    ) -> Result<Option<Variant>, Stopped> {
         if let Some(rings) = variant.removes_crossing {
             let may_help = rings < RINGS_MAX && last.count("triangles_removed") > 0;
-            return may_help.then_some(Variant { removes_crossing: Some(rings + 1), ..variant });
+            return Ok(may_help.then_some(Variant { removes_crossing: Some(rings + 1), ..variant }));
         }
         if last.count("opposite_pairs_cancelled") > 0 {
-            return Some(Variant { opposite: OppositePairs::KeepFirst, ..variant });
+            return Ok(Some(Variant { opposite: OppositePairs::KeepFirst, ..variant }));
         }
-        let first = Variant { opposite: OppositePairs::Cancel, ..variant };
-        if fails_in_f32 && !variant.rounds && !self.input.soup.is_f32_exact {
-            return Some(Variant { rounds: true, ..first });
+        let first = Variant { opposite: self.choices.opposite, ..variant };
+        if fails_in_f32 && self.choices.rounds && !variant.rounds && !self.input.soup.is_f32_exact {
+            return Ok(Some(Variant { rounds: true, ..first }));
         }
         let is_second_try = variant.clears_noise != first_clears;
         if !is_second_try && repair::noise::has_noise(&self.input.soup.positions) {
-            return Some(Variant { clears_noise: !first_clears, rounds: self.needs_f32(), ..first });
+            return Ok(Some(Variant { clears_noise: !first_clears, rounds: self.needs_f32(), ..first }));
         }
         let first = Variant { clears_noise: first_clears, ..first };
+        if !variant.thickens && !variant.opens_contacts && self.reads_as_sheets()? {
+            return Ok(Some(Variant { thickens: true, ..first }));
+        }
+        let first = Variant { thickens: false, ..first };
         // Bodies that lie on each other would be parted by a gap that nobody wants.
         let only_touches = self.before.is_some_and(|before| before.properties.is_embedded == Some(true));
         if only_touches && !variant.opens_contacts && last.count("vertices_copied") > 0 {
-            return Some(Variant { opens_contacts: true, ..first });
+            return Ok(Some(Variant { opens_contacts: true, ..first }));
         }
-        self.may_cross_locally().then_some(Variant { removes_crossing: Some(0), ..first })
+        Ok(self.may_cross_locally().then_some(Variant { removes_crossing: Some(0), ..first }))
+    }
+
+    /// Whether the open parts are mostly sheets that may become walls. A surface with few boundary edges for its triangles
+    /// is none: a square of them has three for the root of their number.
+    fn reads_as_sheets(&self) -> Result<bool, Stopped> {
+        let counts = self.before.map(|analysis| analysis.counts).unwrap_or_default();
+        let [rim, triangles] = [counts.boundary_edges, counts.triangles].map(|count| count as f64);
+        let may_be = rim > 0.0 && rim >= triangles.sqrt() && self.choices.walls == Walls::ForSheets;
+        if !may_be || self.options.wrap.open_shells == OpenShells::Close {
+            return Ok(false);
+        }
+        let (draft, _) = Draft::from_soup(&self.input.soup);
+        self.budget.stage(Stage::Measure, || rebuild::is_mostly_sheets(&draft, self.options, self.budget))
     }
 
     /// True unless it is known that no triangles meet others, or that a large share of them does.
     fn may_cross_locally(&self) -> bool {
+        if !self.choices.removes_crossing {
+            return false;
+        }
         let most = self.input.soup.triangles.len() as u64 / 20;
         self.input.examination.contacts.as_ref().is_none_or(|contacts| (1..=most).contains(&contacts.count))
+    }
+
+    fn rebuild(&self) -> Result<Rebuilt, NotRebuilt> {
+        rebuild::rebuild(self.input, self.encoding, self.options, self.choices, self.before, self.budget)
     }
 
     /// True when the encoding holds no more than float32, so that every plan has to round.
@@ -252,7 +401,7 @@ fn partial(
     mended: Attempt,
     budget: &Budget,
 ) -> Result<Answer, Failure> {
-    let report = Report { actions: mended.actions, ..report };
+    let report = Report { actions: mended.actions, ..report }.made_by(mended.steps);
     match write(&mended.draft, input, encoding, Depth::Count { samples: input.samples }, budget) {
         Ok(candidate) => {
             Ok(candidate.returned(input, &mended.draft.triangle_origin, report, Outcome::Partial, budget)?)

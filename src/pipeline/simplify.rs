@@ -42,7 +42,7 @@ pub(super) fn simplify(input: &Input, options: &Options, budget: &Budget) -> Res
     let mut attempt = Attempt::start(&input.soup, report.before.as_ref());
     let _charge = budget.charge(2 * attempt.draft.bytes())?;
     budget.stage(Stage::Repair, || attempt.run(&manifold(), &input.soup, report.before.as_ref(), budget))?;
-    let Attempt { draft, actions } = attempt;
+    let Attempt { draft, actions, .. } = attempt;
     let report = Report { actions, ..report };
     if draft.triangles.is_empty() {
         return Ok(report.refused(Refusal::NothingToRepair));

@@ -15,14 +15,18 @@ pub mod fill;
 pub mod nest;
 pub mod noise;
 pub mod orient;
+pub mod parts;
 pub mod pinch;
 pub mod polygons;
 pub mod round;
+pub mod selection;
 pub mod snap;
 pub mod t_vertices;
+pub mod thicken;
 pub mod weld;
 
 pub use draft::{Draft, NEW};
+pub use selection::Selection;
 
 /// What a step changed.
 #[derive(Debug, Clone, PartialEq, Default)]

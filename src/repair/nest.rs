@@ -9,24 +9,59 @@
 //!
 //! An outermost shell that points inward says that everything in it is inside out: its whole tree is turned first. A
 //! tree with a contradiction stays as it is. Nothing becomes a cavity that was not one.
+//!
+//! Two other policies look at places alone: `alternate` makes every second shell a cavity, `fill` keeps the outermost.
 
 use super::{Changes, Draft};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::mesh::{Components, EdgeGroups, UnionFind, edge_of, triangle_of};
 use crate::spatial::{self, Bvh, Nesting, Search};
 
+/// What shells inside shells mean.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Policy {
+    /// What their directions say.
+    #[default]
+    AsOriented,
+    /// Every second one from outside inward is a cavity.
+    Alternate,
+    /// Nothing: the outermost is solid throughout.
+    Fill,
+}
+
+/// What becomes of a shell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Fate {
+    /// It stays as it is.
+    Stays,
+    /// Its triangles are turned.
+    Turns,
+    /// It is dropped.
+    Goes,
+}
+
+/// How shells are nested.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct NestOptions {
+    /// What shells inside shells mean.
+    pub policy: Policy,
+    /// It is known that no two triangles meet beyond common vertices and edges, so that need not be tested.
+    pub is_embedded: bool,
+    /// Shells whose fate the caller chose, each by a triangle of the soup in it.
+    pub chosen: Vec<(u32, Fate)>,
+}
+
 /// Turns inverted trees of shells and drops hidden walls. Needs a welded draft of closed, oriented shells that do not
-/// meet; any other is left as it is, for the certificate to judge. `is_embedded`: it is known that no two triangles meet
-/// beyond common vertices and edges, so that need not be tested.
+/// meet; any other is left as it is, for the certificate to judge.
 ///
 /// # Errors
 /// When the budget stops the run.
-pub fn nest(draft: &mut Draft, is_embedded: bool, budget: &Budget) -> Result<Changes, Stopped> {
+pub fn nest(draft: &mut Draft, options: &NestOptions, budget: &Budget) -> Result<Changes, Stopped> {
     let Some(shells) = disjoint_closed_shells(draft, budget)? else {
         return Ok(left_alone("the surface is not one of closed shells apart from each other"));
     };
     let bvh = Bvh::build(&draft.positions, &draft.triangles, None, budget)?;
-    let is_embedded = is_embedded
+    let is_embedded = options.is_embedded
         || shells.count == 1
         || spatial::self_contacts(&draft.positions, &draft.triangles, &bvh, None, Search::First, budget)?
             .count
@@ -35,8 +70,32 @@ pub fn nest(draft: &mut Draft, is_embedded: bool, budget: &Budget) -> Result<Cha
         return Ok(left_alone("triangles pass through each other or touch"));
     }
     let nesting = spatial::nest(&draft.positions, &draft.triangles, &shells.of, shells.count, &bvh, budget)?;
-    let says_nothing = two_sided_shells(draft, &shells);
-    apply(&decide(&nesting, &says_nothing), draft, &shells, budget)
+    let mut fates = match options.policy {
+        Policy::AsOriented => decide(&nesting, &two_sided_shells(draft, &shells)),
+        Policy::Alternate | Policy::Fill => by_place(&nesting, options.policy),
+    };
+    for &(triangle, fate) in &options.chosen {
+        let part_of = draft.triangle_origin.iter().zip(&shells.of).filter(|&(&origin, _)| origin == triangle);
+        for (_, &shell) in part_of {
+            fates[shell as usize] = fate;
+        }
+    }
+    apply(&fates, options.policy, draft, &shells, budget)
+}
+
+/// What becomes of each shell where only places count.
+fn by_place(nesting: &Nesting, policy: Policy) -> Vec<Fate> {
+    let fate = |(&depth, &is_outward): (&u32, &bool)| {
+        let is_cavity = depth % 2 == 1;
+        if policy == Policy::Fill && depth > 0 {
+            Fate::Goes
+        } else if is_outward == is_cavity {
+            Fate::Turns
+        } else {
+            Fate::Stays
+        }
+    };
+    nesting.depth.iter().zip(&nesting.is_outward).map(fate).collect()
 }
 
 fn left_alone(why: &str) -> Changes {
@@ -84,13 +143,6 @@ fn two_sided_shells(draft: &Draft, shells: &Components) -> Vec<bool> {
     says_nothing
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Fate {
-    Stays,
-    Turns,
-    Goes,
-}
-
 /// What becomes of each shell.
 fn decide(nesting: &Nesting, says_nothing: &[bool]) -> Vec<Fate> {
     let shell_count = nesting.parent.len();
@@ -123,6 +175,7 @@ fn decide(nesting: &Nesting, says_nothing: &[bool]) -> Vec<Fate> {
 
 fn apply(
     fates: &[Fate],
+    policy: Policy,
     draft: &mut Draft,
     shells: &Components,
     budget: &Budget,
@@ -150,12 +203,19 @@ fn apply(
     }
     draft.retain_triangles(&is_kept);
     draft.drop_unused_vertices();
-    Ok(Changes { reason: reason(turned, dropped), removed_parts, ..counted(turned, dropped) })
+    Ok(Changes { reason: reason(policy, turned, dropped), removed_parts, ..counted(turned, dropped) })
 }
 
-fn reason(turned: u64, dropped: u64) -> String {
-    let turned = (turned > 0).then(|| format!("{turned} shells were inside out and turned"));
-    let dropped = (dropped > 0).then(|| format!("{dropped} shells were walls inside a solid and dropped"));
+fn reason(policy: Policy, turned: u64, dropped: u64) -> String {
+    let (why_turned, why_dropped) = match policy {
+        Policy::AsOriented => ("were inside out and turned", "were walls inside a solid and dropped"),
+        Policy::Alternate => ("were turned, so that they alternate", "were dropped as chosen"),
+        Policy::Fill => {
+            ("were inside out and turned", "were inside others and dropped, so that these are filled")
+        }
+    };
+    let turned = (turned > 0).then(|| format!("{turned} shells {why_turned}"));
+    let dropped = (dropped > 0).then(|| format!("{dropped} shells {why_dropped}"));
     turned.into_iter().chain(dropped).collect::<Vec<_>>().join("; ")
 }
 
@@ -205,6 +265,14 @@ mod tests {
         two_trees.parent[3] = None;
         two_trees.depth[3] = 0;
         assert_eq!(decide(&two_trees, &[false; 4]), [Fate::Stays, Fate::Stays, Fate::Stays, Fate::Turns]);
+    }
+
+    #[test]
+    fn by_place_alone_every_second_shell_is_a_cavity_or_all_inner_ones_go() {
+        let three = nested(&[true, true, false]);
+        assert_eq!(by_place(&three, Policy::Alternate), [Fate::Stays, Fate::Turns, Fate::Turns]);
+        assert_eq!(by_place(&three, Policy::Fill), [Fate::Stays, Fate::Goes, Fate::Goes]);
+        assert_eq!(by_place(&nested(&[false]), Policy::Fill), [Fate::Turns]);
     }
 
     #[test]

@@ -179,3 +179,13 @@ pub(super) fn hex(bytes: &[u8]) -> String {
         text
     })
 }
+
+/// The digest of 64 lower-case hexadecimal digits.
+pub(super) fn digest_of_hex(text: &str) -> Option<[u8; 32]> {
+    let is_hex = |digit: u8| digit.is_ascii_digit() || (b'a'..=b'f').contains(&digit);
+    if text.len() != 64 || !text.bytes().all(is_hex) {
+        return None;
+    }
+    let byte = |i: usize| u8::from_str_radix(&text[2 * i..2 * i + 2], 16).unwrap_or_default();
+    Some(std::array::from_fn(byte))
+}

@@ -12,6 +12,7 @@ mod limits;
 mod mesh_info;
 mod option_schema;
 mod options;
+mod plan;
 mod printing;
 mod problem;
 mod report;
@@ -32,6 +33,9 @@ pub use level::Level;
 pub use limits::Limits;
 pub use mesh_info::{Bounds, Counts, Defect, Element, Figure, Measures, MeshInfo, Properties, Witness};
 pub use options::{OptionError, OptionKind, OptionSpec, Options, SPECS};
+pub use plan::{
+    ChosenElement, ChosenFinding, ChosenShell, ElementProposal, Plan, PlanRequest, PlanStep, Proposal,
+};
 pub use printing::{
     BoundKind, BuildDirection, CheckCode, Edges, Fit, OrientedBox, Overhang, Parts, PolicyInfo, PolicyLimit,
     PolicyName, PolicyVolume, PrintedMesh, Printing, PrintingCheck, PrintingUnit, PrintingWitness, Quote,
@@ -49,6 +53,6 @@ pub use verdict::{Reason, Verdict};
 pub use version::{ENGINE_NAME, ENGINE_VERSION, REPORT_SCHEMA, Version};
 pub use words::{
     Condition, Criterion, Cut, DefectCode, Degenerate, Encoding, FillHoles, Format, Mode, Nesting,
-    OpenShells, Operation, Outcome, Placement, Reader, ReasonCode, Require, Severity, Stage, Stitch,
-    StitchValidity, Units, VertexColors,
+    OpenShells, Operation, Opposite, Outcome, Placement, Reader, ReasonCode, Remedy, Require, Severity,
+    ShellFate, Stage, Stitch, StitchValidity, Units, VertexColors,
 };

@@ -1,12 +1,15 @@
 //! The table of options in the words of OpenAPI.
 
 use utoipa::openapi::path::{Parameter, ParameterBuilder, ParameterIn};
-use utoipa::openapi::schema::{AdditionalProperties, ArrayBuilder, ObjectBuilder, Schema, SchemaType, Type};
+use utoipa::openapi::schema::{
+    AdditionalProperties, AllOfBuilder, ArrayBuilder, ObjectBuilder, Schema, SchemaType, Type,
+};
 use utoipa::openapi::{Ref, RefOr, Required};
 use utoipa::{IntoParams, PartialSchema, ToSchema};
 
 use super::edges::edges_schema;
 use super::options::{OptionKind, OptionSpec, Options, SPECS};
+use super::plan::PlanRequest;
 use super::target::TargetSpec;
 
 impl OptionSpec {
@@ -26,6 +29,7 @@ impl OptionSpec {
             OptionKind::Flag => described.schema_type(Type::Boolean),
             OptionKind::Targets => return targets_schema(self.about),
             OptionKind::Edges => return edges_schema(self.about),
+            OptionKind::Plan => return plan_schema(self.about),
             OptionKind::Input => described
                 .schema_type(Type::Object)
                 .property(
@@ -54,6 +58,15 @@ impl OptionSpec {
                     .description(Some("JSON text of the list."))
                     .build(),
             ),
+            OptionKind::Plan => Schema::Object(
+                ObjectBuilder::new()
+                    .schema_type(Type::String)
+                    .pattern(Some(
+                        r#"^\{"findings":\[\{"code":"boundary-loop","remedy":"(keep|fill)"\}\]\}$"#,
+                    ))
+                    .description(Some("JSON text of the plan."))
+                    .build(),
+            ),
             OptionKind::Edges => Schema::Object(
                 ObjectBuilder::new()
                     .schema_type(Type::String)
@@ -64,6 +77,12 @@ impl OptionSpec {
             _ => self.schema(),
         }
     }
+}
+
+/// A plan, by reference.
+fn plan_schema(about: &str) -> Schema {
+    let plan = RefOr::from(Ref::from_schema_name(PlanRequest::name()));
+    Schema::AllOf(AllOfBuilder::new().description(Some(about)).item(plan).build())
 }
 
 /// A list of targets, each an object with one member.

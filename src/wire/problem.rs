@@ -4,9 +4,11 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::words::words;
+use crate::analysis::DefectCode;
 use crate::budget::Stopped;
 use crate::formats::{Place, ReadError, ReadErrorKind};
-use crate::pipeline::{Failure, Refusal};
+use crate::pipeline::{Failure, PlanMismatch, Refusal};
+use crate::wire;
 
 words! {
     /// Stable code of a problem. `/v1/errors` explains each.
@@ -39,6 +41,8 @@ words! {
         UploadTimeout = "upload-timeout",
         /// The job is still queued or running.
         JobNotFinished = "job-not-finished",
+        /// The plan is not for this mesh.
+        PlanMismatch = "plan-mismatch",
         /// The key belongs to another request.
         IdempotencyKeyReused = "idempotency-key-reused",
         /// The body is over the limit.
@@ -136,6 +140,12 @@ impl ProblemCode {
             Self::JobNotFinished => {
                 (409, "Job not finished", "The job is queued or running. Wait with `?wait=` and ask again.")
             }
+            Self::PlanMismatch => (
+                409,
+                "Plan mismatch",
+                "The plan was made for another file, or names a defect, element or remedy that this mesh does not have. \
+                 Ask `/v1/plan` for a plan of this mesh.",
+            ),
             Self::IdempotencyKeyReused => (
                 422,
                 "Idempotency key reused",
@@ -349,7 +359,25 @@ impl From<&Failure> for Problem {
         match failure {
             Failure::Unreadable(error) => Self::from(error),
             Failure::Stopped(stopped) => Self::from(stopped),
+            Failure::PlanMismatch(mismatch) => Self::from(mismatch),
         }
+    }
+}
+
+impl From<&PlanMismatch> for Problem {
+    fn from(mismatch: &PlanMismatch) -> Self {
+        let code = |code: DefectCode| wire::DefectCode::from(code).word();
+        let detail = match *mismatch {
+            PlanMismatch::OtherFile => "the plan was made for a file with other bytes".to_owned(),
+            PlanMismatch::NoSuchDefect(defect) => format!("the mesh has no defect `{}`", code(defect)),
+            PlanMismatch::NoSuchElement(defect, number) => {
+                format!("`{}` has no element {number} to be chosen", code(defect))
+            }
+            PlanMismatch::NoSuchRemedy(defect, remedy) => {
+                format!("`{}` is no remedy of `{}`", wire::Remedy::from(remedy).word(), code(defect))
+            }
+        };
+        Self { parameter: Some("plan".to_owned()), ..Self::new(ProblemCode::PlanMismatch, detail) }
     }
 }
 

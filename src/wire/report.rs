@@ -8,6 +8,7 @@ use utoipa::ToSchema;
 use super::certificate::{Certificate, hex};
 use super::level::Level;
 use super::mesh_info::{MeshInfo, finite};
+use super::plan::Plan;
 use super::printing::Printing;
 use super::verdict::Verdict;
 use super::words::{DefectCode, Encoding, Format, Operation, Stage, Units};
@@ -27,6 +28,10 @@ pub struct Report {
     /// The mesh as uploaded; null: not analyzed.
     #[schema(required)]
     pub before: Option<MeshInfo>,
+    /// What may be done about each defect, and the steps that made the result: to be edited and given to `repair` as
+    /// `plan`; null for operations other than `plan` and `repair`.
+    #[schema(required)]
+    pub plan: Option<Plan>,
     /// The steps of the plan in the order they ran.
     pub actions: Vec<Action>,
     /// The results of a simplification, in the order of its targets; the first is what `after`, `deviation` and
@@ -250,6 +255,7 @@ impl Report {
             engine: EngineInfo { name: super::ENGINE_NAME, version: super::ENGINE_VERSION },
             input: InputInfo::from(&inner.input),
             before: inner.before.as_ref().map(|mesh| MeshInfo::new(mesh, remaining)),
+            plan: inner.plan.as_ref().map(Plan::from),
             actions: inner.actions.iter().map(Action::from).collect(),
             levels: inner.levels.iter().map(|level| Level::new(level, inner.input.units.into())).collect(),
             after: inner.after.as_ref().map(|mesh| MeshInfo::new(mesh, None)),
@@ -359,6 +365,7 @@ mod tests {
             "engine",
             "input",
             "before",
+            "plan",
             "actions",
             "levels",
             "after",

@@ -80,6 +80,7 @@ pub(crate) fn repaired() -> Answer {
         },
         before: Some(analysis(1)),
         input_certificate: certificate(false),
+        plan: None,
         actions: vec![Action {
             step: "fill-holes",
             causes: vec![DefectCode::BoundaryLoop],
@@ -109,6 +110,7 @@ pub(crate) fn identical() -> Answer {
     let report = Report {
         before: Some(analysis(0)),
         input_certificate: certificate(true),
+        plan: None,
         actions: Vec::new(),
         after: None,
         outcome: Some(Outcome::Identical),

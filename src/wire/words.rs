@@ -47,6 +47,13 @@ macro_rules! words {
             }
         }
 
+        impl<'de> serde::Deserialize<'de> for $name {
+            fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+                let word = <std::borrow::Cow<'de, str> as serde::Deserialize>::deserialize(from)?;
+                Self::from_word(&word).ok_or_else(|| serde::de::Error::unknown_variant(&word, Self::WORDS))
+            }
+        }
+
         impl std::fmt::Display for $name {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
                 f.write_str(self.word())
@@ -84,6 +91,8 @@ mirror! { pipeline::Operation =>
     Operation {
         /// Report only.
         Analyze = "analyze",
+        /// Report and what a repair would do about each defect.
+        Plan = "plan",
         /// Report and a certified repair.
         Repair = "repair",
         /// The same mesh in another format.
@@ -269,11 +278,69 @@ mirror! { pipeline::Effort =>
     }
 }
 
-words! {
+mirror! { repair::nest::Policy =>
     /// How shells inside shells are taken.
     Nesting {
         /// As they point: only a globally consistent inversion is flipped, cavities stay.
         AsOriented = "as_oriented",
+        /// Every second shell from outside inward is a cavity, however it points.
+        Alternate = "alternate",
+        /// The outermost shells are solid throughout; what is inside of them goes.
+        Fill = "fill",
+    }
+}
+
+mirror! { repair::nest::Fate =>
+    /// What becomes of a shell.
+    ShellFate {
+        /// It stays as it is.
+        Stays = "stays",
+        /// Its triangles are turned.
+        Turns = "turns",
+        /// It is dropped.
+        Goes = "goes",
+    }
+}
+
+mirror! { repair::duplicates::OppositePairs =>
+    /// What becomes of two triangles with the same vertices in opposite directions.
+    Opposite {
+        /// Both go; where they are the surface of a body or sheet of their own, one stays.
+        Cancel = "cancel",
+        /// The first stays.
+        KeepFirst = "keep-first",
+    }
+}
+
+mirror! { pipeline::Remedy =>
+    /// What is done about a defect.
+    Remedy {
+        /// What is defect goes; what is around it meets.
+        Drop = "drop",
+        /// Both triangles of a pair go.
+        DropBoth = "drop-both",
+        /// One triangle of a pair goes.
+        DropOne = "drop-one",
+        /// It is divided.
+        Split = "split",
+        /// Vertices at one place become one.
+        Join = "join",
+        /// It is closed by new triangles.
+        Fill = "fill",
+        /// The open part gets a wall behind it.
+        Thicken = "thicken",
+        /// The surface is cut there, and joined where it belongs together.
+        Cut = "cut",
+        /// Triangles are turned.
+        Turn = "turn",
+        /// The whole part goes; of triangles that meet, they and what is around them, and the place is filled.
+        Remove = "remove",
+        /// Coordinates become float32.
+        Round = "round",
+        /// No local step cures it; the surface is rebuilt.
+        Rebuild = "rebuild",
+        /// It stays. A file with an error that stays is not printable.
+        Keep = "keep",
     }
 }
 
@@ -500,6 +567,9 @@ mod tests {
             Require::WORDS,
             FillHoles::WORDS,
             Nesting::WORDS,
+            ShellFate::WORDS,
+            Opposite::WORDS,
+            Remedy::WORDS,
             OpenShells::WORDS,
             Cut::WORDS,
             Stitch::WORDS,

@@ -25,6 +25,7 @@ mod cut_stitch;
 #[cfg(feature = "server")]
 mod fixtures;
 mod operations;
+mod plan;
 mod real_files;
 mod rebuild;
 mod repair;

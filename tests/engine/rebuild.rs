@@ -29,7 +29,6 @@ fn square() -> RawSoup {
 
 #[test]
 fn what_no_step_makes_a_solid_is_rebuilt() {
-    let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.4, 0.5]];
     let moebius = RawSoup {
         positions: vec![
             [3.0, 0.0, 0.0],
@@ -41,9 +40,6 @@ fn what_no_step_makes_a_solid_is_rebuilt() {
         triangles: vec![[0, 1, 2], [1, 2, 3], [2, 3, 4], [3, 4, 0], [4, 0, 1]],
     };
     for (name, soup) in [
-        ("a triangle", flat(&square, &[[0, 1, 2]])),
-        ("two triangles in a square", flat(&square, &[[0, 1, 2], [0, 2, 3]])),
-        ("a fan in a square", flat(&square, &[[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])),
         ("a Möbius band", moebius),
         ("two cubes that pass through each other", cube().with(&cube().moved([0.5; 3]))),
     ] {
@@ -111,7 +107,9 @@ fn a_sheet_becomes_a_wall_of_the_thickness_that_is_asked_for() {
     let bytes = encode(&square(), Encoding::Obj);
     let volume = |wall| {
         let wrap = WrapChoices { cells: Some(64), wall, ..WrapChoices::default() };
-        let answer = answer(&bytes, &Options { wrap, ..Options::default() });
+        // Where holes stay as they are, no wall is made but by the lattice.
+        let options = Options { fill_holes: FillHoles::None, wrap, ..Options::default() };
+        let answer = answer(&bytes, &options);
         let bounds = answer.report.after.as_ref().unwrap().measures.bounds.unwrap();
         assert!(bounds.max.z.abs() < 4e-3, "the sheet remains a side: {}", bounds.max.z);
         rebuilt(&answer).0
@@ -167,16 +165,42 @@ fn more_effort_comes_closer_where_the_caller_demands_it() {
 }
 
 #[test]
-fn a_hole_in_a_sheet_is_a_part_of_its_shape_and_one_in_a_shell_is_closed() {
+fn a_hole_in_a_sheet_is_a_part_of_its_shape() {
     // A square frame, two wide and three tenths of that inside.
     let ring = |r: f64| [[-r, -r], [r, -r], [r, r], [-r, r]];
     let points = [ring(1.0), ring(0.3)].concat();
     let quad = |i: u32| [[i, (i + 1) % 4, (i + 1) % 4 + 4], [i, (i + 1) % 4 + 4, i + 4]];
-    let triangles: Vec<[u32; 3]> = (0..4).flat_map(quad).collect();
-    let answer = answer(&encode(&flat(&points, &triangles), Encoding::Off), &coarse());
-    let (volume, shells) = rebuilt(&answer);
-    assert_eq!((shells, count(&answer, "triangles_added")), (1, 0));
-    let genus = answer.report.certificate.as_ref().unwrap().shells[0].genus;
-    assert_eq!(genus, 1, "the hole goes through");
+    let frame = flat(&points, &(0..4).flat_map(quad).collect::<Vec<_>>());
+    let walled = answer(&encode(&frame, Encoding::Off), &coarse());
+    assert_eq!((walled.report.outcome, count(&walled, "sheets_thickened")), (Some(Outcome::Repaired), 1));
+    assert_eq!(walled.report.certificate.as_ref().unwrap().shells[0].genus, 1, "the hole goes through");
+    assert_eq!(walled.report.identical_triangle_share, Some(1.0));
+    // Where two frames cross, only the lattice makes a solid of them, and no hole is filled before.
+    let across = frame.clone().map(|[x, y, _]| [x, 0.1, y]);
+    let crossed = answer(&encode(&frame.with(&across), Encoding::Off), &coarse());
+    let (volume, shells) = rebuilt(&crossed);
+    assert_eq!((shells, count(&crossed, "triangles_added")), (1, 0));
     assert!(volume > 0.0);
+}
+
+#[test]
+fn a_sheet_becomes_a_wall_of_which_it_is_one_side_bit_for_bit() {
+    let fan = flat(
+        &[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.4, 0.5]],
+        &[[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
+    );
+    for (soup, area) in
+        [(square(), 1.0), (fan, 1.0), (flat(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], &[[0, 1, 2]]), 0.5)]
+    {
+        for encoding in [Encoding::Obj, Encoding::StlBinary] {
+            let wrap = WrapChoices { wall: Some(0.125), ..coarse().wrap };
+            let answer = answer(&encode(&soup, encoding), &Options { wrap, ..coarse() });
+            assert_eq!(answer.report.outcome, Some(Outcome::Repaired), "{:?}", answer.report.refusal);
+            assert_eq!(answer.report.identical_triangle_share, Some(1.0));
+            let after = answer.report.after.as_ref().unwrap();
+            let bounds = after.measures.bounds.unwrap();
+            // The offset of the rim is straight down, so the sides stand upright.
+            assert_eq!((after.measures.volume, bounds.min.z, bounds.max.z), (Some(area / 8.0), -0.125, 0.0));
+        }
+    }
 }

@@ -8,6 +8,7 @@ use super::fidelity::{Fidelity, Original};
 use super::input::Input;
 use super::output::{Candidate, NoCandidate};
 use super::plan::{Attempt, Step, Variant};
+use super::remedies::Choices;
 use super::{Action, Answer, Failure, FillHoles, Options, Outcome, Refusal, Report};
 use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stage, Stopped};
@@ -16,7 +17,8 @@ use crate::formats::Encoding;
 use crate::geom::{Aabb, DVec3};
 use crate::mesh::Soup;
 use crate::repair::duplicates::OppositePairs;
-use crate::repair::{Draft, NEW, nest, weld};
+use crate::repair::nest::{self, NestOptions};
+use crate::repair::{Draft, NEW, Selection, weld};
 use crate::simplify::Mode;
 use crate::winding::{OpenShells, Solid};
 use crate::wrap::{self, Account, WrapError, WrapOptions, Wrapped};
@@ -98,6 +100,7 @@ pub(super) fn rebuild(
     input: &Input,
     encoding: Encoding,
     options: &Options,
+    choices: &Choices,
     before: Option<&Analysis>,
     budget: &Budget,
 ) -> Result<Rebuilt, NotRebuilt> {
@@ -105,14 +108,15 @@ pub(super) fn rebuild(
     let _charge = budget.charge(attempt.draft.bytes())?;
     let variant = Variant { opposite: OppositePairs::KeepFirst, ..Variant::default() };
     budget.stage(Stage::Repair, || {
-        attempt.run(&variant.mending(FillHoles::None), &input.soup, before, budget)?;
+        attempt.run(&variant.mending(&choices.before_rebuilding()), &input.soup, before, budget)?;
         // A hole in a sheet is a part of its shape; one in a shell around a volume is a defect.
         let fill =
             options.fill_holes == FillHoles::Simple && !is_mostly_sheets(&attempt.draft, options, budget)?;
-        let steps = fill.then_some(Step::FillHoles).into_iter().chain([Step::JoinCopies]);
+        let steps =
+            fill.then_some(Step::FillHoles(Selection::default())).into_iter().chain([Step::JoinCopies]);
         attempt.run(&steps.collect::<Vec<_>>(), &input.soup, before, budget)
     })?;
-    let Attempt { draft, actions } = attempt;
+    let Attempt { draft, actions, .. } = attempt;
     let search = Search { input, encoding, options, before, budget };
     match search.run(&input.soup, &draft, &actions) {
         Err(NotRebuilt::Refused { refusal: Refusal::BeyondFloat32 { .. }, .. })
@@ -197,7 +201,7 @@ impl Search<'_> {
 }
 
 /// Whether most of the open surface of `draft` is read as sheets.
-fn is_mostly_sheets(draft: &Draft, options: &Options, budget: &Budget) -> Result<bool, Stopped> {
+pub(super) fn is_mostly_sheets(draft: &Draft, options: &Options, budget: &Budget) -> Result<bool, Stopped> {
     let mut welded = draft.clone();
     weld::weld(&mut welded, budget)?;
     let solid = Solid::of(&welded.positions, &welded.triangles, options.wrap.open_shells, budget)?;
@@ -281,7 +285,9 @@ impl Rebuilding<'_> {
     /// Some parts keep their bits.
     fn beside(&self, split: &parts::Split) -> Result<Made, NoCandidate> {
         let mut kept = split.kept.clone();
-        nest::nest(&mut kept, true, self.budget)?;
+        let nesting =
+            NestOptions { policy: self.options.nesting, is_embedded: true, ..NestOptions::default() };
+        nest::nest(&mut kept, &nesting, self.budget)?;
         let wrapped = self.wrap(&split.broken)?;
         self.certified(&wrapped, &kept)
     }

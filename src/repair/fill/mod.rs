@@ -12,10 +12,10 @@ mod regions;
 
 use self::accept::{Proposal, Surface};
 use self::regions::{Region, regions};
-use super::{Changes, Draft, NEW};
+use super::{Changes, Draft, NEW, Selection};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec3, triangle_area};
-use crate::mesh::{Boundary, edge_of};
+use crate::mesh::{Boundary, Soup, edge_of};
 use crate::spatial::coincident_f64;
 use std::ops::Range;
 
@@ -39,10 +39,32 @@ struct Open {
 /// # Errors
 /// When the budget stops the run.
 pub fn fill_holes(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
+    fill_loops(draft, |_, _| true, budget)
+}
+
+/// As [`fill_holes`], but only holes that the caller chose in `soup`, from which `draft` was made.
+///
+/// # Errors
+/// When the budget stops the run.
+pub fn fill_chosen_holes(
+    draft: &mut Draft,
+    soup: &Soup,
+    chosen: &Selection,
+    budget: &Budget,
+) -> Result<Changes, Stopped> {
+    fill_loops(draft, |half_edges, draft| chosen.takes(half_edges, draft, soup), budget)
+}
+
+fn fill_loops(
+    draft: &mut Draft,
+    is_chosen: impl Fn(&[u32], &Draft) -> bool,
+    budget: &Budget,
+) -> Result<Changes, Stopped> {
     let mut surface = surface_of(draft, budget)?;
     let boundary = Boundary::trace(&surface.triangles, surface.positions.len(), &surface.groups, budget)?;
-    let holes = boundary.loops.len() as u64;
-    let regions = regions(boundary.loops, |h| surface.point(h), budget)?;
+    let loops: Vec<_> = boundary.loops.into_iter().filter(|hole| is_chosen(hole, draft)).collect();
+    let holes = loops.len() as u64;
+    let regions = regions(loops, |h| surface.point(h), budget)?;
     let mut open: Vec<Open> = regions.into_iter().map(Open::new).collect();
     let (mut filled, mut added) = (0, 0);
     while !open.is_empty() {

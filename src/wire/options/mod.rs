@@ -6,6 +6,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 
+use super::plan::PlanRequest;
 use super::printing::{BuildDirection, PolicyInfo, PolicyName};
 use super::request::InputRef;
 use super::target::TargetSpec;
@@ -50,6 +51,8 @@ pub struct Options {
     pub max_volume_change: Option<f64>,
     /// How shells inside shells are taken.
     pub nesting: Option<Nesting>,
+    /// What repair is to do about each defect.
+    pub plan: Option<PlanRequest>,
     /// Faces to simplify to.
     pub faces: Option<u32>,
     /// Share of the faces to simplify to.
@@ -160,6 +163,8 @@ impl Options {
                 wall: self.wall_mm.map(|length| length / millimetres),
                 may_recenter: self.recenter.unwrap_or(false),
             },
+            nesting: self.nesting.map(Into::into).unwrap_or_default(),
+            plan: self.plan.as_ref().map(PlanRequest::to_engine),
             limits: pipeline::Limits {
                 deviation_max: self.max_deviation_mm.map(|length| length / millimetres),
                 volume_change_max: self.max_volume_change,

@@ -5,6 +5,7 @@ use serde_json::{Map, Value};
 use super::table::{OptionKind, OptionSpec, spec_of};
 use super::{OptionError, Options};
 use crate::wire::edges::edges_from_json;
+use crate::wire::plan::PlanRequest;
 use crate::wire::printing::{BuildDirection, PolicyName};
 use crate::wire::target;
 use crate::wire::words::{
@@ -61,6 +62,7 @@ impl Options {
             OptionKind::Flag => self.set_flag(spec, value),
             OptionKind::Targets => put(&mut self.targets, target::targets_from_json(value)),
             OptionKind::Edges => put(&mut self.cut_edges, edges_from_json(value)),
+            OptionKind::Plan => put(&mut self.plan, PlanRequest::from_json(value)),
             OptionKind::Input => match serde_json::from_str(value) {
                 Ok(input) => put(&mut self.input, Some(input)),
                 Err(_) => Taken::Invalid,
@@ -82,7 +84,7 @@ impl Options {
             }
             (OptionKind::Number { .. }, Value::Number(number)) => number.to_string(),
             (OptionKind::Flag, Value::Bool(flag)) => flag.to_string(),
-            (OptionKind::Input, Value::Object(_))
+            (OptionKind::Input | OptionKind::Plan, Value::Object(_))
             | (OptionKind::Targets | OptionKind::Edges, Value::Array(_)) => value.to_string(),
             _ => return Err(OptionError::Invalid { spec, value: value.to_string() }),
         };
@@ -109,6 +111,7 @@ impl Options {
             ("max_deviation_mm", put_if_given(&mut self.max_deviation_mm, other.max_deviation_mm)),
             ("max_volume_change", put_if_given(&mut self.max_volume_change, other.max_volume_change)),
             ("nesting", put_if_given(&mut self.nesting, other.nesting)),
+            ("plan", put_if_given(&mut self.plan, other.plan)),
             ("faces", put_if_given(&mut self.faces, other.faces)),
             ("ratio", put_if_given(&mut self.ratio, other.ratio)),
             ("error_mm", put_if_given(&mut self.error_mm, other.error_mm)),

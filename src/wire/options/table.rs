@@ -32,6 +32,8 @@ pub enum OptionKind {
     Targets,
     /// A list of edges by the numbers of their vertices.
     Edges,
+    /// A plan, as `plan` and `repair` report it.
+    Plan,
     /// An earlier job: `{"job":"ID"}`.
     Input,
 }
@@ -116,6 +118,11 @@ pub const SPECS: &[OptionSpec] = &[
         "nesting",
         OptionKind::Word(Nesting::WORDS),
         "How shells inside shells are taken. Default: as_oriented.",
+    ),
+    option(
+        "plan",
+        OptionKind::Plan,
+        "What repair does about each defect: the plan that /v1/plan proposes, edited, or that of an earlier repair, whose steps then run again. Default: as /v1/plan proposes.",
     ),
     option(
         "faces",
@@ -259,6 +266,7 @@ impl OptionSpec {
             OptionKind::Number { min, max } => format!("a number from {min} to {max:e}"),
             OptionKind::Flag => "true or false".to_owned(),
             OptionKind::Edges => "1 to 100000 pairs of different vertex numbers in a list".to_owned(),
+            OptionKind::Plan => "a plan as /v1/plan answers it, edited".to_owned(),
             OptionKind::Targets => {
                 "1 to 16 of {\"faces\":N}, {\"ratio\":X} and {\"error_mm\":X} in a list".to_owned()
             }

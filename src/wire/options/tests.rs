@@ -12,6 +12,7 @@ fn some_value(spec: &OptionSpec) -> Value {
         OptionKind::Integer { min, .. } => json!(min),
         OptionKind::Number { max, .. } => json!(max),
         OptionKind::Flag => json!(true),
+        OptionKind::Plan => json!({"findings": [{"code": "boundary-loop", "remedy": "keep"}]}),
         OptionKind::Edges => json!([[0, 1], [5, 3]]),
         OptionKind::Targets => json!([{"ratio": 0.5}, {"faces": 10}]),
         OptionKind::Input => json!({"job": "x"}),

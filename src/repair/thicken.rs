@@ -1,0 +1,210 @@
+//! Gives open sheets a wall: the sheet stays one side of it, bit for bit, a copy behind it is the other.
+
+use super::{Changes, Draft, NEW};
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::geom::{DVec3, print_pitch};
+use crate::mesh::{EdgeGroups, UnionFind, edge_of, triangle_of};
+
+/// Steps of the print lattice that a wall has at least.
+const STEPS_MIN: f64 = 64.0;
+
+/// How much farther than the wall a vertex at a crease may be drawn, so that its planes stay as far from each other.
+const MITRE_MAX: f64 = 3.0;
+
+/// Thickens every part of `draft` that has a boundary to `wall`, in the unit of the file, against the direction of its
+/// faces. The draft must be a manifold with boundary (see [`cut`](super::cut::cut)).
+///
+/// ```text
+///     a ─────── b            the rim of the sheet, as a triangle of it runs from a to b,
+///     │ ╲       │            and the wall that joins it to the copy behind
+///     a'─────── b'
+/// ```
+///
+/// # Errors
+/// When the budget stops the run.
+pub fn thicken(draft: &mut Draft, wall: f64, budget: &Budget) -> Result<Changes, Stopped> {
+    let reach = draft.positions.iter().fold(0.0, |reach, p| p.abs().max_element().max(reach)) + wall;
+    let pitch = print_pitch(reach).filter(|pitch| wall >= STEPS_MIN * pitch);
+    let groups = EdgeGroups::build(&draft.triangles, draft.positions.len(), budget)?;
+    let (is_open, count) = open_parts(draft, &groups, budget)?;
+    let (Some(pitch), false) = (pitch, count == 0) else {
+        return Ok(counted(0, 0));
+    };
+    let behind = places_behind(draft, &is_open, wall, budget)?;
+    let mut copy = vec![u32::MAX; draft.positions.len()];
+    for (v, place) in behind.into_iter().enumerate() {
+        let Some(place) = place else { continue };
+        copy[v] = draft.positions.len() as u32;
+        draft.positions.push(place.map(|x| (x / pitch).round_ties_even() * pitch));
+        draft.vertex_origin.push(draft.vertex_origin[v]);
+    }
+    let rims = groups.iter().filter_map(|group| if let [h] = *group { Some(h) } else { None });
+    let walls: Vec<[u32; 3]> = rims
+        .flat_map(|h| {
+            let [a, b] = edge_of(&draft.triangles, h);
+            let [a_behind, b_behind] = [a, b].map(|v| copy[v as usize]);
+            [[b, a, a_behind], [b, a_behind, b_behind]]
+        })
+        .collect();
+    let sheets = draft.triangles.iter().zip(&is_open).filter(|&(_, &is_open)| is_open);
+    let copies = sheets.map(|(&[a, b, c], _)| [a, c, b].map(|v| copy[v as usize]));
+    let added: Vec<[u32; 3]> = copies.chain(walls).collect();
+    let triangles = added.len();
+    draft.triangles.extend(added);
+    draft.triangle_origin.extend(std::iter::repeat_n(NEW, triangles));
+    let reason = format!("open parts are read as sheets and given walls of {wall:.3e} behind them");
+    Ok(Changes { reason, ..counted(count, triangles as u64) })
+}
+
+fn counted(sheets: u64, triangles: u64) -> Changes {
+    Changes::counted([("sheets_thickened", sheets), ("triangles_added", triangles)])
+}
+
+/// Whether each triangle is of a part with a boundary, and the number of such parts.
+fn open_parts(draft: &Draft, groups: &EdgeGroups, budget: &Budget) -> Result<(Vec<bool>, u64), Stopped> {
+    let mut parts = UnionFind::new(draft.triangles.len());
+    let mut rims = Vec::new();
+    for (e, group) in groups.iter().enumerate() {
+        if e % CHECK_EVERY == 0 {
+            budget.check()?;
+        }
+        match *group {
+            [h] => rims.push(triangle_of(h)),
+            _ => {
+                for pair in group.windows(2) {
+                    parts.unite(triangle_of(pair[0]), triangle_of(pair[1]));
+                }
+            }
+        }
+    }
+    let parts = parts.into_components();
+    let mut is_open = vec![false; parts.count as usize];
+    for t in rims {
+        is_open[parts.of[t as usize] as usize] = true;
+    }
+    let count = is_open.iter().filter(|&&is_open| is_open).count() as u64;
+    Ok((parts.of.iter().map(|&part| is_open[part as usize]).collect(), count))
+}
+
+/// For each vertex of the marked triangles, the place at the distance `wall` behind their planes: exactly so where they lie
+/// in two planes at most, and between them where there are more.
+fn places_behind(
+    draft: &Draft,
+    is_marked: &[bool],
+    wall: f64,
+    budget: &Budget,
+) -> Result<Vec<Option<DVec3>>, Stopped> {
+    let marked = || (0..draft.triangles.len()).filter(|&t| is_marked[t]);
+    let mut sum = vec![DVec3::ZERO; draft.positions.len()];
+    let mut facing = vec![(0.0, 0.0); draft.positions.len()];
+    let normal_of = |t: usize| {
+        let [a, b, c] = draft.corners(t);
+        (b - a).normalize_or_zero().cross((c - a).normalize_or_zero()).normalize_or_zero()
+    };
+    let angle_at = |t: usize, k: usize| {
+        let corners = draft.corners(t);
+        let sides = [corners[(k + 1) % 3] - corners[k], corners[(k + 2) % 3] - corners[k]];
+        let [a, b] = sides.map(DVec3::normalize_or_zero);
+        libm::atan2(a.cross(b).length(), a.dot(b))
+    };
+    for (i, t) in marked().enumerate() {
+        if i % CHECK_EVERY == 0 {
+            budget.check()?;
+        }
+        for k in 0..3 {
+            sum[draft.triangles[t][k] as usize] += normal_of(t) * angle_at(t, k);
+        }
+    }
+    for (i, t) in marked().enumerate() {
+        if i % CHECK_EVERY == 0 {
+            budget.check()?;
+        }
+        for k in 0..3 {
+            let v = draft.triangles[t][k] as usize;
+            let (cosine, weight) = &mut facing[v];
+            let angle = angle_at(t, k);
+            *cosine += angle * normal_of(t).dot(sum[v].normalize_or_zero());
+            *weight += angle;
+        }
+    }
+    let place = |v: usize| {
+        let (cosine, weight) = facing[v];
+        let mitre = (weight / cosine).clamp(1.0, MITRE_MAX);
+        let is_used = weight > 0.0;
+        is_used.then(|| draft.positions[v] - sum[v].normalize_or_zero() * (wall * mitre))
+    };
+    Ok((0..draft.positions.len()).map(place).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn draft(points: &[[f64; 3]], triangles: &[[u32; 3]]) -> Draft {
+        Draft {
+            positions: points.iter().map(|&p| DVec3::from_array(p)).collect(),
+            vertex_origin: (0..points.len() as u32).collect(),
+            triangles: triangles.to_vec(),
+            triangle_origin: (0..triangles.len() as u32).collect(),
+            ..Draft::default()
+        }
+    }
+
+    /// Six times the volume.
+    fn volume(draft: &Draft) -> f64 {
+        (0..draft.triangles.len())
+            .map(|t| {
+                let [a, b, c] = draft.corners(t);
+                a.dot(b.cross(c))
+            })
+            .sum::<f64>()
+    }
+
+    fn is_closed(draft: &Draft) -> bool {
+        let groups =
+            EdgeGroups::build(&draft.triangles, draft.positions.len(), &Budget::unlimited()).unwrap();
+        groups.iter().all(|group| match *group {
+            [g, h] => edge_of(&draft.triangles, g)[0] != edge_of(&draft.triangles, h)[0],
+            _ => false,
+        })
+    }
+
+    #[test]
+    fn a_triangle_becomes_a_prism_whose_top_is_the_triangle() {
+        let mut mesh = draft(&[[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]], &[[0, 1, 2]]);
+        let changes = thicken(&mut mesh, 0.25, &Budget::unlimited()).unwrap();
+        assert_eq!((changes.count("sheets_thickened"), changes.count("triangles_added")), (1, 7));
+        assert_eq!((mesh.triangles[0], mesh.triangles.len()), ([0, 1, 2], 8));
+        assert!(is_closed(&mesh) && mesh.check().is_empty());
+        assert_eq!(volume(&mesh), 0.75, "an eighth");
+    }
+
+    #[test]
+    fn both_leaves_of_a_fold_get_the_same_wall() {
+        let points = [
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.0, 1.0],
+            [0.0, 1.0, 1.0],
+        ];
+        // The floor points up, the back points to +x: behind them is the outside of the corner.
+        let mut mesh = draft(&points, &[[0, 1, 2], [0, 2, 3], [0, 3, 5], [0, 5, 4]]);
+        thicken(&mut mesh, 0.125, &Budget::unlimited()).unwrap();
+        assert!(is_closed(&mesh));
+        let corner = mesh.positions[6];
+        assert!((corner - DVec3::new(-0.125, 0.0, -0.125)).length() < 1e-6, "{corner}");
+    }
+
+    #[test]
+    fn what_is_closed_or_would_get_no_wall_stays() {
+        let tetrahedron = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+        let points = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let mut closed = draft(&points, &tetrahedron);
+        assert_eq!(thicken(&mut closed, 0.1, &Budget::unlimited()).unwrap().count("sheets_thickened"), 0);
+        assert_eq!(closed.triangles, tetrahedron);
+        let mut thin = draft(&points, &[[0, 2, 1]]);
+        assert_eq!(thicken(&mut thin, 1e-7, &Budget::unlimited()).unwrap().count("sheets_thickened"), 0);
+    }
+}

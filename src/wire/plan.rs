@@ -1,0 +1,498 @@
+//! Plans as JSON: what `/v1/plan` proposes, what a repair did, and what a caller gives back to it.
+
+use serde::de::{Error as _, IgnoredAny};
+use serde::{Deserialize, Deserializer, Serialize};
+use serde_json::Value;
+use utoipa::ToSchema;
+
+use super::certificate::{digest_of_hex, hex};
+use super::target::whole_number;
+use super::words::{DefectCode, Degenerate, Nesting, Opposite, Remedy, ShellFate};
+use crate::pipeline::{self, Step};
+use crate::repair::Selection;
+use crate::repair::cut::CutOptions;
+use crate::repair::nest::NestOptions;
+use crate::repair::snap::SnapOptions;
+use crate::{mesh, repair};
+
+/// What may be done about each defect of a file, and what was.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct Plan {
+    /// SHA-256 of the file, in hexadecimal.
+    pub input_sha256: String,
+    /// For each kind of defect that was found.
+    pub findings: Vec<Proposal>,
+    /// The steps that made the result; null: none was made. Given back, exactly these run.
+    #[schema(required)]
+    pub steps: Option<Vec<PlanStep>>,
+}
+
+/// What is proposed for the defects of one kind.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct Proposal {
+    /// The kind.
+    pub code: DefectCode,
+    /// How many.
+    pub count: u64,
+    /// What is to be done about all that `elements` do not name.
+    pub remedy: Remedy,
+    /// What there is to choose from.
+    pub choices: Vec<Remedy>,
+    /// How sure it is that the maker of the file would want this, from 0 to 1.
+    pub confidence: f64,
+    /// Why.
+    pub reason: &'static str,
+    /// One for each witness of the defect, where elements can be chosen one by one.
+    pub elements: Vec<ElementProposal>,
+}
+
+/// What is proposed for one element.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct ElementProposal {
+    /// Place among the witnesses of the defect, from 0.
+    pub number: u32,
+    /// What is to be done.
+    pub remedy: Remedy,
+    /// How sure that is, from 0 to 1.
+    pub confidence: f64,
+}
+
+/// A plan as it is given back: one that was proposed, edited, or that of an earlier repair. What is left out is done as
+/// proposed.
+#[derive(Debug, Clone, PartialEq, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlanRequest {
+    /// SHA-256 of the file that it is for, in hexadecimal; another file is refused. Null: any file.
+    #[schema(pattern = "^[0-9a-f]{64}$")]
+    #[serde(default)]
+    pub input_sha256: Option<String>,
+    /// What is chosen for kinds of defects.
+    #[serde(default)]
+    #[schema(max_items = 100)]
+    pub findings: Vec<ChosenFinding>,
+    /// Run exactly these steps; null: search for the first plan that leads to a certified result.
+    #[serde(default)]
+    #[schema(max_items = 100)]
+    pub steps: Option<Vec<PlanStep>>,
+}
+
+/// What is chosen for the defects of one kind.
+#[derive(Debug, Clone, PartialEq, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ChosenFinding {
+    /// The kind.
+    pub code: DefectCode,
+    /// For all that `elements` do not name; null: as proposed.
+    #[serde(default)]
+    pub remedy: Option<Remedy>,
+    /// For single elements.
+    #[serde(default)]
+    #[schema(max_items = 10_000)]
+    pub elements: Vec<ChosenElement>,
+    /// Ignored: as proposed.
+    #[serde(default)]
+    #[schema(value_type = Option<u64>)]
+    count: Ignored,
+    /// Ignored: as proposed.
+    #[serde(default)]
+    #[schema(value_type = Option<Vec<Remedy>>)]
+    choices: Ignored,
+    /// Ignored: as proposed.
+    #[serde(default)]
+    #[schema(value_type = Option<f64>)]
+    confidence: Ignored,
+    /// Ignored: as proposed.
+    #[serde(default)]
+    #[schema(value_type = Option<String>)]
+    reason: Ignored,
+}
+
+/// What is chosen for one element.
+#[derive(Debug, Clone, PartialEq, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ChosenElement {
+    /// Place among the witnesses of the defect, from 0.
+    #[serde(deserialize_with = "whole")]
+    pub number: u32,
+    /// What is to be done.
+    pub remedy: Remedy,
+    /// Ignored: as proposed.
+    #[serde(default)]
+    #[schema(value_type = Option<f64>)]
+    confidence: Ignored,
+}
+
+/// A member that a plan has when it is answered and that says nothing when it is given back.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Ignored;
+
+impl<'de> Deserialize<'de> for Ignored {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        IgnoredAny::deserialize(from).map(|_| Self)
+    }
+}
+
+/// One step of a repair, with its parameters.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(tag = "step", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum PlanStep {
+    /// Polygons that pass a vertex more than once become simple ones, or go.
+    SplitPolygons {
+        /// Which.
+        degenerate: Degenerate,
+    },
+    /// Coordinates that are all but zero become zero.
+    ClearNoise {},
+    /// Coordinates become float32.
+    #[serde(rename = "round-to-float32")]
+    RoundToF32 {},
+    /// Vertices at one position become one.
+    Weld {},
+    /// Triangles with a repeated vertex go.
+    DropDegenerate {},
+    /// Collinear triangles go and their neighbours are divided.
+    SplitCollinear {},
+    /// Boundary edges are divided where a boundary vertex lies on them.
+    SplitTVertices {},
+    /// Whole parts go.
+    RemoveParts {
+        /// A triangle in each, by its number from 0 after polygons are split.
+        #[serde(deserialize_with = "whole_list")]
+        #[schema(max_items = 10_000)]
+        triangles: Vec<u32>,
+    },
+    /// Copies of triangles go.
+    DropDuplicates {
+        /// What becomes of two in opposite directions.
+        opposite: Opposite,
+    },
+    /// Triangles that meet others go.
+    RemoveCrossing {
+        /// Rings of triangles around them that go too.
+        #[serde(deserialize_with = "whole")]
+        #[schema(maximum = 10)]
+        rings: u32,
+    },
+    /// Faces are turned so that neighbours agree.
+    Orient {},
+    /// Singular edges and vertices are cut.
+    Cut {},
+    /// Edges that the cut has parted are joined from where boundaries turn back on themselves.
+    Pinch {},
+    /// Boundary edges that coincide are joined.
+    Snap {},
+    /// Holes are closed.
+    FillHoles {
+        /// All but `except`; false: only `except`.
+        all: bool,
+        /// A half-edge of each hole: three times the number of its triangle, plus the place of its corner in it.
+        #[serde(deserialize_with = "whole_list")]
+        #[schema(max_items = 10_000)]
+        except: Vec<u32>,
+    },
+    /// Open parts get a wall behind them.
+    Thicken {
+        /// Thickness, in the unit of the file.
+        #[schema(minimum = 0.0)]
+        wall: f64,
+    },
+    /// Bodies that touch are drawn apart.
+    OpenContacts {},
+    /// Vertices at one position become one again.
+    JoinCopies {},
+    /// Shells are turned and dropped so that they alternate.
+    Nest {
+        /// What shells inside shells mean.
+        nesting: Nesting,
+        /// Shells whose fate was chosen.
+        #[schema(max_items = 10_000)]
+        chosen: Vec<ChosenShell>,
+    },
+    /// The surface is rebuilt, by the options of the request; local steps do not count then.
+    Rebuild {},
+    /// The certified mesh gets fewer triangles, by the options of the request.
+    Simplify {},
+}
+
+/// A shell whose fate was chosen.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ChosenShell {
+    /// A triangle in it, by its number from 0 after polygons are split.
+    #[serde(deserialize_with = "whole")]
+    pub triangle: u32,
+    /// What becomes of it.
+    pub fate: ShellFate,
+}
+
+/// A whole number, also one that JSON writes with a fraction of zero.
+fn whole<'de, D: Deserializer<'de>>(from: D) -> Result<u32, D::Error> {
+    whole_number(f64::deserialize(from)?).ok_or_else(|| D::Error::custom("not a whole number"))
+}
+
+fn whole_list<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<u32>, D::Error> {
+    let numbers = Vec::<f64>::deserialize(from)?;
+    let whole: Option<Vec<u32>> = numbers.into_iter().map(whole_number).collect();
+    whole.ok_or_else(|| D::Error::custom("not whole numbers"))
+}
+
+/// Most steps of a plan, and most kinds of defects.
+const LIST_MAX: usize = 100;
+/// Most elements that are chosen one by one.
+const ELEMENTS_MAX: usize = 10_000;
+/// Most rings.
+const RINGS_MAX: u32 = 10;
+
+/// True when everything that must be an object is one: the deserializer would take lists of their members too.
+fn has_objects(plan: &Value) -> bool {
+    let items = |of: &Value, name: &str| of[name].as_array().cloned().unwrap_or_default();
+    let (findings, steps) = (items(plan, "findings"), items(plan, "steps"));
+    let elements = findings.iter().flat_map(|finding| items(finding, "elements"));
+    let shells = steps.iter().flat_map(|step| items(step, "chosen"));
+    plan.is_object()
+        && elements.chain(shells).all(|item| item.is_object())
+        && findings.iter().chain(&steps).all(Value::is_object)
+}
+
+impl PlanRequest {
+    /// The plan of a JSON text; `None` when it is none.
+    pub(super) fn from_json(text: &str) -> Option<Self> {
+        let value: Value = serde_json::from_str(text).ok().filter(has_objects)?;
+        let plan = Self::deserialize(value).ok()?;
+        let is_digest = plan.input_sha256.as_deref().is_none_or(|text| digest_of_hex(text).is_some());
+        let steps = plan.steps.as_deref().unwrap_or_default();
+        let is_small = plan.findings.len() <= LIST_MAX
+            && steps.len() <= LIST_MAX
+            && plan.findings.iter().all(|finding| finding.elements.len() <= ELEMENTS_MAX)
+            && steps.iter().all(PlanStep::is_small);
+        (is_digest && is_small).then_some(plan)
+    }
+
+    /// The engine's plan.
+    pub(super) fn to_engine(&self) -> pipeline::ChosenPlan {
+        let element = |element: &ChosenElement| (element.number, element.remedy.into());
+        let finding = |finding: &ChosenFinding| pipeline::ChosenRemedy {
+            code: finding.code.into(),
+            remedy: finding.remedy.map(Into::into),
+            elements: finding.elements.iter().map(element).collect(),
+        };
+        pipeline::ChosenPlan {
+            input_sha256: self.input_sha256.as_deref().and_then(digest_of_hex),
+            findings: self.findings.iter().map(finding).collect(),
+            steps: self.steps.as_ref().map(|steps| steps.iter().map(PlanStep::to_engine).collect()),
+        }
+    }
+}
+
+impl From<&pipeline::Plan> for Plan {
+    fn from(inner: &pipeline::Plan) -> Self {
+        Self {
+            input_sha256: hex(&inner.input_sha256),
+            findings: inner.findings.iter().map(Proposal::from).collect(),
+            steps: inner.steps.as_ref().map(|steps| steps.iter().map(PlanStep::from).collect()),
+        }
+    }
+}
+
+impl From<&pipeline::Proposal> for Proposal {
+    fn from(inner: &pipeline::Proposal) -> Self {
+        let element = |element: &pipeline::ElementProposal| ElementProposal {
+            number: element.number,
+            remedy: element.remedy.into(),
+            confidence: element.confidence,
+        };
+        Self {
+            code: inner.code.into(),
+            count: inner.count,
+            remedy: inner.remedy.into(),
+            choices: inner.choices.iter().copied().map(Remedy::from).collect(),
+            confidence: inner.confidence,
+            reason: inner.reason,
+            elements: inner.elements.iter().map(element).collect(),
+        }
+    }
+}
+
+impl PlanStep {
+    fn is_small(&self) -> bool {
+        match self {
+            Self::RemoveParts { triangles } => triangles.len() <= ELEMENTS_MAX,
+            Self::FillHoles { except, .. } => except.len() <= ELEMENTS_MAX,
+            Self::Nest { chosen, .. } => chosen.len() <= ELEMENTS_MAX,
+            Self::RemoveCrossing { rings } => *rings <= RINGS_MAX,
+            Self::Thicken { wall } => *wall >= 0.0,
+            _ => true,
+        }
+    }
+
+    fn to_engine(&self) -> Step {
+        match self {
+            Self::SplitPolygons { degenerate } => Step::SplitPolygons((*degenerate).into()),
+            Self::ClearNoise {} => Step::ClearNoise,
+            Self::RoundToF32 {} => Step::RoundToF32,
+            Self::Weld {} => Step::Weld,
+            Self::DropDegenerate {} => Step::DropDegenerate,
+            Self::SplitCollinear {} => Step::SplitCollinear,
+            Self::SplitTVertices {} => Step::SplitTVertices,
+            Self::RemoveParts { triangles } => Step::RemoveParts(sorted(triangles)),
+            Self::DropDuplicates { opposite } => Step::DropDuplicates((*opposite).into()),
+            Self::RemoveCrossing { rings } => Step::RemoveCrossing { rings: *rings },
+            Self::Orient {} => Step::Orient,
+            Self::Cut {} => Step::Cut(CutOptions::default()),
+            Self::Pinch {} => Step::Pinch(mesh::ChosenEdges::default(), mesh::Validity::Exact),
+            Self::Snap {} => Step::Snap(SnapOptions { epsilon: Some(0.0), ..SnapOptions::default() }),
+            Self::FillHoles { all: true, except } => Step::FillHoles(Selection::AllBut(sorted(except))),
+            Self::FillHoles { all: false, except } => Step::FillHoles(Selection::Only(sorted(except))),
+            Self::Thicken { wall } => Step::Thicken { wall: *wall },
+            Self::OpenContacts {} => Step::OpenContacts,
+            Self::JoinCopies {} => Step::JoinCopies,
+            Self::Nest { nesting, chosen } => Step::Nest(NestOptions {
+                policy: (*nesting).into(),
+                is_embedded: false,
+                chosen: chosen.iter().map(|shell| (shell.triangle, shell.fate.into())).collect(),
+            }),
+            Self::Rebuild {} => Step::Rebuild,
+            Self::Simplify {} => Step::Simplify,
+        }
+    }
+}
+
+fn sorted(list: &[u32]) -> Vec<u32> {
+    let mut list = list.to_vec();
+    list.sort_unstable();
+    list
+}
+
+impl From<&Step> for PlanStep {
+    fn from(inner: &Step) -> Self {
+        match inner {
+            Step::SplitPolygons(degenerate) => Self::SplitPolygons { degenerate: (*degenerate).into() },
+            Step::ClearNoise => Self::ClearNoise {},
+            Step::RoundToF32 => Self::RoundToF32 {},
+            Step::Weld => Self::Weld {},
+            Step::DropDegenerate => Self::DropDegenerate {},
+            Step::SplitCollinear => Self::SplitCollinear {},
+            Step::SplitTVertices => Self::SplitTVertices {},
+            Step::RemoveParts(triangles) => Self::RemoveParts { triangles: triangles.clone() },
+            Step::DropDuplicates(opposite) => Self::DropDuplicates { opposite: (*opposite).into() },
+            Step::RemoveCrossing { rings } => Self::RemoveCrossing { rings: *rings },
+            Step::Orient => Self::Orient {},
+            Step::Cut(_) => Self::Cut {},
+            Step::Pinch(..) => Self::Pinch {},
+            Step::Snap(_) => Self::Snap {},
+            Step::FillHoles(Selection::AllBut(except)) => {
+                Self::FillHoles { all: true, except: except.clone() }
+            }
+            Step::FillHoles(Selection::Only(except)) => {
+                Self::FillHoles { all: false, except: except.clone() }
+            }
+            Step::Thicken { wall } => Self::Thicken { wall: *wall },
+            Step::OpenContacts => Self::OpenContacts {},
+            Step::JoinCopies => Self::JoinCopies {},
+            Step::Nest(repair::nest::NestOptions { policy, chosen, .. }) => {
+                let shell = |&(triangle, fate): &(u32, repair::nest::Fate)| ChosenShell {
+                    triangle,
+                    fate: fate.into(),
+                };
+                Self::Nest { nesting: (*policy).into(), chosen: chosen.iter().map(shell).collect() }
+            }
+            Step::Rebuild => Self::Rebuild {},
+            Step::Simplify => Self::Simplify {},
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn all_steps() -> Vec<Step> {
+        let degenerate = repair::polygons::DegenerateFaces::Split;
+        vec![
+            Step::SplitPolygons(degenerate),
+            Step::ClearNoise,
+            Step::RoundToF32,
+            Step::Weld,
+            Step::DropDegenerate,
+            Step::SplitCollinear,
+            Step::SplitTVertices,
+            Step::RemoveParts(vec![3, 7]),
+            Step::DropDuplicates(repair::duplicates::OppositePairs::KeepFirst),
+            Step::RemoveCrossing { rings: 2 },
+            Step::Orient,
+            Step::Cut(CutOptions::default()),
+            Step::Pinch(mesh::ChosenEdges::default(), mesh::Validity::Exact),
+            Step::Snap(SnapOptions { epsilon: Some(0.0), ..SnapOptions::default() }),
+            Step::FillHoles(Selection::Only(vec![5])),
+            Step::Thicken { wall: 0.25 },
+            Step::OpenContacts,
+            Step::JoinCopies,
+            Step::Nest(NestOptions {
+                policy: repair::nest::Policy::Fill,
+                is_embedded: false,
+                chosen: vec![(4, repair::nest::Fate::Goes)],
+            }),
+            Step::Rebuild,
+            Step::Simplify,
+        ]
+    }
+
+    #[test]
+    fn every_step_comes_back_from_json_as_it_was_under_the_name_of_its_action() {
+        for step in all_steps() {
+            let value = serde_json::to_value(PlanStep::from(&step)).unwrap();
+            assert_eq!(value["step"], step.name(), "{value}");
+            let back: PlanStep = serde_json::from_value(value).unwrap();
+            assert_eq!(back.to_engine(), step);
+        }
+    }
+
+    #[test]
+    fn a_plan_that_was_answered_can_be_given_back_as_it_is() {
+        let plan = pipeline::Plan {
+            input_sha256: [0xab; 32],
+            findings: vec![pipeline::Proposal {
+                code: crate::analysis::DefectCode::BoundaryLoop,
+                count: 2,
+                remedy: pipeline::Remedy::Fill,
+                choices: &[pipeline::Remedy::Fill, pipeline::Remedy::Keep],
+                confidence: 0.5,
+                reason: "because",
+                elements: vec![pipeline::ElementProposal {
+                    number: 1,
+                    remedy: pipeline::Remedy::Keep,
+                    confidence: 0.5,
+                }],
+            }],
+            steps: Some(all_steps()),
+        };
+        let text = serde_json::to_string(&Plan::from(&plan)).unwrap();
+        let back = PlanRequest::from_json(&text).unwrap().to_engine();
+        assert_eq!(back.input_sha256, Some([0xab; 32]));
+        assert_eq!(back.steps, plan.steps);
+        assert_eq!(back.findings[0].remedy, Some(pipeline::Remedy::Fill));
+        assert_eq!(back.findings[0].elements, [(1, pipeline::Remedy::Keep)]);
+    }
+
+    #[test]
+    fn what_is_no_plan_is_not_taken() {
+        assert!(PlanRequest::from_json("{}").is_some());
+        let elements: Vec<_> = (0..=ELEMENTS_MAX).map(|n| json!({"number": n, "remedy": "keep"})).collect();
+        for wrong in [
+            json!([]),
+            json!({"findings": [["boundary-loop"]]}),
+            json!({"input_sha256": "ab"}),
+            json!({"findings": [{"code": "no-such"}]}),
+            json!({"findings": [{"code": "boundary-loop", "remedy": "burn"}]}),
+            json!({"findings": [{"code": "boundary-loop", "elements": elements}]}),
+            json!({"findings": [{"code": "boundary-loop", "elements": [{"number": 1.5, "remedy": "keep"}]}]}),
+            json!({"steps": [{"step": "weld", "strength": 3}]}),
+            json!({"steps": [{"step": "remove-crossing", "rings": 11}]}),
+            json!({"steps": [{"step": "remove-crossing"}]}),
+            json!({"stepps": []}),
+        ] {
+            assert_eq!(PlanRequest::from_json(&wrong.to_string()), None, "{wrong}");
+        }
+    }
+}

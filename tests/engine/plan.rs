@@ -1,0 +1,236 @@
+//! Plans: what is proposed, what an edited plan changes, and steps that run again.
+
+use crate::raw_files::encode;
+use crate::repair::{coarse, without};
+use crate::solids::{cube, cuboid};
+use crate::support::corpus_files;
+use meshmend::analysis::DefectCode;
+use meshmend::budget::Budget;
+use meshmend::formats::Encoding;
+use meshmend::pipeline::{
+    Answer, ChosenPlan, ChosenRemedy, Failure, Operation, Options, Outcome, PlanMismatch, Remedy, Require,
+    SimplifyChoices, Step, run,
+};
+use meshmend::repair::nest::Policy;
+use meshmend::simplify::Target;
+use std::fs;
+
+fn repair(bytes: &[u8], options: &Options) -> Result<Answer, Failure> {
+    run(Operation::Repair, bytes, options, &Budget::unlimited())
+}
+
+/// The returned bytes.
+fn bytes_of<'a>(answer: &'a Answer, input: &'a [u8]) -> Option<&'a [u8]> {
+    answer.output.as_ref().map(|output| output.bytes.as_deref().unwrap_or(input))
+}
+
+fn with_plan(plan: ChosenPlan, require: Option<Require>) -> Options {
+    Options { plan: Some(plan), require, ..coarse() }
+}
+
+fn chosen(code: DefectCode, remedy: Option<Remedy>, elements: &[(u32, Remedy)]) -> ChosenPlan {
+    let finding = ChosenRemedy { code, remedy, elements: elements.to_vec() };
+    ChosenPlan { findings: vec![finding], ..ChosenPlan::default() }
+}
+
+/// A cuboid without two faces that lie apart: two holes.
+fn with_two_holes() -> Vec<u8> {
+    encode(&without(cuboid([3.0, 4.0, 5.0]), &[0, 2]), Encoding::Off)
+}
+
+fn loops(answer: &Answer) -> u64 {
+    answer.report.after.as_ref().unwrap().counts.boundary_loops
+}
+
+#[test]
+fn a_plan_names_each_defect_with_a_remedy_its_choices_and_how_sure_it_is() {
+    let bytes = with_two_holes();
+    let answer = run(Operation::Plan, &bytes, &Options::default(), &Budget::unlimited()).unwrap();
+    assert!(answer.output.is_none());
+    let plan = answer.report.plan.as_ref().unwrap();
+    assert_eq!((plan.input_sha256, &plan.steps), (answer.report.input.sha256, &None));
+    let [holes] = &plan.findings[..] else { panic!("{plan:?}") };
+    assert_eq!((holes.code, holes.count, holes.remedy), (DefectCode::BoundaryLoop, 2, Remedy::Fill));
+    assert_eq!(holes.choices, [Remedy::Fill, Remedy::Thicken, Remedy::Keep]);
+    assert_eq!(holes.elements.len(), 2);
+    let all = || holes.elements.iter().map(|hole| hole.confidence).chain([holes.confidence]);
+    assert!(all().all(|confidence| (0.0..=1.0).contains(&confidence)));
+}
+
+#[test]
+fn a_hole_that_is_to_stay_stays_and_the_other_is_filled() {
+    let bytes = with_two_holes();
+    for kept in [0, 1] {
+        let plan = chosen(DefectCode::BoundaryLoop, None, &[(kept, Remedy::Keep)]);
+        let answer = repair(&bytes, &with_plan(plan, Some(Require::BestEffort))).unwrap();
+        assert_eq!((answer.report.outcome, loops(&answer)), (Some(Outcome::Partial), 1));
+        let before = &answer.report.before.as_ref().unwrap().findings[0].witnesses[kept as usize];
+        let after = &answer.report.after.as_ref().unwrap().findings[0].witnesses[0];
+        assert_eq!(before.figures, after.figures, "the one that was to stay");
+        let only = chosen(DefectCode::BoundaryLoop, Some(Remedy::Keep), &[(1 - kept, Remedy::Fill)]);
+        let same = repair(&bytes, &with_plan(only, Some(Require::BestEffort))).unwrap();
+        assert_eq!(bytes_of(&same, &bytes), bytes_of(&answer, &bytes));
+    }
+    // What is to stay is not rebuilt away either.
+    let plan = chosen(DefectCode::BoundaryLoop, Some(Remedy::Keep), &[]);
+    let refused = repair(&bytes, &with_plan(plan, None)).unwrap();
+    assert_eq!(refused.report.outcome, Some(Outcome::Refused));
+}
+
+#[test]
+fn shells_are_turned_kept_or_removed_one_by_one() {
+    let inverted = |x: f64| cube().moved([x, 0.0, 0.0]).inside_out();
+    let bytes = encode(&cube().with(&inverted(2.0)).with(&inverted(4.0)), Encoding::Obj);
+    let shells = |answer: &Answer| answer.report.certificate.as_ref().unwrap().shells.len();
+    let all = repair(&bytes, &coarse()).unwrap();
+    assert_eq!(shells(&all), 3);
+    let one = chosen(DefectCode::InvertedShell, None, &[(1, Remedy::Remove)]);
+    let two = repair(&bytes, &with_plan(one, None)).unwrap();
+    assert_eq!((two.report.outcome, shells(&two)), (Some(Outcome::Repaired), 2));
+    let bounds = two.report.after.as_ref().unwrap().measures.bounds.unwrap();
+    assert_eq!(bounds.max.x, 3.0, "the last of three went");
+    let none = chosen(DefectCode::InvertedShell, Some(Remedy::Remove), &[]);
+    assert_eq!(shells(&repair(&bytes, &with_plan(none, None)).unwrap()), 1);
+    let kept = chosen(DefectCode::InvertedShell, Some(Remedy::Keep), &[(0, Remedy::Turn)]);
+    let partial = repair(&bytes, &with_plan(kept, Some(Require::BestEffort))).unwrap();
+    assert_eq!(partial.report.outcome, Some(Outcome::Partial));
+}
+
+#[test]
+fn a_shell_in_a_shell_becomes_a_cavity_where_the_caller_says_so() {
+    let bytes = encode(&cuboid([3.0; 3]).with(&cube().moved([1.0; 3])), Encoding::Obj);
+    let volume = |options: &Options| {
+        let answer = repair(&bytes, options).unwrap();
+        assert_eq!(answer.report.outcome, Some(Outcome::Repaired));
+        answer.report.after.unwrap().measures.volume.unwrap()
+    };
+    let with = |nesting: Policy| Options { nesting, ..coarse() };
+    assert_eq!(volume(&with(Policy::AsOriented)), 27.0);
+    assert_eq!(volume(&with(Policy::Alternate)), 26.0);
+    assert_eq!(volume(&with(Policy::Fill)), 27.0);
+    let turn = chosen(DefectCode::MisnestedShell, None, &[(0, Remedy::Turn)]);
+    assert_eq!(volume(&with_plan(turn, None)), 26.0);
+}
+
+#[test]
+fn a_cavity_of_a_valid_solid_is_filled_only_when_that_is_asked() {
+    let hollow = cuboid([3.0; 3]).with(&cube().moved([1.0; 3]).inside_out());
+    let bytes = encode(&hollow, Encoding::Obj);
+    for nesting in [Policy::AsOriented, Policy::Alternate] {
+        let answer = repair(&bytes, &Options { nesting, ..coarse() }).unwrap();
+        assert_eq!(answer.report.outcome, Some(Outcome::Identical));
+    }
+    let answer = repair(&bytes, &Options { nesting: Policy::Fill, ..coarse() }).unwrap();
+    assert_eq!(answer.report.outcome, Some(Outcome::Repaired));
+    assert_eq!(answer.report.certificate.as_ref().unwrap().shells.len(), 1);
+    assert_eq!(answer.report.after.unwrap().measures.volume, Some(27.0));
+}
+
+#[test]
+fn a_plan_that_is_not_for_the_file_is_told() {
+    let bytes = with_two_holes();
+    let mismatch = |plan: ChosenPlan| match repair(&bytes, &with_plan(plan, None)) {
+        Err(Failure::PlanMismatch(mismatch)) => mismatch,
+        other => panic!("{other:?}"),
+    };
+    let other = ChosenPlan { input_sha256: Some([0; 32]), ..ChosenPlan::default() };
+    assert_eq!(mismatch(other), PlanMismatch::OtherFile);
+    assert_eq!(
+        mismatch(chosen(DefectCode::Overlap, None, &[])),
+        PlanMismatch::NoSuchDefect(DefectCode::Overlap)
+    );
+    assert_eq!(
+        mismatch(chosen(DefectCode::BoundaryLoop, None, &[(2, Remedy::Keep)])),
+        PlanMismatch::NoSuchElement(DefectCode::BoundaryLoop, 2)
+    );
+    assert_eq!(
+        mismatch(chosen(DefectCode::BoundaryLoop, Some(Remedy::Turn), &[])),
+        PlanMismatch::NoSuchRemedy(DefectCode::BoundaryLoop, Remedy::Turn)
+    );
+}
+
+/// The steps that made the result of `answer`, to be run again.
+fn log_of(answer: &Answer) -> ChosenPlan {
+    let plan = answer.report.plan.as_ref().unwrap();
+    ChosenPlan { input_sha256: Some(plan.input_sha256), steps: plan.steps.clone(), ..ChosenPlan::default() }
+}
+
+/// Runs the steps of a repair again: the same bytes, outcome and steps.
+fn assert_replays(bytes: &[u8], options: &Options, name: &str) -> Option<Outcome> {
+    let first = repair(bytes, options).ok()?;
+    let outcome = first.report.outcome;
+    if outcome == Some(Outcome::Refused) {
+        assert_eq!(first.report.plan.as_ref().unwrap().steps, None);
+        return outcome;
+    }
+    let again = repair(bytes, &Options { plan: Some(log_of(&first)), ..options.clone() }).unwrap();
+    assert_eq!(bytes_of(&again, bytes), bytes_of(&first, bytes), "{name}");
+    assert_eq!(again.report.outcome, outcome, "{name}");
+    let steps =
+        |answer: &Answer| answer.report.plan.as_ref().and_then(|plan| plan.steps.as_ref().map(Vec::len));
+    assert_eq!(steps(&again), steps(&first), "{name}");
+    outcome
+}
+
+#[test]
+fn the_steps_of_a_repair_give_the_same_bytes_when_they_run_again() {
+    let mut outcomes = Vec::new();
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
+    for folder in fs::read_dir(root).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir())
+    {
+        for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            if path.extension().is_none_or(|extension| extension == "json") {
+                continue;
+            }
+            let bytes = fs::read(&path).unwrap();
+            let name = path.display().to_string();
+            let best = Options { require: Some(Require::BestEffort), ..coarse() };
+            let none = Options { require: Some(Require::None), ..coarse() };
+            let fewer = SimplifyChoices { targets: vec![Target::Ratio(0.5)], ..SimplifyChoices::default() };
+            for options in [coarse(), best, none, Options { simplify: fewer, ..coarse() }] {
+                outcomes.extend(assert_replays(&bytes, &options, &name));
+            }
+        }
+    }
+    for outcome in [Outcome::Identical, Outcome::Repaired, Outcome::Rebuilt, Outcome::Partial] {
+        assert!(outcomes.contains(&outcome), "{outcome:?} is among them");
+    }
+}
+
+#[test]
+fn the_steps_of_repairs_of_real_files_give_the_same_bytes_when_they_run_again() {
+    let Some(files) = corpus_files(&["stl", "obj", "off", "ply"]) else { return };
+    let small = |path: &std::path::PathBuf| fs::metadata(path).is_ok_and(|file| file.len() < 100_000);
+    let mut repaired = 0;
+    for path in files.into_iter().filter(small).step_by(3) {
+        let outcome = assert_replays(&fs::read(&path).unwrap(), &coarse(), &path.display().to_string());
+        repaired += u32::from(outcome == Some(Outcome::Repaired));
+    }
+    assert!(repaired > 3, "{repaired}");
+}
+
+#[test]
+fn a_step_that_is_left_out_is_undone_and_without_any_the_file_comes_back() {
+    let bytes = with_two_holes();
+    let whole = repair(&bytes, &coarse()).unwrap();
+    let log = log_of(&whole);
+    let steps = log.steps.clone().unwrap();
+    let fills = |step: &Step| matches!(step, Step::FillHoles(_));
+    assert_eq!(steps.iter().filter(|step| fills(step)).count(), 1);
+    let replayed = |steps: Vec<Step>| {
+        let plan = ChosenPlan { steps: Some(steps), ..log.clone() };
+        repair(&bytes, &with_plan(plan, Some(Require::BestEffort))).unwrap()
+    };
+    let without_fill = replayed(steps.iter().filter(|step| !fills(step)).cloned().collect());
+    assert_eq!((without_fill.report.outcome, loops(&without_fill)), (Some(Outcome::Partial), 2));
+    assert_eq!(without_fill.report.identical_triangle_share, Some(1.0));
+    let nothing = replayed(Vec::new());
+    assert_eq!(bytes_of(&nothing, &bytes), Some(&bytes[..]));
+    // Undone from the last step on: each prefix has the holes until they are filled.
+    for count in 0..=steps.len() {
+        let prefix = &steps[..count];
+        let answer = replayed(prefix.to_vec());
+        let holes = answer.report.after.as_ref().map_or(2, |mesh| mesh.counts.boundary_loops);
+        assert_eq!(holes, if prefix.iter().any(fills) { 0 } else { 2 }, "{count} steps");
+    }
+}
