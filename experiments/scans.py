@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Real scans that are broken: findings before and after, what was done, the judge's word, other tools on the same file, and pictures; prints Markdown.
 
-usage: scans.py --binary PATH [--judge PATH] [--only NAME ...] [--save FILE] [--no-peers]    with MESHMEND_SHARED and the peers' set-up; needs pyvista and pillow
+usage: scans.py --binary PATH [--judge PATH] [--only NAME ...] [--save FILE] [--load FILE] [--no-peers]    with MESHMEND_SHARED and the peers' set-up; needs pyvista and pillow
 The scans come with the peers: the Stanford dragon (their set-up fetches it), a range map and the Stanford bunny (PyMeshLab's own samples).
 """
-import argparse, gzip, json, os, select, shutil, subprocess, sys, tempfile, time
+import argparse, gzip, json, os, resource, select, shutil, subprocess, sys, tempfile, time
 import numpy as np
 here = os.path.dirname(os.path.abspath(__file__)); root = os.path.dirname(here)
 shared = os.environ.get("MESHMEND_SHARED", os.path.join(root, "../shared")); sys.path.insert(0, os.path.join(shared, "judge"))
@@ -12,15 +12,15 @@ from meshfile import load_any, write_msh
 peers = os.environ.get("MESH_PEERS_DIR") or os.path.join(tempfile.gettempdir(), "meshmend-peers")
 p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 p.add_argument("--binary", required=True); p.add_argument("--judge", default=os.path.join(os.environ.get("MESH_JUDGE_DIR") or os.path.join(tempfile.gettempdir(), "meshmend-judge"), "judge"))
-p.add_argument("--only", nargs="*"); p.add_argument("--save"); p.add_argument("--no-peers", action="store_true"); o = p.parse_args()
+p.add_argument("--only", nargs="*"); p.add_argument("--save"); p.add_argument("--load"); p.add_argument("--no-peers", action="store_true"); o = p.parse_args()
 def samples():
     import importlib.util
     return os.path.join(os.path.dirname(importlib.util.find_spec("pymeshlab").origin), "tests/sample_meshes")
 DRAGON = os.path.join(peers, "npm/package/models")
 SCANS = [("bunny", "the Stanford bunny at 10,000 triangles, with five holes", os.path.join(samples(), "bunny10k_textured.obj"), (0.3, -1, 0.15), (0, 0, 1)),
          ("range-map", "one range map of a scanner, a face seen from the front", os.path.join(samples(), "rangemaps/face000.ply"), (0.15, 0.1, 1), (0, 1, 0)),
-         ("dragon", "the Stanford dragon as reconstructed from its scans", os.path.join(DRAGON, "dragon_vrip.ply"), (0.25, 0.2, 1), (0, 1, 0)),
-         ("dragon-res3", "the same, as its authors decimated it", os.path.join(DRAGON, "dragon_vrip_res3.ply.gz"), (0.25, 0.2, 1), (0, 1, 0))]
+         ("dragon-res3", "the Stanford dragon as its authors decimated it to 47,794 triangles", os.path.join(DRAGON, "dragon_vrip_res3.ply.gz"), (0.25, 0.2, 1), (0, 1, 0)),
+         ("dragon", "the Stanford dragon as reconstructed from its range images, whole", os.path.join(DRAGON, "dragon_vrip.ply"), (0.25, 0.2, 1), (0, 1, 0))]
 PEERS = ("pymeshlab", "meshlib", "blender", "cgal_pmp", "cgal_wrap"); SECONDS = 120
 
 def judged(*paths):
@@ -28,13 +28,15 @@ def judged(*paths):
     except (ValueError, subprocess.TimeoutExpired) as e: return {"error": str(e)[:60]}
 def peer(name, source, out):
     """The peer's own pipeline (worker.py) on one mesh, in a process of its own."""
-    child = subprocess.Popen([sys.executable, os.path.join(shared, "peers/worker.py"), name], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env={**os.environ, "MESH_PEERS_DIR": peers})
+    child = subprocess.Popen([sys.executable, os.path.join(shared, "peers/worker.py"), name], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env={**os.environ, "MESH_PEERS_DIR": peers},
+                             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS)))
     try:
         ready = child.stdout.readline()
         if not ready: return {"error": "did not start"}
         child.stdin.write(f"{source}\t{out}\n".encode()); child.stdin.flush()
-        if not select.select([child.stdout], [], [], SECONDS)[0]: return {"error": f"no result in {SECONDS} s"}
-        line = child.stdout.readline(); return json.loads(line) if line else {"error": "ended without a result"}
+        if not select.select([child.stdout], [], [], 4 * SECONDS)[0]: return {"error": f"no result in {4 * SECONDS} s"}
+        line = child.stdout.readline(); answer = json.loads(line) if line else {"error": f"no result in {SECONDS} s of a processor"}
+        return {**answer, "error": f"no result in {SECONDS} s of a processor"} if "rc -9" in answer.get("error", "") or "rc -24" in answer.get("error", "") else answer
     finally: child.kill(); child.wait()
 def rows_of(v, f):
     """Each triangle as its three float32 positions in sorted order, one opaque value each."""
@@ -57,7 +59,7 @@ def picture(name, before, after, found, view, up):
     places = np.vstack([v[f[x]].mean(1) for x in marked.values() if len(x)] + ([v[lines].mean(1)] if len(lines) else [])); direction = np.array(view, float) / np.linalg.norm(view)
     seen = places[(places - centre) @ direction > -0.05 * size]; seen = seen if len(seen) else places; pick = seen[::max(1, len(seen) // 400)]
     spread = 0.06 * size; focus = pick[np.argmax([(np.linalg.norm(seen - q, axis=1) < spread).sum() for q in pick])]
-    plotter = pv.Plotter(off_screen=True, shape=(2, 2), window_size=(1200, 1000), border=True, border_color="white")
+    plotter = pv.Plotter(off_screen=True, shape=(2, 2), window_size=(1080, 900), border=True, border_color="white")
     for row, (target, scale) in enumerate(((centre, 0.34 * size), (focus, spread))):
         for column, (title, m) in enumerate((("before", mesh(v, f)), ("after", mesh(w, g)))):
             plotter.subplot(row, column); plotter.add_mesh(m, color="#c9ced6", show_edges=bool(row), edge_color="#7d8794", line_width=1, ambient=0.25, diffuse=0.75, backface_params={"color": "#d8b48c"})
@@ -66,20 +68,20 @@ def picture(name, before, after, found, view, up):
                     if not len(x): continue
                     plotter.add_mesh(mesh(v, f[x]), color=colour, ambient=0.8, show_edges=bool(row), edge_color="black")
                     if not row: plotter.add_points(v[f[x]].mean(1), color=colour, point_size=5)
-                if len(lines): plotter.add_mesh(pv.PolyData(v, lines=np.c_[np.full(len(lines), 2), lines].ravel()), color="red", line_width=3 if not row else 5)
+                if len(lines): plotter.add_mesh(pv.PolyData(v, lines=np.c_[np.full(len(lines), 2), lines].ravel()), color="red", line_width=4 if not row else 6, lighting=False)
             elif len(new) and not all_new:
                 plotter.add_mesh(mesh(w, g[new]), color="#1fa34a", ambient=0.5, show_edges=bool(row), edge_color="black")
                 if not row: plotter.add_points(w[g[new]].mean(1), color="#1fa34a", point_size=4)
             plotter.add_text(f"{title}{'' if not row else ', close-up'}", font_size=11, color="black"); plotter.camera.parallel_projection = True
             plotter.camera.focal_point = target; plotter.camera.position = target + direction * size * 2; plotter.camera.up = up; plotter.camera.parallel_scale = scale; plotter.reset_camera_clipping_range()
     os.makedirs(os.path.join(root, "docs/pictures"), exist_ok=True); file = os.path.join(root, f"docs/pictures/scan-{name}.png"); shot = Image.fromarray(plotter.screenshot(return_img=True)); plotter.close()
-    for colours in (128, 64, 32, 16):
-        shot.quantize(colours, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(file, optimize=True)
+    for colours in (128, 64, 40, 24, 16):
+        shot.quantize(colours, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(file, optimize=True)
         if os.path.getsize(file) <= 150_000: break
     return len(new)
 
-results = []
-for name, what, path, view, up in SCANS:
+results = json.load(open(o.load)) if o.load else []
+for name, what, path, view, up in () if o.load else SCANS:
     if o.only and name not in o.only: continue
     if not os.path.exists(path): print(f"not here: {path}", file=sys.stderr); continue
     with tempfile.TemporaryDirectory() as d:
@@ -112,9 +114,9 @@ for r in results:
     print(f"## {r['name']}: {r['what']}\n\n![{r['name']}, before and after](../pictures/scan-{r['name']}.png)\n\n| | before | after |\n|---|---|---|")
     print(f"| triangles, parts | {t['before']['counts']['triangles']:,}, {t['before']['counts']['components']} | {t['after']['counts']['triangles']:,}, {t['after']['counts']['components']} |")
     print(f"| findings | {counts(t['before'])} | {counts(t['after'])} |\n| the judge | {word(r['before'])} | {word(j)} |")
-    print(f"\nOutcome `{t['verdict']['outcome']}` in {r['seconds']:.1f} s. Done: {done}.\n{100 * (dev['identical_triangle_share'] or 0):.2f} % of the triangles are bit-identical; {r['new']:,} triangles of the result are not in the file. "
+    print(f"\nOutcome `{t['verdict']['outcome']}`. Done: {done}.\n{100 * (dev['identical_triangle_share'] or 0):.2f} % of the triangles are bit-identical; {r['new']:,} triangles of the result are not in the file. "
           f"Hausdorff distance by the judge's samples {number(j.get('hausdorff'), '.5f')} of the diagonal, visible surface lost {number(j.get('vis_lost'), '.5f')}.\n")
-    if r["peers"]: print("| tool | result | triangles | seconds | triangles kept | Hausdorff / diagonal | visible surface lost |\n|---|---|---|---|---|---|---|")
+    if r["peers"]: print("| tool | result | triangles | triangles kept | Hausdorff / diagonal | visible surface lost |\n|---|---|---|---|---|---|")
     for q, x in {"Meshmend": {"judge": j, "t": r["seconds"], "nf": t["after"]["counts"]["triangles"]}, **r["peers"]}.items() if r["peers"] else ():
-        k = x["judge"]; print(f"| {q} | {x.get('error') or word(k)} | {number(x.get('nf'), ',')} | {number(x.get('t'), '.1f')} | {number(k.get('untouched'), '.1%')} | {number(k.get('hausdorff'), '.4f')} | {number(k.get('vis_lost'), '.4f')} |")
+        k = x["judge"]; print(f"| {q} | {x.get('error') or word(k)} | {number(x.get('nf'), ',')} | {number(k.get('untouched'), '.1%')} | {number(k.get('hausdorff'), '.4f')} | {number(k.get('vis_lost'), '.4f')} |")
     print()
