@@ -100,10 +100,10 @@ print("\n## Memory\n\nPeak of resident memory of the process that repairs, the c
 for k in ("identical", "repaired", "rebuilt"):
     of = [r["peak"] / 2**20 for r in rows if outcome(r) == k]
     if of: print(f"| {k} | {len(of)} | {at(0.5, of):.0f} | {at(0.95, of):.0f} | {max(of):.0f} |")
-print("\n## Volumes\n\nOf inputs without open borders: the volume of {winding number >= 1} after orientation (experiments/winding_volume.py: 21,632 lines in eight random\n"
-      "directions, one in each cell of a grid, the length inside exact along each) against the volume of the returned mesh by the judge. The standard error is\nof the eight directions; *beyond 2 %* has three standard errors taken off.\n\n| | files | within 2 % | largest difference within | largest standard error |\n|---|---|---|---|---|")
+print("\n## Volumes\n\nOf inputs without open borders: the volume of {winding number >= 1} after orientation (experiments/winding_volume.py: 2,704 lines, one in each cell of a grid,\n"
+      "in each of eight random directions, and of up to 128 while the standard error is above 0.1 %; the length inside is exact along each) against the volume\nof the returned mesh by the judge. The standard error is that of the directions; *beyond 2 %* has three standard errors taken off.\n\n| | files | within 2 % | largest difference within | largest standard error |\n|---|---|---|---|---|")
 def difference(r): return (r["after"]["vol"] - r["volume"]["volume"]) / r["volume"]["volume"]
-asked = [r for r in rows if r["volume"].get("volume", 0) > 0 and "vol" in r["after"]]; beyond = lambda r: abs(difference(r)) - 3 * r["volume"]["error"] / r["volume"]["volume"] > 0.02
+asked = [r for r in rows if r["volume"].get("volume", 0) > 10 * r["volume"].get("error", 0) and "vol" in r["after"]]; beyond = lambda r: abs(difference(r)) - 3 * r["volume"]["error"] / r["volume"]["volume"] > 0.02
 for name, of in (("valid by the judge", [r for r in asked if good(r["before"])]), ("broken", [r for r in asked if not good(r["before"])])):
     near = [r for r in of if not beyond(r)]
     if of: print(f"| {name} | {len(of)} | {len(near)} | {100 * max((abs(difference(r)) for r in near), default=0):.2f} % | {100 * max(r['volume']['error'] / r['volume']['volume'] for r in of):.2f} % |")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Real scans that are broken: findings before and after, what was done, the judge's word, other tools on the same file, and pictures; prints Markdown.
 
-usage: scans.py --binary PATH [--judge PATH] [--only NAME ...] [--save FILE] [--load FILE] [--no-peers]    with MESHMEND_SHARED and the peers' set-up; needs pyvista and pillow
+usage: scans.py --binary PATH [--judge PATH] [--only NAME ...] [--save FILE] [--load FILE] [--pictures | --no-peers]    with MESHMEND_SHARED and the peers' set-up; needs pyvista and pillow
 The scans come with the peers: the Stanford dragon (their set-up fetches it), a range map and the Stanford bunny (PyMeshLab's own samples).
 """
 import argparse, gzip, json, os, resource, select, shutil, subprocess, sys, tempfile, time
@@ -12,7 +12,7 @@ from meshfile import load_any, write_msh
 peers = os.environ.get("MESH_PEERS_DIR") or os.path.join(tempfile.gettempdir(), "meshmend-peers")
 p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 p.add_argument("--binary", required=True); p.add_argument("--judge", default=os.path.join(os.environ.get("MESH_JUDGE_DIR") or os.path.join(tempfile.gettempdir(), "meshmend-judge"), "judge"))
-p.add_argument("--only", nargs="*"); p.add_argument("--save"); p.add_argument("--load"); p.add_argument("--no-peers", action="store_true"); o = p.parse_args()
+p.add_argument("--only", nargs="*"); p.add_argument("--save"); p.add_argument("--load"); p.add_argument("--pictures", action="store_true"); p.add_argument("--no-peers", action="store_true"); o = p.parse_args()
 def samples():
     import importlib.util
     return os.path.join(os.path.dirname(importlib.util.find_spec("pymeshlab").origin), "tests/sample_meshes")
@@ -57,26 +57,31 @@ def picture(name, before, after, found, view, up):
     lo, hi = v[f.ravel()].min(0), v[f.ravel()].max(0); centre, size = (lo + hi) / 2, np.linalg.norm(hi - lo); new = np.nonzero(~np.isin(rows_of(w, g), rows_of(v, f)))[0]; all_new = len(new) > len(g) / 2
     lines = border(v, f); marked = {"magenta": found["meet"], "orange": found["other"]}
     places = np.vstack([v[f[x]].mean(1) for x in marked.values() if len(x)] + ([v[lines].mean(1)] if len(lines) else [])); direction = np.array(view, float) / np.linalg.norm(view)
+    if len(found["meet"]): places = v[f[found["meet"]]].mean(1)
     seen = places[(places - centre) @ direction > -0.05 * size]; seen = seen if len(seen) else places; pick = seen[::max(1, len(seen) // 400)]
-    spread = 0.06 * size; focus = pick[np.argmax([(np.linalg.norm(seen - q, axis=1) < spread).sum() for q in pick])]
+    edge = np.linalg.norm(v[f[:, 0]] - v[f[:, 1]], axis=1).mean(); spread = min(0.06 * size, 7 * edge); focus = pick[np.argmax([(np.linalg.norm(seen - q, axis=1) < spread).sum() for q in pick])]
+    near = f[np.linalg.norm(v[f].mean(1) - focus, axis=1) < 0.5 * spread]; ahead = np.cross(v[near[:, 1]] - v[near[:, 0]], v[near[:, 2]] - v[near[:, 0]]).sum(0); ahead = ahead / np.linalg.norm(ahead) if np.linalg.norm(ahead) > 0 else direction
     plotter = pv.Plotter(off_screen=True, shape=(2, 2), window_size=(1080, 900), border=True, border_color="white")
     for row, (target, scale) in enumerate(((centre, 0.34 * size), (focus, spread))):
         for column, (title, m) in enumerate((("before", mesh(v, f)), ("after", mesh(w, g)))):
-            plotter.subplot(row, column); plotter.add_mesh(m, color="#c9ced6", show_edges=bool(row), edge_color="#7d8794", line_width=1, ambient=0.25, diffuse=0.75, backface_params={"color": "#d8b48c"})
+            plotter.subplot(row, column); plotter.add_mesh(m, color="#cfcfcf", show_edges=bool(row), edge_color="#808080", line_width=1, ambient=0.25, diffuse=0.75, backface_params={"color": "#d8b48c", "ambient": 0.35})
             if column == 0:
                 for colour, x in marked.items():
                     if not len(x): continue
-                    plotter.add_mesh(mesh(v, f[x]), color=colour, ambient=0.8, show_edges=bool(row), edge_color="black")
-                    if not row: plotter.add_points(v[f[x]].mean(1), color=colour, point_size=5)
+                    plotter.add_mesh(mesh(v, f[x]), color=colour, ambient=1, diffuse=0, show_edges=bool(row), edge_color="black")
+                    if not row: plotter.add_points(v[f[x]].mean(1), color=colour, point_size=5 if len(found['other']) > 400 else 10)
                 if len(lines): plotter.add_mesh(pv.PolyData(v, lines=np.c_[np.full(len(lines), 2), lines].ravel()), color="red", line_width=4 if not row else 6, lighting=False)
             elif len(new) and not all_new:
-                plotter.add_mesh(mesh(w, g[new]), color="#1fa34a", ambient=0.5, show_edges=bool(row), edge_color="black")
-                if not row: plotter.add_points(w[g[new]].mean(1), color="#1fa34a", point_size=4)
+                plotter.add_mesh(mesh(w, g[new]), color="#28be5a", ambient=0.5, show_edges=bool(row), edge_color="black")
+                if not row: plotter.add_points(w[g[new]].mean(1), color="#28be5a", point_size=4 if len(new) > 400 else 8)
             plotter.add_text(f"{title}{'' if not row else ', close-up'}", font_size=11, color="black"); plotter.camera.parallel_projection = True
-            plotter.camera.focal_point = target; plotter.camera.position = target + direction * size * 2; plotter.camera.up = up; plotter.camera.parallel_scale = scale; plotter.reset_camera_clipping_range()
+            plotter.camera.focal_point = target; plotter.camera.position = target + (ahead * spread if row else direction * size * 2); plotter.camera.up = up if abs(np.dot(ahead, up)) < 0.95 or not row else (1, 0, 0)
+            plotter.camera.parallel_scale = scale; plotter.camera.clipping_range = (spread * 0.01, size * 4)  # what is in front of a close-up is cut away
     os.makedirs(os.path.join(root, "docs/pictures"), exist_ok=True); file = os.path.join(root, f"docs/pictures/scan-{name}.png"); shot = Image.fromarray(plotter.screenshot(return_img=True)); plotter.close()
-    for colours in (128, 64, 40, 24, 16):
-        shot.quantize(colours, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(file, optimize=True)
+    for greys in (48, 32, 20, 14, 10):
+        palette = Image.new("P", (1, 1)); ramp = lambda c: [[int(x * k / 6) for x in c] for k in range(1, 7)]; greyscale = [[round(255 * k / (greys - 1))] * 3 for k in range(greys)]
+        palette.putpalette([x for c in greyscale + sum(map(ramp, ((255, 0, 0), (255, 0, 255), (255, 165, 0), (40, 190, 90), (216, 180, 140))), []) for x in c])
+        shot.quantize(palette=palette, dither=Image.Dither.NONE).save(file, optimize=True)
         if os.path.getsize(file) <= 150_000: break
     return len(new)
 
@@ -95,6 +100,7 @@ for name, what, path, view, up in () if o.load else SCANS:
         edges = len(border(v, f)); said = report["before"]["counts"]["boundary_edges"]
         if edges != said: print(f"{name}: {edges} border edges here, {said} in the report", file=sys.stderr)
         new = picture(name, (v, f), (w, g), found, view, up)
+        if o.pictures: continue
         row = dict(name=name, what=what, file=os.path.basename(source), report={k: report[k] for k in ("before", "after", "actions", "deviation", "verdict")}, seconds=seconds, new=new, before=judged(a, "--only"), after=judged(a, b), peers={})
         for q in ("before", "after"):
             for k in row["report"][q]["defects"]: k["witnesses"] = []
