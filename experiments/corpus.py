@@ -4,7 +4,7 @@
 usage: corpus.py [--judge PATH] [--limit N] [--binary PATH] [--only ID ...] [--save FILE] [--load FILE] [--seconds 120]      with MESHMEND_SHARED; the judge is built by its own build.sh when no path is given
 numpy is needed for the volumes; PLY needs trimesh, networkx, lxml and pillow (PyPI) as well in the Python that runs this, for the judge's reader.
 """
-import argparse, collections, json, os, signal, subprocess, sys, tempfile, threading, time
+import argparse, collections, json, os, signal, subprocess, sys, tempfile, time
 here = os.path.dirname(os.path.abspath(__file__)); root = os.path.dirname(here)
 shared = os.environ.get("MESHMEND_SHARED", os.path.join(root, "../shared"))
 p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -25,18 +25,21 @@ def readable(path, d, name):
 def judged(*paths):
     try: return json.loads(subprocess.run([judge, *paths], capture_output=True, timeout=300).stdout)
     except Exception as e: return {"error": str(e)[:100]}
+# A child's peak begins with that of the process it was forked from, so a small one stands between.
+LAUNCHER = "import os, sys; child = os.posix_spawn(sys.argv[2], sys.argv[2:], os.environ); _, status, used = os.wait4(child, 0); open(sys.argv[1], 'w').write(f'{os.waitstatus_to_exitcode(status)} {used.ru_maxrss}')"
 def measured(*command):
-    """Runs a command for at most `--seconds`: code or "timeout", its two outputs, and the largest resident memory of the process in bytes."""
-    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
-        child = subprocess.Popen(command, stdout=out, stderr=err); late = threading.Event()
-        timer = threading.Timer(o.seconds, lambda: (late.set(), os.kill(child.pid, signal.SIGKILL))); timer.start()
-        _, status, used = os.wait4(child.pid, 0); timer.cancel(); child.returncode = os.waitstatus_to_exitcode(status); out.seek(0); err.seek(0)
-        return "timeout" if late.is_set() else child.returncode, out.read(), err.read(), used.ru_maxrss * 1024
+    """Runs a command for at most `--seconds`: code or "timeout", its two outputs, and the largest resident memory of the process in bytes (at least some 10 MiB)."""
+    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err, tempfile.NamedTemporaryFile("r") as told:
+        child = subprocess.Popen([sys.executable, "-I", "-S", "-c", LAUNCHER, told.name, *command], stdout=out, stderr=err, start_new_session=True)
+        try: child.wait(o.seconds)
+        except subprocess.TimeoutExpired: os.killpg(child.pid, signal.SIGKILL); child.wait()
+        words = told.read().split(); out.seek(0); err.seek(0); code, peak = (int(words[0]), int(words[1]) * 1024) if words else ("timeout", 0)
+        return code, out.read(), err.read(), peak
 def stop_after(seconds):
     """Raises TimeoutError in the main thread that late; 0 takes it back."""
     def late(*_): raise TimeoutError
     signal.signal(signal.SIGALRM, late); signal.alarm(seconds)
-def volume(path):
+def volume(path, returned):
     """{winding number >= 1} of an input without open borders after orientation, with its standard error; or why there is none."""
     stop_after(60)
     try:
@@ -45,7 +48,7 @@ def volume(path):
         if (n := open_edges(f)[0]): return {"none": "open", "edges": n}
         f = oriented(v, f)
         if (n := open_edges(f)[1]): return {"none": "directions do not cancel", "edges": n}
-        mean, error, lost = winding_volume(v, f); return {"volume": mean, "error": error, "lost": lost}
+        mean, error, lost = winding_volume(v, f, returned); return {"volume": mean, "error": error, "lost": lost}
     except TimeoutError: return {"none": "60 s"}
     except Exception as e: return {"none": str(e)[:80]}
     finally: stop_after(0)
@@ -69,7 +72,7 @@ for line in () if o.load else open(os.path.join(shared, "corpus/MANIFEST.tsv")):
         except Exception as e: before = {"error": str(e)[:100]}
         after = judged(readable(src, d, "in.msh"), readable(dst, d, "out.msh")) if os.path.exists(dst) else {}
         same = os.path.exists(dst) and open(src, "rb").read() == open(dst, "rb").read()
-    rows.append(dict(id=id, src=src, classes=classes, code=code, seconds=seconds, report=report, before=before, after=after, same=same, peak=peak, volume=volume(src),
+    rows.append(dict(id=id, src=src, classes=classes, code=code, seconds=seconds, report=report, before=before, after=after, same=same, peak=peak, volume=volume(src, after.get("vol")),
                      error=(complaint.decode("utf-8", "replace").strip().splitlines() or [""])[0] if code != "timeout" else "timeout"))
     if o.save: json.dump(rows, open(o.save, "w"))
 outcome = lambda r: ((r["report"] or {}).get("verdict") or {}).get("outcome") or ("unreadable" if r["code"] == 2 else f"exit {r['code']}")
@@ -101,9 +104,9 @@ for k in ("identical", "repaired", "rebuilt"):
     of = [r["peak"] / 2**20 for r in rows if outcome(r) == k]
     if of: print(f"| {k} | {len(of)} | {at(0.5, of):.0f} | {at(0.95, of):.0f} | {max(of):.0f} |")
 print("\n## Volumes\n\nOf inputs without open borders: the volume of {winding number >= 1} after orientation (experiments/winding_volume.py: 2,704 lines, one in each cell of a grid,\n"
-      "in each of eight random directions, and of up to 128 while the standard error is above 0.1 %; the length inside is exact along each) against the volume\nof the returned mesh by the judge. The standard error is that of the directions; *beyond 2 %* has three standard errors taken off.\n\n| | files | within 2 % | largest difference within | largest standard error |\n|---|---|---|---|---|")
+      "in each of eight random directions, and of up to 128 while the standard error is above 0.3 % or the answer open; the length inside is exact along each) against the volume\nof the returned mesh by the judge. The standard error is that of the directions.\n\n| | files | within 2 % | largest difference within | largest standard error |\n|---|---|---|---|---|")
 def difference(r): return (r["after"]["vol"] - r["volume"]["volume"]) / r["volume"]["volume"]
-asked = [r for r in rows if r["volume"].get("volume", 0) > 10 * r["volume"].get("error", 0) and "vol" in r["after"]]; beyond = lambda r: abs(difference(r)) - 3 * r["volume"]["error"] / r["volume"]["volume"] > 0.02
+asked = [r for r in rows if r["volume"].get("volume", 0) > 10 * r["volume"].get("error", 0) and "vol" in r["after"]]; beyond = lambda r: abs(difference(r)) > 0.02
 for name, of in (("valid by the judge", [r for r in asked if good(r["before"])]), ("broken", [r for r in asked if not good(r["before"])])):
     near = [r for r in of if not beyond(r)]
     if of: print(f"| {name} | {len(of)} | {len(near)} | {100 * max((abs(difference(r)) for r in near), default=0):.2f} % | {100 * max(r['volume']['error'] / r['volume']['volume'] for r in of):.2f} % |")
