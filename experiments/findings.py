@@ -83,7 +83,7 @@ if sys.argv[1:2] == ["--worker"]:
     for line in sys.stdin:
         how, path = line.rstrip("\n").split("\t")
         try: answer = (READERS if how == "read" else TOOLS)[sys.argv[2]](path)
-        except Exception as e: answer = {"error": f"{type(e).__name__}: {e}"[:200]}
+        except Exception as e: answer = {"error": f"{type(e).__name__}: {str(e).strip().splitlines()[-1] if str(e).strip() else ''}"[:120]}
         os.write(said, (json.dumps(answer) + "\n").encode())
     sys.exit()
 
