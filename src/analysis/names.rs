@@ -32,6 +32,7 @@ impl<'s> Names<'s> {
             vertices: named(vertices, &places.vertex_lines),
             position: position.is_finite().then_some(position),
             figures: Vec::new(),
+            test: None,
         }
     }
 

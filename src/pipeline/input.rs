@@ -2,7 +2,7 @@
 
 use super::describe::describe;
 use super::{Answer, Failure, InputFacts, Operation, Options, Outcome, Output, Refusal, Report};
-use crate::analysis::Analysis;
+use crate::analysis::{Analysis, AnalyzeOptions, NearSearch};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::{self, CertifyError, Depth, Examination};
 use crate::formats::{self, Encoding, ReadError};
@@ -16,6 +16,8 @@ pub(super) struct Input {
     pub(super) soup: Soup,
     pub(super) examination: Examination,
     pub(super) samples: usize,
+    /// What is near, where the caller said so.
+    near: Option<f64>,
 }
 
 impl Input {
@@ -40,12 +42,23 @@ impl Input {
             units: options.units.unwrap_or_default(),
             units_are_stated: options.units.is_some(),
         };
-        Ok(Self { facts, soup, examination, samples })
+        Ok(Self { facts, soup, examination, samples, near: options.near })
     }
 
-    /// Describes the mesh as uploaded.
-    pub(super) fn analyze(&self, budget: &Budget) -> Result<Analysis, Stopped> {
-        describe(&self.soup, &self.examination, self.samples, budget)
+    /// What to find out of a mesh of this run.
+    pub(super) fn analyze_options(&self) -> AnalyzeOptions {
+        let near = self.near.map_or(NearSearch::Off, NearSearch::Within);
+        AnalyzeOptions { samples: self.samples, near, volume_interval: false }
+    }
+
+    /// Describes the mesh as uploaded; in full when that is all that is asked for.
+    fn analyze(&self, operation: Operation, budget: &Budget) -> Result<Analysis, Stopped> {
+        let mut options = self.analyze_options();
+        if operation == Operation::Analyze {
+            options.volume_interval = true;
+            options.near = self.near.map_or(NearSearch::ByDiagonal, NearSearch::Within);
+        }
+        describe(&self.soup, &self.examination, &options, budget)
     }
 
     /// The account of a run that has judged the input and done nothing else.
@@ -72,7 +85,7 @@ impl Input {
 
     /// The account of `operation` as far as the input is concerned.
     pub(super) fn report(&self, operation: Operation, budget: &Budget) -> Result<Report, Stopped> {
-        Ok(Report { operation, before: Some(self.analyze(budget)?), ..self.verification() })
+        Ok(Report { operation, before: Some(self.analyze(operation, budget)?), ..self.verification() })
     }
 
     /// The encoding of the output: the input's own unless another format is asked.

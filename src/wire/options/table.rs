@@ -198,6 +198,11 @@ pub const SPECS: &[OptionSpec] = &[
         "Direction of the file that is up in the machine; matters with policy. Default: z.",
     ),
     option(
+        "near_mm",
+        OptionKind::Number { min: 0.0, max: 1e30 },
+        "How far apart vertices, edges and faces are at most that are reported as near, in millimetres, but never more than half the edges around them. Default: 1e-5 of the diagonal for analyze; other operations search only when this is given.",
+    ),
+    option(
         "samples",
         OptionKind::Integer { min: 0, max: 10_000 },
         "Witnesses that the report keeps of each defect. Default: 16.",
