@@ -42,6 +42,13 @@ fn random_mesh(random: &mut Random) -> Soup {
             triangles.push(corners);
         }
     }
+    if let Some(&corners) = triangles.first().filter(|_| random.one_in(4)) {
+        // The same triangle nearly once more.
+        triangles.push(corners.map(|v| {
+            positions.push(positions[v as usize] + small(random) * 0.3);
+            positions.len() as u32 - 1
+        }));
+    }
     Soup { face_count: triangles.len() as u32, positions, triangles, ..Soup::default() }
 }
 
