@@ -79,6 +79,8 @@ const CLASSES: &[Class] = &[
     // A shell without volume has no other form among three vertices.
     Class { code: D::ZeroVolumeShell, plant: with_pillow, consequences: &[D::OppositeDuplicateFace] },
     Class { code: D::SelfIntersection, plant: with_spike_through_face, consequences: &[D::NoiseShell] },
+    // The walls of the part touch the face in the outline of what is shared.
+    Class { code: D::Overlap, plant: with_part_on_face, consequences: &[D::Touch] },
     Class { code: D::Touch, plant: with_tip_on_face, consequences: &[D::NoiseShell] },
     Class { code: D::Near, plant: with_tip_near_face, consequences: &[D::NoiseShell] },
     Class { code: D::Near, plant: with_tip_near_vertex, consequences: &[] },
@@ -308,8 +310,8 @@ fn any_face(raw: &RawSoup, random: &mut Random) -> (usize, [u32; 3]) {
 }
 
 fn without_face(raw: &RawSoup, random: &mut Random) -> Planted {
-    let (t, at) = any_face(raw, random);
-    changed(raw, At::Vertices(at.to_vec()), |raw| drop(raw.triangles.remove(t)))
+    let (_, at) = any_face(raw, random);
+    changed(raw, At::Vertices(at.to_vec()), |raw| raw.triangles.retain(|other| *other != at))
 }
 
 fn with_turned_face(raw: &RawSoup, random: &mut Random) -> Planted {
@@ -466,13 +468,26 @@ fn with_spike_through_face(raw: &RawSoup, random: &mut Random) -> Planted {
     Planted { at: At::Faces(vec![t as u32]), ..with_part(raw, &spike) }
 }
 
-/// Exactly on the face: between corners with few digits. Other meshes get a cuboid beside them and the tip on that.
-fn with_tip_on_face(raw: &RawSoup, random: &mut Random) -> Planted {
-    let mut raw = raw.clone();
-    let first = raw.triangles.len();
+/// The mesh with a cube beside it, and one of its faces: the corners have few digits, so that what is between them is exact.
+fn with_cube(raw: &RawSoup, random: &mut Random) -> (RawSoup, usize) {
     let place = raw.positions.iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs())).ceil() + 2.0;
-    raw = raw.with(&cuboid([1.0; 3]).moved([place, 0.0, 0.0]));
-    let t = first + random.below(12);
+    let t = raw.triangles.len() + random.below(12);
+    (raw.clone().with(&cuboid([1.0; 3]).moved([place, 0.0, 0.0])), t)
+}
+
+fn with_part_on_face(raw: &RawSoup, random: &mut Random) -> Planted {
+    let (raw, t) = with_cube(raw, random);
+    let [a, b, c] = corners(&raw, t);
+    let inner = |p: Point, q: Point, r: Point| std::array::from_fn(|k| p[k] / 2.0 + q[k] / 4.0 + r[k] / 4.0);
+    let (middle, normal, size) = face(&raw, t);
+    let foot = [inner(a, b, c), inner(c, a, b), inner(b, c, a)];
+    let positions = [&foot[..], &[sum(middle, normal, size / 2.0)]].concat();
+    let part = RawSoup { positions, triangles: vec![[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]] };
+    Planted { at: At::Faces(vec![t as u32]), ..with_part(&raw, &part) }
+}
+
+fn with_tip_on_face(raw: &RawSoup, random: &mut Random) -> Planted {
+    let (raw, t) = with_cube(raw, random);
     let [a, b, c] = corners(&raw, t);
     let tip = std::array::from_fn(|k| a[k] / 2.0 + b[k] / 4.0 + c[k] / 4.0);
     let (_, normal, size) = face(&raw, t);
@@ -502,7 +517,7 @@ fn with_needle(raw: &RawSoup, random: &mut Random) -> Planted {
     let [p, q] = [a, b].map(|v| raw.positions[v as usize]);
     let new = raw.positions.len() as u32;
     changed(raw, At::Faces(vec![t as u32]), |raw| {
-        raw.positions.push(sum(p, minus(q, p), 1.0 / 256.0));
+        raw.positions.push(sum(p, minus(q, p), 1.0 / 1024.0));
         raw.triangles[t] = [a, new, c];
         raw.triangles[other] = [new, a, d];
         raw.triangles.extend([[new, b, c], [b, new, d]]);

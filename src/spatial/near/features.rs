@@ -80,7 +80,7 @@ impl<F: Fn(u32, [u32; 2]) -> bool> Faces<'_, F> {
                     add(pair(NearKind::VertexEdge, other, on));
                 }
             }
-            if self.is_inside_face(p, corners)
+            if is_above_inside(p, corners)
                 && on_face.distance(p) <= self.reach(&[v, at_g[0], at_g[1], at_g[2]])
                 && !(0..3).any(|j| self.is_vertex_within_edge(v, rotated(at_g, j)))
                 && orient3d(corners[0], corners[1], corners[2], p) != Sign::Zero
@@ -108,12 +108,6 @@ impl<F: Fn(u32, [u32; 2]) -> bool> Faces<'_, F> {
         self.are_vertices_near(v, a)
             || self.are_vertices_near(v, b)
             || self.near_inside_edge(v, [a, b]).is_some()
-    }
-
-    /// Whether `p` is above or below the inside of a triangle.
-    fn is_inside_face(&self, p: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
-        let normal = (b - a).cross(c - a);
-        [(a, b), (b, c), (c, a)].into_iter().all(|(from, to)| normal.dot((to - from).cross(p - from)) > 0.0)
     }
 
     /// Two edges, each the first two of its vertices.
@@ -169,6 +163,12 @@ impl<F: Fn(u32, [u32; 2]) -> bool> Faces<'_, F> {
             }
         }
     }
+}
+
+/// Whether `p` is above or below the inside of a triangle.
+fn is_above_inside(p: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
+    let normal = (b - a).cross(c - a);
+    [(a, b), (b, c), (c, a)].into_iter().all(|(from, to)| normal.dot((to - from).cross(p - from)) > 0.0)
 }
 
 /// The corners from the `i`-th on.
