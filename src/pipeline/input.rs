@@ -11,6 +11,10 @@ use crate::mesh::Soup;
 /// Witnesses to keep of each defect when the caller does not say.
 const SAMPLES_DEFAULT: usize = 16;
 
+/// Triangles up to which `analyze` searches what is near and estimates volumes without being asked: the search takes three
+/// to four times as long as the rest of the description, see `docs/defects.md`.
+const IN_FULL_MAX: usize = 100_000;
+
 pub(super) struct Input {
     pub(super) facts: InputFacts,
     pub(super) soup: Soup,
@@ -51,12 +55,15 @@ impl Input {
         AnalyzeOptions { samples: self.samples, near, volume_interval: false }
     }
 
-    /// Describes the mesh as uploaded; in full when that is all that is asked for.
+    /// Describes the mesh as uploaded; in full when that is all that is asked for and it is small.
     fn analyze(&self, operation: Operation, budget: &Budget) -> Result<Analysis, Stopped> {
         let mut options = self.analyze_options();
         if operation == Operation::Analyze {
-            options.volume_interval = true;
-            options.near = self.near.map_or(NearSearch::ByDiagonal, NearSearch::Within);
+            let is_small = self.soup.triangles.len() <= IN_FULL_MAX;
+            options.volume_interval = is_small || self.near.is_some();
+            if is_small && self.near.is_none() {
+                options.near = NearSearch::ByDiagonal;
+            }
         }
         describe(&self.soup, &self.examination, &options, budget)
     }

@@ -123,7 +123,7 @@ pub struct Options {
     /// How `cut-stitch` works.
     pub cut_stitch: CutStitchChoices,
     /// Largest distance of features that are reported as near, in the unit of the file; `None`: 1e-5 of the diagonal for
-    /// `analyze`, and no search for other operations.
+    /// `analyze` up to 100,000 triangles, and no search otherwise.
     pub near: Option<f64>,
     /// Witnesses to keep of each defect; `None`: 16.
     pub samples: Option<usize>,

@@ -23,8 +23,8 @@ pub struct MeshInfo {
     /// Which unit its size speaks for; null: it has no size. Nothing is rescaled.
     #[schema(required)]
     pub unit_hypothesis: Option<UnitHypothesis>,
-    /// What meets or is near, by vertices, edges and faces; null: not searched (only `analyze` does so unless `near_mm` is
-    /// given), or given up around vertices with very many faces.
+    /// What meets or is near, by vertices, edges and faces; null: not searched (see option `near_mm`),
+    /// or given up around vertices with very many faces.
     #[schema(required)]
     pub proximity: Option<Proximity>,
     /// Defects by kind.
@@ -75,7 +75,7 @@ pub struct Measures {
     /// Enclosed volume; null unless every component is closed and coherently oriented.
     #[schema(required)]
     pub volume: Option<f64>,
-    /// Where the volume lies; null: nothing bounds one, or `volume` is null and this is not the report of `analyze`.
+    /// Where the volume lies; null: nothing bounds one, or `volume` is null and it was not estimated (see `near_mm`).
     #[schema(required)]
     pub volume_interval: Option<VolumeInterval>,
     /// V - E + F after welding.

@@ -200,7 +200,7 @@ pub const SPECS: &[OptionSpec] = &[
     option(
         "near_mm",
         OptionKind::Number { min: 0.0, max: 1e30 },
-        "How far apart vertices, edges and faces are at most that are reported as near, in millimetres, but never more than half the edges around them. Default: 1e-5 of the diagonal for analyze; other operations search only when this is given.",
+        "How far apart vertices, edges and faces are at most that are reported as near, in millimetres, but never more than half the edges around them. Default: 1e-5 of the diagonal for analyze up to 100000 triangles; everything else is searched only when this is given.",
     ),
     option(
         "samples",
