@@ -1,11 +1,12 @@
 //! Seconds per stage on a given mesh file, as JSON: `cargo bench --bench stages -- FILE [RUNS]`.
 //!
 //! `read`: bytes to welded soup. `analyze_and_certify`: the whole report with exact self-intersections *and* the
-//! certificate, from the soup in memory. `experiments/speed.py` sets these beside other programs in one run.
+//! certificate, from the soup in memory. `analyze`, `analyze_near`, `analyze_volume`: the report alone with contacts known,
+//! the same with the search for what is near, and with the volume as an interval. `experiments/speed.py` sets these beside other programs in one run.
 
 #![allow(clippy::print_stdout, reason = "a bench prints its figures")]
 
-use meshmend::analysis::{AnalyzeOptions, analyze};
+use meshmend::analysis::{AnalyzeOptions, NearSearch, analyze};
 use meshmend::budget::Budget;
 use meshmend::certificate::{Depth, examine};
 use meshmend::formats::{ReadOptions, read, sniff};
@@ -44,11 +45,19 @@ fn main() {
         let found = examine(&soup, &bytes, encoding, &options, depth, &budget).expect("examined");
         analyze(&soup, found.contacts.as_ref(), &AnalyzeOptions::default(), &budget).expect("analyzed")
     };
+    let known = examine(&soup, &bytes, encoding, &options, depth, &budget).expect("examined").contacts;
+    let analyzed =
+        |options: &AnalyzeOptions| timed(runs, || analyze(&soup, known.as_ref(), options, &budget));
+    let plain = AnalyzeOptions::default();
     println!(
-        "{{\"triangles\": {}, \"read\": {:.4}, \"certify\": {:.4}, \"analyze_and_certify\": {:.4}}}",
+        "{{\"triangles\": {}, \"read\": {:.4}, \"certify\": {:.4}, \"analyze_and_certify\": {:.4}, \
+         \"analyze\": {:.4}, \"analyze_near\": {:.4}, \"analyze_volume\": {:.4}}}",
         soup.triangles.len(),
         timed(runs, || read(&bytes, encoding, &options, &budget)),
         timed(runs, || examine(&soup, &bytes, encoding, &options, depth, &budget)),
         timed(runs, analyze_and_certify),
+        analyzed(&plain),
+        analyzed(&AnalyzeOptions { near: NearSearch::ByDiagonal, ..plain }),
+        analyzed(&AnalyzeOptions { volume_interval: true, ..plain }),
     );
 }

@@ -20,6 +20,7 @@ declare -A filters=(
   [simplify]="simplify"
   [cut]="cut_and_stitch"
   [wrap]="bad_soup"
+  [injected]="injected_defect"
 )
 
 name=${1:-}

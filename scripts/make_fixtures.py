@@ -155,16 +155,23 @@ def valid():
 
 def boundary():
     return {
+        "open_sheet.off": off(([(0, 0, 0), (10, 0, 0), (10, 10, 0), (0, 10, 0)], [(0, 1, 2), (0, 2, 3)])),
         "boundary_loop.off": off(without(tetrahedron(), (1, 2, 3))),
         "isolated_face.obj": obj(added(tetrahedron(), [(20, 0, 0), (30, 0, 0), (20, 10, 0)], [(4, 5, 6)])),
     }
 
 
 def degenerate():
+    needle = [(0, 0, 0), (1000, 0, 0), (1000, 5, 0), (1000, 0, 5)]
+    cap = [(0, 0, 0), (200, 0, 0), (100, 2, 0), (100, 100, 100)]
+    wedge = prism([(0, 0), (250, -2), (250, 2)], 100)
     # The edge from 0 to 1 is divided at 4 on one side only; a face without area joins both sides.
     divided = without(tetrahedron(), (0, 2, 1))
     return {
         "coincident_corners.obj": obj(added(tetrahedron(), [], [(1, 2, 2)])),
+        "needle.off": off((needle, list(TETRAHEDRON))),
+        "cap.off": off((cap, list(TETRAHEDRON))),
+        "folded_edge.off": off(in_triangles(wedge)),
         "collinear_face.off": off(added(divided, [(5, 0, 0)], [(0, 2, 4), (4, 2, 1), (0, 4, 1)])),
     }
 
@@ -206,6 +213,8 @@ def nesting():
     return {
         "inverted_shell.off": off(turned(tetrahedron())),
         "misnested_shell.off": off(joined(tetrahedron((0, 0, 0), 20), tetrahedron((3, 3, 3), 5))),
+        "noise_shell.off": off(joined(tetrahedron((0, 0, 0), 1000), tetrahedron((2000, 0, 0), 2))),
+        "double_skin.off": off(in_triangles(box((0, 0, 0), (300000, 400000, 2)))),
         "zero_volume_shell.off": off((tetrahedron()[0][:3], [(0, 1, 2), (0, 2, 1)])),
     }
 
@@ -221,6 +230,7 @@ def intersection():
         "self_intersection.off": off(joined(tetrahedron(), tip(3))),
         "overlap.off": off(joined(tetrahedron(), hanging)),
         "touch.off": off(joined(tetrahedron(), tip(0))),
+        "near.off": off(joined(tetrahedron(), tip(-0.0001))),
     }
 
 

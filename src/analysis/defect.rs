@@ -1,5 +1,6 @@
 //! The words in which a defect is told: its code, how bad it is, and where.
 
+use super::ProximityTest;
 use crate::geom::DVec3;
 
 /// How bad a defect is for printing.
@@ -34,6 +35,10 @@ pub enum DefectCode {
     CoincidentCorners,
     /// Triangle whose three distinct corners are exactly on one line.
     CollinearFace,
+    /// Triangle whose shortest edge is below 1 % of its longest.
+    Needle,
+    /// Triangle with an angle above 175 degrees that is no needle.
+    Cap,
     /// Triangle with the same three vertices as an earlier one in the same direction.
     DuplicateFace,
     /// Triangle with the same three vertices as an earlier one in the opposite direction, the first such.
@@ -54,18 +59,28 @@ pub enum DefectCode {
     OrientationConflict,
     /// Component that cannot be oriented coherently.
     NonOrientable,
+    /// Edge whose two triangles are less than one degree apart: they almost lie on each other.
+    FoldedEdge,
     /// Closed shell that points inward although nothing is around it.
     InvertedShell,
     /// Closed shell nested so that the winding number is neither 0 nor 1.
     MisnestedShell,
     /// Closed shell with exactly no volume.
     ZeroVolumeShell,
+    /// Closed shell, or shell and the next one inside it, with next to nothing between its two sides.
+    DoubleSkin,
+    /// Part with a rim that bounds no volume, rather than a solid that lacks faces.
+    OpenSheet,
+    /// Part that is tiny beside the largest one.
+    NoiseShell,
     /// Two triangles that pass through each other.
     SelfIntersection,
     /// Two triangles that overlap in one plane.
     Overlap,
     /// Two triangles that touch in a point or segment they do not share.
     Touch,
+    /// Features that do not meet but are nearer than epsilon and half of the edges around them.
+    Near,
     /// Sound as described here, but not in another reading that programs make of the file: coordinates rounded to
     /// float32, or polygons as the fan around their first corner.
     UnsoundReading,
@@ -76,8 +91,14 @@ impl DefectCode {
     /// written leave the surface open.
     pub fn severity(self) -> Severity {
         match self {
-            Self::IsolatedVertex => Severity::Info,
-            Self::DuplicateVertex | Self::NonPlanarPolygon | Self::ConcavePolygon => Severity::Warning,
+            Self::Needle | Self::Cap | Self::IsolatedVertex | Self::Near => Severity::Info,
+            Self::DuplicateVertex
+            | Self::NonPlanarPolygon
+            | Self::ConcavePolygon
+            | Self::FoldedEdge
+            | Self::DoubleSkin
+            | Self::OpenSheet
+            | Self::NoiseShell => Severity::Warning,
             _ => Severity::Error,
         }
     }
@@ -106,6 +127,8 @@ pub struct Witness {
     /// Of loops and parts, a half-edge of the soup in it (see [`edge_of`](crate::mesh::edge_of)), by which repair steps
     /// find it again.
     pub anchor: Option<u32>,
+    /// Which features meet or are near each other, where the defect is of a pair of them.
+    pub test: Option<ProximityTest>,
 }
 
 /// All defects of one kind.

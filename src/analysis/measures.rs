@@ -1,8 +1,9 @@
 //! Sizes of the mesh: box, area and volume.
 
 use super::sum::CompensatedSum;
+use super::welded::Welded;
 use super::{Context, Measures};
-use crate::budget::{CHECK_EVERY, Stopped};
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, triangle_area};
 use crate::par;
 
@@ -10,7 +11,7 @@ impl Measures {
     pub(super) fn of(cx: &Context<'_>) -> Result<Self, Stopped> {
         let [vertices, edges, triangles] = [cx.used.len(), cx.mesh.edges.len(), cx.mesh.triangles.len()];
         Ok(Self {
-            bounds: bounds(cx)?,
+            bounds: cx.bounds,
             area: area(cx)?,
             volume: volume(cx),
             euler_characteristic: vertices as i64 - edges as i64 + triangles as i64,
@@ -18,10 +19,11 @@ impl Measures {
     }
 }
 
-fn bounds(cx: &Context<'_>) -> Result<Option<Aabb>, Stopped> {
-    let boxes = par::try_map_ranges(cx.used.len(), CHECK_EVERY, |range| {
-        cx.budget.check()?;
-        Ok(Aabb::of(cx.used[range].iter().map(|&v| cx.mesh.position(v))))
+/// The box of the vertices `used`; `None` without any.
+pub(super) fn bounds(mesh: &Welded<'_>, used: &[u32], budget: &Budget) -> Result<Option<Aabb>, Stopped> {
+    let boxes = par::try_map_ranges(used.len(), CHECK_EVERY, |range| {
+        budget.check()?;
+        Ok(Aabb::of(used[range].iter().map(|&v| mesh.position(v))))
     })?;
     Ok(boxes.into_iter().reduce(Aabb::union))
 }

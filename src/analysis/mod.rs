@@ -6,8 +6,10 @@ mod boundary_loops;
 mod coincident_corners;
 mod collinear_faces;
 mod defect;
+mod double_skins;
 mod duplicate_faces;
 mod duplicate_vertices;
+mod folded_edges;
 mod isolated_faces;
 mod isolated_vertices;
 mod measures;
@@ -15,26 +17,36 @@ mod meeting_point;
 mod members;
 mod names;
 mod nested_shells;
+mod noise_shells;
 mod non_manifold_edges;
 mod non_manifold_vertices;
 mod non_orientable;
+mod open_sheets;
 mod orientation_conflicts;
 mod polygons;
+mod proximity;
 mod self_intersections;
 mod shells;
 mod sum;
+mod thin_faces;
 mod unusable;
+mod volume_interval;
+mod watertight;
 mod welded;
 
 pub use defect::{DefectCode, Element, Finding, Severity, Witness};
+pub use proximity::{Proximity, ProximityTest, TestCounts};
+pub use volume_interval::VolumeInterval;
+pub use watertight::Watertight;
 
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, are_collinear};
 use crate::mesh::{Soup, singular_vertices};
 use crate::par;
-use crate::spatial::Contacts;
+use crate::spatial::{Contacts, NearPairs};
 use duplicate_faces::{Repeat, repeats};
 use members::Members;
+use names::middle;
 use shells::{Shell, shells};
 use std::borrow::Cow;
 use welded::{Welded, indices_where, used_vertices};
@@ -98,8 +110,14 @@ pub struct Analysis {
     pub counts: Counts,
     /// Sizes.
     pub measures: Measures,
+    /// Where the volume lies; `None`: nothing bounds one, or it is not defined and an estimate was not asked for.
+    pub volume_interval: Option<VolumeInterval>,
     /// Properties by name.
     pub properties: Properties,
+    /// Watertightness under several definitions.
+    pub watertight: Watertight,
+    /// What meets or is near, by features; `None`: not asked for, or given up.
+    pub proximity: Option<Proximity>,
     /// Defects, by code.
     pub findings: Vec<Finding>,
 }
@@ -112,16 +130,31 @@ impl Analysis {
 }
 
 /// What to find out.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AnalyzeOptions {
     /// Most witnesses to keep of each defect.
     pub samples: usize,
+    /// Whether features are searched that are near each other.
+    pub near: NearSearch,
+    /// Whether a volume that is not defined is estimated.
+    pub volume_interval: bool,
 }
 
 impl Default for AnalyzeOptions {
     fn default() -> Self {
-        Self { samples: 16 }
+        Self { samples: 16, near: NearSearch::Off, volume_interval: false }
     }
+}
+
+/// Whether features are searched that are near each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum NearSearch {
+    /// They are not.
+    Off,
+    /// Those within 1e-5 of the diagonal.
+    ByDiagonal,
+    /// Those within this distance, in the unit of the file.
+    Within(f64),
 }
 
 /// Describes `soup`. `known_contacts` are its self-contacts where a certificate has found them already (all counted,
@@ -138,14 +171,18 @@ pub fn analyze(
     let _memory = budget.charge(
         soup.triangles.len() as u64 * BYTES_PER_TRIANGLE + soup.positions.len() as u64 * BYTES_PER_VERTEX,
     )?;
-    let cx = Context::of(soup, known_contacts, options.samples, budget)?;
+    let cx = Context::of(soup, known_contacts, options, budget)?;
     let (measures, findings) =
         par::join(|| Measures::of(&cx), || par::map_items(CHECKS.to_vec(), |_, find| find(&cx)));
     let findings = findings.into_iter().collect::<Result<Vec<_>, _>>()?.concat();
+    let measures = measures?;
     Ok(Analysis {
         counts: Counts::of(&cx, &findings),
-        measures: measures?,
+        volume_interval: volume_interval::volume_interval(&cx, measures.volume, options.volume_interval)?,
+        measures,
         properties: Properties::of(&cx),
+        watertight: Watertight::of(&cx)?,
+        proximity: Proximity::of(&cx),
         findings,
     })
 }
@@ -156,15 +193,19 @@ const BYTES_PER_TRIANGLE: u64 = 46;
 /// First vertex at each position 4, use 5, and 8 for lists that come and go.
 const BYTES_PER_VERTEX: u64 = 17;
 
+/// What is near by default, as a share of the diagonal of the box around all.
+const NEAR_SHARE: f64 = 1e-5;
+
 /// Looks for defects of one kind, or a few that go together.
 type Check = fn(&Context<'_>) -> Result<Vec<Finding>, Stopped>;
 
 /// Every check, in the order of [`DefectCode`].
-const CHECKS: [Check; 15] = [
+const CHECKS: [Check; 20] = [
     unusable::find,
     polygons::find,
     coincident_corners::find,
     collinear_faces::find,
+    thin_faces::find,
     duplicate_faces::find,
     isolated_vertices::find,
     duplicate_vertices::find,
@@ -174,8 +215,12 @@ const CHECKS: [Check; 15] = [
     non_manifold_vertices::find,
     orientation_conflicts::find,
     non_orientable::find,
+    folded_edges::find,
     nested_shells::find,
+    open_sheets::find,
+    noise_shells::find,
     self_intersections::find,
+    proximity::find,
 ];
 
 /// What the checks share, found once.
@@ -191,8 +236,16 @@ struct Context<'a> {
     singular: Vec<u32>,
     members: Members,
     shells: Vec<Shell>,
+    /// Parts with a rim that bound no volume, ascending.
+    sheets: Vec<u32>,
+    /// Box of the used vertices.
+    bounds: Option<Aabb>,
+    /// Sides and features closer than this are near, in the unit of the file.
+    epsilon: f64,
     /// Pairs of the soup's triangles.
     contacts: Cow<'a, Contacts>,
+    /// Features that are near each other; `None` where they were not searched.
+    near: Option<NearPairs>,
     samples: usize,
     budget: &'a Budget,
 }
@@ -201,7 +254,7 @@ impl<'a> Context<'a> {
     fn of(
         soup: &'a Soup,
         known_contacts: Option<&'a Contacts>,
-        samples: usize,
+        options: &AnalyzeOptions,
         budget: &'a Budget,
     ) -> Result<Self, Stopped> {
         let mesh = Welded::of(soup, budget)?;
@@ -229,7 +282,42 @@ impl<'a> Context<'a> {
             Some(known) => Cow::Borrowed(known),
             None => Cow::Owned(self_intersections::search(&mesh, &collinear, &repeats, budget)?),
         };
-        Ok(Self { mesh, used, collinear, repeats, singular, members, shells, contacts, samples, budget })
+        let bounds = measures::bounds(&mesh, &used, budget)?;
+        let epsilon = match options.near {
+            NearSearch::Within(epsilon) => epsilon,
+            NearSearch::Off | NearSearch::ByDiagonal => NEAR_SHARE * bounds.map_or(0.0, Aabb::diagonal),
+        };
+        let mut cx = Self {
+            mesh,
+            used,
+            collinear,
+            repeats,
+            singular,
+            members,
+            shells,
+            sheets: Vec::new(),
+            bounds,
+            epsilon,
+            contacts,
+            near: None,
+            samples: options.samples,
+            budget,
+        };
+        cx.sheets = open_sheets::search(&cx)?;
+        cx.near = proximity::search(&cx, options.near)?;
+        Ok(cx)
+    }
+
+    /// A witness of part `p`: its first faces, and how many triangles it has.
+    fn part_witness(&self, p: u32) -> Witness {
+        let (mesh, members) = (&self.mesh, self.members.part(p));
+        let faces = members.iter().map(|&t| mesh.face_of(t));
+        let first = members[0];
+        let mut witness =
+            mesh.names().witness(faces, mesh.triangles[first as usize], middle(mesh.corners(first)));
+        witness.figures = vec![("triangles", members.len() as f64)];
+        witness.anchor = Some(3 * mesh.source(first));
+        witness
     }
 }
 

@@ -33,6 +33,7 @@ impl<'s> Names<'s> {
             position: position.is_finite().then_some(position),
             figures: Vec::new(),
             anchor: None,
+            test: None,
         }
     }
 

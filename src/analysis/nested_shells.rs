@@ -5,41 +5,46 @@
 //! nothing is said, except that it is inverted where the boxes show that nothing can be around it.
 
 use super::around::{Around, around, part_boxes};
-use super::names::middle;
 use super::shells::Shell;
-use super::{Context, DefectCode, Finding, Witness};
+use super::{Context, DefectCode, Finding, Witness, double_skins};
 use crate::budget::{CHECK_EVERY, Stopped};
 use crate::geom::Sign;
 use crate::spatial::{Bvh, nest};
 
 pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
-    let (inverted, misnested) = wrong_ways(cx)?;
+    let Ways { inverted, misnested, nested } = ways(cx)?;
     let flat: Vec<Shell> = cx.shells.iter().copied().filter(|s| s.volume_sign.is_zero()).collect();
     let finding = |code, shells: &[Shell]| Finding::of(code, shells, cx.samples, |shell| witness(cx, shell));
     Ok([
         finding(DefectCode::InvertedShell, &inverted),
         finding(DefectCode::MisnestedShell, &misnested),
         finding(DefectCode::ZeroVolumeShell, &flat),
+        double_skins::find(cx, &nested)?,
     ]
     .concat())
 }
 
 fn witness(cx: &Context<'_>, shell: &Shell) -> Witness {
-    let members = cx.members.part(shell.part);
-    let faces = members.iter().map(|&t| cx.mesh.face_of(t));
-    let first = members[0];
-    let corners = cx.mesh.triangles[first as usize];
-    let mut witness = cx.mesh.names().witness(faces, corners, middle(cx.mesh.corners(first)));
-    witness.figures = vec![("triangles", members.len() as f64), ("volume", shell.volume)];
-    witness.anchor = Some(3 * cx.mesh.source(first));
+    let mut witness = cx.part_witness(shell.part);
+    witness.figures.push(("volume", shell.volume));
     witness
 }
 
-/// The shells that are inverted, and those that are badly nested.
-fn wrong_ways(cx: &Context<'_>) -> Result<(Vec<Shell>, Vec<Shell>), Stopped> {
-    let (mut inverted, mut misnested) = (Vec::new(), Vec::new());
+/// How the shells lie and point.
+#[derive(Debug, Default)]
+struct Ways {
+    /// Shells that point inward with nothing around them.
+    inverted: Vec<Shell>,
+    /// Shells that point as the one around them does.
+    misnested: Vec<Shell>,
+    /// Shells and the next one inside each of them.
+    nested: Vec<(Shell, Shell)>,
+}
+
+fn ways(cx: &Context<'_>) -> Result<Ways, Stopped> {
+    let mut ways = Ways::default();
     if cx.shells.is_empty() {
-        return Ok((inverted, misnested));
+        return Ok(ways);
     }
     let is_free = free_shells(cx)?;
     let around = match cx.mesh.parts.len() {
@@ -56,13 +61,16 @@ fn wrong_ways(cx: &Context<'_>) -> Result<(Vec<Shell>, Vec<Shell>), Stopped> {
     for &shell in &cx.shells {
         let parent = parent_of[shell.part as usize].filter(|_| is_nested(&shell));
         let is_alone = around[shell.part as usize] == Around::Nothing || is_nested(&shell);
+        ways.nested.extend(parent.map(|parent| (free[parent as usize], shell)));
         match parent {
-            Some(parent) if shell.volume_sign == free[parent as usize].volume_sign => misnested.push(shell),
-            None if is_alone && shell.volume_sign == Sign::Negative => inverted.push(shell),
+            Some(parent) if shell.volume_sign == free[parent as usize].volume_sign => {
+                ways.misnested.push(shell);
+            }
+            None if is_alone && shell.volume_sign == Sign::Negative => ways.inverted.push(shell),
             _ => {}
         }
     }
-    Ok((inverted, misnested))
+    Ok(ways)
 }
 
 /// For each part, whether it is a shell that meets neither itself nor another part.

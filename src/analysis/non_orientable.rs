@@ -11,7 +11,7 @@ pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
     if mesh.irregular_where(|triangles| triangles == 2).is_empty() {
         return Ok(Vec::new());
     }
-    let twists = first_twists(mesh, cx.budget)?;
+    let (_, twists) = sides(mesh, cx.budget)?;
     Ok(Finding::of(DefectCode::NonOrientable, &twists, cx.samples, |&h| {
         let faces = [h, mesh.twins[h as usize]].map(|h| mesh.face_of(triangle_of(h)));
         let ends = edge_of(&mesh.triangles, h);
@@ -20,8 +20,9 @@ pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
     }))
 }
 
-/// A half-edge across which the faces cannot agree, for each part that has one.
-fn first_twists(mesh: &Welded<'_>, budget: &Budget) -> Result<Vec<u32>, Stopped> {
+/// Which triangles must be turned so that those on both sides of edges of two agree, relative to each other; and a half-edge
+/// across which they cannot, for each part that has one.
+pub(super) fn sides(mesh: &Welded<'_>, budget: &Budget) -> Result<(ParityUnionFind, Vec<u32>), Stopped> {
     let mut sides = ParityUnionFind::new(mesh.triangles.len());
     let mut is_twisted = vec![false; mesh.parts.len()];
     let mut twists = Vec::new();
@@ -40,7 +41,7 @@ fn first_twists(mesh: &Welded<'_>, budget: &Budget) -> Result<Vec<u32>, Stopped>
             twists.push(h);
         }
     }
-    Ok(twists)
+    Ok((sides, twists))
 }
 
 #[cfg(test)]

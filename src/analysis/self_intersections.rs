@@ -3,6 +3,7 @@
 
 use super::duplicate_faces::Repeat;
 use super::meeting_point::meeting_point;
+use super::proximity::lowest_test;
 use super::welded::{Welded, indices_where};
 use super::{Context, DefectCode, Finding};
 use crate::budget::{Budget, Stopped};
@@ -39,7 +40,9 @@ pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
         let pairs = cx.contacts.list.iter().filter(|c| c.kind == kind).take(cx.samples);
         let witness = |pair: &Contact| {
             let place = meeting_point(soup.corners(pair.a), soup.corners(pair.b));
-            cx.mesh.names().triangles(&[pair.a, pair.b], place)
+            let mut witness = cx.mesh.names().triangles(&[pair.a, pair.b], place);
+            witness.test = Some(lowest_test(cx, pair));
+            witness
         };
         let count = cx.contacts.count_by_kind[kind as usize];
         Finding::with(code, count, pairs.map(witness).collect())

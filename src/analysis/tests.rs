@@ -129,7 +129,7 @@ fn as_many_witnesses_are_kept_as_asked() {
         let told = analyze(
             &soup(120, &pages),
             Some(&Contacts::default()),
-            &AnalyzeOptions { samples },
+            &AnalyzeOptions { samples, ..AnalyzeOptions::default() },
             &Budget::unlimited(),
         );
         let finding =

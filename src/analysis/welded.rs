@@ -135,6 +135,11 @@ impl<'s> Welded<'s> {
         self.edges.group(e as usize).iter().map(|&h| self.face_of(triangle_of(h)))
     }
 
+    /// The part of edge `e`.
+    pub(super) fn part_at(&self, e: u32) -> u32 {
+        self.components.of[triangle_of(self.edges.group(e as usize)[0]) as usize]
+    }
+
     /// Irregular edges whose number of triangles is as asked.
     pub(super) fn irregular_where(&self, is_asked: impl Fn(usize) -> bool) -> Vec<u32> {
         self.irregular.iter().copied().filter(|&e| is_asked(self.edges.group(e as usize).len())).collect()

@@ -9,17 +9,15 @@ use crate::mesh::Soup;
 pub(super) fn describe(
     soup: &Soup,
     examination: &Examination,
-    samples: usize,
+    options: &AnalyzeOptions,
     budget: &Budget,
 ) -> Result<Analysis, Stopped> {
-    let options = AnalyzeOptions { samples };
     let contacts = examination.contacts.as_ref();
-    let mut analysis =
-        budget.stage(Stage::Analyze, || analysis::analyze(soup, contacts, &options, budget))?;
+    let mut analysis = budget.stage(Stage::Analyze, || analysis::analyze(soup, contacts, options, budget))?;
     let certificate = &examination.certificate;
     if !certificate.is_printable() && !analysis.has_errors() {
         // The analysis describes one reading; the certificate asks of every reading that it be valid.
-        analysis.findings.push(unsound_reading(soup, certificate, samples));
+        analysis.findings.push(unsound_reading(soup, certificate, options.samples));
     }
     Ok(analysis)
 }

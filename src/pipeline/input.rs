@@ -5,7 +5,7 @@ use super::remedies::proposals;
 use super::{
     Answer, ChosenPlan, Failure, InputFacts, Operation, Options, Outcome, Output, Plan, Refusal, Report, Step,
 };
-use crate::analysis::Analysis;
+use crate::analysis::{Analysis, AnalyzeOptions, NearSearch};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::{self, CertifyError, Depth, Examination};
 use crate::formats::{self, Encoding, ReadError};
@@ -14,11 +14,17 @@ use crate::mesh::Soup;
 /// Witnesses to keep of each defect when the caller does not say.
 const SAMPLES_DEFAULT: usize = 16;
 
+/// Triangles up to which `analyze` searches what is near and estimates volumes without being asked: the search takes three
+/// to four times as long as the rest of the description, see `docs/defects.md`.
+const IN_FULL_MAX: usize = 100_000;
+
 pub(super) struct Input {
     pub(super) facts: InputFacts,
     pub(super) soup: Soup,
     pub(super) examination: Examination,
     pub(super) samples: usize,
+    /// What is near, where the caller said so.
+    near: Option<f64>,
 }
 
 impl Input {
@@ -44,12 +50,26 @@ impl Input {
             units: options.units.unwrap_or_default(),
             units_are_stated: options.units.is_some(),
         };
-        Ok(Self { facts, soup, examination, samples })
+        Ok(Self { facts, soup, examination, samples, near: options.near })
     }
 
-    /// Describes the mesh as uploaded.
-    pub(super) fn analyze(&self, budget: &Budget) -> Result<Analysis, Stopped> {
-        describe(&self.soup, &self.examination, self.samples, budget)
+    /// What to find out of a mesh of this run.
+    pub(super) fn analyze_options(&self) -> AnalyzeOptions {
+        let near = self.near.map_or(NearSearch::Off, NearSearch::Within);
+        AnalyzeOptions { samples: self.samples, near, volume_interval: false }
+    }
+
+    /// Describes the mesh as uploaded; in full when that is all that is asked for and it is small.
+    fn analyze(&self, operation: Operation, budget: &Budget) -> Result<Analysis, Stopped> {
+        let mut options = self.analyze_options();
+        if matches!(operation, Operation::Analyze | Operation::Plan) {
+            let is_small = self.soup.triangles.len() <= IN_FULL_MAX;
+            options.volume_interval = is_small || self.near.is_some();
+            if is_small && self.near.is_none() {
+                options.near = NearSearch::ByDiagonal;
+            }
+        }
+        describe(&self.soup, &self.examination, &options, budget)
     }
 
     /// The account of a run that has judged the input and done nothing else.
@@ -77,7 +97,7 @@ impl Input {
 
     /// The account of `operation` as far as the input is concerned.
     pub(super) fn report(&self, operation: Operation, budget: &Budget) -> Result<Report, Stopped> {
-        Ok(Report { operation, before: Some(self.analyze(budget)?), ..self.verification() })
+        Ok(Report { operation, before: Some(self.analyze(operation, budget)?), ..self.verification() })
     }
 
     /// The same with what is proposed for each defect.

@@ -140,6 +140,9 @@ pub struct Options {
     pub simplify: SimplifyChoices,
     /// How `cut-stitch` works.
     pub cut_stitch: CutStitchChoices,
+    /// Largest distance of features that are reported as near, in the unit of the file; `None`: 1e-5 of the diagonal for
+    /// `analyze` up to 100,000 triangles, and no search otherwise.
+    pub near: Option<f64>,
     /// Witnesses to keep of each defect; `None`: 16.
     pub samples: Option<usize>,
     /// What the process can do that the mesh is to be printed with; `None`: the mesh is not measured for printing.

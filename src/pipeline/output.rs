@@ -73,7 +73,7 @@ impl Candidate {
         outcome: Outcome,
         budget: &Budget,
     ) -> Result<Answer, Stopped> {
-        let after = describe(&self.soup, &self.examination, input.samples, budget)?;
+        let after = describe(&self.soup, &self.examination, &input.analyze_options(), budget)?;
         let share = identical_triangle_share(&input.soup, &self.soup, origins, budget)?;
         let report = Report {
             after: Some(after),

@@ -10,6 +10,7 @@ use crate::repair::duplicates::OppositePairs;
 use crate::repair::nest::NestOptions;
 use crate::repair::polygons::DegenerateFaces;
 use crate::repair::snap::SnapOptions;
+use crate::repair::thin_faces::ThinFaces;
 use crate::repair::{self, Changes, Draft, Selection};
 
 /// One step of a plan, with its parameters.
@@ -48,6 +49,8 @@ pub enum Step {
     Snap(SnapOptions),
     /// Holes are closed.
     FillHoles(Selection),
+    /// Needles and caps go.
+    MendThinFaces(ThinFaces),
     /// Open parts get a wall behind them.
     Thicken {
         /// Thickness, in the unit of the file.
@@ -80,6 +83,8 @@ pub(super) struct Variant {
     pub(super) opens_contacts: bool,
     /// Open parts get walls, and no hole is filled.
     pub(super) thickens: bool,
+    /// Needles and caps go, where that is chosen.
+    pub(super) mends_thin_faces: bool,
 }
 
 impl Variant {
@@ -99,16 +104,19 @@ impl Variant {
         let join = choices.cuts.then(|| {
             // Which copies belong together matters only where they are drawn apart.
             let pinch = self.opens_contacts.then(|| Step::Pinch(ChosenEdges::default(), Validity::Exact));
-            // Only what coincides: no vertex moves.
-            let snap = Step::Snap(SnapOptions { epsilon: Some(0.0), ..SnapOptions::default() });
+            // Only what coincides, so that no vertex moves, unless the caller says how far.
+            let snap =
+                Step::Snap(SnapOptions { epsilon: Some(choices.snap_epsilon), ..SnapOptions::default() });
             [Step::Cut(CutOptions::default())].into_iter().chain(pinch).chain([snap])
         });
         let fill = match self.thickens {
             true => Some(Step::Thicken { wall: choices.wall }),
             false => choices.fills_holes.then(|| Step::FillHoles(choices.holes.clone())),
         };
+        let thin = (self.mends_thin_faces && choices.mends_thin_faces())
+            .then_some(Step::MendThinFaces(choices.thin_faces));
         let start = [split].into_iter().chain(clear).chain(round).chain(welded).chain(parts).chain(single);
-        start.chain(remove).chain(orient).chain(join.into_iter().flatten()).chain(fill).collect()
+        start.chain(remove).chain(orient).chain(join.into_iter().flatten()).chain(thin).chain(fill).collect()
     }
 
     /// The steps that make it a solid. Readers weld, so that copies of a vertex would be one again: what is to be
@@ -145,6 +153,7 @@ impl Step {
             Self::RemoveCrossing { .. } => "remove-crossing",
             Self::OpenContacts => "open-contacts",
             Self::FillHoles(_) => "fill-holes",
+            Self::MendThinFaces(_) => "mend-thin-faces",
             Self::Thicken { .. } => "thicken",
             Self::JoinCopies => "join-copies",
             Self::Nest(_) => "nest",
@@ -165,6 +174,7 @@ impl Step {
             ],
             Self::RoundToF32 => &[DefectCode::UnsoundReading],
             Self::JoinCopies | Self::Rebuild | Self::Simplify => &[],
+            Self::MendThinFaces(_) => &[DefectCode::Needle, DefectCode::Cap],
             Self::Thicken { .. } => &[DefectCode::IsolatedFace, DefectCode::BoundaryLoop],
             Self::RemoveParts(_) => &[
                 DefectCode::IsolatedFace,
@@ -209,6 +219,7 @@ impl Step {
             Self::RemoveCrossing { rings } => repair::crossing::remove_crossing(draft, *rings, budget),
             Self::OpenContacts => repair::contact::open_contacts(draft, budget),
             Self::FillHoles(chosen) => repair::fill::fill_chosen_holes(draft, soup, chosen, budget),
+            Self::MendThinFaces(which) => repair::thin_faces::mend_thin_faces(draft, *which, budget),
             Self::Thicken { wall } => repair::thicken::thicken(draft, *wall, budget),
             Self::Nest(options) => repair::nest::nest(draft, options, budget),
             Self::RemoveParts(triangles) => repair::parts::remove_parts(draft, triangles, budget),

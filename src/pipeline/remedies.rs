@@ -6,6 +6,7 @@ use crate::analysis::{Analysis, DefectCode, Finding, Severity, Witness};
 use crate::repair::Selection;
 use crate::repair::duplicates::OppositePairs;
 use crate::repair::nest::{Fate, Policy};
+use crate::repair::thin_faces::ThinFaces;
 
 /// What is done about a defect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -16,6 +17,10 @@ pub enum Remedy {
     DropBoth,
     /// One triangle of a pair goes.
     DropOne,
+    /// Its short edge is collapsed.
+    Collapse,
+    /// Its long edge is flipped.
+    Flip,
     /// It is divided.
     Split,
     /// Vertices at one place become one.
@@ -133,10 +138,16 @@ pub enum PlanMismatch {
 /// The remedies of a kind of defect; the first is the usual one.
 fn remedies_of(code: DefectCode) -> &'static [Remedy] {
     use Remedy::{
-        Cut, Drop, DropBoth, DropOne, Fill, Join, Keep, Rebuild, Remove, Round, Split, Thicken, Turn,
+        Collapse, Cut, Drop, DropBoth, DropOne, Fill, Flip, Join, Keep, Rebuild, Remove, Round, Split,
+        Thicken, Turn,
     };
     match code {
-        DefectCode::NoTriangle => &[Keep],
+        DefectCode::Needle => &[Keep, Collapse],
+        DefectCode::Cap => &[Keep, Flip],
+        DefectCode::NoTriangle | DefectCode::FoldedEdge | DefectCode::DoubleSkin | DefectCode::Near => {
+            &[Keep]
+        }
+        DefectCode::NoiseShell | DefectCode::OpenSheet => &[Keep, Remove],
         DefectCode::NonFiniteVertex
         | DefectCode::NonFiniteFace
         | DefectCode::IndexOutOfRange
@@ -171,6 +182,8 @@ fn has_elements(code: DefectCode) -> bool {
             | DefectCode::InvertedShell
             | DefectCode::MisnestedShell
             | DefectCode::ZeroVolumeShell
+            | DefectCode::NoiseShell
+            | DefectCode::OpenSheet
     )
 }
 
@@ -200,6 +213,14 @@ pub(super) fn proposals(analysis: &Analysis) -> Vec<Proposal> {
 fn proposed(finding: &Finding, triangles: u64) -> (Remedy, f64, &'static str) {
     let usual = remedies_of(finding.code)[0];
     let (confidence, reason) = match finding.code {
+        DefectCode::Needle | DefectCode::Cap | DefectCode::FoldedEdge | DefectCode::Near => {
+            (0.9, "thin shapes print as they are")
+        }
+        DefectCode::DoubleSkin => (0.6, "a wall too thin to print, which only its maker can thicken"),
+        DefectCode::NoiseShell => (0.6, "no body is removed unless that is asked for"),
+        DefectCode::OpenSheet => {
+            (0.6, "it is a part of the mesh; see its boundary loops for what becomes of it")
+        }
         DefectCode::NoTriangle => (1.0, "there is nothing to repair"),
         DefectCode::NonFiniteVertex
         | DefectCode::NonFiniteFace
@@ -301,6 +322,10 @@ pub(super) struct Choices {
     pub(super) walls: Walls,
     /// Thickness of such walls, in the unit of the file.
     pub(super) wall: f64,
+    /// Which thin faces go.
+    pub(super) thin_faces: ThinFaces,
+    /// How far apart vertices of rims may be that are joined, in the unit of the file.
+    pub(super) snap_epsilon: f64,
     /// Shells whose fate is chosen, each by a triangle of the soup.
     pub(super) shells: Vec<(u32, Fate)>,
     /// What becomes of opposite duplicates first.
@@ -325,6 +350,8 @@ impl Default for Choices {
             nesting: Policy::default(),
             walls: Walls::default(),
             wall: 0.0,
+            thin_faces: ThinFaces { needles: false, caps: false },
+            snap_epsilon: 0.0,
             shells: Vec::new(),
             opposite: OppositePairs::default(),
             removes_crossing: true,
@@ -345,12 +372,17 @@ impl Choices {
             fills_holes: options.fill_holes == FillHoles::Simple,
             walls: if options.fill_holes == FillHoles::None { Walls::Never } else { Walls::default() },
             wall: options.wrap.wall.unwrap_or(WALL_SHARE * diagonal),
+            snap_epsilon: options.cut_stitch.epsilon.unwrap_or(0.0),
             nesting: options.nesting,
             ..Self::default()
         };
         let findings = analysis.map_or(&[][..], |analysis| &analysis.findings);
         for chosen in options.plan.iter().flat_map(|plan| &plan.findings) {
             let code = chosen.code;
+            // A repair does not look for what is near, and there is nothing to choose about it.
+            if code == DefectCode::Near {
+                continue;
+            }
             let finding = findings.iter().find(|finding| finding.code == code);
             choices.take(chosen, finding.ok_or(PlanMismatch::NoSuchDefect(code))?)?;
         }
@@ -361,6 +393,11 @@ impl Choices {
     /// True when whole parts are removed as chosen.
     pub(super) fn removes(&self) -> bool {
         !self.removed_parts.is_empty() || self.shells.iter().any(|&(_, fate)| fate == Fate::Goes)
+    }
+
+    /// True when thin faces go.
+    pub(super) fn mends_thin_faces(&self) -> bool {
+        self.thin_faces.needles || self.thin_faces.caps
     }
 
     /// The choices for a surface that is to be rebuilt: what is removed goes before, and holes are looked at later.
@@ -404,6 +441,8 @@ impl Choices {
         let keeps = remedy == Some(Remedy::Keep);
         match code {
             DefectCode::CollinearFace => self.splits_collinear &= !keeps,
+            DefectCode::Needle => self.thin_faces.needles |= remedy == Some(Remedy::Collapse),
+            DefectCode::Cap => self.thin_faces.caps |= remedy == Some(Remedy::Flip),
             DefectCode::OrientationConflict => self.orients &= !keeps,
             DefectCode::NonManifoldEdge | DefectCode::NonManifoldVertex | DefectCode::NonOrientable => {
                 self.cuts &= !keeps;

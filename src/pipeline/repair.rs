@@ -28,8 +28,12 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
         return replay(input, steps, options, report, budget);
     }
     let encoding = input.output_encoding(options);
-    // Cavities make no mesh invalid, but the caller may want them filled.
-    let is_as_asked = || choices.nesting != Policy::Fill || !has_cavities(input);
+    // Cavities and small parts make no mesh invalid, but the caller may want them filled and removed.
+    let is_as_asked = || {
+        !choices.removes()
+            && !choices.mends_thin_faces()
+            && (choices.nesting != Policy::Fill || !has_cavities(input))
+    };
     if input.examination.certificate.is_printable() && is_as_asked() {
         let (draft, _) = Draft::from_soup(&input.soup);
         if let Some(fewer) = simplify::of_certified(&draft, input, options, budget)? {
@@ -261,7 +265,8 @@ impl Search<'_> {
         let clears_noise = self.starts_with_clearing()?;
         let first = Variant { opposite: self.choices.opposite, ..Variant::default() };
         let thickens = self.choices.walls == Walls::First;
-        let mut variant = Variant { clears_noise, rounds: self.needs_f32(), thickens, ..first };
+        let rounds = self.needs_f32();
+        let mut variant = Variant { clears_noise, rounds, thickens, mends_thin_faces: true, ..first };
         let mut fails_in_f32 = false;
         loop {
             let (mended, last) = self.attempt(variant)?;
@@ -281,6 +286,11 @@ impl Search<'_> {
                 };
             let witness = candidate.certificate().witnesses.first().cloned();
             fails_in_f32 |= witness.as_ref().is_some_and(|violation| violation.reading.is_f32);
+            // A vertex that was merged may have taken a face through another one.
+            if variant.mends_thin_faces && last.count("needles_collapsed") + last.count("caps_flipped") > 0 {
+                variant.mends_thin_faces = false;
+                continue;
+            }
             let Some(next) = self.next(variant, clears_noise, &last, fails_in_f32)? else {
                 return Ok(Found::nothing(Refusal::NotRepairable { witness }, last, mended));
             };

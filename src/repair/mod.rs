@@ -23,6 +23,7 @@ pub mod selection;
 pub mod snap;
 pub mod t_vertices;
 pub mod thicken;
+pub mod thin_faces;
 pub mod weld;
 
 pub use draft::{Draft, NEW};

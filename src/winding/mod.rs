@@ -8,7 +8,7 @@ mod shells;
 mod solid;
 mod tree;
 
-pub use shells::{Shells, sort};
+pub use shells::{Shells, are_sheets, sort};
 pub use solid::Solid;
 pub use tree::{WindingTree, turned};
 

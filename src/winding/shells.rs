@@ -261,6 +261,23 @@ fn read_open(
     Ok(bounds.into_iter().map(|is_volume| is_volume.then_some(is_turned)).collect())
 }
 
+/// Which parts of an open surface are sheets rather than boundaries of a volume, by the rule of [`OpenShells::Auto`]; `part`
+/// names the part of each triangle, below `part_count`. The sides of a triangle are looked at `beside` it.
+///
+/// # Errors
+/// When the budget stops the run.
+pub fn are_sheets(
+    triangles: Vec<[DVec3; 3]>,
+    part: &[u32],
+    part_count: usize,
+    beside: f64,
+    budget: &Budget,
+) -> Result<Vec<bool>, Stopped> {
+    let bounds =
+        read_open(triangles, part, part_count, (OpenShells::Auto, beside), &mut Shells::default(), budget)?;
+    Ok(bounds.into_iter().map(|is_volume| is_volume.is_none()).collect())
+}
+
 /// The mean of the winding numbers on both sides of a triangle, and its area.
 fn both_sides(tree: &WindingTree, [a, b, c]: [DVec3; 3], beside: f64) -> (f64, f64) {
     let normal = (b - a).cross(c - a);

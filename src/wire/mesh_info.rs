@@ -4,7 +4,9 @@ use glam::DVec3;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::words::{DefectCode, Severity};
+use super::mesh_answers::{Proximity, VolumeInterval, Watertight};
+use super::unit_hypothesis::UnitHypothesis;
+use super::words::{DefectCode, ProximityTest, Severity};
 use crate::analysis;
 
 /// A mesh described.
@@ -16,6 +18,15 @@ pub struct MeshInfo {
     pub measures: Measures,
     /// Properties by name.
     pub properties: Properties,
+    /// Whether it is watertight, under the definitions that tools use.
+    pub watertight: Watertight,
+    /// Which unit its size speaks for; null: it has no size. Nothing is rescaled.
+    #[schema(required)]
+    pub unit_hypothesis: Option<UnitHypothesis>,
+    /// What meets or is near, by vertices, edges and faces; null: not searched (see option `near_mm`),
+    /// or given up around vertices with very many faces.
+    #[schema(required)]
+    pub proximity: Option<Proximity>,
     /// Defects by kind.
     pub defects: Vec<Defect>,
 }
@@ -64,6 +75,9 @@ pub struct Measures {
     /// Enclosed volume; null unless every component is closed and coherently oriented.
     #[schema(required)]
     pub volume: Option<f64>,
+    /// Where the volume lies; null: nothing bounds one, or `volume` is null and it was not estimated (see `near_mm`).
+    #[schema(required)]
+    pub volume_interval: Option<VolumeInterval>,
     /// V - E + F after welding.
     pub euler_characteristic: i64,
 }
@@ -112,6 +126,9 @@ pub struct Witness {
     pub position: Option<[f64; 3]>,
     /// Its own measures.
     pub figures: Vec<Figure>,
+    /// Which features meet or are near each other; null: the defect is not of a pair.
+    #[schema(required)]
+    pub test: Option<ProximityTest>,
 }
 
 /// An element of the uploaded file, in its own numbering.
@@ -146,8 +163,11 @@ impl MeshInfo {
         };
         Self {
             counts: Counts::from(&inner.counts),
-            measures: Measures::from(&inner.measures),
+            measures: Measures::of(inner),
             properties: Properties::from(&inner.properties),
+            watertight: Watertight::from(&inner.watertight),
+            unit_hypothesis: inner.measures.bounds.and_then(UnitHypothesis::of),
+            proximity: inner.proximity.as_ref().map(Proximity::from),
             defects: inner.findings.iter().map(defect).collect(),
         }
     }
@@ -173,13 +193,15 @@ impl From<&analysis::Counts> for Counts {
     }
 }
 
-impl From<&analysis::Measures> for Measures {
-    fn from(inner: &analysis::Measures) -> Self {
+impl Measures {
+    fn of(analysis: &analysis::Analysis) -> Self {
+        let inner = &analysis.measures;
         let bounds = inner.bounds.and_then(|b| Some(Bounds { min: point(&b.min)?, max: point(&b.max)? }));
         Self {
             bounds,
             area: finite(inner.area),
             volume: inner.volume.and_then(finite),
+            volume_interval: analysis.volume_interval.as_ref().and_then(VolumeInterval::of),
             euler_characteristic: inner.euler_characteristic,
         }
     }
@@ -209,6 +231,7 @@ impl From<&analysis::Witness> for Witness {
                 .iter()
                 .map(|&(name, value)| Figure { name, value: finite(value) })
                 .collect(),
+            test: inner.test.map(ProximityTest::from),
         }
     }
 }

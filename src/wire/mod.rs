@@ -9,6 +9,7 @@ mod formats;
 mod job;
 mod level;
 mod limits;
+mod mesh_answers;
 mod mesh_info;
 mod option_schema;
 mod options;
@@ -19,6 +20,7 @@ mod report;
 mod report_page;
 mod request;
 mod target;
+mod unit_hypothesis;
 mod verdict;
 mod version;
 mod words;
@@ -31,6 +33,7 @@ pub use formats::{FormatInfo, extension_of, format_of_media_type, formats, media
 pub use job::{Job, JobState, Links, Progress};
 pub use level::Level;
 pub use limits::Limits;
+pub use mesh_answers::{Proximity, TestCounts, VolumeInterval, VolumeMethod, Watertight};
 pub use mesh_info::{Bounds, Counts, Defect, Element, Figure, Measures, MeshInfo, Properties, Witness};
 pub use options::{OptionError, OptionKind, OptionSpec, Options, SPECS};
 pub use plan::{
@@ -49,10 +52,11 @@ pub use report::{
 pub use report_page::{Escaped, REPORT_PAGE_CSP, report_page};
 pub use request::{InputRef, JobRequest};
 pub use target::TargetSpec;
+pub use unit_hypothesis::UnitHypothesis;
 pub use verdict::{Reason, Verdict};
 pub use version::{ENGINE_NAME, ENGINE_VERSION, REPORT_SCHEMA, Version};
 pub use words::{
     Condition, Criterion, Cut, DefectCode, Degenerate, Encoding, FillHoles, Format, Mode, Nesting,
-    OpenShells, Operation, Opposite, Outcome, Placement, Reader, ReasonCode, Remedy, Require, Severity,
-    ShellFate, Stage, Stitch, StitchValidity, Units, VertexColors,
+    OpenShells, Operation, Opposite, Outcome, Placement, ProximityTest, Reader, ReasonCode, Remedy, Require,
+    Severity, ShellFate, Stage, Stitch, StitchValidity, Units, VertexColors,
 };

@@ -13,6 +13,7 @@ use crate::repair::Selection;
 use crate::repair::cut::CutOptions;
 use crate::repair::nest::NestOptions;
 use crate::repair::snap::SnapOptions;
+use crate::repair::thin_faces::ThinFaces;
 use crate::{mesh, repair};
 
 /// What may be done about each defect of a file, and what was.
@@ -179,8 +180,19 @@ pub enum PlanStep {
     Cut {},
     /// Edges that the cut has parted are joined from where boundaries turn back on themselves.
     Pinch {},
-    /// Boundary edges that coincide are joined.
-    Snap {},
+    /// Boundary edges that are close are joined.
+    Snap {
+        /// Largest distance of vertices that become one, in the unit of the file; 0: what coincides.
+        #[schema(minimum = 0.0)]
+        epsilon: f64,
+    },
+    /// Needles and caps go.
+    MendThinFaces {
+        /// Needles go.
+        needles: bool,
+        /// Caps go.
+        caps: bool,
+    },
     /// Holes are closed.
     FillHoles {
         /// All but `except`; false: only `except`.
@@ -320,7 +332,7 @@ impl PlanStep {
             Self::FillHoles { except, .. } => except.len() <= ELEMENTS_MAX,
             Self::Nest { chosen, .. } => chosen.len() <= ELEMENTS_MAX,
             Self::RemoveCrossing { rings } => *rings <= RINGS_MAX,
-            Self::Thicken { wall } => *wall >= 0.0,
+            Self::Thicken { wall: length } | Self::Snap { epsilon: length } => *length >= 0.0,
             _ => true,
         }
     }
@@ -340,7 +352,12 @@ impl PlanStep {
             Self::Orient {} => Step::Orient,
             Self::Cut {} => Step::Cut(CutOptions::default()),
             Self::Pinch {} => Step::Pinch(mesh::ChosenEdges::default(), mesh::Validity::Exact),
-            Self::Snap {} => Step::Snap(SnapOptions { epsilon: Some(0.0), ..SnapOptions::default() }),
+            Self::Snap { epsilon } => {
+                Step::Snap(SnapOptions { epsilon: Some(*epsilon), ..SnapOptions::default() })
+            }
+            Self::MendThinFaces { needles, caps } => {
+                Step::MendThinFaces(ThinFaces { needles: *needles, caps: *caps })
+            }
             Self::FillHoles { all: true, except } => Step::FillHoles(Selection::AllBut(sorted(except))),
             Self::FillHoles { all: false, except } => Step::FillHoles(Selection::Only(sorted(except))),
             Self::Thicken { wall } => Step::Thicken { wall: *wall },
@@ -379,7 +396,8 @@ impl From<&Step> for PlanStep {
             Step::Orient => Self::Orient {},
             Step::Cut(_) => Self::Cut {},
             Step::Pinch(..) => Self::Pinch {},
-            Step::Snap(_) => Self::Snap {},
+            Step::Snap(options) => Self::Snap { epsilon: options.epsilon.unwrap_or(0.0) },
+            Step::MendThinFaces(which) => Self::MendThinFaces { needles: which.needles, caps: which.caps },
             Step::FillHoles(Selection::AllBut(except)) => {
                 Self::FillHoles { all: true, except: except.clone() }
             }
@@ -423,7 +441,8 @@ mod tests {
             Step::Orient,
             Step::Cut(CutOptions::default()),
             Step::Pinch(mesh::ChosenEdges::default(), mesh::Validity::Exact),
-            Step::Snap(SnapOptions { epsilon: Some(0.0), ..SnapOptions::default() }),
+            Step::Snap(SnapOptions { epsilon: Some(0.5), ..SnapOptions::default() }),
+            Step::MendThinFaces(ThinFaces { needles: true, caps: false }),
             Step::FillHoles(Selection::Only(vec![5])),
             Step::Thicken { wall: 0.25 },
             Step::OpenContacts,

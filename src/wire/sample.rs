@@ -1,7 +1,7 @@
 //! Engine reports for tests.
 
 use crate::analysis::{
-    Analysis, Counts, DefectCode, Element, Finding, Measures, Properties, Severity, Witness,
+    Analysis, Counts, DefectCode, Element, Finding, Measures, Properties, Severity, Watertight, Witness,
 };
 use crate::certificate::{Certificate, Condition, Reading, Shell, Violation, ViolationCounts};
 use crate::formats::Encoding;
@@ -63,6 +63,14 @@ fn analysis(holes: u64) -> Analysis {
             is_oriented: true,
             is_embedded: None,
         },
+        volume_interval: None,
+        watertight: Watertight {
+            by_index: None,
+            after_exact_weld: holes == 0,
+            after_epsilon_weld: None,
+            in_float32: holes == 0,
+        },
+        proximity: None,
         findings: if holes == 0 { Vec::new() } else { vec![hole] },
     }
 }

@@ -321,6 +321,10 @@ mirror! { pipeline::Remedy =>
         DropBoth = "drop-both",
         /// One triangle of a pair goes.
         DropOne = "drop-one",
+        /// Its short edge is collapsed.
+        Collapse = "collapse",
+        /// Its long edge is flipped.
+        Flip = "flip",
         /// It is divided.
         Split = "split",
         /// Vertices at one place become one.
@@ -463,6 +467,10 @@ mirror! { analysis::DefectCode =>
         CoincidentCorners = "coincident-corners",
         /// Triangle whose three distinct corners are on one line.
         CollinearFace = "collinear-face",
+        /// Triangle whose shortest edge is below 1 % of its longest.
+        Needle = "needle",
+        /// Triangle with an angle above 175 degrees that is no needle.
+        Cap = "cap",
         /// Triangle with the same three vertices as an earlier one in the same direction.
         DuplicateFace = "duplicate-face",
         /// Triangle with the same three vertices as an earlier one, the first in the opposite direction.
@@ -483,20 +491,48 @@ mirror! { analysis::DefectCode =>
         OrientationConflict = "orientation-conflict",
         /// Component that cannot be oriented coherently.
         NonOrientable = "non-orientable",
+        /// Edge whose two triangles are less than one degree apart: they almost lie on each other.
+        FoldedEdge = "folded-edge",
         /// Closed outermost shell that points inward.
         InvertedShell = "inverted-shell",
         /// Closed shell nested so that the winding number is neither 0 nor 1.
         MisnestedShell = "misnested-shell",
         /// Closed shell with exactly no volume.
         ZeroVolumeShell = "zero-volume-shell",
+        /// Closed shell, or shell and the next one inside it, with next to nothing between its two sides.
+        DoubleSkin = "double-skin",
+        /// Part with a rim that bounds no volume, rather than a solid that lacks faces.
+        OpenSheet = "open-sheet",
+        /// Part that is tiny beside the largest one.
+        NoiseShell = "noise-shell",
         /// Two triangles that pass through each other.
         SelfIntersection = "self-intersection",
         /// Two triangles that overlap in one plane.
         Overlap = "overlap",
         /// Two triangles that touch in a point or segment they do not share.
         Touch = "touch",
+        /// Vertices, edges or faces that do not meet but are nearer than epsilon and half of the edges around them.
+        Near = "near",
         /// Sound as described here, but not with coordinates rounded to float32 or polygons split as simple fans.
         UnsoundReading = "unsound-reading",
+    }
+}
+
+mirror! { analysis::ProximityTest =>
+    /// Which features of two faces meet or are near each other, lowest dimension first.
+    ProximityTest {
+        /// Two vertices.
+        VertexVertex = "vv",
+        /// A vertex and an edge.
+        VertexEdge = "ve",
+        /// A vertex and a face.
+        VertexFace = "vf",
+        /// Two edges.
+        EdgeEdge = "ee",
+        /// An edge and a face.
+        EdgeFace = "ef",
+        /// Two faces.
+        FaceFace = "ff",
     }
 }
 
@@ -579,6 +615,7 @@ mod tests {
             Stage::WORDS,
             Severity::WORDS,
             DefectCode::WORDS,
+            ProximityTest::WORDS,
             Condition::WORDS,
             ReasonCode::WORDS,
         ] {

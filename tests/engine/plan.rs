@@ -1,5 +1,6 @@
 //! Plans: what is proposed, what an edited plan changes, and steps that run again.
 
+use crate::oracle::RawSoup;
 use crate::raw_files::encode;
 use crate::repair::{coarse, without};
 use crate::solids::{cube, cuboid};
@@ -8,8 +9,8 @@ use meshmend::analysis::DefectCode;
 use meshmend::budget::Budget;
 use meshmend::formats::Encoding;
 use meshmend::pipeline::{
-    Answer, ChosenPlan, ChosenRemedy, Failure, Operation, Options, Outcome, PlanMismatch, Remedy, Require,
-    SimplifyChoices, Step, run,
+    Answer, ChosenPlan, ChosenRemedy, CutStitchChoices, Failure, Operation, Options, Outcome, PlanMismatch,
+    Remedy, Require, SimplifyChoices, Step, run,
 };
 use meshmend::repair::nest::Policy;
 use meshmend::simplify::Target;
@@ -124,6 +125,59 @@ fn a_cavity_of_a_valid_solid_is_filled_only_when_that_is_asked() {
     assert_eq!(answer.report.outcome, Some(Outcome::Repaired));
     assert_eq!(answer.report.certificate.as_ref().unwrap().shells.len(), 1);
     assert_eq!(answer.report.after.unwrap().measures.volume, Some(27.0));
+}
+
+#[test]
+fn a_tiny_part_of_a_valid_file_goes_only_when_that_is_asked_and_is_listed() {
+    let crumb = cube().scaled(1e-3).moved([20.0, 0.0, 0.0]);
+    let bytes = encode(&cuboid([10.0; 3]).with(&crumb), Encoding::Obj);
+    assert_eq!(repair(&bytes, &coarse()).unwrap().report.outcome, Some(Outcome::Identical));
+    for plan in [
+        chosen(DefectCode::NoiseShell, Some(Remedy::Remove), &[]),
+        chosen(DefectCode::NoiseShell, None, &[(0, Remedy::Remove)]),
+    ] {
+        let answer = repair(&bytes, &with_plan(plan, None)).unwrap();
+        assert_eq!(answer.report.outcome, Some(Outcome::Repaired));
+        assert_eq!(answer.report.certificate.as_ref().unwrap().shells.len(), 1);
+        let removed = answer.report.actions.iter().find(|action| action.step == "remove-parts").unwrap();
+        assert!(removed.reason.contains("those with faces 12"), "{}", removed.reason);
+    }
+}
+
+/// A square slab whose top has a strip of this width, of two triangles.
+fn with_strip(width: f64) -> RawSoup {
+    let top = |x: f64| [[x, 0.0, 1.0], [x, 1.0, 1.0]];
+    let points: Vec<[f64; 3]> = [0.0, 1.0, 1.0 + width, 2.0].into_iter().flat_map(top).collect();
+    let positions = [points, vec![[1.0, 0.5, -1.0]]].concat();
+    let strip = |i: u32| [[2 * i, 2 * i + 2, 2 * i + 3], [2 * i, 2 * i + 3, 2 * i + 1]];
+    let rim = [0, 2, 4, 6, 7, 5, 3, 1];
+    let sides = (0..8).map(|i| [rim[(i + 1) % 8], rim[i], 8]);
+    RawSoup { positions, triangles: (0..3).flat_map(strip).chain(sides).collect() }
+}
+
+#[test]
+fn needles_of_a_valid_file_go_only_when_that_is_asked() {
+    let bytes = encode(&with_strip(1e-4), Encoding::Obj);
+    assert_eq!(repair(&bytes, &coarse()).unwrap().report.outcome, Some(Outcome::Identical));
+    let plan = chosen(DefectCode::Needle, Some(Remedy::Collapse), &[]);
+    let answer = repair(&bytes, &with_plan(plan, None)).unwrap();
+    assert_eq!(answer.report.outcome, Some(Outcome::Repaired));
+    let after = answer.report.after.as_ref().unwrap();
+    assert_eq!(after.findings.iter().filter(|finding| finding.code == DefectCode::Needle).count(), 0);
+    assert!(answer.report.distance.unwrap().upper() <= 1.01e-4);
+}
+
+#[test]
+fn rims_that_are_close_are_joined_when_the_caller_says_how_far() {
+    // The lid of a cube, a little off.
+    let lid = without(cube(), &[0, 1, 4, 5, 6, 7, 8, 9, 10, 11]).moved([0.0, 0.0, 1e-6]);
+    let bytes = encode(&without(cube(), &[2, 3]).with(&lid), Encoding::Obj);
+    let choices = CutStitchChoices { epsilon: Some(1e-5), ..CutStitchChoices::default() };
+    let answer = repair(&bytes, &Options { cut_stitch: choices, ..coarse() }).unwrap();
+    assert_eq!(answer.report.outcome, Some(Outcome::Repaired));
+    assert_eq!(answer.report.after.as_ref().unwrap().counts.triangles, 12);
+    let snap = answer.report.actions.iter().find(|action| action.step == "snap").unwrap();
+    assert!((0.9e-6..1.1e-6).contains(&snap.move_max), "{}", snap.move_max);
 }
 
 #[test]

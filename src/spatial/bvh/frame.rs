@@ -73,7 +73,7 @@ impl Frame {
     pub(super) const UNIT: Self = Self { origin: DVec3::ZERO, scale: 1.0 };
 
     /// A frame for points of which `point_at` gives `count`. Medians decide, so a few stray points do not.
-    pub(super) fn around(count: usize, point_at: impl Fn(usize) -> DVec3) -> Self {
+    pub(in crate::spatial) fn around(count: usize, point_at: impl Fn(usize) -> DVec3) -> Self {
         let samples = count.min(SAMPLES_MAX);
         let points: Vec<DVec3> = (0..samples).map(|i| point_at(i * count / samples)).collect();
         let origin = DVec3::from_array([0, 1, 2].map(|k| median(points.iter().map(|p| p[k]).collect())));
@@ -103,7 +103,7 @@ impl Frame {
 
     /// The box of the mapped points.
     #[inline]
-    pub(super) fn box_of<const N: usize>(&self, points: [DVec3; N]) -> Box32 {
+    pub(in crate::spatial) fn box_of<const N: usize>(&self, points: [DVec3; N]) -> Box32 {
         let mut bounds = Box32::EMPTY;
         for p in points {
             let p = self.map(p);

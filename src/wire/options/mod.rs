@@ -85,6 +85,8 @@ pub struct Options {
     pub policy: Option<PolicyName>,
     /// What is up in the machine.
     pub build_direction: Option<BuildDirection>,
+    /// Largest distance of features that are reported as near, in millimetres.
+    pub near_mm: Option<f64>,
     /// Witnesses to keep of each defect.
     pub samples: Option<u32>,
     /// Seconds for which the result is kept.
@@ -184,6 +186,7 @@ impl Options {
                 degenerate: self.degenerate.map(Into::into).unwrap_or_default(),
                 chosen: self.cut_edges.clone().unwrap_or_default(),
             },
+            near: self.near_mm.map(|length| length / millimetres),
             samples: self.samples.map(|n| n as usize),
             policy: self.policy(millimetres),
             material: None,

@@ -128,6 +128,7 @@ impl Options {
             ("cut_edges", put_if_given(&mut self.cut_edges, other.cut_edges)),
             ("policy", put_if_given(&mut self.policy, other.policy)),
             ("build_direction", put_if_given(&mut self.build_direction, other.build_direction)),
+            ("near_mm", put_if_given(&mut self.near_mm, other.near_mm)),
             ("samples", put_if_given(&mut self.samples, other.samples)),
             ("result_ttl", put_if_given(&mut self.result_ttl, other.result_ttl)),
             ("input", put_if_given(&mut self.input, other.input)),
@@ -187,6 +188,7 @@ impl Options {
             "max_deviation_mm" => put(&mut self.max_deviation_mm, Some(value)),
             "max_volume_change" => put(&mut self.max_volume_change, Some(value)),
             "error_mm" => put(&mut self.error_mm, Some(value)),
+            "near_mm" => put(&mut self.near_mm, Some(value)),
             "snap_epsilon_mm" => put(&mut self.snap_epsilon_mm, Some(value)),
             _ => Taken::Invalid,
         }

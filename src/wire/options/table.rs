@@ -177,7 +177,7 @@ pub const SPECS: &[OptionSpec] = &[
     option(
         "snap_epsilon_mm",
         OptionKind::Number { min: 0.0, max: 1e30 },
-        "How far apart vertices may be that stitch=snap joins, in millimetres, but never more than half the shortest boundary edge. Default: 1e-5 of the diagonal.",
+        "How far apart vertices of rims may be that repair and stitch=snap join, in millimetres, but never more than half the shortest boundary edge. Default: 1e-5 of the diagonal for cut-stitch, 0 for repair.",
     ),
     option(
         "stitch_validity",
@@ -203,6 +203,11 @@ pub const SPECS: &[OptionSpec] = &[
         "build_direction",
         OptionKind::Word(BuildDirection::WORDS),
         "Direction of the file that is up in the machine; matters with policy. Default: z.",
+    ),
+    option(
+        "near_mm",
+        OptionKind::Number { min: 0.0, max: 1e30 },
+        "How far apart vertices, edges and faces are at most that are reported as near, in millimetres, but never more than half the edges around them. Default: 1e-5 of the diagonal for analyze up to 100000 triangles; everything else is searched only when this is given.",
     ),
     option(
         "samples",
