@@ -1,9 +1,10 @@
-//! Time from the stop flag to the return of a running engine: `cargo bench --bench cancel -- [CANCELS] [ROWS]`.
+//! Time from the stop flag to the return of a running engine: `cargo bench --bench cancel -- [CANCELS] [ROWS] [crossing]`.
 //!
 //! A wavy sphere with holes, flipped and doubled faces, so that every pass has work, is repaired again and again and
 //! stopped after a random share of the time of a full run (fixed seed). Prints the number of cancels that came in
 //! time, the median, the 99th percentile and the worst time to return in milliseconds, and the pass that was slowest
 //! to return. 1,000 cancels of 160,000 triangles (200 rows) take a few minutes, of 500,000 (354 rows) about ten.
+//! With `crossing` it is two such spheres that pass through each other, so that the surface is rebuilt, which takes seconds.
 
 #![allow(clippy::print_stdout, reason = "a bench prints its figures")]
 
@@ -109,7 +110,11 @@ fn main() {
     let numbers: Vec<u32> = std::env::args().skip(1).filter_map(|argument| argument.parse().ok()).collect();
     let cancels = numbers.first().copied().unwrap_or(1000);
     let rows = numbers.get(1).copied().unwrap_or(200);
-    let triangles = triangles(rows);
+    let mut triangles = triangles(rows);
+    if std::env::args().any(|argument| argument == "crossing") {
+        let across = triangles.clone().into_iter().map(|t| t.map(|[x, y, z]| [x + 41.0, y + 7.0, z + 3.0]));
+        triangles.extend(across);
+    }
     let bytes = binary_stl(&triangles);
     let start = Instant::now();
     let answer =

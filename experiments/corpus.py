@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Repairs every STL, OBJ, OFF and PLY file of the corpus and has the independent judge look at each input and each result; prints Markdown.
 
-usage: corpus.py [--judge PATH] [--limit N] [--binary PATH] [--only ID ...] [--save FILE] [--load FILE] [--seconds 120]      with MESHMEND_SHARED; the judge is built by its own build.sh when no path is given
+usage: corpus.py [--judge PATH] [--limit N] [--binary PATH] [--only ID ...] [--save FILE] [--load FILE] [--seconds 120] [--no-volumes]      with MESHMEND_SHARED; the judge is built by its own build.sh when no path is given
 numpy is needed for the volumes; PLY needs trimesh, networkx, lxml and pillow (PyPI) as well in the Python that runs this, for the judge's reader.
 """
 import argparse, collections, json, os, signal, subprocess, sys, tempfile, time
@@ -9,7 +9,7 @@ here = os.path.dirname(os.path.abspath(__file__)); root = os.path.dirname(here)
 shared = os.environ.get("MESHMEND_SHARED", os.path.join(root, "../shared"))
 p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 p.add_argument("--judge"); p.add_argument("--limit", type=int, default=0); p.add_argument("--binary"); p.add_argument("--only", nargs="*")
-p.add_argument("--save"); p.add_argument("--load"); p.add_argument("--seconds", type=float, default=120); o = p.parse_args()
+p.add_argument("--no-volumes", action="store_true"); p.add_argument("--save"); p.add_argument("--load"); p.add_argument("--seconds", type=float, default=120); o = p.parse_args()
 if not os.path.exists(os.path.join(shared, "corpus/MANIFEST.tsv")): sys.exit("the corpus is not here; set MESHMEND_SHARED")
 sys.path.insert(0, os.path.join(shared, "judge"))
 from meshfile import load_any, write_msh
@@ -72,7 +72,7 @@ for line in () if o.load else open(os.path.join(shared, "corpus/MANIFEST.tsv")):
         except Exception as e: before = {"error": str(e)[:100]}
         after = judged(readable(src, d, "in.msh"), readable(dst, d, "out.msh")) if os.path.exists(dst) else {}
         same = os.path.exists(dst) and open(src, "rb").read() == open(dst, "rb").read()
-    rows.append(dict(id=id, src=src, classes=classes, code=code, seconds=seconds, report=report, before=before, after=after, same=same, peak=peak, volume=volume(src, after.get("vol")),
+    rows.append(dict(id=id, src=src, classes=classes, code=code, seconds=seconds, report=report, before=before, after=after, same=same, peak=peak, volume={"none": "not asked"} if o.no_volumes else volume(src, after.get("vol")),
                      error=(complaint.decode("utf-8", "replace").strip().splitlines() or [""])[0] if code != "timeout" else "timeout"))
     if o.save: json.dump(rows, open(o.save, "w"))
 outcome = lambda r: ((r["report"] or {}).get("verdict") or {}).get("outcome") or ("unreadable" if r["code"] == 2 else f"exit {r['code']}")

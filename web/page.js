@@ -20,7 +20,7 @@ async function problemText(response) {
 }
 
 function query() {
-  const names = ["operation", "units", "output_format"];
+  const names = ["operation", "units", "output_format", "policy"];
   const given = names.map((name) => [name, at(name).value]).filter(([, value]) => value);
   return new URLSearchParams(given);
 }
@@ -65,6 +65,12 @@ async function show(job) {
     .filter(Boolean).join(": ");
   fill("defects", (report.before?.defects ?? []).map((d) => [d.code, d.severity, d.count]));
   fill("actions", (report.actions ?? []).map((a) => [a.step, changesOf(a), a.reason]));
+  const printing = report.printing;
+  at("printing").hidden = !printing;
+  fill("checks", (printing?.checks ?? []).map((c) => [c.code, c.status ?? "not known", c.message]));
+  const proposals = report.plan?.findings ?? [];
+  at("plan").hidden = proposals.length === 0;
+  fill("remedies", proposals.map((p) => [p.code, p.count, p.remedy, p.choices.join(", "), p.confidence, p.reason]));
   at("report").textContent = JSON.stringify(report, null, 2);
   at("download").hidden = !job.links.result;
   at("result").hidden = false;

@@ -36,6 +36,9 @@ fn normals(cx: &Context<'_>, e: u32) -> Option<[DVec3; 2]> {
     }
     let &[h, g] = group else { return None };
     debug_assert_ne!(triangle_of(h), triangle_of(g), "a triangle has each edge once");
+    // From the smaller end, so that rounding does not depend on the order of the faces.
+    let start = |h: u32| mesh.position(edge_of(&mesh.triangles, h)[0]).to_array();
+    let [h, g] = if start(h) <= start(g) { [h, g] } else { [g, h] };
     let [from, to] = edge_of(&mesh.triangles, h);
     let [c, d] = [h, g].map(|h| edge_of(&mesh.triangles, prev_corner(h))[0]);
     if c == d {

@@ -49,7 +49,7 @@ pub enum Step {
     Snap(SnapOptions),
     /// Holes are closed.
     FillHoles(Selection),
-    /// Needles and caps go.
+    /// Needles, caps and folds go.
     MendThinFaces(ThinFaces),
     /// Open parts get a wall behind them.
     Thicken {
@@ -174,7 +174,7 @@ impl Step {
             ],
             Self::RoundToF32 => &[DefectCode::UnsoundReading],
             Self::JoinCopies | Self::Rebuild | Self::Simplify => &[],
-            Self::MendThinFaces(_) => &[DefectCode::Needle, DefectCode::Cap],
+            Self::MendThinFaces(_) => &[DefectCode::Needle, DefectCode::Cap, DefectCode::FoldedEdge],
             Self::Thicken { .. } => &[DefectCode::IsolatedFace, DefectCode::BoundaryLoop],
             Self::RemoveParts(_) => &[
                 DefectCode::IsolatedFace,
@@ -263,6 +263,11 @@ impl Attempt {
             self.steps.push(step.clone());
         }
         Ok(())
+    }
+
+    /// True when needles, caps or folds went.
+    pub(super) fn has_mended_thin_faces(&self) -> bool {
+        ["needles_collapsed", "caps_flipped", "folds_closed"].into_iter().any(|name| self.count(name) > 0)
     }
 
     /// Count of this name, over all steps.

@@ -111,7 +111,9 @@ impl ChosenPlan {
     pub(super) fn samples_min(&self) -> usize {
         let needs = |finding: &ChosenRemedy| {
             let numbers = finding.elements.iter().map(|&(number, _)| number as usize + 1);
-            let chooses_all = finding.remedy.is_some() && finding.code != DefectCode::BoundaryLoop;
+            let usual = remedies_of(finding.code)[0];
+            let chooses_all = finding.remedy.is_some_and(|remedy| remedy != usual)
+                && finding.code != DefectCode::BoundaryLoop;
             let all = (chooses_all && has_elements(finding.code)).then_some(ELEMENTS_MAX);
             numbers.chain(all).max().unwrap_or(0).min(ELEMENTS_MAX)
         };
@@ -144,9 +146,8 @@ fn remedies_of(code: DefectCode) -> &'static [Remedy] {
     match code {
         DefectCode::Needle => &[Keep, Collapse],
         DefectCode::Cap => &[Keep, Flip],
-        DefectCode::NoTriangle | DefectCode::FoldedEdge | DefectCode::DoubleSkin | DefectCode::Near => {
-            &[Keep]
-        }
+        DefectCode::FoldedEdge => &[Keep, Collapse],
+        DefectCode::NoTriangle | DefectCode::DoubleSkin | DefectCode::Near => &[Keep],
         DefectCode::NoiseShell | DefectCode::OpenSheet => &[Keep, Remove],
         DefectCode::NonFiniteVertex
         | DefectCode::NonFiniteFace
@@ -350,7 +351,7 @@ impl Default for Choices {
             nesting: Policy::default(),
             walls: Walls::default(),
             wall: 0.0,
-            thin_faces: ThinFaces { needles: false, caps: false },
+            thin_faces: ThinFaces::default(),
             snap_epsilon: 0.0,
             shells: Vec::new(),
             opposite: OppositePairs::default(),
@@ -397,7 +398,7 @@ impl Choices {
 
     /// True when thin faces go.
     pub(super) fn mends_thin_faces(&self) -> bool {
-        self.thin_faces.needles || self.thin_faces.caps
+        self.thin_faces.any()
     }
 
     /// The choices for a surface that is to be rebuilt: what is removed goes before, and holes are looked at later.
@@ -442,6 +443,7 @@ impl Choices {
         match code {
             DefectCode::CollinearFace => self.splits_collinear &= !keeps,
             DefectCode::Needle => self.thin_faces.needles |= remedy == Some(Remedy::Collapse),
+            DefectCode::FoldedEdge => self.thin_faces.folds |= remedy == Some(Remedy::Collapse),
             DefectCode::Cap => self.thin_faces.caps |= remedy == Some(Remedy::Flip),
             DefectCode::OrientationConflict => self.orients &= !keeps,
             DefectCode::NonManifoldEdge | DefectCode::NonManifoldVertex | DefectCode::NonOrientable => {
@@ -456,7 +458,6 @@ impl Choices {
             }
             DefectCode::BoundaryLoop if remedy == Some(Remedy::Thicken) => self.walls = Walls::First,
             DefectCode::BoundaryLoop => {
-                self.walls = Walls::Never;
                 let differing = |usual: Remedy| {
                     let mut listed: Vec<u32> =
                         anchors.iter().filter(|&&(_, remedy)| remedy != usual).map(|&(h, _)| h).collect();
@@ -467,12 +468,20 @@ impl Choices {
                     true => Selection::Only(differing(Remedy::Keep)),
                     false => Selection::AllBut(differing(Remedy::Fill)),
                 };
+                if self.holes != Selection::default() {
+                    self.walls = Walls::Never;
+                }
             }
             _ if has_elements(code) => {
+                let usual = remedies_of(code)[0];
+                let for_others = remedy.unwrap_or(usual);
                 let others = finding.witnesses.iter().filter_map(|witness| witness.anchor);
                 let is_named = |h: &u32| anchors.iter().any(|&(named, _)| named == *h);
-                let others = others.filter(|h| !is_named(h)).filter_map(|h| Some((h, remedy?)));
-                for (h, remedy) in others.collect::<Vec<_>>().into_iter().chain(anchors.iter().copied()) {
+                let others: Vec<(u32, Remedy)> =
+                    others.filter(|h| !is_named(h)).map(|h| (h, for_others)).collect();
+                // What is proposed for all is what the steps do by themselves.
+                let is_chosen = |&(_, remedy): &(u32, Remedy)| remedy != usual || for_others != usual;
+                for (h, remedy) in others.into_iter().chain(anchors).filter(is_chosen) {
                     self.apply_to_part(code, h / 3, remedy);
                 }
             }

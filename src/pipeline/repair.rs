@@ -287,7 +287,7 @@ impl Search<'_> {
             let witness = candidate.certificate().witnesses.first().cloned();
             fails_in_f32 |= witness.as_ref().is_some_and(|violation| violation.reading.is_f32);
             // A vertex that was merged may have taken a face through another one.
-            if variant.mends_thin_faces && last.count("needles_collapsed") + last.count("caps_flipped") > 0 {
+            if variant.mends_thin_faces && last.has_mended_thin_faces() {
                 variant.mends_thin_faces = false;
                 continue;
             }

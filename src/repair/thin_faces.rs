@@ -1,5 +1,6 @@
-//! Removes needles and caps: a needle's short edge is collapsed onto one of its ends, a cap's long edge is flipped. No
-//! vertex gets a new place, and the surface stays within a few hundredths of the face's longest edge.
+//! Removes needles, caps and folds: a needle's short edge is collapsed onto one of its ends, a cap's long edge is flipped,
+//! and of two faces that lie on each other like a closed book the outer corners become one. No vertex gets a new place, and
+//! the surface stays within a few hundredths of the face's longest edge.
 
 use super::{Changes, Draft};
 use crate::budget::{Budget, Stopped};
@@ -7,12 +8,21 @@ use crate::geom::{DVec3, are_collinear};
 use crate::mesh::half_edge::{BuildError, FaceId, HalfEdgeId, HalfEdgeMesh, VertexId};
 
 /// Which thin faces go, and how thin they are.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ThinFaces {
     /// Faces whose shortest edge is below a hundredth of their longest.
     pub needles: bool,
     /// Other faces with an angle above 175 degrees.
     pub caps: bool,
+    /// Pairs of faces less than one degree apart, whose corners beside their edge are close to each other.
+    pub folds: bool,
+}
+
+impl ThinFaces {
+    /// True when some go.
+    pub fn any(self) -> bool {
+        self.needles || self.caps || self.folds
+    }
 }
 
 /// A face whose shortest edge is below this share of its longest is a needle.
@@ -20,6 +30,9 @@ const NEEDLE_RATIO: f64 = 0.01;
 
 /// Cosine of 175 degrees.
 const CAP_COSINE: f64 = -0.996_194_698_091_745_5;
+
+/// Cosine of 179 degrees: the normals of two faces that are less than one degree apart.
+const FOLD_COSINE: f64 = -0.999_847_695_156_391_2;
 
 /// Least cosine between the normal of a face before and after, and of a flipped pair and the face that was no cap.
 const TURN_COSINE_MIN: f64 = 0.9;
@@ -36,14 +49,24 @@ pub fn mend_thin_faces(draft: &mut Draft, which: ThinFaces, budget: &Budget) -> 
     let mesh = match HalfEdgeMesh::from_triangles(&draft.triangles, draft.positions.len(), budget) {
         Ok(mesh) => mesh,
         Err(BuildError::Stopped(stopped)) => return Err(stopped),
-        Err(_) => return Ok(counted(0, 0, 0)),
+        Err(_) => return Ok(counted([0; 4])),
     };
     let mut mending = Mending { mesh, positions: &draft.positions };
-    let (mut collapsed, mut flipped, mut left) = (0, 0, 0);
+    let (mut collapsed, mut flipped, mut closed, mut left) = (0, 0, 0, 0);
     for _ in 0..ROUNDS {
         let faces: Vec<FaceId> = mending.mesh.faces().collect();
-        let mended_before = collapsed + flipped;
+        let mended_before = collapsed + flipped + closed;
         left = 0;
+        if which.folds {
+            for h in mending.mesh.edges().collect::<Vec<HalfEdgeId>>() {
+                if mending.mesh.contains(h) && mending.is_fold(h) {
+                    match mending.close(h) {
+                        true => closed += 1,
+                        false => left += 1,
+                    }
+                }
+            }
+        }
         for (i, face) in faces.into_iter().enumerate() {
             if i % 1024 == 0 {
                 budget.spend(1024)?;
@@ -60,11 +83,11 @@ pub fn mend_thin_faces(draft: &mut Draft, which: ThinFaces, budget: &Budget) -> 
                 _ => {}
             }
         }
-        if collapsed + flipped == mended_before {
+        if collapsed + flipped + closed == mended_before {
             break;
         }
     }
-    if collapsed + flipped > 0 {
+    if collapsed + flipped + closed > 0 {
         let mesh = mending.mesh;
         let faces: Vec<FaceId> = mesh.faces().collect();
         let corners = |&face: &FaceId| {
@@ -75,11 +98,16 @@ pub fn mend_thin_faces(draft: &mut Draft, which: ThinFaces, budget: &Budget) -> 
         draft.triangles = faces.iter().map(corners).collect();
         draft.drop_unused_vertices();
     }
-    Ok(counted(collapsed, flipped, left))
+    Ok(counted([collapsed, flipped, closed, left]))
 }
 
-fn counted(collapsed: u64, flipped: u64, left: u64) -> Changes {
-    Changes::counted([("needles_collapsed", collapsed), ("caps_flipped", flipped), ("thin_faces_left", left)])
+fn counted([collapsed, flipped, closed, left]: [u64; 4]) -> Changes {
+    Changes::counted([
+        ("needles_collapsed", collapsed),
+        ("caps_flipped", flipped),
+        ("folds_closed", closed),
+        ("thin_faces_left", left),
+    ])
 }
 
 enum Thin {
@@ -119,6 +147,32 @@ impl Mending<'_> {
         }
         let [a, b] = [(longest + 1) % 3, (longest + 2) % 3].map(|i| edges[i].normalize_or_zero());
         (-a.dot(b) < CAP_COSINE).then_some(Thin::Cap(sides[longest]))
+    }
+
+    /// True when the two faces of an edge lie almost on each other.
+    fn is_fold(&self, h: HalfEdgeId) -> bool {
+        let faces = [h, self.mesh.twin(h)].map(|h| self.mesh.face(h).map(|face| self.corners(face)));
+        let [Some(one), Some(other)] = faces else { return false };
+        let is_flat = |[a, b, c]: [DVec3; 3]| are_collinear(a, b, c);
+        !is_flat(one) && !is_flat(other) && turn(one, other) < FOLD_COSINE
+    }
+
+    /// Joins the corners of a fold beside its edge, if they are close: the edge is flipped and then collapsed.
+    fn close(&mut self, h: HalfEdgeId) -> bool {
+        let apex = |h: HalfEdgeId| self.place(self.mesh.destination(self.mesh.next(h)));
+        let gap = apex(h).distance(apex(self.mesh.twin(h)));
+        let length = self.place(self.mesh.origin(h)).distance(self.place(self.mesh.destination(h)));
+        if gap >= NEEDLE_RATIO * length || self.mesh.flip(h).is_err() {
+            return false;
+        }
+        let is_closed = self.collapse(h);
+        // Three more flips bring a quadrilateral's diagonal back with its direction.
+        if !is_closed {
+            for _ in 0..3 {
+                let _ = self.mesh.flip(h);
+            }
+        }
+        is_closed
     }
 
     /// Collapses an edge onto the end that turns the faces around the other one less.
@@ -171,7 +225,7 @@ fn turn(before: [DVec3; 3], after: [DVec3; 3]) -> f64 {
 mod tests {
     use super::*;
 
-    const ALL: ThinFaces = ThinFaces { needles: true, caps: true };
+    const ALL: ThinFaces = ThinFaces { needles: true, caps: true, folds: true };
 
     fn draft(points: &[[f64; 3]], triangles: &[[u32; 3]]) -> Draft {
         Draft {
@@ -224,12 +278,39 @@ mod tests {
 
     #[test]
     fn what_is_not_thin_or_not_asked_for_stays() {
-        for (width, which) in [(0.1, ALL), (1e-4, ThinFaces { needles: false, caps: true })] {
+        for (width, which) in [(0.1, ALL), (1e-4, ThinFaces { needles: false, ..ALL })] {
             let mut mesh = with_slit(width);
             let before = mesh.clone();
             mend_thin_faces(&mut mesh, which, &Budget::unlimited()).unwrap();
             assert_eq!(mesh, before);
         }
+    }
+
+    #[test]
+    fn a_fold_closes_where_its_outer_corners_are_close_and_stays_where_they_are_not() {
+        // A wall of two faces stands on the top of a tetrahedron, along an edge that was opened there.
+        let fin = |gap: f64| {
+            let points = [
+                [0.0, -1.0, 0.0],
+                [0.0, 1.0, 0.0],
+                [-gap / 2.0, 0.0, 1.0],
+                [gap / 2.0, 0.0, 1.0],
+                [-2.0, 0.0, -1.0],
+                [2.0, 0.0, -1.0],
+            ];
+            // The ridge 2-3 would be open but for the flaps to both sides.
+            let triangles = [[0, 2, 1], [0, 1, 3], [1, 2, 4], [2, 0, 4], [3, 1, 5], [0, 3, 5]];
+            draft(&points, &triangles)
+        };
+        let mut narrow = fin(1e-4);
+        let before = narrow.triangles.len();
+        let folds = ThinFaces { needles: false, caps: false, folds: true };
+        let changes = mend_thin_faces(&mut narrow, folds, &Budget::unlimited()).unwrap();
+        assert_eq!((changes.count("folds_closed"), narrow.triangles.len()), (1, before - 2));
+        let mut wide = fin(0.1);
+        let same = wide.clone();
+        mend_thin_faces(&mut wide, folds, &Budget::unlimited()).unwrap();
+        assert_eq!(wide, same);
     }
 
     #[test]

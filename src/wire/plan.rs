@@ -186,12 +186,14 @@ pub enum PlanStep {
         #[schema(minimum = 0.0)]
         epsilon: f64,
     },
-    /// Needles and caps go.
+    /// Needles, caps and folds go.
     MendThinFaces {
         /// Needles go.
         needles: bool,
         /// Caps go.
         caps: bool,
+        /// Folds go.
+        folds: bool,
     },
     /// Holes are closed.
     FillHoles {
@@ -355,8 +357,8 @@ impl PlanStep {
             Self::Snap { epsilon } => {
                 Step::Snap(SnapOptions { epsilon: Some(*epsilon), ..SnapOptions::default() })
             }
-            Self::MendThinFaces { needles, caps } => {
-                Step::MendThinFaces(ThinFaces { needles: *needles, caps: *caps })
+            Self::MendThinFaces { needles, caps, folds } => {
+                Step::MendThinFaces(ThinFaces { needles: *needles, caps: *caps, folds: *folds })
             }
             Self::FillHoles { all: true, except } => Step::FillHoles(Selection::AllBut(sorted(except))),
             Self::FillHoles { all: false, except } => Step::FillHoles(Selection::Only(sorted(except))),
@@ -397,7 +399,9 @@ impl From<&Step> for PlanStep {
             Step::Cut(_) => Self::Cut {},
             Step::Pinch(..) => Self::Pinch {},
             Step::Snap(options) => Self::Snap { epsilon: options.epsilon.unwrap_or(0.0) },
-            Step::MendThinFaces(which) => Self::MendThinFaces { needles: which.needles, caps: which.caps },
+            Step::MendThinFaces(which) => {
+                Self::MendThinFaces { needles: which.needles, caps: which.caps, folds: which.folds }
+            }
             Step::FillHoles(Selection::AllBut(except)) => {
                 Self::FillHoles { all: true, except: except.clone() }
             }
@@ -442,7 +446,7 @@ mod tests {
             Step::Cut(CutOptions::default()),
             Step::Pinch(mesh::ChosenEdges::default(), mesh::Validity::Exact),
             Step::Snap(SnapOptions { epsilon: Some(0.5), ..SnapOptions::default() }),
-            Step::MendThinFaces(ThinFaces { needles: true, caps: false }),
+            Step::MendThinFaces(ThinFaces { needles: true, caps: false, folds: true }),
             Step::FillHoles(Selection::Only(vec![5])),
             Step::Thicken { wall: 0.25 },
             Step::OpenContacts,

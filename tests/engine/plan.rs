@@ -10,7 +10,7 @@ use meshmend::budget::Budget;
 use meshmend::formats::Encoding;
 use meshmend::pipeline::{
     Answer, ChosenPlan, ChosenRemedy, CutStitchChoices, Failure, Operation, Options, Outcome, PlanMismatch,
-    Remedy, Require, SimplifyChoices, Step, run,
+    Proposal, Remedy, Require, SimplifyChoices, Step, run,
 };
 use meshmend::repair::nest::Policy;
 use meshmend::simplify::Target;
@@ -209,10 +209,27 @@ fn log_of(answer: &Answer) -> ChosenPlan {
     ChosenPlan { input_sha256: Some(plan.input_sha256), steps: plan.steps.clone(), ..ChosenPlan::default() }
 }
 
-/// Runs the steps of a repair again: the same bytes, outcome and steps.
+/// Everything as `plan` proposes, said once more.
+fn as_proposed(bytes: &[u8], options: &Options) -> ChosenPlan {
+    let answer = run(Operation::Plan, bytes, options, &Budget::unlimited()).unwrap();
+    let plan = answer.report.plan.unwrap();
+    let chosen = |proposal: &Proposal| ChosenRemedy {
+        code: proposal.code,
+        remedy: Some(proposal.remedy),
+        elements: proposal.elements.iter().map(|element| (element.number, element.remedy)).collect(),
+    };
+    let findings = plan.findings.iter().map(chosen).collect();
+    ChosenPlan { input_sha256: Some(plan.input_sha256), findings, steps: None }
+}
+
+/// Runs the steps of a repair again: the same bytes, outcome and steps. So does the plan given back as it is.
 fn assert_replays(bytes: &[u8], options: &Options, name: &str) -> Option<Outcome> {
     let first = repair(bytes, options).ok()?;
     let outcome = first.report.outcome;
+    let plain = Options { plan: Some(as_proposed(bytes, options)), ..options.clone() };
+    let same = repair(bytes, &plain).unwrap_or_else(|failure| panic!("{name}: {failure:?}"));
+    assert_eq!(bytes_of(&same, bytes), bytes_of(&first, bytes), "{name}, as proposed");
+    assert_eq!(same.report.outcome, outcome, "{name}, as proposed");
     if outcome == Some(Outcome::Refused) {
         assert_eq!(first.report.plan.as_ref().unwrap().steps, None);
         return outcome;
