@@ -1,8 +1,8 @@
 //! The report for people: a screen of text, the most telling things first.
 
 use crate::wire::{
-    Action, Certificate, Claim, Defect, Deviation, Level, MeshInfo, PrintingCheck, Report, Severity,
-    TargetSpec, Witness,
+    Action, Certificate, Claim, Defect, Deviation, Level, MeshInfo, Operation, PrintingCheck, Proposal,
+    Report, Severity, TargetSpec, Witness,
 };
 use std::fmt::Write as _;
 
@@ -22,6 +22,9 @@ pub(super) fn summary(report: &Report, subject: &Subject) -> String {
     if let Some(mesh) = &report.before {
         put(&mut text, &format!("  {}", size(mesh)));
         put_table(&mut text, "defects", &mesh.defects.iter().map(defect_row).collect::<Vec<_>>());
+    }
+    if let Some(plan) = report.plan.as_ref().filter(|_| report.operation == Operation::Plan) {
+        put_table(&mut text, "plan", &plan.findings.iter().map(proposal_row).collect::<Vec<_>>());
     }
     let done: Vec<_> =
         report.actions.iter().filter(|a| a.changes.iter().any(|c| c.count > 0)).map(action_row).collect();
@@ -118,6 +121,15 @@ fn defect_row(defect: &Defect) -> [String; 4] {
     };
     let first = defect.witnesses.first().map(witness).unwrap_or_default();
     [defect.code.to_string(), defect.count.to_string(), severity.to_owned(), first]
+}
+
+fn proposal_row(proposal: &Proposal) -> [String; 5] {
+    let others = proposal.choices.iter().filter(|&&choice| choice != proposal.remedy);
+    let others: Vec<&str> = others.map(|choice| choice.word()).collect();
+    let others = if others.is_empty() { String::new() } else { format!("or {}", others.join(", ")) };
+    let sure = format!("{:.0} % sure", proposal.confidence * 100.0);
+    let reason = proposal.reason.to_owned();
+    [proposal.code.to_string(), proposal.remedy.to_string(), others, sure, reason]
 }
 
 fn check_row(check: &PrintingCheck) -> [String; 3] {

@@ -144,9 +144,8 @@ fn remedies_of(code: DefectCode) -> &'static [Remedy] {
         Thicken, Turn,
     };
     match code {
-        DefectCode::Needle => &[Keep, Collapse],
+        DefectCode::Needle | DefectCode::FoldedEdge => &[Keep, Collapse],
         DefectCode::Cap => &[Keep, Flip],
-        DefectCode::FoldedEdge => &[Keep, Collapse],
         DefectCode::NoTriangle | DefectCode::DoubleSkin | DefectCode::Near => &[Keep],
         DefectCode::NoiseShell | DefectCode::OpenSheet => &[Keep, Remove],
         DefectCode::NonFiniteVertex

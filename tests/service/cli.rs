@@ -103,6 +103,7 @@ fn exit_codes_say_what_happened() {
         (0, &["repair", "--help"]),
         (0, &["analyze", "solid.off"]),
         (0, &["analyze", "open.off"]),
+        (0, &["plan", "open.off"]),
         (0, &["analyze", "crossing.off", "--require", "best_effort"]),
         (0, &["analyze", "solid.off", "--require", "printable"]),
         (0, &["verify", "solid.off"]),

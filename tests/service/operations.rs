@@ -2,7 +2,7 @@
 
 use crate::meshes::{BROKEN, CROSSING, LINE, OPEN, SOLID};
 use crate::server::{Server, header, link, problem};
-use reqwest::blocking::Response;
+use reqwest::blocking::{Response, multipart};
 use serde_json::Value;
 use std::io::Read as _;
 
@@ -203,4 +203,33 @@ fn cutting_and_stitching_parts_what_only_touches_and_says_what_ran() {
     let wrong = server.post("/v1/cut-stitch?cut_edges=[[1,1]]").body(touching).send().unwrap();
     let (status, code, body) = problem(wrong);
     assert_eq!((status, &code[..], &body["parameter"]), (400, "invalid-parameter", &"cut_edges".into()));
+}
+
+#[test]
+fn a_plan_is_asked_for_edited_and_given_back_and_the_steps_of_a_repair_run_again() {
+    let server = Server::start();
+    let report: Value = server.post("/v1/plan").body(OPEN).send().unwrap().json().unwrap();
+    let mut plan = report["plan"].clone();
+    assert_eq!((&plan["findings"][0]["code"], &plan["steps"]), (&"boundary-loop".into(), &Value::Null));
+    let repair = |mesh: &str, plan: &Value, require: &str| {
+        let form = multipart::Form::new()
+            .part("mesh", multipart::Part::bytes(mesh.as_bytes().to_vec()).file_name("mesh.off"))
+            .text("params", serde_json::json!({"plan": plan, "require": require}).to_string());
+        server.post("/v1/repair").multipart(form).send().unwrap()
+    };
+    let filled = repair(OPEN, &plan, "printable");
+    assert_eq!((filled.status().as_u16(), header(&filled, "meshmend-outcome")), (200, "repaired"));
+    let made = header(&filled, "link").strip_prefix('<').unwrap().split('>').next().unwrap().to_owned();
+    let filled = filled.text().unwrap();
+    plan["findings"][0]["elements"][0]["remedy"] = "keep".into();
+    let kept = repair(OPEN, &plan, "best_effort");
+    assert_eq!((kept.status().as_u16(), header(&kept, "meshmend-outcome")), (200, "partial"));
+    let (status, code, _) = problem(repair(OPEN, &plan, "printable"));
+    assert_eq!((status, &code[..]), (422, "not-repairable"));
+    let (status, code, body) = problem(repair(CROSSING, &plan, "printable"));
+    assert_eq!((status, &code[..], &body["parameter"]), (409, "plan-mismatch", &"plan".into()));
+
+    let report: Value = server.get(&made).send().unwrap().json().unwrap();
+    assert!(report["plan"]["steps"].as_array().unwrap().iter().any(|step| step["step"] == "fill-holes"));
+    assert_eq!(repair(OPEN, &report["plan"], "printable").text().unwrap(), filled);
 }
