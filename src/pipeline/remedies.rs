@@ -135,6 +135,8 @@ pub enum PlanMismatch {
     NoSuchElement(DefectCode, u32),
     /// That is no remedy of this defect.
     NoSuchRemedy(DefectCode, Remedy),
+    /// A step that looks at the polygons of the file comes after another.
+    NotFirst(&'static str),
 }
 
 /// The remedies of a kind of defect; the first is the usual one.

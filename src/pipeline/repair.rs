@@ -158,6 +158,9 @@ fn replay(
     report: Report,
     budget: &Budget,
 ) -> Result<Answer, Failure> {
+    if let Some(late) = steps.iter().skip(1).find(|step| matches!(step, Step::SplitPolygons(_))) {
+        return Err(PlanMismatch::NotFirst(late.name()).into());
+    }
     let before = report.before.clone();
     let encoding = input.output_encoding(options);
     let removed = |step: &Step| if let Step::RemoveParts(parts) = step { parts.clone() } else { Vec::new() };

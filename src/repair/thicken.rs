@@ -97,6 +97,7 @@ fn places_behind(
     let marked = || (0..draft.triangles.len()).filter(|&t| is_marked[t]);
     let mut sum = vec![DVec3::ZERO; draft.positions.len()];
     let mut facing = vec![(0.0, 0.0); draft.positions.len()];
+    let mut is_used = vec![false; draft.positions.len()];
     let normal_of = |t: usize| {
         let [a, b, c] = draft.corners(t);
         (b - a).normalize_or_zero().cross((c - a).normalize_or_zero()).normalize_or_zero()
@@ -123,15 +124,15 @@ fn places_behind(
             let v = draft.triangles[t][k] as usize;
             let (cosine, weight) = &mut facing[v];
             let angle = angle_at(t, k);
+            is_used[v] = true;
             *cosine += angle * normal_of(t).dot(sum[v].normalize_or_zero());
             *weight += angle;
         }
     }
     let place = |v: usize| {
         let (cosine, weight) = facing[v];
-        let mitre = (weight / cosine).clamp(1.0, MITRE_MAX);
-        let is_used = weight > 0.0;
-        is_used.then(|| draft.positions[v] - sum[v].normalize_or_zero() * (wall * mitre))
+        let mitre = if cosine > 0.0 { (weight / cosine).clamp(1.0, MITRE_MAX) } else { MITRE_MAX };
+        is_used[v].then(|| draft.positions[v] - sum[v].normalize_or_zero() * (wall * mitre))
     };
     Ok((0..draft.positions.len()).map(place).collect())
 }
@@ -195,6 +196,14 @@ mod tests {
         assert!(is_closed(&mesh));
         let corner = mesh.positions[6];
         assert!((corner - DVec3::new(-0.125, 0.0, -0.125)).length() < 1e-6, "{corner}");
+    }
+
+    #[test]
+    fn a_triangle_with_a_repeated_or_no_own_side_does_not_matter() {
+        let points = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [2.0, 0.0, 0.0], [3.0, 0.0, 0.0]];
+        let mut mesh = draft(&points, &[[0, 1, 2], [1, 3, 4], [2, 2, 0]]);
+        thicken(&mut mesh, 0.25, &Budget::unlimited()).unwrap();
+        assert!(mesh.check().is_empty());
     }
 
     #[test]

@@ -373,6 +373,7 @@ impl From<&PlanMismatch> for Problem {
             PlanMismatch::NoSuchElement(defect, number) => {
                 format!("`{}` has no element {number} to be chosen", code(defect))
             }
+            PlanMismatch::NotFirst(step) => format!("the step `{step}` can only be the first"),
             PlanMismatch::NoSuchRemedy(defect, remedy) => {
                 format!("`{}` is no remedy of `{}`", wire::Remedy::from(remedy).word(), code(defect))
             }

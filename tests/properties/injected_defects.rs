@@ -514,10 +514,13 @@ fn with_tip_near_vertex(raw: &RawSoup, random: &mut Random) -> Planted {
 fn with_needle(raw: &RawSoup, random: &mut Random) -> Planted {
     let (t, [a, b, c]) = any_face(raw, random);
     let (other, d) = across(raw, t);
-    let [p, q] = [a, b].map(|v| raw.positions[v as usize]);
+    let [p, q, r] = [a, b, c].map(|v| raw.positions[v as usize]);
+    let length = |[x, y, z]: [f64; 3]| libm::hypot(libm::hypot(x, y), z);
+    // Short beside the face's other edge at `a` as well.
+    let share = (length(minus(r, p)) / length(minus(q, p))).min(1.0) / 1024.0;
     let new = raw.positions.len() as u32;
     changed(raw, At::Faces(vec![t as u32]), |raw| {
-        raw.positions.push(sum(p, minus(q, p), 1.0 / 1024.0));
+        raw.positions.push(sum(p, minus(q, p), share));
         raw.triangles[t] = [a, new, c];
         raw.triangles[other] = [new, a, d];
         raw.triangles.extend([[new, b, c], [b, new, d]]);
