@@ -26,6 +26,19 @@ for media_type in ["application/octet-stream", "application/x-www-form-urlencode
 # At most one of these may be given.
 TARGETS = {"faces", "ratio", "error_mm", "targets"}
 
+# The members of each step of a plan beside `step`, where it has any. The schema leaves the steps open, the reader does not.
+STEP_MEMBERS = {
+    "split-polygons": {"degenerate"},
+    "remove-parts": {"triangles"},
+    "drop-duplicates": {"opposite"},
+    "remove-crossing": {"rings"},
+    "snap": {"epsilon"},
+    "mend-thin-faces": {"needles", "caps", "folds"},
+    "fill-holes": {"all", "except"},
+    "thicken": {"wall"},
+    "nest": {"nesting", "chosen"},
+}
+
 
 @schemathesis.hook
 def before_call(context, case, kwargs):
@@ -38,6 +51,10 @@ def before_call(context, case, kwargs):
         if place.get("vertex_colors") == "priority":
             # Needs a format that has colours, which a schema cannot say either.
             place["vertex_colors"] = "kept"
+        if isinstance(place.get("plan"), dict):
+            for step in place["plan"].get("steps") or []:
+                for name in step.keys() - STEP_MEMBERS.get(step["step"], set()) - {"step"}:
+                    del step[name]
         for name in list(place):
             if name in named or (name in TARGETS and named & TARGETS):
                 del place[name]
