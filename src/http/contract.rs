@@ -22,7 +22,7 @@ use utoipa::{PartialSchema as _, ToSchema};
 
 use super::representation::OCTET_STREAM;
 use crate::wire::{
-    self, Format, Job, JobRequest, Options, Outcome, PlanRequest, PlanStep, Problem, ProblemCode, Report,
+    self, Format, Job, JobRequest, Options, Outcome, PlanRequest, Problem, ProblemCode, Report,
 };
 
 /// Problems that any path may answer with.
@@ -138,27 +138,17 @@ fn schemas() -> Vec<(String, RefOr<Schema>)> {
             <$type>::schemas(&mut schemas);
         )+ };
     }
-    add!(MeshForm, JobForm, JobRequest, Options, PlanRequest, PlanStep, Job, Report, Problem);
+    add!(MeshForm, JobForm, JobRequest, Options, PlanRequest, Job, Report, Problem);
     let is_form = |name: &str| name == MeshForm::name() || name == JobForm::name();
     let closed = |schema| {
         changed(schema, |form| {
             form.additional_properties = Some(Box::new(AdditionalProperties::FreeForm(false)));
         })
     };
-    // A step takes no member that it does not have; the derive says so of structs only.
-    let each_closed = |schema| match schema {
-        RefOr::T(Schema::OneOf(mut one_of)) => {
-            one_of.items = one_of.items.into_iter().map(closed).collect();
-            RefOr::T(Schema::OneOf(one_of))
-        }
-        other => other,
-    };
-    let completed = |(name, schema): (String, _)| match &name {
-        name if is_form(name) => (name.clone(), closed(schema)),
-        name if *name == PlanStep::name() => (name.clone(), each_closed(schema)),
-        _ => (name, schema),
-    };
-    schemas.into_iter().map(completed).collect()
+    schemas
+        .into_iter()
+        .map(|(name, schema)| if is_form(&name) { (name, closed(schema)) } else { (name, schema) })
+        .collect()
 }
 
 fn complete_operation(path: &str, operation: &mut Operation) {
