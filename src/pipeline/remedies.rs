@@ -498,6 +498,8 @@ impl Choices {
             Remedy::Remove => self.removed_parts.push(triangle),
             Remedy::Turn => self.shells.push((triangle, Fate::Turns)),
             Remedy::Keep if is_shell => self.shells.push((triangle, Fate::Stays)),
+            // Walls are for all open parts or for none.
+            Remedy::Keep if code == DefectCode::IsolatedFace => self.walls = Walls::Never,
             _ => {}
         }
     }

@@ -58,7 +58,10 @@ pub fn mend_thin_faces(draft: &mut Draft, which: ThinFaces, budget: &Budget) -> 
         let mended_before = collapsed + flipped + closed;
         left = 0;
         if which.folds {
-            for h in mending.mesh.edges().collect::<Vec<HalfEdgeId>>() {
+            for (i, h) in mending.mesh.edges().collect::<Vec<HalfEdgeId>>().into_iter().enumerate() {
+                if i % 1024 == 0 {
+                    budget.spend(1024)?;
+                }
                 if mending.mesh.contains(h) && mending.is_fold(h) {
                     match mending.close(h) {
                         true => closed += 1,
@@ -199,7 +202,7 @@ impl Mending<'_> {
         least
     }
 
-    /// Flips the long edge of a cap, if the faces on its other side is no cap itself and both new ones lie as it does.
+    /// Flips the long edge of a cap, if both new faces lie as the one on its other side does.
     fn flip(&mut self, h: HalfEdgeId) -> bool {
         let twin = self.mesh.twin(h);
         let Some(face) = self.mesh.face(twin) else { return false };
