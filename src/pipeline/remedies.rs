@@ -7,6 +7,7 @@ use crate::repair::Selection;
 use crate::repair::duplicates::OppositePairs;
 use crate::repair::nest::{Fate, Policy};
 use crate::repair::thin_faces::ThinFaces;
+use crate::wrap::WALL_OF_DIAGONAL;
 
 /// What is done about a defect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -302,9 +303,6 @@ pub(super) enum Walls {
     First,
 }
 
-/// Thickness of the walls that sheets become when none is asked for, as a share of the diagonal.
-const WALL_SHARE: f64 = 0.004;
-
 fn diagonal_of(analysis: &Analysis) -> f64 {
     analysis.measures.bounds.map_or(0.0, |bounds| (bounds.max - bounds.min).length())
 }
@@ -373,7 +371,7 @@ impl Choices {
         let mut choices = Self {
             fills_holes: options.fill_holes == FillHoles::Simple,
             walls: if options.fill_holes == FillHoles::None { Walls::Never } else { Walls::default() },
-            wall: options.wrap.wall.unwrap_or(WALL_SHARE * diagonal),
+            wall: options.wrap.wall.unwrap_or(WALL_OF_DIAGONAL * diagonal),
             snap_epsilon: options.cut_stitch.epsilon.unwrap_or(0.0),
             nesting: options.nesting,
             ..Self::default()

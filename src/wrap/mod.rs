@@ -117,8 +117,8 @@ pub enum WrapError {
 /// How far beside a triangle its sides are looked at, in cells.
 const BESIDE: f64 = 1e-3;
 
-/// Thickness of walls when the caller does not say.
-const WALL_OF_DIAGONAL: f64 = 0.004;
+/// Thickness of the walls that sheets become when the caller does not say, as a share of the diagonal.
+pub const WALL_OF_DIAGONAL: f64 = 0.004;
 
 /// Thinnest and thickest walls, in cells; for a thicker one the cells are larger.
 const WALLS: [f64; 2] = [0.25, 16.0];
