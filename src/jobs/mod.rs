@@ -18,6 +18,7 @@ mod spool;
 mod store;
 mod upload;
 mod view;
+mod webhook;
 
 #[cfg(test)]
 mod tests;
@@ -33,3 +34,4 @@ pub use store::{
 };
 pub use upload::{Upload, Uploaded};
 pub use view::StoredFile;
+pub use webhook::{PrivateHosts, RetryPlan, SecretError, Target, TargetError, URL_BYTES_MAX, WebhookSecret};
