@@ -1,7 +1,7 @@
 //! The types of settings: from text, with a word on what is expected.
 
 use std::net::{IpAddr, SocketAddr};
-use std::num::NonZeroUsize;
+use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -110,6 +110,14 @@ impl Value for NonZeroUsize {
     }
 }
 
+impl Value for NonZeroU32 {
+    const EXPECTED: &'static str = "a whole number from 1 to 4294967295";
+
+    fn parse(text: &str) -> Option<Self> {
+        Self::new(u32::parse(text)?)
+    }
+}
+
 impl Value for Option<NonZeroUsize> {
     const EXPECTED: &'static str = "a whole number from 1 on, or auto";
 
@@ -148,6 +156,14 @@ impl Value for Bytes {
             _ => return None,
         };
         number.checked_mul(1 << shift).map(Self)
+    }
+}
+
+impl Value for Option<Bytes> {
+    const EXPECTED: &'static str = "a number of bytes, such as 16GiB (units: B, KiB, MiB, GiB, TiB), or auto";
+
+    fn parse(text: &str) -> Option<Self> {
+        if text == "auto" { Some(None) } else { Bytes::parse(text).map(Some) }
     }
 }
 

@@ -33,6 +33,7 @@ const COMMON: &[ProblemCode] = &[
     ProblemCode::Forbidden,
     ProblemCode::NotAcceptable,
     ProblemCode::HeadTooLarge,
+    ProblemCode::RateLimited,
     ProblemCode::Internal,
 ];
 /// Problems of an upload.

@@ -73,7 +73,9 @@ mod tests {
     fn an_origin_is_a_scheme_a_host_and_perhaps_a_port() {
         let items = ["https://shop.example", "http://127.0.0.1:3000/"].map(str::to_owned);
         assert_eq!(origins(&items).unwrap(), ["https://shop.example", "http://127.0.0.1:3000"]);
-        for item in ["*", "null", "shop.example", "https://shop.example/a", "https://a@shop.example", "file:///"] {
+        for item in
+            ["*", "null", "shop.example", "https://shop.example/a", "https://a@shop.example", "file:///"]
+        {
             assert_eq!(origins(&[item.to_owned()]), Err(item.to_owned()), "{item}");
         }
     }

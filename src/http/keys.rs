@@ -139,7 +139,10 @@ mod tests {
     #[test]
     fn a_key_has_the_scopes_behind_its_digest_or_all() {
         let scopes = |line: &str| {
-            ApiKeys::parse(line).ok().and_then(|keys| keys.holder_of(b"open sesame")).map(|holder| holder.scopes)
+            ApiKeys::parse(line)
+                .ok()
+                .and_then(|keys| keys.holder_of(b"open sesame"))
+                .map(|holder| holder.scopes)
         };
         assert_eq!(scopes(&format!("shop:{SESAME}")), Some(Scopes::ALL));
         assert_eq!(scopes(&format!("shop:{SESAME}:read")), Scopes::parse("read"));

@@ -26,6 +26,8 @@ mod mesh_file;
 mod metrics;
 mod multipart;
 mod operations;
+#[cfg(feature = "otel")]
+mod otel;
 mod page;
 mod prefer;
 mod problem;
@@ -40,6 +42,7 @@ mod settings;
 mod shutdown;
 mod start;
 mod state;
+mod trace;
 
 pub use access::{Access, Neighbours};
 pub use healthcheck::healthcheck;

@@ -145,7 +145,10 @@ mod tests {
         assert_eq!(rates.count(&owner("shop")).1, None);
         let (_, refusal) = rates.count(&owner("shop"));
         let refusal = refusal.unwrap();
-        assert_eq!((refusal.code, refusal.limit_name), (ProblemCode::RateLimited, Some("rate_per_minute")));
+        assert_eq!(
+            (refusal.code, refusal.limit_name.as_deref()),
+            (ProblemCode::RateLimited, Some("rate_per_minute"))
+        );
         assert!((1..=60).contains(&refusal.retry_after_s.unwrap()), "{refusal:?}");
         assert_eq!(rates.count(&owner("farm")).1, None);
     }

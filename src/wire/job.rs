@@ -1,7 +1,7 @@
 //! A job as the service shows it.
 
 use jiff::Timestamp;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::problem::Problem;
@@ -34,7 +34,7 @@ impl JobState {
 }
 
 /// How far a running job is.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Progress {
     /// The pass it is in; null before the first one.
     #[schema(required)]

@@ -151,7 +151,10 @@ async fn limits_of_a_job_are_those_of_the_settings() {
     assert_eq!((problem.code, problem.limit), (ProblemCode::EngineOutOfMemory, Some(1000)));
     assert_eq!(problem.actual, Some(995 + 6), "the upload in memory counts");
     let problem = house.run(b"work").await.problem.unwrap();
-    assert_eq!((problem.code, problem.limit_name), (ProblemCode::MeshTooLarge, Some("engine_work_max")));
+    assert_eq!(
+        (problem.code, problem.limit_name.as_deref()),
+        (ProblemCode::MeshTooLarge, Some("engine_work_max"))
+    );
 }
 
 #[tokio::test]
