@@ -140,10 +140,13 @@ def figures_of(job, report):
     if job["state"] != "succeeded":
         problem = (job.get("problem") or {}).get("code", job["state"])
         return dict(state="refused", volume_mm3=None, area_mm2=None, printable=0, price_cents=None, problem=problem)
-    quote = report["after"]["printing"]["quote"]
-    volume, area = quote["volume_mm3"], quote["area_mm2"]
+    # A price rests on the volume, which means something only of a valid solid.
+    quote = report["printing"]["quote"]
+    if not quote["price_safe"]:
+        return dict(state="refused", volume_mm3=None, area_mm2=None, printable=0, price_cents=None, problem=quote["reason"])
+    volume, area = quote["volume"], quote["area"]
     price = max(CENTS_MIN, round(volume / 1000 * CENTS_PER_CM3 + area / 100 * CENTS_PER_CM2))
-    return dict(state="quoted", volume_mm3=volume, area_mm2=area, printable=int(report["verdict"]["printable"]), price_cents=price, problem=None)
+    return dict(state="quoted", volume_mm3=volume, area_mm2=area, printable=1, price_cents=price, problem=None)
 
 
 class Backend(BaseHTTPRequestHandler):
