@@ -94,10 +94,12 @@ impl IncomingBody {
         let pause = (Instant::now() + idle_timeout, Patience::Pause);
         let total = (self.begun + total_timeout, Patience::Total);
         // What has come by now lasts that long at the lowest rate.
-        let rate = self.received.checked_div(rate_min).map(|seconds| {
-            idle_timeout.saturating_add(Duration::from_secs(seconds))
-        });
-        let rate = rate.filter(|&lasts| lasts < total_timeout).map(|lasts| (self.begun + lasts, Patience::Rate));
+        let rate = self
+            .received
+            .checked_div(rate_min)
+            .map(|seconds| idle_timeout.saturating_add(Duration::from_secs(seconds)));
+        let rate =
+            rate.filter(|&lasts| lasts < total_timeout).map(|lasts| (self.begun + lasts, Patience::Rate));
         [pause, total].into_iter().chain(rate).min().unwrap_or(pause)
     }
 

@@ -173,6 +173,7 @@ fn complete_operation(path: &str, operation: &mut Operation) {
             operation.request_body = Some(RefOr::T(upload_body::<JobForm>(requiring_input::<JobRequest>())));
             add_parameter(operation, cancel_after());
             add_problems(operation, UPLOAD);
+            add_problems(operation, &[ProblemCode::WebhookRefused]);
             add_answer(operation, "202", accepted());
         }
         "report" => {

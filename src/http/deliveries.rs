@@ -31,12 +31,17 @@ pub(super) async fn deliveries(state: State, caller: Extension<Caller>, id: Id, 
 
 /// Send a webhook again.
 ///
-/// Whatever became of it: with the same `webhook-id`, at once, and again as often as the server's settings say.
+/// Whatever became of it: at once, with the same `webhook-id`. When its tries are used up, this is one more.
 #[utoipa::path(post, path = "/v1/jobs/{id}/deliveries/{delivery}/redeliver", tag = "jobs",
     params(("id" = String, Path, description = "Id of the job."),
            ("delivery" = String, Path, description = "Id of the delivery.")),
     responses((status = 202, description = "The delivery is due.", body = Delivery)))]
-pub(super) async fn redeliver(state: State, caller: Extension<Caller>, ids: Ids, request: Request) -> Handled {
+pub(super) async fn redeliver(
+    state: State,
+    caller: Extension<Caller>,
+    ids: Ids,
+    request: Request,
+) -> Handled {
     json_only(request.headers())?;
     query::none(request.uri())?;
     let unknown = || ProblemAnswer::new(ProblemCode::NotFound, "there is no such delivery");

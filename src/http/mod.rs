@@ -13,6 +13,7 @@ mod both;
 mod connection;
 mod contract;
 mod cors;
+mod deliveries;
 mod descriptors;
 mod docs;
 mod envelope;

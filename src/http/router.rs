@@ -18,7 +18,7 @@ use super::rate::{Bucket, Rates};
 use super::scope::Scopes;
 use super::settings::HttpSettings;
 use super::state::{Caller, Service, State};
-use super::{about, contract, cors, docs, lifecycle, operations, page};
+use super::{about, contract, cors, deliveries, docs, lifecycle, operations, page};
 use crate::jobs::Jobs;
 use crate::wire::ProblemCode;
 
@@ -37,6 +37,8 @@ fn api() -> OpenApiRouter<Arc<Service>> {
         .routes(routes!(lifecycle::cancel))
         .routes(routes!(lifecycle::report))
         .routes(routes!(lifecycle::result))
+        .routes(routes!(deliveries::deliveries))
+        .routes(routes!(deliveries::redeliver))
         .routes(routes!(about::errors))
         .routes(routes!(about::limits))
         .routes(routes!(about::formats))

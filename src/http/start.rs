@@ -16,12 +16,15 @@ use super::server::Server;
 use super::settings::HttpSettings;
 use super::shutdown::Shutdown;
 use super::{cors, descriptors};
-use crate::config::{Config, ConfigError, Loaded, LogFormat};
+use crate::config::{ConfigError, Loaded, LogFormat};
 use crate::formats::ReadLimits;
-use crate::jobs::{Jobs, JobsSettings};
+use crate::jobs::{Jobs, JobsSettings, PrivateHosts, RetryPlan, StartError, WebhookSecret, WebhookSettings};
 
 /// Time for jobs that a second signal gave up: the process is not to wait for them.
 const LEFTOVERS: Duration = Duration::from_secs(1);
+
+/// Shortest lease: a busy machine may keep a heartbeat waiting for a good part of a second.
+const LEASE_MIN: Duration = Duration::from_secs(1);
 
 /// Serves until a signal ends it.
 ///
@@ -37,7 +40,7 @@ pub fn start(loaded: &Loaded) -> anyhow::Result<()> {
     let served = runtime.block_on(async {
         let shutdown = Shutdown::on_signals()?;
         let refused = |name: &'static str, why: &dyn Display| loaded.refused(name, why);
-        let jobs = Jobs::start(jobs_settings(&loaded.config)).map_err(|e| refused("data_dir", &e))?;
+        let jobs = Jobs::start(jobs_settings(loaded)?).await.map_err(|e| refused(setting_of(&e), &e))?;
         let server = Server::bind(http, jobs).await.map_err(|e| refused("listen", &e))?;
         tell(&server)?;
         server.run(shutdown).await;
@@ -47,6 +50,14 @@ pub fn start(loaded: &Loaded) -> anyhow::Result<()> {
     #[cfg(feature = "otel")]
     super::otel::flush();
     served
+}
+
+/// The setting that a service which cannot start is about.
+fn setting_of(error: &StartError) -> &'static str {
+    match error {
+        StartError::Webhooks { .. } => "webhooks",
+        _ => "data_dir",
+    }
 }
 
 /// The same with no more connections than the system has descriptors for.
@@ -138,9 +149,35 @@ fn rate(loaded: &Loaded) -> Result<Option<RateSettings>, ConfigError> {
     Ok(Some(RateSettings { per_minute, burst }))
 }
 
-fn jobs_settings(config: &Config) -> JobsSettings {
+fn webhooks(loaded: &Loaded) -> Result<Option<WebhookSettings>, ConfigError> {
+    let config = &loaded.config;
+    if !config.webhooks {
+        return Ok(None);
+    }
+    let refused = |why: &dyn Display| loaded.refused("webhook_secret_file", why);
+    let secrets = match &config.webhook_secret_file {
+        Some(path) => {
+            let text = std::fs::read_to_string(path).map_err(|e| refused(&e))?;
+            WebhookSecret::parse_file(&text).map_err(|e| refused(&e))?
+        }
+        None => Vec::new(),
+    };
+    let private_hosts = PrivateHosts::parse(&config.webhook_private_hosts).map_err(|item| {
+        let why = format!("`{item}` is no host with a port, such as orders.internal:9000");
+        loaded.refused("webhook_private_hosts", &why)
+    })?;
+    let retry =
+        RetryPlan { attempts_max: config.webhook_attempts_max.get(), first_pause: config.webhook_pause };
+    Ok(Some(WebhookSettings { secrets, private_hosts, timeout: config.webhook_timeout, retry }))
+}
+
+fn jobs_settings(loaded: &Loaded) -> Result<JobsSettings, ConfigError> {
+    let config = &loaded.config;
+    if config.lease < LEASE_MIN {
+        return Err(loaded.refused("lease", &format!("it must be {LEASE_MIN:?} or more")));
+    }
     let defaults = JobsSettings::new(&config.data_dir);
-    JobsSettings {
+    Ok(JobsSettings {
         slots: config.slots.map_or(defaults.slots, NonZero::get),
         queue_max: config.queue_max.get(),
         jobs_max: config.jobs_max.get(),
@@ -157,8 +194,15 @@ fn jobs_settings(config: &Config) -> JobsSettings {
             polygon_corners_max: config.polygon_corners_max,
         },
         drain_grace: config.drain_grace,
+        interactive_slots: config.interactive_slots,
+        interactive_bytes_max: config.interactive_bytes_max.0,
+        memory_bytes_max: config.memory_bytes_max.map_or(defaults.memory_bytes_max, |bytes| bytes.0),
+        webhooks: webhooks(loaded)?,
+        disk_free_bytes_min: config.disk_free_bytes_min.0,
+        lease: config.lease,
+        attempts_max: config.attempts_max.get(),
         ..defaults
-    }
+    })
 }
 
 #[cfg(test)]
@@ -174,7 +218,7 @@ mod tests {
     #[test]
     fn the_defaults_of_the_configuration_are_those_of_the_settings() {
         let loaded = loaded(&[("data_dir", "d")]);
-        assert_eq!(format!("{:?}", jobs_settings(&loaded.config)), format!("{:?}", JobsSettings::new("d")));
+        assert_eq!(format!("{:?}", jobs_settings(&loaded).unwrap()), format!("{:?}", JobsSettings::new("d")));
         let want = HttpSettings { admin_listen: loaded.config.admin_listen, ..HttpSettings::default() };
         assert_eq!(format!("{:?}", http_settings(&loaded).unwrap()), format!("{want:?}"));
     }

@@ -2,13 +2,22 @@
 
 use std::fs;
 use std::sync::Arc;
+use std::time::Duration;
 
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
-use super::store::Lane;
+use super::estimate::estimated_bytes;
+use super::live::Live;
+use super::service::Service;
+use super::settings::JobsSettings;
+use super::store::{JobRow, Lane};
+use crate::wire::Operation;
 
 /// The unit of account, in bytes: semaphores count up to 2^32 permits.
 const UNIT: u64 = 1 << 20;
+
+/// Pause between two looks whether a run that waits for memory is to stop.
+const STOP_CHECK: Duration = Duration::from_millis(50);
 
 /// The memory of all runs. Small jobs that somebody waits for have a part of their own, so that none of them waits
 /// behind a large one.
@@ -26,6 +35,15 @@ pub(super) struct Room {
 }
 
 impl Capacity {
+    /// The memory that the operator allows; what small jobs may take in all slots is kept for them.
+    pub(super) fn of(settings: &JobsSettings) -> Self {
+        let each = estimated_bytes(Operation::Repair, None, settings.interactive_bytes_max);
+        let slots = (settings.slots + settings.interactive_slots) as u64;
+        // At least half is for large ones.
+        let kept = each.saturating_mul(slots).min(settings.memory_bytes_max / 2);
+        Self::new(settings.memory_bytes_max, kept)
+    }
+
     /// `bytes_max` for all runs together, of which `interactive_bytes` are kept for small ones.
     pub(super) fn new(bytes_max: u64, interactive_bytes: u64) -> Self {
         let bulk_units = units(bytes_max.saturating_sub(interactive_bytes)).max(1);
@@ -44,6 +62,25 @@ impl Capacity {
     }
 }
 
+impl Service {
+    /// Waits for the memory of a run; `None`: the run is to stop before there is any.
+    pub(super) async fn room_for(&self, row: &JobRow, live: &Live) -> Option<Room> {
+        let estimated = estimated_bytes(row.operation, row.options.format, row.input.bytes);
+        let room = self.capacity.room(row.lane, estimated);
+        tokio::pin!(room);
+        loop {
+            tokio::select! {
+                room = &mut room => return Some(room),
+                () = tokio::time::sleep(STOP_CHECK) => {
+                    if live.stop.raised().is_some() {
+                        return None;
+                    }
+                }
+            }
+        }
+    }
+}
+
 fn units(bytes: u64) -> u32 {
     u32::try_from(bytes.div_ceil(UNIT)).unwrap_or(u32::MAX / 8)
 }
@@ -53,14 +90,14 @@ pub(super) fn default_bytes_max() -> u64 {
     let machine = rustix::system::sysinfo();
     let total = u64::try_from(machine.totalram).unwrap_or(u64::MAX);
     let total = total.saturating_mul(u64::from(machine.mem_unit.max(1)));
-    let group = fs::read_to_string("/sys/fs/cgroup/memory.max").ok().and_then(|text| text.trim().parse().ok());
+    let group =
+        fs::read_to_string("/sys/fs/cgroup/memory.max").ok().and_then(|text| text.trim().parse().ok());
     total.min(group.unwrap_or(u64::MAX)) / 4 * 3
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::time::Duration;
 
     const GIB: u64 = 1 << 30;
 

@@ -2,15 +2,36 @@
 
 use metrics::{counter, gauge, histogram};
 
-use super::store::{Finish, JobCounts};
-use crate::wire::{Operation, Stage};
+use super::store::{Ending, JobCounts, NextTry, TryOutcome};
+use crate::wire::{Operation, Problem, Stage};
 
 /// Jobs that wait and run, bytes on disk.
 pub(super) fn load(counts: JobCounts, data_bytes: u64) {
     gauge!("meshmend_jobs_queued").set(counts.queued as f64);
     gauge!("meshmend_jobs_running").set(counts.running as f64);
     gauge!("meshmend_jobs_kept").set(counts.all as f64);
+    let waited = counts.oldest_queued_at.map(|at| jiff::Timestamp::now().duration_since(at).as_secs_f64());
+    gauge!("meshmend_queue_oldest_seconds").set(waited.unwrap_or(0.0).max(0.0));
     gauge!("meshmend_data_bytes").set(data_bytes as f64);
+}
+
+/// A job that was not taken.
+pub(super) fn refused(problem: &Problem) {
+    counter!("meshmend_jobs_refused_total", "problem" => problem.code.word()).increment(1);
+}
+
+/// A try to deliver a webhook.
+pub(super) fn delivery_tried(outcome: &TryOutcome, next: NextTry) {
+    let answer = match outcome {
+        TryOutcome::Answered(status) => format!("{}xx", status / 100),
+        TryOutcome::Failed(_) => "none".to_owned(),
+    };
+    let then = match next {
+        NextTry::Delivered => "delivered",
+        NextTry::After(_) => "retry",
+        NextTry::GiveUp => "failed",
+    };
+    counter!("meshmend_webhook_tries_total", "answer" => answer, "then" => then).increment(1);
 }
 
 /// A job that was answered from an earlier one.
@@ -18,19 +39,24 @@ pub(super) fn cached(operation: Operation) {
     counter!("meshmend_jobs_cached_total", "operation" => operation.word()).increment(1);
 }
 
+/// Runs whose executor is lost.
+pub(super) fn lost(operation: Operation, runs: u64) {
+    counter!("meshmend_runs_lost_total", "operation" => operation.word()).increment(runs);
+}
+
 /// A job that has ended.
-pub(super) fn finished(operation: Operation, finish: &Finish) {
-    let outcome = finish.outcome.map_or("none", |outcome| outcome.word());
-    let problem = finish.problem.as_ref().map_or("none", |problem| problem.code.word());
+pub(super) fn finished(operation: Operation, ending: &Ending) {
+    let outcome = ending.outcome.map_or("none", |outcome| outcome.word());
+    let problem = ending.problem.as_ref().map_or("none", |problem| problem.code.word());
     counter!(
         "meshmend_jobs_finished_total",
         "operation" => operation.word(),
-        "state" => finish.state.word(),
+        "state" => ending.state.word(),
         "outcome" => outcome,
         "problem" => problem,
     )
     .increment(1);
-    let Some(timing) = finish.timing_ms else { return };
+    let Some(timing) = ending.timing_ms else { return };
     for &stage in Stage::ALL {
         if let Some(ms) = timing.of(stage) {
             histogram!("meshmend_stage_seconds", "stage" => stage.word()).record(ms / 1000.0);

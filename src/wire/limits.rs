@@ -32,6 +32,14 @@ pub struct Limits {
     pub rate_per_minute: u32,
     /// Requests that it may make at one time; 0: any number.
     pub rate_burst: u32,
+    /// Jobs that run beside those of `slots`, for small meshes that somebody waits for.
+    pub interactive_slots: usize,
+    /// Largest upload of such a mesh, in bytes.
+    pub interactive_bytes_max: u64,
+    /// Most memory that all running jobs may take together, as estimated, in bytes.
+    pub memory_bytes_max: u64,
+    /// Most calls of a webhook for one event; 0: none are made.
+    pub webhook_attempts_max: u32,
     /// Most open connections.
     pub connections_max: usize,
     /// Time for a request's header, in seconds.

@@ -23,6 +23,7 @@ mod target;
 mod unit_hypothesis;
 mod verdict;
 mod version;
+mod webhook;
 mod words;
 
 #[cfg(test)]
@@ -30,7 +31,7 @@ pub(crate) mod sample;
 
 pub use certificate::{Certificate, Claim, Reading, Shell, Violation, ViolationCount};
 pub use formats::{FormatInfo, extension_of, format_of_media_type, formats, media_type_of};
-pub use job::{Job, JobState, Links, Progress};
+pub use job::{Job, JobState, Labels, Links, Progress};
 pub use level::Level;
 pub use limits::Limits;
 pub use mesh_answers::{Proximity, TestCounts, VolumeInterval, VolumeMethod, Watertight};
@@ -55,6 +56,9 @@ pub use target::TargetSpec;
 pub use unit_hypothesis::UnitHypothesis;
 pub use verdict::{Reason, Verdict};
 pub use version::{ENGINE_NAME, ENGINE_VERSION, REPORT_SCHEMA, Version};
+pub use webhook::{
+    Deliveries, Delivery, DeliveryState, DeliveryTry, WebhookEvent, WebhookMessage, WebhookRequest,
+};
 pub use words::{
     Condition, Criterion, Cut, DefectCode, Degenerate, Encoding, FillHoles, Format, Mode, Nesting,
     OpenShells, Operation, Opposite, Outcome, Placement, ProximityTest, Reader, ReasonCode, Remedy, Require,

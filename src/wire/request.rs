@@ -9,6 +9,7 @@ use utoipa::{PartialSchema, ToSchema};
 use super::option_schema::object_of_options;
 use super::options::{Options, nearest};
 use super::problem::{Problem, ProblemCode};
+use super::webhook::WebhookRequest;
 use super::words::Operation;
 
 /// An earlier job whose upload is used again.
@@ -26,6 +27,8 @@ pub struct JobRequest {
     pub operation: Option<Operation>,
     /// How.
     pub options: Options,
+    /// Whom to tell of the end.
+    pub webhook: Option<WebhookRequest>,
 }
 
 impl JobRequest {
@@ -34,8 +37,7 @@ impl JobRequest {
     /// # Errors
     /// A problem with code `invalid-parameter` or `unknown-parameter`.
     pub fn from_json(text: &[u8]) -> Result<Self, Problem> {
-        let (operation, options) = read(text)?;
-        Ok(Self { operation, options })
+        read(text)
     }
 
     /// Reads the `params` of a path that names the operation itself; `operation` may be repeated there, not changed.
@@ -43,23 +45,32 @@ impl JobRequest {
     /// # Errors
     /// As [`from_json`](Self::from_json).
     pub fn params_from_json(text: &[u8], operation: Operation) -> Result<Options, Problem> {
-        match read(text)? {
-            (Some(named), _) if named != operation => Err(about_operation(
+        let Self { operation: named, options, webhook } = read(text)?;
+        if webhook.is_some() {
+            return Err(Problem {
+                parameter: Some("webhook".to_owned()),
+                ..Problem::new(ProblemCode::UnknownParameter, "only `/v1/jobs` takes a `webhook`")
+            });
+        }
+        match named {
+            Some(named) if named != operation => Err(about_operation(
                 &format!("the path means `{operation}`, `operation` says `{named}`"),
                 None,
             )),
-            (_, options) => Ok(options),
+            _ => Ok(options),
         }
     }
 }
 
-fn read(text: &[u8]) -> Result<(Option<Operation>, Options), Problem> {
+fn read(text: &[u8]) -> Result<JobRequest, Problem> {
     let members = object(text)?;
     let mut operation = None;
     let mut options = Options::default();
+    let mut webhook = None;
     for (name, value) in &members {
         match (name.as_str(), value) {
             ("operation", value) => operation = Some(read_operation(value)?),
+            ("webhook", value) => webhook = Some(read_webhook(value)?),
             ("params", Value::Object(inner)) => {
                 for (name, value) in inner {
                     options.set_json(name, value)?;
@@ -74,7 +85,16 @@ fn read(text: &[u8]) -> Result<(Option<Operation>, Options), Problem> {
             _ => options.set_json(name, value)?,
         }
     }
-    Ok((operation, options))
+    Ok(JobRequest { operation, options, webhook })
+}
+
+fn read_webhook(value: &Value) -> Result<WebhookRequest, Problem> {
+    // The error itself may repeat a value, which may be a secret.
+    let detail = "`webhook` is an object with `url` and perhaps `secret`, both texts";
+    WebhookRequest::deserialize(value).map_err(|_| Problem {
+        parameter: Some("webhook".to_owned()),
+        ..Problem::new(ProblemCode::InvalidParameter, detail)
+    })
 }
 
 fn object(text: &[u8]) -> Result<serde_json::Map<String, Value>, Problem> {
@@ -114,6 +134,7 @@ impl PartialSchema for JobRequest {
         let object = object_of_options()
             .description(Some("What to do, with options, which may also stand together in `params`."))
             .property("operation", operation)
+            .property("webhook", WebhookRequest::schema())
             .property("params", Options::schema());
         RefOr::T(Schema::Object(object.build()))
     }

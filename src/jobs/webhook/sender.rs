@@ -86,7 +86,9 @@ impl Sender {
         match service.store.note_try(delivery.id.clone(), delivery.epoch, outcome, next).await {
             // Sent again meanwhile, or gone.
             Ok(()) | Err(StoreError::ClaimVoid | StoreError::NotFound) => {}
-            Err(error) => tracing::warn!(delivery = delivery.id, %error, "a try of a webhook could not be noted"),
+            Err(error) => {
+                tracing::warn!(delivery = delivery.id, %error, "a try of a webhook could not be noted")
+            }
         }
     }
 

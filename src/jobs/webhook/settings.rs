@@ -25,11 +25,11 @@ impl WebhookSettings {
     /// Takes a webhook that a caller asks for; `None`: webhooks are off.
     ///
     /// # Errors
-    /// `invalid-parameter`.
+    /// `webhook-refused`.
     pub(in crate::jobs) fn admit(this: Option<&Self>, asked: WebhookRequest) -> Result<Webhook, Problem> {
         let refused = |detail: String| Problem {
             parameter: Some("webhook".to_owned()),
-            ..Problem::new(ProblemCode::InvalidParameter, detail)
+            ..Problem::new(ProblemCode::WebhookRefused, detail)
         };
         let Some(settings) = this else {
             return Err(refused("this server sends no webhooks (`webhooks` is off)".to_owned()));
