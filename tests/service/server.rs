@@ -5,6 +5,7 @@ use serde_json::Value;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
 use std::process::{Child, ChildStderr, Command, Stdio};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 /// Patience of the tests; only what hangs meets it.
@@ -16,6 +17,7 @@ pub(crate) struct Server {
     pub(crate) address: String,
     pub(crate) admin: String,
     client: Client,
+    log: Arc<Mutex<String>>,
     _data: tempfile::TempDir,
 }
 
@@ -40,9 +42,19 @@ impl Server {
         let address = bound(&mut log, "listening on http://");
         let admin = bound(&mut log, "health and metrics on http://");
         // The pipe must not fill up.
-        std::thread::spawn(move || std::io::copy(&mut log, &mut std::io::sink()));
+        let heard = Arc::new(Mutex::new(String::new()));
+        let hearing = Arc::clone(&heard);
+        std::thread::spawn(move || {
+            let mut line = String::new();
+            while log.read_line(&mut line).is_ok_and(|bytes| bytes > 0) {
+                hearing.lock().unwrap().push_str(&line);
+                line.clear();
+            }
+        });
+        // The client could speak TLS, and asks by what, although it never does here. Told twice, the first word stays.
+        let _ = rustls::crypto::ring::default_provider().install_default();
         let client = Client::builder().timeout(PATIENCE).build().unwrap();
-        Self { child, address, admin, client, _data: data }
+        Self { child, address, admin, client, log: heard, _data: data }
     }
 
     pub(crate) fn url(&self, path: &str) -> String {
@@ -64,6 +76,24 @@ impl Server {
     /// An answer of the admin listener.
     pub(crate) fn admin(&self, path: &str) -> Response {
         self.client.get(format!("http://{}{path}", self.admin)).send().unwrap()
+    }
+
+    /// The log since it has been listening.
+    pub(crate) fn log(&self) -> String {
+        self.log.lock().unwrap().clone()
+    }
+
+    /// Asks until the log has a line with all of `words`, and gives it.
+    pub(crate) fn logged(&self, words: &[&str]) -> String {
+        let begun = Instant::now();
+        loop {
+            let log = self.log();
+            if let Some(line) = log.lines().find(|line| words.iter().all(|word| line.contains(word))) {
+                return line.to_owned();
+            }
+            assert!(begun.elapsed() < PATIENCE, "no line with {words:?} in {log}");
+            std::thread::sleep(Duration::from_millis(10));
+        }
     }
 
     /// A connection on which a test speaks for itself.
@@ -133,6 +163,7 @@ fn bound(log: &mut BufReader<ChildStderr>, words: &str) -> String {
         let mut line = String::new();
         assert!(log.read_line(&mut line).unwrap() > 0, "the server did not start: {seen}");
         if let Some((_, address)) = line.trim().split_once(words) {
+            let address = address.split('"').next().unwrap_or_default();
             return address.to_owned();
         }
         seen.push_str(&line);
@@ -187,5 +218,17 @@ impl Line {
         let mut bytes = vec![0; len];
         self.0.read_exact(&mut bytes).unwrap();
         String::from_utf8_lossy(&bytes).into_owned()
+    }
+}
+
+/// Asks until there is an answer.
+pub(crate) fn patiently<T>(ask: impl Fn() -> Option<T>) -> T {
+    let begun = Instant::now();
+    loop {
+        if let Some(answer) = ask() {
+            return answer;
+        }
+        assert!(begun.elapsed() < PATIENCE, "nothing has come of it");
+        std::thread::sleep(Duration::from_millis(20));
     }
 }
