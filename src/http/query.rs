@@ -158,11 +158,14 @@ mod tests {
 
     #[test]
     fn options_and_the_operation_come_from_one_query() {
-        let (found, operation) =
-            options_and_operation(&uri("operation=repair&samples=3&input=%7B%22job%22:%227%22%7D")).unwrap();
-        assert_eq!((operation, found.samples), (Some(Operation::Repair), Some(3)));
-        assert_eq!(found.input.unwrap().job, "7");
-        let code = |query| options_and_operation(&uri(query)).unwrap_err().code;
+        let found =
+            job_request(&uri("operation=repair&samples=3&input=%7B%22job%22:%227%22%7D&labels=%7B%22a%22:%22b%22%7D"))
+                .unwrap();
+        assert_eq!((found.operation, found.options.samples), (Some(Operation::Repair), Some(3)));
+        assert_eq!((found.options.input.unwrap().job, &*found.labels.unwrap()["a"]), ("7".to_owned(), "b"));
+        let code = |query| job_request(&uri(query)).unwrap_err().code;
+        assert_eq!(code("labels=a"), ProblemCode::InvalidParameter);
+        assert_eq!(code("labels=%7B%7D&labels=%7B%22a%22:%22b%22%7D"), ProblemCode::InvalidParameter);
         assert_eq!(code("operation=repiar"), ProblemCode::InvalidParameter);
         assert_eq!(code("operation=repair&operation=verify"), ProblemCode::InvalidParameter);
         assert_eq!(options(&uri("operation=repair")).unwrap_err().code, ProblemCode::UnknownParameter);

@@ -4,7 +4,9 @@ use reqwest::blocking::{Client, RequestBuilder, Response};
 use serde_json::Value;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
+use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStderr, Command, Stdio};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Patience of the tests; only what hangs meets it.
@@ -16,7 +18,7 @@ pub(crate) struct Server {
     pub(crate) address: String,
     pub(crate) admin: String,
     client: Client,
-    _data: tempfile::TempDir,
+    data: Arc<tempfile::TempDir>,
 }
 
 impl Server {
@@ -26,7 +28,28 @@ impl Server {
 
     /// A server with further settings, as flags.
     pub(crate) fn with(settings: &[&str]) -> Self {
-        let data = tempfile::tempdir().unwrap();
+        Self::on(Arc::new(tempfile::tempdir().unwrap()), settings)
+    }
+
+    /// Kills it and starts another one on the same data folder.
+    pub(crate) fn killed_and_restarted(mut self, settings: &[&str]) -> Self {
+        self.child.kill().unwrap();
+        self.child.wait().unwrap();
+        Self::on(Arc::clone(&self.data), settings)
+    }
+
+    /// Starts another one on the same data folder after this one has ended.
+    pub(crate) fn restarted(mut self, settings: &[&str]) -> Self {
+        assert_eq!(self.exit_code(), Some(0));
+        Self::on(Arc::clone(&self.data), settings)
+    }
+
+    /// The files of uploads and results.
+    pub(crate) fn stored_files(&self) -> Vec<PathBuf> {
+        files_under(&self.data.path().join("data/spool"))
+    }
+
+    fn on(data: Arc<tempfile::TempDir>, settings: &[&str]) -> Self {
         let mut command = Command::new(env!("CARGO_BIN_EXE_meshmend"));
         for (name, _) in std::env::vars_os() {
             if name.to_string_lossy().starts_with("MESHMEND_") {
@@ -42,7 +65,7 @@ impl Server {
         // The pipe must not fill up.
         std::thread::spawn(move || std::io::copy(&mut log, &mut std::io::sink()));
         let client = Client::builder().timeout(PATIENCE).build().unwrap();
-        Self { child, address, admin, client, _data: data }
+        Self { child, address, admin, client, data }
     }
 
     pub(crate) fn url(&self, path: &str) -> String {
@@ -124,6 +147,11 @@ impl Drop for Server {
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
+}
+
+fn files_under(dir: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(dir).unwrap().map(|entry| entry.unwrap().path());
+    entries.flat_map(|path| if path.is_dir() { files_under(&path) } else { vec![path] }).collect()
 }
 
 /// The address that the log tells behind `words`.
