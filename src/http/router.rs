@@ -18,7 +18,7 @@ use super::rate::{Bucket, Rates};
 use super::scope::Scopes;
 use super::settings::HttpSettings;
 use super::state::{Caller, Service, State};
-use super::{about, contract, cors, deliveries, docs, lifecycle, operations, page};
+use super::{about, contract, cors, deliveries, docs, events, lifecycle, listing, operations, page};
 use crate::jobs::Jobs;
 use crate::wire::ProblemCode;
 
@@ -32,9 +32,10 @@ fn api() -> OpenApiRouter<Arc<Service>> {
         .routes(routes!(operations::simplify))
         .routes(routes!(operations::plan))
         .routes(routes!(operations::cut_stitch))
-        .routes(routes!(operations::create_job))
+        .routes(routes!(operations::create_job, listing::list_jobs))
         .routes(routes!(lifecycle::show, lifecycle::delete))
         .routes(routes!(lifecycle::cancel))
+        .routes(routes!(events::events))
         .routes(routes!(lifecycle::report))
         .routes(routes!(lifecycle::result))
         .routes(routes!(deliveries::deliveries))

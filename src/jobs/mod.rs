@@ -33,7 +33,7 @@ mod tests;
 pub use admission::Submission;
 pub use blobs::{BlobStore, BlobWriter, LocalBlobs, StoredBlob};
 pub use clock::StageClock;
-pub use events::{EventId, Events, Happened, JobEvent};
+pub use events::{EventId, Events, Happened, JobEvent, NoEventId};
 pub use service::{Jobs, Load, StartError};
 pub use settings::JobsSettings;
 pub use slot::Engine;

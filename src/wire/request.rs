@@ -6,6 +6,7 @@ use utoipa::openapi::RefOr;
 use utoipa::openapi::schema::{ObjectBuilder, Schema, Type};
 use utoipa::{PartialSchema, ToSchema};
 
+use super::labels::{Labels, about_labels, labels_from_json, labels_schema};
 use super::option_schema::object_of_options;
 use super::options::{Options, nearest};
 use super::problem::{Problem, ProblemCode};
@@ -25,6 +26,8 @@ pub struct InputRef {
 pub struct JobRequest {
     /// What to do; `None`: another part of the request says it.
     pub operation: Option<Operation>,
+    /// What to write on the job; `None`: another part of the request may say it.
+    pub labels: Option<Labels>,
     /// How.
     pub options: Options,
     /// Whom to tell of the end.
@@ -45,32 +48,44 @@ impl JobRequest {
     /// # Errors
     /// As [`from_json`](Self::from_json).
     pub fn params_from_json(text: &[u8], operation: Operation) -> Result<Options, Problem> {
-        let Self { operation: named, options, webhook } = read(text)?;
-        if webhook.is_some() {
-            return Err(Problem {
-                parameter: Some("webhook".to_owned()),
-                ..Problem::new(ProblemCode::UnknownParameter, "only `/v1/jobs` takes a `webhook`")
-            });
-        }
-        match named {
+        let request = read(text)?;
+        match request.operation {
             Some(named) if named != operation => Err(about_operation(
                 &format!("the path means `{operation}`, `operation` says `{named}`"),
                 None,
             )),
-            _ => Ok(options),
+            _ if request.labels.is_some() => Err(Problem {
+                parameter: Some("labels".to_owned()),
+                ..Problem::new(ProblemCode::UnknownParameter, "`labels` belong to `/v1/jobs`")
+            }),
+            _ if request.webhook.is_some() => Err(Problem {
+                parameter: Some("webhook".to_owned()),
+                ..Problem::new(ProblemCode::UnknownParameter, "a `webhook` belongs to `/v1/jobs`")
+            }),
+            _ => Ok(request.options),
         }
+    }
+
+    /// The labels of a query, as JSON text.
+    ///
+    /// # Errors
+    /// `invalid-parameter`.
+    pub fn labels_of_query(text: &str) -> Result<Labels, Problem> {
+        labels_from_json(&serde_json::from_str(text).map_err(|_| about_labels())?)
     }
 }
 
 fn read(text: &[u8]) -> Result<JobRequest, Problem> {
     let members = object(text)?;
     let mut operation = None;
+    let mut labels = None;
     let mut options = Options::default();
     let mut webhook = None;
     for (name, value) in &members {
         match (name.as_str(), value) {
             ("operation", value) => operation = Some(read_operation(value)?),
             ("webhook", value) => webhook = Some(read_webhook(value)?),
+            ("labels", value) => labels = Some(labels_from_json(value)?),
             ("params", Value::Object(inner)) => {
                 for (name, value) in inner {
                     options.set_json(name, value)?;
@@ -85,7 +100,7 @@ fn read(text: &[u8]) -> Result<JobRequest, Problem> {
             _ => options.set_json(name, value)?,
         }
     }
-    Ok(JobRequest { operation, options, webhook })
+    Ok(JobRequest { operation, labels, options, webhook })
 }
 
 fn read_webhook(value: &Value) -> Result<WebhookRequest, Problem> {
@@ -135,6 +150,7 @@ impl PartialSchema for JobRequest {
             .description(Some("What to do, with options, which may also stand together in `params`."))
             .property("operation", operation)
             .property("webhook", WebhookRequest::schema())
+            .property("labels", labels_schema())
             .property("params", Options::schema());
         RefOr::T(Schema::Object(object.build()))
     }
@@ -174,6 +190,15 @@ mod tests {
         assert!(JobRequest::params_from_json(br#"{"operation":"repair"}"#, Operation::Repair).is_ok());
         assert!(JobRequest::params_from_json(br#"{}"#, Operation::Repair).is_ok());
         assert!(JobRequest::params_from_json(br#"{"operation":"verify"}"#, Operation::Repair).is_err());
+        assert!(JobRequest::params_from_json(br#"{"labels":{}}"#, Operation::Repair).is_err());
+    }
+
+    #[test]
+    fn labels_stand_beside_the_operation() {
+        let request = JobRequest::from_json(br#"{"operation":"repair","labels":{"order":"17"}}"#).unwrap();
+        assert_eq!(request.labels.unwrap()["order"], "17");
+        assert!(JobRequest::from_json(br#"{"labels":["order"]}"#).is_err());
+        assert!(JobRequest::from_json(br#"{"params":{"labels":{}}}"#).is_err());
     }
 
     #[test]

@@ -4,6 +4,7 @@ use reqwest::blocking::{Client, RequestBuilder, Response};
 use serde_json::Value;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
+use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStderr, Command, Stdio};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
@@ -18,7 +19,7 @@ pub(crate) struct Server {
     pub(crate) admin: String,
     client: Client,
     log: Arc<Mutex<String>>,
-    _data: tempfile::TempDir,
+    data: Arc<tempfile::TempDir>,
 }
 
 impl Server {
@@ -28,7 +29,28 @@ impl Server {
 
     /// A server with further settings, as flags.
     pub(crate) fn with(settings: &[&str]) -> Self {
-        let data = tempfile::tempdir().unwrap();
+        Self::on(Arc::new(tempfile::tempdir().unwrap()), settings)
+    }
+
+    /// Kills it and starts another one on the same data folder.
+    pub(crate) fn killed_and_restarted(mut self, settings: &[&str]) -> Self {
+        self.child.kill().unwrap();
+        self.child.wait().unwrap();
+        Self::on(Arc::clone(&self.data), settings)
+    }
+
+    /// Starts another one on the same data folder after this one has ended.
+    pub(crate) fn restarted(mut self, settings: &[&str]) -> Self {
+        assert_eq!(self.exit_code(), Some(0));
+        Self::on(Arc::clone(&self.data), settings)
+    }
+
+    /// The files of uploads and results.
+    pub(crate) fn stored_files(&self) -> Vec<PathBuf> {
+        files_under(&self.data.path().join("data/spool"))
+    }
+
+    fn on(data: Arc<tempfile::TempDir>, settings: &[&str]) -> Self {
         let mut command = Command::new(env!("CARGO_BIN_EXE_meshmend"));
         for (name, _) in std::env::vars_os() {
             if name.to_string_lossy().starts_with("MESHMEND_") {
@@ -54,7 +76,7 @@ impl Server {
         // The client could speak TLS, and asks by what, although it never does here. Told twice, the first word stays.
         let _ = rustls::crypto::ring::default_provider().install_default();
         let client = Client::builder().timeout(PATIENCE).build().unwrap();
-        Self { child, address, admin, client, log: heard, _data: data }
+        Self { child, address, admin, client, log: heard, data }
     }
 
     pub(crate) fn url(&self, path: &str) -> String {
@@ -154,6 +176,11 @@ impl Drop for Server {
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
+}
+
+fn files_under(dir: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(dir).unwrap().map(|entry| entry.unwrap().path());
+    entries.flat_map(|path| if path.is_dir() { files_under(&path) } else { vec![path] }).collect()
 }
 
 /// The address that the log tells behind `words`.
