@@ -10,6 +10,7 @@ mod cli;
 mod connections;
 mod contract;
 mod cors;
+mod curl;
 mod killed;
 mod lanes;
 mod lifecycle;
