@@ -34,6 +34,7 @@ pub use admission::Submission;
 pub use blobs::{BlobStore, BlobWriter, LocalBlobs, StoredBlob};
 pub use clock::StageClock;
 pub use events::{EventId, Events, Happened, JobEvent, NoEventId};
+pub use meters::describe as describe_metrics;
 pub use service::{Jobs, Load, StartError};
 pub use settings::JobsSettings;
 pub use slot::Engine;

@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use tokio::task::JoinError;
 use tokio_util::task::AbortOnDropHandle;
+use tracing::Instrument as _;
 
 use super::clock::StageClock;
 use super::heartbeat::beat;
@@ -71,7 +72,10 @@ pub(super) async fn serve(service: Arc<Service>, kind: SlotKind) {
             is_only: kind == SlotKind::Interactive,
         };
         match service.store.claim(request).await {
-            Ok(Some(row)) => run(&service, row).await,
+            Ok(Some(row)) => {
+                let span = tracing::info_span!("job", id = %row.id, operation = row.operation.word());
+                run(&service, row).instrument(span).await;
+            }
             Ok(None) => {
                 tokio::select! {
                     () = work => {}
