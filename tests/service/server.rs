@@ -51,6 +51,9 @@ impl Server {
     }
 
     fn on(data: Arc<tempfile::TempDir>, settings: &[&str]) -> Self {
+        // The client could speak TLS, and asks by what, although it never does here. Told twice, the first word stays.
+        let _ = rustls::crypto::ring::default_provider().install_default();
+        let client = Client::builder().timeout(PATIENCE).build().unwrap();
         let mut command = Command::new(env!("CARGO_BIN_EXE_meshmend"));
         for (name, _) in std::env::vars_os() {
             if name.to_string_lossy().starts_with("MESHMEND_") {
@@ -73,9 +76,6 @@ impl Server {
                 line.clear();
             }
         });
-        // The client could speak TLS, and asks by what, although it never does here. Told twice, the first word stays.
-        let _ = rustls::crypto::ring::default_provider().install_default();
-        let client = Client::builder().timeout(PATIENCE).build().unwrap();
         Self { child, address, admin, client, log: heard, data }
     }
 
