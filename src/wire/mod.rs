@@ -56,7 +56,7 @@ pub use unit_hypothesis::UnitHypothesis;
 pub use verdict::{Reason, Verdict};
 pub use version::{ENGINE_NAME, ENGINE_VERSION, REPORT_SCHEMA, Version};
 pub use words::{
-    Condition, Criterion, Cut, DefectCode, Degenerate, Encoding, FillHoles, Format, Mode, Nesting,
-    OpenShells, Operation, Opposite, Outcome, Placement, ProximityTest, Reader, ReasonCode, Remedy, Require,
-    Severity, ShellFate, Stage, Stitch, StitchValidity, Units, VertexColors,
+    Across, Condition, Contact, Criterion, Cut, DefectCode, Degenerate, Encoding, FillHoles, Format, Mode,
+    Nesting, OpenShells, Operation, Opposite, Outcome, Placement, ProximityTest, Reader, ReasonCode, Remedy,
+    Require, Severity, ShellFate, Stage, Stitch, StitchValidity, Units, VertexColors,
 };
