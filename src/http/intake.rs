@@ -138,8 +138,7 @@ pub(super) fn agreed(a: Option<Operation>, b: Option<Operation>) -> Result<Optio
 pub(super) fn about_operation(detail: &str) -> Problem {
     Problem {
         parameter: Some("operation".to_owned()),
-        allowed: Operation::WORDS.to_vec(),
-        ..Problem::new(ProblemCode::InvalidParameter, detail)
+        ..Problem::new(ProblemCode::InvalidParameter, detail).with_allowed(Operation::WORDS.iter().copied())
     }
 }
 

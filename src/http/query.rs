@@ -83,7 +83,7 @@ fn unknown(name: &str, known: &[&'static str]) -> Problem {
     };
     Problem {
         parameter: Some(name.to_owned()),
-        suggestion: known.first().copied(),
+        suggestion: known.first().map(|&name| name.into()),
         ..Problem::new(ProblemCode::UnknownParameter, detail)
     }
 }
@@ -93,13 +93,9 @@ fn invalid(name: &str, detail: &str) -> Problem {
 }
 
 fn about_operation(word: &str) -> Problem {
-    Problem {
-        allowed: Operation::WORDS.to_vec(),
-        ..invalid(
-            "operation",
-            &format!("`operation` cannot be `{word}`; expected {}", Operation::WORDS.join(", ")),
-        )
-    }
+    let expected = Operation::WORDS.join(", ");
+    invalid("operation", &format!("`operation` cannot be `{word}`; expected {expected}"))
+        .with_allowed(Operation::WORDS.iter().copied())
 }
 
 #[cfg(test)]
@@ -130,7 +126,10 @@ mod tests {
             assert_eq!(wait(&uri(query)).unwrap_err().code, ProblemCode::InvalidParameter, "{query}");
         }
         let problem = wait(&uri("wiat=7")).unwrap_err();
-        assert_eq!((problem.code, problem.suggestion), (ProblemCode::UnknownParameter, Some("wait")));
+        assert_eq!(
+            (problem.code, problem.suggestion.as_deref()),
+            (ProblemCode::UnknownParameter, Some("wait"))
+        );
     }
 
     #[test]

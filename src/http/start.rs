@@ -12,12 +12,15 @@ use super::keys::ApiKeys;
 use super::server::Server;
 use super::settings::HttpSettings;
 use super::shutdown::Shutdown;
-use crate::config::{Config, ConfigError, Loaded, LogFormat};
+use crate::config::{ConfigError, Loaded, LogFormat};
 use crate::formats::ReadLimits;
 use crate::jobs::{Jobs, JobsSettings};
 
 /// Time for jobs that a second signal gave up: the process is not to wait for them.
 const LEFTOVERS: Duration = Duration::from_secs(1);
+
+/// Shortest lease: a busy machine may keep a heartbeat waiting for a good part of a second.
+const LEASE_MIN: Duration = Duration::from_secs(1);
 
 /// Serves until a signal ends it.
 ///
@@ -33,7 +36,7 @@ pub fn start(loaded: &Loaded) -> anyhow::Result<()> {
     let served = runtime.block_on(async {
         let shutdown = Shutdown::on_signals()?;
         let refused = |name: &'static str, why: &dyn Display| loaded.refused(name, why);
-        let jobs = Jobs::start(jobs_settings(&loaded.config)).map_err(|e| refused("data_dir", &e))?;
+        let jobs = Jobs::start(jobs_settings(loaded)?).await.map_err(|e| refused("data_dir", &e))?;
         let server = Server::bind(http, jobs).await.map_err(|e| refused("listen", &e))?;
         tell(&server)?;
         server.run(shutdown).await;
@@ -96,9 +99,13 @@ fn access(loaded: &Loaded) -> Result<Access, ConfigError> {
     ApiKeys::parse(&text).map(Access::Keys).map_err(|e| loaded.refused("api_keys_file", &e))
 }
 
-fn jobs_settings(config: &Config) -> JobsSettings {
+fn jobs_settings(loaded: &Loaded) -> Result<JobsSettings, ConfigError> {
+    let config = &loaded.config;
+    if config.lease < LEASE_MIN {
+        return Err(loaded.refused("lease", &format!("it must be {LEASE_MIN:?} or more")));
+    }
     let defaults = JobsSettings::new(&config.data_dir);
-    JobsSettings {
+    Ok(JobsSettings {
         slots: config.slots.map_or(defaults.slots, NonZero::get),
         queue_max: config.queue_max.get(),
         jobs_max: config.jobs_max.get(),
@@ -115,8 +122,11 @@ fn jobs_settings(config: &Config) -> JobsSettings {
             polygon_corners_max: config.polygon_corners_max,
         },
         drain_grace: config.drain_grace,
+        disk_free_bytes_min: config.disk_free_bytes_min.0,
+        lease: config.lease,
+        attempts_max: config.attempts_max.get(),
         ..defaults
-    }
+    })
 }
 
 #[cfg(test)]
@@ -132,7 +142,7 @@ mod tests {
     #[test]
     fn the_defaults_of_the_configuration_are_those_of_the_settings() {
         let loaded = loaded(&[("data_dir", "d")]);
-        assert_eq!(format!("{:?}", jobs_settings(&loaded.config)), format!("{:?}", JobsSettings::new("d")));
+        assert_eq!(format!("{:?}", jobs_settings(&loaded).unwrap()), format!("{:?}", JobsSettings::new("d")));
         let want = HttpSettings { admin_listen: loaded.config.admin_listen, ..HttpSettings::default() };
         assert_eq!(format!("{:?}", http_settings(&loaded).unwrap()), format!("{want:?}"));
     }

@@ -1,20 +1,25 @@
 //! The life of a job: every operation is one, and "synchronous" only means "wait for it".
 //!
 //! [`Jobs`] takes uploads onto disk ([`Upload`]), admits jobs to a bounded queue, runs them in slots on the blocking
-//! pool, and keeps reports and results for a while. Rows live in a [`JobStore`], files in the spool of the data
-//! directory. A job's panic is a failed job, never a dead slot.
+//! pool, and keeps reports and results for a while. Rows live in a [`JobStore`], files in a [`BlobStore`]; both outlast
+//! the process, so a job that was accepted ends even when the server is killed. A job's panic is a lost run, never a
+//! dead slot.
 
 mod admission;
+mod blobs;
 mod clock;
 mod drain;
+mod events;
+mod heartbeat;
 mod live;
-mod memory;
 mod meters;
 mod retention;
 mod service;
 mod settings;
+mod settle;
 mod slot;
 mod spool;
+mod sqlite;
 mod store;
 mod upload;
 mod view;
@@ -23,13 +28,17 @@ mod view;
 mod tests;
 
 pub use admission::Submission;
+pub use blobs::{BlobStore, BlobWriter, LocalBlobs, StoredBlob};
 pub use clock::StageClock;
-pub use memory::MemoryStore;
+pub use events::{EventId, Events, Happened, JobEvent};
 pub use service::{Jobs, Load, StartError};
 pub use settings::JobsSettings;
 pub use slot::Engine;
+pub use sqlite::{OpenError as SqliteOpenError, SqliteStore, StoreClock};
 pub use store::{
-    BlobRef, Finish, JobCounts, JobId, JobRow, JobStore, Kept, ResultRef, StoreError, StoreFuture,
+    AfterLoss, BlobRef, Change, ClaimRef, ClaimRequest, Created, Delivery, DeliveryState, DeliveryTry,
+    Ending, IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept, Lane, Leases, ListQuery, NewJob,
+    NextTry, ResultRef, StoreError, StoreFuture, TryOutcome, Webhook,
 };
 pub use upload::{Upload, Uploaded};
 pub use view::StoredFile;

@@ -7,14 +7,17 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use tokio::task::JoinError;
+use tokio_util::task::AbortOnDropHandle;
 
 use super::clock::StageClock;
-use super::drain::draining;
+use super::heartbeat::beat;
 use super::live::Live;
-use super::service::{Service, now};
-use super::store::{BlobRef, Finish, JobRow, ResultRef, StoreError};
+use super::service::Service;
+use super::settle::{Conclusion, settle};
+use super::spool::Written;
+use super::store::{BlobRef, ClaimRequest, Ending, JobRow, Lane, ResultRef};
 use super::upload::disk_problem;
-use crate::budget::{Budget, Stopped};
+use crate::budget::Budget;
 use crate::par;
 use crate::pipeline::{self, Answer, Failure, Outcome};
 use crate::wire::{self, JobState, Problem, ProblemCode, Progress};
@@ -25,7 +28,7 @@ pub type Engine = Arc<
 >;
 
 /// Pause before a store that did not answer is asked again.
-const STORE_PAUSE: Duration = Duration::from_secs(1);
+pub(super) const STORE_PAUSE: Duration = Duration::from_secs(1);
 
 /// How a run ended.
 enum Ended {
@@ -41,7 +44,12 @@ pub(super) async fn serve(service: Arc<Service>) {
         // Listening begins before the look into the queue, so that no job is missed in between.
         let mut work = pin!(service.work.notified());
         work.as_mut().enable();
-        match service.store.claim(now()).await {
+        let request = ClaimRequest {
+            worker: service.worker.clone(),
+            lease: service.settings.lease,
+            prefer: Lane::Interactive,
+        };
+        match service.store.claim(request).await {
             Ok(Some(row)) => run(&service, row).await,
             Ok(None) => {
                 tokio::select! {
@@ -58,29 +66,26 @@ pub(super) async fn serve(service: Arc<Service>) {
 }
 
 async fn run(service: &Arc<Service>, row: JobRow) {
-    // Deleted since it was claimed.
-    let Some(live) = service.live.get(row.id) else { return };
     let clock = StageClock::start(row.operation);
-    // A job is claimed once in this process, so the place is empty.
-    let _ = live.clock.set(clock.clone());
+    let live = service.live.begin(row.claim(), clock.clone());
+    let heart = beat(Arc::clone(service), row.claim(), row.cancel_at, Arc::clone(&live));
+    let heart = AbortOnDropHandle::new(tokio::spawn(heart));
     service.tell_load().await;
     let ended = attempt(service, &row, &live, clock.clone()).await;
     service.note_run_time(&clock);
-    let finish = conclude(service, &row, &live, &clock, ended).await;
-    let (id, operation) = (row.id, row.operation);
-    tracing::info!(
-        job = %id, %operation, state = %finish.state, ms = clock.timing_ms().total,
-        problem = finish.problem.as_ref().map(|problem| problem.detail.as_str()), "job ended"
-    );
-    commit(service, &row, finish).await;
-    service.live.end(id);
+    let conclusion = conclude(service, &row, &live, &clock, ended).await;
+    settle(service, &row, &live, conclusion).await;
+    drop(heart);
     service.tell_load().await;
 }
 
 /// Runs the engine on the blocking pool and ends it when its time is over.
 async fn attempt(service: &Arc<Service>, row: &JobRow, live: &Live, clock: StageClock) -> Ended {
-    let path = service.spool.path(&row.input.key);
-    let material_path = row.material.as_ref().map(|material| service.spool.path(&material.key));
+    let local = |blob: &BlobRef| service.spool.path(&blob.key);
+    let (path, material_path) = match (local(&row.input), row.material.as_ref().map(local).transpose()) {
+        (Ok(path), Ok(material_path)) => (path, material_path),
+        (Err(error), _) | (_, Err(error)) => return Ended::InputLost(error),
+    };
     let (bytes, operation) = (row.input.bytes, row.operation.into());
     let mut options = row.options.to_engine(service.settings.read_limits);
     let settings = &service.settings;
@@ -118,34 +123,42 @@ async fn attempt(service: &Arc<Service>, row: &JobRow, live: &Live, clock: Stage
 }
 
 /// Turns the end of a run into what is kept of it; files are written here.
-async fn conclude(service: &Service, row: &JobRow, live: &Live, clock: &StageClock, ended: Ended) -> Finish {
-    let timing = clock.timing_ms();
-    let partly = |state, problem: Problem| Finish {
-        timing_ms: Some(timing),
-        progress: clock.progress(),
-        ..service.finish(row, state, Some(problem))
-    };
-    match ended {
-        Ended::Answered(answer) => match keep_files(service, row, *answer, timing).await {
-            Ok(finish) => finish,
-            Err(problem) => partly(JobState::Failed, problem),
-        },
-        Ended::Failed(Failure::Stopped(Stopped::Cancelled)) if live.is_drained.get().is_some() => {
-            partly(JobState::Failed, draining())
-        }
-        Ended::Failed(failure) => {
-            let is_cancelled = failure == Failure::Stopped(Stopped::Cancelled);
-            let state = if is_cancelled { JobState::Cancelled } else { JobState::Failed };
-            partly(state, Problem::from(&failure))
-        }
-        Ended::InputLost(error) => partly(JobState::Failed, disk_problem(&error)),
+async fn conclude(
+    service: &Service,
+    row: &JobRow,
+    live: &Live,
+    clock: &StageClock,
+    ended: Ended,
+) -> Conclusion {
+    let kept = match ended {
+        Ended::Answered(answer) => keep_files(service, row, *answer, clock.timing_ms()).await,
+        Ended::Failed(failure) => Err(Problem::from(&failure)),
+        Ended::InputLost(error) => Err(disk_problem(&error)),
         Ended::Crashed(error) => {
             tracing::error!(job = %row.id, %error, "the engine crashed");
-            partly(
-                JobState::Failed,
-                Problem::new(ProblemCode::EngineCrashed, "the engine failed on this mesh"),
-            )
+            Err(Problem::new(ProblemCode::EngineCrashed, "the engine failed on this mesh"))
         }
+    };
+    let problem = match kept {
+        Ok((ending, written)) => return Conclusion::End(Box::new(ending), written),
+        Err(problem) => problem,
+    };
+    let end = |state, problem| {
+        let partly = Ending {
+            timing_ms: Some(clock.timing_ms()),
+            progress: clock.progress(),
+            ..Ending::without_files(state, Some(problem))
+        };
+        Conclusion::End(Box::new(partly), Vec::new())
+    };
+    match problem.code {
+        ProblemCode::Cancelled if live.is_cancelled() => end(JobState::Cancelled, problem),
+        ProblemCode::Cancelled if live.is_void.get().is_some() => Conclusion::Void,
+        ProblemCode::Cancelled if live.is_drained.get().is_some() => Conclusion::Release,
+        ProblemCode::Cancelled => end(JobState::Cancelled, problem),
+        // The run is lost with its executor, not ended by what it was given.
+        ProblemCode::EngineCrashed | ProblemCode::WorkerLost => Conclusion::Lose(Box::new(problem)),
+        _ => end(JobState::Failed, problem),
     }
 }
 
@@ -154,68 +167,35 @@ async fn keep_files(
     row: &JobRow,
     answer: Answer,
     timing: wire::TimingMs,
-) -> Result<Finish, Problem> {
+) -> Result<(Ending, Vec<Written>), Problem> {
     let Answer { report, output, levels } = answer;
     let problem =
         report.refusal.as_ref().map(Problem::from).filter(|_| report.outcome == Some(Outcome::Refused));
     let outcome = report.outcome.map(wire::Outcome::from);
     let text = serde_json::to_vec(&wire::Report::new(&report, timing))
         .map_err(|error| Problem::new(ProblemCode::Internal, error.to_string()))?;
-    let result = match output {
-        Some(output) => {
-            let blob = match output.bytes {
-                Some(bytes) => service.write(bytes).await?,
-                None => row.input.clone(),
-            };
-            Some(ResultRef { blob, encoding: output.encoding.into() })
-        }
-        None => None,
-    };
-    let mut kept = Vec::with_capacity(levels.len());
-    for level in levels {
-        let written = match level.bytes {
-            Some(bytes) => service.write(bytes).await,
-            None => Ok(row.input.clone()),
+    // Should one file fail, those before it go with this list.
+    let mut written = Vec::new();
+    let has_result = output.is_some();
+    let mut results = Vec::new();
+    for (number, mesh) in output.into_iter().chain(levels).enumerate() {
+        let blob = match mesh.bytes {
+            Some(bytes) => service.write(row.claim(), format!("mesh-{number}"), bytes, &mut written).await?,
+            None => row.input.clone(),
         };
-        match written {
-            Ok(blob) => kept.push(ResultRef { blob, encoding: level.encoding.into() }),
-            Err(problem) => {
-                service.remove_own(row, result.iter().chain(&kept).map(|result| &result.blob));
-                return Err(problem);
-            }
-        }
+        results.push(ResultRef { blob, encoding: mesh.encoding.into() });
     }
-    let report = match service.write(text).await {
-        Ok(report) => report,
-        Err(problem) => {
-            service.remove_own(row, result.iter().chain(&kept).map(|result| &result.blob));
-            return Err(problem);
-        }
-    };
+    let report = service.write(row.claim(), "report.json".to_owned(), text, &mut written).await?;
+    let levels = results.split_off(usize::from(has_result).min(results.len()));
     let state = if problem.is_some() { JobState::Failed } else { JobState::Succeeded };
-    Ok(Finish {
+    let ending = Ending {
         timing_ms: Some(timing),
         progress: Progress { stage: None, fraction: 1.0 },
         outcome,
         report: Some(report),
-        result,
-        levels: kept,
-        ..service.finish(row, state, problem)
-    })
-}
-
-/// Makes the end known, unless the job was deleted meanwhile: then its files go.
-async fn commit(service: &Service, row: &JobRow, finish: Finish) {
-    let written: Vec<BlobRef> =
-        finish.report.iter().chain(finish.results().map(|result| &result.blob)).cloned().collect();
-    loop {
-        match service.store.finish(row.id, row.epoch, finish.clone()).await {
-            Ok(()) => return super::meters::finished(row.operation, &finish),
-            Err(StoreError::Unavailable(error)) => {
-                tracing::error!(job = %row.id, error, "the end of a job could not be stored");
-                tokio::time::sleep(STORE_PAUSE).await;
-            }
-            Err(_) => return service.remove_own(row, written.iter()),
-        }
-    }
+        result: results.pop(),
+        levels,
+        ..Ending::without_files(state, problem)
+    };
+    Ok((ending, written))
 }

@@ -1,7 +1,7 @@
 //! Plans as JSON: what `/v1/plan` proposes, what a repair did, and what a caller gives back to it.
 
 use serde::de::{Error as _, IgnoredAny};
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
 use utoipa::ToSchema;
 
@@ -60,7 +60,7 @@ pub struct ElementProposal {
 
 /// A plan as it is given back: one that was proposed, edited, or that of an earlier repair. What is left out is done as
 /// proposed.
-#[derive(Debug, Clone, PartialEq, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlanRequest {
     /// SHA-256 of the file that it is for, in hexadecimal; another file is refused. Null: any file.
@@ -78,7 +78,7 @@ pub struct PlanRequest {
 }
 
 /// What is chosen for the defects of one kind.
-#[derive(Debug, Clone, PartialEq, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ChosenFinding {
     /// The kind.
@@ -109,7 +109,7 @@ pub struct ChosenFinding {
 }
 
 /// What is chosen for one element.
-#[derive(Debug, Clone, PartialEq, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ChosenElement {
     /// Place among the witnesses of the defect, from 0.
@@ -130,6 +130,12 @@ struct Ignored;
 impl<'de> Deserialize<'de> for Ignored {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
         IgnoredAny::deserialize(from).map(|_| Self)
+    }
+}
+
+impl Serialize for Ignored {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        to.serialize_unit()
     }
 }
 

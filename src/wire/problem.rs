@@ -1,6 +1,8 @@
 //! Everything that can go wrong, as RFC 9457 problems with stable codes.
 
-use serde::Serialize;
+use std::borrow::Cow;
+
+use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::words::words;
@@ -257,13 +259,13 @@ pub fn errors() -> Vec<ErrorInfo> {
 }
 
 /// A problem (RFC 9457), sent as `application/problem+json`. Members that do not apply are absent.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Problem {
     /// Reference that tells problems of one code from others.
     #[serde(rename = "type")]
     pub type_uri: String,
     /// A few words for people.
-    pub title: &'static str,
+    pub title: Cow<'static, str>,
     /// HTTP status.
     pub status: u16,
     /// Stable code.
@@ -275,7 +277,7 @@ pub struct Problem {
     pub instance: Option<String>,
     /// Name of the limit that was met, as `/v1/limits` calls it.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub limit_name: Option<&'static str>,
+    pub limit_name: Option<Cow<'static, str>>,
     /// The limit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limit: Option<u64>,
@@ -295,11 +297,11 @@ pub struct Problem {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub parameter: Option<String>,
     /// The values it may have.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub allowed: Vec<&'static str>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub allowed: Vec<Cow<'static, str>>,
     /// The nearest name or value there is.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub suggestion: Option<&'static str>,
+    pub suggestion: Option<Cow<'static, str>>,
     /// Seconds after which to try again.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub retry_after_s: Option<u64>,
@@ -314,7 +316,7 @@ impl Problem {
     pub fn new(code: ProblemCode, detail: impl Into<String>) -> Self {
         Self {
             type_uri: code.type_uri(),
-            title: code.title(),
+            title: code.title().into(),
             status: code.status(),
             code,
             detail: detail.into(),
@@ -336,7 +338,13 @@ impl Problem {
     /// The same problem with the limit that was met.
     #[must_use]
     pub fn with_limit(self, name: &'static str, limit: u64, actual: Option<u64>) -> Self {
-        Self { limit_name: Some(name), limit: Some(limit), actual, ..self }
+        Self { limit_name: Some(name.into()), limit: Some(limit), actual, ..self }
+    }
+
+    /// The same problem with the values that would have been taken.
+    #[must_use]
+    pub fn with_allowed(self, allowed: impl IntoIterator<Item = &'static str>) -> Self {
+        Self { allowed: allowed.into_iter().map(Cow::Borrowed).collect(), ..self }
     }
 
     /// The same problem with the job or request it happened to.
@@ -460,7 +468,7 @@ mod tests {
         let problem = Problem::from(&Failure::Unreadable(read_error(kind, Place::Whole)));
         assert_eq!(problem.code, ProblemCode::MeshTooLarge);
         assert_eq!(
-            (problem.limit_name, problem.limit, problem.actual),
+            (problem.limit_name.as_deref(), problem.limit, problem.actual),
             (Some("triangles_max"), Some(5), Some(9))
         );
         let problem = Problem::from(&Stopped::Memory { limit: 1, wanted: 2 });
@@ -472,7 +480,7 @@ mod tests {
     fn each_way_to_stop_has_its_code() {
         assert_eq!(Problem::from(&Stopped::Cancelled).code, ProblemCode::Cancelled);
         assert_eq!(Problem::from(&Stopped::Deadline).code, ProblemCode::EngineTimeout);
-        assert_eq!(Problem::from(&Stopped::Work { limit: 1 }).limit_name, Some("engine_work_max"));
+        assert_eq!(Problem::from(&Stopped::Work { limit: 1 }).limit_name.as_deref(), Some("engine_work_max"));
     }
 
     #[test]
@@ -482,6 +490,29 @@ mod tests {
         };
         assert_eq!(Problem::from(&refusal(f64::NAN)).code, ProblemCode::MeshNonFinite);
         assert_eq!(Problem::from(&refusal(1e300)).code, ProblemCode::NotRepairable);
+    }
+
+    #[test]
+    fn a_problem_is_read_back_as_it_was_written() {
+        let plain = Problem::new(ProblemCode::Cancelled, "the job was cancelled");
+        let full = Problem {
+            line: Some(3),
+            byte: Some(u64::MAX),
+            expected: Some("a number".into()),
+            parameter: Some("units".into()),
+            suggestion: Some("mm".into()),
+            retry_after_s: Some(7),
+            report: Some(serde_json::json!({"verdict": {"volume": 0.1 + 0.2}})),
+            ..plain
+                .clone()
+                .with_limit("queue_max", 5, Some(6))
+                .with_allowed(["mm", "cm"])
+                .with_instance("/v1/jobs/x")
+        };
+        for problem in [plain, full] {
+            let text = serde_json::to_string(&problem).unwrap();
+            assert_eq!(serde_json::from_str::<Problem>(&text).unwrap(), problem);
+        }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //!
 //! null means not computed, never zero. Numbers that are not finite become null as well.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::certificate::{Certificate, hex};
@@ -181,7 +181,7 @@ pub struct DirectedDistance {
 }
 
 /// Milliseconds by the clock; null: the pass did not run.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct TimingMs {
     /// Bytes to mesh.
     #[schema(required)]

@@ -100,9 +100,8 @@ fn read_operation(value: &Value) -> Result<Operation, Problem> {
 fn about_operation(detail: &str, suggestion: Option<&'static str>) -> Problem {
     Problem {
         parameter: Some("operation".to_owned()),
-        allowed: Operation::WORDS.to_vec(),
-        suggestion,
-        ..Problem::new(ProblemCode::InvalidParameter, detail)
+        suggestion: suggestion.map(Into::into),
+        ..Problem::new(ProblemCode::InvalidParameter, detail).with_allowed(Operation::WORDS.iter().copied())
     }
 }
 
@@ -146,7 +145,7 @@ mod tests {
             assert_eq!(problem.parameter.as_deref(), Some("operation"));
         }
         let problem = JobRequest::from_json(br#"{"operation":"repiar"}"#).unwrap_err();
-        assert_eq!(problem.suggestion, Some("repair"));
+        assert_eq!(problem.suggestion.as_deref(), Some("repair"));
     }
 
     #[test]

@@ -74,13 +74,12 @@ impl From<&OptionError> for Problem {
         };
         match error {
             OptionError::Unknown { name, suggestion } => {
-                Self { suggestion: *suggestion, ..of(ProblemCode::UnknownParameter, name) }
+                Self { suggestion: suggestion.map(Into::into), ..of(ProblemCode::UnknownParameter, name) }
             }
             OptionError::Invalid { spec, value } => Self {
-                allowed: spec.words().to_vec(),
                 expected: Some(spec.expected()),
-                suggestion: nearest(value, spec.words().iter().copied()),
-                ..of(ProblemCode::InvalidParameter, spec.name)
+                suggestion: nearest(value, spec.words().iter().copied()).map(Into::into),
+                ..of(ProblemCode::InvalidParameter, spec.name).with_allowed(spec.words().iter().copied())
             },
             OptionError::Contradictory { spec }
             | OptionError::Excluded { spec, .. }

@@ -6,6 +6,9 @@ mod table;
 #[cfg(test)]
 mod tests;
 
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
 use super::plan::PlanRequest;
 use super::printing::{BuildDirection, PolicyInfo, PolicyName};
 use super::request::InputRef;
@@ -21,80 +24,126 @@ pub(super) use table::nearest;
 pub use table::{OptionKind, OptionSpec, SPECS};
 
 /// The options of a request; `None`: not given.
-#[derive(Debug, Clone, Default, PartialEq)]
+///
+/// As JSON it is an object of those that are given, by the names of [`SPECS`]; it is read back as it was written.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Map<String, Value>")]
 pub struct Options {
     /// Format of the input.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub format: Option<Format>,
     /// Format of the output.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub output_format: Option<Format>,
     /// Reader of OBJ files.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub reader: Option<Reader>,
     /// Unit of the coordinates.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub units: Option<Units>,
     /// What the result must be.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub require: Option<Require>,
     /// Whether repair fills simple holes.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub fill_holes: Option<FillHoles>,
     /// How open shells are read where a surface is rebuilt.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub open_shells: Option<OpenShells>,
     /// Cells along the longest side of a surface that is rebuilt.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub wrap_cells: Option<u32>,
     /// How fine and so how long a surface is rebuilt.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub effort: Option<Effort>,
     /// Thickness of the walls that sheets become, in millimetres.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub wall_mm: Option<f64>,
     /// Whether a mesh too far from the origin for float32 may be moved there.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub recenter: Option<bool>,
     /// Largest distance between the file and the result of a repair, in millimetres.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub max_deviation_mm: Option<f64>,
     /// Largest share by which a repair may change the volume.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub max_volume_change: Option<f64>,
     /// How shells inside shells are taken.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub nesting: Option<Nesting>,
     /// What becomes of bodies that touch.
     pub contact: Option<Contact>,
     /// What repair is to do about each defect.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub plan: Option<PlanRequest>,
     /// Faces to simplify to.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub faces: Option<u32>,
     /// Share of the faces to simplify to.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub ratio: Option<f64>,
     /// Error to simplify up to, in millimetres.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub error_mm: Option<f64>,
     /// Several targets of a simplification.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub targets: Option<Vec<TargetSpec>>,
     /// How a simplification works.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub mode: Option<Mode>,
     /// What the collapse of an edge costs.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub criterion: Option<Criterion>,
     /// Where the vertex goes that an edge becomes.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub placement: Option<Placement>,
     /// What colours the vertices of a simplified mesh have.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub vertex_colors: Option<VertexColors>,
     /// How a cut is made.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub cut: Option<Cut>,
     /// Which boundary edges are joined after a cut.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub stitch: Option<Stitch>,
     /// Largest distance of vertices that a stitch joins, in millimetres.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub snap_epsilon_mm: Option<f64>,
     /// When two boundary edges may be joined.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub stitch_validity: Option<StitchValidity>,
     /// What becomes of faces that pass a vertex more than once.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub degenerate: Option<Degenerate>,
     /// Edges to be cut besides those that must be.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub cut_edges: Option<Vec<[u32; 2]>>,
     /// Process that the mesh is to be printed with.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub policy: Option<PolicyName>,
     /// What is up in the machine.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub build_direction: Option<BuildDirection>,
     /// Largest distance of features that are reported as near, in millimetres.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub near_mm: Option<f64>,
     /// Witnesses to keep of each defect.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub samples: Option<u32>,
     /// Seconds for which the result is kept.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub result_ttl: Option<u64>,
     /// An earlier job whose upload is used again.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub input: Option<InputRef>,
+}
+
+impl TryFrom<Map<String, Value>> for Options {
+    type Error = OptionError;
+
+    fn try_from(members: Map<String, Value>) -> Result<Self, OptionError> {
+        Self::from_json(&members)
+    }
 }
 
 impl Options {

@@ -33,6 +33,42 @@ fn every_option_reads_the_same_from_a_query_and_from_json() {
 }
 
 #[test]
+fn every_option_is_read_back_from_json_as_it_was_written() {
+    let digits = json!(0.1 + 0.2);
+    let plan = json!({"input_sha256": "ab".repeat(32), "findings": [
+        {"code": "boundary-loop", "remedy": "keep", "elements": [{"number": 3, "remedy": "fill"}]}],
+        "steps": [{"step": "weld"}, {"step": "snap", "epsilon": digits}, {"step": "round-to-float32"},
+            {"step": "fill-holes", "all": false, "except": [0, 7]},
+            {"step": "nest", "nesting": "fill", "chosen": [{"triangle": 4, "fate": "goes"}]}]});
+    let targets = json!([{"ratio": digits}, {"faces": u32::MAX}, {"error_mm": 1e-300}]);
+    let mut all = Options::default();
+    for spec in SPECS {
+        let more = match spec.kind {
+            OptionKind::Word(words) => json!(words[0]),
+            OptionKind::Integer { max, .. } => json!(max),
+            OptionKind::Number { .. } => digits.clone(),
+            OptionKind::Flag => json!(false),
+            OptionKind::Edges => json!([[0, u32::MAX]]),
+            OptionKind::Plan => plan.clone(),
+            OptionKind::Targets => targets.clone(),
+            OptionKind::Input => json!({"job": "y"}),
+        };
+        for value in [&some_value(spec), &more] {
+            let mut one = Options::default();
+            one.set_json(spec.name, value).unwrap();
+            let text = serde_json::to_string(&one).unwrap();
+            assert_eq!(serde_json::from_str::<Options>(&text).unwrap(), one, "{text}");
+            assert_eq!(text.matches(&format!("\"{}\":", spec.name)).count(), 1, "{text}");
+        }
+        all.set_json(spec.name, &more).unwrap();
+    }
+    let text = serde_json::to_string(&all).unwrap();
+    assert_eq!(serde_json::from_str::<Options>(&text).unwrap(), all);
+    assert_eq!(serde_json::to_string(&Options::default()).unwrap(), "{}");
+    assert!(serde_json::from_str::<Options>(r#"{"unit":"mm"}"#).is_err());
+}
+
+#[test]
 fn every_word_of_an_option_is_taken_and_no_other() {
     for spec in SPECS {
         for word in spec.words() {
@@ -51,7 +87,7 @@ fn an_unknown_option_is_named_with_the_nearest_one() {
     );
     let problem = Problem::from(&error);
     assert_eq!(problem.code, ProblemCode::UnknownParameter);
-    assert_eq!(problem.suggestion, Some("output_format"));
+    assert_eq!(problem.suggestion.as_deref(), Some("output_format"));
     let error = Options::from_pairs([("qqq", "1")]).unwrap_err();
     assert_eq!(error, OptionError::Unknown { name: "qqq".into(), suggestion: None });
 }
@@ -61,7 +97,7 @@ fn a_wrong_value_is_answered_with_the_allowed_ones() {
     let error = Options::from_pairs([("require", "printible")]).unwrap_err();
     let problem = Problem::from(&error);
     assert_eq!(problem.allowed, Require::WORDS);
-    assert_eq!(problem.suggestion, Some("printable"));
+    assert_eq!(problem.suggestion.as_deref(), Some("printable"));
     assert_eq!(problem.parameter.as_deref(), Some("require"));
 }
 
