@@ -2,7 +2,7 @@
 
 use super::error::ConfigError;
 use super::sources::Entry;
-use super::values::{Bytes, LogFormat, Value};
+use super::values::{Bytes, IsolationChoice, LogFormat, SandboxChoice, Value};
 use std::net::{IpAddr, SocketAddr};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -116,6 +116,10 @@ settings! {
     engine_work_max: u64 = "9_007_199_254_740_991",
     /// Engine threads of one job; 0: all jobs share one thread for each core.
     engine_threads: usize = "0",
+    /// Where a job runs: in a process of its own, whose end is the end of one job, or in a thread of the server.
+    isolation: IsolationChoice = "process",
+    /// What a job's process gives up by landlock and seccomp: what the kernel has (auto), all or no start (require), off.
+    sandbox: SandboxChoice = "auto",
 
     /// Most open connections of each listener; more wait in the system's backlog.
     connections_max: NonZeroUsize = "1024",

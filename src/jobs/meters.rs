@@ -18,6 +18,11 @@ pub(super) fn cached(operation: Operation) {
     counter!("meshmend_jobs_cached_total", "operation" => operation.word()).increment(1);
 }
 
+/// The process of a job has ended, in this way.
+pub(super) fn child_ended(kind: &'static str) {
+    counter!("meshmend_child_exits_total", "kind" => kind).increment(1);
+}
+
 /// A job that has ended.
 pub(super) fn finished(operation: Operation, finish: &Finish) {
     let outcome = finish.outcome.map_or("none", |outcome| outcome.word());

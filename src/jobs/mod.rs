@@ -1,15 +1,18 @@
 //! The life of a job: every operation is one, and "synchronous" only means "wait for it".
 //!
-//! [`Jobs`] takes uploads onto disk ([`Upload`]), admits jobs to a bounded queue, runs them in slots on the blocking
-//! pool, and keeps reports and results for a while. Rows live in a [`JobStore`], files in the spool of the data
-//! directory. A job's panic is a failed job, never a dead slot.
+//! [`Jobs`] takes uploads onto disk ([`Upload`]), admits jobs to a bounded queue, runs them in slots, each in a process of
+//! its own or in a thread ([`Isolation`]), and keeps reports and results for a while. Rows live in a [`JobStore`], files in
+//! the spool of the data directory. A job's end, whatever it is, is that of one job, never of a slot.
 
 mod admission;
+mod attempt;
+mod child;
 mod clock;
 mod drain;
 mod live;
 mod memory;
 mod meters;
+mod product;
 mod retention;
 mod service;
 mod settings;
@@ -23,11 +26,12 @@ mod view;
 mod tests;
 
 pub use admission::Submission;
+pub use attempt::{Engine, Isolation};
+pub use child::{RUN_JOB, Sandbox, TrialError, run_job};
 pub use clock::StageClock;
 pub use memory::MemoryStore;
 pub use service::{Jobs, Load, StartError};
 pub use settings::JobsSettings;
-pub use slot::Engine;
 pub use store::{
     BlobRef, Finish, JobCounts, JobId, JobRow, JobStore, Kept, ResultRef, StoreError, StoreFuture,
 };

@@ -11,18 +11,19 @@ use tokio::sync::Notify;
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 
+use super::attempt::{Engine, Executor};
+use super::child::TrialError;
 use super::drain::draining;
 use super::live::LiveJobs;
 use super::memory::MemoryStore;
 use super::settings::JobsSettings;
-use super::slot::{self, Engine};
+use super::slot;
 use super::spool::{OpenError, Spool};
 use super::store::{Finish, JobId, JobRow, JobStore, StoreError};
 use super::upload::Upload;
 use super::view::{self, StoredFile, expired};
 use super::{meters, retention};
 use crate::budget::Stopped;
-use crate::pipeline;
 use crate::wire::{Job, JobState, Problem, ProblemCode, Progress};
 
 /// The job service. Clones share it.
@@ -34,7 +35,7 @@ pub(super) struct Service {
     pub(super) settings: JobsSettings,
     pub(super) store: Arc<dyn JobStore>,
     pub(super) spool: Arc<Spool>,
-    pub(super) engine: Engine,
+    pub(super) executor: Executor,
     pub(super) live: LiveJobs,
     /// Wakes slots when a job is queued.
     pub(super) work: Notify,
@@ -73,6 +74,9 @@ pub enum StartError {
         /// Why.
         source: std::io::Error,
     },
+    /// Jobs cannot run as the settings ask.
+    #[error(transparent)]
+    Isolation(TrialError),
     /// Another server uses the data directory.
     #[error("data directory {path} is in use by another server")]
     DataDirInUse {
@@ -85,12 +89,12 @@ impl Jobs {
     /// Opens the data directory (files of an earlier run go) and starts the slots. To be called inside a tokio runtime.
     ///
     /// # Errors
-    /// The data directory cannot be used, or another server uses it.
+    /// The data directory cannot be used, another server uses it, or jobs cannot run as the settings ask.
     pub fn start(settings: JobsSettings) -> Result<Self, StartError> {
-        Self::start_with(settings, Arc::<MemoryStore>::default(), Arc::new(pipeline::run))
+        Self::open(settings, Arc::<MemoryStore>::default(), Executor::of)
     }
 
-    /// As [`start`](Self::start) with another store or engine.
+    /// As [`start`](Self::start) with another store, and an engine that runs in threads of this process.
     ///
     /// # Errors
     /// As [`start`](Self::start).
@@ -99,16 +103,26 @@ impl Jobs {
         store: Arc<dyn JobStore>,
         engine: Engine,
     ) -> Result<Self, StartError> {
+        Self::open(settings, store, |_| Ok(Executor::Thread(engine)))
+    }
+
+    fn open(
+        settings: JobsSettings,
+        store: Arc<dyn JobStore>,
+        executor: impl FnOnce(&JobsSettings) -> Result<Executor, TrialError>,
+    ) -> Result<Self, StartError> {
         let path = settings.data_dir.clone();
         let spool = Spool::open(&path, settings.data_bytes_max).map_err(|error| match error {
             OpenError::InUse => StartError::DataDirInUse { path },
             OpenError::Io(source) => StartError::DataDir { path, source },
         })?;
+        // With the spool this server owns the directory.
+        let executor = executor(&settings).map_err(StartError::Isolation)?;
         let service = Arc::new(Service {
             settings,
             store,
             spool,
-            engine,
+            executor,
             live: LiveJobs::default(),
             work: Notify::new(),
             draining: CancellationToken::new(),

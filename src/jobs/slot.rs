@@ -1,39 +1,20 @@
 //! A slot: owns one job at a time, from claim to finish.
 
-use std::fs::File;
-use std::io::Read;
 use std::pin::pin;
 use std::sync::Arc;
 use std::time::Duration;
 
-use tokio::task::JoinError;
-
+use super::attempt::attempt;
 use super::clock::StageClock;
 use super::drain::draining;
 use super::live::Live;
+use super::product::{Content, Made, Product};
 use super::service::{Service, now};
 use super::store::{BlobRef, Finish, JobRow, ResultRef, StoreError};
-use super::upload::disk_problem;
-use crate::budget::{Budget, Stopped};
-use crate::par;
-use crate::pipeline::{self, Answer, Failure, Outcome};
-use crate::wire::{self, JobState, Problem, ProblemCode, Progress};
-
-/// The function that runs a job's bytes: [`pipeline::run`], or another one in tests.
-pub type Engine = Arc<
-    dyn Fn(pipeline::Operation, &[u8], &pipeline::Options, &Budget) -> Result<Answer, Failure> + Send + Sync,
->;
+use crate::wire::{JobState, Problem, ProblemCode, Progress};
 
 /// Pause before a store that did not answer is asked again.
 const STORE_PAUSE: Duration = Duration::from_secs(1);
-
-/// How a run ended.
-enum Ended {
-    Answered(Box<Answer>),
-    Failed(Failure),
-    InputLost(std::io::Error),
-    Crashed(JoinError),
-}
 
 /// Runs jobs until the service drains.
 pub(super) async fn serve(service: Arc<Service>) {
@@ -64,7 +45,7 @@ async fn run(service: &Arc<Service>, row: JobRow) {
     // A job is claimed once in this process, so the place is empty.
     let _ = live.clock.set(clock.clone());
     service.tell_load().await;
-    let ended = attempt(service, &row, &live, clock.clone()).await;
+    let ended = attempt(service, &row, &live, &clock).await;
     service.note_run_time(&clock);
     let finish = conclude(service, &row, &live, &clock, ended).await;
     let (id, operation) = (row.id, row.operation);
@@ -77,129 +58,65 @@ async fn run(service: &Arc<Service>, row: JobRow) {
     service.tell_load().await;
 }
 
-/// Runs the engine on the blocking pool and ends it when its time is over.
-async fn attempt(service: &Arc<Service>, row: &JobRow, live: &Live, clock: StageClock) -> Ended {
-    let path = service.spool.path(&row.input.key);
-    let material_path = row.material.as_ref().map(|material| service.spool.path(&material.key));
-    let (bytes, operation) = (row.input.bytes, row.operation.into());
-    let mut options = row.options.to_engine(service.settings.read_limits);
-    let settings = &service.settings;
-    let budget = Budget::new(live.stop.clone(), settings.engine_work_max, settings.engine_bytes_max)
-        .observed_by(clock.observer());
-    let (engine, threads) = (Arc::clone(&service.engine), settings.engine_threads);
-    let mut task = tokio::task::spawn_blocking(move || {
-        let run = move || {
-            let (mut content, _charge) = match budget.vec(bytes as usize) {
-                Ok(room) => room,
-                Err(stopped) => return Ended::Failed(stopped.into()),
-            };
-            if let Err(error) = File::open(&path).and_then(|mut file| file.read_to_end(&mut content)) {
-                return Ended::InputLost(error);
-            }
-            match material_path.map(std::fs::read).transpose() {
-                Ok(material) => options.material = material,
-                Err(error) => return Ended::InputLost(error),
-            }
-            match engine(operation, &content, &options, &budget) {
-                Ok(answer) => Ended::Answered(Box::new(answer)),
-                Err(failure) => Ended::Failed(failure),
-            }
-        };
-        par::with_threads(threads, run)
-    });
-    let joined = tokio::select! {
-        joined = &mut task => joined,
-        () = tokio::time::sleep(settings.deadline_max) => {
-            live.stop.pass_deadline();
-            task.await
-        }
-    };
-    joined.unwrap_or_else(Ended::Crashed)
-}
-
-/// Turns the end of a run into what is kept of it; files are written here.
-async fn conclude(service: &Service, row: &JobRow, live: &Live, clock: &StageClock, ended: Ended) -> Finish {
-    let timing = clock.timing_ms();
-    let partly = |state, problem: Problem| Finish {
-        timing_ms: Some(timing),
-        progress: clock.progress(),
-        ..service.finish(row, state, Some(problem))
-    };
-    match ended {
-        Ended::Answered(answer) => match keep_files(service, row, *answer, timing).await {
-            Ok(finish) => finish,
-            Err(problem) => partly(JobState::Failed, problem),
-        },
-        Ended::Failed(Failure::Stopped(Stopped::Cancelled)) if live.is_drained.get().is_some() => {
-            partly(JobState::Failed, draining())
-        }
-        Ended::Failed(failure) => {
-            let is_cancelled = failure == Failure::Stopped(Stopped::Cancelled);
-            let state = if is_cancelled { JobState::Cancelled } else { JobState::Failed };
-            partly(state, Problem::from(&failure))
-        }
-        Ended::InputLost(error) => partly(JobState::Failed, disk_problem(&error)),
-        Ended::Crashed(error) => {
-            tracing::error!(job = %row.id, %error, "the engine crashed");
-            partly(
-                JobState::Failed,
-                Problem::new(ProblemCode::EngineCrashed, "the engine failed on this mesh"),
-            )
-        }
-    }
-}
-
-async fn keep_files(
+/// Turns the end of a run into what is kept of it; files are kept here.
+async fn conclude(
     service: &Service,
     row: &JobRow,
-    answer: Answer,
-    timing: wire::TimingMs,
-) -> Result<Finish, Problem> {
-    let Answer { report, output, levels } = answer;
-    let problem =
-        report.refusal.as_ref().map(Problem::from).filter(|_| report.outcome == Some(Outcome::Refused));
-    let outcome = report.outcome.map(wire::Outcome::from);
-    let text = serde_json::to_vec(&wire::Report::new(&report, timing))
-        .map_err(|error| Problem::new(ProblemCode::Internal, error.to_string()))?;
-    let result = match output {
-        Some(output) => {
-            let blob = match output.bytes {
-                Some(bytes) => service.write(bytes).await?,
-                None => row.input.clone(),
-            };
-            Some(ResultRef { blob, encoding: output.encoding.into() })
-        }
-        None => None,
+    live: &Live,
+    clock: &StageClock,
+    ended: Result<Product<Content>, Problem>,
+) -> Finish {
+    let kept = match ended {
+        Ok(product) => keep_files(service, row, product).await,
+        Err(problem) => Err(problem),
     };
-    let mut kept = Vec::with_capacity(levels.len());
-    for level in levels {
-        let written = match level.bytes {
-            Some(bytes) => service.write(bytes).await,
+    kept.unwrap_or_else(|problem| {
+        let (state, problem) = match problem.code {
+            ProblemCode::Cancelled if live.is_drained.get().is_some() => (JobState::Failed, draining()),
+            ProblemCode::Cancelled => (JobState::Cancelled, problem),
+            _ => (JobState::Failed, problem),
+        };
+        Finish {
+            timing_ms: Some(clock.timing_ms()),
+            progress: clock.progress(),
+            ..service.finish(row, state, Some(problem))
+        }
+    })
+}
+
+async fn keep_files(service: &Service, row: &JobRow, product: Product<Content>) -> Result<Finish, Problem> {
+    let Product { outcome, problem, timing_ms, report, result, levels } = product;
+    let mut kept = Vec::with_capacity(1 + levels.len());
+    let has_result = result.is_some();
+    for Made { content, encoding } in result.into_iter().chain(levels) {
+        let blob = match content {
+            Some(content) => service.keep(content).await,
             None => Ok(row.input.clone()),
         };
-        match written {
-            Ok(blob) => kept.push(ResultRef { blob, encoding: level.encoding.into() }),
+        match blob {
+            Ok(blob) => kept.push(ResultRef { blob, encoding }),
             Err(problem) => {
-                service.remove_own(row, result.iter().chain(&kept).map(|result| &result.blob));
+                service.remove_own(row, kept.iter().map(|result| &result.blob));
                 return Err(problem);
             }
         }
     }
-    let report = match service.write(text).await {
+    let report = match service.keep(report).await {
         Ok(report) => report,
         Err(problem) => {
-            service.remove_own(row, result.iter().chain(&kept).map(|result| &result.blob));
+            service.remove_own(row, kept.iter().map(|result| &result.blob));
             return Err(problem);
         }
     };
+    let levels = kept.split_off(usize::from(has_result).min(kept.len()));
     let state = if problem.is_some() { JobState::Failed } else { JobState::Succeeded };
     Ok(Finish {
-        timing_ms: Some(timing),
+        timing_ms: Some(timing_ms),
         progress: Progress { stage: None, fraction: 1.0 },
         outcome,
         report: Some(report),
-        result,
-        levels: kept,
+        result: kept.pop(),
+        levels,
         ..service.finish(row, state, problem)
     })
 }

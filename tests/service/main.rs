@@ -9,6 +9,7 @@ mod access;
 mod cli;
 mod connections;
 mod contract;
+mod isolation;
 mod lifecycle;
 mod meshes;
 mod operations;

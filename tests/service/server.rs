@@ -4,6 +4,7 @@ use reqwest::blocking::{Client, RequestBuilder, Response};
 use serde_json::Value;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
+use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStderr, Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -15,8 +16,10 @@ pub(crate) struct Server {
     child: Child,
     pub(crate) address: String,
     pub(crate) admin: String,
+    /// What it logged before it listened.
+    pub(crate) log: String,
     client: Client,
-    _data: tempfile::TempDir,
+    data: tempfile::TempDir,
 }
 
 impl Server {
@@ -26,8 +29,13 @@ impl Server {
 
     /// A server with further settings, as flags.
     pub(crate) fn with(settings: &[&str]) -> Self {
+        Self::of(env!("CARGO_BIN_EXE_meshmend").as_ref(), settings)
+    }
+
+    /// A server of another binary that takes the same command line.
+    pub(crate) fn of(binary: &Path, settings: &[&str]) -> Self {
         let data = tempfile::tempdir().unwrap();
-        let mut command = Command::new(env!("CARGO_BIN_EXE_meshmend"));
+        let mut command = Command::new(binary);
         for (name, _) in std::env::vars_os() {
             if name.to_string_lossy().starts_with("MESHMEND_") {
                 command.env_remove(name);
@@ -37,12 +45,13 @@ impl Server {
         command.arg(data.path().join("data")).args(settings).stdin(Stdio::null()).stderr(Stdio::piped());
         let mut child = command.spawn().unwrap();
         let mut log = BufReader::new(child.stderr.take().unwrap());
-        let address = bound(&mut log, "listening on http://");
-        let admin = bound(&mut log, "health and metrics on http://");
+        let mut seen = String::new();
+        let address = bound(&mut log, "listening on http://", &mut seen);
+        let admin = bound(&mut log, "health and metrics on http://", &mut seen);
         // The pipe must not fill up.
         std::thread::spawn(move || std::io::copy(&mut log, &mut std::io::sink()));
         let client = Client::builder().timeout(PATIENCE).build().unwrap();
-        Self { child, address, admin, client, _data: data }
+        Self { child, address, admin, log: seen, client, data }
     }
 
     pub(crate) fn url(&self, path: &str) -> String {
@@ -101,8 +110,39 @@ impl Server {
 
     /// Sends a signal by its name.
     pub(crate) fn signal(&self, name: &str) {
-        let line = format!("kill -{name} {}", self.child.id());
-        assert!(Command::new("sh").args(["-c", &line]).status().unwrap().success());
+        signal(self.child.id(), name);
+    }
+
+    /// The processes that it started and that have not been reaped.
+    pub(crate) fn children(&self) -> Vec<u32> {
+        let processes = std::fs::read_dir("/proc")
+            .unwrap()
+            .filter_map(|entry| entry.ok()?.file_name().to_str()?.parse::<u32>().ok());
+        processes.filter(|&pid| parent_and_state(pid).is_some_and(|(p, _)| p == self.child.id())).collect()
+    }
+
+    /// The one process that runs a job, once there is one.
+    pub(crate) fn child(&self) -> u32 {
+        let begun = Instant::now();
+        loop {
+            if let [pid] = self.children()[..] {
+                return pid;
+            }
+            assert!(begun.elapsed() < PATIENCE, "no process runs a job");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    /// The folder of its data.
+    pub(crate) fn data_dir(&self) -> PathBuf {
+        self.data.path().join("data")
+    }
+
+    /// A figure in bytes from `/proc/PID/status`.
+    pub(crate) fn memory(&self, name: &str) -> u64 {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).unwrap();
+        let line = status.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix(':')).unwrap();
+        line.trim().trim_end_matches(" kB").parse::<u64>().unwrap() << 10
     }
 
     /// The exit code, once it has ended by itself.
@@ -127,8 +167,7 @@ impl Drop for Server {
 }
 
 /// The address that the log tells behind `words`.
-fn bound(log: &mut BufReader<ChildStderr>, words: &str) -> String {
-    let mut seen = String::new();
+fn bound(log: &mut BufReader<ChildStderr>, words: &str, seen: &mut String) -> String {
     loop {
         let mut line = String::new();
         assert!(log.read_line(&mut line).unwrap() > 0, "the server did not start: {seen}");
@@ -137,6 +176,21 @@ fn bound(log: &mut BufReader<ChildStderr>, words: &str) -> String {
         }
         seen.push_str(&line);
     }
+}
+
+/// Sends a signal by its name.
+pub(crate) fn signal(pid: u32, name: &str) {
+    let line = format!("kill -{name} {pid}");
+    assert!(Command::new("sh").args(["-c", &line]).status().unwrap().success());
+}
+
+/// The parent of a process and the letter of its state; `None`: there is no such process.
+pub(crate) fn parent_and_state(pid: u32) -> Option<(u32, char)> {
+    let stat = std::fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
+    // Its name stands in brackets and may hold anything.
+    let mut fields = stat.rsplit_once(')')?.1.split_whitespace();
+    let state = fields.next()?.chars().next()?;
+    Some((fields.next()?.parse().ok()?, state))
 }
 
 pub(crate) fn link<'j>(job: &'j Value, name: &str) -> &'j str {
