@@ -19,7 +19,7 @@ pub(crate) fn reached() -> Vec<&'static str> {
         ("its own binary", std::fs::File::open("/proc/self/exe").is_ok()),
         ("a list of files", std::fs::read_dir("/").is_ok()),
         ("a new file", tempfile::tempfile().is_ok()),
-        ("a connection", TcpStream::connect("127.0.0.1:9").is_err_and(is_refused_by_the_other_end)),
+        ("a connection", TcpStream::connect("127.0.0.1:9").is_err_and(|error| is_answered(&error))),
         ("a listener", TcpListener::bind("127.0.0.1:0").is_ok()),
         ("a datagram", UdpSocket::bind("127.0.0.1:0").is_ok()),
         ("a local socket", UnixDatagram::unbound().is_ok()),
@@ -34,7 +34,7 @@ pub(crate) fn reached() -> Vec<&'static str> {
 }
 
 /// Nobody listens there: the answer shows that the question was asked.
-fn is_refused_by_the_other_end(error: std::io::Error) -> bool {
+fn is_answered(error: &std::io::Error) -> bool {
     error.kind() == std::io::ErrorKind::ConnectionRefused
 }
 

@@ -84,7 +84,7 @@ fn several_results_come_from_a_process_as_several_files() {
         assert_eq!(response.status(), 200);
         let bytes = response.bytes().unwrap();
         let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).unwrap();
-        let names: Vec<String> = archive.file_names().map(str::to_owned).collect();
+        let names: Vec<String> = archive.file_names().map(|name| name.unwrap().into_owned()).collect();
         let meshes = names.iter().filter(|name| name.ends_with(".off")).map(|name| {
             let mut mesh = Vec::new();
             archive.by_name(name).unwrap().read_to_end(&mut mesh).unwrap();

@@ -21,9 +21,9 @@ pub(super) fn confine_to(folder: &Path) -> io::Result<Option<u32>> {
         .and_then(|rules| rules.add_rule(PathBeneath::new(folder, AccessFs::MakeReg | AccessFs::WriteFile)))
         .and_then(landlock::RulesetCreated::restrict_self)
         .map_err(io::Error::other)?;
-    Ok(match (status.ruleset, status.landlock) {
-        (RulesetStatus::NotEnforced, _) => None,
-        (_, LandlockStatus::Available { effective_abi, .. }) => Some(effective_abi as u32),
-        (_, LandlockStatus::NotEnabled | LandlockStatus::NotImplemented) => None,
+    let is_enforced = status.ruleset != RulesetStatus::NotEnforced;
+    Ok(match status.landlock {
+        LandlockStatus::Available { effective_abi, .. } if is_enforced => Some(effective_abi as u32),
+        _ => None,
     })
 }

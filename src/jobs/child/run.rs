@@ -20,12 +20,18 @@ use crate::wire::{Problem, ProblemCode};
 /// The command that makes a process a child. For servers only: a person has no use for it.
 pub const RUN_JOB: &str = "run-job";
 
+/// The function that runs a job's bytes.
+type Engine =
+    dyn Fn(pipeline::Operation, &[u8], &pipeline::Options, &Budget) -> Result<Answer, Failure> + Sync;
+
 /// Runs the job that standard input describes with `engine`, and ends with the server. To be called first in `main` when
 /// the first argument is [`RUN_JOB`], before any thread is started.
 pub fn run_job(
-    engine: impl Fn(pipeline::Operation, &[u8], &pipeline::Options, &Budget) -> Result<Answer, Failure> + Sync,
+    engine: impl Fn(pipeline::Operation, &[u8], &pipeline::Options, &Budget) -> Result<Answer, Failure>
+    + Sync
+    + 'static,
 ) -> ExitCode {
-    match obey(engine) {
+    match obey(&engine) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             let _ = writeln!(io::stderr(), "{}: {RUN_JOB}: {error}", env!("CARGO_PKG_NAME"));
@@ -34,9 +40,7 @@ pub fn run_job(
     }
 }
 
-fn obey(
-    engine: impl Fn(pipeline::Operation, &[u8], &pipeline::Options, &Budget) -> Result<Answer, Failure> + Sync,
-) -> io::Result<()> {
+fn obey(engine: &Engine) -> io::Result<()> {
     set_parent_process_death_signal(Some(Signal::KILL))?;
     let task: Task = serde_json::from_reader(io::stdin().lock())?;
     if getppid().map(|pid| pid.as_raw_nonzero().get()) != Some(task.parent) {
@@ -48,7 +52,7 @@ fn obey(
     say(&Message::Confined(task.sandbox.enter(&task.output)?))?;
     let outcome = inputs.and_then(|inputs| {
         let crashed = |_| Err(Problem::new(ProblemCode::EngineCrashed, "the engine failed on this mesh"));
-        catch_unwind(AssertUnwindSafe(|| run(&task, inputs, files, engine))).unwrap_or_else(crashed)
+        catch_unwind(AssertUnwindSafe(|| run(&task, inputs, &files, engine))).unwrap_or_else(crashed)
     });
     say(&match outcome {
         Ok(product) => Message::Made(Box::new(product)),
@@ -72,8 +76,8 @@ impl Inputs {
 fn run(
     task: &Task,
     mut inputs: Inputs,
-    files: Files,
-    engine: impl Fn(pipeline::Operation, &[u8], &pipeline::Options, &Budget) -> Result<Answer, Failure> + Sync,
+    files: &Files,
+    engine: &Engine,
 ) -> Result<Product<FileMade>, Problem> {
     let clock = StageClock::start(task.operation);
     let stamp = clock.observer();

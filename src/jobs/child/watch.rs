@@ -79,7 +79,7 @@ pub(in crate::jobs) fn watch(
     let protections = hearing.protections.unwrap_or_default();
     let outcome = match hearing.last() {
         Some(Last::Made(product)) => {
-            Ok(product.try_map(|made| taken(made, workspace)).map_err(|_| Death::Garbled)?)
+            Ok(product.try_map(|made| taken(&made, workspace)).map_err(|_| Death::Garbled)?)
         }
         Some(Last::Failed(problem)) => Err(*problem),
         None => return Err(Death::NoAnswer(0)),
@@ -110,7 +110,7 @@ fn wait(running: &Running, is_open: bool, patience: Duration) -> io::Result<bool
 }
 
 /// The file that a child says it made, if it is one.
-fn taken(made: FileMade, workspace: &Arc<Workspace>) -> io::Result<MadeFile> {
+fn taken(made: &FileMade, workspace: &Arc<Workspace>) -> io::Result<MadeFile> {
     let path = workspace.path().join(file_name(made.number));
     if !is_file_of(&path, made.bytes)? {
         return Err(io::ErrorKind::InvalidData.into());
