@@ -4,7 +4,7 @@ use super::error::ConfigError;
 use super::sources::Entry;
 use super::values::{Bytes, IsolationChoice, LogFormat, SandboxChoice, Value};
 use std::net::{IpAddr, SocketAddr};
-use std::num::NonZeroUsize;
+use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -97,6 +97,12 @@ settings! {
     result_ttl: Duration = "24h",
     /// Most bytes of uploads and results on disk; the oldest finished jobs go first.
     data_bytes_max: Bytes = "20GiB",
+    /// Bytes of the disk that stay free.
+    disk_free_bytes_min: Bytes = "256MiB",
+    /// Time after which a job whose executor is not heard of is queued again.
+    lease: Duration = "30s",
+    /// Lost runs after which a job fails.
+    attempts_max: NonZeroU32 = "3",
     /// Time that running jobs get when the server shuts down.
     drain_grace: Duration = "25s",
 

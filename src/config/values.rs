@@ -1,7 +1,7 @@
 //! The types of settings: from text, with a word on what is expected.
 
 use std::net::{IpAddr, SocketAddr};
-use std::num::NonZeroUsize;
+use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -127,6 +127,14 @@ impl Value for NonZeroUsize {
 
     fn parse(text: &str) -> Option<Self> {
         Self::new(usize::parse(text)?)
+    }
+}
+
+impl Value for NonZeroU32 {
+    const EXPECTED: &'static str = "a whole number from 1 on";
+
+    fn parse(text: &str) -> Option<Self> {
+        Self::new(u32::parse(text)?)
     }
 }
 

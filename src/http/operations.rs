@@ -191,14 +191,33 @@ async fn submission(
         _ => {}
     }
     Ok(Submission {
-        operation,
-        options,
+        key: idempotency_key(headers)?,
         upload: intake.upload,
         material: intake.material,
         file_name: intake.file_name,
         cancel_after: cancel_after(headers)?,
         owner: caller.0.clone(),
+        ..Submission::new(operation, options)
     })
+}
+
+/// Longest `Idempotency-Key`.
+const KEY_BYTES_MAX: usize = 255;
+
+/// The key of `Idempotency-Key`, as it stands there.
+fn idempotency_key(headers: &HeaderMap) -> Result<Option<String>, Problem> {
+    let Some(value) = headers.get("idempotency-key") else { return Ok(None) };
+    let key = value.to_str().ok().map(str::trim).filter(|key| (1..=KEY_BYTES_MAX).contains(&key.len()));
+    match key {
+        Some(key) => Ok(Some(key.to_owned())),
+        None => Err(Problem {
+            parameter: Some("Idempotency-Key".to_owned()),
+            ..Problem::new(
+                ProblemCode::InvalidParameter,
+                format!("`Idempotency-Key` is 1 to {KEY_BYTES_MAX} visible ASCII characters"),
+            )
+        }),
+    }
 }
 
 fn no_mesh(headers: &HeaderMap) -> Problem {

@@ -12,12 +12,15 @@ use super::keys::ApiKeys;
 use super::server::Server;
 use super::settings::HttpSettings;
 use super::shutdown::Shutdown;
-use crate::config::{Config, ConfigError, IsolationChoice, Loaded, LogFormat, SandboxChoice};
+use crate::config::{ConfigError, IsolationChoice, Loaded, LogFormat, SandboxChoice};
 use crate::formats::ReadLimits;
 use crate::jobs::{Isolation, Jobs, JobsSettings, Sandbox, StartError, TrialError};
 
 /// Time for jobs that a second signal gave up: the process is not to wait for them.
 const LEFTOVERS: Duration = Duration::from_secs(1);
+
+/// Shortest lease: a busy machine may keep a heartbeat waiting for a good part of a second.
+const LEASE_MIN: Duration = Duration::from_secs(1);
 
 /// Serves until a signal ends it.
 ///
@@ -33,7 +36,7 @@ pub fn start(loaded: &Loaded) -> anyhow::Result<()> {
     let served = runtime.block_on(async {
         let shutdown = Shutdown::on_signals()?;
         let refused = |name: &'static str, why: &dyn Display| loaded.refused(name, why);
-        let jobs = Jobs::start(jobs_settings(&loaded.config)).map_err(|e| refused(setting_of(&e), &e))?;
+        let jobs = Jobs::start(jobs_settings(loaded)?).await.map_err(|e| refused(setting_of(&e), &e))?;
         let server = Server::bind(http, jobs).await.map_err(|e| refused("listen", &e))?;
         tell(&server)?;
         server.run(shutdown).await;
@@ -46,7 +49,7 @@ pub fn start(loaded: &Loaded) -> anyhow::Result<()> {
 /// The setting that stands in the way of a start.
 fn setting_of(error: &StartError) -> &'static str {
     match error {
-        StartError::DataDir { .. } | StartError::DataDirInUse { .. } => "data_dir",
+        StartError::DataDir { .. } | StartError::DataDirInUse { .. } | StartError::Store { .. } => "data_dir",
         StartError::Isolation(TrialError::NoProcess | TrialError::Incomplete(_)) => "sandbox",
         StartError::Isolation(TrialError::Folder(_) | TrialError::NoAnswer(_)) => "isolation",
     }
@@ -105,9 +108,13 @@ fn access(loaded: &Loaded) -> Result<Access, ConfigError> {
     ApiKeys::parse(&text).map(Access::Keys).map_err(|e| loaded.refused("api_keys_file", &e))
 }
 
-fn jobs_settings(config: &Config) -> JobsSettings {
+fn jobs_settings(loaded: &Loaded) -> Result<JobsSettings, ConfigError> {
+    let config = &loaded.config;
+    if config.lease < LEASE_MIN {
+        return Err(loaded.refused("lease", &format!("it must be {LEASE_MIN:?} or more")));
+    }
     let defaults = JobsSettings::new(&config.data_dir);
-    JobsSettings {
+    Ok(JobsSettings {
         slots: config.slots.map_or(defaults.slots, NonZero::get),
         queue_max: config.queue_max.get(),
         jobs_max: config.jobs_max.get(),
@@ -133,8 +140,11 @@ fn jobs_settings(config: &Config) -> JobsSettings {
             SandboxChoice::Require => Sandbox::Require,
             SandboxChoice::Off => Sandbox::Off,
         },
+        disk_free_bytes_min: config.disk_free_bytes_min.0,
+        lease: config.lease,
+        attempts_max: config.attempts_max.get(),
         ..defaults
-    }
+    })
 }
 
 #[cfg(test)]
@@ -152,7 +162,7 @@ mod tests {
         let loaded = loaded(&[("data_dir", "d")]);
         // The binary of the service is one that runs jobs.
         let want = JobsSettings { isolation: Isolation::Process, ..JobsSettings::new("d") };
-        assert_eq!(format!("{:?}", jobs_settings(&loaded.config)), format!("{want:?}"));
+        assert_eq!(format!("{:?}", jobs_settings(&loaded).unwrap()), format!("{want:?}"));
         let want = HttpSettings { admin_listen: loaded.config.admin_listen, ..HttpSettings::default() };
         assert_eq!(format!("{:?}", http_settings(&loaded).unwrap()), format!("{want:?}"));
     }

@@ -4,16 +4,16 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
+use sha2::{Digest as _, Sha256};
+
 use super::clock::StageClock;
-use super::drain::draining;
-use super::live::Live;
+use super::heartbeat::end_overdue;
 use super::meters;
-use super::service::{Jobs, Service, not_found, now, store_problem};
-use super::store::{Finish, JobId, JobRow, StoreError};
+use super::service::{Jobs, Service, not_found, store_problem};
+use super::store::{BlobRef, Created, IdempotencyKey, JobId, JobRow, Lane, NewJob, StoreError, Webhook};
 use super::upload::Uploaded;
 use super::view::{self, expired};
-use crate::budget::Stopped;
-use crate::wire::{Job, JobState, Operation, Options, Problem, ProblemCode};
+use crate::wire::{Job, JobState, Labels, Operation, Options, Problem, ProblemCode};
 
 /// What is asked for.
 #[derive(Debug)]
@@ -28,70 +28,123 @@ pub struct Submission {
     pub material: Option<Uploaded>,
     /// Name of the uploaded file, if the caller gave one.
     pub file_name: Option<String>,
+    /// Words of the caller, by which jobs are listed.
+    pub labels: Labels,
+    /// Whom to tell of the end.
+    pub webhook: Option<Webhook>,
     /// Time from now after which the job must have ended (`Cancel-After`).
     pub cancel_after: Option<Duration>,
+    /// The key under which the request may be repeated (`Idempotency-Key`).
+    pub key: Option<String>,
     /// Who asks, by the name of the key; `None`: anybody.
     pub owner: Option<String>,
 }
 
+impl Submission {
+    /// An operation on nothing yet, asked for by anybody.
+    pub fn new(operation: Operation, options: Options) -> Self {
+        Self {
+            operation,
+            options,
+            upload: None,
+            material: None,
+            file_name: None,
+            labels: Labels::new(),
+            webhook: None,
+            cancel_after: None,
+            key: None,
+            owner: None,
+        }
+    }
+
+    /// Digest of all that makes the job what it is.
+    fn fingerprint(&self, input: &BlobRef, material: Option<&BlobRef>) -> Result<[u8; 32], Problem> {
+        let asked = (
+            self.operation,
+            &self.options,
+            &self.labels,
+            &self.webhook,
+            input.sha256,
+            material.map(|blob| blob.sha256),
+        );
+        let text = serde_json::to_vec(&asked)
+            .map_err(|error| Problem::new(ProblemCode::Internal, error.to_string()))?;
+        Ok(Sha256::digest(text).into())
+    }
+}
+
 impl Jobs {
-    /// Admits a job.
+    /// Admits a job, or gives the one that the same request with the same key made before. It is kept from then on: it
+    /// ends, whatever becomes of this process.
     ///
     /// # Errors
-    /// `queue-full`, `draining`, `invalid-parameter` (no mesh, or two), `not-found` or `expired` (of `options.input`).
+    /// `queue-full`, `draining`, `invalid-parameter` (no mesh, or two), `not-found` or `expired` (of `options.input`),
+    /// `idempotency-key-reused`, `storage-full`, `store-unavailable`.
     pub async fn submit(&self, submission: Submission) -> Result<Job, Problem> {
-        let service = &self.0;
+        let service = Arc::clone(&self.0);
         service.check_open()?;
-        service.make_place().await?;
-        let source = service.source_of(&submission).await?;
+        // The caller may go away, but what is begun is done: a row must not name a file that goes with its upload.
+        let admitting = tokio::spawn(async move { service.admit(submission).await });
+        let row =
+            admitting.await.map_err(|error| Problem::new(ProblemCode::Internal, error.to_string()))??;
+        Ok(view::job(&row, self.0.live.get(row.id).as_deref()))
+    }
+}
+
+impl Service {
+    async fn admit(self: &Arc<Self>, submission: Submission) -> Result<JobRow, Problem> {
+        let source = self.source_of(&submission).await?;
         let input = match (&submission.upload, &source) {
             (Some(upload), None) => upload.blob().cloned(),
             (None, Some(source)) => Some(source.input.clone()),
             _ => None,
         };
         let Some(input) = input else { return Err(no_single_mesh()) };
-        let Submission { operation, options, upload, material, file_name, cancel_after, owner } = submission;
-        let own_material = material.as_ref().and_then(Uploaded::blob).cloned();
-        let mut row = JobRow {
+        let own_material = submission.material.as_ref().and_then(Uploaded::blob).cloned();
+        let material = own_material.or_else(|| source.as_ref()?.material.clone());
+        let fingerprint = submission.fingerprint(&input, material.as_ref())?;
+        let key = submission.key.map(|key| IdempotencyKey { key, fingerprint });
+        if let Some(key) = &key
+            && let Some(known) = self.find_keyed(submission.owner.clone(), key.clone()).await?
+        {
+            return Ok(known);
+        }
+        self.make_place().await?;
+        let new = NewJob {
             id: JobId::unique(),
-            operation,
-            options,
-            file_name: file_name.or_else(|| source.as_ref()?.file_name.clone()),
-            owner,
+            operation: submission.operation,
+            keep_for: self.keep_for(&submission.options),
+            options: submission.options,
+            file_name: submission.file_name.or_else(|| source.as_ref()?.file_name.clone()),
+            owner: submission.owner,
+            labels: submission.labels,
+            webhook: submission.webhook,
             input,
-            material: own_material.or_else(|| source.as_ref()?.material.clone()),
-            state: JobState::Queued,
-            epoch: 0,
-            created_at: now(),
-            started_at: None,
-            finish: None,
-            is_cached: false,
+            material,
+            lane: Lane::Interactive,
+            cancel_after: submission.cancel_after,
+            key,
+            source: source.map(|source| source.id),
+            ending: None,
         };
-        if let Some(job) = service.answer_from_cache(&mut row).await {
-            return Ok(job);
+        if let Some(row) = self.answer_from_cache(&new).await {
+            return Ok(row);
         }
-        let (id, source_id) = (row.id, source.map(|source| source.id));
-        let live = service.live.insert(id);
-        if let Err(error) = service.store.create(row.clone(), source_id, service.settings.queue_max).await {
-            service.live.end(id);
-            return Err(service.not_admitted(&error));
-        }
+        let created = self.store.create(new, self.settings.queue_max).await;
+        let row = match created.map_err(|error| self.not_admitted(&error))? {
+            Created::Known(row) => return Ok(row),
+            Created::New(row) => row,
+        };
         // From here on the row owns the files.
-        [upload, material].into_iter().flatten().for_each(|upload| drop(upload.keep()));
-        if let Some(patience) = cancel_after {
-            tokio::spawn(end_after(Arc::clone(service), row.clone(), live, patience));
+        [submission.upload, submission.material].into_iter().flatten().for_each(Uploaded::named);
+        if let Some(at) = row.cancel_at {
+            tokio::spawn(end_overdue(Arc::clone(self), row.id, at));
         }
-        service.work.notify_one();
-        if service.draining.is_cancelled() {
-            // The drain may have looked at the queue before this job was in it.
-            service.end_queued(&row, JobState::Failed, draining()).await;
-        }
-        service.tell_load().await;
-        self.get(id).await
+        self.work.notify_one();
+        self.tell_load().await;
+        Ok(row)
     }
-}
 
-impl Service {
     /// The earlier job whose upload is used again, if the request names one.
     async fn source_of(&self, submission: &Submission) -> Result<Option<JobRow>, Problem> {
         let Some(input) = &submission.options.input else { return Ok(None) };
@@ -101,27 +154,32 @@ impl Service {
         if row.state == JobState::Expired { Err(about_input(expired())) } else { Ok(Some(row)) }
     }
 
+    async fn find_keyed(
+        &self,
+        owner: Option<String>,
+        key: IdempotencyKey,
+    ) -> Result<Option<JobRow>, Problem> {
+        self.store.find_keyed(owner, key).await.map_err(|error| store_problem(&error))
+    }
+
     /// A new job that ends at once, because an earlier one did the same with the same bytes.
-    async fn answer_from_cache(&self, row: &mut JobRow) -> Option<Job> {
-        let equal = self.store.find_equal(row).await.ok()??;
-        let found = equal.finish?;
-        let at = now();
-        let finish = Finish { at, expires_at: self.expiry(row, at), ..found };
-        let cached = JobRow {
+    async fn answer_from_cache(&self, new: &NewJob) -> Option<JobRow> {
+        let equal = self.store.find_equal(new).await.ok()??;
+        let cached = NewJob {
             input: equal.input,
             material: equal.material,
-            state: finish.state,
-            started_at: Some(at),
-            finish: Some(finish),
-            is_cached: true,
-            ..row.clone()
+            source: Some(equal.id),
+            ending: Some(equal.ending?),
+            ..new.clone()
         };
-        let job = view::job(&cached, None);
         // The earlier job may be gone by now: then the new one runs.
-        self.store.create(cached, Some(equal.id), usize::MAX).await.ok()?;
+        let row = match self.store.create(cached, usize::MAX).await.ok()? {
+            Created::New(row) => row,
+            Created::Known(row) => return Some(row),
+        };
         meters::cached(row.operation);
         self.tell_load().await;
-        Some(job)
+        Some(row)
     }
 
     fn not_admitted(&self, error: &StoreError) -> Problem {
@@ -152,15 +210,6 @@ impl Service {
         // The update never refuses.
         let _ = self.mean_run_ms.fetch_update(Ordering::Relaxed, Ordering::Relaxed, mean);
     }
-}
-
-/// Ends the job when `patience` is over, unless it has ended by then.
-async fn end_after(service: Arc<Service>, row: JobRow, live: Arc<Live>, patience: Duration) {
-    if tokio::time::timeout(patience, live.ended.cancelled()).await.is_ok() {
-        return;
-    }
-    live.stop.pass_deadline();
-    service.end_queued(&row, JobState::Failed, Problem::from(&Stopped::Deadline)).await;
 }
 
 fn no_single_mesh() -> Problem {

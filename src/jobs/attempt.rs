@@ -10,7 +10,7 @@ use super::live::Live;
 use super::product::{Content, Product};
 use super::service::Service;
 use super::settings::JobsSettings;
-use super::store::JobRow;
+use super::store::{BlobRef, JobRow};
 use super::upload::disk_problem;
 use crate::budget::{Budget, Stopped};
 use crate::par;
@@ -40,10 +40,15 @@ pub(super) enum Executor {
 }
 
 impl Executor {
-    /// What the settings ask for. Blocks for a trial.
-    pub(super) fn of(settings: &JobsSettings) -> Result<Self, TrialError> {
+    /// What the settings ask for, after a trial.
+    pub(super) async fn of(settings: &JobsSettings) -> Result<Self, TrialError> {
         match settings.isolation {
-            Isolation::Process => Ok(Self::Process(Arc::new(Processes::prepare(settings)?))),
+            Isolation::Process => {
+                let settings = settings.clone();
+                let prepared = tokio::task::spawn_blocking(move || Processes::prepare(&settings)).await;
+                let processes = prepared.map_err(|error| TrialError::NoAnswer(error.to_string()))??;
+                Ok(Self::Process(Arc::new(processes)))
+            }
             Isolation::Thread if settings.sandbox == Sandbox::Require => Err(TrialError::NoProcess),
             Isolation::Thread => Ok(Self::Thread(Arc::new(pipeline::run))),
         }
@@ -90,8 +95,8 @@ async fn in_thread(
     live: &Live,
     clock: &StageClock,
 ) -> Result<Product<Content>, Problem> {
-    let path = service.spool.path(&row.input.key);
-    let material_path = row.material.as_ref().map(|material| service.spool.path(&material.key));
+    let local = |blob: &BlobRef| service.spool.path(&blob.key).map_err(|error| disk_problem(&error));
+    let (path, material_path) = (local(&row.input)?, row.material.as_ref().map(local).transpose()?);
     let (bytes, operation) = (row.input.bytes, row.operation.into());
     let mut options = row.options.to_engine(service.settings.read_limits);
     let settings = &service.settings;

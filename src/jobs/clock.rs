@@ -3,8 +3,13 @@
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+use tokio::sync::watch;
+
 use crate::budget::{Event, Observer};
 use crate::wire::{Operation, Progress, Stage, TimingMs};
+
+/// Most events of one run that are kept for those who follow it; no operation makes so many.
+const EVENTS_MAX: usize = 512;
 
 /// Hears the stages of one run. Clones share what they heard.
 #[derive(Debug, Clone)]
@@ -13,6 +18,17 @@ pub struct StageClock {
     /// About how many passes the operation makes.
     passes: f64,
     heard: Arc<Mutex<Heard>>,
+    /// Counts the events.
+    changes: Arc<watch::Sender<usize>>,
+}
+
+/// A pass has begun or ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct StageEvent {
+    pub(super) stage: Stage,
+    pub(super) has_ended: bool,
+    /// Share of the passes that are done, from 0 to 1.
+    pub(super) fraction: f64,
 }
 
 #[derive(Debug, Default)]
@@ -21,6 +37,7 @@ struct Heard {
     open: Vec<(Stage, Instant)>,
     ended: u32,
     timing: TimingMs,
+    events: Vec<StageEvent>,
 }
 
 impl StageClock {
@@ -35,14 +52,21 @@ impl StageClock {
             Operation::Repair => 8.0,
             Operation::Simplify => 9.0,
         };
-        Self { started: Instant::now(), passes, heard: Arc::default() }
+        Self { started: Instant::now(), passes, heard: Arc::default(), changes: Arc::default() }
     }
 
     /// The ear to give to [`Budget::observed_by`](crate::budget::Budget::observed_by).
     pub fn observer(&self) -> Observer {
-        let heard = Arc::clone(&self.heard);
+        let clock = self.clone();
         Box::new(move |event| {
-            heard.lock().unwrap_or_else(PoisonError::into_inner).hear(event, Instant::now());
+            let mut heard = clock.heard.lock().unwrap_or_else(PoisonError::into_inner);
+            if let Some((stage, has_ended)) = heard.hear(event, Instant::now())
+                && heard.events.len() < EVENTS_MAX
+            {
+                let fraction = clock.fraction(&heard);
+                heard.events.push(StageEvent { stage, has_ended, fraction });
+                clock.changes.send_replace(heard.events.len());
+            }
         })
     }
 
@@ -50,7 +74,22 @@ impl StageClock {
     pub fn progress(&self) -> Progress {
         let heard = self.heard.lock().unwrap_or_else(PoisonError::into_inner);
         let stage = heard.open.last().map(|&(stage, _)| stage);
-        Progress { stage, fraction: (f64::from(heard.ended) / self.passes).min(0.95) }
+        Progress { stage, fraction: self.fraction(&heard) }
+    }
+
+    fn fraction(&self, heard: &Heard) -> f64 {
+        (f64::from(heard.ended) / self.passes).min(0.95)
+    }
+
+    /// The events after the first `after`.
+    pub(super) fn events(&self, after: usize) -> Vec<StageEvent> {
+        let heard = self.heard.lock().unwrap_or_else(PoisonError::into_inner);
+        heard.events.get(after..).unwrap_or_default().to_vec()
+    }
+
+    /// Changes when there is another event.
+    pub(super) fn changes(&self) -> watch::Receiver<usize> {
+        self.changes.subscribe()
     }
 
     /// Time of each pass that has ended, and of the run so far.
@@ -61,17 +100,20 @@ impl StageClock {
 }
 
 impl Heard {
-    fn hear(&mut self, event: Event, now: Instant) {
+    /// The pass, and whether it has ended; `None`: one has ended that had not begun.
+    fn hear(&mut self, event: Event, now: Instant) -> Option<(Stage, bool)> {
         match event {
-            Event::Enter(stage) => self.open.push((stage.into(), now)),
+            Event::Enter(stage) => {
+                self.open.push((stage.into(), now));
+                Some((stage.into(), false))
+            }
             Event::Leave(stage) => {
-                let Some(position) = self.open.iter().rposition(|&(open, _)| open == stage.into()) else {
-                    return;
-                };
+                let position = self.open.iter().rposition(|&(open, _)| open == stage.into())?;
                 let (stage, since) = self.open.remove(position);
                 let time = milliseconds(now.duration_since(since));
                 *self.timing.of_mut(stage).get_or_insert(0.0) += time;
                 self.ended += 1;
+                Some((stage, true))
             }
         }
     }
@@ -97,6 +139,16 @@ mod tests {
         });
         budget.stage(budget::Stage::Certify, || {});
         budget.stage(budget::Stage::Certify, || {});
+        let event = |stage, has_ended, ended: f64| StageEvent { stage, has_ended, fraction: ended / 8.0 };
+        assert_eq!(
+            clock.events(0)[..3],
+            [
+                event(Stage::Read, false, 0.0),
+                event(Stage::Read, true, 1.0),
+                event(Stage::Certify, false, 1.0)
+            ]
+        );
+        assert_eq!((clock.events(4).len(), clock.events(9).len()), (2, 0));
         let timing = clock.timing_ms();
         assert!(timing.read.is_some() && timing.certify.is_some());
         assert_eq!(timing.repair, None, "a pass that did not run has no time");

@@ -1,9 +1,9 @@
-//! The end of the server: nothing new, a grace for what runs, then the stop flag.
+//! The end of the server: nothing new, a grace for what runs; what waits or outlasts the grace stays for the next start.
 
 use std::time::Duration;
 
 use super::service::Jobs;
-use crate::wire::{JobState, Problem, ProblemCode};
+use crate::wire::{Problem, ProblemCode};
 
 /// Time that stopped jobs get to return when the server ends. The engine needs 50 ms; more means that it hangs.
 const STOP_PATIENCE: Duration = Duration::from_secs(5);
@@ -14,31 +14,24 @@ impl Jobs {
         self.0.draining.is_cancelled()
     }
 
-    /// Takes no more jobs, ends queued ones with `draining`, gives running ones `drain_grace` and ends the rest.
-    /// Returns when all have ended, or a few seconds after the last one was told to.
+    /// Takes no more jobs, gives running ones `drain_grace`, stops the rest and queues them again. Queued jobs stay
+    /// queued for the next start. Returns when no job runs, or a few seconds after the last one was told to stop.
     pub async fn drain(&self) {
         let service = &self.0;
         service.draining.cancel();
-        for (id, _) in service.live.all() {
-            if let Ok(row) = service.store.get(id).await {
-                service.end_queued(&row, JobState::Failed, draining()).await;
+        if tokio::time::timeout(service.settings.drain_grace, service.slots.wait()).await.is_err() {
+            for (_, live) in service.live.all() {
+                live.drain();
+            }
+            if tokio::time::timeout(STOP_PATIENCE, service.slots.wait()).await.is_err() {
+                tracing::error!("a job did not end when told to");
             }
         }
-        if tokio::time::timeout(service.settings.drain_grace, service.slots.wait()).await.is_ok() {
-            return;
-        }
-        for (_, live) in service.live.all() {
-            // Told twice, the first word stays.
-            let _ = live.is_drained.set(());
-            live.stop.cancel();
-        }
-        if tokio::time::timeout(STOP_PATIENCE, service.slots.wait()).await.is_err() {
-            tracing::error!("a job did not end when told to");
-        }
+        service.stopping.cancel();
     }
 }
 
-/// The problem of a job that the server's end cuts off.
+/// The problem of asking a server that ends for something new.
 pub(super) fn draining() -> Problem {
     Problem::new(ProblemCode::Draining, "the server is shutting down")
 }

@@ -2,7 +2,7 @@
 
 use metrics::{counter, gauge, histogram};
 
-use super::store::{Finish, JobCounts};
+use super::store::{Ending, JobCounts};
 use crate::wire::{Operation, Stage};
 
 /// Jobs that wait and run, bytes on disk.
@@ -23,19 +23,24 @@ pub(super) fn child_ended(kind: &'static str) {
     counter!("meshmend_child_exits_total", "kind" => kind).increment(1);
 }
 
+/// Runs whose executor is lost.
+pub(super) fn lost(operation: Operation, runs: u64) {
+    counter!("meshmend_runs_lost_total", "operation" => operation.word()).increment(runs);
+}
+
 /// A job that has ended.
-pub(super) fn finished(operation: Operation, finish: &Finish) {
-    let outcome = finish.outcome.map_or("none", |outcome| outcome.word());
-    let problem = finish.problem.as_ref().map_or("none", |problem| problem.code.word());
+pub(super) fn finished(operation: Operation, ending: &Ending) {
+    let outcome = ending.outcome.map_or("none", |outcome| outcome.word());
+    let problem = ending.problem.as_ref().map_or("none", |problem| problem.code.word());
     counter!(
         "meshmend_jobs_finished_total",
         "operation" => operation.word(),
-        "state" => finish.state.word(),
+        "state" => ending.state.word(),
         "outcome" => outcome,
         "problem" => problem,
     )
     .increment(1);
-    let Some(timing) = finish.timing_ms else { return };
+    let Some(timing) = ending.timing_ms else { return };
     for &stage in Stage::ALL {
         if let Some(ms) = timing.of(stage) {
             histogram!("meshmend_stage_seconds", "stage" => stage.word()).record(ms / 1000.0);

@@ -2,22 +2,27 @@
 //!
 //! [`Jobs`] takes uploads onto disk ([`Upload`]), admits jobs to a bounded queue, runs them in slots, each in a process of
 //! its own or in a thread ([`Isolation`]), and keeps reports and results for a while. Rows live in a [`JobStore`], files in
-//! the spool of the data directory. A job's end, whatever it is, is that of one job, never of a slot.
+//! a [`BlobStore`]; both outlast the process, so a job that was accepted ends even when the server is killed. A run that
+//! fails, however it does, is a lost run, never a dead slot.
 
 mod admission;
 mod attempt;
+mod blobs;
 mod child;
 mod clock;
 mod drain;
+mod events;
+mod heartbeat;
 mod live;
-mod memory;
 mod meters;
 mod product;
 mod retention;
 mod service;
 mod settings;
+mod settle;
 mod slot;
 mod spool;
+mod sqlite;
 mod store;
 mod upload;
 mod view;
@@ -27,13 +32,17 @@ mod tests;
 
 pub use admission::Submission;
 pub use attempt::{Engine, Isolation};
+pub use blobs::{BlobStore, BlobWriter, LocalBlobs, StoredBlob};
 pub use child::{RUN_JOB, Sandbox, TrialError, run_job};
 pub use clock::StageClock;
-pub use memory::MemoryStore;
+pub use events::{EventId, Events, Happened, JobEvent};
 pub use service::{Jobs, Load, StartError};
 pub use settings::JobsSettings;
+pub use sqlite::{OpenError as SqliteOpenError, SqliteStore, StoreClock};
 pub use store::{
-    BlobRef, Finish, JobCounts, JobId, JobRow, JobStore, Kept, ResultRef, StoreError, StoreFuture,
+    AfterLoss, BlobRef, Change, ClaimRef, ClaimRequest, Created, Delivery, DeliveryState, DeliveryTry,
+    Ending, IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept, Lane, Leases, ListQuery, NewJob,
+    NextTry, ResultRef, StoreError, StoreFuture, TryOutcome, Webhook,
 };
 pub use upload::{Upload, Uploaded};
 pub use view::StoredFile;

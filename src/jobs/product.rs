@@ -6,9 +6,10 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::child::Workspace;
+use super::retention::on_disk;
 use super::service::Service;
-use super::store::BlobRef;
-use super::upload::disk_problem;
+use super::spool::Written;
+use super::store::{BlobRef, ClaimRef};
 use crate::pipeline::{self, Answer};
 use crate::wire::{self, Encoding, Outcome, Problem, ProblemCode, TimingMs};
 
@@ -94,17 +95,27 @@ impl<C> Product<C> {
 }
 
 impl Service {
-    /// Keeps bytes as a file of the spool, making room for them.
-    pub(super) async fn keep(&self, content: Content) -> Result<BlobRef, Problem> {
-        let file = match content {
-            Content::Bytes(bytes) => return self.write(bytes).await,
-            Content::File(file) => file,
+    /// Keeps a file of a run, making room for it, and adds it to those that no row names yet.
+    pub(super) async fn keep(
+        &self,
+        claim: ClaimRef,
+        name: String,
+        content: Content,
+        written: &mut Vec<Written>,
+    ) -> Result<BlobRef, Problem> {
+        let bytes = match &content {
+            Content::Bytes(bytes) => bytes.len() as u64,
+            Content::File(file) => file.bytes,
         };
-        let space = self.make_room(file.bytes).await?;
+        let space = self.make_room(bytes).await?;
         let spool = Arc::clone(&self.spool);
-        match tokio::task::spawn_blocking(move || spool.adopt(&file, space)).await {
-            Ok(adopted) => adopted.map_err(|error| disk_problem(&error)),
-            Err(_) => Err(Problem::new(ProblemCode::Internal, "a file could not be kept")),
-        }
+        let file = on_disk(move || match content {
+            Content::Bytes(bytes) => spool.write(claim, &name, &bytes, space),
+            Content::File(file) => spool.adopt(claim, &name, &file, space),
+        });
+        let file = file.await?;
+        let blob = file.blob().cloned();
+        written.push(file);
+        blob.ok_or_else(|| Problem::new(ProblemCode::Internal, "a file could not be kept"))
     }
 }

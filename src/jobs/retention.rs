@@ -1,34 +1,45 @@
 //! What goes, and when: results after their time, the oldest ones when room is needed.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 use std::time::Duration;
 
-use jiff::Timestamp;
-
-use super::service::{Service, now, store_problem};
-use super::spool::Space;
-use super::store::{BlobRef, JobId, JobRow, Kept};
+use super::meters;
+use super::service::{Service, store_problem};
+use super::spool::{Space, claim_of};
+use super::store::{AfterLoss, BlobRef, ClaimRef, JobId, Kept, Leases, StoreError};
 use super::upload::disk_problem;
 use crate::wire::{Problem, ProblemCode};
 
-/// Pause between two looks for results whose time is over. Whoever asks for such a result finds it expired anyway;
-/// this only says how long its bytes may stay on disk.
+/// Longest pause between two looks for results and leases whose time is over. Whoever asks for such a result finds it
+/// expired anyway; this only says how long its bytes may stay on disk.
 const SWEEP_EVERY: Duration = Duration::from_secs(10);
+/// Pause between two looks for files that nobody names. There are none unless a write to the store was cut off.
+const COLLECT_EVERY: Duration = Duration::from_secs(600);
 
-/// Looks for results whose time is over until the service drains.
+/// Looks for what is over until the service drains.
 pub(super) async fn sweep_forever(service: Arc<Service>) {
+    let pause = SWEEP_EVERY.min(service.settings.lease / 3);
+    let mut since_collection = Duration::ZERO;
     loop {
         tokio::select! {
             () = service.draining.cancelled() => return,
-            () = tokio::time::sleep(SWEEP_EVERY) => service.sweep(now()).await,
+            () = tokio::time::sleep(pause) => service.sweep().await,
+        }
+        since_collection += pause;
+        if since_collection >= COLLECT_EVERY {
+            since_collection = Duration::ZERO;
+            if let Err(error) = service.collect_orphans().await {
+                tracing::warn!(error = error.detail, "files that nobody names could not be found");
+            }
         }
     }
 }
 
 impl Service {
-    /// Expires every result whose time is over at `now`.
-    pub(super) async fn sweep(&self, now: Timestamp) {
-        match self.store.due(now).await {
+    /// Expires every result whose time is over, and queues every job again whose executor is lost.
+    pub(super) async fn sweep(&self) {
+        match self.store.due().await {
             Ok(due) => {
                 for id in due {
                     self.expire(id).await;
@@ -36,7 +47,55 @@ impl Service {
             }
             Err(error) => tracing::error!(%error, "expired jobs could not be found"),
         }
+        if let Err(error) = self.recover(Leases::Expired).await {
+            tracing::error!(%error, "lost jobs could not be found");
+        }
         self.tell_load().await;
+    }
+
+    /// Queues jobs again whose executor is lost, or ends them when that was once too often.
+    pub(super) async fn recover(&self, leases: Leases) -> Result<(), StoreError> {
+        let problem = Problem::new(ProblemCode::WorkerLost, "the process that ran the job went away");
+        for (id, after) in self.store.recover(leases, problem, self.settings.attempts_max).await? {
+            tracing::warn!(job = %id, ?after, "the executor of a job is lost");
+            let row = self.store.get(id).await;
+            if let Some(live) = self.live.get(id) {
+                live.make_void();
+            }
+            if let Ok(row) = row {
+                meters::lost(row.operation, 1);
+                if let Some(ending) = &row.ending {
+                    meters::finished(row.operation, ending);
+                }
+            }
+            match after {
+                AfterLoss::Queued => self.live.requeue(id),
+                AfterLoss::Ended => self.live.end(id),
+            }
+        }
+        self.work.notify_waiters();
+        Ok(())
+    }
+
+    /// Removes files that no row names and no claim may still name: what a write to the store that was cut off left.
+    pub(super) async fn collect_orphans(&self) -> Result<(), Problem> {
+        let spool = Arc::clone(&self.spool);
+        let listed = on_disk(move || spool.list()).await?;
+        let claims: HashSet<ClaimRef> = listed.iter().filter_map(|blob| claim_of(&blob.key)).collect();
+        // A file of a run that ends now is named by the time the names are asked for.
+        let current =
+            self.store.current(claims.into_iter().collect()).await.map_err(|e| store_problem(&e))?;
+        let keys = listed.iter().map(|blob| blob.key.clone()).collect();
+        let named = self.store.named(keys).await.map_err(|error| store_problem(&error))?;
+        let is_live =
+            |key: &str| named.contains(key) || claim_of(key).is_some_and(|claim| current.contains(&claim));
+        let orphans: Vec<_> = listed.into_iter().filter(|blob| !is_live(&blob.key)).collect();
+        let spool = Arc::clone(&self.spool);
+        on_disk(move || {
+            spool.remove_orphans(&orphans);
+            Ok(())
+        })
+        .await
     }
 
     /// The files of an ended job go, its row stays.
@@ -63,6 +122,14 @@ impl Service {
     }
 
     pub(super) fn storage_full(&self, bytes: u64) -> Problem {
+        if self.spool.is_disk_short_of(bytes) {
+            let limit = self.settings.disk_free_bytes_min;
+            return Problem::new(ProblemCode::StorageFull, "the disk is nearly full").with_limit(
+                "disk_free_bytes_min",
+                limit,
+                None,
+            );
+        }
         let limit = self.spool.bytes_max();
         Problem::new(ProblemCode::StorageFull, "unfinished jobs and uploads fill the data directory")
             .with_limit("data_bytes_max", limit, Some(self.spool.bytes().saturating_add(bytes)))
@@ -85,27 +152,22 @@ impl Service {
         }
     }
 
-    /// Writes a file, making room for it.
-    pub(super) async fn write(&self, content: Vec<u8>) -> Result<BlobRef, Problem> {
-        let space = self.make_room(content.len() as u64).await?;
-        let spool = Arc::clone(&self.spool);
-        match tokio::task::spawn_blocking(move || spool.write(&content, space)).await {
-            Ok(written) => written.map_err(|error| disk_problem(&error)),
-            Err(_) => Err(Problem::new(ProblemCode::Internal, "a file could not be written")),
-        }
-    }
-
     /// Removes files that no row names.
     pub(super) fn remove(&self, orphans: &[BlobRef]) {
         for blob in orphans {
             self.spool.remove(blob);
         }
     }
+}
 
-    /// Removes files that a job wrote and no row names yet; its input is not its own.
-    pub(super) fn remove_own<'b>(&self, row: &JobRow, written: impl Iterator<Item = &'b BlobRef>) {
-        for blob in written.filter(|blob| blob.key != row.input.key) {
-            self.spool.remove(blob);
-        }
-    }
+/// Runs what waits for the disk on a thread that may wait.
+pub(super) async fn on_disk<T: Send + 'static>(
+    body: impl FnOnce() -> std::io::Result<T> + Send + 'static,
+) -> Result<T, Problem> {
+    let done = tokio::task::spawn_blocking(body).await.map_err(|_| lost())?;
+    done.map_err(|error| disk_problem(&error))
+}
+
+fn lost() -> Problem {
+    Problem::new(ProblemCode::Internal, "a file could not be written")
 }

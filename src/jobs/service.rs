@@ -6,7 +6,6 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 use std::time::Duration;
 
-use jiff::{SignedDuration, Timestamp};
 use tokio::sync::Notify;
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
@@ -14,17 +13,18 @@ use tokio_util::task::TaskTracker;
 use super::attempt::{Engine, Executor};
 use super::child::TrialError;
 use super::drain::draining;
+use super::heartbeat::end_overdue;
 use super::live::LiveJobs;
-use super::memory::MemoryStore;
 use super::settings::JobsSettings;
 use super::slot;
-use super::spool::{OpenError, Spool};
-use super::store::{Finish, JobId, JobRow, JobStore, StoreError};
+use super::spool::{OpenError, SpaceLimits, Spool};
+use super::sqlite::SqliteStore;
+use super::store::{Ending, JobId, JobRow, JobStore, Leases, ListQuery, StoreError};
 use super::upload::Upload;
 use super::view::{self, StoredFile, expired};
 use super::{meters, retention};
 use crate::budget::Stopped;
-use crate::wire::{Job, JobState, Problem, ProblemCode, Progress};
+use crate::wire::{Job, JobState, Options, Problem, ProblemCode};
 
 /// The job service. Clones share it.
 #[derive(Debug, Clone)]
@@ -36,11 +36,15 @@ pub(super) struct Service {
     pub(super) store: Arc<dyn JobStore>,
     pub(super) spool: Arc<Spool>,
     pub(super) executor: Executor,
+    /// Name of this process in the store.
+    pub(super) worker: String,
     pub(super) live: LiveJobs,
     /// Wakes slots when a job is queued.
     pub(super) work: Notify,
     /// Raised when no more jobs are taken.
     pub(super) draining: CancellationToken,
+    /// Raised when no job runs any more.
+    pub(super) stopping: CancellationToken,
     pub(super) slots: TaskTracker,
     /// Mean time of a run, in milliseconds, the latest ones counting most.
     pub(super) mean_run_ms: AtomicU64,
@@ -74,9 +78,17 @@ pub enum StartError {
         /// Why.
         source: std::io::Error,
     },
+    /// The rows of jobs cannot be read.
+    #[error("job store {path}: {why}")]
+    Store {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        why: String,
+    },
     /// Jobs cannot run as the settings ask.
     #[error(transparent)]
-    Isolation(TrialError),
+    Isolation(#[from] TrialError),
     /// Another server uses the data directory.
     #[error("data directory {path} is in use by another server")]
     DataDirInUse {
@@ -85,50 +97,55 @@ pub enum StartError {
     },
 }
 
+/// The file of rows in the data directory.
+const STORE_FILE: &str = "jobs.sqlite3";
+
 impl Jobs {
-    /// Opens the data directory (files of an earlier run go) and starts the slots. To be called inside a tokio runtime.
+    /// Opens the data directory and starts the slots: jobs of an earlier run go on. To be called inside a tokio runtime.
     ///
     /// # Errors
     /// The data directory cannot be used, another server uses it, or jobs cannot run as the settings ask.
-    pub fn start(settings: JobsSettings) -> Result<Self, StartError> {
-        Self::open(settings, Arc::<MemoryStore>::default(), Executor::of)
+    pub async fn start(settings: JobsSettings) -> Result<Self, StartError> {
+        Self::open(settings, None).await
     }
 
-    /// As [`start`](Self::start) with another store, and an engine that runs in threads of this process.
+    /// As [`start`](Self::start) with another engine, which runs in threads of this process.
     ///
     /// # Errors
     /// As [`start`](Self::start).
-    pub fn start_with(
-        settings: JobsSettings,
-        store: Arc<dyn JobStore>,
-        engine: Engine,
-    ) -> Result<Self, StartError> {
-        Self::open(settings, store, |_| Ok(Executor::Thread(engine)))
+    pub async fn start_with(settings: JobsSettings, engine: Engine) -> Result<Self, StartError> {
+        Self::open(settings, Some(Executor::Thread(engine))).await
     }
 
-    fn open(
-        settings: JobsSettings,
-        store: Arc<dyn JobStore>,
-        executor: impl FnOnce(&JobsSettings) -> Result<Executor, TrialError>,
-    ) -> Result<Self, StartError> {
+    async fn open(settings: JobsSettings, executor: Option<Executor>) -> Result<Self, StartError> {
         let path = settings.data_dir.clone();
-        let spool = Spool::open(&path, settings.data_bytes_max).map_err(|error| match error {
-            OpenError::InUse => StartError::DataDirInUse { path },
-            OpenError::Io(source) => StartError::DataDir { path, source },
+        let space =
+            SpaceLimits { bytes_max: settings.data_bytes_max, free_bytes_min: settings.disk_free_bytes_min };
+        let spool = Spool::open(&path, space).map_err(|error| match error {
+            OpenError::InUse => StartError::DataDirInUse { path: path.clone() },
+            OpenError::Io(source) => StartError::DataDir { path: path.clone(), source },
         })?;
-        // With the spool this server owns the directory.
-        let executor = executor(&settings).map_err(StartError::Isolation)?;
+        let executor = match executor {
+            Some(executor) => executor,
+            None => Executor::of(&settings).await?,
+        };
+        let path = path.join(STORE_FILE);
+        let unusable = |why: String| StartError::Store { path: path.clone(), why };
+        let store = SqliteStore::open(&path).map_err(|error| unusable(error.to_string()))?;
         let service = Arc::new(Service {
             settings,
-            store,
+            store: Arc::new(store),
             spool,
             executor,
+            worker: uuid::Uuid::now_v7().to_string(),
             live: LiveJobs::default(),
             work: Notify::new(),
             draining: CancellationToken::new(),
+            stopping: CancellationToken::new(),
             slots: TaskTracker::new(),
             mean_run_ms: AtomicU64::new(1000),
         });
+        service.take_over().await.map_err(|problem| unusable(problem.detail))?;
         for _ in 0..service.settings.slots {
             service.slots.spawn(slot::serve(Arc::clone(&service)));
         }
@@ -174,16 +191,49 @@ impl Jobs {
         Ok(view::job(&row, self.0.live.get(id).as_deref()))
     }
 
-    /// The job when it has ended, or as it is after `patience`.
+    /// The job when it has ended, or as it is after `patience`, or when the server ends before it.
     ///
     /// # Errors
     /// `not-found`, also when it is deleted meanwhile.
     pub async fn wait(&self, id: JobId, patience: Duration) -> Result<Job, Problem> {
-        if let Some(live) = self.0.live.get(id) {
-            // Either way the row says how the job is.
-            let _ = tokio::time::timeout(patience, live.ended.cancelled()).await;
+        let service = &self.0;
+        let patience = tokio::time::sleep(patience);
+        tokio::pin!(patience);
+        loop {
+            let is_draining = service.draining.is_cancelled();
+            let live = service.live.watch(id);
+            let row = service.row(id).await.inspect_err(|_| service.live.end(id))?;
+            if row.state.is_final() {
+                service.live.end(id);
+                return Ok(view::job(&row, None));
+            }
+            if (is_draining && row.state == JobState::Queued) || service.stopping.is_cancelled() {
+                return Ok(view::job(&row, Some(&live)));
+            }
+            tokio::select! {
+                () = live.job.ended.cancelled() => {}
+                () = service.draining.cancelled(), if !is_draining => {}
+                () = service.stopping.cancelled() => {}
+                () = &mut patience => return self.get(id).await,
+            }
         }
-        self.get(id).await
+    }
+
+    /// Jobs of one owner, the latest first.
+    ///
+    /// # Errors
+    /// `store-unavailable`.
+    pub async fn list(&self, query: ListQuery) -> Result<Vec<Job>, Problem> {
+        let rows = self.0.store.list(query).await.map_err(|error| store_problem(&error))?;
+        let mut jobs = Vec::with_capacity(rows.len());
+        for mut row in rows {
+            if row.is_due() {
+                self.0.expire(row.id).await;
+                row.state = JobState::Expired;
+            }
+            jobs.push(view::job(&row, self.0.live.get(row.id).as_deref()));
+        }
+        Ok(jobs)
     }
 
     /// Asks the job to end; a queued one ends at once, a running one within moments, an ended one stays as it is.
@@ -191,12 +241,25 @@ impl Jobs {
     /// # Errors
     /// `not-found`.
     pub async fn cancel(&self, id: JobId) -> Result<Job, Problem> {
-        let row = self.0.row(id).await?;
-        if let Some(live) = self.0.live.get(id) {
-            live.stop.cancel();
+        let service = &self.0;
+        let row = service.row(id).await?;
+        let problem = Problem::from(&Stopped::Cancelled);
+        let ending = Ending::without_files(JobState::Cancelled, Some(problem));
+        if !row.state.is_final() {
+            // Also a slot that claims the job in this moment is to hear of it.
+            service.live.cancel(id);
+            let was_queued =
+                service.store.cancel(id, ending.clone()).await.map_err(|error| store_problem(&error))?;
+            if was_queued {
+                meters::finished(row.operation, &ending);
+            }
         }
-        self.0.end_queued(&row, JobState::Cancelled, Problem::from(&Stopped::Cancelled)).await;
-        self.get(id).await
+        let row = service.row(id).await.inspect_err(|_| service.live.end(id))?;
+        if row.state.is_final() {
+            service.live.end(id);
+            service.tell_load().await;
+        }
+        Ok(view::job(&row, service.live.get(id).as_deref()))
     }
 
     /// Removes the job and its files; one that is running is cancelled first.
@@ -205,7 +268,7 @@ impl Jobs {
     /// `not-found`.
     pub async fn delete(&self, id: JobId) -> Result<(), Problem> {
         if let Some(live) = self.0.live.get(id) {
-            live.stop.cancel();
+            live.make_void();
         }
         let orphans = self.0.store.delete(id).await.map_err(|error| store_problem(&error))?;
         self.0.live.end(id);
@@ -241,17 +304,17 @@ impl Jobs {
     /// As [`result`](Self::result); `not-found` when there are fewer.
     pub async fn level(&self, id: JobId, level: usize) -> Result<StoredFile, Problem> {
         let row = self.0.row(id).await?;
-        let finish = ended(&row)?;
-        if finish.result.is_none() {
+        let ending = ended(&row)?;
+        if ending.result.is_none() {
             return Err(self.with_report(reason_for_nothing(&row, "mesh"), id).await);
         }
-        match finish.results().nth(level) {
+        match ending.results().nth(level) {
             Some(result) => {
                 let name = view::result_name(&row, result.encoding, level);
                 StoredFile::open(&self.0.spool, &result.blob, Some(result.encoding), name).await
             }
             None => {
-                let detail = format!("the job has {} meshes", finish.results().count());
+                let detail = format!("the job has {} meshes", ending.results().count());
                 Err(Problem::new(ProblemCode::NotFound, detail))
             }
         }
@@ -311,49 +374,39 @@ impl Service {
         ))
     }
 
+    /// What an earlier run of the server left: its runs are lost, its files are named by rows or go.
+    async fn take_over(self: &Arc<Self>) -> Result<(), Problem> {
+        self.recover(Leases::All).await.map_err(|error| store_problem(&error))?;
+        self.collect_orphans().await?;
+        for (id, at) in self.store.deadlines().await.map_err(|error| store_problem(&error))? {
+            tokio::spawn(end_overdue(Arc::clone(self), id, at));
+        }
+        Ok(())
+    }
+
     /// The row; one whose time is over has expired, whether or not the sweep has come by.
     pub(super) async fn row(&self, id: JobId) -> Result<JobRow, Problem> {
         let row = self.store.get(id).await.map_err(|error| store_problem(&error))?;
-        let is_due = row.finish.as_ref().is_some_and(|finish| finish.expires_at <= now());
-        if !is_due || row.state == JobState::Expired {
+        if !row.is_due() {
             return Ok(row);
         }
         self.expire(id).await;
         self.store.get(id).await.map_err(|error| store_problem(&error))
     }
 
-    /// The end of `row` without files, now.
-    pub(super) fn finish(&self, row: &JobRow, state: JobState, problem: Option<Problem>) -> Finish {
-        let at = now();
-        Finish {
-            state,
-            at,
-            expires_at: self.expiry(row, at),
-            progress: Progress { stage: None, fraction: 0.0 },
-            outcome: None,
-            problem,
-            timing_ms: None,
-            report: None,
-            result: None,
-            levels: Vec::new(),
-        }
-    }
-
-    /// When a job that ends `at` must go: the server's time, or the caller's when that is shorter.
-    pub(super) fn expiry(&self, row: &JobRow, at: Timestamp) -> Timestamp {
-        let asked = row.options.result_ttl.map(Duration::from_secs).unwrap_or(Duration::MAX);
-        let kept = asked.min(self.settings.result_ttl);
-        at.saturating_add(SignedDuration::try_from(kept).unwrap_or(SignedDuration::MAX))
-            .unwrap_or(Timestamp::MAX)
+    /// Time for which the files of a job are kept: the server's, or the caller's when that is shorter.
+    pub(super) fn keep_for(&self, options: &Options) -> Duration {
+        let asked = options.result_ttl.map(Duration::from_secs).unwrap_or(Duration::MAX);
+        asked.min(self.settings.result_ttl)
     }
 
     /// Ends the job if it is still queued.
     pub(super) async fn end_queued(&self, row: &JobRow, state: JobState, problem: Problem) {
-        let finish = self.finish(row, state, Some(problem));
-        match self.store.finish_queued(row.id, finish.clone()).await {
+        let ending = Ending::without_files(state, Some(problem));
+        match self.store.end_queued(row.id, ending.clone()).await {
             Ok(true) => {
                 self.live.end(row.id);
-                meters::finished(row.operation, &finish);
+                meters::finished(row.operation, &ending);
             }
             Ok(false) => {}
             Err(error) => tracing::warn!(job = %row.id, %error, "a queued job could not be ended"),
@@ -369,17 +422,11 @@ impl Service {
     }
 }
 
-/// The time, to the millisecond.
-pub(super) fn now() -> Timestamp {
-    let now = Timestamp::now();
-    now.round(jiff::Unit::Millisecond).unwrap_or(now)
-}
-
 /// How the job ended, if it has and its files are kept.
-fn ended(row: &JobRow) -> Result<&Finish, Problem> {
-    match (&row.finish, row.state) {
+fn ended(row: &JobRow) -> Result<&Ending, Problem> {
+    match (&row.ending, row.state) {
         (_, JobState::Expired) => Err(expired()),
-        (Some(finish), _) => Ok(finish),
+        (Some(ending), _) => Ok(ending),
         (None, state) => {
             let problem = Problem::new(ProblemCode::JobNotFinished, format!("the job is {state}"));
             Err(problem.with_instance(format!("/v1/jobs/{}", row.id)))
@@ -389,7 +436,7 @@ fn ended(row: &JobRow) -> Result<&Finish, Problem> {
 
 /// Why an ended job lacks a file: its problem, or that its operation gives none.
 fn reason_for_nothing(row: &JobRow, what: &str) -> Problem {
-    let problem = row.finish.as_ref().and_then(|finish| finish.problem.clone());
+    let problem = row.ending.as_ref().and_then(|ending| ending.problem.clone());
     let none =
         || Problem::new(ProblemCode::NotFound, format!("the operation {} gives no {what}", row.operation));
     problem.unwrap_or_else(none).with_instance(format!("/v1/jobs/{}", row.id))
@@ -404,8 +451,14 @@ pub(super) fn store_problem(error: &StoreError) -> Problem {
     match error {
         StoreError::NotFound => not_found(),
         StoreError::Unavailable(_) => {
+            tracing::error!(%error, "the job store does not answer");
             Problem::new(ProblemCode::StoreUnavailable, "the job store does not answer")
         }
+        StoreError::Full(_) => Problem::new(ProblemCode::StorageFull, "there is no room for another job"),
+        StoreError::KeyReused => Problem::new(
+            ProblemCode::IdempotencyKeyReused,
+            "the `Idempotency-Key` was used with another mesh, operation or options",
+        ),
         StoreError::QueueFull { .. } | StoreError::ClaimVoid => {
             Problem::new(ProblemCode::Internal, error.to_string())
         }

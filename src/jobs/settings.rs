@@ -22,6 +22,12 @@ pub struct JobsSettings {
     pub upload_bytes_max: u64,
     /// Most bytes of uploads and results on disk; the oldest finished jobs go first. Default 20 GiB.
     pub data_bytes_max: u64,
+    /// Bytes of the disk that stay free. Default 256 MiB.
+    pub disk_free_bytes_min: u64,
+    /// Time after which a job whose executor is not heard of is queued again. Default 30 s.
+    pub lease: Duration,
+    /// Lost runs after which a job fails. Default 3.
+    pub attempts_max: u32,
     /// Time for which a finished job is kept. Default 24 h.
     pub result_ttl: Duration,
     /// Longest run of one job. Default 10 min.
@@ -54,6 +60,9 @@ impl JobsSettings {
             jobs_max: 20_000,
             upload_bytes_max: 512 << 20,
             data_bytes_max: 20 << 30,
+            disk_free_bytes_min: 256 << 20,
+            lease: Duration::from_secs(30),
+            attempts_max: 3,
             result_ttl: Duration::from_secs(24 * 60 * 60),
             deadline_max: Duration::from_secs(10 * 60),
             engine_bytes_max: 4 << 30,

@@ -4,17 +4,21 @@ use std::pin::pin;
 use std::sync::Arc;
 use std::time::Duration;
 
+use tokio_util::task::AbortOnDropHandle;
+
 use super::attempt::attempt;
 use super::clock::StageClock;
-use super::drain::draining;
+use super::heartbeat::beat;
 use super::live::Live;
 use super::product::{Content, Made, Product};
-use super::service::{Service, now};
-use super::store::{BlobRef, Finish, JobRow, ResultRef, StoreError};
+use super::service::Service;
+use super::settle::{Conclusion, settle};
+use super::spool::Written;
+use super::store::{ClaimRequest, Ending, JobRow, Lane, ResultRef};
 use crate::wire::{JobState, Problem, ProblemCode, Progress};
 
 /// Pause before a store that did not answer is asked again.
-const STORE_PAUSE: Duration = Duration::from_secs(1);
+pub(super) const STORE_PAUSE: Duration = Duration::from_secs(1);
 
 /// Runs jobs until the service drains.
 pub(super) async fn serve(service: Arc<Service>) {
@@ -22,7 +26,12 @@ pub(super) async fn serve(service: Arc<Service>) {
         // Listening begins before the look into the queue, so that no job is missed in between.
         let mut work = pin!(service.work.notified());
         work.as_mut().enable();
-        match service.store.claim(now()).await {
+        let request = ClaimRequest {
+            worker: service.worker.clone(),
+            lease: service.settings.lease,
+            prefer: Lane::Interactive,
+        };
+        match service.store.claim(request).await {
             Ok(Some(row)) => run(&service, row).await,
             Ok(None) => {
                 tokio::select! {
@@ -39,100 +48,84 @@ pub(super) async fn serve(service: Arc<Service>) {
 }
 
 async fn run(service: &Arc<Service>, row: JobRow) {
-    // Deleted since it was claimed.
-    let Some(live) = service.live.get(row.id) else { return };
     let clock = StageClock::start(row.operation);
-    // A job is claimed once in this process, so the place is empty.
-    let _ = live.clock.set(clock.clone());
+    let live = service.live.begin(row.claim(), clock.clone());
+    let heart = beat(Arc::clone(service), row.claim(), row.cancel_at, Arc::clone(&live));
+    let heart = AbortOnDropHandle::new(tokio::spawn(heart));
     service.tell_load().await;
     let ended = attempt(service, &row, &live, &clock).await;
     service.note_run_time(&clock);
-    let finish = conclude(service, &row, &live, &clock, ended).await;
-    let (id, operation) = (row.id, row.operation);
-    tracing::info!(
-        job = %id, %operation, state = %finish.state, ms = clock.timing_ms().total,
-        problem = finish.problem.as_ref().map(|problem| problem.detail.as_str()), "job ended"
-    );
-    commit(service, &row, finish).await;
-    service.live.end(id);
+    let conclusion = conclude(service, &row, &live, &clock, ended).await;
+    settle(service, &row, &live, conclusion).await;
+    drop(heart);
     service.tell_load().await;
 }
 
-/// Turns the end of a run into what is kept of it; files are kept here.
+/// Turns the end of a run into what is kept of it; files are written here.
 async fn conclude(
     service: &Service,
     row: &JobRow,
     live: &Live,
     clock: &StageClock,
     ended: Result<Product<Content>, Problem>,
-) -> Finish {
+) -> Conclusion {
     let kept = match ended {
         Ok(product) => keep_files(service, row, product).await,
         Err(problem) => Err(problem),
     };
-    kept.unwrap_or_else(|problem| {
-        let (state, problem) = match problem.code {
-            ProblemCode::Cancelled if live.is_drained.get().is_some() => (JobState::Failed, draining()),
-            ProblemCode::Cancelled => (JobState::Cancelled, problem),
-            _ => (JobState::Failed, problem),
-        };
-        Finish {
+    let problem = match kept {
+        Ok((ending, written)) => return Conclusion::End(Box::new(ending), written),
+        Err(problem) => problem,
+    };
+    let end = |state, problem| {
+        let partly = Ending {
             timing_ms: Some(clock.timing_ms()),
             progress: clock.progress(),
-            ..service.finish(row, state, Some(problem))
-        }
-    })
+            ..Ending::without_files(state, Some(problem))
+        };
+        Conclusion::End(Box::new(partly), Vec::new())
+    };
+    match problem.code {
+        ProblemCode::Cancelled if live.is_cancelled() => end(JobState::Cancelled, problem),
+        ProblemCode::Cancelled if live.is_void.get().is_some() => Conclusion::Void,
+        ProblemCode::Cancelled if live.is_drained.get().is_some() => Conclusion::Release,
+        ProblemCode::Cancelled => end(JobState::Cancelled, problem),
+        // The run is lost with its executor, not ended by what it was given.
+        ProblemCode::EngineCrashed | ProblemCode::WorkerLost => Conclusion::Lose(Box::new(problem)),
+        _ => end(JobState::Failed, problem),
+    }
 }
 
-async fn keep_files(service: &Service, row: &JobRow, product: Product<Content>) -> Result<Finish, Problem> {
+async fn keep_files(
+    service: &Service,
+    row: &JobRow,
+    product: Product<Content>,
+) -> Result<(Ending, Vec<Written>), Problem> {
     let Product { outcome, problem, timing_ms, report, result, levels } = product;
-    let mut kept = Vec::with_capacity(1 + levels.len());
+    // Should one file fail, those before it go with this list.
+    let mut written = Vec::new();
     let has_result = result.is_some();
-    for Made { content, encoding } in result.into_iter().chain(levels) {
+    let mut results = Vec::new();
+    for (number, Made { content, encoding }) in result.into_iter().chain(levels).enumerate() {
         let blob = match content {
-            Some(content) => service.keep(content).await,
-            None => Ok(row.input.clone()),
-        };
-        match blob {
-            Ok(blob) => kept.push(ResultRef { blob, encoding }),
-            Err(problem) => {
-                service.remove_own(row, kept.iter().map(|result| &result.blob));
-                return Err(problem);
+            Some(content) => {
+                service.keep(row.claim(), format!("mesh-{number}"), content, &mut written).await?
             }
-        }
+            None => row.input.clone(),
+        };
+        results.push(ResultRef { blob, encoding });
     }
-    let report = match service.keep(report).await {
-        Ok(report) => report,
-        Err(problem) => {
-            service.remove_own(row, kept.iter().map(|result| &result.blob));
-            return Err(problem);
-        }
-    };
-    let levels = kept.split_off(usize::from(has_result).min(kept.len()));
+    let report = service.keep(row.claim(), "report.json".to_owned(), report, &mut written).await?;
+    let levels = results.split_off(usize::from(has_result).min(results.len()));
     let state = if problem.is_some() { JobState::Failed } else { JobState::Succeeded };
-    Ok(Finish {
+    let ending = Ending {
         timing_ms: Some(timing_ms),
         progress: Progress { stage: None, fraction: 1.0 },
         outcome,
         report: Some(report),
-        result: kept.pop(),
+        result: results.pop(),
         levels,
-        ..service.finish(row, state, problem)
-    })
-}
-
-/// Makes the end known, unless the job was deleted meanwhile: then its files go.
-async fn commit(service: &Service, row: &JobRow, finish: Finish) {
-    let written: Vec<BlobRef> =
-        finish.report.iter().chain(finish.results().map(|result| &result.blob)).cloned().collect();
-    loop {
-        match service.store.finish(row.id, row.epoch, finish.clone()).await {
-            Ok(()) => return super::meters::finished(row.operation, &finish),
-            Err(StoreError::Unavailable(error)) => {
-                tracing::error!(job = %row.id, error, "the end of a job could not be stored");
-                tokio::time::sleep(STORE_PAUSE).await;
-            }
-            Err(_) => return service.remove_own(row, written.iter()),
-        }
-    }
+        ..Ending::without_files(state, problem)
+    };
+    Ok((ending, written))
 }

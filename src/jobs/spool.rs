@@ -1,25 +1,36 @@
-//! Files under the data directory: who owns it, how full it is.
+//! The data directory: who owns it, how full it is, and what in it nobody names.
 
+use std::collections::HashSet;
+use std::fmt;
 use std::fs::{self, File, TryLockError};
-use std::io;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use sha2::{Digest, Sha256};
 use uuid::Uuid;
 
+use super::blobs::{BlobStore, BlobWriter, LocalBlobs, StoredBlob};
 use super::product::MadeFile;
-use super::store::BlobRef;
+use super::store::{BlobRef, ClaimRef};
 
 /// The files of one server.
-#[derive(Debug)]
 pub(super) struct Spool {
-    dir: PathBuf,
+    blobs: Arc<dyn BlobStore>,
     /// Held as long as the server runs: two servers must not share a directory.
     _lock: File,
     bytes: AtomicU64,
     bytes_max: u64,
+    free_bytes_min: u64,
+    /// Files that this process writes or has written and that no row names yet.
+    unnamed: Mutex<HashSet<String>>,
+}
+
+impl fmt::Debug for Spool {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Spool").field("bytes", &self.bytes).finish_non_exhaustive()
+    }
 }
 
 /// A directory that cannot be used.
@@ -35,30 +46,40 @@ impl From<io::Error> for OpenError {
     }
 }
 
+/// How full the directory may be.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SpaceLimits {
+    /// Most bytes of files.
+    pub(super) bytes_max: u64,
+    /// Bytes of the disk that stay free.
+    pub(super) free_bytes_min: u64,
+}
+
 impl Spool {
-    /// Takes the directory over; files of an earlier run go, because their rows are gone.
-    pub(super) fn open(data_dir: &Path, bytes_max: u64) -> Result<Arc<Self>, OpenError> {
-        let dir = data_dir.join("spool");
-        fs::create_dir_all(&dir)?;
+    /// Takes the directory over, with the files in it.
+    pub(super) fn open(data_dir: &Path, limits: SpaceLimits) -> Result<Arc<Self>, OpenError> {
+        fs::create_dir_all(data_dir)?;
         let lock = File::options().create(true).append(true).open(data_dir.join("lock"))?;
         match lock.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => return Err(OpenError::InUse),
             Err(TryLockError::Error(error)) => return Err(error.into()),
         }
-        for entry in fs::read_dir(&dir)? {
-            fs::remove_file(entry?.path())?;
-        }
-        Ok(Arc::new(Self { dir, _lock: lock, bytes: AtomicU64::new(0), bytes_max }))
+        let blobs = LocalBlobs::open(&data_dir.join("spool"))?;
+        let bytes = blobs.list()?.iter().map(|blob| blob.bytes).sum::<u64>();
+        Ok(Arc::new(Self {
+            blobs: Arc::new(blobs),
+            _lock: lock,
+            bytes: AtomicU64::new(bytes),
+            bytes_max: limits.bytes_max,
+            free_bytes_min: limits.free_bytes_min,
+            unnamed: Mutex::default(),
+        }))
     }
 
-    /// A key that no file has.
-    pub(super) fn new_key() -> String {
-        Uuid::now_v7().simple().to_string()
-    }
-
-    pub(super) fn path(&self, key: &str) -> PathBuf {
-        self.dir.join(key)
+    /// The path of a file.
+    pub(super) fn path(&self, key: &str) -> io::Result<PathBuf> {
+        self.blobs.local(key)
     }
 
     /// Bytes on disk, and those that are about to come.
@@ -70,37 +91,159 @@ impl Spool {
         self.bytes_max
     }
 
+    /// True when `bytes` more would leave too little of the disk.
+    pub(super) fn is_disk_short_of(&self, bytes: u64) -> bool {
+        self.blobs.free_bytes().is_some_and(|free| free < self.free_bytes_min.saturating_add(bytes))
+    }
+
     /// Room for `bytes`, if there is.
     pub(super) fn reserve(self: &Arc<Self>, bytes: u64) -> Option<Space> {
+        if bytes > 0 && self.is_disk_short_of(bytes) {
+            return None;
+        }
         let grown = |used: u64| used.checked_add(bytes).filter(|&total| total <= self.bytes_max);
         self.bytes.fetch_update(Ordering::Relaxed, Ordering::Relaxed, grown).ok()?;
         Some(Space { spool: Arc::clone(self), bytes })
     }
 
-    /// Writes a file into reserved room. Blocks.
-    pub(super) fn write(&self, content: &[u8], space: Space) -> io::Result<BlobRef> {
-        let key = Self::new_key();
-        fs::write(self.path(&key), content).inspect_err(|_| drop(fs::remove_file(self.path(&key))))?;
-        let blob = BlobRef { key, bytes: content.len() as u64, sha256: Sha256::digest(content).into() };
-        space.hand_over(&blob);
-        Ok(blob)
+    /// Begins an upload. Blocks.
+    pub(super) fn begin(self: &Arc<Self>) -> io::Result<(Unnamed, Box<dyn BlobWriter>)> {
+        let unnamed = self.unnamed(format!("in/{}", Uuid::now_v7().simple()));
+        let writer = self.blobs.create(&unnamed.key)?;
+        Ok((unnamed, writer))
     }
 
-    /// Takes a file of the same file system over, into reserved room. Blocks.
-    pub(super) fn adopt(&self, file: &MadeFile, space: Space) -> io::Result<BlobRef> {
-        let key = Self::new_key();
-        fs::rename(&file.path, self.path(&key))?;
-        let blob = BlobRef { key, bytes: file.bytes, sha256: file.sha256 };
+    /// Writes a file of a run into reserved room. Blocks.
+    pub(super) fn write(
+        self: &Arc<Self>,
+        claim: ClaimRef,
+        name: &str,
+        content: &[u8],
+        space: Space,
+    ) -> io::Result<Written> {
+        let unnamed = self.unnamed(format!("out/{}/{}/{name}", claim.id, claim.epoch));
+        let mut writer = self.blobs.create(&unnamed.key)?;
+        writer.write_all(content)?;
+        writer.commit()?;
+        let blob = BlobRef {
+            key: unnamed.key.clone(),
+            bytes: content.len() as u64,
+            sha256: Sha256::digest(content).into(),
+        };
         space.hand_over(&blob);
-        Ok(blob)
+        Ok(Written { blob: Some(blob), unnamed })
+    }
+
+    /// Takes over a file that another process made for a run, into reserved room. Blocks.
+    pub(super) fn adopt(
+        self: &Arc<Self>,
+        claim: ClaimRef,
+        name: &str,
+        file: &MadeFile,
+        space: Space,
+    ) -> io::Result<Written> {
+        let unnamed = self.unnamed(format!("out/{}/{}/{name}", claim.id, claim.epoch));
+        self.blobs.adopt(&file.path, &unnamed.key)?;
+        let blob = BlobRef { key: unnamed.key.clone(), bytes: file.bytes, sha256: file.sha256 };
+        space.hand_over(&blob);
+        Ok(Written { blob: Some(blob), unnamed })
     }
 
     /// Removes a file and gives its room back.
     pub(super) fn remove(&self, blob: &BlobRef) {
-        if let Err(error) = fs::remove_file(self.path(&blob.key)) {
-            tracing::warn!(key = blob.key, %error, "a spool file could not be removed");
+        self.remove_file(&blob.key, blob.bytes);
+    }
+
+    fn remove_file(&self, key: &str, bytes: u64) {
+        match self.blobs.remove(key) {
+            Ok(()) => self.give_back(bytes),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+            Err(error) => tracing::warn!(key, %error, "a file could not be removed"),
         }
-        self.bytes.fetch_sub(blob.bytes, Ordering::Relaxed);
+    }
+
+    fn give_back(&self, bytes: u64) {
+        let shrunk = |used: u64| Some(used.saturating_sub(bytes));
+        // The update never refuses.
+        let _ = self.bytes.fetch_update(Ordering::Relaxed, Ordering::Relaxed, shrunk);
+    }
+
+    fn unnamed(self: &Arc<Self>, key: String) -> Unnamed {
+        self.held().insert(key.clone());
+        Unnamed { spool: Arc::clone(self), key }
+    }
+
+    fn held(&self) -> std::sync::MutexGuard<'_, HashSet<String>> {
+        self.unnamed.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Files that this process does not hold. Blocks.
+    pub(super) fn list(&self) -> io::Result<Vec<StoredBlob>> {
+        // A file is held before it is made, so what is listed was made by now, and who holds it is asked afterwards.
+        let listed = self.blobs.list()?;
+        let held = self.held();
+        Ok(listed.into_iter().filter(|blob| !held.contains(&blob.key)).collect())
+    }
+
+    /// Removes files that nobody names. Blocks.
+    pub(super) fn remove_orphans(&self, orphans: &[StoredBlob]) {
+        for blob in orphans {
+            tracing::info!(key = blob.key, bytes = blob.bytes, "a file that nobody names goes");
+            self.remove_file(&blob.key, blob.bytes);
+        }
+    }
+}
+
+/// The claim whose run wrote the file, if a run did.
+pub(super) fn claim_of(key: &str) -> Option<ClaimRef> {
+    let mut parts = key.strip_prefix("out/")?.split('/');
+    let (id, epoch) = (parts.next()?.parse().ok()?, parts.next()?.parse().ok()?);
+    Some(ClaimRef { id, epoch })
+}
+
+/// Keeps a file from being taken for an orphan, until it is dropped.
+#[derive(Debug)]
+pub(super) struct Unnamed {
+    spool: Arc<Spool>,
+    pub(super) key: String,
+}
+
+impl Drop for Unnamed {
+    fn drop(&mut self) {
+        self.spool.held().remove(&self.key);
+    }
+}
+
+/// A complete file that no row names yet. Dropped before it is [named](Self::named), it is removed.
+#[derive(Debug)]
+pub(super) struct Written {
+    blob: Option<BlobRef>,
+    unnamed: Unnamed,
+}
+
+impl Written {
+    /// The upload that is complete, in room that was reserved for it.
+    pub(super) fn upload(unnamed: Unnamed, blob: BlobRef, space: Space) -> Self {
+        space.hand_over(&blob);
+        Self { blob: Some(blob), unnamed }
+    }
+
+    /// The file.
+    pub(super) fn blob(&self) -> Option<&BlobRef> {
+        self.blob.as_ref()
+    }
+
+    /// A row names the file now.
+    pub(super) fn named(mut self) {
+        self.blob = None;
+    }
+}
+
+impl Drop for Written {
+    fn drop(&mut self) {
+        if let Some(blob) = &self.blob {
+            self.unnamed.spool.remove(blob);
+        }
     }
 }
 
@@ -125,38 +268,70 @@ impl Space {
 
 impl Drop for Space {
     fn drop(&mut self) {
-        self.spool.bytes.fetch_sub(self.bytes, Ordering::Relaxed);
+        self.spool.give_back(self.bytes);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::jobs::store::JobId;
+
+    const LIMITS: SpaceLimits = SpaceLimits { bytes_max: 10, free_bytes_min: 0 };
+
+    fn hello(spool: &Arc<Spool>) -> Written {
+        let claim = ClaimRef { id: JobId::unique(), epoch: 1 };
+        let space = spool.reserve(5).unwrap();
+        spool.write(claim, "mesh", b"hello", space).unwrap()
+    }
 
     #[test]
-    fn a_directory_has_one_owner_who_starts_with_an_empty_spool() {
+    fn a_directory_has_one_owner_and_keeps_its_files_for_the_next_one() {
         let dir = tempfile::tempdir().unwrap();
-        let first = Spool::open(dir.path(), 100).unwrap();
-        let space = first.reserve(5).unwrap();
-        let blob = first.write(b"hello", space).unwrap();
-        assert!(matches!(Spool::open(dir.path(), 100), Err(OpenError::InUse)));
-        assert!(first.path(&blob.key).exists());
+        let first = Spool::open(dir.path(), LIMITS).unwrap();
+        let written = hello(&first);
+        let key = written.blob().unwrap().key.clone();
+        assert!(matches!(Spool::open(dir.path(), LIMITS), Err(OpenError::InUse)));
+        written.named();
         drop(first);
-        let second = Spool::open(dir.path(), 100).unwrap();
-        assert!(!second.path(&blob.key).exists());
-        assert_eq!(second.bytes(), 0);
+        let second = Spool::open(dir.path(), LIMITS).unwrap();
+        assert!(second.path(&key).unwrap().exists());
+        assert_eq!(second.bytes(), 5, "what is there counts");
     }
 
     #[test]
     fn room_is_counted_from_reservation_to_removal() {
         let dir = tempfile::tempdir().unwrap();
-        let spool = Spool::open(dir.path(), 10).unwrap();
+        let spool = Spool::open(dir.path(), LIMITS).unwrap();
         let mut space = spool.reserve(4).unwrap();
         space.absorb(spool.reserve(5).unwrap());
         assert!(spool.reserve(2).is_none());
-        let blob = spool.write(b"hello", space).unwrap();
-        assert_eq!(spool.bytes(), 5, "what the file does not fill is given back");
-        spool.remove(&blob);
-        assert_eq!(spool.bytes(), 0);
+        drop(space);
+        let written = hello(&spool);
+        assert_eq!(spool.bytes(), 5);
+        drop(written);
+        assert_eq!(spool.bytes(), 0, "a file that nobody came to name is gone");
+        assert!(spool.list().unwrap().is_empty());
+    }
+
+    #[test]
+    fn what_the_process_still_holds_is_no_orphan() {
+        let dir = tempfile::tempdir().unwrap();
+        let spool = Spool::open(dir.path(), LIMITS).unwrap();
+        let (upload, writer) = spool.begin().unwrap();
+        let written = hello(&spool);
+        assert!(spool.list().unwrap().is_empty());
+        let key = written.blob().unwrap().key.clone();
+        assert!(claim_of(&key).is_some_and(|claim| claim.epoch == 1) && claim_of(&upload.key).is_none());
+        written.named();
+        drop((upload, writer));
+        assert_eq!(spool.list().unwrap(), [StoredBlob { key, bytes: 5 }]);
+    }
+
+    #[test]
+    fn a_disk_that_is_nearly_full_takes_no_more() {
+        let dir = tempfile::tempdir().unwrap();
+        let spool = Spool::open(dir.path(), SpaceLimits { free_bytes_min: u64::MAX, ..LIMITS }).unwrap();
+        assert!(spool.reserve(1).is_none() && spool.reserve(0).is_some());
     }
 }

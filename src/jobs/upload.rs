@@ -1,13 +1,14 @@
 //! A mesh on its way in: streamed to disk, counted and hashed, in constant memory.
 
-use std::fs::File;
-use std::io::{self, Write};
+use std::io::{self, Write as _};
 use std::sync::Arc;
 
 use sha2::{Digest, Sha256};
 
+use super::blobs::BlobWriter;
+use super::retention::on_disk;
 use super::service::Service;
-use super::spool::{Space, Spool};
+use super::spool::{Space, Unnamed, Written};
 use super::store::BlobRef;
 use crate::wire::{Problem, ProblemCode};
 
@@ -15,38 +16,49 @@ use crate::wire::{Problem, ProblemCode};
 const BLOCK_BYTES: usize = 256 << 10;
 
 /// An upload that is coming in. Dropped before [`finish`](Self::finish), it leaves nothing behind.
-#[derive(Debug)]
 pub struct Upload {
     service: Arc<Service>,
-    key: String,
     /// `None` while a block is being written; it stays so when that write is abandoned or fails.
     sink: Option<Sink>,
     block: Vec<u8>,
     bytes: u64,
-    /// Reserved room; `None` once it belongs to an [`Uploaded`].
-    space: Option<Space>,
+    space: Space,
+    unnamed: Unnamed,
 }
 
-#[derive(Debug)]
+impl std::fmt::Debug for Upload {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Upload")
+            .field("key", &self.unnamed.key)
+            .field("bytes", &self.bytes)
+            .finish_non_exhaustive()
+    }
+}
+
 struct Sink {
-    file: File,
+    writer: Box<dyn BlobWriter>,
     digest: Sha256,
 }
 
 impl Sink {
     fn write(&mut self, block: &[u8]) -> io::Result<()> {
         self.digest.update(block);
-        self.file.write_all(block)
+        self.writer.write_all(block)
+    }
+
+    fn commit(self) -> io::Result<[u8; 32]> {
+        self.writer.commit()?;
+        Ok(self.digest.finalize().into())
     }
 }
 
 impl Upload {
     pub(super) async fn begin(service: Arc<Service>) -> Result<Self, Problem> {
         let space = service.make_room(0).await?;
-        let key = Spool::new_key();
-        let file = File::create_new(service.spool.path(&key)).map_err(|error| disk_problem(&error))?;
-        let sink = Sink { file, digest: Sha256::new() };
-        Ok(Self { service, key, sink: Some(sink), block: Vec::new(), bytes: 0, space: Some(space) })
+        let spool = Arc::clone(&service.spool);
+        let (unnamed, writer) = on_disk(move || spool.begin()).await?;
+        let sink = Sink { writer, digest: Sha256::new() };
+        Ok(Self { service, sink: Some(sink), block: Vec::new(), bytes: 0, space, unnamed })
     }
 
     /// Takes the next bytes.
@@ -72,18 +84,17 @@ impl Upload {
         self.bytes
     }
 
-    /// Ends the upload.
+    /// Ends the upload; it is on the disk then.
     ///
     /// # Errors
     /// `storage-full`, `internal` when the disk fails.
     pub async fn finish(mut self) -> Result<Uploaded, Problem> {
         self.flush().await?;
-        let sink = self.sink.take().ok_or_else(broken)?;
-        let space = self.space.take().ok_or_else(broken)?;
-        let blob =
-            BlobRef { key: self.key.clone(), bytes: self.bytes, sha256: sink.digest.finalize().into() };
-        space.hand_over(&blob);
-        Ok(Uploaded { spool: Arc::clone(&self.service.spool), blob: Some(blob) })
+        let Self { sink, bytes, space, unnamed, .. } = self;
+        let sink = sink.ok_or_else(broken)?;
+        let sha256 = on_disk(move || sink.commit()).await?;
+        let blob = BlobRef { key: unnamed.key.clone(), bytes, sha256 };
+        Ok(Uploaded(Written::upload(unnamed, blob, space)))
     }
 
     async fn flush(&mut self) -> Result<(), Problem> {
@@ -91,53 +102,33 @@ impl Upload {
             return Ok(());
         }
         let room = self.service.make_room(self.block.len() as u64).await?;
-        let (Some(mut sink), Some(space)) = (self.sink.take(), &mut self.space) else { return Err(broken()) };
-        space.absorb(room);
+        let Some(mut sink) = self.sink.take() else { return Err(broken()) };
+        self.space.absorb(room);
         let mut block = std::mem::take(&mut self.block);
-        let written = tokio::task::spawn_blocking(move || {
+        let (sink, block) = on_disk(move || {
             sink.write(&block)?;
             block.clear();
-            io::Result::Ok((sink, block))
-        });
-        let (sink, block) = written.await.map_err(|_| broken())?.map_err(|error| disk_problem(&error))?;
+            Ok((sink, block))
+        })
+        .await?;
         self.sink = Some(sink);
         self.block = block;
         Ok(())
     }
 }
 
-impl Drop for Upload {
-    fn drop(&mut self) {
-        if self.space.is_some() {
-            // Nobody hears of an unfinished upload; a file that stays goes at the next start.
-            let _ = std::fs::remove_file(self.service.spool.path(&self.key));
-        }
-    }
-}
-
 /// A complete upload, to be handed to [`Jobs::submit`](super::Jobs::submit). Dropped instead, it leaves nothing behind.
 #[derive(Debug)]
-pub struct Uploaded {
-    spool: Arc<Spool>,
-    blob: Option<BlobRef>,
-}
+pub struct Uploaded(Written);
 
 impl Uploaded {
-    /// The file, which is no longer removed on drop.
-    pub(super) fn keep(mut self) -> Option<BlobRef> {
-        self.blob.take()
+    /// A row names the file now.
+    pub(super) fn named(self) {
+        self.0.named();
     }
 
     pub(super) fn blob(&self) -> Option<&BlobRef> {
-        self.blob.as_ref()
-    }
-}
-
-impl Drop for Uploaded {
-    fn drop(&mut self) {
-        if let Some(blob) = &self.blob {
-            self.spool.remove(blob);
-        }
+        self.0.blob()
     }
 }
 

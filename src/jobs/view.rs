@@ -28,7 +28,8 @@ impl StoredFile {
         encoding: Option<Encoding>,
         file_name: String,
     ) -> Result<Self, Problem> {
-        let file = match tokio::fs::File::open(spool.path(&blob.key)).await {
+        let path = spool.path(&blob.key).map_err(|error| disk_problem(&error))?;
+        let file = match tokio::fs::File::open(path).await {
             Ok(file) => file,
             // Expired or deleted between the look at the row and this one.
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Err(expired()),
@@ -53,24 +54,26 @@ impl StoredFile {
 /// The public view of `row`; `live` is what this process knows of a running job.
 pub(super) fn job(row: &JobRow, live: Option<&Live>) -> Job {
     let id = row.id.to_string();
-    let finish = row.finish.as_ref();
+    let ending = row.ending.as_ref();
     let has_files = row.state != JobState::Expired;
-    let has_report = has_files && finish.is_some_and(|finish| finish.report.is_some());
-    let has_result = has_files && finish.is_some_and(|finish| finish.result.is_some());
+    let has_report = has_files && ending.is_some_and(|ending| ending.report.is_some());
+    let has_result = has_files && ending.is_some_and(|ending| ending.result.is_some());
     let links = Links::new(&id, has_report, has_result);
     Job {
         state: row.state,
         operation: row.operation,
         created_at: row.created_at,
         started_at: row.started_at,
-        finished_at: finish.map(|finish| finish.at),
-        expires_at: finish.map(|finish| finish.expires_at),
+        finished_at: row.finished_at,
+        expires_at: row.expires_at,
         progress: progress(row, live),
-        outcome: finish.and_then(|finish| finish.outcome),
-        problem: finish
-            .and_then(|finish| finish.problem.clone())
+        outcome: ending.and_then(|ending| ending.outcome),
+        problem: ending
+            .and_then(|ending| ending.problem.clone())
             .map(|problem| problem.with_instance(&links.this)),
-        timing_ms: finish.and_then(|finish| finish.timing_ms),
+        timing_ms: ending.and_then(|ending| ending.timing_ms),
+        attempts: row.attempts,
+        labels: row.labels.clone(),
         cached: row.is_cached,
         id,
         links,
@@ -78,9 +81,9 @@ pub(super) fn job(row: &JobRow, live: Option<&Live>) -> Job {
 }
 
 fn progress(row: &JobRow, live: Option<&Live>) -> Progress {
-    let clock = live.and_then(|live| live.clock.get());
-    match (&row.finish, clock) {
-        (Some(finish), _) => finish.progress,
+    let clock = live.and_then(|live| live.clock.as_ref());
+    match (&row.ending, clock) {
+        (Some(ending), _) => ending.progress,
         (None, Some(clock)) => clock.progress(),
         (None, None) => Progress { stage: None, fraction: 0.0 },
     }
@@ -88,8 +91,8 @@ fn progress(row: &JobRow, live: Option<&Live>) -> Progress {
 
 /// Name for a mesh of a job: that of the upload, marked when it was changed, with a number when there are several.
 pub(super) fn result_name(row: &JobRow, encoding: Encoding, level: usize) -> String {
-    let finish = row.finish.as_ref();
-    let mark = match finish.and_then(|finish| finish.outcome) {
+    let ending = row.ending.as_ref();
+    let mark = match ending.and_then(|ending| ending.outcome) {
         Some(Outcome::Simplified) => "-simplified",
         Some(Outcome::CutStitched) => "-cut-stitched",
         Some(Outcome::Repaired) => "-repaired",
@@ -98,7 +101,7 @@ pub(super) fn result_name(row: &JobRow, encoding: Encoding, level: usize) -> Str
         _ => "",
     };
     let format = crate::formats::Encoding::from(encoding).format().into();
-    let has_levels = finish.is_some_and(|finish| !finish.levels.is_empty());
+    let has_levels = ending.is_some_and(|ending| !ending.levels.is_empty());
     let number = if has_levels { format!("-{}", level + 1) } else { String::new() };
     format!("{}{mark}{number}.{}", stem(row), wire::extension_of(format))
 }

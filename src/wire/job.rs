@@ -1,5 +1,7 @@
 //! A job as the service shows it.
 
+use std::collections::BTreeMap;
+
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -67,6 +69,9 @@ impl Links {
     }
 }
 
+/// Words of the caller about a job, by name.
+pub type Labels = BTreeMap<String, String>;
+
 /// A job.
 #[derive(Debug, Clone, Serialize, ToSchema)]
 pub struct Job {
@@ -99,6 +104,10 @@ pub struct Job {
     /// Time of each pass; null before it ends.
     #[schema(required)]
     pub timing_ms: Option<TimingMs>,
+    /// How many of its runs were lost with the process that made them.
+    pub attempts: u32,
+    /// What the caller has written on it, by name.
+    pub labels: BTreeMap<String, String>,
     /// The result is that of an earlier job with the same bytes, options and engine.
     pub cached: bool,
     /// Where to go from here.

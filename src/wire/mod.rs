@@ -30,7 +30,7 @@ pub(crate) mod sample;
 
 pub use certificate::{Certificate, Claim, Reading, Shell, Violation, ViolationCount};
 pub use formats::{FormatInfo, extension_of, format_of_media_type, formats, media_type_of};
-pub use job::{Job, JobState, Links, Progress};
+pub use job::{Job, JobState, Labels, Links, Progress};
 pub use level::Level;
 pub use limits::Limits;
 pub use mesh_answers::{Proximity, TestCounts, VolumeInterval, VolumeMethod, Watertight};

@@ -7,7 +7,9 @@ use serde_json::{Value, json};
 
 /// A server of this very binary.
 pub(crate) fn server(settings: &[&str]) -> Server {
-    Server::of(&std::env::current_exe().unwrap(), settings)
+    // A run that is lost is tried again; here once is enough.
+    let settings = [settings, &["--attempts-max", "1"]].concat();
+    Server::of(&std::env::current_exe().unwrap(), &settings)
 }
 
 /// The problem of a job with this fault.

@@ -1,6 +1,6 @@
 //! A process of its own changes where a job runs, not what comes of it.
 
-use crate::meshes::{CROSSING, SOLID};
+use crate::meshes::{SOLID, long_job};
 use crate::server::Server;
 use serde_json::Value;
 use std::io::Read as _;
@@ -78,14 +78,15 @@ fn limits_of_the_engine_are_refused_by_the_engine_itself() {
 
 #[test]
 fn several_results_come_from_a_process_as_several_files() {
-    let path = "/v1/simplify?targets=[{\"faces\":8},{\"faces\":4}]";
+    let path = "/v1/simplify?targets=[{\"faces\":100},{\"faces\":50}]";
     let archive = |server: Server| {
-        let response = server.post(path).header("accept", "application/zip").body(CROSSING).send().unwrap();
+        let response =
+            server.post(path).header("accept", "application/zip").body(long_job(10)).send().unwrap();
         assert_eq!(response.status(), 200);
         let bytes = response.bytes().unwrap();
         let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).unwrap();
         let names: Vec<String> = archive.file_names().map(|name| name.unwrap().into_owned()).collect();
-        let meshes = names.iter().filter(|name| name.ends_with(".off")).map(|name| {
+        let meshes = names.iter().filter(|name| name.ends_with(".stl")).map(|name| {
             let mut mesh = Vec::new();
             archive.by_name(name).unwrap().read_to_end(&mut mesh).unwrap();
             mesh

@@ -1,5 +1,6 @@
 //! All children of one server: where they work and what holds them.
 
+use std::io;
 use std::num::NonZero;
 use std::sync::Arc;
 
@@ -16,7 +17,7 @@ use crate::jobs::meters;
 use crate::jobs::product::{MadeFile, Product};
 use crate::jobs::settings::JobsSettings;
 use crate::jobs::spool::Spool;
-use crate::jobs::store::JobRow;
+use crate::jobs::store::{BlobRef, JobRow};
 use crate::jobs::upload::disk_problem;
 use crate::wire::{Operation, Options, Problem};
 
@@ -47,13 +48,22 @@ impl Processes {
         settings: &JobsSettings,
         clock: &StageClock,
     ) -> Result<Product<MadeFile>, Problem> {
-        let workspace = Arc::new(self.workspaces.make().map_err(|error| disk_problem(&error))?);
+        let local = |blob: &BlobRef| spool.path(&blob.key);
+        let prepare = || {
+            io::Result::Ok((
+                self.workspaces.make()?,
+                local(&row.input)?,
+                row.material.as_ref().map(local).transpose()?,
+            ))
+        };
+        let (workspace, input, material) = prepare().map_err(|error| disk_problem(&error))?;
+        let workspace = Arc::new(workspace);
         let task = Task {
             operation: row.operation,
             options: row.options.clone(),
-            input: spool.path(&row.input.key),
+            input,
             input_bytes: row.input.bytes,
-            material: row.material.as_ref().map(|material| spool.path(&material.key)),
+            material,
             output: workspace.path().to_owned(),
             ..self.pattern.clone()
         };

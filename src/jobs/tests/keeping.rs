@@ -4,7 +4,7 @@ use super::*;
 
 #[tokio::test]
 async fn an_upload_over_the_limit_is_refused_while_it_comes_in() {
-    let house = house(|settings| settings.upload_bytes_max = 10, mend);
+    let house = house(|settings| settings.upload_bytes_max = 10, mend).await;
     let problem = house.upload(Some(11)).await.unwrap_err();
     assert_eq!(
         (problem.code, problem.limit, problem.actual),
@@ -20,7 +20,7 @@ async fn an_upload_over_the_limit_is_refused_while_it_comes_in() {
 #[tokio::test]
 async fn an_upload_of_many_blocks_is_stored_whole_with_its_digest() {
     use sha2::{Digest, Sha256};
-    let house = house(|_| {}, mend);
+    let house = house(|_| {}, mend).await;
     let bytes: Vec<u8> = (0..1_000_003_u32).map(|i| (i % 251) as u8).collect();
     let mut upload = house.upload(None).await.unwrap();
     for piece in bytes.chunks(70_001) {
@@ -29,7 +29,7 @@ async fn an_upload_of_many_blocks_is_stored_whole_with_its_digest() {
     let uploaded = upload.finish().await.unwrap();
     let blob = uploaded.blob().unwrap();
     assert_eq!(blob.sha256, <[u8; 32]>::from(Sha256::digest(&bytes)));
-    assert_eq!(std::fs::read(house.service().spool.path(&blob.key)).unwrap(), bytes);
+    assert_eq!(std::fs::read(house.service().spool.path(&blob.key).unwrap()).unwrap(), bytes);
     assert_eq!(house.load().await.data_bytes, bytes.len() as u64);
     drop(uploaded);
     assert_eq!((house.spool_files(), house.load().await.data_bytes), (0, 0));
@@ -37,7 +37,7 @@ async fn an_upload_of_many_blocks_is_stored_whole_with_its_digest() {
 
 #[tokio::test]
 async fn a_result_expires_after_its_time_and_its_files_go() {
-    let house = house(|settings| settings.result_ttl = Duration::ZERO, mend);
+    let house = house(|settings| settings.result_ttl = Duration::ZERO, mend).await;
     let job = house.run(b"x").await;
     assert_eq!(job.state, JobState::Expired);
     assert_eq!((job.links.report, job.links.result), (None, None));
@@ -48,12 +48,12 @@ async fn a_result_expires_after_its_time_and_its_files_go() {
 
 #[tokio::test]
 async fn the_sweep_takes_what_is_due_and_the_caller_may_ask_for_less_time() {
-    let house = house(|_| {}, mend);
-    let short = Options { result_ttl: Some(60), ..Options::default() };
+    let house = house(|_| {}, mend).await;
+    let short = Options { result_ttl: Some(1), ..Options::default() };
     let short = house.order_with(b"short", short, None).await.unwrap();
     let (short, long) = (house.end_of(&short).await, house.run(b"long").await);
-    let in_two_minutes = short.finished_at.unwrap() + Duration::from_secs(120);
-    house.service().sweep(in_two_minutes).await;
+    tokio::time::sleep(Duration::from_millis(1050)).await;
+    house.service().sweep().await;
     assert_eq!(house.get(id(&short)).await.unwrap().state, JobState::Expired);
     assert_eq!(house.get(id(&long)).await.unwrap().state, JobState::Succeeded);
     assert_eq!(house.spool_files(), 3, "upload, report and mesh of the other one");
@@ -61,7 +61,7 @@ async fn the_sweep_takes_what_is_due_and_the_caller_may_ask_for_less_time() {
 
 #[tokio::test]
 async fn the_oldest_results_make_room_for_a_new_upload() {
-    let house = house(|_| {}, mend);
+    let house = house(|_| {}, mend).await;
     let report_bytes = {
         let job = house.run(b"probe").await;
         let bytes = house.load().await.data_bytes - 5;
@@ -71,7 +71,7 @@ async fn the_oldest_results_make_room_for_a_new_upload() {
     drop(house);
     // Room for two jobs with uploads of 10,000 bytes; a few bytes of a report are times and vary.
     let bytes_max = 2 * (10_000 + report_bytes + 100);
-    let house = self::house(|settings| settings.data_bytes_max = bytes_max, mend);
+    let house = self::house(|settings| settings.data_bytes_max = bytes_max, mend).await;
     let mut jobs = Vec::new();
     for byte in 1..=3 {
         jobs.push(house.run(&[byte; 10_000]).await);
@@ -86,7 +86,7 @@ async fn the_oldest_results_make_room_for_a_new_upload() {
 
 #[tokio::test]
 async fn an_upload_that_cannot_fit_is_refused_and_queued_jobs_are_kept() {
-    let house = house(|settings| (settings.slots, settings.data_bytes_max) = (0, 1000), mend);
+    let house = house(|settings| (settings.slots, settings.data_bytes_max) = (0, 1000), mend).await;
     let job = house.order(&[1; 900]).await.unwrap();
     let problem = house.order(&[2; 900]).await.unwrap_err();
     assert_eq!((problem.code, problem.limit), (ProblemCode::StorageFull, Some(1000)));
@@ -97,7 +97,7 @@ async fn an_upload_that_cannot_fit_is_refused_and_queued_jobs_are_kept() {
 
 #[tokio::test]
 async fn a_result_without_room_fails_its_job_and_leaves_no_file() {
-    let house = house(|settings| settings.data_bytes_max = 1000, mend);
+    let house = house(|settings| settings.data_bytes_max = 1000, mend).await;
     let job = house.run(&[1; 990]).await;
     assert_eq!((job.state, code(&job)), (JobState::Failed, Some(ProblemCode::StorageFull)));
     assert_eq!((house.spool_files(), house.load().await.data_bytes), (1, 990));
@@ -105,7 +105,7 @@ async fn a_result_without_room_fails_its_job_and_leaves_no_file() {
 
 #[tokio::test]
 async fn the_number_of_kept_jobs_is_bounded() {
-    let house = house(|settings| settings.jobs_max = 3, mend);
+    let house = house(|settings| settings.jobs_max = 3, mend).await;
     let first = house.run(b"0").await;
     for bytes in [b"1", b"2", b"3", b"4"] {
         house.run(bytes).await;
@@ -116,7 +116,7 @@ async fn the_number_of_kept_jobs_is_bounded() {
 
 #[tokio::test]
 async fn a_deleted_job_is_gone_with_its_files_even_while_it_runs() {
-    let house = house(|_| {}, work_forever);
+    let house = house(|_| {}, work_forever).await;
     let job = house.order(b"x").await.unwrap();
     house.until("running", |load| load.running == 1).await;
     let waiter = house.jobs.clone();
@@ -143,7 +143,8 @@ async fn a_job_deleted_in_its_last_moment_leaves_no_result() {
             told.lock().unwrap().recv().unwrap();
             Ok(sample::repaired())
         },
-    );
+    )
+    .await;
     let job = house.order(b"x").await.unwrap();
     house.until("running", |load| load.running == 1).await;
     house.delete(id(&job)).await.unwrap();
@@ -163,17 +164,12 @@ async fn an_upload_is_used_again_and_stays_as_long_as_a_job_uses_it() {
             assert_eq!(bytes, b"shared");
             mend(bytes, budget)
         },
-    );
+    )
+    .await;
     let first = house.run(b"shared").await;
     let input = InputRef { job: first.id.clone() };
-    let again = |operation, options: Options| Submission {
-        operation,
-        options: Options { input: Some(input.clone()), ..options },
-        upload: None,
-        material: None,
-        file_name: None,
-        owner: None,
-        cancel_after: None,
+    let again = |operation, options: Options| {
+        Submission::new(operation, Options { input: Some(input.clone()), ..options })
     };
     let second = house.submit(again(Operation::Analyze, Options::default())).await.unwrap();
     house.delete(id(&first)).await.unwrap();
@@ -187,32 +183,16 @@ async fn an_upload_is_used_again_and_stays_as_long_as_a_job_uses_it() {
 
 #[tokio::test]
 async fn one_mesh_is_needed_and_only_one() {
-    let house = house(|settings| settings.slots = 0, mend);
+    let house = house(|settings| settings.slots = 0, mend).await;
     let job = house.order(b"x").await.unwrap();
     let options = Options { input: Some(InputRef { job: job.id }), ..Options::default() };
     let both = house.order_with(b"y", options, None).await.unwrap_err();
     assert_eq!(both.code, ProblemCode::InvalidParameter);
     let options = Options::default();
-    let none = Submission {
-        operation: Operation::Verify,
-        options,
-        upload: None,
-        material: None,
-        file_name: None,
-        owner: None,
-        cancel_after: None,
-    };
+    let none = Submission::new(Operation::Verify, options);
     assert_eq!(house.submit(none).await.unwrap_err().code, ProblemCode::InvalidParameter);
     let options = Options { input: Some(InputRef { job: "seven".into() }), ..Options::default() };
-    let strange = Submission {
-        operation: Operation::Verify,
-        options,
-        upload: None,
-        material: None,
-        file_name: None,
-        owner: None,
-        cancel_after: None,
-    };
+    let strange = Submission::new(Operation::Verify, options);
     assert_eq!(house.submit(strange).await.unwrap_err().code, ProblemCode::NotFound);
 }
 
@@ -226,7 +206,8 @@ async fn the_same_bytes_and_options_are_answered_from_the_earlier_job() {
             counted.fetch_add(1, Ordering::SeqCst);
             mend(bytes, budget)
         },
-    );
+    )
+    .await;
     let first = house.run(b"x").await;
     let second = house.order(b"x").await.unwrap();
     assert_eq!((second.state, second.cached), (JobState::Succeeded, true));
@@ -242,19 +223,7 @@ async fn the_same_bytes_and_options_are_answered_from_the_earlier_job() {
 
 #[tokio::test]
 async fn two_services_cannot_share_a_directory() {
-    let house = house(|_| {}, mend);
-    let second = Jobs::start(JobsSettings::new(&house.settings().data_dir));
+    let house = house(|_| {}, mend).await;
+    let second = Jobs::start(JobsSettings::new(&house.settings().data_dir)).await;
     assert!(matches!(second, Err(StartError::DataDirInUse { .. })));
-}
-
-#[tokio::test]
-async fn only_the_latest_claim_may_finish_a_job() {
-    let house = house(|settings| settings.slots = 0, mend);
-    house.order(b"x").await.unwrap();
-    let store = &house.service().store;
-    let row = store.claim(super::service::now()).await.unwrap().unwrap();
-    let finish = house.service().finish(&row, JobState::Succeeded, None);
-    assert_eq!(store.finish(row.id, row.epoch + 1, finish.clone()).await, Err(StoreError::ClaimVoid));
-    assert_eq!(store.finish(row.id, row.epoch, finish.clone()).await, Ok(()));
-    assert_eq!(store.finish(row.id, row.epoch, finish).await, Err(StoreError::ClaimVoid), "only once");
 }

@@ -19,7 +19,7 @@ const PATIENCE: Duration = Duration::from_secs(20);
 /// A service in a directory of its own.
 struct House {
     jobs: Jobs,
-    _dir: tempfile::TempDir,
+    dir: tempfile::TempDir,
 }
 
 impl std::ops::Deref for House {
@@ -30,7 +30,7 @@ impl std::ops::Deref for House {
     }
 }
 
-fn house(
+async fn house(
     change: impl FnOnce(&mut JobsSettings),
     engine: impl Fn(&[u8], &Budget) -> Result<Answer, Failure> + Send + Sync + 'static,
 ) -> House {
@@ -38,8 +38,8 @@ fn house(
     let mut settings = JobsSettings { slots: 1, queue_max: 4, ..JobsSettings::new(dir.path()) };
     change(&mut settings);
     let engine: Engine = Arc::new(move |_: Asked, bytes, _, budget| engine(bytes, budget));
-    let jobs = Jobs::start_with(settings, Arc::<MemoryStore>::default(), engine).unwrap();
-    House { jobs, _dir: dir }
+    let jobs = Jobs::start_with(settings, engine).await.unwrap();
+    House { jobs, dir }
 }
 
 impl House {
@@ -57,16 +57,8 @@ impl House {
     ) -> Result<Job, Problem> {
         let upload = Some(self.send(bytes).await?);
         let file_name = Some("C:\\parts\\part one.stl".to_owned());
-        self.submit(Submission {
-            operation: Operation::Repair,
-            options,
-            upload,
-            material: None,
-            file_name,
-            cancel_after: after,
-            owner: None,
-        })
-        .await
+        let asked = Submission::new(Operation::Repair, options);
+        self.submit(Submission { upload, file_name, cancel_after: after, ..asked }).await
     }
 
     async fn order(&self, bytes: &[u8]) -> Result<Job, Problem> {
@@ -95,8 +87,13 @@ impl House {
     }
 
     fn spool_files(&self) -> usize {
-        std::fs::read_dir(self.settings().data_dir.join("spool")).unwrap().count()
+        files_under(&self.settings().data_dir.join("spool"))
     }
+}
+
+fn files_under(dir: &std::path::Path) -> usize {
+    let entries = std::fs::read_dir(dir).unwrap().map(|entry| entry.unwrap().path());
+    entries.map(|path| if path.is_dir() { files_under(&path) } else { 1 }).sum()
 }
 
 fn id(job: &Job) -> JobId {

@@ -11,7 +11,8 @@ async fn a_repair_gives_a_report_and_a_mesh() {
             budget.stage(crate::budget::Stage::Repair, || {});
             Ok(sample::repaired())
         },
-    );
+    )
+    .await;
     let job = house.run(b"broken").await;
     assert_eq!((job.state, job.outcome, job.problem), (JobState::Succeeded, Some(Outcome::Repaired), None));
     assert_eq!(job.progress.fraction, 1.0);
@@ -28,7 +29,7 @@ async fn a_repair_gives_a_report_and_a_mesh() {
 #[tokio::test]
 async fn the_engine_itself_closes_a_tetrahedron() {
     let dir = tempfile::tempdir().unwrap();
-    let house = House { jobs: Jobs::start(JobsSettings::new(dir.path())).unwrap(), _dir: dir };
+    let house = House { jobs: Jobs::start(JobsSettings::new(dir.path())).await.unwrap(), dir };
     let job = house.run(b"OFF\n4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n").await;
     assert_eq!((job.state, job.outcome), (JobState::Succeeded, Some(Outcome::Repaired)), "{:?}", job.problem);
     let report = house.report(id(&job)).await.unwrap().read().await.unwrap();
@@ -44,7 +45,7 @@ async fn the_engine_itself_closes_a_tetrahedron() {
 
 #[tokio::test]
 async fn a_valid_mesh_comes_back_as_the_uploaded_file_itself() {
-    let house = house(|_| {}, |_, _| Ok(sample::identical()));
+    let house = house(|_| {}, |_, _| Ok(sample::identical())).await;
     let job = house.run(b"valid").await;
     assert_eq!(house.result(id(&job)).await.unwrap().read().await.unwrap(), b"valid");
     assert_eq!(house.spool_files(), 2, "one mesh, one report");
@@ -54,7 +55,7 @@ async fn a_valid_mesh_comes_back_as_the_uploaded_file_itself() {
 
 #[tokio::test]
 async fn a_refused_repair_has_failed_and_keeps_its_report() {
-    let house = house(|_| {}, |_, _| Ok(sample::refused()));
+    let house = house(|_| {}, |_, _| Ok(sample::refused())).await;
     let job = house.run(b"hopeless").await;
     assert_eq!((job.state, code(&job)), (JobState::Failed, Some(ProblemCode::NotRepairable)));
     assert_eq!(job.outcome, Some(Outcome::Refused));
@@ -72,7 +73,8 @@ async fn an_unreadable_mesh_fails_with_its_place() {
             let kind = ReadErrorKind::Truncated;
             Err(ReadError { kind, place: Place::Byte(84), expected: "50 bytes".into() }.into())
         },
-    );
+    )
+    .await;
     let job = house.run(b"cut").await;
     let problem = job.problem.clone().unwrap();
     assert_eq!((problem.code, problem.byte), (ProblemCode::MeshTruncated, Some(84)));
@@ -88,7 +90,8 @@ async fn a_panic_fails_the_job_and_leaves_the_slot_alive() {
             assert_ne!(bytes, b"bad", "a planted panic");
             mend(bytes, budget)
         },
-    );
+    )
+    .await;
     let job = house.run(b"bad").await;
     assert_eq!((job.state, code(&job)), (JobState::Failed, Some(ProblemCode::EngineCrashed)));
     assert_eq!(house.run(b"good").await.state, JobState::Succeeded);
@@ -96,7 +99,7 @@ async fn a_panic_fails_the_job_and_leaves_the_slot_alive() {
 
 #[tokio::test]
 async fn a_queued_job_is_cancelled_at_once() {
-    let house = house(|settings| settings.slots = 0, mend);
+    let house = house(|settings| settings.slots = 0, mend).await;
     let job = house.order(b"x").await.unwrap();
     assert_eq!(job.state, JobState::Queued);
     let job = house.cancel(id(&job)).await.unwrap();
@@ -106,7 +109,7 @@ async fn a_queued_job_is_cancelled_at_once() {
 
 #[tokio::test]
 async fn a_running_job_is_cancelled_and_its_waiter_wakes() {
-    let house = house(|_| {}, work_forever);
+    let house = house(|_| {}, work_forever).await;
     let job = house.order(b"x").await.unwrap();
     house.until("running", |load| load.running == 1).await;
     assert_eq!(house.get(id(&job)).await.unwrap().state, JobState::Running);
@@ -119,14 +122,14 @@ async fn a_running_job_is_cancelled_and_its_waiter_wakes() {
 
 #[tokio::test]
 async fn a_running_job_ends_at_the_server_s_deadline() {
-    let house = house(|settings| settings.deadline_max = Duration::from_millis(20), work_forever);
+    let house = house(|settings| settings.deadline_max = Duration::from_millis(20), work_forever).await;
     let job = house.run(b"x").await;
     assert_eq!((job.state, code(&job)), (JobState::Failed, Some(ProblemCode::EngineTimeout)));
 }
 
 #[tokio::test]
 async fn the_caller_s_deadline_ends_running_and_queued_jobs() {
-    let house = house(|_| {}, work_forever);
+    let house = house(|_| {}, work_forever).await;
     let soon = Some(Duration::from_millis(20));
     let first = house.order_with(b"x", Options::default(), soon).await.unwrap();
     let second = house.order_with(b"y", Options::default(), soon).await.unwrap();
@@ -146,7 +149,8 @@ async fn limits_of_a_job_are_those_of_the_settings() {
         }
         budget.spend(11)?;
         mend(bytes, budget)
-    });
+    })
+    .await;
     let problem = house.run(b"memory").await.problem.unwrap();
     assert_eq!((problem.code, problem.limit), (ProblemCode::EngineOutOfMemory, Some(1000)));
     assert_eq!(problem.actual, Some(995 + 6), "the upload in memory counts");
@@ -159,7 +163,7 @@ async fn limits_of_a_job_are_those_of_the_settings() {
 
 #[tokio::test]
 async fn a_full_queue_refuses_and_says_when_to_come_back() {
-    let house = house(|settings| (settings.slots, settings.queue_max) = (0, 2), mend);
+    let house = house(|settings| (settings.slots, settings.queue_max) = (0, 2), mend).await;
     for bytes in [b"1", b"2"] {
         house.order(bytes).await.unwrap();
     }
@@ -184,7 +188,8 @@ async fn jobs_run_in_the_order_they_came_in_as_many_at_once_as_there_are_slots()
             now.fetch_sub(1, Ordering::SeqCst);
             mend(bytes, budget)
         },
-    );
+    )
+    .await;
     let mut jobs = Vec::new();
     for byte in 0..12 {
         jobs.push(house.order(&[byte]).await.unwrap());
@@ -204,7 +209,7 @@ async fn jobs_run_in_the_order_they_came_in_as_many_at_once_as_there_are_slots()
 #[tokio::test]
 async fn waiting_ends_with_the_job_or_with_patience() {
     let (tell, told) = mpsc::channel();
-    let house = house(|_| {}, work_until_told(told));
+    let house = house(|_| {}, work_until_told(told)).await;
     let job = house.order(b"x").await.unwrap();
     let early = house.wait(id(&job), Duration::from_millis(10)).await.unwrap();
     assert!(!early.state.is_final());
@@ -216,27 +221,33 @@ async fn waiting_ends_with_the_job_or_with_patience() {
 #[tokio::test]
 async fn a_draining_service_takes_nothing_new_and_lets_running_jobs_end() {
     let (tell, told) = mpsc::channel();
-    let house = house(|_| {}, work_until_told(told));
+    let house = house(|_| {}, work_until_told(told)).await;
     let running = house.order(b"x").await.unwrap();
     house.until("running", |load| load.running == 1).await;
     let queued = house.order(b"y").await.unwrap();
-    let draining = house.jobs.clone();
+    let (draining, waiting) = (house.jobs.clone(), house.jobs.clone());
+    let queued = id(&queued);
+    let waiter = tokio::spawn(async move { waiting.wait(queued, PATIENCE).await });
     let drain = tokio::spawn(async move { draining.drain().await });
-    let queued = house.end_of(&queued).await;
-    assert_eq!((queued.state, code(&queued)), (JobState::Failed, Some(ProblemCode::Draining)));
+    let seen = waiter.await.unwrap().unwrap();
+    assert_eq!(seen.state, JobState::Queued, "who waits for a queued job is not kept");
     assert!(house.is_draining());
     assert_eq!(house.upload(None).await.unwrap_err().status, 503);
     tell.send(()).unwrap();
     drain.await.unwrap();
     assert_eq!(house.get(id(&running)).await.unwrap().state, JobState::Succeeded);
+    assert_eq!(house.get(queued).await.unwrap().state, JobState::Queued, "it stays for the next start");
 }
 
 #[tokio::test]
-async fn a_job_that_outlasts_the_grace_is_ended_as_drained() {
-    let house = house(|settings| settings.drain_grace = Duration::from_millis(10), work_forever);
+async fn a_job_that_outlasts_the_grace_is_queued_again_without_a_penalty() {
+    let house = house(|settings| settings.drain_grace = Duration::from_millis(10), work_forever).await;
     let job = house.order(b"x").await.unwrap();
     house.until("running", |load| load.running == 1).await;
+    let (waiting, id) = (house.jobs.clone(), id(&job));
+    let waiter = tokio::spawn(async move { waiting.wait(id, PATIENCE).await });
     house.drain().await;
-    let job = house.get(id(&job)).await.unwrap();
-    assert_eq!((job.state, code(&job)), (JobState::Failed, Some(ProblemCode::Draining)));
+    assert_eq!(waiter.await.unwrap().unwrap().state, JobState::Queued);
+    let job = house.get(id).await.unwrap();
+    assert_eq!((job.state, job.attempts, job.problem), (JobState::Queued, 0, None));
 }

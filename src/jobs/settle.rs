@@ -1,0 +1,74 @@
+//! The last step of a run: what came of it is made known, by the claim it ran under.
+
+use std::sync::Arc;
+
+use super::live::Live;
+use super::meters;
+use super::service::Service;
+use super::slot::STORE_PAUSE;
+use super::spool::Written;
+use super::store::{AfterLoss, Ending, JobRow, StoreError, StoreFuture};
+use crate::wire::Problem;
+
+/// What is to become of a job after a run.
+pub(super) enum Conclusion {
+    /// It has ended; the files are its own.
+    End(Box<Ending>, Vec<Written>),
+    /// The server ends: it is queued again.
+    Release,
+    /// Its executor is lost: it is queued again, or ends when that was once too often.
+    Lose(Box<Problem>),
+    /// Nothing: the run was in vain.
+    Void,
+}
+
+/// Makes the conclusion known. Files that nobody is to know of go.
+pub(super) async fn settle(service: &Service, row: &JobRow, live: &Arc<Live>, conclusion: Conclusion) {
+    let (id, claim) = (row.id, row.claim());
+    let after = match conclusion {
+        Conclusion::End(ending, written) => {
+            let finished = persist(row, || service.store.finish(claim, Ending::clone(&ending))).await;
+            finished.map(|()| {
+                written.into_iter().for_each(Written::named);
+                let problem = ending.problem.as_ref().map(|problem| problem.detail.as_str());
+                let ms = ending.timing_ms.map(|timing| timing.total);
+                tracing::info!(job = %id, operation = %row.operation, state = %ending.state, ms, problem, "job ended");
+                meters::finished(row.operation, &ending);
+                AfterLoss::Ended
+            })
+        }
+        Conclusion::Release => persist(row, || service.store.release(claim)).await,
+        Conclusion::Lose(problem) => {
+            meters::lost(row.operation, 1);
+            let attempts_max = service.settings.attempts_max;
+            persist(row, || service.store.lose(claim, Problem::clone(&problem), attempts_max)).await
+        }
+        Conclusion::Void => None,
+    };
+    match after {
+        Some(AfterLoss::Ended) => service.live.end(id),
+        Some(AfterLoss::Queued) => {
+            tracing::info!(job = %id, epoch = claim.epoch, "job queued again");
+            service.live.requeue(id);
+            service.work.notify_one();
+        }
+        None => service.live.forget(id, live),
+    }
+}
+
+/// Asks the store until it answers; `None`: the claim is void.
+async fn persist<'s, T>(row: &JobRow, ask: impl Fn() -> StoreFuture<'s, T>) -> Option<T> {
+    loop {
+        match ask().await {
+            Ok(answer) => return Some(answer),
+            Err(error @ (StoreError::Unavailable(_) | StoreError::Full(_))) => {
+                tracing::error!(job = %row.id, %error, "the end of a run could not be stored");
+                tokio::time::sleep(STORE_PAUSE).await;
+            }
+            Err(error) => {
+                tracing::warn!(job = %row.id, epoch = row.epoch, %error, "a run was in vain");
+                return None;
+            }
+        }
+    }
+}

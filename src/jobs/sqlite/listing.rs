@@ -1,0 +1,107 @@
+//! Looking for rows.
+
+use jiff::Timestamp;
+use rusqlite::types::Value;
+use rusqlite::{Connection, OptionalExtension as _, params, params_from_iter};
+
+use super::rows::{COLUMNS, get, job, parsed, state, time, word};
+use crate::jobs::store::{Change, IdempotencyKey, JobCounts, JobId, JobRow, ListQuery, NewJob, StoreError};
+use crate::wire::{ENGINE_VERSION, JobState};
+
+pub(super) fn find_keyed(
+    connection: &Connection,
+    owner: Option<&str>,
+    key: &IdempotencyKey,
+) -> Result<Option<JobRow>, StoreError> {
+    let mut statement = connection.prepare_cached(
+        "SELECT id, fingerprint FROM jobs WHERE coalesce(owner, '') = coalesce(?1, '') AND idempotency_key = ?2",
+    )?;
+    let found = statement
+        .query_row(params![owner, key.key], |row| Ok((parsed(row, 0)?, row.get::<_, [u8; 32]>(1)?)))
+        .optional()?;
+    match found {
+        None => Ok(None),
+        Some((_, fingerprint)) if fingerprint != key.fingerprint => Err(StoreError::KeyReused),
+        Some((id, _)) => get(connection, id).map(Some),
+    }
+}
+
+pub(super) fn find_equal(
+    connection: &Connection,
+    new: &NewJob,
+    now: i64,
+) -> Result<Option<JobRow>, StoreError> {
+    let mut statement = connection.prepare_cached(&format!(
+        "SELECT {COLUMNS} FROM jobs
+         WHERE state = 'succeeded' AND input_sha256 = ?1 AND owner IS ?2 AND operation = ?3 AND engine = ?4
+             AND expires_at > ?5
+         ORDER BY id DESC"
+    ))?;
+    let operation = new.operation.word();
+    let mut rows =
+        statement.query_map(params![new.input.sha256, new.owner, operation, ENGINE_VERSION, now], job)?;
+    // What cannot be read is not equal.
+    Ok(rows.find_map(|row| row.ok().filter(|row| row.does_the_same_as(new))))
+}
+
+pub(super) fn list(connection: &Connection, query: &ListQuery) -> Result<Vec<JobRow>, StoreError> {
+    let mut sql = format!("SELECT {COLUMNS} FROM jobs WHERE owner IS ?");
+    let mut values = vec![query.owner.clone().map_or(Value::Null, Value::Text)];
+    if let Some(state) = query.state {
+        sql.push_str(" AND state = ?");
+        values.push(Value::Text(state.word().to_owned()));
+    }
+    if let Some(before) = query.before {
+        sql.push_str(" AND id < ?");
+        values.push(Value::Text(before.to_string()));
+    }
+    for (name, value) in &query.labels {
+        sql.push_str(" AND EXISTS (SELECT 1 FROM labels WHERE job = jobs.id AND name = ? AND value = ?)");
+        values.extend([Value::Text(name.clone()), Value::Text(value.clone())]);
+    }
+    sql.push_str(" ORDER BY id DESC LIMIT ?");
+    values.push(Value::Integer(i64::try_from(query.limit).unwrap_or(i64::MAX)));
+    let mut statement = connection.prepare_cached(&sql)?;
+    Ok(statement.query_map(params_from_iter(values), job)?.collect::<rusqlite::Result<_>>()?)
+}
+
+pub(super) fn deadlines(connection: &Connection) -> Result<Vec<(JobId, Timestamp)>, StoreError> {
+    let mut statement = connection
+        .prepare_cached("SELECT id, cancel_at FROM jobs WHERE state = 'queued' AND cancel_at IS NOT NULL")?;
+    let rows = statement.query_map([], |row| Ok((parsed(row, 0)?, time(row, 1)?)))?;
+    Ok(rows.collect::<rusqlite::Result<_>>()?)
+}
+
+pub(super) fn changes(connection: &Connection, id: JobId, after: u64) -> Result<Vec<Change>, StoreError> {
+    let mut statement = connection.prepare_cached(
+        "SELECT number, state, epoch, at FROM changes WHERE job = ?1 AND number > ?2 ORDER BY number",
+    )?;
+    let after = i64::try_from(after).unwrap_or(i64::MAX);
+    let rows = statement.query_map(params![id.to_string(), after], |row| {
+        let number: i64 = row.get(0)?;
+        Ok(Change {
+            number: number.unsigned_abs(),
+            state: state(row, 1)?,
+            epoch: row.get(2)?,
+            at: time(row, 3)?,
+        })
+    })?;
+    Ok(rows.collect::<rusqlite::Result<_>>()?)
+}
+
+pub(super) fn counts(connection: &Connection) -> Result<JobCounts, StoreError> {
+    let mut statement = connection.prepare_cached("SELECT state, jobs FROM tallies")?;
+    let mut counts = JobCounts::default();
+    let mut rows = statement.query([])?;
+    while let Some(row) = rows.next()? {
+        let jobs: i64 = row.get(1)?;
+        let jobs = usize::try_from(jobs).unwrap_or_default();
+        counts.all += jobs;
+        match word(row, 0, JobState::from_word)? {
+            JobState::Queued => counts.queued = jobs,
+            JobState::Running => counts.running = jobs,
+            _ => {}
+        }
+    }
+    Ok(counts)
+}

@@ -1,0 +1,271 @@
+//! Rows in one SQLite file: durable when a method returns, for one process.
+//!
+//! One thread writes, some connections read. The file is in write-ahead mode with `synchronous=FULL`: a commit is on the
+//! disk before it is told, and readers see whole changes only.
+
+mod claims;
+mod keeping;
+mod listing;
+mod outbox;
+mod rows;
+mod schema;
+mod writer;
+
+use std::collections::HashSet;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicI64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use jiff::Timestamp;
+use rusqlite::{Connection, ErrorCode, OpenFlags};
+
+use super::store::{
+    AfterLoss, BlobRef, Change, ClaimRef, ClaimRequest, Created, Delivery, Ending, IdempotencyKey, JobCounts,
+    JobId, JobRow, JobStore, Kept, Leases, ListQuery, NewJob, NextTry, StoreError, StoreFuture, TryOutcome,
+};
+use crate::wire::Problem;
+pub use schema::OpenError;
+use writer::Writer;
+
+/// Time for which a connection waits for another process that looks into the file.
+const BUSY_PATIENCE: Duration = Duration::from_secs(5);
+/// Most connections that are kept for reading.
+const READERS_MAX: usize = 8;
+
+/// The clock of a store: milliseconds since 1970.
+pub type StoreClock = Arc<dyn Fn() -> i64 + Send + Sync>;
+
+/// A store in a file.
+pub struct SqliteStore {
+    path: PathBuf,
+    clock: StoreClock,
+    writer: Writer,
+    readers: Arc<Mutex<Vec<Connection>>>,
+}
+
+impl fmt::Debug for SqliteStore {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SqliteStore").field("path", &self.path).finish_non_exhaustive()
+    }
+}
+
+impl SqliteStore {
+    /// Opens the file, or makes it; one of an older version becomes one of this version. Blocks.
+    ///
+    /// # Errors
+    /// The file cannot be used, or a newer program made it.
+    pub fn open(path: &Path) -> Result<Self, OpenError> {
+        Self::open_with(path, system_clock())
+    }
+
+    /// As [`open`](Self::open), with another clock.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
+    pub fn open_with(path: &Path, clock: StoreClock) -> Result<Self, OpenError> {
+        let mut connection = Connection::open(path)?;
+        connection.busy_timeout(BUSY_PATIENCE)?;
+        connection.pragma_update(None, "journal_mode", "WAL")?;
+        connection.pragma_update(None, "synchronous", "FULL")?;
+        connection.pragma_update(None, "foreign_keys", "ON")?;
+        connection.set_prepared_statement_cache_capacity(128);
+        schema::migrate(&mut connection)?;
+        let writer = Writer::start(connection)
+            .map_err(|error| rusqlite::Error::ToSqlConversionFailure(Box::new(error)))?;
+        Ok(Self { path: path.to_owned(), clock, writer, readers: Arc::default() })
+    }
+
+    /// Makes a change, at the time of the store's clock.
+    fn write<T: Send + 'static>(
+        &self,
+        body: impl FnOnce(&Connection, i64) -> Result<T, StoreError> + Send + 'static,
+    ) -> StoreFuture<'_, T> {
+        let clock = Arc::clone(&self.clock);
+        self.writer.write(move |connection| body(connection, clock()))
+    }
+
+    /// Looks into the file, at the time of the store's clock.
+    fn read<T: Send + 'static>(
+        &self,
+        body: impl FnOnce(&Connection, i64) -> Result<T, StoreError> + Send + 'static,
+    ) -> StoreFuture<'_, T> {
+        let (clock, readers, path) = (Arc::clone(&self.clock), Arc::clone(&self.readers), self.path.clone());
+        let look = move || {
+            let kept = readers.lock().unwrap_or_else(PoisonError::into_inner).pop();
+            let connection = match kept {
+                Some(connection) => connection,
+                None => reader(&path).map_err(|error| failure(&error))?,
+            };
+            let result = body(&connection, clock());
+            if !matches!(result, Err(StoreError::Unavailable(_))) {
+                let mut readers = readers.lock().unwrap_or_else(PoisonError::into_inner);
+                if readers.len() < READERS_MAX {
+                    readers.push(connection);
+                }
+            }
+            result
+        };
+        Box::pin(async move {
+            let looked = tokio::task::spawn_blocking(look).await;
+            looked.map_err(|error| StoreError::Unavailable(error.to_string()))?
+        })
+    }
+}
+
+fn reader(path: &Path) -> rusqlite::Result<Connection> {
+    let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+    let connection = Connection::open_with_flags(path, flags)?;
+    connection.busy_timeout(BUSY_PATIENCE)?;
+    connection.set_prepared_statement_cache_capacity(64);
+    Ok(connection)
+}
+
+/// The system's time, except that it never goes back.
+fn system_clock() -> StoreClock {
+    let latest = AtomicI64::new(i64::MIN);
+    Arc::new(move || {
+        let now = Timestamp::now().as_millisecond();
+        latest.fetch_max(now, Ordering::Relaxed).max(now)
+    })
+}
+
+/// What SQLite says, as every store says it.
+fn failure(error: &rusqlite::Error) -> StoreError {
+    match error.sqlite_error_code() {
+        Some(ErrorCode::DiskFull) => StoreError::Full(error.to_string()),
+        _ => StoreError::Unavailable(error.to_string()),
+    }
+}
+
+impl From<rusqlite::Error> for StoreError {
+    fn from(error: rusqlite::Error) -> Self {
+        match error {
+            rusqlite::Error::QueryReturnedNoRows => Self::NotFound,
+            other => failure(&other),
+        }
+    }
+}
+
+impl JobStore for SqliteStore {
+    fn create(&self, job: NewJob, queue_max: usize) -> StoreFuture<'_, Created> {
+        self.write(move |connection, now| claims::create(connection, &job, queue_max, now))
+    }
+
+    fn get(&self, id: JobId) -> StoreFuture<'_, JobRow> {
+        self.read(move |connection, _| rows::get(connection, id))
+    }
+
+    fn find_keyed(&self, owner: Option<String>, key: IdempotencyKey) -> StoreFuture<'_, Option<JobRow>> {
+        self.read(move |connection, _| listing::find_keyed(connection, owner.as_deref(), &key))
+    }
+
+    fn find_equal(&self, job: &NewJob) -> StoreFuture<'_, Option<JobRow>> {
+        let job = job.clone();
+        self.read(move |connection, now| listing::find_equal(connection, &job, now))
+    }
+
+    fn list(&self, query: ListQuery) -> StoreFuture<'_, Vec<JobRow>> {
+        self.read(move |connection, _| listing::list(connection, &query))
+    }
+
+    fn deadlines(&self) -> StoreFuture<'_, Vec<(JobId, Timestamp)>> {
+        self.read(|connection, _| listing::deadlines(connection))
+    }
+
+    fn changes(&self, id: JobId, after: u64) -> StoreFuture<'_, Vec<Change>> {
+        self.read(move |connection, _| listing::changes(connection, id, after))
+    }
+
+    fn counts(&self) -> StoreFuture<'_, JobCounts> {
+        self.read(|connection, _| listing::counts(connection))
+    }
+
+    fn claim(&self, request: ClaimRequest) -> StoreFuture<'_, Option<JobRow>> {
+        self.write(move |connection, now| claims::claim(connection, &request, now))
+    }
+
+    fn renew(&self, claim: ClaimRef, lease: Duration) -> StoreFuture<'_, bool> {
+        self.write(move |connection, now| claims::renew(connection, claim, lease, now))
+    }
+
+    fn finish(&self, claim: ClaimRef, ending: Ending) -> StoreFuture<'_, ()> {
+        self.write(move |connection, now| claims::finish(connection, claim, &ending, now))
+    }
+
+    fn release(&self, claim: ClaimRef) -> StoreFuture<'_, AfterLoss> {
+        self.write(move |connection, now| claims::release(connection, claim, now))
+    }
+
+    fn lose(&self, claim: ClaimRef, problem: Problem, attempts_max: u32) -> StoreFuture<'_, AfterLoss> {
+        self.write(move |connection, now| claims::lose(connection, claim, problem, attempts_max, now))
+    }
+
+    fn recover(
+        &self,
+        leases: Leases,
+        problem: Problem,
+        attempts_max: u32,
+    ) -> StoreFuture<'_, Vec<(JobId, AfterLoss)>> {
+        self.write(move |connection, now| claims::recover(connection, leases, &problem, attempts_max, now))
+    }
+
+    fn end_queued(&self, id: JobId, ending: Ending) -> StoreFuture<'_, bool> {
+        self.write(move |connection, now| claims::end_queued(connection, id, &ending, now))
+    }
+
+    fn cancel(&self, id: JobId, ending: Ending) -> StoreFuture<'_, bool> {
+        self.write(move |connection, now| claims::cancel(connection, id, &ending, now))
+    }
+
+    fn expire(&self, id: JobId) -> StoreFuture<'_, Vec<BlobRef>> {
+        self.write(move |connection, _| keeping::expire(connection, id))
+    }
+
+    fn delete(&self, id: JobId) -> StoreFuture<'_, Vec<BlobRef>> {
+        self.write(move |connection, _| keeping::delete(connection, id))
+    }
+
+    fn due(&self) -> StoreFuture<'_, Vec<JobId>> {
+        self.read(keeping::due)
+    }
+
+    fn oldest_ended(&self, kept: Kept) -> StoreFuture<'_, Option<JobId>> {
+        self.read(move |connection, _| keeping::oldest_ended(connection, kept))
+    }
+
+    fn current(&self, claims: Vec<ClaimRef>) -> StoreFuture<'_, HashSet<ClaimRef>> {
+        self.read(move |connection, _| keeping::current(connection, &claims))
+    }
+
+    fn named(&self, keys: Vec<String>) -> StoreFuture<'_, HashSet<String>> {
+        self.read(move |connection, _| keeping::named(connection, keys))
+    }
+
+    fn claim_deliveries(&self, limit: usize, lease: Duration) -> StoreFuture<'_, Vec<Delivery>> {
+        self.write(move |connection, now| outbox::claim(connection, limit, lease, now))
+    }
+
+    fn note_try(
+        &self,
+        delivery: String,
+        epoch: u32,
+        outcome: TryOutcome,
+        next: NextTry,
+    ) -> StoreFuture<'_, ()> {
+        self.write(move |connection, now| outbox::note_try(connection, &delivery, epoch, &outcome, next, now))
+    }
+
+    fn deliveries(&self, job: JobId) -> StoreFuture<'_, Vec<Delivery>> {
+        self.read(move |connection, _| outbox::of_job(connection, job))
+    }
+
+    fn redeliver(&self, job: JobId, delivery: String) -> StoreFuture<'_, Delivery> {
+        self.write(move |connection, now| outbox::redeliver(connection, job, &delivery, now))
+    }
+
+    fn next_delivery(&self) -> StoreFuture<'_, Option<Timestamp>> {
+        self.read(|connection, _| outbox::next_due(connection))
+    }
+}
