@@ -120,7 +120,7 @@ settings! {
     engine_bytes_max: Bytes = "4GiB",
     /// Most work units of one job.
     engine_work_max: u64 = "9_007_199_254_740_991",
-    /// Engine threads of one job; 0: all jobs share one thread for each core.
+    /// Engine threads of one job; 0: one for each core, which jobs share that run in threads of the server.
     engine_threads: usize = "0",
     /// Where a job runs: in a process of its own, whose end is the end of one job, or in a thread of the server.
     isolation: IsolationChoice = "process",

@@ -36,7 +36,7 @@ pub struct JobsSettings {
     pub engine_bytes_max: u64,
     /// Most work units of one job. Default 2^53 - 1, the largest integer that every JSON reader keeps.
     pub engine_work_max: u64,
-    /// Engine threads of one job; 0: all jobs share one thread for each core. Default 0.
+    /// Engine threads of one job; 0: one for each core, which jobs share that run in threads of the server. Default 0.
     pub engine_threads: usize,
     /// Where a job runs. Default: in a thread, because another program's binary is not one that runs jobs.
     pub isolation: Isolation,

@@ -2,6 +2,7 @@
 
 use crate::engine::LARGE;
 use crate::meshes::OPEN;
+use crate::processes::{child_of, children_of};
 use crate::server::{Server, signal};
 use serde_json::{Value, json};
 
@@ -23,7 +24,7 @@ pub(crate) fn problem_of(server: &Server, fault: &str) -> Value {
 pub(crate) fn goes_on(server: &Server) {
     let job = server.ended(&server.job("repair", OPEN));
     assert_eq!((&job["state"], &job["outcome"]), (&json!("succeeded"), &json!("repaired")), "{job}");
-    assert_eq!(server.children(), [0; 0]);
+    assert!(children_of(server).is_empty());
     let left = std::fs::read_dir(server.data_dir().join("work")).unwrap().count();
     assert_eq!(left, 0, "folders of jobs that have ended");
 }
@@ -63,7 +64,7 @@ pub(crate) fn a_signal_from_outside_is_told_from_a_fault_of_the_engine() {
     ] {
         let job = server.job("repair", "fault hang");
         server.until(&job, |job| job["progress"]["stage"] == "repair");
-        signal(server.child(), name);
+        signal(child_of(&server), name);
         let problem = &server.ended(&job)["problem"];
         assert_eq!(problem["code"], code, "{name}: {problem}");
         assert!(problem["detail"].as_str().unwrap().contains(words), "{name}: {problem}");

@@ -13,6 +13,7 @@ mod server;
 mod confinement;
 mod ends;
 mod engine;
+mod processes;
 mod supervision;
 
 use libtest_mimic::{Arguments, Trial};

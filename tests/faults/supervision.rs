@@ -2,7 +2,8 @@
 
 use crate::ends::{goes_on, problem_of, server};
 use crate::engine::LARGE;
-use crate::server::{PATIENCE, Server, link, parent_and_state, signal};
+use crate::processes::{child_of, children_of, parent_and_state, peak_memory};
+use crate::server::{PATIENCE, Server, link, signal};
 use serde_json::Value;
 use std::time::{Duration, Instant};
 
@@ -10,7 +11,7 @@ use std::time::{Duration, Instant};
 fn hanging(server: &Server) -> (Value, u32) {
     let job = server.job("repair", "fault hang");
     server.until(&job, |job| job["progress"]["stage"] == "repair");
-    let child = server.child();
+    let child = child_of(server);
     (job, child)
 }
 
@@ -44,7 +45,7 @@ pub(crate) fn a_deleted_job_leaves_no_process() {
 pub(crate) fn a_process_that_hangs_ends_at_its_deadline() {
     let server = server(&["--slots", "1", "--deadline-max", "300ms"]);
     assert_eq!(problem_of(&server, "hang")["code"], "engine-timeout");
-    assert_eq!(server.children(), [0; 0]);
+    assert!(children_of(&server).is_empty());
 }
 
 pub(crate) fn a_paused_process_ends_at_its_deadline() {
@@ -84,12 +85,12 @@ pub(crate) fn a_server_that_ends_in_order_leaves_no_process_and_no_folder() {
 pub(crate) fn a_large_result_does_not_pass_through_the_memory_of_the_server() {
     let server = server(&["--slots", "1"]);
     goes_on(&server);
-    let before = server.memory("VmHWM");
+    let before = peak_memory(&server);
     let job = server.ended(&server.job("repair", "fault large"));
     let mut result = server.get(link(&job, "result")).send().unwrap();
     let bytes = std::io::copy(&mut result, &mut std::io::sink()).unwrap();
     assert_eq!(bytes, LARGE as u64);
-    let more = server.memory("VmHWM") - before;
+    let more = peak_memory(&server) - before;
     assert!(more < LARGE as u64 / 4, "{more} bytes more for a result of {LARGE}");
     goes_on(&server);
 }

@@ -6,6 +6,7 @@ use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStderr, Command, Stdio};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Patience of the tests; only what hangs meets it.
@@ -19,7 +20,8 @@ pub(crate) struct Server {
     /// What it logged before it listened.
     pub(crate) log: String,
     client: Client,
-    data: tempfile::TempDir,
+    binary: PathBuf,
+    data: Arc<tempfile::TempDir>,
 }
 
 impl Server {
@@ -34,7 +36,28 @@ impl Server {
 
     /// A server of another binary that takes the same command line.
     pub(crate) fn of(binary: &Path, settings: &[&str]) -> Self {
-        let data = tempfile::tempdir().unwrap();
+        Self::on(binary, Arc::new(tempfile::tempdir().unwrap()), settings)
+    }
+
+    /// Kills it and starts another one on the same data folder.
+    pub(crate) fn killed_and_restarted(mut self, settings: &[&str]) -> Self {
+        self.child.kill().unwrap();
+        self.child.wait().unwrap();
+        Self::on(&self.binary, Arc::clone(&self.data), settings)
+    }
+
+    /// Starts another one on the same data folder after this one has ended.
+    pub(crate) fn restarted(mut self, settings: &[&str]) -> Self {
+        assert_eq!(self.exit_code(), Some(0));
+        Self::on(&self.binary, Arc::clone(&self.data), settings)
+    }
+
+    /// The files of uploads and results.
+    pub(crate) fn stored_files(&self) -> Vec<PathBuf> {
+        files_under(&self.data_dir().join("spool"))
+    }
+
+    fn on(binary: &Path, data: Arc<tempfile::TempDir>, settings: &[&str]) -> Self {
         let mut command = Command::new(binary);
         for (name, _) in std::env::vars_os() {
             if name.to_string_lossy().starts_with("MESHMEND_") {
@@ -51,7 +74,7 @@ impl Server {
         // The pipe must not fill up.
         std::thread::spawn(move || std::io::copy(&mut log, &mut std::io::sink()));
         let client = Client::builder().timeout(PATIENCE).build().unwrap();
-        Self { child, address, admin, log: seen, client, data }
+        Self { child, address, admin, log: seen, client, binary: binary.to_owned(), data }
     }
 
     pub(crate) fn url(&self, path: &str) -> String {
@@ -110,39 +133,17 @@ impl Server {
 
     /// Sends a signal by its name.
     pub(crate) fn signal(&self, name: &str) {
-        signal(self.child.id(), name);
+        signal(self.pid(), name);
     }
 
-    /// The processes that it started and that have not been reaped.
-    pub(crate) fn children(&self) -> Vec<u32> {
-        let processes = std::fs::read_dir("/proc")
-            .unwrap()
-            .filter_map(|entry| entry.ok()?.file_name().to_str()?.parse::<u32>().ok());
-        processes.filter(|&pid| parent_and_state(pid).is_some_and(|(p, _)| p == self.child.id())).collect()
-    }
-
-    /// The one process that runs a job, once there is one.
-    pub(crate) fn child(&self) -> u32 {
-        let begun = Instant::now();
-        loop {
-            if let [pid] = self.children()[..] {
-                return pid;
-            }
-            assert!(begun.elapsed() < PATIENCE, "no process runs a job");
-            std::thread::sleep(Duration::from_millis(5));
-        }
+    /// Its process.
+    pub(crate) fn pid(&self) -> u32 {
+        self.child.id()
     }
 
     /// The folder of its data.
     pub(crate) fn data_dir(&self) -> PathBuf {
         self.data.path().join("data")
-    }
-
-    /// A figure in bytes from `/proc/PID/status`.
-    pub(crate) fn memory(&self, name: &str) -> u64 {
-        let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).unwrap();
-        let line = status.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix(':')).unwrap();
-        line.trim().trim_end_matches(" kB").parse::<u64>().unwrap() << 10
     }
 
     /// The exit code, once it has ended by itself.
@@ -166,6 +167,11 @@ impl Drop for Server {
     }
 }
 
+fn files_under(dir: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(dir).unwrap().map(|entry| entry.unwrap().path());
+    entries.flat_map(|path| if path.is_dir() { files_under(&path) } else { vec![path] }).collect()
+}
+
 /// The address that the log tells behind `words`.
 fn bound(log: &mut BufReader<ChildStderr>, words: &str, seen: &mut String) -> String {
     loop {
@@ -182,15 +188,6 @@ fn bound(log: &mut BufReader<ChildStderr>, words: &str, seen: &mut String) -> St
 pub(crate) fn signal(pid: u32, name: &str) {
     let line = format!("kill -{name} {pid}");
     assert!(Command::new("sh").args(["-c", &line]).status().unwrap().success());
-}
-
-/// The parent of a process and the letter of its state; `None`: there is no such process.
-pub(crate) fn parent_and_state(pid: u32) -> Option<(u32, char)> {
-    let stat = std::fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
-    // Its name stands in brackets and may hold anything.
-    let mut fields = stat.rsplit_once(')')?.1.split_whitespace();
-    let state = fields.next()?.chars().next()?;
-    Some((fields.next()?.parse().ok()?, state))
 }
 
 pub(crate) fn link<'j>(job: &'j Value, name: &str) -> &'j str {

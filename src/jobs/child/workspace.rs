@@ -17,10 +17,13 @@ impl Workspaces {
     /// Takes the place over from an earlier server, whose children died with it.
     pub(in crate::jobs) fn open(data_dir: &Path) -> io::Result<Self> {
         let dir = std::path::absolute(data_dir.join("work"))?;
-        match fs::remove_dir_all(&dir) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
-            _ => fs::create_dir_all(&dir)?,
+        if let Err(error) = fs::remove_dir_all(&dir)
+            && error.kind() != io::ErrorKind::NotFound
+        {
+            // A child of a server that was killed a moment ago may write its last; what stays goes at the next start.
+            tracing::warn!(%error, "folders of an earlier server could not be removed");
         }
+        fs::create_dir_all(&dir)?;
         Ok(Self { dir })
     }
 
