@@ -21,6 +21,7 @@ declare -A filters=(
   [cut]="cut_and_stitch"
   [wrap]="bad_soup"
   [injected]="injected_defect"
+  [kill]="killed_at_random_points"
 )
 
 name=${1:-}

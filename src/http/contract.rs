@@ -41,6 +41,7 @@ const UPLOAD: &[ProblemCode] = &[
     ProblemCode::NotFound,
     ProblemCode::UploadTimeout,
     ProblemCode::Expired,
+    ProblemCode::IdempotencyKeyReused,
     ProblemCode::BodyTooLarge,
     ProblemCode::UnsupportedMediaType,
     ProblemCode::MeshEmpty,
@@ -60,7 +61,7 @@ const RUN: &[ProblemCode] = &[
     ProblemCode::MeshTruncated,
     ProblemCode::EngineCrashed,
     ProblemCode::WorkerLost,
-    ProblemCode::Draining,
+    ProblemCode::StorageFull,
     ProblemCode::EngineTimeout,
 ];
 /// Further problems of a job whose product is a mesh.
@@ -171,8 +172,16 @@ fn complete_operation(path: &str, operation: &mut Operation) {
         "create_job" => {
             operation.request_body = Some(RefOr::T(upload_body::<JobForm>(requiring_input::<JobRequest>())));
             add_parameter(operation, cancel_after());
+            add_parameter(operation, idempotency_key());
             add_problems(operation, UPLOAD);
             add_answer(operation, "202", accepted());
+        }
+        "list_jobs" => add_problems(operation, &[ProblemCode::StoreUnavailable]),
+        "events" => {
+            add_problems(operation, JOB);
+            let id = text().pattern(Some(r"^[0-9]{1,9}\.[0-9]{1,9}$"));
+            let about = "Id of the last event that the client has seen; those after it follow. Default: all.";
+            add_parameter(operation, header_parameter("Last-Event-ID", about, id));
         }
         "report" => {
             add_problems(operation, &[JOB, PRODUCT, RUN].concat());
@@ -206,6 +215,7 @@ fn complete_run(operation: &mut Operation, more_problems: &[ProblemCode]) {
         ),
     );
     add_parameter(operation, cancel_after());
+    add_parameter(operation, idempotency_key());
     add_problems(operation, &[UPLOAD, RUN, more_problems].concat());
     add_answer(operation, "202", accepted());
 }
@@ -331,6 +341,13 @@ fn header(description: &str) -> Header {
 fn cancel_after() -> Parameter {
     let seconds = ObjectBuilder::new().schema_type(Type::Integer).minimum(Some(0));
     header_parameter("Cancel-After", "Seconds after which the job is to be ended.", seconds)
+}
+
+fn idempotency_key() -> Parameter {
+    let key = text().pattern(Some("^[!-~]{1,255}$"));
+    let about = "A key of the client's own for this request: sent again with it, the same request gives the same job, \
+                 as long as that is kept.";
+    header_parameter("Idempotency-Key", about, key)
 }
 
 fn header_parameter(name: &str, description: &str, schema: ObjectBuilder) -> Parameter {

@@ -8,7 +8,9 @@ use super::form;
 use super::multipart;
 use super::state::Service;
 use crate::jobs::Uploaded;
-use crate::wire::{Format, JobRequest, Operation, Options, Problem, ProblemCode, format_of_media_type};
+use crate::wire::{
+    Format, JobRequest, Labels, Operation, Options, Problem, ProblemCode, format_of_media_type,
+};
 
 /// Largest body that is JSON, in bytes.
 pub(super) const JSON_BYTES_MAX: u64 = 1 << 20;
@@ -26,6 +28,8 @@ pub(super) struct Intake {
     pub(super) named: Option<Format>,
     /// What to do, as the body says.
     pub(super) operation: Option<Operation>,
+    /// What to write on the job, as the body says.
+    pub(super) labels: Option<Labels>,
     /// How, as the body says.
     pub(super) options: Options,
 }
@@ -116,6 +120,7 @@ impl Intake {
             None => {
                 let request = JobRequest::from_json(text)?;
                 self.operation = agreed(self.operation, request.operation)?;
+                self.labels = agreed_labels(self.labels.take(), request.labels)?;
                 let said_before = std::mem::take(&mut self.options);
                 self.options = said_before.join(request.options).map_err(|error| Problem::from(&error))?;
             }
@@ -131,6 +136,17 @@ pub(super) fn agreed(a: Option<Operation>, b: Option<Operation>) -> Result<Optio
             Err(about_operation("`operation` is given twice with different values"))
         }
         _ => Ok(a.or(b)),
+    }
+}
+
+/// The labels that two parts of a request write: those of one of them, or of both the same.
+pub(super) fn agreed_labels(a: Option<Labels>, b: Option<Labels>) -> Result<Option<Labels>, Problem> {
+    match (a, b) {
+        (Some(a), Some(b)) if a != b => Err(Problem {
+            parameter: Some("labels".to_owned()),
+            ..Problem::new(ProblemCode::InvalidParameter, "`labels` is given twice with different values")
+        }),
+        (a, b) => Ok(a.or(b)),
     }
 }
 

@@ -17,7 +17,7 @@ use crate::wire::{Job, ProblemCode, Report};
 const HTML: &str = "text/html";
 
 /// The `{id}` of a path. What does not decode to text cannot be an id.
-type Id = Result<Path<String>, axum::extract::rejection::PathRejection>;
+pub(super) type Id = Result<Path<String>, axum::extract::rejection::PathRejection>;
 
 /// Show a job.
 ///
@@ -91,7 +91,7 @@ pub(super) async fn result(state: State, caller: Extension<Caller>, id: Id, requ
     Ok(mesh_file::asked_for(stored, media_type, request.headers()).await)
 }
 
-async fn visible(service: &Service, caller: &Caller, id: Id) -> Result<JobId, ProblemAnswer> {
+pub(super) async fn visible(service: &Service, caller: &Caller, id: Id) -> Result<JobId, ProblemAnswer> {
     let Ok(Path(text)) = id else {
         return Err(ProblemAnswer::new(ProblemCode::NotFound, "there is no such job"));
     };

@@ -82,15 +82,18 @@ pub(super) async fn cut_stitch(state: State, caller: Extension<Caller>, request:
 
 /// Make a job and do not wait for it.
 #[utoipa::path(post, path = "/v1/jobs", tag = "jobs", params(Options,
-    ("operation" = Option<Operation>, Query, description = "What to do, unless the body says it.")))]
+    ("operation" = Option<Operation>, Query, description = "What to do, unless the body says it."),
+    ("labels" = Option<String>, Query, pattern = r#"^\{"[a-z]{1,20}":"[A-Za-z0-9]{0,20}"\}$"#,
+     description = "What to write on the job, by name, unless the body says it: JSON text of an object of texts.")))]
 pub(super) async fn create_job(state: State, caller: Extension<Caller>, request: Request) -> Handled {
     let (head, body) = request.into_parts();
     json_only(&head.headers)?;
-    let (options, in_query) = query::options_and_operation(&head.uri)?;
-    let intake = intake::receive(&state, &head.headers, body, None).await?;
-    let operation = intake::agreed(in_query, intake.operation)?;
+    let asked = query::job_request(&head.uri)?;
+    let mut intake = intake::receive(&state, &head.headers, body, None).await?;
+    let operation = intake::agreed(asked.operation, intake.operation)?;
+    intake.labels = intake::agreed_labels(asked.labels, intake.labels)?;
     let operation = operation.ok_or_else(|| intake::about_operation("`operation` is missing"))?;
-    let submission = submission(&state, &caller, operation, options, intake, &head.headers).await?;
+    let submission = submission(&state, &caller, operation, asked.options, intake, &head.headers).await?;
     let job = state.jobs.submit(submission).await?;
     Ok(answer::accepted(&job, None))
 }
@@ -128,12 +131,14 @@ async fn finish(
     head: &request::Parts,
 ) -> Handled {
     let wait = Wait::from_headers(&head.headers);
+    // With a key the client can come back for the job that it does not know the id of.
+    let can_come_back = submission.key.is_some();
     let job = service.jobs.submit(submission).await?;
     let id = id_of(&job)?;
     if wait.duration.is_zero() {
         return Ok(answer::accepted(&job, wait.applied_header()));
     }
-    let abandoned = CancelWhenDropped { jobs: &service.jobs, id: Some(id) };
+    let abandoned = CancelWhenDropped { jobs: &service.jobs, id: (!can_come_back).then_some(id) };
     let job = service.jobs.wait(id, wait.duration).await;
     abandoned.disarm();
     let job = job?;
@@ -195,6 +200,7 @@ async fn submission(
         upload: intake.upload,
         material: intake.material,
         file_name: intake.file_name,
+        labels: intake.labels.unwrap_or_default(),
         cancel_after: cancel_after(headers)?,
         owner: caller.0.clone(),
         ..Submission::new(operation, options)
@@ -207,7 +213,10 @@ const KEY_BYTES_MAX: usize = 255;
 /// The key of `Idempotency-Key`, as it stands there.
 fn idempotency_key(headers: &HeaderMap) -> Result<Option<String>, Problem> {
     let Some(value) = headers.get("idempotency-key") else { return Ok(None) };
-    let key = value.to_str().ok().map(str::trim).filter(|key| (1..=KEY_BYTES_MAX).contains(&key.len()));
+    let is_key = |key: &&str| {
+        (1..=KEY_BYTES_MAX).contains(&key.len()) && key.bytes().all(|byte| byte.is_ascii_graphic())
+    };
+    let key = value.to_str().ok().filter(is_key);
     match key {
         Some(key) => Ok(Some(key.to_owned())),
         None => Err(Problem {

@@ -3,8 +3,12 @@
 use axum::extract::Query;
 use axum::http::Uri;
 
+use super::intake::{agreed, agreed_labels};
 use super::prefer;
-use crate::wire::{Operation, Options, Problem, ProblemCode};
+use crate::jobs::JobId;
+use crate::wire::{
+    JobRequest, JobState, LABELS_MAX, Operation, Options, Problem, ProblemCode, label_from_text,
+};
 
 /// Names and values of the query.
 fn pairs(uri: &Uri) -> Result<Vec<(String, String)>, Problem> {
@@ -18,20 +22,70 @@ pub(super) fn options(uri: &Uri) -> Result<Options, Problem> {
     Options::from_pairs(pairs(uri)?).map_err(|error| Problem::from(&error))
 }
 
-/// The options in the query, and the operation that it names.
-pub(super) fn options_and_operation(uri: &Uri) -> Result<(Options, Option<Operation>), Problem> {
-    let (operations, rest): (Vec<_>, Vec<_>) =
-        pairs(uri)?.into_iter().partition(|(name, _)| name == "operation");
+/// The job that the query asks for.
+pub(super) fn job_request(uri: &Uri) -> Result<JobRequest, Problem> {
+    let (own, rest): (Vec<_>, Vec<_>) =
+        pairs(uri)?.into_iter().partition(|(name, _)| matches!(name.as_str(), "operation" | "labels"));
     let options = Options::from_pairs(rest).map_err(|error| Problem::from(&error))?;
-    let mut operation = None;
-    for (_, word) in operations {
-        let named = Operation::from_word(&word).ok_or_else(|| about_operation(&word))?;
-        if operation.is_some_and(|other| other != named) {
-            return Err(invalid("operation", "`operation` is given twice with different values"));
+    let (mut operation, mut labels) = (None, None);
+    for (name, value) in own {
+        if name == "labels" {
+            labels = agreed_labels(labels, Some(JobRequest::labels_of_query(&value)?))?;
+        } else {
+            let named = Operation::from_word(&value).ok_or_else(|| about_operation(&value))?;
+            operation = agreed(operation, Some(named))?;
         }
-        operation = Some(named);
     }
-    Ok((options, operation))
+    Ok(JobRequest { operation, labels, options })
+}
+
+/// Which page of the list of jobs.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub(super) struct Page {
+    /// The last job of the page before.
+    pub(super) cursor: Option<JobId>,
+    /// Most jobs.
+    pub(super) limit: Option<usize>,
+    /// State of the jobs.
+    pub(super) state: Option<JobState>,
+    /// Labels that they all have.
+    pub(super) labels: Vec<(String, String)>,
+}
+
+/// The page that the query asks for, of at most `limit_max` jobs.
+pub(super) fn page(uri: &Uri, limit_max: usize) -> Result<Page, Problem> {
+    let mut page = Page::default();
+    for (name, value) in pairs(uri)? {
+        let taken = match name.as_str() {
+            "cursor" => {
+                put(&mut page.cursor, value.parse().ok().filter(|id: &JobId| id.to_string() == value))
+            }
+            "limit" => put(&mut page.limit, whole(&value).filter(|limit| (1..=limit_max).contains(limit))),
+            "state" => put(&mut page.state, JobState::from_word(&value)),
+            "label" => label_from_text(&value)
+                .filter(|_| page.labels.len() < LABELS_MAX)
+                .map(|label| page.labels.push(label)),
+            _ => return Err(unknown(&name, &["cursor", "limit", "state", "label"])),
+        };
+        if taken.is_none() {
+            let problem = invalid(&name, &format!("`{name}` cannot be `{value}`, or it is given too often"));
+            let states = if name == "state" { JobState::WORDS } else { &[] };
+            return Err(problem.with_allowed(states.iter().copied()));
+        }
+    }
+    Ok(page)
+}
+
+/// Takes a value that there is and that no other one stands against.
+fn put<T: PartialEq>(place: &mut Option<T>, value: Option<T>) -> Option<()> {
+    let value = value.filter(|value| place.as_ref().is_none_or(|other| other == value))?;
+    *place = Some(value);
+    Some(())
+}
+
+/// A number written in digits only.
+fn whole(text: &str) -> Option<usize> {
+    text.bytes().all(|b| b.is_ascii_digit()).then(|| text.parse().ok()).flatten()
 }
 
 /// The seconds of `?wait=`, the only parameter.
@@ -108,11 +162,15 @@ mod tests {
 
     #[test]
     fn options_and_the_operation_come_from_one_query() {
-        let (found, operation) =
-            options_and_operation(&uri("operation=repair&samples=3&input=%7B%22job%22:%227%22%7D")).unwrap();
-        assert_eq!((operation, found.samples), (Some(Operation::Repair), Some(3)));
-        assert_eq!(found.input.unwrap().job, "7");
-        let code = |query| options_and_operation(&uri(query)).unwrap_err().code;
+        let found = job_request(&uri(
+            "operation=repair&samples=3&input=%7B%22job%22:%227%22%7D&labels=%7B%22a%22:%22b%22%7D",
+        ))
+        .unwrap();
+        assert_eq!((found.operation, found.options.samples), (Some(Operation::Repair), Some(3)));
+        assert_eq!((found.options.input.unwrap().job, &*found.labels.unwrap()["a"]), ("7".to_owned(), "b"));
+        let code = |query| job_request(&uri(query)).unwrap_err().code;
+        assert_eq!(code("labels=a"), ProblemCode::InvalidParameter);
+        assert_eq!(code("labels=%7B%7D&labels=%7B%22a%22:%22b%22%7D"), ProblemCode::InvalidParameter);
         assert_eq!(code("operation=repiar"), ProblemCode::InvalidParameter);
         assert_eq!(code("operation=repair&operation=verify"), ProblemCode::InvalidParameter);
         assert_eq!(options(&uri("operation=repair")).unwrap_err().code, ProblemCode::UnknownParameter);
@@ -136,5 +194,22 @@ mod tests {
     fn a_path_without_parameters_takes_none() {
         assert!(none(&"/x".parse().unwrap()).is_ok());
         assert_eq!(none(&uri("a=1")).unwrap_err().code, ProblemCode::UnknownParameter);
+    }
+
+    #[test]
+    fn a_page_is_asked_for_by_cursor_limit_state_and_labels() {
+        let page = |text: &str| super::page(&uri(text), 200);
+        let id = "0192f0c1-2345-7abc-8def-0123456789ab";
+        let asked = page(&format!("cursor={id}&limit=7&state=failed&label=order:17&label=a:b")).unwrap();
+        assert_eq!(asked.cursor.unwrap().to_string(), id);
+        assert_eq!((asked.limit, asked.state), (Some(7), Some(JobState::Failed)));
+        assert_eq!(asked.labels, [("order".into(), "17".into()), ("a".into(), "b".into())]);
+        for wrong in
+            ["cursor=7", "limit=0", "limit=201", "limit=+1", "state=done", "label=x", "limit=1&limit=2"]
+        {
+            assert_eq!(page(wrong).unwrap_err().code, ProblemCode::InvalidParameter, "{wrong}");
+        }
+        assert_eq!(page("offset=3").unwrap_err().code, ProblemCode::UnknownParameter);
+        assert_eq!(page("").unwrap(), Page::default());
     }
 }

@@ -16,7 +16,7 @@ use super::envelope::{self, Peer};
 use super::problem::{self, ProblemAnswer};
 use super::settings::HttpSettings;
 use super::state::{Caller, Service, State};
-use super::{about, contract, docs, lifecycle, operations, page};
+use super::{about, contract, docs, events, lifecycle, listing, operations, page};
 use crate::jobs::Jobs;
 use crate::wire::ProblemCode;
 
@@ -30,9 +30,10 @@ fn api() -> OpenApiRouter<Arc<Service>> {
         .routes(routes!(operations::simplify))
         .routes(routes!(operations::plan))
         .routes(routes!(operations::cut_stitch))
-        .routes(routes!(operations::create_job))
+        .routes(routes!(operations::create_job, listing::list_jobs))
         .routes(routes!(lifecycle::show, lifecycle::delete))
         .routes(routes!(lifecycle::cancel))
+        .routes(routes!(events::events))
         .routes(routes!(lifecycle::report))
         .routes(routes!(lifecycle::result))
         .routes(routes!(about::errors))

@@ -79,7 +79,7 @@ impl Server {
             shutdown.drain.cancelled().await;
             tokio::select! {
                 () = self.jobs.drain() => (),
-                () = shutdown.abort.cancelled() => (),
+                () = shutdown.abort.cancelled() => self.jobs.abandon().await,
             }
             tokio::select! {
                 () = answered.cancelled() => (),

@@ -12,9 +12,9 @@ use super::keys::ApiKeys;
 use super::server::Server;
 use super::settings::HttpSettings;
 use super::shutdown::Shutdown;
-use crate::config::{ConfigError, Loaded, LogFormat};
+use crate::config::{ConfigError, IsolationChoice, Loaded, LogFormat, SandboxChoice};
 use crate::formats::ReadLimits;
-use crate::jobs::{Jobs, JobsSettings};
+use crate::jobs::{Isolation, Jobs, JobsSettings, Sandbox, StartError, TrialError};
 
 /// Time for jobs that a second signal gave up: the process is not to wait for them.
 const LEFTOVERS: Duration = Duration::from_secs(1);
@@ -36,7 +36,7 @@ pub fn start(loaded: &Loaded) -> anyhow::Result<()> {
     let served = runtime.block_on(async {
         let shutdown = Shutdown::on_signals()?;
         let refused = |name: &'static str, why: &dyn Display| loaded.refused(name, why);
-        let jobs = Jobs::start(jobs_settings(loaded)?).await.map_err(|e| refused("data_dir", &e))?;
+        let jobs = Jobs::start(jobs_settings(loaded)?).await.map_err(|e| refused(setting_of(&e), &e))?;
         let server = Server::bind(http, jobs).await.map_err(|e| refused("listen", &e))?;
         tell(&server)?;
         server.run(shutdown).await;
@@ -44,6 +44,15 @@ pub fn start(loaded: &Loaded) -> anyhow::Result<()> {
     });
     runtime.shutdown_timeout(LEFTOVERS);
     served
+}
+
+/// The setting that stands in the way of a start.
+fn setting_of(error: &StartError) -> &'static str {
+    match error {
+        StartError::DataDir { .. } | StartError::DataDirInUse { .. } | StartError::Store { .. } => "data_dir",
+        StartError::Isolation(TrialError::NoProcess | TrialError::Incomplete(_)) => "sandbox",
+        StartError::Isolation(TrialError::Folder(_) | TrialError::NoAnswer(_)) => "isolation",
+    }
 }
 
 /// Says where the service is and how to try it.
@@ -122,6 +131,15 @@ fn jobs_settings(loaded: &Loaded) -> Result<JobsSettings, ConfigError> {
             polygon_corners_max: config.polygon_corners_max,
         },
         drain_grace: config.drain_grace,
+        isolation: match config.isolation {
+            IsolationChoice::Process => Isolation::Process,
+            IsolationChoice::Thread => Isolation::Thread,
+        },
+        sandbox: match config.sandbox {
+            SandboxChoice::Auto => Sandbox::Auto,
+            SandboxChoice::Require => Sandbox::Require,
+            SandboxChoice::Off => Sandbox::Off,
+        },
         disk_free_bytes_min: config.disk_free_bytes_min.0,
         lease: config.lease,
         attempts_max: config.attempts_max.get(),
@@ -142,7 +160,9 @@ mod tests {
     #[test]
     fn the_defaults_of_the_configuration_are_those_of_the_settings() {
         let loaded = loaded(&[("data_dir", "d")]);
-        assert_eq!(format!("{:?}", jobs_settings(&loaded).unwrap()), format!("{:?}", JobsSettings::new("d")));
+        // The binary of the service is one that runs jobs.
+        let want = JobsSettings { isolation: Isolation::Process, ..JobsSettings::new("d") };
+        assert_eq!(format!("{:?}", jobs_settings(&loaded).unwrap()), format!("{want:?}"));
         let want = HttpSettings { admin_listen: loaded.config.admin_listen, ..HttpSettings::default() };
         assert_eq!(format!("{:?}", http_settings(&loaded).unwrap()), format!("{want:?}"));
     }

@@ -8,7 +8,7 @@ use super::body::BodyLimits;
 use super::prefer::{WAIT_DEFAULT, WAIT_MAX};
 use super::settings::HttpSettings;
 use crate::jobs::{JobId, Jobs};
-use crate::wire::{Limits, Problem, ProblemCode};
+use crate::wire::{LABELS_MAX, Limits, Problem, ProblemCode};
 
 /// The state of the router.
 pub(super) type State = axum::extract::State<Arc<Service>>;
@@ -72,7 +72,11 @@ impl Service {
             material_bytes_max: super::form::MATERIAL_BYTES_MAX,
             result_ttl_s: jobs.result_ttl.as_secs(),
             data_bytes_max: jobs.data_bytes_max,
+            disk_free_bytes_min: jobs.disk_free_bytes_min,
             jobs_max: jobs.jobs_max,
+            attempts_max: jobs.attempts_max,
+            labels_max: LABELS_MAX,
+            page_jobs_max: super::listing::PAGE_MAX,
         }
     }
 }

@@ -8,6 +8,9 @@ use crate::wire::{Problem, ProblemCode};
 /// Time that stopped jobs get to return when the server ends. The engine needs 50 ms; more means that it hangs.
 const STOP_PATIENCE: Duration = Duration::from_secs(5);
 
+/// The same when the server is to end at once.
+const ABANDON_PATIENCE: Duration = Duration::from_secs(1);
+
 impl Jobs {
     /// The service takes no more jobs.
     pub fn is_draining(&self) -> bool {
@@ -26,6 +29,19 @@ impl Jobs {
             if tokio::time::timeout(STOP_PATIENCE, service.slots.wait()).await.is_err() {
                 tracing::error!("a job did not end when told to");
             }
+        }
+        service.stopping.cancel();
+    }
+
+    /// As [`drain`](Self::drain) without a grace, for a server that is told to end at once.
+    pub async fn abandon(&self) {
+        let service = &self.0;
+        service.draining.cancel();
+        for (_, live) in service.live.all() {
+            live.drain();
+        }
+        if tokio::time::timeout(ABANDON_PATIENCE, service.slots.wait()).await.is_err() {
+            tracing::warn!("jobs that run are queued again by the next start");
         }
         service.stopping.cancel();
     }

@@ -37,12 +37,26 @@ impl fmt::Display for EventId {
     }
 }
 
-impl FromStr for EventId {
-    type Err = std::num::ParseIntError;
+/// A text that is no id of an event.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("an event's id is two numbers with a dot between them")]
+pub struct NoEventId;
 
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let (change, pass) = text.split_once('.').unwrap_or((text, "0"));
-        Ok(Self { change: change.parse()?, pass: pass.parse()? })
+impl FromStr for EventId {
+    type Err = NoEventId;
+
+    fn from_str(text: &str) -> Result<Self, NoEventId> {
+        // Nine digits are more than a job has events.
+        let is_number =
+            |text: &str| (1..=9).contains(&text.len()) && text.bytes().all(|b| b.is_ascii_digit());
+        let (change, pass) = text.split_once('.').ok_or(NoEventId)?;
+        if !is_number(change) || !is_number(pass) {
+            return Err(NoEventId);
+        }
+        Ok(Self {
+            change: change.parse().map_err(|_| NoEventId)?,
+            pass: pass.parse().map_err(|_| NoEventId)?,
+        })
     }
 }
 

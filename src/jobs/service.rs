@@ -10,11 +10,13 @@ use tokio::sync::Notify;
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 
+use super::attempt::{Engine, Executor};
+use super::child::TrialError;
 use super::drain::draining;
 use super::heartbeat::end_overdue;
 use super::live::LiveJobs;
 use super::settings::JobsSettings;
-use super::slot::{self, Engine};
+use super::slot;
 use super::spool::{OpenError, SpaceLimits, Spool};
 use super::sqlite::SqliteStore;
 use super::store::{Ending, JobId, JobRow, JobStore, Leases, ListQuery, StoreError};
@@ -22,7 +24,6 @@ use super::upload::Upload;
 use super::view::{self, StoredFile, expired};
 use super::{meters, retention};
 use crate::budget::Stopped;
-use crate::pipeline;
 use crate::wire::{Job, JobState, Options, Problem, ProblemCode};
 
 /// The job service. Clones share it.
@@ -34,7 +35,7 @@ pub(super) struct Service {
     pub(super) settings: JobsSettings,
     pub(super) store: Arc<dyn JobStore>,
     pub(super) spool: Arc<Spool>,
-    pub(super) engine: Engine,
+    pub(super) executor: Executor,
     /// Name of this process in the store.
     pub(super) worker: String,
     pub(super) live: LiveJobs,
@@ -85,6 +86,9 @@ pub enum StartError {
         /// Why.
         why: String,
     },
+    /// Jobs cannot run as the settings ask.
+    #[error(transparent)]
+    Isolation(#[from] TrialError),
     /// Another server uses the data directory.
     #[error("data directory {path} is in use by another server")]
     DataDirInUse {
@@ -100,16 +104,20 @@ impl Jobs {
     /// Opens the data directory and starts the slots: jobs of an earlier run go on. To be called inside a tokio runtime.
     ///
     /// # Errors
-    /// The data directory cannot be used, or another server uses it.
+    /// The data directory cannot be used, another server uses it, or jobs cannot run as the settings ask.
     pub async fn start(settings: JobsSettings) -> Result<Self, StartError> {
-        Self::start_with(settings, Arc::new(pipeline::run)).await
+        Self::open(settings, None).await
     }
 
-    /// As [`start`](Self::start) with another engine.
+    /// As [`start`](Self::start) with another engine, which runs in threads of this process.
     ///
     /// # Errors
     /// As [`start`](Self::start).
     pub async fn start_with(settings: JobsSettings, engine: Engine) -> Result<Self, StartError> {
+        Self::open(settings, Some(Executor::Thread(engine))).await
+    }
+
+    async fn open(settings: JobsSettings, executor: Option<Executor>) -> Result<Self, StartError> {
         let path = settings.data_dir.clone();
         let space =
             SpaceLimits { bytes_max: settings.data_bytes_max, free_bytes_min: settings.disk_free_bytes_min };
@@ -117,6 +125,10 @@ impl Jobs {
             OpenError::InUse => StartError::DataDirInUse { path: path.clone() },
             OpenError::Io(source) => StartError::DataDir { path: path.clone(), source },
         })?;
+        let executor = match executor {
+            Some(executor) => executor,
+            None => Executor::of(&settings).await?,
+        };
         let path = path.join(STORE_FILE);
         let unusable = |why: String| StartError::Store { path: path.clone(), why };
         let store = SqliteStore::open(&path).map_err(|error| unusable(error.to_string()))?;
@@ -124,7 +136,7 @@ impl Jobs {
             settings,
             store: Arc::new(store),
             spool,
-            engine,
+            executor,
             worker: uuid::Uuid::now_v7().to_string(),
             live: LiveJobs::default(),
             work: Notify::new(),

@@ -1,11 +1,10 @@
 //! A job as the service shows it.
 
-use std::collections::BTreeMap;
-
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::labels::Labels;
 use super::problem::Problem;
 use super::report::TimingMs;
 use super::words::{Operation, Outcome, Stage, words};
@@ -69,9 +68,6 @@ impl Links {
     }
 }
 
-/// Words of the caller about a job, by name.
-pub type Labels = BTreeMap<String, String>;
-
 /// A job.
 #[derive(Debug, Clone, Serialize, ToSchema)]
 pub struct Job {
@@ -107,9 +103,20 @@ pub struct Job {
     /// How many of its runs were lost with the process that made them.
     pub attempts: u32,
     /// What the caller has written on it, by name.
-    pub labels: BTreeMap<String, String>,
+    #[schema(value_type = BTreeMap<String, String>)]
+    pub labels: Labels,
     /// The result is that of an earlier job with the same bytes, options and engine.
     pub cached: bool,
     /// Where to go from here.
     pub links: Links,
+}
+
+/// One page of the list of jobs.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct JobList {
+    /// Jobs, the latest first.
+    pub jobs: Vec<Job>,
+    /// `cursor` of the next page; null: this is the last one.
+    #[schema(required)]
+    pub next: Option<String>,
 }

@@ -48,6 +48,14 @@ pub struct Limits {
     pub result_ttl_s: u64,
     /// Most bytes of uploads and results kept on disk.
     pub data_bytes_max: u64,
+    /// Bytes of the disk that stay free.
+    pub disk_free_bytes_min: u64,
     /// Most jobs kept, whatever their state.
     pub jobs_max: usize,
+    /// Lost runs after which a job fails.
+    pub attempts_max: u32,
+    /// Most labels of a job.
+    pub labels_max: usize,
+    /// Most jobs of one page of the list.
+    pub page_jobs_max: usize,
 }

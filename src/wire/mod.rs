@@ -5,8 +5,10 @@
 
 mod certificate;
 mod edges;
+mod event;
 mod formats;
 mod job;
+mod labels;
 mod level;
 mod limits;
 mod mesh_answers;
@@ -29,8 +31,10 @@ mod words;
 pub(crate) mod sample;
 
 pub use certificate::{Certificate, Claim, Reading, Shell, Violation, ViolationCount};
+pub use event::{Phase, StageEvent, StateEvent};
 pub use formats::{FormatInfo, extension_of, format_of_media_type, formats, media_type_of};
-pub use job::{Job, JobState, Labels, Links, Progress};
+pub use job::{Job, JobList, JobState, Links, Progress};
+pub use labels::{LABELS_MAX, Labels, label_from_text};
 pub use level::Level;
 pub use limits::Limits;
 pub use mesh_answers::{Proximity, TestCounts, VolumeInterval, VolumeMethod, Watertight};

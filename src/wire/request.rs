@@ -6,6 +6,7 @@ use utoipa::openapi::RefOr;
 use utoipa::openapi::schema::{ObjectBuilder, Schema, Type};
 use utoipa::{PartialSchema, ToSchema};
 
+use super::labels::{Labels, about_labels, labels_from_json, labels_schema};
 use super::option_schema::object_of_options;
 use super::options::{Options, nearest};
 use super::problem::{Problem, ProblemCode};
@@ -24,6 +25,8 @@ pub struct InputRef {
 pub struct JobRequest {
     /// What to do; `None`: another part of the request says it.
     pub operation: Option<Operation>,
+    /// What to write on the job; `None`: another part of the request may say it.
+    pub labels: Option<Labels>,
     /// How.
     pub options: Options,
 }
@@ -34,8 +37,7 @@ impl JobRequest {
     /// # Errors
     /// A problem with code `invalid-parameter` or `unknown-parameter`.
     pub fn from_json(text: &[u8]) -> Result<Self, Problem> {
-        let (operation, options) = read(text)?;
-        Ok(Self { operation, options })
+        read(text)
     }
 
     /// Reads the `params` of a path that names the operation itself; `operation` may be repeated there, not changed.
@@ -43,23 +45,38 @@ impl JobRequest {
     /// # Errors
     /// As [`from_json`](Self::from_json).
     pub fn params_from_json(text: &[u8], operation: Operation) -> Result<Options, Problem> {
-        match read(text)? {
-            (Some(named), _) if named != operation => Err(about_operation(
+        let request = read(text)?;
+        match request.operation {
+            Some(named) if named != operation => Err(about_operation(
                 &format!("the path means `{operation}`, `operation` says `{named}`"),
                 None,
             )),
-            (_, options) => Ok(options),
+            _ if request.labels.is_some() => Err(Problem {
+                parameter: Some("labels".to_owned()),
+                ..Problem::new(ProblemCode::UnknownParameter, "`labels` belong to `/v1/jobs`")
+            }),
+            _ => Ok(request.options),
         }
+    }
+
+    /// The labels of a query, as JSON text.
+    ///
+    /// # Errors
+    /// `invalid-parameter`.
+    pub fn labels_of_query(text: &str) -> Result<Labels, Problem> {
+        labels_from_json(&serde_json::from_str(text).map_err(|_| about_labels())?)
     }
 }
 
-fn read(text: &[u8]) -> Result<(Option<Operation>, Options), Problem> {
+fn read(text: &[u8]) -> Result<JobRequest, Problem> {
     let members = object(text)?;
     let mut operation = None;
+    let mut labels = None;
     let mut options = Options::default();
     for (name, value) in &members {
         match (name.as_str(), value) {
             ("operation", value) => operation = Some(read_operation(value)?),
+            ("labels", value) => labels = Some(labels_from_json(value)?),
             ("params", Value::Object(inner)) => {
                 for (name, value) in inner {
                     options.set_json(name, value)?;
@@ -74,7 +91,7 @@ fn read(text: &[u8]) -> Result<(Option<Operation>, Options), Problem> {
             _ => options.set_json(name, value)?,
         }
     }
-    Ok((operation, options))
+    Ok(JobRequest { operation, labels, options })
 }
 
 fn object(text: &[u8]) -> Result<serde_json::Map<String, Value>, Problem> {
@@ -114,6 +131,7 @@ impl PartialSchema for JobRequest {
         let object = object_of_options()
             .description(Some("What to do, with options, which may also stand together in `params`."))
             .property("operation", operation)
+            .property("labels", labels_schema())
             .property("params", Options::schema());
         RefOr::T(Schema::Object(object.build()))
     }
@@ -153,6 +171,15 @@ mod tests {
         assert!(JobRequest::params_from_json(br#"{"operation":"repair"}"#, Operation::Repair).is_ok());
         assert!(JobRequest::params_from_json(br#"{}"#, Operation::Repair).is_ok());
         assert!(JobRequest::params_from_json(br#"{"operation":"verify"}"#, Operation::Repair).is_err());
+        assert!(JobRequest::params_from_json(br#"{"labels":{}}"#, Operation::Repair).is_err());
+    }
+
+    #[test]
+    fn labels_stand_beside_the_operation() {
+        let request = JobRequest::from_json(br#"{"operation":"repair","labels":{"order":"17"}}"#).unwrap();
+        assert_eq!(request.labels.unwrap()["order"], "17");
+        assert!(JobRequest::from_json(br#"{"labels":["order"]}"#).is_err());
+        assert!(JobRequest::from_json(br#"{"params":{"labels":{}}}"#).is_err());
     }
 
     #[test]

@@ -130,23 +130,6 @@ fn a_second_signal_ends_the_service_at_once() {
     assert!(begun.elapsed() < Duration::from_secs(10), "not after the grace of 25 s");
 }
 
-#[test]
-fn a_job_that_outlives_the_grace_is_ended_as_drained() {
-    let mut server = Server::with(&["--drain-grace", "200ms"]);
-    let mut line = server.connect();
-    let mesh = long_job(500);
-    line.say(format!(
-        "POST /v1/verify HTTP/1.1\r\nHost: localhost\r\nContent-Length: {}\r\n\r\n",
-        mesh.len()
-    ));
-    line.say(&mesh);
-    until_jobs_run(&server);
-    server.signal("TERM");
-    let answer = line.hear_all();
-    assert!(answer.starts_with("HTTP/1.1 503 ") && answer.contains("draining"), "{answer:.500}");
-    assert_eq!(server.exit_code(), Some(0));
-}
-
 fn until_jobs_run(server: &Server) {
     let begun = Instant::now();
     let is_running = || server.admin("/metrics").text().unwrap().contains("meshmend_jobs_running 1");

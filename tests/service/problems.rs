@@ -28,7 +28,7 @@ fn every_wrong_turn_is_a_problem_with_a_stable_code() {
         ("GET", "/v1/repair", "", 405, "method-not-allowed"),
         ("PUT", "/v1/repair", SOLID, 405, "method-not-allowed"),
         ("OPTIONS", "/v1/repair", "", 405, "method-not-allowed"),
-        ("GET", "/v1/jobs", "", 405, "method-not-allowed"),
+        ("PUT", "/v1/jobs", "", 405, "method-not-allowed"),
         ("DELETE", "/v1/limits", "", 405, "method-not-allowed"),
         ("POST", "/", "", 405, "method-not-allowed"),
         ("FOO", "/v1/limits", "", 405, "method-not-allowed"),

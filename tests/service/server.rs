@@ -4,7 +4,9 @@ use reqwest::blocking::{Client, RequestBuilder, Response};
 use serde_json::Value;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
+use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStderr, Command, Stdio};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Patience of the tests; only what hangs meets it.
@@ -15,8 +17,11 @@ pub(crate) struct Server {
     child: Child,
     pub(crate) address: String,
     pub(crate) admin: String,
+    /// What it logged before it listened.
+    pub(crate) log: String,
     client: Client,
-    _data: tempfile::TempDir,
+    binary: PathBuf,
+    data: Arc<tempfile::TempDir>,
 }
 
 impl Server {
@@ -26,8 +31,34 @@ impl Server {
 
     /// A server with further settings, as flags.
     pub(crate) fn with(settings: &[&str]) -> Self {
-        let data = tempfile::tempdir().unwrap();
-        let mut command = Command::new(env!("CARGO_BIN_EXE_meshmend"));
+        Self::of(env!("CARGO_BIN_EXE_meshmend").as_ref(), settings)
+    }
+
+    /// A server of another binary that takes the same command line.
+    pub(crate) fn of(binary: &Path, settings: &[&str]) -> Self {
+        Self::on(binary, Arc::new(tempfile::tempdir().unwrap()), settings)
+    }
+
+    /// Kills it and starts another one on the same data folder.
+    pub(crate) fn killed_and_restarted(mut self, settings: &[&str]) -> Self {
+        self.child.kill().unwrap();
+        self.child.wait().unwrap();
+        Self::on(&self.binary, Arc::clone(&self.data), settings)
+    }
+
+    /// Starts another one on the same data folder after this one has ended.
+    pub(crate) fn restarted(mut self, settings: &[&str]) -> Self {
+        assert_eq!(self.exit_code(), Some(0));
+        Self::on(&self.binary, Arc::clone(&self.data), settings)
+    }
+
+    /// The files of uploads and results.
+    pub(crate) fn stored_files(&self) -> Vec<PathBuf> {
+        files_under(&self.data_dir().join("spool"))
+    }
+
+    fn on(binary: &Path, data: Arc<tempfile::TempDir>, settings: &[&str]) -> Self {
+        let mut command = Command::new(binary);
         for (name, _) in std::env::vars_os() {
             if name.to_string_lossy().starts_with("MESHMEND_") {
                 command.env_remove(name);
@@ -37,12 +68,13 @@ impl Server {
         command.arg(data.path().join("data")).args(settings).stdin(Stdio::null()).stderr(Stdio::piped());
         let mut child = command.spawn().unwrap();
         let mut log = BufReader::new(child.stderr.take().unwrap());
-        let address = bound(&mut log, "listening on http://");
-        let admin = bound(&mut log, "health and metrics on http://");
+        let mut seen = String::new();
+        let address = bound(&mut log, "listening on http://", &mut seen);
+        let admin = bound(&mut log, "health and metrics on http://", &mut seen);
         // The pipe must not fill up.
         std::thread::spawn(move || std::io::copy(&mut log, &mut std::io::sink()));
         let client = Client::builder().timeout(PATIENCE).build().unwrap();
-        Self { child, address, admin, client, _data: data }
+        Self { child, address, admin, log: seen, client, binary: binary.to_owned(), data }
     }
 
     pub(crate) fn url(&self, path: &str) -> String {
@@ -101,8 +133,17 @@ impl Server {
 
     /// Sends a signal by its name.
     pub(crate) fn signal(&self, name: &str) {
-        let line = format!("kill -{name} {}", self.child.id());
-        assert!(Command::new("sh").args(["-c", &line]).status().unwrap().success());
+        signal(self.pid(), name);
+    }
+
+    /// Its process.
+    pub(crate) fn pid(&self) -> u32 {
+        self.child.id()
+    }
+
+    /// The folder of its data.
+    pub(crate) fn data_dir(&self) -> PathBuf {
+        self.data.path().join("data")
     }
 
     /// The exit code, once it has ended by itself.
@@ -126,9 +167,13 @@ impl Drop for Server {
     }
 }
 
+fn files_under(dir: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(dir).unwrap().map(|entry| entry.unwrap().path());
+    entries.flat_map(|path| if path.is_dir() { files_under(&path) } else { vec![path] }).collect()
+}
+
 /// The address that the log tells behind `words`.
-fn bound(log: &mut BufReader<ChildStderr>, words: &str) -> String {
-    let mut seen = String::new();
+fn bound(log: &mut BufReader<ChildStderr>, words: &str, seen: &mut String) -> String {
     loop {
         let mut line = String::new();
         assert!(log.read_line(&mut line).unwrap() > 0, "the server did not start: {seen}");
@@ -137,6 +182,12 @@ fn bound(log: &mut BufReader<ChildStderr>, words: &str) -> String {
         }
         seen.push_str(&line);
     }
+}
+
+/// Sends a signal by its name.
+pub(crate) fn signal(pid: u32, name: &str) {
+    let line = format!("kill -{name} {pid}");
+    assert!(Command::new("sh").args(["-c", &line]).status().unwrap().success());
 }
 
 pub(crate) fn link<'j>(job: &'j Value, name: &str) -> &'j str {

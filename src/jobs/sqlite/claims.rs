@@ -101,7 +101,7 @@ fn end(connection: &Connection, id: JobId, ending: &Ending, now: i64) -> Result<
         ":ending": to_json(ending)?,
         ":engine": ENGINE_VERSION,
         ":now": now,
-        ":last": jiff::Timestamp::MAX.as_millisecond(),
+        ":last": jiff::Timestamp::MAX.as_second() * 1000,
     })?;
     keeping::name(connection, id, ending.blobs())?;
     change(connection, id, now)?;

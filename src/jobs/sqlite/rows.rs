@@ -108,7 +108,7 @@ pub(super) fn time_if_any(row: &Row<'_>, column: usize) -> rusqlite::Result<Opti
 
 /// The time `after` another, at most the last one there is.
 pub(super) fn later(ms: i64, after: Duration) -> i64 {
-    let last = Timestamp::MAX.as_millisecond();
+    let last = Timestamp::MAX.as_second() * 1000;
     ms.saturating_add(i64::try_from(after.as_millis()).unwrap_or(i64::MAX)).min(last)
 }
 

@@ -1,7 +1,9 @@
 //! The rules of a job's life, each on the smallest case that shows it, with engines made for the purpose.
 
 mod keeping;
+mod restarting;
 mod running;
+mod stores;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, mpsc};
@@ -125,4 +127,9 @@ fn work_until_told(told: mpsc::Receiver<()>) -> impl Fn(&[u8], &Budget) -> Resul
             return Ok(sample::repaired());
         }
     }
+}
+
+fn bytes_under(dir: &std::path::Path) -> u64 {
+    let entries = std::fs::read_dir(dir).unwrap().map(|entry| entry.unwrap().path());
+    entries.map(|path| if path.is_dir() { bytes_under(&path) } else { path.metadata().unwrap().len() }).sum()
 }
