@@ -2,15 +2,36 @@
 
 use metrics::{counter, gauge, histogram};
 
-use super::store::{Ending, JobCounts};
-use crate::wire::{Operation, Stage};
+use super::store::{Ending, JobCounts, NextTry, TryOutcome};
+use crate::wire::{Operation, Problem, Stage};
 
 /// Jobs that wait and run, bytes on disk.
 pub(super) fn load(counts: JobCounts, data_bytes: u64) {
     gauge!("meshmend_jobs_queued").set(counts.queued as f64);
     gauge!("meshmend_jobs_running").set(counts.running as f64);
     gauge!("meshmend_jobs_kept").set(counts.all as f64);
+    let waited = counts.oldest_queued_at.map(|at| jiff::Timestamp::now().duration_since(at).as_secs_f64());
+    gauge!("meshmend_queue_oldest_seconds").set(waited.unwrap_or(0.0).max(0.0));
     gauge!("meshmend_data_bytes").set(data_bytes as f64);
+}
+
+/// A job that was not taken.
+pub(super) fn refused(problem: &Problem) {
+    counter!("meshmend_jobs_refused_total", "problem" => problem.code.word()).increment(1);
+}
+
+/// A try to deliver a webhook.
+pub(super) fn delivery_tried(outcome: &TryOutcome, next: NextTry) {
+    let answer = match outcome {
+        TryOutcome::Answered(status) => format!("{}xx", status / 100),
+        TryOutcome::Failed(_) => "none".to_owned(),
+    };
+    let then = match next {
+        NextTry::Delivered => "delivered",
+        NextTry::After(_) => "retry",
+        NextTry::GiveUp => "failed",
+    };
+    counter!("meshmend_webhook_tries_total", "answer" => answer, "then" => then).increment(1);
 }
 
 /// A job that was answered from an earlier one.

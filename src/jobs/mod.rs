@@ -8,9 +8,11 @@
 mod admission;
 mod attempt;
 mod blobs;
+mod capacity;
 mod child;
 mod clock;
 mod drain;
+mod estimate;
 mod events;
 mod heartbeat;
 mod live;
@@ -26,6 +28,7 @@ mod sqlite;
 mod store;
 mod upload;
 mod view;
+mod webhook;
 
 #[cfg(test)]
 mod tests;
@@ -46,3 +49,6 @@ pub use store::{
 };
 pub use upload::{Upload, Uploaded};
 pub use view::StoredFile;
+pub use webhook::{
+    PrivateHosts, RetryPlan, SecretError, Target, TargetError, URL_BYTES_MAX, WebhookSecret, WebhookSettings,
+};
