@@ -8,7 +8,9 @@ use super::form;
 use super::multipart;
 use super::state::Service;
 use crate::jobs::Uploaded;
-use crate::wire::{Format, JobRequest, Labels, Operation, Options, Problem, ProblemCode, format_of_media_type};
+use crate::wire::{
+    Format, JobRequest, Labels, Operation, Options, Problem, ProblemCode, format_of_media_type,
+};
 
 /// Largest body that is JSON, in bytes.
 pub(super) const JSON_BYTES_MAX: u64 = 1 << 20;

@@ -57,10 +57,14 @@ pub(super) fn page(uri: &Uri, limit_max: usize) -> Result<Page, Problem> {
     let mut page = Page::default();
     for (name, value) in pairs(uri)? {
         let taken = match name.as_str() {
-            "cursor" => put(&mut page.cursor, value.parse().ok().filter(|id: &JobId| id.to_string() == value)),
+            "cursor" => {
+                put(&mut page.cursor, value.parse().ok().filter(|id: &JobId| id.to_string() == value))
+            }
             "limit" => put(&mut page.limit, whole(&value).filter(|limit| (1..=limit_max).contains(limit))),
             "state" => put(&mut page.state, JobState::from_word(&value)),
-            "label" => label_from_text(&value).filter(|_| page.labels.len() < LABELS_MAX).map(|label| page.labels.push(label)),
+            "label" => label_from_text(&value)
+                .filter(|_| page.labels.len() < LABELS_MAX)
+                .map(|label| page.labels.push(label)),
             _ => return Err(unknown(&name, &["cursor", "limit", "state", "label"])),
         };
         if taken.is_none() {
@@ -158,9 +162,10 @@ mod tests {
 
     #[test]
     fn options_and_the_operation_come_from_one_query() {
-        let found =
-            job_request(&uri("operation=repair&samples=3&input=%7B%22job%22:%227%22%7D&labels=%7B%22a%22:%22b%22%7D"))
-                .unwrap();
+        let found = job_request(&uri(
+            "operation=repair&samples=3&input=%7B%22job%22:%227%22%7D&labels=%7B%22a%22:%22b%22%7D",
+        ))
+        .unwrap();
         assert_eq!((found.operation, found.options.samples), (Some(Operation::Repair), Some(3)));
         assert_eq!((found.options.input.unwrap().job, &*found.labels.unwrap()["a"]), ("7".to_owned(), "b"));
         let code = |query| job_request(&uri(query)).unwrap_err().code;
@@ -199,7 +204,9 @@ mod tests {
         assert_eq!(asked.cursor.unwrap().to_string(), id);
         assert_eq!((asked.limit, asked.state), (Some(7), Some(JobState::Failed)));
         assert_eq!(asked.labels, [("order".into(), "17".into()), ("a".into(), "b".into())]);
-        for wrong in ["cursor=7", "limit=0", "limit=201", "limit=+1", "state=done", "label=x", "limit=1&limit=2"] {
+        for wrong in
+            ["cursor=7", "limit=0", "limit=201", "limit=+1", "state=done", "label=x", "limit=1&limit=2"]
+        {
             assert_eq!(page(wrong).unwrap_err().code, ProblemCode::InvalidParameter, "{wrong}");
         }
         assert_eq!(page("offset=3").unwrap_err().code, ProblemCode::UnknownParameter);

@@ -47,12 +47,16 @@ impl FromStr for EventId {
 
     fn from_str(text: &str) -> Result<Self, NoEventId> {
         // Nine digits are more than a job has events.
-        let is_number = |text: &str| (1..=9).contains(&text.len()) && text.bytes().all(|b| b.is_ascii_digit());
+        let is_number =
+            |text: &str| (1..=9).contains(&text.len()) && text.bytes().all(|b| b.is_ascii_digit());
         let (change, pass) = text.split_once('.').ok_or(NoEventId)?;
         if !is_number(change) || !is_number(pass) {
             return Err(NoEventId);
         }
-        Ok(Self { change: change.parse().map_err(|_| NoEventId)?, pass: pass.parse().map_err(|_| NoEventId)? })
+        Ok(Self {
+            change: change.parse().map_err(|_| NoEventId)?,
+            pass: pass.parse().map_err(|_| NoEventId)?,
+        })
     }
 }
 

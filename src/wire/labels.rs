@@ -54,8 +54,11 @@ pub(super) fn about_labels() -> Problem {
     );
     Problem {
         parameter: Some("labels".to_owned()),
-        ..Problem::new(ProblemCode::InvalidParameter, format!("`labels` must be {expected}"))
-            .with_limit("labels_max", LABELS_MAX as u64, None)
+        ..Problem::new(ProblemCode::InvalidParameter, format!("`labels` must be {expected}")).with_limit(
+            "labels_max",
+            LABELS_MAX as u64,
+            None,
+        )
     }
 }
 
@@ -100,6 +103,9 @@ mod tests {
     fn a_label_of_a_query_is_cut_at_its_first_colon() {
         assert_eq!(label_from_text("url:a:b"), Some(("url".into(), "a:b".into())));
         assert_eq!(label_from_text("order:"), Some(("order".into(), String::new())));
-        assert_eq!((label_from_text("order"), label_from_text(":x"), label_from_text("a b:x")), (None, None, None));
+        assert_eq!(
+            (label_from_text("order"), label_from_text(":x"), label_from_text("a b:x")),
+            (None, None, None)
+        );
     }
 }

@@ -22,9 +22,15 @@ fn jobs_are_listed_the_latest_first_page_by_page() {
         (0..5).map(|_| server.job("verify", SOLID)["id"].as_str().unwrap().to_owned()).collect();
     made.reverse();
     let first = list(&server, "?limit=3");
-    assert_eq!((ids(&first), first["next"].as_str()), (made[..3].iter().map(String::as_str).collect(), Some(&*made[2])));
+    assert_eq!(
+        (ids(&first), first["next"].as_str()),
+        (made[..3].iter().map(String::as_str).collect(), Some(&*made[2]))
+    );
     let second = list(&server, &format!("?limit=3&cursor={}", made[2]));
-    assert_eq!((ids(&second), &second["next"]), (made[3..].iter().map(String::as_str).collect(), &Value::Null));
+    assert_eq!(
+        (ids(&second), &second["next"]),
+        (made[3..].iter().map(String::as_str).collect(), &Value::Null)
+    );
     for wrong in ["?limit=0", "?limit=201", "?cursor=x", "?state=done", "?label=x", "?offset=1"] {
         assert_eq!(problem(server.get(&format!("/v1/jobs{wrong}")).send().unwrap()).0, 400, "{wrong}");
     }
@@ -49,7 +55,10 @@ fn jobs_are_found_by_state_and_labels() {
     assert_eq!(ids(&list(&server, "?label=order:17&state=failed")), [""; 0]);
     let wrong = json!({"operation": "repair", "labels": {"a b": "c"}, "input": {"job": input["id"]}});
     let (status, _, told) = problem(server.post("/v1/jobs").json(&wrong).send().unwrap());
-    assert_eq!((status, &told["parameter"], &told["limit_name"]), (400, &json!("labels"), &json!("labels_max")));
+    assert_eq!(
+        (status, &told["parameter"], &told["limit_name"]),
+        (400, &json!("labels"), &json!("labels_max"))
+    );
 }
 
 #[test]
@@ -79,7 +88,11 @@ fn the_same_request_with_its_key_gives_the_same_job() {
     };
     let ids = std::thread::scope(|scope| {
         let asked: Vec<_> = (0..12)
-            .map(|_| scope.spawn(|| ask("k", "/v1/jobs?operation=repair", SOLID).json::<Value>().unwrap()["id"].clone()))
+            .map(|_| {
+                scope.spawn(|| {
+                    ask("k", "/v1/jobs?operation=repair", SOLID).json::<Value>().unwrap()["id"].clone()
+                })
+            })
             .collect();
         asked.into_iter().map(|asked| asked.join().unwrap()).collect::<Vec<_>>()
     });

@@ -96,12 +96,18 @@ fn who_follows_a_job_over_a_kill_hears_its_end_once() {
     for (event, state) in states.iter().zip(["queued", "running", "succeeded"]) {
         assert!(event.contains(&format!("\"state\":\"{state}\"")), "{text}");
     }
-    assert!(text.contains("event: stage") && text.contains("\"stage\":\"certify\",\"phase\":\"end\""), "{text}");
+    assert!(
+        text.contains("event: stage") && text.contains("\"stage\":\"certify\",\"phase\":\"end\""),
+        "{text}"
+    );
     let last = text.lines().filter_map(|line| line.strip_prefix("id: ")).next_back().unwrap();
     let heard = server.get(&path).header("last-event-id", last).send().unwrap();
     assert_eq!(heard.status(), 204);
     let all = server.get(&path).send().unwrap().text().unwrap();
     assert_eq!(all.matches("\"state\":\"succeeded\"").count(), 1);
-    assert_eq!(problem(server.get(&path).header("last-event-id", "x").send().unwrap()).1, "invalid-parameter");
+    assert_eq!(
+        problem(server.get(&path).header("last-event-id", "x").send().unwrap()).1,
+        "invalid-parameter"
+    );
     assert_eq!(problem(server.get(&path).header("accept", "text/html").send().unwrap()).1, "not-acceptable");
 }

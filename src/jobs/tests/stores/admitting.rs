@@ -32,7 +32,10 @@ pub(super) async fn a_job_is_read_back_as_it_was_admitted<H: StoreHouse>() {
         assert_eq!((&row.webhook, &row.input, &row.material), (&new.webhook, &new.input, &new.material));
         assert_eq!((row.lane, row.state, row.epoch, row.attempts), (new.lane, JobState::Queued, 0, 0));
         assert_eq!(row.cancel_at.unwrap().as_millisecond(), row.created_at.as_millisecond() + 1500);
-        assert_eq!((row.started_at, row.finished_at, row.expires_at, row.is_cached), (None, None, None, false));
+        assert_eq!(
+            (row.started_at, row.finished_at, row.expires_at, row.is_cached),
+            (None, None, None, false)
+        );
         assert!(row.ending.is_none());
     }
 }
@@ -82,12 +85,8 @@ pub(super) async fn an_answered_job_is_admitted_to_a_full_queue_and_has_ended<H:
     let store = house.store();
     let first = succeeded(&*store, job()).await;
     admit(&*store, job()).await;
-    let again = NewJob {
-        input: first.input.clone(),
-        source: Some(first.id),
-        ending: first.ending.clone(),
-        ..job()
-    };
+    let again =
+        NewJob { input: first.input.clone(), source: Some(first.id), ending: first.ending.clone(), ..job() };
     let Created::New(row) = store.create(again, 1).await.unwrap() else { panic!("it is new") };
     assert_eq!((row.state, row.is_cached, row.epoch), (JobState::Succeeded, true, 0));
     assert!(row.finished_at.is_some() && row.started_at == row.finished_at);

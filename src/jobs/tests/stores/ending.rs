@@ -20,7 +20,10 @@ pub(super) async fn a_job_ends_once<H: StoreHouse>() {
     let store = house.store();
     let row = succeeded(&*store, job()).await;
     assert_eq!(store.finish(row.claim(), failure()).await, VOID);
-    assert_eq!(store.lose(row.claim(), problem(ProblemCode::WorkerLost), 1).await, Err(StoreError::ClaimVoid));
+    assert_eq!(
+        store.lose(row.claim(), problem(ProblemCode::WorkerLost), 1).await,
+        Err(StoreError::ClaimVoid)
+    );
     assert_eq!(state(&*store, row.id).await, JobState::Succeeded);
 }
 
@@ -153,5 +156,8 @@ pub(super) async fn an_ending_is_read_back_as_it_was_told<H: StoreHouse>() {
     assert_eq!((read.state, read.progress, read.outcome), (told.state, told.progress, told.outcome));
     assert_eq!((read.problem, read.timing_ms), (told.problem, told.timing_ms));
     assert_eq!((read.report, read.result, read.levels), (told.report, told.result, told.levels));
-    assert_eq!(row.expires_at.unwrap().as_millisecond(), row.finished_at.unwrap().as_millisecond() + 3_600_000);
+    assert_eq!(
+        row.expires_at.unwrap().as_millisecond(),
+        row.finished_at.unwrap().as_millisecond() + 3_600_000
+    );
 }

@@ -27,11 +27,8 @@ pub(super) async fn an_equal_job_of_another_owner_is_not_found<H: StoreHouse>() 
     let house = H::open();
     let store = house.store();
     let first = succeeded(&*store, NewJob { owner: Some("a".to_owned()), ..job() }).await;
-    let of = |owner: Option<&str>| NewJob {
-        owner: owner.map(str::to_owned),
-        input: first.input.clone(),
-        ..job()
-    };
+    let of =
+        |owner: Option<&str>| NewJob { owner: owner.map(str::to_owned), input: first.input.clone(), ..job() };
     for owner in [None, Some("b")] {
         assert!(store.find_equal(&of(owner)).await.unwrap().is_none(), "{owner:?}");
     }
@@ -94,8 +91,10 @@ pub(super) async fn jobs_are_listed_by_state_and_labels<H: StoreHouse>() {
     let label = |pairs: &[(&str, &str)]| {
         pairs.iter().map(|&(name, value)| (name.to_owned(), value.to_owned())).collect::<Labels>()
     };
-    let red = succeeded(&*store, NewJob { labels: label(&[("order", "1"), ("colour", "red")]), ..job() }).await.id;
-    let blue = admit(&*store, NewJob { labels: label(&[("order", "1"), ("colour", "blue")]), ..job() }).await.id;
+    let red =
+        succeeded(&*store, NewJob { labels: label(&[("order", "1"), ("colour", "red")]), ..job() }).await.id;
+    let blue =
+        admit(&*store, NewJob { labels: label(&[("order", "1"), ("colour", "blue")]), ..job() }).await.id;
     let plain = admit(&*store, job()).await.id;
     let list = async |state, labels: &[(&str, &str)]| {
         let labels = label(labels).into_iter().collect();

@@ -108,11 +108,9 @@ pub(super) async fn everything_outlasts_the_process<H: StoreHouse>() {
     drop(store);
     let house = house.reopen();
     let store = house.store();
-    for (row, expected) in [
-        (&ended, JobState::Succeeded),
-        (&running, JobState::Running),
-        (&queued, JobState::Queued),
-    ] {
+    for (row, expected) in
+        [(&ended, JobState::Succeeded), (&running, JobState::Running), (&queued, JobState::Queued)]
+    {
         assert_eq!(state(&*store, row.id).await, expected);
         assert!(store.named(vec![row.input.key.clone()]).await.unwrap().contains(&row.input.key));
     }
