@@ -39,6 +39,7 @@ pub use blobs::{BlobStore, BlobWriter, LocalBlobs, StoredBlob};
 pub use child::{RUN_JOB, Sandbox, TrialError, run_job};
 pub use clock::StageClock;
 pub use events::{EventId, Events, Happened, JobEvent, NoEventId};
+pub use meters::describe as describe_metrics;
 pub use service::{Jobs, Load, StartError};
 pub use settings::JobsSettings;
 pub use sqlite::{OpenError as SqliteOpenError, SqliteStore, StoreClock};

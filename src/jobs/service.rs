@@ -184,6 +184,10 @@ impl Jobs {
     /// # Errors
     /// `body-too-large` (before any byte is taken), `storage-full`, `draining`.
     pub async fn upload(&self, announced: Option<u64>) -> Result<Upload, Problem> {
+        self.begin_upload(announced).await.inspect_err(meters::refused)
+    }
+
+    async fn begin_upload(&self, announced: Option<u64>) -> Result<Upload, Problem> {
         self.0.check_open()?;
         if let Some(bytes) = announced {
             self.0.check_upload_size(bytes)?;

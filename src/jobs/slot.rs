@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use tokio_util::task::AbortOnDropHandle;
+use tracing::Instrument as _;
 
 use super::attempt::attempt;
 use super::clock::StageClock;
@@ -53,7 +54,10 @@ pub(super) async fn serve(service: Arc<Service>, kind: SlotKind) {
             is_only: kind == SlotKind::Interactive,
         };
         match service.store.claim(request).await {
-            Ok(Some(row)) => run(&service, row).await,
+            Ok(Some(row)) => {
+                let span = tracing::info_span!("job", id = %row.id, operation = row.operation.word());
+                run(&service, row).instrument(span).await;
+            }
             Ok(None) => {
                 tokio::select! {
                     () = work => {}

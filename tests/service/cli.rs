@@ -384,7 +384,7 @@ fn settings_show_their_origin() {
     assert_eq!(row("queue_max"), "7 file meshmend.toml");
     assert_eq!(row("slots"), "3 environment MESHMEND_SLOTS");
     assert_eq!(row("result_ttl"), "1h flag --result-ttl");
-    assert_eq!(row("connections_max"), "1024 default");
+    assert_eq!(row("connections_max"), "4096 default");
 }
 
 #[test]
