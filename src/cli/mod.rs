@@ -12,7 +12,8 @@ mod work;
 
 use crate::config::{Config, Loaded};
 use crate::formats::Format;
-use crate::pipeline::Operation;
+use crate::jobs::{RUN_JOB, run_job};
+use crate::pipeline::{self, Operation};
 use arguments::{Arguments, Command, SettingsCommand};
 use clap::Parser as _;
 use exit::Exit;
@@ -33,6 +34,11 @@ pub struct Service {
 /// Exit codes: 0 did what was asked; 1 no certified result, or the file is not valid; 2 unreadable or wrong usage;
 /// 3 limit, deadline or cancelled; 4 internal.
 pub fn run(args: impl IntoIterator<Item = OsString>, service: Service) -> ExitCode {
+    let args: Vec<OsString> = args.into_iter().collect();
+    if args.get(1).is_some_and(|command| command == RUN_JOB) {
+        // Before anything else: a job's process has nothing to do with flags, settings and logs.
+        return run_job(pipeline::run);
+    }
     let exit = match Arguments::try_parse_from(with_default_command(args)) {
         Ok(arguments) => execute(arguments.command, service),
         Err(error) => {

@@ -11,7 +11,7 @@ mod values;
 pub use error::ConfigError;
 pub use settings::{Config, SETTINGS, Setting};
 pub use sources::{Entry, Loaded, Origin, Sources};
-pub use values::{Bytes, LogFormat};
+pub use values::{Bytes, IsolationChoice, LogFormat, SandboxChoice};
 
 impl Config {
     /// Whether the API may be used without a key.

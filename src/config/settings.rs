@@ -2,7 +2,7 @@
 
 use super::error::ConfigError;
 use super::sources::Entry;
-use super::values::{Bytes, LogFormat, Value};
+use super::values::{Bytes, IsolationChoice, LogFormat, SandboxChoice, Value};
 use std::net::{IpAddr, SocketAddr};
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::PathBuf;
@@ -132,8 +132,12 @@ settings! {
     engine_bytes_max: Bytes = "4GiB",
     /// Most work units of one job.
     engine_work_max: u64 = "9_007_199_254_740_991",
-    /// Engine threads of one job; 0: all jobs share one thread for each core.
+    /// Engine threads of one job; 0: one for each core, which jobs share that run in threads of the server.
     engine_threads: usize = "0",
+    /// Where a job runs: in a process of its own, whose end is the end of one job, or in a thread of the server.
+    isolation: IsolationChoice = "process",
+    /// What a job's process gives up by landlock and seccomp: what the kernel has (auto), all or no start (require), off.
+    sandbox: SandboxChoice = "auto",
 
     /// Most open connections of each listener; more wait in the system's backlog.
     connections_max: NonZeroUsize = "4096",

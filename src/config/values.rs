@@ -30,6 +30,26 @@ pub enum LogFormat {
     Json,
 }
 
+/// Where a job runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum IsolationChoice {
+    /// In a process of its own.
+    Process,
+    /// In a thread of the server.
+    Thread,
+}
+
+/// How much of the sandbox there must be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SandboxChoice {
+    /// What the kernel has.
+    Auto,
+    /// All of it, or the server does not start.
+    Require,
+    /// None.
+    Off,
+}
+
 impl Value for SocketAddr {
     const EXPECTED: &'static str = "an IP address and a port, such as 127.0.0.1:8080";
 
@@ -184,6 +204,31 @@ impl Value for Duration {
         // A bound, so that adding it to any clock cannot overflow.
         let total = number.checked_mul(millis).filter(|total| (1..=1000 * 86_400_000).contains(total))?;
         Some(Self::from_millis(total))
+    }
+}
+
+impl Value for IsolationChoice {
+    const EXPECTED: &'static str = "process or thread";
+
+    fn parse(text: &str) -> Option<Self> {
+        match text {
+            "process" => Some(Self::Process),
+            "thread" => Some(Self::Thread),
+            _ => None,
+        }
+    }
+}
+
+impl Value for SandboxChoice {
+    const EXPECTED: &'static str = "auto, require or off";
+
+    fn parse(text: &str) -> Option<Self> {
+        match text {
+            "auto" => Some(Self::Auto),
+            "require" => Some(Self::Require),
+            "off" => Some(Self::Off),
+            _ => None,
+        }
     }
 }
 

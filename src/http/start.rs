@@ -16,9 +16,12 @@ use super::server::Server;
 use super::settings::HttpSettings;
 use super::shutdown::Shutdown;
 use super::{cors, descriptors};
-use crate::config::{ConfigError, Loaded, LogFormat};
+use crate::config::{ConfigError, IsolationChoice, Loaded, LogFormat, SandboxChoice};
 use crate::formats::ReadLimits;
-use crate::jobs::{Jobs, JobsSettings, PrivateHosts, RetryPlan, StartError, WebhookSecret, WebhookSettings};
+use crate::jobs::{
+    Isolation, Jobs, JobsSettings, PrivateHosts, RetryPlan, Sandbox, StartError, TrialError, WebhookSecret,
+    WebhookSettings,
+};
 
 /// Time for jobs that a second signal gave up: the process is not to wait for them.
 const LEFTOVERS: Duration = Duration::from_secs(1);
@@ -55,8 +58,10 @@ pub fn start(loaded: &Loaded) -> anyhow::Result<()> {
 /// The setting that a service which cannot start is about.
 fn setting_of(error: &StartError) -> &'static str {
     match error {
+        StartError::DataDir { .. } | StartError::DataDirInUse { .. } | StartError::Store { .. } => "data_dir",
+        StartError::Isolation(TrialError::NoProcess | TrialError::Incomplete(_)) => "sandbox",
+        StartError::Isolation(TrialError::Folder(_) | TrialError::NoAnswer(_)) => "isolation",
         StartError::Webhooks { .. } => "webhooks",
-        _ => "data_dir",
     }
 }
 
@@ -194,6 +199,15 @@ fn jobs_settings(loaded: &Loaded) -> Result<JobsSettings, ConfigError> {
             polygon_corners_max: config.polygon_corners_max,
         },
         drain_grace: config.drain_grace,
+        isolation: match config.isolation {
+            IsolationChoice::Process => Isolation::Process,
+            IsolationChoice::Thread => Isolation::Thread,
+        },
+        sandbox: match config.sandbox {
+            SandboxChoice::Auto => Sandbox::Auto,
+            SandboxChoice::Require => Sandbox::Require,
+            SandboxChoice::Off => Sandbox::Off,
+        },
         interactive_slots: config.interactive_slots,
         interactive_bytes_max: config.interactive_bytes_max.0,
         memory_bytes_max: config.memory_bytes_max.map_or(defaults.memory_bytes_max, |bytes| bytes.0),
@@ -218,7 +232,9 @@ mod tests {
     #[test]
     fn the_defaults_of_the_configuration_are_those_of_the_settings() {
         let loaded = loaded(&[("data_dir", "d")]);
-        assert_eq!(format!("{:?}", jobs_settings(&loaded).unwrap()), format!("{:?}", JobsSettings::new("d")));
+        // The binary of the service is one that runs jobs.
+        let want = JobsSettings { isolation: Isolation::Process, ..JobsSettings::new("d") };
+        assert_eq!(format!("{:?}", jobs_settings(&loaded).unwrap()), format!("{want:?}"));
         let want = HttpSettings { admin_listen: loaded.config.admin_listen, ..HttpSettings::default() };
         assert_eq!(format!("{:?}", http_settings(&loaded).unwrap()), format!("{want:?}"));
     }

@@ -30,6 +30,13 @@ pub trait BlobStore: Send + Sync {
     /// The disk fails, or there is such a file.
     fn create(&self, key: &str) -> io::Result<Box<dyn BlobWriter>>;
 
+    /// Takes over a complete file of this machine that nobody writes any more; it is there no longer afterwards. It
+    /// outlasts a loss of power.
+    ///
+    /// # Errors
+    /// The disk fails, or there is such a file.
+    fn adopt(&self, file: &Path, key: &str) -> io::Result<()>;
+
     /// A path under which the whole file can be read.
     ///
     /// # Errors
@@ -76,6 +83,14 @@ impl LocalBlobs {
         path.ancestors().skip(1).take_while(|dir| *dir != self.root)
     }
 
+    /// Makes the directories of a file. Those that were not there, the innermost first.
+    fn make_dirs_for(&self, path: &Path) -> io::Result<Vec<PathBuf>> {
+        let Some(dir) = path.parent().filter(|dir| !dir.is_dir()) else { return Ok(Vec::new()) };
+        let new_dirs = self.dirs_of(path).filter(|dir| !dir.is_dir()).map(Path::to_owned).collect();
+        fs::create_dir_all(dir)?;
+        Ok(new_dirs)
+    }
+
     fn list_into(
         dir: &Path,
         key: &str,
@@ -101,15 +116,22 @@ impl LocalBlobs {
 impl BlobStore for LocalBlobs {
     fn create(&self, key: &str) -> io::Result<Box<dyn BlobWriter>> {
         let path = self.root.join(key);
-        let mut new_dirs = Vec::new();
-        if let Some(dir) = path.parent()
-            && !dir.is_dir()
-        {
-            new_dirs = self.dirs_of(&path).filter(|dir| !dir.is_dir()).map(Path::to_owned).collect();
-            fs::create_dir_all(dir)?;
-        }
+        let new_dirs = self.make_dirs_for(&path)?;
         let file = File::create_new(&path)?;
         Ok(Box::new(LocalWriter { file: Some(file), path, new_dirs }))
+    }
+
+    /// The file must be on the same disk: it is moved, not copied.
+    fn adopt(&self, file: &Path, key: &str) -> io::Result<()> {
+        let path = self.root.join(key);
+        let new_dirs = self.make_dirs_for(&path)?;
+        File::open(file)?.sync_all()?;
+        // A name is given once, so nothing comes in between; a rename by itself would take another file's place.
+        if path.try_exists()? {
+            return Err(io::ErrorKind::AlreadyExists.into());
+        }
+        fs::rename(file, &path)?;
+        sync_dirs_of(&path, &new_dirs)
     }
 
     fn local(&self, key: &str) -> io::Result<PathBuf> {
@@ -173,11 +195,7 @@ impl BlobWriter for LocalWriter {
     fn commit(mut self: Box<Self>) -> io::Result<()> {
         let Some(file) = &self.file else { return Err(io::ErrorKind::BrokenPipe.into()) };
         file.sync_all()?;
-        // The entry of the file is in its directory, that of a new directory in the one above.
-        let dirs = self.path.parent().into_iter().chain(self.new_dirs.iter().filter_map(|dir| dir.parent()));
-        for dir in dirs {
-            sync_dir(dir)?;
-        }
+        sync_dirs_of(&self.path, &self.new_dirs)?;
         self.file = None;
         Ok(())
     }
@@ -190,6 +208,12 @@ impl Drop for LocalWriter {
             let _ = fs::remove_file(&self.path);
         }
     }
+}
+
+/// Makes the entry of a file outlast a loss of power. It is in its directory, that of a new directory in the one above.
+fn sync_dirs_of(path: &Path, new_dirs: &[PathBuf]) -> io::Result<()> {
+    let dirs = path.parent().into_iter().chain(new_dirs.iter().filter_map(|dir| dir.parent()));
+    dirs.into_iter().try_for_each(sync_dir)
 }
 
 /// Makes the entries of a directory outlast a loss of power.
@@ -221,6 +245,20 @@ mod tests {
         blobs.remove(key).unwrap();
         assert_eq!(fs::read_dir(dir.path().join("out")).unwrap().count(), 0);
         assert_eq!(blobs.remove(key).unwrap_err().kind(), io::ErrorKind::NotFound);
+    }
+
+    #[test]
+    fn a_file_that_is_taken_over_moves_and_takes_no_other_s_place() {
+        let dir = tempfile::tempdir().unwrap();
+        let blobs = LocalBlobs::open(&dir.path().join("spool")).unwrap();
+        let (file, key) = (dir.path().join("made"), "out/job/1/mesh");
+        fs::write(&file, b"hello").unwrap();
+        blobs.adopt(&file, key).unwrap();
+        assert!(!file.exists());
+        assert_eq!(fs::read(blobs.local(key).unwrap()).unwrap(), b"hello");
+        fs::write(&file, b"other").unwrap();
+        assert!(blobs.adopt(&file, key).is_err(), "a file is written once");
+        assert_eq!(fs::read(blobs.local(key).unwrap()).unwrap(), b"hello");
     }
 
     #[test]

@@ -63,6 +63,11 @@ pub(super) fn cached(operation: Operation) {
     counter!("meshmend_jobs_cached_total", "operation" => operation.word()).increment(1);
 }
 
+/// The process of a job has ended, in this way.
+pub(super) fn child_ended(kind: &'static str) {
+    counter!("meshmend_child_exits_total", "kind" => kind).increment(1);
+}
+
 /// Runs whose executor is lost.
 pub(super) fn lost(operation: Operation, runs: u64) {
     counter!("meshmend_runs_lost_total", "operation" => operation.word()).increment(runs);

@@ -1,13 +1,15 @@
 //! The life of a job: every operation is one, and "synchronous" only means "wait for it".
 //!
-//! [`Jobs`] takes uploads onto disk ([`Upload`]), admits jobs to a bounded queue, runs them in slots on the blocking
-//! pool, and keeps reports and results for a while. Rows live in a [`JobStore`], files in a [`BlobStore`]; both outlast
-//! the process, so a job that was accepted ends even when the server is killed. A job's panic is a lost run, never a
-//! dead slot.
+//! [`Jobs`] takes uploads onto disk ([`Upload`]), admits jobs to a bounded queue, runs them in slots, each in a process of
+//! its own or in a thread ([`Isolation`]), and keeps reports and results for a while. Rows live in a [`JobStore`], files in
+//! a [`BlobStore`]; both outlast the process, so a job that was accepted ends even when the server is killed. A run that
+//! fails, however it does, is a lost run, never a dead slot.
 
 mod admission;
+mod attempt;
 mod blobs;
 mod capacity;
+mod child;
 mod clock;
 mod drain;
 mod estimate;
@@ -15,6 +17,7 @@ mod events;
 mod heartbeat;
 mod live;
 mod meters;
+mod product;
 mod retention;
 mod service;
 mod settings;
@@ -31,13 +34,14 @@ mod webhook;
 mod tests;
 
 pub use admission::Submission;
+pub use attempt::{Engine, Isolation};
 pub use blobs::{BlobStore, BlobWriter, LocalBlobs, StoredBlob};
+pub use child::{RUN_JOB, Sandbox, TrialError, run_job};
 pub use clock::StageClock;
 pub use events::{EventId, Events, Happened, JobEvent, NoEventId};
 pub use meters::describe as describe_metrics;
 pub use service::{Jobs, Load, StartError};
 pub use settings::JobsSettings;
-pub use slot::Engine;
 pub use sqlite::{OpenError as SqliteOpenError, SqliteStore, StoreClock};
 pub use store::{
     AfterLoss, BlobRef, Change, ClaimRef, ClaimRequest, Created, Delivery, DeliveryState, DeliveryTry,

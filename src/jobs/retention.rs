@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use super::meters;
 use super::service::{Service, store_problem};
-use super::spool::{Space, Written, claim_of};
+use super::spool::{Space, claim_of};
 use super::store::{AfterLoss, BlobRef, ClaimRef, JobId, Kept, Leases, StoreError};
 use super::upload::disk_problem;
 use crate::wire::{Problem, ProblemCode};
@@ -150,22 +150,6 @@ impl Service {
                 Err(error) => return Err(store_problem(&error)),
             }
         }
-    }
-
-    /// Writes a file of a run, making room for it, and adds it to those that no row names yet.
-    pub(super) async fn write(
-        &self,
-        claim: ClaimRef,
-        name: String,
-        content: Vec<u8>,
-        written: &mut Vec<Written>,
-    ) -> Result<BlobRef, Problem> {
-        let space = self.make_room(content.len() as u64).await?;
-        let spool = Arc::clone(&self.spool);
-        let file = on_disk(move || spool.write(claim, &name, &content, space)).await?;
-        let blob = file.blob().cloned().ok_or_else(lost)?;
-        written.push(file);
-        Ok(blob)
     }
 
     /// Removes files that no row names.

@@ -10,12 +10,14 @@ use tokio::sync::Notify;
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 
+use super::attempt::{Engine, Executor};
 use super::capacity::Capacity;
+use super::child::TrialError;
 use super::drain::draining;
 use super::heartbeat::end_overdue;
 use super::live::LiveJobs;
 use super::settings::JobsSettings;
-use super::slot::{self, Engine, SlotKind};
+use super::slot::{self, SlotKind};
 use super::spool::{OpenError, SpaceLimits, Spool};
 use super::sqlite::SqliteStore;
 use super::store::{Ending, JobId, JobRow, JobStore, Leases, ListQuery, StoreError, Webhook};
@@ -24,7 +26,6 @@ use super::view::{self, StoredFile, expired};
 use super::webhook::{Sender, WebhookSettings};
 use super::{meters, retention, webhook};
 use crate::budget::Stopped;
-use crate::pipeline;
 use crate::wire::{Delivery, Job, JobState, Options, Problem, ProblemCode, WebhookRequest};
 
 /// The job service. Clones share it.
@@ -36,7 +37,7 @@ pub(super) struct Service {
     pub(super) settings: JobsSettings,
     pub(super) store: Arc<dyn JobStore>,
     pub(super) spool: Arc<Spool>,
-    pub(super) engine: Engine,
+    pub(super) executor: Executor,
     /// Memory for runs.
     pub(super) capacity: Capacity,
     /// Name of this process in the store.
@@ -89,6 +90,9 @@ pub enum StartError {
         /// Why.
         why: String,
     },
+    /// Jobs cannot run as the settings ask.
+    #[error(transparent)]
+    Isolation(#[from] TrialError),
     /// Webhooks cannot be sent.
     #[error("webhooks cannot be sent: {why}")]
     Webhooks {
@@ -110,16 +114,20 @@ impl Jobs {
     /// Opens the data directory and starts the slots: jobs of an earlier run go on. To be called inside a tokio runtime.
     ///
     /// # Errors
-    /// The data directory cannot be used, or another server uses it.
+    /// The data directory cannot be used, another server uses it, or jobs cannot run as the settings ask.
     pub async fn start(settings: JobsSettings) -> Result<Self, StartError> {
-        Self::start_with(settings, Arc::new(pipeline::run)).await
+        Self::open(settings, None).await
     }
 
-    /// As [`start`](Self::start) with another engine.
+    /// As [`start`](Self::start) with another engine, which runs in threads of this process.
     ///
     /// # Errors
     /// As [`start`](Self::start).
     pub async fn start_with(settings: JobsSettings, engine: Engine) -> Result<Self, StartError> {
+        Self::open(settings, Some(Executor::Thread(engine))).await
+    }
+
+    async fn open(settings: JobsSettings, executor: Option<Executor>) -> Result<Self, StartError> {
         let path = settings.data_dir.clone();
         let space =
             SpaceLimits { bytes_max: settings.data_bytes_max, free_bytes_min: settings.disk_free_bytes_min };
@@ -127,6 +135,10 @@ impl Jobs {
             OpenError::InUse => StartError::DataDirInUse { path: path.clone() },
             OpenError::Io(source) => StartError::DataDir { path: path.clone(), source },
         })?;
+        let executor = match executor {
+            Some(executor) => executor,
+            None => Executor::of(&settings).await?,
+        };
         let path = path.join(STORE_FILE);
         let unusable = |why: String| StartError::Store { path: path.clone(), why };
         let store = SqliteStore::open(&path).map_err(|error| unusable(error.to_string()))?;
@@ -139,7 +151,7 @@ impl Jobs {
             settings,
             store: Arc::new(store),
             spool,
-            engine,
+            executor,
             worker: uuid::Uuid::now_v7().to_string(),
             live: LiveJobs::default(),
             work: Notify::new(),

@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use super::attempt::Isolation;
 use super::capacity;
+use super::child::Sandbox;
 use super::webhook::WebhookSettings;
 use crate::formats::ReadLimits;
 
@@ -45,8 +47,12 @@ pub struct JobsSettings {
     pub engine_bytes_max: u64,
     /// Most work units of one job. Default 2^53 - 1, the largest integer that every JSON reader keeps.
     pub engine_work_max: u64,
-    /// Engine threads of one job; 0: all jobs share one thread for each core. Default 0.
+    /// Engine threads of one job; 0: one for each core, which jobs share that run in threads of the server. Default 0.
     pub engine_threads: usize,
+    /// Where a job runs. Default: in a thread, because another program's binary is not one that runs jobs.
+    pub isolation: Isolation,
+    /// How much of the sandbox there must be around a process that runs a job. Default: what the kernel has.
+    pub sandbox: Sandbox,
     /// Limits on counts in a mesh.
     pub read_limits: ReadLimits,
     /// Time that running jobs get when the server shuts down. Default 25 s: less than the 30 s that container
@@ -77,6 +83,8 @@ impl JobsSettings {
             engine_bytes_max: 4 << 30,
             engine_work_max: (1 << 53) - 1,
             engine_threads: 0,
+            isolation: Isolation::default(),
+            sandbox: Sandbox::default(),
             read_limits: ReadLimits::default(),
             drain_grace: Duration::from_secs(25),
         }

@@ -64,7 +64,7 @@ pub use webhook::{
     Deliveries, Delivery, DeliveryState, DeliveryTry, WebhookEvent, WebhookMessage, WebhookRequest,
 };
 pub use words::{
-    Condition, Criterion, Cut, DefectCode, Degenerate, Encoding, FillHoles, Format, Mode, Nesting,
-    OpenShells, Operation, Opposite, Outcome, Placement, ProximityTest, Reader, ReasonCode, Remedy, Require,
-    Severity, ShellFate, Stage, Stitch, StitchValidity, Units, VertexColors,
+    Across, Condition, Contact, Criterion, Cut, DefectCode, Degenerate, Encoding, FillHoles, Format, Mode,
+    Nesting, OpenShells, Operation, Opposite, Outcome, Placement, ProximityTest, Reader, ReasonCode, Remedy,
+    Require, Severity, ShellFate, Stage, Stitch, StitchValidity, Units, VertexColors,
 };

@@ -11,6 +11,7 @@ mod connections;
 mod contract;
 mod cors;
 mod curl;
+mod isolation;
 mod killed;
 mod lanes;
 mod lifecycle;

@@ -18,7 +18,9 @@ pub(crate) struct Server {
     pub(crate) address: String,
     pub(crate) admin: String,
     client: Client,
-    log: Arc<Mutex<String>>,
+    binary: PathBuf,
+    /// What it has logged.
+    heard: Arc<Mutex<String>>,
     data: Arc<tempfile::TempDir>,
 }
 
@@ -29,32 +31,37 @@ impl Server {
 
     /// A server with further settings, as flags.
     pub(crate) fn with(settings: &[&str]) -> Self {
-        Self::on(Arc::new(tempfile::tempdir().unwrap()), settings)
+        Self::of(env!("CARGO_BIN_EXE_meshmend").as_ref(), settings)
+    }
+
+    /// A server of another binary that takes the same command line.
+    pub(crate) fn of(binary: &Path, settings: &[&str]) -> Self {
+        Self::on(binary, Arc::new(tempfile::tempdir().unwrap()), settings)
     }
 
     /// Kills it and starts another one on the same data folder.
     pub(crate) fn killed_and_restarted(mut self, settings: &[&str]) -> Self {
         self.child.kill().unwrap();
         self.child.wait().unwrap();
-        Self::on(Arc::clone(&self.data), settings)
+        Self::on(&self.binary, Arc::clone(&self.data), settings)
     }
 
     /// Starts another one on the same data folder after this one has ended.
     pub(crate) fn restarted(mut self, settings: &[&str]) -> Self {
         assert_eq!(self.exit_code(), Some(0));
-        Self::on(Arc::clone(&self.data), settings)
+        Self::on(&self.binary, Arc::clone(&self.data), settings)
     }
 
     /// The files of uploads and results.
     pub(crate) fn stored_files(&self) -> Vec<PathBuf> {
-        files_under(&self.data.path().join("data/spool"))
+        files_under(&self.data_dir().join("spool"))
     }
 
-    fn on(data: Arc<tempfile::TempDir>, settings: &[&str]) -> Self {
+    fn on(binary: &Path, data: Arc<tempfile::TempDir>, settings: &[&str]) -> Self {
         // The client could speak TLS, and asks by what, although it never does here. Told twice, the first word stays.
         let _ = rustls::crypto::ring::default_provider().install_default();
         let client = Client::builder().timeout(PATIENCE).build().unwrap();
-        let mut command = Command::new(env!("CARGO_BIN_EXE_meshmend"));
+        let mut command = Command::new(binary);
         for (name, _) in std::env::vars_os() {
             if name.to_string_lossy().starts_with("MESHMEND_") {
                 command.env_remove(name);
@@ -64,10 +71,11 @@ impl Server {
         command.arg(data.path().join("data")).args(settings).stdin(Stdio::null()).stderr(Stdio::piped());
         let mut child = command.spawn().unwrap();
         let mut log = BufReader::new(child.stderr.take().unwrap());
-        let address = bound(&mut log, "listening on http://");
-        let admin = bound(&mut log, "health and metrics on http://");
+        let mut seen = String::new();
+        let address = bound(&mut log, "listening on http://", &mut seen);
+        let admin = bound(&mut log, "health and metrics on http://", &mut seen);
         // The pipe must not fill up.
-        let heard = Arc::new(Mutex::new(String::new()));
+        let heard = Arc::new(Mutex::new(seen));
         let hearing = Arc::clone(&heard);
         std::thread::spawn(move || {
             let mut line = String::new();
@@ -76,7 +84,7 @@ impl Server {
                 line.clear();
             }
         });
-        Self { child, address, admin, client, log: heard, data }
+        Self { child, address, admin, client, binary: binary.to_owned(), heard, data }
     }
 
     pub(crate) fn url(&self, path: &str) -> String {
@@ -102,7 +110,7 @@ impl Server {
 
     /// The log since it has been listening.
     pub(crate) fn log(&self) -> String {
-        self.log.lock().unwrap().clone()
+        self.heard.lock().unwrap().clone()
     }
 
     /// Asks until the log has a line with all of `words`, and gives it.
@@ -153,8 +161,17 @@ impl Server {
 
     /// Sends a signal by its name.
     pub(crate) fn signal(&self, name: &str) {
-        let line = format!("kill -{name} {}", self.child.id());
-        assert!(Command::new("sh").args(["-c", &line]).status().unwrap().success());
+        signal(self.pid(), name);
+    }
+
+    /// Its process.
+    pub(crate) fn pid(&self) -> u32 {
+        self.child.id()
+    }
+
+    /// The folder of its data.
+    pub(crate) fn data_dir(&self) -> PathBuf {
+        self.data.path().join("data")
     }
 
     /// The exit code, once it has ended by itself.
@@ -184,8 +201,7 @@ fn files_under(dir: &Path) -> Vec<PathBuf> {
 }
 
 /// The address that the log tells behind `words`.
-fn bound(log: &mut BufReader<ChildStderr>, words: &str) -> String {
-    let mut seen = String::new();
+fn bound(log: &mut BufReader<ChildStderr>, words: &str, seen: &mut String) -> String {
     loop {
         let mut line = String::new();
         assert!(log.read_line(&mut line).unwrap() > 0, "the server did not start: {seen}");
@@ -195,6 +211,12 @@ fn bound(log: &mut BufReader<ChildStderr>, words: &str) -> String {
         }
         seen.push_str(&line);
     }
+}
+
+/// Sends a signal by its name.
+pub(crate) fn signal(pid: u32, name: &str) {
+    let line = format!("kill -{name} {pid}");
+    assert!(Command::new("sh").args(["-c", &line]).status().unwrap().success());
 }
 
 pub(crate) fn link<'j>(job: &'j Value, name: &str) -> &'j str {

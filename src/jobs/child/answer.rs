@@ -1,0 +1,53 @@
+//! What a child made, as files of its folder.
+
+use std::fs::File;
+use std::io::{self, Write as _};
+use std::path::PathBuf;
+
+use sha2::{Digest as _, Sha256};
+
+use super::task::{FileMade, Task, file_name};
+use crate::jobs::product::Product;
+use crate::jobs::upload::disk_problem;
+use crate::wire::{Problem, ProblemCode};
+
+/// Writes files with numbers into a folder.
+#[derive(Debug)]
+pub(super) struct Files {
+    folder: PathBuf,
+    bytes_max: u64,
+}
+
+impl Files {
+    pub(super) fn new(task: &Task) -> io::Result<Self> {
+        Ok(Self { folder: std::path::absolute(&task.output)?, bytes_max: task.limits.file_bytes })
+    }
+
+    /// The product with its contents in files.
+    pub(super) fn write(&self, product: Product<Vec<u8>>) -> Result<Product<FileMade>, Problem> {
+        let mut number = 0;
+        product.try_map(|content| {
+            let made = self.make(number, &content)?;
+            number += 1;
+            Ok(made)
+        })
+    }
+
+    fn make(&self, number: usize, content: &[u8]) -> Result<FileMade, Problem> {
+        let bytes = content.len() as u64;
+        if bytes > self.bytes_max {
+            // The kernel would end the process: say so instead.
+            let detail = "the result is larger than all that may be kept";
+            return Err(Problem::new(ProblemCode::StorageFull, detail).with_limit(
+                "data_bytes_max",
+                self.bytes_max,
+                Some(bytes),
+            ));
+        }
+        let path = self.folder.join(file_name(number));
+        // Not `create_new` alone: that asks to read as well, which the sandbox does not grant.
+        let write = || File::options().write(true).create_new(true).open(&path)?.write_all(content);
+        write().map_err(|error| disk_problem(&error))?;
+        Ok(FileMade { number, bytes, sha256: Sha256::digest(content).into() })
+    }
+}

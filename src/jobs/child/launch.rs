@@ -1,0 +1,99 @@
+//! The start of a child, and its certain end.
+
+use std::fs::File;
+use std::io::{self, PipeReader, Seek as _, Write as _};
+use std::os::fd::OwnedFd;
+use std::os::unix::fs::FileExt as _;
+use std::os::unix::process::CommandExt as _;
+use std::process::{Child, Command, ExitStatus, Stdio};
+
+use rustix::fs::{MemfdFlags, SealFlags, fcntl_add_seals, ftruncate, memfd_create};
+use rustix::process::{Pid, PidfdFlags, Signal, kill_process_group, pidfd_open};
+
+use super::run::RUN_JOB;
+use super::task::Task;
+
+/// The binary that this process runs, also when the file has been replaced since: versions do not mix.
+const OWN_BINARY: &str = "/proc/self/exe";
+/// Most that is kept of what the runtime writes before it aborts.
+const WORDS_BYTES_MAX: u64 = 8 << 10;
+/// Variables that a child inherits by the beginning of their name: how the C library allocates.
+const KEPT_VARIABLES: &str = "MALLOC_";
+
+/// A child that has not been reaped. Dropped, it is killed with its group and reaped.
+#[derive(Debug)]
+pub(super) struct Running {
+    child: Child,
+    /// What it says.
+    pub(super) output: PipeReader,
+    /// Readable once it has ended; `None` where the kernel has no such thing.
+    pub(super) ended: Option<OwnedFd>,
+    words: File,
+    status: Option<ExitStatus>,
+}
+
+impl Running {
+    /// Starts a child. It dies with the calling thread.
+    pub(super) fn start(task: &Task) -> io::Result<Self> {
+        let mut order = File::from(memfd_create("meshmend-task", MemfdFlags::CLOEXEC)?);
+        serde_json::to_writer(&mut order, task)?;
+        order.flush()?;
+        order.rewind()?;
+        let words = page_of_words()?;
+        let (output, sink) = io::pipe()?;
+        let mut command = Command::new(OWN_BINARY);
+        command.arg0(env!("CARGO_PKG_NAME")).arg(RUN_JOB).env_clear().process_group(0);
+        command
+            .envs(std::env::vars_os().filter(|(name, _)| name.to_string_lossy().starts_with(KEPT_VARIABLES)));
+        command.stdin(Stdio::from(order)).stdout(Stdio::from(sink)).stderr(Stdio::from(words.try_clone()?));
+        let child = command.spawn()?;
+        // With the command goes this process's end of the pipe, so that the child's end of it is heard.
+        drop(command);
+        let ended = pidfd_open(Pid::from_child(&child), PidfdFlags::empty()).ok();
+        Ok(Self { child, output, ended, words, status: None })
+    }
+
+    /// How it ended, if it has.
+    pub(super) fn status(&mut self) -> io::Result<Option<ExitStatus>> {
+        if self.status.is_none() {
+            self.status = self.child.try_wait()?;
+        }
+        Ok(self.status)
+    }
+
+    /// What the runtime wrote about its end.
+    pub(super) fn words(&self) -> String {
+        let mut bytes = vec![0; WORDS_BYTES_MAX as usize];
+        let read = self.words.read_at(&mut bytes, 0).unwrap_or(0);
+        String::from_utf8_lossy(&bytes[..read]).trim_matches(['\0', '\n']).to_owned()
+    }
+
+    /// Ends it and all that it may have started, and reaps it.
+    pub(super) fn kill(&mut self) {
+        if self.status.is_some() {
+            // Reaped: its number may be another's by now.
+            return;
+        }
+        if let Err(error) = kill_process_group(Pid::from_child(&self.child), Signal::KILL) {
+            tracing::error!(%error, "the process of a job could not be killed");
+        }
+        match self.child.wait() {
+            Ok(status) => self.status = Some(status),
+            Err(error) => tracing::error!(%error, "the process of a job could not be reaped"),
+        }
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        self.kill();
+    }
+}
+
+/// A file in memory that cannot grow.
+fn page_of_words() -> io::Result<File> {
+    let file = memfd_create("meshmend-words", MemfdFlags::CLOEXEC | MemfdFlags::ALLOW_SEALING)?;
+    ftruncate(&file, WORDS_BYTES_MAX)?;
+    fcntl_add_seals(&file, SealFlags::GROW | SealFlags::SHRINK | SealFlags::SEAL)?;
+    Ok(file.into())
+}

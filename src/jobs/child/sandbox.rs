@@ -1,0 +1,67 @@
+//! What a child gives up before it looks at bytes that others sent.
+
+use std::fmt;
+use std::io;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::{calls, files};
+
+/// How much of the sandbox there must be.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Sandbox {
+    /// What the kernel has.
+    #[default]
+    Auto,
+    /// All of it, or no job runs.
+    Require,
+    /// None.
+    Off,
+}
+
+/// What holds a process.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Protections {
+    /// Version of landlock's interface: it may write in its own folder and reach no other file; `None`: not so.
+    pub(super) landlock_abi: Option<u32>,
+    /// It may make the system calls of a computation only.
+    pub(super) is_filtered: bool,
+}
+
+impl Protections {
+    /// Nothing is missing.
+    pub(super) fn are_complete(self) -> bool {
+        self.landlock_abi.is_some() && self.is_filtered
+    }
+}
+
+impl fmt::Display for Protections {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.landlock_abi {
+            Some(abi) => write!(f, "landlock (ABI {abi})")?,
+            None => f.write_str("no landlock")?,
+        }
+        f.write_str(if self.is_filtered { ", seccomp filter" } else { ", no seccomp filter" })
+    }
+}
+
+impl Sandbox {
+    /// Confines this process, which has one thread, to `output`.
+    pub(super) fn enter(self, output: &Path) -> io::Result<Protections> {
+        if self == Self::Off {
+            return Ok(Protections::default());
+        }
+        rustix::thread::set_no_new_privs(true)?;
+        let landlock_abi = files::confine_to(output)?;
+        let is_filtered = calls::confine()?;
+        let protections = Protections { landlock_abi, is_filtered };
+        if self == Self::Require && !protections.are_complete() {
+            return Err(io::Error::new(
+                io::ErrorKind::Unsupported,
+                format!("the kernel does not give the whole sandbox: {protections}"),
+            ));
+        }
+        Ok(protections)
+    }
+}
