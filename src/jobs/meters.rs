@@ -23,6 +23,7 @@ pub fn describe() {
         "Runs whose executor was lost: its lease is over, or it crashed."
     );
     describe_counter!("meshmend_webhook_tries_total", "Calls of webhooks, by answer and what is next.");
+    describe_counter!("meshmend_child_exits_total", "Processes of jobs that have ended, by how they did.");
     describe_histogram!(
         "meshmend_stage_seconds",
         "Time of each pass of the jobs that have ended, in seconds."

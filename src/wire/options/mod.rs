@@ -72,6 +72,7 @@ pub struct Options {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nesting: Option<Nesting>,
     /// What becomes of bodies that touch.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub contact: Option<Contact>,
     /// What repair is to do about each defect.
     #[serde(skip_serializing_if = "Option::is_none")]
