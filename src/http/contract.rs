@@ -12,7 +12,7 @@ use utoipa::openapi::path::{Operation, Parameter, ParameterBuilder, ParameterIn}
 use utoipa::openapi::request_body::{RequestBody, RequestBodyBuilder};
 use utoipa::openapi::response::{Response, ResponseBuilder};
 use utoipa::openapi::schema::{
-    AdditionalProperties, KnownFormat, Object, ObjectBuilder, Schema, SchemaFormat, Type,
+    AdditionalProperties, ArrayBuilder, KnownFormat, Object, ObjectBuilder, Schema, SchemaFormat, Type,
 };
 use utoipa::openapi::security::{
     ApiKey, ApiKeyValue, Http, HttpAuthScheme, SecurityRequirement, SecurityScheme,
@@ -22,7 +22,8 @@ use utoipa::{PartialSchema as _, ToSchema};
 
 use super::representation::OCTET_STREAM;
 use crate::wire::{
-    self, Format, Job, JobRequest, Options, Outcome, PlanRequest, Problem, ProblemCode, Report,
+    self, Format, Job, JobRequest, LABELS_MAX, Options, Outcome, PlanRequest, Problem, ProblemCode, Report,
+    StageEvent, StateEvent,
 };
 
 /// Problems that any path may answer with.
@@ -139,7 +140,7 @@ fn schemas() -> Vec<(String, RefOr<Schema>)> {
             <$type>::schemas(&mut schemas);
         )+ };
     }
-    add!(MeshForm, JobForm, JobRequest, Options, PlanRequest, Job, Report, Problem);
+    add!(MeshForm, JobForm, JobRequest, Options, PlanRequest, Job, Report, Problem, StateEvent, StageEvent);
     let is_form = |name: &str| name == MeshForm::name() || name == JobForm::name();
     let closed = |schema| {
         changed(schema, |form| {
@@ -176,7 +177,19 @@ fn complete_operation(path: &str, operation: &mut Operation) {
             add_problems(operation, UPLOAD);
             add_answer(operation, "202", accepted());
         }
-        "list_jobs" => add_problems(operation, &[ProblemCode::StoreUnavailable]),
+        "list_jobs" => {
+            add_problems(operation, &[ProblemCode::StoreUnavailable]);
+            let label = text().pattern(Some("^[A-Za-z0-9._/-]{1,63}:[ -~]{0,255}$"));
+            let labels = ArrayBuilder::new().items(label).max_items(Some(LABELS_MAX));
+            let about =
+                "Only jobs with this label, as NAME:VALUE; with all of them when it is given several times.";
+            let parameter = ParameterBuilder::new()
+                .name("label")
+                .parameter_in(ParameterIn::Query)
+                .description(Some(about))
+                .schema(Some(labels));
+            add_parameter(operation, parameter.build());
+        }
         "events" => {
             add_problems(operation, JOB);
             let id = text().pattern(Some(r"^[0-9]{1,9}\.[0-9]{1,9}$"));

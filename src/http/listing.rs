@@ -22,9 +22,7 @@ const PAGE_DEFAULT: usize = 50;
     params(("cursor" = Option<String>, Query, pattern = "^[0-9a-f]{8}-[0-9a-f]{4}-[0-9a-f]{4}-[0-9a-f]{4}-[0-9a-f]{12}$",
             description = "`next` of the page before. Default: the first page."),
            ("limit" = Option<usize>, Query, minimum = 1, maximum = 200, description = "Most jobs of the page. Default: 50."),
-           ("state" = Option<JobState>, Query, description = "Only jobs in this state."),
-           ("label" = Option<Vec<String>>, Query, max_items = 16,
-            description = "Only jobs with this label, as NAME:VALUE; with all of them when it is given several times.")),
+           ("state" = Option<JobState>, Query, description = "Only jobs in this state.")),
     responses((status = 200, description = "A page of jobs.", body = JobList)))]
 pub(super) async fn list_jobs(state: State, caller: Extension<Caller>, request: Request) -> Handled {
     json_only(request.headers())?;

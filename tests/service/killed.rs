@@ -102,6 +102,10 @@ fn a_server_killed_at_random_points_loses_no_accepted_job() {
     let mut server = Server::with(SETTINGS);
     for _ in 0..cycles {
         let client = Client::builder().timeout(Duration::from_secs(20)).build().unwrap();
+        if dice.below(4) > 0 {
+            // Otherwise it is killed while it starts.
+            server.get("/v1/version").send().unwrap();
+        }
         let is_over = Arc::new(AtomicBool::new(false));
         let pause = Duration::from_millis(dice.below(400));
         std::thread::scope(|scope| {
@@ -169,7 +173,10 @@ fn a_server_killed_at_random_points_loses_no_accepted_job() {
     let files_left = server.stored_files();
     assert!(files_left.is_empty(), "{files_left:?}");
     let accepted = account.asked.values().flatten().count();
-    assert!(accepted > cycles && removed >= accepted && succeeded > accepted / 2);
+    assert!(
+        removed >= accepted && succeeded > accepted / 2,
+        "{removed} removed, {succeeded} of {accepted} succeeded"
+    );
     print_table(&[
         ("kills of the server", cycles),
         ("requests, each with a key", account.asked.len()),
