@@ -11,6 +11,8 @@ RUN cargo build --release --locked --bin meshmend && mkdir /data
 
 FROM ${RUN_BASE}
 COPY --from=build /build/target/release/meshmend /usr/local/bin/meshmend
+# Whom to believe when a webhook is called.
+COPY --from=build /etc/ssl/certs/ca-certificates.crt /etc/ssl/certs/ca-certificates.crt
 COPY --from=build /build/LICENSE-MIT /build/LICENSE-APACHE /usr/share/doc/meshmend/
 # A new volume takes its owner from here.
 COPY --from=build --chown=65532:65532 /data /data

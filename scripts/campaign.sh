@@ -24,10 +24,28 @@ declare -A filters=(
   [kill]="killed_at_random_points"
 )
 
+# Campaigns against a running service: each script starts its own server on loopback and prints its page.
+declare -A scripts=(
+  [slow-connections]="slow_connections.py"
+  [overload]="overload.py"
+  [uploads]="uploads.py"
+)
+
 name=${1:-}
+script=${scripts[$name]:-}
+if [ -n "$script" ]; then
+  shift
+  mkdir -p docs/campaigns target
+  cargo build --release --locked
+  result=0
+  # A page that is begun and not ended is not kept.
+  python3 "experiments/$script" "$@" > "target/campaign-$name.md" || result=$?
+  [ -s "target/campaign-$name.md" ] && cp "target/campaign-$name.md" "docs/campaigns/$name.md" && echo "wrote docs/campaigns/$name.md"
+  exit $result
+fi
 filter=${filters[$name]:-}
 if [ -z "$filter" ]; then
-  echo "usage: scripts/campaign.sh NAME, where NAME is one of: $(printf '%s\n' "${!filters[@]}" | sort | tr '\n' ' ')" >&2
+  echo "usage: scripts/campaign.sh NAME, where NAME is one of: $(printf '%s\n' "${!filters[@]}" "${!scripts[@]}" | sort | tr '\n' ' ')" >&2
   exit 2
 fi
 

@@ -3,19 +3,16 @@
 use super::welded::is_regular;
 use super::{Context, DefectCode, Finding};
 use crate::budget::{CHECK_EVERY, Stopped};
-use crate::geom::DVec3;
+use crate::geom::{DVec3, is_folded};
 use crate::mesh::{edge_of, prev_corner, triangle_of};
 use crate::par;
-
-/// Cosine of one degree: faces with a smaller angle between them are folded onto each other.
-const FOLDED_COSINE: f64 = 0.999_847_695_156_391_3;
 
 pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
     let mesh = &cx.mesh;
     let parts = par::try_map_ranges(mesh.edges.len(), CHECK_EVERY, |range| {
         cx.budget.check()?;
-        let is_folded = |e: &u32| normals(cx, *e).is_some_and(is_folded);
-        Ok(range.map(|e| e as u32).filter(is_folded).collect::<Vec<_>>())
+        let is_fold = |e: &u32| normals(cx, *e).is_some_and(is_folded);
+        Ok(range.map(|e| e as u32).filter(is_fold).collect::<Vec<_>>())
     })?;
     Ok(Finding::of(DefectCode::FoldedEdge, &parts.concat(), cx.samples, |&e| {
         let (ends, middle) = mesh.edge(e);
@@ -48,11 +45,6 @@ fn normals(cx: &Context<'_>, e: u32) -> Option<[DVec3; 2]> {
     let [long, c_long, d_long] = [along, c, d].map(|v| v.abs().max_element());
     let unit = along / long;
     Some([unit.cross(c / c_long.max(long)), (d / d_long.max(long)).cross(unit)])
-}
-
-fn is_folded([n, m]: [DVec3; 2]) -> bool {
-    let cosine = -n.dot(m);
-    cosine > 0.0 && cosine * cosine > FOLDED_COSINE * FOLDED_COSINE * n.length_squared() * m.length_squared()
 }
 
 #[cfg(test)]

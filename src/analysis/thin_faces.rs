@@ -6,21 +6,8 @@
 use super::names::middle;
 use super::{Context, DefectCode, Finding};
 use crate::budget::{CHECK_EVERY, Stopped};
-use crate::geom::DVec3;
+use crate::geom::{DVec3, Thinness, thinness};
 use crate::par;
-
-/// A face whose shortest edge is below this share of its longest is a needle.
-const NEEDLE_RATIO: f64 = 0.01;
-
-/// Cosine of 175 degrees: a face with a larger angle that is no needle is a cap. Its height is then below 2.2 % of its
-/// longest edge.
-const CAP_COSINE: f64 = -0.996_194_698_091_745_5;
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Thin {
-    Needle,
-    Cap,
-}
 
 pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
     let mesh = &cx.mesh;
@@ -29,8 +16,8 @@ pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
         let thin = range.filter_map(|t| Some((t as u32, thinness(mesh.corners(t as u32))?)));
         Ok(thin.filter(|(t, _)| cx.collinear.binary_search(t).is_err()).collect::<Vec<_>>())
     })?;
-    let found = |code, kind| {
-        let of_kind = || parts.iter().flatten().filter(|(_, thin)| *thin == kind).map(|&(t, _)| t);
+    let found = |code, is_of_kind: fn(Thinness) -> bool| {
+        let of_kind = || parts.iter().flatten().filter(|(_, thin)| is_of_kind(*thin)).map(|&(t, _)| t);
         let witness = |t: u32| {
             let corners = mesh.corners(t);
             let mut witness = mesh.names().triangles(&[mesh.source(t)], middle(corners));
@@ -44,7 +31,9 @@ pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
         };
         Finding::with(code, of_kind().count() as u64, of_kind().take(cx.samples).map(witness).collect())
     };
-    Ok([found(DefectCode::Needle, Thin::Needle), found(DefectCode::Cap, Thin::Cap)].concat())
+    let needles = found(DefectCode::Needle, |thin| matches!(thin, Thinness::Needle { .. }));
+    let caps = found(DefectCode::Cap, |thin| matches!(thin, Thinness::Cap { .. }));
+    Ok([needles, caps].concat())
 }
 
 /// The edges opposite to each corner, scaled so that the largest coordinate is 1: squares stay in the range of f64.
@@ -52,20 +41,6 @@ fn scaled_edges([a, b, c]: [DVec3; 3]) -> [DVec3; 3] {
     let edges = [c - b, a - c, b - a];
     let largest = edges[0].abs().max(edges[1].abs()).max(edges[2].abs()).max_element();
     edges.map(|edge| edge / largest)
-}
-
-fn thinness(corners: [DVec3; 3]) -> Option<Thin> {
-    let edges = scaled_edges(corners);
-    let squares = edges.map(DVec3::length_squared);
-    let longest = (0..3).max_by(|&i, &j| squares[i].total_cmp(&squares[j])).unwrap_or(0);
-    let shortest = squares.into_iter().fold(f64::INFINITY, f64::min);
-    if shortest < NEEDLE_RATIO * NEEDLE_RATIO * squares[longest] {
-        return Some(Thin::Needle);
-    }
-    let (i, j) = ((longest + 1) % 3, (longest + 2) % 3);
-    // The edges run around the triangle, so one of the two is against its direction from the corner.
-    let cosine = -edges[i].dot(edges[j]);
-    (cosine < 0.0 && cosine * cosine > CAP_COSINE * CAP_COSINE * squares[i] * squares[j]).then_some(Thin::Cap)
 }
 
 fn largest_angle_degrees(corners: [DVec3; 3]) -> f64 {

@@ -4,6 +4,8 @@ use crate::config::{SETTINGS, Setting};
 use crate::wire::{OptionKind, OptionSpec, SPECS};
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgMatches, Command};
+use std::fs::File;
+use std::io::Read as _;
 
 /// Settings that mean something without a service.
 const ENGINE_SETTINGS: [&str; 7] = [
@@ -47,9 +49,22 @@ fn option_flag(spec: &'static OptionSpec) -> Arg {
             flag.value_name("true|false").value_parser(PossibleValuesParser::new(["true", "false"]))
         }
         OptionKind::Input | OptionKind::Targets | OptionKind::Edges | OptionKind::Plan => {
-            flag.value_name("JSON")
+            flag.value_name("JSON|@FILE").value_parser(text_or_file)
         }
     }
+}
+
+/// Most bytes of a value that stands in a file.
+const VALUE_BYTES_MAX: u64 = 64 << 20;
+
+/// The value itself, or after `@` the file that holds it. No JSON begins with `@`.
+fn text_or_file(text: &str) -> Result<String, String> {
+    let Some(path) = text.strip_prefix('@') else { return Ok(text.to_owned()) };
+    let told = |error: std::io::Error| format!("cannot read {path}: {error}");
+    let mut value = String::new();
+    File::open(path).map_err(told)?.take(VALUE_BYTES_MAX + 1).read_to_string(&mut value).map_err(told)?;
+    let is_small = value.len() as u64 <= VALUE_BYTES_MAX;
+    if is_small { Ok(value) } else { Err(format!("{path} is over {VALUE_BYTES_MAX} bytes")) }
 }
 
 fn setting_flag(setting: &'static Setting) -> Arg {

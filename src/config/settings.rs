@@ -78,7 +78,7 @@ settings! {
     /// Folder for uploads and results; one server owns it.
     data_dir: PathBuf = "meshmend-data",
 
-    /// File of API keys, one a line: a key, or NAME:SHA-256 of a key in hexadecimal.
+    /// File of API keys, one a line: a key, or NAME:SHA-256 of a key in hexadecimal, perhaps with :read or :submit behind it.
     api_keys_file: Option<PathBuf> = "",
     /// Lets everybody who reaches the service use it, also from other machines.
     allow_anonymous: bool = "false",
@@ -86,9 +86,21 @@ settings! {
     allowed_hosts: Vec<String> = "",
     /// Addresses of proxies whose forwarding headers are believed.
     trusted_proxies: Vec<IpAddr> = "",
+    /// Origins whose pages may use the service and read its answers.
+    cors_origins: Vec<String> = "",
+    /// Requests that one key, or one address without keys, may make in a minute; 0: any number.
+    rate_per_minute: u32 = "0",
+    /// Requests that it may make at one time.
+    rate_burst: u32 = "60",
 
     /// Jobs that run at one time; auto: half the cores.
     slots: Option<NonZeroUsize> = "auto",
+    /// Jobs beside those that run at one time, for small meshes that somebody waits for.
+    interactive_slots: usize = "1",
+    /// Largest upload of such a mesh.
+    interactive_bytes_max: Bytes = "4MiB",
+    /// Most memory that all running jobs may take together, as estimated from their uploads; auto: three quarters of the machine's.
+    memory_bytes_max: Option<Bytes> = "auto",
     /// Most queued jobs.
     queue_max: NonZeroUsize = "64",
     /// Most jobs kept, whatever their state; the oldest finished ones go first.
@@ -128,15 +140,30 @@ settings! {
     sandbox: SandboxChoice = "auto",
 
     /// Most open connections of each listener; more wait in the system's backlog.
-    connections_max: NonZeroUsize = "1024",
+    connections_max: NonZeroUsize = "4096",
     /// Time for a request's head, and for which a connection may be idle.
     header_timeout: Duration = "15s",
     /// Longest pause between two pieces of an upload.
     upload_timeout: Duration = "30s",
+    /// Fewest bytes that an upload brings in a second, on average after its first upload_timeout; 0: any number.
+    upload_rate_min: Bytes = "1KiB",
     /// Longest time for a whole upload.
     upload_total_timeout: Duration = "1h",
     /// Time for which a client may take no byte of an answer.
     write_timeout: Duration = "60s",
+
+    /// Whether jobs may name a URL that is called when they end.
+    webhooks: bool = "false",
+    /// File of secrets that calls are signed with where the job brings none, one a line: whsec_ and base64.
+    webhook_secret_file: Option<PathBuf> = "",
+    /// Hosts with port that may be called although they are not public, also over http.
+    webhook_private_hosts: Vec<String> = "",
+    /// Time for one call.
+    webhook_timeout: Duration = "10s",
+    /// Most calls for one event.
+    webhook_attempts_max: NonZeroU32 = "8",
+    /// Pause after the first call that fails; the next ones are longer, up to 6 h.
+    webhook_pause: Duration = "5s",
 
     /// Which log lines are written, as in RUST_LOG: error, warn, info, debug, or by module.
     log: String = "info",

@@ -131,7 +131,7 @@ impl Value for NonZeroUsize {
 }
 
 impl Value for NonZeroU32 {
-    const EXPECTED: &'static str = "a whole number from 1 on";
+    const EXPECTED: &'static str = "a whole number from 1 to 4294967295";
 
     fn parse(text: &str) -> Option<Self> {
         Self::new(u32::parse(text)?)
@@ -176,6 +176,14 @@ impl Value for Bytes {
             _ => return None,
         };
         number.checked_mul(1 << shift).map(Self)
+    }
+}
+
+impl Value for Option<Bytes> {
+    const EXPECTED: &'static str = "a number of bytes, such as 16GiB (units: B, KiB, MiB, GiB, TiB), or auto";
+
+    fn parse(text: &str) -> Option<Self> {
+        if text == "auto" { Some(None) } else { Bytes::parse(text).map(Some) }
     }
 }
 

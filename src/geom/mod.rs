@@ -5,8 +5,10 @@ mod exact;
 mod pitch;
 mod predicates;
 mod projection;
+mod radial;
 mod ray;
 mod sign;
+mod thinness;
 mod tri_tri;
 mod volume;
 
@@ -15,8 +17,10 @@ pub use glam::{DVec2, DVec3};
 pub use pitch::{exponent_above, power_of_two, print_pitch};
 pub use predicates::{Plane, certain_turns, orient2d, orient3d};
 pub use projection::{Projection, are_collinear, is_on_segment};
+pub use radial::radial_order;
 pub use ray::upward_crossing;
 pub use sign::Sign;
+pub use thinness::{NEEDLE_RATIO, Thinness, is_folded, thinness};
 pub use tri_tri::{ContactKind, Shared, contact};
 pub use volume::{signed_volume, triangle_area, volume_sign};
 

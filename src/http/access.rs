@@ -3,13 +3,13 @@
 //! Without keys a page of another site must not be able to use a service that only its visitor can reach. So `Host`
 //! must be loopback or listed (a name that an attacker lets point here is neither), `Origin` must be this very host or
 //! listed, and forwarding headers, which would mean that others reach the service through a proxy, are refused unless
-//! the proxy is trusted.
+//! the proxy is trusted. Origins that may read answers (`cors_origins`) may also ask.
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
 
 use axum::http::{HeaderMap, HeaderName, header};
 
-use super::keys::ApiKeys;
+use super::keys::{ApiKeys, Holder};
 use crate::wire::{Problem, ProblemCode};
 
 /// Headers that a proxy adds.
@@ -36,6 +36,8 @@ pub struct Neighbours {
     /// Host names or addresses, without port, under which the service may be addressed beside loopback, and from whose
     /// pages it may be used. `*` allows any.
     pub allowed_hosts: Vec<String>,
+    /// Origins whose pages may use the service.
+    pub allowed_origins: Vec<String>,
     /// Addresses of proxies whose forwarding headers are taken.
     pub trusted_proxies: Vec<IpAddr>,
 }
@@ -46,12 +48,12 @@ impl Access {
         matches!(self, Self::Keys(_))
     }
 
-    /// The caller's name (`None`: anonymous), or why the request is refused. `peer` is the connection's other end.
-    pub(super) fn check(&self, headers: &HeaderMap, peer: Option<IpAddr>) -> Result<Option<String>, Problem> {
+    /// The holder of the key (`None`: anonymous), or why the request is refused. `peer` is the connection's other end.
+    pub(super) fn check(&self, headers: &HeaderMap, peer: Option<IpAddr>) -> Result<Option<Holder>, Problem> {
         match self {
             Self::Keys(keys) => presented_key(headers)
-                .and_then(|key| keys.owner_of(key))
-                .map(|owner| Some(owner.to_owned()))
+                .and_then(|key| keys.holder_of(key))
+                .map(Some)
                 .ok_or_else(|| Problem::new(ProblemCode::Unauthenticated, "a valid API key is required")),
             Self::Anonymous(neighbours) => neighbours.check(headers, peer).map(|()| None),
         }
@@ -76,9 +78,11 @@ impl Neighbours {
             ));
         }
         if let Some(origin) = headers.get(header::ORIGIN) {
-            let origin = origin.to_str().ok().and_then(|o| o.split_once("://")).map_or("", |(_, rest)| rest);
-            let is_same = !origin.is_empty() && origin.eq_ignore_ascii_case(host);
-            if !is_same && !self.lists(host_of(origin)) {
+            let origin = origin.to_str().unwrap_or_default();
+            let place = origin.split_once("://").map_or("", |(_, rest)| rest);
+            let is_same = !place.is_empty() && place.eq_ignore_ascii_case(host);
+            let is_listed = self.allowed_origins.iter().any(|allowed| allowed == origin);
+            if !is_same && !is_listed && !self.lists(host_of(place)) {
                 return Err(forbidden("anonymous access answers no pages of other origins"));
             }
         }
@@ -138,6 +142,7 @@ mod tests {
     fn answer(headers: &[(&'static str, &'static str)]) -> Result<(), ProblemCode> {
         let neighbours = Neighbours {
             allowed_hosts: vec!["mesh.example".into()],
+            allowed_origins: vec!["https://shop.example".into()],
             trusted_proxies: vec!["10.0.0.7".parse().unwrap()],
         };
         from_peer(&Access::Anonymous(neighbours), headers, "10.0.0.8").map(|_| ())
@@ -151,7 +156,8 @@ mod tests {
         let pairs = headers
             .iter()
             .map(|&(name, value)| (HeaderName::from_static(name), HeaderValue::from_static(value)));
-        access.check(&HeaderMap::from_iter(pairs), peer.parse().ok()).map_err(|problem| problem.code)
+        let checked = access.check(&HeaderMap::from_iter(pairs), peer.parse().ok());
+        checked.map(|holder| holder.map(|holder| holder.owner)).map_err(|problem| problem.code)
     }
 
     #[test]
@@ -183,11 +189,19 @@ mod tests {
     fn a_page_may_use_its_own_host_and_a_listed_one_may_use_any() {
         assert_eq!(answer(&[("host", "localhost:80"), ("origin", "http://localhost:80")]), Ok(()));
         assert_eq!(answer(&[("host", "localhost:80"), ("origin", "https://mesh.example")]), Ok(()));
+        assert_eq!(answer(&[("host", "localhost:80"), ("origin", "https://shop.example")]), Ok(()));
     }
 
     #[test]
     fn a_page_of_another_origin_is_refused() {
-        for origin in ["http://localhost:3000", "http://evil.example", "null", "https://mesh.example.evil"] {
+        for origin in [
+            "http://localhost:3000",
+            "http://evil.example",
+            "null",
+            "https://mesh.example.evil",
+            "http://shop.example",
+            "https://shop.example:444",
+        ] {
             let headers = [("host", "localhost:80"), ("origin", origin)];
             assert_eq!(answer(&headers), Err(ProblemCode::Forbidden), "{origin}");
         }
@@ -197,8 +211,8 @@ mod tests {
     fn forwarding_headers_are_taken_from_a_trusted_proxy_only() {
         let access = |proxies: &[&str]| {
             Access::Anonymous(Neighbours {
-                allowed_hosts: Vec::new(),
                 trusted_proxies: proxies.iter().map(|p| p.parse().unwrap()).collect(),
+                ..Neighbours::default()
             })
         };
         let headers = [("host", "localhost"), ("x-forwarded-for", "8.8.8.8")];

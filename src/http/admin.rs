@@ -37,7 +37,9 @@ async fn ready(state: State) -> Handled {
 }
 
 /// Counts and durations in the text format of Prometheus.
-async fn render() -> Response {
+async fn render(state: State) -> Response {
+    // The age of the queue grows while nothing happens.
+    state.jobs.load().await;
     let text =
         metrics::recorder().map(metrics_exporter_prometheus::PrometheusHandle::render).unwrap_or_default();
     ([(header::CONTENT_TYPE, "text/plain; version=0.0.4")], text).into_response()

@@ -8,6 +8,7 @@ use super::both::{Both, Mesh};
 use super::mesh_file;
 use super::problem::{Handled, json};
 use super::representation::{OCTET_STREAM, Representation};
+use super::state::AboutJob;
 use crate::jobs::{JobId, Jobs, StoredFile};
 use crate::wire::{self, Job, Problem, ProblemCode, Stage};
 
@@ -25,6 +26,7 @@ pub(super) fn json_answer(value: &impl serde::Serialize) -> Response {
 pub(super) fn accepted(job: &Job, applied: Option<HeaderValue>) -> Response {
     let mut response = (StatusCode::ACCEPTED, json_answer(job)).into_response();
     put(response.headers_mut(), header::LOCATION, &job.links.this);
+    response.extensions_mut().insert(AboutJob(job.id.clone()));
     tell_applied(&mut response, applied);
     response
 }
@@ -108,6 +110,7 @@ impl Finished<'_> {
             }
         };
         self.describe(response.headers_mut());
+        response.extensions_mut().insert(AboutJob(self.job.id.clone()));
         Ok(response)
     }
 

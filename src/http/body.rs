@@ -1,4 +1,4 @@
-//! The body of a request as it comes in: bounded in size, in the pauses it may make, and in time.
+//! The body of a request as it comes in: bounded in size, in the pauses it may make, in its rate, and in time.
 
 use std::time::Duration;
 
@@ -15,6 +15,8 @@ use crate::wire::{Problem, ProblemCode};
 pub(super) struct BodyLimits {
     /// Longest pause between two pieces.
     pub(super) idle_timeout: Duration,
+    /// Fewest bytes a second on average, after a first `idle_timeout` in which any number will do; 0: any number.
+    pub(super) rate_min: u64,
     /// Longest time from the first piece to the last.
     pub(super) total_timeout: Duration,
     /// Most bytes.
@@ -31,8 +33,15 @@ pub(super) struct IncomingBody {
     announced: Option<u64>,
     /// Bytes received so far.
     received: u64,
-    /// When the whole of it must be there.
-    deadline: Instant,
+    begun: Instant,
+}
+
+/// What a body was too slow for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Patience {
+    Pause,
+    Rate,
+    Total,
 }
 
 impl IncomingBody {
@@ -44,15 +53,16 @@ impl IncomingBody {
         if announced.is_some_and(|bytes: u64| bytes > limits.bytes_max) {
             return Err(limits.too_large(announced));
         }
-        Ok(Self { body, limits, announced, received: 0, deadline: Instant::now() + limits.total_timeout })
+        Ok(Self { body, limits, announced, received: 0, begun: Instant::now() })
     }
 
     /// The next piece; `None` at the end.
     pub(super) async fn next(&mut self) -> Result<Option<Bytes>, Problem> {
         loop {
-            let latest = self.deadline.min(Instant::now() + self.limits.idle_timeout);
-            let frame =
-                tokio::time::timeout_at(latest, self.body.frame()).await.map_err(|_| self.timed_out())?;
+            let (latest, patience) = self.next_deadline();
+            let frame = tokio::time::timeout_at(latest, self.body.frame())
+                .await
+                .map_err(|_| self.timed_out(patience))?;
             let Some(frame) = frame else { return Ok(None) };
             // Trailers have no meaning here.
             let Ok(piece) = frame.map_err(|error| incomplete(&error))?.into_data() else { continue };
@@ -78,14 +88,30 @@ impl IncomingBody {
         self.announced
     }
 
-    fn timed_out(&self) -> Problem {
-        let (name, limit) = if Instant::now() >= self.deadline {
-            ("upload_total_timeout_s", self.limits.total_timeout)
-        } else {
-            ("upload_timeout_s", self.limits.idle_timeout)
+    /// Until when the next piece is waited for, and what is over then.
+    fn next_deadline(&self) -> (Instant, Patience) {
+        let BodyLimits { idle_timeout, total_timeout, rate_min, .. } = self.limits;
+        let pause = (Instant::now() + idle_timeout, Patience::Pause);
+        let total = (self.begun + total_timeout, Patience::Total);
+        // What has come by now lasts that long at the lowest rate.
+        let rate = self
+            .received
+            .checked_div(rate_min)
+            .map(|seconds| idle_timeout.saturating_add(Duration::from_secs(seconds)));
+        let rate =
+            rate.filter(|&lasts| lasts < total_timeout).map(|lasts| (self.begun + lasts, Patience::Rate));
+        [pause, total].into_iter().chain(rate).min().unwrap_or(pause)
+    }
+
+    fn timed_out(&self, patience: Patience) -> Problem {
+        let limits = &self.limits;
+        let (name, limit) = match patience {
+            Patience::Pause => ("upload_timeout_s", limits.idle_timeout.as_secs()),
+            Patience::Rate => ("upload_rate_min", limits.rate_min),
+            Patience::Total => ("upload_total_timeout_s", limits.total_timeout.as_secs()),
         };
-        Problem::new(ProblemCode::UploadTimeout, format!("the body stopped after {} bytes", self.received))
-            .with_limit(name, limit.as_secs(), None)
+        let detail = format!("the body stopped or was too slow after {} bytes", self.received);
+        Problem::new(ProblemCode::UploadTimeout, detail).with_limit(name, limit, None)
     }
 }
 
@@ -102,4 +128,48 @@ impl BodyLimits {
 
 fn incomplete(error: &axum::Error) -> Problem {
     Problem::new(ProblemCode::BodyIncomplete, format!("the body could not be received: {error}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LIMITS: BodyLimits = BodyLimits {
+        idle_timeout: Duration::from_secs(30),
+        rate_min: 1000,
+        total_timeout: Duration::from_secs(3600),
+        bytes_max: 10_000_000,
+        bytes_max_name: "upload_bytes_max",
+    };
+
+    /// Sends `bytes` every ten seconds, and gives what stopped it and when.
+    async fn stopped(bytes: usize, limits: BodyLimits) -> (String, u64) {
+        let pieces = futures_util::stream::unfold((), move |()| async move {
+            tokio::time::sleep(Duration::from_secs(10)).await;
+            Some((Ok::<_, std::io::Error>(Bytes::from(vec![0; bytes])), ()))
+        });
+        let begun = Instant::now();
+        let mut body = IncomingBody::new(&HeaderMap::new(), Body::from_stream(pieces), limits).unwrap();
+        loop {
+            if let Err(problem) = body.next().await {
+                assert_eq!(problem.code, ProblemCode::UploadTimeout);
+                return (problem.limit_name.unwrap().to_string(), begun.elapsed().as_secs());
+            }
+        }
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn a_body_that_drips_is_ended_after_its_first_pause_and_one_that_flows_is_not() {
+        assert_eq!(stopped(1, LIMITS).await, ("upload_rate_min".to_owned(), 30));
+        assert_eq!(stopped(5000, LIMITS).await, ("upload_rate_min".to_owned(), 55));
+        assert_eq!(stopped(11_000, LIMITS).await, ("upload_total_timeout_s".to_owned(), 3600));
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn without_a_lowest_rate_only_pauses_and_time_count() {
+        let any = BodyLimits { rate_min: 0, ..LIMITS };
+        assert_eq!(stopped(1, any).await, ("upload_total_timeout_s".to_owned(), 3600));
+        let quick = BodyLimits { idle_timeout: Duration::from_secs(5), ..LIMITS };
+        assert_eq!(stopped(1, quick).await, ("upload_timeout_s".to_owned(), 5));
+    }
 }

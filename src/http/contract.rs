@@ -34,6 +34,7 @@ const COMMON: &[ProblemCode] = &[
     ProblemCode::Forbidden,
     ProblemCode::NotAcceptable,
     ProblemCode::HeadTooLarge,
+    ProblemCode::RateLimited,
     ProblemCode::Internal,
 ];
 /// Problems of an upload.
@@ -175,6 +176,7 @@ fn complete_operation(path: &str, operation: &mut Operation) {
             add_parameter(operation, cancel_after());
             add_parameter(operation, idempotency_key());
             add_problems(operation, UPLOAD);
+            add_problems(operation, &[ProblemCode::WebhookRefused]);
             add_answer(operation, "202", accepted());
         }
         "list_jobs" => {

@@ -5,20 +5,24 @@ use std::net::IpAddr;
 use std::panic::AssertUnwindSafe;
 use std::time::Instant;
 
+use axum::body::HttpBody as _;
 use axum::extract::{MatchedPath, Request};
 use axum::http::{HeaderMap, HeaderName, HeaderValue, header};
 use axum::middleware::Next;
 use axum::response::Response;
 use futures_util::FutureExt as _;
+use tracing::Instrument as _;
 use uuid::Uuid;
 
 use super::problem::{self, Told};
+use super::state::{AboutJob, Caller};
+use super::trace;
+use crate::jobs::JobId;
 use crate::wire::{Problem, ProblemCode};
 
 /// Largest request head that is answered by a handler, in bytes.
 pub(super) const HEAD_BYTES_MAX: u64 = 32 << 10;
 const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
-const TRACEPARENT: HeaderName = HeaderName::from_static("traceparent");
 
 /// Headers of every answer. Pages load nothing from other hosts and are shown in no frame; what is served is what its
 /// type says.
@@ -47,7 +51,10 @@ pub(super) async fn envelop(mut request: Request, next: Next) -> Response {
     request.extensions_mut().insert(seen.id.clone());
     let mut response = match head_too_large(&request) {
         Some(problem) => problem::respond(problem),
-        None => answer(request, next).await,
+        None => {
+            let span = trace::request_span(&request, &seen.id.0, &seen.route);
+            answer(request, next).instrument(span).await
+        }
     };
     seen.finish(&mut response, started);
     response
@@ -92,6 +99,9 @@ struct Seen {
     route: String,
     trace: Option<String>,
     peer: Option<IpAddr>,
+    /// The job that the path names.
+    job: Option<String>,
+    bytes_in: Option<u64>,
 }
 
 impl Seen {
@@ -100,8 +110,10 @@ impl Seen {
             id: request_id(request.headers()),
             method: request.method().clone(),
             route: request.extensions().get::<MatchedPath>().map_or("none", MatchedPath::as_str).to_owned(),
-            trace: trace_of(request.headers()),
+            trace: trace::trace_id(request.headers()),
             peer: request.extensions().get::<Peer>().map(|peer| peer.0),
+            job: job_of(request.uri().path()),
+            bytes_in: announced(request.headers()),
         }
     }
 
@@ -119,7 +131,10 @@ impl Seen {
         if let Ok(timing) = HeaderValue::from_str(&format!("total;dur={:.3}", elapsed.as_secs_f64() * 1e3)) {
             headers.append("server-timing", timing);
         }
+        let bytes_out = response.body().size_hint().exact();
         let told = response.extensions().get::<Told>();
+        let caller = response.extensions().get::<Caller>().and_then(|caller| caller.0.as_deref());
+        let made = response.extensions().get::<AboutJob>().map(|about| about.0.as_str());
         super::metrics::count_request(&self.method, &self.route, status, elapsed);
         tracing::info!(
             request = self.id.0,
@@ -127,6 +142,10 @@ impl Seen {
             route = self.route,
             status,
             ms = elapsed.as_secs_f64() * 1e3,
+            bytes_in = self.bytes_in,
+            bytes_out,
+            caller,
+            job = made.or(self.job.as_deref()),
             peer = self.peer.map(tracing::field::display),
             trace = self.trace,
             problem = told.map(|told| told.code.word()),
@@ -147,14 +166,15 @@ fn request_id(headers: &HeaderMap) -> RequestId {
     RequestId(given.map_or_else(|| Uuid::now_v7().to_string(), str::to_owned))
 }
 
-/// The trace id of a W3C `traceparent`.
-fn trace_of(headers: &HeaderMap) -> Option<String> {
-    let value = headers.get(TRACEPARENT)?.to_str().ok()?;
-    let mut parts = value.split('-');
-    let (version, trace, parent, flags) = (parts.next()?, parts.next()?, parts.next()?, parts.next()?);
-    let is_hex = |text: &str, len| text.len() == len && text.bytes().all(|b| b.is_ascii_hexdigit());
-    let is_valid = is_hex(version, 2) && is_hex(trace, 32) && is_hex(parent, 16) && is_hex(flags, 2);
-    is_valid.then(|| trace.to_owned())
+/// The job that a path names, if it is an id at all.
+fn job_of(path: &str) -> Option<String> {
+    let id = path.strip_prefix("/v1/jobs/")?.split('/').next()?;
+    id.parse::<JobId>().ok().map(|id| id.to_string())
+}
+
+/// The size of the body, where the client says it.
+fn announced(headers: &HeaderMap) -> Option<u64> {
+    headers.get(header::CONTENT_LENGTH)?.to_str().ok()?.parse().ok()
 }
 
 #[cfg(test)]
@@ -204,18 +224,6 @@ mod tests {
             }
             assert_eq!(headers[REQUEST_ID].len(), 36);
             assert!(headers["server-timing"].to_str().unwrap().starts_with("total;dur="));
-        }
-    }
-
-    #[test]
-    fn a_trace_id_is_read_from_a_valid_traceparent_only() {
-        let trace = |value: &'static str| {
-            trace_of(&HeaderMap::from_iter([(TRACEPARENT, HeaderValue::from_static(value))]))
-        };
-        let valid = "00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01";
-        assert_eq!(trace(valid).as_deref(), Some("4bf92f3577b34da6a3ce929d0e0e4736"));
-        for broken in ["", "00", "00-xyz-00f067aa0ba902b7-01", "00-4bf92f3577b34da6a3ce929d0e0e4736-0-01"] {
-            assert_eq!(trace(broken), None);
         }
     }
 }

@@ -9,7 +9,8 @@ use super::multipart;
 use super::state::Service;
 use crate::jobs::Uploaded;
 use crate::wire::{
-    Format, JobRequest, Labels, Operation, Options, Problem, ProblemCode, format_of_media_type,
+    Format, JobRequest, Labels, Operation, Options, Problem, ProblemCode, WebhookRequest,
+    format_of_media_type,
 };
 
 /// Largest body that is JSON, in bytes.
@@ -28,6 +29,8 @@ pub(super) struct Intake {
     pub(super) named: Option<Format>,
     /// What to do, as the body says.
     pub(super) operation: Option<Operation>,
+    /// Whom to tell of the end, as the body says.
+    pub(super) webhook: Option<WebhookRequest>,
     /// What to write on the job, as the body says.
     pub(super) labels: Option<Labels>,
     /// How, as the body says.
@@ -120,7 +123,8 @@ impl Intake {
             None => {
                 let request = JobRequest::from_json(text)?;
                 self.operation = agreed(self.operation, request.operation)?;
-                self.labels = agreed_labels(self.labels.take(), request.labels)?;
+                self.webhook = agreed_member("webhook", self.webhook.take(), request.webhook)?;
+                self.labels = agreed_member("labels", self.labels.take(), request.labels)?;
                 let said_before = std::mem::take(&mut self.options);
                 self.options = said_before.join(request.options).map_err(|error| Problem::from(&error))?;
             }
@@ -139,12 +143,19 @@ pub(super) fn agreed(a: Option<Operation>, b: Option<Operation>) -> Result<Optio
     }
 }
 
-/// The labels that two parts of a request write: those of one of them, or of both the same.
-pub(super) fn agreed_labels(a: Option<Labels>, b: Option<Labels>) -> Result<Option<Labels>, Problem> {
+/// What two parts of a request say about `name`: that of one of them, or of both the same.
+pub(super) fn agreed_member<T: PartialEq>(
+    name: &str,
+    a: Option<T>,
+    b: Option<T>,
+) -> Result<Option<T>, Problem> {
     match (a, b) {
         (Some(a), Some(b)) if a != b => Err(Problem {
-            parameter: Some("labels".to_owned()),
-            ..Problem::new(ProblemCode::InvalidParameter, "`labels` is given twice with different values")
+            parameter: Some(name.to_owned()),
+            ..Problem::new(
+                ProblemCode::InvalidParameter,
+                format!("`{name}` is given twice with different values"),
+            )
         }),
         (a, b) => Ok(a.or(b)),
     }

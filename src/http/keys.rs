@@ -1,5 +1,6 @@
 //! API keys: who may use the service, and whose job is whose.
 
+use super::scope::Scopes;
 use sha2::{Digest as _, Sha256};
 use subtle::{ConditionallySelectable as _, ConstantTimeEq as _};
 
@@ -11,6 +12,16 @@ pub struct ApiKeys(Vec<ApiKey>);
 struct ApiKey {
     owner: String,
     sha256: [u8; 32],
+    scopes: Scopes,
+}
+
+/// Who presents a key.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Holder {
+    /// The key's name; jobs belong to it.
+    pub(super) owner: String,
+    /// What the key may be used for.
+    pub(super) scopes: Scopes,
 }
 
 /// A line of a key file that says nothing usable. The line's text is not repeated: it may hold a key.
@@ -21,27 +32,29 @@ pub enum KeyFileError {
     Empty,
     /// A line with a colon whose right side is not a digest.
     #[error(
-        "line {line} of the key file is neither `name:SHA-256 of the key in 64 hexadecimal digits` nor a plain key without a colon"
+        "line {line} of the key file is neither `name:SHA-256 of the key in 64 hexadecimal digits`, perhaps with \
+         `:read`, `:submit` or `:read,submit` behind it, nor a plain key without a colon"
     )]
     Line {
         /// Number of the line, from 1.
         line: usize,
     },
-    /// Two lines give the same name.
-    #[error("line {line} of the key file repeats the name of an earlier line")]
-    NameTaken {
+    /// Two lines give the same key.
+    #[error("line {line} of the key file repeats the key of an earlier line")]
+    KeyTaken {
         /// Number of the line, from 1.
         line: usize,
     },
 }
 
 impl ApiKeys {
-    /// Reads a key file: one key a line, either `name:sha256` (64 hexadecimal digits, as
+    /// Reads a key file: one key a line, either `name:sha256[:scopes]` (64 hexadecimal digits, as
     /// `printf %s "$KEY" | sha256sum` prints them) or the plain key, which may not contain a colon. A plain key is
-    /// named after its digest. Empty lines and lines that begin with `#` are skipped.
+    /// named after its digest. Keys of one name are one caller, so that a new key can be given out before the old one
+    /// goes. Empty lines and lines that begin with `#` are skipped.
     ///
     /// # Errors
-    /// No key, a line that is neither form, or a name given twice.
+    /// No key, a line that is neither form, or a key given twice.
     pub fn parse(text: &str) -> Result<Self, KeyFileError> {
         let mut keys = Vec::<ApiKey>::new();
         for (at, line) in text.lines().enumerate() {
@@ -50,39 +63,43 @@ impl ApiKeys {
                 continue;
             }
             let key = ApiKey::parse(content).ok_or(KeyFileError::Line { line: at + 1 })?;
-            if keys.iter().any(|other| other.owner == key.owner) {
-                return Err(KeyFileError::NameTaken { line: at + 1 });
+            if keys.iter().any(|other| other.sha256 == key.sha256) {
+                return Err(KeyFileError::KeyTaken { line: at + 1 });
             }
             keys.push(key);
         }
         if keys.is_empty() { Err(KeyFileError::Empty) } else { Ok(Self(keys)) }
     }
 
-    /// The name of the key's holder. Takes the same time whichever key matches, and when none does.
-    pub(super) fn owner_of(&self, presented: &[u8]) -> Option<&str> {
+    /// The key's holder. Takes the same time whichever key matches, and when none does.
+    pub(super) fn holder_of(&self, presented: &[u8]) -> Option<Holder> {
         let digest: [u8; 32] = Sha256::digest(presented).into();
         let mut found = u32::MAX;
         for (at, key) in (0_u32..).zip(&self.0) {
             found.conditional_assign(&at, key.sha256.ct_eq(&digest));
         }
-        self.0.get(found as usize).map(|key| key.owner.as_str())
+        let key = self.0.get(found as usize)?;
+        Some(Holder { owner: key.owner.clone(), scopes: key.scopes })
     }
 }
 
 impl ApiKey {
     fn parse(line: &str) -> Option<Self> {
-        match line.rsplit_once(':') {
-            Some((name, digest)) => {
-                let name = name.trim();
-                let sha256 = digest_from_hex(digest.trim())?;
-                (!name.is_empty()).then(|| Self { owner: name.to_owned(), sha256 })
-            }
-            None => {
-                let sha256: [u8; 32] = Sha256::digest(line.as_bytes()).into();
-                let [a, b, c, d, ..] = sha256;
-                Some(Self { owner: format!("key-{a:02x}{b:02x}{c:02x}{d:02x}"), sha256 })
-            }
-        }
+        let parts: Vec<_> = line.split(':').map(str::trim).collect();
+        let (name, digest, scopes) = match parts[..] {
+            [_] => return Some(Self::plain(line)),
+            [name, digest] => (name, digest, Scopes::ALL),
+            [name, digest, scopes] => (name, digest, Scopes::parse(scopes)?),
+            _ => return None,
+        };
+        let sha256 = digest_from_hex(digest)?;
+        (!name.is_empty()).then(|| Self { owner: name.to_owned(), sha256, scopes })
+    }
+
+    fn plain(key: &str) -> Self {
+        let sha256: [u8; 32] = Sha256::digest(key.as_bytes()).into();
+        let [a, b, c, d, ..] = sha256;
+        Self { owner: format!("key-{a:02x}{b:02x}{c:02x}{d:02x}"), sha256, scopes: Scopes::ALL }
     }
 }
 
@@ -106,13 +123,39 @@ mod tests {
     // SHA-256 of `open sesame`.
     const SESAME: &str = "41ef4bb0b23661e66301aac36066912dac037827b4ae63a7b1165a5aa93ed4eb";
 
+    fn owner(keys: &ApiKeys, presented: &[u8]) -> Option<String> {
+        keys.holder_of(presented).map(|holder| holder.owner)
+    }
+
     #[test]
     fn a_key_is_known_by_its_digest_or_by_itself() {
         let keys = ApiKeys::parse(&format!("# farm\n\nshop:{SESAME}\nplain-key\n")).unwrap();
-        assert_eq!(keys.owner_of(b"open sesame"), Some("shop"));
-        assert!(keys.owner_of(b"plain-key").unwrap().starts_with("key-"));
-        assert_eq!(keys.owner_of(b"open"), None);
-        assert_eq!(keys.owner_of(SESAME.as_bytes()), None);
+        assert_eq!(owner(&keys, b"open sesame").as_deref(), Some("shop"));
+        assert!(owner(&keys, b"plain-key").unwrap().starts_with("key-"));
+        assert_eq!(owner(&keys, b"open"), None);
+        assert_eq!(owner(&keys, SESAME.as_bytes()), None);
+    }
+
+    #[test]
+    fn a_key_has_the_scopes_behind_its_digest_or_all() {
+        let scopes = |line: &str| {
+            ApiKeys::parse(line)
+                .ok()
+                .and_then(|keys| keys.holder_of(b"open sesame"))
+                .map(|holder| holder.scopes)
+        };
+        assert_eq!(scopes(&format!("shop:{SESAME}")), Some(Scopes::ALL));
+        assert_eq!(scopes(&format!("shop:{SESAME}:read")), Scopes::parse("read"));
+        assert_eq!(scopes(&format!("shop : {SESAME} : read, submit")), Some(Scopes::ALL));
+        assert_eq!(scopes("open sesame"), Some(Scopes::ALL));
+        assert_eq!(scopes(&format!("shop:{SESAME}:write")), None);
+        assert_eq!(scopes(&format!("shop:{SESAME}:read:submit")), None);
+    }
+
+    #[test]
+    fn two_keys_of_one_name_are_one_caller() {
+        let keys = ApiKeys::parse(&format!("shop:{SESAME}\nshop:{}", "0".repeat(64))).unwrap();
+        assert_eq!(owner(&keys, b"open sesame").as_deref(), Some("shop"));
     }
 
     #[test]
@@ -127,8 +170,8 @@ mod tests {
     }
 
     #[test]
-    fn two_keys_do_not_share_a_name() {
-        let text = format!("shop:{SESAME}\nshop:{SESAME}");
-        assert_eq!(ApiKeys::parse(&text).unwrap_err(), KeyFileError::NameTaken { line: 2 });
+    fn one_key_has_one_line() {
+        let text = format!("shop:{SESAME}\nfarm:{SESAME}:read");
+        assert_eq!(ApiKeys::parse(&text).unwrap_err(), KeyFileError::KeyTaken { line: 2 });
     }
 }

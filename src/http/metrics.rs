@@ -29,6 +29,7 @@ fn install() -> Option<PrometheusHandle> {
     describe_counter!(REQUESTS, "Requests answered, by method, route and status.");
     describe_histogram!(SECONDS, "Time from a request's head to its answer's head, in seconds.");
     describe_gauge!(CONNECTIONS, "Open connections.");
+    crate::jobs::describe_metrics();
     Some(handle)
 }
 

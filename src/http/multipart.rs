@@ -219,6 +219,7 @@ mod tests {
     use std::time::Duration;
 
     const LIMITS: BodyLimits = BodyLimits {
+        rate_min: 0,
         idle_timeout: Duration::from_secs(5),
         total_timeout: Duration::from_secs(5),
         bytes_max: 1 << 30,

@@ -91,7 +91,7 @@ pub(super) async fn create_job(state: State, caller: Extension<Caller>, request:
     let asked = query::job_request(&head.uri)?;
     let mut intake = intake::receive(&state, &head.headers, body, None).await?;
     let operation = intake::agreed(asked.operation, intake.operation)?;
-    intake.labels = intake::agreed_labels(asked.labels, intake.labels)?;
+    intake.labels = intake::agreed_member("labels", asked.labels, intake.labels)?;
     let operation = operation.ok_or_else(|| intake::about_operation("`operation` is missing"))?;
     let submission = submission(&state, &caller, operation, asked.options, intake, &head.headers).await?;
     let job = state.jobs.submit(submission).await?;
@@ -131,6 +131,7 @@ async fn finish(
     head: &request::Parts,
 ) -> Handled {
     let wait = Wait::from_headers(&head.headers);
+    let submission = Submission { is_waited_for: !wait.duration.is_zero(), ..submission };
     // With a key the client can come back for the job that it does not know the id of.
     let can_come_back = submission.key.is_some();
     let job = service.jobs.submit(submission).await?;
@@ -203,6 +204,7 @@ async fn submission(
         labels: intake.labels.unwrap_or_default(),
         cancel_after: cancel_after(headers)?,
         owner: caller.0.clone(),
+        webhook: intake.webhook.map(|asked| service.jobs.admit_webhook(asked)).transpose()?,
         ..Submission::new(operation, options)
     })
 }

@@ -3,7 +3,7 @@
 use axum::extract::Query;
 use axum::http::Uri;
 
-use super::intake::{agreed, agreed_labels};
+use super::intake::{agreed, agreed_member};
 use super::prefer;
 use crate::jobs::JobId;
 use crate::wire::{
@@ -30,13 +30,13 @@ pub(super) fn job_request(uri: &Uri) -> Result<JobRequest, Problem> {
     let (mut operation, mut labels) = (None, None);
     for (name, value) in own {
         if name == "labels" {
-            labels = agreed_labels(labels, Some(JobRequest::labels_of_query(&value)?))?;
+            labels = agreed_member("labels", labels, Some(JobRequest::labels_of_query(&value)?))?;
         } else {
             let named = Operation::from_word(&value).ok_or_else(|| about_operation(&value))?;
             operation = agreed(operation, Some(named))?;
         }
     }
-    Ok(JobRequest { operation, labels, options })
+    Ok(JobRequest { operation, labels, options, webhook: None })
 }
 
 /// Which page of the list of jobs.

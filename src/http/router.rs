@@ -14,9 +14,11 @@ use utoipa_axum::routes;
 
 use super::envelope::{self, Peer};
 use super::problem::{self, ProblemAnswer};
+use super::rate::{Bucket, Rates};
+use super::scope::Scopes;
 use super::settings::HttpSettings;
 use super::state::{Caller, Service, State};
-use super::{about, contract, docs, events, lifecycle, listing, operations, page};
+use super::{about, contract, cors, deliveries, docs, events, lifecycle, listing, operations, page};
 use crate::jobs::Jobs;
 use crate::wire::ProblemCode;
 
@@ -36,6 +38,8 @@ fn api() -> OpenApiRouter<Arc<Service>> {
         .routes(routes!(events::events))
         .routes(routes!(lifecycle::report))
         .routes(routes!(lifecycle::result))
+        .routes(routes!(deliveries::deliveries))
+        .routes(routes!(deliveries::redeliver))
         .routes(routes!(about::errors))
         .routes(routes!(about::limits))
         .routes(routes!(about::formats))
@@ -64,6 +68,7 @@ pub(super) fn service(settings: HttpSettings, jobs: Jobs) -> Arc<Service> {
     let yaml = super::openapi_yaml();
     Arc::new(Service {
         jobs,
+        rates: settings.rate.map(Rates::new),
         settings,
         docs: Bytes::from(docs::render(&document)),
         openapi: Bytes::from(yaml),
@@ -74,7 +79,13 @@ pub(super) fn service(settings: HttpSettings, jobs: Jobs) -> Arc<Service> {
 pub(super) fn router(service: Arc<Service>) -> Router {
     let (api, _) = api().split_for_parts();
     let let_in = middleware::from_fn_with_state(Arc::clone(&service), let_in);
-    enveloped(complete(api.merge(pages()).with_state(service)).layer(let_in))
+    let cors = cors::layer(&service.settings.cors_origins);
+    let routes = complete(api.merge(pages()).with_state(service)).layer(let_in);
+    // Outside of the door: browsers ask with no key whether they may ask.
+    enveloped(match cors {
+        Some(cors) => routes.layer(cors),
+        None => routes,
+    })
 }
 
 /// `routes` with problems for the paths and methods that they do not know.
@@ -87,18 +98,38 @@ pub(super) fn enveloped(routes: Router) -> Router {
     routes.layer(middleware::from_fn(envelope::envelop))
 }
 
-/// Lets in who may use the service. With keys, the pages are for everybody: they ask for the key.
+/// Lets in who may use the service, as often as that is allowed. With keys, the pages are for everybody: they ask for
+/// the key.
 async fn let_in(service: State, mut request: Request, next: Next) -> Response {
     let peer = request.extensions().get::<Peer>().map(|peer| peer.0);
-    let is_open = service.settings.access.has_keys() && !request.uri().path().starts_with("/v1/");
-    let caller = if is_open { Ok(None) } else { service.settings.access.check(request.headers(), peer) };
-    match caller {
-        Ok(name) => {
-            request.extensions_mut().insert(Caller(name));
-            next.run(request).await
-        }
-        Err(problem) => problem::respond(problem),
+    let is_page = !request.uri().path().starts_with("/v1/");
+    let is_open = service.settings.access.has_keys() && is_page;
+    let holder = if is_open { Ok(None) } else { service.settings.access.check(request.headers(), peer) };
+    let (owner, scopes) = match holder {
+        Ok(Some(holder)) => (Some(holder.owner), holder.scopes),
+        Ok(None) => (None, Scopes::ALL),
+        Err(problem) => return problem::respond(problem),
+    };
+    let caller = Caller(owner);
+    let counted = service
+        .rates
+        .as_ref()
+        .filter(|_| !is_page)
+        .map(|rates| rates.count(&Bucket::of(caller.0.as_deref(), peer)));
+    let refusal = match &counted {
+        Some((_, Some(refusal))) => Some(refusal.clone()),
+        _ => scopes.check(request.method()).err(),
+    };
+    request.extensions_mut().insert(caller.clone());
+    let mut response = match refusal {
+        Some(refusal) => problem::respond(refusal),
+        None => next.run(request).await,
+    };
+    if let Some((standing, _)) = counted {
+        standing.tell(response.headers_mut());
     }
+    response.extensions_mut().insert(caller);
+    response
 }
 
 async fn not_found() -> Response {

@@ -11,11 +11,14 @@ use tokio_util::sync::CancellationToken;
 use super::connection::ConnectionLimits;
 use super::settings::HttpSettings;
 use super::shutdown::Shutdown;
+use super::state::Service;
 use super::{admin, listen, metrics, router};
 use crate::jobs::Jobs;
 
 /// Connections of the admin listener.
 const ADMIN_CONNECTIONS_MAX: usize = 64;
+/// Pause between two looks for callers that can be forgotten.
+const FORGET_EVERY: Duration = Duration::from_secs(60);
 /// Time that clients get for the last answers, once no job is left.
 const LAST_ANSWERS: Duration = Duration::from_secs(5);
 
@@ -70,6 +73,7 @@ impl Server {
         let connections_max = self.settings.connections_max;
         let service = router::service(self.settings, self.jobs.clone());
         let public = router::router(Arc::clone(&service));
+        let limited = Arc::clone(&service);
         let answered = CancellationToken::new();
         let serving = async {
             listen::serve(self.listener, public, limits, connections_max, &shutdown).await;
@@ -101,6 +105,17 @@ impl Server {
         tokio::select! {
             _ = async { tokio::join!(api, admin) } => (),
             () = metrics::keep_up() => (),
+            () = forget_idle_callers(&limited) => (),
+        }
+    }
+}
+
+/// Forgets callers that have not been heard of for long enough. Never ends.
+async fn forget_idle_callers(service: &Service) {
+    loop {
+        tokio::time::sleep(FORGET_EVERY).await;
+        if let Some(rates) = &service.rates {
+            rates.forget_idle();
         }
     }
 }

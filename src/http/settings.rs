@@ -4,6 +4,7 @@ use std::net::{Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
 use super::access::{Access, Neighbours};
+use super::rate::RateSettings;
 
 /// Addresses, access and limits of the HTTP side. The names are those of the configuration.
 #[derive(Debug, Clone)]
@@ -14,12 +15,18 @@ pub struct HttpSettings {
     pub admin_listen: Option<SocketAddr>,
     /// Who may use the API.
     pub access: Access,
-    /// Most open connections of each listener; more wait in the system's backlog. Default 1,024.
+    /// Origins whose pages may read answers. Default: none.
+    pub cors_origins: Vec<String>,
+    /// How many requests one caller may make; `None`: any number. Default: none.
+    pub rate: Option<RateSettings>,
+    /// Most open connections of each listener; more wait in the system's backlog. Default 4,096.
     pub connections_max: usize,
     /// Time for a request's head, and for which a connection may be idle. Default 15 s.
     pub header_timeout: Duration,
     /// Longest pause between two pieces of an upload. Default 30 s.
     pub upload_timeout: Duration,
+    /// Fewest bytes a second of an upload, on average after its first `upload_timeout`. Default 1 KiB.
+    pub upload_rate_min: u64,
     /// Longest time for a whole upload. Default 1 h.
     pub upload_total_timeout: Duration,
     /// Time for which a client may take no byte of an answer. Default 60 s.
@@ -33,9 +40,12 @@ impl Default for HttpSettings {
             listen: (Ipv4Addr::LOCALHOST, 8080).into(),
             admin_listen: None,
             access: Access::Anonymous(Neighbours::default()),
-            connections_max: 1024,
+            cors_origins: Vec::new(),
+            rate: None,
+            connections_max: 4096,
             header_timeout: Duration::from_secs(15),
             upload_timeout: Duration::from_secs(30),
+            upload_rate_min: 1 << 10,
             upload_total_timeout: Duration::from_secs(60 * 60),
             write_timeout: Duration::from_secs(60),
         }

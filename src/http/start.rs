@@ -2,19 +2,26 @@
 
 use std::fmt::Display;
 use std::io::IsTerminal as _;
-use std::num::NonZero;
+use std::num::{NonZero, NonZeroU32};
 use std::time::Duration;
 
-use tracing_subscriber::EnvFilter;
+use tracing_subscriber::layer::SubscriberExt as _;
+use tracing_subscriber::util::SubscriberInitExt as _;
+use tracing_subscriber::{EnvFilter, Layer as _};
 
 use super::access::{Access, Neighbours};
 use super::keys::ApiKeys;
+use super::rate::RateSettings;
 use super::server::Server;
 use super::settings::HttpSettings;
 use super::shutdown::Shutdown;
+use super::{cors, descriptors};
 use crate::config::{ConfigError, IsolationChoice, Loaded, LogFormat, SandboxChoice};
 use crate::formats::ReadLimits;
-use crate::jobs::{Isolation, Jobs, JobsSettings, Sandbox, StartError, TrialError};
+use crate::jobs::{
+    Isolation, Jobs, JobsSettings, PrivateHosts, RetryPlan, Sandbox, StartError, TrialError, WebhookSecret,
+    WebhookSettings,
+};
 
 /// Time for jobs that a second signal gave up: the process is not to wait for them.
 const LEFTOVERS: Duration = Duration::from_secs(1);
@@ -31,7 +38,7 @@ pub fn start(loaded: &Loaded) -> anyhow::Result<()> {
     for warning in &loaded.warnings {
         tracing::warn!("{warning}");
     }
-    let http = http_settings(loaded)?;
+    let http = fitting(http_settings(loaded)?);
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
     let served = runtime.block_on(async {
         let shutdown = Shutdown::on_signals()?;
@@ -43,16 +50,31 @@ pub fn start(loaded: &Loaded) -> anyhow::Result<()> {
         Ok(())
     });
     runtime.shutdown_timeout(LEFTOVERS);
+    #[cfg(feature = "otel")]
+    super::otel::flush();
     served
 }
 
-/// The setting that stands in the way of a start.
+/// The setting that a service which cannot start is about.
 fn setting_of(error: &StartError) -> &'static str {
     match error {
         StartError::DataDir { .. } | StartError::DataDirInUse { .. } | StartError::Store { .. } => "data_dir",
         StartError::Isolation(TrialError::NoProcess | TrialError::Incomplete(_)) => "sandbox",
         StartError::Isolation(TrialError::Folder(_) | TrialError::NoAnswer(_)) => "isolation",
+        StartError::Webhooks { .. } => "webhooks",
     }
+}
+
+/// The same with no more connections than the system has descriptors for.
+fn fitting(http: HttpSettings) -> HttpSettings {
+    let connections_max = descriptors::make_room(http.connections_max);
+    if connections_max < http.connections_max {
+        tracing::warn!(
+            "the limit on open files allows {connections_max} of {} connections: raise it (ulimit -n)",
+            http.connections_max
+        );
+    }
+    HttpSettings { connections_max, ..http }
 }
 
 /// Says where the service is and how to try it.
@@ -74,12 +96,16 @@ fn tell(server: &Server) -> std::io::Result<()> {
 /// Log lines go to standard error, as the configuration says.
 fn log_as(loaded: &Loaded) -> Result<(), ConfigError> {
     let filter = EnvFilter::try_new(&loaded.config.log).map_err(|e| loaded.refused("log", &e))?;
-    let lines = tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr);
-    // A log of this process that is set already stays.
-    let _ = match loaded.config.log_format {
-        LogFormat::Text => lines.with_ansi(std::io::stderr().is_terminal()).try_init(),
-        LogFormat::Json => lines.json().try_init(),
+    let lines = tracing_subscriber::fmt::layer().with_writer(std::io::stderr);
+    let lines = match loaded.config.log_format {
+        LogFormat::Text => lines.with_ansi(std::io::stderr().is_terminal()).boxed(),
+        LogFormat::Json => lines.json().boxed(),
     };
+    let layers = tracing_subscriber::registry().with(lines.with_filter(filter));
+    #[cfg(feature = "otel")]
+    let layers = layers.with(super::otel::layer());
+    // A log of this process that is set already stays.
+    let _ = layers.try_init();
     Ok(())
 }
 
@@ -89,9 +115,12 @@ fn http_settings(loaded: &Loaded) -> Result<HttpSettings, ConfigError> {
         listen: config.listen,
         admin_listen: config.admin_listen,
         access: access(loaded)?,
+        cors_origins: cors_origins(loaded)?,
+        rate: rate(loaded)?,
         connections_max: config.connections_max.get(),
         header_timeout: config.header_timeout,
         upload_timeout: config.upload_timeout,
+        upload_rate_min: config.upload_rate_min.0,
         upload_total_timeout: config.upload_total_timeout,
         write_timeout: config.write_timeout,
     })
@@ -100,12 +129,51 @@ fn http_settings(loaded: &Loaded) -> Result<HttpSettings, ConfigError> {
 fn access(loaded: &Loaded) -> Result<Access, ConfigError> {
     let config = &loaded.config;
     if config.is_anonymous()? {
-        let (allowed_hosts, trusted_proxies) = (config.allowed_hosts.clone(), config.trusted_proxies.clone());
-        return Ok(Access::Anonymous(Neighbours { allowed_hosts, trusted_proxies }));
+        return Ok(Access::Anonymous(Neighbours {
+            allowed_hosts: config.allowed_hosts.clone(),
+            allowed_origins: cors_origins(loaded)?,
+            trusted_proxies: config.trusted_proxies.clone(),
+        }));
     }
     let path = config.api_keys_file.as_deref().unwrap_or_else(|| std::path::Path::new(""));
     let text = std::fs::read_to_string(path).map_err(|e| loaded.refused("api_keys_file", &e))?;
     ApiKeys::parse(&text).map(Access::Keys).map_err(|e| loaded.refused("api_keys_file", &e))
+}
+
+fn cors_origins(loaded: &Loaded) -> Result<Vec<String>, ConfigError> {
+    cors::origins(&loaded.config.cors_origins).map_err(|item| {
+        loaded.refused("cors_origins", &format!("`{item}` is no origin, such as https://shop.example"))
+    })
+}
+
+fn rate(loaded: &Loaded) -> Result<Option<RateSettings>, ConfigError> {
+    let Some(per_minute) = NonZeroU32::new(loaded.config.rate_per_minute) else { return Ok(None) };
+    let burst = NonZeroU32::new(loaded.config.rate_burst).ok_or_else(|| {
+        loaded.refused("rate_burst", &"0 lets no request in; `rate_per_minute` 0 sets no limit")
+    })?;
+    Ok(Some(RateSettings { per_minute, burst }))
+}
+
+fn webhooks(loaded: &Loaded) -> Result<Option<WebhookSettings>, ConfigError> {
+    let config = &loaded.config;
+    if !config.webhooks {
+        return Ok(None);
+    }
+    let refused = |why: &dyn Display| loaded.refused("webhook_secret_file", why);
+    let secrets = match &config.webhook_secret_file {
+        Some(path) => {
+            let text = std::fs::read_to_string(path).map_err(|e| refused(&e))?;
+            WebhookSecret::parse_file(&text).map_err(|e| refused(&e))?
+        }
+        None => Vec::new(),
+    };
+    let private_hosts = PrivateHosts::parse(&config.webhook_private_hosts).map_err(|item| {
+        let why = format!("`{item}` is no host with a port, such as orders.internal:9000");
+        loaded.refused("webhook_private_hosts", &why)
+    })?;
+    let retry =
+        RetryPlan { attempts_max: config.webhook_attempts_max.get(), first_pause: config.webhook_pause };
+    Ok(Some(WebhookSettings { secrets, private_hosts, timeout: config.webhook_timeout, retry }))
 }
 
 fn jobs_settings(loaded: &Loaded) -> Result<JobsSettings, ConfigError> {
@@ -140,6 +208,10 @@ fn jobs_settings(loaded: &Loaded) -> Result<JobsSettings, ConfigError> {
             SandboxChoice::Require => Sandbox::Require,
             SandboxChoice::Off => Sandbox::Off,
         },
+        interactive_slots: config.interactive_slots,
+        interactive_bytes_max: config.interactive_bytes_max.0,
+        memory_bytes_max: config.memory_bytes_max.map_or(defaults.memory_bytes_max, |bytes| bytes.0),
+        webhooks: webhooks(loaded)?,
         disk_free_bytes_min: config.disk_free_bytes_min.0,
         lease: config.lease,
         attempts_max: config.attempts_max.get(),

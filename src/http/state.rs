@@ -6,6 +6,7 @@ use axum::body::Bytes;
 
 use super::body::BodyLimits;
 use super::prefer::{WAIT_DEFAULT, WAIT_MAX};
+use super::rate::Rates;
 use super::settings::HttpSettings;
 use crate::jobs::{JobId, Jobs};
 use crate::wire::{LABELS_MAX, Limits, Problem, ProblemCode};
@@ -18,6 +19,8 @@ pub(super) type State = axum::extract::State<Arc<Service>>;
 pub(super) struct Service {
     pub(super) jobs: Jobs,
     pub(super) settings: HttpSettings,
+    /// How many requests callers have made, if that is limited.
+    pub(super) rates: Option<Rates>,
     /// The contract, as YAML.
     pub(super) openapi: Bytes,
     /// The contract, as a page.
@@ -28,12 +31,17 @@ pub(super) struct Service {
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct Caller(pub(super) Option<String>);
 
+/// The job that an answer is about, for the request log.
+#[derive(Debug, Clone)]
+pub(super) struct AboutJob(pub(super) String);
+
 impl Service {
     /// Limits of a body that brings a mesh and `extra` bytes beside it.
     pub(super) fn upload_limits(&self, extra: u64) -> BodyLimits {
         BodyLimits {
             idle_timeout: self.settings.upload_timeout,
             total_timeout: self.settings.upload_total_timeout,
+            rate_min: self.settings.upload_rate_min,
             bytes_max: self.jobs.settings().upload_bytes_max.saturating_add(extra),
             bytes_max_name: "upload_bytes_max",
         }
@@ -62,9 +70,16 @@ impl Service {
             wait_default_s: WAIT_DEFAULT.as_secs(),
             queue_max: jobs.queue_max,
             slots: jobs.slots,
+            interactive_slots: jobs.interactive_slots,
+            interactive_bytes_max: jobs.interactive_bytes_max,
+            memory_bytes_max: jobs.memory_bytes_max,
+            webhook_attempts_max: jobs.webhooks.as_ref().map_or(0, |webhooks| webhooks.retry.attempts_max),
+            rate_per_minute: http.rate.map_or(0, |rate| rate.per_minute.get()),
+            rate_burst: http.rate.map_or(0, |rate| rate.burst.get()),
             connections_max: http.connections_max,
             header_timeout_s: http.header_timeout.as_secs(),
             upload_timeout_s: http.upload_timeout.as_secs(),
+            upload_rate_min: http.upload_rate_min,
             upload_total_timeout_s: http.upload_total_timeout.as_secs(),
             write_timeout_s: http.write_timeout.as_secs(),
             head_bytes_max: super::envelope::HEAD_BYTES_MAX,

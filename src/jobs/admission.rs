@@ -32,6 +32,8 @@ pub struct Submission {
     pub labels: Labels,
     /// Whom to tell of the end.
     pub webhook: Option<Webhook>,
+    /// Somebody waits for the answer.
+    pub is_waited_for: bool,
     /// Time from now after which the job must have ended (`Cancel-After`).
     pub cancel_after: Option<Duration>,
     /// The key under which the request may be repeated (`Idempotency-Key`).
@@ -51,6 +53,7 @@ impl Submission {
             file_name: None,
             labels: Labels::new(),
             webhook: None,
+            is_waited_for: false,
             cancel_after: None,
             key: None,
             owner: None,
@@ -82,11 +85,12 @@ impl Jobs {
     /// `idempotency-key-reused`, `storage-full`, `store-unavailable`.
     pub async fn submit(&self, submission: Submission) -> Result<Job, Problem> {
         let service = Arc::clone(&self.0);
-        service.check_open()?;
+        service.check_open().inspect_err(meters::refused)?;
         // The caller may go away, but what is begun is done: a row must not name a file that goes with its upload.
         let admitting = tokio::spawn(async move { service.admit(submission).await });
-        let row =
-            admitting.await.map_err(|error| Problem::new(ProblemCode::Internal, error.to_string()))??;
+        let admitted =
+            admitting.await.map_err(|error| Problem::new(ProblemCode::Internal, error.to_string()))?;
+        let row = admitted.inspect_err(meters::refused)?;
         Ok(view::job(&row, self.0.live.get(row.id).as_deref()))
     }
 }
@@ -110,6 +114,8 @@ impl Service {
             return Ok(known);
         }
         self.make_place().await?;
+        let is_small = input.bytes <= self.settings.interactive_bytes_max;
+        let lane = if is_small && submission.is_waited_for { Lane::Interactive } else { Lane::Bulk };
         let new = NewJob {
             id: JobId::unique(),
             operation: submission.operation,
@@ -121,7 +127,7 @@ impl Service {
             webhook: submission.webhook,
             input,
             material,
-            lane: Lane::Interactive,
+            lane,
             cancel_after: submission.cancel_after,
             key,
             source: source.map(|source| source.id),
@@ -140,7 +146,7 @@ impl Service {
         if let Some(at) = row.cancel_at {
             tokio::spawn(end_overdue(Arc::clone(self), row.id, at));
         }
-        self.work.notify_one();
+        self.work.notify_waiters();
         self.tell_load().await;
         Ok(row)
     }

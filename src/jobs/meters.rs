@@ -1,16 +1,61 @@
 //! What the job service tells the metrics recorder.
 
-use metrics::{counter, gauge, histogram};
+use metrics::{counter, describe_counter, describe_gauge, describe_histogram, gauge, histogram};
 
-use super::store::{Ending, JobCounts};
-use crate::wire::{Operation, Stage};
+use super::store::{Ending, JobCounts, NextTry, TryOutcome};
+use crate::wire::{Operation, Problem, Stage};
+
+/// Says what each series is.
+pub fn describe() {
+    describe_gauge!("meshmend_jobs_queued", "Jobs that wait for a slot.");
+    describe_gauge!("meshmend_jobs_running", "Jobs in a slot.");
+    describe_gauge!("meshmend_jobs_kept", "Jobs in any state.");
+    describe_gauge!("meshmend_queue_oldest_seconds", "Age of the job that waits for longest; 0: none waits.");
+    describe_gauge!("meshmend_data_bytes", "Bytes of uploads and results on disk.");
+    describe_counter!(
+        "meshmend_jobs_finished_total",
+        "Jobs that have ended, by operation, state, outcome and problem."
+    );
+    describe_counter!("meshmend_jobs_cached_total", "Jobs that were answered from an earlier one.");
+    describe_counter!("meshmend_jobs_refused_total", "Uploads and jobs that were not taken, by problem.");
+    describe_counter!(
+        "meshmend_runs_lost_total",
+        "Runs whose executor was lost: its lease is over, or it crashed."
+    );
+    describe_counter!("meshmend_webhook_tries_total", "Calls of webhooks, by answer and what is next.");
+    describe_histogram!(
+        "meshmend_stage_seconds",
+        "Time of each pass of the jobs that have ended, in seconds."
+    );
+}
 
 /// Jobs that wait and run, bytes on disk.
 pub(super) fn load(counts: JobCounts, data_bytes: u64) {
     gauge!("meshmend_jobs_queued").set(counts.queued as f64);
     gauge!("meshmend_jobs_running").set(counts.running as f64);
     gauge!("meshmend_jobs_kept").set(counts.all as f64);
+    let waited = counts.oldest_queued_at.map(|at| jiff::Timestamp::now().duration_since(at).as_secs_f64());
+    gauge!("meshmend_queue_oldest_seconds").set(waited.unwrap_or(0.0).max(0.0));
     gauge!("meshmend_data_bytes").set(data_bytes as f64);
+}
+
+/// A job that was not taken.
+pub(super) fn refused(problem: &Problem) {
+    counter!("meshmend_jobs_refused_total", "problem" => problem.code.word()).increment(1);
+}
+
+/// A try to deliver a webhook.
+pub(super) fn delivery_tried(outcome: &TryOutcome, next: NextTry) {
+    let answer = match outcome {
+        TryOutcome::Answered(status) => format!("{}xx", status / 100),
+        TryOutcome::Failed(_) => "none".to_owned(),
+    };
+    let then = match next {
+        NextTry::Delivered => "delivered",
+        NextTry::After(_) => "retry",
+        NextTry::GiveUp => "failed",
+    };
+    counter!("meshmend_webhook_tries_total", "answer" => answer, "then" => then).increment(1);
 }
 
 /// A job that was answered from an earlier one.

@@ -8,9 +8,11 @@
 mod admission;
 mod attempt;
 mod blobs;
+mod capacity;
 mod child;
 mod clock;
 mod drain;
+mod estimate;
 mod events;
 mod heartbeat;
 mod live;
@@ -26,6 +28,7 @@ mod sqlite;
 mod store;
 mod upload;
 mod view;
+mod webhook;
 
 #[cfg(test)]
 mod tests;
@@ -36,6 +39,7 @@ pub use blobs::{BlobStore, BlobWriter, LocalBlobs, StoredBlob};
 pub use child::{RUN_JOB, Sandbox, TrialError, run_job};
 pub use clock::StageClock;
 pub use events::{EventId, Events, Happened, JobEvent, NoEventId};
+pub use meters::describe as describe_metrics;
 pub use service::{Jobs, Load, StartError};
 pub use settings::JobsSettings;
 pub use sqlite::{OpenError as SqliteOpenError, SqliteStore, StoreClock};
@@ -46,3 +50,6 @@ pub use store::{
 };
 pub use upload::{Upload, Uploaded};
 pub use view::StoredFile;
+pub use webhook::{
+    PrivateHosts, RetryPlan, SecretError, Target, TargetError, URL_BYTES_MAX, WebhookSecret, WebhookSettings,
+};

@@ -11,20 +11,22 @@ use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 
 use super::attempt::{Engine, Executor};
+use super::capacity::Capacity;
 use super::child::TrialError;
 use super::drain::draining;
 use super::heartbeat::end_overdue;
 use super::live::LiveJobs;
 use super::settings::JobsSettings;
-use super::slot;
+use super::slot::{self, SlotKind};
 use super::spool::{OpenError, SpaceLimits, Spool};
 use super::sqlite::SqliteStore;
-use super::store::{Ending, JobId, JobRow, JobStore, Leases, ListQuery, StoreError};
+use super::store::{Ending, JobId, JobRow, JobStore, Leases, ListQuery, StoreError, Webhook};
 use super::upload::Upload;
 use super::view::{self, StoredFile, expired};
-use super::{meters, retention};
+use super::webhook::{Sender, WebhookSettings};
+use super::{meters, retention, webhook};
 use crate::budget::Stopped;
-use crate::wire::{Job, JobState, Options, Problem, ProblemCode};
+use crate::wire::{Delivery, Job, JobState, Options, Problem, ProblemCode, WebhookRequest};
 
 /// The job service. Clones share it.
 #[derive(Debug, Clone)]
@@ -36,6 +38,8 @@ pub(super) struct Service {
     pub(super) store: Arc<dyn JobStore>,
     pub(super) spool: Arc<Spool>,
     pub(super) executor: Executor,
+    /// Memory for runs.
+    pub(super) capacity: Capacity,
     /// Name of this process in the store.
     pub(super) worker: String,
     pub(super) live: LiveJobs,
@@ -89,6 +93,12 @@ pub enum StartError {
     /// Jobs cannot run as the settings ask.
     #[error(transparent)]
     Isolation(#[from] TrialError),
+    /// Webhooks cannot be sent.
+    #[error("webhooks cannot be sent: {why}")]
+    Webhooks {
+        /// Why.
+        why: String,
+    },
     /// Another server uses the data directory.
     #[error("data directory {path} is in use by another server")]
     DataDirInUse {
@@ -132,7 +142,12 @@ impl Jobs {
         let path = path.join(STORE_FILE);
         let unusable = |why: String| StartError::Store { path: path.clone(), why };
         let store = SqliteStore::open(&path).map_err(|error| unusable(error.to_string()))?;
+        let sender = match settings.webhooks.clone().map(Sender::new).transpose() {
+            Ok(sender) => sender.map(Arc::new),
+            Err(error) => return Err(StartError::Webhooks { why: error.to_string() }),
+        };
         let service = Arc::new(Service {
+            capacity: Capacity::of(&settings),
             settings,
             store: Arc::new(store),
             spool,
@@ -146,8 +161,13 @@ impl Jobs {
             mean_run_ms: AtomicU64::new(1000),
         });
         service.take_over().await.map_err(|problem| unusable(problem.detail))?;
-        for _ in 0..service.settings.slots {
-            service.slots.spawn(slot::serve(Arc::clone(&service)));
+        let general = std::iter::repeat_n(SlotKind::General, service.settings.slots);
+        let interactive = std::iter::repeat_n(SlotKind::Interactive, service.settings.interactive_slots);
+        for kind in general.chain(interactive) {
+            service.slots.spawn(slot::serve(Arc::clone(&service), kind));
+        }
+        if let Some(sender) = sender {
+            tokio::spawn(sender.send_forever(Arc::clone(&service)));
         }
         service.slots.spawn(retention::sweep_forever(Arc::clone(&service)));
         service.slots.close();
@@ -164,6 +184,10 @@ impl Jobs {
     /// # Errors
     /// `body-too-large` (before any byte is taken), `storage-full`, `draining`.
     pub async fn upload(&self, announced: Option<u64>) -> Result<Upload, Problem> {
+        self.begin_upload(announced).await.inspect_err(meters::refused)
+    }
+
+    async fn begin_upload(&self, announced: Option<u64>) -> Result<Upload, Problem> {
         self.0.check_open()?;
         if let Some(bytes) = announced {
             self.0.check_upload_size(bytes)?;
@@ -262,6 +286,35 @@ impl Jobs {
         Ok(view::job(&row, service.live.get(id).as_deref()))
     }
 
+    /// Takes a webhook that a caller asks for.
+    ///
+    /// # Errors
+    /// `webhook-refused`.
+    pub fn admit_webhook(&self, asked: WebhookRequest) -> Result<Webhook, Problem> {
+        WebhookSettings::admit(self.0.settings.webhooks.as_ref(), asked)
+    }
+
+    /// The webhooks of a job.
+    ///
+    /// # Errors
+    /// `store-unavailable`.
+    pub async fn deliveries(&self, id: JobId) -> Result<Vec<Delivery>, Problem> {
+        let found = self.0.store.deliveries(id).await.map_err(|error| store_problem(&error))?;
+        Ok(found.iter().map(webhook::view).collect())
+    }
+
+    /// Makes a webhook of a job due again.
+    ///
+    /// # Errors
+    /// `not-found`, `store-unavailable`.
+    pub async fn redeliver(&self, id: JobId, delivery: String) -> Result<Delivery, Problem> {
+        let due = self.0.store.redeliver(id, delivery).await.map_err(|error| match error {
+            StoreError::NotFound => Problem::new(ProblemCode::NotFound, "there is no such delivery"),
+            error => store_problem(&error),
+        })?;
+        Ok(webhook::view(&due))
+    }
+
     /// Removes the job and its files; one that is running is cancelled first.
     ///
     /// # Errors
@@ -345,6 +398,7 @@ impl Jobs {
 
     /// How busy the service is.
     pub async fn load(&self) -> Load {
+        self.0.tell_load().await;
         let counts = self.0.store.counts().await.unwrap_or_default();
         Load { queued: counts.queued, running: counts.running, data_bytes: self.0.spool.bytes() }
     }

@@ -4,7 +4,9 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use super::attempt::Isolation;
+use super::capacity;
 use super::child::Sandbox;
+use super::webhook::WebhookSettings;
 use crate::formats::ReadLimits;
 
 /// Limits and places of the job service. The names are those of the configuration and of `/v1/limits`.
@@ -14,6 +16,15 @@ pub struct JobsSettings {
     pub data_dir: PathBuf,
     /// Jobs that run at one time. Default: half the cores, because the engine's passes use several themselves.
     pub slots: usize,
+    /// Jobs beside those, for small meshes that somebody waits for. Default 1.
+    pub interactive_slots: usize,
+    /// Largest upload of such a mesh, in bytes. Default 4 MiB.
+    pub interactive_bytes_max: u64,
+    /// Most memory that all running jobs may take together, as estimated, in bytes. Default: three quarters of the
+    /// machine's.
+    pub memory_bytes_max: u64,
+    /// How webhooks are sent; `None`: not at all. Default: not at all.
+    pub webhooks: Option<WebhookSettings>,
     /// Most queued jobs. Default 64.
     pub queue_max: usize,
     /// Most jobs kept, whatever their state; the oldest finished ones go first. Default 20,000.
@@ -56,6 +67,10 @@ impl JobsSettings {
         Self {
             data_dir: data_dir.into(),
             slots: (cores / 2).max(1),
+            interactive_slots: 1,
+            interactive_bytes_max: 4 << 20,
+            memory_bytes_max: capacity::default_bytes_max(),
+            webhooks: None,
             queue_max: 64,
             jobs_max: 20_000,
             upload_bytes_max: 512 << 20,

@@ -30,9 +30,7 @@ pub(super) async fn settle(service: &Service, row: &JobRow, live: &Arc<Live>, co
             let finished = persist(row, || service.store.finish(claim, Ending::clone(&ending))).await;
             finished.map(|()| {
                 written.into_iter().for_each(Written::named);
-                let problem = ending.problem.as_ref().map(|problem| problem.detail.as_str());
-                let ms = ending.timing_ms.map(|timing| timing.total);
-                tracing::info!(job = %id, operation = %row.operation, state = %ending.state, ms, problem, "job ended");
+                note(row, &ending);
                 meters::finished(row.operation, &ending);
                 AfterLoss::Ended
             })
@@ -50,10 +48,29 @@ pub(super) async fn settle(service: &Service, row: &JobRow, live: &Arc<Live>, co
         Some(AfterLoss::Queued) => {
             tracing::info!(job = %id, epoch = claim.epoch, "job queued again");
             service.live.requeue(id);
-            service.work.notify_one();
+            service.work.notify_waiters();
         }
         None => service.live.forget(id, live),
     }
+}
+
+/// One line for a job. It names no file and repeats nothing of its content, which a problem's detail may.
+fn note(row: &JobRow, ending: &Ending) {
+    let waited = row.started_at.map(|at| at.duration_since(row.created_at).as_secs_f64() * 1e3);
+    tracing::info!(
+        job = %row.id,
+        owner = row.owner,
+        operation = %row.operation,
+        state = %ending.state,
+        outcome = ending.outcome.map(|outcome| outcome.word()),
+        problem = ending.problem.as_ref().map(|problem| problem.code.word()),
+        queued_ms = waited,
+        ms = ending.timing_ms.map(|timing| timing.total),
+        bytes_in = row.input.bytes,
+        bytes_out = ending.result.as_ref().map(|result| result.blob.bytes),
+        epoch = row.epoch,
+        "job ended"
+    );
 }
 
 /// Asks the store until it answers; `None`: the claim is void.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use tokio_util::task::AbortOnDropHandle;
+use tracing::Instrument as _;
 
 use super::attempt::attempt;
 use super::clock::StageClock;
@@ -20,8 +21,28 @@ use crate::wire::{JobState, Problem, ProblemCode, Progress};
 /// Pause before a store that did not answer is asked again.
 pub(super) const STORE_PAUSE: Duration = Duration::from_secs(1);
 
+/// Which jobs a slot takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum SlotKind {
+    /// Any.
+    General,
+    /// Small ones that somebody waits for.
+    Interactive,
+}
+
+impl SlotKind {
+    /// The lane that it looks at first. Where small jobs have slots of their own, the others look at large ones first,
+    /// so that neither kind waits for ever behind the other.
+    fn lane(self, has_interactive: bool) -> Lane {
+        match self {
+            Self::General if has_interactive => Lane::Bulk,
+            Self::General | Self::Interactive => Lane::Interactive,
+        }
+    }
+}
+
 /// Runs jobs until the service drains.
-pub(super) async fn serve(service: Arc<Service>) {
+pub(super) async fn serve(service: Arc<Service>, kind: SlotKind) {
     while !service.draining.is_cancelled() {
         // Listening begins before the look into the queue, so that no job is missed in between.
         let mut work = pin!(service.work.notified());
@@ -29,10 +50,14 @@ pub(super) async fn serve(service: Arc<Service>) {
         let request = ClaimRequest {
             worker: service.worker.clone(),
             lease: service.settings.lease,
-            prefer: Lane::Interactive,
+            prefer: kind.lane(service.settings.interactive_slots > 0),
+            is_only: kind == SlotKind::Interactive,
         };
         match service.store.claim(request).await {
-            Ok(Some(row)) => run(&service, row).await,
+            Ok(Some(row)) => {
+                let span = tracing::info_span!("job", id = %row.id, operation = row.operation.word());
+                run(&service, row).instrument(span).await;
+            }
             Ok(None) => {
                 tokio::select! {
                     () = work => {}
@@ -53,6 +78,7 @@ async fn run(service: &Arc<Service>, row: JobRow) {
     let heart = beat(Arc::clone(service), row.claim(), row.cancel_at, Arc::clone(&live));
     let heart = AbortOnDropHandle::new(tokio::spawn(heart));
     service.tell_load().await;
+    let _room = service.room_for(&row, &live).await;
     let ended = attempt(service, &row, &live, &clock).await;
     service.note_run_time(&clock);
     let conclusion = conclude(service, &row, &live, &clock, ended).await;

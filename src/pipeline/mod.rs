@@ -22,7 +22,9 @@ use self::input::Input;
 pub use self::plan::Step;
 pub use self::printing::PrintingReport;
 pub use self::rebuild::{Effort, WrapChoices};
-pub use self::remedies::{ChosenPlan, ChosenRemedy, ElementProposal, Plan, PlanMismatch, Proposal, Remedy};
+pub use self::remedies::{
+    ChosenPlan, ChosenRemedy, ELEMENTS_MAX, ElementProposal, Plan, PlanMismatch, Proposal, Remedy,
+};
 use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stopped};
 use crate::certificate::{Certificate, Violation};
@@ -113,6 +115,17 @@ pub enum FillHoles {
     Simple,
 }
 
+/// What becomes of bodies that touch in vertices or edges only, so that a reader that welds would make one of them that is
+/// no manifold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Contact {
+    /// All but one are drawn back a little.
+    #[default]
+    Open,
+    /// They become one body by necks as thick as a wall, where there is room; elsewhere they are drawn apart.
+    Join,
+}
+
 /// Options of every operation; those that do not apply are ignored.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
@@ -130,6 +143,8 @@ pub struct Options {
     pub fill_holes: FillHoles,
     /// What shells inside shells mean to `repair`.
     pub nesting: nest::Policy,
+    /// What `repair` does with bodies that touch.
+    pub contact: Contact,
     /// What `repair` is to do about each defect; `None`: as proposed.
     pub plan: Option<ChosenPlan>,
     /// How far the result of a repair may be from the file.

@@ -1,13 +1,14 @@
 //! The repair plan: a list of steps that a client can read, and the loop that runs it.
 
-use super::Action;
 use super::remedies::Choices;
+use super::{Action, Contact};
 use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stopped};
 use crate::mesh::{ChosenEdges, Soup, Validity};
 use crate::repair::cut::CutOptions;
 use crate::repair::duplicates::OppositePairs;
 use crate::repair::nest::NestOptions;
+use crate::repair::pair_sheets::Across;
 use crate::repair::polygons::DegenerateFaces;
 use crate::repair::snap::SnapOptions;
 use crate::repair::thin_faces::ThinFaces;
@@ -39,8 +40,15 @@ pub enum Step {
         /// Rings of triangles around them that go too.
         rings: u32,
     },
+    /// Sheets that lie triangle by triangle near other ones go.
+    DropNearDuplicates {
+        /// Largest distance of their corners, in the unit of the file.
+        epsilon: f64,
+    },
     /// Faces are turned so that neighbours agree.
     Orient,
+    /// Triangles at edges with four or more are paired by their angles.
+    PairSheets(Across),
     /// Singular edges and vertices are cut.
     Cut(CutOptions),
     /// Edges that the cut has parted are joined from where boundaries turn back on themselves.
@@ -55,6 +63,11 @@ pub enum Step {
     Thicken {
         /// Thickness, in the unit of the file.
         wall: f64,
+    },
+    /// Bodies that touch become one.
+    JoinContacts {
+        /// Thickness of the necks between them, in the unit of the file.
+        size: f64,
     },
     /// Bodies that touch are drawn apart.
     OpenContacts,
@@ -79,8 +92,8 @@ pub(super) struct Variant {
     pub(super) opposite: OppositePairs,
     /// Triangles that meet others go first, with this many rings around them.
     pub(super) removes_crossing: Option<u32>,
-    /// Bodies that touch are drawn apart.
-    pub(super) opens_contacts: bool,
+    /// What becomes of bodies that touch; `None`: nothing.
+    pub(super) contact: Option<Contact>,
     /// Open parts get walls, and no hole is filled.
     pub(super) thickens: bool,
     /// Needles and caps go, where that is chosen.
@@ -98,16 +111,22 @@ impl Variant {
         let parts =
             (!choices.removed_parts.is_empty()).then(|| Step::RemoveParts(choices.removed_parts.clone()));
         let single = [Step::SplitTVertices, Step::DropDuplicates(self.opposite)];
+        let near = (choices.snap_epsilon > 0.0)
+            .then_some(Step::DropNearDuplicates { epsilon: choices.snap_epsilon });
         let remove = self.removes_crossing.map(|rings| Step::RemoveCrossing { rings });
         let orient = choices.orients.then_some(Step::Orient);
         // What is not cut cannot be joined by the rules of a manifold.
         let join = choices.cuts.then(|| {
-            // Which copies belong together matters only where they are drawn apart.
-            let pinch = self.opens_contacts.then(|| Step::Pinch(ChosenEdges::default(), Validity::Exact));
+            // Which copies belong together matters only where they come apart for good.
+            let pair = self.contact.map(|contact| match contact {
+                Contact::Open => Step::PairSheets(Across::Solid),
+                Contact::Join => Step::PairSheets(Across::Void),
+            });
+            let pinch = self.contact.map(|_| Step::Pinch(ChosenEdges::default(), Validity::Exact));
             // Only what coincides, so that no vertex moves, unless the caller says how far.
             let snap =
                 Step::Snap(SnapOptions { epsilon: Some(choices.snap_epsilon), ..SnapOptions::default() });
-            [Step::Cut(CutOptions::default())].into_iter().chain(pinch).chain([snap])
+            pair.into_iter().chain([Step::Cut(CutOptions::default())]).chain(pinch).chain([snap])
         });
         let fill = match self.thickens {
             true => Some(Step::Thicken { wall: choices.wall }),
@@ -116,6 +135,7 @@ impl Variant {
         let thin = (self.mends_thin_faces && choices.mends_thin_faces())
             .then_some(Step::MendThinFaces(choices.thin_faces));
         let start = [split].into_iter().chain(clear).chain(round).chain(welded).chain(parts).chain(single);
+        let start = start.chain(near);
         start.chain(remove).chain(orient).chain(join.into_iter().flatten()).chain(thin).chain(fill).collect()
     }
 
@@ -123,14 +143,15 @@ impl Variant {
     /// certified has none. `has_contacts`: triangles of the input meet beyond common vertices and edges. Nothing that
     /// mends adds a contact, but moving vertices can.
     pub(super) fn solidifying(self, choices: &Choices, has_contacts: bool) -> Vec<Step> {
-        let moves = self.thickens || self.rounds || self.clears_noise || self.opens_contacts;
-        let open = self.opens_contacts.then_some(Step::OpenContacts);
+        let moves = self.thickens || self.rounds || self.clears_noise || self.contact.is_some();
+        let join = (self.contact == Some(Contact::Join)).then_some(Step::JoinContacts { size: choices.wall });
+        let open = self.contact.map(|_| Step::OpenContacts);
         let nest = Step::Nest(NestOptions {
             policy: choices.nesting,
             is_embedded: !has_contacts && !moves,
             chosen: choices.shells.clone(),
         });
-        open.into_iter().chain([Step::JoinCopies, nest]).collect()
+        join.into_iter().chain(open).chain([Step::JoinCopies, nest]).collect()
     }
 }
 
@@ -151,6 +172,9 @@ impl Step {
             Self::Pinch(..) => "pinch",
             Self::Snap(_) => "snap",
             Self::RemoveCrossing { .. } => "remove-crossing",
+            Self::PairSheets(_) => "pair-sheets",
+            Self::JoinContacts { .. } => "join-contacts",
+            Self::DropNearDuplicates { .. } => "drop-near-duplicates",
             Self::OpenContacts => "open-contacts",
             Self::FillHoles(_) => "fill-holes",
             Self::MendThinFaces(_) => "mend-thin-faces",
@@ -185,7 +209,10 @@ impl Step {
             Self::RemoveCrossing { .. } => {
                 &[DefectCode::SelfIntersection, DefectCode::Overlap, DefectCode::Touch]
             }
-            Self::OpenContacts => &[DefectCode::NonManifoldEdge, DefectCode::NonManifoldVertex],
+            Self::PairSheets(_) | Self::JoinContacts { .. } | Self::OpenContacts => {
+                &[DefectCode::NonManifoldEdge, DefectCode::NonManifoldVertex]
+            }
+            Self::DropNearDuplicates { .. } => &[DefectCode::BoundaryLoop, DefectCode::DoubleSkin],
             Self::SplitPolygons(_) => &[DefectCode::CoincidentCorners, DefectCode::DuplicateVertex],
             Self::Weld => &[DefectCode::DuplicateVertex],
             Self::DropDegenerate => &[DefectCode::CoincidentCorners],
@@ -218,6 +245,11 @@ impl Step {
             Self::Snap(options) => repair::snap::snap(draft, options, budget),
             Self::RemoveCrossing { rings } => repair::crossing::remove_crossing(draft, *rings, budget),
             Self::OpenContacts => repair::contact::open_contacts(draft, budget),
+            Self::JoinContacts { size } => repair::joint::join_contacts(draft, *size, budget),
+            Self::PairSheets(across) => repair::pair_sheets::pair_sheets(draft, *across, budget),
+            Self::DropNearDuplicates { epsilon } => {
+                repair::near_duplicates::drop_near_duplicates(draft, *epsilon, budget)
+            }
             Self::FillHoles(chosen) => repair::fill::fill_chosen_holes(draft, soup, chosen, budget),
             Self::MendThinFaces(which) => repair::thin_faces::mend_thin_faces(draft, *which, budget),
             Self::Thicken { wall } => repair::thicken::thicken(draft, *wall, budget),

@@ -123,7 +123,7 @@ impl ChosenPlan {
 }
 
 /// Most elements of one kind that can be chosen.
-const ELEMENTS_MAX: usize = 10_000;
+pub const ELEMENTS_MAX: usize = 10_000;
 
 /// Why a plan is not for a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

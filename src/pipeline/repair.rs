@@ -6,7 +6,9 @@ use super::output::{Candidate, NoCandidate};
 use super::plan::{Attempt, Step, Variant};
 use super::rebuild::{NotRebuilt, Rebuilt};
 use super::remedies::{Choices, PlanMismatch, Walls};
-use super::{Answer, Failure, Operation, Options, Outcome, Refusal, Report, Require, rebuild, simplify};
+use super::{
+    Answer, Contact, Failure, Operation, Options, Outcome, Refusal, Report, Require, rebuild, simplify,
+};
 use crate::analysis::Analysis;
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::Depth;
@@ -352,14 +354,17 @@ impl Search<'_> {
             return Ok(Some(Variant { clears_noise: !first_clears, rounds: self.needs_f32(), ..first }));
         }
         let first = Variant { clears_noise: first_clears, ..first };
-        if !variant.thickens && !variant.opens_contacts && self.reads_as_sheets()? {
+        if !variant.thickens && variant.contact.is_none() && self.reads_as_sheets()? {
             return Ok(Some(Variant { thickens: true, ..first }));
         }
         let first = Variant { thickens: false, ..first };
         // Bodies that lie on each other would be parted by a gap that nobody wants.
         let only_touches = self.before.is_some_and(|before| before.properties.is_embedded == Some(true));
-        if only_touches && !variant.opens_contacts && last.count("vertices_copied") > 0 {
-            return Ok(Some(Variant { opens_contacts: true, ..first }));
+        if only_touches && variant.contact.is_none() && last.count("vertices_copied") > 0 {
+            return Ok(Some(Variant { contact: Some(self.options.contact), ..first }));
+        }
+        if variant.contact == Some(Contact::Join) {
+            return Ok(Some(Variant { contact: Some(Contact::Open), ..first }));
         }
         Ok(self.may_cross_locally().then_some(Variant { removes_crossing: Some(0), ..first }))
     }

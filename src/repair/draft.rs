@@ -41,6 +41,18 @@ impl Draft {
         (draft, changes)
     }
 
+    /// These triangles over these points.
+    #[cfg(test)]
+    pub(super) fn of(points: &[[f64; 3]], triangles: &[[u32; 3]]) -> Self {
+        Self {
+            positions: points.iter().map(|&p| DVec3::from_array(p)).collect(),
+            vertex_origin: (0..points.len() as u32).collect(),
+            triangles: triangles.to_vec(),
+            triangle_origin: (0..triangles.len() as u32).collect(),
+            two_sided: Vec::new(),
+        }
+    }
+
     /// Bytes that it takes, for a budget.
     pub fn bytes(&self) -> u64 {
         let per_vertex = size_of::<DVec3>() + size_of::<u32>();
@@ -82,6 +94,14 @@ impl Draft {
             retain_marked(&mut self.vertex_origin, &is_used);
         }
         dropped
+    }
+
+    /// Puts `parts` in the place of triangle `t`: the first there, the others after the last triangle.
+    pub fn replace(&mut self, t: u32, parts: &[[u32; 3]]) {
+        let origin = self.triangle_origin[t as usize];
+        self.triangles[t as usize] = parts[0];
+        self.triangles.extend(&parts[1..]);
+        self.triangle_origin.extend(std::iter::repeat_n(origin, parts.len() - 1));
     }
 
     /// Turns triangle `t` around.

@@ -1,7 +1,7 @@
 //! Operations that change a mesh: one operation, one file; options in, what changed out. No step calls another.
 //!
 //! The steps work on a [`Draft`]. None of them moves a vertex except [`round`],
-//! [`noise`], [`snap`] and [`contact`], which say how far.
+//! [`noise`], [`snap`], [`contact`] and [`joint`], which say how far.
 
 pub mod collinear;
 pub mod contact;
@@ -10,17 +10,20 @@ pub mod cut;
 pub mod degenerate;
 pub mod draft;
 pub mod duplicates;
-
 pub mod fill;
+pub mod joint;
+pub mod near_duplicates;
 pub mod nest;
 pub mod noise;
 pub mod orient;
+pub mod pair_sheets;
 pub mod parts;
 pub mod pinch;
 pub mod polygons;
 pub mod round;
 pub mod selection;
 pub mod snap;
+pub mod stars;
 pub mod t_vertices;
 pub mod thicken;
 pub mod thin_faces;
@@ -28,6 +31,7 @@ pub mod weld;
 
 pub use draft::{Draft, NEW};
 pub use selection::Selection;
+pub use stars::Star;
 
 /// What a step changed.
 #[derive(Debug, Clone, PartialEq, Default)]

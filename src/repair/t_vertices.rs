@@ -86,10 +86,7 @@ fn replace(draft: &mut Draft, inside: &[(u32, u32)], budget: &Budget) -> Result<
             of_triangle.iter().filter(|&&(h, _)| h == 3 * t + c).map(|&(_, v)| v).collect::<Vec<u32>>()
         });
         let parts = divide(draft.triangles[t as usize], on.each_ref().map(Vec::as_slice));
-        let origin = draft.triangle_origin[t as usize];
-        draft.triangles[t as usize] = parts[0];
-        draft.triangles.extend(&parts[1..]);
-        draft.triangle_origin.extend(std::iter::repeat_n(origin, parts.len() - 1));
+        draft.replace(t, &parts);
         split += 1;
     }
     Ok(split)

@@ -141,16 +141,6 @@ fn places_behind(
 mod tests {
     use super::*;
 
-    fn draft(points: &[[f64; 3]], triangles: &[[u32; 3]]) -> Draft {
-        Draft {
-            positions: points.iter().map(|&p| DVec3::from_array(p)).collect(),
-            vertex_origin: (0..points.len() as u32).collect(),
-            triangles: triangles.to_vec(),
-            triangle_origin: (0..triangles.len() as u32).collect(),
-            ..Draft::default()
-        }
-    }
-
     /// Six times the volume.
     fn volume(draft: &Draft) -> f64 {
         (0..draft.triangles.len())
@@ -172,7 +162,7 @@ mod tests {
 
     #[test]
     fn a_triangle_becomes_a_prism_whose_top_is_the_triangle() {
-        let mut mesh = draft(&[[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]], &[[0, 1, 2]]);
+        let mut mesh = Draft::of(&[[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]], &[[0, 1, 2]]);
         let changes = thicken(&mut mesh, 0.25, &Budget::unlimited()).unwrap();
         assert_eq!((changes.count("sheets_thickened"), changes.count("triangles_added")), (1, 7));
         assert_eq!((mesh.triangles[0], mesh.triangles.len()), ([0, 1, 2], 8));
@@ -191,7 +181,7 @@ mod tests {
             [0.0, 1.0, 1.0],
         ];
         // The floor points up, the back points to +x: behind them is the outside of the corner.
-        let mut mesh = draft(&points, &[[0, 1, 2], [0, 2, 3], [0, 3, 5], [0, 5, 4]]);
+        let mut mesh = Draft::of(&points, &[[0, 1, 2], [0, 2, 3], [0, 3, 5], [0, 5, 4]]);
         thicken(&mut mesh, 0.125, &Budget::unlimited()).unwrap();
         assert!(is_closed(&mesh));
         let corner = mesh.positions[6];
@@ -201,7 +191,7 @@ mod tests {
     #[test]
     fn a_triangle_with_a_repeated_or_no_own_side_does_not_matter() {
         let points = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [2.0, 0.0, 0.0], [3.0, 0.0, 0.0]];
-        let mut mesh = draft(&points, &[[0, 1, 2], [1, 3, 4], [2, 2, 0]]);
+        let mut mesh = Draft::of(&points, &[[0, 1, 2], [1, 3, 4], [2, 2, 0]]);
         thicken(&mut mesh, 0.25, &Budget::unlimited()).unwrap();
         assert!(mesh.check().is_empty());
     }
@@ -210,10 +200,10 @@ mod tests {
     fn what_is_closed_or_would_get_no_wall_stays() {
         let tetrahedron = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
         let points = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        let mut closed = draft(&points, &tetrahedron);
+        let mut closed = Draft::of(&points, &tetrahedron);
         assert_eq!(thicken(&mut closed, 0.1, &Budget::unlimited()).unwrap().count("sheets_thickened"), 0);
         assert_eq!(closed.triangles, tetrahedron);
-        let mut thin = draft(&points, &[[0, 2, 1]]);
+        let mut thin = Draft::of(&points, &[[0, 2, 1]]);
         assert_eq!(thicken(&mut thin, 1e-7, &Budget::unlimited()).unwrap().count("sheets_thickened"), 0);
     }
 }

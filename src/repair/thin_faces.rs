@@ -4,7 +4,7 @@
 
 use super::{Changes, Draft};
 use crate::budget::{Budget, Stopped};
-use crate::geom::{DVec3, are_collinear};
+use crate::geom::{DVec3, NEEDLE_RATIO, Thinness, are_collinear, is_folded, thinness};
 use crate::mesh::half_edge::{BuildError, FaceId, HalfEdgeId, HalfEdgeMesh, VertexId};
 
 /// Which thin faces go, and how thin they are.
@@ -24,15 +24,6 @@ impl ThinFaces {
         self.needles || self.caps || self.folds
     }
 }
-
-/// A face whose shortest edge is below this share of its longest is a needle.
-const NEEDLE_RATIO: f64 = 0.01;
-
-/// Cosine of 175 degrees.
-const CAP_COSINE: f64 = -0.996_194_698_091_745_5;
-
-/// Cosine of 179 degrees: the normals of two faces that are less than one degree apart.
-const FOLD_COSINE: f64 = -0.999_847_695_156_391_2;
 
 /// Least cosine between the normal of a face before and after, and of a flipped pair and the face that was no cap.
 const TURN_COSINE_MIN: f64 = 0.9;
@@ -75,11 +66,11 @@ pub fn mend_thin_faces(draft: &mut Draft, which: ThinFaces, budget: &Budget) -> 
                 budget.spend(1024)?;
             }
             match mending.thinness(face) {
-                Some(Thin::Needle(short)) if which.needles => match mending.collapse(short) {
+                Some((Thinness::Needle { .. }, short)) if which.needles => match mending.collapse(short) {
                     true => collapsed += 1,
                     false => left += 1,
                 },
-                Some(Thin::Cap(long)) if which.caps => match mending.flip(long) {
+                Some((Thinness::Cap { .. }, long)) if which.caps => match mending.flip(long) {
                     true => flipped += 1,
                     false => left += 1,
                 },
@@ -113,13 +104,6 @@ fn counted([collapsed, flipped, closed, left]: [u64; 4]) -> Changes {
     ])
 }
 
-enum Thin {
-    /// By its shortest edge.
-    Needle(HalfEdgeId),
-    /// By its longest edge.
-    Cap(HalfEdgeId),
-}
-
 struct Mending<'d> {
     mesh: HalfEdgeMesh,
     positions: &'d [DVec3],
@@ -136,20 +120,13 @@ impl Mending<'_> {
         [corners.next(), corners.next(), corners.next()].map(Option::unwrap_or_default)
     }
 
-    fn thinness(&self, face: FaceId) -> Option<Thin> {
-        let side = self.mesh.side(face)?;
-        let sides: Vec<HalfEdgeId> = self.mesh.loop_of(side).collect();
-        let vector = |h: HalfEdgeId| self.place(self.mesh.destination(h)) - self.place(self.mesh.origin(h));
-        let edges: Vec<DVec3> = sides.iter().map(|&h| vector(h)).collect();
-        let scale = edges.iter().map(|edge| edge.abs().max_element()).fold(0.0, f64::max);
-        let length = |i: &usize| (edges[*i] / scale).length();
-        let shortest = (0..3).min_by(|a, b| length(a).total_cmp(&length(b)))?;
-        let longest = (0..3).max_by(|a, b| length(a).total_cmp(&length(b)))?;
-        if length(&shortest) < NEEDLE_RATIO * length(&longest) {
-            return Some(Thin::Needle(sides[shortest]));
-        }
-        let [a, b] = [(longest + 1) % 3, (longest + 2) % 3].map(|i| edges[i].normalize_or_zero());
-        (-a.dot(b) < CAP_COSINE).then_some(Thin::Cap(sides[longest]))
+    /// How `face` is thin, and the edge by which it is.
+    fn thinness(&self, face: FaceId) -> Option<(Thinness, HalfEdgeId)> {
+        let sides: Vec<HalfEdgeId> = self.mesh.loop_of(self.mesh.side(face)?).collect();
+        let corners: Vec<DVec3> = sides.iter().map(|&h| self.place(self.mesh.origin(h))).collect();
+        let thin = thinness([corners[0], corners[1], corners[2]])?;
+        let (Thinness::Needle { shortest: edge } | Thinness::Cap { longest: edge }) = thin;
+        Some((thin, sides[edge]))
     }
 
     /// True when the two faces of an edge lie almost on each other.
@@ -157,7 +134,7 @@ impl Mending<'_> {
         let faces = [h, self.mesh.twin(h)].map(|h| self.mesh.face(h).map(|face| self.corners(face)));
         let [Some(one), Some(other)] = faces else { return false };
         let is_flat = |[a, b, c]: [DVec3; 3]| are_collinear(a, b, c);
-        !is_flat(one) && !is_flat(other) && turn(one, other) < FOLD_COSINE
+        !is_flat(one) && !is_flat(other) && is_folded([unit_normal(one), unit_normal(other)])
     }
 
     /// Joins the corners of a fold beside its edge, if they are close: the edge is flipped and then collapsed.
@@ -217,11 +194,12 @@ impl Mending<'_> {
 
 /// Cosine between the normals of two triangles; -1 where one of them is collinear.
 fn turn(before: [DVec3; 3], after: [DVec3; 3]) -> f64 {
-    let normal = |[a, b, c]: [DVec3; 3]| {
-        (b - a).normalize_or_zero().cross((c - a).normalize_or_zero()).normalize_or_zero()
-    };
     let is_flat = |[a, b, c]: [DVec3; 3]| are_collinear(a, b, c);
-    if is_flat(before) || is_flat(after) { -1.0 } else { normal(before).dot(normal(after)) }
+    if is_flat(before) || is_flat(after) { -1.0 } else { unit_normal(before).dot(unit_normal(after)) }
+}
+
+fn unit_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).normalize_or_zero().cross((c - a).normalize_or_zero()).normalize_or_zero()
 }
 
 #[cfg(test)]
@@ -229,16 +207,6 @@ mod tests {
     use super::*;
 
     const ALL: ThinFaces = ThinFaces { needles: true, caps: true, folds: true };
-
-    fn draft(points: &[[f64; 3]], triangles: &[[u32; 3]]) -> Draft {
-        Draft {
-            positions: points.iter().map(|&p| DVec3::from_array(p)).collect(),
-            vertex_origin: (0..points.len() as u32).collect(),
-            triangles: triangles.to_vec(),
-            triangle_origin: (0..triangles.len() as u32).collect(),
-            ..Draft::default()
-        }
-    }
 
     fn area(draft: &Draft) -> f64 {
         let area = |t: usize| {
@@ -265,7 +233,7 @@ mod tests {
         let strip = |i: u32| [[i, i + 1, i + 5], [i, i + 5, i + 4]];
         let rim = [0, 1, 2, 3, 7, 6, 5, 4];
         let sides = (0..8).map(|i| [rim[(i + 1) % 8], rim[i], 8]);
-        draft(&points, &(0..3).flat_map(strip).chain(sides).collect::<Vec<_>>())
+        Draft::of(&points, &(0..3).flat_map(strip).chain(sides).collect::<Vec<_>>())
     }
 
     #[test]
@@ -303,7 +271,7 @@ mod tests {
             ];
             // The ridge 2-3 would be open but for the flaps to both sides.
             let triangles = [[0, 2, 1], [0, 1, 3], [1, 2, 4], [2, 0, 4], [3, 1, 5], [0, 3, 5]];
-            draft(&points, &triangles)
+            Draft::of(&points, &triangles)
         };
         let mut narrow = fin(1e-4);
         let before = narrow.triangles.len();
@@ -320,7 +288,7 @@ mod tests {
     fn a_cap_goes_by_a_flip_of_its_long_edge_unless_that_would_fold_the_surface() {
         // A square with a vertex just above its diagonal.
         let square = |height: f64| {
-            draft(
+            Draft::of(
                 &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.499, 0.501, height]],
                 &[[0, 1, 2], [0, 2, 4], [2, 3, 4], [3, 0, 4]],
             )
@@ -330,7 +298,7 @@ mod tests {
         assert_eq!((changes.count("caps_flipped"), changes.count("thin_faces_left")), (1, 0));
         assert!((area(&mesh) - 1.0).abs() < 1e-12 && mesh.triangles.len() == 4);
         // On the rim there is nothing to flip with.
-        let mut rim = draft(&[[0.0; 3], [1.0, 0.0, 0.0], [0.5, 1e-3, 0.0]], &[[0, 1, 2]]);
+        let mut rim = Draft::of(&[[0.0; 3], [1.0, 0.0, 0.0], [0.5, 1e-3, 0.0]], &[[0, 1, 2]]);
         assert_eq!(mend_thin_faces(&mut rim, ALL, &Budget::unlimited()).unwrap().count("thin_faces_left"), 1);
     }
 }

@@ -28,12 +28,26 @@ pub struct Limits {
     pub queue_max: usize,
     /// Jobs that run at one time.
     pub slots: usize,
+    /// Requests that one key, or one address without keys, may make in a minute; 0: any number.
+    pub rate_per_minute: u32,
+    /// Requests that it may make at one time; 0: any number.
+    pub rate_burst: u32,
+    /// Jobs that run beside those of `slots`, for small meshes that somebody waits for.
+    pub interactive_slots: usize,
+    /// Largest upload of such a mesh, in bytes.
+    pub interactive_bytes_max: u64,
+    /// Most memory that all running jobs may take together, as estimated, in bytes.
+    pub memory_bytes_max: u64,
+    /// Most calls of a webhook for one event; 0: none are made.
+    pub webhook_attempts_max: u32,
     /// Most open connections.
     pub connections_max: usize,
     /// Time for a request's header, in seconds.
     pub header_timeout_s: u64,
     /// Longest pause between two pieces of an upload, in seconds.
     pub upload_timeout_s: u64,
+    /// Fewest bytes a second of an upload, on average after its first `upload_timeout_s`; 0: any number.
+    pub upload_rate_min: u64,
     /// Longest time for a whole upload, in seconds.
     pub upload_total_timeout_s: u64,
     /// Time for which a client may take no byte of an answer, in seconds.

@@ -25,6 +25,7 @@ mod target;
 mod unit_hypothesis;
 mod verdict;
 mod version;
+mod webhook;
 mod words;
 
 #[cfg(test)]
@@ -59,8 +60,11 @@ pub use target::TargetSpec;
 pub use unit_hypothesis::UnitHypothesis;
 pub use verdict::{Reason, Verdict};
 pub use version::{ENGINE_NAME, ENGINE_VERSION, REPORT_SCHEMA, Version};
+pub use webhook::{
+    Deliveries, Delivery, DeliveryState, DeliveryTry, WebhookEvent, WebhookMessage, WebhookRequest,
+};
 pub use words::{
-    Condition, Criterion, Cut, DefectCode, Degenerate, Encoding, FillHoles, Format, Mode, Nesting,
-    OpenShells, Operation, Opposite, Outcome, Placement, ProximityTest, Reader, ReasonCode, Remedy, Require,
-    Severity, ShellFate, Stage, Stitch, StitchValidity, Units, VertexColors,
+    Across, Condition, Contact, Criterion, Cut, DefectCode, Degenerate, Encoding, FillHoles, Format, Mode,
+    Nesting, OpenShells, Operation, Opposite, Outcome, Placement, ProximityTest, Reader, ReasonCode, Remedy,
+    Require, Severity, ShellFate, Stage, Stitch, StitchValidity, Units, VertexColors,
 };

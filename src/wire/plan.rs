@@ -7,8 +7,8 @@ use utoipa::ToSchema;
 
 use super::certificate::{digest_of_hex, hex};
 use super::target::whole_number;
-use super::words::{DefectCode, Degenerate, Nesting, Opposite, Remedy, ShellFate};
-use crate::pipeline::{self, Step};
+use super::words::{Across, DefectCode, Degenerate, Nesting, Opposite, Remedy, ShellFate};
+use crate::pipeline::{self, ELEMENTS_MAX, Step};
 use crate::repair::Selection;
 use crate::repair::cut::CutOptions;
 use crate::repair::nest::NestOptions;
@@ -180,8 +180,19 @@ pub enum PlanStep {
         #[schema(maximum = 10)]
         rings: u32,
     },
+    /// Sheets that lie triangle by triangle near other ones go.
+    DropNearDuplicates {
+        /// Largest distance of their corners, in the unit of the file.
+        #[schema(minimum = 0.0)]
+        epsilon: f64,
+    },
     /// Faces are turned so that neighbours agree.
     Orient {},
+    /// Triangles at edges with four or more are paired by their angles.
+    PairSheets {
+        /// What lies between two that are paired.
+        across: Across,
+    },
     /// Singular edges and vertices are cut.
     Cut {},
     /// Edges that the cut has parted are joined from where boundaries turn back on themselves.
@@ -215,6 +226,12 @@ pub enum PlanStep {
         /// Thickness, in the unit of the file.
         #[schema(minimum = 0.0)]
         wall: f64,
+    },
+    /// Bodies that touch become one.
+    JoinContacts {
+        /// Thickness of the necks between them, in the unit of the file.
+        #[schema(minimum = 0.0)]
+        size: f64,
     },
     /// Bodies that touch are drawn apart.
     OpenContacts {},
@@ -258,8 +275,6 @@ fn whole_list<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<u32>, D::Error> 
 
 /// Most steps of a plan, and most kinds of defects.
 const LIST_MAX: usize = 100;
-/// Most elements that are chosen one by one.
-const ELEMENTS_MAX: usize = 10_000;
 /// Most rings.
 const RINGS_MAX: u32 = 10;
 
@@ -340,7 +355,10 @@ impl PlanStep {
             Self::FillHoles { except, .. } => except.len() <= ELEMENTS_MAX,
             Self::Nest { chosen, .. } => chosen.len() <= ELEMENTS_MAX,
             Self::RemoveCrossing { rings } => *rings <= RINGS_MAX,
-            Self::Thicken { wall: length } | Self::Snap { epsilon: length } => *length >= 0.0,
+            Self::Thicken { wall: length }
+            | Self::Snap { epsilon: length }
+            | Self::DropNearDuplicates { epsilon: length }
+            | Self::JoinContacts { size: length } => *length >= 0.0,
             _ => true,
         }
     }
@@ -357,7 +375,9 @@ impl PlanStep {
             Self::RemoveParts { triangles } => Step::RemoveParts(sorted(triangles)),
             Self::DropDuplicates { opposite } => Step::DropDuplicates((*opposite).into()),
             Self::RemoveCrossing { rings } => Step::RemoveCrossing { rings: *rings },
+            Self::DropNearDuplicates { epsilon } => Step::DropNearDuplicates { epsilon: *epsilon },
             Self::Orient {} => Step::Orient,
+            Self::PairSheets { across } => Step::PairSheets((*across).into()),
             Self::Cut {} => Step::Cut(CutOptions::default()),
             Self::Pinch {} => Step::Pinch(mesh::ChosenEdges::default(), mesh::Validity::Exact),
             Self::Snap { epsilon } => {
@@ -369,6 +389,7 @@ impl PlanStep {
             Self::FillHoles { all: true, except } => Step::FillHoles(Selection::AllBut(sorted(except))),
             Self::FillHoles { all: false, except } => Step::FillHoles(Selection::Only(sorted(except))),
             Self::Thicken { wall } => Step::Thicken { wall: *wall },
+            Self::JoinContacts { size } => Step::JoinContacts { size: *size },
             Self::OpenContacts {} => Step::OpenContacts,
             Self::JoinCopies {} => Step::JoinCopies,
             Self::Nest { nesting, chosen } => Step::Nest(NestOptions {
@@ -401,7 +422,9 @@ impl From<&Step> for PlanStep {
             Step::RemoveParts(triangles) => Self::RemoveParts { triangles: triangles.clone() },
             Step::DropDuplicates(opposite) => Self::DropDuplicates { opposite: (*opposite).into() },
             Step::RemoveCrossing { rings } => Self::RemoveCrossing { rings: *rings },
+            Step::DropNearDuplicates { epsilon } => Self::DropNearDuplicates { epsilon: *epsilon },
             Step::Orient => Self::Orient {},
+            Step::PairSheets(across) => Self::PairSheets { across: (*across).into() },
             Step::Cut(_) => Self::Cut {},
             Step::Pinch(..) => Self::Pinch {},
             Step::Snap(options) => Self::Snap { epsilon: options.epsilon.unwrap_or(0.0) },
@@ -415,6 +438,7 @@ impl From<&Step> for PlanStep {
                 Self::FillHoles { all: false, except: except.clone() }
             }
             Step::Thicken { wall } => Self::Thicken { wall: *wall },
+            Step::JoinContacts { size } => Self::JoinContacts { size: *size },
             Step::OpenContacts => Self::OpenContacts {},
             Step::JoinCopies => Self::JoinCopies {},
             Step::Nest(repair::nest::NestOptions { policy, chosen, .. }) => {
@@ -447,8 +471,11 @@ mod tests {
             Step::SplitTVertices,
             Step::RemoveParts(vec![3, 7]),
             Step::DropDuplicates(repair::duplicates::OppositePairs::KeepFirst),
+            Step::DropNearDuplicates { epsilon: 0.25 },
             Step::RemoveCrossing { rings: 2 },
             Step::Orient,
+            Step::PairSheets(repair::pair_sheets::Across::Void),
+            Step::JoinContacts { size: 0.5 },
             Step::Cut(CutOptions::default()),
             Step::Pinch(mesh::ChosenEdges::default(), mesh::Validity::Exact),
             Step::Snap(SnapOptions { epsilon: Some(0.5), ..SnapOptions::default() }),

@@ -63,6 +63,8 @@ words! {
         ArchiveUnsafe = "archive-unsafe",
         /// No result meets what was required.
         NotRepairable = "not-repairable",
+        /// The webhook is not one that the server calls.
+        WebhookRefused = "webhook-refused",
         /// Too many requests.
         RateLimited = "rate-limited",
         /// The queue has no room.
@@ -176,6 +178,12 @@ impl ProblemCode {
                 422,
                 "Not repairable",
                 "No result meets `require`; `report` names the first violation that remains.",
+            ),
+            Self::WebhookRefused => (
+                422,
+                "Webhook refused",
+                "The server sends no webhooks, or not to this URL, or the secret is missing or malformed; `detail` says \
+                 which.",
             ),
             Self::RateLimited => {
                 (429, "Rate limited", "Too many requests. Wait as long as `Retry-After` says.")

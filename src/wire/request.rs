@@ -10,6 +10,7 @@ use super::labels::{Labels, about_labels, labels_from_json, labels_schema};
 use super::option_schema::object_of_options;
 use super::options::{Options, nearest};
 use super::problem::{Problem, ProblemCode};
+use super::webhook::WebhookRequest;
 use super::words::Operation;
 
 /// An earlier job whose upload is used again.
@@ -29,6 +30,8 @@ pub struct JobRequest {
     pub labels: Option<Labels>,
     /// How.
     pub options: Options,
+    /// Whom to tell of the end.
+    pub webhook: Option<WebhookRequest>,
 }
 
 impl JobRequest {
@@ -55,6 +58,10 @@ impl JobRequest {
                 parameter: Some("labels".to_owned()),
                 ..Problem::new(ProblemCode::UnknownParameter, "`labels` belong to `/v1/jobs`")
             }),
+            _ if request.webhook.is_some() => Err(Problem {
+                parameter: Some("webhook".to_owned()),
+                ..Problem::new(ProblemCode::UnknownParameter, "a `webhook` belongs to `/v1/jobs`")
+            }),
             _ => Ok(request.options),
         }
     }
@@ -73,9 +80,11 @@ fn read(text: &[u8]) -> Result<JobRequest, Problem> {
     let mut operation = None;
     let mut labels = None;
     let mut options = Options::default();
+    let mut webhook = None;
     for (name, value) in &members {
         match (name.as_str(), value) {
             ("operation", value) => operation = Some(read_operation(value)?),
+            ("webhook", value) => webhook = Some(read_webhook(value)?),
             ("labels", value) => labels = Some(labels_from_json(value)?),
             ("params", Value::Object(inner)) => {
                 for (name, value) in inner {
@@ -91,7 +100,16 @@ fn read(text: &[u8]) -> Result<JobRequest, Problem> {
             _ => options.set_json(name, value)?,
         }
     }
-    Ok(JobRequest { operation, labels, options })
+    Ok(JobRequest { operation, labels, options, webhook })
+}
+
+fn read_webhook(value: &Value) -> Result<WebhookRequest, Problem> {
+    // The error itself may repeat a value, which may be a secret.
+    let detail = "`webhook` is an object with `url` and perhaps `secret`, both texts";
+    WebhookRequest::deserialize(value).map_err(|_| Problem {
+        parameter: Some("webhook".to_owned()),
+        ..Problem::new(ProblemCode::InvalidParameter, detail)
+    })
 }
 
 fn object(text: &[u8]) -> Result<serde_json::Map<String, Value>, Problem> {
@@ -131,6 +149,7 @@ impl PartialSchema for JobRequest {
         let object = object_of_options()
             .description(Some("What to do, with options, which may also stand together in `params`."))
             .property("operation", operation)
+            .property("webhook", WebhookRequest::schema())
             .property("labels", labels_schema())
             .property("params", Options::schema());
         RefOr::T(Schema::Object(object.build()))

@@ -278,6 +278,26 @@ mirror! { pipeline::Effort =>
     }
 }
 
+mirror! { pipeline::Contact =>
+    /// What becomes of bodies that touch in vertices or edges only.
+    Contact {
+        /// All but one are drawn back a little.
+        Open = "open",
+        /// They become one by necks as thick as a wall, where there is room; elsewhere they are drawn apart.
+        Join = "join",
+    }
+}
+
+mirror! { repair::pair_sheets::Across =>
+    /// What lies between triangles that are paired.
+    Across {
+        /// The solid behind them.
+        Solid = "solid",
+        /// The empty space in front of them.
+        Void = "void",
+    }
+}
+
 mirror! { repair::nest::Policy =>
     /// How shells inside shells are taken.
     Nesting {
@@ -607,6 +627,8 @@ mod tests {
             Opposite::WORDS,
             Remedy::WORDS,
             OpenShells::WORDS,
+            Contact::WORDS,
+            Across::WORDS,
             Cut::WORDS,
             Stitch::WORDS,
             StitchValidity::WORDS,

@@ -305,3 +305,128 @@ fn a_step_that_is_left_out_is_undone_and_without_any_the_file_comes_back() {
         assert_eq!(holes, if prefix.iter().any(fills) { 0 } else { 2 }, "{count} steps");
     }
 }
+
+/// A file of the fixtures.
+fn fixture(name: &str) -> Vec<u8> {
+    fs::read(std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name)).unwrap()
+}
+
+fn found(answer: &Answer, code: DefectCode) -> u64 {
+    let after = answer.report.after.as_ref().unwrap();
+    after.findings.iter().filter(|finding| finding.code == code).map(|finding| finding.count).sum()
+}
+
+/// What the best effort with `remedy` for all defects of `code` gives.
+fn with_remedy(name: &str, code: DefectCode, remedy: Remedy) -> Answer {
+    repair(&fixture(name), &with_plan(chosen(code, Some(remedy), &[]), Some(Require::BestEffort))).unwrap()
+}
+
+fn has_step(answer: &Answer, name: &str) -> bool {
+    answer.report.actions.iter().any(|action| action.step == name)
+}
+
+#[test]
+fn a_defect_that_is_to_stay_is_left_as_it_is() {
+    for (name, code, step) in [
+        ("non_manifold/non_manifold_edge.off", DefectCode::NonManifoldEdge, "cut"),
+        ("non_manifold/non_manifold_vertex.off", DefectCode::NonManifoldVertex, "cut"),
+        ("orientation/orientation_conflict.off", DefectCode::OrientationConflict, "orient"),
+        ("degenerate/collinear_face.off", DefectCode::CollinearFace, "split-collinear"),
+    ] {
+        let kept = with_remedy(name, code, Remedy::Keep);
+        assert!(!has_step(&kept, step), "{name}");
+        assert!(kept.report.after.is_none() || found(&kept, code) > 0, "{name}");
+        let usual = repair(&fixture(name), &coarse()).unwrap();
+        assert!(has_step(&usual, step), "{name}");
+    }
+}
+
+#[test]
+fn a_wall_between_two_bodies_goes_or_one_side_of_it_stays() {
+    let bytes = encode(&cube().with(&cube().moved([1.0, 0.0, 0.0])), Encoding::Obj);
+    let with = |remedy| {
+        let plan = chosen(DefectCode::OppositeDuplicateFace, Some(remedy), &[]);
+        repair(&bytes, &with_plan(plan, Some(Require::BestEffort))).unwrap().report
+    };
+    let joined = with(Remedy::DropBoth);
+    assert_eq!((joined.outcome, joined.after.unwrap().counts.triangles), (Some(Outcome::Repaired), 20));
+    let walled = with(Remedy::DropOne);
+    assert_ne!(walled.outcome, Some(Outcome::Repaired), "a wall inside a solid is none");
+}
+
+#[test]
+fn caps_are_flipped_and_folds_closed_where_that_is_asked() {
+    // A pyramid on its tip; on its flat top a vertex lies close to the diagonal.
+    let top = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.505, 0.495]];
+    let positions = top.map(|[x, y]| [x, y, 1.0]).into_iter().chain([[0.5, 0.5, -1.0]]).collect();
+    let triangles = [[0, 1, 4], [1, 2, 4], [2, 0, 4], [0, 2, 3]];
+    let sides = (0..4).map(|i| [(i + 1) % 4, i, 5]);
+    let capped = RawSoup { positions, triangles: triangles.into_iter().chain(sides).collect() };
+    // A slit of next to no width in the ridge of a roof.
+    let slit = RawSoup {
+        positions: vec![
+            [0.0, -1.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [-5e-5, 0.0, 1.0],
+            [5e-5, 0.0, 1.0],
+            [-2.0, 0.0, -1.0],
+            [2.0, 0.0, -1.0],
+            [0.0, 0.0, -3.0],
+        ],
+        triangles: [[0, 2, 1], [0, 1, 3], [1, 2, 4], [2, 0, 4], [3, 1, 5], [0, 3, 5]]
+            .into_iter()
+            .chain([[4, 0, 6], [1, 4, 6], [5, 1, 6], [0, 5, 6]])
+            .collect(),
+    };
+    for (bytes, code, remedy, count) in [
+        (encode(&capped, Encoding::Off), DefectCode::Cap, Remedy::Flip, "caps_flipped"),
+        (encode(&slit, Encoding::Off), DefectCode::FoldedEdge, Remedy::Collapse, "folds_closed"),
+    ] {
+        let of_step = |answer: &Answer| {
+            let changes = answer.report.actions.iter().flat_map(|action| &action.changes);
+            changes.filter(|(n, _)| *n == count).map(|(_, count)| count).sum::<u64>()
+        };
+        let usual = repair(&bytes, &coarse()).unwrap();
+        let before = usual.report.before.as_ref().unwrap();
+        assert!(before.findings.iter().any(|finding| finding.code == code), "{code:?}");
+        assert_eq!(of_step(&usual), 0, "{code:?}");
+        let plan = chosen(code, Some(remedy), &[]);
+        let mended = repair(&bytes, &with_plan(plan, Some(Require::BestEffort))).unwrap();
+        assert!(of_step(&mended) > 0, "{code:?}");
+        assert_eq!(found(&mended, code), 0, "{code:?}");
+    }
+}
+
+#[test]
+fn a_face_by_itself_becomes_a_wall_goes_or_stays() {
+    let bytes = encode(
+        &cube().with(&RawSoup {
+            positions: vec![[3.0, 0.0, 0.0], [4.0, 0.0, 0.0], [3.0, 1.0, 0.0]],
+            triangles: vec![[0, 1, 2]],
+        }),
+        Encoding::Off,
+    );
+    let with = |remedy| {
+        let plan = chosen(DefectCode::IsolatedFace, Some(remedy), &[]);
+        repair(&bytes, &with_plan(plan, Some(Require::BestEffort))).unwrap().report
+    };
+    let gone = with(Remedy::Remove);
+    assert_eq!((gone.outcome, gone.after.unwrap().counts.triangles), (Some(Outcome::Repaired), 12));
+    let kept = with(Remedy::Keep);
+    assert_eq!((kept.outcome, kept.after.unwrap().counts.triangles), (Some(Outcome::Partial), 13));
+    let wall = with(Remedy::Thicken);
+    assert_eq!(wall.certificate.unwrap().shells.len(), 2);
+}
+
+#[test]
+fn a_face_that_floats_close_over_another_goes_when_the_caller_says_how_close() {
+    let lid = without(cube(), &[0, 1, 4, 5, 6, 7, 8, 9, 10, 11]).moved([1e-6, 0.0, 1e-6]);
+    let bytes = encode(&cube().with(&lid), Encoding::Obj);
+    let choices = CutStitchChoices { epsilon: Some(1e-5), ..CutStitchChoices::default() };
+    let answer = repair(&bytes, &Options { cut_stitch: choices, ..coarse() }).unwrap();
+    assert_eq!(answer.report.outcome, Some(Outcome::Repaired));
+    assert_eq!(answer.report.after.as_ref().unwrap().counts.triangles, 12);
+    assert_eq!(answer.report.certificate.as_ref().unwrap().shells.len(), 1);
+    let dropped = answer.report.actions.iter().find(|action| action.step == "drop-near-duplicates").unwrap();
+    assert!(dropped.reason.contains("with faces 12"), "{}", dropped.reason);
+}

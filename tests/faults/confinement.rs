@@ -40,7 +40,7 @@ fn is_answered(error: &std::io::Error) -> bool {
 
 pub(crate) fn a_confined_process_reaches_nothing() {
     let automatic = server(&[]);
-    let is_complete = automatic.log.contains("landlock (ABI") && automatic.log.contains(", seccomp filter");
+    let is_complete = automatic.log().contains("landlock (ABI") && automatic.log().contains(", seccomp filter");
     if !is_complete {
         // A kernel without: then the server says so, and does not start where the sandbox is required.
         let (code, words) = refused(&["--sandbox", "require"]);
@@ -57,7 +57,7 @@ pub(crate) fn a_confined_process_reaches_nothing() {
 
 pub(crate) fn without_a_sandbox_the_limits_still_hold() {
     let server = server(&["--sandbox", "off", "--engine-bytes-max", "16MiB"]);
-    assert!(server.log.contains("no landlock, no seccomp filter"), "{}", server.log);
+    assert!(server.log().contains("no landlock, no seccomp filter"), "{}", server.log());
     let problem = problem_of(&server, "reach");
     let reached = problem["expected"].as_str().unwrap_or_else(|| panic!("{problem}"));
     assert!(reached.contains("a file of the system") && reached.contains("a connection"), "{reached}");

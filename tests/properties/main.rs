@@ -33,4 +33,6 @@ mod simplify;
 mod simplify_guarded;
 mod simplify_seams;
 mod solids;
+mod step_lists;
+mod touching_bodies;
 mod wrap;

@@ -72,10 +72,34 @@ fn with_keys_only_their_holders_come_in_and_see_their_own_jobs() {
         server.get(link(&job, "result")),
         server.post(&format!("{path}/cancel")),
         server.request("DELETE", path),
+        server.get(&format!("{path}/deliveries")),
+        server.post(&format!("{path}/deliveries/msg_1/redeliver")),
         server.post("/v1/verify").json(&input),
     ] {
         assert_eq!(code(request.bearer_auth("open sesame")), not_found);
     }
     assert_eq!(mine(server.post("/v1/verify").json(&input)).status(), 200);
     assert_eq!(mine(server.request("DELETE", path)).status(), 204);
+}
+
+#[test]
+fn a_key_does_what_its_scopes_allow_and_a_second_key_of_a_name_sees_the_same_jobs() {
+    // Digests of `open sesame` and `second`.
+    let first = "41ef4bb0b23661e66301aac36066912dac037827b4ae63a7b1165a5aa93ed4eb";
+    let second = "16367aacb67a4a017c8da8ab95682ccb390863780f7114dda0a0e0c55644c7c4";
+    let keys = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(keys.path(), format!("shop:{first}:submit\nshop:{second}:read\n")).unwrap();
+    let server = Server::with(&["--api-keys-file", keys.path().to_str().unwrap()]);
+    let (submits, reads) = ("open sesame", "second");
+    let forbidden = (403, "forbidden".to_owned());
+    assert_eq!(code(server.get("/v1/limits").bearer_auth(submits)), forbidden);
+    assert_eq!(code(server.post("/v1/verify").body(SOLID).bearer_auth(reads)), forbidden);
+    let made = server.post("/v1/jobs?operation=verify").body(SOLID).bearer_auth(submits).send().unwrap();
+    assert_eq!(made.status(), 202);
+    let job: Value = made.json().unwrap();
+    let path = link(&job, "self");
+    let seen = server.get(&format!("{path}?wait=60")).bearer_auth(reads).send().unwrap();
+    assert_eq!(seen.json::<Value>().unwrap()["state"], "succeeded");
+    assert_eq!(code(server.request("DELETE", path).bearer_auth(reads)), forbidden);
+    assert_eq!(server.request("DELETE", path).bearer_auth(submits).send().unwrap().status(), 204);
 }

@@ -384,7 +384,7 @@ fn settings_show_their_origin() {
     assert_eq!(row("queue_max"), "7 file meshmend.toml");
     assert_eq!(row("slots"), "3 environment MESHMEND_SLOTS");
     assert_eq!(row("result_ttl"), "1h flag --result-ttl");
-    assert_eq!(row("connections_max"), "1024 default");
+    assert_eq!(row("connections_max"), "4096 default");
 }
 
 #[test]
@@ -450,4 +450,18 @@ fn a_policy_is_told_in_text_and_json_and_the_page_is_written() {
     assert_eq!((&printing["policy"], &printing["build_direction"]), (&"sla".into(), &"minus_x".into()));
     let nowhere = desk.run(&["analyze", "solid.off", "--report-html", "no/such/folder/page.html"]);
     assert_eq!(nowhere.status.code(), Some(2), "{}", stderr(&nowhere));
+}
+
+#[test]
+fn a_plan_may_stand_in_a_file() {
+    let desk = Desk::new();
+    let proposed = desk.run(&["plan", "open.off", "--json"]);
+    let report: Value = serde_json::from_slice(&proposed.stdout).unwrap();
+    fs::write(desk.path().join("plan.json"), report["plan"].to_string()).unwrap();
+    let repaired = desk.run(&["repair", "open.off", "--plan", "@plan.json", "-o", "solid.stl"]);
+    assert_eq!(repaired.status.code(), Some(0), "{}", String::from_utf8_lossy(&repaired.stderr));
+    assert_eq!(desk.new_files(), ["plan.json", "solid.stl"]);
+    let missing = desk.run(&["repair", "open.off", "--plan", "@nothing.json", "-o", "other.stl"]);
+    assert_eq!(missing.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&missing.stderr).contains("cannot read nothing.json"));
 }

@@ -64,6 +64,42 @@ fn connections_over_the_limit_wait_for_a_place() {
 }
 
 #[test]
+fn many_bad_connections_do_not_stop_normal_requests_and_all_of_them_end() {
+    let server =
+        Server::with(&["--header-timeout", "2s", "--upload-timeout", "2s", "--upload-rate-min", "1KiB"]);
+    let mut bad: Vec<_> = (0..150).map(|_| server.connect()).collect();
+    for (number, line) in bad.iter_mut().enumerate() {
+        match number % 3 {
+            0 => {}
+            1 => line.say(HEAD),
+            _ => line.say("POST /v1/verify HTTP/1.1\r\nHost: localhost\r\nContent-Length: 99999\r\n\r\nsome"),
+        }
+    }
+    for _ in 0..20 {
+        assert_eq!(server.post("/v1/verify").body(SOLID).send().unwrap().status(), 200);
+    }
+    for (number, mut line) in bad.into_iter().enumerate() {
+        let answer = line.hear_all();
+        if number % 3 == 2 {
+            assert!(answer.starts_with("HTTP/1.1 408 ") && answer.contains("upload-timeout"), "{answer}");
+        }
+    }
+}
+
+#[test]
+fn an_upload_that_drips_is_ended_although_it_never_pauses() {
+    let server = Server::with(&["--upload-timeout", "1s", "--upload-rate-min", "1MiB"]);
+    let mut line = server.connect();
+    line.say("POST /v1/verify HTTP/1.1\r\nHost: localhost\r\nContent-Length: 99999\r\n\r\n");
+    let begun = Instant::now();
+    while line.try_say("x") && begun.elapsed() < Duration::from_secs(20) {
+        std::thread::sleep(Duration::from_millis(100));
+    }
+    let answer = line.hear_all();
+    assert!(answer.starts_with("HTTP/1.1 408 ") && answer.contains("upload_rate_min"), "{answer}");
+}
+
+#[test]
 fn garbage_ends_its_connection_and_nothing_else() {
     let server = Server::start();
     for garbage in

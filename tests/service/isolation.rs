@@ -100,8 +100,8 @@ fn several_results_come_from_a_process_as_several_files() {
 
 #[test]
 fn the_server_says_what_holds_the_processes_of_jobs() {
-    assert!(Server::start().log.contains("jobs run in processes of their own: "));
-    assert!(!Server::with(&["--isolation", "thread"]).log.contains("processes of their own"));
+    assert!(Server::start().log().contains("jobs run in processes of their own: "));
+    assert!(!Server::with(&["--isolation", "thread"]).log().contains("processes of their own"));
 }
 
 #[test]

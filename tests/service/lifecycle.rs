@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 /// One job at a time, so that the second one waits.
 fn narrow() -> Server {
-    Server::with(&["--slots", "1"])
+    Server::with(&["--slots", "1", "--interactive-slots", "0"])
 }
 
 #[test]

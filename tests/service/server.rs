@@ -6,7 +6,7 @@ use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStderr, Command, Stdio};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 /// Patience of the tests; only what hangs meets it.
@@ -17,10 +17,10 @@ pub(crate) struct Server {
     child: Child,
     pub(crate) address: String,
     pub(crate) admin: String,
-    /// What it logged before it listened.
-    pub(crate) log: String,
     client: Client,
     binary: PathBuf,
+    /// What it has logged.
+    heard: Arc<Mutex<String>>,
     data: Arc<tempfile::TempDir>,
 }
 
@@ -72,9 +72,19 @@ impl Server {
         let address = bound(&mut log, "listening on http://", &mut seen);
         let admin = bound(&mut log, "health and metrics on http://", &mut seen);
         // The pipe must not fill up.
-        std::thread::spawn(move || std::io::copy(&mut log, &mut std::io::sink()));
+        let heard = Arc::new(Mutex::new(seen));
+        let hearing = Arc::clone(&heard);
+        std::thread::spawn(move || {
+            let mut line = String::new();
+            while log.read_line(&mut line).is_ok_and(|bytes| bytes > 0) {
+                hearing.lock().unwrap().push_str(&line);
+                line.clear();
+            }
+        });
+        // The client could speak TLS, and asks by what, although it never does here. Told twice, the first word stays.
+        let _ = rustls::crypto::ring::default_provider().install_default();
         let client = Client::builder().timeout(PATIENCE).build().unwrap();
-        Self { child, address, admin, log: seen, client, binary: binary.to_owned(), data }
+        Self { child, address, admin, client, binary: binary.to_owned(), heard, data }
     }
 
     pub(crate) fn url(&self, path: &str) -> String {
@@ -96,6 +106,24 @@ impl Server {
     /// An answer of the admin listener.
     pub(crate) fn admin(&self, path: &str) -> Response {
         self.client.get(format!("http://{}{path}", self.admin)).send().unwrap()
+    }
+
+    /// The log since it has been listening.
+    pub(crate) fn log(&self) -> String {
+        self.heard.lock().unwrap().clone()
+    }
+
+    /// Asks until the log has a line with all of `words`, and gives it.
+    pub(crate) fn logged(&self, words: &[&str]) -> String {
+        let begun = Instant::now();
+        loop {
+            let log = self.log();
+            if let Some(line) = log.lines().find(|line| words.iter().all(|word| line.contains(word))) {
+                return line.to_owned();
+            }
+            assert!(begun.elapsed() < PATIENCE, "no line with {words:?} in {log}");
+            std::thread::sleep(Duration::from_millis(10));
+        }
     }
 
     /// A connection on which a test speaks for itself.
@@ -178,6 +206,7 @@ fn bound(log: &mut BufReader<ChildStderr>, words: &str, seen: &mut String) -> St
         let mut line = String::new();
         assert!(log.read_line(&mut line).unwrap() > 0, "the server did not start: {seen}");
         if let Some((_, address)) = line.trim().split_once(words) {
+            let address = address.split('"').next().unwrap_or_default();
             return address.to_owned();
         }
         seen.push_str(&line);
@@ -238,5 +267,17 @@ impl Line {
         let mut bytes = vec![0; len];
         self.0.read_exact(&mut bytes).unwrap();
         String::from_utf8_lossy(&bytes).into_owned()
+    }
+}
+
+/// Asks until there is an answer.
+pub(crate) fn patiently<T>(ask: impl Fn() -> Option<T>) -> T {
+    let begun = Instant::now();
+    loop {
+        if let Some(answer) = ask() {
+            return answer;
+        }
+        assert!(begun.elapsed() < PATIENCE, "nothing has come of it");
+        std::thread::sleep(Duration::from_millis(20));
     }
 }

@@ -116,12 +116,16 @@ pub(super) fn claim(
     loop {
         let mut statement = connection.prepare_cached(
             "UPDATE jobs SET state = 'running', epoch = epoch + 1, worker = ?1, lease_until = ?2, started_at = ?3
-             WHERE id = (SELECT id FROM jobs WHERE state = 'queued' ORDER BY lane <> ?4, id LIMIT 1)
+             WHERE id = (SELECT id FROM jobs WHERE state = 'queued' AND (lane = ?4 OR NOT ?5)
+                          ORDER BY lane <> ?4, id LIMIT 1)
              RETURNING id",
         )?;
         let until = later(now, request.lease);
         let claimed = statement
-            .query_row(params![request.worker, until, now, number_of(request.prefer)], |row| parsed(row, 0))
+            .query_row(
+                params![request.worker, until, now, number_of(request.prefer), request.is_only],
+                |row| parsed(row, 0),
+            )
             .optional()?;
         let Some(id) = claimed else { return Ok(None) };
         change(connection, id, now)?;

@@ -103,5 +103,8 @@ pub(super) fn counts(connection: &Connection) -> Result<JobCounts, StoreError> {
             _ => {}
         }
     }
+    let mut statement = connection
+        .prepare_cached("SELECT created_at FROM jobs WHERE state = 'queued' ORDER BY id LIMIT 1")?;
+    counts.oldest_queued_at = statement.query_row([], |row| time(row, 0)).optional()?;
     Ok(counts)
 }

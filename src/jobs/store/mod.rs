@@ -51,6 +51,8 @@ pub struct JobCounts {
     pub running: usize,
     /// In any state.
     pub all: usize,
+    /// When the job was accepted that waits for longest.
+    pub oldest_queued_at: Option<Timestamp>,
 }
 
 /// What became of a job to be admitted.
@@ -71,6 +73,8 @@ pub struct ClaimRequest {
     pub lease: Duration,
     /// Jobs of this lane come first; those of the other one when there are none.
     pub prefer: Lane,
+    /// Those of the other one do not come at all.
+    pub is_only: bool,
 }
 
 /// What became of a job whose run was lost.

@@ -8,10 +8,20 @@ use serde::{Deserialize, Serialize};
 use super::row::JobId;
 
 /// Whom to tell of the end of a job.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Webhook {
     /// Where to post to.
     pub url: String,
+    /// What it is signed with; `None`: the server's own secrets.
+    #[serde(default)]
+    pub secret: Option<String>,
+}
+
+impl std::fmt::Debug for Webhook {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        // Both may hold a secret.
+        f.write_str("Webhook(..)")
+    }
 }
 
 /// Where a delivery stands.

@@ -71,6 +71,33 @@ impl Marks {
         Ok(marks)
     }
 
+    /// The marks of a cut across all half-edges that `twins` does not join: two that it joins must run in opposite
+    /// directions along one edge. Counts no edges.
+    ///
+    /// # Errors
+    /// When the budget stops the run.
+    pub fn across(
+        triangles: &[[u32; 3]],
+        vertex_count: usize,
+        twins: Vec<u32>,
+        budget: &Budget,
+    ) -> Result<Self, Stopped> {
+        let _charge = budget.charge(triangles.len() as u64 * 12 + vertex_count as u64 * 5)?;
+        let vertices = singular_vertices(triangles, vertex_count, &twins, budget)?;
+        let mut marks = Self {
+            singular_edges: 0,
+            conflicting_edges: 0,
+            chosen_edges: 0,
+            isolated_vertices: 0,
+            twins,
+            vertices,
+            starts: Vec::new(),
+            corners: Vec::new(),
+        };
+        marks.collect_stars(triangles, vertex_count, budget)?;
+        Ok(marks)
+    }
+
     /// Counts or joins the edge of `group`; true when it is marked.
     fn note(&mut self, triangles: &[[u32; 3]], group: &[u32]) -> bool {
         match *group {

@@ -14,8 +14,8 @@ use super::printing::{BuildDirection, PolicyInfo, PolicyName};
 use super::request::InputRef;
 use super::target::TargetSpec;
 use super::words::{
-    Criterion, Cut, Degenerate, Effort, FillHoles, Format, Mode, Nesting, OpenShells, Placement, Reader,
-    Require, Stitch, StitchValidity, Units, VertexColors,
+    Contact, Criterion, Cut, Degenerate, Effort, FillHoles, Format, Mode, Nesting, OpenShells, Placement,
+    Reader, Require, Stitch, StitchValidity, Units, VertexColors,
 };
 use crate::formats::{ReadLimits, ReadOptions};
 use crate::{pipeline, simplify};
@@ -71,6 +71,8 @@ pub struct Options {
     /// How shells inside shells are taken.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nesting: Option<Nesting>,
+    /// What becomes of bodies that touch.
+    pub contact: Option<Contact>,
     /// What repair is to do about each defect.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub plan: Option<PlanRequest>,
@@ -215,6 +217,7 @@ impl Options {
                 may_recenter: self.recenter.unwrap_or(false),
             },
             nesting: self.nesting.map(Into::into).unwrap_or_default(),
+            contact: self.contact.map(Into::into).unwrap_or_default(),
             plan: self.plan.as_ref().map(PlanRequest::to_engine),
             limits: pipeline::Limits {
                 deviation_max: self.max_deviation_mm.map(|length| length / millimetres),

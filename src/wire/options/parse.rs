@@ -9,8 +9,8 @@ use crate::wire::plan::PlanRequest;
 use crate::wire::printing::{BuildDirection, PolicyName};
 use crate::wire::target;
 use crate::wire::words::{
-    Criterion, Cut, Degenerate, Effort, FillHoles, Format, Mode, Nesting, OpenShells, Placement, Reader,
-    Require, Stitch, StitchValidity, Units, VertexColors,
+    Contact, Criterion, Cut, Degenerate, Effort, FillHoles, Format, Mode, Nesting, OpenShells, Placement,
+    Reader, Require, Stitch, StitchValidity, Units, VertexColors,
 };
 
 impl Options {
@@ -111,6 +111,7 @@ impl Options {
             ("max_deviation_mm", put_if_given(&mut self.max_deviation_mm, other.max_deviation_mm)),
             ("max_volume_change", put_if_given(&mut self.max_volume_change, other.max_volume_change)),
             ("nesting", put_if_given(&mut self.nesting, other.nesting)),
+            ("contact", put_if_given(&mut self.contact, other.contact)),
             ("plan", put_if_given(&mut self.plan, other.plan)),
             ("faces", put_if_given(&mut self.faces, other.faces)),
             ("ratio", put_if_given(&mut self.ratio, other.ratio)),
@@ -150,6 +151,7 @@ impl Options {
             "open_shells" => put(&mut self.open_shells, OpenShells::from_word(value)),
             "effort" => put(&mut self.effort, Effort::from_word(value)),
             "nesting" => put(&mut self.nesting, Nesting::from_word(value)),
+            "contact" => put(&mut self.contact, Contact::from_word(value)),
             "mode" => put(&mut self.mode, Mode::from_word(value)),
             "criterion" => put(&mut self.criterion, Criterion::from_word(value)),
             "placement" => put(&mut self.placement, Placement::from_word(value)),

@@ -3,8 +3,8 @@
 use super::OptionError;
 use crate::wire::printing::{BuildDirection, PolicyName};
 use crate::wire::words::{
-    Criterion, Cut, Degenerate, Effort, FillHoles, Format, Mode, Nesting, OpenShells, Placement, Reader,
-    Require, Stitch, StitchValidity, Units, VertexColors,
+    Contact, Criterion, Cut, Degenerate, Effort, FillHoles, Format, Mode, Nesting, OpenShells, Placement,
+    Reader, Require, Stitch, StitchValidity, Units, VertexColors,
 };
 
 /// What values an option takes.
@@ -118,6 +118,11 @@ pub const SPECS: &[OptionSpec] = &[
         "nesting",
         OptionKind::Word(Nesting::WORDS),
         "How shells inside shells are taken. Default: as_oriented.",
+    ),
+    option(
+        "contact",
+        OptionKind::Word(Contact::WORDS),
+        "What repair does with bodies that touch in vertices or edges: draw them apart, or join them by necks of wall_mm. Default: open.",
     ),
     option(
         "plan",

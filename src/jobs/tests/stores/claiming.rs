@@ -38,13 +38,15 @@ pub(super) async fn a_preferred_lane_comes_first_and_the_other_one_is_not_left<H
     for lane in [Lane::Bulk, Lane::Interactive, Lane::Bulk, Lane::Interactive] {
         ids.push(admit(&*store, NewJob { lane, ..job() }).await.id);
     }
-    let claim = async |prefer| {
-        let request = ClaimRequest { worker: "w".to_owned(), lease: LEASE, prefer };
+    let ask = async |prefer, is_only| {
+        let request = ClaimRequest { worker: "w".to_owned(), lease: LEASE, prefer, is_only };
         store.claim(request).await.unwrap().map(|row| row.id)
     };
+    let claim = async |prefer| ask(prefer, false).await;
     assert_eq!(claim(Lane::Interactive).await, Some(ids[1]));
     assert_eq!(claim(Lane::Bulk).await, Some(ids[0]));
     assert_eq!(claim(Lane::Interactive).await, Some(ids[3]));
+    assert_eq!(ask(Lane::Interactive, true).await, None, "unless only one of them will do");
     assert_eq!(claim(Lane::Interactive).await, Some(ids[2]), "rather the other lane than none");
 }
 

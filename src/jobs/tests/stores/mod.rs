@@ -163,7 +163,7 @@ fn job() -> NewJob {
 }
 
 fn webhook() -> Option<Webhook> {
-    Some(Webhook { url: "https://shop.example/done".to_owned() })
+    Some(Webhook { url: "https://shop.example/done".to_owned(), secret: None })
 }
 
 fn key(key: &str, asked: u8) -> Option<IdempotencyKey> {
@@ -179,7 +179,8 @@ async fn admit(store: &dyn JobStore, job: NewJob) -> JobRow {
 }
 
 async fn claim(store: &dyn JobStore) -> Option<JobRow> {
-    let request = ClaimRequest { worker: "w".to_owned(), lease: LEASE, prefer: Lane::Interactive };
+    let request =
+        ClaimRequest { worker: "w".to_owned(), lease: LEASE, prefer: Lane::Interactive, is_only: false };
     store.claim(request).await.unwrap()
 }
 

@@ -1,0 +1,20 @@
+//! Webhooks: a call to a URL of the caller's when a job ends, signed as the Standard Webhooks specification says.
+//!
+//! `target` and `address` decide what may be called, `dial` calls exactly that, `signature` signs, `retry` says when a
+//! delivery is tried again, and `sender` does all this for what is in the outbox of the store.
+
+mod address;
+mod dial;
+mod retry;
+mod sender;
+mod settings;
+mod signature;
+mod target;
+mod view;
+
+pub use retry::RetryPlan;
+pub(super) use sender::Sender;
+pub use settings::WebhookSettings;
+pub use signature::{SecretError, WebhookSecret};
+pub use target::{PrivateHosts, Target, TargetError, URL_BYTES_MAX};
+pub(super) use view::view;

@@ -1,0 +1,159 @@
+//! Sends what is in the outbox.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use jiff::Timestamp;
+use tokio::task::JoinSet;
+
+use super::dial::{Dialer, Message};
+use super::retry::{Next, RetryPlan};
+use super::settings::WebhookSettings;
+use super::signature::{self, WebhookSecret};
+use super::target::Target;
+use crate::jobs::meters;
+use crate::jobs::service::Service;
+use crate::jobs::store::{Delivery, JobRow, NextTry, StoreError, TryOutcome, Webhook};
+use crate::jobs::view;
+use crate::wire::{JobState, WebhookEvent, WebhookMessage};
+
+/// Most calls at one time.
+const CALLS_MAX: usize = 32;
+/// Pause between two looks into the outbox. The store tells nobody when a row is added to it, since any of several
+/// servers may have done so.
+const LOOK_EVERY: Duration = Duration::from_millis(500);
+/// Time that a claim of a delivery lasts longer than its call may.
+const CLAIM_MARGIN: Duration = Duration::from_secs(20);
+
+/// Sends webhooks.
+#[derive(Debug)]
+pub(in crate::jobs) struct Sender {
+    settings: WebhookSettings,
+    dialer: Dialer,
+}
+
+impl Sender {
+    /// # Errors
+    /// The system has no root certificates that can be used.
+    pub(in crate::jobs) fn new(settings: WebhookSettings) -> Result<Self, reqwest::Error> {
+        let dialer = Dialer::new(settings.timeout)?;
+        Ok(Self { settings, dialer })
+    }
+
+    /// Sends what is due until the service stops.
+    pub(in crate::jobs) async fn send_forever(self: Arc<Self>, service: Arc<Service>) {
+        let mut calls = JoinSet::new();
+        loop {
+            let free = CALLS_MAX - calls.len();
+            if free > 0 {
+                let lease = self.settings.timeout + CLAIM_MARGIN;
+                match service.store.claim_deliveries(free, lease).await {
+                    Ok(due) => {
+                        for delivery in due {
+                            let (sender, service) = (Arc::clone(&self), Arc::clone(&service));
+                            calls.spawn(async move { sender.send(&service, delivery).await });
+                        }
+                    }
+                    Err(error) => tracing::warn!(%error, "the outbox cannot be read"),
+                }
+            }
+            tokio::select! {
+                () = service.stopping.cancelled() => return,
+                Some(_) = calls.join_next(), if calls.len() == CALLS_MAX => {}
+                () = tokio::time::sleep(LOOK_EVERY), if calls.len() < CALLS_MAX => {
+                    while calls.try_join_next().is_some() {}
+                }
+            }
+        }
+    }
+
+    async fn send(&self, service: &Service, delivery: Delivery) {
+        // A job that was deleted meanwhile has taken its deliveries with it.
+        let Ok(row) = service.store.get(delivery.job).await else { return };
+        let called = self.call(&row, &delivery).await;
+        let attempts = u32::try_from(delivery.tries.len()).unwrap_or(u32::MAX).saturating_add(1);
+        let (outcome, next) = judged(&self.settings.retry, attempts, called);
+        meters::delivery_tried(&outcome, next);
+        tracing::info!(
+            job = %delivery.job,
+            delivery = delivery.id,
+            attempt = attempts,
+            status = status_of(&outcome),
+            error = error_of(&outcome),
+            next = ?next,
+            "webhook tried"
+        );
+        match service.store.note_try(delivery.id.clone(), delivery.epoch, outcome, next).await {
+            // Sent again meanwhile, or gone.
+            Ok(()) | Err(StoreError::ClaimVoid | StoreError::NotFound) => {}
+            Err(error) => {
+                tracing::warn!(delivery = delivery.id, %error, "a try of a webhook could not be noted")
+            }
+        }
+    }
+
+    async fn call(&self, row: &JobRow, delivery: &Delivery) -> Result<super::dial::Reply, String> {
+        // The settings may have changed since the job was taken.
+        let target = Target::parse(&delivery.webhook.url, &self.settings.private_hosts)
+            .map_err(|error| error.to_string())?;
+        let secrets = self.secrets(&delivery.webhook)?;
+        let payload = payload(row, delivery.created_at)?;
+        let timestamp = Timestamp::now().as_second();
+        let signature = signature::signatures(&secrets, &delivery.id, timestamp, &payload);
+        self.dialer.call(&target, Message { id: delivery.id.clone(), timestamp, signature, payload }).await
+    }
+
+    fn secrets(&self, webhook: &Webhook) -> Result<Vec<WebhookSecret>, String> {
+        match &webhook.secret {
+            Some(own) => WebhookSecret::parse(own).map(|own| vec![own]).map_err(|error| error.to_string()),
+            None if self.settings.secrets.is_empty() => Err("the server has no secret any more".to_owned()),
+            None => Ok(self.settings.secrets.clone()),
+        }
+    }
+}
+
+fn judged(
+    retry: &RetryPlan,
+    attempts: u32,
+    called: Result<super::dial::Reply, String>,
+) -> (TryOutcome, NextTry) {
+    let (status, wish) = match &called {
+        Ok(reply) => (Some(reply.status), reply.retry_after_s.map(Duration::from_secs)),
+        Err(_) => (None, None),
+    };
+    let next = match retry.after(attempts, status, wish, fastrand::f64()) {
+        Next::Delivered => NextTry::Delivered,
+        Next::Retry(pause) => NextTry::After(pause),
+        Next::GiveUp => NextTry::GiveUp,
+    };
+    let outcome = match called {
+        Ok(reply) => TryOutcome::Answered(reply.status),
+        Err(error) => TryOutcome::Failed(error),
+    };
+    (outcome, next)
+}
+
+fn status_of(outcome: &TryOutcome) -> Option<u16> {
+    match outcome {
+        TryOutcome::Answered(status) => Some(*status),
+        TryOutcome::Failed(_) => None,
+    }
+}
+
+fn error_of(outcome: &TryOutcome) -> Option<&str> {
+    match outcome {
+        TryOutcome::Answered(_) => None,
+        TryOutcome::Failed(error) => Some(error),
+    }
+}
+
+/// What is told of a job that has ended.
+fn payload(row: &JobRow, timestamp: Timestamp) -> Result<Vec<u8>, String> {
+    let event = match row.ending.as_ref().map(|ending| ending.state) {
+        Some(JobState::Succeeded) => WebhookEvent::Succeeded,
+        Some(JobState::Cancelled) => WebhookEvent::Cancelled,
+        _ => WebhookEvent::Failed,
+    };
+    let message = WebhookMessage { event, timestamp, data: view::job(row, None) };
+    serde_json::to_vec(&message).map_err(|error| error.to_string())
+}
