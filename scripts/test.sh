@@ -12,7 +12,7 @@ export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never} CARGO_INCREMENTAL=0 PYTHONDON
 # Settings of the caller's own service must not reach the tests.
 for name in $(compgen -e | grep '^MESHMEND_' | grep -v -e '^MESHMEND_CORPUS$'); do unset "$name"; done
 
-steps=(format lint lint_engine build tests doc_tests fixtures contract fuzz_contract licences)
+steps=(format lint lint_engine lint_otel build tests doc_tests fixtures contract fuzz_contract licences)
 scratch=target/test-run
 python=target/python/bin
 server_pid=
@@ -48,6 +48,7 @@ set_up() {
 format() { cargo fmt --check; }
 lint() { cargo clippy --locked --all-targets -- -D warnings; }
 lint_engine() { cargo clippy --locked --no-default-features --all-targets -- -D warnings; }
+lint_otel() { cargo clippy --locked --features otel --lib --bins -- -D warnings; }
 build() { cargo build --locked; }
 
 tests() {

@@ -188,6 +188,15 @@ impl Service {
         Some(row)
     }
 
+    /// Refuses when the queue has no room.
+    pub(super) async fn check_queue(&self) -> Result<(), Problem> {
+        let queued = self.store.counts().await.map_err(|error| store_problem(&error))?.queued;
+        if queued < self.settings.queue_max {
+            return Ok(());
+        }
+        Err(self.not_admitted(&StoreError::QueueFull { queued }))
+    }
+
     fn not_admitted(&self, error: &StoreError) -> Problem {
         match *error {
             StoreError::QueueFull { queued } => Problem {

@@ -88,7 +88,7 @@ fn units(bytes: u64) -> u32 {
 /// Three quarters of the memory that this process may use: of the machine, or of its control group.
 pub(super) fn default_bytes_max() -> u64 {
     let machine = rustix::system::sysinfo();
-    let total = u64::try_from(machine.totalram).unwrap_or(u64::MAX);
+    let total = machine.totalram;
     let total = total.saturating_mul(u64::from(machine.mem_unit.max(1)));
     let group =
         fs::read_to_string("/sys/fs/cgroup/memory.max").ok().and_then(|text| text.trim().parse().ok());

@@ -182,13 +182,15 @@ impl Jobs {
     /// Begins an upload; `announced` is its size where the caller says it.
     ///
     /// # Errors
-    /// `body-too-large` (before any byte is taken), `storage-full`, `draining`.
+    /// `body-too-large` (before any byte is taken), `queue-full`, `storage-full`, `draining`.
     pub async fn upload(&self, announced: Option<u64>) -> Result<Upload, Problem> {
         self.begin_upload(announced).await.inspect_err(meters::refused)
     }
 
     async fn begin_upload(&self, announced: Option<u64>) -> Result<Upload, Problem> {
         self.0.check_open()?;
+        // Told now, the refusal costs neither the caller the upload nor this server the disk.
+        self.0.check_queue().await?;
         if let Some(bytes) = announced {
             self.0.check_upload_size(bytes)?;
             if bytes > self.0.spool.bytes_max() {

@@ -8,7 +8,7 @@ use super::service::Service;
 use super::slot::STORE_PAUSE;
 use super::spool::Written;
 use super::store::{AfterLoss, Ending, JobRow, StoreError, StoreFuture};
-use crate::wire::Problem;
+use crate::wire::{Outcome, Problem};
 
 /// What is to become of a job after a run.
 pub(super) enum Conclusion {
@@ -62,7 +62,7 @@ fn note(row: &JobRow, ending: &Ending) {
         owner = row.owner,
         operation = %row.operation,
         state = %ending.state,
-        outcome = ending.outcome.map(|outcome| outcome.word()),
+        outcome = ending.outcome.map(Outcome::word),
         problem = ending.problem.as_ref().map(|problem| problem.code.word()),
         queued_ms = waited,
         ms = ending.timing_ms.map(|timing| timing.total),

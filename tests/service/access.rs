@@ -72,12 +72,23 @@ fn with_keys_only_their_holders_come_in_and_see_their_own_jobs() {
         server.get(link(&job, "result")),
         server.post(&format!("{path}/cancel")),
         server.request("DELETE", path),
+        server.get(&format!("{path}/events")),
         server.get(&format!("{path}/deliveries")),
         server.post(&format!("{path}/deliveries/msg_1/redeliver")),
         server.post("/v1/verify").json(&input),
     ] {
         assert_eq!(code(request.bearer_auth("open sesame")), not_found);
     }
+    let listed =
+        |key: &str| -> Value { server.get("/v1/jobs").bearer_auth(key).send().unwrap().json().unwrap() };
+    assert_eq!(listed("first-key")["jobs"][0]["id"], job["id"]);
+    assert_eq!(listed("open sesame")["jobs"], serde_json::json!([]));
+    let keyed = |key: &str| -> Value {
+        let request = server.post("/v1/jobs?operation=verify").header("idempotency-key", "one").body(SOLID);
+        request.bearer_auth(key).send().unwrap().json().unwrap()
+    };
+    assert_eq!(keyed("first-key")["id"], keyed("first-key")["id"]);
+    assert_ne!(keyed("first-key")["id"], keyed("open sesame")["id"], "each caller has keys of its own");
     assert_eq!(mine(server.post("/v1/verify").json(&input)).status(), 200);
     assert_eq!(mine(server.request("DELETE", path)).status(), 204);
 }

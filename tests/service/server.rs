@@ -58,6 +58,9 @@ impl Server {
     }
 
     fn on(binary: &Path, data: Arc<tempfile::TempDir>, settings: &[&str]) -> Self {
+        // The client could speak TLS, and asks by what, although it never does here. Told twice, the first word stays.
+        let _ = rustls::crypto::ring::default_provider().install_default();
+        let client = Client::builder().timeout(PATIENCE).build().unwrap();
         let mut command = Command::new(binary);
         for (name, _) in std::env::vars_os() {
             if name.to_string_lossy().starts_with("MESHMEND_") {
@@ -81,9 +84,6 @@ impl Server {
                 line.clear();
             }
         });
-        // The client could speak TLS, and asks by what, although it never does here. Told twice, the first word stays.
-        let _ = rustls::crypto::ring::default_provider().install_default();
-        let client = Client::builder().timeout(PATIENCE).build().unwrap();
         Self { child, address, admin, client, binary: binary.to_owned(), heard, data }
     }
 

@@ -87,7 +87,7 @@ impl Sender {
             // Sent again meanwhile, or gone.
             Ok(()) | Err(StoreError::ClaimVoid | StoreError::NotFound) => {}
             Err(error) => {
-                tracing::warn!(delivery = delivery.id, %error, "a try of a webhook could not be noted")
+                tracing::warn!(delivery = delivery.id, %error, "a try of a webhook could not be noted");
             }
         }
     }
