@@ -21,7 +21,8 @@ fn wavy_sphere() -> (Vec<DVec3>, Vec<[u32; 3]>) {
         let latitude = std::f64::consts::PI * (f64::from(row) + 0.5) / f64::from(ROWS);
         let longitude = std::f64::consts::TAU * f64::from(column) / f64::from(columns);
         let radius = 50.0 + (9.0 * latitude).sin() * (7.0 * longitude).cos();
-        DVec3::new(latitude.sin() * longitude.cos(), latitude.sin() * longitude.sin(), latitude.cos()) * radius
+        DVec3::new(latitude.sin() * longitude.cos(), latitude.sin() * longitude.sin(), latitude.cos())
+            * radius
     };
     let positions = (0..ROWS).flat_map(|row| (0..columns).map(move |column| point(row, column))).collect();
     let id = |row: u32, column: u32| row * columns + column % columns;

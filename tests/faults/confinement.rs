@@ -40,7 +40,8 @@ fn is_answered(error: &std::io::Error) -> bool {
 
 pub(crate) fn a_confined_process_reaches_nothing() {
     let automatic = server(&[]);
-    let is_complete = automatic.log().contains("landlock (ABI") && automatic.log().contains(", seccomp filter");
+    let is_complete =
+        automatic.log().contains("landlock (ABI") && automatic.log().contains(", seccomp filter");
     if !is_complete {
         // A kernel without: then the server says so, and does not start where the sandbox is required.
         let (code, words) = refused(&["--sandbox", "require"]);
