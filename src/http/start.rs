@@ -230,6 +230,12 @@ mod tests {
     }
 
     #[test]
+    fn a_lease_that_a_busy_machine_could_not_keep_is_refused() {
+        let error = jobs_settings(&loaded(&[("data_dir", "d"), ("lease", "999ms")])).unwrap_err().to_string();
+        assert!(error.starts_with("`lease` (flag --lease)"), "{error}");
+    }
+
+    #[test]
     fn the_defaults_of_the_configuration_are_those_of_the_settings() {
         let loaded = loaded(&[("data_dir", "d")]);
         // The binary of the service is one that runs jobs.

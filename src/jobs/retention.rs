@@ -14,12 +14,14 @@ use crate::wire::{Problem, ProblemCode};
 /// Longest pause between two looks for results and leases whose time is over. Whoever asks for such a result finds it
 /// expired anyway; this only says how long its bytes may stay on disk.
 const SWEEP_EVERY: Duration = Duration::from_secs(10);
+/// Shortest pause between two such looks, whatever the lease.
+const SWEEP_PAUSE_MIN: Duration = Duration::from_millis(100);
 /// Pause between two looks for files that nobody names. There are none unless a write to the store was cut off.
 const COLLECT_EVERY: Duration = Duration::from_secs(600);
 
 /// Looks for what is over until the service drains.
 pub(super) async fn sweep_forever(service: Arc<Service>) {
-    let pause = SWEEP_EVERY.min(service.settings.lease / 3);
+    let pause = (service.settings.lease / 3).clamp(SWEEP_PAUSE_MIN, SWEEP_EVERY);
     let mut since_collection = Duration::ZERO;
     loop {
         tokio::select! {
@@ -106,9 +108,13 @@ impl Service {
         }
     }
 
-    /// Room on disk, made by expiring the jobs that ended first.
+    /// Room for files, made by expiring the jobs that ended first. When the disk itself is short of room no result goes for
+    /// it: whatever fills the disk would take them all, one after the other.
     pub(super) async fn make_room(&self, bytes: u64) -> Result<Space, Problem> {
         loop {
+            if bytes > 0 && self.spool.is_disk_short_of(bytes) {
+                return Err(self.storage_full(bytes));
+            }
             if let Some(space) = self.spool.reserve(bytes) {
                 return Ok(space);
             }

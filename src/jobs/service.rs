@@ -193,7 +193,7 @@ impl Jobs {
         self.0.check_queue().await?;
         if let Some(bytes) = announced {
             self.0.check_upload_size(bytes)?;
-            if bytes > self.0.spool.bytes_max() {
+            if bytes > self.0.spool.bytes_max() || self.0.spool.is_disk_short_of(bytes) {
                 return Err(self.0.storage_full(bytes));
             }
         }

@@ -111,3 +111,20 @@ fn who_follows_a_job_over_a_kill_hears_its_end_once() {
     );
     assert_eq!(problem(server.get(&path).header("accept", "text/html").send().unwrap()).1, "not-acceptable");
 }
+
+#[test]
+fn a_server_that_was_paused_past_its_leases_shows_one_result() {
+    let server = Server::with(NARROW);
+    let job = server.job("verify", long_job(200));
+    server.until(&job, |job| job["state"] == "running");
+    server.signal("STOP");
+    std::thread::sleep(std::time::Duration::from_millis(2500));
+    server.signal("CONT");
+    let job = server.ended(&job);
+    assert_eq!(job["state"], "succeeded", "{job}");
+    assert!(job["attempts"].as_u64().unwrap() <= 1, "{job}");
+    let events = server.get(&format!("{}/events", link(&job, "self"))).send().unwrap().text().unwrap();
+    assert_eq!(events.matches("\"state\":\"succeeded\"").count(), 1, "{events}");
+    server.request("DELETE", link(&job, "self")).send().unwrap();
+    assert_eq!(server.stored_files(), Vec::<std::path::PathBuf>::new());
+}

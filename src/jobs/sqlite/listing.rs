@@ -62,7 +62,16 @@ pub(super) fn list(connection: &Connection, query: &ListQuery) -> Result<Vec<Job
     sql.push_str(" ORDER BY id DESC LIMIT ?");
     values.push(Value::Integer(i64::try_from(query.limit).unwrap_or(i64::MAX)));
     let mut statement = connection.prepare_cached(&sql)?;
-    Ok(statement.query_map(params_from_iter(values), job)?.collect::<rusqlite::Result<_>>()?)
+    let rows = statement.query_map(params_from_iter(values), job)?;
+    let readable = |row: rusqlite::Result<JobRow>| match row {
+        // A row of another version must not keep the others from being listed.
+        Err(error @ rusqlite::Error::FromSqlConversionFailure(..)) => {
+            tracing::warn!(%error, "a row cannot be read");
+            None
+        }
+        row => Some(row),
+    };
+    Ok(rows.filter_map(readable).collect::<rusqlite::Result<_>>()?)
 }
 
 pub(super) fn deadlines(connection: &Connection) -> Result<Vec<(JobId, Timestamp)>, StoreError> {

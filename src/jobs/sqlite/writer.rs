@@ -100,3 +100,63 @@ fn in_savepoint<T>(
 fn undo(connection: &Connection) {
     let _ = connection.execute_batch("ROLLBACK TO change; RELEASE change");
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn counter() -> Writer {
+        let connection = Connection::open_in_memory().unwrap();
+        connection.execute_batch("CREATE TABLE n (n INTEGER PRIMARY KEY)").unwrap();
+        Writer::start(connection).unwrap()
+    }
+
+    fn insert(connection: &Connection, number: i64) -> Result<(), StoreError> {
+        connection.execute("INSERT INTO n VALUES (?1)", [number])?;
+        Ok(())
+    }
+
+    async fn numbers(writer: &Writer) -> i64 {
+        let count = |connection: &Connection| {
+            Ok(connection.query_row("SELECT count(*) FROM n", [], |row| row.get(0))?)
+        };
+        writer.write(count).await.unwrap()
+    }
+
+    #[tokio::test]
+    async fn a_change_that_fails_or_panics_undoes_itself_alone() {
+        let writer = counter();
+        let failing = |connection: &Connection| {
+            insert(connection, 1)?;
+            Err::<(), _>(StoreError::NotFound)
+        };
+        let panicking = |connection: &Connection| -> Result<(), StoreError> {
+            insert(connection, 2)?;
+            panic!("a planted panic")
+        };
+        // All wait together.
+        let (a, b, c, d) = tokio::join!(
+            writer.write(|connection| insert(connection, 3)),
+            writer.write(failing),
+            writer.write(panicking),
+            writer.write(|connection| insert(connection, 4)),
+        );
+        assert_eq!((a, b, d), (Ok(()), Err(StoreError::NotFound), Ok(())));
+        assert!(matches!(c, Err(StoreError::Unavailable(_))));
+        assert_eq!(numbers(&writer).await, 2);
+    }
+
+    #[tokio::test]
+    async fn a_change_that_nobody_waits_for_is_made_all_the_same() {
+        let writer = counter();
+        let mut change = writer.write(|connection| insert(connection, 1));
+        // Handed over, and then dropped.
+        tokio::select! {
+            biased;
+            _ = &mut change => {}
+            () = std::future::ready(()) => {}
+        }
+        drop(change);
+        assert_eq!(numbers(&writer).await, 1);
+    }
+}

@@ -227,3 +227,25 @@ async fn two_services_cannot_share_a_directory() {
     let second = Jobs::start(JobsSettings::new(&house.settings().data_dir)).await;
     assert!(matches!(second, Err(StartError::DataDirInUse { .. })));
 }
+
+#[tokio::test]
+async fn a_disk_that_is_nearly_full_takes_no_upload_and_no_result_goes_for_it() {
+    let house = house(|_| {}, mend).await;
+    let job = house.run(b"x").await;
+    let dir = house.settings().data_dir.clone();
+    let House { jobs, dir: _kept } = house;
+    jobs.drain().await;
+    drop(jobs);
+    let settings = JobsSettings { disk_free_bytes_min: u64::MAX, ..JobsSettings::new(&dir) };
+    let engine: Engine = Arc::new(|_: Asked, bytes: &[u8], _: &_, budget: &Budget| mend(bytes, budget));
+    let jobs = restarting::started(settings, engine).await;
+    let problem = jobs.upload(Some(5)).await.unwrap_err();
+    assert_eq!(
+        (problem.code, problem.limit_name.as_deref()),
+        (ProblemCode::StorageFull, Some("disk_free_bytes_min"))
+    );
+    let mut unannounced = jobs.upload(None).await.unwrap();
+    unannounced.write(b"hello").await.unwrap();
+    assert_eq!(unannounced.finish().await.unwrap_err().code, ProblemCode::StorageFull);
+    assert_eq!(jobs.result(id(&job)).await.unwrap().read().await.unwrap(), b"mended");
+}

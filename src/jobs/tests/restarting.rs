@@ -20,10 +20,15 @@ async fn crash_and_restart(
     jobs.service().slots.wait().await;
     drop(jobs);
     let engine: Engine = Arc::new(move |_: Asked, bytes, _, budget| engine(bytes, budget));
+    House { jobs: started(settings, engine).await, dir }
+}
+
+/// A service on a directory that another one of this process has just left.
+pub(super) async fn started(settings: JobsSettings, engine: Engine) -> Jobs {
     let mut tries = 0;
-    let jobs = loop {
+    loop {
         match Jobs::start_with(settings.clone(), Arc::clone(&engine)).await {
-            Ok(jobs) => break jobs,
+            Ok(jobs) => return jobs,
             // Tasks of the first one may hold it for a moment more.
             Err(StartError::DataDirInUse { .. }) if tries < 1000 => {
                 tries += 1;
@@ -31,8 +36,7 @@ async fn crash_and_restart(
             }
             Err(error) => panic!("{error}"),
         }
-    };
-    House { jobs, dir }
+    }
 }
 
 #[tokio::test]
@@ -138,6 +142,34 @@ async fn an_upload_under_way_is_not_taken_for_an_orphan() {
     assert_eq!(house.spool_files(), 2);
     drop((complete, uploaded));
     assert_eq!((house.spool_files(), house.load().await.data_bytes), (0, 0));
+}
+
+#[tokio::test]
+async fn files_of_the_run_that_goes_on_are_not_taken_for_orphans_and_those_of_void_claims_are() {
+    let house = house(|_| {}, work_forever).await;
+    let job = house.order(b"x").await.unwrap();
+    house.until("running", |load| load.running == 1).await;
+    let run = |epoch: u32| house.settings().data_dir.join("spool/out").join(&job.id).join(epoch.to_string());
+    for epoch in [1, 2] {
+        std::fs::create_dir_all(run(epoch)).unwrap();
+        std::fs::write(run(epoch).join("mesh-0"), b"half a result").unwrap();
+    }
+    house.service().collect_orphans().await.unwrap();
+    assert!(run(1).exists() && !run(2).exists());
+    house.cancel(id(&job)).await.unwrap();
+    house.end_of(&job).await;
+    house.service().collect_orphans().await.unwrap();
+    assert_eq!(house.spool_files(), 1, "the upload");
+}
+
+#[tokio::test]
+async fn a_store_of_a_newer_program_is_left_alone() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("jobs.sqlite3");
+    rusqlite::Connection::open(&path).unwrap().pragma_update(None, "user_version", 1000).unwrap();
+    let error = Jobs::start(JobsSettings::new(dir.path())).await.unwrap_err();
+    assert!(matches!(error, StartError::Store { .. }), "{error}");
+    assert!(error.to_string().contains("version is 1000"), "{error}");
 }
 
 #[tokio::test]

@@ -48,3 +48,34 @@ impl StoreHouse for SqliteHouse {
 }
 
 contract!(SqliteHouse);
+
+#[tokio::test]
+async fn a_file_that_another_process_holds_is_written_again_once_it_is_free() {
+    use super::{admit, job};
+    use crate::jobs::StoreError;
+    let house = SqliteHouse::open();
+    let other = rusqlite::Connection::open(&house.path).unwrap();
+    other.execute_batch("BEGIN IMMEDIATE").unwrap();
+    let refused = house.store.create(job(), 10).await.unwrap_err();
+    assert!(matches!(refused, StoreError::Unavailable(_)), "{refused}");
+    assert_eq!(house.store.counts().await.unwrap().all, 0, "it can be read all the while");
+    other.execute_batch("ROLLBACK").unwrap();
+    admit(&*house.store, job()).await;
+}
+
+#[tokio::test]
+async fn a_row_that_cannot_be_read_fails_and_does_not_stand_in_the_way() {
+    use super::{admit, claim, job};
+    use crate::wire::JobState;
+    let house = SqliteHouse::open();
+    let (strange, next) = (admit(&*house.store, job()).await.id, admit(&*house.store, job()).await.id);
+    let other = rusqlite::Connection::open(&house.path).unwrap();
+    let options = r#"{"an option of another version":1}"#;
+    other.execute("UPDATE jobs SET options = ?1 WHERE id = ?2", [options, &strange.to_string()]).unwrap();
+    assert_eq!(claim(&*house.store).await.unwrap().id, next);
+    let changes = house.store.changes(strange, 0).await.unwrap();
+    assert_eq!(changes.last().unwrap().state, JobState::Failed);
+    let query = crate::jobs::ListQuery { limit: 10, ..Default::default() };
+    assert_eq!(house.store.list(query).await.unwrap().len(), 1);
+    house.store.delete(strange).await.unwrap();
+}
