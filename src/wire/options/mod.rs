@@ -72,6 +72,7 @@ pub struct Options {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nesting: Option<Nesting>,
     /// What becomes of bodies that touch.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub contact: Option<Contact>,
     /// What repair is to do about each defect.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -141,8 +142,10 @@ pub struct Options {
 impl TryFrom<Map<String, Value>> for Options {
     type Error = OptionError;
 
+    /// A member that is null is one that was not given.
     fn try_from(members: Map<String, Value>) -> Result<Self, OptionError> {
-        Self::from_json(&members)
+        let given = members.into_iter().filter(|(_, value)| !value.is_null());
+        Self::from_json(&given.collect())
     }
 }
 
