@@ -182,7 +182,7 @@ fn complete_operation(path: &str, operation: &mut Operation) {
         "list_jobs" => {
             add_problems(operation, &[ProblemCode::StoreUnavailable]);
             let label = text().pattern(Some("^[A-Za-z0-9._/-]{1,63}:[ -~]{0,255}$"));
-            let labels = ArrayBuilder::new().items(label).max_items(Some(LABELS_MAX));
+            let labels = ArrayBuilder::new().items(label).min_items(Some(1)).max_items(Some(LABELS_MAX));
             let about =
                 "Only jobs with this label, as NAME:VALUE; with all of them when it is given several times.";
             let parameter = ParameterBuilder::new()
@@ -194,9 +194,10 @@ fn complete_operation(path: &str, operation: &mut Operation) {
         }
         "events" => {
             add_problems(operation, JOB);
-            let id = text().pattern(Some(r"^[0-9]{1,9}\.[0-9]{1,9}$"));
+            let id = text().pattern(Some(r"^[0-9]{1,9}(\.[0-9]{1,9})?$"));
             let about = "Id of the last event that the client has seen; those after it follow. Default: all.";
             add_parameter(operation, header_parameter("Last-Event-ID", about, id));
+            add_answer(operation, "200", event_stream());
         }
         "report" => {
             add_problems(operation, &[JOB, PRODUCT, RUN].concat());
@@ -321,6 +322,21 @@ fn mesh_answer() -> ResponseBuilder {
         .header("Link", header("The report, as `describedby`."))
         .header("Preference-Applied", header("Which preferences were followed."))
         .header("Server-Timing", header("Time of each pass."))
+}
+
+/// 200 of the events of a job: the schema is that of one event.
+fn event_stream() -> Response {
+    let event = ObjectBuilder::new()
+        .property("event", text().enum_values(Some(["state", "stage"])))
+        .property("id", text().description(Some("What to come back with as `Last-Event-ID`.")))
+        .property("data", text().description(Some("JSON: a `StateEvent` or a `StageEvent`.")))
+        .required("event")
+        .required("id")
+        .required("data");
+    ResponseBuilder::new()
+        .description("Server-sent events.")
+        .content("text/event-stream", Content::new(Some(Schema::Object(event.build()))))
+        .build()
 }
 
 /// 200 of a kept report: for programs, or for people.

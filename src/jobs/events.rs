@@ -39,7 +39,7 @@ impl fmt::Display for EventId {
 
 /// A text that is no id of an event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("an event's id is two numbers with a dot between them")]
+#[error("an event's id is a number, or two with a dot between them")]
 pub struct NoEventId;
 
 impl FromStr for EventId {
@@ -49,7 +49,8 @@ impl FromStr for EventId {
         // Nine digits are more than a job has events.
         let is_number =
             |text: &str| (1..=9).contains(&text.len()) && text.bytes().all(|b| b.is_ascii_digit());
-        let (change, pass) = text.split_once('.').ok_or(NoEventId)?;
+        // A change by itself is named by its number alone, too.
+        let (change, pass) = text.split_once('.').unwrap_or((text, "0"));
         if !is_number(change) || !is_number(pass) {
             return Err(NoEventId);
         }

@@ -142,8 +142,10 @@ pub struct Options {
 impl TryFrom<Map<String, Value>> for Options {
     type Error = OptionError;
 
+    /// A member that is null is one that was not given.
     fn try_from(members: Map<String, Value>) -> Result<Self, OptionError> {
-        Self::from_json(&members)
+        let given = members.into_iter().filter(|(_, value)| !value.is_null());
+        Self::from_json(&given.collect())
     }
 }
 

@@ -65,6 +65,7 @@ fn every_option_is_read_back_from_json_as_it_was_written() {
     let text = serde_json::to_string(&all).unwrap();
     assert_eq!(serde_json::from_str::<Options>(&text).unwrap(), all);
     assert_eq!(serde_json::to_string(&Options::default()).unwrap(), "{}");
+    assert_eq!(serde_json::from_str::<Options>(r#"{"units":null}"#).unwrap(), Options::default());
     assert!(serde_json::from_str::<Options>(r#"{"unit":"mm"}"#).is_err());
 }
 
