@@ -75,7 +75,7 @@ fn the_deadline_of_a_job_outlasts_the_server() {
     let response =
         server.post("/v1/jobs?operation=repair").header("cancel-after", "1").body(SOLID).send().unwrap();
     let job: Value = response.json().unwrap();
-    let server = server.killed_and_restarted(NARROW);
+    let server = server.killed_for(std::time::Duration::from_millis(1100), NARROW);
     let ended = server.ended(&job);
     assert_eq!((&ended["state"], &ended["problem"]["code"]), (&json!("failed"), &json!("engine-timeout")));
 }
@@ -83,7 +83,7 @@ fn the_deadline_of_a_job_outlasts_the_server() {
 #[test]
 fn who_follows_a_job_over_a_kill_hears_its_end_once() {
     let server = Server::with(NARROW);
-    let job = server.job("verify", long_job(150));
+    let job = server.job("verify", long_job(500));
     server.until(&job, |job| job["state"] == "running");
     let path = format!("{}/events", link(&job, "self"));
     let server = server.killed_and_restarted(NARROW);

@@ -40,9 +40,15 @@ impl Server {
     }
 
     /// Kills it and starts another one on the same data folder.
-    pub(crate) fn killed_and_restarted(mut self, settings: &[&str]) -> Self {
+    pub(crate) fn killed_and_restarted(self, settings: &[&str]) -> Self {
+        self.killed_for(Duration::ZERO, settings)
+    }
+
+    /// Kills it and starts another one on the same data folder after a pause.
+    pub(crate) fn killed_for(mut self, pause: Duration, settings: &[&str]) -> Self {
         self.child.kill().unwrap();
         self.child.wait().unwrap();
+        std::thread::sleep(pause);
         Self::on(&self.binary, Arc::clone(&self.data), settings)
     }
 
