@@ -1,10 +1,12 @@
 """A server for one campaign: free ports on loopback, a data folder that goes with it, and what the system says about it."""
 
+import math
 import os
 import resource
 import shutil
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import tempfile
@@ -39,9 +41,14 @@ class Server:
         self.port, self.admin_port = free_ports(2)
         environment = {name: value for name, value in os.environ.items() if not name.startswith("MESHMEND_")}
         self.log = open(os.path.join(self.folder, "log"), "wb")
-        command = [binary, "serve", "--listen", f"127.0.0.1:{self.port}", "--admin-listen", f"127.0.0.1:{self.admin_port}",
+        self.environment = environment
+        self.command = [binary, "serve", "--listen", f"127.0.0.1:{self.port}", "--admin-listen", f"127.0.0.1:{self.admin_port}",
                    "--data-dir", os.path.join(self.folder, "data"), "--log", "warn", *settings]
-        self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=self.log, env=environment)
+        self.start()
+
+    def start(self):
+        """Starts it and waits until it listens."""
+        self.process = subprocess.Popen(self.command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=self.log, env=self.environment)
         for _ in range(200):
             try:
                 socket.create_connection(("127.0.0.1", self.admin_port), timeout=1).close()
@@ -55,13 +62,22 @@ class Server:
     def __enter__(self):
         return self
 
-    def __exit__(self, *_):
+    def stop(self):
+        """Ends it as an operator would."""
         self.process.send_signal(signal.SIGTERM)
         try:
             self.process.wait(45)
         except subprocess.TimeoutExpired:
             self.process.kill()
             self.process.wait()
+
+    def restart(self):
+        """Ends it, and starts it on the same ports and folder."""
+        self.stop()
+        self.start()
+
+    def __exit__(self, *_):
+        self.stop()
         self.log.close()
         shutil.rmtree(self.folder, ignore_errors=True)
 
@@ -77,6 +93,17 @@ class Server:
             except OSError:
                 pass
         return seen
+
+    def children_at_work(self):
+        """Processes that run a job; the one that waits for the next task has not stepped back behind the server yet."""
+        at_work = []
+        for pid in self.processes()[1:]:
+            try:
+                fields = open(f"/proc/{pid}/stat").read().rsplit(")", 1)[1].split()
+                at_work += [pid] if fields[16] != "0" else []
+            except OSError:
+                pass
+        return at_work
 
     def anonymous_bytes(self):
         """Anonymous resident memory of the server and its children."""
@@ -100,3 +127,19 @@ def quantile(values, share):
     """The value below which that share of the values lies."""
     ordered = sorted(values)
     return ordered[min(len(ordered) - 1, int(share * len(ordered)))] if ordered else float("nan")
+
+
+def sphere_stl(rings, radius=10, at=(0, 0, 0)):
+    """A closed surface of 4 * rings * (rings - 1) triangles as binary STL, with 80 bytes of header that are free."""
+    n = 2 * rings
+    ring = lambda i: [tuple(radius * x + c for x, c in zip((math.sin(math.pi * i / rings) * math.cos(math.pi * 2 * j / n),
+                      math.sin(math.pi * i / rings) * math.sin(math.pi * 2 * j / n), math.cos(math.pi * i / rings)), at)) for j in range(n)]
+    rows = [[tuple(c + radius * (k == 2) for k, c in enumerate(at))] * n] + [ring(i) for i in range(1, rings)]
+    rows += [[tuple(c - radius * (k == 2) for k, c in enumerate(at))] * n]
+    triangles = []
+    for i in range(rings):
+        for j in range(n):
+            a, b, c, d = rows[i][j], rows[i + 1][j], rows[i + 1][(j + 1) % n], rows[i][(j + 1) % n]
+            triangles += ([(a, b, c)] if i < rings - 1 or b != c else []) + ([(a, c, d)] if i > 0 else [])
+    pack = struct.Struct("<12fH").pack
+    return bytes(80) + struct.pack("<I", len(triangles)) + b"".join(pack(0, 0, 0, *a, *b, *c, 0) for a, b, c in triangles)

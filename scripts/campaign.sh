@@ -28,6 +28,9 @@ declare -A filters=(
 declare -A scripts=(
   [slow-connections]="slow_connections.py"
   [overload]="overload.py"
+  [overhead]="overhead.py"
+  [restarts]="restarts.py"
+  [service-cancel]="cancel.py"
   [uploads]="uploads.py"
 )
 

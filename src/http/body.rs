@@ -10,6 +10,11 @@ use tokio::time::Instant;
 
 use crate::wire::{Problem, ProblemCode};
 
+/// Largest rest of an unwanted body that is taken in.
+pub(super) const DISCARD_BYTES_MAX: u64 = 256 << 10;
+/// How long it may take to come.
+const DISCARD_PATIENCE: Duration = Duration::from_millis(20);
+
 /// What a body may take.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BodyLimits {
@@ -81,6 +86,18 @@ impl IncomingBody {
             bytes.extend_from_slice(&piece);
         }
         Ok(bytes)
+    }
+
+    /// Takes in the rest of a small body that nobody wants, if it comes at once: the answer then does not cost the
+    /// client its connection.
+    pub(super) async fn discard_small(mut self) {
+        let is_small =
+            self.announced.is_some_and(|bytes| bytes - self.received.min(bytes) <= DISCARD_BYTES_MAX);
+        if is_small {
+            let rest = async { while let Ok(Some(_)) = self.next().await {} };
+            // What comes later is cut off.
+            let _ = tokio::time::timeout(DISCARD_PATIENCE, rest).await;
+        }
     }
 
     /// The size that the client announced.

@@ -14,6 +14,7 @@ use futures_util::FutureExt as _;
 use tracing::Instrument as _;
 use uuid::Uuid;
 
+use super::body::DISCARD_BYTES_MAX;
 use super::problem::{self, Told};
 use super::state::{AboutJob, Caller};
 use super::trace;
@@ -117,6 +118,12 @@ impl Seen {
         }
     }
 
+    /// The answer may have come before a large body did. Then the connection ends with it, and the client should know.
+    fn may_leave_body_unread(&self, status: u16) -> bool {
+        let is_early = matches!(status, 401 | 403 | 404 | 405 | 413 | 415 | 429 | 503 | 507);
+        is_early && self.bytes_in.is_some_and(|bytes| bytes > DISCARD_BYTES_MAX)
+    }
+
     /// Adds the common headers and writes the log line.
     fn finish(self, response: &mut Response, started: Instant) {
         let elapsed = started.elapsed();
@@ -130,6 +137,9 @@ impl Seen {
         }
         if let Ok(timing) = HeaderValue::from_str(&format!("total;dur={:.3}", elapsed.as_secs_f64() * 1e3)) {
             headers.append("server-timing", timing);
+        }
+        if self.may_leave_body_unread(status) {
+            headers.insert(header::CONNECTION, HeaderValue::from_static("close"));
         }
         let bytes_out = response.body().size_hint().exact();
         let told = response.extensions().get::<Told>();

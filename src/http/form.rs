@@ -75,7 +75,7 @@ async fn receive_material(service: &Service, form: &mut Multipart) -> Result<Opt
     if bytes.is_empty() {
         return Ok(None);
     }
-    let mut upload = service.jobs.upload(None).await?;
+    let mut upload = service.jobs.upload_beside().await?;
     upload.write(&bytes).await?;
     upload.finish().await.map(Some)
 }

@@ -107,7 +107,13 @@ pub(super) async fn receive(
 /// Streams a raw body to disk; `None` when it has no byte.
 async fn receive_mesh(service: &Service, mut body: IncomingBody) -> Result<Option<Uploaded>, Problem> {
     let Some(first) = body.next().await? else { return Ok(None) };
-    let mut upload = service.jobs.upload(body.announced()).await?;
+    let mut upload = match service.jobs.upload(body.announced()).await {
+        Ok(upload) => upload,
+        Err(problem) => {
+            body.discard_small().await;
+            return Err(problem);
+        }
+    };
     upload.write(&first).await?;
     while let Some(piece) = body.next().await? {
         upload.write(&piece).await?;

@@ -147,7 +147,7 @@ impl Service {
             tokio::spawn(end_overdue(Arc::clone(self), row.id, at));
         }
         self.work.notify_waiters();
-        self.tell_load().await;
+        self.note_load();
         Ok(row)
     }
 
@@ -184,20 +184,11 @@ impl Service {
             Created::Known(row) => return Some(row),
         };
         meters::cached(row.operation);
-        self.tell_load().await;
+        self.note_load();
         Some(row)
     }
 
-    /// Refuses when the queue has no room.
-    pub(super) async fn check_queue(&self) -> Result<(), Problem> {
-        let queued = self.store.counts().await.map_err(|error| store_problem(&error))?.queued;
-        if queued < self.settings.queue_max {
-            return Ok(());
-        }
-        Err(self.not_admitted(&StoreError::QueueFull { queued }))
-    }
-
-    fn not_admitted(&self, error: &StoreError) -> Problem {
+    pub(super) fn not_admitted(&self, error: &StoreError) -> Problem {
         match *error {
             StoreError::QueueFull { queued } => Problem {
                 retry_after_s: Some(self.retry_after_s()),

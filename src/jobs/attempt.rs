@@ -77,7 +77,6 @@ async fn in_process(
 ) -> Result<Product<Content>, Problem> {
     let (service, processes) = (Arc::clone(service), Arc::clone(processes));
     let (row, live, clock) = (row.clone(), Arc::clone(live), clock.clone());
-    // One thread from start to end: the kernel ends the child with the thread that started it.
     let watching = tokio::task::spawn_blocking(move || {
         processes.run(&row, &service.spool, &live, &service.settings, &clock)
     });

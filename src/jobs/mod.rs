@@ -6,6 +6,7 @@
 //! fails, however it does, is a lost run, never a dead slot.
 
 mod admission;
+mod arrivals;
 mod attempt;
 mod blobs;
 mod capacity;

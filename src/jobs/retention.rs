@@ -52,7 +52,7 @@ impl Service {
         if let Err(error) = self.recover(Leases::Expired).await {
             tracing::error!(%error, "lost jobs could not be found");
         }
-        self.tell_load().await;
+        self.note_load();
     }
 
     /// Queues jobs again whose executor is lost, or ends them when that was once too often.

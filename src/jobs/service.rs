@@ -10,6 +10,7 @@ use tokio::sync::Notify;
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 
+use super::arrivals::Arrivals;
 use super::attempt::{Engine, Executor};
 use super::capacity::Capacity;
 use super::child::TrialError;
@@ -43,8 +44,11 @@ pub(super) struct Service {
     /// Name of this process in the store.
     pub(super) worker: String,
     pub(super) live: LiveJobs,
+    pub(super) arrivals: Arrivals,
     /// Wakes slots when a job is queued.
     pub(super) work: Notify,
+    /// Asks for the load to be told anew.
+    pub(super) load_changed: Notify,
     /// Raised when no more jobs are taken.
     pub(super) draining: CancellationToken,
     /// Raised when no job runs any more.
@@ -107,6 +111,9 @@ pub enum StartError {
     },
 }
 
+/// Shortest time between two looks at the load.
+const LOAD_PAUSE: Duration = Duration::from_millis(100);
+
 /// The file of rows in the data directory.
 const STORE_FILE: &str = "jobs.sqlite3";
 
@@ -154,7 +161,9 @@ impl Jobs {
             executor,
             worker: uuid::Uuid::now_v7().to_string(),
             live: LiveJobs::default(),
+            arrivals: Arrivals::default(),
             work: Notify::new(),
+            load_changed: Notify::new(),
             draining: CancellationToken::new(),
             stopping: CancellationToken::new(),
             slots: TaskTracker::new(),
@@ -170,6 +179,7 @@ impl Jobs {
             tokio::spawn(sender.send_forever(Arc::clone(&service)));
         }
         service.slots.spawn(retention::sweep_forever(Arc::clone(&service)));
+        service.slots.spawn(tell_load_forever(Arc::clone(&service)));
         service.slots.close();
         Ok(Self(service))
     }
@@ -179,7 +189,7 @@ impl Jobs {
         &self.0.settings
     }
 
-    /// Begins an upload; `announced` is its size where the caller says it.
+    /// Begins the upload of a mesh; `announced` is its size where the caller says it.
     ///
     /// # Errors
     /// `body-too-large` (before any byte is taken), `queue-full`, `storage-full`, `draining`.
@@ -187,17 +197,29 @@ impl Jobs {
         self.begin_upload(announced).await.inspect_err(meters::refused)
     }
 
+    /// Begins the upload of what belongs to a mesh: it needs no place of its own in the queue.
+    ///
+    /// # Errors
+    /// `storage-full`, `draining`.
+    pub async fn upload_beside(&self) -> Result<Upload, Problem> {
+        let begin = async {
+            self.0.check_open()?;
+            Upload::begin(Arc::clone(&self.0), None).await
+        };
+        begin.await.inspect_err(meters::refused)
+    }
+
     async fn begin_upload(&self, announced: Option<u64>) -> Result<Upload, Problem> {
         self.0.check_open()?;
         // Told now, the refusal costs neither the caller the upload nor this server the disk.
-        self.0.check_queue().await?;
+        let place = self.0.take_place().await?;
         if let Some(bytes) = announced {
             self.0.check_upload_size(bytes)?;
             if bytes > self.0.spool.bytes_max() || self.0.spool.is_disk_short_of(bytes) {
                 return Err(self.0.storage_full(bytes));
             }
         }
-        Upload::begin(Arc::clone(&self.0)).await
+        Upload::begin(Arc::clone(&self.0), Some(place)).await
     }
 
     /// Who submitted the job. Callers see only their own jobs.
@@ -283,7 +305,7 @@ impl Jobs {
         let row = service.row(id).await.inspect_err(|_| service.live.end(id))?;
         if row.state.is_final() {
             service.live.end(id);
-            service.tell_load().await;
+            service.note_load();
         }
         Ok(view::job(&row, service.live.get(id).as_deref()))
     }
@@ -328,7 +350,7 @@ impl Jobs {
         let orphans = self.0.store.delete(id).await.map_err(|error| store_problem(&error))?;
         self.0.live.end(id);
         self.0.remove(&orphans);
-        self.0.tell_load().await;
+        self.0.note_load();
         Ok(())
     }
 
@@ -467,7 +489,13 @@ impl Service {
             Ok(false) => {}
             Err(error) => tracing::warn!(job = %row.id, %error, "a queued job could not be ended"),
         }
-        self.tell_load().await;
+        self.note_load();
+    }
+
+    /// The load has changed.
+    pub(super) fn note_load(&self) {
+        self.arrivals.forget();
+        self.load_changed.notify_one();
     }
 
     /// Tells the metrics recorder how busy the service is.
@@ -475,6 +503,21 @@ impl Service {
         if let Ok(counts) = self.store.counts().await {
             meters::load(counts, self.spool.bytes());
         }
+    }
+}
+
+/// Tells the load whenever it has changed, beside those who change it: they have no use for it.
+async fn tell_load_forever(service: Arc<Service>) {
+    let tell = async {
+        loop {
+            service.load_changed.notified().await;
+            service.tell_load().await;
+            tokio::time::sleep(LOAD_PAUSE).await;
+        }
+    };
+    tokio::select! {
+        () = tell => {}
+        () = service.draining.cancelled() => {}
     }
 }
 

@@ -77,14 +77,14 @@ async fn run(service: &Arc<Service>, row: JobRow) {
     let live = service.live.begin(row.claim(), clock.clone());
     let heart = beat(Arc::clone(service), row.claim(), row.cancel_at, Arc::clone(&live));
     let heart = AbortOnDropHandle::new(tokio::spawn(heart));
-    service.tell_load().await;
+    service.note_load();
     let _room = service.room_for(&row, &live).await;
     let ended = attempt(service, &row, &live, &clock).await;
     service.note_run_time(&clock);
     let conclusion = conclude(service, &row, &live, &clock, ended).await;
     settle(service, &row, &live, conclusion).await;
     drop(heart);
-    service.tell_load().await;
+    service.note_load();
 }
 
 /// Turns the end of a run into what is kept of it; files are written here.

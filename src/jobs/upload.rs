@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use sha2::{Digest, Sha256};
 
+use super::arrivals::Place;
 use super::blobs::BlobWriter;
 use super::retention::on_disk;
 use super::service::Service;
-use super::spool::{Space, Unnamed, Written};
+use super::spool::{Space, Spool, Unnamed, Written};
 use super::store::BlobRef;
 use crate::wire::{Problem, ProblemCode};
 
@@ -18,47 +19,59 @@ const BLOCK_BYTES: usize = 256 << 10;
 /// An upload that is coming in. Dropped before [`finish`](Self::finish), it leaves nothing behind.
 pub struct Upload {
     service: Arc<Service>,
-    /// `None` while a block is being written; it stays so when that write is abandoned or fails.
-    sink: Option<Sink>,
+    sink: Sink,
     block: Vec<u8>,
     bytes: u64,
     space: Space,
-    unnamed: Unnamed,
+    place: Option<Place>,
 }
 
 impl std::fmt::Debug for Upload {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Upload")
-            .field("key", &self.unnamed.key)
-            .field("bytes", &self.bytes)
-            .finish_non_exhaustive()
+        f.debug_struct("Upload").field("bytes", &self.bytes).finish_non_exhaustive()
     }
 }
 
-struct Sink {
+/// Where the bytes go.
+enum Sink {
+    /// Nothing has been written yet.
+    Fresh,
+    Open(Box<OpenSink>),
+    /// A block is being written; it stays so when that write is abandoned or fails.
+    Away,
+}
+
+struct OpenSink {
+    unnamed: Unnamed,
     writer: Box<dyn BlobWriter>,
     digest: Sha256,
 }
 
 impl Sink {
+    /// The open file, begun when there is none. Blocks.
+    fn open(self, spool: &Arc<Spool>) -> io::Result<Box<OpenSink>> {
+        match self {
+            Self::Fresh => {
+                let (unnamed, writer) = spool.begin()?;
+                Ok(Box::new(OpenSink { unnamed, writer, digest: Sha256::new() }))
+            }
+            Self::Open(sink) => Ok(sink),
+            Self::Away => Err(io::ErrorKind::BrokenPipe.into()),
+        }
+    }
+}
+
+impl OpenSink {
     fn write(&mut self, block: &[u8]) -> io::Result<()> {
         self.digest.update(block);
         self.writer.write_all(block)
     }
-
-    fn commit(self) -> io::Result<[u8; 32]> {
-        self.writer.commit()?;
-        Ok(self.digest.finalize().into())
-    }
 }
 
 impl Upload {
-    pub(super) async fn begin(service: Arc<Service>) -> Result<Self, Problem> {
+    pub(super) async fn begin(service: Arc<Service>, place: Option<Place>) -> Result<Self, Problem> {
         let space = service.make_room(0).await?;
-        let spool = Arc::clone(&service.spool);
-        let (unnamed, writer) = on_disk(move || spool.begin()).await?;
-        let sink = Sink { writer, digest: Sha256::new() };
-        Ok(Self { service, sink: Some(sink), block: Vec::new(), bytes: 0, space, unnamed })
+        Ok(Self { service, sink: Sink::Fresh, block: Vec::new(), bytes: 0, space, place })
     }
 
     /// Takes the next bytes.
@@ -73,7 +86,16 @@ impl Upload {
             self.block.extend_from_slice(now);
             bytes = later;
             if self.block.len() == BLOCK_BYTES {
-                self.flush().await?;
+                let (mut block, sink) = self.next_block().await?;
+                let spool = Arc::clone(&self.service.spool);
+                let written = on_disk(move || {
+                    let mut sink = sink.open(&spool)?;
+                    sink.write(&block)?;
+                    block.clear();
+                    Ok((sink, block))
+                });
+                let (sink, block) = written.await?;
+                (self.sink, self.block) = (Sink::Open(sink), block);
             }
         }
         Ok(())
@@ -89,51 +111,45 @@ impl Upload {
     /// # Errors
     /// `storage-full`, `internal` when the disk fails.
     pub async fn finish(mut self) -> Result<Uploaded, Problem> {
-        self.flush().await?;
-        let Self { sink, bytes, space, unnamed, .. } = self;
-        let sink = sink.ok_or_else(broken)?;
-        let sha256 = on_disk(move || sink.commit()).await?;
-        let blob = BlobRef { key: unnamed.key.clone(), bytes, sha256 };
-        Ok(Uploaded(Written::upload(unnamed, blob, space)))
+        let (block, sink) = self.next_block().await?;
+        let spool = Arc::clone(&self.service.spool);
+        let written = on_disk(move || {
+            let mut sink = sink.open(&spool)?;
+            sink.write(&block)?;
+            let OpenSink { unnamed, writer, digest } = *sink;
+            writer.commit()?;
+            Ok((unnamed, digest.finalize().into()))
+        });
+        let (unnamed, sha256) = written.await?;
+        let blob = BlobRef { key: unnamed.key.clone(), bytes: self.bytes, sha256 };
+        Ok(Uploaded { written: Written::upload(unnamed, blob, self.space), _place: self.place })
     }
 
-    async fn flush(&mut self) -> Result<(), Problem> {
-        if self.block.is_empty() {
-            return Ok(());
-        }
+    /// What is to be written next, for which there is room now, and where to.
+    async fn next_block(&mut self) -> Result<(Vec<u8>, Sink), Problem> {
         let room = self.service.make_room(self.block.len() as u64).await?;
-        let Some(mut sink) = self.sink.take() else { return Err(broken()) };
         self.space.absorb(room);
-        let mut block = std::mem::take(&mut self.block);
-        let (sink, block) = on_disk(move || {
-            sink.write(&block)?;
-            block.clear();
-            Ok((sink, block))
-        })
-        .await?;
-        self.sink = Some(sink);
-        self.block = block;
-        Ok(())
+        Ok((std::mem::take(&mut self.block), std::mem::replace(&mut self.sink, Sink::Away)))
     }
 }
 
 /// A complete upload, to be handed to [`Jobs::submit`](super::Jobs::submit). Dropped instead, it leaves nothing behind.
 #[derive(Debug)]
-pub struct Uploaded(Written);
+pub struct Uploaded {
+    written: Written,
+    /// Given up when this is dropped.
+    _place: Option<Place>,
+}
 
 impl Uploaded {
     /// A row names the file now.
     pub(super) fn named(self) {
-        self.0.named();
+        self.written.named();
     }
 
     pub(super) fn blob(&self) -> Option<&BlobRef> {
-        self.0.blob()
+        self.written.blob()
     }
-}
-
-fn broken() -> Problem {
-    Problem::new(ProblemCode::Internal, "the upload was broken off")
 }
 
 /// A failure of the disk, told to the caller without paths and to the log with them.

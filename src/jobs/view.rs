@@ -1,6 +1,9 @@
 //! A job as others see it: the public view of its row, and its files to send.
 
+use std::io::Read as _;
+
 use super::live::Live;
+use super::retention::on_disk;
 use super::spool::Spool;
 use super::store::{BlobRef, JobRow};
 use super::upload::disk_problem;
@@ -42,12 +45,14 @@ impl StoredFile {
     ///
     /// # Errors
     /// `internal` when the disk fails.
-    pub async fn read(mut self) -> Result<Vec<u8>, Problem> {
+    pub async fn read(self) -> Result<Vec<u8>, Problem> {
+        let mut file = self.file.into_std().await;
         let mut content = Vec::with_capacity(self.bytes as usize);
-        match tokio::io::AsyncReadExt::read_to_end(&mut self.file, &mut content).await {
-            Ok(_) => Ok(content),
-            Err(error) => Err(disk_problem(&error)),
-        }
+        on_disk(move || {
+            file.read_to_end(&mut content)?;
+            Ok(content)
+        })
+        .await
     }
 }
 

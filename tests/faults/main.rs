@@ -6,6 +6,8 @@
 #[path = "../service/meshes.rs"]
 #[allow(dead_code, reason = "each folder uses a part of it")]
 mod meshes;
+#[path = "../service/processes.rs"]
+mod processes;
 #[path = "../service/server.rs"]
 #[allow(dead_code, reason = "each folder uses a part of it")]
 mod server;
@@ -13,7 +15,6 @@ mod server;
 mod confinement;
 mod ends;
 mod engine;
-mod processes;
 mod supervision;
 
 use libtest_mimic::{Arguments, Trial};
@@ -56,6 +57,9 @@ fn trials() -> Vec<Trial> {
             a_paused_process_ends_at_its_deadline,
             a_process_that_computes_without_end_ends_at_its_deadline,
             a_server_that_is_killed_leaves_no_process,
+            a_process_that_is_killed_while_it_waits_costs_no_job,
+            a_process_that_is_paused_while_it_waits_ends_at_the_deadline_of_its_job,
+            a_task_that_is_longer_than_a_pipe_holds_comes_through_whole,
             a_server_that_ends_in_order_leaves_no_process_and_no_folder,
             a_large_result_does_not_pass_through_the_memory_of_the_server,
         },

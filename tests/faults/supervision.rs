@@ -2,10 +2,10 @@
 
 use crate::ends::{goes_on, problem_of, server};
 use crate::engine::LARGE;
-use crate::processes::{child_of, children_of, parent_and_state, peak_memory};
-use crate::server::{PATIENCE, Server, link, signal};
-use serde_json::Value;
-use std::time::{Duration, Instant};
+use crate::processes::{all_children_of, child_of, children_of, parent_and_state, peak_memory, until_gone};
+use crate::server::{Server, link, patiently, signal};
+use reqwest::blocking::multipart::{Form, Part};
+use serde_json::{Value, json};
 
 /// A job that hangs, and its process.
 fn hanging(server: &Server) -> (Value, u32) {
@@ -13,15 +13,6 @@ fn hanging(server: &Server) -> (Value, u32) {
     server.until(&job, |job| job["progress"]["stage"] == "repair");
     let child = child_of(server);
     (job, child)
-}
-
-/// Waits until the process is gone. One that nobody reaps is gone as well: the first process of a container may not.
-fn until_gone(pid: u32) {
-    let begun = Instant::now();
-    while parent_and_state(pid).is_some_and(|(_, state)| state != 'Z') {
-        assert!(begun.elapsed() < PATIENCE, "process {pid} is still there");
-        std::thread::sleep(Duration::from_millis(5));
-    }
 }
 
 pub(crate) fn a_cancelled_job_leaves_no_process() {
@@ -68,9 +59,57 @@ pub(crate) fn a_process_that_computes_without_end_ends_at_its_deadline() {
 pub(crate) fn a_server_that_is_killed_leaves_no_process() {
     let mut server = server(&["--slots", "2"]);
     let (_, child) = hanging(&server);
+    let waiting = spare_of(&server);
     server.signal("KILL");
     assert_eq!(server.exit_code(), None, "killed by a signal");
     until_gone(child);
+    until_gone(waiting);
+}
+
+/// The process that waits for the next task.
+fn spare_of(server: &Server) -> u32 {
+    patiently(|| {
+        let at_work = children_of(server);
+        all_children_of(server).into_iter().find(|pid| !at_work.contains(pid))
+    })
+}
+
+pub(crate) fn a_process_that_is_killed_while_it_waits_costs_no_job() {
+    let server = server(&["--slots", "1"]);
+    for number in 0..3 {
+        signal(spare_of(&server), "KILL");
+        let job = server.ended(&server.job("repair", format!("{}# {number}\n", crate::meshes::OPEN)));
+        assert_eq!(job["state"], "succeeded", "{job}");
+    }
+}
+
+pub(crate) fn a_process_that_is_paused_while_it_waits_ends_at_the_deadline_of_its_job() {
+    let server = server(&["--slots", "1", "--deadline-max", "2s"]);
+    signal(spare_of(&server), "STOP");
+    let job = server.ended(&job_with_a_long_task(&server));
+    assert_eq!(job["problem"]["code"], "engine-timeout", "{job}");
+    goes_on(&server);
+}
+
+pub(crate) fn a_task_that_is_longer_than_a_pipe_holds_comes_through_whole() {
+    let server = server(&["--slots", "1"]);
+    let job = server.ended(&job_with_a_long_task(&server));
+    // The mesh does not have its last element.
+    assert_eq!(job["problem"]["code"], "plan-mismatch", "{job}");
+}
+
+/// A job whose plan alone has more bytes than a pipe holds.
+fn job_with_a_long_task(server: &Server) -> Value {
+    let elements: Vec<_> = (0..5000).map(|number| json!({"number": number, "remedy": "fill"})).collect();
+    let plan = json!({"findings": [{"code": "boundary-loop", "elements": elements}]});
+    let asked = json!({"operation": "repair", "params": {"plan": plan}}).to_string();
+    assert!(asked.len() > 64 << 10);
+    let form = Form::new()
+        .part("mesh", Part::bytes(crate::meshes::OPEN.as_bytes()))
+        .part("job", Part::text(asked).mime_str("application/json").unwrap());
+    let response = server.post("/v1/jobs").multipart(form).send().unwrap();
+    assert_eq!(response.status(), 202);
+    response.json().unwrap()
 }
 
 pub(crate) fn a_server_that_ends_in_order_leaves_no_process_and_no_folder() {

@@ -7,6 +7,11 @@ impl Random {
         Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x6d65_7368)
     }
 
+    /// A stream of its own for each round of a test, so that rounds may run side by side.
+    pub(crate) fn of_round(seed: u64, round: usize) -> Self {
+        Self::new(Self::new(seed << 40 | round as u64).bits())
+    }
+
     pub(crate) fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;

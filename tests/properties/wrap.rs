@@ -12,6 +12,10 @@ use meshmend::mesh::Soup;
 use meshmend::pipeline::{Operation, Options, Outcome, Refusal, run};
 use meshmend::winding::OpenShells;
 use meshmend::wrap::{WrapError, WrapOptions, wrap};
+use rayon::prelude::*;
+use std::sync::Mutex;
+use std::sync::atomic::AtomicUsize;
+use std::sync::atomic::Ordering::Relaxed;
 
 /// Positions, and the vertices of each triangle.
 type Mesh = (Vec<DVec3>, Vec<[u32; 3]>);
@@ -158,13 +162,22 @@ fn certificate_of(positions: &[DVec3], triangles: &[[u32; 3]]) -> Certificate {
     certificate::certify(&bytes, Encoding::StlBinary, &options, Depth::FirstViolation, &budget).unwrap()
 }
 
+/// A long run says that it goes on.
+#[allow(clippy::print_stderr, reason = "for who waits for a campaign")]
+fn tell_progress(round: usize, count: usize) {
+    if count >= 1000 && round.is_multiple_of(count / 100) {
+        eprintln!("round {round} of {count}");
+    }
+}
+
 #[test]
 fn every_bad_soup_is_wrapped_in_a_certified_solid_or_rightly_refused() {
-    let mut random = Random::new(11);
     let budget = Budget::unlimited();
     let count = cases(120, 100_000);
-    let (mut refused, mut unfit) = (0, 0);
-    for round in 0..count {
+    let (refused, unfit) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    (0..count).into_par_iter().for_each(|round| {
+        let mut random = Random::of_round(11, round);
+        tell_progress(round, count);
         let (positions, triangles) = soup(&mut random);
         let open_shells = random.pick(&[OpenShells::Auto, OpenShells::Close, OpenShells::Thicken]);
         let options = WrapOptions { cells: 16, open_shells, ..WrapOptions::default() };
@@ -177,15 +190,16 @@ fn every_bad_soup_is_wrapped_in_a_certified_solid_or_rightly_refused() {
                 let certificate = certificate_of(&wrapped.positions, &wrapped.triangles);
                 let p1_holds = certificate.witnesses.iter().all(|w| w.condition == Condition::Alternating);
                 assert!(p1_holds, "{round} fitted: {:?}", certificate.witnesses);
-                unfit += usize::from(!certificate.is_printable());
+                unfit.fetch_add(usize::from(!certificate.is_printable()), Relaxed);
             }
             Err(WrapError::NotRepresentable(coarse)) => {
                 assert!(coarse.pitch * 16384.0 > coarse.diagonal, "{round}: {coarse:?}");
-                refused += 1;
+                refused.fetch_add(1, Relaxed);
             }
             Err(error) => panic!("{round}: {error}"),
         }
-    }
+    });
+    let (refused, unfit) = (refused.into_inner(), unfit.into_inner());
     assert!(refused < count / 3 && unfit <= count / 200, "{refused} {unfit}");
     println!(
         "| soups wrapped at 16 cells | {count}, of which {refused} refused: beyond float32 | {unfit} without the fit |"
@@ -194,10 +208,11 @@ fn every_bad_soup_is_wrapped_in_a_certified_solid_or_rightly_refused() {
 
 #[test]
 fn every_bad_soup_is_repaired_or_rightly_refused_at_the_default_resolution() {
-    let mut random = Random::new(12);
     let count = cases(3, 1_000);
-    let mut outcomes = std::collections::BTreeMap::<String, usize>::new();
-    for round in 0..count {
+    let outcomes = Mutex::new(std::collections::BTreeMap::<String, usize>::new());
+    (0..count).into_par_iter().for_each(|round| {
+        let mut random = Random::of_round(12, round);
+        tell_progress(round, count);
         let (positions, triangles) = soup(&mut random);
         let raw = RawSoup { positions: positions.iter().map(DVec3::to_array).collect(), triangles };
         let bytes = encode(&raw, Encoding::Obj);
@@ -213,7 +228,8 @@ fn every_bad_soup_is_repaired_or_rightly_refused_at_the_default_resolution() {
         } else {
             assert!(report.certificate.as_ref().unwrap().is_printable(), "{round}");
         }
-        *outcomes.entry(format!("{outcome:?}")).or_default() += 1;
-    }
+        *outcomes.lock().unwrap().entry(format!("{outcome:?}")).or_default() += 1;
+    });
+    let outcomes = outcomes.into_inner().unwrap();
     println!("| soups repaired at the default resolution | {count}: {outcomes:?} |");
 }

@@ -1,4 +1,4 @@
-//! A server that is killed at random points, again and again, by a client that keeps account.
+//! A server and the processes of its jobs that are killed at random points, again and again, by a client that keeps account.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -9,7 +9,8 @@ use reqwest::blocking::{Client, Response};
 use serde_json::Value;
 
 use crate::meshes::{SOLID, long_job};
-use crate::server::{Server, link};
+use crate::processes::{all_children_of, children_of, until_gone};
+use crate::server::{Server, link, try_signal};
 use crate::support::cases;
 
 const SETTINGS: &[&str] = &["--slots", "2", "--lease", "2s", "--queue-max", "1000"];
@@ -100,6 +101,7 @@ fn a_server_killed_at_random_points_loses_no_accepted_job() {
     let mut dice = Dice(7);
     let mut account = Account::default();
     let mut server = Server::with(SETTINGS);
+    let (mut server_kills, mut child_kills, mut processes_gone) = (0, 0, 0);
     for _ in 0..cycles {
         let client = Client::builder().timeout(Duration::from_secs(20)).build().unwrap();
         if dice.below(4) > 0 {
@@ -108,19 +110,36 @@ fn a_server_killed_at_random_points_loses_no_accepted_job() {
         }
         let is_over = Arc::new(AtomicBool::new(false));
         let pause = Duration::from_millis(dice.below(400));
-        std::thread::scope(|scope| {
+        let is_child = dice.below(3) == 0;
+        let children = std::thread::scope(|scope| {
             let over = Arc::clone(&is_over);
             let target = &server;
-            scope.spawn(move || {
+            let killing = scope.spawn(move || {
                 std::thread::sleep(pause);
                 over.store(true, Ordering::SeqCst);
+                if is_child {
+                    let mut children = children_of(target);
+                    children.truncate(1);
+                    children.retain(|&pid| try_signal(pid, "KILL"));
+                    return children;
+                }
+                let children = all_children_of(target);
                 target.signal("KILL");
+                children
             });
             while !is_over.load(Ordering::SeqCst) {
                 account.send(target, &client, &mut dice);
             }
+            killing.join().unwrap()
         });
-        server = server.killed_and_restarted(SETTINGS);
+        if is_child {
+            child_kills += children.len();
+        } else {
+            server_kills += 1;
+            server = server.killed_and_restarted(SETTINGS);
+        }
+        processes_gone += children.len();
+        children.into_iter().for_each(until_gone);
     }
     let (mut succeeded, mut given_up, mut lost_runs, mut doubles) = (0, 0, 0, 0);
     for (number, known) in &account.asked {
@@ -178,7 +197,8 @@ fn a_server_killed_at_random_points_loses_no_accepted_job() {
         "{removed} removed, {succeeded} of {accepted} succeeded"
     );
     print_table(&[
-        ("kills of the server", cycles),
+        ("kills of the server", server_kills),
+        ("kills of a job's process", child_kills),
         ("requests, each with a key", account.asked.len()),
         ("jobs accepted", accepted),
         ("accepted jobs lost", accepted - succeeded - given_up),
@@ -186,6 +206,7 @@ fn a_server_killed_at_random_points_loses_no_accepted_job() {
         ("runs lost with a kill", lost_runs as usize),
         ("jobs given up after three lost runs", given_up),
         ("requests that made two jobs, jobs that ended twice", doubles),
+        ("processes of jobs that were killed or lost their server, all gone", processes_gone),
         ("files left once all jobs were deleted", files_left.len()),
     ]);
 }

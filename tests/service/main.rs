@@ -22,6 +22,8 @@ mod ordering;
 mod printing;
 mod privacy;
 mod problems;
+#[allow(dead_code, reason = "the tests of faults use the rest")]
+mod processes;
 mod rates;
 mod receiver;
 mod restarts;

@@ -221,8 +221,13 @@ fn bound(log: &mut BufReader<ChildStderr>, words: &str, seen: &mut String) -> St
 
 /// Sends a signal by its name.
 pub(crate) fn signal(pid: u32, name: &str) {
-    let line = format!("kill -{name} {pid}");
-    assert!(Command::new("sh").args(["-c", &line]).status().unwrap().success());
+    assert!(try_signal(pid, name));
+}
+
+/// Sends a signal by its name. False: there is no such process any more.
+pub(crate) fn try_signal(pid: u32, name: &str) -> bool {
+    let line = format!("kill -{name} {pid} 2>/dev/null");
+    Command::new("sh").args(["-c", &line]).status().unwrap().success()
 }
 
 pub(crate) fn link<'j>(job: &'j Value, name: &str) -> &'j str {

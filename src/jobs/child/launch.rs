@@ -1,13 +1,14 @@
-//! The start of a child, and its certain end.
+//! The start of a child, the task it is given, and its certain end.
 
 use std::fs::File;
-use std::io::{self, PipeReader, Seek as _, Write as _};
+use std::io::{self, ErrorKind, PipeReader, PipeWriter, Write as _};
 use std::os::fd::OwnedFd;
 use std::os::unix::fs::FileExt as _;
 use std::os::unix::process::CommandExt as _;
 use std::process::{Child, Command, ExitStatus, Stdio};
 
 use rustix::fs::{MemfdFlags, SealFlags, fcntl_add_seals, ftruncate, memfd_create};
+use rustix::io::ioctl_fionbio;
 use rustix::process::{Pid, PidfdFlags, Signal, kill_process_group, pidfd_open};
 
 use super::run::RUN_JOB;
@@ -24,6 +25,8 @@ const KEPT_VARIABLES: &str = "MALLOC_";
 #[derive(Debug)]
 pub(super) struct Running {
     child: Child,
+    /// The part of its task that it has not been told yet.
+    pub(super) untold: Option<Untold>,
     /// What it says.
     pub(super) output: PipeReader,
     /// Readable once it has ended; `None` where the kernel has no such thing.
@@ -32,25 +35,57 @@ pub(super) struct Running {
     status: Option<ExitStatus>,
 }
 
+/// What a child has still to be told, and the way to it: it listens until that is closed.
+#[derive(Debug)]
+pub(super) struct Untold {
+    pub(super) pipe: PipeWriter,
+    words: Vec<u8>,
+}
+
 impl Running {
-    /// Starts a child. It dies with the calling thread.
-    pub(super) fn start(task: &Task) -> io::Result<Self> {
-        let mut order = File::from(memfd_create("meshmend-task", MemfdFlags::CLOEXEC)?);
-        serde_json::to_writer(&mut order, task)?;
-        order.flush()?;
-        order.rewind()?;
+    /// Starts a child, which waits for its task. It dies with the calling thread.
+    pub(super) fn start() -> io::Result<Self> {
+        let (source, pipe) = io::pipe()?;
+        // A child that does not listen must not hold up whoever speaks to it.
+        ioctl_fionbio(&pipe, true)?;
         let words = page_of_words()?;
         let (output, sink) = io::pipe()?;
         let mut command = Command::new(OWN_BINARY);
         command.arg0(env!("CARGO_PKG_NAME")).arg(RUN_JOB).env_clear().process_group(0);
         command
             .envs(std::env::vars_os().filter(|(name, _)| name.to_string_lossy().starts_with(KEPT_VARIABLES)));
-        command.stdin(Stdio::from(order)).stdout(Stdio::from(sink)).stderr(Stdio::from(words.try_clone()?));
+        command.stdin(Stdio::from(source)).stdout(Stdio::from(sink)).stderr(Stdio::from(words.try_clone()?));
         let child = command.spawn()?;
-        // With the command goes this process's end of the pipe, so that the child's end of it is heard.
+        // With the command go this process's copies of the child's ends, so that the child's end is heard.
         drop(command);
         let ended = pidfd_open(Pid::from_child(&child), PidfdFlags::empty()).ok();
-        Ok(Self { child, output, ended, words, status: None })
+        let untold = Some(Untold { pipe, words: Vec::new() });
+        Ok(Self { child, untold, output, ended, words, status: None })
+    }
+
+    /// Gives it its task; [`tell`](Self::tell) goes on with what does not fit into the pipe.
+    pub(super) fn give(&mut self, task: &Task) -> io::Result<()> {
+        if let Some(untold) = &mut self.untold {
+            untold.words = serde_json::to_vec(task)?;
+        }
+        self.tell()
+    }
+
+    /// Tells it as much of its task as it will hear now.
+    pub(super) fn tell(&mut self) -> io::Result<()> {
+        let Some(Untold { pipe, words }) = &mut self.untold else { return Ok(()) };
+        while !words.is_empty() {
+            match pipe.write(words) {
+                Ok(told) => drop(words.drain(..told)),
+                Err(error) if error.kind() == ErrorKind::WouldBlock => return Ok(()),
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                // It is gone: how it ended says more.
+                Err(error) if error.kind() == ErrorKind::BrokenPipe => break,
+                Err(error) => return Err(error),
+            }
+        }
+        self.untold = None;
+        Ok(())
     }
 
     /// How it ended, if it has.

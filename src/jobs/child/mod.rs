@@ -1,6 +1,7 @@
 //! Jobs in processes of their own: the same binary, started again for one job, confined, watched and cleared away.
 //!
-//! Parent: [`watch::watch`] starts a child, hears it, ends it when it must end, and says how it ended. Child:
+//! Parent: [`starter::Starter`] starts children, [`watch::watch`] gives one its task, hears it, ends it when it must end,
+//! and says how it ended. Child:
 //! [`run_job`] limits itself, opens what it needs, gives up the rest, runs the engine and leaves files in a folder that
 //! the parent takes over. They speak JSON: a [`task::Task`] on standard input, a line for each [`task::Message`] on
 //! standard output. No mesh goes through a pipe. `docs/isolation.md` says what is limited.
@@ -15,6 +16,7 @@ mod limits;
 mod processes;
 mod run;
 mod sandbox;
+mod starter;
 mod task;
 mod trial;
 mod watch;

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use super::death::Death;
 use super::limits::Limits;
 use super::sandbox::Protections;
+use super::starter::Starter;
 use super::task::Task;
 use super::trial::{TrialError, try_out};
 use super::watch::watch;
@@ -21,9 +22,10 @@ use crate::jobs::store::{BlobRef, JobRow};
 use crate::jobs::upload::disk_problem;
 use crate::wire::{Operation, Options, Problem};
 
-/// Starts children, each for one job.
+/// Gives jobs to children, one to each.
 #[derive(Debug)]
 pub(in crate::jobs) struct Processes {
+    starter: Starter,
     workspaces: Workspaces,
     /// A task for nothing, with what all tasks have in common.
     pattern: Task,
@@ -33,13 +35,14 @@ impl Processes {
     /// Finds out by a trial whether children do their job here, and says what holds them.
     pub(in crate::jobs) fn prepare(settings: &JobsSettings) -> Result<Self, TrialError> {
         let workspaces = Workspaces::open(&settings.data_dir)?;
+        let starter = Starter::open()?;
         let pattern = pattern(settings);
-        let protections = try_out(&workspaces, pattern.clone())?;
+        let protections = try_out(&starter, &workspaces, pattern.clone())?;
         tell(protections, &pattern.limits);
-        Ok(Self { workspaces, pattern })
+        Ok(Self { starter, workspaces, pattern })
     }
 
-    /// Runs a job in a child. Blocks, and the calling thread must not end before the child.
+    /// Runs a job in a child. Blocks.
     pub(in crate::jobs) fn run(
         &self,
         row: &JobRow,
@@ -68,7 +71,7 @@ impl Processes {
             ..self.pattern.clone()
         };
         let hear = clock.observer();
-        match watch(&task, &workspace, &live.stop, settings.deadline_max, &hear) {
+        match watch(&self.starter, &task, &workspace, &live.stop, settings.deadline_max, &hear) {
             Ok(answered) => {
                 if let Some(place) = answered.panicked_at {
                     tracing::error!(job = %row.id, place, "the engine panicked");

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use super::limits::Limits;
 use super::sandbox::{Protections, Sandbox};
+use super::starter::Starter;
 use super::task::Task;
 use super::watch::watch;
 use super::workspace::Workspaces;
@@ -39,7 +40,11 @@ pub enum TrialError {
 }
 
 /// Runs a small job as `task` says, which is for another one.
-pub(super) fn try_out(workspaces: &Workspaces, task: Task) -> Result<Protections, TrialError> {
+pub(super) fn try_out(
+    starter: &Starter,
+    workspaces: &Workspaces,
+    task: Task,
+) -> Result<Protections, TrialError> {
     let workspace = Arc::new(workspaces.make()?);
     let input = workspace.path().join("trial");
     std::fs::write(&input, MESH)?;
@@ -61,7 +66,7 @@ pub(super) fn try_out(workspaces: &Workspaces, task: Task) -> Result<Protections
         limits: Limits { file_bytes: TRIAL_BYTES, ..task.limits },
         ..task
     };
-    let answered = watch(&task, &workspace, &StopFlag::default(), PATIENCE, &|_| {})
+    let answered = watch(starter, &task, &workspace, &StopFlag::default(), PATIENCE, &|_| {})
         .map_err(|death| TrialError::NoAnswer(format!("{death:?}")))?;
     if let Err(problem) = answered.outcome {
         return Err(TrialError::NoAnswer(problem.detail));

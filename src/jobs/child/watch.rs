@@ -1,4 +1,4 @@
-//! A child from its start to its end, watched from one thread of the server: the kernel ends the child with that thread.
+//! A child from its task to its end, watched from one thread of the server.
 
 use std::io::{self, Read as _};
 use std::path::Path;
@@ -11,6 +11,7 @@ use super::death::Death;
 use super::hearing::{Hearing, Last};
 use super::launch::Running;
 use super::sandbox::Protections;
+use super::starter::Starter;
 use super::task::{FileMade, Task, file_name};
 use super::workspace::Workspace;
 use crate::budget::{Event, StopFlag};
@@ -31,9 +32,10 @@ pub(in crate::jobs) struct Answered {
     pub(in crate::jobs) outcome: Result<Product<MadeFile>, Problem>,
 }
 
-/// Runs a child to its end, in `workspace`. Passes go to `hear`. When `stop` is raised the child ends within moments; when
+/// Runs a child of `starter` to its end, in `workspace`. Passes go to `hear`. When `stop` is raised the child ends within moments; when
 /// `patience` is over, this raises it.
-pub(in crate::jobs) fn watch(
+pub(super) fn watch(
+    starter: &Starter,
     task: &Task,
     workspace: &Arc<Workspace>,
     stop: &StopFlag,
@@ -41,7 +43,8 @@ pub(in crate::jobs) fn watch(
     hear: &dyn Fn(Event),
 ) -> Result<Answered, Death> {
     let begun = Instant::now();
-    let mut running = Running::start(task).map_err(Death::NotStarted)?;
+    let mut running = starter.child().map_err(Death::NotStarted)?;
+    running.give(task).map_err(Death::NotStarted)?;
     let mut hearing = Hearing::default();
     let mut piece = vec![0; 8 << 10];
     let mut is_open = true;
@@ -53,6 +56,7 @@ pub(in crate::jobs) fn watch(
             running.kill();
             return Err(Death::Stopped(reason));
         }
+        running.tell().map_err(Death::NotStarted)?;
         // Asked before the last words are read, so that none can come after.
         let status = running.status().map_err(Death::NotStarted)?;
         let has_words = wait(&running, is_open, if status.is_some() { Duration::ZERO } else { TICK })
@@ -91,12 +95,15 @@ pub(in crate::jobs) fn watch(
 
 /// Waits until the child says something, ends, or `patience` is over. Whether there is something to read.
 fn wait(running: &Running, is_open: bool, patience: Duration) -> io::Result<bool> {
-    let mut sources = Vec::with_capacity(2);
+    let mut sources = Vec::with_capacity(3);
     if is_open {
         sources.push(PollFd::new(&running.output, PollFlags::IN));
     }
     if let Some(ended) = &running.ended {
         sources.push(PollFd::new(ended, PollFlags::IN));
+    }
+    if let Some(untold) = &running.untold {
+        sources.push(PollFd::new(&untold.pipe, PollFlags::OUT));
     }
     let patience = Timespec::try_from(patience).map_err(io::Error::other)?;
     match poll(&mut sources, Some(&patience)) {

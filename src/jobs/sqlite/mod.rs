@@ -15,7 +15,7 @@ use std::collections::HashSet;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicI64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use jiff::Timestamp;
@@ -39,15 +39,14 @@ pub type StoreClock = Arc<dyn Fn() -> i64 + Send + Sync>;
 
 /// A store in a file.
 pub struct SqliteStore {
-    path: PathBuf,
     clock: StoreClock,
     writer: Writer,
-    readers: Arc<Mutex<Vec<Connection>>>,
+    readers: Arc<Readers>,
 }
 
 impl fmt::Debug for SqliteStore {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("SqliteStore").field("path", &self.path).finish_non_exhaustive()
+        f.debug_struct("SqliteStore").field("path", &self.readers.path).finish_non_exhaustive()
     }
 }
 
@@ -74,7 +73,8 @@ impl SqliteStore {
         schema::migrate(&mut connection)?;
         let writer = Writer::start(connection)
             .map_err(|error| rusqlite::Error::ToSqlConversionFailure(Box::new(error)))?;
-        Ok(Self { path: path.to_owned(), clock, writer, readers: Arc::default() })
+        let readers = Readers { path: path.to_owned(), idle: Mutex::default() };
+        Ok(Self { clock, writer, readers: Arc::new(readers) })
     }
 
     /// Makes a change, at the time of the store's clock.
@@ -86,31 +86,55 @@ impl SqliteStore {
         self.writer.write(move |connection| body(connection, clock()))
     }
 
+    /// Looks one row or a few numbers up, at once: they are in memory nearly always, and take less time than handing the
+    /// question to another thread.
+    fn look_up<T: Send + 'static>(
+        &self,
+        body: impl FnOnce(&Connection, i64) -> Result<T, StoreError>,
+    ) -> StoreFuture<'_, T> {
+        let now = (self.clock)();
+        Box::pin(std::future::ready(self.readers.with(|connection| body(connection, now))))
+    }
+
     /// Looks into the file, at the time of the store's clock.
     fn read<T: Send + 'static>(
         &self,
         body: impl FnOnce(&Connection, i64) -> Result<T, StoreError> + Send + 'static,
     ) -> StoreFuture<'_, T> {
-        let (clock, readers, path) = (Arc::clone(&self.clock), Arc::clone(&self.readers), self.path.clone());
-        let look = move || {
-            let kept = readers.lock().unwrap_or_else(PoisonError::into_inner).pop();
-            let connection = match kept {
-                Some(connection) => connection,
-                None => reader(&path).map_err(|error| failure(&error))?,
-            };
-            let result = body(&connection, clock());
-            if !matches!(result, Err(StoreError::Unavailable(_))) {
-                let mut readers = readers.lock().unwrap_or_else(PoisonError::into_inner);
-                if readers.len() < READERS_MAX {
-                    readers.push(connection);
-                }
-            }
-            result
-        };
+        let (clock, readers) = (Arc::clone(&self.clock), Arc::clone(&self.readers));
+        let look = move || readers.with(|connection| body(connection, clock()));
         Box::pin(async move {
             let looked = tokio::task::spawn_blocking(look).await;
             looked.map_err(|error| StoreError::Unavailable(error.to_string()))?
         })
+    }
+}
+
+/// Connections that only read.
+struct Readers {
+    path: PathBuf,
+    idle: Mutex<Vec<Connection>>,
+}
+
+impl Readers {
+    fn with<T>(&self, body: impl FnOnce(&Connection) -> Result<T, StoreError>) -> Result<T, StoreError> {
+        let kept = self.idle().pop();
+        let connection = match kept {
+            Some(connection) => connection,
+            None => reader(&self.path).map_err(|error| failure(&error))?,
+        };
+        let result = body(&connection);
+        if !matches!(result, Err(StoreError::Unavailable(_))) {
+            let mut idle = self.idle();
+            if idle.len() < READERS_MAX {
+                idle.push(connection);
+            }
+        }
+        result
+    }
+
+    fn idle(&self) -> MutexGuard<'_, Vec<Connection>> {
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -154,16 +178,16 @@ impl JobStore for SqliteStore {
     }
 
     fn get(&self, id: JobId) -> StoreFuture<'_, JobRow> {
-        self.read(move |connection, _| rows::get(connection, id))
+        self.look_up(move |connection, _| rows::get(connection, id))
     }
 
     fn find_keyed(&self, owner: Option<String>, key: IdempotencyKey) -> StoreFuture<'_, Option<JobRow>> {
-        self.read(move |connection, _| listing::find_keyed(connection, owner.as_deref(), &key))
+        self.look_up(move |connection, _| listing::find_keyed(connection, owner.as_deref(), &key))
     }
 
     fn find_equal(&self, job: &NewJob) -> StoreFuture<'_, Option<JobRow>> {
         let job = job.clone();
-        self.read(move |connection, now| listing::find_equal(connection, &job, now))
+        self.look_up(move |connection, now| listing::find_equal(connection, &job, now))
     }
 
     fn list(&self, query: ListQuery) -> StoreFuture<'_, Vec<JobRow>> {
@@ -179,7 +203,7 @@ impl JobStore for SqliteStore {
     }
 
     fn counts(&self) -> StoreFuture<'_, JobCounts> {
-        self.read(|connection, _| listing::counts(connection))
+        self.look_up(|connection, _| listing::counts(connection))
     }
 
     fn claim(&self, request: ClaimRequest) -> StoreFuture<'_, Option<JobRow>> {

@@ -3,8 +3,18 @@
 use crate::server::{PATIENCE, Server};
 use std::time::{Duration, Instant};
 
-/// The processes that the server started and that have not been reaped.
+/// The processes that run jobs of the server and have not been reaped. One that waits for a task is none of them: it has
+/// not stepped back behind the server yet.
 pub(crate) fn children_of(server: &Server) -> Vec<u32> {
+    let mut children = all_children_of(server);
+    children.retain(|&pid| {
+        stat(pid).is_some_and(|fields| fields[0].as_str() == "Z" || fields[16].as_str() != "0")
+    });
+    children
+}
+
+/// All processes that the server started and that have not been reaped.
+pub(crate) fn all_children_of(server: &Server) -> Vec<u32> {
     let number = |name: std::ffi::OsString| name.to_str()?.parse::<u32>().ok();
     let processes = std::fs::read_dir("/proc").unwrap().filter_map(|entry| number(entry.ok()?.file_name()));
     processes.filter(|&pid| parent_and_state(pid).is_some_and(|(its, _)| its == server.pid())).collect()
@@ -22,13 +32,26 @@ pub(crate) fn child_of(server: &Server) -> u32 {
     }
 }
 
+/// Waits until the process is gone. One that nobody reaps is gone as well: the first process of a container may not.
+pub(crate) fn until_gone(pid: u32) {
+    let begun = Instant::now();
+    while parent_and_state(pid).is_some_and(|(_, state)| state != 'Z') {
+        assert!(begun.elapsed() < PATIENCE, "process {pid} is still there");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
 /// The parent of a process and the letter of its state; `None`: there is no such process.
 pub(crate) fn parent_and_state(pid: u32) -> Option<(u32, char)> {
+    let fields = stat(pid)?;
+    Some((fields[1].parse().ok()?, fields[0].chars().next()?))
+}
+
+/// What the kernel says of a process, from its state on: its parent comes next, its nice value as the sixteenth after it.
+fn stat(pid: u32) -> Option<Vec<String>> {
     let stat = std::fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
     // Its name stands in brackets and may hold anything.
-    let mut fields = stat.rsplit_once(')')?.1.split_whitespace();
-    let state = fields.next()?.chars().next()?;
-    Some((fields.next()?.parse().ok()?, state))
+    Some(stat.rsplit_once(')')?.1.split_whitespace().map(str::to_owned).collect())
 }
 
 /// The most memory that the server has held at one time, in bytes.

@@ -1,0 +1,102 @@
+//! Uploads that begin while the queue is nearly full: most of them are refused before they cost anything. What is decided
+//! here saves work; whether a job is admitted is decided by the store.
+
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use super::service::{Service, store_problem};
+use super::store::StoreError;
+use crate::wire::Problem;
+
+/// For how long the length of the queue is taken as it was, unless it is known to have changed: under a flood of requests,
+/// asking for it is much of the work.
+const RECENT: Duration = Duration::from_millis(10);
+/// For how long an upload holds a place in the queue before it is a job: one that trickles in keeps nobody else out.
+const PLACE_LASTS: Duration = Duration::from_secs(1);
+
+/// What is known about the queue for those who come.
+#[derive(Debug, Default)]
+pub(super) struct Arrivals(Mutex<Known>);
+
+#[derive(Debug, Default)]
+struct Known {
+    /// How many jobs waited, and when that was.
+    queued: Option<(Instant, usize)>,
+    /// When uploads began that are not jobs yet, the earliest first.
+    places: VecDeque<Instant>,
+}
+
+/// An upload that is not a job yet, until it is dropped.
+#[derive(Debug)]
+pub(super) struct Place {
+    service: Arc<Service>,
+    taken_at: Instant,
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        let mut known = self.service.arrivals.known();
+        if let Some(own) = known.places.iter().position(|&at| at == self.taken_at) {
+            known.places.remove(own);
+        }
+    }
+}
+
+impl Arrivals {
+    /// The queue is not as it was.
+    pub(super) fn forget(&self) {
+        self.known().queued = None;
+    }
+
+    fn known(&self) -> MutexGuard<'_, Known> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Known {
+    /// Places that count at `now`.
+    fn taken(&mut self, now: Instant) -> usize {
+        while self.places.front().is_some_and(|&at| now.duration_since(at) > PLACE_LASTS) {
+            self.places.pop_front();
+        }
+        self.places.len()
+    }
+}
+
+impl Service {
+    /// A place in the queue for an upload that begins; refuses when there is none.
+    pub(super) async fn take_place(self: &Arc<Self>) -> Result<Place, Problem> {
+        let known = self.arrivals.known().queued.filter(|(at, _)| at.elapsed() < RECENT);
+        let (at, queued) = match known {
+            Some(known) => known,
+            None => {
+                let counts = self.store.counts().await.map_err(|error| store_problem(&error))?;
+                (Instant::now(), counts.queued)
+            }
+        };
+        let now = Instant::now();
+        let mut known = self.arrivals.known();
+        known.queued = Some((at, queued));
+        let taken = known.taken(now);
+        if queued + taken >= self.settings.queue_max {
+            return Err(self.not_admitted(&StoreError::QueueFull { queued }));
+        }
+        known.places.push_back(now);
+        Ok(Place { service: Arc::clone(self), taken_at: now })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_place_counts_for_a_while_only() {
+        let begun = Instant::now();
+        let mut known = Known { queued: None, places: [begun, begun + PLACE_LASTS].into() };
+        assert_eq!(known.taken(begun + PLACE_LASTS), 2);
+        assert_eq!(known.taken(begun + PLACE_LASTS * 3 / 2), 1);
+        assert_eq!(known.taken(begun + PLACE_LASTS * 3), 0);
+    }
+}
