@@ -24,6 +24,12 @@ declare -A filters=(
   [kill]="killed_at_random_points"
 )
 
+# Where the tests of a campaign are, when not everywhere: the rest is not built.
+declare -A places=(
+  [wrap]="--test properties"
+  [kill]="--test service"
+)
+
 # Campaigns against a running service: each script starts its own server on loopback and prints its page.
 declare -A scripts=(
   [slow-connections]="slow_connections.py"
@@ -58,7 +64,8 @@ log=target/campaign-$name.log
 mkdir -p docs/campaigns target
 begin=$SECONDS
 result=passed
-MESHMEND_CAMPAIGN=1 cargo test --release --locked --no-fail-fast --lib --tests -- "$filter" --nocapture --test-threads=1 \
+read -ra place <<< "${places[$name]:---lib --tests}"
+MESHMEND_CAMPAIGN=1 cargo test --release --locked --no-fail-fast "${place[@]}" -- "$filter" --nocapture --test-threads=1 \
   2>&1 | tee "$log" || result=FAILED
 
 {

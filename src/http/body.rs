@@ -11,7 +11,7 @@ use tokio::time::Instant;
 use crate::wire::{Problem, ProblemCode};
 
 /// Largest rest of an unwanted body that is taken in.
-pub(super) const DISCARD_BYTES_MAX: u64 = 256 << 10;
+const DISCARD_BYTES_MAX: u64 = 256 << 10;
 /// How long it may take to come.
 const DISCARD_PATIENCE: Duration = Duration::from_millis(20);
 

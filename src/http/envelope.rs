@@ -14,10 +14,10 @@ use futures_util::FutureExt as _;
 use tracing::Instrument as _;
 use uuid::Uuid;
 
-use super::body::DISCARD_BYTES_MAX;
 use super::problem::{self, Told};
 use super::state::{AboutJob, Caller};
 use super::trace;
+use super::unread::Unread;
 use crate::jobs::JobId;
 use crate::wire::{Problem, ProblemCode};
 
@@ -49,6 +49,7 @@ pub(super) struct Peer(pub(super) IpAddr);
 pub(super) async fn envelop(mut request: Request, next: Next) -> Response {
     let started = Instant::now();
     let seen = Seen::of(&request);
+    let unread = Unread::watch(&mut request);
     request.extensions_mut().insert(seen.id.clone());
     let mut response = match head_too_large(&request) {
         Some(problem) => problem::respond(problem),
@@ -57,7 +58,7 @@ pub(super) async fn envelop(mut request: Request, next: Next) -> Response {
             answer(request, next).instrument(span).await
         }
     };
-    seen.finish(&mut response, started);
+    seen.finish(&mut response, &unread, started);
     response
 }
 
@@ -118,14 +119,8 @@ impl Seen {
         }
     }
 
-    /// The answer may have come before a large body did. Then the connection ends with it, and the client should know.
-    fn may_leave_body_unread(&self, status: u16) -> bool {
-        let is_early = matches!(status, 401 | 403 | 404 | 405 | 413 | 415 | 429 | 503 | 507);
-        is_early && self.bytes_in.is_some_and(|bytes| bytes > DISCARD_BYTES_MAX)
-    }
-
     /// Adds the common headers and writes the log line.
-    fn finish(self, response: &mut Response, started: Instant) {
+    fn finish(self, response: &mut Response, unread: &Unread, started: Instant) {
         let elapsed = started.elapsed();
         let status = response.status().as_u16();
         let headers = response.headers_mut();
@@ -138,7 +133,7 @@ impl Seen {
         if let Ok(timing) = HeaderValue::from_str(&format!("total;dur={:.3}", elapsed.as_secs_f64() * 1e3)) {
             headers.append("server-timing", timing);
         }
-        if self.may_leave_body_unread(status) {
+        if unread.is_so() {
             headers.insert(header::CONNECTION, HeaderValue::from_static("close"));
         }
         let bytes_out = response.body().size_hint().exact();

@@ -106,14 +106,16 @@ pub(super) async fn receive(
 
 /// Streams a raw body to disk; `None` when it has no byte.
 async fn receive_mesh(service: &Service, mut body: IncomingBody) -> Result<Option<Uploaded>, Problem> {
+    let received = stream(service, &mut body).await;
+    if received.is_err() {
+        body.discard_small().await;
+    }
+    received
+}
+
+async fn stream(service: &Service, body: &mut IncomingBody) -> Result<Option<Uploaded>, Problem> {
     let Some(first) = body.next().await? else { return Ok(None) };
-    let mut upload = match service.jobs.upload(body.announced()).await {
-        Ok(upload) => upload,
-        Err(problem) => {
-            body.discard_small().await;
-            return Err(problem);
-        }
-    };
+    let mut upload = service.jobs.upload(body.announced()).await?;
     upload.write(&first).await?;
     while let Some(piece) = body.next().await? {
         upload.write(&piece).await?;

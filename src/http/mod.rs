@@ -46,6 +46,7 @@ mod shutdown;
 mod start;
 mod state;
 mod trace;
+mod unread;
 
 pub use access::{Access, Neighbours};
 pub use healthcheck::healthcheck;

@@ -12,7 +12,8 @@ use crate::wire::Problem;
 /// For how long the length of the queue is taken as it was, unless it is known to have changed: under a flood of requests,
 /// asking for it is much of the work.
 const RECENT: Duration = Duration::from_millis(10);
-/// For how long an upload holds a place in the queue before it is a job: one that trickles in keeps nobody else out.
+/// For how long an upload that is partly there holds a place in the queue before it is a job: one that trickles in keeps
+/// nobody else out.
 const PLACE_LASTS: Duration = Duration::from_secs(1);
 
 /// What is known about the queue for those who come.
@@ -23,11 +24,11 @@ pub(super) struct Arrivals(Mutex<Known>);
 struct Known {
     /// How many jobs waited, and when that was.
     queued: Option<(Instant, usize)>,
-    /// When uploads began that are not jobs yet, the earliest first.
+    /// When places were taken by uploads that are not jobs yet, the earliest first.
     places: VecDeque<Instant>,
 }
 
-/// An upload that is not a job yet, until it is dropped.
+/// The place of an upload that is not a job yet, until it is dropped.
 #[derive(Debug)]
 pub(super) struct Place {
     service: Arc<Service>,
@@ -65,11 +66,25 @@ impl Known {
 }
 
 impl Service {
-    /// A place in the queue for an upload that begins; refuses when there is none.
+    /// Refuses when the queue has no room for another upload.
+    pub(super) async fn check_queue(&self) -> Result<(), Problem> {
+        self.with_room(|_, _| ()).await
+    }
+
+    /// A place in the queue for an upload of which the first block is there; refuses when there is none.
     pub(super) async fn take_place(self: &Arc<Self>) -> Result<Place, Problem> {
-        let known = self.arrivals.known().queued.filter(|(at, _)| at.elapsed() < RECENT);
-        let (at, queued) = match known {
-            Some(known) => known,
+        self.with_room(|known, now| {
+            known.places.push_back(now);
+            Place { service: Arc::clone(self), taken_at: now }
+        })
+        .await
+    }
+
+    /// Does what is to be done when there is room in the queue.
+    async fn with_room<T>(&self, then: impl FnOnce(&mut Known, Instant) -> T) -> Result<T, Problem> {
+        let recent = self.arrivals.known().queued.filter(|(at, _)| at.elapsed() < RECENT);
+        let (at, queued) = match recent {
+            Some(recent) => recent,
             None => {
                 let counts = self.store.counts().await.map_err(|error| store_problem(&error))?;
                 (Instant::now(), counts.queued)
@@ -78,12 +93,10 @@ impl Service {
         let now = Instant::now();
         let mut known = self.arrivals.known();
         known.queued = Some((at, queued));
-        let taken = known.taken(now);
-        if queued + taken >= self.settings.queue_max {
+        if queued + known.taken(now) >= self.settings.queue_max {
             return Err(self.not_admitted(&StoreError::QueueFull { queued }));
         }
-        known.places.push_back(now);
-        Ok(Place { service: Arc::clone(self), taken_at: now })
+        Ok(then(&mut known, now))
     }
 }
 

@@ -204,7 +204,7 @@ impl Jobs {
     pub async fn upload_beside(&self) -> Result<Upload, Problem> {
         let begin = async {
             self.0.check_open()?;
-            Upload::begin(Arc::clone(&self.0), None).await
+            Upload::begin(Arc::clone(&self.0), false).await
         };
         begin.await.inspect_err(meters::refused)
     }
@@ -212,14 +212,14 @@ impl Jobs {
     async fn begin_upload(&self, announced: Option<u64>) -> Result<Upload, Problem> {
         self.0.check_open()?;
         // Told now, the refusal costs neither the caller the upload nor this server the disk.
-        let place = self.0.take_place().await?;
+        self.0.check_queue().await?;
         if let Some(bytes) = announced {
             self.0.check_upload_size(bytes)?;
             if bytes > self.0.spool.bytes_max() || self.0.spool.is_disk_short_of(bytes) {
                 return Err(self.0.storage_full(bytes));
             }
         }
-        Upload::begin(Arc::clone(&self.0), Some(place)).await
+        Upload::begin(Arc::clone(&self.0), true).await
     }
 
     /// Who submitted the job. Callers see only their own jobs.

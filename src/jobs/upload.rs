@@ -7,6 +7,7 @@ use sha2::{Digest, Sha256};
 
 use super::arrivals::Place;
 use super::blobs::BlobWriter;
+use super::meters;
 use super::retention::on_disk;
 use super::service::Service;
 use super::spool::{Space, Spool, Unnamed, Written};
@@ -23,6 +24,8 @@ pub struct Upload {
     block: Vec<u8>,
     bytes: u64,
     space: Space,
+    /// It becomes a job, and has no place in the queue yet.
+    needs_place: bool,
     place: Option<Place>,
 }
 
@@ -69,15 +72,15 @@ impl OpenSink {
 }
 
 impl Upload {
-    pub(super) async fn begin(service: Arc<Service>, place: Option<Place>) -> Result<Self, Problem> {
+    pub(super) async fn begin(service: Arc<Service>, needs_place: bool) -> Result<Self, Problem> {
         let space = service.make_room(0).await?;
-        Ok(Self { service, sink: Sink::Fresh, block: Vec::new(), bytes: 0, space, place })
+        Ok(Self { service, sink: Sink::Fresh, block: Vec::new(), bytes: 0, space, needs_place, place: None })
     }
 
     /// Takes the next bytes.
     ///
     /// # Errors
-    /// `body-too-large`, `storage-full`, `internal` when the disk fails. The upload cannot go on after that.
+    /// `body-too-large`, `queue-full`, `storage-full`, `internal` when the disk fails. The upload cannot go on after that.
     pub async fn write(&mut self, mut bytes: &[u8]) -> Result<(), Problem> {
         self.bytes += bytes.len() as u64;
         self.service.check_upload_size(self.bytes)?;
@@ -109,7 +112,7 @@ impl Upload {
     /// Ends the upload; it is on the disk then.
     ///
     /// # Errors
-    /// `storage-full`, `internal` when the disk fails.
+    /// `queue-full`, `storage-full`, `internal` when the disk fails.
     pub async fn finish(mut self) -> Result<Uploaded, Problem> {
         let (block, sink) = self.next_block().await?;
         let spool = Arc::clone(&self.service.spool);
@@ -127,6 +130,9 @@ impl Upload {
 
     /// What is to be written next, for which there is room now, and where to.
     async fn next_block(&mut self) -> Result<(Vec<u8>, Sink), Problem> {
+        if std::mem::take(&mut self.needs_place) {
+            self.place = Some(self.service.take_place().await.inspect_err(meters::refused)?);
+        }
         let room = self.service.make_room(self.block.len() as u64).await?;
         self.space.absorb(room);
         Ok((std::mem::take(&mut self.block), std::mem::replace(&mut self.sink, Sink::Away)))

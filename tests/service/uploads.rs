@@ -1,6 +1,6 @@
 //! How a mesh comes in, and what stops it.
 
-use crate::meshes::SOLID;
+use crate::meshes::{SOLID, long_job};
 use crate::server::{Server, link, problem};
 use reqwest::blocking::multipart::{Form, Part};
 use serde_json::{Value, json};
@@ -239,6 +239,27 @@ fn a_client_that_sends_too_much_reads_its_413_all_the_same() {
         assert!(answer.starts_with("HTTP/1.1 413 ") && answer.contains("body-too-large"), "{answer}");
         assert!(answer.contains("application/problem+json"));
     }
+}
+
+#[test]
+fn a_small_upload_that_is_refused_keeps_its_connection_and_a_large_one_is_told_that_it_ends() {
+    let server = Server::with(&["--slots", "1", "--interactive-slots", "0", "--queue-max", "1"]);
+    let running = server.job("verify", long_job(400));
+    server.until(&running, |job| job["state"] == "running");
+    server.job("repair", SOLID);
+    let head = |bytes: usize, more: &str| {
+        format!("POST /v1/verify HTTP/1.1\r\nHost: localhost\r\nContent-Length: {bytes}\r\n{more}\r\n")
+    };
+    let mut line = server.connect();
+    line.say(head(SOLID.len(), "") + SOLID);
+    line.say(head(SOLID.len(), "Connection: close\r\n") + SOLID);
+    let answers = line.hear_all();
+    assert_eq!(answers.matches("HTTP/1.1 429 ").count(), 2, "{answers}");
+    assert_eq!(answers.matches("retry-after: ").count(), 2, "{answers}");
+    let mut line = server.connect();
+    line.say(head(9_000_000, "") + "OFF");
+    let answer = line.hear_all();
+    assert!(answer.starts_with("HTTP/1.1 429 ") && answer.contains("connection: close"), "{answer}");
 }
 
 #[test]
