@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Ten times the load that can be sustained: what is done, what is refused and how quickly; then small meshes beside huge ones; prints Markdown.
 
-usage: overload.py [--binary PATH] [--seconds 60] [--factor 10] [--warm 15]
+usage: overload.py [--binary PATH] [--seconds 60] [--factor 10] [--warm 30]
 Every request has a mesh of its own, so that none is answered from an earlier one.
 """
 import argparse
@@ -16,7 +16,7 @@ p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDes
 p.add_argument("--binary", default=default_binary)
 p.add_argument("--seconds", type=int, default=60)
 p.add_argument("--factor", type=float, default=10)
-p.add_argument("--warm", type=int, default=15)
+p.add_argument("--warm", type=int, default=30)
 o = p.parse_args()
 counter = iter(range(1 << 40))
 
@@ -74,6 +74,9 @@ class Line:
         """Status, headers and seconds of one request. The body is made when it is sent."""
         begun = time.monotonic()
         try:
+            if self.writer and self.reader.at_eof():
+                # The server has ended it while it was not used.
+                self.close()
             if self.writer is None:
                 self.reader, self.writer = await asyncio.open_connection("127.0.0.1", self.port)
             has_asked = b"Expect:" in more

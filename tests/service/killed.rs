@@ -13,7 +13,9 @@ use crate::processes::{all_children_of, children_of, until_gone};
 use crate::server::{Server, link, try_signal};
 use crate::support::cases;
 
-const SETTINGS: &[&str] = &["--slots", "2", "--lease", "2s", "--queue-max", "1000"];
+const SETTINGS: &[&str] = &["--slots", "2", "--lease", "2s", "--queue-max", "100000"];
+/// Pause of the client between a few requests and the next.
+const REST: Duration = Duration::from_millis(150);
 /// Lost runs after which a job fails: the default.
 const ATTEMPTS_MAX: u64 = 3;
 
@@ -40,7 +42,7 @@ struct Account {
 impl Account {
     /// Sends requests until the server is gone: first those that were not answered, then new ones.
     fn send(&mut self, server: &Server, client: &Client, dice: &mut Dice) {
-        for _ in 0..12 {
+        for _ in 0..3 {
             let unanswered = self.asked.iter().find(|(_, id)| id.is_none()).map(|(&number, _)| number);
             let number = unanswered.unwrap_or(self.asked.len() as u64);
             let known = self.asked.entry(number).or_default();
@@ -129,6 +131,8 @@ fn a_server_killed_at_random_points_loses_no_accepted_job() {
             });
             while !is_over.load(Ordering::SeqCst) {
                 account.send(target, &client, &mut dice);
+                // More than can be done between two kills would only make the queue longer.
+                std::thread::sleep(REST);
             }
             killing.join().unwrap()
         });
