@@ -33,6 +33,7 @@ declare -A places=(
 # Campaigns against a running service: each script starts its own server on loopback and prints its page.
 declare -A scripts=(
   [slow-connections]="slow_connections.py"
+  [disk-full]="disk_full.py"
   [overload]="overload.py"
   [overhead]="overhead.py"
   [restarts]="restarts.py"
