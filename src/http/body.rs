@@ -150,6 +150,8 @@ fn incomplete(error: &axum::Error) -> Problem {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
     const LIMITS: BodyLimits = BodyLimits {
         idle_timeout: Duration::from_secs(30),
@@ -173,6 +175,33 @@ mod tests {
                 return (problem.limit_name.unwrap().to_string(), begun.elapsed().as_secs());
             }
         }
+    }
+
+    /// How many bytes of a body of four pieces, `pause` apart, are taken in once its first piece is refused.
+    async fn discarded(piece: usize, pause: Duration) -> usize {
+        let taken = Arc::new(AtomicUsize::new(0));
+        let count = Arc::clone(&taken);
+        let pieces = futures_util::stream::unfold(0, move |number| {
+            let count = Arc::clone(&count);
+            async move {
+                tokio::time::sleep(pause).await;
+                count.fetch_add(piece, Relaxed);
+                (number < 4).then(|| (Ok::<_, std::io::Error>(Bytes::from(vec![0; piece])), number + 1))
+            }
+        });
+        let headers = HeaderMap::from_iter([(header::CONTENT_LENGTH, (4 * piece).into())]);
+        let mut body = IncomingBody::new(&headers, Body::from_stream(pieces), LIMITS).unwrap();
+        body.next().await.unwrap();
+        body.discard_small().await;
+        taken.load(Relaxed) / piece
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn the_rest_of_a_small_body_is_taken_in_when_it_comes_at_once() {
+        let at_once = Duration::from_millis(1);
+        assert_eq!(discarded(1000, at_once).await, 5, "four pieces and the end");
+        assert_eq!(discarded(1 << 20, at_once).await, 1, "three mebibytes are too much");
+        assert_eq!(discarded(1000, DISCARD_PATIENCE * 2 / 3).await, 2, "the rest is late");
     }
 
     #[tokio::test(start_paused = true)]

@@ -17,6 +17,7 @@ mod estimate;
 mod events;
 mod heartbeat;
 mod live;
+mod load;
 mod meters;
 mod product;
 mod retention;
@@ -40,8 +41,9 @@ pub use blobs::{BlobStore, BlobWriter, LocalBlobs, StoredBlob};
 pub use child::{RUN_JOB, Sandbox, TrialError, run_job};
 pub use clock::StageClock;
 pub use events::{EventId, Events, Happened, JobEvent, NoEventId};
+pub use load::Load;
 pub use meters::describe as describe_metrics;
-pub use service::{Jobs, Load, StartError};
+pub use service::{Jobs, StartError};
 pub use settings::JobsSettings;
 pub use sqlite::{OpenError as SqliteOpenError, SqliteStore, StoreClock};
 pub use store::{

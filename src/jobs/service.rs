@@ -25,7 +25,7 @@ use super::store::{Ending, JobId, JobRow, JobStore, Leases, ListQuery, StoreErro
 use super::upload::Upload;
 use super::view::{self, StoredFile, expired};
 use super::webhook::{Sender, WebhookSettings};
-use super::{meters, retention, webhook};
+use super::{load, meters, retention, webhook};
 use crate::budget::Stopped;
 use crate::wire::{Delivery, Job, JobState, Options, Problem, ProblemCode, WebhookRequest};
 
@@ -64,17 +64,6 @@ impl fmt::Debug for Service {
     }
 }
 
-/// How busy the service is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Load {
-    /// Jobs that wait.
-    pub queued: usize,
-    /// Jobs that run.
-    pub running: usize,
-    /// Bytes on disk.
-    pub data_bytes: u64,
-}
-
 /// A service that cannot start.
 #[derive(Debug, thiserror::Error)]
 pub enum StartError {
@@ -110,9 +99,6 @@ pub enum StartError {
         path: PathBuf,
     },
 }
-
-/// Shortest time between two looks at the load.
-const LOAD_PAUSE: Duration = Duration::from_millis(100);
 
 /// The file of rows in the data directory.
 const STORE_FILE: &str = "jobs.sqlite3";
@@ -179,7 +165,7 @@ impl Jobs {
             tokio::spawn(sender.send_forever(Arc::clone(&service)));
         }
         service.slots.spawn(retention::sweep_forever(Arc::clone(&service)));
-        service.slots.spawn(tell_load_forever(Arc::clone(&service)));
+        service.slots.spawn(load::tell_forever(Arc::clone(&service)));
         service.slots.close();
         Ok(Self(service))
     }
@@ -420,13 +406,6 @@ impl Jobs {
         Problem { report: report.await, ..problem }
     }
 
-    /// How busy the service is.
-    pub async fn load(&self) -> Load {
-        self.0.tell_load().await;
-        let counts = self.0.store.counts().await.unwrap_or_default();
-        Load { queued: counts.queued, running: counts.running, data_bytes: self.0.spool.bytes() }
-    }
-
     #[cfg(test)]
     pub(super) fn service(&self) -> &Service {
         &self.0
@@ -490,34 +469,6 @@ impl Service {
             Err(error) => tracing::warn!(job = %row.id, %error, "a queued job could not be ended"),
         }
         self.note_load();
-    }
-
-    /// The load has changed.
-    pub(super) fn note_load(&self) {
-        self.arrivals.forget();
-        self.load_changed.notify_one();
-    }
-
-    /// Tells the metrics recorder how busy the service is.
-    pub(super) async fn tell_load(&self) {
-        if let Ok(counts) = self.store.counts().await {
-            meters::load(counts, self.spool.bytes());
-        }
-    }
-}
-
-/// Tells the load whenever it has changed, beside those who change it: they have no use for it.
-async fn tell_load_forever(service: Arc<Service>) {
-    let tell = async {
-        loop {
-            service.load_changed.notified().await;
-            service.tell_load().await;
-            tokio::time::sleep(LOAD_PAUSE).await;
-        }
-    };
-    tokio::select! {
-        () = tell => {}
-        () = service.draining.cancelled() => {}
     }
 }
 

@@ -130,8 +130,9 @@ impl Upload {
 
     /// What is to be written next, for which there is room now, and where to.
     async fn next_block(&mut self) -> Result<(Vec<u8>, Sink), Problem> {
-        if std::mem::take(&mut self.needs_place) {
+        if self.needs_place {
             self.place = Some(self.service.take_place().await.inspect_err(meters::refused)?);
+            self.needs_place = false;
         }
         let room = self.service.make_room(self.block.len() as u64).await?;
         self.space.absorb(room);

@@ -77,7 +77,9 @@ fn spare_of(server: &Server) -> u32 {
 pub(crate) fn a_process_that_is_killed_while_it_waits_costs_no_job() {
     let server = server(&["--slots", "1"]);
     for number in 0..3 {
-        signal(spare_of(&server), "KILL");
+        let waiting = spare_of(&server);
+        signal(waiting, "KILL");
+        until_gone(waiting);
         let job = server.ended(&server.job("repair", format!("{}# {number}\n", crate::meshes::OPEN)));
         assert_eq!(job["state"], "succeeded", "{job}");
     }

@@ -210,7 +210,10 @@ fn a_server_killed_at_random_points_loses_no_accepted_job() {
         ("runs lost with a kill", lost_runs as usize),
         ("jobs given up after three lost runs", given_up),
         ("requests that made two jobs, jobs that ended twice", doubles),
-        ("processes of jobs that were killed or lost their server, all gone", processes_gone),
+        (
+            "processes that were killed or lost their server, those that waited for a job included, all gone",
+            processes_gone,
+        ),
         ("files left once all jobs were deleted", files_left.len()),
     ]);
 }

@@ -3,8 +3,8 @@
 use crate::server::{PATIENCE, Server};
 use std::time::{Duration, Instant};
 
-/// The processes that run jobs of the server and have not been reaped. One that waits for a task is none of them: it has
-/// not stepped back behind the server yet.
+/// The processes that run jobs of the server, and dead ones that have not been reaped. A living one that waits for a task is
+/// none of them: it has not stepped back behind the server yet.
 pub(crate) fn children_of(server: &Server) -> Vec<u32> {
     let mut children = all_children_of(server);
     children.retain(|&pid| {

@@ -222,6 +222,22 @@ async fn the_same_bytes_and_options_are_answered_from_the_earlier_job() {
 }
 
 #[tokio::test]
+async fn an_upload_that_is_there_holds_a_place_in_the_queue_and_one_that_trickles_in_does_not() {
+    let house = house(|settings| settings.queue_max = 1, mend).await;
+    let mut slow = house.upload(None).await.unwrap();
+    slow.write(b"x").await.unwrap();
+    let whole = house.send(b"whole").await.unwrap();
+    assert_eq!(house.upload(None).await.unwrap_err().code, ProblemCode::QueueFull);
+    // What was let in before is refused before it touches the disk.
+    assert_eq!(slow.finish().await.unwrap_err().code, ProblemCode::QueueFull);
+    assert_eq!(house.spool_files(), 1);
+    // A material needs no place of its own.
+    house.upload_beside().await.unwrap().finish().await.unwrap();
+    drop(whole);
+    house.run(b"next").await;
+}
+
+#[tokio::test]
 async fn two_services_cannot_share_a_directory() {
     let house = house(|_| {}, mend).await;
     let second = Jobs::start(JobsSettings::new(&house.settings().data_dir)).await;
