@@ -54,13 +54,13 @@ pub(super) fn job_as_it_stands(job: &Job, request: &HeaderMap) -> Response {
 }
 
 /// A stored report.
-pub(super) async fn report(stored: StoredFile) -> Handled {
-    Ok(([(header::CONTENT_TYPE, JSON)], stored.read().await?).into_response())
+pub(super) fn report(stored: Vec<u8>) -> Response {
+    ([(header::CONTENT_TYPE, JSON)], stored).into_response()
 }
 
 /// A stored report as a page for people.
-pub(super) async fn report_page(stored: StoredFile) -> Handled {
-    let report = serde_json::from_slice(&stored.read().await?).map_err(|error| {
+pub(super) fn report_page(stored: &[u8]) -> Handled {
+    let report = serde_json::from_slice(stored).map_err(|error| {
         Problem::new(ProblemCode::Internal, format!("a stored report cannot be read: {error}"))
     })?;
     let headers = [
@@ -120,12 +120,12 @@ impl Finished<'_> {
             let of_result = self.jobs.result(self.id).await.err();
             return Err(of_result.or_else(|| self.job.problem.clone()).unwrap_or_else(unfinished).into());
         }
-        report(self.jobs.report(self.id).await?).await
+        Ok(report(self.jobs.report(self.id).await?))
     }
 
     async fn both(&self) -> Result<Both<tokio::fs::File>, Problem> {
         let stored = self.jobs.results(self.id).await?;
-        let report = self.jobs.report(self.id).await?.read().await?;
+        let report = self.jobs.report(self.id).await?;
         let mesh = |stored: StoredFile| Mesh {
             media_type: mesh_file::media_type(&stored),
             len: stored.bytes,

@@ -74,7 +74,7 @@ pub(super) async fn report(state: State, caller: Extension<Caller>, id: Id, requ
     let media_type = one_of(request.headers(), &["application/json", HTML])?;
     query::none(request.uri())?;
     let stored = state.jobs.report(visible(&state, &caller, id).await?).await?;
-    if media_type == HTML { answer::report_page(stored).await } else { answer::report(stored).await }
+    if media_type == HTML { answer::report_page(&stored) } else { Ok(answer::report(stored)) }
 }
 
 /// Download a job's mesh.

@@ -8,7 +8,6 @@ use tokio_util::io::ReaderStream;
 
 use super::problem;
 use super::range::Part;
-use super::representation::OCTET_STREAM;
 use crate::jobs::StoredFile;
 use crate::wire::{Format, Problem, ProblemCode, media_type_of};
 
@@ -17,8 +16,7 @@ const PIECE_BYTES: usize = 128 << 10;
 
 /// The media type of the stored mesh.
 pub(super) fn media_type(stored: &StoredFile) -> &'static str {
-    let format = |encoding| Format::from(crate::formats::Encoding::from(encoding).format());
-    stored.encoding.map_or(OCTET_STREAM, |encoding| media_type_of(format(encoding)))
+    media_type_of(Format::from(crate::formats::Encoding::from(stored.encoding).format()))
 }
 
 /// The whole mesh.

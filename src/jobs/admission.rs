@@ -1,7 +1,9 @@
 //! Admission: from a request to a queued job, to the answer of an earlier one, or to a refusal.
 
+use std::future::poll_fn;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
+use std::task::Poll;
 use std::time::Duration;
 
 use sha2::{Digest as _, Sha256};
@@ -136,7 +138,16 @@ impl Service {
         if let Some(row) = self.answer_from_cache(&new).await {
             return Ok(row);
         }
-        let created = self.store.create(new, self.settings.queue_max).await;
+        let mut creating = self.store.create(new, self.settings.queue_max);
+        let created = match poll_fn(|context| Poll::Ready(creating.as_mut().poll(context))).await {
+            Poll::Ready(created) => created,
+            Poll::Pending => {
+                // A slot that asks for work now asks a store that has been told of the job: its claim becomes durable
+                // with the job, not after it.
+                self.work.notify_waiters();
+                creating.await
+            }
+        };
         let row = match created.map_err(|error| self.not_admitted(&error))? {
             Created::Known(row) => return Ok(row),
             Created::New(row) => row,

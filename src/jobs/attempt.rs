@@ -78,13 +78,13 @@ async fn in_process(
     let (service, processes) = (Arc::clone(service), Arc::clone(processes));
     let (row, live, clock) = (row.clone(), Arc::clone(live), clock.clone());
     let watching = tokio::task::spawn_blocking(move || {
-        processes.run(&row, &service.spool, &live, &service.settings, &clock)
+        let made = processes.run(&row, &service.spool, &live, &service.settings, &clock)?;
+        made.take_over(row.claim(), &service.spool)
     });
-    let product = watching.await.unwrap_or_else(|error| {
+    watching.await.unwrap_or_else(|error| {
         tracing::error!(%error, "the watch over a job's process failed");
         Err(Problem::new(ProblemCode::WorkerLost, "the process that ran the job was lost"))
-    })?;
-    product.try_map(|file| Ok(Content::File(file)))
+    })
 }
 
 async fn in_thread(

@@ -1,4 +1,4 @@
-//! Where the files of jobs live: uploads under `in/`, what runs write under `out/<job>/<epoch>/`.
+//! Where the files of jobs live: uploads under `in/`, what runs write under `out/<job>.<epoch>.<name>`.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -22,7 +22,7 @@ pub trait BlobWriter: Write + Send {
     fn commit(self: Box<Self>) -> io::Result<()>;
 }
 
-/// Files by name, each written once. Methods block; a name is a relative path of letters, digits, dots and hyphens.
+/// Files by name, each written once. Methods block; a name is `in/` or `out/` and then letters, digits, dots and hyphens.
 pub trait BlobStore: Send + Sync {
     /// Begins a file.
     ///
@@ -59,6 +59,9 @@ pub trait BlobStore: Send + Sync {
     fn free_bytes(&self) -> Option<u64>;
 }
 
+/// The directories that hold all files.
+const DIRS: [&str; 2] = ["in", "out"];
+
 /// Files in a directory.
 #[derive(Debug)]
 pub struct LocalBlobs {
@@ -71,67 +74,31 @@ impl LocalBlobs {
     /// # Errors
     /// The disk fails.
     pub fn open(root: &Path) -> io::Result<Self> {
-        for dir in [root.to_owned(), root.join("in"), root.join("out")] {
-            fs::create_dir_all(&dir)?;
+        for dir in DIRS {
+            fs::create_dir_all(root.join(dir))?;
         }
         sync_dir(root)?;
         Ok(Self { root: root.to_owned() })
-    }
-
-    /// The directories between the file and the root, the innermost first.
-    fn dirs_of<'p>(&self, path: &'p Path) -> impl Iterator<Item = &'p Path> {
-        path.ancestors().skip(1).take_while(|dir| *dir != self.root)
-    }
-
-    /// Makes the directories of a file. Those that were not there, the innermost first.
-    fn make_dirs_for(&self, path: &Path) -> io::Result<Vec<PathBuf>> {
-        let Some(dir) = path.parent().filter(|dir| !dir.is_dir()) else { return Ok(Vec::new()) };
-        let new_dirs = self.dirs_of(path).filter(|dir| !dir.is_dir()).map(Path::to_owned).collect();
-        fs::create_dir_all(dir)?;
-        Ok(new_dirs)
-    }
-
-    fn list_into(
-        dir: &Path,
-        key: &str,
-        blobs: &mut Vec<StoredBlob>,
-        dirs: &mut Vec<(PathBuf, String)>,
-    ) -> io::Result<()> {
-        for entry in fs::read_dir(dir)? {
-            let entry = entry?;
-            let name = entry.file_name().to_string_lossy().into_owned();
-            let key = if key.is_empty() { name } else { format!("{key}/{name}") };
-            match entry.metadata() {
-                Ok(metadata) if metadata.is_dir() => dirs.push((entry.path(), key)),
-                Ok(metadata) => blobs.push(StoredBlob { key, bytes: metadata.len() }),
-                // Removed since the directory was read.
-                Err(error) if error.kind() == io::ErrorKind::NotFound => {}
-                Err(error) => return Err(error),
-            }
-        }
-        Ok(())
     }
 }
 
 impl BlobStore for LocalBlobs {
     fn create(&self, key: &str) -> io::Result<Box<dyn BlobWriter>> {
         let path = self.root.join(key);
-        let new_dirs = self.make_dirs_for(&path)?;
         let file = File::create_new(&path)?;
-        Ok(Box::new(LocalWriter { file: Some(file), path, new_dirs }))
+        Ok(Box::new(LocalWriter { file: Some(file), path }))
     }
 
     /// The file must be on the same disk: it is moved, not copied.
     fn adopt(&self, file: &Path, key: &str) -> io::Result<()> {
         let path = self.root.join(key);
-        let new_dirs = self.make_dirs_for(&path)?;
         File::open(file)?.sync_all()?;
         // A name is given once, so nothing comes in between; a rename by itself would take another file's place.
         if path.try_exists()? {
             return Err(io::ErrorKind::AlreadyExists.into());
         }
         fs::rename(file, &path)?;
-        sync_dirs_of(&path, &new_dirs)
+        sync_dir_of(&path)
     }
 
     fn local(&self, key: &str) -> io::Result<PathBuf> {
@@ -139,25 +106,21 @@ impl BlobStore for LocalBlobs {
     }
 
     fn remove(&self, key: &str) -> io::Result<()> {
-        let path = self.root.join(key);
-        fs::remove_file(&path)?;
-        // Directories of a run go with its last file; `in` and `out` stay.
-        let depth = key.split('/').count();
-        for dir in path.ancestors().skip(1).take(depth.saturating_sub(2)) {
-            if fs::remove_dir(dir).is_err() {
-                break;
-            }
-        }
-        Ok(())
+        fs::remove_file(self.root.join(key))
     }
 
     fn list(&self) -> io::Result<Vec<StoredBlob>> {
         let mut blobs = Vec::new();
-        let mut dirs = vec![(self.root.clone(), String::new())];
-        while let Some((dir, key)) = dirs.pop() {
-            match Self::list_into(&dir, &key, &mut blobs, &mut dirs) {
-                Err(error) if error.kind() == io::ErrorKind::NotFound => {}
-                listed => listed?,
+        for dir in DIRS {
+            for entry in fs::read_dir(self.root.join(dir))? {
+                let entry = entry?;
+                let key = format!("{dir}/{}", entry.file_name().to_string_lossy());
+                match entry.metadata() {
+                    Ok(metadata) => blobs.push(StoredBlob { key, bytes: metadata.len() }),
+                    // Removed since the directory was read.
+                    Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+                    Err(error) => return Err(error),
+                }
             }
         }
         Ok(blobs)
@@ -174,8 +137,6 @@ struct LocalWriter {
     /// `None` once it is committed.
     file: Option<File>,
     path: PathBuf,
-    /// Directories that were made for it, the innermost first.
-    new_dirs: Vec<PathBuf>,
 }
 
 impl Write for LocalWriter {
@@ -195,7 +156,7 @@ impl BlobWriter for LocalWriter {
     fn commit(mut self: Box<Self>) -> io::Result<()> {
         let Some(file) = &self.file else { return Err(io::ErrorKind::BrokenPipe.into()) };
         file.sync_all()?;
-        sync_dirs_of(&self.path, &self.new_dirs)?;
+        sync_dir_of(&self.path)?;
         self.file = None;
         Ok(())
     }
@@ -210,10 +171,9 @@ impl Drop for LocalWriter {
     }
 }
 
-/// Makes the entry of a file outlast a loss of power. It is in its directory, that of a new directory in the one above.
-fn sync_dirs_of(path: &Path, new_dirs: &[PathBuf]) -> io::Result<()> {
-    let dirs = path.parent().into_iter().chain(new_dirs.iter().filter_map(|dir| dir.parent()));
-    dirs.into_iter().try_for_each(sync_dir)
+/// Makes the entry of a file outlast a loss of power.
+fn sync_dir_of(path: &Path) -> io::Result<()> {
+    path.parent().map_or(Ok(()), sync_dir)
 }
 
 /// Makes the entries of a directory outlast a loss of power.
@@ -232,10 +192,10 @@ mod tests {
     }
 
     #[test]
-    fn a_file_is_there_once_it_is_committed_and_leaves_no_directory_when_it_goes() {
+    fn a_file_is_there_once_from_its_commit_to_its_removal() {
         let dir = tempfile::tempdir().unwrap();
         let blobs = LocalBlobs::open(dir.path()).unwrap();
-        let key = "out/job/1/mesh";
+        let key = "out/job.1.mesh";
         let mut writer = blobs.create(key).unwrap();
         writer.write_all(b"hello").unwrap();
         writer.commit().unwrap();
@@ -243,7 +203,7 @@ mod tests {
         assert_eq!(blobs.list().unwrap(), [StoredBlob { key: key.to_owned(), bytes: 5 }]);
         assert!(blobs.create(key).is_err(), "a file is written once");
         blobs.remove(key).unwrap();
-        assert_eq!(fs::read_dir(dir.path().join("out")).unwrap().count(), 0);
+        assert!(blobs.list().unwrap().is_empty());
         assert_eq!(blobs.remove(key).unwrap_err().kind(), io::ErrorKind::NotFound);
     }
 
@@ -251,7 +211,7 @@ mod tests {
     fn a_file_that_is_taken_over_moves_and_takes_no_other_s_place() {
         let dir = tempfile::tempdir().unwrap();
         let blobs = LocalBlobs::open(&dir.path().join("spool")).unwrap();
-        let (file, key) = (dir.path().join("made"), "out/job/1/mesh");
+        let (file, key) = (dir.path().join("made"), "out/job.1.mesh");
         fs::write(&file, b"hello").unwrap();
         blobs.adopt(&file, key).unwrap();
         assert!(!file.exists());

@@ -8,8 +8,9 @@ use serde::{Deserialize, Serialize};
 use super::child::Workspace;
 use super::retention::on_disk;
 use super::service::Service;
-use super::spool::Written;
+use super::spool::{Spool, Written};
 use super::store::{BlobRef, ClaimRef};
+use super::upload::disk_problem;
 use crate::pipeline::{self, Answer};
 use crate::wire::{self, Encoding, Outcome, Problem, ProblemCode, TimingMs};
 
@@ -54,6 +55,7 @@ pub(super) struct MadeFile {
 pub(super) enum Content {
     Bytes(Vec<u8>),
     File(MadeFile),
+    Kept(Written),
 }
 
 impl Product<Vec<u8>> {
@@ -94,6 +96,17 @@ impl<C> Product<C> {
     }
 }
 
+impl Product<MadeFile> {
+    /// Takes the files over for which there is room now. Blocks.
+    pub(super) fn take_over(self, claim: ClaimRef, spool: &Arc<Spool>) -> Result<Product<Content>, Problem> {
+        self.try_map(|file| {
+            let room = spool.reserve(file.bytes).filter(|_| !spool.is_disk_short_of(file.bytes));
+            let Some(space) = room else { return Ok(Content::File(file)) };
+            spool.adopt(claim, &file, space).map(Content::Kept).map_err(|error| disk_problem(&error))
+        })
+    }
+}
+
 impl Service {
     /// Keeps a file of a run, making room for it, and adds it to those that no row names yet.
     pub(super) async fn keep(
@@ -103,17 +116,18 @@ impl Service {
         content: Content,
         written: &mut Vec<Written>,
     ) -> Result<BlobRef, Problem> {
-        let bytes = match &content {
-            Content::Bytes(bytes) => bytes.len() as u64,
-            Content::File(file) => file.bytes,
-        };
-        let space = self.make_room(bytes).await?;
         let spool = Arc::clone(&self.spool);
-        let file = on_disk(move || match content {
-            Content::Bytes(bytes) => spool.write(claim, &name, &bytes, space),
-            Content::File(file) => spool.adopt(claim, &name, &file, space),
-        });
-        let file = file.await?;
+        let file = match content {
+            Content::Kept(file) => file,
+            Content::Bytes(bytes) => {
+                let space = self.make_room(bytes.len() as u64).await?;
+                on_disk(move || spool.write(claim, &name, &bytes, space)).await?
+            }
+            Content::File(file) => {
+                let space = self.make_room(file.bytes).await?;
+                on_disk(move || spool.adopt(claim, &file, space)).await?
+            }
+        };
         let blob = file.blob().cloned();
         written.push(file);
         blob.ok_or_else(|| Problem::new(ProblemCode::Internal, "a file could not be kept"))

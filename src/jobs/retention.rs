@@ -4,6 +4,8 @@ use std::collections::HashSet;
 use std::sync::Arc;
 use std::time::Duration;
 
+use tokio::task::JoinHandle;
+
 use super::meters;
 use super::service::{Service, store_problem};
 use super::spool::{Space, claim_of};
@@ -170,10 +172,11 @@ impl Service {
 pub(super) async fn on_disk<T: Send + 'static>(
     body: impl FnOnce() -> std::io::Result<T> + Send + 'static,
 ) -> Result<T, Problem> {
-    let done = tokio::task::spawn_blocking(body).await.map_err(|_| lost())?;
-    done.map_err(|error| disk_problem(&error))
+    joined(tokio::task::spawn_blocking(body)).await
 }
 
-fn lost() -> Problem {
-    Problem::new(ProblemCode::Internal, "a file could not be written")
+/// What came of work that waits for the disk on another thread.
+pub(super) async fn joined<T>(work: JoinHandle<std::io::Result<T>>) -> Result<T, Problem> {
+    let lost = |_| Problem::new(ProblemCode::Internal, "a file could not be written");
+    work.await.map_err(lost)?.map_err(|error| disk_problem(&error))
 }

@@ -344,10 +344,10 @@ impl Jobs {
     ///
     /// # Errors
     /// `not-found`, `job-not-finished`, `expired`, or the problem for which the job has no report.
-    pub async fn report(&self, id: JobId) -> Result<StoredFile, Problem> {
+    pub async fn report(&self, id: JobId) -> Result<Vec<u8>, Problem> {
         let row = self.0.row(id).await?;
         match &ended(&row)?.report {
-            Some(blob) => StoredFile::open(&self.0.spool, blob, None, view::report_name(&row)).await,
+            Some(blob) => view::read(&self.0.spool, blob).await,
             None => Err(reason_for_nothing(&row, "report")),
         }
     }
@@ -374,7 +374,7 @@ impl Jobs {
         match ending.results().nth(level) {
             Some(result) => {
                 let name = view::result_name(&row, result.encoding, level);
-                StoredFile::open(&self.0.spool, &result.blob, Some(result.encoding), name).await
+                StoredFile::open(&self.0.spool, &result.blob, result.encoding, name).await
             }
             None => {
                 let detail = format!("the job has {} meshes", ending.results().count());
@@ -402,7 +402,7 @@ impl Jobs {
         if !is_refusal {
             return problem;
         }
-        let report = async { serde_json::from_slice(&self.report(id).await.ok()?.read().await.ok()?).ok() };
+        let report = async { serde_json::from_slice(&self.report(id).await.ok()?).ok() };
         Problem { report: report.await, ..problem }
     }
 

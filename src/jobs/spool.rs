@@ -118,7 +118,7 @@ impl Spool {
         content: &[u8],
         space: Space,
     ) -> io::Result<Written> {
-        let unnamed = self.unnamed(format!("out/{}/{}/{name}", claim.id, claim.epoch));
+        let unnamed = self.unnamed(key_of(claim, name));
         let mut writer = self.blobs.create(&unnamed.key)?;
         writer.write_all(content)?;
         writer.commit()?;
@@ -135,11 +135,11 @@ impl Spool {
     pub(super) fn adopt(
         self: &Arc<Self>,
         claim: ClaimRef,
-        name: &str,
         file: &MadeFile,
         space: Space,
     ) -> io::Result<Written> {
-        let unnamed = self.unnamed(format!("out/{}/{}/{name}", claim.id, claim.epoch));
+        let name = file.path.file_name().unwrap_or_default().to_string_lossy();
+        let unnamed = self.unnamed(key_of(claim, &name));
         self.blobs.adopt(&file.path, &unnamed.key)?;
         let blob = BlobRef { key: unnamed.key.clone(), bytes: file.bytes, sha256: file.sha256 };
         space.hand_over(&blob);
@@ -191,9 +191,14 @@ impl Spool {
     }
 }
 
+/// Name of a file that the run of a claim writes: no other run writes one of that name.
+fn key_of(claim: ClaimRef, name: &str) -> String {
+    format!("out/{}.{}.{name}", claim.id, claim.epoch)
+}
+
 /// The claim whose run wrote the file, if a run did.
 pub(super) fn claim_of(key: &str) -> Option<ClaimRef> {
-    let mut parts = key.strip_prefix("out/")?.split('/');
+    let mut parts = key.strip_prefix("out/")?.split('.');
     let (id, epoch) = (parts.next()?.parse().ok()?, parts.next()?.parse().ok()?);
     Some(ClaimRef { id, epoch })
 }

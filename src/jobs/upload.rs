@@ -5,16 +5,18 @@ use std::sync::Arc;
 
 use sha2::{Digest, Sha256};
 
+use tokio::task::JoinHandle;
+
 use super::arrivals::Place;
 use super::blobs::BlobWriter;
 use super::meters;
-use super::retention::on_disk;
+use super::retention::{joined, on_disk};
 use super::service::Service;
 use super::spool::{Space, Spool, Unnamed, Written};
 use super::store::BlobRef;
 use crate::wire::{Problem, ProblemCode};
 
-/// Bytes gathered before they are hashed and written, off the threads that serve connections.
+/// Bytes gathered before they are hashed and written, off the threads that serve connections and while more come in.
 const BLOCK_BYTES: usize = 256 << 10;
 
 /// An upload that is coming in. Dropped before [`finish`](Self::finish), it leaves nothing behind.
@@ -40,8 +42,10 @@ enum Sink {
     /// Nothing has been written yet.
     Fresh,
     Open(Box<OpenSink>),
-    /// A block is being written; it stays so when that write is abandoned or fails.
-    Away,
+    /// A block is being written; what comes of it is the file, and the block empty again.
+    Busy(JoinHandle<io::Result<(Box<OpenSink>, Vec<u8>)>>),
+    /// A write was abandoned or has failed.
+    Lost,
 }
 
 struct OpenSink {
@@ -59,7 +63,7 @@ impl Sink {
                 Ok(Box::new(OpenSink { unnamed, writer, digest: Sha256::new() }))
             }
             Self::Open(sink) => Ok(sink),
-            Self::Away => Err(io::ErrorKind::BrokenPipe.into()),
+            Self::Busy(_) | Self::Lost => Err(io::ErrorKind::BrokenPipe.into()),
         }
     }
 }
@@ -89,16 +93,15 @@ impl Upload {
             self.block.extend_from_slice(now);
             bytes = later;
             if self.block.len() == BLOCK_BYTES {
-                let (mut block, sink) = self.next_block().await?;
+                let (sink, spare) = self.next_sink().await?;
+                let mut block = std::mem::replace(&mut self.block, spare);
                 let spool = Arc::clone(&self.service.spool);
-                let written = on_disk(move || {
+                self.sink = Sink::Busy(tokio::task::spawn_blocking(move || {
                     let mut sink = sink.open(&spool)?;
                     sink.write(&block)?;
                     block.clear();
                     Ok((sink, block))
-                });
-                let (sink, block) = written.await?;
-                (self.sink, self.block) = (Sink::Open(sink), block);
+                }));
             }
         }
         Ok(())
@@ -114,7 +117,8 @@ impl Upload {
     /// # Errors
     /// `queue-full`, `storage-full`, `internal` when the disk fails.
     pub async fn finish(mut self) -> Result<Uploaded, Problem> {
-        let (block, sink) = self.next_block().await?;
+        let (sink, _) = self.next_sink().await?;
+        let block = std::mem::take(&mut self.block);
         let spool = Arc::clone(&self.service.spool);
         let written = on_disk(move || {
             let mut sink = sink.open(&spool)?;
@@ -128,15 +132,21 @@ impl Upload {
         Ok(Uploaded { written: Written::upload(unnamed, blob, self.space), _place: self.place })
     }
 
-    /// What is to be written next, for which there is room now, and where to.
-    async fn next_block(&mut self) -> Result<(Vec<u8>, Sink), Problem> {
+    /// Where the block is to be written now, for which there is room, and an empty block.
+    async fn next_sink(&mut self) -> Result<(Sink, Vec<u8>), Problem> {
         if self.needs_place {
             self.place = Some(self.service.take_place().await.inspect_err(meters::refused)?);
             self.needs_place = false;
         }
         let room = self.service.make_room(self.block.len() as u64).await?;
         self.space.absorb(room);
-        Ok((std::mem::take(&mut self.block), std::mem::replace(&mut self.sink, Sink::Away)))
+        match std::mem::replace(&mut self.sink, Sink::Lost) {
+            Sink::Busy(writing) => {
+                let (sink, spare) = joined(writing).await?;
+                Ok((Sink::Open(sink), spare))
+            }
+            sink => Ok((sink, Vec::new())),
+        }
     }
 }
 

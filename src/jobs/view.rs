@@ -1,15 +1,12 @@
 //! A job as others see it: the public view of its row, and its files to send.
 
-use std::io::Read as _;
-
 use super::live::Live;
-use super::retention::on_disk;
 use super::spool::Spool;
 use super::store::{BlobRef, JobRow};
 use super::upload::disk_problem;
 use crate::wire::{self, Encoding, Job, JobState, Links, Outcome, Problem, ProblemCode, Progress};
 
-/// A file that can be sent.
+/// A mesh that can be sent.
 #[derive(Debug)]
 pub struct StoredFile {
     /// The open file. It stays readable although the job is deleted meanwhile.
@@ -18,8 +15,8 @@ pub struct StoredFile {
     pub bytes: u64,
     /// SHA-256 of the bytes.
     pub sha256: [u8; 32],
-    /// How a mesh is laid out; `None` for a report (JSON).
-    pub encoding: Option<Encoding>,
+    /// How the mesh is laid out.
+    pub encoding: Encoding,
     /// Name to save it under: letters, digits, dots, hyphens and underscores only.
     pub file_name: String,
 }
@@ -28,31 +25,28 @@ impl StoredFile {
     pub(super) async fn open(
         spool: &Spool,
         blob: &BlobRef,
-        encoding: Option<Encoding>,
+        encoding: Encoding,
         file_name: String,
     ) -> Result<Self, Problem> {
         let path = spool.path(&blob.key).map_err(|error| disk_problem(&error))?;
-        let file = match tokio::fs::File::open(path).await {
-            Ok(file) => file,
-            // Expired or deleted between the look at the row and this one.
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Err(expired()),
-            Err(error) => return Err(disk_problem(&error)),
-        };
+        let file = tokio::fs::File::open(path).await.map_err(|error| not_there(&error))?;
         Ok(Self { file, bytes: blob.bytes, sha256: blob.sha256, encoding, file_name })
     }
+}
 
-    /// The whole content.
-    ///
-    /// # Errors
-    /// `internal` when the disk fails.
-    pub async fn read(self) -> Result<Vec<u8>, Problem> {
-        let mut file = self.file.into_std().await;
-        let mut content = Vec::with_capacity(self.bytes as usize);
-        on_disk(move || {
-            file.read_to_end(&mut content)?;
-            Ok(content)
-        })
-        .await
+/// The content of a small file.
+pub(super) async fn read(spool: &Spool, blob: &BlobRef) -> Result<Vec<u8>, Problem> {
+    let path = spool.path(&blob.key).map_err(|error| disk_problem(&error))?;
+    let reading = tokio::task::spawn_blocking(move || std::fs::read(path));
+    let content = reading.await.map_err(|error| Problem::new(ProblemCode::Internal, error.to_string()))?;
+    content.map_err(|error| not_there(&error))
+}
+
+fn not_there(error: &std::io::Error) -> Problem {
+    match error.kind() {
+        // Expired or deleted between the look at the row and this one.
+        std::io::ErrorKind::NotFound => expired(),
+        _ => disk_problem(error),
     }
 }
 
@@ -109,11 +103,6 @@ pub(super) fn result_name(row: &JobRow, encoding: Encoding, level: usize) -> Str
     let has_levels = ending.is_some_and(|ending| !ending.levels.is_empty());
     let number = if has_levels { format!("-{}", level + 1) } else { String::new() };
     format!("{}{mark}{number}.{}", stem(row), wire::extension_of(format))
-}
-
-/// Name for the report of a job.
-pub(super) fn report_name(row: &JobRow) -> String {
-    format!("{}.report.json", stem(row))
 }
 
 /// The uploaded file's name without directories and extension, in harmless characters.

@@ -4,11 +4,15 @@ use crate::server::{PATIENCE, Server};
 use std::time::{Duration, Instant};
 
 /// The processes that run jobs of the server, and dead ones that have not been reaped. A living one that waits for a task is
-/// none of them: it has not stepped back behind the server yet.
+/// none of them: it has not put itself before the server yet in the
+/// order in which the kernel ends processes.
 pub(crate) fn children_of(server: &Server) -> Vec<u32> {
+    let own = std::fs::read_to_string("/proc/self/oom_score_adj").unwrap();
     let mut children = all_children_of(server);
     children.retain(|&pid| {
-        stat(pid).is_some_and(|fields| fields[0].as_str() == "Z" || fields[16].as_str() != "0")
+        let score =
+            || std::fs::read_to_string(format!("/proc/{pid}/oom_score_adj")).is_ok_and(|score| score != own);
+        parent_and_state(pid).is_some_and(|(_, state)| state == 'Z') || score()
     });
     children
 }
@@ -43,15 +47,11 @@ pub(crate) fn until_gone(pid: u32) {
 
 /// The parent of a process and the letter of its state; `None`: there is no such process.
 pub(crate) fn parent_and_state(pid: u32) -> Option<(u32, char)> {
-    let fields = stat(pid)?;
-    Some((fields[1].parse().ok()?, fields[0].chars().next()?))
-}
-
-/// What the kernel says of a process, from its state on: its parent comes next, its nice value as the sixteenth after it.
-fn stat(pid: u32) -> Option<Vec<String>> {
     let stat = std::fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
     // Its name stands in brackets and may hold anything.
-    Some(stat.rsplit_once(')')?.1.split_whitespace().map(str::to_owned).collect())
+    let mut fields = stat.rsplit_once(')')?.1.split_whitespace();
+    let state = fields.next()?.chars().next()?;
+    Some((fields.next()?.parse().ok()?, state))
 }
 
 /// The most memory that the server has held at one time, in bytes.

@@ -13,8 +13,6 @@ const MEMORY_ALLOWANCE_BYTES: u64 = 256 << 20;
 const CPU_ALLOWANCE: Duration = Duration::from_secs(5);
 /// Open files: three streams, the input, the material, one output, and room for the runtime.
 const FILES_MAX: u64 = 32;
-/// How much a child steps back behind the server, from 0 to 19.
-const NICENESS: i32 = 5;
 /// How much sooner than others the kernel ends a child when memory is short, from 0 to 1000: as if it held half of the
 /// memory more than it does.
 const OOM_SCORE: &str = "500";
@@ -66,8 +64,7 @@ impl Limits {
             Resource::Cpu,
             Rlimit { current: Some(self.cpu_s), maximum: Some(self.cpu_s.saturating_add(1)) },
         )?;
-        // Where these two are refused, the child runs like any other process.
-        let _ = rustix::process::nice(NICENESS);
+        // Where this is refused, the child is as likely to go as any other process.
         let _ = std::fs::write("/proc/self/oom_score_adj", OOM_SCORE);
         Ok(())
     }

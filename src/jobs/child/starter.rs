@@ -7,6 +7,9 @@ use std::thread;
 
 use super::launch::Running;
 
+/// How much children step back behind the server, from 0 to 19: also while they start.
+const NICENESS: i32 = 5;
+
 /// Starts children. The kernel ends a child with the thread that started it, so this one lives as long as the server.
 #[derive(Debug)]
 pub(super) struct Starter {
@@ -49,6 +52,8 @@ impl Starter {
 
 /// Starts children until nobody can ask for more.
 fn serve(spare: &Spare, asked: &mpsc::Receiver<Ask>) {
+    // This thread's alone, and from it every child's. Where it is refused, children run like any other process.
+    let _ = rustix::process::nice(NICENESS);
     loop {
         let is_wanted = spare.lock().unwrap_or_else(PoisonError::into_inner).is_none();
         if is_wanted {

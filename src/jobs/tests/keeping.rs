@@ -214,7 +214,7 @@ async fn the_same_bytes_and_options_are_answered_from_the_earlier_job() {
     assert_ne!(first.id, second.id);
     assert_eq!(runs.load(Ordering::SeqCst), 1);
     house.delete(id(&first)).await.unwrap();
-    assert_eq!(house.result(id(&second)).await.unwrap().read().await.unwrap(), b"mended");
+    assert_eq!(content(house.result(id(&second)).await.unwrap()).await, b"mended");
     let other = Options { samples: Some(1), ..Options::default() };
     let third = house.order_with(b"x", other, None).await.unwrap();
     assert!(!house.end_of(&third).await.cached);
@@ -263,5 +263,5 @@ async fn a_disk_that_is_nearly_full_takes_no_upload_and_no_result_goes_for_it() 
     let mut unannounced = jobs.upload(None).await.unwrap();
     unannounced.write(b"hello").await.unwrap();
     assert_eq!(unannounced.finish().await.unwrap_err().code, ProblemCode::StorageFull);
-    assert_eq!(jobs.result(id(&job)).await.unwrap().read().await.unwrap(), b"mended");
+    assert_eq!(content(jobs.result(id(&job)).await.unwrap()).await, b"mended");
 }

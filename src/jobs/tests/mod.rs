@@ -9,6 +9,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, mpsc};
 use std::time::Duration;
 
+use tokio::io::AsyncReadExt as _;
+
 use super::*;
 use crate::budget::Budget;
 use crate::formats::{Place, ReadError, ReadErrorKind};
@@ -42,6 +44,13 @@ async fn house(
     let engine: Engine = Arc::new(move |_: Asked, bytes, _, budget| engine(bytes, budget));
     let jobs = Jobs::start_with(settings, engine).await.unwrap();
     House { jobs, dir }
+}
+
+/// The bytes of a mesh.
+async fn content(mut stored: StoredFile) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    stored.file.read_to_end(&mut bytes).await.unwrap();
+    bytes
 }
 
 impl House {

@@ -49,7 +49,7 @@ async fn what_was_accepted_ends_although_the_process_is_gone() {
     for (job, attempts) in [(&running, 1), (&queued, 0)] {
         let ended = house.end_of(job).await;
         assert_eq!((ended.state, ended.attempts), (JobState::Succeeded, attempts), "{:?}", ended.problem);
-        assert_eq!(house.result(id(job)).await.unwrap().read().await.unwrap(), b"mended");
+        assert_eq!(content(house.result(id(job)).await.unwrap()).await, b"mended");
     }
     assert_eq!(house.spool_files(), 6);
 }
@@ -94,7 +94,7 @@ async fn results_and_the_cache_outlast_the_process() {
     let house = house(|_| {}, mend).await;
     let first = house.run(b"x").await;
     let house = crash_and_restart(house, |_| {}, work_forever).await;
-    assert_eq!(house.result(id(&first)).await.unwrap().read().await.unwrap(), b"mended");
+    assert_eq!(content(house.result(id(&first)).await.unwrap()).await, b"mended");
     let again = house.order(b"x").await.unwrap();
     assert_eq!((again.state, again.cached), (JobState::Succeeded, true));
     assert_eq!(house.load().await.data_bytes, bytes_under(&house.settings().data_dir.join("spool")));
@@ -116,16 +116,11 @@ async fn files_that_nobody_names_go_at_the_start_and_what_is_named_stays() {
     let job = house.run(b"x").await;
     let spool = house.settings().data_dir.join("spool");
     std::fs::write(spool.join("in/cut-off"), b"half an upload").unwrap();
-    let void = spool.join("out").join(JobId::unique().to_string()).join("1");
-    std::fs::create_dir_all(&void).unwrap();
-    std::fs::write(void.join("mesh-0"), b"of a void claim").unwrap();
-    let old = spool.join("out").join(&job.id).join("0");
-    std::fs::create_dir_all(&old).unwrap();
-    std::fs::write(old.join("report.json"), b"of an earlier claim").unwrap();
+    std::fs::write(spool.join(format!("out/{}.1.mesh-0", JobId::unique())), b"of a void claim").unwrap();
+    std::fs::write(spool.join(format!("out/{}.0.report.json", job.id)), b"of an earlier claim").unwrap();
     let house = crash_and_restart(house, |_| {}, mend).await;
     assert_eq!(house.spool_files(), 3);
     assert_eq!(house.load().await.data_bytes, bytes_under(&spool));
-    assert!(!void.parent().unwrap().exists(), "its directories go too");
     assert!(house.result(id(&job)).await.is_ok() && house.report(id(&job)).await.is_ok());
 }
 
@@ -149,15 +144,16 @@ async fn files_of_the_run_that_goes_on_are_not_taken_for_orphans_and_those_of_vo
     let house = house(|_| {}, work_forever).await;
     let job = house.order(b"x").await.unwrap();
     house.until("running", |load| load.running == 1).await;
-    let run = |epoch: u32| house.settings().data_dir.join("spool/out").join(&job.id).join(epoch.to_string());
+    let out = house.settings().data_dir.join("spool/out");
+    let made = |epoch: u32| out.join(format!("{}.{epoch}.mesh-0", job.id));
     for epoch in [1, 2] {
-        std::fs::create_dir_all(run(epoch)).unwrap();
-        std::fs::write(run(epoch).join("mesh-0"), b"half a result").unwrap();
+        std::fs::write(made(epoch), b"half a result").unwrap();
     }
     house.service().collect_orphans().await.unwrap();
-    assert!(run(1).exists() && !run(2).exists());
+    let are_there = [1, 2].map(|epoch| made(epoch).exists());
     house.cancel(id(&job)).await.unwrap();
     house.end_of(&job).await;
+    assert_eq!(are_there, [true, false]);
     house.service().collect_orphans().await.unwrap();
     assert_eq!(house.spool_files(), 1, "the upload");
 }

@@ -20,8 +20,8 @@ async fn a_repair_gives_a_report_and_a_mesh() {
     assert!(job.timing_ms.unwrap().repair.is_some());
     let mesh = house.result(job.id.parse().unwrap()).await.unwrap();
     assert_eq!((mesh.bytes, mesh.file_name.as_str()), (6, "part_one-repaired.stl"));
-    assert_eq!(mesh.read().await.unwrap(), b"mended");
-    let report = house.report(job.id.parse().unwrap()).await.unwrap().read().await.unwrap();
+    assert_eq!(content(mesh).await, b"mended");
+    let report = house.report(job.id.parse().unwrap()).await.unwrap();
     let report: serde_json::Value = serde_json::from_slice(&report).unwrap();
     assert_eq!(report["verdict"]["outcome"], "repaired");
 }
@@ -32,7 +32,7 @@ async fn the_engine_itself_closes_a_tetrahedron() {
     let house = House { jobs: Jobs::start(JobsSettings::new(dir.path())).await.unwrap(), dir };
     let job = house.run(b"OFF\n4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n").await;
     assert_eq!((job.state, job.outcome), (JobState::Succeeded, Some(Outcome::Repaired)), "{:?}", job.problem);
-    let report = house.report(id(&job)).await.unwrap().read().await.unwrap();
+    let report = house.report(id(&job)).await.unwrap();
     let report: serde_json::Value = serde_json::from_slice(&report).unwrap();
     assert_eq!(report["verdict"]["printable"], true);
     assert_eq!(report["before"]["defects"][0]["code"], "boundary-loop");
@@ -47,7 +47,7 @@ async fn the_engine_itself_closes_a_tetrahedron() {
 async fn a_valid_mesh_comes_back_as_the_uploaded_file_itself() {
     let house = house(|_| {}, |_, _| Ok(sample::identical())).await;
     let job = house.run(b"valid").await;
-    assert_eq!(house.result(id(&job)).await.unwrap().read().await.unwrap(), b"valid");
+    assert_eq!(content(house.result(id(&job)).await.unwrap()).await, b"valid");
     assert_eq!(house.spool_files(), 2, "one mesh, one report");
     house.delete(id(&job)).await.unwrap();
     assert_eq!((house.spool_files(), house.load().await.data_bytes), (0, 0));

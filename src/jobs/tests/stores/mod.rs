@@ -200,7 +200,7 @@ async fn succeeded(store: &dyn JobStore, job: NewJob) -> JobRow {
 }
 
 fn blob(row: &JobRow, name: &str) -> BlobRef {
-    BlobRef { key: format!("out/{}/{}/{name}", row.id, row.epoch), bytes: 7, sha256: [7; 32] }
+    BlobRef { key: format!("out/{}.{}.{name}", row.id, row.epoch), bytes: 7, sha256: [7; 32] }
 }
 
 fn success(row: &JobRow) -> Ending {
