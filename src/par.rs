@@ -10,12 +10,26 @@ use std::ops::Range;
 ///
 /// Falls back to the current pool when the system refuses new threads.
 pub fn with_threads<T: Send>(threads: usize, body: impl FnOnce() -> T + Send) -> T {
-    if threads == 0 {
-        return body();
+    Threads::start(threads).run(body)
+}
+
+/// Engine threads of their own.
+#[derive(Debug)]
+pub struct Threads(Option<rayon::ThreadPool>);
+
+impl Threads {
+    /// Starts so many; 0, or when the system refuses them: those of the current pool.
+    pub fn start(threads: usize) -> Self {
+        let start = || rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok();
+        Self(if threads == 0 { None } else { start() })
     }
-    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-        Ok(pool) => pool.install(body),
-        Err(_) => body(),
+
+    /// Runs `body` with them.
+    pub fn run<T: Send>(&self, body: impl FnOnce() -> T + Send) -> T {
+        match &self.0 {
+            Some(pool) => pool.install(body),
+            None => body(),
+        }
     }
 }
 

@@ -144,7 +144,7 @@ impl Service {
             Poll::Pending => {
                 // A slot that asks for work now asks a store that has been told of the job: its claim becomes durable
                 // with the job, not after it.
-                self.work.notify_waiters();
+                self.work.notify_one();
                 creating.await
             }
         };
@@ -157,7 +157,10 @@ impl Service {
         if let Some(at) = row.cancel_at {
             tokio::spawn(end_overdue(Arc::clone(self), row.id, at));
         }
-        self.work.notify_waiters();
+        if self.live.get(row.id).is_none_or(|live| live.epoch == 0) {
+            // Not in a slot yet.
+            self.work.notify_waiters();
+        }
         self.note_load();
         Ok(row)
     }

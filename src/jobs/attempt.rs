@@ -40,6 +40,13 @@ pub(super) enum Executor {
 }
 
 impl Executor {
+    /// No more jobs come.
+    pub(super) fn close(&self) {
+        if let Self::Process(processes) = self {
+            processes.close();
+        }
+    }
+
     /// What the settings ask for, after a trial.
     pub(super) async fn of(settings: &JobsSettings) -> Result<Self, TrialError> {
         match settings.isolation {

@@ -30,6 +30,7 @@ impl Jobs {
                 tracing::error!("a job did not end when told to");
             }
         }
+        service.executor.close();
         service.stopping.cancel();
     }
 
@@ -43,6 +44,7 @@ impl Jobs {
         if tokio::time::timeout(ABANDON_PATIENCE, service.slots.wait()).await.is_err() {
             tracing::warn!("jobs that run are queued again by the next start");
         }
+        service.executor.close();
         service.stopping.cancel();
     }
 }

@@ -14,7 +14,13 @@ pub(crate) fn reached() -> Vec<&'static str> {
         let hard = getrlimit(Resource::Data).maximum?.checked_add(1)?;
         setrlimit(Resource::Data, Rlimit { current: Some(hard), maximum: Some(hard) }).ok()
     };
-    let tries: [(&str, bool); 12] = [
+    let folder = std::path::PathBuf::from(std::env::args_os().nth(2).unwrap());
+    let upload = folder.join("given/mesh");
+    assert!(std::fs::File::open(&upload).is_ok(), "it reads what it is given");
+    let tries: [(&str, bool); 15] = [
+        ("the upload, to write it", std::fs::File::options().write(true).open(&upload).is_ok()),
+        ("the upload, to remove it", std::fs::remove_file(&upload).is_ok()),
+        ("the folders of others", std::fs::read_dir(folder.join("..")).is_ok()),
         ("a file of the system", std::fs::read("/etc/passwd").is_ok()),
         ("its own binary", std::fs::File::open("/proc/self/exe").is_ok()),
         ("a list of files", std::fs::read_dir("/").is_ok()),
@@ -61,7 +67,9 @@ pub(crate) fn without_a_sandbox_the_limits_still_hold() {
     assert!(server.log().contains("no landlock, no seccomp filter"), "{}", server.log());
     let problem = problem_of(&server, "reach");
     let reached = problem["expected"].as_str().unwrap_or_else(|| panic!("{problem}"));
-    assert!(reached.contains("a file of the system") && reached.contains("a connection"), "{reached}");
+    for what in ["a file of the system", "a connection", "the upload, to write it"] {
+        assert!(reached.contains(what), "{reached}");
+    }
     assert_eq!(problem_of(&server, "memory")["code"], "engine-out-of-memory");
     goes_on(&server);
 }

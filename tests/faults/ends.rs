@@ -26,7 +26,11 @@ pub(crate) fn goes_on(server: &Server) {
     assert_eq!((&job["state"], &job["outcome"]), (&json!("succeeded"), &json!("repaired")), "{job}");
     assert!(children_of(server).is_empty());
     let left = std::fs::read_dir(server.data_dir().join("work")).unwrap().count();
-    assert_eq!(left, 0, "folders of jobs that have ended");
+    assert!(
+        left <= 1,
+        "besides that of the process that waits there are {} folders of jobs that have ended",
+        left - 1
+    );
 }
 
 pub(crate) fn every_end_of_a_process_is_a_problem_of_its_own_and_the_next_job_runs() {

@@ -3,16 +3,14 @@
 use crate::server::{PATIENCE, Server};
 use std::time::{Duration, Instant};
 
-/// The processes that run jobs of the server, and dead ones that have not been reaped. A living one that waits for a task is
-/// none of them: it has not put itself before the server yet in the
-/// order in which the kernel ends processes.
+/// The processes that run jobs of the server, and dead ones that have not been reaped.
 pub(crate) fn children_of(server: &Server) -> Vec<u32> {
-    let own = std::fs::read_to_string("/proc/self/oom_score_adj").unwrap();
     let mut children = all_children_of(server);
     children.retain(|&pid| {
-        let score =
-            || std::fs::read_to_string(format!("/proc/{pid}/oom_score_adj")).is_ok_and(|score| score != own);
-        parent_and_state(pid).is_some_and(|(_, state)| state == 'Z') || score()
+        let works = || {
+            std::fs::read_to_string(format!("/proc/{pid}/comm")).is_ok_and(|name| name == "meshmend-job\n")
+        };
+        parent_and_state(pid).is_some_and(|(_, state)| state == 'Z') || works()
     });
     children
 }

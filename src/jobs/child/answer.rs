@@ -1,12 +1,12 @@
 //! What a child made, as files of its folder.
 
 use std::fs::File;
-use std::io::{self, Write as _};
-use std::path::PathBuf;
+use std::io::Write as _;
 
 use sha2::{Digest as _, Sha256};
 
-use super::task::{FileMade, Task, file_name};
+use super::task::FileMade;
+use super::workspace::Rooms;
 use crate::jobs::product::Product;
 use crate::jobs::upload::disk_problem;
 use crate::wire::{Problem, ProblemCode};
@@ -14,15 +14,12 @@ use crate::wire::{Problem, ProblemCode};
 /// Writes files with numbers into a folder.
 #[derive(Debug)]
 pub(super) struct Files {
-    folder: PathBuf,
-    bytes_max: u64,
+    pub(super) rooms: Rooms,
+    /// Most bytes of one.
+    pub(super) bytes_max: u64,
 }
 
 impl Files {
-    pub(super) fn new(task: &Task) -> io::Result<Self> {
-        Ok(Self { folder: std::path::absolute(&task.output)?, bytes_max: task.limits.file_bytes })
-    }
-
     /// The product with its contents in files.
     pub(super) fn write(&self, product: Product<Vec<u8>>) -> Result<Product<FileMade>, Problem> {
         let mut number = 0;
@@ -44,7 +41,7 @@ impl Files {
                 Some(bytes),
             ));
         }
-        let path = self.folder.join(file_name(number));
+        let path = self.rooms.made(number);
         // Not `create_new` alone: that asks to read as well, which the sandbox does not grant.
         let write = || File::options().write(true).create_new(true).open(&path)?.write_all(content);
         write().map_err(|error| disk_problem(&error))?;

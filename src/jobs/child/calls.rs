@@ -107,6 +107,8 @@ fn allowed() -> Result<BTreeMap<c_long, Vec<SeccompRule>>, seccompiler::BackendE
     rules.insert(libc::SYS_mprotect, without_execution()?);
     // How the standard library looks whether a file is still open.
     rules.insert(libc::SYS_fcntl, only_if(1, SeccompCmpOp::Eq, libc::F_GETFD as u64)?);
+    // A process may say what it does.
+    rules.insert(libc::SYS_prctl, only_if(0, SeccompCmpOp::Eq, libc::PR_SET_NAME as u64)?);
     // Threads of this process, no further process.
     let thread = libc::CLONE_THREAD as u64;
     rules.insert(libc::SYS_clone, only_if(0, SeccompCmpOp::MaskedEq(thread), thread)?);

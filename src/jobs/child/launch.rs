@@ -6,13 +6,15 @@ use std::os::fd::OwnedFd;
 use std::os::unix::fs::FileExt as _;
 use std::os::unix::process::CommandExt as _;
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::Arc;
 
 use rustix::fs::{MemfdFlags, SealFlags, fcntl_add_seals, ftruncate, memfd_create};
 use rustix::io::ioctl_fionbio;
 use rustix::process::{Pid, PidfdFlags, Signal, kill_process_group, pidfd_open};
 
 use super::run::RUN_JOB;
-use super::task::Task;
+use super::task::{Setting, Task};
+use super::workspace::{Workspace, Workspaces};
 
 /// The binary that this process runs, also when the file has been replaced since: versions do not mix.
 const OWN_BINARY: &str = "/proc/self/exe";
@@ -31,6 +33,8 @@ const TUNED: &str = "glibc.malloc.hugetlb=1:glibc.malloc.top_pad=16777216:glibc.
 #[derive(Debug)]
 pub(super) struct Running {
     child: Child,
+    /// Where it finds its files and leaves others.
+    pub(super) workspace: Arc<Workspace>,
     /// The part of its task that it has not been told yet.
     pub(super) untold: Option<Untold>,
     /// What it says.
@@ -50,14 +54,16 @@ pub(super) struct Untold {
 
 impl Running {
     /// Starts a child, which waits for its task. It dies with the calling thread.
-    pub(super) fn start() -> io::Result<Self> {
+    pub(super) fn start(setting: &Setting, workspaces: &Workspaces) -> io::Result<Self> {
+        let workspace = Arc::new(workspaces.make()?);
         let (source, pipe) = io::pipe()?;
         // A child that does not listen must not hold up whoever speaks to it.
         ioctl_fionbio(&pipe, true)?;
         let words = page_of_words()?;
         let (output, sink) = io::pipe()?;
         let mut command = Command::new(OWN_BINARY);
-        command.arg0(env!("CARGO_PKG_NAME")).arg(RUN_JOB).env_clear().process_group(0);
+        command.arg0(env!("CARGO_PKG_NAME")).arg(RUN_JOB).arg(workspace.rooms.folder());
+        command.arg(serde_json::to_string(setting)?).env_clear().process_group(0);
         command.env(TUNABLES, TUNED).envs(
             std::env::vars_os().filter(|(name, _)| {
                 KEPT_VARIABLES.iter().any(|kept| name.to_string_lossy().starts_with(kept))
@@ -69,7 +75,7 @@ impl Running {
         drop(command);
         let ended = pidfd_open(Pid::from_child(&child), PidfdFlags::empty()).ok();
         let untold = Some(Untold { pipe, words: Vec::new() });
-        Ok(Self { child, untold, output, ended, words, status: None })
+        Ok(Self { child, workspace, untold, output, ended, words, status: None })
     }
 
     /// Gives it its task; [`tell`](Self::tell) goes on with what does not fit into the pipe.

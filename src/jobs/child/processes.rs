@@ -1,14 +1,12 @@
 //! All children of one server: where they work and what holds them.
 
-use std::io;
 use std::num::NonZero;
-use std::sync::Arc;
 
 use super::death::Death;
 use super::limits::Limits;
 use super::sandbox::Protections;
 use super::starter::Starter;
-use super::task::Task;
+use super::task::{Setting, Task};
 use super::trial::{TrialError, try_out};
 use super::watch::watch;
 use super::workspace::Workspaces;
@@ -20,26 +18,28 @@ use crate::jobs::settings::JobsSettings;
 use crate::jobs::spool::Spool;
 use crate::jobs::store::{BlobRef, JobRow};
 use crate::jobs::upload::disk_problem;
-use crate::wire::{Operation, Options, Problem};
+use crate::wire::Problem;
 
 /// Gives jobs to children, one to each.
 #[derive(Debug)]
 pub(in crate::jobs) struct Processes {
     starter: Starter,
-    workspaces: Workspaces,
-    /// A task for nothing, with what all tasks have in common.
-    pattern: Task,
+    setting: Setting,
 }
 
 impl Processes {
     /// Finds out by a trial whether children do their job here, and says what holds them.
     pub(in crate::jobs) fn prepare(settings: &JobsSettings) -> Result<Self, TrialError> {
         let workspaces = Workspaces::open(&settings.data_dir)?;
-        let starter = Starter::open()?;
-        let pattern = pattern(settings);
-        let protections = try_out(&starter, &workspaces, pattern.clone())?;
-        tell(protections, &pattern.limits);
-        Ok(Self { starter, workspaces, pattern })
+        let setting = setting(settings);
+        let protections = try_out(&workspaces, &setting)?;
+        tell(protections, &setting.limits);
+        Ok(Self { starter: Starter::open(setting.clone(), workspaces)?, setting })
+    }
+
+    /// Ends the child that waits for a task. None waits from then on.
+    pub(in crate::jobs) fn close(&self) {
+        self.starter.close();
     }
 
     /// Runs a job in a child. Blocks.
@@ -51,27 +51,28 @@ impl Processes {
         settings: &JobsSettings,
         clock: &StageClock,
     ) -> Result<Product<MadeFile>, Problem> {
-        let local = |blob: &BlobRef| spool.path(&blob.key);
-        let prepare = || {
-            io::Result::Ok((
-                self.workspaces.make()?,
-                local(&row.input)?,
-                row.material.as_ref().map(local).transpose()?,
-            ))
-        };
-        let (workspace, input, material) = prepare().map_err(|error| disk_problem(&error))?;
-        let workspace = Arc::new(workspace);
         let task = Task {
             operation: row.operation,
             options: row.options.clone(),
-            input,
             input_bytes: row.input.bytes,
-            material,
-            output: workspace.path().to_owned(),
-            ..self.pattern.clone()
+            has_material: row.material.is_some(),
+            triangles_max: settings.read_limits.triangles_max,
+            vertices_max: settings.read_limits.vertices_max,
+            polygon_corners_max: settings.read_limits.polygon_corners_max,
+            engine_work_max: settings.engine_work_max,
+            engine_bytes_max: settings.engine_bytes_max,
         };
-        let hear = clock.observer();
-        match watch(&self.starter, &task, &workspace, &live.stop, settings.deadline_max, &hear) {
+        let answered = match self.starter.child() {
+            Ok(running) => {
+                let local = |blob: &BlobRef| spool.path(&blob.key).map_err(|error| disk_problem(&error));
+                let material = row.material.as_ref().map(local).transpose()?;
+                let given = running.workspace.give(&local(&row.input)?, material.as_deref());
+                given.map_err(|error| disk_problem(&error))?;
+                watch(running, &task, &live.stop, settings.deadline_max, &clock.observer())
+            }
+            Err(error) => Err(Death::NotStarted(error)),
+        };
+        match answered {
             Ok(answered) => {
                 if let Some(place) = answered.panicked_at {
                     tracing::error!(job = %row.id, place, "the engine panicked");
@@ -83,7 +84,8 @@ impl Processes {
             }
             Err(death) => {
                 meters::child_ended(death.kind());
-                let problem = death.problem(clock.progress().stage, &task.limits, task.engine_bytes_max);
+                let problem =
+                    death.problem(clock.progress().stage, &self.setting.limits, settings.engine_bytes_max);
                 match &death {
                     Death::Stopped(_) => {}
                     Death::NotStarted(error) => {
@@ -97,27 +99,16 @@ impl Processes {
     }
 }
 
-fn pattern(settings: &JobsSettings) -> Task {
+fn setting(settings: &JobsSettings) -> Setting {
     let cores = || std::thread::available_parallelism().map_or(1, NonZero::get);
     let threads = match settings.engine_threads {
         // Asked here: a child in its sandbox does not see how many cores its group of processes may use.
         0 => cores(),
         threads => threads,
     };
-    Task {
+    Setting {
         parent: std::process::id() as i32,
-        operation: Operation::Verify,
-        options: Options::default(),
-        input: "".into(),
-        input_bytes: 0,
-        material: None,
-        output: "".into(),
         threads,
-        triangles_max: settings.read_limits.triangles_max,
-        vertices_max: settings.read_limits.vertices_max,
-        polygon_corners_max: settings.read_limits.polygon_corners_max,
-        engine_work_max: settings.engine_work_max,
-        engine_bytes_max: settings.engine_bytes_max,
         limits: Limits::new(
             settings.engine_bytes_max,
             settings.data_bytes_max,

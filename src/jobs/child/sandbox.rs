@@ -2,10 +2,10 @@
 
 use std::fmt;
 use std::io;
-use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use super::workspace::Rooms;
 use super::{calls, files};
 
 /// How much of the sandbox there must be.
@@ -23,7 +23,7 @@ pub enum Sandbox {
 /// What holds a process.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Protections {
-    /// Version of landlock's interface: it may write in its own folder and reach no other file; `None`: not so.
+    /// Version of landlock's interface: it reads and writes in its own folder and reaches no other file; `None`: not so.
     pub(super) landlock_abi: Option<u32>,
     /// It may make the system calls of a computation only.
     pub(super) is_filtered: bool,
@@ -47,13 +47,13 @@ impl fmt::Display for Protections {
 }
 
 impl Sandbox {
-    /// Confines this process, which has one thread, to `output`.
-    pub(super) fn enter(self, output: &Path) -> io::Result<Protections> {
+    /// Confines this process, which has one thread, to its folder.
+    pub(super) fn enter(self, rooms: &Rooms) -> io::Result<Protections> {
         if self == Self::Off {
             return Ok(Protections::default());
         }
         rustix::thread::set_no_new_privs(true)?;
-        let landlock_abi = files::confine_to(output)?;
+        let landlock_abi = files::confine_to(rooms)?;
         let is_filtered = calls::confine()?;
         let protections = Protections { landlock_abi, is_filtered };
         if self == Self::Require && !protections.are_complete() {

@@ -1,11 +1,13 @@
-//! The thread that starts children. One child more than there are jobs is always started, and waits for its task: a job
-//! does not wait for the loader.
+//! The thread that starts children. One child more than there are jobs is always started, confined, and waits for its task:
+//! a job does not wait for the loader.
 
 use std::io;
-use std::sync::{Arc, Mutex, PoisonError, mpsc};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 use std::thread;
 
 use super::launch::Running;
+use super::task::Setting;
+use super::workspace::Workspaces;
 
 /// How much children step back behind the server, from 0 to 19: also while they start.
 const NICENESS: i32 = 5;
@@ -17,26 +19,37 @@ pub(super) struct Starter {
     asks: mpsc::Sender<Ask>,
 }
 
-/// The child that waits for a task, when there is one.
-type Spare = Mutex<Option<Running>>;
+/// The child that waits for a task. Held while one is started: who comes meanwhile waits for that one.
+#[derive(Debug, Default)]
+struct Spare(Mutex<State>);
+
+#[derive(Debug, Default)]
+struct State {
+    child: Option<Running>,
+    /// No more children are wanted.
+    is_over: bool,
+}
 
 /// What the thread is asked for: a child, or only that there be a spare one again.
 type Ask = Option<mpsc::SyncSender<io::Result<Running>>>;
 
 impl Starter {
     /// Starts the thread, and the first child.
-    pub(super) fn open() -> io::Result<Self> {
+    pub(super) fn open(setting: Setting, workspaces: Workspaces) -> io::Result<Self> {
         let (asks, asked) = mpsc::channel();
         let spare = Arc::new(Spare::default());
         let shared = Arc::clone(&spare);
-        thread::Builder::new().name("job-starter".to_owned()).spawn(move || serve(&shared, &asked))?;
+        let start = move || Running::start(&setting, &workspaces);
+        thread::Builder::new()
+            .name("job-starter".to_owned())
+            .spawn(move || serve(&shared, &asked, &start))?;
         Ok(Self { spare, asks })
     }
 
     /// A child without a task. Blocks while one is started, when none waits.
     pub(super) fn child(&self) -> io::Result<Running> {
         let gone = || io::Error::other("the thread that starts processes has ended");
-        let waiting = self.spare.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let waiting = self.spare.lock().child.take();
         // One that has died while it waited serves nobody.
         if let Some(mut child) = waiting
             && matches!(child.status(), Ok(None))
@@ -48,27 +61,45 @@ impl Starter {
         self.asks.send(Some(give)).map_err(|_| gone())?;
         given.recv().map_err(|_| gone())?
     }
+
+    /// Ends the child that waits, for good.
+    pub(super) fn close(&self) {
+        let mut state = self.spare.lock();
+        state.is_over = true;
+        state.child = None;
+    }
+}
+
+impl Spare {
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Sees to it that a child waits.
+    fn fill(&self, start: &dyn Fn() -> io::Result<Running>) {
+        let mut state = self.lock();
+        if state.is_over || state.child.is_some() {
+            return;
+        }
+        match start() {
+            Ok(child) => state.child = Some(child),
+            Err(error) => tracing::warn!(%error, "no process waits for the next job"),
+        }
+    }
 }
 
 /// Starts children until nobody can ask for more.
-fn serve(spare: &Spare, asked: &mpsc::Receiver<Ask>) {
+fn serve(spare: &Spare, asked: &mpsc::Receiver<Ask>, start: &dyn Fn() -> io::Result<Running>) {
     // This thread's alone, and from it every child's. Where it is refused, children run like any other process.
     let _ = rustix::process::nice(NICENESS);
-    loop {
-        let is_wanted = spare.lock().unwrap_or_else(PoisonError::into_inner).is_none();
-        if is_wanted {
-            match Running::start() {
-                Ok(child) => *spare.lock().unwrap_or_else(PoisonError::into_inner) = Some(child),
-                Err(error) => tracing::warn!(%error, "no process waits for the next job"),
-            }
-        }
-        match asked.recv() {
+    spare.fill(start);
+    while let Ok(ask) = asked.recv() {
+        if let Some(give) = ask {
             // Whoever asked may be gone; then the child goes too.
-            Ok(Some(give)) => drop(give.send(Running::start())),
-            Ok(None) => {}
-            Err(mpsc::RecvError) => break,
+            drop(give.send(start()));
         }
+        spare.fill(start);
     }
     // The child is to be reaped before its thread ends.
-    drop(spare.lock().unwrap_or_else(PoisonError::into_inner).take());
+    spare.lock().child = None;
 }

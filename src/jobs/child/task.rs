@@ -1,7 +1,5 @@
 //! The words between a server and its children.
 
-use std::path::PathBuf;
-
 use serde::{Deserialize, Serialize};
 
 use super::limits::Limits;
@@ -10,39 +8,40 @@ use crate::formats::ReadLimits;
 use crate::jobs::product::Product;
 use crate::wire::{Operation, Options, Problem, Stage};
 
-/// What a child is to do.
+/// What a child is told when it is started; its task comes later.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(in crate::jobs) struct Task {
+pub(super) struct Setting {
     /// Process id of the server; the child ends when that is not its parent.
-    pub(in crate::jobs) parent: i32,
-    /// What to do.
-    pub(in crate::jobs) operation: Operation,
-    /// How.
-    pub(in crate::jobs) options: Options,
-    /// The mesh.
-    pub(in crate::jobs) input: PathBuf,
-    /// Its size in bytes.
-    pub(in crate::jobs) input_bytes: u64,
-    /// The MTL file of an OBJ.
-    pub(in crate::jobs) material: Option<PathBuf>,
-    /// The folder for what the child makes.
-    pub(in crate::jobs) output: PathBuf,
+    pub(super) parent: i32,
     /// Engine threads, at least one.
-    pub(in crate::jobs) threads: usize,
-    /// Most triangles of a mesh.
-    pub(in crate::jobs) triangles_max: u32,
-    /// Most vertices of a mesh.
-    pub(in crate::jobs) vertices_max: u32,
-    /// Most corners of one polygon.
-    pub(in crate::jobs) polygon_corners_max: u32,
-    /// Most work units.
-    pub(in crate::jobs) engine_work_max: u64,
-    /// Most bytes that the engine may charge.
-    pub(in crate::jobs) engine_bytes_max: u64,
+    pub(super) threads: usize,
     /// What the kernel holds the process to.
-    pub(in crate::jobs) limits: Limits,
+    pub(super) limits: Limits,
     /// How much of the sandbox there must be.
-    pub(in crate::jobs) sandbox: Sandbox,
+    pub(super) sandbox: Sandbox,
+}
+
+/// What a child is to do with the files in its folder.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Task {
+    /// What to do.
+    pub(super) operation: Operation,
+    /// How.
+    pub(super) options: Options,
+    /// Size of the mesh in bytes.
+    pub(super) input_bytes: u64,
+    /// With the mesh, an OBJ, comes its MTL file.
+    pub(super) has_material: bool,
+    /// Most triangles of a mesh.
+    pub(super) triangles_max: u32,
+    /// Most vertices of a mesh.
+    pub(super) vertices_max: u32,
+    /// Most corners of one polygon.
+    pub(super) polygon_corners_max: u32,
+    /// Most work units.
+    pub(super) engine_work_max: u64,
+    /// Most bytes that the engine may charge.
+    pub(super) engine_bytes_max: u64,
 }
 
 impl Task {
@@ -59,7 +58,7 @@ impl Task {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Message {
-    /// It is confined and begins.
+    /// It is confined and waits for its task.
     Confined(Protections),
     /// A pass begins.
     Enter(Stage),
@@ -71,7 +70,7 @@ pub(super) enum Message {
     Failed(Box<Problem>),
 }
 
-/// A file in the folder of the child.
+/// A file that a child made.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct FileMade {
     /// Its place among the files, from 0.
@@ -80,9 +79,4 @@ pub(super) struct FileMade {
     pub(super) bytes: u64,
     /// SHA-256 of its bytes.
     pub(super) sha256: [u8; 32],
-}
-
-/// Name of the file with this number.
-pub(super) fn file_name(number: usize) -> String {
-    format!("made-{number}")
 }

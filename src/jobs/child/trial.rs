@@ -1,13 +1,12 @@
 //! A trial at the start of the server: a child that is confined as all will be runs a small job.
 
 use std::io;
-use std::sync::Arc;
 use std::time::Duration;
 
+use super::launch::Running;
 use super::limits::Limits;
 use super::sandbox::{Protections, Sandbox};
-use super::starter::Starter;
-use super::task::Task;
+use super::task::{Setting, Task};
 use super::watch::watch;
 use super::workspace::Workspaces;
 use crate::budget::StopFlag;
@@ -39,34 +38,30 @@ pub enum TrialError {
     Incomplete(String),
 }
 
-/// Runs a small job as `task` says, which is for another one.
-pub(super) fn try_out(
-    starter: &Starter,
-    workspaces: &Workspaces,
-    task: Task,
-) -> Result<Protections, TrialError> {
-    let workspace = Arc::new(workspaces.make()?);
-    let input = workspace.path().join("trial");
-    std::fs::write(&input, MESH)?;
-    let required = task.sandbox == Sandbox::Require;
+/// Runs a small job in a child of that setting.
+pub(super) fn try_out(workspaces: &Workspaces, setting: &Setting) -> Result<Protections, TrialError> {
+    let required = setting.sandbox == Sandbox::Require;
+    let setting = Setting {
+        // What is missing is to be told, not to end the trial.
+        sandbox: if required { Sandbox::Auto } else { setting.sandbox },
+        limits: Limits { file_bytes: TRIAL_BYTES, ..setting.limits },
+        ..*setting
+    };
     let ReadLimits { triangles_max, vertices_max, polygon_corners_max } = ReadLimits::default();
     let task = Task {
         operation: Operation::Repair,
         options: Options::default(),
-        input,
         input_bytes: MESH.len() as u64,
-        output: workspace.path().to_owned(),
-        // What is missing is to be told, not to end the trial.
-        sandbox: if required { Sandbox::Auto } else { task.sandbox },
+        has_material: false,
         triangles_max,
         vertices_max,
         polygon_corners_max,
         engine_work_max: u64::MAX,
         engine_bytes_max: TRIAL_BYTES,
-        limits: Limits { file_bytes: TRIAL_BYTES, ..task.limits },
-        ..task
     };
-    let answered = watch(starter, &task, &workspace, &StopFlag::default(), PATIENCE, &|_| {})
+    let running = Running::start(&setting, workspaces)?;
+    std::fs::write(running.workspace.rooms.mesh(), MESH)?;
+    let answered = watch(running, &task, &StopFlag::default(), PATIENCE, &|_| {})
         .map_err(|death| TrialError::NoAnswer(format!("{death:?}")))?;
     if let Err(problem) = answered.outcome {
         return Err(TrialError::NoAnswer(problem.detail));

@@ -1,7 +1,6 @@
 //! A child from its task to its end, watched from one thread of the server.
 
 use std::io::{self, Read as _};
-use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -11,8 +10,7 @@ use super::death::Death;
 use super::hearing::{Hearing, Last};
 use super::launch::Running;
 use super::sandbox::Protections;
-use super::starter::Starter;
-use super::task::{FileMade, Task, file_name};
+use super::task::{FileMade, Task};
 use super::workspace::Workspace;
 use crate::budget::{Event, StopFlag};
 use crate::jobs::product::{MadeFile, Product};
@@ -32,18 +30,16 @@ pub(in crate::jobs) struct Answered {
     pub(in crate::jobs) outcome: Result<Product<MadeFile>, Problem>,
 }
 
-/// Runs a child of `starter` to its end, in `workspace`. Passes go to `hear`. When `stop` is raised the child ends within moments; when
-/// `patience` is over, this raises it.
+/// Gives a child its task and hears it to its end. Passes go to `hear`. When `stop` is raised the child ends within moments;
+/// when `patience` is over, this raises it.
 pub(super) fn watch(
-    starter: &Starter,
+    mut running: Running,
     task: &Task,
-    workspace: &Arc<Workspace>,
     stop: &StopFlag,
     patience: Duration,
     hear: &dyn Fn(Event),
 ) -> Result<Answered, Death> {
     let begun = Instant::now();
-    let mut running = starter.child().map_err(Death::NotStarted)?;
     running.give(task).map_err(Death::NotStarted)?;
     let mut hearing = Hearing::default();
     let mut piece = vec![0; 8 << 10];
@@ -83,7 +79,7 @@ pub(super) fn watch(
     let protections = hearing.protections.unwrap_or_default();
     let outcome = match hearing.last() {
         Some(Last::Made(product)) => {
-            Ok(product.try_map(|made| taken(&made, workspace)).map_err(|_| Death::Garbled)?)
+            Ok(product.try_map(|made| taken(&made, &running.workspace)).map_err(|_| Death::Garbled)?)
         }
         Some(Last::Failed(problem)) => Err(*problem),
         None => return Err(Death::NoAnswer(0)),
@@ -118,15 +114,11 @@ fn wait(running: &Running, is_open: bool, patience: Duration) -> io::Result<bool
 
 /// The file that a child says it made, if it is one.
 fn taken(made: &FileMade, workspace: &Arc<Workspace>) -> io::Result<MadeFile> {
-    let path = workspace.path().join(file_name(made.number));
-    if !is_file_of(&path, made.bytes)? {
+    let path = workspace.rooms.made(made.number);
+    // Links are not followed: what a child makes may be a lie.
+    let facts = std::fs::symlink_metadata(&path)?;
+    if !facts.is_file() || facts.len() != made.bytes {
         return Err(io::ErrorKind::InvalidData.into());
     }
     Ok(MadeFile { path, bytes: made.bytes, sha256: made.sha256, _folder: Arc::clone(workspace) })
-}
-
-/// Links are not followed: what a child makes may be a lie.
-fn is_file_of(path: &Path, bytes: u64) -> io::Result<bool> {
-    let facts = std::fs::symlink_metadata(path)?;
-    Ok(facts.is_file() && facts.len() == bytes)
 }

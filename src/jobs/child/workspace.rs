@@ -1,4 +1,4 @@
-//! The folder in which a child leaves what it makes: one for each run, gone when nobody needs it.
+//! The folder of a child: what it is given to read, and what it leaves. One for each run, gone when nobody needs it.
 
 use std::fs::{self, DirBuilder};
 use std::io;
@@ -7,15 +7,55 @@ use std::path::{Path, PathBuf};
 
 use uuid::Uuid;
 
-/// The place of all folders, on the file system of the spool, so that files move without being copied.
+/// The place of all folders, on the file system of the spool, so that files come and go without being copied.
 #[derive(Debug)]
-pub(in crate::jobs) struct Workspaces {
+pub(super) struct Workspaces {
     dir: PathBuf,
+}
+
+/// Where things are in a folder.
+#[derive(Debug)]
+pub(super) struct Rooms(PathBuf);
+
+impl Rooms {
+    /// Those of a folder that is there.
+    pub(super) fn of(folder: PathBuf) -> Self {
+        Self(folder)
+    }
+
+    pub(super) fn folder(&self) -> &Path {
+        &self.0
+    }
+
+    /// Where the child reads.
+    pub(super) fn given(&self) -> PathBuf {
+        self.0.join("given")
+    }
+
+    /// The mesh.
+    pub(super) fn mesh(&self) -> PathBuf {
+        self.given().join("mesh")
+    }
+
+    /// The MTL file of an OBJ.
+    pub(super) fn material(&self) -> PathBuf {
+        self.given().join("material")
+    }
+
+    /// Where the child writes.
+    pub(super) fn all_made(&self) -> PathBuf {
+        self.0.join("made")
+    }
+
+    /// The file with this number.
+    pub(super) fn made(&self, number: usize) -> PathBuf {
+        self.all_made().join(format!("file-{number}"))
+    }
 }
 
 impl Workspaces {
     /// Takes the place over from an earlier server, whose children died with it.
-    pub(in crate::jobs) fn open(data_dir: &Path) -> io::Result<Self> {
+    pub(super) fn open(data_dir: &Path) -> io::Result<Self> {
         let dir = std::path::absolute(data_dir.join("work"))?;
         if let Err(error) = fs::remove_dir_all(&dir)
             && error.kind() != io::ErrorKind::NotFound
@@ -28,28 +68,45 @@ impl Workspaces {
     }
 
     /// A new folder, for this server's user alone.
-    pub(in crate::jobs) fn make(&self) -> io::Result<Workspace> {
-        let path = self.dir.join(Uuid::now_v7().simple().to_string());
-        DirBuilder::new().mode(0o700).create(&path)?;
-        Ok(Workspace { path })
+    pub(super) fn make(&self) -> io::Result<Workspace> {
+        let rooms = Rooms(self.dir.join(Uuid::now_v7().simple().to_string()));
+        let make = |dir: &Path| DirBuilder::new().mode(0o700).create(dir);
+        make(rooms.folder())?;
+        let workspace = Workspace { rooms };
+        make(&workspace.rooms.given())?;
+        make(&workspace.rooms.all_made())?;
+        Ok(workspace)
     }
 }
 
 /// A folder; removed with what is in it on drop.
 #[derive(Debug)]
 pub(in crate::jobs) struct Workspace {
-    path: PathBuf,
+    pub(super) rooms: Rooms,
 }
 
 impl Workspace {
-    pub(in crate::jobs) fn path(&self) -> &Path {
-        &self.path
+    /// Gives the child files to read: it sees them under other names, which do not let it write.
+    pub(super) fn give(&self, mesh: &Path, material: Option<&Path>) -> io::Result<()> {
+        fs::hard_link(mesh, self.rooms.mesh())?;
+        material.map_or(Ok(()), |material| fs::hard_link(material, self.rooms.material()))
+    }
+
+    /// Removes what there is nearly always: few calls where a walk through the folder takes many.
+    fn clear_away(&self) -> io::Result<()> {
+        fs::remove_file(self.rooms.mesh())?;
+        for dir in [&self.rooms.given(), &self.rooms.all_made(), self.rooms.folder()] {
+            fs::remove_dir(dir)?;
+        }
+        Ok(())
     }
 }
 
 impl Drop for Workspace {
     fn drop(&mut self) {
-        if let Err(error) = fs::remove_dir_all(&self.path) {
+        if self.clear_away().is_err()
+            && let Err(error) = fs::remove_dir_all(self.rooms.folder())
+        {
             tracing::warn!(%error, "the folder of a job's process could not be removed");
         }
     }
@@ -65,10 +122,20 @@ mod tests {
         fs::create_dir_all(dir.path().join("work/old")).unwrap();
         let workspaces = Workspaces::open(dir.path()).unwrap();
         assert!(!dir.path().join("work/old").exists());
-        let workspace = workspaces.make().unwrap();
-        let path = workspace.path().to_owned();
-        fs::write(path.join("made-0"), b"mesh").unwrap();
-        drop(workspace);
-        assert!(!path.exists());
+        let upload = dir.path().join("upload");
+        fs::write(&upload, b"mesh").unwrap();
+        for leaves_files in [false, true] {
+            let workspace = workspaces.make().unwrap();
+            workspace.give(&upload, leaves_files.then_some(&*upload)).unwrap();
+            assert_eq!(fs::read(workspace.rooms.mesh()).unwrap(), b"mesh");
+            let folder = workspace.rooms.folder().to_owned();
+            if leaves_files {
+                fs::write(workspace.rooms.made(0), b"mended").unwrap();
+            }
+            drop(workspace);
+            assert!(!folder.exists() && upload.exists());
+        }
+        drop(workspaces.make().unwrap());
+        assert_eq!(fs::read_dir(dir.path().join("work")).unwrap().count(), 0);
     }
 }
