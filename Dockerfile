@@ -21,8 +21,6 @@ VOLUME /data
 # All addresses of the container. The admin port stays unpublished; whoever publishes 8080 has to choose between
 # MESHMEND_API_KEYS_FILE and MESHMEND_ALLOW_ANONYMOUS=true, without either the service does not start.
 ENV MESHMEND_LISTEN=0.0.0.0:8080 MESHMEND_ADMIN_LISTEN=0.0.0.0:8081 MESHMEND_DATA_DIR=/data
-# Large buffers go back to the system when they are freed: a quarter less memory at the peak of a repair.
-ENV MALLOC_MMAP_THRESHOLD_=262144
 EXPOSE 8080
 HEALTHCHECK --interval=10s --timeout=3s --start-period=5s CMD ["meshmend", "healthcheck"]
 ENTRYPOINT ["meshmend"]

@@ -20,14 +20,12 @@ use super::workspace::{Workspace, Workspaces};
 const OWN_BINARY: &str = "/proc/self/exe";
 /// Most that is kept of what the runtime writes before it aborts.
 const WORDS_BYTES_MAX: u64 = 8 << 10;
-/// Variables that a child inherits by the beginning of their name: how the C library allocates.
-const KEPT_VARIABLES: [&str; 2] = ["MALLOC_", TUNABLES];
-/// The variable by which the GNU C library is tuned; another one does not look at it.
+/// The one variable that a child has, by which the GNU C library is tuned; another one does not look at it.
 const TUNABLES: &str = "GLIBC_TUNABLES";
-/// A child lives for one job: it keeps the memory it has had, and takes it in large pages, which spares it most of the faults
-/// by which a new process comes to its memory, and its end the pages to give back.
-const TUNED: &str = "glibc.malloc.hugetlb=1:glibc.malloc.top_pad=16777216:glibc.malloc.mmap_threshold=33554432:\
-                     glibc.malloc.trim_threshold=1073741824";
+/// Its value where the server has none. Memory comes in large pages and is kept up to a size, which spares a new process most
+/// of the faults by which it comes to it; larger pieces go back at once, so that its peak is no higher.
+const TUNED: &str = "glibc.malloc.hugetlb=1:glibc.malloc.top_pad=16777216:glibc.malloc.mmap_threshold=4194304:\
+                     glibc.malloc.trim_threshold=67108864";
 
 /// A child that has not been reaped. Dropped, it is killed with its group and reaped.
 #[derive(Debug)]
@@ -64,11 +62,7 @@ impl Running {
         let mut command = Command::new(OWN_BINARY);
         command.arg0(env!("CARGO_PKG_NAME")).arg(RUN_JOB).arg(workspace.rooms.folder());
         command.arg(serde_json::to_string(setting)?).env_clear().process_group(0);
-        command.env(TUNABLES, TUNED).envs(
-            std::env::vars_os().filter(|(name, _)| {
-                KEPT_VARIABLES.iter().any(|kept| name.to_string_lossy().starts_with(kept))
-            }),
-        );
+        command.env(TUNABLES, std::env::var_os(TUNABLES).unwrap_or_else(|| TUNED.into()));
         command.stdin(Stdio::from(source)).stdout(Stdio::from(sink)).stderr(Stdio::from(words.try_clone()?));
         let child = command.spawn()?;
         // With the command go this process's copies of the child's ends, so that the child's end is heard.
