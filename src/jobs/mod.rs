@@ -47,9 +47,9 @@ pub use service::{Jobs, StartError};
 pub use settings::JobsSettings;
 pub use sqlite::{OpenError as SqliteOpenError, SqliteStore, StoreClock};
 pub use store::{
-    AfterLoss, BlobRef, Change, ClaimRef, ClaimRequest, Created, Delivery, DeliveryState, DeliveryTry,
-    Ending, IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept, Lane, Leases, ListQuery, NewJob,
-    NextTry, ResultRef, StoreError, StoreFuture, TryOutcome, Webhook,
+    AfterLoss, BlobRef, Change, ClaimRef, ClaimRequest, Created, Delivery, DeliveryRequest, DeliveryState,
+    DeliveryTry, Ending, IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept, Lane, Leases, ListQuery,
+    NewJob, NextTry, ResultRef, StoreError, StoreFuture, TryOutcome, Webhook,
 };
 pub use upload::{Upload, Uploaded};
 pub use view::StoredFile;

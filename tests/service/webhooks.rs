@@ -118,6 +118,23 @@ fn a_receiver_that_never_takes_it_is_given_up_and_one_that_is_gone_at_once() {
 }
 
 #[test]
+fn a_receiver_that_never_answers_holds_up_nobody_else() {
+    let silent = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let receiver = Receiver::answering(&[204]);
+    let hosts = format!("{},{}", receiver.host, silent.local_addr().unwrap());
+    let server =
+        Server::with(&["--webhooks", "--webhook-timeout", "5min", "--webhook-private-hosts", &hosts]);
+    // More than are sent at one time.
+    for number in 0..40 {
+        let webhook =
+            json!({ "url": format!("http://{}/{number}", silent.local_addr().unwrap()), "secret": SECRET });
+        assert_eq!(post(&server, &webhook, SOLID).status(), 202);
+    }
+    let prompt = job(&server, &receiver, BROKEN);
+    assert_eq!(verified(&receiver.next(), SECRET)["data"]["id"], prompt["id"]);
+}
+
+#[test]
 fn the_secrets_of_the_server_sign_where_the_job_brings_none() {
     let receiver = Receiver::answering(&[200]);
     let old = format!("whsec_{}", STANDARD.encode([7; 32]));

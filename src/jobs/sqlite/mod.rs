@@ -22,8 +22,9 @@ use jiff::Timestamp;
 use rusqlite::{Connection, ErrorCode, OpenFlags};
 
 use super::store::{
-    AfterLoss, BlobRef, Change, ClaimRef, ClaimRequest, Created, Delivery, Ending, IdempotencyKey, JobCounts,
-    JobId, JobRow, JobStore, Kept, Leases, ListQuery, NewJob, NextTry, StoreError, StoreFuture, TryOutcome,
+    AfterLoss, BlobRef, Change, ClaimRef, ClaimRequest, Created, Delivery, DeliveryRequest, Ending,
+    IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept, Leases, ListQuery, NewJob, NextTry, StoreError,
+    StoreFuture, TryOutcome,
 };
 use crate::wire::Problem;
 pub use schema::OpenError;
@@ -267,8 +268,8 @@ impl JobStore for SqliteStore {
         self.read(move |connection, _| keeping::named(connection, keys))
     }
 
-    fn claim_deliveries(&self, limit: usize, lease: Duration) -> StoreFuture<'_, Vec<Delivery>> {
-        self.write(move |connection, now| outbox::claim(connection, limit, lease, now))
+    fn claim_deliveries(&self, request: DeliveryRequest) -> StoreFuture<'_, Vec<Delivery>> {
+        self.write(move |connection, now| outbox::claim(connection, request, now))
     }
 
     fn note_try(

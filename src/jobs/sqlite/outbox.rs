@@ -1,14 +1,14 @@
 //! Deliveries of webhooks.
 
-use std::time::Duration;
-
 use rusqlite::{Connection, OptionalExtension as _, Row, params};
 use uuid::Uuid;
 
 use super::rows::{json, later, parsed, time, time_if_any, word};
-use crate::jobs::store::{Delivery, DeliveryState, DeliveryTry, JobId, NextTry, StoreError, TryOutcome};
+use crate::jobs::store::{
+    Delivery, DeliveryRequest, DeliveryState, DeliveryTry, JobId, NextTry, StoreError, TryOutcome,
+};
 
-const COLUMNS: &str = "id, job, webhook, state, created_at, next_at, epoch";
+const COLUMNS: &str = "id, job, webhook, state, created_at, next_at, epoch, receiver";
 
 /// Puts the webhook of a job that has ended into the outbox, if it has one.
 pub(super) fn post(connection: &Connection, job: JobId, now: i64) -> Result<(), StoreError> {
@@ -24,17 +24,29 @@ pub(super) fn post(connection: &Connection, job: JobId, now: i64) -> Result<(), 
 /// A claimed delivery is due again when the lease is over, should nothing be heard of it.
 pub(super) fn claim(
     connection: &Connection,
-    limit: usize,
-    lease: Duration,
+    request: DeliveryRequest,
     now: i64,
 ) -> Result<Vec<Delivery>, StoreError> {
+    let DeliveryRequest { limit, lease, share, mut busy } = request;
+    // The first few of each receiver: thousands that wait for one that does not answer hide nobody else's.
     let mut statement = connection.prepare_cached(
-        "SELECT id FROM deliveries WHERE next_at IS NOT NULL AND next_at <= ?1 ORDER BY next_at, id LIMIT ?2",
+        "SELECT id, receiver FROM (
+             SELECT id, receiver, next_at, row_number() OVER (PARTITION BY receiver ORDER BY next_at, id) AS place
+             FROM deliveries WHERE next_at IS NOT NULL AND next_at <= ?1
+         ) WHERE place <= ?2 ORDER BY next_at, id",
     )?;
-    let limit = i64::try_from(limit).unwrap_or(i64::MAX);
-    let ids = statement
-        .query_map(params![now, limit], |row| row.get(0))?
-        .collect::<rusqlite::Result<Vec<String>>>()?;
+    let mut due = statement.query(params![now, i64::try_from(share).unwrap_or(i64::MAX)])?;
+    let mut ids = Vec::<String>::new();
+    while ids.len() < limit
+        && let Some(row) = due.next()?
+    {
+        let sent = busy.entry(row.get(1)?).or_default();
+        if *sent < share {
+            *sent += 1;
+            ids.push(row.get(0)?);
+        }
+    }
+    drop(due);
     let mut statement =
         connection.prepare_cached("UPDATE deliveries SET epoch = epoch + 1, next_at = ?2 WHERE id = ?1")?;
     for id in &ids {
@@ -133,6 +145,7 @@ fn delivery(row: &Row<'_>) -> rusqlite::Result<Delivery> {
         created_at: time(row, 4)?,
         next_at: time_if_any(row, 5)?,
         epoch: row.get(6)?,
+        receiver: row.get(7)?,
         tries: Vec::new(),
     })
 }

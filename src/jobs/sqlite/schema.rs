@@ -106,6 +106,11 @@ const MIGRATIONS: &[&str] = &[
         UPDATE tallies SET jobs = jobs - 1 WHERE state = old.state;
         INSERT INTO tallies VALUES (new.state, 1) ON CONFLICT DO UPDATE SET jobs = jobs + 1;
     END;",
+    // Who receives a webhook: what stands between `://` and the next slash of its URL.
+    "ALTER TABLE deliveries ADD COLUMN receiver TEXT GENERATED ALWAYS AS (lower(substr(
+        substr(webhook ->> 'url', instr(webhook ->> 'url', '://') + 3), 1,
+        instr(substr(webhook ->> 'url', instr(webhook ->> 'url', '://') + 3) || '/', '/') - 1)));
+    CREATE INDEX deliveries_by_receiver ON deliveries (receiver, next_at, id) WHERE next_at IS NOT NULL;",
 ];
 
 /// A file that cannot be used.
@@ -151,6 +156,33 @@ mod tests {
         migrate(&mut connection).unwrap();
         let version: i64 = connection.pragma_query_value(None, "user_version", |row| row.get(0)).unwrap();
         assert_eq!(version, MIGRATIONS.len() as i64);
+    }
+
+    #[test]
+    fn deliveries_of_the_first_version_get_their_receivers() {
+        let mut connection = Connection::open_in_memory().unwrap();
+        connection.pragma_update(None, "foreign_keys", "OFF").unwrap();
+        connection.execute_batch(MIGRATIONS[0]).unwrap();
+        connection.pragma_update(None, "user_version", 1).unwrap();
+        for (url, receiver) in [
+            ("https://Shop.example/hooks/1", "shop.example"),
+            ("http://127.0.0.1:8000", "127.0.0.1:8000"),
+            ("https://[::1]:9/a//b", "[::1]:9"),
+        ] {
+            let webhook = serde_json::json!({ "url": url }).to_string();
+            connection
+                .execute_batch(&format!(
+                    "INSERT INTO deliveries VALUES ('{receiver}', 'job', '{webhook}', 'pending', 0, 0, 0)"
+                ))
+                .unwrap();
+        }
+        migrate(&mut connection).unwrap();
+        let mut found = connection.prepare("SELECT id, receiver FROM deliveries").unwrap();
+        let mut rows = found.query([]).unwrap();
+        for _ in 0..3 {
+            let row = rows.next().unwrap().unwrap();
+            assert_eq!(row.get::<_, String>(0).unwrap(), row.get::<_, String>(1).unwrap());
+        }
     }
 
     #[test]

@@ -10,7 +10,7 @@ use std::time::Duration;
 use jiff::Timestamp;
 
 use crate::wire::{JobState, Problem};
-pub use outbox::{Delivery, DeliveryState, DeliveryTry, NextTry, TryOutcome, Webhook};
+pub use outbox::{Delivery, DeliveryRequest, DeliveryState, DeliveryTry, NextTry, TryOutcome, Webhook};
 pub use row::{BlobRef, ClaimRef, Ending, IdempotencyKey, JobId, JobRow, Lane, NewJob, ResultRef};
 
 /// A store that could not do what was asked.
@@ -216,8 +216,8 @@ pub trait JobStore: Send + Sync {
     /// Those of the blobs that a row names, by their keys.
     fn named(&self, keys: Vec<String>) -> StoreFuture<'_, HashSet<String>>;
 
-    /// Deliveries that are due, at most `limit`, the longest due first; nobody else gets them for the time of `lease`.
-    fn claim_deliveries(&self, limit: usize, lease: Duration) -> StoreFuture<'_, Vec<Delivery>>;
+    /// Deliveries that are due, the longest due first, so that no receiver is sent more than its share at one time.
+    fn claim_deliveries(&self, request: DeliveryRequest) -> StoreFuture<'_, Vec<Delivery>>;
 
     /// Notes a try of a delivery that was claimed, and what is next. [`StoreError::ClaimVoid`] when `epoch` is not that
     /// of its latest claim.

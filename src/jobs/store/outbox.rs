@@ -1,5 +1,6 @@
 //! Webhooks to be sent: a row for each, made in the same step as the end of its job, and kept with its tries.
 
+use std::collections::HashMap;
 use std::time::Duration;
 
 use jiff::Timestamp;
@@ -35,6 +36,19 @@ pub enum DeliveryState {
     Failed,
 }
 
+/// Which deliveries a sender asks for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct DeliveryRequest {
+    /// Most of them.
+    pub limit: usize,
+    /// Time for which nobody else gets them.
+    pub lease: Duration,
+    /// Most that one receiver is sent at one time.
+    pub share: usize,
+    /// How many the asker is sending now, by receiver.
+    pub busy: HashMap<String, usize>,
+}
+
 /// A webhook of one job.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Delivery {
@@ -44,6 +58,8 @@ pub struct Delivery {
     pub job: JobId,
     /// Where to.
     pub webhook: Webhook,
+    /// Who that is: host and port.
+    pub receiver: String,
     /// Where it stands.
     pub state: DeliveryState,
     /// When it was made.

@@ -1,5 +1,6 @@
 //! Sends what is in the outbox.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -13,12 +14,14 @@ use super::signature::{self, WebhookSecret};
 use super::target::Target;
 use crate::jobs::meters;
 use crate::jobs::service::Service;
-use crate::jobs::store::{Delivery, JobRow, NextTry, StoreError, TryOutcome, Webhook};
+use crate::jobs::store::{Delivery, DeliveryRequest, JobRow, NextTry, StoreError, TryOutcome, Webhook};
 use crate::jobs::view;
 use crate::wire::{JobState, WebhookEvent, WebhookMessage};
 
 /// Most calls at one time.
 const CALLS_MAX: usize = 32;
+/// Most calls to one receiver at one time: one that does not answer leaves the others three quarters.
+const SHARE: usize = 8;
 /// Pause between two looks into the outbox. The store tells nobody when a row is added to it, since any of several
 /// servers may have done so.
 const LOOK_EVERY: Duration = Duration::from_millis(500);
@@ -43,25 +46,41 @@ impl Sender {
     /// Sends what is due until the service stops.
     pub(in crate::jobs) async fn send_forever(self: Arc<Self>, service: Arc<Service>) {
         let mut calls = JoinSet::new();
+        let mut receivers = HashMap::new();
         loop {
-            let free = CALLS_MAX - calls.len();
-            if free > 0 {
-                let lease = self.settings.timeout + CLAIM_MARGIN;
-                match service.store.claim_deliveries(free, lease).await {
+            if calls.len() < CALLS_MAX {
+                let request = DeliveryRequest {
+                    limit: CALLS_MAX - calls.len(),
+                    lease: self.settings.timeout + CLAIM_MARGIN,
+                    share: SHARE,
+                    busy: counted(receivers.values()),
+                };
+                match service.store.claim_deliveries(request).await {
                     Ok(due) => {
                         for delivery in due {
+                            let receiver = delivery.receiver.clone();
                             let (sender, service) = (Arc::clone(&self), Arc::clone(&service));
-                            calls.spawn(async move { sender.send(&service, delivery).await });
+                            let call = calls.spawn(async move { sender.send(&service, delivery).await });
+                            receivers.insert(call.id(), receiver);
                         }
                     }
                     Err(error) => tracing::warn!(%error, "the outbox cannot be read"),
                 }
             }
-            tokio::select! {
-                () = service.stopping.cancelled() => return,
-                Some(_) = calls.join_next(), if calls.len() == CALLS_MAX => {}
-                () = tokio::time::sleep(LOOK_EVERY), if calls.len() < CALLS_MAX => {
-                    while calls.try_join_next().is_some() {}
+            let look = tokio::time::sleep(LOOK_EVERY);
+            tokio::pin!(look);
+            // By then there may be new ones. Whoever had to wait for the end of a call does not wait for that.
+            loop {
+                tokio::select! {
+                    () = service.stopping.cancelled() => return,
+                    Some(ended) = calls.join_next_with_id() => {
+                        let ended = receivers.remove(&ended.map_or_else(|lost| lost.id(), |(id, ())| id));
+                        let to_same = receivers.values().filter(|&other| Some(other) == ended.as_ref()).count();
+                        if to_same + 1 == SHARE || calls.len() + 1 == CALLS_MAX {
+                            break;
+                        }
+                    }
+                    () = &mut look, if calls.len() < CALLS_MAX => break,
                 }
             }
         }
@@ -110,6 +129,14 @@ impl Sender {
             None => Ok(self.settings.secrets.clone()),
         }
     }
+}
+
+/// How often each of them occurs.
+fn counted<'r>(receivers: impl Iterator<Item = &'r String>) -> HashMap<String, usize> {
+    receivers.fold(HashMap::new(), |mut counts, receiver| {
+        *counts.entry(receiver.clone()).or_default() += 1;
+        counts
+    })
 }
 
 fn judged(

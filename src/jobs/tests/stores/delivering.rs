@@ -1,16 +1,20 @@
 //! Webhooks wait in the outbox and are sent from it.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use super::*;
-use crate::jobs::{Delivery, DeliveryState, Leases, NextTry, TryOutcome};
+use crate::jobs::{Delivery, DeliveryRequest, DeliveryState, Leases, NextTry, TryOutcome};
 
 fn hooked() -> NewJob {
     NewJob { webhook: webhook(), ..job() }
 }
 
 async fn due(store: &dyn JobStore) -> Vec<Delivery> {
-    store.claim_deliveries(10, LEASE).await.unwrap()
+    store.claim_deliveries(up_to(10)).await.unwrap()
+}
+
+fn up_to(limit: usize) -> DeliveryRequest {
+    DeliveryRequest { limit, lease: LEASE, share: limit, busy: HashMap::new() }
 }
 
 /// A claimed delivery of a job that has ended.
@@ -70,7 +74,7 @@ pub(super) async fn many_senders_claim_each_delivery_once<H: StoreHouse>() {
         tokio::spawn(async move {
             let mut claimed = Vec::new();
             loop {
-                let some = store.claim_deliveries(3, LEASE).await.unwrap();
+                let some = store.claim_deliveries(up_to(3)).await.unwrap();
                 assert!(some.len() <= 3);
                 if some.is_empty() {
                     return claimed;
@@ -84,6 +88,29 @@ pub(super) async fn many_senders_claim_each_delivery_once<H: StoreHouse>() {
         claimed.extend(sender.await.unwrap());
     }
     assert_eq!((claimed.len(), claimed.iter().collect::<HashSet<_>>().len()), (20, 20));
+}
+
+pub(super) async fn no_receiver_gets_more_than_its_share<H: StoreHouse>() {
+    let house = H::open();
+    let store = house.store();
+    let to = |url: &str| NewJob { webhook: Some(Webhook { url: url.to_owned(), secret: None }), ..job() };
+    for place in 0..30 {
+        succeeded(&*store, to(&format!("https://Silent.example/{place}"))).await;
+    }
+    succeeded(&*store, to("https://prompt.example:444/hooks")).await;
+    let request = |busy: &[(&str, usize)]| DeliveryRequest {
+        share: 3,
+        busy: busy.iter().map(|&(receiver, calls)| (receiver.to_owned(), calls)).collect(),
+        ..up_to(10)
+    };
+    let receivers =
+        |claimed: Vec<Delivery>| claimed.into_iter().map(|delivery| delivery.receiver).collect::<Vec<_>>();
+    let first = store.claim_deliveries(request(&[("silent.example", 1)])).await.unwrap();
+    assert_eq!(receivers(first), ["silent.example", "silent.example", "prompt.example:444"]);
+    let none = store.claim_deliveries(request(&[("silent.example", 3)])).await.unwrap();
+    assert!(none.is_empty());
+    let more = store.claim_deliveries(request(&[])).await.unwrap();
+    assert_eq!(receivers(more).len(), 3);
 }
 
 pub(super) async fn a_try_is_noted_and_the_next_one_waits<H: StoreHouse>() {

@@ -125,6 +125,7 @@ macro_rules! contract {
                 a_job_without_a_webhook_makes_no_delivery,
                 a_delivery_is_claimed_once_until_its_lease_is_over,
                 many_senders_claim_each_delivery_once,
+                no_receiver_gets_more_than_its_share,
                 a_try_is_noted_and_the_next_one_waits,
                 a_delivered_or_given_up_delivery_is_not_sent_again,
                 a_delivery_is_sent_again_on_request_under_its_id,
