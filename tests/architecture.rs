@@ -46,6 +46,30 @@ fn the_sources_keep_every_rule_of_the_house() {
 }
 
 #[test]
+fn an_image_is_built_from_all_that_the_sources_include() {
+    let given: Vec<_> =
+        include_str!("../.dockerignore").lines().filter_map(|line| line.strip_prefix('!')).collect();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut included = 0;
+    for file in sources().iter().filter(|file| file.path.starts_with("src/")) {
+        let text = std::fs::read_to_string(root.join(&file.path)).expect("a readable file");
+        for argument in text.split("include_str!(\"").skip(1).filter_map(|rest| rest.split('"').next()) {
+            let folder = root.join(&file.path).with_file_name("");
+            let path = folder.join(argument).canonicalize().expect("a file that is included");
+            let path = path.strip_prefix(root.canonicalize().expect("the root")).expect("below the root");
+            let top = path.iter().next().expect("a name").to_string_lossy();
+            assert!(
+                given.contains(&&*top),
+                "{} includes {argument}, and .dockerignore leaves `{top}` out",
+                file.path
+            );
+            included += 1;
+        }
+    }
+    assert!(included > 5, "the files that are included were not found");
+}
+
+#[test]
 fn the_package_forbids_unsafe_code() {
     let manifest = include_str!("../Cargo.toml");
     assert!(manifest.lines().any(|line| line == "unsafe_code = \"forbid\""));

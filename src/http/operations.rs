@@ -15,6 +15,7 @@ use super::problem::Handled;
 use super::query;
 use super::representation::{Representation, json_only};
 use super::state::{Caller, Service, State};
+use super::trace;
 use crate::jobs::{JobId, Jobs, Submission};
 use crate::wire::{Job, Operation, Options, Problem, ProblemCode, Report};
 
@@ -204,6 +205,7 @@ async fn submission(
         labels: intake.labels.unwrap_or_default(),
         cancel_after: cancel_after(headers)?,
         owner: caller.0.clone(),
+        trace: trace::of_job(headers),
         webhook: intake.webhook.map(|asked| service.jobs.admit_webhook(asked)).transpose()?,
         ..Submission::new(operation, options)
     })

@@ -4,6 +4,7 @@
 //! `OTEL_EXPORTER_OTLP_TRACES_ENDPOINT` none leave. They are sent in batches by a thread of their own, so that a collector
 //! that does not answer costs spans, not requests.
 
+use std::collections::HashMap;
 use std::sync::OnceLock;
 
 use axum::http::HeaderMap;
@@ -63,6 +64,13 @@ pub(super) fn describe_request(span: &Span, headers: &HeaderMap, method: &str, r
     span.set_attribute("otel.name", format!("{method} {route}"));
     span.set_attribute("http.request.method", method.to_owned());
     span.set_attribute("http.route", route.to_owned());
+}
+
+/// The span that this is called in, as a `traceparent`; `None` where no spans leave.
+pub(super) fn current() -> Option<String> {
+    let mut carrier = HashMap::new();
+    TraceContextPropagator::new().inject_context(&Span::current().context(), &mut carrier);
+    carrier.remove("traceparent")
 }
 
 struct Headers<'h>(&'h HeaderMap);

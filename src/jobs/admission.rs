@@ -13,6 +13,7 @@ use super::heartbeat::end_overdue;
 use super::meters;
 use super::service::{Jobs, Service, not_found, store_problem};
 use super::store::{BlobRef, Created, IdempotencyKey, JobId, JobRow, Lane, NewJob, StoreError, Webhook};
+use super::trace::TraceParent;
 use super::upload::Uploaded;
 use super::view::{self, expired};
 use crate::wire::{Job, JobState, Labels, Operation, Options, Problem, ProblemCode};
@@ -42,6 +43,8 @@ pub struct Submission {
     pub key: Option<String>,
     /// Who asks, by the name of the key; `None`: anybody.
     pub owner: Option<String>,
+    /// Where the request belongs in a trace.
+    pub trace: Option<TraceParent>,
 }
 
 impl Submission {
@@ -59,6 +62,7 @@ impl Submission {
             cancel_after: None,
             key: None,
             owner: None,
+            trace: None,
         }
     }
 
@@ -125,6 +129,7 @@ impl Service {
             options: submission.options,
             file_name: submission.file_name.or_else(|| source.as_ref()?.file_name.clone()),
             owner: submission.owner,
+            trace: submission.trace,
             labels: submission.labels,
             webhook: submission.webhook,
             input,

@@ -28,6 +28,7 @@ mod slot;
 mod spool;
 mod sqlite;
 mod store;
+mod trace;
 mod upload;
 mod view;
 mod webhook;
@@ -51,6 +52,7 @@ pub use store::{
     DeliveryTry, Ending, IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept, Lane, Leases, ListQuery,
     NewJob, NextTry, ResultRef, StoreError, StoreFuture, TryOutcome, Webhook,
 };
+pub use trace::TraceParent;
 pub use upload::{Upload, Uploaded};
 pub use view::StoredFile;
 pub use webhook::{

@@ -8,6 +8,7 @@ use super::service::Service;
 use super::slot::STORE_PAUSE;
 use super::spool::Written;
 use super::store::{AfterLoss, Ending, JobRow, StoreError, StoreFuture};
+use super::trace::TraceParent;
 use crate::wire::{Outcome, Problem};
 
 /// What is to become of a job after a run.
@@ -69,6 +70,7 @@ fn note(row: &JobRow, ending: &Ending) {
         bytes_in = row.input.bytes,
         bytes_out = ending.result.as_ref().map(|result| result.blob.bytes),
         epoch = row.epoch,
+        trace = row.trace.as_ref().map(TraceParent::trace_id),
         "job ended"
     );
 }

@@ -16,6 +16,7 @@ use super::service::Service;
 use super::settle::{Conclusion, settle};
 use super::spool::Written;
 use super::store::{ClaimRequest, Ending, JobRow, Lane, ResultRef};
+use super::trace::run_span;
 use crate::wire::{JobState, Problem, ProblemCode, Progress};
 
 /// Pause before a store that did not answer is asked again.
@@ -55,7 +56,7 @@ pub(super) async fn serve(service: Arc<Service>, kind: SlotKind) {
         };
         match service.store.claim(request).await {
             Ok(Some(row)) => {
-                let span = tracing::info_span!("job", id = %row.id, operation = row.operation.word());
+                let span = run_span(&row);
                 run(&service, row).instrument(span).await;
             }
             Ok(None) => {

@@ -69,7 +69,7 @@ fn a_request_and_its_job_have_one_line_each_with_what_leads_from_one_to_the_othe
     let job = answered["job"].as_str().unwrap();
     let ended = line(&["job ended", job]);
     assert_eq!((&ended["operation"], &ended["state"]), (&"verify".into(), &"succeeded".into()));
-    assert_eq!(ended["bytes_in"], SOLID.len());
+    assert_eq!((&ended["bytes_in"], &ended["trace"]), (&SOLID.len().into(), &trace.into()));
     assert!(ended["ms"].as_f64().unwrap() > 0.0 && ended["queued_ms"].as_f64().is_some());
     assert_eq!(server.log().matches("job ended").count(), 1);
 }

@@ -48,9 +48,9 @@ fn insert(connection: &Connection, new: &NewJob, now: i64) -> Result<(), StoreEr
     let id = new.id.to_string();
     let mut statement = connection.prepare_cached(
         "INSERT INTO jobs (id, owner, operation, options, file_name, labels, webhook, input, input_sha256, material,
-             lane, state, created_at, cancel_at, keep_for, is_cached, idempotency_key, fingerprint)
+             lane, state, created_at, cancel_at, keep_for, is_cached, idempotency_key, fingerprint, trace)
          VALUES (:id, :owner, :operation, :options, :file_name, :labels, :webhook, :input, :input_sha256, :material,
-             :lane, 'queued', :created_at, :cancel_at, :keep_for, 0, :key, :fingerprint)",
+             :lane, 'queued', :created_at, :cancel_at, :keep_for, 0, :key, :fingerprint, :trace)",
     )?;
     statement.execute(named_params! {
         ":id": id,
@@ -69,6 +69,7 @@ fn insert(connection: &Connection, new: &NewJob, now: i64) -> Result<(), StoreEr
         ":keep_for": later(0, new.keep_for),
         ":key": new.key.as_ref().map(|key| &key.key),
         ":fingerprint": new.key.as_ref().map(|key| key.fingerprint),
+        ":trace": new.trace.as_ref().map(ToString::to_string),
     })?;
     let mut statement = connection.prepare_cached("INSERT INTO labels VALUES (?1, ?2, ?3)")?;
     for (name, value) in &new.labels {

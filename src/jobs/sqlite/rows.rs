@@ -8,12 +8,13 @@ use rusqlite::{Connection, Row};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use crate::jobs::TraceParent;
 use crate::jobs::store::{JobId, JobRow, Lane, StoreError};
 use crate::wire::{JobState, Operation};
 
 /// The columns that [`job`] reads, in its order.
 pub(super) const COLUMNS: &str = "id, operation, options, file_name, owner, labels, webhook, input, material, \
-     lane, state, epoch, attempts, created_at, cancel_at, started_at, finished_at, expires_at, ending, is_cached";
+     lane, state, epoch, attempts, created_at, cancel_at, started_at, finished_at, expires_at, ending, is_cached, trace";
 
 /// The row of a job.
 pub(super) fn get(connection: &Connection, id: JobId) -> Result<JobRow, StoreError> {
@@ -44,6 +45,7 @@ pub(super) fn job(row: &Row<'_>) -> rusqlite::Result<JobRow> {
         expires_at: time_if_any(row, 17)?,
         ending: json_if_any(row, 18)?,
         is_cached: row.get(19)?,
+        trace: row.get::<_, Option<String>>(20)?.as_deref().and_then(TraceParent::parse),
     })
 }
 

@@ -110,7 +110,9 @@ const MIGRATIONS: &[&str] = &[
     "ALTER TABLE deliveries ADD COLUMN receiver TEXT GENERATED ALWAYS AS (lower(substr(
         substr(webhook ->> 'url', instr(webhook ->> 'url', '://') + 3), 1,
         instr(substr(webhook ->> 'url', instr(webhook ->> 'url', '://') + 3) || '/', '/') - 1)));
-    CREATE INDEX deliveries_by_receiver ON deliveries (receiver, next_at, id) WHERE next_at IS NOT NULL;",
+    CREATE INDEX deliveries_by_receiver ON deliveries (receiver, next_at, id) WHERE next_at IS NOT NULL;
+    -- The `traceparent` of its request.
+    ALTER TABLE jobs ADD COLUMN trace TEXT;",
 ];
 
 /// A file that cannot be used.

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use uuid::Uuid;
 
 use super::outbox::Webhook;
+use crate::jobs::TraceParent;
 use crate::wire::{Encoding, JobState, Labels, Operation, Options, Outcome, Problem, Progress, TimingMs};
 
 /// Id of a job. Later jobs of one process have larger ids.
@@ -88,6 +89,8 @@ pub struct NewJob {
     pub file_name: Option<String>,
     /// Who submitted it, by the name of the key.
     pub owner: Option<String>,
+    /// Where its request belongs in a trace.
+    pub trace: Option<TraceParent>,
     /// Words of the caller.
     pub labels: Labels,
     /// Whom to tell of its end.
@@ -130,6 +133,8 @@ pub struct JobRow {
     pub file_name: Option<String>,
     /// Who submitted it, by the name of the key.
     pub owner: Option<String>,
+    /// Where its request belongs in a trace.
+    pub trace: Option<TraceParent>,
     /// Words of the caller.
     pub labels: Labels,
     /// Whom to tell of its end.

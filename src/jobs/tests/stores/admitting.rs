@@ -16,6 +16,7 @@ pub(super) async fn a_job_is_read_back_as_it_was_admitted<H: StoreHouse>() {
         },
         file_name: Some("part \"ü\"\n.stl".to_owned()),
         owner: Some("shop".to_owned()),
+        trace: crate::jobs::TraceParent::parse("00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01"),
         labels: Labels::from([("order".to_owned(), "17".to_owned())]),
         webhook: webhook(),
         material: Some(BlobRef { key: "in/material".to_owned(), bytes: u64::MAX, sha256: [9; 32] }),
@@ -29,6 +30,7 @@ pub(super) async fn a_job_is_read_back_as_it_was_admitted<H: StoreHouse>() {
     for row in [row, read] {
         assert_eq!((row.id, row.operation, &row.options), (new.id, new.operation, &new.options));
         assert_eq!((&row.file_name, &row.owner, &row.labels), (&new.file_name, &new.owner, &new.labels));
+        assert!(row.trace.is_some() && row.trace == new.trace);
         assert_eq!((&row.webhook, &row.input, &row.material), (&new.webhook, &new.input, &new.material));
         assert_eq!((row.lane, row.state, row.epoch, row.attempts), (new.lane, JobState::Queued, 0, 0));
         assert_eq!(row.cancel_at.unwrap().as_millisecond(), row.created_at.as_millisecond() + 1500);

@@ -150,6 +150,7 @@ fn job() -> NewJob {
         options: Options::default(),
         file_name: None,
         owner: None,
+        trace: None,
         labels: Labels::new(),
         webhook: None,
         input: BlobRef { key: format!("in/{number}"), bytes: 5, sha256 },
