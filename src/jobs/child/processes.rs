@@ -1,5 +1,6 @@
 //! All children of one server: where they work and what holds them.
 
+use std::io::ErrorKind;
 use std::num::NonZero;
 
 use super::death::Death;
@@ -69,6 +70,10 @@ impl Processes {
                 let given = running.workspace.give(&local(&row.input)?, material.as_deref());
                 given.map_err(|error| disk_problem(&error))?;
                 watch(running, &task, &live.stop, settings.deadline_max, &clock.observer())
+            }
+            // Its folder needs the disk.
+            Err(error) if matches!(error.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded) => {
+                return Err(disk_problem(&error));
             }
             Err(error) => Err(Death::NotStarted(error)),
         };

@@ -86,10 +86,13 @@ pub(in crate::jobs) struct Workspace {
 }
 
 impl Workspace {
-    /// Gives the child files to read: it sees them under other names, which do not let it write.
+    /// Gives the child files to read: under second names, or as copies where the file system has none of those.
     pub(super) fn give(&self, mesh: &Path, material: Option<&Path>) -> io::Result<()> {
-        fs::hard_link(mesh, self.rooms.mesh())?;
-        material.map_or(Ok(()), |material| fs::hard_link(material, self.rooms.material()))
+        let give = |file: &Path, name: PathBuf| {
+            fs::hard_link(file, &name).or_else(|_| fs::copy(file, &name).map(drop))
+        };
+        give(mesh, self.rooms.mesh())?;
+        material.map_or(Ok(()), |material| give(material, self.rooms.material()))
     }
 
     /// Removes what there is nearly always: few calls where a walk through the folder takes many.
