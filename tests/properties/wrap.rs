@@ -13,6 +13,7 @@ use meshmend::pipeline::{Operation, Options, Outcome, Refusal, run};
 use meshmend::winding::OpenShells;
 use meshmend::wrap::{WrapError, WrapOptions, wrap};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::AtomicUsize;
 use std::sync::atomic::Ordering::Relaxed;
@@ -162,22 +163,33 @@ fn certificate_of(positions: &[DVec3], triangles: &[[u32; 3]]) -> Certificate {
     certificate::certify(&bytes, Encoding::StlBinary, &options, Depth::FirstViolation, &budget).unwrap()
 }
 
+/// All rounds, or those of a campaign that is run in parts: `MESHMEND_ROUNDS=A..B`, without B.
+fn rounds(small: usize, full: usize) -> Range<usize> {
+    match std::env::var("MESHMEND_ROUNDS") {
+        Ok(part) => {
+            let (first, end) = part.split_once("..").unwrap();
+            first.parse().unwrap()..end.parse().unwrap()
+        }
+        Err(_) => 0..cases(small, full),
+    }
+}
+
 /// A long run says that it goes on.
 #[allow(clippy::print_stderr, reason = "for who waits for a campaign")]
-fn tell_progress(round: usize, count: usize) {
-    if count >= 1000 && round.is_multiple_of(count / 100) {
-        eprintln!("round {round} of {count}");
+fn tell_progress(round: usize, rounds: &Range<usize>) {
+    if rounds.len() >= 200 && (round - rounds.start).is_multiple_of(rounds.len() / 100) {
+        eprintln!("round {round} of {rounds:?}");
     }
 }
 
 #[test]
 fn every_bad_soup_is_wrapped_in_a_certified_solid_or_rightly_refused() {
     let budget = Budget::unlimited();
-    let count = cases(120, 100_000);
+    let rounds = rounds(120, 100_000);
     let (refused, unfit) = (AtomicUsize::new(0), AtomicUsize::new(0));
-    (0..count).into_par_iter().for_each(|round| {
+    rounds.clone().into_par_iter().for_each(|round| {
         let mut random = Random::of_round(11, round);
-        tell_progress(round, count);
+        tell_progress(round, &rounds);
         let (positions, triangles) = soup(&mut random);
         let open_shells = random.pick(&[OpenShells::Auto, OpenShells::Close, OpenShells::Thicken]);
         let options = WrapOptions { cells: 16, open_shells, ..WrapOptions::default() };
@@ -200,19 +212,20 @@ fn every_bad_soup_is_wrapped_in_a_certified_solid_or_rightly_refused() {
         }
     });
     let (refused, unfit) = (refused.into_inner(), unfit.into_inner());
+    let count = rounds.len();
     assert!(refused < count / 3 && unfit <= count / 200, "{refused} {unfit}");
     println!(
-        "| soups wrapped at 16 cells | {count}, of which {refused} refused: beyond float32 | {unfit} without the fit |"
+        "| soups wrapped at 16 cells | {rounds:?}: {count}, of which {refused} refused: beyond float32 | {unfit} without the fit |"
     );
 }
 
 #[test]
 fn every_bad_soup_is_repaired_or_rightly_refused_at_the_default_resolution() {
-    let count = cases(3, 1_000);
+    let rounds = rounds(3, 1_000);
     let outcomes = Mutex::new(std::collections::BTreeMap::<String, usize>::new());
-    (0..count).into_par_iter().for_each(|round| {
+    rounds.clone().into_par_iter().for_each(|round| {
         let mut random = Random::of_round(12, round);
-        tell_progress(round, count);
+        tell_progress(round, &rounds);
         let (positions, triangles) = soup(&mut random);
         let raw = RawSoup { positions: positions.iter().map(DVec3::to_array).collect(), triangles };
         let bytes = encode(&raw, Encoding::Obj);
@@ -231,5 +244,5 @@ fn every_bad_soup_is_repaired_or_rightly_refused_at_the_default_resolution() {
         *outcomes.lock().unwrap().entry(format!("{outcome:?}")).or_default() += 1;
     });
     let outcomes = outcomes.into_inner().unwrap();
-    println!("| soups repaired at the default resolution | {count}: {outcomes:?} |");
+    println!("| soups repaired at the default resolution | {rounds:?}: {outcomes:?} |");
 }
