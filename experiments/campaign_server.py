@@ -123,6 +123,18 @@ def commit():
     return git("rev-parse", "--short", "HEAD") + (" with local changes" if git("status", "--porcelain") else "")
 
 
+def processor_ticks():
+    """Ticks of all processors so far, and of them those that the host of this virtual machine gave to others."""
+    fields = [int(field) for field in open("/proc/stat").readline().split()[1:]]
+    return sum(fields[:8]), fields[7]
+
+
+def share_taken(before):
+    """Share of the processors that the host gave to others since `before`, a reading of `processor_ticks`."""
+    (all_now, taken_now), (all_then, taken_then) = processor_ticks(), before
+    return (taken_now - taken_then) / max(1, all_now - all_then)
+
+
 def quantile(values, share):
     """The value below which that share of the values lies."""
     ordered = sorted(values)

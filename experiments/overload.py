@@ -10,7 +10,7 @@ import math
 import os
 import time
 
-from campaign_server import Server, allow_many_files, commit, default_binary, quantile, sphere_stl
+from campaign_server import Server, allow_many_files, commit, default_binary, processor_ticks, quantile, share_taken, sphere_stl
 
 p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 p.add_argument("--binary", default=default_binary)
@@ -182,10 +182,13 @@ async def campaign(server):
     loads = {}
     for load in LOADS:
         await sustained(server, load, 2, 2)
+        ticks = processor_ticks()
         peak = max([await sustained(server, load, clients, o.warm / 3) for clients in (2, 4, 8)])
-        used = time.process_time()
+        taken_before = share_taken(ticks)
+        used, ticks = time.process_time(), processor_ticks()
         number, done, goodput, ready = await overload(server, load, peak * o.factor, o.seconds)
-        loads[load] = peak, number, done, goodput, ready, (time.process_time() - used) / o.seconds
+        taken = taken_before, share_taken(ticks)
+        loads[load] = peak, number, done, goodput, ready, (time.process_time() - used) / o.seconds, taken
         await asyncio.sleep(5)
     alone = Line(server.port)
     quiet = [await send(alone) for _ in range(30)]
@@ -198,7 +201,7 @@ def ms(rows):
     return [seconds * 1e3 for _, _, seconds in rows]
 
 
-def columns(peak, number, done, goodput, ready, client):
+def columns(peak, number, done, goodput, ready, client, taken):
     """The figures of one load, and whether each target is met."""
     good, refused = [r for r in done if r[0] == 200], [r for r in done if r[0] == 429]
     other = [r for r in done if r[0] not in (200, 429)]
@@ -216,6 +219,7 @@ def columns(peak, number, done, goodput, ready, client):
         f"{len(ready)}, p99 {quantile(ms(ready), .99):.1f} ms, other than 200: {sum(1 for r in ready if r[0] != 200)}",
         f"{client:.0%} of a core",
         f"{share:.0%}",
+        "{:.1%} and {:.1%}".format(*taken),
     ]
     return figures, [share >= 0.9, not without, quantile(ms(refused), .99) < 50, quantile(ms(ready), .99) < 100, not other]
 
@@ -228,7 +232,7 @@ print(f"# Overload\n\nTwo loads, first from clients that wait for their answers 
       f"valid meshes ({len(SMALL) // 1000} kB), sent at once, and `repair` of broken ones ({len(BROKEN) / 1e6:.1f} MB), sent after `100 Continue` as curl does. No two requests have the\n"
       f"same mesh. The client is on the same machine and takes its share of the processor. Made by `scripts/campaign.sh overload` at commit {commit()}.\n")
 print("| | verify | repair |\n|---|---|---|")
-names = ["peak without overload", "requests sent", "answered 200", "goodput", "refused with 429", "time of a refusal", "time of a 200", "other answers", "readiness probes", "the client's own processor time", "goodput as a share of the peak with the processor that the client leaves"]
+names = ["peak without overload", "requests sent", "answered 200", "goodput", "refused with 429", "time of a refusal", "time of a 200", "other answers", "readiness probes", "the client's own processor time", "goodput as a share of the peak with the processor that the client leaves", "processors that the host gave to others, before and in the overload"]
 for name, *values in zip(names, *(figures for figures, _ in tables)):
     print(f"| {name} | {' | '.join(values)} |")
 print(f"\nSmall meshes from one client, alone and while {sum(1 for r in huge if r[0] == 202)} huge ones ({len(HUGE) // 1000} kB each) run and wait:\n")

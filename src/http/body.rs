@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use axum::body::Body;
+use axum::body::{Body, HttpBody as _};
 use axum::http::{HeaderMap, header};
 use bytes::Bytes;
 use http_body_util::BodyExt as _;
@@ -36,6 +36,8 @@ pub(super) struct IncomingBody {
     limits: BodyLimits,
     /// Size by `Content-Length`.
     announced: Option<u64>,
+    /// The client waits to be told to go on before it sends the body.
+    is_asked_for: bool,
     /// Bytes received so far.
     received: u64,
     begun: Instant,
@@ -58,7 +60,13 @@ impl IncomingBody {
         if announced.is_some_and(|bytes: u64| bytes > limits.bytes_max) {
             return Err(limits.too_large(announced));
         }
-        Ok(Self { body, limits, announced, received: 0, begun: Instant::now() })
+        let is_asked_for = headers.contains_key(header::EXPECT);
+        Ok(Self { body, limits, announced, is_asked_for, received: 0, begun: Instant::now() })
+    }
+
+    /// Whether it is known, without a read, that no more comes.
+    pub(super) fn is_over(&self) -> bool {
+        self.body.is_end_stream()
     }
 
     /// The next piece; `None` at the end.
@@ -93,7 +101,9 @@ impl IncomingBody {
     pub(super) async fn discard_small(mut self) {
         let is_small =
             self.announced.is_some_and(|bytes| bytes - self.received.min(bytes) <= DISCARD_BYTES_MAX);
-        if is_small {
+        // A client that asked first has sent nothing, and is not to begin with it.
+        let has_begun = !self.is_asked_for || self.received > 0;
+        if is_small && has_begun {
             let rest = async { while let Ok(Some(_)) = self.next().await {} };
             // What comes later is cut off.
             let _ = tokio::time::timeout(DISCARD_PATIENCE, rest).await;

@@ -1,10 +1,9 @@
 //! Uploads as `multipart/form-data`: parts `mesh`, `params` and `material`.
 
 use super::body::IncomingBody;
-use super::intake::{Intake, JSON_BYTES_MAX};
+use super::intake::{Entrance, Intake, JSON_BYTES_MAX, finish_if_any};
 use super::multipart::{Multipart, PartHead};
-use super::state::Service;
-use crate::jobs::Uploaded;
+use crate::jobs::{Jobs, Upload, Uploaded};
 use crate::wire::{Operation, Problem, ProblemCode, format_of_media_type};
 
 /// Largest `material` part, in bytes.
@@ -18,12 +17,13 @@ const PARTS_WITH_JOB: &[&str] = &["mesh", "params", "job", "material"];
 
 /// Receives the parts in any order, the mesh streamed to disk.
 pub(super) async fn receive(
-    service: &Service,
+    entrance: &Entrance<'_>,
     body: IncomingBody,
     boundary: &str,
     operation: Option<Operation>,
 ) -> Result<Intake, Problem> {
     let parts = if operation.is_some() { PARTS } else { PARTS_WITH_JOB };
+    let mut mesh = Some(entrance.upload(None).await?);
     let mut form = Multipart::new(body, boundary);
     let mut intake = Intake::default();
     let mut seen = Vec::new();
@@ -37,10 +37,13 @@ pub(super) async fn receive(
         seen.push(part);
         match part {
             "mesh" => {
-                intake.upload = receive_mesh(service, &mut form).await?;
+                intake.upload = match mesh.take() {
+                    Some(upload) => receive_mesh(upload, &mut form).await?,
+                    None => None,
+                };
                 intake.take_names(head);
             }
-            "material" => intake.material = receive_material(service, &mut form).await?,
+            "material" => intake.material = receive_material(entrance.jobs, &mut form).await?,
             _ => {
                 let text = receive_small(&mut form, JSON_BYTES_MAX, "json_bytes_max").await?;
                 intake.take_json(&text, operation)?;
@@ -59,25 +62,19 @@ impl Intake {
 }
 
 /// `None` when the part has no byte: browsers send one for a file input that was left empty.
-async fn receive_mesh(service: &Service, form: &mut Multipart) -> Result<Option<Uploaded>, Problem> {
-    let Some(first) = form.next_piece().await? else { return Ok(None) };
-    let mut upload = service.jobs.upload(None).await?;
-    upload.write(&first).await?;
+async fn receive_mesh(mut upload: Upload, form: &mut Multipart) -> Result<Option<Uploaded>, Problem> {
     while let Some(piece) = form.next_piece().await? {
         upload.write(&piece).await?;
     }
-    upload.finish().await.map(Some)
+    finish_if_any(upload).await
 }
 
 /// `None` when the part has no byte.
-async fn receive_material(service: &Service, form: &mut Multipart) -> Result<Option<Uploaded>, Problem> {
+async fn receive_material(jobs: &Jobs, form: &mut Multipart) -> Result<Option<Uploaded>, Problem> {
     let bytes = receive_small(form, MATERIAL_BYTES_MAX, "material_bytes_max").await?;
-    if bytes.is_empty() {
-        return Ok(None);
-    }
-    let mut upload = service.jobs.upload_beside().await?;
+    let mut upload = jobs.upload_beside().await?;
     upload.write(&bytes).await?;
-    upload.finish().await.map(Some)
+    finish_if_any(upload).await
 }
 
 async fn receive_small(form: &mut Multipart, bytes_max: u64, name: &'static str) -> Result<Vec<u8>, Problem> {

@@ -6,8 +6,8 @@ use axum::http::{HeaderMap, header};
 use super::body::{BodyLimits, IncomingBody};
 use super::form;
 use super::multipart;
-use super::state::Service;
-use crate::jobs::Uploaded;
+use super::state::{Caller, Service};
+use crate::jobs::{Jobs, Upload, Uploaded};
 use crate::wire::{
     Format, JobRequest, Labels, Operation, Options, Problem, ProblemCode, WebhookRequest,
     format_of_media_type,
@@ -16,9 +16,14 @@ use crate::wire::{
 /// Largest body that is JSON, in bytes.
 pub(super) const JSON_BYTES_MAX: u64 = 1 << 20;
 
+/// Longest `Idempotency-Key`.
+const KEY_BYTES_MAX: usize = 255;
+
 /// What a request brings.
 #[derive(Debug, Default)]
 pub(super) struct Intake {
+    /// The key under which it may be repeated.
+    pub(super) key: Option<String>,
     /// The mesh, on disk.
     pub(super) upload: Option<Uploaded>,
     /// The MTL file of an OBJ, on disk.
@@ -74,21 +79,44 @@ impl BodyKind {
     }
 }
 
+/// Where the mesh of a request comes in.
+pub(super) struct Entrance<'s> {
+    pub(super) jobs: &'s Jobs,
+    /// Its key made a job before: the answer is that job, for which no place in the queue is needed.
+    is_repeat: bool,
+}
+
+impl Entrance<'_> {
+    /// Begins the upload; to be called before the body is read, so that a client that asks (`Expect`) does not send in vain
+    /// what will be refused.
+    pub(super) async fn upload(&self, announced: Option<u64>) -> Result<Upload, Problem> {
+        if self.is_repeat { self.jobs.upload_beside().await } else { self.jobs.upload(announced).await }
+    }
+}
+
 /// Receives the body. `operation` is what the path means; `None`: the body says it.
 pub(super) async fn receive(
     service: &Service,
+    caller: &Caller,
     headers: &HeaderMap,
     body: Body,
     operation: Option<Operation>,
 ) -> Result<Intake, Problem> {
-    match BodyKind::of(headers)? {
+    let kind = BodyKind::of(headers)?;
+    let key = idempotency_key(headers)?;
+    let is_repeat = match &key {
+        Some(key) => service.jobs.has_made(caller.0.clone(), key.clone()).await?,
+        None => false,
+    };
+    let entrance = Entrance { jobs: &service.jobs, is_repeat };
+    let intake = match kind {
         BodyKind::Mesh(named) => {
             let body = IncomingBody::new(headers, body, service.upload_limits(0))?;
-            Ok(Intake { upload: receive_mesh(service, body).await?, named, ..Intake::default() })
+            Intake { upload: receive_mesh(&entrance, body).await?, named, ..Intake::default() }
         }
         BodyKind::Form(boundary) => {
             let body = IncomingBody::new(headers, body, service.upload_limits(form::EXTRA_BYTES_MAX))?;
-            form::receive(service, body, &boundary, operation).await
+            form::receive(&entrance, body, &boundary, operation).await?
         }
         BodyKind::Json => {
             let limits = BodyLimits {
@@ -99,28 +127,35 @@ pub(super) async fn receive(
             let text = IncomingBody::new(headers, body, limits)?.into_bytes().await?;
             let mut intake = Intake::default();
             intake.take_json(&text, operation)?;
-            Ok(intake)
+            intake
         }
-    }
+    };
+    Ok(Intake { key, ..intake })
 }
 
 /// Streams a raw body to disk; `None` when it has no byte.
-async fn receive_mesh(service: &Service, mut body: IncomingBody) -> Result<Option<Uploaded>, Problem> {
-    let received = stream(service, &mut body).await;
+async fn receive_mesh(entrance: &Entrance<'_>, mut body: IncomingBody) -> Result<Option<Uploaded>, Problem> {
+    let received = stream(entrance, &mut body).await;
     if received.is_err() {
         body.discard_small().await;
     }
     received
 }
 
-async fn stream(service: &Service, body: &mut IncomingBody) -> Result<Option<Uploaded>, Problem> {
-    let Some(first) = body.next().await? else { return Ok(None) };
-    let mut upload = service.jobs.upload(body.announced()).await?;
-    upload.write(&first).await?;
+async fn stream(entrance: &Entrance<'_>, body: &mut IncomingBody) -> Result<Option<Uploaded>, Problem> {
+    if body.is_over() {
+        return Ok(None);
+    }
+    let mut upload = entrance.upload(body.announced()).await?;
     while let Some(piece) = body.next().await? {
         upload.write(&piece).await?;
     }
-    upload.finish().await.map(Some)
+    finish_if_any(upload).await
+}
+
+/// Ends an upload; `None` when nothing came.
+pub(super) async fn finish_if_any(upload: Upload) -> Result<Option<Uploaded>, Problem> {
+    if upload.bytes() == 0 { Ok(None) } else { upload.finish().await.map(Some) }
 }
 
 impl Intake {
@@ -138,6 +173,25 @@ impl Intake {
             }
         }
         Ok(())
+    }
+}
+
+/// The key of `Idempotency-Key`, as it stands there.
+fn idempotency_key(headers: &HeaderMap) -> Result<Option<String>, Problem> {
+    let Some(value) = headers.get("idempotency-key") else { return Ok(None) };
+    let is_key = |key: &&str| {
+        (1..=KEY_BYTES_MAX).contains(&key.len()) && key.bytes().all(|byte| byte.is_ascii_graphic())
+    };
+    let key = value.to_str().ok().filter(is_key);
+    match key {
+        Some(key) => Ok(Some(key.to_owned())),
+        None => Err(Problem {
+            parameter: Some("Idempotency-Key".to_owned()),
+            ..Problem::new(
+                ProblemCode::InvalidParameter,
+                format!("`Idempotency-Key` is 1 to {KEY_BYTES_MAX} visible ASCII characters"),
+            )
+        }),
     }
 }
 

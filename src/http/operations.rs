@@ -90,7 +90,7 @@ pub(super) async fn create_job(state: State, caller: Extension<Caller>, request:
     let (head, body) = request.into_parts();
     json_only(&head.headers)?;
     let asked = query::job_request(&head.uri)?;
-    let mut intake = intake::receive(&state, &head.headers, body, None).await?;
+    let mut intake = intake::receive(&state, &caller, &head.headers, body, None).await?;
     let operation = intake::agreed(asked.operation, intake.operation)?;
     intake.labels = intake::agreed_member("labels", asked.labels, intake.labels)?;
     let operation = operation.ok_or_else(|| intake::about_operation("`operation` is missing"))?;
@@ -104,7 +104,7 @@ async fn report_of(service: &Service, caller: &Caller, operation: Operation, req
     let (head, body) = request.into_parts();
     json_only(&head.headers)?;
     let options = query::options(&head.uri)?;
-    let intake = intake::receive(service, &head.headers, body, Some(operation)).await?;
+    let intake = intake::receive(service, caller, &head.headers, body, Some(operation)).await?;
     let submission = submission(service, caller, operation, options, intake, &head.headers).await?;
     finish(service, submission, Representation::Report, &head).await
 }
@@ -115,7 +115,7 @@ async fn result_of(service: &Service, caller: &Caller, operation: Operation, req
     let options = query::options(&head.uri)?;
     // Asked before the upload, so that a client that cannot be served does not send it in vain.
     Representation::choose(&head.headers, options.output_format)?;
-    let intake = intake::receive(service, &head.headers, body, Some(operation)).await?;
+    let intake = intake::receive(service, caller, &head.headers, body, Some(operation)).await?;
     let mut submission = submission(service, caller, operation, options, intake, &head.headers).await?;
     let representation = Representation::choose(&head.headers, submission.options.output_format)?;
     if let Representation::Mesh { format: Some(format), .. } = representation {
@@ -198,7 +198,7 @@ async fn submission(
         _ => {}
     }
     Ok(Submission {
-        key: idempotency_key(headers)?,
+        key: intake.key,
         upload: intake.upload,
         material: intake.material,
         file_name: intake.file_name,
@@ -209,28 +209,6 @@ async fn submission(
         webhook: intake.webhook.map(|asked| service.jobs.admit_webhook(asked)).transpose()?,
         ..Submission::new(operation, options)
     })
-}
-
-/// Longest `Idempotency-Key`.
-const KEY_BYTES_MAX: usize = 255;
-
-/// The key of `Idempotency-Key`, as it stands there.
-fn idempotency_key(headers: &HeaderMap) -> Result<Option<String>, Problem> {
-    let Some(value) = headers.get("idempotency-key") else { return Ok(None) };
-    let is_key = |key: &&str| {
-        (1..=KEY_BYTES_MAX).contains(&key.len()) && key.bytes().all(|byte| byte.is_ascii_graphic())
-    };
-    let key = value.to_str().ok().filter(is_key);
-    match key {
-        Some(key) => Ok(Some(key.to_owned())),
-        None => Err(Problem {
-            parameter: Some("Idempotency-Key".to_owned()),
-            ..Problem::new(
-                ProblemCode::InvalidParameter,
-                format!("`Idempotency-Key` is 1 to {KEY_BYTES_MAX} visible ASCII characters"),
-            )
-        }),
-    }
 }
 
 fn no_mesh(headers: &HeaderMap) -> Problem {

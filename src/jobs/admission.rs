@@ -99,6 +99,21 @@ impl Jobs {
         let row = admitted.inspect_err(meters::refused)?;
         Ok(view::job(&row, self.0.live.get(row.id).as_deref()))
     }
+
+    /// Whether this key of this owner made a job before, the same or another one than would be asked for now: no new one
+    /// comes of it.
+    ///
+    /// # Errors
+    /// `store-unavailable`.
+    pub async fn has_made(&self, owner: Option<String>, key: String) -> Result<bool, Problem> {
+        // No request is known yet: this fingerprint is of none.
+        let key = IdempotencyKey { key, fingerprint: [0; 32] };
+        match self.0.store.find_keyed(owner, key).await {
+            Ok(known) => Ok(known.is_some()),
+            Err(StoreError::KeyReused) => Ok(true),
+            Err(error) => Err(store_problem(&error)),
+        }
+    }
 }
 
 impl Service {

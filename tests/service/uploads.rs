@@ -263,6 +263,31 @@ fn a_small_upload_that_is_refused_keeps_its_connection_and_a_large_one_is_told_t
 }
 
 #[test]
+fn with_a_full_queue_who_asks_first_sends_nothing_and_who_repeats_a_request_gets_its_job() {
+    let server = Server::with(&["--slots", "1", "--interactive-slots", "0", "--queue-max", "1"]);
+    let running = server.job("verify", long_job(400));
+    server.until(&running, |job| job["state"] == "running");
+    let ask = |key: &str, mesh: &'static str| {
+        let request = server.post("/v1/jobs?operation=verify").header("idempotency-key", key);
+        request.body(mesh).send().unwrap()
+    };
+    let queued: Value = ask("one", SOLID).json().unwrap();
+    let form = "Content-Type: multipart/form-data; boundary=cut\r\n";
+    for (bytes, more) in [(SOLID.len(), ""), (9_000_000, ""), (9_000_000, form)] {
+        let mut line = server.connect();
+        line.say(format!(
+            "POST /v1/verify HTTP/1.1\r\nHost: localhost\r\nContent-Length: {bytes}\r\nExpect: 100-continue\r\n{more}\r\n"
+        ));
+        let answer = line.hear_all();
+        assert!(answer.starts_with("HTTP/1.1 429 "), "no 100 Continue: {answer}");
+    }
+    let again: Value = ask("one", SOLID).json().unwrap();
+    assert_eq!(again["id"], queued["id"]);
+    assert_eq!(problem(ask("one", OPEN)).1, "idempotency-key-reused");
+    assert_eq!(problem(ask("two", SOLID)).1, "queue-full");
+}
+
+#[test]
 fn a_form_over_the_limit_is_refused_while_it_comes_in() {
     let server = Server::with(&["--upload-bytes-max", "100KiB"]);
     let large = || Part::bytes(vec![b'0'; 200 << 10]).file_name("large.stl");
