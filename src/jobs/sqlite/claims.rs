@@ -229,7 +229,7 @@ pub(super) fn recover(
         Leases::All => i64::MAX,
     };
     let mut statement = connection.prepare_cached(
-        "SELECT id, epoch FROM jobs WHERE state = 'running' AND lease_until <= ?1 ORDER BY id",
+        "SELECT id, epoch FROM jobs INDEXED BY jobs_running WHERE state = 'running' AND lease_until <= ?1 ORDER BY id",
     )?;
     let claims = statement
         .query_map([until], |row| Ok(ClaimRef { id: parsed(row, 0)?, epoch: row.get(1)? }))?

@@ -31,8 +31,9 @@ pub(super) fn find_equal(
     new: &NewJob,
     now: i64,
 ) -> Result<Option<JobRow>, StoreError> {
+    // Left to itself, SQLite walks through all jobs of the owner, which spares it the sorting of one or two.
     let mut statement = connection.prepare_cached(&format!(
-        "SELECT {COLUMNS} FROM jobs
+        "SELECT {COLUMNS} FROM jobs INDEXED BY jobs_by_input
          WHERE state = 'succeeded' AND input_sha256 = ?1 AND owner IS ?2 AND operation = ?3 AND engine = ?4
              AND expires_at > ?5
          ORDER BY id DESC"
