@@ -1,6 +1,6 @@
 //! How a mesh comes in, and what stops it.
 
-use crate::meshes::{SOLID, long_job};
+use crate::meshes::{OPEN, SOLID, long_job};
 use crate::server::{Server, link, problem};
 use reqwest::blocking::multipart::{Form, Part};
 use serde_json::{Value, json};

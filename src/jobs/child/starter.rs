@@ -17,6 +17,7 @@ const NICENESS: i32 = 5;
 pub(super) struct Starter {
     spare: Arc<Spare>,
     asks: mpsc::Sender<Ask>,
+    workspaces: Workspaces,
 }
 
 /// The child that waits for a task. Held while one is started: who comes meanwhile waits for that one.
@@ -39,11 +40,12 @@ impl Starter {
         let (asks, asked) = mpsc::channel();
         let spare = Arc::new(Spare::default());
         let shared = Arc::clone(&spare);
-        let start = move || Running::start(&setting, &workspaces);
+        let places = workspaces.clone();
+        let start = move || Running::start(&setting, &places);
         thread::Builder::new()
             .name("job-starter".to_owned())
             .spawn(move || serve(&shared, &asked, &start))?;
-        Ok(Self { spare, asks })
+        Ok(Self { spare, asks, workspaces })
     }
 
     /// A child without a task. Blocks while one is started, when none waits.
@@ -67,6 +69,7 @@ impl Starter {
         let mut state = self.spare.lock();
         state.is_over = true;
         state.child = None;
+        self.workspaces.close();
     }
 }
 

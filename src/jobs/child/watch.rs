@@ -84,6 +84,7 @@ pub(super) fn watch(
         Some(Last::Failed(problem)) => Err(*problem),
         None => return Err(Death::NoAnswer(0)),
     };
+    running.workspace.mark_sound();
     let place = |line: &str| Some(line.split_once(" panicked at ")?.1.trim_end_matches(':').to_owned());
     let panicked_at = words.lines().find_map(place);
     Ok(Answered { protections, panicked_at, outcome })

@@ -1,20 +1,33 @@
-//! The folder of a child: what it is given to read, and what it leaves. One for each run, gone when nobody needs it.
+//! The folder of a child: what it is given to read, and what it leaves. One for each run; when nobody needs it any longer,
+//! it is emptied and serves the next run: on some file systems, names that come and go are dear.
 
 use std::fs::{self, DirBuilder};
 use std::io;
 use std::os::unix::fs::DirBuilderExt as _;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use uuid::Uuid;
 
-/// The place of all folders, on the file system of the spool, so that files come and go without being copied.
-#[derive(Debug)]
+/// The place of all folders, on the file system of the spool, so that files come and go without being copied. Clones share it.
+#[derive(Debug, Clone)]
 pub(super) struct Workspaces {
     dir: PathBuf,
+    idle: Arc<Mutex<Idle>>,
+}
+
+/// Folders that serve nobody: as many as there were runs at one time.
+#[derive(Debug, Default)]
+struct Idle {
+    /// They are empty.
+    rooms: Vec<Rooms>,
+    /// No more are wanted.
+    is_over: bool,
 }
 
 /// Where things are in a folder.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Rooms(PathBuf);
 
 impl Rooms {
@@ -51,6 +64,23 @@ impl Rooms {
     pub(super) fn made(&self, number: usize) -> PathBuf {
         self.all_made().join(format!("file-{number}"))
     }
+
+    /// Removes all files.
+    fn empty(&self) -> io::Result<()> {
+        for dir in [self.given(), self.all_made()] {
+            for file in fs::read_dir(dir)? {
+                fs::remove_file(file?.path())?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Removes the folder with all that is in it.
+    fn remove(&self) {
+        if let Err(error) = fs::remove_dir_all(self.folder()) {
+            tracing::warn!(%error, "the folder of a job's process could not be removed");
+        }
+    }
 }
 
 impl Workspaces {
@@ -64,25 +94,42 @@ impl Workspaces {
             tracing::warn!(%error, "folders of an earlier server could not be removed");
         }
         fs::create_dir_all(&dir)?;
-        Ok(Self { dir })
+        Ok(Self { dir, idle: Arc::default() })
     }
 
-    /// A new folder, for this server's user alone.
+    /// An empty folder, for this server's user alone.
     pub(super) fn make(&self) -> io::Result<Workspace> {
-        let rooms = Rooms(self.dir.join(Uuid::now_v7().simple().to_string()));
-        let make = |dir: &Path| DirBuilder::new().mode(0o700).create(dir);
-        make(rooms.folder())?;
-        let workspace = Workspace { rooms };
-        make(&workspace.rooms.given())?;
-        make(&workspace.rooms.all_made())?;
-        Ok(workspace)
+        let workspace =
+            |rooms| Workspace { rooms, idle: Arc::clone(&self.idle), is_sound: AtomicBool::new(false) };
+        if let Some(rooms) = lock(&self.idle).rooms.pop() {
+            return Ok(workspace(rooms));
+        }
+        let made = workspace(Rooms(self.dir.join(Uuid::now_v7().simple().to_string())));
+        for dir in [made.rooms.folder(), &made.rooms.given(), &made.rooms.all_made()] {
+            DirBuilder::new().mode(0o700).create(dir)?;
+        }
+        Ok(made)
+    }
+
+    /// Removes the folders that serve nobody, and from now on each one after its run.
+    pub(super) fn close(&self) {
+        let mut idle = lock(&self.idle);
+        idle.is_over = true;
+        idle.rooms.drain(..).for_each(|rooms| rooms.remove());
     }
 }
 
-/// A folder; removed with what is in it on drop.
+fn lock(idle: &Mutex<Idle>) -> MutexGuard<'_, Idle> {
+    idle.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A folder for one run.
 #[derive(Debug)]
 pub(in crate::jobs) struct Workspace {
     pub(super) rooms: Rooms,
+    idle: Arc<Mutex<Idle>>,
+    /// Its child has ended as it should.
+    is_sound: AtomicBool,
 }
 
 impl Workspace {
@@ -95,22 +142,22 @@ impl Workspace {
         material.map_or(Ok(()), |material| give(material, self.rooms.material()))
     }
 
-    /// Removes what there is nearly always: few calls where a walk through the folder takes many.
-    fn clear_away(&self) -> io::Result<()> {
-        fs::remove_file(self.rooms.mesh())?;
-        for dir in [&self.rooms.given(), &self.rooms.all_made(), self.rooms.folder()] {
-            fs::remove_dir(dir)?;
-        }
-        Ok(())
+    /// The child has ended as it should: its folder may serve again.
+    pub(super) fn mark_sound(&self) {
+        self.is_sound.store(true, Ordering::Relaxed);
     }
 }
 
 impl Drop for Workspace {
     fn drop(&mut self) {
-        if self.clear_away().is_err()
-            && let Err(error) = fs::remove_dir_all(self.rooms.folder())
-        {
-            tracing::warn!(%error, "the folder of a job's process could not be removed");
+        if !self.is_sound.load(Ordering::Relaxed) || self.rooms.empty().is_err() {
+            return self.rooms.remove();
+        }
+        let mut idle = lock(&self.idle);
+        if idle.is_over {
+            self.rooms.remove();
+        } else {
+            idle.rooms.push(self.rooms.clone());
         }
     }
 }
@@ -119,26 +166,57 @@ impl Drop for Workspace {
 mod tests {
     use super::*;
 
+    fn count(dir: &Path) -> usize {
+        fs::read_dir(dir).unwrap().count()
+    }
+
     #[test]
-    fn a_folder_goes_with_its_files_and_what_an_earlier_server_left_goes_at_the_start() {
+    fn what_an_earlier_server_left_goes_at_the_start() {
         let dir = tempfile::tempdir().unwrap();
         fs::create_dir_all(dir.path().join("work/old")).unwrap();
+        drop(Workspaces::open(dir.path()).unwrap());
+        assert_eq!(count(&dir.path().join("work")), 0);
+    }
+
+    #[test]
+    fn a_folder_is_emptied_for_the_next_run_and_goes_when_something_was_wrong_or_all_is_over() {
+        let dir = tempfile::tempdir().unwrap();
         let workspaces = Workspaces::open(dir.path()).unwrap();
-        assert!(!dir.path().join("work/old").exists());
+        let all = dir.path().join("work");
         let upload = dir.path().join("upload");
         fs::write(&upload, b"mesh").unwrap();
-        for leaves_files in [false, true] {
+        let run = |is_sound: bool| {
             let workspace = workspaces.make().unwrap();
-            workspace.give(&upload, leaves_files.then_some(&*upload)).unwrap();
-            assert_eq!(fs::read(workspace.rooms.mesh()).unwrap(), b"mesh");
-            let folder = workspace.rooms.folder().to_owned();
-            if leaves_files {
-                fs::write(workspace.rooms.made(0), b"mended").unwrap();
+            let rooms = workspace.rooms.clone();
+            assert_eq!((count(&rooms.given()), count(&rooms.all_made())), (0, 0));
+            workspace.give(&upload, Some(&*upload)).unwrap();
+            assert_eq!(fs::read(rooms.mesh()).unwrap(), b"mesh");
+            fs::write(rooms.made(3), b"mended").unwrap();
+            if is_sound {
+                workspace.mark_sound();
             }
             drop(workspace);
-            assert!(!folder.exists() && upload.exists());
-        }
-        drop(workspaces.make().unwrap());
-        assert_eq!(fs::read_dir(dir.path().join("work")).unwrap().count(), 0);
+            assert!(upload.exists());
+            rooms.folder().to_owned()
+        };
+        let first = run(true);
+        assert_eq!(run(true), first);
+        assert_eq!(run(false), first);
+        assert_eq!(count(&all), 0);
+        let next = run(true);
+        assert!(next != first && next.exists());
+        // What nobody but a person could put there.
+        let workspace = workspaces.make().unwrap();
+        fs::create_dir(workspace.rooms.all_made().join("folder")).unwrap();
+        workspace.mark_sound();
+        drop(workspace);
+        assert_eq!(count(&all), 0);
+        let (held, idle) = (workspaces.make().unwrap(), run(true));
+        assert!(idle.exists());
+        workspaces.close();
+        assert_eq!(count(&all), 1);
+        held.mark_sound();
+        drop(held);
+        assert_eq!(count(&all), 0);
     }
 }
