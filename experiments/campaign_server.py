@@ -95,12 +95,11 @@ class Server:
         return seen
 
     def children_at_work(self):
-        """Processes that run a job; the one that waits for the next task has not stepped back behind the server yet."""
+        """Processes that run a job; they are called so from their task on."""
         at_work = []
         for pid in self.processes()[1:]:
             try:
-                fields = open(f"/proc/{pid}/stat").read().rsplit(")", 1)[1].split()
-                at_work += [pid] if fields[16] != "0" else []
+                at_work += [pid] if open(f"/proc/{pid}/comm").read().strip() == "meshmend-job" else []
             except OSError:
                 pass
         return at_work

@@ -66,12 +66,14 @@ def run(connection, server, number, delay, rows):
 rows = []
 with Server(o.binary) as server:
     connection = http.client.HTTPConnection("127.0.0.1", server.port)
-    begun = time.monotonic()
-    whole = ask(connection, "POST", "/v1/jobs?operation=repair", broken(0))
-    assert ask(connection, "GET", whole["links"]["self"] + "?wait=120")["finished_at"], "the whole job takes too long"
-    seconds = time.monotonic() - begun
-    size = len(broken(0))
-    for number in range(1, o.cancels + 1):
+    wholes = []
+    for number in range(3):
+        begun = time.monotonic()
+        whole = ask(connection, "POST", "/v1/jobs?operation=repair", broken(number))
+        assert ask(connection, "GET", whole["links"]["self"] + "?wait=120")["finished_at"], "the whole job takes too long"
+        wholes.append(time.monotonic() - begun)
+    seconds, size = min(wholes), len(broken(0))
+    for number in range(3, o.cancels + 3):
         run(connection, server, number, dice.uniform(0, 0.9 * seconds), rows)
 states = {state: sum(1 for row in rows if row[3] == state) for state in sorted({row[3] for row in rows})}
 cancelled = [row for row in rows if row[3] == "cancelled"]
