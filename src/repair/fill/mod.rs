@@ -7,11 +7,15 @@
 mod accept;
 mod ears;
 mod minimal;
+mod options;
 mod planar;
 mod regions;
+mod report;
 
 use self::accept::{Proposal, Surface};
+pub use self::options::{Extract, FillOptions, HoleChoice, Method};
 use self::regions::{Region, regions};
+pub use self::report::{Filled, HoleReport, Rejected, Rejection, Rim};
 use super::{Changes, Draft, NEW, Selection};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec3, triangle_area};
@@ -21,7 +25,7 @@ use std::ops::Range;
 
 /// A way to triangulate a region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Method {
+enum Triangulation {
     Planar,
     Minimal,
     Ears,
@@ -30,7 +34,7 @@ enum Method {
 /// A region and the methods that it has not been offered yet.
 struct Open {
     region: Region,
-    methods: &'static [Method],
+    methods: &'static [Triangulation],
 }
 
 /// Closes the holes that can be closed soundly. Looks at places, so vertices need not be welded; triangles must not be
@@ -110,10 +114,10 @@ fn surface_of(draft: &Draft, budget: &Budget) -> Result<Surface, Stopped> {
 
 impl Open {
     fn new(region: Region) -> Self {
-        let methods: &[Method] = match (region.loops.len(), region.is_flat) {
-            (1, true) => &[Method::Planar, Method::Minimal, Method::Ears],
-            (1, false) => &[Method::Minimal, Method::Planar, Method::Ears],
-            _ => &[Method::Planar],
+        let methods: &[Triangulation] = match (region.loops.len(), region.is_flat) {
+            (1, true) => &[Triangulation::Planar, Triangulation::Minimal, Triangulation::Ears],
+            (1, false) => &[Triangulation::Minimal, Triangulation::Planar, Triangulation::Ears],
+            _ => &[Triangulation::Planar],
         };
         Self { region, methods }
     }
@@ -137,7 +141,7 @@ fn propose(open: &mut [Open], surface: &Surface, budget: &Budget) -> Result<Vec<
 /// The triangles of a region by one method, their corners as half-edges.
 fn triangulate(
     region: &Region,
-    method: Method,
+    method: Triangulation,
     surface: &Surface,
     budget: &Budget,
 ) -> Result<Option<Vec<[u32; 3]>>, Stopped> {
@@ -146,16 +150,16 @@ fn triangulate(
     let points: Vec<DVec3> = rim.iter().map(|&h| surface.point(h)).collect();
     let is_free = |i: usize, k: usize| surface.is_free(rim[i], rim[k]);
     let triangles = match method {
-        Method::Planar => {
+        Triangulation::Planar => {
             let loops: Vec<Vec<DVec3>> =
                 region.loops.iter().map(|l| l.iter().map(|&h| surface.point(h)).collect()).collect();
             planar::triangulate(&loops, region.normal)
         }
-        Method::Minimal => {
+        Triangulation::Minimal => {
             let normals: Vec<DVec3> = rim.iter().map(|&h| surface.normal(h)).collect();
             minimal::triangulate(&points, &normals, is_free, budget)?
         }
-        Method::Ears => ears::triangulate(&points, is_free, budget)?,
+        Triangulation::Ears => ears::triangulate(&points, is_free, budget)?,
     };
     Ok(triangles.map(|triangles| triangles.into_iter().map(|t| t.map(|i| rim[i])).collect()))
 }

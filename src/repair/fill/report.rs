@@ -1,0 +1,74 @@
+//! What became of each hole.
+
+use super::Method;
+use crate::repair::Changes;
+
+/// Why a patch was not taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Rejection {
+    /// The method makes no patch for such a hole: its rim crosses itself in the view, or no triangulation avoids
+    /// triangles without area and edges in use.
+    NoPatch,
+    /// The rim has more corners, or the patch more vertices, than the method takes.
+    TooLarge,
+    /// No surface fits the rim and what is around it.
+    NoFit,
+    /// A triangle without area.
+    DegenerateTriangle,
+    /// It is not a surface with exactly the rim as its boundary.
+    Topology,
+    /// An edge of it is an edge of the mesh or of another patch already, or a triangle the double of another.
+    EdgeInUse,
+    /// It meets the mesh or another patch beyond the rim.
+    MeetsOther,
+    /// It meets itself.
+    MeetsItself,
+    /// Its new vertices have no place among the numbers of float32.
+    NotRepresentable,
+}
+
+/// A patch that was not taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Rejected {
+    /// How it was made.
+    pub method: Method,
+    /// Why it was not taken.
+    pub reason: Rejection,
+}
+
+/// A boundary loop of a hole.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Rim {
+    /// The smallest half-edge of the soup that is in the loop; `None`: all its triangles are new.
+    pub half_edge: Option<u32>,
+    /// Edges of the loop.
+    pub edges: u32,
+}
+
+/// What became of one hole: one loop, or several that get one patch between them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HoleReport {
+    /// Its loops, the outer one first.
+    pub rims: Vec<Rim>,
+    /// The method that was asked for.
+    pub asked: Method,
+    /// The method whose patch it has; `None`: it stays open.
+    pub used: Option<Method>,
+    /// Patches that were made before and not taken, in their order.
+    pub rejected: Vec<Rejected>,
+    /// Triangles of the patch.
+    pub triangles: u64,
+    /// New vertices of the patch.
+    pub vertices: u64,
+    /// Area of the patch, in square units of the file.
+    pub area: f64,
+}
+
+/// What a fill did.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Filled {
+    /// The sum, as every step tells it.
+    pub changes: Changes,
+    /// One for each hole that was to be filled, in the order of their first loops.
+    pub holes: Vec<HoleReport>,
+}
