@@ -5,7 +5,7 @@ use crate::budget::{Budget, CHECK_EVERY, Stage, Stopped};
 use crate::distance::{
     DirectedDistance, DistanceOptions, FarPoint, Sight, Surface, SurfaceDistance, directed_distance,
 };
-use crate::geom::{Aabb, DVec3, signed_volume, triangle_area};
+use crate::geom::{Aabb, DVec3, are_collinear, signed_volume, triangle_area};
 use crate::mesh::{Components, Soup, UnionFind};
 use crate::repair::NEW;
 use crate::spatial::{NearestSearch, coincident_f64};
@@ -124,7 +124,7 @@ impl<'i> Original<'i> {
             let losses = Losses {
                 visible_loss: share(lost_area, area - hidden_area),
                 hidden_area,
-                bodies_lost: self.bodies_lost(result, &changed.gone, budget)?,
+                bodies_lost: self.bodies_lost(result, &changed, budget)?,
                 volume_change: self.volume_change(result),
             };
             let distance = directions.map(|(forward, backward)| SurfaceDistance { forward, backward });
@@ -159,8 +159,9 @@ impl<'i> Original<'i> {
         Some((after - before) / before.abs())
     }
 
-    /// Parts of which every visible place that is looked at is lost. `gone` ascends.
-    fn bodies_lost(&self, result: &Soup, gone: &[u32], budget: &Budget) -> Result<u32, Stopped> {
+    /// Parts of which every visible place that is looked at is lost.
+    fn bodies_lost(&self, result: &Soup, changed: &Changed, budget: &Budget) -> Result<u32, Stopped> {
+        let Changed { gone, stays, .. } = changed;
         if gone.is_empty() {
             return Ok(0);
         }
@@ -177,7 +178,7 @@ impl<'i> Original<'i> {
         }
         // A part of which something stayed is not lost.
         for (t, &part) in parts.of.iter().enumerate() {
-            if gone.binary_search(&(t as u32)).is_err() {
+            if stays[t] {
                 of_part[part as usize].clear();
             }
         }
@@ -202,7 +203,10 @@ impl<'i> Original<'i> {
 
 /// What is not the same in an input and a result.
 struct Changed {
-    /// Triangles of the input that the result does not have, ascending.
+    /// For each triangle of the input, whether the result has it.
+    stays: Vec<bool>,
+    /// Triangles of the input that the result does not have, ascending. Those without area are no surface that could be
+    /// lost, seen or be a body, so they are not among them.
     gone: Vec<u32>,
     /// Triangles of the result that the input does not have.
     new: Vec<u32>,
@@ -229,8 +233,12 @@ impl Changed {
             }
         }
         let all = 0..input.triangles.len() as u32;
-        let (stayed, gone): (Vec<u32>, Vec<u32>) = all.partition(|&t| stays[t as usize]);
-        Ok(Self { stayed_area: area_of(input, &stayed), gone, new })
+        let (stayed, mut gone): (Vec<u32>, Vec<u32>) = all.partition(|&t| stays[t as usize]);
+        gone.retain(|&t| {
+            let [a, b, c] = input.corners(t);
+            !are_collinear(a, b, c)
+        });
+        Ok(Self { stayed_area: area_of(input, &stayed), stays, gone, new })
     }
 }
 
@@ -346,6 +354,17 @@ mod tests {
         let farthest = 6.0 * 3.0f64.sqrt();
         assert!((visible.distance.unwrap().upper() - farthest).abs() < 0.06 * farthest);
         assert!(!visible.passes(&Limits::default()));
+    }
+
+    #[test]
+    fn faces_without_area_are_no_bodies_and_at_no_distance() {
+        let cube = cubes(&[([0.0; 3], 10.0)]);
+        let mut littered = cube.clone();
+        littered.positions.extend([20.0, 21.0, 23.0].map(|x| DVec3::new(x, 5.0, 5.0)));
+        littered.triangles.extend([[8, 8, 8], [8, 9, 9], [8, 9, 10]]);
+        let found = measured(&littered, &cube, &(0..12).collect::<Vec<_>>());
+        assert_eq!((found.losses.bodies_lost, found.losses.visible_loss), (0, 0.0));
+        assert_eq!(found.distance.unwrap().upper(), 0.0);
     }
 
     #[test]

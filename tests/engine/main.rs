@@ -31,3 +31,4 @@ mod rebuild;
 mod repair;
 mod simplify;
 mod simplify_real_files;
+mod stray_faces;
