@@ -17,6 +17,7 @@ pub mod formats;
 pub mod winding;
 
 pub mod analysis;
+pub mod implicit;
 pub mod printing;
 pub mod simplify;
 pub mod wrap;

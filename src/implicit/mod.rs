@@ -1,0 +1,25 @@
+//! A surface through the points around a hole, as the zero set of a sum of radial functions, and its triangles.
+//!
+//! [`fit`] makes a [`Field`] from a [`Band`] of points with normals (Carr et al. 2001). The method note is
+//! `docs/rbf.md`.
+
+mod band;
+mod cells;
+mod centres;
+mod cholesky;
+mod field;
+mod fit;
+mod kernel;
+mod logarithm;
+mod offsets;
+mod options;
+mod partition;
+mod polynomial;
+mod system;
+mod unfit;
+
+pub use band::{Band, Surroundings};
+pub use field::{Field, FitFacts, SolveMethod};
+pub use fit::fit;
+pub use options::{ConstraintValues, DENSE_CENTRES_MAX, Kernel, LAMBDA_SHARE, LambdaFrom, RbfOptions};
+pub use unfit::Unfit;
