@@ -113,7 +113,7 @@ impl Field {
         let (mut value, mut slope) = self.value_and_gradient(place);
         for _ in 0..STEPS_MAX {
             let square = slope.length_squared();
-            if !(square > (FLAT_SHARE * usual) * (FLAT_SHARE * usual)) {
+            if square.is_nan() || square <= (FLAT_SHARE * usual) * (FLAT_SHARE * usual) {
                 return None;
             }
             if value.abs() <= ON_SURFACE_SHARE * self.frame.unit * square.sqrt() {

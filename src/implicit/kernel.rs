@@ -86,7 +86,8 @@ impl WeightedCentres {
         self.len
     }
 
-    pub(super) fn point(&self, i: usize) -> DVec3 {
+    #[cfg(test)]
+    fn point(&self, i: usize) -> DVec3 {
         let (block, lane) = (i / LANES, i % LANES);
         DVec3::new(self.x[block][lane], self.y[block][lane], self.z[block][lane])
     }

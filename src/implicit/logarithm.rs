@@ -2,7 +2,7 @@
 //! every machine.
 
 /// The high and low parts of ln 2; the high part times an exponent is exact.
-const LN_2: [f64; 2] = [6.931_471_803_691_238_164_9e-1, 1.908_214_929_270_587_700_02e-10];
+const LN_2: [f64; 2] = [6.931_471_803_691_238e-1, 1.908_214_929_270_587_7e-10];
 /// The bits of the square root of 1/2, rounded down to 20 bits of fraction: mantissas are taken from there to its double.
 const ROOT_HALF_BITS: u64 = 0x3fe6_a09e_0000_0000;
 const ONE_BITS: u64 = 0x3ff0_0000_0000_0000;

@@ -59,7 +59,7 @@ pub(super) fn rank(points: &[DVec3], count: usize) -> usize {
 
 /// The inner product, in four lanes.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let (quads, rest) = (a.chunks_exact(4).zip(b.chunks_exact(4)), a.len() / 4 * 4);
+    let (quads, rest) = (a.chunks_exact(4).zip(b.chunks_exact(4)), a.len().min(b.len()) / 4 * 4);
     let mut sums = [0.0; 4];
     for (a, b) in quads {
         for l in 0..4 {
@@ -131,10 +131,9 @@ impl Reflections {
         let mut t = vec![vec![0.0; count]; count];
         for k in 0..count {
             let products: Vec<f64> = (0..k).map(|i| dot(&self.vectors[i], &self.vectors[k])).collect();
-            for row in 0..k {
-                t[k][row] = -2.0 * (row..k).map(|i| t[i][row] * products[i]).sum::<f64>();
-            }
-            t[k][k] = 2.0;
+            let above = |row: usize| -2.0 * (row..k).map(|i| t[i][row] * products[i]).sum::<f64>();
+            let column: Vec<f64> = (0..k).map(above).chain([2.0]).collect();
+            t[k][..=k].copy_from_slice(&column);
         }
         (&self.vectors, t)
     }
