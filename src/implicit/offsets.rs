@@ -153,8 +153,8 @@ mod tests {
         let mut options = RbfOptions::default();
         let found =
             |options: &RbfOptions| offsets(&band, &around, options, &Budget::unlimited()).unwrap().first;
-        assert!((found(&options) - 0.05).abs() < 1e-12);
+        assert!((found(&options) - 0.025).abs() < 1e-12);
         options.lambda_from = LambdaFrom::Mesh;
-        assert!((found(&options) - 0.5).abs() < 1e-12);
+        assert!((found(&options) - 0.25).abs() < 1e-12);
     }
 }

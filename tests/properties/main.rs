@@ -26,6 +26,7 @@ mod printing;
 mod random;
 mod rational;
 mod raw_files;
+mod rbf;
 mod repair_pipeline;
 mod repair_steps;
 mod round_trip;
