@@ -220,9 +220,9 @@ mod tests {
                 })
             });
             assert!(solutions[0] == solutions[1] && solutions[1] == solutions[2]);
-            for i in 0..n {
+            for (i, right) in right.iter().enumerate() {
                 let sum: f64 = (0..n).map(|j| entry(i, j) * solutions[0][j]).sum();
-                assert!((sum - right[i]).abs() < 1e-11, "{n} {i} {sum} {}", right[i]);
+                assert!((sum - right).abs() < 1e-11, "{n} {i} {sum} {right}");
             }
         }
     }

@@ -86,7 +86,7 @@ pub(super) fn track(
                 }
             }
         }
-        layer = enterable(&grid, lines, search, next, budget)?;
+        layer = enterable(&grid, lines, search, &next, budget)?;
     }
     mesh(field, &grid, &crossed, &values, budget).map(Ok)
 }
@@ -123,7 +123,7 @@ fn enterable(
     grid: &Grid,
     lines: &RimLines,
     search: &NearestSearch<'_>,
-    places: Vec<Place>,
+    places: &[Place],
     budget: &Budget,
 ) -> Result<Vec<Place>, Stopped> {
     let is_in = |range: std::ops::Range<usize>| -> Result<Vec<bool>, Stopped> {
