@@ -32,7 +32,7 @@ fn benches(c: &mut Criterion) {
         group.bench_function(BenchmarkId::new("fit", constraints), |b| b.iter(|| black_box(fitted())));
         let field = fitted();
         group.bench_function(BenchmarkId::new("value and gradient", constraints), |b| {
-            b.iter(|| black_box(field.value_and_gradient(black_box(DVec3::new(0.1, 0.2, 0.95)))))
+            b.iter(|| black_box(field.value_and_gradient(black_box(DVec3::new(0.1, 0.2, 0.95)))));
         });
         if constraints == 1_000 {
             let rim = [band.points[..constraints / 9].to_vec()];
