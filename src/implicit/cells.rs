@@ -1,10 +1,14 @@
 //! Points sorted into the cells of a grid, for questions about close ones.
 
+use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 
 /// Points that are looked at for one question. More are there only where points crowd in one cell, and then any of them
 /// will do.
 const NEAR_MAX: usize = 512;
+
+/// Questions between two checks of the budget.
+pub(super) const QUESTIONS: usize = 256;
 
 /// Points in cells of one size; sorted, so that no order of a hash map can reach a result.
 pub(super) struct Cells<'p> {
@@ -40,9 +44,12 @@ impl<'p> Cells<'p> {
 
     /// For each point the first one in the list that is within `reach` (at most the size of a cell) of it and is
     /// itself the first of those near it; the point itself where there is none.
-    pub(super) fn first_within(&self, reach: f64) -> Vec<u32> {
+    pub(super) fn first_within(&self, reach: f64, budget: &Budget) -> Result<Vec<u32>, Stopped> {
         let mut first: Vec<u32> = (0..self.points.len() as u32).collect();
         for i in 0..self.points.len() {
+            if i.is_multiple_of(QUESTIONS) {
+                budget.check()?;
+            }
             let p = self.points[i];
             let is_same = |&j: &u32| {
                 (j as usize) < i
@@ -53,7 +60,7 @@ impl<'p> Cells<'p> {
                 first[i] = found;
             }
         }
-        first
+        Ok(first)
     }
 }
 
@@ -85,6 +92,7 @@ mod tests {
     #[test]
     fn equal_points_name_the_first() {
         let points = [DVec3::X, DVec3::Y, DVec3::X, DVec3::Y + DVec3::splat(1e-12), DVec3::X];
-        assert_eq!(Cells::new(&points, 1e-9).first_within(1e-9), [0, 1, 0, 1, 0]);
+        let first = Cells::new(&points, 1e-9).first_within(1e-9, &Budget::unlimited()).unwrap();
+        assert_eq!(first, [0, 1, 0, 1, 0]);
     }
 }

@@ -1,10 +1,11 @@
 //! The centres of the system, from the points of a band: moved and scaled, without those that coincide.
 
 use super::band::Band;
-use super::cells::Cells;
+use super::cells::{Cells, QUESTIONS};
 use super::offsets::Offsets;
 use super::options::{ConstraintValues, RbfOptions};
 use super::polynomial::{TERMS, dot, rank, terms};
+use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3};
 
 /// An offset centre closer to another centre than this share of lambda is left out: it repeats the other or
@@ -53,9 +54,15 @@ impl Frame {
 }
 
 /// The sites of a band in the order of its points; points at one place are one site, with the normal of the first.
-pub(super) fn sites(band: &Band, offsets: &Offsets, options: &RbfOptions, frame: &Frame) -> Vec<Site> {
+pub(super) fn sites(
+    band: &Band,
+    offsets: &Offsets,
+    options: &RbfOptions,
+    frame: &Frame,
+    budget: &Budget,
+) -> Result<Vec<Site>, Stopped> {
     let places: Vec<DVec3> = band.points.iter().map(|&p| frame.inward(p)).collect();
-    let first_at = Cells::new(&places, SAME_SHARE).first_within(SAME_SHARE);
+    let first_at = Cells::new(&places, SAME_SHARE).first_within(SAME_SHARE, budget)?;
     let mut sites = Vec::with_capacity(places.len());
     for (i, &point) in places.iter().enumerate() {
         if first_at[i] != i as u32 {
@@ -66,9 +73,9 @@ pub(super) fn sites(band: &Band, offsets: &Offsets, options: &RbfOptions, frame:
         let has = [keeps_offsets(sites.len(), options.share); 2];
         sites.push(Site { point, offset: band.normals[i].normalize() * lambda, value, has });
     }
-    restore_rank(&mut sites);
-    part(&mut sites);
-    sites
+    restore_rank(&mut sites, budget)?;
+    part(&mut sites, budget)?;
+    Ok(sites)
 }
 
 /// True for `share` of all numbers, spread evenly.
@@ -79,9 +86,9 @@ fn keeps_offsets(i: usize, share: f64) -> bool {
 
 /// Gives offsets back to the sites that bring most until the centres tell as many polynomials apart as they would
 /// with all offsets.
-fn restore_rank(sites: &mut [Site]) {
+fn restore_rank(sites: &mut [Site], budget: &Budget) -> Result<(), Stopped> {
     if sites.iter().all(|site| site.has[0]) {
-        return;
+        return Ok(());
     }
     let all: Vec<DVec3> = sites
         .iter()
@@ -90,9 +97,10 @@ fn restore_rank(sites: &mut [Site]) {
         .collect();
     let wanted = rank(&all, TERMS);
     for _ in 0..TERMS {
+        budget.spend(sites.len() as u64)?;
         let kept: Vec<DVec3> = sites.iter().flat_map(Site::centres).map(|(p, _)| p).collect();
         if rank(&kept, TERMS) >= wanted {
-            return;
+            break;
         }
         let basis = row_basis(&kept);
         let gain =
@@ -102,9 +110,10 @@ fn restore_rank(sites: &mut [Site]) {
             let gain = gain(&sites[i]);
             if best.is_some_and(|(_, most)| most >= gain) { best } else { Some((i, gain)) }
         });
-        let Some((best, _)) = best else { return };
+        let Some((best, _)) = best else { break };
         sites[best].has = [true; 2];
     }
+    Ok(())
 }
 
 /// An orthonormal basis of the rows of the polynomials at `points`, the longest first.
@@ -135,7 +144,7 @@ fn beyond(basis: &[[f64; TERMS]], p: DVec3) -> f64 {
 }
 
 /// Leaves out offset centres that nearly coincide with a centre on the surface or an earlier offset centre.
-fn part(sites: &mut [Site]) {
+fn part(sites: &mut [Site], budget: &Budget) -> Result<(), Stopped> {
     let longest = sites.iter().map(|s| s.offset.length()).fold(0.0, f64::max);
     let (mut points, mut whose) = (Vec::new(), Vec::new());
     for (i, site) in sites.iter().enumerate() {
@@ -153,6 +162,9 @@ fn part(sites: &mut [Site]) {
     let cells = Cells::new(&points, longest * APART_SHARE);
     let mut is_gone = vec![false; points.len()];
     for at in sites.len()..points.len() {
+        if at.is_multiple_of(QUESTIONS) {
+            budget.check()?;
+        }
         let (i, side, lambda) = whose[at];
         let is_near = |other: u32| {
             let other = other as usize;
@@ -164,6 +176,7 @@ fn part(sites: &mut [Site]) {
             sites[i].has[side] = false;
         }
     }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -179,7 +192,8 @@ mod tests {
     fn sites_of(band: &Band, share: f64) -> Vec<Site> {
         let frame = Frame::of(&band.points);
         let offsets = Offsets { first: 0.05, lambdas: vec![0.05; band.points.len()], halved: 0 };
-        sites(band, &offsets, &RbfOptions { share, ..RbfOptions::default() }, &frame)
+        let options = RbfOptions { share, ..RbfOptions::default() };
+        sites(band, &offsets, &options, &frame, &Budget::unlimited()).unwrap()
     }
 
     fn count(sites: &[Site]) -> usize {

@@ -37,7 +37,7 @@ pub fn fit(
         return Ok(Err(Unfit::NotFinite { point: 0 }));
     }
     let offsets = offsets(band, around, options, budget)?;
-    let sites = sites(band, &offsets, options, &frame);
+    let sites = sites(band, &offsets, options, &frame, budget)?;
     budget.spend(sites.len() as u64)?;
     let parts = match parts(&sites, options, budget)? {
         Ok(parts) => parts,

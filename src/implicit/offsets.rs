@@ -7,7 +7,7 @@ use crate::geom::{Aabb, DVec3};
 use crate::par;
 use crate::spatial::NearestSearch;
 
-/// Halvings after which a lambda stays as it is: a thousandth of the first one, which is 1e-5 of the hole.
+/// Halvings after which a lambda stays as it is: a thousandth of the first one, 5e-6 of the hole.
 const HALVINGS_MAX: u32 = 10;
 /// Share of lambda that the closest point of the surface may be beside the point itself where the surface is curved
 /// toward the offset, if it is beside it and not behind it.
