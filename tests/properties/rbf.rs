@@ -293,8 +293,9 @@ fn the_same_bits_come_with_one_two_and_eight_threads() {
         let results = [1, 2, 8].map(|threads| {
             par::with_threads(threads, || {
                 let field = fitted(&band, &options);
-                let patch =
-                    mesh_surface(&field, &[rim.clone()], 0.14, &Budget::unlimited()).unwrap().unwrap();
+                let patch = mesh_surface(&field, std::slice::from_ref(&rim), 0.14, &Budget::unlimited())
+                    .unwrap()
+                    .unwrap();
                 (field.value(DVec3::new(0.1, 0.2, 0.3)).to_bits(), patch)
             })
         });
