@@ -72,6 +72,7 @@ mod tests {
             triangles: [solid, mirrored].concat(),
             triangle_origin: (0..8).collect(),
             two_sided: Vec::new(),
+            blends: Default::default(),
         }
     }
 

@@ -78,6 +78,7 @@ mod tests {
             triangles: vec![[0, 1, 2], [0, 3, 4]],
             triangle_origin: vec![0, 1],
             two_sided: Vec::new(),
+            blends: Default::default(),
         }
     }
 

@@ -2,17 +2,34 @@
 
 use super::Changes;
 use crate::geom::DVec3;
-use crate::mesh::{Color, NO_POINT, Soup, Texture};
+use crate::mesh::{Color, NO_POINT, Soup, Texture, triangle_of};
 
 /// In the place of an origin: made by a repair step.
 pub const NEW: u32 = u32::MAX;
+
+/// From here on an origin of a vertex is the number of a blend.
+pub const FIRST_BLEND: u32 = 1 << 31;
+
+/// A vertex that is new between others: corners of the soup, as `3 t + c` for corner `c` of triangle `t`, with their
+/// shares, which are positive and have the sum 1.
+pub type Blend = Vec<(u32, f64)>;
+
+/// What patches of holes take their colours and their texture from.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Blends {
+    /// The vertices with origin [`FIRST_BLEND`] and up.
+    pub vertices: Vec<Blend>,
+    /// Vertices of the soup at rims of patches, each with its corner there; ascending.
+    pub rims: Vec<[u32; 2]>,
+}
 
 /// Triangles under repair.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Draft {
     /// Vertex positions, all finite, in the unit of the file.
     pub positions: Vec<DVec3>,
-    /// The vertex of the soup behind each vertex; of welded vertices, the first.
+    /// The vertex of the soup behind each vertex; of welded vertices, the first. From [`FIRST_BLEND`] on: one of
+    /// `blends`.
     pub vertex_origin: Vec<u32>,
     /// Vertex ids of each triangle's corners.
     pub triangles: Vec<[u32; 3]>,
@@ -20,6 +37,8 @@ pub struct Draft {
     pub triangle_origin: Vec<u32>,
     /// Triangles of the soup, ascending, that it holds in both directions, so that they do not say where outside is.
     pub two_sided: Vec<u32>,
+    /// What is behind the new vertices of patches.
+    pub blends: Blends,
 }
 
 impl Draft {
@@ -31,6 +50,7 @@ impl Draft {
             triangles: soup.triangles.clone(),
             triangle_origin: (0..soup.triangles.len() as u32).collect(),
             two_sided: Vec::new(),
+            blends: Blends::default(),
         };
         let dropped = draft.drop_unused_vertices();
         let changes = Changes::counted([
@@ -50,6 +70,7 @@ impl Draft {
             triangles: triangles.to_vec(),
             triangle_origin: (0..triangles.len() as u32).collect(),
             two_sided: Vec::new(),
+            blends: Default::default(),
         }
     }
 
@@ -122,7 +143,7 @@ impl Draft {
             is_f32_exact: self.positions.iter().all(|p| p.as_vec3().as_dvec3() == *p),
             vertex_colors: match source.vertex_colors.is_empty() {
                 true => Vec::new(),
-                false => self.vertex_origin.iter().map(|&v| source.vertex_colors[v as usize]).collect(),
+                false => self.vertex_origin.iter().map(|&v| self.color(v, source)).collect(),
             },
             face_colors: match source.face_colors.is_empty() {
                 true => Vec::new(),
@@ -133,16 +154,29 @@ impl Draft {
         }
     }
 
+    /// The colour of a vertex with this origin.
+    fn color(&self, origin: u32, source: &Soup) -> Option<Color> {
+        if origin < FIRST_BLEND {
+            return source.vertex_colors[origin as usize];
+        }
+        let blend = &self.blends.vertices[(origin - FIRST_BLEND) as usize];
+        let color_of = |&(corner, share): &(u32, f64)| {
+            let v = source.triangles[triangle_of(corner) as usize][(corner % 3) as usize];
+            (source.vertex_colors[v as usize], share)
+        };
+        Color::blend(&blend.iter().map(color_of).collect::<Vec<_>>())
+    }
+
     /// The texture of the triangles whose corners are still at vertices of their triangle in `source`, or where these
-    /// were before they moved; other triangles have none.
+    /// were before they moved, and of patches, between the points at their rims; other triangles have none.
     fn texture(&self, texture: &Texture, source: &Soup) -> Texture {
         if texture.is_empty() {
             return Texture::default();
         }
+        let place = |v: u32| source.positions.get(v as usize);
         let of_triangle = |t: usize| {
             let origin = self.triangle_origin[t] as usize;
             let (was, points) = (source.triangles.get(origin)?, texture.corners.get(origin)?);
-            let place = |v: u32| source.positions.get(v as usize);
             let point = |v: u32| {
                 let k = (0..3).find(|&k| place(was[k]) == place(self.vertex_origin[v as usize]))?;
                 Some(points[k])
@@ -150,8 +184,28 @@ impl Draft {
             let [a, b, c] = self.triangles[t].map(point);
             Some([a?, b?, c?])
         };
-        let corners = (0..self.triangles.len()).map(|t| of_triangle(t).unwrap_or([NO_POINT; 3])).collect();
-        Texture { points: texture.points.clone(), corners }
+        let mut points = texture.points.clone();
+        let of_blends: Vec<Option<u32>> =
+            self.blends.vertices.iter().map(|blend| blended(blend, texture, &mut points)).collect();
+        let at_rim = |origin: u32| {
+            let rims = &self.blends.rims;
+            let [_, corner] =
+                *rims.get(rims.partition_point(|&[v, _]| v < origin)).filter(|r| r[0] == origin)?;
+            Some(texture.corners[triangle_of(corner) as usize][(corner % 3) as usize])
+                .filter(|&point| point != NO_POINT)
+        };
+        let of_patch = |t: usize| {
+            let point = |v: u32| match self.vertex_origin[v as usize] {
+                origin if origin >= FIRST_BLEND => of_blends[(origin - FIRST_BLEND) as usize],
+                origin => at_rim(origin),
+            };
+            let [a, b, c] = self.triangles[t].map(point);
+            (self.triangle_origin[t] == NEW).then_some([a?, b?, c?])
+        };
+        let corners = (0..self.triangles.len())
+            .map(|t| of_triangle(t).or_else(|| of_patch(t)).unwrap_or([NO_POINT; 3]))
+            .collect();
+        Texture { points, corners }
     }
 
     /// Broken invariants, as sentences; empty when all hold.
@@ -173,6 +227,17 @@ impl Draft {
         }
         broken
     }
+}
+
+/// Adds the point of a blend to `points`; gives its number, if all corners of the blend have points.
+fn blended(blend: &Blend, texture: &Texture, points: &mut Vec<[f64; 2]>) -> Option<u32> {
+    let mut sum = [0.0; 2];
+    for &(corner, share) in blend {
+        let [u, v] = texture.of_triangle(triangle_of(corner) as usize)?[(corner % 3) as usize];
+        sum = [sum[0] + share * u, sum[1] + share * v];
+    }
+    points.push(sum);
+    Some(points.len() as u32 - 1)
 }
 
 /// Keeps the items that are marked, in their order.

@@ -29,7 +29,7 @@ pub mod thicken;
 pub mod thin_faces;
 pub mod weld;
 
-pub use draft::{Draft, NEW};
+pub use draft::{Blend, Blends, Draft, FIRST_BLEND, NEW};
 pub use selection::Selection;
 pub use stars::Star;
 

@@ -95,6 +95,7 @@ mod tests {
             positions,
             triangles,
             two_sided: Vec::new(),
+            blends: Default::default(),
         }
     }
 

@@ -179,6 +179,7 @@ mod tests {
             triangles: [solid(0, 1, 2, 3), solid(0, 1, 4, 5)].concat(),
             triangle_origin: (0..8).collect(),
             two_sided: Vec::new(),
+            blends: Default::default(),
         }
     }
 

@@ -100,6 +100,7 @@ mod tests {
             triangles: triangles.to_vec(),
             triangle_origin: (0..triangles.len() as u32).collect(),
             two_sided: Vec::new(),
+            blends: Default::default(),
         }
     }
 

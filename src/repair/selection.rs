@@ -44,10 +44,10 @@ fn is_on(ends: [u32; 2], listed: u32, soup: &Soup) -> bool {
     if triangle_of(listed) as usize >= soup.triangles.len() {
         return false;
     }
-    let place = |v: u32| soup.positions[v as usize];
-    let [a, b] = edge_of(&soup.triangles, listed).map(place);
+    let [a, b] = edge_of(&soup.triangles, listed).map(|v| soup.positions[v as usize]);
     let on_line = |p: DVec3| p == a || p == b || are_collinear(a, b, p);
-    ends.map(place).into_iter().all(on_line)
+    // A vertex between others is not of the soup.
+    ends.into_iter().all(|v| soup.positions.get(v as usize).is_some_and(|&p| on_line(p)))
 }
 
 #[cfg(test)]

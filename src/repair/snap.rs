@@ -215,6 +215,7 @@ mod tests {
             triangles: vec![[0, 2, 3], [0, 3, 1], [4, 6, 7], [4, 7, 5]],
             triangle_origin: (0..4).collect(),
             two_sided: Vec::new(),
+            blends: Default::default(),
         }
     }
 

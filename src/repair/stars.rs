@@ -179,6 +179,7 @@ mod tests {
             triangles: vec![[0, 1, 2], [3, 0, 2], [3, 4, 0], [0, 4, 1], [0, 5, 6]],
             triangle_origin: (0..5).collect(),
             two_sided: Vec::new(),
+            blends: Default::default(),
         }
     }
 

@@ -107,6 +107,7 @@ mod tests {
             triangle_origin: (0..4).collect(),
             triangles,
             two_sided: Vec::new(),
+            blends: Default::default(),
         };
         let changes = split_t_vertices(&mut draft, &Budget::unlimited()).unwrap();
         assert_eq!((changes.count("edges_divided"), changes.count("triangles_split")), (1, 1));
@@ -129,6 +130,7 @@ mod tests {
             triangles: vec![[0, 1, 2], [3, 4, 5]],
             triangle_origin: vec![0, 1],
             two_sided: Vec::new(),
+            blends: Default::default(),
         };
         let before = draft.clone();
         let changes = split_t_vertices(&mut draft, &Budget::unlimited()).unwrap();

@@ -42,6 +42,7 @@ mod tests {
             triangles: vec![[0, 1, 2], [3, 5, 4]],
             triangle_origin: vec![0, 1],
             two_sided: Vec::new(),
+            blends: Default::default(),
         };
         let changes = weld(&mut draft, &Budget::unlimited()).unwrap();
         assert_eq!(changes.count("vertices_joined"), 2);

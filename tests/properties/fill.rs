@@ -17,6 +17,7 @@ fn draft(soup: &RawSoup) -> Draft {
         triangles: soup.triangles.clone(),
         triangle_origin: (0..soup.triangles.len() as u32).collect(),
         two_sided: Vec::new(),
+        blends: Default::default(),
     };
     weld::weld(&mut draft, &Budget::unlimited()).unwrap();
     draft.drop_unused_vertices();

@@ -24,6 +24,7 @@ fn random_draft(random: &mut Random) -> Draft {
         triangle_origin: (0..triangles.len() as u32).collect(),
         triangles,
         two_sided: Vec::new(),
+        blends: Default::default(),
     };
     weld::weld(&mut draft, &Budget::unlimited()).unwrap();
     degenerate::drop_degenerate(&mut draft);
@@ -104,6 +105,7 @@ fn random_band(random: &mut Random) -> Draft {
         triangle_origin: (0..triangles.len() as u32).collect(),
         triangles,
         two_sided: Vec::new(),
+        blends: Default::default(),
     };
     degenerate::drop_degenerate(&mut draft);
     draft

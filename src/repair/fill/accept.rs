@@ -1,133 +1,153 @@
 //! Which of the proposed patches may stay: those that add no defect of their own and meet nothing.
 
+use super::report::Rejection;
+use super::surface::Surface;
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3, are_collinear};
-use crate::mesh::{EdgeGroups, edge_of, next_corner, prev_corner};
+use crate::mesh::next_corner;
 use crate::spatial::{self, Bvh, Search};
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Contacts to look at in one round; patches that have none among them but come later are put off.
 const CONTACTS_MAX: usize = 1 << 20;
+/// A patch with more triangles is searched alone first, up to its first contact: one that is crumpled may have pairs of
+/// triangles in proportion to the square of their number.
+const ALONE_FROM: usize = 64;
 
-/// The mesh around the holes, with one vertex at each place, and the patches it has got so far.
-pub(super) struct Surface {
-    pub(super) positions: Vec<DVec3>,
+/// A patch for one hole.
+#[derive(Debug, Clone)]
+pub(super) struct Proposal {
+    /// The boundary half-edges whose corners are its rim.
+    pub(super) rim: Vec<u32>,
+    /// Where the loops of the rim begin.
+    pub(super) loop_starts: Vec<usize>,
+    /// Positions of its new vertices.
+    pub(super) points: Vec<DVec3>,
+    /// Below the number of corners of the rim: that corner; from there on: one of `points`.
     pub(super) triangles: Vec<[u32; 3]>,
-    pub(super) groups: EdgeGroups,
-    /// Over the triangles; built when the first patch is to be tested.
-    bvh: Option<Bvh>,
-    patches: Vec<[u32; 3]>,
-    diagonals: FxHashSet<[u32; 2]>,
 }
 
-/// A patch for one region, its corners given as boundary half-edges.
-pub(super) struct Proposal {
-    pub(super) region: usize,
-    pub(super) triangles: Vec<[u32; 3]>,
+/// The triangles of proposals by vertices of the surface, and what is wrong with each.
+struct Judged {
+    triangles: Vec<Vec<[u32; 3]>>,
+    verdicts: Vec<Result<(), Rejection>>,
 }
 
 impl Surface {
-    pub(super) fn new(
-        positions: Vec<DVec3>,
-        triangles: Vec<[u32; 3]>,
-        budget: &Budget,
-    ) -> Result<Self, Stopped> {
-        let groups = EdgeGroups::build(&triangles, positions.len(), budget)?;
-        Ok(Self {
-            positions,
-            triangles,
-            groups,
-            bvh: None,
-            patches: Vec::new(),
-            diagonals: FxHashSet::default(),
-        })
-    }
-
-    /// The vertex of a boundary loop at half-edge `h`.
-    pub(super) fn corner(&self, h: u32) -> u32 {
-        edge_of(&self.triangles, h)[1]
-    }
-
-    /// The position of that vertex.
-    pub(super) fn point(&self, h: u32) -> DVec3 {
-        self.positions[self.corner(h) as usize]
-    }
-
-    /// The unit normal of the triangle at half-edge `h`; zero when it is too small to have one.
-    pub(super) fn normal(&self, h: u32) -> DVec3 {
-        let [a, b, c] = [h, next_corner(h), prev_corner(h)].map(|h| self.point(h));
-        (b - a).cross(c - a).normalize_or_zero()
-    }
-
-    /// True when no triangle has the edge between the vertices of two corners.
-    pub(super) fn is_free(&self, g: u32, h: u32) -> bool {
-        self.is_free_edge(undirected(self.corner(g), self.corner(h)))
-    }
-
-    fn is_free_edge(&self, edge: [u32; 2]) -> bool {
-        !self.diagonals.contains(&edge) && self.groups.find(&self.triangles, edge).is_none()
-    }
-
-    /// Accepts the proposals that are sound; says of each whether it is.
+    /// Accepts the proposals that are sound, and says of the others why they are not. For a sound one it gives the first
+    /// of its new vertices in the surface.
     ///
-    /// Sound is: no degenerate triangle; no diagonal in use already, by the mesh, by another patch or an earlier proposal;
-    /// no triangle on the vertices of another one; and exactly no contact with the mesh, with other patches or in itself.
-    pub(super) fn accept(&mut self, proposals: &[Proposal], budget: &Budget) -> Result<Vec<bool>, Stopped> {
-        let patches: Vec<Vec<[u32; 3]>> = proposals
-            .iter()
-            .map(|proposal| proposal.triangles.iter().map(|t| t.map(|h| self.corner(h))).collect())
-            .collect();
+    /// Sound is: exactly the rim as boundary, in its direction, connected, one fan at each corner and new vertex, and as
+    /// many triangles as a sphere with the loops cut out has; no degenerate triangle; no edge in use already, by the mesh,
+    /// by another patch or an earlier proposal; no triangle on the vertices of another one; no new vertex in the place of
+    /// another; and exactly no contact with the mesh, with other patches or in itself.
+    pub(super) fn accept(
+        &mut self,
+        proposals: &[Proposal],
+        budget: &Budget,
+    ) -> Result<Vec<Result<u32, Rejection>>, Stopped> {
         let mut claimed = FxHashSet::default();
-        let mut is_sound = Vec::with_capacity(proposals.len());
-        for (proposal, patch) in proposals.iter().zip(&patches) {
-            budget.spend(patch.len() as u64)?;
-            is_sound.push(self.claim(proposal, patch, &mut claimed));
+        let mut judged = Judged { triangles: Vec::new(), verdicts: Vec::new() };
+        let mut firsts = Vec::with_capacity(proposals.len());
+        for proposal in proposals {
+            budget.spend(proposal.triangles.len() as u64 + 1)?;
+            let first = self.positions.len() as u32;
+            firsts.push(first);
+            let rim = proposal.rim.len() as u32;
+            let vertex =
+                |v: u32| if v < rim { self.corner(proposal.rim[v as usize]) } else { first + v - rim };
+            let patch: Vec<[u32; 3]> = proposal.triangles.iter().map(|t| t.map(vertex)).collect();
+            self.positions.extend(&proposal.points);
+            let mut verdict = self.claim(proposal, &patch, &mut claimed);
+            if verdict.is_ok() && patch.len() >= ALONE_FROM {
+                verdict = self.alone(&patch, budget)?;
+            }
+            judged.verdicts.push(verdict);
+            judged.triangles.push(patch);
         }
-        self.reject_contacts(&patches, &mut is_sound, budget)?;
-        for (patch, _) in patches.into_iter().zip(&is_sound).filter(|&(_, &sound)| sound) {
-            self.diagonals.extend(diagonals(&patch).unwrap_or_default());
-            self.patches.extend(patch);
+        self.reject_contacts(&mut judged, &firsts, budget)?;
+        let Judged { triangles, verdicts } = judged;
+        for ((patch, verdict), proposal) in triangles.into_iter().zip(&verdicts).zip(proposals) {
+            if verdict.is_ok() {
+                self.diagonals.extend(self.diagonals_of(proposal));
+                self.patches.extend(patch);
+            }
         }
-        Ok(is_sound)
+        Ok(verdicts.into_iter().zip(firsts).map(|(verdict, first)| verdict.map(|()| first)).collect())
     }
 
     /// Judges a patch but for contacts, and claims its diagonals.
-    fn claim(&self, proposal: &Proposal, patch: &[[u32; 3]], claimed: &mut FxHashSet<[u32; 2]>) -> bool {
+    fn claim(
+        &self,
+        proposal: &Proposal,
+        patch: &[[u32; 3]],
+        claimed: &mut FxHashSet<[u32; 2]>,
+    ) -> Result<(), Rejection> {
         let is_degenerate = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|v| self.positions[v as usize]);
             are_collinear(a, b, c)
         };
-        if patch.iter().any(is_degenerate) || self.is_double_of_neighbour(proposal) {
-            return false;
+        check_topology(proposal)?;
+        if patch.iter().any(is_degenerate) {
+            return Err(Rejection::DegenerateTriangle);
         }
-        let Some(diagonals) = diagonals(patch) else { return false };
-        let is_free = diagonals.iter().all(|edge| self.is_free_edge(*edge) && !claimed.contains(edge));
-        if is_free {
-            claimed.extend(diagonals);
+        let mut diagonals = self.diagonals_of(proposal);
+        diagonals.sort_unstable();
+        let is_twice = diagonals.windows(2).any(|pair| pair[0] == pair[1]);
+        let is_used = |edge: &[u32; 2]| !self.is_free_edge(*edge) || claimed.contains(edge);
+        if self.is_double_of_neighbour(proposal) || is_twice || diagonals.iter().any(is_used) {
+            return Err(Rejection::EdgeInUse);
         }
-        is_free
+        claimed.extend(diagonals);
+        Ok(())
+    }
+
+    /// The edges inside a patch that are between corners of its rim, by vertices of the surface.
+    fn diagonals_of(&self, proposal: &Proposal) -> Vec<[u32; 2]> {
+        let rim = proposal.rim.len() as u32;
+        let is_side = |a: u32, b: u32| proposal.next(a) == b || proposal.next(b) == a;
+        let mut edges = Vec::new();
+        for t in &proposal.triangles {
+            for c in 0..3 {
+                let [a, b] = [t[c], t[(c + 1) % 3]];
+                if a < b && b < rim && !is_side(a, b) {
+                    edges.push([a, b]);
+                }
+            }
+        }
+        let vertex = |v: u32| self.corner(proposal.rim[v as usize]);
+        edges.into_iter().map(|[a, b]| [vertex(a), vertex(b)]).map(|[a, b]| [a.min(b), a.max(b)]).collect()
     }
 
     /// True for a single triangle that has the vertices of the one beyond its rim. A patch of several triangles has a new
     /// edge in each of them, so none can be the double of another triangle.
     fn is_double_of_neighbour(&self, proposal: &Proposal) -> bool {
-        let &[[g, h, i]] = &proposal.triangles[..] else { return false };
+        if proposal.triangles.len() != 1 {
+            return false;
+        }
         // Half-edge `g` goes to the corner at `g`; the third vertex of its triangle is where the next half-edge goes to.
-        let beyond = self.corner(next_corner(g));
-        [g, h, i].map(|h| self.corner(h)).contains(&beyond)
+        let beyond = self.corner(next_corner(proposal.rim[0]));
+        proposal.rim.iter().any(|&h| self.corner(h) == beyond)
+    }
+
+    /// Looks for a contact of a patch in itself, and for new vertices of it in one place.
+    fn alone(&self, patch: &[[u32; 3]], budget: &Budget) -> Result<Result<(), Rejection>, Stopped> {
+        let bvh = Bvh::build(&self.positions, patch, None, budget)?;
+        let found = spatial::self_contacts(&self.positions, patch, &bvh, None, Search::First, budget)?;
+        Ok(if found.count > 0 { Err(Rejection::MeetsItself) } else { Ok(()) })
     }
 
     /// Rejects proposals that meet the mesh, an accepted patch, themselves, or an earlier proposal that stays.
     fn reject_contacts(
         &mut self,
-        patches: &[Vec<[u32; 3]>],
-        is_sound: &mut [bool],
+        judged: &mut Judged,
+        firsts: &[u32],
         budget: &Budget,
     ) -> Result<(), Stopped> {
         // Triangles of proposals come first, so that contacts, which are sorted, begin with theirs.
         let mut owner = Vec::new();
         let mut triangles = Vec::new();
-        for (i, patch) in patches.iter().enumerate().filter(|&(i, _)| is_sound[i]) {
+        for (i, patch) in judged.triangles.iter().enumerate().filter(|&(i, _)| judged.verdicts[i].is_ok()) {
             owner.extend(std::iter::repeat_n(i, patch.len()));
             triangles.extend(patch);
         }
@@ -137,30 +157,68 @@ impl Surface {
         let near = self.triangles_near(&triangles, budget)?;
         triangles.extend(near);
         triangles.extend(&self.patches);
+        self.reject_shared_places(&triangles, firsts, &mut judged.verdicts, budget)?;
         let bvh = Bvh::build(&self.positions, &triangles, None, budget)?;
         let search = Search::All { keep: CONTACTS_MAX };
         let contacts = spatial::self_contacts(&self.positions, &triangles, &bvh, None, search, budget)?;
         let mut between = Vec::new();
+        let reject = |verdict: &mut Result<(), Rejection>, reason: Rejection| {
+            if verdict.is_ok() {
+                *verdict = Err(reason);
+            }
+        };
         for contact in &contacts.list {
             match (owner.get(contact.a as usize), owner.get(contact.b as usize)) {
                 (Some(&a), Some(&b)) if a != b => between.push((a.max(b), a.min(b))),
-                (Some(&a), _) => is_sound[a] = false,
+                (Some(&a), Some(_)) => reject(&mut judged.verdicts[a], Rejection::MeetsItself),
+                (Some(&a), None) => reject(&mut judged.verdicts[a], Rejection::MeetsOther),
                 (None, _) => break,
             }
         }
         between.sort_unstable();
         for (later, earlier) in between {
-            is_sound[later] &= !is_sound[earlier];
+            if judged.verdicts[earlier].is_ok() {
+                reject(&mut judged.verdicts[later], Rejection::MeetsOther);
+            }
         }
         if contacts.count > contacts.list.len() as u64 {
             let last = contacts.list.last().and_then(|contact| owner.get(contact.a as usize));
-            is_sound[last.map_or(patches.len(), |&last| last)..].fill(false);
+            let from = last.map_or(judged.verdicts.len(), |&last| last);
+            for verdict in &mut judged.verdicts[from..] {
+                reject(verdict, Rejection::MeetsOther);
+            }
         }
         Ok(())
     }
-}
 
-impl Surface {
+    /// Rejects proposals with a new vertex where another vertex of `triangles` is.
+    fn reject_shared_places(
+        &self,
+        triangles: &[[u32; 3]],
+        firsts: &[u32],
+        verdicts: &mut [Result<(), Rejection>],
+        budget: &Budget,
+    ) -> Result<(), Stopped> {
+        let Some(&first) = firsts.first() else { return Ok(()) };
+        if first as usize == self.positions.len() {
+            return Ok(());
+        }
+        budget.spend(triangles.len() as u64)?;
+        let mut used = triangles.as_flattened().to_vec();
+        used.sort_unstable();
+        used.dedup();
+        // Zeros of both signs are one place.
+        let place = |v: u32| self.positions[v as usize].to_array().map(|x| (x + 0.0).to_bits());
+        let mut seen: FxHashMap<[u64; 3], u32> = FxHashMap::default();
+        for v in used {
+            if seen.insert(place(v), v).is_some() && v >= first {
+                let owner = firsts.partition_point(|&first| first <= v) - 1;
+                verdicts[owner] = verdicts[owner].and(Err(Rejection::MeetsOther));
+            }
+        }
+        Ok(())
+    }
+
     /// The triangles of the mesh whose boxes may meet those of `patches`.
     fn triangles_near(&mut self, patches: &[[u32; 3]], budget: &Budget) -> Result<Vec<[u32; 3]>, Stopped> {
         let bvh = match self.bvh.take() {
@@ -178,18 +236,75 @@ impl Surface {
     }
 }
 
-fn undirected(a: u32, b: u32) -> [u32; 2] {
-    [a.min(b), a.max(b)]
+impl Proposal {
+    /// The corner of the rim after `corner` in its loop.
+    fn next(&self, corner: u32) -> u32 {
+        let i = self.loop_starts.partition_point(|&start| start <= corner as usize);
+        let end = self.loop_starts.get(i).copied().unwrap_or(self.rim.len());
+        if corner as usize + 1 == end { self.loop_starts[i - 1] as u32 } else { corner + 1 }
+    }
 }
 
-/// The edges inside a patch; `None` when one of them has more than two triangles.
-fn diagonals(patch: &[[u32; 3]]) -> Option<Vec<[u32; 2]>> {
-    let mut edges: Vec<[u32; 2]> =
-        patch.iter().flat_map(|&[a, b, c]| [undirected(a, b), undirected(b, c), undirected(c, a)]).collect();
+/// Euler: a sphere without so many disks, with n corners at their rims and m other vertices, has n + 2 m + 2 h - 4
+/// triangles.
+fn check_topology(proposal: &Proposal) -> Result<(), Rejection> {
+    let (rim, inner, loops) = (proposal.rim.len(), proposal.points.len(), proposal.loop_starts.len());
+    if proposal.triangles.len() + 4 != rim + 2 * inner + 2 * loops {
+        return Err(Rejection::Topology);
+    }
+    // Each directed edge once; what has no opposite is exactly the rim, in its direction.
+    let mut edges = Vec::with_capacity(3 * proposal.triangles.len());
+    for &[a, b, c] in &proposal.triangles {
+        edges.extend([[a, b], [b, c], [c, a]]);
+    }
     edges.sort_unstable();
-    let groups: Vec<&[[u32; 2]]> = edges.chunk_by(|a, b| a == b).collect();
-    groups
-        .iter()
-        .all(|group| group.len() <= 2)
-        .then(|| groups.into_iter().filter(|group| group.len() == 2).map(|group| group[0]).collect())
+    if edges.windows(2).any(|pair| pair[0] == pair[1]) {
+        return Err(Rejection::Topology);
+    }
+    let has = |edge: [u32; 2]| edges.binary_search(&edge).is_ok();
+    let open = edges.iter().filter(|&&[a, b]| !has([b, a])).count();
+    let is_rim = (0..rim as u32).all(|v| has([v, proposal.next(v)]) && !has([proposal.next(v), v]));
+    let is_fans = one_fan_each(&proposal.triangles, rim + inner);
+    if open != rim || !is_rim || !is_fans || !is_connected(&proposal.triangles, rim + inner) {
+        return Err(Rejection::Topology);
+    }
+    Ok(())
+}
+
+/// True when the triangles at each vertex are one fan: every vertex is used, and joining its triangles over its edges
+/// leaves one part.
+fn one_fan_each(triangles: &[[u32; 3]], vertices: usize) -> bool {
+    // Of a fan around `v`, each triangle gives the step from one neighbour to the next. A chain or ring of k steps is
+    // connected exactly when walking it takes k steps.
+    let mut steps: Vec<[u32; 3]> =
+        triangles.iter().flat_map(|&[a, b, c]| [[a, b, c], [b, c, a], [c, a, b]]).collect();
+    steps.sort_unstable();
+    let mut ends: Vec<[u32; 2]> = steps.iter().map(|&[v, _, to]| [v, to]).collect();
+    ends.sort_unstable();
+    let fans: Vec<&[[u32; 3]]> = steps.chunk_by(|s, t| s[0] == t[0]).collect();
+    fans.len() == vertices
+        && fans.into_iter().all(|fan| {
+            let at = |from: u32| fan.binary_search_by_key(&from, |step| step[1]).ok();
+            // A chain begins where no step ends; a ring begins anywhere.
+            let begins = |step: &&[u32; 3]| ends.binary_search(&[step[0], step[1]]).is_err();
+            let start = fan.iter().find(begins).unwrap_or(&fan[0]);
+            let (mut walked, mut next) = (1, start[2]);
+            while let Some(step) = at(next)
+                && fan[step][1] != start[1]
+                && walked < fan.len()
+            {
+                (walked, next) = (walked + 1, fan[step][2]);
+            }
+            walked == fan.len()
+        })
+}
+
+fn is_connected(triangles: &[[u32; 3]], vertices: usize) -> bool {
+    let mut parts = crate::mesh::UnionFind::new(vertices);
+    for &[a, b, c] in triangles {
+        parts.unite(a, b);
+        parts.unite(b, c);
+    }
+    let root = parts.find(triangles[0][0]);
+    (0..vertices as u32).all(|v| parts.find(v) == root)
 }

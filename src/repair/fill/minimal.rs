@@ -17,6 +17,12 @@ struct Weight(f64, f64);
 const IMPOSSIBLE: Weight = Weight(f64::INFINITY, f64::INFINITY);
 const NOTHING: Weight = Weight(0.0, 0.0);
 
+/// How much two neighbouring triangles bend, from 0 to 2; 0 where one has no normal, so that a rim without one does not
+/// hide how all others bend.
+pub(super) fn bend(normal: DVec3, other: DVec3) -> f64 {
+    if normal == DVec3::ZERO || other == DVec3::ZERO { 0.0 } else { 1.0 - normal.dot(other) }
+}
+
 /// A table over the pairs `i < k` of corners: the best triangulation of the polygon from corner `i` to corner `k`.
 struct Table<'a> {
     points: &'a [DVec3],
@@ -74,7 +80,7 @@ impl Table<'_> {
         let (Weight(bend_a, area_a), Weight(bend_b, area_b)) =
             (self.weight[i * n + m], self.weight[m * n + k]);
         let Some((normal, area)) = self.facing(i, m, k) else { return IMPOSSIBLE };
-        let bend = |other: DVec3| 1.0 - normal.dot(other);
+        let bend = |other: DVec3| bend(normal, other);
         let mut worst = bend_a.max(bend_b).max(bend(self.beyond(i, m))).max(bend(self.beyond(m, k)));
         if k - i == n - 1 {
             worst = worst.max(bend(self.rim_normals[k]));

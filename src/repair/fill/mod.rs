@@ -1,49 +1,50 @@
-//! Closes simple holes: boundary loops that pass each place once.
+//! Closes holes: boundary loops, alone or several with one patch between them.
 //!
-//! Each region (a loop, or flat loops in each other) is offered patches by one method after another. A patch stays only if
-//! it adds no defect and meets nothing (see [`accept`]); a region with no such patch stays open. A single triangle or a
-//! flat sheet cannot be closed, because every patch would be its double or lie on it.
+//! Each hole is offered patches in one way after another, see [`class`]. A patch stays only if it adds no defect and meets
+//! nothing (see [`accept`]); a hole with no such patch stays open, and the report says why each was not taken. A single
+//! triangle or a flat sheet cannot be closed, because every patch would be its double or lie on it. No vertex of the mesh
+//! moves; new vertices are born on the print lattice. `docs/holes.md` describes the methods.
 
 mod accept;
+mod blend;
+mod bridge;
+mod class;
 mod ears;
+mod fair;
+mod large;
+mod make;
 mod minimal;
 mod options;
+mod patch;
 mod planar;
+mod refine;
 mod regions;
 mod report;
+mod sparse;
+mod surface;
 
-use self::accept::{Proposal, Surface};
+use self::accept::Proposal;
+use self::make::{Made, Way, make};
 pub use self::options::{Extract, FillOptions, HoleChoice, Method};
 use self::regions::{Region, regions};
 pub use self::report::{Filled, HoleReport, Rejected, Rejection, Rim};
-use super::{Changes, Draft, NEW, Selection};
+use self::surface::Surface;
+use super::{Changes, Draft, FIRST_BLEND, NEW, Selection};
 use crate::budget::{Budget, Stopped};
-use crate::geom::{DVec3, triangle_area};
+use crate::geom::triangle_area;
 use crate::mesh::{Boundary, Soup, edge_of};
+use crate::par;
 use crate::spatial::coincident_f64;
 use std::ops::Range;
 
-/// A way to triangulate a region.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Triangulation {
-    Planar,
-    Minimal,
-    Ears,
-}
-
-/// A region and the methods that it has not been offered yet.
-struct Open {
-    region: Region,
-    methods: &'static [Triangulation],
-}
-
-/// Closes the holes that can be closed soundly. Looks at places, so vertices need not be welded; triangles must not be
-/// degenerate. New triangles use the vertices of the rim.
+/// Closes the holes that can be closed soundly by triangles between vertices of their rims, as a repair does. Looks at
+/// places, so vertices need not be welded; triangles must not be degenerate.
 ///
 /// # Errors
 /// When the budget stops the run.
 pub fn fill_holes(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
-    fill_loops(draft, |_, _| true, budget)
+    let options = FillOptions::plain(Selection::default());
+    Ok(fill_loops(draft, None, &options, budget)?.changes)
 }
 
 /// As [`fill_holes`], but only holes that the caller chose in `soup`, from which `draft` was made.
@@ -56,38 +57,183 @@ pub fn fill_chosen_holes(
     chosen: &Selection,
     budget: &Budget,
 ) -> Result<Changes, Stopped> {
-    fill_loops(draft, |half_edges, draft| chosen.takes(half_edges, draft, soup), budget)
+    Ok(fill_loops(draft, Some(soup), &FillOptions::plain(chosen.clone()), budget)?.changes)
 }
+
+/// Closes holes as `options` say. `draft` was made from `soup`, whose half-edges name the holes.
+///
+/// # Errors
+/// When the budget stops the run.
+pub fn fill(
+    draft: &mut Draft,
+    soup: &Soup,
+    options: &FillOptions,
+    budget: &Budget,
+) -> Result<Filled, Stopped> {
+    fill_loops(draft, Some(soup), options, budget)
+}
+
+/// A hole, and the ways that it has not been offered yet.
+struct Hole {
+    region: Region,
+    /// In the reverse of their order.
+    ways: Vec<Way>,
+    report: HoleReport,
+}
+
+/// Holes of which patches are made at the same time.
+const HOLES_AT_A_TIME: usize = 8;
 
 fn fill_loops(
     draft: &mut Draft,
-    is_chosen: impl Fn(&[u32], &Draft) -> bool,
+    soup: Option<&Soup>,
+    options: &FillOptions,
     budget: &Budget,
-) -> Result<Changes, Stopped> {
+) -> Result<Filled, Stopped> {
     let mut surface = surface_of(draft, budget)?;
     let boundary = Boundary::trace(&surface.triangles, surface.positions.len(), &surface.groups, budget)?;
-    let loops: Vec<_> = boundary.loops.into_iter().filter(|hole| is_chosen(hole, draft)).collect();
-    let holes = loops.len() as u64;
-    let regions = regions(loops, |h| surface.point(h), budget)?;
-    let mut open: Vec<Open> = regions.into_iter().map(Open::new).collect();
-    let (mut filled, mut added) = (0, 0);
-    while !open.is_empty() {
-        let proposals = propose(&mut open, &surface, budget)?;
-        let is_sound = surface.accept(&proposals, budget)?;
-        let mut is_filled = vec![false; open.len()];
-        for (proposal, _) in proposals.iter().zip(&is_sound).filter(|&(_, &sound)| sound) {
-            filled += open[proposal.region].region.loops.len() as u64;
-            added += proposal.triangles.len() as u64;
-            is_filled[proposal.region] = true;
-            append(draft, &proposal.triangles);
-        }
-        open = still_open(open, &is_filled);
+    let is_chosen = |hole: &[u32]| soup.is_none_or(|soup| options.holes.takes(hole, draft, soup));
+    let loops: Vec<_> = boundary.loops.into_iter().filter(|hole| is_chosen(hole)).collect();
+    if options.refines && !loops.is_empty() {
+        surface.find_stars(budget)?;
     }
-    let left = holes - filled;
-    let changes =
-        Changes::counted([("holes_filled", filled), ("triangles_added", added), ("holes_left", left)]);
+    let count = loops.len() as u64;
+    let ladder = Ladder { draft, soup, options };
+    let regions = regions(loops, |h| surface.point(h), budget)?;
+    let mut open: Vec<Hole> =
+        regions.into_iter().map(|region| ladder.start(region, Vec::new(), &surface)).collect();
+    let mut done = Vec::new();
+    let mut patches: Vec<(Made, u32)> = Vec::new();
+    while !open.is_empty() {
+        let offers = offer(&mut open, &surface, budget)?;
+        let proposals: Vec<Proposal> =
+            offers.iter().flatten().map(|(_, made)| made.proposal.clone()).collect();
+        let mut verdicts = surface.accept(&proposals, budget)?.into_iter();
+        let mut left = Vec::new();
+        for (mut hole, offered) in open.into_iter().zip(offers) {
+            let Some((way, made)) = offered else {
+                ladder.give_up(hole, &surface, &mut left, &mut done);
+                continue;
+            };
+            match verdicts.next() {
+                Some(Ok(first)) => {
+                    hole.report.take(way.method(), &made, &surface, first);
+                    patches.push((made, first));
+                    done.push(hole.report);
+                }
+                verdict => {
+                    let reason = verdict.and_then(Result::err).unwrap_or(Rejection::NoPatch);
+                    hole.report.rejected.push(Rejected { method: way.method(), reason });
+                    left.push(hole);
+                }
+            }
+        }
+        open = left;
+    }
+    done.sort_by_key(|report| report.order);
+    let first = draft.triangles.len();
+    append(draft, soup, &surface, &patches);
+    let changes = changes(draft, first, &done, count, boundary.stray_edges);
+    Ok(Filled { changes, holes: done })
+}
+
+/// What decides how holes are filled.
+struct Ladder<'a> {
+    draft: &'a Draft,
+    soup: Option<&'a Soup>,
+    options: &'a FillOptions,
+}
+
+impl Ladder<'_> {
+    fn start(&self, region: Region, rejected: Vec<Rejected>, surface: &Surface) -> Hole {
+        let choice = self.soup.and_then(|soup| self.options.choice(region.rim(), self.draft, soup));
+        let asked = choice.and_then(|choice| choice.method).unwrap_or(self.options.method);
+        let mut ways = class::ways(&region, asked, surface, self.options);
+        ways.reverse();
+        let rim = |own: &Vec<u32>| {
+            let of_soup = |&h: &u32| self.soup.and_then(|soup| options::soup_half_edge(h, self.draft, soup));
+            Rim { half_edge: own.iter().filter_map(of_soup).min(), edges: own.len() as u32 }
+        };
+        let report = HoleReport {
+            order: region.rim()[0],
+            rims: region.loops.iter().map(rim).collect(),
+            asked,
+            rejected,
+            ..HoleReport::default()
+        };
+        Hole { region, ways, report }
+    }
+
+    /// A hole that ran out of ways stays open. If it has several loops, they are tried alone.
+    fn give_up(&self, hole: Hole, surface: &Surface, left: &mut Vec<Hole>, done: &mut Vec<HoleReport>) {
+        if hole.region.loops.len() < 2 {
+            done.push(hole.report);
+            return;
+        }
+        let Hole { region, report, .. } = hole;
+        let alone = region.into_single_loops(|h| surface.point(h));
+        left.extend(alone.map(|region| self.start(region, report.rejected.clone(), surface)));
+    }
+}
+
+/// The next patch for each hole that has one, and the way it was made in.
+fn offer(open: &mut [Hole], surface: &Surface, budget: &Budget) -> Result<Vec<Option<(Way, Made)>>, Stopped> {
+    let holes: Vec<&mut Hole> = open.iter_mut().collect();
+    let chunks: Vec<Vec<&mut Hole>> = {
+        let mut chunks = Vec::new();
+        let mut rest = holes.into_iter().peekable();
+        while rest.peek().is_some() {
+            chunks.push(rest.by_ref().take(HOLES_AT_A_TIME).collect());
+        }
+        chunks
+    };
+    let made = par::map_items(chunks, |_, chunk| {
+        chunk.into_iter().map(|hole| hole.next(surface, budget)).collect::<Result<Vec<_>, Stopped>>()
+    });
+    let mut offers = Vec::with_capacity(open.len());
+    for chunk in made {
+        offers.extend(chunk?);
+    }
+    Ok(offers)
+}
+
+impl Hole {
+    fn next(&mut self, surface: &Surface, budget: &Budget) -> Result<Option<(Way, Made)>, Stopped> {
+        while let Some(way) = self.ways.pop() {
+            match make(&self.region, way, surface, budget)? {
+                Ok(made) => return Ok(Some((way, made))),
+                Err(reason) => self.report.rejected.push(Rejected { method: way.method(), reason }),
+            }
+        }
+        Ok(None)
+    }
+}
+
+impl HoleReport {
+    fn take(&mut self, method: Method, made: &Made, surface: &Surface, first: u32) {
+        let Proposal { rim, points, triangles, .. } = &made.proposal;
+        let point = |v: u32| match rim.get(v as usize) {
+            Some(&h) => surface.point(h),
+            None => surface.positions[(first + v) as usize - rim.len()],
+        };
+        self.used = Some(method);
+        self.triangles = triangles.len() as u64;
+        self.vertices = points.len() as u64;
+        self.area = triangles.iter().map(|t| triangle_area(t.map(point))).sum();
+    }
+}
+
+fn changes(draft: &Draft, first: usize, holes: &[HoleReport], count: u64, stray_edges: u64) -> Changes {
+    let closed = holes.iter().filter(|hole| hole.used.is_some());
+    let filled: u64 = closed.clone().map(|hole| hole.rims.len() as u64).sum();
+    let added = (draft.triangles.len() - first) as u64;
+    let left = count - filled;
+    let vertices: u64 = closed.map(|hole| hole.vertices).sum();
+    let counts = [("holes_filled", filled), ("triangles_added", added), ("holes_left", left)];
+    // Only where a method was asked for that makes vertices.
+    let counts = counts.into_iter().chain((vertices > 0).then_some(("vertices_added", vertices)));
     let patches = share_of_patches(draft, added as usize);
-    Ok(Changes { reason: reason(patches, left, boundary.stray_edges), ..changes })
+    Changes { reason: reason(patches, left, stray_edges), ..Changes::counted(counts.collect::<Vec<_>>()) }
 }
 
 /// In words, how much of the surface is new. Closing a sheet makes a body of it, which this shows.
@@ -112,77 +258,37 @@ fn surface_of(draft: &Draft, budget: &Budget) -> Result<Surface, Stopped> {
     Surface::new(positions, triangles, budget)
 }
 
-impl Open {
-    fn new(region: Region) -> Self {
-        let methods: &[Triangulation] = match (region.loops.len(), region.is_flat) {
-            (1, true) => &[Triangulation::Planar, Triangulation::Minimal, Triangulation::Ears],
-            (1, false) => &[Triangulation::Minimal, Triangulation::Planar, Triangulation::Ears],
-            _ => &[Triangulation::Planar],
-        };
-        Self { region, methods }
-    }
-}
-
-/// The next patch for each region that has one.
-fn propose(open: &mut [Open], surface: &Surface, budget: &Budget) -> Result<Vec<Proposal>, Stopped> {
-    let mut proposals = Vec::new();
-    for (i, Open { region, methods }) in open.iter_mut().enumerate() {
-        while let Some((method, rest)) = methods.split_first() {
-            *methods = rest;
-            if let Some(triangles) = triangulate(region, *method, surface, budget)? {
-                proposals.push(Proposal { region: i, triangles });
-                break;
-            }
+/// Adds patches, in the order in which they were taken.
+fn append(draft: &mut Draft, soup: Option<&Soup>, surface: &Surface, patches: &[(Made, u32)]) {
+    for (made, first) in patches {
+        let Proposal { rim, points, triangles, .. } = &made.proposal;
+        let base = draft.positions.len() as u32;
+        let corner = |h: u32| edge_of(&draft.triangles, h)[1];
+        let corners: Vec<u32> =
+            rim.iter().map(|&h| corner(h)).chain((0..).map(|i| base + i).take(points.len())).collect();
+        for (i, shares) in blend::shares(made).iter().enumerate() {
+            let blend = soup.and_then(|soup| blend::of_soup(shares, rim, draft, soup));
+            let origin = match blend {
+                Some(blend) => {
+                    draft.blends.vertices.push(blend);
+                    FIRST_BLEND + draft.blends.vertices.len() as u32 - 1
+                }
+                // The corner with the largest share stands for all.
+                None => draft.vertex_origin[corners[shares[0].0 as usize] as usize],
+            };
+            draft.positions.push(surface.positions[*first as usize + i]);
+            draft.vertex_origin.push(origin);
+        }
+        if let Some(soup) = soup {
+            let of_soup = rim.iter().filter_map(|&h| blend::soup_corner(h, draft, soup));
+            let of_soup: Vec<[u32; 2]> = of_soup.collect();
+            draft.blends.rims.extend(of_soup);
+        }
+        for t in triangles {
+            draft.triangles.push(t.map(|v| corners[v as usize]));
+            draft.triangle_origin.push(NEW);
         }
     }
-    Ok(proposals)
-}
-
-/// The triangles of a region by one method, their corners as half-edges.
-fn triangulate(
-    region: &Region,
-    method: Triangulation,
-    surface: &Surface,
-    budget: &Budget,
-) -> Result<Option<Vec<[u32; 3]>>, Stopped> {
-    let rim = region.loops.concat();
-    budget.spend(rim.len() as u64)?;
-    let points: Vec<DVec3> = rim.iter().map(|&h| surface.point(h)).collect();
-    let is_free = |i: usize, k: usize| surface.is_free(rim[i], rim[k]);
-    let triangles = match method {
-        Triangulation::Planar => {
-            let loops: Vec<Vec<DVec3>> =
-                region.loops.iter().map(|l| l.iter().map(|&h| surface.point(h)).collect()).collect();
-            planar::triangulate(&loops, region.normal)
-        }
-        Triangulation::Minimal => {
-            let normals: Vec<DVec3> = rim.iter().map(|&h| surface.normal(h)).collect();
-            minimal::triangulate(&points, &normals, is_free, budget)?
-        }
-        Triangulation::Ears => ears::triangulate(&points, is_free, budget)?,
-    };
-    Ok(triangles.map(|triangles| triangles.into_iter().map(|t| t.map(|i| rim[i])).collect()))
-}
-
-/// The regions that have neither a patch nor run out of methods. Islands that could not be filled with their outer loop
-/// are tried without it.
-fn still_open(open: Vec<Open>, is_filled: &[bool]) -> Vec<Open> {
-    let mut left = Vec::new();
-    for (open, _) in open.into_iter().zip(is_filled).filter(|&(_, &filled)| !filled) {
-        if !open.methods.is_empty() {
-            left.push(open);
-        } else if open.region.loops.len() > 1 {
-            left.extend(open.region.into_single_loops().map(Open::new));
-        }
-    }
-    left
-}
-
-/// Adds triangles whose corners are given as boundary half-edges.
-fn append(draft: &mut Draft, triangles: &[[u32; 3]]) {
-    for corners in triangles {
-        let triangle = corners.map(|h| edge_of(&draft.triangles, h)[1]);
-        draft.triangles.push(triangle);
-        draft.triangle_origin.push(NEW);
-    }
+    draft.blends.rims.sort_unstable();
+    draft.blends.rims.dedup_by_key(|rim| rim[0]);
 }

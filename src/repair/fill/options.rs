@@ -1,6 +1,7 @@
 //! What a caller may choose about the filling of holes.
 
-use crate::repair::Selection;
+use crate::mesh::{Soup, edge_of, triangle_of};
+use crate::repair::{Draft, NEW, Selection};
 
 /// A way to make a patch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
@@ -59,6 +60,8 @@ pub struct FillOptions {
     pub falls_back: bool,
     /// Loops that face each other across a gap or lie in each other without being flat get one patch between them.
     pub bridges: bool,
+    /// [`Method::Auto`] may make new vertices.
+    pub refines: bool,
 }
 
 impl Default for FillOptions {
@@ -71,6 +74,7 @@ impl Default for FillOptions {
             choices: Vec::new(),
             falls_back: true,
             bridges: true,
+            refines: true,
         }
     }
 }
@@ -78,6 +82,33 @@ impl Default for FillOptions {
 impl FillOptions {
     /// Those with which a repair fills: no new vertices, and no patch between loops that are not in one plane.
     pub fn plain(holes: Selection) -> Self {
-        Self { holes, method: Method::Minimal, bridges: false, ..Self::default() }
+        Self { holes, bridges: false, refines: false, ..Self::default() }
     }
+
+    /// What is chosen for the hole with these half-edges of `draft`, which was made of `soup`.
+    pub(super) fn choice(&self, half_edges: &[u32], draft: &Draft, soup: &Soup) -> Option<HoleChoice> {
+        let of_edge = |&h: &u32| {
+            let origin = draft.triangle_origin[triangle_of(h) as usize];
+            let start = self.choices.partition_point(|choice| triangle_of(choice.half_edge) < origin);
+            let of_triangle = self.choices[start..].iter();
+            let mut of_triangle = of_triangle.take_while(|choice| triangle_of(choice.half_edge) == origin);
+            of_triangle.find(|choice| Selection::Only(vec![choice.half_edge]).takes(&[h], draft, soup))
+        };
+        half_edges.iter().find_map(of_edge).copied()
+    }
+}
+
+/// The half-edge of the soup behind half-edge `h` of the draft: that of the same triangle between the same places.
+pub(super) fn soup_half_edge(h: u32, draft: &Draft, soup: &Soup) -> Option<u32> {
+    let origin = draft.triangle_origin[triangle_of(h) as usize];
+    if origin == NEW {
+        return None;
+    }
+    let place = |v: u32| soup.positions.get(v as usize);
+    let [a, b] = edge_of(&draft.triangles, h).map(|v| place(draft.vertex_origin[v as usize]));
+    let is_same = |&g: &u32| {
+        let [c, d] = edge_of(&soup.triangles, g).map(place);
+        (a == c && b == d) || (a == d && b == c)
+    };
+    ((origin as usize) < soup.triangles.len()).then(|| (3 * origin..3 * origin + 3).find(is_same))?
 }

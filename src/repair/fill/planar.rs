@@ -5,7 +5,7 @@ use spade::handles::{FixedFaceHandle, FixedVertexHandle, PossiblyOuterTag};
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 /// Most corners of a region; a triangulation of so many takes some 20 ms and cannot be stopped inside.
-const CORNERS_MAX: usize = 1 << 14;
+pub(super) const CORNERS_MAX: usize = 1 << 14;
 
 /// The view of a plane with this normal along the axis that is nearest to it, mirrored if need be so that what turns
 /// counter-clockwise around the normal does so in the view. Coordinates are not changed, so the view is exact.

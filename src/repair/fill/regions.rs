@@ -22,16 +22,55 @@ pub(super) struct Region {
     pub(super) normal: DVec3,
     /// True when all loops lie in one plane, as nearly as float32 can say.
     pub(super) is_flat: bool,
+    /// The half-edges of all loops.
+    rim: Vec<u32>,
 }
 
 impl Region {
-    /// Its loops as regions of their own. An island runs the other way around.
-    pub(super) fn into_single_loops(self) -> impl Iterator<Item = Self> {
-        let (normal, is_flat) = (self.normal, self.is_flat);
-        self.loops.into_iter().enumerate().map(move |(i, only)| Self {
-            loops: vec![only],
-            normal: if i == 0 { normal } else { -normal },
-            is_flat,
+    fn new(loops: Vec<BoundaryLoop>, normal: DVec3, is_flat: bool) -> Self {
+        let rim = loops.concat();
+        Self { loops, normal, is_flat, rim }
+    }
+
+    /// The half-edges of all loops, one after the other.
+    pub(super) fn rim(&self) -> &[u32] {
+        &self.rim
+    }
+
+    /// Where each loop begins in the rim.
+    pub(super) fn loop_starts(&self) -> Vec<usize> {
+        self.ranges().iter().map(|range| range.start).collect()
+    }
+
+    /// What of the rim each loop is.
+    pub(super) fn ranges(&self) -> Vec<std::ops::Range<usize>> {
+        let mut end = 0;
+        let range = |own: &BoundaryLoop| {
+            end += own.len();
+            end - own.len()..end
+        };
+        self.loops.iter().map(range).collect()
+    }
+
+    /// For each corner of the rim the next one in its loop.
+    pub(super) fn next_corners(&self) -> Vec<u32> {
+        let next = |range: std::ops::Range<usize>| {
+            let start = range.start as u32;
+            range.map(|i| i as u32 + 1).map(move |i| (i, start))
+        };
+        let mut corners = Vec::with_capacity(self.rim.len());
+        for range in self.ranges() {
+            let end = range.end as u32;
+            corners.extend(next(range).map(|(i, start)| if i == end { start } else { i }));
+        }
+        corners
+    }
+
+    /// Its loops as regions of their own.
+    pub(super) fn into_single_loops(self, corner: impl Fn(u32) -> DVec3) -> impl Iterator<Item = Self> {
+        self.loops.into_iter().map(move |only| {
+            let Shape { normal, is_flat, .. } = shape(only.iter().map(|&h| corner(h)).collect());
+            Self::new(vec![only], normal, is_flat)
         })
     }
 }
@@ -57,15 +96,12 @@ pub(super) fn regions(
         .zip(&shapes)
         .zip(&container)
         .map(|((outer, shape), container)| {
-            container.is_none().then(|| Region {
-                loops: vec![outer.clone()],
-                normal: shape.normal,
-                is_flat: shape.is_flat,
-            })
+            container.is_none().then(|| Region::new(vec![outer.clone()], shape.normal, shape.is_flat))
         })
         .collect();
     for (island, container) in loops.into_iter().zip(container) {
         if let Some(region) = container.and_then(|c| regions[c].as_mut()) {
+            region.rim.extend(&island);
             region.loops.push(island);
         }
     }

@@ -46,8 +46,10 @@ pub struct Rim {
 }
 
 /// What became of one hole: one loop, or several that get one patch between them.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct HoleReport {
+    /// The first half-edge of the draft in its first loop, which is what reports are sorted by.
+    pub order: u32,
     /// Its loops, the outer one first.
     pub rims: Vec<Rim>,
     /// The method that was asked for.

@@ -1,0 +1,50 @@
+//! Which ways of filling a hole are tried, and in which order.
+
+use super::make::Way;
+use super::options::{FillOptions, Method};
+use super::regions::Region;
+use super::surface::Surface;
+
+/// The surface goes on in the plane of a flat loop when it leaves it by less, as the sine of the angle (about a degree).
+const COPLANAR_SINE: f64 = 0.02;
+/// A flat loop is where a body was cut off when the surface meets its plane more steeply on average, as the sine of the
+/// angle (45 degrees). Below, it is the rim of a missing dome.
+const CUT_SINE: f64 = 0.7;
+/// Loops with fewer corners have no room for a new vertex.
+const CORNERS_TO_REFINE: usize = 5;
+
+/// The ways to try for a hole that is to be filled by `method`, the first first.
+pub(super) fn ways(region: &Region, method: Method, surface: &Surface, options: &FillOptions) -> Vec<Way> {
+    let plain: &[Way] = match (region.loops.len(), region.is_flat) {
+        (1, true) => &[Way::Planar, Way::Minimal, Way::Ears],
+        (1, false) => &[Way::Minimal, Way::Planar, Way::Ears],
+        (_, true) if !options.bridges => &[Way::Planar],
+        (_, true) => &[Way::Planar, Way::Minimal],
+        (_, false) => &[Way::Minimal, Way::Planar],
+    };
+    let own: &[Way] = match method {
+        Method::Auto if !options.refines || is_to_be_plain(region, surface) => &[],
+        Method::Flat => &[Way::Planar],
+        Method::Minimal => &[Way::Minimal, Way::Ears],
+        Method::Auto | Method::Smooth | Method::Rbf => &[Way::Smooth],
+    };
+    let mut ways = own.to_vec();
+    if options.falls_back || ways.is_empty() {
+        let others = plain.iter().filter(|way| !own.contains(way));
+        ways.extend(others);
+    }
+    ways
+}
+
+/// True when new vertices would not make a better patch.
+fn is_to_be_plain(region: &Region, surface: &Surface) -> bool {
+    if region.rim().len() < CORNERS_TO_REFINE {
+        return true;
+    }
+    if !region.is_flat {
+        return false;
+    }
+    let sines: Vec<f64> = region.rim().iter().map(|&h| surface.outward(h).dot(region.normal).abs()).collect();
+    let mean = sines.iter().sum::<f64>() / sines.len() as f64;
+    sines.iter().all(|&sine| sine <= COPLANAR_SINE) || mean > CUT_SINE
+}

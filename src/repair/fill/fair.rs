@@ -1,0 +1,123 @@
+//! Makes a patch as smooth as a thin plate that is clamped at the rim.
+//!
+//! Botsch and Kobbelt, "An intuitive framework for real-time freeform modeling" (2004): the sum of squared Laplacians
+//! (with the cotangent weights of Pinkall and Polthier 1993, over the area of each vertex) is least, while the rim and
+//! the vertices around it stay. Those make the patch leave the rim in the direction of the surface.
+
+use super::patch::PatchMesh;
+use super::sparse::Symmetric;
+use crate::budget::{Budget, Stopped};
+use crate::geom::DVec3;
+
+/// Cotangents are kept within this, about 0.6 degrees, so that a needle at the rim does not outweigh the rest.
+const COTANGENT_MAX: f64 = 100.0;
+/// Least weight of an edge, as a share of that of an edge between equilateral triangles.
+const WEIGHT_MIN: f64 = 1e-3;
+
+/// What is around a patch: the triangles at its rim that are not of it.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Around {
+    /// Vertices of those triangles that are not in the rim.
+    pub(super) points: Vec<DVec3>,
+    /// Below the number of corners of the rim: that corner; from there on: one of `points`.
+    pub(super) triangles: Vec<[u32; 3]>,
+}
+
+/// Moves the new vertices of `mesh`. `false`, and nothing moves: the system has no solution.
+pub(super) fn fair(mesh: &mut PatchMesh, around: &Around, budget: &Budget) -> Result<bool, Stopped> {
+    let unknown = mesh.points.len() - mesh.rim;
+    if unknown == 0 {
+        return Ok(true);
+    }
+    let plate = Plate::new(mesh, around);
+    let (matrix, right) = plate.system(budget)?;
+    let Some(factor) = matrix.factor(&mesh.points[mesh.rim..], budget)? else { return Ok(false) };
+    let solution = factor.solve(&right);
+    if !solution.iter().all(|p| p.is_finite()) {
+        return Ok(false);
+    }
+    mesh.points[mesh.rim..].copy_from_slice(&solution);
+    Ok(true)
+}
+
+/// The Laplacians of the rim and of the patch. Vertices are numbered: rim, patch, around.
+struct Plate {
+    rim: usize,
+    inner: usize,
+    points: Vec<DVec3>,
+    /// Of each vertex of rim and patch: neighbours with their weights.
+    weights: Vec<Vec<(u32, f64)>>,
+    /// Of each vertex of rim and patch: a third of the area of its triangles.
+    area: Vec<f64>,
+}
+
+impl Plate {
+    fn new(mesh: &PatchMesh, around: &Around) -> Self {
+        let (rim, own) = (mesh.rim, mesh.points.len());
+        let points: Vec<DVec3> = mesh.points.iter().chain(&around.points).copied().collect();
+        let shifted = |v: u32| if (v as usize) < rim { v } else { v + (own - rim) as u32 };
+        let outer = around.triangles.iter().map(|t| t.map(shifted));
+        let mut area = vec![0.0; own];
+        let mut entries: Vec<Vec<(u32, f64)>> = vec![Vec::new(); own];
+        for t in mesh.triangles.iter().copied().chain(outer) {
+            for c in 0..3 {
+                let [a, b, apex] = [t[c], t[(c + 1) % 3], t[(c + 2) % 3]];
+                let [pa, pb, p] = [a, b, apex].map(|v| points[v as usize]);
+                let (u, v) = (pa - p, pb - p);
+                let double = u.cross(v).length();
+                // The half of a cotangent for each side of the edge.
+                let half = (u.dot(v) / double).clamp(-COTANGENT_MAX, COTANGENT_MAX) / 2.0;
+                let half = if half.is_nan() { 0.0 } else { half };
+                for (from, to) in [(a, b), (b, a)] {
+                    if (from as usize) < own {
+                        entries[from as usize].push((to, half));
+                    }
+                }
+                if (apex as usize) < own {
+                    area[apex as usize] += double / 6.0;
+                }
+            }
+        }
+        let weights = entries.into_iter().map(summed).collect();
+        let mean = area.iter().sum::<f64>() / own as f64;
+        // A vertex of needles has next to no area, and would be all that counts.
+        let area = area.into_iter().map(|a| a.max(mean * 1e-3)).collect();
+        Self { rim, inner: own - rim, points, weights, area }
+    }
+
+    /// The normal equations: the Laplacian of the Laplacian at each new vertex is 0.
+    fn system(&self, budget: &Budget) -> Result<(Symmetric, Vec<DVec3>), Stopped> {
+        let mut rows: Vec<Vec<(u32, f64)>> = vec![Vec::new(); self.inner];
+        let mut right = vec![DVec3::ZERO; self.inner];
+        let unknown = |v: u32| (v as usize).checked_sub(self.rim).filter(|&i| i < self.inner);
+        for (v, weights) in self.weights.iter().enumerate() {
+            budget.spend((weights.len() * weights.len()) as u64 / 16 + 1)?;
+            let sum: f64 = weights.iter().map(|&(_, weight)| weight).sum();
+            let all = weights.iter().map(|&(w, weight)| (w, -weight)).chain([(v as u32, sum)]);
+            let (mut moving, mut still) = (Vec::new(), DVec3::ZERO);
+            for (w, weight) in all {
+                match unknown(w) {
+                    Some(i) => moving.push((i as u32, weight)),
+                    None => still += weight * self.points[w as usize],
+                }
+            }
+            for &(i, x) in &moving {
+                let share = x / self.area[v];
+                right[i as usize] -= share * still;
+                rows[i as usize].extend(moving.iter().map(|&(j, y)| (j, share * y)));
+            }
+        }
+        Ok((Symmetric { rows: rows.into_iter().map(summed_exactly).collect() }, right))
+    }
+}
+
+/// One entry for each neighbour, at least a little.
+fn summed(entries: Vec<(u32, f64)>) -> Vec<(u32, f64)> {
+    summed_exactly(entries).into_iter().map(|(v, weight)| (v, weight.max(WEIGHT_MIN))).collect()
+}
+
+fn summed_exactly(mut entries: Vec<(u32, f64)>) -> Vec<(u32, f64)> {
+    // Stable, so that sums are made in the order of the triangles.
+    entries.sort_by_key(|&(v, _)| v);
+    entries.chunk_by(|a, b| a.0 == b.0).map(|same| (same[0].0, same.iter().map(|&(_, x)| x).sum())).collect()
+}

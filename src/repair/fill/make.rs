@@ -1,0 +1,184 @@
+//! Makes the patch of a region in one way.
+
+use super::accept::Proposal;
+use super::fair::fair;
+use super::options::Method;
+use super::patch::PatchMesh;
+use super::refine::{Lengths, refine};
+use super::regions::Region;
+use super::report::Rejection;
+use super::surface::Surface;
+use super::{bridge, ears, large, minimal, planar};
+use crate::budget::{Budget, Stopped};
+use crate::geom::{DVec3, print_pitch};
+
+/// A way to make a patch. Several may stand for one method.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Way {
+    /// By its view along the normal.
+    Planar,
+    /// The triangulation that bends least.
+    Minimal,
+    /// Corner by corner, the shortest diagonal first.
+    Ears,
+    /// The minimal one, refined and faired.
+    Smooth,
+}
+
+impl Way {
+    /// The method that it is a way of.
+    pub(super) fn method(self) -> Method {
+        match self {
+            Self::Planar => Method::Flat,
+            Self::Minimal | Self::Ears => Method::Minimal,
+            Self::Smooth => Method::Smooth,
+        }
+    }
+}
+
+/// A patch and, for each of its new vertices, the vertices that it was born between.
+pub(super) struct Made {
+    pub(super) proposal: Proposal,
+    pub(super) parents: Vec<[u32; 2]>,
+}
+
+/// Times that a faired patch is divided anew where it has grown.
+const FAIRINGS: usize = 2;
+
+/// The patch of `region`, or why there is none.
+pub(super) fn make(
+    region: &Region,
+    way: Way,
+    surface: &Surface,
+    budget: &Budget,
+) -> Result<Result<Made, Rejection>, Stopped> {
+    budget.spend(region.rim().len() as u64)?;
+    let made = match way {
+        Way::Planar => planar_view(region, surface),
+        Way::Minimal => least_bent(region, surface, budget)?,
+        Way::Ears => corner_by_corner(region, surface, budget)?,
+        Way::Smooth => return smooth(region, surface, budget),
+    };
+    Ok(made.map(|triangles| Made::plain(region, triangles)))
+}
+
+impl Made {
+    fn plain(region: &Region, triangles: Vec<[usize; 3]>) -> Self {
+        let triangles = triangles.into_iter().map(|t| t.map(|i| i as u32)).collect();
+        Self { proposal: proposal(region, Vec::new(), triangles), parents: Vec::new() }
+    }
+
+    /// A refined patch, its new vertices at places that float32 has.
+    fn refined(region: &Region, surface: &Surface, mesh: PatchMesh) -> Result<Self, Rejection> {
+        let points = &mesh.points[mesh.rim..];
+        let reach = points.iter().fold(surface.reach, |reach, p| p.abs().max_element().max(reach));
+        let pitch = print_pitch(reach).ok_or(Rejection::NotRepresentable)?;
+        // A sum with 0 has no negative zero.
+        let points = points.iter().map(|&p| (p / pitch).round() * pitch + DVec3::ZERO).collect();
+        Ok(Self { proposal: proposal(region, points, mesh.triangles), parents: mesh.parents })
+    }
+}
+
+fn proposal(region: &Region, points: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Proposal {
+    Proposal { rim: region.rim().to_vec(), loop_starts: region.loop_starts(), points, triangles }
+}
+
+fn rim_points(region: &Region, surface: &Surface) -> Vec<DVec3> {
+    region.rim().iter().map(|&h| surface.point(h)).collect()
+}
+
+type Triangles = Result<Vec<[usize; 3]>, Rejection>;
+
+fn planar_view(region: &Region, surface: &Surface) -> Triangles {
+    if region.rim().len() > planar::CORNERS_MAX {
+        return Err(Rejection::TooLarge);
+    }
+    let loops: Vec<Vec<DVec3>> =
+        region.loops.iter().map(|l| l.iter().map(|&h| surface.point(h)).collect()).collect();
+    planar::triangulate(&loops, region.normal).ok_or(Rejection::NoPatch)
+}
+
+/// The corners of the region as one polygon.
+fn polygon(region: &Region, surface: &Surface, budget: &Budget) -> Result<Option<Vec<usize>>, Stopped> {
+    if region.loops.len() == 1 {
+        return Ok(Some((0..region.rim().len()).collect()));
+    }
+    let (rim, points) = (region.rim(), rim_points(region, surface));
+    bridge::one_polygon(&points, &region.ranges(), |i, k| surface.is_free(rim[i], rim[k]), budget)
+}
+
+fn least_bent(region: &Region, surface: &Surface, budget: &Budget) -> Result<Triangles, Stopped> {
+    let Some(polygon) = polygon(region, surface, budget)? else { return Ok(Err(Rejection::NoPatch)) };
+    let (rim, next) = (region.rim(), region.next_corners());
+    let points: Vec<DVec3> = polygon.iter().map(|&i| surface.point(rim[i])).collect();
+    // A cut has no surface beyond it.
+    let normal = |at: usize| match polygon[(at + 1) % polygon.len()] {
+        to if next[polygon[at]] as usize == to => surface.normal(rim[polygon[at]]),
+        _ => DVec3::ZERO,
+    };
+    // The half-edge at a corner goes to it, from where the next corner is.
+    let normals: Vec<DVec3> = (0..polygon.len()).map(normal).collect();
+    let is_free = |i: usize, k: usize| surface.is_free(rim[polygon[i]], rim[polygon[k]]);
+    let triangles = match polygon.len() <= minimal::CORNERS_MAX {
+        true => minimal::triangulate(&points, &normals, is_free, budget)?,
+        false => large::triangulate(&points, &normals, region.normal, is_free, budget)?,
+    };
+    let corners = triangles.map(|triangles| triangles.into_iter().map(|t| t.map(|i| polygon[i])).collect());
+    Ok(corners.ok_or(Rejection::NoPatch))
+}
+
+fn corner_by_corner(region: &Region, surface: &Surface, budget: &Budget) -> Result<Triangles, Stopped> {
+    let Some(polygon) = polygon(region, surface, budget)? else { return Ok(Err(Rejection::NoPatch)) };
+    let rim = region.rim();
+    let points: Vec<DVec3> = polygon.iter().map(|&i| surface.point(rim[i])).collect();
+    let is_free = |i: usize, k: usize| surface.is_free(rim[polygon[i]], rim[polygon[k]]);
+    let triangles = ears::triangulate(&points, is_free, budget)?;
+    let corners = triangles.map(|triangles| triangles.into_iter().map(|t| t.map(|i| polygon[i])).collect());
+    Ok(corners.ok_or(Rejection::NoPatch))
+}
+
+/// A triangulation without new vertices to begin with.
+fn base(region: &Region, surface: &Surface, budget: &Budget) -> Result<Triangles, Stopped> {
+    if region.is_flat
+        && let Ok(triangles) = planar_view(region, surface)
+    {
+        return Ok(Ok(triangles));
+    }
+    match least_bent(region, surface, budget)? {
+        Ok(triangles) => Ok(Ok(triangles)),
+        Err(_) => corner_by_corner(region, surface, budget),
+    }
+}
+
+fn smooth(region: &Region, surface: &Surface, budget: &Budget) -> Result<Result<Made, Rejection>, Stopped> {
+    let faired = faired(region, surface, budget)?;
+    Ok(faired.and_then(|mesh| Made::refined(region, surface, mesh)))
+}
+
+/// The smooth patch before its vertices are rounded.
+fn faired(
+    region: &Region,
+    surface: &Surface,
+    budget: &Budget,
+) -> Result<Result<PatchMesh, Rejection>, Stopped> {
+    let triangles = match base(region, surface, budget)? {
+        Ok(triangles) => triangles.into_iter().map(|t| t.map(|i| i as u32)).collect(),
+        Err(reason) => return Ok(Err(reason)),
+    };
+    let Some(mut mesh) = PatchMesh::new(rim_points(region, surface), triangles) else {
+        return Ok(Err(Rejection::Topology));
+    };
+    let rim = region.rim();
+    let is_free = |a: u32, b: u32| surface.is_free(rim[a as usize], rim[b as usize]);
+    let mut lengths = Lengths::of_rim(&mesh, &region.next_corners());
+    let around = surface.around(region, budget)?;
+    for round in 0..FAIRINGS {
+        if !refine(&mut mesh, &mut lengths, &is_free, budget)? && round > 0 {
+            break;
+        }
+        if !fair(&mut mesh, &around, budget)? {
+            return Ok(Err(Rejection::NoFit));
+        }
+    }
+    Ok(Ok(mesh))
+}

@@ -1,0 +1,153 @@
+//! The mesh around the holes, with one vertex at each place.
+
+use super::fair::Around;
+use super::regions::Region;
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::geom::DVec3;
+use crate::mesh::{EdgeGroups, edge_of, next_corner, prev_corner};
+use crate::spatial::Bvh;
+use rustc_hash::{FxHashMap, FxHashSet};
+
+/// The mesh around the holes, and the patches it has got so far.
+pub(super) struct Surface {
+    /// Of the mesh, then of new vertices of patches, taken or not.
+    pub(super) positions: Vec<DVec3>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) groups: EdgeGroups,
+    /// Largest coordinate of the mesh, in size.
+    pub(super) reach: f64,
+    /// Over the triangles; built when the first patch is to be tested.
+    pub(super) bvh: Option<Bvh>,
+    pub(super) patches: Vec<[u32; 3]>,
+    /// Edges of patches between vertices of the mesh.
+    pub(super) diagonals: FxHashSet<[u32; 2]>,
+    stars: Stars,
+}
+
+/// The triangles at each vertex: where those of each begin, and all of them. Empty until they are asked for.
+#[derive(Default)]
+struct Stars {
+    start: Vec<u32>,
+    triangles: Vec<u32>,
+}
+
+impl Surface {
+    pub(super) fn new(
+        positions: Vec<DVec3>,
+        triangles: Vec<[u32; 3]>,
+        budget: &Budget,
+    ) -> Result<Self, Stopped> {
+        let groups = EdgeGroups::build(&triangles, positions.len(), budget)?;
+        let reach = positions.iter().fold(0.0, |reach, p| p.abs().max_element().max(reach));
+        Ok(Self {
+            positions,
+            triangles,
+            groups,
+            reach,
+            bvh: None,
+            patches: Vec::new(),
+            diagonals: FxHashSet::default(),
+            stars: Stars::default(),
+        })
+    }
+
+    /// The vertex of a boundary loop at half-edge `h`.
+    pub(super) fn corner(&self, h: u32) -> u32 {
+        edge_of(&self.triangles, h)[1]
+    }
+
+    /// The position of that vertex.
+    pub(super) fn point(&self, h: u32) -> DVec3 {
+        self.positions[self.corner(h) as usize]
+    }
+
+    /// The unit normal of the triangle at half-edge `h`; zero when it is too small to have one.
+    pub(super) fn normal(&self, h: u32) -> DVec3 {
+        let [a, b, c] = [h, next_corner(h), prev_corner(h)].map(|h| self.point(h));
+        (b - a).cross(c - a).normalize_or_zero()
+    }
+
+    /// The unit direction in which the surface would go on beyond boundary half-edge `h`; zero when its triangle is too
+    /// small to have one.
+    pub(super) fn outward(&self, h: u32) -> DVec3 {
+        let [from, to] = edge_of(&self.triangles, h).map(|v| self.positions[v as usize]);
+        (to - from).cross(self.normal(h)).normalize_or_zero()
+    }
+
+    /// True when no triangle has the edge between the vertices of two corners.
+    pub(super) fn is_free(&self, g: u32, h: u32) -> bool {
+        let [a, b] = [self.corner(g), self.corner(h)];
+        a != b && self.is_free_edge([a.min(b), a.max(b)])
+    }
+
+    pub(super) fn is_free_edge(&self, edge: [u32; 2]) -> bool {
+        !self.diagonals.contains(&edge) && self.groups.find(&self.triangles, edge).is_none()
+    }
+
+    /// Lists the triangles at each vertex, for [`around`](Self::around) and [`star`](Self::star).
+    pub(super) fn find_stars(&mut self, budget: &Budget) -> Result<(), Stopped> {
+        if !self.stars.start.is_empty() {
+            return Ok(());
+        }
+        budget.spend(self.triangles.len() as u64 / 16)?;
+        let mut start = vec![0u32; self.positions.len() + 1];
+        for (i, &v) in self.triangles.as_flattened().iter().enumerate() {
+            if i % CHECK_EVERY == 0 {
+                budget.check()?;
+            }
+            start[v as usize + 1] += 1;
+        }
+        for v in 0..self.positions.len() {
+            start[v + 1] += start[v];
+        }
+        let mut next = start.clone();
+        let mut triangles = vec![0u32; self.triangles.len() * 3];
+        for (t, corners) in self.triangles.iter().enumerate() {
+            if t % CHECK_EVERY == 0 {
+                budget.check()?;
+            }
+            for &v in corners {
+                triangles[next[v as usize] as usize] = t as u32;
+                next[v as usize] += 1;
+            }
+        }
+        self.stars = Stars { start, triangles };
+        Ok(())
+    }
+
+    /// The triangles of the mesh at vertex `v`, ascending.
+    pub(super) fn star(&self, v: u32) -> &[u32] {
+        let Stars { start, triangles } = &self.stars;
+        match start.get(v as usize + 1) {
+            Some(&end) => &triangles[start[v as usize] as usize..end as usize],
+            None => &[],
+        }
+    }
+
+    /// The triangles of the mesh at the rim of a region.
+    pub(super) fn around(&self, region: &Region, budget: &Budget) -> Result<Around, Stopped> {
+        let mut number: FxHashMap<u32, u32> = FxHashMap::default();
+        for (i, &h) in region.rim().iter().enumerate() {
+            // Of a place that is passed twice, the first corner stands for both.
+            number.entry(self.corner(h)).or_insert(i as u32);
+        }
+        let mut own: Vec<u32> = Vec::new();
+        for &h in region.rim() {
+            own.extend(self.star(self.corner(h)));
+        }
+        budget.spend(own.len() as u64 / 8 + 1)?;
+        own.sort_unstable();
+        own.dedup();
+        let mut around = Around::default();
+        for t in own {
+            let corners = self.triangles[t as usize].map(|v| {
+                *number.entry(v).or_insert_with(|| {
+                    around.points.push(self.positions[v as usize]);
+                    (region.rim().len() + around.points.len() - 1) as u32
+                })
+            });
+            around.triangles.push(corners);
+        }
+        Ok(around)
+    }
+}
