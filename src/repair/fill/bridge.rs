@@ -49,6 +49,43 @@ pub(super) fn one_polygon(
     Ok(Some(polygon))
 }
 
+/// Triangles between two loops that run against each other, from the nearest pair of corners on: of the two next
+/// triangles always the one with the shorter new side. O(n).
+pub(super) fn zip(
+    points: &[DVec3],
+    [outer, inner]: [std::ops::Range<usize>; 2],
+    budget: &Budget,
+) -> Result<Vec<[usize; 3]>, Stopped> {
+    let stride = (outer.len() * inner.len()).div_ceil(PAIRS_MAX);
+    let mut best = (f64::INFINITY, outer.start, inner.start);
+    for a in outer.clone().step_by(stride) {
+        budget.spend(inner.len() as u64 / 64 + 1)?;
+        for b in inner.clone() {
+            let distance = points[a].distance_squared(points[b]);
+            if distance < best.0 {
+                best = (distance, a, b);
+            }
+        }
+    }
+    let (mut a, mut b) = (best.1, best.2);
+    let (mut left_a, mut left_b) = (outer.len(), inner.len());
+    let mut triangles = Vec::with_capacity(left_a + left_b);
+    while left_a + left_b > 0 {
+        let next_a = if a + 1 == outer.end { outer.start } else { a + 1 };
+        let next_b = if b == inner.start { inner.end - 1 } else { b - 1 };
+        let (of_a, of_b) =
+            (points[next_a].distance_squared(points[b]), points[a].distance_squared(points[next_b]));
+        if left_b == 0 || (left_a > 0 && of_a <= of_b) {
+            triangles.push([a, next_a, b]);
+            (a, left_a) = (next_a, left_a - 1);
+        } else {
+            triangles.push([next_b, b, a]);
+            (b, left_b) = (next_b, left_b - 1);
+        }
+    }
+    Ok(triangles)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

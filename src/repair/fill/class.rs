@@ -26,9 +26,13 @@ pub(super) fn ways(region: &Region, method: Method, surface: &Surface, options: 
         Method::Auto if !options.refines || is_to_be_plain(region, surface) => &[],
         Method::Flat => &[Way::Planar],
         Method::Minimal => &[Way::Minimal, Way::Ears],
-        Method::Auto | Method::Smooth | Method::Rbf => &[Way::Smooth],
+        Method::Smooth => &[Way::Smooth],
+        Method::Auto | Method::Rbf => &[Way::Rbf, Way::Smooth],
     };
     let mut ways = own.to_vec();
+    if method == Method::Rbf && !options.falls_back {
+        ways.truncate(1);
+    }
     if options.falls_back || ways.is_empty() {
         let others = plain.iter().filter(|way| !own.contains(way));
         ways.extend(others);

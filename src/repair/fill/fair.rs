@@ -87,7 +87,9 @@ impl Plate {
 
     /// The normal equations: the Laplacian of the Laplacian at each new vertex is 0.
     fn system(&self, budget: &Budget) -> Result<(Symmetric, Vec<DVec3>), Stopped> {
-        let mut rows: Vec<Vec<(u32, f64)>> = vec![Vec::new(); self.inner];
+        let mut laplacians: Vec<Vec<(u32, f64)>> = Vec::with_capacity(self.weights.len());
+        // For each unknown the Laplacians that it is in.
+        let mut parts: Vec<Vec<(u32, f64)>> = vec![Vec::new(); self.inner];
         let mut right = vec![DVec3::ZERO; self.inner];
         let unknown = |v: u32| (v as usize).checked_sub(self.rim).filter(|&i| i < self.inner);
         for (v, weights) in self.weights.iter().enumerate() {
@@ -104,11 +106,41 @@ impl Plate {
             for &(i, x) in &moving {
                 let share = x / self.area[v];
                 right[i as usize] -= share * still;
-                rows[i as usize].extend(moving.iter().map(|&(j, y)| (j, share * y)));
+                parts[i as usize].push((v as u32, share));
+            }
+            laplacians.push(moving);
+        }
+        Ok((Symmetric { rows: products(&parts, &laplacians, budget)? }, right))
+    }
+}
+
+/// For each of `parts` the sum of the rows that it names, with its factors; sorted by column.
+fn products(
+    parts: &[Vec<(u32, f64)>],
+    rows: &[Vec<(u32, f64)>],
+    budget: &Budget,
+) -> Result<Vec<Vec<(u32, f64)>>, Stopped> {
+    let (mut sums, mut is_in) = (vec![0.0; parts.len()], vec![false; parts.len()]);
+    let mut products = Vec::with_capacity(parts.len());
+    for part in parts {
+        let mut columns: Vec<u32> = Vec::new();
+        for &(row, factor) in part {
+            for &(column, x) in &rows[row as usize] {
+                if !std::mem::replace(&mut is_in[column as usize], true) {
+                    columns.push(column);
+                }
+                sums[column as usize] += factor * x;
             }
         }
-        Ok((Symmetric { rows: rows.into_iter().map(summed_exactly).collect() }, right))
+        budget.spend(columns.len() as u64 / 4 + 1)?;
+        columns.sort_unstable();
+        let row = columns.into_iter().map(|column| {
+            is_in[column as usize] = false;
+            (column, std::mem::take(&mut sums[column as usize]))
+        });
+        products.push(row.collect());
     }
+    Ok(products)
 }
 
 /// One entry for each neighbour, at least a little.

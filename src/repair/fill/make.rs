@@ -2,13 +2,13 @@
 
 use super::accept::Proposal;
 use super::fair::fair;
-use super::options::Method;
+use super::options::{FillOptions, Method};
 use super::patch::PatchMesh;
 use super::refine::{Lengths, refine};
 use super::regions::Region;
 use super::report::Rejection;
 use super::surface::Surface;
-use super::{bridge, ears, large, minimal, planar};
+use super::{bridge, ears, large, minimal, planar, rbf};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec3, print_pitch};
 
@@ -23,6 +23,8 @@ pub(super) enum Way {
     Ears,
     /// The minimal one, refined and faired.
     Smooth,
+    /// The surface of a field.
+    Rbf,
 }
 
 impl Way {
@@ -32,8 +34,17 @@ impl Way {
             Self::Planar => Method::Flat,
             Self::Minimal | Self::Ears => Method::Minimal,
             Self::Smooth => Method::Smooth,
+            Self::Rbf => Method::Rbf,
         }
     }
+}
+
+/// What patches are made from.
+pub(super) struct Scene<'a> {
+    pub(super) surface: &'a Surface,
+    /// `None`: no hole is to get the surface of a field.
+    pub(super) mesh: Option<&'a rbf::Mesh<'a>>,
+    pub(super) options: &'a FillOptions,
 }
 
 /// A patch and, for each of its new vertices, the vertices that it was born between.
@@ -48,16 +59,19 @@ const FAIRINGS: usize = 2;
 /// The patch of `region`, or why there is none.
 pub(super) fn make(
     region: &Region,
+    rings: u32,
     way: Way,
-    surface: &Surface,
+    scene: &Scene<'_>,
     budget: &Budget,
 ) -> Result<Result<Made, Rejection>, Stopped> {
+    let surface = scene.surface;
     budget.spend(region.rim().len() as u64)?;
     let made = match way {
         Way::Planar => planar_view(region, surface),
         Way::Minimal => least_bent(region, surface, budget)?,
         Way::Ears => corner_by_corner(region, surface, budget)?,
         Way::Smooth => return smooth(region, surface, budget),
+        Way::Rbf => return of_field(region, rings, scene, budget),
     };
     Ok(made.map(|triangles| Made::plain(region, triangles)))
 }
@@ -108,6 +122,13 @@ fn polygon(region: &Region, surface: &Surface, budget: &Budget) -> Result<Option
 }
 
 fn least_bent(region: &Region, surface: &Surface, budget: &Budget) -> Result<Triangles, Stopped> {
+    if let [outer, inner] = &region.ranges()[..]
+        && region.rim().len() > minimal::CORNERS_MAX
+        && !region.is_flat
+    {
+        let points = rim_points(region, surface);
+        return Ok(Ok(bridge::zip(&points, [outer.clone(), inner.clone()], budget)?));
+    }
     let Some(polygon) = polygon(region, surface, budget)? else { return Ok(Err(Rejection::NoPatch)) };
     let (rim, next) = (region.rim(), region.next_corners());
     let points: Vec<DVec3> = polygon.iter().map(|&i| surface.point(rim[i])).collect();
@@ -153,6 +174,33 @@ fn base(region: &Region, surface: &Surface, budget: &Budget) -> Result<Triangles
 fn smooth(region: &Region, surface: &Surface, budget: &Budget) -> Result<Result<Made, Rejection>, Stopped> {
     let faired = faired(region, surface, budget)?;
     Ok(faired.and_then(|mesh| Made::refined(region, surface, mesh)))
+}
+
+/// The smooth patch with its vertices moved to the surface of a field.
+fn of_field(
+    region: &Region,
+    rings: u32,
+    scene: &Scene<'_>,
+    budget: &Budget,
+) -> Result<Result<Made, Rejection>, Stopped> {
+    let Scene { surface, mesh: Some(mesh), options } = *scene else { return Ok(Err(Rejection::NoFit)) };
+    let mut patch = match faired(region, surface, budget)? {
+        Ok(patch) => patch,
+        Err(reason) => return Ok(Err(reason)),
+    };
+    if patch.points.len() == patch.rim {
+        return Ok(Made::refined(region, surface, patch));
+    }
+    let field = match rbf::field(region, rings, surface, mesh, options, budget)? {
+        Ok(field) => field,
+        Err(reason) => return Ok(Err(reason)),
+    };
+    let rim = region.rim();
+    let is_free = |a: u32, b: u32| surface.is_free(rim[a as usize], rim[b as usize]);
+    if !rbf::project(&mut patch, &field, &is_free, budget)? {
+        return Ok(Err(Rejection::NoFit));
+    }
+    Ok(Made::refined(region, surface, patch))
 }
 
 /// The smooth patch before its vertices are rounded.

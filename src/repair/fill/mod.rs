@@ -10,6 +10,7 @@ mod blend;
 mod bridge;
 mod class;
 mod ears;
+mod facing;
 mod fair;
 mod large;
 mod make;
@@ -17,6 +18,7 @@ mod minimal;
 mod options;
 mod patch;
 mod planar;
+mod rbf;
 mod refine;
 mod regions;
 mod report;
@@ -24,14 +26,14 @@ mod sparse;
 mod surface;
 
 use self::accept::Proposal;
-use self::make::{Made, Way, make};
+use self::make::{Made, Scene, Way, make};
 pub use self::options::{Extract, FillOptions, HoleChoice, Method};
 use self::regions::{Region, regions};
 pub use self::report::{Filled, HoleReport, Rejected, Rejection, Rim};
 use self::surface::Surface;
 use super::{Changes, Draft, FIRST_BLEND, NEW, Selection};
 use crate::budget::{Budget, Stopped};
-use crate::geom::triangle_area;
+use crate::geom::{DVec3, triangle_area};
 use crate::mesh::{Boundary, Soup, edge_of};
 use crate::par;
 use crate::spatial::coincident_f64;
@@ -76,6 +78,7 @@ pub fn fill(
 /// A hole, and the ways that it has not been offered yet.
 struct Hole {
     region: Region,
+    band_rings: u32,
     /// In the reverse of their order.
     ways: Vec<Way>,
     report: HoleReport,
@@ -99,13 +102,21 @@ fn fill_loops(
     }
     let count = loops.len() as u64;
     let ladder = Ladder { draft, soup, options };
-    let regions = regions(loops, |h| surface.point(h), budget)?;
+    let outward = |h: u32| surface.outward(h);
+    let outward: Option<&dyn Fn(u32) -> DVec3> = if options.bridges { Some(&outward) } else { None };
+    let regions = regions(loops, |h| surface.point(h), outward, budget)?;
     let mut open: Vec<Hole> =
         regions.into_iter().map(|region| ladder.start(region, Vec::new(), &surface)).collect();
+    let has_field = open.iter().any(|hole| hole.ways.contains(&Way::Rbf));
+    // The surface grows by patches; what a field is halved by is the mesh as it was.
+    let positions = if has_field { surface.positions.clone() } else { Vec::new() };
+    let triangles = if has_field { surface.triangles.clone() } else { Vec::new() };
+    let mesh = if has_field { Some(rbf::Mesh::new(&positions, &triangles, budget)?) } else { None };
     let mut done = Vec::new();
     let mut patches: Vec<(Made, u32)> = Vec::new();
     while !open.is_empty() {
-        let offers = offer(&mut open, &surface, budget)?;
+        let scene = Scene { surface: &surface, mesh: mesh.as_ref(), options };
+        let offers = offer(&mut open, &scene, budget)?;
         let proposals: Vec<Proposal> =
             offers.iter().flatten().map(|(_, made)| made.proposal.clone()).collect();
         let mut verdicts = surface.accept(&proposals, budget)?.into_iter();
@@ -148,6 +159,7 @@ impl Ladder<'_> {
     fn start(&self, region: Region, rejected: Vec<Rejected>, surface: &Surface) -> Hole {
         let choice = self.soup.and_then(|soup| self.options.choice(region.rim(), self.draft, soup));
         let asked = choice.and_then(|choice| choice.method).unwrap_or(self.options.method);
+        let band_rings = choice.and_then(|choice| choice.band_rings).unwrap_or(self.options.band_rings);
         let mut ways = class::ways(&region, asked, surface, self.options);
         ways.reverse();
         let rim = |own: &Vec<u32>| {
@@ -161,7 +173,7 @@ impl Ladder<'_> {
             rejected,
             ..HoleReport::default()
         };
-        Hole { region, ways, report }
+        Hole { region, band_rings, ways, report }
     }
 
     /// A hole that ran out of ways stays open. If it has several loops, they are tried alone.
@@ -177,7 +189,7 @@ impl Ladder<'_> {
 }
 
 /// The next patch for each hole that has one, and the way it was made in.
-fn offer(open: &mut [Hole], surface: &Surface, budget: &Budget) -> Result<Vec<Option<(Way, Made)>>, Stopped> {
+fn offer(open: &mut [Hole], scene: &Scene<'_>, budget: &Budget) -> Result<Vec<Option<(Way, Made)>>, Stopped> {
     let holes: Vec<&mut Hole> = open.iter_mut().collect();
     let chunks: Vec<Vec<&mut Hole>> = {
         let mut chunks = Vec::new();
@@ -188,7 +200,7 @@ fn offer(open: &mut [Hole], surface: &Surface, budget: &Budget) -> Result<Vec<Op
         chunks
     };
     let made = par::map_items(chunks, |_, chunk| {
-        chunk.into_iter().map(|hole| hole.next(surface, budget)).collect::<Result<Vec<_>, Stopped>>()
+        chunk.into_iter().map(|hole| hole.next(scene, budget)).collect::<Result<Vec<_>, Stopped>>()
     });
     let mut offers = Vec::with_capacity(open.len());
     for chunk in made {
@@ -198,9 +210,9 @@ fn offer(open: &mut [Hole], surface: &Surface, budget: &Budget) -> Result<Vec<Op
 }
 
 impl Hole {
-    fn next(&mut self, surface: &Surface, budget: &Budget) -> Result<Option<(Way, Made)>, Stopped> {
+    fn next(&mut self, scene: &Scene<'_>, budget: &Budget) -> Result<Option<(Way, Made)>, Stopped> {
         while let Some(way) = self.ways.pop() {
-            match make(&self.region, way, surface, budget)? {
+            match make(&self.region, self.band_rings, way, scene, budget)? {
                 Ok(made) => return Ok(Some((way, made))),
                 Err(reason) => self.report.rejected.push(Rejected { method: way.method(), reason }),
             }

@@ -1,5 +1,6 @@
 //! What a caller may choose about the filling of holes.
 
+use crate::implicit::RbfOptions;
 use crate::mesh::{Soup, edge_of, triangle_of};
 use crate::repair::{Draft, NEW, Selection};
 
@@ -52,6 +53,8 @@ pub struct FillOptions {
     pub method: Method,
     /// Rings of vertices around the rim that a surface of [`Method::Rbf`] goes through, 0 to 8.
     pub band_rings: u32,
+    /// How such a surface is fitted.
+    pub rbf: RbfOptions,
     /// How triangles are made of such a surface.
     pub extract: Extract,
     /// Single holes, ascending by half-edge. Of several for one hole the first holds.
@@ -70,6 +73,7 @@ impl Default for FillOptions {
             holes: Selection::default(),
             method: Method::Auto,
             band_rings: 2,
+            rbf: RbfOptions::default(),
             extract: Extract::Project,
             choices: Vec::new(),
             falls_back: true,

@@ -1,6 +1,7 @@
-//! What a patch has to cover: a boundary loop, or flat loops that lie in each other like the rims of a pipe's end.
+//! What a patch has to cover: a boundary loop, flat loops that lie in each other like the rims of a pipe's end, or loops
+//! that face each other across a gap.
 
-use super::planar;
+use super::{facing, planar};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec2, DVec3, Sign, orient2d};
 use crate::mesh::BoundaryLoop;
@@ -75,32 +76,41 @@ impl Region {
     }
 }
 
-struct Shape {
-    normal: DVec3,
-    area: f64,
-    bounds: Aabb,
+pub(super) struct Shape {
+    pub(super) normal: DVec3,
+    pub(super) area: f64,
+    pub(super) bounds: Aabb,
     is_flat: bool,
-    points: Vec<DVec3>,
+    pub(super) points: Vec<DVec3>,
 }
 
 /// Groups the loops into regions, in the order of the loops. `corner(h)` is the corner of a loop at half-edge `h`.
+/// `outward(h)`, if it is given, is the unit direction in which the surface would go on there; loops that face each other
+/// across a gap are then grouped, flat or not.
 pub(super) fn regions(
     loops: Vec<BoundaryLoop>,
     corner: impl Fn(u32) -> DVec3,
+    outward: Option<&dyn Fn(u32) -> DVec3>,
     budget: &Budget,
 ) -> Result<Vec<Region>, Stopped> {
     let shapes: Vec<Shape> = loops.iter().map(|l| shape(l.iter().map(|&h| corner(h)).collect())).collect();
-    let container = containers(&shapes, budget)?;
+    let in_plane = containers(&shapes, budget)?;
+    let across = match outward {
+        Some(outward) => facing::partners(&shapes, &loops, outward, &in_plane, budget)?,
+        None => vec![None; loops.len()],
+    };
+    let is_outer = |i: usize| in_plane[i].is_none() && across[i].is_none();
     let mut regions: Vec<Option<Region>> = loops
         .iter()
         .zip(&shapes)
-        .zip(&container)
-        .map(|((outer, shape), container)| {
-            container.is_none().then(|| Region::new(vec![outer.clone()], shape.normal, shape.is_flat))
+        .enumerate()
+        .map(|(i, (outer, shape))| {
+            is_outer(i).then(|| Region::new(vec![outer.clone()], shape.normal, shape.is_flat))
         })
         .collect();
-    for (island, container) in loops.into_iter().zip(container) {
-        if let Some(region) = container.and_then(|c| regions[c].as_mut()) {
+    for (i, island) in loops.into_iter().enumerate() {
+        if let Some(region) = in_plane[i].or(across[i]).and_then(|c| regions[c].as_mut()) {
+            region.is_flat &= across[i].is_none();
             region.rim.extend(&island);
             region.loops.push(island);
         }
@@ -180,7 +190,7 @@ mod tests {
             })
             .collect();
         let loops = (0..squares.len() as u32).map(|s| (4 * s..4 * s + 4).collect()).collect();
-        regions(loops, |h| corners[h as usize], &Budget::unlimited())
+        regions(loops, |h| corners[h as usize], None, &Budget::unlimited())
             .unwrap()
             .into_iter()
             .map(|region| region.loops.iter().map(|l| l[0] / 4).collect())

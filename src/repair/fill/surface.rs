@@ -124,6 +124,20 @@ impl Surface {
         }
     }
 
+    /// The normal of the mesh at vertex `v`, its triangles weighted by their angle there; zero when it has none.
+    pub(super) fn vertex_normal(&self, v: u32) -> DVec3 {
+        let mut sum = DVec3::ZERO;
+        for &t in self.star(v) {
+            let corners = self.triangles[t as usize];
+            let Some(c) = corners.iter().position(|&corner| corner == v) else { continue };
+            let [p, q, r] = [c, (c + 1) % 3, (c + 2) % 3].map(|c| self.positions[corners[c] as usize]);
+            let (a, b) = (q - p, r - p);
+            let cross = a.cross(b);
+            sum += cross.normalize_or_zero() * libm::atan2(cross.length(), a.dot(b));
+        }
+        sum.normalize_or_zero()
+    }
+
     /// The triangles of the mesh at the rim of a region.
     pub(super) fn around(&self, region: &Region, budget: &Budget) -> Result<Around, Stopped> {
         let mut number: FxHashMap<u32, u32> = FxHashMap::default();

@@ -1,0 +1,98 @@
+//! The surface of [`Method::Rbf`](super::Method::Rbf): the field of the rim and the rings of vertices around it.
+
+use super::options::FillOptions;
+use super::patch::PatchMesh;
+use super::refine::turn_edges;
+use super::regions::Region;
+use super::report::Rejection;
+use super::surface::Surface;
+use crate::budget::{Budget, Stopped};
+use crate::geom::{Aabb, DVec3};
+use crate::implicit::{self, Band, Field, Surroundings};
+use crate::spatial::NearestSearch;
+use rustc_hash::FxHashSet;
+
+/// Rings that a band may have.
+const RINGS_MAX: u32 = 8;
+/// Points of a band, at most; a ring that would make it larger is left out, but never the first.
+const POINTS_MAX: usize = 1 << 15;
+/// How far a vertex may go to the surface, as a share of the diagonal of the rim's box: a dome as high as its rim is wide.
+const REACH: f64 = 0.5;
+
+/// The mesh as a field sees it: what is near, and how large it all is.
+pub(super) struct Mesh<'m> {
+    nearest: NearestSearch<'m>,
+    bounds: Aabb,
+}
+
+impl<'m> Mesh<'m> {
+    pub(super) fn new(
+        positions: &'m [DVec3],
+        triangles: &'m [[u32; 3]],
+        budget: &Budget,
+    ) -> Result<Self, Stopped> {
+        let used = triangles.as_flattened().iter().map(|&v| positions[v as usize]);
+        Ok(Self { nearest: NearestSearch::build(positions, triangles, budget)?, bounds: Aabb::of(used) })
+    }
+}
+
+/// Fits the field of a region.
+pub(super) fn field(
+    region: &Region,
+    rings: u32,
+    surface: &Surface,
+    mesh: &Mesh<'_>,
+    options: &FillOptions,
+    budget: &Budget,
+) -> Result<Result<Field, Rejection>, Stopped> {
+    let band = band(region, rings, surface, budget)?;
+    let around = Surroundings { surface: Some(&mesh.nearest), mesh_box: mesh.bounds };
+    let field = implicit::fit(&band, &around, &options.rbf, budget)?;
+    Ok(field.map_err(|_| Rejection::NoFit))
+}
+
+/// The vertices of the rim, then those of the rings around it, each once, with the normals that the mesh has there.
+fn band(region: &Region, rings: u32, surface: &Surface, budget: &Budget) -> Result<Band, Stopped> {
+    let mut seen = FxHashSet::default();
+    let mut points: Vec<u32> =
+        region.rim().iter().map(|&h| surface.corner(h)).filter(|&v| seen.insert(v)).collect();
+    let mut last = 0..points.len();
+    for ring in 0..rings.min(RINGS_MAX) {
+        let mut next = Vec::new();
+        for &v in &points[last] {
+            budget.spend(surface.star(v).len() as u64 / 4 + 1)?;
+            for &t in surface.star(v) {
+                next.extend(surface.triangles[t as usize].into_iter().filter(|&w| seen.insert(w)));
+            }
+        }
+        if ring > 0 && points.len() + next.len() > POINTS_MAX {
+            break;
+        }
+        last = points.len()..points.len() + next.len();
+        points.extend(next);
+    }
+    let with_normals = points.into_iter().map(|v| (v, surface.vertex_normal(v)));
+    let (points, normals): (Vec<DVec3>, Vec<DVec3>) = with_normals
+        .filter(|(_, normal)| normal.length_squared() > 0.0)
+        .map(|(v, normal)| (surface.positions[v as usize], normal))
+        .unzip();
+    Ok(Band { points, normals })
+}
+
+/// Moves the new vertices of a smooth patch to where the field is zero. `false`: one of them finds no such place.
+pub(super) fn project(
+    mesh: &mut PatchMesh,
+    field: &Field,
+    is_free: &dyn Fn(u32, u32) -> bool,
+    budget: &Budget,
+) -> Result<bool, Stopped> {
+    let reach = REACH * Aabb::of(mesh.points[..mesh.rim].iter().copied()).diagonal();
+    let centres = field.facts().centres as u64;
+    for v in mesh.rim..mesh.points.len() {
+        budget.spend(centres / 16 + 1)?;
+        let Some(place) = field.project(mesh.points[v], reach) else { return Ok(false) };
+        mesh.points[v] = place;
+    }
+    turn_edges(mesh, is_free, budget)?;
+    Ok(true)
+}
