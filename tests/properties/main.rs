@@ -16,6 +16,7 @@ mod cut_and_stitch;
 mod distance;
 mod fill;
 mod half_edge;
+mod holes;
 mod injected_defects;
 mod naive;
 mod near;

@@ -1,0 +1,336 @@
+//! Holes cut into closed meshes and filled by every method, judged by all pairs in rational arithmetic.
+
+use crate::oracle::{Opinion, RawSoup, judge_welded};
+use crate::random::Random;
+use crate::support::cases;
+use meshmend::budget::Budget;
+use meshmend::geom::DVec3;
+use meshmend::mesh::Soup;
+use meshmend::repair::fill::{FillOptions, Filled, Method, fill};
+use meshmend::repair::{Draft, Selection};
+use std::collections::BTreeMap;
+
+const METHODS: [Method; 5] = [Method::Auto, Method::Flat, Method::Minimal, Method::Smooth, Method::Rbf];
+
+/// A closed surface over a grid that is closed both ways.
+fn torus(around: u32, across: u32, place: impl Fn(f64, f64) -> [f64; 3]) -> RawSoup {
+    let vertex = |i: u32, k: u32| (i % around) * across + k % across;
+    let turn = |i: u32, n: u32| f64::from(i) * std::f64::consts::TAU / f64::from(n);
+    let cells = (0..around * across).map(|i| (i / across, i % across));
+    RawSoup {
+        positions: cells
+            .clone()
+            .map(|(i, k)| place(turn(i, around), turn(k, across)).map(|x| f64::from(x as f32)))
+            .collect(),
+        triangles: cells
+            .flat_map(|(i, k)| {
+                let [a, b, c, d] = [vertex(i, k), vertex(i + 1, k), vertex(i + 1, k + 1), vertex(i, k + 1)];
+                [[a, b, c], [a, c, d]]
+            })
+            .collect(),
+    }
+}
+
+fn round_torus(around: u32, across: u32) -> RawSoup {
+    torus(around, across, |a, b| {
+        let r = 1.0 + 0.4 * b.cos();
+        [r * a.cos(), r * a.sin(), 0.4 * b.sin()]
+    })
+}
+
+/// A torus with teeth.
+fn gear(around: u32, across: u32) -> RawSoup {
+    torus(around, across, |a, b| {
+        let r = 2.0 + (0.6 + if (6.0 * a).sin() > 0.0 { 0.2 } else { 0.0 }) * b.cos();
+        [r * a.cos(), r * a.sin(), 0.5 * b.sin()]
+    })
+}
+
+/// A sphere: an octahedron whose faces are divided `levels` times.
+fn sphere(levels: u32) -> RawSoup {
+    let mut points: Vec<DVec3> =
+        [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z].to_vec();
+    let mut triangles: Vec<[u32; 3]> =
+        vec![[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
+    for _ in 0..levels {
+        let mut middles = BTreeMap::new();
+        let mut finer = Vec::new();
+        for [a, b, c] in triangles {
+            let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(a, b): (u32, u32)| {
+                *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+                    points.push(((points[a as usize] + points[b as usize]) / 2.0).normalize());
+                    points.len() as u32 - 1
+                })
+            });
+            finer.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+        }
+        triangles = finer;
+    }
+    RawSoup { positions: points.iter().map(|p| p.as_vec3().as_dvec3().to_array()).collect(), triangles }
+}
+
+/// A flat sheet of 2 n n triangles from -1 to 1, lifted by `height`.
+fn sheet(n: u32, height: impl Fn(f64, f64) -> f64) -> RawSoup {
+    let at = |i: u32| f64::from(2 * i) / f64::from(n) - 1.0;
+    let vertex = |i: u32, k: u32| i * (n + 1) + k;
+    let nodes = (0..(n + 1) * (n + 1)).map(|i| (at(i / (n + 1)), at(i % (n + 1))));
+    let cells = (0..n * n).map(|i| (i / n, i % n));
+    RawSoup {
+        positions: nodes.map(|(x, y)| [x, y, height(x, y)].map(|c| f64::from(c as f32))).collect(),
+        triangles: cells
+            .flat_map(|(i, k)| {
+                let [a, b, c, d] = [vertex(i, k), vertex(i + 1, k), vertex(i + 1, k + 1), vertex(i, k + 1)];
+                [[a, b, c], [a, c, d]]
+            })
+            .collect(),
+    }
+}
+
+/// Takes out the triangles with a vertex in a ball.
+fn cut(mut soup: RawSoup, center: [f64; 3], radius: f64) -> RawSoup {
+    let center = DVec3::from_array(center);
+    let is_in = |v: u32| DVec3::from_array(soup.positions[v as usize]).distance(center) < radius;
+    let kept: Vec<[u32; 3]> =
+        soup.triangles.iter().copied().filter(|t| !t.iter().any(|&v| is_in(v))).collect();
+    soup.triangles = kept;
+    soup
+}
+
+fn as_soup(raw: &RawSoup) -> Soup {
+    Soup {
+        positions: raw.positions.iter().copied().map(DVec3::from_array).collect(),
+        triangles: raw.triangles.clone(),
+        face_count: raw.triangles.len() as u32,
+        is_f32_exact: true,
+        ..Soup::default()
+    }
+}
+
+fn filled(raw: &RawSoup, method: Method) -> (Draft, Filled) {
+    filled_as(raw, &FillOptions { method, ..FillOptions::default() })
+}
+
+fn filled_as(raw: &RawSoup, options: &FillOptions) -> (Draft, Filled) {
+    let soup = as_soup(raw);
+    let (mut draft, _) = Draft::from_soup(&soup);
+    let before = draft.clone();
+    let filled = fill(&mut draft, &soup, options, &Budget::unlimited()).unwrap();
+    assert_eq!(draft.check(), Vec::<String>::new());
+    assert_eq!(draft.triangles[..before.triangles.len()], before.triangles, "no triangle changes");
+    assert_eq!(draft.positions[..before.positions.len()], before.positions, "no vertex moves");
+    let is_f32 = |p: &DVec3| p.as_vec3().as_dvec3() == *p;
+    assert!(draft.positions[before.positions.len()..].iter().all(is_f32), "new vertices are float32");
+    (draft, filled)
+}
+
+fn raw(draft: &Draft) -> RawSoup {
+    RawSoup {
+        positions: draft.positions.iter().map(DVec3::to_array).collect(),
+        triangles: draft.triangles.clone(),
+    }
+}
+
+/// The corners of all triangles of patches, and points between them.
+fn patch_points(draft: &Draft, before: &RawSoup) -> Vec<DVec3> {
+    (before.triangles.len()..draft.triangles.len())
+        .flat_map(|t| {
+            let [a, b, c] = draft.corners(t);
+            [a, b, c, (a + b + c) / 3.0, (a + b) / 2.0]
+        })
+        .collect()
+}
+
+fn largest(points: &[DVec3], distance: impl Fn(DVec3) -> f64) -> f64 {
+    points.iter().map(|&p| distance(p).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn holes_cut_into_closed_meshes_are_filled_without_a_new_defect() {
+    let mut random = Random::new(17);
+    let (mut used, mut holes, mut valid) = (BTreeMap::new(), 0, 0);
+    for case in 0..cases(24, 10_000) {
+        let mut solid = match random.below(4) {
+            0 => sphere(2),
+            1 => round_torus(12, 8),
+            2 => gear(18, 6),
+            _ => sphere(2).map(|p| p.map(|x| x.signum() * x.abs().min(0.6))),
+        };
+        let opinion = judge_welded(&solid);
+        assert_eq!(opinion.contacts, 0, "case {case}");
+        if random.one_in(4) {
+            solid = solid.inside_out();
+        }
+        let was_valid = judge_welded(&solid).is_valid();
+        let mut torn = solid.clone();
+        for _ in 0..1 + random.below(3) {
+            let center = random.pick(&solid.positions);
+            torn = cut(torn, center, 0.15 + random.unit() * 0.6);
+        }
+        if torn.triangles.len() < 12 {
+            continue;
+        }
+        let method = random.pick(&METHODS);
+        let (draft, report) = filled(&torn, method);
+        let (was, is) = (judge_welded(&torn), judge_welded(&raw(&draft)));
+        let defects = |o: &Opinion| [o.degenerate, o.duplicate, o.edges_in_one_direction, o.contacts];
+        assert_eq!(defects(&is), defects(&was), "case {case} by {method:?}");
+        assert!(is.singular_vertices <= was.singular_vertices, "case {case} by {method:?}");
+        for hole in &report.holes {
+            *used.entry(hole.used).or_insert(0) += 1;
+            holes += 1;
+            assert_eq!(hole.asked, method);
+        }
+        valid += u64::from(was_valid && is.is_valid());
+    }
+    println!("| holes by method used | {used:?} |");
+    let open = used.get(&None).copied().unwrap_or(0);
+    assert!(holes > 20 && open * 10 <= holes && valid > 6, "{used:?}, {valid} valid");
+}
+
+#[test]
+fn a_hole_in_a_plane_is_filled_in_the_plane() {
+    let torn = cut(sheet(10, |_, _| 0.25), [0.1, 0.0, 0.25], 0.45);
+    // The outer rim of a sheet is a hole as well, and closing both would be a double skin; it is kept.
+    let inner = [-0.5, 0.0];
+    for method in METHODS {
+        let (draft, report) = filled_as(&torn, &only_near(&torn, method, inner));
+        assert!(report.holes.len() == 1 && report.holes[0].used.is_some(), "{method:?}: {:?}", report.holes);
+        assert_eq!(largest(&patch_points(&draft, &torn), |p| p.z - 0.25), 0.0, "{method:?}");
+    }
+}
+
+/// Options that fill only the loop with the boundary edge nearest to a point of the xy plane.
+fn only_near(torn: &RawSoup, method: Method, [x, y]: [f64; 2]) -> FillOptions {
+    let mut edges: BTreeMap<(u32, u32), Vec<u32>> = BTreeMap::new();
+    for (t, corners) in torn.triangles.iter().enumerate() {
+        for c in 0..3 {
+            let (a, b) = (corners[c], corners[(c + 1) % 3]);
+            edges.entry((a.min(b), a.max(b))).or_default().push((3 * t + c) as u32);
+        }
+    }
+    let distance = |h: u32| {
+        let [px, py, _] = torn.positions[torn.triangles[h as usize / 3][h as usize % 3] as usize];
+        (px - x).hypot(py - y)
+    };
+    let boundary = edges.values().filter(|half_edges| half_edges.len() == 1).map(|half_edges| half_edges[0]);
+    let nearest = boundary.min_by(|&a, &b| distance(a).total_cmp(&distance(b))).unwrap();
+    FillOptions { method, holes: Selection::Only(vec![nearest]), ..FillOptions::default() }
+}
+
+#[test]
+fn the_cap_of_a_sphere_comes_back_round() {
+    let torn = cut(sphere(4), [0.48, 0.6, 0.64], 0.4);
+    let off = |method: Method| {
+        let (draft, report) = filled(&torn, method);
+        assert_eq!(report.holes[0].used, Some(method));
+        largest(&patch_points(&draft, &torn), |p| p.length() - 1.0)
+    };
+    let flat = off(Method::Flat);
+    let (smooth, rbf) = (off(Method::Smooth), off(Method::Rbf));
+    assert!(smooth < 0.1 * flat && rbf < 0.05 * flat, "flat {flat}, smooth {smooth}, rbf {rbf}");
+}
+
+#[test]
+fn a_saddle_and_a_cylinder_go_on_across_a_hole() {
+    let saddle = |x: f64, y: f64| 0.4 * (x * x - y * y);
+    let torn = cut(sheet(24, saddle), [0.0; 3], 0.4);
+    for method in [Method::Smooth, Method::Rbf] {
+        let (draft, report) = filled_as(&torn, &only_near(&torn, method, [0.0; 2]));
+        assert_eq!(report.holes[0].used, Some(method));
+        let off = largest(&patch_points(&draft, &torn), |p| p.z - saddle(p.x, p.y));
+        assert!(off < 0.01, "{method:?}: {off} of a hole of 0.8");
+    }
+    let arch = |x: f64, _: f64| (4.0 - x * x).sqrt();
+    let torn = cut(sheet(24, arch), [0.0, 0.0, 2.0], 0.4);
+    for method in [Method::Smooth, Method::Rbf] {
+        let (draft, _) = filled_as(&torn, &only_near(&torn, method, [0.0; 2]));
+        let off = largest(&patch_points(&draft, &torn), |p| p.x.hypot(p.z) - 2.0);
+        assert!(off < 0.005, "{method:?}: {off} of a hole of 0.8");
+    }
+}
+
+#[test]
+fn two_rims_that_face_each_other_share_one_patch_and_the_ends_of_a_tube_do_not() {
+    let whole = round_torus(32, 16);
+    let mut torn = whole.clone();
+    torn.triangles.retain(|t| t.iter().any(|&v| (v / 16) > 3));
+    let (draft, report) = filled(&torn, Method::Minimal);
+    assert_eq!(report.holes.len(), 1, "{:?}", report.holes);
+    assert_eq!(report.holes[0].rims.len(), 2);
+    assert!(judge_welded(&raw(&draft)).is_valid());
+    for method in [Method::Smooth, Method::Rbf] {
+        let (draft, report) = filled(&torn, method);
+        assert_eq!((report.holes.len(), report.holes[0].used), (1, Some(method)), "{:?}", report.holes);
+        let off = largest(&patch_points(&draft, &torn), |p| (p.x.hypot(p.y) - 1.0).hypot(p.z) - 0.4);
+        assert!(off < 0.06, "{method:?}: {off}");
+    }
+    // Half a torus: its ends look away from each other.
+    let mut half = whole;
+    half.triangles.retain(|t| t.iter().all(|&v| (v / 16) <= 12));
+    let (draft, report) = filled(&half, Method::Auto);
+    assert_eq!(report.holes.len(), 2);
+    assert!(judge_welded(&raw(&draft)).is_valid());
+}
+
+#[test]
+fn a_hole_on_each_side_of_a_thin_wall_gets_two_patches() {
+    // A flat box: a sphere pressed thin.
+    let thin = sphere(4).map(|[x, y, z]| [x, y, f64::from((z.signum() * z.abs().min(0.5) * 0.04) as f32)]);
+    let torn = cut(cut(thin, [0.0, 0.0, 0.02], 0.3), [0.0, 0.0, -0.02], 0.3);
+    for method in METHODS {
+        let (draft, report) = filled(&torn, method);
+        assert_eq!(report.holes.len(), 2, "{method:?}: {:?}", report.holes);
+        assert!(judge_welded(&raw(&draft)).contacts == 0, "{method:?}");
+        assert!(report.holes.iter().all(|hole| hole.used.is_some()), "{method:?}: {:?}", report.holes);
+        let off = largest(&patch_points(&draft, &torn), |p| p.z.abs() - 0.02);
+        assert!(off < 1e-6, "{method:?}: {off}");
+    }
+}
+
+#[test]
+fn a_rim_that_touches_itself_is_filled_as_the_loops_that_it_is() {
+    let solid = sphere(3);
+    // Two vertices with one neighbour in common lose their triangles.
+    let next = |v: u32| -> Vec<u32> {
+        let own = solid.triangles.iter().filter(|t| t.contains(&v));
+        own.flatten().copied().filter(|&w| w != v).collect()
+    };
+    let first = 100;
+    let near = next(first);
+    let shared = near[0];
+    let second = next(shared)
+        .into_iter()
+        .find(|w| *w != first && next(*w).iter().filter(|x| near.contains(x)).all(|&x| x == shared))
+        .unwrap();
+    let mut torn = solid.clone();
+    torn.triangles.retain(|t| !t.contains(&first) && !t.contains(&second));
+    for method in METHODS {
+        let (draft, report) = filled(&torn, method);
+        assert!(report.holes.iter().all(|hole| hole.used.is_some()), "{method:?}: {:?}", report.holes);
+        let draft = raw(&draft);
+        assert!(judge_welded(&draft).is_valid(), "{method:?}");
+    }
+}
+
+#[test]
+fn an_island_in_a_hole_and_a_body_far_away_stay_where_they_are() {
+    let mut torn = sphere(4);
+    let ring = |p: DVec3| (0.15..0.5).contains(&p.distance(DVec3::Z));
+    let points: Vec<DVec3> = torn.positions.iter().copied().map(DVec3::from_array).collect();
+    torn.triangles.retain(|t| !t.iter().any(|&v| ring(points[v as usize])));
+    let torn = torn.with(&cut(sphere(2), [1.0, 0.0, 0.0], 0.5).scaled(8.0).moved([900.0, 0.0, 0.0]));
+    let (draft, report) = filled(&torn, Method::Auto);
+    assert_eq!(report.holes.len(), 2, "{:?}", report.holes);
+    assert!(report.holes.iter().any(|hole| hole.rims.len() == 2));
+    assert!(judge_welded(&raw(&draft)).is_valid());
+}
+
+#[test]
+fn a_hole_that_is_turned_around_gets_the_patch_turned_around() {
+    let torn = cut(sphere(3), [0.0, 0.6, 0.8], 0.4);
+    let (draft, _) = filled(&torn, Method::Smooth);
+    let (turned, _) = filled(&torn.inside_out(), Method::Smooth);
+    assert_eq!(draft.triangles.len(), turned.triangles.len());
+    assert!(judge_welded(&raw(&draft)).is_valid());
+    assert!(judge_welded(&raw(&turned).inside_out()).is_valid());
+}
