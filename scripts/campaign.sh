@@ -21,12 +21,14 @@ declare -A filters=(
   [cut]="cut_and_stitch"
   [wrap]="bad_soup"
   [injected]="injected_defect"
+  [holes]="holes_cut_into_closed_meshes"
   [kill]="killed_at_random_points"
 )
 
 # Where the tests of a campaign are, when not everywhere: the rest is not built.
 declare -A places=(
   [wrap]="--test properties"
+  [holes]="--test properties"
   [kill]="--test service"
 )
 

@@ -253,7 +253,7 @@ fn a_saddle_and_a_cylinder_go_on_across_a_hole() {
 fn two_rims_that_face_each_other_share_one_patch_and_the_ends_of_a_tube_do_not() {
     let whole = round_torus(32, 16);
     let mut torn = whole.clone();
-    torn.triangles.retain(|t| t.iter().any(|&v| (v / 16) > 3));
+    torn.triangles.retain(|t| t.iter().any(|&v| (v / 16) > 2));
     let (draft, report) = filled(&torn, Method::Minimal);
     assert_eq!(report.holes.len(), 1, "{:?}", report.holes);
     assert_eq!(report.holes[0].rims.len(), 2);

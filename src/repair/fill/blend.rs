@@ -1,6 +1,7 @@
 //! What the new vertices of a patch are between: the corners of its rim, each with a share.
 
 use super::make::Made;
+use crate::geom::DVec3;
 use crate::mesh::{Soup, edge_of, triangle_of};
 use crate::repair::{Blend, Draft, FIRST_BLEND, NEW};
 
@@ -8,8 +9,12 @@ use crate::repair::{Blend, Draft, FIRST_BLEND, NEW};
 const CORNERS_MAX: usize = 16;
 
 /// For each new vertex of a patch the corners of its rim that it is between. A vertex that has divided an edge has half
-/// of what each end has, so that a linear texture of the triangulation that was refined stays so.
-pub(super) fn shares(made: &Made) -> Vec<Vec<(u32, f64)>> {
+/// of what each end has, so that a linear texture of the triangulation that was refined stays so;
+/// of a patch that was made at once, shares are by distance.
+pub(super) fn shares(made: &Made, rim_points: &[DVec3]) -> Vec<Vec<(u32, f64)>> {
+    if made.parents.is_empty() {
+        return made.proposal.points.iter().map(|&p| by_distance(p, rim_points)).collect();
+    }
     let rim = made.proposal.rim.len() as u32;
     let mut shares: Vec<Vec<(u32, f64)>> = Vec::with_capacity(made.parents.len());
     for parents in &made.parents {
@@ -23,6 +28,14 @@ pub(super) fn shares(made: &Made) -> Vec<Vec<(u32, f64)>> {
         shares.push(normalized(own));
     }
     shares
+}
+
+/// Shares by the inverse square of the distance, so that near the rim its nearest corner counts most.
+fn by_distance(p: DVec3, rim_points: &[DVec3]) -> Vec<(u32, f64)> {
+    let least = rim_points.iter().fold(f64::INFINITY, |least, q| p.distance_squared(*q).min(least));
+    let share = |q: &DVec3| if least > 0.0 { least / p.distance_squared(*q) } else { 1.0 };
+    let is_here = |q: &DVec3| least > 0.0 || *q == p;
+    normalized((0u32..).zip(rim_points).filter(|(_, q)| is_here(q)).map(|(v, q)| (v, share(q))).collect())
 }
 
 /// One share for each corner, the largest of them, with the sum 1.

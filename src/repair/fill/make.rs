@@ -2,7 +2,7 @@
 
 use super::accept::Proposal;
 use super::fair::fair;
-use super::options::{FillOptions, Method};
+use super::options::{Extract, FillOptions, Method};
 use super::patch::PatchMesh;
 use super::refine::{Lengths, refine};
 use super::regions::Region;
@@ -11,6 +11,7 @@ use super::surface::Surface;
 use super::{bridge, ears, large, minimal, planar, rbf};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec3, print_pitch};
+use crate::implicit::{self, Field, Unmeshed};
 
 /// A way to make a patch. Several may stand for one method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,7 +48,7 @@ pub(super) struct Scene<'a> {
     pub(super) options: &'a FillOptions,
 }
 
-/// A patch and, for each of its new vertices, the vertices that it was born between.
+/// A patch and, for each of its new vertices, the vertices that it was born between; none when it was made at once.
 pub(super) struct Made {
     pub(super) proposal: Proposal,
     pub(super) parents: Vec<[u32; 2]>,
@@ -84,13 +85,17 @@ impl Made {
 
     /// A refined patch, its new vertices at places that float32 has.
     fn refined(region: &Region, surface: &Surface, mesh: PatchMesh) -> Result<Self, Rejection> {
-        let points = &mesh.points[mesh.rim..];
-        let reach = points.iter().fold(surface.reach, |reach, p| p.abs().max_element().max(reach));
-        let pitch = print_pitch(reach).ok_or(Rejection::NotRepresentable)?;
-        // A sum with 0 has no negative zero.
-        let points = points.iter().map(|&p| (p / pitch).round() * pitch + DVec3::ZERO).collect();
+        let points = on_lattice(&mesh.points[mesh.rim..], surface)?;
         Ok(Self { proposal: proposal(region, points, mesh.triangles), parents: mesh.parents })
     }
+}
+
+/// The places nearest to new vertices that float32 has.
+fn on_lattice(points: &[DVec3], surface: &Surface) -> Result<Vec<DVec3>, Rejection> {
+    let reach = points.iter().fold(surface.reach, |reach, p| p.abs().max_element().max(reach));
+    let pitch = print_pitch(reach).ok_or(Rejection::NotRepresentable)?;
+    // A sum with 0 has no negative zero.
+    Ok(points.iter().map(|&p| (p / pitch).round() * pitch + DVec3::ZERO).collect())
 }
 
 fn proposal(region: &Region, points: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Proposal {
@@ -176,7 +181,7 @@ fn smooth(region: &Region, surface: &Surface, budget: &Budget) -> Result<Result<
     Ok(faired.and_then(|mesh| Made::refined(region, surface, mesh)))
 }
 
-/// The smooth patch with its vertices moved to the surface of a field.
+/// A patch on the surface of a field.
 fn of_field(
     region: &Region,
     rings: u32,
@@ -184,20 +189,54 @@ fn of_field(
     budget: &Budget,
 ) -> Result<Result<Made, Rejection>, Stopped> {
     let Scene { surface, mesh: Some(mesh), options } = *scene else { return Ok(Err(Rejection::NoFit)) };
-    let mut patch = match faired(region, surface, budget)? {
-        Ok(patch) => patch,
-        Err(reason) => return Ok(Err(reason)),
-    };
-    if patch.points.len() == patch.rim {
-        return Ok(Made::refined(region, surface, patch));
-    }
     let field = match rbf::field(region, rings, surface, mesh, options, budget)? {
         Ok(field) => field,
         Err(reason) => return Ok(Err(reason)),
     };
+    let rims: Vec<Vec<DVec3>> =
+        region.loops.iter().map(|l| l.iter().map(|&h| surface.point(h)).collect()).collect();
+    let length = edge_length(&rims);
+    let extracted = match options.extract {
+        Extract::Project => return projected(region, &field, surface, budget),
+        Extract::March => implicit::march(&field, &rims, length, budget)?,
+        Extract::Mesh => implicit::mesh_surface(&field, &rims, length, budget)?,
+    };
+    Ok(match extracted {
+        Ok(patch) => {
+            let points = &patch.points[region.rim().len()..];
+            on_lattice(points, surface).map(|points| {
+                let proposal = proposal(region, points, patch.triangles);
+                Made { proposal, parents: Vec::new() }
+            })
+        }
+        Err(Unmeshed::TooFine { .. }) => Err(Rejection::TooLarge),
+        Err(_) => Err(Rejection::NoPatch),
+    })
+}
+
+/// The mean length of the edges of rims.
+fn edge_length(rims: &[Vec<DVec3>]) -> f64 {
+    let edges: usize = rims.iter().map(Vec::len).sum();
+    let length = |rim: &Vec<DVec3>| {
+        rim.iter().zip(rim.iter().cycle().skip(1)).map(|(a, b)| a.distance(*b)).sum::<f64>()
+    };
+    rims.iter().map(length).sum::<f64>() / edges as f64
+}
+
+/// The smooth patch with its vertices moved to the zeros of `field`.
+fn projected(
+    region: &Region,
+    field: &Field,
+    surface: &Surface,
+    budget: &Budget,
+) -> Result<Result<Made, Rejection>, Stopped> {
+    let mut patch = match faired(region, surface, budget)? {
+        Ok(patch) => patch,
+        Err(reason) => return Ok(Err(reason)),
+    };
     let rim = region.rim();
     let is_free = |a: u32, b: u32| surface.is_free(rim[a as usize], rim[b as usize]);
-    if !rbf::project(&mut patch, &field, &is_free, budget)? {
+    if !rbf::project(&mut patch, field, &is_free, budget)? {
         return Ok(Err(Rejection::NoFit));
     }
     Ok(Made::refined(region, surface, patch))

@@ -144,4 +144,70 @@ mod tests {
         let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]];
         assert_eq!(triangles(&points, |_, _| true), Some(vec![[0, 1, 3], [1, 2, 3]]));
     }
+
+    /// Worst bend, then area, of triangles with the rim.
+    fn weigh(points: &[DVec3], normals: &[DVec3], triangles: &[[usize; 3]]) -> (f64, f64) {
+        let n = points.len();
+        let facing = |t: &[usize; 3]| {
+            let [a, b, c] = t.map(|i| points[i]);
+            (b - a).cross(c - a)
+        };
+        let (mut worst, mut area) = (0.0f64, 0.0);
+        for t in triangles {
+            area += facing(t).length() / 2.0;
+            for c in 0..3 {
+                let (from, to) = (t[c], t[(c + 1) % 3]);
+                let beyond = match to == (from + 1) % n {
+                    true => normals[from],
+                    false => {
+                        let has = |u: &&[usize; 3]| (0..3).any(|c| (u[c], u[(c + 1) % 3]) == (to, from));
+                        facing(triangles.iter().find(has).unwrap()).normalize()
+                    }
+                };
+                worst = worst.max(bend(facing(t).normalize(), beyond));
+            }
+        }
+        (worst, area)
+    }
+
+    /// All triangulations of the polygon from corner `i` to corner `k`.
+    fn all(i: usize, k: usize) -> Vec<Vec<[usize; 3]>> {
+        if k < i + 2 {
+            return vec![Vec::new()];
+        }
+        let mut every = Vec::new();
+        for m in i + 1..k {
+            for left in all(i, m) {
+                for right in all(m, k) {
+                    every.push([&left[..], &right[..], &[[i, m, k]]].concat());
+                }
+            }
+        }
+        every
+    }
+
+    #[test]
+    fn no_triangulation_of_a_loop_of_up_to_nine_corners_bends_less() {
+        let mut state = 7u64;
+        let mut next = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f64 / f64::from(1 << 24)
+        };
+        for case in 0..120 {
+            let n = 3 + case % 7;
+            let mut point = |i: usize| {
+                let turn = i as f64 * std::f64::consts::TAU / n as f64;
+                DVec3::new(turn.cos() + 0.5 * next(), turn.sin() + 0.5 * next(), next())
+            };
+            let points: Vec<DVec3> = (0..n).map(&mut point).collect();
+            let normals: Vec<DVec3> = (0..n).map(|i| (point(i) + DVec3::Z * 2.0).normalize()).collect();
+            let found = triangulate(&points, &normals, |_, _| true, &Budget::unlimited()).unwrap().unwrap();
+            let (bend, area) = weigh(&points, &normals, &found);
+            for other in all(0, n - 1) {
+                let (other_bend, other_area) = weigh(&points, &normals, &other);
+                assert!(bend <= other_bend + 1e-12, "case {case}: {bend} {other_bend}");
+                assert!(other_bend > bend + 1e-12 || area <= other_area + 1e-12, "case {case}");
+            }
+        }
+    }
 }

@@ -278,7 +278,8 @@ fn append(draft: &mut Draft, soup: Option<&Soup>, surface: &Surface, patches: &[
         let corner = |h: u32| edge_of(&draft.triangles, h)[1];
         let corners: Vec<u32> =
             rim.iter().map(|&h| corner(h)).chain((0..).map(|i| base + i).take(points.len())).collect();
-        for (i, shares) in blend::shares(made).iter().enumerate() {
+        let at: Vec<DVec3> = rim.iter().map(|&h| surface.point(h)).collect();
+        for (i, shares) in blend::shares(made, &at).iter().enumerate() {
             let blend = soup.and_then(|soup| blend::of_soup(shares, rim, draft, soup));
             let origin = match blend {
                 Some(blend) => {
