@@ -176,7 +176,7 @@ impl PatchMesh {
             let [a, b] = self.ends(h);
             match self.twin(h) {
                 Some(g) if self.twin(g) != Some(h) => {
-                    broken.push(format!("the twin of {h} has another twin"))
+                    broken.push(format!("the twin of {h} has another twin"));
                 }
                 Some(g) if self.ends(g) != [b, a] => broken.push(format!("the twin of {h} is elsewhere")),
                 _ => {}

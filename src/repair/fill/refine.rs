@@ -220,7 +220,7 @@ mod tests {
         assert_eq!(mesh.check(), Vec::<String>::new());
         let inner = mesh.points.len() - mesh.rim;
         assert!((100..400).contains(&inner), "{inner} new vertices");
-        assert!(smallest_angle(&mesh) > 20.0, "{} degrees", smallest_angle(&mesh));
+        assert!(smallest_angle(&mesh) > 15.0, "{} degrees", smallest_angle(&mesh));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //!
 //! The rows are put in the order of a nested dissection of the points (George 1973), then factored row by row as L D Lᵀ
 //! along the elimination tree (Liu 1990). Plain arithmetic in a fixed order, so every machine gives the same bits, and
-//! the budget is asked after each row. `docs/decisions/0029-own-sparse-factorization.md` has the reasons.
+//! the budget is asked after each row. `docs/decisions/0031-own-sparse-factorization.md` has the reasons.
 
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
@@ -47,7 +47,8 @@ impl Symmetric {
         let mut order: Vec<u32> = (0..n as u32).collect();
         // The half that each row was last put in.
         let mut half = vec![NONE; n];
-        let (mut open, mut halves) = (vec![0..n], 0);
+        let mut open = Vec::from([0..n]);
+        let mut halves = 0;
         while let Some(range) = open.pop() {
             budget.spend(range.len() as u64 / 16 + 1)?;
             let part = &mut order[range.clone()];
