@@ -47,7 +47,7 @@ impl Symmetric {
         let mut order: Vec<u32> = (0..n as u32).collect();
         // The half that each row was last put in.
         let mut half = vec![NONE; n];
-        let mut open = Vec::from([0..n]);
+        let mut open: Vec<std::ops::Range<usize>> = std::iter::once(0..n).collect();
         let mut halves = 0;
         while let Some(range) = open.pop() {
             budget.spend(range.len() as u64 / 16 + 1)?;
