@@ -4,20 +4,23 @@
 #   scripts/test.sh              every step
 #   scripts/test.sh STEP...      only these (see `steps` below)
 #
-# Needs Rust (rustup or Debian) and a C linker; python3 with venv is installed where it is missing and root or sudo
-# allows it. Everything else lands under target/.
+# Needs Rust (rustup or Debian) and a C linker; python3 with venv, and for the step `clients` Java and Node, are installed
+# where they are missing and root or sudo allows it. Everything else lands under target/.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never} CARGO_INCREMENTAL=0 PYTHONDONTWRITEBYTECODE=1
 # Settings of the caller's own service must not reach the tests.
 for name in $(compgen -e | grep '^MESHMEND_' | grep -v -e '^MESHMEND_CORPUS$'); do unset "$name"; done
 
-steps=(format lint lint_engine lint_otel build tests doc_tests fixtures contract fuzz_contract licences)
+steps=(format lint lint_engine lint_otel build tests doc_tests fixtures contract fuzz_contract clients licences)
 scratch=target/test-run
 python=target/python/bin
 server_pid=
+server_url=
 
 note() { printf '\n== %s\n' "$*"; }
+
+is_chosen() { [[ " ${chosen[*]} " == *" $1 "* ]]; }
 
 as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"; elif command -v sudo >/dev/null; then sudo -n "$@"; else return 1; fi
@@ -32,6 +35,11 @@ set_up() {
   python3 -c 'import venv, ensurepip' 2>/dev/null || missing+=(python3 python3-venv)
   # The tests run every line of docs/http.md.
   command -v curl >/dev/null || missing+=(curl ca-certificates)
+  if is_chosen clients; then
+    # A jar and scripts: generators of clients.
+    command -v java >/dev/null || missing+=(default-jre-headless)
+    command -v npm >/dev/null || missing+=(nodejs npm)
+  fi
   if [ ${#missing[@]} -gt 0 ]; then
     echo "installing ${missing[*]}"
     as_root apt-get update -q && as_root env DEBIAN_FRONTEND=noninteractive apt-get install -qy --no-install-recommends "${missing[@]}" ||
@@ -77,18 +85,27 @@ contract() { $python/openapi-spec-validator openapi.yaml; }
 
 # Requests made from openapi.yaml, right and wrong ones, against the built server.
 fuzz_contract() {
-  local port admin_port log=$scratch/server.log data=$scratch/data
-  read -r port admin_port < <(free_ports) || return 1
-  rm -rf "$data" && mkdir -p "$data" || return 1
-  MESHMEND_LISTEN=127.0.0.1:$port MESHMEND_ADMIN_LISTEN=127.0.0.1:$admin_port MESHMEND_DATA_DIR=$data \
-    target/debug/meshmend serve >"$log" 2>&1 &
-  server_pid=$!
-  wait_until_ready "$admin_port" || { tail -20 "$log"; return 1; }
-  $python/schemathesis --config-file tests/service/schemathesis.toml \
-    run openapi.yaml --url "http://127.0.0.1:$port"
-  local result=$?
-  stop_server || { echo "the server did not stop cleanly"; tail -20 "$log"; return 1; }
-  return $result
+  start_server || return 1
+  $python/schemathesis --config-file tests/service/schemathesis.toml run openapi.yaml --url "$server_url"
+  end_server_with $?
+}
+
+# Clients that three generators make of openapi.yaml: each repairs a mesh, reads a report, waits for a job, reads events.
+clients() {
+  local into=target/clients
+  mkdir -p "$into" || return 1
+  if ! cmp -s scripts/clients/requirements.txt $into/python/requirements.txt; then
+    rm -rf $into/python && python3 -m venv $into/python &&
+      $into/python/bin/pip install -q --disable-pip-version-check --retries 5 -r scripts/clients/requirements.txt &&
+      cp scripts/clients/requirements.txt $into/python/requirements.txt || return 1
+  fi
+  if ! cmp -s scripts/clients/package.json $into/node/installed.json; then
+    rm -rf $into/node && mkdir -p $into/node && cp scripts/clients/package.json $into/node/ &&
+      npm install --prefix $into/node --no-audit --no-fund --silent && cp scripts/clients/package.json $into/node/installed.json || return 1
+  fi
+  start_server || return 1
+  scripts/clients/run.sh "$server_url"
+  end_server_with $?
 }
 
 licences() {
@@ -96,6 +113,24 @@ licences() {
 }
 
 # --- the server under test -----------------------------------------------------------------------------------------
+
+# Starts the built server on free ports; its address is in server_url.
+start_server() {
+  local port admin_port log=$scratch/server.log data=$scratch/data
+  read -r port admin_port < <(free_ports) || return 1
+  rm -rf "$data" && mkdir -p "$data" || return 1
+  MESHMEND_LISTEN=127.0.0.1:$port MESHMEND_ADMIN_LISTEN=127.0.0.1:$admin_port MESHMEND_DATA_DIR=$data \
+    target/debug/meshmend serve >"$log" 2>&1 &
+  server_pid=$!
+  server_url=http://127.0.0.1:$port
+  wait_until_ready "$admin_port" || { tail -20 "$log"; return 1; }
+}
+
+# Stops it, and gives the result of the step, unless the server did not stop cleanly.
+end_server_with() {
+  stop_server || { echo "the server did not stop cleanly"; tail -20 "$scratch/server.log"; return 1; }
+  return "$1"
+}
 
 free_ports() {
   python3 - <<'PY'

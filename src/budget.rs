@@ -80,10 +80,15 @@ pub enum Event {
     Enter(Stage),
     /// The stage ends (also when it failed).
     Leave(Stage),
+    /// So many work units are used by now; told now and then, in any order.
+    Work(u64),
 }
 
-/// Hears stage events and may stamp them with times. Called from the thread that runs the engine.
+/// Hears events and may stamp them with times. Stages are told from the thread that runs the engine, work from any.
 pub type Observer = Box<dyn Fn(Event) + Send + Sync>;
+
+/// Work units of which the observer is told first: a millisecond or so.
+const WORK_TOLD_FIRST: u64 = 1 << 12;
 
 const RUN: u8 = 0;
 const CANCELLED: u8 = 1;
@@ -124,6 +129,8 @@ pub struct Budget {
     stop: StopFlag,
     work: AtomicU64,
     work_max: u64,
+    /// Work units at which the observer is told of them next.
+    work_told_at: AtomicU64,
     bytes: AtomicU64,
     bytes_peak: AtomicU64,
     bytes_max: u64,
@@ -159,6 +166,7 @@ impl Budget {
             stop,
             work: AtomicU64::new(0),
             work_max,
+            work_told_at: AtomicU64::new(WORK_TOLD_FIRST),
             bytes: AtomicU64::new(0),
             bytes_peak: AtomicU64::new(0),
             bytes_max,
@@ -187,7 +195,19 @@ impl Budget {
         if used > self.work_max {
             return Err(Stopped::Work { limit: self.work_max });
         }
+        if used >= self.work_told_at.load(Ordering::Relaxed) {
+            self.tell_work(used);
+        }
         self.check()
+    }
+
+    /// Tells the observer of the work, and the next time when there is a 32nd more: a few hundred times in the longest run.
+    fn tell_work(&self, used: u64) {
+        let before = self.work_told_at.fetch_max(used.saturating_add(1 + used / 32), Ordering::Relaxed);
+        // One of the threads that came here at once.
+        if before <= used {
+            self.tell(Event::Work(used));
+        }
     }
 
     /// Charges `bytes` until the returned guard is dropped.

@@ -20,7 +20,7 @@ async function problemText(response) {
 }
 
 function query() {
-  const names = ["operation", "units", "output_format", "policy"];
+  const names = ["operation", "units", "policy", ...(at("output_format").disabled ? [] : ["output_format"])];
   const given = names.map((name) => [name, at(name).value]).filter(([, value]) => value);
   return new URLSearchParams(given);
 }
@@ -56,13 +56,28 @@ function fill(table, rows) {
 
 const changesOf = (action) => action.changes.filter((c) => c.count > 0).map((c) => `${c.name} ${c.count}`).join(", ");
 
+// The same words as the first line of the command line.
+function headline(verdict, printing) {
+  const parts = [[verdict.outcome, verdict.printable ? "a valid solid" : "not a valid solid"].filter(Boolean).join(": ")];
+  const changes = verdict.changes.map((change) => change.message).join(", ");
+  if (verdict.fidelity) parts.push(changes ? `${verdict.fidelity}: ${changes}` : verdict.fidelity);
+  if (printing) parts.push(policyText(verdict, printing.policy));
+  return parts.join("; ");
+}
+
+function policyText(verdict, policy) {
+  if (verdict.p3_holds) return `${policy} holds`;
+  const broken = verdict.p3_breaches.join(", ");
+  return broken ? `${policy} is broken: ${broken}` : `${policy} cannot be told`;
+}
+
 async function show(job) {
   at("status").textContent = job.problem ? `${job.problem.title}: ${job.problem.detail}` : job.state;
   if (!job.links.report) return;
   const report = await (await call(job.links.report)).json();
   const verdict = report.verdict;
-  at("verdict").textContent = [verdict.outcome, verdict.printable ? "a valid solid" : "not a valid solid"]
-    .filter(Boolean).join(": ");
+  at("verdict").textContent = headline(verdict, report.printing);
+  at("question").textContent = report.before?.unit_hypothesis?.question ?? "";
   fill("defects", (report.before?.defects ?? []).map((d) => [d.code, d.severity, d.count]));
   fill("actions", (report.actions ?? []).map((a) => [a.step, changesOf(a), a.reason]));
   const printing = report.printing;
@@ -105,6 +120,11 @@ async function run(event) {
 
 const tell = (action) => () => action().catch((error) => { at("status").textContent = error.message; });
 
+// Operations whose product is their report take no format for a mesh.
+const choose = () => { at("output_format").disabled = !["repair", "convert"].includes(at("operation").value); };
+
+at("operation").addEventListener("change", choose);
+choose(); // browsers keep the choice when the page is loaded again
 at("form").addEventListener("submit", run);
 at("download").addEventListener("click", tell(download));
 at("stop").addEventListener("click", tell(() => call(`${current.links.self}/cancel`, { method: "POST" })));

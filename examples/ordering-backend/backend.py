@@ -2,9 +2,15 @@
 
     MESHMEND_URL=http://127.0.0.1:8080 WEBHOOK_SECRET=whsec_... python3 backend.py --listen 127.0.0.1:9000
 
-    POST /orders?policy=sls     the mesh as the body    202 {"order": 1, "job": "..."}
-    GET  /orders/1                                      200 the order with its state and quote
-    POST /hooks/meshmend                                the signed call of the service
+    POST /orders?policy=sls&units=mm   the mesh as the body    202 {"order": 1, "job": "..."}
+    GET  /orders/1                                             200 the order with its state, quote or question
+    POST /orders/1/answer?units=in     (or ?accept=changes)    202 the answer to its question; it is checked again
+    GET  /orders/1/mesh                                        200 the mesh to print
+    POST /hooks/meshmend                                       the signed call of the service
+
+An order is `quoted` when the mesh is a valid solid, true to the file, within the limits of the process, and of a size that
+is not doubtful; its mesh has been downloaded then. It is `asked` when the customer must say something first: in which unit
+the file is, or that a changed shape will do. It is `refused` when the process cannot make it.
 
 The order is written before the upload, and the upload carries the order's number as `Idempotency-Key`, so that an order
 is sent again after a crash and still makes one job. A price is only made from a call whose signature is right, and a
@@ -34,11 +40,17 @@ CENTS_PER_CM3, CENTS_PER_CM2, CENTS_MIN = 35, 4, 500
 
 SCHEMA = """
 CREATE TABLE IF NOT EXISTS orders (
-    number INTEGER PRIMARY KEY, state TEXT NOT NULL, policy TEXT NOT NULL, file TEXT NOT NULL, job TEXT,
-    volume_mm3 REAL, area_mm2 REAL, printable INTEGER, price_cents INTEGER, problem TEXT
+    number INTEGER PRIMARY KEY, state TEXT NOT NULL, policy TEXT NOT NULL, units TEXT NOT NULL, accepts INTEGER NOT NULL,
+    version INTEGER NOT NULL, file TEXT NOT NULL, mesh TEXT, job TEXT, volume_mm3 REAL, area_mm2 REAL, fidelity TEXT,
+    price_cents INTEGER, problem TEXT
 );
 CREATE TABLE IF NOT EXISTS messages (id TEXT PRIMARY KEY);
 """
+
+
+# What is known of an order before its report.
+NOTHING = dict.fromkeys(("volume_mm3", "area_mm2", "mesh", "fidelity", "price_cents", "problem"))
+UNITS = ("", "mm", "cm", "m", "in")
 
 
 class Orders:
@@ -54,9 +66,19 @@ class Orders:
         db.row_factory = sqlite3.Row
         return db
 
-    def place(self, policy, file):
+    def place(self, policy, units, file):
         with self.connect() as db:
-            return db.execute("INSERT INTO orders (state, policy, file) VALUES ('placed', ?, ?)", (policy, file)).lastrowid
+            row = "INSERT INTO orders (state, policy, units, accepts, version, file) VALUES ('placed', ?, ?, 0, 1, ?)"
+            return db.execute(row, (policy, units, file)).lastrowid
+
+    def reply(self, number, units, accepts):
+        """Notes the answer to a question; the order is checked again, as another version of it."""
+        with self.connect() as db:
+            return db.execute(
+                "UPDATE orders SET state = 'placed', version = version + 1, units = coalesce(nullif(?, ''), units),"
+                " accepts = max(accepts, ?), problem = NULL WHERE number = ? AND state = 'asked'",
+                (units, accepts, number),
+            ).rowcount
 
     def sent(self, number, job):
         with self.connect() as db:
@@ -69,7 +91,7 @@ class Orders:
     def get(self, number):
         with self.connect() as db:
             row = db.execute("SELECT * FROM orders WHERE number = ?", (number,)).fetchone()
-        return row and {name: row[name] for name in row.keys() if name != "file"}
+        return row and dict(row)
 
     def is_known(self, message):
         with self.connect() as db:
@@ -80,9 +102,9 @@ class Orders:
         with self.connect() as db:
             if db.execute("INSERT OR IGNORE INTO messages VALUES (?)", (message,)).rowcount:
                 db.execute(
-                    "UPDATE orders SET job = :job, state = :state, volume_mm3 = :volume_mm3, area_mm2 = :area_mm2,"
-                    " printable = :printable, price_cents = :price_cents, problem = :problem WHERE number = :number",
-                    {**figures, "job": job, "number": number},
+                    "UPDATE orders SET job = :job, state = :state, volume_mm3 = :volume_mm3, area_mm2 = :area_mm2, mesh = :mesh,"
+                    " fidelity = :fidelity, price_cents = :price_cents, problem = :problem WHERE number = :number",
+                    {**NOTHING, **figures, "job": job, "number": number},
                 )
 
 
@@ -92,22 +114,26 @@ class Meshmend:
     def __init__(self, url, key, hook, secret):
         self.url, self.key, self.hook, self.secret = url.rstrip("/"), key, hook, secret
 
-    def request(self, method, path, body=None, headers=None):
+    def request(self, method, path, body=None, headers=None, read=json.load):
         headers = dict(headers or {})
         if self.key:
             headers["Authorization"] = f"Bearer {self.key}"
         request = urllib.request.Request(self.url + path, data=body, headers=headers, method=method)
         with urllib.request.urlopen(request, timeout=60) as answer:
-            return json.load(answer)
+            return read(answer)
 
     def submit(self, order):
         """Sends the mesh of an order; the same job comes back when it was sent before."""
         job = {
             "operation": "repair",
             "policy": order["policy"],
-            "labels": {"order": str(order["number"])},
+            # What is printed is an STL in millimetres, whatever came in.
+            "output_format": "stl",
+            "labels": {"order": str(order["number"]), "version": str(order["version"])},
             "webhook": {"url": self.hook, "secret": self.secret},
         }
+        if order["units"]:
+            job["units"] = order["units"]
         boundary = f"order-{order['number']}-{os.urandom(16).hex()}"
         with open(order["file"], "rb") as file:
             mesh = file.read()
@@ -116,11 +142,19 @@ class Meshmend:
             (part % ("job", "application/json")).encode(), json.dumps(job).encode(), b"\r\n",
             (part % ("mesh", "application/octet-stream")).encode(), mesh, f"\r\n--{boundary}--\r\n".encode(),
         ])
-        headers = {"Content-Type": f"multipart/form-data; boundary={boundary}", "Idempotency-Key": f"order-{order['number']}"}
+        headers = {"Content-Type": f"multipart/form-data; boundary={boundary}", "Idempotency-Key": key_of(order)}
         return self.request("POST", "/v1/jobs", body, headers)
 
     def report(self, job):
         return self.request("GET", f"/v1/jobs/{job}/report", headers={"Accept": "application/json"})
+
+    def mesh(self, job):
+        return self.request("GET", f"/v1/jobs/{job}/result", read=lambda answer: answer.read())
+
+
+def key_of(order):
+    """The same for every try to send an order, another one when the customer has changed it."""
+    return f"order-{order['number']}-{order['version']}"
 
 
 def is_signed(secret, headers, body, now):
@@ -135,18 +169,30 @@ def is_signed(secret, headers, body, now):
     return any(hmac.compare_digest(expected.encode(), one.encode()) for one in given)
 
 
-def figures_of(job, report):
-    """What the report says about price and fitness."""
+def figures_of(job, report, order):
+    """What the report says about price and fitness: a quote, a question to the customer, or a refusal."""
     if job["state"] != "succeeded":
-        problem = (job.get("problem") or {}).get("code", job["state"])
-        return dict(state="refused", volume_mm3=None, area_mm2=None, printable=0, price_cents=None, problem=problem)
+        return dict(state="refused", problem=(job.get("problem") or {}).get("code", job["state"]))
+    verdict, printing = report["verdict"], report["printing"]
+    known = dict(fidelity=verdict["fidelity"])
+    hypothesis = (report["before"] or {}).get("unit_hypothesis") or {}
+    if hypothesis.get("question"):
+        return dict(known, state="asked", problem=hypothesis["question"])
+    # A valid solid is not yet the part that the customer has drawn.
+    if verdict["fidelity"] == "changed" and not order["accepts"]:
+        return dict(known, state="asked", problem="; ".join(change["message"] for change in verdict["changes"]))
+    # Nor one that the process can make: walls may be too thin, or the part too large.
+    if printing is None or not verdict["p3_holds"]:
+        checks = (printing or {}).get("checks", [])
+        broken = [check["message"] for check in checks if check["code"] in verdict["p3_breaches"]]
+        return dict(known, state="refused", problem=" ".join(broken) or "the mesh cannot be measured")
     # A price rests on the volume, which means something only of a valid solid.
-    quote = report["printing"]["quote"]
+    quote = printing["quote"]
     if not quote["price_safe"]:
-        return dict(state="refused", volume_mm3=None, area_mm2=None, printable=0, price_cents=None, problem=quote["reason"])
+        return dict(known, state="refused", problem=quote["reason"])
     volume, area = quote["volume"], quote["area"]
     price = max(CENTS_MIN, round(volume / 1000 * CENTS_PER_CM3 + area / 100 * CENTS_PER_CM2))
-    return dict(state="quoted", volume_mm3=volume, area_mm2=area, printable=1, price_cents=price, problem=None)
+    return dict(known, state="quoted", volume_mm3=volume, area_mm2=area, price_cents=price)
 
 
 class Backend(BaseHTTPRequestHandler):
@@ -156,10 +202,10 @@ class Backend(BaseHTTPRequestHandler):
     meshmend: Meshmend
     folder: str
 
-    def answer(self, status, value):
-        body = json.dumps(value).encode()
+    def answer(self, status, value, media_type="application/json"):
+        body = value if isinstance(value, bytes) else json.dumps(value).encode()
         self.send_response(status)
-        self.send_header("Content-Type", "application/json")
+        self.send_header("Content-Type", media_type)
         self.send_header("Content-Length", str(len(body)))
         self.end_headers()
         self.wfile.write(body)
@@ -173,32 +219,53 @@ class Backend(BaseHTTPRequestHandler):
 
     def do_POST(self):
         url = urllib.parse.urlsplit(self.path)
-        if url.path == "/orders":
-            self.place(urllib.parse.parse_qs(url.query).get("policy", ["fdm"])[0])
+        query = {name: values[0] for name, values in urllib.parse.parse_qs(url.query).items()}
+        if query.get("units", "") not in UNITS:
+            self.answer(400, {"error": "units are mm, cm, m or in"})
+        elif url.path == "/orders":
+            self.place(query.get("policy", "fdm"), query.get("units", ""))
+        elif url.path.startswith("/orders/") and url.path.endswith("/answer"):
+            self.reply(url.path.split("/")[2], query)
         elif url.path == "/hooks/meshmend":
             self.take_message()
         else:
             self.answer(404, {"error": "there is nothing at this path"})
 
     def do_GET(self):
-        number = self.path.removeprefix("/orders/")
+        number, _, what = self.path.removeprefix("/orders/").partition("/")
         order = self.orders.get(int(number)) if number.isdigit() else None
-        self.answer(200, order) if order else self.answer(404, {"error": "there is no such order"})
+        if order is None or what not in ("", "mesh") or (what and not order["mesh"]):
+            self.answer(404, {"error": "there is no such order, or no mesh of it yet"})
+        elif what:
+            with open(order["mesh"], "rb") as mesh:
+                self.answer(200, mesh.read(), "model/stl")
+        else:
+            self.answer(200, {name: value for name, value in order.items() if name not in ("file", "mesh")})
 
-    def place(self, policy):
+    def reply(self, number, query):
+        accepts = query.get("accept") == "changes"
+        if not number.isdigit() or not self.orders.reply(int(number), query.get("units", ""), accepts):
+            self.answer(409, {"error": "this order waits for no answer"})
+            return
+        order = self.orders.get(int(number))
+        self.answer(202, {"order": order["number"], "job": self.send_now(order)})
+
+    def place(self, policy, units):
         mesh = self.body(MESH_BYTES_MAX)
         if mesh is None:
             return
         file = os.path.join(self.folder, os.urandom(16).hex())
         with open(file, "wb") as out:
             out.write(mesh)
-        number = self.orders.place(policy, file)
+        number = self.orders.place(policy, units, file)
+        self.answer(202, {"order": number, "job": self.send_now(self.orders.get(number))})
+
+    def send_now(self, order):
         try:
-            job = send(self.orders, self.meshmend, {"number": number, "policy": policy, "file": file})
+            return send(self.orders, self.meshmend, order)
         except OSError:
             # It is sent again later.
-            job = None
-        self.answer(202, {"order": number, "job": job})
+            return None
 
     def take_message(self):
         body = self.body(MESSAGE_BYTES_MAX)
@@ -210,10 +277,22 @@ class Backend(BaseHTTPRequestHandler):
         message = self.headers["webhook-id"]
         if not self.orders.is_known(message):
             job = json.loads(body)["data"]
-            number = int(job["labels"]["order"])
-            report = self.meshmend.report(job["id"]) if job["state"] == "succeeded" else None
-            self.orders.quote(message, number, job["id"], figures_of(job, report))
+            order = self.orders.get(int(job["labels"]["order"]))
+            # A call about an order that has been answered since says nothing about it.
+            if order and job["labels"]["version"] == str(order["version"]):
+                report = self.meshmend.report(job["id"]) if job["state"] == "succeeded" else None
+                figures = figures_of(job, report, order)
+                if figures["state"] == "quoted":
+                    figures["mesh"] = self.keep_mesh(order, job)
+                self.orders.quote(message, order["number"], job["id"], figures)
         self.answer(200, {})
+
+    def keep_mesh(self, order, job):
+        """Downloads what will be printed: the service keeps it for a while only."""
+        path = os.path.join(self.folder, f"{key_of(order)}.stl")
+        with open(path, "wb") as out:
+            out.write(self.meshmend.mesh(job["id"]))
+        return path
 
     def log_message(self, form, *arguments):
         print(form % arguments, flush=True)
@@ -229,8 +308,8 @@ def send(orders, meshmend, order):
         if error.code in (429, 503, 507):
             raise OSError("try again later") from error
         problem = json.load(error).get("code", str(error.code))
-        figures = figures_of({"state": "failed", "problem": {"code": problem}}, None)
-        orders.quote(f"order-{order['number']}", order["number"], None, figures)
+        figures = figures_of({"state": "failed", "problem": {"code": problem}}, None, order)
+        orders.quote(key_of(order), order["number"], None, figures)
         return None
 
 

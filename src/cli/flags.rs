@@ -1,9 +1,10 @@
 //! Flags made from the tables of options and settings, so that names and values cannot differ from theirs.
 
+use super::arguments::Arguments;
 use crate::config::{SETTINGS, Setting};
-use crate::wire::{OptionKind, OptionSpec, SPECS};
+use crate::wire::{Operation, OptionKind, OptionSpec, SPECS};
 use clap::builder::PossibleValuesParser;
-use clap::{Arg, ArgMatches, Command};
+use clap::{Arg, ArgMatches, Command, CommandFactory as _};
 use std::fs::File;
 use std::io::Read as _;
 
@@ -43,8 +44,13 @@ fn option_flag(spec: &'static OptionSpec) -> Arg {
     // The name as it stands in JSON is understood as well.
     let flag = if spec.name.contains('_') { flag.alias(spec.name) } else { flag };
     match spec.kind {
-        OptionKind::Word(words) => flag.value_name("WORD").value_parser(PossibleValuesParser::new(words)),
-        OptionKind::Integer { .. } | OptionKind::Number { .. } => flag.value_name("NUMBER"),
+        OptionKind::Word { words, .. } => {
+            flag.value_name("WORD").value_parser(PossibleValuesParser::new(words))
+        }
+        // A negative number is a value out of range, not a flag of that name.
+        OptionKind::Integer { .. } | OptionKind::Number { .. } => {
+            flag.value_name("NUMBER").allow_negative_numbers(true)
+        }
         OptionKind::Flag => {
             flag.value_name("true|false").value_parser(PossibleValuesParser::new(["true", "false"]))
         }
@@ -52,6 +58,17 @@ fn option_flag(spec: &'static OptionSpec) -> Arg {
             flag.value_name("JSON|@FILE").value_parser(text_or_file)
         }
     }
+}
+
+/// The command line, on which the help of each operation lists the options that it takes. The others are understood, so
+/// that the answer is who takes them.
+pub(super) fn command() -> Command {
+    Operation::ALL.iter().fold(Arguments::command(), |command, &operation| {
+        command.mut_subcommand(operation.word(), |command| {
+            let foreign = options().filter(|spec| !spec.is_taken_by(operation));
+            foreign.fold(command, |command, spec| command.mut_arg(spec.name, |flag| flag.hide(true)))
+        })
+    })
 }
 
 /// Most bytes of a value that stands in a file.
@@ -121,23 +138,31 @@ flags!(EngineSettingFlags, engine_settings(), setting_flag);
 
 #[cfg(test)]
 mod tests {
-    use super::super::arguments::Arguments;
     use super::*;
-    use clap::CommandFactory as _;
 
     fn has_flag(command: &Command, flag: &str) -> bool {
         command.get_arguments().any(|arg| arg.get_long() == Some(flag))
     }
 
     #[test]
-    fn every_option_of_the_schema_is_a_flag_of_every_operation() {
-        let command = Arguments::command();
-        for operation in crate::wire::Operation::WORDS {
-            let subcommand = command.find_subcommand(operation).unwrap();
+    fn the_help_of_an_operation_lists_the_options_that_it_takes_and_no_other() {
+        let command = command();
+        for &operation in Operation::ALL {
+            let subcommand = command.find_subcommand(operation.word()).unwrap();
             for spec in options() {
-                assert!(has_flag(subcommand, &spec.flag()), "{operation} --{}", spec.flag());
+                let name = format!("{operation} --{}", spec.flag());
+                let flag = subcommand.get_arguments().find(|arg| arg.get_long() == Some(&spec.flag()));
+                assert_eq!(flag.expect(&name).is_hide_set(), !spec.is_taken_by(operation), "{name}");
             }
         }
+    }
+
+    #[test]
+    fn a_negative_number_is_a_value() {
+        let line = ["meshmend", "repair", "a.stl", "-o", "b.stl", "--wall-mm", "-1"];
+        let matches = command().try_get_matches_from(line).unwrap();
+        let (_, repair) = matches.subcommand().unwrap();
+        assert_eq!(given(repair, options().map(|spec| spec.name)), [("wall_mm".to_owned(), "-1".to_owned())]);
     }
 
     #[test]
@@ -164,6 +189,6 @@ mod tests {
 
     #[test]
     fn the_command_line_is_put_together_well() {
-        Arguments::command().debug_assert();
+        command().debug_assert();
     }
 }

@@ -15,7 +15,7 @@ use crate::formats::Format;
 use crate::jobs::{RUN_JOB, run_job};
 use crate::pipeline::{self, Operation};
 use arguments::{Arguments, Command, SettingsCommand};
-use clap::Parser as _;
+use clap::FromArgMatches as _;
 use exit::Exit;
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -39,7 +39,8 @@ pub fn run(args: impl IntoIterator<Item = OsString>, service: Service) -> ExitCo
         // Before anything else: a job's process has nothing to do with flags, settings and logs.
         return run_job(pipeline::run);
     }
-    let exit = match Arguments::try_parse_from(with_default_command(args)) {
+    let parsed = flags::command().try_get_matches_from(with_default_command(args));
+    let exit = match parsed.and_then(|matches| Arguments::from_arg_matches(&matches)) {
         Ok(arguments) => execute(arguments.command, service),
         Err(error) => {
             // A closed pipe is all that can go wrong here, and then nobody reads on.

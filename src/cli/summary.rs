@@ -18,9 +18,13 @@ pub(super) struct Subject {
 /// The report as text, with a line end.
 pub(super) fn summary(report: &Report, subject: &Subject) -> String {
     let mut text = String::new();
+    put(&mut text, &headline(report));
     put(&mut text, &head(report, subject));
     if let Some(mesh) = &report.before {
         put(&mut text, &format!("  {}", size(mesh)));
+        if let Some(question) = mesh.unit_hypothesis.as_ref().and_then(|told| told.question.as_ref()) {
+            put(&mut text, &format!("  {question}"));
+        }
         put_table(&mut text, "defects", &mesh.defects.iter().map(defect_row).collect::<Vec<_>>());
     }
     if let Some(plan) = report.plan.as_ref().filter(|_| report.operation == Operation::Plan) {
@@ -32,7 +36,9 @@ pub(super) fn summary(report: &Report, subject: &Subject) -> String {
     let missed: Vec<_> = report.levels.iter().filter(|level| !level.is_reached).map(missed_row).collect();
     put_table(&mut text, "targets not reached", &missed);
     if let Some(mesh) = &report.after {
-        put(&mut text, &format!("result\n  {}", size(mesh)));
+        let unit = report.output_units;
+        let scaled = if unit == report.input.units.unit { String::new() } else { format!(" in {unit}") };
+        put(&mut text, &format!("result{scaled}\n  {}", size(mesh)));
         if let Some(kept) = closeness(&report.deviation) {
             put(&mut text, &format!("  {kept}"));
         }
@@ -44,7 +50,9 @@ pub(super) fn summary(report: &Report, subject: &Subject) -> String {
     }
     let judged = report.certificate.as_ref().unwrap_or(&report.input_certificate);
     put_table(&mut text, "certificate", &claim_rows(judged));
-    put(&mut text, &verdict(report, subject));
+    if let Some(line) = written(report, subject) {
+        put(&mut text, &line);
+    }
     text
 }
 
@@ -197,20 +205,39 @@ fn claim_text(claim: &Claim) -> String {
     }
 }
 
-fn verdict(report: &Report, subject: &Subject) -> String {
+/// What a customer must know, in one line: what became of the file, whether it is a solid, how true it is to the file, and
+/// what breaks the policy.
+fn headline(report: &Report) -> String {
     let verdict = &report.verdict;
     let outcome = verdict.outcome.map_or_else(String::new, |outcome| format!("{outcome}, "));
     let printable = if verdict.printable { "printable: a valid solid" } else { "not printable" };
     let mut text = format!("verdict: {outcome}{printable}");
+    if let Some(fidelity) = verdict.fidelity {
+        let _ = write!(text, "; {fidelity}");
+        for (i, change) in verdict.changes.iter().enumerate() {
+            let _ = write!(text, "{}{}", if i == 0 { ": " } else { ", " }, change.message);
+        }
+    }
+    if let Some(printing) = &report.printing {
+        let breaches: Vec<_> = verdict.p3_breaches.iter().map(|code| code.word()).collect();
+        let _ = match (verdict.p3_holds, breaches.as_slice()) {
+            (Some(true), _) => write!(text, "; {} holds", printing.policy),
+            (_, []) => write!(text, "; {} cannot be told", printing.policy),
+            (_, breaches) => write!(text, "; {} is broken: {}", printing.policy, breaches.join(", ")),
+        };
+    }
     if let Some(reason) = verdict.reasons.first() {
         let _ = write!(text, "; {}", reason.message);
     }
-    match &subject.written {
-        Some(place) => text.push_str(&format!("\nwritten: {place}")),
-        None if verdict.outcome.is_some() => text.push_str("\nnothing written"),
-        None => {}
-    }
     text
+}
+
+/// Where the result is; `None` where there is none to be.
+fn written(report: &Report, subject: &Subject) -> Option<String> {
+    match &subject.written {
+        Some(place) => Some(format!("written: {place}")),
+        None => report.verdict.outcome.map(|_| "nothing written".to_owned()),
+    }
 }
 
 fn counted(count: u64, name: &str) -> String {
@@ -252,8 +279,10 @@ mod tests {
     #[test]
     fn a_repair_is_told_from_defect_to_verdict() {
         let want = "\
+verdict: repaired, printable: a valid solid; changed: 50 % of the surface is invented (faithful: at most 1 %)
 part.stl: stl-binary, 234 bytes, unit mm (assumed)
   3 triangles, 0 vertices, 0 components; 1 x 1 x 1; area 1
+  No unit is stated: is the longest side 10 mm (if the unit is cm) or 1000 mm (if the unit is m) or 25.4 mm (if the unit is in)? Say so with `units`; without it the file is taken in millimetres.
 defects
   boundary-loop  1  error  face 2 (line 17), edges 3
 done
@@ -264,7 +293,6 @@ certificate
   P0 topology   holds
   P1 embedding  holds
   P2 solid      holds
-verdict: repaired, printable: a valid solid
 written: out.stl
 ";
         assert_eq!(of(&sample::repaired(), Some("out.stl")), want);
@@ -274,7 +302,13 @@ written: out.stl
     fn a_measured_repair_tells_how_close_it_is() {
         let mut answer = sample::repaired();
         assert!(!of(&answer, None).contains("from the file"));
-        let losses = Losses { visible_loss: 0.012, hidden_area: 2.5, bodies_lost: 1, volume_change: None };
+        let losses = Losses {
+            visible_loss: 0.012,
+            hidden_area: 2.5,
+            invented: 0.0,
+            bodies_lost: 1,
+            volume_change: None,
+        };
         answer.report.losses = Some(losses);
         let place = FarPoint { place: DVec3::ZERO, triangle: 0, closest: DVec3::ZERO, closest_triangle: 0 };
         let one = DirectedDistance {
@@ -294,7 +328,7 @@ written: out.stl
     #[test]
     fn a_refusal_says_why_and_that_nothing_was_written() {
         let text = of(&sample::refused(), None);
-        assert!(text.contains("verdict: refused, not printable; "), "{text}");
+        assert!(text.starts_with("verdict: refused, not printable; "), "{text}");
         assert!(text.ends_with("nothing written\n"), "{text}");
     }
 
@@ -315,7 +349,7 @@ written: out.stl
                 error_max: 0.5,
             };
             let certificate = sample::repaired().report.input_certificate;
-            Level { simplified, certificate, distance: None }
+            Level { simplified, certificate, distance: None, fidelity: None }
         };
         let mut answer = sample::repaired();
         answer.report.levels = vec![

@@ -33,7 +33,7 @@ fn attempt(request: &Request) -> Result<Exit, Problem> {
     check_streams(request)?;
     let options =
         Options::from_pairs(request.options.iter().map(|(n, v)| (n, v))).map_err(|e| Problem::from(&e))?;
-    options.check().map_err(|e| Problem::from(&e))?;
+    options.check(request.operation.into()).map_err(|e| Problem::from(&e))?;
     if request.output == Some(Place::Stream) && options.targets.as_ref().is_some_and(|t| t.len() > 1) {
         return Err(wrong("standard output holds one mesh; several --targets need a file name"));
     }
@@ -167,9 +167,7 @@ fn verdict(operation: Operation, require: Option<Require>, report: &Report, has_
     let is_done = match operation {
         Operation::Repair => has_result && report.verdict.printable,
         Operation::Verify => report.verdict.printable,
-        Operation::Analyze | Operation::Plan => {
-            require != Some(Require::Printable) || report.verdict.printable
-        }
+        Operation::Analyze | Operation::Plan => true,
         Operation::Convert | Operation::Simplify | Operation::CutStitch => {
             has_result && (require != Some(Require::Printable) || report.verdict.printable)
         }

@@ -33,6 +33,12 @@ pub enum ReadErrorKind {
     /// The content is not of any known format, or not of the named one.
     #[error("unknown format")]
     UnknownFormat,
+    /// The content is of a format that is not read.
+    #[error("this is {name}, which is not read here")]
+    Foreign {
+        /// Its name.
+        name: &'static str,
+    },
     /// The content breaks the format's rules.
     #[error("found {found}")]
     Unparseable {
@@ -73,6 +79,17 @@ pub struct ReadError {
 impl ReadError {
     pub(super) fn empty(expected: &str) -> Self {
         Self { kind: ReadErrorKind::Empty, place: Place::Whole, expected: expected.to_owned() }
+    }
+
+    pub(super) fn foreign(name: &'static str) -> Self {
+        let expected = match name {
+            "gzip" => {
+                "the mesh itself in STL, OBJ, OFF or PLY; `Content-Encoding: gzip` says that a body is compressed"
+            }
+            "text in UTF-16" => "a mesh in STL, OBJ, OFF or PLY, as text in UTF-8",
+            _ => "a mesh in STL, OBJ, OFF or PLY",
+        };
+        Self { kind: ReadErrorKind::Foreign { name }, place: Place::Whole, expected: expected.to_owned() }
     }
 
     pub(super) fn unparseable(place: Place, found: impl Into<String>, expected: impl Into<String>) -> Self {

@@ -9,6 +9,7 @@ mod decimals;
 mod error;
 mod faces;
 mod float32;
+mod foreign;
 mod numbers;
 mod obj;
 mod off;

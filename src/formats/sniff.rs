@@ -1,5 +1,6 @@
 //! Which format some bytes are in, by their content.
 
+use super::foreign::foreign;
 use super::numbers::{coordinate, integer};
 use super::off::header::HeaderWord;
 use super::stl::read_binary::announced_length;
@@ -27,8 +28,11 @@ pub fn sniff(bytes: &[u8], named: Option<Format>) -> Result<Encoding, ReadError>
             Err(ReadError::unparseable(Place::Whole, format!("{} content", found.name()), expected))
         }
         (Some(found), _) => Ok(found),
-        (None, Some(named)) => Ok(layout_of(bytes, named)),
-        (None, None) => guess(bytes).ok_or_else(|| unknown(bytes)),
+        (None, named) => match (foreign(bytes), named) {
+            (Some(name), _) => Err(ReadError::foreign(name)),
+            (None, Some(named)) => Ok(layout_of(bytes, named)),
+            (None, None) => guess(bytes).ok_or_else(|| unknown(bytes)),
+        },
     }
 }
 
@@ -208,7 +212,13 @@ mod tests {
         assert_eq!(sniff(b"8 6 0\n", Some(Format::Off)), Ok(Encoding::Off));
         assert_eq!(sniff(b"solid\n", Some(Format::Stl)), Ok(Encoding::StlAscii));
         assert_eq!(sniff(b"hello", Some(Format::Obj)), Ok(Encoding::Obj));
-        assert_eq!(sniff(b"<html>", None).unwrap_err().kind, ReadErrorKind::UnknownFormat);
+        assert_eq!(sniff(b"<xml>", None).unwrap_err().kind, ReadErrorKind::UnknownFormat);
+        let page = sniff(b"<html>", Some(Format::Stl)).unwrap_err();
+        assert_eq!(page.kind, ReadErrorKind::Foreign { name: "a web page" });
+        assert_eq!(
+            page.to_string(),
+            "file: this is a web page, which is not read here; expected a mesh in STL, OBJ, OFF or PLY"
+        );
     }
 
     #[test]

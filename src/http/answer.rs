@@ -14,6 +14,7 @@ use crate::wire::{self, Job, Problem, ProblemCode, Stage};
 
 const JSON: HeaderValue = HeaderValue::from_static("application/json");
 const OUTCOME: HeaderName = HeaderName::from_static("meshmend-outcome");
+const FIDELITY: HeaderName = HeaderName::from_static("meshmend-fidelity");
 const SERVER_TIMING: HeaderName = HeaderName::from_static("server-timing");
 const PREFERENCE_APPLIED: HeaderName = HeaderName::from_static("preference-applied");
 
@@ -139,6 +140,9 @@ impl Finished<'_> {
     fn describe(&self, headers: &mut HeaderMap) {
         if let Some(outcome) = self.job.outcome {
             put(headers, OUTCOME, outcome.word());
+        }
+        if let Some(fidelity) = self.job.fidelity {
+            put(headers, FIDELITY, fidelity.word());
         }
         if let Some(report) = &self.job.links.report {
             put(headers, header::LINK, &format!("<{report}>; rel=\"describedby\""));

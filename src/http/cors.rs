@@ -53,6 +53,7 @@ pub(super) fn layer(origins: &[String]) -> Option<CorsLayer> {
             header::LINK,
             header::LOCATION,
             header::RETRY_AFTER,
+            named("meshmend-fidelity"),
             named("meshmend-outcome"),
             named("preference-applied"),
             named("ratelimit"),

@@ -19,7 +19,7 @@ type Ids = Result<Path<(String, String)>, axum::extract::rejection::PathRejectio
 /// List the webhooks of a job.
 ///
 /// With every try: when, and what the receiver answered.
-#[utoipa::path(get, path = "/v1/jobs/{id}/deliveries", tag = "jobs",
+#[utoipa::path(get, path = "/v1/jobs/{id}/deliveries", operation_id = "list_deliveries", tag = "jobs",
     params(("id" = String, Path, description = "Id of the job.")),
     responses((status = 200, description = "The deliveries.", body = Deliveries)))]
 pub(super) async fn deliveries(state: State, caller: Extension<Caller>, id: Id, request: Request) -> Handled {
@@ -32,7 +32,7 @@ pub(super) async fn deliveries(state: State, caller: Extension<Caller>, id: Id, 
 /// Send a webhook again.
 ///
 /// Whatever became of it: at once, with the same `webhook-id`. When its tries are used up, this is one more.
-#[utoipa::path(post, path = "/v1/jobs/{id}/deliveries/{delivery}/redeliver", tag = "jobs",
+#[utoipa::path(post, path = "/v1/jobs/{id}/deliveries/{delivery}/redeliver", operation_id = "redeliver", tag = "jobs",
     params(("id" = String, Path, description = "Id of the job."),
            ("delivery" = String, Path, description = "Id of the delivery.")),
     responses((status = 202, description = "The delivery is due.", body = Delivery)))]

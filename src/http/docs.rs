@@ -23,7 +23,8 @@ pub(super) fn render(document: &OpenApi) -> String {
     page.add(format_args!(
         "<!doctype html><html lang=en><head><meta charset=utf-8><meta name=viewport content=\"width=device-width\">\
          <title>Meshmend API</title><link rel=stylesheet href=/style.css></head><body><main><h1>Meshmend API</h1>\
-         <p>{}</p><p>The contract for programs: <a href=/openapi.yaml>openapi.yaml</a>. \
+         <p>{}</p><p>The contract for programs: <a href=/openapi.yaml>openapi.yaml</a> or \
+         <a href=/openapi.json>openapi.json</a>. \
          <a href=/>Try it with a file</a>.</p>",
         Escaped(text(&document["info"]["description"]))
     ));

@@ -28,7 +28,7 @@ const KEEP_ALIVE: Duration = Duration::from_secs(15);
 /// Server-sent events: `state` when the job comes into another state, `stage` when a pass of its run begins or ends. The
 /// stream ends after the event of a final state. A client that comes back with `Last-Event-ID` hears what it has missed;
 /// one that has heard all gets 204 and need not come again.
-#[utoipa::path(get, path = "/v1/jobs/{id}/events", tag = "jobs",
+#[utoipa::path(get, path = "/v1/jobs/{id}/events", operation_id = "get_job_events", tag = "jobs",
     params(("id" = String, Path, description = "Id of the job.")),
     responses((status = 204, description = "The job has ended, and the client has heard it.")))]
 pub(super) async fn events(state: State, caller: Extension<Caller>, id: Id, request: Request) -> Handled {

@@ -28,7 +28,9 @@ pub(super) async fn receive(
     let mut intake = Intake::default();
     let mut seen = Vec::new();
     while let Some(head) = form.next_part().await? {
-        let Some(&part) = parts.iter().find(|part| **part == head.name) else {
+        // What many clients call the one file of a form.
+        let name = if head.name == "file" { "mesh" } else { &*head.name };
+        let Some(&part) = parts.iter().find(|part| **part == name) else {
             return Err(unknown(&head.name, parts));
         };
         if seen.contains(&part) {

@@ -56,6 +56,7 @@ enum BodyKind {
 impl BodyKind {
     /// Reads `Content-Type`. What curl sends by default is taken for a mesh.
     fn of(headers: &HeaderMap) -> Result<Self, Problem> {
+        check_encoding(headers)?;
         let Some(value) = headers.get(header::CONTENT_TYPE) else { return Ok(Self::Mesh(None)) };
         let text = value.to_str().unwrap_or_default();
         let essence = text.split(';').next().unwrap_or_default().trim().to_ascii_lowercase();
@@ -76,6 +77,21 @@ impl BodyKind {
                 )),
             },
         }
+    }
+}
+
+/// Refuses a body in an encoding that nobody has undone.
+fn check_encoding(headers: &HeaderMap) -> Result<(), Problem> {
+    let encoding =
+        headers.get(header::CONTENT_ENCODING).map(|value| value.to_str().unwrap_or_default().trim());
+    match encoding {
+        None | Some("") => Ok(()),
+        Some(encoding) if encoding.eq_ignore_ascii_case("identity") => Ok(()),
+        Some(encoding) => Err(Problem::new(
+            ProblemCode::UnsupportedMediaType,
+            format!("`Content-Encoding: {encoding}` is not read here; send the body with `gzip` or as it is"),
+        )
+        .with_allowed(["gzip", "identity"])),
     }
 }
 
@@ -246,6 +262,16 @@ mod tests {
         assert_eq!(BodyKind::of(&HeaderMap::new()).unwrap(), BodyKind::Mesh(None));
         assert_eq!(kind("application/x-www-form-urlencoded"), Ok(BodyKind::Mesh(None)));
         assert_eq!(kind("application/octet-stream"), Ok(BodyKind::Mesh(None)));
+    }
+
+    #[test]
+    fn an_encoding_that_nobody_has_undone_is_refused() {
+        let of = |encoding| {
+            let value = HeaderValue::from_static(encoding);
+            BodyKind::of(&HeaderMap::from_iter([(header::CONTENT_ENCODING, value)])).map_err(|p| p.code)
+        };
+        assert_eq!(of("identity"), Ok(BodyKind::Mesh(None)));
+        assert_eq!(of("br"), Err(ProblemCode::UnsupportedMediaType));
     }
 
     #[test]

@@ -22,7 +22,7 @@ pub(super) type Id = Result<Path<String>, axum::extract::rejection::PathRejectio
 /// Show a job.
 ///
 /// With `wait`, the answer comes when the job has ended or after that many seconds, at most 300.
-#[utoipa::path(get, path = "/v1/jobs/{id}", tag = "jobs",
+#[utoipa::path(get, path = "/v1/jobs/{id}", operation_id = "get_job", tag = "jobs",
     params(("id" = String, Path, description = "Id of the job."),
            ("wait" = Option<usize>, Query, description = "Seconds to wait for the job's end, at most 300; more are taken for 300. Default: 0.")),
     responses((status = 200, description = "The job.", body = Job), (status = 304, description = "Not changed.")))]
@@ -39,7 +39,7 @@ pub(super) async fn show(state: State, caller: Extension<Caller>, id: Id, reques
 /// Cancel a job.
 ///
 /// A queued job ends at once, a running one within moments; one that has ended stays as it is.
-#[utoipa::path(post, path = "/v1/jobs/{id}/cancel", tag = "jobs",
+#[utoipa::path(post, path = "/v1/jobs/{id}/cancel", operation_id = "cancel_job", tag = "jobs",
     params(("id" = String, Path, description = "Id of the job.")),
     responses((status = 200, description = "The job has ended.", body = Job),
               (status = 202, description = "The job will end.", body = Job)))]
@@ -54,7 +54,7 @@ pub(super) async fn cancel(state: State, caller: Extension<Caller>, id: Id, requ
 /// Delete a job.
 ///
 /// The job goes with its upload, report and result; one that is running is cancelled first.
-#[utoipa::path(delete, path = "/v1/jobs/{id}", tag = "jobs",
+#[utoipa::path(delete, path = "/v1/jobs/{id}", operation_id = "delete_job", tag = "jobs",
     params(("id" = String, Path, description = "Id of the job.")),
     responses((status = 204, description = "The job is gone.")))]
 pub(super) async fn delete(state: State, caller: Extension<Caller>, id: Id, request: Request) -> Handled {
@@ -67,7 +67,7 @@ pub(super) async fn delete(state: State, caller: Extension<Caller>, id: Id, requ
 ///
 /// Also of a refused repair, whose report says why. As JSON, or with `Accept: text/html` as a page for people: one file
 /// that loads nothing.
-#[utoipa::path(get, path = "/v1/jobs/{id}/report", tag = "jobs",
+#[utoipa::path(get, path = "/v1/jobs/{id}/report", operation_id = "get_job_report", tag = "jobs",
     params(("id" = String, Path, description = "Id of the job.")),
     responses((status = 200, description = "The report.", body = Report)))]
 pub(super) async fn report(state: State, caller: Extension<Caller>, id: Id, request: Request) -> Handled {
@@ -80,7 +80,7 @@ pub(super) async fn report(state: State, caller: Extension<Caller>, id: Id, requ
 /// Download a job's mesh.
 ///
 /// Whole or in part (`Range`); of a refused repair the same problem that the repair was answered with.
-#[utoipa::path(get, path = "/v1/jobs/{id}/result", tag = "jobs",
+#[utoipa::path(get, path = "/v1/jobs/{id}/result", operation_id = "get_job_result", tag = "jobs",
     params(("id" = String, Path, description = "Id of the job."),
            ("level" = Option<usize>, Query, minimum = 1,
             description = "Which target's mesh of a simplification, from 1. Default: 1.")))]

@@ -59,6 +59,5 @@ pub use start::start;
 
 /// The contract, as it is committed and served.
 pub fn openapi_yaml() -> String {
-    // The document is made of types that all have a form in YAML.
-    router::openapi().to_yaml().unwrap_or_default()
+    contract::yaml(&router::openapi())
 }

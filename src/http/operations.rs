@@ -22,7 +22,7 @@ use crate::wire::{Job, Operation, Options, Problem, ProblemCode, Report};
 /// Describe a mesh.
 ///
 /// Mesh in, report out: counts, measures, defects with witnesses, and the certificate of the file as it is.
-#[utoipa::path(post, path = "/v1/analyze", tag = "operations", params(Options), responses(
+#[utoipa::path(post, path = "/v1/analyze", tag = "operations", responses(
     (status = 200, description = "The report.", body = Report)))]
 pub(super) async fn analyze(state: State, caller: Extension<Caller>, request: Request) -> Handled {
     report_of(&state, &caller, Operation::Analyze, request).await
@@ -31,7 +31,7 @@ pub(super) async fn analyze(state: State, caller: Extension<Caller>, request: Re
 /// Judge a mesh as it is.
 ///
 /// Mesh in, report with its certificate out: which of P0, P1 and P2 hold, and the first violations.
-#[utoipa::path(post, path = "/v1/verify", tag = "operations", params(Options), responses(
+#[utoipa::path(post, path = "/v1/verify", tag = "operations", responses(
     (status = 200, description = "The report.", body = Report)))]
 pub(super) async fn verify(state: State, caller: Extension<Caller>, request: Request) -> Handled {
     report_of(&state, &caller, Operation::Verify, request).await
@@ -41,7 +41,7 @@ pub(super) async fn verify(state: State, caller: Extension<Caller>, request: Req
 ///
 /// Mesh in, report out, with a `plan`: what a repair would do about each defect, what else could be done, and how sure
 /// that is. Edit it and send it to `/v1/repair` as `plan`.
-#[utoipa::path(post, path = "/v1/plan", tag = "operations", params(Options), responses(
+#[utoipa::path(post, path = "/v1/plan", tag = "operations", responses(
     (status = 200, description = "The report.", body = Report)))]
 pub(super) async fn plan(state: State, caller: Extension<Caller>, request: Request) -> Handled {
     report_of(&state, &caller, Operation::Plan, request).await
@@ -50,7 +50,7 @@ pub(super) async fn plan(state: State, caller: Extension<Caller>, request: Reque
 /// Repair a mesh.
 ///
 /// Mesh in, certified mesh out, or a refusal that says why. `Accept` chooses the mesh, the report, or both.
-#[utoipa::path(post, path = "/v1/repair", tag = "operations", params(Options))]
+#[utoipa::path(post, path = "/v1/repair", tag = "operations")]
 pub(super) async fn repair(state: State, caller: Extension<Caller>, request: Request) -> Handled {
     result_of(&state, &caller, Operation::Repair, request).await
 }
@@ -58,7 +58,7 @@ pub(super) async fn repair(state: State, caller: Extension<Caller>, request: Req
 /// Write a mesh in another format.
 ///
 /// The same mesh in `output_format`; its certificate states what holds.
-#[utoipa::path(post, path = "/v1/convert", tag = "operations", params(Options))]
+#[utoipa::path(post, path = "/v1/convert", tag = "operations")]
 pub(super) async fn convert(state: State, caller: Extension<Caller>, request: Request) -> Handled {
     result_of(&state, &caller, Operation::Convert, request).await
 }
@@ -67,7 +67,7 @@ pub(super) async fn convert(state: State, caller: Extension<Caller>, request: Re
 ///
 /// Fewer triangles of the same shape, of the same topology after singular edges were cut; the certificate states what
 /// holds. With several `targets` the mesh is the first of them, and `multipart/mixed` and `application/zip` hold all.
-#[utoipa::path(post, path = "/v1/simplify", tag = "operations", params(Options))]
+#[utoipa::path(post, path = "/v1/simplify", tag = "operations")]
 pub(super) async fn simplify(state: State, caller: Extension<Caller>, request: Request) -> Handled {
     result_of(&state, &caller, Operation::Simplify, request).await
 }
@@ -76,13 +76,13 @@ pub(super) async fn simplify(state: State, caller: Extension<Caller>, request: R
 ///
 /// Singular edges and vertices are cut, so that a coherently oriented manifold with boundary is left; then boundary
 /// edges are joined, as `stitch` says. The certificate states what holds: readers that weld join cut vertices again.
-#[utoipa::path(post, path = "/v1/cut-stitch", tag = "operations", params(Options))]
+#[utoipa::path(post, path = "/v1/cut-stitch", tag = "operations")]
 pub(super) async fn cut_stitch(state: State, caller: Extension<Caller>, request: Request) -> Handled {
     result_of(&state, &caller, Operation::CutStitch, request).await
 }
 
 /// Make a job and do not wait for it.
-#[utoipa::path(post, path = "/v1/jobs", tag = "jobs", params(Options,
+#[utoipa::path(post, path = "/v1/jobs", tag = "jobs", params(
     ("operation" = Option<Operation>, Query, description = "What to do, unless the body says it."),
     ("labels" = Option<String>, Query, pattern = r#"^\{"[a-z]{1,20}":"[A-Za-z0-9]{0,20}"\}$"#,
      description = "What to write on the job, by name, unless the body says it: JSON text of an object of texts.")))]
@@ -103,7 +103,7 @@ pub(super) async fn create_job(state: State, caller: Extension<Caller>, request:
 async fn report_of(service: &Service, caller: &Caller, operation: Operation, request: Request) -> Handled {
     let (head, body) = request.into_parts();
     json_only(&head.headers)?;
-    let options = query::options(&head.uri)?;
+    let options = query::options(&head.uri, operation)?;
     let intake = intake::receive(service, caller, &head.headers, body, Some(operation)).await?;
     let submission = submission(service, caller, operation, options, intake, &head.headers).await?;
     finish(service, submission, Representation::Report, &head).await
@@ -112,7 +112,7 @@ async fn report_of(service: &Service, caller: &Caller, operation: Operation, req
 /// The answer of an operation whose product is a mesh.
 async fn result_of(service: &Service, caller: &Caller, operation: Operation, request: Request) -> Handled {
     let (head, body) = request.into_parts();
-    let options = query::options(&head.uri)?;
+    let options = query::options(&head.uri, operation)?;
     // Asked before the upload, so that a client that cannot be served does not send it in vain.
     Representation::choose(&head.headers, options.output_format)?;
     let intake = intake::receive(service, caller, &head.headers, body, Some(operation)).await?;
@@ -190,7 +190,7 @@ async fn submission(
     headers: &HeaderMap,
 ) -> Result<Submission, Problem> {
     let mut options = in_query.join(intake.options).map_err(|error| Problem::from(&error))?;
-    options.check().map_err(|error| Problem::from(&error))?;
+    options.check(operation).map_err(|error| Problem::from(&error))?;
     options.format = options.format.or(intake.named);
     match (&intake.upload, &options.input) {
         (None, None) => return Err(no_mesh(headers)),

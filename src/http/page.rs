@@ -18,6 +18,11 @@ pub(super) async fn style() -> Response {
     asset("text/css; charset=utf-8", include_str!("../../web/style.css"))
 }
 
+/// The picture on a browser's tab.
+pub(super) async fn icon() -> Response {
+    asset("image/svg+xml", include_str!("../../web/icon.svg"))
+}
+
 fn asset(media_type: &'static str, text: &'static str) -> Response {
     // A new version may come under the same names.
     ([(header::CONTENT_TYPE, media_type), (header::CACHE_CONTROL, "no-cache")], text).into_response()

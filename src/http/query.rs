@@ -17,9 +17,11 @@ fn pairs(uri: &Uri) -> Result<Vec<(String, String)>, Problem> {
     })
 }
 
-/// The options in the query.
-pub(super) fn options(uri: &Uri) -> Result<Options, Problem> {
-    Options::from_pairs(pairs(uri)?).map_err(|error| Problem::from(&error))
+/// The options in the query, all of which `operation` takes.
+pub(super) fn options(uri: &Uri, operation: Operation) -> Result<Options, Problem> {
+    let options = Options::from_pairs(pairs(uri)?)?;
+    options.check_taken_by(operation)?;
+    Ok(options)
 }
 
 /// The job that the query asks for.
@@ -173,7 +175,13 @@ mod tests {
         assert_eq!(code("labels=%7B%7D&labels=%7B%22a%22:%22b%22%7D"), ProblemCode::InvalidParameter);
         assert_eq!(code("operation=repiar"), ProblemCode::InvalidParameter);
         assert_eq!(code("operation=repair&operation=verify"), ProblemCode::InvalidParameter);
-        assert_eq!(options(&uri("operation=repair")).unwrap_err().code, ProblemCode::UnknownParameter);
+        assert_eq!(
+            options(&uri("operation=repair"), Operation::Repair).unwrap_err().code,
+            ProblemCode::UnknownParameter
+        );
+        let walls = |operation| options(&uri("wall_mm=1"), operation).map_err(|problem| problem.code);
+        assert_eq!(walls(Operation::Repair).unwrap().wall_mm, Some(1.0));
+        assert_eq!(walls(Operation::Verify).unwrap_err(), ProblemCode::UnknownParameter);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Which form the answer of a repair or conversion takes.
 
-use axum::http::HeaderMap;
+use axum::http::{HeaderMap, HeaderValue, header};
 
 use super::accept::Accept;
 use crate::wire::{Format, Problem, ProblemCode, media_type_of};
@@ -44,10 +44,15 @@ impl Representation {
             ("application/zip", Self::Zip),
             (OCTET_STREAM, Self::Mesh { format: None, is_opaque: true }),
         ]);
-        Accept::from_headers(headers)
-            .choose(&offers)
-            .copied()
-            .ok_or_else(|| not_acceptable(offers.iter().map(|(media, _)| *media)))
+        Accept::from_headers(headers).choose(&offers).copied().ok_or_else(|| {
+            let problem = not_acceptable(offers.iter().map(|(media, _)| *media));
+            // A form is what comes in; what goes out in parts has another name.
+            let wants_form = headers.get_all(header::ACCEPT).iter().any(|value| names_form(value));
+            Problem {
+                suggestion: wants_form.then(|| "multipart/mixed".into()).or(problem.suggestion.clone()),
+                ..problem
+            }
+        })
     }
 }
 
@@ -65,6 +70,10 @@ pub(super) fn one_of(headers: &HeaderMap, offers: &[&'static str]) -> Result<&'s
         .ok_or_else(|| not_acceptable(offers.iter().copied()))
 }
 
+fn names_form(accept: &HeaderValue) -> bool {
+    accept.to_str().is_ok_and(|text| text.to_ascii_lowercase().contains("multipart/form-data"))
+}
+
 fn not_acceptable(offers: impl Iterator<Item = &'static str>) -> Problem {
     let allowed: Vec<_> = offers.collect();
     let detail = format!("`Accept` allows none of {}", allowed.join(", "));
@@ -74,7 +83,6 @@ fn not_acceptable(offers: impl Iterator<Item = &'static str>) -> Problem {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use axum::http::{HeaderValue, header};
 
     fn chosen(accept: &'static str, output_format: Option<Format>) -> Option<Representation> {
         let headers = HeaderMap::from_iter([(header::ACCEPT, HeaderValue::from_static(accept))]);
@@ -118,5 +126,8 @@ mod tests {
         assert_eq!(problem.code, ProblemCode::NotAcceptable);
         assert!(problem.allowed.iter().any(|media_type| media_type == "model/stl"));
         assert!(json_only(&headers).is_err());
+        let form = HeaderMap::from_iter([(header::ACCEPT, HeaderValue::from_static("multipart/form-data"))]);
+        let problem = Representation::choose(&form, None).unwrap_err();
+        assert_eq!(problem.suggestion.as_deref(), Some("multipart/mixed"));
     }
 }

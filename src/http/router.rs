@@ -5,9 +5,12 @@ use std::sync::Arc;
 use axum::Router;
 use axum::body::Bytes;
 use axum::extract::Request;
+use axum::http::Uri;
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse as _, Response};
 use axum::routing::get;
+use tower_http::compression::CompressionLayer;
+use tower_http::decompression::RequestDecompressionLayer;
 use utoipa::openapi::OpenApi;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -20,7 +23,7 @@ use super::settings::HttpSettings;
 use super::state::{Caller, Service, State};
 use super::{about, contract, cors, deliveries, docs, events, lifecycle, listing, operations, page};
 use crate::jobs::Jobs;
-use crate::wire::ProblemCode;
+use crate::wire::{Problem, ProblemCode};
 
 /// The API, with its contract.
 fn api() -> OpenApiRouter<Arc<Service>> {
@@ -45,7 +48,15 @@ fn api() -> OpenApiRouter<Arc<Service>> {
         .routes(routes!(about::formats))
         .routes(routes!(about::policies))
         .routes(routes!(about::version))
+        .merge(documents())
+}
+
+/// The contract itself, compressed for clients that take that: nothing in it is secret and repeated by a caller.
+fn documents() -> OpenApiRouter<Arc<Service>> {
+    OpenApiRouter::new()
         .routes(routes!(about::openapi))
+        .routes(routes!(about::openapi_json))
+        .layer(CompressionLayer::new())
 }
 
 /// Pages and what they load: embedded, from no other host.
@@ -55,6 +66,7 @@ fn pages() -> Router<Arc<Service>> {
         .route("/page.js", get(page::script))
         .route("/style.css", get(page::style))
         .route("/docs", get(docs::show))
+        .route("/favicon.ico", get(page::icon))
 }
 
 /// The contract.
@@ -65,19 +77,22 @@ pub(super) fn openapi() -> OpenApi {
 /// What handlers share, with the contract made once.
 pub(super) fn service(settings: HttpSettings, jobs: Jobs) -> Arc<Service> {
     let document = openapi();
-    let yaml = super::openapi_yaml();
+    let json = serde_json::to_vec(&document).unwrap_or_default();
     Arc::new(Service {
         jobs,
         rates: settings.rate.map(Rates::new),
         settings,
         docs: Bytes::from(docs::render(&document)),
-        openapi: Bytes::from(yaml),
+        openapi: Bytes::from(contract::yaml(&document)),
+        openapi_json: Bytes::from(json),
     })
 }
 
 /// The router of the public listener.
 pub(super) fn router(service: Arc<Service>) -> Router {
-    let (api, _) = api().split_for_parts();
+    // Bodies of other encodings come in as they are, and are refused where they are read.
+    let unpacked = RequestDecompressionLayer::new().pass_through_unaccepted(true);
+    let (api, _) = api().layer(unpacked).split_for_parts();
     let let_in = middleware::from_fn_with_state(Arc::clone(&service), let_in);
     let cors = cors::layer(&service.settings.cors_origins);
     let routes = complete(api.merge(pages()).with_state(service)).layer(let_in);
@@ -132,8 +147,17 @@ async fn let_in(service: State, mut request: Request, next: Next) -> Response {
     response
 }
 
-async fn not_found() -> Response {
-    ProblemAnswer::new(ProblemCode::NotFound, "there is nothing at this path").into_response()
+async fn not_found(uri: Uri) -> Response {
+    match uri.path().strip_suffix('/').filter(|path| path.starts_with('/')) {
+        None => ProblemAnswer::new(ProblemCode::NotFound, "there is nothing at this path").into_response(),
+        Some(path) => problem::respond(Problem {
+            suggestion: Some(path.to_owned().into()),
+            ..Problem::new(
+                ProblemCode::NotFound,
+                "there is nothing at this path; no path of this service ends with a slash",
+            )
+        }),
+    }
 }
 
 async fn method_not_allowed() -> Response {

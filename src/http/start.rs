@@ -89,7 +89,9 @@ fn tell(server: &Server) -> std::io::Result<()> {
     if let Some(admin) = server.admin_address()? {
         tracing::info!("health and metrics on http://{admin}");
     }
-    tracing::info!("try: curl --data-binary @part.stl http://{host}/v1/repair --output repaired.stl");
+    tracing::info!(
+        "try: curl --fail-with-body --data-binary @part.stl http://{host}/v1/repair --output repaired.stl"
+    );
     Ok(())
 }
 

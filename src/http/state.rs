@@ -23,6 +23,8 @@ pub(super) struct Service {
     pub(super) rates: Option<Rates>,
     /// The contract, as YAML.
     pub(super) openapi: Bytes,
+    /// The contract, as JSON.
+    pub(super) openapi_json: Bytes,
     /// The contract, as a page.
     pub(super) docs: Bytes,
 }

@@ -27,15 +27,28 @@ pub struct StageClock {
 pub(super) struct StageEvent {
     pub(super) stage: Stage,
     pub(super) has_ended: bool,
-    /// Share of the passes that are done, from 0 to 1.
+    /// How far the run is, from 0 to 1.
     pub(super) fraction: f64,
 }
+
+/// How far a run is that makes as many passes as is usual. Those beyond them share what is left.
+const USUAL_PASSES_TO: f64 = 0.8;
+/// Share of what is left that each pass beyond the usual ones takes.
+const PASS_BEYOND: f64 = 0.1;
+/// Fewest work units that a pass is taken to have before it is half done.
+const WORK_HALF_MIN: u64 = 1 << 16;
 
 #[derive(Debug, Default)]
 struct Heard {
     /// Passes that have begun and not ended; the innermost last.
     open: Vec<(Stage, Instant)>,
+    /// The pass that began last.
+    last: Option<Stage>,
     ended: u32,
+    /// How far the run was when the last pass ended, and the work that it had used.
+    base: f64,
+    work_at_base: u64,
+    work: u64,
     timing: TimingMs,
     events: Vec<StageEvent>,
 }
@@ -60,25 +73,22 @@ impl StageClock {
         let clock = self.clone();
         Box::new(move |event| {
             let mut heard = clock.heard.lock().unwrap_or_else(PoisonError::into_inner);
-            if let Some((stage, has_ended)) = heard.hear(event, Instant::now())
+            if let Some((stage, has_ended)) = heard.hear(event, Instant::now(), clock.passes)
                 && heard.events.len() < EVENTS_MAX
             {
-                let fraction = clock.fraction(&heard);
+                let fraction = heard.fraction(clock.passes);
                 heard.events.push(StageEvent { stage, has_ended, fraction });
                 clock.changes.send_replace(heard.events.len());
             }
         })
     }
 
-    /// How far the run is. Below 1 as long as nobody says that it is over.
+    /// How far the run is and what it does, or did last. Never less than before, and below 1 as long as nobody says that it
+    /// is over.
     pub fn progress(&self) -> Progress {
         let heard = self.heard.lock().unwrap_or_else(PoisonError::into_inner);
-        let stage = heard.open.last().map(|&(stage, _)| stage);
-        Progress { stage, fraction: self.fraction(&heard) }
-    }
-
-    fn fraction(&self, heard: &Heard) -> f64 {
-        (f64::from(heard.ended) / self.passes).min(0.95)
+        let stage = heard.open.last().map(|&(stage, _)| stage).or(heard.last);
+        Progress { stage, fraction: heard.fraction(self.passes) }
     }
 
     /// The events after the first `after`.
@@ -100,11 +110,34 @@ impl StageClock {
 }
 
 impl Heard {
-    /// The pass, and whether it has ended; `None`: one has ended that had not begun.
-    fn hear(&mut self, event: Event, now: Instant) -> Option<(Stage, bool)> {
+    /// How far the run is: from the end of the last pass towards the end of the next one, by the work between.
+    fn fraction(&self, passes: f64) -> f64 {
+        let done = self.work.saturating_sub(self.work_at_base) as f64;
+        // As much work as all before is half of a pass: nobody knows how much there is, but it always comes closer.
+        let half = self.work_at_base.max(WORK_HALF_MIN) as f64;
+        self.base + (self.next_base(passes) - self.base) * done / (done + half)
+    }
+
+    /// How far the run is when the next pass has ended.
+    fn next_base(&self, passes: f64) -> f64 {
+        let usual_left = passes - f64::from(self.ended);
+        if usual_left >= 1.0 {
+            self.base + (USUAL_PASSES_TO - self.base) / usual_left
+        } else {
+            self.base + (1.0 - self.base) * PASS_BEYOND
+        }
+    }
+
+    /// The pass, and whether it has ended; `None`: it is about work, or a pass has ended that had not begun.
+    fn hear(&mut self, event: Event, now: Instant, passes: f64) -> Option<(Stage, bool)> {
         match event {
+            Event::Work(units) => {
+                self.work = self.work.max(units);
+                None
+            }
             Event::Enter(stage) => {
                 self.open.push((stage.into(), now));
+                self.last = Some(stage.into());
                 Some((stage.into(), false))
             }
             Event::Leave(stage) => {
@@ -112,6 +145,8 @@ impl Heard {
                 let (stage, since) = self.open.remove(position);
                 let time = milliseconds(now.duration_since(since));
                 *self.timing.of_mut(stage).get_or_insert(0.0) += time;
+                self.base = self.next_base(passes);
+                self.work_at_base = self.work;
                 self.ended += 1;
                 Some((stage, true))
             }
@@ -139,7 +174,7 @@ mod tests {
         });
         budget.stage(budget::Stage::Certify, || {});
         budget.stage(budget::Stage::Certify, || {});
-        let event = |stage, has_ended, ended: f64| StageEvent { stage, has_ended, fraction: ended / 8.0 };
+        let event = |stage, has_ended, ended: f64| StageEvent { stage, has_ended, fraction: ended / 10.0 };
         assert_eq!(
             clock.events(0)[..3],
             [
@@ -152,6 +187,34 @@ mod tests {
         let timing = clock.timing_ms();
         assert!(timing.read.is_some() && timing.certify.is_some());
         assert_eq!(timing.repair, None, "a pass that did not run has no time");
-        assert_eq!(clock.progress(), Progress { stage: None, fraction: 3.0 / 8.0 });
+        let progress = clock.progress();
+        assert_eq!(progress.stage, Some(Stage::Certify), "what was done last");
+        assert!((progress.fraction - 0.3).abs() < 1e-12, "{}", progress.fraction);
+    }
+
+    #[test]
+    fn a_long_repair_moves_with_every_pass_and_with_the_work_of_each_and_never_back() {
+        let clock = StageClock::start(Operation::Repair);
+        let hear = clock.observer();
+        let (mut work, mut last) = (0, 0.0);
+        let mut farther = || {
+            let fraction = clock.progress().fraction;
+            assert!(last < fraction && fraction < 1.0, "{last} {fraction}");
+            last = fraction;
+        };
+        for pass in 0..100 {
+            let stage = [budget::Stage::Repair, budget::Stage::Certify][pass % 2];
+            hear(Event::Enter(stage));
+            for _ in 0..10 {
+                work += 1 << 20;
+                hear(Event::Work(work));
+                farther();
+            }
+            // Threads may tell it late.
+            hear(Event::Work(work / 2));
+            hear(Event::Leave(stage));
+            farther();
+        }
+        assert!(last > 0.99);
     }
 }

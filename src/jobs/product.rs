@@ -12,13 +12,15 @@ use super::spool::{Spool, Written};
 use super::store::{BlobRef, ClaimRef};
 use super::upload::disk_problem;
 use crate::pipeline::{self, Answer};
-use crate::wire::{self, Encoding, Outcome, Problem, ProblemCode, TimingMs};
+use crate::wire::{self, Encoding, Fidelity, Outcome, Problem, ProblemCode, TimingMs};
 
 /// What a run made; `C` is where the bytes are.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Product<C> {
     /// What became of the file.
     pub(super) outcome: Option<Outcome>,
+    /// How true the result is to the file.
+    pub(super) fidelity: Option<Fidelity>,
     /// Why there is no result that meets what was asked.
     pub(super) problem: Option<Problem>,
     /// Time of each pass, as the report says it.
@@ -69,6 +71,7 @@ impl Product<Vec<u8>> {
             |output: pipeline::Output| Made { content: output.bytes, encoding: output.encoding.into() };
         Ok(Self {
             outcome: report.outcome.map(Outcome::from),
+            fidelity: report.fidelity.as_ref().filter(|_| !is_refused).map(|fidelity| fidelity.word.into()),
             problem: report.refusal.as_ref().map(Problem::from).filter(|_| is_refused),
             timing_ms,
             report: text,
@@ -87,6 +90,7 @@ impl<C> Product<C> {
         };
         Ok(Product {
             outcome: self.outcome,
+            fidelity: self.fidelity,
             problem: self.problem,
             timing_ms: self.timing_ms,
             report,

@@ -128,7 +128,7 @@ async fn keep_files(
     row: &JobRow,
     product: Product<Content>,
 ) -> Result<(Ending, Vec<Written>), Problem> {
-    let Product { outcome, problem, timing_ms, report, result, levels } = product;
+    let Product { outcome, fidelity, problem, timing_ms, report, result, levels } = product;
     // Should one file fail, those before it go with this list.
     let mut written = Vec::new();
     let has_result = result.is_some();
@@ -149,6 +149,7 @@ async fn keep_files(
         timing_ms: Some(timing_ms),
         progress: Progress { stage: None, fraction: 1.0 },
         outcome,
+        fidelity,
         report: Some(report),
         result: results.pop(),
         levels,

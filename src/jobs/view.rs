@@ -67,6 +67,7 @@ pub(super) fn job(row: &JobRow, live: Option<&Live>) -> Job {
         expires_at: row.expires_at,
         progress: progress(row, live),
         outcome: ending.and_then(|ending| ending.outcome),
+        fidelity: ending.and_then(|ending| ending.fidelity),
         problem: ending
             .and_then(|ending| ending.problem.clone())
             .map(|problem| problem.with_instance(&links.this)),

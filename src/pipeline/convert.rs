@@ -2,7 +2,7 @@
 
 use super::input::Input;
 use super::output::{Candidate, NoCandidate};
-use super::{Answer, Failure, Operation, Options, Outcome, Refusal, Require};
+use super::{Answer, Failure, Operation, Options, Outcome, Refusal};
 use crate::budget::Budget;
 use crate::certificate::{Certificate, Depth};
 use crate::repair::Draft;
@@ -11,13 +11,13 @@ use crate::repair::Draft;
 pub(super) fn convert(input: &Input, options: &Options, budget: &Budget) -> Result<Answer, Failure> {
     let report = input.report(Operation::Convert, budget)?;
     let refusal = |certificate: &Certificate| match options.require {
-        Some(Require::Printable) if !certificate.is_printable() => {
+        Some(require) if require.is_of_a_solid() && !certificate.is_printable() => {
             Some(Refusal::NotRepairable { witness: certificate.witnesses.first().cloned() })
         }
         _ => None,
     };
     let encoding = input.output_encoding(options);
-    if encoding == input.facts.encoding {
+    if input.may_come_back_as(encoding) {
         let certificate = &input.examination.certificate;
         let outcome = if certificate.is_printable() { Outcome::Identical } else { Outcome::Partial };
         return Ok(match refusal(certificate) {

@@ -77,8 +77,9 @@ pub(super) fn cut_stitch(input: &Input, options: &Options, budget: &Budget) -> R
     drop(whole);
     let report = Report { actions, ..report };
     let encoding = input.output_encoding(options);
-    let is_refused = |is_printable: bool| options.require == Some(Require::Printable) && !is_printable;
-    if !has_changed && encoding == input.facts.encoding {
+    let is_refused =
+        |is_printable: bool| options.require.is_some_and(Require::is_of_a_solid) && !is_printable;
+    if !has_changed && input.may_come_back_as(encoding) {
         let certificate = &input.examination.certificate;
         if is_refused(certificate.is_printable()) {
             let witness = certificate.witnesses.first().cloned();

@@ -1,6 +1,6 @@
 //! How far a result is from its input, what of the input it lost, and whether that is little enough.
 
-use super::{Limits, Refusal};
+use super::{FidelityVerdict, Limits, Refusal};
 use crate::budget::{Budget, CHECK_EVERY, Stage, Stopped};
 use crate::distance::{
     DirectedDistance, DistanceOptions, FarPoint, Sight, Surface, SurfaceDistance, directed_distance,
@@ -12,10 +12,10 @@ use crate::spatial::{NearestSearch, coincident_f64};
 use crate::winding::Solid;
 
 /// Visible surface farther than this from the result is lost, as a share of the diagonal of the input.
-const LOST_BEYOND: f64 = 2e-3;
+pub(super) const LOST_BEYOND: f64 = 2e-3;
 
 /// Most of the visible surface that a result may lose for no other to be looked for.
-const LOSS_MAX: f64 = 0.01;
+pub(super) const LOSS_MAX: f64 = 0.01;
 
 /// What a measurement may cost, and how close it encloses a distance.
 const DISTANCE: DistanceOptions = DistanceOptions {
@@ -46,6 +46,8 @@ pub struct Losses {
     pub visible_loss: f64,
     /// Area of the input that is inside of it, in square units of the file.
     pub hidden_area: f64,
+    /// Share of the surface of the result that is farther from the input than 0.2 % of the diagonal.
+    pub invented: f64,
     /// Bodies of the input that can be seen and are lost as a whole.
     pub bodies_lost: u32,
     /// Share by which the volume changed; `None` where that of the input is not defined.
@@ -56,6 +58,12 @@ impl Fidelity {
     /// True when no other result needs to be looked for.
     pub(super) fn passes(&self, limits: &Limits) -> bool {
         self.losses.visible_loss <= LOSS_MAX && self.losses.bodies_lost == 0 && self.breach(limits).is_none()
+    }
+
+    /// How true a result is to `input` that was measured so.
+    pub(super) fn verdict(&self, input: &Soup) -> FidelityVerdict {
+        let moved = self.distance.map_or(0.0, |distance| distance.upper());
+        FidelityVerdict::of(&self.losses, moved, diagonal(input))
     }
 
     /// The limit of the caller that this exceeds.
@@ -89,14 +97,13 @@ pub(super) struct Original<'i> {
     volume: Option<f64>,
     /// What hides parts of it; `None`: nothing does.
     solid: Option<Solid>,
-    /// Visible surface farther away than this is lost.
+    /// Visible surface farther away than this is lost, surface of a result farther away than this invented.
     lost_beyond: f64,
 }
 
 impl<'i> Original<'i> {
     pub(super) fn new(input: &'i Soup, volume: Option<f64>, solid: Option<Solid>) -> Self {
-        let bounds = Aabb::of(input.triangles.as_flattened().iter().map(|&v| input.positions[v as usize]));
-        Self { input, volume, solid, lost_beyond: LOST_BEYOND * (bounds.max - bounds.min).length() }
+        Self { input, volume, solid, lost_beyond: LOST_BEYOND * diagonal(input) }
     }
 
     /// Measures a result; `origins` name the triangle of the input that each of its triangles is, or [`NEW`].
@@ -114,7 +121,8 @@ impl<'i> Original<'i> {
             let seen = forward.and_then(|forward| forward.seen);
             let hidden_area = gone_area * seen.map_or(0.0, |seen| seen.hidden_share);
             let lost_area = (gone_area - hidden_area) * seen.map_or(0.0, |seen| seen.lost_share);
-            let backward = backward(self.input, result, &changed.new, budget)?;
+            let backward = self.backward(result, &changed.new, budget)?;
+            let invented = backward.and_then(|backward| backward.seen).map_or(0.0, |seen| seen.lost_share);
             let new_area = area_of(result, &changed.new);
             let share = |part: f64, all: f64| if all > 0.0 { part / all } else { 0.0 };
             let still = |mesh: &Soup| mesh.positions.first().map(|&place| at_rest(place));
@@ -124,6 +132,7 @@ impl<'i> Original<'i> {
             let losses = Losses {
                 visible_loss: share(lost_area, area - hidden_area),
                 hidden_area,
+                invented: share(new_area * invented, new_area + changed.stayed_area),
                 bodies_lost: self.bodies_lost(result, &changed, budget)?,
                 volume_change: self.volume_change(result),
             };
@@ -151,6 +160,19 @@ impl<'i> Original<'i> {
         let sight = Sight { hides: &hides, lost_beyond: self.lost_beyond };
         let from = Surface { positions: &self.input.positions, triangles: &triangles };
         directed_distance(from, surface(result), Some(sight), &DISTANCE, budget)
+    }
+
+    /// The distance of what is new from the input, all of which counts.
+    fn backward(
+        &self,
+        result: &Soup,
+        new: &[u32],
+        budget: &Budget,
+    ) -> Result<Option<DirectedDistance>, Stopped> {
+        let triangles: Vec<[u32; 3]> = new.iter().map(|&t| result.triangles[t as usize]).collect();
+        let sight = Sight { hides: &|_, _| Ok(false), lost_beyond: self.lost_beyond };
+        let from = Surface { positions: &result.positions, triangles: &triangles };
+        directed_distance(from, surface(self.input), Some(sight), &DISTANCE, budget)
     }
 
     fn volume_change(&self, result: &Soup) -> Option<f64> {
@@ -246,19 +268,13 @@ fn surface(mesh: &Soup) -> Surface<'_> {
     Surface { positions: &mesh.positions, triangles: &mesh.triangles }
 }
 
-/// The distance of what is new from the input.
-fn backward(
-    input: &Soup,
-    result: &Soup,
-    new: &[u32],
-    budget: &Budget,
-) -> Result<Option<DirectedDistance>, Stopped> {
-    let triangles: Vec<[u32; 3]> = new.iter().map(|&t| result.triangles[t as usize]).collect();
-    let from = Surface { positions: &result.positions, triangles: &triangles };
-    directed_distance(from, surface(input), None, &DISTANCE, budget)
+/// Diagonal of the box around the triangles of `mesh`.
+pub(super) fn diagonal(mesh: &Soup) -> f64 {
+    let bounds = Aabb::of(mesh.triangles.as_flattened().iter().map(|&v| mesh.positions[v as usize]));
+    if mesh.triangles.is_empty() { 0.0 } else { (bounds.max - bounds.min).length() }
 }
 
-fn area_of(mesh: &Soup, triangles: &[u32]) -> f64 {
+pub(super) fn area_of(mesh: &Soup, triangles: &[u32]) -> f64 {
     triangles.iter().map(|&t| triangle_area(mesh.corners(t))).sum()
 }
 

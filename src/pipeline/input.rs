@@ -3,7 +3,8 @@
 use super::describe::describe;
 use super::remedies::proposals;
 use super::{
-    Answer, ChosenPlan, Failure, InputFacts, Operation, Options, Outcome, Output, Plan, Refusal, Report, Step,
+    Answer, ChosenPlan, Failure, FidelityVerdict, InputFacts, Operation, Options, Outcome, Output, Plan,
+    Refusal, Report, Step,
 };
 use crate::analysis::{Analysis, AnalyzeOptions, NearSearch};
 use crate::budget::{Budget, Stage, Stopped};
@@ -49,8 +50,19 @@ impl Input {
             sha256: examination.certificate.sha256,
             units: options.units.unwrap_or_default(),
             units_are_stated: options.units.is_some(),
+            result_units: options.units.unwrap_or_default(),
         };
         Ok(Self { facts, soup, examination, samples, near: options.near })
+    }
+
+    /// Takes the length of what is near in another unit.
+    pub(super) fn scale_near(&mut self, factor: f64) {
+        self.near = self.near.map(|length| length * factor);
+    }
+
+    /// True when a result laid out as `encoding` may be the very bytes that were uploaded.
+    pub(super) fn may_come_back_as(&self, encoding: Encoding) -> bool {
+        encoding == self.facts.encoding && self.facts.result_units == self.facts.units
     }
 
     /// What to find out of a mesh of this run.
@@ -87,6 +99,7 @@ impl Input {
             identical_triangle_share: None,
             distance: None,
             losses: None,
+            fidelity: None,
             outcome: None,
             refusal: None,
             printing: None,
@@ -125,6 +138,7 @@ impl Input {
             report: Report {
                 certificate: Some(self.examination.certificate.clone()),
                 identical_triangle_share: Some(1.0),
+                fidelity: Some(FidelityVerdict::EXACT),
                 outcome: Some(outcome),
                 ..report
             },

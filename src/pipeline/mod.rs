@@ -3,6 +3,7 @@
 mod convert;
 mod cut_stitch;
 mod describe;
+mod faithful;
 mod fidelity;
 mod identical;
 mod input;
@@ -15,8 +16,10 @@ mod remedies;
 mod repair;
 mod simplify;
 mod texture;
+mod units;
 
 pub use self::cut_stitch::{CutStitchChoices, Stitching};
+pub use self::faithful::{Change, ChangeKind, Fidelity, FidelityVerdict};
 pub use self::fidelity::Losses;
 use self::input::Input;
 pub use self::plan::Step;
@@ -84,11 +87,20 @@ impl Operation {
 pub enum Require {
     /// P0, P1 and P2 hold, or the answer is a refusal. Default of `repair`.
     Printable,
+    /// That, and the result is exact or faithful to the file, or the answer is a refusal.
+    Faithful,
     /// The best result there is, called `partial` when it is not printable.
     BestEffort,
     /// Whatever the operation gives, and nothing is rebuilt; the certificate says what holds. Default of all other
     /// operations.
     None,
+}
+
+impl Require {
+    /// True when P0, P1 and P2 must hold.
+    pub fn is_of_a_solid(self) -> bool {
+        matches!(self, Self::Printable | Self::Faithful)
+    }
 }
 
 /// The length of one unit of the file.
@@ -103,6 +115,18 @@ pub enum Units {
     Metre,
     /// Inch.
     Inch,
+}
+
+impl Units {
+    /// Length of the unit in millimetres.
+    pub fn millimetres(self) -> f64 {
+        match self {
+            Self::Millimetre => 1.0,
+            Self::Centimetre => 10.0,
+            Self::Metre => 1000.0,
+            Self::Inch => 25.4,
+        }
+    }
 }
 
 /// Whether simple holes are filled.
@@ -137,6 +161,8 @@ pub struct Options {
     pub read: ReadOptions,
     /// Unit as the caller stated it; `None`: assumed to be millimetres.
     pub units: Option<Units>,
+    /// Unit of the result; `None`: millimetres for STL, which says none and is read so, that of the file otherwise.
+    pub output_units: Option<Units>,
     /// What the result must be; `None`: the operation's default.
     pub require: Option<Require>,
     /// Hole filling of `repair`.
@@ -223,6 +249,8 @@ pub struct Level {
     pub certificate: Certificate,
     /// How far the surface is from the one that was simplified.
     pub distance: Option<SurfaceDistance>,
+    /// How true it is to the file.
+    pub fidelity: Option<FidelityVerdict>,
 }
 
 /// What became of the file.
@@ -277,6 +305,13 @@ pub enum Refusal {
         /// What was demanded.
         limit: f64,
     },
+    /// A faithful result was demanded, and the closest one is changed.
+    NotFaithful {
+        /// What it changed.
+        changes: Vec<Change>,
+        /// Unit of the distance among them.
+        units: Units,
+    },
     /// A coordinate cannot be written in the output format.
     NotRepresentable {
         /// Which, and why.
@@ -312,6 +347,9 @@ pub struct InputFacts {
     pub units: Units,
     /// True when the caller stated the unit, false when it is assumed.
     pub units_are_stated: bool,
+    /// Unit of the result, and of all lengths, areas, volumes and places of the report but those of the certificate of the
+    /// uploaded bytes.
+    pub result_units: Units,
 }
 
 /// The full account of a run.
@@ -342,6 +380,8 @@ pub struct Report {
     pub distance: Option<SurfaceDistance>,
     /// What a repair lost of the input; `None` where it was not measured.
     pub losses: Option<Losses>,
+    /// How true the result is to the input; `None` without a result.
+    pub fidelity: Option<FidelityVerdict>,
     /// What became of the file; `None` for `analyze` and `verify`.
     pub outcome: Option<Outcome>,
     /// Why there is no result.
@@ -413,7 +453,9 @@ pub fn run(
     options: &Options,
     budget: &Budget,
 ) -> Result<Answer, Failure> {
-    let input = Input::read(bytes, options, budget)?;
+    let mut input = Input::read(bytes, options, budget)?;
+    let in_result_units = input.take_units_of_result(operation, options)?;
+    let options = in_result_units.as_ref().unwrap_or(options);
     let mut answer = match operation {
         Operation::Analyze => input.report(operation, budget)?.into_answer(),
         Operation::Plan => input.planned(operation, budget)?.into_answer(),
@@ -423,10 +465,33 @@ pub fn run(
         Operation::Simplify => simplify::simplify(&input, options, budget)?,
         Operation::CutStitch => cut_stitch::cut_stitch(&input, options, budget)?,
     };
+    if options.require == Some(Require::Faithful) {
+        answer = demand_faithful(answer);
+    }
     if let Some(policy) = &options.policy {
         answer.report.printing = printing::measure(&input, &answer, policy, budget)?;
     }
     answer.report.work_used = budget.work_used();
     answer.report.bytes_peak = budget.bytes_peak();
     Ok(answer)
+}
+
+/// The answer, or a refusal where its result is changed.
+fn demand_faithful(answer: Answer) -> Answer {
+    let changes = answer.report.first_change().map(|fidelity| fidelity.changes.clone());
+    match changes.filter(|_| answer.report.has_result()) {
+        // What was measured stays, so that the report shows what the result would have been.
+        Some(changes) => {
+            let units = answer.report.input.result_units;
+            Report {
+                certificate: None,
+                after: None,
+                levels: Vec::new(),
+                identical_triangle_share: None,
+                ..answer.report
+            }
+            .refused(Refusal::NotFaithful { changes, units })
+        }
+        None => answer,
+    }
 }

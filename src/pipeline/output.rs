@@ -3,7 +3,7 @@
 use super::describe::describe;
 use super::identical::identical_triangle_share;
 use super::input::Input;
-use super::{Answer, Failure, Outcome, Output, Refusal, Report};
+use super::{Answer, Failure, Outcome, Output, Refusal, Report, faithful};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::{self, Certificate, Depth, Examination};
 use crate::formats::{self, Encoding, ReadLimits, ReadOptions, WriteError};
@@ -69,16 +69,18 @@ impl Candidate {
         self,
         input: &Input,
         origins: &[u32],
-        report: Report,
+        mut report: Report,
         outcome: Outcome,
         budget: &Budget,
     ) -> Result<Answer, Stopped> {
+        let fidelity = faithful::judge(&input.soup, &self.soup, origins, &mut report, budget)?;
         let after = describe(&self.soup, &self.examination, &input.analyze_options(), budget)?;
         let share = identical_triangle_share(&input.soup, &self.soup, origins, budget)?;
         let report = Report {
             after: Some(after),
             certificate: Some(self.examination.certificate),
             identical_triangle_share: Some(share),
+            fidelity: Some(fidelity),
             outcome: Some(outcome),
             ..report
         };

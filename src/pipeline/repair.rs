@@ -43,7 +43,7 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
             return fewer.returned(input, &draft, report, Outcome::Simplified, options, budget);
         }
         let report = report.clone().made_by(Vec::new());
-        if encoding == input.facts.encoding {
+        if input.may_come_back_as(encoding) {
             return Ok(input.returned_as_it_is(report, Outcome::Identical));
         }
         match write(&draft, input, encoding, Depth::FirstViolation, budget) {
@@ -183,7 +183,7 @@ fn replay(
             }
         };
     }
-    if steps.is_empty() && encoding == input.facts.encoding {
+    if steps.is_empty() && input.may_come_back_as(encoding) {
         let is_valid = input.examination.certificate.is_printable();
         let outcome = if is_valid { Outcome::Identical } else { Outcome::Partial };
         return Ok(input.returned_as_it_is(report.made_by(Vec::new()), outcome));
@@ -206,7 +206,7 @@ fn replay(
         Err(NoCandidate::Failed(failure)) => return Err(failure),
     };
     if !candidate.certificate().is_printable() {
-        if options.require.unwrap_or(Require::Printable) == Require::Printable {
+        if options.require.unwrap_or(Require::Printable).is_of_a_solid() {
             let witness = candidate.certificate().witnesses.first().cloned();
             let refusal = Refusal::NotRepairable { witness };
             return Ok(Report { actions: attempt.actions, ..report }.refused(refusal));

@@ -6,8 +6,8 @@ use super::output::{Candidate, NoCandidate};
 use super::plan::{Attempt, Step};
 use super::texture::{points_of, texture_of};
 use super::{
-    Action, Answer, Failure, Level, Operation, Options, Outcome, Output, Refusal, Report, Require,
-    SimplifyChoices, VertexColors, priority,
+    Action, Answer, Failure, FidelityVerdict, Level, Operation, Options, Outcome, Output, Refusal, Report,
+    Require, SimplifyChoices, VertexColors, faithful, priority,
 };
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::Depth;
@@ -78,12 +78,17 @@ impl Writer<'_> {
                 Err(NoCandidate::Failed(failure)) => return Err(failure),
             };
             let certificate = candidate.certificate().clone();
-            if self.options.require == Some(Require::Printable) && !certificate.is_printable() {
+            if self.options.require.is_some_and(Require::is_of_a_solid) && !certificate.is_printable() {
                 let witness = certificate.witnesses.first().cloned();
                 return Ok(report.refused(Refusal::NotRepairable { witness }));
             }
             let distance = distance(self.mesh, &result, self.budget)?;
-            report.levels.push(Level { simplified: result.report, certificate, distance });
+            // That of the first is judged when it is returned.
+            let fidelity = match &first {
+                None => None,
+                Some(_) => Some(self.fidelity(&candidate, &result, distance.as_ref(), &report)?),
+            };
+            report.levels.push(Level { simplified: result.report, certificate, distance, fidelity });
             match &first {
                 None => first = Some((candidate, result.triangle_origin)),
                 Some(_) => others.push(Output { encoding: candidate.encoding, bytes: Some(candidate.bytes) }),
@@ -94,8 +99,25 @@ impl Writer<'_> {
         };
         report.distance = report.levels[0].distance;
         let origins: Vec<u32> = origins.iter().map(|&t| self.draft.triangle_origin[t as usize]).collect();
-        let answer = candidate.returned(self.input, &origins, report, Outcome::Simplified, self.budget)?;
+        let mut answer =
+            candidate.returned(self.input, &origins, report, Outcome::Simplified, self.budget)?;
+        answer.report.levels[0].fidelity = answer.report.fidelity.clone();
         Ok(Answer { levels: others, ..answer })
+    }
+
+    /// How true a result is to the file: the manifold that was simplified has the same surface.
+    fn fidelity(
+        &self,
+        candidate: &Candidate,
+        result: &Simplified,
+        distance: Option<&SurfaceDistance>,
+        report: &Report,
+    ) -> Result<FidelityVerdict, Stopped> {
+        let origins: Vec<u32> =
+            result.triangle_origin.iter().map(|&t| self.draft.triangle_origin[t as usize]).collect();
+        let volume = report.before.as_ref().and_then(|analysis| analysis.measures.volume);
+        let (input, budget) = (&self.input.soup, self.budget);
+        Ok(faithful::judge_alone(input, candidate.soup(), &origins, distance, volume, budget)?.0)
     }
 
     fn write(&self, result: &Simplified) -> Result<Candidate, NoCandidate> {
@@ -115,8 +137,8 @@ pub(super) struct Fewer {
     action: Action,
     /// One for each target.
     levels: Vec<Level>,
-    /// The files of further targets.
-    others: Vec<Output>,
+    /// Those of further targets, with the triangles of the draft that theirs were.
+    others: Vec<(Candidate, Vec<u32>)>,
 }
 
 impl Fewer {
@@ -131,14 +153,21 @@ impl Fewer {
         options: &Options,
         budget: &Budget,
     ) -> Result<Answer, Failure> {
-        let Self { candidate, origins, action, levels, others } = self;
-        let origins: Vec<u32> = origins.iter().map(|&t| draft.triangle_origin[t as usize]).collect();
+        let Self { candidate, origins, action, mut levels, others } = self;
+        let of_input = |origins: &[u32]| -> Vec<u32> {
+            origins.iter().map(|&t| draft.triangle_origin[t as usize]).collect()
+        };
+        let origins = of_input(&origins);
         let volume = report.before.as_ref().and_then(|analysis| analysis.measures.volume);
         let solid = budget.stage(Stage::Measure, || {
             Solid::of(&draft.positions, &draft.triangles, options.wrap.open_shells, budget)
         })?;
         let original = Original::new(&input.soup, volume, Some(solid));
         let fidelity = original.measure(candidate.soup(), &origins, budget)?;
+        for (level, (candidate, origins)) in levels.iter_mut().skip(1).zip(&others) {
+            let of_level = original.measure(candidate.soup(), &of_input(origins), budget)?;
+            level.fidelity = Some(of_level.verdict(&input.soup));
+        }
         let of_draft = report.distance.map_or(0.0, |distance| distance.upper());
         let actions = [report.actions, vec![action]].concat();
         let (distance, losses) = (fidelity.distance, Some(fidelity.losses));
@@ -151,8 +180,13 @@ impl Fewer {
         if let Some(refusal) = fidelity.breach(&options.limits).or(too_far) {
             return Ok(Report { levels: Vec::new(), ..report }.refused(refusal));
         }
-        let answer = candidate.returned(input, &origins, report, outcome, budget)?;
-        Ok(Answer { levels: others, ..answer })
+        let mut answer = candidate.returned(input, &origins, report, outcome, budget)?;
+        answer.report.levels[0].fidelity = answer.report.fidelity.clone();
+        let file = |(candidate, _): (Candidate, _)| Output {
+            encoding: candidate.encoding,
+            bytes: Some(candidate.bytes),
+        };
+        Ok(Answer { levels: others.into_iter().map(file).collect(), ..answer })
     }
 }
 
@@ -183,8 +217,12 @@ pub(super) fn of_certified(
             Err(NoCandidate::Failed(failure)) => return Err(failure),
         };
         let distance = distance(&mesh, &result, budget)?;
-        let level =
-            Level { simplified: result.report, certificate: candidate.certificate().clone(), distance };
+        let level = Level {
+            simplified: result.report,
+            certificate: candidate.certificate().clone(),
+            distance,
+            fidelity: None,
+        };
         match &mut fewer {
             None => {
                 let (action, origins) = (action(&result.report), result.triangle_origin);
@@ -192,7 +230,7 @@ pub(super) fn of_certified(
             }
             Some(fewer) => {
                 fewer.levels.push(level);
-                fewer.others.push(Output { encoding, bytes: Some(candidate.bytes) });
+                fewer.others.push((candidate, result.triangle_origin));
             }
         }
     }

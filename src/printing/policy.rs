@@ -87,3 +87,22 @@ pub struct Policy {
     /// Where up is in the machine.
     pub build_direction: Direction,
 }
+
+impl Policy {
+    /// The same limits where a length has `factor` times as many units.
+    pub fn scaled(&self, factor: f64) -> Self {
+        let limit = |limit: Limit| Limit {
+            warning: limit.warning.map(|length| length * factor),
+            error: limit.error.map(|length| length * factor),
+        };
+        let sides = |sides: Option<[f64; 3]>| sides.map(|sides| sides.map(|side| side * factor));
+        let volume = &self.build_volume;
+        Self {
+            wall: limit(self.wall),
+            gap: limit(self.gap),
+            feature: limit(self.feature),
+            build_volume: BuildVolume { warning: sides(volume.warning), error: sides(volume.error) },
+            ..*self
+        }
+    }
+}

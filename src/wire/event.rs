@@ -34,6 +34,6 @@ pub struct StageEvent {
     pub stage: Stage,
     /// What it does.
     pub phase: Phase,
-    /// Share of the passes that are done, from 0 to 1.
+    /// How far the run is, from 0 to 1: it grows with every pass and with the work of each.
     pub fraction: f64,
 }

@@ -7,7 +7,7 @@ use utoipa::ToSchema;
 use super::labels::Labels;
 use super::problem::Problem;
 use super::report::TimingMs;
-use super::words::{Operation, Outcome, Stage, words};
+use super::words::{Fidelity, Operation, Outcome, Stage, words};
 
 words! {
     /// Where a job stands.
@@ -37,10 +37,10 @@ impl JobState {
 /// How far a running job is.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Progress {
-    /// The pass it is in; null before the first one.
+    /// The pass it is in, or was in last; null before the first one.
     #[schema(required)]
     pub stage: Option<Stage>,
-    /// Share of its passes that are done, from 0 to 1.
+    /// How far it is, from 0 to 1: it grows with every pass and with the work of each, and never gets less.
     pub fraction: f64,
 }
 
@@ -94,6 +94,9 @@ pub struct Job {
     /// What became of the file; null unless the job succeeded or was refused.
     #[schema(required)]
     pub outcome: Option<Outcome>,
+    /// How true the result is to the file; null without a result.
+    #[schema(required)]
+    pub fidelity: Option<Fidelity>,
     /// Why it failed; null unless it did.
     #[schema(required)]
     pub problem: Option<Problem>,

@@ -4,10 +4,11 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::certificate::Certificate;
+use super::fidelity::{FidelityChange, fidelity_of};
 use super::mesh_info::finite;
 use super::report::{Change, Distance};
 use super::target::TargetSpec;
-use super::words::Units;
+use super::words::{Fidelity, Units};
 use crate::{pipeline, simplify};
 
 /// One result of a simplification.
@@ -31,6 +32,11 @@ pub struct Level {
     /// How far the result is from the mesh that was simplified; null: not measured.
     #[schema(required)]
     pub distance: Option<Distance>,
+    /// How true the result is to the file; null: not judged.
+    #[schema(required)]
+    pub fidelity: Option<Fidelity>,
+    /// What the result changed; empty unless `fidelity` is `changed`.
+    pub changes: Vec<FidelityChange>,
     /// The bytes of the result, judged.
     pub certificate: Certificate,
 }
@@ -40,6 +46,7 @@ impl Level {
         let report = &inner.simplified;
         let refusals =
             simplify::Refusal::ALL.map(|r| Change { name: r.name(), count: report.refusals.count(r) });
+        let (fidelity, changes) = fidelity_of(inner.fidelity.as_ref(), units);
         Self {
             target: TargetSpec::of(report.target, units.millimetres()),
             is_reached: report.is_reached,
@@ -49,6 +56,8 @@ impl Level {
             refusals: refusals.into_iter().filter(|refusal| refusal.count > 0).collect(),
             error_max: finite(report.error_max),
             distance: inner.distance.as_ref().map(Distance::from),
+            fidelity,
+            changes,
             certificate: Certificate::from(&inner.certificate),
         }
     }

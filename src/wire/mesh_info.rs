@@ -7,7 +7,7 @@ use utoipa::ToSchema;
 use super::mesh_answers::{Proximity, VolumeInterval, Watertight};
 use super::unit_hypothesis::UnitHypothesis;
 use super::words::{DefectCode, ProximityTest, Severity};
-use crate::analysis;
+use crate::{analysis, pipeline};
 
 /// A mesh described.
 #[derive(Debug, Clone, Serialize, ToSchema)]
@@ -170,6 +170,16 @@ impl MeshInfo {
             proximity: inner.proximity.as_ref().map(Proximity::from),
             defects: inner.findings.iter().map(defect).collect(),
         }
+    }
+}
+
+impl MeshInfo {
+    /// The uploaded mesh, with a question where its unit is not known. No hypothesis where lengths are not in that unit.
+    pub(super) fn with_units_of(mut self, input: &pipeline::InputFacts) -> Self {
+        let is_in_file_units = input.units == input.result_units;
+        let told = self.unit_hypothesis.take().filter(|_| is_in_file_units);
+        self.unit_hypothesis = told.map(|told| told.asking(!input.units_are_stated));
+        self
     }
 }
 

@@ -6,6 +6,7 @@
 mod certificate;
 mod edges;
 mod event;
+mod fidelity;
 mod formats;
 mod job;
 mod labels;
@@ -33,6 +34,7 @@ pub(crate) mod sample;
 
 pub use certificate::{Certificate, Claim, Reading, Shell, Violation, ViolationCount};
 pub use event::{Phase, StageEvent, StateEvent};
+pub use fidelity::FidelityChange;
 pub use formats::{FormatInfo, extension_of, format_of_media_type, formats, media_type_of};
 pub use job::{Job, JobList, JobState, Links, Progress};
 pub use labels::{LABELS_MAX, Labels, label_from_text};
@@ -40,6 +42,9 @@ pub use level::Level;
 pub use limits::Limits;
 pub use mesh_answers::{Proximity, TestCounts, VolumeInterval, VolumeMethod, Watertight};
 pub use mesh_info::{Bounds, Counts, Defect, Element, Figure, Measures, MeshInfo, Properties, Witness};
+pub use option_schema::{
+    camel_case, option_parameters, option_schemas, options_object, options_of, with_input,
+};
 pub use options::{OptionError, OptionKind, OptionSpec, Options, SPECS};
 pub use plan::{
     ChosenElement, ChosenFinding, ChosenShell, ElementProposal, Plan, PlanRequest, PlanStep, Proposal,
@@ -64,7 +69,8 @@ pub use webhook::{
     Deliveries, Delivery, DeliveryState, DeliveryTry, WebhookEvent, WebhookMessage, WebhookRequest,
 };
 pub use words::{
-    Across, Condition, Contact, Criterion, Cut, DefectCode, Degenerate, Encoding, FillHoles, Format, Mode,
-    Nesting, OpenShells, Operation, Opposite, Outcome, Placement, ProximityTest, Reader, ReasonCode, Remedy,
-    Require, Severity, ShellFate, Stage, Stitch, StitchValidity, Units, VertexColors,
+    Across, ChangeKind, Condition, Contact, Criterion, Cut, DefectCode, Degenerate, Effort, Encoding,
+    Fidelity, FillHoles, Format, Mode, Nesting, OpenShells, Operation, Opposite, Outcome, Placement,
+    ProximityTest, Reader, ReasonCode, Remedy, Require, Severity, ShellFate, Stage, Stitch, StitchValidity,
+    Units, VertexColors,
 };

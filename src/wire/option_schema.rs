@@ -1,25 +1,38 @@
-//! The table of options in the words of OpenAPI.
+//! The table of options in the words of OpenAPI: each option is one parameter and one schema, which the operations that
+//! take it refer to.
 
 use utoipa::openapi::path::{Parameter, ParameterBuilder, ParameterIn};
-use utoipa::openapi::schema::{
-    AdditionalProperties, AllOfBuilder, ArrayBuilder, ObjectBuilder, Schema, SchemaType, Type,
-};
+use utoipa::openapi::schema::{AdditionalProperties, ArrayBuilder, ObjectBuilder, Schema, SchemaType, Type};
 use utoipa::openapi::{Ref, RefOr, Required};
-use utoipa::{IntoParams, PartialSchema, ToSchema};
+use utoipa::{PartialSchema, ToSchema};
 
 use super::edges::edges_schema;
 use super::options::{OptionKind, OptionSpec, Options, SPECS};
 use super::plan::PlanRequest;
+use super::request::InputRef;
 use super::target::TargetSpec;
+use super::words::Operation;
 
 impl OptionSpec {
-    /// Schema of the value in JSON.
-    fn schema(&self) -> Schema {
+    /// The schema of its value.
+    fn reference(&self) -> Ref {
+        match self.kind {
+            OptionKind::Word { name, .. } => self.described(name),
+            OptionKind::Plan => self.described(&PlanRequest::name()),
+            OptionKind::Input => self.described(&InputRef::name()),
+            _ => Ref::from_schema_name(camel_case(self.name)),
+        }
+    }
+
+    /// A schema that others use too, with what it is for here.
+    fn described(&self, schema: &str) -> Ref {
+        Ref::builder().ref_location_from_schema_name(schema).description(Some(self.about)).build()
+    }
+
+    /// The schema that only this option uses, if there is one.
+    fn own_schema(&self) -> Option<Schema> {
         let described = ObjectBuilder::new().description(Some(self.about));
         let typed = match self.kind {
-            OptionKind::Word(words) => {
-                described.schema_type(Type::String).enum_values(Some(words.iter().copied()))
-            }
             OptionKind::Integer { min, max } => {
                 described.schema_type(Type::Integer).minimum(Some(min as f64)).maximum(Some(max as f64))
             }
@@ -27,62 +40,34 @@ impl OptionSpec {
                 described.schema_type(Type::Number).minimum(Some(min)).maximum(Some(max))
             }
             OptionKind::Flag => described.schema_type(Type::Boolean),
-            OptionKind::Targets => return targets_schema(self.about),
-            OptionKind::Edges => return edges_schema(self.about),
-            OptionKind::Plan => return plan_schema(self.about),
-            OptionKind::Input => described
-                .schema_type(Type::Object)
-                .property(
-                    "job",
-                    ObjectBuilder::new().schema_type(Type::String).description(Some("Id of the job.")),
-                )
-                .required("job")
-                .additional_properties(Some(AdditionalProperties::FreeForm(false))),
+            OptionKind::Targets => return Some(targets_schema(self.about)),
+            OptionKind::Edges => return Some(edges_schema(self.about)),
+            OptionKind::Word { .. } | OptionKind::Plan | OptionKind::Input => return None,
         };
-        Schema::Object(typed.build())
+        Some(Schema::Object(typed.build()))
     }
 
-    /// Schema of the value in a query: as in JSON, but a structured value is its JSON text.
-    fn query_schema(&self) -> Schema {
-        match self.kind {
-            OptionKind::Input => Schema::Object(
-                ObjectBuilder::new()
-                    .schema_type(Type::String)
-                    .pattern(Some(r#"^\{"job":"[0-9a-f-]{36}"\}$"#))
-                    .build(),
+    /// The value in a query: as in JSON, but a structured value is its JSON text.
+    fn query_schema(&self) -> RefOr<Schema> {
+        let (pattern, about) = match self.kind {
+            OptionKind::Input => (r#"^\{"job":"[0-9a-f-]{36}"\}$"#, "JSON text of the object."),
+            OptionKind::Targets => (r#"^\[\{"ratio":0\.[0-9]{1,3}\}\]$"#, "JSON text of the list."),
+            OptionKind::Plan => (
+                r#"^\{"findings":\[\{"code":"boundary-loop","remedy":"(keep|fill)"\}\]\}$"#,
+                "JSON text of the plan.",
             ),
-            OptionKind::Targets => Schema::Object(
-                ObjectBuilder::new()
-                    .schema_type(Type::String)
-                    .pattern(Some(r#"^\[\{"ratio":0\.[0-9]{1,3}\}\]$"#))
-                    .description(Some("JSON text of the list."))
-                    .build(),
-            ),
-            OptionKind::Plan => Schema::Object(
-                ObjectBuilder::new()
-                    .schema_type(Type::String)
-                    .pattern(Some(
-                        r#"^\{"findings":\[\{"code":"boundary-loop","remedy":"(keep|fill)"\}\]\}$"#,
-                    ))
-                    .description(Some("JSON text of the plan."))
-                    .build(),
-            ),
-            OptionKind::Edges => Schema::Object(
-                ObjectBuilder::new()
-                    .schema_type(Type::String)
-                    .pattern(Some(r"^\[\[0,[1-9][0-9]{0,5}\](,\[1,[2-9]\])?\]$"))
-                    .description(Some("JSON text of the list."))
-                    .build(),
-            ),
-            _ => self.schema(),
-        }
+            OptionKind::Edges => (r"^\[\[0,[1-9][0-9]{0,5}\](,\[1,[2-9]\])?\]$", "JSON text of the list."),
+            _ => return RefOr::Ref(self.reference()),
+        };
+        let text = ObjectBuilder::new().schema_type(Type::String).pattern(Some(pattern));
+        RefOr::T(Schema::Object(text.description(Some(about)).build()))
     }
 }
 
-/// A plan, by reference.
-fn plan_schema(about: &str) -> Schema {
-    let plan = RefOr::from(Ref::from_schema_name(PlanRequest::name()));
-    Schema::AllOf(AllOfBuilder::new().description(Some(about)).item(plan).build())
+/// `max_deviation_mm` as `MaxDeviationMm`, `cut-stitch` as `CutStitch`.
+pub fn camel_case(name: &str) -> String {
+    let capital = |word: &str| word[..1].to_uppercase() + &word[1..];
+    name.split(['-', '_']).filter(|word| !word.is_empty()).map(capital).collect()
 }
 
 /// A list of targets, each an object with one member.
@@ -97,50 +82,101 @@ fn targets_schema(about: &str) -> Schema {
     )
 }
 
+/// The schemas that options alone use, by name.
+pub fn option_schemas() -> impl Iterator<Item = (String, Schema)> {
+    SPECS.iter().filter_map(|spec| Some((camel_case(spec.name), spec.own_schema()?)))
+}
+
+/// Every option as a parameter of a query, by name.
+pub fn option_parameters() -> impl Iterator<Item = (&'static str, Parameter)> {
+    let parameter = |spec: &'static OptionSpec| {
+        ParameterBuilder::new()
+            .name(spec.name)
+            .parameter_in(ParameterIn::Query)
+            .required(Required::False)
+            .description(Some(spec.about))
+            .schema(Some(spec.query_schema()))
+            .build()
+    };
+    SPECS.iter().map(move |spec| (spec.name, parameter(spec)))
+}
+
+/// The options that `operation` takes; without one, all of them.
+pub fn options_of(operation: Option<Operation>) -> impl Iterator<Item = &'static OptionSpec> {
+    SPECS.iter().filter(move |spec| operation.is_none_or(|operation| spec.is_taken_by(operation)))
+}
+
+/// A closed object of the options that `operation` takes beside a mesh; without an operation, of all of them.
+pub fn options_object(operation: Option<Operation>) -> ObjectBuilder {
+    let object = ObjectBuilder::new()
+        .schema_type(SchemaType::Type(Type::Object))
+        .description(Some("Options; the same names are query parameters and command-line flags."))
+        .additional_properties(Some(AdditionalProperties::FreeForm(false)));
+    let beside_mesh = options_of(operation).filter(|spec| spec.kind != OptionKind::Input);
+    beside_mesh.fold(object, |object, spec| object.property(spec.name, spec.reference()))
+}
+
+/// `object` without a mesh: it must name the earlier job whose upload is used again.
+pub fn with_input(object: ObjectBuilder) -> ObjectBuilder {
+    let inputs = SPECS.iter().filter(|spec| spec.kind == OptionKind::Input);
+    inputs.fold(object, |object, spec| object.property(spec.name, spec.reference()).required(spec.name))
+}
+
 impl PartialSchema for Options {
     fn schema() -> RefOr<Schema> {
-        RefOr::T(Schema::Object(object_of_options().build()))
+        RefOr::T(Schema::Object(options_object(None).build()))
     }
 }
 
 impl ToSchema for Options {}
 
-/// A closed object with every option as a member.
-pub(super) fn object_of_options() -> ObjectBuilder {
-    let object = ObjectBuilder::new()
-        .schema_type(SchemaType::Type(Type::Object))
-        .description(Some("Options; the same names are query parameters and command-line flags."))
-        .additional_properties(Some(AdditionalProperties::FreeForm(false)));
-    SPECS.iter().fold(object, |object, spec| object.property(spec.name, spec.schema()))
-}
-
-impl IntoParams for Options {
-    fn into_params(parameter_in: impl Fn() -> Option<ParameterIn>) -> Vec<Parameter> {
-        let parameter = |spec: &OptionSpec| {
-            ParameterBuilder::new()
-                .name(spec.name)
-                .parameter_in(parameter_in().unwrap_or(ParameterIn::Query))
-                .required(Required::False)
-                .description(Some(spec.about))
-                .schema(Some(spec.query_schema()))
-                .build()
-        };
-        SPECS.iter().map(parameter).collect()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde_json::{Value, json};
+
+    fn members(operation: Option<Operation>) -> Vec<String> {
+        options_object(operation).build().properties.keys().cloned().collect()
+    }
 
     #[test]
-    fn the_schema_and_the_query_parameters_list_every_option() {
-        let RefOr::T(Schema::Object(object)) = Options::schema() else { panic!("an object") };
-        let params = Options::into_params(|| None);
-        assert_eq!(object.properties.len(), SPECS.len());
-        assert_eq!(
-            params.iter().map(|p| p.name.as_str()).collect::<Vec<_>>(),
-            SPECS.iter().map(|s| s.name).collect::<Vec<_>>()
-        );
+    fn an_operation_lists_the_options_that_it_takes_and_no_other() {
+        assert_eq!(members(None).len(), SPECS.len() - 1, "all but `input`");
+        assert_eq!(option_parameters().count(), SPECS.len());
+        let verify = members(Some(Operation::Verify));
+        assert!(verify.contains(&"samples".to_owned()) && !verify.contains(&"wall_mm".to_owned()));
+        assert!(members(Some(Operation::Repair)).contains(&"wall_mm".to_owned()));
+    }
+
+    #[test]
+    fn every_option_refers_to_a_schema() {
+        let own: Vec<_> = option_schemas().map(|(name, _)| name).collect();
+        for spec in SPECS {
+            let reference = serde_json::to_value(spec.reference()).unwrap();
+            let name = reference["$ref"].as_str().unwrap().rsplit('/').next().unwrap();
+            assert_eq!(own.iter().any(|own| own == name), spec.own_schema().is_some(), "{name}");
+        }
+    }
+
+    #[test]
+    fn words_refer_to_their_type_and_say_what_they_are_for() {
+        let object = serde_json::to_value(options_object(Some(Operation::Convert)).build()).unwrap();
+        let format = &object["properties"]["output_format"];
+        assert_eq!(format["$ref"], "#/components/schemas/Format");
+        assert_eq!(format["description"], "Format of the output. Default: that of the input.");
+    }
+
+    #[test]
+    fn options_without_a_mesh_must_name_an_input() {
+        let object = with_input(options_object(Some(Operation::Verify))).build();
+        let object = serde_json::to_value(object).unwrap();
+        assert_eq!(object["required"], json!(["input"]));
+        assert_ne!(object["properties"]["input"], Value::Null);
+    }
+
+    #[test]
+    fn names_of_options_become_names_of_types() {
+        assert_eq!(camel_case("max_deviation_mm"), "MaxDeviationMm");
+        assert_eq!(camel_case("cut-stitch"), "CutStitch");
     }
 }

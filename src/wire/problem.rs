@@ -19,7 +19,7 @@ words! {
         InvalidParameter = "invalid-parameter",
         /// The body ends early or is cut into parts wrongly.
         BodyIncomplete = "body-incomplete",
-        /// There is no such parameter.
+        /// There is no such parameter, or this operation does not take it.
         UnknownParameter = "unknown-parameter",
         /// No valid key.
         Unauthenticated = "unauthenticated",
@@ -102,7 +102,7 @@ impl ProblemCode {
             Self::UnknownParameter => (
                 400,
                 "Unknown parameter",
-                "There is no `parameter` of this name; `suggestion` is the nearest one there is.",
+                "There is no `parameter` of this name here; `suggestion` is the nearest one there is, `detail` says who takes it.",
             ),
             Self::BodyIncomplete => (
                 400,
@@ -403,9 +403,9 @@ impl From<&ReadError> for Problem {
         let of = |code| Self::new(code, error.to_string());
         let problem = match &error.kind {
             ReadErrorKind::Empty => of(ProblemCode::MeshEmpty),
-            ReadErrorKind::UnknownFormat | ReadErrorKind::Unparseable { .. } => {
-                of(ProblemCode::MeshUnparseable)
-            }
+            ReadErrorKind::UnknownFormat
+            | ReadErrorKind::Foreign { .. }
+            | ReadErrorKind::Unparseable { .. } => of(ProblemCode::MeshUnparseable),
             ReadErrorKind::Truncated => of(ProblemCode::MeshTruncated),
             ReadErrorKind::TooLarge { limit_name, limit, actual, .. } => {
                 of(ProblemCode::MeshTooLarge).with_limit(limit_name, *limit, Some(*actual))

@@ -28,6 +28,9 @@ pub struct Report {
     /// The mesh as uploaded; null: not analyzed.
     #[schema(required)]
     pub before: Option<MeshInfo>,
+    /// Unit of the result, and of every length, area, volume and place of this report but those in `input_certificate`:
+    /// where this says "unit of the file", and the result has another unit, it is this one.
+    pub output_units: Units,
     /// What may be done about each defect, and the steps that made the result: to be edited and given to `repair` as
     /// `plan`; null for operations other than `plan` and `repair`.
     #[schema(required)]
@@ -143,6 +146,10 @@ pub struct Deviation {
     /// measured.
     #[schema(required)]
     pub hidden_area: Option<f64>,
+    /// Share of the surface of the result, from 0 to 1, that is farther from the input than 0.2 % of the diagonal, by
+    /// sampling; null: not measured.
+    #[schema(required)]
+    pub invented: Option<f64>,
     /// Bodies of the input that can be seen and are lost as a whole; null: not measured.
     #[schema(required)]
     pub bodies_lost: Option<u32>,
@@ -249,24 +256,26 @@ impl Report {
     /// The public form of the engine's report, with the times that the caller measured.
     pub fn new(inner: &pipeline::Report, timing_ms: TimingMs) -> Self {
         let remaining = remaining_of(inner);
+        let units = Units::from(inner.input.result_units);
         Self {
             schema: super::REPORT_SCHEMA,
             operation: inner.operation.into(),
             engine: EngineInfo { name: super::ENGINE_NAME, version: super::ENGINE_VERSION },
             input: InputInfo::from(&inner.input),
-            before: inner.before.as_ref().map(|mesh| MeshInfo::new(mesh, remaining)),
+            output_units: units,
+            before: inner
+                .before
+                .as_ref()
+                .map(|mesh| MeshInfo::new(mesh, remaining).with_units_of(&inner.input)),
             plan: inner.plan.as_ref().map(Plan::from),
             actions: inner.actions.iter().map(Action::from).collect(),
-            levels: inner.levels.iter().map(|level| Level::new(level, inner.input.units.into())).collect(),
+            levels: inner.levels.iter().map(|level| Level::new(level, units)).collect(),
             after: inner.after.as_ref().map(|mesh| MeshInfo::new(mesh, None)),
             deviation: Deviation::of(inner),
             verdict: Verdict::of(inner),
             input_certificate: Certificate::from(&inner.input_certificate),
             certificate: inner.certificate.as_ref().map(Certificate::from),
-            printing: inner
-                .printing
-                .as_ref()
-                .map(|printing| Printing::new(printing, Units::from(inner.input.units).millimetres())),
+            printing: inner.printing.as_ref().map(|printing| Printing::new(printing, units.millimetres())),
             timing_ms,
             resources: Resources { work_units: inner.work_used, charged_bytes_peak: inner.bytes_peak },
         }
@@ -316,6 +325,7 @@ impl Deviation {
             volume_change_share: inner.losses.and_then(|losses| finite(losses.volume_change?)),
             visible_loss: inner.losses.and_then(|losses| finite(losses.visible_loss)),
             hidden_area: inner.losses.and_then(|losses| finite(losses.hidden_area)),
+            invented: inner.losses.and_then(|losses| finite(losses.invented)),
             bodies_lost: inner.losses.map(|losses| losses.bodies_lost),
             identical_triangle_share: inner.identical_triangle_share.and_then(finite),
         }
@@ -365,6 +375,7 @@ mod tests {
             "engine",
             "input",
             "before",
+            "output_units",
             "plan",
             "actions",
             "levels",
@@ -390,11 +401,15 @@ mod tests {
                     "volume_change_share",
                     "visible_loss",
                     "hidden_area",
+                    "invented",
                     "bodies_lost",
                     "identical_triangle_share"
                 ]
             );
-            assert_eq!(members(&report["verdict"]), ["printable", "outcome", "reasons"]);
+            assert_eq!(
+                members(&report["verdict"]),
+                ["printable", "outcome", "fidelity", "changes", "p3_holds", "p3_breaches", "reasons"]
+            );
             assert_eq!(
                 members(&report["timing_ms"]),
                 ["read", "analyze", "repair", "simplify", "write", "certify", "measure", "total"]
@@ -440,7 +455,12 @@ mod tests {
         assert_eq!(codes, ["not-repairable", "condition-broken"]);
         assert_eq!(refused["reasons"][1]["condition"], "two-triangles-per-edge");
         let repaired = &json_of(&sample::repaired())["verdict"];
-        assert_eq!(repaired, &json!({"printable": true, "outcome": "repaired", "reasons": []}));
+        assert_eq!((&repaired["printable"], &repaired["outcome"]), (&json!(true), &json!("repaired")));
+        assert_eq!((&repaired["reasons"], &repaired["p3_holds"]), (&json!([]), &Value::Null));
+        let changes: Vec<_> =
+            repaired["changes"].as_array().unwrap().iter().map(|change| &change["reason"]).collect();
+        assert_eq!((&repaired["fidelity"], changes), (&json!("changed"), vec![&json!("invented")]));
+        assert_eq!(refused["fidelity"], Value::Null);
     }
 
     #[test]

@@ -2,12 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use utoipa::openapi::RefOr;
-use utoipa::openapi::schema::{ObjectBuilder, Schema, Type};
+use utoipa::openapi::schema::{ObjectBuilder, Schema};
+use utoipa::openapi::{Ref, RefOr};
 use utoipa::{PartialSchema, ToSchema};
 
 use super::labels::{Labels, about_labels, labels_from_json, labels_schema};
-use super::option_schema::object_of_options;
+use super::option_schema::options_object;
 use super::options::{Options, nearest};
 use super::problem::{Problem, ProblemCode};
 use super::webhook::WebhookRequest;
@@ -140,19 +140,21 @@ fn about_operation(detail: &str, suggestion: Option<&'static str>) -> Problem {
     }
 }
 
-impl PartialSchema for JobRequest {
-    fn schema() -> RefOr<Schema> {
-        let operation = ObjectBuilder::new()
-            .schema_type(Type::String)
-            .description(Some("What to do, unless the query or another part of the form says it."))
-            .enum_values(Some(Operation::WORDS.iter().copied()));
-        let object = object_of_options()
+impl JobRequest {
+    /// The schema of a request, which comes beside a mesh.
+    pub fn object() -> ObjectBuilder {
+        options_object(None)
             .description(Some("What to do, with options, which may also stand together in `params`."))
-            .property("operation", operation)
+            .property("operation", Ref::from_schema_name(Operation::name()))
             .property("webhook", WebhookRequest::schema())
             .property("labels", labels_schema())
-            .property("params", Options::schema());
-        RefOr::T(Schema::Object(object.build()))
+            .property("params", Ref::from_schema_name(Options::name()))
+    }
+}
+
+impl PartialSchema for JobRequest {
+    fn schema() -> RefOr<Schema> {
+        RefOr::T(Schema::Object(Self::object().build()))
     }
 }
 

@@ -6,7 +6,10 @@ use crate::analysis::{
 use crate::certificate::{Certificate, Condition, Reading, Shell, Violation, ViolationCounts};
 use crate::formats::Encoding;
 use crate::geom::{Aabb, DVec3};
-use crate::pipeline::{Action, Answer, InputFacts, Operation, Outcome, Output, Refusal, Report, Units};
+use crate::pipeline::{
+    Action, Answer, Change, ChangeKind, Fidelity, FidelityVerdict, InputFacts, Operation, Outcome, Output,
+    Refusal, Report, Units,
+};
 
 /// The certificate of a tetrahedron, or of one that lacks a face.
 fn certificate(is_valid: bool) -> Certificate {
@@ -85,6 +88,7 @@ pub(crate) fn repaired() -> Answer {
             sha256: [0xab; 32],
             units: Units::Millimetre,
             units_are_stated: false,
+            result_units: Units::Millimetre,
         },
         before: Some(analysis(1)),
         input_certificate: certificate(false),
@@ -102,6 +106,10 @@ pub(crate) fn repaired() -> Answer {
         identical_triangle_share: Some(1.0),
         distance: None,
         losses: None,
+        fidelity: Some(FidelityVerdict {
+            word: Fidelity::Changed,
+            changes: vec![Change { kind: ChangeKind::Invented, measured: 0.5, limit: 0.01 }],
+        }),
         outcome: Some(Outcome::Repaired),
         refusal: None,
         printing: None,
@@ -122,6 +130,7 @@ pub(crate) fn identical() -> Answer {
         actions: Vec::new(),
         after: None,
         outcome: Some(Outcome::Identical),
+        fidelity: Some(FidelityVerdict { word: Fidelity::Exact, changes: Vec::new() }),
         ..report
     };
     Answer { report, output: output.map(|output| Output { bytes: None, ..output }), levels }
@@ -136,6 +145,7 @@ pub(crate) fn refused() -> Answer {
         certificate: None,
         identical_triangle_share: None,
         outcome: Some(Outcome::Refused),
+        fidelity: None,
         refusal: Some(Refusal::NotRepairable { witness }),
         ..report
     };

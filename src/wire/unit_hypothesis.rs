@@ -22,6 +22,9 @@ pub struct UnitHypothesis {
     pub plausible: Vec<Units>,
     /// Why, in a sentence.
     pub reason: String,
+    /// What to ask whoever made the file; null: the unit is stated, or there is little doubt.
+    #[schema(required)]
+    pub question: Option<String>,
 }
 
 impl UnitHypothesis {
@@ -34,10 +37,7 @@ impl UnitHypothesis {
         let in_mm = |unit: &Units| longest * unit.millimetres();
         let plausible: Vec<Units> =
             Units::ALL.iter().copied().filter(|unit| PRINTED_MM.contains(&in_mm(unit))).collect();
-        let oddity = |unit: &&Units| {
-            let ratio = in_mm(unit) / TYPICAL_MM;
-            ratio.max(1.0 / ratio)
-        };
+        let oddity = |unit: &&Units| oddity(in_mm(unit));
         let unit = if plausible.contains(&Units::Millimetre) {
             Some(Units::Millimetre)
         } else {
@@ -60,8 +60,43 @@ impl UnitHypothesis {
                 figure(longest)
             ),
         };
-        Some(Self { unit, plausible, reason })
+        let question = is_doubtful(longest, &plausible).then(|| question(longest, &plausible));
+        Some(Self { unit, plausible, reason, question })
     }
+
+    /// Without the question where nobody is to be asked.
+    pub(super) fn asking(self, asks: bool) -> Self {
+        Self { question: self.question.filter(|_| asks), ..self }
+    }
+}
+
+/// How many times as large or small as is typical.
+fn oddity(longest_mm: f64) -> f64 {
+    let ratio = longest_mm / TYPICAL_MM;
+    ratio.max(1.0 / ratio)
+}
+
+/// Sizes in millimetres up to this many times smaller or larger than typical ones are not asked about: 20 mm to 500 mm.
+const USUAL: f64 = 5.0;
+
+/// True when the size is unusual in millimetres, and more usual in another unit.
+fn is_doubtful(longest: f64, plausible: &[Units]) -> bool {
+    let in_mm = oddity(longest);
+    in_mm > USUAL && plausible.iter().any(|unit| oddity(longest * unit.millimetres()) < in_mm)
+}
+
+fn question(longest: f64, plausible: &[Units]) -> String {
+    let sizes: Vec<String> = plausible
+        .iter()
+        .map(|&unit| match unit {
+            Units::Millimetre => format!("{} mm", figure(longest)),
+            unit => format!("{} mm (if the unit is {unit})", figure(longest * unit.millimetres())),
+        })
+        .collect();
+    format!(
+        "No unit is stated: is the longest side {}? Say so with `units`; without it the file is taken in millimetres.",
+        sizes.join(" or ")
+    )
 }
 
 fn name(unit: Units) -> &'static str {
@@ -99,6 +134,16 @@ mod tests {
             small.reason
         );
         assert_eq!(of(1.5).unwrap().unit, Some(Units::Inch));
+    }
+
+    #[test]
+    fn an_unusual_size_is_asked_about_and_a_usual_one_is_not() {
+        let asked = of(5.0).unwrap().question.unwrap();
+        assert!(asked.contains("5 mm or 50 mm (if the unit is cm) or 127 mm (if the unit is in)"), "{asked}");
+        assert_eq!(of(5.0).unwrap().asking(false).question, None);
+        assert_eq!(of(80.0).unwrap().question, None);
+        assert!(of(0.12).unwrap().question.is_some(), "too small to print in millimetres");
+        assert_eq!(of(1e9).unwrap().question, None);
     }
 
     #[test]

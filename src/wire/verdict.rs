@@ -3,8 +3,10 @@
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::words::{Condition, Outcome, ReasonCode};
-use crate::{certificate as judge, pipeline};
+use super::fidelity::{FidelityChange, fidelity_of};
+use super::printing::CheckCode;
+use super::words::{Condition, Fidelity, Outcome, ReasonCode, Units};
+use crate::{certificate as judge, pipeline, printing};
 
 /// The conclusion.
 #[derive(Debug, Clone, Serialize, ToSchema)]
@@ -14,6 +16,16 @@ pub struct Verdict {
     /// What became of the file; null: the operation returns no file.
     #[schema(required)]
     pub outcome: Option<Outcome>,
+    /// How true the result is to the file; null: there is no result.
+    #[schema(required)]
+    pub fidelity: Option<Fidelity>,
+    /// What the result changed, bodies and loss first; empty unless `fidelity` is `changed`.
+    pub changes: Vec<FidelityChange>,
+    /// P3: it can be made with the process that `policy` names; null: none is named, or it cannot be told.
+    #[schema(required)]
+    pub p3_holds: Option<bool>,
+    /// Checks of that policy that are errors.
+    pub p3_breaches: Vec<CheckCode>,
     /// Why it is not printable or was refused; empty otherwise.
     pub reasons: Vec<Reason>,
 }
@@ -34,9 +46,17 @@ impl Verdict {
     pub(super) fn of(inner: &pipeline::Report) -> Self {
         let judged = inner.certificate.as_ref().unwrap_or(&inner.input_certificate);
         let refusal = inner.refusal.iter().map(Reason::from);
+        let printing = inner.printing.as_ref().map(|measured| &measured.printing);
+        let checks = printing.map_or(&[][..], |printing| &printing.checks);
+        let broken = checks.iter().filter(|check| check.status == Some(printing::Status::Error));
+        let (fidelity, changes) = fidelity_of(inner.fidelity.as_ref(), inner.input.result_units.into());
         Self {
             printable: judged.is_printable(),
             outcome: inner.outcome.map(Outcome::from),
+            fidelity: fidelity.filter(|_| inner.certificate.is_some()),
+            changes,
+            p3_holds: printing.and_then(printing::Printing::holds),
+            p3_breaches: broken.map(|check| check.code.into()).collect(),
             reasons: refusal.chain(broken_conditions(judged)).collect(),
         }
     }
@@ -101,6 +121,16 @@ impl From<&pipeline::Refusal> for Reason {
                     limit * 100.0
                 ),
             ),
+            pipeline::Refusal::NotFaithful { changes, units } => {
+                let unit = Units::from(*units);
+                let told: Vec<_> =
+                    changes.iter().map(|change| FidelityChange::new(change, unit).message).collect();
+                (
+                    ReasonCode::NotFaithful,
+                    None,
+                    format!("the closest valid result is not faithful to the file: {}", told.join("; ")),
+                )
+            }
             pipeline::Refusal::NotRepresentable { reason } => {
                 (ReasonCode::NotRepresentable, None, reason.to_string())
             }

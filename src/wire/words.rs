@@ -2,6 +2,17 @@
 
 use crate::{analysis, budget, certificate, formats, mesh, pipeline, repair, simplify, winding};
 
+/// An enumeration whose values have public words, as options see it.
+pub(super) trait Word: Sized {
+    /// Name of its schema.
+    const NAME: &'static str;
+    /// The words of all values.
+    const ALL_WORDS: &'static [&'static str];
+
+    /// The value of this word.
+    fn of_word(word: &str) -> Option<Self>;
+}
+
 /// An enumeration whose values have public words.
 macro_rules! words {
     ($(#[doc = $description:literal])+ $name:ident {
@@ -29,6 +40,15 @@ macro_rules! words {
         }
 
         impl utoipa::ToSchema for $name {}
+
+        impl $crate::wire::words::Word for $name {
+            const NAME: &'static str = stringify!($name);
+            const ALL_WORDS: &'static [&'static str] = Self::WORDS;
+
+            fn of_word(word: &str) -> Option<Self> {
+                Self::from_word(word)
+            }
+        }
 
         impl $name {
             /// Every value.
@@ -106,6 +126,19 @@ mirror! { pipeline::Operation =>
     }
 }
 
+impl Operation {
+    /// Those whose product is a mesh.
+    pub const WITH_MESH: &'static [Self] = &[Self::Repair, Self::Convert, Self::Simplify, Self::CutStitch];
+    /// Those that describe the mesh.
+    pub const DESCRIBING: &'static [Self] =
+        &[Self::Analyze, Self::Plan, Self::Repair, Self::Convert, Self::Simplify, Self::CutStitch];
+
+    /// True when its product is a mesh.
+    pub fn makes_mesh(self) -> bool {
+        Self::WITH_MESH.contains(&self)
+    }
+}
+
 mirror! { formats::Format =>
     /// A file format.
     Format {
@@ -169,12 +202,7 @@ mirror! { pipeline::Units =>
 impl Units {
     /// Length of the unit in millimetres.
     pub fn millimetres(self) -> f64 {
-        match self {
-            Self::Millimetre => 1.0,
-            Self::Centimetre => 10.0,
-            Self::Metre => 1000.0,
-            Self::Inch => 25.4,
-        }
+        pipeline::Units::from(self).millimetres()
     }
 }
 
@@ -183,6 +211,8 @@ mirror! { pipeline::Require =>
     Require {
         /// A valid solid, or a refusal.
         Printable = "printable",
+        /// A valid solid that is exact or faithful to the file, or a refusal.
+        Faithful = "faithful",
         /// The best there is, called `partial` when it is not printable.
         BestEffort = "best_effort",
         /// Whatever the operation gives; the certificate says what holds.
@@ -434,6 +464,34 @@ mirror! { pipeline::Outcome =>
     }
 }
 
+mirror! { pipeline::Fidelity =>
+    /// How true a result is to its file.
+    Fidelity {
+        /// The same surface; no vertex moved.
+        Exact = "exact",
+        /// Nothing is lost, invented or moved beyond bounds that are stated.
+        Faithful = "faithful",
+        /// A bound is exceeded; the verdict says which.
+        Changed = "changed",
+    }
+}
+
+mirror! { pipeline::ChangeKind =>
+    /// What of a file a result changed beyond a bound.
+    ChangeKind {
+        /// Share of the visible surface of the file that is lost.
+        Lost = "lost",
+        /// Share of the surface of the result that the file does not have.
+        Invented = "invented",
+        /// Largest distance between result and file, in the unit of the file.
+        Moved = "moved",
+        /// Number of bodies that are lost as a whole.
+        Bodies = "bodies",
+        /// Share by which the volume changed.
+        Volume = "volume",
+    }
+}
+
 mirror! { budget::Stage =>
     /// A pass of the engine.
     Stage {
@@ -591,6 +649,8 @@ words! {
         NotRepresentable = "not-representable",
         /// No result keeps the caller's own limits.
         LimitExceeded = "limit-exceeded",
+        /// No result is exact or faithful, as the caller demands.
+        NotFaithful = "not-faithful",
         /// A condition of P0, P1 or P2 does not hold in the judged bytes.
         ConditionBroken = "condition-broken",
     }
@@ -634,6 +694,8 @@ mod tests {
             StitchValidity::WORDS,
             Degenerate::WORDS,
             Outcome::WORDS,
+            Fidelity::WORDS,
+            ChangeKind::WORDS,
             Stage::WORDS,
             Severity::WORDS,
             DefectCode::WORDS,

@@ -22,6 +22,7 @@ mod solids;
 
 mod bad_input;
 mod cut_stitch;
+mod fidelity;
 #[cfg(feature = "server")]
 mod fixtures;
 mod operations;
@@ -32,3 +33,4 @@ mod repair;
 mod simplify;
 mod simplify_real_files;
 mod stray_faces;
+mod units;

@@ -1,5 +1,6 @@
 //! What the service says about itself, and its pages.
 
+use crate::meshes::SOLID;
 use crate::server::{Server, header};
 use serde_json::Value;
 use std::process::Command;
@@ -77,4 +78,28 @@ fn the_health_check_asks_the_admin_listener() {
     // The public listener does not know the question.
     assert!(!check(&server.address));
     assert!(!check("off"));
+}
+
+#[test]
+fn the_contract_is_there_as_json_and_compressed_for_those_who_take_it() {
+    let server = Server::start();
+    let plain: Value = server.get("/openapi.json").send().unwrap().json().unwrap();
+    assert_eq!(plain["info"]["title"], "Meshmend");
+    for path in ["/openapi.json", "/openapi.yaml"] {
+        let whole = server.get(path).send().unwrap().bytes().unwrap().len();
+        let packed = server.get(path).header("accept-encoding", "gzip").send().unwrap();
+        assert_eq!(packed.headers()["content-encoding"], "gzip", "{path}");
+        assert!(packed.bytes().unwrap().len() * 5 < whole, "{path}");
+    }
+}
+
+#[test]
+fn a_path_with_a_slash_at_its_end_is_answered_with_the_one_without() {
+    let server = Server::start();
+    let (status, code, problem) =
+        crate::server::problem(server.post("/v1/repair/").body(SOLID).send().unwrap());
+    assert_eq!((status, &*code, &problem["suggestion"]), (404, "not-found", &"/v1/repair".into()));
+    let icon = server.get("/favicon.ico").send().unwrap();
+    assert_eq!(icon.status(), 200);
+    assert_eq!(icon.headers()["content-type"], "image/svg+xml");
 }

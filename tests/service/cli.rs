@@ -104,14 +104,13 @@ fn exit_codes_say_what_happened() {
         (0, &["analyze", "solid.off"]),
         (0, &["analyze", "open.off"]),
         (0, &["plan", "open.off"]),
-        (0, &["analyze", "crossing.off", "--require", "best_effort"]),
-        (0, &["analyze", "solid.off", "--require", "printable"]),
         (0, &["verify", "solid.off"]),
         (0, &["repair", "solid.off", "-o", "out.off"]),
         (0, &["repair", "open.off", "-o", "out.stl"]),
         (0, &["convert", "solid.off", "-o", "out.ply"]),
         (0, &["convert", "open.off", "-o", "out.obj"]),
-        (1, &["analyze", "open.off", "--require", "printable"]),
+        (1, &["repair", "open.off", "-o", "out.off", "--require", "faithful"]),
+        (0, &["repair", "solid.off", "-o", "out.off", "--require", "faithful"]),
         (1, &["convert", "open.off", "-o", "out.stl", "--require", "printable"]),
         (1, &["verify", "open.off"]),
         (1, &["verify", "crossing.off"]),
@@ -125,6 +124,8 @@ fn exit_codes_say_what_happened() {
         (2, &["analyze", "noise.stl"]),
         (2, &["analyze", "empty.obj"]),
         (2, &["analyze", "solid.off", "--unknown"]),
+        (2, &["analyze", "solid.off", "--require", "printable"]),
+        (2, &["repair", "open.off", "-o", "out.off", "--wall-mm", "-1"]),
         (2, &["analyze", "solid.off", "--units", "parsec"]),
         (2, &["analyze", "solid.off", "--samples", "many"]),
         (2, &["frobnicate", "solid.off"]),
@@ -162,12 +163,41 @@ fn a_command_without_arguments_prints_a_short_help() {
 }
 
 #[test]
+fn the_first_line_says_what_a_customer_must_know() {
+    let desk = Desk::new();
+    let first = |args: &[&str]| stdout(&desk.run(args)).lines().next().unwrap_or_default().to_owned();
+    let line = first(&["repair", "open.off", "-o", "out.off"]);
+    assert!(line.starts_with("verdict: repaired, printable: a valid solid; changed: "), "{line}");
+    assert!(line.contains(" % of the surface is invented (faithful: at most 1 %)"), "{line}");
+    let line = first(&["repair", "solid.off", "-o", "out.off", "--policy", "sls"]);
+    assert!(line.starts_with("verdict: identical, printable: a valid solid; exact; sls holds"), "{line}");
+    let line = first(&["analyze", "open.off"]);
+    assert!(line.starts_with("verdict: not printable; "), "{line}");
+}
+
+#[test]
+fn the_help_of_an_operation_lists_its_options_only() {
+    let desk = Desk::new();
+    let help = |command: &str| stdout(&desk.run(&[command, "--help"]));
+    assert!(help("repair").contains("--wall-mm") && !help("verify").contains("--wall-mm"));
+    assert!(help("cut-stitch").contains("--stitch ") && !help("repair").contains("--stitch "));
+}
+
+#[test]
 fn a_misspelt_flag_value_or_command_is_answered_with_the_nearest_one() {
     let desk = Desk::new();
     for (args, hint) in [
         (&["analyse", "solid.off"][..], "'analyze'"),
         (&["analyze", "solid.off", "--unit", "mm"], "'--units'"),
-        (&["analyze", "solid.off", "--require", "printible"], "'printable'"),
+        (&["convert", "solid.off", "-o", "out.stl", "--require", "printible"], "'printable'"),
+        (
+            &["verify", "solid.off", "--wall-mm", "1"],
+            "`verify` takes no `wall_mm`; it is an option of repair",
+        ),
+        (
+            &["repair", "open.off", "-o", "out.off", "--wall-mm", "-1"],
+            "`wall_mm` cannot be `-1`; expected a number from 0",
+        ),
         (&["serve", "--admin-listn", "off"], "'--admin-listen'"),
     ] {
         let output = desk.run(args);

@@ -24,7 +24,17 @@ fn every_curl_line_of_the_documentation_works() {
     let page = std::fs::read_to_string(page).unwrap();
     let blocks = blocks(&page);
     assert!(blocks.len() > 10);
-    let server = Server::with(&["--webhooks", "--upload-bytes-max", "64MiB", "--webhook-attempts-max", "1"]);
+    run(&blocks, &["--webhooks", "--upload-bytes-max", "64MiB", "--webhook-attempts-max", "1"]);
+}
+
+#[test]
+fn every_curl_line_of_the_documentation_works_on_a_server_with_its_defaults() {
+    let page = include_str!("../../docs/http.md");
+    run(&blocks(page), &[]);
+}
+
+fn run(blocks: &[&str], settings: &[&str]) {
+    let server = Server::with(settings);
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in [("part.stl", STL), ("part.obj", OBJ), ("part.mtl", MTL)] {
         std::fs::write(folder.path().join(name), text).unwrap();

@@ -233,3 +233,44 @@ fn a_plan_is_asked_for_edited_and_given_back_and_the_steps_of_a_repair_run_again
     assert!(report["plan"]["steps"].as_array().unwrap().iter().any(|step| step["step"] == "fill-holes"));
     assert_eq!(repair(OPEN, &report["plan"], "printable").text().unwrap(), filled);
 }
+
+#[test]
+fn how_true_a_result_is_stands_in_the_header_the_job_and_the_report() {
+    let server = Server::start();
+    let repaired = server.post("/v1/repair").body(OPEN).send().unwrap();
+    assert_eq!(repaired.headers()["meshmend-fidelity"], "changed");
+    let same = server.post("/v1/repair").body(SOLID).send().unwrap();
+    assert_eq!(same.headers()["meshmend-fidelity"], "exact");
+    let report: Value = server
+        .post("/v1/repair")
+        .header("accept", "application/json")
+        .body(OPEN)
+        .send()
+        .unwrap()
+        .json()
+        .unwrap();
+    assert_eq!(report["verdict"]["fidelity"], "changed");
+    let reasons: Vec<_> =
+        report["verdict"]["changes"].as_array().unwrap().iter().map(|c| &c["reason"]).collect();
+    assert!(reasons.contains(&&"invented".into()), "{reasons:?}");
+    let (status, code, problem) =
+        crate::server::problem(server.post("/v1/repair?require=faithful").body(OPEN).send().unwrap());
+    assert_eq!((status, &*code), (422, "not-repairable"));
+    assert!(problem["detail"].as_str().unwrap().contains("is not faithful to the file"), "{problem}");
+}
+
+#[test]
+fn an_option_that_the_operation_does_not_take_is_refused_wherever_it_stands() {
+    let server = Server::start();
+    for request in [
+        server.post("/v1/verify?wall_mm=1").body(SOLID),
+        server.post("/v1/jobs?operation=verify&wall_mm=1").body(SOLID),
+        server.post("/v1/verify").multipart(
+            reqwest::blocking::multipart::Form::new().text("mesh", SOLID).text("params", r#"{"wall_mm":1}"#),
+        ),
+    ] {
+        let (status, code, problem) = crate::server::problem(request.send().unwrap());
+        assert_eq!((status, &*code, &problem["parameter"]), (400, "unknown-parameter", &"wall_mm".into()));
+        assert!(problem["detail"].as_str().unwrap().contains("it is an option of repair"), "{problem}");
+    }
+}

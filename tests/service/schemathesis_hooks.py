@@ -18,9 +18,8 @@ schemathesis.openapi.media_type("model/stl", meshes("stl"))
 schemathesis.openapi.media_type("model/obj", meshes("obj"))
 schemathesis.openapi.media_type("text/off", meshes("off"))
 schemathesis.openapi.media_type("application/x-ply", meshes("ply"))
-# Without a name the content tells the format; curl sends the last one unless told otherwise.
-for media_type in ["application/octet-stream", "application/x-www-form-urlencoded"]:
-    schemathesis.openapi.media_type(media_type, meshes("stl", "obj", "off", "ply"))
+# Without a name the content tells the format.
+schemathesis.openapi.media_type("application/octet-stream", meshes("stl", "obj", "off", "ply"))
 
 
 # At most one of these may be given.

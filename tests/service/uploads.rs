@@ -335,3 +335,53 @@ fn a_body_with_broken_chunks_is_a_problem() {
     let answer = line.hear_all();
     assert!(answer.starts_with("HTTP/1.1 400 ") && answer.contains("body-incomplete"), "{answer}");
 }
+
+#[test]
+fn a_part_named_file_is_the_mesh() {
+    let server = Server::start();
+    let form = Form::new().part("file", mesh());
+    let report: Value = server.post("/v1/verify").multipart(form).send().unwrap().json().unwrap();
+    assert_eq!(report["verdict"]["printable"], true);
+    let (_, code, problem) =
+        refused(&server, "/v1/verify", Form::new().part("file", mesh()).part("mesh", mesh()));
+    assert_eq!((&*code, &problem["parameter"]), ("invalid-parameter", &json!("mesh")));
+}
+
+/// `text` as gzip without compression: one stored block.
+fn gzip(text: &[u8]) -> Vec<u8> {
+    let crc = !text.iter().fold(!0u32, |crc, &byte| {
+        (0..8).fold(crc ^ u32::from(byte), |crc, _| (crc >> 1) ^ (0xedb8_8320 & (crc & 1).wrapping_neg()))
+    });
+    let len = u16::try_from(text.len()).unwrap();
+    let mut bytes = vec![0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 255, 1];
+    bytes.extend([len, !len].iter().flat_map(|n| n.to_le_bytes()));
+    bytes.extend_from_slice(text);
+    bytes.extend([crc, u32::from(len)].iter().flat_map(|n| n.to_le_bytes()));
+    bytes
+}
+
+#[test]
+fn a_compressed_body_is_taken_and_counts_by_what_it_holds() {
+    let server = Server::with(&["--upload-bytes-max", "1KiB"]);
+    let send = |body: Vec<u8>, encoding: &str| {
+        server.post("/v1/verify").header("content-encoding", encoding).body(body).send().unwrap()
+    };
+    let report: Value = send(gzip(SOLID.as_bytes()), "gzip").json().unwrap();
+    assert_eq!(
+        (&report["verdict"]["printable"], &report["input"]["bytes"]),
+        (&json!(true), &json!(SOLID.len()))
+    );
+    let large = [SOLID.as_bytes(), &[b'#'; 2000]].concat();
+    assert_eq!(problem(send(gzip(&large), "gzip")).1, "body-too-large");
+    assert_eq!(problem(send(gzip(SOLID.as_bytes())[..40].to_vec(), "gzip")).1, "body-incomplete");
+    let (status, code, told) = problem(send(SOLID.into(), "br"));
+    assert_eq!(
+        (status, &*code, &told["allowed"]),
+        (415, "unsupported-media-type", &json!(["gzip", "identity"]))
+    );
+    // Compressed by its maker and not said to be so.
+    let (status, code, told) =
+        problem(server.post("/v1/verify").body(gzip(SOLID.as_bytes())).send().unwrap());
+    assert_eq!((status, &*code), (422, "mesh-unparseable"));
+    assert!(told["detail"].as_str().unwrap().contains("this is gzip, which is not read here"), "{told}");
+}

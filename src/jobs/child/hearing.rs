@@ -63,6 +63,7 @@ impl Hearing {
             Message::Confined(_) => return Err(Garbled),
             Message::Enter(stage) => hear(Event::Enter(stage.into())),
             Message::Leave(stage) => hear(Event::Leave(stage.into())),
+            Message::Work(units) => hear(Event::Work(units)),
             Message::Made(product) => self.last = Some(Last::Made(product)),
             Message::Failed(problem) => self.last = Some(Last::Failed(problem)),
         }

@@ -89,6 +89,7 @@ fn run(task: &Task, files: &Files, engine: &Engine) -> Result<Product<FileMade>,
             let _ = say(&match event {
                 Event::Enter(stage) => Message::Enter(stage.into()),
                 Event::Leave(stage) => Message::Leave(stage.into()),
+                Event::Work(units) => Message::Work(units),
             });
         }),
     );

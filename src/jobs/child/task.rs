@@ -64,6 +64,8 @@ pub(super) enum Message {
     Enter(Stage),
     /// A pass ends.
     Leave(Stage),
+    /// So many work units are used by now.
+    Work(u64),
     /// It is done; the last word.
     Made(Box<Product<FileMade>>),
     /// It has nothing to show; the last word.

@@ -10,7 +10,9 @@ use uuid::Uuid;
 
 use super::outbox::Webhook;
 use crate::jobs::TraceParent;
-use crate::wire::{Encoding, JobState, Labels, Operation, Options, Outcome, Problem, Progress, TimingMs};
+use crate::wire::{
+    Encoding, Fidelity, JobState, Labels, Operation, Options, Outcome, Problem, Progress, TimingMs,
+};
 
 /// Id of a job. Later jobs of one process have larger ids.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -206,6 +208,9 @@ pub struct Ending {
     pub progress: Progress,
     /// What became of the file.
     pub outcome: Option<Outcome>,
+    /// How true the result is to the file.
+    #[serde(default)]
+    pub fidelity: Option<Fidelity>,
     /// Why it failed.
     pub problem: Option<Problem>,
     /// Time of each pass.
@@ -225,6 +230,7 @@ impl Ending {
             state,
             progress: Progress { stage: None, fraction: 0.0 },
             outcome: None,
+            fidelity: None,
             problem,
             timing_ms: None,
             report: None,

@@ -4,6 +4,7 @@ use std::fmt;
 
 use super::table::{OptionSpec, nearest};
 use crate::wire::problem::{Problem, ProblemCode};
+use crate::wire::words::Operation;
 
 /// An option that cannot be taken.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +22,13 @@ pub enum OptionError {
         spec: &'static OptionSpec,
         /// The value that was given.
         value: String,
+    },
+    /// The operation does not take it.
+    NotTaken {
+        /// The option.
+        spec: &'static OptionSpec,
+        /// The operation.
+        operation: Operation,
     },
     /// It does not go with another one that is given.
     Excluded {
@@ -57,6 +65,10 @@ impl fmt::Display for OptionError {
                     None => Ok(()),
                 }
             }
+            Self::NotTaken { spec, operation } => {
+                let takers: Vec<_> = spec.operations.iter().map(|taker| taker.word()).collect();
+                write!(f, "`{operation}` takes no `{}`; it is an option of {}", spec.name, takers.join(", "))
+            }
             Self::Excluded { spec, by } => write!(f, "`{}` does not go with `{by}`", spec.name),
             Self::Lacking { spec, needs } => write!(f, "this `{}` needs {needs}", spec.name),
             Self::Contradictory { spec } => write!(f, "`{}` is given twice with different values", spec.name),
@@ -81,6 +93,7 @@ impl From<&OptionError> for Problem {
                 suggestion: nearest(value, spec.words().iter().copied()).map(Into::into),
                 ..of(ProblemCode::InvalidParameter, spec.name).with_allowed(spec.words().iter().copied())
             },
+            OptionError::NotTaken { spec, .. } => of(ProblemCode::UnknownParameter, spec.name),
             OptionError::Contradictory { spec }
             | OptionError::Excluded { spec, .. }
             | OptionError::Lacking { spec, .. } => of(ProblemCode::InvalidParameter, spec.name),

@@ -1,10 +1,13 @@
 //! The options of every operation: one table for query parameters, JSON members and command-line flags.
 
 mod error;
+#[macro_use]
+mod row;
 mod parse;
 mod table;
 #[cfg(test)]
 mod tests;
+mod value;
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -14,129 +17,101 @@ use super::printing::{BuildDirection, PolicyInfo, PolicyName};
 use super::request::InputRef;
 use super::target::TargetSpec;
 use super::words::{
-    Contact, Criterion, Cut, Degenerate, Effort, FillHoles, Format, Mode, Nesting, OpenShells, Placement,
-    Reader, Require, Stitch, StitchValidity, Units, VertexColors,
+    Contact, Criterion, Cut, Degenerate, Effort, FillHoles, Format, Mode, Nesting, OpenShells, Operation,
+    Placement, Reader, Require, Stitch, StitchValidity, Units, VertexColors,
 };
 use crate::formats::{ReadLimits, ReadOptions};
 use crate::{pipeline, simplify};
 pub use error::OptionError;
 pub(super) use table::nearest;
-pub use table::{OptionKind, OptionSpec, SPECS};
+pub use table::{OptionKind, OptionSpec};
 
-/// The options of a request; `None`: not given.
-///
-/// As JSON it is an object of those that are given, by the names of [`SPECS`]; it is read back as it was written.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Map<String, Value>")]
-pub struct Options {
-    /// Format of the input.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub format: Option<Format>,
-    /// Format of the output.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub output_format: Option<Format>,
-    /// Reader of OBJ files.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub reader: Option<Reader>,
-    /// Unit of the coordinates.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub units: Option<Units>,
-    /// What the result must be.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub require: Option<Require>,
-    /// Whether repair fills simple holes.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub fill_holes: Option<FillHoles>,
-    /// How open shells are read where a surface is rebuilt.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub open_shells: Option<OpenShells>,
-    /// Cells along the longest side of a surface that is rebuilt.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub wrap_cells: Option<u32>,
-    /// How fine and so how long a surface is rebuilt.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub effort: Option<Effort>,
-    /// Thickness of the walls that sheets become, in millimetres.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub wall_mm: Option<f64>,
-    /// Whether a mesh too far from the origin for float32 may be moved there.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub recenter: Option<bool>,
-    /// Largest distance between the file and the result of a repair, in millimetres.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub max_deviation_mm: Option<f64>,
-    /// Largest share by which a repair may change the volume.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub max_volume_change: Option<f64>,
-    /// How shells inside shells are taken.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub nesting: Option<Nesting>,
-    /// What becomes of bodies that touch.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub contact: Option<Contact>,
-    /// What repair is to do about each defect.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub plan: Option<PlanRequest>,
-    /// Faces to simplify to.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub faces: Option<u32>,
-    /// Share of the faces to simplify to.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub ratio: Option<f64>,
-    /// Error to simplify up to, in millimetres.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub error_mm: Option<f64>,
-    /// Several targets of a simplification.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub targets: Option<Vec<TargetSpec>>,
-    /// How a simplification works.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub mode: Option<Mode>,
-    /// What the collapse of an edge costs.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub criterion: Option<Criterion>,
-    /// Where the vertex goes that an edge becomes.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub placement: Option<Placement>,
-    /// What colours the vertices of a simplified mesh have.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub vertex_colors: Option<VertexColors>,
-    /// How a cut is made.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub cut: Option<Cut>,
-    /// Which boundary edges are joined after a cut.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub stitch: Option<Stitch>,
-    /// Largest distance of vertices that a stitch joins, in millimetres.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub snap_epsilon_mm: Option<f64>,
-    /// When two boundary edges may be joined.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub stitch_validity: Option<StitchValidity>,
-    /// What becomes of faces that pass a vertex more than once.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub degenerate: Option<Degenerate>,
-    /// Edges to be cut besides those that must be.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub cut_edges: Option<Vec<[u32; 2]>>,
-    /// Process that the mesh is to be printed with.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub policy: Option<PolicyName>,
-    /// What is up in the machine.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub build_direction: Option<BuildDirection>,
-    /// Largest distance of features that are reported as near, in millimetres.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub near_mm: Option<f64>,
-    /// Witnesses to keep of each defect.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub samples: Option<u32>,
-    /// Seconds for which the result is kept.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub result_ttl: Option<u64>,
-    /// An earlier job whose upload is used again.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub input: Option<InputRef>,
+const REPAIR: &[Operation] = &[Operation::Repair];
+const SIMPLIFY: &[Operation] = &[Operation::Simplify];
+/// Operations that can end with fewer triangles.
+const FEWER: &[Operation] = &[Operation::Simplify, Operation::Repair];
+const CUT_STITCH: &[Operation] = &[Operation::CutStitch];
+const SHARE: OptionKind = OptionKind::Number { min: 0.0, max: 1.0 };
+
+// One row: name, type, range where it is not all of the type's, who takes it, what it does.
+options! {
+    /// The options of a request; `None`: not given.
+    ///
+    /// As JSON it is an object of those that are given, by the names of [`SPECS`]; it is read back as it was written.
+    format: Format, in Operation::ALL,
+        "Format of the input. Default: told by the content.";
+    output_format: Format, in Operation::WITH_MESH,
+        "Format of the output. Default: that of the input.";
+    output_units: Units, in Operation::WITH_MESH,
+        "Unit of the coordinates of the output. Default: mm for STL, which names no unit; that of the input otherwise.";
+    reader: Reader, in Operation::ALL,
+        "Reader of OBJ files. Default: own.";
+    units: Units, in Operation::ALL,
+        "Unit of the coordinates. Default: mm, reported as assumed.";
+    require: Require, in Operation::WITH_MESH,
+        "What the result must be. Default: printable for repair, none for the other operations.";
+    fill_holes: FillHoles, in REPAIR,
+        "Whether repair fills simple holes. Default: simple.";
+    open_shells: OpenShells, in REPAIR,
+        "How open shells are read where repair must rebuild the surface. Default: auto.";
+    wrap_cells: u32 = OptionKind::Integer { min: 16, max: 1024 }, in REPAIR,
+        "Cells along the longest side of a surface that repair must rebuild. Default: by the effort and its area.";
+    effort: Effort, in REPAIR,
+        "How fine and so how long to try where repair must rebuild the surface. Default: normal.";
+    wall_mm: f64, in REPAIR,
+        "Thickness of the walls that open surfaces become, in millimetres. Default: 0.4 % of the diagonal.";
+    recenter: bool, in REPAIR,
+        "Move a mesh that is too far from the origin for float32 there, instead of refusing it. Default: false.";
+    max_deviation_mm: f64, in REPAIR,
+        "Refuse a repair farther than this from the file, in millimetres. Default: no limit.";
+    max_volume_change: f64 = SHARE, in REPAIR,
+        "Refuse a repair that changes a defined volume by more than this share. Default: no limit.";
+    nesting: Nesting, in REPAIR,
+        "How shells inside shells are taken. Default: as_oriented.";
+    contact: Contact, in REPAIR,
+        "What repair does with bodies that touch in vertices or edges: draw them apart, or join them by necks of wall_mm. Default: open.";
+    plan: PlanRequest, in REPAIR,
+        "What repair does about each defect: the plan that /v1/plan proposes, edited, or that of an earlier repair, whose steps then run again. Default: as /v1/plan proposes.";
+    faces: u32 = OptionKind::Integer { min: 1, max: u32::MAX as u64 }, in FEWER,
+        "Simplify to at most this many faces. At most one of faces, ratio, error_mm and targets.";
+    ratio: f64 = SHARE, in FEWER,
+        "Simplify to at most this share of the faces. Default of simplify: 0.5.";
+    error_mm: f64, in FEWER,
+        "Simplify as far as no collapse has an error above this, in millimetres.";
+    targets: Vec<TargetSpec>, in FEWER,
+        "Several results from one run: [{\"ratio\":0.5},{\"faces\":1000},{\"error_mm\":0.1}].";
+    mode: Mode, in SIMPLIFY,
+        "How a simplification works. Default: guarded, which a repair always uses.";
+    criterion: Criterion, in FEWER,
+        "What the collapse of an edge costs. Default: quadric.";
+    placement: Placement, in FEWER,
+        "Where the vertex goes that an edge becomes. Default: optimal.";
+    vertex_colors: VertexColors, in FEWER,
+        "Colours of the vertices of a simplified mesh; priority needs format or output_format off or ply. Default: kept.";
+    cut: Cut, in CUT_STITCH,
+        "How cut-stitch makes its cut; the result is the same. Default: auto.";
+    stitch: Stitch, in CUT_STITCH,
+        "Which boundary edges cut-stitch joins after the cut. Default: pinch.";
+    snap_epsilon_mm: f64, in &[Operation::Repair, Operation::CutStitch],
+        "How far apart vertices of rims may be that repair and stitch=snap join, in millimetres, but never more than half the shortest boundary edge. Default: 1e-5 of the diagonal for cut-stitch, 0 for repair.";
+    stitch_validity: StitchValidity, in CUT_STITCH,
+        "When cut-stitch may join two boundary edges. Default: exact.";
+    degenerate: Degenerate, in CUT_STITCH,
+        "What cut-stitch does with faces that pass a vertex more than once. Default: split.";
+    cut_edges: Vec<[u32; 2]>, in CUT_STITCH,
+        "Edges that cut-stitch cuts besides those that must be, by the numbers of their vertices from 0: [[0,1],[1,2]].";
+    policy: PolicyName, in Operation::ALL,
+        "Process whose limits the result, or else the file, is measured against; see /v1/policies. Default: none.";
+    build_direction: BuildDirection, in Operation::ALL,
+        "Direction of the file that is up in the machine; matters with policy. Default: z.";
+    near_mm: f64, in Operation::DESCRIBING,
+        "How far apart vertices, edges and faces are at most that are reported as near, in millimetres, but never more than half the edges around them. Default: 1e-5 of the diagonal for analyze up to 100000 triangles; everything else is searched only when this is given.";
+    samples: u32 = OptionKind::Integer { min: 0, max: 10_000 }, in Operation::ALL,
+        "Witnesses that the report keeps of each defect. Default: 16.";
+    result_ttl: u64 = OptionKind::Integer { min: 1, max: 31_536_000 }, in Operation::ALL, of the service,
+        "Seconds for which the result is kept, at most the server's own limit. Default: that limit.";
+    input: InputRef, in Operation::ALL, of the service,
+        "An earlier job whose upload is used again: {\"job\":\"ID\"}.";
 }
 
 impl TryFrom<Map<String, Value>> for Options {
@@ -150,11 +125,23 @@ impl TryFrom<Map<String, Value>> for Options {
 }
 
 impl Options {
-    /// What no single option can say: that options go together.
+    /// That `operation` takes each option that is given.
     ///
     /// # Errors
-    /// Two options that exclude each other, or one that lacks another.
-    pub fn check(&self) -> Result<(), OptionError> {
+    /// The first one that it does not take.
+    pub fn check_taken_by(&self, operation: Operation) -> Result<(), OptionError> {
+        match self.given().find(|spec| !spec.is_taken_by(operation)) {
+            Some(spec) => Err(OptionError::NotTaken { spec, operation }),
+            None => Ok(()),
+        }
+    }
+
+    /// What no single option can say: that `operation` takes them, and that they go together.
+    ///
+    /// # Errors
+    /// An option that the operation does not take, two options that exclude each other, or one that lacks another.
+    pub fn check(&self, operation: Operation) -> Result<(), OptionError> {
+        self.check_taken_by(operation)?;
         let given = [
             ("faces", self.faces.is_some()),
             ("ratio", self.ratio.is_some()),
@@ -210,6 +197,7 @@ impl Options {
                 ..ReadOptions::default()
             },
             units: self.units.map(Into::into),
+            output_units: self.output_units.map(Into::into),
             require: self.require.map(Into::into),
             fill_holes: self.fill_holes.map(Into::into).unwrap_or_default(),
             wrap: pipeline::WrapChoices {

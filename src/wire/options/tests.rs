@@ -8,7 +8,7 @@ use crate::wire::problem::{Problem, ProblemCode};
 /// A value that the option takes, as JSON.
 fn some_value(spec: &OptionSpec) -> Value {
     match spec.kind {
-        OptionKind::Word(words) => json!(words[words.len() - 1]),
+        OptionKind::Word { words, .. } => json!(words[words.len() - 1]),
         OptionKind::Integer { min, .. } => json!(min),
         OptionKind::Number { max, .. } => json!(max),
         OptionKind::Flag => json!(true),
@@ -44,7 +44,7 @@ fn every_option_is_read_back_from_json_as_it_was_written() {
     let mut all = Options::default();
     for spec in SPECS {
         let more = match spec.kind {
-            OptionKind::Word(words) => json!(words[0]),
+            OptionKind::Word { words, .. } => json!(words[0]),
             OptionKind::Integer { max, .. } => json!(max),
             OptionKind::Number { .. } => digits.clone(),
             OptionKind::Flag => json!(false),
@@ -138,10 +138,10 @@ fn one_target_excludes_the_others_and_errors_are_in_the_unit_of_the_file() {
     let of = |pairs: &[(&str, &str)]| Options::from_pairs(pairs.iter().copied()).unwrap();
     let both = of(&[("faces", "10"), ("targets", r#"[{"ratio":0.5}]"#)]);
     assert!(
-        matches!(both.check(), Err(OptionError::Excluded { spec, by: "faces" }) if spec.name == "targets")
+        matches!(both.check(Operation::Simplify), Err(OptionError::Excluded { spec, by: "faces" }) if spec.name == "targets")
     );
     let inches = of(&[("error_mm", "2.54"), ("units", "in")]);
-    assert!(inches.check().is_ok());
+    assert!(inches.check(Operation::Simplify).is_ok());
     let targets = inches.to_engine(ReadLimits::default()).simplify.targets;
     assert!(matches!(targets[..], [simplify::Target::Error(e)] if (e - 0.1).abs() < 1e-12));
     for wrong in ["[]", "[{}]", r#"[{"ratio":2}]"#, r#"[{"faces":0}]"#, r#"[{"ratio":0.5,"faces":1}]"#, "[5]"]
@@ -155,7 +155,9 @@ fn one_target_excludes_the_others_and_errors_are_in_the_unit_of_the_file() {
 
 #[test]
 fn colours_of_priorities_need_a_format_that_shows_them() {
-    let check = |pairs: &[(&str, &str)]| Options::from_pairs(pairs.iter().copied()).unwrap().check();
+    let check = |pairs: &[(&str, &str)]| {
+        Options::from_pairs(pairs.iter().copied()).unwrap().check(Operation::Simplify)
+    };
     let color = ("vertex_colors", "priority");
     for wrong in [
         &[color][..],
@@ -172,6 +174,26 @@ fn colours_of_priorities_need_a_format_that_shows_them() {
     assert_eq!(check(&[color, ("output_format", "ply")]), Ok(()));
     assert_eq!(check(&[color, ("format", "off")]), Ok(()));
     assert_eq!(check(&[("vertex_colors", "kept")]), Ok(()));
+}
+
+#[test]
+fn an_option_that_the_operation_does_not_take_is_refused_with_those_that_do() {
+    let walls = Options::from_pairs([("wall_mm", "1")]).unwrap();
+    assert_eq!(walls.check(Operation::Repair), Ok(()));
+    let error = walls.check(Operation::Verify).unwrap_err();
+    assert_eq!(error.to_string(), "`verify` takes no `wall_mm`; it is an option of repair");
+    let problem = Problem::from(&error);
+    assert_eq!(
+        (problem.code, problem.parameter.as_deref()),
+        (ProblemCode::UnknownParameter, Some("wall_mm"))
+    );
+    for &operation in Operation::ALL {
+        for spec in SPECS {
+            let mut one = Options::default();
+            one.set_json(spec.name, &some_value(spec)).unwrap();
+            assert_eq!(one.check_taken_by(operation).is_ok(), spec.is_taken_by(operation), "{}", spec.name);
+        }
+    }
 }
 
 #[test]

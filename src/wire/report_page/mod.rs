@@ -57,14 +57,23 @@ fn verdict(page: &mut Page, report: &Value) {
     let verdict = &report["verdict"];
     let printing = &report["printing"];
     let is_printable = verdict["printable"] == true;
-    let (tone, title) = match (is_printable, text(&printing["verdict"])) {
-        (false, _) => (Tone::Bad, "Not a valid solid"),
-        (true, "error") => (Tone::Bad, "A valid solid, but not for this process"),
-        (true, "warning") => (Tone::Fair, "A valid solid, with warnings for this process"),
-        (true, _) => (Tone::Good, "A valid solid"),
+    let is_changed = verdict["fidelity"] == "changed";
+    let (tone, title) = match (is_printable, text(&printing["verdict"]), is_changed) {
+        (false, _, _) => (Tone::Bad, "Not a valid solid"),
+        (true, "error", false) => (Tone::Bad, "A valid solid, but not for this process"),
+        (true, "error", true) => (Tone::Bad, "A valid solid, but changed, and not for this process"),
+        (true, _, true) => (Tone::Bad, "A valid solid, but not what your file shows"),
+        (true, "warning", false) => (Tone::Fair, "A valid solid, with warnings for this process"),
+        (true, _, false) => (Tone::Good, "A valid solid"),
     };
     page.add(format_args!("<div class=\"verdict {}\"><strong>{title}</strong>", tone.class()));
     page.paragraph(plain::outcome(text(&verdict["outcome"])));
+    if let Some(word) = verdict["fidelity"].as_str() {
+        page.paragraph(plain::fidelity(word));
+    }
+    for change in items(&verdict["changes"]) {
+        page.paragraph(&sentence(text(&change["message"])));
+    }
     for reason in items(&verdict["reasons"]) {
         page.paragraph(&sentence(text(&reason["message"])));
     }
@@ -91,6 +100,9 @@ fn found(page: &mut Page, report: &Value) {
         counts["closed_components"],
         measured(&measures["area"], ""),
     ));
+    if let Some(question) = before["unit_hypothesis"]["question"].as_str() {
+        page.paragraph(question);
+    }
     let defects = items(&before["defects"]);
     if defects.is_empty() {
         page.paragraph("No defects.");
@@ -163,7 +175,7 @@ fn moved(page: &mut Page, report: &Value) {
         return;
     }
     page.heading("How far the result is from your file");
-    let unit = format!(" {}", text(&report["input"]["units"]["unit"]));
+    let unit = format!(" {}", text(&report["output_units"]));
     let percent = |value: &Value| match value.as_f64() {
         Some(share) => format!("{} %", figure(share * 100.0)),
         None => "\u{2013}".to_owned(),
@@ -173,6 +185,7 @@ fn moved(page: &mut Page, report: &Value) {
         ("Triangles that are exactly the same", percent(&deviation["identical_triangle_share"])),
         ("Change of the volume", percent(&deviation["volume_change_share"])),
         ("Visible surface that was lost", percent(&deviation["visible_loss"])),
+        ("Surface that your file does not have", percent(&deviation["invented"])),
         ("Bodies that were lost", measured(&deviation["bodies_lost"], "")),
     ];
     let row = |(name, value): (&str, String)| vec![Cell::Text(name.to_owned()), Cell::Number(value)];

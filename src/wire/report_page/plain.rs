@@ -55,6 +55,16 @@ pub(super) fn outcome(word: &str) -> &'static str {
     }
 }
 
+/// How true the result is to the file; empty without a result.
+pub(super) fn fidelity(word: &str) -> &'static str {
+    match word {
+        "exact" => "Its surface is exactly that of your file.",
+        "faithful" => "Nothing that can be seen was lost, made up or moved beyond small limits.",
+        "changed" => "It is not the same as your file:",
+        _ => "",
+    }
+}
+
 /// What a check for printing is about.
 pub(super) fn check(code: &str) -> &'static str {
     match code {

@@ -12,8 +12,10 @@ fn page_of(answer: &crate::pipeline::Answer) -> String {
 fn a_repair_is_told_from_verdict_to_certificate() {
     let page = page_of(&sample::repaired());
     let wanted = [
-        "<strong>A valid solid</strong>",
+        "<strong>A valid solid, but not what your file shows</strong>",
         "The file was mended in a few places.",
+        "50 % of the surface is invented (faithful: at most 1 %).",
+        "No unit is stated: ",
         "The surface has holes or open rims: it is not watertight.",
         "face 2 (line 17)",
         "fill holes",

@@ -3,27 +3,27 @@
 //! Handlers say their path, parameters and plain answers. What several of them share is said once here: bodies of
 //! uploads, answers in several media types, headers, and the problems each may answer with.
 
+mod bodies;
+mod yaml;
+
 use std::collections::BTreeMap;
 
-use utoipa::openapi::content::ContentBuilder;
-use utoipa::openapi::encoding::Encoding;
 use utoipa::openapi::header::HeaderBuilder;
 use utoipa::openapi::path::{Operation, Parameter, ParameterBuilder, ParameterIn};
-use utoipa::openapi::request_body::{RequestBody, RequestBodyBuilder};
 use utoipa::openapi::response::{Response, ResponseBuilder};
-use utoipa::openapi::schema::{
-    AdditionalProperties, ArrayBuilder, KnownFormat, Object, ObjectBuilder, Schema, SchemaFormat, Type,
-};
+use utoipa::openapi::schema::{ArrayBuilder, KnownFormat, ObjectBuilder, Schema, SchemaFormat, Type};
 use utoipa::openapi::security::{
     ApiKey, ApiKeyValue, Http, HttpAuthScheme, SecurityRequirement, SecurityScheme,
 };
 use utoipa::openapi::{Content, Header, InfoBuilder, OpenApi, Ref, RefOr, Required};
 use utoipa::{PartialSchema as _, ToSchema};
 
-use super::representation::OCTET_STREAM;
+pub(super) use self::yaml::yaml;
 use crate::wire::{
-    self, Format, Job, JobRequest, LABELS_MAX, Options, Outcome, PlanRequest, Problem, ProblemCode, Report,
-    StageEvent, StateEvent,
+    self, BuildDirection, Contact, Criterion, Cut, Degenerate, Effort, Fidelity, FillHoles, Format, InputRef,
+    Job, JobRequest, LABELS_MAX, Mode, Nesting, OpenShells, Options, Outcome, Placement, PlanRequest,
+    PolicyName, Problem, ProblemCode, Reader, Report, Require, StageEvent, StateEvent, Stitch,
+    StitchValidity, TargetSpec, Units, VertexColors,
 };
 
 /// Problems that any path may answer with.
@@ -73,39 +73,6 @@ const JOB: &[ProblemCode] = &[ProblemCode::NotFound, ProblemCode::StoreUnavailab
 /// Problems of what a job has produced.
 const PRODUCT: &[ProblemCode] = &[ProblemCode::JobNotFinished, ProblemCode::Expired];
 
-/// Upload of a mesh as a form.
-#[derive(ToSchema)]
-#[allow(dead_code, reason = "describes the parts of a form, which are read one by one")]
-pub(super) struct MeshForm {
-    /// The mesh.
-    #[schema(value_type = String, format = Binary, min_length = 1)]
-    mesh: Vec<u8>,
-    /// Options.
-    #[schema(schema_with = options_without_input, required = false)]
-    params: Option<Options>,
-    /// The MTL file of an OBJ: its diffuse colours become face colours, which OFF and PLY hold.
-    #[schema(value_type = String, format = Binary, required = false)]
-    material: Option<Vec<u8>>,
-}
-
-/// Upload of a mesh with the job to make of it, as a form.
-#[derive(ToSchema)]
-#[allow(dead_code, reason = "describes the parts of a form, which are read one by one")]
-pub(super) struct JobForm {
-    /// The mesh.
-    #[schema(value_type = String, format = Binary, min_length = 1)]
-    mesh: Vec<u8>,
-    /// What to do, with options.
-    #[schema(schema_with = request_without_input, required = false)]
-    job: Option<JobRequest>,
-    /// As `job`.
-    #[schema(schema_with = request_without_input, required = false)]
-    params: Option<JobRequest>,
-    /// The MTL file of an OBJ: its diffuse colours become face colours, which OFF and PLY hold.
-    #[schema(value_type = String, format = Binary, required = false)]
-    material: Option<Vec<u8>>,
-}
-
 /// The document that the routes gave, with all that they share.
 pub(super) fn complete(mut document: OpenApi) -> OpenApi {
     document.info = InfoBuilder::new()
@@ -121,6 +88,8 @@ pub(super) fn complete(mut document: OpenApi) -> OpenApi {
     for (name, schema) in schemas() {
         components.schemas.entry(name).or_insert(schema);
     }
+    let options = wire::option_parameters().map(|(name, parameter)| (name.to_owned(), RefOr::T(parameter)));
+    components.parameters.extend(options);
     components.add_security_scheme("bearer", SecurityScheme::Http(Http::new(HttpAuthScheme::Bearer)));
     components
         .add_security_scheme("key", SecurityScheme::ApiKey(ApiKey::Header(ApiKeyValue::new("X-API-Key"))));
@@ -141,38 +110,40 @@ fn schemas() -> Vec<(String, RefOr<Schema>)> {
             <$type>::schemas(&mut schemas);
         )+ };
     }
-    add!(MeshForm, JobForm, JobRequest, Options, PlanRequest, Job, Report, Problem, StateEvent, StageEvent);
-    let is_form = |name: &str| name == MeshForm::name() || name == JobForm::name();
-    let closed = |schema| {
-        changed(schema, |form| {
-            form.additional_properties = Some(Box::new(AdditionalProperties::FreeForm(false)));
-        })
-    };
-    schemas
-        .into_iter()
-        .map(|(name, schema)| if is_form(&name) { (name, closed(schema)) } else { (name, schema) })
-        .collect()
+    add!(
+        JobRequest,
+        Options,
+        PlanRequest,
+        TargetSpec,
+        InputRef,
+        Job,
+        Report,
+        Problem,
+        StateEvent,
+        StageEvent
+    );
+    add!(Format, Reader, Units, Require, FillHoles, OpenShells, Effort, Nesting, Contact, Mode, Criterion);
+    add!(Placement, VertexColors, Cut, Stitch, StitchValidity, Degenerate, PolicyName, BuildDirection);
+    let own = wire::option_schemas().map(|(name, schema)| (name, RefOr::T(schema)));
+    schemas.into_iter().chain(own).chain(bodies::schemas()).collect()
 }
 
 fn complete_operation(path: &str, operation: &mut Operation) {
     let id = operation.operation_id.clone().unwrap_or_default();
-    if !path.starts_with("/v1/") {
-        return;
-    }
+    let Some(name) = path.strip_prefix("/v1/") else { return };
     operation.security = Some(vec![
         SecurityRequirement::default(),
         SecurityRequirement::new("bearer", [""; 0]),
         SecurityRequirement::new("key", [""; 0]),
     ]);
     add_problems(operation, COMMON);
+    if let Some(on_mesh) = wire::Operation::from_word(name) {
+        return complete_run(operation, on_mesh);
+    }
     match id.as_str() {
-        "analyze" | "plan" | "verify" => complete_run(operation, &[]),
-        "repair" | "convert" | "simplify" | "cut_stitch" => {
-            complete_run(operation, MESH_OUT);
-            add_answer(operation, "200", mesh_answer().build());
-        }
         "create_job" => {
-            operation.request_body = Some(RefOr::T(upload_body::<JobForm>(requiring_input::<JobRequest>())));
+            operation.request_body = Some(RefOr::T(bodies::of_job()));
+            add_options(operation, None);
             add_parameter(operation, cancel_after());
             add_parameter(operation, idempotency_key());
             add_problems(operation, UPLOAD);
@@ -192,18 +163,18 @@ fn complete_operation(path: &str, operation: &mut Operation) {
                 .schema(Some(labels));
             add_parameter(operation, parameter.build());
         }
-        "events" => {
+        "get_job_events" => {
             add_problems(operation, JOB);
             let id = text().pattern(Some(r"^[0-9]{1,9}(\.[0-9]{1,9})?$"));
             let about = "Id of the last event that the client has seen; those after it follow. Default: all.";
             add_parameter(operation, header_parameter("Last-Event-ID", about, id));
             add_answer(operation, "200", event_stream());
         }
-        "report" => {
+        "get_job_report" => {
             add_problems(operation, &[JOB, PRODUCT, RUN].concat());
             add_answer(operation, "200", report_answer());
         }
-        "result" => {
+        "get_job_result" => {
             add_problems(
                 operation,
                 &[JOB, PRODUCT, RUN, MESH_OUT, &[ProblemCode::RangeNotSatisfiable]].concat(),
@@ -219,8 +190,9 @@ fn complete_operation(path: &str, operation: &mut Operation) {
 }
 
 /// An operation that runs an upload.
-fn complete_run(operation: &mut Operation, more_problems: &[ProblemCode]) {
-    operation.request_body = Some(RefOr::T(upload_body::<MeshForm>(requiring_input::<Options>())));
+fn complete_run(operation: &mut Operation, on_mesh: wire::Operation) {
+    operation.request_body = Some(RefOr::T(bodies::of_operation(on_mesh)));
+    add_options(operation, Some(on_mesh));
     add_parameter(
         operation,
         header_parameter(
@@ -232,66 +204,19 @@ fn complete_run(operation: &mut Operation, more_problems: &[ProblemCode]) {
     );
     add_parameter(operation, cancel_after());
     add_parameter(operation, idempotency_key());
-    add_problems(operation, &[UPLOAD, RUN, more_problems].concat());
+    add_problems(operation, &[UPLOAD, RUN].concat());
     add_answer(operation, "202", accepted());
-}
-
-fn upload_body<Form: ToSchema>(json: impl Into<RefOr<Schema>>) -> RequestBody {
-    let mesh = || Content::new(Some(binary()));
-    let raw = [OCTET_STREAM, "application/x-www-form-urlencoded"].into_iter();
-    let named = Format::ALL.iter().map(|&format| wire::media_type_of(format));
-    let body = RequestBodyBuilder::new()
-        .description(Some(
-            "The mesh itself, with or without a media type that names its format; or a form; or, to use an earlier \
-             upload again, options with `input` as JSON.",
-        ))
-        .required(Some(Required::True));
-    let body = raw.chain(named).fold(body, |body, media_type| body.content(media_type, mesh()));
-    let json_part = || Encoding::builder().content_type(Some("application/json")).build();
-    let form = ContentBuilder::new()
-        .schema(Some(reference::<Form>()))
-        .encoding("params", json_part())
-        .encoding("job", json_part());
-    body.content("multipart/form-data", form.build())
-        .content("application/json", Content::new(Some(json)))
-        .build()
-}
-
-/// JSON that comes without a mesh: it must name the earlier job whose upload is used again.
-fn requiring_input<T: ToSchema>() -> RefOr<Schema> {
-    changed(T::schema(), |object| object.required.push("input".to_owned()))
-}
-
-/// Options that come beside a mesh.
-fn options_without_input() -> RefOr<Schema> {
-    changed(Options::schema(), without_input)
-}
-
-/// A request that comes beside a mesh.
-fn request_without_input() -> RefOr<Schema> {
-    changed(JobRequest::schema(), |object| {
-        without_input(object);
-        object.properties.insert("params".to_owned(), options_without_input());
-    })
-}
-
-fn without_input(object: &mut Object) {
-    object.properties.shift_remove("input");
-}
-
-fn changed(schema: RefOr<Schema>, change: impl FnOnce(&mut Object)) -> RefOr<Schema> {
-    match schema {
-        RefOr::T(Schema::Object(mut object)) => {
-            change(&mut object);
-            RefOr::T(Schema::Object(object))
-        }
-        other => other,
+    if on_mesh.makes_mesh() {
+        add_problems(operation, MESH_OUT);
+        add_answer(operation, "200", mesh_answer().build());
     }
 }
 
-fn binary() -> Schema {
-    let format = SchemaFormat::KnownFormat(KnownFormat::Binary);
-    Schema::Object(text().format(Some(format)).build())
+/// Refers to the options that `on_mesh` takes.
+fn add_options(operation: &mut Operation, on_mesh: Option<wire::Operation>) {
+    let references = wire::options_of(on_mesh)
+        .map(|spec| RefOr::Ref(Ref::new(format!("#/components/parameters/{}", spec.name))));
+    operation.parameters.get_or_insert_default().extend(references);
 }
 
 fn reference<T: ToSchema>() -> Ref {
@@ -314,11 +239,16 @@ fn mesh_answer() -> ResponseBuilder {
         .description(Some("What became of the file."))
         .schema(Some(RefOr::from(reference::<Outcome>())))
         .build();
+    let fidelity = HeaderBuilder::new()
+        .description(Some("How true the result is to the file."))
+        .schema(Some(RefOr::from(reference::<Fidelity>())))
+        .build();
     mesh_contents(ResponseBuilder::new().description("The mesh, its report, or both, as `Accept` asks for."))
         .content("application/json", Content::new(Some(reference::<Report>())))
         .content("multipart/mixed", Content::new(Some(binary())))
         .content("application/zip", Content::new(Some(binary())))
         .header("Meshmend-Outcome", outcome)
+        .header("Meshmend-Fidelity", fidelity)
         .header("Link", header("The report, as `describedby`."))
         .header("Preference-Applied", header("Which preferences were followed."))
         .header("Server-Timing", header("Time of each pass."))
@@ -356,9 +286,15 @@ fn file_answer(description: &str) -> Response {
         .build()
 }
 
+/// A mesh in any format. The type that every mesh has stands first: generators of clients look no further.
 fn mesh_contents(answer: ResponseBuilder) -> ResponseBuilder {
-    let media_types = Format::ALL.iter().map(|&format| wire::media_type_of(format)).chain([OCTET_STREAM]);
+    let media_types = bodies::mesh_media_types();
     media_types.fold(answer, |answer, media_type| answer.content(media_type, Content::new(Some(binary()))))
+}
+
+fn binary() -> Schema {
+    let format = SchemaFormat::KnownFormat(KnownFormat::Binary);
+    Schema::Object(text().format(Some(format)).build())
 }
 
 fn text() -> ObjectBuilder {

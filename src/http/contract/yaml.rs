@@ -1,0 +1,69 @@
+//! The document as YAML that every reader takes for the same.
+
+use utoipa::openapi::OpenApi;
+
+/// Words that readers of YAML 1.1 take for booleans, which the writer of YAML 1.2 leaves bare.
+const BOOLEANS: &[&str] = &["y", "n", "yes", "no", "on", "off"];
+
+/// `document` as YAML, in which `off` and `no` are texts to readers of YAML 1.1 too.
+pub(in crate::http) fn yaml(document: &OpenApi) -> String {
+    // The document is made of types that all have a form in YAML.
+    quoted(&document.to_yaml().unwrap_or_default())
+}
+
+/// `yaml` with every bare word of [`BOOLEANS`] in quotes, as an item, a value or a key.
+fn quoted(yaml: &str) -> String {
+    let mut out = String::with_capacity(yaml.len() + 1024);
+    // Text blocks are at least that much indented; what stands in them is no item, value or key.
+    let mut block = None;
+    for line in yaml.lines() {
+        let indent = line.len() - line.trim_start().len();
+        if !line.is_empty() && block.is_some_and(|least| indent < least) {
+            block = None;
+        }
+        if block.is_none() {
+            let is_block = [": |", ": |-", ": |+", ": >", ": >-"].iter().any(|end| line.ends_with(end));
+            block = is_block.then_some(indent + 1);
+            out.push_str(&quoted_line(line));
+        } else {
+            out.push_str(line);
+        }
+        out.push('\n');
+    }
+    out
+}
+
+fn quoted_line(line: &str) -> String {
+    let content = line.trim_start_matches([' ', '-']);
+    let (head, content) = line.split_at(line.len() - content.len());
+    let (key, value) = match content.split_once(": ") {
+        Some((key, value)) => (key, Some(value)),
+        None => (content.strip_suffix(':').unwrap_or(content), None),
+    };
+    let word = |word: &str| {
+        let is_boolean = BOOLEANS.contains(&word.to_ascii_lowercase().as_str());
+        if is_boolean { format!("'{word}'") } else { word.to_owned() }
+    };
+    match value {
+        Some(value) => format!("{head}{}: {}", word(key), word(value)),
+        None => format!("{head}{}{}", word(key), &content[key.len()..]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_yaml_1_1_takes_for_booleans_is_quoted() {
+        let bare = "enum:\n- obj\n- off\n- 'yes'\nno:\n  default: No\n  y: office\n- n: on\n";
+        let safe = "enum:\n- obj\n- 'off'\n- 'yes'\n'no':\n  default: 'No'\n  'y': office\n- 'n': 'on'\n";
+        assert_eq!(quoted(bare), safe);
+    }
+
+    #[test]
+    fn text_blocks_stay_as_they_are() {
+        let yaml = "a:\n  description: |-\n    - off\n\n    no: yes\n  b: off\n";
+        assert_eq!(quoted(yaml), yaml.replace("b: off", "b: 'off'"));
+    }
+}

@@ -1,0 +1,80 @@
+//! The unit of a result: a file in inches becomes an STL in millimetres.
+//!
+//! The mesh takes the unit of the result before anything is done to it, so that what is certified is what was made, and
+//! not a rounding of it.
+
+use super::input::Input;
+use super::{CutStitchChoices, Limits, Operation, Options, SimplifyChoices, Units, WrapChoices};
+use crate::formats::{Encoding, Format, Place, ReadError, ReadErrorKind};
+use crate::simplify::Target;
+
+/// The unit of what `operation` returns of a file in `units`, laid out as `encoding`.
+fn units_of_result(operation: Operation, options: &Options, units: Units, encoding: Encoding) -> Units {
+    let default = match encoding.format() {
+        Format::Stl => Units::Millimetre,
+        _ => units,
+    };
+    match operation {
+        Operation::Analyze | Operation::Plan | Operation::Verify => units,
+        _ => options.output_units.unwrap_or(default),
+    }
+}
+
+impl Input {
+    /// Gives the mesh the unit of the result; the options in that unit, if it is another one than the file's.
+    ///
+    /// # Errors
+    /// A coordinate that is beyond float64 in that unit.
+    pub(super) fn take_units_of_result(
+        &mut self,
+        operation: Operation,
+        options: &Options,
+    ) -> Result<Option<Options>, ReadError> {
+        let units = self.facts.units;
+        let result_units = units_of_result(operation, options, units, self.output_encoding(options));
+        if result_units == units {
+            return Ok(None);
+        }
+        let factor = units.millimetres() / result_units.millimetres();
+        let finite = self.soup.positions.iter().filter(|position| position.is_finite());
+        let largest = finite.map(|position| position.abs().max_element()).fold(0.0, f64::max);
+        if !(largest * factor).is_finite() {
+            let kind = ReadErrorKind::Unparseable { found: format!("the coordinate {largest:e}") };
+            let expected = "coordinates that have a number in the unit of the result".to_owned();
+            return Err(ReadError { kind, place: Place::Whole, expected });
+        }
+        for position in &mut self.soup.positions {
+            *position *= factor;
+        }
+        self.soup.is_f32_exact = self.soup.positions.iter().all(|p| p.as_vec3().as_dvec3() == *p);
+        self.facts.result_units = result_units;
+        self.scale_near(factor);
+        Ok(Some(options.scaled(factor)))
+    }
+}
+
+impl Options {
+    /// The same with lengths that are so many times as large.
+    fn scaled(&self, factor: f64) -> Self {
+        let scaled = |length: Option<f64>| length.map(|length| length * factor);
+        let target = |target: &Target| match *target {
+            Target::Error(error) => Target::Error(error * factor),
+            other => other,
+        };
+        Self {
+            limits: Limits { deviation_max: scaled(self.limits.deviation_max), ..self.limits },
+            wrap: WrapChoices { wall: scaled(self.wrap.wall), ..self.wrap },
+            simplify: SimplifyChoices {
+                targets: self.simplify.targets.iter().map(target).collect(),
+                ..self.simplify.clone()
+            },
+            cut_stitch: CutStitchChoices {
+                epsilon: scaled(self.cut_stitch.epsilon),
+                ..self.cut_stitch.clone()
+            },
+            near: scaled(self.near),
+            policy: self.policy.map(|policy| policy.scaled(factor)),
+            ..self.clone()
+        }
+    }
+}

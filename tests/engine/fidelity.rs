@@ -1,0 +1,87 @@
+//! The second word of a verdict.
+
+use crate::oracle::RawSoup;
+use crate::raw_files::encode;
+use crate::solids::{cube, cuboid};
+use meshmend::budget::Budget;
+use meshmend::formats::{Encoding, Format};
+use meshmend::pipeline::{
+    Answer, ChangeKind, Fidelity, Operation, Options, Outcome, Refusal, Require, SimplifyChoices, run,
+};
+use meshmend::simplify::Target;
+
+fn answer(operation: Operation, soup: &RawSoup, options: &Options) -> Answer {
+    run(operation, &encode(soup, Encoding::Obj), options, &Budget::unlimited()).unwrap()
+}
+
+fn word(answer: &Answer) -> Fidelity {
+    answer.report.fidelity.as_ref().unwrap().word
+}
+
+fn open_cube() -> RawSoup {
+    let mut soup = cube();
+    soup.triangles.truncate(10);
+    soup
+}
+
+#[test]
+fn a_valid_file_and_one_whose_faces_are_turned_are_exact() {
+    assert_eq!(word(&answer(Operation::Repair, &cube(), &Options::default())), Fidelity::Exact);
+    let mut turned = cube();
+    turned.triangles[0].swap(0, 1);
+    let turned = answer(Operation::Repair, &turned, &Options::default());
+    assert_eq!((turned.report.outcome, word(&turned)), (Some(Outcome::Repaired), Fidelity::Exact));
+}
+
+#[test]
+fn a_face_there_twice_goes_and_the_rest_is_exact() {
+    let mut twice = cube();
+    twice.triangles.push(twice.triangles[3]);
+    for operation in [Operation::Repair, Operation::CutStitch] {
+        assert_eq!(word(&answer(operation, &twice, &Options::default())), Fidelity::Exact, "{operation:?}");
+    }
+}
+
+#[test]
+fn a_missing_side_is_invented_and_refused_where_the_result_must_be_faithful() {
+    let closed = answer(Operation::Repair, &open_cube(), &Options::default());
+    let verdict = closed.report.fidelity.unwrap();
+    assert_eq!(verdict.word, Fidelity::Changed);
+    let invented = verdict.changes.iter().find(|change| change.kind == ChangeKind::Invented).unwrap();
+    assert!((invented.measured - 1.0 / 6.0).abs() < 0.01, "{}", invented.measured);
+    let faithful = Options { require: Some(Require::Faithful), ..Options::default() };
+    let refused = answer(Operation::Repair, &open_cube(), &faithful);
+    assert_eq!(refused.report.outcome, Some(Outcome::Refused));
+    assert!(matches!(refused.report.refusal, Some(Refusal::NotFaithful { .. })) && refused.output.is_none());
+    assert_eq!(answer(Operation::Repair, &cube(), &faithful).report.outcome, Some(Outcome::Identical));
+}
+
+#[test]
+fn a_conversion_that_rounds_is_faithful() {
+    let options = Options { output_format: Some(Format::Stl), ..Options::default() };
+    let rounded = answer(Operation::Convert, &cuboid([0.1, 0.2, 0.3]), &options);
+    assert_eq!(word(&rounded), Fidelity::Faithful);
+    assert_eq!(word(&answer(Operation::Convert, &cuboid([1.0, 2.0, 3.0]), &options)), Fidelity::Exact);
+}
+
+#[test]
+fn each_level_of_a_simplification_has_its_own_word() {
+    let simplify =
+        SimplifyChoices { targets: vec![Target::Ratio(1.0), Target::Faces(4)], ..SimplifyChoices::default() };
+    for operation in [Operation::Simplify, Operation::Repair] {
+        let options = Options { simplify: simplify.clone(), ..Options::default() };
+        let levels = answer(operation, &cube(), &options).report.levels;
+        let words: Vec<_> = levels.iter().map(|level| level.fidelity.as_ref().unwrap().word).collect();
+        assert_eq!(words, [Fidelity::Exact, Fidelity::Changed], "{operation:?}");
+    }
+    let all = Options { simplify, require: Some(Require::Faithful), ..Options::default() };
+    let refused = answer(Operation::Simplify, &cube(), &all).report;
+    assert!(matches!(refused.refusal, Some(Refusal::NotFaithful { .. })), "{:?}", refused.refusal);
+}
+
+#[test]
+fn what_is_only_looked_at_has_no_word() {
+    for operation in [Operation::Analyze, Operation::Plan, Operation::Verify] {
+        assert_eq!(answer(operation, &cube(), &Options::default()).report.fidelity, None);
+    }
+}
