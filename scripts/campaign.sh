@@ -19,6 +19,7 @@ declare -A filters=(
   [determinism]="determinism"
   [simplify]="simplify"
   [cut]="cut_and_stitch"
+  [modeller]="modeller_"
   [wrap]="bad_soup"
   [injected]="injected_defect"
   [holes]="holes_cut_into_closed_meshes"
@@ -27,6 +28,7 @@ declare -A filters=(
 
 # Where the tests of a campaign are, when not everywhere: the rest is not built.
 declare -A places=(
+  [modeller]="--test properties"
   [wrap]="--test properties"
   [holes]="--test properties"
   [kill]="--test service"

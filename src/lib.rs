@@ -18,6 +18,7 @@ pub mod winding;
 
 pub mod analysis;
 pub mod implicit;
+pub mod modeller;
 pub mod printing;
 pub mod simplify;
 pub mod wrap;

@@ -9,6 +9,7 @@ mod edges;
 mod fans;
 pub mod half_edge;
 mod parity;
+pub mod polyhedron;
 mod soup;
 mod stitch;
 mod texture;

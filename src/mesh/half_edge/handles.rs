@@ -10,7 +10,7 @@ macro_rules! handle {
         pub struct $name(u32);
 
         impl $name {
-            pub(super) const NONE: Self = Self(NONE);
+            pub(in crate::mesh) const NONE: Self = Self(NONE);
 
             /// Number `index`, which must be below `u32::MAX`.
             #[inline]

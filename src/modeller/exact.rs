@@ -1,0 +1,132 @@
+//! Numbers without rounding: integers as large as needed, their quotients, and the f64 nearby.
+
+use crate::geom::power_of_two;
+use num_bigint::{BigInt, Sign};
+use num_rational::Ratio;
+use num_traits::{ToPrimitive, Zero};
+use std::cmp::Ordering;
+
+/// A quotient of integers of any size.
+pub type Rational = Ratio<BigInt>;
+/// A vector of integers.
+pub(super) type Vector = [BigInt; 3];
+
+/// The quotient that `x` is; `x` must be finite.
+pub fn rational(x: f64) -> Rational {
+    let (digits, exponent) = decompose(x);
+    let digits = BigInt::from(digits);
+    if exponent >= 0 {
+        Rational::from_integer(digits << exponent)
+    } else {
+        Rational::new(digits, BigInt::from(1) << -exponent)
+    }
+}
+
+/// `(m, e)` with `x = m 2^e` and an odd `m`, or two zeros.
+pub(super) fn decompose(x: f64) -> (i64, i32) {
+    let bits = x.to_bits();
+    let field = ((bits >> 52) & 0x7ff) as i32;
+    let fraction = (bits & ((1 << 52) - 1)) as i64;
+    let digits = if field == 0 { fraction } else { fraction | 1 << 52 };
+    if digits == 0 {
+        return (0, 0);
+    }
+    let zeros = digits.trailing_zeros() as i32;
+    let digits = digits >> zeros;
+    (if x.is_sign_negative() { -digits } else { digits }, field.max(1) - 1075 + zeros)
+}
+
+/// `numerator / denominator` with an error of at most one unit in the last place, for results in the range of normal
+/// numbers; beyond it zero or infinity. The denominator must be positive.
+pub(super) fn quotient(numerator: &BigInt, denominator: &BigInt) -> f64 {
+    if numerator.is_zero() {
+        return 0.0;
+    }
+    let shift = 66 - numerator.bits() as i64 + denominator.bits() as i64;
+    let scaled =
+        if shift >= 0 { (numerator << shift) / denominator } else { numerator / (denominator << -shift) };
+    // Between 2^65 and 2^67, so nothing is lost here but the rounding.
+    let mut value = scaled.to_f64().unwrap_or(f64::NAN);
+    let mut left = -shift;
+    while left != 0 {
+        let step = left.clamp(-1000, 1000);
+        value *= power_of_two(step as i32);
+        left -= step;
+        if value == 0.0 || !value.is_finite() {
+            break;
+        }
+    }
+    value
+}
+
+/// The f64 near `x`; see [`quotient`].
+pub fn to_f64(x: &Rational) -> f64 {
+    quotient(x.numer(), x.denom())
+}
+
+/// `x` with at most so many significant bits, towards zero.
+pub(super) fn shortened(x: &Rational, bits: u64) -> Rational {
+    let shift = bits as i64 - x.numer().bits() as i64 + x.denom().bits() as i64;
+    if x.numer().bits() <= bits && x.denom().bits() <= bits {
+        return x.clone();
+    }
+    if shift >= 0 {
+        Rational::new((x.numer() << shift) / x.denom(), BigInt::from(1) << shift)
+    } else {
+        Rational::from_integer((x.numer() / (x.denom() << -shift)) << -shift)
+    }
+}
+
+/// The sign of `x` against zero.
+pub(super) fn sign(x: &BigInt) -> Ordering {
+    match x.sign() {
+        Sign::Minus => Ordering::Less,
+        Sign::NoSign => Ordering::Equal,
+        Sign::Plus => Ordering::Greater,
+    }
+}
+
+pub(super) fn cross(a: &Vector, b: &Vector) -> Vector {
+    let part = |i: usize, j: usize| &a[i] * &b[j] - &a[j] * &b[i];
+    [part(1, 2), part(2, 0), part(0, 1)]
+}
+
+pub(super) fn dot(a: &Vector, b: &Vector) -> BigInt {
+    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
+}
+
+pub(super) fn det(a: &Vector, b: &Vector, c: &Vector) -> BigInt {
+    dot(&cross(a, b), c)
+}
+
+pub(super) fn negative(a: &Vector) -> Vector {
+    a.each_ref().map(|x| -x)
+}
+
+pub(super) fn is_zero(a: &Vector) -> bool {
+    a.iter().all(Zero::is_zero)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_f64_is_a_quotient_and_comes_back() {
+        for x in [0.0, 1.0, -0.1, 1e300, 1e-300, f64::MAX, f64::MIN_POSITIVE, 3.5e10] {
+            assert_eq!(to_f64(&rational(x)), x);
+        }
+        let third = Rational::new(BigInt::from(1), BigInt::from(3));
+        assert!((to_f64(&third) * 3.0 - 1.0).abs() <= f64::EPSILON);
+    }
+
+    #[test]
+    fn a_shortened_number_is_nearer_to_zero_by_less_than_its_last_bit() {
+        let x = Rational::new(BigInt::from(2), BigInt::from(3));
+        let short = shortened(&x, 20);
+        assert!(short < x && &x - &short < Rational::new(BigInt::from(1), BigInt::from(1 << 19)));
+        assert_eq!(shortened(&rational(0.375), 20), rational(0.375));
+        let large = rational(1e30) + rational(1.0);
+        assert!(shortened(&large, 60) <= large);
+    }
+}

@@ -1,0 +1,168 @@
+//! From a polyhedron to the corners and triangles that a file can hold.
+
+use super::point::Point;
+use super::solid::Solid;
+use crate::budget::{Budget, Stopped};
+use crate::geom::{DVec2, DVec3, Sign, orient2d};
+use crate::mesh::polyhedron::{FaceId, VertexId};
+use spade::handles::{FixedFaceHandle, FixedVertexHandle, PossiblyOuterTag};
+use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
+
+/// Most corners of a face; a triangulation of so many takes some 20 ms and cannot be stopped inside.
+const CORNERS_MAX: usize = 1 << 14;
+
+/// A polyhedron with rounded corners.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Exported {
+    /// The corners, those of the file where nothing has moved them, float32 elsewhere.
+    pub positions: Vec<DVec3>,
+    /// Triangles of corners.
+    pub triangles: Vec<[u32; 3]>,
+    /// The face of the polyhedron behind each triangle; those of one face follow each other.
+    pub face_of_triangle: Vec<u32>,
+    /// Faces whose rounded corners are a convex polygon, with their corners: a file of polygons may hold these.
+    pub polygons: Vec<(u32, Vec<u32>)>,
+    /// The largest distance by which rounding moved a corner, in the unit of the coordinates.
+    pub rounded_by: f64,
+}
+
+/// Why a polyhedron cannot be rounded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ExportRefusal {
+    /// The rounded loops of a face touch or cross.
+    FaceFolds {
+        /// The face.
+        face: FaceId,
+    },
+    /// A coordinate is beyond the range of float32.
+    BeyondFloat32 {
+        /// The vertex.
+        vertex: VertexId,
+    },
+    /// A face has more corners than are triangulated.
+    FaceTooLarge {
+        /// The face.
+        face: FaceId,
+        /// The limit.
+        limit: usize,
+    },
+}
+
+/// Rounds the vertices and triangulates the faces. `originals` are the corners of the file, by the first numbers of
+/// vertices: a vertex that is still exactly there keeps its bits.
+///
+/// # Errors
+/// When the budget stops the run.
+pub fn export(
+    solid: &Solid,
+    originals: &[DVec3],
+    budget: &Budget,
+) -> Result<Result<Exported, ExportRefusal>, Stopped> {
+    let topology = solid.topology();
+    let mut number = vec![u32::MAX; topology.vertex_bound()];
+    let (mut positions, mut rounded_by) = (Vec::new(), 0.0f64);
+    for v in topology.vertices() {
+        let point = solid.point(v);
+        let kept = originals.get(v.index()).filter(|p| *point == Point::of(**p));
+        let position = kept.copied().unwrap_or_else(|| point.near.as_vec3().as_dvec3());
+        if !position.is_finite() {
+            return Ok(Err(ExportRefusal::BeyondFloat32 { vertex: v }));
+        }
+        number[v.index()] = positions.len() as u32;
+        rounded_by = rounded_by.max(position.distance(point.near));
+        positions.push(position);
+    }
+    let mut exported = Exported {
+        positions,
+        triangles: Vec::new(),
+        face_of_triangle: Vec::new(),
+        polygons: Vec::new(),
+        rounded_by,
+    };
+    for f in topology.faces() {
+        let loops: Vec<Vec<u32>> = topology
+            .loop_starts(f)
+            .map(|h| topology.loop_of(h).map(|h| number[topology.origin(h).index()]).collect())
+            .collect();
+        let corner_count: usize = loops.iter().map(Vec::len).sum();
+        budget.spend(corner_count as u64)?;
+        if corner_count > CORNERS_MAX {
+            return Ok(Err(ExportRefusal::FaceTooLarge { face: f, limit: CORNERS_MAX }));
+        }
+        let Some((triangles, is_convex)) = triangulate(solid, f, &loops, &exported.positions) else {
+            return Ok(Err(ExportRefusal::FaceFolds { face: f }));
+        };
+        exported.face_of_triangle.extend(triangles.iter().map(|_| f.index() as u32));
+        exported.triangles.extend(triangles);
+        if is_convex && corner_count > 3 {
+            exported.polygons.push((f.index() as u32, loops.into_iter().next().unwrap_or_default()));
+        }
+    }
+    Ok(Ok(exported))
+}
+
+/// The triangles of a face, and whether it is one convex polygon, cut as a fan.
+fn triangulate(
+    solid: &Solid,
+    f: FaceId,
+    loops: &[Vec<u32>],
+    positions: &[DVec3],
+) -> Option<(Vec<[u32; 3]>, bool)> {
+    let view = solid.view(f);
+    let flat = |v: u32| {
+        let p = positions[v as usize];
+        DVec2::new(p[view.u], p[view.v])
+    };
+    if let [corners] = loops {
+        let count = corners.len();
+        let turn = |i: usize| {
+            orient2d(flat(corners[i]), flat(corners[(i + 1) % count]), flat(corners[(i + 2) % count]))
+        };
+        let is_fan = (1..count - 1)
+            .all(|i| orient2d(flat(corners[0]), flat(corners[i]), flat(corners[i + 1])) == Sign::Positive);
+        if is_fan && (0..count).all(|i| turn(i) == Sign::Positive) {
+            return Some(((1..count - 1).map(|i| [corners[0], corners[i], corners[i + 1]]).collect(), true));
+        }
+    }
+    let corners: Vec<u32> = loops.concat();
+    let points: Vec<Point2<f64>> = corners.iter().map(|&v| flat(v)).map(|p| Point2::new(p.x, p.y)).collect();
+    let mut edges = Vec::with_capacity(corners.len());
+    for members in loops {
+        let first = edges.len();
+        edges.extend((0..members.len()).map(|i| [first + i, first + (i + 1) % members.len()]));
+    }
+    let inside = inside_of(points, &edges, loops.len())?;
+    Some((inside.into_iter().map(|t| t.map(|i| corners[i])).collect(), false))
+}
+
+/// The triangles to the left of `edges`; `None` when the edges touch or cross.
+fn inside_of(points: Vec<Point2<f64>>, edges: &[[usize; 2]], loop_count: usize) -> Option<Vec<[usize; 3]>> {
+    let count = points.len();
+    let mut has_crossing = false;
+    let mesh = ConstrainedDelaunayTriangulation::<_>::try_bulk_load_cdt(points, edges.to_vec(), |_| {
+        has_crossing = true;
+    })
+    .ok()?;
+    if has_crossing || mesh.num_vertices() != count {
+        return None;
+    }
+    let mut is_inside = vec![false; mesh.num_all_faces()];
+    let mut open: Vec<FixedFaceHandle<PossiblyOuterTag>> = Vec::new();
+    for ends in edges {
+        let [from, to] = ends.map(FixedVertexHandle::from_index);
+        open.push(mesh.get_edge_from_neighbors(from, to)?.face().fix());
+    }
+    let mut triangles = Vec::new();
+    while let Some(face) = open.pop() {
+        let face = mesh.face(face).as_inner()?;
+        if std::mem::replace(&mut is_inside[face.index()], true) {
+            continue;
+        }
+        triangles.push(face.vertices().map(|v| v.index()));
+        open.extend(
+            face.adjacent_edges().iter().filter(|e| !e.is_constraint_edge()).map(|e| e.rev().face().fix()),
+        );
+    }
+    // Euler: a region with h holes and n corners has n + 2 h - 2 triangles.
+    (triangles.len() + 4 == count + 2 * loop_count).then_some(triangles)
+}

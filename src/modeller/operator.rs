@@ -1,0 +1,588 @@
+//! The operators: Face Shift, Point Split, Point Merge and Edge Flip. All are planes in motion, with what happens to the
+//! topology at events along the way:
+//!
+//! ```text
+//!      before              at the event          after
+//!
+//!    \   3   /               \ 3 /              \   3   /
+//!  1  \_____/  2     ->     1  X  2     ->     1 \     / 2
+//!     /  4  \                / 4 \                | | |       an edge flip: 3 and 4 part, 1 and 2 meet
+//!    /       \              /     \              /   4   \
+//! ```
+//!
+//! Edges that lose their lengths are contracted (a merge), and a vertex whose planes do not stay concurrent is split for
+//! what comes just after. So an edge flip is a merge and a split.
+
+use super::events::{Contact, Event, next_event, vanishing_time};
+use super::exact::{Rational, det, sign};
+use super::journal::Journal;
+use super::motion::{Motion, Moving};
+use super::resolve;
+use super::solid::Solid;
+use super::validity::{Fault, check_faces};
+use crate::budget::{Budget, Stopped};
+use crate::mesh::polyhedron::{ContractRefusal, FaceId, HalfEdgeId, VertexId};
+use num_bigint::BigInt;
+use num_traits::{Signed, Zero};
+use std::cmp::Ordering;
+
+/// Most events that one operator passes.
+const EVENTS_MAX: usize = 1000;
+
+/// What a shift does at an event that edges which lose their lengths make.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Events {
+    /// It is refused: the shift must stay inside the open interval.
+    #[default]
+    Refuse,
+    /// It goes on with another topology where that is good.
+    Pass,
+}
+
+/// An edit. Lengths `t` are in the scale of the stored planes: the offset grows by `t`.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Operator {
+    /// Faces move along their normals.
+    Shift {
+        /// Each face and how much its offset grows.
+        faces: Vec<(FaceId, Rational)>,
+        /// What is done at events.
+        events: Events,
+    },
+    /// A vertex of degree above three becomes several because one of its faces moves.
+    Split {
+        /// The vertex.
+        vertex: VertexId,
+        /// The face that moves.
+        face: FaceId,
+        /// How much its offset grows.
+        by: Rational,
+    },
+    /// A face moves until an edge has no length; its ends become one vertex.
+    Merge {
+        /// The edge.
+        edge: HalfEdgeId,
+        /// The face that moves.
+        face: FaceId,
+    },
+    /// A face moves until an edge has no length and a little on: the faces at its ends become neighbours.
+    Flip {
+        /// The edge.
+        edge: HalfEdgeId,
+        /// The face that moves.
+        face: FaceId,
+        /// How much its offset grows in all; `None`: past the event by half of the way to it, or half of the way to the
+        /// next one if that is less.
+        by: Option<Rational>,
+    },
+}
+
+/// Why an operator does nothing.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Refusal {
+    /// No plane moves.
+    NothingMoves,
+    /// An event is in the way; the offsets of the faces may grow by less than this.
+    Limit {
+        /// The growth of each moving face at the event.
+        limits: Vec<(FaceId, Rational)>,
+        /// What would meet.
+        blocking: Vec<Contact>,
+    },
+    /// No split of the vertex opens every new edge and keeps its faces apart, in this direction.
+    NoSplit {
+        /// The vertex.
+        vertex: VertexId,
+        /// Its faces.
+        faces: Vec<FaceId>,
+    },
+    /// A face would shrink to a segment or a point.
+    FaceVanishes {
+        /// The face.
+        face: FaceId,
+    },
+    /// A face would touch itself at the merged vertex, whose link would be no circle.
+    LinkNotADisk {
+        /// The face.
+        face: FaceId,
+    },
+    /// The vertex has three faces only.
+    VertexIsTrihedral {
+        /// The vertex.
+        vertex: VertexId,
+    },
+    /// The face is not at the vertex, or moves no end of the edge.
+    NotThere {
+        /// The face.
+        face: FaceId,
+    },
+    /// The edge never loses its length, however far the face moves.
+    EdgeStays,
+    /// The faces at both ends of the edge are one face.
+    EndsAreOneFace {
+        /// The face.
+        face: FaceId,
+    },
+    /// The faces at both ends of the edge have an edge there already.
+    EndsAreNeighbours {
+        /// The faces.
+        faces: [FaceId; 2],
+    },
+    /// A face beside the edge has three sides: its edges vanish together, which is a merge and no flip.
+    FaceHasThreeSides {
+        /// The face.
+        face: FaceId,
+    },
+    /// The flipped edge would have no positive length: the determinants of the end faces with either face beside the
+    /// edge have the same sign.
+    DoesNotOpen {
+        /// The faces at the ends.
+        faces: [FaceId; 2],
+    },
+    /// Other edges lose their lengths at the same time.
+    SeveralVanish {
+        /// How many in all.
+        count: usize,
+    },
+    /// More events than one operator passes.
+    TooManyEvents {
+        /// The limit.
+        limit: usize,
+    },
+    /// The check after the edit found a broken rule.
+    Invalid(Fault),
+}
+
+/// A change of topology along the way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Change {
+    /// An edge became a vertex: the faces beside it.
+    Merged([FaceId; 2]),
+    /// A vertex became an edge: the faces beside it.
+    Split([FaceId; 2]),
+}
+
+/// What an operator did.
+#[derive(Debug, Clone)]
+pub struct Applied {
+    /// How much the offset of each face grew.
+    pub shifts: Vec<(FaceId, Rational)>,
+    /// The changes of topology, in their order.
+    pub changes: Vec<Change>,
+    /// The faces that moved or have a vertex that did.
+    pub changed_faces: Vec<FaceId>,
+    journal: Journal,
+}
+
+impl Applied {
+    /// Takes the operator back, which must be the last that was applied: the same planes and topology as before.
+    pub fn undo(self, solid: &mut Solid) {
+        self.journal.restore(solid);
+    }
+
+    /// The operator that leads back to the same planes and topology. Where the topology has changed it is tried first:
+    /// `None` when the way back is another one.
+    ///
+    /// # Errors
+    /// When the budget stops the run.
+    pub fn inverse(&self, solid: &Solid, budget: &Budget) -> Result<Option<Operator>, Stopped> {
+        let faces: Vec<(FaceId, Rational)> = self.shifts.iter().map(|(f, t)| (*f, -t)).collect();
+        let events = if self.changes.is_empty() { Events::Refuse } else { Events::Pass };
+        let inverse = Operator::Shift { faces, events };
+        if self.changes.is_empty() {
+            return Ok(Some(inverse));
+        }
+        let mut trial = solid.clone();
+        let leads_back =
+            apply(&mut trial, &inverse, budget)?.is_ok() && self.journal.is_state_of(&trial, solid);
+        Ok(leads_back.then_some(inverse))
+    }
+}
+
+/// How far an edit goes.
+enum Until {
+    Time(Rational),
+    /// Up to the first event, where edges are merged.
+    FirstEvent,
+    /// Past the first event by half of the way to it, or half of the way to the next one if that is less.
+    PastFirstEvent,
+}
+
+/// Applies an operator. A refused one changes nothing.
+///
+/// # Errors
+/// When the budget stops the run; `solid` is as before then.
+pub fn apply(
+    solid: &mut Solid,
+    operator: &Operator,
+    budget: &Budget,
+) -> Result<Result<Applied, Refusal>, Stopped> {
+    match operator {
+        Operator::Shift { faces, events } => run_shift(solid, faces, *events, budget),
+        Operator::Split { vertex, face, by } => {
+            let around: Vec<FaceId> = solid.topology.faces_around(*vertex).collect();
+            if !around.contains(face) {
+                return Ok(Err(Refusal::NotThere { face: *face }));
+            }
+            if around.len() < 4 {
+                return Ok(Err(Refusal::VertexIsTrihedral { vertex: *vertex }));
+            }
+            run_shift(solid, &[(*face, by.clone())], Events::Refuse, budget)
+        }
+        Operator::Merge { edge, face } => match towards(solid, *edge, *face) {
+            Ok((motion, _)) => run(solid, &motion, &Until::FirstEvent, Events::Pass, budget)
+                .map(|done| done.and_then(|applied| keep_if_merged(solid, applied, *edge))),
+            Err(refusal) => Ok(Err(refusal)),
+        },
+        Operator::Flip { edge, face, by } => flip(solid, *edge, *face, by.as_ref(), budget),
+    }
+}
+
+fn run_shift(
+    solid: &mut Solid,
+    faces: &[(FaceId, Rational)],
+    events: Events,
+    budget: &Budget,
+) -> Result<Result<Applied, Refusal>, Stopped> {
+    match Motion::of(faces) {
+        Some((motion, time)) => run(solid, &motion, &Until::Time(time), events, budget),
+        None => Ok(Err(Refusal::NothingMoves)),
+    }
+}
+
+/// The motion of `face` alone towards the time at which the edge of `h` has no length, and that time.
+fn towards(solid: &Solid, h: HalfEdgeId, face: FaceId) -> Result<(Motion, Rational), Refusal> {
+    let topology = &solid.topology;
+    let is_at_an_end = [topology.origin(h), topology.destination(h)]
+        .iter()
+        .any(|&v| topology.faces_around(v).any(|f| f == face));
+    if !is_at_an_end {
+        return Err(Refusal::NotThere { face });
+    }
+    for rate in [1, -1] {
+        let Some((motion, _)) = Motion::of(&[(face, Rational::from_integer(BigInt::from(rate)))]) else {
+            continue;
+        };
+        let Ok(moving) = Moving::of(solid, &motion) else { continue };
+        if let Some(time) = vanishing_time(solid, &motion, &moving, h) {
+            return Ok((motion, time));
+        }
+    }
+    Err(Refusal::EdgeStays)
+}
+
+/// A merge that stopped at another event is taken back.
+fn keep_if_merged(solid: &mut Solid, applied: Applied, edge: HalfEdgeId) -> Result<Applied, Refusal> {
+    if !solid.topology.contains(edge) {
+        return Ok(applied);
+    }
+    let limits = applied.shifts.clone();
+    applied.undo(solid);
+    Err(Refusal::Limit { limits, blocking: Vec::new() })
+}
+
+/// The flip of an edge between faces 1 and 2 whose ends are on faces 3 and 4.
+fn flip(
+    solid: &mut Solid,
+    h: HalfEdgeId,
+    face: FaceId,
+    by: Option<&Rational>,
+    budget: &Budget,
+) -> Result<Result<Applied, Refusal>, Stopped> {
+    if let Some(refusal) = bad_flip(solid, h) {
+        return Ok(Err(refusal));
+    }
+    let (motion, time) = match towards(solid, h, face) {
+        Ok(found) => found,
+        Err(refusal) => return Ok(Err(refusal)),
+    };
+    let moving = match Moving::of(solid, &motion) {
+        Ok(moving) => moving,
+        Err(vertex) => return Ok(Err(no_split(solid, vertex))),
+    };
+    // The first event must be this edge's, alone.
+    let event = next_event(solid, &motion, &moving, budget)?;
+    let Some(event) = event else { return Ok(Err(Refusal::EdgeStays)) };
+    if event.at != time || !event.contacts.is_empty() {
+        return Ok(Err(limit(solid, &motion, &Rational::zero(), &event)));
+    }
+    if event.vanishing.len() != 1 {
+        return Ok(Err(Refusal::SeveralVanish { count: event.vanishing.len() }));
+    }
+    let until = match by {
+        None => Until::PastFirstEvent,
+        Some(by) => {
+            let rate = motion.rate_or_zero(face);
+            let asked = by / rate;
+            if asked <= time {
+                return Ok(Err(limit(solid, &motion, &Rational::zero(), &event)));
+            }
+            Until::Time(asked)
+        }
+    };
+    let ends = end_faces(solid, h);
+    let done = run(solid, &motion, &until, Events::Pass, budget)?;
+    Ok(match done {
+        Err(Refusal::NoSplit { .. }) => Err(Refusal::DoesNotOpen { faces: ends }),
+        // The merged vertex must not have opened the old way.
+        Ok(applied) if applied.changes.len() != 2 => {
+            applied.undo(solid);
+            Err(Refusal::DoesNotOpen { faces: ends })
+        }
+        other => other,
+    })
+}
+
+/// The faces at the ends of an edge, before and behind it.
+fn end_faces(solid: &Solid, h: HalfEdgeId) -> [FaceId; 2] {
+    let topology = &solid.topology;
+    let beyond = |h: HalfEdgeId| topology.face(topology.opposite(topology.next(h)));
+    [beyond(topology.opposite(h)), beyond(h)]
+}
+
+/// The reason why the edge of `h` cannot be flipped, as far as topology and normals tell it.
+fn bad_flip(solid: &Solid, h: HalfEdgeId) -> Option<Refusal> {
+    let topology = &solid.topology;
+    let beside = [h, topology.opposite(h)].map(|h| topology.face(h));
+    for g in [h, topology.opposite(h)] {
+        if topology.loop_of(g).count() == 3 {
+            return Some(Refusal::FaceHasThreeSides { face: topology.face(g) });
+        }
+    }
+    let ends = end_faces(solid, h);
+    if ends[0] == ends[1] {
+        return Some(Refusal::EndsAreOneFace { face: ends[0] });
+    }
+    let [a, b] = [topology.origin(h), topology.destination(h)];
+    if [a, b].iter().any(|&v| topology.edge_between_at(ends[0], ends[1], v).is_some()) {
+        return Some(Refusal::EndsAreNeighbours { faces: ends });
+    }
+    let is_trihedral = [a, b].iter().all(|&v| topology.faces_around(v).count() == 3);
+    let [n1, n2] = beside.map(|f| &solid.plane(f).normal);
+    let [n3, n4] = ends.map(|f| &solid.plane(f).normal);
+    let signs = [sign(&det(n3, n4, n1)), sign(&det(n3, n4, n2))];
+    let opens = signs[0] != Ordering::Equal && signs[0] == signs[1].reverse();
+    // At reflex edges the split itself is tried: the determinants alone do not decide it.
+    (is_trihedral && !opens && is_convex_around(solid, h)).then_some(Refusal::DoesNotOpen { faces: ends })
+}
+
+/// True when the edge and all edges at its ends are convex.
+fn is_convex_around(solid: &Solid, h: HalfEdgeId) -> bool {
+    let topology = &solid.topology;
+    let is_convex = |h: HalfEdgeId| {
+        let [left, right] = [h, topology.opposite(h)].map(|h| &solid.plane(topology.face(h)).normal);
+        sign(&det(left, right, &solid.direction(h))) == Ordering::Greater
+    };
+    topology.around(h).chain(topology.around(topology.opposite(h))).all(is_convex)
+}
+
+fn no_split(solid: &Solid, vertex: VertexId) -> Refusal {
+    Refusal::NoSplit { vertex, faces: solid.topology.faces_around(vertex).collect() }
+}
+
+fn limit(solid: &Solid, motion: &Motion, passed: &Rational, event: &Event) -> Refusal {
+    let time = passed + &event.at;
+    let limits = motion.rates().iter().map(|(f, rate)| (*f, &time * rate)).collect();
+    Refusal::Limit { limits, blocking: event.blocking(solid) }
+}
+
+/// Runs a motion, checks what it changed, and takes everything back when it is refused or stopped.
+fn run(
+    solid: &mut Solid,
+    motion: &Motion,
+    until: &Until,
+    events: Events,
+    budget: &Budget,
+) -> Result<Result<Applied, Refusal>, Stopped> {
+    let mut run = Run { journal: Journal::begin(solid), changes: Vec::new(), passed: Rational::zero() };
+    let result = match run.advance(solid, motion, until, events, budget) {
+        Ok(Ok(())) => {
+            let changed = run.journal.changed_faces();
+            check_faces(solid, &changed, budget).map(|faults| match faults.into_iter().next() {
+                None => Ok(changed),
+                Some(fault) => Err(Refusal::Invalid(fault)),
+            })
+        }
+        Ok(Err(refusal)) => Ok(Err(refusal)),
+        Err(stopped) => Err(stopped),
+    };
+    match result {
+        Ok(Ok(changed_faces)) => {
+            let shifts = motion.rates().iter().map(|(f, rate)| (*f, &run.passed * rate)).collect();
+            Ok(Ok(Applied { shifts, changes: run.changes, changed_faces, journal: run.journal }))
+        }
+        Ok(Err(refusal)) => {
+            run.journal.restore(solid);
+            Ok(Err(refusal))
+        }
+        Err(stopped) => {
+            run.journal.restore(solid);
+            Err(stopped)
+        }
+    }
+}
+
+struct Run {
+    journal: Journal,
+    changes: Vec<Change>,
+    passed: Rational,
+}
+
+impl Run {
+    fn advance(
+        &mut self,
+        solid: &mut Solid,
+        motion: &Motion,
+        until: &Until,
+        events: Events,
+        budget: &Budget,
+    ) -> Result<Result<(), Refusal>, Stopped> {
+        for count in 0..EVENTS_MAX {
+            if let Err(refusal) = self.split_vertices(solid, motion) {
+                return Ok(Err(refusal));
+            }
+            let moving = match Moving::of(solid, motion) {
+                Ok(moving) => moving,
+                Err(vertex) => return Ok(Err(no_split(solid, vertex))),
+            };
+            let event = next_event(solid, motion, &moving, budget)?;
+            let end = self.end(until, count, event.as_ref());
+            match (event, end) {
+                (event, Some(end)) if event.as_ref().is_none_or(|e| end < e.at) => {
+                    self.journal.advance(solid, motion, &moving, &end);
+                    self.passed += end;
+                    return Ok(Ok(()));
+                }
+                (None, _) => return Ok(Err(Refusal::EdgeStays)),
+                (Some(event), end) => {
+                    let must_stop = events == Events::Refuse || !event.contacts.is_empty();
+                    if must_stop {
+                        return Ok(Err(limit(solid, motion, &self.passed, &event)));
+                    }
+                    if let Err(refusal) = self.pass(solid, motion, &moving, &event) {
+                        return Ok(Err(refusal));
+                    }
+                    let is_at_end =
+                        matches!(until, Until::FirstEvent) || end.is_some_and(|end| end == event.at);
+                    if is_at_end {
+                        return Ok(Ok(()));
+                    }
+                }
+            }
+        }
+        Ok(Err(Refusal::TooManyEvents { limit: EVENTS_MAX }))
+    }
+
+    /// The time that is left, if the goal is a time.
+    fn end(&self, until: &Until, count: usize, event: Option<&Event>) -> Option<Rational> {
+        match until {
+            Until::Time(time) => Some(time - &self.passed),
+            Until::FirstEvent => None,
+            Until::PastFirstEvent if count == 0 => None,
+            Until::PastFirstEvent => {
+                let room =
+                    event.map_or_else(|| self.passed.clone(), |e| e.at.clone().min(self.passed.clone()));
+                Some(super::exact::shortened(&(room / BigInt::from(2)), 64))
+            }
+        }
+    }
+
+    /// Splits every vertex whose planes do not stay concurrent.
+    fn split_vertices(&mut self, solid: &mut Solid, motion: &Motion) -> Result<(), Refusal> {
+        while let Err(vertex) = Moving::of(solid, motion) {
+            self.journal.keep_topology(solid);
+            let edges = resolve::split(solid, motion, vertex).ok_or_else(|| no_split(solid, vertex))?;
+            let topology = &solid.topology;
+            let beside = |h: HalfEdgeId| [topology.face(h), topology.face(topology.opposite(h))];
+            self.changes.extend(edges.into_iter().map(|h| Change::Split(beside(h))));
+        }
+        Ok(())
+    }
+
+    /// Goes to an event and contracts the edges that have no length there.
+    fn pass(
+        &mut self,
+        solid: &mut Solid,
+        motion: &Motion,
+        moving: &Moving,
+        event: &Event,
+    ) -> Result<(), Refusal> {
+        self.journal.keep_topology(solid);
+        self.journal.advance(solid, motion, moving, &event.at);
+        self.passed += &event.at;
+        for &h in &event.vanishing {
+            let beside = [h, solid.topology.opposite(h)].map(|h| solid.topology.face(h));
+            solid.topology.contract(h).map_err(|refusal| match refusal {
+                ContractRefusal::FaceVanishes(face) => Refusal::FaceVanishes { face },
+                ContractRefusal::FaceAtBothEnds(face) => Refusal::LinkNotADisk { face },
+            })?;
+            self.changes.push(Change::Merged(beside));
+        }
+        Ok(())
+    }
+}
+
+/// One side of the interval by which faces may move.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Side {
+    /// As far as one likes.
+    Unbounded,
+    /// By less than this.
+    Limit {
+        /// The growth of the offset of each moving face at the event.
+        limits: Vec<(FaceId, Rational)>,
+        /// What would meet.
+        blocking: Vec<Contact>,
+    },
+    /// Not at all: a vertex has no good split in this direction.
+    Blocked {
+        /// The vertex.
+        vertex: VertexId,
+    },
+}
+
+/// The open interval by which the faces may move together without an event, as its two sides: with negative and with
+/// positive multiples of `shifts`.
+///
+/// # Errors
+/// When the budget stops the run.
+pub fn range(solid: &Solid, shifts: &[(FaceId, Rational)], budget: &Budget) -> Result<[Side; 2], Stopped> {
+    let opposite: Vec<(FaceId, Rational)> = shifts.iter().map(|(f, t)| (*f, -t)).collect();
+    Ok([one_side(solid, &opposite, budget)?, one_side(solid, shifts, budget)?])
+}
+
+fn one_side(solid: &Solid, shifts: &[(FaceId, Rational)], budget: &Budget) -> Result<Side, Stopped> {
+    let Some((motion, _)) = Motion::of(shifts) else { return Ok(Side::Unbounded) };
+    let split;
+    let mut solid = solid;
+    if Moving::of(solid, &motion).is_err() {
+        let mut copy = solid.clone();
+        while let Err(vertex) = Moving::of(&copy, &motion) {
+            if resolve::split(&mut copy, &motion, vertex).is_none() {
+                return Ok(Side::Blocked { vertex });
+            }
+        }
+        split = copy;
+        solid = &split;
+    }
+    let Ok(moving) = Moving::of(solid, &motion) else { return Ok(Side::Unbounded) };
+    Ok(match next_event(solid, &motion, &moving, budget)? {
+        None => Side::Unbounded,
+        Some(event) => match limit(solid, &motion, &Rational::zero(), &event) {
+            Refusal::Limit { limits, blocking } => Side::Limit { limits, blocking },
+            _ => Side::Unbounded,
+        },
+    })
+}
+
+/// How much the offset of a plane grows when its face moves by `distance`, rounded once to an f64.
+pub fn offset_growth(solid: &Solid, face: FaceId, distance: f64) -> Rational {
+    super::exact::rational(distance * solid.plane(face).length)
+}
+
+/// The distance by which a face moves when its offset grows by `t`; never farther from 0 than the true one.
+pub fn distance_of_growth(solid: &Solid, face: FaceId, t: &Rational) -> f64 {
+    let near = super::exact::to_f64(t) / solid.plane(face).length;
+    let inward = near * (1.0 - 4.0 * f64::EPSILON);
+    if t.is_negative() { inward.min(0.0) } else { inward.max(0.0) }
+}

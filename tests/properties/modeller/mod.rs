@@ -1,0 +1,7 @@
+//! The polyhedral modeller against brute force.
+
+mod edits;
+mod laws;
+mod oracle;
+mod parts;
+mod zoo;
