@@ -220,7 +220,7 @@ fn the_linear_determinant_changes_sign_where_an_edge_vanishes_and_the_quadratic_
         };
         let zero = big_d(&IBig::ZERO);
         assert_eq!(big_d(&IBig::from(7)), &zero - IBig::from(7) * &slope);
-        // The edge of plane 0 on plane 2 between its corners with planes 1 and 3: A - B = D / (m12 m23) (n x n2).
+        // The edge of plane 0 on plane 2 between its corners with planes 1 and 3: B - A = D / (m12 m23) (n x n2).
         let a = moving(&rows, &[0, 1, 2], 0).unwrap();
         let b = moving(&rows, &[0, 2, 3], 0).unwrap();
         let line = cross(&rows[0].0, &rows[2].0);
@@ -230,7 +230,7 @@ fn the_linear_determinant_changes_sign_where_an_edge_vanishes_and_the_quadratic_
             let (p, q) = (at(&a, &t), at(&b, &t));
             for k in 0..3 {
                 let told = &d / RBig::from(&m12 * &m23) * RBig::from(line[k].clone());
-                assert_eq!(&p[k] - &q[k], told);
+                assert_eq!(&q[k] - &p[k], told);
             }
         }
     }
@@ -300,14 +300,14 @@ fn face(solid: &Solid, normal: [f64; 3], at: [f64; 3]) -> FaceId {
     meshmend::modeller::face_by_normal(solid, DVec3::from_array(normal), DVec3::from_array(at)).unwrap()
 }
 
-/// A house: a box under a gable roof, whose ridge vanishes when the front gable moves back.
+/// A hip roof on its floor, whose ridge vanishes when a hip moves in.
 fn hip_roof() -> Solid {
-    let mut shape = prism(&[vec![[0.0, 0.0], [60.0, 0.0], [60.0, 40.0], [0.0, 40.0]]], 0.0, 20.0);
-    shape.points.extend([DVec3::new(20.0, 20.0, 40.0), DVec3::new(40.0, 20.0, 40.0)]);
+    let mut shape = prism(&[vec![[0.0, 0.0], [60.0, 0.0], [60.0, 40.0], [0.0, 40.0]]], 0.0, 50.0);
+    shape.points.extend([DVec3::new(20.0, 20.0, 20.0), DVec3::new(40.0, 20.0, 20.0)]);
     let at = |p: [f64; 3]| shape.points.iter().position(|q| *q == DVec3::from_array(p)).unwrap() as u32;
-    let [a, b, c, d] = [[0.0, 0.0, 20.0], [60.0, 0.0, 20.0], [60.0, 40.0, 20.0], [0.0, 40.0, 20.0]].map(at);
+    let [a, b, c, d] = [[0.0, 0.0, 0.0], [60.0, 0.0, 0.0], [60.0, 40.0, 0.0], [0.0, 40.0, 0.0]].map(at);
     let (e, f) = (8, 9);
-    shape.faces.remove(1);
+    shape.faces.truncate(1);
     shape.faces.extend([
         vec![vec![a, b, f, e]],
         vec![vec![b, c, f]],
@@ -343,7 +343,7 @@ fn an_edge_flips_when_its_roof_moves_past_it_and_flips_back() {
     // The edge between two walls has the roof and the floor at its ends; the floor never comes near.
     let mut merged = first.clone();
     apply(&mut merged, &Operator::Merge { edge: ridge, face: left }, &budget()).unwrap().unwrap();
-    let tip = vertex_near(&merged, DVec3::new(40.0, 20.0, 40.0)).unwrap();
+    let tip = vertex_near(&merged, DVec3::new(40.0, 20.0, 20.0)).unwrap();
     assert_eq!(merged.topology().faces_around(tip).count(), 4);
     assert_eq!(Model::of(&merged).unwrap().fault(), None);
 }
@@ -422,7 +422,8 @@ fn a_wall_by_its_two_sides_moves_as_far_as_one_likes() {
     let [to_the_right, to_the_left] = range(&solid, &together, &budget()).unwrap();
     assert_eq!(to_the_left, Side::Unbounded);
     // To the right the inner side meets the other prong after 30.
-    assert_eq!(limit(&to_the_right), Some(rational(-30.0)));
+    let Side::Limit { limits, .. } = &to_the_right else { panic!("a limit") };
+    assert!(limits.contains(&(inner, rational(30.0))) && limits.contains(&(outer, rational(-30.0))));
     let alone = range(&solid, &[(inner, rational(1.0))], &budget()).unwrap();
     assert_eq!(
         alone.each_ref().map(|s| distance_of_growth(&solid, inner, &limit(s).unwrap()).round()),

@@ -128,10 +128,6 @@ impl Model {
     /// The exterior loop is the one with the positive doubled area along the normal, and there is one.
     fn area_fault(&self, f: usize) -> Option<String> {
         for (i, l) in self.loops[f].iter().enumerate() {
-            let axis = self.axis(f);
-            let (mut sum, mut scale) = (0.0f64, 0.0f64);
-            let _ = axis;
-            let base = &self.corners[&l[0]];
             // Exact: the sum over a fan of signed areas, with one common denominator.
             let common = l.iter().fold(IBig::ONE, |c, v| c * &self.corners[v].w);
             let at = |v: usize| {
@@ -147,7 +143,6 @@ impl Model {
                 let v: Vector = [0, 1, 2].map(|k| &q[k] - &base_at[k]);
                 total += dot(&cross(&u, &v), &self.rows[f].0);
             }
-            let _ = (base, &mut sum, &mut scale);
             if (total > IBig::ZERO) != (i == 0) || total == IBig::ZERO {
                 return Some(format!("loop {i} of face {f} runs the wrong way round"));
             }
