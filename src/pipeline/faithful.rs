@@ -2,7 +2,7 @@
 //!
 //! *Exact*: the same surface, no vertex moved. *Faithful*: nothing that a customer would see is gone, made up or moved
 //! beyond bounds that are stated. *Changed*: a bound is exceeded, and which. The bounds and where they are from:
-//! `docs/decisions/0029-printable-is-not-faithful.md`.
+//! `docs/decisions/0032-printable-is-not-faithful.md`.
 
 use super::fidelity::{LOSS_MAX, LOST_BEYOND, Losses, Original, area_of, diagonal};
 use super::{Outcome, Report};
