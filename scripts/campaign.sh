@@ -34,7 +34,7 @@ declare -A places=(
   [kill]="--test service"
 )
 
-# Campaigns against a running service: each script starts its own server on loopback and prints its page.
+# Campaigns that are scripts and print their page: of those against a running service each starts its own server on loopback.
 declare -A scripts=(
   [slow-connections]="slow_connections.py"
   [disk-full]="disk_full.py"
@@ -43,6 +43,8 @@ declare -A scripts=(
   [restarts]="restarts.py"
   [service-cancel]="cancel.py"
   [uploads]="uploads.py"
+  [holes]="holes.py"
+  [holes-speed]="holes_speed.py"
 )
 
 name=${1:-}
