@@ -1,4 +1,5 @@
-//! Duplicate faces: triangles with the same three positions.
+//! Duplicate faces: triangles with the same three positions, and polygons with the same corners in the same order, from
+//! whichever they begin.
 //!
 //! In the same direction they are a face written twice; in opposite directions a sheet with two sides and nothing
 //! between them. Each triangle beyond the first of its three positions counts once: as a duplicate where an earlier one
@@ -8,10 +9,12 @@ use super::names::middle;
 use super::welded::Welded;
 use super::{Context, DefectCode, Finding};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
-use crate::mesh::{edge_of, prev_corner, triangle_of};
+use crate::mesh::{PolygonCopy, edge_of, polygon_copies, prev_corner, triangle_of};
 use crate::par;
+use crate::spatial::{Contact, Contacts};
+use std::borrow::Cow;
 
-/// A triangle that has the vertices of an earlier one.
+/// A triangle that has the vertices of an earlier one, or is a part of a polygon that has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Repeat {
     /// The later triangle.
@@ -34,7 +37,76 @@ pub(super) fn repeats(mesh: &Welded<'_>, budget: &Budget) -> Result<Vec<Repeat>,
     })?;
     let mut repeats = parts.concat();
     par::sort_unstable(&mut repeats);
+    of_polygons(mesh, &mut repeats, budget)?;
     Ok(repeats)
+}
+
+/// Adds the triangles of copied polygons that are no repeats by themselves, because the diagonals are others.
+fn of_polygons(mesh: &Welded<'_>, repeats: &mut Vec<Repeat>, budget: &Budget) -> Result<(), Stopped> {
+    let polygons = &mesh.soup.polygons;
+    if polygons.faces.len() < 2 {
+        return Ok(());
+    }
+    let copies = polygon_copies(polygons, |v| mesh.first_at(v), budget)?;
+    let mut by_first: Vec<PolygonCopy> = copies;
+    by_first.sort_unstable_by_key(|copy| (copy.of, copy.polygon));
+    let mut more = Vec::new();
+    for same in by_first.chunk_by(|a, b| a.of == b.of) {
+        let first_against = same.iter().find(|copy| copy.is_reversed).map(|copy| copy.polygon);
+        for copy in same {
+            budget.spend(1)?;
+            let of = match first_against {
+                Some(against) if copy.is_reversed => against,
+                _ => copy.of,
+            };
+            let is_opposite = first_against == Some(copy.polygon);
+            let of = if is_opposite { copy.of } else { of };
+            let corners = polygons.corners_of(copy.polygon as usize).len() as u32;
+            let [first, first_of] = [copy.polygon, of].map(|p| polygons.first_triangles[p as usize]);
+            let Some(of) = mesh.triangle_of_source(first_of) else { continue };
+            let triangles = (first..first + corners - 2).filter_map(|t| mesh.triangle_of_source(t));
+            let is_new = |t: &u32| repeats.binary_search_by_key(t, |r| r.triangle).is_err();
+            more.extend(triangles.filter(is_new).map(|triangle| Repeat { triangle, of, is_opposite }));
+        }
+    }
+    repeats.extend(more);
+    repeats.sort_unstable();
+    Ok(())
+}
+
+/// `contacts` without those of triangles of a copied polygon with those of the polygon it is a copy of, which are told as
+/// duplicates. As they are where not all are listed.
+pub(super) fn without_copies<'c>(
+    contacts: Cow<'c, Contacts>,
+    mesh: &Welded<'_>,
+    repeats: &[Repeat],
+) -> Cow<'c, Contacts> {
+    let polygons = &mesh.soup.polygons;
+    if polygons.faces.len() < 2 || repeats.is_empty() || contacts.list.len() as u64 != contacts.count {
+        return contacts;
+    }
+    let repeat_of = |t: u32| {
+        let found = mesh.triangle_of_source(t)?;
+        let i = repeats.binary_search_by_key(&found, |r| r.triangle).ok()?;
+        Some(mesh.source(repeats[i].of))
+    };
+    // A copy in the other direction may stand between a later one and the first.
+    let stands_for = |t: u32| {
+        let of = repeat_of(t).unwrap_or(t);
+        mesh.soup.face_of(repeat_of(of).unwrap_or(of))
+    };
+    let is_copy =
+        |c: &Contact| stands_for(c.a) == stands_for(c.b) && mesh.soup.face_of(c.a) != mesh.soup.face_of(c.b);
+    if !contacts.list.iter().any(is_copy) {
+        return contacts;
+    }
+    let mut left = Contacts::default();
+    for &contact in contacts.list.iter().filter(|c| !is_copy(c)) {
+        left.count += 1;
+        left.count_by_kind[contact.kind as usize] += 1;
+        left.list.push(contact);
+    }
+    Cow::Owned(left)
 }
 
 /// Repeats among the triangles at one edge, told only at the edge opposite to their largest vertex.

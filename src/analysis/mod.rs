@@ -282,6 +282,7 @@ impl<'a> Context<'a> {
             Some(known) => Cow::Borrowed(known),
             None => Cow::Owned(self_intersections::search(&mesh, &collinear, &repeats, budget)?),
         };
+        let contacts = duplicate_faces::without_copies(contacts, &mesh, &repeats);
         let bounds = measures::bounds(&mesh, &used, budget)?;
         let epsilon = match options.near {
             NearSearch::Within(epsilon) => epsilon,

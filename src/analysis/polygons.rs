@@ -55,7 +55,7 @@ pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
 
 /// The corners of polygon `i`, as vertices of the file.
 fn corners_of(soup: &Soup, i: usize) -> &[u32] {
-    &soup.polygons.corners[soup.polygons.starts[i] as usize..soup.polygons.starts[i + 1] as usize]
+    soup.polygons.corners_of(i)
 }
 
 /// A polygon of the file with its plane.

@@ -133,6 +133,13 @@ pub struct Soup {
     pub texture: Texture,
 }
 
+impl Polygons {
+    /// The corners of polygon `i`, as vertices of the file.
+    pub fn corners_of(&self, i: usize) -> &[u32] {
+        &self.corners[self.starts[i] as usize..self.starts[i + 1] as usize]
+    }
+}
+
 impl Soup {
     /// The face of the file behind triangle `t`.
     pub fn face_of(&self, t: u32) -> u32 {

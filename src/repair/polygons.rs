@@ -1,4 +1,4 @@
-//! Splits polygons that pass a vertex more than once into simple ones.
+//! Splits polygons that pass a vertex more than once into simple ones, and copies of polygons alike.
 //!
 //! The first step of Guéziec, Taubin, Lazarus and Horn, "Cutting and stitching" (2001), who drop such faces; splitting
 //! keeps the surface.
@@ -6,7 +6,7 @@
 use super::{Changes, Draft};
 use crate::budget::{Budget, Stopped};
 use crate::formats::split_polygon;
-use crate::mesh::Soup;
+use crate::mesh::{Soup, polygon_copies};
 use crate::spatial::coincident_f64;
 
 /// What becomes of a face that passes a vertex more than once.
@@ -19,8 +19,9 @@ pub enum DegenerateFaces {
     Drop,
 }
 
-/// Replaces the triangles of each polygon of `soup` that has two corners at one position. The draft must be as it was
-/// taken from `soup`.
+/// Replaces the triangles of each polygon of `soup` that has two corners at one position; those of a polygon with the
+/// corners of an earlier one become triangles with the same diagonals, so that copies of polygons are copies of triangles
+/// from whichever corner they begin and whichever way they run. The draft must be as it was taken from `soup`.
 ///
 /// ```text
 ///      b---c   f                  b---c   a'--f
@@ -38,9 +39,10 @@ pub fn split_polygons(
 ) -> Result<Changes, Stopped> {
     let polygons = &soup.polygons;
     if polygons.faces.is_empty() {
-        return Ok(Changes::counted([("polygons_split", 0), ("polygons_dropped", 0)]));
+        return Ok(counted(0, 0, 0));
     }
     let places = coincident_f64(&soup.positions, budget)?.group;
+    let split_alike = split_copies_alike(draft, soup, &places, budget)?;
     let mut is_kept = vec![true; draft.triangles.len()];
     let mut parts = Vec::new();
     let (mut split, mut dropped, mut faces) = (0, 0, Vec::new());
@@ -71,8 +73,64 @@ pub fn split_polygons(
         draft.retain_triangles(&is_kept);
         append(draft, &parts);
     }
-    let changes = Changes::counted([("polygons_split", split), ("polygons_dropped", dropped)]);
-    Ok(Changes { reason: reason(&faces), ..changes })
+    Ok(Changes { reason: reason(&faces), ..counted(split, dropped, split_alike) })
+}
+
+fn counted(split: u64, dropped: u64, split_alike: u64) -> Changes {
+    let counts =
+        [("polygons_split", split), ("polygons_dropped", dropped), ("copies_split_alike", split_alike)];
+    Changes::counted(counts)
+}
+
+/// Gives each copy of a polygon the diagonals of the first; the number of those that had others.
+fn split_copies_alike(
+    draft: &mut Draft,
+    soup: &Soup,
+    places: &[u32],
+    budget: &Budget,
+) -> Result<u64, Stopped> {
+    let polygons = &soup.polygons;
+    let mut changed = 0;
+    for copy in polygon_copies(polygons, |v| places[v as usize], budget)? {
+        let corners = polygons.corners_of(copy.polygon as usize);
+        let triangles_of = |polygon: u32| {
+            let first = polygons.first_triangles[polygon as usize] as usize;
+            first..first + corners.len() - 2
+        };
+        budget.spend(corners.len() as u64)?;
+        let mut own: Vec<(u32, u32)> = corners.iter().map(|&v| (places[v as usize], v)).collect();
+        own.sort_unstable();
+        let corner_at = |v: u32| {
+            let place = places[draft.vertex_origin[v as usize] as usize];
+            own[own.partition_point(|&(p, _)| p < place)].1
+        };
+        let wanted: Vec<[u32; 3]> = draft.triangles[triangles_of(copy.of)]
+            .iter()
+            .map(|t| t.map(corner_at))
+            .map(|[a, b, c]| if copy.is_reversed { [a, c, b] } else { [a, b, c] })
+            .collect();
+        let vertex = |v: u32| draft.vertex_origin.partition_point(|&o| o < v) as u32;
+        let wanted: Vec<[u32; 3]> = wanted.into_iter().map(|t| t.map(vertex)).collect();
+        let range = triangles_of(copy.polygon);
+        if !has_the_same(&draft.triangles[range.clone()], &wanted) {
+            draft.triangles[range].copy_from_slice(&wanted);
+            changed += 1;
+        }
+    }
+    Ok(changed)
+}
+
+/// True when two lists have the same triangles in the same direction.
+fn has_the_same(a: &[[u32; 3]], b: &[[u32; 3]]) -> bool {
+    let sorted = |triangles: &[[u32; 3]]| {
+        let mut all: Vec<[u32; 3]> = triangles
+            .iter()
+            .map(|&[a, b, c]| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or_default())
+            .collect();
+        all.sort_unstable();
+        all
+    };
+    sorted(a) == sorted(b)
 }
 
 /// Adds triangles over vertices of the soup, each with the triangle of the soup in whose place it is.

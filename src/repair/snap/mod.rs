@@ -5,6 +5,8 @@
 //! when its turn comes, and what was refused is tried again after others. Of two joined vertices the one with the
 //! smaller id keeps its place, so no new coordinates arise.
 
+mod facing;
+
 use super::{Changes, Draft};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3, are_collinear};
@@ -31,16 +33,18 @@ const EPSILON_SHARE: f64 = 1e-5;
 const PARTNERS_MAX: usize = 32;
 
 /// Joins boundary edges wherever the mesh stays a manifold and no triangle turns over. The draft must be a manifold
-/// (see [`cut`](super::cut::cut)). No vertex ends farther than epsilon from where it was.
+/// (see [`cut`](super::cut::cut)). No vertex ends farther than epsilon from where it was. Parts that lie beside each other
+/// but are wound the other way are turned first, so that the result does not depend on how they were wound.
 ///
 /// # Errors
 /// When the budget stops the run.
 pub fn snap(draft: &mut Draft, options: &SnapOptions, budget: &Budget) -> Result<Changes, Stopped> {
-    let groups = EdgeGroups::build(&draft.triangles, draft.positions.len(), budget)?;
-    let boundary = Boundary::trace(&draft.triangles, draft.positions.len(), &groups, budget)?;
-    drop(groups);
-    let rim = Rim::of(draft, &boundary, budget)?;
+    let mut rim = Rim::of(draft, budget)?;
     let epsilon = epsilon(draft, &rim, options.epsilon);
+    let flipped = facing::turn_to_face(draft, &rim, epsilon, &options.chosen, budget)?;
+    if flipped > 0 {
+        rim = Rim::of(draft, budget)?;
+    }
     let [apart, same] = rim.pairs(draft, epsilon, &options.chosen, budget)?;
     let mut rule = Closeness::new(&draft.positions, epsilon);
     let mut done = Stitched::default();
@@ -57,6 +61,7 @@ pub fn snap(draft: &mut Draft, options: &SnapOptions, budget: &Budget) -> Result
         ("edges_joined", done.explicit.len() as u64),
         ("edges_joined_with_others", done.implicit.len() as u64),
         ("vertices_moved", moved),
+        ("triangles_flipped", flipped),
     ]);
     let reason = if moved > 0 { format!("vertices up to {epsilon:e} apart are one") } else { String::new() };
     Ok(Changes { move_max, reason, ..changes })
@@ -83,7 +88,10 @@ struct Rim {
 }
 
 impl Rim {
-    fn of(draft: &Draft, boundary: &Boundary, budget: &Budget) -> Result<Self, Stopped> {
+    fn of(draft: &Draft, budget: &Budget) -> Result<Self, Stopped> {
+        let groups = EdgeGroups::build(&draft.triangles, draft.positions.len(), budget)?;
+        let boundary = Boundary::trace(&draft.triangles, draft.positions.len(), &groups, budget)?;
+        drop(groups);
         let mut edges: Vec<(u32, u32)> = boundary
             .loops
             .iter()
@@ -234,6 +242,29 @@ mod tests {
         assert_eq!(draft.positions.len(), 6);
         assert_eq!(draft.triangles[2..], [[2, 4, 5], [2, 5, 3]]);
         assert_eq!(draft.positions[2], DVec3::X);
+    }
+
+    #[test]
+    fn a_sheet_that_is_wound_the_other_way_is_turned_and_joined() {
+        for gap in [0.0, 0.01] {
+            let mut draft = sheets(gap);
+            draft.flip(2);
+            draft.flip(3);
+            let (turned, changes) = snapped(draft, Some(0.02));
+            let (same, _) = snapped(sheets(gap), Some(0.02));
+            assert_eq!((changes.count("edges_joined"), changes.count("triangles_flipped")), (1, 2));
+            assert_eq!(turned, same);
+        }
+    }
+
+    #[test]
+    fn the_smaller_sheet_turns() {
+        let mut draft = sheets(0.01);
+        draft.positions[6..].iter_mut().for_each(|p| p.x = 9.0);
+        draft.flip(0);
+        draft.flip(1);
+        let (after, changes) = snapped(draft, Some(0.02));
+        assert_eq!((changes.count("triangles_flipped"), after.triangles[0]), (2, [0, 2, 3]));
     }
 
     #[test]

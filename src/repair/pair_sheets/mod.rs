@@ -8,6 +8,8 @@
 //!           / \                  comes apart
 //! ```
 
+mod inside_out;
+
 use super::{Changes, Draft};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{print_pitch, radial_order};
@@ -23,7 +25,8 @@ pub enum Across {
     Void,
 }
 
-/// Pairs triangles and gives each fan that is left a vertex of its own. The draft must be welded and oriented. Edges
+/// Pairs triangles and gives each fan that is left a vertex of its own. The draft must be welded and oriented. What is inside
+/// out is turned first (see [`inside_out`]): otherwise the solid would be taken for the space around it. Edges
 /// whose triangles do not alternate in direction around them, or lie on each other, are left to the cut. Where both pairs
 /// of an edge would still have the same ends, it is divided in its middle.
 ///
@@ -33,7 +36,11 @@ pub fn pair_sheets(draft: &mut Draft, across: Across, budget: &Budget) -> Result
     let mut divided = 0;
     let mut paired = Pairing::find(draft, across, budget)?;
     if paired.edges.is_empty() {
-        return Ok(changes(0, 0, 0));
+        return Ok(changes(0, 0, 0, 0));
+    }
+    let turned = inside_out::turn(draft, budget)?;
+    if turned > 0 {
+        paired = Pairing::find(draft, across, budget)?;
     }
     let mut cut = paired.cut(draft, budget)?;
     let stuck = paired.stuck(&cut.triangles);
@@ -48,11 +55,19 @@ pub fn pair_sheets(draft: &mut Draft, across: Across, budget: &Budget) -> Result
         draft.positions.push(draft.positions[v as usize]);
         draft.vertex_origin.push(draft.vertex_origin[v as usize]);
     }
-    Ok(changes(edges, divided, cut.copies.len() as u64))
+    Ok(changes(edges, divided, cut.copies.len() as u64, turned))
 }
 
-fn changes(edges: u64, divided: u64, copies: u64) -> Changes {
-    Changes::counted([("edges_paired", edges), ("edges_divided", divided), ("vertices_copied", copies)])
+fn changes(edges: u64, divided: u64, copies: u64, turned: u64) -> Changes {
+    let counts = [
+        ("edges_paired", edges),
+        ("edges_divided", divided),
+        ("vertices_copied", copies),
+        ("triangles_flipped", turned),
+    ];
+    let reason =
+        if turned > 0 { "bodies that touch were inside out and turned".to_owned() } else { String::new() };
+    Changes { reason, ..Changes::counted(counts) }
 }
 
 /// Which half-edges stay together.
@@ -202,8 +217,20 @@ mod tests {
     fn across_the_solid_bodies_come_apart() {
         let mut draft = sharing_an_edge();
         let changes = pair_sheets(&mut draft, Across::Solid, &Budget::unlimited()).unwrap();
-        assert_eq!(changes.counts, [("edges_paired", 1), ("edges_divided", 0), ("vertices_copied", 2)]);
+        assert_eq!(changes.counts[..3], [("edges_paired", 1), ("edges_divided", 0), ("vertices_copied", 2)]);
         assert_eq!((components(&draft), edges_with_other_than_two(&draft)), (2, 0));
+    }
+
+    #[test]
+    fn bodies_that_are_inside_out_come_apart_as_well_and_are_turned() {
+        let mut draft = sharing_an_edge();
+        draft.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        let changes = pair_sheets(&mut draft, Across::Solid, &Budget::unlimited()).unwrap();
+        assert_eq!((changes.count("triangles_flipped"), changes.count("vertices_copied")), (8, 2));
+        assert_eq!((components(&draft), edges_with_other_than_two(&draft)), (2, 0));
+        let mut outward = sharing_an_edge();
+        pair_sheets(&mut outward, Across::Solid, &Budget::unlimited()).unwrap();
+        assert_eq!(draft, outward);
     }
 
     #[test]
@@ -211,7 +238,7 @@ mod tests {
         let mut draft = sharing_an_edge();
         let changes = pair_sheets(&mut draft, Across::Void, &Budget::unlimited()).unwrap();
         // Both ends keep one fan, so that only a vertex between them can come apart.
-        assert_eq!(changes.counts, [("edges_paired", 2), ("edges_divided", 1), ("vertices_copied", 1)]);
+        assert_eq!(changes.counts[..3], [("edges_paired", 2), ("edges_divided", 1), ("vertices_copied", 1)]);
         assert_eq!((components(&draft), edges_with_other_than_two(&draft)), (1, 0));
         assert_eq!(draft.positions[6..], [DVec3::Z * 2.0; 2]);
         assert_eq!(draft.triangles.len(), 12);

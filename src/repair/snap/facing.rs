@@ -1,0 +1,164 @@
+//! Which parts to turn so that their boundaries can be joined: two edges that lie on each other are joined only where
+//! they run in opposite directions, and how a sheet is wound says nothing about where it belongs.
+
+use super::Rim;
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::geom::triangle_area;
+use crate::mesh::{ChosenEdges, Components, EdgeGroups, ParityUnionFind, UnionFind, edge_of, triangle_of};
+use crate::repair::Draft;
+use crate::spatial::{Octree, is_within};
+
+/// Partners that are looked at for each edge, in each direction.
+const PARTNERS_MAX: usize = 32;
+
+/// Turns whole parts (triangles connected by edges) so that boundary edges within `epsilon` of each other, each used once
+/// and the closest first, run in opposite directions. Of parts that are related so, those with more area stay. Gives the
+/// number of triangles that were turned. The draft must be a manifold, coherently oriented.
+///
+/// # Errors
+/// When the budget stops the run.
+pub(super) fn turn_to_face(
+    draft: &mut Draft,
+    rim: &Rim,
+    epsilon: f64,
+    chosen: &ChosenEdges,
+    budget: &Budget,
+) -> Result<u64, Stopped> {
+    if rim.half_edges.is_empty() {
+        return Ok(0);
+    }
+    let parts = parts(draft, budget)?;
+    if parts.count < 2 {
+        return Ok(0);
+    }
+    let meetings = meetings(draft, rim, &parts, epsilon, chosen, budget)?;
+    if meetings.iter().all(|meeting| !meeting.run_alike) {
+        return Ok(0);
+    }
+    let mut sides = ParityUnionFind::new(parts.count as usize);
+    let mut is_used = vec![false; rim.half_edges.len()];
+    for (i, Meeting { edges: [g, h], run_alike, .. }) in meetings.into_iter().enumerate() {
+        if i % CHECK_EVERY == 0 {
+            budget.check()?;
+        }
+        if is_used[g] || is_used[h] {
+            continue;
+        }
+        let [a, b] = [g, h].map(|i| parts.of[triangle_of(rim.half_edges[i]) as usize]);
+        if sides.relate(a, b, run_alike) {
+            is_used[g] = true;
+            is_used[h] = true;
+        }
+    }
+    turn_smaller(draft, &parts, &mut sides, budget)
+}
+
+/// Two boundary edges of different parts that lie within epsilon of each other.
+struct Meeting {
+    /// The larger distance of their ends.
+    apart: f64,
+    /// Places in the rim, the smaller first.
+    edges: [usize; 2],
+    /// They run in the same direction, so that one of the parts has to turn.
+    run_alike: bool,
+}
+
+/// The meetings in an order that does not depend on how parts are wound: by distance, then by triangle.
+fn meetings(
+    draft: &Draft,
+    rim: &Rim,
+    parts: &Components,
+    epsilon: f64,
+    chosen: &ChosenEdges,
+    budget: &Budget,
+) -> Result<Vec<Meeting>, Stopped> {
+    let at = |v: u32| draft.positions[v as usize];
+    let part = |h: u32| parts.of[triangle_of(h) as usize];
+    let mut out_of: Vec<(u32, usize)> =
+        rim.half_edges.iter().enumerate().map(|(i, &h)| (edge_of(&draft.triangles, h)[0], i)).collect();
+    out_of.sort_unstable();
+    let vertices = out_of.iter().map(|&(v, _)| v).collect();
+    let octree = Octree::build(&draft.positions, vertices, budget)?;
+    let leaving = |v: u32| {
+        let i = out_of.binary_search_by_key(&v, |&(vertex, _)| vertex).ok()?;
+        Some(out_of[i].1)
+    };
+    let mut found = Vec::new();
+    for (i, &g) in rim.half_edges.iter().enumerate() {
+        budget.spend(1)?;
+        let [from, to] = edge_of(&draft.triangles, g);
+        if chosen.contains([from, to].map(|v| draft.vertex_origin[v as usize])) {
+            continue;
+        }
+        let mut partners = Vec::new();
+        for end in octree.near(at(from), epsilon, budget)? {
+            let alike = leaving(end).map(|j| (j, edge_of(&draft.triangles, rim.half_edges[j])[1], true));
+            let against = rim.into(end).and_then(|h| {
+                let j = rim.half_edges.binary_search(&h).ok()?;
+                Some((j, edge_of(&draft.triangles, h)[0], false))
+            });
+            for (j, other, run_alike) in alike.into_iter().chain(against) {
+                if j > i && part(rim.half_edges[j]) != part(g) && is_within(at(other), at(to), epsilon) {
+                    let apart = at(end).distance(at(from)).max(at(other).distance(at(to)));
+                    partners.push(Meeting { apart, edges: [i, j], run_alike });
+                }
+            }
+        }
+        partners.sort_unstable_by(|a, b| a.apart.total_cmp(&b.apart).then(a.edges.cmp(&b.edges)));
+        partners.truncate(PARTNERS_MAX);
+        found.append(&mut partners);
+    }
+    let triangles = |meeting: &Meeting| meeting.edges.map(|i| triangle_of(rim.half_edges[i]));
+    found.sort_by(|a, b| {
+        let by_place = a.apart.total_cmp(&b.apart).then(triangles(a).cmp(&triangles(b)));
+        by_place.then(a.run_alike.cmp(&b.run_alike)).then(a.edges.cmp(&b.edges))
+    });
+    Ok(found)
+}
+
+/// Triangles connected by edges.
+fn parts(draft: &Draft, budget: &Budget) -> Result<Components, Stopped> {
+    let groups = EdgeGroups::build(&draft.triangles, draft.positions.len(), budget)?;
+    let mut parts = UnionFind::new(draft.triangles.len());
+    for (e, group) in groups.iter().enumerate() {
+        if e % CHECK_EVERY == 0 {
+            budget.check()?;
+        }
+        for pair in group.windows(2) {
+            parts.unite(triangle_of(pair[0]), triangle_of(pair[1]));
+        }
+    }
+    Ok(parts.into_components())
+}
+
+/// Of each set of related parts turns those on the side with less area; at equal areas the first part stays.
+fn turn_smaller(
+    draft: &mut Draft,
+    parts: &Components,
+    sides: &mut ParityUnionFind,
+    budget: &Budget,
+) -> Result<u64, Stopped> {
+    let side: Vec<(u32, bool)> = (0..parts.count).map(|part| sides.find(part)).collect();
+    // Area on the side of the first part, less that on the other.
+    let mut balance = vec![0.0; parts.count as usize];
+    for t in 0..draft.triangles.len() {
+        if t % CHECK_EVERY == 0 {
+            budget.check()?;
+        }
+        let (first, is_against) = side[parts.of[t] as usize];
+        let area = triangle_area(draft.corners(t));
+        balance[first as usize] += if is_against { -area } else { area };
+    }
+    let mut turned = 0;
+    for t in 0..draft.triangles.len() {
+        if t % CHECK_EVERY == 0 {
+            budget.check()?;
+        }
+        let (first, is_against) = side[parts.of[t] as usize];
+        if is_against == (balance[first as usize] >= 0.0) {
+            draft.flip(t);
+            turned += 1;
+        }
+    }
+    Ok(turned)
+}
