@@ -1,13 +1,14 @@
 """Tools that fill holes, run as they are: `python holes_tools.py NAME` answers lines `IN.npz<TAB>OUT.npz` with one line of JSON each; a tool that is not installed says so in its first answer.
 
 Seconds are those of the call that fills, without reading, writing and building the tool's own mesh. Settings are the tools' recommended ones;
-where a length of edges is asked for, it is the mean edge of the mesh. PyMeshLab's own refinement is not used: it takes seconds for a hole and comes no nearer.
+where a length of edges is asked for, it is the mean edge of the mesh. Left out, because they came out farther from what
+was removed: MeshLib's `naturalSmooth`, which moves what is around the hole, and PyMeshLab's refinement, which takes seconds for a hole.
 """
 import json, os, subprocess, sys, tempfile, time
 import numpy as np
 
-NAMES = ("meshlib", "meshlib_nicely", "meshlib_natural", "pymeshlab", "meshfix", "cgal")
-TITLES = {"meshlib": "MeshLib `fillHole`", "meshlib_nicely": "MeshLib `fillHoleNicely`", "meshlib_natural": "MeshLib `fillHoleNicely`, natural smooth",
+NAMES = ("meshlib", "meshlib_nicely", "pymeshlab", "meshfix", "cgal")
+TITLES = {"meshlib": "MeshLib `fillHole`", "meshlib_nicely": "MeshLib `fillHoleNicely`",
           "pymeshlab": "PyMeshLab", "meshfix": "MeshFix", "cgal": "CGAL refine and fair"}
 
 
@@ -25,7 +26,7 @@ def read_off(path):
     return numbers[:3 * n].reshape(n, 3), numbers[3 * n:].reshape(m, 4)[:, 1:].astype(np.int64)
 
 
-def meshlib(nicely, natural):
+def meshlib(nicely):
     import meshlib.mrmeshnumpy as mn, meshlib.mrmeshpy as mm
     def fill(v, f):
         mesh = mn.meshFromFacesVerts(np.ascontiguousarray(f, np.int32), v)
@@ -39,7 +40,7 @@ def meshlib(nicely, natural):
             s = mm.FillHoleNicelySettings()
             s.triangulateParams.metric = mm.getUniversalMetric(mesh)
             s.subdivideSettings.maxEdgeLen, s.subdivideSettings.maxEdgeSplits = edge, 1_000_000
-            s.smoothCurvature, s.smoothSettings.naturalSmooth = True, natural
+            s.smoothCurvature = True
             mm.fillHoleNicely(mesh, hole, s)
         seconds = time.perf_counter() - start
         mesh.pack()
@@ -85,14 +86,13 @@ def cgal():
 
 
 def tool(name):
-    return {"meshlib": lambda: meshlib(False, False), "meshlib_nicely": lambda: meshlib(True, False), "meshlib_natural": lambda: meshlib(True, True),
-            "pymeshlab": lambda: pymeshlab(False), "pymeshlab_refined": lambda: pymeshlab(True), "meshfix": meshfix, "cgal": cgal}[name]()
+    return {"meshlib": lambda: meshlib(False), "meshlib_nicely": lambda: meshlib(True), "pymeshlab": pymeshlab, "meshfix": meshfix, "cgal": cgal}[name]()
 
 
 class Worker:
     """A tool in a process of its own, so that a crash or an endless loop costs one hole."""
 
-    def __init__(self, name, seconds=60):
+    def __init__(self, name, seconds=300):
         self.name, self.seconds, self.process = name, seconds, None
 
     def fill(self, v, f):
@@ -108,7 +108,10 @@ class Worker:
                 if not select.select([self.process.stdout], [], [], self.seconds)[0]: raise TimeoutError
                 said = json.loads(self.process.stdout.readline())
             except (OSError, ValueError, TimeoutError) as e:
+                status = self.process.poll()
                 self.stop()
+                # An exception of this file would look like a failure of the tool.
+                if status == 1: raise RuntimeError(f"the adapter of {self.name} failed") from e
                 return f"longer than {self.seconds} s" if isinstance(e, TimeoutError) else "crash"
             if "error" in said: return said["error"]
             with np.load(d + "/out.npz") as out: return out["v"], out["f"], said["seconds"]

@@ -43,7 +43,7 @@ declare -A scripts=(
   [restarts]="restarts.py"
   [service-cancel]="cancel.py"
   [uploads]="uploads.py"
-  [holes]="holes.py"
+  [holes-bench]="holes.py"
   [holes-speed]="holes_speed.py"
 )
 
