@@ -1,6 +1,6 @@
 //! The words in which a defect is told: its code, how bad it is, and where.
 
-use super::ProximityTest;
+use super::{HoleGuess, ProximityTest};
 use crate::geom::DVec3;
 
 /// How bad a defect is for printing.
@@ -129,6 +129,8 @@ pub struct Witness {
     pub anchor: Option<u32>,
     /// Which features meet or are near each other, where the defect is of a pair of them.
     pub test: Option<ProximityTest>,
+    /// What a boundary loop most likely is; `None` for chains that do not close and for other defects.
+    pub hole: Option<HoleGuess>,
 }
 
 /// All defects of one kind.

@@ -34,6 +34,7 @@ mod volume_interval;
 mod watertight;
 mod welded;
 
+pub use boundary_loops::{HoleClass, HoleCounts, HoleGuess};
 pub use defect::{DefectCode, Element, Finding, Severity, Witness};
 pub use proximity::{Proximity, ProximityTest, TestCounts};
 pub use volume_interval::VolumeInterval;
@@ -44,6 +45,7 @@ use crate::geom::{Aabb, are_collinear};
 use crate::mesh::{Soup, singular_vertices};
 use crate::par;
 use crate::spatial::{Contacts, NearPairs};
+use boundary_loops::Loops;
 use duplicate_faces::{Repeat, repeats};
 use members::Members;
 use names::middle;
@@ -118,8 +120,12 @@ pub struct Analysis {
     pub watertight: Watertight,
     /// What meets or is near, by features; `None`: not asked for, or given up.
     pub proximity: Option<Proximity>,
+    /// How many boundary loops are of which class.
+    pub holes: HoleCounts,
     /// Defects, by code.
     pub findings: Vec<Finding>,
+    /// Half-edges of the soup with the number of the boundary loop that each is in, ascending; empty unless asked for.
+    pub loop_edges: Vec<[u32; 2]>,
 }
 
 impl Analysis {
@@ -134,6 +140,10 @@ impl Analysis {
 pub struct AnalyzeOptions {
     /// Most witnesses to keep of each defect.
     pub samples: usize,
+    /// Witnesses to keep of boundary loops where these are to be more.
+    pub loop_samples: usize,
+    /// Whether the edges of boundary loops are listed.
+    pub loop_edges: bool,
     /// Whether features are searched that are near each other.
     pub near: NearSearch,
     /// Whether a volume that is not defined is estimated.
@@ -142,7 +152,13 @@ pub struct AnalyzeOptions {
 
 impl Default for AnalyzeOptions {
     fn default() -> Self {
-        Self { samples: 16, near: NearSearch::Off, volume_interval: false }
+        Self {
+            samples: 16,
+            loop_samples: 0,
+            loop_edges: false,
+            near: NearSearch::Off,
+            volume_interval: false,
+        }
     }
 }
 
@@ -183,6 +199,8 @@ pub fn analyze(
         properties: Properties::of(&cx),
         watertight: Watertight::of(&cx)?,
         proximity: Proximity::of(&cx),
+        holes: cx.loops.counts(),
+        loop_edges: if options.loop_edges { cx.loops.edges(&cx) } else { Vec::new() },
         findings,
     })
 }
@@ -238,6 +256,8 @@ struct Context<'a> {
     shells: Vec<Shell>,
     /// Parts with a rim that bound no volume, ascending.
     sheets: Vec<u32>,
+    /// The boundary loops, classified.
+    loops: Loops,
     /// Box of the used vertices.
     bounds: Option<Aabb>,
     /// Sides and features closer than this are near, in the unit of the file.
@@ -247,6 +267,7 @@ struct Context<'a> {
     /// Features that are near each other; `None` where they were not searched.
     near: Option<NearPairs>,
     samples: usize,
+    loop_samples: usize,
     budget: &'a Budget,
 }
 
@@ -297,14 +318,17 @@ impl<'a> Context<'a> {
             members,
             shells,
             sheets: Vec::new(),
+            loops: Loops::default(),
             bounds,
             epsilon,
             contacts,
             near: None,
             samples: options.samples,
+            loop_samples: options.samples.max(options.loop_samples),
             budget,
         };
         cx.sheets = open_sheets::search(&cx)?;
+        cx.loops = boundary_loops::search(&cx)?;
         cx.near = proximity::search(&cx, options.near)?;
         Ok(cx)
     }

@@ -34,6 +34,7 @@ impl<'s> Names<'s> {
             figures: Vec::new(),
             anchor: None,
             test: None,
+            hole: None,
         }
     }
 

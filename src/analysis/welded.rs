@@ -3,7 +3,7 @@
 use super::names::{Names, middle};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
-use crate::mesh::{Components, EdgeGroups, Soup, UnionFind, edge_of, triangle_of, twins};
+use crate::mesh::{Components, EdgeGroups, Soup, UnionFind, edge_of, prev_corner, triangle_of, twins};
 use crate::par;
 use crate::spatial::coincident_f64;
 use std::borrow::Cow;
@@ -118,6 +118,11 @@ impl<'s> Welded<'s> {
     /// The corners of triangle `t`.
     pub(super) fn corners(&self, t: u32) -> [DVec3; 3] {
         self.triangles[t as usize].map(|v| self.position(v))
+    }
+
+    /// The corner of the triangle of half-edge `h` that is not on the half-edge.
+    pub(super) fn apex(&self, h: u32) -> DVec3 {
+        self.position(edge_of(&self.triangles, prev_corner(h))[0])
     }
 
     pub(super) fn position(&self, v: u32) -> DVec3 {

@@ -40,6 +40,9 @@ pub(super) enum Command {
     /// Cut singular edges and vertices and join boundary edges; the certificate of the result says what holds.
     #[command(arg_required_else_help = true)]
     CutStitch(CutStitchArguments),
+    /// Close holes; no vertex moves and every triangle stays. The certificate of the result says what holds.
+    #[command(arg_required_else_help = true)]
+    FillHoles(FillHolesArguments),
     /// Say whether the faces of a file, as indexed, make a half-edge mesh (a manifold, coherently oriented).
     #[command(arg_required_else_help = true)]
     Check {
@@ -165,6 +168,16 @@ pub(super) struct CutStitchArguments {
     output: Place,
 }
 
+#[derive(Debug, Args)]
+pub(super) struct FillHolesArguments {
+    #[command(flatten)]
+    given: InputArguments,
+    /// File to write, or - for standard output, which needs --output-format. Its extension names the format unless
+    /// --output-format does.
+    #[arg(short, long, value_name = "OUT")]
+    output: Place,
+}
+
 /// An operation on a file, whichever command named it.
 #[derive(Debug)]
 pub(super) struct Request {
@@ -225,6 +238,12 @@ impl From<SimplifyArguments> for Request {
 impl From<CutStitchArguments> for Request {
     fn from(given: CutStitchArguments) -> Self {
         given.given.request(Operation::CutStitch, Some(given.output))
+    }
+}
+
+impl From<FillHolesArguments> for Request {
+    fn from(given: FillHolesArguments) -> Self {
+        given.given.request(Operation::FillHoles, Some(given.output))
     }
 }
 

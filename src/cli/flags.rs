@@ -54,9 +54,11 @@ fn option_flag(spec: &'static OptionSpec) -> Arg {
         OptionKind::Flag => {
             flag.value_name("true|false").value_parser(PossibleValuesParser::new(["true", "false"]))
         }
-        OptionKind::Input | OptionKind::Targets | OptionKind::Edges | OptionKind::Plan => {
-            flag.value_name("JSON|@FILE").value_parser(text_or_file)
-        }
+        OptionKind::Input
+        | OptionKind::Targets
+        | OptionKind::Edges
+        | OptionKind::Holes
+        | OptionKind::Plan => flag.value_name("JSON|@FILE").value_parser(text_or_file),
     }
 }
 

@@ -1,8 +1,8 @@
 //! The report for people: a screen of text, the most telling things first.
 
 use crate::wire::{
-    Action, Certificate, Claim, Defect, Deviation, Level, MeshInfo, Operation, PrintingCheck, Proposal,
-    Report, Severity, TargetSpec, Witness,
+    Action, Certificate, Claim, Defect, DefectCode, Deviation, Hole, Level, MeshInfo, Operation,
+    PrintingCheck, Proposal, Report, Severity, TargetSpec, Witness,
 };
 use std::fmt::Write as _;
 
@@ -26,6 +26,13 @@ pub(super) fn summary(report: &Report, subject: &Subject) -> String {
             put(&mut text, &format!("  {question}"));
         }
         put_table(&mut text, "defects", &mesh.defects.iter().map(defect_row).collect::<Vec<_>>());
+        match &report.holes {
+            Some(holes) => put_table(&mut text, "holes", &fate_rows(holes)),
+            None if matches!(report.operation, Operation::Analyze | Operation::Plan) => {
+                put_table(&mut text, "holes", &hole_rows(mesh));
+            }
+            None => {}
+        }
     }
     if let Some(plan) = report.plan.as_ref().filter(|_| report.operation == Operation::Plan) {
         put_table(&mut text, "plan", &plan.findings.iter().map(proposal_row).collect::<Vec<_>>());
@@ -129,6 +136,45 @@ fn defect_row(defect: &Defect) -> [String; 4] {
     };
     let first = defect.witnesses.first().map(witness).unwrap_or_default();
     [defect.code.to_string(), defect.count.to_string(), severity.to_owned(), first]
+}
+
+/// Most holes of which a screen tells what became of them.
+const HOLES_TOLD: usize = 16;
+
+/// What became of the first holes.
+fn fate_rows(holes: &[Hole]) -> Vec<[String; 4]> {
+    let row = |hole: &Hole| {
+        let loops: Vec<String> = hole.loops.iter().map(u32::to_string).collect();
+        let class = hole.class.map_or("open chain", |class| class.word());
+        let how = hole.used.map_or_else(String::new, |method| format!(" by {method}"));
+        let patch = match hole.used {
+            Some(_) => {
+                format!("{}, {}", counted(hole.triangles, "triangle"), counted(hole.vertices, "new vertex"))
+            }
+            None => String::new(),
+        };
+        let rejected = hole.rejected.iter().map(|one| format!("{} not taken: {}", one.method, one.reason));
+        let told: Vec<String> = [patch].into_iter().filter(|text| !text.is_empty()).chain(rejected).collect();
+        [loops.join(" "), class.to_owned(), format!("{}{how}", hole.fate), told.join("; ")]
+    };
+    holes.iter().take(HOLES_TOLD).map(row).collect()
+}
+
+/// The boundary loops that are listed, by the numbers under which they can be chosen.
+fn hole_rows(mesh: &MeshInfo) -> Vec<[String; 4]> {
+    let loops = mesh.defects.iter().filter(|defect| defect.code == DefectCode::BoundaryLoop);
+    let listed = loops.flat_map(|defect| defect.witnesses.iter().enumerate());
+    let row = |(number, witness): (usize, &Witness)| {
+        let value = |name: &str| witness.figures.iter().find(|f| f.name == name).and_then(|f| f.value);
+        let told = |name: &str| value(name).map(|value| format!("{name} {}", figure(value)));
+        let sizes = ["edges", "length", "diameter"].into_iter().filter_map(told);
+        let class = witness.hole.map_or("open chain", |class| class.word());
+        let sure = value("confidence").map(|share| format!("{:.0} % sure", share * 100.0));
+        let at = witness.position.map(|p| format!("at {}", p.map(figure).join(" ")));
+        let sizes = sizes.chain(at).collect::<Vec<_>>().join(", ");
+        [number.to_string(), class.to_owned(), sure.unwrap_or_default(), sizes]
+    };
+    listed.map(row).collect()
 }
 
 fn proposal_row(proposal: &Proposal) -> [String; 5] {
@@ -296,6 +342,15 @@ certificate
 written: out.stl
 ";
         assert_eq!(of(&sample::repaired(), Some("out.stl")), want);
+    }
+
+    #[test]
+    fn an_analysis_lists_holes_by_the_numbers_under_which_they_can_be_chosen() {
+        let mut answer = sample::repaired();
+        assert!(!of(&answer, None).contains("holes\n"));
+        answer.report.operation = crate::pipeline::Operation::Analyze;
+        let text = of(&answer, None);
+        assert!(text.contains("holes\n  0  missing-face"), "{text}");
     }
 
     #[test]

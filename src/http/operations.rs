@@ -1,4 +1,4 @@
-//! `POST /v1/analyze`, `/v1/repair`, `/v1/cut-stitch`, … and `/v1/jobs`: a mesh comes in and becomes a job.
+//! `POST /v1/analyze`, `/v1/repair`, `/v1/cut-stitch`, `/v1/fill-holes`, … and `/v1/jobs`: a mesh comes in and becomes a job.
 //!
 //! There is one model: every request makes a job, and all but `/v1/jobs` wait for it a while.
 
@@ -79,6 +79,15 @@ pub(super) async fn simplify(state: State, caller: Extension<Caller>, request: R
 #[utoipa::path(post, path = "/v1/cut-stitch", tag = "operations")]
 pub(super) async fn cut_stitch(state: State, caller: Extension<Caller>, request: Request) -> Handled {
     result_of(&state, &caller, Operation::CutStitch, request).await
+}
+
+/// Fill the holes of a mesh.
+///
+/// All boundary loops, or those that `holes` lists, are closed by patches that add no defect; no vertex moves and every
+/// triangle stays. The report says in `holes` what became of each, and the certificate what holds.
+#[utoipa::path(post, path = "/v1/fill-holes", tag = "operations")]
+pub(super) async fn fill_holes(state: State, caller: Extension<Caller>, request: Request) -> Handled {
+    result_of(&state, &caller, Operation::FillHoles, request).await
 }
 
 /// Make a job and do not wait for it.

@@ -14,7 +14,7 @@ const BASE: u64 = 64 << 20;
 pub(super) fn estimated_bytes(operation: Operation, format: Option<Format>, upload_bytes: u64) -> u64 {
     let per_triangle = match operation {
         Operation::Analyze | Operation::Verify | Operation::Convert | Operation::CutStitch => 170,
-        Operation::Plan | Operation::Repair | Operation::Simplify => 410,
+        Operation::Plan | Operation::Repair | Operation::Simplify | Operation::FillHoles => 410,
     };
     let file_bytes_per_triangle = match format {
         Some(Format::Stl) => 50,

@@ -95,6 +95,7 @@ pub(super) fn result_name(row: &JobRow, encoding: Encoding, level: usize) -> Str
     let mark = match ending.and_then(|ending| ending.outcome) {
         Some(Outcome::Simplified) => "-simplified",
         Some(Outcome::CutStitched) => "-cut-stitched",
+        Some(Outcome::Filled) => "-filled",
         Some(Outcome::Repaired) => "-repaired",
         Some(Outcome::Rebuilt) => "-rebuilt",
         Some(Outcome::Partial) => "-partial",

@@ -3,8 +3,8 @@
 use super::describe::describe;
 use super::remedies::proposals;
 use super::{
-    Answer, ChosenPlan, Failure, FidelityVerdict, InputFacts, Operation, Options, Outcome, Output, Plan,
-    Refusal, Report, Step,
+    Answer, ChosenPlan, ELEMENTS_MAX, Failure, FidelityVerdict, InputFacts, Operation, Options, Outcome,
+    Output, Plan, Refusal, Report, Step,
 };
 use crate::analysis::{Analysis, AnalyzeOptions, NearSearch};
 use crate::budget::{Budget, Stage, Stopped};
@@ -68,12 +68,16 @@ impl Input {
     /// What to find out of a mesh of this run.
     pub(super) fn analyze_options(&self) -> AnalyzeOptions {
         let near = self.near.map_or(NearSearch::Off, NearSearch::Within);
-        AnalyzeOptions { samples: self.samples, near, volume_interval: false }
+        AnalyzeOptions { samples: self.samples, near, ..AnalyzeOptions::default() }
     }
 
     /// Describes the mesh as uploaded; in full when that is all that is asked for and it is small.
     fn analyze(&self, operation: Operation, budget: &Budget) -> Result<Analysis, Stopped> {
         let mut options = self.analyze_options();
+        if operation == Operation::FillHoles {
+            options.loop_samples = ELEMENTS_MAX;
+            options.loop_edges = true;
+        }
         if matches!(operation, Operation::Analyze | Operation::Plan) {
             let is_small = self.soup.triangles.len() <= IN_FULL_MAX;
             options.volume_interval = is_small || self.near.is_some();
@@ -100,6 +104,7 @@ impl Input {
             distance: None,
             losses: None,
             fidelity: None,
+            filling: None,
             outcome: None,
             refusal: None,
             printing: None,

@@ -5,6 +5,7 @@ mod cut_stitch;
 mod describe;
 mod faithful;
 mod fidelity;
+mod fill_holes;
 mod identical;
 mod input;
 mod output;
@@ -21,6 +22,7 @@ mod units;
 pub use self::cut_stitch::{CutStitchChoices, Stitching};
 pub use self::faithful::{Change, ChangeKind, Fidelity, FidelityVerdict};
 pub use self::fidelity::Losses;
+pub use self::fill_holes::{ChosenHole, FillHolesChoices, Filling, HoleFate, HoleOutcome};
 use self::input::Input;
 pub use self::plan::Step;
 pub use self::printing::PrintingReport;
@@ -54,11 +56,13 @@ pub enum Operation {
     Simplify,
     /// A manifold with boundary; the certificate states what holds.
     CutStitch,
+    /// Holes closed; the certificate states what holds.
+    FillHoles,
 }
 
 impl Operation {
     /// Every operation.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Analyze,
         Self::Plan,
         Self::Repair,
@@ -66,6 +70,7 @@ impl Operation {
         Self::Verify,
         Self::Simplify,
         Self::CutStitch,
+        Self::FillHoles,
     ];
 
     /// Name in paths, options and reports.
@@ -78,6 +83,7 @@ impl Operation {
             Self::Verify => "verify",
             Self::Simplify => "simplify",
             Self::CutStitch => "cut-stitch",
+            Self::FillHoles => "fill-holes",
         }
     }
 }
@@ -181,6 +187,8 @@ pub struct Options {
     pub simplify: SimplifyChoices,
     /// How `cut-stitch` works.
     pub cut_stitch: CutStitchChoices,
+    /// How `fill-holes` works.
+    pub filling: FillHolesChoices,
     /// Largest distance of features that are reported as near, in the unit of the file; `None`: 1e-5 of the diagonal for
     /// `analyze` up to 100,000 triangles, and no search otherwise.
     pub near: Option<f64>,
@@ -268,6 +276,8 @@ pub enum Outcome {
     Simplified,
     /// Cut and stitched, as asked; the certificate says what holds.
     CutStitched,
+    /// Holes closed, as asked and as far as sound patches were found; the certificate says what holds.
+    Filled,
     /// Not valid; only on request.
     Partial,
     /// No result.
@@ -382,6 +392,8 @@ pub struct Report {
     pub losses: Option<Losses>,
     /// How true the result is to the input; `None` without a result.
     pub fidelity: Option<FidelityVerdict>,
+    /// What became of each hole; `None` for operations other than `fill-holes`.
+    pub filling: Option<Filling>,
     /// What became of the file; `None` for `analyze` and `verify`.
     pub outcome: Option<Outcome>,
     /// Why there is no result.
@@ -426,6 +438,14 @@ pub enum Failure {
     /// The plan is not for this file.
     #[error("the plan is not for this file")]
     PlanMismatch(PlanMismatch),
+    /// A hole was chosen that the file does not have.
+    #[error("the file has no hole {number}: it has {holes}, numbered from 0")]
+    NoSuchHole {
+        /// The number.
+        number: u32,
+        /// How many there are.
+        holes: u64,
+    },
 }
 
 impl From<PlanMismatch> for Failure {
@@ -464,6 +484,7 @@ pub fn run(
         Operation::Repair => repair::repair(&input, options, budget)?,
         Operation::Simplify => simplify::simplify(&input, options, budget)?,
         Operation::CutStitch => cut_stitch::cut_stitch(&input, options, budget)?,
+        Operation::FillHoles => fill_holes::fill_holes(&input, options, budget)?,
     };
     if options.require == Some(Require::Faithful) {
         answer = demand_faithful(answer);

@@ -7,12 +7,13 @@ use crate::budget::{Budget, Stopped};
 use crate::mesh::{ChosenEdges, Soup, Validity};
 use crate::repair::cut::CutOptions;
 use crate::repair::duplicates::OppositePairs;
+use crate::repair::fill::{FillOptions, HoleReport};
 use crate::repair::nest::NestOptions;
 use crate::repair::pair_sheets::Across;
 use crate::repair::polygons::DegenerateFaces;
 use crate::repair::snap::SnapOptions;
 use crate::repair::thin_faces::ThinFaces;
-use crate::repair::{self, Changes, Draft, Selection};
+use crate::repair::{self, Changes, Draft};
 
 /// One step of a plan, with its parameters.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,7 +57,7 @@ pub enum Step {
     /// Boundary edges that are close are joined.
     Snap(SnapOptions),
     /// Holes are closed.
-    FillHoles(Selection),
+    FillHoles(FillOptions),
     /// Needles, caps and folds go.
     MendThinFaces(ThinFaces),
     /// Open parts get a wall behind them.
@@ -130,7 +131,7 @@ impl Variant {
         });
         let fill = match self.thickens {
             true => Some(Step::Thicken { wall: choices.wall }),
-            false => choices.fills_holes.then(|| Step::FillHoles(choices.holes.clone())),
+            false => choices.fills_holes.then(|| Step::FillHoles(choices.filling())),
         };
         let thin = (self.mends_thin_faces && choices.mends_thin_faces())
             .then_some(Step::MendThinFaces(choices.thin_faces));
@@ -229,7 +230,14 @@ impl Step {
         }
     }
 
-    fn run(&self, draft: &mut Draft, soup: &Soup, budget: &Budget) -> Result<Changes, Stopped> {
+    /// Runs the step on `draft`, which was made of `soup`; `holes` gets what is told of each hole.
+    fn run(
+        &self,
+        draft: &mut Draft,
+        soup: &Soup,
+        holes: &mut Vec<HoleReport>,
+        budget: &Budget,
+    ) -> Result<Changes, Stopped> {
         match self {
             Self::SplitPolygons(how) => repair::polygons::split_polygons(draft, soup, *how, budget),
             Self::ClearNoise => Ok(repair::noise::clear_noise(draft)),
@@ -250,7 +258,11 @@ impl Step {
             Self::DropNearDuplicates { epsilon } => {
                 repair::near_duplicates::drop_near_duplicates(draft, *epsilon, budget)
             }
-            Self::FillHoles(chosen) => repair::fill::fill_chosen_holes(draft, soup, chosen, budget),
+            Self::FillHoles(options) => {
+                let filled = repair::fill::fill(draft, soup, options, budget)?;
+                holes.extend(filled.holes);
+                Ok(filled.changes)
+            }
             Self::MendThinFaces(which) => repair::thin_faces::mend_thin_faces(draft, *which, budget),
             Self::Thicken { wall } => repair::thicken::thicken(draft, *wall, budget),
             Self::Nest(options) => repair::nest::nest(draft, options, budget),
@@ -269,6 +281,8 @@ pub(super) struct Attempt {
     pub(super) actions: Vec<Action>,
     /// The steps that ran.
     pub(super) steps: Vec<Step>,
+    /// What the filling told of each hole.
+    pub(super) holes: Vec<HoleReport>,
 }
 
 impl Attempt {
@@ -276,7 +290,7 @@ impl Attempt {
     pub(super) fn start(soup: &Soup, before: Option<&Analysis>) -> Self {
         let (draft, changes) = Draft::from_soup(soup);
         let actions = vec![action("take-usable", &UNUSABLE, changes, soup, before)];
-        Self { draft, actions, steps: Vec::new() }
+        Self { draft, actions, steps: Vec::new(), holes: Vec::new() }
     }
 
     /// Runs `steps`, and notes what each did, and why by the defects found `before`.
@@ -289,7 +303,7 @@ impl Attempt {
     ) -> Result<(), Stopped> {
         for step in steps {
             budget.check()?;
-            let changes = step.run(&mut self.draft, soup, budget)?;
+            let changes = step.run(&mut self.draft, soup, &mut self.holes, budget)?;
             debug_assert_eq!(self.draft.check(), Vec::<String>::new(), "after {step:?}");
             self.actions.push(action(step.name(), step.cures(), changes, soup, before));
             self.steps.push(step.clone());

@@ -1,10 +1,12 @@
 //! What may be done about each kind of defect: what is proposed, how sure that is, and what the caller chose instead.
 
+use super::fill_holes::ChosenHole;
 use super::plan::Step;
 use super::{FillHoles, Options};
-use crate::analysis::{Analysis, DefectCode, Finding, Severity, Witness};
+use crate::analysis::{Analysis, DefectCode, Finding, HoleGuess, Severity, Witness};
 use crate::repair::Selection;
 use crate::repair::duplicates::OppositePairs;
+use crate::repair::fill::{FillOptions, HoleChoice};
 use crate::repair::nest::{Fate, Policy};
 use crate::repair::thin_faces::ThinFaces;
 use crate::wrap::WALL_OF_DIAGONAL;
@@ -105,13 +107,16 @@ pub struct ChosenRemedy {
     pub remedy: Option<Remedy>,
     /// For elements, by their place among the witnesses of the finding.
     pub elements: Vec<(u32, Remedy)>,
+    /// How boundary loops are filled that are to be filled in a way of their own.
+    pub holes: Vec<ChosenHole>,
 }
 
 impl ChosenPlan {
     /// Witnesses that each finding must have, so that all elements can be found.
     pub(super) fn samples_min(&self) -> usize {
         let needs = |finding: &ChosenRemedy| {
-            let numbers = finding.elements.iter().map(|&(number, _)| number as usize + 1);
+            let of_holes = finding.holes.iter().map(|hole| hole.number as usize + 1);
+            let numbers = finding.elements.iter().map(|&(number, _)| number as usize + 1).chain(of_holes);
             let usual = remedies_of(finding.code)[0];
             let chooses_all = finding.remedy.is_some_and(|remedy| remedy != usual)
                 && finding.code != DefectCode::BoundaryLoop;
@@ -192,7 +197,6 @@ fn has_elements(code: DefectCode) -> bool {
 
 /// What is proposed for each finding of `analysis`.
 pub(super) fn proposals(analysis: &Analysis) -> Vec<Proposal> {
-    let diagonal = diagonal_of(analysis);
     let of_finding = |finding: &Finding| {
         let code = finding.code;
         let (remedy, confidence, reason) = proposed(finding, analysis.counts.triangles);
@@ -200,7 +204,7 @@ pub(super) fn proposals(analysis: &Analysis) -> Vec<Proposal> {
         let element = |(number, witness): (usize, &Witness)| ElementProposal {
             number: number as u32,
             remedy,
-            confidence: if remedy == Remedy::Fill { of_hole(witness, diagonal) } else { confidence },
+            confidence: if remedy == Remedy::Fill { of_hole(witness) } else { confidence },
         };
         let elements = match has_elements(code) {
             true => finding.witnesses.iter().enumerate().map(element).collect::<Vec<_>>(),
@@ -275,21 +279,13 @@ fn proposed(finding: &Finding, triangles: u64) -> (Remedy, f64, &'static str) {
     (usual, confidence, reason)
 }
 
-/// How sure it is that a hole is meant to be closed: the smaller and the flatter, the surer.
-fn of_hole(witness: &Witness, diagonal: f64) -> f64 {
-    let figure =
-        |name: &str| witness.figures.iter().find(|(n, _)| *n == name).map_or(0.0, |&(_, value)| value);
-    let size = figure("length") / diagonal;
-    let is_flat = figure("distance_from_plane") <= 1e-3 * figure("length");
-    match (size, is_flat) {
-        (size, true) if size <= 0.1 => 0.95,
-        (size, true) if size <= 1.0 => 0.85,
-        (_, true) => 0.7,
-        (size, false) if size <= 0.1 => 0.9,
-        (size, false) if size <= 1.0 => 0.6,
-        _ => 0.4,
-    }
+/// How sure it is that a hole is meant to be closed. A chain that does not close is none that a patch could close.
+fn of_hole(witness: &Witness) -> f64 {
+    witness.hole.map_or(CHAIN_CONFIDENCE, HoleGuess::confidence_of_closing)
 }
+
+/// As for a mesh that is open for a reason that is not understood.
+const CHAIN_CONFIDENCE: f64 = 0.4;
 
 /// Whether open parts get walls.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -317,6 +313,8 @@ pub(super) struct Choices {
     pub(super) cuts: bool,
     pub(super) fills_holes: bool,
     pub(super) holes: Selection,
+    /// Holes that are filled in a way of their own, ascending by half-edge.
+    pub(super) hole_choices: Vec<HoleChoice>,
     pub(super) nesting: Policy,
     /// Whether open parts get walls.
     pub(super) walls: Walls,
@@ -347,6 +345,7 @@ impl Default for Choices {
             cuts: true,
             fills_holes: true,
             holes: Selection::default(),
+            hole_choices: Vec::new(),
             nesting: Policy::default(),
             walls: Walls::default(),
             wall: 0.0,
@@ -390,6 +389,11 @@ impl Choices {
         Ok(choices)
     }
 
+    /// How holes are filled.
+    pub(super) fn filling(&self) -> FillOptions {
+        FillOptions { choices: self.hole_choices.clone(), ..FillOptions::plain(self.holes.clone()) }
+    }
+
     /// True when whole parts are removed as chosen.
     pub(super) fn removes(&self) -> bool {
         !self.removed_parts.is_empty() || self.shells.iter().any(|&(_, fate)| fate == Fate::Goes)
@@ -426,7 +430,22 @@ impl Choices {
             // What is to stay would not survive.
             self.rebuilds &= remedy != Remedy::Keep || finding.severity != Severity::Error;
         }
+        self.take_holes(chosen, finding)?;
         self.apply(code, chosen.remedy, anchors, finding);
+        Ok(())
+    }
+
+    fn take_holes(&mut self, chosen: &ChosenRemedy, finding: &Finding) -> Result<(), PlanMismatch> {
+        let code = chosen.code;
+        for hole in &chosen.holes {
+            let witness = finding.witnesses.get(hole.number as usize);
+            let witness = witness.filter(|_| code == DefectCode::BoundaryLoop);
+            let half_edge = witness.and_then(|witness| witness.anchor);
+            let half_edge = half_edge.ok_or(PlanMismatch::NoSuchElement(code, hole.number))?;
+            let &ChosenHole { method, band_rings, .. } = hole;
+            self.hole_choices.push(HoleChoice { half_edge, method, band_rings });
+        }
+        self.hole_choices.sort_by_key(|choice| choice.half_edge);
         Ok(())
     }
 

@@ -140,7 +140,7 @@ fn finished(
     report: Report,
 ) -> Result<Answer, Failure> {
     let Search { input, options, budget, .. } = *search;
-    let Attempt { draft, actions, steps } = attempt;
+    let Attempt { draft, actions, steps, .. } = attempt;
     if let Some(refusal) = fidelity.breach(&options.limits) {
         return Ok(Report { actions, ..report }.refused(refusal));
     }

@@ -6,7 +6,7 @@ use utoipa::ToSchema;
 
 use super::mesh_answers::{Proximity, VolumeInterval, Watertight};
 use super::unit_hypothesis::UnitHypothesis;
-use super::words::{DefectCode, ProximityTest, Severity};
+use super::words::{DefectCode, HoleClass, ProximityTest, Severity};
 use crate::{analysis, pipeline};
 
 /// A mesh described.
@@ -27,6 +27,8 @@ pub struct MeshInfo {
     /// or given up around vertices with very many faces.
     #[schema(required)]
     pub proximity: Option<Proximity>,
+    /// What the boundary loops most likely are.
+    pub holes: HoleCounts,
     /// Defects by kind.
     pub defects: Vec<Defect>,
 }
@@ -98,6 +100,23 @@ pub struct Properties {
     pub embedded: Option<bool>,
 }
 
+/// Boundary loops by what they most likely are, see `docs/holes.md`.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct HoleCounts {
+    /// Two rims that nearly coincide, or a loop with next to nothing inside.
+    pub crack: u64,
+    /// One face is missing.
+    pub missing_face: u64,
+    /// Flat holes of more edges.
+    pub planar_cut: u64,
+    /// Holes that are not flat.
+    pub missing_region: u64,
+    /// Borders of sheets, mouths of vessels and ends of pipes.
+    pub intended_opening: u64,
+    /// Chains that do not close, because they meet an edge of three triangles or more.
+    pub open_chain: u64,
+}
+
 /// All defects of one kind.
 #[derive(Debug, Clone, Serialize, ToSchema)]
 pub struct Defect {
@@ -129,6 +148,10 @@ pub struct Witness {
     /// Which features meet or are near each other; null: the defect is not of a pair.
     #[schema(required)]
     pub test: Option<ProximityTest>,
+    /// What a boundary loop most likely is; its figure `confidence` says how sure that is. Null: another defect, or a chain
+    /// that does not close.
+    #[schema(required)]
+    pub hole: Option<HoleClass>,
 }
 
 /// An element of the uploaded file, in its own numbering.
@@ -168,6 +191,7 @@ impl MeshInfo {
             watertight: Watertight::from(&inner.watertight),
             unit_hypothesis: inner.measures.bounds.and_then(UnitHypothesis::of),
             proximity: inner.proximity.as_ref().map(Proximity::from),
+            holes: HoleCounts::from(&inner.holes),
             defects: inner.findings.iter().map(defect).collect(),
         }
     }
@@ -185,6 +209,19 @@ impl MeshInfo {
 
 fn count_of(mesh: &analysis::Analysis, code: analysis::DefectCode) -> u64 {
     mesh.findings.iter().filter(|finding| finding.code == code).map(|finding| finding.count).sum()
+}
+
+impl From<&analysis::HoleCounts> for HoleCounts {
+    fn from(inner: &analysis::HoleCounts) -> Self {
+        Self {
+            crack: inner.cracks,
+            missing_face: inner.missing_faces,
+            planar_cut: inner.planar_cuts,
+            missing_region: inner.missing_regions,
+            intended_opening: inner.intended_openings,
+            open_chain: inner.open_chains,
+        }
+    }
 }
 
 impl From<&analysis::Counts> for Counts {
@@ -242,6 +279,7 @@ impl From<&analysis::Witness> for Witness {
                 .map(|&(name, value)| Figure { name, value: finite(value) })
                 .collect(),
             test: inner.test.map(ProximityTest::from),
+            hole: inner.hole.map(|guess| guess.class.into()),
         }
     }
 }

@@ -8,6 +8,7 @@ mod edges;
 mod event;
 mod fidelity;
 mod formats;
+mod holes;
 mod job;
 mod labels;
 mod level;
@@ -36,18 +37,22 @@ pub use certificate::{Certificate, Claim, Reading, Shell, Violation, ViolationCo
 pub use event::{Phase, StageEvent, StateEvent};
 pub use fidelity::FidelityChange;
 pub use formats::{FormatInfo, extension_of, format_of_media_type, formats, media_type_of};
+pub use holes::{ChosenHole, Hole, Holes, RejectedPatch};
 pub use job::{Job, JobList, JobState, Links, Progress};
 pub use labels::{LABELS_MAX, Labels, label_from_text};
 pub use level::Level;
 pub use limits::Limits;
 pub use mesh_answers::{Proximity, TestCounts, VolumeInterval, VolumeMethod, Watertight};
-pub use mesh_info::{Bounds, Counts, Defect, Element, Figure, Measures, MeshInfo, Properties, Witness};
+pub use mesh_info::{
+    Bounds, Counts, Defect, Element, Figure, HoleCounts, Measures, MeshInfo, Properties, Witness,
+};
 pub use option_schema::{
     camel_case, option_parameters, option_schemas, options_object, options_of, with_input,
 };
 pub use options::{OptionError, OptionKind, OptionSpec, Options, SPECS};
 pub use plan::{
-    ChosenElement, ChosenFinding, ChosenShell, ElementProposal, Plan, PlanRequest, PlanStep, Proposal,
+    ChosenElement, ChosenFinding, ChosenShell, ElementProposal, FillSettings, Plan, PlanRequest, PlanStep,
+    Proposal, SingleHole,
 };
 pub use printing::{
     BoundKind, BuildDirection, CheckCode, Edges, Fit, OrientedBox, Overhang, Parts, PolicyInfo, PolicyLimit,
@@ -69,8 +74,8 @@ pub use webhook::{
     Deliveries, Delivery, DeliveryState, DeliveryTry, WebhookEvent, WebhookMessage, WebhookRequest,
 };
 pub use words::{
-    Across, ChangeKind, Condition, Contact, Criterion, Cut, DefectCode, Degenerate, Effort, Encoding,
-    Fidelity, FillHoles, Format, Mode, Nesting, OpenShells, Operation, Opposite, Outcome, Placement,
-    ProximityTest, Reader, ReasonCode, Remedy, Require, Severity, ShellFate, Stage, Stitch, StitchValidity,
-    Units, VertexColors,
+    Across, ChangeKind, Condition, ConstraintValues, Contact, Criterion, Cut, DefectCode, Degenerate, Effort,
+    Encoding, Extract, Fidelity, FillHoles, FillMethod, Format, HoleClass, HoleFate, Kernel, LambdaFrom,
+    Mode, Nesting, OpenShells, Operation, Opposite, Outcome, Placement, ProximityTest, Reader, ReasonCode,
+    Rejection, Remedy, Require, Severity, ShellFate, Stage, Stitch, StitchValidity, Units, VertexColors,
 };

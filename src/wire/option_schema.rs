@@ -7,6 +7,7 @@ use utoipa::openapi::{Ref, RefOr, Required};
 use utoipa::{PartialSchema, ToSchema};
 
 use super::edges::edges_schema;
+use super::holes::holes_schema;
 use super::options::{OptionKind, OptionSpec, Options, SPECS};
 use super::plan::PlanRequest;
 use super::request::InputRef;
@@ -42,6 +43,7 @@ impl OptionSpec {
             OptionKind::Flag => described.schema_type(Type::Boolean),
             OptionKind::Targets => return Some(targets_schema(self.about)),
             OptionKind::Edges => return Some(edges_schema(self.about)),
+            OptionKind::Holes => return Some(holes_schema(self.about)),
             OptionKind::Word { .. } | OptionKind::Plan | OptionKind::Input => return None,
         };
         Some(Schema::Object(typed.build()))
@@ -57,6 +59,9 @@ impl OptionSpec {
                 "JSON text of the plan.",
             ),
             OptionKind::Edges => (r"^\[\[0,[1-9][0-9]{0,5}\](,\[1,[2-9]\])?\]$", "JSON text of the list."),
+            OptionKind::Holes => {
+                (r"^(all|\[0(,[1-9][0-9]{0,3}){0,3}\])$", "`all`, or JSON text of the list.")
+            }
             _ => return RefOr::Ref(self.reference()),
         };
         let text = ObjectBuilder::new().schema_type(Type::String).pattern(Some(pattern));

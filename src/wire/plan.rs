@@ -6,11 +6,17 @@ use serde_json::Value;
 use utoipa::ToSchema;
 
 use super::certificate::{digest_of_hex, hex};
+use super::holes::BAND_RINGS_MAX;
 use super::target::whole_number;
-use super::words::{Across, DefectCode, Degenerate, Nesting, Opposite, Remedy, ShellFate};
+use super::words::{
+    Across, ConstraintValues, DefectCode, Degenerate, Extract, FillMethod, Kernel, LambdaFrom, Nesting,
+    Opposite, Remedy, ShellFate,
+};
+use crate::implicit::RbfOptions;
 use crate::pipeline::{self, ELEMENTS_MAX, Step};
 use crate::repair::Selection;
 use crate::repair::cut::CutOptions;
+use crate::repair::fill::{FillOptions, HoleChoice};
 use crate::repair::nest::NestOptions;
 use crate::repair::snap::SnapOptions;
 use crate::repair::thin_faces::ThinFaces;
@@ -117,6 +123,13 @@ pub struct ChosenElement {
     pub number: u32,
     /// What is to be done.
     pub remedy: Remedy,
+    /// How a hole is filled; null: as for all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub method: Option<FillMethod>,
+    /// Rings of neighbours around the rim of a hole that its patch is fitted to; null: as for all.
+    #[serde(default, deserialize_with = "rings", skip_serializing_if = "Option::is_none")]
+    #[schema(maximum = 8)]
+    pub band_rings: Option<u32>,
     /// Ignored: as proposed.
     #[serde(default)]
     #[schema(value_type = Option<f64>)]
@@ -220,6 +233,9 @@ pub enum PlanStep {
         #[serde(deserialize_with = "whole_list")]
         #[schema(max_items = 10_000)]
         except: Vec<u32>,
+        /// How; left out: as in a repair without choices.
+        #[serde(default)]
+        how: FillSettings,
     },
     /// Open parts get a wall behind them.
     Thicken {
@@ -251,6 +267,125 @@ pub enum PlanStep {
     Simplify {},
 }
 
+/// How a step fills holes. What is left out is as in a repair without choices.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct FillSettings {
+    /// How those are filled that `single` does not name.
+    method: FillMethod,
+    /// Rings of neighbours around the rim that a surface of radial basis functions is fitted to.
+    #[serde(deserialize_with = "whole")]
+    #[schema(maximum = 8)]
+    band_rings: u32,
+    /// How triangles are made of such a surface.
+    extract: Extract,
+    /// The radial function of such a surface.
+    kernel: Kernel,
+    /// Distance of its offset constraints from their points, in the unit of the file; null: by `lambda_from`.
+    lambda: Option<f64>,
+    /// Whose box that distance is a share of.
+    lambda_from: LambdaFrom,
+    /// The values at the offset constraints.
+    constraint_values: ConstraintValues,
+    /// Share of the points that have offset constraints.
+    #[schema(minimum = 0.01, maximum = 1.0)]
+    constraints: f64,
+    /// A hole whose method gives no sound patch is offered those of the plainer methods.
+    falls_back: bool,
+    /// Loops that face each other across a gap get one patch between them.
+    bridges: bool,
+    /// The method `auto` may make new vertices.
+    refines: bool,
+    /// Holes that are filled in a way of their own.
+    #[schema(max_items = 10_000)]
+    single: Vec<SingleHole>,
+}
+
+/// A hole that is filled in a way of its own.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SingleHole {
+    /// A half-edge of the hole: three times the number of its triangle, plus the place of its corner in it.
+    #[serde(deserialize_with = "whole")]
+    half_edge: u32,
+    /// How; null: as for all.
+    #[serde(default)]
+    method: Option<FillMethod>,
+    /// Rings of neighbours; null: as for all.
+    #[serde(default, deserialize_with = "rings")]
+    #[schema(maximum = 8)]
+    band_rings: Option<u32>,
+}
+
+impl Default for FillSettings {
+    fn default() -> Self {
+        Self::from(&FillOptions::plain(Selection::default()))
+    }
+}
+
+impl From<&FillOptions> for FillSettings {
+    fn from(inner: &FillOptions) -> Self {
+        let single = |choice: &HoleChoice| SingleHole {
+            half_edge: choice.half_edge,
+            method: choice.method.map(Into::into),
+            band_rings: choice.band_rings,
+        };
+        Self {
+            method: inner.method.into(),
+            band_rings: inner.band_rings,
+            extract: inner.extract.into(),
+            kernel: inner.rbf.kernel.into(),
+            lambda: inner.rbf.lambda,
+            lambda_from: inner.rbf.lambda_from.into(),
+            constraint_values: inner.rbf.values.into(),
+            constraints: inner.rbf.share,
+            falls_back: inner.falls_back,
+            bridges: inner.bridges,
+            refines: inner.refines,
+            single: inner.choices.iter().map(single).collect(),
+        }
+    }
+}
+
+impl FillSettings {
+    fn to_engine(&self, holes: Selection) -> FillOptions {
+        let single = |hole: &SingleHole| HoleChoice {
+            half_edge: hole.half_edge,
+            method: hole.method.map(Into::into),
+            band_rings: hole.band_rings,
+        };
+        let mut choices: Vec<HoleChoice> = self.single.iter().map(single).collect();
+        choices.sort_by_key(|choice| choice.half_edge);
+        FillOptions {
+            holes,
+            method: self.method.into(),
+            band_rings: self.band_rings,
+            extract: self.extract.into(),
+            rbf: RbfOptions {
+                kernel: self.kernel.into(),
+                lambda: self.lambda,
+                lambda_from: self.lambda_from.into(),
+                values: self.constraint_values.into(),
+                share: self.constraints,
+                ..RbfOptions::default()
+            },
+            falls_back: self.falls_back,
+            bridges: self.bridges,
+            refines: self.refines,
+            choices,
+        }
+    }
+
+    fn is_small(&self) -> bool {
+        let rings = self.single.iter().filter_map(|hole| hole.band_rings).chain([self.band_rings]);
+        let is_in_range = (0.01..=1.0).contains(&self.constraints)
+            && self.lambda.is_none_or(|lambda| lambda > 0.0 && lambda <= 1e30);
+        is_in_range
+            && self.single.len() <= ELEMENTS_MAX
+            && rings.max().is_none_or(|rings| rings <= BAND_RINGS_MAX)
+    }
+}
+
 /// A shell whose fate was chosen.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
@@ -265,6 +400,13 @@ pub struct ChosenShell {
 /// A whole number, also one that JSON writes with a fraction of zero.
 fn whole<'de, D: Deserializer<'de>>(from: D) -> Result<u32, D::Error> {
     whole_number(f64::deserialize(from)?).ok_or_else(|| D::Error::custom("not a whole number"))
+}
+
+/// A number of rings, or none.
+fn rings<'de, D: Deserializer<'de>>(from: D) -> Result<Option<u32>, D::Error> {
+    let number = Option::<f64>::deserialize(from)?;
+    let rings = number.map(|number| whole_number(number).filter(|&rings| rings <= BAND_RINGS_MAX));
+    rings.map(|rings| rings.ok_or_else(|| D::Error::custom("not a number of rings"))).transpose()
 }
 
 fn whole_list<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<u32>, D::Error> {
@@ -306,10 +448,16 @@ impl PlanRequest {
     /// The engine's plan.
     pub(super) fn to_engine(&self) -> pipeline::ChosenPlan {
         let element = |element: &ChosenElement| (element.number, element.remedy.into());
+        let hole = |element: &ChosenElement| {
+            let &ChosenElement { number, method, band_rings, .. } = element;
+            let is_own = method.is_some() || band_rings.is_some();
+            is_own.then(|| pipeline::ChosenHole { number, method: method.map(Into::into), band_rings })
+        };
         let finding = |finding: &ChosenFinding| pipeline::ChosenRemedy {
             code: finding.code.into(),
             remedy: finding.remedy.map(Into::into),
             elements: finding.elements.iter().map(element).collect(),
+            holes: finding.elements.iter().filter_map(hole).collect(),
         };
         pipeline::ChosenPlan {
             input_sha256: self.input_sha256.as_deref().and_then(digest_of_hex),
@@ -352,7 +500,7 @@ impl PlanStep {
     fn is_small(&self) -> bool {
         match self {
             Self::RemoveParts { triangles } => triangles.len() <= ELEMENTS_MAX,
-            Self::FillHoles { except, .. } => except.len() <= ELEMENTS_MAX,
+            Self::FillHoles { except, how, .. } => except.len() <= ELEMENTS_MAX && how.is_small(),
             Self::Nest { chosen, .. } => chosen.len() <= ELEMENTS_MAX,
             Self::RemoveCrossing { rings } => *rings <= RINGS_MAX,
             Self::Thicken { wall: length }
@@ -386,8 +534,12 @@ impl PlanStep {
             Self::MendThinFaces { needles, caps, folds } => {
                 Step::MendThinFaces(ThinFaces { needles: *needles, caps: *caps, folds: *folds })
             }
-            Self::FillHoles { all: true, except } => Step::FillHoles(Selection::AllBut(sorted(except))),
-            Self::FillHoles { all: false, except } => Step::FillHoles(Selection::Only(sorted(except))),
+            Self::FillHoles { all: true, except, how } => {
+                Step::FillHoles(how.to_engine(Selection::AllBut(sorted(except))))
+            }
+            Self::FillHoles { all: false, except, how } => {
+                Step::FillHoles(how.to_engine(Selection::Only(sorted(except))))
+            }
             Self::Thicken { wall } => Step::Thicken { wall: *wall },
             Self::JoinContacts { size } => Step::JoinContacts { size: *size },
             Self::OpenContacts {} => Step::OpenContacts,
@@ -431,11 +583,12 @@ impl From<&Step> for PlanStep {
             Step::MendThinFaces(which) => {
                 Self::MendThinFaces { needles: which.needles, caps: which.caps, folds: which.folds }
             }
-            Step::FillHoles(Selection::AllBut(except)) => {
-                Self::FillHoles { all: true, except: except.clone() }
-            }
-            Step::FillHoles(Selection::Only(except)) => {
-                Self::FillHoles { all: false, except: except.clone() }
+            Step::FillHoles(options) => {
+                let (all, except) = match &options.holes {
+                    Selection::AllBut(except) => (true, except.clone()),
+                    Selection::Only(only) => (false, only.clone()),
+                };
+                Self::FillHoles { all, except, how: FillSettings::from(options) }
             }
             Step::Thicken { wall } => Self::Thicken { wall: *wall },
             Step::JoinContacts { size } => Self::JoinContacts { size: *size },
@@ -480,7 +633,18 @@ mod tests {
             Step::Pinch(mesh::ChosenEdges::default(), mesh::Validity::Exact),
             Step::Snap(SnapOptions { epsilon: Some(0.5), ..SnapOptions::default() }),
             Step::MendThinFaces(ThinFaces { needles: true, caps: false, folds: true }),
-            Step::FillHoles(Selection::Only(vec![5])),
+            Step::FillHoles(FillOptions::plain(Selection::Only(vec![5]))),
+            Step::FillHoles(FillOptions {
+                method: repair::fill::Method::Smooth,
+                band_rings: 3,
+                rbf: RbfOptions { lambda: Some(0.25), share: 0.5, ..RbfOptions::default() },
+                choices: vec![HoleChoice {
+                    half_edge: 7,
+                    method: Some(repair::fill::Method::Flat),
+                    band_rings: Some(1),
+                }],
+                ..FillOptions::default()
+            }),
             Step::Thicken { wall: 0.25 },
             Step::OpenContacts,
             Step::JoinCopies,
@@ -547,6 +711,12 @@ mod tests {
             json!({"steps": [{"step": "remove-crossing", "rings": 11}]}),
             json!({"steps": [{"step": "remove-crossing"}]}),
             json!({"stepps": []}),
+            json!({"findings": [{"code": "boundary-loop", "elements": [
+                {"number": 0, "remedy": "fill", "method": "best"}]}]}),
+            json!({"findings": [{"code": "boundary-loop", "elements": [
+                {"number": 0, "remedy": "fill", "band_rings": 9}]}]}),
+            json!({"steps": [{"step": "fill-holes", "all": true, "except": [], "how": {"band_rings": 9}}]}),
+            json!({"steps": [{"step": "fill-holes", "all": true, "except": [], "how": {"bridge": true}}]}),
         ] {
             assert_eq!(PlanRequest::from_json(&wrong.to_string()), None, "{wrong}");
         }

@@ -9,7 +9,7 @@ use super::words::words;
 use crate::analysis::DefectCode;
 use crate::budget::Stopped;
 use crate::formats::{Place, ReadError, ReadErrorKind};
-use crate::pipeline::{Failure, PlanMismatch, Refusal};
+use crate::pipeline::{ELEMENTS_MAX, Failure, PlanMismatch, Refusal};
 use crate::wire;
 
 words! {
@@ -376,6 +376,14 @@ impl From<&Failure> for Problem {
             Failure::Unreadable(error) => Self::from(error),
             Failure::Stopped(stopped) => Self::from(stopped),
             Failure::PlanMismatch(mismatch) => Self::from(mismatch),
+            &Failure::NoSuchHole { holes, .. } => Self {
+                parameter: Some("holes".to_owned()),
+                expected: Some(match holes {
+                    0 => "no hole: the file has none".to_owned(),
+                    _ => format!("numbers from 0 to {}", holes.min(ELEMENTS_MAX as u64) - 1),
+                }),
+                ..Self::new(ProblemCode::InvalidParameter, failure.to_string())
+            },
         }
     }
 }

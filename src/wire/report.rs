@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::certificate::{Certificate, hex};
+use super::holes::Hole;
 use super::level::Level;
 use super::mesh_info::{MeshInfo, finite};
 use super::plan::Plan;
@@ -40,6 +41,9 @@ pub struct Report {
     /// The results of a simplification, in the order of its targets; the first is what `after`, `deviation` and
     /// `certificate` are about. Empty for other operations.
     pub levels: Vec<Level>,
+    /// What became of each hole, at most the first 10,000; null for operations other than `fill-holes`.
+    #[schema(required)]
+    pub holes: Option<Vec<Hole>>,
     /// The mesh as returned; null: the same as before, or none.
     #[schema(required)]
     pub after: Option<MeshInfo>,
@@ -153,6 +157,10 @@ pub struct Deviation {
     /// Bodies of the input that can be seen and are lost as a whole; null: not measured.
     #[schema(required)]
     pub bodies_lost: Option<u32>,
+    /// Share of the area of the result, from 0 to 1, that patches of holes make up; null for operations other than
+    /// `fill-holes`.
+    #[schema(required)]
+    pub interpolated_area_share: Option<f64>,
     /// Share of the input's triangles that are bit-identical in the result, from 0 to 1.
     #[schema(required)]
     pub identical_triangle_share: Option<f64>,
@@ -270,6 +278,7 @@ impl Report {
             plan: inner.plan.as_ref().map(Plan::from),
             actions: inner.actions.iter().map(Action::from).collect(),
             levels: inner.levels.iter().map(|level| Level::new(level, units)).collect(),
+            holes: inner.filling.as_ref().map(|filling| filling.holes.iter().map(Hole::from).collect()),
             after: inner.after.as_ref().map(|mesh| MeshInfo::new(mesh, None)),
             deviation: Deviation::of(inner),
             verdict: Verdict::of(inner),
@@ -327,6 +336,10 @@ impl Deviation {
             hidden_area: inner.losses.and_then(|losses| finite(losses.hidden_area)),
             invented: inner.losses.and_then(|losses| finite(losses.invented)),
             bodies_lost: inner.losses.map(|losses| losses.bodies_lost),
+            interpolated_area_share: inner
+                .filling
+                .as_ref()
+                .and_then(|filling| finite(filling.interpolated_area_share)),
             identical_triangle_share: inner.identical_triangle_share.and_then(finite),
         }
     }
@@ -379,6 +392,7 @@ mod tests {
             "plan",
             "actions",
             "levels",
+            "holes",
             "after",
             "deviation",
             "verdict",
@@ -403,6 +417,7 @@ mod tests {
                     "hidden_area",
                     "invented",
                     "bodies_lost",
+                    "interpolated_area_share",
                     "identical_triangle_share"
                 ]
             );

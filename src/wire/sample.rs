@@ -1,7 +1,8 @@
 //! Engine reports for tests.
 
 use crate::analysis::{
-    Analysis, Counts, DefectCode, Element, Finding, Measures, Properties, Severity, Watertight, Witness,
+    Analysis, Counts, DefectCode, Element, Finding, HoleClass, HoleCounts, HoleGuess, Measures, Properties,
+    Severity, Watertight, Witness,
 };
 use crate::certificate::{Certificate, Condition, Reading, Shell, Violation, ViolationCounts};
 use crate::formats::Encoding;
@@ -48,6 +49,7 @@ fn analysis(holes: u64) -> Analysis {
         witnesses: vec![Witness {
             faces: vec![Element { index: 2, line: Some(17) }],
             figures: vec![("edges", 3.0), ("length", f64::INFINITY)],
+            hole: Some(HoleGuess { class: HoleClass::MissingFace, confidence: 0.95 }),
             ..Witness::default()
         }],
     };
@@ -74,6 +76,8 @@ fn analysis(holes: u64) -> Analysis {
             in_float32: holes == 0,
         },
         proximity: None,
+        holes: HoleCounts { missing_faces: holes, ..HoleCounts::default() },
+        loop_edges: Vec::new(),
         findings: if holes == 0 { Vec::new() } else { vec![hole] },
     }
 }
@@ -110,6 +114,7 @@ pub(crate) fn repaired() -> Answer {
             word: Fidelity::Changed,
             changes: vec![Change { kind: ChangeKind::Invented, measured: 0.5, limit: 0.01 }],
         }),
+        filling: None,
         outcome: Some(Outcome::Repaired),
         refusal: None,
         printing: None,

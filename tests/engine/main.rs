@@ -23,6 +23,7 @@ mod solids;
 mod bad_input;
 mod cut_stitch;
 mod fidelity;
+mod fill_holes;
 #[cfg(feature = "server")]
 mod fixtures;
 mod operations;

@@ -30,7 +30,7 @@ fn with_plan(plan: ChosenPlan, require: Option<Require>) -> Options {
 }
 
 fn chosen(code: DefectCode, remedy: Option<Remedy>, elements: &[(u32, Remedy)]) -> ChosenPlan {
-    let finding = ChosenRemedy { code, remedy, elements: elements.to_vec() };
+    let finding = ChosenRemedy { code, remedy, elements: elements.to_vec(), holes: Vec::new() };
     ChosenPlan { findings: vec![finding], ..ChosenPlan::default() }
 }
 
@@ -217,6 +217,7 @@ fn as_proposed(bytes: &[u8], options: &Options) -> ChosenPlan {
         code: proposal.code,
         remedy: Some(proposal.remedy),
         elements: proposal.elements.iter().map(|element| (element.number, element.remedy)).collect(),
+        holes: Vec::new(),
     };
     let findings = plan.findings.iter().map(chosen).collect();
     ChosenPlan { input_sha256: Some(plan.input_sha256), findings, steps: None }

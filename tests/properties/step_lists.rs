@@ -11,6 +11,7 @@ use meshmend::pipeline::{ChosenPlan, Failure, Operation, Options, Outcome, Requi
 use meshmend::repair::Selection;
 use meshmend::repair::cut::CutOptions;
 use meshmend::repair::duplicates::OppositePairs;
+use meshmend::repair::fill::{FillOptions, Method};
 use meshmend::repair::nest::{Fate, NestOptions, Policy};
 use meshmend::repair::pair_sheets::Across;
 use meshmend::repair::polygons::DegenerateFaces;
@@ -41,10 +42,15 @@ fn any_step(random: &mut Random, soup: &RawSoup) -> Step {
         11 => Step::Cut(CutOptions::default()),
         12 => Step::Pinch(ChosenEdges::default(), Validity::Exact),
         13 => Step::Snap(SnapOptions { epsilon: Some(length), ..SnapOptions::default() }),
-        14 => Step::FillHoles(match random.one_in(2) {
-            true => Selection::AllBut(numbers(random, count * 3)),
-            false => Selection::Only(numbers(random, count * 3)),
-        }),
+        14 => {
+            let holes = match random.one_in(2) {
+                true => Selection::AllBut(numbers(random, count * 3)),
+                false => Selection::Only(numbers(random, count * 3)),
+            };
+            let method = random.pick(&[Method::Auto, Method::Flat, Method::Minimal, Method::Smooth]);
+            let (refines, bridges) = (random.one_in(2), random.one_in(2));
+            Step::FillHoles(FillOptions { holes, method, refines, bridges, ..FillOptions::default() })
+        }
         15 => Step::MendThinFaces(ThinFaces { needles: true, caps: random.one_in(2), folds: true }),
         16 => Step::Thicken { wall: length },
         17 => Step::OpenContacts,

@@ -155,7 +155,8 @@ fn a_result_that_cannot_be_stored_is_an_internal_error() {
 
 #[test]
 fn a_command_without_arguments_prints_a_short_help() {
-    for command in ["analyze", "plan", "repair", "verify", "convert", "simplify", "cut-stitch"] {
+    for command in ["analyze", "plan", "repair", "verify", "convert", "simplify", "cut-stitch", "fill-holes"]
+    {
         let output = Desk::new().run(&[command]);
         assert!(stderr(&output).contains(&format!("Usage: meshmend {command}")), "{}", stderr(&output));
         assert!(stderr(&output).lines().count() < 100, "it is short");

@@ -3,7 +3,7 @@
 use crate::meshes::{BROKEN, CROSSING, LINE, OPEN, SOLID};
 use crate::server::{Server, header, link, problem};
 use reqwest::blocking::{Response, multipart};
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::io::Read as _;
 
 #[test]
@@ -203,6 +203,44 @@ fn cutting_and_stitching_parts_what_only_touches_and_says_what_ran() {
     let wrong = server.post("/v1/cut-stitch?cut_edges=[[1,1]]").body(touching).send().unwrap();
     let (status, code, body) = problem(wrong);
     assert_eq!((status, &code[..], &body["parameter"]), (400, "invalid-parameter", &"cut_edges".into()));
+}
+
+#[test]
+fn holes_are_listed_chosen_and_filled_and_each_is_told_of() {
+    let server = Server::start();
+    let listed: Value = server.post("/v1/analyze").body(OPEN).send().unwrap().json().unwrap();
+    let witness = &listed["before"]["defects"][0]["witnesses"][0];
+    assert_eq!(
+        (&witness["hole"], &listed["before"]["holes"]["missing_face"]),
+        (&"missing-face".into(), &1.into())
+    );
+    let response = server.post("/v1/fill-holes?holes=[0]&method=minimal").body(OPEN).send().unwrap();
+    assert_eq!((response.status().as_u16(), header(&response, "meshmend-outcome")), (200, "filled"));
+    assert!(header(&response, "content-disposition").contains("-filled.off"));
+    let report = header(&response, "link").strip_prefix('<').unwrap().split('>').next().unwrap().to_owned();
+    assert!(response.text().unwrap().starts_with("OFF\n4 4 0\n"));
+    let report: Value = server.get(&report).send().unwrap().json().unwrap();
+    let hole = &report["holes"][0];
+    assert_eq!((&hole["loops"], &hole["class"]), (&json!([0]), &"missing-face".into()));
+    assert_eq!((&hole["fate"], &hole["asked"]), (&"filled".into(), &"minimal".into()));
+    assert_eq!((&hole["triangles"], &hole["vertices"]), (&1.into(), &0.into()));
+    let share = report["deviation"]["interpolated_area_share"].as_f64().unwrap();
+    assert!(share > 0.3 && share < 0.4, "{share}");
+    assert_eq!(report["certificate"]["printable"], true);
+    let solid = server.post("/v1/fill-holes").body(SOLID).send().unwrap();
+    assert_eq!(header(&solid, "meshmend-outcome"), "identical");
+    assert_eq!(solid.text().unwrap(), SOLID);
+    for (query, parameter, told) in [
+        ("holes=[1]", "holes", "numbers from 0 to 0"),
+        ("holes=[]", "holes", "`all`"),
+        ("method=rbff", "method", "auto, flat"),
+        ("band_rings=9", "band_rings", "from 0 to 8"),
+    ] {
+        let wrong = server.post(&format!("/v1/fill-holes?{query}")).body(OPEN).send().unwrap();
+        let (status, code, body) = problem(wrong);
+        assert_eq!((status, &code[..], &body["parameter"]), (400, "invalid-parameter", &parameter.into()));
+        assert!(body["expected"].as_str().unwrap().contains(told), "{body}");
+    }
 }
 
 #[test]

@@ -17,6 +17,7 @@ use crate::formats::Encoding;
 use crate::geom::{Aabb, DVec3};
 use crate::mesh::Soup;
 use crate::repair::duplicates::OppositePairs;
+use crate::repair::fill::FillOptions;
 use crate::repair::nest::{self, NestOptions};
 use crate::repair::{Draft, NEW, Selection, weld};
 use crate::simplify::Mode;
@@ -112,8 +113,10 @@ pub(super) fn rebuild(
         // A hole in a sheet is a part of its shape; one in a shell around a volume is a defect.
         let fill =
             options.fill_holes == FillHoles::Simple && !is_mostly_sheets(&attempt.draft, options, budget)?;
-        let steps =
-            fill.then_some(Step::FillHoles(Selection::default())).into_iter().chain([Step::JoinCopies]);
+        let steps = fill
+            .then_some(Step::FillHoles(FillOptions::plain(Selection::default())))
+            .into_iter()
+            .chain([Step::JoinCopies]);
         attempt.run(&steps.collect::<Vec<_>>(), &input.soup, before, budget)
     })?;
     let Attempt { draft, actions, .. } = attempt;

@@ -12,15 +12,19 @@ mod value;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use super::holes::{BAND_RINGS_MAX, Holes};
 use super::plan::PlanRequest;
 use super::printing::{BuildDirection, PolicyInfo, PolicyName};
 use super::request::InputRef;
 use super::target::TargetSpec;
 use super::words::{
-    Contact, Criterion, Cut, Degenerate, Effort, FillHoles, Format, Mode, Nesting, OpenShells, Operation,
-    Placement, Reader, Require, Stitch, StitchValidity, Units, VertexColors,
+    ConstraintValues, Contact, Criterion, Cut, Degenerate, Effort, Extract, FillHoles, FillMethod, Format,
+    Kernel, LambdaFrom, Mode, Nesting, OpenShells, Operation, Placement, Reader, Require, Stitch,
+    StitchValidity, Units, VertexColors,
 };
 use crate::formats::{ReadLimits, ReadOptions};
+use crate::implicit::RbfOptions;
+use crate::repair::fill::FillOptions;
 use crate::{pipeline, simplify};
 pub use error::OptionError;
 pub(super) use table::nearest;
@@ -31,6 +35,7 @@ const SIMPLIFY: &[Operation] = &[Operation::Simplify];
 /// Operations that can end with fewer triangles.
 const FEWER: &[Operation] = &[Operation::Simplify, Operation::Repair];
 const CUT_STITCH: &[Operation] = &[Operation::CutStitch];
+const FILL_HOLES: &[Operation] = &[Operation::FillHoles];
 const SHARE: OptionKind = OptionKind::Number { min: 0.0, max: 1.0 };
 
 // One row: name, type, range where it is not all of the type's, who takes it, what it does.
@@ -100,6 +105,24 @@ options! {
         "What cut-stitch does with faces that pass a vertex more than once. Default: split.";
     cut_edges: Vec<[u32; 2]>, in CUT_STITCH,
         "Edges that cut-stitch cuts besides those that must be, by the numbers of their vertices from 0: [[0,1],[1,2]].";
+    holes: Holes, in FILL_HOLES,
+        "Which holes fill-holes closes: all, or a list of the numbers under which analyze lists them, each perhaps with choices of its own: [0,{\"number\":3,\"method\":\"flat\",\"band_rings\":1}]. Default: all.";
+    method: FillMethod, in FILL_HOLES,
+        "How fill-holes closes holes. Default: auto.";
+    band_rings: u32 = OptionKind::Integer { min: 0, max: BAND_RINGS_MAX as u64 }, in FILL_HOLES,
+        "Rings of neighbours around a rim that a surface of method=rbf is fitted to. Default: 2.";
+    extract: Extract, in FILL_HOLES,
+        "How fill-holes makes triangles of a surface of method=rbf. Default: project.";
+    kernel: Kernel, in FILL_HOLES,
+        "The radial function of a surface of method=rbf. Default: thin-plate.";
+    lambda_mm: f64 = OptionKind::Number { min: 1e-30, max: 1e30 }, in FILL_HOLES,
+        "How far the offset constraints of method=rbf are from their points, in millimetres; halved where the surface is nearer to another place. Default: 0.5 % of the diagonal that lambda_from names.";
+    lambda_from: LambdaFrom, in FILL_HOLES,
+        "Whose box gives the distance of the offset constraints of method=rbf, where lambda_mm does not. Default: hole.";
+    constraint_values: ConstraintValues, in FILL_HOLES,
+        "The values of the field of method=rbf at its offset constraints. Default: distance.";
+    constraints: f64 = OptionKind::Number { min: 0.01, max: 1.0 }, in FILL_HOLES,
+        "Share of the points of method=rbf that have offset constraints. Default: 1.";
     policy: PolicyName, in Operation::ALL,
         "Process whose limits the result, or else the file, is measured against; see /v1/policies. Default: none.";
     build_direction: BuildDirection, in Operation::ALL,
@@ -173,6 +196,28 @@ impl Options {
         all.map(|target| target.to_engine(millimetres)).collect()
     }
 
+    /// How holes are filled, lengths in the unit of the file.
+    fn filling(&self, millimetres: f64) -> pipeline::FillHolesChoices {
+        let usual = FillOptions::default();
+        pipeline::FillHolesChoices {
+            holes: self.holes.as_ref().and_then(Holes::to_engine),
+            fill: FillOptions {
+                method: self.method.map(Into::into).unwrap_or_default(),
+                band_rings: self.band_rings.unwrap_or(usual.band_rings),
+                extract: self.extract.map(Into::into).unwrap_or_default(),
+                rbf: RbfOptions {
+                    kernel: self.kernel.map(Into::into).unwrap_or_default(),
+                    lambda: self.lambda_mm.map(|length| length / millimetres),
+                    lambda_from: self.lambda_from.map(Into::into).unwrap_or_default(),
+                    values: self.constraint_values.map(Into::into).unwrap_or_default(),
+                    share: self.constraints.unwrap_or(usual.rbf.share),
+                    ..usual.rbf
+                },
+                ..usual
+            },
+        }
+    }
+
     /// The limits of the process, in the unit of the file.
     fn policy(&self, millimetres: f64) -> Option<crate::printing::Policy> {
         let up = self.build_direction.unwrap_or(BuildDirection::Z);
@@ -229,6 +274,7 @@ impl Options {
                 degenerate: self.degenerate.map(Into::into).unwrap_or_default(),
                 chosen: self.cut_edges.clone().unwrap_or_default(),
             },
+            filling: self.filling(millimetres),
             near: self.near_mm.map(|length| length / millimetres),
             samples: self.samples.map(|n| n as usize),
             policy: self.policy(millimetres),

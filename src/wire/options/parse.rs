@@ -58,14 +58,16 @@ impl Options {
     pub fn set_json(&mut self, name: &str, value: &Value) -> Result<(), OptionError> {
         let spec = spec_of(name)?;
         let text = match (spec.kind, value) {
-            (OptionKind::Word { .. }, Value::String(word)) => word.clone(),
+            (OptionKind::Word { .. } | OptionKind::Holes, Value::String(word)) => word.clone(),
             (OptionKind::Integer { .. }, Value::Number(number)) => {
                 number.to_string().trim_end_matches(".0").to_owned()
             }
             (OptionKind::Number { .. }, Value::Number(number)) => number.to_string(),
             (OptionKind::Flag, Value::Bool(flag)) => flag.to_string(),
             (OptionKind::Input | OptionKind::Plan, Value::Object(_))
-            | (OptionKind::Targets | OptionKind::Edges, Value::Array(_)) => value.to_string(),
+            | (OptionKind::Targets | OptionKind::Edges | OptionKind::Holes, Value::Array(_)) => {
+                value.to_string()
+            }
             _ => return Err(OptionError::Invalid { spec, value: value.to_string() }),
         };
         self.set(name, &text)

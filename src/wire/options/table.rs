@@ -33,6 +33,8 @@ pub enum OptionKind {
     Targets,
     /// A list of edges by the numbers of their vertices.
     Edges,
+    /// Which holes are filled: `all`, or a list.
+    Holes,
     /// A plan, as `plan` and `repair` report it.
     Plan,
     /// An earlier job: `{"job":"ID"}`.
@@ -102,6 +104,10 @@ impl OptionSpec {
             OptionKind::Number { min, max } => format!("a number from {min} to {max:e}"),
             OptionKind::Flag => "true or false".to_owned(),
             OptionKind::Edges => "1 to 100000 pairs of different vertex numbers in a list".to_owned(),
+            OptionKind::Holes => {
+                "`all`, or 1 to 10000 of N and {\"number\":N,\"method\":WORD,\"band_rings\":N} in a list, N from 0 to 9999"
+                    .to_owned()
+            }
             OptionKind::Plan => "a plan as /v1/plan answers it, edited".to_owned(),
             OptionKind::Targets => {
                 "1 to 16 of {\"faces\":N}, {\"ratio\":X} and {\"error_mm\":X} in a list".to_owned()

@@ -14,6 +14,7 @@ fn some_value(spec: &OptionSpec) -> Value {
         OptionKind::Flag => json!(true),
         OptionKind::Plan => json!({"findings": [{"code": "boundary-loop", "remedy": "keep"}]}),
         OptionKind::Edges => json!([[0, 1], [5, 3]]),
+        OptionKind::Holes => json!([0, {"number": 3, "method": "flat", "band_rings": 1}]),
         OptionKind::Targets => json!([{"ratio": 0.5}, {"faces": 10}]),
         OptionKind::Input => json!({"job": "x"}),
     }
@@ -49,6 +50,7 @@ fn every_option_is_read_back_from_json_as_it_was_written() {
             OptionKind::Number { .. } => digits.clone(),
             OptionKind::Flag => json!(false),
             OptionKind::Edges => json!([[0, u32::MAX]]),
+            OptionKind::Holes => json!("all"),
             OptionKind::Plan => plan.clone(),
             OptionKind::Targets => targets.clone(),
             OptionKind::Input => json!({"job": "y"}),

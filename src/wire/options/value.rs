@@ -3,6 +3,7 @@
 use super::parse::{parse_digits, parse_number};
 use super::table::OptionKind;
 use crate::wire::edges::edges_from_json;
+use crate::wire::holes::Holes;
 use crate::wire::plan::PlanRequest;
 use crate::wire::request::InputRef;
 use crate::wire::target::{TargetSpec, targets_from_json};
@@ -71,6 +72,14 @@ impl OptionValue for Vec<[u32; 2]> {
 
     fn from_text(text: &str) -> Option<Self> {
         edges_from_json(text)
+    }
+}
+
+impl OptionValue for Holes {
+    const KIND: OptionKind = OptionKind::Holes;
+
+    fn from_text(text: &str) -> Option<Self> {
+        Self::from_text(text)
     }
 }
 

@@ -32,6 +32,7 @@ pub fn report_page(report: &Value) -> String {
     verdict(&mut page, report);
     found(&mut page, report);
     done(&mut page, report);
+    filled(&mut page, report);
     moved(&mut page, report);
     printing::add(&mut page, &report["printing"]);
     certificate(&mut page, report);
@@ -123,6 +124,30 @@ fn found(page: &mut Page, report: &Value) {
     };
     let rows = defects.iter().map(row).collect();
     page.table(&["", "Defect", "How many", "First places"], rows);
+    holes(page, defects);
+}
+
+/// The boundary loops that are listed, by the numbers under which they can be chosen.
+fn holes(page: &mut Page, defects: &[Value]) {
+    let loops = defects.iter().filter(|defect| defect["code"] == "boundary-loop");
+    let row = |(number, witness): (usize, &Value)| {
+        let figure_of = |name: &str| {
+            let told = items(&witness["figures"]).iter().find(|figure| figure["name"] == name);
+            told.and_then(|told| told["value"].as_f64())
+        };
+        let number_of = |name: &str| figure_of(name).map_or_else(String::new, figure);
+        let sure = figure_of("confidence").map(|share| format!("{} %", figure(share * 100.0)));
+        vec![
+            Cell::Number(number.to_string()),
+            Cell::Text(plain::hole(text(&witness["hole"])).to_owned()),
+            Cell::Number(sure.unwrap_or_default()),
+            Cell::Number(number_of("edges")),
+            Cell::Number(number_of("length")),
+            Cell::Text(place(witness)),
+        ]
+    };
+    let rows = loops.flat_map(|defect| items(&defect["witnesses"]).iter().enumerate()).map(row).collect();
+    page.table(&["Hole", "Most likely", "How sure", "Edges", "Length", "First place"], rows);
 }
 
 /// Where a defect is: a face or vertex with its line, and coordinates.
@@ -167,6 +192,41 @@ fn done(page: &mut Page, report: &Value) {
 /// A code as words.
 fn words(code: &str) -> String {
     code.replace(['-', '_'], " ")
+}
+
+/// Holes of which the page tells what became of them.
+const HOLES: usize = 100;
+
+fn filled(page: &mut Page, report: &Value) {
+    let holes = items(&report["holes"]);
+    if holes.is_empty() {
+        return;
+    }
+    page.heading("What became of the holes");
+    let row = |hole: &Value| {
+        let loops: Vec<String> = items(&hole["loops"]).iter().map(Value::to_string).collect();
+        let (tone, word) = match text(&hole["fate"]) {
+            "filled" => (Tone::Good, "filled"),
+            "kept" => (Tone::Open, "kept"),
+            _ => (Tone::Bad, "open"),
+        };
+        let rejected = items(&hole["rejected"]).iter();
+        let rejected =
+            rejected.map(|one| format!("{}: {}", text(&one["method"]), words(text(&one["reason"]))));
+        vec![
+            Cell::Number(loops.join(", ")),
+            Cell::Text(plain::hole(text(&hole["class"])).to_owned()),
+            Cell::Mark(tone, word),
+            Cell::Text(text(&hole["used"]).to_owned()),
+            Cell::Number(hole["triangles"].to_string()),
+            Cell::Text(rejected.collect::<Vec<_>>().join(", ")),
+        ]
+    };
+    let rows = holes.iter().take(HOLES).map(row).collect();
+    page.table(&["Hole", "Most likely", "", "By", "Triangles", "Patches that were not taken"], rows);
+    let share =
+        measured(&report["deviation"]["interpolated_area_share"].as_f64().map(|s| s * 100.0).into(), " %");
+    page.paragraph(&format!("Patches are {share} of the surface."));
 }
 
 fn moved(page: &mut Page, report: &Value) {

@@ -40,6 +40,18 @@ pub(super) fn defect(code: &str) -> &'static str {
     }
 }
 
+/// What a boundary loop may be.
+pub(super) fn hole(class: &str) -> &'static str {
+    match class {
+        "crack" => "A crack: two rims that nearly meet",
+        "missing-face" => "A face is missing",
+        "planar-cut" => "A flat hole",
+        "missing-region" => "A part of the surface is missing",
+        "intended-opening" => "An opening that may be meant: the border of a sheet, or a mouth",
+        _ => "A rim that ends where more than two faces meet",
+    }
+}
+
 /// What became of the file.
 pub(super) fn outcome(word: &str) -> &'static str {
     match word {
@@ -49,6 +61,7 @@ pub(super) fn outcome(word: &str) -> &'static str {
         "rebuilt" => "The surface was rebuilt, because mending single places was not enough.",
         "simplified" => "The file was written with fewer triangles.",
         "cut-stitched" => "The surface was cut where more than two faces meet, and joined again as asked.",
+        "filled" => "Holes were closed as asked, where a sound patch was found.",
         "partial" => "The best result there is was returned, although it is not sound.",
         "refused" => "No result is returned.",
         _ => "The file was only looked at.",
@@ -82,11 +95,12 @@ pub(super) fn check(code: &str) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::wire::{CheckCode, DefectCode, Outcome};
+    use crate::wire::{CheckCode, DefectCode, HoleClass, Outcome};
 
     #[test]
     fn every_code_has_plain_words_of_its_own() {
         assert!(DefectCode::WORDS.iter().all(|code| defect(code) != defect("")));
+        assert!(HoleClass::WORDS.iter().all(|class| hole(class) != hole("")));
         assert!(Outcome::WORDS.iter().all(|word| outcome(word) != outcome("")));
         assert!(CheckCode::WORDS.iter().all(|code| check(code) != check("")));
     }

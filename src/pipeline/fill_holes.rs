@@ -1,0 +1,273 @@
+//! Holes closed and nothing else: every vertex and every triangle of the file stays, and patches are added.
+
+use super::input::Input;
+use super::output::{Candidate, NoCandidate};
+use super::plan::{Attempt, Step};
+use super::{Answer, ELEMENTS_MAX, Failure, Operation, Options, Outcome, Refusal, Report, Require};
+use crate::analysis::{Analysis, DefectCode, HoleGuess, Witness};
+use crate::budget::{Budget, Stage, Stopped};
+use crate::certificate::Depth;
+use crate::geom::triangle_area;
+use crate::repair::fill::{FillOptions, HoleChoice, HoleReport, Method, Rejected};
+use crate::repair::{Draft, NEW, Selection};
+
+/// Which holes are filled, and how.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct FillHolesChoices {
+    /// By their places among the boundary loops that `analyze` lists, from 0; `None`: all.
+    pub holes: Option<Vec<ChosenHole>>,
+    /// How; which ones is said by `holes`.
+    pub fill: FillOptions,
+}
+
+/// A hole that is to be filled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ChosenHole {
+    /// Place among the witnesses of the boundary loops, from 0.
+    pub number: u32,
+    /// `None`: as for all.
+    pub method: Option<Method>,
+    /// Rings of neighbours around the rim that the patch is fitted to; `None`: as for all.
+    pub band_rings: Option<u32>,
+}
+
+/// What became of the holes of a file.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Filling {
+    /// One for each boundary loop, or for several that got one patch, in the order of their first loops; the first
+    /// [`ELEMENTS_MAX`] loops.
+    pub holes: Vec<HoleOutcome>,
+    /// Share of the area of the result that is patches.
+    pub interpolated_area_share: f64,
+}
+
+/// What became of one hole.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HoleOutcome {
+    /// Places of its loops among the witnesses of the boundary loops, from 0, ascending.
+    pub loops: Vec<u32>,
+    /// What the first of them most likely is; `None`: it does not close.
+    pub guess: Option<HoleGuess>,
+    /// Edges of the loops.
+    pub edges: u64,
+    /// What happened.
+    pub fate: HoleFate,
+    /// Patches that were made and not taken.
+    pub rejected: Vec<Rejected>,
+    /// What the filling tells of the hole; `None`: it was not tried.
+    pub told: Option<HoleReport>,
+}
+
+/// What happened to a hole.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum HoleFate {
+    /// It has a patch.
+    Filled,
+    /// No patch was sound.
+    Rejected,
+    /// It is no simple loop: directions of faces contradict each other there, or more than two faces meet.
+    NoLoop,
+    /// It was not chosen.
+    Kept,
+}
+
+/// The loops of the file, as they are listed.
+struct Loops {
+    /// The first ones.
+    witnesses: Vec<Witness>,
+    /// Half-edges of the soup and the number of the loop that each is in, ascending.
+    edges: Vec<[u32; 2]>,
+    count: u64,
+}
+
+/// Fills holes of `input`; one without holes, or without one that can be filled, comes back as it is.
+pub(super) fn fill_holes(input: &Input, options: &Options, budget: &Budget) -> Result<Answer, Failure> {
+    let mut report = input.report(Operation::FillHoles, budget)?;
+    let loops = Loops::take(&mut report, input.samples);
+    let fill = loops.chosen(&options.filling)?;
+    let encoding = input.output_encoding(options);
+    let before = report.before.as_ref();
+    let mut attempt = Attempt::start(&input.soup, before);
+    let _charge = budget.charge(3 * attempt.draft.bytes())?;
+    let filled = budget.stage(Stage::Repair, || run(&mut attempt, &fill, input, before, budget))?;
+    let Filled { draft, holes } = filled;
+    let Attempt { actions, .. } = attempt;
+    let has_patch = draft.triangle_origin.contains(&NEW);
+    let filling = Filling {
+        holes: loops.outcomes(holes, options.filling.holes.as_deref()),
+        interpolated_area_share: interpolated_share(&draft, budget)?,
+    };
+    let report = Report { actions, filling: Some(filling), ..report };
+    let is_refused = |is_printable: bool| options.require == Some(Require::Printable) && !is_printable;
+    if !has_patch && encoding == input.facts.encoding {
+        let certificate = &input.examination.certificate;
+        if is_refused(certificate.is_printable()) {
+            let witness = certificate.witnesses.first().cloned();
+            return Ok(report.refused(Refusal::NotRepairable { witness }));
+        }
+        let outcome = if certificate.is_printable() { Outcome::Identical } else { Outcome::Filled };
+        return Ok(input.returned_as_it_is(report, outcome));
+    }
+    if draft.triangles.is_empty() {
+        return Ok(report.refused(Refusal::NothingToRepair));
+    }
+    let depth = Depth::Count { samples: input.samples };
+    let candidate = match Candidate::write(draft.to_soup(&input.soup), encoding, depth, budget) {
+        Ok(candidate) => candidate,
+        Err(NoCandidate::Refused(refusal)) => return Ok(report.refused(refusal)),
+        Err(NoCandidate::Failed(failure)) => return Err(failure),
+    };
+    if is_refused(candidate.certificate().is_printable()) {
+        let witness = candidate.certificate().witnesses.first().cloned();
+        return Ok(report.refused(Refusal::NotRepairable { witness }));
+    }
+    let outcome = match has_patch || !input.examination.certificate.is_printable() {
+        true => Outcome::Filled,
+        false => Outcome::Converted,
+    };
+    Ok(candidate.returned(input, &draft.triangle_origin, report, outcome, budget)?)
+}
+
+/// The file with patches, and what is told of each hole.
+struct Filled {
+    draft: Draft,
+    holes: Vec<HoleReport>,
+}
+
+/// Welds, and fills a copy in which faces agree and none is degenerate; of that copy only the patches are taken.
+fn run(
+    attempt: &mut Attempt,
+    fill: &FillOptions,
+    input: &Input,
+    before: Option<&Analysis>,
+    budget: &Budget,
+) -> Result<Filled, Stopped> {
+    let soup = &input.soup;
+    attempt.run(&[Step::Weld], soup, before, budget)?;
+    let whole = attempt.draft.clone();
+    let told = attempt.actions.len();
+    attempt.run(&[Step::DropDegenerate, Step::Orient], soup, before, budget)?;
+    let turned = attempt.count("triangles_flipped");
+    attempt.actions.truncate(told);
+    let first = attempt.draft.triangles.len();
+    attempt.run(&[Step::FillHoles(fill.clone())], soup, before, budget)?;
+    if let (1.., Some(action)) = (turned, attempt.actions.last_mut()) {
+        let seen =
+            format!("{turned} faces that contradict their neighbours were taken as if they were turned");
+        let separator = if action.reason.is_empty() { "" } else { "; " };
+        action.reason.push_str(&format!("{separator}{seen}"));
+    }
+    let made = std::mem::take(&mut attempt.draft);
+    let draft = Draft {
+        triangles: [&whole.triangles[..], &made.triangles[first..]].concat(),
+        triangle_origin: [&whole.triangle_origin[..], &made.triangle_origin[first..]].concat(),
+        two_sided: whole.two_sided,
+        ..made
+    };
+    Ok(Filled { draft, holes: std::mem::take(&mut attempt.holes) })
+}
+
+/// Share of the area that new triangles make up; 0 where nothing has an area.
+fn interpolated_share(draft: &Draft, budget: &Budget) -> Result<f64, Stopped> {
+    let (mut new, mut all) = (0.0, 0.0);
+    for (t, &origin) in draft.triangle_origin.iter().enumerate() {
+        budget.spend(u64::from(t % 64 == 0))?;
+        let area = triangle_area(draft.corners(t));
+        all += area;
+        new += if origin == NEW { area } else { 0.0 };
+    }
+    Ok(if all > 0.0 { new / all } else { 0.0 })
+}
+
+impl Loops {
+    /// The loops of the file of `report`, which keeps `samples` witnesses of them.
+    fn take(report: &mut Report, samples: usize) -> Self {
+        let analysis = report.before.as_mut();
+        let Some(analysis) = analysis else {
+            return Self { witnesses: Vec::new(), edges: Vec::new(), count: 0 };
+        };
+        let edges = std::mem::take(&mut analysis.loop_edges);
+        let count = analysis.counts.boundary_loops;
+        let loops = analysis.findings.iter_mut().find(|finding| finding.code == DefectCode::BoundaryLoop);
+        let witnesses = loops.map_or_else(Vec::new, |finding| {
+            let all = finding.witnesses.clone();
+            finding.witnesses.truncate(samples);
+            all
+        });
+        Self { witnesses, edges, count }
+    }
+
+    /// How to fill, with the holes that are chosen.
+    fn chosen(&self, choices: &FillHolesChoices) -> Result<FillOptions, Failure> {
+        let Some(chosen) = &choices.holes else {
+            return Ok(FillOptions { holes: Selection::default(), ..choices.fill.clone() });
+        };
+        let mut anchors = Vec::with_capacity(chosen.len());
+        let mut single = Vec::new();
+        for hole in chosen {
+            let witness = self.witnesses.get(hole.number as usize);
+            let no_such = Failure::NoSuchHole { number: hole.number, holes: self.count };
+            let half_edge = witness.and_then(|witness| witness.anchor).ok_or(no_such)?;
+            anchors.push(half_edge);
+            if hole.method.is_some() || hole.band_rings.is_some() {
+                single.push(HoleChoice { half_edge, method: hole.method, band_rings: hole.band_rings });
+            }
+        }
+        anchors.sort_unstable();
+        single.sort_by_key(|choice| choice.half_edge);
+        Ok(FillOptions { holes: Selection::Only(anchors), choices: single, ..choices.fill.clone() })
+    }
+
+    /// The number of the loop that half-edge `h` of the soup is in.
+    fn number_of(&self, h: u32) -> Option<u32> {
+        let found = self.edges.binary_search_by_key(&h, |edge| edge[0]).ok()?;
+        Some(self.edges[found][1])
+    }
+
+    /// What became of each of the listed loops.
+    fn outcomes(&self, told: Vec<HoleReport>, chosen: Option<&[ChosenHole]>) -> Vec<HoleOutcome> {
+        let mut outcomes = Vec::with_capacity(self.witnesses.len());
+        let mut is_told = vec![false; self.witnesses.len()];
+        for report in told {
+            let mut loops: Vec<u32> =
+                report.rims.iter().filter_map(|rim| self.number_of(rim.half_edge?)).collect();
+            loops.sort_unstable();
+            loops.dedup();
+            for &number in &loops {
+                if let Some(is_told) = is_told.get_mut(number as usize) {
+                    *is_told = true;
+                }
+            }
+            if loops.first().is_none_or(|&number| number as usize >= ELEMENTS_MAX) {
+                continue;
+            }
+            outcomes.push(HoleOutcome {
+                guess: self.guess(&loops),
+                edges: report.rims.iter().map(|rim| u64::from(rim.edges)).sum(),
+                fate: if report.used.is_some() { HoleFate::Filled } else { HoleFate::Rejected },
+                rejected: report.rejected.clone(),
+                loops,
+                told: Some(report),
+            });
+        }
+        let mut is_chosen = vec![chosen.is_none(); self.witnesses.len()];
+        for hole in chosen.into_iter().flatten() {
+            is_chosen[hole.number as usize] = true;
+        }
+        let others = (0..).zip(&self.witnesses).zip(&is_told).filter(|&(_, &is_told)| !is_told);
+        outcomes.extend(others.map(|((number, witness), _)| HoleOutcome {
+            loops: vec![number],
+            guess: witness.hole,
+            edges: witness.figures.iter().find(|(name, _)| *name == "edges").map_or(0, |&(_, n)| n as u64),
+            fate: if is_chosen[number as usize] { HoleFate::NoLoop } else { HoleFate::Kept },
+            rejected: Vec::new(),
+            told: None,
+        }));
+        outcomes.sort_by_key(|outcome| outcome.loops.first().copied());
+        outcomes
+    }
+
+    fn guess(&self, loops: &[u32]) -> Option<HoleGuess> {
+        self.witnesses.get(*loops.first()? as usize)?.hole
+    }
+}
