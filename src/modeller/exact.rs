@@ -64,7 +64,7 @@ pub fn to_f64(x: &Rational) -> f64 {
     quotient(x.numer(), x.denom())
 }
 
-/// `x` with at most so many significant bits, towards zero.
+/// `x` with at most one more significant bit than `bits`, towards zero; as it is where both its numbers have no more.
 pub(super) fn shortened(x: &Rational, bits: u64) -> Rational {
     let shift = bits as i64 - x.numer().bits() as i64 + x.denom().bits() as i64;
     if x.numer().bits() <= bits && x.denom().bits() <= bits {
@@ -122,7 +122,9 @@ mod tests {
 
     #[test]
     fn a_shortened_number_is_nearer_to_zero_by_less_than_its_last_bit() {
-        let x = Rational::new(BigInt::from(2), BigInt::from(3));
+        let two_thirds = Rational::new(BigInt::from(2), BigInt::from(3));
+        assert_eq!(shortened(&two_thirds, 20), two_thirds, "its numbers are short");
+        let x = Rational::new(BigInt::from(2_000_000_001), BigInt::from(3_000_000_000_u64));
         let short = shortened(&x, 20);
         assert!(short < x && &x - &short < Rational::new(BigInt::from(1), BigInt::from(1 << 19)));
         assert_eq!(shortened(&rational(0.375), 20), rational(0.375));

@@ -53,7 +53,12 @@ impl CutStitchChoices {
             Step::DropDuplicates(OppositePairs::KeepFirst),
         ];
         let cut = Step::Cut(CutOptions { method: self.method, chosen: chosen.clone() });
-        let snap = SnapOptions { epsilon: self.epsilon, validity: self.validity, chosen: chosen.clone() };
+        let snap = SnapOptions {
+            epsilon: self.epsilon,
+            validity: self.validity,
+            chosen: chosen.clone(),
+            keeps_winding: false,
+        };
         let (insert, join) = match self.stitching {
             Stitching::None => (None, None),
             Stitching::Pinch => (None, Some(Step::Pinch(chosen, self.validity))),

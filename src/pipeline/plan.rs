@@ -125,8 +125,11 @@ impl Variant {
             });
             let pinch = self.contact.map(|_| Step::Pinch(ChosenEdges::default(), Validity::Exact));
             // Only what coincides, so that no vertex moves, unless the caller says how far.
-            let snap =
-                Step::Snap(SnapOptions { epsilon: Some(choices.snap_epsilon), ..SnapOptions::default() });
+            let snap = Step::Snap(SnapOptions {
+                epsilon: Some(choices.snap_epsilon),
+                keeps_winding: !choices.orients,
+                ..SnapOptions::default()
+            });
             pair.into_iter().chain([Step::Cut(CutOptions::default())]).chain(pinch).chain([snap])
         });
         let fill = match self.thickens {

@@ -215,6 +215,9 @@ pub enum PlanStep {
         /// Largest distance of vertices that become one, in the unit of the file; 0: what coincides.
         #[schema(minimum = 0.0)]
         epsilon: f64,
+        /// No part is turned to be joined.
+        #[serde(default)]
+        keeps_winding: bool,
     },
     /// Needles, caps and folds go.
     MendThinFaces {
@@ -504,7 +507,7 @@ impl PlanStep {
             Self::Nest { chosen, .. } => chosen.len() <= ELEMENTS_MAX,
             Self::RemoveCrossing { rings } => *rings <= RINGS_MAX,
             Self::Thicken { wall: length }
-            | Self::Snap { epsilon: length }
+            | Self::Snap { epsilon: length, .. }
             | Self::DropNearDuplicates { epsilon: length }
             | Self::JoinContacts { size: length } => *length >= 0.0,
             _ => true,
@@ -528,8 +531,8 @@ impl PlanStep {
             Self::PairSheets { across } => Step::PairSheets((*across).into()),
             Self::Cut {} => Step::Cut(CutOptions::default()),
             Self::Pinch {} => Step::Pinch(mesh::ChosenEdges::default(), mesh::Validity::Exact),
-            Self::Snap { epsilon } => {
-                Step::Snap(SnapOptions { epsilon: Some(*epsilon), ..SnapOptions::default() })
+            &Self::Snap { epsilon, keeps_winding } => {
+                Step::Snap(SnapOptions { epsilon: Some(epsilon), keeps_winding, ..SnapOptions::default() })
             }
             Self::MendThinFaces { needles, caps, folds } => {
                 Step::MendThinFaces(ThinFaces { needles: *needles, caps: *caps, folds: *folds })
@@ -579,7 +582,9 @@ impl From<&Step> for PlanStep {
             Step::PairSheets(across) => Self::PairSheets { across: (*across).into() },
             Step::Cut(_) => Self::Cut {},
             Step::Pinch(..) => Self::Pinch {},
-            Step::Snap(options) => Self::Snap { epsilon: options.epsilon.unwrap_or(0.0) },
+            Step::Snap(options) => {
+                Self::Snap { epsilon: options.epsilon.unwrap_or(0.0), keeps_winding: options.keeps_winding }
+            }
             Step::MendThinFaces(which) => {
                 Self::MendThinFaces { needles: which.needles, caps: which.caps, folds: which.folds }
             }
@@ -631,7 +636,7 @@ mod tests {
             Step::JoinContacts { size: 0.5 },
             Step::Cut(CutOptions::default()),
             Step::Pinch(mesh::ChosenEdges::default(), mesh::Validity::Exact),
-            Step::Snap(SnapOptions { epsilon: Some(0.5), ..SnapOptions::default() }),
+            Step::Snap(SnapOptions { epsilon: Some(0.5), keeps_winding: true, ..SnapOptions::default() }),
             Step::MendThinFaces(ThinFaces { needles: true, caps: false, folds: true }),
             Step::FillHoles(FillOptions::plain(Selection::Only(vec![5]))),
             Step::FillHoles(FillOptions {

@@ -24,6 +24,8 @@ pub struct SnapOptions {
     pub validity: Validity,
     /// Edges that stay apart.
     pub chosen: ChosenEdges,
+    /// No part is turned to be joined.
+    pub keeps_winding: bool,
 }
 
 /// Share of the diagonal that vertices may be apart when nothing is asked.
@@ -34,14 +36,18 @@ const PARTNERS_MAX: usize = 32;
 
 /// Joins boundary edges wherever the mesh stays a manifold and no triangle turns over. The draft must be a manifold
 /// (see [`cut`](super::cut::cut)). No vertex ends farther than epsilon from where it was. Parts that lie beside each other
-/// but are wound the other way are turned first, so that the result does not depend on how they were wound.
+/// but are wound the other way are turned first, unless windings are to be kept, so that the result does not depend on how
+/// they were wound.
 ///
 /// # Errors
 /// When the budget stops the run.
 pub fn snap(draft: &mut Draft, options: &SnapOptions, budget: &Budget) -> Result<Changes, Stopped> {
     let mut rim = Rim::of(draft, budget)?;
     let epsilon = epsilon(draft, &rim, options.epsilon);
-    let flipped = facing::turn_to_face(draft, &rim, epsilon, &options.chosen, budget)?;
+    let flipped = match options.keeps_winding {
+        true => 0,
+        false => facing::turn_to_face(draft, &rim, epsilon, &options.chosen, budget)?,
+    };
     if flipped > 0 {
         rim = Rim::of(draft, budget)?;
     }
