@@ -47,7 +47,7 @@ impl Representation {
         Accept::from_headers(headers).choose(&offers).copied().ok_or_else(|| {
             let problem = not_acceptable(offers.iter().map(|(media, _)| *media));
             // A form is what comes in; what goes out in parts has another name.
-            let wants_form = headers.get_all(header::ACCEPT).iter().any(|value| names_form(value));
+            let wants_form = headers.get_all(header::ACCEPT).iter().any(names_form);
             Problem {
                 suggestion: wants_form.then(|| "multipart/mixed".into()).or(problem.suggestion.clone()),
                 ..problem

@@ -24,7 +24,7 @@ fn assert_whole_cube(answer: &Answer, case: &str) {
     assert!(report.certificate.as_ref().unwrap().is_printable());
     let after = report.after.as_ref().unwrap();
     assert_eq!((after.counts.triangles, after.measures.volume), (12, Some(1000.0)), "{case}");
-    assert_eq!(report.identical_triangle_share.unwrap() > 0.8, true, "{case}");
+    assert!(report.identical_triangle_share.unwrap() > 0.8, "{case}");
     assert!(report.actions.iter().all(|action| action.move_max == 0.0 && action.step != "wrap"), "{case}");
 }
 

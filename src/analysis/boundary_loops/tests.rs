@@ -187,7 +187,7 @@ fn a_slit_is_a_crack_and_so_are_two_halves_that_do_not_quite_meet() {
     assert_eq!(classes(&halves), [Some(HoleClass::Crack); 2]);
     // The same with only a part of the equator torn open: one loop.
     let mut slit = halves;
-    for t in slit.triangles.iter_mut() {
+    for t in &mut slit.triangles {
         *t = t.map(|v| {
             if v >= first && !(first + 3..first + 12).contains(&v) { v - first + ids.start } else { v }
         });

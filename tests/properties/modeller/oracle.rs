@@ -174,7 +174,7 @@ impl Model {
             if self.sides(f).any(|s| self.do_cross(f, [a, b], s)) {
                 return true;
             }
-            let middle = self.mix(p, q, &p.w, &q.w);
+            let middle = mix(p, q, &p.w, &q.w);
             return self.holds(f, &middle);
         }
         if i == zero {
@@ -186,14 +186,8 @@ impl Model {
         if (i > zero) == (j > zero) {
             return false;
         }
-        let x = self.mix(p, q, &i.clone().abs(), &j.clone().abs());
+        let x = mix(p, q, &i.clone().abs(), &j.clone().abs());
         self.holds(f, &x)
-    }
-
-    /// `(p j + q i) / (p.w j + q.w i)` with the numerators as they are.
-    fn mix(&self, p: &Corner, q: &Corner, i: &IBig, j: &IBig) -> Corner {
-        let x: Vector = [0, 1, 2].map(|k| &p.x[k] * j + &q.x[k] * i);
-        corner(x, &p.w * j + &q.w * i)
     }
 
     fn flat(&self, f: usize, p: &Corner) -> [IBig; 3] {
@@ -207,21 +201,11 @@ impl Model {
         i8::from(d > IBig::ZERO) - i8::from(d < IBig::ZERO)
     }
 
-    /// Whether `p`, which is on the line of `a` and `b`, is not beyond either.
-    fn between(&self, p: &Corner, a: &Corner, b: &Corner) -> bool {
-        (0..3).all(|k| {
-            let less = |s: &Corner, t: &Corner| &s.x[k] * &t.w <= &t.x[k] * &s.w;
-            (less(a, p) && less(p, b)) || (less(b, p) && less(p, a))
-        })
-    }
-
     /// Whether two segments in the plane of `f` meet in more than a common end.
     fn do_cross(&self, f: usize, g: [usize; 2], h: [usize; 2]) -> bool {
         let c = |v: usize| &self.corners[&v];
         let on = |v: usize, s: [usize; 2]| {
-            !s.contains(&v)
-                && self.turn(f, c(s[0]), c(s[1]), c(v)) == 0
-                && self.between(c(v), c(s[0]), c(s[1]))
+            !s.contains(&v) && self.turn(f, c(s[0]), c(s[1]), c(v)) == 0 && between(c(v), c(s[0]), c(s[1]))
         };
         if g.iter().any(|&v| on(v, h)) || h.iter().any(|&v| on(v, g)) {
             return true;
@@ -239,7 +223,7 @@ impl Model {
         for s in self.sides(f) {
             let (a, b) = (&self.corners[&s[0]], &self.corners[&s[1]]);
             let turn = self.turn(f, a, b, p);
-            if turn == 0 && self.between(p, a, b) {
+            if turn == 0 && between(p, a, b) {
                 return true;
             }
             let k = (self.axis(f) + 2) % 3;
@@ -259,6 +243,20 @@ fn corner(x: Vector, w: IBig) -> Corner {
     Corner { x, w, near }
 }
 
+/// `(p j + q i) / (p.w j + q.w i)` with the numerators as they are.
+fn mix(p: &Corner, q: &Corner, i: &IBig, j: &IBig) -> Corner {
+    let x: Vector = [0, 1, 2].map(|k| &p.x[k] * j + &q.x[k] * i);
+    corner(x, &p.w * j + &q.w * i)
+}
+
+/// Whether `p`, which is on the line of `a` and `b`, is not beyond either.
+fn between(p: &Corner, a: &Corner, b: &Corner) -> bool {
+    (0..3).all(|k| {
+        let less = |s: &Corner, t: &Corner| &s.x[k] * &t.w <= &t.x[k] * &s.w;
+        (less(a, p) && less(p, b)) || (less(b, p) && less(p, a))
+    })
+}
+
 fn is_equal(a: &Corner, b: &Corner) -> bool {
     (0..3).all(|k| &a.x[k] * &b.w == &b.x[k] * &a.w)
 }
@@ -266,9 +264,9 @@ fn is_equal(a: &Corner, b: &Corner) -> bool {
 fn bounds<'c>(corners: impl Iterator<Item = &'c Corner>) -> [[f64; 2]; 3] {
     let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
     for c in corners {
-        for k in 0..3 {
-            let margin = c.near[k].abs() * 1e-9 + 1e-12;
-            bounds[k] = [bounds[k][0].min(c.near[k] - margin), bounds[k][1].max(c.near[k] + margin)];
+        for (bound, near) in bounds.iter_mut().zip(c.near) {
+            let margin = near.abs() * 1e-9 + 1e-12;
+            *bound = [bound[0].min(near - margin), bound[1].max(near + margin)];
         }
     }
     bounds

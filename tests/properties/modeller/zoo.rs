@@ -210,7 +210,7 @@ pub(crate) fn zoo() -> Vec<(&'static str, Shape)> {
     };
     let mut all = vec![
         ("tetrahedron", pyramid(&ring(3), [3.0, 5.0, 50.0], 0.0)),
-        ("box", prism(&[square.clone()], 0.0, 30.0)),
+        ("box", prism(std::slice::from_ref(&square), 0.0, 30.0)),
         (
             "L",
             prism(
@@ -238,7 +238,7 @@ pub(crate) fn zoo() -> Vec<(&'static str, Shape)> {
         ),
         ("frame", prism(&[square.clone(), hole([10.0, 50.0], [8.0, 32.0])], 0.0, 10.0)),
         ("plate with four holes", plate(4)),
-        ("box with a cavity", prism(&[square.clone()], 0.0, 30.0).with(&cavity)),
+        ("box with a cavity", prism(std::slice::from_ref(&square), 0.0, 30.0).with(&cavity)),
         (
             "frame in a box",
             prism(&[square], 0.0, 30.0).with(
