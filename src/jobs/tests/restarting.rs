@@ -14,20 +14,24 @@ async fn crash_and_restart(
     change(&mut settings);
     // The runs of the first one are stopped, but what comes of them is not waited for: its files stay locked until then.
     jobs.service().draining.cancel();
+    stop_until_slots_are_free(&jobs).await;
+    drop(jobs);
+    let engine: Engine = Arc::new(move |_: Asked, bytes, _, budget| engine(bytes, budget));
+    House { jobs: started(settings, engine).await, dir }
+}
+
+/// Stops what runs, again and again: a claim is in the store before its run can be stopped.
+async fn stop_until_slots_are_free(jobs: &Jobs) {
     let mut slots = std::pin::pin!(jobs.service().slots.wait());
     loop {
-        // Again and again: a claim is in the store before its run can be stopped.
         for (_, live) in jobs.service().live.all() {
             live.make_void();
         }
         tokio::select! {
-            () = &mut slots => break,
+            () = &mut slots => return,
             () = tokio::time::sleep(Duration::from_millis(5)) => {}
         }
     }
-    drop(jobs);
-    let engine: Engine = Arc::new(move |_: Asked, bytes, _, budget| engine(bytes, budget));
-    House { jobs: started(settings, engine).await, dir }
 }
 
 /// A service on a directory that another one of this process has just left.
