@@ -13,7 +13,7 @@ import holes_cut, holes_measure, holes_models, holes_page, holes_tools
 
 METHODS = ("auto", "flat", "minimal", "smooth", "rbf")
 p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-p.add_argument("--corpus", help="folder with closed models in STL, OBJ, OFF or PLY"); p.add_argument("--corpus-models", type=int, default=16)
+p.add_argument("--corpus", help="folder with closed models in STL, OBJ, OFF or PLY"); p.add_argument("--corpus-models", type=int, default=26)
 p.add_argument("--judge", help="exact judge of intersections: PROGRAM FILE.msh --only; without it they are not counted")
 p.add_argument("--binary", default=os.path.join(os.environ.get("CARGO_TARGET_DIR", os.path.join(root, "target")), "release/meshmend"))
 p.add_argument("--ours", nargs="*", default=METHODS, help="methods, each with further flags after a blank if you like: 'rbf --kernel cubic'")
@@ -22,7 +22,7 @@ p.add_argument("--models", nargs="*"); p.add_argument("--again", action="store_t
 
 
 def prepared(judge):
-    """Cuts the holes that are not there yet; (model, hole, file) with the models in turn, so that a part of a run says something about all."""
+    """Cuts the holes that are not there yet; (model, hole, file) with the models and the sizes in turn, so that a part of a run says something about all."""
     done = os.path.join(o.work, "holes/complete-corpus" if o.corpus else "holes/complete")
     if not os.path.exists(done):
         os.makedirs(os.path.join(o.work, "holes"), exist_ok=True)
@@ -36,7 +36,7 @@ def prepared(judge):
             print(name, len(f), len(holes), file=sys.stderr, flush=True)
         open(done, "w").close()
     rows = [(*os.path.basename(path)[:-4].split("--"), path) for path in glob.glob(os.path.join(o.work, "holes/*.npz"))]
-    return sorted((r for r in rows if not o.models or r[0] in o.models), key=lambda r: (r[1], r[0]))
+    return sorted((r for r in rows if not o.models or r[0] in o.models), key=lambda r: (7 * int(r[1].split("-")[1]) % 20, r[1], r[0]))
 
 
 def loaded(path):

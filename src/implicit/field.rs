@@ -33,6 +33,8 @@ pub enum SolveMethod {
 /// What was fitted, for reports.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FitFacts {
+    /// The radial function.
+    pub kernel: Kernel,
     /// Points of the band at different places.
     pub points: usize,
     /// Centres of the system: the points and the offset centres.

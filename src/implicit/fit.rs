@@ -4,7 +4,7 @@ use super::band::{Band, Surroundings};
 use super::centres::{Frame, Site, sites};
 use super::field::{Field, FitFacts, Parts, SolveMethod};
 use super::offsets::{Offsets, offsets};
-use super::options::{ConstraintValues, RbfOptions};
+use super::options::{ConstraintValues, Kernel, RbfOptions};
 use super::partition::Partition;
 use super::system::{Solution, solve};
 use super::unfit::Unfit;
@@ -44,7 +44,7 @@ pub fn fit(
         Err(refusal) => return Ok(Err(refusal)),
     };
     let value_unit = if options.values == ConstraintValues::Unit { 1.0 } else { frame.unit };
-    let facts = facts(band, &sites, &offsets, &parts);
+    let facts = facts(band, options.kernel, &sites, &offsets, &parts);
     Ok(Ok(Field { kernel: options.kernel, frame, value_unit, parts, facts }))
 }
 
@@ -57,7 +57,7 @@ fn parts(sites: &[Site], options: &RbfOptions, budget: &Budget) -> Result<Result
     Ok(solve(options.kernel, &points, &values, budget)?.map(|solution| Parts::One(Box::new(solution))))
 }
 
-fn facts(band: &Band, sites: &[Site], offsets: &Offsets, parts: &Parts) -> FitFacts {
+fn facts(band: &Band, kernel: Kernel, sites: &[Site], offsets: &Offsets, parts: &Parts) -> FitFacts {
     let solutions: Vec<&Solution> = match parts {
         Parts::One(solution) => vec![solution],
         Parts::Many(partition) => partition.solutions().collect(),
@@ -74,6 +74,7 @@ fn facts(band: &Band, sites: &[Site], offsets: &Offsets, parts: &Parts) -> FitFa
     let range = lambdas.fold([f64::INFINITY, 0.0], |[least, most], l| [least.min(l), most.max(l)]);
     debug_assert!(sites.len() <= band.points.len(), "a site is a point of the band");
     FitFacts {
+        kernel,
         points: sites.len(),
         centres,
         coincident_offsets,

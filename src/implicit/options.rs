@@ -4,9 +4,9 @@
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Kernel {
     /// r^2 log r, the thin plate spline.
-    #[default]
     ThinPlate,
-    /// r^3, which makes third derivatives small.
+    /// r^3, which makes third derivatives small. Closest to what was removed in the benchmark of `docs/holes.md`.
+    #[default]
     Cubic,
     /// -r, which makes second derivatives small. (+r is negative definite where it matters and cannot be used.)
     Linear,

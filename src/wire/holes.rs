@@ -11,7 +11,8 @@ use utoipa::{PartialSchema, ToSchema};
 
 use super::mesh_info::finite;
 use super::target::whole_number;
-use super::words::{FillMethod, HoleClass, HoleFate, Rejection};
+use super::words::{FillMethod, HoleClass, HoleFate, Kernel, Rejection};
+use crate::implicit::FitFacts;
 use crate::pipeline::{self, ELEMENTS_MAX};
 
 /// Most rings of neighbours around a rim that a patch is fitted to.
@@ -177,6 +178,42 @@ pub struct Hole {
     /// Area of the patch, in square units of the file; null: it has none.
     #[schema(required)]
     pub area: Option<f64>,
+    /// The field whose surface the patch is; null: it is of another method.
+    #[schema(required)]
+    pub field: Option<FieldFit>,
+}
+
+/// A field of radial functions that was fitted to the surroundings of a hole.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct FieldFit {
+    /// The radial function; `thin-plate` also where `cubic` was asked for and did not fit.
+    pub kernel: Kernel,
+    /// Points of the band around the hole.
+    pub points: u64,
+    /// Centres of the system: the points and the offset constraints.
+    pub centres: u64,
+    /// Degree of the polynomial, 1 or 2.
+    pub degree: u32,
+    /// The least and the largest distance of offset constraints from their points, in the unit of the file.
+    pub lambda: [f64; 2],
+    /// Points whose offset constraints are nearer than the others because another part of the surface is near.
+    pub halved: u64,
+    /// The largest difference of the field from a value that it should take, over the largest value.
+    pub residual: f64,
+}
+
+impl From<&FitFacts> for FieldFit {
+    fn from(facts: &FitFacts) -> Self {
+        Self {
+            kernel: facts.kernel.into(),
+            points: facts.points as u64,
+            centres: facts.centres as u64,
+            degree: facts.degree,
+            lambda: facts.lambda_range,
+            halved: facts.halved as u64,
+            residual: facts.residual,
+        }
+    }
 }
 
 /// A patch that was not taken.
@@ -208,6 +245,7 @@ impl From<&pipeline::HoleOutcome> for Hole {
             triangles: patch.map_or(0, |told| told.triangles),
             vertices: patch.map_or(0, |told| told.vertices),
             area: patch.and_then(|told| finite(told.area)),
+            field: patch.and_then(|told| told.field.as_ref()).map(Into::into),
         }
     }
 }

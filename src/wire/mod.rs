@@ -37,7 +37,7 @@ pub use certificate::{Certificate, Claim, Reading, Shell, Violation, ViolationCo
 pub use event::{Phase, StageEvent, StateEvent};
 pub use fidelity::FidelityChange;
 pub use formats::{FormatInfo, extension_of, format_of_media_type, formats, media_type_of};
-pub use holes::{ChosenHole, Hole, Holes, RejectedPatch};
+pub use holes::{ChosenHole, FieldFit, Hole, Holes, RejectedPatch};
 pub use job::{Job, JobList, JobState, Links, Progress};
 pub use labels::{LABELS_MAX, Labels, label_from_text};
 pub use level::Level;

@@ -3,8 +3,10 @@
 //! A loop that does not cross itself as seen along its normal is triangulated in that view. Any other is divided: some
 //! corners of it, evenly spread, are triangulated in the best way, and then each chain between two of them. Work in
 //! proportion to the corners, where the search is cubic. Both are then improved edge by edge, by the weight that the search has.
+//! What bends around several sides of a part often crosses itself when it is divided; some such loops may be searched.
 
-use super::minimal::{self, CORNERS_MAX};
+use super::caps::turn_caps;
+use super::minimal::{self, CORNERS_MAX, LONG_CORNERS_MAX};
 use super::patch::PatchMesh;
 use super::planar;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
@@ -15,17 +17,38 @@ use crate::mesh::prev_corner;
 const DIVISIONS: usize = 64;
 /// Turns for each edge, at most.
 const TURNS_PER_EDGE: usize = 4;
+/// Weighings that searches of long loops may take in one run, about two seconds.
+const WEIGHINGS_MAX: u64 = 1 << 26;
+
+/// Of loops with so many corners, those of which all triangulations may be searched: the first, as far as the work allows.
+pub(super) fn searched(corners: impl Iterator<Item = usize>) -> impl Iterator<Item = bool> {
+    let mut left = WEIGHINGS_MAX;
+    corners.map(move |n| {
+        let weighings = (n as u64).pow(3) / 6;
+        let is_searched = (CORNERS_MAX + 1..=LONG_CORNERS_MAX).contains(&n) && weighings <= left;
+        left -= if is_searched { weighings } else { 0 };
+        is_searched
+    })
+}
 
 /// Triangles of the loop through `points`, in its direction; `None` when there are none. `normal` is the direction that
-/// it is seen along; `rim_normals` and `is_free` are as in [`minimal::triangulate`].
+/// it is seen along; `rim_normals` and `is_free` are as in [`minimal::triangulate`]. `is_searched`: all triangulations of a
+/// loop that crosses itself in that view are searched, if it is not too long for that.
 pub(super) fn triangulate(
     points: &[DVec3],
     rim_normals: &[DVec3],
     normal: DVec3,
+    is_searched: bool,
     is_free: impl Fn(usize, usize) -> bool,
     budget: &Budget,
 ) -> Result<Option<Vec<[usize; 3]>>, Stopped> {
     let seen = planar::triangulate(&[points.to_vec()], normal);
+    if seen.is_none()
+        && is_searched
+        && let Some(found) = minimal::triangulate(points, rim_normals, &is_free, budget)?
+    {
+        return Ok(Some(found));
+    }
     let first = match seen {
         Some(triangles) => Some(triangles),
         None => divided(points, rim_normals, &is_free, budget)?,
@@ -33,6 +56,7 @@ pub(super) fn triangulate(
     let Some(first) = first else { return Ok(None) };
     let triangles = first.iter().map(|t| t.map(|i| i as u32)).collect();
     let Some(mut mesh) = PatchMesh::new(points.to_vec(), triangles) else { return Ok(Some(first)) };
+    turn_caps(&mut mesh, &|a, b| is_free(a as usize, b as usize), budget)?;
     improve(&mut mesh, rim_normals, is_free, budget)?;
     Ok(Some(mesh.triangles.iter().map(|t| t.map(|v| v as usize)).collect()))
 }
@@ -65,8 +89,8 @@ fn divided(
             .collect();
         normals.push(closing);
         let may = |i: usize, k: usize| is_free(corners[chosen[i]], corners[chosen[k]]);
-        let Some(own) = minimal::triangulate(&at, &normals, may, budget)? else { return Ok(None) };
-        for t in &own {
+        let Some(own) = minimal::with_least_caps(&at, &normals, may, budget)? else { return Ok(None) };
+        for t in &own.triangles {
             let [a, b, c] = t.map(|i| at[i]);
             let facing = (b - a).cross(c - a).normalize_or_zero();
             for (i, k) in [(t[0], t[1]), (t[1], t[2])] {
@@ -177,7 +201,8 @@ mod tests {
             let budget = Budget::unlimited();
             let triangles = divided(&points, &normals, &|_, _| true, &budget).unwrap().unwrap();
             assert!(is_disk(n, &triangles), "{n} corners");
-            let best = triangulate(&points, &normals, DVec3::Z, |_, _| true, &budget).unwrap().unwrap();
+            let best =
+                triangulate(&points, &normals, DVec3::Z, false, |_, _| true, &budget).unwrap().unwrap();
             assert!(is_disk(n, &best), "{n} corners");
         }
     }
@@ -190,7 +215,7 @@ mod tests {
             triangles.iter().map(|t| triangle_area(t.map(|i| points[i]))).sum::<f64>()
         };
         let best = minimal::triangulate(&points, &normals, |_, _| true, &budget).unwrap().unwrap();
-        let found = triangulate(&points, &normals, DVec3::Z, |_, _| true, &budget).unwrap().unwrap();
+        let found = triangulate(&points, &normals, DVec3::Z, false, |_, _| true, &budget).unwrap().unwrap();
         assert!(area(&found) < 1.05 * area(&best), "{} {}", area(&found), area(&best));
     }
 }

@@ -1,6 +1,7 @@
 //! Makes the patch of a region in one way.
 
 use super::accept::Proposal;
+use super::caps::turn_caps;
 use super::fair::fair;
 use super::options::{Extract, FillOptions, Method};
 use super::patch::PatchMesh;
@@ -11,7 +12,7 @@ use super::surface::Surface;
 use super::{bridge, ears, large, minimal, planar, rbf};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec3, print_pitch};
-use crate::implicit::{self, Field, Unmeshed};
+use crate::implicit::{self, Field, FitFacts, Unmeshed};
 
 /// A way to make a patch. Several may stand for one method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,6 +53,8 @@ pub(super) struct Scene<'a> {
 pub(super) struct Made {
     pub(super) proposal: Proposal,
     pub(super) parents: Vec<[u32; 2]>,
+    /// The field on whose surface it is.
+    pub(super) field: Option<FitFacts>,
 }
 
 /// Times that a faired patch is divided anew where it has grown.
@@ -80,13 +83,25 @@ pub(super) fn make(
 impl Made {
     fn plain(region: &Region, triangles: Vec<[usize; 3]>) -> Self {
         let triangles = triangles.into_iter().map(|t| t.map(|i| i as u32)).collect();
-        Self { proposal: proposal(region, Vec::new(), triangles), parents: Vec::new() }
+        Self { proposal: proposal(region, Vec::new(), triangles), parents: Vec::new(), field: None }
     }
 
     /// A refined patch, its new vertices at places that float32 has.
-    fn refined(region: &Region, surface: &Surface, mesh: PatchMesh) -> Result<Self, Rejection> {
-        let points = on_lattice(&mesh.points[mesh.rim..], surface)?;
-        Ok(Self { proposal: proposal(region, points, mesh.triangles), parents: mesh.parents })
+    fn refined(
+        region: &Region,
+        surface: &Surface,
+        mut mesh: PatchMesh,
+        budget: &Budget,
+    ) -> Result<Result<Self, Rejection>, Stopped> {
+        let points = match on_lattice(&mesh.points[mesh.rim..], surface) {
+            Ok(points) => points,
+            Err(reason) => return Ok(Err(reason)),
+        };
+        mesh.points.splice(mesh.rim.., points.iter().copied());
+        let rim = region.rim();
+        turn_caps(&mut mesh, &|a, b| surface.is_free(rim[a as usize], rim[b as usize]), budget)?;
+        let proposal = proposal(region, points, mesh.triangles);
+        Ok(Ok(Self { proposal, parents: mesh.parents, field: None }))
     }
 }
 
@@ -147,7 +162,7 @@ fn least_bent(region: &Region, surface: &Surface, budget: &Budget) -> Result<Tri
     let is_free = |i: usize, k: usize| surface.is_free(rim[polygon[i]], rim[polygon[k]]);
     let triangles = match polygon.len() <= minimal::CORNERS_MAX {
         true => minimal::triangulate(&points, &normals, is_free, budget)?,
-        false => large::triangulate(&points, &normals, region.normal, is_free, budget)?,
+        false => large::triangulate(&points, &normals, region.normal, region.is_searched, is_free, budget)?,
     };
     let corners = triangles.map(|triangles| triangles.into_iter().map(|t| t.map(|i| polygon[i])).collect());
     Ok(corners.ok_or(Rejection::NoPatch))
@@ -177,8 +192,10 @@ fn base(region: &Region, surface: &Surface, budget: &Budget) -> Result<Triangles
 }
 
 fn smooth(region: &Region, surface: &Surface, budget: &Budget) -> Result<Result<Made, Rejection>, Stopped> {
-    let faired = faired(region, surface, budget)?;
-    Ok(faired.and_then(|mesh| Made::refined(region, surface, mesh)))
+    match faired(region, surface, budget)? {
+        Ok(mesh) => Made::refined(region, surface, mesh, budget),
+        Err(reason) => Ok(Err(reason)),
+    }
 }
 
 /// A patch on the surface of a field.
@@ -206,7 +223,7 @@ fn of_field(
             let points = &patch.points[region.rim().len()..];
             on_lattice(points, surface).map(|points| {
                 let proposal = proposal(region, points, patch.triangles);
-                Made { proposal, parents: Vec::new() }
+                Made { proposal, parents: Vec::new(), field: Some(*field.facts()) }
             })
         }
         Err(Unmeshed::TooFine { .. }) => Err(Rejection::TooLarge),
@@ -239,7 +256,8 @@ fn projected(
     if !rbf::project(&mut patch, field, &is_free, budget)? {
         return Ok(Err(Rejection::NoFit));
     }
-    Ok(Made::refined(region, surface, patch))
+    let made = Made::refined(region, surface, patch, budget)?;
+    Ok(made.map(|made| Made { field: Some(*field.facts()), ..made }))
 }
 
 /// The smooth patch before its vertices are rounded.

@@ -8,15 +8,17 @@
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 
-/// Most corners of a loop that is triangulated this way; about 350,000 weighings.
+/// Corners up to which every loop is triangulated this way; about 350,000 weighings.
 pub(super) const CORNERS_MAX: usize = 128;
+/// Most corners of a loop that can be triangulated this way; about 10,000,000 weighings.
+pub(super) const LONG_CORNERS_MAX: usize = 400;
 
-/// Worst bend of a triangulation, then its area.
+/// Triangles without area of a triangulation, its worst bend, and its area.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
-struct Weight(f64, f64);
+struct Weight(u32, f64, f64);
 
-const IMPOSSIBLE: Weight = Weight(f64::INFINITY, f64::INFINITY);
-const NOTHING: Weight = Weight(0.0, 0.0);
+const IMPOSSIBLE: Weight = Weight(u32::MAX, f64::INFINITY, f64::INFINITY);
+const NOTHING: Weight = Weight(0, 0.0, 0.0);
 
 /// How much two neighbouring triangles bend, from 0 to 2; 0 where one has no normal, so that a rim without one does not
 /// hide how all others bend.
@@ -33,8 +35,8 @@ struct Table<'a> {
     apex: Vec<usize>,
 }
 
-/// Triangles of the loop through `points`, in its direction; `None` when there are none or the loop is too long.
-/// `rim_normals[i]` is the unit normal of the surface beyond the edge from corner `i` on; `is_free(i, k)` says whether a
+/// Triangles of the loop through `points`, in its direction, all with an area; `None` when there are none or the loop is too
+/// long. `rim_normals[i]` is the unit normal of the surface beyond the edge from corner `i` on; `is_free(i, k)` says whether a
 /// diagonal may run between two corners.
 pub(super) fn triangulate(
     points: &[DVec3],
@@ -42,8 +44,25 @@ pub(super) fn triangulate(
     is_free: impl Fn(usize, usize) -> bool,
     budget: &Budget,
 ) -> Result<Option<Vec<[usize; 3]>>, Stopped> {
+    let found = with_least_caps(points, rim_normals, is_free, budget)?;
+    Ok(found.filter(|found| found.caps == 0).map(|found| found.triangles))
+}
+
+/// A triangulation, and how many of its triangles have no area.
+pub(super) struct Found {
+    pub(super) triangles: Vec<[usize; 3]>,
+    caps: u32,
+}
+
+/// As [`triangulate`], with triangles without area where there is no other way: the corners of a straight piece of a rim.
+pub(super) fn with_least_caps(
+    points: &[DVec3],
+    rim_normals: &[DVec3],
+    is_free: impl Fn(usize, usize) -> bool,
+    budget: &Budget,
+) -> Result<Option<Found>, Stopped> {
     let n = points.len();
-    if !(3..=CORNERS_MAX).contains(&n) {
+    if !(3..=LONG_CORNERS_MAX).contains(&n) {
         return Ok(None);
     }
     let mut table = Table { points, rim_normals, weight: vec![NOTHING; n * n], apex: vec![0; n * n] };
@@ -56,7 +75,8 @@ pub(super) fn triangulate(
                 if is_rim || is_free(i, k) { table.best(i, k) } else { (IMPOSSIBLE, 0) };
         }
     }
-    Ok((table.weight[n - 1] < IMPOSSIBLE).then(|| table.triangles()))
+    let Weight(caps, ..) = table.weight[n - 1];
+    Ok((table.weight[n - 1] < IMPOSSIBLE).then(|| Found { triangles: table.triangles(), caps }))
 }
 
 impl Table<'_> {
@@ -78,15 +98,21 @@ impl Table<'_> {
 
     fn weigh(&self, i: usize, m: usize, k: usize) -> Weight {
         let n = self.n();
-        let (Weight(bend_a, area_a), Weight(bend_b, area_b)) =
-            (self.weight[i * n + m], self.weight[m * n + k]);
-        let Some((normal, area)) = self.facing(i, m, k) else { return IMPOSSIBLE };
+        let (one, other) = (self.weight[i * n + m], self.weight[m * n + k]);
+        if one == IMPOSSIBLE || other == IMPOSSIBLE {
+            return IMPOSSIBLE;
+        }
+        let (Weight(caps_a, bend_a, area_a), Weight(caps_b, bend_b, area_b)) = (one, other);
+        let (cap, (normal, area)) = match self.facing(i, m, k) {
+            Some(facing) => (0, facing),
+            None => (1, (DVec3::ZERO, 0.0)),
+        };
         let bend = |other: DVec3| bend(normal, other);
         let mut worst = bend_a.max(bend_b).max(bend(self.beyond(i, m))).max(bend(self.beyond(m, k)));
         if k - i == n - 1 {
             worst = worst.max(bend(self.rim_normals[k]));
         }
-        Weight(worst, area_a + area_b + area)
+        Weight(caps_a + caps_b + cap, worst, area_a + area_b + area)
     }
 
     /// Unit normal and area of a triangle; `None` when it has no area.

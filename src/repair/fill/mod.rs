@@ -8,6 +8,7 @@
 mod accept;
 mod blend;
 mod bridge;
+mod caps;
 mod class;
 mod ears;
 mod facing;
@@ -104,7 +105,11 @@ fn fill_loops(
     let ladder = Ladder { draft, soup, options };
     let outward = |h: u32| surface.outward(h);
     let outward: Option<&dyn Fn(u32) -> DVec3> = if options.bridges { Some(&outward) } else { None };
-    let regions = regions(loops, |h| surface.point(h), outward, budget)?;
+    let mut regions = regions(loops, |h| surface.point(h), outward, budget)?;
+    let corners: Vec<usize> = regions.iter().map(|region| region.rim().len()).collect();
+    for (region, is_searched) in regions.iter_mut().zip(large::searched(corners.into_iter())) {
+        region.is_searched = is_searched;
+    }
     let mut open: Vec<Hole> =
         regions.into_iter().map(|region| ladder.start(region, Vec::new(), &surface)).collect();
     let has_field = open.iter().any(|hole| hole.ways.contains(&Way::Rbf));
@@ -229,6 +234,7 @@ impl HoleReport {
             None => surface.positions[(first + v) as usize - rim.len()],
         };
         self.used = Some(method);
+        self.field = made.field;
         self.triangles = triangles.len() as u64;
         self.vertices = points.len() as u64;
         self.area = triangles.iter().map(|t| triangle_area(t.map(point))).sum();

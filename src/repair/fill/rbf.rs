@@ -8,7 +8,7 @@ use super::report::Rejection;
 use super::surface::Surface;
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3};
-use crate::implicit::{self, Band, Field, Surroundings};
+use crate::implicit::{self, Band, Field, Kernel, RbfOptions, Surroundings};
 use crate::spatial::NearestSearch;
 use rustc_hash::FxHashSet;
 
@@ -36,7 +36,8 @@ impl<'m> Mesh<'m> {
     }
 }
 
-/// Fits the field of a region.
+/// Fits the field of a region. Where a cubic one does not fit, because thin walls make lambda small, the thin plate is
+/// tried, if the options say that plainer patches may be.
 pub(super) fn field(
     region: &Region,
     rings: u32,
@@ -47,7 +48,11 @@ pub(super) fn field(
 ) -> Result<Result<Field, Rejection>, Stopped> {
     let band = band(region, rings, surface, budget)?;
     let around = Surroundings { surface: Some(&mesh.nearest), mesh_box: mesh.bounds };
-    let field = implicit::fit(&band, &around, &options.rbf, budget)?;
+    let mut field = implicit::fit(&band, &around, &options.rbf, budget)?;
+    if field.is_err() && options.rbf.kernel == Kernel::Cubic && options.falls_back {
+        let plainer = RbfOptions { kernel: Kernel::ThinPlate, ..options.rbf };
+        field = implicit::fit(&band, &around, &plainer, budget)?;
+    }
     Ok(field.map_err(|_| Rejection::NoFit))
 }
 

@@ -163,7 +163,11 @@ fn should_turn(mesh: &PatchMesh, h: u32, is_free: &dyn Fn(u32, u32) -> bool) -> 
     let bend = |n: DVec3, m: DVec3| n.normalize_or_zero().dot(m.normalize_or_zero());
     let normal = |x: DVec3, y: DVec3, z: DVec3| (y - x).cross(z - x);
     let was = bend(normal(pa, pb, pc), normal(pb, pa, pd));
-    let is = bend(normal(pc, pa, pd), normal(pd, pb, pc));
+    let turned = [normal(pc, pa, pd), normal(pd, pb, pc)];
+    if turned.contains(&DVec3::ZERO) {
+        return false;
+    }
+    let is = bend(turned[0], turned[1]);
     let is_of_rim = |v: u32| (v as usize) < mesh.rim;
     is >= was.min(TURN_COS_MIN) && (!(is_of_rim(c) && is_of_rim(d)) || is_free(c, d))
 }

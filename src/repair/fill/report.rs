@@ -1,6 +1,7 @@
 //! What became of each hole.
 
 use super::Method;
+use crate::implicit::FitFacts;
 use crate::repair::Changes;
 
 /// Why a patch was not taken.
@@ -64,6 +65,8 @@ pub struct HoleReport {
     pub vertices: u64,
     /// Area of the patch, in square units of the file.
     pub area: f64,
+    /// The field whose surface the patch is; `None`: it is of another method.
+    pub field: Option<FitFacts>,
 }
 
 /// What a fill did.

@@ -114,7 +114,7 @@ options! {
     extract: Extract, in FILL_HOLES,
         "How fill-holes makes triangles of a surface of method=rbf. Default: project.";
     kernel: Kernel, in FILL_HOLES,
-        "The radial function of a surface of method=rbf. Default: thin-plate.";
+        "The radial function of a surface of method=rbf. Default: cubic, and thin-plate where that does not fit.";
     lambda_mm: f64 = OptionKind::Number { min: 1e-30, max: 1e30 }, in FILL_HOLES,
         "How far the offset constraints of method=rbf are from their points, in millimetres; halved where the surface is nearer to another place. Default: 0.5 % of the diagonal that lambda_from names.";
     lambda_from: LambdaFrom, in FILL_HOLES,
