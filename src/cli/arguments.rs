@@ -43,6 +43,10 @@ pub(super) enum Command {
     /// Close holes; no vertex moves and every triangle stays. The certificate of the result says what holds.
     #[command(arg_required_else_help = true)]
     FillHoles(FillHolesArguments),
+    /// Edit a closed polyhedron by its planes: move faces, split and merge vertices, flip edges; or tell how far faces
+    /// may move. The certificate of the result says what holds.
+    #[command(arg_required_else_help = true)]
+    Modeller(ModellerArguments),
     /// Say whether the faces of a file, as indexed, make a half-edge mesh (a manifold, coherently oriented).
     #[command(arg_required_else_help = true)]
     Check {
@@ -178,6 +182,16 @@ pub(super) struct FillHolesArguments {
     output: Place,
 }
 
+#[derive(Debug, Args)]
+pub(super) struct ModellerArguments {
+    #[command(flatten)]
+    given: InputArguments,
+    /// File to write, or - for standard output, which needs --output-format. Its extension names the format unless
+    /// --output-format does. Default: none is written, which is enough for --ranges and --list-faces.
+    #[arg(short, long, value_name = "OUT")]
+    output: Option<Place>,
+}
+
 /// An operation on a file, whichever command named it.
 #[derive(Debug)]
 pub(super) struct Request {
@@ -244,6 +258,12 @@ impl From<CutStitchArguments> for Request {
 impl From<FillHolesArguments> for Request {
     fn from(given: FillHolesArguments) -> Self {
         given.given.request(Operation::FillHoles, Some(given.output))
+    }
+}
+
+impl From<ModellerArguments> for Request {
+    fn from(given: ModellerArguments) -> Self {
+        given.given.request(Operation::Modeller, given.output)
     }
 }
 

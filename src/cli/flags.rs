@@ -58,6 +58,8 @@ fn option_flag(spec: &'static OptionSpec) -> Arg {
         | OptionKind::Targets
         | OptionKind::Edges
         | OptionKind::Holes
+        | OptionKind::Edits
+        | OptionKind::Ranges
         | OptionKind::Plan => flag.value_name("JSON|@FILE").value_parser(text_or_file),
     }
 }

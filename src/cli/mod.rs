@@ -84,6 +84,7 @@ fn execute(command: Command, service: Service) -> Exit {
         Command::Simplify(given) => work::run(&given.into()),
         Command::CutStitch(given) => work::run(&given.into()),
         Command::FillHoles(given) => work::run(&given.into()),
+        Command::Modeller(given) => work::run(&given.into()),
         Command::Check { input, format } => {
             check::run(&input, format.and_then(|word| Format::from_name(&word)))
         }

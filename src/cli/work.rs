@@ -168,7 +168,11 @@ fn verdict(operation: Operation, require: Option<Require>, report: &Report, has_
         Operation::Repair => has_result && report.verdict.printable,
         Operation::Verify => report.verdict.printable,
         Operation::Analyze | Operation::Plan => true,
-        Operation::Convert | Operation::Simplify | Operation::CutStitch | Operation::FillHoles => {
+        Operation::Convert
+        | Operation::Simplify
+        | Operation::CutStitch
+        | Operation::FillHoles
+        | Operation::Modeller => {
             has_result && (require != Some(Require::Printable) || report.verdict.printable)
         }
     };

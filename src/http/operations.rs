@@ -90,6 +90,16 @@ pub(super) async fn fill_holes(state: State, caller: Extension<Caller>, request:
     result_of(&state, &caller, Operation::FillHoles, request).await
 }
 
+/// Edit a polyhedron by its planes.
+///
+/// The mesh, which must be a closed solid, is read as a polyhedron with exact planes; `operators` move faces, split and
+/// merge vertices and flip edges, and the whole solid is checked after each. `ranges` tells how far faces may move. The
+/// report says in `modeller` what was done and what takes it back, and the certificate what holds.
+#[utoipa::path(post, path = "/v1/modeller", tag = "operations")]
+pub(super) async fn modeller(state: State, caller: Extension<Caller>, request: Request) -> Handled {
+    result_of(&state, &caller, Operation::Modeller, request).await
+}
+
 /// Make a job and do not wait for it.
 #[utoipa::path(post, path = "/v1/jobs", tag = "jobs", params(
     ("operation" = Option<Operation>, Query, description = "What to do, unless the body says it."),

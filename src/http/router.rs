@@ -36,6 +36,7 @@ fn api() -> OpenApiRouter<Arc<Service>> {
         .routes(routes!(operations::plan))
         .routes(routes!(operations::cut_stitch))
         .routes(routes!(operations::fill_holes))
+        .routes(routes!(operations::modeller))
         .routes(routes!(operations::create_job, listing::list_jobs))
         .routes(routes!(lifecycle::show, lifecycle::delete))
         .routes(routes!(lifecycle::cancel))

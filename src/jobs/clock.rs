@@ -61,7 +61,7 @@ impl StageClock {
             Operation::Verify => 2.0,
             Operation::Analyze | Operation::Plan => 3.0,
             Operation::Convert => 5.0,
-            Operation::CutStitch | Operation::FillHoles => 7.0,
+            Operation::CutStitch | Operation::FillHoles | Operation::Modeller => 7.0,
             Operation::Repair => 8.0,
             Operation::Simplify => 9.0,
         };

@@ -96,6 +96,7 @@ pub(super) fn result_name(row: &JobRow, encoding: Encoding, level: usize) -> Str
         Some(Outcome::Simplified) => "-simplified",
         Some(Outcome::CutStitched) => "-cut-stitched",
         Some(Outcome::Filled) => "-filled",
+        Some(Outcome::Modelled) => "-modelled",
         Some(Outcome::Repaired) => "-repaired",
         Some(Outcome::Rebuilt) => "-rebuilt",
         Some(Outcome::Partial) => "-partial",

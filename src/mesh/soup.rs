@@ -146,6 +146,23 @@ impl Soup {
         if self.triangle_face.is_empty() { t } else { self.triangle_face[t as usize] }
     }
 
+    /// The faces in the order of their triangles: each polygon by its corners, each other triangle by its own, with the
+    /// first triangle of the face.
+    pub fn faces(&self) -> impl Iterator<Item = (u32, &[u32])> {
+        let (mut next, mut polygon) = (0, 0);
+        std::iter::from_fn(move || {
+            let first = next;
+            if self.polygons.first_triangles.get(polygon) == Some(&first) {
+                let corners = self.polygons.corners_of(polygon);
+                polygon += 1;
+                next += corners.len() as u32 - 2;
+                return Some((first, corners));
+            }
+            next += 1;
+            Some((first, self.triangles.get(first as usize)?.as_slice()))
+        })
+    }
+
     /// The three corners of triangle `t`.
     pub fn corners(&self, t: u32) -> [DVec3; 3] {
         self.triangles[t as usize].map(|v| self.positions[v as usize])

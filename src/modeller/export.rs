@@ -11,6 +11,9 @@ use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 /// Most corners of a face; a triangulation of so many takes some 20 ms and cannot be stopped inside.
 const CORNERS_MAX: usize = 1 << 14;
 
+/// Reflex corners, and corners, from which a fan is tried: each try looks at the whole face.
+const FAN_STARTS_MAX: usize = 16;
+
 /// A polyhedron with rounded corners.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Exported {
@@ -20,7 +23,9 @@ pub struct Exported {
     pub triangles: Vec<[u32; 3]>,
     /// The face of the polyhedron behind each triangle; those of one face follow each other.
     pub face_of_triangle: Vec<u32>,
-    /// Faces whose rounded corners are a convex polygon, with their corners: a file of polygons may hold these.
+    /// Faces of one loop whose rounded corners are a polygon that the fan around its first corner covers, with their
+    /// corners in that order: every reader of polygons makes the same triangles of it. Ascending, with four corners or
+    /// more.
     pub polygons: Vec<(u32, Vec<u32>)>,
     /// The largest distance by which rounding moved a corner, in the unit of the coordinates.
     pub rounded_by: f64,
@@ -89,40 +94,35 @@ pub fn export(
         if corner_count > CORNERS_MAX {
             return Ok(Err(ExportRefusal::FaceTooLarge { face: f, limit: CORNERS_MAX }));
         }
-        let Some((triangles, is_convex)) = triangulate(solid, f, &loops, &exported.positions) else {
+        let Some((triangles, fan)) = triangulate(solid, f, &loops, &exported.positions) else {
             return Ok(Err(ExportRefusal::FaceFolds { face: f }));
         };
         exported.face_of_triangle.extend(triangles.iter().map(|_| f.index() as u32));
         exported.triangles.extend(triangles);
-        if is_convex && corner_count > 3 {
-            exported.polygons.push((f.index() as u32, loops.into_iter().next().unwrap_or_default()));
+        if let Some(corners) = fan.filter(|corners| corners.len() > 3) {
+            exported.polygons.push((f.index() as u32, corners));
         }
     }
     Ok(Ok(exported))
 }
 
-/// The triangles of a face, and whether it is one convex polygon, cut as a fan.
+/// The triangles of a face, and its corners where they are the fan around the first of them.
 fn triangulate(
     solid: &Solid,
     f: FaceId,
     loops: &[Vec<u32>],
     positions: &[DVec3],
-) -> Option<(Vec<[u32; 3]>, bool)> {
+) -> Option<(Vec<[u32; 3]>, Option<Vec<u32>>)> {
     let view = solid.view(f);
     let flat = |v: u32| {
         let p = positions[v as usize];
         DVec2::new(p[view.u], p[view.v])
     };
-    if let [corners] = loops {
-        let count = corners.len();
-        let turn = |i: usize| {
-            orient2d(flat(corners[i]), flat(corners[(i + 1) % count]), flat(corners[(i + 2) % count]))
-        };
-        let is_fan = (1..count - 1)
-            .all(|i| orient2d(flat(corners[0]), flat(corners[i]), flat(corners[i + 1])) == Sign::Positive);
-        if is_fan && (0..count).all(|i| turn(i) == Sign::Positive) {
-            return Some(((1..count - 1).map(|i| [corners[0], corners[i], corners[i + 1]]).collect(), true));
-        }
+    if let [corners] = loops
+        && let Some(corners) = as_fan(corners, &flat)
+    {
+        let triangles = (1..corners.len() - 1).map(|i| [corners[0], corners[i], corners[i + 1]]).collect();
+        return Some((triangles, Some(corners)));
     }
     let corners: Vec<u32> = loops.concat();
     let points: Vec<Point2<f64>> = corners.iter().map(|&v| flat(v)).map(|p| Point2::new(p.x, p.y)).collect();
@@ -132,7 +132,27 @@ fn triangulate(
         edges.extend((0..members.len()).map(|i| [first + i, first + (i + 1) % members.len()]));
     }
     let inside = inside_of(points, &edges, loops.len())?;
-    Some((inside.into_iter().map(|t| t.map(|i| corners[i])).collect(), false))
+    Some((inside.into_iter().map(|t| t.map(|i| corners[i])).collect(), None))
+}
+
+/// The corners of a polygon from one on whose fan covers it: the directions to the others turn counter-clockwise, by less
+/// than a whole turn in all. Reflex corners are tried first: the fan of an L starts at its inner corner.
+fn as_fan(corners: &[u32], flat: &impl Fn(u32) -> DVec2) -> Option<Vec<u32>> {
+    let count = corners.len();
+    let turn = |a: usize, b: usize, c: usize| {
+        orient2d(flat(corners[a % count]), flat(corners[b % count]), flat(corners[c % count]))
+    };
+    let is_fan = |&start: &usize| {
+        let is_proper = (1..count - 1).all(|i| turn(start, start + i, start + i + 1) == Sign::Positive);
+        // Back over the first direction: more than a whole turn.
+        let is_behind = |i: usize| turn(start, start + 1, start + i) == Sign::Negative;
+        is_proper && !(2..count - 1).any(|i| is_behind(i) && !is_behind(i + 1))
+    };
+    let reflex = (0..count).filter(|&i| turn(i + count - 1, i, i + 1) == Sign::Negative);
+    let start = reflex.take(FAN_STARTS_MAX).chain(0..count.min(FAN_STARTS_MAX)).find(is_fan)?;
+    let mut turned = corners.to_vec();
+    turned.rotate_left(start);
+    Some(turned)
 }
 
 /// The triangles to the left of `edges`; `None` when the edges touch or cross.

@@ -105,6 +105,7 @@ impl Input {
             losses: None,
             fidelity: None,
             filling: None,
+            modeller: None,
             outcome: None,
             refusal: None,
             printing: None,

@@ -8,6 +8,7 @@ mod fidelity;
 mod fill_holes;
 mod identical;
 mod input;
+mod modeller;
 mod output;
 mod plan;
 mod printing;
@@ -24,6 +25,10 @@ pub use self::faithful::{Change, ChangeKind, Fidelity, FidelityVerdict};
 pub use self::fidelity::Losses;
 pub use self::fill_holes::{ChosenHole, FillHolesChoices, Filling, HoleFate, HoleOutcome};
 use self::input::Input;
+pub use self::modeller::{
+    Blocker, BlockerKind, EdgeName, Edit, EditKind, FaceName, FaceRange, ModelFace, ModellerChoices,
+    ModellerRefusal, ModellerReport, ModellerStep, RangeName, RangeSide,
+};
 pub use self::plan::Step;
 pub use self::printing::PrintingReport;
 pub use self::rebuild::{Effort, WrapChoices};
@@ -58,11 +63,13 @@ pub enum Operation {
     CutStitch,
     /// Holes closed; the certificate states what holds.
     FillHoles,
+    /// A closed polyhedron edited by its planes; the certificate states what holds.
+    Modeller,
 }
 
 impl Operation {
     /// Every operation.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Analyze,
         Self::Plan,
         Self::Repair,
@@ -71,6 +78,7 @@ impl Operation {
         Self::Simplify,
         Self::CutStitch,
         Self::FillHoles,
+        Self::Modeller,
     ];
 
     /// Name in paths, options and reports.
@@ -84,6 +92,7 @@ impl Operation {
             Self::Simplify => "simplify",
             Self::CutStitch => "cut-stitch",
             Self::FillHoles => "fill-holes",
+            Self::Modeller => "modeller",
         }
     }
 }
@@ -189,6 +198,8 @@ pub struct Options {
     pub cut_stitch: CutStitchChoices,
     /// How `fill-holes` works.
     pub filling: FillHolesChoices,
+    /// What `modeller` does.
+    pub modeller: ModellerChoices,
     /// Largest distance of features that are reported as near, in the unit of the file; `None`: 1e-5 of the diagonal for
     /// `analyze` up to 100,000 triangles, and no search otherwise.
     pub near: Option<f64>,
@@ -278,6 +289,8 @@ pub enum Outcome {
     CutStitched,
     /// Holes closed, as asked and as far as sound patches were found; the certificate says what holds.
     Filled,
+    /// Edited by its planes, as asked; the certificate says what holds.
+    Modelled,
     /// Not valid; only on request.
     Partial,
     /// No result.
@@ -320,6 +333,13 @@ pub enum Refusal {
         /// What it changed.
         changes: Vec<Change>,
         /// Unit of the distance among them.
+        units: Units,
+    },
+    /// The modeller has no result.
+    Modeller {
+        /// Why.
+        reason: Box<ModellerRefusal>,
+        /// Unit of the distances in it.
         units: Units,
     },
     /// A coordinate cannot be written in the output format.
@@ -394,6 +414,8 @@ pub struct Report {
     pub fidelity: Option<FidelityVerdict>,
     /// What became of each hole; `None` for operations other than `fill-holes`.
     pub filling: Option<Filling>,
+    /// What the modeller found and did; `None` for other operations, and for what is no polyhedron.
+    pub modeller: Option<Box<ModellerReport>>,
     /// What became of the file; `None` for `analyze` and `verify`.
     pub outcome: Option<Outcome>,
     /// Why there is no result.
@@ -485,6 +507,7 @@ pub fn run(
         Operation::Simplify => simplify::simplify(&input, options, budget)?,
         Operation::CutStitch => cut_stitch::cut_stitch(&input, options, budget)?,
         Operation::FillHoles => fill_holes::fill_holes(&input, options, budget)?,
+        Operation::Modeller => modeller::model(&input, options, budget)?,
     };
     if options.require == Some(Require::Faithful) {
         answer = demand_faithful(answer);

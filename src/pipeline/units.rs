@@ -72,6 +72,7 @@ impl Options {
                 epsilon: scaled(self.cut_stitch.epsilon),
                 ..self.cut_stitch.clone()
             },
+            modeller: self.modeller.scaled(factor),
             near: scaled(self.near),
             policy: self.policy.map(|policy| policy.scaled(factor)),
             ..self.clone()

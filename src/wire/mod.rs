@@ -15,6 +15,7 @@ mod level;
 mod limits;
 mod mesh_answers;
 mod mesh_info;
+mod modeller;
 mod option_schema;
 mod options;
 mod plan;
@@ -45,6 +46,12 @@ pub use limits::Limits;
 pub use mesh_answers::{Proximity, TestCounts, VolumeInterval, VolumeMethod, Watertight};
 pub use mesh_info::{
     Bounds, Counts, Defect, Element, Figure, HoleCounts, Measures, MeshInfo, Properties, Witness,
+};
+pub use modeller::{
+    Blocker, BlockerKind, DualEmbedding, EdgeRef, EditKind, EditSpec, FaceByNormal, FaceByRay, FaceInfo,
+    FaceMove, FaceRangeInfo, FaceRate, FaceRef, FaceSpeed, FlipSpec, Length, MergeSpec, ModelRule,
+    ModelValidity, Modeller, ModellerStep, MovedFace, OperatorReason, PickingRay, RangeSideInfo, RangeSpec,
+    RefusedOperator, ShiftSpec, SplitSpec, TogetherSpec, UndoSpec, Vector,
 };
 pub use option_schema::{
     camel_case, option_parameters, option_schemas, options_object, options_of, with_input,

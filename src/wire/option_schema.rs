@@ -8,6 +8,7 @@ use utoipa::{PartialSchema, ToSchema};
 
 use super::edges::edges_schema;
 use super::holes::holes_schema;
+use super::modeller::{edits_schema, ranges_schema};
 use super::options::{OptionKind, OptionSpec, Options, SPECS};
 use super::plan::PlanRequest;
 use super::request::InputRef;
@@ -44,6 +45,8 @@ impl OptionSpec {
             OptionKind::Targets => return Some(targets_schema(self.about)),
             OptionKind::Edges => return Some(edges_schema(self.about)),
             OptionKind::Holes => return Some(holes_schema(self.about)),
+            OptionKind::Edits => return Some(edits_schema(self.about)),
+            OptionKind::Ranges => return Some(ranges_schema(self.about)),
             OptionKind::Word { .. } | OptionKind::Plan | OptionKind::Input => return None,
         };
         Some(Schema::Object(typed.build()))
@@ -59,6 +62,11 @@ impl OptionSpec {
                 "JSON text of the plan.",
             ),
             OptionKind::Edges => (r"^\[\[0,[1-9][0-9]{0,5}\](,\[1,[2-9]\])?\]$", "JSON text of the list."),
+            OptionKind::Edits => (
+                r#"^\[(\{"shift":\{"faces":\[\{"face":[0-3],"by_mm":0\.[0-9]{1,3}\}\]\}\})?\]$"#,
+                "JSON text of the list.",
+            ),
+            OptionKind::Ranges => (r"^\[([0-9](,[0-9]){0,3})?\]$", "JSON text of the list."),
             OptionKind::Holes => {
                 (r"^(all|\[0(,[1-9][0-9]{0,3}){0,3}\])$", "`all`, or JSON text of the list.")
             }

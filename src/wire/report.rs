@@ -9,6 +9,7 @@ use super::certificate::{Certificate, hex};
 use super::holes::Hole;
 use super::level::Level;
 use super::mesh_info::{MeshInfo, finite};
+use super::modeller::Modeller;
 use super::plan::Plan;
 use super::printing::Printing;
 use super::verdict::Verdict;
@@ -44,6 +45,9 @@ pub struct Report {
     /// What became of each hole, at most the first 10,000; null for operations other than `fill-holes`.
     #[schema(required)]
     pub holes: Option<Vec<Hole>>,
+    /// What the modeller found and did; null for other operations.
+    #[schema(required)]
+    pub modeller: Option<Modeller>,
     /// The mesh as returned; null: the same as before, or none.
     #[schema(required)]
     pub after: Option<MeshInfo>,
@@ -279,6 +283,7 @@ impl Report {
             actions: inner.actions.iter().map(Action::from).collect(),
             levels: inner.levels.iter().map(|level| Level::new(level, units)).collect(),
             holes: inner.filling.as_ref().map(|filling| filling.holes.iter().map(Hole::from).collect()),
+            modeller: Modeller::of(inner, units.millimetres()),
             after: inner.after.as_ref().map(|mesh| MeshInfo::new(mesh, None)),
             deviation: Deviation::of(inner),
             verdict: Verdict::of(inner),
@@ -393,6 +398,7 @@ mod tests {
             "actions",
             "levels",
             "holes",
+            "modeller",
             "after",
             "deviation",
             "verdict",

@@ -115,6 +115,7 @@ pub(crate) fn repaired() -> Answer {
             changes: vec![Change { kind: ChangeKind::Invented, measured: 0.5, limit: 0.01 }],
         }),
         filling: None,
+        modeller: None,
         outcome: Some(Outcome::Repaired),
         refusal: None,
         printing: None,

@@ -131,6 +131,14 @@ impl From<&pipeline::Refusal> for Reason {
                     format!("the closest valid result is not faithful to the file: {}", told.join("; ")),
                 )
             }
+            pipeline::Refusal::Modeller { reason, units } => {
+                let code = match **reason {
+                    pipeline::ModellerRefusal::Import(_) => ReasonCode::NotAPolyhedron,
+                    pipeline::ModellerRefusal::Export(_) => ReasonCode::NotRepresentable,
+                    _ => ReasonCode::OperatorRefused,
+                };
+                (code, None, super::modeller::sentence(reason, Units::from(*units).millimetres()))
+            }
             pipeline::Refusal::NotRepresentable { reason } => {
                 (ReasonCode::NotRepresentable, None, reason.to_string())
             }

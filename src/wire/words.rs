@@ -125,13 +125,15 @@ mirror! { pipeline::Operation =>
         CutStitch = "cut-stitch",
         /// Holes closed; the certificate states what holds.
         FillHoles = "fill-holes",
+        /// A closed polyhedron edited by its planes; the certificate states what holds.
+        Modeller = "modeller",
     }
 }
 
 impl Operation {
     /// Those whose product is a mesh.
     pub const WITH_MESH: &'static [Self] =
-        &[Self::Repair, Self::Convert, Self::Simplify, Self::CutStitch, Self::FillHoles];
+        &[Self::Repair, Self::Convert, Self::Simplify, Self::CutStitch, Self::FillHoles, Self::Modeller];
     /// Those that describe the mesh.
     pub const DESCRIBING: &'static [Self] = &[
         Self::Analyze,
@@ -141,6 +143,7 @@ impl Operation {
         Self::Simplify,
         Self::CutStitch,
         Self::FillHoles,
+        Self::Modeller,
     ];
 
     /// True when its product is a mesh.
@@ -583,6 +586,8 @@ mirror! { pipeline::Outcome =>
         CutStitched = "cut-stitched",
         /// Holes closed, as asked and as far as sound patches were found; the certificate says what holds.
         Filled = "filled",
+        /// Edited by its planes, as asked; the certificate says what holds.
+        Modelled = "modelled",
         /// Not valid; only on request.
         Partial = "partial",
         /// No result.
@@ -773,6 +778,10 @@ words! {
         NotRepairable = "not-repairable",
         /// A coordinate cannot be written in the output format.
         NotRepresentable = "not-representable",
+        /// The modeller cannot read the mesh as a polyhedron.
+        NotAPolyhedron = "not-a-polyhedron",
+        /// The modeller refuses an operator, a range or the dual.
+        OperatorRefused = "operator-refused",
         /// No result keeps the caller's own limits.
         LimitExceeded = "limit-exceeded",
         /// No result is exact or faithful, as the caller demands.

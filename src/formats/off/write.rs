@@ -9,14 +9,15 @@ use crate::mesh::{Color, Soup};
 /// OFF, or COFF if vertices have colours; faces have theirs after the indices.
 pub(in crate::formats) fn text(soup: &Soup, budget: &Budget) -> Result<Vec<u8>, WriteError> {
     const VERTEX_BYTES_MAX: usize = 160;
-    const FACE_BYTES_MAX: usize = 120;
+    /// A number, and a third of what stands around those of a triangle, which may have a colour.
+    const CORNER_BYTES_MAX: usize = 52;
     let mut text = Text::new(budget);
     let vertex_layout = ColorLayout::of(&soup.vertex_colors);
     text.before_item(0, VERTEX_BYTES_MAX)?;
     text.word(if vertex_layout.is_some() { "COFF\n" } else { "OFF\n" });
     text.integer(soup.positions.len() as i64);
     text.word(" ");
-    text.integer(soup.triangles.len() as i64);
+    text.integer(soup.faces().count() as i64);
     text.word(" 0\n");
     for (i, p) in soup.positions.iter().enumerate() {
         text.before_item(i, VERTEX_BYTES_MAX)?;
@@ -27,14 +28,16 @@ pub(in crate::formats) fn text(soup: &Soup, budget: &Budget) -> Result<Vec<u8>, 
         text.word("\n");
     }
     let face_layout = ColorLayout::of(&soup.face_colors);
-    for (t, corners) in soup.triangles.iter().enumerate() {
-        text.before_item(t, FACE_BYTES_MAX)?;
-        text.word("3");
+    let mut corner_count = 0;
+    for (t, corners) in soup.faces() {
+        text.integer(corners.len() as i64);
         for &v in corners {
+            text.before_item(corner_count, CORNER_BYTES_MAX)?;
+            corner_count += 1;
             text.word(" ");
             text.integer(i64::from(v));
         }
-        put_face_color(&mut text, face_color(soup, t), face_layout);
+        put_face_color(&mut text, face_color(soup, t as usize), face_layout);
         text.word("\n");
     }
     Ok(text.into_bytes())
@@ -66,15 +69,20 @@ fn face_color(soup: &Soup, triangle: usize) -> Option<Color> {
 pub(in crate::formats) fn binary(soup: &Soup, budget: &Budget) -> Result<Vec<u8>, WriteError> {
     /// Position and colour.
     const VERTEX_BYTES_MAX: usize = 28;
-    /// Two counts, three indices, four channels.
-    const FACE_BYTES_MAX: usize = 36;
+    /// Two counts, four channels.
+    const FACE_BYTES_MAX: usize = 24;
+    const CORNER_BYTES: usize = 4;
     const HEADER_BYTES_MAX: usize = 32;
     let has_colors = ColorLayout::of(&soup.vertex_colors).is_some();
-    let bytes_max =
-        HEADER_BYTES_MAX + VERTEX_BYTES_MAX * soup.positions.len() + FACE_BYTES_MAX * soup.triangles.len();
+    let (faces, corners) =
+        soup.faces().fold((0, 0), |(faces, corners), (_, face)| (faces + 1, corners + face.len()));
+    let bytes_max = HEADER_BYTES_MAX
+        + VERTEX_BYTES_MAX * soup.positions.len()
+        + FACE_BYTES_MAX * faces
+        + CORNER_BYTES * corners;
     let (mut out, _charged) = budget.vec::<u8>(bytes_max)?;
     out.extend_from_slice(if has_colors { b"COFF BINARY\n" } else { b"OFF BINARY\n" });
-    put_integers(&mut out, &[soup.positions.len() as u32, soup.triangles.len() as u32, 0]);
+    put_integers(&mut out, &[soup.positions.len() as u32, faces as u32, 0]);
     for (i, p) in soup.positions.iter().enumerate() {
         if i.is_multiple_of(CHECK_EVERY) {
             budget.check()?;
@@ -84,12 +92,13 @@ pub(in crate::formats) fn binary(soup: &Soup, budget: &Budget) -> Result<Vec<u8>
             put_floats(&mut out, &as_floats(soup.vertex_colors.get(i).copied().flatten()));
         }
     }
-    for (t, &[a, b, c]) in soup.triangles.iter().enumerate() {
-        if t.is_multiple_of(CHECK_EVERY) {
+    for (t, corners) in soup.faces() {
+        if t.is_multiple_of(CHECK_EVERY as u32) {
             budget.check()?;
         }
-        put_integers(&mut out, &[3, a, b, c]);
-        match face_color(soup, t) {
+        put_integers(&mut out, &[corners.len() as u32]);
+        put_integers(&mut out, corners);
+        match face_color(soup, t as usize) {
             color @ Some(Color::Bytes(_, Some(_)) | Color::Floats(_, Some(_))) => {
                 put_integers(&mut out, &[4]);
                 put_floats(&mut out, &as_floats(color));

@@ -20,10 +20,10 @@ use utoipa::{PartialSchema as _, ToSchema};
 
 pub(super) use self::yaml::yaml;
 use crate::wire::{
-    self, BuildDirection, Contact, Criterion, Cut, Degenerate, Effort, Fidelity, FillHoles, Format, InputRef,
-    Job, JobRequest, LABELS_MAX, Mode, Nesting, OpenShells, Options, Outcome, Placement, PlanRequest,
-    PolicyName, Problem, ProblemCode, Reader, Report, Require, StageEvent, StateEvent, Stitch,
-    StitchValidity, TargetSpec, Units, VertexColors,
+    self, BuildDirection, Contact, Criterion, Cut, Degenerate, DualEmbedding, EditSpec, Effort, Fidelity,
+    FillHoles, Format, InputRef, Job, JobRequest, LABELS_MAX, Mode, Nesting, OpenShells, Options, Outcome,
+    Placement, PlanRequest, PolicyName, Problem, ProblemCode, RangeSpec, Reader, Report, Require, StageEvent,
+    StateEvent, Stitch, StitchValidity, TargetSpec, Units, VertexColors,
 };
 
 /// Problems that any path may answer with.
@@ -115,6 +115,8 @@ fn schemas() -> Vec<(String, RefOr<Schema>)> {
         Options,
         PlanRequest,
         TargetSpec,
+        EditSpec,
+        RangeSpec,
         InputRef,
         Job,
         Report,
@@ -124,6 +126,7 @@ fn schemas() -> Vec<(String, RefOr<Schema>)> {
     );
     add!(Format, Reader, Units, Require, FillHoles, OpenShells, Effort, Nesting, Contact, Mode, Criterion);
     add!(Placement, VertexColors, Cut, Stitch, StitchValidity, Degenerate, PolicyName, BuildDirection);
+    add!(DualEmbedding);
     let own = wire::option_schemas().map(|(name, schema)| (name, RefOr::T(schema)));
     schemas.into_iter().chain(own).chain(bodies::schemas()).collect()
 }

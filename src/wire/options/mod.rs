@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::holes::{BAND_RINGS_MAX, Holes};
+use super::modeller::{DualEmbedding, EditSpec, RangeSpec};
 use super::plan::PlanRequest;
 use super::printing::{BuildDirection, PolicyInfo, PolicyName};
 use super::request::InputRef;
@@ -36,6 +37,7 @@ const SIMPLIFY: &[Operation] = &[Operation::Simplify];
 const FEWER: &[Operation] = &[Operation::Simplify, Operation::Repair];
 const CUT_STITCH: &[Operation] = &[Operation::CutStitch];
 const FILL_HOLES: &[Operation] = &[Operation::FillHoles];
+const MODELLER: &[Operation] = &[Operation::Modeller];
 const SHARE: OptionKind = OptionKind::Number { min: 0.0, max: 1.0 };
 
 // One row: name, type, range where it is not all of the type's, who takes it, what it does.
@@ -123,6 +125,20 @@ options! {
         "The values of the field of method=rbf at its offset constraints. Default: distance.";
     constraints: f64 = OptionKind::Number { min: 0.01, max: 1.0 }, in FILL_HOLES,
         "Share of the points of method=rbf that have offset constraints. Default: 1.";
+    operators: Vec<EditSpec>, in MODELLER,
+        "What modeller does, one operator after the other, such as [{\"shift\":{\"faces\":[{\"face\":3,\"by_mm\":0.4}]}}]; see docs/modeller.md. Default: nothing.";
+    ranges: Vec<RangeSpec>, in MODELLER,
+        "Faces whose allowed intervals modeller tells after the operators, by number, by normal and place, by a ray, or several that move together: [3,{\"together\":[{\"face\":1},{\"face\":2,\"rate\":-1}]}]. Default: none.";
+    list_faces: bool, in MODELLER,
+        "Whether modeller lists the faces of the polyhedron with their numbers and planes, after the operators. Default: false.";
+    coplanar_mm: f64, in MODELLER,
+        "Within which distance of one plane neighbours are one face to modeller, in millimetres; 0: exactly. Default: eight float32 steps at the largest coordinate.";
+    dual: DualEmbedding, in MODELLER,
+        "Where the dual has its vertices that modeller returns instead of the polyhedron. Default: no dual is made.";
+    dual_recenter: bool, in MODELLER,
+        "Whether the middle of the part is the origin of the dual, instead of that of the file. Default: false.";
+    polygons: bool, in MODELLER,
+        "Whether modeller writes faces of OBJ and OFF as polygons where every reader splits them alike; others, and those with interior loops, become triangles. Default: false.";
     policy: PolicyName, in Operation::ALL,
         "Process whose limits the result, or else the file, is measured against; see /v1/policies. Default: none.";
     build_direction: BuildDirection, in Operation::ALL,
@@ -218,6 +234,19 @@ impl Options {
         }
     }
 
+    /// What the modeller does, lengths in the unit of the file.
+    fn modelling(&self, millimetres: f64) -> pipeline::ModellerChoices {
+        pipeline::ModellerChoices {
+            operators: self.operators.iter().flatten().map(|edit| edit.to_engine(millimetres)).collect(),
+            ranges: self.ranges.iter().flatten().map(RangeSpec::to_engine).collect(),
+            tolerance: self.coplanar_mm.map(|length| length / millimetres),
+            lists_faces: self.list_faces.unwrap_or(false),
+            dual: self.dual.map(Into::into),
+            is_dual_recentered: self.dual_recenter.unwrap_or(false),
+            writes_polygons: self.polygons.unwrap_or(false),
+        }
+    }
+
     /// The limits of the process, in the unit of the file.
     fn policy(&self, millimetres: f64) -> Option<crate::printing::Policy> {
         let up = self.build_direction.unwrap_or(BuildDirection::Z);
@@ -275,6 +304,7 @@ impl Options {
                 chosen: self.cut_edges.clone().unwrap_or_default(),
             },
             filling: self.filling(millimetres),
+            modeller: self.modelling(millimetres),
             near: self.near_mm.map(|length| length / millimetres),
             samples: self.samples.map(|n| n as usize),
             policy: self.policy(millimetres),

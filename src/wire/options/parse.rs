@@ -65,9 +65,14 @@ impl Options {
             (OptionKind::Number { .. }, Value::Number(number)) => number.to_string(),
             (OptionKind::Flag, Value::Bool(flag)) => flag.to_string(),
             (OptionKind::Input | OptionKind::Plan, Value::Object(_))
-            | (OptionKind::Targets | OptionKind::Edges | OptionKind::Holes, Value::Array(_)) => {
-                value.to_string()
-            }
+            | (
+                OptionKind::Targets
+                | OptionKind::Edges
+                | OptionKind::Holes
+                | OptionKind::Edits
+                | OptionKind::Ranges,
+                Value::Array(_),
+            ) => value.to_string(),
             _ => return Err(OptionError::Invalid { spec, value: value.to_string() }),
         };
         self.set(name, &text)

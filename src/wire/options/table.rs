@@ -35,6 +35,10 @@ pub enum OptionKind {
     Edges,
     /// Which holes are filled: `all`, or a list.
     Holes,
+    /// A list of operators of the modeller.
+    Edits,
+    /// A list of faces of a polyhedron, or of faces together.
+    Ranges,
     /// A plan, as `plan` and `repair` report it.
     Plan,
     /// An earlier job: `{"job":"ID"}`.
@@ -106,6 +110,13 @@ impl OptionSpec {
             OptionKind::Edges => "1 to 100000 pairs of different vertex numbers in a list".to_owned(),
             OptionKind::Holes => {
                 "`all`, or 1 to 10000 of N and {\"number\":N,\"method\":WORD,\"band_rings\":N} in a list, N from 0 to 9999"
+                    .to_owned()
+            }
+            OptionKind::Edits => {
+                "a list of up to 1000 of {\"shift\":…}, {\"split\":…}, {\"merge\":…}, {\"flip\":…} and {\"undo\":{}}".to_owned()
+            }
+            OptionKind::Ranges => {
+                "a list of up to 1000 of N, {\"normal\":[x,y,z],\"at\":[x,y,z]}, {\"ray\":{\"from\":[x,y,z],\"direction\":[x,y,z]}} and {\"together\":[{\"face\":…,\"rate\":X}]}"
                     .to_owned()
             }
             OptionKind::Plan => "a plan as /v1/plan answers it, edited".to_owned(),

@@ -4,6 +4,7 @@ use super::parse::{parse_digits, parse_number};
 use super::table::OptionKind;
 use crate::wire::edges::edges_from_json;
 use crate::wire::holes::Holes;
+use crate::wire::modeller::{EditSpec, RangeSpec, edits_from_json, ranges_from_json};
 use crate::wire::plan::PlanRequest;
 use crate::wire::request::InputRef;
 use crate::wire::target::{TargetSpec, targets_from_json};
@@ -80,6 +81,22 @@ impl OptionValue for Holes {
 
     fn from_text(text: &str) -> Option<Self> {
         Self::from_text(text)
+    }
+}
+
+impl OptionValue for Vec<EditSpec> {
+    const KIND: OptionKind = OptionKind::Edits;
+
+    fn from_text(text: &str) -> Option<Self> {
+        edits_from_json(text)
+    }
+}
+
+impl OptionValue for Vec<RangeSpec> {
+    const KIND: OptionKind = OptionKind::Ranges;
+
+    fn from_text(text: &str) -> Option<Self> {
+        ranges_from_json(text)
     }
 }
 

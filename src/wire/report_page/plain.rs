@@ -62,6 +62,7 @@ pub(super) fn outcome(word: &str) -> &'static str {
         "simplified" => "The file was written with fewer triangles.",
         "cut-stitched" => "The surface was cut where more than two faces meet, and joined again as asked.",
         "filled" => "Holes were closed as asked, where a sound patch was found.",
+        "modelled" => "The solid was edited by its planes, as asked.",
         "partial" => "The best result there is was returned, although it is not sound.",
         "refused" => "No result is returned.",
         _ => "The file was only looked at.",

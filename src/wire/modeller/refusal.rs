@@ -1,0 +1,170 @@
+//! Why the modeller has no result, in a sentence and in figures.
+
+use serde::Serialize;
+use utoipa::ToSchema;
+
+use super::report::{Blocker, MovedFace};
+use super::words::OperatorReason;
+use crate::mesh::polyhedron::FaceId;
+use crate::modeller::{DualRefusal, ExportRefusal, ImportRefusal, Refusal};
+use crate::pipeline::ModellerRefusal;
+
+/// An operator that was refused.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct RefusedOperator {
+    /// Its place in the list, from 0.
+    pub operator: u64,
+    /// The kind of reason.
+    pub reason: OperatorReason,
+    /// How far the faces may move at most: they must stay inside. Empty where there is no such limit.
+    pub limits: Vec<MovedFace>,
+    /// What is in the way.
+    pub blocking: Vec<Blocker>,
+}
+
+impl RefusedOperator {
+    pub(super) fn of(refusal: &ModellerRefusal, millimetres: f64) -> Option<Self> {
+        let plain = |operator: usize, reason: OperatorReason| Self {
+            operator: operator as u64,
+            reason,
+            limits: Vec::new(),
+            blocking: Vec::new(),
+        };
+        match refusal {
+            ModellerRefusal::Operator { operator, reason, limits, blocking } => Some(Self {
+                limits: limits.iter().map(|m| MovedFace::of(*m, millimetres)).collect(),
+                blocking: blocking.iter().map(Blocker::from).collect(),
+                ..plain(*operator, reason.into())
+            }),
+            ModellerRefusal::Name { operator: Some(operator), .. } => {
+                Some(plain(*operator, OperatorReason::UnknownElement))
+            }
+            ModellerRefusal::NothingToUndo { operator } => {
+                Some(plain(*operator, OperatorReason::NothingToUndo))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// The refusal in a sentence; `millimetres`: length of the unit of the result.
+pub(in crate::wire) fn sentence(refusal: &ModellerRefusal, millimetres: f64) -> String {
+    match refusal {
+        ModellerRefusal::Import(reason) => {
+            format!("the mesh cannot be read as a polyhedron: {}", import(reason))
+        }
+        ModellerRefusal::Name { operator: Some(k), what } => {
+            format!("operator {k} names a {what} that the polyhedron does not have")
+        }
+        ModellerRefusal::Name { operator: None, what } => {
+            format!("`ranges` names a {what} that the polyhedron does not have")
+        }
+        ModellerRefusal::NothingToUndo { operator } => {
+            format!("operator {operator} takes an operator back, and there is none left")
+        }
+        ModellerRefusal::Operator { operator, reason, limits, blocking } => {
+            format!("operator {operator} is refused: {}", because(reason, limits, blocking, millimetres))
+        }
+        ModellerRefusal::Export(reason) => {
+            format!("the polyhedron cannot be rounded to float32: {}", export(*reason))
+        }
+        ModellerRefusal::Dual(DualRefusal::PlaneThroughOrigin { face }) => {
+            format!(
+                "the plane of face {} passes through the origin and has no pole; `dual_recenter=true` takes the \
+                 middle of the part as the origin",
+                face.index()
+            )
+        }
+        ModellerRefusal::Dual(DualRefusal::InteriorLoops { face }) => {
+            format!("face {} has interior loops, so the polyhedron has no dual", face.index())
+        }
+    }
+}
+
+fn import(refusal: &ImportRefusal) -> String {
+    match refusal {
+        ImportRefusal::Empty => "it has no triangle".to_owned(),
+        ImportRefusal::DegenerateTriangle { triangle } => {
+            format!("triangle {triangle} has its corners on one line; repair the mesh first")
+        }
+        ImportRefusal::NotClosed(fault) => format!("{fault}; repair the mesh first"),
+        ImportRefusal::ExponentSpan { span } => format!("its coordinates span {span} powers of two"),
+        ImportRefusal::VertexNotOnPlanes { position: p } => {
+            format!("the planes around the vertex at {}, {}, {} do not meet in one point", p.x, p.y, p.z)
+        }
+        ImportRefusal::Invalid(validity) => match validity.faults.first() {
+            Some(fault) => format!(
+                "the rule `{}` is broken at {}; repair the mesh first",
+                fault.rule.name(),
+                named("face", &fault.faces)
+            ),
+            None => "it is not valid".to_owned(),
+        },
+    }
+}
+
+fn export(refusal: ExportRefusal) -> String {
+    match refusal {
+        ExportRefusal::FaceFolds { face } => {
+            format!("the rounded corners of face {} fold it over", face.index())
+        }
+        ExportRefusal::BeyondFloat32 { vertex } => format!("vertex {} is beyond its range", vertex.index()),
+        ExportRefusal::FaceTooLarge { face, limit } => {
+            format!("face {} has more than {limit} corners", face.index())
+        }
+    }
+}
+
+fn named(what: &str, faces: &[FaceId]) -> String {
+    let numbers: Vec<String> = faces.iter().map(|f| f.index().to_string()).collect();
+    format!("{what}{} {}", if numbers.len() == 1 { "" } else { "s" }, numbers.join(", "))
+}
+
+fn because(
+    refusal: &Refusal,
+    limits: &[(u32, f64)],
+    blocking: &[crate::pipeline::Blocker],
+    millimetres: f64,
+) -> String {
+    match refusal {
+        Refusal::NothingMoves => "no face moves".to_owned(),
+        Refusal::Limit { .. } => {
+            let limits: Vec<String> = limits
+                .iter()
+                .map(|(f, distance)| format!("face {f} by less than {} mm", distance * millimetres))
+                .collect();
+            let meeting = blocking.first().map(|b| format!("; there {}", Blocker::from(b).sentence()));
+            format!("an event is in the way: move {}{}", limits.join(", "), meeting.unwrap_or_default())
+        }
+        Refusal::NoSplit { faces, .. } => format!(
+            "the vertex of the {} has no split for this direction that opens every new edge and keeps its faces apart",
+            named("face", faces)
+        ),
+        Refusal::FaceVanishes { face } => {
+            format!("face {} would shrink to a segment or a point", face.index())
+        }
+        Refusal::LinkNotADisk { face } => {
+            format!("face {} would touch itself at the merged vertex", face.index())
+        }
+        Refusal::VertexIsTrihedral { .. } => "the vertex has three faces only".to_owned(),
+        Refusal::NotThere { face } => {
+            format!("face {} is not at the vertex or edge that is named", face.index())
+        }
+        Refusal::EdgeStays => "the edge never loses its length, however far the face moves".to_owned(),
+        Refusal::EndsAreOneFace { face } => format!("both ends of the edge are on face {}", face.index()),
+        Refusal::EndsAreNeighbours { faces } => {
+            format!("the {} at the ends of the edge have an edge there already", named("face", faces))
+        }
+        Refusal::FaceHasThreeSides { face } => {
+            format!("face {} has three sides, which vanish together: a merge, no flip", face.index())
+        }
+        Refusal::DoesNotOpen { faces } => {
+            format!("the flipped edge between the {} would have no positive length", named("face", faces))
+        }
+        Refusal::SeveralVanish { count } => format!("{count} edges lose their lengths at the same time"),
+        Refusal::TooManyEvents { limit } => format!("more than {limit} events are in the way"),
+        Refusal::Invalid(fault) => {
+            format!("the rule `{}` would be broken at {}", fault.rule.name(), named("face", &fault.faces))
+        }
+    }
+}
