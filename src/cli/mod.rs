@@ -5,6 +5,7 @@ mod check;
 mod exit;
 mod files;
 mod flags;
+mod model;
 mod settings;
 mod summary;
 mod watch;

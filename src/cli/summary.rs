@@ -1,5 +1,6 @@
 //! The report for people: a screen of text, the most telling things first.
 
+use super::model;
 use crate::wire::{
     Action, Certificate, Claim, Defect, DefectCode, Deviation, Hole, Level, MeshInfo, Operation,
     PrintingCheck, Proposal, Report, Severity, TargetSpec, Witness,
@@ -42,6 +43,18 @@ pub(super) fn summary(report: &Report, subject: &Subject) -> String {
     put_table(&mut text, "done", &done);
     let missed: Vec<_> = report.levels.iter().filter(|level| !level.is_reached).map(missed_row).collect();
     put_table(&mut text, "targets not reached", &missed);
+    if let Some(told) = &report.modeller {
+        if let Some(line) = model::size(told) {
+            put(&mut text, &format!("polyhedron\n  {line}"));
+        }
+        put_table(&mut text, "operators", &told.steps.iter().map(model::step_row).collect::<Vec<_>>());
+        put_table(&mut text, "faces", &model::face_rows(&told.faces));
+        put_table(
+            &mut text,
+            "may move inward and outward by less than",
+            &told.ranges.iter().map(model::range_row).collect::<Vec<_>>(),
+        );
+    }
     if let Some(mesh) = &report.after {
         let unit = report.output_units;
         let scaled = if unit == report.input.units.unit { String::new() } else { format!(" in {unit}") };
@@ -286,7 +299,7 @@ fn written(report: &Report, subject: &Subject) -> Option<String> {
     }
 }
 
-fn counted(count: u64, name: &str) -> String {
+pub(super) fn counted(count: u64, name: &str) -> String {
     let plural = match name {
         "vertex" => "vertices".to_owned(),
         name => format!("{name}s"),
@@ -295,7 +308,7 @@ fn counted(count: u64, name: &str) -> String {
 }
 
 /// A number for people: six significant digits.
-fn figure(value: f64) -> String {
+pub(super) fn figure(value: f64) -> String {
     let magnitude = value.abs();
     if value == 0.0 {
         return "0".to_owned();

@@ -155,12 +155,35 @@ fn a_result_that_cannot_be_stored_is_an_internal_error() {
 
 #[test]
 fn a_command_without_arguments_prints_a_short_help() {
-    for command in ["analyze", "plan", "repair", "verify", "convert", "simplify", "cut-stitch", "fill-holes"]
+    for command in
+        ["analyze", "plan", "repair", "verify", "convert", "simplify", "cut-stitch", "fill-holes", "modeller"]
     {
         let output = Desk::new().run(&[command]);
         assert!(stderr(&output).contains(&format!("Usage: meshmend {command}")), "{}", stderr(&output));
         assert!(stderr(&output).lines().count() < 100, "it is short");
     }
+}
+
+#[test]
+fn the_modeller_edits_a_solid_and_refuses_what_would_be_none() {
+    let desk = Desk::new();
+    let shift = |by: f64| {
+        format!(r#"[{{"shift":{{"faces":[{{"face":{{"normal":[0,0,-1],"at":[0,0,0]}},"by_mm":{by}}}]}}}}]"#)
+    };
+    let run = |args: &[&str]| desk.run(args);
+    let asked = run(&["modeller", "solid.off", "--ranges", "[0]", "--json"]);
+    assert_eq!(asked.status.code(), Some(0), "{}", stderr(&asked));
+    let report: Value = serde_json::from_str(&stdout(&asked)).unwrap();
+    assert_eq!(report["modeller"]["ranges"].as_array().unwrap().len(), 1);
+    let edited = run(&["modeller", "solid.off", "-o", "out.off", "--operators", &shift(-0.5)]);
+    assert_eq!(edited.status.code(), Some(0), "{}{}", stdout(&edited), stderr(&edited));
+    assert!(stdout(&edited).contains("verdict: modelled, printable: a valid solid"), "{}", stdout(&edited));
+    assert!(stdout(&edited).contains("shift"), "{}", stdout(&edited));
+    assert_eq!(run(&["verify", "out.off"]).status.code(), Some(0));
+    let refused = run(&["modeller", "solid.off", "-o", "none.off", "--operators", &shift(-1.0)]);
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(stdout(&refused).contains("operator 0 is refused"), "{}", stdout(&refused));
+    assert!(!desk.path().join("none.off").exists());
 }
 
 #[test]

@@ -244,6 +244,62 @@ fn holes_are_listed_chosen_and_filled_and_each_is_told_of() {
 }
 
 #[test]
+fn a_polyhedron_is_measured_edited_certified_and_taken_back() {
+    let server = Server::start();
+    let post = |params: Value| {
+        let form = multipart::Form::new()
+            .part("mesh", multipart::Part::bytes(SOLID.as_bytes().to_vec()).file_name("part.off"))
+            .text("params", params.to_string());
+        server.post("/v1/modeller").multipart(form).send().unwrap()
+    };
+    let report_of = |response: &Response| -> Value {
+        let path = header(response, "link").strip_prefix('<').unwrap().split('>').next().unwrap().to_owned();
+        server.get(&path).send().unwrap().json().unwrap()
+    };
+    let asked = post(json!({"operators": [], "ranges": [{"normal": [0, 0, -1], "at": [0, 0, 0]}]}));
+    assert_eq!((asked.status().as_u16(), header(&asked, "meshmend-outcome")), (200, "identical"));
+    let report = report_of(&asked);
+    assert_eq!(asked.text().unwrap(), SOLID);
+    let range = &report["modeller"]["ranges"][0];
+    assert_eq!(range["outward"]["limit_mm"], Value::Null, "the floor of a tip may go down for ever");
+    let limit = range["inward"]["limit_mm"].as_f64().unwrap();
+    assert!((limit + 1.0).abs() < 1e-12 && range["inward"]["blocking"][0]["kind"] == "edge-vanishes");
+    let face = range["faces"][0]["face"].clone();
+
+    let shift = json!({"shift": {"faces": [{"face": face, "by_mm": -0.5}]}});
+    let edited = post(json!({"operators": [shift], "output_format": "stl"}));
+    assert_eq!((edited.status().as_u16(), header(&edited, "meshmend-outcome")), (200, "modelled"));
+    assert!(header(&edited, "content-disposition").contains("part-modelled.stl"));
+    let report = report_of(&edited);
+    assert_eq!(
+        (&report["certificate"]["printable"], &report["operation"]),
+        (&true.into(), &"modeller".into())
+    );
+    let step = &report["modeller"]["steps"][0];
+    assert_eq!((&step["operator"], &step["validity"]["is_valid"]), (&"shift".into(), &true.into()));
+    assert_eq!(step["validity"]["vertices"], 4);
+
+    let back = post(json!({"operators": [shift, step["undo"]]}));
+    assert_eq!(header(&back, "meshmend-outcome"), "identical");
+    assert_eq!(back.text().unwrap(), SOLID);
+
+    let too_far = json!({"shift": {"faces": [{"face": face, "by_mm": -1}]}});
+    let (status, code, body) = problem(post(json!({"operators": [too_far]})));
+    assert_eq!((status, &code[..]), (422, "not-repairable"));
+    let refused = &body["report"]["modeller"]["refused"];
+    assert_eq!((&refused["operator"], &refused["reason"]), (&0.into(), &"limit".into()));
+    assert_eq!(body["report"]["verdict"]["reasons"][0]["code"], "operator-refused");
+    assert!(body["detail"].as_str().unwrap().contains("would lose its length"), "{body}");
+
+    let wrong = server.post("/v1/modeller?operators=[{\"turn\":{}}]").body(SOLID).send().unwrap();
+    let (status, code, body) = problem(wrong);
+    assert_eq!((status, &code[..], &body["parameter"]), (400, "invalid-parameter", &"operators".into()));
+    let (status, code, body) = problem(server.post("/v1/modeller").body(OPEN).send().unwrap());
+    assert_eq!((status, &code[..]), (422, "not-repairable"));
+    assert_eq!(body["report"]["verdict"]["reasons"][0]["code"], "not-a-polyhedron");
+}
+
+#[test]
 fn a_plan_is_asked_for_edited_and_given_back_and_the_steps_of_a_repair_run_again() {
     let server = Server::start();
     let report: Value = server.post("/v1/plan").body(OPEN).send().unwrap().json().unwrap();
