@@ -123,11 +123,7 @@ impl Boxes {
         mut visit: impl FnMut(FaceId, HalfEdgeId) -> bool,
     ) -> Result<(), Stopped> {
         // Sweep along x: faces and edges in the order of their lower ends, each compared with those still open.
-        let changed_count = is_changed.iter().filter(|&&c| c).count();
         let is_edge_changed = |faces: &[FaceId; 2]| faces.iter().any(|f| is_changed[f.index()]);
-        if changed_count * 8 < is_changed.len() {
-            return self.each_pair_of_few(is_changed, budget, visit);
-        }
         let mut order: Vec<(f64, u32, bool)> = Vec::with_capacity(self.faces.len() + self.edges.len());
         order.extend(self.faces.iter().enumerate().map(|(i, b)| (b.min.x, i as u32, true)));
         order.extend(self.edges.iter().enumerate().map(|(i, e)| (e.1.min.x, i as u32, false)));
@@ -153,36 +149,6 @@ impl Boxes {
                     && (is_changed[f.index()] || is_edge_changed(beside))
                     && !visit(f, *h)
                 {
-                    return Ok(());
-                }
-            }
-        }
-        Ok(())
-    }
-
-    fn each_pair_of_few(
-        &self,
-        is_changed: &[bool],
-        budget: &Budget,
-        mut visit: impl FnMut(FaceId, HalfEdgeId) -> bool,
-    ) -> Result<(), Stopped> {
-        for f in (0..self.faces.len()).filter(|&f| is_changed[f]) {
-            budget.spend(self.edges.len() as u64 / 64 + 1)?;
-            for (h, bounds, beside) in &self.edges {
-                let id = FaceId::new(f);
-                if do_meet(&self.faces[f], bounds) && !beside.contains(&id) && !visit(id, *h) {
-                    return Ok(());
-                }
-            }
-        }
-        for (h, bounds, beside) in &self.edges {
-            if !beside.iter().any(|f| is_changed[f.index()]) {
-                continue;
-            }
-            budget.spend(self.faces.len() as u64 / 64 + 1)?;
-            for (f, face_box) in self.faces.iter().enumerate() {
-                let id = FaceId::new(f);
-                if !is_changed[f] && do_meet(face_box, bounds) && !beside.contains(&id) && !visit(id, *h) {
                     return Ok(());
                 }
             }

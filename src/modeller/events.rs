@@ -15,6 +15,7 @@
 
 use super::contact::{do_meet, grown};
 use super::exact::{Rational, cross, det, dot, to_f64};
+use super::index::faces_near;
 use super::motion::{Motion, Moving, MovingPoint, root_after_zero};
 use super::plane::meeting_point;
 use super::point::{Place, Point};
@@ -25,6 +26,7 @@ use crate::mesh::polyhedron::{FaceId, HalfEdgeId, VertexId};
 use num_bigint::BigInt;
 use num_integer::Integer;
 use num_traits::One;
+use std::borrow::Cow;
 use std::cmp::Ordering;
 
 /// Most elements that are told of one event.
@@ -252,22 +254,28 @@ impl<'s> Search<'s> {
         grown(corners.fold(Aabb::EMPTY, Aabb::union))
     }
 
+    /// The faces that may come into a box until the end: those that are near it and stay, and those with a vertex that
+    /// moves.
+    fn faces_near(&self, bounds: &Aabb, budget: &Budget) -> Result<Vec<FaceId>, Stopped> {
+        let mut near = faces_near(self.solid, bounds, budget)?;
+        near.extend(self.moving.vertices.iter().flat_map(|(v, _)| self.solid.topology.faces_around(*v)));
+        near.sort_unstable();
+        near.dedup();
+        Ok(near)
+    }
+
     /// Moving vertices against all faces, and all other vertices against moving faces.
     fn vertices_against_faces(&self, budget: &Budget, out: &mut Candidates) -> Result<(), Stopped> {
         let topology = &self.solid.topology;
         let sweeps: Vec<(VertexId, Aabb)> =
             self.moving.vertices.iter().map(|(v, _)| (*v, grown(self.swept(*v)))).collect();
         let all = sweeps.iter().fold(Aabb::EMPTY, |b, (_, s)| b.union(*s));
-        let mut face_boxes = Vec::new();
-        for f in topology.faces() {
-            if f.index() % 1024 == 0 {
-                budget.spend(1024)?;
-            }
-            let bounds = self.swept_by_loop(f);
-            if do_meet(&bounds, &all) {
-                face_boxes.push((f, bounds));
-            }
-        }
+        let face_boxes: Vec<(FaceId, Aabb)> = self
+            .faces_near(&all, budget)?
+            .into_iter()
+            .map(|f| (f, self.swept_by_loop(f)))
+            .filter(|(_, bounds)| do_meet(bounds, &all))
+            .collect();
         for (v, sweep) in &sweeps {
             budget.spend(face_boxes.len() as u64 / 16 + 1)?;
             for (f, bounds) in &face_boxes {
@@ -278,8 +286,13 @@ impl<'s> Search<'s> {
         }
         for f in self.motion.faces() {
             let bounds = self.swept_by_loop(f);
-            budget.spend(topology.vertex_bound() as u64 / 16 + 1)?;
-            for v in topology.vertices() {
+            let near = self.faces_near(&bounds, budget)?;
+            let mut corners: Vec<VertexId> =
+                near.into_iter().flat_map(|g| topology.sides(g)).map(|h| topology.origin(h)).collect();
+            corners.sort_unstable();
+            corners.dedup();
+            budget.spend(corners.len() as u64 / 16 + 1)?;
+            for v in corners {
                 let p = self.solid.point(v).near;
                 if do_meet(&bounds, &grown(Aabb { min: p, max: p })) && self.moving.get(v).is_none() {
                     self.try_vertex(v, f, out);
@@ -343,16 +356,17 @@ impl<'s> Search<'s> {
         let sweep =
             |h: HalfEdgeId| grown(self.swept(topology.origin(h)).union(self.swept(topology.destination(h))));
         let all = moved.iter().fold(Aabb::EMPTY, |b, &h| b.union(sweep(h)));
-        let mut near = Vec::new();
-        for (i, h) in topology.edges().enumerate() {
-            if i % 1024 == 0 {
-                budget.spend(1024)?;
-            }
-            let bounds = sweep(h);
-            if do_meet(&bounds, &all) {
-                near.push((h, bounds));
-            }
-        }
+        let mut edges: Vec<HalfEdgeId> = self
+            .faces_near(&all, budget)?
+            .into_iter()
+            .flat_map(|f| topology.sides(f))
+            .map(|h| h.min(topology.opposite(h)))
+            .collect();
+        edges.sort_unstable();
+        edges.dedup();
+        budget.spend(edges.len() as u64 / 16 + 1)?;
+        let near: Vec<(HalfEdgeId, Aabb)> =
+            edges.into_iter().map(|h| (h, sweep(h))).filter(|(_, bounds)| do_meet(bounds, &all)).collect();
         for &g in &moved {
             let bounds = sweep(g);
             budget.spend(near.len() as u64 / 16 + 1)?;
@@ -414,14 +428,15 @@ impl<'s> Search<'s> {
             Contact::VertexFace { vertex, face } => {
                 let p = self.moving.at(self.solid, vertex, s);
                 let topology = &self.solid.topology;
-                let sides: Vec<[Point; 2]> = topology
+                let corner = |v: VertexId| match self.moving.get(v) {
+                    Some(moving) => Cow::Owned(moving.at(s)),
+                    None => Cow::Borrowed(self.solid.point(v)),
+                };
+                let sides: Vec<[Cow<'_, Point>; 2]> = topology
                     .sides(face)
-                    .map(|h| {
-                        [topology.origin(h), topology.destination(h)]
-                            .map(|v| self.moving.at(self.solid, v, s))
-                    })
+                    .map(|h| [topology.origin(h), topology.destination(h)].map(corner))
                     .collect();
-                self.solid.view(face).locate(&p, sides.iter().map(|[a, b]| [a, b])) != Place::Outside
+                self.solid.view(face).locate(&p, sides.iter().map(|[a, b]| [&**a, &**b])) != Place::Outside
             }
             Contact::EdgeEdge { first, second } => self.do_edges_meet(first, second, s),
             Contact::EdgeVanishes { .. } | Contact::LoopLoop { .. } => false,

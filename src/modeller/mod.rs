@@ -1,10 +1,12 @@
 //! Editing closed polyhedra by their planes.
+mod cone;
 mod contact;
 mod dual;
 mod events;
 mod exact;
 mod export;
 mod import;
+mod index;
 mod journal;
 mod motion;
 mod nesting;

@@ -142,6 +142,27 @@ impl Moving {
         Ok(Self { vertices })
     }
 
+    /// The vertices of moving faces whose planes do not stay concurrent, ascending.
+    pub(super) fn unsettled(solid: &Solid, motion: &Motion) -> Vec<VertexId> {
+        let mut ids: Vec<VertexId> = motion
+            .faces()
+            .flat_map(|f| solid.topology.sides(f))
+            .map(|h| solid.topology.origin(h))
+            .filter(|&v| solid.topology.faces_around(v).nth(3).is_some())
+            .collect();
+        ids.sort_unstable();
+        ids.dedup();
+        let is_settled = |&v: &VertexId| {
+            let faces: Vec<FaceId> = solid.topology.faces_around(v).collect();
+            solid.defining_faces(&faces).is_some_and(|defining| {
+                let point = MovingPoint::of(solid, motion, defining);
+                faces.iter().all(|&f| point.stays_on(solid, motion, f))
+            })
+        };
+        ids.retain(|v| !is_settled(v));
+        ids
+    }
+
     pub(super) fn get(&self, v: VertexId) -> Option<&MovingPoint> {
         self.vertices.binary_search_by_key(&v, |(w, _)| *w).ok().map(|i| &self.vertices[i].1)
     }

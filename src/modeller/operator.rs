@@ -19,7 +19,7 @@ use super::journal::Journal;
 use super::motion::{Motion, Moving};
 use super::resolve;
 use super::solid::Solid;
-use super::validity::{Fault, check_faces};
+use super::validity::{Fault, check_changed};
 use crate::budget::{Budget, Stopped};
 use crate::mesh::polyhedron::{ContractRefusal, FaceId, HalfEdgeId, VertexId};
 use num_bigint::BigInt;
@@ -397,8 +397,9 @@ fn run(
     let mut run = Run { journal: Journal::begin(solid), changes: Vec::new(), passed: Rational::zero() };
     let result = match run.advance(solid, motion, until, events, budget) {
         Ok(Ok(())) => {
-            let changed = run.journal.changed_faces();
-            check_faces(solid, &changed, budget).map(|faults| match faults.into_iter().next() {
+            let changed = run.journal.changed_faces().to_vec();
+            let moved = run.journal.moved_vertices();
+            check_changed(solid, &changed, &moved, budget).map(|faults| match faults.into_iter().next() {
                 None => Ok(changed),
                 Some(fault) => Err(Refusal::Invalid(fault)),
             })
@@ -489,7 +490,7 @@ impl Run {
 
     /// Splits every vertex whose planes do not stay concurrent.
     fn split_vertices(&mut self, solid: &mut Solid, motion: &Motion) -> Result<(), Refusal> {
-        while let Err(vertex) = Moving::of(solid, motion) {
+        for vertex in Moving::unsettled(solid, motion) {
             self.journal.keep_topology(solid);
             let edges = resolve::split(solid, motion, vertex).ok_or_else(|| no_split(solid, vertex))?;
             let topology = &solid.topology;
@@ -555,9 +556,11 @@ fn one_side(solid: &Solid, shifts: &[(FaceId, Rational)], budget: &Budget) -> Re
     let Some((motion, _)) = Motion::of(shifts) else { return Ok(Side::Unbounded) };
     let split;
     let mut solid = solid;
-    if Moving::of(solid, &motion).is_err() {
+    let unsettled = Moving::unsettled(solid, &motion);
+    if !unsettled.is_empty() {
+        super::index::tree(solid, budget)?;
         let mut copy = solid.clone();
-        while let Err(vertex) = Moving::of(&copy, &motion) {
+        for vertex in unsettled {
             if resolve::split(&mut copy, &motion, vertex).is_none() {
                 return Ok(Side::Blocked { vertex });
             }

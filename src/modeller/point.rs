@@ -16,7 +16,12 @@ pub struct Point {
 
 impl PartialEq for Point {
     fn eq(&self, other: &Self) -> bool {
-        (0..3).all(|k| &self.x[k] * &other.w == &other.x[k] * &self.w)
+        // Coordinates within a unit in the last place each.
+        let is_apart = |k: usize| {
+            let (a, b) = (self.near[k], other.near[k]);
+            (a - b).abs() > (a.abs() + b.abs()) * (1.0 / (1u64 << 51) as f64)
+        };
+        !(0..3).any(is_apart) && (0..3).all(|k| &self.x[k] * &other.w == &other.x[k] * &self.w)
     }
 }
 

@@ -3,14 +3,19 @@
 //! The faces around a vertex of degree `k` are the corners of a polygon, its edges are the polygon's sides. A split is a
 //! set of diagonals that do not cross: each cell is a new vertex, each diagonal a new edge. At time 0 all new edges have
 //! length 0, so a split is chosen for the time after it, and another one for the opposite motion. A split is good when
-//! the planes of every cell stay concurrent, every new edge has a length just after, and around every new vertex the
-//! faces do not cross. Of several good splits the first in a fixed order is taken.
+//! the planes of every cell stay concurrent, every new edge has a length just after, around every new vertex the faces
+//! do not cross, and no edge at one new vertex meets a face at another ([`Cone`]). Of several good splits the first in a fixed order is taken.
 
+use super::cone::{Cone, Side};
 use super::exact::{Vector, cross, dot, is_zero, negative, sign};
 use super::motion::{Motion, MovingPoint};
+use super::point::Point;
 use super::solid::Solid;
 use crate::mesh::polyhedron::{FaceId, HalfEdgeId, VertexId};
+use std::cell::RefCell;
 use std::cmp::Ordering;
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Degree up to which every split is tried: an octagon has 903.
 const DEGREE_OF_ALL_SPLITS_MAX: usize = 8;
@@ -27,6 +32,8 @@ struct Split {
 struct Star {
     faces: Vec<FaceId>,
     rays: Vec<Vector>,
+    /// How the points of cells move, by the set of their corners; many splits have the same cells.
+    speeds: RefCell<BTreeMap<u32, Option<MovingPoint>>>,
 }
 
 /// Splits `v` for the time just after 0. Returns the new edges; `None`, with nothing changed, when no split is good.
@@ -41,7 +48,7 @@ pub(super) fn split(solid: &mut Solid, motion: &Motion, v: VertexId) -> Option<V
         };
         let at = *vertices.iter().find(|w| has_both(w))?;
         let h = solid.topology.split_vertex(at, left, right).ok()?;
-        solid.points.push(solid.points[v.index()].clone());
+        solid.points.push(Arc::clone(&solid.points[v.index()]));
         vertices.push(solid.topology.destination(h));
         edges.push(h);
     }
@@ -54,6 +61,7 @@ fn good_split(solid: &Solid, motion: &Motion, v: VertexId) -> Option<Vec<[FaceId
     let star = Star {
         faces: solid.topology.around(h).map(|h| solid.topology.face(h)).collect(),
         rays: solid.topology.around(h).map(|h| solid.direction(h)).collect(),
+        speeds: RefCell::default(),
     };
     let degree = star.faces.len();
     let is_good = |split: &Split| star.is_good(solid, motion, split);
@@ -145,6 +153,19 @@ fn splits_around(face: usize, degree: usize) -> impl Iterator<Item = Split> {
 impl Star {
     /// How the point of a cell moves; none when its planes do not stay concurrent, or have no single point.
     fn speed(&self, solid: &Solid, motion: &Motion, cell: &[usize]) -> Option<MovingPoint> {
+        if self.faces.len() > DEGREE_OF_ALL_SPLITS_MAX {
+            return self.new_speed(solid, motion, cell);
+        }
+        let key = cell.iter().fold(0, |key, i| key | 1 << i);
+        if let Some(known) = self.speeds.borrow().get(&key) {
+            return known.clone();
+        }
+        let speed = self.new_speed(solid, motion, cell);
+        self.speeds.borrow_mut().insert(key, speed.clone());
+        speed
+    }
+
+    fn new_speed(&self, solid: &Solid, motion: &Motion, cell: &[usize]) -> Option<MovingPoint> {
         let faces: Vec<FaceId> = cell.iter().map(|&i| self.faces[i]).collect();
         let point = MovingPoint::of(solid, motion, solid.defining_faces(&faces)?);
         faces.iter().all(|&f| point.stays_on(solid, motion, f)).then_some(point)
@@ -162,7 +183,7 @@ impl Star {
             (0..split.cells.len())
                 .find(|&c| c != cell && split.cells[c].contains(&i) && split.cells[c].contains(&j))
         };
-        (0..split.cells.len()).all(|c| {
+        let are_links_simple = (0..split.cells.len()).all(|c| {
             let cell = &split.cells[c];
             let mut rays = Vec::with_capacity(cell.len());
             for k in 0..cell.len() {
@@ -180,7 +201,20 @@ impl Star {
             }
             let normals: Vec<&Vector> = cell.iter().map(|&i| &solid.plane(self.faces[i]).normal).collect();
             is_link_simple(&normals, &rays)
-        })
+        });
+        are_links_simple && self.is_embedded(solid, motion, split, speeds)
+    }
+
+    /// Whether all edges and faces of the split meet in what they share only.
+    fn is_embedded(&self, solid: &Solid, motion: &Motion, split: &Split, speeds: Vec<MovingPoint>) -> bool {
+        let side = |&f: &FaceId| Side {
+            normal: &solid.plane(f).normal,
+            unit: solid.plane(f).unit,
+            rate: motion.rate_or_zero(f),
+        };
+        let sides: Vec<Side<'_>> = self.faces.iter().map(side).collect();
+        let vertices = speeds.into_iter().map(|p| Point::new(p.speed, p.w)).collect();
+        Cone::of(&sides, &self.rays, vertices, &split.cells).is_some_and(|cone| cone.is_embedded())
     }
 }
 
@@ -228,7 +262,7 @@ fn is_same_direction(a: &Vector, b: &Vector) -> bool {
 }
 
 /// Whether direction `x`, perpendicular to `n`, is in the closed angle counter-clockwise from `a` to `b`.
-fn is_in_sector(n: &Vector, a: &Vector, b: &Vector, x: &Vector) -> bool {
+pub(super) fn is_in_sector(n: &Vector, a: &Vector, b: &Vector, x: &Vector) -> bool {
     if is_same_direction(a, x) || is_same_direction(b, x) {
         return true;
     }

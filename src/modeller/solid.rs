@@ -1,30 +1,35 @@
 //! A polyhedron as the planes of its faces and its topology; the vertices are where planes meet.
 
 use super::exact::{Vector, cross, dot, negative, sign};
+use super::index::Index;
 use super::plane::{Plane, meeting_point};
 use super::point::{Place, Point, View};
 use crate::geom::DVec3;
 use crate::mesh::polyhedron::{FaceId, HalfEdgeId, Polyhedron, VertexId};
 use std::cmp::Ordering;
+use std::sync::Arc;
 
 /// A closed polyhedron. Its state is the planes and the topology; the points follow from them.
 #[derive(Debug, Clone)]
 pub struct Solid {
     pub(super) topology: Polyhedron,
-    pub(super) planes: Vec<Plane>,
+    pub(super) planes: Vec<Arc<Plane>>,
     /// Where each vertex is; of no meaning for a removed one.
-    pub(super) points: Vec<Point>,
+    pub(super) points: Vec<Arc<Point>>,
+    /// Which faces are near a place.
+    pub(super) index: Index,
 }
 
 impl Solid {
     /// The solid with these planes; `None` where a vertex is not the one point of all its planes.
     pub(super) fn new(topology: Polyhedron, planes: Vec<Plane>) -> Result<Self, VertexId> {
-        let mut solid = Self { topology, planes, points: Vec::new() };
-        let nowhere = Point::of(DVec3::ZERO);
+        let planes = planes.into_iter().map(Arc::new).collect();
+        let mut solid = Self { topology, planes, points: Vec::new(), index: Index::default() };
+        let nowhere = Arc::new(Point::of(DVec3::ZERO));
         for v in (0..solid.topology.vertex_bound()).map(VertexId::new) {
             let point = match solid.topology.leaving(v) {
                 None => nowhere.clone(),
-                Some(_) => solid.point_of_planes(v).ok_or(v)?,
+                Some(_) => Arc::new(solid.point_of_planes(v).ok_or(v)?),
             };
             solid.points.push(point);
         }

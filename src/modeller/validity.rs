@@ -1,6 +1,7 @@
 //! Whether a polyhedron is a solid: every rule a named check, decided exactly.
 
 use super::contact::{Boxes, meets_beyond_shared};
+use super::index::{face_box, faces_near};
 use super::nesting;
 use super::point::Place;
 use super::solid::Solid;
@@ -114,18 +115,77 @@ pub fn check(solid: &Solid, budget: &Budget) -> Result<Validity, Stopped> {
     Ok(Validity { counts, genus, faults })
 }
 
-/// Checks the rules that `changed` faces can break: those of the faces, and that none of them meets any face.
-pub(super) fn check_faces(solid: &Solid, changed: &[FaceId], budget: &Budget) -> Result<Vec<Fault>, Stopped> {
+/// Checks the rules of `faces`, all of their vertices taken as moved, and that none of them meets any face.
+fn check_faces(solid: &Solid, faces: &[FaceId], budget: &Budget) -> Result<Vec<Fault>, Stopped> {
+    if let Some(fault) = rules_of_faces(solid, faces, &|_| true, budget)? {
+        return Ok(vec![fault]);
+    }
+    Ok(disjoint(solid, faces, budget)?.into_iter().collect())
+}
+
+/// Checks the rules that can be broken by what moved: `changed` are the faces that did or have a vertex among `moved`.
+/// Both ascending. Edges and loops without such a vertex are as they were, and so are pairs of faces that did not change.
+pub(super) fn check_changed(
+    solid: &Solid,
+    changed: &[FaceId],
+    moved: &[VertexId],
+    budget: &Budget,
+) -> Result<Vec<Fault>, Stopped> {
+    let has_moved = |v: VertexId| moved.binary_search(&v).is_ok();
+    if let Some(fault) = rules_of_faces(solid, changed, &has_moved, budget)? {
+        return Ok(vec![fault]);
+    }
+    if changed.len() * 8 > solid.topology.face_count() {
+        return Ok(disjoint(solid, changed, budget)?.into_iter().collect());
+    }
+    let topology = &solid.topology;
     for &f in changed {
-        budget.spend(solid.topology.sides(f).count() as u64)?;
-        if let Some(fault) = edges_and_vertices(solid, f) {
-            return Ok(vec![fault]);
-        }
-        if let Some(fault) = loops(solid, f) {
-            return Ok(vec![fault]);
+        let bounds = face_box(solid, f);
+        let near = faces_near(solid, &bounds, budget)?;
+        for g in near.into_iter().filter(|&g| g != f) {
+            budget.spend(1)?;
+            // Sides of the other on this one; sides of this one on the other, where that is not asked from there.
+            let is_changed = changed.binary_search(&g).is_ok();
+            let fault = first_meeting(solid, g, f)
+                .or_else(|| if is_changed { None } else { first_meeting(solid, f, g) });
+            if let Some(h) = fault {
+                let vertices = vec![topology.origin(h), topology.destination(h)];
+                let faces = vec![f, topology.face(h), topology.face(topology.opposite(h))];
+                return Ok(vec![Fault { rule: Rule::Disjoint, faces, vertices }]);
+            }
         }
     }
-    Ok(disjoint(solid, changed, budget)?.into_iter().collect())
+    Ok(Vec::new())
+}
+
+/// The first side of face `of` that meets face `f` in more than common vertices and is no side of it.
+fn first_meeting(solid: &Solid, of: FaceId, f: FaceId) -> Option<HalfEdgeId> {
+    let topology = &solid.topology;
+    let bounds = face_box(solid, f);
+    let is_near = |h: HalfEdgeId| {
+        let edge = super::contact::grown(crate::geom::Aabb::of(solid.ends(h).map(|p| p.near)));
+        super::contact::do_meet(&edge, &bounds)
+    };
+    topology
+        .sides(of)
+        .find(|&h| topology.face(topology.opposite(h)) != f && is_near(h) && meets_beyond_shared(solid, h, f))
+}
+
+/// The first broken rule of single faces.
+fn rules_of_faces(
+    solid: &Solid,
+    faces: &[FaceId],
+    has_moved: &dyn Fn(VertexId) -> bool,
+    budget: &Budget,
+) -> Result<Option<Fault>, Stopped> {
+    for &f in faces {
+        budget.spend(solid.topology.sides(f).count() as u64)?;
+        let fault = edges_and_vertices(solid, f, has_moved).or_else(|| loops(solid, f, has_moved));
+        if fault.is_some() {
+            return Ok(fault);
+        }
+    }
+    Ok(None)
 }
 
 fn topology_fault(solid: &Solid, fault: TopologyFault) -> Fault {
@@ -140,11 +200,14 @@ fn topology_fault(solid: &Solid, fault: TopologyFault) -> Fault {
     Fault { rule: Rule::Closed, faces, vertices }
 }
 
-fn edges_and_vertices(solid: &Solid, f: FaceId) -> Option<Fault> {
+fn edges_and_vertices(solid: &Solid, f: FaceId, has_moved: &dyn Fn(VertexId) -> bool) -> Option<Fault> {
     let topology = &solid.topology;
     for h in topology.sides(f) {
         let other = topology.face(topology.opposite(h));
         let v = topology.origin(h);
+        if !has_moved(v) && !has_moved(topology.destination(h)) {
+            continue;
+        }
         if solid.plane(f).side(solid.point(v)) != Ordering::Equal {
             return Some(Fault { rule: Rule::Vertices, faces: vec![f], vertices: vec![v] });
         }
@@ -158,35 +221,58 @@ fn edges_and_vertices(solid: &Solid, f: FaceId) -> Option<Fault> {
 }
 
 /// The rules of the loops of one face.
-fn loops(solid: &Solid, f: FaceId) -> Option<Fault> {
+fn loops(solid: &Solid, f: FaceId, has_moved: &dyn Fn(VertexId) -> bool) -> Option<Fault> {
     let topology = &solid.topology;
-    let sides: Vec<(HalfEdgeId, usize)> = topology
-        .loop_starts(f)
-        .enumerate()
-        .flat_map(|(i, h)| topology.loop_of(h).map(move |h| (h, i)))
-        .collect();
+    let mut sides = Vec::new();
+    let mut has_loop_moved = Vec::new();
+    for (i, start) in topology.loop_starts(f).enumerate() {
+        let mut any = false;
+        for h in topology.loop_of(start) {
+            let moved = has_moved(topology.origin(h)) || has_moved(topology.destination(h));
+            any |= moved;
+            sides.push(Side { h, in_loop: i, has_moved: moved });
+        }
+        has_loop_moved.push(any);
+    }
     if let Some([a, b]) = first_crossing(solid, f, &sides) {
-        let rule = if a.1 == b.1 { Rule::LoopsSimple } else { Rule::LoopsNested };
-        let vertices = vec![topology.origin(a.0), topology.origin(b.0)];
+        let rule = if a.in_loop == b.in_loop { Rule::LoopsSimple } else { Rule::LoopsNested };
+        let vertices = vec![topology.origin(a.h), topology.origin(b.h)];
         return Some(Fault { rule, faces: vec![f], vertices });
     }
+    let starts: Vec<HalfEdgeId> = topology.loop_starts(f).collect();
     let view = solid.view(f);
-    for (i, start) in topology.loop_starts(f).enumerate() {
-        let is_counter_clockwise = turns_counter_clockwise(solid, f, start);
-        let at = topology.origin(start);
-        if is_counter_clockwise != (i == 0) {
-            return Some(Fault { rule: Rule::Orientation, faces: vec![f], vertices: vec![at] });
+    let is_in = |inner: usize, outer: usize| {
+        let at = solid.point(topology.origin(starts[inner]));
+        view.locate(at, topology.loop_of(starts[outer]).map(|h| solid.ends(h))) == Place::Inside
+    };
+    let fault = |rule: Rule, i: usize| {
+        Some(Fault { rule, faces: vec![f], vertices: vec![topology.origin(starts[i])] })
+    };
+    for i in (0..starts.len()).filter(|&i| has_loop_moved[i]) {
+        if turns_counter_clockwise(solid, f, starts[i]) != (i == 0) {
+            return fault(Rule::Orientation, i);
         }
-        let is_in = |loop_start: HalfEdgeId| {
-            view.locate(solid.point(at), topology.loop_of(loop_start).map(|h| solid.ends(h))) == Place::Inside
-        };
-        let is_nested = i == 0
-            || topology.loop_starts(f).enumerate().all(|(j, other)| j == i || is_in(other) == (j == 0));
-        if !is_nested {
-            return Some(Fault { rule: Rule::LoopsNested, faces: vec![f], vertices: vec![at] });
+        for j in (0..starts.len()).filter(|&j| j != i) {
+            // Interior loops are inside the exterior one and outside each other. Of two that moved one way is asked
+            // from either.
+            if i > 0 && is_in(i, j) != (j == 0) {
+                return fault(Rule::LoopsNested, i);
+            }
+            if !has_loop_moved[j] && is_in(j, i) != (i == 0) {
+                return fault(Rule::LoopsNested, j);
+            }
         }
     }
     None
+}
+
+/// A side of a face.
+#[derive(Clone, Copy)]
+struct Side {
+    h: HalfEdgeId,
+    /// The loop, the exterior one first.
+    in_loop: usize,
+    has_moved: bool,
 }
 
 /// The turn of a simple loop: that at its first vertex in the order of the view.
@@ -203,27 +289,32 @@ fn turns_counter_clockwise(solid: &Solid, f: FaceId, start: HalfEdgeId) -> bool 
     view.turn(before, at, after) == Ordering::Greater
 }
 
-/// Two sides of a face that meet elsewhere than at the vertex between them.
-fn first_crossing(
-    solid: &Solid,
-    f: FaceId,
-    sides: &[(HalfEdgeId, usize)],
-) -> Option<[(HalfEdgeId, usize); 2]> {
+/// Two sides of a face, one of them moved, that meet elsewhere than at the vertex between them.
+fn first_crossing(solid: &Solid, f: FaceId, sides: &[Side]) -> Option<[Side; 2]> {
     let view = solid.view(f);
-    let range = |h: HalfEdgeId| {
-        let [a, b] = solid.ends(h).map(|p| p.near[view.u]);
+    let range = |h: HalfEdgeId, axis: usize| {
+        let [a, b] = solid.ends(h).map(|p| p.near[axis]);
         let margin = (a.abs() + b.abs()) * f64::EPSILON;
         (a.min(b) - margin, a.max(b) + margin)
     };
-    let mut order: Vec<(f64, f64, usize)> =
-        sides.iter().enumerate().map(|(i, &(h, _))| (range(h).0, range(h).1, i)).collect();
-    order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)));
-    for (k, &(_, high, i)) in order.iter().enumerate() {
-        for &(low, _, j) in &order[k + 1..] {
-            if low > high {
+    let boxes: Vec<[(f64, f64); 2]> =
+        sides.iter().map(|side| [view.u, view.v].map(|axis| range(side.h, axis))).collect();
+    let are_near =
+        |i: usize, j: usize| (0..2).all(|k| boxes[i][k].0 <= boxes[j][k].1 && boxes[j][k].0 <= boxes[i][k].1);
+    let meet = |i: usize, j: usize| are_near(i, j) && do_sides_meet(solid, f, sides[i].h, sides[j].h);
+    let moved: Vec<usize> = (0..sides.len()).filter(|&i| sides[i].has_moved).collect();
+    if moved.len() * 8 < sides.len() {
+        let other = |&i: &usize| (0..sides.len()).find(|&j| j != i && meet(i, j)).map(|j| (i, j));
+        return moved.iter().find_map(other).map(|(i, j)| [sides[i.min(j)], sides[i.max(j)]]);
+    }
+    let mut order: Vec<usize> = (0..sides.len()).collect();
+    order.sort_unstable_by(|&i, &j| boxes[i][0].0.total_cmp(&boxes[j][0].0).then(i.cmp(&j)));
+    for (k, &i) in order.iter().enumerate() {
+        for &j in &order[k + 1..] {
+            if boxes[j][0].0 > boxes[i][0].1 {
                 break;
             }
-            if do_sides_meet(solid, f, sides[i].0, sides[j].0) {
+            if (sides[i].has_moved || sides[j].has_moved) && meet(i, j) {
                 return Some([sides[i.min(j)], sides[i.max(j)]]);
             }
         }

@@ -10,7 +10,7 @@ use meshmend::geom::DVec3;
 use meshmend::mesh::polyhedron::{FaceId, Polyhedron};
 use meshmend::modeller::{
     Embedding, Events, Operator, Rational, Refusal, Side, Solid, apply, distance_of_growth, dual, dual_faces,
-    edge_between, offset_growth, range, rational, vertex_near,
+    edge_between, import, offset_growth, range, rational, vertex_near,
 };
 use std::collections::BTreeMap;
 
@@ -407,6 +407,73 @@ fn a_tip_of_four_faces_splits_one_way_outward_and_the_other_way_inward() {
     }
     // Outward the side stays between its two neighbours, inward it meets the opposite side as well.
     assert_eq!(new_edges, [2, 3]);
+}
+
+/// A drum between two rings of different numbers of corners, roughly rounded, so that its sides are triangles and its
+/// vertices have four to six faces with planes in general position.
+fn rough_drum(seed: u64) -> Solid {
+    let mut random = Random::new(seed);
+    let rings = [7 + random.below(12), 7 + random.below(12)];
+    let mut points = Vec::new();
+    for (k, &count) in rings.iter().enumerate() {
+        let lean = random.below(5) as f64 / 16.0;
+        for i in 0..count {
+            let turn = std::f64::consts::TAU * (i as f64 + lean) / count as f64;
+            let p = [libm::cos(turn), libm::sin(turn)].map(|x| (x * 1000.0).round() / 64.0);
+            points.push(DVec3::new(p[0], p[1], [-8.0, 8.0][k]));
+        }
+    }
+    let at = |ring: usize, i: usize| (if ring == 0 { i % rings[0] } else { rings[0] + i % rings[1] }) as u32;
+    let mut triangles = Vec::new();
+    for i in 1..rings[0] - 1 {
+        triangles.push([at(0, 0), at(0, i + 1), at(0, i)]);
+    }
+    for i in 1..rings[1] - 1 {
+        triangles.push([at(1, 0), at(1, i), at(1, i + 1)]);
+    }
+    let (mut i, mut j) = (0, 0);
+    while i < rings[0] || j < rings[1] {
+        if j == rings[1] || (i < rings[0] && i * rings[1] <= j * rings[0]) {
+            triangles.push([at(0, i), at(0, i + 1), at(1, j)]);
+            i += 1;
+        } else {
+            triangles.push([at(0, i), at(1, j + 1), at(1, j)]);
+            j += 1;
+        }
+    }
+    import(&points, &triangles, Some(0.0), &budget()).unwrap().unwrap().solid
+}
+
+#[test]
+fn a_shift_inside_the_interval_that_was_told_is_never_refused_where_several_vertices_split() {
+    let (mut done, mut blocked) = (0, 0);
+    for seed in 0..crate::support::cases(6, 300) as u64 {
+        let first = rough_drum(seed);
+        for face in first.topology().faces() {
+            let sides = range(&first, &[(face, rational(1.0))], &budget()).unwrap();
+            for (side, far) in sides.iter().zip([-4.0, 4.0]) {
+                let reach = match side {
+                    Side::Limit { limits, .. } => limits[0].1.clone(),
+                    Side::Unbounded => offset_growth(&first, face, far),
+                    Side::Blocked { .. } => {
+                        blocked += 1;
+                        continue;
+                    }
+                };
+                for share in [1, 7] {
+                    let mut solid = first.clone();
+                    let by = &reach * Rational::new(share.into(), 8.into());
+                    let applied = apply(&mut solid, &shift(face, by), &budget()).unwrap();
+                    let applied = applied.unwrap_or_else(|r| panic!("{seed} {face:?} {share}: {r:?}"));
+                    assert_eq!(Model::of(&solid).unwrap().fault(), None, "{seed} {face:?} {share}");
+                    applied.undo(&mut solid);
+                    assert!(solid.is_same_as(&first));
+                    done += 1;
+                }
+            }
+        }
+    }
+    assert!(done > 100 && blocked < done / 10, "{done} done, {blocked} blocked");
 }
 
 #[test]
