@@ -22,11 +22,12 @@ use super::point::{Place, Point};
 use super::solid::Solid;
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3};
+use crate::mesh::UnionFind;
 use crate::mesh::polyhedron::{FaceId, HalfEdgeId, VertexId};
 use num_bigint::BigInt;
 use num_integer::Integer;
 use num_traits::One;
-use std::borrow::Cow;
+use std::cell::RefCell;
 use std::cmp::Ordering;
 
 /// Most elements that are told of one event.
@@ -97,25 +98,32 @@ pub(super) fn next_event(
     budget: &Budget,
 ) -> Result<Option<Event>, Stopped> {
     let (vanish_at, vanishing) = first_vanishing(solid, motion, moving);
-    let search = Search::new(solid, motion, moving, vanish_at.as_ref());
-    let mut candidates = Vec::new();
-    search.vertices_against_faces(budget, &mut candidates)?;
-    search.edges_against_edges(budget, &mut candidates)?;
-    candidates.retain(|(s, _)| vanish_at.as_ref().is_none_or(|end| s <= end));
-    candidates.sort();
-    let mut first: Option<Rational> = None;
-    let mut contacts = Vec::new();
-    for (s, candidate) in candidates {
-        budget.spend(1)?;
-        if first.as_ref().is_some_and(|f| s > *f) || contacts.len() >= BLOCKING_MAX {
-            break;
-        }
-        let is_explained = || vanish_at.as_ref() == Some(&s) && explains(solid, &vanishing, &candidate);
-        if search.do_meet(&candidate, &s) && !is_explained() {
-            contacts.push(candidate);
-            first = Some(s);
+    let mut search = Search::new(solid, motion, moving, vanish_at.as_ref());
+    let mut found = First { at: None, contacts: Vec::new() };
+    let merged = Merged::of(solid, &vanishing);
+    let is_explained =
+        |s: &Rational, contact: &Contact| vanish_at.as_ref() == Some(s) && merged.explains(solid, contact);
+    let is_in_time = |s: &Rational| vanish_at.as_ref().is_none_or(|end| s <= end);
+    // What vertices find ends the time for edges.
+    for search_for in [Search::vertices_against_faces, Search::edges_against_edges] {
+        let mut candidates = Vec::new();
+        search_for(&search, budget, &mut candidates)?;
+        candidates.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for (earliest, candidate) in candidates {
+            budget.spend(1)?;
+            if earliest > search.end {
+                break;
+            }
+            let Some(s) = search.root(&candidate).filter(is_in_time) else { continue };
+            if found.is_before(&s) || is_explained(&s, &candidate) || !search.do_meet(&candidate, &s) {
+                continue;
+            }
+            search.end = search.end.min(rounded_up(&s));
+            found.take(s, candidate);
         }
     }
+    let First { at: first, mut contacts } = found;
+    contacts.sort_unstable();
     contacts.dedup();
     Ok(match (first, vanish_at) {
         (None, None) => None,
@@ -125,39 +133,97 @@ pub(super) fn next_event(
     })
 }
 
-/// Whether a contact only says that vertices become one because edges between them vanish: the elements share a vertex
-/// then.
-fn explains(solid: &Solid, vanishing: &[HalfEdgeId], contact: &Contact) -> bool {
-    let topology = &solid.topology;
-    let joined = |start: Vec<VertexId>| {
-        let mut class = start;
-        let mut k = 0;
-        while k < class.len() {
-            for h in vanishing {
-                let ends = [topology.origin(*h), topology.destination(*h)];
-                for [a, b] in [ends, [ends[1], ends[0]]] {
-                    if a == class[k] && !class.contains(&b) {
-                        class.push(b);
-                    }
-                }
+/// The first contacts that are known.
+struct First {
+    at: Option<Rational>,
+    contacts: Vec<Contact>,
+}
+
+impl First {
+    fn is_before(&self, s: &Rational) -> bool {
+        match &self.at {
+            Some(at) => at < s || (at == s && self.contacts.len() >= BLOCKING_MAX),
+            None => false,
+        }
+    }
+
+    fn take(&mut self, s: Rational, contact: Contact) {
+        if self.at.as_ref().is_none_or(|at| s < *at) {
+            self.contacts.clear();
+            self.at = Some(s);
+        }
+        self.contacts.push(contact);
+    }
+}
+
+fn rounded_up(s: &Rational) -> f64 {
+    to_f64(s) * (1.0 + 1e-12)
+}
+
+/// The earliest time at which `height + time growth` may be zero, when both are known within these errors; none when it
+/// surely never is after 0.
+fn earliest_root([height, height_error]: [f64; 2], [growth, growth_error]: [f64; 2]) -> Option<f64> {
+    let is_sure = height.abs() > height_error && growth.abs() > growth_error;
+    if is_sure && (height > 0.0) == (growth > 0.0) {
+        return None;
+    }
+    let earliest = (height.abs() - height_error).max(0.0) / (growth.abs() + growth_error);
+    Some(if earliest.is_nan() { 0.0 } else { earliest })
+}
+
+/// Vertices that become one because edges between them vanish.
+struct Merged {
+    /// The class of each such vertex, ascending.
+    class_of: Vec<(VertexId, u32)>,
+    /// The faces at the vertices of each class, ascending.
+    faces: Vec<Vec<FaceId>>,
+}
+
+impl Merged {
+    fn of(solid: &Solid, vanishing: &[HalfEdgeId]) -> Self {
+        let topology = &solid.topology;
+        let ends = |h: &HalfEdgeId| [topology.origin(*h), topology.destination(*h)];
+        let mut vertices: Vec<VertexId> = vanishing.iter().flat_map(ends).collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let place = |v: VertexId| vertices.binary_search(&v).unwrap_or(0) as u32;
+        let mut joined = UnionFind::new(vertices.len());
+        for [a, b] in vanishing.iter().map(ends) {
+            joined.unite(place(a), place(b));
+        }
+        let mut faces = vec![Vec::new(); vertices.len()];
+        let mut class_of = Vec::with_capacity(vertices.len());
+        for (i, &v) in vertices.iter().enumerate() {
+            let class = joined.find(i as u32);
+            class_of.push((v, class));
+            faces[class as usize].extend(topology.faces_around(v));
+        }
+        faces.iter_mut().for_each(|faces: &mut Vec<FaceId>| faces.sort_unstable());
+        Self { class_of, faces }
+    }
+
+    fn class(&self, v: VertexId) -> Option<u32> {
+        self.class_of.binary_search_by_key(&v, |(w, _)| *w).ok().map(|i| self.class_of[i].1)
+    }
+
+    /// Whether a contact only says that vertices become one: the elements share a vertex then.
+    fn explains(&self, solid: &Solid, contact: &Contact) -> bool {
+        let topology = &solid.topology;
+        match *contact {
+            Contact::VertexFace { vertex, face } => {
+                self.class(vertex).is_some_and(|c| self.faces[c as usize].binary_search(&face).is_ok())
             }
-            k += 1;
+            Contact::EdgeEdge { first, second } => {
+                let classes = |[f, g]: [FaceId; 2]| -> Vec<u32> {
+                    let sides = topology.sides(f).filter(|h| topology.face(topology.opposite(*h)) == g);
+                    let ends = sides.flat_map(|h| [topology.origin(h), topology.destination(h)]);
+                    ends.filter_map(|v| self.class(v)).collect()
+                };
+                let others = classes(second);
+                classes(first).iter().any(|class| others.contains(class))
+            }
+            Contact::EdgeVanishes { .. } | Contact::LoopLoop { .. } => true,
         }
-        class
-    };
-    match *contact {
-        Contact::VertexFace { vertex, face } => {
-            joined(vec![vertex]).iter().any(|v| topology.faces_around(*v).any(|f| f == face))
-        }
-        Contact::EdgeEdge { first, second } => {
-            let ends = |[f, g]: [FaceId; 2]| -> Vec<VertexId> {
-                let sides = topology.sides(f).filter(|h| topology.face(topology.opposite(*h)) == g);
-                sides.flat_map(|h| [topology.origin(h), topology.destination(h)]).collect()
-            };
-            let class = joined(ends(first));
-            ends(second).iter().any(|v| class.contains(v))
-        }
-        Contact::EdgeVanishes { .. } | Contact::LoopLoop { .. } => true,
     }
 }
 
@@ -209,15 +275,26 @@ struct Search<'s> {
     /// No later time is asked for; rounded up, infinite when there is no such time.
     end: f64,
     speeds: Vec<DVec3>,
+    /// The sides of the face that was asked for last, at the time that was asked for: many vertices reach one face at
+    /// one time.
+    sides: RefCell<Option<FaceAt>>,
 }
 
-type Candidates = Vec<(Rational, Contact)>;
+/// A face at a time.
+struct FaceAt {
+    face: FaceId,
+    time: Rational,
+    corners: Vec<[Point; 2]>,
+}
+
+/// What may come to meet, and the earliest time at which it does.
+type Candidates = Vec<(f64, Contact)>;
 
 impl<'s> Search<'s> {
     fn new(solid: &'s Solid, motion: &'s Motion, moving: &'s Moving, end: Option<&Rational>) -> Self {
         let speeds = moving.vertices.iter().map(|(_, m)| m.near_speed()).collect();
-        let end = end.map_or(f64::INFINITY, |end| to_f64(end) * (1.0 + 1e-12));
-        Self { solid, motion, moving, end, speeds }
+        let end = end.map_or(f64::INFINITY, rounded_up);
+        Self { solid, motion, moving, end, speeds, sides: RefCell::new(None) }
     }
 
     fn speed(&self, v: VertexId) -> DVec3 {
@@ -304,41 +381,49 @@ impl<'s> Search<'s> {
 
     fn try_vertex(&self, v: VertexId, f: FaceId, out: &mut Candidates) {
         let plane = self.solid.plane(f);
-        // Far from the plane at both ends of the time, on the same side: no root between.
-        if self.end.is_finite() {
-            let rate =
-                self.motion.rate(f).map_or(0.0, |r| super::exact::quotient(r, &BigInt::one())) / plane.length;
-            let (p, u) = (self.solid.point(v).near, self.speed(v));
-            let height = plane.unit.dot(p) - plane.distance;
-            let growth = (plane.unit.dot(u) - rate) * self.end;
-            let size = plane.unit.abs().dot(p.abs())
-                + plane.distance.abs()
-                + plane.unit.abs().dot(u.abs()) * self.end
-                + rate.abs() * self.end;
-            let error = size * 1e-13;
-            if height.abs() > error
-                && (height + growth).abs() > error
-                && (height > 0.0) == (height + growth > 0.0)
-            {
-                return;
-            }
+        let rate = self.rate(f);
+        let (p, u) = (self.solid.point(v).near, self.speed(v));
+        let height = [
+            plane.unit.dot(p) - plane.distance,
+            (plane.unit.abs().dot(p.abs()) + plane.distance.abs()) * 1e-13,
+        ];
+        let growth = [plane.unit.dot(u) - rate, (plane.unit.abs().dot(u.abs()) + rate.abs()) * 1e-13];
+        let Some(earliest) = earliest_root(height, growth).filter(|t| *t <= self.end) else { return };
+        if !self.solid.topology.faces_around(v).any(|g| g == f) {
+            out.push((earliest, Contact::VertexFace { vertex: v, face: f }));
         }
-        if self.solid.topology.faces_around(v).any(|g| g == f) {
-            return;
-        }
-        let still;
-        let point = match self.moving.get(v) {
-            Some(point) => point,
-            None => {
-                still = MovingPoint::still(self.solid.point(v));
-                &still
+    }
+
+    /// How fast the plane of `f` moves, rounded.
+    fn rate(&self, f: FaceId) -> f64 {
+        let rate = self.motion.rate(f).map_or(0.0, |r| super::exact::quotient(r, &BigInt::one()));
+        rate / self.solid.plane(f).length
+    }
+
+    /// The time after 0 at which what would meet is in one plane.
+    fn root(&self, candidate: &Contact) -> Option<Rational> {
+        match *candidate {
+            Contact::VertexFace { vertex, face } => {
+                let still;
+                let point = match self.moving.get(vertex) {
+                    Some(point) => point,
+                    None => {
+                        still = MovingPoint::still(self.solid.point(vertex));
+                        &still
+                    }
+                };
+                let plane = self.solid.plane(face);
+                let (normal, offset) = plane.row();
+                let c0 = dot(&normal, &point.start) - &offset * &point.w;
+                let rate = self.motion.rate_or_zero(face) * plane.offset.denom();
+                let c1 = dot(&normal, &point.speed) - rate * &point.w;
+                root_after_zero(&c0, &c1)
             }
-        };
-        let (normal, offset) = plane.row();
-        let c0 = dot(&normal, &point.start) - &offset * &point.w;
-        let c1 = dot(&normal, &point.speed) - self.motion.rate_or_zero(f) * plane.offset.denom() * &point.w;
-        if let Some(s) = root_after_zero(&c0, &c1) {
-            out.push((s, Contact::VertexFace { vertex: v, face: f }));
+            Contact::EdgeEdge { first, second } => {
+                let (c0, c1) = self.coplanarity([first[0], first[1], second[0], second[1]]);
+                root_after_zero(&c0, &c1)
+            }
+            Contact::EdgeVanishes { .. } | Contact::LoopLoop { .. } => None,
         }
     }
 
@@ -388,18 +473,39 @@ impl<'s> Search<'s> {
         if first.iter().any(|f| second.contains(f)) || ends(g).iter().any(|v| ends(h).contains(v)) {
             return;
         }
-        // An edge that stays must cross each plane of the other that stays.
-        let stays = ends(h).iter().all(|v| self.moving.get(*v).is_none());
-        for f in first.iter().filter(|f| stays && self.motion.rate(**f).is_none()) {
-            let [a, b] = ends(h).map(|v| self.solid.plane(*f).side(self.solid.point(v)));
-            if a == b || a == Ordering::Equal || b == Ordering::Equal {
-                return;
-            }
+        let Some(earliest) = self.earliest_coplanarity([first[0], first[1], second[0], second[1]]) else {
+            return;
+        };
+        if earliest <= self.end && self.is_crossable(ends(h), first) {
+            out.push((earliest, Contact::EdgeEdge { first, second }));
         }
-        let (c0, c1) = self.coplanarity([first[0], first[1], second[0], second[1]]);
-        if let Some(s) = root_after_zero(&c0, &c1) {
-            out.push((s, Contact::EdgeEdge { first, second }));
+    }
+
+    /// Whether an edge that stays crosses each plane of the other that stays.
+    fn is_crossable(&self, ends: [VertexId; 2], faces: [FaceId; 2]) -> bool {
+        let stays = ends.iter().all(|v| self.moving.get(*v).is_none());
+        !stays
+            || faces.iter().filter(|f| self.motion.rate(**f).is_none()).all(|f| {
+                let [a, b] = ends.map(|v| self.solid.plane(*f).side(self.solid.point(v)));
+                a != b && a != Ordering::Equal && b != Ordering::Equal
+            })
+    }
+
+    /// The earliest time at which four planes may meet in one point.
+    fn earliest_coplanarity(&self, faces: [FaceId; 4]) -> Option<f64> {
+        let planes = faces.map(|f| self.solid.plane(f));
+        let ([mut height, mut height_error], [mut growth, mut growth_error]) = ([0.0; 2], [0.0; 2]);
+        for k in 0..4 {
+            let [a, b, c] = [0, 1, 2].map(|i| planes[i + usize::from(i >= k)].unit);
+            let minor = a.dot(b.cross(c)) * if k % 2 == 1 { -1.0 } else { 1.0 };
+            let rate = self.rate(faces[k]);
+            height += planes[k].distance * minor;
+            growth += rate * minor;
+            // Components of the normals are within 2^-51, so minors within 2e-14.
+            height_error += planes[k].distance.abs() * 3e-14;
+            growth_error += rate.abs() * 3e-14;
         }
+        earliest_root([height, height_error], [growth, growth_error])
     }
 
     /// The determinant of the rows `(n, d)` of four planes as a function of time, times a positive number.
@@ -427,20 +533,25 @@ impl<'s> Search<'s> {
         match *candidate {
             Contact::VertexFace { vertex, face } => {
                 let p = self.moving.at(self.solid, vertex, s);
-                let topology = &self.solid.topology;
-                let corner = |v: VertexId| match self.moving.get(v) {
-                    Some(moving) => Cow::Owned(moving.at(s)),
-                    None => Cow::Borrowed(self.solid.point(v)),
+                let mut kept = self.sides.borrow_mut();
+                let is_kept = |kept: &FaceAt| kept.face == face && kept.time == *s;
+                let sides = match &mut *kept {
+                    Some(kept) if is_kept(kept) => kept,
+                    other => other.insert(self.face_at(face, s)),
                 };
-                let sides: Vec<[Cow<'_, Point>; 2]> = topology
-                    .sides(face)
-                    .map(|h| [topology.origin(h), topology.destination(h)].map(corner))
-                    .collect();
-                self.solid.view(face).locate(&p, sides.iter().map(|[a, b]| [&**a, &**b])) != Place::Outside
+                let corners = sides.corners.iter().map(|[a, b]| [a, b]);
+                self.solid.view(face).locate(&p, corners) != Place::Outside
             }
             Contact::EdgeEdge { first, second } => self.do_edges_meet(first, second, s),
             Contact::EdgeVanishes { .. } | Contact::LoopLoop { .. } => false,
         }
+    }
+
+    fn face_at(&self, face: FaceId, s: &Rational) -> FaceAt {
+        let topology = &self.solid.topology;
+        let at = |v: VertexId| self.moving.at(self.solid, v, s);
+        let ends = |h| [topology.origin(h), topology.destination(h)].map(at);
+        FaceAt { face, time: s.clone(), corners: topology.sides(face).map(ends).collect() }
     }
 
     fn do_edges_meet(&self, first: [FaceId; 2], second: [FaceId; 2], s: &Rational) -> bool {

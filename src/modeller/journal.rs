@@ -5,8 +5,29 @@ use super::motion::{Motion, Moving};
 use super::plane::Plane;
 use super::point::Point;
 use super::solid::Solid;
+use crate::geom::Aabb;
 use crate::mesh::polyhedron::{FaceId, Polyhedron, VertexId};
+use std::collections::BTreeMap;
 use std::sync::Arc;
+
+/// What an operator has moved.
+pub(super) struct Moves {
+    /// The faces that moved or have a vertex that did, ascending.
+    pub(super) faces: Vec<FaceId>,
+    /// Those whose planes moved, ascending.
+    pub(super) planes: Vec<FaceId>,
+    /// The vertices that moved, ascending, and the boxes of all places where they were.
+    pub(super) reach: Vec<(VertexId, Aabb)>,
+    /// Edges became vertices or vertices edges.
+    pub(super) has_new_topology: bool,
+}
+
+impl Moves {
+    /// Everywhere that `v` was, if it moved.
+    pub(super) fn of(&self, v: VertexId) -> Option<&Aabb> {
+        self.reach.binary_search_by_key(&v, |(w, _)| *w).ok().map(|i| &self.reach[i].1)
+    }
+}
 
 /// The state before an operator, as far as it was changed.
 #[derive(Debug, Clone)]
@@ -53,12 +74,20 @@ impl Journal {
         &self.changed
     }
 
-    /// The vertices that moved, ascending.
-    pub(super) fn moved_vertices(&self) -> Vec<VertexId> {
-        let mut moved: Vec<VertexId> = self.points.iter().map(|(v, _)| *v).collect();
-        moved.sort_unstable();
-        moved.dedup();
-        moved
+    /// What moved, for the check of it.
+    pub(super) fn moves(&mut self, solid: &Solid) -> Moves {
+        let is_there = |v: VertexId| solid.topology.leaving(v).is_some();
+        let mut reach: BTreeMap<VertexId, Aabb> = BTreeMap::new();
+        for (v, before) in &self.points {
+            let now = if is_there(*v) { solid.point(*v).near } else { before.near };
+            let bounds = reach.entry(*v).or_insert(Aabb { min: now, max: now });
+            *bounds = bounds.union(Aabb { min: before.near, max: before.near });
+        }
+        let mut planes: Vec<FaceId> = self.planes.iter().map(|(f, _)| *f).collect();
+        planes.sort_unstable();
+        planes.dedup();
+        let faces = self.changed_faces().to_vec();
+        Moves { faces, planes, reach: reach.into_iter().collect(), has_new_topology: self.topology.is_some() }
     }
 
     /// The planes and the topology as they were.

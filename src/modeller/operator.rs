@@ -397,10 +397,9 @@ fn run(
     let mut run = Run { journal: Journal::begin(solid), changes: Vec::new(), passed: Rational::zero() };
     let result = match run.advance(solid, motion, until, events, budget) {
         Ok(Ok(())) => {
-            let changed = run.journal.changed_faces().to_vec();
-            let moved = run.journal.moved_vertices();
-            check_changed(solid, &changed, &moved, budget).map(|faults| match faults.into_iter().next() {
-                None => Ok(changed),
+            let moves = run.journal.moves(solid);
+            check_changed(solid, &moves, budget).map(|faults| match faults.into_iter().next() {
+                None => Ok(moves.faces),
                 Some(fault) => Err(Refusal::Invalid(fault)),
             })
         }

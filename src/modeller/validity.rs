@@ -1,11 +1,13 @@
 //! Whether a polyhedron is a solid: every rule a named check, decided exactly.
 
-use super::contact::{Boxes, meets_beyond_shared};
+use super::contact::{Boxes, do_meet, grown, meets_beyond_shared};
 use super::index::{face_box, faces_near};
+use super::journal::Moves;
 use super::nesting;
 use super::point::Place;
 use super::solid::Solid;
 use crate::budget::{Budget, Stopped};
+use crate::geom::Aabb;
 use crate::mesh::polyhedron::{Counts, FaceId, HalfEdgeId, TopologyFault, VertexId};
 use std::cmp::Ordering;
 
@@ -123,52 +125,97 @@ fn check_faces(solid: &Solid, faces: &[FaceId], budget: &Budget) -> Result<Vec<F
     Ok(disjoint(solid, faces, budget)?.into_iter().collect())
 }
 
-/// Checks the rules that can be broken by what moved: `changed` are the faces that did or have a vertex among `moved`.
-/// Both ascending. Edges and loops without such a vertex are as they were, and so are pairs of faces that did not change.
-pub(super) fn check_changed(
-    solid: &Solid,
-    changed: &[FaceId],
-    moved: &[VertexId],
-    budget: &Budget,
-) -> Result<Vec<Fault>, Stopped> {
-    let has_moved = |v: VertexId| moved.binary_search(&v).is_ok();
-    if let Some(fault) = rules_of_faces(solid, changed, &has_moved, budget)? {
+/// Checks the rules that can be broken by what moved. Edges and loops without a moved vertex are as they were, and so are
+/// faces without one that no moved edge comes near.
+pub(super) fn check_changed(solid: &Solid, moves: &Moves, budget: &Budget) -> Result<Vec<Fault>, Stopped> {
+    let has_moved = |v: VertexId| moves.of(v).is_some();
+    if let Some(fault) = rules_of_faces(solid, &moves.faces, &has_moved, budget)? {
         return Ok(vec![fault]);
     }
-    if changed.len() * 8 > solid.topology.face_count() {
-        return Ok(disjoint(solid, changed, budget)?.into_iter().collect());
+    if moves.faces.len() * 8 > solid.topology.face_count() {
+        return Ok(disjoint(solid, &moves.faces, budget)?.into_iter().collect());
     }
+    let fault = match moved_edge_on_face(solid, moves, budget)? {
+        None => edge_on_moved_face(solid, moves, budget)?,
+        found => found,
+    };
+    Ok(fault.into_iter().collect())
+}
+
+fn edge_box(solid: &Solid, h: HalfEdgeId) -> Aabb {
+    grown(Aabb::of(solid.ends(h).map(|p| p.near)))
+}
+
+fn not_disjoint(solid: &Solid, h: HalfEdgeId, f: FaceId) -> Fault {
     let topology = &solid.topology;
-    for &f in changed {
+    let vertices = vec![topology.origin(h), topology.destination(h)];
+    let faces = vec![f, topology.face(h), topology.face(topology.opposite(h))];
+    Fault { rule: Rule::Disjoint, faces, vertices }
+}
+
+/// An edge with a moved end that meets a face which it is not beside.
+fn moved_edge_on_face(solid: &Solid, moves: &Moves, budget: &Budget) -> Result<Option<Fault>, Stopped> {
+    let topology = &solid.topology;
+    let mut edges: Vec<HalfEdgeId> = moves
+        .reach
+        .iter()
+        .filter_map(|(v, _)| topology.leaving(*v))
+        .flat_map(|h| topology.around(h))
+        .map(|h| h.min(topology.opposite(h)))
+        .collect();
+    edges.sort_unstable();
+    edges.dedup();
+    for h in edges {
+        let beside = [topology.face(h), topology.face(topology.opposite(h))];
+        let near = faces_near(solid, &edge_box(solid, h), budget)?;
+        budget.spend(near.len() as u64 + 1)?;
+        let met = near.into_iter().find(|f| !beside.contains(f) && meets_beyond_shared(solid, h, *f));
+        if let Some(f) = met {
+            return Ok(Some(not_disjoint(solid, h, f)));
+        }
+    }
+    Ok(None)
+}
+
+/// An edge that stayed and meets a face that moved, or one that has grown by the move of its border.
+fn edge_on_moved_face(solid: &Solid, moves: &Moves, budget: &Budget) -> Result<Option<Fault>, Stopped> {
+    let topology = &solid.topology;
+    let everywhere = moves.reach.iter().fold(Aabb::EMPTY, |all, (_, reach)| all.union(*reach));
+    for &f in &moves.faces {
         let bounds = face_box(solid, f);
-        let near = faces_near(solid, &bounds, budget)?;
-        for g in near.into_iter().filter(|&g| g != f) {
+        // What a face in its old plane covers anew lies between the old and the new places of its sides.
+        let anew = if moves.planes.binary_search(&f).is_ok() {
+            bounds
+        } else {
+            let of_side = |h: HalfEdgeId| {
+                let ends = [topology.origin(h), topology.destination(h)];
+                let place = |v: VertexId| {
+                    let near = solid.point(v).near;
+                    moves.of(v).copied().unwrap_or(Aabb { min: near, max: near })
+                };
+                ends.iter().any(|&v| moves.of(v).is_some()).then(|| ends.map(place))
+            };
+            let start = if moves.has_new_topology { everywhere } else { Aabb::EMPTY };
+            let sides = topology.sides(f).filter_map(of_side).flatten();
+            grown(sides.fold(start, Aabb::union))
+        };
+        let query = Aabb { min: anew.min.max(bounds.min), max: anew.max.min(bounds.max) };
+        for g in faces_near(solid, &query, budget)?.into_iter().filter(|&g| g != f) {
             budget.spend(1)?;
-            // Sides of the other on this one; sides of this one on the other, where that is not asked from there.
-            let is_changed = changed.binary_search(&g).is_ok();
-            let fault = first_meeting(solid, g, f)
-                .or_else(|| if is_changed { None } else { first_meeting(solid, f, g) });
-            if let Some(h) = fault {
-                let vertices = vec![topology.origin(h), topology.destination(h)];
-                let faces = vec![f, topology.face(h), topology.face(topology.opposite(h))];
-                return Ok(vec![Fault { rule: Rule::Disjoint, faces, vertices }]);
+            let meets = |h: &HalfEdgeId| {
+                let has_moved = |v: VertexId| moves.of(v).is_some();
+                topology.face(topology.opposite(*h)) != f
+                    && !has_moved(topology.origin(*h))
+                    && !has_moved(topology.destination(*h))
+                    && do_meet(&edge_box(solid, *h), &query)
+                    && meets_beyond_shared(solid, *h, f)
+            };
+            if let Some(h) = topology.sides(g).find(meets) {
+                return Ok(Some(not_disjoint(solid, h, f)));
             }
         }
     }
-    Ok(Vec::new())
-}
-
-/// The first side of face `of` that meets face `f` in more than common vertices and is no side of it.
-fn first_meeting(solid: &Solid, of: FaceId, f: FaceId) -> Option<HalfEdgeId> {
-    let topology = &solid.topology;
-    let bounds = face_box(solid, f);
-    let is_near = |h: HalfEdgeId| {
-        let edge = super::contact::grown(crate::geom::Aabb::of(solid.ends(h).map(|p| p.near)));
-        super::contact::do_meet(&edge, &bounds)
-    };
-    topology
-        .sides(of)
-        .find(|&h| topology.face(topology.opposite(h)) != f && is_near(h) && meets_beyond_shared(solid, h, f))
+    Ok(None)
 }
 
 /// The first broken rule of single faces.

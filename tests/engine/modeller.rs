@@ -2,7 +2,7 @@
 
 use crate::oracle::RawSoup;
 use crate::raw_files::encode;
-use crate::solids::{cube, cuboid, tetrahedron};
+use crate::solids::{cube, cuboid};
 use meshmend::budget::Budget;
 use meshmend::formats::{Encoding, Format, ReadOptions, read};
 use meshmend::geom::DVec3;
@@ -261,15 +261,15 @@ fn the_dual_is_written_and_a_plane_through_the_origin_is_refused_or_recentred() 
 
 #[test]
 fn what_cannot_be_rounded_to_a_solid_is_refused_where_a_solid_is_demanded_and_never_called_one() {
-    // Far from the origin float32 steps are 1/16: a move of 1/64 rounds the slanted face onto others.
-    let far = tetrahedron().scaled(0.125).moved([1_000_000.0; 3]);
+    // So far from the origin float32 steps are 1/16: a wall of 0.01 between a cavity and the outside rounds to nothing.
+    let cavity = cuboid([2.0; 3]).moved([1.0; 3]).inside_out();
+    let far = cuboid([4.0; 3]).with(&cavity).moved([1_000_000.0; 3]);
     let bytes = encode(&far, Encoding::Off);
-    let slanted = by_normal([1.0, 1.0, 1.0]);
-    let choices = ModellerChoices { operators: vec![shift(slanted, -0.05)], ..ModellerChoices::default() };
+    let inside = FaceName::Normal { normal: -DVec3::X, at: DVec3::splat(1_000_002.0) + DVec3::X };
+    let choices = ModellerChoices { operators: vec![shift(inside, -0.99)], ..ModellerChoices::default() };
     let free = answer(&bytes, choices.clone(), Options::default());
-    if let Some(certificate) = &free.report.certificate {
-        assert!(!certificate.is_printable());
-    }
+    assert_eq!(free.report.outcome, Some(Outcome::Modelled));
+    assert!(!free.report.certificate.unwrap().is_printable());
     let strict = Options { require: Some(Require::Printable), ..Options::default() };
     let refused = answer(&bytes, choices, strict);
     assert_eq!((refused.report.outcome, refused.output), (Some(Outcome::Refused), None));
