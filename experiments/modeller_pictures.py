@@ -3,12 +3,12 @@
 
 usage: modeller_pictures.py [--binary PROGRAM]
 """
-import argparse, json, math, os, subprocess, tempfile
+import argparse, json, math, os, re, subprocess, tempfile
 here = os.path.dirname(os.path.abspath(__file__)); root = os.path.dirname(here)
 
 p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 p.add_argument("--binary", default=os.path.join(os.environ.get("CARGO_TARGET_DIR", os.path.join(root, "target")), "release/meshmend"))
-WIDTH, HEIGHT, GAP = 300, 250, 10
+WIDTH, HEIGHT, GAP = 300, 270, 10
 MOVED, PLAIN, LINE, NEW = (238, 160, 72), (196, 206, 220), "#2b3440", "#c4261d"
 
 dot = lambda a, b: sum(x * y for x, y in zip(a, b))
@@ -87,7 +87,7 @@ def drawn(shape, faces, marked, fresh, turn=(35, 24)):
     for i in sorted((i for i in range(len(polygons)) if dot(normal[i], view) > 1e-9), key=depth):
         light = 0.62 + 0.38 * max(0, dot(normal[i], unit([-0.35, -0.55, 0.9])))
         colour = "#%02x%02x%02x" % tuple(int(c * light) for c in (MOVED if planes[i] in marked else PLAIN))
-        path = " ".join(f"{flat[v][0]:.2f},{flat[v][1]:.2f}" for v in polygons[i])
+        path = " ".join(f"{flat[v][0]!r},{flat[v][1]!r}" for v in polygons[i])
         out.append(("polygon", path, colour))
         f = polygons[i]
         for u, v in zip(f, f[1:] + f[:1]):
@@ -113,9 +113,9 @@ def page(path, panels):
     body = []
     for k, (marks, flat, caption) in enumerate(panels):
         xs, ys = [q[0] for q in flat], [q[1] for q in flat]
-        scale = min((WIDTH - 30) / (max(xs) - min(xs)), (HEIGHT - 62) / (max(ys) - min(ys)))
+        scale = min((WIDTH - 30) / (max(xs) - min(xs)), (HEIGHT - 90) / (max(ys) - min(ys)))
         dx = k * (WIDTH + GAP) + WIDTH / 2 - scale * (max(xs) + min(xs)) / 2
-        dy = (HEIGHT - 44) / 2 - scale * (max(ys) + min(ys)) / 2
+        dy = (HEIGHT - 66) / 2 - scale * (max(ys) + min(ys)) / 2
         at = lambda q: (q[0] * scale + dx, q[1] * scale + dy)
         for mark in marks:
             if mark[0] == "polygon":
@@ -126,19 +126,19 @@ def page(path, panels):
                 (x1, y1), (x2, y2) = map(at, mark[1])
                 body.append(f'<line x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}" stroke="{mark[2]}" stroke-width="{mark[3]}" stroke-linecap="round"/>')
         for i, line in enumerate(caption):
-            body.append(f'<text x="{k * (WIDTH + GAP) + WIDTH / 2}" y="{HEIGHT - 24 + 15 * i}" font-family="sans-serif" font-size="12" text-anchor="middle" fill="#2b3440">{line}</text>')
+            body.append(f'<text x="{k * (WIDTH + GAP) + WIDTH / 2}" y="{HEIGHT - 52 + 14 * i}" font-family="sans-serif" font-size="11" text-anchor="middle" fill="#2b3440">{line}</text>')
     width = len(panels) * (WIDTH + GAP) - GAP
     open(path, "w").write(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {HEIGHT}" width="{width}" height="{HEIGHT}">'
                           f'<rect width="{width}" height="{HEIGHT}" fill="white"/>' + "".join(body) + "</svg>\n")
     print("wrote", os.path.relpath(path, root))
 
 
-def wrapped(text, width=46):
+def wrapped(text, width=50):
     lines, line = [], ""
     for word in text.split():
         if len(line) + len(word) + 1 > width and line: lines.append(line); line = word
         else: line = f"{line} {word}".strip()
-    return (lines + [line])[:2]
+    return lines + [line]
 
 
 def main():
@@ -151,30 +151,34 @@ def main():
                       ("a wall by its two sides, by 10 mm", [{"shift": {"faces": [
                           {"face": {"normal": [1, 0, 0], "at": [60, 20, 8]}, "by_mm": -10}, {"face": {"normal": [-1, 0, 0], "at": [46, 30, 8]}, "by_mm": 10}]}}]),
                       ("refused: beyond the interval", [shift({"normal": [-1, 0, 0], "at": [46, 30, 8]}, 33)])]),
-        "split": (TIP, [("a side moves outward by 3 mm", [{"split": {"at": [20, 20, 40], "face": {"normal": [2, 0, 1], "at": [30, 20, 20]}, "by_mm": 3}}]),
-                        ("the same inward by 3 mm", [{"split": {"at": [20, 20, 40], "face": {"normal": [2, 0, 1], "at": [30, 20, 20]}, "by_mm": -3}}]),
+        "split": (TIP, [("a side moves outward by 4 mm", [{"split": {"at": [20, 20, 40], "face": {"normal": [2, 0, 1], "at": [30, 20, 20]}, "by_mm": 4}}]),
+                        ("the same inward by 4 mm", [{"split": {"at": [20, 20, 40], "face": {"normal": [2, 0, 1], "at": [30, 20, 20]}, "by_mm": -4}}]),
                         ("refused", [{"split": {"at": [0, 0, 0], "face": {"normal": [-2, 0, 1], "at": [10, 20, 20]}, "by_mm": 1}}])]),
         "merge": (ROOF, [("the left hip moves until the ridge is a point", [{"merge": {"edge": ridge, "face": LEFT}}]),
-                         ("refused", [{"merge": {"edge": {"faces": [LEFT, FRONT]}, "face": LEFT}}])]),
+                         ("refused", [{"merge": {"edge": {"faces": [LEFT, FRONT]}, "face": BACK}}])]),
         "flip": (ROOF, [("the hips become neighbours", [{"flip": {"edge": ridge, "face": LEFT}}]),
                         ("refused", [{"flip": {"edge": {"faces": [LEFT, FRONT]}, "face": FRONT}}])]),
         "bad-flip": (BOX, [("refused", [{"flip": {"edge": {"faces": [{"normal": [1, 0, 0], "at": [60, 20, 12]}, {"normal": [0, -1, 0], "at": [30, 0, 12]}]},
                                                   "face": {"normal": [1, 0, 0], "at": [60, 20, 12]}}}])]),
-        "pass": (ROOF, [("past the event by 10 mm in all", [shift(LEFT, -16, pass_events=True)]), ("refused without pass_events", [shift(LEFT, -16)])]),
+        "pass": (ROOF, [("16 mm inward, past the end of the ridge", [shift(LEFT, -16, pass_events=True)]), ("refused without pass_events", [shift(LEFT, -16)])]),
     }
     for name, (shape, cases) in rows.items():
+        turn = (-35, 24) if name in ("shift", "split") else (35, 24)
         first, told = tool.run(shape)
         faces = told["modeller"]["faces"]
         old = edges_of(first, faces)
-        marks = lambda shape, faces, moved, fresh: drawn(shape, faces, moved, fresh)
+        marks = lambda shape, faces, moved, fresh: drawn(shape, faces, moved, fresh, turn)
         panels = [(*marks(first, faces, set(), set()), ["before"])]
         for caption, operators in cases:
             made, report = tool.run(shape, operators)
             model = report["modeller"]
             if model["refused"] is not None:
                 # What is in the way.
-                blocked = {f for b in model["refused"]["blocking"] for f in b["faces"]} or set()
                 message = report["verdict"]["reasons"][0]["message"].replace("operator 0 is refused: ", "")
+                named = re.findall(r"faces? (\d+(?:, \d+)*)", message)
+                blocked = {f for b in model["refused"]["blocking"] for f in b["faces"]} or {int(f) for text in named for f in text.split(", ")}
+                # A number that a float has, in the digits that people need.
+                message = re.sub(r"-?\d+\.\d{4,}", lambda m: f"{float(m[0]):.6g}", message)
                 panels.append((*marks(first, faces, blocked, set()), wrapped(f"refused ({model['refused']['reason']}): {message}")))
                 print(f"{name}: {message}")
             else:

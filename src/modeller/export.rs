@@ -107,12 +107,9 @@ pub fn export(
 }
 
 /// The triangles of a face, and its corners where they are the fan around the first of them.
-fn triangulate(
-    solid: &Solid,
-    f: FaceId,
-    loops: &[Vec<u32>],
-    positions: &[DVec3],
-) -> Option<(Vec<[u32; 3]>, Option<Vec<u32>>)> {
+type Triangulated = (Vec<[u32; 3]>, Option<Vec<u32>>);
+
+fn triangulate(solid: &Solid, f: FaceId, loops: &[Vec<u32>], positions: &[DVec3]) -> Option<Triangulated> {
     let view = solid.view(f);
     let flat = |v: u32| {
         let p = positions[v as usize];

@@ -7,6 +7,7 @@ use super::names::{FaceRef, Length};
 use super::operators::{EditSpec, FaceMove, ShiftSpec};
 use super::refusal::RefusedOperator;
 use super::words::{BlockerKind, EditKind, ModelRule};
+use crate::geom::DVec3;
 use crate::modeller::Validity;
 use crate::pipeline;
 use crate::wire::mesh_info::finite;
@@ -154,7 +155,7 @@ impl From<&pipeline::Blocker> for Blocker {
         Self {
             kind: inner.kind.into(),
             faces: inner.faces.clone(),
-            places: inner.places.iter().map(|p| p.to_array()).collect(),
+            places: inner.places.iter().map(DVec3::to_array).collect(),
         }
     }
 }

@@ -16,6 +16,8 @@ fn some_value(spec: &OptionSpec) -> Value {
         OptionKind::Edges => json!([[0, 1], [5, 3]]),
         OptionKind::Holes => json!([0, {"number": 3, "method": "flat", "band_rings": 1}]),
         OptionKind::Targets => json!([{"ratio": 0.5}, {"faces": 10}]),
+        OptionKind::Edits => json!([{"shift": {"faces": [{"face": 3, "by_mm": -0.5}]}}, {"undo": {}}]),
+        OptionKind::Ranges => json!([2, {"together": [{"face": 1}, {"face": 4, "rate": -1}]}]),
         OptionKind::Input => json!({"job": "x"}),
     }
 }
@@ -53,6 +55,10 @@ fn every_option_is_read_back_from_json_as_it_was_written() {
             OptionKind::Holes => json!("all"),
             OptionKind::Plan => plan.clone(),
             OptionKind::Targets => targets.clone(),
+            OptionKind::Edits => json!([]),
+            OptionKind::Ranges => {
+                json!([{"normal": [0, digits, 1], "at": [0, 0, 0]}, {"ray": {"from": [0, 0, 9], "direction": [0, 0, -1]}}])
+            }
             OptionKind::Input => json!({"job": "y"}),
         };
         for value in [&some_value(spec), &more] {
