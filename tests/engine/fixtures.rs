@@ -46,7 +46,7 @@ fn report(bytes: &[u8], operation: Operation) -> Value {
 fn analyzed(bytes: &[u8]) -> Value {
     let mut report = report(bytes, Operation::Analyze);
     let differs = ["engine", "timing_ms", "resources"];
-    let does_not_apply = ["plan", "actions", "after", "deviation", "certificate", "printing"];
+    let does_not_apply = ["plan", "actions", "modeller", "after", "deviation", "certificate", "printing"];
     report
         .as_object_mut()
         .unwrap()
