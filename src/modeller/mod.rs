@@ -7,7 +7,9 @@ mod exact;
 mod export;
 mod import;
 mod index;
+mod interval;
 mod journal;
+mod merged;
 mod motion;
 mod nesting;
 mod operator;
@@ -22,9 +24,8 @@ pub use events::Contact;
 pub use exact::{Rational, rational, to_f64};
 pub use export::{ExportRefusal, Exported, export};
 pub use import::{ImportRefusal, Imported, PolygonFault, default_tolerance, from_polygons, import};
-pub use operator::{
-    Applied, Change, Events, Operator, Refusal, Side, apply, distance_of_growth, offset_growth, range,
-};
+pub use interval::{Side, distance_of_growth, offset_growth, range};
+pub use operator::{Applied, Change, Events, Operator, Refusal, apply};
 pub use pick::{edge_between, face_by_normal, face_on_ray, vertex_near};
 pub use plane::Plane;
 pub use point::Point;

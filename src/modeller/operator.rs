@@ -23,7 +23,7 @@ use super::validity::{Fault, check_changed};
 use crate::budget::{Budget, Stopped};
 use crate::mesh::polyhedron::{ContractRefusal, FaceId, HalfEdgeId, VertexId};
 use num_bigint::BigInt;
-use num_traits::{Signed, Zero};
+use num_traits::Zero;
 use std::cmp::Ordering;
 
 /// Most events that one operator passes.
@@ -380,7 +380,7 @@ fn no_split(solid: &Solid, vertex: VertexId) -> Refusal {
     Refusal::NoSplit { vertex, faces: solid.topology.faces_around(vertex).collect() }
 }
 
-fn limit(solid: &Solid, motion: &Motion, passed: &Rational, event: &Event) -> Refusal {
+pub(super) fn limit(solid: &Solid, motion: &Motion, passed: &Rational, event: &Event) -> Refusal {
     let time = passed + &event.at;
     let limits = motion.rates().iter().map(|(f, rate)| (*f, &time * rate)).collect();
     Refusal::Limit { limits, blocking: event.blocking(solid) }
@@ -520,71 +520,4 @@ impl Run {
         }
         Ok(())
     }
-}
-
-/// One side of the interval by which faces may move.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Side {
-    /// As far as one likes.
-    Unbounded,
-    /// By less than this.
-    Limit {
-        /// The growth of the offset of each moving face at the event.
-        limits: Vec<(FaceId, Rational)>,
-        /// What would meet.
-        blocking: Vec<Contact>,
-    },
-    /// Not at all: a vertex has no good split in this direction.
-    Blocked {
-        /// The vertex.
-        vertex: VertexId,
-    },
-}
-
-/// The open interval by which the faces may move together without an event, as its two sides: with negative and with
-/// positive multiples of `shifts`.
-///
-/// # Errors
-/// When the budget stops the run.
-pub fn range(solid: &Solid, shifts: &[(FaceId, Rational)], budget: &Budget) -> Result<[Side; 2], Stopped> {
-    let opposite: Vec<(FaceId, Rational)> = shifts.iter().map(|(f, t)| (*f, -t)).collect();
-    Ok([one_side(solid, &opposite, budget)?, one_side(solid, shifts, budget)?])
-}
-
-fn one_side(solid: &Solid, shifts: &[(FaceId, Rational)], budget: &Budget) -> Result<Side, Stopped> {
-    let Some((motion, _)) = Motion::of(shifts) else { return Ok(Side::Unbounded) };
-    let split;
-    let mut solid = solid;
-    let unsettled = Moving::unsettled(solid, &motion);
-    if !unsettled.is_empty() {
-        super::index::tree(solid, budget)?;
-        let mut copy = solid.clone();
-        for vertex in unsettled {
-            if resolve::split(&mut copy, &motion, vertex).is_none() {
-                return Ok(Side::Blocked { vertex });
-            }
-        }
-        split = copy;
-        solid = &split;
-    }
-    let Ok(moving) = Moving::of(solid, &motion) else { return Ok(Side::Unbounded) };
-    Ok(match next_event(solid, &motion, &moving, budget)? {
-        None => Side::Unbounded,
-        Some(event) => match limit(solid, &motion, &Rational::zero(), &event) {
-            Refusal::Limit { limits, blocking } => Side::Limit { limits, blocking },
-            _ => Side::Unbounded,
-        },
-    })
-}
-
-/// How much the offset of a plane grows when its face moves by `distance`, rounded once to an f64.
-pub fn offset_growth(solid: &Solid, face: FaceId, distance: f64) -> Rational {
-    super::exact::rational(distance * solid.plane(face).length)
-}
-
-/// The distance by which a face moves when its offset grows by `t`; never farther from 0 than the true one.
-pub fn distance_of_growth(solid: &Solid, face: FaceId, t: &Rational) -> f64 {
-    let near = super::exact::to_f64(t) / solid.plane(face).length;
-    let inward = near * (1.0 - 4.0 * f64::EPSILON);
-    if t.is_negative() { inward.min(0.0) } else { inward.max(0.0) }
 }
