@@ -5,6 +5,7 @@ use crate::random::Random;
 use crate::support::cases;
 use meshmend::budget::Budget;
 use meshmend::geom::DVec3;
+use meshmend::implicit::Kernel;
 use meshmend::mesh::Soup;
 use meshmend::repair::fill::{FillOptions, Filled, Method, fill};
 use meshmend::repair::{Draft, Selection};
@@ -84,6 +85,32 @@ fn sheet(n: u32, height: impl Fn(f64, f64) -> f64) -> RawSoup {
             })
             .collect(),
     }
+}
+
+/// A box of squares of a twentieth, each in two triangles, around the origin; `half` is half of its sides in twentieths.
+fn fine_box(half: [i32; 3]) -> RawSoup {
+    let mut positions = Vec::new();
+    let mut number = BTreeMap::new();
+    let mut triangles = Vec::new();
+    for axis in 0..3 {
+        let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+        for side in [-1, 1] {
+            let mut vertex = |i: i32, k: i32| {
+                let mut at = [0; 3];
+                (at[axis], at[u], at[v]) = (side * half[axis], i, k);
+                *number.entry(at).or_insert_with(|| {
+                    positions.push(at.map(|x| f64::from(x as f32 / 20.0)));
+                    positions.len() as u32 - 1
+                })
+            };
+            for (i, k) in (-half[u]..half[u]).flat_map(|i| (-half[v]..half[v]).map(move |k| (i, k))) {
+                let [a, b, c, d] = [vertex(i, k), vertex(i + 1, k), vertex(i + 1, k + 1), vertex(i, k + 1)];
+                let squares = if side > 0 { [[a, b, c], [a, c, d]] } else { [[a, c, b], [a, d, c]] };
+                triangles.extend(squares);
+            }
+        }
+    }
+    RawSoup { positions, triangles }
 }
 
 /// Takes out the triangles with a vertex in a ball.
@@ -228,6 +255,37 @@ fn the_cap_of_a_sphere_comes_back_round() {
     let flat = off(Method::Flat);
     let (smooth, rbf) = (off(Method::Smooth), off(Method::Rbf));
     assert!(smooth < 0.1 * flat && rbf < 0.05 * flat, "flat {flat}, smooth {smooth}, rbf {rbf}");
+}
+
+/// The rim runs over the top and down both walls, where it crosses itself in every view from above, along straight rows.
+#[test]
+fn a_long_rim_over_three_sides_of_a_box_is_closed_by_every_method_in_space() {
+    let torn = cut(fine_box([20, 14, 9]), [0.0, 0.0, 0.45], 0.85);
+    for method in [Method::Auto, Method::Minimal, Method::Smooth, Method::Rbf] {
+        let (draft, report) = filled(&torn, method);
+        let [hole] = &report.holes[..] else { panic!("{} holes", report.holes.len()) };
+        assert!(hole.rims[0].edges > 128, "{} edges", hole.rims[0].edges);
+        assert!(hole.used.is_some(), "{method:?}: {:?}", hole.rejected);
+        let mut uses = BTreeMap::new();
+        for &[a, b, c] in &draft.triangles {
+            for edge in [[a, b], [b, c], [c, a]] {
+                *uses.entry(edge).or_insert(0) += 1;
+            }
+        }
+        assert!(uses.iter().all(|(&[a, b], &n)| n == 1 && uses.contains_key(&[b, a])), "{method:?}");
+    }
+}
+
+/// What a surface was fitted with is told for each hole.
+#[test]
+fn a_patch_on_a_field_comes_with_what_was_fitted() {
+    let torn = cut(sphere(3), [0.48, 0.6, 0.64], 0.4);
+    let (_, report) = filled(&torn, Method::Rbf);
+    let field = report.holes[0].field.expect("a sphere has a fit");
+    assert!(field.centres > field.points && field.centres <= 3 * field.points, "{field:?}");
+    assert!(field.residual <= 1e-9 && field.degree == 2 && field.kernel == Kernel::Cubic, "{field:?}");
+    let (_, report) = filled(&torn, Method::Smooth);
+    assert_eq!(report.holes[0].field, None);
 }
 
 #[test]

@@ -208,6 +208,14 @@ mod tests {
     }
 
     #[test]
+    fn the_first_long_loops_are_searched_until_the_work_is_spent() {
+        let corners = [3, CORNERS_MAX, CORNERS_MAX + 1, LONG_CORNERS_MAX + 1];
+        assert_eq!(searched(corners.into_iter()).collect::<Vec<_>>(), [false, false, true, false]);
+        let many = searched(std::iter::repeat_n(LONG_CORNERS_MAX, 100)).filter(|&is| is).count() as u64;
+        assert_eq!(many, WEIGHINGS_MAX / ((LONG_CORNERS_MAX as u64).pow(3) / 6));
+    }
+
+    #[test]
     fn a_long_loop_that_can_be_searched_is_nearly_as_good_as_the_best() {
         let (points, normals) = (ring(CORNERS_MAX), vec![DVec3::Z; CORNERS_MAX]);
         let budget = Budget::unlimited();
