@@ -15,7 +15,7 @@ pub(super) fn estimated_bytes(operation: Operation, format: Option<Format>, uplo
     let per_triangle = match operation {
         Operation::Analyze | Operation::Verify | Operation::Convert | Operation::CutStitch => 170,
         Operation::Plan | Operation::Repair | Operation::Simplify | Operation::FillHoles => 410,
-        // Exact planes and points, and the boxes around them.
+        // Exact planes and points, and the boxes around them: 1 to 2 kB for each triangle of parts that were measured.
         Operation::Modeller => 2000,
     };
     let file_bytes_per_triangle = match format {

@@ -20,7 +20,7 @@ use edit::edit;
 use written::written;
 
 /// What exact planes and points, the boxes around them and copies of the topology take of memory, in times of what the
-/// triangles do.
+/// triangles do: measured on parts of 4,500 to 9,000 triangles, 1 to 2 kB for each.
 const BYTES_PER_DRAFT_BYTE: u64 = 48;
 
 /// Edits `input`; where no plane and no edge has changed it comes back as it is.
