@@ -36,7 +36,7 @@ def prepared(judge):
             print(name, len(f), len(holes), file=sys.stderr, flush=True)
         open(done, "w").close()
     rows = [(*os.path.basename(path)[:-4].split("--"), path) for path in glob.glob(os.path.join(o.work, "holes/*.npz"))]
-    return sorted((r for r in rows if not o.models or r[0] in o.models), key=lambda r: (7 * int(r[1].split("-")[1]) % 20, r[1], r[0]))
+    return sorted((r for r in rows if not o.models or r[0] in o.models), key=lambda r: (r[1].startswith("cut"), 7 * int(r[1].split("-")[1]) % 20, r[0]))
 
 
 def loaded(path):

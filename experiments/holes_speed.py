@@ -66,9 +66,8 @@ def ours(path, method, *more):
         run = subprocess.run([o.binary, "fill-holes", path, "-o", d + "/out.off", "--method", method, *more, "--json"], capture_output=True, text=True)
         whole = time.perf_counter() - start
         if not os.path.exists(d + "/out.off"): return None
-        try: steps = [a.get("milliseconds", a.get("ms")) for a in json.loads(run.stdout)["actions"] if a.get("step", "").startswith("fill")]
-        except (ValueError, KeyError): steps = []
-        return whole, sum(steps) / 1e3 if steps and all(s is not None for s in steps) else None
+        # Welding, turning and filling.
+        return whole, json.loads(run.stdout)["timing_ms"]["repair"] / 1e3
 
 
 def theirs(path, name):
