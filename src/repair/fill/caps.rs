@@ -56,11 +56,8 @@ fn is_mended_by_turning(mesh: &PatchMesh, h: u32, is_free: &dyn Fn(u32, u32) -> 
     let Some(g) = mesh.twin(h) else { return false };
     let ([a, b], c, d) = (mesh.ends(h), mesh.apex(h), mesh.apex(g));
     let is_of_rim = |v: u32| (v as usize) < mesh.rim;
-    c != d
-        && !mesh.has_edge(c, d)
-        && (!(is_of_rim(c) && is_of_rim(d)) || is_free(c, d))
-        && !is_flat(mesh, [c, a, d])
-        && !is_flat(mesh, [d, b, c])
+    let is_taken = c == d || mesh.has_edge(c, d) || (is_of_rim(c) && is_of_rim(d) && !is_free(c, d));
+    !is_taken && !is_flat(mesh, [c, a, d]) && !is_flat(mesh, [d, b, c])
 }
 
 #[cfg(test)]
