@@ -1,11 +1,10 @@
 //! Cutting and stitching: a manifold with boundary from any mesh, written and judged as it is.
 
 use super::input::Input;
-use super::output::{Candidate, NoCandidate};
+use super::output::{Made, unchanged};
 use super::plan::{Attempt, Step};
-use super::{Answer, Failure, Operation, Options, Outcome, Refusal, Report, Require};
+use super::{Answer, Failure, Operation, Options, Outcome, Report};
 use crate::budget::{Budget, Stage, Stopped};
-use crate::certificate::Depth;
 use crate::mesh::{ChosenEdges, CutMethod, Validity};
 use crate::repair::Draft;
 use crate::repair::cut::CutOptions;
@@ -81,32 +80,12 @@ pub(super) fn cut_stitch(input: &Input, options: &Options, budget: &Budget) -> R
     let has_changed = draft != whole || !input.soup.face_faults.is_empty();
     drop(whole);
     let report = Report { actions, ..report };
-    let encoding = input.output_encoding(options);
-    let is_refused =
-        |is_printable: bool| options.require.is_some_and(Require::is_of_a_solid) && !is_printable;
-    if !has_changed && input.may_come_back_as(encoding) {
-        let certificate = &input.examination.certificate;
-        if is_refused(certificate.is_printable()) {
-            let witness = certificate.witnesses.first().cloned();
-            return Ok(report.refused(Refusal::NotRepairable { witness }));
-        }
-        let outcome = if certificate.is_printable() { Outcome::Identical } else { Outcome::CutStitched };
-        return Ok(input.returned_as_it_is(report, outcome));
+    if !has_changed && input.may_come_back_as(input.output_encoding(options)) {
+        return Ok(unchanged(input, options, report, Outcome::CutStitched));
     }
-    if draft.triangles.is_empty() {
-        return Ok(report.refused(Refusal::NothingToRepair));
-    }
-    let depth = Depth::Count { samples: input.samples };
-    let candidate = match Candidate::write(draft.to_soup(&input.soup), encoding, depth, budget) {
-        Ok(candidate) => candidate,
-        Err(NoCandidate::Refused(refusal)) => return Ok(report.refused(refusal)),
-        Err(NoCandidate::Failed(failure)) => return Err(failure),
-    };
-    if is_refused(candidate.certificate().is_printable()) {
-        let witness = candidate.certificate().witnesses.first().cloned();
-        return Ok(report.refused(Refusal::NotRepairable { witness }));
-    }
-    Ok(candidate.returned(input, &draft.triangle_origin, report, Outcome::CutStitched, budget)?)
+    let soup = draft.to_soup(&input.soup);
+    let made = Made { soup, origins: &draft.triangle_origin, outcome: |_| Outcome::CutStitched };
+    made.returned(input, options, report, budget)
 }
 
 /// The `chosen` edges by the vertices that stand for theirs after the weld: of those at one position, the first that a

@@ -1,12 +1,11 @@
 //! Holes closed and nothing else: every vertex and every triangle of the file stays, and patches are added.
 
 use super::input::Input;
-use super::output::{Candidate, NoCandidate};
+use super::output::{Made, unchanged};
 use super::plan::{Attempt, Step};
-use super::{Answer, ELEMENTS_MAX, Failure, Operation, Options, Outcome, Refusal, Report, Require};
+use super::{Answer, ELEMENTS_MAX, Failure, Operation, Options, Outcome, Report};
 use crate::analysis::{Analysis, DefectCode, HoleGuess, Witness};
 use crate::budget::{Budget, Stage, Stopped};
-use crate::certificate::Depth;
 use crate::geom::triangle_area;
 use crate::repair::fill::{FillOptions, HoleChoice, HoleReport, Method, Rejected};
 use crate::repair::{Draft, NEW, Selection};
@@ -85,7 +84,6 @@ pub(super) fn fill_holes(input: &Input, options: &Options, budget: &Budget) -> R
     let mut report = input.report(Operation::FillHoles, budget)?;
     let loops = Loops::take(&mut report, input.samples);
     let fill = loops.chosen(&options.filling)?;
-    let encoding = input.output_encoding(options);
     let before = report.before.as_ref();
     let mut attempt = Attempt::start(&input.soup, before);
     let _charge = budget.charge(3 * attempt.draft.bytes())?;
@@ -98,34 +96,15 @@ pub(super) fn fill_holes(input: &Input, options: &Options, budget: &Budget) -> R
         interpolated_area_share: interpolated_share(&draft, budget)?,
     };
     let report = Report { actions, filling: Some(filling), ..report };
-    let is_refused = |is_printable: bool| options.require == Some(Require::Printable) && !is_printable;
-    if !has_patch && encoding == input.facts.encoding {
-        let certificate = &input.examination.certificate;
-        if is_refused(certificate.is_printable()) {
-            let witness = certificate.witnesses.first().cloned();
-            return Ok(report.refused(Refusal::NotRepairable { witness }));
-        }
-        let outcome = if certificate.is_printable() { Outcome::Identical } else { Outcome::Filled };
-        return Ok(input.returned_as_it_is(report, outcome));
+    if !has_patch && input.may_come_back_as(input.output_encoding(options)) {
+        return Ok(unchanged(input, options, report, Outcome::Filled));
     }
-    if draft.triangles.is_empty() {
-        return Ok(report.refused(Refusal::NothingToRepair));
-    }
-    let depth = Depth::Count { samples: input.samples };
-    let candidate = match Candidate::write(draft.to_soup(&input.soup), encoding, depth, budget) {
-        Ok(candidate) => candidate,
-        Err(NoCandidate::Refused(refusal)) => return Ok(report.refused(refusal)),
-        Err(NoCandidate::Failed(failure)) => return Err(failure),
+    let outcome: fn(bool) -> Outcome = match has_patch || !input.examination.certificate.is_printable() {
+        true => |_| Outcome::Filled,
+        false => |_| Outcome::Converted,
     };
-    if is_refused(candidate.certificate().is_printable()) {
-        let witness = candidate.certificate().witnesses.first().cloned();
-        return Ok(report.refused(Refusal::NotRepairable { witness }));
-    }
-    let outcome = match has_patch || !input.examination.certificate.is_printable() {
-        true => Outcome::Filled,
-        false => Outcome::Converted,
-    };
-    Ok(candidate.returned(input, &draft.triangle_origin, report, outcome, budget)?)
+    let made = Made { soup: draft.to_soup(&input.soup), origins: &draft.triangle_origin, outcome };
+    made.returned(input, options, report, budget)
 }
 
 /// The file with patches, and what is told of each hole.

@@ -3,11 +3,62 @@
 use super::describe::describe;
 use super::identical::identical_triangle_share;
 use super::input::Input;
-use super::{Answer, Failure, Outcome, Output, Refusal, Report, faithful};
+use super::{Answer, Failure, Options, Outcome, Output, Refusal, Report, Require, faithful};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::{self, Certificate, Depth, Examination};
 use crate::formats::{self, Encoding, ReadLimits, ReadOptions, WriteError};
 use crate::mesh::Soup;
+
+/// Why a mesh with this certificate is not returned: the caller demands a valid solid.
+pub(super) fn refusal(options: &Options, certificate: &Certificate) -> Option<Refusal> {
+    let is_refused = options.require.is_some_and(Require::is_of_a_solid) && !certificate.is_printable();
+    is_refused.then(|| Refusal::NotRepairable { witness: certificate.witnesses.first().cloned() })
+}
+
+/// The file as it is, as the answer of an operation that is no repair; `otherwise` is the outcome where it is no valid solid.
+pub(super) fn unchanged(input: &Input, options: &Options, report: Report, otherwise: Outcome) -> Answer {
+    let certificate = &input.examination.certificate;
+    let outcome = if certificate.is_printable() { Outcome::Identical } else { otherwise };
+    match refusal(options, certificate) {
+        Some(refusal) => report.refused(refusal),
+        None => input.returned_as_it_is(report, outcome),
+    }
+}
+
+/// A mesh that an operation has made which is no repair.
+pub(super) struct Made<'m> {
+    pub(super) soup: Soup,
+    /// The input's triangle behind each triangle ([`NEW`](crate::repair::NEW): none).
+    pub(super) origins: &'m [u32],
+    /// The outcome, by whether it is a valid solid.
+    pub(super) outcome: fn(bool) -> Outcome,
+}
+
+impl Made<'_> {
+    /// Written and judged, as the answer.
+    pub(super) fn returned(
+        self,
+        input: &Input,
+        options: &Options,
+        report: Report,
+        budget: &Budget,
+    ) -> Result<Answer, Failure> {
+        if self.soup.triangles.is_empty() {
+            return Ok(report.refused(Refusal::NothingToRepair));
+        }
+        let depth = Depth::Count { samples: input.samples };
+        let candidate = match Candidate::write(self.soup, input.output_encoding(options), depth, budget) {
+            Ok(candidate) => candidate,
+            Err(NoCandidate::Refused(refusal)) => return Ok(report.refused(refusal)),
+            Err(NoCandidate::Failed(failure)) => return Err(failure),
+        };
+        if let Some(refusal) = refusal(options, candidate.certificate()) {
+            return Ok(report.refused(refusal));
+        }
+        let outcome = (self.outcome)(candidate.certificate().is_printable());
+        Ok(candidate.returned(input, self.origins, report, outcome, budget)?)
+    }
+}
 
 /// Bytes that may be returned, with the judgement on them.
 pub(super) struct Candidate {

@@ -2,12 +2,12 @@
 
 use super::fidelity::Original;
 use super::input::Input;
-use super::output::{Candidate, NoCandidate};
+use super::output::{Candidate, NoCandidate, refusal};
 use super::plan::{Attempt, Step};
 use super::texture::{points_of, texture_of};
 use super::{
     Action, Answer, Failure, FidelityVerdict, Level, Operation, Options, Outcome, Output, Refusal, Report,
-    Require, SimplifyChoices, VertexColors, faithful, priority,
+    SimplifyChoices, VertexColors, faithful, priority,
 };
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::Depth;
@@ -78,9 +78,8 @@ impl Writer<'_> {
                 Err(NoCandidate::Failed(failure)) => return Err(failure),
             };
             let certificate = candidate.certificate().clone();
-            if self.options.require.is_some_and(Require::is_of_a_solid) && !certificate.is_printable() {
-                let witness = certificate.witnesses.first().cloned();
-                return Ok(report.refused(Refusal::NotRepairable { witness }));
+            if let Some(refusal) = refusal(self.options, &certificate) {
+                return Ok(report.refused(refusal));
             }
             let distance = distance(self.mesh, &result, self.budget)?;
             // That of the first is judged when it is returned.

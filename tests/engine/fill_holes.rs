@@ -171,9 +171,17 @@ fn a_file_without_holes_comes_back_as_it_is_and_one_that_cannot_be_filled_too() 
     assert_eq!(hole.fate, HoleFate::Rejected);
     assert!(!hole.rejected.is_empty(), "with its reasons");
     assert_eq!(answer.output.unwrap().bytes, None);
-    let strict = Options { require: Some(Require::Printable), ..Options::default() };
-    let refused = run(Operation::FillHoles, sheet, &strict, &Budget::unlimited()).unwrap();
-    assert_eq!((refused.report.outcome, refused.output), (Some(Outcome::Refused), None));
+    for require in [Require::Printable, Require::Faithful] {
+        for output_format in [None, Some(Format::Stl)] {
+            let strict = Options { require: Some(require), output_format, ..Options::default() };
+            let refused = run(Operation::FillHoles, sheet, &strict, &Budget::unlimited()).unwrap();
+            assert_eq!(
+                (refused.report.outcome, refused.output),
+                (Some(Outcome::Refused), None),
+                "{require:?}"
+            );
+        }
+    }
 }
 
 #[test]

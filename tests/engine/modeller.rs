@@ -189,6 +189,11 @@ fn faces_are_written_as_polygons_where_that_is_asked() {
         let text = String::from_utf8(answer.output.unwrap().bytes.unwrap()).unwrap();
         assert_eq!(text.matches(quads).count(), 6, "{text}");
     }
+    // An STL has no polygons: nothing is to be written anew.
+    let bytes = encode(&cuboid([3.0, 2.0, 1.0]), Encoding::StlBinary);
+    let choices = ModellerChoices { writes_polygons: true, ..ModellerChoices::default() };
+    let answer = answer(&bytes, choices, Options::default());
+    assert_eq!((answer.report.outcome, answer.output.unwrap().bytes), (Some(Outcome::Identical), None));
 }
 
 /// A plate of an L with a hole: a face of a reflex corner, and faces with an interior loop.

@@ -76,6 +76,18 @@ fn every_operation_that_returns_a_mesh_gives_it_the_unit_that_is_asked() {
 }
 
 #[test]
+fn an_stl_in_inches_is_in_millimetres_after_every_operation() {
+    let [whole, _] = boxes();
+    let bytes = encode(&whole, Encoding::StlBinary);
+    for operation in [Operation::Convert, Operation::CutStitch, Operation::FillHoles, Operation::Modeller] {
+        let answer = answer(operation, &bytes, &inches());
+        let bytes = answer.output.unwrap().bytes.expect("new bytes");
+        let (found, want) = (sides(&bytes), [25.4, 50.8, 76.2]);
+        assert!(found.iter().zip(want).all(|(a, b)| (a - b).abs() < 1e-5), "{operation:?}: {found:?}");
+    }
+}
+
+#[test]
 fn a_coordinate_that_has_no_number_in_the_other_unit_is_an_error() {
     let bytes = encode(&cuboid([1e308, 1.0, 1.0]), Encoding::Obj);
     let options = Options { output_units: Some(Units::Millimetre), ..inches() };

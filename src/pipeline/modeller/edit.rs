@@ -19,10 +19,10 @@ pub(super) struct Edited {
 }
 
 /// The polyhedron of the triangles of `draft`, welded and edited; a refusal with the account as far as it went.
-type Outcome = (Result<Edited, ModellerRefusal>, Option<ModellerReport>);
+type EditResult = (Result<Edited, ModellerRefusal>, Option<ModellerReport>);
 
 /// Reads `draft` as a polyhedron and does what is asked.
-pub(super) fn edit(draft: &Draft, choices: &ModellerChoices, budget: &Budget) -> Result<Outcome, Stopped> {
+pub(super) fn edit(draft: &Draft, choices: &ModellerChoices, budget: &Budget) -> Result<EditResult, Stopped> {
     let places = coincident_f64(&draft.positions, budget)?;
     let welded = |t: &[u32; 3]| t.map(|v| places.group[v as usize]);
     let triangles: Vec<[u32; 3]> = draft.triangles.iter().map(welded).collect();

@@ -11,10 +11,10 @@ pub use report::{
 };
 
 use super::input::Input;
-use super::output::{Candidate, NoCandidate};
-use super::{Answer, Failure, Operation, Options, Outcome, Refusal, Report, Require};
+use super::output::{Made, unchanged};
+use super::{Answer, Failure, Operation, Options, Outcome, Refusal, Report};
 use crate::budget::{Budget, Stage};
-use crate::certificate::Depth;
+use crate::formats::Format;
 use crate::repair::{Draft, NEW};
 use edit::edit;
 use written::written;
@@ -41,18 +41,11 @@ pub(super) fn model(input: &Input, options: &Options, budget: &Budget) -> Result
         (Ok(_), None) => return Ok(report.refused(Refusal::NothingToRepair)),
     };
     let encoding = input.output_encoding(options);
-    let is_refused =
-        |is_printable: bool| options.require.is_some_and(Require::is_of_a_solid) && !is_printable;
-    let is_as_it_was = !edited.has_changed && choices.dual.is_none() && !choices.writes_polygons;
+    let writes_polygons = choices.writes_polygons && matches!(encoding.format(), Format::Obj | Format::Off);
+    let is_as_it_was = !edited.has_changed && choices.dual.is_none() && !writes_polygons;
     if is_as_it_was && input.may_come_back_as(encoding) {
-        report.modeller = Some(Box::new(told));
-        let certificate = &input.examination.certificate;
-        if is_refused(certificate.is_printable()) {
-            let witness = certificate.witnesses.first().cloned();
-            return Ok(report.refused(Refusal::NotRepairable { witness }));
-        }
-        let outcome = if certificate.is_printable() { Outcome::Identical } else { Outcome::Modelled };
-        return Ok(input.returned_as_it_is(report, outcome));
+        let report = Report { modeller: Some(Box::new(told)), ..report };
+        return Ok(unchanged(input, options, report, Outcome::Modelled));
     }
     let soup = match written(&edited.imported, choices, &mut told, budget)? {
         Ok(soup) => soup,
@@ -60,15 +53,6 @@ pub(super) fn model(input: &Input, options: &Options, budget: &Budget) -> Result
     };
     report.modeller = Some(Box::new(told));
     let origins = vec![NEW; soup.triangles.len()];
-    let depth = Depth::Count { samples: input.samples };
-    let candidate = match Candidate::write(soup, encoding, depth, budget) {
-        Ok(candidate) => candidate,
-        Err(NoCandidate::Refused(refusal)) => return Ok(report.refused(refusal)),
-        Err(NoCandidate::Failed(failure)) => return Err(failure),
-    };
-    if is_refused(candidate.certificate().is_printable()) {
-        let witness = candidate.certificate().witnesses.first().cloned();
-        return Ok(report.refused(Refusal::NotRepairable { witness }));
-    }
-    Ok(candidate.returned(input, &origins, report, Outcome::Modelled, budget)?)
+    let made = Made { soup, origins: &origins, outcome: |_| Outcome::Modelled };
+    made.returned(input, options, report, budget)
 }

@@ -17,7 +17,7 @@ use crate::mesh::prev_corner;
 const DIVISIONS: usize = 64;
 /// Turns for each edge, at most.
 const TURNS_PER_EDGE: usize = 4;
-/// Weighings that searches of long loops may take in one run, about two seconds.
+/// Weighings that searches of long loops may take each time the patches of a file are tried.
 const WEIGHINGS_MAX: u64 = 1 << 26;
 
 /// Of loops with so many corners, those of which all triangulations may be searched: the first, as far as the work allows.
