@@ -252,6 +252,14 @@ pub(super) fn action(report: &simplify::Report) -> Action {
     }
 }
 
+/// Closest points that may be found to enclose a distance more closely, whatever the size of the mesh. On round parts
+/// every place is nearly the farthest, and the search would go on everywhere; its bounds hold wherever it ends, and the
+/// report has both.
+const REFINEMENTS_MIN: u64 = 1 << 18;
+
+/// And one more for so many triangles.
+const TRIANGLES_PER_REFINEMENT: u64 = 4;
+
 /// Runs the simplification of a manifold; results in the order of the targets.
 fn run(mesh: &Soup, choices: &SimplifyChoices, budget: &Budget) -> Result<Vec<Simplified>, SimplifyError> {
     let targets = match choices.targets.as_slice() {
@@ -347,7 +355,9 @@ fn distance(mesh: &Soup, result: &Simplified, budget: &Budget) -> Result<Option<
     // Enough for a mean, and no more than large meshes are worth.
     let most = DistanceOptions::default().samples;
     let samples = (8 * mesh.triangles.len()).clamp(1 << 10, most as usize) as u32;
-    let options = DistanceOptions { samples, ..DistanceOptions::default() };
+    let triangles = before.triangles.len().max(after.triangles.len()) as u64;
+    let refinements_max = REFINEMENTS_MIN + triangles / TRIANGLES_PER_REFINEMENT;
+    let options = DistanceOptions { samples, refinements_max, ..DistanceOptions::default() };
     budget.stage(Stage::Measure, || surface_distance(before, after, &options, budget))
 }
 

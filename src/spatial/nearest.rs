@@ -4,6 +4,8 @@ use super::Bvh;
 use super::bvh::{Leaf, Tree};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{DVec3, closest_point_on_triangle};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 /// The closest point of a set of triangles.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,6 +68,33 @@ impl<'m> NearestSearch<'m> {
     /// # Errors
     /// When the budget stops the run.
     pub fn find(&self, p: DVec3, hint: Option<u32>, budget: &Budget) -> Result<Option<Nearest>, Stopped> {
+        self.search(p, hint, usize::MAX, budget)
+    }
+
+    /// As [`find`](Self::find), but looks at no more than about `boxes_max` boxes twice: first down into the nearer ones, and
+    /// when that is not enough at the nearest of those that are left. So a triangle that reaches far in is found first,
+    /// and what is missed in the middle of a ball or on the axis of a cylinder, where everything is as far, is about as
+    /// far as what is found. The distance is never less than the true one.
+    ///
+    /// # Errors
+    /// When the budget stops the run.
+    pub fn find_roughly(
+        &self,
+        p: DVec3,
+        hint: Option<u32>,
+        boxes_max: usize,
+        budget: &Budget,
+    ) -> Result<Option<Nearest>, Stopped> {
+        self.search(p, hint, boxes_max, budget)
+    }
+
+    fn search(
+        &self,
+        p: DVec3,
+        hint: Option<u32>,
+        boxes_max: usize,
+        budget: &Budget,
+    ) -> Result<Option<Nearest>, Stopped> {
         let tree = self.bvh.tree();
         if tree.is_empty() {
             return Ok(None);
@@ -79,6 +108,10 @@ impl<'m> NearestSearch<'m> {
             let (gap, id) = stack[depth];
             if visited.is_multiple_of(CHECK_EVERY) {
                 budget.check()?;
+            }
+            if visited == boxes_max {
+                query.look_at_nearest(&stack[..=depth], boxes_max);
+                break;
             }
             visited += 1;
             if gap > query.reach {
@@ -146,6 +179,32 @@ impl<'q> Query<'q> {
         self.reach = reach * reach;
     }
 
+    /// Looks into the `boxes`, each with its squared gap, the nearest first, and into at most `boxes_max` of what they hold.
+    fn look_at_nearest(&mut self, boxes: &[(f32, u32)], boxes_max: usize) {
+        let tree = self.search.bvh.tree();
+        // Squares are not negative, so that their bits are in the order of the numbers.
+        let entry = |&(gap, id): &(f32, u32)| Reverse((gap.to_bits(), id));
+        let mut left: BinaryHeap<Reverse<(u32, u32)>> = boxes.iter().map(entry).collect();
+        for _ in 0..boxes_max {
+            let Some(Reverse((gap, id))) = left.pop() else { return };
+            if f32::from_bits(gap) > self.reach {
+                return;
+            }
+            let node = tree.node(id);
+            match node.children() {
+                None => self.look_at(tree.leaf(node)),
+                Some(children) => {
+                    for child in children {
+                        let gap = tree.node(child).bounds.squared_gap(self.place);
+                        if gap <= self.reach {
+                            left.push(entry(&(gap, child)));
+                        }
+                    }
+                }
+            }
+        }
+    }
+
     fn look_at(&mut self, leaf: &Leaf) {
         let gaps = leaf.squared_gaps(self.place);
         for (k, &gap) in gaps.iter().enumerate().take(leaf.len()) {
@@ -202,6 +261,35 @@ mod tests {
                     assert_eq!(found.distance, least, "{origin} {scale} {count} {i}");
                     assert_eq!(search.on_triangle(p, found.triangle), found);
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn a_rough_search_is_exact_where_few_boxes_are_near_and_close_where_all_are_as_far() {
+        // Triangles on a ball around the origin; one spike reaches to a quarter of its radius.
+        let on_ball = |i: u32, turn: u32| {
+            let height = 1.0 - 2.0 * (f64::from(i) + 0.5) / 4000.0;
+            let angle = f64::from(i) * 2.399_963 + f64::from(turn) * 0.05;
+            let (sin, cos) = (libm::sin(angle), libm::cos(angle));
+            let radius = (1.0 - height * height).sqrt();
+            DVec3::new(cos * radius, sin * radius, height)
+        };
+        let mut positions: Vec<DVec3> =
+            (0..4000).flat_map(|i| [on_ball(i, 0), on_ball(i, 1), on_ball((i + 21) % 4000, 0)]).collect();
+        let spike = DVec3::new(0.1, 0.2, -0.1).normalize();
+        positions.extend([spike * 0.25, spike * 1.1 + DVec3::X * 0.01, spike * 1.1]);
+        for (count, least) in [(4000u32, 1.0), (4001, 0.25)] {
+            let triangles = triangles_of(count);
+            let search = NearestSearch::build(&positions, &triangles, &Budget::unlimited()).unwrap();
+            let rough = |p| search.find_roughly(p, Some(7), 128, &Budget::unlimited()).unwrap().unwrap();
+            let exact = |p| search.find(p, Some(7), &Budget::unlimited()).unwrap().unwrap();
+            let middle = rough(DVec3::ZERO).distance;
+            let truth = exact(DVec3::ZERO).distance;
+            assert!(middle >= truth && middle <= truth * 1.02, "{middle} for {truth}, of {count}");
+            assert!(truth <= least);
+            for p in [DVec3::X * 1.01, DVec3::Y * 0.98, DVec3::splat(0.57)] {
+                assert_eq!(rough(p), exact(p));
             }
         }
     }

@@ -1,0 +1,35 @@
+//! Measures for printing, and the distance of a slightly smaller copy, on shapes with ties: each must take time in proportion
+//! to its triangles, whatever the shape.
+
+#[path = "support/shapes.rs"]
+mod shapes;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use meshmend::budget::Budget;
+use meshmend::distance::{DistanceOptions, Surface, surface_distance};
+use meshmend::printing::{Policy, measure};
+use std::hint::black_box;
+
+fn benches(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("round parts");
+    group.sample_size(10);
+    for (name, soup) in shapes::all(100_000) {
+        group.bench_function(format!("printing: {name}"), |b| {
+            b.iter(|| measure(black_box(&soup), &Policy::default(), true, 16, &Budget::unlimited()))
+        });
+        let smaller: Vec<_> = soup.positions.iter().map(|&p| p * 0.999).collect();
+        // As many refinements as a simplification allows itself.
+        let options = DistanceOptions { refinements_max: (1 << 18) + 25_000, ..DistanceOptions::default() };
+        group.bench_function(format!("distance: {name}"), |b| {
+            b.iter(|| {
+                let from = Surface { positions: &soup.positions, triangles: &soup.triangles };
+                let to = Surface { positions: &smaller, triangles: &soup.triangles };
+                surface_distance(black_box(from), to, &options, &Budget::unlimited())
+            })
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(round_parts, benches);
+criterion_main!(round_parts);
