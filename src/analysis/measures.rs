@@ -4,7 +4,8 @@ use super::sum::CompensatedSum;
 use super::welded::Welded;
 use super::{Context, Measures};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
-use crate::geom::{Aabb, triangle_area};
+use crate::geom::{Aabb, DVec3, triangle_area};
+use crate::mesh::Soup;
 use crate::par;
 
 impl Measures {
@@ -28,12 +29,55 @@ pub(super) fn bounds(mesh: &Welded<'_>, used: &[u32], budget: &Budget) -> Result
     Ok(boxes.into_iter().reduce(Aabb::union))
 }
 
+/// The triangles' areas, and those of polygons as they are.
 fn area(cx: &Context<'_>) -> Result<f64, Stopped> {
-    let sums = par::try_map_ranges(cx.mesh.triangles.len(), CHECK_EVERY, |range| {
+    let polygons = &cx.mesh.soup.polygons;
+    let is_of_polygon = of_polygons(cx)?;
+    let of_triangle =
+        |t: &usize| is_of_polygon.is_empty() || !is_of_polygon[cx.mesh.source(*t as u32) as usize];
+    let triangles = par::try_map_ranges(cx.mesh.triangles.len(), CHECK_EVERY, |range| {
         cx.budget.check()?;
-        Ok(range.map(|t| triangle_area(cx.mesh.corners(t as u32))).collect::<CompensatedSum>().value())
+        let areas = range.filter(of_triangle).map(|t| triangle_area(cx.mesh.corners(t as u32)));
+        Ok(areas.collect::<CompensatedSum>().value())
     })?;
-    Ok(sums.into_iter().collect::<CompensatedSum>().value())
+    let polygons = par::try_map_ranges(polygons.faces.len(), CHECK_EVERY / 4, |range| {
+        cx.budget.check()?;
+        Ok(range.map(|i| polygon_area(cx.mesh.soup, i)).collect::<CompensatedSum>().value())
+    })?;
+    Ok(triangles.into_iter().chain(polygons).collect::<CompensatedSum>().value())
+}
+
+/// For each triangle of the soup, whether it is a part of a polygon; empty when none is.
+fn of_polygons(cx: &Context<'_>) -> Result<Vec<bool>, Stopped> {
+    let (soup, polygons) = (cx.mesh.soup, &cx.mesh.soup.polygons);
+    if polygons.faces.is_empty() {
+        return Ok(Vec::new());
+    }
+    let mut is_of_polygon = vec![false; soup.triangles.len()];
+    for (i, &first) in polygons.first_triangles.iter().enumerate() {
+        if i % CHECK_EVERY == 0 {
+            cx.budget.check()?;
+        }
+        let first = first as usize;
+        is_of_polygon[first..first + polygons.corners_of(i).len() - 2].fill(true);
+    }
+    Ok(is_of_polygon)
+}
+
+/// Half the norm of the sum of the cross products of neighbouring corners about the centroid: the area of the polygon's
+/// shadow along its normal, so that what is not planar has less than its triangles and a bow-tie of equal halves has none.
+fn polygon_area(soup: &Soup, i: usize) -> f64 {
+    let corners = soup.polygons.corners_of(i);
+    let place = |k: usize| soup.positions[corners[k % corners.len()] as usize];
+    let centroid = (0..corners.len()).map(place).sum::<DVec3>() / corners.len() as f64;
+    let arms = |k: usize| (place(k) - centroid, place(k + 1) - centroid);
+    // Lengths of at most 1 keep the products in range.
+    let longest = (0..corners.len()).map(|k| arms(k).0.abs().max_element()).fold(0.0, f64::max);
+    if longest == 0.0 {
+        return 0.0;
+    }
+    let sum: DVec3 = (0..corners.len()).map(arms).map(|(a, b)| (a / longest).cross(b / longest)).sum();
+    sum.length() / 2.0 * longest * longest
 }
 
 /// Sum of the shells' volumes, if every part is a shell and there is one.
@@ -46,7 +90,7 @@ fn volume(cx: &Context<'_>) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use crate::analysis::Measures;
-    use crate::analysis::tests::{described, joined, tetrahedron, turned};
+    use crate::analysis::tests::{described, joined, polygon, tetrahedron, turned};
     use crate::geom::DVec3;
     use crate::mesh::Soup;
 
@@ -83,6 +127,20 @@ mod tests {
         turned.triangles[0].swap(1, 2);
         assert_eq!(measures(&turned).volume, None);
         assert_eq!(measures(&Soup::default()).volume, None);
+    }
+
+    #[test]
+    fn a_polygon_has_the_area_about_its_centroid() {
+        let area = |corners: [[f64; 3]; 4]| measures(&polygon(&corners.map(DVec3::from_array))).area;
+        let saddle = [[0.0, 0.0, 0.0], [1.0, 0.0, 1.0], [1.0, 1.0, 0.0], [0.0, 1.0, 1.0]];
+        let bow_tie = [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        let square = [[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [3.0, 2.0, 0.0], [0.0, 2.0, 0.0]];
+        for start in 0..4 {
+            for (mut corners, wanted) in [(saddle, 1.0), (bow_tie, 0.0), (square, 6.0)] {
+                corners.rotate_left(start);
+                assert!((area(corners) - wanted).abs() < 1e-12, "{corners:?}: {}", area(corners));
+            }
+        }
     }
 
     #[test]

@@ -81,7 +81,8 @@ pub struct Counts {
 pub struct Measures {
     /// Box of the positions that a triangle uses; `None` without triangles.
     pub bounds: Option<Aabb>,
-    /// Sum of the triangles' areas.
+    /// Sum of the faces' areas; that of a face of more than three corners is half the norm of the sum of the cross products
+    /// of neighbouring corners about its centroid.
     pub area: f64,
     /// Enclosed volume; `None` unless every component is closed and coherently oriented, and when it is out of range.
     pub volume: Option<f64>,

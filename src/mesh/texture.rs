@@ -21,6 +21,29 @@ impl Texture {
         self.corners.is_empty()
     }
 
+    /// The same with only the points that a corner has, in their order; empty when none has one.
+    #[must_use]
+    pub fn without_unused_points(mut self) -> Self {
+        let mut number = vec![NO_POINT; self.points.len()];
+        for &i in self.corners.iter().flatten().filter(|&&i| i != NO_POINT) {
+            number[i as usize] = i;
+        }
+        let mut used = 0;
+        for number in number.iter_mut().filter(|number| **number != NO_POINT) {
+            *number = used;
+            used += 1;
+        }
+        if used == 0 {
+            return Self::default();
+        }
+        let mut is_used = number.iter().map(|&number| number != NO_POINT);
+        self.points.retain(|_| is_used.next() == Some(true));
+        for i in self.corners.iter_mut().flatten().filter(|i| **i != NO_POINT) {
+            *i = number[*i as usize];
+        }
+        self
+    }
+
     /// The points of triangle `t`, if it has some.
     pub fn of_triangle(&self, t: usize) -> Option<[[f64; 2]; 3]> {
         let corners = self.corners.get(t).filter(|corners| corners[0] != NO_POINT)?;

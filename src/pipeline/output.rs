@@ -3,11 +3,12 @@
 use super::describe::describe;
 use super::identical::identical_triangle_share;
 use super::input::Input;
-use super::{Answer, Failure, Options, Outcome, Output, Refusal, Report, Require, faithful};
+use super::{Action, Answer, Failure, Options, Outcome, Output, Refusal, Report, Require, faithful};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::{self, Certificate, Depth, Examination};
 use crate::formats::{self, Encoding, ReadLimits, ReadOptions, WriteError};
 use crate::mesh::Soup;
+use crate::repair::NEW;
 
 /// Why a mesh with this certificate is not returned: the caller demands a valid solid.
 pub(super) fn refusal(options: &Options, certificate: &Certificate) -> Option<Refusal> {
@@ -28,7 +29,7 @@ pub(super) fn unchanged(input: &Input, options: &Options, report: Report, otherw
 /// A mesh that an operation has made which is no repair.
 pub(super) struct Made<'m> {
     pub(super) soup: Soup,
-    /// The input's triangle behind each triangle ([`NEW`](crate::repair::NEW): none).
+    /// The input's triangle behind each triangle ([`NEW`]: none).
     pub(super) origins: &'m [u32],
     /// The outcome, by whether it is a valid solid.
     pub(super) outcome: fn(bool) -> Outcome,
@@ -115,7 +116,31 @@ impl Candidate {
         &self.examination.certificate
     }
 
-    /// The candidate as the answer. `origins` name the input's triangle behind each of its triangles ([`NEW`](crate::repair::NEW): none).
+    /// What is said of texture coordinates that the file has and the result has not: where a triangle of the file had some
+    /// and its like in the result has none, and where a triangle is new. `origins` as for [`Self::returned`].
+    fn lost_texture(&self, input: &Input, origins: &[u32]) -> Option<Action> {
+        let (before, after) = (&input.soup.texture, &self.soup.texture);
+        if before.is_empty() {
+            return None;
+        }
+        let has_lost = |(t, &origin): (usize, &u32)| {
+            after.of_triangle(t).is_none() && (origin == NEW || before.of_triangle(origin as usize).is_some())
+        };
+        let lost = origins.iter().enumerate().take(self.soup.triangles.len()).filter(|&at| has_lost(at)).count();
+        if lost == 0 {
+            return None;
+        }
+        let kept = (0..self.soup.triangles.len()).filter(|&t| after.of_triangle(t).is_some()).count();
+        let reason = match kept {
+            0 => "the texture coordinates of the file are lost: the output has none",
+            _ => "texture coordinates stay where a triangle kept its corners; other triangles have none",
+        };
+        let changes = vec![("triangles_with_texture", kept as u64), ("triangles_without_texture", lost as u64)];
+        let (step, causes) = ("texture", Vec::new());
+        Some(Action { step, causes, changes, move_max: 0.0, reason: reason.to_owned() })
+    }
+
+    /// The candidate as the answer. `origins` name the input's triangle behind each of its triangles ([`NEW`]: none).
     pub(super) fn returned(
         self,
         input: &Input,
@@ -127,7 +152,9 @@ impl Candidate {
         let fidelity = faithful::judge(&input.soup, &self.soup, origins, &mut report, budget)?;
         let after = describe(&self.soup, &self.examination, &input.analyze_options(), budget)?;
         let share = identical_triangle_share(&input.soup, &self.soup, origins, budget)?;
+        let actions = report.actions.into_iter().chain(self.lost_texture(input, origins)).collect();
         let report = Report {
+            actions,
             after: Some(after),
             certificate: Some(self.examination.certificate),
             identical_triangle_share: Some(share),

@@ -205,7 +205,7 @@ impl Draft {
         let corners = (0..self.triangles.len())
             .map(|t| of_triangle(t).or_else(|| of_patch(t)).unwrap_or([NO_POINT; 3]))
             .collect();
-        Texture { points, corners }
+        Texture { points, corners }.without_unused_points()
     }
 
     /// Broken invariants, as sentences; empty when all hold.
@@ -270,6 +270,24 @@ mod tests {
         assert_eq!(draft.vertex_origin, [1, 2, 4]);
         assert_eq!(draft.triangles, [[0, 1, 2], [1, 0, 2]]);
         assert!(draft.check().is_empty());
+    }
+
+    #[test]
+    fn texture_stays_with_its_triangles_and_points_that_none_has_go() {
+        let texture = Texture {
+            points: vec![[0.0, 0.5], [0.1, 0.5], [0.2, 0.5], [0.3, 0.5]],
+            corners: vec![[0, 1, 2], [1, 0, 3]],
+        };
+        let source = Soup { texture, ..soup() };
+        let (mut draft, _) = Draft::from_soup(&source);
+        draft.retain_triangles(&[false, true]);
+        draft.triangles.push([0, 1, 2]);
+        draft.triangle_origin.push(NEW);
+        let written = draft.to_soup(&source).texture;
+        assert_eq!(written.points, [[0.0, 0.5], [0.1, 0.5], [0.3, 0.5]]);
+        assert_eq!(written.corners, [[1, 0, 2], [NO_POINT; 3]]);
+        draft.retain_triangles(&[false, true]);
+        assert_eq!(draft.to_soup(&source).texture, Texture::default());
     }
 
     #[test]

@@ -193,3 +193,28 @@ fn a_file_without_a_mesh_is_a_failure_with_its_place() {
     let failure = run(Operation::Repair, b"", &Options::default(), &Budget::unlimited()).unwrap_err();
     assert!(matches!(failure, Failure::Unreadable(_)));
 }
+
+#[test]
+fn texture_stays_where_triangles_stay_and_what_is_lost_is_said() {
+    // A tetrahedron of which each triangle has its own vertices.
+    let points = [
+        "0 0 0", "0 4 0", "4 0 0", "0 0 0", "4 0 0", "0 0 4", "4 0 0", "0 4 0", "0 0 4", "0 4 0", "0 0 0",
+        "0 0 4",
+    ];
+    let mut text: String = points.iter().map(|p| format!("v {p}\n")).collect();
+    text.push_str("vt 0 0\nvt 1 0\nvt 0 1\nvt 0.5 0.5\n");
+    for t in 0..4 {
+        text.push_str(&format!("f {}/1 {}/2 {}/3\n", 3 * t + 1, 3 * t + 2, 3 * t + 3));
+    }
+    let options = Options::default();
+    let welded = run(Operation::Repair, text.as_bytes(), &options, &Budget::unlimited()).unwrap();
+    let output = String::from_utf8(welded.output.unwrap().bytes.unwrap()).unwrap();
+    assert_eq!(output.lines().filter(|line| line.starts_with("vt")).count(), 3, "the fourth has no corner");
+    assert!(output.lines().filter(|line| line.starts_with('f')).all(|face| face.contains('/')));
+    assert!(welded.report.actions.iter().all(|action| action.step != "texture"));
+
+    let options = Options { output_format: Some(Format::Stl), ..Options::default() };
+    let plain = run(Operation::Repair, text.as_bytes(), &options, &Budget::unlimited()).unwrap();
+    let said = plain.report.actions.iter().find(|action| action.step == "texture").unwrap();
+    assert_eq!(said.changes, [("triangles_with_texture", 0), ("triangles_without_texture", 4)]);
+}
