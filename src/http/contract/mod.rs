@@ -257,18 +257,15 @@ fn mesh_answer() -> ResponseBuilder {
         .header("Server-Timing", header("Time of each pass."))
 }
 
-/// 200 of the events of a job: the schema is that of one event.
+/// 200 of the events of a job: text that a client reads as it comes.
 fn event_stream() -> Response {
-    let event = ObjectBuilder::new()
-        .property("event", text().enum_values(Some(["state", "stage"])))
-        .property("id", text().description(Some("What to come back with as `Last-Event-ID`.")))
-        .property("data", text().description(Some("JSON: a `StateEvent` or a `StageEvent`.")))
-        .required("event")
-        .required("id")
-        .required("data");
+    let events = text().description(Some(
+        "Events, each with `event` (`state` or `stage`), `id` (what to come back with as `Last-Event-ID`) and `data` \
+         (JSON: a `StateEvent` or a `StageEvent`).",
+    ));
     ResponseBuilder::new()
         .description("Server-sent events.")
-        .content("text/event-stream", Content::new(Some(Schema::Object(event.build()))))
+        .content("text/event-stream", Content::new(Some(Schema::Object(events.build()))))
         .build()
 }
 

@@ -42,12 +42,19 @@ fn quoted_line(line: &str) -> String {
     };
     let word = |word: &str| {
         let is_boolean = BOOLEANS.contains(&word.to_ascii_lowercase().as_str());
-        if is_boolean { format!("'{word}'") } else { word.to_owned() }
+        if is_boolean { format!("'{word}'") } else { power_of_ten(word).unwrap_or_else(|| word.to_owned()) }
     };
     match value {
         Some(value) => format!("{head}{}: {}", word(key), word(value)),
         None => format!("{head}{}{}", word(key), &content[key.len()..]),
     }
+}
+
+/// A number such as `1e30` with the point and the sign that YAML 1.1 asks for; without them it is a text there.
+fn power_of_ten(word: &str) -> Option<String> {
+    let (digits, power) = word.split_once('e')?;
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    (is_number(digits) && is_number(power)).then(|| format!("{digits}.0e+{power}"))
 }
 
 #[cfg(test)]
@@ -59,6 +66,7 @@ mod tests {
         let bare = "enum:\n- obj\n- off\n- 'yes'\nno:\n  default: No\n  y: office\n- n: on\n";
         let safe = "enum:\n- obj\n- 'off'\n- 'yes'\n'no':\n  default: 'No'\n  'y': office\n- 'n': 'on'\n";
         assert_eq!(quoted(bare), safe);
+        assert_eq!(quoted("maximum: 1e30\npattern: 1e\n"), "maximum: 1.0e+30\npattern: 1e\n");
     }
 
     #[test]
