@@ -4,9 +4,12 @@
 //! another is the largest over the points of the first, the *Hausdorff* distance is the larger of both directions. It is
 //! enclosed between a lower bound, which is a distance at a place that is named, and an upper bound that no point of the
 //! surface exceeds: branch and bound over ever smaller pieces of triangles (as Guthe, Borodin and Klein 2005, with other
-//! bounds; see [`bound`]). The mean is over the area, by systematic sampling.
+//! bounds; see [`bound`] and [`cover`]). The mean is over the area, by systematic sampling. The work is bounded in
+//! proportion to the triangles of both surfaces; where that ends the search the bounds hold, and it is told that they are
+//! farther apart than was asked.
 
 mod bound;
+mod cover;
 mod pieces;
 mod samples;
 mod scale;
@@ -16,10 +19,9 @@ mod view;
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use crate::par;
-use crate::spatial::NearestSearch;
 pub use samples::{Areas, Sample};
 use scale::Common;
-use search::Directed;
+use search::{Directed, Target};
 use view::View;
 
 /// The triangles of a surface, by reference. Triangles may be degenerate, open, or meet in any way.
@@ -38,7 +40,7 @@ pub struct DistanceOptions {
     pub tolerance_relative: f64,
     /// And by this share of the diagonal of the box around both surfaces.
     pub tolerance_of_diagonal: f64,
-    /// Samples for the mean, for each direction; none: no mean.
+    /// Samples for the mean, for each direction; none: no mean. Fewer are taken where they cost too much.
     pub samples: u32,
     /// Closest points to find, for each direction, beyond one for each vertex, sample and triangle. When they are used
     /// up the upper bound still holds, but may be farther from the lower one than the tolerances.
@@ -95,6 +97,8 @@ pub struct DirectedDistance {
     pub upper: f64,
     /// The distance at `farthest`; the true maximum is at least this, up to rounding.
     pub lower: f64,
+    /// True when `upper` exceeds `lower` by no more than the tolerances; false when the search ended before.
+    pub is_within_tolerance: bool,
     /// The farthest point that was looked at.
     pub farthest: FarPoint,
     /// The mean over the area of the first surface; `None` without samples.
@@ -124,6 +128,11 @@ impl SurfaceDistance {
     pub fn lower(&self) -> f64 {
         self.forward.lower.max(self.backward.lower)
     }
+
+    /// True when both directions are enclosed within the tolerances.
+    pub fn is_within_tolerance(&self) -> bool {
+        self.forward.is_within_tolerance && self.backward.is_within_tolerance
+    }
 }
 
 /// The two-sided distance between surfaces `a` and `b`; `None` when one of them has no triangle.
@@ -143,12 +152,12 @@ pub fn surface_distance(
     }
     let common = Common::of(a, b, budget)?;
     let (a, b) = common.surfaces();
-    let (near_a, near_b) = par::join(|| prepare(a, budget), || prepare(b, budget));
-    let (near_a, near_b) = (near_a?, near_b?);
+    let (to_a, to_b) = par::join(|| Target::of(a, &common, budget), || Target::of(b, &common, budget));
+    let (to_a, to_b) = (to_a?, to_b?);
     let view = View { sight: None, factor: common.factor, diagonal: common.diagonal };
     let directed = |from, to| Directed { from, to, view, common: &common, options, budget }.measure();
-    let forward = directed(a, &near_b)?;
-    let backward = directed(b, &near_a)?;
+    let forward = directed(a, &to_b)?;
+    let backward = directed(b, &to_a)?;
     Ok(Some(SurfaceDistance { forward: common.unscale(forward), backward: common.unscale(backward) }))
 }
 
@@ -168,12 +177,8 @@ pub fn directed_distance(
     }
     let common = Common::of(from, to, budget)?;
     let (from, to) = common.surfaces();
-    let near = prepare(to, budget)?;
+    let to = Target::of(to, &common, budget)?;
     let view = View { sight, factor: common.factor, diagonal: common.diagonal };
-    let found = Directed { from, to: &near, view, common: &common, options, budget }.measure()?;
+    let found = Directed { from, to: &to, view, common: &common, options, budget }.measure()?;
     Ok(Some(common.unscale(found)))
-}
-
-fn prepare<'s>(surface: Surface<'s>, budget: &Budget) -> Result<NearestSearch<'s>, Stopped> {
-    NearestSearch::build(surface.positions, surface.triangles, budget)
 }

@@ -2,10 +2,11 @@
 
 use super::FarPoint;
 use super::bound::{Corner, upper_bound};
+use super::search::Target;
 use super::view::View;
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
-use crate::spatial::{Nearest, NearestSearch};
+use crate::spatial::Nearest;
 
 /// A part of a triangle and the largest distance that a point of it can have.
 #[derive(Debug, Clone, Copy)]
@@ -62,16 +63,16 @@ pub(super) struct Refined {
     pub(super) upper: f64,
     /// Pieces that were not looked at.
     pub(super) left: Vec<Piece>,
-    /// Closest points that were found.
+    /// Closest points that were found, and triangles that were walked over in the place of some.
     pub(super) work: u64,
 }
 
-/// Closest points found for a piece before what is left of it is handed back.
-const WORK_MAX: u64 = 1024;
+/// Work on a piece before what is left of it is handed back.
+pub(super) const WORK_MAX: u64 = 48;
 
 /// Cuts `piece` until no part can be farther than the tolerance beyond the farthest point, or the work is used up.
 pub(super) fn refine(
-    to: &NearestSearch<'_>,
+    to: &Target<'_>,
     view: &View<'_>,
     piece: Piece,
     farthest: Farthest,
@@ -92,7 +93,7 @@ pub(super) fn refine(
 
 /// Cuts a piece at the middles of its edges in four.
 fn split(
-    to: &NearestSearch<'_>,
+    to: &Target<'_>,
     view: &View<'_>,
     piece: &Piece,
     refined: &mut Refined,
@@ -103,8 +104,10 @@ fn split(
     let mut middle = |a: Corner, b: Corner| {
         let place = (a.place + b.place) / 2.0;
         refined.work += 1;
-        let Some(nearest) = to.find(place, Some(a.closest_triangle), budget)? else { return Ok(a) };
-        if nearest.distance > refined.farthest.distance && view.counts(place, piece.triangle)? {
+        let Some(found) = to.find(place, Some(a.closest_triangle), budget)? else { return Ok(a) };
+        let nearest = found.nearest;
+        let is_farther = found.is_exact && nearest.distance > refined.farthest.distance;
+        if is_farther && view.counts(place, piece.triangle)? {
             refined.farthest = Farthest::at(place, piece.triangle, &nearest);
         }
         Ok(Corner { place, closest_triangle: nearest.triangle, distance: nearest.distance })
@@ -112,10 +115,38 @@ fn split(
     let (pq, qr, rp) = (middle(p, q)?, middle(q, r)?, middle(r, p)?);
     let enough = tolerance.enough(refined.farthest.distance);
     for corners in [[p, pq, rp], [pq, q, qr], [rp, qr, r], [qr, rp, pq]] {
-        let upper = upper_bound(to, &corners, enough).min(piece.upper);
+        let mut upper = upper_bound(&to.near, &corners, enough).min(piece.upper);
+        if upper > enough {
+            let (covered, walked) = covered(to, &corners, upper);
+            refined.work += walked / WALKED_FOR_ONE;
+            upper = covered;
+        }
         if upper <= enough || !view.hides(&corners, piece.triangle)? {
             refined.left.push(Piece { corners, upper, ..*piece });
         }
     }
     Ok(())
+}
+
+/// Triangles that are walked over in the time that it takes to find a closest point.
+pub(super) const WALKED_FOR_ONE: u64 = 4;
+
+/// The bound of what covers a piece, if it is less than `upper`, and the triangles that were walked over. The walk starts
+/// where a corner is closest, the farthest corner first, and looks along the way from there.
+fn covered(to: &Target<'_>, piece: &[Corner; 3], upper: f64) -> (f64, u64) {
+    let mut corners = *piece;
+    corners.sort_by(|a, b| b.distance.total_cmp(&a.distance));
+    let along = to.near.on_triangle(corners[0].place, corners[0].closest_triangle).point - corners[0].place;
+    let mut walked = 0;
+    for (i, corner) in corners.iter().enumerate() {
+        if corners[..i].iter().any(|before| before.closest_triangle == corner.closest_triangle) {
+            continue;
+        }
+        let (bound, more) = to.cloth.bound(piece, along, corner.closest_triangle, upper);
+        walked += more;
+        if let Some(bound) = bound {
+            return (bound.min(upper), walked);
+        }
+    }
+    (upper, walked)
 }

@@ -51,6 +51,7 @@ impl<'s> Common<'s> {
         DirectedDistance {
             upper: back(of.upper),
             lower: back(of.lower),
+            is_within_tolerance: of.is_within_tolerance,
             farthest: FarPoint { place: place / self.factor, closest: closest / self.factor, ..of.farthest },
             mean: of.mean.map(back),
             root_mean_square: of.root_mean_square.map(back),

@@ -1,19 +1,48 @@
 //! The distance from one surface to another: vertices and samples first, then the triangles that may exceed them.
 
 use super::bound::{Corner, upper_bound};
-use super::pieces::{Farthest, Piece, Refined, Tolerance, refine};
+use super::cover::Cloth;
+use super::pieces::{Farthest, Piece, Refined, Tolerance, WALKED_FOR_ONE, WORK_MAX, refine};
 use super::samples::Areas;
 use super::scale::Common;
 use super::view::View;
 use super::{DirectedDistance, DistanceOptions, Seen, Surface};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::geom::DVec3;
 use crate::par;
-use crate::spatial::NearestSearch;
+use crate::spatial::{Found, NearestSearch};
+use std::collections::BinaryHeap;
+
+/// The surface to which distances are measured, prepared.
+pub(super) struct Target<'s> {
+    pub(super) near: NearestSearch<'s>,
+    pub(super) cloth: Cloth<'s>,
+}
+
+impl<'s> Target<'s> {
+    pub(super) fn of(surface: Surface<'s>, common: &Common<'_>, budget: &Budget) -> Result<Self, Stopped> {
+        let near = NearestSearch::build(surface.positions, surface.triangles, budget)?;
+        Ok(Self { near, cloth: Cloth::of(surface, common.slack, budget)? })
+    }
+
+    /// A close point, exactly the closest one where the surface has no more than a few boxes about as far.
+    pub(super) fn find(
+        &self,
+        place: DVec3,
+        hint: Option<u32>,
+        budget: &Budget,
+    ) -> Result<Option<Found>, Stopped> {
+        self.near.find_roughly(place, hint, BOXES_MAX, budget)
+    }
+}
+
+/// Boxes that are looked at for a closest point, twice: many times what most take.
+const BOXES_MAX: usize = 512;
 
 /// One direction.
 pub(super) struct Directed<'d> {
     pub(super) from: Surface<'d>,
-    pub(super) to: &'d NearestSearch<'d>,
+    pub(super) to: &'d Target<'d>,
     pub(super) view: View<'d>,
     pub(super) common: &'d Common<'d>,
     pub(super) options: &'d DistanceOptions,
@@ -30,7 +59,9 @@ struct AtVertex {
 /// Sums over samples.
 #[derive(Debug, Clone, Copy)]
 struct Sampled {
-    /// Samples that count.
+    /// Samples that were taken.
+    taken: u32,
+    /// Of those, what counts.
     count: u32,
     /// Of those, what is lost.
     lost: u32,
@@ -40,7 +71,8 @@ struct Sampled {
 }
 
 impl Sampled {
-    const NONE: Self = Self { count: 0, lost: 0, sum: 0.0, sum_of_squares: 0.0, farthest: Farthest::NONE };
+    const NONE: Self =
+        Self { taken: 0, count: 0, lost: 0, sum: 0.0, sum_of_squares: 0.0, farthest: Farthest::NONE };
 }
 
 /// Vertices or samples looked at by one task.
@@ -48,6 +80,50 @@ const POINTS_OF_TASK: usize = 1024;
 
 /// Pieces that are refined before it is seen how far the farthest point is now: few at first.
 const WAVES: std::ops::RangeInclusive<usize> = 64..=16_384;
+
+/// Pieces that one task refines.
+const PIECES_OF_TASK: usize = 16;
+
+/// Samples that are taken first to see what one costs.
+const PILOTS: usize = 1 << 10;
+
+/// Boxes that may be looked at for all samples, whatever the size of the surfaces, and for each of their triangles. Most
+/// samples take a few dozen; those on a disc of very many thin triangles thousands.
+const SAMPLED_BOXES: u64 = 1 << 24;
+const SAMPLED_BOXES_OF_TRIANGLE: u64 = 16;
+
+/// A piece that waits, those with larger bounds first.
+struct Waiting(Piece);
+
+impl Waiting {
+    /// Bounds are not negative, so that their bits are in the order of the numbers.
+    fn key(&self) -> (u64, std::cmp::Reverse<u32>, [u64; 9]) {
+        let places = self.0.corners.map(|corner| corner.place.to_array().map(f64::to_bits));
+        let mut bits = [0; 9];
+        bits.iter_mut().zip(places.as_flattened()).for_each(|(to, from)| *to = *from);
+        (self.0.upper.to_bits(), std::cmp::Reverse(self.0.triangle), bits)
+    }
+}
+
+impl PartialEq for Waiting {
+    fn eq(&self, other: &Self) -> bool {
+        self.key() == other.key()
+    }
+}
+
+impl Eq for Waiting {}
+
+impl PartialOrd for Waiting {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Waiting {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.key().cmp(&other.key())
+    }
+}
 
 impl Directed<'_> {
     pub(super) fn measure(&self) -> Result<DirectedDistance, Stopped> {
@@ -62,13 +138,14 @@ impl Directed<'_> {
         let share = |part: f64, all: u32| (all > 0).then(|| part / f64::from(all));
         let mean_of = |sum: f64| share(sum, sampled.count);
         let seen = self.view.sight.map(|_| Seen {
-            hidden_share: share(f64::from(self.options.samples - sampled.count), self.options.samples)
-                .unwrap_or(0.0),
+            hidden_share: share(f64::from(sampled.taken - sampled.count), sampled.taken).unwrap_or(0.0),
             lost_share: share(f64::from(sampled.lost), sampled.count).unwrap_or(0.0),
         });
+        let lower = farthest.distance.max(0.0);
         Ok(DirectedDistance {
-            upper: upper.max(farthest.distance) + self.common.slack,
-            lower: farthest.distance.max(0.0),
+            upper: upper.max(lower) + self.common.slack,
+            lower,
+            is_within_tolerance: upper <= self.tolerance().enough(lower),
             farthest: farthest.point,
             mean: mean_of(sampled.sum),
             root_mean_square: mean_of(sampled.sum_of_squares).map(f64::sqrt),
@@ -95,17 +172,19 @@ impl Directed<'_> {
             let (mut hint, mut farthest) = (None, Farthest::NONE);
             self.budget.spend(range.len() as u64)?;
             for v in range {
-                let nearest = match triangle_of[v] {
+                let close = match triangle_of[v] {
                     UNUSED => None,
                     _ => self.to.find(self.from.positions[v], hint, self.budget)?,
                 };
-                if let Some(nearest) = nearest {
+                if let Some(Found { nearest, is_exact, .. }) = close {
                     hint = Some(nearest.triangle);
                     let (place, triangle) = (self.from.positions[v], triangle_of[v]);
-                    if nearest.distance > farthest.distance && self.view.counts(place, triangle)? {
+                    let is_farther = is_exact && nearest.distance > farthest.distance;
+                    if is_farther && self.view.counts(place, triangle)? {
                         farthest = Farthest::at(place, triangle, &nearest);
                     }
                 }
+                let nearest = close.map(|close| close.nearest);
                 let (closest_triangle, distance) = nearest.map_or((0, 0.0), |n| (n.triangle, n.distance));
                 found.push(AtVertex { closest_triangle, distance });
             }
@@ -115,21 +194,38 @@ impl Directed<'_> {
         Ok((parts.into_iter().flat_map(|(found, _)| found).collect(), farthest))
     }
 
-    /// The distances at the samples that count.
+    /// The distances at the samples that count: as many as were asked for, or as some are seen to allow.
     fn at_samples(&self) -> Result<Sampled, Stopped> {
-        let count = self.options.samples as usize;
+        let asked = self.options.samples as usize;
         let areas = Areas::of(self.from, self.budget)?;
+        if asked <= PILOTS {
+            return Ok(self.at_some_samples(&areas, asked)?.0);
+        }
+        let (pilots, boxes) = self.at_some_samples(&areas, PILOTS)?;
+        let triangles = (self.from.triangles.len() + self.to.near.len()) as u64;
+        let boxes_max = SAMPLED_BOXES + SAMPLED_BOXES_OF_TRIANGLE * triangles;
+        let affordable = boxes_max as f64 / (boxes as f64 / PILOTS as f64).max(1.0);
+        match (affordable as usize).min(asked) {
+            few if few <= PILOTS => Ok(pilots),
+            count => Ok(self.at_some_samples(&areas, count)?.0),
+        }
+    }
+
+    /// The distances at `count` samples, and the boxes that were looked at.
+    fn at_some_samples(&self, areas: &Areas, count: usize) -> Result<(Sampled, u64), Stopped> {
         let parts = par::try_map_ranges(count, POINTS_OF_TASK, |range| {
             self.budget.spend(range.len() as u64)?;
-            let mut of = Sampled::NONE;
-            let mut hint = None;
+            let mut of = Sampled { taken: range.len() as u32, ..Sampled::NONE };
+            let (mut hint, mut boxes) = (None, 0);
             for k in range {
                 let sample = areas.sample(self.from, k, count);
                 if !self.view.counts(sample.place, sample.triangle)? {
                     continue;
                 }
-                if let Some(nearest) = self.to.find(sample.place, hint, self.budget)? {
+                let found = self.to.near.find_roughly(sample.place, hint, usize::MAX, self.budget)?;
+                if let Some(Found { nearest, boxes: looked_at, .. }) = found {
                     hint = Some(nearest.triangle);
+                    boxes += looked_at as u64;
                     of.count += 1;
                     of.lost += u32::from(self.view.loses(nearest.distance));
                     of.sum += nearest.distance;
@@ -137,14 +233,18 @@ impl Directed<'_> {
                     of.farthest = of.farthest.or(Farthest::at(sample.place, sample.triangle, &nearest));
                 }
             }
-            Ok(of)
+            Ok((of, boxes))
         })?;
-        Ok(parts.into_iter().fold(Sampled::NONE, |all, part| Sampled {
-            count: all.count + part.count,
-            lost: all.lost + part.lost,
-            sum: all.sum + part.sum,
-            sum_of_squares: all.sum_of_squares + part.sum_of_squares,
-            farthest: all.farthest.or(part.farthest),
+        Ok(parts.into_iter().fold((Sampled::NONE, 0), |(all, boxes), (part, more)| {
+            let sum = Sampled {
+                taken: all.taken + part.taken,
+                count: all.count + part.count,
+                lost: all.lost + part.lost,
+                sum: all.sum + part.sum,
+                sum_of_squares: all.sum_of_squares + part.sum_of_squares,
+                farthest: all.farthest.or(part.farthest),
+            };
+            (sum, boxes + more)
         }))
     }
 
@@ -189,26 +289,35 @@ impl Directed<'_> {
     fn triangle_bound(&self, vertices: &[AtVertex], t: u32, farthest: &mut Farthest) -> Result<f64, Stopped> {
         let corners = self.corners(vertices, t);
         let enough = self.tolerance().enough(farthest.distance);
-        let bound = upper_bound(self.to, &corners, enough);
+        let bound = upper_bound(&self.to.near, &corners, enough);
         if bound <= enough {
             return Ok(bound);
         }
         let middle = (corners[0].place + corners[1].place + corners[2].place) / 3.0;
         self.budget.spend(1)?;
-        let Some(nearest) = self.to.find(middle, Some(corners[0].closest_triangle), self.budget)? else {
+        let Some(found) = self.to.find(middle, Some(corners[0].closest_triangle), self.budget)? else {
             return Ok(bound);
         };
         if self.view.hides(&corners, t)? {
             return Ok(0.0);
         }
-        if nearest.distance > farthest.distance && self.view.counts(middle, t)? {
+        let nearest = found.nearest;
+        let is_farther = found.is_exact && nearest.distance > farthest.distance;
+        if is_farther && self.view.counts(middle, t)? {
             *farthest = Farthest::at(middle, t, &nearest);
         }
-        let from_one = corners.map(|c| self.to.on_triangle(c.place, nearest.triangle).distance);
-        Ok(bound.min(from_one.into_iter().fold(0.0, f64::max)))
+        let from_one = corners.map(|c| self.to.near.on_triangle(c.place, nearest.triangle).distance);
+        let bound = bound.min(from_one.into_iter().fold(0.0, f64::max));
+        if bound <= enough {
+            return Ok(bound);
+        }
+        let (covered, walked) = self.to.cloth.bound(&corners, nearest.point - middle, nearest.triangle, bound);
+        self.budget.spend(walked / WALKED_FOR_ONE)?;
+        Ok(covered.map_or(bound, |covered| covered.min(bound)))
     }
 
-    /// Refines the candidates in waves; `upper` grows to the bound of everything that was put aside.
+    /// Refines in waves what has the largest bounds, candidates and parts of them; `upper` grows to the bound of
+    /// everything that was put aside.
     fn refine_all(
         &self,
         vertices: &[AtVertex],
@@ -218,40 +327,52 @@ impl Directed<'_> {
     ) -> Result<Farthest, Stopped> {
         let tolerance = self.tolerance();
         let (mut next, mut wave_len, mut work) = (0, *WAVES.start(), 0);
+        let mut waiting: BinaryHeap<Waiting> = BinaryHeap::new();
         let mut wave: Vec<Piece> = Vec::new();
-        loop {
+        let largest = |waiting: &BinaryHeap<Waiting>, next: usize| {
+            let of_candidates = candidates.get(next).map_or(0.0, |&(bound, _)| bound);
+            waiting.peek().map_or(0.0, |piece| piece.0.upper).max(of_candidates)
+        };
+        while work < self.options.refinements_max {
             let enough = tolerance.enough(farthest.distance);
-            let fresh = candidates[next..].iter().take(wave_len.saturating_sub(wave.len()));
-            let fresh: Vec<_> = fresh.take_while(|(bound, _)| *bound > enough).collect();
-            next += fresh.len();
-            let piece =
-                |&&(upper, t): &&(f64, u32)| Piece { corners: self.corners(vertices, t), triangle: t, upper };
-            wave.extend(fresh.iter().map(piece));
-            if wave.is_empty() || work >= self.options.refinements_max {
+            // No more pieces than the work that is left is enough for.
+            let most = ((self.options.refinements_max - work) / WORK_MAX + 1).min(wave_len as u64) as usize;
+            wave.clear();
+            while wave.len() < most && largest(&waiting, next) > enough {
+                let is_candidate =
+                    candidates.get(next).is_some_and(|&(bound, _)| waiting.peek().is_none_or(|p| p.0.upper < bound));
+                if let (true, Some(&(upper, t))) = (is_candidate, candidates.get(next)) {
+                    wave.push(Piece { corners: self.corners(vertices, t), triangle: t, upper });
+                    next += 1;
+                } else if let Some(Waiting(piece)) = waiting.pop() {
+                    wave.push(piece);
+                }
+            }
+            if wave.is_empty() {
                 break;
             }
-            let refined = self.refine_wave(&wave, farthest)?;
-            wave.clear();
-            for Refined { farthest: found, upper: aside, left, work: spent } in refined {
+            for Refined { farthest: found, upper: aside, left, work: spent } in self.refine_wave(&wave, farthest)? {
                 farthest = farthest.or(found);
                 *upper = upper.max(aside);
-                wave.extend(left);
+                waiting.extend(left.into_iter().map(Waiting));
                 work += spent;
             }
             wave_len = (2 * wave_len).min(*WAVES.end());
         }
-        // Sorted, so the first bound is the largest of those that were not needed.
-        let unused = candidates.get(next).map_or(0.0, |&(bound, _)| bound);
-        *upper = wave.iter().map(|piece| piece.upper).fold(upper.max(unused), f64::max);
+        *upper = upper.max(largest(&waiting, next));
         Ok(farthest)
     }
 
     fn refine_wave(&self, wave: &[Piece], farthest: Farthest) -> Result<Vec<Refined>, Stopped> {
-        par::try_map_ranges(wave.len(), 1, |range| {
-            let piece = wave[range.start];
-            let refined = refine(self.to, &self.view, piece, farthest, self.tolerance(), self.budget)?;
-            self.budget.spend(refined.work)?;
-            Ok(refined)
-        })
+        let parts = par::try_map_ranges(wave.len(), PIECES_OF_TASK, |range| {
+            let mut all = Vec::with_capacity(range.len());
+            for &piece in &wave[range] {
+                let refined = refine(self.to, &self.view, piece, farthest, self.tolerance(), self.budget)?;
+                self.budget.spend(refined.work)?;
+                all.push(refined);
+            }
+            Ok(all)
+        })?;
+        Ok(parts.into_iter().flatten().collect())
     }
 }

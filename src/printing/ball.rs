@@ -39,7 +39,8 @@ pub(super) fn diameter(
     let (mut is_limited, mut hint) = (surface.are_opposite(ray.own, hit.triangle), hit.triangle);
     for _ in 0..SHRINKINGS_MAX {
         let centre = ray.from + ray.along * radius;
-        let Some(nearest) = search.find_roughly(centre, Some(hint), BOXES_MAX, budget)? else { break };
+        let Some(found) = search.find_roughly(centre, Some(hint), BOXES_MAX, budget)? else { break };
+        let nearest = found.nearest;
         if nearest.distance >= radius * EMPTY_SHARE || !surface.are_opposite(ray.own, nearest.triangle) {
             break;
         }

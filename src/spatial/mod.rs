@@ -13,6 +13,6 @@ pub use bvh::Bvh;
 pub use coincident::{Coincident, coincident_f32, coincident_f64};
 pub use contacts::{Contact, Contacts, Search, Terrains, self_contacts};
 pub use near::{NearInput, NearKind, NearPair, NearPairs, near_pairs};
-pub use nearest::{Nearest, NearestSearch};
+pub use nearest::{Found, Nearest, NearestSearch};
 pub use nesting::{NO_SHELL, Nesting, ShellTriangles, nest};
 pub use octree::{Octree, is_within};

@@ -18,6 +18,17 @@ pub struct Nearest {
     pub distance: f64,
 }
 
+/// What a search with a bound on its work found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Found {
+    /// A close point.
+    pub nearest: Nearest,
+    /// True when no triangle is closer; otherwise the true distance is at most that of `nearest`.
+    pub is_exact: bool,
+    /// Boxes that were looked at.
+    pub boxes: usize,
+}
+
 /// Triangles prepared for questions about the closest of them.
 #[derive(Debug, Clone)]
 pub struct NearestSearch<'m> {
@@ -37,6 +48,11 @@ impl<'m> NearestSearch<'m> {
         budget: &Budget,
     ) -> Result<Self, Stopped> {
         Ok(Self { positions, triangles, bvh: Bvh::build(positions, triangles, None, budget)? })
+    }
+
+    /// Number of triangles.
+    pub fn len(&self) -> usize {
+        self.triangles.len()
     }
 
     /// True when there are no triangles.
@@ -68,7 +84,7 @@ impl<'m> NearestSearch<'m> {
     /// # Errors
     /// When the budget stops the run.
     pub fn find(&self, p: DVec3, hint: Option<u32>, budget: &Budget) -> Result<Option<Nearest>, Stopped> {
-        self.search(p, hint, usize::MAX, budget)
+        Ok(self.find_roughly(p, hint, usize::MAX, budget)?.map(|found| found.nearest))
     }
 
     /// As [`find`](Self::find), but looks at no more than about `boxes_max` boxes twice: first down into the nearer ones, and
@@ -84,17 +100,7 @@ impl<'m> NearestSearch<'m> {
         hint: Option<u32>,
         boxes_max: usize,
         budget: &Budget,
-    ) -> Result<Option<Nearest>, Stopped> {
-        self.search(p, hint, boxes_max, budget)
-    }
-
-    fn search(
-        &self,
-        p: DVec3,
-        hint: Option<u32>,
-        boxes_max: usize,
-        budget: &Budget,
-    ) -> Result<Option<Nearest>, Stopped> {
+    ) -> Result<Option<Found>, Stopped> {
         let tree = self.bvh.tree();
         if tree.is_empty() {
             return Ok(None);
@@ -110,8 +116,8 @@ impl<'m> NearestSearch<'m> {
                 budget.check()?;
             }
             if visited == boxes_max {
-                query.look_at_nearest(&stack[..=depth], boxes_max);
-                break;
+                let (more, is_exact) = query.look_at_nearest(&stack[..=depth], boxes_max);
+                return Ok(Some(Found { nearest: query.best, is_exact, boxes: visited + more }));
             }
             visited += 1;
             if gap > query.reach {
@@ -131,7 +137,7 @@ impl<'m> NearestSearch<'m> {
                 }
             }
         }
-        Ok(Some(query.best))
+        Ok(Some(Found { nearest: query.best, is_exact: true, boxes: visited }))
     }
 
     /// A triangle that may be close: always down into the nearer box.
@@ -179,16 +185,17 @@ impl<'q> Query<'q> {
         self.reach = reach * reach;
     }
 
-    /// Looks into the `boxes`, each with its squared gap, the nearest first, and into at most `boxes_max` of what they hold.
-    fn look_at_nearest(&mut self, boxes: &[(f32, u32)], boxes_max: usize) {
+    /// Looks into the `boxes`, each with its squared gap, the nearest first, and into at most `boxes_max` of what they hold:
+    /// how many it looked at, and whether nothing closer can be in the others.
+    fn look_at_nearest(&mut self, boxes: &[(f32, u32)], boxes_max: usize) -> (usize, bool) {
         let tree = self.search.bvh.tree();
         // Squares are not negative, so that their bits are in the order of the numbers.
         let entry = |&(gap, id): &(f32, u32)| Reverse((gap.to_bits(), id));
         let mut left: BinaryHeap<Reverse<(u32, u32)>> = boxes.iter().map(entry).collect();
-        for _ in 0..boxes_max {
-            let Some(Reverse((gap, id))) = left.pop() else { return };
+        for looked_at in 0..boxes_max {
+            let Some(Reverse((gap, id))) = left.pop() else { return (looked_at, true) };
             if f32::from_bits(gap) > self.reach {
-                return;
+                return (looked_at, true);
             }
             let node = tree.node(id);
             match node.children() {
@@ -203,6 +210,7 @@ impl<'q> Query<'q> {
                 }
             }
         }
+        (boxes_max, left.is_empty())
     }
 
     fn look_at(&mut self, leaf: &Leaf) {
@@ -276,7 +284,7 @@ mod tests {
             DVec3::new(cos * radius, sin * radius, height)
         };
         let mut positions: Vec<DVec3> =
-            (0..4000).flat_map(|i| [on_ball(i, 0), on_ball(i, 1), on_ball((i + 21) % 4000, 0)]).collect();
+            (0..4000).flat_map(|i| [on_ball(i, 0), on_ball(i, 1), on_ball((i + 3979) % 4000, 0)]).collect();
         let spike = DVec3::new(0.1, 0.2, -0.1).normalize();
         positions.extend([spike * 0.25, spike * 1.1 + DVec3::X * 0.01, spike * 1.1]);
         for (count, least) in [(4000u32, 1.0), (4001, 0.25)] {
@@ -284,12 +292,15 @@ mod tests {
             let search = NearestSearch::build(&positions, &triangles, &Budget::unlimited()).unwrap();
             let rough = |p| search.find_roughly(p, Some(7), 128, &Budget::unlimited()).unwrap().unwrap();
             let exact = |p| search.find(p, Some(7), &Budget::unlimited()).unwrap().unwrap();
-            let middle = rough(DVec3::ZERO).distance;
+            let middle = rough(DVec3::ZERO);
             let truth = exact(DVec3::ZERO).distance;
-            assert!(middle >= truth && middle <= truth * 1.02, "{middle} for {truth}, of {count}");
-            assert!(truth <= least);
+            let distance = middle.nearest.distance;
+            assert!(distance >= truth && distance <= truth * 1.02, "{distance} for {truth}, of {count}");
+            assert!(truth <= least && middle.boxes <= 256, "{truth}, {}", middle.boxes);
+            assert_eq!(middle.is_exact, count == 4001, "only the spike stands out");
             for p in [DVec3::X * 1.01, DVec3::Y * 0.98, DVec3::splat(0.57)] {
-                assert_eq!(rough(p), exact(p));
+                assert_eq!(rough(p).nearest.distance, exact(p).distance);
+                assert!(rough(p).is_exact);
             }
         }
     }

@@ -1,0 +1,204 @@
+//! An upper bound of the distance of a piece of a triangle from a surface that lies over it like a cloth.
+//!
+//! Seen along a direction `w`, the triangles of the surface over the piece are walked from one to the next across edges.
+//! When no edge at which the walk ends is seen inside of the piece, the number of times that the walked triangles cover a
+//! place of the piece, those that are seen from behind taken negatively, is the same everywhere (the degree of a map,
+//! which changes only across the image of the border). It is the sum of what they cover over the area of the piece. When
+//! it is not 0, each place of the piece has a place of the surface along `w`, and the length between them is linear over
+//! what a triangle covers, so that it is largest at a corner of that.
+//!
+//! ```text
+//!      ____----____            the surface over the piece, its corners at most h away along w
+//!     /    | h     \
+//!    p0------------p1          the piece
+//! ```
+
+use super::Surface;
+use super::bound::Corner;
+use crate::budget::{Budget, Stopped};
+use crate::geom::{DVec2, DVec3};
+use crate::mesh::{EdgeGroups, NO_TWIN, edge_of, next_corner, triangle_of, twins};
+use rustc_hash::FxHashMap;
+
+/// Triangles that one walk may reach.
+const WALK_MAX: usize = 256;
+
+/// The piece is made smaller by this share, so that triangles that only touch it need not be walked. The bound grows by
+/// this share of the longest edge.
+const SHRINK: f64 = 1e-6;
+
+/// Most of the area of a piece that rounding may take from what is covered.
+const ROUNDING_MAX: f64 = 0.05;
+
+/// Cosine between the direction and the normal of the piece below which the direction is not taken.
+const COSINE_MIN: f64 = 0.5;
+
+/// A surface whose triangles know their neighbours.
+pub(super) struct Cloth<'s> {
+    surface: Surface<'s>,
+    /// For each half-edge the one other half-edge of its edge, or [`NO_TWIN`].
+    twins: Vec<u32>,
+    /// More than rounding moves a point.
+    slack: f64,
+}
+
+impl<'s> Cloth<'s> {
+    pub(super) fn of(surface: Surface<'s>, slack: f64, budget: &Budget) -> Result<Self, Stopped> {
+        let _charge = budget.charge(surface.triangles.len() as u64 * 12)?;
+        let groups = EdgeGroups::build(surface.triangles, surface.positions.len(), budget)?;
+        let twins = twins(&groups, surface.triangles.len(), budget)?;
+        Ok(Self { surface, twins, slack })
+    }
+
+    /// No point of the piece is farther from the surface than this; `None` when that is not seen, or is more than `most`.
+    /// `seed` is the triangle from which the walk starts, `along` the direction to it if there is one. Gives the number of
+    /// triangles that were walked, too.
+    pub(super) fn bound(&self, piece: &[Corner; 3], along: DVec3, seed: u32, most: f64) -> (Option<f64>, u64) {
+        let Some(view) = Frame::of(piece, along, self.slack) else { return (None, 0) };
+        let mut walk = Walk { view, covered: 0.0, rounding: 0.0, farthest: 0.0 };
+        let mut signs = FxHashMap::default();
+        let mut left = vec![(seed, 1.0)];
+        signs.insert(seed, 1.0);
+        while let Some((t, sign)) = left.pop() {
+            let corners = self.surface.triangles[t as usize].map(|v| self.surface.positions[v as usize]);
+            let seen = corners.map(|corner| walk.view.seen(corner));
+            walk.cover(seen, sign);
+            if walk.farthest > most || signs.len() > WALK_MAX {
+                return (None, signs.len() as u64);
+            }
+            for h in [3 * t, 3 * t + 1, 3 * t + 2] {
+                let ends = [h % 3, next_corner(h) % 3].map(|c| seen[c as usize].0);
+                if walk.view.misses(ends) {
+                    continue;
+                }
+                let twin = self.twins[h as usize];
+                if twin == NO_TWIN {
+                    return (None, signs.len() as u64);
+                }
+                let of_twin = if self.runs_back(h, twin) { sign } else { -sign };
+                match signs.insert(triangle_of(twin), of_twin) {
+                    None => left.push((triangle_of(twin), of_twin)),
+                    Some(known) if known == of_twin => {}
+                    Some(_) => return (None, signs.len() as u64),
+                }
+            }
+        }
+        (walk.bound(), signs.len() as u64)
+    }
+
+    /// Whether two half-edges of one edge run in opposite directions.
+    fn runs_back(&self, g: u32, h: u32) -> bool {
+        let [a, b] = edge_of(self.surface.triangles, g);
+        [b, a] == edge_of(self.surface.triangles, h)
+    }
+}
+
+/// A piece as it is seen along a direction.
+struct Frame {
+    origin: DVec3,
+    /// Across the direction.
+    across: [DVec3; 2],
+    /// Square to the piece, and so long that its product with a difference is the length along the direction.
+    height: DVec3,
+    /// The piece, shrunk, counter-clockwise.
+    corners: [DVec2; 3],
+    area: f64,
+    longest: f64,
+    /// More than rounding moves a point.
+    slack: f64,
+}
+
+impl Frame {
+    /// `None` for a piece that is too thin or too small to tell its area.
+    fn of(piece: &[Corner; 3], along: DVec3, slack: f64) -> Option<Self> {
+        let [a, b, c] = piece.each_ref().map(|corner| corner.place);
+        let normal = (b - a).cross(c - a).try_normalize()?;
+        let along = along.try_normalize().filter(|along| along.dot(normal).abs() >= COSINE_MIN).unwrap_or(normal);
+        let along = if along.dot(normal) < 0.0 { -along } else { along };
+        let (u, v) = along.any_orthonormal_pair();
+        let turned = if u.cross(v).dot(along) < 0.0 { [v, u] } else { [u, v] };
+        let flat = |p: DVec3| DVec2::new((p - a).dot(turned[0]), (p - a).dot(turned[1]));
+        let corners = [a, b, c].map(flat);
+        let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+        let corners = corners.map(|corner| corner + (middle - corner) * SHRINK);
+        let area = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]) / 2.0;
+        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        // The shrunk sides must be apart from the sides by more than rounding.
+        let is_told = area / longest * SHRINK > 4.0 * slack;
+        let height = normal / along.dot(normal);
+        is_told.then_some(Self { origin: a, across: turned, height, corners, area, longest, slack })
+    }
+
+    /// Where a point is seen, and how far it is from the piece along the direction.
+    fn seen(&self, p: DVec3) -> (DVec2, f64) {
+        let from = p - self.origin;
+        (DVec2::new(from.dot(self.across[0]), from.dot(self.across[1])), from.dot(self.height))
+    }
+
+    /// How far inside of side `k` a place is seen, in relation to the length of the side.
+    fn inside(&self, k: usize, p: DVec2) -> f64 {
+        let (from, to) = (self.corners[k], self.corners[(k + 1) % 3]);
+        (to - from).perp_dot(p - from)
+    }
+
+    /// Whether an edge is certainly seen outside of the piece.
+    fn misses(&self, [u, v]: [DVec2; 2]) -> bool {
+        let reach = self.longest + u.length().max(v.length());
+        let rounding = self.slack + f64::EPSILON * 8.0 * reach;
+        let is_beyond = |k: usize| {
+            let side = self.corners[k].distance(self.corners[(k + 1) % 3]);
+            self.inside(k, u).max(self.inside(k, v)) < -rounding * side
+        };
+        let along = v - u;
+        let turns = self.corners.map(|corner| along.perp_dot(corner - u));
+        let least = rounding * along.length();
+        (0..3).any(is_beyond) || turns.iter().all(|&turn| turn > least) || turns.iter().all(|&turn| turn < -least)
+    }
+}
+
+/// What was walked so far.
+struct Walk {
+    view: Frame,
+    /// Area of the piece that is covered, as often as it is.
+    covered: f64,
+    /// More than the rounding of that.
+    rounding: f64,
+    /// Largest length along the direction over the piece.
+    farthest: f64,
+}
+
+impl Walk {
+    /// Adds what a triangle covers: the part of it that is seen in the piece (Sutherland and Hodgman 1974).
+    fn cover(&mut self, corners: [(DVec2, f64); 3], sign: f64) {
+        let reach = corners.iter().map(|(p, _)| p.length()).fold(self.view.longest, f64::max);
+        let mut part: Vec<(DVec2, f64)> = corners.to_vec();
+        for k in 0..3 {
+            let mut cut = Vec::with_capacity(part.len() + 1);
+            for (i, &to) in part.iter().enumerate() {
+                let from = part[(i + part.len() - 1) % part.len()];
+                let (inside_from, inside_to) = (self.view.inside(k, from.0), self.view.inside(k, to.0));
+                if (inside_from < 0.0) != (inside_to < 0.0) {
+                    let share = inside_from / (inside_from - inside_to);
+                    cut.push((from.0 + (to.0 - from.0) * share, from.1 + (to.1 - from.1) * share));
+                }
+                if inside_to >= 0.0 {
+                    cut.push(to);
+                }
+            }
+            part = cut;
+        }
+        let Some(&(first, _)) = part.first() else { return };
+        let doubled: f64 =
+            part.windows(2).map(|pair| (pair[0].0 - first).perp_dot(pair[1].0 - first)).sum();
+        self.covered += sign * doubled / 2.0;
+        self.rounding += (self.view.slack + 32.0 * f64::EPSILON * reach) * self.view.longest;
+        self.farthest = part.iter().map(|&(_, height)| height.abs()).fold(self.farthest, f64::max);
+    }
+
+    fn bound(&self) -> Option<f64> {
+        let Frame { area, longest, slack, .. } = self.view;
+        let times = (self.covered / area).abs();
+        let is_certain = self.rounding <= ROUNDING_MAX * area && (times - times.round()).abs() <= 2.0 * ROUNDING_MAX;
+        (is_certain && times.round() >= 1.0).then_some(self.farthest + longest * SHRINK + slack)
+    }
+}
