@@ -137,8 +137,8 @@ mod tests {
         let (text, is_sound) = with(4, "", 4, "");
         assert!(is_sound && text.contains("a triangular half-edge mesh"), "{text}");
         for (vertices, more_points, faces, more_faces, why) in [
-            (4, "", 5, "3 0 8 1\n", "face 4 (line 12) names a vertex that the file does not have"),
-            (4, "", 5, "2 0 1\n", "face 4 (line 12) has fewer than three corners"),
+            (4, "", 5, "3 0 8 1\n", "face 4 (line 11) names a vertex that the file does not have"),
+            (4, "", 5, "2 0 1\n", "face 4 (line 11) has fewer than three corners"),
             (5, "nan 0 0\n", 4, "", "vertex 4 (line 7) has coordinates that are not finite"),
         ] {
             let (text, is_sound) = with(vertices, more_points, faces, more_faces);

@@ -380,6 +380,7 @@ written: out.stl
         answer.report.losses = Some(losses);
         let place = FarPoint { place: DVec3::ZERO, triangle: 0, closest: DVec3::ZERO, closest_triangle: 0 };
         let one = DirectedDistance {
+            is_within_tolerance: true,
             upper: 0.25,
             lower: 0.2,
             farthest: place,

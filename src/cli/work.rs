@@ -33,6 +33,8 @@ fn attempt(request: &Request) -> Result<Exit, Problem> {
     check_streams(request)?;
     let options =
         Options::from_pairs(request.options.iter().map(|(n, v)| (n, v))).map_err(|e| Problem::from(&e))?;
+    let by_name = request.output.as_ref().and_then(Place::format).map(Into::into);
+    let options = Options { output_format: options.output_format.or(by_name), ..options };
     options.check(request.operation.into()).map_err(|e| Problem::from(&e))?;
     if request.output == Some(Place::Stream) && options.targets.as_ref().is_some_and(|t| t.len() > 1) {
         return Err(wrong("standard output holds one mesh; several --targets need a file name"));

@@ -53,7 +53,13 @@ impl<'s> Cloth<'s> {
     /// No point of the piece is farther from the surface than this; `None` when that is not seen, or is more than `most`.
     /// `seed` is the triangle from which the walk starts, `along` the direction to it if there is one. Gives the number of
     /// triangles that were walked, too.
-    pub(super) fn bound(&self, piece: &[Corner; 3], along: DVec3, seed: u32, most: f64) -> (Option<f64>, u64) {
+    pub(super) fn bound(
+        &self,
+        piece: &[Corner; 3],
+        along: DVec3,
+        seed: u32,
+        most: f64,
+    ) -> (Option<f64>, u64) {
         let Some(view) = Frame::of(piece, along, self.slack) else { return (None, 0) };
         let mut walk = Walk { view, covered: 0.0, rounding: 0.0, farthest: 0.0 };
         let mut signs = FxHashMap::default();
@@ -113,7 +119,8 @@ impl Frame {
     fn of(piece: &[Corner; 3], along: DVec3, slack: f64) -> Option<Self> {
         let [a, b, c] = piece.each_ref().map(|corner| corner.place);
         let normal = (b - a).cross(c - a).try_normalize()?;
-        let along = along.try_normalize().filter(|along| along.dot(normal).abs() >= COSINE_MIN).unwrap_or(normal);
+        let along =
+            along.try_normalize().filter(|along| along.dot(normal).abs() >= COSINE_MIN).unwrap_or(normal);
         let along = if along.dot(normal) < 0.0 { -along } else { along };
         let (u, v) = along.any_orthonormal_pair();
         let turned = if u.cross(v).dot(along) < 0.0 { [v, u] } else { [u, v] };
@@ -152,7 +159,9 @@ impl Frame {
         let along = v - u;
         let turns = self.corners.map(|corner| along.perp_dot(corner - u));
         let least = rounding * along.length();
-        (0..3).any(is_beyond) || turns.iter().all(|&turn| turn > least) || turns.iter().all(|&turn| turn < -least)
+        (0..3).any(is_beyond)
+            || turns.iter().all(|&turn| turn > least)
+            || turns.iter().all(|&turn| turn < -least)
     }
 }
 
@@ -188,8 +197,7 @@ impl Walk {
             part = cut;
         }
         let Some(&(first, _)) = part.first() else { return };
-        let doubled: f64 =
-            part.windows(2).map(|pair| (pair[0].0 - first).perp_dot(pair[1].0 - first)).sum();
+        let doubled: f64 = part.windows(2).map(|pair| (pair[0].0 - first).perp_dot(pair[1].0 - first)).sum();
         self.covered += sign * doubled / 2.0;
         self.rounding += (self.view.slack + 32.0 * f64::EPSILON * reach) * self.view.longest;
         self.farthest = part.iter().map(|&(_, height)| height.abs()).fold(self.farthest, f64::max);
@@ -198,7 +206,110 @@ impl Walk {
     fn bound(&self) -> Option<f64> {
         let Frame { area, longest, slack, .. } = self.view;
         let times = (self.covered / area).abs();
-        let is_certain = self.rounding <= ROUNDING_MAX * area && (times - times.round()).abs() <= 2.0 * ROUNDING_MAX;
+        let is_certain =
+            self.rounding <= ROUNDING_MAX * area && (times - times.round()).abs() <= 2.0 * ROUNDING_MAX;
         (is_certain && times.round() >= 1.0).then_some(self.farthest + longest * SHRINK + slack)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geom::closest_point_on_triangle;
+
+    /// Numbers from -1 to 1 (Knuth's MMIX generator).
+    struct Random(u64);
+
+    impl Random {
+        fn next(&mut self) -> f64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        }
+
+        fn one_in(&mut self, n: f64) -> bool {
+            self.next().abs() * n < 1.0
+        }
+    }
+
+    const ACROSS: u32 = 6;
+
+    /// A crumpled cloth over the square from -1 to 1, from which triangles may be missing, doubled or turned.
+    fn cloth(random: &mut Random, crumple: f64, damage: bool) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let row = ACROSS + 1;
+        let mut place = |i: u32| {
+            let at = |k: u32| f64::from(k) / f64::from(ACROSS) * 2.0 - 1.0;
+            let away = DVec3::new(random.next(), random.next(), random.next()) * crumple;
+            DVec3::new(at(i % row), at(i / row), 0.0) + away
+        };
+        let positions: Vec<DVec3> = (0..row * row).map(&mut place).collect();
+        let squares = (0..ACROSS * ACROSS).map(|i| i / ACROSS * row + i % ACROSS);
+        let mut triangles: Vec<[u32; 3]> =
+            squares.flat_map(|v| [[v, v + 1, v + row], [v + 1, v + row + 1, v + row]]).collect();
+        if damage {
+            triangles.retain(|_| !random.one_in(12.0));
+            let copies: Vec<_> = triangles.iter().copied().filter(|_| random.one_in(20.0)).collect();
+            triangles.extend(copies);
+            for t in &mut triangles {
+                if random.one_in(20.0) {
+                    t.swap(1, 2);
+                }
+            }
+        }
+        (positions, triangles)
+    }
+
+    fn distance((positions, triangles): &(Vec<DVec3>, Vec<[u32; 3]>), p: DVec3) -> (f64, u32) {
+        let to = |t: &[u32; 3]| closest_point_on_triangle(p, t.map(|v| positions[v as usize])).distance(p);
+        let all = triangles.iter().enumerate().map(|(t, corners)| (to(corners), t as u32));
+        all.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap()
+    }
+
+    #[test]
+    fn no_place_of_a_piece_is_farther_than_what_covers_it_says() {
+        let mut random = Random(5);
+        let mut covered = [0; 4];
+        for case in 0..3_000 {
+            let kind = case % 4;
+            let mesh = cloth(&mut random, [0.02, 0.1, 0.5, 0.1][kind], kind == 3);
+            let surface = Surface { positions: &mesh.0, triangles: &mesh.1 };
+            let cloth = Cloth::of(surface, 1e-14, &Budget::unlimited()).unwrap();
+            let piece = [(); 3].map(|()| {
+                let place = DVec3::new(random.next(), random.next(), random.next() * 0.3) * 0.9;
+                let (distance, closest_triangle) = distance(&mesh, place);
+                Corner { place, closest_triangle, distance }
+            });
+            let [a, b, c] = piece.map(|corner| corner.place);
+            let (_, seed) = distance(&mesh, (a + b + c) / 3.0);
+            let along = DVec3::new(random.next(), random.next(), 3.0 * random.next());
+            let Some(bound) = cloth.bound(&piece, along, seed, f64::INFINITY).0 else { continue };
+            covered[kind] += 1;
+            for (i, j) in (0..=12).flat_map(|i| (0..=12 - i).map(move |j| (i, j))) {
+                let place = a + (b - a) * (f64::from(i) / 12.0) + (c - a) * (f64::from(j) / 12.0);
+                let found = distance(&mesh, place).0;
+                assert!(found <= bound + 1e-12, "case {case}: {found} beyond {bound}");
+            }
+        }
+        assert!(covered[0] > 300 && covered[1] > 200 && covered[2] > 20 && covered[3] > 30, "{covered:?}");
+    }
+
+    #[test]
+    fn a_piece_over_the_end_of_a_cloth_or_a_hole_in_it_is_not_covered() {
+        let square =
+            |x: f64| [(x, 0.0), (x + 1.0, 0.0), (x + 1.0, 1.0), (x, 1.0)].map(|(x, y)| DVec3::new(x, y, 0.0));
+        let positions = square(0.0);
+        let surface = Surface { positions: &positions, triangles: &[[0, 1, 2], [0, 2, 3]] };
+        let cloth = Cloth::of(surface, 1e-15, &Budget::unlimited()).unwrap();
+        let over = |x: f64, size: f64| {
+            let at = |dx: f64, dy: f64| DVec3::new(x + dx * size, 0.3 + dy * size, 0.25);
+            let corner = |place| Corner { place, closest_triangle: 0, distance: 0.25 };
+            cloth.bound(&[at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0)].map(corner), DVec3::ZERO, 0, 9.0).0
+        };
+        assert!((over(0.2, 0.5).unwrap() - 0.25).abs() < 1e-5);
+        assert_eq!(over(0.7, 0.5), None, "beyond the end");
+        assert_eq!(over(3.0, 0.5), None, "nowhere near");
+        let one_gone = Surface { positions: &positions, triangles: &[[0, 1, 2]] };
+        let holed = Cloth::of(one_gone, 1e-15, &Budget::unlimited()).unwrap();
+        let at = |x: f64, y: f64| Corner { place: DVec3::new(x, y, 0.1), closest_triangle: 0, distance: 0.1 };
+        assert_eq!(holed.bound(&[at(0.4, 0.2), at(0.8, 0.2), at(0.4, 0.7)], DVec3::Z, 0, 9.0).0, None);
     }
 }

@@ -37,7 +37,7 @@ impl<'s> Target<'s> {
 }
 
 /// Boxes that are looked at for a closest point, twice: many times what most take.
-const BOXES_MAX: usize = 512;
+const BOXES_MAX: usize = 256;
 
 /// One direction.
 pub(super) struct Directed<'d> {
@@ -89,7 +89,7 @@ const PILOTS: usize = 1 << 10;
 
 /// Boxes that may be looked at for all samples, whatever the size of the surfaces, and for each of their triangles. Most
 /// samples take a few dozen; those on a disc of very many thin triangles thousands.
-const SAMPLED_BOXES: u64 = 1 << 24;
+const SAMPLED_BOXES: u64 = 1 << 23;
 const SAMPLED_BOXES_OF_TRIANGLE: u64 = 16;
 
 /// A piece that waits, those with larger bounds first.
@@ -311,7 +311,8 @@ impl Directed<'_> {
         if bound <= enough {
             return Ok(bound);
         }
-        let (covered, walked) = self.to.cloth.bound(&corners, nearest.point - middle, nearest.triangle, bound);
+        let (covered, walked) =
+            self.to.cloth.bound(&corners, nearest.point - middle, nearest.triangle, bound);
         self.budget.spend(walked / WALKED_FOR_ONE)?;
         Ok(covered.map_or(bound, |covered| covered.min(bound)))
     }
@@ -339,8 +340,9 @@ impl Directed<'_> {
             let most = ((self.options.refinements_max - work) / WORK_MAX + 1).min(wave_len as u64) as usize;
             wave.clear();
             while wave.len() < most && largest(&waiting, next) > enough {
-                let is_candidate =
-                    candidates.get(next).is_some_and(|&(bound, _)| waiting.peek().is_none_or(|p| p.0.upper < bound));
+                let is_candidate = candidates
+                    .get(next)
+                    .is_some_and(|&(bound, _)| waiting.peek().is_none_or(|p| p.0.upper < bound));
                 if let (true, Some(&(upper, t))) = (is_candidate, candidates.get(next)) {
                     wave.push(Piece { corners: self.corners(vertices, t), triangle: t, upper });
                     next += 1;
@@ -351,7 +353,9 @@ impl Directed<'_> {
             if wave.is_empty() {
                 break;
             }
-            for Refined { farthest: found, upper: aside, left, work: spent } in self.refine_wave(&wave, farthest)? {
+            for Refined { farthest: found, upper: aside, left, work: spent } in
+                self.refine_wave(&wave, farthest)?
+            {
                 farthest = farthest.or(found);
                 *upper = upper.max(aside);
                 waiting.extend(left.into_iter().map(Waiting));

@@ -16,6 +16,8 @@ use crate::spatial::coincident_f64;
 /// How a mesh is cut and stitched.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CutStitchChoices {
+    /// Vertices at one position stay apart unless the file gives them one number.
+    pub keeps_copies: bool,
     /// How the cut is made; `None`: whichever costs less. The result is the same.
     pub method: Option<CutMethod>,
     /// Which boundary edges are joined.
@@ -43,14 +45,12 @@ pub enum Stitching {
 }
 
 impl CutStitchChoices {
-    /// The steps, in their order; `chosen` are the edges as [`Step::Weld`] leaves them.
+    /// The steps, in their order; `chosen` are the edges as [`Step::Weld`] leaves them, where it is one of them.
     fn steps(&self, chosen: ChosenEdges) -> Vec<Step> {
-        let before = [
-            Step::SplitPolygons(self.degenerate),
-            Step::Weld,
-            Step::DropDegenerate,
-            Step::DropDuplicates(OppositePairs::KeepFirst),
-        ];
+        let split = Step::SplitPolygons(self.degenerate);
+        let weld = (!self.keeps_copies).then_some(Step::Weld);
+        let clear = [Step::DropDegenerate, Step::DropDuplicates(OppositePairs::KeepFirst)];
+        let before = [split].into_iter().chain(weld).chain(clear);
         let cut = Step::Cut(CutOptions { method: self.method, chosen: chosen.clone() });
         let snap = SnapOptions {
             epsilon: self.epsilon,
@@ -63,7 +63,24 @@ impl CutStitchChoices {
             Stitching::Pinch => (None, Some(Step::Pinch(chosen, self.validity))),
             Stitching::Snap => (Some(Step::SplitTVertices), Some(Step::Snap(snap))),
         };
-        before.into_iter().chain(insert).chain([Step::Orient, cut]).chain(join).collect()
+        before.chain(insert).chain([Step::Orient, cut]).chain(join).collect()
+    }
+
+    /// The chosen edges by the vertices that stand for theirs after the weld, if there is one: of those at one position, the
+    /// first that a triangle of `whole` uses. Edges of other vertices are left out.
+    fn chosen_of(&self, whole: &Draft, budget: &Budget) -> Result<ChosenEdges, Stopped> {
+        if self.chosen.is_empty() {
+            return Ok(ChosenEdges::default());
+        }
+        let places = coincident_f64(&whole.positions, budget)?;
+        let find = |v: u32| {
+            // Ascending: vertices that no triangle uses are left out and the others keep their order.
+            let used = whole.vertex_origin.binary_search(&v).ok()?;
+            let first =
+                if self.keeps_copies { used as u32 } else { places.first[places.group[used] as usize] };
+            Some(whole.vertex_origin[first as usize])
+        };
+        Ok(ChosenEdges::of(self.chosen.iter().filter_map(|&[a, b]| Some([find(a)?, find(b)?]))))
     }
 }
 
@@ -74,7 +91,7 @@ pub(super) fn cut_stitch(input: &Input, options: &Options, budget: &Budget) -> R
     let mut attempt = Attempt::start(&input.soup, before);
     let _charge = budget.charge(3 * attempt.draft.bytes())?;
     let (whole, _) = Draft::from_soup(&input.soup);
-    let steps = options.cut_stitch.steps(welded(&options.cut_stitch.chosen, &whole, budget)?);
+    let steps = options.cut_stitch.steps(options.cut_stitch.chosen_of(&whole, budget)?);
     budget.stage(Stage::Repair, || attempt.run(&steps, &input.soup, before, budget))?;
     let Attempt { draft, actions, .. } = attempt;
     let has_changed = draft != whole || !input.soup.face_faults.is_empty();
@@ -86,19 +103,4 @@ pub(super) fn cut_stitch(input: &Input, options: &Options, budget: &Budget) -> R
     let soup = draft.to_soup(&input.soup);
     let made = Made { soup, origins: &draft.triangle_origin, outcome: |_| Outcome::CutStitched };
     made.returned(input, options, report, budget)
-}
-
-/// The `chosen` edges by the vertices that stand for theirs after the weld: of those at one position, the first that a
-/// triangle of `whole` uses. Edges of other vertices are left out.
-fn welded(chosen: &[[u32; 2]], whole: &Draft, budget: &Budget) -> Result<ChosenEdges, Stopped> {
-    if chosen.is_empty() {
-        return Ok(ChosenEdges::default());
-    }
-    let places = coincident_f64(&whole.positions, budget)?;
-    let find = |v: u32| {
-        // Ascending: vertices that no triangle uses are left out and the others keep their order.
-        let used = whole.vertex_origin.binary_search(&v).ok()?;
-        Some(whole.vertex_origin[places.first[places.group[used] as usize] as usize])
-    };
-    Ok(ChosenEdges::of(chosen.iter().filter_map(|&[a, b]| Some([find(a)?, find(b)?]))))
 }

@@ -281,6 +281,7 @@ pub(super) fn area_of(mesh: &Soup, triangles: &[u32]) -> f64 {
 /// The distance of a surface of which nothing changed.
 fn at_rest(place: DVec3) -> DirectedDistance {
     DirectedDistance {
+        is_within_tolerance: true,
         upper: 0.0,
         lower: 0.0,
         farthest: FarPoint { place, triangle: 0, closest: place, closest_triangle: 0 },

@@ -235,6 +235,8 @@ pub struct SimplifyChoices {
     pub placement: Placement,
     /// What colours the vertices of the results have.
     pub vertex_colors: VertexColors,
+    /// Largest angle in degrees by which a collapse may turn the normal of a face, from 180 on any; `None`: 78.46.
+    pub normal_turn_max: Option<f64>,
 }
 
 /// What colours the vertices of a simplified mesh have.
@@ -255,6 +257,7 @@ impl Default for SimplifyChoices {
             criterion: CriterionKind::Quadric,
             placement: Placement::Optimal,
             vertex_colors: VertexColors::Kept,
+            normal_turn_max: None,
         }
     }
 }

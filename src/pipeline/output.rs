@@ -126,7 +126,8 @@ impl Candidate {
         let has_lost = |(t, &origin): (usize, &u32)| {
             after.of_triangle(t).is_none() && (origin == NEW || before.of_triangle(origin as usize).is_some())
         };
-        let lost = origins.iter().enumerate().take(self.soup.triangles.len()).filter(|&at| has_lost(at)).count();
+        let lost =
+            origins.iter().enumerate().take(self.soup.triangles.len()).filter(|&at| has_lost(at)).count();
         if lost == 0 {
             return None;
         }
@@ -135,7 +136,8 @@ impl Candidate {
             0 => "the texture coordinates of the file are lost: the output has none",
             _ => "texture coordinates stay where a triangle kept its corners; other triangles have none",
         };
-        let changes = vec![("triangles_with_texture", kept as u64), ("triangles_without_texture", lost as u64)];
+        let changes =
+            vec![("triangles_with_texture", kept as u64), ("triangles_without_texture", lost as u64)];
         let (step, causes) = ("texture", Vec::new());
         Some(Action { step, causes, changes, move_max: 0.0, reason: reason.to_owned() })
     }

@@ -17,7 +17,7 @@ use crate::repair::Draft;
 use crate::repair::cut::CutOptions;
 use crate::repair::duplicates::OppositePairs;
 use crate::simplify::{
-    self, Mode, Refusal as CollapseRefusal, Simplified, SimplifyError, SimplifyOptions, Target,
+    self, Guards, Mode, Refusal as CollapseRefusal, Simplified, SimplifyError, SimplifyOptions, Target,
 };
 use crate::winding::Solid;
 use rustc_hash::FxHashMap;
@@ -277,7 +277,12 @@ fn run(mesh: &Soup, choices: &SimplifyChoices, budget: &Budget) -> Result<Vec<Si
         vertex_colors: &mesh.vertex_colors,
         texture: &texture,
     };
+    let usual = Guards::default();
     let options = SimplifyOptions {
+        guards: Guards {
+            normal_cos_min: choices.normal_turn_max.map_or(usual.normal_cos_min, cosine_of_turn),
+            ..usual
+        },
         targets: order.iter().map(|&i| targets[i]).collect(),
         criterion: choices.criterion,
         placement: choices.placement,
@@ -289,6 +294,11 @@ fn run(mesh: &Soup, choices: &SimplifyChoices, budget: &Budget) -> Result<Vec<Si
     let mut by_target: Vec<_> = order.into_iter().zip(results).collect();
     by_target.sort_by_key(|&(i, _)| i);
     Ok(by_target.into_iter().map(|(_, result)| result).collect())
+}
+
+/// The cosine of an angle in degrees; below all cosines from 180 on, so that rounding refuses no turn.
+fn cosine_of_turn(degrees: f64) -> f64 {
+    if degrees >= 180.0 { -2.0 } else { libm::cos(degrees.to_radians()) }
 }
 
 /// The order in which one run meets the targets. Errors and counts cannot be compared before the run: among targets of
@@ -371,6 +381,12 @@ mod tests {
         assert_eq!(order(&[Target::Faces(10), Target::Ratio(0.5), Target::Faces(600)]), [2, 1, 0]);
         assert_eq!(order(&[Target::Error(0.2), Target::Error(0.1)]), [1, 0]);
         assert_eq!(order(&[Target::Error(0.2), Target::Faces(10), Target::Error(0.1)]), [0, 1, 2]);
+    }
+
+    #[test]
+    fn a_turn_of_180_degrees_is_no_limit_and_the_usual_one_is_78() {
+        assert!((cosine_of_turn(78.46) - Guards::default().normal_cos_min).abs() < 1e-4);
+        assert!(cosine_of_turn(180.0) < -1.0 && cosine_of_turn(0.0) == 1.0);
     }
 
     #[test]

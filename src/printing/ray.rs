@@ -28,20 +28,22 @@ pub(super) struct Hit {
 const REACHES: [f64; 4] = [1.0 / 128.0, 1.0 / 16.0, 1.0 / 3.0, 1.01];
 
 impl Ray {
-    /// The closest wall that faces the ray in the way it looks for. Of several at one distance the first triangle.
+    /// The closest wall that faces the ray in the way it looks for, of several at one distance the first triangle; and the
+    /// number of triangles that were looked at.
     pub(super) fn first_hit(
         &self,
         surface: &Surface<'_>,
         bvh: &Bvh,
         budget: &Budget,
-    ) -> Result<Option<Hit>, Stopped> {
+    ) -> Result<(Option<Hit>, u64), Stopped> {
         let (u, v) = self.along.any_orthonormal_pair();
         let axes = [u, v, self.along];
         let mut near = 0.0;
-        let mut best: Option<Hit> = None;
+        let (mut best, mut looked_at): (Option<Hit>, u64) = (None, 0);
         for reach in REACHES.map(|share| share * surface.diagonal()) {
             let segment = [near, reach].map(|distance| self.from + self.along * distance);
             bvh.visit_segment(segment, budget, |t| {
+                looked_at += 1;
                 let may_be_met = t != self.own && self.faces(surface.normals[t as usize]);
                 let crossed = may_be_met.then(|| crossing(self.from, axes, surface.corners(t))).flatten();
                 if let Some(hit) = crossed.map(|distance| Hit { triangle: t, distance }) {
@@ -50,11 +52,11 @@ impl Ray {
                 true
             })?;
             if best.is_some_and(|hit| hit.distance <= reach) {
-                return Ok(best);
+                return Ok((best, looked_at));
             }
             near = reach;
         }
-        Ok(best)
+        Ok((best, looked_at))
     }
 
     fn faces(&self, normal: DVec3) -> bool {

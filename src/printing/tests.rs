@@ -344,3 +344,20 @@ fn a_raised_flag_ends_the_measuring() {
     let budget = Budget::new(stop, u64::MAX, u64::MAX);
     assert!(measure(&cuboid([1.0; 3], [0.0; 3]), &LIMITS, true, 4, &budget).is_err());
 }
+
+#[test]
+fn discs_of_very_many_thin_triangles_are_measured_at_fewer_places() {
+    let n = 9_000;
+    let mut soup = prism(&circle(20.0, n), 2.0);
+    // Lids as fans around their middles: each ray through one meets the boxes of a quarter of it.
+    let middles = [2 * n, 2 * n + 1];
+    soup.positions.extend([DVec3::ZERO, DVec3::Z * 2.0]);
+    soup.triangles.drain(..2 * (n as usize - 2));
+    for i in 0..n {
+        let j = (i + 1) % n;
+        soup.triangles.extend([[middles[0], j, i], [middles[1], n + i, n + j]]);
+    }
+    let walls = measured(&soup).figures.walls;
+    assert!((1 << 10..1 << 15).contains(&walls.samples), "{}", walls.samples);
+    near(walls.ray.median, 2.0);
+}

@@ -3,6 +3,7 @@
 //! The number of samples is bounded, so that the time is too: four for each triangle, but at least [`SAMPLES_MIN`] and at
 //! most [`SAMPLES_MAX`], spread evenly over the area; and, where there are at most [`MIDDLES_MAX`] triangles, the middle
 //! of each, so that small walls of small meshes are not missed. Figures about shares of the area are from the former alone.
+//! Where a sample must look at thousands of triangles, as below a disc that is a fan of very many, fewer are taken.
 
 use super::ray::Ray;
 use super::surface::Surface;
@@ -17,6 +18,14 @@ const SAMPLES_MIN: usize = 1 << 12;
 const SAMPLES_MAX: usize = 1 << 15;
 const MIDDLES_MAX: usize = 1 << 14;
 
+/// Samples that are taken first to see what one costs, and the least that are taken.
+const PILOTS: usize = 1 << 10;
+
+/// Triangles that may be looked at for all samples of one side, whatever the size of the mesh, and for each of its triangles.
+/// Most samples look at a few dozen.
+const LOOKED_AT_MAX: u64 = 1 << 25;
+const LOOKED_AT_OF_TRIANGLE: u64 = 16;
+
 /// Samples that one thread handles at a time.
 const CHUNK: usize = 256;
 
@@ -24,7 +33,7 @@ const CHUNK: usize = 256;
 const APART: f64 = 0.02;
 
 /// Samples among which witnesses are looked for, for each of them.
-const LOOKED_AT: usize = 512;
+const CANDIDATES_OF_WITNESS: usize = 512;
 
 /// Which side of the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -82,6 +91,8 @@ struct Reading {
     triangle: u32,
     ray: Option<f64>,
     sphere: Option<f64>,
+    /// Triangles that were looked at.
+    looked_at: u64,
 }
 
 impl Reading {
@@ -112,13 +123,15 @@ impl<'p> Probe<'p> {
     /// Measures one side of the surface, with at most `witnesses` witnesses.
     pub(super) fn measure(&self, side: Side, limit: &Limit, witnesses: usize) -> Result<Thickness, Stopped> {
         let len = self.surface.triangles.len();
-        let count = (4 * len).clamp(SAMPLES_MIN, SAMPLES_MAX);
+        let wanted = (4 * len).clamp(SAMPLES_MIN, SAMPLES_MAX);
         let middles = if len <= MIDDLES_MAX { len } else { 0 };
-        let of = distance::Surface { positions: self.surface.positions, triangles: &self.surface.triangles };
-        let by_area = self.readings(count, side, |k| {
-            let sample = self.areas.sample(of, k, count);
-            (sample.place, sample.triangle)
-        })?;
+        let pilots = self.by_area(PILOTS, side)?;
+        let looked_at: u64 = pilots.iter().map(|reading| reading.looked_at).sum();
+        let most = LOOKED_AT_MAX + LOOKED_AT_OF_TRIANGLE * len as u64;
+        let affordable = most as f64 / (looked_at as f64 / PILOTS as f64).max(1.0);
+        let count = wanted.min((affordable as usize).max(PILOTS));
+        let by_area = if count == PILOTS { pilots } else { self.by_area(count, side)? };
+        let middles = if middles as f64 <= affordable { middles } else { 0 };
         let in_middles = self.readings(middles, side, |k| {
             (self.surface.corners(k as u32).iter().sum::<DVec3>() / 3.0, k as u32)
         })?;
@@ -135,6 +148,15 @@ impl<'p> Probe<'p> {
             area_below_error: area_below(limit.error),
             witnesses: self.witnesses(&all, limit, witnesses)?,
             samples: count as u64,
+        })
+    }
+
+    /// What is measured at `count` places that are spread evenly over the surface.
+    fn by_area(&self, count: usize, side: Side) -> Result<Vec<Reading>, Stopped> {
+        let of = distance::Surface { positions: self.surface.positions, triangles: &self.surface.triangles };
+        self.readings(count, side, |k| {
+            let sample = self.areas.sample(of, k, count);
+            (sample.place, sample.triangle)
         })
     }
 
@@ -156,10 +178,9 @@ impl<'p> Probe<'p> {
         let is_inside = side == Side::Inside;
         let along = if is_inside { -normal } else { normal };
         let ray = Ray { from: place, along, own: triangle, is_inside };
-        let nothing = Reading { place, triangle, ray: None, sphere: None };
-        let Some(hit) = ray.first_hit(self.surface, self.search.bvh(), self.budget)? else {
-            return Ok(nothing);
-        };
+        let (hit, looked_at) = ray.first_hit(self.surface, self.search.bvh(), self.budget)?;
+        let nothing = Reading { place, triangle, ray: None, sphere: None, looked_at };
+        let Some(hit) = hit else { return Ok(nothing) };
         let is_opposite = self.surface.are_opposite(triangle, hit.triangle);
         let sphere = ball::diameter(&ray, hit, self.surface, self.search, self.budget)?;
         Ok(Reading { ray: is_opposite.then_some(hit.distance), sphere, ..nothing })
@@ -173,7 +194,7 @@ impl<'p> Probe<'p> {
         thin.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let apart = APART * self.surface.diagonal();
         let mut chosen: Vec<Witness> = Vec::new();
-        for (least, k) in thin.into_iter().take(LOOKED_AT * most) {
+        for (least, k) in thin.into_iter().take(CANDIDATES_OF_WITNESS * most) {
             let Reading { place, triangle, .. } = readings[k];
             self.budget.check()?;
             if chosen.len() == most {

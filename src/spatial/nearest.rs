@@ -120,6 +120,9 @@ impl<'m> NearestSearch<'m> {
                 return Ok(Some(Found { nearest: query.best, is_exact, boxes: visited + more }));
             }
             visited += 1;
+            if query.best.distance == 0.0 {
+                break;
+            }
             if gap > query.reach {
                 continue;
             }

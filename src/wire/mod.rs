@@ -85,4 +85,5 @@ pub use words::{
     Encoding, Extract, Fidelity, FillHoles, FillMethod, Format, HoleClass, HoleFate, Kernel, LambdaFrom,
     Mode, Nesting, OpenShells, Operation, Opposite, Outcome, Placement, ProximityTest, Reader, ReasonCode,
     Rejection, Remedy, Require, Severity, ShellFate, Stage, Stitch, StitchValidity, Units, VertexColors,
+    Weld,
 };

@@ -188,6 +188,9 @@ pub struct DirectedDistance {
     /// The distance at `place`; the largest one lies between this and `max`.
     #[schema(required)]
     pub found: Option<f64>,
+    /// True when `max` and `found` are as close as the search aims at; false when the work that a file of this size is worth
+    /// was used up before. Both bounds hold either way.
+    pub is_close: bool,
     /// The farthest point that was found.
     #[schema(required)]
     pub place: Option<[f64; 3]>,
@@ -364,6 +367,7 @@ impl From<&crate::distance::DirectedDistance> for DirectedDistance {
         Self {
             max: finite(inner.upper),
             found: finite(inner.lower),
+            is_close: inner.is_within_tolerance,
             place: inner.farthest.place.is_finite().then(|| inner.farthest.place.to_array()),
             mean: inner.mean.and_then(finite),
             root_mean_square: inner.root_mean_square.and_then(finite),

@@ -277,6 +277,16 @@ mirror! { pipeline::Stitching =>
     }
 }
 
+words! {
+    /// Which vertices a cut takes as one.
+    Weld {
+        /// All at one position, as programs do that read a file without indices.
+        Exact = "exact",
+        /// Those that have one number in the file. Coincident rims stay apart.
+        None = "none",
+    }
+}
+
 mirror! { mesh::Validity =>
     /// When two boundary edges may be joined.
     StitchValidity {

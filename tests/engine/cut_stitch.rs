@@ -294,3 +294,46 @@ fn nothing_is_returned_where_a_solid_is_demanded_and_there_is_none() {
     assert!(matches!(answer.report.refusal, Some(Refusal::NotRepairable { witness: Some(_) })));
     assert_eq!(answer.output, None);
 }
+
+#[test]
+fn a_file_that_is_taken_as_indexed_keeps_rims_apart_and_a_cut_survives_a_second_run() {
+    let sheet = |z: f64| {
+        (vec![[0.0, 0.0, z], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, z]], vec![[0, 1, 2], [0, 2, 3]])
+    };
+    let rims = obj(&both(sheet(0.0), sheet(0.5)));
+    let indexed =
+        |stitching| CutStitchChoices { keeps_copies: true, stitching, ..CutStitchChoices::default() };
+    let apart = cut_stitch(rims.as_bytes(), indexed(Stitching::None));
+    assert_eq!(apart.output.unwrap().bytes, None, "two sheets stay two, so nothing changes");
+    let welded = cut_stitch(rims.as_bytes(), stitching(Stitching::None));
+    assert_eq!(result(&welded).positions.len(), 6);
+
+    let chosen = vec![[4, 5], [5, 7], [7, 6], [6, 4]];
+    for keeps_copies in [false, true] {
+        let choices =
+            CutStitchChoices { keeps_copies, chosen: chosen.clone(), ..CutStitchChoices::default() };
+        let cut = cut_stitch(obj(&cube([0.0; 3])).as_bytes(), choices).output.unwrap().bytes.unwrap();
+        for stitching in [Stitching::None, Stitching::Pinch] {
+            let again = cut_stitch(&cut, indexed(stitching));
+            assert_eq!(again.output.unwrap().bytes, None, "the lid stays off: {stitching:?}");
+        }
+        let undone = cut_stitch(&cut, stitching(Stitching::Pinch));
+        assert_eq!(result(&undone).positions.len(), 8);
+    }
+}
+
+#[test]
+fn edges_of_copies_are_chosen_one_by_one_where_a_file_is_taken_as_indexed() {
+    // Two cubes at one place, each with vertices of its own.
+    let mesh = both(cube([0.0; 3]), cube([0.0; 3]));
+    let chosen = vec![[12, 13], [13, 15], [15, 14], [14, 12]];
+    let choices = CutStitchChoices {
+        keeps_copies: true,
+        chosen,
+        stitching: Stitching::None,
+        ..CutStitchChoices::default()
+    };
+    let answer = cut_stitch(obj(&mesh).as_bytes(), choices);
+    assert_eq!(count(&answer, "cut", "chosen_edges"), 4);
+    assert_eq!(result(&answer).positions.len(), 20, "the lid of the second comes off");
+}

@@ -185,3 +185,47 @@ fn the_bounds_are_the_same_with_1_2_and_8_threads_and_hold_without_refinement() 
     let rough = measure(&DistanceOptions { refinements_max: 0, ..OPTIONS });
     assert!(rough.upper() >= one.lower() && rough.lower() <= one.upper(), "{rough:?}");
 }
+
+/// A ball of `rows` rows of squares, of which the poles are points.
+fn ball(rows: u32) -> Mesh {
+    let columns = 2 * rows;
+    let place = |row: u32, column: u32| {
+        let turn = |n: u32, of: u32| std::f64::consts::TAU * f64::from(n) / f64::from(of);
+        let (up, out) = (libm::cos(turn(row, 2 * rows)), libm::sin(turn(row, 2 * rows)));
+        DVec3::new(out * libm::cos(turn(column, columns)), out * libm::sin(turn(column, columns)), up)
+    };
+    let rings = (1..rows).flat_map(|row| (0..columns).map(move |column| place(row, column)));
+    let positions = rings.chain([DVec3::Z, -DVec3::Z]).collect();
+    let id = |row: u32, column: u32| match row {
+        0 => (rows - 1) * columns,
+        row if row == rows => (rows - 1) * columns + 1,
+        row => (row - 1) * columns + column % columns,
+    };
+    let square = |row: u32, column: u32| {
+        let [a, b] = [id(row, column), id(row, column + 1)];
+        let [c, d] = [id(row + 1, column), id(row + 1, column + 1)];
+        [[a, c, d], [a, d, b]]
+    };
+    let squares = (0..rows).flat_map(|row| (0..columns).flat_map(move |column| square(row, column)));
+    Mesh { positions, triangles: squares.filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]).collect() }
+}
+
+#[test]
+fn round_surfaces_are_enclosed_with_work_in_proportion_to_their_triangles() {
+    let (fine, coarse) = (ball(60), ball(19));
+    let triangles = (fine.triangles.len() + coarse.triangles.len()) as u64;
+    for (a, b) in [(&fine, &coarse), (&coarse, &fine)] {
+        let budget = Budget::unlimited();
+        let options = DistanceOptions { samples: 1 << 10, ..DistanceOptions::default() };
+        let found = surface_distance(a.surface(), b.surface(), &options, &budget).unwrap().unwrap();
+        assert!(found.is_within_tolerance() && found.upper() <= 1.02 * found.lower(), "{found:?}");
+        assert!(budget.work_used() < 12 * triangles, "{} for {triangles}", budget.work_used());
+        // What ends early says so, and its bounds hold.
+        let hasty = DistanceOptions { refinements_max: 0, tolerance_relative: 1e-6, ..options };
+        let hasty =
+            surface_distance(a.surface(), b.surface(), &hasty, &Budget::unlimited()).unwrap().unwrap();
+        assert!(!hasty.is_within_tolerance(), "{hasty:?}");
+        assert!(hasty.upper() >= found.lower() && hasty.lower() <= found.upper());
+        assert!(hasty.upper() <= 1.5 * found.upper(), "what covers a piece bounds it well: {hasty:?}");
+    }
+}

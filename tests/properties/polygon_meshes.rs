@@ -60,8 +60,7 @@ fn prism(random: &mut Random, mesh: &mut Mesh, at: [i32; 3]) -> i32 {
     mesh.faces.push((n..2 * n).map(|i| base + i).collect());
     mesh.faces.extend((0..n).map(|i| [i, (i + 1) % n, (i + 1) % n + n, i + n].map(|v| base + v).to_vec()));
     let next = |i: usize| outline[(i + 1) % outline.len()];
-    let doubled: i32 =
-        outline.iter().enumerate().map(|(i, a)| a[0] * next(i)[1] - a[1] * next(i)[0]).sum();
+    let doubled: i32 = outline.iter().enumerate().map(|(i, a)| a[0] * next(i)[1] - a[1] * next(i)[0]).sum();
     doubled * height
 }
 
@@ -110,9 +109,7 @@ fn steps(draft: &mut Draft, soup: &Soup, mut look: impl FnMut(&str, &Draft, &Cha
     step("orient", draft, &mut |d| orient::orient(d, &budget).unwrap());
     step("pair sheets", draft, &mut |d| pair_sheets::pair_sheets(d, Across::Solid, &budget).unwrap());
     step("cut", draft, &mut |d| cut::cut(d, &CutOptions::default(), &budget).unwrap());
-    step("pinch", draft, &mut |d| {
-        pinch::pinch(d, &Default::default(), Default::default(), &budget).unwrap()
-    });
+    step("pinch", draft, &mut |d| pinch::pinch(d, &Default::default(), Default::default(), &budget).unwrap());
     step("snap", draft, &mut |d| {
         snap::snap(d, &SnapOptions { epsilon: Some(0.0), ..SnapOptions::default() }, &budget).unwrap()
     });
@@ -165,7 +162,8 @@ fn a_disguised_body_of_polygons_is_itself_again_without_a_vertex_that_moves() {
         }
         disguise(&mut random, &mut mesh);
         let text = mesh.obj();
-        let answer = run(Operation::Repair, text.as_bytes(), &Options::default(), &Budget::unlimited()).unwrap();
+        let answer =
+            run(Operation::Repair, text.as_bytes(), &Options::default(), &Budget::unlimited()).unwrap();
         let report = answer.report;
         let is_local = matches!(report.outcome, Some(Outcome::Repaired | Outcome::Identical));
         assert!(is_local, "case {case}: {:?} {:?}\n{text}", report.outcome, report.refusal);

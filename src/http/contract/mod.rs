@@ -23,7 +23,7 @@ use crate::wire::{
     self, BuildDirection, Contact, Criterion, Cut, Degenerate, DualEmbedding, EditSpec, Effort, Fidelity,
     FillHoles, Format, InputRef, Job, JobRequest, LABELS_MAX, Mode, Nesting, OpenShells, Options, Outcome,
     Placement, PlanRequest, PolicyName, Problem, ProblemCode, RangeSpec, Reader, Report, Require, StageEvent,
-    StateEvent, Stitch, StitchValidity, TargetSpec, Units, VertexColors,
+    StateEvent, Stitch, StitchValidity, TargetSpec, Units, VertexColors, Weld,
 };
 
 /// Problems that any path may answer with.
@@ -126,7 +126,7 @@ fn schemas() -> Vec<(String, RefOr<Schema>)> {
     );
     add!(Format, Reader, Units, Require, FillHoles, OpenShells, Effort, Nesting, Contact, Mode, Criterion);
     add!(Placement, VertexColors, Cut, Stitch, StitchValidity, Degenerate, PolicyName, BuildDirection);
-    add!(DualEmbedding);
+    add!(DualEmbedding, Weld);
     let own = wire::option_schemas().map(|(name, schema)| (name, RefOr::T(schema)));
     schemas.into_iter().chain(own).chain(bodies::schemas()).collect()
 }

@@ -21,7 +21,7 @@ use super::target::TargetSpec;
 use super::words::{
     ConstraintValues, Contact, Criterion, Cut, Degenerate, Effort, Extract, FillHoles, FillMethod, Format,
     Kernel, LambdaFrom, Mode, Nesting, OpenShells, Operation, Placement, Reader, Require, Stitch,
-    StitchValidity, Units, VertexColors,
+    StitchValidity, Units, VertexColors, Weld,
 };
 use crate::formats::{ReadLimits, ReadOptions};
 use crate::implicit::RbfOptions;
@@ -95,6 +95,10 @@ options! {
         "Where the vertex goes that an edge becomes. Default: optimal.";
     vertex_colors: VertexColors, in FEWER,
         "Colours of the vertices of a simplified mesh; priority needs format or output_format off or ply. Default: kept.";
+    normal_turn_max: f64 = OptionKind::Number { min: 0.0, max: 180.0 }, in FEWER,
+        "Largest angle in degrees by which a collapse may turn the normal of a face; 180 lets it turn as it will. Default: 78.46.";
+    weld: Weld, in CUT_STITCH,
+        "Which vertices cut-stitch takes as one. Default: exact.";
     cut: Cut, in CUT_STITCH,
         "How cut-stitch makes its cut; the result is the same. Default: auto.";
     stitch: Stitch, in CUT_STITCH,
@@ -294,8 +298,10 @@ impl Options {
                 criterion: self.criterion.unwrap_or(Criterion::Quadric).into(),
                 placement: self.placement.unwrap_or(Placement::Optimal).into(),
                 vertex_colors: self.vertex_colors.map(Into::into).unwrap_or_default(),
+                normal_turn_max: self.normal_turn_max,
             },
             cut_stitch: pipeline::CutStitchChoices {
+                keeps_copies: self.weld == Some(Weld::None),
                 method: self.cut.and_then(Into::into),
                 stitching: self.stitch.map(Into::into).unwrap_or_default(),
                 epsilon: self.snap_epsilon_mm.map(|length| length / millimetres),
