@@ -23,9 +23,9 @@ use rustc_hash::FxHashMap;
 /// Triangles that one walk may reach.
 const WALK_MAX: usize = 256;
 
-/// The piece is made smaller by this share, so that triangles that only touch it need not be walked. The bound grows by
-/// this share of the longest edge.
-const SHRINK: f64 = 1e-6;
+/// The piece is made smaller by at most this share, so that triangles that only touch it need not be walked: by as much as
+/// is told from rounding. The bound grows by that share of the longest edge.
+const SHRINK_MAX: f64 = 1e-6;
 
 /// Most of the area of a piece that rounding may take from what is covered.
 const ROUNDING_MAX: f64 = 0.05;
@@ -110,6 +110,8 @@ struct Frame {
     corners: [DVec2; 3],
     area: f64,
     longest: f64,
+    /// The share by which it was shrunk.
+    shrink: f64,
     /// More than rounding moves a point.
     slack: f64,
 }
@@ -127,13 +129,17 @@ impl Frame {
         let flat = |p: DVec3| DVec2::new((p - a).dot(turned[0]), (p - a).dot(turned[1]));
         let corners = [a, b, c].map(flat);
         let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
-        let corners = corners.map(|corner| corner + (middle - corner) * SHRINK);
-        let area = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]) / 2.0;
         let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        let area = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]) / 2.0;
         // The shrunk sides must be apart from the sides by more than rounding.
-        let is_told = area / longest * SHRINK > 4.0 * slack;
+        let shrink = 8.0 * slack * longest / area;
+        if area.is_nan() || area <= 0.0 || shrink > SHRINK_MAX {
+            return None;
+        }
+        let corners = corners.map(|corner| corner + (middle - corner) * shrink);
+        let area = area * (1.0 - shrink) * (1.0 - shrink);
         let height = normal / along.dot(normal);
-        is_told.then_some(Self { origin: a, across: turned, height, corners, area, longest, slack })
+        Some(Self { origin: a, across: turned, height, corners, area, longest, shrink, slack })
     }
 
     /// Where a point is seen, and how far it is from the piece along the direction.
@@ -204,11 +210,11 @@ impl Walk {
     }
 
     fn bound(&self) -> Option<f64> {
-        let Frame { area, longest, slack, .. } = self.view;
+        let Frame { area, longest, shrink, slack, .. } = self.view;
         let times = (self.covered / area).abs();
         let is_certain =
             self.rounding <= ROUNDING_MAX * area && (times - times.round()).abs() <= 2.0 * ROUNDING_MAX;
-        (is_certain && times.round() >= 1.0).then_some(self.farthest + longest * SHRINK + slack)
+        (is_certain && times.round() >= 1.0).then_some(self.farthest + longest * shrink + slack)
     }
 }
 
