@@ -331,15 +331,15 @@ impl Directed<'_> {
         let mut waiting: BinaryHeap<Waiting> = BinaryHeap::new();
         let mut wave: Vec<Piece> = Vec::new();
         let largest = |waiting: &BinaryHeap<Waiting>, next: usize| {
-            let of_candidates = candidates.get(next).map_or(0.0, |&(bound, _)| bound);
-            waiting.peek().map_or(0.0, |piece| piece.0.upper).max(of_candidates)
+            let of_candidate = candidates.get(next).map(|&(bound, _)| bound);
+            of_candidate.into_iter().chain(waiting.peek().map(|piece| piece.0.upper)).reduce(f64::max)
         };
         while work < self.options.refinements_max {
             let enough = tolerance.enough(farthest.distance);
             // No more pieces than the work that is left is enough for.
             let most = ((self.options.refinements_max - work) / WORK_MAX + 1).min(wave_len as u64) as usize;
             wave.clear();
-            while wave.len() < most && largest(&waiting, next) > enough {
+            while wave.len() < most && largest(&waiting, next).is_some_and(|bound| bound > enough) {
                 let is_candidate = candidates
                     .get(next)
                     .is_some_and(|&(bound, _)| waiting.peek().is_none_or(|p| p.0.upper < bound));
@@ -363,7 +363,7 @@ impl Directed<'_> {
             }
             wave_len = (2 * wave_len).min(*WAVES.end());
         }
-        *upper = upper.max(largest(&waiting, next));
+        *upper = upper.max(largest(&waiting, next).unwrap_or(0.0));
         Ok(farthest)
     }
 
