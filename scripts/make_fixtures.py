@@ -186,6 +186,7 @@ def duplicate():
         "opposite_duplicate_face.off": off(added(tetrahedron(), [(10, 10, 10)], second)),
         "duplicate_vertex.obj": obj((tetrahedron()[0] + [(0, 0, 10)], torn)),
         "isolated_vertex.obj": obj(added(tetrahedron(), [(5, 5, 5)])),
+        "isolated_edge.obj": obj(added(tetrahedron(), [(5, 5, 5), (6, 5, 5)])) + b"l 5 6\n",
     }
 
 

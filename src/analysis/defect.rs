@@ -43,8 +43,10 @@ pub enum DefectCode {
     DuplicateFace,
     /// Triangle with the same three vertices as an earlier one in the opposite direction, the first such.
     OppositeDuplicateFace,
-    /// Vertex that no face uses.
+    /// Vertex that no face and no edge uses.
     IsolatedVertex,
+    /// Edge that the file states by itself (`l` of OBJ, `edge` of PLY) and no face has.
+    IsolatedEdge,
     /// Vertex at the position of an earlier one (a seam; welding joins them).
     DuplicateVertex,
     /// Face that shares no edge with another face.
@@ -91,7 +93,9 @@ impl DefectCode {
     /// written leave the surface open.
     pub fn severity(self) -> Severity {
         match self {
-            Self::Needle | Self::Cap | Self::IsolatedVertex | Self::Near => Severity::Info,
+            Self::Needle | Self::Cap | Self::IsolatedVertex | Self::IsolatedEdge | Self::Near => {
+                Severity::Info
+            }
             Self::DuplicateVertex
             | Self::NonPlanarPolygon
             | Self::ConcavePolygon

@@ -1,4 +1,4 @@
-//! Isolated vertices: no face uses them. Harmless, though some programs count them in the box of the mesh.
+//! Isolated vertices: no face and no edge uses them. Harmless, though some programs count them in the box of the mesh.
 
 use super::welded::{indices_where, used_vertices};
 use super::{Context, DefectCode, Finding};
@@ -9,7 +9,10 @@ pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
     if soup.is_welded_by_format {
         return Ok(Vec::new());
     }
-    let is_used = used_vertices(&soup.triangles, soup.positions.len(), cx.budget)?;
+    let mut is_used = used_vertices(&soup.triangles, soup.positions.len(), cx.budget)?;
+    for &v in soup.segments.iter().flat_map(|segment| &segment.ends) {
+        is_used[v as usize] = true;
+    }
     let is_isolated = |v: usize| !is_used[v] && soup.positions[v].is_finite();
     let isolated = indices_where(soup.positions.len(), cx.budget, is_isolated)?;
     Ok(Finding::of(DefectCode::IsolatedVertex, &isolated, cx.samples, |&v| {

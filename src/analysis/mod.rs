@@ -10,9 +10,11 @@ mod double_skins;
 mod duplicate_faces;
 mod duplicate_vertices;
 mod folded_edges;
+mod isolated_edges;
 mod isolated_faces;
 mod isolated_vertices;
 mod measures;
+mod meeting_features;
 mod meeting_point;
 mod members;
 mod names;
@@ -199,7 +201,7 @@ pub fn analyze(
         measures,
         properties: Properties::of(&cx),
         watertight: Watertight::of(&cx)?,
-        proximity: Proximity::of(&cx),
+        proximity: Proximity::of(&cx)?,
         holes: cx.loops.counts(),
         loop_edges: if options.loop_edges { cx.loops.edges(&cx) } else { Vec::new() },
         findings,
@@ -219,7 +221,7 @@ const NEAR_SHARE: f64 = 1e-5;
 type Check = fn(&Context<'_>) -> Result<Vec<Finding>, Stopped>;
 
 /// Every check, in the order of [`DefectCode`].
-const CHECKS: [Check; 20] = [
+const CHECKS: [Check; 21] = [
     unusable::find,
     polygons::find,
     coincident_corners::find,
@@ -227,6 +229,7 @@ const CHECKS: [Check; 20] = [
     thin_faces::find,
     duplicate_faces::find,
     isolated_vertices::find,
+    isolated_edges::find,
     duplicate_vertices::find,
     isolated_faces::find,
     boundary_loops::find,

@@ -1,16 +1,16 @@
 //! The six tests of vertices, edges and faces against each other, in three classes: what meets in an area or passes
 //! through (`intersect`) and what touches (`touch`), exactly, and what is near without meeting (`near`).
 //!
-//! Exact classes count pairs of triangles, each at the features of the lowest dimension in which they meet; near ones
-//! count pairs of features of which no smaller ones are within reach of each other. Features of one triangle or with a
-//! common vertex are no pair: when they are close, the triangle is a needle or a cap.
+//! Every class counts pairs of features, each at the lowest dimension: exact classes those in whose inside faces meet
+//! (see [`meeting_features`](super::meeting_features)), near ones those of which no smaller ones are within reach of each
+//! other. Features of one face or with a common vertex are no pair: when they are close, the face is a needle or a cap.
 
+use super::meeting_features::{Meeting, PolygonSides, meetings};
 use super::welded::Welded;
 use super::{Context, DefectCode, Finding, NearSearch};
 use crate::budget::{CHECK_EVERY, Stopped};
-use crate::geom::{DVec3, Projection, Sign, is_on_segment, orient3d};
 use crate::mesh::{edge_of, prev_corner, triangle_of};
-use crate::spatial::{Contact, ContactKind, NearInput, NearKind, NearPair, NearPairs, near_pairs};
+use crate::spatial::{ContactKind, NearInput, NearKind, NearPair, NearPairs, near_pairs};
 
 /// Which kinds of features meet or are near each other, lowest dimension first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -37,10 +37,10 @@ pub type TestCounts = [u64; 6];
 pub struct Proximity {
     /// What is near, in the unit of the file, where no edge is shorter than twice that.
     pub epsilon: f64,
-    /// Pairs of triangles that share an area or pass through each other; `None` when too many meet to tell by which
-    /// features.
+    /// Pairs of features in which triangles share an area or pass through each other; `None` when too many triangles meet
+    /// to tell by which features.
     pub intersect: Option<TestCounts>,
-    /// Pairs of triangles that touch; `None` as above.
+    /// Pairs of features in which triangles only touch; `None` as above.
     pub touch: Option<TestCounts>,
     /// Pairs of features that are near each other.
     pub near: TestCounts,
@@ -135,25 +135,40 @@ fn is_face(mesh: &Welded<'_>, v: u32, [a, b]: [u32; 2]) -> bool {
 }
 
 impl Proximity {
-    pub(super) fn of(cx: &Context<'_>) -> Option<Self> {
-        let near = cx.near.as_ref()?;
-        let is_complete = cx.contacts.list.len() as u64 == cx.contacts.count;
+    pub(super) fn of(cx: &Context<'_>) -> Result<Option<Self>, Stopped> {
+        let Some(near) = &cx.near else { return Ok(None) };
+        let list = &cx.contacts.list;
+        let is_complete = list.len() as u64 == cx.contacts.count;
         let (mut intersect, mut touch) = ([0; 6], [0; 6]);
-        for contact in &cx.contacts.list {
-            let counts = if contact.kind == ContactKind::Touch { &mut touch } else { &mut intersect };
-            counts[lowest_test(cx, contact) as usize] += 1;
+        if is_complete {
+            let sides = PolygonSides::of(cx, list.iter());
+            let mut found: Vec<(Meeting, bool)> = Vec::new();
+            for (i, contact) in list.iter().enumerate() {
+                if i % CHECK_EVERY == 0 {
+                    cx.budget.check()?;
+                }
+                let is_touch = contact.kind == ContactKind::Touch;
+                found.extend(meetings(cx, &sides, contact).into_iter().map(|meeting| (meeting, is_touch)));
+            }
+            // Of a pair of features that some triangles show passing through and others touching, the first counts.
+            found.sort_unstable();
+            found.dedup_by_key(|&mut (meeting, _)| meeting);
+            for (meeting, is_touch) in found {
+                let counts = if is_touch { &mut touch } else { &mut intersect };
+                counts[meeting.test as usize] += 1;
+            }
         }
         intersect[ProximityTest::FaceFace as usize] += cx.repeats.len() as u64;
         let mut counts = [0; 6];
         for (kind, count) in NEAR_KINDS.into_iter().zip(near.counts) {
             counts[ProximityTest::from(kind) as usize] += count;
         }
-        Some(Self {
+        Ok(Some(Self {
             epsilon: cx.epsilon,
             intersect: is_complete.then_some(intersect),
             touch: is_complete.then_some(touch),
             near: counts,
-        })
+        }))
     }
 }
 
@@ -175,52 +190,6 @@ impl From<NearKind> for ProximityTest {
             NearKind::FaceFace => Self::FaceFace,
         }
     }
-}
-
-/// The features of the lowest dimension, beyond common vertices, in which two triangles of the soup meet.
-pub(super) fn lowest_test(cx: &Context<'_>, contact: &Contact) -> ProximityTest {
-    let [f, g] =
-        [contact.a, contact.b].map(|t| cx.mesh.soup.triangles[t as usize].map(|v| cx.mesh.first_at(v)));
-    let at = |v: u32| cx.mesh.position(v);
-    let pairs = [(f, g), (g, f)];
-    let is_any_corner = |test: &dyn Fn(DVec3, [DVec3; 3]) -> bool| {
-        pairs.iter().any(|(f, g)| f.iter().any(|v| !g.contains(v) && test(at(*v), g.map(at))))
-    };
-    if is_any_corner(&|p, [a, b, c]| {
-        is_on_segment(p, a, b) || is_on_segment(p, b, c) || is_on_segment(p, c, a)
-    }) {
-        return ProximityTest::VertexEdge;
-    }
-    if is_any_corner(&is_inside) {
-        return ProximityTest::VertexFace;
-    }
-    let sides = |t: [u32; 3]| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]];
-    let do_cross =
-        |e: [u32; 2], h: [u32; 2]| !e.iter().any(|v| h.contains(v)) && are_crossing([e.map(at), h.map(at)]);
-    if sides(f).into_iter().any(|e| sides(g).into_iter().any(|h| do_cross(e, h))) {
-        return ProximityTest::EdgeEdge;
-    }
-    match contact.kind {
-        ContactKind::Overlap => ProximityTest::FaceFace,
-        ContactKind::Cross | ContactKind::Touch => ProximityTest::EdgeFace,
-    }
-}
-
-/// True when `p` is exactly in the triangle and on none of its edges.
-fn is_inside(p: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
-    let turns = |(view, turn): (Projection, Sign)| {
-        [(a, b), (b, c), (c, a)].into_iter().all(|(from, to)| view.turn(from, to, p) == turn)
-    };
-    orient3d(a, b, c, p).is_zero() && Projection::showing([a, b, c]).is_some_and(turns)
-}
-
-/// True when two segments meet exactly in a point inside both.
-fn are_crossing([[a, b], [c, d]]: [[DVec3; 2]; 2]) -> bool {
-    let Some((view, _)) = Projection::showing([a, b, c]).filter(|_| orient3d(a, b, c, d).is_zero()) else {
-        return false;
-    };
-    let are_apart = |s: Sign, t: Sign| !s.is_zero() && !t.is_zero() && s != t;
-    are_apart(view.turn(a, b, c), view.turn(a, b, d)) && are_apart(view.turn(c, d, a), view.turn(c, d, b))
 }
 
 pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {

@@ -2,10 +2,10 @@
 //! touch. Degenerate triangles and repeats of earlier ones are left out; they are told as such.
 
 use super::duplicate_faces::Repeat;
+use super::meeting_features::{Meeting, PolygonSides, meetings};
 use super::meeting_point::meeting_point;
-use super::proximity::lowest_test;
 use super::welded::{Welded, indices_where};
-use super::{Context, DefectCode, Finding};
+use super::{Context, DefectCode, Finding, ProximityTest};
 use crate::budget::{Budget, Stopped};
 use crate::spatial::{Bvh, Contact, ContactKind, Contacts, Search, self_contacts};
 
@@ -37,15 +37,28 @@ pub(super) fn search(
 pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
     let soup = cx.mesh.soup;
     let found = |code, kind| {
-        let pairs = cx.contacts.list.iter().filter(|c| c.kind == kind).take(cx.samples);
+        let pairs = || cx.contacts.list.iter().filter(|c| c.kind == kind).take(cx.samples);
+        let sides = PolygonSides::of(cx, pairs());
         let witness = |pair: &Contact| {
-            let place = meeting_point(soup.corners(pair.a), soup.corners(pair.b));
-            let mut witness = cx.mesh.names().triangles(&[pair.a, pair.b], place);
-            witness.test = Some(lowest_test(cx, pair));
+            let faces = [pair.a, pair.b].map(|t| soup.face_of(t));
+            // The lowest one in which they meet.
+            let lowest = meetings(cx, &sides, pair).into_iter().next();
+            let vertices: Vec<u32> = match &lowest {
+                Some(meeting) if meeting.test != ProximityTest::FaceFace => meeting.vertices().collect(),
+                _ => soup.triangles[pair.a as usize].to_vec(),
+            };
+            let place = match lowest {
+                Some(Meeting { test: ProximityTest::VertexEdge | ProximityTest::VertexFace, .. }) => {
+                    soup.positions[vertices[0] as usize]
+                }
+                _ => meeting_point(soup.corners(pair.a), soup.corners(pair.b)),
+            };
+            let mut witness = cx.mesh.names().witness(faces, vertices, place);
+            witness.test = lowest.map(|meeting| meeting.test);
             witness
         };
         let count = cx.contacts.count_by_kind[kind as usize];
-        Finding::with(code, count, pairs.map(witness).collect())
+        Finding::with(code, count, pairs().map(witness).collect())
     };
     Ok([
         found(DefectCode::SelfIntersection, ContactKind::Cross),

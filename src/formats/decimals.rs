@@ -36,6 +36,11 @@ impl<'b> Text<'b> {
         self.bytes.extend_from_slice(word.as_bytes());
     }
 
+    /// `bytes` as they are.
+    pub(super) fn bytes(&mut self, bytes: &[u8]) {
+        self.bytes.extend_from_slice(bytes);
+    }
+
     /// A whole number.
     pub(super) fn integer(&mut self, number: i64) {
         self.bytes.extend_from_slice(self.integer.format(number).as_bytes());

@@ -1,5 +1,6 @@
 //! What a file says, before anyone judges it.
 
+use super::materials::{Materials, NO_MATERIAL};
 use super::texture::{NO_POINT, Texture};
 use crate::geom::DVec3;
 
@@ -90,6 +91,15 @@ pub struct Polygons {
     pub not_fans: Vec<u32>,
 }
 
+/// An edge that the file states by itself and not as a side of a face (`l` of OBJ, `edge` of PLY).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Segment {
+    /// Vertex ids of its ends.
+    pub ends: [u32; 2],
+    /// Its 1-based line in a text file.
+    pub line: Option<u32>,
+}
+
 /// Where elements stand in a text file: 1-based lines. Empty lists when the format is not made of lines.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Places {
@@ -117,6 +127,8 @@ pub struct Soup {
     pub polygons: Polygons,
     /// Faces that have no triangle here, in file order.
     pub face_faults: Vec<FaceFault>,
+    /// Edges that the file states by themselves, in file order; those of vertices that it does not have are left out.
+    pub segments: Vec<Segment>,
     /// Vertices whose coordinates are NaN or infinite, in file order.
     pub non_finite_vertices: Vec<u32>,
     /// Lines of faces and vertices.
@@ -131,6 +143,8 @@ pub struct Soup {
     pub face_colors: Vec<Option<Color>>,
     /// Texture coordinates of the corners of triangles.
     pub texture: Texture,
+    /// Materials of the faces of the file.
+    pub materials: Materials,
 }
 
 impl Polygons {
@@ -189,6 +203,7 @@ impl Soup {
         }
         for (name, len, want) in [
             ("vertex_colors", self.vertex_colors.len(), vertex_count),
+            ("materials.of_face", self.materials.of_face.len(), self.face_count as usize),
             ("face_colors", self.face_colors.len(), self.face_count as usize),
             ("places.face_lines", self.places.face_lines.len(), self.face_count as usize),
             ("places.vertex_lines", self.places.vertex_lines.len(), vertex_count),
@@ -196,6 +211,15 @@ impl Soup {
             if len != 0 && len != want {
                 broken.push(format!("{name} has {len} entries for {want}"));
             }
+        }
+        if let Some(segment) =
+            self.segments.iter().find(|s| s.ends.iter().any(|&v| v as usize >= vertex_count))
+        {
+            broken.push(format!("a segment names the vertices {:?} of {vertex_count}", segment.ends));
+        }
+        let names = self.materials.names.len();
+        if let Some(m) = self.materials.of_face.iter().find(|&&m| m != NO_MATERIAL && m as usize >= names) {
+            broken.push(format!("a face has material {m} of {names}"));
         }
         let texture = &self.texture;
         if !texture.is_empty() && texture.corners.len() != self.triangles.len() {

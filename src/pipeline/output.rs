@@ -142,6 +142,28 @@ impl Candidate {
         Some(Action { step, causes, changes, move_max: 0.0, reason: reason.to_owned() })
     }
 
+    /// What is said of materials of faces, in the same way.
+    fn lost_materials(&self, input: &Input, origins: &[u32]) -> Option<Action> {
+        let (before, after) = (&input.soup, &self.soup);
+        let has_lost = |(t, &origin): (usize, &u32)| {
+            after.materials.of(after.face_of(t as u32)).is_none()
+                && (origin == NEW || before.materials.of(before.face_of(origin)).is_some())
+        };
+        let lost = origins.iter().enumerate().take(after.triangles.len()).filter(|&at| has_lost(at)).count();
+        if before.materials.is_empty() || lost == 0 {
+            return None;
+        }
+        let kept = after.triangles.len() - lost;
+        let reason = match after.materials.is_empty() {
+            true => "the materials of the file are lost: the output has none",
+            false => "materials stay where a triangle comes from the file; other triangles have none",
+        };
+        let changes =
+            vec![("triangles_with_material", kept as u64), ("triangles_without_material", lost as u64)];
+        let (step, causes) = ("materials", Vec::new());
+        Some(Action { step, causes, changes, move_max: 0.0, reason: reason.to_owned() })
+    }
+
     /// The candidate as the answer. `origins` name the input's triangle behind each of its triangles ([`NEW`]: none).
     pub(super) fn returned(
         self,
@@ -154,7 +176,8 @@ impl Candidate {
         let fidelity = faithful::judge(&input.soup, &self.soup, origins, &mut report, budget)?;
         let after = describe(&self.soup, &self.examination, &input.analyze_options(), budget)?;
         let share = identical_triangle_share(&input.soup, &self.soup, origins, budget)?;
-        let actions = report.actions.into_iter().chain(self.lost_texture(input, origins)).collect();
+        let lost = [self.lost_texture(input, origins), self.lost_materials(input, origins)];
+        let actions = report.actions.into_iter().chain(lost.into_iter().flatten()).collect();
         let report = Report {
             actions,
             after: Some(after),

@@ -331,7 +331,7 @@ impl Attempt {
 }
 
 /// What taking the triangles of the file as they are leaves behind.
-const UNUSABLE: [DefectCode; 7] = [
+const UNUSABLE: [DefectCode; 8] = [
     DefectCode::NonFiniteVertex,
     DefectCode::NonFiniteFace,
     DefectCode::IndexOutOfRange,
@@ -339,6 +339,7 @@ const UNUSABLE: [DefectCode; 7] = [
     DefectCode::NonPlanarPolygon,
     DefectCode::ConcavePolygon,
     DefectCode::IsolatedVertex,
+    DefectCode::IsolatedEdge,
 ];
 
 fn action(

@@ -162,7 +162,8 @@ fn remedies_of(code: DefectCode) -> &'static [Remedy] {
         | DefectCode::TooFewCorners
         | DefectCode::CoincidentCorners
         | DefectCode::DuplicateFace
-        | DefectCode::IsolatedVertex => &[Drop],
+        | DefectCode::IsolatedVertex
+        | DefectCode::IsolatedEdge => &[Drop],
         DefectCode::NonPlanarPolygon | DefectCode::ConcavePolygon => &[Split],
         DefectCode::CollinearFace => &[Split, Keep],
         DefectCode::OppositeDuplicateFace => &[DropBoth, DropOne],
@@ -238,6 +239,7 @@ fn proposed(finding: &Finding, triangles: u64) -> (Remedy, f64, &'static str) {
         DefectCode::CoincidentCorners
         | DefectCode::DuplicateFace
         | DefectCode::IsolatedVertex
+        | DefectCode::IsolatedEdge
         | DefectCode::DuplicateVertex
         | DefectCode::CollinearFace => (1.0, "the surface is the same without it"),
         DefectCode::NonPlanarPolygon | DefectCode::ConcavePolygon => {

@@ -322,7 +322,7 @@ fn finest_first(targets: &[Target], faces: usize) -> Vec<usize> {
     order
 }
 
-/// A number for each triangle, the same for the same face colour; empty when there are no colours.
+/// A number for each triangle, the same for the same colour and material of the face; empty when faces have neither.
 fn face_groups(mesh: &Soup) -> Vec<u32> {
     let mut numbers = FxHashMap::default();
     let key = |color: &Option<Color>| match *color {
@@ -331,14 +331,16 @@ fn face_groups(mesh: &Soup) -> Vec<u32> {
         Some(Color::Floats([r, g, b], a)) => (2, [r, g, b, a.unwrap_or(1.0)].map(f32::to_bits)),
         Some(Color::Index(index)) => (3, [index as u32, 0, 0, 0]),
     };
-    let mut number = |color| {
+    let mut number = |f: u32| {
+        let color = mesh.face_colors.get(f as usize).unwrap_or(&None);
         let next = numbers.len() as u32;
-        *numbers.entry(key(color)).or_insert(next)
+        *numbers.entry((key(color), mesh.materials.of(f))).or_insert(next)
     };
-    mesh.face_colors.iter().map(&mut number).collect()
+    let has_none = mesh.face_colors.is_empty() && mesh.materials.is_empty();
+    (0..if has_none { 0 } else { mesh.face_count }).map(&mut number).collect()
 }
 
-/// The result with the colours that its faces had in `mesh`, and the texture of its corners.
+/// The result with the colours and materials that its faces had in `mesh`, and the texture of its corners.
 fn soup_of(result: &Simplified, mesh: &Soup) -> Soup {
     let color = |&t: &u32| mesh.face_colors.get(t as usize).copied().flatten();
     Soup {
@@ -351,6 +353,7 @@ fn soup_of(result: &Simplified, mesh: &Soup) -> Soup {
             false => priority::colors_of(&result.priorities),
         },
         texture: texture_of(&result.texture),
+        materials: mesh.materials.on(result.triangle_origin.iter().map(|&t| Some(t))),
         face_colors: match mesh.face_colors.is_empty() {
             true => Vec::new(),
             false => result.triangle_origin.iter().map(color).collect(),

@@ -57,6 +57,7 @@ impl Draft {
             ("polygons_split", soup.polygons.faces.len() as u64),
             ("unusable_faces_dropped", soup.face_faults.len() as u64),
             ("unused_vertices_dropped", dropped),
+            ("segments_dropped", soup.segments.len() as u64),
         ]);
         (draft, changes)
     }
@@ -131,11 +132,10 @@ impl Draft {
     }
 
     /// The draft as a soup to be written; `source` is the soup it was made from and gives the
-    /// colours and the texture coordinates.
+    /// colours, the texture coordinates and the materials.
     pub fn to_soup(&self, source: &Soup) -> Soup {
-        let color_of_face = |&t: &u32| -> Option<Color> {
-            if t == NEW { None } else { source.face_colors[source.face_of(t) as usize] }
-        };
+        let face_behind = |&t: &u32| (t != NEW).then(|| source.face_of(t));
+        let color_of_face = |t: &u32| source.face_colors[face_behind(t)? as usize];
         Soup {
             positions: self.positions.clone(),
             triangles: self.triangles.clone(),
@@ -150,6 +150,7 @@ impl Draft {
                 false => self.triangle_origin.iter().map(color_of_face).collect(),
             },
             texture: self.texture(&source.texture, source),
+            materials: source.materials.on(self.triangle_origin.iter().map(face_behind)),
             ..Soup::default()
         }
     }

@@ -50,11 +50,11 @@ pub struct Proximity {
     /// What is near, in the unit of the file; around edges shorter than twice that, half of the shortest one.
     #[schema(required)]
     pub epsilon: Option<f64>,
-    /// Pairs of triangles that pass through each other or share an area, exactly, by the features of the lowest dimension in
-    /// which they meet; null: too many meet.
+    /// Pairs of features in which triangles pass through each other or share an area, exactly, each pair once; null: too
+    /// many triangles meet.
     #[schema(required)]
     pub intersect: Option<TestCounts>,
-    /// Pairs of triangles that touch, exactly, in the same way.
+    /// Pairs of features in which triangles only touch, exactly, each pair once.
     #[schema(required)]
     pub touch: Option<TestCounts>,
     /// Pairs of features that do not meet but are near each other, and of which no smaller ones are.

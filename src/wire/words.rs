@@ -694,8 +694,10 @@ mirror! { analysis::DefectCode =>
         DuplicateFace = "duplicate-face",
         /// Triangle with the same three vertices as an earlier one, the first in the opposite direction.
         OppositeDuplicateFace = "opposite-duplicate-face",
-        /// Vertex that no face uses.
+        /// Vertex that no face and no edge uses.
         IsolatedVertex = "isolated-vertex",
+        /// Edge that the file states by itself (`l` of OBJ, `edge` of PLY) and no face has.
+        IsolatedEdge = "isolated-edge",
         /// Vertex at the position of an earlier one.
         DuplicateVertex = "duplicate-vertex",
         /// Face that shares no edge with another face.

@@ -18,6 +18,7 @@ mod fill;
 mod half_edge;
 mod holes;
 mod injected_defects;
+mod meeting_features;
 mod modeller;
 mod naive;
 mod near;

@@ -1,5 +1,6 @@
 //! Wavefront OBJ: statements, one a line.
 
+mod material_names;
 pub(super) mod materials;
 pub(super) mod read;
 pub(super) mod read_with_tobj;

@@ -1,20 +1,21 @@
 //! OBJ input.
 
+use super::material_names::MaterialsOfFile;
 use super::statements::{Counts, Statements};
 use super::texture::TextureOfFile;
 use crate::budget::Budget;
 use crate::formats::faces::Faces;
 use crate::formats::{ReadError, ReadOptions};
 use crate::geom::DVec3;
-use crate::mesh::{Color, Places, Soup, Texture};
+use crate::mesh::{Color, Places, Segment, Soup, Texture};
 use crate::par;
 use memchr::memchr2;
 
 /// Parts of a file that are read at the same time have about this many bytes.
 const PART_BYTES: usize = 1 << 20;
 
-/// Reads vertices with their colours, and faces with their texture coordinates; groups, materials, normals and all else
-/// are ignored. Indices may point to vertices further down.
+/// Reads vertices with their colours, faces with their texture coordinates, and the segments of lines and the names of
+/// materials; groups, normals and all else are ignored. Indices may point to vertices further down.
 ///
 /// Twice through the file: first to count, so that every part knows its first line and vertex, then to read the parts
 /// at the same time.
@@ -69,6 +70,8 @@ fn read_parts(parts: &[&[u8]], options: &ReadOptions, budget: &Budget) -> Result
     let of_texture = if has_texture { 16 * total.texture_points + 12 * total.faces } else { 0 };
     let bytes_of_parts = total.vertices * size_of::<(DVec3, u32)>() as u64
         + total.faces * size_of::<[u32; 4]>() as u64
+        + total.line_corners * size_of::<Segment>() as u64
+        + total.materials * size_of::<(u32, &[u8])>() as u64
         + of_texture;
     let _charged = budget.charge(bytes_of_parts)?;
     let read = par::try_map_ranges(parts.len(), 1, |i| {
@@ -79,7 +82,7 @@ fn read_parts(parts: &[&[u8]], options: &ReadOptions, budget: &Budget) -> Result
 }
 
 fn join(
-    parts: Vec<Statements>,
+    parts: Vec<Statements<'_>>,
     total: Counts,
     options: &ReadOptions,
     budget: &Budget,
@@ -96,6 +99,9 @@ fn join(
         true => Some(texture.reserve(face_count, total.texture_points as usize, budget)?),
         false => None,
     };
+    let (mut segments, _charged) = budget.vec::<Segment>(total.line_corners as usize)?;
+    let mut materials = MaterialsOfFile::default();
+    let _charged = budget.charge(if total.materials > 0 { 4 * total.faces } else { 0 })?;
     let has_colors = parts.iter().any(|part| !part.colors.is_empty());
     let mut vertex_colors: Vec<Option<Color>> = Vec::new();
     for part in parts {
@@ -105,6 +111,11 @@ fn join(
         face_lines.extend_from_slice(&part.face_lines);
         faces.append(&part.faces);
         texture.append(&part.texture);
+        if total.materials > 0 {
+            materials.append(&part.materials, part.faces.len());
+        }
+        let is_there = |segment: &&Segment| segment.ends.iter().all(|&v| (v as usize) < vertex_count);
+        segments.extend(part.segments.iter().filter(is_there));
         if has_colors {
             vertex_colors.extend_from_slice(&part.colors);
             vertex_colors.resize(positions.len(), None);
@@ -112,7 +123,8 @@ fn join(
     }
     let soup = faces.into_soup(positions, &options.limits, budget)?;
     let texture = if has_texture { texture.into_texture(&soup, budget)? } else { Texture::default() };
-    Ok(Soup { places: Places { face_lines, vertex_lines }, vertex_colors, texture, ..soup })
+    let (places, materials) = (Places { face_lines, vertex_lines }, materials.into_materials());
+    Ok(Soup { places, vertex_colors, texture, materials, segments, ..soup })
 }
 
 #[cfg(test)]
@@ -212,6 +224,16 @@ mod tests {
     }
 
     #[test]
+    fn lines_are_segments_between_neighbouring_corners_that_are_there() {
+        let soup = read(&format!("{TRIANGLE}l 1 2/4 -1\nl 3 9 1 2\nl 1\nl x 1 2\nf 1 2 3\nl 4 1\nv 5 5 5\n"))
+            .unwrap();
+        let segments: Vec<([u32; 2], Option<u32>)> = soup.segments.iter().map(|s| (s.ends, s.line)).collect();
+        let expected = [([0, 1], 4), ([1, 2], 4), ([0, 1], 5), ([0, 1], 7), ([3, 0], 9)];
+        assert_eq!(segments, expected.map(|(ends, line)| (ends, Some(line))));
+        assert!(soup.check().is_empty());
+    }
+
+    #[test]
     fn nan_is_a_finding_with_its_line() {
         let soup = read("v 0 0 0\nv nan 0 0\nv 0 1e999 0\nf 1 2 3\n").unwrap();
         assert_eq!(
@@ -246,7 +268,7 @@ mod tests {
     /// The same soup and the same error, wherever the file is cut.
     #[test]
     fn parts_of_any_size_make_the_same_soup() {
-        let text = "# a\\\nvt 0 1\nv 0 0 0\r\nv 1 0 0 1 0 0\r\rv 0 \\\r\n1 0\nf -3 \\\n-2 \\\n-1\nf 1/1 2/2 3/-1 1/1\nvt 1 0.5\n# b\nf 1 2 9\nv 5 5 5\nf -4 -3 -1 # c\nf 1 1";
+        let text = "# a\\\nvt 0 1\nv 0 0 0\r\nv 1 0 0 1 0 0\r\rv 0 \\\r\n1 0\nf -3 \\\n-2 \\\n-1\nf 1/1 2/2 3/-1 1/1\nvt 1 0.5\n# b\nf 1 2 9\nv 5 5 5\nf -4 -3 -1 # c\nl 1 -1 \\\n2\nl 9 1\nf 1 1";
         let options = ReadOptions::default();
         for text in [text.to_owned(), format!("{text}\nf x\nf y")] {
             let whole = read_parts(&[text.as_bytes()], &options, &Budget::unlimited());

@@ -1,5 +1,6 @@
 //! The statements of a part of an OBJ file that make its mesh.
 
+use super::material_names::MaterialStatements;
 use super::texture::{TextureStatements, read_texture_point, texture_index};
 use crate::budget::Stopped;
 use crate::budget::{Budget, CHECK_EVERY};
@@ -9,7 +10,7 @@ use crate::formats::numbers::{coordinate, index, integer};
 use crate::formats::words::{Dialect, Words};
 use crate::formats::{Precision, ReadError, ReadOptions};
 use crate::geom::DVec3;
-use crate::mesh::Color;
+use crate::mesh::{Color, Segment};
 
 /// How OBJ text is cut into words.
 pub(super) const DIALECT: Dialect = Dialect { comments: true, continued_lines: true };
@@ -21,6 +22,10 @@ pub(super) struct Counts {
     pub(super) vertices: u64,
     pub(super) faces: u64,
     pub(super) texture_points: u64,
+    /// Words of `l` statements, of which segments have one fewer.
+    pub(super) line_corners: u64,
+    /// `usemtl` and `mtllib` statements.
+    pub(super) materials: u64,
 }
 
 impl Counts {
@@ -34,6 +39,12 @@ impl Counts {
                 b"v" => counts.vertices += 1,
                 b"f" => counts.faces += 1,
                 b"vt" => counts.texture_points += 1,
+                b"usemtl" | b"mtllib" => counts.materials += 1,
+                b"l" => {
+                    while words.next_in_line().is_some() {
+                        counts.line_corners += 1;
+                    }
+                }
                 _ => {}
             }
             words.next_line();
@@ -53,13 +64,15 @@ impl Counts {
             vertices: self.vertices + other.vertices,
             faces: self.faces + other.faces,
             texture_points: self.texture_points + other.texture_points,
+            line_corners: self.line_corners + other.line_corners,
+            materials: self.materials + other.materials,
         }
     }
 }
 
 /// Vertices and faces of a part of a file.
 #[derive(Debug, Default)]
-pub(super) struct Statements {
+pub(super) struct Statements<'a> {
     pub(super) positions: Vec<DVec3>,
     pub(super) vertex_lines: Vec<u32>,
     /// As long as `positions` from the first colour on; empty without one.
@@ -67,13 +80,16 @@ pub(super) struct Statements {
     pub(super) faces: Faces,
     pub(super) face_lines: Vec<u32>,
     pub(super) texture: TextureStatements,
+    /// Of vertices that may be missing.
+    pub(super) segments: Vec<Segment>,
+    pub(super) materials: MaterialStatements<'a>,
 }
 
-impl Statements {
+impl<'a> Statements<'a> {
     /// Reads `part`, before which the file holds `before` and in which it holds `inside`; `has_texture`: somewhere in it
     /// are texture coordinates.
     pub(super) fn read(
-        part: &[u8],
+        part: &'a [u8],
         before: Counts,
         inside: Counts,
         has_texture: bool,
@@ -86,6 +102,7 @@ impl Statements {
             vertex_lines: Vec::with_capacity(vertices),
             faces: Faces::of_triangles(Vec::with_capacity(faces)),
             face_lines: Vec::with_capacity(faces),
+            segments: Vec::with_capacity(inside.line_corners as usize),
             ..Self::default()
         };
         let mut corners = Vec::new();
@@ -113,6 +130,9 @@ impl Statements {
                         read.texture.faces.push(points);
                     }
                 }
+                b"l" => read.read_line(&mut words, before.vertices as i64 + read.positions.len() as i64),
+                b"usemtl" => read.materials.use_from(read.faces.len() as u32, words.rest_of_line()),
+                b"mtllib" => read.materials.libraries.push(words.rest_of_line()),
                 b"vt" if has_texture => read.texture.points.push(read_texture_point(&mut words)),
                 _ => {}
             }
@@ -123,6 +143,20 @@ impl Statements {
             }
         }
         Ok(read)
+    }
+
+    /// The segments of `v1 v2 v3 ...`, each corner `v` or `v/vt`; a word that is no index ends one and begins none.
+    fn read_line(&mut self, words: &mut Words<'_>, vertices_before: i64) {
+        let line = Some(words.line() as u32);
+        let mut last = None;
+        while let Some(word) = words.next_in_line() {
+            let end = word.iter().position(|&b| b == b'/').unwrap_or(word.len());
+            let corner = integer(&word[..end]).map(|number| vertex_index(number, vertices_before));
+            if let (Some(from), Some(to)) = (last, corner) {
+                self.segments.push(Segment { ends: [from, to], line });
+            }
+            last = corner;
+        }
     }
 
     /// `x y z`, `x y z w`, `x y z r g b` or `x y z r g b a`; the weight and anything else after z are ignored.
@@ -147,6 +181,11 @@ fn read_color(words: &mut Words<'_>) -> Option<Color> {
     Some(Color::Floats(rgb, channel()))
 }
 
+/// The vertex that a number in the file means; 0 is nobody's and becomes one that is out of range.
+fn vertex_index(number: i64, vertices_before: i64) -> u32 {
+    index(if number < 0 { vertices_before + number } else { number - 1 })
+}
+
 /// The corners of a face: `v`, `v/vt`, `v//vn` or `v/vt/vn`, of which `v` matters, and `vt` for `texture`: the number of
 /// texture points before the face, and the list for those of the corners. Negative numbers count back from the last
 /// before the face.
@@ -161,8 +200,7 @@ fn read_corners(
     while let Some(word) = words.next_in_line() {
         let end = word.iter().position(|&b| b == b'/').unwrap_or(word.len());
         let number = integer(&word[..end]).ok_or_else(|| words.wrong(Some(word), "a vertex index"))?;
-        // 0 is nobody's index and becomes one that is out of range.
-        corners.push(index(if number < 0 { vertices_before + number } else { number - 1 }));
+        corners.push(vertex_index(number, vertices_before));
         if let Some((points_before, points)) = texture {
             points.push(texture_index(word.get(end + 1..).unwrap_or_default(), *points_before));
         }

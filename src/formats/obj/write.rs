@@ -1,5 +1,6 @@
 //! OBJ output.
 
+use super::material_names::{MaterialWriter, NAME_BYTES_MAX, put_libraries};
 use crate::budget::Budget;
 use crate::formats::WriteError;
 use crate::formats::colors::ColorLayout;
@@ -9,13 +10,14 @@ use crate::mesh::{Color, NO_POINT, Soup};
 /// The only one that other readers know.
 const COLORS: ColorLayout = ColorLayout { is_bytes: false, has_alpha: false };
 
-/// Vertices, with red, green and blue after the coordinates of those that have a colour, texture coordinates if there
-/// are some, then faces: polygons as such, unless there is a texture, which belongs to the corners of triangles.
+/// The names of material files, if faces have materials, vertices, with red, green and blue after the coordinates of those that have a colour, texture coordinates if there
+/// are some, then faces with their materials: polygons as such, unless there is a texture, which belongs to the corners of triangles.
 pub(in crate::formats) fn write(soup: &Soup, budget: &Budget) -> Result<Vec<u8>, WriteError> {
     const VERTEX_BYTES_MAX: usize = 160;
     const FACE_BYTES_MAX: usize = 80;
     const TEXTURE_BYTES_MAX: usize = 60;
     let mut text = Text::new(budget);
+    put_libraries(&mut text, &soup.materials);
     for (i, p) in soup.positions.iter().enumerate() {
         text.before_item(i, VERTEX_BYTES_MAX)?;
         text.word("v ");
@@ -39,8 +41,11 @@ pub(in crate::formats) fn write(soup: &Soup, budget: &Budget) -> Result<Vec<u8>,
         put_faces(&mut text, soup)?;
         return Ok(text.into_bytes());
     }
+    let name_bytes_max = if soup.materials.is_empty() { 0 } else { NAME_BYTES_MAX + 8 };
+    let mut material = MaterialWriter::default();
     for (t, corners) in soup.triangles.iter().enumerate() {
-        text.before_item(t, FACE_BYTES_MAX)?;
+        text.before_item(t, FACE_BYTES_MAX + name_bytes_max)?;
+        material.before_face(&mut text, &soup.materials, soup.face_of(t as u32));
         let points = soup.texture.corners.get(t).filter(|points| points[0] != NO_POINT);
         text.word("f");
         for (k, &v) in corners.iter().enumerate() {
@@ -59,11 +64,13 @@ pub(in crate::formats) fn write(soup: &Soup, budget: &Budget) -> Result<Vec<u8>,
 fn put_faces(text: &mut Text<'_>, soup: &Soup) -> Result<(), WriteError> {
     /// A number, and a third of what stands around those of a triangle.
     const CORNER_BYTES_MAX: usize = 16;
-    let mut corner_count = 0;
-    for (_, corners) in soup.faces() {
+    let name_bytes_max = if soup.materials.is_empty() { 0 } else { NAME_BYTES_MAX + 8 };
+    let (mut corner_count, mut material) = (0, MaterialWriter::default());
+    for (first, corners) in soup.faces() {
+        material.before_face(text, &soup.materials, soup.face_of(first));
         text.word("f");
         for &v in corners {
-            text.before_item(corner_count, CORNER_BYTES_MAX)?;
+            text.before_item(corner_count, CORNER_BYTES_MAX + name_bytes_max)?;
             corner_count += 1;
             text.word(" ");
             text.integer(i64::from(v) + 1);

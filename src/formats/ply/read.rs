@@ -9,10 +9,10 @@ use crate::formats::faces::Faces;
 use crate::formats::numbers::index;
 use crate::formats::{Precision, ReadError, ReadOptions};
 use crate::geom::DVec3;
-use crate::mesh::{Color, Places, Soup};
+use crate::mesh::{Color, Places, Segment, Soup};
 
-/// Reads the elements `vertex` and `face` (or `tristrips`, each of whose triangles becomes a face) with their colours, in
-/// the layout that the header states. Other elements and properties are skipped.
+/// Reads the elements `vertex` and `face` (or `tristrips`, each of whose triangles becomes a face) with their colours, and
+/// `edge`, in the layout that the header states. Other elements and properties are skipped.
 pub(in crate::formats) fn read(
     bytes: &[u8],
     options: &ReadOptions,
@@ -40,14 +40,16 @@ fn read_body(
             _ if element.count == 0 => {}
             b"vertex" => mesh.read_vertices(element, &mut source)?,
             b"face" => mesh.read_faces(element, &mut source)?,
+            b"edge" => mesh.read_edges(element, &mut source)?,
             b"tristrips" => mesh.read_strips(element, &mut source)?,
             _ if element.properties.is_empty() => {}
             _ => source.read_items(element, &Plan::new(element), |_, _| ())?,
         }
     }
     let soup = mesh.faces.into_soup(mesh.positions, &options.limits, budget)?;
-    let Mesh { vertex_colors, face_colors, places, .. } = mesh;
-    Ok(Soup { vertex_colors, face_colors, places, ..soup })
+    let Mesh { vertex_colors, face_colors, places, mut segments, .. } = mesh;
+    segments.retain(|segment| segment.ends.iter().all(|&v| (v as usize) < soup.positions.len()));
+    Ok(Soup { vertex_colors, face_colors, places, segments, ..soup })
 }
 
 /// What was read so far.
@@ -58,6 +60,7 @@ struct Mesh {
     faces: Faces,
     face_colors: Vec<Option<Color>>,
     places: Places,
+    segments: Vec<Segment>,
 }
 
 impl Mesh {
@@ -82,12 +85,31 @@ impl Mesh {
         source: &mut Source<'_, V>,
     ) -> Result<(), ReadError> {
         source.options.limits.check_triangles(element.count)?;
-        let plan = Plan::new(element).with_vertices(element, Role::Corners)?.with_colors(element);
+        let plan = Plan::new(element)
+            .with_vertices(element, Role::Corners)?
+            .with_colors(element)
+            .with_color_index(element);
         let _charged = self.faces.reserve(source.fitting(element), source.budget)?;
         source.read_items(element, &plan, |line, item| {
-            note_color(&mut self.face_colors, self.faces.len(), item.color(plan.colors));
+            let color = item.color_index.map(Color::Index).or_else(|| item.color(plan.colors));
+            note_color(&mut self.face_colors, self.faces.len(), color);
             self.faces.push(&item.vertices);
             self.places.face_lines.extend(line);
+        })
+    }
+
+    /// Edges that name no two vertices are skipped as other elements are.
+    fn read_edges<V: Values>(
+        &mut self,
+        element: &Element<'_>,
+        source: &mut Source<'_, V>,
+    ) -> Result<(), ReadError> {
+        let Some(plan) = Plan::new(element).with_ends(element) else {
+            return source.read_items(element, &Plan::new(element), |_, _| ());
+        };
+        let _charged = source.budget.reserve(&mut self.segments, source.fitting(element))?;
+        source.read_items(element, &plan, |line, item| {
+            self.segments.push(Segment { ends: item.ends, line });
         })
     }
 
@@ -157,6 +179,11 @@ impl<V: Values> Source<'_, V> {
             (Role::Channel(k), Kind::One(scalar)) => {
                 item.channels[k] = self.values.number(scalar, Precision::F32)? as f32;
             }
+            (Role::ColorIndex, Kind::One(scalar)) => {
+                let index = i32::try_from(self.values.integer(scalar)?).ok();
+                item.color_index = index.filter(|&index| index >= 0);
+            }
+            (Role::End(k), Kind::One(scalar)) => item.ends[k] = index(self.values.integer(scalar)?),
             (_, Kind::One(scalar)) => self.values.skip(scalar, 1)?,
             (_, Kind::List { count, item: scalar }) => {
                 let place = self.values.place();
@@ -194,6 +221,8 @@ struct Item {
     xyz: [f64; 3],
     channels: [f32; 4],
     vertices: Vec<u32>,
+    ends: [u32; 2],
+    color_index: Option<i32>,
 }
 
 impl Item {
@@ -307,6 +336,20 @@ mod tests {
             format!("{}element tristrips 1\nproperty list int int vertex_indices\n", XYZ.replace('3', "5"));
         let soup = read(&header, "0 0 0 1 0 0 0 1 0 1 1 0 0 2 0\n9 0 1 2 3 -1 2 3 4 4").unwrap();
         assert_eq!(soup.triangles, [[0, 1, 2], [2, 1, 3], [2, 3, 4]]);
+    }
+
+    #[test]
+    fn edges_are_segments_where_they_name_vertices_that_are_there() {
+        let edges = "element edge 3\nproperty int vertex1\nproperty uchar red\nproperty int vertex2\n";
+        let soup =
+            read(&format!("{XYZ}{edges}{FACE}"), "0 0 0\n1 0 0\n0 1 0\n0 255 1\n2 0 3\n1 9 -1\n3 0 1 2")
+                .unwrap();
+        assert_eq!(soup.segments, [Segment { ends: [0, 1], line: Some(15) }]);
+        let other = edges.replace("vertex2", "length");
+        let soup =
+            read(&format!("{XYZ}{other}{FACE}"), "0 0 0\n1 0 0\n0 1 0\n0 255 1\n2 0 3\n1 9 -1\n3 0 1 2")
+                .unwrap();
+        assert_eq!((soup.segments.len(), soup.triangles.len()), (0, 1));
     }
 
     #[test]

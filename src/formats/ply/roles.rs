@@ -14,6 +14,10 @@ pub(super) enum Role {
     Corners,
     /// The vertices of triangle strips.
     Strips,
+    /// The number of a colour in a colour map.
+    ColorIndex,
+    /// An end of an edge.
+    End(usize),
     Other,
 }
 
@@ -60,6 +64,28 @@ impl Plan {
             }
             _ => Err(lacks(element, "a list of integers vertex_indices")),
         }
+    }
+
+    /// Notes the number of a colour.
+    pub(super) fn with_color_index(mut self, element: &Element<'_>) -> Self {
+        if let Some(i) = element.find(&["color_index"])
+            && matches!(self.properties[i].1, Kind::One(scalar) if scalar.is_integer())
+        {
+            self.properties[i].0 = Role::ColorIndex;
+        }
+        self
+    }
+
+    /// Notes both ends of an edge, if they are there.
+    pub(super) fn with_ends(mut self, element: &Element<'_>) -> Option<Self> {
+        for (k, name) in ["vertex1", "vertex2"].into_iter().enumerate() {
+            let i = element.find(&[name])?;
+            if !matches!(self.properties[i].1, Kind::One(scalar) if scalar.is_integer()) {
+                return None;
+            }
+            self.properties[i].0 = Role::End(k);
+        }
+        Some(self)
     }
 
     /// Notes the colour channels, if red, green and blue are there and all channels are bytes or all are floats.

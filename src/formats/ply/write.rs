@@ -6,7 +6,8 @@ use crate::formats::decimals::Text;
 use crate::formats::{Encoding, WriteError};
 use crate::mesh::{Color, Soup};
 
-/// Vertices and faces with their colours. Coordinates are `float` if that holds all of them exactly, otherwise `double`.
+/// Vertices and faces with their colours; face colours that are numbers of a colour map are the property `color_index`,
+/// which is -1 for the others. Coordinates are `float` if that holds all of them exactly, otherwise `double`.
 pub(in crate::formats) fn write(
     soup: &Soup,
     encoding: Encoding,
@@ -26,6 +27,8 @@ struct Plan {
     is_signed_index: bool,
     vertex_colors: Option<ColorLayout>,
     face_colors: Option<ColorLayout>,
+    /// Some face colour is a number of a colour map.
+    has_color_index: bool,
 }
 
 impl Plan {
@@ -37,6 +40,7 @@ impl Plan {
             is_signed_index: i32::try_from(soup.positions.len()).is_ok(),
             vertex_colors: ColorLayout::of(&soup.vertex_colors),
             face_colors: ColorLayout::of(&soup.face_colors),
+            has_color_index: soup.face_colors.iter().any(|color| matches!(color, Some(Color::Index(_)))),
         }
     }
 
@@ -51,12 +55,13 @@ impl Plan {
         format!(
             "ply\nformat {layout} 1.0\n\
             element vertex {}\nproperty {real} x\nproperty {real} y\nproperty {real} z\n{}\
-            element face {}\nproperty list uchar {index} vertex_indices\n{}\
+            element face {}\nproperty list uchar {index} vertex_indices\n{}{}\
             end_header\n",
             soup.positions.len(),
             color_properties(self.vertex_colors),
             soup.triangles.len(),
             color_properties(self.face_colors),
+            if self.has_color_index { "property int color_index\n" } else { "" },
         )
     }
 }
@@ -74,6 +79,14 @@ fn vertex_color(soup: &Soup, vertex: usize) -> Option<Color> {
 
 fn face_color(soup: &Soup, triangle: usize) -> Option<Color> {
     soup.face_colors.get(soup.face_of(triangle as u32) as usize).copied().flatten()
+}
+
+/// The number in a colour map; -1 when the colour is none.
+fn color_index(soup: &Soup, triangle: usize) -> i32 {
+    match face_color(soup, triangle) {
+        Some(Color::Index(index)) => index,
+        _ => -1,
+    }
 }
 
 fn text(soup: &Soup, plan: &Plan, encoding: Encoding, budget: &Budget) -> Result<Vec<u8>, WriteError> {
@@ -99,6 +112,10 @@ fn text(soup: &Soup, plan: &Plan, encoding: Encoding, budget: &Budget) -> Result
         if let Some(layout) = plan.face_colors {
             text.color(face_color(soup, t), layout);
         }
+        if plan.has_color_index {
+            text.word(" ");
+            text.integer(i64::from(color_index(soup, t)));
+        }
         text.word("\n");
     }
     Ok(text.into_bytes())
@@ -112,7 +129,7 @@ fn binary<const BIG: bool>(
 ) -> Result<Vec<u8>, WriteError> {
     let header = plan.header(soup, encoding);
     let vertex_bytes = if plan.is_float32 { 12 } else { 24 } + color_bytes(plan.vertex_colors);
-    let face_bytes = 13 + color_bytes(plan.face_colors);
+    let face_bytes = 13 + color_bytes(plan.face_colors) + if plan.has_color_index { 4 } else { 0 };
     let length = header.len() + vertex_bytes * soup.positions.len() + face_bytes * soup.triangles.len();
     let (mut out, _charged) = budget.vec::<u8>(length)?;
     out.extend_from_slice(header.as_bytes());
@@ -142,6 +159,9 @@ fn binary<const BIG: bool>(
             put::<BIG, 4>(&mut out, v.to_le_bytes());
         }
         put_color::<BIG>(&mut out, plan.face_colors, || face_color(soup, t));
+        if plan.has_color_index {
+            put::<BIG, 4>(&mut out, color_index(soup, t).to_le_bytes());
+        }
     }
     Ok(out)
 }
@@ -213,6 +233,31 @@ mod tests {
         assert!(header.ends_with("property float alpha\n"), "{header}");
         let body = String::from_utf8_lossy(&bytes)[header.len() + "end_header\n".len()..].to_owned();
         assert_eq!(body, "0 0 0 1 2 3\n0.1 0 0 255 255 255\n0 1 0 4 5 6\n3 0 1 2 1.0 0.5 0.0 0.25\n");
+    }
+
+    #[test]
+    fn face_colours_that_are_numbers_come_back_beside_others() {
+        let bytes = Color::Bytes([1, 2, 3], None);
+        for colors in
+            [[Some(Color::Index(7)), None, Some(Color::Index(0))], [Some(Color::Index(7)), Some(bytes), None]]
+        {
+            let soup = Soup {
+                triangles: vec![[0, 1, 2]; 3],
+                face_count: 3,
+                face_colors: colors.to_vec(),
+                ..soup(0.1)
+            };
+            for encoding in
+                [Encoding::PlyAscii, Encoding::PlyBinaryLittleEndian, Encoding::PlyBinaryBigEndian]
+            {
+                let written = write(&soup, encoding, &Budget::unlimited()).unwrap();
+                let options = crate::formats::ReadOptions::default();
+                let read = crate::formats::read(&written, encoding, &options, &Budget::unlimited()).unwrap();
+                // Beside colours with channels what has none is white.
+                let white = colors.contains(&Some(bytes)).then_some(Color::Bytes([255; 3], None));
+                assert_eq!(read.face_colors, colors.map(|color| color.or(white)), "{encoding:?}");
+            }
+        }
     }
 
     #[test]

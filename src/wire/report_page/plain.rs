@@ -17,6 +17,7 @@ pub(super) fn defect(code: &str) -> &'static str {
         "duplicate-face" => "Some faces are there more than once.",
         "opposite-duplicate-face" => "Some walls have two sides and nothing between them.",
         "isolated-vertex" => "Some points belong to no face.",
+        "isolated-edge" => "Some lines belong to no face.",
         "duplicate-vertex" => "Some points are there more than once.",
         "isolated-face" => "Some faces hang in the air on their own.",
         "boundary-loop" => "The surface has holes or open rims: it is not watertight.",
