@@ -377,6 +377,7 @@ fn distance(mesh: &Soup, result: &Simplified, budget: &Budget) -> Result<Option<
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::Materials;
 
     #[test]
     fn targets_are_met_from_the_finest_to_the_coarsest() {
@@ -393,9 +394,15 @@ mod tests {
     }
 
     #[test]
-    fn faces_of_one_colour_are_one_group() {
+    fn faces_of_one_colour_and_material_are_one_group() {
         let (red, other) = (Some(Color::Bytes([255, 0, 0], None)), Some(Color::Index(7)));
-        let mesh = Soup { face_colors: vec![red, other, None, red], ..Soup::default() };
+        let mut mesh = Soup { face_colors: vec![red, other, None, red], face_count: 4, ..Soup::default() };
         assert_eq!(face_groups(&mesh), [0, 1, 2, 0]);
+        let names = vec![b"wood".to_vec(), b"tin".to_vec()];
+        mesh.materials = Materials { names, of_face: vec![0, 0, 0, 1], ..Materials::default() };
+        assert_eq!(face_groups(&mesh), [0, 1, 2, 3]);
+        mesh.face_colors = Vec::new();
+        assert_eq!(face_groups(&mesh), [0, 0, 0, 1]);
+        assert!(face_groups(&Soup { face_count: 4, ..Soup::default() }).is_empty());
     }
 }

@@ -218,3 +218,24 @@ fn texture_stays_where_triangles_stay_and_what_is_lost_is_said() {
     let said = plain.report.actions.iter().find(|action| action.step == "texture").unwrap();
     assert_eq!(said.changes, [("triangles_with_texture", 0), ("triangles_without_texture", 4)]);
 }
+
+#[test]
+fn materials_stay_with_their_faces_and_what_is_lost_is_said() {
+    // A pyramid whose base has its own vertices, so that it is welded, and that has a copy of a side.
+    let text = "mtllib wood.mtl\nv 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 2 2 3\nv 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\n\
+        usemtl sides\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf 4 1 5\nusemtl base\nf 9 8 7 6\n";
+    let answer =
+        |options: Options| run(Operation::Repair, text.as_bytes(), &options, &Budget::unlimited()).unwrap();
+    let welded = answer(Options::default());
+    let output = String::from_utf8(welded.output.unwrap().bytes.unwrap()).unwrap();
+    assert!(output.starts_with("mtllib wood.mtl\n"), "{output}");
+    let words = |line: &str| line.split(' ').next().unwrap_or_default().to_owned();
+    let faces: Vec<String> =
+        output.lines().map(words).filter(|word| word == "f" || word == "usemtl").collect();
+    assert_eq!(faces, ["usemtl", "f", "f", "f", "f", "usemtl", "f", "f"]);
+    assert!(welded.report.actions.iter().all(|action| action.step != "materials"));
+
+    let plain = answer(Options { output_format: Some(Format::Stl), ..Options::default() });
+    let said = plain.report.actions.iter().find(|action| action.step == "materials").unwrap();
+    assert_eq!(said.changes, [("triangles_with_material", 0), ("triangles_without_material", 6)]);
+}
