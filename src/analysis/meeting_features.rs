@@ -107,30 +107,34 @@ pub(super) fn meetings(cx: &Context<'_>, sides: &PolygonSides, contact: &Contact
     if f.face == g.face {
         return Vec::new();
     }
-    let mut found = Vec::new();
+    let (mut found, mut is_derived) = (Vec::new(), false);
     for (f, g) in [(f, g), (g, f)] {
         for (&v, &p) in f.vertices.iter().zip(&f.at).filter(|(v, _)| !g.vertices.contains(v)) {
             found.extend(vertex_on(v, p, &g));
         }
-        for (ends, at, _) in f.sides().filter(|side| side.2) {
-            if passes_through(at, g.at) {
+        for (ends, _, is_edge) in f.sides().filter(|side| passes_through(side.1, g.at)) {
+            is_derived = true;
+            if is_edge {
                 found.push(Meeting { test: ProximityTest::EdgeFace, a: ascending(ends), b: g.face() });
             }
         }
     }
     for (e, at_e, is_edge_e) in f.sides() {
         for (h, at_h, is_edge_h) in g.sides().filter(|side| !side.0.iter().any(|v| e.contains(v))) {
-            if (is_edge_e || is_edge_h) && are_crossing([at_e, at_h]) {
+            if are_crossing([at_e, at_h]) {
+                is_derived = true;
                 let (e, h) = (ascending(e), ascending(h));
                 found.extend(match (is_edge_e, is_edge_h) {
                     (true, true) => Some(Meeting { test: ProximityTest::EdgeEdge, a: e.min(h), b: e.max(h) }),
                     (true, false) => through_face(e, at_e, &g),
-                    _ => through_face(h, at_h, &f),
+                    (false, true) => through_face(h, at_h, &f),
+                    (false, false) => None,
                 });
             }
         }
     }
-    if found.is_empty() {
+    // What only meets sides inside a polygon goes on in its next triangle.
+    if found.is_empty() && !is_derived {
         let [a, b] = [f.face, g.face];
         found.push(Meeting { test: ProximityTest::FaceFace, a: [NONE, a.min(b)], b: [NONE, a.max(b)] });
     }

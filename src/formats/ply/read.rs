@@ -344,7 +344,7 @@ mod tests {
         let soup =
             read(&format!("{XYZ}{edges}{FACE}"), "0 0 0\n1 0 0\n0 1 0\n0 255 1\n2 0 3\n1 9 -1\n3 0 1 2")
                 .unwrap();
-        assert_eq!(soup.segments, [Segment { ends: [0, 1], line: Some(15) }]);
+        assert_eq!(soup.segments, [Segment { ends: [0, 1], line: Some(17) }]);
         let other = edges.replace("vertex2", "length");
         let soup =
             read(&format!("{XYZ}{other}{FACE}"), "0 0 0\n1 0 0\n0 1 0\n0 255 1\n2 0 3\n1 9 -1\n3 0 1 2")
