@@ -50,11 +50,13 @@ fn quoted_line(line: &str) -> String {
     }
 }
 
-/// A number such as `1e30` with the point and the sign that YAML 1.1 asks for; without them it is a text there.
+/// A number such as `1e30` or `-1e-30` with the point and the sign that YAML 1.1 asks for; without them it is a text there.
 fn power_of_ten(word: &str) -> Option<String> {
     let (digits, power) = word.split_once('e')?;
     let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
-    (is_number(digits) && is_number(power)).then(|| format!("{digits}.0e+{power}"))
+    let (sign, power) = power.strip_prefix('-').map_or(("+", power), |power| ("-", power));
+    let is_float = is_number(digits.strip_prefix('-').unwrap_or(digits)) && is_number(power);
+    is_float.then(|| format!("{digits}.0e{sign}{power}"))
 }
 
 #[cfg(test)]
@@ -66,7 +68,9 @@ mod tests {
         let bare = "enum:\n- obj\n- off\n- 'yes'\nno:\n  default: No\n  y: office\n- n: on\n";
         let safe = "enum:\n- obj\n- 'off'\n- 'yes'\n'no':\n  default: 'No'\n  'y': office\n- 'n': 'on'\n";
         assert_eq!(quoted(bare), safe);
-        assert_eq!(quoted("maximum: 1e30\npattern: 1e\n"), "maximum: 1.0e+30\npattern: 1e\n");
+        for (bare, safe) in [("1e30", "1.0e+30"), ("-1e30", "-1.0e+30"), ("1e-30", "1.0e-30"), ("1e", "1e")] {
+            assert_eq!(quoted(&format!("maximum: {bare}\n")), format!("maximum: {safe}\n"));
+        }
     }
 
     #[test]
