@@ -9,19 +9,23 @@ from meshmend_generated import ApiClient, Configuration, JobsApi, OperationsApi
 from meshmend_generated.models import Format, JobState, Operation
 
 
+# The generated code sends JSON wherever an operation takes it too, unless it is told what the bytes are.
+MESH = {"_content_type": "application/octet-stream"}
+
+
 def main(url, path):
     with open(path, "rb") as file:
         mesh = file.read()
     with ApiClient(Configuration(host=url)) as client:
         operations, jobs = OperationsApi(client), JobsApi(client)
-        repaired = operations.repair_with_http_info(body=mesh, output_format=Format.STL)
+        repaired = operations.repair_with_http_info(body=mesh, output_format=Format.STL, **MESH)
         assert repaired.status_code == 200 and len(repaired.data) > 84
         assert repaired.headers["meshmend-fidelity"] in ("exact", "faithful", "changed")
 
-        report = operations.analyze(body=mesh)
+        report = operations.analyze(body=mesh, **MESH)
         assert report.input.format == Format.OFF, report.input
 
-        job = jobs.create_job(body=mesh, operation=Operation.REPAIR)
+        job = jobs.create_job(body=mesh, operation=Operation.REPAIR, **MESH)
         ended = jobs.get_job(id=job.id, wait=60)
         assert ended.state == JobState.SUCCEEDED, ended
         events = jobs.get_job_events_without_preload_content(id=job.id).read()

@@ -2,6 +2,9 @@
 
 use axum::http::{HeaderMap, header};
 
+/// The media type of problems.
+const PROBLEM: &str = "application/problem+json";
+
 /// One media range of an `Accept` header.
 #[derive(Debug, Clone, PartialEq)]
 struct Range {
@@ -46,10 +49,12 @@ impl Range {
 pub(super) struct Accept(Vec<Range>);
 
 impl Accept {
-    /// Reads the header; without one, or with an empty one, everything is accepted.
+    /// Reads the header; without one, or with an empty one, everything is accepted. Problems are told as such whatever is
+    /// accepted, so that a client which names their media type alone, as generated ones do, says nothing of other answers.
     pub(super) fn from_headers(headers: &HeaderMap) -> Self {
         let lines = headers.get_all(header::ACCEPT).iter().filter_map(|value| value.to_str().ok());
-        Self(lines.flat_map(|line| line.split(',')).filter_map(|range| Range::parse(range.trim())).collect())
+        let ranges = lines.flat_map(|line| line.split(',')).filter_map(|range| Range::parse(range.trim()));
+        Self(ranges.filter(|range| range.pattern != PROBLEM).collect())
     }
 
     /// The weight of `media` and how closely the header names it; `None` when it is not accepted.
@@ -99,6 +104,8 @@ mod tests {
         assert_eq!(Accept::from_headers(&HeaderMap::new()).choose(&OFFERS), Some(&"stl"));
         assert_eq!(chosen("*/*"), Some("stl"));
         assert_eq!(chosen(""), Some("stl"));
+        assert_eq!(chosen("application/problem+json"), Some("stl"));
+        assert_eq!(chosen("application/problem+json, application/json"), Some("report"));
     }
 
     #[test]

@@ -5,10 +5,43 @@ use utoipa::openapi::OpenApi;
 /// Words that readers of YAML 1.1 take for booleans, which the writer of YAML 1.2 leaves bare.
 const BOOLEANS: &[&str] = &["y", "n", "yes", "no", "on", "off"];
 
-/// `document` as YAML, in which `off` and `no` are texts to readers of YAML 1.1 too.
+/// `document` as YAML, in which `off` and `no` are texts to readers of YAML 1.1 too, and bytes stand first among what a
+/// request may hold: generators of clients take the first.
 pub(in crate::http) fn yaml(document: &OpenApi) -> String {
     // The document is made of types that all have a form in YAML.
-    quoted(&document.to_yaml().unwrap_or_default())
+    meshes_first(&quoted(&document.to_yaml().unwrap_or_default()))
+}
+
+/// `yaml` with the content `application/json` of each request body behind its other contents.
+fn meshes_first(yaml: &str) -> String {
+    let mut out = String::with_capacity(yaml.len());
+    let mut held = String::new();
+    // How far the request body, and the list of its contents, are indented.
+    let (mut body, mut contents, mut is_held) = (None::<usize>, None::<usize>, false);
+    for line in yaml.lines() {
+        let content = line.trim_start();
+        let indent = line.len() - content.len();
+        if !content.is_empty() {
+            if contents.is_some_and(|contents| indent <= contents) {
+                out.push_str(&std::mem::take(&mut held));
+                (contents, is_held) = (None, false);
+            }
+            if body.is_some_and(|body| indent <= body) {
+                body = None;
+            }
+            match (body, contents) {
+                (_, Some(contents)) if indent == contents + 2 => is_held = content == "application/json:",
+                (Some(body), None) if indent == body + 2 && content == "content:" => contents = Some(indent),
+                (None, _) if content == "requestBody:" => body = Some(indent),
+                _ => {}
+            }
+        }
+        let to = if is_held { &mut held } else { &mut out };
+        to.push_str(line);
+        to.push('\n');
+    }
+    out.push_str(&held);
+    out
 }
 
 /// `yaml` with every bare word of [`BOOLEANS`] in quotes, as an item, a value or a key.
@@ -71,6 +104,23 @@ mod tests {
         for (bare, safe) in [("1e30", "1.0e+30"), ("-1e30", "-1.0e+30"), ("1e-30", "1.0e-30"), ("1e", "1e")] {
             assert_eq!(quoted(&format!("maximum: {bare}\n")), format!("maximum: {safe}\n"));
         }
+    }
+
+    #[test]
+    fn bytes_stand_before_json_in_requests_and_nothing_else_moves() {
+        let json = "        application/json:\n          schema: a\n";
+        let bytes = "        model/stl:\n          schema: b\n";
+        let with = |contents: [&str; 2]| {
+            let [first, second] = contents;
+            let answer = format!("      content:\n{json}{bytes}");
+            format!(
+                "post:\n    requestBody:\n      content:\n{first}{second}      required: true\n    other:\n{answer}"
+            )
+        };
+        assert_eq!(meshes_first(&with([json, bytes])), with([bytes, json]));
+        assert_eq!(meshes_first(&with([bytes, json])), with([bytes, json]));
+        let last = format!("    requestBody:\n      content:\n{json}{bytes}");
+        assert_eq!(meshes_first(&last), format!("    requestBody:\n      content:\n{bytes}{json}"));
     }
 
     #[test]
