@@ -4,17 +4,16 @@
 #   scripts/test.sh              every step
 #   scripts/test.sh STEP...      only these (see `steps` below)
 #
-# Needs Rust (rustup or Debian) and a C linker; python3 with venv, and for the step `clients` Java and Node, are installed
-# where they are missing and root or sudo allows it. Everything else lands under target/.
+# Needs Rust (rustup or Debian) and a C compiler; python3 with venv, and for the step `clients` Java and Node, are installed
+# where they are missing and root or sudo allows it. Where that is not possible, that step says so and is left out.
+# Everything else lands under target/.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never} CARGO_INCREMENTAL=0 PYTHONDONTWRITEBYTECODE=1
 # Settings of the caller's own service must not reach the tests.
 for name in $(compgen -e | grep '^MESHMEND_' | grep -v -e '^MESHMEND_CORPUS$'); do unset "$name"; done
 
-steps=(format lint lint_engine lint_otel build tests doc_tests fixtures contract fuzz_contract licences)
-# Only when they are named: the clients of two generators do not do everything yet that this step asks of them.
-more_steps=(clients)
+steps=(format lint lint_engine lint_otel build tests doc_tests fixtures contract fuzz_contract clients licences)
 scratch=target/test-run
 python=target/python/bin
 server_pid=
@@ -22,10 +21,14 @@ server_url=
 
 note() { printf '\n== %s\n' "$*"; }
 
-is_chosen() { [[ " ${chosen[*]} " == *" $1 "* ]]; }
-
 as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"; elif command -v sudo >/dev/null; then sudo -n "$@"; else return 1; fi
+}
+
+install_packages() {
+  echo "installing $*"
+  as_root apt-get update -q &&
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get install -qy --no-install-recommends "$@"
 }
 
 # --- what the tests need -------------------------------------------------------------------------------------------
@@ -37,15 +40,8 @@ set_up() {
   python3 -c 'import venv, ensurepip' 2>/dev/null || missing+=(python3 python3-venv)
   # The tests run every line of docs/http.md.
   command -v curl >/dev/null || missing+=(curl ca-certificates)
-  if is_chosen clients; then
-    # A jar and scripts: generators of clients.
-    command -v java >/dev/null || missing+=(default-jre-headless)
-    command -v npm >/dev/null || missing+=(nodejs npm)
-  fi
   if [ ${#missing[@]} -gt 0 ]; then
-    echo "installing ${missing[*]}"
-    as_root apt-get update -q && as_root env DEBIAN_FRONTEND=noninteractive apt-get install -qy --no-install-recommends "${missing[@]}" ||
-      { echo "cannot install ${missing[*]}: install them and run this again"; return 1; }
+    install_packages "${missing[@]}" || { echo "cannot install ${missing[*]}: install them and run this again"; return 1; }
   fi
   cmp -s scripts/requirements.txt target/python/requirements.txt && return 0
   rm -rf target/python && python3 -m venv target/python &&
@@ -94,7 +90,20 @@ fuzz_contract() {
 
 # Clients that three generators make of openapi.yaml: each repairs a mesh, reads a report, waits for a job, reads events.
 clients() {
-  local into=target/clients
+  set_up_clients || { echo "not run: what the generators of clients need cannot be installed here"; return 0; }
+  start_server || return 1
+  scripts/clients/run.sh "$server_url"
+  end_server_with $?
+}
+
+# Generators of clients are a jar and scripts.
+set_up_clients() {
+  local into=target/clients missing=()
+  command -v java >/dev/null || missing+=(default-jre-headless)
+  command -v npm >/dev/null || missing+=(nodejs npm)
+  if [ ${#missing[@]} -gt 0 ]; then
+    install_packages "${missing[@]}" || return 1
+  fi
   mkdir -p "$into" || return 1
   if ! cmp -s scripts/clients/requirements.txt $into/python/requirements.txt; then
     rm -rf $into/python && python3 -m venv $into/python &&
@@ -105,9 +114,6 @@ clients() {
     rm -rf $into/node && mkdir -p $into/node && cp scripts/clients/package.json $into/node/ &&
       npm install --prefix $into/node --no-audit --no-fund --silent && cp scripts/clients/package.json $into/node/installed.json || return 1
   fi
-  start_server || return 1
-  scripts/clients/run.sh "$server_url"
-  end_server_with $?
 }
 
 licences() {
@@ -167,7 +173,7 @@ trap stop_server EXIT
 
 chosen=("${@:-${steps[@]}}")
 for step in "${chosen[@]}"; do
-  [[ " ${steps[*]} ${more_steps[*]} " == *" $step "* ]] || { echo "no step $step; there are: ${steps[*]} ${more_steps[*]}"; exit 2; }
+  [[ " ${steps[*]} " == *" $step "* ]] || { echo "no step $step; there are: ${steps[*]}"; exit 2; }
 done
 mkdir -p "$scratch"
 summary=()
