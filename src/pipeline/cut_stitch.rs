@@ -3,14 +3,15 @@
 use super::input::Input;
 use super::output::{Made, unchanged};
 use super::plan::{Attempt, Step};
-use super::{Answer, Failure, Operation, Options, Outcome, Report};
-use crate::budget::{Budget, Stage, Stopped};
-use crate::mesh::{ChosenEdges, CutMethod, Validity};
-use crate::repair::Draft;
+use super::{Action, Answer, Failure, Operation, Options, Outcome, Report};
+use crate::budget::{Budget, CHECK_EVERY, Stage, Stopped};
+use crate::formats::{Encoding, Format};
+use crate::mesh::{ChosenEdges, CutMethod, Soup, UnionFind, Validity, triangle_of};
 use crate::repair::cut::CutOptions;
 use crate::repair::duplicates::OppositePairs;
 use crate::repair::polygons::DegenerateFaces;
 use crate::repair::snap::SnapOptions;
+use crate::repair::{Draft, Faced};
 use crate::spatial::coincident_f64;
 
 /// How a mesh is cut and stitched.
@@ -88,19 +89,80 @@ impl CutStitchChoices {
 pub(super) fn cut_stitch(input: &Input, options: &Options, budget: &Budget) -> Result<Answer, Failure> {
     let report = input.report(Operation::CutStitch, budget)?;
     let before = report.before.as_ref();
-    let mut attempt = Attempt::start(&input.soup, before);
+    let mut attempt = Attempt::start_with_polygons(&input.soup, before);
     let _charge = budget.charge(3 * attempt.draft.bytes())?;
-    let (whole, _) = Draft::from_soup(&input.soup);
+    let (whole, _) = Draft::with_polygons(&input.soup);
     let steps = options.cut_stitch.steps(options.cut_stitch.chosen_of(&whole, budget)?);
     budget.stage(Stage::Repair, || attempt.run(&steps, &input.soup, before, budget))?;
-    let Attempt { draft, actions, .. } = attempt;
+    let Attempt { draft, mut actions, .. } = attempt;
     let has_changed = draft != whole || !input.soup.face_faults.is_empty();
     drop(whole);
-    let report = Report { actions, ..report };
-    if !has_changed && input.may_come_back_as(input.output_encoding(options)) {
+    let encoding = input.output_encoding(options);
+    if !has_changed && input.may_come_back_as(encoding) {
+        let report = Report { actions, ..report };
         return Ok(unchanged(input, options, report, Outcome::CutStitched));
     }
-    let soup = draft.to_soup(&input.soup);
-    let made = Made { soup, origins: &draft.triangle_origin, outcome: |_| Outcome::CutStitched };
+    let (faced, restored) = faces_of(draft, &input.soup, encoding, budget)?;
+    actions.extend(restored);
+    let report = Report { actions, ..report };
+    let made = Made { soup: faced.soup, origins: &faced.origins, outcome: |_| Outcome::CutStitched };
     made.returned(input, options, report, budget)
+}
+
+/// The draft as what a file of this `encoding` holds, and what is told of it when the `source` has polygons.
+fn faces_of(
+    draft: Draft,
+    source: &Soup,
+    encoding: Encoding,
+    budget: &Budget,
+) -> Result<(Faced, Option<Action>), Stopped> {
+    if draft.polygons.is_empty() {
+        let soup = draft.to_soup(source);
+        return Ok((Faced { soup, origins: draft.triangle_origin, polygons_split: 0 }, None));
+    }
+    let faces = draft.face_count() as u64;
+    let components = components(&draft, budget)?;
+    let (faced, polygons, reason) = match encoding.format() {
+        Format::Stl => {
+            let soup = draft.to_soup(source);
+            let polygons_split = draft.polygons.polygon_count();
+            let faced = Faced { soup, origins: draft.triangle_origin, polygons_split };
+            (faced, 0, "STL holds triangles alone")
+        }
+        Format::Obj | Format::Off | Format::Ply => {
+            let faced = draft.to_faces(source, budget)?;
+            let polygons = faced.soup.polygons.faces.len() as u64;
+            let reason = match faced.polygons_split {
+                0 => "",
+                _ => {
+                    "polygons that are not flat any more, and that readers would split into another surface, are triangles"
+                }
+            };
+            (faced, polygons, reason)
+        }
+    };
+    let changes = vec![
+        ("faces", faces),
+        ("components", components),
+        ("polygons", polygons),
+        ("polygons_split", faced.polygons_split),
+    ];
+    let (step, reason) = ("restore-polygons", reason.to_owned());
+    let action = Action { step, causes: Vec::new(), changes, move_max: 0.0, reason, stitches: None };
+    Ok((faced, Some(action)))
+}
+
+/// Number of parts that edges of faces connect.
+fn components(draft: &Draft, budget: &Budget) -> Result<u64, Stopped> {
+    let groups = draft.edge_groups(budget)?;
+    let mut parts = UnionFind::new(draft.triangles.len());
+    for (e, group) in groups.iter().enumerate() {
+        if e % CHECK_EVERY == 0 {
+            budget.check()?;
+        }
+        for pair in group.windows(2) {
+            parts.unite(triangle_of(pair[0]), triangle_of(pair[1]));
+        }
+    }
+    Ok(u64::from(parts.into_components().count))
 }
