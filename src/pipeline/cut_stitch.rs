@@ -3,10 +3,10 @@
 use super::input::Input;
 use super::output::{Made, unchanged};
 use super::plan::{Attempt, Step};
-use super::{Action, Answer, Failure, Operation, Options, Outcome, Report};
+use super::{Action, Answer, Failure, Operation, Options, Outcome, Refusal, Report};
 use crate::budget::{Budget, CHECK_EVERY, Stage, Stopped};
-use crate::formats::{Encoding, Format};
-use crate::mesh::{ChosenEdges, CutMethod, Soup, UnionFind, Validity, triangle_of};
+use crate::formats::Format;
+use crate::mesh::{ChosenEdges, CutMethod, UnionFind, Validity, triangle_of};
 use crate::repair::cut::CutOptions;
 use crate::repair::duplicates::OppositePairs;
 use crate::repair::polygons::DegenerateFaces;
@@ -94,7 +94,7 @@ pub(super) fn cut_stitch(input: &Input, options: &Options, budget: &Budget) -> R
     let (whole, _) = Draft::with_polygons(&input.soup);
     let steps = options.cut_stitch.steps(options.cut_stitch.chosen_of(&whole, budget)?);
     budget.stage(Stage::Repair, || attempt.run(&steps, &input.soup, before, budget))?;
-    let Attempt { draft, mut actions, .. } = attempt;
+    let Attempt { draft, actions, .. } = attempt;
     let has_changed = draft != whole || !input.soup.face_faults.is_empty();
     drop(whole);
     let encoding = input.output_encoding(options);
@@ -102,54 +102,75 @@ pub(super) fn cut_stitch(input: &Input, options: &Options, budget: &Budget) -> R
         let report = Report { actions, ..report };
         return Ok(unchanged(input, options, report, Outcome::CutStitched));
     }
-    let (faced, restored) = faces_of(draft, &input.soup, encoding, budget)?;
-    actions.extend(restored);
+    let form = match encoding.format() {
+        _ if draft.polygons.is_empty() => Form::Triangles,
+        Format::Stl => Form::Split("STL holds triangles alone"),
+        Format::Obj | Format::Off | Format::Ply => Form::Polygons,
+    };
     let report = Report { actions, ..report };
+    let answer = written(&draft, form, input, options, report.clone(), budget)?;
+    let is_refused = matches!(answer.report.refusal, Some(Refusal::NotRepairable { .. }));
+    if is_refused && form == Form::Polygons {
+        let form = Form::Split("polygons are triangles, as with them it would be no valid solid");
+        return written(&draft, form, input, options, report, budget);
+    }
+    Ok(answer)
+}
+
+/// What becomes of polygons in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Form {
+    /// There are none.
+    Triangles,
+    /// They stay as far as a reader makes the same surface of them.
+    Polygons,
+    /// All become triangles, for this reason.
+    Split(&'static str),
+}
+
+/// The draft written and judged.
+fn written(
+    draft: &Draft,
+    form: Form,
+    input: &Input,
+    options: &Options,
+    mut report: Report,
+    budget: &Budget,
+) -> Result<Answer, Failure> {
+    let as_triangles = |polygons_split| Faced {
+        soup: draft.to_soup(&input.soup),
+        origins: draft.triangle_origin.clone(),
+        polygons_split,
+    };
+    let (faced, reason) = match form {
+        Form::Triangles => (as_triangles(0), ""),
+        Form::Split(reason) => (as_triangles(draft.polygons.polygon_count()), reason),
+        Form::Polygons => {
+            let faced = draft.to_faces(&input.soup, budget)?;
+            let reason = match faced.polygons_split {
+                0 => "",
+                _ => "polygons are triangles where readers would split them into another surface",
+            };
+            (faced, reason)
+        }
+    };
+    if form != Form::Triangles {
+        report.actions.push(restored(draft, &faced, reason, budget)?);
+    }
     let made = Made { soup: faced.soup, origins: &faced.origins, outcome: |_| Outcome::CutStitched };
     made.returned(input, options, report, budget)
 }
 
-/// The draft as what a file of this `encoding` holds, and what is told of it when the `source` has polygons.
-fn faces_of(
-    draft: Draft,
-    source: &Soup,
-    encoding: Encoding,
-    budget: &Budget,
-) -> Result<(Faced, Option<Action>), Stopped> {
-    if draft.polygons.is_empty() {
-        let soup = draft.to_soup(source);
-        return Ok((Faced { soup, origins: draft.triangle_origin, polygons_split: 0 }, None));
-    }
-    let faces = draft.face_count() as u64;
-    let components = components(&draft, budget)?;
-    let (faced, polygons, reason) = match encoding.format() {
-        Format::Stl => {
-            let soup = draft.to_soup(source);
-            let polygons_split = draft.polygons.polygon_count();
-            let faced = Faced { soup, origins: draft.triangle_origin, polygons_split };
-            (faced, 0, "STL holds triangles alone")
-        }
-        Format::Obj | Format::Off | Format::Ply => {
-            let faced = draft.to_faces(source, budget)?;
-            let polygons = faced.soup.polygons.faces.len() as u64;
-            let reason = match faced.polygons_split {
-                0 => "",
-                _ => {
-                    "polygons that are not flat any more, and that readers would split into another surface, are triangles"
-                }
-            };
-            (faced, polygons, reason)
-        }
-    };
+/// What is told of the faces that are written of a file with polygons.
+fn restored(draft: &Draft, faced: &Faced, reason: &str, budget: &Budget) -> Result<Action, Stopped> {
     let changes = vec![
-        ("faces", faces),
-        ("components", components),
-        ("polygons", polygons),
+        ("faces", draft.face_count() as u64),
+        ("components", components(draft, budget)?),
+        ("polygons", faced.soup.polygons.faces.len() as u64),
         ("polygons_split", faced.polygons_split),
     ];
     let (step, reason) = ("restore-polygons", reason.to_owned());
-    let action = Action { step, causes: Vec::new(), changes, move_max: 0.0, reason, stitches: None };
-    Ok((faced, Some(action)))
+    Ok(Action { step, causes: Vec::new(), changes, move_max: 0.0, reason, stitches: None })
 }
 
 /// Number of parts that edges of faces connect.

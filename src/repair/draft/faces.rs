@@ -189,3 +189,57 @@ fn from_the_smallest([a, b, c]: [u32; 3]) -> [u32; 3] {
         _ => [c, a, b],
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::{Encoding, ReadOptions, read};
+
+    fn soup(text: &str) -> Soup {
+        read(text.as_bytes(), Encoding::Obj, &ReadOptions::default(), &Budget::unlimited()).unwrap()
+    }
+
+    /// A triangle, a dart that no fan around its first corner covers, and a pentagon over it.
+    const FACES: &str =
+        "v 9 9 9\nv 0 0 0\nv 4 -3 0\nv 1 0 0\nv 4 3 0\nv 0 5 1\nf 2 3 6\nf 3 4 5 2\nf 2 3 4 5 6\n";
+
+    fn corners(faced: &Faced) -> Vec<Vec<u32>> {
+        faced.soup.faces().map(|(_, corners)| corners.to_vec()).collect()
+    }
+
+    #[test]
+    fn faces_come_back_from_their_first_corners_and_turned_ones_the_other_way_around() {
+        let source = soup(FACES);
+        let (mut draft, changes) = Draft::with_polygons(&source);
+        assert_eq!((changes.count("polygons_split"), changes.count("unused_vertices_dropped")), (0, 1));
+        assert_eq!((draft.face_count(), draft.check()), (3, vec![]));
+        let faced = draft.to_faces(&source, &Budget::unlimited()).unwrap();
+        assert_eq!(corners(&faced), [&[0, 1, 4][..], &[1, 2, 3, 0], &[0, 1, 2, 3, 4]]);
+        assert_eq!((faced.polygons_split, &faced.origins), (0, &(0..6).collect()));
+        assert_eq!(faced.soup.triangles.len(), source.triangles.len());
+        (1..3).for_each(|t| draft.flip(t));
+        let faced = draft.to_faces(&source, &Budget::unlimited()).unwrap();
+        assert_eq!(corners(&faced), [&[0, 1, 4][..], &[1, 0, 3, 2], &[0, 1, 2, 3, 4]]);
+    }
+
+    #[test]
+    fn a_polygon_that_a_reader_would_split_otherwise_is_triangles() {
+        let source = soup("v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nf 1 2 3 4\nf 4 3 2 1\n");
+        let (mut draft, _) = Draft::with_polygons(&source);
+        draft.positions[1] = DVec3::new(0.5, 1.5, 0.25);
+        let faced = draft.to_faces(&source, &Budget::unlimited()).unwrap();
+        // The second begins beside the corner that is pushed in, so that its diagonal stays.
+        assert_eq!((faced.polygons_split, corners(&faced).len()), (1, 3));
+        assert_eq!(corners(&faced)[..2], [[0, 1, 2], [0, 2, 3]]);
+    }
+
+    #[test]
+    fn what_is_left_of_a_polygon_of_which_a_triangle_is_divided_or_dropped_are_triangles() {
+        let source = soup(FACES);
+        let (mut draft, _) = Draft::with_polygons(&source);
+        draft.replace(1, &[[1, 2, 4], [2, 3, 4]]);
+        assert_eq!((draft.face_count(), draft.check()), (5, vec![]));
+        draft.retain_triangles(&[true, true, true, true, true, false, true]);
+        assert_eq!((draft.face_count(), draft.check()), (6, vec![]));
+    }
+}
