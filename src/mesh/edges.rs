@@ -145,6 +145,16 @@ impl EdgeGroups {
         None
     }
 
+    /// The half-edges of every edge, in edge order, without diagonals.
+    pub fn edges(&self) -> impl Iterator<Item = &[u32]> {
+        self.iter().take(self.len() - self.diagonals)
+    }
+
+    /// The half-edges of every diagonal.
+    pub fn diagonals(&self) -> impl Iterator<Item = &[u32]> {
+        self.iter().skip(self.len() - self.diagonals)
+    }
+
     /// The half-edges of every edge, in edge order, then those of every diagonal.
     pub fn iter(&self) -> impl Iterator<Item = &[u32]> {
         self.starts.windows(2).map(|w| &self.half_edges[w[0] as usize..w[1] as usize])

@@ -16,7 +16,8 @@ pub fn orient(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
     let _charge = budget.charge(draft.triangles.len() as u64 * 21)?;
     let mut parts = ParityUnionFind::new(draft.triangles.len());
     let mut conflicts = 0;
-    for (e, group) in groups.iter().enumerate() {
+    // The triangles of a polygon are related before an edge can contradict it, so that it turns as a whole.
+    for (e, group) in groups.diagonals().chain(groups.edges()).enumerate() {
         if e % CHECK_EVERY == 0 {
             budget.check()?;
         }

@@ -16,7 +16,8 @@ use crate::geom::{Aabb, are_collinear, is_on_segment};
 use crate::mesh::{divide, edge_of, triangle_of};
 use crate::spatial::Bvh;
 
-/// Divides at every boundary vertex inside a boundary edge. The draft must be welded; collinear triangles are left alone.
+/// Divides at every boundary vertex inside a boundary edge; of several at one place, where the draft is not welded, at the
+/// first. Collinear triangles are left alone.
 ///
 /// # Errors
 /// When the budget stops the run.
@@ -64,13 +65,15 @@ fn vertices_inside(draft: &Draft, boundary: &[u32], budget: &Budget) -> Result<V
         let p = draft.positions[v as usize];
         bvh.visit_box(Aabb::of([p]), budget, |e| {
             let [a, b, _] = edges[e as usize];
-            let is_end = v == a || v == b;
-            if !is_end && is_on_segment(p, draft.positions[a as usize], draft.positions[b as usize]) {
+            let [from, to] = [a, b].map(|v| draft.positions[v as usize]);
+            // By place: where vertices at one place stay apart, that of another is no vertex inside.
+            if p != from && p != to && is_on_segment(p, from, to) {
                 inside.push((boundary[e as usize], v));
             }
         })?;
     }
     sort_along_edges(&mut inside, draft);
+    inside.dedup_by(|(h, v), (g, u)| g == h && draft.positions[*u as usize] == draft.positions[*v as usize]);
     Ok(inside)
 }
 

@@ -115,7 +115,9 @@ fn oracle(faces: &[Face], chosen: &[[u32; 2]]) -> Oracle {
     }
     let mut fans: BTreeMap<u32, BTreeSet<usize>> = BTreeMap::new();
     for (face, classes) in faces.iter().zip(&class) {
-        face.iter().zip(classes).for_each(|(&v, &c)| drop(fans.entry(v).or_default().insert(c)));
+        for (&v, &c) in face.iter().zip(classes) {
+            fans.entry(v).or_default().insert(c);
+        }
     }
     let isolated = fans.iter().filter(|(v, fans)| fans.len() > 1 && !ends.contains(v)).count() as u64;
     let components = part.into_iter().collect::<BTreeSet<_>>().len();

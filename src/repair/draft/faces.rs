@@ -139,7 +139,9 @@ impl Draft {
             all.sort_unstable();
             all
         };
-        if sorted(&read) != sorted(&self.triangles[face.clone()]) && !self.are_in_one_plane(corners) {
+        debug_assert_eq!(read.len(), face.len(), "the triangles {face:?} are no polygon");
+        let is_alike = sorted(&read) == sorted(&self.triangles[face.clone()]);
+        if read.len() != face.len() || !(is_alike || self.are_in_one_plane(corners)) {
             return Ok(false);
         }
         made.origins[face.clone()].sort_unstable();
