@@ -2,7 +2,7 @@
 
 use super::model;
 use crate::wire::{
-    Action, Certificate, Claim, Defect, DefectCode, Deviation, Hole, Level, MeshInfo, Operation,
+    Action, Certificate, Claim, Defect, DefectCode, Deviation, Hole, JoinedEdges, Level, MeshInfo, Operation,
     PrintingCheck, Proposal, Report, Severity, TargetSpec, Witness,
 };
 use std::fmt::Write as _;
@@ -41,6 +41,7 @@ pub(super) fn summary(report: &Report, subject: &Subject) -> String {
     let done: Vec<_> =
         report.actions.iter().filter(|a| a.changes.iter().any(|c| c.count > 0)).map(action_row).collect();
     put_table(&mut text, "done", &done);
+    put_table(&mut text, "edges joined", &report.actions.iter().flat_map(stitch_rows).collect::<Vec<_>>());
     let missed: Vec<_> = report.levels.iter().filter(|level| !level.is_reached).map(missed_row).collect();
     put_table(&mut text, "targets not reached", &missed);
     if let Some(told) = &report.modeller {
@@ -228,6 +229,30 @@ fn action_row(action: &Action) -> [String; 3] {
         (causes, reason) => format!("because of {causes}; {reason}"),
     };
     [action.step.to_owned(), changes.collect::<Vec<_>>().join(", "), why]
+}
+
+/// Pairs of joined edges of one kind that the text has of a step; all that are listed are in the JSON.
+const STITCHES_SHOWN: usize = 8;
+
+/// The pairs of edges that a step joined, and how many more there are.
+fn stitch_rows(action: &Action) -> Vec<[String; 3]> {
+    let Some(stitches) = &action.stitches else { return Vec::new() };
+    let kinds = [
+        ("explicit", &stitches.explicit, stitches.explicit_total),
+        ("implicit", &stitches.implicit, stitches.implicit_total),
+    ];
+    let of_kind = |(kind, pairs, total): (&str, &Vec<JoinedEdges>, u64)| {
+        let edge = |pair: &JoinedEdges, i: usize| {
+            let [a, b] = pair.edges[i];
+            format!("{a}-{b} of face {}", pair.faces[i])
+        };
+        let step = format!("{} ({kind})", action.step);
+        let row = |pair: &JoinedEdges| [step.clone(), edge(pair, 0), format!("with {}", edge(pair, 1))];
+        let more = total - (pairs.len().min(STITCHES_SHOWN)) as u64;
+        let rest = (more > 0).then(|| [step.clone(), format!("and {more} more"), String::new()]);
+        pairs.iter().take(STITCHES_SHOWN).map(row).chain(rest).collect::<Vec<_>>()
+    };
+    kinds.into_iter().flat_map(of_kind).collect()
 }
 
 /// What was asked, how far it came, and what spoke against collapses, the most frequent first.

@@ -2,6 +2,7 @@
 //!
 //! Half-edge `h = 3 t + c` runs from corner `c` of triangle `t` to the next corner. No coordinates here.
 
+use super::Outlines;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::par;
 
@@ -28,11 +29,13 @@ pub fn edge_of(triangles: &[[u32; 3]], h: u32) -> [u32; 2] {
 
 /// All half-edges grouped by undirected edge, edges ordered by (smaller vertex, larger vertex), half-edges inside a
 /// group by id. Any number of triangles may share an edge; a triangle with a repeated corner gives an edge with two
-/// equal ends.
+/// equal ends. After the edges come the diagonals of polygons, if there are some: each a group of its two half-edges.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct EdgeGroups {
     half_edges: Vec<u32>,
     starts: Vec<u32>,
+    /// Groups at the end that are diagonals.
+    diagonals: usize,
 }
 
 /// Parts of the vertex range that are grouped at the same time; fixed, so that the result is too.
@@ -70,10 +73,48 @@ impl EdgeGroups {
             starts.extend(part?);
         }
         starts.push(half_edges.len() as u32);
-        Ok(Self { half_edges, starts })
+        Ok(Self { half_edges, starts, diagonals: 0 })
     }
 
-    /// Number of undirected edges.
+    /// Groups the half-edges of the faces with these `outlines` that `triangles` make: as [`EdgeGroups::build`] when all are
+    /// triangles, otherwise with the diagonals apart from whatever edge joins the same vertices.
+    ///
+    /// # Errors
+    /// When the budget stops the run.
+    pub fn of_faces(
+        triangles: &[[u32; 3]],
+        outlines: &Outlines,
+        vertex_count: usize,
+        budget: &Budget,
+    ) -> Result<Self, Stopped> {
+        let all = Self::build(triangles, vertex_count, budget)?;
+        if !outlines.has_polygons() {
+            return Ok(all);
+        }
+        let _charge = budget.charge(triangles.len() as u64 * 3 * 8)?;
+        let mut edges =
+            Self { half_edges: Vec::with_capacity(all.half_edges.len()), starts: vec![0], diagonals: 0 };
+        let mut diagonals: Vec<u32> = Vec::new();
+        for (e, group) in all.iter().enumerate() {
+            if e % CHECK_EVERY == 0 {
+                budget.check()?;
+            }
+            let before = edges.half_edges.len();
+            edges.half_edges.extend(group.iter().filter(|&&h| !outlines.is_diagonal(h)));
+            if edges.half_edges.len() > before {
+                edges.starts.push(edges.half_edges.len() as u32);
+            }
+            // A face has a diagonal between two vertices once, and its triangles follow each other: so do the two halves.
+            diagonals.extend(group.iter().filter(|&&h| outlines.is_diagonal(h)));
+        }
+        edges.diagonals = diagonals.len() / 2;
+        let first = edges.half_edges.len() as u32;
+        edges.starts.extend((1..=edges.diagonals as u32).map(|i| first + 2 * i));
+        edges.half_edges.extend(diagonals);
+        Ok(edges)
+    }
+
+    /// Number of undirected edges, with diagonals.
     pub fn len(&self) -> usize {
         self.starts.len() - 1
     }
@@ -88,9 +129,10 @@ impl EdgeGroups {
         &self.half_edges[self.starts[e] as usize..self.starts[e + 1] as usize]
     }
 
-    /// The edge with these ends (the smaller first) of the `triangles` it was built from, if there is one. O(log n).
+    /// The edge with these ends (the smaller first) of the `triangles` it was built from, if there is one; a diagonal is
+    /// none. O(log n).
     pub fn find(&self, triangles: &[[u32; 3]], ends: [u32; 2]) -> Option<usize> {
-        let (mut low, mut high) = (0, self.len());
+        let (mut low, mut high) = (0, self.len() - self.diagonals);
         while low < high {
             let middle = low + (high - low) / 2;
             let [a, b] = edge_of(triangles, self.group(middle)[0]);
@@ -103,7 +145,17 @@ impl EdgeGroups {
         None
     }
 
-    /// The half-edges of every edge, in edge order.
+    /// The half-edges of every edge, in edge order, without diagonals.
+    pub fn edges(&self) -> impl Iterator<Item = &[u32]> {
+        self.iter().take(self.len() - self.diagonals)
+    }
+
+    /// The half-edges of every diagonal.
+    pub fn diagonals(&self) -> impl Iterator<Item = &[u32]> {
+        self.iter().skip(self.len() - self.diagonals)
+    }
+
+    /// The half-edges of every edge, in edge order, then those of every diagonal.
     pub fn iter(&self) -> impl Iterator<Item = &[u32]> {
         self.starts.windows(2).map(|w| &self.half_edges[w[0] as usize..w[1] as usize])
     }

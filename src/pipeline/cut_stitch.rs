@@ -3,14 +3,15 @@
 use super::input::Input;
 use super::output::{Made, unchanged};
 use super::plan::{Attempt, Step};
-use super::{Answer, Failure, Operation, Options, Outcome, Report};
-use crate::budget::{Budget, Stage, Stopped};
-use crate::mesh::{ChosenEdges, CutMethod, Validity};
-use crate::repair::Draft;
+use super::{Action, Answer, Failure, Operation, Options, Outcome, Refusal, Report};
+use crate::budget::{Budget, CHECK_EVERY, Stage, Stopped};
+use crate::formats::Format;
+use crate::mesh::{ChosenEdges, CutMethod, UnionFind, Validity, triangle_of};
 use crate::repair::cut::CutOptions;
 use crate::repair::duplicates::OppositePairs;
 use crate::repair::polygons::DegenerateFaces;
 use crate::repair::snap::SnapOptions;
+use crate::repair::{Draft, Faced};
 use crate::spatial::coincident_f64;
 
 /// How a mesh is cut and stitched.
@@ -88,19 +89,101 @@ impl CutStitchChoices {
 pub(super) fn cut_stitch(input: &Input, options: &Options, budget: &Budget) -> Result<Answer, Failure> {
     let report = input.report(Operation::CutStitch, budget)?;
     let before = report.before.as_ref();
-    let mut attempt = Attempt::start(&input.soup, before);
+    let mut attempt = Attempt::start_with_polygons(&input.soup, before);
     let _charge = budget.charge(3 * attempt.draft.bytes())?;
-    let (whole, _) = Draft::from_soup(&input.soup);
+    let (whole, _) = Draft::with_polygons(&input.soup);
     let steps = options.cut_stitch.steps(options.cut_stitch.chosen_of(&whole, budget)?);
     budget.stage(Stage::Repair, || attempt.run(&steps, &input.soup, before, budget))?;
     let Attempt { draft, actions, .. } = attempt;
     let has_changed = draft != whole || !input.soup.face_faults.is_empty();
     drop(whole);
-    let report = Report { actions, ..report };
-    if !has_changed && input.may_come_back_as(input.output_encoding(options)) {
+    let encoding = input.output_encoding(options);
+    if !has_changed && input.may_come_back_as(encoding) {
+        let report = Report { actions, ..report };
         return Ok(unchanged(input, options, report, Outcome::CutStitched));
     }
-    let soup = draft.to_soup(&input.soup);
-    let made = Made { soup, origins: &draft.triangle_origin, outcome: |_| Outcome::CutStitched };
+    let form = match encoding.format() {
+        _ if draft.polygons.is_empty() => Form::Triangles,
+        Format::Stl => Form::Split("STL holds triangles alone"),
+        Format::Obj | Format::Off | Format::Ply => Form::Polygons,
+    };
+    let report = Report { actions, ..report };
+    let answer = written(&draft, form, input, options, report.clone(), budget)?;
+    let is_refused = matches!(answer.report.refusal, Some(Refusal::NotRepairable { .. }));
+    if is_refused && form == Form::Polygons {
+        let form = Form::Split("polygons are triangles, as with them it would be no valid solid");
+        return written(&draft, form, input, options, report, budget);
+    }
+    Ok(answer)
+}
+
+/// What becomes of polygons in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Form {
+    /// There are none.
+    Triangles,
+    /// They stay as far as a reader makes the same surface of them.
+    Polygons,
+    /// All become triangles, for this reason.
+    Split(&'static str),
+}
+
+/// The draft written and judged.
+fn written(
+    draft: &Draft,
+    form: Form,
+    input: &Input,
+    options: &Options,
+    mut report: Report,
+    budget: &Budget,
+) -> Result<Answer, Failure> {
+    let as_triangles = |polygons_split| Faced {
+        soup: draft.to_soup(&input.soup),
+        origins: draft.triangle_origin.clone(),
+        polygons_split,
+    };
+    let (faced, reason) = match form {
+        Form::Triangles => (as_triangles(0), ""),
+        Form::Split(reason) => (as_triangles(draft.polygons.polygon_count()), reason),
+        Form::Polygons => {
+            let faced = draft.to_faces(&input.soup, budget)?;
+            let reason = match faced.polygons_split {
+                0 => "",
+                _ => "polygons are triangles where readers would split them into another surface",
+            };
+            (faced, reason)
+        }
+    };
+    if form != Form::Triangles {
+        report.actions.push(restored(draft, &faced, reason, budget)?);
+    }
+    let made = Made { soup: faced.soup, origins: &faced.origins, outcome: |_| Outcome::CutStitched };
     made.returned(input, options, report, budget)
+}
+
+/// What is told of the faces that are written of a file with polygons.
+fn restored(draft: &Draft, faced: &Faced, reason: &str, budget: &Budget) -> Result<Action, Stopped> {
+    let changes = vec![
+        ("faces", draft.face_count() as u64),
+        ("components", components(draft, budget)?),
+        ("polygons", faced.soup.polygons.faces.len() as u64),
+        ("polygons_split", faced.polygons_split),
+    ];
+    let (step, reason) = ("restore-polygons", reason.to_owned());
+    Ok(Action { step, causes: Vec::new(), changes, move_max: 0.0, reason, stitches: None })
+}
+
+/// Number of parts that edges of faces connect.
+fn components(draft: &Draft, budget: &Budget) -> Result<u64, Stopped> {
+    let groups = draft.edge_groups(budget)?;
+    let mut parts = UnionFind::new(draft.triangles.len());
+    for (e, group) in groups.iter().enumerate() {
+        if e % CHECK_EVERY == 0 {
+            budget.check()?;
+        }
+        for pair in group.windows(2) {
+            parts.unite(triangle_of(pair[0]), triangle_of(pair[1]));
+        }
+    }
+    Ok(u64::from(parts.into_components().count))
 }

@@ -17,6 +17,7 @@ mod rebuild;
 mod remedies;
 mod repair;
 mod simplify;
+mod stitches;
 mod texture;
 mod units;
 
@@ -35,6 +36,7 @@ pub use self::rebuild::{Effort, WrapChoices};
 pub use self::remedies::{
     ChosenPlan, ChosenRemedy, ELEMENTS_MAX, ElementProposal, Plan, PlanMismatch, Proposal, Remedy,
 };
+pub use self::stitches::{JoinedEdges, Stitches};
 use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stopped};
 use crate::certificate::{Certificate, Violation};
@@ -365,6 +367,8 @@ pub struct Action {
     pub move_max: f64,
     /// What was decided, in a sentence, where there was a choice; empty otherwise.
     pub reason: String,
+    /// The edges that a step of `cut-stitch` joined; `None` for other steps and operations.
+    pub stitches: Option<Stitches>,
 }
 
 /// Facts about the uploaded bytes.

@@ -139,7 +139,7 @@ impl Candidate {
         let changes =
             vec![("triangles_with_texture", kept as u64), ("triangles_without_texture", lost as u64)];
         let (step, causes) = ("texture", Vec::new());
-        Some(Action { step, causes, changes, move_max: 0.0, reason: reason.to_owned() })
+        Some(Action { step, causes, changes, move_max: 0.0, reason: reason.to_owned(), stitches: None })
     }
 
     /// What is said of materials of faces, in the same way.
@@ -161,7 +161,7 @@ impl Candidate {
         let changes =
             vec![("triangles_with_material", kept as u64), ("triangles_without_material", lost as u64)];
         let (step, causes) = ("materials", Vec::new());
-        Some(Action { step, causes, changes, move_max: 0.0, reason: reason.to_owned() })
+        Some(Action { step, causes, changes, move_max: 0.0, reason: reason.to_owned(), stitches: None })
     }
 
     /// The candidate as the answer. `origins` name the input's triangle behind each of its triangles ([`NEW`]: none).

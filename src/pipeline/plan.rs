@@ -1,6 +1,7 @@
 //! The repair plan: a list of steps that a client can read, and the loop that runs it.
 
 use super::remedies::Choices;
+use super::stitches::Stitches;
 use super::{Action, Contact};
 use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stopped};
@@ -286,6 +287,8 @@ pub(super) struct Attempt {
     pub(super) steps: Vec<Step>,
     /// What the filling told of each hole.
     pub(super) holes: Vec<HoleReport>,
+    /// True when the edges that steps join are told one by one.
+    lists_stitches: bool,
 }
 
 impl Attempt {
@@ -293,7 +296,14 @@ impl Attempt {
     pub(super) fn start(soup: &Soup, before: Option<&Analysis>) -> Self {
         let (draft, changes) = Draft::from_soup(soup);
         let actions = vec![action("take-usable", &UNUSABLE, changes, soup, before)];
-        Self { draft, actions, steps: Vec::new(), holes: Vec::new() }
+        Self { draft, actions, steps: Vec::new(), holes: Vec::new(), lists_stitches: false }
+    }
+
+    /// The usable faces of `soup`, polygons as such; the edges that steps join are told one by one.
+    pub(super) fn start_with_polygons(soup: &Soup, before: Option<&Analysis>) -> Self {
+        let (draft, changes) = Draft::with_polygons(soup);
+        let actions = vec![action("take-usable", &UNUSABLE, changes, soup, before)];
+        Self { draft, actions, steps: Vec::new(), holes: Vec::new(), lists_stitches: true }
     }
 
     /// Runs `steps`, and notes what each did, and why by the defects found `before`.
@@ -308,7 +318,10 @@ impl Attempt {
             budget.check()?;
             let changes = step.run(&mut self.draft, soup, &mut self.holes, budget)?;
             debug_assert_eq!(self.draft.check(), Vec::<String>::new(), "after {step:?}");
-            self.actions.push(action(step.name(), step.cures(), changes, soup, before));
+            let stitches = (self.lists_stitches && matches!(step, Step::Pinch(..) | Step::Snap(_)))
+                .then(|| Stitches::of(&changes.stitches, soup));
+            let action = action(step.name(), step.cures(), changes, soup, before);
+            self.actions.push(Action { stitches, ..action });
             self.steps.push(step.clone());
         }
         Ok(())
@@ -357,6 +370,7 @@ fn action(
         changes: changes.counts,
         move_max: changes.move_max,
         reason: changes.reason + &parts_with_faces(&changes.removed_parts, soup),
+        stitches: None,
     }
 }
 

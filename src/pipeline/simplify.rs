@@ -249,6 +249,7 @@ pub(super) fn action(report: &simplify::Report) -> Action {
         changes: counts.into_iter().chain(refused).collect(),
         move_max: 0.0,
         reason: if report.is_reached { String::new() } else { "the target was not reached".to_owned() },
+        stitches: None,
     }
 }
 

@@ -165,6 +165,7 @@ mod tests {
             triangle_origin: (0..triangles.len() as u32).collect(),
             two_sided: Vec::new(),
             blends: Default::default(),
+            polygons: Default::default(),
         }
     }
 

@@ -136,6 +136,7 @@ mod tests {
             triangles,
             two_sided: Vec::new(),
             blends: Default::default(),
+            polygons: Default::default(),
         }
     }
 

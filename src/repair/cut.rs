@@ -2,7 +2,7 @@
 
 use super::{Changes, Draft};
 use crate::budget::{Budget, Stopped};
-use crate::mesh::{self, ChosenEdges, CutMethod, EdgeGroups, Marks};
+use crate::mesh::{self, ChosenEdges, CutMethod, Marks};
 
 /// How to cut.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -19,7 +19,7 @@ pub struct CutOptions {
 /// When the budget stops the run.
 pub fn cut(draft: &mut Draft, options: &CutOptions, budget: &Budget) -> Result<Changes, Stopped> {
     let vertex_count = draft.positions.len();
-    let groups = EdgeGroups::build(&draft.triangles, vertex_count, budget)?;
+    let groups = draft.edge_groups(budget)?;
     let chosen = chosen_in(draft, &options.chosen);
     let marks = Marks::find(&draft.triangles, vertex_count, &groups, &chosen, budget)?;
     drop(groups);
@@ -79,6 +79,7 @@ mod tests {
             triangle_origin: vec![0, 1],
             two_sided: Vec::new(),
             blends: Default::default(),
+            polygons: Default::default(),
         }
     }
 

@@ -1,8 +1,12 @@
 //! The mesh that repair steps work on: a plain triangle list that remembers where everything came from.
 
+mod faces;
+
+pub use faces::Faced;
+
 use super::Changes;
 use crate::geom::DVec3;
-use crate::mesh::{Color, NO_POINT, Soup, Texture, triangle_of};
+use crate::mesh::{Color, NO_POINT, PolygonRuns, Soup, Texture, triangle_of};
 
 /// In the place of an origin: made by a repair step.
 pub const NEW: u32 = u32::MAX;
@@ -39,6 +43,8 @@ pub struct Draft {
     pub two_sided: Vec<u32>,
     /// What is behind the new vertices of patches.
     pub blends: Blends,
+    /// Which triangles are polygons; none unless the draft was made with [`Draft::with_polygons`].
+    pub polygons: PolygonRuns,
 }
 
 impl Draft {
@@ -51,6 +57,7 @@ impl Draft {
             triangle_origin: (0..soup.triangles.len() as u32).collect(),
             two_sided: Vec::new(),
             blends: Blends::default(),
+            polygons: Default::default(),
         };
         let dropped = draft.drop_unused_vertices();
         let changes = Changes::counted([
@@ -72,6 +79,7 @@ impl Draft {
             triangle_origin: (0..triangles.len() as u32).collect(),
             two_sided: Vec::new(),
             blends: Default::default(),
+            polygons: Default::default(),
         }
     }
 
@@ -91,6 +99,9 @@ impl Draft {
     pub fn retain_triangles(&mut self, is_kept: &[bool]) {
         retain_marked(&mut self.triangles, is_kept);
         retain_marked(&mut self.triangle_origin, is_kept);
+        if !self.polygons.is_empty() {
+            self.polygons.retain(is_kept);
+        }
     }
 
     /// Drops vertices that no triangle uses and gives their number; the others keep their order.
@@ -118,15 +129,20 @@ impl Draft {
         dropped
     }
 
-    /// Puts `parts` in the place of triangle `t`: the first there, the others after the last triangle.
+    /// Puts `parts` in the place of triangle `t`: the first there, the others after the last triangle. A polygon of which `t`
+    /// is a part becomes triangles, if there is more than one.
     pub fn replace(&mut self, t: u32, parts: &[[u32; 3]]) {
+        if parts.len() > 1 {
+            self.polygons.split(t as usize);
+            self.polygons.push_triangles(parts.len() - 1);
+        }
         let origin = self.triangle_origin[t as usize];
         self.triangles[t as usize] = parts[0];
         self.triangles.extend(&parts[1..]);
         self.triangle_origin.extend(std::iter::repeat_n(origin, parts.len() - 1));
     }
 
-    /// Turns triangle `t` around.
+    /// Turns triangle `t` around; all triangles of a polygon are to be turned together.
     pub fn flip(&mut self, t: usize) {
         self.triangles[t].swap(1, 2);
     }
@@ -217,6 +233,9 @@ impl Draft {
         }
         if self.triangle_origin.len() != self.triangles.len() {
             broken.push("triangle_origin has another length than triangles".to_owned());
+        }
+        if !self.polygons.is_empty() && self.polygons.len() != self.triangles.len() {
+            broken.push("polygons has another length than triangles".to_owned());
         }
         for (t, corners) in self.triangles.iter().enumerate() {
             if corners.iter().any(|&v| v as usize >= self.positions.len()) {

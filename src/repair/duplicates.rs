@@ -1,8 +1,10 @@
-//! Drops triangles that have the vertices of another one.
+//! Drops faces that have the vertices of another one: triangles, and polygons with the same corners in the same order.
 
 use super::{Changes, Draft};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
-use crate::mesh::{EdgeGroups, UnionFind, edge_of, prev_corner, triangle_of};
+use crate::mesh::{
+    EdgeGroups, Outlines, Polygons, UnionFind, edge_of, polygon_copies, prev_corner, triangle_of,
+};
 
 /// What becomes of two triangles with the same vertices in opposite directions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -25,22 +27,26 @@ pub fn drop_duplicates(
     opposite: OppositePairs,
     budget: &Budget,
 ) -> Result<Changes, Stopped> {
-    let groups = EdgeGroups::build(&draft.triangles, draft.positions.len(), budget)?;
+    let outlines = draft.outlines(budget)?;
+    let groups = EdgeGroups::of_faces(&draft.triangles, &outlines, draft.positions.len(), budget)?;
     let mut is_kept = vec![true; draft.triangles.len()];
     let mut pairs = Vec::new();
     let mut copies = 0;
-    for_each_vertex_set(&draft.triangles, &groups, budget, |same| {
+    let mut choose = |same: &[Copied]| {
         let balance: i64 = same.iter().map(|s| if s.is_ascending { 1 } else { -1 }).sum();
         let stays = |s: &&Copied| balance == 0 || s.is_ascending == (balance > 0);
         let kept = same.iter().find(stays).map_or(same[0].triangle, |s| s.triangle);
+        let face = |first: u32| draft.polygons.face_from(first as usize);
         for s in same {
-            is_kept[s.triangle as usize] = s.triangle == kept;
+            is_kept[face(s.triangle)].fill(s.triangle == kept);
         }
         copies += same.len() as u64 - 1;
         if balance == 0 {
-            pairs.push(kept);
+            pairs.extend(face(kept).map(|t| t as u32));
         }
-    })?;
+    };
+    for_each_vertex_set(draft, &groups, budget, &mut choose)?;
+    for_each_outline(draft, &outlines, budget, &mut choose)?;
     pairs.sort_unstable();
     let surfaces = match opposite {
         OppositePairs::KeepFirst => vec![true; pairs.len()],
@@ -63,23 +69,24 @@ pub fn drop_duplicates(
     })
 }
 
-/// A triangle among others with the same vertices.
+/// A face among others with the same vertices, by its first triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Copied {
-    /// The largest of its vertices.
+    /// The largest of its vertices; of polygons, which one they are.
     last: u32,
     triangle: u32,
-    /// True when it runs through its vertices in ascending order.
+    /// True when it runs through its vertices in ascending order; of polygons, as the first of them does.
     is_ascending: bool,
 }
 
 /// Calls `visit` with the triangles of each set of vertices that several have, by id.
 fn for_each_vertex_set(
-    triangles: &[[u32; 3]],
+    draft: &Draft,
     groups: &EdgeGroups,
     budget: &Budget,
-    mut visit: impl FnMut(&[Copied]),
+    visit: &mut impl FnMut(&[Copied]),
 ) -> Result<(), Stopped> {
+    let triangles = &draft.triangles;
     let mut on_edge = Vec::new();
     for (e, group) in groups.iter().enumerate() {
         if e % CHECK_EVERY == 0 {
@@ -89,11 +96,41 @@ fn for_each_vertex_set(
         on_edge.clear();
         on_edge.extend(group.iter().filter_map(|&h| {
             let ([a, b], last) = (edge_of(triangles, h), edge_of(triangles, prev_corner(h))[0]);
-            (last > a.max(b)).then_some(Copied { last, triangle: triangle_of(h), is_ascending: a < b })
+            let is_face = last > a.max(b) && !draft.polygons.is_part(triangle_of(h) as usize);
+            is_face.then_some(Copied { last, triangle: triangle_of(h), is_ascending: a < b })
         }));
         on_edge.sort_unstable();
-        on_edge.chunk_by(|a, b| a.last == b.last).filter(|same| same.len() > 1).for_each(&mut visit);
+        on_edge.chunk_by(|a, b| a.last == b.last).filter(|same| same.len() > 1).for_each(&mut *visit);
     }
+    Ok(())
+}
+
+/// Calls `visit` with the polygons of each outline that several have, from whichever corner and in either direction, by id.
+fn for_each_outline(
+    draft: &Draft,
+    outlines: &Outlines,
+    budget: &Budget,
+    visit: &mut impl FnMut(&[Copied]),
+) -> Result<(), Stopped> {
+    let mut polygons = Polygons { starts: vec![0], ..Polygons::default() };
+    for face in draft.polygons.faces(draft.polygons.len()).filter(|face| face.len() > 1) {
+        let first = face.start as u32;
+        polygons.faces.push(polygons.faces.len() as u32);
+        polygons.corners.extend(outlines.along(first).map(|h| edge_of(&draft.triangles, h)[0]));
+        polygons.starts.push(polygons.corners.len() as u32);
+        polygons.first_triangles.push(first);
+    }
+    let copies = polygon_copies(&polygons, |v| v, budget)?;
+    let mut all: Vec<Copied> = Vec::with_capacity(2 * copies.len());
+    let triangle = |polygon: u32| polygons.first_triangles[polygon as usize];
+    for copy in copies {
+        let (last, is_ascending) = (copy.of, !copy.is_reversed);
+        all.push(Copied { last, triangle: triangle(copy.of), is_ascending: true });
+        all.push(Copied { last, triangle: triangle(copy.polygon), is_ascending });
+    }
+    all.sort_unstable();
+    all.dedup();
+    all.chunk_by(|a, b| a.last == b.last).for_each(visit);
     Ok(())
 }
 
@@ -203,6 +240,7 @@ mod tests {
             triangle_origin: (0..triangles.len() as u32).collect(),
             two_sided: Vec::new(),
             blends: Default::default(),
+            polygons: Default::default(),
         };
         let changes = drop_duplicates(&mut draft, opposite, &Budget::unlimited()).unwrap();
         (draft, changes)

@@ -24,14 +24,16 @@ pub mod round;
 pub mod selection;
 pub mod snap;
 pub mod stars;
+pub mod stitches;
 pub mod t_vertices;
 pub mod thicken;
 pub mod thin_faces;
 pub mod weld;
 
-pub use draft::{Blend, Blends, Draft, FIRST_BLEND, NEW};
+pub use draft::{Blend, Blends, Draft, FIRST_BLEND, Faced, NEW};
 pub use selection::Selection;
 pub use stars::Star;
+pub use stitches::{Join, Stitches};
 
 /// What a step changed.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -44,6 +46,8 @@ pub struct Changes {
     pub reason: String,
     /// A triangle of the soup out of each part that is gone as a whole.
     pub removed_parts: Vec<u32>,
+    /// The boundary edges that became one.
+    pub stitches: Stitches,
 }
 
 impl Changes {

@@ -96,6 +96,7 @@ mod tests {
             triangles,
             two_sided: Vec::new(),
             blends: Default::default(),
+            polygons: Default::default(),
         }
     }
 

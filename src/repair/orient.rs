@@ -3,7 +3,7 @@
 use super::{Changes, Draft};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::triangle_area;
-use crate::mesh::{EdgeGroups, ParityUnionFind, edge_of, triangle_of};
+use crate::mesh::{ParityUnionFind, edge_of, triangle_of};
 
 /// Orients each part that is connected across edges of exactly two triangles. The direction that holds the larger area
 /// of a part stays; at equal areas that of its first triangle. Edges where a part contradicts itself (Möbius band) keep
@@ -12,11 +12,12 @@ use crate::mesh::{EdgeGroups, ParityUnionFind, edge_of, triangle_of};
 /// # Errors
 /// When the budget stops the run.
 pub fn orient(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
-    let groups = EdgeGroups::build(&draft.triangles, draft.positions.len(), budget)?;
+    let groups = draft.edge_groups(budget)?;
     let _charge = budget.charge(draft.triangles.len() as u64 * 21)?;
     let mut parts = ParityUnionFind::new(draft.triangles.len());
     let mut conflicts = 0;
-    for (e, group) in groups.iter().enumerate() {
+    // The triangles of a polygon are related before an edge can contradict it, so that it turns as a whole.
+    for (e, group) in groups.diagonals().chain(groups.edges()).enumerate() {
         if e % CHECK_EVERY == 0 {
             budget.check()?;
         }
@@ -68,6 +69,7 @@ mod tests {
             triangle_origin: (0..triangles.len() as u32).collect(),
             two_sided: Vec::new(),
             blends: Default::default(),
+            polygons: Default::default(),
         }
     }
 

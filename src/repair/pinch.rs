@@ -3,7 +3,7 @@
 //!
 //! The pinching of Guéziec, Taubin, Lazarus and Horn, "Cutting and stitching" (2001).
 
-use super::{Changes, Draft};
+use super::{Changes, Draft, Stitches};
 use crate::budget::{Budget, Stopped};
 use crate::mesh::{self, Boundary, ChosenEdges, EdgeGroups, JoinRule, Validity, edge_of};
 
@@ -25,7 +25,8 @@ pub fn pinch(
     validity: Validity,
     budget: &Budget,
 ) -> Result<Changes, Stopped> {
-    let groups = EdgeGroups::build(&draft.triangles, draft.positions.len(), budget)?;
+    let outlines = draft.outlines(budget)?;
+    let groups = EdgeGroups::of_faces(&draft.triangles, &outlines, draft.positions.len(), budget)?;
     let boundary = Boundary::trace(&draft.triangles, draft.positions.len(), &groups, budget)?;
     let mut pairs = Vec::new();
     for half_edges in &boundary.loops {
@@ -34,12 +35,13 @@ pub fn pinch(
     }
     let mut rule = CopiesOnly { origin: &draft.vertex_origin };
     let vertex_count = draft.positions.len();
-    let stitched = mesh::stitch(&mut draft.triangles, vertex_count, &pairs, validity, &mut rule, budget)?;
+    let triangles = &mut draft.triangles;
+    let stitched =
+        mesh::stitch_faces(triangles, &outlines, vertex_count, &pairs, validity, &mut rule, budget)?;
+    // Copies have one origin, so the edges have the ends that they had.
+    let stitches = Stitches::of(draft, &draft.triangles, &stitched);
     draft.drop_unused_vertices();
-    Ok(Changes::counted([
-        ("edges_joined", stitched.explicit.len() as u64),
-        ("edges_joined_with_others", stitched.implicit.len() as u64),
-    ]))
+    Ok(Changes { counts: stitches.counts().to_vec(), stitches, ..Changes::default() })
 }
 
 /// Appends the pairs of a boundary loop that match, from each pivot outward. A half-edge and the one after it in the
@@ -101,6 +103,7 @@ mod tests {
             triangle_origin: (0..triangles.len() as u32).collect(),
             two_sided: Vec::new(),
             blends: Default::default(),
+            polygons: Default::default(),
         }
     }
 

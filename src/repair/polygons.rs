@@ -42,7 +42,9 @@ pub fn split_polygons(
         return Ok(counted(0, 0, 0));
     }
     let places = coincident_f64(&soup.positions, budget)?.group;
-    let split_alike = split_copies_alike(draft, soup, &places, budget)?;
+    let keeps_polygons = !draft.polygons.is_empty();
+    // Polygons that stay are compared as such.
+    let split_alike = if keeps_polygons { 0 } else { split_copies_alike(draft, soup, &places, budget)? };
     let mut is_kept = vec![true; draft.triangles.len()];
     let mut parts = Vec::new();
     let (mut split, mut dropped, mut faces) = (0, 0, Vec::new());
@@ -57,11 +59,11 @@ pub fn split_polygons(
         faces.push(polygons.faces[i]);
         let before = parts.len();
         if how == DegenerateFaces::Split {
-            let mut triangles = Vec::new();
             for cycle in simple_cycles(corners, &places) {
+                let mut triangles = Vec::new();
                 split_polygon(&cycle, &soup.positions, &mut triangles, budget)?;
+                parts.push(Part { triangles, start: [cycle[0], cycle[1]], origin: first });
             }
-            parts.extend(triangles.into_iter().map(|t| (t, first)));
         }
         if parts.len() > before {
             split += 1;
@@ -71,7 +73,7 @@ pub fn split_polygons(
     }
     if !faces.is_empty() {
         draft.retain_triangles(&is_kept);
-        append(draft, &parts);
+        append(draft, parts, keeps_polygons);
     }
     Ok(Changes { reason: reason(&faces), ..counted(split, dropped, split_alike) })
 }
@@ -133,12 +135,28 @@ fn has_the_same(a: &[[u32; 3]], b: &[[u32; 3]]) -> bool {
     sorted(a) == sorted(b)
 }
 
-/// Adds triangles over vertices of the soup, each with the triangle of the soup in whose place it is.
-fn append(draft: &mut Draft, parts: &[([u32; 3], u32)]) {
-    for &(corners, origin) in parts {
+/// A simple cycle out of a polygon, over vertices of the soup.
+struct Part {
+    triangles: Vec<[u32; 3]>,
+    /// Its first two corners.
+    start: [u32; 2],
+    /// The triangle of the soup in whose place it is.
+    origin: u32,
+}
+
+/// Adds what polygons are made of, as polygons or as triangles.
+fn append(draft: &mut Draft, parts: Vec<Part>, as_polygons: bool) {
+    for Part { mut triangles, start, origin } in parts {
         // Ascending, as the draft was taken from the soup and vertices keep their order.
-        draft.triangles.push(corners.map(|v| draft.vertex_origin.partition_point(|&o| o < v) as u32));
-        draft.triangle_origin.push(origin);
+        let vertex = |v: u32| draft.vertex_origin.partition_point(|&o| o < v) as u32;
+        triangles.iter_mut().for_each(|t| *t = t.map(vertex));
+        let start = start.map(vertex);
+        if as_polygons {
+            draft.push_polygon(triangles, start, origin);
+        } else {
+            draft.triangle_origin.resize(draft.triangle_origin.len() + triangles.len(), origin);
+            draft.triangles.extend(triangles);
+        }
     }
     draft.drop_unused_vertices();
 }

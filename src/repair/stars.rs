@@ -180,6 +180,7 @@ mod tests {
             triangle_origin: (0..5).collect(),
             two_sided: Vec::new(),
             blends: Default::default(),
+            polygons: Default::default(),
         }
     }
 

@@ -13,22 +13,35 @@
 use super::{Changes, Draft};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, are_collinear, is_on_segment};
-use crate::mesh::{EdgeGroups, divide, edge_of};
+use crate::mesh::{divide, edge_of, triangle_of};
 use crate::spatial::Bvh;
 
-/// Divides at every boundary vertex inside a boundary edge. The draft must be welded; collinear triangles are left alone.
+/// Divides at every boundary vertex inside a boundary edge; of several at one place, where the draft is not welded, at the
+/// first. Collinear triangles are left alone.
 ///
 /// # Errors
 /// When the budget stops the run.
 pub fn split_t_vertices(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
     let boundary = boundary_half_edges(draft, budget)?;
     let inside = vertices_inside(draft, &boundary, budget)?;
+    let polygons = split_polygons_of(draft, &inside);
     let split = replace(draft, &inside, budget)?;
-    Ok(Changes::counted([("edges_divided", count_edges(&inside)), ("triangles_split", split)]))
+    let changes = Changes::counted([("edges_divided", count_edges(&inside)), ("triangles_split", split)]);
+    if polygons == 0 {
+        return Ok(changes);
+    }
+    let reason = format!("{polygons} polygons with vertices inside their edges became triangles");
+    Ok(Changes { counts: [changes.counts, vec![("polygons_split", polygons)]].concat(), reason, ..changes })
+}
+
+/// Makes triangles of the polygons of which an edge is to be divided: split as a fan, as many programs do, one with a
+/// corner inside of an edge would have a triangle without area. Gives their number.
+fn split_polygons_of(draft: &mut Draft, inside: &[(u32, u32)]) -> u64 {
+    inside.iter().map(|&(h, _)| u64::from(draft.polygons.split(triangle_of(h) as usize))).sum()
 }
 
 fn boundary_half_edges(draft: &Draft, budget: &Budget) -> Result<Vec<u32>, Stopped> {
-    let groups = EdgeGroups::build(&draft.triangles, draft.positions.len(), budget)?;
+    let groups = draft.edge_groups(budget)?;
     let boundary = groups.iter().filter_map(|group| if let [h] = *group { Some(h) } else { None });
     let is_proper = |h: &u32| {
         let [a, b, c] = draft.corners(*h as usize / 3);
@@ -52,13 +65,15 @@ fn vertices_inside(draft: &Draft, boundary: &[u32], budget: &Budget) -> Result<V
         let p = draft.positions[v as usize];
         bvh.visit_box(Aabb::of([p]), budget, |e| {
             let [a, b, _] = edges[e as usize];
-            let is_end = v == a || v == b;
-            if !is_end && is_on_segment(p, draft.positions[a as usize], draft.positions[b as usize]) {
+            let [from, to] = [a, b].map(|v| draft.positions[v as usize]);
+            // By place: where vertices at one place stay apart, that of another is no vertex inside.
+            if p != from && p != to && is_on_segment(p, from, to) {
                 inside.push((boundary[e as usize], v));
             }
         })?;
     }
     sort_along_edges(&mut inside, draft);
+    inside.dedup_by(|(h, v), (g, u)| g == h && draft.positions[*u as usize] == draft.positions[*v as usize]);
     Ok(inside)
 }
 
@@ -96,6 +111,7 @@ fn replace(draft: &mut Draft, inside: &[(u32, u32)], budget: &Budget) -> Result<
 mod tests {
     use super::*;
     use crate::geom::DVec3;
+    use crate::mesh::EdgeGroups;
 
     #[test]
     fn a_crack_with_vertices_on_one_side_closes() {
@@ -108,6 +124,7 @@ mod tests {
             triangles,
             two_sided: Vec::new(),
             blends: Default::default(),
+            polygons: Default::default(),
         };
         let changes = split_t_vertices(&mut draft, &Budget::unlimited()).unwrap();
         assert_eq!((changes.count("edges_divided"), changes.count("triangles_split")), (1, 1));
@@ -131,6 +148,7 @@ mod tests {
             triangle_origin: vec![0, 1],
             two_sided: Vec::new(),
             blends: Default::default(),
+            polygons: Default::default(),
         };
         let before = draft.clone();
         let changes = split_t_vertices(&mut draft, &Budget::unlimited()).unwrap();

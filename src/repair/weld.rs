@@ -43,6 +43,7 @@ mod tests {
             triangle_origin: vec![0, 1],
             two_sided: Vec::new(),
             blends: Default::default(),
+            polygons: Default::default(),
         };
         let changes = weld(&mut draft, &Budget::unlimited()).unwrap();
         assert_eq!(changes.count("vertices_joined"), 2);

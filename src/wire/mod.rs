@@ -24,6 +24,7 @@ mod problem;
 mod report;
 mod report_page;
 mod request;
+mod stitches;
 mod target;
 mod unit_hypothesis;
 mod verdict;
@@ -73,6 +74,7 @@ pub use report::{
 };
 pub use report_page::{Escaped, REPORT_PAGE_CSP, report_page};
 pub use request::{InputRef, JobRequest};
+pub use stitches::{JoinedEdges, Stitches};
 pub use target::TargetSpec;
 pub use unit_hypothesis::UnitHypothesis;
 pub use verdict::{Reason, Verdict};

@@ -12,6 +12,7 @@ use super::mesh_info::{MeshInfo, finite};
 use super::modeller::Modeller;
 use super::plan::Plan;
 use super::printing::Printing;
+use super::stitches::Stitches;
 use super::verdict::Verdict;
 use super::words::{DefectCode, Encoding, Format, Operation, Stage, Units};
 use crate::{analysis, pipeline};
@@ -116,6 +117,10 @@ pub struct Action {
     pub move_max: Option<f64>,
     /// What was decided where there was a choice; empty otherwise.
     pub reason: String,
+    /// The edges that the step joined, one by one; null for steps other than `pinch` and `snap` and for operations other
+    /// than `cut-stitch`.
+    #[schema(required)]
+    pub stitches: Option<Stitches>,
 }
 
 /// How many elements a step changed.
@@ -325,6 +330,7 @@ impl From<&pipeline::Action> for Action {
             changes: inner.changes.iter().map(|&(name, count)| Change { name, count }).collect(),
             move_max: finite(inner.move_max),
             reason: inner.reason.clone(),
+            stitches: inner.stitches.as_ref().map(Stitches::from),
         }
     }
 }

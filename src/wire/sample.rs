@@ -103,6 +103,7 @@ pub(crate) fn repaired() -> Answer {
             changes: vec![("faces_added", 1)],
             move_max: 0.0,
             reason: String::new(),
+            stitches: None,
         }],
         levels: Vec::new(),
         after: Some(analysis(0)),

@@ -4,7 +4,7 @@ use meshmend::budget::Budget;
 use meshmend::formats::{Encoding, Format, ReadOptions, read};
 use meshmend::mesh::{CutMethod, EdgeGroups, Soup, singular_vertices, twins};
 use meshmend::pipeline::{
-    Answer, CutStitchChoices, Operation, Options, Outcome, Refusal, Require, Stitching, run,
+    Answer, CutStitchChoices, JoinedEdges, Operation, Options, Outcome, Refusal, Require, Stitching, run,
 };
 use std::fmt::Write as _;
 
@@ -336,4 +336,171 @@ fn edges_of_copies_are_chosen_one_by_one_where_a_file_is_taken_as_indexed() {
     let answer = cut_stitch(obj(&mesh).as_bytes(), choices);
     assert_eq!(count(&answer, "cut", "chosen_edges"), 4);
     assert_eq!(result(&answer).positions.len(), 20, "the lid of the second comes off");
+}
+
+/// A unit square, and a second one that stands on its diagonal.
+const SQUARES: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 1\nv 0.5 0.5 -1\nf 1 2 3 4\nf 1 5 3 6\n";
+
+fn faces_of(soup: &Soup) -> Vec<Vec<u32>> {
+    soup.faces().map(|(_, corners)| corners.to_vec()).collect()
+}
+
+#[test]
+fn a_diagonal_is_no_edge_so_that_two_squares_that_share_two_vertices_come_apart_at_these() {
+    for method in [None, Some(CutMethod::Local), Some(CutMethod::Global)] {
+        let answer =
+            cut_stitch(SQUARES.as_bytes(), CutStitchChoices { method, ..CutStitchChoices::default() });
+        let cut = ["singular_edges", "isolated_singular_vertices", "vertices_copied"];
+        assert_eq!(cut.map(|name| count(&answer, "cut", name)), [0, 2, 2]);
+        let restored = ["faces", "components", "polygons", "polygons_split"];
+        assert_eq!(restored.map(|name| count(&answer, "restore-polygons", name)), [2, 2, 2, 0]);
+        assert_eq!(faces_of(&result(&answer)), [[0, 1, 2, 3], [6, 4, 7, 5]]);
+    }
+}
+
+#[test]
+fn polygons_come_back_in_every_format_that_has_them_and_stl_says_that_it_has_none() {
+    for (format, encoding) in [
+        (Format::Obj, Encoding::Obj),
+        (Format::Off, Encoding::Off),
+        (Format::Ply, Encoding::PlyBinaryLittleEndian),
+    ] {
+        let options = Options { output_format: Some(format), ..Options::default() };
+        let answer = run(Operation::CutStitch, SQUARES.as_bytes(), &options, &Budget::unlimited()).unwrap();
+        let output = answer.output.unwrap();
+        assert_eq!(output.encoding, encoding);
+        let soup =
+            read(&output.bytes.unwrap(), encoding, &ReadOptions::default(), &Budget::unlimited()).unwrap();
+        assert_eq!(faces_of(&soup), [[0, 1, 2, 3], [6, 4, 7, 5]]);
+        assert_eq!(answer.report.after.unwrap().counts.faces, 2);
+        assert_eq!(answer.report.identical_triangle_share, Some(1.0));
+    }
+    let options = Options { output_format: Some(Format::Stl), ..Options::default() };
+    let answer = run(Operation::CutStitch, SQUARES.as_bytes(), &options, &Budget::unlimited()).unwrap();
+    assert_eq!(count(&answer, "restore-polygons", "polygons_split"), 2);
+    let action = answer.report.actions.iter().find(|action| action.step == "restore-polygons").unwrap();
+    assert_eq!(action.reason, "STL holds triangles alone");
+    assert_eq!(answer.report.after.unwrap().counts.faces, 4);
+}
+
+/// The unit cube of squares, from any corner.
+const CUBE_OF_SQUARES: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
+    f 4 3 2 1\nf 6 7 8 5\nf 1 2 6 5\nf 7 6 2 3\nf 3 4 8 7\nf 5 8 4 1\n";
+
+#[test]
+fn a_lid_of_one_square_comes_off_and_its_edges_come_back_where_nothing_keeps_them_apart() {
+    // Around the top; a diagonal of the top is no edge, and the sides wound the other way are turned.
+    let turned = CUBE_OF_SQUARES.replace("f 7 6 2 3", "f 3 2 6 7");
+    let chosen = vec![[4, 5], [5, 6], [6, 7], [7, 4], [5, 7], [4, 6]];
+    let choices = CutStitchChoices { chosen, ..CutStitchChoices::default() };
+    let answer = cut_stitch(turned.as_bytes(), choices);
+    assert_eq!(count(&answer, "cut", "chosen_edges"), 4);
+    assert_eq!(count(&answer, "restore-polygons", "components"), 2);
+    let lidless = result(&answer);
+    assert_eq!((lidless.positions.len(), lidless.polygons.faces.len()), (12, 6));
+    let bytes = answer.output.unwrap().bytes.unwrap();
+    let whole = cut_stitch(&bytes, CutStitchChoices { keeps_copies: true, ..stitching(Stitching::Snap) });
+    let closed = result(&whole);
+    assert_eq!(closed.positions.len(), 8);
+    assert!(whole.report.certificate.as_ref().unwrap().is_printable());
+    // Corner by corner where each face of the cube was, in its direction.
+    let cube = read(CUBE_OF_SQUARES.as_bytes(), Encoding::Obj, &ReadOptions::default(), &Budget::unlimited())
+        .unwrap();
+    let places = |soup: &Soup| -> Vec<Vec<[u64; 3]>> {
+        let at = |v: &u32| soup.positions[*v as usize].to_array().map(f64::to_bits);
+        let from_least = |face: Vec<u32>| {
+            let all: Vec<[u64; 3]> = face.iter().map(at).collect();
+            (0..all.len()).map(|i| [&all[i..], &all[..i]].concat()).min().unwrap()
+        };
+        let mut all: Vec<_> = faces_of(soup).into_iter().map(from_least).collect();
+        all.sort_unstable();
+        all
+    };
+    assert_eq!(places(&closed), places(&cube));
+}
+
+#[test]
+fn the_edges_that_were_joined_are_listed_by_the_numbers_of_the_file() {
+    // Two squares side by side with vertices of their own along x = 1.
+    let text =
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nf 1 2 3 4\nf 5 6 7 8\n";
+    let choices = CutStitchChoices { keeps_copies: true, ..stitching(Stitching::Snap) };
+    let answer = cut_stitch(text.as_bytes(), choices);
+    let snap = answer.report.actions.iter().find(|action| action.step == "snap").unwrap();
+    let stitches = snap.stitches.as_ref().unwrap();
+    assert_eq!(stitches.explicit, [JoinedEdges { edges: [[1, 2], [7, 4]], faces: [0, 1] }]);
+    assert_eq!((stitches.explicit_total, stitches.implicit_total), (1, 0));
+    assert_eq!(faces_of(&result(&answer)), [[0, 1, 2, 3], [1, 4, 5, 2]]);
+    assert!(answer.report.actions.iter().all(|action| action.stitches.is_some() == (action.step == "snap")));
+    // A repair takes the same steps and lists nothing.
+    let repaired =
+        run(Operation::Repair, text.as_bytes(), &Options::default(), &Budget::unlimited()).unwrap();
+    assert!(repaired.report.actions.iter().all(|action| action.stitches.is_none()));
+}
+
+#[test]
+fn a_slit_is_zipped_and_its_last_edge_is_listed_as_implicit() {
+    // A sheet of four squares with one that stands on its middle line from (1, 0) to (1, 2), given as two edges.
+    let mut text = String::new();
+    for i in 0..9 {
+        writeln!(text, "v {} {} 0", i % 3, i / 3).unwrap();
+    }
+    text.push_str("v 1 0.5 1\nv 1 1.5 1\n");
+    text.push_str("f 1 2 5 4\nf 2 3 6 5\nf 4 5 8 7\nf 5 6 9 8\nf 2 5 10\nf 5 8 11\n");
+    let answer = cut_stitch(text.as_bytes(), CutStitchChoices::default());
+    assert_eq!(count(&answer, "cut", "singular_edges"), 2);
+    let pinch = answer.report.actions.iter().find(|action| action.step == "pinch").unwrap();
+    let stitches = pinch.stitches.as_ref().unwrap();
+    let totals = [stitches.explicit_total, stitches.implicit_total];
+    assert_eq!(
+        totals,
+        [count(&answer, "pinch", "edges_joined"), count(&answer, "pinch", "edges_joined_with_others")]
+    );
+    for pair in stitches.explicit.iter().chain(&stitches.implicit) {
+        let [[a, b], other] = pair.edges;
+        assert_eq!(other, [b, a], "copies of one edge");
+    }
+}
+
+#[test]
+fn a_polygon_with_a_vertex_inside_its_edge_becomes_triangles_and_no_other_does() {
+    // The left square has a vertex in the middle of its right side that the right one lacks.
+    let text = "v 0 0 0\nv 1 0 0\nv 1 2 0\nv 0 2 0\nv 2 0 0\nv 2 2 0\nv 1 1 0\n\
+        f 1 2 7 3 4\nf 2 5 6 3\n";
+    let answer = cut_stitch(text.as_bytes(), stitching(Stitching::Snap));
+    assert_eq!(count(&answer, "split-t-vertices", "polygons_split"), 1);
+    let action = answer.report.actions.iter().find(|action| action.step == "split-t-vertices").unwrap();
+    assert!(action.reason.contains("1 polygons with vertices inside their edges"), "{}", action.reason);
+    let soup = result(&answer);
+    let sizes: Vec<usize> = faces_of(&soup).iter().map(Vec::len).collect();
+    assert_eq!(sizes, [5, 3, 3, 3]);
+}
+
+#[test]
+fn colours_and_texture_stay_with_polygons() {
+    let textured = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 1\nv 0.5 0.5 -1\n\
+        vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\nf 1 5 3 6\n";
+    let answer = cut_stitch(textured.as_bytes(), CutStitchChoices::default());
+    let text = String::from_utf8(answer.output.unwrap().bytes.unwrap()).unwrap();
+    assert!(text.ends_with("f 1/1 2/2 3/3 4/4\nf 7 5 8 6\n"), "{text}");
+    let colored = "OFF\n6 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0.5 0.5 1\n0.5 0.5 -1\n4 0 1 2 3 255 0 0\n4 0 4 2 5 0 0 255\n";
+    let answer = cut_stitch(colored.as_bytes(), CutStitchChoices::default());
+    let text = String::from_utf8(answer.output.unwrap().bytes.unwrap()).unwrap();
+    assert!(text.ends_with("4 0 1 2 3 255 0 0\n4 6 4 7 5 0 0 255\n"), "{text}");
+}
+
+#[test]
+fn faces_with_the_same_vertices_in_another_order_are_no_copies_and_a_triangle_is_no_copy_of_half_a_square() {
+    let points = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+    for (faces, left) in [
+        ("f 1 2 3 4\nf 3 2 1 4\n", 1),
+        ("f 1 2 3 4\nf 2 3 4 1\nf 4 1 2 3\n", 1),
+        ("f 1 2 3 4\nf 1 3 2 4\n", 2),
+        ("f 1 2 3 4\nf 1 2 3\n", 2),
+        ("f 1 2 3 4\nf 1 2 3\nf 2 3 1\n", 2),
+    ] {
+        let answer = cut_stitch(format!("{points}{faces}").as_bytes(), stitching(Stitching::None));
+        let copies = count(&answer, "drop-duplicates", "copies_dropped");
+        assert_eq!(copies, faces.lines().count() as u64 - left, "{faces}");
+    }
 }

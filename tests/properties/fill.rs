@@ -18,6 +18,7 @@ fn draft(soup: &RawSoup) -> Draft {
         triangle_origin: (0..soup.triangles.len() as u32).collect(),
         two_sided: Vec::new(),
         blends: Default::default(),
+        polygons: Default::default(),
     };
     weld::weld(&mut draft, &Budget::unlimited()).unwrap();
     draft.drop_unused_vertices();

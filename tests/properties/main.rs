@@ -24,6 +24,7 @@ mod naive;
 mod near;
 mod obj_readers;
 mod oracle;
+mod polygon_cut_and_stitch;
 mod polygon_meshes;
 mod predicates;
 mod printing;

@@ -21,13 +21,13 @@ use std::fmt::Write as _;
 
 /// Points, and faces over them, from 0.
 #[derive(Debug, Clone, Default)]
-struct Mesh {
-    points: Vec<[i32; 3]>,
-    faces: Vec<Vec<u32>>,
+pub(crate) struct Mesh {
+    pub(crate) points: Vec<[i32; 3]>,
+    pub(crate) faces: Vec<Vec<u32>>,
 }
 
 impl Mesh {
-    fn obj(&self) -> String {
+    pub(crate) fn obj(&self) -> String {
         let mut text = String::new();
         for [x, y, z] in &self.points {
             writeln!(text, "v {x} {y} {z}").unwrap();
@@ -49,7 +49,7 @@ const OUTLINES: [&[[i32; 2]]; 4] = [
 ];
 
 /// A prism: two outlines and a square for each side; the volume in units of a half.
-fn prism(random: &mut Random, mesh: &mut Mesh, at: [i32; 3]) -> i32 {
+pub(crate) fn prism(random: &mut Random, mesh: &mut Mesh, at: [i32; 3]) -> i32 {
     let outline = random.pick(&OUTLINES);
     let (n, height) = (outline.len() as u32, random.between(1, 7));
     let base = mesh.points.len() as u32;
@@ -66,7 +66,7 @@ fn prism(random: &mut Random, mesh: &mut Mesh, at: [i32; 3]) -> i32 {
 
 /// What does not change what a mesh is: other corners first, all of a body turned around, copies of faces, faces without
 /// area, vertices of no face.
-fn disguise(random: &mut Random, mesh: &mut Mesh) {
+pub(crate) fn disguise(random: &mut Random, mesh: &mut Mesh) {
     if random.one_in(2) {
         mesh.faces.iter_mut().for_each(|face| face.reverse());
     }
@@ -85,7 +85,7 @@ fn disguise(random: &mut Random, mesh: &mut Mesh) {
     }
 }
 
-fn soup_of(mesh: &Mesh) -> Soup {
+pub(crate) fn soup_of(mesh: &Mesh) -> Soup {
     read(mesh.obj().as_bytes(), Encoding::Obj, &ReadOptions::default(), &Budget::unlimited()).unwrap()
 }
 
@@ -119,7 +119,7 @@ fn steps(draft: &mut Draft, soup: &Soup, mut look: impl FnMut(&str, &Draft, &Cha
 }
 
 /// Faces turned and taken away by chance, so that steps meet what no body is.
-fn break_up(random: &mut Random, mesh: &mut Mesh) {
+pub(crate) fn break_up(random: &mut Random, mesh: &mut Mesh) {
     mesh.faces.retain(|_| !random.one_in(8));
     for face in &mut mesh.faces {
         if random.one_in(6) {

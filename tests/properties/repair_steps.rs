@@ -25,6 +25,7 @@ fn random_draft(random: &mut Random) -> Draft {
         triangles,
         two_sided: Vec::new(),
         blends: Default::default(),
+        polygons: Default::default(),
     };
     weld::weld(&mut draft, &Budget::unlimited()).unwrap();
     degenerate::drop_degenerate(&mut draft);
@@ -106,6 +107,7 @@ fn random_band(random: &mut Random) -> Draft {
         triangles,
         two_sided: Vec::new(),
         blends: Default::default(),
+        polygons: Default::default(),
     };
     degenerate::drop_degenerate(&mut draft);
     draft

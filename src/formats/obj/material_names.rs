@@ -2,12 +2,13 @@
 //!
 //! They say nothing of the shape, so nothing in them makes a file unreadable: what cannot be used is taken as absent.
 
+use crate::budget::Stopped;
 use crate::formats::decimals::Text;
 use crate::mesh::{Materials, NO_MATERIAL};
 use rustc_hash::FxHashMap;
 
 /// Longer names, in bytes, are taken as absent, so that a result is not much longer than its file.
-pub(super) const NAME_BYTES_MAX: usize = 255;
+const NAME_BYTES_MAX: usize = 255;
 
 /// Materials of a part of a file.
 #[derive(Debug, Default)]
@@ -84,18 +85,28 @@ const NO_NAME: &[u8] = b"(null)";
 #[derive(Default)]
 pub(super) struct MaterialWriter {
     current: Option<u32>,
+    changes: usize,
 }
 
 impl MaterialWriter {
     /// To be called before each face.
-    pub(super) fn before_face(&mut self, text: &mut Text<'_>, materials: &Materials, face: u32) {
+    pub(super) fn before_face(
+        &mut self,
+        text: &mut Text<'_>,
+        materials: &Materials,
+        face: u32,
+    ) -> Result<(), Stopped> {
+        const USE_BYTES_MAX: usize = NAME_BYTES_MAX + 8;
         let material = materials.of(face);
         if material != self.current {
+            text.before_item(self.changes, USE_BYTES_MAX)?;
+            self.changes += 1;
             text.word("usemtl ");
             text.bytes(material.map_or(NO_NAME, |m| &materials.names[m as usize]));
             text.word("\n");
             self.current = material;
         }
+        Ok(())
     }
 }
 

@@ -1,20 +1,21 @@
 //! OBJ output.
 
-use super::material_names::{MaterialWriter, NAME_BYTES_MAX, put_libraries};
+use super::material_names::{MaterialWriter, put_libraries};
 use crate::budget::Budget;
 use crate::formats::WriteError;
 use crate::formats::colors::ColorLayout;
 use crate::formats::decimals::Text;
 use crate::mesh::{Color, NO_POINT, Soup};
+use std::ops::Range;
 
 /// The only one that other readers know.
 const COLORS: ColorLayout = ColorLayout { is_bytes: false, has_alpha: false };
 
-/// The names of material files, if faces have materials, vertices, with red, green and blue after the coordinates of those that have a colour, texture coordinates if there
-/// are some, then faces with their materials: polygons as such, unless there is a texture, which belongs to the corners of triangles.
+/// The names of material files, if faces have materials, vertices, with red, green and blue after the coordinates of those
+/// that have a colour, texture coordinates if there are some, then faces with their materials: polygons as such, unless they
+/// have texture at some corners and not at all, or several at one.
 pub(in crate::formats) fn write(soup: &Soup, budget: &Budget) -> Result<Vec<u8>, WriteError> {
     const VERTEX_BYTES_MAX: usize = 160;
-    const FACE_BYTES_MAX: usize = 80;
     const TEXTURE_BYTES_MAX: usize = 60;
     let mut text = Text::new(budget);
     put_libraries(&mut text, &soup.materials);
@@ -37,46 +38,65 @@ pub(in crate::formats) fn write(soup: &Soup, budget: &Budget) -> Result<Vec<u8>,
         }
         text.word("\n");
     }
-    if soup.texture.is_empty() {
-        put_faces(&mut text, soup)?;
-        return Ok(text.into_bytes());
-    }
-    let name_bytes_max = if soup.materials.is_empty() { 0 } else { NAME_BYTES_MAX + 8 };
-    let mut material = MaterialWriter::default();
-    for (t, corners) in soup.triangles.iter().enumerate() {
-        text.before_item(t, FACE_BYTES_MAX + name_bytes_max)?;
-        material.before_face(&mut text, &soup.materials, soup.face_of(t as u32));
-        let points = soup.texture.corners.get(t).filter(|points| points[0] != NO_POINT);
-        text.word("f");
-        for (k, &v) in corners.iter().enumerate() {
-            text.word(" ");
-            text.integer(i64::from(v) + 1);
-            if let Some(points) = points {
-                text.word("/");
-                text.integer(i64::from(points[k]) + 1);
+    let (mut corner_count, mut material) = (0, MaterialWriter::default());
+    for (t, corners) in soup.faces() {
+        material.before_face(&mut text, &soup.materials, soup.face_of(t))?;
+        let triangles = t as usize..t as usize + corners.len() - 2;
+        match points_of(soup, corners, &triangles) {
+            Some(points) => put_face(&mut text, &mut corner_count, corners, &points)?,
+            None => {
+                for t in triangles {
+                    let points = &soup.texture.corners[t];
+                    put_face(&mut text, &mut corner_count, &soup.triangles[t], points)?;
+                }
             }
         }
-        text.word("\n");
     }
     Ok(text.into_bytes())
 }
 
-fn put_faces(text: &mut Text<'_>, soup: &Soup) -> Result<(), WriteError> {
-    /// A number, and a third of what stands around those of a triangle.
-    const CORNER_BYTES_MAX: usize = 16;
-    let name_bytes_max = if soup.materials.is_empty() { 0 } else { NAME_BYTES_MAX + 8 };
-    let (mut corner_count, mut material) = (0, MaterialWriter::default());
-    for (first, corners) in soup.faces() {
-        material.before_face(text, &soup.materials, soup.face_of(first));
-        text.word("f");
-        for &v in corners {
-            text.before_item(corner_count, CORNER_BYTES_MAX + name_bytes_max)?;
-            corner_count += 1;
-            text.word(" ");
-            text.integer(i64::from(v) + 1);
-        }
-        text.word("\n");
+/// The texture points at the corners of a face of these triangles, or [`NO_POINT`] at each; `None` when its triangles do not
+/// agree.
+fn points_of(soup: &Soup, corners: &[u32], triangles: &Range<usize>) -> Option<Vec<u32>> {
+    if soup.texture.is_empty() {
+        return Some(Vec::new());
     }
+    let of_triangles = &soup.texture.corners[triangles.clone()];
+    if let [points] = of_triangles {
+        return Some(points.to_vec());
+    }
+    let vertices = soup.triangles[triangles.clone()].as_flattened().iter().copied();
+    let mut points: Vec<(u32, u32)> = vertices.zip(of_triangles.as_flattened().iter().copied()).collect();
+    points.sort_unstable();
+    points.dedup();
+    let has_none = points.iter().all(|&(_, point)| point == NO_POINT);
+    let has_all = points.iter().all(|&(_, point)| point != NO_POINT);
+    let is_unique = points.windows(2).all(|pair| pair[0].0 != pair[1].0);
+    let point = |v: &u32| points.binary_search_by_key(v, |&(u, _)| u).ok().map(|i| points[i].1);
+    if is_unique && (has_none || has_all) { corners.iter().map(point).collect() } else { None }
+}
+
+/// `points` are those of the corners, or empty.
+fn put_face(
+    text: &mut Text<'_>,
+    corner_count: &mut usize,
+    corners: &[u32],
+    points: &[u32],
+) -> Result<(), WriteError> {
+    /// Two numbers, and a third of what stands around those of a triangle.
+    const CORNER_BYTES_MAX: usize = 28;
+    text.word("f");
+    for (k, &v) in corners.iter().enumerate() {
+        text.before_item(*corner_count, CORNER_BYTES_MAX)?;
+        *corner_count += 1;
+        text.word(" ");
+        text.integer(i64::from(v) + 1);
+        if let Some(&point) = points.get(k).filter(|&&point| point != NO_POINT) {
+            text.word("/");
+            text.integer(i64::from(point) + 1);
+        }
+    }
+    text.word("\n");
     Ok(())
 }
 

@@ -6,8 +6,8 @@ use crate::formats::decimals::Text;
 use crate::formats::{Encoding, WriteError};
 use crate::mesh::{Color, Soup};
 
-/// Vertices and faces with their colours; face colours that are numbers of a colour map are the property `color_index`,
-/// which is -1 for the others. Coordinates are `float` if that holds all of them exactly, otherwise `double`.
+/// Vertices and faces with their colours, polygons as such; face colours that are numbers of a colour map are the property
+/// `color_index`, which is -1 for the others. Coordinates are `float` if that holds all of them exactly, otherwise `double`.
 pub(in crate::formats) fn write(
     soup: &Soup,
     encoding: Encoding,
@@ -25,6 +25,10 @@ pub(in crate::formats) fn write(
 struct Plan {
     is_float32: bool,
     is_signed_index: bool,
+    /// The number of corners of a face takes one byte, as older readers expect.
+    is_byte_size: bool,
+    faces: usize,
+    corners: usize,
     vertex_colors: Option<ColorLayout>,
     face_colors: Option<ColorLayout>,
     /// Some face colour is a number of a colour map.
@@ -34,7 +38,11 @@ struct Plan {
 impl Plan {
     fn new(soup: &Soup) -> Self {
         let is_exact = |&c: &f64| f64::from(c as f32) == c;
+        let sizes = || soup.faces().map(|(_, corners)| corners.len());
         Self {
+            is_byte_size: sizes().all(|size| size <= usize::from(u8::MAX)),
+            faces: sizes().count(),
+            corners: sizes().sum(),
             is_float32: soup.positions.iter().all(|p| p.to_array().iter().all(is_exact)),
             // Older readers know no other type.
             is_signed_index: i32::try_from(soup.positions.len()).is_ok(),
@@ -52,14 +60,15 @@ impl Plan {
         };
         let real = if self.is_float32 { "float" } else { "double" };
         let index = if self.is_signed_index { "int" } else { "uint" };
+        let size = if self.is_byte_size { "uchar" } else { "uint" };
         format!(
             "ply\nformat {layout} 1.0\n\
             element vertex {}\nproperty {real} x\nproperty {real} y\nproperty {real} z\n{}\
-            element face {}\nproperty list uchar {index} vertex_indices\n{}{}\
+            element face {}\nproperty list {size} {index} vertex_indices\n{}{}\
             end_header\n",
             soup.positions.len(),
             color_properties(self.vertex_colors),
-            soup.triangles.len(),
+            self.faces,
             color_properties(self.face_colors),
             if self.has_color_index { "property int color_index\n" } else { "" },
         )
@@ -91,7 +100,8 @@ fn color_index(soup: &Soup, triangle: usize) -> i32 {
 
 fn text(soup: &Soup, plan: &Plan, encoding: Encoding, budget: &Budget) -> Result<Vec<u8>, WriteError> {
     const VERTEX_BYTES_MAX: usize = 160;
-    const FACE_BYTES_MAX: usize = 120;
+    /// A number, and a third of what stands around those of a triangle, which may have a colour.
+    const CORNER_BYTES_MAX: usize = 52;
     let mut text = Text::new(budget);
     text.word(&plan.header(soup, encoding));
     for (i, p) in soup.positions.iter().enumerate() {
@@ -102,19 +112,21 @@ fn text(soup: &Soup, plan: &Plan, encoding: Encoding, budget: &Budget) -> Result
         }
         text.word("\n");
     }
-    for (t, corners) in soup.triangles.iter().enumerate() {
-        text.before_item(t, FACE_BYTES_MAX)?;
-        text.word("3");
+    let mut corner_count = 0;
+    for (t, corners) in soup.faces() {
+        text.integer(corners.len() as i64);
         for &v in corners {
+            text.before_item(corner_count, CORNER_BYTES_MAX)?;
+            corner_count += 1;
             text.word(" ");
             text.integer(i64::from(v));
         }
         if let Some(layout) = plan.face_colors {
-            text.color(face_color(soup, t), layout);
+            text.color(face_color(soup, t as usize), layout);
         }
         if plan.has_color_index {
             text.word(" ");
-            text.integer(i64::from(color_index(soup, t)));
+            text.integer(i64::from(color_index(soup, t as usize)));
         }
         text.word("\n");
     }
@@ -129,8 +141,11 @@ fn binary<const BIG: bool>(
 ) -> Result<Vec<u8>, WriteError> {
     let header = plan.header(soup, encoding);
     let vertex_bytes = if plan.is_float32 { 12 } else { 24 } + color_bytes(plan.vertex_colors);
-    let face_bytes = 13 + color_bytes(plan.face_colors) + if plan.has_color_index { 4 } else { 0 };
-    let length = header.len() + vertex_bytes * soup.positions.len() + face_bytes * soup.triangles.len();
+    let face_bytes = if plan.is_byte_size { 1 } else { 4 }
+        + color_bytes(plan.face_colors)
+        + if plan.has_color_index { 4 } else { 0 };
+    let faces_bytes = face_bytes * plan.faces + 4 * plan.corners;
+    let length = header.len() + vertex_bytes * soup.positions.len() + faces_bytes;
     let (mut out, _charged) = budget.vec::<u8>(length)?;
     out.extend_from_slice(header.as_bytes());
     for (i, p) in soup.positions.iter().enumerate() {
@@ -150,17 +165,20 @@ fn binary<const BIG: bool>(
         }
         put_color::<BIG>(&mut out, plan.vertex_colors, || vertex_color(soup, i));
     }
-    for (t, corners) in soup.triangles.iter().enumerate() {
-        if t.is_multiple_of(CHECK_EVERY) {
+    for (t, corners) in soup.faces() {
+        if t.is_multiple_of(CHECK_EVERY as u32) {
             budget.check()?;
         }
-        out.push(3);
+        match plan.is_byte_size {
+            true => out.push(corners.len() as u8),
+            false => put::<BIG, 4>(&mut out, (corners.len() as u32).to_le_bytes()),
+        }
         for v in corners {
             put::<BIG, 4>(&mut out, v.to_le_bytes());
         }
-        put_color::<BIG>(&mut out, plan.face_colors, || face_color(soup, t));
+        put_color::<BIG>(&mut out, plan.face_colors, || face_color(soup, t as usize));
         if plan.has_color_index {
-            put::<BIG, 4>(&mut out, color_index(soup, t).to_le_bytes());
+            put::<BIG, 4>(&mut out, color_index(soup, t as usize).to_le_bytes());
         }
     }
     Ok(out)
@@ -256,6 +274,34 @@ mod tests {
                 // Beside colours with channels what has none is white.
                 let white = colors.contains(&Some(bytes)).then_some(Color::Bytes([255; 3], None));
                 assert_eq!(read.face_colors, colors.map(|color| color.or(white)), "{encoding:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn polygons_are_written_as_such_and_read_back_whatever_their_size() {
+        for size in [5, 255, 256] {
+            let at = |i: u32| {
+                let (y, x) = libm::sincos(f64::from(i) / f64::from(size) * 6.0);
+                DVec3::new(x, y, 0.0)
+            };
+            let mut text: String = (0..size).map(at).map(|p| format!("v {} {} 0\n", p.x, p.y)).collect();
+            let all: Vec<String> = (1..=size).map(|i| i.to_string()).collect();
+            text.push_str(&format!("f 3 2 1\nf {}\nf 1 2 3\n", all.join(" ")));
+            let budget = Budget::unlimited();
+            let read = |bytes: &[u8], encoding| {
+                crate::formats::read(bytes, encoding, &crate::formats::ReadOptions::default(), &budget)
+                    .unwrap()
+            };
+            let soup = read(text.as_bytes(), Encoding::Obj);
+            for encoding in
+                [Encoding::PlyAscii, Encoding::PlyBinaryLittleEndian, Encoding::PlyBinaryBigEndian]
+            {
+                let bytes = write(&soup, encoding, &budget).unwrap();
+                assert_eq!(header_of(&bytes).contains("list uchar"), size < 256);
+                let back = read(&bytes, encoding);
+                assert_eq!((&back.positions, &back.triangles), (&soup.positions, &soup.triangles));
+                assert_eq!(back.polygons, soup.polygons, "{size} corners");
             }
         }
     }

@@ -1,6 +1,6 @@
 //! The triangles around the vertices that a stitch may join, kept up to date.
 
-use crate::mesh::{edge_of, prev_corner};
+use crate::mesh::{Outlines, edge_of, prev_corner};
 
 /// The triangles around each vertex that a pair could join; other vertices have none here.
 pub(super) struct Stars {
@@ -49,20 +49,32 @@ impl Stars {
         self.stars[self.slot[kept as usize] as usize].extend(star);
     }
 
-    /// The half-edges of edges at `v` that have one triangle.
-    pub(super) fn boundary_at(&self, triangles: &[[u32; 3]], v: u32) -> Vec<u32> {
+    /// The half-edges of edges at `v` that have one face.
+    pub(super) fn boundary_at(&self, triangles: &[[u32; 3]], outlines: &Outlines, v: u32) -> Vec<u32> {
+        let edges = self.edges_at(triangles, outlines, v);
+        let of_edge = edges.chunk_by(|(a, _), (b, _)| a == b);
+        of_edge.filter_map(|edge| if let [(_, h)] = *edge { Some(h) } else { None }).collect()
+    }
+
+    /// The vertices that an edge joins to `v`, ascending.
+    pub(super) fn neighbours(&self, triangles: &[[u32; 3]], outlines: &Outlines, v: u32) -> Vec<u32> {
+        let edges = self.edges_at(triangles, outlines, v);
+        edges.chunk_by(|(a, _), (b, _)| a == b).map(|edge| edge[0].0).collect()
+    }
+
+    /// The half-edges of edges at `v`, each with the other end; ascending.
+    fn edges_at(&self, triangles: &[[u32; 3]], outlines: &Outlines, v: u32) -> Vec<(u32, u32)> {
         let mut edges: Vec<(u32, u32)> = Vec::with_capacity(2 * self.of(v).len());
         for &t in self.of(v) {
             for h in 3 * t..3 * t + 3 {
                 if edge_of(triangles, h)[0] == v {
                     let back = prev_corner(h);
-                    edges.push((edge_of(triangles, h)[1], h));
-                    edges.push((edge_of(triangles, back)[0], back));
+                    let both = [(edge_of(triangles, h)[1], h), (edge_of(triangles, back)[0], back)];
+                    edges.extend(both.into_iter().filter(|&(_, h)| !outlines.is_diagonal(h)));
                 }
             }
         }
         edges.sort_unstable();
-        let of_edge = edges.chunk_by(|(a, _), (b, _)| a == b);
-        of_edge.filter_map(|edge| if let [(_, h)] = *edge { Some(h) } else { None }).collect()
+        edges
     }
 }

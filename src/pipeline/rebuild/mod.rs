@@ -233,6 +233,7 @@ fn recentered(center: DVec3, vertices: usize) -> Action {
             "moved by [{:e}, {:e}, {:e}] as allowed: float32 is too coarse where it was; distances do not count this",
             -center.x, -center.y, -center.z
         ),
+        stitches: None,
     }
 }
 
@@ -379,6 +380,7 @@ fn action(made: &Made, open_shells: OpenShells, before: Option<&Analysis>) -> Ac
         ],
         move_max: 0.0,
         reason: reason(account, open_shells),
+        stitches: None,
     }
 }
 

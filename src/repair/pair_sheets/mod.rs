@@ -195,6 +195,7 @@ mod tests {
             triangle_origin: (0..8).collect(),
             two_sided: Vec::new(),
             blends: Default::default(),
+            polygons: Default::default(),
         }
     }
 

@@ -4,7 +4,7 @@
 use super::Rim;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::triangle_area;
-use crate::mesh::{ChosenEdges, Components, EdgeGroups, ParityUnionFind, UnionFind, edge_of, triangle_of};
+use crate::mesh::{ChosenEdges, Components, ParityUnionFind, UnionFind, edge_of, triangle_of};
 use crate::repair::Draft;
 use crate::spatial::{Octree, is_within};
 
@@ -118,7 +118,7 @@ fn meetings(
 
 /// Triangles connected by edges.
 fn parts(draft: &Draft, budget: &Budget) -> Result<Components, Stopped> {
-    let groups = EdgeGroups::build(&draft.triangles, draft.positions.len(), budget)?;
+    let groups = draft.edge_groups(budget)?;
     let mut parts = UnionFind::new(draft.triangles.len());
     for (e, group) in groups.iter().enumerate() {
         if e % CHECK_EVERY == 0 {

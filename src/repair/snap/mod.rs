@@ -7,10 +7,10 @@
 
 mod facing;
 
-use super::{Changes, Draft};
+use super::{Changes, Draft, Stitches};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3, are_collinear};
-use crate::mesh::{self, Boundary, ChosenEdges, EdgeGroups, JoinRule, Stitched, Validity, edge_of};
+use crate::mesh::{self, Boundary, ChosenEdges, JoinRule, Stitched, Validity, edge_of};
 use crate::spatial::{Octree, is_within};
 use rustc_hash::FxHashMap;
 
@@ -52,25 +52,26 @@ pub fn snap(draft: &mut Draft, options: &SnapOptions, budget: &Budget) -> Result
         rim = Rim::of(draft, budget)?;
     }
     let [apart, same] = rim.pairs(draft, epsilon, &options.chosen, budget)?;
+    let outlines = draft.outlines(budget)?;
+    let _charge = budget.charge(draft.triangles.len() as u64 * 12)?;
+    let before = draft.triangles.clone();
     let mut rule = Closeness::new(&draft.positions, epsilon);
     let mut done = Stitched::default();
     for pairs in [apart, same] {
-        let vertex_count = draft.positions.len();
+        let (vertex_count, triangles) = (draft.positions.len(), &mut draft.triangles);
+        let validity = options.validity;
         let stitched =
-            mesh::stitch(&mut draft.triangles, vertex_count, &pairs, options.validity, &mut rule, budget)?;
+            mesh::stitch_faces(triangles, &outlines, vertex_count, &pairs, validity, &mut rule, budget)?;
         done.explicit.extend(stitched.explicit);
         done.implicit.extend(stitched.implicit);
     }
     let (moved, move_max) = rule.moves();
+    let stitches = Stitches::of(draft, &before, &done);
     draft.drop_unused_vertices();
-    let changes = Changes::counted([
-        ("edges_joined", done.explicit.len() as u64),
-        ("edges_joined_with_others", done.implicit.len() as u64),
-        ("vertices_moved", moved),
-        ("triangles_flipped", flipped),
-    ]);
+    let others = [("vertices_moved", moved), ("triangles_flipped", flipped)];
+    let counts = [stitches.counts(), others].concat();
     let reason = if moved > 0 { format!("vertices up to {epsilon:e} apart are one") } else { String::new() };
-    Ok(Changes { move_max, reason, ..changes })
+    Ok(Changes { counts, move_max, reason, stitches, ..Changes::default() })
 }
 
 fn epsilon(draft: &Draft, rim: &Rim, asked: Option<f64>) -> f64 {
@@ -95,7 +96,7 @@ struct Rim {
 
 impl Rim {
     fn of(draft: &Draft, budget: &Budget) -> Result<Self, Stopped> {
-        let groups = EdgeGroups::build(&draft.triangles, draft.positions.len(), budget)?;
+        let groups = draft.edge_groups(budget)?;
         let boundary = Boundary::trace(&draft.triangles, draft.positions.len(), &groups, budget)?;
         drop(groups);
         let mut edges: Vec<(u32, u32)> = boundary
@@ -230,6 +231,7 @@ mod tests {
             triangle_origin: (0..4).collect(),
             two_sided: Vec::new(),
             blends: Default::default(),
+            polygons: Default::default(),
         }
     }
 
