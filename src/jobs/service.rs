@@ -124,7 +124,7 @@ impl Jobs {
         let path = settings.data_dir.clone();
         let space =
             SpaceLimits { bytes_max: settings.data_bytes_max, free_bytes_min: settings.disk_free_bytes_min };
-        let spool = Spool::open(&path, space).map_err(|error| match error {
+        let spool = Spool::take_over(&path, space).await.map_err(|error| match error {
             OpenError::InUse => StartError::DataDirInUse { path: path.clone() },
             OpenError::Io(source) => StartError::DataDir { path: path.clone(), source },
         })?;

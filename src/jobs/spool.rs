@@ -7,6 +7,7 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use sha2::{Digest, Sha256};
 use uuid::Uuid;
@@ -55,9 +56,27 @@ pub(super) struct SpaceLimits {
     pub(super) free_bytes_min: u64,
 }
 
+/// How long a directory that is in use is waited for: what a server that was killed had just begun to start holds it for a
+/// moment more.
+const IN_USE: Duration = Duration::from_secs(2);
+
+/// Time between two looks at a directory that is in use.
+const LOOKS_APART: Duration = Duration::from_millis(20);
+
 impl Spool {
-    /// Takes the directory over, with the files in it.
-    pub(super) fn open(data_dir: &Path, limits: SpaceLimits) -> Result<Arc<Self>, OpenError> {
+    /// Takes the directory over, with the files in it, and waits for a moment where another server holds it.
+    pub(super) async fn take_over(data_dir: &Path, limits: SpaceLimits) -> Result<Arc<Self>, OpenError> {
+        let begun = Instant::now();
+        loop {
+            match Self::open(data_dir, limits) {
+                Err(OpenError::InUse) if begun.elapsed() < IN_USE => tokio::time::sleep(LOOKS_APART).await,
+                opened => return opened,
+            }
+        }
+    }
+
+    /// Takes the directory over, unless another server holds it.
+    fn open(data_dir: &Path, limits: SpaceLimits) -> Result<Arc<Self>, OpenError> {
         fs::create_dir_all(data_dir)?;
         let lock = File::options().create(true).append(true).open(data_dir.join("lock"))?;
         match lock.try_lock() {
