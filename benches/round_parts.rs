@@ -15,7 +15,7 @@ fn benches(criterion: &mut Criterion) {
     group.sample_size(10);
     for (name, soup) in shapes::all(100_000) {
         group.bench_function(format!("printing: {name}"), |b| {
-            b.iter(|| measure(black_box(&soup), &Policy::default(), true, 16, &Budget::unlimited()))
+            b.iter(|| measure(black_box(&soup), &Policy::default(), true, 16, &Budget::unlimited()));
         });
         let smaller: Vec<_> = soup.positions.iter().map(|&p| p * 0.999).collect();
         // As many refinements as a simplification allows itself.
@@ -25,7 +25,7 @@ fn benches(criterion: &mut Criterion) {
                 let from = Surface { positions: &soup.positions, triangles: &soup.triangles };
                 let to = Surface { positions: &smaller, triangles: &soup.triangles };
                 surface_distance(black_box(from), to, &options, &Budget::unlimited())
-            })
+            });
         });
     }
     group.finish();

@@ -257,7 +257,7 @@ mod tests {
             let mut triangles = vec![[7, 8, 9]];
             triangles.extend(split);
             triangles.push([0, 2, 7]);
-            let runs = PolygonRuns::of(6, [1..5]);
+            let runs = PolygonRuns::of(6, std::iter::once(1..5));
             let got = outlines(&triangles, &runs);
             assert_eq!(
                 (&got[0][..], &got[1][..], &got[2][..]),

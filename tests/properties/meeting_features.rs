@@ -208,7 +208,7 @@ fn a_vertex_on_an_edge_is_one_pair_however_many_faces_show_it() {
 
 #[test]
 fn a_diagonal_of_a_polygon_is_inside_its_face() {
-    let square = vec![[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]];
+    let square = [[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]];
     for turn in 0..4 {
         let mut face = vec![0, 1, 2, 3];
         face.rotate_left(turn);

@@ -459,7 +459,8 @@ mod tests {
         // An octagon, split in zigzag: joining 0-1 with 4-5 would make 0 and 5 one, and 1 and 4.
         let mesh = [[0, 1, 7], [1, 2, 7], [2, 6, 7], [2, 3, 6], [3, 5, 6], [3, 4, 5]];
         let pair = (half_edge(&mesh, [0, 1]), half_edge(&mesh, [4, 5]));
-        for polygons in [&[][..], &[0..6]] {
+        let whole = std::slice::from_ref(&(0..6));
+        for polygons in [&[][..], whole] {
             let mut joined = mesh.to_vec();
             let done = stitch_polygons(&mut joined, polygons, 8, &[pair]);
             let as_polygons = !polygons.is_empty();
