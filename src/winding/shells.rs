@@ -19,10 +19,14 @@ pub struct Shells {
     pub closed_part: Vec<u32>,
     /// Open, read as the boundary of a volume.
     pub open: Vec<[DVec3; 3]>,
+    /// The part of each.
+    pub open_part: Vec<u32>,
     /// Cones over the rims of the open ones; with them they are closed.
     pub cones: Vec<[DVec3; 3]>,
     /// Open, read as sheets.
     pub sheets: Vec<[DVec3; 3]>,
+    /// The part of each.
+    pub sheet_part: Vec<u32>,
     /// Number of parts in each list.
     pub parts: [u32; 3],
     /// How clearly the open parts bound a volume, by area: 1 for a closed shell, 0 for a flat sheet.
@@ -253,8 +257,10 @@ fn read_open(
     for ([a, b, c], &p) in open.into_iter().zip(part) {
         if bounds[p as usize] {
             shells.open.push(if is_turned { [a, c, b] } else { [a, b, c] });
+            shells.open_part.push(p);
         } else {
             shells.sheets.push([a, b, c]);
+            shells.sheet_part.push(p);
         }
     }
     shells.closedness = Some((2.0 * overall.abs()).clamp(0.0, 1.0));

@@ -134,6 +134,11 @@ impl Lattice {
         [rest / self.dims[1], rest % self.dims[1], k]
     }
 
+    /// The place of vertex `index`, in lattice units.
+    pub(super) fn units(&self, index: usize) -> DVec3 {
+        DVec3::from_array(self.coordinates(index).map(|n| n as f64))
+    }
+
     /// What to add to a vertex number to go by `offset`.
     pub(super) fn stride(&self, [i, j, k]: [isize; 3]) -> isize {
         (i * self.dims[1] as isize + j) * self.dims[2] as isize + k

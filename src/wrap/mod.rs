@@ -10,7 +10,9 @@ mod columns;
 mod cut;
 mod fit;
 mod lattice;
+mod link;
 mod raster;
+mod seams;
 mod signs;
 mod surface;
 mod tetrahedra;
@@ -25,6 +27,7 @@ use cut::Cut;
 pub use fit::FitCounts;
 use lattice::Lattice;
 pub use lattice::TooCoarse;
+pub use signs::OwnDefects;
 use signs::Signs;
 use surface::InputSurface;
 use tetrahedra::Patches;
@@ -96,6 +99,8 @@ pub struct Account {
     pub wall: f64,
     /// How clearly open parts bound a volume: 1 for a closed shell, 0 for a flat sheet. `None`: there are none.
     pub closedness: Option<f64>,
+    /// What the lattice made itself and what was taken away again.
+    pub own: OwnDefects,
     /// What the fit did.
     pub fit: FitCounts,
 }
@@ -154,12 +159,14 @@ pub fn wrap(
         thin_triangles: 0,
         wall: wall_of(options, bounds, &lattice) * lattice.side(),
         closedness: shells.closedness,
+        own: OwnDefects::default(),
         fit: FitCounts::default(),
     };
     let surface = InputSurface::new(shells, budget)?;
     let wall = wall_of(options, bounds, &lattice);
     let signs = Signs::decide(&lattice, &surface, wall, budget)?;
     account.thin_triangles = signs.thin.len() as u64;
+    account.own = signs.own;
     let patches = tetrahedra::march(&lattice, &signs, budget)?;
     let cuts = cut::cuts(&lattice, &signs, &surface, &patches.edges, budget)?;
     let mut positions = places(&lattice, &patches, &cuts);

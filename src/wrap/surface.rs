@@ -21,6 +21,8 @@ pub(super) struct InputSurface {
     pub(super) corners: Vec<[DVec3; 3]>,
     closed: usize,
     boundary: usize,
+    /// The part of each: those connected by edges.
+    parts: Vec<u32>,
     /// What closes the open ones.
     pub(super) cones: Vec<[DVec3; 3]>,
     bvh: Bvh,
@@ -43,8 +45,9 @@ impl InputSurface {
         let mut corners = shells.closed;
         corners.extend(shells.open);
         corners.extend(shells.sheets);
+        let parts = [shells.closed_part, shells.open_part, shells.sheet_part].concat();
         let bvh = Bvh::build(corners.as_flattened(), &separate(corners.len()), None, budget)?;
-        Ok(Self { corners, closed, boundary, cones: shells.cones, bvh })
+        Ok(Self { corners, closed, boundary, parts, cones: shells.cones, bvh })
     }
 
     /// Those that bound a volume.
@@ -66,6 +69,26 @@ impl InputSurface {
 
     pub(super) fn says(&self, triangle: u32) -> Says {
         if (triangle as usize) < self.boundary { Says::Boundary } else { Says::Sheet }
+    }
+
+    /// The box of each part, by its number.
+    pub(super) fn boxes_of_parts(&self) -> Vec<Aabb> {
+        let count = self.parts.iter().max().map_or(0, |&part| part as usize + 1);
+        let mut boxes = vec![Aabb::EMPTY; count];
+        for (&part, &corners) in self.parts.iter().zip(&self.corners) {
+            boxes[part as usize] = boxes[part as usize].union(Aabb::of(corners));
+        }
+        boxes
+    }
+
+    /// Calls `visit` with the part of each triangle whose box meets `bounds`.
+    pub(super) fn parts_in(
+        &self,
+        bounds: Aabb,
+        budget: &Budget,
+        mut visit: impl FnMut(u32),
+    ) -> Result<(), Stopped> {
+        self.bvh.visit_box(bounds, budget, |triangle| visit(self.parts[triangle as usize]))
     }
 
     /// Unit normal, zero for a triangle without area.

@@ -130,6 +130,122 @@ fn sheets_back_to_back_are_not_lost() {
     assert_eq!(certificate.shells.len(), 1);
 }
 
+/// A Moebius band of width 4 around a circle of radius 10, turned around an axis through its center.
+fn moebius(turn: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    const AROUND: u32 = 40;
+    let place = |n: u32, side: f64| {
+        let angle = f64::from(n) * std::f64::consts::TAU / f64::from(AROUND);
+        let (half_sine, half_cosine) = (angle / 2.0).sin_cos();
+        let radius = 10.0 + side * half_cosine;
+        let (sine, cosine) = angle.sin_cos();
+        let flat = DVec3::new(radius * cosine, radius * sine, side * half_sine);
+        let (s, c) = turn.sin_cos();
+        DVec3::new(flat.x, flat.y * c - flat.z * s, flat.y * s + flat.z * c)
+    };
+    let positions = (0..AROUND).flat_map(|n| [place(n, -2.0), place(n, 2.0)]).collect();
+    let triangles = (0..AROUND).flat_map(|n| {
+        let [a, b] = [2 * n, 2 * n + 1];
+        // The last quad joins the sides crosswise.
+        let [c, d] = if n + 1 == AROUND { [1, 0] } else { [a + 2, b + 2] };
+        [[a, c, d], [a, d, b]]
+    });
+    (positions, triangles.collect())
+}
+
+#[test]
+fn a_moebius_band_has_one_handle_however_it_lies_in_the_lattice() {
+    for n in 0..12 {
+        let (positions, triangles) = moebius(f64::from(n) * 0.13);
+        let (wrap, certificate) = wrapped(&positions, &triangles, 36 + 3 * n);
+        let genera: Vec<u32> = certificate.shells.iter().map(|shell| shell.genus).collect();
+        assert_eq!((wrap.account.sheet_parts, genera), (1, vec![1]), "{n}");
+    }
+}
+
+#[test]
+fn triangles_over_each_other_that_face_both_ways_make_no_handles() {
+    // A square whose corners are taken crosswise, beside a box.
+    let mut mesh = cuboid([0.0; 3], [10.0; 3]);
+    let corners = [[20.0, 0.0, 5.3], [30.0, 0.0, 5.0], [30.0, 10.0, 5.1], [20.0, 10.0, 5.4]];
+    let sheet = (corners.map(DVec3::from_array).to_vec(), vec![[0, 1, 3], [0, 3, 2]]);
+    add(&mut mesh, &sheet, false);
+    for cells in [24, 48, 64] {
+        let (_, certificate) = wrapped(&mesh.0, &mesh.1, cells);
+        assert_eq!(certificate.shells.iter().map(|shell| shell.genus).collect::<Vec<_>>(), [0, 0], "{cells}");
+    }
+}
+
+/// A random field that is outside at the border.
+fn random_signs<'l>(lattice: &'l Lattice, random: &mut Random, share: u64) -> Signs<'l> {
+    let is_within = |n: usize| (0..3).all(|a| (1..lattice.dims[a] - 1).contains(&lattice.coordinates(n)[a]));
+    let field: Vec<bool> = (0..lattice.len()).map(|n| is_within(n) && random.below(10) < share).collect();
+    Signs::of_field(lattice, &field)
+}
+
+/// Of the surface between the signs.
+fn shells_and_handles(lattice: &Lattice, signs: &Signs<'_>) -> (u32, i64) {
+    let patches = tetrahedra::march(lattice, signs, &Budget::unlimited()).unwrap();
+    let mut sets = crate::mesh::UnionFind::new(patches.edges.len());
+    for &[a, b, c] in &patches.triangles {
+        sets.unite(a, b);
+        sets.unite(b, c);
+    }
+    for &[a, b, c, d] in &patches.quads {
+        sets.unite(a, b);
+        sets.unite(b, c);
+        sets.unite(c, d);
+    }
+    let shells = sets.into_components().count;
+    let triangles = patches.triangles.len() + 2 * patches.quads.len();
+    (shells, i64::from(shells) - (patches.edges.len() as i64 - triangles as i64 / 2) / 2)
+}
+
+#[test]
+fn handles_go_and_nothing_else_changes() {
+    let bounds = Aabb { min: DVec3::ZERO, max: DVec3::ONE };
+    let lattice = Lattice::around(bounds, 6, usize::MAX).unwrap();
+    let (mut random, mut closed, mut cut) = (Random(5), 0, 0);
+    for round in 0..200 {
+        let mut signs = random_signs(&lattice, &mut random, 1 + round % 9);
+        let (shells, handles) = shells_and_handles(&lattice, &signs);
+        let [tunnels, bridges] = signs.drop_handles(&Budget::unlimited()).unwrap();
+        let (shells_after, handles_after) = shells_and_handles(&lattice, &signs);
+        assert_eq!(shells_after, shells, "{round}");
+        let fewer = handles - handles_after;
+        assert!(fewer >= i64::from(tunnels + bridges) && handles_after >= 0, "{round}: {fewer}");
+        assert!(fewer == 0 || tunnels + bridges > 0, "{round}");
+        (closed, cut) = (closed + tunnels, cut + bridges);
+    }
+    assert!(closed > 1000 && cut > 1000, "{closed} {cut}");
+}
+
+#[test]
+fn crumbs_and_bubbles_go_unless_they_are_all_there_is_or_deep_inside() {
+    let bounds = Aabb { min: DVec3::ZERO, max: DVec3::ONE };
+    let lattice = Lattice::around(bounds, 16, usize::MAX).unwrap();
+    let none = InputSurface::new(winding::Shells::default(), &Budget::unlimited()).unwrap();
+    // A block with bubbles behind one layer, behind two and far from everything outside; and a crumb beside it.
+    let is_inside = |n: usize| {
+        let at = lattice.coordinates(n);
+        let is_in_block = at.iter().all(|x| (4..18).contains(x));
+        let is_bubble = [[6, 9, 9], [6, 9, 10], [11, 11, 11], [16, 14, 14]].contains(&at);
+        is_in_block && !is_bubble || [[20, 9, 9], [20, 10, 9]].contains(&at)
+    };
+    let field: Vec<bool> = (0..lattice.len()).map(is_inside).collect();
+    let mut signs = Signs::of_field(&lattice, &field);
+    let budget = Budget::unlimited();
+    assert_eq!(shells_and_handles(&lattice, &signs), (5, 0));
+    assert_eq!(signs.drop_crumbs(&none, &budget), Ok(1));
+    assert_eq!(signs.clear_bubbles(&none, &budget), Ok([1, 1]));
+    assert_eq!(shells_and_handles(&lattice, &signs), (2, 0));
+    let is_inside = |at| signs.is_inside(lattice.index(at));
+    assert!(is_inside([6, 9, 9]) && !is_inside([11, 11, 11]) && !is_inside([16, 14, 14]));
+    // What is alone stays.
+    let alone: Vec<bool> = (0..lattice.len()).map(|n| lattice.coordinates(n) == [9, 9, 9]).collect();
+    let mut signs = Signs::of_field(&lattice, &alone);
+    assert_eq!(signs.drop_crumbs(&none, &budget), Ok(0));
+}
+
 #[test]
 fn any_signs_give_a_surface_that_is_certified() {
     let bounds = Aabb { min: DVec3::ZERO, max: DVec3::ONE };
@@ -142,15 +258,12 @@ fn any_signs_give_a_surface_that_is_certified() {
             let [i, j, k] = lattice.coordinates(index).map(|n| n.wrapping_sub(5));
             i < 3 && j < 2 && k < 2 && round >> (4 * i + 2 * j + k) & 1 == 1
         };
-        let field: Vec<bool> = if round < 4096 {
-            (0..lattice.len()).map(inside).collect()
+        let signs = if round < 4096 {
+            Signs::of_field(&lattice, &(0..lattice.len()).map(inside).collect::<Vec<bool>>())
         } else {
             let share = random.below(9) + 1;
-            let is_within =
-                |n: usize| (0..3).all(|a| (1..lattice.dims[a] - 1).contains(&lattice.coordinates(n)[a]));
-            (0..lattice.len()).map(|n| is_within(n) && random.below(10) < share).collect()
+            random_signs(&lattice, &mut random, share)
         };
-        let signs = Signs::of_field(&lattice, &field);
         let patches = tetrahedra::march(&lattice, &signs, &Budget::unlimited()).unwrap();
         let (least, most) =
             (1u64 << lattice.steps_log2 >> 3, (1u64 << lattice.steps_log2) - (1 << lattice.steps_log2 >> 3));

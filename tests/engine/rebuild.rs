@@ -204,3 +204,86 @@ fn a_sheet_becomes_a_wall_of_which_it_is_one_side_bit_for_bit() {
         }
     }
 }
+
+/// A Moebius band of 48 segments, as indexed quads of an OBJ.
+fn moebius_band() -> Vec<u8> {
+    const AROUND: usize = 48;
+    let mut text = String::new();
+    for n in 0..AROUND {
+        let angle = n as f64 * std::f64::consts::TAU / AROUND as f64;
+        for side in [-3.0, 0.0, 3.0] {
+            let radius = 10.0 + side * (angle / 2.0).cos();
+            let place = [radius * angle.cos(), radius * angle.sin(), side * (angle / 2.0).sin()];
+            text += &format!("v {} {} {}\n", place[0], place[1], place[2]);
+        }
+    }
+    for n in 0..AROUND {
+        for side in 0..2 {
+            let [a, b] = [3 * n + side + 1, 3 * n + side + 2];
+            let [c, d] = if n + 1 == AROUND { [3 - side, 2 - side] } else { [a + 3, b + 3] };
+            text += &format!("f {a} {c} {d} {b}\n");
+        }
+    }
+    text.into_bytes()
+}
+
+/// The genus of each shell of a certified result.
+fn genera(answer: &Answer) -> Vec<u32> {
+    rebuilt(answer);
+    answer.report.certificate.as_ref().unwrap().shells.iter().map(|shell| shell.genus).collect()
+}
+
+#[test]
+fn a_moebius_band_comes_back_with_the_one_handle_that_a_thick_one_has() {
+    let bytes = moebius_band();
+    for cells in [None, Some(48), Some(90)] {
+        let wrap = WrapChoices { cells, ..WrapChoices::default() };
+        let answer = answer(&bytes, &Options { wrap, ..Options::default() });
+        assert_eq!(genera(&answer), [1], "{cells:?}");
+    }
+}
+
+#[test]
+fn a_quad_taken_crosswise_makes_no_handles() {
+    let cube = "v 0 0 0\nv 10 0 0\nv 10 10 0\nv 0 10 0\nv 0 0 10\nv 10 0 10\nv 10 10 10\nv 0 10 10\n\
+        f 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    let beside = "f 1 4 3 2\nv 20 0 5\nv 30 0 5\nv 30 10 5\nv 20 10 5\nf 9 10 12 11\n";
+    for (name, text, expected) in [
+        ("as a face of the cube", format!("{cube}f 1 4 2 3\n"), vec![0]),
+        ("over a face of the cube", format!("{cube}f 1 4 3 2\nf 1 3 2 4\n"), vec![0]),
+        ("beside the cube", format!("{cube}{beside}"), vec![0, 0]),
+    ] {
+        let answer = answer(text.as_bytes(), &Options::default());
+        assert_eq!(genera(&answer), expected, "{name}");
+        let certificate = answer.report.certificate.as_ref().unwrap();
+        assert!(certificate.shells.iter().all(|shell| shell.depth == 0), "{name}: {:?}", certificate.shells);
+    }
+}
+
+#[test]
+fn gaps_thinner_than_a_cell_leave_no_cavities_and_are_no_further_away() {
+    // A fan of leaves, each a thin plate, all through one block: the gaps between them end in a point.
+    let plate = |turn: f64| {
+        let mut plate = cube();
+        for p in &mut plate.positions {
+            let [x, y, z] = [p[0] * 10.0 + 0.37, p[1] * 4.0, p[2] * 0.11];
+            let (sine, cosine) = turn.to_radians().sin_cos();
+            *p = [x * cosine - z * sine, y, x * sine + z * cosine];
+        }
+        plate
+    };
+    let leaves = (0..7).map(|n| plate(1.3 * f64::from(n))).reduce(|all, one| all.with(&one)).unwrap();
+    let bytes = encode(&leaves, Encoding::Obj);
+    let wrap = WrapChoices { cells: Some(96), ..WrapChoices::default() };
+    let answer = answer(&bytes, &Options { wrap, ..Options::default() });
+    let certificate = answer.report.certificate.as_ref().unwrap();
+    assert!(certificate.shells.iter().all(|shell| shell.depth == 0), "{:?}", certificate.shells);
+    let own: u64 = ["bubbles_opened", "bubbles_filled", "tunnels_closed", "bridges_cut", "crumbs_dropped"]
+        .map(|name| count(&answer, name))
+        .iter()
+        .sum();
+    let handles: u32 = genera(&answer).iter().sum();
+    let distance = answer.report.distance.as_ref().unwrap().upper();
+    // A cell is 0.11 wide.
+    assert!(own > 0 && handles <= 6 && distance < 0.22, "{own} {handles} {distance}");
+}

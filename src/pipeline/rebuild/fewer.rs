@@ -1,7 +1,8 @@
 //! A rebuilt surface with fewer triangles, which meets itself nowhere.
 
-use crate::budget::{Budget, Stage, Stopped};
+use crate::budget::{Budget, CHECK_EVERY, Stage, Stopped};
 use crate::geom::{Aabb, DVec3};
+use crate::mesh::UnionFind;
 use crate::pipeline::{Action, SimplifyChoices};
 use crate::simplify::{self, Mode, Simplified, SimplifyError, SimplifyOptions, Target};
 use crate::spatial::{self, Bvh, Search, Terrains};
@@ -28,9 +29,17 @@ pub(super) struct Fewer<'f> {
 }
 
 impl Fewer<'_> {
-    /// What the mode gives. Of the fast one, which does not look at what meets, a result without contacts: where there were
-    /// some, the surface is held in the next run. `None`: contacts remained.
+    /// What the mode gives, with as many shells and handles as before. `None`: contacts remained.
     pub(super) fn triangles(&self, mode: Mode) -> Result<Option<(Simplified, Action)>, Stopped> {
+        let Some(found) = self.embedded(mode)? else { return Ok(None) };
+        let before = Topology::of(&self.wrapped.triangles, self.wrapped.positions.len(), self.budget)?;
+        let after = Topology::of(&found.0.triangles, found.0.positions.len(), self.budget)?;
+        Ok((before == after).then_some(found))
+    }
+
+    /// Of the fast mode, which does not look at what meets, a result without contacts: where there were
+    /// some, the surface is held in the next run. `None`: contacts remained.
+    fn embedded(&self, mode: Mode) -> Result<Option<(Simplified, Action)>, Stopped> {
         let (mut held, mut before) = (Vec::new(), usize::MAX);
         for _ in 0..RUNS {
             let Some(found) = self.run(mode, &held)? else { return Ok(None) };
@@ -91,5 +100,34 @@ impl Fewer<'_> {
             Aabb { min: a.min.max(b.min) - room, max: a.max.min(b.max) + room }
         };
         Ok(contacts.list.iter().map(place).collect())
+    }
+}
+
+/// What collapses must not change of a closed surface.
+#[derive(Debug, PartialEq, Eq)]
+struct Topology {
+    shells: u32,
+    /// Vertices less edges plus triangles: 2 for each shell less 2 for each handle.
+    euler_characteristic: i64,
+}
+
+impl Topology {
+    /// That of closed `triangles`, whose indices are below `vertex_count`.
+    fn of(triangles: &[[u32; 3]], vertex_count: usize, budget: &Budget) -> Result<Self, Stopped> {
+        let mut sets = UnionFind::new(vertex_count);
+        let mut is_used = vec![false; vertex_count];
+        for block in triangles.chunks(CHECK_EVERY) {
+            budget.check()?;
+            for &[a, b, c] in block {
+                sets.unite(a, b);
+                sets.unite(b, c);
+                for v in [a, b, c] {
+                    is_used[v as usize] = true;
+                }
+            }
+        }
+        let used = is_used.iter().filter(|&&is_used| is_used).count();
+        let shells = sets.into_components().count - (vertex_count - used) as u32;
+        Ok(Self { shells, euler_characteristic: used as i64 - triangles.len() as i64 / 2 })
     }
 }

@@ -5,17 +5,20 @@
 //! is closed. Otherwise they are evaluated near the surface, and from there on wherever signs differ, until no cube with
 //! a known vertex of each sign has an unknown one: the surface between the signs is then closed.
 
+mod crumbs;
+mod handles;
+mod walls;
+
 use super::lattice::Lattice;
-use super::surface::{InputSurface, separate};
-use super::{columns, raster};
+use super::surface::InputSurface;
+use super::{columns, link, raster};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 use crate::par;
-use crate::spatial::NearestSearch;
 use crate::winding::{WindingTree, turned};
 
 /// Least distance in cells up to which a sheet grows: what the vertices of every cube that it goes through are within. It
-/// grows behind the sheet, so that the sheet itself remains one side.
+/// grows behind the sheet, so that the sheet itself remains one side, and around seams.
 const SHEET: f64 = 1.733;
 
 /// Distance in cells up to which a thin wall grows to both sides. The plane in the middle of a slab twice as thick, and
@@ -30,6 +33,8 @@ const TOUCHED_BY_SHEET: u8 = 8;
 const SHEET_SIDE: u8 = 16;
 const THIN_SIDE: u8 = 32;
 const LISTED: u8 = 64;
+/// The vertex is straight behind a sheet.
+const SQUARELY: u8 = 128;
 
 /// Why a vertex is inside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,6 +45,21 @@ pub(super) enum Inside {
     NearSheet,
     /// It is close to a wall that is thinner than a cell.
     NearThin,
+}
+
+/// What sampling on a lattice made, below the size of a cell, and what was taken away again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct OwnDefects {
+    /// Bodies within one cube that no part of the input is.
+    pub crumbs_dropped: u32,
+    /// Cavities within one cube that no part of the input is, and that became a part of the space outside.
+    pub bubbles_opened: u32,
+    /// The same, filled.
+    pub bubbles_filled: u32,
+    /// Tunnels one vertex wide around a handle of a few cells.
+    pub tunnels_closed: u32,
+    /// Bridges one vertex wide that made a handle of a few cells.
+    pub bridges_cut: u32,
 }
 
 /// Signs, and what they were made of.
@@ -57,6 +77,8 @@ pub(super) struct Signs<'l> {
     open: WindingTree,
     /// Triangles of walls thinner than a cell.
     pub(super) thin: Vec<[DVec3; 3]>,
+    /// What the lattice made itself and what was taken away again.
+    pub(super) own: OwnDefects,
 }
 
 impl<'l> Signs<'l> {
@@ -76,8 +98,16 @@ impl<'l> Signs<'l> {
         );
         let state = vec![0u8; lattice.len()];
         let sheet_reach = wall.max(SHEET);
-        let mut signs =
-            Self { lattice, state, wall, sheet_reach, closed: closed?, open: open?, thin: Vec::new() };
+        let mut signs = Self {
+            lattice,
+            state,
+            wall,
+            sheet_reach,
+            closed: closed?,
+            open: open?,
+            thin: Vec::new(),
+            own: OwnDefects::default(),
+        };
         signs.border();
         signs.touch(surface.closed(), TOUCHED, budget)?;
         signs.touch(surface.open(), TOUCHED, budget)?;
@@ -88,8 +118,14 @@ impl<'l> Signs<'l> {
             let near = signs.near(TOUCHED | TOUCHED_BY_SHEET, budget)?;
             signs.evaluate_from(near, budget)?;
         }
+        let crumbs = signs.drop_crumbs(surface, budget)?;
         let changed = signs.keep_what_is_lost(surface, budget)?;
         signs.evaluate_from_known(changed, budget)?;
+        let crumbs_dropped = crumbs + signs.drop_crumbs(surface, budget)?;
+        let [bubbles_opened, bubbles_filled] = signs.clear_bubbles(surface, budget)?;
+        let [tunnels_closed, bridges_cut] = signs.drop_handles(budget)?;
+        signs.own =
+            OwnDefects { crumbs_dropped, bubbles_opened, bubbles_filled, tunnels_closed, bridges_cut };
         Ok(signs)
     }
 
@@ -98,7 +134,16 @@ impl<'l> Signs<'l> {
     pub(super) fn of_field(lattice: &'l Lattice, inside: &[bool]) -> Self {
         let state = inside.iter().map(|&is_inside| if is_inside { KNOWN | INSIDE } else { KNOWN }).collect();
         let (closed, open) = (Vec::new(), WindingTree::default());
-        Self { lattice, state, wall: SHEET, sheet_reach: SHEET, closed, open, thin: Vec::new() }
+        Self {
+            lattice,
+            state,
+            wall: SHEET,
+            sheet_reach: SHEET,
+            closed,
+            open,
+            thin: Vec::new(),
+            own: OwnDefects::default(),
+        }
     }
 
     /// True when the vertex is known to be inside.
@@ -121,13 +166,13 @@ impl<'l> Signs<'l> {
 
     /// Winding number at a vertex.
     pub(super) fn winding(&self, index: usize) -> f64 {
-        let place = DVec3::from_array(self.lattice.coordinates(index).map(|n| n as f64));
+        let place = self.lattice.units(index);
         self.open.at(place, f64::from(self.closed[index]))
     }
 
     /// Whether the winding number at a vertex is at least 1/2.
     fn is_wound(&self, index: usize) -> bool {
-        let place = DVec3::from_array(self.lattice.coordinates(index).map(|n| n as f64));
+        let place = self.lattice.units(index);
         self.open.is_inside(place, f64::from(self.closed[index]))
     }
 
@@ -189,34 +234,6 @@ impl<'l> Signs<'l> {
                     });
                 }
             }
-        }
-        near.iter().for_each(|&v| self.state[v as usize] &= !LISTED);
-        Ok(near)
-    }
-
-    /// Adds to a list what is beside it, and again, as many `times`.
-    fn widen(&mut self, mut near: Vec<u32>, times: usize, budget: &Budget) -> Result<Vec<u32>, Stopped> {
-        near.iter().for_each(|&v| self.state[v as usize] |= LISTED);
-        let mut last = 0;
-        for _ in 0..times {
-            let end = near.len();
-            for n in last..end {
-                if n % CHECK_EVERY == 0 {
-                    budget.check()?;
-                }
-                let index = near[n] as usize;
-                if self.lattice_border(index) {
-                    continue;
-                }
-                for offset in beside() {
-                    let beside = index.wrapping_add_signed(self.lattice.stride(offset));
-                    if self.state[beside] & LISTED == 0 {
-                        self.state[beside] |= LISTED;
-                        near.push(beside as u32);
-                    }
-                }
-            }
-            last = end;
         }
         near.iter().for_each(|&v| self.state[v as usize] &= !LISTED);
         Ok(near)
@@ -292,6 +309,38 @@ impl<'l> Signs<'l> {
         })
     }
 
+    /// The neighbours of a vertex that are inside, as bits in the order of [`link::STEPS`]; `None` where some are unknown, at
+    /// the border too.
+    fn inside_around(&self, v: usize) -> Option<u16> {
+        if !self.is_known(v) || self.lattice_border(v) {
+            return None;
+        }
+        let mut inside = 0;
+        for (n, &step) in link::STEPS.iter().enumerate() {
+            let state = self.state[v.wrapping_add_signed(self.lattice.stride(step))];
+            if state & KNOWN == 0 {
+                return None;
+            }
+            inside |= u16::from(state & INSIDE != 0) << n;
+        }
+        Some(inside)
+    }
+
+    /// The vertices that `is_wanted`, ascending.
+    fn select(&self, budget: &Budget, is_wanted: impl Fn(usize) -> bool + Sync) -> Result<Vec<u32>, Stopped> {
+        let blocks = par::try_map_ranges(self.state.len(), CHECK_EVERY, |range| {
+            budget.check()?;
+            Ok(range.filter(|&v| is_wanted(v)).map(|v| v as u32).collect::<Vec<u32>>())
+        })?;
+        Ok(blocks.concat())
+    }
+
+    /// Puts a vertex on the other side.
+    fn turn(&mut self, v: usize) {
+        self.state[v] &= !(SHEET_SIDE | THIN_SIDE);
+        self.state[v] ^= INSIDE;
+    }
+
     fn list_unknown_beside(&mut self, index: usize, wanted: &mut Vec<u32>) {
         for offset in beside() {
             let beside = index.wrapping_add_signed(self.lattice.stride(offset));
@@ -301,99 +350,6 @@ impl<'l> Signs<'l> {
             }
         }
     }
-
-    /// Puts vertices inside where the surface would be lost; gives those that are inside by this.
-    fn keep_what_is_lost(&mut self, surface: &InputSurface, budget: &Budget) -> Result<Vec<u32>, Stopped> {
-        let mut changed = Vec::new();
-        if !surface.sheets().is_empty() {
-            let near = self.near(TOUCHED_BY_SHEET, budget)?;
-            let near = self.widen(near, (self.sheet_reach - SHEET).ceil() as usize, budget)?;
-            self.grow(&near, surface.sheets(), true, &mut changed, budget)?;
-        }
-        // Also sheets that grew into each other's front and so not at all.
-        if !self.mark_thin(budget)? {
-            return Ok(changed);
-        }
-        for &corners in &surface.corners {
-            let (mut count, mut is_thin) = (1, false);
-            raster::cubes(corners, self.lattice.dims, |cube| {
-                is_thin |= self.state[self.lattice.index(cube)] & THIN_SIDE != 0;
-                count += 1;
-            });
-            budget.spend(count)?;
-            if is_thin {
-                self.thin.push(corners);
-            }
-        }
-        let near = self.near(THIN_SIDE, budget)?;
-        self.state.iter_mut().for_each(|state| *state &= !THIN_SIDE);
-        let thin = std::mem::take(&mut self.thin);
-        self.grow(&near, &thin, false, &mut changed, budget)?;
-        self.thin = thin;
-        Ok(changed)
-    }
-
-    /// Marks the touched cubes with no vertex inside in them and their neighbours; true when there is one.
-    fn mark_thin(&mut self, budget: &Budget) -> Result<bool, Stopped> {
-        let mut is_any = false;
-        for cube in 0..self.state.len() {
-            if cube % CHECK_EVERY == 0 {
-                budget.check()?;
-            }
-            if self.state[cube] & (TOUCHED | TOUCHED_BY_SHEET) != 0 {
-                let mut all = 0;
-                self.around_cube(cube, |state, _| all |= *state);
-                if all & INSIDE == 0 {
-                    self.state[cube] |= THIN_SIDE;
-                    is_any = true;
-                }
-            }
-        }
-        Ok(is_any)
-    }
-
-    /// Puts those of `near` inside that are close to `triangles`.
-    fn grow(
-        &mut self,
-        near: &[u32],
-        triangles: &[[DVec3; 3]],
-        is_sheet: bool,
-        changed: &mut Vec<u32>,
-        budget: &Budget,
-    ) -> Result<(), Stopped> {
-        let names = separate(triangles.len());
-        let search = NearestSearch::build(triangles.as_flattened(), &names, budget)?;
-        let (reach, mark) = if is_sheet { (self.sheet_reach, SHEET_SIDE) } else { (THIN, THIN_SIDE) };
-        let grown = par::try_map_ranges(near.len(), 1024, |range| {
-            budget.spend(range.len() as u64 * 4)?;
-            let mut hint = None;
-            let mut grown = Vec::new();
-            for &v in near[range].iter().filter(|&&v| !self.is_inside(v as usize)) {
-                let place = DVec3::from_array(self.lattice.coordinates(v as usize).map(|n| n as f64));
-                let Some(nearest) = search.find(place, hint, budget)? else { continue };
-                hint = Some(nearest.triangle);
-                if nearest.distance <= reach
-                    && (!is_sheet || is_behind(place, nearest.point, &search, nearest.triangle))
-                {
-                    grown.push(v);
-                }
-            }
-            Ok(grown)
-        })?;
-        for v in grown.into_iter().flatten() {
-            if !self.lattice_border(v as usize) {
-                self.state[v as usize] |= KNOWN | INSIDE | mark;
-                changed.push(v);
-            }
-        }
-        Ok(())
-    }
-}
-
-/// Whether `place`, whose closest point is `closest` of a triangle, is behind that triangle or in its plane.
-fn is_behind(place: DVec3, closest: DVec3, search: &NearestSearch<'_>, triangle: u32) -> bool {
-    let [a, b, c] = search.corners(triangle);
-    (b - a).cross(c - a).dot(place - closest) <= 0.0
 }
 
 /// The 26 neighbours of a vertex.

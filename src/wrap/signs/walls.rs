@@ -1,0 +1,231 @@
+//! Vertices that are put inside although nothing winds around them: where the surface would be lost.
+
+use super::super::surface::{InputSurface, separate};
+use super::super::{raster, seams};
+use super::*;
+use crate::spatial::{Nearest, NearestSearch};
+
+impl Signs<'_> {
+    /// Puts vertices inside where the surface would be lost; gives those that are inside by this.
+    pub(super) fn keep_what_is_lost(
+        &mut self,
+        surface: &InputSurface,
+        budget: &Budget,
+    ) -> Result<Vec<u32>, Stopped> {
+        let mut changed = Vec::new();
+        if !surface.sheets().is_empty() {
+            let near = self.near(TOUCHED_BY_SHEET, budget)?;
+            let near = self.widen(near, (self.sheet_reach - SHEET).ceil() as usize, budget)?;
+            self.grow_sheets(&near, surface.sheets(), &mut changed, budget)?;
+        }
+        // Also sheets that grew into each other's front and so not at all.
+        if !self.mark_thin(budget)? {
+            return Ok(changed);
+        }
+        for &corners in &surface.corners {
+            let (mut count, mut is_thin) = (1, false);
+            raster::cubes(corners, self.lattice.dims, |cube| {
+                is_thin |= self.state[self.lattice.index(cube)] & THIN_SIDE != 0;
+                count += 1;
+            });
+            budget.spend(count)?;
+            if is_thin {
+                self.thin.push(corners);
+            }
+        }
+        let near = self.near(THIN_SIDE, budget)?;
+        self.state.iter_mut().for_each(|state| *state &= !THIN_SIDE);
+        let thin = std::mem::take(&mut self.thin);
+        self.grow(
+            &near,
+            &thin,
+            Wall { reach: THIN, mark: THIN_SIDE },
+            |_, _, _| Ok(true),
+            &mut changed,
+            budget,
+        )?;
+        self.thin = thin;
+        Ok(changed)
+    }
+
+    /// Marks the touched cubes with no vertex inside in them and their neighbours; true when there is one.
+    fn mark_thin(&mut self, budget: &Budget) -> Result<bool, Stopped> {
+        let mut is_any = false;
+        for cube in 0..self.state.len() {
+            if cube % CHECK_EVERY == 0 {
+                budget.check()?;
+            }
+            if self.state[cube] & (TOUCHED | TOUCHED_BY_SHEET) != 0 {
+                let mut all = 0;
+                self.around_cube(cube, |state, _| all |= *state);
+                if all & INSIDE == 0 {
+                    self.state[cube] |= THIN_SIDE;
+                    is_any = true;
+                }
+            }
+        }
+        Ok(is_any)
+    }
+
+    /// Puts those of `near` inside that are in the walls of `sheets`: behind the nearest one, squarely behind any, or in
+    /// the bar around a seam.
+    fn grow_sheets(
+        &mut self,
+        near: &[u32],
+        sheets: &[[DVec3; 3]],
+        changed: &mut Vec<u32>,
+        budget: &Budget,
+    ) -> Result<(), Stopped> {
+        let seams: Vec<[DVec3; 3]> =
+            seams::seams(sheets, budget)?.into_iter().map(|[from, to]| [from, to, to]).collect();
+        let names = separate(seams.len());
+        let seams = NearestSearch::build(seams.as_flattened(), &names, budget)?;
+        self.mark_squarely_behind(sheets, budget)?;
+        let reach = self.sheet_reach;
+        let is_taken = |place: DVec3, nearest: &Nearest, corners: [DVec3; 3]| {
+            if is_behind(place, nearest.point, corners) {
+                return Ok(true);
+            }
+            Ok(seams.find(place, None, budget)?.is_some_and(|seam| seam.distance <= reach))
+        };
+        self.grow(near, sheets, Wall { reach, mark: SHEET_SIDE }, is_taken, changed, budget)?;
+        for &v in near {
+            let is_border = self.lattice_border(v as usize);
+            let state = &mut self.state[v as usize];
+            if !is_border && *state & (SQUARELY | INSIDE) == SQUARELY {
+                *state |= KNOWN | INSIDE | SHEET_SIDE;
+                changed.push(v);
+            }
+        }
+        Ok(())
+    }
+
+    /// Marks the vertices whose projection onto a triangle is in it, and which are behind it within the reach of walls.
+    fn mark_squarely_behind(&mut self, sheets: &[[DVec3; 3]], budget: &Budget) -> Result<(), Stopped> {
+        let (dims, reach) = (self.lattice.dims, self.sheet_reach);
+        for &corners in sheets {
+            let Some(prism) = Prism::behind(corners, reach) else { continue };
+            let mut count = 1;
+            for depth in 0..=reach.round() as u32 {
+                let moved = corners.map(|p| p - prism.normal * f64::from(depth));
+                raster::cubes(moved, dims, |cube| {
+                    count += 8;
+                    self.around_cube(self.lattice.index(cube), |state, index| {
+                        if *state & SQUARELY == 0 && prism.contains(self.lattice.units(index)) {
+                            *state |= SQUARELY;
+                        }
+                    });
+                });
+            }
+            budget.spend(count)?;
+        }
+        Ok(())
+    }
+
+    /// Puts those of `near` inside that are within reach of `triangles`, and that `is_taken` takes of these: it is given the
+    /// place, the nearest point, and the corners of its triangle.
+    fn grow(
+        &mut self,
+        near: &[u32],
+        triangles: &[[DVec3; 3]],
+        wall: Wall,
+        is_taken: impl Fn(DVec3, &Nearest, [DVec3; 3]) -> Result<bool, Stopped> + Sync,
+        changed: &mut Vec<u32>,
+        budget: &Budget,
+    ) -> Result<(), Stopped> {
+        let names = separate(triangles.len());
+        let search = NearestSearch::build(triangles.as_flattened(), &names, budget)?;
+        let grown = par::try_map_ranges(near.len(), 1024, |range| {
+            budget.spend(range.len() as u64 * 4)?;
+            let mut hint = None;
+            let mut grown = Vec::new();
+            for &v in near[range].iter().filter(|&&v| !self.is_inside(v as usize)) {
+                let place = self.lattice.units(v as usize);
+                let Some(nearest) = search.find(place, hint, budget)? else { continue };
+                hint = Some(nearest.triangle);
+                let is_near = nearest.distance <= wall.reach;
+                if is_near && is_taken(place, &nearest, search.corners(nearest.triangle))? {
+                    grown.push(v);
+                }
+            }
+            Ok(grown)
+        })?;
+        for v in grown.into_iter().flatten() {
+            if !self.lattice_border(v as usize) {
+                self.state[v as usize] |= KNOWN | INSIDE | wall.mark;
+                changed.push(v);
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds to a list what is beside it, and again, as many `times`.
+    fn widen(&mut self, mut near: Vec<u32>, times: usize, budget: &Budget) -> Result<Vec<u32>, Stopped> {
+        near.iter().for_each(|&v| self.state[v as usize] |= LISTED);
+        let mut last = 0;
+        for _ in 0..times {
+            let end = near.len();
+            for n in last..end {
+                if n % CHECK_EVERY == 0 {
+                    budget.check()?;
+                }
+                let index = near[n] as usize;
+                if self.lattice_border(index) {
+                    continue;
+                }
+                for offset in beside() {
+                    let beside = index.wrapping_add_signed(self.lattice.stride(offset));
+                    if self.state[beside] & LISTED == 0 {
+                        self.state[beside] |= LISTED;
+                        near.push(beside as u32);
+                    }
+                }
+            }
+            last = end;
+        }
+        near.iter().for_each(|&v| self.state[v as usize] &= !LISTED);
+        Ok(near)
+    }
+}
+
+/// How far a wall grows in cells, and what the vertices in it are marked with.
+#[derive(Debug, Clone, Copy)]
+struct Wall {
+    reach: f64,
+    mark: u8,
+}
+
+/// What is squarely behind a triangle: a prism.
+#[derive(Debug, Clone, Copy)]
+struct Prism {
+    corner: DVec3,
+    /// Unit normal of the triangle.
+    normal: DVec3,
+    /// Weights of the other two corners are products with these, and that of the first is what is left of 1.
+    weights: [DVec3; 2],
+    depth: f64,
+}
+
+impl Prism {
+    /// `None` for a triangle without an area.
+    fn behind([a, b, c]: [DVec3; 3], depth: f64) -> Option<Self> {
+        let (ab, ac) = (b - a, c - a);
+        let normal = ab.cross(ac);
+        let square = normal.length_squared();
+        let weights = [ac.cross(normal) / square, normal.cross(ab) / square];
+        let is_flat = !(weights[0].is_finite() && weights[1].is_finite());
+        (!is_flat).then(|| Self { corner: a, normal: normal.normalize_or_zero(), weights, depth })
+    }
+
+    fn contains(&self, place: DVec3) -> bool {
+        let offset = place - self.corner;
+        let depth = -self.normal.dot(offset);
+        let [second, third] = self.weights.map(|weight| weight.dot(offset));
+        (0.0..=self.depth).contains(&depth) && second >= 0.0 && third >= 0.0 && second + third <= 1.0
+    }
+}
+
+/// Whether `place`, whose closest point is `closest` of a triangle, is behind that triangle or in its plane.
+fn is_behind(place: DVec3, closest: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
+    (b - a).cross(c - a).dot(place - closest) <= 0.0
+}
