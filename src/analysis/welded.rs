@@ -3,7 +3,7 @@
 use super::names::{Names, middle};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
-use crate::mesh::{Components, EdgeGroups, Soup, UnionFind, edge_of, prev_corner, triangle_of, twins};
+use crate::mesh::{Components, EdgeGroups, Soup, edge_of, prev_corner, triangle_of, twins};
 use crate::par;
 use crate::spatial::coincident_f64;
 use std::borrow::Cow;
@@ -69,7 +69,7 @@ impl<'s> Welded<'s> {
         };
         let edges = EdgeGroups::build(&triangles, soup.positions.len(), budget)?;
         let (components, (twins, irregular)) = par::join(
-            || edge_components(&edges, triangles.len(), budget),
+            || edges.components(budget),
             || {
                 (
                     twins(&edges, triangles.len(), budget),
@@ -189,23 +189,6 @@ pub(super) fn indices_where(
 /// True when exactly two triangles meet at the edge, in opposite directions.
 pub(super) fn is_regular(triangles: &[[u32; 3]], group: &[u32]) -> bool {
     matches!(group, &[a, b] if edge_of(triangles, a)[0] != edge_of(triangles, b)[0])
-}
-
-fn edge_components(
-    edges: &EdgeGroups,
-    triangle_count: usize,
-    budget: &Budget,
-) -> Result<Components, Stopped> {
-    let mut sets = UnionFind::new(triangle_count);
-    for (e, group) in edges.iter().enumerate() {
-        if e % CHECK_EVERY == 0 {
-            budget.check()?;
-        }
-        for pair in group.windows(2) {
-            sets.unite(triangle_of(pair[0]), triangle_of(pair[1]));
-        }
-    }
-    Ok(sets.into_components())
 }
 
 fn parts(

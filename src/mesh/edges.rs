@@ -2,7 +2,7 @@
 //!
 //! Half-edge `h = 3 t + c` runs from corner `c` of triangle `t` to the next corner. No coordinates here.
 
-use super::Outlines;
+use super::{Components, Outlines, UnionFind};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::par;
 
@@ -112,6 +112,23 @@ impl EdgeGroups {
         edges.starts.extend((1..=edges.diagonals as u32).map(|i| first + 2 * i));
         edges.half_edges.extend(diagonals);
         Ok(edges)
+    }
+
+    /// The triangles connected by edges, and by diagonals.
+    ///
+    /// # Errors
+    /// When the budget stops the run.
+    pub fn components(&self, budget: &Budget) -> Result<Components, Stopped> {
+        let mut sets = UnionFind::new(self.half_edges.len() / 3);
+        for (e, group) in self.iter().enumerate() {
+            if e % CHECK_EVERY == 0 {
+                budget.check()?;
+            }
+            for pair in group.windows(2) {
+                sets.unite(triangle_of(pair[0]), triangle_of(pair[1]));
+            }
+        }
+        Ok(sets.into_components())
     }
 
     /// Number of undirected edges, with diagonals.

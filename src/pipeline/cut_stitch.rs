@@ -4,9 +4,9 @@ use super::input::Input;
 use super::output::{Made, unchanged};
 use super::plan::{Attempt, Step};
 use super::{Action, Answer, Failure, Operation, Options, Outcome, Refusal, Report};
-use crate::budget::{Budget, CHECK_EVERY, Stage, Stopped};
+use crate::budget::{Budget, Stage, Stopped};
 use crate::formats::Format;
-use crate::mesh::{ChosenEdges, CutMethod, UnionFind, Validity, triangle_of};
+use crate::mesh::{ChosenEdges, CutMethod, Validity};
 use crate::repair::cut::CutOptions;
 use crate::repair::duplicates::OppositePairs;
 use crate::repair::polygons::DegenerateFaces;
@@ -165,25 +165,10 @@ fn written(
 fn restored(draft: &Draft, faced: &Faced, reason: &str, budget: &Budget) -> Result<Action, Stopped> {
     let changes = vec![
         ("faces", draft.face_count() as u64),
-        ("components", components(draft, budget)?),
+        ("components", u64::from(draft.edge_groups(budget)?.components(budget)?.count)),
         ("polygons", faced.soup.polygons.faces.len() as u64),
         ("polygons_split", faced.polygons_split),
     ];
     let (step, reason) = ("restore-polygons", reason.to_owned());
     Ok(Action { step, causes: Vec::new(), changes, move_max: 0.0, reason, stitches: None })
-}
-
-/// Number of parts that edges of faces connect.
-fn components(draft: &Draft, budget: &Budget) -> Result<u64, Stopped> {
-    let groups = draft.edge_groups(budget)?;
-    let mut parts = UnionFind::new(draft.triangles.len());
-    for (e, group) in groups.iter().enumerate() {
-        if e % CHECK_EVERY == 0 {
-            budget.check()?;
-        }
-        for pair in group.windows(2) {
-            parts.unite(triangle_of(pair[0]), triangle_of(pair[1]));
-        }
-    }
-    Ok(u64::from(parts.into_components().count))
 }

@@ -4,7 +4,7 @@ use super::surface::Surface;
 use super::{Limit, Witness};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3};
-use crate::mesh::{Components, EdgeGroups, UnionFind, triangle_of};
+use crate::mesh::{Components, EdgeGroups};
 use crate::spatial::{Bvh, nest};
 
 /// A part connected by edges.
@@ -55,7 +55,7 @@ pub(super) fn parts(
     witnesses: usize,
     budget: &Budget,
 ) -> Result<Parts, Stopped> {
-    let components = components(surface, groups, budget)?;
+    let components = groups.components(budget)?;
     let parts = describe(surface, &components, budget)?;
     let mut is_cavity = vec![false; parts.len()];
     if is_solid {
@@ -94,19 +94,6 @@ fn cavities(surface: &Surface<'_>, mut hollows: Vec<&Part>, witnesses: usize) ->
         volume: hollows.iter().map(|part| -part.volume).sum(),
         witnesses: hollows.iter().take(witnesses).map(witness).collect(),
     }
-}
-
-fn components(surface: &Surface<'_>, groups: &EdgeGroups, budget: &Budget) -> Result<Components, Stopped> {
-    let mut sets = UnionFind::new(surface.triangles.len());
-    for (e, group) in groups.iter().enumerate() {
-        if e % CHECK_EVERY == 0 {
-            budget.check()?;
-        }
-        for pair in group.windows(2) {
-            sets.unite(triangle_of(pair[0]), triangle_of(pair[1]));
-        }
-    }
-    Ok(sets.into_components())
 }
 
 fn describe(surface: &Surface<'_>, components: &Components, budget: &Budget) -> Result<Vec<Part>, Stopped> {

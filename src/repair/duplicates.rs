@@ -188,24 +188,16 @@ fn components_of_pairs(
     is_kept: &[bool],
     budget: &Budget,
 ) -> Result<Vec<bool>, Stopped> {
-    let mut parts = UnionFind::new(draft.triangles.len());
-    for (e, group) in groups.iter().enumerate() {
-        if e % CHECK_EVERY == 0 {
-            budget.check()?;
-        }
-        for &h in &group[1..] {
-            parts.unite(triangle_of(group[0]), triangle_of(h));
-        }
-    }
+    let parts = groups.components(budget)?;
     let mut is_other = is_kept.to_vec();
     for &t in pairs {
         is_other[t as usize] = false;
     }
-    let mut has_other = vec![false; draft.triangles.len()];
+    let mut has_other = vec![false; parts.count as usize];
     for t in (0..draft.triangles.len()).filter(|&t| is_other[t]) {
-        has_other[parts.find(t as u32) as usize] = true;
+        has_other[parts.of[t] as usize] = true;
     }
-    Ok(pairs.iter().map(|&t| !has_other[parts.find(t) as usize]).collect())
+    Ok(pairs.iter().map(|&t| !has_other[parts.of[t as usize] as usize]).collect())
 }
 
 #[cfg(test)]

@@ -1,25 +1,15 @@
 //! Removes whole parts, as the caller chose them.
 
 use super::{Changes, Draft};
-use crate::budget::{Budget, CHECK_EVERY, Stopped};
-use crate::mesh::{EdgeGroups, UnionFind, triangle_of};
+use crate::budget::{Budget, Stopped};
+use crate::mesh::EdgeGroups;
 
 /// Removes the parts connected by edges in which one of `triangles` (of the soup) is. To be run on welded vertices.
 ///
 /// # Errors
 /// When the budget stops the run.
 pub fn remove_parts(draft: &mut Draft, triangles: &[u32], budget: &Budget) -> Result<Changes, Stopped> {
-    let groups = EdgeGroups::build(&draft.triangles, draft.positions.len(), budget)?;
-    let mut parts = UnionFind::new(draft.triangles.len());
-    for (e, group) in groups.iter().enumerate() {
-        if e % CHECK_EVERY == 0 {
-            budget.check()?;
-        }
-        for pair in group.windows(2) {
-            parts.unite(triangle_of(pair[0]), triangle_of(pair[1]));
-        }
-    }
-    let parts = parts.into_components();
+    let parts = EdgeGroups::build(&draft.triangles, draft.positions.len(), budget)?.components(budget)?;
     let mut listed = triangles.to_vec();
     listed.sort_unstable();
     let mut removed_parts = Vec::new();

@@ -3,7 +3,7 @@
 use super::{Changes, Draft, NEW};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{DVec3, print_pitch};
-use crate::mesh::{EdgeGroups, UnionFind, edge_of, triangle_of};
+use crate::mesh::{EdgeGroups, edge_of, triangle_of};
 
 /// Steps of the print lattice that a wall has at least.
 const STEPS_MIN: f64 = 64.0;
@@ -26,7 +26,7 @@ pub fn thicken(draft: &mut Draft, wall: f64, budget: &Budget) -> Result<Changes,
     let reach = draft.positions.iter().fold(0.0, |reach, p| p.abs().max_element().max(reach)) + wall;
     let pitch = print_pitch(reach).filter(|pitch| wall >= STEPS_MIN * pitch);
     let groups = EdgeGroups::build(&draft.triangles, draft.positions.len(), budget)?;
-    let (is_open, count) = open_parts(draft, &groups, budget)?;
+    let (is_open, count) = open_parts(&groups, budget)?;
     let (Some(pitch), false) = (pitch, count == 0) else {
         return Ok(counted(0, 0));
     };
@@ -61,26 +61,13 @@ fn counted(sheets: u64, triangles: u64) -> Changes {
 }
 
 /// Whether each triangle is of a part with a boundary, and the number of such parts.
-fn open_parts(draft: &Draft, groups: &EdgeGroups, budget: &Budget) -> Result<(Vec<bool>, u64), Stopped> {
-    let mut parts = UnionFind::new(draft.triangles.len());
-    let mut rims = Vec::new();
-    for (e, group) in groups.iter().enumerate() {
-        if e % CHECK_EVERY == 0 {
-            budget.check()?;
-        }
-        match *group {
-            [h] => rims.push(triangle_of(h)),
-            _ => {
-                for pair in group.windows(2) {
-                    parts.unite(triangle_of(pair[0]), triangle_of(pair[1]));
-                }
-            }
-        }
-    }
-    let parts = parts.into_components();
+fn open_parts(groups: &EdgeGroups, budget: &Budget) -> Result<(Vec<bool>, u64), Stopped> {
+    let parts = groups.components(budget)?;
     let mut is_open = vec![false; parts.count as usize];
-    for t in rims {
-        is_open[parts.of[t as usize] as usize] = true;
+    for group in groups.iter() {
+        if let &[h] = group {
+            is_open[parts.of[triangle_of(h) as usize] as usize] = true;
+        }
     }
     let count = is_open.iter().filter(|&&is_open| is_open).count() as u64;
     Ok((parts.of.iter().map(|&part| is_open[part as usize]).collect(), count))

@@ -99,7 +99,8 @@ struct Rim {
 
 fn parts(vertex_count: usize, triangles: &[[u32; 3]], budget: &Budget) -> Result<Parts, Stopped> {
     let groups = EdgeGroups::build(triangles, vertex_count, budget)?;
-    let mut sets = UnionFind::new(triangles.len());
+    let parts = groups.components(budget)?;
+    let mut is_closed = vec![true; parts.count as usize];
     let mut rims = Vec::new();
     for (e, group) in groups.iter().enumerate() {
         if e % CHECK_EVERY == 0 {
@@ -107,22 +108,16 @@ fn parts(vertex_count: usize, triangles: &[[u32; 3]], budget: &Budget) -> Result
         }
         let mut balance = 0i64;
         for &h in group {
-            sets.unite(triangle_of(group[0]), triangle_of(h));
             let [from, to] = edge_of(triangles, h);
             balance += i64::from(from < to) - i64::from(from > to);
         }
         if balance != 0 {
             let [a, b] = edge_of(triangles, group[0]);
             let (from, to) = if balance > 0 { (a.min(b), a.max(b)) } else { (a.max(b), a.min(b)) };
-            let part = triangle_of(group[0]);
+            let part = parts.of[triangle_of(group[0]) as usize];
+            is_closed[part as usize] = false;
             rims.push(Rim { from, to, times: balance.unsigned_abs() as u32, part });
         }
-    }
-    let parts = sets.into_components();
-    let mut is_closed = vec![true; parts.count as usize];
-    for rim in &mut rims {
-        rim.part = parts.of[rim.part as usize];
-        is_closed[rim.part as usize] = false;
     }
     Ok(Parts { parts, is_closed, rims })
 }

@@ -262,28 +262,27 @@ fn a_quad_taken_crosswise_makes_no_handles() {
 
 #[test]
 fn gaps_thinner_than_a_cell_leave_no_cavities_and_are_no_further_away() {
-    // A fan of leaves, each a thin plate, all through one block: the gaps between them end in a point.
-    let plate = |turn: f64| {
+    // A fan of leaves, each a thin plate, askew to the lattice: the gaps between them end in an edge.
+    let (tilt_sine, tilt_cosine) = 0.4_f64.sin_cos();
+    let leaf = |turn: f64| {
         let mut plate = cube();
         for p in &mut plate.positions {
             let [x, y, z] = [p[0] * 10.0 + 0.37, p[1] * 4.0, p[2] * 0.11];
             let (sine, cosine) = turn.to_radians().sin_cos();
-            *p = [x * cosine - z * sine, y, x * sine + z * cosine];
+            let [x, z] = [x * cosine - z * sine, x * sine + z * cosine];
+            let [x, y] = [x * tilt_cosine - y * tilt_sine, x * tilt_sine + y * tilt_cosine];
+            *p = [x, y * tilt_cosine - z * tilt_sine, y * tilt_sine + z * tilt_cosine];
         }
         plate
     };
-    let leaves = (0..7).map(|n| plate(1.3 * f64::from(n))).reduce(|all, one| all.with(&one)).unwrap();
+    let leaves = (0..7).map(|n| leaf(1.3 * f64::from(n))).reduce(|all, one| all.with(&one)).unwrap();
     let bytes = encode(&leaves, Encoding::Obj);
     let wrap = WrapChoices { cells: Some(96), ..WrapChoices::default() };
     let answer = answer(&bytes, &Options { wrap, ..Options::default() });
-    let certificate = answer.report.certificate.as_ref().unwrap();
-    assert!(certificate.shells.iter().all(|shell| shell.depth == 0), "{:?}", certificate.shells);
-    let own: u64 = ["bubbles_opened", "bubbles_filled", "tunnels_closed", "bridges_cut", "crumbs_dropped"]
-        .map(|name| count(&answer, name))
-        .iter()
-        .sum();
-    let handles: u32 = genera(&answer).iter().sum();
-    let distance = answer.report.distance.as_ref().unwrap().upper();
+    rebuilt(&answer);
+    let shells = &answer.report.certificate.as_ref().unwrap().shells;
+    assert_eq!(shells.len(), 1, "{shells:?}");
+    assert!(count(&answer, "bubbles_opened") > 100 && count(&answer, "tunnels_closed") > 100);
     // A cell is 0.11 wide.
-    assert!(own > 0 && handles <= 6 && distance < 0.22, "{own} {handles} {distance}");
+    assert!(answer.report.distance.unwrap().upper() < 0.22, "{:?}", answer.report.distance);
 }

@@ -18,7 +18,7 @@ fn a_small_mesh_that_is_waited_for_does_not_wait_behind_a_large_one() {
 #[test]
 fn a_large_mesh_does_not_take_the_place_of_small_ones() {
     let server = Server::with(&["--slots", "1", "--interactive-bytes-max", "1KiB"]);
-    let first = server.job("verify", long_job(700));
+    let first = server.job("verify", long_job(1000));
     server.until(&first, |job| job["state"] == "running");
     let answer = server.post("/v1/verify").header("prefer", "wait=1").body(long_job(60)).send().unwrap();
     let second: serde_json::Value = answer.json().unwrap();

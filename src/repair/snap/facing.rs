@@ -4,7 +4,7 @@
 use super::Rim;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::triangle_area;
-use crate::mesh::{ChosenEdges, Components, ParityUnionFind, UnionFind, edge_of, triangle_of};
+use crate::mesh::{ChosenEdges, Components, ParityUnionFind, edge_of, triangle_of};
 use crate::repair::Draft;
 use crate::spatial::{Octree, is_within};
 
@@ -27,7 +27,7 @@ pub(super) fn turn_to_face(
     if rim.half_edges.is_empty() {
         return Ok(0);
     }
-    let parts = parts(draft, budget)?;
+    let parts = draft.edge_groups(budget)?.components(budget)?;
     if parts.count < 2 {
         return Ok(0);
     }
@@ -114,21 +114,6 @@ fn meetings(
         by_place.then(a.run_alike.cmp(&b.run_alike)).then(a.edges.cmp(&b.edges))
     });
     Ok(found)
-}
-
-/// Triangles connected by edges.
-fn parts(draft: &Draft, budget: &Budget) -> Result<Components, Stopped> {
-    let groups = draft.edge_groups(budget)?;
-    let mut parts = UnionFind::new(draft.triangles.len());
-    for (e, group) in groups.iter().enumerate() {
-        if e % CHECK_EVERY == 0 {
-            budget.check()?;
-        }
-        for pair in group.windows(2) {
-            parts.unite(triangle_of(pair[0]), triangle_of(pair[1]));
-        }
-    }
-    Ok(parts.into_components())
 }
 
 /// Of each set of related parts turns those on the side with less area; at equal areas the first part stays.

@@ -5,6 +5,7 @@
 //! is closed. Otherwise they are evaluated near the surface, and from there on wherever signs differ, until no cube with
 //! a known vertex of each sign has an unknown one: the surface between the signs is then closed.
 
+mod bubbles;
 mod crumbs;
 mod handles;
 mod walls;
