@@ -15,6 +15,9 @@ const ERROR_OF_CELL: f64 = 0.05;
 /// Runs of the fast mode, each with more of the surface held.
 const RUNS: usize = 5;
 
+/// So many contacts are worth another run even when there were no more before.
+const FEW: usize = 64;
+
 /// Room around contacts in which the surface is held, in cells.
 const ROOM: f64 = 2.0;
 
@@ -51,7 +54,7 @@ impl Fewer<'_> {
                 return Ok(Some(found));
             }
             // More of the surface held does not help everywhere.
-            if met.len() > before / 2 {
+            if met.len() > FEW.max(before / 2) {
                 return Ok(None);
             }
             before = met.len();

@@ -34,8 +34,6 @@ const TOUCHED_BY_SHEET: u8 = 8;
 const SHEET_SIDE: u8 = 16;
 const THIN_SIDE: u8 = 32;
 const LISTED: u8 = 64;
-/// The vertex is straight behind a sheet.
-const SQUARELY: u8 = 128;
 
 /// Why a vertex is inside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

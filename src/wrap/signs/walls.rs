@@ -3,6 +3,7 @@
 use super::super::surface::{InputSurface, separate};
 use super::super::{raster, seams};
 use super::*;
+use crate::geom::Aabb;
 use crate::spatial::{Nearest, NearestSearch};
 
 impl Signs<'_> {
@@ -67,8 +68,8 @@ impl Signs<'_> {
         Ok(is_any)
     }
 
-    /// Puts those of `near` inside that are in the walls of `sheets`: behind the nearest one, squarely behind any, or in
-    /// the bar around a seam.
+    /// Puts those of `near` inside that are in the walls of `sheets`: behind the nearest one, squarely behind one that overlaps it,
+    /// or in the bar around a seam.
     fn grow_sheets(
         &mut self,
         near: &[u32],
@@ -80,56 +81,23 @@ impl Signs<'_> {
             seams::seams(sheets, budget)?.into_iter().map(|[from, to]| [from, to, to]).collect();
         let names = separate(seams.len());
         let seams = NearestSearch::build(seams.as_flattened(), &names, budget)?;
-        self.mark_squarely_behind(sheets, budget)?;
-        let reach = self.sheet_reach;
-        let is_taken = |place: DVec3, nearest: &Nearest, corners: [DVec3; 3]| {
-            if is_behind(place, nearest.point, corners) {
-                return Ok(true);
-            }
-            Ok(seams.find(place, None, budget)?.is_some_and(|seam| seam.distance <= reach))
+        let is_taken = |place: DVec3, nearest: &Nearest, search: &NearestSearch<'_>| {
+            Ok(is_behind(place, nearest.point, search.corners(nearest.triangle))
+                || is_behind_overlapping(place, nearest, search, budget)?
+                || seams.find(place, None, budget)?.is_some_and(|seam| seam.distance <= THIN))
         };
-        self.grow(near, sheets, Wall { reach, mark: SHEET_SIDE }, is_taken, changed, budget)?;
-        for &v in near {
-            let is_border = self.lattice_border(v as usize);
-            let state = &mut self.state[v as usize];
-            if !is_border && *state & (SQUARELY | INSIDE) == SQUARELY {
-                *state |= KNOWN | INSIDE | SHEET_SIDE;
-                changed.push(v);
-            }
-        }
-        Ok(())
-    }
-
-    /// Marks the vertices whose projection onto a triangle is in it, and which are behind it within the reach of walls.
-    fn mark_squarely_behind(&mut self, sheets: &[[DVec3; 3]], budget: &Budget) -> Result<(), Stopped> {
-        let (dims, reach) = (self.lattice.dims, self.sheet_reach);
-        for &corners in sheets {
-            let Some(prism) = Prism::behind(corners, reach) else { continue };
-            let mut count = 1;
-            for depth in 0..=reach.round() as u32 {
-                let moved = corners.map(|p| p - prism.normal * f64::from(depth));
-                raster::cubes(moved, dims, |cube| {
-                    count += 8;
-                    self.around_cube(self.lattice.index(cube), |state, index| {
-                        if *state & SQUARELY == 0 && prism.contains(self.lattice.units(index)) {
-                            *state |= SQUARELY;
-                        }
-                    });
-                });
-            }
-            budget.spend(count)?;
-        }
-        Ok(())
+        let reach = self.sheet_reach;
+        self.grow(near, sheets, Wall { reach, mark: SHEET_SIDE }, is_taken, changed, budget)
     }
 
     /// Puts those of `near` inside that are within reach of `triangles`, and that `is_taken` takes of these: it is given the
-    /// place, the nearest point, and the corners of its triangle.
+    /// place, the nearest point, and the search that found it.
     fn grow(
         &mut self,
         near: &[u32],
         triangles: &[[DVec3; 3]],
         wall: Wall,
-        is_taken: impl Fn(DVec3, &Nearest, [DVec3; 3]) -> Result<bool, Stopped> + Sync,
+        is_taken: impl Fn(DVec3, &Nearest, &NearestSearch<'_>) -> Result<bool, Stopped> + Sync,
         changed: &mut Vec<u32>,
         budget: &Budget,
     ) -> Result<(), Stopped> {
@@ -144,7 +112,7 @@ impl Signs<'_> {
                 let Some(nearest) = search.find(place, hint, budget)? else { continue };
                 hint = Some(nearest.triangle);
                 let is_near = nearest.distance <= wall.reach;
-                if is_near && is_taken(place, &nearest, search.corners(nearest.triangle))? {
+                if is_near && is_taken(place, &nearest, &search)? {
                     grown.push(v);
                 }
             }
@@ -195,34 +163,41 @@ struct Wall {
     mark: u8,
 }
 
-/// What is squarely behind a triangle: a prism.
-#[derive(Debug, Clone, Copy)]
-struct Prism {
-    corner: DVec3,
-    /// Unit normal of the triangle.
-    normal: DVec3,
-    /// Weights of the other two corners are products with these, and that of the first is what is left of 1.
-    weights: [DVec3; 2],
-    depth: f64,
+/// Triangles overlap where they are so close, in cells.
+const OVERLAP: f64 = 0.125;
+
+/// Whether `place` is squarely behind a triangle that overlaps the nearest one, which it is in front of: of two that
+/// face opposite ways it is as it happens which one is the nearest.
+fn is_behind_overlapping(
+    place: DVec3,
+    nearest: &Nearest,
+    search: &NearestSearch<'_>,
+    budget: &Budget,
+) -> Result<bool, Stopped> {
+    let around = Aabb { min: nearest.point - OVERLAP, max: nearest.point + OVERLAP };
+    let mut is_behind = false;
+    search.bvh().visit_box(around, budget, |triangle| {
+        is_behind =
+            is_behind || is_squarely_behind(place, search.corners(triangle), nearest.distance + OVERLAP);
+    })?;
+    Ok(is_behind)
 }
 
-impl Prism {
-    /// `None` for a triangle without an area.
-    fn behind([a, b, c]: [DVec3; 3], depth: f64) -> Option<Self> {
-        let (ab, ac) = (b - a, c - a);
-        let normal = ab.cross(ac);
-        let square = normal.length_squared();
-        let weights = [ac.cross(normal) / square, normal.cross(ab) / square];
-        let is_flat = !(weights[0].is_finite() && weights[1].is_finite());
-        (!is_flat).then(|| Self { corner: a, normal: normal.normalize_or_zero(), weights, depth })
-    }
-
-    fn contains(&self, place: DVec3) -> bool {
-        let offset = place - self.corner;
-        let depth = -self.normal.dot(offset);
-        let [second, third] = self.weights.map(|weight| weight.dot(offset));
-        (0.0..=self.depth).contains(&depth) && second >= 0.0 && third >= 0.0 && second + third <= 1.0
-    }
+/// Whether the projection of `place` onto a triangle is in it, and `place` at most `depth` behind it; false without an
+/// area.
+fn is_squarely_behind(place: DVec3, [a, b, c]: [DVec3; 3], depth: f64) -> bool {
+    let (ab, ac, offset) = (b - a, c - a, place - a);
+    let normal = ab.cross(ac);
+    let square = normal.length_squared();
+    // Products of the weights of the other two corners with the square.
+    let [second, third] = [ac.cross(normal).dot(offset), normal.cross(ab).dot(offset)];
+    let height = normal.dot(offset);
+    square > 0.0
+        && second >= 0.0
+        && third >= 0.0
+        && second + third <= square
+        && height <= 0.0
+        && height * height <= depth * depth * square
 }
 
 /// Whether `place`, whose closest point is `closest` of a triangle, is behind that triangle or in its plane.
