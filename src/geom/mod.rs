@@ -1,6 +1,7 @@
 //! Points, exact predicates and triangle-triangle classification. Knows no mesh, only coordinates.
 
 mod closest;
+mod directions;
 mod exact;
 mod pitch;
 mod predicates;
@@ -13,6 +14,7 @@ mod tri_tri;
 mod volume;
 
 pub use closest::closest_point_on_triangle;
+pub use directions::{Cone, arc_box, direction};
 pub use glam::{DVec2, DVec3};
 pub use pitch::{exponent_above, power_of_two, print_pitch};
 pub use predicates::{Plane, certain_turns, orient2d, orient3d};

@@ -7,6 +7,8 @@ mod near;
 mod nearest;
 mod nesting;
 mod octree;
+mod pairs;
+mod star_gaps;
 
 pub use crate::geom::ContactKind;
 pub use bvh::Bvh;

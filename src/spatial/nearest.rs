@@ -2,6 +2,7 @@
 
 use super::Bvh;
 use super::bvh::{Leaf, Tree};
+use super::star_gaps::{NO_STAR, Sighting, StarGaps};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{DVec3, closest_point_on_triangle};
 use std::cmp::Reverse;
@@ -35,6 +36,7 @@ pub struct NearestSearch<'m> {
     positions: &'m [DVec3],
     triangles: &'m [[u32; 3]],
     bvh: Bvh,
+    stars: StarGaps,
 }
 
 impl<'m> NearestSearch<'m> {
@@ -47,7 +49,9 @@ impl<'m> NearestSearch<'m> {
         triangles: &'m [[u32; 3]],
         budget: &Budget,
     ) -> Result<Self, Stopped> {
-        Ok(Self { positions, triangles, bvh: Bvh::build(positions, triangles, None, budget)? })
+        let bvh = Bvh::build(positions, triangles, None, budget)?;
+        let stars = StarGaps::of(&bvh, positions, budget)?;
+        Ok(Self { positions, triangles, bvh, stars })
     }
 
     /// Number of triangles.
@@ -107,11 +111,11 @@ impl<'m> NearestSearch<'m> {
         }
         let first = hint.unwrap_or_else(|| self.descend(p));
         let mut query = Query::new(self, p, self.on_triangle(p, first));
-        let mut stack = [(0.0f32, 0u32); Tree::DEPTH_MAX + 1];
+        let mut stack = [query.place_of(0, NO_STAR); Tree::DEPTH_MAX + 1];
         let (mut depth, mut visited) = (1, 0usize);
         while depth > 0 {
             depth -= 1;
-            let (gap, id) = stack[depth];
+            let Place { gap, node: id, star } = stack[depth];
             if visited.is_multiple_of(CHECK_EVERY) {
                 budget.check()?;
             }
@@ -131,10 +135,10 @@ impl<'m> NearestSearch<'m> {
                 query.look_at(tree.leaf(node));
                 continue;
             };
-            let gaps = [left, right].map(|child| (tree.node(child).bounds.squared_gap(query.place), child));
-            let [near, far] = if gaps[1].0 < gaps[0].0 { [gaps[1], gaps[0]] } else { gaps };
+            let places = [left, right].map(|child| query.place_of(child, star));
+            let [near, far] = if places[1].gap < places[0].gap { [places[1], places[0]] } else { places };
             for entry in [far, near] {
-                if entry.0 <= query.reach {
+                if entry.gap <= query.reach {
                     stack[depth] = entry;
                     depth += 1;
                 }
@@ -145,19 +149,29 @@ impl<'m> NearestSearch<'m> {
 
     /// A triangle that may be close: always down into the nearer box.
     fn descend(&self, p: DVec3) -> u32 {
-        let (tree, place) = (self.bvh.tree(), self.bvh.frame().map(p));
-        let mut node = tree.node(0);
-        while let Some([left, right]) = node.children() {
-            let [left, right] = [left, right].map(|child| tree.node(child));
-            let is_right = right.bounds.squared_gap(place) < left.bounds.squared_gap(place);
-            node = if is_right { right } else { left };
+        let tree = self.bvh.tree();
+        let mut query = Query::new(self, p, Nearest { triangle: 0, point: p, distance: f64::INFINITY });
+        let mut at = query.place_of(0, NO_STAR);
+        while let Some(children) = tree.node(at.node).children() {
+            let [left, right] = children.map(|child| query.place_of(child, at.star));
+            at = if right.gap < left.gap { right } else { left };
         }
-        tree.leaf(node).id(0)
+        tree.leaf(tree.node(at.node)).id(0)
     }
 }
 
 /// More than twice the relative error of a coordinate rounded to f32, and of the few f32 operations behind a gap.
 const ROUNDING_32: f32 = 1e-6;
+
+/// A node that may be looked into.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    /// The squared distance of what it holds is at least this, in the coordinates of the boxes.
+    gap: f32,
+    node: u32,
+    /// The star that it is in, or [`NO_STAR`].
+    star: u32,
+}
 
 /// A search that is under way.
 struct Query<'q> {
@@ -171,13 +185,15 @@ struct Query<'q> {
     best: Nearest,
     /// Boxes with larger squared gaps hold nothing closer than `best`.
     reach: f32,
+    /// `p` as it is seen from the last star.
+    sighting: Option<Sighting>,
 }
 
 impl<'q> Query<'q> {
     fn new(search: &'q NearestSearch<'q>, p: DVec3, best: Nearest) -> Self {
         let place = search.bvh.frame().map(p);
         let blur = place.iter().fold(f32::MIN_POSITIVE, |most, x| most.max(x.abs())) * ROUNDING_32;
-        let mut query = Self { search, p, place, blur, best, reach: f32::INFINITY };
+        let mut query = Self { search, p, place, blur, best, reach: f32::INFINITY, sighting: None };
         query.shrink();
         query
     }
@@ -188,15 +204,33 @@ impl<'q> Query<'q> {
         self.reach = reach * reach;
     }
 
+    /// A node below one of `star`, if that is one.
+    #[inline]
+    fn place_of(&mut self, node: u32, star: u32) -> Place {
+        let of = self.search.bvh.tree().node(node);
+        let gap = of.bounds.squared_gap(self.place);
+        if star == NO_STAR && !of.is_star() {
+            return Place { gap, node, star };
+        }
+        let stars = &self.search.stars;
+        let star = if star == NO_STAR { stars.star_at(node) } else { star };
+        let sighting = match self.sighting.filter(|sighting| sighting.star == star) {
+            Some(sighting) => sighting,
+            None => *self.sighting.insert(Sighting::new(stars, star, self.p)),
+        };
+        let by_direction = self.search.bvh.frame().scaled(sighting.gap(stars, node)) as f32;
+        Place { gap: gap.max(by_direction * by_direction), node, star }
+    }
+
     /// Looks into the `boxes`, each with its squared gap, the nearest first, and into at most `boxes_max` of what they hold:
     /// how many it looked at, and whether nothing closer can be in the others.
-    fn look_at_nearest(&mut self, boxes: &[(f32, u32)], boxes_max: usize) -> (usize, bool) {
+    fn look_at_nearest(&mut self, boxes: &[Place], boxes_max: usize) -> (usize, bool) {
         let tree = self.search.bvh.tree();
         // Squares are not negative, so that their bits are in the order of the numbers.
-        let entry = |&(gap, id): &(f32, u32)| Reverse((gap.to_bits(), id));
-        let mut left: BinaryHeap<Reverse<(u32, u32)>> = boxes.iter().map(entry).collect();
+        let entry = |place: &Place| Reverse((place.gap.to_bits(), place.node, place.star));
+        let mut left: BinaryHeap<Reverse<(u32, u32, u32)>> = boxes.iter().map(entry).collect();
         for looked_at in 0..boxes_max {
-            let Some(Reverse((gap, id))) = left.pop() else { return (looked_at, true) };
+            let Some(Reverse((gap, id, star))) = left.pop() else { return (looked_at, true) };
             if f32::from_bits(gap) > self.reach {
                 return (looked_at, true);
             }
@@ -205,9 +239,9 @@ impl<'q> Query<'q> {
                 None => self.look_at(tree.leaf(node)),
                 Some(children) => {
                     for child in children {
-                        let gap = tree.node(child).bounds.squared_gap(self.place);
-                        if gap <= self.reach {
-                            left.push(entry(&(gap, child)));
+                        let place = self.place_of(child, star);
+                        if place.gap <= self.reach {
+                            left.push(entry(&place));
                         }
                     }
                 }

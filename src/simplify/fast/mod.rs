@@ -6,10 +6,12 @@
 //! done in one part that is the whole mesh, up to the exact target. Parts, their order and the steps depend on the mesh
 //! alone, so the result is the same whatever the thread count.
 
+mod allowance;
 mod boxes;
 mod buckets;
 mod check;
 mod fans;
+mod hubs;
 mod lines;
 mod mesh;
 mod part;
@@ -17,6 +19,7 @@ mod region;
 mod rollback;
 mod rounds;
 mod shells;
+mod space;
 mod strays;
 mod sweep;
 #[cfg(test)]

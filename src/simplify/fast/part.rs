@@ -8,9 +8,11 @@
 //! and put back if it turns out to be more expensive. For a criterion of which this is not true an edge may come up
 //! later than it could.
 
-use super::boxes::MovingBoxes;
+use super::allowance::Allowance;
 use super::buckets::{Buckets, CLASSES, class_of};
+use super::hubs::Corners;
 use super::region::Region;
+use super::space::Space;
 use super::strays::Strays;
 use super::sweep::{Outside, Sweep};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
@@ -82,7 +84,7 @@ pub(super) struct Room {
 /// [`Room`], with the part's own triangles.
 struct Watch {
     room: Room,
-    boxes: MovingBoxes,
+    space: Space,
     sweep: Sweep,
 }
 
@@ -112,6 +114,7 @@ pub(super) struct Part<'r, C: Criterion> {
     merged_into: Vec<u32>,
     queue: Buckets,
     rings: EdgeRings,
+    allowance: Allowance,
     watch: Option<Watch>,
     rules: Rules<'r, C>,
 }
@@ -129,7 +132,7 @@ impl<'r, C: Criterion> Part<'r, C> {
         let bound = surface.table.triangle_bound();
         let vertex_count = if rules.is_guarded { surface.vertices.len() as u32 } else { 0 };
         let merged_into = (0..vertex_count).collect();
-        let watch = room.map(|room| Watch { room, boxes: boxes_of(&surface), sweep: Sweep::default() });
+        let watch = room.map(|room| Watch { room, space: space_of(&surface), sweep: Sweep::default() });
         let mut part = Self {
             surface,
             colors,
@@ -139,6 +142,7 @@ impl<'r, C: Criterion> Part<'r, C> {
             merged_into,
             queue: Buckets::new(4 * bound),
             rings: EdgeRings::default(),
+            allowance: Allowance::of(bound),
             watch,
             rules,
         };
@@ -235,8 +239,14 @@ impl<'r, C: Criterion> Part<'r, C> {
         if placed.error_squared > error_squared_limit {
             return Err(Refusal::Error.into());
         }
+        let ends = [h, next(h)].map(|g| self.surface.table.origin(g));
+        if !ends.into_iter().all(|end| self.allowance.lets(end)) {
+            return Err(No::Elsewhere);
+        }
         let (position, origin) = self.surface.landing(h, rule, placed.position, options.round)?;
         self.rings.walk(&self.surface.table, h);
+        self.allowance.walked(ends[0], self.rings.origin.corners.len());
+        self.allowance.walked(ends[1], self.rings.destination.corners.len());
         self.surface.table.link_condition(h, &self.rings).map_err(Refusal::Link)?;
         if !self.surface.wedges.keep_charts(&self.surface.table, h) {
             return Err(Refusal::Held.into());
@@ -244,7 +254,7 @@ impl<'r, C: Criterion> Part<'r, C> {
         check_faces(&self.surface, h, &self.rings, position, &options.guards)?;
         if let Some(watch) = &mut self.watch {
             let bounds = watch.sweep(&self.surface, h, &self.rings, position);
-            watch.check(&self.surface, h, bounds, budget)?;
+            watch.check(&self.surface, h, bounds, &mut self.allowance, budget)?;
         }
         self.tally.collapses += 1;
         self.tally.error_squared_max = self.tally.error_squared_max.max(placed.error_squared);
@@ -252,8 +262,9 @@ impl<'r, C: Criterion> Part<'r, C> {
         self.surface.merge_wedges(h, &self.rings, position);
         self.surface.merge_vertices(criterion, h, position, origin);
         self.merge_edges(h);
+        self.allowance.merged(ends[0], ends[1]);
         if let Some(watch) = &mut self.watch {
-            watch.follow(&self.surface, &self.rings);
+            watch.follow(&self.surface, &self.rings, ends);
         }
         self.look_around();
         Ok(())
@@ -278,7 +289,7 @@ impl<'r, C: Criterion> Part<'r, C> {
     /// depends on the faces around its ends, so on all edges of the merged vertex and of its neighbours.
     fn look_around(&mut self) {
         let class = self.queue.lowest().min(CLASSES - 1);
-        let Self { rings, queue, surface, .. } = self;
+        let Self { rings, queue, surface, allowance, .. } = self;
         let Surface { table, vertices, .. } = surface;
         for &corner in rings.origin.corners.iter().chain(&rings.destination.corners) {
             if table.corners(triangle_of(corner)).is_none() {
@@ -287,9 +298,12 @@ impl<'r, C: Criterion> Part<'r, C> {
             queue.put_back([corner, prev(corner)], class);
             // Both ends of an edge that is set aside say so.
             for outer in [next(corner), prev(corner)] {
-                let neighbour = &mut vertices[table.origin(outer) as usize];
-                if std::mem::take(&mut neighbour.has_aside) {
-                    table.fan(outer).for_each(|c| queue.put_back([c, prev(c)], class));
+                let v = table.origin(outer);
+                let has_aside = &mut vertices[v as usize].has_aside;
+                if *has_aside && allowance.lets(v) {
+                    *has_aside = false;
+                    let put_back = table.fan(outer).map(|c| queue.put_back([c, prev(c)], class));
+                    allowance.walked(v, put_back.count());
                 }
             }
         }
@@ -325,12 +339,12 @@ impl<'r, C: Criterion> Part<'r, C> {
     }
 }
 
-/// The boxes of the triangles of a part.
-fn boxes_of<S: Copy + Default>(surface: &Surface<S>) -> MovingBoxes {
+/// The space of the triangles of a part.
+fn space_of<S: Copy + Default>(surface: &Surface<S>) -> Space {
     let table = &surface.table;
     let corners = |t: u32| [4 * t, 4 * t + 1, 4 * t + 2].map(|h| table.origin(h));
     let triangles: Vec<[u32; 3]> = (0..table.triangle_bound() as u32).map(corners).collect();
-    MovingBoxes::new(&triangles, |v| surface.position(v))
+    Space::new(triangles, |v| surface.position(v))
 }
 
 impl Watch {
@@ -366,9 +380,10 @@ impl Watch {
         surface: &Surface<S>,
         h: u32,
         bounds: Aabb,
+        allowance: &mut Allowance,
         budget: &Budget,
     ) -> Result<(), No> {
-        let Self { room, boxes, sweep } = self;
+        let Self { room, space, sweep } = self;
         let table = &surface.table;
         if bounds.is_empty() {
             return Ok(());
@@ -378,39 +393,45 @@ impl Watch {
         }
         let ends = [table.origin(h), table.destination(h)];
         let mut answer = Ok(());
-        boxes.visit(bounds, |t| {
+        let mut passes = |other: &Outside| match allowance.compares(sweep.len()) {
+            true => sweep.passes(other).map_err(No::Refused),
+            false => Err(No::Elsewhere),
+        };
+        space.visit(bounds, sweep, ends, |t| {
             let Some(ids) = table.corners(t) else { return true };
             if !ids.iter().any(|v| ends.contains(v)) {
                 let [a, b, c] = ids;
                 let corners = [surface.position(a), surface.position(b), surface.position(c)];
-                answer = sweep.passes(&Outside { ids, corners });
+                answer = passes(&Outside { ids, corners });
             }
             answer.is_ok()
         });
-        answer?;
+        std::mem::replace(&mut answer, Ok(()))?;
         let visited = room.strays.visit(room.part, bounds, budget, |stray, corners| {
             if answer.is_ok() {
                 let ids = stray.places.map(|place| place.wrapping_sub(room.first_vertex));
-                answer = sweep.passes(&Outside { ids, corners });
+                answer = passes(&Outside { ids, corners });
             }
         });
         // The caller will see that the run was stopped.
         visited.map_err(|_| No::Elsewhere)?;
-        Ok(answer?)
+        answer
     }
 
-    /// Has the boxes follow the triangles around the merged vertex.
-    fn follow<S: Copy + Default>(&mut self, surface: &Surface<S>, rings: &EdgeRings) {
+    /// Has the space follow the triangles around the vertex into which `ends` have been merged, the second one.
+    fn follow<S: Copy + Default>(&mut self, surface: &Surface<S>, rings: &EdgeRings, [from, into]: [u32; 2]) {
+        let now = |t: u32| -> Option<Corners> {
+            surface.table.corners(t).map(|ids| (ids, ids.map(|v| surface.position(v))))
+        };
         for &corner in rings.origin.corners.iter().chain(&rings.destination.corners) {
             let t = triangle_of(corner);
-            match surface.table.corners(t) {
-                Some([a, b, c]) => {
-                    let corners = [surface.position(a), surface.position(b), surface.position(c)];
-                    self.boxes.set(t, Aabb::of(corners));
-                }
-                None => self.boxes.forget(t),
+            match now(t) {
+                Some(corners) => self.space.set(t, corners),
+                None => self.space.forget(t),
             }
         }
+        let corners = |t: u32| now(t).unwrap_or(([into; 3], [surface.position(into); 3]));
+        self.space.merge(from, into, surface.position(into), corners);
     }
 }
 

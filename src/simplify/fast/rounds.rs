@@ -1,7 +1,6 @@
 //! Rounds: cut the mesh in parts, collapse edges inside them in step, put the rest together.
 
 use super::Settings;
-use super::boxes::MovingBoxes;
 use super::buckets::CLASSES;
 use super::fans::are_fans_between;
 use super::lines::Lines;
@@ -9,6 +8,7 @@ use super::mesh::{Division, Mesh};
 use super::part::{Part, Piece, Room, Rules, Tally};
 use super::rollback::{Course, Guard};
 use super::shells::Shells;
+use super::space::Space;
 use super::strays::Strays;
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3};
@@ -162,8 +162,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
             true => Some(Arc::new(Strays::of(&self.mesh, &division, self.budget)?)),
             false => None,
         };
-        let of_boxes =
-            if strays.is_some() { MovingBoxes::bytes(self.mesh.triangles.len() as u64) } else { 0 };
+        let of_boxes = if strays.is_some() { Space::bytes(&self.mesh.triangles) } else { 0 };
         let of_strays = strays.as_ref().map_or(0, |strays| strays.bytes());
         let charge = self.budget.charge(of_boxes + of_strays)?;
         let parts = par::map_items(pieces, |i, piece| self.part(&division, i, piece, &strays, is_first));

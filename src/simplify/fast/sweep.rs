@@ -6,7 +6,8 @@
 //! Triangles before are known to meet nothing. What meets no side is wholly in a tetrahedron or in none, so one point
 //! of it decides.
 
-use crate::geom::{Aabb, DVec3, Plane, Shared, Sign, are_collinear, contact, orient3d};
+use super::allowance::FREE_MAX;
+use crate::geom::{Aabb, Cone, DVec3, Plane, Shared, Sign, are_collinear, contact, orient3d};
 use crate::simplify::report::Refusal;
 
 /// One triangle of the star before: its vertex that moves, and the side that stays.
@@ -84,6 +85,27 @@ impl Sweep {
         self.points.push(self.to);
         self.middle = self.points.iter().sum::<DVec3>() / self.points.len() as f64;
         Aabb::of(self.points.iter().copied())
+    }
+
+    /// The directions from vertex `hub`, which does not move and is at `place`, to all that is swept; false where they
+    /// may be all, or are many.
+    pub(super) fn seen_from(&self, hub: u32, place: DVec3, cones: &mut Vec<Cone>) -> bool {
+        cones.clear();
+        if self.sectors.len() > FREE_MAX {
+            return false;
+        }
+        // What has the hub as a corner is seen from there as its other corners are.
+        cones.extend(self.sectors.iter().map_while(|sector| {
+            let side = sector.side.into_iter().zip(sector.ids).filter(|(_, id)| *id != hub);
+            Cone::over(place, [sector.from, self.to].into_iter().chain(side.map(|(p, _)| p)))
+        }));
+        cones.len() == self.sectors.len()
+    }
+
+    /// Number of triangles that move.
+    #[inline]
+    pub(super) fn len(&self) -> usize {
+        self.sectors.len()
     }
 
     /// Whether `other` stays untouched.

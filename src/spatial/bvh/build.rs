@@ -18,6 +18,10 @@ pub(in crate::spatial) trait Elements: Sync {
     fn id(&self, place: usize) -> u32;
     /// Box of the element with this id.
     fn bounds(&self, id: u32) -> Box32;
+    /// What the element is sorted by, so that neighbours in the tree are near each other.
+    fn center(&self, id: u32) -> [f32; 3] {
+        self.bounds(id).center()
+    }
     /// Vertices of the element with this id.
     fn corners(&self, id: u32) -> [u32; 3];
 }
@@ -40,7 +44,7 @@ pub(super) fn tree(elements: &impl Elements, leaf_len: usize, budget: &Budget) -
         if budget.check().is_ok() {
             for (i, item) in items.iter_mut().enumerate() {
                 let id = elements.id(begin + i);
-                *item = Item::new(id, elements.bounds(id).center());
+                *item = Item::new(id, elements.center(id));
             }
         }
     });

@@ -1,6 +1,6 @@
 //! Boxes in f32 that lose no meeting of boxes in f64.
 
-use crate::geom::DVec3;
+use crate::geom::{Aabb, DVec3};
 
 /// A closed axis-aligned box.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,6 +12,11 @@ pub(in crate::spatial) struct Box32 {
 impl Box32 {
     /// The box of nothing.
     pub(in crate::spatial) const EMPTY: Self = Self { min: [f32::INFINITY; 3], max: [f32::NEG_INFINITY; 3] };
+
+    /// The box with both corners rounded to nearest.
+    pub(in crate::spatial) fn around(bounds: Aabb) -> Self {
+        Self { min: bounds.min.to_array().map(|x| x as f32), max: bounds.max.to_array().map(|x| x as f32) }
+    }
 
     /// The smallest box around both.
     #[inline]

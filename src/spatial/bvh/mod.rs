@@ -19,7 +19,7 @@ pub(super) use frame::{Box32, Frame};
 pub(super) use leaf::{Lanes, Leaf};
 use line::Line;
 pub(super) use sliver::Sliver;
-pub(super) use stars::Star;
+pub(super) use stars::{Star, find as stars_of, tree as tree_with_stars};
 pub(super) use tree::Tree;
 
 /// Boxes of triangles in a balanced tree: small flat nodes, f32 boxes that hold the exact ones.
@@ -28,6 +28,8 @@ pub struct Bvh {
     frame: Frame,
     tree: Tree,
     stars: Vec<Star>,
+    /// The node at which each star begins.
+    star_roots: Vec<u32>,
 }
 
 impl Bvh {
@@ -48,17 +50,8 @@ impl Bvh {
         let mut all = Triangles { positions, triangles, ids, frame };
         all.frame = Frame::around(all.len(), |place| positions[all.corners(all.id(place))[0] as usize]);
         let stars = stars::find(positions.len(), &all, budget)?;
-        if stars.is_empty() {
-            return Ok(Self { frame: all.frame, tree: Tree::build(&all, budget)?, stars });
-        }
-        let rest = stars::all_others(&stars, triangles.len(), &all);
-        let rest = Tree::build(&Triangles { ids: Some(&rest), ..all }, budget)?;
-        let mut trees = Vec::with_capacity(stars.len());
-        for star in &stars {
-            trees.push(Tree::build(&Triangles { ids: Some(&star.triangles), ..all }, budget)?);
-        }
-        let tree = Tree::join(&rest, &Tree::forest(&trees, budget)?);
-        Ok(Self { frame: all.frame, tree, stars })
+        let (tree, star_roots) = stars::tree(&stars, triangles.len(), positions, &all, budget)?;
+        Ok(Self { frame: all.frame, tree, stars, star_roots })
     }
 
     /// Calls `visit` with the id of each triangle whose box may meet `query`, in an order that depends on the mesh
@@ -147,6 +140,11 @@ impl Bvh {
 
     pub(super) fn stars(&self) -> &[Star] {
         &self.stars
+    }
+
+    /// The node at which each star begins.
+    pub(super) fn star_roots(&self) -> &[u32] {
+        &self.star_roots
     }
 }
 

@@ -11,6 +11,8 @@ pub(in crate::spatial) struct Sliver {
     /// Directions in which a box can be separated from the triangle, beside the coordinate axes: across each edge as
     /// seen along each axis, and square to the triangle.
     axes: [DVec3; 10],
+    /// What is this near, in each coordinate, counts as met.
+    reach: f64,
 }
 
 /// More than the rounding of a coordinate to f32 can move it, in relation to its magnitude.
@@ -27,7 +29,12 @@ impl Sliver {
         let across =
             |e: DVec3| [DVec3::new(0.0, -e.z, e.y), DVec3::new(e.z, 0.0, -e.x), DVec3::new(-e.y, e.x, 0.0)];
         let [[u0, u1, u2], [v0, v1, v2], [w0, w1, w2]] = [across(u), across(v), across(w)];
-        Self { corners, axes: [u0, u1, u2, v0, v1, v2, w0, w1, w2, u.cross(v)] }
+        Self { corners, axes: [u0, u1, u2, v0, v1, v2, w0, w1, w2, u.cross(v)], reach: 0.0 }
+    }
+
+    /// The same triangle, which also meets what is at most `reach` away from it in each coordinate of the boxes.
+    pub(in crate::spatial) fn with_reach(self, reach: f64) -> Self {
+        Self { reach, ..self }
     }
 
     /// False only when the triangle misses everything that the box holds (separating axes, Gottschalk 1996, beside
@@ -39,7 +46,9 @@ impl Sliver {
             return true;
         }
         let center = (min + max) / 2.0;
-        let half = (max - min) / 2.0 + min.abs().max(max.abs()) * BOX_ROUNDING + f64::from(f32::MIN_POSITIVE);
+        let half = (max - min) / 2.0
+            + min.abs().max(max.abs()) * BOX_ROUNDING
+            + (self.reach + f64::from(f32::MIN_POSITIVE));
         let [a, b, c] = self.corners.map(|p| p - center);
         let reach = half + (a.abs().max(b.abs()).max(c.abs())) * ROUNDING;
         !self.axes.iter().any(|axis| {

@@ -67,31 +67,33 @@ impl Tree {
         build::tree(elements, super::leaf::LEAF_LEN, budget)
     }
 
-    /// A tree of trees, none of them a single leaf, each marked as a star.
-    pub(super) fn forest(trees: &[Self], budget: &Budget) -> Result<Self, Stopped> {
+    /// A tree of trees, none of them a single leaf, each marked as a star; and the place of each one's root.
+    pub(super) fn forest(trees: &[Self], budget: &Budget) -> Result<(Self, Vec<u32>), Stopped> {
         let top = build::tree(&Roots(trees), 1, budget)?;
+        let mut roots = vec![0; trees.len()];
         let mut forest = Self { nodes: top.nodes, leaves: Vec::new() };
         for place in 0..forest.nodes.len() {
             if forest.nodes[place].children().is_none() {
-                let tree = &trees[top.leaves[forest.nodes[place].right as usize].id(0) as usize];
-                let root = forest.append(tree);
+                let number = top.leaves[forest.nodes[place].right as usize].id(0) as usize;
+                roots[number] = place as u32;
+                let root = forest.append(&trees[number]);
                 forest.nodes[place] = forest.nodes[root as usize];
                 forest.nodes[place].right |= STAR;
             }
         }
-        Ok(forest)
+        Ok((forest, roots))
     }
 
-    /// One tree of both, of which the second is not empty.
-    pub(super) fn join(first: &Self, second: &Self) -> Self {
+    /// One tree of both, of which the second is not empty; and the place of the root of that.
+    pub(super) fn join(first: &Self, second: &Self) -> (Self, u32) {
         if first.is_empty() {
-            return second.clone();
+            return (second.clone(), 0);
         }
         let mut joint = Self { nodes: vec![Node::UNSET], leaves: Vec::new() };
         let children = [joint.append(first), joint.append(second)];
         let bounds = first.nodes[0].bounds.union(&second.nodes[0].bounds);
         joint.nodes[0] = Node::inner(bounds, children);
-        joint
+        (joint, children[1])
     }
 
     /// Adds the nodes of another tree; gives the place of its root.
@@ -108,6 +110,20 @@ impl Tree {
 
     pub(in crate::spatial) fn is_empty(&self) -> bool {
         self.nodes.is_empty()
+    }
+
+    /// Number of nodes.
+    pub(in crate::spatial) fn len(&self) -> u32 {
+        self.nodes.len() as u32
+    }
+
+    /// The nodes below the root of a star, each before its children.
+    pub(in crate::spatial) fn below(&self, root: u32) -> std::ops::Range<u32> {
+        let Some([first, mut last]) = self.node(root).children() else { return 0..0 };
+        while let Some([_, right]) = self.node(last).children() {
+            last = right;
+        }
+        first..last + 1
     }
 
     #[inline]

@@ -5,7 +5,7 @@ mod directions;
 mod terrains;
 
 use super::Bvh;
-use super::bvh::{Frame, Star, Tree};
+use super::bvh::{Frame, Leaf, Sliver, Star, Tree};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{ContactKind, DVec3};
 use crate::par;
@@ -112,6 +112,11 @@ impl<'s> Surface<'s> {
     #[inline]
     fn points(&self, corners: [u32; 3]) -> [&'s DVec3; 3] {
         corners.map(|v| &self.positions[v as usize])
+    }
+
+    /// Triangle `i` of a leaf, to be compared with boxes.
+    fn sliver(&self, leaf: &Leaf, i: usize) -> Sliver {
+        Sliver::new(&self.frame, self.points(leaf.corners(i)))
     }
 
     /// The pairs of equal corners, see [`crate::geom::Shared::by_pairs`], that say of another triangle that it meets

@@ -4,7 +4,8 @@ use super::features::Faces;
 use super::{NearPair, NearPairs};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::par;
-use crate::spatial::bvh::Tree;
+use crate::spatial::bvh::{Leaf, Sliver, Tree};
+use crate::spatial::pairs::{Pair, expand, tasks};
 
 /// Pairs of nodes that the descent starts from: enough for many threads, fixed, so that results do not depend on them.
 const TASKS_AIM: usize = 512;
@@ -15,14 +16,17 @@ const KEEP: usize = 1024;
 /// A task may use this share of all work.
 const SHARE_OF_TASK: u64 = 8;
 
-/// All near features of the triangles of `tree`; `None` after `work_max` pairs of boxes.
+/// What a search found, and how many pairs of boxes it looked at.
+pub(super) type Searched = (NearPairs, u64);
+
+/// All near features of the triangles of `tree` but those inside one star; `None` after `work_max` pairs of boxes.
 pub(super) fn search<F: Fn(u32, [u32; 2]) -> bool + Sync>(
     tree: &Tree,
     faces: &Faces<'_, F>,
     work_max: u64,
     budget: &Budget,
-) -> Result<Option<NearPairs>, Stopped> {
-    let tasks = tasks(tree);
+) -> Result<Option<Searched>, Stopped> {
+    let tasks = tasks(tree, TASKS_AIM, &|leaf, i| faces.sliver(leaf, i));
     let found = par::try_map_ranges(tasks.len(), 1, |i| {
         Descent { tree, faces, work_max: work_max.div_ceil(SHARE_OF_TASK), budget }.run(tasks[i.start])
     })?;
@@ -30,58 +34,9 @@ pub(super) fn search<F: Fn(u32, [u32; 2]) -> bool + Sync>(
     for of_task in found {
         let Some((found, its_work)) = of_task else { return Ok(None) };
         work += its_work;
-        for (sum, count) in all.counts.iter_mut().zip(found.counts) {
-            *sum += count;
-        }
-        all.list.extend(found.list);
+        all.add(found);
     }
-    Ok((work <= work_max).then_some(all))
-}
-
-/// The first levels of the descent, in a fixed order.
-fn tasks(tree: &Tree) -> Vec<[u32; 2]> {
-    let mut tasks = if tree.is_empty() { Vec::new() } else { vec![[0, 0]] };
-    while tasks.len() < TASKS_AIM {
-        let mut below = Vec::new();
-        for &pair in &tasks {
-            if !expand(tree, pair, |next| below.push(next)) {
-                below.push(pair);
-            }
-        }
-        if below == tasks {
-            break;
-        }
-        tasks = below;
-    }
-    tasks
-}
-
-/// Gives the pairs one level down whose boxes meet; false at the lowest level.
-#[inline]
-fn expand(tree: &Tree, [x, y]: [u32; 2], mut push: impl FnMut([u32; 2])) -> bool {
-    let mut push_meeting = |x: u32, y: u32| {
-        if x == y || tree.node(x).bounds.meets(&tree.node(y).bounds) {
-            push([x, y]);
-        }
-    };
-    match (tree.node(x).children(), tree.node(y).children()) {
-        (None, None) => return false,
-        (Some([left, right]), _) if x == y => {
-            push_meeting(left, right);
-            push_meeting(left, left);
-            push_meeting(right, right);
-        }
-        (Some(of_x), None) => of_x.into_iter().for_each(|a| push_meeting(a, y)),
-        (None, Some(of_y)) => of_y.into_iter().for_each(|b| push_meeting(x, b)),
-        (Some(of_x), Some(of_y)) => {
-            for a in of_x {
-                for b in of_y {
-                    push_meeting(a, b);
-                }
-            }
-        }
-    }
-    true
+    Ok((work <= work_max).then_some((all, work)))
 }
 
 /// The search below one pair of nodes.
@@ -94,7 +49,7 @@ struct Descent<'d, F> {
 
 impl<F: Fn(u32, [u32; 2]) -> bool + Sync> Descent<'_, F> {
     /// What was found and how many pairs of boxes were looked at; `None` when those were too many.
-    fn run(&self, start: [u32; 2]) -> Result<Option<(NearPairs, u64)>, Stopped> {
+    fn run(&self, start: Pair) -> Result<Option<Searched>, Stopped> {
         let mut stack = vec![start];
         let (mut found, mut work, mut spent) = (NearPairs::default(), 0u64, 0u64);
         let mut add = |pair: NearPair| {
@@ -105,8 +60,12 @@ impl<F: Fn(u32, [u32; 2]) -> bool + Sync> Descent<'_, F> {
         };
         while let Some(pair) = stack.pop() {
             work += 1;
-            if !expand(self.tree, pair, |next| stack.push(next)) {
-                work += self.leaves(pair, &mut add);
+            let sliver = |leaf: &Leaf, i: usize| self.faces.sliver(leaf, i);
+            if !expand(self.tree, &sliver, pair, |next| stack.push(next)) {
+                work += match pair.is_of_slivers {
+                    true => self.one_by_one(pair, &sliver, &mut add),
+                    false => self.leaves(pair, &mut add),
+                };
             }
             if work - spent >= CHECK_EVERY as u64 {
                 self.budget.spend(work - spent)?;
@@ -121,7 +80,7 @@ impl<F: Fn(u32, [u32; 2]) -> bool + Sync> Descent<'_, F> {
     }
 
     /// Compares the triangles of two leaves, or those of one with each other; how many pairs.
-    fn leaves(&self, [x, y]: [u32; 2], add: &mut impl FnMut(NearPair)) -> u64 {
+    fn leaves(&self, Pair { x, y, .. }: Pair, add: &mut impl FnMut(NearPair)) -> u64 {
         let [of_x, of_y] = [x, y].map(|node| self.tree.leaf(self.tree.node(node)));
         let mut work = 0;
         for i in 0..of_x.len() {
@@ -130,6 +89,38 @@ impl<F: Fn(u32, [u32; 2]) -> bool + Sync> Descent<'_, F> {
                 work += 1;
                 let (f, g) = (of_x.id(i), of_y.id(j));
                 self.faces.compare([f.min(g), f.max(g)], add);
+            }
+        }
+        work
+    }
+    /// Compares each triangle of leaf `x` with those below node `y`; how many nodes and pairs.
+    fn one_by_one(
+        &self,
+        Pair { x, y, .. }: Pair,
+        sliver: &impl Fn(&Leaf, usize) -> Sliver,
+        add: &mut impl FnMut(NearPair),
+    ) -> u64 {
+        let of_x = self.tree.leaf(self.tree.node(x));
+        let (mut work, mut stack) = (0, Vec::with_capacity(Tree::DEPTH_MAX));
+        for i in 0..of_x.len() {
+            let (bounds, sliver) = (of_x.bounds(i), sliver(of_x, i));
+            stack.push(y);
+            while let Some(node) = stack.pop() {
+                work += 1;
+                let node = self.tree.node(node);
+                if !(node.bounds.meets(&bounds) && sliver.may_meet(&node.bounds)) {
+                    continue;
+                }
+                if let Some(children) = node.children() {
+                    stack.extend(children);
+                    continue;
+                }
+                let of_y = self.tree.leaf(node);
+                for j in of_y.meeting(&bounds) {
+                    work += 1;
+                    let (f, g) = (of_x.id(i), of_y.id(j));
+                    self.faces.compare([f.min(g), f.max(g)], add);
+                }
             }
         }
         work

@@ -2,15 +2,25 @@
 
 use super::{NearInput, NearKind, NearPair};
 use crate::geom::{DVec3, Sign, closest_point_on_triangle, is_on_segment, orient3d};
+use crate::spatial::bvh::{Frame, Leaf, Sliver};
 
 /// The triangles that are searched.
 pub(super) struct Faces<'m, F> {
     pub(super) input: NearInput<'m>,
     /// Whether a vertex and the ends of an edge are the corners of one triangle.
     pub(super) is_face: &'m F,
+    /// The coordinates of the boxes.
+    pub(super) frame: Frame,
 }
 
 impl<F: Fn(u32, [u32; 2]) -> bool> Faces<'_, F> {
+    /// Triangle `i` of a leaf, which meets the boxes of all triangles that have features near its own.
+    pub(super) fn sliver(&self, leaf: &Leaf, i: usize) -> Sliver {
+        let corners = leaf.corners(i);
+        let reach = self.frame.scaled(self.input.growth(corners));
+        Sliver::new(&self.frame, corners.map(|v| &self.input.positions[v as usize])).with_reach(reach)
+    }
+
     /// Tells the near pairs among the features that two triangles speak for.
     pub(super) fn compare(&self, faces: [u32; 2], add: &mut impl FnMut(NearPair)) {
         let [f, g] = faces;

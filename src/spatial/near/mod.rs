@@ -9,12 +9,14 @@
 //! features meet is decided exactly.
 
 mod descent;
+mod directions;
 mod features;
 
 use super::Bvh;
-use super::bvh::{Box32, Elements, Frame};
+use super::bvh::{Box32, Elements, Frame, Tree, stars_of, tree_with_stars};
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
+use directions::Directions;
 use features::Faces;
 
 /// Which kinds of features are near each other. The closest points of triangles that do not meet are always of one of
@@ -91,8 +93,39 @@ pub fn near_pairs(
     let frame =
         Frame::around(count, |place| input.positions[input.triangles[input.ids[place] as usize][0] as usize]);
     let _charge = budget.charge(count as u64 * Bvh::BYTES_PER_TRIANGLE)?;
-    let tree = super::bvh::Tree::build(&Grown { input, frame }, budget)?;
-    descent::search(&tree, &Faces { input, is_face: &is_face }, work_max, budget)
+    let grown = Grown { input, frame };
+    let stars = stars_of(input.positions.len(), &grown, budget)?;
+    let (tree, _) = tree_with_stars(&stars, input.triangles.len(), input.positions, &grown, budget)?;
+    let faces = Faces { input, is_face: &is_face, frame };
+    let Some((mut all, mut work)) = descent::search(&tree, &faces, work_max, budget)? else {
+        return Ok(None);
+    };
+    for star in &stars {
+        let directions = Tree::build(&Directions { input, star }, budget)?;
+        let Some((found, more)) = descent::search(&directions, &faces, work_max - work, budget)? else {
+            return Ok(None);
+        };
+        work += more;
+        all.add(found);
+    }
+    Ok(Some(all))
+}
+
+impl NearPairs {
+    fn add(&mut self, more: Self) {
+        for (sum, count) in self.counts.iter_mut().zip(more.counts) {
+            *sum += count;
+        }
+        self.list.extend(more.list);
+    }
+}
+
+impl NearInput<'_> {
+    /// By how much the box of a triangle is grown, so that those of near features meet: somewhat more than half of its
+    /// reach, for what is lost when it is added.
+    fn growth(&self, corners: [u32; 3]) -> f64 {
+        corners.map(|v| self.reach[v as usize]).into_iter().fold(0.0, f64::max) * 0.501
+    }
 }
 
 /// Triangles with boxes grown by half of their reach, so that those of near features meet.
@@ -113,9 +146,7 @@ impl Elements for Grown<'_> {
     fn bounds(&self, id: u32) -> Box32 {
         let corners = self.corners(id);
         let [a, b, c] = corners.map(|v| self.input.positions[v as usize]);
-        let reach = corners.map(|v| self.input.reach[v as usize]).into_iter().fold(0.0, f64::max);
-        // Somewhat more than half, for what is lost when it is added.
-        let grown = DVec3::splat(reach * 0.501);
+        let grown = DVec3::splat(self.input.growth(corners));
         let (low, high) = (a.min(b).min(c) - grown, a.max(b).max(c) + grown);
         self.frame.box_of([low.map(f64::next_down), high.map(f64::next_up)])
     }
