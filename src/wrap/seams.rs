@@ -18,7 +18,8 @@ use crate::mesh::{EdgeGroups, edge_of, prev_corner, triangle_of};
 use rustc_hash::FxHashMap;
 use std::f64::consts::TAU;
 
-/// Angle that the wall of a page reaches over, in degrees.
+/// Angle that the wall of a page is taken to reach over, in degrees. Where another page is nearer it ends half-way, which leaves
+/// few tunnels and takes no bar.
 const REACH: f64 = 90.0;
 
 /// A gap between walls that is no wider, in degrees, is thinner than a cell.
@@ -134,8 +135,7 @@ fn pieces(pages: &mut [Page]) -> usize {
 mod tests {
     use super::*;
 
-    /// Walls of pages at these angles, in pieces of a degree each, by definition: behind the nearest page, or squarely
-    /// behind any.
+    /// Walls of pages at these angles, in pieces of a degree each: behind the nearest page, or squarely behind any.
     fn pieces_by_degrees(pages: &[Page]) -> usize {
         let apart = |page: &Page, at: f64| (at - page.angle + 180.0).rem_euclid(360.0) - 180.0;
         let is_behind = |page: &Page, at: f64| (apart(page, at) > 0.0) == page.is_wall_after;
