@@ -1,13 +1,16 @@
 //! Measures for printing, and the distance of a slightly smaller copy, on shapes with ties: each must take time in proportion
-//! to its triangles, whatever the shape.
+//! to its triangles, whatever the shape. On the cones and the cylinder thousands of faces meet at one vertex, which the
+//! whole analysis and a simplification meet too.
 
 #[path = "support/shapes.rs"]
 mod shapes;
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use meshmend::analysis::{AnalyzeOptions, NearSearch, analyze};
 use meshmend::budget::Budget;
 use meshmend::distance::{DistanceOptions, Surface, surface_distance};
 use meshmend::printing::{Policy, measure};
+use meshmend::simplify::{Input, SimplifyOptions, Target, simplify_guarded};
 use std::hint::black_box;
 
 fn benches(criterion: &mut Criterion) {
@@ -16,6 +19,21 @@ fn benches(criterion: &mut Criterion) {
     for (name, soup) in shapes::all(100_000) {
         group.bench_function(format!("printing: {name}"), |b| {
             b.iter(|| measure(black_box(&soup), &Policy::default(), true, 16, &Budget::unlimited()));
+        });
+        group.bench_function(format!("analysis: {name}"), |b| {
+            let options = AnalyzeOptions { near: NearSearch::ByDiagonal, ..AnalyzeOptions::default() };
+            b.iter(|| analyze(black_box(&soup), None, &options, &Budget::unlimited()));
+        });
+        group.bench_function(format!("simplify: {name}"), |b| {
+            let input = Input {
+                positions: &soup.positions,
+                triangles: &soup.triangles,
+                face_groups: &[],
+                vertex_colors: &[],
+                texture: &[],
+            };
+            let options = SimplifyOptions { targets: vec![Target::Ratio(0.1)], ..SimplifyOptions::default() };
+            b.iter(|| simplify_guarded(black_box(&input), &options, &Budget::unlimited()));
         });
         let smaller: Vec<_> = soup.positions.iter().map(|&p| p * 0.999).collect();
         // As many refinements as a simplification allows itself.

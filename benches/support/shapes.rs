@@ -17,6 +17,8 @@ pub(crate) fn all(triangles: u32) -> Vec<(&'static str, Soup)> {
             turned(columns, rows, |row| ((PI * share(row)).sin() * 50.0, (PI * share(row)).cos() * 50.0)),
         ),
         ("cone", turned(columns, rows, |row| (share(row) * 30.0, -share(row) * 80.0))),
+        ("cone of one fan on another", peak(triangles / 2, 80.0)),
+        ("two cones, tip to tip", tip_to_tip(triangles / 4)),
         ("torus", torus(columns, rows)),
         ("cylinder", extruded(&circle(sides, |_| 20.0), 100.0)),
         ("gear", extruded(&circle(sides, |angle| if (angle * 24.0).sin() > 0.0 { 40.0 } else { 35.0 }), 8.0)),
@@ -82,6 +84,26 @@ fn extruded(outline: &[[f64; 2]], height: f64) -> Soup {
         [[i, j, j + n], [i, j + n, i + n], [2 * n, j, i], [2 * n + 1, i + n, j + n]]
     };
     soup(positions, (0..n).flat_map(side).collect())
+}
+
+/// A cone of two fans: half of the triangles around the tip, half around the centre of the floor.
+fn peak(sides: u32, height: f64) -> Soup {
+    let rim = circle(sides, |_| 30.0).into_iter().map(|[x, y]| DVec3::new(x, y, 0.0));
+    let positions = rim.chain([DVec3::Z * height, DVec3::ZERO]).collect();
+    let side = |i: u32| {
+        let j = (i + 1) % sides;
+        [[i, j, sides], [j, i, sides + 1]]
+    };
+    soup(positions, (0..sides).flat_map(side).collect())
+}
+
+/// Two cones whose tips are nearly at one place.
+fn tip_to_tip(sides: u32) -> Soup {
+    let (mut all, other) = (peak(sides, 80.0), peak(sides, -80.0));
+    let base = all.positions.len() as u32;
+    all.positions.extend(other.positions.iter().map(|&p| p + DVec3::Z * 160.000_01));
+    all.triangles.extend(other.triangles.iter().map(|&[a, b, c]| [a + base, c + base, b + base]));
+    soup(all.positions, all.triangles)
 }
 
 /// Many small blocks, as strokes of letters, above a plate.

@@ -17,6 +17,7 @@ mod distance;
 mod fill;
 mod half_edge;
 mod holes;
+mod hubs;
 mod injected_defects;
 mod meeting_features;
 mod modeller;

@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 const EPSILON: f64 = 0.05;
 
 /// A test and the vertices of both features.
-type Told = (ProximityTest, Vec<u32>);
+pub(crate) type Told = (ProximityTest, Vec<u32>);
 
 /// A few triangles between points that are mostly near others, near segments between them or near triangles.
 fn random_mesh(random: &mut Random) -> Soup {
@@ -52,7 +52,7 @@ fn random_mesh(random: &mut Random) -> Soup {
     Soup { face_count: triangles.len() as u32, positions, triangles, ..Soup::default() }
 }
 
-fn told(mesh: &Soup) -> BTreeMap<Told, usize> {
+pub(crate) fn told(mesh: &Soup) -> BTreeMap<Told, usize> {
     let near = NearSearch::Within(EPSILON);
     let options = AnalyzeOptions { samples: 100_000, near, ..AnalyzeOptions::default() };
     let told = analyze(mesh, Some(&Contacts::default()), &options, &Budget::unlimited()).unwrap();
@@ -140,7 +140,7 @@ fn to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     if is_left(a, b) && is_left(b, c) && is_left(c, a) { normal.dot(p - a).abs().min(rim) } else { rim }
 }
 
-fn expected(mesh: &Soup) -> BTreeMap<Told, usize> {
+pub(crate) fn expected(mesh: &Soup) -> BTreeMap<Told, usize> {
     let mut reach: BTreeMap<u32, f64> = BTreeMap::new();
     let mut features: BTreeSet<Vec<u32>> = BTreeSet::new();
     let mut faces: BTreeSet<BTreeSet<u32>> = BTreeSet::new();
