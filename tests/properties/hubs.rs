@@ -197,6 +197,9 @@ fn the_closest_point_of_a_fan_is_what_looking_at_every_triangle_gives() {
     });
 }
 
+/// What a search looks at on a shape.
+type Work<'w> = &'w dyn Fn(&Soup) -> u64;
+
 fn circle(sides: u32, radius: f64, height: f64) -> impl Iterator<Item = DVec3> {
     // Turned, so that no side is along an axis.
     (0..=sides).map(move |i| {
@@ -255,8 +258,7 @@ fn the_work_on_cones_and_cylinders_grows_far_slower_than_the_square_of_their_fac
         });
         boxes.sum()
     };
-    let searches: [(&str, &dyn Fn(&Soup) -> u64); 3] =
-        [("contacts", &contacts), ("near", &near), ("closest", &closest)];
+    let searches: [(&str, Work<'_>); 3] = [("contacts", &contacts), ("near", &near), ("closest", &closest)];
     for (name, work) in searches {
         for (shape, (few, many)) in round_parts(500).iter().zip(&round_parts(8_000)).enumerate() {
             let [of_few, of_many] = [few, many].map(|soup| work(soup) as f64 / soup.triangles.len() as f64);
