@@ -88,17 +88,13 @@ mod tests {
 
     #[test]
     fn pieces_of_a_set_and_of_the_rest_fit_eulers_formula_on_the_sphere() {
+        let of = |set: u16| (0..COUNT).filter(move |n| set >> n & 1 == 1);
         for set in 1..ALL {
-            let edges = (0..COUNT).filter(|n| set >> n & 1 == 1).map(|n| (BESIDE[n] & set).count_ones());
-            let mut triangles = 0;
-            for a in 0..COUNT {
-                for b in a + 1..COUNT {
-                    let is_in = set >> a & set >> b & BESIDE[a] >> b & 1 == 1;
-                    if is_in {
-                        triangles += (BESIDE[a] & BESIDE[b] & set & ALL << (b + 1)).count_ones() as i32;
-                    }
-                }
-            }
+            let edges = of(set).map(|n| (BESIDE[n] & set).count_ones());
+            let beside = |a: usize| BESIDE[a] & set & ALL << (a + 1);
+            let in_pair = |a: usize, b: usize| (BESIDE[a] & beside(b)).count_ones() as i32;
+            let triangles: i32 =
+                of(set).flat_map(|a| of(beside(a)).map(move |b| (a, b))).map(|(a, b)| in_pair(a, b)).sum();
             let euler = set.count_ones() as i32 - edges.sum::<u32>() as i32 / 2 + triangles;
             let holes = pieces(!set & ALL).count() as i32 - 1;
             assert_eq!(euler, pieces(set).count() as i32 - holes, "{set:b}");

@@ -180,7 +180,9 @@ impl Signs<'_> {
             let [first, second] = [a, b].map(|piece| around[piece.trailing_zeros() as usize]);
             let is_listed = |v: usize| self.state[v] & LISTED != 0;
             let is_of_bubble = |v: usize| is_listed(v) && bubble.contains(&v);
-            if !(is_of_bubble(first) && !is_listed(second) || is_of_bubble(second) && !is_listed(first)) {
+            let is_between =
+                is_of_bubble(first) && !is_listed(second) || is_of_bubble(second) && !is_listed(first);
+            if !is_between {
                 continue;
             }
             if is_speck {
