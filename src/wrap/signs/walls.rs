@@ -3,7 +3,6 @@
 use super::super::surface::{InputSurface, separate};
 use super::super::{raster, seams};
 use super::*;
-use crate::geom::Aabb;
 use crate::spatial::{Nearest, NearestSearch};
 
 impl Signs<'_> {
@@ -68,8 +67,8 @@ impl Signs<'_> {
         Ok(is_any)
     }
 
-    /// Puts those of `near` inside that are in the walls of `sheets`: behind the nearest one, squarely behind one that overlaps it,
-    /// or in the bar around a seam.
+    /// Puts those of `near` inside that are in the walls of `sheets`: behind the nearest one, or in the bar
+    /// around a seam.
     fn grow_sheets(
         &mut self,
         near: &[u32],
@@ -83,7 +82,6 @@ impl Signs<'_> {
         let seams = NearestSearch::build(seams.as_flattened(), &names, budget)?;
         let is_taken = |place: DVec3, nearest: &Nearest, search: &NearestSearch<'_>| {
             Ok(is_behind(place, nearest.point, search.corners(nearest.triangle))
-                || is_behind_overlapping(place, nearest, search, budget)?
                 || seams.find(place, None, budget)?.is_some_and(|seam| seam.distance <= THIN))
         };
         let reach = self.sheet_reach;
@@ -161,43 +159,6 @@ impl Signs<'_> {
 struct Wall {
     reach: f64,
     mark: u8,
-}
-
-/// Triangles overlap where they are so close, in cells.
-const OVERLAP: f64 = 0.125;
-
-/// Whether `place` is squarely behind a triangle that overlaps the nearest one, which it is in front of: of two that
-/// face opposite ways it is as it happens which one is the nearest.
-fn is_behind_overlapping(
-    place: DVec3,
-    nearest: &Nearest,
-    search: &NearestSearch<'_>,
-    budget: &Budget,
-) -> Result<bool, Stopped> {
-    let around = Aabb { min: nearest.point - OVERLAP, max: nearest.point + OVERLAP };
-    let mut is_behind = false;
-    search.bvh().visit_box(around, budget, |triangle| {
-        is_behind =
-            is_behind || is_squarely_behind(place, search.corners(triangle), nearest.distance + OVERLAP);
-    })?;
-    Ok(is_behind)
-}
-
-/// Whether the projection of `place` onto a triangle is in it, and `place` at most `depth` behind it; false without an
-/// area.
-fn is_squarely_behind(place: DVec3, [a, b, c]: [DVec3; 3], depth: f64) -> bool {
-    let (ab, ac, offset) = (b - a, c - a, place - a);
-    let normal = ab.cross(ac);
-    let square = normal.length_squared();
-    // Products of the weights of the other two corners with the square.
-    let [second, third] = [ac.cross(normal).dot(offset), normal.cross(ab).dot(offset)];
-    let height = normal.dot(offset);
-    square > 0.0
-        && second >= 0.0
-        && third >= 0.0
-        && second + third <= square
-        && height <= 0.0
-        && height * height <= depth * depth * square
 }
 
 /// Whether `place`, whose closest point is `closest` of a triangle, is behind that triangle or in its plane.
