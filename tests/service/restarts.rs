@@ -31,7 +31,7 @@ fn jobs_of_a_killed_server_end_on_the_next_one() {
 fn a_server_that_ends_gives_its_jobs_to_the_next_one_and_says_where_they_are() {
     let settings = &["--slots", "1", "--drain-grace", "200ms"];
     let server = Server::with(settings);
-    let mesh = long_job(400);
+    let mesh = long_job(1000);
     let mut line = server.connect();
     line.say(format!(
         "POST /v1/verify HTTP/1.1\r\nHost: localhost\r\nContent-Length: {}\r\n\r\n",
