@@ -25,13 +25,7 @@ fn benches(criterion: &mut Criterion) {
             b.iter(|| analyze(black_box(&soup), None, &options, &Budget::unlimited()));
         });
         group.bench_function(format!("simplify: {name}"), |b| {
-            let input = Input {
-                positions: &soup.positions,
-                triangles: &soup.triangles,
-                face_groups: &[],
-                vertex_colors: &[],
-                texture: &[],
-            };
+            let input = Input::new(&soup.positions, &soup.triangles);
             let options = SimplifyOptions { targets: vec![Target::Ratio(0.1)], ..SimplifyOptions::default() };
             b.iter(|| simplify_guarded(black_box(&input), &options, &Budget::unlimited()));
         });

@@ -68,13 +68,7 @@ fn main() {
         "guarded" => Mode::Guarded,
         _ => Mode::Strict,
     };
-    let input = Input {
-        positions: &soup.positions,
-        triangles: &soup.triangles,
-        face_groups: &[],
-        texture: &[],
-        vertex_colors: &[],
-    };
+    let input = Input::new(&soup.positions, &soup.triangles);
     let mut best = f64::INFINITY;
     let mut last = None;
     for _ in 0..3 {

@@ -3,7 +3,7 @@
 use super::input::Input;
 use super::output::{Made, unchanged};
 use super::plan::{Attempt, Step};
-use super::{Action, Answer, Failure, Operation, Options, Outcome, Refusal, Report};
+use super::{Action, Answer, Failure, Operation, Options, Outcome, Report};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::formats::Format;
 use crate::mesh::{ChosenEdges, CutMethod, Validity};
@@ -107,14 +107,7 @@ pub(super) fn cut_stitch(input: &Input, options: &Options, budget: &Budget) -> R
         Format::Stl => Form::Split("STL holds triangles alone"),
         Format::Obj | Format::Off | Format::Ply => Form::Polygons,
     };
-    let report = Report { actions, ..report };
-    let answer = written(&draft, form, input, options, report.clone(), budget)?;
-    let is_refused = matches!(answer.report.refusal, Some(Refusal::NotRepairable { .. }));
-    if is_refused && form == Form::Polygons {
-        let form = Form::Split("polygons are triangles, as with them it would be no valid solid");
-        return written(&draft, form, input, options, report, budget);
-    }
-    Ok(answer)
+    written(&draft, form, input, options, Report { actions, ..report }, budget)
 }
 
 /// What becomes of polygons in a file.

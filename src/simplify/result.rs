@@ -28,6 +28,13 @@ pub struct Input<'a> {
     pub texture: &'a [[[f64; 2]; 3]],
 }
 
+impl<'a> Input<'a> {
+    /// Without groups, colours and texture.
+    pub fn new(positions: &'a [DVec3], triangles: &'a [[u32; 3]]) -> Self {
+        Self { positions, triangles, face_groups: &[], vertex_colors: &[], texture: &[] }
+    }
+}
+
 /// A simplified mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Simplified {

@@ -1,6 +1,6 @@
 //! The input as the wrap sees it: triangles in lattice units, by what they say about inside and outside.
 
-use crate::budget::{Budget, Stopped};
+use crate::budget::{Budget, Charge, Stopped};
 use crate::geom::{Aabb, DVec3};
 use crate::spatial::Bvh;
 use crate::winding::Shells;
@@ -26,6 +26,19 @@ pub(super) struct InputSurface {
     /// What closes the open ones.
     pub(super) cones: Vec<[DVec3; 3]>,
     bvh: Bvh,
+}
+
+/// How many triangles searches may still look at.
+#[derive(Debug)]
+pub(super) struct Looks(pub(super) u64);
+
+impl Looks {
+    /// Takes one; false when there is none left.
+    fn take(&mut self) -> bool {
+        let is_left = self.0 > 0;
+        self.0 = self.0.saturating_sub(1);
+        is_left
+    }
 }
 
 /// Where a segment meets a triangle.
@@ -72,29 +85,44 @@ impl InputSurface {
     }
 
     /// The box of each part, by its number.
-    pub(super) fn boxes_of_parts(&self) -> Vec<Aabb> {
+    pub(super) fn boxes_of_parts<'b>(&self, budget: &'b Budget) -> Result<(Vec<Aabb>, Charge<'b>), Stopped> {
         let count = self.parts.iter().max().map_or(0, |&part| part as usize + 1);
-        let mut boxes = vec![Aabb::EMPTY; count];
+        let (mut boxes, charge) = budget.vec(count)?;
+        boxes.resize(count, Aabb::EMPTY);
         for (&part, &corners) in self.parts.iter().zip(&self.corners) {
             boxes[part as usize] = boxes[part as usize].union(Aabb::of(corners));
         }
-        boxes
+        Ok((boxes, charge))
     }
 
-    /// Calls `visit` with the part of each triangle whose box meets `bounds`.
-    pub(super) fn parts_in(
+    /// Whether a part whose triangles' boxes meet `bounds` `is_wanted`, or may be as there are no looks left.
+    pub(super) fn may_have_part(
         &self,
         bounds: Aabb,
+        looks: &mut Looks,
         budget: &Budget,
-        mut visit: impl FnMut(u32),
-    ) -> Result<(), Stopped> {
-        self.bvh.visit_box(bounds, budget, |triangle| visit(self.parts[triangle as usize]))
+        is_wanted: impl Fn(u32) -> bool,
+    ) -> Result<bool, Stopped> {
+        let may_be = |triangle: u32| !looks.take() || is_wanted(self.parts[triangle as usize]);
+        self.bvh.any_in_box(bounds, budget, may_be)
     }
 
     /// Unit normal, zero for a triangle without area.
     pub(super) fn normal(&self, triangle: u32) -> DVec3 {
         let [a, b, c] = self.corners[triangle as usize];
         (b - a).cross(c - a).normalize_or_zero()
+    }
+
+    /// Whether a triangle crosses the segment, or may do so as there are no looks left.
+    pub(super) fn may_cross(
+        &self,
+        [from, to]: [DVec3; 2],
+        looks: &mut Looks,
+        budget: &Budget,
+    ) -> Result<bool, Stopped> {
+        let may_meet =
+            |triangle: u32| !looks.take() || crossing(from, to, self.corners[triangle as usize]).is_some();
+        self.bvh.any_in_box(Aabb::of([from, to]), budget, may_meet)
     }
 
     /// Every crossing of the segment, in no particular order.

@@ -93,13 +93,7 @@ struct Tally {
 
 /// What is wrong with the results of one file in one mode.
 fn look_at(soup: &Soup, is_valid: bool, mode: Mode) -> Result<Tally, String> {
-    let input = Input {
-        positions: &soup.positions,
-        triangles: &soup.triangles,
-        face_groups: &[],
-        vertex_colors: &[],
-        texture: &[],
-    };
+    let input = Input::new(&soup.positions, &soup.triangles);
     let targets = RATIOS.map(Target::Ratio).to_vec();
     let options = SimplifyOptions { targets, ..SimplifyOptions::default() };
     let before = Shape::of(&soup.triangles, soup.positions.len())?;

@@ -8,6 +8,14 @@ use std::net::TcpListener;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
+/// A free port at a loopback address of this process alone. The server has to know the backend's
+/// address before the backend listens, and a port of 127.0.0.1 could go to another test meanwhile.
+fn own_host() -> String {
+    let [_, high, middle, low] = std::process::id().to_be_bytes();
+    let address = format!("127.{}.{middle}.{low}:0", 64 | (high & 63));
+    TcpListener::bind(address).unwrap().local_addr().unwrap().to_string()
+}
+
 struct Backend {
     child: Child,
     url: String,
@@ -80,7 +88,7 @@ fn answered(backend: &Backend, client: &reqwest::blocking::Client, order: &Value
 
 #[test]
 fn the_customer_is_asked_before_a_price_is_made_of_a_guess() {
-    let host = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().to_string();
+    let host = own_host();
     let server = Server::with(&["--webhooks", "--webhook-private-hosts", &host, "--webhook-pause", "100ms"]);
     let folder = tempfile::tempdir().unwrap();
     let backend = Backend::start(&server, &host, folder.path());
@@ -106,7 +114,7 @@ fn the_customer_is_asked_before_a_price_is_made_of_a_guess() {
 
 #[test]
 fn an_order_is_repaired_measured_and_quoted_once_and_a_broken_file_is_refused() {
-    let host = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().to_string();
+    let host = own_host();
     let server = Server::with(&["--webhooks", "--webhook-private-hosts", &host, "--webhook-pause", "100ms"]);
     let folder = tempfile::tempdir().unwrap();
     let backend = Backend::start(&server, &host, folder.path());

@@ -32,7 +32,7 @@ pub(super) struct Fewer<'f> {
 }
 
 impl Fewer<'_> {
-    /// What the mode gives, with as many shells and handles as before. `None`: contacts remained.
+    /// What the mode gives. `None`: contacts remained, or there are not as many shells and handles as before.
     pub(super) fn triangles(&self, mode: Mode) -> Result<Option<(Simplified, Action)>, Stopped> {
         let Some(found) = self.embedded(mode)? else { return Ok(None) };
         let before = Topology::of(&self.wrapped.triangles, self.wrapped.positions.len(), self.budget)?;
@@ -65,8 +65,7 @@ impl Fewer<'_> {
 
     fn run(&self, mode: Mode, held: &[Aabb]) -> Result<Option<(Simplified, Action)>, Stopped> {
         let Wrapped { positions, triangles, account, .. } = self.wrapped;
-        let input =
-            simplify::Input { positions, triangles, face_groups: &[], vertex_colors: &[], texture: &[] };
+        let input = simplify::Input::new(positions, triangles);
         let target = self.choices.targets.first().copied();
         let settings = SimplifyOptions {
             targets: vec![target.unwrap_or(Target::Error(account.spacing * ERROR_OF_CELL))],
@@ -132,5 +131,34 @@ impl Topology {
         let used = is_used.iter().filter(|&&is_used| is_used).count();
         let shells = sets.into_components().count - (vertex_count - used) as u32;
         Ok(Self { shells, euler_characteristic: used as i64 - triangles.len() as i64 / 2 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+
+    fn topology(triangles: &[[u32; 3]], vertex_count: usize) -> (u32, i64) {
+        let found = Topology::of(triangles, vertex_count, &Budget::unlimited()).unwrap();
+        (found.shells, found.euler_characteristic)
+    }
+
+    #[test]
+    fn shells_and_handles_are_counted() {
+        assert_eq!(topology(&TETRAHEDRON, 4), (1, 2));
+        let second = TETRAHEDRON.map(|corners| corners.map(|v| v + 5));
+        // Vertices 4 and 9 are not used.
+        assert_eq!(topology(&[TETRAHEDRON, second].concat(), 10), (2, 4));
+        // A torus: a grid of three by three squares, each in two triangles, whose opposite sides are one.
+        let at = |i: u32, j: u32| i % 3 * 3 + j % 3;
+        let squares = (0..9).map(|n| (n / 3, n % 3));
+        let torus = squares.flat_map(|(i, j)| {
+            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            [[a, b, c], [a, c, d]]
+        });
+        assert_eq!(topology(&torus.collect::<Vec<_>>(), 9), (1, 0));
+        assert_eq!(topology(&[], 3), (0, 0));
     }
 }

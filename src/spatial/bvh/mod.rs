@@ -64,6 +64,26 @@ impl Bvh {
         self.visit(|bounds| bounds.meets(&query), query, budget, all(visit))
     }
 
+    /// Whether `is_wanted` is true of a triangle that [`visit_box`](Self::visit_box) would visit; none after it is visited.
+    ///
+    /// # Errors
+    /// When the budget stops the run.
+    pub fn any_in_box(
+        &self,
+        query: Aabb,
+        budget: &Budget,
+        mut is_wanted: impl FnMut(u32) -> bool,
+    ) -> Result<bool, Stopped> {
+        let query = self.frame.box_of([query.min, query.max]);
+        let mut is_any = false;
+        let visit = |triangle| {
+            is_any = is_wanted(triangle);
+            !is_any
+        };
+        self.visit(|bounds| bounds.meets(&query), query, budget, visit)?;
+        Ok(is_any)
+    }
+
     /// As [`visit_box`](Self::visit_box) for the segment between two points, until `visit` is false.
     ///
     /// # Errors

@@ -93,6 +93,7 @@ impl<F: Fn(u32, [u32; 2]) -> bool + Sync> Descent<'_, F> {
         }
         work
     }
+
     /// Compares each triangle of leaf `x` with those below node `y`; how many nodes and pairs.
     fn one_by_one(
         &self,

@@ -6,7 +6,7 @@
 //! A bubble that is a whole part of the input stays.
 
 use super::super::link;
-use super::super::surface::InputSurface;
+use super::super::surface::{InputSurface, Looks};
 use super::crumbs::Small;
 use super::{INSIDE, KNOWN, LISTED, Signs};
 use crate::budget::{Budget, Stopped};
@@ -34,21 +34,26 @@ impl Signs<'_> {
         surface: &InputSurface,
         budget: &Budget,
     ) -> Result<[u32; 2], Stopped> {
-        let boxes = surface.boxes_of_parts();
+        let pieces = self.small_pieces(false, BUBBLE, budget)?;
+        if pieces.is_empty() {
+            return Ok([0; 2]);
+        }
+        let (boxes, _charge) = surface.boxes_of_parts(budget)?;
+        let mut looks = self.looks();
         let mut bubbles = Vec::new();
-        for bubble in self.small_pieces(false, BUBBLE, budget)? {
-            if !self.is_part(&bubble, surface, &boxes, budget)? {
+        for bubble in pieces {
+            if !self.is_part(&bubble, surface, &boxes, &mut looks, budget)? {
                 bubble.iter().for_each(|&v| self.state[v] |= LISTED);
                 bubbles.push(bubble);
             }
         }
         let count = bubbles.len();
         let mut turned = Vec::new();
-        let left = self.open(bubbles, surface, &mut turned, budget)?;
+        let left = self.open(bubbles, surface, &mut turned, &mut looks, budget)?;
         // What stays shows its gap: specks in the same gap are opened to it.
         let (specks, large): (Vec<_>, Vec<_>) = left.into_iter().partition(|bubble| self.is_speck(bubble));
         large.iter().flatten().for_each(|&v| self.state[v] &= !LISTED);
-        let specks = self.open(specks, surface, &mut turned, budget)?;
+        let specks = self.open(specks, surface, &mut turned, &mut looks, budget)?;
         let opened = count - large.len() - specks.len();
         let mut fills = 0;
         for speck in specks {
@@ -72,6 +77,7 @@ impl Signs<'_> {
         mut bubbles: Vec<Vec<usize>>,
         surface: &InputSurface,
         turned: &mut Vec<u32>,
+        looks: &mut Looks,
         budget: &Budget,
     ) -> Result<Vec<Vec<usize>>, Stopped> {
         let ways = ways();
@@ -79,9 +85,9 @@ impl Signs<'_> {
         for _ in 0..OPENINGS {
             let (before, mut left) = (bubbles.len(), Vec::new());
             for bubble in bubbles {
-                let opening = match self.wall_of(&bubble, surface, budget)? {
+                let opening = match self.wall_of(&bubble, surface, looks, budget)? {
                     Some(wall) => Some(vec![wall]),
-                    None => self.way_out(&bubble, &ways, surface, budget)?,
+                    None => self.way_out(&bubble, &ways, surface, looks, budget)?,
                 };
                 let Some(opening) = opening else {
                     left.push(bubble);
@@ -108,10 +114,11 @@ impl Signs<'_> {
         bubble: &[usize],
         ways: &[[isize; 3]],
         surface: &InputSurface,
+        looks: &mut Looks,
         budget: &Budget,
     ) -> Result<Option<Vec<usize>>, Stopped> {
         budget.spend(bubble.len() as u64 * 16)?;
-        let (mut tries, mut found) = (0, Vec::new());
+        let mut tries = 0;
         for &way in ways {
             for &from in bubble {
                 let Some(to) = self.step(from, way) else { continue };
@@ -119,8 +126,7 @@ impl Signs<'_> {
                     continue;
                 }
                 let ends = [from, to].map(|v| self.lattice.units(v));
-                surface.crossings(ends[0], ends[1], budget, &mut found)?;
-                if found.is_empty() {
+                if !surface.may_cross(ends, looks, budget)? {
                     let mut along = self.along(from, way);
                     along.retain(|&v| self.is_inside(v));
                     along.dedup();
@@ -163,11 +169,12 @@ impl Signs<'_> {
         &self,
         bubble: &[usize],
         surface: &InputSurface,
+        looks: &mut Looks,
         budget: &Budget,
     ) -> Result<Option<usize>, Stopped> {
         let beside = |v: usize| link::STEPS.map(|step| v.wrapping_add_signed(self.lattice.stride(step)));
         let is_speck = self.is_speck(bubble);
-        let (mut tries, mut found) = (0, Vec::new());
+        let mut tries = 0;
         for wall in bubble.iter().flat_map(|&v| beside(v)).filter(|&wall| self.is_inside(wall)) {
             let Some(inside) = self.inside_around(wall) else { continue };
             let around = beside(wall);
@@ -191,9 +198,9 @@ impl Signs<'_> {
             let members =
                 |piece: u16| (0..link::COUNT).filter(move |n| piece >> n & 1 == 1).map(|n| around[n]);
             for (from, to) in members(a).flat_map(|from| members(b).map(move |to| (from, to))) {
-                surface.crossings(self.lattice.units(from), self.lattice.units(to), budget, &mut found)?;
+                let ends = [from, to].map(|v| self.lattice.units(v));
                 tries += 1;
-                if found.is_empty() {
+                if !surface.may_cross(ends, looks, budget)? {
                     return Ok(Some(wall));
                 }
                 if tries == TRIES {

@@ -4,7 +4,7 @@
 //! the input is there: then it is that part. Crumbs go before thin walls grow, so that a wall grows where they were.
 
 use super::super::link;
-use super::super::surface::InputSurface;
+use super::super::surface::{InputSurface, Looks};
 use super::{INSIDE, KNOWN, LISTED, Signs};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3};
@@ -15,6 +15,9 @@ const CRUMB: Small = Small { vertices: 8, extent: 1.0 };
 
 /// A part that is larger than its piece of the lattice by so many cells on each side may have made it.
 const ROOM: f64 = 1.0;
+
+/// Triangles that a search looks at, as a multiple of the vertices of the lattice.
+const LOOKS_OF_VERTICES: u64 = 8;
 
 impl Signs<'_> {
     /// Drops crumbs; gives their number.
@@ -29,40 +32,44 @@ impl Signs<'_> {
         if self.state.iter().filter(|&state| state & INSIDE != 0).count() == in_crumbs {
             return Ok(0);
         }
-        let boxes = surface.boxes_of_parts();
+        if crumbs.is_empty() {
+            return Ok(0);
+        }
+        let (boxes, _charge) = surface.boxes_of_parts(budget)?;
+        let mut looks = self.looks();
         let mut dropped = Vec::new();
         let mut count = 0;
         for crumb in crumbs {
-            if !self.is_part(&crumb, surface, &boxes, budget)? {
+            if !self.is_part(&crumb, surface, &boxes, &mut looks, budget)? {
                 count += 1;
-                dropped.extend(crumb);
+                dropped.extend(crumb.into_iter().map(|v| v as u32));
             }
         }
-        self.turn_all(&dropped, budget)?;
+        dropped.iter().for_each(|&v| self.turn(v as usize));
+        self.evaluate_from_known(dropped, budget)?;
         Ok(count)
     }
 
-    fn turn_all(&mut self, vertices: &[usize], budget: &Budget) -> Result<(), Stopped> {
-        vertices.iter().for_each(|&v| self.turn(v));
-        self.evaluate_from_known(vertices.iter().map(|&v| v as u32).collect(), budget)
+    /// What a search for the own defects of the lattice may look at. What is left then stays as it is.
+    pub(super) fn looks(&self) -> Looks {
+        Looks(LOOKS_OF_VERTICES * self.state.len() as u64)
     }
 
-    /// Whether a whole part of the input, whose boxes are given, is where a piece is.
+    /// Whether a whole part of the input, whose boxes are given, is or may be where a piece is.
     pub(super) fn is_part(
         &self,
         piece: &[usize],
         surface: &InputSurface,
         boxes: &[Aabb],
+        looks: &mut Looks,
         budget: &Budget,
     ) -> Result<bool, Stopped> {
         let bounds = Aabb::of(piece.iter().map(|&v| self.lattice.units(v)));
         let room = Aabb { min: bounds.min - ROOM, max: bounds.max + ROOM };
-        let mut is_part = false;
-        surface.parts_in(room, budget, |part| {
+        surface.may_have_part(room, looks, budget, |part| {
             let part = boxes[part as usize];
-            is_part |= part.min.cmpge(room.min).all() && part.max.cmple(room.max).all();
-        })?;
-        Ok(is_part)
+            part.min.cmpge(room.min).all() && part.max.cmple(room.max).all()
+        })
     }
 
     /// The connected pieces of one side that are small.

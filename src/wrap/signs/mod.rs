@@ -254,6 +254,12 @@ impl<'l> Signs<'l> {
     fn evaluate_from(&mut self, mut wanted: Vec<u32>, budget: &Budget) -> Result<(), Stopped> {
         wanted.retain(|&v| self.state[v as usize] & KNOWN == 0);
         let _charge = budget.charge(wanted.len() as u64 * 8)?;
+        self.evaluate(&wanted, budget)?;
+        self.evaluate_from_known(wanted, budget)
+    }
+
+    /// Evaluates vertices that are unknown.
+    fn evaluate(&mut self, wanted: &[u32], budget: &Budget) -> Result<(), Stopped> {
         let signs = par::try_map_ranges(wanted.len(), 1024, |range| {
             budget.spend(range.len() as u64 * 8)?;
             let is_inside = |&v: &u32| self.is_wound(v as usize);
@@ -262,7 +268,7 @@ impl<'l> Signs<'l> {
         for (&v, is_inside) in wanted.iter().zip(signs.into_iter().flatten()) {
             self.state[v as usize] |= if is_inside { KNOWN | INSIDE } else { KNOWN };
         }
-        self.evaluate_from_known(wanted, budget)
+        Ok(())
     }
 
     /// Evaluates every unknown vertex of a cube that has known ones of both signs, starting around `known`.
@@ -282,14 +288,7 @@ impl<'l> Signs<'l> {
                 }
             }
             wanted.iter().for_each(|&v| self.state[v as usize] &= !LISTED);
-            let signs = par::try_map_ranges(wanted.len(), 1024, |range| {
-                budget.spend(range.len() as u64 * 8)?;
-                let is_inside = |&v: &u32| self.is_wound(v as usize);
-                Ok(wanted[range].iter().map(is_inside).collect::<Vec<bool>>())
-            })?;
-            for (&v, is_inside) in wanted.iter().zip(signs.into_iter().flatten()) {
-                self.state[v as usize] |= if is_inside { KNOWN | INSIDE } else { KNOWN };
-            }
+            self.evaluate(&wanted, budget)?;
             known = wanted;
         }
         Ok(())
