@@ -432,6 +432,8 @@ mirror! { repair::fill::Method =>
         Minimal = "minimal",
         /// The minimal one, refined and faired so that it goes on in the direction of the surface around.
         Smooth = "smooth",
+        /// Sharp edges that end at the rim are carried on through the hole; each side between them is flat or smooth.
+        Creased = "creased",
         /// A surface through the rim and the rings around it, made of radial basis functions.
         Rbf = "rbf",
     }

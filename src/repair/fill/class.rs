@@ -1,5 +1,6 @@
 //! Which ways of filling a hole are tried, and in which order.
 
+use super::creased::is_creased;
 use super::make::Way;
 use super::options::{FillOptions, Method};
 use super::regions::Region;
@@ -27,10 +28,12 @@ pub(super) fn ways(region: &Region, method: Method, surface: &Surface, options: 
         Method::Flat => &[Way::Planar],
         Method::Minimal => &[Way::Minimal, Way::Ears],
         Method::Smooth => &[Way::Smooth],
+        Method::Creased => &[Way::Creased, Way::Smooth],
+        Method::Auto if is_creased(region, surface) => &[Way::Creased, Way::Rbf, Way::Smooth],
         Method::Auto | Method::Rbf => &[Way::Rbf, Way::Smooth],
     };
     let mut ways = own.to_vec();
-    if method == Method::Rbf && !options.falls_back {
+    if matches!(method, Method::Rbf | Method::Creased) && !options.falls_back {
         ways.truncate(1);
     }
     if options.falls_back || ways.is_empty() {

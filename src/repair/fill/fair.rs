@@ -21,6 +21,9 @@ pub(super) struct Around {
     pub(super) points: Vec<DVec3>,
     /// Below the number of corners of the rim: that corner; from there on: one of `points`.
     pub(super) triangles: Vec<[u32; 3]>,
+    /// Of each corner of the rim, whether the patch leaves it in the direction of the surface. About others it is free to
+    /// turn, and their triangles need not be here.
+    pub(super) is_clamped: Vec<bool>,
 }
 
 /// Moves the new vertices of `mesh`. `false`, and nothing moves: the system has no solution.
@@ -49,6 +52,8 @@ struct Plate {
     weights: Vec<Vec<(u32, f64)>>,
     /// Of each vertex of rim and patch: a third of the area of its triangles.
     area: Vec<f64>,
+    /// Of each corner of the rim.
+    is_clamped: Vec<bool>,
 }
 
 impl Plate {
@@ -82,7 +87,7 @@ impl Plate {
         let mean = area.iter().sum::<f64>() / own as f64;
         // A vertex of needles has next to no area, and would be all that counts.
         let area = area.into_iter().map(|a| a.max(mean * 1e-3)).collect();
-        Self { rim, inner: own - rim, points, weights, area }
+        Self { rim, inner: own - rim, points, weights, area, is_clamped: around.is_clamped.clone() }
     }
 
     /// The normal equations: the Laplacian of the Laplacian at each new vertex is 0.
@@ -103,7 +108,8 @@ impl Plate {
                     None => still += weight * self.points[w as usize],
                 }
             }
-            for &(i, x) in &moving {
+            let counts = self.is_clamped.get(v).is_none_or(|&is_clamped| is_clamped);
+            for &(i, x) in moving.iter().filter(|_| counts) {
                 let share = x / self.area[v];
                 right[i as usize] -= share * still;
                 parts[i as usize].push((v as u32, share));

@@ -2,7 +2,8 @@
 
 use super::accept::Proposal;
 use super::caps::turn_caps;
-use super::fair::fair;
+use super::creased::creased;
+use super::fair::{Around, fair};
 use super::options::{Extract, FillOptions, Method};
 use super::patch::PatchMesh;
 use super::refine::{Lengths, refine};
@@ -25,6 +26,8 @@ pub(super) enum Way {
     Ears,
     /// The minimal one, refined and faired.
     Smooth,
+    /// Sharp edges carried on, each side between them closed on its own.
+    Creased,
     /// The surface of a field.
     Rbf,
 }
@@ -36,6 +39,7 @@ impl Way {
             Self::Planar => Method::Flat,
             Self::Minimal | Self::Ears => Method::Minimal,
             Self::Smooth => Method::Smooth,
+            Self::Creased => Method::Creased,
             Self::Rbf => Method::Rbf,
         }
     }
@@ -75,6 +79,7 @@ pub(super) fn make(
         Way::Minimal => least_bent(region, surface, budget)?,
         Way::Ears => corner_by_corner(region, surface, budget)?,
         Way::Smooth => return smooth(region, surface, budget),
+        Way::Creased => return creased(region, surface, budget),
         Way::Rbf => return of_field(region, rings, scene, budget),
     };
     Ok(made.map(|triangles| Made::plain(region, triangles)))
@@ -87,7 +92,7 @@ impl Made {
     }
 
     /// A refined patch, its new vertices at places that float32 has.
-    fn refined(
+    pub(super) fn refined(
         region: &Region,
         surface: &Surface,
         mut mesh: PatchMesh,
@@ -275,15 +280,29 @@ fn faired(
     };
     let rim = region.rim();
     let is_free = |a: u32, b: u32| surface.is_free(rim[a as usize], rim[b as usize]);
-    let mut lengths = Lengths::of_rim(&mesh, &region.next_corners());
-    let around = surface.around(region, budget)?;
+    let half_edges: Vec<Option<u32>> = rim.iter().copied().map(Some).collect();
+    let around = surface.around(&half_edges, vec![true; rim.len()], budget)?;
+    let is_fair = refine_and_fair(&mut mesh, &region.next_corners(), &around, &is_free, budget)?;
+    Ok(if is_fair { Ok(mesh) } else { Err(Rejection::NoFit) })
+}
+
+/// Divides what is longer than the edges of the rim, whose next corners are `next`, and fairs; `false`: the system has no
+/// solution. `is_free(a, b)` says whether there may be an edge between two corners of the rim.
+pub(super) fn refine_and_fair(
+    mesh: &mut PatchMesh,
+    next: &[u32],
+    around: &Around,
+    is_free: &dyn Fn(u32, u32) -> bool,
+    budget: &Budget,
+) -> Result<bool, Stopped> {
+    let mut lengths = Lengths::of_rim(mesh, next);
     for round in 0..FAIRINGS {
-        if !refine(&mut mesh, &mut lengths, &is_free, budget)? && round > 0 {
+        if !refine(mesh, &mut lengths, is_free, budget)? && round > 0 {
             break;
         }
-        if !fair(&mut mesh, &around, budget)? {
-            return Ok(Err(Rejection::NoFit));
+        if !fair(mesh, around, budget)? {
+            return Ok(false);
         }
     }
-    Ok(Ok(mesh))
+    Ok(true)
 }

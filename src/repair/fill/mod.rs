@@ -10,6 +10,7 @@ mod blend;
 mod bridge;
 mod caps;
 mod class;
+mod creased;
 mod ears;
 mod facing;
 mod fair;

@@ -17,6 +17,8 @@ pub enum Method {
     /// The minimal one, refined to the edge length of the rim and faired so that it leaves the rim in the direction of the
     /// surface around.
     Smooth,
+    /// Sharp edges that end at the rim are carried on through the hole; each side between them is flat or smooth.
+    Creased,
     /// A surface through the rim and the rings around it: where a sum of radial basis functions is zero.
     Rbf,
 }

@@ -82,7 +82,7 @@ pub(super) struct Shape {
     pub(super) normal: DVec3,
     pub(super) area: f64,
     pub(super) bounds: Aabb,
-    is_flat: bool,
+    pub(super) is_flat: bool,
     pub(super) points: Vec<DVec3>,
 }
 
@@ -121,7 +121,7 @@ pub(super) fn regions(
 }
 
 /// Newell's normal and what else is asked of a loop.
-fn shape(points: Vec<DVec3>) -> Shape {
+pub(super) fn shape(points: Vec<DVec3>) -> Shape {
     let bounds = Aabb::of(points.iter().copied());
     let (origin, size) = (points[0], bounds.diagonal());
     let next = points.iter().cycle().skip(1);

@@ -1,7 +1,6 @@
 //! The mesh around the holes, with one vertex at each place.
 
 use super::fair::Around;
-use super::regions::Region;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::{EdgeGroups, edge_of, next_corner, prev_corner};
@@ -138,26 +137,34 @@ impl Surface {
         sum.normalize_or_zero()
     }
 
-    /// The triangles of the mesh at the rim of a region.
-    pub(super) fn around(&self, region: &Region, budget: &Budget) -> Result<Around, Stopped> {
+    /// What is around a patch, given the half-edge at each corner of its rim (`None`: a corner that is not of the mesh) and
+    /// where it is clamped.
+    pub(super) fn around(
+        &self,
+        half_edges: &[Option<u32>],
+        is_clamped: Vec<bool>,
+        budget: &Budget,
+    ) -> Result<Around, Stopped> {
+        let rim = half_edges.len();
+        let corners = || half_edges.iter().enumerate().filter_map(|(i, h)| Some((i, self.corner((*h)?))));
         let mut number: FxHashMap<u32, u32> = FxHashMap::default();
-        for (i, &h) in region.rim().iter().enumerate() {
+        for (i, v) in corners() {
             // Of a place that is passed twice, the first corner stands for both.
-            number.entry(self.corner(h)).or_insert(i as u32);
+            number.entry(v).or_insert(i as u32);
         }
         let mut own: Vec<u32> = Vec::new();
-        for &h in region.rim() {
-            own.extend(self.star(self.corner(h)));
+        for (_, v) in corners().filter(|&(i, _)| is_clamped[i]) {
+            own.extend(self.star(v));
         }
         budget.spend(own.len() as u64 / 8 + 1)?;
         own.sort_unstable();
         own.dedup();
-        let mut around = Around::default();
+        let mut around = Around { is_clamped, ..Around::default() };
         for t in own {
             let corners = self.triangles[t as usize].map(|v| {
                 *number.entry(v).or_insert_with(|| {
                     around.points.push(self.positions[v as usize]);
-                    (region.rim().len() + around.points.len() - 1) as u32
+                    (rim + around.points.len() - 1) as u32
                 })
             });
             around.triangles.push(corners);

@@ -1,0 +1,272 @@
+//! How sharp edges that end at a rim go on through the hole, and the sides that they divide it into.
+
+use super::super::regions::{Region, shape};
+use super::super::surface::Surface;
+use super::ends::{End, ends};
+use crate::geom::{Aabb, DVec3};
+
+/// Ends that a division can have.
+const ENDS_MAX: usize = 8;
+/// Two ends are joined when each goes on towards the other within this, as the cosine of the angle (40 degrees).
+const TOWARDS_COS_MIN: f64 = 0.766;
+/// As above where there are no other ends (75 degrees).
+const ALONE_COS_MIN: f64 = 0.26;
+/// A curve is a straight edge when its ends go on within this of each other, as the cosine of the angle (1 degree).
+const STRAIGHT_COS_MIN: f64 = 0.99985;
+/// How far from a point that ends meet in their lines may pass it, and how far away it may be, as shares of the diagonal
+/// of the rim's box.
+const MISS_MAX: f64 = 0.1;
+const FAR_MAX: f64 = 1.0;
+/// How far the surface at the rim may lean from the plane of a flat side, as the cosine of the angle (1.8 degrees).
+const COPLANAR_COS_MIN: f64 = 0.9995;
+/// Points of a curve between its ends, at most.
+const POINTS_MAX: f64 = 256.0;
+
+/// A hole divided by curves. Points are numbered: the corners of the rim, then those of curves.
+pub(super) struct Division {
+    pub(super) points: Vec<DVec3>,
+    /// For each point of a curve two points that it was born between.
+    pub(super) parents: Vec<[u32; 2]>,
+    /// The points around each side, in the direction of the rim.
+    pub(super) sides: Vec<Vec<u32>>,
+    /// The points of each curve from end to end.
+    curves: Vec<Vec<u32>>,
+}
+
+/// Two ends that are one edge, or one that goes to the point that others go to as well.
+#[derive(Clone, Copy)]
+enum Course {
+    Join(End, End),
+    Meet(End, u32),
+}
+
+impl Division {
+    /// `None`: no sharp edge ends at the rim, or nothing tells how they go on.
+    pub(super) fn of(region: &Region, surface: &Surface) -> Option<Self> {
+        let ends = ends(region, surface, ENDS_MAX);
+        if !(2..=ENDS_MAX).contains(&ends.len()) {
+            return None;
+        }
+        let points: Vec<DVec3> = region.rim().iter().map(|&h| surface.point(h)).collect();
+        let n = points.len() as u32;
+        let all: Vec<u32> = (0..n).collect();
+        let mut division = Self { points, parents: Vec::new(), sides: vec![all], curves: Vec::new() };
+        let (joined, left) = division.matched(&ends);
+        let mut courses: Vec<Course> = joined.into_iter().map(|[a, b]| Course::Join(a, b)).collect();
+        courses.extend(division.apex(&left).into_iter().flat_map(|apex| left.iter().map(move |&end| Course::Meet(end, apex))));
+        if courses.is_empty() {
+            return None;
+        }
+        // Straight edges between planes need no points: which are such is seen when all are straight.
+        let straight: Vec<Vec<u32>> = courses.iter().map(|course| course.ends().to_vec()).collect();
+        let plain = division.divided(&straight, &courses)?;
+        let is_plain = |curve: &[u32]| {
+            let has = |side: &&Vec<u32>| curve.iter().all(|v| side.contains(v));
+            plain.iter().filter(has).all(|side| division.plane_of(side, region, surface).is_some())
+        };
+        let is_bent: Vec<bool> = courses
+            .iter()
+            .zip(&straight)
+            .map(|(course, curve)| !division.is_straight(course) || !is_plain(curve))
+            .collect();
+        let length = division.perimeter() / f64::from(n);
+        for (course, is_bent) in courses.iter().zip(is_bent) {
+            division.draw(course, if is_bent { length } else { f64::INFINITY });
+        }
+        let curves = std::mem::take(&mut division.curves);
+        division.sides = division.divided(&curves, &courses)?;
+        division.curves = curves;
+        Some(division)
+    }
+
+    fn perimeter(&self) -> f64 {
+        let rim = &self.points[..self.sides[0].len()];
+        rim.iter().zip(rim.iter().cycle().skip(1)).map(|(a, b)| a.distance(*b)).sum()
+    }
+
+    /// Pairs of ends that go on towards each other, the best first, none across another; and the ends that are left.
+    fn matched(&self, ends: &[End]) -> (Vec<[End; 2]>, Vec<End>) {
+        let least = if ends.len() == 2 { ALONE_COS_MIN } else { TOWARDS_COS_MIN };
+        let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
+        for i in 0..ends.len() {
+            for k in i + 1..ends.len() {
+                let cos = self.towards(ends[i], ends[k]);
+                // Neighbours in the rim have no room between them.
+                let gap = ends[k].corner - ends[i].corner;
+                if cos >= least && gap > 1 && gap + 1 < self.sides[0].len() as u32 {
+                    pairs.push((cos, i, k));
+                }
+            }
+        }
+        pairs.sort_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+        let mut taken: Vec<[usize; 2]> = Vec::new();
+        for (_, i, k) in pairs {
+            let is_clear = |&[a, b]: &[usize; 2]| {
+                let is_between = |x: usize| i < x && x < k;
+                ![a, b].contains(&i) && ![a, b].contains(&k) && is_between(a) == is_between(b)
+            };
+            if taken.iter().all(is_clear) {
+                taken.push([i, k]);
+            }
+        }
+        let left = (0..ends.len()).filter(|i| !taken.as_flattened().contains(i)).map(|i| ends[i]).collect();
+        (taken.into_iter().map(|pair| pair.map(|i| ends[i])).collect(), left)
+    }
+
+    /// How well two ends go on towards each other: the cosine of the larger angle between a direction and the line.
+    fn towards(&self, a: End, b: End) -> f64 {
+        let line = (self.points[b.corner as usize] - self.points[a.corner as usize]).normalize_or_zero();
+        a.direction.dot(line).min(-b.direction.dot(line))
+    }
+
+    /// Adds the point that three or more ends go to, the nearest to all their lines.
+    fn apex(&mut self, ends: &[End]) -> Option<u32> {
+        if ends.len() < 3 {
+            return None;
+        }
+        let at = |end: &End| self.points[end.corner as usize];
+        let middle = ends.iter().map(at).sum::<DVec3>() / ends.len() as f64;
+        // The sum of the projections along the lines, row by row, and of what they leave of the points.
+        let (mut rows, mut right) = ([DVec3::ZERO; 3], DVec3::ZERO);
+        for end in ends {
+            let d = end.direction;
+            let axes = [DVec3::X, DVec3::Y, DVec3::Z];
+            for (row, axis) in rows.iter_mut().zip(axes) {
+                *row += axis - d * d.dot(axis);
+            }
+            let p = at(end) - middle;
+            right += p - d * d.dot(p);
+        }
+        let determinant = rows[0].dot(rows[1].cross(rows[2]));
+        let apex = middle
+            + (rows[1].cross(rows[2]) * right.x + rows[2].cross(rows[0]) * right.y + rows[0].cross(rows[1]) * right.z)
+                / determinant;
+        let size = Aabb::of(self.points.iter().copied()).diagonal();
+        let is_met = |end: &End| {
+            let to = apex - at(end);
+            let along = to.dot(end.direction);
+            along > 0.0 && along <= FAR_MAX * size && (to - along * end.direction).length() <= MISS_MAX * size
+        };
+        if !ends.iter().all(is_met) {
+            return None;
+        }
+        self.points.push(apex);
+        self.parents.push([ends[0].corner, ends[1].corner]);
+        Some(self.points.len() as u32 - 1)
+    }
+
+    fn is_straight(&self, course: &Course) -> bool {
+        match *course {
+            Course::Join(a, b) => self.towards(a, b) >= STRAIGHT_COS_MIN,
+            Course::Meet(..) => true,
+        }
+    }
+
+    /// Adds a curve with points at about `length` from each other.
+    fn draw(&mut self, course: &Course, length: f64) {
+        let [from, to] = course.ends();
+        let [p, q] = [from, to].map(|v| self.points[v as usize]);
+        let chord = p.distance(q);
+        let steps = (chord / length).round().clamp(1.0, POINTS_MAX) as u32;
+        let [leaving, arriving] = match *course {
+            Course::Join(a, b) => [a.direction, -b.direction].map(|d| d * chord),
+            Course::Meet(..) => [q - p; 2],
+        };
+        let mut curve = vec![from];
+        for step in 1..steps {
+            let t = f64::from(step) / f64::from(steps);
+            let s = 1.0 - t;
+            // The cubic with these ends and directions (Hermite).
+            let at = p * (s * s * (1.0 + 2.0 * t))
+                + q * (t * t * (1.0 + 2.0 * s))
+                + leaving * (t * s * s)
+                - arriving * (t * t * s);
+            curve.push(self.points.len() as u32);
+            self.points.push(at);
+            self.parents.push([curve[curve.len() - 2], to]);
+        }
+        curve.push(to);
+        self.curves.push(curve);
+    }
+
+    /// The sides that `curves` divide the rim into; `None` when one has fewer than three points.
+    fn divided(&self, curves: &[Vec<u32>], courses: &[Course]) -> Option<Vec<Vec<u32>>> {
+        let mut sides = vec![self.sides[0].clone()];
+        let (joins, spokes): (Vec<_>, Vec<_>) =
+            curves.iter().zip(courses).partition(|(_, course)| matches!(course, Course::Join(..)));
+        for (curve, _) in joins {
+            let (from, to) = (curve[0], curve[curve.len() - 1]);
+            let which = sides.iter().position(|side| side.contains(&from) && side.contains(&to))?;
+            let side = sides.swap_remove(which);
+            let inner = &curve[1..curve.len() - 1];
+            let mut one = between(&side, from, to);
+            one.extend(inner.iter().rev());
+            let mut other = between(&side, to, from);
+            other.extend(inner);
+            sides.extend([one, other]);
+        }
+        if let Some((first, _)) = spokes.first() {
+            let which = sides.iter().position(|side| spokes.iter().all(|(spoke, _)| side.contains(&spoke[0])))?;
+            let side = sides.swap_remove(which);
+            debug_assert!(spokes.iter().all(|(spoke, _)| spoke.last() == first.last()));
+            // In the order of the side, which may begin anywhere in the rim.
+            let place = |spoke: &Vec<u32>| side.iter().position(|&v| v == spoke[0]);
+            let mut ordered: Vec<&Vec<u32>> = spokes.iter().map(|&(spoke, _)| spoke).collect();
+            ordered.sort_by_key(|spoke| place(spoke));
+            for (i, spoke) in ordered.iter().enumerate() {
+                let next = ordered[(i + 1) % ordered.len()];
+                let mut own = between(&side, spoke[0], next[0]);
+                own.extend(&next[1..]);
+                own.extend(spoke[1..spoke.len() - 1].iter().rev());
+                sides.push(own);
+            }
+        }
+        sides.iter().all(|side| side.len() >= 3).then_some(sides)
+    }
+
+    /// The unit normal of the surface beyond the `i`th edge of a side; zero beyond a curve.
+    pub(super) fn normal_beyond(&self, side: &[u32], i: usize, region: &Region, surface: &Surface) -> DVec3 {
+        let (from, to) = (side[i], side[(i + 1) % side.len()]);
+        let rim = region.rim();
+        let is_of_rim = (from as usize) < rim.len() && (from as usize + 1) % rim.len() == to as usize;
+        if is_of_rim { surface.normal(rim[from as usize]) } else { DVec3::ZERO }
+    }
+
+    /// The normal of the plane of a side, if it lies in one in which the surface goes on.
+    pub(super) fn plane_of(&self, side: &[u32], region: &Region, surface: &Surface) -> Option<DVec3> {
+        let seen = shape(side.iter().map(|&v| self.points[v as usize]).collect());
+        let mut normals = (0..side.len()).map(|i| self.normal_beyond(side, i, region, surface));
+        let goes_on = |n: DVec3| n == DVec3::ZERO || n.dot(seen.normal) >= COPLANAR_COS_MIN;
+        (seen.is_flat && normals.all(goes_on)).then_some(seen.normal)
+    }
+
+    pub(super) fn is_on_curve(&self, v: u32) -> bool {
+        self.curves.iter().any(|curve| curve.contains(&v))
+    }
+
+    pub(super) fn are_on_one_curve(&self, a: u32, b: u32) -> bool {
+        self.curves.iter().any(|curve| curve.contains(&a) && curve.contains(&b))
+    }
+}
+
+impl Course {
+    fn ends(&self) -> [u32; 2] {
+        match *self {
+            Self::Join(a, b) => [a.corner, b.corner],
+            Self::Meet(end, apex) => [end.corner, apex],
+        }
+    }
+}
+
+/// The points of a side from one to another.
+fn between(side: &[u32], from: u32, to: u32) -> Vec<u32> {
+    let start = side.iter().position(|&v| v == from).unwrap_or(0);
+    let mut own = Vec::new();
+    for &v in side[start..].iter().chain(&side[..start]) {
+        own.push(v);
+        if v == to {
+            break;
+        }
+    }
+    own
+}

@@ -1,0 +1,92 @@
+//! Where sharp edges of the mesh end at the rim of a hole, and in which direction they would go on.
+
+use super::super::regions::Region;
+use super::super::surface::Surface;
+use crate::geom::DVec3;
+use rustc_hash::FxHashMap;
+
+/// An edge is sharp when its faces turn by more, as the cosine of the angle (35 degrees).
+const SHARP_COS_MAX: f64 = 0.82;
+/// Two sharp edges are one line when it turns by less between them, as the cosine of the angle (40 degrees).
+const LINE_COS_MIN: f64 = 0.766;
+/// A sharp edge of so many mean edges of the rim is a line alone; shorter ones may be noise.
+const LONG: f64 = 1.5;
+/// An edge that goes on within this of an edge of the rim goes on in the rim, as the cosine of the angle (20 degrees).
+const ALONG_COS_MIN: f64 = 0.94;
+/// Triangles at a vertex that are looked at.
+const STAR_MAX: usize = 64;
+
+/// The end of a sharp edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct End {
+    /// The corner of the rim.
+    pub(super) corner: u32,
+    /// The unit direction in which it goes on.
+    pub(super) direction: DVec3,
+}
+
+/// The ends in the order of the rim, at most `most` and one more; none for a rim that passes a place twice.
+pub(super) fn ends(region: &Region, surface: &Surface, most: usize) -> Vec<End> {
+    let rim = region.rim();
+    let n = rim.len();
+    let point = |i: usize| surface.point(rim[i % n]);
+    let mut vertices: Vec<u32> = rim.iter().map(|&h| surface.corner(h)).collect();
+    vertices.sort_unstable();
+    if region.loops.len() != 1 || vertices.windows(2).any(|pair| pair[0] == pair[1]) {
+        return Vec::new();
+    }
+    let mean = (0..n).map(|i| point(i).distance(point(i + 1))).sum::<f64>() / n as f64;
+    let end = |i: usize| {
+        let direction = direction(surface, surface.corner(rim[i]), mean)?;
+        let is_in_rim = [i + 1, i + n - 1].into_iter().any(|k| {
+            let along = (point(k) - point(i)).normalize_or_zero();
+            direction.dot(along) > ALONG_COS_MIN
+        });
+        (!is_in_rim).then_some(End { corner: i as u32, direction })
+    };
+    (0..n).filter_map(end).take(most + 1).collect()
+}
+
+/// The direction in which the one sharp edge at vertex `v` goes on; `None` when there is none or more of them.
+fn direction(surface: &Surface, v: u32, mean: f64) -> Option<DVec3> {
+    let [w] = sharp_neighbours(surface, v)[..] else { return None };
+    let [at, from] = [v, w].map(|v| surface.positions[v as usize]);
+    let (length, last) = ((at - from).length(), (at - from).normalize_or_zero());
+    let before = sharp_neighbours(surface, w)
+        .into_iter()
+        .filter(|&x| x != v)
+        .map(|x| from - surface.positions[x as usize])
+        .filter(|edge| edge.normalize_or_zero().dot(last) >= LINE_COS_MIN)
+        .max_by(|a, b| a.normalize().dot(last).total_cmp(&b.normalize().dot(last)));
+    match before {
+        // A line that turns evenly has turned by half as much again where it ends.
+        Some(edge) => {
+            let share = length / (length + edge.length());
+            Some((last + (last - edge.normalize()) * share).normalize_or_zero())
+        }
+        None => (length >= LONG * mean).then_some(last),
+    }
+}
+
+/// The vertices to which sharp edges go from `v`; none for a vertex of very many triangles.
+fn sharp_neighbours(surface: &Surface, v: u32) -> Vec<u32> {
+    let star = surface.star(v);
+    if star.len() > STAR_MAX {
+        return Vec::new();
+    }
+    let normal = |t: u32| {
+        let [a, b, c] = surface.triangles[t as usize].map(|v| surface.positions[v as usize]);
+        (b - a).cross(c - a).normalize_or_zero()
+    };
+    // Of each neighbour the triangle to the left of the edge to it.
+    let mut left: FxHashMap<u32, DVec3> = FxHashMap::default();
+    let mut right: Vec<(u32, DVec3)> = Vec::with_capacity(star.len());
+    for &t in star {
+        let corners = surface.triangles[t as usize];
+        let Some(c) = corners.iter().position(|&corner| corner == v) else { continue };
+        left.insert(corners[(c + 1) % 3], normal(t));
+        right.push((corners[(c + 2) % 3], normal(t)));
+    }
+    let is_sharp = |&(w, beyond): &(u32, DVec3)| left.get(&w).is_some_and(|n| n.dot(beyond) < SHARP_COS_MAX);
+    right.into_iter().filter(is_sharp).map(|(w, _)| w).collect()
+}
