@@ -11,7 +11,8 @@ use meshmend::repair::fill::{FillOptions, Filled, Method, fill};
 use meshmend::repair::{Draft, Selection};
 use std::collections::BTreeMap;
 
-const METHODS: [Method; 5] = [Method::Auto, Method::Flat, Method::Minimal, Method::Smooth, Method::Rbf];
+const METHODS: [Method; 6] =
+    [Method::Auto, Method::Flat, Method::Minimal, Method::Smooth, Method::Creased, Method::Rbf];
 
 /// A closed surface over a grid that is closed both ways.
 fn torus(around: u32, across: u32, place: impl Fn(f64, f64) -> [f64; 3]) -> RawSoup {
@@ -274,6 +275,74 @@ fn a_long_rim_over_three_sides_of_a_box_is_closed_by_every_method_in_space() {
         }
         assert!(uses.iter().all(|(&[a, b], &n)| n == 1 && uses.contains_key(&[b, a])), "{method:?}");
     }
+}
+
+/// A ball torn out of an edge of a box, out of a corner, and out of two edges of a thin wall that run side by side.
+#[test]
+fn sharp_edges_of_a_box_go_on_across_a_hole() {
+    let half = [20, 14, 3];
+    let thick = [20, 14, 9];
+    let cases = [
+        (thick, [0.0, 0.7, 0.45], 0.3, 0),
+        (thick, [1.0, 0.7, 0.45], 0.3, 1),
+        (half, [0.0, 0.7, 0.0], 0.35, 0),
+    ];
+    for (half, center, radius, new_vertices) in cases {
+        let torn = cut(fine_box(half), center, radius);
+        for method in [Method::Auto, Method::Creased] {
+            let (draft, report) = filled(&torn, method);
+            let hole = &report.holes[0];
+            assert_eq!(
+                (hole.used, hole.vertices),
+                (Some(Method::Creased), new_vertices),
+                "{:?}",
+                hole.rejected
+            );
+            let wall = half.map(|side| f64::from(side as f32 / 20.0));
+            let beyond = |p: DVec3| (p.abs() - DVec3::from_array(wall)).max_element();
+            let off = largest(&patch_points(&draft, &torn), beyond);
+            assert!(off < 1e-6, "{center:?}: {off}");
+        }
+    }
+}
+
+/// A can of radius 1 from -0.8 to 0.8, of about equal triangles.
+fn can() -> RawSoup {
+    const AROUND: u32 = 64;
+    let disk: Vec<[f64; 2]> = (1..=10).map(|i| [f64::from(i) / 10.0, 0.8]).collect();
+    let wall = (1..16).map(|i| [1.0, 0.8 - f64::from(i) / 10.0]);
+    let below = disk.iter().rev().map(|&[radius, z]| [radius, -z]);
+    let rows: Vec<[f64; 2]> = disk.iter().copied().chain(wall).chain(below).collect();
+    let mut positions = vec![[0.0, 0.0, f64::from(0.8f32)], [0.0, 0.0, f64::from(-0.8f32)]];
+    for &[radius, z] in &rows {
+        positions.extend((0..AROUND).map(|i| {
+            let angle = f64::from(i) * std::f64::consts::TAU / f64::from(AROUND);
+            [radius * angle.cos(), radius * angle.sin(), z].map(|x| f64::from(x as f32))
+        }));
+    }
+    let at = |row: u32, i: u32| 2 + row * AROUND + i % AROUND;
+    let last = rows.len() as u32 - 1;
+    let mut triangles = Vec::new();
+    for i in 0..AROUND {
+        triangles.extend([[0, at(0, i), at(0, i + 1)], [1, at(last, i + 1), at(last, i)]]);
+        for row in 0..last {
+            let [a, b, c, d] = [at(row, i), at(row + 1, i), at(row + 1, i + 1), at(row, i + 1)];
+            triangles.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    RawSoup { positions, triangles }
+}
+
+#[test]
+fn the_round_edge_of_a_can_goes_on_across_a_hole() {
+    let torn = cut(can(), [1.0, 0.0, 0.8], 0.4);
+    let off = |method: Method| {
+        let (draft, report) = filled(&torn, method);
+        assert_eq!(report.holes[0].used, Some(method), "{:?}", report.holes[0].rejected);
+        largest(&patch_points(&draft, &torn), |p| (p.x.hypot(p.y) - 1.0).max(p.z - 0.8))
+    };
+    let (creased, smooth) = (off(Method::Creased), off(Method::Smooth));
+    assert!(creased < 0.015 && smooth > 0.05, "of a hole of 0.8: creased {creased}, smooth {smooth}");
 }
 
 /// What a surface was fitted with is told for each hole.

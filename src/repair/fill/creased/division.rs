@@ -53,7 +53,12 @@ impl Division {
         let mut division = Self { points, parents: Vec::new(), sides: vec![all], curves: Vec::new() };
         let (joined, left) = division.matched(&ends);
         let mut courses: Vec<Course> = joined.into_iter().map(|[a, b]| Course::Join(a, b)).collect();
-        courses.extend(division.apex(&left).into_iter().flat_map(|apex| left.iter().map(move |&end| Course::Meet(end, apex))));
+        courses.extend(
+            division
+                .apex(&left)
+                .into_iter()
+                .flat_map(|apex| left.iter().map(move |&end| Course::Meet(end, apex))),
+        );
         if courses.is_empty() {
             return None;
         }
@@ -139,7 +144,9 @@ impl Division {
         }
         let determinant = rows[0].dot(rows[1].cross(rows[2]));
         let apex = middle
-            + (rows[1].cross(rows[2]) * right.x + rows[2].cross(rows[0]) * right.y + rows[0].cross(rows[1]) * right.z)
+            + (rows[1].cross(rows[2]) * right.x
+                + rows[2].cross(rows[0]) * right.y
+                + rows[0].cross(rows[1]) * right.z)
                 / determinant;
         let size = Aabb::of(self.points.iter().copied()).diagonal();
         let is_met = |end: &End| {
@@ -177,9 +184,7 @@ impl Division {
             let t = f64::from(step) / f64::from(steps);
             let s = 1.0 - t;
             // The cubic with these ends and directions (Hermite).
-            let at = p * (s * s * (1.0 + 2.0 * t))
-                + q * (t * t * (1.0 + 2.0 * s))
-                + leaving * (t * s * s)
+            let at = p * (s * s * (1.0 + 2.0 * t)) + q * (t * t * (1.0 + 2.0 * s)) + leaving * (t * s * s)
                 - arriving * (t * t * s);
             curve.push(self.points.len() as u32);
             self.points.push(at);
@@ -206,7 +211,8 @@ impl Division {
             sides.extend([one, other]);
         }
         if let Some((first, _)) = spokes.first() {
-            let which = sides.iter().position(|side| spokes.iter().all(|(spoke, _)| side.contains(&spoke[0])))?;
+            let which =
+                sides.iter().position(|side| spokes.iter().all(|(spoke, _)| side.contains(&spoke[0])))?;
             let side = sides.swap_remove(which);
             debug_assert!(spokes.iter().all(|(spoke, _)| spoke.last() == first.last()));
             // In the order of the side, which may begin anywhere in the rim.

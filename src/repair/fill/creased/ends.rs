@@ -11,7 +11,7 @@ const SHARP_COS_MAX: f64 = 0.82;
 const LINE_COS_MIN: f64 = 0.766;
 /// A sharp edge of so many mean edges of the rim is a line alone; shorter ones may be noise.
 const LONG: f64 = 1.5;
-/// An edge that goes on within this of an edge of the rim goes on in the rim, as the cosine of the angle (20 degrees).
+/// A sharp edge runs on in the rim when that goes on within this of it, as the cosine of the angle (20 degrees).
 const ALONG_COS_MIN: f64 = 0.94;
 /// Triangles at a vertex that are looked at.
 const STAR_MAX: usize = 64;
@@ -36,15 +36,26 @@ pub(super) fn ends(region: &Region, surface: &Surface, most: usize) -> Vec<End> 
         return Vec::new();
     }
     let mean = (0..n).map(|i| point(i).distance(point(i + 1))).sum::<f64>() / n as f64;
-    let end = |i: usize| {
-        let direction = direction(surface, surface.corner(rim[i]), mean)?;
-        let is_in_rim = [i + 1, i + n - 1].into_iter().any(|k| {
-            let along = (point(k) - point(i)).normalize_or_zero();
-            direction.dot(along) > ALONG_COS_MIN
-        });
-        (!is_in_rim).then_some(End { corner: i as u32, direction })
-    };
-    (0..n).filter_map(end).take(most + 1).collect()
+    let start = |i: usize| Some((i, direction(surface, surface.corner(rim[i]), mean)?));
+    let mut ends: Vec<End> = Vec::new();
+    for (mut corner, mut direction) in (0..n).filter_map(start).take(most + 1) {
+        // As far as it runs in the rim, it has not ended.
+        for _ in 0..n {
+            let along = |k: usize| (k, (point(k) - point(corner)).normalize_or_zero());
+            let [one, other] = [corner + 1, corner + n - 1].map(along);
+            let (k, edge) = if one.1.dot(direction) > other.1.dot(direction) { one } else { other };
+            if edge.dot(direction) <= ALONG_COS_MIN {
+                break;
+            }
+            (corner, direction) = (k % n, edge);
+        }
+        ends.push(End { corner: corner as u32, direction });
+    }
+    // Where two come from both sides, the whole edge is in the rim.
+    let is_alone = |end: &End| ends.iter().filter(|other| other.corner == end.corner).count() == 1;
+    let mut alone: Vec<End> = ends.iter().copied().filter(is_alone).collect();
+    alone.sort_by_key(|end| end.corner);
+    alone
 }
 
 /// The direction in which the one sharp edge at vertex `v` goes on; `None` when there is none or more of them.
