@@ -11,7 +11,7 @@ here = os.path.dirname(os.path.abspath(__file__)); root = os.path.dirname(here)
 sys.path.insert(0, here)
 import holes_cut, holes_measure, holes_models, holes_page, holes_tools
 
-METHODS = ("auto", "flat", "minimal", "smooth", "rbf")
+METHODS = ("auto", "flat", "minimal", "smooth", "creased", "rbf")
 p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 p.add_argument("--corpus", help="folder with closed models in STL, OBJ, OFF or PLY"); p.add_argument("--corpus-models", type=int, default=26)
 p.add_argument("--judge", help="exact judge of intersections: PROGRAM FILE.msh --only; without it they are not counted")
