@@ -230,18 +230,10 @@ impl Division {
         sides.iter().all(|side| side.len() >= 3).then_some(sides)
     }
 
-    /// The unit normal of the surface beyond the `i`th edge of a side; zero beyond a curve.
-    pub(super) fn normal_beyond(&self, side: &[u32], i: usize, region: &Region, surface: &Surface) -> DVec3 {
-        let (from, to) = (side[i], side[(i + 1) % side.len()]);
-        let rim = region.rim();
-        let is_of_rim = (from as usize) < rim.len() && (from as usize + 1) % rim.len() == to as usize;
-        if is_of_rim { surface.normal(rim[from as usize]) } else { DVec3::ZERO }
-    }
-
     /// The normal of the plane of a side, if it lies in one in which the surface goes on.
     pub(super) fn plane_of(&self, side: &[u32], region: &Region, surface: &Surface) -> Option<DVec3> {
         let seen = shape(side.iter().map(|&v| self.points[v as usize]).collect());
-        let mut normals = (0..side.len()).map(|i| self.normal_beyond(side, i, region, surface));
+        let mut normals = (0..side.len()).map(|i| normal_beyond(side, i, region, surface));
         let goes_on = |n: DVec3| n == DVec3::ZERO || n.dot(seen.normal) >= COPLANAR_COS_MIN;
         (seen.is_flat && normals.all(goes_on)).then_some(seen.normal)
     }
@@ -275,4 +267,12 @@ fn between(side: &[u32], from: u32, to: u32) -> Vec<u32> {
         }
     }
     own
+}
+
+/// The unit normal of the surface beyond the `i`th edge of a side; zero beyond a curve.
+pub(super) fn normal_beyond(side: &[u32], i: usize, region: &Region, surface: &Surface) -> DVec3 {
+    let (from, to) = (side[i], side[(i + 1) % side.len()]);
+    let rim = region.rim();
+    let is_of_rim = (from as usize) < rim.len() && (from as usize + 1) % rim.len() == to as usize;
+    if is_of_rim { surface.normal(rim[from as usize]) } else { DVec3::ZERO }
 }

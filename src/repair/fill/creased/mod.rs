@@ -8,7 +8,7 @@
 mod division;
 mod ends;
 
-use self::division::Division;
+use self::division::{Division, normal_beyond};
 use super::make::{Made, refine_and_fair};
 use super::minimal::{self, CORNERS_MAX};
 use super::patch::PatchMesh;
@@ -80,7 +80,7 @@ impl Side<'_> {
     fn close(&self, budget: &Budget) -> Result<Result<PatchMesh, Rejection>, Stopped> {
         let points: Vec<DVec3> = self.corners.iter().map(|&v| self.division.points[v as usize]).collect();
         let plane = self.division.plane_of(self.corners, self.region, self.surface);
-        let flat = plane.and_then(|normal| planar::triangulate(&[points.clone()], normal));
+        let flat = plane.and_then(|normal| planar::triangulate(std::slice::from_ref(&points), normal));
         let is_flat = flat.is_some();
         let triangles = match flat {
             Some(triangles) => Some(triangles),
@@ -100,9 +100,8 @@ impl Side<'_> {
     }
 
     fn least_bent(&self, points: &[DVec3], budget: &Budget) -> Result<Option<Vec<[usize; 3]>>, Stopped> {
-        let normals: Vec<DVec3> = (0..points.len())
-            .map(|i| self.division.normal_beyond(self.corners, i, self.region, self.surface))
-            .collect();
+        let normals: Vec<DVec3> =
+            (0..points.len()).map(|i| normal_beyond(self.corners, i, self.region, self.surface)).collect();
         let is_free = |i: usize, k: usize| self.is_free(i, k);
         if points.len() <= CORNERS_MAX {
             return minimal::triangulate(points, &normals, is_free, budget);
