@@ -12,7 +12,7 @@ import holes_cut, holes_measure, holes_models, holes_tools
 
 p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 p.add_argument("--binary", default=os.path.join(os.environ.get("CARGO_TARGET_DIR", os.path.join(root, "target")), "release/meshmend"))
-p.add_argument("--hole", nargs="*", default=["bumpy_ball:ball-02", "cylinder:cut-0", "trefoil:ball-05"])
+p.add_argument("--hole", nargs="*", default=["bumpy_ball:ball-02", "cylinder:ball-02"])
 SIDE, FINE = 300, 3
 GREY, INSIDE = np.array([0.80, 0.80, 0.82]), np.array([0.72, 0.55, 0.42])
 SCALE = np.array([[0.22, 0.66, 0.36], [0.95, 0.80, 0.25], [0.82, 0.16, 0.16]])
@@ -51,7 +51,7 @@ def drawn(v, f, colours, is_patch, view, centre, reach):
         seen = (a >= 0) & (b >= 0) & (c >= 0) & (z > depth[window])
         if not seen.any(): continue
         front = normal[t] @ view > 0
-        shade = 0.35 + 0.65 * max(0.0, (normal[t] if front else -normal[t]) @ light)
+        shade = 0.55 + 0.45 * max(0.0, (normal[t] if front else -normal[t]) @ light)
         colour = (colours[t] if front else INSIDE) * shade
         lengths = np.linalg.norm(pixel[f[t]] - np.roll(pixel[f[t]], -1, axis=0), axis=1)
         near = np.minimum(np.minimum(a * abs(double) / lengths[1], b * abs(double) / lengths[2]), c * abs(double) / lengths[0]) < (1.3 if is_patch[t] else 0.8)
@@ -80,9 +80,9 @@ def picture(model, name, hole):
     view /= np.linalg.norm(view)
     whole = np.vstack([hole["V"], hole["RV"]]), np.vstack([hole["F"], hole["RF"] + len(hole["V"])])
     panels = [("what was there", whole), ("the hole", (hole["V"], hole["F"]))]
-    for method in ("flat", "minimal", "smooth", "rbf"):
+    for method in ("flat", "minimal", "smooth", "creased", "rbf", "auto"):
         panels.append((method, filled(hole, method)))
-    sheet = Image.new("RGB", (3 * SIDE, 2 * (SIDE + 18)), "white")
+    sheet = Image.new("RGB", (4 * SIDE, 2 * (SIDE + 18)), "white")
     draw = ImageDraw.Draw(sheet)
     for i, (title, (v, f)) in enumerate(panels):
         was, now = holes_measure.places(hole["V"], v)
@@ -93,7 +93,7 @@ def picture(model, name, hole):
             away = holes_measure.distances(v[f[is_patch]].mean(1), hole["RV"], hole["RF"]) / d
             colours[is_patch] = coloured(away) if i > 1 else SCALE[0] * 0.6 + 0.4
         image = drawn(v, f, colours, is_patch, view, centre, 0.85 * d)
-        at = (i % 3 * SIDE, i // 3 * (SIDE + 18))
+        at = (i % 4 * SIDE, i // 4 * (SIDE + 18))
         sheet.paste(Image.fromarray((np.clip(image, 0, 1) * 255).astype(np.uint8)), (at[0], at[1] + 18))
         draw.text((at[0] + 6, at[1] + 3), title, fill="black")
     path = os.path.join(root, f"docs/pictures/holes-{model.replace('_', '-')}.png")
