@@ -5,7 +5,7 @@ use super::super::surface::Surface;
 use super::ends::{End, ends};
 use crate::geom::{Aabb, DVec3};
 
-/// Ends that a division can have.
+/// Ends that a division can have, and so curves.
 const ENDS_MAX: usize = 8;
 /// Two ends are joined when each goes on towards the other within this, as the cosine of the angle (40 degrees).
 const TOWARDS_COS_MIN: f64 = 0.766;
@@ -29,8 +29,8 @@ pub(super) struct Division {
     pub(super) parents: Vec<[u32; 2]>,
     /// The points around each side, in the direction of the rim.
     pub(super) sides: Vec<Vec<u32>>,
-    /// The points of each curve from end to end.
-    curves: Vec<Vec<u32>>,
+    /// For each point the curves that it is on, a bit for each.
+    curves_at: Vec<u8>,
 }
 
 /// Two ends that are one edge, or one that goes to the point that others go to as well.
@@ -43,14 +43,14 @@ enum Course {
 impl Division {
     /// `None`: no sharp edge ends at the rim, or nothing tells how they go on.
     pub(super) fn of(region: &Region, surface: &Surface) -> Option<Self> {
-        let ends = ends(region, surface, ENDS_MAX);
+        let ends = ends(region, surface);
         if !(2..=ENDS_MAX).contains(&ends.len()) {
             return None;
         }
         let points: Vec<DVec3> = region.rim().iter().map(|&h| surface.point(h)).collect();
         let n = points.len() as u32;
         let all: Vec<u32> = (0..n).collect();
-        let mut division = Self { points, parents: Vec::new(), sides: vec![all], curves: Vec::new() };
+        let mut division = Self { points, parents: Vec::new(), sides: vec![all], curves_at: Vec::new() };
         let (joined, left) = division.matched(&ends);
         let mut courses: Vec<Course> = joined.into_iter().map(|[a, b]| Course::Join(a, b)).collect();
         courses.extend(
@@ -75,12 +75,13 @@ impl Division {
             .map(|(course, curve)| !division.is_straight(course) || !is_plain(curve))
             .collect();
         let length = division.perimeter() / f64::from(n);
-        for (course, is_bent) in courses.iter().zip(is_bent) {
-            division.draw(course, if is_bent { length } else { f64::INFINITY });
-        }
-        let curves = std::mem::take(&mut division.curves);
+        let draw = |(course, is_bent)| division.draw(course, if is_bent { length } else { f64::INFINITY });
+        let curves: Vec<Vec<u32>> = courses.iter().zip(is_bent).map(draw).collect();
         division.sides = division.divided(&curves, &courses)?;
-        division.curves = curves;
+        division.curves_at.resize(division.points.len(), 0);
+        for (number, curve) in curves.iter().enumerate() {
+            curve.iter().for_each(|&v| division.curves_at[v as usize] |= 1 << number);
+        }
         Some(division)
     }
 
@@ -169,8 +170,8 @@ impl Division {
         }
     }
 
-    /// Adds a curve with points at about `length` from each other.
-    fn draw(&mut self, course: &Course, length: f64) {
+    /// Adds the points of a curve, at about `length` from each other; gives all from end to end.
+    fn draw(&mut self, course: &Course, length: f64) -> Vec<u32> {
         let [from, to] = course.ends();
         let [p, q] = [from, to].map(|v| self.points[v as usize]);
         let chord = p.distance(q);
@@ -191,7 +192,7 @@ impl Division {
             self.parents.push([curve[curve.len() - 2], to]);
         }
         curve.push(to);
-        self.curves.push(curve);
+        curve
     }
 
     /// The sides that `curves` divide the rim into; `None` when one has fewer than three points.
@@ -210,11 +211,10 @@ impl Division {
             other.extend(inner);
             sides.extend([one, other]);
         }
-        if let Some((first, _)) = spokes.first() {
+        if !spokes.is_empty() {
             let which =
                 sides.iter().position(|side| spokes.iter().all(|(spoke, _)| side.contains(&spoke[0])))?;
             let side = sides.swap_remove(which);
-            debug_assert!(spokes.iter().all(|(spoke, _)| spoke.last() == first.last()));
             // In the order of the side, which may begin anywhere in the rim.
             let place = |spoke: &Vec<u32>| side.iter().position(|&v| v == spoke[0]);
             let mut ordered: Vec<&Vec<u32>> = spokes.iter().map(|&(spoke, _)| spoke).collect();
@@ -239,11 +239,11 @@ impl Division {
     }
 
     pub(super) fn is_on_curve(&self, v: u32) -> bool {
-        self.curves.iter().any(|curve| curve.contains(&v))
+        self.curves_at[v as usize] != 0
     }
 
     pub(super) fn are_on_one_curve(&self, a: u32, b: u32) -> bool {
-        self.curves.iter().any(|curve| curve.contains(&a) && curve.contains(&b))
+        self.curves_at[a as usize] & self.curves_at[b as usize] != 0
     }
 }
 

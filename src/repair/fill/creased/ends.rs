@@ -13,6 +13,8 @@ const LINE_COS_MIN: f64 = 0.766;
 const LONG: f64 = 1.5;
 /// A sharp edge runs on in the rim when that goes on within this of it, as the cosine of the angle (20 degrees).
 const ALONG_COS_MIN: f64 = 0.94;
+/// Corners of a rim that sharp edges may come to; each is followed along the rim.
+const STARTS_MAX: usize = 32;
 /// Triangles at a vertex that are looked at.
 const STAR_MAX: usize = 64;
 
@@ -25,8 +27,8 @@ pub(super) struct End {
     pub(super) direction: DVec3,
 }
 
-/// The ends in the order of the rim, at most `most` and one more; none for a rim that passes a place twice.
-pub(super) fn ends(region: &Region, surface: &Surface, most: usize) -> Vec<End> {
+/// The ends in the order of the rim; none for a rim that passes a place twice or that very many sharp edges come to.
+pub(super) fn ends(region: &Region, surface: &Surface) -> Vec<End> {
     let rim = region.rim();
     let n = rim.len();
     let point = |i: usize| surface.point(rim[i % n]);
@@ -37,8 +39,12 @@ pub(super) fn ends(region: &Region, surface: &Surface, most: usize) -> Vec<End> 
     }
     let mean = (0..n).map(|i| point(i).distance(point(i + 1))).sum::<f64>() / n as f64;
     let start = |i: usize| Some((i, direction(surface, surface.corner(rim[i]), mean)?));
+    let starts: Vec<(usize, DVec3)> = (0..n).filter_map(start).take(STARTS_MAX + 1).collect();
+    if starts.len() > STARTS_MAX {
+        return Vec::new();
+    }
     let mut ends: Vec<End> = Vec::new();
-    for (mut corner, mut direction) in (0..n).filter_map(start).take(most + 1) {
+    for (mut corner, mut direction) in starts {
         // As far as it runs in the rim, it has not ended.
         for _ in 0..n {
             let along = |k: usize| (k, (point(k) - point(corner)).normalize_or_zero());
