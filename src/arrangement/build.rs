@@ -221,6 +221,7 @@ impl Arrangement {
             let sources = piece.sources.into_iter().map(|(t, is_turned)| (member(t), is_turned));
             self.push(corners, member(piece.plane), sources);
         }
-        self.clusters.push(Cluster { kernel, points, vertices });
+        let triangles = members.iter().map(|&(_, t)| t).collect();
+        self.clusters.push(Cluster { kernel, points, vertices, triangles });
     }
 }

@@ -4,7 +4,7 @@ use super::error::ArrangementError;
 use super::point::Definition;
 use super::triangulation::{NONE, Sight, Triangulation};
 use crate::budget::Budget;
-use crate::geom::Sign;
+use crate::geom::{DVec3, Sign};
 use std::cmp::Ordering;
 use std::collections::VecDeque;
 
@@ -234,5 +234,50 @@ impl<'k, 'b> Constrained<'k, 'b> {
             }
         }
         self.mesh.between(from, to).ok_or(ArrangementError::Inconsistent("flips made no edge"))
+    }
+}
+
+/// Rounds of flips that make triangles rounder, at most.
+const ROUNDS_MAX: usize = 8;
+
+impl Constrained<'_, '_> {
+    /// Flips edges that no constraint holds while that makes triangles rounder, as f64 sees it: what is flipped is exactly
+    /// convex, whatever the rounding.
+    pub(super) fn improve(&mut self) -> Result<(), ArrangementError> {
+        for _ in 0..ROUNDS_MAX {
+            let mut is_changed = false;
+            for h in 0..self.mesh.half_edges() {
+                self.budget.spend(1)?;
+                let g = self.mesh.twin(h);
+                if g == NONE || g < h || self.mesh.is_constrained(h) {
+                    continue;
+                }
+                let (a, b) = (self.mesh.from(h), self.mesh.to(h));
+                let (c, d) = (self.mesh.apex(h), self.mesh.apex(g));
+                let side = |x: u32| self.mesh.orient(&self.sight, [d, c, x]);
+                if self.is_rounder([a, b, c, d]) && side(a) * side(b) == Sign::Negative {
+                    self.mesh.flip(h);
+                    is_changed = true;
+                }
+            }
+            if !is_changed {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// True when `d` is well inside the circle through `a`, `b`, `c`: the angles at `c` and `d` over `a b` are more than half a
+    /// turn together.
+    fn is_rounder(&self, corners: [u32; 4]) -> bool {
+        let [a, b, c, d] = corners.map(|v| {
+            let near = self.sight.point(self.mesh.points[v as usize]).near;
+            DVec3::from_array(near.map(|x| x.mid))
+        });
+        let cotangent = |at: DVec3| {
+            let (u, v) = (a - at, b - at);
+            u.dot(v) / u.cross(v).length()
+        };
+        cotangent(c) + cotangent(d) < -1e-9
     }
 }

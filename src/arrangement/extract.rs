@@ -9,10 +9,8 @@ pub struct Piece {
     pub corners: [u32; 3],
     /// A triangle of the input that covers it, one that turns the same way if there is one.
     pub source: u32,
-    /// A triangle of the input in its plane, the same for all pieces of what overlapped there.
-    pub plane: u32,
-    /// True when it turns the other way than `plane`.
-    pub is_turned: bool,
+    /// True when it turns the other way than `source`.
+    pub is_opposite: bool,
 }
 
 /// The boundary of a solid.
@@ -34,10 +32,10 @@ impl Arrangement {
             // The inside is behind what turns counter-clockwise.
             let is_turned = front;
             let sources = self.sources(f);
-            let same = sources.iter().find(|(_, turned)| *turned == is_turned).or(sources.first());
+            let same = sources.iter().find(|(_, turned)| *turned == is_turned);
             let corners = if is_turned { [a, c, b] } else { [a, b, c] };
-            let source = same.map_or(self.planes[f], |&(t, _)| t);
-            pieces.push(Piece { corners, source, plane: self.planes[f], is_turned });
+            let source = same.or(sources.first()).map_or(self.planes[f], |&(t, _)| t);
+            pieces.push(Piece { corners, source, is_opposite: same.is_none() });
         }
         Surface { pieces }
     }

@@ -245,6 +245,20 @@ impl Kernel {
             && (0..3).all(|k| self.compare(k, a, b) == Ordering::Equal)
     }
 
+    /// True when three points lie on one line.
+    pub(super) fn are_collinear(&self, [a, b, c]: [&Point; 3]) -> bool {
+        let (u, v) = (ball::minus(b.near, a.near), ball::minus(c.near, a.near));
+        if ball::cross(u, v).iter().any(|x| x.sign().is_some()) {
+            return false;
+        }
+        if Definition::are_on_one_edge([&a.definition, &b.definition, &c.definition]) {
+            return true;
+        }
+        let [a, b, c] = [a, b, c].map(|p| self.exact(p));
+        let to = |p: &Homogeneous| -> Vector { std::array::from_fn(|k| &p.x[k] * &a.w - &a.x[k] * &p.w) };
+        exact::cross(&to(b), &to(c)).iter().all(|x| sign_of(x).is_zero())
+    }
+
     /// The coordinates of a point, rounded.
     pub(super) fn rounded(&self, point: &Point) -> DVec3 {
         match point.definition {

@@ -23,7 +23,9 @@ mod exact;
 mod extract;
 mod intern;
 mod kernel;
+mod merge;
 mod pairs;
+mod place;
 mod point;
 mod radial;
 mod ray;
@@ -34,6 +36,8 @@ mod triangulation;
 pub use build::{Options, arrange};
 pub use error::ArrangementError;
 pub use extract::{Piece, Surface};
+pub use merge::Merged;
+pub use place::{Placed, place};
 
 use crate::geom::DVec3;
 use kernel::Kernel;
@@ -73,6 +77,8 @@ struct Cluster {
     points: Vec<Point>,
     /// The vertex of the input that each vertex of the kernel is, ascending.
     vertices: Vec<u32>,
+    /// The triangle of the input that each triangle of the kernel is, ascending.
+    triangles: Vec<u32>,
 }
 
 impl Arrangement {

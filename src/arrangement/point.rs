@@ -68,9 +68,14 @@ impl Definition {
         }
     }
 
+    /// True when three points lie on the line of one edge by their names.
+    pub(super) fn are_on_one_edge(points: [&Self; 3]) -> bool {
+        let on_one_edge = |p: &Self| p.edges().any(|edge| points.iter().all(|q| q.is_on_edge(edge)));
+        points.iter().any(|p| on_one_edge(p))
+    }
+
     /// True when three points in the plane of triangle `plane` lie on one line by their names.
     pub(super) fn are_collinear(points: [&Self; 3], plane: u32) -> bool {
-        let on_one_edge = |p: &Self| p.edges().any(|edge| points.iter().all(|q| q.is_on_edge(edge)));
         let on_another_plane =
             |other: u32| other != plane && points.iter().all(|point| point.is_on_plane(other));
         let on_one_line = |p: &Self| match p {
@@ -78,6 +83,6 @@ impl Definition {
             Self::Planes(planes) => planes.iter().any(|&other| on_another_plane(other)),
             _ => false,
         };
-        points.iter().any(|p| on_one_edge(p)) || on_one_line(points[0])
+        Self::are_on_one_edge(points) || on_one_line(points[0])
     }
 }

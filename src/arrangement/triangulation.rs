@@ -331,3 +331,28 @@ impl Triangulation {
         faces
     }
 }
+
+impl Triangulation {
+    /// The corners, as vertices, of the faces that are reached from the left of tagged half-edges without crossing one that
+    /// is constrained.
+    pub(super) fn left_of_tags(&self) -> Vec<[u32; 3]> {
+        let mut is_reached = vec![false; self.origin.len()];
+        let mut stack: Vec<u32> = (0..self.half_edges()).filter(|&h| self.tags[h as usize] != 0).collect();
+        let mut faces = Vec::new();
+        while let Some(h) = stack.pop() {
+            if is_reached[h as usize] {
+                continue;
+            }
+            let face = [h, self.next(h), self.prev(h)];
+            for h in face {
+                is_reached[h as usize] = true;
+                let twin = self.twin(h);
+                if twin != NONE && !self.is_constrained(h) {
+                    stack.push(twin);
+                }
+            }
+            faces.push(face.map(|h| self.from(h)));
+        }
+        faces
+    }
+}

@@ -1,7 +1,8 @@
 //! Operations that change a mesh: one operation, one file; options in, what changed out. No step calls another.
 //!
 //! The steps work on a [`Draft`]. None of them moves a vertex except [`round`],
-//! [`noise`], [`snap`], [`contact`] and [`joint`], which say how far.
+//! [`noise`], [`snap`], [`contact`] and [`joint`], which say how far; [`unite`] says how far its new ones are from where
+//! they are exactly.
 
 pub mod collinear;
 pub mod contact;
@@ -28,6 +29,7 @@ pub mod stitches;
 pub mod t_vertices;
 pub mod thicken;
 pub mod thin_faces;
+pub mod unite;
 pub mod weld;
 
 pub use draft::{Blend, Blends, Draft, FIRST_BLEND, Faced, NEW};

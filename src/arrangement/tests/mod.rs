@@ -190,3 +190,82 @@ fn integers_are_as_wide_as_the_analysis_says() {
     // The bounds are not far from what occurs.
     assert!(widest.iter().all(|left| left.iter().min().is_some_and(|&bits| bits < 24)), "{widest:?}");
 }
+
+#[test]
+fn merged_boundaries_have_the_same_volume_and_meet_nowhere_else() {
+    let count = cases(1_000, 30_000) as usize;
+    par::map_ranges(count, 16, |range| {
+        for seed in range {
+            let bodies = cases::random(&mut Random::new(seed as u64 + 1_000_000));
+            let arrangement = arranged(&bodies).unwrap();
+            for inside in [|w: &[i32]| w[0] + w[1] > 0, |w: &[i32]| w[0] > 0 && w[1] <= 0] {
+                let boundary = arrangement.boundary(inside);
+                let merged = arrangement.merged(&boundary, &Budget::unlimited()).unwrap();
+                let broken = oracle::breaches_of_merged(&arrangement, &boundary, &merged);
+                assert!(broken.is_empty(), "seed {seed}: {broken:?}\n{bodies:?}");
+            }
+        }
+    });
+}
+
+#[test]
+fn what_nothing_passes_through_any_more_is_whole_again() {
+    // A small cube that sticks out of the top of a large one, and one that is inside and touches the bottom.
+    let mut bodies = Bodies::default();
+    bodies.add(cube([0, 0, 0], [8, 8, 8], 0), 0);
+    bodies.add(cube([3, 2, 6], [5, 4, 10], 0), 0);
+    bodies.add(cube([3, 2, 0], [4, 3, 1], 0), 0);
+    let arrangement = arranged(&bodies).unwrap();
+    let boundary = arrangement.boundary(|w| w[0] > 0);
+    let merged = arrangement.merged(&boundary, &Budget::unlimited()).unwrap();
+    let whole = |source: u32| merged.sources.iter().zip(&merged.is_whole).any(|(&s, &is)| s == source && is);
+    // All of the large cube but its top, and the top of the small one.
+    assert!([0, 1, 4, 5, 6, 7, 8, 9, 10, 11, 14, 15].into_iter().all(whole), "{merged:?}");
+    assert!((2..4).chain(24..36).all(|source| !whole(source)));
+    let pitch = 2f64.powi(-20);
+    let placed = super::place(&arrangement, &merged, pitch, &Budget::unlimited()).unwrap();
+    assert_eq!((placed.conflicts, placed.move_max), (0, 0.0));
+}
+
+#[test]
+fn placed_boundaries_are_on_the_lattice_and_conflicts_are_counted() {
+    let (mut clean, mut all) = (0, 0);
+    for seed in 0..cases(40, 1_000) {
+        let mut bodies = cases::crowd(&mut Random::new(seed), 6);
+        for p in &mut bodies.positions {
+            *p *= 0.125;
+        }
+        let arrangement = arranged(&bodies).unwrap();
+        let boundary = arrangement.boundary(|w| w[0] > 0 || w[1] > 0);
+        let merged = arrangement.merged(&boundary, &Budget::unlimited()).unwrap();
+        for pitch in [2f64.powi(-19), 2f64.powi(-5)] {
+            let placed = super::place(&arrangement, &merged, pitch, &Budget::unlimited()).unwrap();
+            assert_eq!(placed.triangles.len(), placed.sources.len());
+            assert!(placed.move_max <= pitch * 3.0, "{} of {pitch}", placed.move_max);
+            for &p in placed.triangles.as_flattened() {
+                let place = placed.positions[p as usize];
+                assert_eq!((place / pitch).round() * pitch, place);
+            }
+            if pitch < 1e-3 {
+                all += 1;
+                clean += u32::from(placed.conflicts == 0);
+            }
+        }
+    }
+    assert!(clean * 20 >= all * 19, "{clean} of {all} without conflicts");
+}
+
+#[test]
+fn names_say_collinear_only_of_points_on_one_line() {
+    use super::point::Definition::{self, EdgePlane, Planes, Vertex};
+    let is = |points: [Definition; 3]| Definition::are_collinear(points.each_ref(), 0);
+    assert!(is([Planes([0, 1, 2]), Planes([0, 2, 3]), Planes([0, 2, 5])]));
+    assert!(!is([Planes([0, 1, 2]), Planes([0, 2, 3]), Planes([0, 1, 3])]));
+    assert!(is([Planes([0, 1, 2]), EdgePlane { edge: [4, 5], plane: 2 }, Planes([0, 2, 5])]));
+    let on_edge = |plane| EdgePlane { edge: [4, 5], plane };
+    assert!(is([Vertex(4), on_edge(1), on_edge(2)]));
+    assert!(is([Vertex(4), on_edge(1), Vertex(5)]));
+    assert!(!is([Vertex(4), on_edge(1), Vertex(6)]));
+    // The plane that all of them are in says nothing.
+    assert!(!is([on_edge(0), EdgePlane { edge: [6, 7], plane: 0 }, Planes([0, 1, 2])]));
+}

@@ -1,7 +1,7 @@
 //! What must hold of an arrangement, decided naively in integers of the tests' own: all pairs of pieces, all sides of pieces.
 
 use super::cases::Bodies;
-use crate::arrangement::Arrangement;
+use crate::arrangement::{Arrangement, Merged, Surface};
 use num_bigint::BigInt;
 use num_rational::Ratio;
 use num_traits::{ToPrimitive, Zero};
@@ -256,6 +256,62 @@ fn volumes(arrangement: &Arrangement) -> Vec<String> {
     }
     if [&a, &b, &either, &both, &only_a].iter().any(|x| **x < Rational::zero()) {
         broken.push("a volume is negative".to_owned());
+    }
+    broken
+}
+
+/// What must hold of a boundary after its pieces were merged.
+pub(super) fn breaches_of_merged(
+    arrangement: &Arrangement,
+    boundary: &Surface,
+    merged: &Merged,
+) -> Vec<String> {
+    let mut broken = Vec::new();
+    let place = |p: u32| place(arrangement, p);
+    let sixfold = |triangles: &mut dyn Iterator<Item = [u32; 3]>| {
+        let det = |corners: [u32; 3]| {
+            let [a, b, c] = corners.map(place);
+            Rational::new(BigInt::from(det3(a.0, b.0, c.0)), BigInt::from(a.1) * b.1 * c.1)
+        };
+        triangles.map(det).fold(Rational::zero(), |sum, x| sum + x)
+    };
+    let before = sixfold(&mut boundary.pieces.iter().map(|piece| piece.corners));
+    let after = sixfold(&mut merged.triangles.iter().copied());
+    if before != after {
+        broken.push(format!("six times the volume was {before} and is {after}"));
+    }
+    if merged.triangles.len() > boundary.pieces.len() {
+        broken.push(format!("{} triangles of {} pieces", merged.triangles.len(), boundary.pieces.len()));
+    }
+    let mut balance = std::collections::BTreeMap::new();
+    for t in &merged.triangles {
+        for k in 0..3 {
+            let (from, to) = (t[k], t[(k + 1) % 3]);
+            *balance.entry((from.min(to), from.max(to))).or_insert(0) += if from < to { 1 } else { -1 };
+        }
+    }
+    let open = balance.values().filter(|&&balance| balance != 0).count();
+    if open > 0 {
+        broken.push(format!("{open} edges do not balance"));
+    }
+    let corners: Vec<[Place; 3]> = merged.triangles.iter().map(|t| t.map(place)).collect();
+    let normals: Vec<[i128; 3]> = corners.iter().map(|&t| normal(t)).collect();
+    for (i, &s) in corners.iter().enumerate() {
+        if normals[i] == [0; 3] {
+            broken.push(format!("triangle {i} has no area"));
+        }
+        for (j, &t) in corners.iter().enumerate().filter(|&(j, _)| j != i) {
+            for k in 0..3 {
+                let is_shared = merged.triangles[j].contains(&merged.triangles[i][k]);
+                let side = dot(normals[j], direction(t[0], s[k]));
+                if side == 0 && !is_shared && holds(t, normals[j], s[k]) {
+                    broken.push(format!("corner {k} of triangle {i} is on triangle {j}"));
+                }
+                if passes([s[k], s[(k + 1) % 3]], t, normals[j]) {
+                    broken.push(format!("edge {k} of triangle {i} passes through triangle {j}"));
+                }
+            }
+        }
     }
     broken
 }

@@ -1,0 +1,253 @@
+//! The triangles of a boundary with their new points on a lattice, and what that breaks mended nearby.
+//!
+//! Rounding moves a new point by at most half a pitch in each coordinate, which can push it through a triangle that is nearer. Where
+//! triangles meet afterwards, each new point of theirs goes to the one of the lattice points around it at which its triangles
+//! meet the fewest others. What is left is counted; the result is for the certificate to judge.
+
+use super::error::ArrangementError;
+use super::{Arrangement, Merged};
+use crate::budget::Budget;
+use crate::geom::{Aabb, DVec3, Plane, Shared, are_collinear, contact};
+use crate::spatial::{Bvh, Search, self_contacts};
+
+/// A boundary in numbers of a file.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Placed {
+    /// The position of each point of the arrangement; those that no triangle uses may be anywhere.
+    pub positions: Vec<DVec3>,
+    /// Corners, as points: of several at one position the first.
+    pub triangles: Vec<[u32; 3]>,
+    /// The triangle of the input that each is a part of.
+    pub sources: Vec<u32>,
+    /// Largest distance of a new point from where it is exactly.
+    pub move_max: f64,
+    /// Pairs of triangles that still meet, and triangles without an area.
+    pub conflicts: u64,
+}
+
+/// Rounds in which conflicts are looked for and mended, at most.
+const ROUNDS_MAX: usize = 5;
+
+/// Conflicts beyond which no mending is tried.
+const CONFLICTS_MAX: usize = 1 << 14;
+
+/// Puts the new points of `merged` on the lattice of this pitch, which must be a power of two.
+///
+/// # Errors
+/// When the budget stops the run.
+pub fn place(
+    arrangement: &Arrangement,
+    merged: &Merged,
+    pitch: f64,
+    budget: &Budget,
+) -> Result<Placed, ArrangementError> {
+    let first_new = arrangement.positions.len() as u32;
+    let mut used: Vec<u32> =
+        merged.triangles.as_flattened().iter().copied().filter(|&p| p >= first_new).collect();
+    used.sort_unstable();
+    used.dedup();
+    let mut exact = vec![DVec3::ZERO; arrangement.new_points.len()];
+    let mut positions = arrangement.positions.clone();
+    positions.resize(arrangement.point_count(), DVec3::ZERO);
+    for (i, &p) in used.iter().enumerate() {
+        if i % 256 == 0 {
+            budget.spend(1024)?;
+        }
+        let place = arrangement.position(p);
+        exact[(p - first_new) as usize] = place;
+        positions[p as usize] = nearest(place, pitch);
+    }
+    let mut placing = Placing {
+        placed: Placed {
+            positions,
+            triangles: merged.triangles.clone(),
+            sources: merged.sources.clone(),
+            ..Placed::default()
+        },
+        exact,
+        first_new,
+        pitch,
+        budget,
+    };
+    placing.weld(&used);
+    let mut best = u64::MAX;
+    for round in 0..=ROUNDS_MAX {
+        let (conflicts, points) = placing.conflicts()?;
+        placing.placed.conflicts = conflicts;
+        if conflicts == 0 || conflicts >= best || points.is_empty() || round == ROUNDS_MAX {
+            break;
+        }
+        best = conflicts;
+        placing.mend(&points)?;
+        placing.weld(&used);
+    }
+    let mut placed = placing.placed;
+    for &p in &used {
+        let moved = placed.positions[p as usize].distance(placing.exact[(p - first_new) as usize]);
+        placed.move_max = placed.move_max.max(moved);
+    }
+    Ok(placed)
+}
+
+fn nearest(place: DVec3, pitch: f64) -> DVec3 {
+    (place / pitch).round() * pitch + DVec3::ZERO
+}
+
+struct Placing<'b> {
+    placed: Placed,
+    /// Where the new points are, to the last place.
+    exact: Vec<DVec3>,
+    first_new: u32,
+    pitch: f64,
+    budget: &'b Budget,
+}
+
+impl Placing<'_> {
+    fn corners(&self, t: u32) -> [DVec3; 3] {
+        self.placed.triangles[t as usize].map(|p| self.placed.positions[p as usize])
+    }
+
+    /// Makes new points one with the first point at their position, and drops the triangles that this leaves without three
+    /// corners, and pairs of them that lie on each other.
+    fn weld(&mut self, used: &[u32]) {
+        let key = |p: DVec3| (p + DVec3::ZERO).to_array().map(f64::to_bits);
+        let positions = &self.placed.positions;
+        let mut points: Vec<u32> = self.placed.triangles.as_flattened().to_vec();
+        points.sort_unstable();
+        points.dedup();
+        let mut order: Vec<([u64; 3], u32)> =
+            points.into_iter().map(|p| (key(positions[p as usize]), p)).collect();
+        order.sort_unstable();
+        let mut first: Vec<u32> = (0..positions.len() as u32).collect();
+        let mut is_any = false;
+        for same in order.chunk_by(|a, b| a.0 == b.0) {
+            for &(_, p) in &same[1..] {
+                first[p as usize] = same[0].1;
+                is_any |= used.binary_search(&p).is_ok();
+            }
+        }
+        if !is_any {
+            return;
+        }
+        let Placed { triangles, sources, .. } = &mut self.placed;
+        for p in triangles.as_flattened_mut() {
+            *p = first[*p as usize];
+        }
+        let mut is_kept: Vec<bool> = triangles.iter().map(|&[a, b, c]| a != b && b != c && c != a).collect();
+        let mut by_corners: Vec<([u32; 3], u32)> = (0..triangles.len() as u32)
+            .filter(|&t| is_kept[t as usize])
+            .map(|t| {
+                let mut corners = triangles[t as usize];
+                corners.sort_unstable();
+                (corners, t)
+            })
+            .collect();
+        by_corners.sort_unstable();
+        for pair in by_corners.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() == 2) {
+            is_kept[pair[0].1 as usize] = false;
+            is_kept[pair[1].1 as usize] = false;
+        }
+        let mut marks = is_kept.iter();
+        triangles.retain(|_| marks.next() == Some(&true));
+        let mut marks = is_kept.iter();
+        sources.retain(|_| marks.next() == Some(&true));
+    }
+
+    /// How many pairs of triangles meet or have no area, and the new points of these, ascending.
+    fn conflicts(&self) -> Result<(u64, Vec<u32>), ArrangementError> {
+        let triangles = &self.placed.triangles;
+        let has_area = |&t: &u32| {
+            let [a, b, c] = self.corners(t);
+            !are_collinear(a, b, c)
+        };
+        self.budget.spend(triangles.len() as u64)?;
+        let (sound, flat): (Vec<u32>, Vec<u32>) = (0..triangles.len() as u32).partition(has_area);
+        let bvh = Bvh::build(&self.placed.positions, triangles, Some(&sound), self.budget)?;
+        let search = Search::All { keep: CONFLICTS_MAX };
+        let found = self_contacts(&self.placed.positions, triangles, &bvh, None, search, self.budget)?;
+        let count = found.count + flat.len() as u64;
+        if count > CONFLICTS_MAX as u64 {
+            return Ok((count, Vec::new()));
+        }
+        let mut points: Vec<u32> = found
+            .list
+            .iter()
+            .flat_map(|pair| [pair.a, pair.b])
+            .chain(flat)
+            .flat_map(|t| triangles[t as usize])
+            .filter(|&p| p >= self.first_new)
+            .collect();
+        points.sort_unstable();
+        points.dedup();
+        Ok((count, points))
+    }
+
+    /// Moves each of `points` to where its triangles meet the fewest others.
+    fn mend(&mut self, points: &[u32]) -> Result<(), ArrangementError> {
+        let mut stars: Vec<(u32, u32)> = Vec::new();
+        for (t, corners) in self.placed.triangles.iter().enumerate() {
+            stars.extend(corners.iter().filter(|p| points.binary_search(p).is_ok()).map(|&p| (p, t as u32)));
+        }
+        stars.sort_unstable();
+        let bvh = Bvh::build(&self.placed.positions, &self.placed.triangles, None, self.budget)?;
+        for star in stars.chunk_by(|a, b| a.0 == b.0) {
+            let point = star[0].0;
+            let star: Vec<u32> = star.iter().map(|&(_, t)| t).collect();
+            let mut best = (u64::MAX, self.placed.positions[point as usize]);
+            for place in self.around(point) {
+                self.placed.positions[point as usize] = place;
+                let meets = self.meets(&star, &bvh)?;
+                if meets < best.0 {
+                    best = (meets, place);
+                }
+                if meets == 0 {
+                    break;
+                }
+            }
+            self.placed.positions[point as usize] = best.1;
+        }
+        Ok(())
+    }
+
+    /// The lattice points around where a point is exactly, nearest first.
+    fn around(&self, point: u32) -> Vec<DVec3> {
+        let exact = self.exact[(point - self.first_new) as usize];
+        let middle = nearest(exact, self.pitch);
+        let step = |i: usize| (i % 3) as f64 - 1.0;
+        let mut places: Vec<DVec3> =
+            (0..27).map(|i| middle + DVec3::new(step(i), step(i / 3), step(i / 9)) * self.pitch).collect();
+        places.sort_by(|a, b| a.distance_squared(exact).total_cmp(&b.distance_squared(exact)));
+        places
+    }
+
+    /// With how many triangles those of a star meet beyond common vertices and edges; one without an area counts for many.
+    fn meets(&self, star: &[u32], bvh: &Bvh) -> Result<u64, ArrangementError> {
+        let triangles = &self.placed.triangles;
+        let mut count = 0;
+        for &t in star {
+            let corners = self.corners(t);
+            if are_collinear(corners[0], corners[1], corners[2]) {
+                count += 1 << 20;
+                continue;
+            }
+            let bounds = Aabb::of(corners);
+            // Points may have moved by two pitches in each coordinate since the tree was built.
+            let margin = DVec3::splat(4.0 * self.pitch);
+            let query = Aabb { min: bounds.min - margin, max: bounds.max + margin };
+            let plane = Plane::through(corners);
+            let mut seen = 0;
+            bvh.visit_box(query, self.budget, |other| {
+                seen += 1;
+                let [a, b, c] = self.corners(other);
+                if other == t || are_collinear(a, b, c) {
+                    return;
+                }
+                let shared = Shared::between(triangles[t as usize], triangles[other as usize]);
+                let is_copy = matches!(shared, Shared::Triangle);
+                count += u64::from(is_copy || contact(&plane, [&a, &b, &c], shared).is_some());
+            })?;
+            self.budget.spend(1 + seen)?;
+        }
+        Ok(count)
+    }
+}

@@ -1,0 +1,176 @@
+//! Bodies that pass through each other or overlap become one: the exact arrangement of all triangles, and of its cells those with
+//! a positive winding number.
+//!
+//! Triangles stay as they are where they bound the solid; those that others pass through are cut there. New vertices are where
+//! they are exactly up to half a pitch of the lattice on which every coordinate is a float32.
+
+use super::{Changes, Draft, FIRST_BLEND, NEW};
+use crate::arrangement::{self, ArrangementError, Options, arrange};
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::geom::{Aabb, DVec3, Sign, print_pitch, upward_crossing, volume_sign};
+use crate::mesh::{EdgeGroups, edge_of};
+use crate::spatial::{Bvh, ShellTriangles};
+
+/// Most pairs of triangles that may meet, for each triangle of the draft and in all.
+const PAIRS_PER_TRIANGLE: usize = 64;
+const PAIRS_MIN: usize = 1 << 16;
+const PAIRS_MAX: usize = 1 << 21;
+
+/// Unites the bodies of a draft whose surface is closed. Shells that point inward and are in no body are turned first. A draft that
+/// is open, or of which too many triangles meet, is left as it is.
+///
+/// # Errors
+/// When the budget stops the run.
+pub fn unite(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
+    let turned = turn_inverted(draft, budget)?;
+    let pairs_max = (draft.triangles.len() * PAIRS_PER_TRIANGLE).clamp(PAIRS_MIN, PAIRS_MAX);
+    let options = Options { pairs_max, operands: 1 };
+    let united =
+        arrange(&draft.positions, &draft.triangles, |_| 0, &options, budget).and_then(|arrangement| {
+            let boundary = arrangement.boundary(|winding| winding[0] > 0);
+            let merged = arrangement.merged(&boundary, budget)?;
+            drop(boundary);
+            let reach = draft.positions.iter().fold(0.0f64, |reach, p| reach.max(p.abs().max_element()));
+            match print_pitch(reach) {
+                Some(pitch) => arrangement::place(&arrangement, &merged, pitch, budget).map(Some),
+                None => Ok(None),
+            }
+        });
+    let placed = match united {
+        Ok(Some(placed)) => placed,
+        Ok(None) => return Ok(left_alone(turned, "float32 does not go so far")),
+        Err(ArrangementError::Stopped(stopped)) => return Err(stopped),
+        Err(error) => return Ok(left_alone(turned, &error.to_string())),
+    };
+    let before = draft.triangles.len() as u64;
+    let points_before = draft.positions.len();
+    let move_max = placed.move_max;
+    let reason = match placed.conflicts {
+        0 => String::new(),
+        conflicts => format!("{conflicts} pairs of triangles still meet after rounding"),
+    };
+    let is_first = first_of_each(&placed.triangles, placed.positions.len());
+    let blends = new_vertices(draft, &placed, &is_first);
+    draft.vertex_origin.extend(blends);
+    draft.positions = placed.positions;
+    draft.triangle_origin = placed.sources.iter().map(|&t| draft.triangle_origin[t as usize]).collect();
+    draft.triangles = placed.triangles;
+    draft.polygons = Default::default();
+    let new = is_first[points_before..].iter().filter(|&&t| t != NEW).count() as u64;
+    draft.drop_unused_vertices();
+    let after = draft.triangles.len() as u64;
+    let counts = [
+        ("shells_turned", turned),
+        ("triangles_before", before),
+        ("triangles_after", after),
+        ("vertices_added", new),
+    ];
+    Ok(Changes { move_max, reason, ..Changes::counted(counts) })
+}
+
+fn left_alone(turned: u64, why: &str) -> Changes {
+    let counts = Changes::counted([("shells_turned", turned), ("triangles_after", 0)]);
+    Changes { reason: format!("bodies were not united: {why}"), ..counts }
+}
+
+/// A triangle at each point, or [`NEW`].
+fn first_of_each(triangles: &[[u32; 3]], points: usize) -> Vec<u32> {
+    let mut first = vec![NEW; points];
+    for (t, corners) in triangles.iter().enumerate().rev() {
+        for &p in corners {
+            first[p as usize] = t as u32;
+        }
+    }
+    first
+}
+
+/// The origins of the points that are new: blends of the corners of the triangle that they are on.
+fn new_vertices(draft: &mut Draft, placed: &arrangement::Placed, is_first: &[u32]) -> Vec<u32> {
+    let old = draft.positions.len();
+    let mut origins = Vec::with_capacity(placed.positions.len() - old);
+    for (&place, &t) in placed.positions[old..].iter().zip(&is_first[old..]) {
+        if t == NEW {
+            origins.push(0);
+            continue;
+        }
+        let source = placed.sources[t as usize] as usize;
+        let soup_triangle = draft.triangle_origin[source];
+        if soup_triangle == NEW {
+            origins.push(draft.vertex_origin[draft.triangles[source][0] as usize]);
+            continue;
+        }
+        let shares = shares(draft.corners(source), place);
+        let blend = (0..3).filter(|&k| shares[k] > 0.0).map(|k| (3 * soup_triangle + k as u32, shares[k]));
+        draft.blends.vertices.push(blend.collect());
+        origins.push(FIRST_BLEND + draft.blends.vertices.len() as u32 - 1);
+    }
+    origins
+}
+
+/// The shares of the corners of a triangle in a place on it, rounded.
+fn shares([a, b, c]: [DVec3; 3], place: DVec3) -> [f64; 3] {
+    let normal = (b - a).cross(c - a);
+    let part = |p: DVec3, q: DVec3| (p - place).cross(q - place).dot(normal).max(0.0);
+    let parts = [part(b, c), part(c, a), part(a, b)];
+    let sum: f64 = parts.iter().sum();
+    if sum > 0.0 && sum.is_finite() { parts.map(|part| part / sum) } else { [1.0, 0.0, 0.0] }
+}
+
+/// Turns the closed shells that point inward and of which the highest vertex is in no other shell; gives their number. The shells
+/// are those connected by edges, so that bodies that share an edge count as one.
+fn turn_inverted(draft: &mut Draft, budget: &Budget) -> Result<u64, Stopped> {
+    let groups = EdgeGroups::build(&draft.triangles, draft.positions.len(), budget)?;
+    let parts = groups.components(budget)?;
+    let mut is_closed = vec![true; parts.count as usize];
+    for (e, group) in groups.iter().enumerate() {
+        if e % CHECK_EVERY == 0 {
+            budget.spend(CHECK_EVERY as u64)?;
+        }
+        let forward = |&&h: &&u32| {
+            let [from, to] = edge_of(&draft.triangles, h);
+            from < to
+        };
+        if 2 * group.iter().filter(forward).count() != group.len() {
+            is_closed[parts.of[(group[0] / 3) as usize] as usize] = false;
+        }
+    }
+    drop(groups);
+    let members = ShellTriangles::group(&parts.of, parts.count, budget)?;
+    let mut inverted = Vec::new();
+    for part in (0..parts.count as usize).filter(|&part| is_closed[part]) {
+        let corners = members.of(part).iter().map(|&t| draft.corners(t as usize));
+        if volume_sign(corners, || budget.check())? == Sign::Negative {
+            inverted.push(part);
+        }
+    }
+    if inverted.is_empty() {
+        return Ok(0);
+    }
+    let bvh = Bvh::build(&draft.positions, &draft.triangles, None, budget)?;
+    let mut turned = Vec::new();
+    for part in inverted {
+        let own = members.of(part);
+        let bounds = Aabb::of(own.iter().flat_map(|&t| draft.corners(t as usize)));
+        let points = own.iter().flat_map(|&t| draft.corners(t as usize));
+        let top = points.fold(bounds.min, |top, p| if p.z > top.z { p } else { top });
+        let mut winding = 0;
+        bvh.visit_upward_ray(top, budget, |t| {
+            if parts.of[t as usize] as usize != part {
+                winding += match upward_crossing(top, draft.corners(t as usize)) {
+                    Some(Sign::Positive) => 1,
+                    Some(_) => -1,
+                    None => 0,
+                };
+            }
+        })?;
+        if winding <= 0 {
+            turned.push(part);
+        }
+    }
+    for &part in &turned {
+        for &t in members.of(part) {
+            draft.flip(t as usize);
+        }
+    }
+    Ok(turned.len() as u64)
+}
