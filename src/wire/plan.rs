@@ -252,6 +252,8 @@ pub enum PlanStep {
         #[schema(minimum = 0.0)]
         size: f64,
     },
+    /// Bodies that pass through each other or overlap become one.
+    Unite {},
     /// Bodies that touch are drawn apart.
     OpenContacts {},
     /// Vertices at one position become one again.
@@ -545,6 +547,7 @@ impl PlanStep {
             }
             Self::Thicken { wall } => Step::Thicken { wall: *wall },
             Self::JoinContacts { size } => Step::JoinContacts { size: *size },
+            Self::Unite {} => Step::Unite,
             Self::OpenContacts {} => Step::OpenContacts,
             Self::JoinCopies {} => Step::JoinCopies,
             Self::Nest { nesting, chosen } => Step::Nest(NestOptions {
@@ -597,6 +600,7 @@ impl From<&Step> for PlanStep {
             }
             Step::Thicken { wall } => Self::Thicken { wall: *wall },
             Step::JoinContacts { size } => Self::JoinContacts { size: *size },
+            Step::Unite => Self::Unite {},
             Step::OpenContacts => Self::OpenContacts {},
             Step::JoinCopies => Self::JoinCopies {},
             Step::Nest(repair::nest::NestOptions { policy, chosen, .. }) => {
@@ -651,6 +655,7 @@ mod tests {
                 ..FillOptions::default()
             }),
             Step::Thicken { wall: 0.25 },
+            Step::Unite,
             Step::OpenContacts,
             Step::JoinCopies,
             Step::Nest(NestOptions {
