@@ -1,111 +1,97 @@
-//! Triangulations of loops that are too long for a search of all of them: any first one, then made to bend less.
+//! Triangulations of loops that are too long for a search of all of them.
 //!
-//! A loop that does not cross itself as seen along its normal is triangulated in that view. Any other is divided: some
-//! corners of it, evenly spread, are triangulated in the best way, and then each chain between two of them. Work in
-//! proportion to the corners, where the search is cubic. Both are then improved edge by edge, by the weight that the search has.
-//! What bends around several sides of a part often crosses itself when it is divided; some such loops may be searched.
+//! A loop that does not cross itself as seen along its normal is triangulated in that view, and edges are turned by the
+//! weight that the search has. Any other, as one that bends around several sides of a part, is searched from coarse to fine:
+//! few of its corners, evenly spread, are triangulated in the best way, and then twice as many, by chords near those of the
+//! coarser triangulation only. Work grows with the corners, where the search of all chords is cubic.
 
 use super::caps::turn_caps;
-use super::minimal::{self, CORNERS_MAX, LONG_CORNERS_MAX};
+use super::chords::{All, Near};
+use super::minimal::{self, CORNERS_MAX};
 use super::patch::PatchMesh;
 use super::planar;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{DVec3, triangle_area};
 use crate::mesh::prev_corner;
 
-/// Corners that a loop is divided at.
-const DIVISIONS: usize = 64;
 /// Turns for each edge, at most.
 const TURNS_PER_EDGE: usize = 4;
-/// Weighings that searches of long loops may take each time the patches of a file are tried.
-const WEIGHINGS_MAX: u64 = 1 << 26;
 
-/// Of loops with so many corners, those of which all triangulations may be searched: the first, as far as the work allows.
-pub(super) fn searched(corners: impl Iterator<Item = usize>) -> impl Iterator<Item = bool> {
-    let mut left = WEIGHINGS_MAX;
-    corners.map(move |n| {
-        let weighings = (n as u64).pow(3) / 6;
-        let is_searched = (CORNERS_MAX + 1..=LONG_CORNERS_MAX).contains(&n) && weighings <= left;
-        left -= if is_searched { weighings } else { 0 };
-        is_searched
-    })
+/// How many corners the ends of a chord may be away from those of an edge of the coarser triangulation, for a loop of so many
+/// corners. Where loops are very long there is less choice, so that the work stays in bounds.
+fn reach(corners: usize) -> usize {
+    match corners {
+        0..=2_048 => 3,
+        2_049..=16_384 => 2,
+        _ => 1,
+    }
 }
 
 /// Triangles of the loop through `points`, in its direction; `None` when there are none. `normal` is the direction that
-/// it is seen along; `rim_normals` and `is_free` are as in [`minimal::triangulate`]. `is_searched`: all triangulations of a
-/// loop that crosses itself in that view are searched, if it is not too long for that.
+/// it is seen along; `rim_normals` and `is_free` are as in [`minimal::triangulate`].
 pub(super) fn triangulate(
     points: &[DVec3],
     rim_normals: &[DVec3],
     normal: DVec3,
-    is_searched: bool,
     is_free: impl Fn(usize, usize) -> bool,
     budget: &Budget,
 ) -> Result<Option<Vec<[usize; 3]>>, Stopped> {
     let seen = planar::triangulate(&[points.to_vec()], normal);
-    if seen.is_none()
-        && is_searched
-        && let Some(found) = minimal::triangulate(points, rim_normals, &is_free, budget)?
-    {
-        return Ok(Some(found));
-    }
+    let is_seen = seen.is_some();
     let first = match seen {
         Some(triangles) => Some(triangles),
-        None => divided(points, rim_normals, &is_free, budget)?,
+        None => coarse_to_fine(points, rim_normals, &is_free, budget)?,
     };
     let Some(first) = first else { return Ok(None) };
     let triangles = first.iter().map(|t| t.map(|i| i as u32)).collect();
     let Some(mut mesh) = PatchMesh::new(points.to_vec(), triangles) else { return Ok(Some(first)) };
     turn_caps(&mut mesh, &|a, b| is_free(a as usize, b as usize), budget)?;
-    improve(&mut mesh, rim_normals, is_free, budget)?;
+    if is_seen {
+        improve(&mut mesh, rim_normals, is_free, budget)?;
+    }
     Ok(Some(mesh.triangles.iter().map(|t| t.map(|v| v as usize)).collect()))
 }
 
-/// Triangulates chosen corners, then each chain between two of them with the normal of the triangle beyond its chord.
-fn divided(
+/// Triangulates a loop by ever more of its corners, each time by chords near the edges of the triangulation before.
+fn coarse_to_fine(
     points: &[DVec3],
     rim_normals: &[DVec3],
     is_free: &impl Fn(usize, usize) -> bool,
     budget: &Budget,
 ) -> Result<Option<Vec<[usize; 3]>>, Stopped> {
-    let mut triangles = Vec::with_capacity(points.len());
-    // Corners of a polygon, and the normal beyond its last side.
-    let mut open: Vec<(Vec<usize>, DVec3)> =
-        vec![((0..points.len()).collect(), rim_normals[points.len() - 1])];
-    while let Some((corners, closing)) = open.pop() {
-        budget.spend(corners.len() as u64 / 16 + 1)?;
-        let n = corners.len();
-        let chosen: Vec<usize> = match n <= CORNERS_MAX {
-            true => (0..n).collect(),
-            false => (0..DIVISIONS).map(|i| i * n / DIVISIONS).chain([n - 1]).collect(),
-        };
-        let at: Vec<DVec3> = chosen.iter().map(|&i| points[corners[i]]).collect();
-        let mut normals: Vec<DVec3> = chosen
-            .windows(2)
-            .map(|side| {
-                let sum: DVec3 = (side[0]..side[1]).map(|i| rim_normals[corners[i]]).sum();
-                sum.normalize_or_zero()
-            })
-            .collect();
-        normals.push(closing);
-        let may = |i: usize, k: usize| is_free(corners[chosen[i]], corners[chosen[k]]);
-        let Some(own) = minimal::with_least_caps(&at, &normals, may, budget)? else { return Ok(None) };
-        for t in &own.triangles {
-            let [a, b, c] = t.map(|i| at[i]);
-            let facing = (b - a).cross(c - a).normalize_or_zero();
-            for (i, k) in [(t[0], t[1]), (t[1], t[2])] {
-                let is_chain = k == i + 1 && chosen[k] - chosen[i] > 1;
-                if is_chain {
-                    if !may(i, k) {
-                        return Ok(None);
-                    }
-                    open.push((corners[chosen[i]..=chosen[k]].to_vec(), facing));
-                }
-            }
-            triangles.push(t.map(|i| corners[chosen[i]]));
-        }
+    let n = points.len();
+    let mut step = 1;
+    while n.div_ceil(step) > CORNERS_MAX {
+        step *= 2;
     }
-    Ok(Some(triangles))
+    let mut coarser: Option<Vec<[usize; 3]>> = None;
+    while step > 0 {
+        let chosen: Vec<usize> = (0..n).step_by(step).collect();
+        let at: Vec<DVec3> = chosen.iter().map(|&i| points[i]).collect();
+        let normals: Vec<DVec3> = chosen
+            .iter()
+            .map(|&from| rim_normals[from..n.min(from + step)].iter().sum::<DVec3>().normalize_or_zero())
+            .collect();
+        // The rim between two corners that are left out for now is no side of the loop yet, so nothing is in its way.
+        let may = |i: usize, k: usize| is_free(chosen[i], chosen[k]);
+        let found = match &coarser {
+            None => {
+                let all = All { corners: chosen.len() };
+                minimal::with_least_caps(&at, &normals, &all, may, budget)?
+            }
+            Some(triangles) => {
+                let edge = |t: &[usize; 3]| [[t[0], t[1]], [t[1], t[2]], [t[0], t[2]]];
+                let edges: Vec<_> = triangles.iter().flat_map(edge).map(|edge| edge.map(|i| 2 * i)).collect();
+                let near = Near::new(chosen.len(), &edges, reach(n));
+                budget.spend(edges.len() as u64)?;
+                minimal::with_least_caps(&at, &normals, &near, may, budget)?
+            }
+        };
+        let Some(found) = found else { return Ok(None) };
+        coarser = Some(found.triangles);
+        step /= 2;
+    }
+    Ok(coarser)
 }
 
 /// Turns edges while that lessens the worst bend around, or the area.
@@ -195,24 +181,15 @@ mod tests {
     }
 
     #[test]
-    fn a_divided_loop_has_each_side_once() {
-        for n in [129, 200, 4_321, 10_000] {
+    fn a_loop_searched_from_coarse_to_fine_has_each_side_once() {
+        for n in [129, 200, 4_321, 10_000, 20_000] {
             let (points, normals) = (ring(n), vec![DVec3::Z; n]);
             let budget = Budget::unlimited();
-            let triangles = divided(&points, &normals, &|_, _| true, &budget).unwrap().unwrap();
+            let triangles = coarse_to_fine(&points, &normals, &|_, _| true, &budget).unwrap().unwrap();
             assert!(is_disk(n, &triangles), "{n} corners");
-            let best =
-                triangulate(&points, &normals, DVec3::Z, false, |_, _| true, &budget).unwrap().unwrap();
+            let best = triangulate(&points, &normals, DVec3::Z, |_, _| true, &budget).unwrap().unwrap();
             assert!(is_disk(n, &best), "{n} corners");
         }
-    }
-
-    #[test]
-    fn the_first_long_loops_are_searched_until_the_work_is_spent() {
-        let corners = [3, CORNERS_MAX, CORNERS_MAX + 1, LONG_CORNERS_MAX + 1];
-        assert_eq!(searched(corners.into_iter()).collect::<Vec<_>>(), [false, false, true, false]);
-        let many = searched(std::iter::repeat_n(LONG_CORNERS_MAX, 100)).filter(|&is| is).count() as u64;
-        assert_eq!(many, WEIGHINGS_MAX / ((LONG_CORNERS_MAX as u64).pow(3) / 6));
     }
 
     #[test]
@@ -223,7 +200,7 @@ mod tests {
             triangles.iter().map(|t| triangle_area(t.map(|i| points[i]))).sum::<f64>()
         };
         let best = minimal::triangulate(&points, &normals, |_, _| true, &budget).unwrap().unwrap();
-        let found = triangulate(&points, &normals, DVec3::Z, false, |_, _| true, &budget).unwrap().unwrap();
+        let found = triangulate(&points, &normals, DVec3::Z, |_, _| true, &budget).unwrap().unwrap();
         assert!(area(&found) < 1.05 * area(&best), "{} {}", area(&found), area(&best));
     }
 }
