@@ -1,21 +1,30 @@
 //! Triangulations of loops that are too long for a search of all of them.
 //!
 //! A loop that does not cross itself as seen along its normal is triangulated in that view, and edges are turned by the
-//! weight that the search has. Any other, as one that bends around several sides of a part, is searched from coarse to fine:
-//! few of its corners, evenly spread, are triangulated in the best way, and then twice as many, by chords near those of the
-//! coarser triangulation only. Work grows with the corners, where the search of all chords is cubic.
+//! weight that the search has. Of any other, as one that bends around several sides of a part, the notches are closed, and
+//! what is left is searched from coarse to fine: few of its corners, evenly spread, are triangulated in the best way, and then
+//! twice as many, by chords near those of the coarser triangulation only. Work grows with the corners, where the search of
+//! all chords is cubic. Chords that go through triangles are barred and the search is repeated.
 
 use super::caps::turn_caps;
-use super::chords::{All, Near};
-use super::minimal::{self, CORNERS_MAX};
+use super::chords::{All, Chords, Near};
+use super::minimal::{self, CORNERS_MAX, Least};
+use super::notches::{Smoothed, close_notches};
 use super::patch::PatchMesh;
 use super::planar;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{DVec3, triangle_area};
 use crate::mesh::prev_corner;
+use crate::spatial::{Bvh, Search, self_contacts};
+use rustc_hash::FxHashSet;
 
 /// Turns for each edge, at most.
 const TURNS_PER_EDGE: usize = 4;
+
+/// Searches for a triangulation that does not meet itself, at most, by each measure and each time that corners are added.
+const SEARCHES: usize = 4;
+/// Pairs of triangles that meet whose chords are barred before the next search, at most.
+const CONTACTS_MAX: usize = 4096;
 
 /// How many corners the ends of a chord may be away from those of an edge of the coarser triangulation, for a loop of so many
 /// corners. Where loops are very long there is less choice, so that the work stays in bounds.
@@ -36,11 +45,15 @@ pub(super) fn triangulate(
     is_free: impl Fn(usize, usize) -> bool,
     budget: &Budget,
 ) -> Result<Option<Vec<[usize; 3]>>, Stopped> {
-    let seen = planar::triangulate(&[points.to_vec()], normal);
+    let is_sound = |triangles: &Vec<[usize; 3]>| {
+        let mut edges = triangles.iter().flat_map(edges_of);
+        edges.all(|[i, k]| !is_chord([i, k], points.len()) || is_free(i, k))
+    };
+    let seen = planar::triangulate(&[points.to_vec()], normal).filter(is_sound);
     let is_seen = seen.is_some();
     let first = match seen {
         Some(triangles) => Some(triangles),
-        None => coarse_to_fine(points, rim_normals, &is_free, budget)?,
+        None => of_smoothed(points, rim_normals, &is_free, budget)?,
     };
     let Some(first) = first else { return Ok(None) };
     let triangles = first.iter().map(|t| t.map(|i| i as u32)).collect();
@@ -50,6 +63,22 @@ pub(super) fn triangulate(
         improve(&mut mesh, rim_normals, is_free, budget)?;
     }
     Ok(Some(mesh.triangles.iter().map(|t| t.map(|v| v as usize)).collect()))
+}
+
+/// Closes the notches of a loop and triangulates the rest.
+fn of_smoothed(
+    points: &[DVec3],
+    rim_normals: &[DVec3],
+    is_free: &impl Fn(usize, usize) -> bool,
+    budget: &Budget,
+) -> Result<Option<Vec<[usize; 3]>>, Stopped> {
+    let Smoothed { mut triangles, corners, rim_normals } =
+        close_notches(points, rim_normals, is_free, budget)?;
+    let left: Vec<DVec3> = corners.iter().map(|&i| points[i]).collect();
+    let may = |i: usize, k: usize| is_free(corners[i], corners[k]);
+    let Some(rest) = coarse_to_fine(&left, &rim_normals, &may, budget)? else { return Ok(None) };
+    triangles.extend(rest.into_iter().map(|t| t.map(|i| corners[i])));
+    Ok(Some(triangles))
 }
 
 /// Triangulates a loop by ever more of its corners, each time by chords near the edges of the triangulation before.
@@ -74,24 +103,106 @@ fn coarse_to_fine(
             .collect();
         // The rim between two corners that are left out for now is no side of the loop yet, so nothing is in its way.
         let may = |i: usize, k: usize| is_free(chosen[i], chosen[k]);
+        let corners = Corners { points: &at, rim_normals: &normals };
         let found = match &coarser {
-            None => {
-                let all = All { corners: chosen.len() };
-                minimal::with_least_caps(&at, &normals, &all, may, budget)?
-            }
+            None => without_crossings(corners, &All { corners: chosen.len() }, may, budget)?,
             Some(triangles) => {
-                let edge = |t: &[usize; 3]| [[t[0], t[1]], [t[1], t[2]], [t[0], t[2]]];
-                let edges: Vec<_> = triangles.iter().flat_map(edge).map(|edge| edge.map(|i| 2 * i)).collect();
+                let edges: Vec<_> =
+                    triangles.iter().flat_map(edges_of).map(|edge| edge.map(|i| 2 * i)).collect();
                 let near = Near::new(chosen.len(), &edges, reach(n));
                 budget.spend(edges.len() as u64)?;
-                minimal::with_least_caps(&at, &normals, &near, may, budget)?
+                without_crossings(corners, &near, may, budget)?
             }
         };
         let Some(found) = found else { return Ok(None) };
-        coarser = Some(found.triangles);
+        coarser = Some(found);
         step /= 2;
     }
     Ok(coarser)
+}
+
+/// The corners of a loop, and the normal of the surface beyond each side.
+#[derive(Clone, Copy)]
+struct Corners<'a> {
+    points: &'a [DVec3],
+    rim_normals: &'a [DVec3],
+}
+
+/// The best triangulation that does not meet itself: chords that go through triangles are barred, and it is searched again.
+/// Of several that meet themselves the one that does so least.
+fn without_crossings(
+    corners: Corners<'_>,
+    chords: &impl Chords,
+    is_free: impl Fn(usize, usize) -> bool,
+    budget: &Budget,
+) -> Result<Option<Vec<[usize; 3]>>, Stopped> {
+    let Corners { points, rim_normals } = corners;
+    let mut barred: FxHashSet<[usize; 2]> = FxHashSet::default();
+    let mut best: Option<(u64, Vec<[usize; 3]>)> = None;
+    for least in [Least::Bend, Least::Area].into_iter().flat_map(|least| [least; SEARCHES]) {
+        let may = |i: usize, k: usize| is_free(i, k) && !barred.contains(&[i, k]);
+        let Some(found) = minimal::with_least_caps(points, rim_normals, chords, least, may, budget)? else {
+            break;
+        };
+        let Meeting { pairs, piercing } = meeting(points, &found.triangles, budget)?;
+        if best.as_ref().is_none_or(|&(least, _)| pairs < least) {
+            best = Some((pairs, found.triangles));
+        }
+        barred.extend(piercing);
+        if pairs == 0 {
+            break;
+        }
+    }
+    Ok(best.map(|(_, triangles)| triangles))
+}
+
+/// How a triangulation meets itself.
+struct Meeting {
+    /// Pairs of triangles.
+    pairs: u64,
+    /// The chords that go through a triangle.
+    piercing: Vec<[usize; 2]>,
+}
+
+fn meeting(points: &[DVec3], triangles: &[[usize; 3]], budget: &Budget) -> Result<Meeting, Stopped> {
+    let triangles: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(|i| i as u32)).collect();
+    let bvh = Bvh::build(points, &triangles, None, budget)?;
+    let search = Search::All { keep: CONTACTS_MAX };
+    let contacts = self_contacts(points, &triangles, &bvh, None, search, budget)?;
+    let mut piercing = Vec::new();
+    for contact in &contacts.list {
+        let pair = [contact.a, contact.b].map(|t| triangles[t as usize].map(|v| v as usize));
+        let before = piercing.len();
+        for [one, other] in [pair, [pair[1], pair[0]]] {
+            let through = edges_of(&one).into_iter().filter(|edge| is_chord(*edge, points.len()));
+            piercing
+                .extend(through.filter(|edge| pierces(edge.map(|i| points[i]), other.map(|i| points[i]))));
+        }
+        if piercing.len() == before {
+            let length = |edge: &[usize; 2]| points[edge[0]].distance(points[edge[1]]);
+            let all = pair.iter().flat_map(edges_of).filter(|edge| is_chord(*edge, points.len()));
+            piercing.extend(all.max_by(|a, b| length(a).total_cmp(&length(b))));
+        }
+    }
+    Ok(Meeting { pairs: contacts.count, piercing })
+}
+
+/// The edges of a triangle, each from its first to its second corner.
+fn edges_of(&[a, b, c]: &[usize; 3]) -> [[usize; 2]; 3] {
+    [[a, b], [b, c], [a, c]].map(|[a, b]| [a.min(b), a.max(b)])
+}
+
+/// True for an edge that is no side of a loop of `n` corners.
+fn is_chord([a, b]: [usize; 2], n: usize) -> bool {
+    b - a != 1 && b - a != n - 1
+}
+
+/// True when the segment passes through the inside of the triangle; what touches it may count or not.
+fn pierces([p, q]: [DVec3; 2], [a, b, c]: [DVec3; 3]) -> bool {
+    let volume = |d: DVec3, e: DVec3, f: DVec3, g: DVec3| (e - d).cross(f - d).dot(g - d);
+    let is_between = volume(a, b, c, p) * volume(a, b, c, q) < 0.0;
+    let sides = [volume(p, q, a, b), volume(p, q, b, c), volume(p, q, c, a)];
+    is_between && (sides.iter().all(|&v| v > 0.0) || sides.iter().all(|&v| v < 0.0))
 }
 
 /// Turns edges while that lessens the worst bend around, or the area.

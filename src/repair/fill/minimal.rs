@@ -26,11 +26,21 @@ pub(super) fn bend(normal: DVec3, other: DVec3) -> f64 {
     if normal == DVec3::ZERO || other == DVec3::ZERO { 0.0 } else { 1.0 - normal.dot(other) }
 }
 
+/// What the best triangulation has least of, after triangles without area.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Least {
+    /// Its worst bend, then its area.
+    Bend,
+    /// Its area.
+    Area,
+}
+
 /// A table over chords: the best triangulation of the polygon from corner `i` to corner `k`.
 struct Table<'a, C> {
     points: &'a [DVec3],
     rim_normals: &'a [DVec3],
     chords: &'a C,
+    least: Least,
     weight: Vec<Weight>,
     /// The third corner of the triangle on the chord from `i` to `k`.
     apex: Vec<usize>,
@@ -48,7 +58,8 @@ pub(super) fn triangulate(
     if points.len() > CORNERS_MAX {
         return Ok(None);
     }
-    let found = with_least_caps(points, rim_normals, &All { corners: points.len() }, is_free, budget)?;
+    let all = All { corners: points.len() };
+    let found = with_least_caps(points, rim_normals, &all, Least::Bend, is_free, budget)?;
     Ok(found.filter(|found| found.caps == 0).map(|found| found.triangles))
 }
 
@@ -64,6 +75,7 @@ pub(super) fn with_least_caps(
     points: &[DVec3],
     rim_normals: &[DVec3],
     chords: &impl Chords,
+    least: Least,
     is_free: impl Fn(usize, usize) -> bool,
     budget: &Budget,
 ) -> Result<Option<Found>, Stopped> {
@@ -75,6 +87,7 @@ pub(super) fn with_least_caps(
         points,
         rim_normals,
         chords,
+        least,
         weight: vec![NOTHING; chords.len()],
         apex: vec![0; chords.len()],
     };
@@ -127,6 +140,9 @@ impl<C: Chords> Table<'_, C> {
             Some(facing) => (0, facing),
             None => (1, (DVec3::ZERO, 0.0)),
         };
+        if self.least == Least::Area {
+            return Weight(caps_a + caps_b + cap, 0.0, area_a + area_b + area);
+        }
         let bend = |other: DVec3| bend(normal, other);
         let beyond = [self.beyond(i, m, chords[0]), self.beyond(m, k, chords[1])].map(bend);
         let mut worst = bend_a.max(bend_b).max(beyond[0]).max(beyond[1]);

@@ -18,6 +18,7 @@ mod fair;
 mod large;
 mod make;
 mod minimal;
+mod notches;
 mod options;
 mod patch;
 mod planar;
