@@ -17,6 +17,7 @@ pub mod formats;
 pub mod winding;
 
 pub mod analysis;
+pub mod arrangement;
 pub mod implicit;
 pub mod modeller;
 pub mod printing;

@@ -10,21 +10,21 @@ use std::ops::{Add, Mul, Sub};
 
 /// The bits that a set of finite numbers uses: each is a multiple of `2^low` and smaller than `2^high` in magnitude.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Span {
+pub(crate) struct Span {
     low: i32,
     high: i32,
 }
 
 impl Span {
     /// The span of zero alone.
-    pub(super) const ZERO: Self = Self { low: i32::MAX, high: i32::MIN };
+    pub(crate) const ZERO: Self = Self { low: i32::MAX, high: i32::MIN };
 
     fn of(values: impl IntoIterator<Item = f64>) -> Self {
         values.into_iter().fold(Self::ZERO, Self::with)
     }
 
     /// The span that also holds `value`.
-    pub(super) fn with(self, value: f64) -> Self {
+    pub(crate) fn with(self, value: f64) -> Self {
         let (digits, exponent) = decompose(value);
         if digits == 0 {
             return self;
@@ -34,8 +34,13 @@ impl Span {
         Self { low: self.low.min(low), high: self.high.max(high) }
     }
 
+    /// The exponent of the unit in which all numbers are integers; 0 when there is none but zero.
+    pub(crate) fn low(self) -> i32 {
+        if self.low == i32::MAX { 0 } else { self.low }
+    }
+
     /// Bits of the largest number in units of `2^low`.
-    pub(super) fn bits(self) -> i32 {
+    pub(crate) fn bits(self) -> i32 {
         if self.low == i32::MAX { 0 } else { self.high - self.low }
     }
 
@@ -62,7 +67,7 @@ impl Span {
     }
 
     /// `value / 2^low`.
-    pub(super) fn to_big(self, value: f64) -> BigInt {
+    pub(crate) fn to_big(self, value: f64) -> BigInt {
         let (digits, exponent) = decompose(value);
         if digits == 0 {
             return BigInt::ZERO;

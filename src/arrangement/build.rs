@@ -1,0 +1,226 @@
+//! From triangles to their arrangement: what meets, the clusters, their pieces, and the cells around them.
+
+use super::cells;
+use super::cluster::{self, Divided, Pair};
+use super::error::ArrangementError;
+use super::point::Definition;
+use super::{Arrangement, Cluster};
+use crate::budget::{Budget, CHECK_EVERY};
+use crate::geom::{DVec3, are_collinear};
+use crate::mesh::UnionFind;
+use crate::par;
+use crate::spatial::{Bvh, ContactKind, Search, self_contacts};
+
+/// What an arrangement may cost, and of how many bodies it is.
+#[derive(Debug, Clone, Copy)]
+pub struct Options {
+    /// Most pairs of triangles that may meet beyond common vertices and edges.
+    pub pairs_max: usize,
+    /// Number of operands, each with its own winding numbers.
+    pub operands: u8,
+}
+
+impl Default for Options {
+    /// One operand, and two million pairs: about two gigabytes.
+    fn default() -> Self {
+        Self { pairs_max: 2_000_000, operands: 1 }
+    }
+}
+
+/// Divides `triangles` where they meet and finds the winding numbers on both sides of each piece. `operand_of` is the operand of a
+/// triangle, below the number of operands.
+///
+/// Each operand must be closed: along every edge of the arrangement its triangles run as often one way as the other. Positions
+/// that are equal are one; degenerate triangles are left out.
+///
+/// Spends work in proportion to the triangles, the pairs that meet and the steps of the triangulations.
+///
+/// # Errors
+/// See [`ArrangementError`].
+pub fn arrange(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    operand_of: impl Fn(u32) -> u8 + Sync,
+    options: &Options,
+    budget: &Budget,
+) -> Result<Arrangement, ArrangementError> {
+    let welded = weld(positions, triangles, budget)?;
+    let sound = sound(positions, &welded, budget)?;
+    let bvh = Bvh::build(positions, &welded, Some(&sound), budget)?;
+    let mut pairs = copies(&welded, &sound, budget)?;
+    let keep = options.pairs_max;
+    let contacts = self_contacts(positions, &welded, &bvh, None, Search::All { keep }, budget)?;
+    let count = contacts.count + pairs.len() as u64;
+    if count > keep as u64 {
+        return Err(ArrangementError::TooManyPairs { count, limit: keep as u64 });
+    }
+    pairs.extend(contacts.list.iter().map(|c| Pair { triangles: [c.a, c.b], kind: c.kind }));
+    let mut arrangement = Arrangement {
+        positions: positions.to_vec(),
+        clusters: Vec::new(),
+        new_points: Vec::new(),
+        pieces: Vec::with_capacity(sound.len()),
+        planes: Vec::with_capacity(sound.len()),
+        source_starts: vec![0],
+        sources: Vec::with_capacity(sound.len()),
+        operands: usize::from(options.operands.max(1)),
+        windings: Vec::new(),
+    };
+    let _charge = budget.charge(triangles.len() as u64 * 64 + pairs.len() as u64 * 600)?;
+    let is_met = divide_clusters(&mut arrangement, &welded, &pairs, budget)?;
+    for &t in sound.iter().filter(|&&t| !is_met[t as usize]) {
+        arrangement.push(welded[t as usize], t, [(t, false)]);
+    }
+    cells::wind(&mut arrangement, &welded, operand_of, &bvh, budget)?;
+    Ok(arrangement)
+}
+
+/// The triangles with the first of all vertices at one position in the place of each.
+fn weld(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    budget: &Budget,
+) -> Result<Vec<[u32; 3]>, ArrangementError> {
+    for (t, corners) in triangles.iter().enumerate() {
+        if t % CHECK_EVERY == 0 {
+            budget.spend(CHECK_EVERY as u64)?;
+        }
+        if !corners.iter().all(|&v| positions.get(v as usize).is_some_and(|p| p.is_finite())) {
+            return Err(ArrangementError::NotFinite { triangle: t as u32 });
+        }
+    }
+    // Adding zero makes -0 the same as 0.
+    let key = |v: u32| (positions[v as usize] + DVec3::ZERO).to_array().map(f64::to_bits);
+    let mut order: Vec<([u64; 3], u32)> = (0..positions.len() as u32).map(|v| (key(v), v)).collect();
+    par::sort_unstable(&mut order);
+    let mut first: Vec<u32> = vec![0; positions.len()];
+    for same in order.chunk_by(|a, b| a.0 == b.0) {
+        for &(_, v) in same {
+            first[v as usize] = same[0].1;
+        }
+    }
+    Ok(triangles.iter().map(|corners| corners.map(|v| first[v as usize])).collect())
+}
+
+/// The triangles that have an area, ascending.
+fn sound(positions: &[DVec3], triangles: &[[u32; 3]], budget: &Budget) -> Result<Vec<u32>, ArrangementError> {
+    let parts = par::try_map_ranges(triangles.len(), CHECK_EVERY, |range| {
+        budget.check()?;
+        let has_area = |&t: &usize| {
+            let [a, b, c] = triangles[t].map(|v| positions[v as usize]);
+            !are_collinear(a, b, c)
+        };
+        Ok::<_, ArrangementError>(range.filter(has_area).map(|t| t as u32).collect::<Vec<u32>>())
+    })?;
+    Ok(parts.concat())
+}
+
+/// Pairs of triangles with the same vertices: each with the first.
+fn copies(triangles: &[[u32; 3]], sound: &[u32], budget: &Budget) -> Result<Vec<Pair>, ArrangementError> {
+    budget.spend(sound.len() as u64)?;
+    let key = |t: u32| {
+        let mut corners = triangles[t as usize];
+        corners.sort_unstable();
+        (corners, t)
+    };
+    let mut order: Vec<([u32; 3], u32)> = sound.iter().map(|&t| key(t)).collect();
+    par::sort_unstable(&mut order);
+    let mut pairs = Vec::new();
+    for same in order.chunk_by(|a, b| a.0 == b.0) {
+        let pair = |&(_, t): &([u32; 3], u32)| Pair { triangles: [same[0].1, t], kind: ContactKind::Overlap };
+        pairs.extend(same[1..].iter().map(pair));
+    }
+    Ok(pairs)
+}
+
+/// Divides the clusters of triangles that meet and adds their pieces; tells which triangles are in one.
+fn divide_clusters(
+    arrangement: &mut Arrangement,
+    triangles: &[[u32; 3]],
+    pairs: &[Pair],
+    budget: &Budget,
+) -> Result<Vec<bool>, ArrangementError> {
+    let mut is_met = vec![false; triangles.len()];
+    let mut sets = UnionFind::new(triangles.len());
+    for pair in pairs {
+        let [a, b] = pair.triangles;
+        (is_met[a as usize], is_met[b as usize]) = (true, true);
+        sets.unite(a, b);
+    }
+    let mut met: Vec<(u32, u32)> =
+        (0..triangles.len() as u32).filter(|&t| is_met[t as usize]).map(|t| (sets.find(t), t)).collect();
+    met.sort_unstable();
+    let mut of_cluster: Vec<(u32, Pair)> =
+        pairs.iter().map(|&pair| (sets.find(pair.triangles[0]), pair)).collect();
+    of_cluster.sort_by_key(|(cluster, pair)| (*cluster, pair.triangles));
+    let groups: Vec<&[(u32, u32)]> = met.chunk_by(|a, b| a.0 == b.0).collect();
+    let pair_groups: Vec<&[(u32, Pair)]> = of_cluster.chunk_by(|a, b| a.0 == b.0).collect();
+    let positions = &arrangement.positions;
+    let divided = par::try_map_ranges(groups.len(), 4, |range| {
+        let one = |i: usize| {
+            let members: Vec<u32> = groups[i].iter().map(|&(_, t)| t).collect();
+            divide_cluster(positions, triangles, &members, pair_groups[i], budget)
+        };
+        range.map(one).collect::<Result<Vec<_>, ArrangementError>>()
+    })?;
+    for (members, (vertices, divided)) in groups.iter().zip(divided.into_iter().flatten()) {
+        arrangement.add(members, vertices, divided);
+    }
+    Ok(is_met)
+}
+
+/// Divides the triangles `members`; gives their vertices, ascending, and the pieces.
+fn divide_cluster(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    members: &[u32],
+    pairs: &[(u32, Pair)],
+    budget: &Budget,
+) -> Result<(Vec<u32>, Divided), ArrangementError> {
+    let mut vertices: Vec<u32> = members.iter().flat_map(|&t| triangles[t as usize]).collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    let own = |list: &[u32], item: u32| list.binary_search(&item).unwrap_or(0) as u32;
+    let corners = |&t: &u32| triangles[t as usize].map(|v| own(&vertices, v));
+    let own_triangles: Vec<[u32; 3]> = members.iter().map(corners).collect();
+    let own_positions = vertices.iter().map(|&v| positions[v as usize]).collect();
+    let own_pairs: Vec<Pair> = pairs
+        .iter()
+        .map(|(_, pair)| Pair { triangles: pair.triangles.map(|t| own(members, t)), kind: pair.kind })
+        .collect();
+    let divided = cluster::divide_all(own_positions, own_triangles, &own_pairs, budget)?;
+    Ok((vertices, divided))
+}
+
+impl Arrangement {
+    fn push(&mut self, corners: [u32; 3], plane: u32, sources: impl IntoIterator<Item = (u32, bool)>) {
+        self.pieces.push(corners);
+        self.planes.push(plane);
+        self.sources.extend(sources);
+        self.source_starts.push(self.sources.len() as u32);
+    }
+
+    /// Adds the pieces of a cluster, whose new points are numbered in the order in which they are used.
+    fn add(&mut self, members: &[(u32, u32)], vertices: Vec<u32>, divided: Divided) {
+        let Divided { kernel, points, pieces } = divided;
+        let cluster = self.clusters.len() as u32;
+        let mut number = vec![u32::MAX; points.len()];
+        for piece in pieces {
+            let corners = piece.corners.map(|p| match points[p as usize].definition {
+                Definition::Vertex(v) => vertices[v as usize],
+                _ => {
+                    let number = &mut number[p as usize];
+                    if *number == u32::MAX {
+                        *number = (self.positions.len() + self.new_points.len()) as u32;
+                        self.new_points.push([cluster, p]);
+                    }
+                    *number
+                }
+            });
+            let member = |t: u32| members[t as usize].1;
+            let sources = piece.sources.into_iter().map(|(t, is_turned)| (member(t), is_turned));
+            self.push(corners, member(piece.plane), sources);
+        }
+        self.clusters.push(Cluster { kernel, points, vertices });
+    }
+}

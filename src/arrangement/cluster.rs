@@ -1,0 +1,201 @@
+//! One cluster of triangles that meet: its points, its carriers and their pieces.
+
+use super::carrier::{Carrier, Pieces, divide};
+use super::error::ArrangementError;
+use super::intern::first_at_place;
+use super::kernel::Kernel;
+use super::pairs::{Meeting, meeting};
+use super::point::{Definition, Point};
+use crate::budget::Budget;
+use crate::geom::DVec3;
+use crate::mesh::UnionFind;
+use crate::par;
+use crate::spatial::ContactKind;
+
+/// Pairs and carriers that one thread takes at a time.
+const CHUNK: usize = 32;
+
+/// A pair of triangles of a cluster, by their numbers in it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pair {
+    pub(super) triangles: [u32; 2],
+    /// How they meet; [`ContactKind::Overlap`] also for copies.
+    pub(super) kind: ContactKind,
+}
+
+/// The pieces of the triangles of a cluster.
+#[derive(Debug)]
+pub(super) struct Divided {
+    pub(super) kernel: Kernel,
+    /// The points; the first are the vertices of the kernel.
+    pub(super) points: Vec<Point>,
+    /// Corners, as points of which no two are at one place, the triangle that names the plane and turns the same way, and the
+    /// triangles that cover it, with `true` where they turn the other way.
+    pub(super) pieces: Vec<Piece>,
+}
+
+/// A piece of the triangles of one plane.
+#[derive(Debug)]
+pub(super) struct Piece {
+    pub(super) corners: [u32; 3],
+    pub(super) plane: u32,
+    pub(super) sources: Vec<(u32, bool)>,
+}
+
+/// Divides triangles by each other. `positions` are different, `triangles` have an area.
+pub(super) fn divide_all(
+    positions: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+    pairs: &[Pair],
+    budget: &Budget,
+) -> Result<Divided, ArrangementError> {
+    let kernel = Kernel::new(positions, triangles);
+    let (plane_of, mut carriers) = group(&kernel, pairs);
+    let (mut points, vertex_of) = points_of_pairs(&kernel, pairs, &plane_of, &mut carriers, budget)?;
+    let parts = par::try_map_ranges(carriers.len(), CHUNK, |range| {
+        range
+            .map(|c| divide(&carriers[c], &kernel, &points, &vertex_of, budget))
+            .collect::<Result<Vec<_>, _>>()
+    })?;
+    let shared = points.len() as u32;
+    let mut pieces = Vec::new();
+    for (carrier, part) in carriers.iter().zip(parts.into_iter().flatten()) {
+        let Pieces { corners, sources, own } = part;
+        let shift = points.len() as u32 - shared;
+        let moved = |p: u32| if p < shared { p } else { p + shift };
+        let plane = carrier.triangles[0];
+        let piece = |(corners, sources): ([u32; 3], _)| Piece { corners: corners.map(moved), plane, sources };
+        pieces.extend(corners.into_iter().zip(sources).map(piece));
+        points.extend(own);
+    }
+    unite(&kernel, &points, &mut pieces, shared, budget)?;
+    Ok(Divided { kernel, points, pieces })
+}
+
+/// The plane of each triangle, by the lowest triangle that it is connected with by overlaps, and the carriers of these.
+fn group(kernel: &Kernel, pairs: &[Pair]) -> (Vec<u32>, Vec<Carrier>) {
+    let mut sets = UnionFind::new(kernel.triangles.len());
+    for pair in pairs.iter().filter(|pair| pair.kind == ContactKind::Overlap) {
+        sets.unite(pair.triangles[0], pair.triangles[1]);
+    }
+    let plane_of: Vec<u32> = (0..kernel.triangles.len() as u32).map(|t| sets.find(t)).collect();
+    let components = sets.into_components();
+    let mut carriers: Vec<Carrier> =
+        std::iter::repeat_with(Carrier::default).take(components.count as usize).collect();
+    for (t, &c) in components.of.iter().enumerate() {
+        carriers[c as usize].triangles.push(t as u32);
+    }
+    (plane_of, carriers)
+}
+
+/// Finds where pairs meet, gives each carrier the points and segments in it, and the vertex that each vertex is.
+fn points_of_pairs(
+    kernel: &Kernel,
+    pairs: &[Pair],
+    plane_of: &[u32],
+    carriers: &mut [Carrier],
+    budget: &Budget,
+) -> Result<(Vec<Point>, Vec<u32>), ArrangementError> {
+    let meetings = par::try_map_ranges(pairs.len(), CHUNK, |range| {
+        budget.spend(16 * range.len() as u64)?;
+        pairs[range]
+            .iter()
+            .map(|pair| match pair.kind {
+                ContactKind::Overlap => Ok(Meeting::Nowhere),
+                _ => meeting(kernel, pair.triangles, |t| plane_of[t as usize]),
+            })
+            .collect::<Result<Vec<_>, ArrangementError>>()
+    })?
+    .concat();
+    let mut names: Vec<Definition> = meetings
+        .iter()
+        .filter_map(|meeting| if let Meeting::Ends(ends) = meeting { Some(*ends) } else { None })
+        .flatten()
+        .filter(|name| !matches!(name, Definition::Vertex(_)))
+        .collect();
+    par::sort_unstable(&mut names);
+    names.dedup();
+    let vertex_count = kernel.positions.len() as u32;
+    let mut points: Vec<Point> = (0..vertex_count).map(|v| kernel.point(Definition::Vertex(v))).collect();
+    for (i, &name) in names.iter().enumerate() {
+        if i % 1024 == 0 {
+            budget.spend(1024)?;
+        }
+        points.push(kernel.point(name));
+    }
+    let all: Vec<u32> = (0..points.len() as u32).collect();
+    let first = first_at_place(kernel, &points, &all, budget)?;
+    let find = |name: &Definition| match name {
+        Definition::Vertex(v) => Some(first[*v as usize]),
+        _ => names.binary_search(name).ok().map(|i| first[vertex_count as usize + i]),
+    };
+    // The carrier of each triangle.
+    let mut carrier_of = vec![0u32; kernel.triangles.len()];
+    for (c, carrier) in carriers.iter().enumerate() {
+        for &t in &carrier.triangles {
+            carrier_of[t as usize] = c as u32;
+        }
+    }
+    for (pair, meeting) in pairs.iter().zip(&meetings) {
+        let both = pair.triangles.map(|t| carrier_of[t as usize] as usize);
+        match meeting {
+            Meeting::Nowhere => {}
+            Meeting::InPlane(vertices) => {
+                for c in both {
+                    carriers[c].points.extend(vertices.iter().map(|&v| first[v as usize]));
+                }
+            }
+            Meeting::Ends(ends) => {
+                let [Some(a), Some(b)] = ends.each_ref().map(find) else {
+                    return Err(ArrangementError::Inconsistent("a point has no number"));
+                };
+                for (c, other) in [(both[0], both[1]), (both[1], both[0])] {
+                    carriers[c].points.extend([a, b]);
+                    if a != b {
+                        let plane = carriers[other].triangles[0];
+                        carriers[c].segments.push(([a.min(b), a.max(b)], plane));
+                    }
+                }
+            }
+        }
+    }
+    for carrier in carriers {
+        carrier.points.sort_unstable();
+        carrier.points.dedup();
+        if carrier.triangles.len() == 1 {
+            let own = kernel.triangles[carrier.triangles[0] as usize].map(|v| first[v as usize]);
+            carrier.points.retain(|p| !own.contains(p));
+            let is_own_edge = |ends: &[u32; 2]| ends.iter().all(|p| own.contains(p));
+            carrier.segments.retain(|(ends, _)| !is_own_edge(ends));
+        }
+        carrier.segments.sort_unstable();
+        carrier.segments.dedup();
+    }
+    let vertex_of = first[..vertex_count as usize].to_vec();
+    Ok((points, vertex_of))
+}
+
+/// Gives points at one place that different carriers made one number: that of the first.
+fn unite(
+    kernel: &Kernel,
+    points: &[Point],
+    pieces: &mut [Piece],
+    shared: u32,
+    budget: &Budget,
+) -> Result<(), ArrangementError> {
+    if points.len() as u32 == shared {
+        return Ok(());
+    }
+    let mut used: Vec<u32> = pieces.iter().flat_map(|piece| piece.corners).collect();
+    par::sort_unstable(&mut used);
+    used.dedup();
+    let first = first_at_place(kernel, points, &used, budget)?;
+    let mut renamed: Vec<u32> = (0..points.len() as u32).collect();
+    for (&point, &first) in used.iter().zip(&first) {
+        renamed[point as usize] = first;
+    }
+    for piece in pieces {
+        piece.corners = piece.corners.map(|p| renamed[p as usize]);
+    }
+    Ok(())
+}

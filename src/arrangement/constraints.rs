@@ -1,0 +1,238 @@
+//! Segments that a triangulation of a plane must have as edges.
+
+use super::error::ArrangementError;
+use super::point::Definition;
+use super::triangulation::{NONE, Sight, Triangulation};
+use crate::budget::Budget;
+use crate::geom::Sign;
+use std::cmp::Ordering;
+use std::collections::VecDeque;
+
+/// The line of a constraint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Line {
+    /// That of an edge of the input, which names its smaller vertex first.
+    Edge([u32; 2]),
+    /// Where the plane of a triangle passes through.
+    Plane(u32),
+}
+
+/// A segment between two vertices of a triangulation.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Constraint {
+    pub(super) ends: [u32; 2],
+    pub(super) line: Line,
+}
+
+/// Sets of constraints, numbered from 1.
+#[derive(Debug, Default)]
+pub(super) struct TagSets {
+    sets: Vec<Vec<u32>>,
+}
+
+impl TagSets {
+    /// The members of a set.
+    pub(super) fn of(&self, set: u32) -> &[u32] {
+        if set == 0 { &[] } else { &self.sets[set as usize - 1] }
+    }
+
+    /// The set with one more member.
+    fn with(&mut self, set: u32, member: u32) -> u32 {
+        if self.of(set).contains(&member) {
+            return set;
+        }
+        let mut members = self.of(set).to_vec();
+        members.push(member);
+        // Mostly the next half-edge of the same constraint asks for the same.
+        if self.sets.last() != Some(&members) {
+            self.sets.push(members);
+        }
+        self.sets.len() as u32
+    }
+}
+
+/// How a segment goes on from a vertex.
+enum Leaving {
+    /// Along this half-edge.
+    Along(u32),
+    /// Along the edge of this half-edge, which is at the rim and runs the other way.
+    Back(u32),
+    /// Across this half-edge, opposite to the vertex.
+    Across(u32),
+}
+
+/// A triangulation and the constraints that are put into it one by one.
+#[derive(Debug)]
+pub(super) struct Constrained<'k, 'b> {
+    pub(super) sight: Sight<'k>,
+    pub(super) mesh: Triangulation,
+    pub(super) sets: TagSets,
+    lines: Vec<Line>,
+    budget: &'b Budget,
+}
+
+impl<'k, 'b> Constrained<'k, 'b> {
+    pub(super) fn new(sight: Sight<'k>, mesh: Triangulation, budget: &'b Budget) -> Self {
+        Self { sight, mesh, sets: TagSets::default(), lines: Vec::new(), budget }
+    }
+
+    /// Makes a segment a chain of edges and tags its half-edges with the number of the constraint, at a rim those that there
+    /// are. What it crosses is divided there.
+    pub(super) fn insert(&mut self, constraint: Constraint) -> Result<u32, ArrangementError> {
+        let tag = self.lines.len() as u32;
+        self.lines.push(constraint.line);
+        let [mut from, to] = constraint.ends;
+        let mut crossed = VecDeque::new();
+        while from != to {
+            self.budget.spend(1)?;
+            match self.leaving(from, to)? {
+                Leaving::Along(h) => {
+                    self.tag(h, tag);
+                    from = self.mesh.to(h);
+                }
+                Leaving::Back(h) => {
+                    self.tag(h, tag);
+                    from = self.mesh.from(h);
+                }
+                Leaving::Across(h) => {
+                    let end = self.cross(from, to, h, constraint.line, &mut crossed)?;
+                    let h = self.clear(from, end, &mut crossed)?;
+                    self.tag(h, tag);
+                    from = end;
+                }
+            }
+        }
+        Ok(tag)
+    }
+
+    fn tag(&mut self, h: u32, tag: u32) {
+        let set = &mut self.mesh.tags[h as usize];
+        *set = self.sets.with(*set, tag);
+    }
+
+    fn leaving(&self, from: u32, to: u32) -> Result<Leaving, ArrangementError> {
+        let mesh = &self.mesh;
+        for h in mesh.around(from) {
+            let (x, y) = (mesh.to(h), mesh.apex(h));
+            if x == to {
+                return Ok(Leaving::Along(h));
+            }
+            let is_last = mesh.twin(mesh.prev(h)) == NONE;
+            if is_last && y == to {
+                return Ok(Leaving::Back(mesh.prev(h)));
+            }
+            match mesh.orient(&self.sight, [from, x, to]) {
+                Sign::Zero if self.is_towards(from, x, to) => return Ok(Leaving::Along(h)),
+                Sign::Negative => continue,
+                _ => {}
+            }
+            match mesh.orient(&self.sight, [from, y, to]) {
+                Sign::Negative if mesh.orient(&self.sight, [from, x, to]) == Sign::Positive => {
+                    return Ok(Leaving::Across(mesh.next(h)));
+                }
+                Sign::Zero if is_last && self.is_towards(from, y, to) => {
+                    return Ok(Leaving::Back(mesh.prev(h)));
+                }
+                _ => {}
+            }
+        }
+        Err(ArrangementError::Inconsistent("a constraint leaves its plane's triangles"))
+    }
+
+    /// True when `x` and `to`, on one line with `from`, are on the same side of it.
+    fn is_towards(&self, from: u32, x: u32, to: u32) -> bool {
+        let [from, x, to] = [from, x, to].map(|v| self.sight.point(self.mesh.points[v as usize]));
+        if matches!(x.definition, Definition::Far(_)) {
+            return false;
+        }
+        [self.sight.view.u, self.sight.view.v].into_iter().any(|axis| {
+            let a = self.sight.kernel.compare(axis, from, x);
+            a != Ordering::Equal && a == self.sight.kernel.compare(axis, from, to)
+        })
+    }
+
+    /// Goes from vertex `from` towards `to`, first across `h`: collects the edges that are crossed until there is a vertex on the
+    /// segment, which may be one that divides a constraint.
+    fn cross(
+        &mut self,
+        from: u32,
+        to: u32,
+        h: u32,
+        line: Line,
+        crossed: &mut VecDeque<u32>,
+    ) -> Result<u32, ArrangementError> {
+        crossed.clear();
+        let mut h = h;
+        loop {
+            self.budget.spend(1)?;
+            if self.mesh.is_constrained(h) {
+                let definition = self.crossing(h, line);
+                let point = self.sight.kernel.point(definition);
+                let point = self.sight.push(point);
+                return Ok(self.mesh.split_edge(h, point));
+            }
+            crossed.push_back(h);
+            let g = self.mesh.twin(h);
+            if g == NONE {
+                return Err(ArrangementError::Inconsistent("a constraint crosses the rim of its plane"));
+            }
+            let apex = self.mesh.apex(g);
+            if apex == to {
+                return Ok(apex);
+            }
+            h = match self.mesh.orient(&self.sight, [from, to, apex]) {
+                Sign::Zero => return Ok(apex),
+                Sign::Positive => self.mesh.next(g),
+                Sign::Negative => self.mesh.prev(g),
+            };
+        }
+    }
+
+    /// Where a line crosses the constraint on the edge of `h`.
+    fn crossing(&self, h: u32, line: Line) -> Definition {
+        let set = self.mesh.tags[h as usize];
+        let set = if set == 0 { self.mesh.tags[self.mesh.twin(h) as usize] } else { set };
+        // All of a set are on one line.
+        let other = self.sets.of(set).iter().map(|&c| self.lines[c as usize]).min().unwrap_or(line);
+        let view = self.sight.view;
+        match (line.min(other), line.max(other)) {
+            (Line::Edge(a), Line::Edge(b)) => {
+                Definition::EdgeEdge { edges: [a, b], axes: [view.u as u8, view.v as u8] }
+            }
+            (Line::Edge(edge), Line::Plane(plane)) | (Line::Plane(plane), Line::Edge(edge)) => {
+                Definition::EdgePlane { edge, plane }
+            }
+            (Line::Plane(a), Line::Plane(b)) => {
+                let mut planes = [view.plane, a, b];
+                planes.sort_unstable();
+                Definition::Planes(planes)
+            }
+        }
+    }
+
+    /// Flips the crossed edges away until there is an edge between two vertices (Sloan 1993).
+    fn clear(&mut self, from: u32, to: u32, crossed: &mut VecDeque<u32>) -> Result<u32, ArrangementError> {
+        let mut left = (crossed.len() as u64 + 4).pow(2) * 4;
+        while let Some(h) = crossed.pop_front() {
+            self.budget.spend(1)?;
+            left -= 1;
+            if left == 0 {
+                return Err(ArrangementError::Inconsistent("flips do not end"));
+            }
+            let (a, b) = (self.mesh.from(h), self.mesh.to(h));
+            let (c, d) = (self.mesh.apex(h), self.mesh.apex(self.mesh.twin(h)));
+            let side = |v: u32, w: u32, x: u32| self.mesh.orient(&self.sight, [v, w, x]);
+            if side(d, c, a) * side(d, c, b) != Sign::Negative {
+                crossed.push_back(h);
+                continue;
+            }
+            let ends_there = [c, d].iter().any(|v| [from, to].contains(v));
+            let crosses = !ends_there && side(from, to, c) * side(from, to, d) == Sign::Negative;
+            self.mesh.flip(h);
+            if crosses {
+                crossed.push_back(h);
+            }
+        }
+        self.mesh.between(from, to).ok_or(ArrangementError::Inconsistent("flips made no edge"))
+    }
+}

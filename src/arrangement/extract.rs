@@ -1,0 +1,44 @@
+//! The boundary of a solid in an arrangement: the pieces with the inside on one side only.
+
+use super::Arrangement;
+
+/// A piece of a boundary.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Piece {
+    /// Its corners, counter-clockwise seen from outside.
+    pub corners: [u32; 3],
+    /// A triangle of the input that covers it, one that turns the same way if there is one.
+    pub source: u32,
+    /// A triangle of the input in its plane, the same for all pieces of what overlapped there.
+    pub plane: u32,
+    /// True when it turns the other way than `plane`.
+    pub is_turned: bool,
+}
+
+/// The boundary of a solid.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Surface {
+    /// Its pieces, in the order of the arrangement.
+    pub pieces: Vec<Piece>,
+}
+
+impl Arrangement {
+    /// The boundary of the cells that `is_inside` is true of, by the winding number of each operand there. Cavities stay.
+    pub fn boundary(&self, is_inside: impl Fn(&[i32]) -> bool) -> Surface {
+        let mut pieces = Vec::new();
+        for (f, &[a, b, c]) in self.pieces.iter().enumerate() {
+            let [front, back] = self.windings(f).map(&is_inside);
+            if front == back {
+                continue;
+            }
+            // The inside is behind what turns counter-clockwise.
+            let is_turned = front;
+            let sources = self.sources(f);
+            let same = sources.iter().find(|(_, turned)| *turned == is_turned).or(sources.first());
+            let corners = if is_turned { [a, c, b] } else { [a, b, c] };
+            let source = same.map_or(self.planes[f], |&(t, _)| t);
+            pieces.push(Piece { corners, source, plane: self.planes[f], is_turned });
+        }
+        Surface { pieces }
+    }
+}

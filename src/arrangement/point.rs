@@ -1,0 +1,83 @@
+//! Points by name: what a point is the intersection of, where that is about, and where it is exactly.
+
+use super::ball::Ball;
+use super::exact::Homogeneous;
+use std::sync::OnceLock;
+
+/// What a point is. Vertices and triangles are those of the [`Kernel`](super::kernel::Kernel). Edges name their smaller vertex first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Definition {
+    /// A vertex of the input.
+    Vertex(u32),
+    /// Where an edge passes through the plane of a triangle.
+    EdgePlane {
+        /// The edge.
+        edge: [u32; 2],
+        /// The triangle.
+        plane: u32,
+    },
+    /// Where two edges of one plane cross, seen along an axis along which neither plane nor edges vanish.
+    EdgeEdge {
+        /// The edges.
+        edges: [[u32; 2]; 2],
+        /// The coordinates that are seen.
+        axes: [u8; 2],
+    },
+    /// Where the planes of three triangles meet.
+    Planes([u32; 3]),
+    /// A corner of the triangle around everything in a plane, which has no place in space.
+    Far(u8),
+}
+
+/// A point with what is known of its place.
+#[derive(Debug, Clone)]
+pub(super) struct Point {
+    pub(super) definition: Definition,
+    /// The coordinates from the origin of the kernel, in the unit of the file.
+    pub(super) near: [Ball; 3],
+    /// The coordinates in the integers of the kernel, once they are asked for.
+    pub(super) exact: OnceLock<Box<Homogeneous>>,
+}
+
+impl Definition {
+    /// True when the point lies on the line of `edge` by its name.
+    fn is_on_edge(&self, edge: [u32; 2]) -> bool {
+        match self {
+            Self::Vertex(v) => edge.contains(v),
+            Self::EdgePlane { edge: own, .. } => *own == edge,
+            Self::EdgeEdge { edges, .. } => edges.contains(&edge),
+            Self::Planes(_) | Self::Far(_) => false,
+        }
+    }
+
+    /// The edges on whose lines the point lies by its name.
+    fn edges(&self) -> impl Iterator<Item = [u32; 2]> {
+        let edges = match self {
+            Self::EdgePlane { edge, .. } => [Some(*edge), None],
+            Self::EdgeEdge { edges: [a, b], .. } => [Some(*a), Some(*b)],
+            _ => [None, None],
+        };
+        edges.into_iter().flatten()
+    }
+
+    fn is_on_plane(&self, plane: u32) -> bool {
+        match self {
+            Self::EdgePlane { plane: own, .. } => *own == plane,
+            Self::Planes(planes) => planes.contains(&plane),
+            _ => false,
+        }
+    }
+
+    /// True when three points in the plane of triangle `plane` lie on one line by their names.
+    pub(super) fn are_collinear(points: [&Self; 3], plane: u32) -> bool {
+        let on_one_edge = |p: &Self| p.edges().any(|edge| points.iter().all(|q| q.is_on_edge(edge)));
+        let on_another_plane =
+            |other: u32| other != plane && points.iter().all(|point| point.is_on_plane(other));
+        let on_one_line = |p: &Self| match p {
+            Self::EdgePlane { plane: own, .. } => on_another_plane(*own),
+            Self::Planes(planes) => planes.iter().any(|&other| on_another_plane(other)),
+            _ => false,
+        };
+        points.iter().any(|p| on_one_edge(p)) || on_one_line(points[0])
+    }
+}
