@@ -50,16 +50,14 @@ pub(super) fn meeting(
     });
     // Of equal ends the one with the lower name: a vertex, if one is there.
     let low = match compare(&a[0], &b[0]) {
-        Ordering::Less => &b[0],
         Ordering::Greater => &a[0],
         Ordering::Equal if a[0].definition <= b[0].definition => &a[0],
-        Ordering::Equal => &b[0],
+        Ordering::Less | Ordering::Equal => &b[0],
     };
     let high = match compare(&a[1], &b[1]) {
         Ordering::Less => &a[1],
-        Ordering::Greater => &b[1],
         Ordering::Equal if a[1].definition <= b[1].definition => &a[1],
-        Ordering::Equal => &b[1],
+        Ordering::Greater | Ordering::Equal => &b[1],
     };
     Ok(match compare(low, high) {
         Ordering::Less => Meeting::Ends([low.definition, high.definition]),
