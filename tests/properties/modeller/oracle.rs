@@ -61,7 +61,7 @@ const ROUNDING: f64 = 3e-16;
 
 /// The sign of a number that is `value` within `error`; none in doubt.
 fn sure_sign(value: f64, error: f64) -> Option<i8> {
-    (value.abs() > error).then(|| if value > 0.0 { 1 } else { -1 })
+    (value.abs() > error).then_some(if value > 0.0 { 1 } else { -1 })
 }
 
 fn sign(x: &IBig) -> i8 {
@@ -179,9 +179,9 @@ impl Model {
         let (mut total, mut sizes) = (0.0, 0.0);
         for pair in l.windows(2).skip(1) {
             let [u, v] = [from_base(at(pair[0])), from_base(at(pair[1]))];
-            for k in 0..3 {
+            for (k, n) in normal.iter().enumerate() {
                 let [a, b] = [(k + 1) % 3, (k + 2) % 3];
-                total += normal[k] * (u[a] * v[b] - u[b] * v[a]);
+                total += n * (u[a] * v[b] - u[b] * v[a]);
                 sizes += u[a].abs() + u[b].abs() + v[a].abs() + v[b].abs();
             }
         }
