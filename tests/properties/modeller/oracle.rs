@@ -179,9 +179,9 @@ impl Model {
         let (mut total, mut sizes) = (0.0, 0.0);
         for pair in l.windows(2).skip(1) {
             let [u, v] = [from_base(at(pair[0])), from_base(at(pair[1]))];
-            for (k, own) in normal.iter().enumerate() {
+            for (k, n) in normal.iter().enumerate() {
                 let [a, b] = [(k + 1) % 3, (k + 2) % 3];
-                total += own * (u[a] * v[b] - u[b] * v[a]);
+                total += n * (u[a] * v[b] - u[b] * v[a]);
                 sizes += u[a].abs() + u[b].abs() + v[a].abs() + v[b].abs();
             }
         }
