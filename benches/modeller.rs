@@ -65,6 +65,31 @@ fn ball() -> Solid {
         .solid
 }
 
+/// A frustum of 880 sides between two faces that have as many corners.
+fn frustum() -> Solid {
+    let sides = 880u32;
+    let ring = |radius: f64, z: f64| {
+        (0..sides).map(move |i| {
+            let turn = 2.0 * PI * f64::from(i) / f64::from(sides);
+            let p = DVec3::new(libm::cos(turn) * radius, libm::sin(turn) * radius, z);
+            p.as_vec3().as_dvec3()
+        })
+    };
+    let points: Vec<DVec3> = ring(50.0, 0.0).chain(ring(30.0, 40.0)).collect();
+    let mut triangles = Vec::new();
+    for i in 0..sides {
+        let j = (i + 1) % sides;
+        triangles.extend([[i, j, sides + j], [i, sides + j, sides + i]]);
+    }
+    for i in 1..sides - 1 {
+        triangles.extend([[0, i + 1, i], [sides, sides + i, sides + i + 1]]);
+    }
+    import(&points, &triangles, None, &Budget::unlimited())
+        .expect("nothing stops it")
+        .expect("a frustum")
+        .solid
+}
+
 /// Half of the way to the nearer limit.
 fn half_way(solid: &Solid, face: FaceId) -> Operator {
     let sides = range(solid, &[(face, rational(1.0))], &Budget::unlimited()).expect("nothing stops it");
@@ -79,12 +104,13 @@ fn half_way(solid: &Solid, face: FaceId) -> Operator {
 
 fn benches(c: &mut Criterion) {
     let budget = Budget::unlimited();
-    let (blocks, ball) = (plate_of_blocks(), ball());
+    let (blocks, ball, frustum) = (plate_of_blocks(), ball(), frustum());
     let face = |solid: &Solid, normal: DVec3, at: DVec3| face_by_normal(solid, normal, at).expect("a face");
     let cases = [
         ("side of a block", &blocks, face(&blocks, DVec3::X, DVec3::new(166.0, 204.0, 8.0))),
         ("top of a block", &blocks, face(&blocks, DVec3::Z, DVec3::new(164.0, 204.0, 12.0))),
         ("facet of a ball", &ball, face(&ball, DVec3::new(3.0, 2.0, 1.0), DVec3::new(40.0, 27.0, 13.0))),
+        ("face of 880 sides", &frustum, face(&frustum, DVec3::Z, DVec3::new(0.0, 0.0, 40.0))),
     ];
     let mut group = c.benchmark_group("modeller, 10,000 faces");
     group.sample_size(20);

@@ -5,6 +5,7 @@ Each is the smallest mesh that shows one thing, in whole numbers where that is p
 standard library is used, so every run writes the same bytes.
 """
 
+import json
 import struct
 import sys
 from pathlib import Path
@@ -257,7 +258,45 @@ def polygons():
     }
 
 
-FAMILIES = [valid, boundary, degenerate, duplicate, non_manifold, orientation, nesting, intersection, numbers, polygons]
+def modeller():
+    roof = (
+        [(0, 0, 0), (60, 0, 0), (60, 40, 0), (0, 40, 0), (20, 20, 20), (40, 20, 20)],
+        [(3, 2, 1, 0), (0, 1, 5, 4), (1, 2, 5), (2, 3, 4, 5), (3, 0, 4)],
+    )
+    # Two steps that meet crosswise: a vertex of six faces in the middle, two of them in one plane.
+    steps = (
+        [(0, 0, 0), (45, 0, 0), (45, 45, 0), (0, 45, 0), (0, 0, 20), (20, 0, 20), (20, 20, 20), (0, 20, 20), (20, 0, 30)]
+        + [(45, 0, 30), (45, 20, 30), (20, 20, 30), (0, 20, 30), (20, 45, 30), (0, 45, 30), (20, 20, 45), (45, 20, 45)]
+        + [(45, 45, 45), (20, 45, 45)],
+        [(3, 2, 1, 0), (4, 5, 6, 7), (8, 9, 10, 11), (12, 11, 13, 14), (15, 16, 17, 18), (0, 1, 9, 8, 5, 4)]
+        + [(1, 2, 17, 16, 10, 9), (2, 3, 14, 13, 18, 17), (3, 0, 4, 7, 12, 14), (5, 8, 11, 6), (6, 11, 12, 7)]
+        + [(11, 15, 18, 13), (11, 10, 16, 15)],
+    )
+    left, front, back = [{"normal": n, "at": p} for n, p in [
+        ([-1, 0, 1], [10, 20, 10]), ([0, -1, 1], [30, 10, 10]), ([0, 1, 1], [30, 30, 10])]]
+    top = {"normal": [0, 0, 1], "at": [32, 10, 30]}
+    edit_roof = {
+        "operators": [
+            {"shift": {"faces": [{"face": left, "by_mm": -2}]}},
+            {"flip": {"edge": {"faces": [front, back]}, "face": left}},
+            {"undo": {}},
+        ],
+        "ranges": [left, {"together": [{"face": front}, {"face": back}]}],
+        "list_faces": True,
+        "polygons": True,
+    }
+    edit_steps = {"operators": [{"split": {"at": [20, 20, 30], "face": top, "by_mm": 4}}]}
+    options = lambda given: (json.dumps(given) + "\n").encode()
+    return {
+        "hip_roof.off": off(roof),
+        "hip_roof.off.options.json": options(edit_roof),
+        "steps.off": off(steps),
+        "steps.off.options.json": options(edit_steps),
+    }
+
+
+FAMILIES = [valid, boundary, degenerate, duplicate, non_manifold, orientation, nesting, intersection, numbers, polygons,
+            modeller]
 
 
 def main():

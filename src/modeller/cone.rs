@@ -5,9 +5,9 @@
 //! before. So every edge is tried against every face of the picture. Points at infinity are vectors with a weight of
 //! zero, for which the determinants that decide are the same.
 
+use super::direction::{Direction, Sector};
 use super::exact::{Vector, cross, dot, is_zero, negative, sign};
 use super::point::{Place, Point, View};
-use super::resolve::is_in_sector;
 use crate::geom::DVec3;
 use num_bigint::BigInt;
 use num_traits::Zero;
@@ -35,7 +35,7 @@ pub(super) struct Cone {
 /// The plane of a face around the vertex.
 pub(super) struct Side<'s> {
     /// Its normal.
-    pub(super) normal: &'s Vector,
+    pub(super) normal: &'s Direction,
     /// Its unit normal, rounded.
     pub(super) unit: DVec3,
     /// How much its offset grows.
@@ -52,13 +52,13 @@ impl Cone {
     /// ones. `cells`: the faces around each, ascending.
     pub(super) fn of(
         sides: &[Side<'_>],
-        rays: &[Vector],
+        rays: &[Direction],
         vertices: Vec<Point>,
         cells: &[Vec<usize>],
     ) -> Option<Self> {
         let (count, first_ray) = (sides.len(), vertices.len());
         let mut cone = Self { points: vertices, faces: Vec::new(), edges: Vec::new() };
-        cone.points.extend(rays.iter().cloned().map(at_infinity));
+        cone.points.extend(rays.iter().map(|ray| at_infinity(ray.exact.clone())));
         for (i, side) in sides.iter().enumerate() {
             let before = (i + count - 1) % count;
             let chain = chain(cells, i, count)?;
@@ -73,18 +73,18 @@ impl Cone {
                 cone.edges.extend(other.map(|&j| ([pair[0], pair[1]], [i, j])));
             }
             let (out, back) = (&rays[i], &rays[before]);
-            let across = cross(side.normal, out);
-            for direction in [across.clone(), negative(out), negative(&across)] {
-                let is_inside =
-                    is_in_sector(side.normal, out, back, &direction) && !is_zero(&cross(&direction, back));
-                if is_inside {
+            let sector = Sector { normal: side.normal, from: out, to: back };
+            let across = cross(&side.normal.exact, &out.exact);
+            for exact in [across.clone(), negative(&out.exact), negative(&across)] {
+                let direction = Direction::new(exact);
+                if sector.holds(&direction) && !direction.is_parallel(back) {
                     border.push(cone.points.len());
-                    cone.points.push(at_infinity(direction));
+                    cone.points.push(at_infinity(direction.exact));
                 }
             }
             let view = View::along(side.unit);
             cone.faces.push(Face {
-                normal: side.normal.clone(),
+                normal: side.normal.exact.clone(),
                 rate: side.rate.clone(),
                 view,
                 edges,

@@ -1,6 +1,7 @@
 //! Editing closed polyhedra by their planes.
 mod cone;
 mod contact;
+mod direction;
 mod dual;
 mod events;
 mod exact;
@@ -17,7 +18,9 @@ mod pick;
 mod plane;
 mod point;
 mod resolve;
+mod search;
 mod solid;
+mod sweep;
 mod validity;
 pub use dual::{Dual, DualRefusal, Embedding, dual, dual_faces};
 pub use events::Contact;

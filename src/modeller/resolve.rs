@@ -7,14 +7,18 @@
 //! do not cross, and no edge at one new vertex meets a face at another ([`Cone`]). Of several good splits the first in a fixed order is taken.
 
 use super::cone::{Cone, Side};
-use super::exact::{Vector, cross, dot, is_zero, negative, sign};
-use super::motion::{Motion, MovingPoint};
+use super::direction::{Direction, is_link_simple};
+use super::exact::{Vector, cross, dot, negative};
+use super::motion::Motion;
 use super::point::Point;
 use super::solid::Solid;
 use crate::mesh::polyhedron::{FaceId, HalfEdgeId, VertexId};
+use num_bigint::BigInt;
+use num_traits::{One, Signed, Zero};
 use std::cell::RefCell;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
+use std::rc::Rc;
 use std::sync::Arc;
 
 /// Degree up to which every split is tried: an octagon has 903.
@@ -27,13 +31,26 @@ struct Split {
     diagonals: Vec<[usize; 2]>,
 }
 
+/// How a point moves: by `speed / w` in a unit of time, with a positive `w`.
+struct Velocity {
+    speed: Vector,
+    w: BigInt,
+}
+
 /// A vertex and the faces around it, clockwise, with the directions of its edges: edge `i` is between the faces `i` and
-/// `i + 1`.
-struct Star {
+/// `i + 1`. What many splits ask for is kept.
+struct Star<'s> {
+    solid: &'s Solid,
     faces: Vec<FaceId>,
-    rays: Vec<Vector>,
-    /// How the points of cells move, by the set of their corners; many splits have the same cells.
-    speeds: RefCell<BTreeMap<u32, Option<MovingPoint>>>,
+    normals: Vec<Direction>,
+    /// How the offsets of the faces grow that move.
+    rates: Vec<Option<&'s BigInt>>,
+    rays: Vec<Direction>,
+    lines: RefCell<BTreeMap<[usize; 2], Rc<Direction>>>,
+    /// By the faces of the cell.
+    velocities: RefCell<BTreeMap<u32, Option<Rc<Velocity>>>>,
+    /// By the faces of both cells.
+    apart: RefCell<BTreeMap<[u32; 2], Option<Rc<Direction>>>>,
 }
 
 /// Splits `v` for the time just after 0. Returns the new edges; `None`, with nothing changed, when no split is good.
@@ -58,19 +75,15 @@ pub(super) fn split(solid: &mut Solid, motion: &Motion, v: VertexId) -> Option<V
 /// The diagonals of the split, as pairs of faces that become neighbours.
 fn good_split(solid: &Solid, motion: &Motion, v: VertexId) -> Option<Vec<[FaceId; 2]>> {
     let h = solid.topology.leaving(v)?;
-    let star = Star {
-        faces: solid.topology.around(h).map(|h| solid.topology.face(h)).collect(),
-        rays: solid.topology.around(h).map(|h| solid.direction(h)).collect(),
-        speeds: RefCell::default(),
-    };
+    let star = Star::new(solid, motion, h);
     let degree = star.faces.len();
-    let is_good = |split: &Split| star.is_good(solid, motion, split);
+    let is_good = |split: &Split| star.is_good(split);
     let split = if degree <= DEGREE_OF_ALL_SPLITS_MAX {
         let corners: Vec<usize> = (0..degree).collect();
-        let may_be = |cell: &[usize]| star.speed(solid, motion, cell).is_some();
+        let may_be = |cell: &[usize]| star.velocity(cell).is_some();
         all_splits(&corners, &may_be).into_iter().find(is_good)
     } else {
-        let mut moving = (0..degree).filter(|&i| motion.rate(star.faces[i]).is_some());
+        let mut moving = (0..degree).filter(|&i| star.rates[i].is_some());
         match (moving.next(), moving.next()) {
             (Some(face), None) => splits_around(face, degree).find(is_good),
             _ => None,
@@ -150,128 +163,125 @@ fn splits_around(face: usize, degree: usize) -> impl Iterator<Item = Split> {
     std::iter::once(None).chain(gaps).map(build)
 }
 
-impl Star {
-    /// How the point of a cell moves; none when its planes do not stay concurrent, or have no single point.
-    fn speed(&self, solid: &Solid, motion: &Motion, cell: &[usize]) -> Option<MovingPoint> {
+impl<'s> Star<'s> {
+    fn new(solid: &'s Solid, motion: &'s Motion, h: HalfEdgeId) -> Self {
+        let faces: Vec<FaceId> = solid.topology.around(h).map(|h| solid.topology.face(h)).collect();
+        Self {
+            normals: faces.iter().map(|&f| Direction::new(solid.plane(f).normal.clone())).collect(),
+            rates: faces.iter().map(|&f| motion.rate(f)).collect(),
+            rays: solid.topology.around(h).map(|h| Direction::new(solid.direction(h))).collect(),
+            solid,
+            faces,
+            lines: RefCell::default(),
+            velocities: RefCell::default(),
+            apart: RefCell::default(),
+        }
+    }
+
+    /// The cross product of the normals of two faces.
+    fn line(&self, i: usize, j: usize) -> Rc<Direction> {
+        let new = || Rc::new(Direction::new(cross(&self.normals[i].exact, &self.normals[j].exact)));
         if self.faces.len() > DEGREE_OF_ALL_SPLITS_MAX {
-            return self.new_speed(solid, motion, cell);
+            return new();
         }
-        let key = cell.iter().fold(0, |key, i| key | 1 << i);
-        if let Some(known) = self.speeds.borrow().get(&key) {
-            return known.clone();
-        }
-        let speed = self.new_speed(solid, motion, cell);
-        self.speeds.borrow_mut().insert(key, speed.clone());
-        speed
+        Rc::clone(self.lines.borrow_mut().entry([i, j]).or_insert_with(new))
     }
 
-    fn new_speed(&self, solid: &Solid, motion: &Motion, cell: &[usize]) -> Option<MovingPoint> {
-        let faces: Vec<FaceId> = cell.iter().map(|&i| self.faces[i]).collect();
-        let point = MovingPoint::of(solid, motion, solid.defining_faces(&faces)?);
-        faces.iter().all(|&f| point.stays_on(solid, motion, f)).then_some(point)
+    /// How the point of a cell moves; none when its planes do not stay concurrent, or have no single point.
+    fn velocity(&self, cell: &[usize]) -> Option<Rc<Velocity>> {
+        let new = || self.new_velocity(cell).map(Rc::new);
+        match self.key(cell) {
+            None => new(),
+            Some(key) => self.velocities.borrow_mut().entry(key).or_insert_with(new).clone(),
+        }
     }
 
-    fn is_good(&self, solid: &Solid, motion: &Motion, split: &Split) -> bool {
-        let speeds: Option<Vec<MovingPoint>> =
-            split.cells.iter().map(|c| self.speed(solid, motion, c)).collect();
-        let Some(speeds) = speeds else { return false };
-        let relative = |from: usize, to: usize| -> Vector {
-            let (a, b) = (&speeds[from], &speeds[to]);
-            std::array::from_fn(|k| &b.speed[k] * &a.w - &a.speed[k] * &b.w)
+    /// A cell as a number; none for vertices of so many faces that few of their cells are asked for twice.
+    fn key(&self, cell: &[usize]) -> Option<u32> {
+        let is_small = self.faces.len() <= DEGREE_OF_ALL_SPLITS_MAX;
+        is_small.then(|| cell.iter().fold(0, |key, i| key | 1 << i))
+    }
+
+    fn new_velocity(&self, cell: &[usize]) -> Option<Velocity> {
+        let (&i, rest) = cell.split_first()?;
+        let &j = rest.iter().find(|&&j| !self.normals[i].is_parallel(&self.normals[j]))?;
+        let line = self.line(i, j);
+        let &k = rest.iter().find(|&&k| line.dot_sign(&self.normals[k]) != Ordering::Equal)?;
+        if cell.iter().all(|&i| self.rates[i].is_none()) {
+            return Some(Velocity { speed: Default::default(), w: BigInt::one() });
+        }
+        let w = dot(&line.exact, &self.normals[k].exact);
+        let mut speed = Vector::default();
+        for (moved, [p, q]) in [(i, [j, k]), (j, [k, i]), (k, [i, j])] {
+            let Some(rate) = self.rates[moved] else { continue };
+            let line = self.line(p, q);
+            speed.iter_mut().zip(&line.exact).for_each(|(sum, x)| *sum += rate * x);
+        }
+        let velocity =
+            if w.is_negative() { Velocity { speed: negative(&speed), w: -w } } else { Velocity { speed, w } };
+        let stays_on = |&f: &usize| {
+            let rise = dot(&self.normals[f].exact, &velocity.speed);
+            [i, j, k].contains(&f)
+                || self.rates[f].map_or_else(|| rise.is_zero(), |r| rise == r * &velocity.w)
         };
-        let cell_beyond = |cell: usize, [i, j]: [usize; 2]| {
-            (0..split.cells.len())
-                .find(|&c| c != cell && split.cells[c].contains(&i) && split.cells[c].contains(&j))
+        cell.iter().all(stays_on).then_some(velocity)
+    }
+
+    /// Where the vertex of one cell sees that of another; none when they stay together.
+    fn apart(&self, from: &[usize], to: &[usize]) -> Option<Rc<Direction>> {
+        let new = || {
+            let (a, b) = (self.velocity(from)?, self.velocity(to)?);
+            let ray = Direction::new(std::array::from_fn(|k| &b.speed[k] * &a.w - &a.speed[k] * &b.w));
+            (!ray.is_zero()).then(|| Rc::new(ray))
         };
-        let are_links_simple = (0..split.cells.len()).all(|c| {
-            let cell = &split.cells[c];
-            let mut rays = Vec::with_capacity(cell.len());
-            for k in 0..cell.len() {
-                let (i, j) = (cell[k], cell[(k + 1) % cell.len()]);
-                if (i + 1) % self.faces.len() == j {
-                    rays.push(self.rays[i].clone());
-                    continue;
-                }
-                let Some(beyond) = cell_beyond(c, [i, j]) else { return false };
-                let ray = relative(c, beyond);
-                if is_zero(&ray) {
-                    return false;
-                }
-                rays.push(ray);
+        match (self.key(from), self.key(to)) {
+            (Some(from), Some(to)) => self.apart.borrow_mut().entry([from, to]).or_insert_with(new).clone(),
+            _ => new(),
+        }
+    }
+
+    fn is_good(&self, split: &Split) -> bool {
+        let velocities: Option<Vec<Rc<Velocity>>> = split.cells.iter().map(|c| self.velocity(c)).collect();
+        let Some(velocities) = velocities else { return false };
+        (0..split.cells.len()).all(|c| self.has_simple_link(split, c)) && self.is_embedded(split, &velocities)
+    }
+
+    /// Whether the faces around the vertex of a cell meet in their common edges only.
+    fn has_simple_link(&self, split: &Split, c: usize) -> bool {
+        let cell = &split.cells[c];
+        let mut new_rays: Vec<Option<Rc<Direction>>> = Vec::with_capacity(cell.len());
+        for k in 0..cell.len() {
+            let ends = [cell[k], cell[(k + 1) % cell.len()]];
+            if self.are_neighbours(ends) {
+                new_rays.push(None);
+                continue;
             }
-            let normals: Vec<&Vector> = cell.iter().map(|&i| &solid.plane(self.faces[i]).normal).collect();
-            is_link_simple(&normals, &rays)
-        });
-        are_links_simple && self.is_embedded(solid, motion, split, speeds)
+            let is_beyond = |d: &usize| *d != c && ends.iter().all(|i| split.cells[*d].contains(i));
+            let Some(beyond) = (0..split.cells.len()).find(is_beyond) else { return false };
+            let Some(ray) = self.apart(cell, &split.cells[beyond]) else { return false };
+            new_rays.push(Some(ray));
+        }
+        let rays: Vec<&Direction> =
+            new_rays.iter().zip(cell).map(|(ray, &i)| ray.as_deref().unwrap_or(&self.rays[i])).collect();
+        let normals: Vec<&Direction> = cell.iter().map(|&i| &self.normals[i]).collect();
+        is_link_simple(&normals, &rays, &|i, j| self.line(cell[i], cell[j]))
+    }
+
+    /// Whether the second face follows the first around the vertex.
+    fn are_neighbours(&self, [i, j]: [usize; 2]) -> bool {
+        (i + 1) % self.faces.len() == j
     }
 
     /// Whether all edges and faces of the split meet in what they share only.
-    fn is_embedded(&self, solid: &Solid, motion: &Motion, split: &Split, speeds: Vec<MovingPoint>) -> bool {
-        let side = |&f: &FaceId| Side {
-            normal: &solid.plane(f).normal,
-            unit: solid.plane(f).unit,
-            rate: motion.rate_or_zero(f),
+    fn is_embedded(&self, split: &Split, velocities: &[Rc<Velocity>]) -> bool {
+        let side = |i: usize| Side {
+            normal: &self.normals[i],
+            unit: self.solid.plane(self.faces[i]).unit,
+            rate: self.rates[i].cloned().unwrap_or_default(),
         };
-        let sides: Vec<Side<'_>> = self.faces.iter().map(side).collect();
-        let vertices = speeds.into_iter().map(|p| Point::new(p.speed, p.w)).collect();
+        let sides: Vec<Side<'_>> = (0..self.faces.len()).map(side).collect();
+        let vertices = velocities.iter().map(|v| Point::new(v.speed.clone(), v.w.clone())).collect();
         Cone::of(&sides, &self.rays, vertices, &split.cells).is_some_and(|cone| cone.is_embedded())
-    }
-}
-
-/// Whether the faces around a vertex meet in their common edges only. Face `i` has the normal `i` and takes the angle
-/// counter-clockwise from ray `i` to ray `i - 1`.
-pub(super) fn is_link_simple(normals: &[&Vector], rays: &[Vector]) -> bool {
-    let count = normals.len();
-    let sector = |i: usize| (normals[i], &rays[i], &rays[(i + count - 1) % count]);
-    for i in 0..count {
-        let (n, a, b) = sector(i);
-        if is_same_direction(a, b) {
-            return false;
-        }
-        for j in 0..i {
-            let (m, c, d) = sector(j);
-            let line = cross(n, m);
-            let witnesses = if is_zero(&line) {
-                // One plane: the angles overlap when a ray of one is inside the other.
-                vec![a.clone(), b.clone(), c.clone(), d.clone()]
-            } else {
-                vec![negative(&line), line]
-            };
-            for x in &witnesses {
-                let is_common_ray = [a, b].iter().any(|r| is_same_direction(r, x))
-                    && [c, d].iter().any(|r| is_same_direction(r, x));
-                if !is_common_ray && is_in_sector(n, a, b, x) && is_in_sector(m, c, d, x) {
-                    return false;
-                }
-                // In one plane a common ray is no common edge unless the two are neighbours, which cannot be coplanar.
-                if is_common_ray && is_zero(&cross(n, m)) {
-                    return false;
-                }
-                let are_neighbours = (i + 1) % count == j || (j + 1) % count == i;
-                if is_common_ray && !are_neighbours {
-                    return false;
-                }
-            }
-        }
-    }
-    true
-}
-
-fn is_same_direction(a: &Vector, b: &Vector) -> bool {
-    is_zero(&cross(a, b)) && sign(&dot(a, b)) == Ordering::Greater
-}
-
-/// Whether direction `x`, perpendicular to `n`, is in the closed angle counter-clockwise from `a` to `b`.
-pub(super) fn is_in_sector(n: &Vector, a: &Vector, b: &Vector, x: &Vector) -> bool {
-    if is_same_direction(a, x) || is_same_direction(b, x) {
-        return true;
-    }
-    let turn = |p: &Vector, q: &Vector| sign(&dot(&cross(p, q), n));
-    let (whole, from, to) = (turn(a, b), turn(a, x), turn(x, b));
-    match whole {
-        Ordering::Greater => from == Ordering::Greater && to == Ordering::Greater,
-        Ordering::Equal => from == Ordering::Greater,
-        Ordering::Less => from == Ordering::Greater || to == Ordering::Greater,
     }
 }
 

@@ -3,8 +3,9 @@
 //! `MESHMEND_BLESS=1` writes the expected files anew; read what changed before you keep it.
 
 use meshmend::budget::Budget;
+use meshmend::formats::ReadLimits;
 use meshmend::pipeline::{Operation, Options, WrapChoices, run};
-use meshmend::wire::{DefectCode, Report, TimingMs};
+use meshmend::wire::{self, DefectCode, Report, TimingMs};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::fs;
@@ -32,19 +33,41 @@ fn expected_path(mesh: &Path) -> PathBuf {
     PathBuf::from(format!("{}.expected.json", mesh.display()))
 }
 
+/// The options of the modeller, for the meshes that have some.
+fn modeller_options(mesh: &Path) -> Option<Options> {
+    let text = fs::read_to_string(format!("{}.options.json", mesh.display())).ok()?;
+    let Value::Object(members) = serde_json::from_str(&text).unwrap() else { panic!("{mesh:?}: no object") };
+    Some(wire::Options::try_from(members).unwrap().to_engine(ReadLimits::default()))
+}
+
+/// What `meshmend modeller` makes of it: what it tells of the polyhedron and each operator, and the returned file in
+/// short.
+fn modelled(bytes: &[u8], options: &Options) -> Value {
+    let report = report(bytes, Operation::Modeller, options);
+    let certificate = &report["certificate"];
+    json!({
+        "verdict": report["verdict"],
+        "modeller": report["modeller"],
+        "result": { "sha256": certificate["sha256"], "bytes": certificate["bytes"], "shells": certificate["shells"] },
+    })
+}
+
 /// The report of `operation`, or why there is none.
-fn report(bytes: &[u8], operation: Operation) -> Value {
-    let wrap = WrapChoices { cells: Some(WRAP_CELLS), ..WrapChoices::default() };
-    let options = Options { wrap, ..Options::default() };
-    match run(operation, bytes, &options, &Budget::unlimited()) {
+fn report(bytes: &[u8], operation: Operation, options: &Options) -> Value {
+    match run(operation, bytes, options, &Budget::unlimited()) {
         Ok(answer) => serde_json::to_value(Report::new(&answer.report, TimingMs::default())).unwrap(),
         Err(failure) => json!({ "error": failure.to_string() }),
     }
 }
 
+fn coarse() -> Options {
+    let wrap = WrapChoices { cells: Some(WRAP_CELLS), ..WrapChoices::default() };
+    Options { wrap, ..Options::default() }
+}
+
 /// What `meshmend analyze` says of a file, without what differs from run to run or from version to version.
 fn analyzed(bytes: &[u8]) -> Value {
-    let mut report = report(bytes, Operation::Analyze);
+    let mut report = report(bytes, Operation::Analyze, &coarse());
     let differs = ["engine", "timing_ms", "resources"];
     let does_not_apply = ["plan", "actions", "modeller", "after", "deviation", "certificate", "printing"];
     report
@@ -57,7 +80,7 @@ fn analyzed(bytes: &[u8]) -> Value {
 
 /// What `meshmend repair` makes of it: the verdict, what each step changed, and the returned file in short.
 fn repaired(bytes: &[u8]) -> Value {
-    let report = report(bytes, Operation::Repair);
+    let report = report(bytes, Operation::Repair, &coarse());
     if report.get("error").is_some() {
         return report;
     }
@@ -85,7 +108,11 @@ fn repaired(bytes: &[u8]) -> Value {
 
 fn actual(mesh: &Path) -> Value {
     let bytes = fs::read(mesh).unwrap();
-    json!({ "analyze": analyzed(&bytes), "repair": repaired(&bytes) })
+    let mut actual = json!({ "analyze": analyzed(&bytes), "repair": repaired(&bytes) });
+    if let Some(options) = modeller_options(mesh) {
+        actual["modeller"] = modelled(&bytes, &options);
+    }
+    actual
 }
 
 /// Widest line that an expected file has where it can.
@@ -130,7 +157,7 @@ fn there_is_a_fixture_for_every_expected_file() {
     let files =
         folders.iter().flat_map(|folder| fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()));
     let there: BTreeSet<PathBuf> =
-        files.filter(|path| path.extension().is_some_and(|e| e == "json")).collect();
+        files.filter(|path| path.to_string_lossy().ends_with(".expected.json")).collect();
     assert_eq!(there, expected);
 }
 

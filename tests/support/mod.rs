@@ -1,6 +1,7 @@
 //! What several test folders share.
 
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// How many cases a randomised test runs: `small` in every test run, `full` when `MESHMEND_CAMPAIGN` is set
 /// (`scripts/campaign.sh` sets it).
@@ -42,18 +43,22 @@ pub(crate) fn corpus_files(extensions: &[&str]) -> Option<Vec<PathBuf>> {
     Some(files)
 }
 
-/// Runs `body` for every number below `count` on all cores; results in order. A panic inside is a panic here.
+/// Runs `body` for every number below `count` on all cores, each of which takes the next one when it is free; results in
+/// order. A panic inside is a panic here.
 pub(crate) fn on_all_cores<R: Send>(count: usize, body: impl Fn(usize) -> R + Sync) -> Vec<R> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let share = count.div_ceil(cores).max(1);
-    let (body, bounds) = (&body, |core: usize| (core * share).min(count));
+    let (body, next) = (&body, &AtomicUsize::new(0));
+    let numbers =
+        move || std::iter::from_fn(move || Some(next.fetch_add(1, Ordering::Relaxed)).filter(|&i| i < count));
     std::thread::scope(|scope| {
         let parts: Vec<_> = (0..cores)
-            .map(|core| scope.spawn(move || (bounds(core)..bounds(core + 1)).map(body).collect::<Vec<R>>()))
+            .map(|_| scope.spawn(move || numbers().map(|i| (i, body(i))).collect::<Vec<(usize, R)>>()))
             .collect();
-        parts
+        let mut results: Vec<(usize, R)> = parts
             .into_iter()
             .flat_map(|part| part.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-            .collect()
+            .collect();
+        results.sort_unstable_by_key(|(i, _)| *i);
+        results.into_iter().map(|(_, result)| result).collect()
     })
 }

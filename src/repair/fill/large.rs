@@ -1,111 +1,208 @@
-//! Triangulations of loops that are too long for a search of all of them: any first one, then made to bend less.
+//! Triangulations of loops that are too long for a search of all of them.
 //!
-//! A loop that does not cross itself as seen along its normal is triangulated in that view. Any other is divided: some
-//! corners of it, evenly spread, are triangulated in the best way, and then each chain between two of them. Work in
-//! proportion to the corners, where the search is cubic. Both are then improved edge by edge, by the weight that the search has.
-//! What bends around several sides of a part often crosses itself when it is divided; some such loops may be searched.
+//! A loop that does not cross itself as seen along its normal is triangulated in that view, and edges are turned by the
+//! weight that the search has. Of any other, as one that bends around several sides of a part, the notches are closed, and
+//! what is left is searched from coarse to fine: few of its corners, evenly spread, are triangulated in the best way, and then
+//! twice as many, by chords near those of the coarser triangulation only. Work grows with the corners, where the search of
+//! all chords is cubic. Chords that go through triangles are barred and the search is repeated.
 
 use super::caps::turn_caps;
-use super::minimal::{self, CORNERS_MAX, LONG_CORNERS_MAX};
+use super::chords::{All, Chords, Near};
+use super::minimal::{self, CORNERS_MAX, Least};
+use super::notches::{Smoothed, close_notches};
 use super::patch::PatchMesh;
 use super::planar;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{DVec3, triangle_area};
 use crate::mesh::prev_corner;
+use crate::spatial::{Bvh, Search, self_contacts};
+use rustc_hash::FxHashSet;
 
-/// Corners that a loop is divided at.
-const DIVISIONS: usize = 64;
 /// Turns for each edge, at most.
 const TURNS_PER_EDGE: usize = 4;
-/// Weighings that searches of long loops may take each time the patches of a file are tried.
-const WEIGHINGS_MAX: u64 = 1 << 26;
 
-/// Of loops with so many corners, those of which all triangulations may be searched: the first, as far as the work allows.
-pub(super) fn searched(corners: impl Iterator<Item = usize>) -> impl Iterator<Item = bool> {
-    let mut left = WEIGHINGS_MAX;
-    corners.map(move |n| {
-        let weighings = (n as u64).pow(3) / 6;
-        let is_searched = (CORNERS_MAX + 1..=LONG_CORNERS_MAX).contains(&n) && weighings <= left;
-        left -= if is_searched { weighings } else { 0 };
-        is_searched
-    })
+/// Searches for a triangulation that does not meet itself, at most, by each measure and each time that corners are added.
+const SEARCHES: usize = 4;
+/// Pairs of triangles that meet whose chords are barred before the next search, at most.
+const CONTACTS_MAX: usize = 4096;
+
+/// How many corners the ends of a chord may be away from those of an edge of the coarser triangulation, for a loop of so many
+/// corners. Where loops are very long there is less choice, so that the work stays in bounds.
+fn reach(corners: usize) -> usize {
+    match corners {
+        0..=2_048 => 3,
+        2_049..=16_384 => 2,
+        _ => 1,
+    }
 }
 
 /// Triangles of the loop through `points`, in its direction; `None` when there are none. `normal` is the direction that
-/// it is seen along; `rim_normals` and `is_free` are as in [`minimal::triangulate`]. `is_searched`: all triangulations of a
-/// loop that crosses itself in that view are searched, if it is not too long for that.
+/// it is seen along; `rim_normals` and `is_free` are as in [`minimal::triangulate`].
 pub(super) fn triangulate(
     points: &[DVec3],
     rim_normals: &[DVec3],
     normal: DVec3,
-    is_searched: bool,
     is_free: impl Fn(usize, usize) -> bool,
     budget: &Budget,
 ) -> Result<Option<Vec<[usize; 3]>>, Stopped> {
-    let seen = planar::triangulate(&[points.to_vec()], normal);
-    if seen.is_none()
-        && is_searched
-        && let Some(found) = minimal::triangulate(points, rim_normals, &is_free, budget)?
-    {
-        return Ok(Some(found));
-    }
+    let is_sound = |triangles: &Vec<[usize; 3]>| {
+        let mut edges = triangles.iter().flat_map(edges_of);
+        edges.all(|[i, k]| !is_chord([i, k], points.len()) || is_free(i, k))
+    };
+    let seen = planar::triangulate(&[points.to_vec()], normal).filter(is_sound);
+    let is_seen = seen.is_some();
     let first = match seen {
         Some(triangles) => Some(triangles),
-        None => divided(points, rim_normals, &is_free, budget)?,
+        None => of_smoothed(points, rim_normals, &is_free, budget)?,
     };
     let Some(first) = first else { return Ok(None) };
     let triangles = first.iter().map(|t| t.map(|i| i as u32)).collect();
     let Some(mut mesh) = PatchMesh::new(points.to_vec(), triangles) else { return Ok(Some(first)) };
     turn_caps(&mut mesh, &|a, b| is_free(a as usize, b as usize), budget)?;
-    improve(&mut mesh, rim_normals, is_free, budget)?;
+    if is_seen {
+        improve(&mut mesh, rim_normals, is_free, budget)?;
+    }
     Ok(Some(mesh.triangles.iter().map(|t| t.map(|v| v as usize)).collect()))
 }
 
-/// Triangulates chosen corners, then each chain between two of them with the normal of the triangle beyond its chord.
-fn divided(
+/// Closes the notches of a loop and triangulates the rest.
+fn of_smoothed(
     points: &[DVec3],
     rim_normals: &[DVec3],
     is_free: &impl Fn(usize, usize) -> bool,
     budget: &Budget,
 ) -> Result<Option<Vec<[usize; 3]>>, Stopped> {
-    let mut triangles = Vec::with_capacity(points.len());
-    // Corners of a polygon, and the normal beyond its last side.
-    let mut open: Vec<(Vec<usize>, DVec3)> =
-        vec![((0..points.len()).collect(), rim_normals[points.len() - 1])];
-    while let Some((corners, closing)) = open.pop() {
-        budget.spend(corners.len() as u64 / 16 + 1)?;
-        let n = corners.len();
-        let chosen: Vec<usize> = match n <= CORNERS_MAX {
-            true => (0..n).collect(),
-            false => (0..DIVISIONS).map(|i| i * n / DIVISIONS).chain([n - 1]).collect(),
-        };
-        let at: Vec<DVec3> = chosen.iter().map(|&i| points[corners[i]]).collect();
-        let mut normals: Vec<DVec3> = chosen
-            .windows(2)
-            .map(|side| {
-                let sum: DVec3 = (side[0]..side[1]).map(|i| rim_normals[corners[i]]).sum();
-                sum.normalize_or_zero()
-            })
+    let Smoothed { mut triangles, corners, rim_normals } =
+        close_notches(points, rim_normals, is_free, budget)?;
+    let left: Vec<DVec3> = corners.iter().map(|&i| points[i]).collect();
+    let may = |i: usize, k: usize| is_free(corners[i], corners[k]);
+    let Some(rest) = coarse_to_fine(&left, &rim_normals, &may, budget)? else { return Ok(None) };
+    triangles.extend(rest.into_iter().map(|t| t.map(|i| corners[i])));
+    Ok(Some(triangles))
+}
+
+/// Triangulates a loop by ever more of its corners, each time by chords near the edges of the triangulation before.
+fn coarse_to_fine(
+    points: &[DVec3],
+    rim_normals: &[DVec3],
+    is_free: &impl Fn(usize, usize) -> bool,
+    budget: &Budget,
+) -> Result<Option<Vec<[usize; 3]>>, Stopped> {
+    let n = points.len();
+    let mut step = 1;
+    while n.div_ceil(step) > CORNERS_MAX {
+        step *= 2;
+    }
+    let mut coarser: Option<Vec<[usize; 3]>> = None;
+    while step > 0 {
+        let chosen: Vec<usize> = (0..n).step_by(step).collect();
+        let at: Vec<DVec3> = chosen.iter().map(|&i| points[i]).collect();
+        let normals: Vec<DVec3> = chosen
+            .iter()
+            .map(|&from| rim_normals[from..n.min(from + step)].iter().sum::<DVec3>().normalize_or_zero())
             .collect();
-        normals.push(closing);
-        let may = |i: usize, k: usize| is_free(corners[chosen[i]], corners[chosen[k]]);
-        let Some(own) = minimal::with_least_caps(&at, &normals, may, budget)? else { return Ok(None) };
-        for t in &own.triangles {
-            let [a, b, c] = t.map(|i| at[i]);
-            let facing = (b - a).cross(c - a).normalize_or_zero();
-            for (i, k) in [(t[0], t[1]), (t[1], t[2])] {
-                let is_chain = k == i + 1 && chosen[k] - chosen[i] > 1;
-                if is_chain {
-                    if !may(i, k) {
-                        return Ok(None);
-                    }
-                    open.push((corners[chosen[i]..=chosen[k]].to_vec(), facing));
-                }
+        // The rim between two corners that are left out for now is no side of the loop yet, so nothing is in its way.
+        let may = |i: usize, k: usize| is_free(chosen[i], chosen[k]);
+        let corners = Corners { points: &at, rim_normals: &normals };
+        let found = match &coarser {
+            None => without_crossings(corners, &All { corners: chosen.len() }, may, budget)?,
+            Some(triangles) => {
+                let edges: Vec<_> =
+                    triangles.iter().flat_map(edges_of).map(|edge| edge.map(|i| 2 * i)).collect();
+                let near = Near::new(chosen.len(), &edges, reach(n));
+                budget.spend(edges.len() as u64)?;
+                without_crossings(corners, &near, may, budget)?
             }
-            triangles.push(t.map(|i| corners[chosen[i]]));
+        };
+        let Some(found) = found else { return Ok(None) };
+        coarser = Some(found);
+        step /= 2;
+    }
+    Ok(coarser)
+}
+
+/// The corners of a loop, and the normal of the surface beyond each side.
+#[derive(Clone, Copy)]
+struct Corners<'a> {
+    points: &'a [DVec3],
+    rim_normals: &'a [DVec3],
+}
+
+/// The best triangulation that does not meet itself: chords that go through triangles are barred, and it is searched again.
+/// Of several that meet themselves the one that does so least.
+fn without_crossings(
+    corners: Corners<'_>,
+    chords: &impl Chords,
+    is_free: impl Fn(usize, usize) -> bool,
+    budget: &Budget,
+) -> Result<Option<Vec<[usize; 3]>>, Stopped> {
+    let Corners { points, rim_normals } = corners;
+    let mut barred: FxHashSet<[usize; 2]> = FxHashSet::default();
+    let mut best: Option<(u64, Vec<[usize; 3]>)> = None;
+    for least in [Least::Bend, Least::Area].into_iter().flat_map(|least| [least; SEARCHES]) {
+        let may = |i: usize, k: usize| is_free(i, k) && !barred.contains(&[i, k]);
+        let Some(found) = minimal::with_least_caps(points, rim_normals, chords, least, may, budget)? else {
+            break;
+        };
+        let Meeting { pairs, piercing } = meeting(points, &found.triangles, budget)?;
+        if best.as_ref().is_none_or(|&(least, _)| pairs < least) {
+            best = Some((pairs, found.triangles));
+        }
+        barred.extend(piercing);
+        if pairs == 0 {
+            break;
         }
     }
-    Ok(Some(triangles))
+    Ok(best.map(|(_, triangles)| triangles))
+}
+
+/// How a triangulation meets itself.
+struct Meeting {
+    /// Pairs of triangles.
+    pairs: u64,
+    /// The chords that go through a triangle.
+    piercing: Vec<[usize; 2]>,
+}
+
+fn meeting(points: &[DVec3], triangles: &[[usize; 3]], budget: &Budget) -> Result<Meeting, Stopped> {
+    let triangles: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(|i| i as u32)).collect();
+    let bvh = Bvh::build(points, &triangles, None, budget)?;
+    let search = Search::All { keep: CONTACTS_MAX };
+    let contacts = self_contacts(points, &triangles, &bvh, None, search, budget)?;
+    let mut piercing = Vec::new();
+    for contact in &contacts.list {
+        let pair = [contact.a, contact.b].map(|t| triangles[t as usize].map(|v| v as usize));
+        let before = piercing.len();
+        for [one, other] in [pair, [pair[1], pair[0]]] {
+            let through = edges_of(&one).into_iter().filter(|edge| is_chord(*edge, points.len()));
+            piercing
+                .extend(through.filter(|edge| pierces(edge.map(|i| points[i]), other.map(|i| points[i]))));
+        }
+        if piercing.len() == before {
+            let length = |edge: &[usize; 2]| points[edge[0]].distance(points[edge[1]]);
+            let all = pair.iter().flat_map(edges_of).filter(|edge| is_chord(*edge, points.len()));
+            piercing.extend(all.max_by(|a, b| length(a).total_cmp(&length(b))));
+        }
+    }
+    Ok(Meeting { pairs: contacts.count, piercing })
+}
+
+/// The edges of a triangle, each from its first to its second corner.
+fn edges_of(&[a, b, c]: &[usize; 3]) -> [[usize; 2]; 3] {
+    [[a, b], [b, c], [a, c]].map(|[a, b]| [a.min(b), a.max(b)])
+}
+
+/// True for an edge that is no side of a loop of `n` corners.
+fn is_chord([a, b]: [usize; 2], n: usize) -> bool {
+    b - a != 1 && b - a != n - 1
+}
+
+/// True when the segment passes through the inside of the triangle; what touches it may count or not.
+fn pierces([p, q]: [DVec3; 2], [a, b, c]: [DVec3; 3]) -> bool {
+    let volume = |d: DVec3, e: DVec3, f: DVec3, g: DVec3| (e - d).cross(f - d).dot(g - d);
+    let is_between = volume(a, b, c, p) * volume(a, b, c, q) < 0.0;
+    let sides = [volume(p, q, a, b), volume(p, q, b, c), volume(p, q, c, a)];
+    is_between && (sides.iter().all(|&v| v > 0.0) || sides.iter().all(|&v| v < 0.0))
 }
 
 /// Turns edges while that lessens the worst bend around, or the area.
@@ -195,24 +292,15 @@ mod tests {
     }
 
     #[test]
-    fn a_divided_loop_has_each_side_once() {
-        for n in [129, 200, 4_321, 10_000] {
+    fn a_loop_searched_from_coarse_to_fine_has_each_side_once() {
+        for n in [129, 200, 4_321, 10_000, 20_000] {
             let (points, normals) = (ring(n), vec![DVec3::Z; n]);
             let budget = Budget::unlimited();
-            let triangles = divided(&points, &normals, &|_, _| true, &budget).unwrap().unwrap();
+            let triangles = coarse_to_fine(&points, &normals, &|_, _| true, &budget).unwrap().unwrap();
             assert!(is_disk(n, &triangles), "{n} corners");
-            let best =
-                triangulate(&points, &normals, DVec3::Z, false, |_, _| true, &budget).unwrap().unwrap();
+            let best = triangulate(&points, &normals, DVec3::Z, |_, _| true, &budget).unwrap().unwrap();
             assert!(is_disk(n, &best), "{n} corners");
         }
-    }
-
-    #[test]
-    fn the_first_long_loops_are_searched_until_the_work_is_spent() {
-        let corners = [3, CORNERS_MAX, CORNERS_MAX + 1, LONG_CORNERS_MAX + 1];
-        assert_eq!(searched(corners.into_iter()).collect::<Vec<_>>(), [false, false, true, false]);
-        let many = searched(std::iter::repeat_n(LONG_CORNERS_MAX, 100)).filter(|&is| is).count() as u64;
-        assert_eq!(many, WEIGHINGS_MAX / ((LONG_CORNERS_MAX as u64).pow(3) / 6));
     }
 
     #[test]
@@ -223,7 +311,7 @@ mod tests {
             triangles.iter().map(|t| triangle_area(t.map(|i| points[i]))).sum::<f64>()
         };
         let best = minimal::triangulate(&points, &normals, |_, _| true, &budget).unwrap().unwrap();
-        let found = triangulate(&points, &normals, DVec3::Z, false, |_, _| true, &budget).unwrap().unwrap();
+        let found = triangulate(&points, &normals, DVec3::Z, |_, _| true, &budget).unwrap().unwrap();
         assert!(area(&found) < 1.05 * area(&best), "{} {}", area(&found), area(&best));
     }
 }

@@ -167,7 +167,7 @@ fn least_bent(region: &Region, surface: &Surface, budget: &Budget) -> Result<Tri
     let is_free = |i: usize, k: usize| surface.is_free(rim[polygon[i]], rim[polygon[k]]);
     let triangles = match polygon.len() <= minimal::CORNERS_MAX {
         true => minimal::triangulate(&points, &normals, is_free, budget)?,
-        false => large::triangulate(&points, &normals, region.normal, region.is_searched, is_free, budget)?,
+        false => large::triangulate(&points, &normals, region.normal, is_free, budget)?,
     };
     let corners = triangles.map(|triangles| triangles.into_iter().map(|t| t.map(|i| polygon[i])).collect());
     Ok(corners.ok_or(Rejection::NoPatch))

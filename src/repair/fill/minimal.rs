@@ -1,17 +1,17 @@
 //! The triangulation of a loop in space whose triangles bend least, and among those the smallest.
 //!
 //! Liepa, "Filling holes in meshes" (2003), after Barequet and Sharir (1995): dynamic programming over the polygons
-//! that a diagonal cuts off, O(n³) for n corners. The worst bend is measured by one minus the cosine of the angle between
-//! neighbouring triangles, which orders as the angle does. As in Liepa, the best of what a diagonal cuts off is chosen before
-//! it is known how it bends over that diagonal, so that the worst bend of all may not be the least there is.
+//! that a chord cuts off, O(n³) for n corners where every chord may be taken. The worst bend is measured by one minus the
+//! cosine of the angle between neighbouring triangles, which orders as the angle does. As in Liepa, the best of what a chord
+//! cuts off is chosen before it is known how it bends over that chord, so that the worst bend of all may not be the least
+//! there is.
 
+use super::chords::{All, Chords};
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 
-/// Corners up to which every loop is triangulated this way; about 350,000 weighings.
+/// Corners up to which every chord of a loop is looked at; about 350,000 weighings.
 pub(super) const CORNERS_MAX: usize = 128;
-/// Most corners of a loop that can be triangulated this way; about 10,000,000 weighings.
-pub(super) const LONG_CORNERS_MAX: usize = 400;
 
 /// Triangles without area of a triangulation, its worst bend, and its area.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
@@ -26,25 +26,40 @@ pub(super) fn bend(normal: DVec3, other: DVec3) -> f64 {
     if normal == DVec3::ZERO || other == DVec3::ZERO { 0.0 } else { 1.0 - normal.dot(other) }
 }
 
-/// A table over the pairs `i < k` of corners: the best triangulation of the polygon from corner `i` to corner `k`.
-struct Table<'a> {
+/// What the best triangulation has least of, after triangles without area.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Least {
+    /// Its worst bend, then its area.
+    Bend,
+    /// Its area.
+    Area,
+}
+
+/// A table over chords: the best triangulation of the polygon from corner `i` to corner `k`.
+struct Table<'a, C> {
     points: &'a [DVec3],
     rim_normals: &'a [DVec3],
+    chords: &'a C,
+    least: Least,
     weight: Vec<Weight>,
-    /// The third corner of the triangle on the diagonal from `i` to `k`.
+    /// The third corner of the triangle on the chord from `i` to `k`.
     apex: Vec<usize>,
 }
 
 /// Triangles of the loop through `points`, in its direction, all with an area; `None` when there are none or the loop is too
 /// long. `rim_normals[i]` is the unit normal of the surface beyond the edge from corner `i` on; `is_free(i, k)` says whether a
-/// diagonal may run between two corners.
+/// chord may run between two corners.
 pub(super) fn triangulate(
     points: &[DVec3],
     rim_normals: &[DVec3],
     is_free: impl Fn(usize, usize) -> bool,
     budget: &Budget,
 ) -> Result<Option<Vec<[usize; 3]>>, Stopped> {
-    let found = with_least_caps(points, rim_normals, is_free, budget)?;
+    if points.len() > CORNERS_MAX {
+        return Ok(None);
+    }
+    let all = All { corners: points.len() };
+    let found = with_least_caps(points, rim_normals, &all, Least::Bend, is_free, budget)?;
     Ok(found.filter(|found| found.caps == 0).map(|found| found.triangles))
 }
 
@@ -54,51 +69,69 @@ pub(super) struct Found {
     caps: u32,
 }
 
-/// As [`triangulate`], with triangles without area where there is no other way: the corners of a straight piece of a rim.
+/// As [`triangulate`], by the given chords only, and with triangles without area where there is no other way: the corners of
+/// a straight piece of a rim.
 pub(super) fn with_least_caps(
     points: &[DVec3],
     rim_normals: &[DVec3],
+    chords: &impl Chords,
+    least: Least,
     is_free: impl Fn(usize, usize) -> bool,
     budget: &Budget,
 ) -> Result<Option<Found>, Stopped> {
     let n = points.len();
-    if !(3..=LONG_CORNERS_MAX).contains(&n) {
+    if n < 3 {
         return Ok(None);
     }
-    let mut table = Table { points, rim_normals, weight: vec![NOTHING; n * n], apex: vec![0; n * n] };
-    for span in 2..n {
-        for i in 0..n - span {
-            budget.spend(span as u64 / 8)?;
-            let k = i + span;
-            let is_rim = span == n - 1;
-            (table.weight[i * n + k], table.apex[i * n + k]) =
-                if is_rim || is_free(i, k) { table.best(i, k) } else { (IMPOSSIBLE, 0) };
+    let mut table = Table {
+        points,
+        rim_normals,
+        chords,
+        least,
+        weight: vec![NOTHING; chords.len()],
+        apex: vec![0; chords.len()],
+    };
+    let mut spent = 0;
+    for (i, k) in chords.shortest_first() {
+        if k == i + 1 {
+            continue;
         }
+        let is_rim = k - i == n - 1;
+        let (best, looked) = if is_rim || is_free(i, k) { table.best(i, k) } else { ((IMPOSSIBLE, 0), 1) };
+        if let Some(chord) = chords.find(i, k) {
+            (table.weight[chord], table.apex[chord]) = best;
+        }
+        spent += looked;
+        budget.spend(spent / 8)?;
+        spent %= 8;
     }
-    let Weight(caps, ..) = table.weight[n - 1];
-    Ok((table.weight[n - 1] < IMPOSSIBLE).then(|| Found { triangles: table.triangles(), caps }))
+    let Some(Weight(caps, ..)) = table.weight_of(0, n - 1).filter(|&weight| weight < IMPOSSIBLE) else {
+        return Ok(None);
+    };
+    Ok(Some(Found { triangles: table.triangles(), caps }))
 }
 
-impl Table<'_> {
-    fn n(&self) -> usize {
-        self.points.len()
+impl<C: Chords> Table<'_, C> {
+    fn weight_of(&self, i: usize, k: usize) -> Option<Weight> {
+        self.chords.find(i, k).map(|chord| self.weight[chord])
     }
 
-    /// The best triangle on the diagonal from `i` to `k`, and the weight of all it cuts off.
-    fn best(&self, i: usize, k: usize) -> (Weight, usize) {
-        let mut best = (IMPOSSIBLE, 0);
-        for m in i + 1..k {
-            let weight = self.weigh(i, m, k);
+    /// The best triangle on the chord from `i` to `k` with the weight of all it cuts off, and how many were weighed.
+    fn best(&self, i: usize, k: usize) -> ((Weight, usize), u64) {
+        let (mut best, mut looked) = ((IMPOSSIBLE, 0), 0);
+        self.chords.visit_thirds(i, k, |m, chords| {
+            looked += 1;
+            let weight = self.weigh([i, m, k], chords);
             if weight < best.0 {
                 best = (weight, m);
             }
-        }
-        best
+        });
+        (best, looked)
     }
 
-    fn weigh(&self, i: usize, m: usize, k: usize) -> Weight {
-        let n = self.n();
-        let (one, other) = (self.weight[i * n + m], self.weight[m * n + k]);
+    /// `chords` are those from `i` to `m` and from `m` to `k`.
+    fn weigh(&self, [i, m, k]: [usize; 3], chords: [usize; 2]) -> Weight {
+        let [one, other] = chords.map(|chord| self.weight[chord]);
         if one == IMPOSSIBLE || other == IMPOSSIBLE {
             return IMPOSSIBLE;
         }
@@ -107,9 +140,13 @@ impl Table<'_> {
             Some(facing) => (0, facing),
             None => (1, (DVec3::ZERO, 0.0)),
         };
+        if self.least == Least::Area {
+            return Weight(caps_a + caps_b + cap, 0.0, area_a + area_b + area);
+        }
         let bend = |other: DVec3| bend(normal, other);
-        let mut worst = bend_a.max(bend_b).max(bend(self.beyond(i, m))).max(bend(self.beyond(m, k)));
-        if k - i == n - 1 {
+        let beyond = [self.beyond(i, m, chords[0]), self.beyond(m, k, chords[1])].map(bend);
+        let mut worst = bend_a.max(bend_b).max(beyond[0]).max(beyond[1]);
+        if k - i == self.points.len() - 1 {
             worst = worst.max(bend(self.rim_normals[k]));
         }
         Weight(caps_a + caps_b + cap, worst, area_a + area_b + area)
@@ -122,23 +159,24 @@ impl Table<'_> {
         (length > 0.0 && length.is_finite()).then(|| (cross / length, length / 2.0))
     }
 
-    /// Normal of the triangle beyond the edge from `a` to `b`, in the patch or on the rim.
-    fn beyond(&self, a: usize, b: usize) -> DVec3 {
+    /// Normal of the triangle beyond the chord from `a` to `b`, in the patch or on the rim.
+    fn beyond(&self, a: usize, b: usize, chord: usize) -> DVec3 {
         if b == a + 1 {
             return self.rim_normals[a];
         }
-        let apex = self.apex[a * self.n() + b];
-        self.facing(a, apex, b).map_or(DVec3::ZERO, |(normal, _)| normal)
+        self.facing(a, self.apex[chord], b).map_or(DVec3::ZERO, |(normal, _)| normal)
     }
 
     /// The triangles of the best triangulation of all.
     fn triangles(&self) -> Vec<[usize; 3]> {
-        let n = self.n();
+        let n = self.points.len();
         let mut triangles = Vec::with_capacity(n - 2);
         let mut open = vec![(0, n - 1)];
         while let Some((i, k)) = open.pop() {
-            if k > i + 1 {
-                let m = self.apex[i * n + k];
+            if k > i + 1
+                && let Some(chord) = self.chords.find(i, k)
+            {
+                let m = self.apex[chord];
                 triangles.push([i, m, k]);
                 open.extend([(i, m), (m, k)]);
             }

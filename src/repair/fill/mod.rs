@@ -9,6 +9,7 @@ mod accept;
 mod blend;
 mod bridge;
 mod caps;
+mod chords;
 mod class;
 mod creased;
 mod ears;
@@ -17,6 +18,7 @@ mod fair;
 mod large;
 mod make;
 mod minimal;
+mod notches;
 mod options;
 mod patch;
 mod planar;
@@ -106,11 +108,7 @@ fn fill_loops(
     let ladder = Ladder { draft, soup, options };
     let outward = |h: u32| surface.outward(h);
     let outward: Option<&dyn Fn(u32) -> DVec3> = if options.bridges { Some(&outward) } else { None };
-    let mut regions = regions(loops, |h| surface.point(h), outward, budget)?;
-    let corners: Vec<usize> = regions.iter().map(|region| region.rim().len()).collect();
-    for (region, is_searched) in regions.iter_mut().zip(large::searched(corners.into_iter())) {
-        region.is_searched = is_searched;
-    }
+    let regions = regions(loops, |h| surface.point(h), outward, budget)?;
     let mut open: Vec<Hole> =
         regions.into_iter().map(|region| ladder.start(region, Vec::new(), &surface)).collect();
     let has_field = open.iter().any(|hole| hole.ways.contains(&Way::Rbf));

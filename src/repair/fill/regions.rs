@@ -23,8 +23,6 @@ pub(super) struct Region {
     pub(super) normal: DVec3,
     /// True when all loops lie in one plane, as nearly as float32 can say.
     pub(super) is_flat: bool,
-    /// True when all triangulations may be searched although the rim is long.
-    pub(super) is_searched: bool,
     /// The half-edges of all loops.
     rim: Vec<u32>,
 }
@@ -32,7 +30,7 @@ pub(super) struct Region {
 impl Region {
     fn new(loops: Vec<BoundaryLoop>, normal: DVec3, is_flat: bool) -> Self {
         let rim = loops.concat();
-        Self { loops, normal, is_flat, is_searched: false, rim }
+        Self { loops, normal, is_flat, rim }
     }
 
     /// The half-edges of all loops, one after the other.

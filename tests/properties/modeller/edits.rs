@@ -152,10 +152,12 @@ fn edit(shape: usize, seed: u64, count: usize, tally: &mut BTreeMap<String, usiz
 #[test]
 #[allow(clippy::print_stdout, reason = "the campaign's table")]
 fn modeller_random_operators_on_the_zoo_keep_every_solid_valid() {
-    let per_shape = crate::support::cases(24, 48_000);
-    let tallies = crate::support::on_all_cores(zoo().len(), |shape| {
+    // Runs of each shape, and operators of each run.
+    let (runs, operators) = (crate::support::cases(1, 40), crate::support::cases(24, 1200));
+    let shapes = zoo().len();
+    let tallies = crate::support::on_all_cores(shapes * runs, |run| {
         let mut tally = BTreeMap::new();
-        edit(shape, 1000 + shape as u64, per_shape, &mut tally);
+        edit(run % shapes, 1000 + run as u64, operators, &mut tally);
         tally
     });
     let mut all: BTreeMap<String, usize> = BTreeMap::new();

@@ -151,7 +151,7 @@ fn model_at(model: &Model, moved: usize, s: &RBig) -> Option<Model> {
     for (v, faces) in around {
         corners.insert(v, super::oracle::meet(&rows, &faces)?);
     }
-    Some(Model { rows, loops: model.loops.clone(), corners })
+    Some(Model::new(rows, model.loops.clone(), corners))
 }
 
 /// The first time of the sweep at which the model is not valid: tried between and at all candidates, in order.

@@ -107,7 +107,7 @@ impl Side<'_> {
             return minimal::triangulate(points, &normals, is_free, budget);
         }
         let normal = normals.iter().sum::<DVec3>().normalize_or_zero();
-        large::triangulate(points, &normals, normal, false, is_free, budget)
+        large::triangulate(points, &normals, normal, is_free, budget)
     }
 
     /// The half-edge of the rim at each corner; `None` for those on curves.
