@@ -102,17 +102,6 @@ pub(super) struct Variant {
     pub(super) thickens: bool,
     /// Needles and caps go, where that is chosen.
     pub(super) mends_thin_faces: bool,
-    /// Bodies that pass through each other become one.
-    pub(super) unites: Option<Copies>,
-}
-
-/// What becomes of copies of triangles before bodies are united.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Copies {
-    /// They stay: they may be faces of different bodies that lie on each other.
-    Stay,
-    /// They go: what is left may be closed without them.
-    Go,
 }
 
 impl Variant {
@@ -125,22 +114,19 @@ impl Variant {
         let welded = [Step::Weld, Step::DropDegenerate].into_iter().chain(collinear);
         let parts =
             (!choices.removed_parts.is_empty()).then(|| Step::RemoveParts(choices.removed_parts.clone()));
-        let drop = (self.unites != Some(Copies::Stay)).then_some(Step::DropDuplicates(self.opposite));
-        let single = [Step::SplitTVertices].into_iter().chain(drop);
+        let single = [Step::SplitTVertices, Step::DropDuplicates(self.opposite)];
         let near = (choices.snap_epsilon > 0.0)
             .then_some(Step::DropNearDuplicates { epsilon: choices.snap_epsilon });
         let remove = self.removes_crossing.map(|rings| Step::RemoveCrossing { rings });
         let orient = choices.orients.then_some(Step::Orient);
         // What is not cut cannot be joined by the rules of a manifold.
-        let is_cut_later = self.unites.is_some();
         let join = choices.cuts.then(|| {
             // Which copies belong together matters only where they come apart for good.
-            let contact = self.contact.filter(|_| !is_cut_later);
-            let pair = contact.map(|contact| match contact {
+            let pair = self.contact.map(|contact| match contact {
                 Contact::Open => Step::PairSheets(Across::Solid),
                 Contact::Join => Step::PairSheets(Across::Void),
             });
-            let pinch = contact.map(|_| Step::Pinch(ChosenEdges::default(), Validity::Exact));
+            let pinch = self.contact.map(|_| Step::Pinch(ChosenEdges::default(), Validity::Exact));
             // Only what coincides, so that no vertex moves, unless the caller says how far.
             let snap = Step::Snap(SnapOptions {
                 epsilon: Some(choices.snap_epsilon),
@@ -164,18 +150,6 @@ impl Variant {
     /// certified has none. `has_contacts`: triangles of the input meet beyond common vertices and edges. Nothing that
     /// mends adds a contact, but moving vertices can.
     pub(super) fn solidifying(self, choices: &Choices, has_contacts: bool) -> Vec<Step> {
-        if self.unites.is_some() {
-            // What is united has no hidden walls, and what is inside of it are cavities.
-            let apart = [
-                Step::PairSheets(Across::Solid),
-                Step::Cut(CutOptions::default()),
-                Step::Pinch(ChosenEdges::default(), Validity::Exact),
-                Step::OpenContacts,
-                Step::JoinCopies,
-            ];
-            let apart = if self.contact.is_some() { apart.to_vec() } else { Vec::new() };
-            return [Step::JoinCopies, Step::Unite].into_iter().chain(apart).collect();
-        }
         let moves = self.thickens || self.rounds || self.clears_noise || self.contact.is_some();
         let join = (self.contact == Some(Contact::Join)).then_some(Step::JoinContacts { size: choices.wall });
         let open = self.contact.map(|_| Step::OpenContacts);

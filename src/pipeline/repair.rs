@@ -3,7 +3,7 @@
 use super::fidelity::{Fidelity, Original};
 use super::input::Input;
 use super::output::{Candidate, NoCandidate};
-use super::plan::{Attempt, Copies, Step, Variant};
+use super::plan::{Attempt, Step, Variant};
 use super::rebuild::{NotRebuilt, Rebuilt};
 use super::remedies::{Choices, PlanMismatch, Walls};
 use super::{
@@ -273,7 +273,6 @@ impl Search<'_> {
         let rounds = self.needs_f32();
         let mut variant = Variant { clears_noise, rounds, thickens, mends_thin_faces: true, ..first };
         let mut fails_in_f32 = false;
-        let mut may_unite = self.may_unite();
         loop {
             let (mended, last) = self.attempt(variant)?;
             if last.draft.triangles.is_empty() {
@@ -297,49 +296,11 @@ impl Search<'_> {
                 variant.mends_thin_faces = false;
                 continue;
             }
-            if std::mem::take(&mut may_unite)
-                && let Some(found) = self.united(variant)?
-            {
-                return Ok(Found::Certified(Box::new(found)));
-            }
             let Some(next) = self.next(variant, clears_noise, &last, fails_in_f32)? else {
                 return Ok(Found::nothing(Refusal::NotRepairable { witness }, last, mended));
             };
             variant = next;
         }
-    }
-
-    /// True when triangles of the input pass through each other or overlap, and not too many do.
-    fn may_unite(&self) -> bool {
-        let shells_are_chosen = self.choices.nesting != Policy::AsOriented || !self.choices.shells.is_empty();
-        let contacts = self.input.examination.contacts.as_ref();
-        self.choices.removes_crossing
-            && !shells_are_chosen
-            && contacts.is_none_or(|contacts| contacts.count > 0)
-    }
-
-    /// The bodies of what `variant` mends as one, if that is certified: first with the copies of triangles, which may be faces of
-    /// different bodies, and where it is not closed so without them; then with bodies apart that only touch.
-    fn united(&self, variant: Variant) -> Result<Option<(Attempt, Candidate)>, Failure> {
-        for copies in [Copies::Stay, Copies::Go] {
-            for contact in [None, Some(Contact::Open)] {
-                let (_, attempt) = self.attempt(Variant { unites: Some(copies), contact, ..variant })?;
-                if attempt.count("triangles_after") == 0 {
-                    break;
-                }
-                match write(&attempt.draft, self.input, self.encoding, Depth::FirstViolation, self.budget) {
-                    Ok(candidate) if candidate.certificate().is_printable() => {
-                        return Ok(Some((attempt, candidate)));
-                    }
-                    Ok(_) | Err(NoCandidate::Refused(_)) => {}
-                    Err(NoCandidate::Failed(failure)) => return Err(failure),
-                }
-                if contact.is_some() {
-                    return Ok(None);
-                }
-            }
-        }
-        Ok(None)
     }
 
     /// Runs a plan: the mended mesh if the best effort may be asked for it, and the one that may be a solid.

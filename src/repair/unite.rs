@@ -174,3 +174,93 @@ fn turn_inverted(draft: &mut Draft, budget: &Budget) -> Result<u64, Stopped> {
     }
     Ok(turned.len() as u64)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Cubes of these sides from these corners on; `true`: turned inside out.
+    fn cubes(of: &[(DVec3, f64, bool)]) -> Draft {
+        const SIDES: [[u32; 3]; 12] = [
+            [0, 2, 1],
+            [1, 2, 3],
+            [4, 5, 6],
+            [5, 7, 6],
+            [0, 1, 4],
+            [1, 5, 4],
+            [2, 6, 3],
+            [3, 6, 7],
+            [0, 4, 2],
+            [2, 4, 6],
+            [1, 3, 5],
+            [3, 7, 5],
+        ];
+        let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+        for &(low, size, is_turned) in of {
+            let first = positions.len() as u32;
+            let bit = |i: u32, k: u32| f64::from(i >> k & 1);
+            positions.extend((0..8).map(|i| low + size * DVec3::new(bit(i, 0), bit(i, 1), bit(i, 2))));
+            let turn = |[a, b, c]: [u32; 3]| if is_turned { [a, c, b] } else { [a, b, c] };
+            triangles.extend(SIDES.map(turn).map(|t| t.map(|v| first + v)));
+        }
+        Draft {
+            vertex_origin: (0..positions.len() as u32).collect(),
+            triangle_origin: (0..triangles.len() as u32).collect(),
+            positions,
+            triangles,
+            two_sided: Vec::new(),
+            blends: Default::default(),
+            polygons: Default::default(),
+        }
+    }
+
+    fn volume(draft: &Draft) -> f64 {
+        let of = |t: usize| {
+            let [a, b, c] = draft.corners(t);
+            a.cross(b).dot(c) / 6.0
+        };
+        (0..draft.triangles.len()).map(of).sum()
+    }
+
+    #[test]
+    fn overlapping_cubes_become_one_body_and_keep_what_nothing_passes_through() {
+        let middle = DVec3::new(1.0, 0.75, 0.5);
+        for is_turned in [false, true] {
+            let mut draft = cubes(&[(DVec3::ZERO, 2.0, false), (middle, 2.0, is_turned)]);
+            let before = draft.triangles.clone();
+            let changes = unite(&mut draft, &Budget::unlimited()).unwrap();
+            assert_eq!(changes.count("shells_turned"), u64::from(is_turned));
+            assert_eq!((volume(&draft), changes.move_max), (16.0 - 1.25 * 1.5, 0.0));
+            let groups =
+                EdgeGroups::build(&draft.triangles, draft.positions.len(), &Budget::unlimited()).unwrap();
+            assert!(groups.iter().all(|group| group.len() == 2));
+            // The three sides of each cube that the other one does not reach stay as they are.
+            let places = |t: [u32; 3], of: &Draft| t.map(|v| of.positions[v as usize].to_array());
+            let first = cubes(&[(DVec3::ZERO, 2.0, false), (middle, 2.0, false)]);
+            let kept = |t: &&[u32; 3]| {
+                let old = places(**t, &first);
+                let is_old = |own: &[u32; 3]| {
+                    (0..3).any(|k| {
+                        let new = places(*own, &draft);
+                        [new[k], new[(k + 1) % 3], new[(k + 2) % 3]] == old
+                    })
+                };
+                draft.triangles.iter().any(is_old)
+            };
+            assert_eq!(before.len(), 24);
+            assert!(first.triangles.iter().filter(kept).count() >= 12);
+            assert_eq!(draft.check(), Vec::<String>::new());
+        }
+    }
+
+    #[test]
+    fn a_draft_that_is_open_is_left_as_it_is() {
+        let mut draft = cubes(&[(DVec3::ZERO, 2.0, false), (DVec3::ONE, 2.0, false)]);
+        draft.triangles.pop();
+        draft.triangle_origin.pop();
+        let before = draft.triangles.clone();
+        let changes = unite(&mut draft, &Budget::unlimited()).unwrap();
+        assert_eq!((draft.triangles, changes.count("vertices_added")), (before, 0));
+        assert!(changes.reason.starts_with("bodies were not united"), "{}", changes.reason);
+    }
+}
