@@ -1,6 +1,7 @@
 //! How far a result is from its input, what of the input it lost, and whether that is little enough.
 
 use super::{FidelityVerdict, Limits, Refusal};
+use crate::analysis::Analysis;
 use crate::budget::{Budget, CHECK_EVERY, Stage, Stopped};
 use crate::distance::{
     DirectedDistance, DistanceOptions, FarPoint, Sight, Surface, SurfaceDistance, directed_distance,
@@ -88,6 +89,12 @@ impl Fidelity {
         let order = a.0.cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.total_cmp(&b.2)).then(a.3.total_cmp(&b.3));
         order.is_le()
     }
+}
+
+/// The volume of an input, where it is defined: that of bodies which pass through each other counts what they share twice.
+pub(super) fn defined_volume(before: Option<&Analysis>) -> Option<f64> {
+    let embedded = before.filter(|analysis| analysis.properties.is_embedded != Some(false));
+    embedded.and_then(|analysis| analysis.measures.volume)
 }
 
 /// An input to measure results against.

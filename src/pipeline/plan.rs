@@ -66,8 +66,18 @@ pub enum Step {
         /// Thickness, in the unit of the file.
         wall: f64,
     },
+    /// What is open is closed by triangles between its rims that may pass through others.
+    SpanRims,
     /// Bodies that pass through each other or overlap become one.
-    Unite,
+    Unite {
+        /// Triangles with void on both sides become walls of this thickness, in the unit of the file; `None`: they go.
+        wall: Option<f64>,
+    },
+    /// Small bodies are taken out where the solid touches itself.
+    BoreContacts {
+        /// From their middle out, in steps of the lattice.
+        steps: u32,
+    },
     /// Bodies that touch become one.
     JoinContacts {
         /// Thickness of the necks between them, in the unit of the file.
@@ -104,16 +114,78 @@ pub(super) struct Variant {
     pub(super) mends_thin_faces: bool,
 }
 
+/// What bodies are made of that are to be united.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Uniting {
+    /// The triangles as they are, copies too: each says what is solid behind it.
+    AsDrawn,
+    /// What the steps that mend the surface make of them; what is open then is spanned.
+    Mended,
+    /// The triangles as they are; what is open is spanned.
+    Spanned,
+    /// As `Mended`, with walls behind open parts.
+    Thickened,
+    /// As `Spanned`, with walls behind triangles that bound nothing.
+    Walled,
+}
+
+/// Steps of the lattice by which contacts are bored, one time after the other: a body that is taken out can touch what is beside
+/// it, and a larger one takes that too.
+const BORINGS: [u32; 4] = [16, 64, 256, 1024];
+
+const UNITE: Step = Step::Unite { wall: None };
+
 impl Variant {
+    /// The steps that unite bodies which pass through each other.
+    pub(super) fn uniting(self, uniting: Uniting, choices: &Choices) -> Vec<Step> {
+        let mended = Self { contact: None, ..self };
+        let (mut steps, may_be_open) = match uniting {
+            Uniting::AsDrawn => (self.welding(choices), false),
+            Uniting::Mended => (mended.mending(choices), choices.fills_all_holes()),
+            Uniting::Spanned | Uniting::Walled => (self.welding(choices), true),
+            Uniting::Thickened => (Self { thickens: true, ..mended }.mending(choices), false),
+        };
+        steps.push(Step::JoinCopies);
+        steps.extend(may_be_open.then_some(Step::SpanRims));
+        let wall = (uniting == Uniting::Walled).then_some(choices.wall);
+        steps.push(Step::Unite { wall });
+        steps
+    }
+
+    /// What may follow where the united bodies are no solid yet: what touches itself is joined or parted, what meets after that or
+    /// after rounding is united once more, and what still touches is bored.
+    pub(super) fn settling(contact: Contact, choices: &Choices) -> Vec<Vec<Step>> {
+        let mut tries = vec![vec![UNITE], Self::parting(contact, choices), vec![UNITE]];
+        tries.extend(BORINGS.map(|steps| vec![Step::BoreContacts { steps }]));
+        tries
+    }
+
+    /// The steps that join what touches itself, or part it.
+    fn parting(contact: Contact, choices: &Choices) -> Vec<Step> {
+        let pinch = Step::Pinch(ChosenEdges::default(), Validity::Exact);
+        let mut steps = vec![Step::pairing(contact), Step::Cut(CutOptions::default()), pinch];
+        if contact == Contact::Join {
+            steps.push(Step::JoinContacts { size: choices.wall });
+        }
+        steps.extend([Step::OpenContacts, Step::JoinCopies]);
+        steps
+    }
+
+    /// The steps that take what is no triangle away and make vertices at one place one.
+    fn welding(self, choices: &Choices) -> Vec<Step> {
+        let mut steps = vec![Step::SplitPolygons(DegenerateFaces::Split)];
+        steps.extend(self.clears_noise.then_some(Step::ClearNoise));
+        steps.extend(self.rounds.then_some(Step::RoundToF32));
+        steps.extend([Step::Weld, Step::DropDegenerate]);
+        steps.extend(choices.splits_collinear.then_some(Step::SplitCollinear));
+        if !choices.removed_parts.is_empty() {
+            steps.push(Step::RemoveParts(choices.removed_parts.clone()));
+        }
+        steps
+    }
+
     /// The steps that mend the surface, least invasive first; each finds what those before it leave.
     pub(super) fn mending(self, choices: &Choices) -> Vec<Step> {
-        let clear = self.clears_noise.then_some(Step::ClearNoise);
-        let round = self.rounds.then_some(Step::RoundToF32);
-        let split = Step::SplitPolygons(DegenerateFaces::Split);
-        let collinear = choices.splits_collinear.then_some(Step::SplitCollinear);
-        let welded = [Step::Weld, Step::DropDegenerate].into_iter().chain(collinear);
-        let parts =
-            (!choices.removed_parts.is_empty()).then(|| Step::RemoveParts(choices.removed_parts.clone()));
         let single = [Step::SplitTVertices, Step::DropDuplicates(self.opposite)];
         let near = (choices.snap_epsilon > 0.0)
             .then_some(Step::DropNearDuplicates { epsilon: choices.snap_epsilon });
@@ -122,10 +194,7 @@ impl Variant {
         // What is not cut cannot be joined by the rules of a manifold.
         let join = choices.cuts.then(|| {
             // Which copies belong together matters only where they come apart for good.
-            let pair = self.contact.map(|contact| match contact {
-                Contact::Open => Step::PairSheets(Across::Solid),
-                Contact::Join => Step::PairSheets(Across::Void),
-            });
+            let pair = self.contact.map(Step::pairing);
             let pinch = self.contact.map(|_| Step::Pinch(ChosenEdges::default(), Validity::Exact));
             // Only what coincides, so that no vertex moves, unless the caller says how far.
             let snap = Step::Snap(SnapOptions {
@@ -141,8 +210,7 @@ impl Variant {
         };
         let thin = (self.mends_thin_faces && choices.mends_thin_faces())
             .then_some(Step::MendThinFaces(choices.thin_faces));
-        let start = [split].into_iter().chain(clear).chain(round).chain(welded).chain(parts).chain(single);
-        let start = start.chain(near);
+        let start = self.welding(choices).into_iter().chain(single).chain(near);
         start.chain(remove).chain(orient).chain(join.into_iter().flatten()).chain(thin).chain(fill).collect()
     }
 
@@ -163,6 +231,14 @@ impl Variant {
 }
 
 impl Step {
+    /// What decides which copies belong together where bodies touch.
+    fn pairing(contact: Contact) -> Self {
+        Self::PairSheets(match contact {
+            Contact::Open => Across::Solid,
+            Contact::Join => Across::Void,
+        })
+    }
+
     /// Name in reports.
     pub fn name(&self) -> &'static str {
         match self {
@@ -181,7 +257,9 @@ impl Step {
             Self::RemoveCrossing { .. } => "remove-crossing",
             Self::PairSheets(_) => "pair-sheets",
             Self::JoinContacts { .. } => "join-contacts",
-            Self::Unite => "unite",
+            Self::SpanRims => "span-rims",
+            Self::Unite { .. } => "unite",
+            Self::BoreContacts { .. } => "bore-contacts",
             Self::DropNearDuplicates { .. } => "drop-near-duplicates",
             Self::OpenContacts => "open-contacts",
             Self::FillHoles(_) => "fill-holes",
@@ -214,12 +292,13 @@ impl Step {
                 DefectCode::MisnestedShell,
                 DefectCode::ZeroVolumeShell,
             ],
-            Self::RemoveCrossing { .. } | Self::Unite => {
+            Self::RemoveCrossing { .. } | Self::Unite { .. } => {
                 &[DefectCode::SelfIntersection, DefectCode::Overlap, DefectCode::Touch]
             }
-            Self::PairSheets(_) | Self::JoinContacts { .. } | Self::OpenContacts => {
-                &[DefectCode::NonManifoldEdge, DefectCode::NonManifoldVertex]
-            }
+            Self::PairSheets(_)
+            | Self::JoinContacts { .. }
+            | Self::OpenContacts
+            | Self::BoreContacts { .. } => &[DefectCode::NonManifoldEdge, DefectCode::NonManifoldVertex],
             Self::DropNearDuplicates { .. } => &[DefectCode::BoundaryLoop, DefectCode::DoubleSkin],
             Self::SplitPolygons(_) => &[DefectCode::CoincidentCorners, DefectCode::DuplicateVertex],
             Self::Weld => &[DefectCode::DuplicateVertex],
@@ -230,7 +309,7 @@ impl Step {
             Self::Cut(_) => {
                 &[DefectCode::NonManifoldEdge, DefectCode::NonManifoldVertex, DefectCode::NonOrientable]
             }
-            Self::SplitTVertices | Self::Pinch(..) | Self::Snap(_) | Self::FillHoles(_) => {
+            Self::SplitTVertices | Self::Pinch(..) | Self::Snap(_) | Self::FillHoles(_) | Self::SpanRims => {
                 &[DefectCode::BoundaryLoop]
             }
             Self::Nest(_) => &[DefectCode::InvertedShell, DefectCode::MisnestedShell],
@@ -259,7 +338,9 @@ impl Step {
             Self::Pinch(chosen, validity) => repair::pinch::pinch(draft, chosen, *validity, budget),
             Self::Snap(options) => repair::snap::snap(draft, options, budget),
             Self::RemoveCrossing { rings } => repair::crossing::remove_crossing(draft, *rings, budget),
-            Self::Unite => repair::unite::unite(draft, budget),
+            Self::SpanRims => repair::fill::span_rims(draft, budget),
+            Self::Unite { wall } => repair::unite::unite(draft, *wall, budget),
+            Self::BoreContacts { steps } => repair::bore::bore_contacts(draft, *steps, budget),
             Self::OpenContacts => repair::contact::open_contacts(draft, budget),
             Self::JoinContacts { size } => repair::joint::join_contacts(draft, *size, budget),
             Self::PairSheets(across) => repair::pair_sheets::pair_sheets(draft, *across, budget),
@@ -334,6 +415,11 @@ impl Attempt {
     /// True when needles, caps or folds went.
     pub(super) fn has_mended_thin_faces(&self) -> bool {
         ["needles_collapsed", "caps_flipped", "folds_closed"].into_iter().any(|name| self.count(name) > 0)
+    }
+
+    /// True when bodies were united.
+    pub(super) fn has_united(&self) -> bool {
+        self.count("triangles_after") > 0
     }
 
     /// Count of this name, over all steps.

@@ -253,7 +253,21 @@ pub enum PlanStep {
         size: f64,
     },
     /// Bodies that pass through each other or overlap become one.
-    Unite {},
+    Unite {
+        /// Triangles with void on both sides become walls of this thickness, in the unit of the file; left out: they go.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schema(minimum = 0.0)]
+        wall: Option<f64>,
+    },
+    /// Where the solid touches itself, a body of some steps of the print lattice is taken out of it.
+    BoreContacts {
+        /// From its middle out, in steps of the lattice.
+        #[serde(deserialize_with = "whole")]
+        #[schema(maximum = 65_536)]
+        steps: u32,
+    },
+    /// What is still open is closed by triangles between its rims that may pass through others; `unite` resolves that.
+    SpanRims {},
     /// Bodies that touch are drawn apart.
     OpenContacts {},
     /// Vertices at one position become one again.
@@ -547,7 +561,9 @@ impl PlanStep {
             }
             Self::Thicken { wall } => Step::Thicken { wall: *wall },
             Self::JoinContacts { size } => Step::JoinContacts { size: *size },
-            Self::Unite {} => Step::Unite,
+            Self::Unite { wall } => Step::Unite { wall: *wall },
+            Self::BoreContacts { steps } => Step::BoreContacts { steps: *steps },
+            Self::SpanRims {} => Step::SpanRims,
             Self::OpenContacts {} => Step::OpenContacts,
             Self::JoinCopies {} => Step::JoinCopies,
             Self::Nest { nesting, chosen } => Step::Nest(NestOptions {
@@ -600,7 +616,9 @@ impl From<&Step> for PlanStep {
             }
             Step::Thicken { wall } => Self::Thicken { wall: *wall },
             Step::JoinContacts { size } => Self::JoinContacts { size: *size },
-            Step::Unite => Self::Unite {},
+            Step::Unite { wall } => Self::Unite { wall: *wall },
+            Step::BoreContacts { steps } => Self::BoreContacts { steps: *steps },
+            Step::SpanRims => Self::SpanRims {},
             Step::OpenContacts => Self::OpenContacts {},
             Step::JoinCopies => Self::JoinCopies {},
             Step::Nest(repair::nest::NestOptions { policy, chosen, .. }) => {
@@ -655,7 +673,9 @@ mod tests {
                 ..FillOptions::default()
             }),
             Step::Thicken { wall: 0.25 },
-            Step::Unite,
+            Step::Unite { wall: Some(0.25) },
+            Step::BoreContacts { steps: 64 },
+            Step::SpanRims,
             Step::OpenContacts,
             Step::JoinCopies,
             Step::Nest(NestOptions {
