@@ -69,10 +69,9 @@ pub enum Step {
     /// What is open is closed by triangles between its rims that may pass through others.
     SpanRims,
     /// Bodies that pass through each other or overlap become one.
-    Unite {
-        /// Triangles with void on both sides become walls of this thickness, in the unit of the file; `None`: they go.
-        wall: Option<f64>,
-    },
+    Unite,
+    /// Triangles with void on both sides get copies that are open parts of their own.
+    CopyBare,
     /// Small bodies are taken out where the solid touches itself.
     BoreContacts {
         /// From their middle out, in steps of the lattice.
@@ -133,8 +132,6 @@ pub(super) enum Uniting {
 /// it, and a larger one takes that too.
 const BORINGS: [u32; 4] = [16, 64, 256, 1024];
 
-const UNITE: Step = Step::Unite { wall: None };
-
 impl Variant {
     /// The steps that unite bodies which pass through each other.
     pub(super) fn uniting(self, uniting: Uniting, choices: &Choices) -> Vec<Step> {
@@ -147,15 +144,17 @@ impl Variant {
         };
         steps.push(Step::JoinCopies);
         steps.extend(may_be_open.then_some(Step::SpanRims));
-        let wall = (uniting == Uniting::Walled).then_some(choices.wall);
-        steps.push(Step::Unite { wall });
+        if uniting == Uniting::Walled {
+            steps.extend([Step::CopyBare, Step::Thicken { wall: choices.wall }]);
+        }
+        steps.push(Step::Unite);
         steps
     }
 
     /// What may follow where the united bodies are no solid yet: what touches itself is joined or parted, what meets after that or
     /// after rounding is united once more, and what still touches is bored.
     pub(super) fn settling(contact: Contact, choices: &Choices) -> Vec<Vec<Step>> {
-        let mut tries = vec![vec![UNITE], Self::parting(contact, choices), vec![UNITE]];
+        let mut tries = vec![vec![Step::Unite], Self::parting(contact, choices), vec![Step::Unite]];
         tries.extend(BORINGS.map(|steps| vec![Step::BoreContacts { steps }]));
         tries
     }
@@ -258,7 +257,8 @@ impl Step {
             Self::PairSheets(_) => "pair-sheets",
             Self::JoinContacts { .. } => "join-contacts",
             Self::SpanRims => "span-rims",
-            Self::Unite { .. } => "unite",
+            Self::CopyBare => "copy-bare",
+            Self::Unite => "unite",
             Self::BoreContacts { .. } => "bore-contacts",
             Self::DropNearDuplicates { .. } => "drop-near-duplicates",
             Self::OpenContacts => "open-contacts",
@@ -285,14 +285,14 @@ impl Step {
             Self::RoundToF32 => &[DefectCode::UnsoundReading],
             Self::JoinCopies | Self::Rebuild | Self::Simplify => &[],
             Self::MendThinFaces(_) => &[DefectCode::Needle, DefectCode::Cap, DefectCode::FoldedEdge],
-            Self::Thicken { .. } => &[DefectCode::IsolatedFace, DefectCode::BoundaryLoop],
+            Self::Thicken { .. } | Self::CopyBare => &[DefectCode::IsolatedFace, DefectCode::BoundaryLoop],
             Self::RemoveParts(_) => &[
                 DefectCode::IsolatedFace,
                 DefectCode::InvertedShell,
                 DefectCode::MisnestedShell,
                 DefectCode::ZeroVolumeShell,
             ],
-            Self::RemoveCrossing { .. } | Self::Unite { .. } => {
+            Self::RemoveCrossing { .. } | Self::Unite => {
                 &[DefectCode::SelfIntersection, DefectCode::Overlap, DefectCode::Touch]
             }
             Self::PairSheets(_)
@@ -339,8 +339,9 @@ impl Step {
             Self::Snap(options) => repair::snap::snap(draft, options, budget),
             Self::RemoveCrossing { rings } => repair::crossing::remove_crossing(draft, *rings, budget),
             Self::SpanRims => repair::fill::span_rims(draft, budget),
-            Self::Unite { wall } => repair::unite::unite(draft, *wall, budget),
-            Self::BoreContacts { steps } => repair::bore::bore_contacts(draft, *steps, budget),
+            Self::CopyBare => repair::unite::copy_bare(draft, budget),
+            Self::Unite => repair::unite::unite(draft, budget),
+            Self::BoreContacts { steps } => repair::unite::bore_contacts(draft, *steps, budget),
             Self::OpenContacts => repair::contact::open_contacts(draft, budget),
             Self::JoinContacts { size } => repair::joint::join_contacts(draft, *size, budget),
             Self::PairSheets(across) => repair::pair_sheets::pair_sheets(draft, *across, budget),

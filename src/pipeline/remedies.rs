@@ -479,6 +479,8 @@ impl Choices {
             DefectCode::UnsoundReading => self.rounds &= !keeps,
             DefectCode::OppositeDuplicateFace if remedy == Some(Remedy::DropOne) => {
                 self.opposite = OppositePairs::KeepFirst;
+                // A wall inside a solid would go.
+                self.unites = false;
             }
             DefectCode::SelfIntersection | DefectCode::Overlap | DefectCode::Touch => {
                 self.unites &= matches!(remedy, None | Some(Remedy::Unite));

@@ -1,11 +1,12 @@
 //! Bodies that pass through each other, as one: the exact arrangement in a search for a repair.
 
-use super::Failure;
 use super::fidelity::Fidelity;
 use super::output::{Candidate, NoCandidate};
 use super::plan::{Attempt, Step, Uniting, Variant};
 use super::remedies::Walls;
 use super::repair::{Search, fidelity_of, write};
+use super::{Failure, Require};
+use crate::analysis::DefectCode;
 use crate::budget::{Stage, Stopped};
 use crate::certificate::Depth;
 use crate::repair::nest::Policy;
@@ -41,20 +42,13 @@ impl Search<'_> {
     /// The bodies that pass through each other as one, if that leads to certified bytes: as they are drawn, as the steps of
     /// `variant` mend them, or with walls. The first that loses little, or else the one that loses least.
     pub(super) fn united(&self, variant: Variant) -> Result<Option<United>, Failure> {
-        let mut kinds = vec![Uniting::AsDrawn];
-        if self.choices.walls != Walls::First {
-            kinds.push(Uniting::Mended);
-            kinds.extend(self.choices.fills_all_holes().then_some(Uniting::Spanned));
+        // A wall behind a sheet without two sides changes sides somewhere; the lattice gives it both.
+        if self.has_found(DefectCode::NonOrientable) && self.reads_as_sheets()? {
+            return Ok(None);
         }
-        if self.choices.walls == Walls::First || self.reads_as_sheets()? {
-            kinds.push(Uniting::Thickened);
-        }
-        let may_wall =
-            self.choices.walls != Walls::Never && self.options.wrap.open_shells != OpenShells::Close;
-        kinds.extend(may_wall.then_some(Uniting::Walled));
         let limits = &self.options.limits;
         let mut best: Option<United> = None;
-        for uniting in kinds {
+        for uniting in self.kinds()? {
             let Some((attempt, candidate)) = self.united_from(uniting, variant)? else { continue };
             let fidelity = fidelity_of(&attempt, &candidate, self)?;
             let passes = fidelity.passes(limits);
@@ -66,6 +60,32 @@ impl Search<'_> {
             }
         }
         Ok(best)
+    }
+
+    fn has_found(&self, code: DefectCode) -> bool {
+        let findings = self.before.map_or(&[][..], |analysis| &analysis.findings);
+        findings.iter().any(|finding| finding.code == code && finding.count > 0)
+    }
+
+    /// The kinds of bodies to try, in their order. Where no solid is required, nothing is invented to make one.
+    fn kinds(&self) -> Result<Vec<Uniting>, Stopped> {
+        let mut kinds = vec![Uniting::AsDrawn];
+        if self.options.require == Some(Require::None) {
+            return Ok(kinds);
+        }
+        let walls = self.choices.walls;
+        let is_sheets = walls == Walls::First || self.reads_as_sheets()?;
+        let may_wall = walls != Walls::Never && self.options.wrap.open_shells != OpenShells::Close;
+        let mut walled = Vec::new();
+        walled.extend(is_sheets.then_some(Uniting::Thickened));
+        walled.extend(may_wall.then_some(Uniting::Walled));
+        let mut filled = Vec::new();
+        if walls != Walls::First {
+            filled.push(Uniting::Mended);
+            filled.extend(self.choices.fills_all_holes().then_some(Uniting::Spanned));
+        }
+        kinds.extend(if is_sheets { [walled, filled].concat() } else { [filled, walled].concat() });
+        Ok(kinds)
     }
 
     /// As [`Self::united`], from one kind of bodies. Coordinates become float32 first where only those of the result do not hold.

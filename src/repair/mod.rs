@@ -1,10 +1,9 @@
 //! Operations that change a mesh: one operation, one file; options in, what changed out. No step calls another.
 //!
 //! The steps work on a [`Draft`]. None of them moves a vertex except [`round`],
-//! [`noise`], [`snap`], [`contact`] and [`joint`], which say how far; [`unite`] and [`bore`] say how far its new ones are from where
+//! [`noise`], [`snap`], [`contact`] and [`joint`], which say how far; [`unite`] says how far its new ones are from where
 //! they are exactly.
 
-pub mod bore;
 pub mod collinear;
 pub mod contact;
 pub mod crossing;

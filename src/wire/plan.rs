@@ -253,12 +253,9 @@ pub enum PlanStep {
         size: f64,
     },
     /// Bodies that pass through each other or overlap become one.
-    Unite {
-        /// Triangles with void on both sides become walls of this thickness, in the unit of the file; left out: they go.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        #[schema(minimum = 0.0)]
-        wall: Option<f64>,
-    },
+    Unite {},
+    /// Triangles with void on both sides get copies that are open parts of their own, for `thicken` to put walls behind.
+    CopyBare {},
     /// Where the solid touches itself, a body of some steps of the print lattice is taken out of it.
     BoreContacts {
         /// From its middle out, in steps of the lattice.
@@ -561,7 +558,8 @@ impl PlanStep {
             }
             Self::Thicken { wall } => Step::Thicken { wall: *wall },
             Self::JoinContacts { size } => Step::JoinContacts { size: *size },
-            Self::Unite { wall } => Step::Unite { wall: *wall },
+            Self::Unite {} => Step::Unite,
+            Self::CopyBare {} => Step::CopyBare,
             Self::BoreContacts { steps } => Step::BoreContacts { steps: *steps },
             Self::SpanRims {} => Step::SpanRims,
             Self::OpenContacts {} => Step::OpenContacts,
@@ -616,7 +614,8 @@ impl From<&Step> for PlanStep {
             }
             Step::Thicken { wall } => Self::Thicken { wall: *wall },
             Step::JoinContacts { size } => Self::JoinContacts { size: *size },
-            Step::Unite { wall } => Self::Unite { wall: *wall },
+            Step::Unite => Self::Unite {},
+            Step::CopyBare => Self::CopyBare {},
             Step::BoreContacts { steps } => Self::BoreContacts { steps: *steps },
             Step::SpanRims => Self::SpanRims {},
             Step::OpenContacts => Self::OpenContacts {},
@@ -673,7 +672,8 @@ mod tests {
                 ..FillOptions::default()
             }),
             Step::Thicken { wall: 0.25 },
-            Step::Unite { wall: Some(0.25) },
+            Step::Unite,
+            Step::CopyBare,
             Step::BoreContacts { steps: 64 },
             Step::SpanRims,
             Step::OpenContacts,

@@ -56,7 +56,13 @@ fn any_step(random: &mut Random, soup: &RawSoup) -> Step {
         17 => Step::OpenContacts,
         18 => Step::JoinContacts { size: length },
         19 => Step::PairSheets(random.pick(&[Across::Solid, Across::Void])),
-        21 => Step::Unite { wall: random.one_in(2).then_some(length) },
+        21 => {
+            if random.one_in(2) {
+                Step::Unite
+            } else {
+                Step::CopyBare
+            }
+        }
         22 => Step::SpanRims,
         23 => Step::BoreContacts { steps: 16 },
         20 => Step::DropNearDuplicates { epsilon: length },

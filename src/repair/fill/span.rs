@@ -180,7 +180,7 @@ mod tests {
             .extend([[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]].map(|t: [u32; 3]| t.map(|v| first + v)));
         let mut open = draft(positions, triangles);
         span_rims(&mut open, &Budget::unlimited()).unwrap();
-        unite(&mut open, None, &Budget::unlimited()).unwrap();
+        unite(&mut open, &Budget::unlimited()).unwrap();
         let groups = EdgeGroups::build(&open.triangles, open.positions.len(), &Budget::unlimited()).unwrap();
         assert!(groups.iter().all(|group| group.len() == 2));
         let volume: f64 = (0..open.triangles.len())

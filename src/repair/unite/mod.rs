@@ -4,9 +4,12 @@
 //! Triangles stay as they are where they bound the solid; those that others pass through are cut there. New vertices are where
 //! they are exactly up to half a pitch of the lattice on which every coordinate is a float32.
 
-use super::cut::{CutOptions, cut};
-use super::thicken::thicken;
-use super::weld::weld;
+mod bare;
+mod bore;
+
+pub use bare::copy_bare;
+pub use bore::bore_contacts;
+
 use super::{Changes, Draft, FIRST_BLEND, NEW};
 use crate::arrangement::{self, Arrangement, ArrangementError, Options, arrange};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
@@ -22,19 +25,12 @@ const PAIRS_MAX: usize = 1 << 21;
 /// Unites the bodies of a draft whose surface is closed. Shells that point inward and are in no body are turned first. A draft that
 /// is open, or of which too many triangles meet, is left as it is.
 ///
-/// With `wall`, a thickness in the unit of the file, triangles with void on both sides become walls of it; otherwise they go.
-///
 /// # Errors
 /// When the budget stops the run.
-pub fn unite(draft: &mut Draft, wall: Option<f64>, budget: &Budget) -> Result<Changes, Stopped> {
+pub fn unite(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
     let turned = turn_inverted(draft, budget)?;
-    let walled = match wall {
-        Some(wall) => add_walls(draft, wall, budget)?,
-        None => 0,
-    };
     let united = unite_as_oriented(draft, budget)?;
-    let walls = (walled > 0).then_some(("triangles_walled", walled));
-    let counts = [("shells_turned", turned)].into_iter().chain(walls).chain(united.counts).collect();
+    let counts = [("shells_turned", turned)].into_iter().chain(united.counts).collect();
     Ok(Changes { counts, ..united })
 }
 
@@ -42,7 +38,7 @@ pub fn unite(draft: &mut Draft, wall: Option<f64>, budget: &Budget) -> Result<Ch
 ///
 /// # Errors
 /// When the budget stops the run.
-pub(super) fn unite_as_oriented(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
+fn unite_as_oriented(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
     let united = arranged(draft, budget).and_then(|arrangement| {
         let boundary = arrangement.boundary(|winding| winding[0] > 0);
         let merged = arrangement.merged(&boundary, budget)?;
@@ -65,47 +61,6 @@ fn arranged(draft: &Draft, budget: &Budget) -> Result<Arrangement, ArrangementEr
     let pairs_max = (draft.triangles.len() * PAIRS_PER_TRIANGLE).clamp(PAIRS_MIN, PAIRS_MAX);
     let options = Options { pairs_max, operands: 1 };
     arrange(&draft.positions, &draft.triangles, |_| 0, &options, budget)
-}
-
-/// Adds walls behind the triangles of which a piece has void on both sides; gives their number. Where there is no arrangement, none.
-fn add_walls(draft: &mut Draft, wall: f64, budget: &Budget) -> Result<u64, Stopped> {
-    let arrangement = match arranged(draft, budget) {
-        Ok(arrangement) => arrangement,
-        Err(ArrangementError::Stopped(stopped)) => return Err(stopped),
-        Err(_) => return Ok(0),
-    };
-    let is_bare = |f: &usize| arrangement.windings(*f).iter().all(|winding| winding[0] <= 0);
-    let bare = (0..arrangement.pieces().len()).filter(is_bare);
-    let mut bare: Vec<u32> = bare.map(|f| bare_source(draft, &arrangement, f)).collect();
-    drop(arrangement);
-    bare.sort_unstable();
-    bare.dedup();
-    let mut sheets = Draft {
-        positions: draft.positions.clone(),
-        vertex_origin: draft.vertex_origin.clone(),
-        triangles: bare.iter().map(|&t| draft.triangles[t as usize]).collect(),
-        triangle_origin: bare.iter().map(|&t| draft.triangle_origin[t as usize]).collect(),
-        two_sided: Vec::new(),
-        blends: Default::default(),
-        polygons: Default::default(),
-    };
-    sheets.drop_unused_vertices();
-    weld(&mut sheets, budget)?;
-    cut(&mut sheets, &CutOptions::default(), budget)?;
-    thicken(&mut sheets, wall, budget)?;
-    let first = draft.positions.len() as u32;
-    draft.positions.append(&mut sheets.positions);
-    draft.vertex_origin.append(&mut sheets.vertex_origin);
-    draft.triangles.extend(sheets.triangles.iter().map(|t| t.map(|v| first + v)));
-    draft.triangle_origin.append(&mut sheets.triangle_origin);
-    Ok(bare.len() as u64)
-}
-
-/// Of the triangles that cover a piece the first one that is of the file, or else the first.
-fn bare_source(draft: &Draft, arrangement: &Arrangement, piece: usize) -> u32 {
-    let sources = arrangement.sources(piece);
-    let of_file = |&&(t, _): &&(u32, bool)| draft.triangle_origin[t as usize] != NEW;
-    sources.iter().find(of_file).unwrap_or(&sources[0]).0
 }
 
 /// Puts what is placed into the draft.
@@ -239,11 +194,11 @@ fn turn_inverted(draft: &mut Draft, budget: &Budget) -> Result<u64, Stopped> {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
     use super::*;
 
     /// Cubes of these sides from these corners on; `true`: turned inside out.
-    pub(in crate::repair) fn cubes(of: &[(DVec3, f64, bool)]) -> Draft {
+    pub(super) fn cubes(of: &[(DVec3, f64, bool)]) -> Draft {
         const SIDES: [[u32; 3]; 12] = [
             [0, 2, 1],
             [1, 2, 3],
@@ -278,7 +233,7 @@ pub(super) mod tests {
     }
 
     /// Six times the volume, which is exact for these.
-    pub(in crate::repair) fn volume_times_6(draft: &Draft) -> f64 {
+    pub(super) fn volume_times_6(draft: &Draft) -> f64 {
         let of = |t: usize| {
             let [a, b, c] = draft.corners(t);
             a.cross(b).dot(c)
@@ -292,7 +247,7 @@ pub(super) mod tests {
         for is_turned in [false, true] {
             let mut draft = cubes(&[(DVec3::ZERO, 2.0, false), (middle, 2.0, is_turned)]);
             let before = draft.triangles.clone();
-            let changes = unite(&mut draft, None, &Budget::unlimited()).unwrap();
+            let changes = unite(&mut draft, &Budget::unlimited()).unwrap();
             assert_eq!(changes.count("shells_turned"), u64::from(is_turned));
             assert_eq!((volume_times_6(&draft), changes.move_max), (6.0 * (16.0 - 1.25 * 1.5), 0.0));
             let groups =
@@ -323,7 +278,7 @@ pub(super) mod tests {
         draft.triangles.pop();
         draft.triangle_origin.pop();
         let before = draft.triangles.clone();
-        let changes = unite(&mut draft, None, &Budget::unlimited()).unwrap();
+        let changes = unite(&mut draft, &Budget::unlimited()).unwrap();
         assert_eq!((draft.triangles, changes.count("vertices_added")), (before, 0));
         assert!(changes.reason.starts_with("bodies were not united"), "{}", changes.reason);
     }
