@@ -14,6 +14,7 @@ use crate::repair::pair_sheets::Across;
 use crate::repair::polygons::DegenerateFaces;
 use crate::repair::snap::SnapOptions;
 use crate::repair::thin_faces::ThinFaces;
+use crate::repair::unite::Coverage;
 use crate::repair::{self, Changes, Draft};
 
 /// One step of a plan, with its parameters.
@@ -375,6 +376,29 @@ pub(super) struct Attempt {
     pub(super) holes: Vec<HoleReport>,
     /// True when the edges that steps join are told one by one.
     lists_stitches: bool,
+    /// Which triangles of the soup are known to be on the surface or inside of the solid.
+    coverage: Known,
+}
+
+/// Which triangles of the soup are known to be on the surface or inside of the solid, as bodies are united.
+#[derive(Debug, Clone, PartialEq)]
+enum Known {
+    /// Nothing was united yet.
+    NotYet,
+    /// All of `present` but `bare`.
+    By(Coverage),
+    /// It is not known any more.
+    No,
+}
+
+/// What of the soup need not be looked for in a united mesh.
+pub(super) struct Covered {
+    /// Triangles of the soup, ascending, every place of which is on the surface or inside of the solid.
+    pub(super) triangles: Vec<u32>,
+    /// Area of them inside of the solid, in square units of the file.
+    pub(super) buried_area: f64,
+    /// How far from the surface the others may be by what steps moved, in the unit of the file.
+    pub(super) moved: f64,
 }
 
 impl Attempt {
@@ -382,14 +406,28 @@ impl Attempt {
     pub(super) fn start(soup: &Soup, before: Option<&Analysis>) -> Self {
         let (draft, changes) = Draft::from_soup(soup);
         let actions = vec![action("take-usable", &UNUSABLE, changes, soup, before)];
-        Self { draft, actions, steps: Vec::new(), holes: Vec::new(), lists_stitches: false }
+        Self {
+            draft,
+            actions,
+            steps: Vec::new(),
+            holes: Vec::new(),
+            lists_stitches: false,
+            coverage: Known::NotYet,
+        }
     }
 
     /// The usable faces of `soup`, polygons as such; the edges that steps join are told one by one.
     pub(super) fn start_with_polygons(soup: &Soup, before: Option<&Analysis>) -> Self {
         let (draft, changes) = Draft::with_polygons(soup);
         let actions = vec![action("take-usable", &UNUSABLE, changes, soup, before)];
-        Self { draft, actions, steps: Vec::new(), holes: Vec::new(), lists_stitches: true }
+        Self {
+            draft,
+            actions,
+            steps: Vec::new(),
+            holes: Vec::new(),
+            lists_stitches: true,
+            coverage: Known::NotYet,
+        }
     }
 
     /// Runs `steps`, and notes what each did, and why by the defects found `before`.
@@ -402,7 +440,8 @@ impl Attempt {
     ) -> Result<(), Stopped> {
         for step in steps {
             budget.check()?;
-            let changes = step.run(&mut self.draft, soup, &mut self.holes, budget)?;
+            let mut changes = step.run(&mut self.draft, soup, &mut self.holes, budget)?;
+            self.coverage.go_on(step, &mut changes);
             debug_assert_eq!(self.draft.check(), Vec::<String>::new(), "after {step:?}");
             let stitches = (self.lists_stitches && matches!(step, Step::Pinch(..) | Step::Snap(_)))
                 .then(|| Stitches::of(&changes.stitches, soup));
@@ -420,7 +459,18 @@ impl Attempt {
 
     /// True when bodies were united.
     pub(super) fn has_united(&self) -> bool {
-        self.count("triangles_after") > 0
+        self.coverage != Known::NotYet
+    }
+
+    /// What of the soup need not be looked for in the result, if bodies were united.
+    pub(super) fn covered(&self) -> Option<Covered> {
+        let Known::By(Coverage { present, bare, buried_area }) = &self.coverage else { return None };
+        let is_covered = |t: &u32| bare.binary_search(t).is_err();
+        Some(Covered {
+            triangles: present.iter().copied().filter(is_covered).collect(),
+            buried_area: *buried_area,
+            moved: self.actions.iter().map(|action| action.move_max).sum(),
+        })
     }
 
     /// Count of this name, over all steps.
@@ -431,6 +481,25 @@ impl Attempt {
             .filter(|(n, _)| *n == name)
             .map(|(_, count)| count)
             .sum()
+    }
+}
+
+impl Known {
+    /// Takes in what `step` did.
+    fn go_on(&mut self, step: &Step, changes: &mut Changes) {
+        let known = std::mem::replace(self, Self::No);
+        *self = match (known, changes.coverage.take(), step) {
+            // These take surface away or move it farther than they say.
+            (_, _, Step::BoreContacts { .. } | Step::MendThinFaces(_)) => Self::No,
+            (Self::NotYet, Some(coverage), _) => Self::By(coverage),
+            (Self::By(mut known), Some(coverage), _) => {
+                known.bare.extend(coverage.bare);
+                known.bare.sort_unstable();
+                known.bare.dedup();
+                Self::By(known)
+            }
+            (known, ..) => known,
+        };
     }
 }
 

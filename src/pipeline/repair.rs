@@ -127,14 +127,18 @@ pub(super) fn fidelity_of(
     let (draft, volume) = (&attempt.draft, defined_volume(before));
     // Mostly nothing is gone, and what is hidden does not matter.
     let all = Original::new(&input.soup, volume, None);
-    let fidelity = all.measure(candidate.soup(), &draft.triangle_origin, budget)?;
+    let covered = attempt.covered();
+    let measure = |original: &Original<'_>| {
+        original.measure_rest(candidate.soup(), &draft.triangle_origin, covered.as_ref(), budget)
+    };
+    let fidelity = measure(&all)?;
     if fidelity.passes(&options.limits) {
         return Ok(fidelity);
     }
     let read = || Solid::of(&draft.positions, &draft.triangles, options.wrap.open_shells, budget);
     let solid = budget.stage(Stage::Measure, read)?;
     let visible = Original::new(&input.soup, volume, Some(solid));
-    Ok(visible.measure(candidate.soup(), &draft.triangle_origin, budget)?)
+    Ok(measure(&visible)?)
 }
 
 /// A result of local steps as the answer, with fewer triangles if that is asked, unless it is beyond the caller's limits.

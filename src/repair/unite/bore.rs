@@ -46,7 +46,7 @@ pub fn bore_contacts(draft: &mut Draft, steps: u32, budget: &Budget) -> Result<C
     let reason = format!("bodies of {steps} steps of {pitch:e} were taken out of {count} contacts");
     let reason = if united.reason.is_empty() { reason } else { format!("{reason}; {}", united.reason) };
     let counts = [("contacts_bored", count)].into_iter().chain(united.counts).collect();
-    Ok(Changes { counts, reason, ..united })
+    Ok(Changes { counts, reason, coverage: None, ..united })
 }
 
 /// Adds bodies to a draft that are turned inside out.
@@ -142,7 +142,8 @@ mod tests {
             weld(&mut draft, &budget).unwrap();
             assert_eq!(singular(&draft), (0, 0), "{}", changes.reason);
             let taken = before - volume_times_6(&draft);
-            assert!(taken.abs() < 1e-8, "{taken}");
+            // Rounded corners tilt the faces that they are on.
+            assert!(taken.abs() < 1e-6, "{taken}");
             assert_eq!(draft.check(), Vec::<String>::new());
         }
     }

@@ -13,7 +13,7 @@ pub use bore::bore_contacts;
 use super::{Changes, Draft, FIRST_BLEND, NEW};
 use crate::arrangement::{self, Arrangement, ArrangementError, Options, arrange};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
-use crate::geom::{Aabb, DVec3, Sign, print_pitch, upward_crossing, volume_sign};
+use crate::geom::{Aabb, DVec3, Sign, print_pitch, triangle_area, upward_crossing, volume_sign};
 use crate::mesh::{EdgeGroups, edge_of};
 use crate::spatial::{Bvh, ShellTriangles};
 
@@ -21,6 +21,41 @@ use crate::spatial::{Bvh, ShellTriangles};
 const PAIRS_PER_TRIANGLE: usize = 64;
 const PAIRS_MIN: usize = 1 << 16;
 const PAIRS_MAX: usize = 1 << 21;
+
+/// What became of the triangles of the soup when bodies were united. Every place of one that is `present` and not `bare` is on the
+/// surface of the solid or inside of it, up to what the rounding of new vertices moves.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Coverage {
+    /// Triangles of the soup that were in the draft, ascending.
+    pub present: Vec<u32>,
+    /// Those of which some piece has void on both sides, so that it is gone, ascending.
+    pub bare: Vec<u32>,
+    /// Area of the pieces inside the solid, in square units of the file.
+    pub buried_area: f64,
+}
+
+impl Coverage {
+    fn of(draft: &Draft, arrangement: &Arrangement) -> Self {
+        let of_file = |t: u32| Some(draft.triangle_origin[t as usize]).filter(|&origin| origin != NEW);
+        let mut coverage = Self::default();
+        coverage.present.extend((0..draft.triangles.len() as u32).filter_map(of_file));
+        for (f, corners) in arrangement.pieces().iter().enumerate() {
+            let [front, back] = arrangement.windings(f).map(|winding| winding[0] > 0);
+            let sources = arrangement.sources(f).iter().filter_map(|&(t, _)| of_file(t));
+            if front && back {
+                let area = triangle_area(corners.map(|p| arrangement.position(p)));
+                coverage.buried_area += area * sources.count() as f64;
+            } else if !front && !back {
+                coverage.bare.extend(sources);
+            }
+        }
+        for list in [&mut coverage.present, &mut coverage.bare] {
+            list.sort_unstable();
+            list.dedup();
+        }
+        coverage
+    }
+}
 
 /// Unites the bodies of a draft whose surface is closed. Shells that point inward and are in no body are turned first. A draft that
 /// is open, or of which too many triangles meet, is left as it is.
@@ -43,14 +78,18 @@ fn unite_as_oriented(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stop
         let boundary = arrangement.boundary(|winding| winding[0] > 0);
         let merged = arrangement.merged(&boundary, budget)?;
         drop(boundary);
+        let coverage = Coverage::of(draft, &arrangement);
         let reach = draft.positions.iter().fold(0.0f64, |reach, p| reach.max(p.abs().max_element()));
         match print_pitch(reach) {
-            Some(pitch) => arrangement::place(&arrangement, &merged, pitch, budget).map(Some),
+            Some(pitch) => {
+                let placed = arrangement::place(&arrangement, &merged, pitch, budget)?;
+                Ok(Some((placed, coverage)))
+            }
             None => Ok(None),
         }
     });
     match united {
-        Ok(Some(placed)) => Ok(replace(draft, placed)),
+        Ok(Some((placed, coverage))) => Ok(Changes { coverage: Some(coverage), ..replace(draft, placed) }),
         Ok(None) => Ok(left_alone("float32 does not go so far")),
         Err(ArrangementError::Stopped(stopped)) => Err(stopped),
         Err(error) => Ok(left_alone(&error.to_string())),
