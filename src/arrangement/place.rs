@@ -108,7 +108,7 @@ impl Placing<'_> {
     }
 
     /// Makes new points one with the first point at their position, and drops the triangles that this leaves without three
-    /// corners, and pairs of them that lie on each other.
+    /// corners, and pairs of them that lie on each other the opposite way.
     fn weld(&mut self, used: &[u32]) {
         let key = |p: DVec3| (p + DVec3::ZERO).to_array().map(f64::to_bits);
         let positions = &self.placed.positions;
@@ -134,18 +134,23 @@ impl Placing<'_> {
             *p = first[*p as usize];
         }
         let mut is_kept: Vec<bool> = triangles.iter().map(|&[a, b, c]| a != b && b != c && c != a).collect();
-        let mut by_corners: Vec<([u32; 3], u32)> = (0..triangles.len() as u32)
+        // Corners, ascending, and whether the triangle runs through them the other way.
+        let mut by_corners: Vec<([u32; 3], bool, u32)> = (0..triangles.len() as u32)
             .filter(|&t| is_kept[t as usize])
             .map(|t| {
-                let mut corners = triangles[t as usize];
+                let [a, b, c] = triangles[t as usize];
+                let mut corners = [a, b, c];
                 corners.sort_unstable();
-                (corners, t)
+                (corners, ![[a, b, c], [b, c, a], [c, a, b]].contains(&corners), t)
             })
             .collect();
         by_corners.sort_unstable();
-        for pair in by_corners.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() == 2) {
-            is_kept[pair[0].1 as usize] = false;
-            is_kept[pair[1].1 as usize] = false;
+        for same in by_corners.chunk_by(|a, b| a.0 == b.0) {
+            let (ahead, against) = same.split_at(same.partition_point(|&(_, is_turned, _)| !is_turned));
+            for (&(.., t), &(.., opposite)) in ahead.iter().zip(against) {
+                is_kept[t as usize] = false;
+                is_kept[opposite as usize] = false;
+            }
         }
         let mut marks = is_kept.iter();
         triangles.retain(|_| marks.next() == Some(&true));
