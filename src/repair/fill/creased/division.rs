@@ -299,7 +299,9 @@ mod tests {
     fn matched(ends: &[End]) -> (Vec<[u32; 2]>, Vec<u32>) {
         let (joined, left) = rim().matched(ends);
         let corners = |pair: &[End; 2]| pair.map(|end| end.corner);
-        (joined.iter().map(corners).collect(), left.iter().map(|end| end.corner).collect())
+        let mut pairs: Vec<[u32; 2]> = joined.iter().map(corners).collect();
+        pairs.sort_unstable();
+        (pairs, left.iter().map(|end| end.corner).collect())
     }
 
     #[test]
