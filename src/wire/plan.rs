@@ -254,6 +254,17 @@ pub enum PlanStep {
     },
     /// Bodies that pass through each other or overlap become one.
     Unite {},
+    /// Triangles with void on both sides get copies that are open parts of their own, for `thicken` to put walls behind.
+    CopyBare {},
+    /// Where the solid touches itself, a body of some steps of the print lattice is taken out of it.
+    BoreContacts {
+        /// From its middle out, in steps of the lattice.
+        #[serde(deserialize_with = "whole")]
+        #[schema(maximum = 65_536)]
+        steps: u32,
+    },
+    /// What is still open is closed by triangles between its rims that may pass through others; `unite` resolves that.
+    SpanRims {},
     /// Bodies that touch are drawn apart.
     OpenContacts {},
     /// Vertices at one position become one again.
@@ -548,6 +559,9 @@ impl PlanStep {
             Self::Thicken { wall } => Step::Thicken { wall: *wall },
             Self::JoinContacts { size } => Step::JoinContacts { size: *size },
             Self::Unite {} => Step::Unite,
+            Self::CopyBare {} => Step::CopyBare,
+            Self::BoreContacts { steps } => Step::BoreContacts { steps: *steps },
+            Self::SpanRims {} => Step::SpanRims,
             Self::OpenContacts {} => Step::OpenContacts,
             Self::JoinCopies {} => Step::JoinCopies,
             Self::Nest { nesting, chosen } => Step::Nest(NestOptions {
@@ -601,6 +615,9 @@ impl From<&Step> for PlanStep {
             Step::Thicken { wall } => Self::Thicken { wall: *wall },
             Step::JoinContacts { size } => Self::JoinContacts { size: *size },
             Step::Unite => Self::Unite {},
+            Step::CopyBare => Self::CopyBare {},
+            Step::BoreContacts { steps } => Self::BoreContacts { steps: *steps },
+            Step::SpanRims => Self::SpanRims {},
             Step::OpenContacts => Self::OpenContacts {},
             Step::JoinCopies => Self::JoinCopies {},
             Step::Nest(repair::nest::NestOptions { policy, chosen, .. }) => {
@@ -656,6 +673,9 @@ mod tests {
             }),
             Step::Thicken { wall: 0.25 },
             Step::Unite,
+            Step::CopyBare,
+            Step::BoreContacts { steps: 64 },
+            Step::SpanRims,
             Step::OpenContacts,
             Step::JoinCopies,
             Step::Nest(NestOptions {
