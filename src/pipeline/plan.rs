@@ -26,6 +26,8 @@ pub enum Step {
     ClearNoise,
     /// Coordinates become float32.
     RoundToF32,
+    /// Those of triangles that meet others when all are read as float32 become float32.
+    RoundWhereItMatters,
     /// Vertices at one position become one.
     Weld,
     /// Triangles with a repeated vertex go.
@@ -71,8 +73,8 @@ pub enum Step {
     SpanRims,
     /// Bodies that pass through each other or overlap become one.
     Unite,
-    /// Triangles with void on both sides get copies that are open parts of their own.
-    CopyBare,
+    /// As `Unite`; triangles with void on both sides, which go then, leave copies that are open parts of their own.
+    UniteAndCopyBare,
     /// Small bodies are taken out where the solid touches itself.
     BoreContacts {
         /// From their middle out, in steps of the lattice.
@@ -146,7 +148,7 @@ impl Variant {
         steps.push(Step::JoinCopies);
         steps.extend(may_be_open.then_some(Step::SpanRims));
         if uniting == Uniting::Walled {
-            steps.extend([Step::CopyBare, Step::Thicken { wall: choices.wall }]);
+            steps.extend([Step::UniteAndCopyBare, Step::Thicken { wall: choices.wall }]);
         }
         steps.push(Step::Unite);
         steps
@@ -245,6 +247,7 @@ impl Step {
             Self::SplitPolygons(_) => "split-polygons",
             Self::ClearNoise => "clear-noise",
             Self::RoundToF32 => "round-to-float32",
+            Self::RoundWhereItMatters => "round-where-it-matters",
             Self::Weld => "weld",
             Self::DropDegenerate => "drop-degenerate",
             Self::SplitCollinear => "split-collinear",
@@ -258,7 +261,7 @@ impl Step {
             Self::PairSheets(_) => "pair-sheets",
             Self::JoinContacts { .. } => "join-contacts",
             Self::SpanRims => "span-rims",
-            Self::CopyBare => "copy-bare",
+            Self::UniteAndCopyBare => "unite-and-copy-bare",
             Self::Unite => "unite",
             Self::BoreContacts { .. } => "bore-contacts",
             Self::DropNearDuplicates { .. } => "drop-near-duplicates",
@@ -283,17 +286,17 @@ impl Step {
                 DefectCode::Overlap,
                 DefectCode::Touch,
             ],
-            Self::RoundToF32 => &[DefectCode::UnsoundReading],
+            Self::RoundToF32 | Self::RoundWhereItMatters => &[DefectCode::UnsoundReading],
             Self::JoinCopies | Self::Rebuild | Self::Simplify => &[],
             Self::MendThinFaces(_) => &[DefectCode::Needle, DefectCode::Cap, DefectCode::FoldedEdge],
-            Self::Thicken { .. } | Self::CopyBare => &[DefectCode::IsolatedFace, DefectCode::BoundaryLoop],
+            Self::Thicken { .. } => &[DefectCode::IsolatedFace, DefectCode::BoundaryLoop],
             Self::RemoveParts(_) => &[
                 DefectCode::IsolatedFace,
                 DefectCode::InvertedShell,
                 DefectCode::MisnestedShell,
                 DefectCode::ZeroVolumeShell,
             ],
-            Self::RemoveCrossing { .. } | Self::Unite => {
+            Self::RemoveCrossing { .. } | Self::Unite | Self::UniteAndCopyBare => {
                 &[DefectCode::SelfIntersection, DefectCode::Overlap, DefectCode::Touch]
             }
             Self::PairSheets(_)
@@ -329,6 +332,7 @@ impl Step {
             Self::SplitPolygons(how) => repair::polygons::split_polygons(draft, soup, *how, budget),
             Self::ClearNoise => Ok(repair::noise::clear_noise(draft)),
             Self::RoundToF32 => Ok(repair::round::round_to_f32(draft)),
+            Self::RoundWhereItMatters => repair::round::round_where_it_matters(draft, budget),
             Self::Weld | Self::JoinCopies => repair::weld::weld(draft, budget),
             Self::DropDegenerate => Ok(repair::degenerate::drop_degenerate(draft)),
             Self::SplitCollinear => repair::collinear::split_collinear(draft, budget),
@@ -340,7 +344,7 @@ impl Step {
             Self::Snap(options) => repair::snap::snap(draft, options, budget),
             Self::RemoveCrossing { rings } => repair::crossing::remove_crossing(draft, *rings, budget),
             Self::SpanRims => repair::fill::span_rims(draft, budget),
-            Self::CopyBare => repair::unite::copy_bare(draft, budget),
+            Self::UniteAndCopyBare => repair::unite::unite_and_copy_bare(draft, budget),
             Self::Unite => repair::unite::unite(draft, budget),
             Self::BoreContacts { steps } => repair::unite::bore_contacts(draft, *steps, budget),
             Self::OpenContacts => repair::contact::open_contacts(draft, budget),

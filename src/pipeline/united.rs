@@ -12,6 +12,9 @@ use crate::certificate::Depth;
 use crate::repair::nest::Policy;
 use crate::winding::OpenShells;
 
+/// How often what does not hold in float32 is rounded in places, before all is.
+const ROUNDINGS_MAX: u32 = 4;
+
 /// A certified result of uniting bodies.
 pub(super) struct United {
     pub(super) attempt: Attempt,
@@ -115,6 +118,7 @@ impl Search<'_> {
         if !attempt.has_united() {
             return Ok(Tried::Nothing);
         }
+        let mut roundings = ROUNDINGS_MAX;
         let mut tries = Variant::settling(self.options.contact, self.choices).into_iter();
         loop {
             if attempt.draft.triangles.is_empty() {
@@ -131,7 +135,12 @@ impl Search<'_> {
             }
             let witness = candidate.certificate().witnesses.first();
             if witness.is_some_and(|violation| violation.reading.is_f32) {
-                return Ok(Tried::SolidInF64);
+                if !self.choices.rounds || roundings == 0 {
+                    return Ok(Tried::SolidInF64);
+                }
+                roundings -= 1;
+                self.go_on(&mut attempt, &[Step::RoundWhereItMatters, Step::Unite])?;
+                continue;
             }
             let Some(steps) = tries.next() else { return Ok(Tried::Nothing) };
             self.go_on(&mut attempt, &steps)?;

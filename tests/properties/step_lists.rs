@@ -60,10 +60,16 @@ fn any_step(random: &mut Random, soup: &RawSoup) -> Step {
             if random.one_in(2) {
                 Step::Unite
             } else {
-                Step::CopyBare
+                Step::UniteAndCopyBare
             }
         }
-        22 => Step::SpanRims,
+        22 => {
+            if random.one_in(2) {
+                Step::SpanRims
+            } else {
+                Step::RoundWhereItMatters
+            }
+        }
         23 => Step::BoreContacts { steps: 16 },
         20 => Step::DropNearDuplicates { epsilon: length },
         _ => match random.one_in(2) {

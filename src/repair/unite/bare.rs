@@ -1,24 +1,23 @@
-//! Copies what bounds nothing: triangles of which a part has void on both sides, which a union would lose.
+//! Unites bodies and keeps a copy of what that would lose: triangles of which a part has void on both sides.
 
-use super::arranged;
+use super::{Coverage, arranged, turn_inverted, unite_as_oriented};
 use crate::arrangement::{Arrangement, ArrangementError};
-use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::budget::{Budget, Stopped};
+use crate::geom::DVec3;
 use crate::mesh::cut_singular;
 use crate::repair::{Changes, Draft, NEW};
 
-/// Adds a copy of every triangle of which a piece has void on both sides, as open parts of their own, which walls can be put
-/// behind. Triangles that cancel each other exactly go. The surface must be closed; where there is no arrangement, nothing changes.
+/// As [`unite`](super::unite); then adds a copy of every triangle of which a piece had void on both sides, as open parts of
+/// their own that walls can be put behind.
 ///
 /// # Errors
 /// When the budget stops the run.
-pub fn copy_bare(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
+pub fn unite_and_copy_bare(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
+    let turned = turn_inverted(draft, budget)?;
     let arrangement = match arranged(draft, budget) {
         Ok(arrangement) => arrangement,
         Err(ArrangementError::Stopped(stopped)) => return Err(stopped),
-        Err(error) => {
-            let reason = format!("nothing was copied: {error}");
-            return Ok(Changes { reason, ..Changes::counted([("triangles_copied", 0)]) });
-        }
+        Err(error) => return Ok(super::left_alone(&error.to_string())),
     };
     let is_bare = |f: &usize| arrangement.windings(*f).iter().all(|winding| winding[0] <= 0);
     let bare = (0..arrangement.pieces().len()).filter(is_bare);
@@ -34,16 +33,22 @@ pub fn copy_bare(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped>
     let cut = cut_singular(&mut copies, corners.len(), budget)?;
     corners.extend(cut.copies.iter().map(|&v| corners[v as usize]).collect::<Vec<u32>>());
     let origins: Vec<u32> = bare.iter().map(|&t| draft.triangle_origin[t as usize]).collect();
-    let cancelled = drop_cancelling(draft, budget)?;
+    let places: Vec<(DVec3, u32)> =
+        corners.into_iter().map(|v| (draft.positions[v as usize], draft.vertex_origin[v as usize])).collect();
+    let united = unite_as_oriented(draft, budget)?;
+    let Some(coverage) = united.coverage else { return Ok(united) };
     let first = draft.positions.len() as u32;
-    for v in corners {
-        draft.positions.push(draft.positions[v as usize]);
-        draft.vertex_origin.push(draft.vertex_origin[v as usize]);
+    for (place, origin) in places {
+        draft.positions.push(place);
+        draft.vertex_origin.push(origin);
     }
     draft.triangles.extend(copies.into_iter().map(|t| t.map(|v| first + v)));
     draft.triangle_origin.extend(origins);
-    let counts = [("triangles_copied", bare.len() as u64), ("triangles_cancelled", cancelled)];
-    Ok(Changes::counted(counts))
+    let copied = [("shells_turned", turned), ("triangles_copied", bare.len() as u64)];
+    let counts = copied.into_iter().chain(united.counts).collect();
+    // What is copied is still there.
+    let coverage = Some(Coverage { bare: Vec::new(), ..coverage });
+    Ok(Changes { counts, coverage, ..united })
 }
 
 /// Of the triangles that cover a piece the first one that is of the file, or else the first.
@@ -53,51 +58,11 @@ fn source(draft: &Draft, arrangement: &Arrangement, piece: usize) -> u32 {
     sources.iter().find(is_of_file).unwrap_or(&sources[0]).0
 }
 
-/// Drops pairs of triangles on the same corners that turn opposite ways; gives the number of triangles.
-fn drop_cancelling(draft: &mut Draft, budget: &Budget) -> Result<u64, Stopped> {
-    let mut order: Vec<([u32; 3], bool, u32)> = Vec::with_capacity(draft.triangles.len());
-    for (t, &corners) in draft.triangles.iter().enumerate() {
-        if t % CHECK_EVERY == 0 {
-            budget.spend(CHECK_EVERY as u64)?;
-        }
-        let mut sorted = corners;
-        sorted.sort_unstable();
-        let [a, b, c] = corners;
-        let is_turned = [[a, b, c], [b, c, a], [c, a, b]].iter().all(|&turn| turn != sorted);
-        order.push((sorted, is_turned, t as u32));
-    }
-    order.sort_unstable();
-    let mut is_gone = vec![false; draft.triangles.len()];
-    for same in order.chunk_by(|a, b| a.0 == b.0) {
-        let ahead = same.partition_point(|&(_, is_turned, _)| !is_turned);
-        for i in 0..ahead.min(same.len() - ahead) {
-            is_gone[same[i].2 as usize] = true;
-            is_gone[same[ahead + i].2 as usize] = true;
-        }
-    }
-    let gone = is_gone.iter().filter(|&&gone| gone).count() as u64;
-    if gone > 0 {
-        let kept = |i: usize| !is_gone[i];
-        let mut i = 0;
-        draft.triangles.retain(|_| {
-            i += 1;
-            kept(i - 1)
-        });
-        i = 0;
-        draft.triangle_origin.retain(|_| {
-            i += 1;
-            kept(i - 1)
-        });
-    }
-    Ok(gone)
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::tests::{cubes, volume_times_6};
     use super::super::unite;
     use super::*;
-    use crate::geom::DVec3;
     use crate::repair::thicken::thicken;
 
     #[test]
@@ -114,8 +79,8 @@ mod tests {
         draft.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 1]]);
         draft.triangle_origin.extend([12, NEW]);
         let budget = Budget::unlimited();
-        let changes = copy_bare(&mut draft, &budget).unwrap();
-        assert_eq!((changes.count("triangles_copied"), changes.count("triangles_cancelled")), (1, 2));
+        let changes = unite_and_copy_bare(&mut draft, &budget).unwrap();
+        assert_eq!((changes.count("triangles_copied"), draft.triangles.len()), (1, 13));
         assert_eq!(draft.triangle_origin[12..], [12]);
         assert_eq!(draft.check(), Vec::<String>::new());
         thicken(&mut draft, 0.125, &budget).unwrap();

@@ -7,7 +7,7 @@
 mod bare;
 mod bore;
 
-pub use bare::copy_bare;
+pub use bare::unite_and_copy_bare;
 pub use bore::bore_contacts;
 
 use super::{Changes, Draft, FIRST_BLEND, NEW};
