@@ -1,6 +1,7 @@
 //! The part of a mesh where a value at its vertices is at least some level.
 
 use super::track::Tracked;
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use rustc_hash::FxHashMap;
 
 /// Values closer to the level than this share of the cell count as it, so that no sliver is cut off.
@@ -8,14 +9,23 @@ const SNAP_SHARE: f64 = 0.2;
 
 /// The part of `mesh` where `values` is at least `level`, its vertices numbered anew. Triangles that the level crosses
 /// are cut.
-pub(super) fn clip(mesh: &Tracked, values: &[f64], level: f64, cell: f64) -> Tracked {
+pub(super) fn clip(
+    mesh: &Tracked,
+    values: &[f64],
+    level: f64,
+    cell: f64,
+    budget: &Budget,
+) -> Result<Tracked, Stopped> {
     let above = |v: u32| {
         let rest = values[v as usize] - level;
         if rest.abs() <= SNAP_SHARE * cell { 0.0 } else { rest }
     };
     let mut clipped =
         Clipped { from: mesh, out: Tracked::default(), old: FxHashMap::default(), new: FxHashMap::default() };
-    for &t in &mesh.triangles {
+    for (n, &t) in mesh.triangles.iter().enumerate() {
+        if n.is_multiple_of(CHECK_EVERY) {
+            budget.check()?;
+        }
         let rests = t.map(above);
         if rests.iter().all(|&r| r <= 0.0) {
             continue;
@@ -36,7 +46,7 @@ pub(super) fn clip(mesh: &Tracked, values: &[f64], level: f64, cell: f64) -> Tra
             .triangles
             .extend((1..corners.len() - 1).map(|k| [corners[0], corners[k], corners[k + 1]]));
     }
-    clipped.out
+    Ok(clipped.out)
 }
 
 struct Clipped<'m> {
@@ -73,7 +83,7 @@ mod tests {
         let points = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
         let mesh = Tracked { points: points.clone(), triangles: vec![[0, 1, 2], [0, 2, 3]] };
         let values: Vec<f64> = points.iter().map(|p| p.x).collect();
-        let half = clip(&mesh, &values, 0.5, 0.1);
+        let half = clip(&mesh, &values, 0.5, 0.1, &Budget::unlimited()).unwrap();
         let area: f64 = half
             .triangles
             .iter()

@@ -46,7 +46,7 @@ pub fn march(
         };
         let sides = sides(&tracked, &lines, &search, cell, budget)?;
         for level in LEVELS {
-            let mut inside = clip(&tracked, &sides, level * cell, cell);
+            let mut inside = clip(&tracked, &sides, level * cell, cell, budget)?;
             project_all(field, &mut inside.points, cell, budget)?;
             if let Some(patch) = zipped(&lines, &inside, budget)? {
                 return Ok(Ok(patch));

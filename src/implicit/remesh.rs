@@ -23,6 +23,8 @@ const SHORT: f64 = 4.0 / 5.0;
 const STEP_SHARE: f64 = 0.5;
 /// The least cosine between the normals of a triangle before and after it changes.
 const TURN_COSINE: f64 = 0.5;
+/// Edges sorted between two checks of the budget.
+const SORTED_AT_ONCE: usize = 1 << 14;
 /// Vertices handled between two checks of the budget.
 const VERTICES: usize = 32;
 
@@ -118,7 +120,12 @@ impl Work<'_> {
     }
 
     /// The inner edges, longest or shortest first by `excess` times `sign`.
-    fn sorted_edges(&self, sign: f64, is_wanted: impl Fn(f64) -> bool) -> Vec<HalfEdgeId> {
+    fn sorted_edges(
+        &self,
+        sign: f64,
+        is_wanted: impl Fn(f64) -> bool,
+        budget: &Budget,
+    ) -> Result<Vec<HalfEdgeId>, Stopped> {
         let mut edges: Vec<(f64, HalfEdgeId)> = self
             .mesh
             .edges()
@@ -126,12 +133,20 @@ impl Work<'_> {
             .map(|h| (self.excess(h), h))
             .filter(|&(excess, _)| is_wanted(excess))
             .collect();
-        edges.sort_by(|a, b| (b.0 * sign).total_cmp(&(a.0 * sign)).then(a.1.cmp(&b.1)));
-        edges.into_iter().map(|(_, h)| h).collect()
+        let order = |a: &(f64, HalfEdgeId), b: &(f64, HalfEdgeId)| {
+            (b.0 * sign).total_cmp(&(a.0 * sign)).then(a.1.cmp(&b.1))
+        };
+        // In parts first, so that the run can be stopped between them: a stable sort only merges what is sorted.
+        for part in edges.chunks_mut(SORTED_AT_ONCE) {
+            budget.check()?;
+            part.sort_by(order);
+        }
+        edges.sort_by(order);
+        Ok(edges.into_iter().map(|(_, h)| h).collect())
     }
 
     fn split_long(&mut self, budget: &Budget) -> Result<(), Stopped> {
-        for h in self.sorted_edges(1.0, |excess| excess > LONG) {
+        for h in self.sorted_edges(1.0, |excess| excess > LONG, budget)? {
             budget.spend(1)?;
             if self.excess(h) <= LONG {
                 continue;
@@ -153,7 +168,7 @@ impl Work<'_> {
     }
 
     fn collapse_short(&mut self, budget: &Budget) -> Result<(), Stopped> {
-        for h in self.sorted_edges(-1.0, |excess| excess < SHORT) {
+        for h in self.sorted_edges(-1.0, |excess| excess < SHORT, budget)? {
             budget.spend(1)?;
             if !self.mesh.contains(h) || self.mesh.is_boundary_edge(h) || self.excess(h) >= SHORT {
                 continue;

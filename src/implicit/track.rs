@@ -4,7 +4,7 @@ use super::cubes::{CENTRE, corner_and_axis, triangles};
 use super::field::Field;
 use super::patch::Unmeshed;
 use super::rim::RimLines;
-use crate::budget::{Budget, Stopped};
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 use crate::par;
 use crate::spatial::NearestSearch;
@@ -74,7 +74,10 @@ pub(super) fn track(
         }
         evaluate(field, &grid, &layer, &mut values, budget)?;
         let mut next = Vec::new();
-        for &place in &layer {
+        for (n, &place) in layer.iter().enumerate() {
+            if n.is_multiple_of(CHECK_EVERY) {
+                budget.check()?;
+            }
             let mask = (0..8).fold(0u8, |mask, k| mask | u8::from(values[&corner(place, k)] >= 0.0) << k);
             if mask == 0 || mask == u8::MAX {
                 continue;
@@ -173,7 +176,10 @@ fn mesh(
 ) -> Result<Tracked, Stopped> {
     let mut mesh = Tracked::default();
     let mut on_edge: FxHashMap<(Place, usize), u32> = FxHashMap::default();
-    for &(place, mask) in crossed {
+    for (n, &(place, mask)) in crossed.iter().enumerate() {
+        if n.is_multiple_of(CHECK_EVERY) {
+            budget.check()?;
+        }
         let (triangles, centres) = triangles(mask);
         let first_centre = mesh.points.len() as u32;
         let mut middles = Vec::new();

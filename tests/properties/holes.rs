@@ -287,6 +287,8 @@ fn sharp_edges_of_a_box_go_on_across_a_hole() {
         (thick, [0.0, 0.7, 0.45], 0.3, 0),
         (thick, [1.0, 0.7, 0.45], 0.3, 1),
         (half, [0.0, 0.7, 0.0], 0.35, 0),
+        // Up to a corner, where the other two edges end.
+        (thick, [1.0, 0.5, 0.45], 0.155, 0),
     ];
     for (half, center, radius, new_vertices) in cases {
         let torn = cut(fine_box(half), center, radius);

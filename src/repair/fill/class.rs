@@ -1,6 +1,6 @@
 //! Which ways of filling a hole are tried, and in which order.
 
-use super::creased::is_creased;
+use super::creased::Division;
 use super::make::Way;
 use super::options::{FillOptions, Method};
 use super::regions::Region;
@@ -14,8 +14,13 @@ const CUT_SINE: f64 = 0.7;
 /// Loops with fewer corners have no room for a new vertex.
 const CORNERS_TO_REFINE: usize = 5;
 
-/// The ways to try for a hole that is to be filled by `method`, the first first.
-pub(super) fn ways(region: &Region, method: Method, surface: &Surface, options: &FillOptions) -> Vec<Way> {
+/// The ways to try for a hole that is to be filled by `method`, the first first, and how creases divide it if they may.
+pub(super) fn ways(
+    region: &Region,
+    method: Method,
+    surface: &Surface,
+    options: &FillOptions,
+) -> (Vec<Way>, Option<Division>) {
     let plain: &[Way] = match (region.loops.len(), region.is_flat) {
         (1, true) => &[Way::Planar, Way::Minimal, Way::Ears],
         (1, false) => &[Way::Minimal, Way::Planar, Way::Ears],
@@ -23,13 +28,16 @@ pub(super) fn ways(region: &Region, method: Method, surface: &Surface, options: 
         (_, true) => &[Way::Planar, Way::Minimal],
         (_, false) => &[Way::Minimal, Way::Planar],
     };
+    let is_plain = method == Method::Auto && (!options.refines || is_to_be_plain(region, surface));
+    let may_be_creased = method == Method::Creased || (method == Method::Auto && !is_plain);
+    let division = if may_be_creased { Division::of(region, surface) } else { None };
     let own: &[Way] = match method {
-        Method::Auto if !options.refines || is_to_be_plain(region, surface) => &[],
+        Method::Auto if is_plain => &[],
         Method::Flat => &[Way::Planar],
         Method::Minimal => &[Way::Minimal, Way::Ears],
         Method::Smooth => &[Way::Smooth],
         Method::Creased => &[Way::Creased, Way::Smooth],
-        Method::Auto if is_creased(region, surface) => &[Way::Creased, Way::Rbf, Way::Smooth],
+        Method::Auto if division.is_some() => &[Way::Creased, Way::Rbf, Way::Smooth],
         Method::Auto | Method::Rbf => &[Way::Rbf, Way::Smooth],
     };
     let mut ways = own.to_vec();
@@ -40,7 +48,7 @@ pub(super) fn ways(region: &Region, method: Method, surface: &Surface, options: 
         let others = plain.iter().filter(|way| !own.contains(way));
         ways.extend(others);
     }
-    ways
+    (ways, division)
 }
 
 /// True when new vertices would not make a better patch.

@@ -27,13 +27,22 @@ pub(super) struct Around {
 }
 
 /// Moves the new vertices of `mesh`. `false`, and nothing moves: the system has no solution.
-pub(super) fn fair(mesh: &mut PatchMesh, around: &Around, budget: &Budget) -> Result<bool, Stopped> {
+///
+/// A plate that is clamped at a very uneven rim may swing out far beyond it. `tension` is how much it also counts how
+/// large the patch is: 0 is a plate, far above 1 a membrane, which stays within its rim. Both count alike for bends as
+/// narrow as a triangle when it is 1.
+pub(super) fn fair(
+    mesh: &mut PatchMesh,
+    around: &Around,
+    tension: f64,
+    budget: &Budget,
+) -> Result<bool, Stopped> {
     let unknown = mesh.points.len() - mesh.rim;
     if unknown == 0 {
         return Ok(true);
     }
     let plate = Plate::new(mesh, around);
-    let (matrix, right) = plate.system(budget)?;
+    let (matrix, right) = plate.system(tension, budget)?;
     let Some(factor) = matrix.factor(&mesh.points[mesh.rim..], budget)? else { return Ok(false) };
     let solution = factor.solve(&right);
     if !solution.iter().all(|p| p.is_finite()) {
@@ -91,12 +100,13 @@ impl Plate {
     }
 
     /// The normal equations: the Laplacian of the Laplacian at each new vertex is 0.
-    fn system(&self, budget: &Budget) -> Result<(Symmetric, Vec<DVec3>), Stopped> {
+    fn system(&self, tension: f64, budget: &Budget) -> Result<(Symmetric, Vec<DVec3>), Stopped> {
         let mut laplacians: Vec<Vec<(u32, f64)>> = Vec::with_capacity(self.weights.len());
         // For each unknown the Laplacians that it is in.
         let mut parts: Vec<Vec<(u32, f64)>> = vec![Vec::new(); self.inner];
         let mut right = vec![DVec3::ZERO; self.inner];
         let unknown = |v: u32| (v as usize).checked_sub(self.rim).filter(|&i| i < self.inner);
+        let tension = tension * self.area.len() as f64 / self.area.iter().sum::<f64>();
         for (v, weights) in self.weights.iter().enumerate() {
             budget.spend((weights.len() * weights.len()) as u64 / 16 + 1)?;
             let sum: f64 = weights.iter().map(|&(_, weight)| weight).sum();
@@ -113,6 +123,13 @@ impl Plate {
                 let share = x / self.area[v];
                 right[i as usize] -= share * still;
                 parts[i as usize].push((v as u32, share));
+            }
+            // The Laplacian itself, at the vertex that it is of.
+            if tension > 0.0
+                && let Some(i) = unknown(v as u32)
+            {
+                right[i] -= tension * still;
+                parts[i].push((v as u32, tension));
             }
             laplacians.push(moving);
         }
@@ -158,4 +175,56 @@ fn summed_exactly(mut entries: Vec<(u32, f64)>) -> Vec<(u32, f64)> {
     // Stable, so that sums are made in the order of the triangles.
     entries.sort_by_key(|&(v, _)| v);
     entries.chunk_by(|a, b| a.0 == b.0).map(|same| (same[0].0, same.iter().map(|&(_, x)| x).sum())).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A square of `n` by `n` cells whose rim is clamped to a surface that rises steeply around it.
+    fn basin(n: u32) -> (PatchMesh, Around) {
+        let rim: Vec<[u32; 2]> = (0..n)
+            .map(|i| [i, 0])
+            .chain((0..n).map(|i| [n, i]))
+            .chain((0..n).map(|i| [n - i, n]))
+            .chain((0..n).map(|i| [0, n - i]))
+            .collect();
+        let inner = (1..n).flat_map(|i| (1..n).map(move |k| [i, k]));
+        let all: Vec<[u32; 2]> = rim.iter().copied().chain(inner).collect();
+        let at = |[i, k]: [u32; 2]| DVec3::new(f64::from(i), f64::from(k), 0.0);
+        let number = |p: [u32; 2]| all.iter().position(|&q| q == p).unwrap() as u32;
+        let cells = (0..n).flat_map(|i| (0..n).map(move |k| [i, k]));
+        let triangles = cells
+            .flat_map(|[i, k]| {
+                let [a, b, c, d] = [[i, k], [i + 1, k], [i + 1, k + 1], [i, k + 1]].map(number);
+                [[a, b, c], [a, c, d]]
+            })
+            .collect();
+        let mut mesh = PatchMesh::new(all.iter().map(|&p| at(p)).collect(), triangles).unwrap();
+        mesh.rim = rim.len();
+        // Beyond each side of the rim a triangle that stands upright.
+        let middle = DVec3::new(f64::from(n), f64::from(n), 0.0) / 2.0;
+        let corners = rim.len() as u32;
+        let mut around = Around { is_clamped: vec![true; rim.len()], ..Around::default() };
+        for i in 0..corners {
+            let [p, q] = [i, (i + 1) % corners].map(|i| at(rim[i as usize]));
+            around.points.push((p + q) / 2.0 + ((p + q) / 2.0 - middle) * 0.02 + 3.0 * DVec3::Z);
+            around.triangles.push([(i + 1) % corners, i, corners + i]);
+        }
+        (mesh, around)
+    }
+
+    fn depth(tension: f64) -> f64 {
+        let (mut mesh, around) = basin(12);
+        assert!(fair(&mut mesh, &around, tension, &Budget::unlimited()).unwrap());
+        mesh.points.iter().fold(0.0, |least: f64, p| least.min(p.z))
+    }
+
+    #[test]
+    fn a_plate_swings_out_beyond_a_steep_rim_and_tension_draws_it_in() {
+        let [plate, tense, membrane] = [0.0, 1.0, 1e6].map(depth);
+        assert!(plate < -0.5, "{plate}");
+        assert!(tense > 0.8 * plate && tense < -0.01, "{tense} of {plate}");
+        assert!(membrane > -1e-3, "{membrane}");
+    }
 }

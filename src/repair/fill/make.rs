@@ -2,11 +2,12 @@
 
 use super::accept::Proposal;
 use super::caps::turn_caps;
-use super::creased::creased;
+use super::coarsen::coarsen;
+use super::creased::{Division, creased};
 use super::fair::{Around, fair};
 use super::options::{Extract, FillOptions, Method};
 use super::patch::PatchMesh;
-use super::refine::{Lengths, refine};
+use super::refine::{Lengths, refine, turn_edges};
 use super::regions::Region;
 use super::report::Rejection;
 use super::surface::Surface;
@@ -63,10 +64,18 @@ pub(super) struct Made {
 
 /// Times that a faired patch is divided anew where it has grown.
 const FAIRINGS: usize = 2;
+/// Tensions of the plate that are tried, the least first.
+const TENSIONS: [f64; 3] = [0.0, 0.1, 10.0];
+/// A plate swings out when an edge of it becomes longer than so many of the lengths wanted at its ends. Edges are divided
+/// from 4/3 on, and a dome as high as it is wide stretches them by half. What is longer before may double.
+const STRETCH_MAX: f64 = 4.0;
+/// Times that vertices which came together are taken out after each.
+const COARSENINGS: usize = 3;
 
-/// The patch of `region`, or why there is none.
+/// The patch of `region`, or why there is none. `division`: how creases divide it, if they do.
 pub(super) fn make(
     region: &Region,
+    division: Option<&Division>,
     rings: u32,
     way: Way,
     scene: &Scene<'_>,
@@ -79,7 +88,10 @@ pub(super) fn make(
         Way::Minimal => least_bent(region, surface, budget)?,
         Way::Ears => corner_by_corner(region, surface, budget)?,
         Way::Smooth => return smooth(region, surface, budget),
-        Way::Creased => return creased(region, surface, budget),
+        Way::Creased => match division {
+            Some(division) => return creased(region, division, surface, budget),
+            None => Err(Rejection::NoPatch),
+        },
         Way::Rbf => return of_field(region, rings, scene, budget),
     };
     Ok(made.map(|triangles| Made::plain(region, triangles)))
@@ -300,9 +312,38 @@ pub(super) fn refine_and_fair(
         if !refine(mesh, &mut lengths, is_free, budget)? && round > 0 {
             break;
         }
-        if !fair(mesh, around, budget)? {
+        if !fair_within_reach(mesh, &lengths, around, budget)? {
             return Ok(false);
+        }
+        for _ in 0..COARSENINGS {
+            if !coarsen(mesh, &mut lengths, is_free, budget)? {
+                break;
+            }
+            turn_edges(mesh, is_free, budget)?;
+            if !fair_within_reach(mesh, &lengths, around, budget)? {
+                return Ok(false);
+            }
         }
     }
     Ok(true)
+}
+
+/// Fairs with the least tension with which no edge becomes far too long; with the largest whatever becomes of edges.
+fn fair_within_reach(
+    mesh: &mut PatchMesh,
+    lengths: &Lengths,
+    around: &Around,
+    budget: &Budget,
+) -> Result<bool, Stopped> {
+    let before = mesh.points.clone();
+    let reach = STRETCH_MAX.max(2.0 * lengths.largest_stretch(mesh));
+    let mut is_fair = false;
+    for tension in TENSIONS {
+        mesh.points.clone_from(&before);
+        is_fair = fair(mesh, around, tension, budget)?;
+        if is_fair && lengths.largest_stretch(mesh) <= reach {
+            break;
+        }
+    }
+    Ok(is_fair)
 }

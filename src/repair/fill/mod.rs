@@ -11,6 +11,7 @@ mod bridge;
 mod caps;
 mod chords;
 mod class;
+mod coarsen;
 mod creased;
 mod ears;
 mod facing;
@@ -31,6 +32,7 @@ mod sparse;
 mod surface;
 
 use self::accept::Proposal;
+use self::creased::Division;
 use self::make::{Made, Scene, Way, make};
 pub use self::options::{Extract, FillOptions, HoleChoice, Method};
 use self::regions::{Region, regions};
@@ -84,6 +86,8 @@ pub fn fill(
 /// A hole, and the ways that it has not been offered yet.
 struct Hole {
     region: Region,
+    /// How creases divide it; `None` when they do not or it is not to be seen.
+    division: Option<Division>,
     band_rings: u32,
     /// In the reverse of their order.
     ways: Vec<Way>,
@@ -111,8 +115,7 @@ fn fill_loops(
     let outward = |h: u32| surface.outward(h);
     let outward: Option<&dyn Fn(u32) -> DVec3> = if options.bridges { Some(&outward) } else { None };
     let regions = regions(loops, |h| surface.point(h), outward, budget)?;
-    let mut open: Vec<Hole> =
-        regions.into_iter().map(|region| ladder.start(region, Vec::new(), &surface)).collect();
+    let mut open: Vec<Hole> = par::map_items(regions, |_, region| ladder.start(region, Vec::new(), &surface));
     let has_field = open.iter().any(|hole| hole.ways.contains(&Way::Rbf));
     // The surface grows by patches; what a field is halved by is the mesh as it was.
     let positions = if has_field { surface.positions.clone() } else { Vec::new() };
@@ -166,7 +169,7 @@ impl Ladder<'_> {
         let choice = self.soup.and_then(|soup| self.options.choice(region.rim(), self.draft, soup));
         let asked = choice.and_then(|choice| choice.method).unwrap_or(self.options.method);
         let band_rings = choice.and_then(|choice| choice.band_rings).unwrap_or(self.options.band_rings);
-        let mut ways = class::ways(&region, asked, surface, self.options);
+        let (mut ways, division) = class::ways(&region, asked, surface, self.options);
         ways.reverse();
         let rim = |own: &Vec<u32>| {
             let of_soup = |&h: &u32| self.soup.and_then(|soup| options::soup_half_edge(h, self.draft, soup));
@@ -179,7 +182,7 @@ impl Ladder<'_> {
             rejected,
             ..HoleReport::default()
         };
-        Hole { region, band_rings, ways, report }
+        Hole { region, division, band_rings, ways, report }
     }
 
     /// A hole that ran out of ways stays open. If it has several loops, they are tried alone.
@@ -218,7 +221,7 @@ fn offer(open: &mut [Hole], scene: &Scene<'_>, budget: &Budget) -> Result<Vec<Op
 impl Hole {
     fn next(&mut self, scene: &Scene<'_>, budget: &Budget) -> Result<Option<(Way, Made)>, Stopped> {
         while let Some(way) = self.ways.pop() {
-            match make(&self.region, self.band_rings, way, scene, budget)? {
+            match make(&self.region, self.division.as_ref(), self.band_rings, way, scene, budget)? {
                 Ok(made) => return Ok(Some((way, made))),
                 Err(reason) => self.report.rejected.push(Rejected { method: way.method(), reason }),
             }

@@ -77,6 +77,31 @@ impl Lengths {
         mesh.point(a).distance_squared(mesh.point(b)) > (LONG * wanted) * (LONG * wanted)
     }
 
+    /// True for an edge that is shorter than so many of the lengths wanted at its ends.
+    pub(super) fn is_below(&self, share: f64, mesh: &PatchMesh, [a, b]: [u32; 2]) -> bool {
+        let least = share * (self.at[a as usize] + self.at[b as usize]) / 2.0;
+        mesh.point(a).distance_squared(mesh.point(b)) < least * least
+    }
+
+    /// The most that an edge is longer than wanted at its ends, as a factor.
+    pub(super) fn largest_stretch(&self, mesh: &PatchMesh) -> f64 {
+        let stretch = |[a, b]: [u32; 2]| {
+            2.0 * mesh.point(a).distance(mesh.point(b)) / (self.at[a as usize] + self.at[b as usize])
+        };
+        (0..3 * mesh.triangles.len() as u32).map(|h| stretch(mesh.ends(h))).fold(0.0, f64::max)
+    }
+
+    /// The length wanted at one vertex more.
+    pub(super) fn push(&mut self, length: f64) {
+        self.at.push(length);
+    }
+
+    /// Leaves out vertices that are gone.
+    pub(super) fn keep(&mut self, is_kept: &[bool]) {
+        let mut kept = is_kept.iter();
+        self.at.retain(|_| kept.next().is_none_or(|&is_kept| is_kept));
+    }
+
     fn between(&self, mesh: &PatchMesh, [a, b]: [u32; 2]) -> f64 {
         let (x, y) = (self.at[a as usize], self.at[b as usize]);
         let half = mesh.point(a).distance(mesh.point(b)) / 2.0;
@@ -117,7 +142,7 @@ fn divide(mesh: &mut PatchMesh, lengths: &mut Lengths, budget: &Budget) -> Resul
         let length = lengths.between(mesh, ends);
         let [a, b] = ends.map(|v| mesh.point(v));
         if mesh.split(h, (a + b) / 2.0).is_some() {
-            lengths.at.push(length);
+            lengths.push(length);
             divided += 1;
         }
     }

@@ -23,7 +23,7 @@ const COPLANAR_COS_MIN: f64 = 0.9995;
 const POINTS_MAX: f64 = 256.0;
 
 /// A hole divided by curves. Points are numbered: the corners of the rim, then those of curves.
-pub(super) struct Division {
+pub(in crate::repair::fill) struct Division {
     pub(super) points: Vec<DVec3>,
     /// For each point of a curve two points that it was born between.
     pub(super) parents: Vec<[u32; 2]>,
@@ -42,7 +42,7 @@ enum Course {
 
 impl Division {
     /// `None`: no sharp edge ends at the rim, or nothing tells how they go on.
-    pub(super) fn of(region: &Region, surface: &Surface) -> Option<Self> {
+    pub(in crate::repair::fill) fn of(region: &Region, surface: &Surface) -> Option<Self> {
         let ends = ends(region, surface);
         if !(2..=ENDS_MAX).contains(&ends.len()) {
             return None;
@@ -275,4 +275,59 @@ pub(super) fn normal_beyond(side: &[u32], i: usize, region: &Region, surface: &S
     let rim = region.rim();
     let is_of_rim = (from as usize) < rim.len() && (from as usize + 1) % rim.len() == to as usize;
     if is_of_rim { surface.normal(rim[from as usize]) } else { DVec3::ZERO }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A round rim of 12 corners, the first at the right.
+    fn rim() -> Division {
+        let corner = |i: u32| {
+            let (y, x) = (f64::from(i) * std::f64::consts::TAU / 12.0).sin_cos();
+            DVec3::new(x, y, 0.0)
+        };
+        let points = (0..12).map(corner).collect();
+        Division { points, parents: Vec::new(), sides: vec![(0..12).collect()], curves_at: Vec::new() }
+    }
+
+    fn end(corner: u32, x: f64, y: f64) -> End {
+        End { corner, direction: DVec3::new(x, y, 0.0).normalize() }
+    }
+
+    /// The corners of the pairs and of the ends that are left.
+    fn matched(ends: &[End]) -> (Vec<[u32; 2]>, Vec<u32>) {
+        let (joined, left) = rim().matched(ends);
+        let corners = |pair: &[End; 2]| pair.map(|end| end.corner);
+        let mut pairs: Vec<[u32; 2]> = joined.iter().map(corners).collect();
+        pairs.sort_unstable();
+        (pairs, left.iter().map(|end| end.corner).collect())
+    }
+
+    #[test]
+    fn two_edges_side_by_side_go_on_each_as_itself() {
+        let ends = [end(1, -1.0, 0.0), end(5, 1.0, 0.0), end(7, 1.0, 0.0), end(11, -1.0, 0.0)];
+        assert_eq!(matched(&ends), (vec![[1, 5], [7, 11]], vec![]));
+    }
+
+    #[test]
+    fn of_two_edges_that_cross_the_straighter_one_goes_on() {
+        let ends = [end(0, -1.0, 0.2), end(3, 0.0, -1.0), end(6, 1.0, 0.0), end(9, 0.0, 1.0)];
+        assert_eq!(matched(&ends), (vec![[3, 9]], vec![0, 6]));
+    }
+
+    #[test]
+    fn edges_that_go_past_each_other_are_joined_only_where_they_are_alone() {
+        // Each is 60 degrees off the line between them.
+        let [one, other] = [end(0, -0.5, 0.75f64.sqrt()), end(6, 0.5, 0.75f64.sqrt())];
+        assert_eq!(matched(&[one, other]), (vec![[0, 6]], vec![]));
+        assert_eq!(matched(&[one, end(3, 0.0, 1.0), other]), (vec![], vec![0, 3, 6]));
+    }
+
+    #[test]
+    fn ends_at_neighbours_in_the_rim_or_that_look_away_from_each_other_are_not_joined() {
+        assert_eq!(matched(&[end(0, 0.0, 1.0), end(1, 0.0, -1.0)]), (vec![], vec![0, 1]));
+        assert_eq!(matched(&[end(0, 0.0, -1.0), end(11, 0.0, 1.0)]), (vec![], vec![0, 11]));
+        assert_eq!(matched(&[end(0, 1.0, 0.0), end(6, -1.0, 0.0)]), (vec![], vec![0, 6]));
+    }
 }

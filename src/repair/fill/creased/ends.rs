@@ -3,7 +3,6 @@
 use super::super::regions::Region;
 use super::super::surface::Surface;
 use crate::geom::DVec3;
-use rustc_hash::FxHashMap;
 
 /// An edge is sharp when its faces turn by more, as the cosine of the angle (35 degrees).
 const SHARP_COS_MAX: f64 = 0.82;
@@ -38,7 +37,7 @@ pub(super) fn ends(region: &Region, surface: &Surface) -> Vec<End> {
         return Vec::new();
     }
     let mean = (0..n).map(|i| point(i).distance(point(i + 1))).sum::<f64>() / n as f64;
-    let start = |i: usize| Some((i, direction(surface, surface.corner(rim[i]), mean)?));
+    let start = |i: usize| Some((i, direction(surface, [rim[(i + n - 1) % n], rim[i]], mean)?));
     let starts: Vec<(usize, DVec3)> = (0..n).filter_map(start).take(STARTS_MAX + 1).collect();
     if starts.len() > STARTS_MAX {
         return Vec::new();
@@ -64,9 +63,30 @@ pub(super) fn ends(region: &Region, surface: &Surface) -> Vec<End> {
     alone
 }
 
-/// The direction in which the one sharp edge at vertex `v` goes on; `None` when there is none or more of them.
-fn direction(surface: &Surface, v: u32, mean: f64) -> Option<DVec3> {
-    let [w] = sharp_neighbours(surface, v)[..] else { return None };
+/// The direction in which the sharp edges at the corner between two half-edges of the rim go on; `None` when there is none,
+/// or nothing tells how.
+fn direction(surface: &Surface, [before, after]: [u32; 2], mean: f64) -> Option<DVec3> {
+    let v = surface.corner(after);
+    let [p, q] = match sharp_neighbours(surface, v)[..] {
+        [w] => return onward(surface, v, w, mean),
+        [p, q] => [p, q],
+        _ => return None,
+    };
+    onward(surface, v, p, mean).zip(onward(surface, v, q, mean))?;
+    let [at, p, q] = [v, p, q].map(|v| surface.positions[v as usize]);
+    let is_passing = (at - p).normalize_or_zero().dot((q - at).normalize_or_zero()) >= LINE_COS_MIN;
+    // A corner of a part: the third edge is where the faces to both sides of the hole meet.
+    let [one, other] = [before, after].map(|h| surface.normal(h));
+    if is_passing || one.dot(other) >= SHARP_COS_MAX {
+        return None;
+    }
+    let line = one.cross(other).normalize_or_zero();
+    let outward = surface.outward(before) + surface.outward(after);
+    Some(if line.dot(outward) < 0.0 { -line } else { line })
+}
+
+/// The direction in which the sharp edge from vertex `w` to `v` goes on; `None` for one that is short and alone.
+fn onward(surface: &Surface, v: u32, w: u32, mean: f64) -> Option<DVec3> {
     let [at, from] = [v, w].map(|v| surface.positions[v as usize]);
     let (length, last) = ((at - from).length(), (at - from).normalize_or_zero());
     let before = sharp_neighbours(surface, w)
@@ -96,14 +116,17 @@ fn sharp_neighbours(surface: &Surface, v: u32) -> Vec<u32> {
         (b - a).cross(c - a).normalize_or_zero()
     };
     // Of each neighbour the triangle to the left of the edge to it.
-    let mut left: FxHashMap<u32, DVec3> = FxHashMap::default();
+    let mut left: Vec<(u32, DVec3)> = Vec::with_capacity(star.len());
     let mut right: Vec<(u32, DVec3)> = Vec::with_capacity(star.len());
     for &t in star {
         let corners = surface.triangles[t as usize];
         let Some(c) = corners.iter().position(|&corner| corner == v) else { continue };
-        left.insert(corners[(c + 1) % 3], normal(t));
-        right.push((corners[(c + 2) % 3], normal(t)));
+        let normal = normal(t);
+        left.push((corners[(c + 1) % 3], normal));
+        right.push((corners[(c + 2) % 3], normal));
     }
-    let is_sharp = |&(w, beyond): &(u32, DVec3)| left.get(&w).is_some_and(|n| n.dot(beyond) < SHARP_COS_MAX);
+    let is_sharp = |&(w, beyond): &(u32, DVec3)| {
+        left.iter().any(|&(other, normal)| other == w && normal.dot(beyond) < SHARP_COS_MAX)
+    };
     right.into_iter().filter(is_sharp).map(|(w, _)| w).collect()
 }

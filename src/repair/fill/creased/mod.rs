@@ -8,7 +8,8 @@
 mod division;
 mod ends;
 
-use self::division::{Division, normal_beyond};
+pub(in crate::repair::fill) use self::division::Division;
+use self::division::normal_beyond;
 use super::make::{Made, refine_and_fair};
 use super::minimal::{self, CORNERS_MAX};
 use super::patch::PatchMesh;
@@ -19,22 +20,17 @@ use super::{large, planar};
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 
-/// True when sharp edges end at the rim in a way that tells how they go on.
-pub(super) fn is_creased(region: &Region, surface: &Surface) -> bool {
-    Division::of(region, surface).is_some()
-}
-
-/// The patch with the creases, or why there is none.
+/// The patch of a region that creases divide, or why there is none.
 pub(super) fn creased(
     region: &Region,
+    division: &Division,
     surface: &Surface,
     budget: &Budget,
 ) -> Result<Result<Made, Rejection>, Stopped> {
-    let Some(division) = Division::of(region, surface) else { return Ok(Err(Rejection::NoPatch)) };
-    let Division { points, parents, .. } = &division;
+    let Division { points, parents, .. } = division;
     let mut patch = Patch { points: points.clone(), parents: parents.clone(), triangles: Vec::new() };
     for corners in &division.sides {
-        match (Side { corners, division: &division, region, surface }).close(budget)? {
+        match (Side { corners, division, region, surface }).close(budget)? {
             Ok(mesh) => patch.sew(corners, &mesh),
             Err(reason) => return Ok(Err(reason)),
         }
