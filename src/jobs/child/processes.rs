@@ -43,10 +43,11 @@ impl Processes {
         self.starter.close();
     }
 
-    /// Runs a job in a child. Blocks.
+    /// Runs a job, which may charge so many bytes, in a child. Blocks.
     pub(in crate::jobs) fn run(
         &self,
         row: &JobRow,
+        bytes_max: u64,
         spool: &Spool,
         live: &Live,
         settings: &JobsSettings,
@@ -61,7 +62,7 @@ impl Processes {
             vertices_max: settings.read_limits.vertices_max,
             polygon_corners_max: settings.read_limits.polygon_corners_max,
             engine_work_max: settings.engine_work_max,
-            engine_bytes_max: settings.engine_bytes_max,
+            engine_bytes_max: bytes_max,
         };
         let answered = match self.starter.child() {
             Ok(running) => {
@@ -89,8 +90,7 @@ impl Processes {
             }
             Err(death) => {
                 meters::child_ended(death.kind());
-                let problem =
-                    death.problem(clock.progress().stage, &self.setting.limits, settings.engine_bytes_max);
+                let problem = death.problem(clock.progress().stage, &self.setting.limits, bytes_max);
                 match &death {
                     Death::Stopped(_) => {}
                     Death::NotStarted(error) => {
