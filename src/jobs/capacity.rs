@@ -71,8 +71,8 @@ impl Capacity {
         }
     }
 
-    /// Waits for room. `reserved` is what a large job will probably take at most; `None`: it took more than that already,
-    /// and is given all that a job may have. One that is thought to take more than there is waits until no other large one
+    /// Waits for room; a small job is given what is kept for it at once. `reserved` is what a large one will probably take
+    /// at most; `None`: it took more than that already, and is given all that a job may have. One that is thought to take more than there is waits until no other large one
     /// runs.
     async fn room(&self, lane: Lane, reserved: Option<u64>) -> Room {
         let bytes = reserved.unwrap_or(self.bytes_max).min(self.bytes_max);
@@ -88,7 +88,8 @@ impl Capacity {
 impl Service {
     /// Waits for the memory of a run; `None`: the run is to stop before there is any.
     pub(super) async fn room_for(&self, row: &JobRow, live: &Live) -> Option<Room> {
-        let reserved = if row.is_outgrown { None } else { Some(self.reserved_bytes(row).await) };
+        let is_known = row.is_outgrown || row.lane == Lane::Interactive;
+        let reserved = if is_known { None } else { Some(self.reserved_bytes(row).await) };
         let room = self.capacity.room(row.lane, reserved);
         tokio::pin!(room);
         loop {

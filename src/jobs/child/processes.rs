@@ -5,6 +5,7 @@ use std::num::NonZero;
 
 use super::death::Death;
 use super::limits::Limits;
+use super::memory_kills;
 use super::sandbox::Protections;
 use super::starter::Starter;
 use super::task::{Setting, Task};
@@ -31,6 +32,8 @@ pub(in crate::jobs) struct Processes {
 impl Processes {
     /// Finds out by a trial whether children do their job here, and says what holds them.
     pub(in crate::jobs) fn prepare(settings: &JobsSettings) -> Result<Self, TrialError> {
+        // What was before this server is none of its jobs.
+        memory_kills::are_more();
         let workspaces = Workspaces::open(&settings.data_dir)?;
         let setting = setting(settings);
         let protections = try_out(&workspaces, &setting)?;

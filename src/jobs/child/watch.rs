@@ -41,7 +41,6 @@ pub(super) fn watch(
     hear: &dyn Fn(Event),
 ) -> Result<Answered, Death> {
     let begun = Instant::now();
-    let kills_before = memory_kills::count();
     running.give(task).map_err(Death::NotStarted)?;
     let mut hearing = Hearing::default();
     let mut piece = vec![0; 8 << 10];
@@ -76,7 +75,7 @@ pub(super) fn watch(
         tracing::debug!(words, "last words of a job's process");
     }
     if !status.success() {
-        let is_for_memory = memory_kills::count() > kills_before;
+        let is_for_memory = memory_kills::are_more();
         return Err(Death::of(status, &words, is_for_memory));
     }
     let protections = hearing.protections.unwrap_or_default();

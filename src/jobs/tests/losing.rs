@@ -147,8 +147,10 @@ async fn with_another_store(
     jobs.drain().await;
     drop(jobs);
     let engine: Engine = Arc::new(|_: Asked, bytes: &[u8], _: &_, budget: &Budget| mend(bytes, budget));
-    // Nobody holds the files any more once another service could take them over.
-    drop(started(settings.clone(), Arc::clone(&engine)).await);
+    // With the last connection goes the file beside the store.
+    while settings.data_dir.join("jobs.sqlite3-wal").exists() {
+        tokio::time::sleep(Duration::from_millis(5)).await;
+    }
     change(&settings.data_dir);
     loop {
         match Jobs::start_with(settings.clone(), Arc::clone(&engine)).await {

@@ -102,15 +102,18 @@ async fn a_tenant_may_be_held_to_a_number_of_jobs_and_bytes_of_its_own() {
 
 #[tokio::test]
 async fn no_tenant_has_every_slot() {
-    let house = house(|settings| (settings.slots, settings.interactive_slots) = (2, 2), work_forever).await;
-    for bytes in [b"1", b"2", b"3"] {
-        house.order_of("loud", bytes, false).await.unwrap();
-        house.order_of("loud", &[bytes[0], 7], true).await.unwrap();
+    let change =
+        |settings: &mut JobsSettings| (settings.slots, settings.interactive_slots, settings.queue_max) = (2, 2, 100);
+    let house = house(change, work_forever).await;
+    for number in 0..3_u8 {
+        house.order_of("loud", &[number], false).await.unwrap();
+        house.order_of("loud", &[number, 7], true).await.unwrap();
     }
     house.until("one in each kind of slot", |load| (load.running, load.queued) == (2, 4)).await;
-    for is_waited_for in [true, false] {
+    // A large one, which no slot for small ones takes, comes first.
+    for (number, is_waited_for) in [false, true].into_iter().enumerate() {
         let job = house.order_of("quiet", &[u8::from(is_waited_for)], is_waited_for).await.unwrap();
-        house.until("the other one's", |load| load.running > 2 + usize::from(!is_waited_for)).await;
+        house.until("the other one's", |load| load.running == 3 + number).await;
         assert_eq!(house.get(id(&job)).await.unwrap().state, JobState::Running);
     }
     assert_eq!(house.load().await.queued, 4);
