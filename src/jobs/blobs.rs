@@ -176,7 +176,9 @@ impl Drop for LocalWriter {
 /// Makes a directory for this user alone, or makes the one that is there so.
 pub(super) fn make_private_dir(path: &Path) -> io::Result<()> {
     DirBuilder::new().recursive(true).mode(0o700).create(path)?;
-    fs::set_permissions(path, Permissions::from_mode(0o700))
+    // That of another user, who lets this one write, stays as it is.
+    let _ = fs::set_permissions(path, Permissions::from_mode(0o700));
+    Ok(())
 }
 
 /// Makes the entry of a file outlast a loss of power.

@@ -134,14 +134,12 @@ fn there_is_a_limit_on_requests_unless_the_operator_says_otherwise() {
 
 #[test]
 fn an_address_has_its_share_of_connections_and_no_more() {
-    let server = Server::with(&["--connections-max", "4", "--header-timeout", "20s"]);
+    let server = Server::with(&["--connections-max", "4", "--header-timeout", "10min"]);
     let silent = [server.connect(), server.connect()];
-    let begun = std::time::Instant::now();
     let mut third = server.connect();
-    // Said to nobody: the connection is closed.
+    // Said to nobody: the connection is closed at once, long before its head would be late.
     third.try_say("GET /v1/version HTTP/1.1\r\n");
     assert!(third.is_closed());
-    assert!(begun.elapsed() < std::time::Duration::from_secs(15), "at once, not when its head is late");
     assert_eq!(server.admin("/livez").status(), 200);
     assert!(server.admin("/metrics").text().unwrap().contains("meshmend_http_connections_closed_total 1"));
     drop(silent);

@@ -179,8 +179,10 @@ impl Readers {
 
 /// Makes the file for this user alone, if there is none; SQLite gives the files beside it the same rights.
 fn make_private(path: &Path) -> Result<(), OpenError> {
-    let made = File::options().create(true).append(true).mode(0o600).open(path);
-    made.and_then(|file| file.set_permissions(Permissions::from_mode(0o600))).map_err(OpenError::File)
+    let file = File::options().create(true).append(true).mode(0o600).open(path).map_err(OpenError::File)?;
+    // The file of another user, who lets this one write, stays as it is.
+    let _ = file.set_permissions(Permissions::from_mode(0o600));
+    Ok(())
 }
 
 fn reader(path: &Path) -> rusqlite::Result<Connection> {

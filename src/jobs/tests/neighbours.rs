@@ -102,8 +102,9 @@ async fn a_tenant_may_be_held_to_a_number_of_jobs_and_bytes_of_its_own() {
 
 #[tokio::test]
 async fn no_tenant_has_every_slot() {
-    let change =
-        |settings: &mut JobsSettings| (settings.slots, settings.interactive_slots, settings.queue_max) = (2, 2, 100);
+    let change = |settings: &mut JobsSettings| {
+        (settings.slots, settings.interactive_slots, settings.queue_max) = (2, 2, 100)
+    };
     let house = house(change, work_forever).await;
     for number in 0..3_u8 {
         house.order_of("loud", &[number], false).await.unwrap();

@@ -44,7 +44,11 @@ pub(super) async fn no_tenant_has_more_running_jobs_than_its_share_in_slots_of_a
     }
     let small = claim_with(&*store, 1, true).await.unwrap();
     let general = claim_with(&*store, 1, false).await.unwrap();
-    assert_eq!([small.tenant.name(), general.tenant.name()], ["a", ""], "the one without a job in a slot comes first");
+    assert_eq!(
+        [small.tenant.name(), general.tenant.name()],
+        ["a", ""],
+        "the one without a job in a slot comes first"
+    );
     let another = claim_with(&*store, 1, true).await.unwrap();
     assert_eq!(another.tenant.name(), "", "no share is kept from nobody");
     assert!(claim_with(&*store, 1, true).await.is_none());
