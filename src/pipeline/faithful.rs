@@ -4,7 +4,7 @@
 //! beyond bounds that are stated. *Changed*: a bound is exceeded, and which. The bounds and where they are from:
 //! `docs/decisions/0032-printable-is-not-faithful.md`.
 
-use super::fidelity::{LOSS_MAX, LOST_BEYOND, Losses, Original, area_of, diagonal};
+use super::fidelity::{LOSS_MAX, LOST_BEYOND, Losses, Original, area_of, defined_volume, diagonal};
 use super::{Outcome, Report};
 use crate::budget::{Budget, CHECK_EVERY, Stage, Stopped};
 use crate::distance::SurfaceDistance;
@@ -121,7 +121,7 @@ pub(super) fn judge(
     if let (Some(distance), Some(losses)) = (&report.distance, &report.losses) {
         return Ok(FidelityVerdict::of(losses, distance.upper(), diagonal));
     }
-    let volume = report.before.as_ref().and_then(|analysis| analysis.measures.volume);
+    let volume = defined_volume(report.before.as_ref());
     let (verdict, measured) = judge_alone(input, result, origins, report.distance.as_ref(), volume, budget)?;
     if let Some((distance, losses)) = measured {
         report.losses = Some(losses);

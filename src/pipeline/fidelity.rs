@@ -1,11 +1,13 @@
 //! How far a result is from its input, what of the input it lost, and whether that is little enough.
 
+use super::plan::Covered;
 use super::{FidelityVerdict, Limits, Refusal};
+use crate::analysis::Analysis;
 use crate::budget::{Budget, CHECK_EVERY, Stage, Stopped};
 use crate::distance::{
     DirectedDistance, DistanceOptions, FarPoint, Sight, Surface, SurfaceDistance, directed_distance,
 };
-use crate::geom::{Aabb, DVec3, are_collinear, signed_volume, triangle_area};
+use crate::geom::{Aabb, DVec3, are_collinear, closest_point_on_triangle, signed_volume, triangle_area};
 use crate::mesh::{Components, Soup, UnionFind};
 use crate::repair::NEW;
 use crate::spatial::{NearestSearch, coincident_f64};
@@ -90,6 +92,12 @@ impl Fidelity {
     }
 }
 
+/// The volume of an input, where it is defined: that of bodies which pass through each other counts what they share twice.
+pub(super) fn defined_volume(before: Option<&Analysis>) -> Option<f64> {
+    let embedded = before.filter(|analysis| analysis.properties.is_embedded != Some(false));
+    embedded.and_then(|analysis| analysis.measures.volume)
+}
+
 /// An input to measure results against.
 pub(super) struct Original<'i> {
     input: &'i Soup,
@@ -113,30 +121,58 @@ impl<'i> Original<'i> {
         origins: &[u32],
         budget: &Budget,
     ) -> Result<Fidelity, Stopped> {
+        self.measure_rest(result, origins, None, budget)
+    }
+
+    /// As [`Self::measure`], but what is known to be `covered` is not looked for.
+    pub(super) fn measure_rest(
+        &self,
+        result: &Soup,
+        origins: &[u32],
+        covered: Option<&Covered>,
+        budget: &Budget,
+    ) -> Result<Fidelity, Stopped> {
         budget.stage(Stage::Measure, || {
-            let changed = Changed::of(self.input, result, origins, budget)?;
+            let mut changed = Changed::of(self.input, result, origins, budget)?;
+            let mut moved = [0.0; 2];
+            let (mut covered_area, mut buried_area) = (0.0, 0.0);
+            if let Some(covered) = covered {
+                let (known, gone) = std::mem::take(&mut changed.gone)
+                    .into_iter()
+                    .partition(|t| covered.triangles.binary_search(t).is_ok());
+                changed.gone = gone;
+                covered_area = area_of(self.input, &known);
+                buried_area = covered.buried_area.min(covered_area);
+                moved = [covered.moved, changed.drop_pieces(self.input, result, origins, self.lost_beyond)];
+            }
             let gone_area = area_of(self.input, &changed.gone);
-            let area = gone_area + changed.stayed_area;
+            let area = gone_area + covered_area + changed.stayed_area;
             let forward = self.forward(result, &changed.gone, budget)?;
             let seen = forward.and_then(|forward| forward.seen);
-            let hidden_area = gone_area * seen.map_or(0.0, |seen| seen.hidden_share);
-            let lost_area = (gone_area - hidden_area) * seen.map_or(0.0, |seen| seen.lost_share);
+            let hidden_area = buried_area + gone_area * seen.map_or(0.0, |seen| seen.hidden_share);
+            let lost_area =
+                (gone_area + buried_area - hidden_area) * seen.map_or(0.0, |seen| seen.lost_share);
             let backward = self.backward(result, &changed.new, budget)?;
             let invented = backward.and_then(|backward| backward.seen).map_or(0.0, |seen| seen.lost_share);
             let new_area = area_of(result, &changed.new);
             let share = |part: f64, all: f64| if all > 0.0 { part / all } else { 0.0 };
             let still = |mesh: &Soup| mesh.positions.first().map(|&place| at_rest(place));
-            let forward = forward.map(|f| spread(f, share(gone_area - hidden_area, area - hidden_area)));
-            let backward = backward.map(|b| spread(b, share(new_area, new_area + changed.stayed_area)));
+            let seen_area = gone_area + buried_area - hidden_area;
+            let forward = forward.map(|f| spread(f, share(seen_area, area - hidden_area)));
+            let result_area = new_area + changed.pieces_area + changed.stayed_area;
+            let backward = backward.map(|b| spread(b, share(new_area, result_area)));
             let directions = forward.or_else(|| still(self.input)).zip(backward.or_else(|| still(result)));
             let losses = Losses {
                 visible_loss: share(lost_area, area - hidden_area),
                 hidden_area,
-                invented: share(new_area * invented, new_area + changed.stayed_area),
+                invented: share(new_area * invented, result_area),
                 bodies_lost: self.bodies_lost(result, &changed, budget)?,
                 volume_change: self.volume_change(result),
             };
-            let distance = directions.map(|(forward, backward)| SurfaceDistance { forward, backward });
+            let distance = directions.map(|(forward, backward)| SurfaceDistance {
+                forward: at_least(forward, moved[0]),
+                backward: at_least(backward, moved[1]),
+            });
             Ok(Fidelity { distance, losses })
         })
     }
@@ -234,6 +270,8 @@ struct Changed {
     new: Vec<u32>,
     /// Area of the others.
     stayed_area: f64,
+    /// Area of triangles of the result that are pieces of some of the input.
+    pieces_area: f64,
 }
 
 impl Changed {
@@ -260,7 +298,32 @@ impl Changed {
             let [a, b, c] = input.corners(t);
             !are_collinear(a, b, c)
         });
-        Ok(Self { stayed_area: area_of(input, &stayed), stays, gone, new })
+        Ok(Self { stayed_area: area_of(input, &stayed), pieces_area: 0.0, stays, gone, new })
+    }
+
+    /// Takes those triangles out of `new` that are pieces of triangles of the input, up to a tenth of `lost_beyond`; gives the
+    /// largest distance of one from its triangle, which is that of a corner: a triangle is convex.
+    fn drop_pieces(&mut self, input: &Soup, result: &Soup, origins: &[u32], lost_beyond: f64) -> f64 {
+        let mut most: f64 = 0.0;
+        let mut pieces_area = 0.0;
+        self.new.retain(|&t| {
+            let origin = origins[t as usize];
+            if origin == NEW {
+                return true;
+            }
+            let whole = input.corners(origin);
+            let corners = result.corners(t);
+            let far = corners.map(|corner| corner.distance(closest_point_on_triangle(corner, whole)));
+            let far = far.into_iter().fold(0.0, f64::max);
+            if far > lost_beyond / 10.0 {
+                return true;
+            }
+            most = most.max(far);
+            pieces_area += triangle_area(corners);
+            false
+        });
+        self.pieces_area = pieces_area;
+        most
     }
 }
 
@@ -276,6 +339,11 @@ pub(super) fn diagonal(mesh: &Soup) -> f64 {
 
 pub(super) fn area_of(mesh: &Soup, triangles: &[u32]) -> f64 {
     triangles.iter().map(|&t| triangle_area(mesh.corners(t))).sum()
+}
+
+/// A distance of which a part of the surface is known to be no farther than `moved`.
+fn at_least(of: DirectedDistance, moved: f64) -> DirectedDistance {
+    DirectedDistance { upper: of.upper.max(moved), ..of }
 }
 
 /// The distance of a surface of which nothing changed.

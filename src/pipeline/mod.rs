@@ -19,6 +19,7 @@ mod repair;
 mod simplify;
 mod stitches;
 mod texture;
+mod united;
 mod units;
 
 pub use self::cut_stitch::{CutStitchChoices, Stitching};

@@ -14,6 +14,7 @@ use crate::repair::pair_sheets::Across;
 use crate::repair::polygons::DegenerateFaces;
 use crate::repair::snap::SnapOptions;
 use crate::repair::thin_faces::ThinFaces;
+use crate::repair::unite::Coverage;
 use crate::repair::{self, Changes, Draft};
 
 /// One step of a plan, with its parameters.
@@ -25,6 +26,8 @@ pub enum Step {
     ClearNoise,
     /// Coordinates become float32.
     RoundToF32,
+    /// Those of triangles that meet others when all are read as float32 become float32.
+    RoundWhereItMatters,
     /// Vertices at one position become one.
     Weld,
     /// Triangles with a repeated vertex go.
@@ -66,8 +69,17 @@ pub enum Step {
         /// Thickness, in the unit of the file.
         wall: f64,
     },
+    /// What is open is closed by triangles between its rims that may pass through others.
+    SpanRims,
     /// Bodies that pass through each other or overlap become one.
     Unite,
+    /// As `Unite`; triangles with void on both sides, which go then, leave copies that are open parts of their own.
+    UniteAndCopyBare,
+    /// Small bodies are taken out where the solid touches itself.
+    BoreContacts {
+        /// From their middle out, in steps of the lattice.
+        steps: u32,
+    },
     /// Bodies that touch become one.
     JoinContacts {
         /// Thickness of the necks between them, in the unit of the file.
@@ -104,16 +116,78 @@ pub(super) struct Variant {
     pub(super) mends_thin_faces: bool,
 }
 
+/// What bodies are made of that are to be united.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Uniting {
+    /// The triangles as they are, copies too: each says what is solid behind it.
+    AsDrawn,
+    /// What the steps that mend the surface make of them; what is open then is spanned.
+    Mended,
+    /// The triangles as they are; what is open is spanned.
+    Spanned,
+    /// As `Mended`, with walls behind open parts.
+    Thickened,
+    /// As `Spanned`, with walls behind triangles that bound nothing.
+    Walled,
+}
+
+/// Steps of the lattice by which contacts are bored, one time after the other: a body that is taken out can touch what is beside
+/// it, and a larger one takes that too.
+const BORINGS: [u32; 4] = [16, 64, 256, 1024];
+
 impl Variant {
+    /// The steps that unite bodies which pass through each other.
+    pub(super) fn uniting(self, uniting: Uniting, choices: &Choices) -> Vec<Step> {
+        let mended = Self { contact: None, ..self };
+        let (mut steps, may_be_open) = match uniting {
+            Uniting::AsDrawn => (self.welding(choices), false),
+            Uniting::Mended => (mended.mending(choices), choices.fills_all_holes()),
+            Uniting::Spanned | Uniting::Walled => (self.welding(choices), true),
+            Uniting::Thickened => (Self { thickens: true, ..mended }.mending(choices), false),
+        };
+        steps.push(Step::JoinCopies);
+        steps.extend(may_be_open.then_some(Step::SpanRims));
+        if uniting == Uniting::Walled {
+            steps.extend([Step::UniteAndCopyBare, Step::Thicken { wall: choices.wall }]);
+        }
+        steps.push(Step::Unite);
+        steps
+    }
+
+    /// What may follow where the united bodies are no solid yet: what touches itself is joined or parted, what meets after that or
+    /// after rounding is united once more, and what still touches is bored.
+    pub(super) fn settling(contact: Contact, choices: &Choices) -> Vec<Vec<Step>> {
+        let mut tries = vec![vec![Step::Unite], Self::parting(contact, choices), vec![Step::Unite]];
+        tries.extend(BORINGS.map(|steps| vec![Step::BoreContacts { steps }]));
+        tries
+    }
+
+    /// The steps that join what touches itself, or part it.
+    fn parting(contact: Contact, choices: &Choices) -> Vec<Step> {
+        let pinch = Step::Pinch(ChosenEdges::default(), Validity::Exact);
+        let mut steps = vec![Step::pairing(contact), Step::Cut(CutOptions::default()), pinch];
+        if contact == Contact::Join {
+            steps.push(Step::JoinContacts { size: choices.wall });
+        }
+        steps.extend([Step::OpenContacts, Step::JoinCopies]);
+        steps
+    }
+
+    /// The steps that take what is no triangle away and make vertices at one place one.
+    fn welding(self, choices: &Choices) -> Vec<Step> {
+        let mut steps = vec![Step::SplitPolygons(DegenerateFaces::Split)];
+        steps.extend(self.clears_noise.then_some(Step::ClearNoise));
+        steps.extend(self.rounds.then_some(Step::RoundToF32));
+        steps.extend([Step::Weld, Step::DropDegenerate]);
+        steps.extend(choices.splits_collinear.then_some(Step::SplitCollinear));
+        if !choices.removed_parts.is_empty() {
+            steps.push(Step::RemoveParts(choices.removed_parts.clone()));
+        }
+        steps
+    }
+
     /// The steps that mend the surface, least invasive first; each finds what those before it leave.
     pub(super) fn mending(self, choices: &Choices) -> Vec<Step> {
-        let clear = self.clears_noise.then_some(Step::ClearNoise);
-        let round = self.rounds.then_some(Step::RoundToF32);
-        let split = Step::SplitPolygons(DegenerateFaces::Split);
-        let collinear = choices.splits_collinear.then_some(Step::SplitCollinear);
-        let welded = [Step::Weld, Step::DropDegenerate].into_iter().chain(collinear);
-        let parts =
-            (!choices.removed_parts.is_empty()).then(|| Step::RemoveParts(choices.removed_parts.clone()));
         let single = [Step::SplitTVertices, Step::DropDuplicates(self.opposite)];
         let near = (choices.snap_epsilon > 0.0)
             .then_some(Step::DropNearDuplicates { epsilon: choices.snap_epsilon });
@@ -122,10 +196,7 @@ impl Variant {
         // What is not cut cannot be joined by the rules of a manifold.
         let join = choices.cuts.then(|| {
             // Which copies belong together matters only where they come apart for good.
-            let pair = self.contact.map(|contact| match contact {
-                Contact::Open => Step::PairSheets(Across::Solid),
-                Contact::Join => Step::PairSheets(Across::Void),
-            });
+            let pair = self.contact.map(Step::pairing);
             let pinch = self.contact.map(|_| Step::Pinch(ChosenEdges::default(), Validity::Exact));
             // Only what coincides, so that no vertex moves, unless the caller says how far.
             let snap = Step::Snap(SnapOptions {
@@ -141,8 +212,7 @@ impl Variant {
         };
         let thin = (self.mends_thin_faces && choices.mends_thin_faces())
             .then_some(Step::MendThinFaces(choices.thin_faces));
-        let start = [split].into_iter().chain(clear).chain(round).chain(welded).chain(parts).chain(single);
-        let start = start.chain(near);
+        let start = self.welding(choices).into_iter().chain(single).chain(near);
         start.chain(remove).chain(orient).chain(join.into_iter().flatten()).chain(thin).chain(fill).collect()
     }
 
@@ -163,12 +233,21 @@ impl Variant {
 }
 
 impl Step {
+    /// What decides which copies belong together where bodies touch.
+    fn pairing(contact: Contact) -> Self {
+        Self::PairSheets(match contact {
+            Contact::Open => Across::Solid,
+            Contact::Join => Across::Void,
+        })
+    }
+
     /// Name in reports.
     pub fn name(&self) -> &'static str {
         match self {
             Self::SplitPolygons(_) => "split-polygons",
             Self::ClearNoise => "clear-noise",
             Self::RoundToF32 => "round-to-float32",
+            Self::RoundWhereItMatters => "round-where-it-matters",
             Self::Weld => "weld",
             Self::DropDegenerate => "drop-degenerate",
             Self::SplitCollinear => "split-collinear",
@@ -181,7 +260,10 @@ impl Step {
             Self::RemoveCrossing { .. } => "remove-crossing",
             Self::PairSheets(_) => "pair-sheets",
             Self::JoinContacts { .. } => "join-contacts",
+            Self::SpanRims => "span-rims",
+            Self::UniteAndCopyBare => "unite-and-copy-bare",
             Self::Unite => "unite",
+            Self::BoreContacts { .. } => "bore-contacts",
             Self::DropNearDuplicates { .. } => "drop-near-duplicates",
             Self::OpenContacts => "open-contacts",
             Self::FillHoles(_) => "fill-holes",
@@ -204,7 +286,7 @@ impl Step {
                 DefectCode::Overlap,
                 DefectCode::Touch,
             ],
-            Self::RoundToF32 => &[DefectCode::UnsoundReading],
+            Self::RoundToF32 | Self::RoundWhereItMatters => &[DefectCode::UnsoundReading],
             Self::JoinCopies | Self::Rebuild | Self::Simplify => &[],
             Self::MendThinFaces(_) => &[DefectCode::Needle, DefectCode::Cap, DefectCode::FoldedEdge],
             Self::Thicken { .. } => &[DefectCode::IsolatedFace, DefectCode::BoundaryLoop],
@@ -214,12 +296,13 @@ impl Step {
                 DefectCode::MisnestedShell,
                 DefectCode::ZeroVolumeShell,
             ],
-            Self::RemoveCrossing { .. } | Self::Unite => {
+            Self::RemoveCrossing { .. } | Self::Unite | Self::UniteAndCopyBare => {
                 &[DefectCode::SelfIntersection, DefectCode::Overlap, DefectCode::Touch]
             }
-            Self::PairSheets(_) | Self::JoinContacts { .. } | Self::OpenContacts => {
-                &[DefectCode::NonManifoldEdge, DefectCode::NonManifoldVertex]
-            }
+            Self::PairSheets(_)
+            | Self::JoinContacts { .. }
+            | Self::OpenContacts
+            | Self::BoreContacts { .. } => &[DefectCode::NonManifoldEdge, DefectCode::NonManifoldVertex],
             Self::DropNearDuplicates { .. } => &[DefectCode::BoundaryLoop, DefectCode::DoubleSkin],
             Self::SplitPolygons(_) => &[DefectCode::CoincidentCorners, DefectCode::DuplicateVertex],
             Self::Weld => &[DefectCode::DuplicateVertex],
@@ -230,7 +313,7 @@ impl Step {
             Self::Cut(_) => {
                 &[DefectCode::NonManifoldEdge, DefectCode::NonManifoldVertex, DefectCode::NonOrientable]
             }
-            Self::SplitTVertices | Self::Pinch(..) | Self::Snap(_) | Self::FillHoles(_) => {
+            Self::SplitTVertices | Self::Pinch(..) | Self::Snap(_) | Self::FillHoles(_) | Self::SpanRims => {
                 &[DefectCode::BoundaryLoop]
             }
             Self::Nest(_) => &[DefectCode::InvertedShell, DefectCode::MisnestedShell],
@@ -249,6 +332,7 @@ impl Step {
             Self::SplitPolygons(how) => repair::polygons::split_polygons(draft, soup, *how, budget),
             Self::ClearNoise => Ok(repair::noise::clear_noise(draft)),
             Self::RoundToF32 => Ok(repair::round::round_to_f32(draft)),
+            Self::RoundWhereItMatters => repair::round::round_where_it_matters(draft, budget),
             Self::Weld | Self::JoinCopies => repair::weld::weld(draft, budget),
             Self::DropDegenerate => Ok(repair::degenerate::drop_degenerate(draft)),
             Self::SplitCollinear => repair::collinear::split_collinear(draft, budget),
@@ -259,7 +343,10 @@ impl Step {
             Self::Pinch(chosen, validity) => repair::pinch::pinch(draft, chosen, *validity, budget),
             Self::Snap(options) => repair::snap::snap(draft, options, budget),
             Self::RemoveCrossing { rings } => repair::crossing::remove_crossing(draft, *rings, budget),
+            Self::SpanRims => repair::fill::span_rims(draft, budget),
+            Self::UniteAndCopyBare => repair::unite::unite_and_copy_bare(draft, budget),
             Self::Unite => repair::unite::unite(draft, budget),
+            Self::BoreContacts { steps } => repair::unite::bore_contacts(draft, *steps, budget),
             Self::OpenContacts => repair::contact::open_contacts(draft, budget),
             Self::JoinContacts { size } => repair::joint::join_contacts(draft, *size, budget),
             Self::PairSheets(across) => repair::pair_sheets::pair_sheets(draft, *across, budget),
@@ -293,6 +380,29 @@ pub(super) struct Attempt {
     pub(super) holes: Vec<HoleReport>,
     /// True when the edges that steps join are told one by one.
     lists_stitches: bool,
+    /// Which triangles of the soup are known to be on the surface or inside of the solid.
+    coverage: Known,
+}
+
+/// Which triangles of the soup are known to be on the surface or inside of the solid, as bodies are united.
+#[derive(Debug, Clone, PartialEq)]
+enum Known {
+    /// Nothing was united yet.
+    NotYet,
+    /// All of `present` but `bare`.
+    By(Coverage),
+    /// It is not known any more.
+    No,
+}
+
+/// What of the soup need not be looked for in a united mesh.
+pub(super) struct Covered {
+    /// Triangles of the soup, ascending, every place of which is on the surface or inside of the solid.
+    pub(super) triangles: Vec<u32>,
+    /// Area of them inside of the solid, in square units of the file.
+    pub(super) buried_area: f64,
+    /// How far from the surface the others may be by what steps moved, in the unit of the file.
+    pub(super) moved: f64,
 }
 
 impl Attempt {
@@ -300,14 +410,28 @@ impl Attempt {
     pub(super) fn start(soup: &Soup, before: Option<&Analysis>) -> Self {
         let (draft, changes) = Draft::from_soup(soup);
         let actions = vec![action("take-usable", &UNUSABLE, changes, soup, before)];
-        Self { draft, actions, steps: Vec::new(), holes: Vec::new(), lists_stitches: false }
+        Self {
+            draft,
+            actions,
+            steps: Vec::new(),
+            holes: Vec::new(),
+            lists_stitches: false,
+            coverage: Known::NotYet,
+        }
     }
 
     /// The usable faces of `soup`, polygons as such; the edges that steps join are told one by one.
     pub(super) fn start_with_polygons(soup: &Soup, before: Option<&Analysis>) -> Self {
         let (draft, changes) = Draft::with_polygons(soup);
         let actions = vec![action("take-usable", &UNUSABLE, changes, soup, before)];
-        Self { draft, actions, steps: Vec::new(), holes: Vec::new(), lists_stitches: true }
+        Self {
+            draft,
+            actions,
+            steps: Vec::new(),
+            holes: Vec::new(),
+            lists_stitches: true,
+            coverage: Known::NotYet,
+        }
     }
 
     /// Runs `steps`, and notes what each did, and why by the defects found `before`.
@@ -320,7 +444,8 @@ impl Attempt {
     ) -> Result<(), Stopped> {
         for step in steps {
             budget.check()?;
-            let changes = step.run(&mut self.draft, soup, &mut self.holes, budget)?;
+            let mut changes = step.run(&mut self.draft, soup, &mut self.holes, budget)?;
+            self.coverage.go_on(step, &mut changes);
             debug_assert_eq!(self.draft.check(), Vec::<String>::new(), "after {step:?}");
             let stitches = (self.lists_stitches && matches!(step, Step::Pinch(..) | Step::Snap(_)))
                 .then(|| Stitches::of(&changes.stitches, soup));
@@ -336,6 +461,22 @@ impl Attempt {
         ["needles_collapsed", "caps_flipped", "folds_closed"].into_iter().any(|name| self.count(name) > 0)
     }
 
+    /// True when bodies were united.
+    pub(super) fn has_united(&self) -> bool {
+        self.coverage != Known::NotYet
+    }
+
+    /// What of the soup need not be looked for in the result, if bodies were united.
+    pub(super) fn covered(&self) -> Option<Covered> {
+        let Known::By(Coverage { present, bare, buried_area }) = &self.coverage else { return None };
+        let is_covered = |t: &u32| bare.binary_search(t).is_err();
+        Some(Covered {
+            triangles: present.iter().copied().filter(is_covered).collect(),
+            buried_area: *buried_area,
+            moved: self.actions.iter().map(|action| action.move_max).sum(),
+        })
+    }
+
     /// Count of this name, over all steps.
     pub(super) fn count(&self, name: &str) -> u64 {
         self.actions
@@ -344,6 +485,25 @@ impl Attempt {
             .filter(|(n, _)| *n == name)
             .map(|(_, count)| count)
             .sum()
+    }
+}
+
+impl Known {
+    /// Takes in what `step` did.
+    fn go_on(&mut self, step: &Step, changes: &mut Changes) {
+        let known = std::mem::replace(self, Self::No);
+        *self = match (known, changes.coverage.take(), step) {
+            // These take surface away or move it farther than they say.
+            (_, _, Step::BoreContacts { .. } | Step::MendThinFaces(_)) => Self::No,
+            (Self::NotYet, Some(coverage), _) => Self::By(coverage),
+            (Self::By(mut known), Some(coverage), _) => {
+                known.bare.extend(coverage.bare);
+                known.bare.sort_unstable();
+                known.bare.dedup();
+                Self::By(known)
+            }
+            (known, ..) => known,
+        };
     }
 }
 

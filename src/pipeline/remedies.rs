@@ -38,6 +38,8 @@ pub enum Remedy {
     Turn,
     /// The whole part goes; of triangles that meet, they and what is around them, and the place is filled.
     Remove,
+    /// Bodies that pass through each other become one.
+    Unite,
     /// Coordinates become float32.
     Round,
     /// No local step cures it; the surface is rebuilt.
@@ -149,7 +151,7 @@ pub enum PlanMismatch {
 fn remedies_of(code: DefectCode) -> &'static [Remedy] {
     use Remedy::{
         Collapse, Cut, Drop, DropBoth, DropOne, Fill, Flip, Join, Keep, Rebuild, Remove, Round, Split,
-        Thicken, Turn,
+        Thicken, Turn, Unite,
     };
     match code {
         DefectCode::Needle | DefectCode::FoldedEdge => &[Keep, Collapse],
@@ -177,7 +179,9 @@ fn remedies_of(code: DefectCode) -> &'static [Remedy] {
         DefectCode::MisnestedShell => &[Remove, Turn, Keep],
         DefectCode::IsolatedFace => &[Thicken, Remove, Keep],
         DefectCode::ZeroVolumeShell => &[Rebuild, Remove, Keep],
-        DefectCode::SelfIntersection | DefectCode::Overlap | DefectCode::Touch => &[Remove, Rebuild, Keep],
+        DefectCode::SelfIntersection | DefectCode::Overlap | DefectCode::Touch => {
+            &[Unite, Remove, Rebuild, Keep]
+        }
         DefectCode::UnsoundReading => &[Round, Keep],
     }
 }
@@ -200,7 +204,7 @@ fn has_elements(code: DefectCode) -> bool {
 pub(super) fn proposals(analysis: &Analysis) -> Vec<Proposal> {
     let of_finding = |finding: &Finding| {
         let code = finding.code;
-        let (remedy, confidence, reason) = proposed(finding, analysis.counts.triangles);
+        let (remedy, confidence, reason) = proposed(finding);
         let choices = remedies_of(code);
         let element = |(number, witness): (usize, &Witness)| ElementProposal {
             number: number as u32,
@@ -218,7 +222,7 @@ pub(super) fn proposals(analysis: &Analysis) -> Vec<Proposal> {
 }
 
 /// The usual remedy, how sure it is, and why.
-fn proposed(finding: &Finding, triangles: u64) -> (Remedy, f64, &'static str) {
+fn proposed(finding: &Finding) -> (Remedy, f64, &'static str) {
     let usual = remedies_of(finding.code)[0];
     let (confidence, reason) = match finding.code {
         DefectCode::Needle | DefectCode::Cap | DefectCode::FoldedEdge | DefectCode::Near => {
@@ -265,17 +269,10 @@ fn proposed(finding: &Finding, triangles: u64) -> (Remedy, f64, &'static str) {
         ),
         DefectCode::IsolatedFace => (0.4, "a single face bounds nothing; it could be a wall or a remnant"),
         DefectCode::ZeroVolumeShell => (0.3, "it bounds nothing; it could be a wall or a remnant"),
-        DefectCode::SelfIntersection | DefectCode::Overlap | DefectCode::Touch => {
-            let is_local = finding.count <= triangles / 20;
-            return match is_local {
-                true => (
-                    Remedy::Remove,
-                    0.6,
-                    "few triangles meet others: they are removed and their place is filled, and the surface is rebuilt where that does not hold",
-                ),
-                false => (Remedy::Rebuild, 0.6, "many triangles meet others: the surface is rebuilt"),
-            };
-        }
+        DefectCode::SelfIntersection | DefectCode::Overlap | DefectCode::Touch => (
+            0.8,
+            "bodies that pass through each other are one solid; where they are not closed, few triangles that meet others are removed and their place is filled, and the surface is rebuilt where that does not hold",
+        ),
         DefectCode::UnsoundReading => (0.95, "coordinates and triangles that all programs read the same"),
     };
     (usual, confidence, reason)
@@ -330,6 +327,8 @@ pub(super) struct Choices {
     pub(super) shells: Vec<(u32, Fate)>,
     /// What becomes of opposite duplicates first.
     pub(super) opposite: OppositePairs,
+    /// Bodies that pass through each other may become one.
+    pub(super) unites: bool,
     /// Triangles that meet others may be removed.
     pub(super) removes_crossing: bool,
     /// A surface may be rebuilt.
@@ -355,6 +354,7 @@ impl Default for Choices {
             snap_epsilon: 0.0,
             shells: Vec::new(),
             opposite: OppositePairs::default(),
+            unites: true,
             removes_crossing: true,
             rebuilds: true,
             rounds: true,
@@ -396,6 +396,11 @@ impl Choices {
         FillOptions { choices: self.hole_choices.clone(), ..FillOptions::plain(self.holes.clone()) }
     }
 
+    /// True unless a hole is to stay.
+    pub(super) fn fills_all_holes(&self) -> bool {
+        self.fills_holes && self.holes == Selection::default()
+    }
+
     /// True when whole parts are removed as chosen.
     pub(super) fn removes(&self) -> bool {
         !self.removed_parts.is_empty() || self.shells.iter().any(|&(_, fate)| fate == Fate::Goes)
@@ -430,7 +435,9 @@ impl Choices {
                 return Err(PlanMismatch::NoSuchRemedy(code, remedy));
             }
             // What is to stay would not survive.
-            self.rebuilds &= remedy != Remedy::Keep || finding.severity != Severity::Error;
+            let stays = remedy == Remedy::Keep && finding.severity == Severity::Error;
+            self.rebuilds &= !stays;
+            self.unites &= !stays;
         }
         self.take_holes(chosen, finding)?;
         self.apply(code, chosen.remedy, anchors, finding);
@@ -472,8 +479,11 @@ impl Choices {
             DefectCode::UnsoundReading => self.rounds &= !keeps,
             DefectCode::OppositeDuplicateFace if remedy == Some(Remedy::DropOne) => {
                 self.opposite = OppositePairs::KeepFirst;
+                // A wall inside a solid would go.
+                self.unites = false;
             }
             DefectCode::SelfIntersection | DefectCode::Overlap | DefectCode::Touch => {
+                self.unites &= matches!(remedy, None | Some(Remedy::Unite));
                 self.removes_crossing &= !matches!(remedy, Some(Remedy::Keep | Remedy::Rebuild));
             }
             DefectCode::BoundaryLoop if remedy == Some(Remedy::Thicken) => self.walls = Walls::First,

@@ -1,11 +1,12 @@
 //! A broken file to a certified one: plans in order, the first whose bytes are certified wins.
 
-use super::fidelity::{Fidelity, Original};
+use super::fidelity::{Fidelity, Original, defined_volume};
 use super::input::Input;
 use super::output::{Candidate, NoCandidate};
 use super::plan::{Attempt, Step, Variant};
 use super::rebuild::{NotRebuilt, Rebuilt};
 use super::remedies::{Choices, PlanMismatch, Walls};
+use super::united::United;
 use super::{
     Answer, Contact, Failure, Operation, Options, Outcome, Refusal, Report, Require, rebuild, simplify,
 };
@@ -60,7 +61,12 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
     let before = report.before.clone();
     let search = Search { input, encoding, options, choices: &choices, before: before.as_ref(), budget };
     match search.run()? {
-        Found::Certified(found) => certified(*found, &search, report),
+        Found::Certified(found) => {
+            let (attempt, candidate) = *found;
+            let fidelity = fidelity_of(&attempt, &candidate, &search)?;
+            certified(United { attempt, candidate, fidelity }, &search, report)
+        }
+        Found::United(united) => certified(*united, &search, report),
         Found::Nothing { refusal: Refusal::NotRepairable { .. }, mended: Some(mended), .. }
             if options.require == Some(Require::None) =>
         {
@@ -93,13 +99,9 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
 }
 
 /// A result of local steps, unless it lost too much and one that is rebuilt is closer.
-fn certified(
-    (attempt, candidate): (Attempt, Candidate),
-    search: &Search<'_>,
-    report: Report,
-) -> Result<Answer, Failure> {
+fn certified(found: United, search: &Search<'_>, report: Report) -> Result<Answer, Failure> {
     let Search { input, options, budget, .. } = *search;
-    let fidelity = fidelity_of(&attempt, &candidate, search)?;
+    let United { attempt, candidate, fidelity } = found;
     // What was removed as chosen is no loss that a rebuilt surface could make good.
     if !fidelity.passes(&options.limits) && search.choices.rebuilds && !search.choices.removes() {
         let rebuilt = match search.rebuild() {
@@ -116,19 +118,27 @@ fn certified(
 }
 
 /// How far a result of local steps is from the file.
-fn fidelity_of(attempt: &Attempt, candidate: &Candidate, search: &Search<'_>) -> Result<Fidelity, Failure> {
+pub(super) fn fidelity_of(
+    attempt: &Attempt,
+    candidate: &Candidate,
+    search: &Search<'_>,
+) -> Result<Fidelity, Failure> {
     let Search { input, options, before, budget, .. } = *search;
-    let (draft, volume) = (&attempt.draft, before.and_then(|analysis| analysis.measures.volume));
+    let (draft, volume) = (&attempt.draft, defined_volume(before));
     // Mostly nothing is gone, and what is hidden does not matter.
     let all = Original::new(&input.soup, volume, None);
-    let fidelity = all.measure(candidate.soup(), &draft.triangle_origin, budget)?;
+    let covered = attempt.covered();
+    let measure = |original: &Original<'_>| {
+        original.measure_rest(candidate.soup(), &draft.triangle_origin, covered.as_ref(), budget)
+    };
+    let fidelity = measure(&all)?;
     if fidelity.passes(&options.limits) {
         return Ok(fidelity);
     }
     let read = || Solid::of(&draft.positions, &draft.triangles, options.wrap.open_shells, budget);
     let solid = budget.stage(Stage::Measure, read)?;
     let visible = Original::new(&input.soup, volume, Some(solid));
-    Ok(visible.measure(candidate.soup(), &draft.triangle_origin, budget)?)
+    Ok(measure(&visible)?)
 }
 
 /// A result of local steps as the answer, with fewer triangles if that is asked, unless it is beyond the caller's limits.
@@ -235,13 +245,13 @@ fn has_cavities(input: &Input) -> bool {
 }
 
 /// The search for a plan that leads to certified bytes.
-struct Search<'a> {
-    input: &'a Input,
-    encoding: Encoding,
-    options: &'a Options,
-    choices: &'a Choices,
-    before: Option<&'a Analysis>,
-    budget: &'a Budget,
+pub(super) struct Search<'a> {
+    pub(super) input: &'a Input,
+    pub(super) encoding: Encoding,
+    pub(super) options: &'a Options,
+    pub(super) choices: &'a Choices,
+    pub(super) before: Option<&'a Analysis>,
+    pub(super) budget: &'a Budget,
 }
 
 /// Rings that are removed around triangles that meet others, at most.
@@ -249,6 +259,7 @@ const RINGS_MAX: u32 = 2;
 
 enum Found {
     Certified(Box<(Attempt, Candidate)>),
+    United(Box<United>),
     Nothing {
         refusal: Refusal,
         /// The last plan, run to its end.
@@ -273,6 +284,7 @@ impl Search<'_> {
         let rounds = self.needs_f32();
         let mut variant = Variant { clears_noise, rounds, thickens, mends_thin_faces: true, ..first };
         let mut fails_in_f32 = false;
+        let (mut may_unite, has_contacts) = (self.may_unite(), self.has_contacts());
         loop {
             let (mended, last) = self.attempt(variant)?;
             if last.draft.triangles.is_empty() {
@@ -296,7 +308,16 @@ impl Search<'_> {
                 variant.mends_thin_faces = false;
                 continue;
             }
-            let Some(next) = self.next(variant, clears_noise, &last, fails_in_f32)? else {
+            let next = self.next(variant, clears_noise, &last, fails_in_f32)?;
+            // Where nothing meets, all that moves no triangle through another comes first.
+            let is_last = next.is_none_or(|next| next.removes_crossing.is_some());
+            if (has_contacts || is_last)
+                && std::mem::take(&mut may_unite)
+                && let Some(united) = self.united(variant)?
+            {
+                return Ok(Found::United(Box::new(united)));
+            }
+            let Some(next) = next else {
                 return Ok(Found::nothing(Refusal::NotRepairable { witness }, last, mended));
             };
             variant = next;
@@ -306,7 +327,7 @@ impl Search<'_> {
     /// Runs a plan: the mended mesh if the best effort may be asked for it, and the one that may be a solid.
     fn attempt(&self, variant: Variant) -> Result<(Option<Attempt>, Attempt), Stopped> {
         let (input, budget) = (self.input, self.budget);
-        let has_contacts = input.examination.contacts.as_ref().is_none_or(|contacts| contacts.count > 0);
+        let has_contacts = self.has_contacts();
         let is_best_effort = matches!(self.options.require, Some(Require::BestEffort | Require::None));
         budget.stage(Stage::Repair, || {
             let mut attempt = Attempt::start(&input.soup, self.before);
@@ -371,7 +392,7 @@ impl Search<'_> {
 
     /// Whether the open parts are mostly sheets that may become walls. A surface with few boundary edges for its triangles
     /// is none: a square of them has three for the root of their number.
-    fn reads_as_sheets(&self) -> Result<bool, Stopped> {
+    pub(super) fn reads_as_sheets(&self) -> Result<bool, Stopped> {
         let counts = self.before.map(|analysis| analysis.counts).unwrap_or_default();
         let [rim, triangles] = [counts.boundary_edges, counts.triangles].map(|count| count as f64);
         let may_be = rim > 0.0 && rim >= triangles.sqrt() && self.choices.walls == Walls::ForSheets;
@@ -401,7 +422,7 @@ impl Search<'_> {
     }
 }
 
-fn write(
+pub(super) fn write(
     draft: &Draft,
     input: &Input,
     encoding: Encoding,

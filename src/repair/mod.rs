@@ -50,6 +50,8 @@ pub struct Changes {
     pub removed_parts: Vec<u32>,
     /// The boundary edges that became one.
     pub stitches: Stitches,
+    /// What became of the triangles of the soup, where bodies were united.
+    pub coverage: Option<unite::Coverage>,
 }
 
 impl Changes {

@@ -1,14 +1,67 @@
 //! Rounds coordinates to float32, for files that hold no more and for readers that keep no more.
 
 use super::{Changes, Draft};
+use crate::budget::{Budget, Stopped};
+use crate::geom::{DVec3, are_collinear};
+use crate::spatial::{Bvh, Search, coincident_f64, self_contacts};
+
+/// Pairs of triangles that meet beyond which every coordinate is rounded.
+const CONTACTS_MAX: usize = 1 << 16;
 
 /// Moves every vertex to the nearest float32 point, at most half a float32 step on each axis. A coordinate beyond the
 /// range of float32 stays as it is.
 pub fn round_to_f32(draft: &mut Draft) -> Changes {
+    round_those(draft, |_| true)
+}
+
+/// As [`round_to_f32`], but only vertices of triangles that meet others or lose their area when all coordinates are read as
+/// float32. What that does to the others is not looked at; vertices that fall together stay several.
+///
+/// # Errors
+/// When the budget stops the run.
+pub fn round_where_it_matters(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
+    let read: Vec<DVec3> = draft.positions.iter().map(|&position| in_f32(position)).collect();
+    let places = coincident_f64(&read, budget)?;
+    let triangles: Vec<[u32; 3]> =
+        draft.triangles.iter().map(|t| t.map(|v| places.first[places.group[v as usize] as usize])).collect();
+    let has_area = |&t: &u32| {
+        let [a, b, c] = triangles[t as usize].map(|v| read[v as usize]);
+        !are_collinear(a, b, c)
+    };
+    budget.spend(triangles.len() as u64)?;
+    let (sound, flat): (Vec<u32>, Vec<u32>) = (0..triangles.len() as u32).partition(has_area);
+    let bvh = Bvh::build(&read, &triangles, Some(&sound), budget)?;
+    let search = Search::All { keep: CONTACTS_MAX };
+    let contacts = self_contacts(&read, &triangles, &bvh, None, search, budget)?;
+    if contacts.count > CONTACTS_MAX as u64 {
+        return Ok(round_to_f32(draft));
+    }
+    let mut matters = vec![false; read.len()];
+    let meeting = contacts.list.iter().flat_map(|contact| [contact.a, contact.b]);
+    for v in meeting.chain(flat).flat_map(|t| draft.triangles[t as usize]) {
+        matters[v as usize] = true;
+    }
+    // Vertices that fall together matter, although no triangle of theirs may meet another.
+    for (v, &group) in places.group.iter().enumerate() {
+        let first = places.first[group as usize] as usize;
+        if first != v && draft.positions[first] != draft.positions[v] {
+            (matters[v], matters[first]) = (true, true);
+        }
+    }
+    Ok(round_those(draft, |v| matters[v]))
+}
+
+/// A position as a reader of float32 has it. One beyond the range of float32 stays as it is.
+fn in_f32(position: DVec3) -> DVec3 {
+    let rounded = position.as_vec3().as_dvec3();
+    if rounded.is_finite() { rounded } else { position }
+}
+
+fn round_those(draft: &mut Draft, is_chosen: impl Fn(usize) -> bool) -> Changes {
     let (mut moved, mut move_max) = (0, 0.0f64);
-    for position in &mut draft.positions {
-        let rounded = position.as_vec3().as_dvec3();
-        if rounded != *position && rounded.is_finite() {
+    for (_, position) in draft.positions.iter_mut().enumerate().filter(|&(v, _)| is_chosen(v)) {
+        let rounded = in_f32(*position);
+        if rounded != *position {
             moved += 1;
             move_max = move_max.max(rounded.distance(*position));
             *position = rounded;
@@ -20,7 +73,27 @@ pub fn round_to_f32(draft: &mut Draft) -> Changes {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geom::DVec3;
+
+    #[test]
+    fn only_vertices_of_triangles_that_meet_in_float32_are_rounded() {
+        // Two triangles over each other whose distance is less than a step of float32 there, and one beside them.
+        let step = 2f64.powi(-26);
+        let flat = |z: f64, x: f64| [[x, 0.1, z], [x + 1.0, 0.1, z], [x, 1.1, z]];
+        let corners = [flat(1.0, 0.0), flat(1.0 + step, 0.25), flat(1.0, 5.1)];
+        let positions: Vec<DVec3> = corners.as_flattened().iter().map(|&p| DVec3::from_array(p)).collect();
+        let mut draft = Draft {
+            vertex_origin: (0..9).collect(),
+            triangle_origin: (0..3).collect(),
+            triangles: vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]],
+            positions: positions.clone(),
+            ..Draft::default()
+        };
+        let changes = round_where_it_matters(&mut draft, &Budget::unlimited()).unwrap();
+        assert_eq!(changes.count("vertices_moved"), 6);
+        assert_eq!(draft.positions[3].z, 1.0);
+        assert_eq!(draft.positions[6..], positions[6..]);
+        assert!(changes.move_max < 1e-7);
+    }
 
     #[test]
     fn only_what_float32_cannot_hold_moves_and_the_distance_is_told() {

@@ -166,6 +166,8 @@ pub enum PlanStep {
     /// Coordinates become float32.
     #[serde(rename = "round-to-float32")]
     RoundToF32 {},
+    /// Coordinates of triangles that meet others when all are read as float32 become float32.
+    RoundWhereItMatters {},
     /// Vertices at one position become one.
     Weld {},
     /// Triangles with a repeated vertex go.
@@ -254,6 +256,18 @@ pub enum PlanStep {
     },
     /// Bodies that pass through each other or overlap become one.
     Unite {},
+    /// As `unite`; triangles with void on both sides, which go then, leave copies that are open parts of their own, for `thicken` to
+    /// put walls behind.
+    UniteAndCopyBare {},
+    /// Where the solid touches itself, a body of some steps of the print lattice is taken out of it.
+    BoreContacts {
+        /// From its middle out, in steps of the lattice.
+        #[serde(deserialize_with = "whole")]
+        #[schema(maximum = 65_536)]
+        steps: u32,
+    },
+    /// What is still open is closed by triangles between its rims that may pass through others; `unite` resolves that.
+    SpanRims {},
     /// Bodies that touch are drawn apart.
     OpenContacts {},
     /// Vertices at one position become one again.
@@ -521,6 +535,7 @@ impl PlanStep {
             Self::SplitPolygons { degenerate } => Step::SplitPolygons((*degenerate).into()),
             Self::ClearNoise {} => Step::ClearNoise,
             Self::RoundToF32 {} => Step::RoundToF32,
+            Self::RoundWhereItMatters {} => Step::RoundWhereItMatters,
             Self::Weld {} => Step::Weld,
             Self::DropDegenerate {} => Step::DropDegenerate,
             Self::SplitCollinear {} => Step::SplitCollinear,
@@ -548,6 +563,9 @@ impl PlanStep {
             Self::Thicken { wall } => Step::Thicken { wall: *wall },
             Self::JoinContacts { size } => Step::JoinContacts { size: *size },
             Self::Unite {} => Step::Unite,
+            Self::UniteAndCopyBare {} => Step::UniteAndCopyBare,
+            Self::BoreContacts { steps } => Step::BoreContacts { steps: *steps },
+            Self::SpanRims {} => Step::SpanRims,
             Self::OpenContacts {} => Step::OpenContacts,
             Self::JoinCopies {} => Step::JoinCopies,
             Self::Nest { nesting, chosen } => Step::Nest(NestOptions {
@@ -573,6 +591,7 @@ impl From<&Step> for PlanStep {
             Step::SplitPolygons(degenerate) => Self::SplitPolygons { degenerate: (*degenerate).into() },
             Step::ClearNoise => Self::ClearNoise {},
             Step::RoundToF32 => Self::RoundToF32 {},
+            Step::RoundWhereItMatters => Self::RoundWhereItMatters {},
             Step::Weld => Self::Weld {},
             Step::DropDegenerate => Self::DropDegenerate {},
             Step::SplitCollinear => Self::SplitCollinear {},
@@ -601,6 +620,9 @@ impl From<&Step> for PlanStep {
             Step::Thicken { wall } => Self::Thicken { wall: *wall },
             Step::JoinContacts { size } => Self::JoinContacts { size: *size },
             Step::Unite => Self::Unite {},
+            Step::UniteAndCopyBare => Self::UniteAndCopyBare {},
+            Step::BoreContacts { steps } => Self::BoreContacts { steps: *steps },
+            Step::SpanRims => Self::SpanRims {},
             Step::OpenContacts => Self::OpenContacts {},
             Step::JoinCopies => Self::JoinCopies {},
             Step::Nest(repair::nest::NestOptions { policy, chosen, .. }) => {
@@ -627,6 +649,7 @@ mod tests {
             Step::SplitPolygons(degenerate),
             Step::ClearNoise,
             Step::RoundToF32,
+            Step::RoundWhereItMatters,
             Step::Weld,
             Step::DropDegenerate,
             Step::SplitCollinear,
@@ -656,6 +679,9 @@ mod tests {
             }),
             Step::Thicken { wall: 0.25 },
             Step::Unite,
+            Step::UniteAndCopyBare,
+            Step::BoreContacts { steps: 64 },
+            Step::SpanRims,
             Step::OpenContacts,
             Step::JoinCopies,
             Step::Nest(NestOptions {

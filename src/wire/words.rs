@@ -412,6 +412,8 @@ mirror! { pipeline::Remedy =>
         Turn = "turn",
         /// The whole part goes; of triangles that meet, they and what is around them, and the place is filled.
         Remove = "remove",
+        /// Bodies that pass through each other become one.
+        Unite = "unite",
         /// Coordinates become float32.
         Round = "round",
         /// No local step cures it; the surface is rebuilt.

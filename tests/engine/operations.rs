@@ -96,12 +96,14 @@ fn flat_in_float32() -> RawSoup {
 }
 
 #[test]
-fn a_solid_that_is_none_in_float32_is_rebuilt_thicker() {
+fn a_solid_that_is_none_in_float32_comes_back_thicker() {
     let wrap = WrapChoices { cells: Some(24), ..WrapChoices::default() };
     let options = Options { wrap, ..Options::default() };
     let answer = answer(Operation::Repair, &encode(&flat_in_float32(), Encoding::Obj), &options);
-    assert_eq!(answer.report.outcome, Some(Outcome::Rebuilt));
-    assert!(answer.report.certificate.unwrap().is_printable());
+    assert_eq!(answer.report.outcome, Some(Outcome::Repaired));
+    let certificate = answer.report.certificate.unwrap();
+    let thickness = certificate.shells[0].volume / (answer.report.after.unwrap().measures.area / 2.0);
+    assert!(certificate.is_printable() && thickness > 2f64.powi(-12), "{thickness}");
 }
 
 #[test]

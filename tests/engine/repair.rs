@@ -277,8 +277,8 @@ fn walls_with_crossing_diagonals_are_not_taken_for_copies() {
     let quarter_turn = |[x, y, z]: [f64; 3]| [1.0 - y, x, z + 1.0];
     let above = RawSoup { positions: cube().positions.into_iter().map(quarter_turn).collect(), ..cube() };
     let answer = repaired(&cube().with(&above));
-    let (volume, shells) = crate::rebuild::rebuilt(&answer);
-    assert!(shells == 1 && (volume - 2.0).abs() < 0.1, "{volume}");
+    let (_, shells) = certified(&answer);
+    assert_eq!((shells, answer.report.certificate.as_ref().unwrap().shells[0].volume), (1, 2.0));
     assert_eq!(count(&answer, "copies_dropped") + count(&answer, "opposite_pairs_cancelled"), 0);
 }
 
@@ -357,7 +357,7 @@ fn a_spike_through_a_large_surface_goes_and_both_places_are_closed() {
     let answer = answer(&encode(&soup, Encoding::Off), &Options::default());
     let (_, shells) = certified(&answer);
     assert_eq!(shells, 1);
-    assert!(count(&answer, "triangles_removed") > 6, "{:?}", answer.report.actions);
+    assert!(answer.report.actions.iter().any(|action| action.step == "unite"));
     assert!(answer.report.identical_triangle_share.unwrap() > 0.9);
     assert!(answer.report.losses.unwrap().visible_loss < 0.01);
 }

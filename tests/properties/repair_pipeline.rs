@@ -87,7 +87,7 @@ fn common_share(before: &Soup, after: &Soup) -> f64 {
 #[test]
 fn what_is_returned_as_a_solid_is_one_and_only_opened_contacts_have_moved() {
     let mut random = Random::new(9);
-    let (mut repaired, mut rebuilt, mut refused, mut opened) = (0, 0, 0, 0);
+    let (mut repaired, mut united, mut rebuilt, mut refused, mut opened) = (0, 0, 0, 0, 0);
     for case in 0..cases(1_000, 50_000) {
         let soup = broken(&mut random);
         let encoding = random.pick(&ENCODINGS);
@@ -126,7 +126,11 @@ fn what_is_returned_as_a_solid_is_one_and_only_opened_contacts_have_moved() {
 
         let (opening, others): (Vec<_>, Vec<_>) =
             answer.report.actions.iter().partition(|action| action.step == "open-contacts");
-        assert!(others.iter().all(|action| action.move_max == 0.0), "case {case}");
+        let is_united = others.iter().any(|action| action.step == "unite");
+        united += u64::from(is_united);
+        // New corners are where they are exactly up to half a step of the lattice in each direction, or a few after that is mended.
+        let most = if is_united { 1e-4 } else { 0.0 };
+        assert!(others.iter().all(|action| action.move_max <= most), "case {case}");
         let drawn_back: u64 =
             opening.iter().flat_map(|action| &action.changes).map(|&(_, count)| count).sum();
         let pairing = others.iter().filter(|action| action.step == "pair-sheets");
@@ -138,7 +142,7 @@ fn what_is_returned_as_a_solid_is_one_and_only_opened_contacts_have_moved() {
             .filter(|p| !before.positions.contains(p))
             .map(|p| p.to_array().map(f64::to_bits))
             .collect();
-        assert!(elsewhere.len() as u64 <= drawn_back + divided, "case {case}: {soup:?}");
+        assert!(is_united || elsewhere.len() as u64 <= drawn_back + divided, "case {case}: {soup:?}");
         opened += u64::from(drawn_back > 0);
         let share = answer.report.identical_triangle_share.unwrap();
         assert!((share - common_share(&before, &after)).abs() < 1e-12, "case {case}: {share} of {soup:?}");
@@ -147,8 +151,8 @@ fn what_is_returned_as_a_solid_is_one_and_only_opened_contacts_have_moved() {
         assert_eq!(again.report.outcome, Some(Outcome::Identical), "case {case}: {soup:?}");
     }
     assert!(
-        repaired > 400 && rebuilt > 100 && opened > 0,
-        "{repaired} repaired, {opened} of them opened, {rebuilt} rebuilt, {refused} refused"
+        repaired > 500 && united > 100 && opened > 0,
+        "{repaired} repaired, {united} of them united, {opened} of them opened, {rebuilt} rebuilt, {refused} refused"
     );
 }
 

@@ -27,7 +27,7 @@ fn any_step(random: &mut Random, soup: &RawSoup) -> Step {
     };
     let count = soup.triangles.len();
     let length = random.pick(&[0.0, 1e-3, 0.3, 1.0, 1e300]);
-    match random.below(23) {
+    match random.below(25) {
         0 => Step::SplitPolygons(random.pick(&[DegenerateFaces::Split, DegenerateFaces::Drop])),
         1 => Step::ClearNoise,
         2 => Step::RoundToF32,
@@ -56,7 +56,21 @@ fn any_step(random: &mut Random, soup: &RawSoup) -> Step {
         17 => Step::OpenContacts,
         18 => Step::JoinContacts { size: length },
         19 => Step::PairSheets(random.pick(&[Across::Solid, Across::Void])),
-        21 => Step::Unite,
+        21 => {
+            if random.one_in(2) {
+                Step::Unite
+            } else {
+                Step::UniteAndCopyBare
+            }
+        }
+        22 => {
+            if random.one_in(2) {
+                Step::SpanRims
+            } else {
+                Step::RoundWhereItMatters
+            }
+        }
+        23 => Step::BoreContacts { steps: 16 },
         20 => Step::DropNearDuplicates { epsilon: length },
         _ => match random.one_in(2) {
             true => Step::JoinCopies,

@@ -1,5 +1,6 @@
 //! The command line from outside: exit codes, streams, and files that appear whole or not at all.
 
+use crate::meshes::MOEBIUS;
 use serde_json::Value;
 use std::fs;
 use std::io::{Read as _, Write as _};
@@ -13,7 +14,7 @@ const SOLID: &str = "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3
 const OPEN: &str = "OFF\n4 3 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n";
 /// A triangle whose corners are on a line: nothing to repair.
 const LINE: &str = "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n";
-/// Two tetrahedra, one pierced by the other: no step makes a solid of them, so they are rebuilt.
+/// Two tetrahedra, one pierced by the other.
 const CROSSING: &str = "OFF\n8 8 12\n0 0 0\n4 0 0\n0 4 0\n0 0 4\n1 1 -1\n2 1 -1\n1 2 -1\n1 1 9\n\
                         3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n3 4 6 5\n3 4 5 7\n3 4 7 6\n3 5 6 7\n";
 
@@ -29,6 +30,7 @@ impl Desk {
             ("solid.off", SOLID),
             ("open.off", OPEN),
             ("crossing.off", CROSSING),
+            ("moebius.off", MOEBIUS),
             ("line.off", LINE),
             ("broken.off", "OFF\n4 4 6\n0 0 zero\n"),
             ("noise.stl", "neither this nor that"),
@@ -72,8 +74,16 @@ impl Desk {
     /// Files that were not there at the beginning.
     fn new_files(&self) -> Vec<String> {
         let names = fs::read_dir(self.path()).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap());
-        let begun =
-            ["solid.off", "open.off", "crossing.off", "line.off", "broken.off", "noise.stl", "empty.obj"];
+        let begun = [
+            "solid.off",
+            "open.off",
+            "crossing.off",
+            "moebius.off",
+            "line.off",
+            "broken.off",
+            "noise.stl",
+            "empty.obj",
+        ];
         let mut names: Vec<_> = names.filter(|name| !begun.contains(&name.as_str())).collect();
         names.sort();
         names
@@ -274,7 +284,7 @@ fn nothing_is_written_without_a_certificate() {
 #[test]
 fn what_is_mended_is_written_when_nothing_is_required_and_still_says_no() {
     let desk = Desk::new();
-    let output = desk.run(&["repair", "crossing.off", "-o", "out.off", "--require", "none"]);
+    let output = desk.run(&["repair", "moebius.off", "-o", "out.off", "--require", "none"]);
     assert_eq!(output.status.code(), Some(1));
     assert!(stdout(&output).contains("partial"), "{}", stdout(&output));
     assert!(desk.read("out.off").starts_with("OFF"));

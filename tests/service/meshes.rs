@@ -4,7 +4,10 @@
 pub(crate) const SOLID: &str = "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
 /// The same without its last face.
 pub(crate) const OPEN: &str = "OFF\n4 3 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n";
-/// Two tetrahedra, one pierced by the other: no step makes a solid of them, so they are rebuilt.
+/// A Möbius band of five triangles: no step makes a solid of it, so it is rebuilt.
+pub(crate) const MOEBIUS: &str = "OFF\n5 5 0\n3 0 0\n1 2 1\n-2 1 -1\n-2 -2 2\n1 -2 0\n\
+    3 0 1 2\n3 1 2 3\n3 2 3 4\n3 3 4 0\n3 4 0 1\n";
+/// Two tetrahedra, one pierced by the other.
 pub(crate) const CROSSING: &str = "OFF\n8 8 12\n0 0 0\n4 0 0\n0 4 0\n0 0 4\n1 1 -1\n2 1 -1\n1 2 -1\n1 1 9\n\
     3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n3 4 6 5\n3 4 5 7\n3 4 7 6\n3 5 6 7\n";
 /// A triangle whose corners are on a line: nothing to repair.

@@ -1,6 +1,6 @@
 //! A mesh in, its report or its repair out.
 
-use crate::meshes::{BROKEN, CROSSING, LINE, OPEN, SOLID};
+use crate::meshes::{BROKEN, CROSSING, LINE, MOEBIUS, OPEN, SOLID};
 use crate::server::{Server, header, link, problem};
 use reqwest::blocking::{Response, multipart};
 use serde_json::{Value, json};
@@ -110,7 +110,7 @@ fn what_is_mended_or_rebuilt_is_told() {
     let server = Server::start();
     for (require, outcome) in [("none", "partial"), ("best_effort", "rebuilt"), ("printable", "rebuilt")] {
         let path = format!("/v1/repair?wrap_cells=24&require={require}");
-        let response = server.post(&path).body(CROSSING).send().unwrap();
+        let response = server.post(&path).body(MOEBIUS).send().unwrap();
         assert_eq!((response.status().as_u16(), header(&response, "meshmend-outcome")), (200, outcome));
     }
 }

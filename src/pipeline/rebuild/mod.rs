@@ -4,7 +4,7 @@ mod fewer;
 mod parts;
 
 use self::fewer::Fewer;
-use super::fidelity::{Fidelity, Original};
+use super::fidelity::{Fidelity, Original, defined_volume};
 use super::input::Input;
 use super::output::{Candidate, NoCandidate};
 use super::plan::{Attempt, Step, Variant};
@@ -152,7 +152,7 @@ impl Search<'_> {
         let solid = budget.stage(Stage::Measure, || {
             Solid::of(&draft.positions, &draft.triangles, choices.open_shells, budget)
         })?;
-        let volume = self.before.and_then(|analysis| analysis.measures.volume);
+        let volume = defined_volume(self.before);
         let original = Original::new(soup, volume, Some(solid));
         let asked = choices.cells.map(|cells| [(cells, f64::INFINITY)]);
         let lattices = match &asked {

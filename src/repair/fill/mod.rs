@@ -26,6 +26,7 @@ mod rbf;
 mod refine;
 mod regions;
 mod report;
+mod span;
 mod sparse;
 mod surface;
 
@@ -34,6 +35,7 @@ use self::make::{Made, Scene, Way, make};
 pub use self::options::{Extract, FillOptions, HoleChoice, Method};
 use self::regions::{Region, regions};
 pub use self::report::{Filled, HoleReport, Rejected, Rejection, Rim};
+pub use self::span::span_rims;
 use self::surface::Surface;
 use super::{Changes, Draft, FIRST_BLEND, NEW, Selection};
 use crate::budget::{Budget, Stopped};

@@ -4,10 +4,16 @@
 //! Triangles stay as they are where they bound the solid; those that others pass through are cut there. New vertices are where
 //! they are exactly up to half a pitch of the lattice on which every coordinate is a float32.
 
+mod bare;
+mod bore;
+
+pub use bare::unite_and_copy_bare;
+pub use bore::bore_contacts;
+
 use super::{Changes, Draft, FIRST_BLEND, NEW};
-use crate::arrangement::{self, ArrangementError, Options, arrange};
+use crate::arrangement::{self, Arrangement, ArrangementError, Options, arrange};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
-use crate::geom::{Aabb, DVec3, Sign, print_pitch, upward_crossing, volume_sign};
+use crate::geom::{Aabb, DVec3, Sign, print_pitch, triangle_area, upward_crossing, volume_sign};
 use crate::mesh::{EdgeGroups, edge_of};
 use crate::spatial::{Bvh, ShellTriangles};
 
@@ -16,6 +22,41 @@ const PAIRS_PER_TRIANGLE: usize = 64;
 const PAIRS_MIN: usize = 1 << 16;
 const PAIRS_MAX: usize = 1 << 21;
 
+/// What became of the triangles of the soup when bodies were united. Every place of one that is `present` and not `bare` is on the
+/// surface of the solid or inside of it, up to what the rounding of new vertices moves.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Coverage {
+    /// Triangles of the soup that were in the draft, ascending.
+    pub present: Vec<u32>,
+    /// Those of which some piece has void on both sides, so that it is gone, ascending.
+    pub bare: Vec<u32>,
+    /// Area of the pieces inside the solid, in square units of the file.
+    pub buried_area: f64,
+}
+
+impl Coverage {
+    fn of(draft: &Draft, arrangement: &Arrangement) -> Self {
+        let of_file = |t: u32| Some(draft.triangle_origin[t as usize]).filter(|&origin| origin != NEW);
+        let mut coverage = Self::default();
+        coverage.present.extend((0..draft.triangles.len() as u32).filter_map(of_file));
+        for (f, corners) in arrangement.pieces().iter().enumerate() {
+            let [front, back] = arrangement.windings(f).map(|winding| winding[0] > 0);
+            let sources = arrangement.sources(f).iter().filter_map(|&(t, _)| of_file(t));
+            if front && back {
+                let area = triangle_area(corners.map(|p| arrangement.position(p)));
+                coverage.buried_area += area * sources.count() as f64;
+            } else if !front && !back {
+                coverage.bare.extend(sources);
+            }
+        }
+        for list in [&mut coverage.present, &mut coverage.bare] {
+            list.sort_unstable();
+            list.dedup();
+        }
+        coverage
+    }
+}
+
 /// Unites the bodies of a draft whose surface is closed. Shells that point inward and are in no body are turned first. A draft that
 /// is open, or of which too many triangles meet, is left as it is.
 ///
@@ -23,25 +64,46 @@ const PAIRS_MAX: usize = 1 << 21;
 /// When the budget stops the run.
 pub fn unite(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
     let turned = turn_inverted(draft, budget)?;
+    let united = unite_as_oriented(draft, budget)?;
+    let counts = [("shells_turned", turned)].into_iter().chain(united.counts).collect();
+    Ok(Changes { counts, ..united })
+}
+
+/// As [`unite`], but no shell is turned: what points inward is taken out of the others.
+///
+/// # Errors
+/// When the budget stops the run.
+fn unite_as_oriented(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
+    let united = arranged(draft, budget).and_then(|arrangement| {
+        let boundary = arrangement.boundary(|winding| winding[0] > 0);
+        let merged = arrangement.merged(&boundary, budget)?;
+        drop(boundary);
+        let coverage = Coverage::of(draft, &arrangement);
+        let reach = draft.positions.iter().fold(0.0f64, |reach, p| reach.max(p.abs().max_element()));
+        match print_pitch(reach) {
+            Some(pitch) => {
+                let placed = arrangement::place(&arrangement, &merged, pitch, budget)?;
+                Ok(Some((placed, coverage)))
+            }
+            None => Ok(None),
+        }
+    });
+    match united {
+        Ok(Some((placed, coverage))) => Ok(Changes { coverage: Some(coverage), ..replace(draft, placed) }),
+        Ok(None) => Ok(left_alone("float32 does not go so far")),
+        Err(ArrangementError::Stopped(stopped)) => Err(stopped),
+        Err(error) => Ok(left_alone(&error.to_string())),
+    }
+}
+
+fn arranged(draft: &Draft, budget: &Budget) -> Result<Arrangement, ArrangementError> {
     let pairs_max = (draft.triangles.len() * PAIRS_PER_TRIANGLE).clamp(PAIRS_MIN, PAIRS_MAX);
     let options = Options { pairs_max, operands: 1 };
-    let united =
-        arrange(&draft.positions, &draft.triangles, |_| 0, &options, budget).and_then(|arrangement| {
-            let boundary = arrangement.boundary(|winding| winding[0] > 0);
-            let merged = arrangement.merged(&boundary, budget)?;
-            drop(boundary);
-            let reach = draft.positions.iter().fold(0.0f64, |reach, p| reach.max(p.abs().max_element()));
-            match print_pitch(reach) {
-                Some(pitch) => arrangement::place(&arrangement, &merged, pitch, budget).map(Some),
-                None => Ok(None),
-            }
-        });
-    let placed = match united {
-        Ok(Some(placed)) => placed,
-        Ok(None) => return Ok(left_alone(turned, "float32 does not go so far")),
-        Err(ArrangementError::Stopped(stopped)) => return Err(stopped),
-        Err(error) => return Ok(left_alone(turned, &error.to_string())),
-    };
+    arrange(&draft.positions, &draft.triangles, |_| 0, &options, budget)
+}
+
+/// Puts what is placed into the draft.
+fn replace(draft: &mut Draft, placed: arrangement::Placed) -> Changes {
     let before = draft.triangles.len() as u64;
     let points_before = draft.positions.len();
     let move_max = placed.move_max;
@@ -59,18 +121,13 @@ pub fn unite(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
     let new = is_first[points_before..].iter().filter(|&&t| t != NEW).count() as u64;
     draft.drop_unused_vertices();
     let after = draft.triangles.len() as u64;
-    let counts = [
-        ("shells_turned", turned),
-        ("triangles_before", before),
-        ("triangles_after", after),
-        ("vertices_added", new),
-    ];
-    Ok(Changes { move_max, reason, ..Changes::counted(counts) })
+    let counts = [("triangles_before", before), ("triangles_after", after), ("vertices_added", new)];
+    Changes { move_max, reason, ..Changes::counted(counts) }
 }
 
-fn left_alone(turned: u64, why: &str) -> Changes {
-    let counts = Changes::counted([("shells_turned", turned), ("triangles_after", 0)]);
-    Changes { reason: format!("bodies were not united: {why}"), ..counts }
+fn left_alone(why: &str) -> Changes {
+    let reason = format!("bodies were not united: {why}");
+    Changes { reason, ..Changes::counted([("triangles_after", 0)]) }
 }
 
 /// A triangle at each point, or [`NEW`].
@@ -180,7 +237,7 @@ mod tests {
     use super::*;
 
     /// Cubes of these sides from these corners on; `true`: turned inside out.
-    fn cubes(of: &[(DVec3, f64, bool)]) -> Draft {
+    pub(super) fn cubes(of: &[(DVec3, f64, bool)]) -> Draft {
         const SIDES: [[u32; 3]; 12] = [
             [0, 2, 1],
             [1, 2, 3],
@@ -215,7 +272,7 @@ mod tests {
     }
 
     /// Six times the volume, which is exact for these.
-    fn volume_times_6(draft: &Draft) -> f64 {
+    pub(super) fn volume_times_6(draft: &Draft) -> f64 {
         let of = |t: usize| {
             let [a, b, c] = draft.corners(t);
             a.cross(b).dot(c)
