@@ -127,8 +127,12 @@ impl Service {
             let first = first.map_err(|error| store_problem(&error))?;
             let Some(first) = first else { return Err(self.storage_full(bytes)) };
             tracing::info!(job = %first, "expired early to make room");
-            let orphans = self.store.expire(first).await.map_err(|error| store_problem(&error))?;
-            self.remove(&orphans);
+            match self.store.expire(first).await {
+                Ok(orphans) => self.remove(&orphans),
+                // Another one, who needs room too, was quicker.
+                Err(StoreError::NotFound) => {}
+                Err(error) => return Err(store_problem(&error)),
+            }
         }
     }
 
@@ -170,6 +174,8 @@ impl Service {
             let Some(first) = first.map_err(|error| store_problem(&error))? else { return Ok(()) };
             match self.store.delete(first).await {
                 Ok(orphans) => self.remove(&orphans),
+                // As above.
+                Err(StoreError::NotFound) => {}
                 Err(error) => return Err(store_problem(&error)),
             }
         }

@@ -109,13 +109,16 @@ const STORE_FILE: &str = "jobs.sqlite3";
 /// The file of the key of secrets, when the operator names no other.
 const KEY_FILE: &str = "store.key";
 
-/// What seals secrets and what sends webhooks, if any are sent.
-fn webhooks(settings: &JobsSettings) -> Result<(Option<Arc<Vault>>, Option<Arc<Sender>>), String> {
-    let Some(webhooks) = settings.webhooks.clone() else { return Ok((None, None)) };
+/// What seals secrets, and what sends webhooks.
+type Sending = (Arc<Vault>, Arc<Sender>);
+
+/// What webhooks need; `None`: none are sent.
+fn webhooks(settings: &JobsSettings) -> Result<Option<Sending>, String> {
+    let Some(webhooks) = settings.webhooks.clone() else { return Ok(None) };
     let path = settings.store_key_file.clone().unwrap_or_else(|| settings.data_dir.join(KEY_FILE));
     let vault = Arc::new(Vault::open(&path).map_err(|error| error.to_string())?);
     let sender = Sender::new(webhooks, Arc::clone(&vault)).map_err(|error| error.to_string())?;
-    Ok((Some(vault), Some(Arc::new(sender))))
+    Ok(Some((vault, Arc::new(sender))))
 }
 
 impl Jobs {
@@ -152,7 +155,7 @@ impl Jobs {
         let unusable = |why: String| StartError::Store { path: path.clone(), why };
         let store = open_together(&data_dir, &path, &spool, settings.lost_store)
             .map_err(|error| unusable(error.to_string()))?;
-        let (vault, sender) = webhooks(&settings).map_err(|why| StartError::Webhooks { why })?;
+        let (vault, sender) = webhooks(&settings).map_err(|why| StartError::Webhooks { why })?.unzip();
         let service = Arc::new(Service {
             capacity: Capacity::of(&settings),
             settings,
