@@ -3,6 +3,7 @@
 use super::files::Place;
 use super::flags::{EngineSettingFlags, OptionFlags, SettingFlags};
 use crate::config::Sources;
+use crate::jobs::LostStore;
 use crate::pipeline::Operation;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
@@ -18,7 +19,7 @@ pub(super) struct Arguments {
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
     /// Run the service (the default command).
-    Serve(ServiceArguments),
+    Serve(ServeArguments),
     /// Report what is wrong with a mesh.
     #[command(arg_required_else_help = true)]
     Analyze(AnalyzeArguments),
@@ -90,6 +91,33 @@ pub(super) struct ServiceArguments {
 impl ServiceArguments {
     pub(super) fn sources(self) -> Sources {
         Sources::of_process(self.settings.0, self.config)
+    }
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ServeArguments {
+    /// Start although the job store is missing, empty or another one, and keep the files of the lost one in a folder of their
+    /// own.
+    #[arg(long, conflicts_with = "discard")]
+    adopt: bool,
+    /// Start although the job store is missing, empty or another one, and remove the files of the lost one.
+    #[arg(long)]
+    discard: bool,
+    #[command(flatten)]
+    given: ServiceArguments,
+}
+
+impl ServeArguments {
+    pub(super) fn lost_store(&self) -> LostStore {
+        match (self.adopt, self.discard) {
+            (true, _) => LostStore::Adopt,
+            (_, true) => LostStore::Discard,
+            _ => LostStore::Refuse,
+        }
+    }
+
+    pub(super) fn sources(self) -> Sources {
+        self.given.sources()
     }
 }
 

@@ -13,7 +13,7 @@ mod work;
 
 use crate::config::{Config, Loaded};
 use crate::formats::Format;
-use crate::jobs::{RUN_JOB, run_job};
+use crate::jobs::{LostStore, RUN_JOB, run_job};
 use crate::pipeline::{self, Operation};
 use arguments::{Arguments, Command, SettingsCommand};
 use clap::FromArgMatches as _;
@@ -25,7 +25,7 @@ use std::process::ExitCode;
 #[derive(Debug, Clone, Copy)]
 pub struct Service {
     /// Serves until it is told to stop.
-    pub serve: fn(&Loaded) -> anyhow::Result<()>,
+    pub serve: fn(&Loaded, LostStore) -> anyhow::Result<()>,
     /// Fails unless the service of this configuration is ready.
     pub healthcheck: fn(&Config) -> anyhow::Result<()>,
 }
@@ -65,7 +65,10 @@ fn with_default_command(args: impl IntoIterator<Item = OsString>) -> Vec<OsStrin
 
 fn execute(command: Command, service: Service) -> Exit {
     match command {
-        Command::Serve(given) => settings::with_loaded(&given.sources(), |loaded| (service.serve)(loaded)),
+        Command::Serve(given) => {
+            let lost_store = given.lost_store();
+            settings::with_loaded(&given.sources(), |loaded| (service.serve)(loaded, lost_store))
+        }
         Command::Healthcheck(given) => {
             match settings::with_loaded(&given.sources(), |loaded| (service.healthcheck)(&loaded.config)) {
                 // Container runtimes know 0 and 1 only.

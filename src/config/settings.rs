@@ -89,26 +89,36 @@ settings! {
     /// Origins whose pages may use the service and read its answers.
     cors_origins: Vec<String> = "",
     /// Requests that one key, or one address without keys, may make in a minute; 0: any number.
-    rate_per_minute: u32 = "0",
+    rate_per_minute: u32 = "1_200",
     /// Requests that it may make at one time.
-    rate_burst: u32 = "60",
+    rate_burst: u32 = "240",
 
-    /// Jobs that run at one time; auto: half the cores.
+    /// Jobs that run at one time; auto: half the cores and one more.
     slots: Option<NonZeroUsize> = "auto",
     /// Jobs beside those that run at one time, for small meshes that somebody waits for.
-    interactive_slots: usize = "1",
+    interactive_slots: usize = "2",
+    /// Most slots of each of both kinds that one key, or one address without keys, has at one time; auto: all but one.
+    owner_slots_max: Option<NonZeroUsize> = "auto",
     /// Largest upload of such a mesh.
     interactive_bytes_max: Bytes = "4MiB",
+    /// Time that a job may take in such a slot for each begun MiB of its upload; then it goes on as a large one.
+    interactive_deadline: Duration = "10s",
     /// Most memory that all running jobs may take together, as estimated from their uploads; auto: three quarters of the machine's.
     memory_bytes_max: Option<Bytes> = "auto",
     /// Most queued jobs.
-    queue_max: NonZeroUsize = "64",
+    queue_max: NonZeroUsize = "128",
+    /// Most of them of one key, or of one address without keys; auto: no more than there are free places.
+    owner_queue_max: Option<NonZeroUsize> = "auto",
     /// Most jobs kept, whatever their state; the oldest finished ones go first.
     jobs_max: NonZeroUsize = "20_000",
+    /// Most of them of one key, or of one address without keys; auto: all, but at the limit those go first that are over its share.
+    owner_jobs_max: Option<NonZeroUsize> = "auto",
     /// Time for which a finished job is kept.
     result_ttl: Duration = "24h",
     /// Most bytes of uploads and results on disk; the oldest finished jobs go first.
     data_bytes_max: Bytes = "20GiB",
+    /// Most of them of one key, or of one address without keys; auto: all, but at the limit those go first that are over its share.
+    owner_data_bytes_max: Option<Bytes> = "auto",
     /// Bytes of the disk that stay free.
     disk_free_bytes_min: Bytes = "256MiB",
     /// Time after which a job whose executor is not heard of is queued again.
@@ -141,6 +151,8 @@ settings! {
 
     /// Most open connections of each listener; more wait in the system's backlog.
     connections_max: NonZeroUsize = "4096",
+    /// Most open connections of one address, but for those of trusted_proxies; auto: half of all.
+    address_connections_max: Option<NonZeroUsize> = "auto",
     /// Time for a request's head, and for which a connection may be idle.
     header_timeout: Duration = "15s",
     /// Longest pause between two pieces of an upload.
@@ -154,6 +166,8 @@ settings! {
 
     /// Whether jobs may name a URL that is called when they end.
     webhooks: bool = "false",
+    /// File of the key that seals the secrets of jobs in the store, made when there is none. Default: store.key in data_dir.
+    store_key_file: Option<PathBuf> = "",
     /// File of secrets that calls are signed with where the job brings none, one a line: whsec_ and base64.
     webhook_secret_file: Option<PathBuf> = "",
     /// Hosts with port that may be called although they are not public, also over http.

@@ -18,7 +18,16 @@ pub(super) struct Faces {
     other_sizes: Vec<u32>,
     /// The corners of the others, one face after the other.
     other_corners: Vec<u32>,
+    /// Triangles that the others make.
+    split: u64,
+    /// Bytes of these lists that are charged.
+    charged: u64,
+    /// Corners at which the next look at limits and memory is due.
+    due_at: usize,
 }
+
+/// Corners that may be added between two looks at limits and memory.
+const LOOK_EVERY_CORNERS: usize = 1 << 16;
 
 impl Faces {
     /// Faces that all have three corners.
@@ -32,7 +41,38 @@ impl Faces {
         additional: usize,
         budget: &'b Budget,
     ) -> Result<Charge<'b>, Stopped> {
-        budget.reserve(&mut self.triangles, additional)
+        let before = self.room_bytes();
+        let charge = budget.reserve(&mut self.triangles, additional)?;
+        self.charged += self.room_bytes() - before;
+        Ok(charge)
+    }
+
+    /// Bytes of the room that all lists have.
+    fn room_bytes(&self) -> u64 {
+        let words = 3 * self.triangles.capacity()
+            + self.others.capacity()
+            + self.other_sizes.capacity()
+            + self.other_corners.capacity();
+        words as u64 * size_of::<u32>() as u64
+    }
+
+    /// Whether [`settle`](Self::settle) is to be called.
+    #[inline]
+    pub(super) fn is_due(&self) -> bool {
+        self.other_corners.len() + 3 * self.triangles.len() >= self.due_at
+    }
+
+    /// Charges what the lists have grown by, and fails when there are too many triangles already.
+    pub(super) fn settle<'b>(
+        &mut self,
+        limits: &ReadLimits,
+        budget: &'b Budget,
+    ) -> Result<Charge<'b>, ReadError> {
+        self.due_at = self.other_corners.len() + 3 * self.triangles.len() + LOOK_EVERY_CORNERS;
+        limits.check_triangles(self.triangle_count())?;
+        let grown = self.room_bytes().saturating_sub(self.charged);
+        self.charged += grown;
+        Ok(budget.charge(grown)?)
     }
 
     /// Number of faces.
@@ -48,6 +88,7 @@ impl Faces {
         } else {
             self.others.push(self.len() as u32);
             self.other_sizes.push(corners.len() as u32);
+            self.split += (corners.len() as u64).saturating_sub(2);
             self.other_corners.extend_from_slice(corners);
         }
     }
@@ -59,6 +100,7 @@ impl Faces {
         self.others.extend(later.others.iter().map(|face| before + face));
         self.other_sizes.extend_from_slice(&later.other_sizes);
         self.other_corners.extend_from_slice(&later.other_corners);
+        self.split += later.split;
     }
 
     /// The soup of these faces on `positions`: bad faces become faults, polygons are split.
@@ -127,8 +169,7 @@ impl Faces {
 
     /// Triangles after splitting, if no face is at fault.
     fn triangle_count(&self) -> u64 {
-        let split: u64 = self.other_sizes.iter().map(|&size| u64::from(size.saturating_sub(2))).sum();
-        self.triangles.len() as u64 + split
+        self.triangles.len() as u64 + self.split
     }
 
     fn are_triangles_good(&self, soup: &Soup, budget: &Budget) -> Result<bool, Stopped> {
@@ -144,6 +185,8 @@ impl Faces {
         let capacity = self.triangle_count() as usize;
         let (mut triangles, _charged) = budget.vec::<[u32; 3]>(capacity)?;
         let (mut triangle_face, _charged) = budget.vec::<u32>(capacity)?;
+        // Polygons are kept beside their triangles.
+        let _charged = budget.charge(4 * (self.other_corners.len() + 3 * self.others.len()) as u64)?;
         let mut splitter = Splitter::default();
         let mut three_corners = self.triangles.into_iter();
         let mut other = 0;
@@ -322,6 +365,27 @@ mod tests {
         later.push(&[0, 1]);
         faces.append(&later);
         assert_eq!((faces.len(), &faces.others[..], &faces.other_sizes[..]), (3, &[0, 2][..], &[4, 2][..]));
+    }
+
+    #[test]
+    fn polygons_are_charged_and_counted_while_they_come() {
+        let limits = ReadLimits { triangles_max: 1_000_000, ..ReadLimits::default() };
+        let polygon = vec![0; 60_000];
+        let fill = |bytes_max| {
+            let budget = Budget::new(crate::budget::StopFlag::default(), u64::MAX, bytes_max);
+            let mut faces = Faces::default();
+            let mut charges = Vec::new();
+            for _ in 0..100 {
+                faces.push(&polygon);
+                if faces.is_due() {
+                    charges.push(faces.settle(&limits, &budget)?);
+                }
+            }
+            Ok::<_, ReadError>(budget.bytes_peak())
+        };
+        let error = |bytes_max| fill(bytes_max).unwrap_err();
+        assert!(matches!(error(u64::MAX).kind, ReadErrorKind::TooLarge { limit_name: "triangles_max", .. }));
+        assert!(matches!(error(1 << 20).kind, ReadErrorKind::Stopped(Stopped::Memory { .. })));
     }
 
     #[test]

@@ -81,12 +81,12 @@ fn archive(start: &[u8]) -> &'static str {
 /// Text of two bytes a letter, with its mark, or without one where every other byte is zero.
 fn utf_16(start: &[u8]) -> Option<&'static str> {
     let is_marked = start.starts_with(b"\xff\xfe") || start.starts_with(b"\xfe\xff");
-    let letters = &start[..start.len().min(64) / 2 * 2];
+    let letters = &start[..start.len() / 2 * 2];
+    let count = letters.len() / 2;
+    // Nearly all letters are ASCII; names and comments may hold others.
     let is_text = |zero: usize| {
-        letters.len() >= 16
-            && letters
-                .chunks(2)
-                .all(|pair| pair[zero] == 0 && matches!(pair[1 - zero], 9 | 10 | 13 | 32..=126))
+        let plain = |pair: &&[u8]| pair[zero] == 0 && matches!(pair[1 - zero], 9 | 10 | 13 | 32..=126);
+        count >= 8 && letters.chunks(2).filter(plain).count() >= count - count / 8
     };
     (is_marked || is_text(0) || is_text(1)).then_some("text in UTF-16")
 }
@@ -109,6 +109,9 @@ mod tests {
     #[test]
     fn what_is_not_read_is_known_by_its_first_bytes() {
         let utf_16: Vec<u8> = "v 0 0 0\nv 1 0 0\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+        let named: Vec<u8> =
+            "# größe μ\no Würfel\nv 0 0 0\nv 1 0 0\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+        let big: Vec<u8> = "OFF\n4 4 0\n0 0 0\n".encode_utf16().flat_map(u16::to_be_bytes).collect();
         let marked = [&b"\xff\xfe"[..], &utf_16].concat();
         for (bytes, name) in [
             (&b"PK\x03\x04\x14\0\0\0\x08\0________________\x13\0\0\0[Content_Types].xml"[..], "3MF"),
@@ -125,6 +128,8 @@ mod tests {
             (b"\n<!DOCTYPE html><title>403</title>", "a web page"),
             (&utf_16, "text in UTF-16"),
             (&marked, "text in UTF-16"),
+            (&named, "text in UTF-16"),
+            (&big, "text in UTF-16"),
         ] {
             assert_eq!(foreign(bytes), Some(name), "{}", String::from_utf8_lossy(bytes));
         }
@@ -140,6 +145,7 @@ mod tests {
             b"# <html> in a comment\nv 0 0 0\n",
             b"0\n",
             b"",
+            &[0; 200],
         ] {
             assert_eq!(foreign(bytes), None, "{}", String::from_utf8_lossy(bytes));
         }

@@ -3,6 +3,7 @@
 //! Reading never panics and never allocates from an unchecked count: a broken file gives a [`ReadError`] with its
 //! place, broken content (NaN, an index out of range) gives a soup that names it.
 
+mod announced;
 mod colors;
 mod cursor;
 mod decimals;
@@ -19,6 +20,7 @@ mod sniff;
 mod stl;
 mod words;
 
+pub use announced::triangles_at_most;
 pub use error::{Place, ReadError, ReadErrorKind, WriteError};
 pub use obj::materials::color_faces;
 pub use polygons::split_polygon;
@@ -102,6 +104,11 @@ impl Encoding {
         }
     }
 
+    /// Whether all of it is text.
+    fn is_text(self) -> bool {
+        matches!(self, Self::Obj | Self::StlAscii | Self::Off | Self::PlyAscii)
+    }
+
     /// Name in reports.
     pub fn name(self) -> &'static str {
         match self {
@@ -178,6 +185,9 @@ pub fn read(
     options: &ReadOptions,
     budget: &Budget,
 ) -> Result<Soup, ReadError> {
+    if encoding.is_text() {
+        words::check_text(bytes)?;
+    }
     match encoding {
         Encoding::Obj => match options.obj_reader {
             ObjReader::Own => obj::read::read(bytes, options, budget),

@@ -55,7 +55,7 @@ fn certain(bytes: &[u8]) -> Option<Encoding> {
 /// The layout of content that has no mark of `format` but shall be in it.
 fn layout_of(bytes: &[u8], format: Format) -> Encoding {
     match format {
-        Format::Stl if is_text(bytes) => Encoding::StlAscii,
+        Format::Stl if is_text(bytes) || is_damaged_text(bytes) => Encoding::StlAscii,
         Format::Stl => Encoding::StlBinary,
         Format::Ply => Encoding::PlyAscii,
         Format::Off => Encoding::Off,
@@ -65,15 +65,28 @@ fn layout_of(bytes: &[u8], format: Format) -> Encoding {
 
 /// The likely encoding of content without a mark.
 fn guess(bytes: &[u8]) -> Option<Encoding> {
-    let length = announced_length(bytes).unwrap_or(u64::MAX);
-    let size = bytes.len() as u64;
-    if !is_text(bytes) && length <= size && size - length < length {
+    if !is_text(bytes) && is_longer_stl(bytes) {
         Some(Encoding::StlBinary)
+    } else if is_damaged_text(bytes) {
+        Some(Encoding::StlAscii)
     } else if has_obj_statement(bytes) {
         Some(Encoding::Obj)
     } else {
         None
     }
+}
+
+/// A binary STL with extra bytes at its end, fewer than its own.
+fn is_longer_stl(bytes: &[u8]) -> bool {
+    let length = announced_length(bytes).unwrap_or(u64::MAX);
+    let size = bytes.len() as u64;
+    length <= size && size - length < length
+}
+
+/// An ASCII STL with zero bytes in it, which its reader tells with their place.
+fn is_damaged_text(bytes: &[u8]) -> bool {
+    let is_solid = first_word(bytes).eq_ignore_ascii_case(b"solid") && has_facet(bytes);
+    is_solid && !is_text(bytes) && !is_longer_stl(bytes)
 }
 
 fn unknown(bytes: &[u8]) -> ReadError {

@@ -149,6 +149,15 @@ fn line_end(bytes: &[u8], from: usize) -> usize {
     memchr2(b'\n', b'\r', &bytes[from..]).map_or(bytes.len(), |length| from + length)
 }
 
+/// Refuses text with a zero byte in it: as a blank it would divide the numbers of a file in UTF-16 into digits, which are
+/// another mesh.
+pub(super) fn check_text(bytes: &[u8]) -> Result<(), ReadError> {
+    let Some(zero) = memchr(0, bytes) else { return Ok(()) };
+    let mut words = Words::new(&bytes[..zero], 1, Dialect::default());
+    while words.next_line() {}
+    Err(ReadError::unparseable(words.place(), "a zero byte", "text without zero bytes, in UTF-8"))
+}
+
 /// A piece of a file for an error message: printable and short.
 pub(super) fn quoted(word: &[u8]) -> String {
     const SHOWN_BYTES_MAX: usize = 40;
@@ -218,6 +227,18 @@ mod tests {
     #[test]
     fn latin_1_bytes_and_a_byte_order_mark_do_no_harm() {
         assert_eq!(lines_of(b"\xEF\xBB\xBFg B\xFCgel\tx", OBJ), [(1, vec![&b"g"[..], b"B\xFCgel", b"x"])]);
+    }
+
+    #[test]
+    fn a_zero_byte_is_told_with_its_line() {
+        assert_eq!(check_text(b"v 0 0 0\r\nv 1 0 0\r"), Ok(()));
+        for (text, line) in
+            [(&b"\0"[..], 1), (b"v 0 0 0\rv 1 \0 0", 2), (b"v 0 0 0\r\n\r\n# a\0", 3), (b"a\n\0", 2)]
+        {
+            let error = check_text(text).unwrap_err().to_string();
+            let told = format!("line {line}: found a zero byte; expected text without zero bytes, in UTF-8");
+            assert_eq!(error, told);
+        }
     }
 
     #[test]

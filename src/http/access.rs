@@ -113,14 +113,20 @@ fn text<'h>(headers: &'h HeaderMap, name: &HeaderName) -> Option<&'h str> {
     headers.get(name)?.to_str().ok()
 }
 
-/// The host of `host[:port]`, without the brackets of an IPv6 address.
+/// The host of `host[:port]`, without the brackets of an IPv6 address; empty when it is neither.
 fn host_of(authority: &str) -> &str {
+    let is_port = |port: &str| port.bytes().all(|byte| byte.is_ascii_digit());
     if let Some(rest) = authority.strip_prefix('[') {
-        return rest.split(']').next().unwrap_or_default();
+        return match rest.split_once(']') {
+            Some((host, "")) => host,
+            Some((host, behind)) if behind.strip_prefix(':').is_some_and(is_port) => host,
+            _ => "",
+        };
     }
     // More than one colon without brackets is an IPv6 address without port.
     match authority.split_once(':') {
-        Some((host, port)) if !port.contains(':') => host,
+        Some((host, port)) if is_port(port) => host,
+        Some((_, port)) if !port.contains(':') => "",
         _ => authority,
     }
 }
@@ -179,6 +185,10 @@ mod tests {
             "",
             "[::2]",
             "::1x",
+            "[::1]evil.example",
+            "[::1]:80evil",
+            "[::1",
+            "localhost:evil.example",
         ] {
             assert_eq!(answer(&[("host", host)]), Err(ProblemCode::Forbidden), "{host}");
         }

@@ -39,11 +39,20 @@ pub(super) fn tell_applied(response: &mut Response, applied: Option<HeaderValue>
     }
 }
 
+/// Refuses a request about a job that has changed since the client saw it.
+pub(super) fn check_job_is(job: &Job, request: &HeaderMap) -> Result<(), Problem> {
+    mesh_file::check_if_match(request, &etag_of(&json(job)))
+}
+
+fn etag_of(job: &[u8]) -> String {
+    let digest: [u8; 32] = Sha256::digest(job).into();
+    format!("\"{}\"", mesh_file::base64(&digest[..12]))
+}
+
 /// The job as it stands; 304 when the client has seen it so.
 pub(super) fn job_as_it_stands(job: &Job, request: &HeaderMap) -> Response {
     let body = json(job);
-    let digest: [u8; 32] = Sha256::digest(&body).into();
-    let etag = format!("\"{}\"", mesh_file::base64(&digest[..12]));
+    let etag = etag_of(&body);
     let mut response = if mesh_file::matches_etag(request, &etag) {
         StatusCode::NOT_MODIFIED.into_response()
     } else {

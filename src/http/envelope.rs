@@ -138,7 +138,7 @@ impl Seen {
         }
         let bytes_out = response.body().size_hint().exact();
         let told = response.extensions().get::<Told>();
-        let caller = response.extensions().get::<Caller>().and_then(|caller| caller.0.as_deref());
+        let caller = response.extensions().get::<Caller>().and_then(|caller| caller.owner.as_deref());
         let made = response.extensions().get::<AboutJob>().map(|about| about.0.as_str());
         super::metrics::count_request(&self.method, &self.route, status, elapsed);
         tracing::info!(

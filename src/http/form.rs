@@ -3,7 +3,7 @@
 use super::body::IncomingBody;
 use super::intake::{Entrance, Intake, JSON_BYTES_MAX, finish_if_any};
 use super::multipart::{Multipart, PartHead};
-use crate::jobs::{Jobs, Upload, Uploaded};
+use crate::jobs::{Upload, Uploaded};
 use crate::wire::{Operation, Problem, ProblemCode, format_of_media_type};
 
 /// Largest `material` part, in bytes.
@@ -45,7 +45,7 @@ pub(super) async fn receive(
                 };
                 intake.take_names(head);
             }
-            "material" => intake.material = receive_material(entrance.jobs, &mut form).await?,
+            "material" => intake.material = receive_material(entrance, &mut form).await?,
             _ => {
                 let text = receive_small(&mut form, JSON_BYTES_MAX, "json_bytes_max").await?;
                 intake.take_json(&text, operation)?;
@@ -72,9 +72,12 @@ async fn receive_mesh(mut upload: Upload, form: &mut Multipart) -> Result<Option
 }
 
 /// `None` when the part has no byte.
-async fn receive_material(jobs: &Jobs, form: &mut Multipart) -> Result<Option<Uploaded>, Problem> {
+async fn receive_material(
+    entrance: &Entrance<'_>,
+    form: &mut Multipart,
+) -> Result<Option<Uploaded>, Problem> {
     let bytes = receive_small(form, MATERIAL_BYTES_MAX, "material_bytes_max").await?;
-    let mut upload = jobs.upload_beside().await?;
+    let mut upload = entrance.jobs.upload_beside(entrance.tenant.clone()).await?;
     upload.write(&bytes).await?;
     finish_if_any(upload).await
 }

@@ -7,7 +7,7 @@ use super::body::{BodyLimits, IncomingBody};
 use super::form;
 use super::multipart;
 use super::state::{Caller, Service};
-use crate::jobs::{Jobs, Upload, Uploaded};
+use crate::jobs::{Jobs, Tenant, Upload, Uploaded};
 use crate::wire::{
     Format, JobRequest, Labels, Operation, Options, Problem, ProblemCode, WebhookRequest,
     format_of_media_type,
@@ -98,6 +98,8 @@ fn check_encoding(headers: &HeaderMap) -> Result<(), Problem> {
 /// Where the mesh of a request comes in.
 pub(super) struct Entrance<'s> {
     pub(super) jobs: &'s Jobs,
+    /// Whom it is charged to.
+    pub(super) tenant: &'s Tenant,
     /// Its key made a job before: the answer is that job, for which no place in the queue is needed.
     is_repeat: bool,
 }
@@ -106,7 +108,12 @@ impl Entrance<'_> {
     /// Begins the upload; to be called before the body is read, so that a client that asks (`Expect`) does not send in vain
     /// what will be refused.
     pub(super) async fn upload(&self, announced: Option<u64>) -> Result<Upload, Problem> {
-        if self.is_repeat { self.jobs.upload_beside().await } else { self.jobs.upload(announced).await }
+        let tenant = self.tenant.clone();
+        if self.is_repeat {
+            self.jobs.upload_beside(tenant).await
+        } else {
+            self.jobs.upload_of(tenant, announced).await
+        }
     }
 }
 
@@ -121,10 +128,10 @@ pub(super) async fn receive(
     let kind = BodyKind::of(headers)?;
     let key = idempotency_key(headers)?;
     let is_repeat = match &key {
-        Some(key) => service.jobs.has_made(caller.0.clone(), key.clone()).await?,
+        Some(key) => service.jobs.has_made(caller.owner.clone(), key.clone()).await?,
         None => false,
     };
-    let entrance = Entrance { jobs: &service.jobs, is_repeat };
+    let entrance = Entrance { jobs: &service.jobs, tenant: &caller.tenant, is_repeat };
     let intake = match kind {
         BodyKind::Mesh(named) => {
             let body = IncomingBody::new(headers, body, service.upload_limits(0))?;

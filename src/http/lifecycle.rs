@@ -2,7 +2,7 @@
 
 use axum::Extension;
 use axum::extract::{Path, Request};
-use axum::http::StatusCode;
+use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::IntoResponse as _;
 
 use super::prefer::Wait;
@@ -31,6 +31,7 @@ pub(super) async fn show(state: State, caller: Extension<Caller>, id: Id, reques
     let wait = Wait::of_seconds(query::wait(request.uri())?);
     let id = visible(&state, &caller, id).await?;
     let job = state.jobs.wait(id, wait.duration).await?;
+    answer::check_job_is(&job, request.headers())?;
     let mut response = answer::job_as_it_stands(&job, request.headers());
     answer::tell_applied(&mut response, wait.applied_header());
     Ok(response)
@@ -46,7 +47,8 @@ pub(super) async fn show(state: State, caller: Extension<Caller>, id: Id, reques
 pub(super) async fn cancel(state: State, caller: Extension<Caller>, id: Id, request: Request) -> Handled {
     json_only(request.headers())?;
     query::none(request.uri())?;
-    let job = state.jobs.cancel(visible(&state, &caller, id).await?).await?;
+    let id = unchanged(&state, &caller, id, request.headers()).await?;
+    let job = state.jobs.cancel(id).await?;
     let status = if job.state.is_final() { StatusCode::OK } else { StatusCode::ACCEPTED };
     Ok((status, answer::json_answer(&job)).into_response())
 }
@@ -59,7 +61,8 @@ pub(super) async fn cancel(state: State, caller: Extension<Caller>, id: Id, requ
     responses((status = 204, description = "The job is gone.")))]
 pub(super) async fn delete(state: State, caller: Extension<Caller>, id: Id, request: Request) -> Handled {
     query::none(request.uri())?;
-    state.jobs.delete(visible(&state, &caller, id).await?).await?;
+    let id = unchanged(&state, &caller, id, request.headers()).await?;
+    state.jobs.delete(id).await?;
     Ok(StatusCode::NO_CONTENT.into_response())
 }
 
@@ -89,6 +92,20 @@ pub(super) async fn result(state: State, caller: Extension<Caller>, id: Id, requ
     let stored = state.jobs.level(visible(&state, &caller, id).await?, level - 1).await?;
     let media_type = one_of(request.headers(), &[mesh_file::media_type(&stored), OCTET_STREAM])?;
     Ok(mesh_file::asked_for(stored, media_type, request.headers()).await)
+}
+
+/// The job, if it is as the client saw it (`If-Match`).
+async fn unchanged(
+    service: &Service,
+    caller: &Caller,
+    id: Id,
+    headers: &HeaderMap,
+) -> Result<JobId, ProblemAnswer> {
+    let id = visible(service, caller, id).await?;
+    if headers.contains_key(header::IF_MATCH) {
+        answer::check_job_is(&service.jobs.get(id).await?, headers)?;
+    }
+    Ok(id)
 }
 
 pub(super) async fn visible(service: &Service, caller: &Caller, id: Id) -> Result<JobId, ProblemAnswer> {

@@ -3,6 +3,7 @@
 //! `axum::serve` installs no header timer, so silent, half-header and idle connections would stay open for ever. Here
 //! HTTP/1 is spoken directly and the header timer runs from the first moment of every request, also between two.
 
+use std::net::IpAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -13,6 +14,7 @@ use tokio::sync::Semaphore;
 use tokio_util::task::TaskTracker;
 
 use super::connection::{self, ConnectionLimits};
+use super::connection_shares::ConnectionShares;
 use super::metrics::OpenConnection;
 use super::shutdown::Shutdown;
 
@@ -25,17 +27,21 @@ pub(super) async fn serve(
     router: Router,
     limits: ConnectionLimits,
     connections_max: usize,
+    shares: ConnectionShares,
     shutdown: &Shutdown,
 ) {
+    let shares = Arc::new(shares);
     let places = Arc::new(Semaphore::new(connections_max));
     let connections = TaskTracker::new();
     let service = TowerToHyperService::new(router);
-    while let Some((stream, place)) = next(&listener, &places, shutdown).await {
+    while let Some((stream, address, place)) = next(&listener, &places, shutdown).await {
+        // Closed at once: it takes no place from others.
+        let Some(share) = shares.take(address) else { continue };
         let (service, shutdown) = (service.clone(), shutdown.clone());
         connections.spawn(async move {
             let _open = OpenConnection::new();
             connection::serve(stream, service, limits, &shutdown).await;
-            drop(place);
+            drop((share, place));
         });
     }
     drop(listener);
@@ -49,12 +55,12 @@ async fn next(
     listener: &TcpListener,
     places: &Arc<Semaphore>,
     shutdown: &Shutdown,
-) -> Option<(TcpStream, tokio::sync::OwnedSemaphorePermit)> {
+) -> Option<(TcpStream, IpAddr, tokio::sync::OwnedSemaphorePermit)> {
     let accepted = async {
         let place = Arc::clone(places).acquire_owned().await.ok()?;
         loop {
             match listener.accept().await {
-                Ok((stream, _)) => return Some((stream, place)),
+                Ok((stream, address)) => return Some((stream, address.ip(), place)),
                 Err(error) => {
                     tracing::warn!(%error, "a connection could not be accepted");
                     tokio::time::sleep(ACCEPT_PAUSE).await;

@@ -29,7 +29,7 @@ pub(super) async fn list_jobs(state: State, caller: Extension<Caller>, request: 
     let page = query::page(request.uri(), PAGE_MAX)?;
     let limit = page.limit.unwrap_or(PAGE_DEFAULT);
     let query = ListQuery {
-        owner: caller.0.0.clone(),
+        owner: caller.owner.clone(),
         state: page.state,
         labels: page.labels,
         before: page.cursor,

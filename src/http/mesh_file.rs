@@ -35,6 +35,9 @@ pub(super) async fn asked_for(
 ) -> Response {
     let headers = headers_of(&stored, media_type);
     let etag = etag_of(&stored);
+    if let Err(problem) = check_if_match(request, &etag) {
+        return problem::respond(problem);
+    }
     if matches_etag(request, &etag) {
         return (StatusCode::NOT_MODIFIED, headers).into_response();
     }
@@ -95,6 +98,24 @@ pub(super) fn matches_etag(request: &HeaderMap, etag: &str) -> bool {
     let is_same = |tag: &str| tag == "*" || tag.strip_prefix("W/").unwrap_or(tag) == etag;
     let lines = request.get_all(header::IF_NONE_MATCH).iter().filter_map(|value| value.to_str().ok());
     lines.flat_map(|line| line.split(',')).any(|tag| is_same(tag.trim()))
+}
+
+/// Refuses a request that is about another version (`If-Match`). Weak tags match nothing here (RFC 9110, section 13.1.1).
+pub(super) fn check_if_match(request: &HeaderMap, etag: &str) -> Result<(), Problem> {
+    let mut lines = request.get_all(header::IF_MATCH).iter().peekable();
+    let is_same = |tag: &str| tag == "*" || tag == etag;
+    let is_met = lines.peek().is_none()
+        || lines
+            .filter_map(|value| value.to_str().ok())
+            .flat_map(|line| line.split(','))
+            .any(|tag| is_same(tag.trim()));
+    if is_met {
+        return Ok(());
+    }
+    Err(Problem::new(
+        ProblemCode::PreconditionFailed,
+        "none of the tags in `If-Match` is that of what is there",
+    ))
 }
 
 /// `Content-Disposition` with the name in plain letters, and as it is where that differs (RFC 6266).
@@ -162,6 +183,16 @@ mod tests {
             disposition("a\"\r\nü.stl"),
             "attachment; filename=\"a____.stl\"; filename*=UTF-8''a%22%0D%0A%C3%BC.stl"
         );
+    }
+
+    #[test]
+    fn a_request_about_another_version_is_refused() {
+        let is_refused = |lines: &[&'static str]| {
+            let lines = lines.iter().map(|line| (header::IF_MATCH, HeaderValue::from_static(line)));
+            check_if_match(&HeaderMap::from_iter(lines), "\"abc\"").is_err()
+        };
+        assert!(!is_refused(&[]) && !is_refused(&["*"]) && !is_refused(&["\"x\", \"abc\""]));
+        assert!(is_refused(&["\"x\""]) && is_refused(&["W/\"abc\""]) && is_refused(&[""]));
     }
 
     #[test]

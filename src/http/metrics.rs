@@ -10,6 +10,7 @@ use metrics_exporter_prometheus::{PrometheusBuilder, PrometheusHandle};
 const REQUESTS: &str = "meshmend_http_requests_total";
 const SECONDS: &str = "meshmend_http_request_seconds";
 const CONNECTIONS: &str = "meshmend_http_connections";
+const CLOSED_AT_ONCE: &str = "meshmend_http_connections_closed_total";
 
 /// Upper ends of the buckets of [`SECONDS`]: from an answer at once to the longest wait.
 const SECONDS_BUCKETS: [f64; 10] = [0.005, 0.02, 0.1, 0.5, 2.0, 10.0, 30.0, 60.0, 120.0, 300.0];
@@ -29,6 +30,10 @@ fn install() -> Option<PrometheusHandle> {
     describe_counter!(REQUESTS, "Requests answered, by method, route and status.");
     describe_histogram!(SECONDS, "Time from a request's head to its answer's head, in seconds.");
     describe_gauge!(CONNECTIONS, "Open connections.");
+    describe_counter!(
+        CLOSED_AT_ONCE,
+        "Connections closed at once because their address had as many as it may."
+    );
     crate::jobs::describe_metrics();
     Some(handle)
 }
@@ -59,6 +64,11 @@ pub(super) fn count_request(method: &Method, route: &str, status: u16, elapsed: 
     counter!(REQUESTS, "method" => method, "route" => route.to_owned(), "status" => status.to_string())
         .increment(1);
     histogram!(SECONDS, "route" => route.to_owned()).record(elapsed.as_secs_f64());
+}
+
+/// Counts a connection over the share of its address.
+pub(super) fn count_closed_at_once() {
+    counter!(CLOSED_AT_ONCE).increment(1);
 }
 
 /// An open connection, counted until dropped.

@@ -223,7 +223,8 @@ async fn submission(
         file_name: intake.file_name,
         labels: intake.labels.unwrap_or_default(),
         cancel_after: cancel_after(headers)?,
-        owner: caller.0.clone(),
+        owner: caller.owner.clone(),
+        tenant: caller.tenant.clone(),
         trace: trace::of_job(headers),
         webhook: intake.webhook.map(|asked| service.jobs.admit_webhook(asked)).transpose()?,
         ..Submission::new(operation, options)

@@ -1,7 +1,6 @@
 //! How many requests one caller may make: a bucket for each, told in `RateLimit` headers (IETF draft
 //! `ratelimit-headers`, version 10).
 
-use std::net::IpAddr;
 use std::num::NonZeroU32;
 use std::time::Duration;
 
@@ -11,35 +10,11 @@ use governor::middleware::StateInformationMiddleware;
 use governor::state::keyed::DefaultKeyedStateStore;
 use governor::{Quota, RateLimiter};
 
+use crate::jobs::Tenant;
 use crate::wire::{Problem, ProblemCode};
 
 const LIMIT: HeaderName = HeaderName::from_static("ratelimit");
 const POLICY: HeaderName = HeaderName::from_static("ratelimit-policy");
-
-/// Who shares a bucket.
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub(super) enum Bucket {
-    /// The holder of the keys of this name.
-    Owner(String),
-    /// Whoever comes from this address; of an IPv6 address the first half, which one customer has to himself.
-    Address(IpAddr),
-    /// Nobody knows.
-    Unknown,
-}
-
-impl Bucket {
-    /// The bucket of a caller.
-    pub(super) fn of(owner: Option<&str>, peer: Option<IpAddr>) -> Self {
-        match (owner, peer.map(|peer| peer.to_canonical())) {
-            (Some(owner), _) => Self::Owner(owner.to_owned()),
-            (None, Some(IpAddr::V6(address))) => {
-                Self::Address(IpAddr::V6((u128::from(address) >> 64 << 64).into()))
-            }
-            (None, Some(address)) => Self::Address(address),
-            (None, None) => Self::Unknown,
-        }
-    }
-}
 
 /// What the operator allows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,10 +25,18 @@ pub struct RateSettings {
     pub burst: NonZeroU32,
 }
 
+impl Default for RateSettings {
+    /// Twenty a second, and for a moment as many as a page or a script that begins may send.
+    fn default() -> Self {
+        let number = |number| NonZeroU32::new(number).unwrap_or(NonZeroU32::MIN);
+        Self { per_minute: number(1200), burst: number(240) }
+    }
+}
+
 /// The buckets of all callers.
 #[derive(Debug)]
 pub(super) struct Rates {
-    limiter: RateLimiter<Bucket, DefaultKeyedStateStore<Bucket>, DefaultClock, StateInformationMiddleware>,
+    limiter: RateLimiter<Tenant, DefaultKeyedStateStore<Tenant>, DefaultClock, StateInformationMiddleware>,
     settings: RateSettings,
 }
 
@@ -74,9 +57,9 @@ impl Rates {
     }
 
     /// Counts a request. Its standing, and the refusal if there were too many.
-    pub(super) fn count(&self, bucket: &Bucket) -> (Standing, Option<Problem>) {
+    pub(super) fn count(&self, tenant: &Tenant) -> (Standing, Option<Problem>) {
         let settings = self.settings;
-        match self.limiter.check_key(bucket) {
+        match self.limiter.check_key(tenant) {
             Ok(state) => {
                 let remaining = state.remaining_burst_capacity();
                 let used = settings.burst.get().saturating_sub(remaining);
@@ -134,8 +117,8 @@ mod tests {
         Rates::new(RateSettings { per_minute: number(per_minute), burst: number(burst) })
     }
 
-    fn owner(name: &str) -> Bucket {
-        Bucket::of(Some(name), None)
+    fn owner(name: &str) -> Tenant {
+        Tenant::named(name)
     }
 
     #[test]
@@ -159,15 +142,6 @@ mod tests {
         rates(60, 5).count(&owner("shop")).0.tell(&mut headers);
         assert_eq!(headers[POLICY], "\"burst\";q=5, \"minute\";q=60;w=60");
         assert_eq!(headers[LIMIT], "\"burst\";r=4;t=1");
-    }
-
-    #[test]
-    fn without_a_key_an_address_has_the_bucket_and_of_ipv6_its_first_half() {
-        let bucket = |peer: &str| Bucket::of(None, peer.parse().ok());
-        assert_eq!(bucket("::ffff:10.0.0.1"), bucket("10.0.0.1"));
-        assert_ne!(bucket("10.0.0.1"), bucket("10.0.0.2"));
-        assert_eq!(bucket("2001:db8::1"), bucket("2001:db8::ffff:1"));
-        assert_ne!(bucket("2001:db8::1"), bucket("2001:db8:0:1::1"));
     }
 
     #[test]

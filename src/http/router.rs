@@ -1,11 +1,12 @@
 //! Every route, in one table.
 
+use std::net::IpAddr;
 use std::sync::Arc;
 
 use axum::Router;
 use axum::body::Bytes;
 use axum::extract::Request;
-use axum::http::Uri;
+use axum::http::{HeaderValue, Uri, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse as _, Response};
 use axum::routing::get;
@@ -17,11 +18,12 @@ use utoipa_axum::routes;
 
 use super::envelope::{self, Peer};
 use super::problem::{self, ProblemAnswer};
-use super::rate::{Bucket, Rates};
+use super::rate::Rates;
 use super::scope::Scopes;
 use super::settings::HttpSettings;
 use super::state::{Caller, Service, State};
-use super::{about, contract, cors, deliveries, docs, events, lifecycle, listing, operations, page};
+use super::tenant::{client, tenant};
+use super::{about, contract, cors, deliveries, docs, events, framing, lifecycle, listing, operations, page};
 use crate::jobs::Jobs;
 use crate::wire::{Problem, ProblemCode};
 
@@ -119,20 +121,20 @@ pub(super) fn enveloped(routes: Router) -> Router {
 /// the key.
 async fn let_in(service: State, mut request: Request, next: Next) -> Response {
     let peer = request.extensions().get::<Peer>().map(|peer| peer.0);
+    if let Err(problem) = framing::check(&mut request) {
+        return problem::respond(problem);
+    }
+    let address = client(request.headers(), peer, &service.settings.trusted_proxies);
     let is_page = !request.uri().path().starts_with("/v1/");
     let is_open = service.settings.access.has_keys() && is_page;
     let holder = if is_open { Ok(None) } else { service.settings.access.check(request.headers(), peer) };
     let (owner, scopes) = match holder {
         Ok(Some(holder)) => (Some(holder.owner), holder.scopes),
         Ok(None) => (None, Scopes::ALL),
-        Err(problem) => return problem::respond(problem),
+        Err(problem) => return not_let_in(&service, problem, address),
     };
-    let caller = Caller(owner);
-    let counted = service
-        .rates
-        .as_ref()
-        .filter(|_| !is_page)
-        .map(|rates| rates.count(&Bucket::of(caller.0.as_deref(), peer)));
+    let caller = Caller { tenant: tenant(owner.as_deref(), address), owner };
+    let counted = service.rates.as_ref().filter(|_| !is_page).map(|rates| rates.count(&caller.tenant));
     let refusal = match &counted {
         Some((_, Some(refusal))) => Some(refusal.clone()),
         _ => scopes.check(request.method()).err(),
@@ -146,6 +148,19 @@ async fn let_in(service: State, mut request: Request, next: Next) -> Response {
         standing.tell(response.headers_mut());
     }
     response.extensions_mut().insert(caller);
+    response
+}
+
+/// The answer to one who has no valid key or comes from a foreign host. They are counted by their address, and their
+/// connection ends: it takes the place of one who may use the service.
+fn not_let_in(service: &Service, problem: Problem, address: Option<IpAddr>) -> Response {
+    let counted = service.rates.as_ref().map(|rates| rates.count(&tenant(None, address)));
+    let (standing, refusal) = counted.unzip();
+    let mut response = problem::respond(refusal.flatten().unwrap_or(problem));
+    response.headers_mut().insert(header::CONNECTION, HeaderValue::from_static("close"));
+    if let Some(standing) = standing {
+        standing.tell(response.headers_mut());
+    }
     response
 }
 

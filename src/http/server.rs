@@ -9,6 +9,7 @@ use tokio::net::TcpListener;
 use tokio_util::sync::CancellationToken;
 
 use super::connection::ConnectionLimits;
+use super::connection_shares::ConnectionShares;
 use super::settings::HttpSettings;
 use super::shutdown::Shutdown;
 use super::state::Service;
@@ -71,12 +72,14 @@ impl Server {
             write_timeout: self.settings.write_timeout,
         };
         let connections_max = self.settings.connections_max;
+        let of_one = self.settings.connections_share();
+        let shares = ConnectionShares::new(of_one, self.settings.trusted_proxies.clone());
         let service = router::service(self.settings, self.jobs.clone());
         let public = router::router(Arc::clone(&service));
         let limited = Arc::clone(&service);
         let answered = CancellationToken::new();
         let serving = async {
-            listen::serve(self.listener, public, limits, connections_max, &shutdown).await;
+            listen::serve(self.listener, public, limits, connections_max, shares, &shutdown).await;
             answered.cancel();
         };
         let ending = async {
@@ -99,7 +102,8 @@ impl Server {
         let admin = async {
             if let Some(listener) = self.admin {
                 let routes = admin::router(service);
-                listen::serve(listener, routes, limits, ADMIN_CONNECTIONS_MAX, &admin_shutdown).await;
+                let shares = ConnectionShares::new(ADMIN_CONNECTIONS_MAX, Vec::new());
+                listen::serve(listener, routes, limits, ADMIN_CONNECTIONS_MAX, shares, &admin_shutdown).await;
             }
         };
         tokio::select! {

@@ -1,6 +1,6 @@
 //! What the operator may set about HTTP.
 
-use std::net::{Ipv4Addr, SocketAddr};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
 use super::access::{Access, Neighbours};
@@ -17,10 +17,14 @@ pub struct HttpSettings {
     pub access: Access,
     /// Origins whose pages may read answers. Default: none.
     pub cors_origins: Vec<String>,
-    /// How many requests one caller may make; `None`: any number. Default: none.
+    /// How many requests one caller may make; `None`: any number. Default: 1,200 in a minute, 240 at one time.
     pub rate: Option<RateSettings>,
     /// Most open connections of each listener; more wait in the system's backlog. Default 4,096.
     pub connections_max: usize,
+    /// Most of them that one address may have, of an IPv6 address its first half. Default: half of them.
+    pub address_connections_max: Option<usize>,
+    /// Addresses of proxies: behind each of them are many clients, whose addresses they tell.
+    pub trusted_proxies: Vec<IpAddr>,
     /// Time for a request's head, and for which a connection may be idle. Default 15 s.
     pub header_timeout: Duration,
     /// Longest pause between two pieces of an upload. Default 30 s.
@@ -41,13 +45,22 @@ impl Default for HttpSettings {
             admin_listen: None,
             access: Access::Anonymous(Neighbours::default()),
             cors_origins: Vec::new(),
-            rate: None,
+            rate: Some(RateSettings::default()),
             connections_max: 4096,
+            address_connections_max: None,
+            trusted_proxies: Vec::new(),
             header_timeout: Duration::from_secs(15),
             upload_timeout: Duration::from_secs(30),
             upload_rate_min: 1 << 10,
             upload_total_timeout: Duration::from_secs(60 * 60),
             write_timeout: Duration::from_secs(60),
         }
+    }
+}
+
+impl HttpSettings {
+    /// Most open connections of one address.
+    pub(super) fn connections_share(&self) -> usize {
+        self.address_connections_max.unwrap_or(self.connections_max.div_ceil(2)).min(self.connections_max)
     }
 }

@@ -19,8 +19,8 @@ use super::{cors, descriptors};
 use crate::config::{ConfigError, IsolationChoice, Loaded, LogFormat, SandboxChoice};
 use crate::formats::ReadLimits;
 use crate::jobs::{
-    Isolation, Jobs, JobsSettings, PrivateHosts, RetryPlan, Sandbox, StartError, TrialError, WebhookSecret,
-    WebhookSettings,
+    Isolation, Jobs, JobsSettings, LostStore, PrivateHosts, RetryPlan, Sandbox, StartError, TrialError,
+    WebhookSecret, WebhookSettings,
 };
 
 /// Time for jobs that a second signal gave up: the process is not to wait for them.
@@ -29,11 +29,13 @@ const LEFTOVERS: Duration = Duration::from_secs(1);
 /// Shortest lease: a busy machine may keep a heartbeat waiting for a good part of a second.
 const LEASE_MIN: Duration = Duration::from_secs(1);
 
-/// Serves until a signal ends it.
+/// Serves until a signal ends it. `lost_store`: what to do when the store of the stored files is gone.
 ///
 /// # Errors
 /// A [`ConfigError`] for what the configuration asks and the machine refuses: keys, folders, addresses, the log filter.
-pub fn start(loaded: &Loaded) -> anyhow::Result<()> {
+pub fn start(loaded: &Loaded, lost_store: LostStore) -> anyhow::Result<()> {
+    // What this process writes is for its own user alone.
+    rustix::process::umask(rustix::fs::Mode::RWXG | rustix::fs::Mode::RWXO);
     log_as(loaded)?;
     for warning in &loaded.warnings {
         tracing::warn!("{warning}");
@@ -43,7 +45,8 @@ pub fn start(loaded: &Loaded) -> anyhow::Result<()> {
     let served = runtime.block_on(async {
         let shutdown = Shutdown::on_signals()?;
         let refused = |name: &'static str, why: &dyn Display| loaded.refused(name, why);
-        let jobs = Jobs::start(jobs_settings(loaded)?).await.map_err(|e| refused(setting_of(&e), &e))?;
+        let settings = JobsSettings { lost_store, ..jobs_settings(loaded)? };
+        let jobs = Jobs::start(settings).await.map_err(|e| refused(setting_of(&e), &e))?;
         let server = Server::bind(http, jobs).await.map_err(|e| refused("listen", &e))?;
         tell(&server)?;
         server.run(shutdown).await;
@@ -87,6 +90,11 @@ fn tell(server: &Server) -> std::io::Result<()> {
     };
     tracing::info!("listening on http://{address}");
     if let Some(admin) = server.admin_address()? {
+        if !admin.ip().is_loopback() {
+            tracing::warn!(
+                "health and metrics are on an address that others may reach: keep {admin} from the public"
+            );
+        }
         tracing::info!("health and metrics on http://{admin}");
     }
     tracing::info!(
@@ -120,6 +128,8 @@ fn http_settings(loaded: &Loaded) -> Result<HttpSettings, ConfigError> {
         cors_origins: cors_origins(loaded)?,
         rate: rate(loaded)?,
         connections_max: config.connections_max.get(),
+        address_connections_max: config.address_connections_max.map(NonZero::get),
+        trusted_proxies: config.trusted_proxies.clone(),
         header_timeout: config.header_timeout,
         upload_timeout: config.upload_timeout,
         upload_rate_min: config.upload_rate_min.0,
@@ -212,6 +222,12 @@ fn jobs_settings(loaded: &Loaded) -> Result<JobsSettings, ConfigError> {
         },
         interactive_slots: config.interactive_slots,
         interactive_bytes_max: config.interactive_bytes_max.0,
+        interactive_deadline: config.interactive_deadline,
+        owner_queue_max: config.owner_queue_max.map(NonZero::get),
+        owner_slots_max: config.owner_slots_max.map(NonZero::get),
+        owner_jobs_max: config.owner_jobs_max.map(NonZero::get),
+        owner_data_bytes_max: config.owner_data_bytes_max.map(|bytes| bytes.0),
+        store_key_file: config.store_key_file.clone(),
         memory_bytes_max: config.memory_bytes_max.map_or(defaults.memory_bytes_max, |bytes| bytes.0),
         webhooks: webhooks(loaded)?,
         disk_free_bytes_min: config.disk_free_bytes_min.0,

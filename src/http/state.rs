@@ -8,7 +8,7 @@ use super::body::BodyLimits;
 use super::prefer::{WAIT_DEFAULT, WAIT_MAX};
 use super::rate::Rates;
 use super::settings::HttpSettings;
-use crate::jobs::{JobId, Jobs};
+use crate::jobs::{JobId, Jobs, Tenant};
 use crate::wire::{LABELS_MAX, Limits, Problem, ProblemCode};
 
 /// The state of the router.
@@ -29,9 +29,14 @@ pub(super) struct Service {
     pub(super) docs: Bytes,
 }
 
-/// Who sent a request; `None`: nobody by name. Jobs of one caller are invisible to others.
+/// Who sent a request. Jobs of one owner are invisible to others.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(super) struct Caller(pub(super) Option<String>);
+pub(super) struct Caller {
+    /// The name of the key; `None`: nobody by name.
+    pub(super) owner: Option<String>,
+    /// Whom what it asks for is charged to.
+    pub(super) tenant: Tenant,
+}
 
 /// The job that an answer is about, for the request log.
 #[derive(Debug, Clone)]
@@ -54,7 +59,7 @@ impl Service {
         let unknown = || Problem::new(ProblemCode::NotFound, "there is no such job");
         let id = text.parse::<JobId>().map_err(|_| unknown())?;
         let owner = self.jobs.owner(id).await?;
-        if owner == caller.0 { Ok(id) } else { Err(unknown()) }
+        if owner == caller.owner { Ok(id) } else { Err(unknown()) }
     }
 
     /// Every limit, as `/v1/limits` shows them.
@@ -71,14 +76,23 @@ impl Service {
             wait_max_s: WAIT_MAX.as_secs(),
             wait_default_s: WAIT_DEFAULT.as_secs(),
             queue_max: jobs.queue_max,
+            owner_queue_max: jobs.owner_queue_max.unwrap_or(jobs.queue_max.div_ceil(2)).min(jobs.queue_max),
+            owner_slots_max: jobs.slots_share(jobs.slots),
+            owner_jobs_max: jobs.owner_jobs_max.unwrap_or(jobs.jobs_max).min(jobs.jobs_max),
+            owner_data_bytes_max: jobs
+                .owner_data_bytes_max
+                .unwrap_or(jobs.data_bytes_max)
+                .min(jobs.data_bytes_max),
             slots: jobs.slots,
             interactive_slots: jobs.interactive_slots,
             interactive_bytes_max: jobs.interactive_bytes_max,
+            interactive_deadline_s: jobs.interactive_deadline.as_secs_f64(),
             memory_bytes_max: jobs.memory_bytes_max,
             webhook_attempts_max: jobs.webhooks.as_ref().map_or(0, |webhooks| webhooks.retry.attempts_max),
             rate_per_minute: http.rate.map_or(0, |rate| rate.per_minute.get()),
             rate_burst: http.rate.map_or(0, |rate| rate.burst.get()),
             connections_max: http.connections_max,
+            address_connections_max: http.connections_share(),
             header_timeout_s: http.header_timeout.as_secs(),
             upload_timeout_s: http.upload_timeout.as_secs(),
             upload_rate_min: http.upload_rate_min,

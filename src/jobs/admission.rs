@@ -12,7 +12,10 @@ use super::clock::StageClock;
 use super::heartbeat::end_overdue;
 use super::meters;
 use super::service::{Jobs, Service, not_found, store_problem};
-use super::store::{BlobRef, Created, IdempotencyKey, JobId, JobRow, Lane, NewJob, StoreError, Webhook};
+use super::soundness::Unsound;
+use super::store::{
+    BlobRef, Created, Ending, IdempotencyKey, JobId, JobRow, Lane, NewJob, StoreError, Tenant, Webhook,
+};
 use super::trace::TraceParent;
 use super::upload::Uploaded;
 use super::view::{self, expired};
@@ -43,6 +46,8 @@ pub struct Submission {
     pub key: Option<String>,
     /// Who asks, by the name of the key; `None`: anybody.
     pub owner: Option<String>,
+    /// Whom the job is charged to.
+    pub tenant: Tenant,
     /// Where the request belongs in a trace.
     pub trace: Option<TraceParent>,
 }
@@ -62,6 +67,7 @@ impl Submission {
             cancel_after: None,
             key: None,
             owner: None,
+            tenant: Tenant::nobody(),
             trace: None,
         }
     }
@@ -134,7 +140,7 @@ impl Service {
         {
             return Ok(known);
         }
-        self.make_place().await?;
+        self.make_place(&submission.tenant).await?;
         let is_small = input.bytes <= self.settings.interactive_bytes_max;
         let lane = if is_small && submission.is_waited_for { Lane::Interactive } else { Lane::Bulk };
         let new = NewJob {
@@ -144,9 +150,10 @@ impl Service {
             options: submission.options,
             file_name: submission.file_name.or_else(|| source.as_ref()?.file_name.clone()),
             owner: submission.owner,
+            tenant: submission.tenant,
             trace: submission.trace,
             labels: submission.labels,
-            webhook: submission.webhook,
+            webhook: submission.webhook.map(|webhook| self.sealed(webhook)).transpose()?,
             input,
             material,
             lane,
@@ -191,7 +198,11 @@ impl Service {
         let about_input = |problem: Problem| Problem { parameter: Some("input".to_owned()), ..problem };
         let id = input.job.parse().map_err(|_| about_input(not_found()))?;
         let row = self.row(id).await.map_err(about_input)?;
-        if row.state == JobState::Expired { Err(about_input(expired())) } else { Ok(Some(row)) }
+        if row.state == JobState::Expired {
+            return Err(about_input(expired()));
+        }
+        self.check_upload(&row).await.map_err(about_input)?;
+        Ok(Some(row))
     }
 
     async fn find_keyed(
@@ -202,9 +213,45 @@ impl Service {
         self.store.find_keyed(owner, key).await.map_err(|error| store_problem(&error))
     }
 
+    /// The webhook as it is stored.
+    fn sealed(&self, webhook: Webhook) -> Result<Webhook, Problem> {
+        let Webhook { url, secret } = webhook;
+        let sealed = match (&self.vault, secret) {
+            (Some(vault), Some(secret)) => {
+                let sealed = vault.sealed(&secret);
+                Some(sealed.map_err(|error| Problem::new(ProblemCode::Internal, error.to_string()))?)
+            }
+            (_, secret) => secret,
+        };
+        Ok(Webhook { url, secret: sealed })
+    }
+
+    /// A job that did the same with the same bytes and whose files are all as they were. One that has lost some expires, and
+    /// is asked for no more.
+    async fn find_sound_equal(&self, new: &NewJob) -> Option<JobRow> {
+        loop {
+            let equal = self.store.find_equal(new).await.ok()??;
+            let result = equal.ending.iter().flat_map(Ending::blobs);
+            let mut unsound = None;
+            for blob in result.chain([&equal.input]).chain(&equal.material) {
+                match self.open_sound(blob).await {
+                    Ok(_) => {}
+                    Err(Unsound::Disk(_)) => return None,
+                    Err(error) => unsound = Some(error),
+                }
+            }
+            let Some(unsound) = unsound else { return Some(equal) };
+            self.give_up_files(&equal, &unsound).await;
+            // It would be found again.
+            if self.store.get(equal.id).await.is_ok_and(|row| row.state != JobState::Expired) {
+                return None;
+            }
+        }
+    }
+
     /// A new job that ends at once, because an earlier one did the same with the same bytes.
     async fn answer_from_cache(&self, new: &NewJob) -> Option<JobRow> {
-        let equal = self.store.find_equal(new).await.ok()??;
+        let equal = self.find_sound_equal(new).await?;
         let cached = NewJob {
             input: equal.input,
             material: equal.material,
@@ -232,13 +279,21 @@ impl Service {
                     Some(queued as u64 + 1),
                 )
             },
+            StoreError::ShareFull { queued, limit } => Problem {
+                retry_after_s: Some(self.retry_after_s()),
+                ..Problem::new(ProblemCode::QueueFull, error.to_string()).with_limit(
+                    "owner_queue_max",
+                    limit as u64,
+                    Some(queued as u64 + 1),
+                )
+            },
             StoreError::NotFound => expired(),
             _ => store_problem(error),
         }
     }
 
     /// Time until a slot takes the next job from the queue, as far as the latest runs tell.
-    fn retry_after_s(&self) -> u64 {
+    pub(super) fn retry_after_s(&self) -> u64 {
         let between_claims_ms = self.mean_run_ms.load(Ordering::Relaxed) / self.settings.slots.max(1) as u64;
         between_claims_ms.div_ceil(1000).clamp(1, self.settings.deadline_max.as_secs().max(1))
     }

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::service::{Service, store_problem};
-use super::store::StoreError;
+use super::store::{StoreError, Tenant};
 use crate::wire::Problem;
 
 /// For how long the length of the queue is taken as it was, unless it is known to have changed: under a flood of requests,
@@ -24,8 +24,8 @@ pub(super) struct Arrivals(Mutex<Known>);
 struct Known {
     /// How many jobs waited, and when that was.
     queued: Option<(Instant, usize)>,
-    /// When places were taken by uploads that are not jobs yet, the earliest first.
-    places: VecDeque<Instant>,
+    /// When places were taken by uploads that are not jobs yet, the earliest first, and whom they are charged to.
+    places: VecDeque<(Instant, Tenant)>,
 }
 
 /// The place of an upload that is not a job yet, until it is dropped.
@@ -33,12 +33,14 @@ struct Known {
 pub(super) struct Place {
     service: Arc<Service>,
     taken_at: Instant,
+    tenant: Tenant,
 }
 
 impl Drop for Place {
     fn drop(&mut self) {
         let mut known = self.service.arrivals.known();
-        if let Some(own) = known.places.iter().position(|&at| at == self.taken_at) {
+        if let Some(own) = known.places.iter().position(|(at, by)| *at == self.taken_at && *by == self.tenant)
+        {
             known.places.remove(own);
         }
     }
@@ -58,30 +60,39 @@ impl Arrivals {
 impl Known {
     /// Places that count at `now`.
     fn taken(&mut self, now: Instant) -> usize {
-        while self.places.front().is_some_and(|&at| now.duration_since(at) > PLACE_LASTS) {
+        while self.places.front().is_some_and(|&(at, _)| now.duration_since(at) > PLACE_LASTS) {
             self.places.pop_front();
         }
         self.places.len()
     }
+
+    /// Those of one tenant.
+    fn taken_by(&self, tenant: &Tenant) -> usize {
+        self.places.iter().filter(|(_, by)| by == tenant).count()
+    }
 }
 
 impl Service {
-    /// Refuses when the queue has no room for another upload.
-    pub(super) async fn check_queue(&self) -> Result<(), Problem> {
-        self.with_room(|_, _| ()).await
+    /// Refuses when the queue has no room for another upload of this tenant.
+    pub(super) async fn check_queue(&self, tenant: &Tenant) -> Result<(), Problem> {
+        self.with_room(tenant, |_, _| ()).await
     }
 
     /// A place in the queue for an upload of which the first block is there; refuses when there is none.
-    pub(super) async fn take_place(self: &Arc<Self>) -> Result<Place, Problem> {
-        self.with_room(|known, now| {
-            known.places.push_back(now);
-            Place { service: Arc::clone(self), taken_at: now }
+    pub(super) async fn take_place(self: &Arc<Self>, tenant: &Tenant) -> Result<Place, Problem> {
+        self.with_room(tenant, |known, now| {
+            known.places.push_back((now, tenant.clone()));
+            Place { service: Arc::clone(self), taken_at: now, tenant: tenant.clone() }
         })
         .await
     }
 
     /// Does what is to be done when there is room in the queue.
-    async fn with_room<T>(&self, then: impl FnOnce(&mut Known, Instant) -> T) -> Result<T, Problem> {
+    async fn with_room<T>(
+        &self,
+        tenant: &Tenant,
+        then: impl FnOnce(&mut Known, Instant) -> T,
+    ) -> Result<T, Problem> {
         let recent = self.arrivals.known().queued.filter(|(at, _)| at.elapsed() < RECENT);
         let (at, queued) = match recent {
             Some(recent) => recent,
@@ -90,11 +101,23 @@ impl Service {
                 (Instant::now(), counts.queued)
             }
         };
+        let own = if tenant.is_nobody() || queued >= self.settings.queue_max {
+            0
+        } else {
+            let holding = self.store.holding(tenant.clone()).await;
+            holding.map_err(|error| store_problem(&error))?.queued as usize
+        };
         let now = Instant::now();
         let mut known = self.arrivals.known();
         known.queued = Some((at, queued));
-        if queued + known.taken(now) >= self.settings.queue_max {
+        let taken = queued + known.taken(now);
+        if taken >= self.settings.queue_max {
             return Err(self.not_admitted(&StoreError::QueueFull { queued }));
+        }
+        let own = own + known.taken_by(tenant);
+        let limit = self.settings.queue_share(self.settings.queue_max - taken);
+        if !tenant.is_nobody() && own >= limit {
+            return Err(self.not_admitted(&StoreError::ShareFull { queued: own, limit }));
         }
         Ok(then(&mut known, now))
     }
@@ -107,9 +130,13 @@ mod tests {
     #[test]
     fn a_place_counts_for_a_while_only() {
         let begun = Instant::now();
-        let mut known = Known { queued: None, places: [begun, begun + PLACE_LASTS].into() };
+        let (first, second) = (Tenant::nobody(), Tenant::named("key:shop"));
+        let places = [(begun, first.clone()), (begun + PLACE_LASTS, second.clone())].into();
+        let mut known = Known { queued: None, places };
         assert_eq!(known.taken(begun + PLACE_LASTS), 2);
+        assert_eq!((known.taken_by(&first), known.taken_by(&second)), (1, 1));
         assert_eq!(known.taken(begun + PLACE_LASTS * 3 / 2), 1);
+        assert_eq!((known.taken_by(&first), known.taken_by(&second)), (0, 1));
         assert_eq!(known.taken(begun + PLACE_LASTS * 3), 0);
     }
 }

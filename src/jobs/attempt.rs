@@ -62,16 +62,17 @@ impl Executor {
     }
 }
 
-/// Runs the job, and ends it when its time is over.
+/// Runs the job, which may charge so many bytes, and ends it when its time is over.
 pub(super) async fn attempt(
     service: &Arc<Service>,
     row: &JobRow,
     live: &Arc<Live>,
     clock: &StageClock,
+    bytes_max: u64,
 ) -> Result<Product<Content>, Problem> {
     match &service.executor {
-        Executor::Process(processes) => in_process(service, processes, row, live, clock).await,
-        Executor::Thread(engine) => in_thread(service, engine, row, live, clock).await,
+        Executor::Process(processes) => in_process(service, processes, row, live, clock, bytes_max).await,
+        Executor::Thread(engine) => in_thread(service, engine, row, live, clock, bytes_max).await,
     }
 }
 
@@ -81,11 +82,12 @@ async fn in_process(
     row: &JobRow,
     live: &Arc<Live>,
     clock: &StageClock,
+    bytes_max: u64,
 ) -> Result<Product<Content>, Problem> {
     let (service, processes) = (Arc::clone(service), Arc::clone(processes));
     let (row, live, clock) = (row.clone(), Arc::clone(live), clock.clone());
     let watching = tokio::task::spawn_blocking(move || {
-        let made = processes.run(&row, &service.spool, &live, &service.settings, &clock)?;
+        let made = processes.run(&row, bytes_max, &service.spool, &live, &service.settings, &clock)?;
         made.take_over(row.claim(), &service.spool)
     });
     watching.await.unwrap_or_else(|error| {
@@ -100,14 +102,15 @@ async fn in_thread(
     row: &JobRow,
     live: &Live,
     clock: &StageClock,
+    bytes_max: u64,
 ) -> Result<Product<Content>, Problem> {
     let local = |blob: &BlobRef| service.spool.path(&blob.key).map_err(|error| disk_problem(&error));
     let (path, material_path) = (local(&row.input)?, row.material.as_ref().map(local).transpose()?);
     let (bytes, operation) = (row.input.bytes, row.operation.into());
     let mut options = row.options.to_engine(service.settings.read_limits);
     let settings = &service.settings;
-    let budget = Budget::new(live.stop.clone(), settings.engine_work_max, settings.engine_bytes_max)
-        .observed_by(clock.observer());
+    let budget =
+        Budget::new(live.stop.clone(), settings.engine_work_max, bytes_max).observed_by(clock.observer());
     let (engine, threads) = (Arc::clone(engine), settings.engine_threads);
     let mut task = tokio::task::spawn_blocking(move || {
         par::with_threads(threads, move || {

@@ -1,7 +1,8 @@
 //! Where the files of jobs live: uploads under `in/`, what runs write under `out/<job>.<epoch>.<name>`.
 
-use std::fs::{self, File};
+use std::fs::{self, DirBuilder, File, Permissions};
 use std::io::{self, Write};
+use std::os::unix::fs::{DirBuilderExt as _, OpenOptionsExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
 
 /// A file as a listing shows it.
@@ -74,8 +75,9 @@ impl LocalBlobs {
     /// # Errors
     /// The disk fails.
     pub fn open(root: &Path) -> io::Result<Self> {
+        make_private_dir(root)?;
         for dir in DIRS {
-            fs::create_dir_all(root.join(dir))?;
+            make_private_dir(&root.join(dir))?;
         }
         sync_dir(root)?;
         Ok(Self { root: root.to_owned() })
@@ -85,7 +87,7 @@ impl LocalBlobs {
 impl BlobStore for LocalBlobs {
     fn create(&self, key: &str) -> io::Result<Box<dyn BlobWriter>> {
         let path = self.root.join(key);
-        let file = File::create_new(&path)?;
+        let file = File::options().write(true).create_new(true).mode(0o600).open(&path)?;
         Ok(Box::new(LocalWriter { file: Some(file), path }))
     }
 
@@ -169,6 +171,14 @@ impl Drop for LocalWriter {
             let _ = fs::remove_file(&self.path);
         }
     }
+}
+
+/// Makes a directory for this user alone, or makes the one that is there so.
+pub(super) fn make_private_dir(path: &Path) -> io::Result<()> {
+    DirBuilder::new().recursive(true).mode(0o700).create(path)?;
+    // That of another user, who lets this one write, stays as it is.
+    let _ = fs::set_permissions(path, Permissions::from_mode(0o700));
+    Ok(())
 }
 
 /// Makes the entry of a file outlast a loss of power.

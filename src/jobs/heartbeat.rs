@@ -9,6 +9,7 @@ use jiff::Timestamp;
 use super::live::Live;
 use super::service::Service;
 use super::store::{ClaimRef, JobId, StoreError};
+use super::wall;
 use crate::budget::Stopped;
 use crate::wire::{JobState, Problem};
 
@@ -57,5 +58,5 @@ pub(super) async fn end_overdue(service: Arc<Service>, id: JobId, at: Timestamp)
 }
 
 fn time_until(at: Timestamp) -> Duration {
-    Duration::try_from(at.duration_since(Timestamp::now())).unwrap_or(Duration::ZERO)
+    Duration::try_from(at.duration_since(wall::now())).unwrap_or(Duration::ZERO)
 }

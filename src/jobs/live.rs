@@ -21,6 +21,8 @@ pub(super) struct Live {
     pub(super) is_void: OnceLock<()>,
     /// Set when the server, not the caller, ends the run.
     pub(super) is_drained: OnceLock<()>,
+    /// Set when the run takes longer than a slot for small jobs is for.
+    pub(super) is_outgrown: OnceLock<()>,
     /// The claim by which the job runs; 0: it waits.
     pub(super) epoch: u32,
     /// What is heard of the run.
@@ -53,6 +55,13 @@ impl Live {
     pub(super) fn make_void(&self) {
         // Told twice, the first word stays.
         let _ = self.is_void.set(());
+        self.stop.cancel();
+    }
+
+    /// The run goes on elsewhere, from its beginning.
+    pub(super) fn outgrow(&self) {
+        // As above.
+        let _ = self.is_outgrown.set(());
         self.stop.cancel();
     }
 

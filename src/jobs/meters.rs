@@ -2,7 +2,9 @@
 
 use metrics::{counter, describe_counter, describe_gauge, describe_histogram, gauge, histogram};
 
+use super::soundness::Unsound;
 use super::store::{Ending, JobCounts, NextTry, TryOutcome};
+use super::wall;
 use crate::wire::{Operation, Problem, Stage};
 
 /// Says what each series is.
@@ -23,6 +25,7 @@ pub fn describe() {
         "Runs whose executor was lost: its lease is over, or it crashed."
     );
     describe_counter!("meshmend_webhook_tries_total", "Calls of webhooks, by answer and what is next.");
+    describe_counter!("meshmend_files_unsound_total", "Stored files that were found lost or damaged.");
     describe_counter!("meshmend_child_exits_total", "Processes of jobs that have ended, by how they did.");
     describe_histogram!(
         "meshmend_stage_seconds",
@@ -35,7 +38,7 @@ pub(super) fn load(counts: JobCounts, data_bytes: u64) {
     gauge!("meshmend_jobs_queued").set(counts.queued as f64);
     gauge!("meshmend_jobs_running").set(counts.running as f64);
     gauge!("meshmend_jobs_kept").set(counts.all as f64);
-    let waited = counts.oldest_queued_at.map(|at| jiff::Timestamp::now().duration_since(at).as_secs_f64());
+    let waited = counts.oldest_queued_at.map(|at| wall::now().duration_since(at).as_secs_f64());
     gauge!("meshmend_queue_oldest_seconds").set(waited.unwrap_or(0.0).max(0.0));
     gauge!("meshmend_data_bytes").set(data_bytes as f64);
 }
@@ -43,6 +46,16 @@ pub(super) fn load(counts: JobCounts, data_bytes: u64) {
 /// A job that was not taken.
 pub(super) fn refused(problem: &Problem) {
     counter!("meshmend_jobs_refused_total", "problem" => problem.code.word()).increment(1);
+}
+
+/// A stored file that nobody can be given.
+pub(super) fn unsound(unsound: &Unsound) {
+    let kind = match unsound {
+        Unsound::Lost => "lost",
+        Unsound::Damaged => "damaged",
+        Unsound::Disk(_) => "unreadable",
+    };
+    counter!("meshmend_files_unsound_total", "kind" => kind).increment(1);
 }
 
 /// A try to deliver a webhook.

@@ -8,6 +8,7 @@
 mod admission;
 mod arrivals;
 mod attempt;
+mod belonging;
 mod blobs;
 mod capacity;
 mod child;
@@ -15,6 +16,7 @@ mod clock;
 mod drain;
 mod estimate;
 mod events;
+mod giving;
 mod heartbeat;
 mod live;
 mod load;
@@ -24,13 +26,16 @@ mod retention;
 mod service;
 mod settings;
 mod settle;
+mod shares;
 mod slot;
+mod soundness;
 mod spool;
 mod sqlite;
 mod store;
 mod trace;
 mod upload;
 mod view;
+mod wall;
 mod webhook;
 
 #[cfg(test)]
@@ -38,6 +43,7 @@ mod tests;
 
 pub use admission::Submission;
 pub use attempt::{Engine, Isolation};
+pub use belonging::LostStore;
 pub use blobs::{BlobStore, BlobWriter, LocalBlobs, StoredBlob};
 pub use child::{RUN_JOB, Sandbox, TrialError, run_job};
 pub use clock::StageClock;
@@ -46,15 +52,16 @@ pub use load::Load;
 pub use meters::describe as describe_metrics;
 pub use service::{Jobs, StartError};
 pub use settings::JobsSettings;
-pub use sqlite::{OpenError as SqliteOpenError, SqliteStore, StoreClock};
+pub use sqlite::{OpenError as SqliteOpenError, SqliteStore, StoreClock, StoreFile};
 pub use store::{
     AfterLoss, BlobRef, Change, ClaimRef, ClaimRequest, Created, Delivery, DeliveryRequest, DeliveryState,
-    DeliveryTry, Ending, IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept, Lane, Leases, ListQuery,
-    NewJob, NextTry, ResultRef, StoreError, StoreFuture, TryOutcome, Webhook,
+    DeliveryTry, Ending, Holding, IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept, Lane, Leases,
+    ListQuery, NewJob, NextTry, ResultRef, Sealer, StoreError, StoreFuture, Tenant, TryOutcome, Webhook,
 };
 pub use trace::TraceParent;
 pub use upload::{Upload, Uploaded};
 pub use view::StoredFile;
 pub use webhook::{
-    PrivateHosts, RetryPlan, SecretError, Target, TargetError, URL_BYTES_MAX, WebhookSecret, WebhookSettings,
+    PrivateHosts, RetryPlan, SecretError, Target, TargetError, URL_BYTES_MAX, VaultError, WebhookSecret,
+    WebhookSettings,
 };

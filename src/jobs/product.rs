@@ -9,7 +9,7 @@ use super::child::Workspace;
 use super::retention::on_disk;
 use super::service::Service;
 use super::spool::{Spool, Written};
-use super::store::{BlobRef, ClaimRef};
+use super::store::{BlobRef, ClaimRef, JobRow};
 use super::upload::disk_problem;
 use crate::pipeline::{self, Answer};
 use crate::wire::{self, Encoding, Fidelity, Outcome, Problem, ProblemCode, TimingMs};
@@ -115,20 +115,20 @@ impl Service {
     /// Keeps a file of a run, making room for it, and adds it to those that no row names yet.
     pub(super) async fn keep(
         &self,
-        claim: ClaimRef,
+        row: &JobRow,
         name: String,
         content: Content,
         written: &mut Vec<Written>,
     ) -> Result<BlobRef, Problem> {
-        let spool = Arc::clone(&self.spool);
+        let (spool, claim) = (Arc::clone(&self.spool), row.claim());
         let file = match content {
             Content::Kept(file) => file,
             Content::Bytes(bytes) => {
-                let space = self.make_room(bytes.len() as u64).await?;
+                let space = self.make_room(&row.tenant, bytes.len() as u64).await?;
                 on_disk(move || spool.write(claim, &name, &bytes, space)).await?
             }
             Content::File(file) => {
-                let space = self.make_room(file.bytes).await?;
+                let space = self.make_room(&row.tenant, file.bytes).await?;
                 on_disk(move || spool.adopt(claim, &file, space)).await?
             }
         };

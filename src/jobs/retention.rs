@@ -9,7 +9,7 @@ use tokio::task::JoinHandle;
 use super::meters;
 use super::service::{Service, store_problem};
 use super::spool::{Space, claim_of};
-use super::store::{AfterLoss, BlobRef, ClaimRef, JobId, Kept, Leases, StoreError};
+use super::store::{AfterLoss, BlobRef, ClaimRef, JobId, Kept, Leases, StoreError, Tenant};
 use super::upload::disk_problem;
 use crate::wire::{Problem, ProblemCode};
 
@@ -110,22 +110,37 @@ impl Service {
         }
     }
 
-    /// Room for files, made by expiring the jobs that ended first. When the disk itself is short of room no result goes for
-    /// it: whatever fills the disk would take them all, one after the other.
-    pub(super) async fn make_room(&self, bytes: u64) -> Result<Space, Problem> {
+    /// Room for files of a tenant, made by expiring jobs that have ended. When the disk itself is short of room no result
+    /// goes for it: whatever fills the disk would take them all, one after the other.
+    pub(super) async fn make_room(&self, tenant: &Tenant, bytes: u64) -> Result<Space, Problem> {
         loop {
             if bytes > 0 && self.spool.is_disk_short_of(bytes) {
                 return Err(self.storage_full(bytes));
             }
-            if let Some(space) = self.spool.reserve(bytes) {
+            let first = if self.is_over_own_bytes(tenant, bytes).await? {
+                self.store.first_to_go_of(Kept::WithFiles, tenant.clone()).await
+            } else if let Some(space) = self.spool.reserve(bytes) {
                 return Ok(space);
+            } else {
+                self.store.first_to_go(Kept::WithFiles, tenant.clone()).await
+            };
+            let first = first.map_err(|error| store_problem(&error))?;
+            let Some(first) = first else { return Err(self.storage_full(bytes)) };
+            tracing::info!(job = %first, "expired early to make room");
+            match self.store.expire(first).await {
+                Ok(orphans) => self.remove(&orphans),
+                // Another one, who needs room too, was quicker.
+                Err(StoreError::NotFound) => {}
+                Err(error) => return Err(store_problem(&error)),
             }
-            let oldest =
-                self.store.oldest_ended(Kept::WithFiles).await.map_err(|error| store_problem(&error))?;
-            let Some(oldest) = oldest else { return Err(self.storage_full(bytes)) };
-            tracing::info!(job = %oldest, "expired early to make room");
-            let orphans = self.store.expire(oldest).await.map_err(|error| store_problem(&error))?;
-            self.remove(&orphans);
+        }
+    }
+
+    /// Whether `bytes` more are over what the operator allows one tenant.
+    async fn is_over_own_bytes(&self, tenant: &Tenant, bytes: u64) -> Result<bool, Problem> {
+        match self.settings.owner_data_bytes_max.filter(|_| bytes > 0 && !tenant.is_nobody()) {
+            Some(limit) => Ok(self.holding(tenant).await?.bytes.saturating_add(bytes) > limit),
+            None => Ok(false),
         }
     }
 
@@ -143,20 +158,34 @@ impl Service {
             .with_limit("data_bytes_max", limit, Some(self.spool.bytes().saturating_add(bytes)))
     }
 
-    /// Makes place for one more row: at the limit, the job that ended first goes altogether.
-    pub(super) async fn make_place(&self) -> Result<(), Problem> {
+    /// Makes place for one more row of a tenant: at the limit, a job that has ended goes altogether.
+    pub(super) async fn make_place(&self, tenant: &Tenant) -> Result<(), Problem> {
         loop {
             let counts = self.store.counts().await.map_err(|error| store_problem(&error))?;
-            if counts.all < self.settings.jobs_max {
+            let first = if self.is_over_own_jobs(tenant).await? {
+                self.store.first_to_go_of(Kept::Any, tenant.clone()).await
+            } else if counts.all < self.settings.jobs_max {
                 return Ok(());
-            }
-            let oldest = self.store.oldest_ended(Kept::Any).await.map_err(|error| store_problem(&error))?;
-            // Without an ended job all rows wait or run, and `queue_max` and `slots` bound them.
-            let Some(oldest) = oldest else { return Ok(()) };
-            match self.store.delete(oldest).await {
+            } else {
+                self.store.first_to_go(Kept::Any, tenant.clone()).await
+            };
+            // Where none has ended that may go, rows wait or run or are within the share of others: the queue, slots and
+            // shares bound them.
+            let Some(first) = first.map_err(|error| store_problem(&error))? else { return Ok(()) };
+            match self.store.delete(first).await {
                 Ok(orphans) => self.remove(&orphans),
+                // As above.
+                Err(StoreError::NotFound) => {}
                 Err(error) => return Err(store_problem(&error)),
             }
+        }
+    }
+
+    /// Whether one more job is over what the operator allows one tenant.
+    async fn is_over_own_jobs(&self, tenant: &Tenant) -> Result<bool, Problem> {
+        match self.settings.owner_jobs_max.filter(|_| !tenant.is_nobody()) {
+            Some(limit) => Ok(self.holding(tenant).await?.jobs >= limit as u64),
+            None => Ok(false),
         }
     }
 

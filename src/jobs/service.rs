@@ -12,19 +12,20 @@ use tokio_util::task::TaskTracker;
 
 use super::arrivals::Arrivals;
 use super::attempt::{Engine, Executor};
+use super::belonging::open_together;
 use super::capacity::Capacity;
 use super::child::TrialError;
 use super::drain::draining;
 use super::heartbeat::end_overdue;
 use super::live::LiveJobs;
 use super::settings::JobsSettings;
+use super::shares::Incoming;
 use super::slot::{self, SlotKind};
 use super::spool::{OpenError, SpaceLimits, Spool};
-use super::sqlite::SqliteStore;
-use super::store::{Ending, JobId, JobRow, JobStore, Leases, ListQuery, StoreError, Webhook};
+use super::store::{Ending, JobId, JobRow, JobStore, Leases, ListQuery, StoreError, Tenant, Webhook};
 use super::upload::Upload;
-use super::view::{self, StoredFile, expired};
-use super::webhook::{Sender, WebhookSettings};
+use super::view;
+use super::webhook::{Sender, Vault, WebhookSettings};
 use super::{load, meters, retention, webhook};
 use crate::budget::Stopped;
 use crate::wire::{Delivery, Job, JobState, Options, Problem, ProblemCode, WebhookRequest};
@@ -45,6 +46,9 @@ pub(super) struct Service {
     pub(super) worker: String,
     pub(super) live: LiveJobs,
     pub(super) arrivals: Arrivals,
+    pub(super) incoming: Incoming,
+    /// Seals the secrets of jobs; `None`: no webhooks are sent.
+    pub(super) vault: Option<Arc<Vault>>,
     /// Wakes slots when a job is queued.
     pub(super) work: Notify,
     /// Asks for the load to be told anew.
@@ -102,6 +106,20 @@ pub enum StartError {
 
 /// The file of rows in the data directory.
 const STORE_FILE: &str = "jobs.sqlite3";
+/// The file of the key of secrets, when the operator names no other.
+const KEY_FILE: &str = "store.key";
+
+/// What seals secrets, and what sends webhooks.
+type Sending = (Arc<Vault>, Arc<Sender>);
+
+/// What webhooks need; `None`: none are sent.
+fn webhooks(settings: &JobsSettings) -> Result<Option<Sending>, String> {
+    let Some(webhooks) = settings.webhooks.clone() else { return Ok(None) };
+    let path = settings.store_key_file.clone().unwrap_or_else(|| settings.data_dir.join(KEY_FILE));
+    let vault = Arc::new(Vault::open(&path).map_err(|error| error.to_string())?);
+    let sender = Sender::new(webhooks, Arc::clone(&vault)).map_err(|error| error.to_string())?;
+    Ok(Some((vault, Arc::new(sender))))
+}
 
 impl Jobs {
     /// Opens the data directory and starts the slots: jobs of an earlier run go on. To be called inside a tokio runtime.
@@ -132,13 +150,12 @@ impl Jobs {
             Some(executor) => executor,
             None => Executor::of(&settings).await?,
         };
-        let path = path.join(STORE_FILE);
+        let data_dir = path;
+        let path = data_dir.join(STORE_FILE);
         let unusable = |why: String| StartError::Store { path: path.clone(), why };
-        let store = SqliteStore::open(&path).map_err(|error| unusable(error.to_string()))?;
-        let sender = match settings.webhooks.clone().map(Sender::new).transpose() {
-            Ok(sender) => sender.map(Arc::new),
-            Err(error) => return Err(StartError::Webhooks { why: error.to_string() }),
-        };
+        let store = open_together(&data_dir, &path, &spool, settings.lost_store)
+            .map_err(|error| unusable(error.to_string()))?;
+        let (vault, sender) = webhooks(&settings).map_err(|why| StartError::Webhooks { why })?.unzip();
         let service = Arc::new(Service {
             capacity: Capacity::of(&settings),
             settings,
@@ -148,6 +165,8 @@ impl Jobs {
             worker: uuid::Uuid::now_v7().to_string(),
             live: LiveJobs::default(),
             arrivals: Arrivals::default(),
+            incoming: Incoming::default(),
+            vault,
             work: Notify::new(),
             load_changed: Notify::new(),
             draining: CancellationToken::new(),
@@ -180,32 +199,41 @@ impl Jobs {
     /// # Errors
     /// `body-too-large` (before any byte is taken), `queue-full`, `storage-full`, `draining`.
     pub async fn upload(&self, announced: Option<u64>) -> Result<Upload, Problem> {
-        self.begin_upload(announced).await.inspect_err(meters::refused)
+        self.upload_of(Tenant::nobody(), announced).await
+    }
+
+    /// As [`upload`](Self::upload), charged to a tenant.
+    ///
+    /// # Errors
+    /// As [`upload`](Self::upload), and when the tenant has its share of what is left.
+    pub async fn upload_of(&self, tenant: Tenant, announced: Option<u64>) -> Result<Upload, Problem> {
+        self.begin_upload(tenant, announced).await.inspect_err(meters::refused)
     }
 
     /// Begins the upload of what belongs to a mesh: it needs no place of its own in the queue.
     ///
     /// # Errors
     /// `storage-full`, `draining`.
-    pub async fn upload_beside(&self) -> Result<Upload, Problem> {
+    pub async fn upload_beside(&self, tenant: Tenant) -> Result<Upload, Problem> {
         let begin = async {
             self.0.check_open()?;
-            Upload::begin(Arc::clone(&self.0), false).await
+            Upload::begin(Arc::clone(&self.0), tenant, false).await
         };
         begin.await.inspect_err(meters::refused)
     }
 
-    async fn begin_upload(&self, announced: Option<u64>) -> Result<Upload, Problem> {
+    async fn begin_upload(&self, tenant: Tenant, announced: Option<u64>) -> Result<Upload, Problem> {
         self.0.check_open()?;
         // Told now, the refusal costs neither the caller the upload nor this server the disk.
-        self.0.check_queue().await?;
+        self.0.check_queue(&tenant).await?;
         if let Some(bytes) = announced {
             self.0.check_upload_size(bytes)?;
             if bytes > self.0.spool.bytes_max() || self.0.spool.is_disk_short_of(bytes) {
                 return Err(self.0.storage_full(bytes));
             }
+            self.0.check_open_bytes(&tenant, 0, bytes).await?;
         }
-        Upload::begin(Arc::clone(&self.0), true).await
+        Upload::begin(Arc::clone(&self.0), tenant, true).await
     }
 
     /// Who submitted the job. Callers see only their own jobs.
@@ -340,72 +368,6 @@ impl Jobs {
         Ok(())
     }
 
-    /// The job's report (JSON), also of a refused repair.
-    ///
-    /// # Errors
-    /// `not-found`, `job-not-finished`, `expired`, or the problem for which the job has no report.
-    pub async fn report(&self, id: JobId) -> Result<Vec<u8>, Problem> {
-        let row = self.0.row(id).await?;
-        match &ended(&row)?.report {
-            Some(blob) => view::read(&self.0.spool, blob).await,
-            None => Err(reason_for_nothing(&row, "report")),
-        }
-    }
-
-    /// The job's mesh; of several, the first.
-    ///
-    /// # Errors
-    /// `not-found` (also when the operation gives no mesh), `job-not-finished`, `expired`, or the problem for which
-    /// the job has none (with the report of a refused repair inside).
-    pub async fn result(&self, id: JobId) -> Result<StoredFile, Problem> {
-        self.level(id, 0).await
-    }
-
-    /// One of the job's meshes, by the place of its target, from 0.
-    ///
-    /// # Errors
-    /// As [`result`](Self::result); `not-found` when there are fewer.
-    pub async fn level(&self, id: JobId, level: usize) -> Result<StoredFile, Problem> {
-        let row = self.0.row(id).await?;
-        let ending = ended(&row)?;
-        if ending.result.is_none() {
-            return Err(self.with_report(reason_for_nothing(&row, "mesh"), id).await);
-        }
-        match ending.results().nth(level) {
-            Some(result) => {
-                let name = view::result_name(&row, result.encoding, level);
-                StoredFile::open(&self.0.spool, &result.blob, result.encoding, name).await
-            }
-            None => {
-                let detail = format!("the job has {} meshes", ending.results().count());
-                Err(Problem::new(ProblemCode::NotFound, detail))
-            }
-        }
-    }
-
-    /// All of the job's meshes.
-    ///
-    /// # Errors
-    /// As [`result`](Self::result).
-    pub async fn results(&self, id: JobId) -> Result<Vec<StoredFile>, Problem> {
-        let mut files = vec![self.result(id).await?];
-        let row = self.0.row(id).await?;
-        for level in 1..ended(&row)?.results().count() {
-            files.push(self.level(id, level).await?);
-        }
-        Ok(files)
-    }
-
-    /// The same problem with the job's report inside, when it is a refusal.
-    async fn with_report(&self, problem: Problem, id: JobId) -> Problem {
-        let is_refusal = matches!(problem.code, ProblemCode::NotRepairable | ProblemCode::MeshNonFinite);
-        if !is_refusal {
-            return problem;
-        }
-        let report = async { serde_json::from_slice(&self.report(id).await.ok()?).ok() };
-        Problem { report: report.await, ..problem }
-    }
-
     #[cfg(test)]
     pub(super) fn service(&self) -> &Service {
         &self.0
@@ -435,8 +397,20 @@ impl Service {
     async fn take_over(self: &Arc<Self>) -> Result<(), Problem> {
         self.recover(Leases::All).await.map_err(|error| store_problem(&error))?;
         self.collect_orphans().await?;
+        self.seal_old_secrets().await?;
         for (id, at) in self.store.deadlines().await.map_err(|error| store_problem(&error))? {
             tokio::spawn(end_overdue(Arc::clone(self), id, at));
+        }
+        Ok(())
+    }
+
+    /// Secrets that an older program stored as they are.
+    async fn seal_old_secrets(&self) -> Result<(), Problem> {
+        let Some(vault) = self.vault.clone() else { return Ok(()) };
+        let seal = Box::new(move |secret: &str| vault.seal_if_plain(secret).ok().flatten());
+        let sealed = self.store.seal_secrets(seal).await.map_err(|error| store_problem(&error))?;
+        if sealed > 0 {
+            tracing::info!(sealed, "webhook secrets in the store are sealed now");
         }
         Ok(())
     }
@@ -472,26 +446,6 @@ impl Service {
     }
 }
 
-/// How the job ended, if it has and its files are kept.
-fn ended(row: &JobRow) -> Result<&Ending, Problem> {
-    match (&row.ending, row.state) {
-        (_, JobState::Expired) => Err(expired()),
-        (Some(ending), _) => Ok(ending),
-        (None, state) => {
-            let problem = Problem::new(ProblemCode::JobNotFinished, format!("the job is {state}"));
-            Err(problem.with_instance(format!("/v1/jobs/{}", row.id)))
-        }
-    }
-}
-
-/// Why an ended job lacks a file: its problem, or that its operation gives none.
-fn reason_for_nothing(row: &JobRow, what: &str) -> Problem {
-    let problem = row.ending.as_ref().and_then(|ending| ending.problem.clone());
-    let none =
-        || Problem::new(ProblemCode::NotFound, format!("the operation {} gives no {what}", row.operation));
-    problem.unwrap_or_else(none).with_instance(format!("/v1/jobs/{}", row.id))
-}
-
 pub(super) fn not_found() -> Problem {
     Problem::new(ProblemCode::NotFound, "there is no such job")
 }
@@ -504,12 +458,14 @@ pub(super) fn store_problem(error: &StoreError) -> Problem {
             tracing::error!(%error, "the job store does not answer");
             Problem::new(ProblemCode::StoreUnavailable, "the job store does not answer")
         }
-        StoreError::Full(_) => Problem::new(ProblemCode::StorageFull, "there is no room for another job"),
+        StoreError::Full(_) => {
+            Problem::new(ProblemCode::StorageFull, "the disk is full: the job store cannot write")
+        }
         StoreError::KeyReused => Problem::new(
             ProblemCode::IdempotencyKeyReused,
             "the `Idempotency-Key` was used with another mesh, operation or options",
         ),
-        StoreError::QueueFull { .. } | StoreError::ClaimVoid => {
+        StoreError::QueueFull { .. } | StoreError::ShareFull { .. } | StoreError::ClaimVoid => {
             Problem::new(ProblemCode::Internal, error.to_string())
         }
     }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use super::attempt::Isolation;
+use super::belonging::LostStore;
 use super::capacity;
 use super::child::Sandbox;
 use super::webhook::WebhookSettings;
@@ -14,19 +15,36 @@ use crate::formats::ReadLimits;
 pub struct JobsSettings {
     /// Directory for uploads and results; one server owns it.
     pub data_dir: PathBuf,
-    /// Jobs that run at one time. Default: half the cores, because the engine's passes use several themselves.
+    /// Jobs that run at one time. Default: half the cores, because the engine's passes use several themselves, and one more,
+    /// which no tenant has alone.
     pub slots: usize,
-    /// Jobs beside those, for small meshes that somebody waits for. Default 1.
+    /// Jobs beside those, for small meshes that somebody waits for. Default 2.
     pub interactive_slots: usize,
     /// Largest upload of such a mesh, in bytes. Default 4 MiB.
     pub interactive_bytes_max: u64,
     /// Most memory that all running jobs may take together, as estimated, in bytes. Default: three quarters of the
     /// machine's.
     pub memory_bytes_max: u64,
+    /// Time that a job may take in such a slot for each begun MiB of its upload; then it goes on as a large one. Default
+    /// 10 s.
+    pub interactive_deadline: Duration,
+    /// What to do when the store of the stored files is gone. Default: not to start.
+    pub lost_store: LostStore,
+    /// The file of the key that seals secrets in the store. Default: `store.key` in the data directory.
+    pub store_key_file: Option<PathBuf>,
     /// How webhooks are sent; `None`: not at all. Default: not at all.
     pub webhooks: Option<WebhookSettings>,
-    /// Most queued jobs. Default 64.
+    /// Most queued jobs. Default 128.
     pub queue_max: usize,
+    /// Most of them that are charged to one tenant, beside the rule that a tenant has no more than there are free places.
+    /// Default: no further limit.
+    pub owner_queue_max: Option<usize>,
+    /// Most slots of each kind that jobs of one tenant have at one time. Default: all but one.
+    pub owner_slots_max: Option<usize>,
+    /// Most jobs of one tenant that are kept; its oldest finished ones go first. Default: what others leave.
+    pub owner_jobs_max: Option<usize>,
+    /// Most bytes of uploads and results of one tenant; its oldest finished jobs go first. Default: what others leave.
+    pub owner_data_bytes_max: Option<u64>,
     /// Most jobs kept, whatever their state; the oldest finished ones go first. Default 20,000.
     pub jobs_max: usize,
     /// Largest upload, in bytes. Default 512 MiB.
@@ -66,12 +84,19 @@ impl JobsSettings {
         let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
         Self {
             data_dir: data_dir.into(),
-            slots: (cores / 2).max(1),
-            interactive_slots: 1,
+            slots: (cores / 2).max(1) + 1,
+            interactive_slots: 2,
             interactive_bytes_max: 4 << 20,
+            interactive_deadline: Duration::from_secs(10),
+            lost_store: LostStore::default(),
+            store_key_file: None,
             memory_bytes_max: capacity::default_bytes_max(),
             webhooks: None,
-            queue_max: 64,
+            queue_max: 128,
+            owner_queue_max: None,
+            owner_slots_max: None,
+            owner_jobs_max: None,
+            owner_data_bytes_max: None,
             jobs_max: 20_000,
             upload_bytes_max: 512 << 20,
             data_bytes_max: 20 << 30,
@@ -88,5 +113,21 @@ impl JobsSettings {
             read_limits: ReadLimits::default(),
             drain_grace: Duration::from_secs(25),
         }
+    }
+
+    /// How many places of the queue one tenant may have when so many are free.
+    pub(super) fn queue_share(&self, free: usize) -> usize {
+        self.owner_queue_max.unwrap_or(usize::MAX).min(free)
+    }
+
+    /// How many of `slots` one tenant may have: of several one stays free for others.
+    pub fn slots_share(&self, slots: usize) -> usize {
+        self.owner_slots_max.unwrap_or(slots.saturating_sub(1)).max(1)
+    }
+
+    /// How long a job with an upload of that size may stay in a slot for small ones.
+    pub(super) fn interactive_patience(&self, upload_bytes: u64) -> Duration {
+        let begun = u32::try_from(upload_bytes.div_ceil(1 << 20)).unwrap_or(u32::MAX).max(1);
+        self.interactive_deadline.saturating_mul(begun)
     }
 }

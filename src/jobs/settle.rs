@@ -17,6 +17,11 @@ pub(super) enum Conclusion {
     End(Box<Ending>, Vec<Written>),
     /// The server ends: it is queued again.
     Release,
+    /// It is larger than was thought, in time or in memory: it is queued again among the large ones.
+    Demote {
+        /// In memory.
+        is_outgrown: bool,
+    },
     /// Its executor is lost: it is queued again, or ends when that was once too often.
     Lose(Box<Problem>),
     /// Nothing: the run was in vain.
@@ -35,6 +40,10 @@ pub(super) async fn settle(service: &Service, row: &JobRow, live: &Arc<Live>, co
                 meters::finished(row.operation, &ending);
                 AfterLoss::Ended
             })
+        }
+        Conclusion::Demote { is_outgrown } => {
+            tracing::info!(job = %id, is_outgrown, "a job is larger than was thought");
+            persist(row, || service.store.demote(claim, is_outgrown)).await
         }
         Conclusion::Release => persist(row, || service.store.release(claim)).await,
         Conclusion::Lose(problem) => {

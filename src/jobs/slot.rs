@@ -53,11 +53,15 @@ pub(super) async fn serve(service: Arc<Service>, kind: SlotKind) {
             lease: service.settings.lease,
             prefer: kind.lane(service.settings.interactive_slots > 0),
             is_only: kind == SlotKind::Interactive,
+            share: service.settings.slots_share(match kind {
+                SlotKind::General => service.settings.slots,
+                SlotKind::Interactive => service.settings.interactive_slots,
+            }),
         };
         match service.store.claim(request).await {
             Ok(Some(row)) => {
                 let span = run_span(&row);
-                run(&service, row).instrument(span).await;
+                run(&service, row, kind).instrument(span).await;
             }
             Ok(None) => {
                 tokio::select! {
@@ -73,19 +77,51 @@ pub(super) async fn serve(service: Arc<Service>, kind: SlotKind) {
     }
 }
 
-async fn run(service: &Arc<Service>, row: JobRow) {
+async fn run(service: &Arc<Service>, row: JobRow, kind: SlotKind) {
     let clock = StageClock::start(row.operation);
     let live = service.live.begin(row.claim(), clock.clone());
     let heart = beat(Arc::clone(service), row.claim(), row.cancel_at, Arc::clone(&live));
     let heart = AbortOnDropHandle::new(tokio::spawn(heart));
     service.note_load();
-    let _room = service.room_for(&row, &live).await;
-    let ended = attempt(service, &row, &live, &clock).await;
+    let room = service.room_for(&row, &live).await;
+    let bytes_max = room.as_ref().map_or(service.settings.engine_bytes_max, |room| room.bytes);
+    let ended = match service.check_upload(&row).await {
+        Ok(()) => in_time(service, &row, kind, &live, attempt(service, &row, &live, &clock, bytes_max)).await,
+        Err(problem) => Err(problem),
+    };
     service.note_run_time(&clock);
-    let conclusion = conclude(service, &row, &live, &clock, ended).await;
+    let conclusion = match &ended {
+        Err(problem) if is_too_small(service, problem, bytes_max) => Conclusion::Demote { is_outgrown: true },
+        _ => conclude(service, &row, &live, &clock, ended).await,
+    };
     settle(service, &row, &live, conclusion).await;
+    drop(room);
     drop(heart);
     service.note_load();
+}
+
+/// The run, which is ended when it takes longer than its slot is for.
+async fn in_time<T>(
+    service: &Service,
+    row: &JobRow,
+    kind: SlotKind,
+    live: &Live,
+    run: impl Future<Output = T>,
+) -> T {
+    tokio::pin!(run);
+    if kind == SlotKind::Interactive {
+        let patience = service.settings.interactive_patience(row.input.bytes);
+        match tokio::time::timeout(patience, &mut run).await {
+            Ok(ended) => return ended,
+            Err(_) => live.outgrow(),
+        }
+    }
+    run.await
+}
+
+/// Whether a run ended because it was given less memory than a job may have.
+fn is_too_small(service: &Service, problem: &Problem, bytes_max: u64) -> bool {
+    problem.code == ProblemCode::EngineOutOfMemory && bytes_max < service.settings.engine_bytes_max
 }
 
 /// Turns the end of a run into what is kept of it; files are written here.
@@ -116,6 +152,9 @@ async fn conclude(
         ProblemCode::Cancelled if live.is_cancelled() => end(JobState::Cancelled, problem),
         ProblemCode::Cancelled if live.is_void.get().is_some() => Conclusion::Void,
         ProblemCode::Cancelled if live.is_drained.get().is_some() => Conclusion::Release,
+        ProblemCode::Cancelled if live.is_outgrown.get().is_some() => {
+            Conclusion::Demote { is_outgrown: false }
+        }
         ProblemCode::Cancelled => end(JobState::Cancelled, problem),
         // The run is lost with its executor, not ended by what it was given.
         ProblemCode::EngineCrashed | ProblemCode::WorkerLost => Conclusion::Lose(Box::new(problem)),
@@ -135,14 +174,12 @@ async fn keep_files(
     let mut results = Vec::new();
     for (number, Made { content, encoding }) in result.into_iter().chain(levels).enumerate() {
         let blob = match content {
-            Some(content) => {
-                service.keep(row.claim(), format!("mesh-{number}"), content, &mut written).await?
-            }
+            Some(content) => service.keep(row, format!("mesh-{number}"), content, &mut written).await?,
             None => row.input.clone(),
         };
         results.push(ResultRef { blob, encoding });
     }
-    let report = service.keep(row.claim(), "report.json".to_owned(), report, &mut written).await?;
+    let report = service.keep(row, "report.json".to_owned(), report, &mut written).await?;
     let levels = results.split_off(usize::from(has_result).min(results.len()));
     let state = if problem.is_some() { JobState::Failed } else { JobState::Succeeded };
     let ending = Ending {

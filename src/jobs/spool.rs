@@ -4,6 +4,7 @@ use std::collections::HashSet;
 use std::fmt;
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Write as _};
+use std::os::unix::fs::{DirBuilderExt as _, OpenOptionsExt as _};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -14,6 +15,7 @@ use uuid::Uuid;
 
 use super::blobs::{BlobStore, BlobWriter, LocalBlobs, StoredBlob};
 use super::product::MadeFile;
+use super::soundness::{KnownSound, Unsound};
 use super::store::{BlobRef, ClaimRef};
 
 /// The files of one server.
@@ -26,6 +28,7 @@ pub(super) struct Spool {
     free_bytes_min: u64,
     /// Files that this process writes or has written and that no row names yet.
     unnamed: Mutex<HashSet<String>>,
+    known: KnownSound,
 }
 
 impl fmt::Debug for Spool {
@@ -77,8 +80,9 @@ impl Spool {
 
     /// Takes the directory over, unless another server holds it.
     fn open(data_dir: &Path, limits: SpaceLimits) -> Result<Arc<Self>, OpenError> {
-        fs::create_dir_all(data_dir)?;
-        let lock = File::options().create(true).append(true).open(data_dir.join("lock"))?;
+        // One that is there keeps its rights: what is in it is private by itself.
+        fs::DirBuilder::new().recursive(true).mode(0o700).create(data_dir)?;
+        let lock = File::options().create(true).append(true).mode(0o600).open(data_dir.join("lock"))?;
         match lock.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => return Err(OpenError::InUse),
@@ -93,12 +97,25 @@ impl Spool {
             bytes_max: limits.bytes_max,
             free_bytes_min: limits.free_bytes_min,
             unnamed: Mutex::default(),
+            known: KnownSound::default(),
         }))
     }
 
     /// The path of a file.
     pub(super) fn path(&self, key: &str) -> io::Result<PathBuf> {
         self.blobs.local(key)
+    }
+
+    /// Opens a file of which every byte is what it was when it was written. Blocks.
+    pub(super) fn open_sound(&self, blob: &BlobRef) -> Result<File, Unsound> {
+        self.known.open(&self.path(&blob.key)?, blob)
+    }
+
+    /// A file that was written by this process a moment ago: its bytes need not be looked at again.
+    fn note_sound(&self, key: &str) {
+        if let Ok(path) = self.path(key) {
+            self.known.note(&path, key);
+        }
     }
 
     /// Bytes on disk, and those that are about to come.
@@ -141,6 +158,7 @@ impl Spool {
         let mut writer = self.blobs.create(&unnamed.key)?;
         writer.write_all(content)?;
         writer.commit()?;
+        self.note_sound(&unnamed.key);
         let blob = BlobRef {
             key: unnamed.key.clone(),
             bytes: content.len() as u64,
@@ -160,6 +178,7 @@ impl Spool {
         let name = file.path.file_name().unwrap_or_default().to_string_lossy();
         let unnamed = self.unnamed(key_of(claim, &name));
         self.blobs.adopt(&file.path, &unnamed.key)?;
+        self.note_sound(&unnamed.key);
         let blob = BlobRef { key: unnamed.key.clone(), bytes: file.bytes, sha256: file.sha256 };
         space.hand_over(&blob);
         Ok(Written { blob: Some(blob), unnamed })
@@ -173,7 +192,8 @@ impl Spool {
     fn remove_file(&self, key: &str, bytes: u64) {
         match self.blobs.remove(key) {
             Ok(()) => self.give_back(bytes),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+            // Somebody else took it: it fills no room any more.
+            Err(error) if error.kind() == io::ErrorKind::NotFound => self.give_back(bytes),
             Err(error) => tracing::warn!(key, %error, "a file could not be removed"),
         }
     }
@@ -199,6 +219,13 @@ impl Spool {
         let listed = self.blobs.list()?;
         let held = self.held();
         Ok(listed.into_iter().filter(|blob| !held.contains(&blob.key)).collect())
+    }
+
+    /// Moves a file out of the spool and gives its room back. Blocks.
+    pub(super) fn move_out(&self, blob: &StoredBlob, to: &Path) -> io::Result<()> {
+        fs::rename(self.path(&blob.key)?, to)?;
+        self.give_back(blob.bytes);
+        Ok(())
     }
 
     /// Removes files that nobody names. Blocks.
@@ -246,6 +273,7 @@ impl Written {
     /// The upload that is complete, in room that was reserved for it.
     pub(super) fn upload(unnamed: Unnamed, blob: BlobRef, space: Space) -> Self {
         space.hand_over(&blob);
+        unnamed.spool.note_sound(&unnamed.key);
         Self { blob: Some(blob), unnamed }
     }
 

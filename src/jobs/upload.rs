@@ -12,8 +12,9 @@ use super::blobs::BlobWriter;
 use super::meters;
 use super::retention::{joined, on_disk};
 use super::service::Service;
+use super::shares::IncomingBytes;
 use super::spool::{Space, Spool, Unnamed, Written};
-use super::store::BlobRef;
+use super::store::{BlobRef, Tenant};
 use crate::wire::{Problem, ProblemCode};
 
 /// Bytes gathered before they are hashed and written, off the threads that serve connections and while more come in.
@@ -29,6 +30,7 @@ pub struct Upload {
     /// It becomes a job, and has no place in the queue yet.
     needs_place: bool,
     place: Option<Place>,
+    incoming: IncomingBytes,
 }
 
 impl std::fmt::Debug for Upload {
@@ -76,9 +78,22 @@ impl OpenSink {
 }
 
 impl Upload {
-    pub(super) async fn begin(service: Arc<Service>, needs_place: bool) -> Result<Self, Problem> {
-        let space = service.make_room(0).await?;
-        Ok(Self { service, sink: Sink::Fresh, block: Vec::new(), bytes: 0, space, needs_place, place: None })
+    pub(super) async fn begin(
+        service: Arc<Service>,
+        tenant: Tenant,
+        needs_place: bool,
+    ) -> Result<Self, Problem> {
+        let space = service.make_room(&tenant, 0).await?;
+        Ok(Self {
+            incoming: IncomingBytes::none(Arc::clone(&service), tenant),
+            service,
+            sink: Sink::Fresh,
+            block: Vec::new(),
+            bytes: 0,
+            space,
+            needs_place,
+            place: None,
+        })
     }
 
     /// Takes the next bytes.
@@ -129,16 +144,22 @@ impl Upload {
         });
         let (unnamed, sha256) = written.await?;
         let blob = BlobRef { key: unnamed.key.clone(), bytes: self.bytes, sha256 };
-        Ok(Uploaded { written: Written::upload(unnamed, blob, self.space), _place: self.place })
+        Ok(Uploaded {
+            written: Written::upload(unnamed, blob, self.space),
+            _place: self.place,
+            _incoming: self.incoming,
+        })
     }
 
     /// Where the block is to be written now, for which there is room, and an empty block.
     async fn next_sink(&mut self) -> Result<(Sink, Vec<u8>), Problem> {
         if self.needs_place {
-            self.place = Some(self.service.take_place().await.inspect_err(meters::refused)?);
+            let place = self.service.take_place(self.incoming.tenant()).await;
+            self.place = Some(place.inspect_err(meters::refused)?);
             self.needs_place = false;
         }
-        let room = self.service.make_room(self.block.len() as u64).await?;
+        self.incoming.grow(self.block.len() as u64).await.inspect_err(meters::refused)?;
+        let room = self.service.make_room(self.incoming.tenant(), self.block.len() as u64).await?;
         self.space.absorb(room);
         match std::mem::replace(&mut self.sink, Sink::Lost) {
             Sink::Busy(writing) => {
@@ -154,8 +175,9 @@ impl Upload {
 #[derive(Debug)]
 pub struct Uploaded {
     written: Written,
-    /// Given up when this is dropped.
+    /// Given up when this is dropped, as are its bytes among those that come in.
     _place: Option<Place>,
+    _incoming: IncomingBytes,
 }
 
 impl Uploaded {

@@ -1,9 +1,7 @@
 //! A job as others see it: the public view of its row, and its files to send.
 
 use super::live::Live;
-use super::spool::Spool;
-use super::store::{BlobRef, JobRow};
-use super::upload::disk_problem;
+use super::store::{JobRow, ResultRef};
 use crate::wire::{self, Encoding, Job, JobState, Links, Outcome, Problem, ProblemCode, Progress};
 
 /// A mesh that can be sent.
@@ -22,31 +20,9 @@ pub struct StoredFile {
 }
 
 impl StoredFile {
-    pub(super) async fn open(
-        spool: &Spool,
-        blob: &BlobRef,
-        encoding: Encoding,
-        file_name: String,
-    ) -> Result<Self, Problem> {
-        let path = spool.path(&blob.key).map_err(|error| disk_problem(&error))?;
-        let file = tokio::fs::File::open(path).await.map_err(|error| not_there(&error))?;
-        Ok(Self { file, bytes: blob.bytes, sha256: blob.sha256, encoding, file_name })
-    }
-}
-
-/// The content of a small file.
-pub(super) async fn read(spool: &Spool, blob: &BlobRef) -> Result<Vec<u8>, Problem> {
-    let path = spool.path(&blob.key).map_err(|error| disk_problem(&error))?;
-    let reading = tokio::task::spawn_blocking(move || std::fs::read(path));
-    let content = reading.await.map_err(|error| Problem::new(ProblemCode::Internal, error.to_string()))?;
-    content.map_err(|error| not_there(&error))
-}
-
-fn not_there(error: &std::io::Error) -> Problem {
-    match error.kind() {
-        // Expired or deleted between the look at the row and this one.
-        std::io::ErrorKind::NotFound => expired(),
-        _ => disk_problem(error),
+    pub(super) fn of(file: std::fs::File, result: &ResultRef, file_name: String) -> Self {
+        let ResultRef { blob, encoding } = result;
+        Self { file: file.into(), bytes: blob.bytes, sha256: blob.sha256, encoding: *encoding, file_name }
     }
 }
 

@@ -26,6 +26,17 @@ pub struct Limits {
     pub wait_default_s: u64,
     /// Most queued jobs.
     pub queue_max: usize,
+    /// Most queued jobs of one caller (a key, or an address without keys); when others have jobs in the queue, no more than
+    /// there are free places.
+    pub owner_queue_max: usize,
+    /// Most jobs of one caller that run at one time, beside those of `interactive_slots`.
+    pub owner_slots_max: usize,
+    /// Most jobs of one caller that are kept; when there is no room for more, no caller keeps more than the same number as all
+    /// others.
+    pub owner_jobs_max: usize,
+    /// Most bytes of uploads and results of one caller; when there is no room for more, no caller keeps more than the same
+    /// number as all others.
+    pub owner_data_bytes_max: u64,
     /// Jobs that run at one time.
     pub slots: usize,
     /// Requests that one key, or one address without keys, may make in a minute; 0: any number.
@@ -36,12 +47,17 @@ pub struct Limits {
     pub interactive_slots: usize,
     /// Largest upload of such a mesh, in bytes.
     pub interactive_bytes_max: u64,
+    /// Time that a job may take in a slot for such meshes for each begun MiB of its upload, in seconds; then it goes on as a
+    /// large one.
+    pub interactive_deadline_s: f64,
     /// Most memory that all running jobs may take together, as estimated, in bytes.
     pub memory_bytes_max: u64,
     /// Most calls of a webhook for one event; 0: none are made.
     pub webhook_attempts_max: u32,
     /// Most open connections.
     pub connections_max: usize,
+    /// Most open connections of one address.
+    pub address_connections_max: usize,
     /// Time for a request's header, in seconds.
     pub header_timeout_s: u64,
     /// Longest pause between two pieces of an upload, in seconds.

@@ -35,6 +35,8 @@ words! {
         NotAcceptable = "not-acceptable",
         /// The file has no such bytes.
         RangeNotSatisfiable = "range-not-satisfiable",
+        /// What is there is not what the request is about.
+        PreconditionFailed = "precondition-failed",
         /// The request's head is over the limit.
         HeadTooLarge = "head-too-large",
         /// The body's media type is not read here.
@@ -129,6 +131,11 @@ impl ProblemCode {
                 416,
                 "Range not satisfiable",
                 "The file has no bytes in `Range`; `Content-Range` says how long it is.",
+            ),
+            Self::PreconditionFailed => (
+                412,
+                "Precondition failed",
+                "The job or file has changed: its `ETag` is none of those in `If-Match`. Ask for it again.",
             ),
             Self::HeadTooLarge => {
                 (431, "Head too large", "Path, query and header fields are over `limit` bytes.")

@@ -52,6 +52,18 @@ impl Server {
         Self::on(&self.binary, Arc::clone(&self.data), settings)
     }
 
+    /// Kills it; its data folder stays as long as what this gives.
+    pub(crate) fn killed(mut self) -> Arc<tempfile::TempDir> {
+        self.child.kill().unwrap();
+        self.child.wait().unwrap();
+        Arc::clone(&self.data)
+    }
+
+    /// Starts one on the data folder of one that was killed.
+    pub(crate) fn again(data: Arc<tempfile::TempDir>, settings: &[&str]) -> Self {
+        Self::on(env!("CARGO_BIN_EXE_meshmend").as_ref(), data, settings)
+    }
+
     /// Starts another one on the same data folder after this one has ended.
     pub(crate) fn restarted(mut self, settings: &[&str]) -> Self {
         assert_eq!(self.exit_code(), Some(0));
@@ -73,6 +85,8 @@ impl Server {
                 command.env_remove(name);
             }
         }
+        // Tests ask as often as they like; those of the limit give it as a flag, which goes before this.
+        command.env("MESHMEND_RATE_PER_MINUTE", "0");
         command.args(["serve", "--listen", "127.0.0.1:0", "--admin-listen", "127.0.0.1:0", "--data-dir"]);
         command.arg(data.path().join("data")).args(settings).stdin(Stdio::null()).stderr(Stdio::piped());
         let mut child = command.spawn().unwrap();
@@ -264,6 +278,15 @@ impl Line {
     /// As [`say`](Self::say); false when the other end does not listen any more.
     pub(crate) fn try_say(&mut self, bytes: impl AsRef<[u8]>) -> bool {
         self.0.write_all(bytes.as_ref()).is_ok()
+    }
+
+    /// Whether the other end closes without a word.
+    pub(crate) fn is_closed(&mut self) -> bool {
+        match self.0.read(&mut [0]) {
+            Ok(bytes) => bytes == 0,
+            // It was closed with bytes of ours unread.
+            Err(error) => error.kind() == std::io::ErrorKind::ConnectionReset,
+        }
     }
 
     /// Everything until the other end closes.

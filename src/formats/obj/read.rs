@@ -63,13 +63,15 @@ fn read_parts(parts: &[&[u8]], options: &ReadOptions, budget: &Budget) -> Result
         total = total.plus(inside);
     }
     options.limits.check_vertices(total.vertices)?;
-    options.limits.check_triangles(total.faces)?;
+    // A polygon has two triangles fewer than corners; faces with fewer than two corners only make this less.
+    options.limits.check_triangles(total.faces.max(total.corners.saturating_sub(2 * total.faces)))?;
 
     // Charged here at once: what is in use at one time inside depends on the number of threads.
     let has_texture = total.texture_points > 0;
     let of_texture = if has_texture { 16 * total.texture_points + 12 * total.faces } else { 0 };
     let bytes_of_parts = total.vertices * size_of::<(DVec3, u32)>() as u64
         + total.faces * size_of::<[u32; 4]>() as u64
+        + total.further_corners() * 2 * size_of::<u32>() as u64
         + total.line_corners * size_of::<Segment>() as u64
         + total.materials * size_of::<(u32, &[u8])>() as u64
         + of_texture;
@@ -93,6 +95,7 @@ fn join(
     let (mut face_lines, _charged) = budget.vec(face_count)?;
     let mut faces = Faces::default();
     let _charged = faces.reserve(face_count, budget)?;
+    let _charged = budget.charge(2 * size_of::<u32>() as u64 * total.further_corners())?;
     let mut texture = TextureOfFile::default();
     let has_texture = total.texture_points > 0;
     let _charged = match has_texture {
@@ -257,6 +260,21 @@ mod tests {
         let text = b"v 0 0 0\nf 1 1 1 1 1 1 1 1";
         let error = super::read(text, &options, &Budget::unlimited()).unwrap_err().to_string();
         assert_eq!(error, "line 2: 5 corners of one polygon is over the limit polygon_corners_max = 4");
+    }
+
+    #[test]
+    fn long_polygons_are_charged_and_counted_before_they_are_read() {
+        let text = format!("{TRIANGLE}{}", format!("f{}\n", " 1 2 3".repeat(20_000)).repeat(4));
+        let read = |triangles_max, bytes_max| {
+            let limits = crate::formats::ReadLimits { triangles_max, ..Default::default() };
+            let options = ReadOptions { limits, ..ReadOptions::default() };
+            let budget = Budget::new(crate::budget::StopFlag::default(), u64::MAX, bytes_max);
+            (super::read(text.as_bytes(), &options, &budget).unwrap_err().to_string(), budget.bytes_peak())
+        };
+        let (error, peak) = read(200_000, u64::MAX);
+        assert!(error.contains("239992 triangles is over the limit triangles_max = 200000"), "{error}");
+        assert_eq!(peak, 0, "nothing was read");
+        assert!(read(u32::MAX, 1 << 20).0.contains("memory limit"));
     }
 
     #[test]

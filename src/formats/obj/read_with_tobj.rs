@@ -1,5 +1,6 @@
 //! OBJ input as other Rust programs see it.
 
+use super::statements::Counts;
 use crate::budget::Budget;
 use crate::formats::faces::Faces;
 use crate::formats::{Place, ReadError, ReadOptions};
@@ -11,6 +12,13 @@ use tobj::{LoadOptions, Mesh};
 const OPTIONS: LoadOptions =
     LoadOptions { single_index: false, triangulate: false, ignore_points: true, ignore_lines: true };
 
+/// What the crate keeps for a vertex: coordinates, also in a list that grows, and an entry of a map, in bytes.
+const BYTES_OF_VERTEX: u64 = 96;
+/// The same for a face: a variant with three corners of three indices, in a list that grows.
+const BYTES_OF_FACE: u64 = 160;
+/// The same for a corner of a polygon beyond the third, and ours.
+const BYTES_OF_CORNER: u64 = 64;
+
 /// Reads with the `tobj` crate: float32 coordinates, only vertices that a face uses, once for each group, no lines.
 /// No material file is opened. The run cannot be stopped while the crate reads.
 pub(in crate::formats) fn read(
@@ -18,6 +26,13 @@ pub(in crate::formats) fn read(
     options: &ReadOptions,
     budget: &Budget,
 ) -> Result<Soup, ReadError> {
+    let counts = Counts::of(bytes, budget)?;
+    options.limits.check_vertices(counts.vertices)?;
+    options.limits.check_triangles(counts.faces)?;
+    let bytes_of_crate = counts.vertices * BYTES_OF_VERTEX
+        + counts.faces * BYTES_OF_FACE
+        + counts.further_corners() * BYTES_OF_CORNER;
+    let _charged = budget.charge(bytes_of_crate)?;
     let load = || tobj::load_obj_buf(&mut &*bytes, &OPTIONS, |_| Ok(Default::default()));
     // The crate panics on some malformed input; it keeps no state that a panic could leave broken.
     let loaded = catch_unwind(AssertUnwindSafe(load));
@@ -74,6 +89,18 @@ mod tests {
         let soup = read("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 9 9 9\no a\nf 1 2 3\no b\nf 1 2 3 1\nl 1 2\n").unwrap();
         assert_eq!((soup.positions.len(), soup.face_count, &soup.triangle_face[..]), (6, 2, &[0, 1, 1][..]));
         assert_eq!(soup.triangles[1], [3, 4, 5]);
+    }
+
+    #[test]
+    fn what_the_crate_will_take_is_charged_before_it_begins() {
+        let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{}", "f 1 2 3\n".repeat(100_000));
+        let budget = Budget::new(crate::budget::StopFlag::default(), u64::MAX, 10 << 20);
+        let error = super::read(text.as_bytes(), &ReadOptions::default(), &budget).unwrap_err().to_string();
+        assert!(error.contains("memory limit"), "{error}");
+        let limits = crate::formats::ReadLimits { triangles_max: 1000, ..Default::default() };
+        let options = ReadOptions { limits, ..ReadOptions::default() };
+        let error = super::read(text.as_bytes(), &options, &Budget::unlimited()).unwrap_err().to_string();
+        assert!(error.contains("100000 triangles is over the limit"), "{error}");
     }
 
     #[test]

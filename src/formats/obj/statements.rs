@@ -11,6 +11,7 @@ use crate::formats::words::{Dialect, Words};
 use crate::formats::{Precision, ReadError, ReadOptions};
 use crate::geom::DVec3;
 use crate::mesh::{Color, Segment};
+use memchr::memchr;
 
 /// How OBJ text is cut into words.
 pub(super) const DIALECT: Dialect = Dialect { comments: true, continued_lines: true };
@@ -22,6 +23,8 @@ pub(super) struct Counts {
     pub(super) vertices: u64,
     pub(super) faces: u64,
     pub(super) texture_points: u64,
+    /// Words of `f` statements.
+    pub(super) corners: u64,
     /// Words of `l` statements, of which segments have one fewer.
     pub(super) line_corners: u64,
     /// `usemtl` and `mtllib` statements.
@@ -37,7 +40,17 @@ impl Counts {
         while let Some(keyword) = words.next_word() {
             match keyword {
                 b"v" => counts.vertices += 1,
-                b"f" => counts.faces += 1,
+                b"f" => {
+                    counts.faces += 1;
+                    let line = words.remaining();
+                    words.next_line();
+                    counts.corners += words_in(&line[..line.len() - words.remaining().len()]);
+                    statements += 1;
+                    if statements.is_multiple_of(CHECK_EVERY) {
+                        budget.check()?;
+                    }
+                    continue;
+                }
                 b"vt" => counts.texture_points += 1,
                 b"usemtl" | b"mtllib" => counts.materials += 1,
                 b"l" => {
@@ -57,17 +70,31 @@ impl Counts {
         Ok(counts)
     }
 
+    /// Corners of polygons beyond those of triangles, about.
+    pub(super) fn further_corners(self) -> u64 {
+        self.corners.saturating_sub(3 * self.faces)
+    }
+
     /// The counts of both.
     pub(super) fn plus(self, other: Self) -> Self {
         Self {
             lines: self.lines + other.lines,
             vertices: self.vertices + other.vertices,
             faces: self.faces + other.faces,
+            corners: self.corners + other.corners,
             texture_points: self.texture_points + other.texture_points,
             line_corners: self.line_corners + other.line_corners,
             materials: self.materials + other.materials,
         }
     }
+}
+
+/// Number of words in a line, joined lines included, without a comment.
+fn words_in(line: &[u8]) -> u64 {
+    let line = memchr(b'#', line).map_or(line, |comment| &line[..comment]);
+    // A backslash that joins lines is no word.
+    let begins = |pair: &[u8; 2]| pair[0] <= b' ' && pair[1] > b' ' && pair[1] != b'\\';
+    line.array_windows().filter(|pair| begins(pair)).count() as u64
 }
 
 /// Vertices and faces of a part of a file.

@@ -114,6 +114,7 @@ fn read_faces<'a>(
     let (mut lines, _charged) = budget.vec::<u32>(capacity)?;
     let mut faces = Faces::default();
     let _charged = faces.reserve(capacity, budget)?;
+    let mut charges = Vec::new();
     let mut colors = ColorList::default();
     let mut corners = Vec::new();
     let mut extras: Vec<&'a [u8]> = Vec::new();
@@ -132,6 +133,9 @@ fn read_faces<'a>(
             corners.push(index(id));
         }
         faces.push(&corners);
+        if faces.is_due() {
+            charges.push(faces.settle(&options.limits, budget)?);
+        }
         take_rest(words, &mut extras);
         colors.push(&extras);
         words.next_line();

@@ -79,6 +79,7 @@ fn read_faces(
     const FACE_BYTES_MIN: usize = 8;
     let mut faces = Faces::default();
     let _charged = faces.reserve((count as usize).min(cursor.remaining() / FACE_BYTES_MIN), budget)?;
+    let mut charges = Vec::new();
     let mut colors = Vec::new();
     let mut corners = Vec::new();
     for i in 0..count as usize {
@@ -93,6 +94,9 @@ fn read_faces(
             corners.push(index(i32::from_be_bytes(cursor.take("a vertex index")?).into()));
         }
         faces.push(&corners);
+        if faces.is_due() {
+            charges.push(faces.settle(&options.limits, budget)?);
+        }
         note_color(&mut colors, i, read_color(cursor)?);
     }
     Ok((faces, colors))

@@ -3,7 +3,7 @@
 use super::header::{Element, Header, Kind, Layout, Scalar};
 use super::roles::{ColorKind, Plan, Role};
 use super::values::{Ascii, Binary, Values};
-use crate::budget::{Budget, CHECK_EVERY};
+use crate::budget::{Budget, CHECK_EVERY, Charge};
 use crate::formats::colors::note_color;
 use crate::formats::faces::Faces;
 use crate::formats::numbers::index;
@@ -33,7 +33,7 @@ fn read_body(
     options: &ReadOptions,
     budget: &Budget,
 ) -> Result<Soup, ReadError> {
-    let mut source = Source { values, layout: header.layout, options, budget };
+    let mut source = Source { values, layout: header.layout, options, budget, charges: Vec::new() };
     let mut mesh = Mesh::default();
     for element in &header.elements {
         match element.name {
@@ -43,7 +43,7 @@ fn read_body(
             b"edge" => mesh.read_edges(element, &mut source)?,
             b"tristrips" => mesh.read_strips(element, &mut source)?,
             _ if element.properties.is_empty() => {}
-            _ => source.read_items(element, &Plan::new(element), |_, _| ())?,
+            _ => source.read_items(element, &Plan::new(element), |_, _| Ok(()))?,
         }
     }
     let soup = mesh.faces.into_soup(mesh.positions, &options.limits, budget)?;
@@ -72,10 +72,12 @@ impl Mesh {
         source.options.limits.check_vertices(element.count)?;
         let plan = Plan::new(element).with_coordinates(element)?.with_colors(element);
         let _charged = source.budget.reserve(&mut self.positions, source.fitting(element))?;
+        let _charged = source.charge_beside(element, plan.colors)?;
         source.read_items(element, &plan, |line, item| {
             note_color(&mut self.vertex_colors, self.positions.len(), item.color(plan.colors));
             self.positions.push(DVec3::from(item.xyz));
             self.places.vertex_lines.extend(line);
+            Ok(())
         })
     }
 
@@ -90,11 +92,18 @@ impl Mesh {
             .with_colors(element)
             .with_color_index(element);
         let _charged = self.faces.reserve(source.fitting(element), source.budget)?;
+        let _charged = source.charge_beside(element, plan.colors)?;
+        let (budget, limits) = (source.budget, &source.options.limits);
+        let mut charges = Vec::new();
         source.read_items(element, &plan, |line, item| {
             let color = item.color_index.map(Color::Index).or_else(|| item.color(plan.colors));
             note_color(&mut self.face_colors, self.faces.len(), color);
             self.faces.push(&item.vertices);
             self.places.face_lines.extend(line);
+            if self.faces.is_due() {
+                charges.push(self.faces.settle(limits, budget)?);
+            }
+            Ok(())
         })
     }
 
@@ -105,11 +114,12 @@ impl Mesh {
         source: &mut Source<'_, V>,
     ) -> Result<(), ReadError> {
         let Some(plan) = Plan::new(element).with_ends(element) else {
-            return source.read_items(element, &Plan::new(element), |_, _| ());
+            return source.read_items(element, &Plan::new(element), |_, _| Ok(()));
         };
         let _charged = source.budget.reserve(&mut self.segments, source.fitting(element))?;
         source.read_items(element, &plan, |line, item| {
             self.segments.push(Segment { ends: item.ends, line });
+            Ok(())
         })
     }
 
@@ -119,6 +129,8 @@ impl Mesh {
         source: &mut Source<'_, V>,
     ) -> Result<(), ReadError> {
         let plan = Plan::new(element).with_vertices(element, Role::Strips)?;
+        let (budget, limits) = (source.budget, &source.options.limits);
+        let mut charges = Vec::new();
         source.read_items(element, &plan, |line, item| {
             // -1 ends a strip.
             for strip in item.vertices.split(|&v| v == u32::MAX) {
@@ -127,9 +139,14 @@ impl Mesh {
                     if a != b && b != c && c != a {
                         self.faces.push(&if i % 2 == 0 { [a, b, c] } else { [b, a, c] });
                         self.places.face_lines.extend(line);
+                        if self.faces.is_due() {
+                            charges.push(self.faces.settle(limits, budget)?);
+                            charges.push(budget.charge(4 * line.map_or(0, |_| CHECK_EVERY as u64))?);
+                        }
                     }
                 }
             }
+            Ok(())
         })
     }
 }
@@ -140,9 +157,11 @@ struct Source<'a, V> {
     layout: Layout,
     options: &'a ReadOptions,
     budget: &'a Budget,
+    /// For lists that are longer than others.
+    charges: Vec<Charge<'a>>,
 }
 
-impl<V: Values> Source<'_, V> {
+impl<'a, V: Values> Source<'a, V> {
     /// How many of `element` the rest of the file can hold, at most as many as are announced.
     fn fitting(&self, element: &Element<'_>) -> usize {
         let held = self.values.remaining() / element.bytes_min(self.layout).max(1) + 1;
@@ -154,7 +173,7 @@ impl<V: Values> Source<'_, V> {
         &mut self,
         element: &Element<'_>,
         plan: &Plan,
-        mut take: impl FnMut(Option<u32>, &Item),
+        mut take: impl FnMut(Option<u32>, &Item) -> Result<(), ReadError>,
     ) -> Result<(), ReadError> {
         let mut item = Item::default();
         for i in 0..element.count {
@@ -165,9 +184,16 @@ impl<V: Values> Source<'_, V> {
             for &(role, kind) in &plan.properties {
                 self.read_property(role, kind, &mut item)?;
             }
-            take(self.values.item_line(), &item);
+            take(self.values.item_line(), &item)?;
         }
         Ok(())
+    }
+
+    /// Charges the lines and colours of the items of `element`.
+    fn charge_beside(&self, element: &Element<'_>, colors: ColorKind) -> Result<Charge<'a>, ReadError> {
+        let line = if self.layout == Layout::Ascii { size_of::<u32>() } else { 0 };
+        let color = if colors == ColorKind::None { 0 } else { size_of::<Option<Color>>() };
+        Ok(self.budget.charge(self.fitting(element) as u64 * (line + color) as u64)?)
     }
 
     #[inline]
@@ -207,7 +233,7 @@ impl<V: Values> Source<'_, V> {
         vertices.clear();
         for i in 0..count {
             if (i + 1).is_multiple_of(CHECK_EVERY as u64) {
-                self.budget.check()?;
+                self.charges.push(self.budget.reserve(vertices, CHECK_EVERY)?);
             }
             vertices.push(index(self.values.integer(kind)?));
         }
@@ -257,6 +283,34 @@ mod tests {
 
     const XYZ: &str = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
     const FACE: &str = "element face 1\nproperty list uchar int vertex_indices\n";
+
+    #[test]
+    fn strips_are_charged_and_counted_while_they_are_read() {
+        let mut file = format!(
+            "ply\nformat binary_little_endian 1.0\n{XYZ}element tristrips 1\nproperty list int uchar vertex_indices\n\
+             end_header\n"
+        )
+        .into_bytes();
+        let count = 3_000_000_u32;
+        file.extend([0; 36]);
+        file.extend(count.to_le_bytes());
+        file.extend((0..count).map(|i| (i % 3) as u8));
+        let read = |triangles_max, bytes_max| {
+            let limits = crate::formats::ReadLimits { triangles_max, ..Default::default() };
+            let options = ReadOptions { limits, ..ReadOptions::default() };
+            let budget = Budget::new(crate::budget::StopFlag::default(), u64::MAX, bytes_max);
+            let read = super::read(&file, &options, &budget);
+            (read.map(|soup| soup.triangles.len()).map_err(|error| error.to_string()), budget.bytes_peak())
+        };
+        let (all, peak) = read(u32::MAX, u64::MAX);
+        assert_eq!(all, Ok(count as usize - 2));
+        assert!(peak > 16 * u64::from(count), "the list and the faces are charged: {peak}");
+        let (refused, peak_of_refused) = read(100_000, u64::MAX);
+        assert!(refused.unwrap_err().contains("triangles_max = 100000"));
+        assert!(peak_of_refused < peak * 3 / 4, "{peak_of_refused} of {peak}");
+        assert!(read(u32::MAX, 16 << 20).0.unwrap_err().contains("memory limit"));
+    }
+
     #[test]
     fn an_element_without_items_needs_no_properties() {
         assert_eq!(read(&format!("{XYZ}element face 0\n"), "0 0 0 1 0 0 0 1 0").unwrap().positions.len(), 3);

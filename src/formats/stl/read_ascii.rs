@@ -24,6 +24,7 @@ pub(in crate::formats) fn read(
             words.rest_of_line();
         } else if is(word, "facet") {
             if facets.sizes.len().is_multiple_of(CHECK_EVERY) {
+                options.limits.check_triangles(facets.sizes.len() as u64)?;
                 charges.push(facets.make_room(budget)?);
             }
             facets.read_facet(&mut words, options.precision)?;

@@ -34,6 +34,7 @@ const COMMON: &[ProblemCode] = &[
     ProblemCode::Forbidden,
     ProblemCode::NotAcceptable,
     ProblemCode::HeadTooLarge,
+    ProblemCode::UnsupportedMediaType,
     ProblemCode::RateLimited,
     ProblemCode::Internal,
 ];
@@ -45,7 +46,6 @@ const UPLOAD: &[ProblemCode] = &[
     ProblemCode::Expired,
     ProblemCode::IdempotencyKeyReused,
     ProblemCode::BodyTooLarge,
-    ProblemCode::UnsupportedMediaType,
     ProblemCode::MeshEmpty,
     ProblemCode::QueueFull,
     ProblemCode::Draining,
@@ -54,6 +54,7 @@ const UPLOAD: &[ProblemCode] = &[
 ];
 /// Problems of a job that was run.
 const RUN: &[ProblemCode] = &[
+    ProblemCode::Expired,
     ProblemCode::Cancelled,
     ProblemCode::PlanMismatch,
     ProblemCode::MeshTooLarge,
@@ -189,6 +190,11 @@ fn complete_operation(path: &str, operation: &mut Operation) {
         }
         _ if path.starts_with("/v1/jobs/") => add_problems(operation, JOB),
         _ => {}
+    }
+    if ["get_job", "cancel_job", "delete_job", "get_job_result"].contains(&id.as_str()) {
+        let about = "The `ETag` that the client has seen: 412 when there is another version by now.";
+        add_parameter(operation, header_parameter("If-Match", about, text()));
+        add_problems(operation, &[ProblemCode::PreconditionFailed]);
     }
 }
 

@@ -38,8 +38,9 @@ pub(in crate::jobs) enum Death {
 }
 
 impl Death {
-    /// What `status` means; `words` is what the runtime wrote.
-    pub(super) fn of(status: ExitStatus, words: &str) -> Self {
+    /// What `status` means; `words` is what the runtime wrote; `is_for_memory`: the kernel has ended a process for lack of
+    /// memory meanwhile.
+    pub(super) fn of(status: ExitStatus, words: &str, is_for_memory: bool) -> Self {
         let Some(signal) = status.signal() else { return Self::NoAnswer(status.code().unwrap_or(-1)) };
         match signal {
             libc::SIGABRT | libc::SIGSEGV if words.contains("has overflowed its stack") => {
@@ -47,6 +48,8 @@ impl Death {
             }
             libc::SIGABRT if words.contains("memory allocation of") => Self::OutOfMemory,
             libc::SIGABRT => Self::Aborted,
+            // Tried again, it would take as much.
+            libc::SIGKILL if is_for_memory => Self::OutOfMemory,
             libc::SIGXCPU => Self::CpuTime,
             libc::SIGXFSZ => Self::FileSize,
             libc::SIGSEGV | libc::SIGBUS | libc::SIGILL | libc::SIGFPE | libc::SIGTRAP | libc::SIGSYS => {
@@ -158,11 +161,18 @@ mod tests {
         ];
         let limits = Limits::new(1 << 30, 1 << 30, Duration::from_secs(1), 1);
         for (status, words, kind, code) in rows {
-            let death = Death::of(ExitStatus::from_raw(status), words);
+            let death = Death::of(ExitStatus::from_raw(status), words, false);
             let problem = death.problem(Some(Stage::Repair), &limits, 1 << 30);
             assert_eq!((death.kind(), problem.code), (kind, code), "{status}");
             assert!(problem.detail.ends_with("in the pass `repair`"), "{}", problem.detail);
         }
+    }
+
+    #[test]
+    fn one_that_the_kernel_ends_for_memory_is_not_lost_but_too_large() {
+        let of = |signal, is_for_memory| Death::of(ExitStatus::from_raw(signal), "", is_for_memory).kind();
+        assert_eq!((of(libc::SIGKILL, true), of(libc::SIGKILL, false)), ("out-of-memory", "killed"));
+        assert_eq!(of(libc::SIGTERM, true), "killed");
     }
 
     #[test]

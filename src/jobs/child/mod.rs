@@ -13,6 +13,7 @@ mod files;
 mod hearing;
 mod launch;
 mod limits;
+mod memory_kills;
 mod processes;
 mod run;
 mod sandbox;

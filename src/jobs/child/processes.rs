@@ -5,6 +5,7 @@ use std::num::NonZero;
 
 use super::death::Death;
 use super::limits::Limits;
+use super::memory_kills;
 use super::sandbox::Protections;
 use super::starter::Starter;
 use super::task::{Setting, Task};
@@ -31,6 +32,8 @@ pub(in crate::jobs) struct Processes {
 impl Processes {
     /// Finds out by a trial whether children do their job here, and says what holds them.
     pub(in crate::jobs) fn prepare(settings: &JobsSettings) -> Result<Self, TrialError> {
+        // What was before this server is none of its jobs.
+        memory_kills::are_more();
         let workspaces = Workspaces::open(&settings.data_dir)?;
         let setting = setting(settings);
         let protections = try_out(&workspaces, &setting)?;
@@ -43,10 +46,11 @@ impl Processes {
         self.starter.close();
     }
 
-    /// Runs a job in a child. Blocks.
+    /// Runs a job, which may charge so many bytes, in a child. Blocks.
     pub(in crate::jobs) fn run(
         &self,
         row: &JobRow,
+        bytes_max: u64,
         spool: &Spool,
         live: &Live,
         settings: &JobsSettings,
@@ -61,7 +65,7 @@ impl Processes {
             vertices_max: settings.read_limits.vertices_max,
             polygon_corners_max: settings.read_limits.polygon_corners_max,
             engine_work_max: settings.engine_work_max,
-            engine_bytes_max: settings.engine_bytes_max,
+            engine_bytes_max: bytes_max,
         };
         let answered = match self.starter.child() {
             Ok(running) => {
@@ -89,8 +93,7 @@ impl Processes {
             }
             Err(death) => {
                 meters::child_ended(death.kind());
-                let problem =
-                    death.problem(clock.progress().stage, &self.setting.limits, settings.engine_bytes_max);
+                let problem = death.problem(clock.progress().stage, &self.setting.limits, bytes_max);
                 match &death {
                     Death::Stopped(_) => {}
                     Death::NotStarted(error) => {

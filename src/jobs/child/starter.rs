@@ -52,9 +52,10 @@ impl Starter {
     pub(super) fn child(&self) -> io::Result<Running> {
         let gone = || io::Error::other("the thread that starts processes has ended");
         let waiting = self.spare.lock().child.take();
-        // One that has died while it waited serves nobody.
+        // One that has died while it waited serves nobody, nor does one whose folder somebody has removed.
         if let Some(mut child) = waiting
             && matches!(child.status(), Ok(None))
+            && child.workspace.rooms.are_there()
         {
             self.asks.send(None).map_err(|_| gone())?;
             return Ok(child);

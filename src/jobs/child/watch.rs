@@ -9,6 +9,7 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use super::death::Death;
 use super::hearing::{Hearing, Last};
 use super::launch::Running;
+use super::memory_kills;
 use super::sandbox::Protections;
 use super::task::{FileMade, Task};
 use super::workspace::Workspace;
@@ -74,7 +75,8 @@ pub(super) fn watch(
         tracing::debug!(words, "last words of a job's process");
     }
     if !status.success() {
-        return Err(Death::of(status, &words));
+        let is_for_memory = memory_kills::are_more();
+        return Err(Death::of(status, &words, is_for_memory));
     }
     let protections = hearing.protections.unwrap_or_default();
     let outcome = match hearing.last() {

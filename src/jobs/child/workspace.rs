@@ -10,6 +10,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use uuid::Uuid;
 
+use crate::jobs::blobs::make_private_dir;
+
 /// The place of all folders, on the file system of the spool, so that files come and go without being copied. Clones share it.
 #[derive(Debug, Clone)]
 pub(super) struct Workspaces {
@@ -65,6 +67,11 @@ impl Rooms {
         self.all_made().join(format!("file-{number}"))
     }
 
+    /// Whether nobody has removed them.
+    pub(super) fn are_there(&self) -> bool {
+        self.given().is_dir() && self.all_made().is_dir()
+    }
+
     /// Removes all files.
     fn empty(&self) -> io::Result<()> {
         for dir in [self.given(), self.all_made()] {
@@ -77,7 +84,9 @@ impl Rooms {
 
     /// Removes the folder with all that is in it.
     fn remove(&self) {
-        if let Err(error) = fs::remove_dir_all(self.folder()) {
+        if let Err(error) = fs::remove_dir_all(self.folder())
+            && error.kind() != io::ErrorKind::NotFound
+        {
             tracing::warn!(%error, "the folder of a job's process could not be removed");
         }
     }
@@ -93,7 +102,7 @@ impl Workspaces {
             // A child of a server that was killed a moment ago may write its last; what stays goes at the next start.
             tracing::warn!(%error, "folders of an earlier server could not be removed");
         }
-        fs::create_dir_all(&dir)?;
+        make_private_dir(&dir)?;
         Ok(Self { dir, idle: Arc::default() })
     }
 
@@ -101,9 +110,13 @@ impl Workspaces {
     pub(super) fn make(&self) -> io::Result<Workspace> {
         let workspace =
             |rooms| Workspace { rooms, idle: Arc::clone(&self.idle), is_sound: AtomicBool::new(false) };
-        if let Some(rooms) = lock(&self.idle).rooms.pop() {
-            return Ok(workspace(rooms));
+        // One that somebody has removed serves nobody.
+        while let Some(rooms) = lock(&self.idle).rooms.pop() {
+            if rooms.are_there() {
+                return Ok(workspace(rooms));
+            }
         }
+        make_private_dir(&self.dir)?;
         let made = workspace(Rooms(self.dir.join(Uuid::now_v7().simple().to_string())));
         for dir in [made.rooms.folder(), &made.rooms.given(), &made.rooms.all_made()] {
             DirBuilder::new().mode(0o700).create(dir)?;
@@ -176,6 +189,19 @@ mod tests {
         fs::create_dir_all(dir.path().join("work/old")).unwrap();
         drop(Workspaces::open(dir.path()).unwrap());
         assert_eq!(count(&dir.path().join("work")), 0);
+    }
+
+    #[test]
+    fn folders_that_somebody_has_removed_are_made_again() {
+        let dir = tempfile::tempdir().unwrap();
+        let workspaces = Workspaces::open(dir.path()).unwrap();
+        let first = workspaces.make().unwrap();
+        let rooms = first.rooms.clone();
+        first.mark_sound();
+        drop(first);
+        fs::remove_dir_all(dir.path().join("work")).unwrap();
+        let second = workspaces.make().unwrap();
+        assert!(second.rooms.are_there() && second.rooms.folder() != rooms.folder());
     }
 
     #[test]

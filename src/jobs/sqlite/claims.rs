@@ -5,9 +5,9 @@ use std::time::Duration;
 use rusqlite::{Connection, OptionalExtension as _, named_params, params};
 
 use super::rows::{get, later, number_of, parsed, state, to_json};
-use super::{keeping, listing, outbox};
+use super::{keeping, listing, outbox, tenants};
 use crate::jobs::store::{
-    AfterLoss, ClaimRef, ClaimRequest, Created, Ending, JobId, JobRow, Leases, NewJob, StoreError,
+    AfterLoss, ClaimRef, ClaimRequest, Created, Ending, JobId, JobRow, Lane, NewJob, StoreError,
 };
 use crate::wire::{ENGINE_VERSION, JobState, Problem, ProblemCode};
 
@@ -32,6 +32,7 @@ pub(super) fn create(
         if queued >= queue_max {
             return Err(StoreError::QueueFull { queued });
         }
+        tenants::check_share(connection, &new.tenant, queue_max - queued)?;
     }
     insert(connection, new, now)?;
     change(connection, new.id, now)?;
@@ -48,9 +49,9 @@ fn insert(connection: &Connection, new: &NewJob, now: i64) -> Result<(), StoreEr
     let id = new.id.to_string();
     let mut statement = connection.prepare_cached(
         "INSERT INTO jobs (id, owner, operation, options, file_name, labels, webhook, input, input_sha256, material,
-             lane, state, created_at, cancel_at, keep_for, is_cached, idempotency_key, fingerprint, trace)
+             lane, state, created_at, cancel_at, keep_for, is_cached, idempotency_key, fingerprint, trace, tenant)
          VALUES (:id, :owner, :operation, :options, :file_name, :labels, :webhook, :input, :input_sha256, :material,
-             :lane, 'queued', :created_at, :cancel_at, :keep_for, 0, :key, :fingerprint, :trace)",
+             :lane, 'queued', :created_at, :cancel_at, :keep_for, 0, :key, :fingerprint, :trace, :tenant)",
     )?;
     statement.execute(named_params! {
         ":id": id,
@@ -70,6 +71,7 @@ fn insert(connection: &Connection, new: &NewJob, now: i64) -> Result<(), StoreEr
         ":key": new.key.as_ref().map(|key| &key.key),
         ":fingerprint": new.key.as_ref().map(|key| key.fingerprint),
         ":trace": new.trace.as_ref().map(ToString::to_string),
+        ":tenant": new.tenant.name(),
     })?;
     let mut statement = connection.prepare_cached("INSERT INTO labels VALUES (?1, ?2, ?3)")?;
     for (name, value) in &new.labels {
@@ -112,23 +114,18 @@ fn end(connection: &Connection, id: JobId, ending: &Ending, now: i64) -> Result<
 pub(super) fn claim(
     connection: &Connection,
     request: &ClaimRequest,
+    lease_now: i64,
     now: i64,
 ) -> Result<Option<JobRow>, StoreError> {
     loop {
-        let mut statement = connection.prepare_cached(
-            "UPDATE jobs SET state = 'running', epoch = epoch + 1, worker = ?1, lease_until = ?2, started_at = ?3
-             WHERE id = (SELECT id FROM jobs WHERE state = 'queued' AND (lane = ?4 OR NOT ?5)
-                          ORDER BY lane <> ?4, id LIMIT 1)
-             RETURNING id",
-        )?;
-        let until = later(now, request.lease);
-        let claimed = statement
-            .query_row(
-                params![request.worker, until, now, number_of(request.prefer), request.is_only],
-                |row| parsed(row, 0),
-            )
-            .optional()?;
-        let Some(id) = claimed else { return Ok(None) };
+        let Some(id) = tenants::next_job(connection, request)? else { return Ok(None) };
+        connection
+            .prepare_cached(
+                "UPDATE jobs SET state = 'running', epoch = epoch + 1, worker = ?2, lease_until = ?3, started_at = ?4,
+                     is_quick = ?5
+                 WHERE id = ?1",
+            )?
+            .execute(params![id.to_string(), request.worker, later(lease_now, request.lease), now, request.is_only])?;
         change(connection, id, now)?;
         match get(connection, id) {
             Ok(row) => return Ok(Some(row)),
@@ -147,14 +144,14 @@ pub(super) fn renew(
     connection: &Connection,
     claim: ClaimRef,
     lease: Duration,
-    now: i64,
+    lease_now: i64,
 ) -> Result<bool, StoreError> {
     let mut statement = connection.prepare_cached(
         "UPDATE jobs SET lease_until = ?3 WHERE id = ?1 AND epoch = ?2 AND state = 'running'
          RETURNING stop IS NOT NULL",
     )?;
     let renewed = statement
-        .query_row(params![claim.id.to_string(), claim.epoch, later(now, lease)], |row| row.get(0))
+        .query_row(params![claim.id.to_string(), claim.epoch, later(lease_now, lease)], |row| row.get(0))
         .optional()?;
     renewed.ok_or(StoreError::ClaimVoid)
 }
@@ -199,6 +196,19 @@ fn give_back(connection: &Connection, id: JobId, now: i64) -> Result<AfterLoss, 
     Ok(AfterLoss::Queued)
 }
 
+pub(super) fn demote(
+    connection: &Connection,
+    claim: ClaimRef,
+    is_outgrown: bool,
+    now: i64,
+) -> Result<AfterLoss, StoreError> {
+    check(connection, claim)?;
+    connection
+        .prepare_cached("UPDATE jobs SET lane = ?2, is_outgrown = max(is_outgrown, ?3) WHERE id = ?1")?
+        .execute(params![claim.id.to_string(), number_of(Lane::Bulk), is_outgrown])?;
+    give_back(connection, claim.id, now)
+}
+
 pub(super) fn lose(
     connection: &Connection,
     claim: ClaimRef,
@@ -219,15 +229,11 @@ pub(super) fn lose(
 
 pub(super) fn recover(
     connection: &Connection,
-    leases: Leases,
+    until: i64,
     problem: &Problem,
     attempts_max: u32,
     now: i64,
 ) -> Result<Vec<(JobId, AfterLoss)>, StoreError> {
-    let until = match leases {
-        Leases::Expired => now,
-        Leases::All => i64::MAX,
-    };
     let mut statement = connection.prepare_cached(
         "SELECT id, epoch FROM jobs INDEXED BY jobs_running WHERE state = 'running' AND lease_until <= ?1 ORDER BY id",
     )?;

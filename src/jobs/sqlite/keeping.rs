@@ -2,10 +2,10 @@
 
 use std::collections::HashSet;
 
-use rusqlite::{Connection, OptionalExtension as _, params};
+use rusqlite::{Connection, params};
 
 use super::rows::{json, parsed, to_json};
-use crate::jobs::store::{BlobRef, ClaimRef, JobId, Kept, StoreError};
+use crate::jobs::store::{BlobRef, ClaimRef, JobId, StoreError};
 
 /// Notes that the job names these files.
 pub(super) fn name<'b>(
@@ -56,17 +56,6 @@ pub(super) fn due(connection: &Connection, now: i64) -> Result<Vec<JobId>, Store
         "SELECT id FROM jobs WHERE expires_at IS NOT NULL AND state <> 'expired' AND expires_at <= ?1",
     )?;
     Ok(statement.query_map([now], |row| parsed(row, 0))?.collect::<rusqlite::Result<_>>()?)
-}
-
-pub(super) fn oldest_ended(connection: &Connection, kept: Kept) -> Result<Option<JobId>, StoreError> {
-    let mut statement = connection.prepare_cached(match kept {
-        Kept::WithFiles => {
-            "SELECT id FROM jobs WHERE finished_at IS NOT NULL AND state <> 'expired'
-             ORDER BY finished_at, id LIMIT 1"
-        }
-        Kept::Any => "SELECT id FROM jobs WHERE finished_at IS NOT NULL ORDER BY finished_at, id LIMIT 1",
-    })?;
-    Ok(statement.query_row([], |row| parsed(row, 0)).optional()?)
 }
 
 pub(super) fn current(connection: &Connection, claims: &[ClaimRef]) -> Result<HashSet<ClaimRef>, StoreError> {

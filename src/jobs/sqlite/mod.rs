@@ -4,17 +4,21 @@
 //! disk before it is told, and readers see whole changes only.
 
 mod claims;
+mod identity;
 mod keeping;
 mod listing;
 mod outbox;
 mod rows;
 mod schema;
+mod secrets;
+mod tenants;
 mod writer;
 
 use std::collections::HashSet;
 use std::fmt;
+use std::fs::{File, Permissions};
+use std::os::unix::fs::{OpenOptionsExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicI64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -22,11 +26,13 @@ use jiff::Timestamp;
 use rusqlite::{Connection, ErrorCode, OpenFlags};
 
 use super::store::{
-    AfterLoss, BlobRef, Change, ClaimRef, ClaimRequest, Created, Delivery, DeliveryRequest, Ending,
-    IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept, Leases, ListQuery, NewJob, NextTry, StoreError,
-    StoreFuture, TryOutcome,
+    AfterLoss, BlobRef, Change, ClaimRef, ClaimRequest, Created, Delivery, DeliveryRequest, Ending, Holding,
+    IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept, Leases, ListQuery, NewJob, NextTry, Sealer,
+    StoreError, StoreFuture, Tenant, TryOutcome,
 };
+use super::wall;
 use crate::wire::Problem;
+pub use identity::StoreFile;
 pub use schema::OpenError;
 use writer::Writer;
 
@@ -41,6 +47,8 @@ pub type StoreClock = Arc<dyn Fn() -> i64 + Send + Sync>;
 /// A store in a file.
 pub struct SqliteStore {
     clock: StoreClock,
+    /// By which leases end: one that goes on evenly, however the time of day is set. All leases are void at a start.
+    lease_clock: StoreClock,
     writer: Writer,
     readers: Arc<Readers>,
 }
@@ -57,7 +65,8 @@ impl SqliteStore {
     /// # Errors
     /// The file cannot be used, or a newer program made it.
     pub fn open(path: &Path) -> Result<Self, OpenError> {
-        Self::open_with(path, system_clock())
+        let even: StoreClock = Arc::new(wall::even_ms);
+        Self::open_by(path, Arc::new(wall::now_ms), even)
     }
 
     /// As [`open`](Self::open), with another clock.
@@ -65,6 +74,11 @@ impl SqliteStore {
     /// # Errors
     /// As [`open`](Self::open).
     pub fn open_with(path: &Path, clock: StoreClock) -> Result<Self, OpenError> {
+        Self::open_by(path, Arc::clone(&clock), clock)
+    }
+
+    fn open_by(path: &Path, clock: StoreClock, lease_clock: StoreClock) -> Result<Self, OpenError> {
+        make_private(path)?;
         let mut connection = Connection::open(path)?;
         connection.busy_timeout(BUSY_PATIENCE)?;
         connection.pragma_update(None, "journal_mode", "WAL")?;
@@ -75,7 +89,31 @@ impl SqliteStore {
         let writer = Writer::start(connection)
             .map_err(|error| rusqlite::Error::ToSqlConversionFailure(Box::new(error)))?;
         let readers = Readers { path: path.to_owned(), idle: Mutex::default() };
-        Ok(Self { clock, writer, readers: Arc::new(readers) })
+        Ok(Self { clock, lease_clock, writer, readers: Arc::new(readers) })
+    }
+
+    /// What the file at `path` is, before it is opened or made. Blocks.
+    ///
+    /// # Errors
+    /// It cannot be read.
+    pub fn look_at(path: &Path) -> Result<StoreFile, OpenError> {
+        identity::look_at(path)
+    }
+
+    /// Whether a row of the store at `path` names one of these files. Blocks.
+    ///
+    /// # Errors
+    /// It cannot be read.
+    pub fn names_any(path: &Path, keys: &[&str]) -> Result<bool, OpenError> {
+        identity::names_any(path, keys)
+    }
+
+    /// The mark that this store and its files have, given when it has none yet. Blocks.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn set_mark(path: &Path, mark: &str) -> Result<(), OpenError> {
+        identity::set_mark(path, mark)
     }
 
     /// Makes a change, at the time of the store's clock.
@@ -139,21 +177,20 @@ impl Readers {
     }
 }
 
+/// Makes the file for this user alone, if there is none; SQLite gives the files beside it the same rights.
+fn make_private(path: &Path) -> Result<(), OpenError> {
+    let file = File::options().create(true).append(true).mode(0o600).open(path).map_err(OpenError::File)?;
+    // The file of another user, who lets this one write, stays as it is.
+    let _ = file.set_permissions(Permissions::from_mode(0o600));
+    Ok(())
+}
+
 fn reader(path: &Path) -> rusqlite::Result<Connection> {
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     let connection = Connection::open_with_flags(path, flags)?;
     connection.busy_timeout(BUSY_PATIENCE)?;
     connection.set_prepared_statement_cache_capacity(64);
     Ok(connection)
-}
-
-/// The system's time, except that it never goes back.
-fn system_clock() -> StoreClock {
-    let latest = AtomicI64::new(i64::MIN);
-    Arc::new(move || {
-        let now = Timestamp::now().as_millisecond();
-        latest.fetch_max(now, Ordering::Relaxed).max(now)
-    })
 }
 
 /// What SQLite says, as every store says it.
@@ -207,12 +244,18 @@ impl JobStore for SqliteStore {
         self.look_up(|connection, _| listing::counts(connection))
     }
 
+    fn holding(&self, tenant: Tenant) -> StoreFuture<'_, Holding> {
+        self.look_up(move |connection, _| tenants::holding(connection, &tenant))
+    }
+
     fn claim(&self, request: ClaimRequest) -> StoreFuture<'_, Option<JobRow>> {
-        self.write(move |connection, now| claims::claim(connection, &request, now))
+        let lease_clock = Arc::clone(&self.lease_clock);
+        self.write(move |connection, now| claims::claim(connection, &request, lease_clock(), now))
     }
 
     fn renew(&self, claim: ClaimRef, lease: Duration) -> StoreFuture<'_, bool> {
-        self.write(move |connection, now| claims::renew(connection, claim, lease, now))
+        let lease_clock = Arc::clone(&self.lease_clock);
+        self.write(move |connection, _| claims::renew(connection, claim, lease, lease_clock()))
     }
 
     fn finish(&self, claim: ClaimRef, ending: Ending) -> StoreFuture<'_, ()> {
@@ -221,6 +264,10 @@ impl JobStore for SqliteStore {
 
     fn release(&self, claim: ClaimRef) -> StoreFuture<'_, AfterLoss> {
         self.write(move |connection, now| claims::release(connection, claim, now))
+    }
+
+    fn demote(&self, claim: ClaimRef, is_outgrown: bool) -> StoreFuture<'_, AfterLoss> {
+        self.write(move |connection, now| claims::demote(connection, claim, is_outgrown, now))
     }
 
     fn lose(&self, claim: ClaimRef, problem: Problem, attempts_max: u32) -> StoreFuture<'_, AfterLoss> {
@@ -233,7 +280,14 @@ impl JobStore for SqliteStore {
         problem: Problem,
         attempts_max: u32,
     ) -> StoreFuture<'_, Vec<(JobId, AfterLoss)>> {
-        self.write(move |connection, now| claims::recover(connection, leases, &problem, attempts_max, now))
+        let lease_clock = Arc::clone(&self.lease_clock);
+        self.write(move |connection, now| {
+            let until = match leases {
+                Leases::Expired => lease_clock(),
+                Leases::All => i64::MAX,
+            };
+            claims::recover(connection, until, &problem, attempts_max, now)
+        })
     }
 
     fn end_queued(&self, id: JobId, ending: Ending) -> StoreFuture<'_, bool> {
@@ -256,12 +310,20 @@ impl JobStore for SqliteStore {
         self.read(keeping::due)
     }
 
-    fn oldest_ended(&self, kept: Kept) -> StoreFuture<'_, Option<JobId>> {
-        self.read(move |connection, _| keeping::oldest_ended(connection, kept))
+    fn first_to_go(&self, kept: Kept, asker: Tenant) -> StoreFuture<'_, Option<JobId>> {
+        self.read(move |connection, _| tenants::first_to_go(connection, kept, &asker))
+    }
+
+    fn first_to_go_of(&self, kept: Kept, tenant: Tenant) -> StoreFuture<'_, Option<JobId>> {
+        self.read(move |connection, _| tenants::first_to_go_of(connection, kept, &tenant))
     }
 
     fn current(&self, claims: Vec<ClaimRef>) -> StoreFuture<'_, HashSet<ClaimRef>> {
         self.read(move |connection, _| keeping::current(connection, &claims))
+    }
+
+    fn seal_secrets(&self, seal: Sealer) -> StoreFuture<'_, usize> {
+        self.write(move |connection, _| secrets::seal(connection, &*seal))
     }
 
     fn named(&self, keys: Vec<String>) -> StoreFuture<'_, HashSet<String>> {
@@ -278,7 +340,7 @@ impl JobStore for SqliteStore {
         epoch: u32,
         outcome: TryOutcome,
         next: NextTry,
-    ) -> StoreFuture<'_, ()> {
+    ) -> StoreFuture<'_, bool> {
         self.write(move |connection, now| outbox::note_try(connection, &delivery, epoch, &outcome, next, now))
     }
 

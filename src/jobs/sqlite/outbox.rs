@@ -62,7 +62,7 @@ pub(super) fn note_try(
     outcome: &TryOutcome,
     next: NextTry,
     now: i64,
-) -> Result<(), StoreError> {
+) -> Result<bool, StoreError> {
     let (state, next_at) = match next {
         NextTry::Delivered => (DeliveryState::Delivered, None),
         NextTry::After(pause) => (DeliveryState::Pending, Some(later(now, pause))),
@@ -73,9 +73,6 @@ pub(super) fn note_try(
             "UPDATE deliveries SET state = ?3, next_at = ?4 WHERE id = ?1 AND epoch = ?2 AND state = 'pending'",
         )?
         .execute(params![id, epoch, word_of(state), next_at])?;
-    if noted == 0 {
-        return Err(StoreError::ClaimVoid);
-    }
     let (status, error) = match outcome {
         TryOutcome::Answered(status) => (Some(*status), None),
         TryOutcome::Failed(error) => (None, Some(error)),
@@ -83,10 +80,12 @@ pub(super) fn note_try(
     connection
         .prepare_cached(
             "INSERT INTO tries (delivery, number, at, status, error)
-             VALUES (?1, 1 + (SELECT count(*) FROM tries WHERE delivery = ?1), ?2, ?3, ?4)",
+             SELECT id, 1 + (SELECT count(*) FROM tries WHERE delivery = ?1), ?2, ?3, ?4 FROM deliveries
+             WHERE id = ?1 AND (?5 OR epoch <> ?6)",
         )?
-        .execute(params![id, now, status, error])?;
-    Ok(())
+        // The receiver heard a try that was overtaken all the same.
+        .execute(params![id, now, status, error, noted > 0, epoch])?;
+    Ok(noted > 0)
 }
 
 pub(super) fn of_job(connection: &Connection, job: JobId) -> Result<Vec<Delivery>, StoreError> {

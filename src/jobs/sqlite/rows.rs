@@ -9,12 +9,13 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::jobs::TraceParent;
-use crate::jobs::store::{JobId, JobRow, Lane, StoreError};
+use crate::jobs::store::{JobId, JobRow, Lane, StoreError, Tenant};
 use crate::wire::{JobState, Operation};
 
 /// The columns that [`job`] reads, in its order.
 pub(super) const COLUMNS: &str = "id, operation, options, file_name, owner, labels, webhook, input, material, \
-     lane, state, epoch, attempts, created_at, cancel_at, started_at, finished_at, expires_at, ending, is_cached, trace";
+     lane, state, epoch, attempts, created_at, cancel_at, started_at, finished_at, expires_at, ending, is_cached, trace, tenant, \
+     is_outgrown";
 
 /// The row of a job.
 pub(super) fn get(connection: &Connection, id: JobId) -> Result<JobRow, StoreError> {
@@ -46,6 +47,8 @@ pub(super) fn job(row: &Row<'_>) -> rusqlite::Result<JobRow> {
         ending: json_if_any(row, 18)?,
         is_cached: row.get(19)?,
         trace: row.get::<_, Option<String>>(20)?.as_deref().and_then(TraceParent::parse),
+        tenant: Tenant::named(row.get::<_, String>(21)?),
+        is_outgrown: row.get(22)?,
     })
 }
 

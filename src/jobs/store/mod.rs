@@ -2,6 +2,7 @@
 
 mod outbox;
 mod row;
+mod tenant;
 
 use std::collections::HashSet;
 use std::pin::Pin;
@@ -12,6 +13,7 @@ use jiff::Timestamp;
 use crate::wire::{JobState, Problem};
 pub use outbox::{Delivery, DeliveryRequest, DeliveryState, DeliveryTry, NextTry, TryOutcome, Webhook};
 pub use row::{BlobRef, ClaimRef, Ending, IdempotencyKey, JobId, JobRow, Lane, NewJob, ResultRef};
+pub use tenant::{Holding, Tenant};
 
 /// A store that could not do what was asked.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -21,6 +23,14 @@ pub enum StoreError {
     QueueFull {
         /// How many.
         queued: usize,
+    },
+    /// As many jobs of this tenant wait as may beside those of others.
+    #[error("{queued} jobs of this caller wait already")]
+    ShareFull {
+        /// How many.
+        queued: usize,
+        /// How many may.
+        limit: usize,
     },
     /// There is no such job or delivery.
     #[error("no such job")]
@@ -73,8 +83,10 @@ pub struct ClaimRequest {
     pub lease: Duration,
     /// Jobs of this lane come first; those of the other one when there are none.
     pub prefer: Lane,
-    /// Those of the other one do not come at all.
+    /// Those of the other one do not come at all: it is a slot for small jobs.
     pub is_only: bool,
+    /// Most jobs of one tenant that run in slots of this kind.
+    pub share: usize,
 }
 
 /// What became of a job whose run was lost.
@@ -132,6 +144,9 @@ pub struct Change {
     pub at: Timestamp,
 }
 
+/// Seals a secret; `None`: it is sealed already.
+pub type Sealer = Box<dyn Fn(&str) -> Option<String> + Send>;
+
 /// Rows of jobs. Every method is atomic, and what it has changed outlasts the process when it returns.
 ///
 /// Times are those of the store's clock, so that the clocks of several workers need not agree. A job runs under a
@@ -141,7 +156,9 @@ pub struct Change {
 /// any longer, and the caller removes those files. Files are written before the row that names them.
 pub trait JobStore: Send + Sync {
     /// Admits a job, unless its key made one before. A job that must run is refused with [`StoreError::QueueFull`] when
-    /// `queue_max` jobs are queued already. When its source is gone or expired: [`StoreError::NotFound`].
+    /// `queue_max` jobs are queued already, and with [`StoreError::ShareFull`] when its tenant has as many in the queue as
+    /// there are free places: one tenant alone has half of them at most, two a third each, and there is always room for
+    /// another one. When its source is gone or expired: [`StoreError::NotFound`].
     fn create(&self, job: NewJob, queue_max: usize) -> StoreFuture<'_, Created>;
 
     /// The row.
@@ -166,7 +183,11 @@ pub trait JobStore: Send + Sync {
     /// Numbers of jobs.
     fn counts(&self) -> StoreFuture<'_, JobCounts>;
 
-    /// The oldest queued job becomes running; `None`: nothing is queued.
+    /// What a tenant has.
+    fn holding(&self, tenant: Tenant) -> StoreFuture<'_, Holding>;
+
+    /// A queued job becomes running: the oldest one of the tenant with the fewest running jobs, of several that whose turn
+    /// was longest ago. `None`: nothing is queued, or all that is belongs to tenants with their share of running jobs.
     fn claim(&self, request: ClaimRequest) -> StoreFuture<'_, Option<JobRow>>;
 
     /// Extends a claim by `lease` from now. True: the job is to be cancelled. [`StoreError::ClaimVoid`]: the run is in
@@ -178,6 +199,10 @@ pub trait JobStore: Send + Sync {
 
     /// Gives a running job back, as if it had not been claimed, but for the epoch.
     fn release(&self, claim: ClaimRef) -> StoreFuture<'_, AfterLoss>;
+
+    /// As [`release`](Self::release), and the job waits among the large ones from then on. `is_outgrown`: its run took more
+    /// memory than was thought.
+    fn demote(&self, claim: ClaimRef, is_outgrown: bool) -> StoreFuture<'_, AfterLoss>;
 
     /// The run is lost with whoever made it. The job is queued again, or ends with `problem` when that was its
     /// `attempts_max`th run to be lost.
@@ -207,11 +232,21 @@ pub trait JobStore: Send + Sync {
     /// Ended jobs that should have expired by now.
     fn due(&self) -> StoreFuture<'_, Vec<JobId>>;
 
-    /// The job that ended first.
-    fn oldest_ended(&self, kept: Kept) -> StoreFuture<'_, Option<JobId>>;
+    /// The job that is to go so that there is room for one of `asker`: the one that ended first, of `asker` itself when it
+    /// has its share (the same for all tenants) or more, otherwise of the tenant that has most: nobody loses what is within
+    /// its share to others. By number of jobs, or of bytes when only jobs with files are meant. Jobs whose webhook is still
+    /// to be sent come last.
+    fn first_to_go(&self, kept: Kept, asker: Tenant) -> StoreFuture<'_, Option<JobId>>;
+
+    /// The ended job of this tenant that is to go first.
+    fn first_to_go_of(&self, kept: Kept, tenant: Tenant) -> StoreFuture<'_, Option<JobId>>;
 
     /// Those of the claims by which a job runs now.
     fn current(&self, claims: Vec<ClaimRef>) -> StoreFuture<'_, HashSet<ClaimRef>>;
+
+    /// Puts sealed secrets in the place of plain ones, which an older program left: `seal` gives nothing for one that is
+    /// sealed already. How many there were.
+    fn seal_secrets(&self, seal: Sealer) -> StoreFuture<'_, usize>;
 
     /// Those of the blobs that a row names, by their keys.
     fn named(&self, keys: Vec<String>) -> StoreFuture<'_, HashSet<String>>;
@@ -219,15 +254,15 @@ pub trait JobStore: Send + Sync {
     /// Deliveries that are due, the longest due first, so that no receiver is sent more than its share at one time.
     fn claim_deliveries(&self, request: DeliveryRequest) -> StoreFuture<'_, Vec<Delivery>>;
 
-    /// Notes a try of a delivery that was claimed, and what is next. [`StoreError::ClaimVoid`] when `epoch` is not that
-    /// of its latest claim.
+    /// Notes a try of a delivery that was claimed, and what is next. False when `epoch` is not that of its latest claim: the
+    /// try is kept, and decides nothing.
     fn note_try(
         &self,
         delivery: String,
         epoch: u32,
         outcome: TryOutcome,
         next: NextTry,
-    ) -> StoreFuture<'_, ()>;
+    ) -> StoreFuture<'_, bool>;
 
     /// The deliveries of a job.
     fn deliveries(&self, job: JobId) -> StoreFuture<'_, Vec<Delivery>>;

@@ -9,7 +9,8 @@ use serde::{Deserialize, Serialize};
 use uuid::Uuid;
 
 use super::outbox::Webhook;
-use crate::jobs::TraceParent;
+use super::tenant::Tenant;
+use crate::jobs::{TraceParent, wall};
 use crate::wire::{
     Encoding, Fidelity, JobState, Labels, Operation, Options, Outcome, Problem, Progress, TimingMs,
 };
@@ -91,6 +92,8 @@ pub struct NewJob {
     pub file_name: Option<String>,
     /// Who submitted it, by the name of the key.
     pub owner: Option<String>,
+    /// Whom it is charged to.
+    pub tenant: Tenant,
     /// Where its request belongs in a trace.
     pub trace: Option<TraceParent>,
     /// Words of the caller.
@@ -135,6 +138,8 @@ pub struct JobRow {
     pub file_name: Option<String>,
     /// Who submitted it, by the name of the key.
     pub owner: Option<String>,
+    /// Whom it is charged to.
+    pub tenant: Tenant,
     /// Where its request belongs in a trace.
     pub trace: Option<TraceParent>,
     /// Words of the caller.
@@ -147,6 +152,8 @@ pub struct JobRow {
     pub material: Option<BlobRef>,
     /// Where it waits.
     pub lane: Lane,
+    /// A run of it took more memory than was thought.
+    pub is_outgrown: bool,
     /// Where it stands.
     pub state: JobState,
     /// Number of times it was claimed; only the latest claim may finish it.
@@ -177,7 +184,7 @@ impl JobRow {
 
     /// Its files should have gone by now.
     pub fn is_due(&self) -> bool {
-        self.state != JobState::Expired && self.expires_at.is_some_and(|at| at <= Timestamp::now())
+        self.state != JobState::Expired && self.expires_at.is_some_and(|at| at <= wall::now())
     }
 
     /// True when `job` has the same input and asks for the same.

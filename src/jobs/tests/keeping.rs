@@ -232,7 +232,7 @@ async fn an_upload_that_is_there_holds_a_place_in_the_queue_and_one_that_trickle
     assert_eq!(slow.finish().await.unwrap_err().code, ProblemCode::QueueFull);
     assert_eq!(house.spool_files(), 1);
     // A material needs no place of its own.
-    house.upload_beside().await.unwrap().finish().await.unwrap();
+    house.upload_beside(Tenant::nobody()).await.unwrap().finish().await.unwrap();
     drop(whole);
     house.run(b"next").await;
 }

@@ -1,6 +1,8 @@
 //! The rules of a job's life, each on the smallest case that shows it, with engines made for the purpose.
 
 mod keeping;
+mod losing;
+mod neighbours;
 mod restarting;
 mod running;
 mod stores;
@@ -21,6 +23,7 @@ use crate::wire::{InputRef, Job, JobState, Operation, Options, Outcome, Problem,
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// A service in a directory of its own.
+#[derive(Debug)]
 struct House {
     jobs: Jobs,
     dir: tempfile::TempDir,

@@ -95,19 +95,24 @@ impl Dialer {
     }
 }
 
+/// What the owner hears of a host that cannot be reached, or must not be.
+const NO_CONNECTION: &str = "no connection";
+
 /// Why a call failed, for the owner of the job.
 fn reason(error: &reqwest::Error) -> String {
     let mut source = error.source();
     while let Some(cause) = source {
         if let Some(refused) = cause.downcast_ref::<AddressRefused>() {
-            return refused.to_string();
+            // For the operator only: to the owner it would tell which names resolve inside this network.
+            tracing::warn!("a webhook is not sent: {refused}");
+            return NO_CONNECTION.to_owned();
         }
         source = cause.source();
     }
     let text = if error.is_timeout() {
         "no answer in time"
     } else if error.is_connect() {
-        "no connection"
+        NO_CONNECTION
     } else {
         "the connection broke"
     };
@@ -153,15 +158,24 @@ mod tests {
         Message { id: "msg_1".into(), timestamp: 7, signature: "v1,x".into(), payload: b"{}".to_vec() }
     }
 
-    /// What a call to a host with these addresses gives.
-    async fn called(addresses: &[&str]) -> String {
+    fn lookup(addresses: &[&str]) -> Lookup {
         let found: Vec<SocketAddr> =
             addresses.iter().map(|text| (text.parse::<IpAddr>().unwrap(), 0).into()).collect();
-        let lookup: Lookup = Arc::new(move |_| {
+        Arc::new(move |_| {
             let found = found.clone();
             Box::pin(async move { Ok(found) })
-        });
-        let dialer = Dialer::with_lookup(PATIENCE, lookup).unwrap();
+        })
+    }
+
+    /// Why a name with these addresses does not resolve.
+    async fn resolved(addresses: &[&str]) -> String {
+        let resolving = PublicOnly(lookup(addresses)).resolve("rebinding.example".parse().unwrap());
+        resolving.await.err().unwrap().to_string()
+    }
+
+    /// What a call to a host with these addresses gives.
+    async fn called(addresses: &[&str]) -> String {
+        let dialer = Dialer::with_lookup(PATIENCE, lookup(addresses)).unwrap();
         let target = Target::parse("https://rebinding.example/", &PrivateHosts::default()).unwrap();
         dialer.call(&target, message()).await.unwrap_err()
     }
@@ -169,11 +183,13 @@ mod tests {
     #[tokio::test]
     async fn a_name_that_resolves_to_a_place_that_is_not_public_is_not_called() {
         for address in ["127.0.0.1", "::1", "10.0.0.1", "169.254.169.254", "::ffff:127.0.0.1", "0.0.0.0"] {
-            let refused = called(&[address]).await;
+            let refused = resolved(&[address]).await;
             assert!(refused.contains("not public"), "{address}: {refused}");
+            assert_eq!(called(&[address]).await, NO_CONNECTION, "nobody hears that the name resolves");
         }
-        let mixed = called(&["8.8.8.8", "127.0.0.1"]).await;
+        let mixed = resolved(&["8.8.8.8", "127.0.0.1"]).await;
         assert!(mixed.contains("not public"), "one bad address is enough: {mixed}");
+        assert_eq!(called(&["8.8.8.8", "127.0.0.1"]).await, NO_CONNECTION);
     }
 
     /// Answers one connection with `answer`; gives what it heard.

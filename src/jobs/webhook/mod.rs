@@ -1,7 +1,8 @@
 //! Webhooks: a call to a URL of the caller's when a job ends, signed as the Standard Webhooks specification says.
 //!
 //! `target` and `address` decide what may be called, `dial` calls exactly that, `signature` signs, `retry` says when a
-//! delivery is tried again, and `sender` does all this for what is in the outbox of the store.
+//! delivery is tried again, and `sender` does all this for what is in the outbox of the
+//! store. `vault` keeps the secrets of jobs sealed while they are stored.
 
 mod address;
 mod dial;
@@ -10,6 +11,7 @@ mod sender;
 mod settings;
 mod signature;
 mod target;
+mod vault;
 mod view;
 
 pub use retry::RetryPlan;
@@ -17,4 +19,6 @@ pub(super) use sender::Sender;
 pub use settings::WebhookSettings;
 pub use signature::{SecretError, WebhookSecret};
 pub use target::{PrivateHosts, Target, TargetError, URL_BYTES_MAX};
+pub(super) use vault::Vault;
+pub use vault::VaultError;
 pub(super) use view::view;

@@ -12,9 +12,10 @@ use super::retry::{Next, RetryPlan};
 use super::settings::WebhookSettings;
 use super::signature::{self, WebhookSecret};
 use super::target::Target;
+use super::vault::Vault;
 use crate::jobs::meters;
 use crate::jobs::service::Service;
-use crate::jobs::store::{Delivery, DeliveryRequest, JobRow, NextTry, StoreError, TryOutcome, Webhook};
+use crate::jobs::store::{Delivery, DeliveryRequest, JobRow, NextTry, TryOutcome, Webhook};
 use crate::jobs::view;
 use crate::wire::{JobState, WebhookEvent, WebhookMessage};
 
@@ -32,15 +33,16 @@ const CLAIM_MARGIN: Duration = Duration::from_secs(20);
 #[derive(Debug)]
 pub(in crate::jobs) struct Sender {
     settings: WebhookSettings,
+    vault: Arc<Vault>,
     dialer: Dialer,
 }
 
 impl Sender {
     /// # Errors
     /// The system has no root certificates that can be used.
-    pub(in crate::jobs) fn new(settings: WebhookSettings) -> Result<Self, reqwest::Error> {
+    pub(in crate::jobs) fn new(settings: WebhookSettings, vault: Arc<Vault>) -> Result<Self, reqwest::Error> {
         let dialer = Dialer::new(settings.timeout)?;
-        Ok(Self { settings, dialer })
+        Ok(Self { settings, vault, dialer })
     }
 
     /// Sends what is due until the service stops.
@@ -103,8 +105,8 @@ impl Sender {
             "webhook tried"
         );
         match service.store.note_try(delivery.id.clone(), delivery.epoch, outcome, next).await {
-            // Sent again meanwhile, or gone.
-            Ok(()) | Err(StoreError::ClaimVoid | StoreError::NotFound) => {}
+            Ok(true) => {}
+            Ok(false) => tracing::info!(delivery = delivery.id, "sent again or gone meanwhile"),
             Err(error) => {
                 tracing::warn!(delivery = delivery.id, %error, "a try of a webhook could not be noted");
             }
@@ -124,7 +126,10 @@ impl Sender {
 
     fn secrets(&self, webhook: &Webhook) -> Result<Vec<WebhookSecret>, String> {
         match &webhook.secret {
-            Some(own) => WebhookSecret::parse(own).map(|own| vec![own]).map_err(|error| error.to_string()),
+            Some(own) => {
+                let own = self.vault.unsealed(own).map_err(|error| error.to_string())?;
+                WebhookSecret::parse(&own).map(|own| vec![own]).map_err(|error| error.to_string())
+            }
             None if self.settings.secrets.is_empty() => Err("the server has no secret any more".to_owned()),
             None => Ok(self.settings.secrets.clone()),
         }

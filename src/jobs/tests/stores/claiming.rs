@@ -39,7 +39,7 @@ pub(super) async fn a_preferred_lane_comes_first_and_the_other_one_is_not_left<H
         ids.push(admit(&*store, NewJob { lane, ..job() }).await.id);
     }
     let ask = async |prefer, is_only| {
-        let request = ClaimRequest { worker: "w".to_owned(), lease: LEASE, prefer, is_only };
+        let request = ClaimRequest { worker: "w".to_owned(), lease: LEASE, prefer, is_only, share: 1 };
         store.claim(request).await.unwrap().map(|row| row.id)
     };
     let claim = async |prefer| ask(prefer, false).await;

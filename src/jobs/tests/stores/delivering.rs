@@ -173,10 +173,16 @@ pub(super) async fn the_try_of_an_old_claim_does_not_count<H: StoreHouse>() {
     let note = async |one: &Delivery| {
         store.note_try(one.id.clone(), one.epoch, TryOutcome::Answered(200), NextTry::Delivered).await
     };
-    assert_eq!(note(&old).await, VOID);
-    assert_eq!(note(&new).await, Ok(()));
-    assert_eq!(note(&new).await, VOID, "only once");
-    assert_eq!(store.deliveries(new.job).await.unwrap()[0].tries.len(), 1);
+    assert_eq!(note(&old).await, Ok(false));
+    let listed = store.deliveries(new.job).await.unwrap();
+    assert_eq!(
+        (listed[0].state, listed[0].tries.len()),
+        (DeliveryState::Pending, 1),
+        "it is kept all the same"
+    );
+    assert_eq!(note(&new).await, Ok(true));
+    assert_eq!(note(&new).await, Ok(false), "only once");
+    assert_eq!(store.deliveries(new.job).await.unwrap()[0].tries.len(), 2);
 }
 
 pub(super) async fn deliveries_go_with_their_job<H: StoreHouse>() {
@@ -186,7 +192,7 @@ pub(super) async fn deliveries_go_with_their_job<H: StoreHouse>() {
     store.delete(one.job).await.unwrap();
     assert!(store.deliveries(one.job).await.unwrap().is_empty());
     let outcome = TryOutcome::Answered(200);
-    assert_eq!(store.note_try(one.id, one.epoch, outcome, NextTry::Delivered).await, VOID);
+    assert_eq!(store.note_try(one.id, one.epoch, outcome, NextTry::Delivered).await, Ok(false));
 }
 
 pub(super) async fn deliveries_outlast_the_process<H: StoreHouse>() {

@@ -6,6 +6,7 @@ mod delivering;
 mod ending;
 mod finding;
 mod keeping;
+mod sharing;
 mod sqlite;
 
 use std::sync::Arc;
@@ -14,7 +15,7 @@ use std::time::Duration;
 
 use crate::jobs::{
     BlobRef, ClaimRequest, Created, Ending, IdempotencyKey, JobId, JobRow, JobStore, Lane, NewJob, ResultRef,
-    StoreError, Webhook,
+    StoreError, Tenant, Webhook,
 };
 use crate::wire::{Encoding, JobState, Labels, Operation, Options, Outcome, Problem, ProblemCode, Progress};
 
@@ -120,6 +121,16 @@ macro_rules! contract {
                 jobs_are_listed_by_state_and_labels,
                 counts_follow_the_jobs,
             }
+            sharing {
+                tenants_are_served_in_turn_and_those_with_fewer_running_jobs_first,
+                no_tenant_has_more_running_jobs_than_its_share_in_slots_of_a_kind,
+                a_tenant_has_as_many_places_in_the_queue_as_are_free,
+                nobody_loses_what_is_within_its_share,
+                a_job_whose_webhook_is_still_to_be_sent_goes_last,
+                what_a_tenant_has_follows_its_jobs,
+                a_job_that_is_larger_than_was_thought_waits_among_the_large_ones,
+                plain_secrets_are_sealed_once,
+            }
             delivering {
                 a_delivery_is_made_with_every_kind_of_end,
                 a_job_without_a_webhook_makes_no_delivery,
@@ -150,6 +161,7 @@ fn job() -> NewJob {
         options: Options::default(),
         file_name: None,
         owner: None,
+        tenant: Tenant::nobody(),
         trace: None,
         labels: Labels::new(),
         webhook: None,
@@ -181,8 +193,13 @@ async fn admit(store: &dyn JobStore, job: NewJob) -> JobRow {
 }
 
 async fn claim(store: &dyn JobStore) -> Option<JobRow> {
-    let request =
-        ClaimRequest { worker: "w".to_owned(), lease: LEASE, prefer: Lane::Interactive, is_only: false };
+    let request = ClaimRequest {
+        worker: "w".to_owned(),
+        lease: LEASE,
+        prefer: Lane::Interactive,
+        is_only: false,
+        share: 1,
+    };
     store.claim(request).await.unwrap()
 }
 
