@@ -207,7 +207,7 @@ mod tests {
     #[test]
     fn defaults_are_valid_and_known_as_such() {
         let loaded = Sources::default().load().unwrap();
-        assert_eq!(queue_max(&loaded), (64, "default".to_owned()));
+        assert_eq!(queue_max(&loaded), (128, "default".to_owned()));
         assert!(!loaded.is_given("queue_max") && loaded.warnings.is_empty());
         assert_eq!(loaded.entries.len(), SETTINGS.len());
     }
@@ -257,7 +257,7 @@ mod tests {
             loaded.warnings,
             ["MESHMEND_QUEUE_MAXX is no setting; did you mean `MESHMEND_QUEUE_MAX`?"]
         );
-        assert_eq!(queue_max(&loaded).0, 64);
+        assert_eq!(queue_max(&loaded).0, 128);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Words of a text file and the lines they stand on.
 
 use super::{Place, ReadError};
-use memchr::{memchr, memchr2};
+use memchr::{memchr, memchr2, memrchr2};
 
 /// What a text format makes of two special characters.
 #[derive(Debug, Clone, Copy, Default)]
@@ -152,10 +152,23 @@ fn line_end(bytes: &[u8], from: usize) -> usize {
 /// Refuses text with a zero byte in it: as a blank it would divide the numbers of a file in UTF-16 into digits, which are
 /// another mesh.
 pub(super) fn check_text(bytes: &[u8]) -> Result<(), ReadError> {
-    let Some(zero) = memchr(0, bytes) else { return Ok(()) };
-    let mut words = Words::new(&bytes[..zero], 1, Dialect::default());
-    while words.next_line() {}
-    Err(ReadError::unparseable(words.place(), "a zero byte", "text without zero bytes, in UTF-8"))
+    let mut from = 0;
+    while let Some(zero) = memchr(0, &bytes[from..]).map(|zero| from + zero) {
+        let start = memrchr2(b'\n', b'\r', &bytes[..zero]).map_or(0, |end| end + 1);
+        // Nothing in a comment is read.
+        if bytes[start..zero].contains(&b'#') {
+            from = line_end(bytes, zero);
+            continue;
+        }
+        let mut words = Words::new(&bytes[..zero], 1, Dialect::default());
+        while words.next_line() {}
+        return Err(ReadError::unparseable(
+            words.place(),
+            "a zero byte",
+            "text without zero bytes, in UTF-8",
+        ));
+    }
+    Ok(())
 }
 
 /// A piece of a file for an error message: printable and short.
@@ -231,9 +244,11 @@ mod tests {
 
     #[test]
     fn a_zero_byte_is_told_with_its_line() {
-        assert_eq!(check_text(b"v 0 0 0\r\nv 1 0 0\r"), Ok(()));
+        for text in [&b"v 0 0 0\r\nv 1 0 0\r"[..], b"v 0 0 0\n# a\0b\0\nv 1 0 0", b"v 0 0 0 # \0"] {
+            assert_eq!(check_text(text), Ok(()));
+        }
         for (text, line) in
-            [(&b"\0"[..], 1), (b"v 0 0 0\rv 1 \0 0", 2), (b"v 0 0 0\r\n\r\n# a\0", 3), (b"a\n\0", 2)]
+            [(&b"\0"[..], 1), (b"v 0 0 0\rv 1 \0 0", 2), (b"# \0\r\n\r\nv \0# a\0", 3), (b"a\n\0", 2)]
         {
             let error = check_text(text).unwrap_err().to_string();
             let told = format!("line {line}: found a zero byte; expected text without zero bytes, in UTF-8");

@@ -3,6 +3,7 @@
 
 use std::fs;
 use std::io::{self, Write as _};
+use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -152,7 +153,8 @@ fn write_mark(data_dir: &Path, mark: &str) -> io::Result<()> {
     }
     let path = mark_file(data_dir);
     let unfinished = path.with_extension("unfinished");
-    let mut file = fs::File::create(&unfinished)?;
+    let mut file =
+        fs::OpenOptions::new().write(true).create(true).truncate(true).mode(0o600).open(&unfinished)?;
     file.write_all(mark.as_bytes())?;
     file.sync_all()?;
     fs::rename(&unfinished, &path)?;

@@ -136,7 +136,7 @@ impl<'i> Original<'i> {
             let mut changed = Changed::of(self.input, result, origins, budget)?;
             let mut moved = [0.0; 2];
             let (mut covered_area, mut buried_area) = (0.0, 0.0);
-            if let Some(covered) = covered {
+            if let Some(covered) = covered.filter(|covered| covered.moved <= self.lost_beyond / 10.0) {
                 let (known, gone) = std::mem::take(&mut changed.gone)
                     .into_iter()
                     .partition(|t| covered.triangles.binary_search(t).is_ok());

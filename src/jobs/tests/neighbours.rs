@@ -69,7 +69,10 @@ async fn the_queue_of_one_leaves_places_for_another() {
 
 #[tokio::test]
 async fn uploads_of_one_leave_room_for_those_of_another() {
-    let house = house(|settings| (settings.slots, settings.data_bytes_max) = (0, 1000), mend).await;
+    let change = |settings: &mut JobsSettings| {
+        (settings.slots, settings.data_bytes_max, settings.queue_max) = (0, 1000, 100);
+    };
+    let house = house(change, mend).await;
     house.order_of("loud", &[1; 400], false).await.unwrap();
     let refused = house.order_of("loud", &[2; 300], false).await.unwrap_err();
     assert_eq!(
@@ -103,7 +106,8 @@ async fn a_tenant_may_be_held_to_a_number_of_jobs_and_bytes_of_its_own() {
 #[tokio::test]
 async fn no_tenant_has_every_slot() {
     let change = |settings: &mut JobsSettings| {
-        (settings.slots, settings.interactive_slots, settings.queue_max) = (2, 2, 100)
+        (settings.slots, settings.interactive_slots, settings.queue_max) = (2, 2, 100);
+        settings.drain_grace = Duration::from_millis(10);
     };
     let house = house(change, work_forever).await;
     for number in 0..3_u8 {
@@ -118,6 +122,7 @@ async fn no_tenant_has_every_slot() {
         assert_eq!(house.get(id(&job)).await.unwrap().state, JobState::Running);
     }
     assert_eq!(house.load().await.queued, 4);
+    house.drain().await;
 }
 
 #[tokio::test]

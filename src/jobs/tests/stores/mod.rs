@@ -193,12 +193,17 @@ async fn admit(store: &dyn JobStore, job: NewJob) -> JobRow {
 }
 
 async fn claim(store: &dyn JobStore) -> Option<JobRow> {
+    claim_of_many(store, 1).await
+}
+
+/// A claim where one tenant may have so many running jobs.
+async fn claim_of_many(store: &dyn JobStore, share: usize) -> Option<JobRow> {
     let request = ClaimRequest {
         worker: "w".to_owned(),
         lease: LEASE,
         prefer: Lane::Interactive,
         is_only: false,
-        share: 1,
+        share,
     };
     store.claim(request).await.unwrap()
 }
@@ -206,7 +211,7 @@ async fn claim(store: &dyn JobStore) -> Option<JobRow> {
 /// A job that runs.
 async fn running(store: &dyn JobStore, job: NewJob) -> JobRow {
     let id = admit(store, job).await.id;
-    let row = claim(store).await.unwrap();
+    let row = claim_of_many(store, 64).await.unwrap();
     assert_eq!(row.id, id, "nothing else waits");
     row
 }
