@@ -155,9 +155,13 @@ pub(super) fn check_text(bytes: &[u8]) -> Result<(), ReadError> {
     let mut from = 0;
     while let Some(zero) = memchr(0, &bytes[from..]).map(|zero| from + zero) {
         let start = memrchr2(b'\n', b'\r', &bytes[..zero]).map_or(0, |end| end + 1);
-        // Nothing in a comment is read.
-        if bytes[start..zero].contains(&b'#') {
-            from = line_end(bytes, zero);
+        let end = line_end(bytes, zero);
+        // Nothing in a comment is read, nor a line of which the first byte begins no word or number: what some programs leave
+        // behind the text.
+        let begins = bytes[start..end].iter().find(|byte| !matches!(byte, 0 | b' ' | b'\t'));
+        let is_read = begins.is_none_or(|byte| byte.is_ascii_alphanumeric() || b"+-.".contains(byte));
+        if !is_read || bytes[start..zero].contains(&b'#') {
+            from = end;
             continue;
         }
         let mut words = Words::new(&bytes[..zero], 1, Dialect::default());
@@ -244,7 +248,12 @@ mod tests {
 
     #[test]
     fn a_zero_byte_is_told_with_its_line() {
-        for text in [&b"v 0 0 0\r\nv 1 0 0\r"[..], b"v 0 0 0\n# a\0b\0\nv 1 0 0", b"v 0 0 0 # \0"] {
+        for text in [
+            &b"v 0 0 0\r\nv 1 0 0\r"[..],
+            b"v 0 0 0\n# a\0b\0\nv 1 0 0",
+            b"v 0 0 0 # \0",
+            b"v 0 0 0\n:\xF3\0\0\x01\r\0\xF3",
+        ] {
             assert_eq!(check_text(text), Ok(()));
         }
         for (text, line) in
