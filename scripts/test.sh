@@ -128,6 +128,7 @@ start_server() {
   read -r port admin_port < <(free_ports) || return 1
   rm -rf "$data" && mkdir -p "$data" || return 1
   MESHMEND_LISTEN=127.0.0.1:$port MESHMEND_ADMIN_LISTEN=127.0.0.1:$admin_port MESHMEND_DATA_DIR=$data \
+    MESHMEND_RATE_PER_MINUTE=0 \
     target/debug/meshmend serve >"$log" 2>&1 &
   server_pid=$!
   server_url=http://127.0.0.1:$port
