@@ -40,6 +40,8 @@ class Server:
         self.folder = tempfile.mkdtemp(prefix="meshmend-campaign-")
         self.port, self.admin_port = free_ports(2)
         environment = {name: value for name, value in os.environ.items() if not name.startswith("MESHMEND_")}
+        # One caller sends all that is measured.
+        environment["MESHMEND_RATE_PER_MINUTE"] = "0"
         self.log = open(os.path.join(self.folder, "log"), "wb")
         self.environment = environment
         self.command = [binary, "serve", "--listen", f"127.0.0.1:{self.port}", "--admin-listen", f"127.0.0.1:{self.admin_port}",
