@@ -35,7 +35,8 @@ pub(super) enum Command {
     /// Write a mesh in another format.
     #[command(arg_required_else_help = true)]
     Convert(ConvertArguments),
-    /// Write a mesh with fewer triangles; its certificate says what holds.
+    /// Write a mesh with fewer triangles; its certificate says what holds. With several --targets each has a file of its own: OUT-1,
+    /// OUT-2 and so on.
     #[command(arg_required_else_help = true)]
     Simplify(SimplifyArguments),
     /// Cut singular edges and vertices and join boundary edges; the certificate of the result says what holds.
@@ -57,6 +58,18 @@ pub(super) enum Command {
         /// Format of the input. Default: told by the content.
         #[arg(long, value_name = "WORD", value_parser = clap::builder::PossibleValuesParser::new(crate::wire::Format::WORDS))]
         format: Option<String>,
+    },
+    /// Print the completions of a shell: `meshmend completions bash > /etc/bash_completion.d/meshmend`.
+    Completions {
+        /// The shell.
+        #[arg(value_name = "SHELL")]
+        shell: clap_complete::Shell,
+    },
+    /// Write the manual pages, one for each command, into a folder.
+    Man {
+        /// The folder, which is made where it is missing.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
     },
     /// Exit with 0 if the service on this machine is ready (for containers).
     Healthcheck(ServiceArguments),
@@ -124,10 +137,10 @@ impl ServeArguments {
 /// What every operation on a file takes.
 #[derive(Debug, Args)]
 struct InputArguments {
-    /// Mesh file, or - for standard input, which needs --format.
-    #[arg(value_name = "IN")]
-    input: Place,
-    /// Print the report as JSON on standard output.
+    /// Mesh file, or - for standard input, which needs --format. Several files are taken one after the other.
+    #[arg(value_name = "IN", required = true, num_args = 1..)]
+    inputs: Vec<Place>,
+    /// Print the report as JSON on standard output; of several files one object a line, with the file's name as `input`.
     #[arg(long)]
     json: bool,
     /// Write the report for people to this file: one page that loads nothing.
@@ -143,6 +156,41 @@ struct InputArguments {
     config: Option<PathBuf>,
     #[command(flatten)]
     settings: EngineSettingFlags,
+}
+
+/// Where a result goes.
+#[derive(Debug, Args)]
+#[group(required = true, multiple = false)]
+struct OutputArguments {
+    /// File to write, or - for standard output, which needs --output-format. Its extension names the format unless
+    /// --output-format does.
+    #[arg(short, long, value_name = "OUT")]
+    output: Option<Place>,
+    /// Folder to write results into, each under the name of its file; it is made where it is missing. With
+    /// --output-format the extension follows the format.
+    #[arg(short = 'd', long, value_name = "DIR")]
+    out_dir: Option<PathBuf>,
+}
+
+impl OutputArguments {
+    fn target(self) -> Target {
+        match (self.output, self.out_dir) {
+            (Some(place), _) => Target::Place(place),
+            (None, Some(folder)) => Target::Folder(folder),
+            (None, None) => Target::None,
+        }
+    }
+}
+
+/// Where results go.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Target {
+    /// Nothing is written.
+    None,
+    /// The result of the only file.
+    Place(Place),
+    /// The result of each file, under its name.
+    Folder(PathBuf),
 }
 
 #[derive(Debug, Args)]
@@ -161,10 +209,8 @@ pub(super) struct VerifyArguments {
 pub(super) struct RepairArguments {
     #[command(flatten)]
     given: InputArguments,
-    /// File to write, or - for standard output, which needs --output-format. Its extension names the format unless
-    /// --output-format does.
-    #[arg(short, long, value_name = "OUT")]
-    output: Place,
+    #[command(flatten)]
+    output: OutputArguments,
     /// Write the best result there is although it is not certified (--require best_effort); the exit code stays 1.
     #[arg(long)]
     best_effort: bool,
@@ -174,40 +220,32 @@ pub(super) struct RepairArguments {
 pub(super) struct ConvertArguments {
     #[command(flatten)]
     given: InputArguments,
-    /// File to write, or - for standard output, which needs --output-format. Its extension names the format unless
-    /// --output-format does.
-    #[arg(short, long, value_name = "OUT")]
-    output: Place,
+    #[command(flatten)]
+    output: OutputArguments,
 }
 
 #[derive(Debug, Args)]
 pub(super) struct SimplifyArguments {
     #[command(flatten)]
     given: InputArguments,
-    /// File to write, or - for standard output, which needs --output-format. Its extension names the format unless
-    /// --output-format does. With several --targets each has its own file: OUT-1, OUT-2 and so on.
-    #[arg(short, long, value_name = "OUT")]
-    output: Place,
+    #[command(flatten)]
+    output: OutputArguments,
 }
 
 #[derive(Debug, Args)]
 pub(super) struct CutStitchArguments {
     #[command(flatten)]
     given: InputArguments,
-    /// File to write, or - for standard output, which needs --output-format. Its extension names the format unless
-    /// --output-format does.
-    #[arg(short, long, value_name = "OUT")]
-    output: Place,
+    #[command(flatten)]
+    output: OutputArguments,
 }
 
 #[derive(Debug, Args)]
 pub(super) struct FillHolesArguments {
     #[command(flatten)]
     given: InputArguments,
-    /// File to write, or - for standard output, which needs --output-format. Its extension names the format unless
-    /// --output-format does.
-    #[arg(short, long, value_name = "OUT")]
-    output: Place,
+    #[command(flatten)]
+    output: OutputArguments,
 }
 
 #[derive(Debug, Args)]
@@ -221,11 +259,12 @@ pub(super) struct ModellerArguments {
 }
 
 /// An operation on a file, whichever command named it.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Request {
     pub operation: Operation,
-    pub input: Place,
-    pub output: Option<Place>,
+    /// One or more.
+    pub inputs: Vec<Place>,
+    pub target: Target,
     pub is_json: bool,
     pub report_html: Option<PathBuf>,
     pub material: Option<PathBuf>,
@@ -235,11 +274,11 @@ pub(super) struct Request {
 }
 
 impl InputArguments {
-    fn request(self, operation: Operation, output: Option<Place>) -> Request {
+    fn request(self, operation: Operation, target: Target) -> Request {
         Request {
             operation,
-            input: self.input,
-            output,
+            inputs: self.inputs,
+            target,
             is_json: self.json,
             report_html: self.report_html,
             material: self.material,
@@ -251,19 +290,19 @@ impl InputArguments {
 
 impl AnalyzeArguments {
     pub(super) fn request(self, operation: Operation) -> Request {
-        self.given.request(operation, None)
+        self.given.request(operation, Target::None)
     }
 }
 
 impl From<VerifyArguments> for Request {
     fn from(given: VerifyArguments) -> Self {
-        given.given.request(Operation::Verify, None)
+        given.given.request(Operation::Verify, Target::None)
     }
 }
 
 impl From<RepairArguments> for Request {
     fn from(given: RepairArguments) -> Self {
-        let mut request = given.given.request(Operation::Repair, Some(given.output));
+        let mut request = given.given.request(Operation::Repair, given.output.target());
         if given.best_effort {
             request.options.push(("require".to_owned(), "best_effort".to_owned()));
         }
@@ -273,30 +312,30 @@ impl From<RepairArguments> for Request {
 
 impl From<SimplifyArguments> for Request {
     fn from(given: SimplifyArguments) -> Self {
-        given.given.request(Operation::Simplify, Some(given.output))
+        given.given.request(Operation::Simplify, given.output.target())
     }
 }
 
 impl From<CutStitchArguments> for Request {
     fn from(given: CutStitchArguments) -> Self {
-        given.given.request(Operation::CutStitch, Some(given.output))
+        given.given.request(Operation::CutStitch, given.output.target())
     }
 }
 
 impl From<FillHolesArguments> for Request {
     fn from(given: FillHolesArguments) -> Self {
-        given.given.request(Operation::FillHoles, Some(given.output))
+        given.given.request(Operation::FillHoles, given.output.target())
     }
 }
 
 impl From<ModellerArguments> for Request {
     fn from(given: ModellerArguments) -> Self {
-        given.given.request(Operation::Modeller, given.output)
+        given.given.request(Operation::Modeller, given.output.map_or(Target::None, Target::Place))
     }
 }
 
 impl From<ConvertArguments> for Request {
     fn from(given: ConvertArguments) -> Self {
-        given.given.request(Operation::Convert, Some(given.output))
+        given.given.request(Operation::Convert, given.output.target())
     }
 }

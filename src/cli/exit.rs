@@ -45,8 +45,9 @@ pub(super) fn say(message: &str) {
     let _ = writeln!(std::io::stderr(), "meshmend: {message}");
 }
 
-/// Writes text to standard output; a reader that has gone (`| head`) is no error.
+/// Writes text to standard output, with its colours where that is a terminal that has them and `NO_COLOR` is not set; a reader
+/// that has gone (`| head`) is no error.
 pub(super) fn print(text: &str) {
-    let mut out = std::io::stdout().lock();
+    let mut out = anstream::stdout().lock();
     let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
 }

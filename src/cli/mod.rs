@@ -5,9 +5,12 @@ mod check;
 mod exit;
 mod files;
 mod flags;
+mod manual;
 mod model;
 mod settings;
+mod several;
 mod summary;
+mod text;
 mod watch;
 mod work;
 
@@ -80,15 +83,17 @@ fn execute(command: Command, service: Service) -> Exit {
         Command::Config(SettingsCommand::Check { given, strict }) => {
             settings::check(&given.sources(), strict)
         }
-        Command::Analyze(given) => work::run(&given.request(Operation::Analyze)),
-        Command::Plan(given) => work::run(&given.request(Operation::Plan)),
-        Command::Verify(given) => work::run(&given.into()),
-        Command::Repair(given) => work::run(&given.into()),
-        Command::Convert(given) => work::run(&given.into()),
-        Command::Simplify(given) => work::run(&given.into()),
-        Command::CutStitch(given) => work::run(&given.into()),
-        Command::FillHoles(given) => work::run(&given.into()),
-        Command::Modeller(given) => work::run(&given.into()),
+        Command::Completions { shell } => manual::print_completions(shell),
+        Command::Man { folder } => manual::write_pages(&folder),
+        Command::Analyze(given) => several::run(&given.request(Operation::Analyze)),
+        Command::Plan(given) => several::run(&given.request(Operation::Plan)),
+        Command::Verify(given) => several::run(&given.into()),
+        Command::Repair(given) => several::run(&given.into()),
+        Command::Convert(given) => several::run(&given.into()),
+        Command::Simplify(given) => several::run(&given.into()),
+        Command::CutStitch(given) => several::run(&given.into()),
+        Command::FillHoles(given) => several::run(&given.into()),
+        Command::Modeller(given) => several::run(&given.into()),
         Command::Check { input, format } => {
             check::run(&input, format.and_then(|word| Format::from_name(&word)))
         }

@@ -1,10 +1,12 @@
 //! The report for people: a screen of text, the most telling things first.
 
 use super::model;
+use super::text::{BAD, DOUBTFUL, GOOD, PLAIN, QUIET, STRONG, aligned, counted, figure, painted};
 use crate::wire::{
-    Action, Certificate, Claim, Defect, DefectCode, Deviation, Hole, JoinedEdges, Level, MeshInfo, Operation,
-    PrintingCheck, Proposal, Report, Severity, TargetSpec, Witness,
+    Action, Certificate, Claim, Defect, DefectCode, Deviation, Fidelity, Hole, JoinedEdges, Level, MeshInfo,
+    Operation, PrintingCheck, Proposal, Report, Severity, TargetSpec, Witness,
 };
+use anstyle::Style;
 use std::fmt::Write as _;
 
 /// What a report is about, as the user calls it.
@@ -19,14 +21,14 @@ pub(super) struct Subject {
 /// The report as text, with a line end.
 pub(super) fn summary(report: &Report, subject: &Subject) -> String {
     let mut text = String::new();
-    put(&mut text, &headline(report));
+    put(&mut text, &painted(style_of(report), &headline(report)));
     put(&mut text, &head(report, subject));
     if let Some(mesh) = &report.before {
         put(&mut text, &format!("  {}", size(mesh)));
         if let Some(question) = mesh.unit_hypothesis.as_ref().and_then(|told| told.question.as_ref()) {
             put(&mut text, &format!("  {question}"));
         }
-        put_table(&mut text, "defects", &mesh.defects.iter().map(defect_row).collect::<Vec<_>>());
+        put_styled(&mut text, "defects", &mesh.defects.iter().map(defect_row).collect::<Vec<_>>());
         match &report.holes {
             Some(holes) => put_table(&mut text, "holes", &fate_rows(holes)),
             None if matches!(report.operation, Operation::Analyze | Operation::Plan) => {
@@ -63,14 +65,18 @@ pub(super) fn summary(report: &Report, subject: &Subject) -> String {
         if let Some(kept) = closeness(&report.deviation) {
             put(&mut text, &format!("  {kept}"));
         }
-        put_table(&mut text, "defects that remain", &mesh.defects.iter().map(defect_row).collect::<Vec<_>>());
+        put_styled(
+            &mut text,
+            "defects that remain",
+            &mesh.defects.iter().map(defect_row).collect::<Vec<_>>(),
+        );
     }
     if let Some(printing) = &report.printing {
         let heading = format!("printing ({}, {} up)", printing.policy, printing.build_direction);
         put_table(&mut text, &heading, &printing.checks.iter().map(check_row).collect::<Vec<_>>());
     }
     let judged = report.certificate.as_ref().unwrap_or(&report.input_certificate);
-    put_table(&mut text, "certificate", &claim_rows(judged));
+    put_styled(&mut text, "certificate", &claim_rows(judged));
     if let Some(line) = written(report, subject) {
         put(&mut text, &line);
     }
@@ -84,18 +90,18 @@ fn put(text: &mut String, line: &str) {
 
 /// A heading and its rows, columns aligned; nothing when there are no rows.
 fn put_table<const N: usize>(text: &mut String, heading: &str, rows: &[[String; N]]) {
+    let plain: Vec<_> = rows.iter().map(|row| (PLAIN, row.clone())).collect();
+    put_styled(text, heading, &plain);
+}
+
+/// The same, each row in a style of its own.
+fn put_styled<const N: usize>(text: &mut String, heading: &str, rows: &[(Style, [String; N])]) {
     if rows.is_empty() {
         return;
     }
-    put(text, heading);
-    let widths: [usize; N] =
-        std::array::from_fn(|column| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0));
-    for row in rows {
-        let mut line = String::from(" ");
-        for (cell, width) in row.iter().zip(widths) {
-            let _ = write!(line, " {cell:width$} ");
-        }
-        put(text, line.trim_end());
+    put(text, &painted(STRONG, heading));
+    for line in aligned(rows) {
+        put(text, &format!("  {line}"));
     }
 }
 
@@ -142,14 +148,14 @@ fn closeness(deviation: &Deviation) -> Option<String> {
     Some(text)
 }
 
-fn defect_row(defect: &Defect) -> [String; 4] {
-    let severity = match defect.severity {
-        Severity::Error => "error",
-        Severity::Warning => "warning",
-        Severity::Info => "info",
+fn defect_row(defect: &Defect) -> (Style, [String; 4]) {
+    let (style, severity) = match defect.severity {
+        Severity::Error => (BAD, "error"),
+        Severity::Warning => (DOUBTFUL, "warning"),
+        Severity::Info => (QUIET, "info"),
     };
     let first = defect.witnesses.first().map(witness).unwrap_or_default();
-    [defect.code.to_string(), defect.count.to_string(), severity.to_owned(), first]
+    (style, [defect.code.to_string(), defect.count.to_string(), severity.to_owned(), first])
 }
 
 /// Most holes of which a screen tells what became of them.
@@ -272,10 +278,11 @@ fn missed_row(level: &Level) -> [String; 3] {
     [asked, format!("{} left", counted(level.faces_after, "face")), why]
 }
 
-fn claim_rows(certificate: &Certificate) -> Vec<[String; 2]> {
+fn claim_rows(certificate: &Certificate) -> Vec<(Style, [String; 2])> {
     let claims =
         [("P0 topology", &certificate.p0), ("P1 embedding", &certificate.p1), ("P2 solid", &certificate.p2)];
-    claims.map(|(name, claim)| [name.to_owned(), claim_text(claim)]).into()
+    let style = |claim: &Claim| if claim.holds == Some(true) { PLAIN } else { BAD };
+    claims.map(|(name, claim)| (style(claim), [name.to_owned(), claim_text(claim)])).into()
 }
 
 fn claim_text(claim: &Claim) -> String {
@@ -286,6 +293,15 @@ fn claim_text(claim: &Claim) -> String {
         Some(false) if broken.is_empty() => "broken".to_owned(),
         Some(false) => format!("broken: {}", broken.join(", ")),
         None => "not decided".to_owned(),
+    }
+}
+
+/// The colour of the verdict.
+fn style_of(report: &Report) -> Style {
+    match (report.verdict.printable, report.verdict.fidelity) {
+        (false, _) => BAD,
+        (true, Some(Fidelity::Changed)) => DOUBTFUL,
+        (true, _) => GOOD,
     }
 }
 
@@ -324,29 +340,6 @@ fn written(report: &Report, subject: &Subject) -> Option<String> {
     }
 }
 
-pub(super) fn counted(count: u64, name: &str) -> String {
-    let plural = match name {
-        "vertex" => "vertices".to_owned(),
-        name => format!("{name}s"),
-    };
-    if count == 1 { format!("1 {name}") } else { format!("{count} {plural}") }
-}
-
-/// A number for people: six significant digits.
-pub(super) fn figure(value: f64) -> String {
-    let magnitude = value.abs();
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    if !(1e-4..1e9).contains(&magnitude) {
-        return format!("{value:.5e}");
-    }
-    let digits_before = magnitude.log10().floor() as i32 + 1;
-    let decimals = usize::try_from(6 - digits_before).unwrap_or(0);
-    let text = format!("{value:.decimals$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -357,7 +350,9 @@ mod tests {
 
     fn of(answer: &Answer, written: Option<&str>) -> String {
         let report = Report::new(&answer.report, TimingMs::default());
-        summary(&report, &Subject { input: "part.stl".into(), written: written.map(str::to_owned) })
+        let text =
+            summary(&report, &Subject { input: "part.stl".into(), written: written.map(str::to_owned) });
+        anstream::adapter::strip_str(&text).to_string()
     }
 
     #[test]
@@ -461,33 +456,16 @@ targets not reached
     }
 
     #[test]
-    fn figures_have_six_significant_digits() {
-        for (value, text) in [
-            (0.0, "0"),
-            (1.0, "1"),
-            (-12.5, "-12.5"),
-            (1.0 / 3.0, "0.333333"),
-            (1234.56789, "1234.57"),
-            (123_456_789.0, "123456789"),
-            (1e30, "1.00000e30"),
-            (1.5e-7, "1.50000e-7"),
-        ] {
-            assert_eq!(figure(value), text);
-        }
-    }
-
-    #[test]
-    fn columns_are_aligned_and_empty_tables_leave_no_heading() {
+    fn tables_without_rows_leave_no_heading() {
         let mut text = String::new();
         put_table::<2>(&mut text, "none", &[]);
-        put_table(&mut text, "some", &[["a".into(), "1".into()], ["long".into(), "22".into()]]);
-        assert_eq!(text, "some\n  a     1\n  long  22\n");
+        assert_eq!(text, "");
     }
 
     #[test]
-    fn one_is_not_a_plural() {
-        assert_eq!(counted(1, "vertex"), "1 vertex");
-        assert_eq!(counted(0, "triangle"), "0 triangles");
-        assert_eq!(counted(8, "vertex"), "8 vertices");
+    fn the_verdict_and_the_rows_of_defects_have_colours() {
+        let report = Report::new(&sample::refused().report, TimingMs::default());
+        let text = summary(&report, &Subject { input: "part.stl".into(), written: None });
+        assert!(text.starts_with(&BAD.render().to_string()), "{text:?}");
     }
 }

@@ -1,19 +1,48 @@
 //! What happens beside a run: Ctrl-C, the deadline, and the progress line of a terminal.
 
 use crate::budget::StopFlag;
+use crate::pipeline::Operation;
+use crate::wire::Progress;
 use std::io::{IsTerminal as _, Write as _};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use tokio::sync::oneshot;
 
 /// Pause between two progress lines.
 const PROGRESS_EVERY: Duration = Duration::from_millis(100);
+
+/// How far a run is.
+#[derive(Debug, Clone)]
+pub(super) struct Share {
+    operation: Operation,
+    progress: Progress,
+}
+
+impl Share {
+    /// Characters of the bar.
+    const WIDTH: usize = 24;
+
+    pub(super) fn of(operation: Operation, progress: Progress) -> Self {
+        Self { operation, progress }
+    }
+
+    /// One line: the operation, a bar, the share, the pass, and the time since the beginning.
+    fn line(&self, since: Duration) -> String {
+        let fraction = self.progress.fraction.clamp(0.0, 1.0);
+        let full = (fraction * Self::WIDTH as f64) as usize;
+        let bar = format!("{}{}", "#".repeat(full), ".".repeat(Self::WIDTH - full));
+        let stage = self.progress.stage.map_or("", |stage| stage.word());
+        let seconds = since.as_secs();
+        let (operation, percent) = (self.operation.name(), fraction * 100.0);
+        format!("{operation} [{bar}] {percent:3.0} %  {:02}:{:02}  {stage}", seconds / 60, seconds % 60)
+    }
+}
 
 /// Runs `body` while a second thread raises `stop` on Ctrl-C, on SIGTERM or after `deadline`, and shows `progress` if
 /// standard error is a terminal.
 pub(super) fn watched<T>(
     stop: &StopFlag,
     deadline: Option<Duration>,
-    progress: impl Fn() -> String + Send,
+    progress: impl Fn() -> Share + Send,
     body: impl FnOnce() -> T,
 ) -> T {
     let (done, is_done) = oneshot::channel::<()>();
@@ -29,7 +58,7 @@ pub(super) fn watched<T>(
 fn watch(
     stop: &StopFlag,
     deadline: Option<Duration>,
-    progress: impl Fn() -> String,
+    progress: impl Fn() -> Share,
     mut is_done: oneshot::Receiver<()>,
 ) {
     // Without a runtime the run still works; it only cannot be stopped gently.
@@ -39,6 +68,7 @@ fn watch(
         // The first tick is at once; short runs show nothing.
         ticks.tick().await;
         let mut line = ProgressLine { is_on: std::io::stderr().is_terminal(), is_drawn: false };
+        let begun = Instant::now();
         let mut stopping = std::pin::pin!(interrupted());
         let mut out_of_time = std::pin::pin!(passed(deadline));
         let mut is_stopping = false;
@@ -54,7 +84,7 @@ fn watch(
                     stop.pass_deadline();
                     is_stopping = true;
                 }
-                _ = ticks.tick() => line.draw(&progress()),
+                _ = ticks.tick() => line.draw(&progress().line(begun.elapsed())),
             }
         }
         line.clear();
@@ -116,11 +146,22 @@ impl ProgressLine {
 mod tests {
     use super::*;
     use crate::budget::Stopped;
+    use crate::wire::Stage;
+
+    fn share() -> Share {
+        Share::of(Operation::Repair, Progress { stage: Some(Stage::Read), fraction: 0.5 })
+    }
+
+    #[test]
+    fn a_line_tells_operation_share_time_and_pass() {
+        let line = share().line(Duration::from_secs(125));
+        assert_eq!(line, "repair [############............]  50 %  02:05  read");
+    }
 
     #[test]
     fn the_deadline_raises_the_flag_of_a_run_that_goes_on() {
         let stop = StopFlag::default();
-        let reason = watched(&stop, Some(Duration::from_millis(1)), String::new, || {
+        let reason = watched(&stop, Some(Duration::from_millis(1)), share, || {
             loop {
                 if let Some(reason) = stop.raised() {
                     break reason;
@@ -134,7 +175,7 @@ mod tests {
     #[test]
     fn a_run_that_ends_first_is_not_stopped() {
         let stop = StopFlag::default();
-        assert_eq!(watched(&stop, Some(Duration::from_secs(3600)), String::new, || 7), 7);
+        assert_eq!(watched(&stop, Some(Duration::from_secs(3600)), share, || 7), 7);
         assert_eq!(stop.raised(), None);
     }
 }

@@ -1,78 +1,91 @@
 //! One operation on one file.
 
 use super::arguments::Request;
-use super::exit::{Exit, print, say};
+use super::exit::Exit;
 use super::files::Place;
-use super::summary::{Subject, summary};
-use super::watch::watched;
+use super::watch::{Share, watched};
 use crate::budget::{Budget, StopFlag};
 use crate::config::{Config, Loaded};
 use crate::formats::{self, ReadLimits};
 use crate::jobs::StageClock;
 use crate::par;
 use crate::pipeline::{self, Answer, Operation, Require};
-use crate::wire::{Options, Problem, ProblemCode, Progress, Report, TimingMs, report_page};
+use crate::wire::{Options, Problem, ProblemCode, Report, TimingMs, report_page};
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Does what was asked, says what came of it, and gives the exit code.
-pub(super) fn run(request: &Request) -> Exit {
+/// One file, and where its result goes.
+#[derive(Debug)]
+pub(super) struct Errand<'r> {
+    pub request: &'r Request,
+    pub input: &'r Place,
+    /// `None`: nowhere.
+    pub output: Option<Place>,
+}
+
+/// What came of one file.
+#[derive(Debug)]
+pub(super) struct Done {
+    pub report: Report,
+    /// Where the result was written; `None`: it was not.
+    pub written: Option<String>,
+    pub exit: Exit,
+}
+
+/// Does what was asked and writes the result. A failure of the engine is a problem like any other.
+pub(super) fn run(errand: &Errand<'_>) -> Result<Done, Problem> {
     let crashed = |_| {
         Err(Problem::new(ProblemCode::EngineCrashed, "the engine failed on this file; that is our error"))
     };
-    catch_unwind(AssertUnwindSafe(|| attempt(request))).unwrap_or_else(crashed).unwrap_or_else(|problem| {
-        say(&problem.detail);
-        if request.is_json {
-            print_json(&problem);
-        }
-        Exit::of(&problem)
-    })
+    catch_unwind(AssertUnwindSafe(|| attempt(errand))).unwrap_or_else(crashed)
 }
 
-fn attempt(request: &Request) -> Result<Exit, Problem> {
-    check_streams(request)?;
+fn attempt(errand: &Errand<'_>) -> Result<Done, Problem> {
+    let &Errand { request, input, ref output } = errand;
+    check_streams(errand)?;
     let options =
         Options::from_pairs(request.options.iter().map(|(n, v)| (n, v))).map_err(|e| Problem::from(&e))?;
-    let by_name = request.output.as_ref().and_then(Place::format).map(Into::into);
+    let by_name = output.as_ref().and_then(Place::format).map(Into::into);
     let options = Options { output_format: options.output_format.or(by_name), ..options };
     options.check(request.operation.into()).map_err(|e| Problem::from(&e))?;
-    if request.output == Some(Place::Stream) && options.targets.as_ref().is_some_and(|t| t.len() > 1) {
+    if *output == Some(Place::Stream) && options.targets.as_ref().is_some_and(|t| t.len() > 1) {
         return Err(wrong("standard output holds one mesh; several --targets need a file name"));
     }
     let loaded = request.sources.load().map_err(|e| wrong(e.to_string()))?;
-    if let Some(output) = &request.output {
+    if let Some(output) = output {
         output.check_writable().map_err(|e| wrong(format!("{output} cannot be written: {e}")))?;
     }
     if let Some(page) = &request.report_html {
         let place = Place::File(page.clone());
         place.check_writable().map_err(|e| wrong(format!("{place} cannot be written: {e}")))?;
     }
-    let bytes = request.input.read().map_err(|e| unreadable(&request.input, &e))?;
+    let bytes = input.read().map_err(|e| unreadable(input, &e))?;
     let material = match &request.material {
         Some(path) => Some(std::fs::read(path).map_err(|e| unreadable(&path.display(), &e))?),
         None => None,
     };
-    let options = engine_options(request, &options, &loaded.config, &bytes);
+    let options = engine_options(errand, &options, &loaded.config, &bytes);
     let options = pipeline::Options { material, ..options };
     let (answer, timing) = execute(request.operation, &bytes, &options, &loaded)
-        .map_err(|problem| Problem { detail: format!("{}: {}", request.input, problem.detail), ..problem })?;
-    deliver(request, options.require, &bytes, &answer, timing)
+        .map_err(|problem| Problem { detail: format!("{input}: {}", problem.detail), ..problem })?;
+    deliver(errand, options.require, &bytes, &answer, timing)
 }
 
 /// Streams have no extension that could name their format, and standard output holds one thing only.
-fn check_streams(request: &Request) -> Result<(), Problem> {
+fn check_streams(errand: &Errand<'_>) -> Result<(), Problem> {
+    let &Errand { request, input, ref output } = errand;
     let is_named = |name: &str| request.options.iter().any(|(given, _)| given == name);
-    if request.input == Place::Stream && !is_named("format") {
+    if *input == Place::Stream && !is_named("format") {
         return Err(wrong("standard input needs --format"));
     }
-    if request.output == Some(Place::Stream) && !is_named("output_format") {
+    if *output == Some(Place::Stream) && !is_named("output_format") {
         return Err(wrong("standard output needs --output-format"));
     }
-    if request.output == Some(Place::Stream) && request.is_json {
+    if *output == Some(Place::Stream) && request.is_json {
         return Err(wrong("--json and --output - both want standard output"));
     }
     let has_format = |place: &Place| place.format().is_some() || is_named("output_format");
-    match &request.output {
+    match output {
         Some(output) if request.operation == Operation::Convert && !has_format(output) => {
             Err(wrong(format!("{output} names no format: --output-format is needed")))
         }
@@ -80,7 +93,7 @@ fn check_streams(request: &Request) -> Result<(), Problem> {
     }
 }
 
-fn wrong(detail: impl Into<String>) -> Problem {
+pub(super) fn wrong(detail: impl Into<String>) -> Problem {
     Problem::new(ProblemCode::InvalidParameter, detail)
 }
 
@@ -88,7 +101,12 @@ fn unreadable(input: &dyn std::fmt::Display, error: &io::Error) -> Problem {
     Problem::new(ProblemCode::NotFound, format!("{input} cannot be read: {error}"))
 }
 
-fn engine_options(request: &Request, options: &Options, config: &Config, bytes: &[u8]) -> pipeline::Options {
+fn engine_options(
+    errand: &Errand<'_>,
+    options: &Options,
+    config: &Config,
+    bytes: &[u8],
+) -> pipeline::Options {
     let limits = ReadLimits {
         triangles_max: config.triangles_max,
         vertices_max: config.vertices_max,
@@ -96,10 +114,10 @@ fn engine_options(request: &Request, options: &Options, config: &Config, bytes: 
     };
     let engine = options.to_engine(limits);
     // The content decides; the extension only where the content leaves it open.
-    let by_extension = || request.input.format().filter(|_| formats::sniff(bytes, None).is_err());
+    let by_extension = || errand.input.format().filter(|_| formats::sniff(bytes, None).is_err());
     pipeline::Options {
         format: engine.format.or_else(by_extension),
-        output_format: engine.output_format.or_else(|| request.output.as_ref()?.format()),
+        output_format: engine.output_format.or_else(|| errand.output.as_ref()?.format()),
         ..engine
     }
 }
@@ -120,27 +138,23 @@ fn execute(
         .observed_by(clock.observer());
     let engine =
         || par::with_threads(config.engine_threads, || pipeline::run(operation, bytes, options, &budget));
-    let progress = || progress_line(operation, clock.progress());
+    let progress = || Share::of(operation, clock.progress());
     let answer = watched(&stop, deadline, progress, engine).map_err(|failure| Problem::from(&failure))?;
     Ok((answer, clock.timing_ms()))
 }
 
-fn progress_line(operation: Operation, progress: Progress) -> String {
-    let stage = progress.stage.map_or("", |stage| stage.word());
-    format!("{}: {:.0} % {stage}", operation.name(), progress.fraction * 100.0)
-}
-
-/// Writes the result, if there is one, and the report.
+/// Writes the result, if there is one, and the page.
 fn deliver(
-    request: &Request,
+    errand: &Errand<'_>,
     require: Option<Require>,
     bytes: &[u8],
     answer: &Answer,
     timing: TimingMs,
-) -> Result<Exit, Problem> {
+) -> Result<Done, Problem> {
+    let request = errand.request;
     let mut written = Vec::new();
     for (i, output) in answer.output.iter().chain(&answer.levels).enumerate() {
-        let Some(place) = &request.output else { continue };
+        let Some(place) = &errand.output else { continue };
         let place = if answer.levels.is_empty() { place.clone() } else { place.numbered(i + 1) };
         place
             .write(output.bytes.as_deref().unwrap_or(bytes))
@@ -155,14 +169,8 @@ fn deliver(
             .write(report_page(&value).as_bytes())
             .map_err(|e| Problem::new(ProblemCode::StorageFull, format!("{place} cannot be written: {e}")))?;
     }
-    if request.is_json {
-        print_json(&report);
-    } else {
-        let written = (!written.is_empty()).then(|| written.join(", "));
-        let text = summary(&report, &Subject { input: request.input.to_string(), written });
-        if request.output == Some(Place::Stream) { say_text(&text) } else { print(&text) }
-    }
-    Ok(verdict(request.operation, require, &report, answer.output.is_some()))
+    let exit = verdict(request.operation, require, &report, answer.output.is_some());
+    Ok(Done { report, written: (!written.is_empty()).then(|| written.join(", ")), exit })
 }
 
 fn verdict(operation: Operation, require: Option<Require>, report: &Report, has_result: bool) -> Exit {
@@ -179,16 +187,4 @@ fn verdict(operation: Operation, require: Option<Require>, report: &Report, has_
         }
     };
     if is_done { Exit::Done } else { Exit::Negative }
-}
-
-fn print_json(value: &impl serde::Serialize) {
-    match serde_json::to_string_pretty(value) {
-        Ok(text) => print(&format!("{text}\n")),
-        Err(error) => say(&error.to_string()),
-    }
-}
-
-/// The report, where the mesh has standard output for itself.
-fn say_text(text: &str) {
-    let _ = io::Write::write_all(&mut io::stderr(), text.as_bytes());
 }

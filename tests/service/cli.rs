@@ -146,6 +146,15 @@ fn exit_codes_say_what_happened() {
         (2, &["convert", "solid.off", "-o", "-", "--output-format", "stl", "--json"]),
         (2, &["verify", "-"]),
         (2, &["verify", "solid.off", "--config", "absent.toml"]),
+        (0, &["repair", "solid.off", "open.off", "-d", "out"]),
+        (0, &["analyze", "solid.off", "open.off"]),
+        (1, &["verify", "solid.off", "open.off"]),
+        (2, &["verify", "open.off", "broken.off", "solid.off"]),
+        (2, &["repair", "solid.off", "open.off", "-o", "out.off"]),
+        (2, &["repair", "solid.off", "-d", "."]),
+        (2, &["repair", "solid.off", "-o", "out.off", "-d", "out"]),
+        (2, &["verify", "solid.off", "-"]),
+        (2, &["completions", "tcsh9"]),
         (3, &["analyze", "solid.off", "--triangles-max", "3"]),
         (3, &["repair", "solid.off", "-o", "out.off", "--engine-bytes-max", "1B"]),
         (3, &["verify", "solid.off", "--engine-work-max", "0"]),
@@ -194,6 +203,67 @@ fn the_modeller_edits_a_solid_and_refuses_what_would_be_none() {
     assert_eq!(refused.status.code(), Some(1));
     assert!(stdout(&refused).contains("operator 0 is refused"), "{}", stdout(&refused));
     assert!(!desk.path().join("none.off").exists());
+}
+
+#[test]
+fn several_files_are_repaired_into_a_folder_and_told_line_by_line() {
+    let desk = Desk::new();
+    let output = desk.run(&["repair", "solid.off", "open.off", "line.off", "broken.off", "-d", "out/made"]);
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    let text = stdout(&output);
+    let line = |name: &str| text.lines().find(|line| line.starts_with(name)).unwrap_or_default().to_owned();
+    assert!(line("solid.off").contains("identical, printable, exact, written: out/made/solid.off"), "{text}");
+    assert!(line("open.off").contains("repaired, printable, changed"), "{text}");
+    assert!(line("line.off").contains("refused, not printable"), "{text}");
+    assert!(line("broken.off").contains("line 3"), "{text}");
+    assert!(text.ends_with("4 files\n2  done\n1  without a result as asked\n1  not readable\n"), "{text}");
+    assert_eq!(desk.read("out/made/solid.off"), SOLID);
+    let mut made: Vec<_> = fs::read_dir(desk.path().join("out/made"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    made.sort();
+    assert_eq!(made, ["open.off", "solid.off"]);
+    // The extension follows the format, and a result never takes the place of another or of its input.
+    desk.run(&["convert", "solid.off", "open.off", "-d", "out", "--output-format", "stl"]);
+    assert!(desk.path().join("out/solid.stl").exists() && desk.path().join("out/open.stl").exists());
+    let twice = desk.run(&["repair", "solid.off", "./solid.off", "-d", "twice"]);
+    assert!(stderr(&twice).contains("two files have the name twice/solid.off"), "{}", stderr(&twice));
+    let over = desk.run(&["repair", "solid.off", "-d", "."]);
+    assert!(stderr(&over).contains("solid.off would be overwritten"), "{}", stderr(&over));
+}
+
+#[test]
+fn the_json_of_several_files_is_an_object_a_line() {
+    let desk = Desk::new();
+    let output = desk.run(&["analyze", "open.off", "broken.off", "--json"]);
+    let lines: Vec<Value> = stdout(&output).lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!(lines.len(), 2);
+    assert_eq!((&lines[0]["input"], &lines[1]["input"]), (&"open.off".into(), &"broken.off".into()));
+    assert_eq!(lines[0]["report"]["verdict"]["printable"], false);
+    assert_eq!(lines[1]["problem"]["code"], "mesh-unparseable");
+}
+
+#[test]
+fn nothing_has_colours_where_standard_output_is_no_terminal() {
+    let desk = Desk::new();
+    let output = desk.command(&["analyze", "open.off"]).env("TERM", "xterm-256color").output().unwrap();
+    assert!(!stdout(&output).contains('\u{1b}'), "{}", stdout(&output));
+    let forced = desk.command(&["analyze", "open.off"]).env("CLICOLOR_FORCE", "1").output().unwrap();
+    assert!(stdout(&forced).starts_with("\u{1b}["), "{}", stdout(&forced));
+}
+
+#[test]
+fn shells_and_man_are_told_the_commands_and_their_options() {
+    let desk = Desk::new();
+    for shell in ["bash", "zsh", "fish"] {
+        let script = stdout(&desk.run(&["completions", shell]));
+        assert!(script.contains("cut-stitch") && script.contains("wall-mm"), "{shell}");
+    }
+    assert_eq!(desk.run(&["man", "pages"]).status.code(), Some(0));
+    let page = desk.read("pages/meshmend-repair.1");
+    assert!(page.contains("nothing is written unless it is certified"), "{page}");
+    assert_eq!(desk.run(&["man", "solid.off/pages"]).status.code(), Some(4));
 }
 
 #[test]
