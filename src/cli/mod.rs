@@ -2,7 +2,9 @@
 
 mod arguments;
 mod check;
+mod command;
 mod exit;
+mod figures;
 mod files;
 mod flags;
 mod model;
@@ -40,7 +42,7 @@ pub fn run(args: impl IntoIterator<Item = OsString>, service: Service) -> ExitCo
         // Before anything else: a job's process has nothing to do with flags, settings and logs.
         return run_job(pipeline::run);
     }
-    let parsed = flags::command().try_get_matches_from(with_default_command(args));
+    let parsed = command::command().try_get_matches_from(with_default_command(args));
     let exit = match parsed.and_then(|matches| Arguments::from_arg_matches(&matches)) {
         Ok(arguments) => execute(arguments.command, service),
         Err(error) => {
