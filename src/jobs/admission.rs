@@ -82,7 +82,7 @@ impl Submission {
             input.sha256,
             material.map(|blob| blob.sha256),
         );
-        let text = serde_json::to_vec(&asked).map_err(internal)?;
+        let text = serde_json::to_vec(&asked).map_err(|error| internal(&error))?;
         Ok(Sha256::digest(text).into())
     }
 }
@@ -99,7 +99,7 @@ impl Jobs {
         service.check_open().inspect_err(meters::refused)?;
         // The caller may go away, but what is begun is done: a row must not name a file that goes with its upload.
         let admitting = tokio::spawn(async move { service.admit(submission).await });
-        let admitted = admitting.await.map_err(internal)?;
+        let admitted = admitting.await.map_err(|error| internal(&error))?;
         let row = admitted.inspect_err(meters::refused)?;
         Ok(view::job(&row, self.0.live.get(row.id).as_deref()))
     }
@@ -215,7 +215,7 @@ impl Service {
     fn sealed(&self, webhook: Webhook) -> Result<Webhook, Problem> {
         let Webhook { url, secret } = webhook;
         let sealed = match (&self.vault, secret) {
-            (Some(vault), Some(secret)) => Some(vault.sealed(&secret).map_err(internal)?),
+            (Some(vault), Some(secret)) => Some(vault.sealed(&secret).map_err(|error| internal(&error))?),
             (_, secret) => secret,
         };
         Ok(Webhook { url, secret: sealed })

@@ -16,6 +16,6 @@ pub(super) async fn on_disk<T: Send + 'static>(
 
 /// What came of work that waits for the disk on another thread.
 pub(super) async fn joined<T>(work: JoinHandle<io::Result<T>>) -> Result<T, Problem> {
-    let lost = |_| internal("a file could not be written");
+    let lost = |_| internal(&"a file could not be written");
     work.await.map_err(lost)?.map_err(|error| disk_problem(&error))
 }

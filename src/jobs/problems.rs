@@ -1,5 +1,6 @@
 //! Problems that several parts of the service tell callers of.
 
+use std::fmt;
 use std::io;
 
 use super::store::StoreError;
@@ -34,7 +35,7 @@ pub(super) fn engine_crashed() -> Problem {
 }
 
 /// Something failed that is not the caller's doing; `why` is told to the caller.
-pub(super) fn internal(why: impl ToString) -> Problem {
+pub(super) fn internal(why: &dyn fmt::Display) -> Problem {
     Problem::new(ProblemCode::Internal, why.to_string())
 }
 

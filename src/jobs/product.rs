@@ -52,7 +52,8 @@ impl Product<Vec<u8>> {
     pub(super) fn of(answer: Answer, timing_ms: TimingMs) -> Result<Self, Problem> {
         let Answer { report, output, levels } = answer;
         let is_refused = report.outcome == Some(pipeline::Outcome::Refused);
-        let text = serde_json::to_vec(&wire::Report::new(&report, timing_ms)).map_err(internal)?;
+        let text =
+            serde_json::to_vec(&wire::Report::new(&report, timing_ms)).map_err(|error| internal(&error))?;
         let made =
             |output: pipeline::Output| MadeMesh { content: output.bytes, encoding: output.encoding.into() };
         Ok(Self {

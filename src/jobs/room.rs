@@ -33,7 +33,7 @@ impl Service {
         };
         let blob = file.blob().cloned();
         written.push(file);
-        blob.ok_or_else(|| internal("a file could not be kept"))
+        blob.ok_or_else(|| internal(&"a file could not be kept"))
     }
 
     /// Room for files of a tenant, made by expiring jobs that have ended. When the disk itself is short of room no result

@@ -155,7 +155,7 @@ async fn with_another_store(
     loop {
         match Jobs::start_with(settings.clone(), Arc::clone(&engine)).await {
             Err(StartError::Stores(StoresError::DataDirInUse { .. })) => {
-                tokio::time::sleep(Duration::from_millis(5)).await
+                tokio::time::sleep(Duration::from_millis(5)).await;
             }
             Err(error) => return Err((error.to_string(), dir)),
             Ok(jobs) => return Ok(House { jobs, dir }),
