@@ -3,6 +3,8 @@
 //! `scan` turns a source file into facts, `rules` holds one function per rule, `planted` shows that each rule reports
 //! a breach of it.
 
+#[path = "architecture/circles.rs"]
+mod circles;
 #[path = "architecture/documents.rs"]
 mod documents;
 #[path = "architecture/planted.rs"]
@@ -45,6 +47,12 @@ fn the_sources_keep_every_rule_of_the_house() {
     assert!(files.iter().any(|f| f.path == "src/par.rs"), "the sources were not found");
     let breaches = rules::check(&files);
     assert!(breaches.is_empty(), "{} breaches:\n{}", breaches.len(), breaches.join("\n"));
+}
+
+#[test]
+fn no_files_of_a_module_need_each_other_in_a_circle() {
+    let circles = circles::circles(&sources());
+    assert!(circles.is_empty(), "{} circles:\n{}", circles.len(), circles.join("\n"));
 }
 
 #[test]

@@ -27,6 +27,7 @@ mod open_sheets;
 mod orientation_conflicts;
 mod polygons;
 mod proximity;
+mod proximity_test;
 mod self_intersections;
 mod shells;
 mod sum;
@@ -38,7 +39,8 @@ mod welded;
 
 pub use boundary_loops::{HoleClass, HoleCounts, HoleGuess};
 pub use defect::{DefectCode, Element, Finding, Severity, Witness};
-pub use proximity::{Proximity, ProximityTest, TestCounts};
+pub use proximity::{Proximity, TestCounts};
+pub use proximity_test::ProximityTest;
 pub use volume_interval::VolumeInterval;
 pub use watertight::Watertight;
 

@@ -7,27 +7,10 @@
 
 use super::meeting_features::{Meeting, PolygonSides, meetings};
 use super::welded::Welded;
-use super::{Context, DefectCode, Finding, NearSearch};
+use super::{Context, DefectCode, Finding, NearSearch, ProximityTest};
 use crate::budget::{CHECK_EVERY, Stopped};
 use crate::mesh::{edge_of, prev_corner, triangle_of};
 use crate::spatial::{ContactKind, NearInput, NearKind, NearPair, NearPairs, near_pairs};
-
-/// Which kinds of features meet or are near each other, lowest dimension first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum ProximityTest {
-    /// Two vertices.
-    VertexVertex,
-    /// A vertex and an edge.
-    VertexEdge,
-    /// A vertex and a face.
-    VertexFace,
-    /// Two edges.
-    EdgeEdge,
-    /// An edge and a face.
-    EdgeFace,
-    /// Two faces.
-    FaceFace,
-}
 
 /// How many pairs each test found.
 pub type TestCounts = [u64; 6];

@@ -1,15 +1,14 @@
 //! Flags made from the tables of options and settings, so that names and values cannot differ from theirs.
 
-use super::arguments::Arguments;
 use crate::config::{SETTINGS, Setting};
-use crate::wire::{Operation, OptionKind, OptionSpec, SPECS};
+use crate::wire::{OptionKind, OptionSpec, SPECS};
 use clap::builder::PossibleValuesParser;
-use clap::{Arg, ArgMatches, Command, CommandFactory as _};
+use clap::{Arg, ArgMatches, Command};
 use std::fs::File;
 use std::io::Read as _;
 
 /// Settings that mean something without a service.
-const ENGINE_SETTINGS: [&str; 7] = [
+pub(super) const ENGINE_SETTINGS: [&str; 7] = [
     "triangles_max",
     "vertices_max",
     "polygon_corners_max",
@@ -31,11 +30,11 @@ pub(super) struct SettingFlags(pub Vec<(String, String)>);
 #[derive(Debug, Clone, Default)]
 pub(super) struct EngineSettingFlags(pub Vec<(String, String)>);
 
-fn options() -> impl Iterator<Item = &'static OptionSpec> {
+pub(super) fn options() -> impl Iterator<Item = &'static OptionSpec> {
     SPECS.iter().filter(|spec| !spec.is_for_service_only)
 }
 
-fn engine_settings() -> impl Iterator<Item = &'static Setting> {
+pub(super) fn engine_settings() -> impl Iterator<Item = &'static Setting> {
     SETTINGS.iter().filter(|setting| ENGINE_SETTINGS.contains(&setting.name))
 }
 
@@ -62,17 +61,6 @@ fn option_flag(spec: &'static OptionSpec) -> Arg {
         | OptionKind::Ranges
         | OptionKind::Plan => flag.value_name("JSON|@FILE").value_parser(text_or_file),
     }
-}
-
-/// The command line, on which the help of each operation lists the options that it takes. The others are understood, so
-/// that the answer is who takes them.
-pub(super) fn command() -> Command {
-    Operation::ALL.iter().fold(Arguments::command(), |command, &operation| {
-        command.mut_subcommand(operation.word(), |command| {
-            let foreign = options().filter(|spec| !spec.is_taken_by(operation));
-            foreign.fold(command, |command, spec| command.mut_arg(spec.name, |flag| flag.hide(true)))
-        })
-    })
 }
 
 /// Most bytes of a value that stands in a file.
@@ -105,7 +93,10 @@ fn setting_flag(setting: &'static Setting) -> Arg {
 }
 
 /// The values of the flags `names` that were given.
-fn given(matches: &ArgMatches, names: impl Iterator<Item = &'static str>) -> Vec<(String, String)> {
+pub(super) fn given(
+    matches: &ArgMatches,
+    names: impl Iterator<Item = &'static str>,
+) -> Vec<(String, String)> {
     let value = |name: &str| matches.get_one::<String>(name).cloned();
     names.filter_map(|name| Some((name.to_owned(), value(name)?))).collect()
 }
@@ -139,60 +130,3 @@ macro_rules! flags {
 flags!(OptionFlags, options(), option_flag);
 flags!(SettingFlags, SETTINGS.iter(), setting_flag);
 flags!(EngineSettingFlags, engine_settings(), setting_flag);
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn has_flag(command: &Command, flag: &str) -> bool {
-        command.get_arguments().any(|arg| arg.get_long() == Some(flag))
-    }
-
-    #[test]
-    fn the_help_of_an_operation_lists_the_options_that_it_takes_and_no_other() {
-        let command = command();
-        for &operation in Operation::ALL {
-            let subcommand = command.find_subcommand(operation.word()).unwrap();
-            for spec in options() {
-                let name = format!("{operation} --{}", spec.flag());
-                let flag = subcommand.get_arguments().find(|arg| arg.get_long() == Some(&spec.flag()));
-                assert_eq!(flag.expect(&name).is_hide_set(), !spec.is_taken_by(operation), "{name}");
-            }
-        }
-    }
-
-    #[test]
-    fn a_negative_number_is_a_value() {
-        let line = ["meshmend", "repair", "a.stl", "-o", "b.stl", "--wall-mm", "-1"];
-        let matches = command().try_get_matches_from(line).unwrap();
-        let (_, repair) = matches.subcommand().unwrap();
-        assert_eq!(given(repair, options().map(|spec| spec.name)), [("wall_mm".to_owned(), "-1".to_owned())]);
-    }
-
-    #[test]
-    fn every_setting_is_a_flag_of_serve_and_config() {
-        let command = Arguments::command();
-        let config = command.find_subcommand("config").unwrap();
-        for subcommand in [
-            command.find_subcommand("serve").unwrap(),
-            command.find_subcommand("healthcheck").unwrap(),
-            config.find_subcommand("show").unwrap(),
-            config.find_subcommand("check").unwrap(),
-        ] {
-            for setting in SETTINGS {
-                assert!(
-                    has_flag(subcommand, &setting.flag()),
-                    "{} --{}",
-                    subcommand.get_name(),
-                    setting.flag()
-                );
-            }
-        }
-        assert_eq!(engine_settings().count(), ENGINE_SETTINGS.len());
-    }
-
-    #[test]
-    fn the_command_line_is_put_together_well() {
-        command().debug_assert();
-    }
-}

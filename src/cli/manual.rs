@@ -1,8 +1,8 @@
 //! What shells and `man` know of the commands, made from the same flags.
 
+use super::command;
 use super::exit::{Exit, print, say};
 use super::files::Place;
-use super::flags;
 use clap_complete::Shell;
 use clap_mangen::Man;
 use std::fs;
@@ -12,7 +12,7 @@ use std::path::Path;
 /// Prints the completions of `shell`.
 pub(super) fn print_completions(shell: Shell) -> Exit {
     let mut script = Vec::new();
-    clap_complete::generate(shell, &mut flags::command(), "meshmend", &mut script);
+    clap_complete::generate(shell, &mut command::command(), "meshmend", &mut script);
     print(&String::from_utf8_lossy(&script));
     Exit::Done
 }
@@ -30,7 +30,7 @@ pub(super) fn write_pages(folder: &Path) -> Exit {
 
 /// Names of files and their text.
 fn pages() -> io::Result<Vec<(String, Vec<u8>)>> {
-    let mut program = flags::command();
+    let mut program = command::command();
     program.build();
     let mut pages = Vec::new();
     let mut waiting = vec![("meshmend".to_owned(), program)];

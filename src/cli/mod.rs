@@ -2,7 +2,10 @@
 
 mod arguments;
 mod check;
+mod colours;
+mod command;
 mod exit;
+mod figures;
 mod files;
 mod flags;
 mod manual;
@@ -10,7 +13,6 @@ mod model;
 mod settings;
 mod several;
 mod summary;
-mod text;
 mod watch;
 mod work;
 
@@ -43,7 +45,7 @@ pub fn run(args: impl IntoIterator<Item = OsString>, service: Service) -> ExitCo
         // Before anything else: a job's process has nothing to do with flags, settings and logs.
         return run_job(pipeline::run);
     }
-    let parsed = flags::command().try_get_matches_from(with_default_command(args));
+    let parsed = command::command().try_get_matches_from(with_default_command(args));
     let exit = match parsed.and_then(|matches| Arguments::from_arg_matches(&matches)) {
         Ok(arguments) => execute(arguments.command, service),
         Err(error) => {

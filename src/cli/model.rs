@@ -1,6 +1,6 @@
 //! What the modeller found and did, as tables for people.
 
-use super::text::{counted, figure};
+use super::figures::{counted, figure};
 use crate::wire::{FaceInfo, FaceRangeInfo, Modeller, ModellerStep, RangeSideInfo};
 
 /// Most faces of which a screen tells.

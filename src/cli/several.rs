@@ -1,10 +1,11 @@
 //! One file or several: where each result goes, and what is told of all.
 
 use super::arguments::{Request, Target};
+use super::colours::{BAD, DOUBTFUL, GOOD, aligned, painted};
 use super::exit::{Exit, print, say};
+use super::figures::counted;
 use super::files::Place;
 use super::summary::{Subject, summary};
-use super::text::{BAD, DOUBTFUL, GOOD, aligned, counted, painted};
 use super::work::{Done, Errand, run as run_one, wrong};
 use crate::wire::{Fidelity, Problem};
 use anstyle::Style;

@@ -1,7 +1,8 @@
 //! The report for people: a screen of text, the most telling things first.
 
+use super::colours::{BAD, DOUBTFUL, GOOD, PLAIN, QUIET, STRONG, aligned, painted};
+use super::figures::{counted, figure};
 use super::model;
-use super::text::{BAD, DOUBTFUL, GOOD, PLAIN, QUIET, STRONG, aligned, counted, figure, painted};
 use crate::wire::{
     Action, Certificate, Claim, Defect, DefectCode, Deviation, Fidelity, Hole, JoinedEdges, Level, MeshInfo,
     Operation, PrintingCheck, Proposal, Report, Severity, TargetSpec, Witness,

@@ -1,6 +1,6 @@
 //! Why a configuration cannot be used.
 
-use super::sources::Origin;
+use super::origin::Origin;
 use std::net::SocketAddr;
 use std::path::PathBuf;
 

@@ -4,13 +4,15 @@
 //! environment variable, and with hyphens the flag.
 
 mod error;
+mod origin;
 mod settings;
 mod sources;
 mod values;
 
 pub use error::ConfigError;
-pub use settings::{Config, SETTINGS, Setting};
-pub use sources::{Entry, Loaded, Origin, Sources};
+pub use origin::Origin;
+pub use settings::{Config, Entry, SETTINGS, Setting};
+pub use sources::{Loaded, Sources};
 pub use values::{Bytes, IsolationChoice, LogFormat, SandboxChoice};
 
 impl Config {

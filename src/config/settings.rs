@@ -1,7 +1,7 @@
 //! Every setting: its name, type, default and meaning.
 
 use super::error::ConfigError;
-use super::sources::Entry;
+use super::origin::Origin;
 use super::values::{Bytes, IsolationChoice, LogFormat, SandboxChoice, Value};
 use std::net::{IpAddr, SocketAddr};
 use std::num::{NonZeroU32, NonZeroUsize};
@@ -31,6 +31,17 @@ impl Setting {
     pub fn flag(&self) -> String {
         self.name.replace('_', "-")
     }
+}
+
+/// A setting with its value as text and where that is from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Entry {
+    /// The setting.
+    pub setting: &'static Setting,
+    /// The value as it was given.
+    pub value: String,
+    /// Where.
+    pub origin: Origin,
 }
 
 /// Makes the struct, the table and the conversion from one list.

@@ -1,7 +1,8 @@
 //! Where values come from, and which of them wins.
 
 use super::error::{ConfigError, did_you_mean};
-use super::settings::{Config, SETTINGS, Setting};
+use super::origin::Origin;
+use super::settings::{Config, Entry, SETTINGS};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -9,41 +10,6 @@ use std::path::{Path, PathBuf};
 const CONFIG_VARIABLE: &str = "MESHMEND_CONFIG";
 /// What Kubernetes injects for a service called `meshmend`.
 const INJECTED: [&str; 2] = ["MESHMEND_SERVICE_", "MESHMEND_PORT"];
-
-/// Where a value is from.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Origin {
-    /// Nothing was given.
-    Default,
-    /// The TOML file.
-    File(PathBuf),
-    /// An environment variable.
-    Environment(String),
-    /// A flag.
-    Flag(String),
-}
-
-impl fmt::Display for Origin {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Default => f.write_str("default"),
-            Self::File(path) => write!(f, "file {}", path.display()),
-            Self::Environment(variable) => write!(f, "environment {variable}"),
-            Self::Flag(flag) => write!(f, "flag --{flag}"),
-        }
-    }
-}
-
-/// A setting with its value as text and where that is from.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Entry {
-    /// The setting.
-    pub setting: &'static Setting,
-    /// The value as it was given.
-    pub value: String,
-    /// Where.
-    pub origin: Origin,
-}
 
 /// A configuration with the origin of each value.
 #[derive(Debug, Clone)]

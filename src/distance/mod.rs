@@ -14,6 +14,7 @@ mod pieces;
 mod samples;
 mod scale;
 mod search;
+mod target;
 mod view;
 
 use crate::budget::{Budget, Stopped};
@@ -21,7 +22,8 @@ use crate::geom::DVec3;
 use crate::par;
 pub use samples::{Areas, Sample};
 use scale::Common;
-use search::{Directed, Target};
+use search::Directed;
+use target::Target;
 use view::View;
 
 /// The triangles of a surface, by reference. Triangles may be degenerate, open, or meet in any way.

@@ -2,7 +2,7 @@
 
 use super::FarPoint;
 use super::bound::{Corner, upper_bound};
-use super::search::Target;
+use super::target::Target;
 use super::view::View;
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;

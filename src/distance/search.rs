@@ -1,43 +1,16 @@
 //! The distance from one surface to another: vertices and samples first, then the triangles that may exceed them.
 
 use super::bound::{Corner, upper_bound};
-use super::cover::Cloth;
 use super::pieces::{Farthest, Piece, Refined, Tolerance, WALKED_FOR_ONE, WORK_MAX, refine};
 use super::samples::Areas;
 use super::scale::Common;
+use super::target::Target;
 use super::view::View;
 use super::{DirectedDistance, DistanceOptions, Seen, Surface};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
-use crate::geom::DVec3;
 use crate::par;
-use crate::spatial::{Found, NearestSearch};
+use crate::spatial::Found;
 use std::collections::BinaryHeap;
-
-/// The surface to which distances are measured, prepared.
-pub(super) struct Target<'s> {
-    pub(super) near: NearestSearch<'s>,
-    pub(super) cloth: Cloth<'s>,
-}
-
-impl<'s> Target<'s> {
-    pub(super) fn of(surface: Surface<'s>, common: &Common<'_>, budget: &Budget) -> Result<Self, Stopped> {
-        let near = NearestSearch::build(surface.positions, surface.triangles, budget)?;
-        Ok(Self { near, cloth: Cloth::of(surface, common.slack, budget)? })
-    }
-
-    /// A close point, exactly the closest one where the surface has no more than a few boxes about as far.
-    pub(super) fn find(
-        &self,
-        place: DVec3,
-        hint: Option<u32>,
-        budget: &Budget,
-    ) -> Result<Option<Found>, Stopped> {
-        self.near.find_roughly(place, hint, BOXES_MAX, budget)
-    }
-}
-
-/// Boxes that are looked at for a closest point, twice: many times what most take.
-const BOXES_MAX: usize = 256;
 
 /// One direction.
 pub(super) struct Directed<'d> {

@@ -24,7 +24,7 @@ use tokio::time::{Instant, Sleep};
 use super::envelope::Peer;
 use super::shutdown::Shutdown;
 
-/// Room for a request head. Answers to heads over [`HEAD_BYTES_MAX`](super::envelope::HEAD_BYTES_MAX) are problem
+/// Room for a request head. Answers to heads over [`HEAD_BYTES_MAX`](super::sizes::HEAD_BYTES_MAX) are problem
 /// documents; only over this room hyper answers by itself, without a body.
 const HEAD_ROOM_BYTES: usize = 128 << 10;
 /// Header fields of a request that hyper takes in.

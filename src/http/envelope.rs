@@ -15,14 +15,13 @@ use tracing::Instrument as _;
 use uuid::Uuid;
 
 use super::problem::{self, Told};
+use super::sizes::HEAD_BYTES_MAX;
 use super::state::{AboutJob, Caller};
 use super::trace;
 use super::unread::Unread;
 use crate::jobs::JobId;
 use crate::wire::{Problem, ProblemCode};
 
-/// Largest request head that is answered by a handler, in bytes.
-pub(super) const HEAD_BYTES_MAX: u64 = 32 << 10;
 const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
 
 /// Headers of every answer. Pages load nothing from other hosts and are shown in no frame; what is served is what its

@@ -1,15 +1,11 @@
 //! Uploads as `multipart/form-data`: parts `mesh`, `params` and `material`.
 
 use super::body::IncomingBody;
-use super::intake::{Entrance, Intake, JSON_BYTES_MAX, finish_if_any};
+use super::entrance::{Entrance, Intake, finish_if_any};
 use super::multipart::{Multipart, PartHead};
+use super::sizes::{JSON_BYTES_MAX, MATERIAL_BYTES_MAX};
 use crate::jobs::{Upload, Uploaded};
 use crate::wire::{Operation, Problem, ProblemCode, format_of_media_type};
-
-/// Largest `material` part, in bytes.
-pub(super) const MATERIAL_BYTES_MAX: u64 = 4 << 20;
-/// What a form may have beside the mesh: the other parts, and the lines between them.
-pub(super) const EXTRA_BYTES_MAX: u64 = MATERIAL_BYTES_MAX + JSON_BYTES_MAX + (64 << 10);
 
 const PARTS: &[&str] = &["mesh", "params", "material"];
 /// `/v1/jobs` also takes the request as `job`, which names the operation.

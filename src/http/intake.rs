@@ -4,43 +4,16 @@ use axum::body::Body;
 use axum::http::{HeaderMap, header};
 
 use super::body::{BodyLimits, IncomingBody};
+use super::entrance::{Entrance, Intake, finish_if_any};
 use super::form;
 use super::multipart;
+use super::sizes::{FORM_EXTRA_BYTES_MAX, JSON_BYTES_MAX};
 use super::state::{Caller, Service};
-use crate::jobs::{Jobs, Tenant, Upload, Uploaded};
-use crate::wire::{
-    Format, JobRequest, Labels, Operation, Options, Problem, ProblemCode, WebhookRequest,
-    format_of_media_type,
-};
-
-/// Largest body that is JSON, in bytes.
-pub(super) const JSON_BYTES_MAX: u64 = 1 << 20;
+use crate::jobs::Uploaded;
+use crate::wire::{Format, Operation, Problem, ProblemCode, format_of_media_type};
 
 /// Longest `Idempotency-Key`.
 const KEY_BYTES_MAX: usize = 255;
-
-/// What a request brings.
-#[derive(Debug, Default)]
-pub(super) struct Intake {
-    /// The key under which it may be repeated.
-    pub(super) key: Option<String>,
-    /// The mesh, on disk.
-    pub(super) upload: Option<Uploaded>,
-    /// The MTL file of an OBJ, on disk.
-    pub(super) material: Option<Uploaded>,
-    /// The name that the client gave the mesh.
-    pub(super) file_name: Option<String>,
-    /// The format that the mesh's media type names.
-    pub(super) named: Option<Format>,
-    /// What to do, as the body says.
-    pub(super) operation: Option<Operation>,
-    /// Whom to tell of the end, as the body says.
-    pub(super) webhook: Option<WebhookRequest>,
-    /// What to write on the job, as the body says.
-    pub(super) labels: Option<Labels>,
-    /// How, as the body says.
-    pub(super) options: Options,
-}
 
 /// What a body is.
 #[derive(Debug, PartialEq, Eq)]
@@ -95,28 +68,6 @@ fn check_encoding(headers: &HeaderMap) -> Result<(), Problem> {
     }
 }
 
-/// Where the mesh of a request comes in.
-pub(super) struct Entrance<'s> {
-    pub(super) jobs: &'s Jobs,
-    /// Whom it is charged to.
-    pub(super) tenant: &'s Tenant,
-    /// Its key made a job before: the answer is that job, for which no place in the queue is needed.
-    is_repeat: bool,
-}
-
-impl Entrance<'_> {
-    /// Begins the upload; to be called before the body is read, so that a client that asks (`Expect`) does not send in vain
-    /// what will be refused.
-    pub(super) async fn upload(&self, announced: Option<u64>) -> Result<Upload, Problem> {
-        let tenant = self.tenant.clone();
-        if self.is_repeat {
-            self.jobs.upload_beside(tenant).await
-        } else {
-            self.jobs.upload_of(tenant, announced).await
-        }
-    }
-}
-
 /// Receives the body. `operation` is what the path means; `None`: the body says it.
 pub(super) async fn receive(
     service: &Service,
@@ -138,7 +89,7 @@ pub(super) async fn receive(
             Intake { upload: receive_mesh(&entrance, body).await?, named, ..Intake::default() }
         }
         BodyKind::Form(boundary) => {
-            let body = IncomingBody::new(headers, body, service.upload_limits(form::EXTRA_BYTES_MAX))?;
+            let body = IncomingBody::new(headers, body, service.upload_limits(FORM_EXTRA_BYTES_MAX))?;
             form::receive(&entrance, body, &boundary, operation).await?
         }
         BodyKind::Json => {
@@ -176,29 +127,6 @@ async fn stream(entrance: &Entrance<'_>, body: &mut IncomingBody) -> Result<Opti
     finish_if_any(upload).await
 }
 
-/// Ends an upload; `None` when nothing came.
-pub(super) async fn finish_if_any(upload: Upload) -> Result<Option<Uploaded>, Problem> {
-    if upload.bytes() == 0 { Ok(None) } else { upload.finish().await.map(Some) }
-}
-
-impl Intake {
-    /// Takes options from JSON.
-    pub(super) fn take_json(&mut self, text: &[u8], operation: Option<Operation>) -> Result<(), Problem> {
-        match operation {
-            Some(operation) => self.options = JobRequest::params_from_json(text, operation)?,
-            None => {
-                let request = JobRequest::from_json(text)?;
-                self.operation = agreed(self.operation, request.operation)?;
-                self.webhook = agreed_member("webhook", self.webhook.take(), request.webhook)?;
-                self.labels = agreed_member("labels", self.labels.take(), request.labels)?;
-                let said_before = std::mem::take(&mut self.options);
-                self.options = said_before.join(request.options).map_err(|error| Problem::from(&error))?;
-            }
-        }
-        Ok(())
-    }
-}
-
 /// The key of `Idempotency-Key`, as it stands there.
 fn idempotency_key(headers: &HeaderMap) -> Result<Option<String>, Problem> {
     let Some(value) = headers.get("idempotency-key") else { return Ok(None) };
@@ -215,42 +143,6 @@ fn idempotency_key(headers: &HeaderMap) -> Result<Option<String>, Problem> {
                 format!("`Idempotency-Key` is 1 to {KEY_BYTES_MAX} visible ASCII characters"),
             )
         }),
-    }
-}
-
-/// The operation that two parts of a request name: one of them, or both the same.
-pub(super) fn agreed(a: Option<Operation>, b: Option<Operation>) -> Result<Option<Operation>, Problem> {
-    match (a, b) {
-        (Some(a), Some(b)) if a != b => {
-            Err(about_operation("`operation` is given twice with different values"))
-        }
-        _ => Ok(a.or(b)),
-    }
-}
-
-/// What two parts of a request say about `name`: that of one of them, or of both the same.
-pub(super) fn agreed_member<T: PartialEq>(
-    name: &str,
-    a: Option<T>,
-    b: Option<T>,
-) -> Result<Option<T>, Problem> {
-    match (a, b) {
-        (Some(a), Some(b)) if a != b => Err(Problem {
-            parameter: Some(name.to_owned()),
-            ..Problem::new(
-                ProblemCode::InvalidParameter,
-                format!("`{name}` is given twice with different values"),
-            )
-        }),
-        (a, b) => Ok(a.or(b)),
-    }
-}
-
-/// A problem with the operation that a request names.
-pub(super) fn about_operation(detail: &str) -> Problem {
-    Problem {
-        parameter: Some("operation".to_owned()),
-        ..Problem::new(ProblemCode::InvalidParameter, detail).with_allowed(Operation::WORDS.iter().copied())
     }
 }
 

@@ -5,13 +5,12 @@ use axum::extract::Request;
 
 use super::problem::Handled;
 use super::representation::json_only;
+use super::sizes::PAGE_MAX;
 use super::state::{Caller, State};
 use super::{answer, query};
 use crate::jobs::ListQuery;
 use crate::wire::{JobList, JobState};
 
-/// Most jobs of one page.
-pub(super) const PAGE_MAX: usize = 200;
 /// Jobs of a page when the client does not say.
 const PAGE_DEFAULT: usize = 50;
 

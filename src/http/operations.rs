@@ -8,8 +8,10 @@ use axum::Extension;
 use axum::extract::Request;
 use axum::http::{HeaderMap, header, request};
 
+use super::agreed::{about_operation, agreed, agreed_member};
 use super::answer::{self, Finished};
-use super::intake::{self, Intake};
+use super::entrance::Intake;
+use super::intake;
 use super::prefer::{Wait, seconds_of};
 use super::problem::Handled;
 use super::query;
@@ -110,9 +112,9 @@ pub(super) async fn create_job(state: State, caller: Extension<Caller>, request:
     json_only(&head.headers)?;
     let asked = query::job_request(&head.uri)?;
     let mut intake = intake::receive(&state, &caller, &head.headers, body, None).await?;
-    let operation = intake::agreed(asked.operation, intake.operation)?;
-    intake.labels = intake::agreed_member("labels", asked.labels, intake.labels)?;
-    let operation = operation.ok_or_else(|| intake::about_operation("`operation` is missing"))?;
+    let operation = agreed(asked.operation, intake.operation)?;
+    intake.labels = agreed_member("labels", asked.labels, intake.labels)?;
+    let operation = operation.ok_or_else(|| about_operation("`operation` is missing"))?;
     let submission = submission(&state, &caller, operation, asked.options, intake, &head.headers).await?;
     let job = state.jobs.submit(submission).await?;
     Ok(answer::accepted(&job, None))

@@ -3,7 +3,7 @@
 use axum::extract::Query;
 use axum::http::Uri;
 
-use super::intake::{agreed, agreed_member};
+use super::agreed::{agreed, agreed_member};
 use super::prefer;
 use crate::jobs::JobId;
 use crate::wire::{

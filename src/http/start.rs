@@ -61,7 +61,7 @@ pub fn start(loaded: &Loaded, lost_store: LostStore) -> anyhow::Result<()> {
 /// The setting that a service which cannot start is about.
 fn setting_of(error: &StartError) -> &'static str {
     match error {
-        StartError::DataDir { .. } | StartError::DataDirInUse { .. } | StartError::Store { .. } => "data_dir",
+        StartError::Stores(_) | StartError::TakeOver { .. } => "data_dir",
         StartError::Isolation(TrialError::NoProcess | TrialError::Incomplete(_)) => "sandbox",
         StartError::Isolation(TrialError::Folder(_) | TrialError::NoAnswer(_)) => "isolation",
         StartError::Webhooks { .. } => "webhooks",

@@ -8,6 +8,7 @@ use super::body::BodyLimits;
 use super::prefer::{WAIT_DEFAULT, WAIT_MAX};
 use super::rate::Rates;
 use super::settings::HttpSettings;
+use super::sizes;
 use crate::jobs::{JobId, Jobs, Tenant};
 use crate::wire::{LABELS_MAX, Limits, Problem, ProblemCode};
 
@@ -98,16 +99,16 @@ impl Service {
             upload_rate_min: http.upload_rate_min,
             upload_total_timeout_s: http.upload_total_timeout.as_secs(),
             write_timeout_s: http.write_timeout.as_secs(),
-            head_bytes_max: super::envelope::HEAD_BYTES_MAX,
-            json_bytes_max: super::intake::JSON_BYTES_MAX,
-            material_bytes_max: super::form::MATERIAL_BYTES_MAX,
+            head_bytes_max: sizes::HEAD_BYTES_MAX,
+            json_bytes_max: sizes::JSON_BYTES_MAX,
+            material_bytes_max: sizes::MATERIAL_BYTES_MAX,
             result_ttl_s: jobs.result_ttl.as_secs(),
             data_bytes_max: jobs.data_bytes_max,
             disk_free_bytes_min: jobs.disk_free_bytes_min,
             jobs_max: jobs.jobs_max,
             attempts_max: jobs.attempts_max,
             labels_max: LABELS_MAX,
-            page_jobs_max: super::listing::PAGE_MAX,
+            page_jobs_max: sizes::PAGE_MAX,
         }
     }
 }

@@ -2,23 +2,23 @@
 
 use std::future::poll_fn;
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
 use std::task::Poll;
 use std::time::Duration;
 
 use sha2::{Digest as _, Sha256};
 
-use super::clock::StageClock;
+use super::handle::Jobs;
 use super::heartbeat::end_overdue;
 use super::meters;
-use super::service::{Jobs, Service, not_found, store_problem};
+use super::problems::{expired, internal, not_found, store_problem};
+use super::service::Service;
 use super::soundness::Unsound;
 use super::store::{
     BlobRef, Created, Ending, IdempotencyKey, JobId, JobRow, Lane, NewJob, StoreError, Tenant, Webhook,
 };
 use super::trace::TraceParent;
 use super::upload::Uploaded;
-use super::view::{self, expired};
+use super::view;
 use crate::wire::{Job, JobState, Labels, Operation, Options, Problem, ProblemCode};
 
 /// What is asked for.
@@ -82,8 +82,7 @@ impl Submission {
             input.sha256,
             material.map(|blob| blob.sha256),
         );
-        let text = serde_json::to_vec(&asked)
-            .map_err(|error| Problem::new(ProblemCode::Internal, error.to_string()))?;
+        let text = serde_json::to_vec(&asked).map_err(|error| internal(&error))?;
         Ok(Sha256::digest(text).into())
     }
 }
@@ -100,8 +99,7 @@ impl Jobs {
         service.check_open().inspect_err(meters::refused)?;
         // The caller may go away, but what is begun is done: a row must not name a file that goes with its upload.
         let admitting = tokio::spawn(async move { service.admit(submission).await });
-        let admitted =
-            admitting.await.map_err(|error| Problem::new(ProblemCode::Internal, error.to_string()))?;
+        let admitted = admitting.await.map_err(|error| internal(&error))?;
         let row = admitted.inspect_err(meters::refused)?;
         Ok(view::job(&row, self.0.live.get(row.id).as_deref()))
     }
@@ -146,7 +144,7 @@ impl Service {
         let new = NewJob {
             id: JobId::unique(),
             operation: submission.operation,
-            keep_for: self.keep_for(&submission.options),
+            keep_for: self.settings.keep_for(&submission.options),
             options: submission.options,
             file_name: submission.file_name.or_else(|| source.as_ref()?.file_name.clone()),
             owner: submission.owner,
@@ -181,8 +179,8 @@ impl Service {
         };
         // From here on the row owns the files.
         [submission.upload, submission.material].into_iter().flatten().for_each(Uploaded::named);
-        if let Some(at) = row.cancel_at {
-            tokio::spawn(end_overdue(Arc::clone(self), row.id, at));
+        if let Some(left) = row.time_left {
+            tokio::spawn(end_overdue(Arc::clone(self), row.id, left));
         }
         if self.live.get(row.id).is_none_or(|live| live.epoch == 0) {
             // Not in a slot yet.
@@ -217,10 +215,7 @@ impl Service {
     fn sealed(&self, webhook: Webhook) -> Result<Webhook, Problem> {
         let Webhook { url, secret } = webhook;
         let sealed = match (&self.vault, secret) {
-            (Some(vault), Some(secret)) => {
-                let sealed = vault.sealed(&secret);
-                Some(sealed.map_err(|error| Problem::new(ProblemCode::Internal, error.to_string()))?)
-            }
+            (Some(vault), Some(secret)) => Some(vault.sealed(&secret).map_err(|error| internal(&error))?),
             (_, secret) => secret,
         };
         Ok(Webhook { url, secret: sealed })
@@ -267,43 +262,6 @@ impl Service {
         meters::cached(row.operation);
         self.note_load();
         Some(row)
-    }
-
-    pub(super) fn not_admitted(&self, error: &StoreError) -> Problem {
-        match *error {
-            StoreError::QueueFull { queued } => Problem {
-                retry_after_s: Some(self.retry_after_s()),
-                ..Problem::new(ProblemCode::QueueFull, error.to_string()).with_limit(
-                    "queue_max",
-                    self.settings.queue_max as u64,
-                    Some(queued as u64 + 1),
-                )
-            },
-            StoreError::ShareFull { queued, limit } => Problem {
-                retry_after_s: Some(self.retry_after_s()),
-                ..Problem::new(ProblemCode::QueueFull, error.to_string()).with_limit(
-                    "owner_queue_max",
-                    limit as u64,
-                    Some(queued as u64 + 1),
-                )
-            },
-            StoreError::NotFound => expired(),
-            _ => store_problem(error),
-        }
-    }
-
-    /// Time until a slot takes the next job from the queue, as far as the latest runs tell.
-    pub(super) fn retry_after_s(&self) -> u64 {
-        let between_claims_ms = self.mean_run_ms.load(Ordering::Relaxed) / self.settings.slots.max(1) as u64;
-        between_claims_ms.div_ceil(1000).clamp(1, self.settings.deadline_max.as_secs().max(1))
-    }
-
-    /// Counts a run into the mean, with a weight of one eighth.
-    pub(super) fn note_run_time(&self, clock: &StageClock) {
-        let ms = clock.timing_ms().total as u64;
-        let mean = |old: u64| Some((old * 7 + ms) / 8);
-        // The update never refuses.
-        let _ = self.mean_run_ms.fetch_update(Ordering::Relaxed, Ordering::Relaxed, mean);
     }
 }
 

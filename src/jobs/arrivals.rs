@@ -2,12 +2,12 @@
 //! here saves work; whether a job is admitted is decided by the store.
 
 use std::collections::VecDeque;
+use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::service::{Service, store_problem};
-use super::store::{StoreError, Tenant};
-use crate::wire::Problem;
+use super::settings::JobsSettings;
+use super::store::{JobStore, StoreError, Tenant};
 
 /// For how long the length of the queue is taken as it was, unless it is known to have changed: under a flood of requests,
 /// asking for it is much of the work.
@@ -16,9 +16,18 @@ const RECENT: Duration = Duration::from_millis(10);
 /// nobody else out.
 const PLACE_LASTS: Duration = Duration::from_secs(1);
 
-/// What is known about the queue for those who come.
-#[derive(Debug, Default)]
-pub(super) struct Arrivals(Mutex<Known>);
+/// Those who come, and what is known about the queue for them.
+pub(super) struct Arrivals {
+    store: Arc<dyn JobStore>,
+    settings: Arc<JobsSettings>,
+    known: Mutex<Known>,
+}
+
+impl fmt::Debug for Arrivals {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Arrivals").field("known", &self.known).finish_non_exhaustive()
+    }
+}
 
 #[derive(Debug, Default)]
 struct Known {
@@ -30,15 +39,15 @@ struct Known {
 
 /// The place of an upload that is not a job yet, until it is dropped.
 #[derive(Debug)]
-pub(super) struct Place {
-    service: Arc<Service>,
+pub(super) struct QueuePlace {
+    arrivals: Arc<Arrivals>,
     taken_at: Instant,
     tenant: Tenant,
 }
 
-impl Drop for Place {
+impl Drop for QueuePlace {
     fn drop(&mut self) {
-        let mut known = self.service.arrivals.known();
+        let mut known = self.arrivals.known();
         if let Some(own) = known.places.iter().position(|(at, by)| *at == self.taken_at && *by == self.tenant)
         {
             known.places.remove(own);
@@ -47,13 +56,17 @@ impl Drop for Place {
 }
 
 impl Arrivals {
+    pub(super) fn new(store: Arc<dyn JobStore>, settings: Arc<JobsSettings>) -> Arc<Self> {
+        Arc::new(Self { store, settings, known: Mutex::default() })
+    }
+
     /// The queue is not as it was.
     pub(super) fn forget(&self) {
         self.known().queued = None;
     }
 
     fn known(&self) -> MutexGuard<'_, Known> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        self.known.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -72,17 +85,17 @@ impl Known {
     }
 }
 
-impl Service {
+impl Arrivals {
     /// Refuses when the queue has no room for another upload of this tenant.
-    pub(super) async fn check_queue(&self, tenant: &Tenant) -> Result<(), Problem> {
+    pub(super) async fn check(&self, tenant: &Tenant) -> Result<(), StoreError> {
         self.with_room(tenant, |_, _| ()).await
     }
 
     /// A place in the queue for an upload of which the first block is there; refuses when there is none.
-    pub(super) async fn take_place(self: &Arc<Self>, tenant: &Tenant) -> Result<Place, Problem> {
+    pub(super) async fn take_place(self: &Arc<Self>, tenant: &Tenant) -> Result<QueuePlace, StoreError> {
         self.with_room(tenant, |known, now| {
             known.places.push_back((now, tenant.clone()));
-            Place { service: Arc::clone(self), taken_at: now, tenant: tenant.clone() }
+            QueuePlace { arrivals: Arc::clone(self), taken_at: now, tenant: tenant.clone() }
         })
         .await
     }
@@ -92,32 +105,31 @@ impl Service {
         &self,
         tenant: &Tenant,
         then: impl FnOnce(&mut Known, Instant) -> T,
-    ) -> Result<T, Problem> {
-        let recent = self.arrivals.known().queued.filter(|(at, _)| at.elapsed() < RECENT);
+    ) -> Result<T, StoreError> {
+        let recent = self.known().queued.filter(|(at, _)| at.elapsed() < RECENT);
         let (at, queued) = match recent {
             Some(recent) => recent,
             None => {
-                let counts = self.store.counts().await.map_err(|error| store_problem(&error))?;
+                let counts = self.store.counts().await?;
                 (Instant::now(), counts.queued)
             }
         };
         let own = if tenant.is_nobody() || queued >= self.settings.queue_max {
             0
         } else {
-            let holding = self.store.holding(tenant.clone()).await;
-            holding.map_err(|error| store_problem(&error))?.queued as usize
+            self.store.holding(tenant.clone()).await?.queued as usize
         };
         let now = Instant::now();
-        let mut known = self.arrivals.known();
+        let mut known = self.known();
         known.queued = Some((at, queued));
         let taken = queued + known.taken(now);
         if taken >= self.settings.queue_max {
-            return Err(self.not_admitted(&StoreError::QueueFull { queued }));
+            return Err(StoreError::QueueFull { queued });
         }
         let own = own + known.taken_by(tenant);
         let limit = self.settings.queue_share(self.settings.queue_max - taken);
         if !tenant.is_nobody() && own >= limit {
-            return Err(self.not_admitted(&StoreError::ShareFull { queued: own, limit }));
+            return Err(StoreError::ShareFull { queued: own, limit });
         }
         Ok(then(&mut known, now))
     }

@@ -5,12 +5,10 @@ use std::fs;
 use std::io::{self, Write as _};
 use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use uuid::Uuid;
 
-use super::blobs::{StoredBlob, make_private_dir};
-use super::spool::Spool;
+use super::blobs::{BlobStore, StoredBlob, make_private_dir};
 use super::sqlite::{OpenError, SqliteStore, StoreFile};
 
 /// The file of the mark, which goes with the files of uploads and results.
@@ -55,23 +53,27 @@ pub(super) enum BelongingError {
     Disk(#[from] io::Error),
 }
 
-/// Sees to it that the store at `path` is that of the files, and opens it. Blocks.
+/// Sees to it that the store at `path` is that of the files, and opens it. With the mark of both. Blocks.
 pub(super) fn open_together(
     data_dir: &Path,
     path: &Path,
-    spool: &Arc<Spool>,
+    blobs: &dyn BlobStore,
     decision: LostStore,
-) -> Result<SqliteStore, BelongingError> {
+) -> Result<(SqliteStore, String), BelongingError> {
     let store = SqliteStore::look_at(path)?;
     let mark = read_mark(data_dir)?;
-    let files = spool.list()?;
+    let files = blobs.list()?;
     if let Some(not_together) = not_together(path, &store, mark.as_deref(), &files)? {
         match decision {
             LostStore::Refuse => return Err(not_together.into()),
-            LostStore::Adopt => set_aside(data_dir, spool, &files)?,
+            LostStore::Adopt => set_aside(data_dir, blobs, &files)?,
             LostStore::Discard => {
                 tracing::warn!(files = files.len(), "the files of a lost store are removed");
-                spool.remove_orphans(&files);
+                for file in &files {
+                    if let Err(error) = blobs.remove(&file.key) {
+                        tracing::warn!(key = file.key, %error, "a file could not be removed");
+                    }
+                }
             }
         }
     }
@@ -85,7 +87,7 @@ pub(super) fn open_together(
         }
     };
     write_mark(data_dir, &mark)?;
-    Ok(opened)
+    Ok((opened, mark))
 }
 
 /// Why the store cannot be that of the files, if it cannot.
@@ -118,14 +120,14 @@ fn not_together(
 }
 
 /// Moves the files to a folder of their own, where nobody removes them.
-fn set_aside(data_dir: &Path, spool: &Arc<Spool>, files: &[StoredBlob]) -> io::Result<()> {
+fn set_aside(data_dir: &Path, blobs: &dyn BlobStore, files: &[StoredBlob]) -> io::Result<()> {
     let dir = data_dir.join(ASIDE).join(Uuid::now_v7().simple().to_string());
     for file in files {
         let to = dir.join(&file.key);
         if let Some(parent) = to.parent() {
             make_private_dir(parent)?;
         }
-        spool.move_out(file, &to)?;
+        fs::rename(blobs.local(&file.key)?, &to)?;
     }
     tracing::warn!(files = files.len(), to = %dir.display(), "the files of a lost store are set aside");
     Ok(())

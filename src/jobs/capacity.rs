@@ -9,8 +9,8 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
 use super::estimate::estimated_bytes;
 use super::live::Live;
-use super::service::Service;
 use super::settings::JobsSettings;
+use super::spool::Spool;
 use super::store::{JobRow, Lane};
 use crate::formats::triangles_at_most;
 
@@ -72,8 +72,8 @@ impl Capacity {
     }
 
     /// Waits for room; a small job is given what is kept for it at once. `reserved` is what a large one will probably take
-    /// at most; `None`: it took more than that already, and is given all that a job may have. One that is thought to take more than there is waits until no other large one
-    /// runs.
+    /// at most; `None`: it took more than that already, and is given all that a job may have. One that is thought to take
+    /// more than there is waits until no other large one runs.
     async fn room(&self, lane: Lane, reserved: Option<u64>) -> Room {
         let bytes = reserved.unwrap_or(self.bytes_max).min(self.bytes_max);
         if lane == Lane::Interactive {
@@ -83,14 +83,12 @@ impl Capacity {
         // Never closed, so there is always a permit in the end.
         Room { bytes, _held: Arc::clone(&self.large).acquire_many_owned(wanted).await.ok() }
     }
-}
 
-impl Service {
     /// Waits for the memory of a run; `None`: the run is to stop before there is any.
-    pub(super) async fn room_for(&self, row: &JobRow, live: &Live) -> Option<Room> {
+    pub(super) async fn room_for(&self, row: &JobRow, live: &Live, spool: &Spool) -> Option<Room> {
         let is_known = row.is_outgrown || row.lane == Lane::Interactive;
-        let reserved = if is_known { None } else { Some(self.reserved_bytes(row).await) };
-        let room = self.capacity.room(row.lane, reserved);
+        let reserved = if is_known { None } else { Some(reserved_bytes(row, spool).await) };
+        let room = self.room(row.lane, reserved);
         tokio::pin!(room);
         loop {
             tokio::select! {
@@ -103,43 +101,24 @@ impl Service {
             }
         }
     }
+}
 
-    /// What a job will probably take at most, as its upload begins.
-    async fn reserved_bytes(&self, row: &JobRow) -> u64 {
-        let path = self.spool.path(&row.input.key);
-        let reading = tokio::task::spawn_blocking(move || {
-            let mut start = Vec::new();
-            fs::File::open(path?)?.take(LOOKED_AT_BYTES).read_to_end(&mut start)?;
-            Ok::<_, io::Error>(start)
-        });
-        // A file that cannot be read ends its job soon enough.
-        let start = reading.await.ok().and_then(Result::ok).unwrap_or_default();
-        let triangles = triangles_at_most(&start, row.input.bytes);
-        estimated_bytes(row.operation, row.options.format, row.input.bytes, triangles)
-    }
+/// What a job will probably take at most, as its upload begins.
+async fn reserved_bytes(row: &JobRow, spool: &Spool) -> u64 {
+    let path = spool.path(&row.input.key);
+    let reading = tokio::task::spawn_blocking(move || {
+        let mut start = Vec::new();
+        fs::File::open(path?)?.take(LOOKED_AT_BYTES).read_to_end(&mut start)?;
+        Ok::<_, io::Error>(start)
+    });
+    // A file that cannot be read ends its job soon enough.
+    let start = reading.await.ok().and_then(Result::ok).unwrap_or_default();
+    let triangles = triangles_at_most(&start, row.input.bytes);
+    estimated_bytes(row.operation, row.options.format, row.input.bytes, triangles)
 }
 
 fn units(bytes: u64) -> u32 {
     u32::try_from(bytes.div_ceil(UNIT)).unwrap_or(u32::MAX / 8)
-}
-
-/// Three quarters of the memory that this process may use: of the machine, or of its control group.
-pub(super) fn default_bytes_max() -> u64 {
-    let machine = rustix::system::sysinfo();
-    let total = machine.totalram;
-    let total = total.saturating_mul(u64::from(machine.mem_unit.max(1)));
-    total.min(group_limit().unwrap_or(u64::MAX)) / 4 * 3
-}
-
-/// The limit of the control group, of either version of the interface.
-fn group_limit() -> Option<u64> {
-    const FILES: [&str; 2] = ["/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"];
-    FILES.iter().find_map(|file| limit_in(&fs::read_to_string(file).ok()?))
-}
-
-/// A number of bytes; other words, and numbers beyond any memory, mean that there is no limit.
-fn limit_in(text: &str) -> Option<u64> {
-    text.trim().parse().ok().filter(|&bytes: &u64| bytes < 1 << 60)
 }
 
 #[cfg(test)]
@@ -195,18 +174,5 @@ mod tests {
         assert_eq!(of(16 * GIB), (GIB, 12 * GIB));
         assert_eq!(of(GIB), (128 << 20, GIB / 2));
         assert_eq!(of(1 << 20), (SMALL_BYTES_MIN, UNIT));
-    }
-
-    #[test]
-    fn the_limit_of_a_control_group_is_read_in_both_versions_of_its_words() {
-        assert_eq!(limit_in("1073741824\n"), Some(GIB));
-        assert_eq!(limit_in("max\n"), None);
-        assert_eq!(limit_in("9223372036854771712\n"), None);
-    }
-
-    #[test]
-    fn the_default_is_a_part_of_the_memory_there_is() {
-        let bytes = default_bytes_max();
-        assert!(bytes > 64 << 20 && bytes < u64::MAX / 2, "{bytes}");
     }
 }

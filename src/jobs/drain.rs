@@ -2,8 +2,7 @@
 
 use std::time::Duration;
 
-use super::service::Jobs;
-use crate::wire::{Problem, ProblemCode};
+use super::handle::Jobs;
 
 /// Time that stopped jobs get to return when the server ends. The engine needs 50 ms; more means that it hangs.
 const STOP_PATIENCE: Duration = Duration::from_secs(5);
@@ -47,9 +46,4 @@ impl Jobs {
         service.executor.close();
         service.stopping.cancel();
     }
-}
-
-/// The problem of asking a server that ends for something new.
-pub(super) fn draining() -> Problem {
-    Problem::new(ProblemCode::Draining, "the server is shutting down")
 }

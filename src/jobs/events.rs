@@ -15,7 +15,9 @@ use jiff::Timestamp;
 use tokio::sync::watch;
 
 use super::clock::StageClock;
-use super::service::{Jobs, Service, store_problem};
+use super::handle::Jobs;
+use super::problems::store_problem;
+use super::service::Service;
 use super::store::JobId;
 use crate::wire::{JobState, Problem, Stage};
 

@@ -4,12 +4,14 @@ use std::fs::File;
 use std::io::Read as _;
 use std::sync::Arc;
 
+use super::disk::on_disk;
+use super::handle::Jobs;
 use super::meters;
-use super::service::{Jobs, Service};
+use super::problems::{disk_problem, expired, upload_gone};
+use super::service::Service;
 use super::soundness::Unsound;
 use super::store::{BlobRef, Ending, JobId, JobRow};
-use super::upload::disk_problem;
-use super::view::{self, StoredFile, expired};
+use super::view::{self, StoredFile};
 use crate::wire::{JobState, Problem, ProblemCode};
 
 impl Jobs {
@@ -102,7 +104,7 @@ impl Service {
             let mut content = Vec::new();
             file.read_to_end(&mut content).map(|_| content)
         };
-        super::retention::on_disk(read).await
+        on_disk(read).await
     }
 
     /// Opens a file of which every byte is what it was.
@@ -137,14 +139,6 @@ impl Service {
         }
         Ok(())
     }
-}
-
-/// The problem of a job whose upload the disk has not kept.
-pub(super) fn upload_gone() -> Problem {
-    Problem::new(
-        ProblemCode::Expired,
-        "the upload was lost or damaged on the server's disk; send the mesh again",
-    )
 }
 
 /// How the job ended, if it has and its files are kept.

@@ -4,12 +4,10 @@ use std::future::pending;
 use std::sync::Arc;
 use std::time::Duration;
 
-use jiff::Timestamp;
-
 use super::live::Live;
+use super::meters;
 use super::service::Service;
-use super::store::{ClaimRef, JobId, StoreError};
-use super::wall;
+use super::store::{ClaimRef, Ending, JobId, JobRow, StoreError};
 use crate::budget::Stopped;
 use crate::wire::{JobState, Problem};
 
@@ -18,12 +16,12 @@ use crate::wire::{JobState, Problem};
 pub(super) async fn beat(
     service: Arc<Service>,
     claim: ClaimRef,
-    cancel_at: Option<Timestamp>,
+    time_left: Option<Duration>,
     live: Arc<Live>,
 ) {
     let deadline = async {
-        match cancel_at {
-            Some(at) => tokio::time::sleep(time_until(at)).await,
+        match time_left {
+            Some(left) => tokio::time::sleep(left).await,
             None => pending().await,
         }
         live.stop.pass_deadline();
@@ -47,16 +45,30 @@ pub(super) async fn beat(
 }
 
 /// Ends a queued job when the caller's time for it is over; a running one is ended beside its run.
-pub(super) async fn end_overdue(service: Arc<Service>, id: JobId, at: Timestamp) {
+pub(super) async fn end_overdue(service: Arc<Service>, id: JobId, time_left: Duration) {
+    let is_over = tokio::time::sleep(time_left);
     let live = service.live.watch(id);
     let Some(row) = service.row(id).await.ok().filter(|row| !row.state.is_final()) else {
         return service.live.end(id);
     };
-    if tokio::time::timeout(time_until(at), live.job.ended.cancelled()).await.is_err() {
-        service.end_queued(&row, JobState::Failed, Problem::from(&Stopped::Deadline)).await;
+    tokio::select! {
+        () = live.job.ended.cancelled() => {}
+        () = is_over => service.end_queued(&row, JobState::Failed, Problem::from(&Stopped::Deadline)).await,
     }
 }
 
-fn time_until(at: Timestamp) -> Duration {
-    Duration::try_from(at.duration_since(wall::now())).unwrap_or(Duration::ZERO)
+impl Service {
+    /// Ends the job if it is still queued.
+    async fn end_queued(&self, row: &JobRow, state: JobState, problem: Problem) {
+        let ending = Ending::without_files(state, Some(problem));
+        match self.store.end_queued(row.id, ending.clone()).await {
+            Ok(true) => {
+                self.live.end(row.id);
+                meters::finished(row.operation, &ending);
+            }
+            Ok(false) => {}
+            Err(error) => tracing::warn!(job = %row.id, %error, "a queued job could not be ended"),
+        }
+        self.note_load();
+    }
 }

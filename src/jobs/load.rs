@@ -3,8 +3,9 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::handle::Jobs;
 use super::meters;
-use super::service::{Jobs, Service};
+use super::service::Service;
 use super::store::JobCounts;
 
 /// Shortest time between two looks at the load.
@@ -31,12 +32,6 @@ impl Jobs {
 }
 
 impl Service {
-    /// The load has changed.
-    pub(super) fn note_load(&self) {
-        self.arrivals.forget();
-        self.load_changed.notify_one();
-    }
-
     /// Tells the metrics recorder how busy the service is; `None`: the store does not answer.
     async fn tell_load(&self) -> Option<JobCounts> {
         let counts = self.store.counts().await.ok()?;

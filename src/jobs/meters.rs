@@ -4,7 +4,6 @@ use metrics::{counter, describe_counter, describe_gauge, describe_histogram, gau
 
 use super::soundness::Unsound;
 use super::store::{Ending, JobCounts, NextTry, TryOutcome};
-use super::wall;
 use crate::wire::{Operation, Problem, Stage};
 
 /// Says what each series is.
@@ -38,8 +37,8 @@ pub(super) fn load(counts: JobCounts, data_bytes: u64) {
     gauge!("meshmend_jobs_queued").set(counts.queued as f64);
     gauge!("meshmend_jobs_running").set(counts.running as f64);
     gauge!("meshmend_jobs_kept").set(counts.all as f64);
-    let waited = counts.oldest_queued_at.map(|at| wall::now().duration_since(at).as_secs_f64());
-    gauge!("meshmend_queue_oldest_seconds").set(waited.unwrap_or(0.0).max(0.0));
+    let waited = counts.longest_queued.unwrap_or_default();
+    gauge!("meshmend_queue_oldest_seconds").set(waited.as_secs_f64());
     gauge!("meshmend_data_bytes").set(data_bytes as f64);
 }
 

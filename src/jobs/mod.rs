@@ -7,22 +7,29 @@
 
 mod admission;
 mod arrivals;
-mod attempt;
 mod belonging;
 mod blobs;
 mod capacity;
 mod child;
 mod clock;
+mod data_dir;
+mod disk;
 mod drain;
 mod estimate;
 mod events;
+mod executor;
 mod giving;
+mod handle;
 mod heartbeat;
 mod live;
 mod load;
+mod memory;
 mod meters;
+mod pace;
+mod problems;
 mod product;
 mod retention;
+mod room;
 mod service;
 mod settings;
 mod settle;
@@ -31,33 +38,38 @@ mod slot;
 mod soundness;
 mod spool;
 mod sqlite;
+mod start;
 mod store;
+mod stores;
+mod take_over;
 mod trace;
 mod upload;
 mod view;
-mod wall;
 mod webhook;
 
 #[cfg(test)]
 mod tests;
 
 pub use admission::Submission;
-pub use attempt::{Engine, Isolation};
 pub use belonging::LostStore;
 pub use blobs::{BlobStore, BlobWriter, LocalBlobs, StoredBlob};
 pub use child::{RUN_JOB, Sandbox, TrialError, run_job};
 pub use clock::StageClock;
+pub use data_dir::DataDirLock;
 pub use events::{EventId, Events, Happened, JobEvent, NoEventId};
+pub use executor::Engine;
+pub use handle::Jobs;
 pub use load::Load;
 pub use meters::describe as describe_metrics;
-pub use service::{Jobs, StartError};
-pub use settings::JobsSettings;
+pub use settings::{Isolation, JobsSettings};
 pub use sqlite::{OpenError as SqliteOpenError, SqliteStore, StoreClock, StoreFile};
+pub use start::StartError;
 pub use store::{
     AfterLoss, BlobRef, Change, ClaimRef, ClaimRequest, Created, Delivery, DeliveryRequest, DeliveryState,
     DeliveryTry, Ending, Holding, IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept, Lane, Leases,
     ListQuery, NewJob, NextTry, ResultRef, Sealer, StoreError, StoreFuture, Tenant, TryOutcome, Webhook,
 };
+pub use stores::{Stores, StoresError};
 pub use trace::TraceParent;
 pub use upload::{Upload, Uploaded};
 pub use view::StoredFile;

@@ -1,18 +1,15 @@
 //! What a run made, in either mode: the report and the meshes that are kept, and what the job's row says of them.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::child::Workspace;
-use super::retention::on_disk;
-use super::service::Service;
+use super::child::MadeFile;
+use super::problems::{disk_problem, internal};
 use super::spool::{Spool, Written};
-use super::store::{BlobRef, ClaimRef, JobRow};
-use super::upload::disk_problem;
+use super::store::ClaimRef;
 use crate::pipeline::{self, Answer};
-use crate::wire::{self, Encoding, Fidelity, Outcome, Problem, ProblemCode, TimingMs};
+use crate::wire::{self, Encoding, Fidelity, Outcome, Problem, TimingMs};
 
 /// What a run made; `C` is where the bytes are.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -28,28 +25,18 @@ pub(super) struct Product<C> {
     /// The report, as JSON.
     pub(super) report: C,
     /// The mesh.
-    pub(super) result: Option<Made<C>>,
+    pub(super) result: Option<MadeMesh<C>>,
     /// The meshes of further targets of a simplification.
-    pub(super) levels: Vec<Made<C>>,
+    pub(super) levels: Vec<MadeMesh<C>>,
 }
 
 /// A mesh that a run made.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct Made<C> {
+pub(super) struct MadeMesh<C> {
     /// Its bytes; `None`: those of the upload.
     pub(super) content: Option<C>,
     /// How they are laid out.
     pub(super) encoding: Encoding,
-}
-
-/// A file that another process made in a folder of its own.
-#[derive(Debug, Clone)]
-pub(super) struct MadeFile {
-    pub(super) path: PathBuf,
-    pub(super) bytes: u64,
-    pub(super) sha256: [u8; 32],
-    /// The folder, which goes with the last file.
-    pub(super) _folder: Arc<Workspace>,
 }
 
 /// Bytes that are to be kept.
@@ -65,10 +52,10 @@ impl Product<Vec<u8>> {
     pub(super) fn of(answer: Answer, timing_ms: TimingMs) -> Result<Self, Problem> {
         let Answer { report, output, levels } = answer;
         let is_refused = report.outcome == Some(pipeline::Outcome::Refused);
-        let text = serde_json::to_vec(&wire::Report::new(&report, timing_ms))
-            .map_err(|error| Problem::new(ProblemCode::Internal, error.to_string()))?;
+        let text =
+            serde_json::to_vec(&wire::Report::new(&report, timing_ms)).map_err(|error| internal(&error))?;
         let made =
-            |output: pipeline::Output| Made { content: output.bytes, encoding: output.encoding.into() };
+            |output: pipeline::Output| MadeMesh { content: output.bytes, encoding: output.encoding.into() };
         Ok(Self {
             outcome: report.outcome.map(Outcome::from),
             fidelity: report.fidelity.as_ref().filter(|_| !is_refused).map(|fidelity| fidelity.word.into()),
@@ -85,8 +72,8 @@ impl<C> Product<C> {
     /// The same with its contents elsewhere; report first, then the meshes in their order.
     pub(super) fn try_map<D, E>(self, mut place: impl FnMut(C) -> Result<D, E>) -> Result<Product<D>, E> {
         let report = place(self.report)?;
-        let mut moved = |made: Made<C>| {
-            Ok(Made { content: made.content.map(&mut place).transpose()?, encoding: made.encoding })
+        let mut moved = |made: MadeMesh<C>| {
+            Ok(MadeMesh { content: made.content.map(&mut place).transpose()?, encoding: made.encoding })
         };
         Ok(Product {
             outcome: self.outcome,
@@ -108,32 +95,5 @@ impl Product<MadeFile> {
             let Some(space) = room else { return Ok(Content::File(file)) };
             spool.adopt(claim, &file, space).map(Content::Kept).map_err(|error| disk_problem(&error))
         })
-    }
-}
-
-impl Service {
-    /// Keeps a file of a run, making room for it, and adds it to those that no row names yet.
-    pub(super) async fn keep(
-        &self,
-        row: &JobRow,
-        name: String,
-        content: Content,
-        written: &mut Vec<Written>,
-    ) -> Result<BlobRef, Problem> {
-        let (spool, claim) = (Arc::clone(&self.spool), row.claim());
-        let file = match content {
-            Content::Kept(file) => file,
-            Content::Bytes(bytes) => {
-                let space = self.make_room(&row.tenant, bytes.len() as u64).await?;
-                on_disk(move || spool.write(claim, &name, &bytes, space)).await?
-            }
-            Content::File(file) => {
-                let space = self.make_room(&row.tenant, file.bytes).await?;
-                on_disk(move || spool.adopt(claim, &file, space)).await?
-            }
-        };
-        let blob = file.blob().cloned();
-        written.push(file);
-        blob.ok_or_else(|| Problem::new(ProblemCode::Internal, "a file could not be kept"))
     }
 }

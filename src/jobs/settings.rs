@@ -3,12 +3,22 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use super::attempt::Isolation;
 use super::belonging::LostStore;
-use super::capacity;
 use super::child::Sandbox;
+use super::memory;
 use super::webhook::WebhookSettings;
 use crate::formats::ReadLimits;
+use crate::wire::{Options, Problem, ProblemCode};
+
+/// Where a job runs.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Isolation {
+    /// In a process of its own: the same binary, whose `main` calls [`run_job`](super::run_job).
+    Process,
+    /// In a thread of the server, which ends with it when it runs out of memory or overflows its stack.
+    #[default]
+    Thread,
+}
 
 /// Limits and places of the job service. The names are those of the configuration and of `/v1/limits`.
 #[derive(Debug, Clone)]
@@ -90,7 +100,7 @@ impl JobsSettings {
             interactive_deadline: Duration::from_secs(10),
             lost_store: LostStore::default(),
             store_key_file: None,
-            memory_bytes_max: capacity::default_bytes_max(),
+            memory_bytes_max: memory::default_bytes_max(),
             webhooks: None,
             queue_max: 128,
             owner_queue_max: None,
@@ -129,5 +139,25 @@ impl JobsSettings {
     pub(super) fn interactive_patience(&self, upload_bytes: u64) -> Duration {
         let begun = u32::try_from(upload_bytes.div_ceil(1 << 20)).unwrap_or(u32::MAX).max(1);
         self.interactive_deadline.saturating_mul(begun)
+    }
+
+    /// Time for which the files of a job are kept: the server's, or the caller's when that is shorter.
+    pub(super) fn keep_for(&self, options: &Options) -> Duration {
+        let asked = options.result_ttl.map(Duration::from_secs).unwrap_or(Duration::MAX);
+        asked.min(self.result_ttl)
+    }
+
+    /// Refuses an upload of this size, or one that has reached it.
+    pub(super) fn check_upload_size(&self, bytes: u64) -> Result<(), Problem> {
+        let limit = self.upload_bytes_max;
+        if bytes <= limit {
+            return Ok(());
+        }
+        let detail = format!("the upload is over {limit} bytes");
+        Err(Problem::new(ProblemCode::BodyTooLarge, detail).with_limit(
+            "upload_bytes_max",
+            limit,
+            Some(bytes),
+        ))
     }
 }

@@ -1,15 +1,18 @@
 //! The last step of a run: what came of it is made known, by the claim it ran under.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use super::live::Live;
 use super::meters;
 use super::service::Service;
-use super::slot::STORE_PAUSE;
 use super::spool::Written;
 use super::store::{AfterLoss, Ending, JobRow, StoreError, StoreFuture};
 use super::trace::TraceParent;
 use crate::wire::{Outcome, Problem};
+
+/// Pause before a store that did not answer is asked again.
+pub(super) const STORE_PAUSE: Duration = Duration::from_secs(1);
 
 /// What is to become of a job after a run.
 pub(super) enum Conclusion {

@@ -3,17 +3,28 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use super::service::{Service, store_problem};
-use super::store::{Holding, Tenant};
+use super::pace::Pace;
+use super::problems::store_problem;
+use super::spool::Spool;
+use super::store::{JobStore, Tenant};
 use crate::wire::{Problem, ProblemCode};
 
-/// Bytes of uploads that are not jobs yet, by tenant.
-#[derive(Debug, Default)]
-pub(super) struct Incoming(Mutex<HashMap<Tenant, u64>>);
+/// Uploads that come in.
+pub(super) struct Incoming {
+    store: Arc<dyn JobStore>,
+    spool: Arc<Spool>,
+    pace: Arc<Pace>,
+    /// Bytes of uploads that are not jobs yet, by tenant.
+    bytes: Mutex<HashMap<Tenant, u64>>,
+}
 
 impl Incoming {
+    pub(super) fn new(store: Arc<dyn JobStore>, spool: Arc<Spool>, pace: Arc<Pace>) -> Arc<Self> {
+        Arc::new(Self { store, spool, pace, bytes: Mutex::default() })
+    }
+
     fn lock(&self) -> MutexGuard<'_, HashMap<Tenant, u64>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        self.bytes.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Those of one tenant, and of all.
@@ -35,11 +46,38 @@ impl Incoming {
             }
         }
     }
+
+    /// Refuses `bytes` more of uploads whose jobs have not ended when the tenant would have more than what is free: one alone
+    /// has half of the room at most, two a third each. An upload that is the only one has all the room there is.
+    /// `here`: how many it has by the upload that grows.
+    pub(super) async fn check(&self, tenant: &Tenant, here: u64, bytes: u64) -> Result<(), Problem> {
+        if tenant.is_nobody() {
+            return Ok(());
+        }
+        let holding = self.store.holding(tenant.clone()).await.map_err(|error| store_problem(&error))?;
+        let (own, all) = self.of(tenant);
+        let own = holding.open_bytes.saturating_add(own);
+        let all = holding.open_bytes_of_all.saturating_add(all);
+        // An upload that is the only one of its tenant may fill what others leave.
+        let limit = self.spool.bytes_max().saturating_sub(if own == here { all - own.min(all) } else { all });
+        if own.saturating_add(bytes) <= limit {
+            return Ok(());
+        }
+        let detail = "uploads of this caller whose jobs have not ended fill its share of the data directory";
+        Err(Problem {
+            retry_after_s: Some(self.pace.retry_after_s()),
+            ..Problem::new(ProblemCode::StorageFull, detail).with_limit(
+                "owner_data_bytes_max",
+                limit,
+                Some(own.saturating_add(bytes)),
+            )
+        })
+    }
 }
 
 /// Bytes of one upload, until it is a job or gone.
 pub(super) struct IncomingBytes {
-    service: Arc<Service>,
+    incoming: Arc<Incoming>,
     tenant: Tenant,
     bytes: u64,
 }
@@ -51,8 +89,8 @@ impl std::fmt::Debug for IncomingBytes {
 }
 
 impl IncomingBytes {
-    pub(super) fn none(service: Arc<Service>, tenant: Tenant) -> Self {
-        Self { service, tenant, bytes: 0 }
+    pub(super) fn none(incoming: Arc<Incoming>, tenant: Tenant) -> Self {
+        Self { incoming, tenant, bytes: 0 }
     }
 
     pub(super) fn tenant(&self) -> &Tenant {
@@ -61,8 +99,8 @@ impl IncomingBytes {
 
     /// Adds bytes, unless the tenant has its share.
     pub(super) async fn grow(&mut self, bytes: u64) -> Result<(), Problem> {
-        self.service.check_open_bytes(&self.tenant, self.bytes, bytes).await?;
-        self.service.incoming.add(&self.tenant, bytes);
+        self.incoming.check(&self.tenant, self.bytes, bytes).await?;
+        self.incoming.add(&self.tenant, bytes);
         self.bytes += bytes;
         Ok(())
     }
@@ -70,45 +108,6 @@ impl IncomingBytes {
 
 impl Drop for IncomingBytes {
     fn drop(&mut self) {
-        self.service.incoming.take(&self.tenant, self.bytes);
-    }
-}
-
-impl Service {
-    /// Refuses `bytes` more of uploads whose jobs have not ended when the tenant would have more than what is free: one alone
-    /// has half of the room at most, two a third each. An upload that is the only one has all the room there is.
-    /// `here`: how many it has by the upload that grows.
-    pub(super) async fn check_open_bytes(
-        &self,
-        tenant: &Tenant,
-        here: u64,
-        bytes: u64,
-    ) -> Result<(), Problem> {
-        if tenant.is_nobody() {
-            return Ok(());
-        }
-        let holding = self.holding(tenant).await?;
-        let (own, all) = self.incoming.of(tenant);
-        let own = holding.open_bytes.saturating_add(own);
-        let all = holding.open_bytes_of_all.saturating_add(all);
-        // An upload that is the only one of its tenant may fill what others leave.
-        let limit = self.spool.bytes_max().saturating_sub(if own == here { all - own.min(all) } else { all });
-        if own.saturating_add(bytes) <= limit {
-            return Ok(());
-        }
-        let detail = "uploads of this caller whose jobs have not ended fill its share of the data directory";
-        Err(Problem {
-            retry_after_s: Some(self.retry_after_s()),
-            ..Problem::new(ProblemCode::StorageFull, detail).with_limit(
-                "owner_data_bytes_max",
-                limit,
-                Some(own.saturating_add(bytes)),
-            )
-        })
-    }
-
-    /// What a tenant has.
-    pub(super) async fn holding(&self, tenant: &Tenant) -> Result<Holding, Problem> {
-        self.store.holding(tenant.clone()).await.map_err(|error| store_problem(&error))
+        self.incoming.take(&self.tenant, self.bytes);
     }
 }

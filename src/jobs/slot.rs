@@ -2,25 +2,19 @@
 
 use std::pin::pin;
 use std::sync::Arc;
-use std::time::Duration;
 
 use tokio_util::task::AbortOnDropHandle;
-use tracing::Instrument as _;
+use tracing::{Instrument as _, Span};
 
-use super::attempt::attempt;
 use super::clock::StageClock;
 use super::heartbeat::beat;
 use super::live::Live;
-use super::product::{Content, Made, Product};
+use super::product::{Content, MadeMesh, Product};
 use super::service::Service;
-use super::settle::{Conclusion, settle};
+use super::settle::{Conclusion, STORE_PAUSE, settle};
 use super::spool::Written;
 use super::store::{ClaimRequest, Ending, JobRow, Lane, ResultRef};
-use super::trace::run_span;
 use crate::wire::{JobState, Problem, ProblemCode, Progress};
-
-/// Pause before a store that did not answer is asked again.
-pub(super) const STORE_PAUSE: Duration = Duration::from_secs(1);
 
 /// Which jobs a slot takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,19 +71,37 @@ pub(super) async fn serve(service: Arc<Service>, kind: SlotKind) {
     }
 }
 
+/// The span of a run. With the feature `otel` it continues the trace of the job's request.
+fn run_span(row: &JobRow) -> Span {
+    let span = tracing::info_span!("job", id = %row.id, operation = row.operation.word());
+    #[cfg(feature = "otel")]
+    if let Some(parent) = &row.trace {
+        use opentelemetry::propagation::TextMapPropagator as _;
+        use tracing_opentelemetry::OpenTelemetrySpanExt as _;
+
+        let carrier = std::collections::HashMap::from([("traceparent".to_owned(), parent.to_string())]);
+        let parent = opentelemetry_sdk::propagation::TraceContextPropagator::new().extract(&carrier);
+        // It fails when the span has begun already, which it has not.
+        let _ = span.set_parent(parent);
+    }
+    span
+}
+
 async fn run(service: &Arc<Service>, row: JobRow, kind: SlotKind) {
     let clock = StageClock::start(row.operation);
     let live = service.live.begin(row.claim(), clock.clone());
-    let heart = beat(Arc::clone(service), row.claim(), row.cancel_at, Arc::clone(&live));
+    let heart = beat(Arc::clone(service), row.claim(), row.time_left, Arc::clone(&live));
     let heart = AbortOnDropHandle::new(tokio::spawn(heart));
     service.note_load();
-    let room = service.room_for(&row, &live).await;
+    let room = service.capacity.room_for(&row, &live, &service.spool).await;
     let bytes_max = room.as_ref().map_or(service.settings.engine_bytes_max, |room| room.bytes);
     let ended = match service.check_upload(&row).await {
-        Ok(()) => in_time(service, &row, kind, &live, attempt(service, &row, &live, &clock, bytes_max)).await,
+        Ok(()) => {
+            in_time(service, &row, kind, &live, service.executor.run(&row, &live, &clock, bytes_max)).await
+        }
         Err(problem) => Err(problem),
     };
-    service.note_run_time(&clock);
+    service.pace.note_run(clock.timing_ms().total as u64);
     let conclusion = match &ended {
         Err(problem) if is_too_small(service, problem, bytes_max) => Conclusion::Demote { is_outgrown: true },
         _ => conclude(service, &row, &live, &clock, ended).await,
@@ -172,7 +184,7 @@ async fn keep_files(
     let mut written = Vec::new();
     let has_result = result.is_some();
     let mut results = Vec::new();
-    for (number, Made { content, encoding }) in result.into_iter().chain(levels).enumerate() {
+    for (number, MadeMesh { content, encoding }) in result.into_iter().chain(levels).enumerate() {
         let blob = match content {
             Some(content) => service.keep(row, format!("mesh-{number}"), content, &mut written).await?,
             None => row.input.clone(),

@@ -1,28 +1,24 @@
-//! The data directory: who owns it, how full it is, and what in it nobody names.
+//! The files of one server: how much room they fill, and which of them no row names.
 
 use std::collections::HashSet;
 use std::fmt;
-use std::fs::{self, File, TryLockError};
+use std::fs::File;
 use std::io::{self, Write as _};
-use std::os::unix::fs::{DirBuilderExt as _, OpenOptionsExt as _};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
 
 use sha2::{Digest, Sha256};
 use uuid::Uuid;
 
-use super::blobs::{BlobStore, BlobWriter, LocalBlobs, StoredBlob};
-use super::product::MadeFile;
+use super::blobs::{BlobStore, BlobWriter, StoredBlob};
+use super::child::MadeFile;
 use super::soundness::{KnownSound, Unsound};
 use super::store::{BlobRef, ClaimRef};
 
 /// The files of one server.
 pub(super) struct Spool {
     blobs: Arc<dyn BlobStore>,
-    /// Held as long as the server runs: two servers must not share a directory.
-    _lock: File,
     bytes: AtomicU64,
     bytes_max: u64,
     free_bytes_min: u64,
@@ -37,19 +33,6 @@ impl fmt::Debug for Spool {
     }
 }
 
-/// A directory that cannot be used.
-#[derive(Debug)]
-pub(super) enum OpenError {
-    InUse,
-    Io(io::Error),
-}
-
-impl From<io::Error> for OpenError {
-    fn from(error: io::Error) -> Self {
-        Self::Io(error)
-    }
-}
-
 /// How full the directory may be.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SpaceLimits {
@@ -59,40 +42,12 @@ pub(super) struct SpaceLimits {
     pub(super) free_bytes_min: u64,
 }
 
-/// How long a directory that is in use is waited for: what a server that was killed had just begun to start holds it for a
-/// moment more.
-const IN_USE: Duration = Duration::from_secs(2);
-
-/// Time between two looks at a directory that is in use.
-const LOOKS_APART: Duration = Duration::from_millis(20);
-
 impl Spool {
-    /// Takes the directory over, with the files in it, and waits for a moment where another server holds it.
-    pub(super) async fn take_over(data_dir: &Path, limits: SpaceLimits) -> Result<Arc<Self>, OpenError> {
-        let begun = Instant::now();
-        loop {
-            match Self::open(data_dir, limits) {
-                Err(OpenError::InUse) if begun.elapsed() < IN_USE => tokio::time::sleep(LOOKS_APART).await,
-                opened => return opened,
-            }
-        }
-    }
-
-    /// Takes the directory over, unless another server holds it.
-    fn open(data_dir: &Path, limits: SpaceLimits) -> Result<Arc<Self>, OpenError> {
-        // One that is there keeps its rights: what is in it is private by itself.
-        fs::DirBuilder::new().recursive(true).mode(0o700).create(data_dir)?;
-        let lock = File::options().create(true).append(true).mode(0o600).open(data_dir.join("lock"))?;
-        match lock.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => return Err(OpenError::InUse),
-            Err(TryLockError::Error(error)) => return Err(error.into()),
-        }
-        let blobs = LocalBlobs::open(&data_dir.join("spool"))?;
+    /// The files of a store, and those that are in it already. Blocks.
+    pub(super) fn of(blobs: Arc<dyn BlobStore>, limits: SpaceLimits) -> io::Result<Arc<Self>> {
         let bytes = blobs.list()?.iter().map(|blob| blob.bytes).sum::<u64>();
         Ok(Arc::new(Self {
-            blobs: Arc::new(blobs),
-            _lock: lock,
+            blobs,
             bytes: AtomicU64::new(bytes),
             bytes_max: limits.bytes_max,
             free_bytes_min: limits.free_bytes_min,
@@ -189,6 +144,13 @@ impl Spool {
         self.remove_file(&blob.key, blob.bytes);
     }
 
+    /// Removes files that no row names.
+    pub(super) fn remove_all(&self, orphans: &[BlobRef]) {
+        for blob in orphans {
+            self.remove(blob);
+        }
+    }
+
     fn remove_file(&self, key: &str, bytes: u64) {
         match self.blobs.remove(key) {
             Ok(()) => self.give_back(bytes),
@@ -219,13 +181,6 @@ impl Spool {
         let listed = self.blobs.list()?;
         let held = self.held();
         Ok(listed.into_iter().filter(|blob| !held.contains(&blob.key)).collect())
-    }
-
-    /// Moves a file out of the spool and gives its room back. Blocks.
-    pub(super) fn move_out(&self, blob: &StoredBlob, to: &Path) -> io::Result<()> {
-        fs::rename(self.path(&blob.key)?, to)?;
-        self.give_back(blob.bytes);
-        Ok(())
     }
 
     /// Removes files that nobody names. Blocks.
@@ -324,6 +279,7 @@ impl Drop for Space {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::jobs::blobs::LocalBlobs;
     use crate::jobs::store::JobId;
 
     const LIMITS: SpaceLimits = SpaceLimits { bytes_max: 10, free_bytes_min: 0 };
@@ -334,24 +290,27 @@ mod tests {
         spool.write(claim, "mesh", b"hello", space).unwrap()
     }
 
+    fn spool_in(dir: &tempfile::TempDir) -> Arc<Spool> {
+        Spool::of(Arc::new(LocalBlobs::open(dir.path()).unwrap()), LIMITS).unwrap()
+    }
+
     #[test]
-    fn a_directory_has_one_owner_and_keeps_its_files_for_the_next_one() {
+    fn what_is_in_a_store_counts_for_the_next_server() {
         let dir = tempfile::tempdir().unwrap();
-        let first = Spool::open(dir.path(), LIMITS).unwrap();
+        let first = spool_in(&dir);
         let written = hello(&first);
         let key = written.blob().unwrap().key.clone();
-        assert!(matches!(Spool::open(dir.path(), LIMITS), Err(OpenError::InUse)));
         written.named();
         drop(first);
-        let second = Spool::open(dir.path(), LIMITS).unwrap();
+        let second = spool_in(&dir);
         assert!(second.path(&key).unwrap().exists());
-        assert_eq!(second.bytes(), 5, "what is there counts");
+        assert_eq!(second.bytes(), 5);
     }
 
     #[test]
     fn room_is_counted_from_reservation_to_removal() {
         let dir = tempfile::tempdir().unwrap();
-        let spool = Spool::open(dir.path(), LIMITS).unwrap();
+        let spool = spool_in(&dir);
         let mut space = spool.reserve(4).unwrap();
         space.absorb(spool.reserve(5).unwrap());
         assert!(spool.reserve(2).is_none());
@@ -366,7 +325,7 @@ mod tests {
     #[test]
     fn what_the_process_still_holds_is_no_orphan() {
         let dir = tempfile::tempdir().unwrap();
-        let spool = Spool::open(dir.path(), LIMITS).unwrap();
+        let spool = spool_in(&dir);
         let (upload, writer) = spool.begin().unwrap();
         let written = hello(&spool);
         assert!(spool.list().unwrap().is_empty());
@@ -380,7 +339,7 @@ mod tests {
     #[test]
     fn a_disk_is_short_of_what_would_leave_too_little_free() {
         let dir = tempfile::tempdir().unwrap();
-        let spool = Spool::open(dir.path(), LIMITS).unwrap();
+        let spool = spool_in(&dir);
         assert!(!spool.is_disk_short_of(1) && spool.is_disk_short_of(u64::MAX));
     }
 }

@@ -2,10 +2,6 @@
 
 use std::fmt;
 
-use tracing::Span;
-
-use super::store::JobRow;
-
 /// Bytes of a `traceparent`: version, trace, parent and flags. A later version may have more, which is not kept.
 const LEN: usize = 55;
 
@@ -37,22 +33,6 @@ impl fmt::Display for TraceParent {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0)
     }
-}
-
-/// The span of a run. With the feature `otel` it continues the trace of the job's request.
-pub(super) fn run_span(row: &JobRow) -> Span {
-    let span = tracing::info_span!("job", id = %row.id, operation = row.operation.word());
-    #[cfg(feature = "otel")]
-    if let Some(parent) = &row.trace {
-        use opentelemetry::propagation::TextMapPropagator as _;
-        use tracing_opentelemetry::OpenTelemetrySpanExt as _;
-
-        let carrier = std::collections::HashMap::from([("traceparent".to_owned(), parent.to_string())]);
-        let parent = opentelemetry_sdk::propagation::TraceContextPropagator::new().extract(&carrier);
-        // It fails when the span has begun already, which it has not.
-        let _ = span.set_parent(parent);
-    }
-    span
 }
 
 #[cfg(test)]

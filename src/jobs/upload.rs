@@ -7,15 +7,15 @@ use sha2::{Digest, Sha256};
 
 use tokio::task::JoinHandle;
 
-use super::arrivals::Place;
+use super::arrivals::QueuePlace;
 use super::blobs::BlobWriter;
+use super::disk::{joined, on_disk};
 use super::meters;
-use super::retention::{joined, on_disk};
 use super::service::Service;
 use super::shares::IncomingBytes;
 use super::spool::{Space, Spool, Unnamed, Written};
 use super::store::{BlobRef, Tenant};
-use crate::wire::{Problem, ProblemCode};
+use crate::wire::Problem;
 
 /// Bytes gathered before they are hashed and written, off the threads that serve connections and while more come in.
 const BLOCK_BYTES: usize = 256 << 10;
@@ -29,7 +29,7 @@ pub struct Upload {
     space: Space,
     /// It becomes a job, and has no place in the queue yet.
     needs_place: bool,
-    place: Option<Place>,
+    place: Option<QueuePlace>,
     incoming: IncomingBytes,
 }
 
@@ -85,7 +85,7 @@ impl Upload {
     ) -> Result<Self, Problem> {
         let space = service.make_room(&tenant, 0).await?;
         Ok(Self {
-            incoming: IncomingBytes::none(Arc::clone(&service), tenant),
+            incoming: IncomingBytes::none(Arc::clone(&service.incoming), tenant),
             service,
             sink: Sink::Fresh,
             block: Vec::new(),
@@ -102,7 +102,7 @@ impl Upload {
     /// `body-too-large`, `queue-full`, `storage-full`, `internal` when the disk fails. The upload cannot go on after that.
     pub async fn write(&mut self, mut bytes: &[u8]) -> Result<(), Problem> {
         self.bytes += bytes.len() as u64;
-        self.service.check_upload_size(self.bytes)?;
+        self.service.settings.check_upload_size(self.bytes)?;
         while !bytes.is_empty() {
             let (now, later) = bytes.split_at(bytes.len().min(BLOCK_BYTES - self.block.len()));
             self.block.extend_from_slice(now);
@@ -154,7 +154,8 @@ impl Upload {
     /// Where the block is to be written now, for which there is room, and an empty block.
     async fn next_sink(&mut self) -> Result<(Sink, Vec<u8>), Problem> {
         if self.needs_place {
-            let place = self.service.take_place(self.incoming.tenant()).await;
+            let place = self.service.arrivals.take_place(self.incoming.tenant()).await;
+            let place = place.map_err(|error| self.service.not_admitted(&error));
             self.place = Some(place.inspect_err(meters::refused)?);
             self.needs_place = false;
         }
@@ -176,7 +177,7 @@ impl Upload {
 pub struct Uploaded {
     written: Written,
     /// Given up when this is dropped, as are its bytes among those that come in.
-    _place: Option<Place>,
+    _place: Option<QueuePlace>,
     _incoming: IncomingBytes,
 }
 
@@ -188,16 +189,5 @@ impl Uploaded {
 
     pub(super) fn blob(&self) -> Option<&BlobRef> {
         self.written.blob()
-    }
-}
-
-/// A failure of the disk, told to the caller without paths and to the log with them.
-pub(super) fn disk_problem(error: &io::Error) -> Problem {
-    tracing::error!(%error, "the data directory failed");
-    match error.kind() {
-        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
-            Problem::new(ProblemCode::StorageFull, "the disk is full")
-        }
-        _ => Problem::new(ProblemCode::Internal, "the data directory failed"),
     }
 }

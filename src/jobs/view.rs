@@ -2,7 +2,7 @@
 
 use super::live::Live;
 use super::store::{JobRow, ResultRef};
-use crate::wire::{self, Encoding, Job, JobState, Links, Outcome, Problem, ProblemCode, Progress};
+use crate::wire::{self, Encoding, Job, JobState, Links, Outcome, Progress};
 
 /// A mesh that can be sent.
 #[derive(Debug)]
@@ -93,9 +93,4 @@ fn stem(row: &JobRow) -> String {
     let stem: String = stem.chars().take(100).map(|c| if is_harmless(c) { c } else { '_' }).collect();
     let stem = stem.trim_start_matches('.');
     if stem.is_empty() { format!("mesh-{}", row.id) } else { stem.to_owned() }
-}
-
-/// The problem of asking for what is kept no longer.
-pub(super) fn expired() -> Problem {
-    Problem::new(ProblemCode::Expired, "the job's files are kept no longer")
 }

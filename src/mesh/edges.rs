@@ -2,30 +2,10 @@
 //!
 //! Half-edge `h = 3 t + c` runs from corner `c` of triangle `t` to the next corner. No coordinates here.
 
+use super::corners::{edge_of, triangle_of};
 use super::{Components, Outlines, UnionFind};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::par;
-
-/// The triangle of half-edge `h`.
-pub fn triangle_of(h: u32) -> u32 {
-    h / 3
-}
-
-/// The half-edge after `h` in its triangle.
-pub fn next_corner(h: u32) -> u32 {
-    if h % 3 == 2 { h - 2 } else { h + 1 }
-}
-
-/// The half-edge before `h` in its triangle.
-pub fn prev_corner(h: u32) -> u32 {
-    if h.is_multiple_of(3) { h + 2 } else { h - 1 }
-}
-
-/// The ends of half-edge `h`: where it starts and where it goes.
-pub fn edge_of(triangles: &[[u32; 3]], h: u32) -> [u32; 2] {
-    let corners = triangles[triangle_of(h) as usize];
-    [corners[(h % 3) as usize], corners[(next_corner(h) % 3) as usize]]
-}
 
 /// All half-edges grouped by undirected edge, edges ordered by (smaller vertex, larger vertex), half-edges inside a
 /// group by id. Any number of triangles may share an edge; a triangle with a repeated corner gives an edge with two
@@ -257,6 +237,7 @@ fn for_each_edge(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::{next_corner, prev_corner};
     use std::collections::BTreeMap;
 
     fn by_map(triangles: &[[u32; 3]]) -> Vec<Vec<u32>> {

@@ -3,7 +3,8 @@
 //! A vertex is regular when its triangles are one fan, which is the same as its link being one chain or one cycle: at
 //! an edge with one triangle, or with three or more, every fan ends.
 
-use super::edges::{EdgeGroups, edge_of, next_corner, prev_corner};
+use super::corners::{edge_of, next_corner, prev_corner};
+use super::edges::EdgeGroups;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::par;
 use rustc_hash::FxHashSet;

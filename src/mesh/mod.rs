@@ -3,6 +3,7 @@
 mod boundary;
 mod components;
 pub mod corner_table;
+mod corners;
 mod cut;
 mod divide;
 mod edges;
@@ -19,9 +20,10 @@ mod texture;
 
 pub use boundary::{Boundary, BoundaryLoop};
 pub use components::{Components, UnionFind};
+pub use corners::{edge_of, next_corner, prev_corner, triangle_of};
 pub use cut::{ChosenEdges, Cut, CutMethod, Marks, cut, cut_singular};
 pub use divide::divide;
-pub use edges::{EdgeGroups, edge_of, next_corner, prev_corner, triangle_of};
+pub use edges::EdgeGroups;
 pub use fans::{Fan, NO_TWIN, fan_heads, singular_vertices, twins};
 pub use materials::{Materials, NO_MATERIAL};
 pub use outlines::{Outlines, PolygonRuns};

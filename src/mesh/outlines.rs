@@ -4,7 +4,7 @@
 //! which are no edges of the mesh: whatever else joins the same two vertices, the two half-edges of a diagonal belong to
 //! each other alone.
 
-use super::edges::{edge_of, next_corner, prev_corner, triangle_of};
+use super::corners::{edge_of, next_corner, prev_corner, triangle_of};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use std::ops::Range;
 

@@ -13,50 +13,18 @@
 //! plane with an end of one; so only edges with a moving plane are tried against edges, and only where the four planes
 //! are different.
 
+use super::conflict::Contact;
 use super::exact::{Rational, cross, dot, to_f64};
 use super::merged::Merged;
 use super::motion::{Motion, Moving, MovingPoint, root_after_zero};
 use super::search::Search;
 use super::solid::Solid;
 use crate::budget::{Budget, Stopped};
-use crate::mesh::polyhedron::{FaceId, HalfEdgeId, VertexId};
+use crate::mesh::polyhedron::{HalfEdgeId, VertexId};
 use std::cmp::Ordering;
 
 /// Most elements that are told of one event.
 const BLOCKING_MAX: usize = 16;
-
-/// Elements that would meet.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Contact {
-    /// An edge loses its length.
-    EdgeVanishes {
-        /// The faces beside it.
-        faces: [FaceId; 2],
-        /// Its ends.
-        vertices: [VertexId; 2],
-    },
-    /// A vertex reaches a face that it is not at.
-    VertexFace {
-        /// The vertex.
-        vertex: VertexId,
-        /// The face.
-        face: FaceId,
-    },
-    /// Two edges cross.
-    EdgeEdge {
-        /// The faces beside one.
-        first: [FaceId; 2],
-        /// The faces beside the other.
-        second: [FaceId; 2],
-    },
-    /// Two loops of one face touch, at this vertex of one of them.
-    LoopLoop {
-        /// The face.
-        face: FaceId,
-        /// The vertex.
-        vertex: VertexId,
-    },
-}
 
 /// What happens next.
 #[derive(Debug, Clone)]

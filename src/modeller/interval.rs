@@ -1,6 +1,7 @@
 //! The open interval by which faces may move without an event.
 
-use super::events::{Contact, next_event};
+use super::conflict::Contact;
+use super::events::next_event;
 use super::exact::Rational;
 use super::motion::{Motion, Moving};
 use super::operator::{Refusal, limit};
@@ -45,7 +46,7 @@ fn one_side(solid: &Solid, shifts: &[(FaceId, Rational)], budget: &Budget) -> Re
     let mut solid = solid;
     let unsettled = Moving::unsettled(solid, &motion);
     if !unsettled.is_empty() {
-        super::index::tree(solid, budget)?;
+        super::near::tree(solid, budget)?;
         let mut copy = solid.clone();
         for vertex in unsettled {
             if resolve::split(&mut copy, &motion, vertex).is_none() {

@@ -1,6 +1,6 @@
 //! Which contacts of an event only say that edges vanish there.
 
-use super::events::Contact;
+use super::conflict::Contact;
 use super::solid::Solid;
 use crate::mesh::UnionFind;
 use crate::mesh::polyhedron::{FaceId, HalfEdgeId, VertexId};

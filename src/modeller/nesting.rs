@@ -2,8 +2,8 @@
 
 use super::exact::{cross, det, dot, sign};
 use super::point::{Place, Point};
+use super::rule::{Fault, Rule};
 use super::solid::Solid;
-use super::validity::{Fault, Rule};
 use crate::budget::{Budget, Stopped};
 use crate::mesh::polyhedron::FaceId;
 use num_bigint::BigInt;

@@ -13,13 +13,15 @@
 //! Edges that lose their lengths are contracted (a merge), and a vertex whose planes do not stay concurrent is split for
 //! what comes just after. So an edge flip is a merge and a split.
 
-use super::events::{Contact, Event, next_event, vanishing_time};
+use super::conflict::Contact;
+use super::events::{Event, next_event, vanishing_time};
 use super::exact::{Rational, det, sign};
 use super::journal::Journal;
 use super::motion::{Motion, Moving};
 use super::resolve;
+use super::rule::Fault;
 use super::solid::Solid;
-use super::validity::{Fault, check_changed};
+use super::validity::check_changed;
 use crate::budget::{Budget, Stopped};
 use crate::mesh::polyhedron::{ContractRefusal, FaceId, HalfEdgeId, VertexId};
 use num_bigint::BigInt;

@@ -1,10 +1,10 @@
 //! What may come to meet while planes move, and whether it does: by rounded numbers with their errors first, then exactly.
 
+use super::conflict::Contact;
 use super::contact::{do_meet, grown};
-use super::events::Contact;
 use super::exact::{Rational, det, dot, quotient};
-use super::index::faces_near;
 use super::motion::{Motion, Moving, MovingPoint, root_after_zero};
+use super::near::faces_near;
 use super::plane::meeting_point;
 use super::point::{Place, Point};
 use super::solid::Solid;

@@ -76,6 +76,11 @@ impl SourceFile {
         inside.split('/').next().unwrap_or_default().trim_end_matches(".rs")
     }
 
+    /// The absolute path of the module that the file is.
+    pub(crate) fn module(&self) -> Vec<String> {
+        module_of(&self.path)
+    }
+
     /// The file's name without folder and ending.
     pub(crate) fn stem(&self) -> &str {
         self.path.rsplit('/').next().unwrap_or_default().trim_end_matches(".rs")

@@ -7,8 +7,8 @@ use sha2::{Digest as _, Sha256};
 
 use super::task::FileMade;
 use super::workspace::Rooms;
+use crate::jobs::problems::disk_problem;
 use crate::jobs::product::Product;
-use crate::jobs::upload::disk_problem;
 use crate::par;
 use crate::wire::{Problem, ProblemCode};
 

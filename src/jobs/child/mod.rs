@@ -27,4 +27,4 @@ pub(super) use processes::Processes;
 pub use run::{RUN_JOB, run_job};
 pub use sandbox::Sandbox;
 pub use trial::TrialError;
-pub(super) use workspace::Workspace;
+pub(super) use workspace::MadeFile;

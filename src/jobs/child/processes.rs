@@ -11,15 +11,15 @@ use super::starter::Starter;
 use super::task::{Setting, Task};
 use super::trial::{TrialError, try_out};
 use super::watch::watch;
-use super::workspace::Workspaces;
+use super::workspace::{MadeFile, Workspaces};
 use crate::jobs::clock::StageClock;
 use crate::jobs::live::Live;
 use crate::jobs::meters;
-use crate::jobs::product::{MadeFile, Product};
+use crate::jobs::problems::disk_problem;
+use crate::jobs::product::Product;
 use crate::jobs::settings::JobsSettings;
 use crate::jobs::spool::Spool;
 use crate::jobs::store::{BlobRef, JobRow};
-use crate::jobs::upload::disk_problem;
 use crate::wire::Problem;
 
 /// Gives jobs to children, one to each.

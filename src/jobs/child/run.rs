@@ -13,11 +13,11 @@ use super::task::{FileMade, Message, Setting, Task};
 use super::workspace::Rooms;
 use crate::budget::{Budget, Event, StopFlag};
 use crate::jobs::clock::StageClock;
+use crate::jobs::problems::{disk_problem, engine_crashed};
 use crate::jobs::product::Product;
-use crate::jobs::upload::disk_problem;
 use crate::par;
 use crate::pipeline::{self, Answer, Failure};
-use crate::wire::{Problem, ProblemCode};
+use crate::wire::Problem;
 
 /// The command that makes a process a child: its arguments are a folder and a [`Setting`] as JSON. For servers only: a
 /// person has no use for it.
@@ -71,8 +71,8 @@ fn wait_and_obey(engine: &Engine) -> io::Result<()> {
 }
 
 fn obey(task: &Task, files: &Files, engine: &Engine) -> io::Result<()> {
-    let crashed = |_| Err(Problem::new(ProblemCode::EngineCrashed, "the engine failed on this mesh"));
-    let outcome = catch_unwind(AssertUnwindSafe(|| run(task, files, engine))).unwrap_or_else(crashed);
+    let outcome = catch_unwind(AssertUnwindSafe(|| run(task, files, engine)));
+    let outcome = outcome.unwrap_or_else(|_| Err(engine_crashed()));
     say(&match outcome {
         Ok(product) => Message::Made(Box::new(product)),
         Err(problem) => Message::Failed(Box::new(problem)),

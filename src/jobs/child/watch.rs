@@ -12,9 +12,9 @@ use super::launch::Running;
 use super::memory_kills;
 use super::sandbox::Protections;
 use super::task::{FileMade, Task};
-use super::workspace::Workspace;
+use super::workspace::{MadeFile, Workspace};
 use crate::budget::{Event, StopFlag};
-use crate::jobs::product::{MadeFile, Product};
+use crate::jobs::product::Product;
 use crate::wire::Problem;
 
 /// Time between two looks at the stop flag. What the child says and its end are heard at once.

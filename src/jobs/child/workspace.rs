@@ -175,6 +175,16 @@ impl Drop for Workspace {
     }
 }
 
+/// A file that another process made in a folder of its own.
+#[derive(Debug, Clone)]
+pub(in crate::jobs) struct MadeFile {
+    pub(in crate::jobs) path: PathBuf,
+    pub(in crate::jobs) bytes: u64,
+    pub(in crate::jobs) sha256: [u8; 32],
+    /// The folder, which goes with the last file.
+    pub(in crate::jobs) _folder: Arc<Workspace>,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

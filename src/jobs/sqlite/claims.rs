@@ -7,7 +7,7 @@ use rusqlite::{Connection, OptionalExtension as _, named_params, params};
 use super::rows::{get, later, number_of, parsed, state, to_json};
 use super::{keeping, listing, outbox, tenants};
 use crate::jobs::store::{
-    AfterLoss, ClaimRef, ClaimRequest, Created, Ending, JobId, JobRow, Lane, NewJob, StoreError,
+    AfterLoss, ClaimRef, ClaimRequest, Created, Ending, JobId, JobRow, Lane, Leases, NewJob, StoreError,
 };
 use crate::wire::{ENGINE_VERSION, JobState, Problem, ProblemCode};
 
@@ -18,17 +18,17 @@ pub(super) fn create(
     now: i64,
 ) -> Result<Created, StoreError> {
     if let Some(key) = &new.key
-        && let Some(known) = listing::find_keyed(connection, new.owner.as_deref(), key)?
+        && let Some(known) = listing::find_keyed(connection, new.owner.as_deref(), key, now)?
     {
         return Ok(Created::Known(known));
     }
     if let Some(source) = new.source
-        && get(connection, source)?.state == JobState::Expired
+        && get(connection, source, now)?.state == JobState::Expired
     {
         return Err(StoreError::NotFound);
     }
     if new.ending.is_none() {
-        let queued = listing::counts(connection)?.queued;
+        let queued = listing::counts(connection, now)?.queued;
         if queued >= queue_max {
             return Err(StoreError::QueueFull { queued });
         }
@@ -42,7 +42,7 @@ pub(super) fn create(
             .execute(params![new.id.to_string(), now])?;
         end(connection, new.id, ending, now)?;
     }
-    get(connection, new.id).map(Created::New)
+    get(connection, new.id, now).map(Created::New)
 }
 
 fn insert(connection: &Connection, new: &NewJob, now: i64) -> Result<(), StoreError> {
@@ -127,7 +127,7 @@ pub(super) fn claim(
             )?
             .execute(params![id.to_string(), request.worker, later(lease_now, request.lease), now, request.is_only])?;
         change(connection, id, now)?;
-        match get(connection, id) {
+        match get(connection, id, now) {
             Ok(row) => return Ok(Some(row)),
             // A row that an older program wrote and this one cannot read must not stand in the way of the others.
             Err(StoreError::Unavailable(error)) => {
@@ -227,18 +227,29 @@ pub(super) fn lose(
     Ok(AfterLoss::Ended)
 }
 
+/// Ends the leases that an earlier process gave out: they were counted by its clock.
+pub(super) fn end_leases(connection: &Connection) -> rusqlite::Result<()> {
+    connection.execute("UPDATE jobs SET lease_until = ?1 WHERE state = 'running'", [i64::MIN]).map(drop)
+}
+
 pub(super) fn recover(
     connection: &Connection,
-    until: i64,
+    leases: &Leases,
+    lease_now: i64,
     problem: &Problem,
     attempts_max: u32,
     now: i64,
 ) -> Result<Vec<(JobId, AfterLoss)>, StoreError> {
+    let (until, worker) = match leases {
+        Leases::Expired => (lease_now, None),
+        Leases::OfWorker(name) => (i64::MAX, Some(name)),
+    };
     let mut statement = connection.prepare_cached(
-        "SELECT id, epoch FROM jobs INDEXED BY jobs_running WHERE state = 'running' AND lease_until <= ?1 ORDER BY id",
+        "SELECT id, epoch FROM jobs INDEXED BY jobs_running
+         WHERE state = 'running' AND lease_until <= ?1 AND (?2 IS NULL OR worker = ?2) ORDER BY id",
     )?;
     let claims = statement
-        .query_map([until], |row| Ok(ClaimRef { id: parsed(row, 0)?, epoch: row.get(1)? }))?
+        .query_map(params![until, worker], |row| Ok(ClaimRef { id: parsed(row, 0)?, epoch: row.get(1)? }))?
         .collect::<rusqlite::Result<Vec<_>>>()?;
     claims
         .into_iter()

@@ -1,10 +1,11 @@
 //! Looking for rows.
 
-use jiff::Timestamp;
+use std::time::Duration;
+
 use rusqlite::types::Value;
 use rusqlite::{Connection, OptionalExtension as _, params, params_from_iter};
 
-use super::rows::{COLUMNS, get, job, parsed, state, time, word};
+use super::rows::{COLUMNS, get, job, parsed, state, time, time_left, word};
 use crate::jobs::store::{Change, IdempotencyKey, JobCounts, JobId, JobRow, ListQuery, NewJob, StoreError};
 use crate::wire::{ENGINE_VERSION, JobState};
 
@@ -12,6 +13,7 @@ pub(super) fn find_keyed(
     connection: &Connection,
     owner: Option<&str>,
     key: &IdempotencyKey,
+    now: i64,
 ) -> Result<Option<JobRow>, StoreError> {
     let mut statement = connection.prepare_cached(
         "SELECT id, fingerprint FROM jobs WHERE coalesce(owner, '') = coalesce(?1, '') AND idempotency_key = ?2",
@@ -22,7 +24,7 @@ pub(super) fn find_keyed(
     match found {
         None => Ok(None),
         Some((_, fingerprint)) if fingerprint != key.fingerprint => Err(StoreError::KeyReused),
-        Some((id, _)) => get(connection, id).map(Some),
+        Some((id, _)) => get(connection, id, now).map(Some),
     }
 }
 
@@ -39,13 +41,13 @@ pub(super) fn find_equal(
          ORDER BY id DESC"
     ))?;
     let operation = new.operation.word();
-    let mut rows =
-        statement.query_map(params![new.input.sha256, new.owner, operation, ENGINE_VERSION, now], job)?;
+    let given = params![new.input.sha256, new.owner, operation, ENGINE_VERSION, now];
+    let mut rows = statement.query_map(given, |row| job(row, now))?;
     // What cannot be read is not equal.
     Ok(rows.find_map(|row| row.ok().filter(|row| row.does_the_same_as(new))))
 }
 
-pub(super) fn list(connection: &Connection, query: &ListQuery) -> Result<Vec<JobRow>, StoreError> {
+pub(super) fn list(connection: &Connection, query: &ListQuery, now: i64) -> Result<Vec<JobRow>, StoreError> {
     let mut sql = format!("SELECT {COLUMNS} FROM jobs WHERE owner IS ?");
     let mut values = vec![query.owner.clone().map_or(Value::Null, Value::Text)];
     if let Some(state) = query.state {
@@ -63,7 +65,7 @@ pub(super) fn list(connection: &Connection, query: &ListQuery) -> Result<Vec<Job
     sql.push_str(" ORDER BY id DESC LIMIT ?");
     values.push(Value::Integer(i64::try_from(query.limit).unwrap_or(i64::MAX)));
     let mut statement = connection.prepare_cached(&sql)?;
-    let rows = statement.query_map(params_from_iter(values), job)?;
+    let rows = statement.query_map(params_from_iter(values), |row| job(row, now))?;
     let readable = |row: rusqlite::Result<JobRow>| match row {
         // A row of another version must not keep the others from being listed.
         Err(error @ rusqlite::Error::FromSqlConversionFailure(..)) => {
@@ -75,10 +77,10 @@ pub(super) fn list(connection: &Connection, query: &ListQuery) -> Result<Vec<Job
     Ok(rows.filter_map(readable).collect::<rusqlite::Result<_>>()?)
 }
 
-pub(super) fn deadlines(connection: &Connection) -> Result<Vec<(JobId, Timestamp)>, StoreError> {
+pub(super) fn deadlines(connection: &Connection, now: i64) -> Result<Vec<(JobId, Duration)>, StoreError> {
     let mut statement = connection
         .prepare_cached("SELECT id, cancel_at FROM jobs WHERE state = 'queued' AND cancel_at IS NOT NULL")?;
-    let rows = statement.query_map([], |row| Ok((parsed(row, 0)?, time(row, 1)?)))?;
+    let rows = statement.query_map([], |row| Ok((parsed(row, 0)?, time_left(row, 1, now)?)))?;
     Ok(rows.collect::<rusqlite::Result<_>>()?)
 }
 
@@ -99,7 +101,7 @@ pub(super) fn changes(connection: &Connection, id: JobId, after: u64) -> Result<
     Ok(rows.collect::<rusqlite::Result<_>>()?)
 }
 
-pub(super) fn counts(connection: &Connection) -> Result<JobCounts, StoreError> {
+pub(super) fn counts(connection: &Connection, now: i64) -> Result<JobCounts, StoreError> {
     let mut statement = connection.prepare_cached("SELECT state, jobs FROM tallies")?;
     let mut counts = JobCounts::default();
     let mut rows = statement.query([])?;
@@ -115,6 +117,8 @@ pub(super) fn counts(connection: &Connection) -> Result<JobCounts, StoreError> {
     }
     let mut statement = connection
         .prepare_cached("SELECT created_at FROM jobs WHERE state = 'queued' ORDER BY id LIMIT 1")?;
-    counts.oldest_queued_at = statement.query_row([], |row| time(row, 0)).optional()?;
+    let oldest: Option<i64> = statement.query_row([], |row| row.get(0)).optional()?;
+    counts.longest_queued =
+        oldest.map(|at| Duration::from_millis(u64::try_from(now.saturating_sub(at)).unwrap_or_default()));
     Ok(counts)
 }

@@ -12,6 +12,7 @@ mod rows;
 mod schema;
 mod secrets;
 mod tenants;
+mod wall;
 mod writer;
 
 use std::collections::HashSet;
@@ -30,7 +31,6 @@ use super::store::{
     IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept, Leases, ListQuery, NewJob, NextTry, Sealer,
     StoreError, StoreFuture, Tenant, TryOutcome,
 };
-use super::wall;
 use crate::wire::Problem;
 pub use identity::StoreFile;
 pub use schema::OpenError;
@@ -47,7 +47,8 @@ pub type StoreClock = Arc<dyn Fn() -> i64 + Send + Sync>;
 /// A store in a file.
 pub struct SqliteStore {
     clock: StoreClock,
-    /// By which leases end: one that goes on evenly, however the time of day is set. All leases are void at a start.
+    /// By which leases end: one that goes on evenly, however the time of day is set. It begins anew with
+    /// each process.
     lease_clock: StoreClock,
     writer: Writer,
     readers: Arc<Readers>,
@@ -60,32 +61,31 @@ impl fmt::Debug for SqliteStore {
 }
 
 impl SqliteStore {
-    /// Opens the file, or makes it; one of an older version becomes one of this version. Blocks.
+    /// Opens the file, or makes it; one of an older version becomes one of this version. The leases of an earlier process are
+    /// over. Blocks.
     ///
     /// # Errors
     /// The file cannot be used, or a newer program made it.
     pub fn open(path: &Path) -> Result<Self, OpenError> {
-        let even: StoreClock = Arc::new(wall::even_ms);
-        Self::open_by(path, Arc::new(wall::now_ms), even)
+        let connection = connect(path)?;
+        claims::end_leases(&connection)?;
+        Self::over(path, connection, Arc::new(wall::now_ms), Arc::new(wall::even_ms))
     }
 
-    /// As [`open`](Self::open), with another clock.
+    /// As [`open`](Self::open), with another clock, which is taken to go on from the earlier process to this one.
     ///
     /// # Errors
     /// As [`open`](Self::open).
     pub fn open_with(path: &Path, clock: StoreClock) -> Result<Self, OpenError> {
-        Self::open_by(path, Arc::clone(&clock), clock)
+        Self::over(path, connect(path)?, Arc::clone(&clock), clock)
     }
 
-    fn open_by(path: &Path, clock: StoreClock, lease_clock: StoreClock) -> Result<Self, OpenError> {
-        make_private(path)?;
-        let mut connection = Connection::open(path)?;
-        connection.busy_timeout(BUSY_PATIENCE)?;
-        connection.pragma_update(None, "journal_mode", "WAL")?;
-        connection.pragma_update(None, "synchronous", "FULL")?;
-        connection.pragma_update(None, "foreign_keys", "ON")?;
-        connection.set_prepared_statement_cache_capacity(128);
-        schema::migrate(&mut connection)?;
+    fn over(
+        path: &Path,
+        connection: Connection,
+        clock: StoreClock,
+        lease_clock: StoreClock,
+    ) -> Result<Self, OpenError> {
         let writer = Writer::start(connection)
             .map_err(|error| rusqlite::Error::ToSqlConversionFailure(Box::new(error)))?;
         let readers = Readers { path: path.to_owned(), idle: Mutex::default() };
@@ -177,6 +177,19 @@ impl Readers {
     }
 }
 
+/// The connection that writes, to a file of this version.
+fn connect(path: &Path) -> Result<Connection, OpenError> {
+    make_private(path)?;
+    let mut connection = Connection::open(path)?;
+    connection.busy_timeout(BUSY_PATIENCE)?;
+    connection.pragma_update(None, "journal_mode", "WAL")?;
+    connection.pragma_update(None, "synchronous", "FULL")?;
+    connection.pragma_update(None, "foreign_keys", "ON")?;
+    connection.set_prepared_statement_cache_capacity(128);
+    schema::migrate(&mut connection)?;
+    Ok(connection)
+}
+
 /// Makes the file for this user alone, if there is none; SQLite gives the files beside it the same rights.
 fn make_private(path: &Path) -> Result<(), OpenError> {
     let file = File::options().create(true).append(true).mode(0o600).open(path).map_err(OpenError::File)?;
@@ -216,11 +229,11 @@ impl JobStore for SqliteStore {
     }
 
     fn get(&self, id: JobId) -> StoreFuture<'_, JobRow> {
-        self.look_up(move |connection, _| rows::get(connection, id))
+        self.look_up(move |connection, now| rows::get(connection, id, now))
     }
 
     fn find_keyed(&self, owner: Option<String>, key: IdempotencyKey) -> StoreFuture<'_, Option<JobRow>> {
-        self.look_up(move |connection, _| listing::find_keyed(connection, owner.as_deref(), &key))
+        self.look_up(move |connection, now| listing::find_keyed(connection, owner.as_deref(), &key, now))
     }
 
     fn find_equal(&self, job: &NewJob) -> StoreFuture<'_, Option<JobRow>> {
@@ -229,11 +242,11 @@ impl JobStore for SqliteStore {
     }
 
     fn list(&self, query: ListQuery) -> StoreFuture<'_, Vec<JobRow>> {
-        self.read(move |connection, _| listing::list(connection, &query))
+        self.read(move |connection, now| listing::list(connection, &query, now))
     }
 
-    fn deadlines(&self) -> StoreFuture<'_, Vec<(JobId, Timestamp)>> {
-        self.read(|connection, _| listing::deadlines(connection))
+    fn deadlines(&self) -> StoreFuture<'_, Vec<(JobId, Duration)>> {
+        self.read(listing::deadlines)
     }
 
     fn changes(&self, id: JobId, after: u64) -> StoreFuture<'_, Vec<Change>> {
@@ -241,7 +254,7 @@ impl JobStore for SqliteStore {
     }
 
     fn counts(&self) -> StoreFuture<'_, JobCounts> {
-        self.look_up(|connection, _| listing::counts(connection))
+        self.look_up(listing::counts)
     }
 
     fn holding(&self, tenant: Tenant) -> StoreFuture<'_, Holding> {
@@ -282,11 +295,7 @@ impl JobStore for SqliteStore {
     ) -> StoreFuture<'_, Vec<(JobId, AfterLoss)>> {
         let lease_clock = Arc::clone(&self.lease_clock);
         self.write(move |connection, now| {
-            let until = match leases {
-                Leases::Expired => lease_clock(),
-                Leases::All => i64::MAX,
-            };
-            claims::recover(connection, until, &problem, attempts_max, now)
+            claims::recover(connection, &leases, lease_clock(), &problem, attempts_max, now)
         })
     }
 

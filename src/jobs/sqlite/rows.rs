@@ -8,8 +8,8 @@ use rusqlite::{Connection, Row};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::jobs::TraceParent;
 use crate::jobs::store::{JobId, JobRow, Lane, StoreError, Tenant};
+use crate::jobs::trace::TraceParent;
 use crate::wire::{JobState, Operation};
 
 /// The columns that [`job`] reads, in its order.
@@ -17,14 +17,16 @@ pub(super) const COLUMNS: &str = "id, operation, options, file_name, owner, labe
      lane, state, epoch, attempts, created_at, cancel_at, started_at, finished_at, expires_at, ending, is_cached, trace, tenant, \
      is_outgrown";
 
-/// The row of a job.
-pub(super) fn get(connection: &Connection, id: JobId) -> Result<JobRow, StoreError> {
+/// The row of a job, read at the time `now`.
+pub(super) fn get(connection: &Connection, id: JobId, now: i64) -> Result<JobRow, StoreError> {
     let mut statement = connection.prepare_cached(&format!("SELECT {COLUMNS} FROM jobs WHERE id = ?1"))?;
-    Ok(statement.query_row([id.to_string()], job)?)
+    Ok(statement.query_row([id.to_string()], |row| job(row, now))?)
 }
 
-/// A row of [`COLUMNS`].
-pub(super) fn job(row: &Row<'_>) -> rusqlite::Result<JobRow> {
+/// A row of [`COLUMNS`], read at the time `now`.
+pub(super) fn job(row: &Row<'_>, now: i64) -> rusqlite::Result<JobRow> {
+    let state = state(row, 10)?;
+    let expires_at = time_if_any(row, 17)?;
     Ok(JobRow {
         id: parsed(row, 0)?,
         operation: word(row, 1, Operation::from_word)?,
@@ -36,14 +38,15 @@ pub(super) fn job(row: &Row<'_>) -> rusqlite::Result<JobRow> {
         input: json(row, 7)?,
         material: json_if_any(row, 8)?,
         lane: lane(row.get(9)?),
-        state: state(row, 10)?,
+        state,
         epoch: row.get(11)?,
         attempts: row.get(12)?,
         created_at: time(row, 13)?,
-        cancel_at: time_if_any(row, 14)?,
+        time_left: time_left_if_any(row, 14, now)?,
         started_at: time_if_any(row, 15)?,
         finished_at: time_if_any(row, 16)?,
-        expires_at: time_if_any(row, 17)?,
+        expires_at,
+        is_due: state != JobState::Expired && expires_at.is_some_and(|at| at.as_millisecond() <= now),
         ending: json_if_any(row, 18)?,
         is_cached: row.get(19)?,
         trace: row.get::<_, Option<String>>(20)?.as_deref().and_then(TraceParent::parse),
@@ -109,6 +112,17 @@ pub(super) fn time(row: &Row<'_>, column: usize) -> rusqlite::Result<Timestamp> 
 pub(super) fn time_if_any(row: &Row<'_>, column: usize) -> rusqlite::Result<Option<Timestamp>> {
     let ms: Option<i64> = row.get(column)?;
     ms.map(Timestamp::from_millisecond).transpose().map_err(|error| unreadable(column, error))
+}
+
+/// How long a time is from now; nothing when it is over.
+pub(super) fn time_left(row: &Row<'_>, column: usize, now: i64) -> rusqlite::Result<Duration> {
+    let ms = row.get::<_, i64>(column)?.saturating_sub(now);
+    Ok(Duration::from_millis(u64::try_from(ms).unwrap_or_default()))
+}
+
+fn time_left_if_any(row: &Row<'_>, column: usize, now: i64) -> rusqlite::Result<Option<Duration>> {
+    let is_set = row.get::<_, Option<i64>>(column)?.is_some();
+    is_set.then(|| time_left(row, column, now)).transpose()
 }
 
 /// The time `after` another, at most the last one there is.

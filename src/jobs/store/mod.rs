@@ -1,5 +1,6 @@
 //! Where the rows of jobs live: the trait that every store keeps.
 
+mod id;
 mod outbox;
 mod row;
 mod tenant;
@@ -11,8 +12,9 @@ use std::time::Duration;
 use jiff::Timestamp;
 
 use crate::wire::{JobState, Problem};
+pub use id::JobId;
 pub use outbox::{Delivery, DeliveryRequest, DeliveryState, DeliveryTry, NextTry, TryOutcome, Webhook};
-pub use row::{BlobRef, ClaimRef, Ending, IdempotencyKey, JobId, JobRow, Lane, NewJob, ResultRef};
+pub use row::{BlobRef, ClaimRef, Ending, IdempotencyKey, JobRow, Lane, NewJob, ResultRef};
 pub use tenant::{Holding, Tenant};
 
 /// A store that could not do what was asked.
@@ -61,8 +63,8 @@ pub struct JobCounts {
     pub running: usize,
     /// In any state.
     pub all: usize,
-    /// When the job was accepted that waits for longest.
-    pub oldest_queued_at: Option<Timestamp>,
+    /// For how long the job waits that has waited for longest.
+    pub longest_queued: Option<Duration>,
 }
 
 /// What became of a job to be admitted.
@@ -99,12 +101,12 @@ pub enum AfterLoss {
 }
 
 /// Which claims are void.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Leases {
     /// Those whose time is over.
     Expired,
-    /// All: nobody else uses the store, and whoever did is gone.
-    All,
+    /// All that this worker made: it has started anew.
+    OfWorker(String),
 }
 
 /// Which ended jobs are meant.
@@ -149,7 +151,8 @@ pub type Sealer = Box<dyn Fn(&str) -> Option<String> + Send>;
 
 /// Rows of jobs. Every method is atomic, and what it has changed outlasts the process when it returns.
 ///
-/// Times are those of the store's clock, so that the clocks of several workers need not agree. A job runs under a
+/// Times are those of the store's clock, so that the clocks of several workers need not agree; what is to happen at some time
+/// is told as the time that is left. A job runs under a
 /// claim with a lease; each claim has a larger epoch than the one before, and only the latest one may end the job.
 ///
 /// Several rows may name one blob. A method that drops rows, or what they name, returns the blobs that no row names
@@ -174,8 +177,8 @@ pub trait JobStore: Send + Sync {
     /// Jobs, the latest first.
     fn list(&self, query: ListQuery) -> StoreFuture<'_, Vec<JobRow>>;
 
-    /// Queued jobs that must have ended at some time, and that time.
-    fn deadlines(&self) -> StoreFuture<'_, Vec<(JobId, Timestamp)>>;
+    /// Queued jobs that must have ended at some time, and how long that is from now.
+    fn deadlines(&self) -> StoreFuture<'_, Vec<(JobId, Duration)>>;
 
     /// Changes of a job's state after the one of that number, the first one first.
     fn changes(&self, id: JobId, after: u64) -> StoreFuture<'_, Vec<Change>>;

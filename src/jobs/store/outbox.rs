@@ -6,7 +6,7 @@ use std::time::Duration;
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 
-use super::row::JobId;
+use super::id::JobId;
 
 /// Whom to tell of the end of a job.
 #[derive(Clone, PartialEq, Eq, Serialize, Deserialize)]

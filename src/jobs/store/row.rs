@@ -1,44 +1,17 @@
 //! What is kept about a job.
 
-use std::fmt;
-use std::str::FromStr;
 use std::time::Duration;
 
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
-use uuid::Uuid;
 
+use super::id::JobId;
 use super::outbox::Webhook;
 use super::tenant::Tenant;
-use crate::jobs::{TraceParent, wall};
+use crate::jobs::trace::TraceParent;
 use crate::wire::{
     Encoding, Fidelity, JobState, Labels, Operation, Options, Outcome, Problem, Progress, TimingMs,
 };
-
-/// Id of a job. Later jobs of one process have larger ids.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct JobId(Uuid);
-
-impl JobId {
-    /// An id that no other job has.
-    pub fn unique() -> Self {
-        Self(Uuid::now_v7())
-    }
-}
-
-impl fmt::Display for JobId {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.fmt(f)
-    }
-}
-
-impl FromStr for JobId {
-    type Err = uuid::Error;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        Uuid::from_str(text).map(Self)
-    }
-}
 
 /// A stored file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -162,14 +135,16 @@ pub struct JobRow {
     pub attempts: u32,
     /// When it was accepted.
     pub created_at: Timestamp,
-    /// When it must have ended.
-    pub cancel_at: Option<Timestamp>,
+    /// Time that was left until it must have ended, when the row was read.
+    pub time_left: Option<Duration>,
     /// When it came into a slot, the last time.
     pub started_at: Option<Timestamp>,
     /// When it ended.
     pub finished_at: Option<Timestamp>,
     /// When its files go, at the latest.
     pub expires_at: Option<Timestamp>,
+    /// Its files should have gone when the row was read, and were still there.
+    pub is_due: bool,
     /// How it ended; `None` before that.
     pub ending: Option<Ending>,
     /// The result is that of an earlier job with the same bytes, options and engine.
@@ -180,11 +155,6 @@ impl JobRow {
     /// The claim by which it runs.
     pub fn claim(&self) -> ClaimRef {
         ClaimRef { id: self.id, epoch: self.epoch }
-    }
-
-    /// Its files should have gone by now.
-    pub fn is_due(&self) -> bool {
-        self.state != JobState::Expired && self.expires_at.is_some_and(|at| at <= wall::now())
     }
 
     /// True when `job` has the same input and asks for the same.

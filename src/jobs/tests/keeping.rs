@@ -241,7 +241,7 @@ async fn an_upload_that_is_there_holds_a_place_in_the_queue_and_one_that_trickle
 async fn two_services_cannot_share_a_directory() {
     let house = house(|_| {}, mend).await;
     let second = Jobs::start(JobsSettings::new(&house.settings().data_dir)).await;
-    assert!(matches!(second, Err(StartError::DataDirInUse { .. })));
+    assert!(matches!(second, Err(StartError::Stores(StoresError::DataDirInUse { .. }))));
 }
 
 #[tokio::test]

@@ -154,7 +154,9 @@ async fn with_another_store(
     change(&settings.data_dir);
     loop {
         match Jobs::start_with(settings.clone(), Arc::clone(&engine)).await {
-            Err(StartError::DataDirInUse { .. }) => tokio::time::sleep(Duration::from_millis(5)).await,
+            Err(StartError::Stores(StoresError::DataDirInUse { .. })) => {
+                tokio::time::sleep(Duration::from_millis(5)).await;
+            }
             Err(error) => return Err((error.to_string(), dir)),
             Ok(jobs) => return Ok(House { jobs, dir }),
         }
@@ -193,7 +195,7 @@ async fn a_store_that_is_gone_or_another_one_keeps_the_service_from_starting_and
         assert_eq!(files_under(&dir.path().join("spool")), 3);
         // Also the next time, when a store was made in vain.
         let settings = JobsSettings::new(dir.path());
-        assert!(matches!(Jobs::start(settings).await, Err(StartError::Store { .. })));
+        assert!(matches!(Jobs::start(settings).await, Err(StartError::Stores(StoresError::Rows { .. }))));
         assert_eq!(files_under(&dir.path().join("spool")), 3);
     }
 }

@@ -41,7 +41,7 @@ pub(super) async fn started(settings: JobsSettings, engine: Engine) -> Jobs {
         match Jobs::start_with(settings.clone(), Arc::clone(&engine)).await {
             Ok(jobs) => return jobs,
             // Tasks of the first one may hold it for a moment more.
-            Err(StartError::DataDirInUse { .. }) if tries < 1000 => {
+            Err(StartError::Stores(StoresError::DataDirInUse { .. })) if tries < 1000 => {
                 tries += 1;
                 tokio::time::sleep(Duration::from_millis(5)).await;
             }
@@ -175,7 +175,7 @@ async fn a_store_of_a_newer_program_is_left_alone() {
     let path = dir.path().join("jobs.sqlite3");
     rusqlite::Connection::open(&path).unwrap().pragma_update(None, "user_version", 1000).unwrap();
     let error = Jobs::start(JobsSettings::new(dir.path())).await.unwrap_err();
-    assert!(matches!(error, StartError::Store { .. }), "{error}");
+    assert!(matches!(error, StartError::Stores(StoresError::Rows { .. })), "{error}");
     assert!(error.to_string().contains("version is 1000"), "{error}");
 }
 

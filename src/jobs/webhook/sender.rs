@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use jiff::Timestamp;
 use tokio::task::JoinSet;
+use tokio_util::sync::CancellationToken;
 
 use super::dial::{Dialer, Message};
 use super::retry::{Next, RetryPlan};
@@ -14,8 +15,7 @@ use super::signature::{self, WebhookSecret};
 use super::target::Target;
 use super::vault::Vault;
 use crate::jobs::meters;
-use crate::jobs::service::Service;
-use crate::jobs::store::{Delivery, DeliveryRequest, JobRow, NextTry, TryOutcome, Webhook};
+use crate::jobs::store::{Delivery, DeliveryRequest, JobRow, JobStore, NextTry, TryOutcome, Webhook};
 use crate::jobs::view;
 use crate::wire::{JobState, WebhookEvent, WebhookMessage};
 
@@ -30,8 +30,8 @@ const LOOK_EVERY: Duration = Duration::from_millis(500);
 const CLAIM_MARGIN: Duration = Duration::from_secs(20);
 
 /// Sends webhooks.
-#[derive(Debug)]
 pub(in crate::jobs) struct Sender {
+    store: Arc<dyn JobStore>,
     settings: WebhookSettings,
     vault: Arc<Vault>,
     dialer: Dialer,
@@ -40,13 +40,17 @@ pub(in crate::jobs) struct Sender {
 impl Sender {
     /// # Errors
     /// The system has no root certificates that can be used.
-    pub(in crate::jobs) fn new(settings: WebhookSettings, vault: Arc<Vault>) -> Result<Self, reqwest::Error> {
+    pub(in crate::jobs) fn new(
+        settings: WebhookSettings,
+        vault: Arc<Vault>,
+        store: Arc<dyn JobStore>,
+    ) -> Result<Self, reqwest::Error> {
         let dialer = Dialer::new(settings.timeout)?;
-        Ok(Self { settings, vault, dialer })
+        Ok(Self { store, settings, vault, dialer })
     }
 
-    /// Sends what is due until the service stops.
-    pub(in crate::jobs) async fn send_forever(self: Arc<Self>, service: Arc<Service>) {
+    /// Sends what is due until `stopping` is raised.
+    pub(in crate::jobs) async fn send_forever(self: Arc<Self>, stopping: CancellationToken) {
         let mut calls = JoinSet::new();
         let mut receivers = HashMap::new();
         loop {
@@ -57,12 +61,12 @@ impl Sender {
                     share: SHARE,
                     busy: counted(receivers.values()),
                 };
-                match service.store.claim_deliveries(request).await {
+                match self.store.claim_deliveries(request).await {
                     Ok(due) => {
                         for delivery in due {
                             let receiver = delivery.receiver.clone();
-                            let (sender, service) = (Arc::clone(&self), Arc::clone(&service));
-                            let call = calls.spawn(async move { sender.send(&service, delivery).await });
+                            let sender = Arc::clone(&self);
+                            let call = calls.spawn(async move { sender.send(delivery).await });
                             receivers.insert(call.id(), receiver);
                         }
                     }
@@ -74,7 +78,7 @@ impl Sender {
             // By then there may be new ones. Whoever had to wait for the end of a call does not wait for that.
             loop {
                 tokio::select! {
-                    () = service.stopping.cancelled() => return,
+                    () = stopping.cancelled() => return,
                     Some(ended) = calls.join_next_with_id() => {
                         let ended = receivers.remove(&ended.map_or_else(|lost| lost.id(), |(id, ())| id));
                         let to_same = receivers.values().filter(|&other| Some(other) == ended.as_ref()).count();
@@ -88,9 +92,9 @@ impl Sender {
         }
     }
 
-    async fn send(&self, service: &Service, delivery: Delivery) {
+    async fn send(&self, delivery: Delivery) {
         // A job that was deleted meanwhile has taken its deliveries with it.
-        let Ok(row) = service.store.get(delivery.job).await else { return };
+        let Ok(row) = self.store.get(delivery.job).await else { return };
         let called = self.call(&row, &delivery).await;
         let attempts = u32::try_from(delivery.tries.len()).unwrap_or(u32::MAX).saturating_add(1);
         let (outcome, next) = judged(&self.settings.retry, attempts, called);
@@ -104,7 +108,7 @@ impl Sender {
             next = ?next,
             "webhook tried"
         );
-        match service.store.note_try(delivery.id.clone(), delivery.epoch, outcome, next).await {
+        match self.store.note_try(delivery.id.clone(), delivery.epoch, outcome, next).await {
             Ok(true) => {}
             Ok(false) => tracing::info!(delivery = delivery.id, "sent again or gone meanwhile"),
             Err(error) => {

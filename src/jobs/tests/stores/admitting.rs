@@ -33,7 +33,7 @@ pub(super) async fn a_job_is_read_back_as_it_was_admitted<H: StoreHouse>() {
         assert!(row.trace.is_some() && row.trace == new.trace);
         assert_eq!((&row.webhook, &row.input, &row.material), (&new.webhook, &new.input, &new.material));
         assert_eq!((row.lane, row.state, row.epoch, row.attempts), (new.lane, JobState::Queued, 0, 0));
-        assert_eq!(row.cancel_at.unwrap().as_millisecond(), row.created_at.as_millisecond() + 1500);
+        assert_eq!(row.time_left, new.cancel_after);
         assert_eq!(
             (row.started_at, row.finished_at, row.expires_at, row.is_cached),
             (None, None, None, false)

@@ -150,13 +150,15 @@ pub(super) async fn a_job_that_is_lost_too_often_fails_with_the_problem<H: Store
     assert!(claim(&*store).await.is_none());
 }
 
-pub(super) async fn every_claim_is_void_when_all_are_recovered<H: StoreHouse>() {
+pub(super) async fn every_claim_of_a_worker_that_starts_anew_is_void_and_no_other<H: StoreHouse>() {
     let house = H::open();
     let first = running(&*house.store(), job()).await;
     let second = running(&*house.store(), job()).await;
+    let other = Leases::OfWorker("another".to_owned());
+    assert!(recover(&*house.store(), other).await.is_empty());
     let house = house.reopen();
     let store = house.store();
-    let after = recover(&*store, Leases::All).await;
+    let after = recover(&*store, Leases::OfWorker("w".to_owned())).await;
     assert_eq!(after, [(first.id, AfterLoss::Queued), (second.id, AfterLoss::Queued)]);
     assert_eq!(store.finish(first.claim(), success(&first)).await, VOID);
     let again = claim(&*store).await.unwrap();

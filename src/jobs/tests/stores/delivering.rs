@@ -36,7 +36,7 @@ pub(super) async fn a_delivery_is_made_with_every_kind_of_end<H: StoreHouse>() {
     store.cancel(row.id, cancelled()).await.unwrap();
     ended.push(row.id);
     let row = running(&*store, hooked()).await;
-    store.recover(Leases::All, problem(ProblemCode::WorkerLost), 1).await.unwrap();
+    store.recover(Leases::OfWorker("w".to_owned()), problem(ProblemCode::WorkerLost), 1).await.unwrap();
     ended.push(row.id);
     admit(&*store, hooked()).await;
     let sent = due(&*store).await;

@@ -62,7 +62,7 @@ pub(super) async fn a_cancelled_job_whose_run_is_lost_does_not_run_again<H: Stor
     let store = house.store();
     let row = running(&*store, job()).await;
     store.cancel(row.id, cancelled()).await.unwrap();
-    assert_eq!(recover(&*store, Leases::All).await, [(row.id, AfterLoss::Ended)]);
+    assert_eq!(recover(&*store, Leases::OfWorker("w".to_owned())).await, [(row.id, AfterLoss::Ended)]);
     assert_eq!(state(&*store, row.id).await, JobState::Cancelled);
 }
 
@@ -102,16 +102,20 @@ pub(super) async fn a_deadline_is_kept_as_a_time<H: StoreHouse>() {
     house.advance_ms(10_000);
     let house = house.reopen();
     let store = house.store();
-    assert_eq!(store.deadlines().await.unwrap(), [(row.id, row.cancel_at.unwrap())]);
+    assert_eq!(row.time_left, Some(Duration::from_secs(60)));
+    assert_eq!(store.deadlines().await.unwrap(), [(row.id, Duration::from_secs(50))]);
     let claimed = claim(&*store).await.unwrap();
-    assert_eq!(claimed.cancel_at, row.cancel_at);
+    assert_eq!(claimed.time_left, Some(Duration::from_secs(50)));
     assert!(store.deadlines().await.unwrap().is_empty(), "beside a run its claim is watched");
     store.release(claimed.claim()).await.unwrap();
     let far = NewJob { cancel_after: Some(Duration::MAX), keep_for: Duration::MAX, ..job() };
     let far = admit(&*store, far).await;
-    assert!(far.cancel_at > row.cancel_at);
+    assert!(far.time_left > row.time_left);
     store.end_queued(far.id, failure()).await.unwrap();
-    assert!(store.get(far.id).await.unwrap().expires_at > row.cancel_at);
+    let far = store.get(far.id).await.unwrap();
+    assert!(far.expires_at > row.finished_at.or(Some(far.created_at)) && !far.is_due);
+    house.advance_ms(100_000);
+    assert_eq!(store.get(row.id).await.unwrap().time_left, Some(Duration::ZERO), "it is over");
 }
 
 pub(super) async fn every_change_is_noted_once_in_order<H: StoreHouse>() {

@@ -80,7 +80,7 @@ macro_rules! contract {
                 a_void_claim_cannot_be_renewed,
                 a_lost_job_runs_before_later_ones,
                 a_job_that_is_lost_too_often_fails_with_the_problem,
-                every_claim_is_void_when_all_are_recovered,
+                every_claim_of_a_worker_that_starts_anew_is_void_and_no_other,
                 a_job_that_is_given_back_counts_no_attempt,
                 a_crash_counts_an_attempt_and_ends_with_its_own_problem,
                 a_paused_executor_is_fenced_and_one_result_is_seen,

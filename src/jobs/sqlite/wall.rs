@@ -11,11 +11,6 @@ const JUMP: Duration = Duration::from_secs(60 * 60);
 /// For how long a clock that has jumped must go on from there.
 const STAYS: Duration = Duration::from_secs(10 * 60);
 
-/// The time of day.
-pub(super) fn now() -> Timestamp {
-    Timestamp::from_millisecond(now_ms()).unwrap_or(Timestamp::UNIX_EPOCH)
-}
-
 /// The time of day in milliseconds since 1970.
 pub(super) fn now_ms() -> i64 {
     static CLOCK: OnceLock<(Instant, Mutex<Believed>)> = OnceLock::new();

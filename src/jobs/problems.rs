@@ -1,0 +1,72 @@
+//! Problems that several parts of the service tell callers of.
+
+use std::fmt;
+use std::io;
+
+use super::store::StoreError;
+use crate::wire::{Problem, ProblemCode};
+
+/// There is no such job.
+pub(super) fn not_found() -> Problem {
+    Problem::new(ProblemCode::NotFound, "there is no such job")
+}
+
+/// What is asked for is kept no longer.
+pub(super) fn expired() -> Problem {
+    Problem::new(ProblemCode::Expired, "the job's files are kept no longer")
+}
+
+/// The disk has not kept the upload of a job.
+pub(super) fn upload_gone() -> Problem {
+    Problem::new(
+        ProblemCode::Expired,
+        "the upload was lost or damaged on the server's disk; send the mesh again",
+    )
+}
+
+/// A server that ends is asked for something new.
+pub(super) fn draining() -> Problem {
+    Problem::new(ProblemCode::Draining, "the server is shutting down")
+}
+
+/// The engine panicked.
+pub(super) fn engine_crashed() -> Problem {
+    Problem::new(ProblemCode::EngineCrashed, "the engine failed on this mesh")
+}
+
+/// Something failed that is not the caller's doing; `why` is told to the caller.
+pub(super) fn internal(why: &dyn fmt::Display) -> Problem {
+    Problem::new(ProblemCode::Internal, why.to_string())
+}
+
+/// A failure of the disk, told to the caller without paths and to the log with them.
+pub(super) fn disk_problem(error: &io::Error) -> Problem {
+    tracing::error!(%error, "the data directory failed");
+    match error.kind() {
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+            Problem::new(ProblemCode::StorageFull, "the disk is full")
+        }
+        _ => Problem::new(ProblemCode::Internal, "the data directory failed"),
+    }
+}
+
+/// A store's failure as the caller hears it.
+pub(super) fn store_problem(error: &StoreError) -> Problem {
+    match error {
+        StoreError::NotFound => not_found(),
+        StoreError::Unavailable(_) => {
+            tracing::error!(%error, "the job store does not answer");
+            Problem::new(ProblemCode::StoreUnavailable, "the job store does not answer")
+        }
+        StoreError::Full(_) => {
+            Problem::new(ProblemCode::StorageFull, "the disk is full: the job store cannot write")
+        }
+        StoreError::KeyReused => Problem::new(
+            ProblemCode::IdempotencyKeyReused,
+            "the `Idempotency-Key` was used with another mesh, operation or options",
+        ),
+        StoreError::QueueFull { .. } | StoreError::ShareFull { .. } | StoreError::ClaimVoid => {
+            internal(error)
+        }
+    }
+}

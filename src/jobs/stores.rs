@@ -1,0 +1,83 @@
+//! Where a service keeps what outlasts it: the rows of jobs and their files, given to it at its start.
+
+use std::fmt;
+use std::io;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::belonging::open_together;
+use super::blobs::{BlobStore, LocalBlobs};
+use super::data_dir::{DataDirLock, LockError};
+use super::settings::JobsSettings;
+use super::store::JobStore;
+
+/// The file of rows in the data directory.
+const ROWS_FILE: &str = "jobs.sqlite3";
+/// The folder of files in the data directory.
+const BLOBS_DIR: &str = "spool";
+
+/// The stores of a service.
+pub struct Stores {
+    /// The rows of jobs.
+    pub rows: Arc<dyn JobStore>,
+    /// The files of jobs.
+    pub blobs: Arc<dyn BlobStore>,
+    /// Name of the service among all that use the rows, the same after each of its starts: what a service of that name was
+    /// running when it ended is void when it starts again.
+    pub worker: String,
+    /// What is held while the service uses the stores.
+    pub lock: Option<DataDirLock>,
+}
+
+impl fmt::Debug for Stores {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Stores").field("worker", &self.worker).finish_non_exhaustive()
+    }
+}
+
+/// Stores that cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum StoresError {
+    /// The data directory cannot be used.
+    #[error("data directory {path}: {source}")]
+    DataDir {
+        /// The directory.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// Another server uses the data directory.
+    #[error("data directory {path} is in use by another server")]
+    DataDirInUse {
+        /// The directory.
+        path: PathBuf,
+    },
+    /// The rows of jobs cannot be read.
+    #[error("job store {path}: {why}")]
+    Rows {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        why: String,
+    },
+}
+
+impl Stores {
+    /// Those in the data directory, which this process owns from then on.
+    ///
+    /// # Errors
+    /// The directory or the rows in it cannot be used, or another server uses them.
+    pub async fn local(settings: &JobsSettings) -> Result<Self, StoresError> {
+        let path = &settings.data_dir;
+        let lock = DataDirLock::take(path).await.map_err(|error| match error {
+            LockError::InUse => StoresError::DataDirInUse { path: path.clone() },
+            LockError::Io(source) => StoresError::DataDir { path: path.clone(), source },
+        })?;
+        let blobs = LocalBlobs::open(&path.join(BLOBS_DIR))
+            .map_err(|source| StoresError::DataDir { path: path.clone(), source })?;
+        let file = path.join(ROWS_FILE);
+        let (rows, mark) = open_together(path, &file, &blobs, settings.lost_store)
+            .map_err(|error| StoresError::Rows { path: file, why: error.to_string() })?;
+        Ok(Self { rows: Arc::new(rows), blobs: Arc::new(blobs), worker: mark, lock: Some(lock) })
+    }
+}
