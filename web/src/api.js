@@ -4,7 +4,7 @@ const FOLLOW_S = 20; // one wait for the end of a job
 
 export class Problem extends Error {
   constructor(body) {
-    super(body.detail ?? body.title ?? body.code);
+    super(body.detail ?? body.title ?? "");
     this.body = body;
     this.code = body.code ?? "other";
   }

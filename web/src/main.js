@@ -121,16 +121,18 @@ async function draw(side, bytes, fileName, unit = session.fileUnit) {
   if (of !== session) return null;
   Object.assign(picture, { rims: more.rims, edges: more.edges });
   if (more.coarse) view?.setCoarse(side, more.coarse);
-  tellCoarse();
+  tellEased();
   if (of.report && side === "before") overlays();
   return picture;
 }
 
-function tellCoarse() {
-  const side = view?.sides.before;
-  const drawn = side?.coarse?.geometry.getAttribute("position").count / 3;
-  at("coarse").hidden = !(view?.isCoarse && side.coarse);
-  if (!at("coarse").hidden) at("coarse").textContent = t("view.coarse", { n: number(drawn), m: number(session.pictures.before.faceOf.length) });
+// Says so when less is drawn while the view moves.
+function tellEased() {
+  const coarse = view?.sides.before.coarse;
+  at("coarse").hidden = !view?.easing;
+  if (!view?.easing) return;
+  const drawn = coarse?.geometry.getAttribute("position").count / 3;
+  at("coarse").textContent = coarse ? t("view.coarse", { n: number(drawn), m: number(session.pictures.before.faceOf.length) }) : t("view.rough");
 }
 
 // The file as the service has it: for jobs that are opened again, and for formats that are not read here.
@@ -433,7 +435,7 @@ function showJobs() {
 
 function showPicture() {
   try {
-    view = new View(at("canvas"), { onDrawn: () => { ring(); at("view").dataset.frames = String(Number(at("view").dataset.frames ?? 0) + 1); } });
+    view = new View(at("canvas"), { onDrawn: () => { ring(); at("view").dataset.frames = String(Number(at("view").dataset.frames ?? 0) + 1); }, onEased: tellEased });
   } catch {
     at("no-webgl").hidden = false;
     document.body.classList.add("flat");
@@ -454,7 +456,7 @@ function texts() {
   translate(document);
   shareText();
   if (session?.report) panel();
-  tellCoarse();
+  tellEased();
 }
 
 function listen() {

@@ -12,7 +12,7 @@ export class Grid {
     }
     const size = max.map((value, axis) => value - this.min[axis]);
     // About as many cells along the surface as there are triangles, and a bounded number in all.
-    this.cell = Math.max(...size) / Math.min(160, Math.max(4, Math.sqrt(count / 2))) || 1;
+    this.cell = Math.max(...size) / Math.min(256, Math.max(4, Math.sqrt(count / 2))) || 1;
     this.columns = size.map((length) => Math.floor(length / this.cell) + 1);
     this.cells = new Map();
     for (let triangle = 0; triangle < count; triangle += 1) this.insert(triangle);
@@ -59,12 +59,16 @@ export class Grid {
     const outside = Math.hypot(...point.map((value, axis) => Math.max(0, this.min[axis] - value, value - this.min[axis] - this.columns[axis] * this.cell)));
     const reach = Math.max(...this.columns);
     this.search += 1;
-    let best = Infinity;
+    const [x, y, z] = point;
+    let best = Infinity; // a square
     for (let ring = 0; ring <= reach; ring += 1) {
-      if (best <= Math.max(outside, (ring - 1) * this.cell)) break;
-      this.shell(middle, ring, (triangle) => { best = Math.min(best, distanceTo(point, this.positions, triangle * 9)); });
+      if (best <= Math.max(outside, (ring - 1) * this.cell) ** 2) break;
+      this.shell(middle, ring, (triangle) => {
+        const square = squareTo(x, y, z, this.positions, triangle * 9);
+        if (square < best) best = square;
+      });
     }
-    return best;
+    return Math.sqrt(best);
   }
 
   shell([cx, cy, cz], ring, visit) {
@@ -115,21 +119,30 @@ const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const corner = (positions, at) => [positions[at], positions[at + 1], positions[at + 2]];
 
-// Distance from a point to a triangle: to its inside where the point is over it, else to the nearest edge.
-export function distanceTo(point, positions, at) {
-  const corners = [corner(positions, at), corner(positions, at + 3), corner(positions, at + 6)];
-  const normal = cross(minus(corners[1], corners[0]), minus(corners[2], corners[0]));
-  const area = Math.hypot(...normal);
+// Square of the distance from a point to a triangle: to its inside where the point is over it, else to the nearest
+// edge. Without arrays, because this is what a comparison spends its time on.
+export function squareTo(x, y, z, p, at) {
+  const [abx, aby, abz] = [p[at + 3] - p[at], p[at + 4] - p[at + 1], p[at + 5] - p[at + 2]];
+  const [acx, acy, acz] = [p[at + 6] - p[at], p[at + 7] - p[at + 1], p[at + 8] - p[at + 2]];
+  const [nx, ny, nz] = [aby * acz - abz * acy, abz * acx - abx * acz, abx * acy - aby * acx];
+  const area = nx * nx + ny * ny + nz * nz;
   let isOver = area > 0;
   let best = Infinity;
-  for (let i = 0; i < 3; i += 1) {
-    const edge = minus(corners[(i + 1) % 3], corners[i]);
-    const way = minus(point, corners[i]);
-    if (dot(cross(edge, way), normal) < 0) isOver = false;
-    const share = Math.min(1, Math.max(0, dot(way, edge) / (dot(edge, edge) || 1)));
-    best = Math.min(best, Math.hypot(way[0] - share * edge[0], way[1] - share * edge[1], way[2] - share * edge[2]));
+  for (let i = 0; i < 9; i += 3) {
+    const from = at + i;
+    const to = at + (i === 6 ? 0 : i + 3);
+    const [ex, ey, ez] = [p[to] - p[from], p[to + 1] - p[from + 1], p[to + 2] - p[from + 2]];
+    const [wx, wy, wz] = [x - p[from], y - p[from + 1], z - p[from + 2]];
+    if ((ey * wz - ez * wy) * nx + (ez * wx - ex * wz) * ny + (ex * wy - ey * wx) * nz < 0) isOver = false;
+    const along = (wx * ex + wy * ey + wz * ez) / (ex * ex + ey * ey + ez * ez || 1);
+    const share = along < 0 ? 0 : along > 1 ? 1 : along;
+    const [dx, dy, dz] = [wx - share * ex, wy - share * ey, wz - share * ez];
+    const square = dx * dx + dy * dy + dz * dz;
+    if (square < best) best = square;
   }
-  return isOver ? Math.abs(dot(minus(point, corners[0]), normal)) / area : best;
+  if (!isOver) return best;
+  const height = (x - p[at]) * nx + (y - p[at + 1]) * ny + (z - p[at + 2]) * nz;
+  return (height * height) / area;
 }
 
 // Lengths of the direction until a ray passes through a triangle (Möller and Trumbore 1997).

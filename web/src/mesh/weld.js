@@ -47,36 +47,33 @@ export function weld(mesh) {
 
 // Which triangles of `mesh` are triangles of `other`, with 32-bit coordinates and in any direction: 1 where they are.
 export function kept(mesh, other) {
-  const ids = new Positions(other.vertices.length / 3 + 1);
-  const rounded = Float32Array.from(other.vertices);
-  const scaled = Float32Array.from(mesh.vertices);
-  const idOf = (from, at, adds) => {
-    const [x, y, z] = [from[at * 3] + 0, from[at * 3 + 1] + 0, from[at * 3 + 2] + 0];
-    const slot = ids.slot(x, y, z, rounded);
-    if (ids.isEmpty(slot)) {
-      if (!adds) return -1;
-      ids.slots[slot] = at;
-    }
+  const [own, others] = [Float32Array.from(mesh.vertices), Float32Array.from(other.vertices)];
+  const ids = new Positions(other.vertices.length / 3);
+  const ofOther = numbered(other.vertices.length / 3, (at) => {
+    const slot = slotOf(ids, others, at, others);
+    if (ids.isEmpty(slot)) ids.slots[slot] = at;
     return ids.slots[slot];
-  };
-  const triangles = new Set();
-  each(other, (corners) => triangles.add(key(corners.map((at) => idOf(rounded, at, true)))));
-  const result = new Uint8Array(mesh.faceOf.length);
-  each(mesh, (corners, triangle) => {
-    const found = corners.map((at) => idOf(scaled, at, false));
-    result[triangle] = found.every((id) => id >= 0) && triangles.has(key(found)) ? 1 : 0;
   });
-  return result;
-}
-
-function each({ corners }, visit) {
-  for (let at = 0; at < corners.length; at += 3) {
-    visit([corners[at], corners[at + 1], corners[at + 2]], at / 3);
+  const ofOwn = numbered(mesh.vertices.length / 3, (at) => {
+    const slot = slotOf(ids, own, at, others);
+    return ids.isEmpty(slot) ? -1 : ids.slots[slot];
+  });
+  const wanted = sortedCorners(other, ofOther);
+  const triangles = new Positions(wanted.length / 3);
+  for (let at = 0; at < wanted.length / 3; at += 1) {
+    const slot = slotOf(triangles, wanted, at, wanted);
+    if (triangles.isEmpty(slot)) triangles.slots[slot] = at;
   }
+  const asked = sortedCorners(mesh, ofOwn);
+  return Uint8Array.from(mesh.faceOf, (_, at) => (asked[at * 3] >= 0 && !triangles.isEmpty(slotOf(triangles, asked, at, wanted)) ? 1 : 0));
 }
 
-// Three ids in one key that does not depend on their order.
-function key(ids) {
-  const [a, b, c] = ids.sort((m, n) => m - n);
-  return `${a},${b},${c}`;
+const numbered = (count, of) => Float64Array.from({ length: count }, (_, at) => of(at));
+const slotOf = (positions, from, at, vertices) => positions.slot(from[at * 3], from[at * 3 + 1], from[at * 3 + 2], vertices);
+
+// The numbers of the corners of each triangle, the smallest first.
+function sortedCorners({ corners }, numbers) {
+  const sorted = Float64Array.from(corners, (corner) => numbers[corner]);
+  for (let at = 0; at < sorted.length; at += 3) sorted.subarray(at, at + 3).sort();
+  return sorted;
 }

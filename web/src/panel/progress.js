@@ -29,12 +29,9 @@ export function wordsOf(error) {
 }
 
 export function complain(error) {
-  const { body = {} } = error;
-  const place = body.line ? t("at.line", { n: body.line }) : body.byte !== undefined && body.byte !== null ? t("at.byte", { n: body.byte }) : "";
-  const detail = [place, error.message].filter(Boolean).join(": ");
   const notice = el("div", { className: "notice", role: "alert", "data-code": error.code ?? "other" },
     el("p", {}, wordsOf(error)),
-    detail && el("details", {}, el("summary", {}, t("detail")), el("p", { lang: "en" }, detail)),
+    error.message && el("details", {}, el("summary", {}, t("detail")), el("p", { lang: "en" }, error.message)),
     el("button", { type: "button", className: "quiet", onclick: () => notice.remove() }, t("dismiss")));
   at("notices").replaceChildren(notice);
 }

@@ -21,7 +21,7 @@ export class Tools {
     }
     at("fit").addEventListener("click", () => view.camera.fit());
     for (const button of document.querySelectorAll("[data-look]")) button.addEventListener("click", () => view.camera.look(button.dataset.look));
-    for (const button of document.querySelectorAll("[data-arrangement]")) button.addEventListener("click", () => this.arrange(button.dataset.arrangement));
+    for (const button of document.querySelectorAll("#arrangement [data-arrangement]")) button.addEventListener("click", () => this.arrange(button.dataset.arrangement));
     at("section").addEventListener("click", () => this.section(at("section").getAttribute("aria-pressed") !== "true"));
     for (const id of ["section-axis", "section-at"]) at(id).addEventListener("input", () => this.section(true));
     at("colors").addEventListener("change", () => this.color(at("colors").value));
@@ -31,7 +31,7 @@ export class Tools {
 
   // Before, after, or both.
   arrange(arrangement) {
-    for (const button of document.querySelectorAll("[data-arrangement]")) button.setAttribute("aria-pressed", String(button.dataset.arrangement === arrangement));
+    for (const button of document.querySelectorAll("#arrangement [data-arrangement]")) button.setAttribute("aria-pressed", String(button.dataset.arrangement === arrangement));
     at("divider").hidden = arrangement !== "slider";
     at("view").dataset.arrangement = arrangement;
     this.view.set({ arrangement });

@@ -8,13 +8,17 @@ import { dispose, marks } from "./marks.js";
 import { modeOf, setValues, surface, surfaceMaterials } from "./surface.js";
 
 const SLOW_MS = 45; // a frame that takes longer makes turning tedious
-const STILL_MS = 160; // without a movement, the whole mesh is drawn again
+const STILL_MS = 160; // without a movement, all of it is drawn again
+// What is drawn while the view moves, where frames are slow: less and less. The coarse copy is taken where there is one.
+const EASINGS = [{ isCoarse: false, pixels: 1 }, { isCoarse: true, pixels: 1 }, { isCoarse: true, pixels: 0.5 }, { isCoarse: true, pixels: 0.33 }];
 
 export class View {
-  constructor(canvas, { onDrawn }) {
+  constructor(canvas, { onDrawn, onEased }) {
     this.canvas = canvas;
     this.onDrawn = onDrawn;
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, powerPreference: "high-performance" });
+    this.onEased = onEased;
+    this.easing = 0;
+    this.renderer = new WebGLRenderer({ canvas, antialias: !isSoftware(), alpha: true, powerPreference: "high-performance" });
     this.camera = new Camera(canvas, () => this.moved());
     this.shared = { pixels: { value: new Vector2(1, 1) }, isCut: { value: false }, plane: { value: [0, 0, 1, 0] } };
     this.sides = { before: this.side(), after: this.side() };
@@ -33,9 +37,10 @@ export class View {
   setMesh(name, { positions, normals, bounds }, isFirst) {
     this.clear(name);
     const side = this.sides[name];
-    side.surface = surface(positions, normals, side.materials);
+    side.surface = surface(positions, normals, side.materials.sides);
     side.scene.add(side.surface);
     if (isFirst) {
+      this.easing = 0;
       this.size = bounds.min.map((low, axis) => bounds.max[axis] - low);
       this.camera.setScene(Math.hypot(...this.size) / 2 || 1);
       this.layBed();
@@ -47,23 +52,30 @@ export class View {
   setCoarse(name, positions) {
     const side = this.sides[name];
     if (!side.surface) return;
-    side.coarse = surface(positions, new Int8Array((positions.length / 3) * 4), side.materials);
+    side.coarse = surface(positions, new Int8Array((positions.length / 3) * 4), side.materials.both);
     side.coarse.visible = false;
     side.scene.add(side.coarse);
-    this.frameMs = this.measure();
+    if (this.measure() > SLOW_MS) this.easing = Math.max(this.easing, 1);
   }
 
+  // Milliseconds of a frame of the whole mesh.
   measure() {
     const gl = this.renderer.getContext();
-    const pixel = new Uint8Array(4);
     const begin = performance.now();
     this.draw();
-    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel); // waits for the card
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); // waits for the card
     return performance.now() - begin;
   }
 
-  get isCoarse() {
-    return this.frameMs > SLOW_MS && Object.values(this.sides).some(({ coarse }) => coarse);
+  // Frames come too slowly while the view moves: the next ones are easier.
+  watch(now) {
+    const passed = now - this.lastFrame;
+    this.lastFrame = this.isMoving ? now : NaN;
+    this.slow = passed > SLOW_MS ? (this.slow ?? 0) + 1 : 0;
+    if (this.slow < 2 || this.easing === EASINGS.length - 1) return;
+    this.slow = 0;
+    this.easing += 1;
+    this.onEased();
   }
 
   clear(name) {
@@ -157,10 +169,15 @@ export class View {
   resize() {
     const { clientWidth, clientHeight } = this.canvas.parentElement;
     if (!clientWidth || !clientHeight) return;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2) * this.ease.pixels);
     this.renderer.setSize(clientWidth, clientHeight, false);
     this.setAspect();
     this.invalidate();
+  }
+
+  // What is drawn now.
+  get ease() {
+    return EASINGS[this.isMoving ? this.easing : 0];
   }
 
   setAspect() {
@@ -180,13 +197,19 @@ export class View {
   invalidate() {
     if (this.isAsked) return;
     this.isAsked = true;
-    requestAnimationFrame(() => { this.isAsked = false; this.draw(); });
+    requestAnimationFrame((now) => {
+      this.isAsked = false;
+      this.watch(now);
+      this.draw();
+    });
   }
 
   draw() {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
     if (!width || !height) return;
     const { arrangement, divider } = this.settings;
+    const ratio = Math.min(devicePixelRatio, 2) * this.ease.pixels;
+    if (this.renderer.getPixelRatio() !== ratio) this.resize();
     this.setAspect();
     this.shared.pixels.value.set(width / (arrangement === "beside" ? 2 : 1), height);
     this.renderer.setScissorTest(true);
@@ -205,7 +228,7 @@ export class View {
 
   drawSide(name, [left, right], [from, to], height) {
     const side = this.sides[name];
-    const isCoarse = this.isMoving && this.isCoarse && Boolean(side.coarse);
+    const isCoarse = this.ease.isCoarse && Boolean(side.coarse);
     if (side.surface) side.surface.visible = !isCoarse;
     if (side.coarse) side.coarse.visible = isCoarse;
     // Corners of the coarse copy have no normals of their own.
@@ -222,4 +245,13 @@ export class View {
     const share = this.settings.arrangement === "beside" ? 0.5 : 1;
     return point.z > 1 ? null : [((point.x + 1) / 2) * width * share, ((1 - point.y) / 2) * height];
   }
+}
+
+// True where no graphics card draws: smooth edges cost too much there.
+function isSoftware() {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const info = gl?.getExtension("WEBGL_debug_renderer_info");
+  const name = info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : "";
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software/i.test(name);
 }
