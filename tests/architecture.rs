@@ -3,6 +3,8 @@
 //! `scan` turns a source file into facts, `rules` holds one function per rule, `planted` shows that each rule reports
 //! a breach of it.
 
+#[path = "architecture/documents.rs"]
+mod documents;
 #[path = "architecture/planted.rs"]
 mod planted;
 #[path = "architecture/rules.rs"]

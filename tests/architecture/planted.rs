@@ -52,6 +52,9 @@ const PLANTED: &[(&str, &str, &str)] = &[
     ),
     ("certificate-is-independent", "src/certificate/read_again.rs", "use crate::formats::stl::write_binary;"),
     ("certificate-is-independent", "src/certificate/mod.rs", "use crate::mesh::cut::cut_vertices;"),
+    ("certificate-is-independent", "src/certificate/mod.rs", "use crate::mesh::*;"),
+    ("certificate-is-independent", "src/certificate/mod.rs", "use crate::formats::{self, announced};"),
+    ("certificate-is-independent", "src/certificate/solid.rs", "fn f() { crate::distance::between(); }"),
     ("readers-and-writers-apart", "src/formats/obj/write.rs", "use super::read::line;"),
     (
         "readers-and-writers-apart",

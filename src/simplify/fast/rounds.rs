@@ -28,7 +28,8 @@ const LEFT_BY_ROUND: f64 = 0.45;
 /// Rounds end this far above the target; the rest is done in one part.
 const ABOVE_TARGET: f64 = 1.04;
 
-/// Rounds end when one leaves more than this share of the triangles.
+/// Rounds in parts end when one leaves more than this share of the triangles: a round on a scan leaves 0.45, and one that leaves nearly
+/// all costs as much and does next to nothing.
 const LITTLE_LEFT: f64 = 0.95;
 
 /// Rounds in one part that the guarded mode does at the end, while they find something to collapse.
@@ -36,8 +37,6 @@ const LAST_ROUNDS_GUARDED: usize = 4;
 
 /// Classes that parts go through between two looks at their total.
 const CLASSES_AT_A_TIME: usize = 8;
-
-const FIRST_EDGES: usize = 100;
 
 /// A run of rounds.
 pub(super) struct Rounds<'r, C: Criterion> {
@@ -354,7 +353,7 @@ fn advance<C: Criterion>(
 fn first_stop<C: Criterion>(parts: &[Part<'_, C>], triangles: usize) -> usize {
     let mut edges = 0;
     let mut class = 0;
-    while class < CLASSES && edges < triangles * FIRST_EDGES / 100 {
+    while class < CLASSES && edges < triangles {
         edges += parts.iter().map(|part| part.class_sizes[class] as usize).sum::<usize>();
         class += 1;
     }

@@ -21,7 +21,8 @@ use normals::Stars;
 /// Normals around a vertex that differ by more than 30 degrees make it a vertex beside a crease.
 const CREASE_COS: f64 = 0.866;
 
-/// A vertex farther than this from a crease, in cells, leaves it to its neighbours.
+/// A vertex farther than this from a crease, in cells, leaves it to its neighbours. Vertices are cut points of cell edges, so every
+/// place of a crease has one within half a cell across it; a tenth more covers cuts that were clamped.
 const CREASE_REACH: f64 = 0.6;
 
 /// Times that vertices are moved toward their own goals.
