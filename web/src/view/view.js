@@ -136,7 +136,10 @@ export class View {
 
   // `at`: from 0 to 1 along `axis`; null: no section.
   setSection(axis, at) {
-    this.section = at === null ? null : { axis, at };
+    // The side towards the viewer goes, and stays away while the plane is moved.
+    const isSame = this.section?.axis === axis;
+    const sign = isSame ? this.section.sign : Math.sign(this.camera.direction().getComponent(axis)) || 1;
+    this.section = at === null ? null : { axis, at, sign };
     this.applyAll();
   }
 
@@ -145,8 +148,8 @@ export class View {
     const colors = theme(this.themeName);
     const plane = [0, 0, 0, 0];
     if (section && this.size) {
-      plane[section.axis] = 1;
-      plane[3] = (section.at - 0.5) * this.size[section.axis] * 1.002;
+      plane[section.axis] = section.sign;
+      plane[3] = section.sign * (section.at - 0.5) * this.size[section.axis] * 1.002;
     }
     this.shared.plane.value = plane;
     this.shared.isCut.value = Boolean(section);
