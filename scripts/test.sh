@@ -4,16 +4,16 @@
 #   scripts/test.sh              every step
 #   scripts/test.sh STEP...      only these (see `steps` below)
 #
-# Needs Rust (rustup or Debian) and a C compiler; python3 with venv, and for the step `clients` Java and Node, are installed
-# where they are missing and root or sudo allows it. Where that is not possible, that step says so and is left out.
-# Everything else lands under target/.
+# Needs Rust (rustup or Debian) and a C compiler; python3 with venv, for the step `clients` Java and Node, and for the step
+# `browser` Chromium and Node, are installed where they are missing and root or sudo allows it. Where that is not possible,
+# that step says so and is left out. Everything else lands under target/.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never} CARGO_INCREMENTAL=0 PYTHONDONTWRITEBYTECODE=1
 # Settings of the caller's own service must not reach the tests.
 for name in $(compgen -e | grep '^MESHMEND_' | grep -v -e '^MESHMEND_CORPUS$'); do unset "$name"; done
 
-steps=(format lint lint_engine lint_otel build tests doc_tests fixtures contract fuzz_contract clients licences)
+steps=(format lint lint_engine lint_otel build tests doc_tests fixtures contract fuzz_contract clients browser licences)
 scratch=target/test-run
 python=target/python/bin
 server_pid=
@@ -114,6 +114,26 @@ set_up_clients() {
     rm -rf $into/node && mkdir -p $into/node && cp scripts/clients/package.json $into/node/ &&
       npm install --prefix $into/node --no-audit --no-fund --silent && cp scripts/clients/package.json $into/node/installed.json || return 1
   fi
+}
+
+# The page in a browser without a window, against the built server; its screenshots stay in target/browser/pictures.
+browser() {
+  set_up_browser || { echo "not run: Chromium or its driver cannot be installed here"; return 0; }
+  start_server || return 1
+  node tests/browser/run.mjs "$server_url" target/browser/pictures
+  end_server_with $?
+}
+
+set_up_browser() {
+  local into=target/browser missing=()
+  command -v chromium >/dev/null || missing+=(chromium)
+  command -v npm >/dev/null || missing+=(nodejs npm)
+  if [ ${#missing[@]} -gt 0 ]; then
+    install_packages "${missing[@]}" || return 1
+  fi
+  cmp -s tests/browser/package-lock.json $into/installed.json && return 0
+  rm -rf $into && mkdir -p $into && cp tests/browser/package*.json $into/ &&
+    npm ci --prefix $into --no-audit --no-fund --silent && cp tests/browser/package-lock.json $into/installed.json
 }
 
 licences() {

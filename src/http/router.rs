@@ -63,14 +63,13 @@ fn documents() -> OpenApiRouter<Arc<Service>> {
         .layer(CompressionLayer::new())
 }
 
-/// Pages and what they load: embedded, from no other host.
+/// Pages and what they load: embedded, from no other host, compressed as the contract is.
 fn pages() -> Router<Arc<Service>> {
-    Router::new()
-        .route("/", get(page::index))
-        .route("/page.js", get(page::script))
-        .route("/style.css", get(page::style))
+    let assets = page::ASSETS.iter().enumerate();
+    assets
+        .fold(Router::new(), |router, (at, asset)| router.route(asset.path, page::Asset::route(at)))
         .route("/docs", get(docs::show))
-        .route("/favicon.ico", get(page::icon))
+        .layer(CompressionLayer::new())
 }
 
 /// The contract.

@@ -36,6 +36,8 @@ fn pages_load_nothing_from_other_hosts() {
         ("/", "text/html; charset=utf-8"),
         ("/docs", "text/html; charset=utf-8"),
         ("/page.js", "text/javascript; charset=utf-8"),
+        ("/worker.js", "text/javascript; charset=utf-8"),
+        ("/page.css", "text/css; charset=utf-8"),
         ("/style.css", "text/css; charset=utf-8"),
     ] {
         let response = server.get(path).send().unwrap();
@@ -49,8 +51,21 @@ fn pages_load_nothing_from_other_hosts() {
         assert_eq!(header(&response, "x-content-type-options"), "nosniff");
         assert_eq!(header(&response, "referrer-policy"), "no-referrer");
         assert!(response.headers().get("access-control-allow-origin").is_none());
-        let text = response.text().unwrap();
+        // The name of a namespace, which nobody loads.
+        let text = response.text().unwrap().replace("http://www.w3.org/1999/xhtml", "");
         assert!(!text.contains("http://") && !text.contains("https://"), "{path}");
+    }
+}
+
+#[test]
+fn what_the_page_loads_is_sent_compressed_and_once() {
+    let server = Server::start();
+    for path in ["/", "/page.js", "/worker.js", "/page.css"] {
+        let packed = server.get(path).header("accept-encoding", "gzip").send().unwrap();
+        assert_eq!(packed.headers()["content-encoding"], "gzip", "{path}");
+        let tag = header(&packed, "etag").to_owned();
+        let again = server.get(path).header("if-none-match", &tag).send().unwrap();
+        assert_eq!((again.status().as_u16(), again.bytes().unwrap().len()), (304, 0), "{path}");
     }
 }
 

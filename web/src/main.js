@@ -1,0 +1,504 @@
+// The page: one file at a time, from drop to download.
+
+import { Api, Problem, isOver } from "./api.js";
+import { at, el, save } from "./dom.js";
+import { Meshes } from "./meshes.js";
+import { findingsList, isShownFirst, openFinding } from "./panel/findings.js";
+import { calm, complain, rest, told, wordsOf, working } from "./panel/progress.js";
+import { checksList, resultSection, verdictCard } from "./panel/result.js";
+import { Tools } from "./panel/tools.js";
+import { droppable } from "./panel/verify.js";
+import { Picture, aim } from "./places.js";
+import * as jobs from "./recent.js";
+import { SAMPLES, sample } from "./samples.js";
+import { Session, curlOf, millimetres } from "./session.js";
+import { LANGUAGES, current, digits, number, percent, speak, t, translate } from "./text/text.js";
+import { ofDefect } from "./view/colors.js";
+import { View } from "./view/view.js";
+
+const api = new Api();
+const meshes = new Meshes();
+let session = null;
+let running = null; // the job that is followed
+let view = null;
+let tools = null;
+let list = null; // the findings
+
+// --- a file ----------------------------------------------------------------------------------------------------
+
+// A problem of the current file is told; one of a file that was left is not.
+async function guarded(action, of = session) {
+  try {
+    calm();
+    return await action();
+  } catch (error) {
+    if (of !== session) return undefined;
+    rest();
+    at("repair").disabled = false;
+    if (!session?.report && !session?.pictures.before) document.body.dataset.state = "failed";
+    complain(error instanceof Error ? error : new Problem({ code: "other" }));
+    if (error.code === "unauthenticated") at("key-form").hidden = false;
+    return undefined;
+  }
+}
+
+function begin(name, file) {
+  session = new Session(name, file);
+  document.body.dataset.state = "open";
+  for (const id of ["verdict", "findings", "checks", "result"]) at(id).replaceChildren();
+  for (const id of ["units", "policy"]) at(id).value = "";
+  for (const id of ["facts", "findings-section", "repair-section"]) at(id).hidden = true;
+  at("best").checked = false;
+  at("share").value = 100;
+  at("file-name").textContent = name;
+  document.title = `${name} – Meshmend`;
+  view?.clear("before");
+  view?.clear("after");
+  tools?.offer(false);
+  light(null);
+  calm();
+  jobs.name(null);
+}
+
+async function openFile(file) {
+  if (!file) return;
+  begin(file.name, file);
+  const of = session;
+  working(t("status.reading"));
+  const picture = file.arrayBuffer().then((bytes) => draw("before", bytes, file.name)).catch((error) => ({ error }));
+  await guarded(() => look(picture), of);
+}
+
+// Asks what is wrong with the file, and what can be done about it.
+async function look(picture) {
+  const of = session;
+  const request = { operation: "plan", ...of.options(), ...(of.inputJob ? { input: { job: of.inputJob } } : {}) };
+  const job = await run(request, of.inputJob ? null : of.file);
+  if (of !== session) return;
+  of.inputJob ??= job.id;
+  await show(job);
+  const drawn = await picture;
+  if (drawn?.error && of === session) await drawFromService();
+}
+
+// Makes a job and follows it to its end; one that failed without a report is a problem.
+async function run(request, file) {
+  const of = session;
+  working(t(file ? "status.sending" : "status.queued"));
+  const job = await api.create(request, file);
+  jobs.remember(job, of.name);
+  if (of !== session) return job;
+  return follow(job);
+}
+
+async function follow(job) {
+  const of = session;
+  jobs.name(job.id);
+  running = job;
+  at("cancel").hidden = isOver(job);
+  const ended = await api.follow(job, (event) => { if (of === session) told(event); });
+  running = null;
+  if (of === session) at("cancel").hidden = true;
+  if (ended.problem && !ended.links.report) throw new Problem(ended.problem);
+  if (ended.state === "cancelled" || ended.state === "expired") throw new Problem({ code: ended.state });
+  return ended;
+}
+
+// --- pictures --------------------------------------------------------------------------------------------------
+
+async function draw(side, bytes, fileName, unit = session.fileUnit) {
+  const of = session;
+  const scale = unit;
+  const read = await meshes.ask("read", { name: side, bytes, fileName, scale, isFirst: side === "before" }, [bytes]);
+  if (of !== session) return null;
+  const picture = new Picture(read, scale);
+  of.pictures[side] = picture;
+  view?.setMesh(side, picture, side === "before");
+  at("view").dataset.drawn = Object.keys(of.pictures).join(" ");
+  if (side === "before") factsOf(picture);
+  if (of.report && side === "before") overlays();
+  const more = await meshes.ask("look", { name: side });
+  if (of !== session) return null;
+  Object.assign(picture, { rims: more.rims, edges: more.edges });
+  if (more.coarse) view?.setCoarse(side, more.coarse);
+  tellEased();
+  if (of.report && side === "before") overlays();
+  return picture;
+}
+
+// Says so when less is drawn while the view moves.
+function tellEased() {
+  const coarse = view?.sides.before.coarse;
+  at("coarse").hidden = !view?.easing;
+  if (!view?.easing) return;
+  const drawn = coarse?.geometry.getAttribute("position").count / 3;
+  at("coarse").textContent = coarse ? t("view.coarse", { n: number(drawn), m: number(session.pictures.before.faceOf.length) }) : t("view.rough");
+}
+
+// The file as the service has it: for jobs that are opened again, and for formats that are not read here.
+async function drawFromService() {
+  const of = session;
+  const { input } = of.report;
+  const isReadHere = ["stl", "obj", "ply", "off"].includes(input.format) && !of.file;
+  const format = isReadHere ? input.format : "stl";
+  const unit = of.unit || input.units.unit;
+  const request = { operation: "convert", input: { job: of.inputJob }, output_format: format, units: unit, output_units: unit };
+  const job = await api.follow(await api.create(request), () => {});
+  if (!job.links.result || of !== session) return;
+  const { blob, name } = await api.file(job.links.result);
+  await draw("before", await blob.arrayBuffer(), name.replace(/[^.]*$/, format));
+}
+
+// The result beside the file, and what they have in common.
+async function drawResult(job) {
+  const of = session;
+  const { blob, name } = await api.file(job.links.result);
+  const bytes = await blob.arrayBuffer();
+  if (of !== session) return;
+  await draw("after", bytes, name, of.reportUnit);
+  if (!of.pictures.before || of !== session) return;
+  const kept = await meshes.ask("compare");
+  if (of !== session) return;
+  of.pictures.before.kept = kept.before;
+  of.pictures.after.kept = kept.after;
+  of.maps = {};
+  at("colors").value = "kept";
+  tools?.offer(true);
+}
+
+// --- the panel -------------------------------------------------------------------------------------------------
+
+function factsOf({ bounds, faceCount }) {
+  const size = bounds.max.map((high, axis) => high - bounds.min[axis]);
+  at("size").textContent = `${size.map((value) => digits(value)).join(" × ")} mm`;
+  at("triangles").textContent = number(faceCount);
+  at("dimensions").textContent = at("size").textContent;
+  at("facts").hidden = false;
+  session.faceCount = faceCount;
+  shareText();
+}
+
+// What a report says, wherever it belongs.
+async function show(job) {
+  const of = session;
+  of.job = job;
+  const report = await api.report(job);
+  if (of !== session) return;
+  const isFirst = !of.report;
+  of.report = report;
+  if (isFirst) for (const defect of report.before.defects) if (isShownFirst(defect)) of.shown.add(defect.code);
+  of.checked = report.printing?.policy ?? "";
+  rest();
+  panel();
+  overlays();
+}
+
+function panel() {
+  const { report } = session;
+  at("verdict").replaceChildren(verdictCard({ report, policy: session.checked }));
+  list = findingsList(session, host);
+  at("findings").replaceChildren(list);
+  at("checks").replaceChildren(...[checksList(report.printing, host)].filter(Boolean));
+  at("result").replaceChildren(...[session.isRepaired && resultSection(session, host)].filter(Boolean));
+  at("findings-section").hidden = false;
+  at("repair-section").hidden = false;
+  at("repair").textContent = t(session.isRepaired ? "repair.again" : report.verdict.printable ? "certify" : "repair");
+  at("repair").disabled = false;
+  const { unit, is_stated: isStated } = report.input.units;
+  at("units").options[0].textContent = isStated ? "–" : t("unit.assumed", { u: unit });
+  question(report.before.unit_hypothesis, isStated);
+  if (!session.pictures.before && report.before.measures.bounds) {
+    const { min, max } = report.before.measures.bounds;
+    factsOf({ bounds: { min: min.map((v) => v * session.reportUnit), max: max.map((v) => v * session.reportUnit) }, faceCount: report.before.counts.faces });
+  }
+  at("panel").dataset.operation = report.operation;
+  if (session.place) openFinding(list, session, host, session.place.code, session.place.number);
+}
+
+// Which size is meant, where it could be several.
+function question(hypothesis, isStated) {
+  const isOpen = hypothesis && !isStated && hypothesis.plausible.length > 1;
+  at("unit-question").hidden = !isOpen;
+  if (!isOpen) return;
+  const { min, max } = session.report.before.measures.bounds;
+  const longest = Math.max(...max.map((high, axis) => high - min[axis]));
+  const told = hypothesis.plausible.map((unit) => t("unit.as", { a: `${digits(longest * millimetres(unit), 3)} mm`, u: unit }));
+  at("unit-question").textContent = t("unit.question", { a: told.join(", ") });
+}
+
+function overlays() {
+  const picture = session.pictures.before;
+  if (!picture || !session.report) return;
+  for (const defect of session.report.before.defects) {
+    view?.setMarks("before", defect.code, picture.overlayOf(defect, session.reportUnit), ofDefect(defect.code), 0.5);
+    view?.showMarks("before", defect.code, session.shown.has(defect.code));
+  }
+}
+
+// Lights what parts show, with a ring around its place.
+function light(parts, color, side = "before", position = null) {
+  session.lit = parts ? { place: parts && aim(parts, position).place, side } : null;
+  for (const name of ["before", "after"]) view?.setMarks(name, "lit", null);
+  if (parts) view?.setMarks(side, "lit", parts, color, 1.3);
+  ring();
+}
+
+// The ring is an element over the picture, so that it is as wide wherever the place is.
+function ring() {
+  const place = session?.lit && view?.project(session.lit.place);
+  at("ring").hidden = !place;
+  if (place) at("ring").style.transform = `translate(${place[0]}px, ${place[1]}px)`;
+}
+
+// What lists ask for.
+const host = {
+  show(code, isShown) {
+    if (isShown) session.shown.add(code);
+    else session.shown.delete(code);
+    view?.showMarks("before", code, isShown);
+  },
+
+  // Flies to a place, or closes its list when it is open.
+  visit(code, at_, isOpen = false) {
+    if (isOpen) {
+      session.place = null;
+      light(null);
+      openFinding(list, session, host, null, 0);
+      return;
+    }
+    session.place = { code, number: at_ };
+    openFinding(list, session, host, code, at_);
+    const witness = session.defect(code).witnesses[at_];
+    const picture = session.pictures.before;
+    at("view").dataset.place = `${code} ${at_}`;
+    if (!witness || !picture || !view) return;
+    const parts = picture.partsOf(code, witness, session.reportUnit);
+    const position = witness.position && picture.place(witness.position, session.reportUnit);
+    if (view.settings.arrangement === "after") tools.arrange("before");
+    light(parts, ofDefect(code), "before", position ?? [0, 0, 0]);
+    const { place, normal, radius } = aim(parts, position ?? [0, 0, 0]);
+    view.fly(place, normal, radius);
+  },
+
+  // From place to place, over the borders of the lists.
+  step(by) {
+    const all = [...list.querySelectorAll(".finding")].map(({ dataset }) => dataset.code).flatMap((code) => session.defect(code).witnesses.map((_, i) => [code, i]));
+    if (all.length === 0) return;
+    const { code, number: from } = session.place ?? { code: null, number: 0 };
+    const found = all.findIndex(([name, i]) => name === code && i === from);
+    host.visit(...all[found < 0 ? (by > 0 ? 0 : all.length - 1) : (found + by + all.length) % all.length]);
+  },
+
+  changed() {
+    at("repair").classList.add("wanted");
+  },
+
+  refresh() {
+    if (session.place) openFinding(list, session, host, session.place.code, session.place.number);
+  },
+
+  flyToCheck({ witnesses }) {
+    const side = session.report.printing.about === "result" ? "after" : "before";
+    const picture = session.pictures[side];
+    if (!picture || !view) return;
+    const place = picture.place(witnesses[0].position, session.reportUnit);
+    const parts = { segments: [], faces: picture.facesAt([witnesses[0].face]), points: place };
+    if (view.settings.arrangement !== "beside") tools.arrange(side);
+    light({ ...parts, faces: [] }, "#f2a51c", side);
+    const { normal } = aim(parts, place);
+    view.fly(place, normal, Math.hypot(...view.size) * 0.06);
+  },
+
+  // Another format is another file, so it is made and certified anew.
+  download: (format) => guarded(async () => {
+    const of = session;
+    let { job } = of;
+    if (format !== of.report.input.format) {
+      job = await run({ operation: "repair", input: { job: of.inputJob }, ...of.asked, output_format: format }, null);
+      if (of !== session) return;
+      of.report = await api.report(job);
+      of.job = job;
+      rest();
+      panel();
+    }
+    const { name, blob } = await api.file(job.links.result);
+    save(blob, name);
+  }),
+
+  openReport: () => guarded(async () => {
+    // A tab of its own cannot bring the key, so then it is a download.
+    if (!api.key) return void window.open(session.job.links.report, "_blank", "noopener");
+    const { blob } = await api.file(session.job.links.report, "text/html");
+    return save(blob, `${session.stem}.report.html`);
+  }),
+
+  curl: () => curlOf(session),
+  words: wordsOf,
+
+  async verify(file) {
+    const [digest, job] = await Promise.all([
+      file.arrayBuffer().then((bytes) => meshes.ask("digest", { bytes }, [bytes])),
+      api.create({ operation: "verify" }, file).then((made) => api.follow(made, () => {})),
+    ]);
+    if (job.problem) throw new Problem(job.problem);
+    return { digest, isValid: (await api.report(job)).verdict.printable };
+  },
+};
+
+// --- repair ----------------------------------------------------------------------------------------------------
+
+async function repair() {
+  const of = session;
+  at("repair").disabled = true;
+  at("repair").classList.remove("wanted");
+  of.choices.takesBest = at("best").checked;
+  of.choices.share = Number(at("share").value) / 100;
+  of.asked = of.repairOptions();
+  const job = await run({ operation: "repair", input: { job: of.inputJob }, ...of.asked }, null);
+  if (of !== session) return;
+  await showRepair(job);
+}
+
+async function showRepair(job) {
+  const of = session;
+  if (job.links.result) working(t("status.fetching"));
+  await show(job);
+  if (of !== session) return;
+  light(null);
+  of.place = null;
+  openFinding(list, of, host, null, 0);
+  if (job.links.result) await drawResult(job);
+  else delete of.pictures.after;
+  if (!job.links.result) tools?.offer(false);
+  at("panel").scrollTop = 0;
+  window.scrollTo(0, 0);
+}
+
+function shareText() {
+  const share = Number(at("share").value) / 100;
+  at("share-text").textContent = share === 1 ? t("simplify.all") : t("simplify.share", { p: percent(share), n: number((session?.faceCount ?? 0) * share) });
+  at("share").setAttribute("aria-valuetext", at("share-text").textContent);
+}
+
+// A unit or a process changes what is said of the file, not the file.
+async function lookAgain() {
+  if (!session.inputJob) return;
+  const of = session;
+  const before = of.fileUnit;
+  of.unit = at("units").value;
+  of.policy = at("policy").value;
+  tools?.offer(false);
+  view?.clear("after");
+  delete of.pictures.after;
+  const isResized = before !== of.fileUnit;
+  const picture = isResized ? redraw() : Promise.resolve(null);
+  await look(picture);
+}
+
+async function redraw() {
+  if (!session.file) return drawFromService();
+  return draw("before", await session.file.arrayBuffer(), session.name);
+}
+
+// --- jobs of this browser --------------------------------------------------------------------------------------
+
+// Opens a job again, at whatever it has come to.
+async function openJob(id) {
+  begin(jobs.nameOf(id) ?? id.slice(0, 8));
+  const of = session;
+  jobs.name(id);
+  await guarded(async () => {
+    working(t("status.queued"));
+    const job = await follow(await api.job(id));
+    if (of !== session) return;
+    of.inputJob = id;
+    if (!["plan", "repair"].includes(job.operation)) throw new Problem({ code: "not-found" });
+    await show(job);
+    if (of !== session) return;
+    of.asked = of.options();
+    await drawFromService();
+    if (of !== session) return;
+    rest();
+    if (job.operation === "repair") await showRepair(job);
+  }, of);
+}
+
+function showJobs() {
+  const rows = jobs.recent().map(({ id, name, operation, at: when }) => el("li", {},
+    el("a", { href: `#job=${id}`, onclick: () => { at("jobs").open = false; } },
+      el("strong", {}, name), el("span", {}, `${t(`operation.${operation}`)}, ${new Date(when).toLocaleString(current())}`))));
+  at("jobs-list").replaceChildren(...(rows.length ? rows : [el("li", { className: "note" }, t("jobs.none"))]));
+  at("jobs-forget").hidden = rows.length === 0;
+}
+
+// --- the page itself -------------------------------------------------------------------------------------------
+
+function showPicture() {
+  try {
+    view = new View(at("canvas"), { onDrawn: () => { ring(); at("view").dataset.frames = String(Number(at("view").dataset.frames ?? 0) + 1); }, onEased: tellEased });
+  } catch {
+    at("no-webgl").hidden = false;
+    document.body.classList.add("flat");
+    return;
+  }
+  tools = new Tools(view, meshes, () => session);
+}
+
+const dark = matchMedia("(prefers-color-scheme: dark)");
+
+function useTheme() {
+  const chosen = document.documentElement.dataset.theme;
+  view?.setTheme((chosen ?? (dark.matches ? "dark" : "light")));
+}
+
+function texts() {
+  document.documentElement.lang = current();
+  translate(document);
+  shareText();
+  if (session?.report) panel();
+  tellEased();
+}
+
+function listen() {
+  droppable(document.body, openFile);
+  at("file").addEventListener("change", () => { openFile(at("file").files[0]); at("file").value = ""; });
+  for (const name of Object.keys(SAMPLES)) at(`sample-${name}`).addEventListener("click", () => openFile(sample(name)));
+  at("repair").addEventListener("click", () => guarded(repair));
+  at("cancel").addEventListener("click", () => running && guarded(() => api.cancel(running)));
+  at("share").addEventListener("input", () => { shareText(); host.changed(); });
+  at("best").addEventListener("change", host.changed);
+  for (const id of ["units", "policy"]) at(id).addEventListener("change", () => guarded(lookAgain));
+  at("jobs").addEventListener("toggle", showJobs);
+  at("jobs-forget").addEventListener("click", () => { jobs.forgetAll(); showJobs(); });
+  at("language").value = current();
+  at("language").addEventListener("change", () => { speak(at("language").value); texts(); });
+  at("theme").addEventListener("click", () => {
+    const isDark = (document.documentElement.dataset.theme ?? (dark.matches ? "dark" : "light")) === "dark";
+    document.documentElement.dataset.theme = isDark ? "light" : "dark";
+    useTheme();
+  });
+  dark.addEventListener("change", useTheme);
+  at("key-form").addEventListener("submit", (event) => {
+    event.preventDefault();
+    api.useKey(at("key").value);
+    at("key-form").hidden = true;
+    if (session?.file) openFile(session.file);
+    else if (jobs.named()) openJob(jobs.named());
+  });
+  window.addEventListener("hashchange", () => { if (jobs.named() && jobs.named() !== session?.job?.id) openJob(jobs.named()); });
+  document.addEventListener("keydown", (event) => {
+    const isTyping = event.target.closest("input:not([type=checkbox]), select, textarea") || event.ctrlKey || event.metaKey || event.altKey;
+    const by = { n: 1, N: 1, p: -1, P: -1 }[event.key];
+    if (isTyping || !by || !session?.report) return;
+    event.preventDefault();
+    host.step(by);
+  });
+}
+
+if (!LANGUAGES.includes(current())) speak("en");
+showPicture();
+listen();
+texts();
+useTheme();
+if (jobs.named()) openJob(jobs.named());
+document.body.dataset.ready = "true";

@@ -1,0 +1,41 @@
+// "Verify this file": are its bytes those of the certificate, and are they a valid solid?
+
+import { el } from "../dom.js";
+import { t } from "../text/text.js";
+
+export function verifier(sha256, host) {
+  const answer = el("p", { className: "answer", role: "status", id: "verified" });
+  const check = async (file) => {
+    answer.className = "answer";
+    answer.textContent = t("view.working");
+    try {
+      const { digest, isValid } = await host.verify(file);
+      const isSame = digest === sha256;
+      answer.classList.add(isSame && isValid ? "good" : "bad");
+      answer.textContent = `${t(isSame ? "verify.same" : "verify.other")} ${t(isValid ? "verify.valid" : "verify.invalid")}`;
+    } catch (error) {
+      answer.classList.add("bad");
+      answer.textContent = host.words(error);
+    }
+  };
+  const input = el("input", { type: "file", id: "verify-file", className: "unseen", onchange: () => { if (input.files[0]) check(input.files[0]); input.value = ""; } });
+  const zone = el("label", { className: "drop small", for: "verify-file" }, el("strong", {}, t("verify")), el("span", {}, t("verify.more")));
+  droppable(zone, check);
+  return el("div", { className: "verify" }, input, zone, answer);
+}
+
+// Lets files be dropped on an element.
+export function droppable(element, taken) {
+  const stop = (event, isOver) => {
+    event.preventDefault();
+    event.stopPropagation();
+    element.classList.toggle("over", isOver);
+  };
+  element.addEventListener("dragover", (event) => stop(event, true));
+  element.addEventListener("dragleave", (event) => stop(event, false));
+  element.addEventListener("drop", (event) => {
+    stop(event, false);
+    const [file] = event.dataTransfer.files;
+    if (file) taken(file);
+  });
+}

@@ -1,0 +1,29 @@
+// Which format a file has, by its content as the service tells it, and its mesh.
+
+import { FileProblem } from "./bytes.js";
+import { readObj } from "./obj.js";
+import { readOff } from "./off.js";
+import { readPly } from "./ply.js";
+import { isBinaryStl, looksLikeAsciiStl, readStl } from "./stl.js";
+
+const READERS = { stl: readStl, obj: readObj, off: readOff, ply: readPly };
+
+export function sniff(bytes, name) {
+  const begin = new TextDecoder("latin1").decode(bytes.subarray(0, 64)).trimStart();
+  const extension = name.toLowerCase().split(".").pop();
+  if (/^ply\s/.test(begin)) return "ply";
+  if (/^(ST)?C?N?4?OFF\b/i.test(begin)) return "off";
+  if (looksLikeAsciiStl(bytes)) return "stl";
+  if (READERS[extension]) return extension;
+  if (isBinaryStl(bytes)) return "stl";
+  return /^(#|v |f |o |g |mtllib)/.test(begin) ? "obj" : null;
+}
+
+// A mesh to draw. Files of other formats, and broken ones, are problems: the service says more about them.
+export function read(bytes, name) {
+  const format = sniff(bytes, name);
+  if (!format) throw new FileProblem("not-drawn-here");
+  const mesh = READERS[format](bytes);
+  if (mesh.faceOf.length === 0) throw new FileProblem("no-triangle");
+  return { format, ...mesh };
+}

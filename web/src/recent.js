@@ -1,0 +1,22 @@
+// Jobs of this browser, the latest first, and the job that the address names.
+
+const KEPT = 20;
+
+export function recent() {
+  try { return JSON.parse(localStorage.getItem("jobs") ?? "[]"); } catch { return []; }
+}
+
+export function remember(job, name) {
+  const jobs = [{ id: job.id, operation: job.operation, name, at: Date.now() }, ...recent().filter(({ id }) => id !== job.id)];
+  keep(jobs.slice(0, KEPT));
+}
+
+export const forgetAll = () => keep([]);
+export const nameOf = (id) => recent().find((job) => job.id === id)?.name;
+
+function keep(jobs) {
+  try { localStorage.setItem("jobs", JSON.stringify(jobs)); } catch { /* a list for this visit only, then */ }
+}
+
+export const named = () => /^#job=([\w-]+)$/.exec(location.hash)?.[1] ?? null;
+export const name = (id) => history.replaceState(null, "", id ? `#job=${id}` : location.pathname);
