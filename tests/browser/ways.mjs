@@ -117,6 +117,8 @@ export async function reloadAndCancel(browser) {
     await repaired(page);
     assert.match(await page.textContent("#verdict"), /same bytes come back/);
     await page.click("#jobs summary");
+    // The list is made when it is opened.
+    await page.locator("#jobs-list a").nth(3).waitFor();
     assert.equal(await page.locator("#jobs-list a").count(), 4);
     await page.click(`#jobs-list a:not([href="${link}"]) >> nth=0`);
     await page.waitForFunction((hash) => location.hash !== hash, link);
