@@ -98,11 +98,11 @@ export async function reloadAndCancel(browser) {
     const looked = await page.evaluate(() => location.hash);
     await page.click("#repair");
     await page.waitForFunction((hash) => location.hash !== hash, looked);
-    await page.waitForFunction(() => document.querySelector("#stage").textContent === "Repairing");
-    assert.ok(Number(await page.getAttribute("#bar", "value")) > 0, "the bar has begun to fill");
+    await page.waitForFunction(() => Number(document.querySelector("#bar").getAttribute("value")) > 0);
     await page.reload();
     await page.waitForSelector("#cancel:not([hidden])");
-    await page.waitForFunction(() => document.querySelector("#stage").textContent === "Repairing");
+    // The run goes on meanwhile, so that it may be in any pass by now.
+    await page.waitForFunction(() => document.querySelector("#stage").textContent !== "");
     assert.equal(await page.textContent("#file-name"), "heap.off");
     await page.click("#cancel");
     await page.waitForSelector('.notice[data-code="cancelled"]');
