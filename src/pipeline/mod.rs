@@ -8,6 +8,7 @@ mod fidelity;
 mod fill_holes;
 mod identical;
 mod input;
+mod ladder;
 mod modeller;
 mod output;
 mod plan;
@@ -19,7 +20,6 @@ mod repair;
 mod simplify;
 mod stitches;
 mod texture;
-mod united;
 mod units;
 
 pub use self::cut_stitch::{CutStitchChoices, Stitching};

@@ -50,8 +50,7 @@ impl Made<'_> {
         let depth = Depth::Count { samples: input.samples };
         let candidate = match Candidate::write(self.soup, input.output_encoding(options), depth, budget) {
             Ok(candidate) => candidate,
-            Err(NoCandidate::Refused(refusal)) => return Ok(report.refused(refusal)),
-            Err(NoCandidate::Failed(failure)) => return Err(failure),
+            Err(reason) => return Ok(report.refused(reason.refusal()?)),
         };
         if let Some(refusal) = refusal(options, candidate.certificate()) {
             return Ok(report.refused(refusal));
@@ -74,6 +73,19 @@ pub(super) struct Candidate {
 pub(super) enum NoCandidate {
     Refused(Refusal),
     Failed(Failure),
+}
+
+impl NoCandidate {
+    /// Why it is refused.
+    ///
+    /// # Errors
+    /// The failure, where it is one.
+    pub(super) fn refusal(self) -> Result<Refusal, Failure> {
+        match self {
+            Self::Refused(refusal) => Ok(refusal),
+            Self::Failed(failure) => Err(failure),
+        }
+    }
 }
 
 impl<E: Into<Failure>> From<E> for NoCandidate {

@@ -15,7 +15,7 @@ use crate::repair::polygons::DegenerateFaces;
 use crate::repair::snap::SnapOptions;
 use crate::repair::thin_faces::ThinFaces;
 use crate::repair::unite::Coverage;
-use crate::repair::{self, Changes, Draft};
+use crate::repair::{self, Changes, Draft, Effects};
 
 /// One step of a plan, with its parameters.
 #[derive(Debug, Clone, PartialEq)]
@@ -378,6 +378,8 @@ pub(super) struct Attempt {
     pub(super) steps: Vec<Step>,
     /// What the filling told of each hole.
     pub(super) holes: Vec<HoleReport>,
+    /// What the steps did that later attempts depend on.
+    pub(super) effects: Effects,
     /// True when the edges that steps join are told one by one.
     lists_stitches: bool,
     /// Which triangles of the soup are known to be on the surface or inside of the solid.
@@ -415,6 +417,7 @@ impl Attempt {
             actions,
             steps: Vec::new(),
             holes: Vec::new(),
+            effects: Effects::default(),
             lists_stitches: false,
             coverage: Known::NotYet,
         }
@@ -429,6 +432,7 @@ impl Attempt {
             actions,
             steps: Vec::new(),
             holes: Vec::new(),
+            effects: Effects::default(),
             lists_stitches: true,
             coverage: Known::NotYet,
         }
@@ -446,6 +450,7 @@ impl Attempt {
             budget.check()?;
             let mut changes = step.run(&mut self.draft, soup, &mut self.holes, budget)?;
             self.coverage.go_on(step, &mut changes);
+            self.effects.add(changes.effects);
             debug_assert_eq!(self.draft.check(), Vec::<String>::new(), "after {step:?}");
             let stitches = (self.lists_stitches && matches!(step, Step::Pinch(..) | Step::Snap(_)))
                 .then(|| Stitches::of(&changes.stitches, soup));
@@ -454,11 +459,6 @@ impl Attempt {
             self.steps.push(step.clone());
         }
         Ok(())
-    }
-
-    /// True when needles, caps or folds went.
-    pub(super) fn has_mended_thin_faces(&self) -> bool {
-        ["needles_collapsed", "caps_flipped", "folds_closed"].into_iter().any(|name| self.count(name) > 0)
     }
 
     /// True when bodies were united.
@@ -475,16 +475,6 @@ impl Attempt {
             buried_area: *buried_area,
             moved: self.actions.iter().map(|action| action.move_max).sum(),
         })
-    }
-
-    /// Count of this name, over all steps.
-    pub(super) fn count(&self, name: &str) -> u64 {
-        self.actions
-            .iter()
-            .flat_map(|action| &action.changes)
-            .filter(|(n, _)| *n == name)
-            .map(|(_, count)| count)
-            .sum()
     }
 }
 

@@ -74,8 +74,7 @@ impl Writer<'_> {
         for result in results {
             let candidate = match self.write(&result) {
                 Ok(candidate) => candidate,
-                Err(NoCandidate::Refused(refusal)) => return Ok(report.refused(refusal)),
-                Err(NoCandidate::Failed(failure)) => return Err(failure),
+                Err(reason) => return Ok(report.refused(reason.refusal()?)),
             };
             let certificate = candidate.certificate().clone();
             if let Some(refusal) = refusal(self.options, &certificate) {

@@ -247,6 +247,19 @@ pub(super) enum NotRebuilt {
     Failed(Failure),
 }
 
+impl NotRebuilt {
+    /// Why it is refused, with the steps that ran.
+    ///
+    /// # Errors
+    /// The failure, where it is one.
+    pub(super) fn refusal(self) -> Result<(Refusal, Vec<Action>), Failure> {
+        match self {
+            Self::Refused { refusal, actions } => Ok((refusal, actions)),
+            Self::Failed(failure) => Err(failure),
+        }
+    }
+}
+
 impl<E: Into<Failure>> From<E> for NotRebuilt {
     fn from(error: E) -> Self {
         Self::Failed(error.into())
