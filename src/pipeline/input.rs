@@ -96,6 +96,7 @@ impl Input {
             before: None,
             input_certificate: self.examination.certificate.clone(),
             plan: None,
+            tried: Vec::new(),
             actions: Vec::new(),
             levels: Vec::new(),
             after: None,

@@ -403,6 +403,8 @@ pub struct Report {
     pub input_certificate: Certificate,
     /// What may be done about each defect, and what was; `None` for operations other than `plan` and `repair`.
     pub plan: Option<Plan>,
+    /// Rungs of the ladder in the order they were tried; empty where no repair was looked for.
+    pub tried: Vec<&'static str>,
     /// Steps in the order they ran; empty when none did.
     pub actions: Vec<Action>,
     /// The results of a simplification, in the order of the targets; the first is the one that `after`, `certificate`

@@ -52,7 +52,9 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
     }
     let before = report.before.clone();
     let climb = Climb { input, encoding, options, choices: &choices, before: before.as_ref(), budget };
-    match ladder::climb(&climb)? {
+    let (end, tried) = ladder::climb(&climb)?;
+    let report = Report { tried, ..report };
+    match end {
         Climbed::Certified(certified) => finished(*certified, Outcome::Repaired, &climb, report),
         Climbed::Rebuilt(rebuilt) => {
             Ok(rebuilt.returned(input, report.made_by(rebuilding(&choices)), budget)?)

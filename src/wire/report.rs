@@ -38,6 +38,8 @@ pub struct Report {
     /// `plan`; null for operations other than `plan` and `repair`.
     #[schema(required)]
     pub plan: Option<Plan>,
+    /// What was tried to repair the file, in its order, by the names of `docs/ladder.md`; empty where no repair was looked for.
+    pub tried: Vec<&'static str>,
     /// The steps of the plan in the order they ran.
     pub actions: Vec<Action>,
     /// The results of a simplification, in the order of its targets; the first is what `after`, `deviation` and
@@ -288,6 +290,7 @@ impl Report {
                 .as_ref()
                 .map(|mesh| MeshInfo::new(mesh, remaining).with_units_of(&inner.input)),
             plan: inner.plan.as_ref().map(Plan::from),
+            tried: inner.tried.clone(),
             actions: inner.actions.iter().map(Action::from).collect(),
             levels: inner.levels.iter().map(|level| Level::new(level, units)).collect(),
             holes: inner.filling.as_ref().map(|filling| filling.holes.iter().map(Hole::from).collect()),
@@ -405,6 +408,7 @@ mod tests {
             "before",
             "output_units",
             "plan",
+            "tried",
             "actions",
             "levels",
             "holes",

@@ -97,6 +97,7 @@ pub(crate) fn repaired() -> Answer {
         before: Some(analysis(1)),
         input_certificate: certificate(false),
         plan: None,
+        tried: vec!["as-drawn"],
         actions: vec![Action {
             step: "fill-holes",
             causes: vec![DefectCode::BoundaryLoop],
@@ -134,6 +135,7 @@ pub(crate) fn identical() -> Answer {
         before: Some(analysis(0)),
         input_certificate: certificate(true),
         plan: None,
+        tried: Vec::new(),
         actions: Vec::new(),
         after: None,
         outcome: Some(Outcome::Identical),

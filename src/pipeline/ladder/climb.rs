@@ -109,9 +109,8 @@ impl Situation {
             Some(Found::Certified(certified)) => self.certified = Some(certified),
             Some(Found::Rebuilt(rebuilt)) => {
                 let limits = &climb.options.limits;
-                let is_closer = |certified: &Certified| {
-                    !certified.fidelity.is_no_worse(&rebuilt.fidelity, limits)
-                };
+                let is_closer =
+                    |certified: &Certified| !certified.fidelity.is_no_worse(&rebuilt.fidelity, limits);
                 if self.certified.as_deref().is_none_or(is_closer) {
                     self.rebuilt = Some(rebuilt);
                 }

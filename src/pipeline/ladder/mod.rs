@@ -20,7 +20,7 @@ use crate::budget::Stopped;
 
 /// One thing to try.
 struct Rung {
-    /// As in `docs/ladder.md`.
+    /// As in reports and `docs/ladder.md`.
     name: &'static str,
     /// True for the rung that makes a new surface. The others change the surface of the file; they are tried until one is
     /// certified.
@@ -57,14 +57,17 @@ pub(super) enum Climbed {
     Refused { refusal: Refusal, actions: Vec<Action> },
 }
 
-/// Climbs until a result is certified that loses little. Where one loses much, the closest to the file wins.
-pub(super) fn climb(climb: &Climb<'_>) -> Result<Climbed, Failure> {
+/// Climbs until a result is certified that loses little; where one loses much, the closest to the file wins. Gives the names of
+/// the rungs that were tried as well.
+pub(super) fn climb(climb: &Climb<'_>) -> Result<(Climbed, Vec<&'static str>), Failure> {
     let mut situation = Situation::at_the_foot(climb)?;
+    let mut tried = Vec::new();
     while let Some(rung) = next(climb, &situation)? {
+        tried.push(rung.name);
         let found = (rung.tries)(climb, &mut situation)?;
         situation.keep_closest(found, climb);
     }
-    Ok(situation.outcome())
+    Ok((situation.outcome(), tried))
 }
 
 /// The first rung that applies.

@@ -61,7 +61,8 @@ fn unite(climb: &Climb<'_>, situation: &mut Situation) -> Result<Option<Found>, 
         let Some((attempt, candidate)) = climb.united_from(uniting, situation.variant)? else { continue };
         let certified = Certified::measured(attempt, candidate, climb)?;
         let passes = certified.fidelity.passes(limits);
-        if best.as_ref().is_none_or(|best| passes || !best.fidelity.is_no_worse(&certified.fidelity, limits)) {
+        if best.as_ref().is_none_or(|best| passes || !best.fidelity.is_no_worse(&certified.fidelity, limits))
+        {
             best = Some(certified);
         }
         if passes {

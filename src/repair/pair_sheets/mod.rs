@@ -67,8 +67,7 @@ fn changes(edges: u64, divided: u64, copies: u64, turned: u64) -> Changes {
     ];
     let reason =
         if turned > 0 { "bodies that touch were inside out and turned".to_owned() } else { String::new() };
-    let effects =
-        Effects { copied_vertices: copies > 0, turned_triangles: turned, ..Effects::default() };
+    let effects = Effects { copied_vertices: copies > 0, turned_triangles: turned, ..Effects::default() };
     Changes { reason, effects, ..Changes::counted(counts) }
 }
 
