@@ -22,8 +22,8 @@ pub(super) struct United {
     pub(super) fidelity: Fidelity,
 }
 
-/// What uniting one kind of bodies led to.
-enum Tried {
+/// What uniting bodies led to.
+pub(super) enum Tried {
     Certified(Box<(Attempt, Candidate)>),
     /// A solid as f64 alone.
     SolidInF64,
@@ -118,6 +118,11 @@ impl Search<'_> {
         if !attempt.has_united() {
             return Ok(Tried::Nothing);
         }
+        self.settled(attempt)
+    }
+
+    /// Goes on with united bodies until their bytes are certified: rounds where it matters, and joins or parts what touches itself.
+    pub(super) fn settled(&self, mut attempt: Attempt) -> Result<Tried, Failure> {
         let mut roundings = ROUNDINGS_MAX;
         let mut tries = Variant::settling(self.options.contact, self.choices).into_iter();
         loop {
@@ -147,7 +152,7 @@ impl Search<'_> {
         }
     }
 
-    fn go_on(&self, attempt: &mut Attempt, steps: &[Step]) -> Result<(), Stopped> {
+    pub(super) fn go_on(&self, attempt: &mut Attempt, steps: &[Step]) -> Result<(), Stopped> {
         self.budget.stage(Stage::Repair, || attempt.run(steps, &self.input.soup, self.before, self.budget))
     }
 }

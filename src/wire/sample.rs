@@ -96,6 +96,7 @@ pub(crate) fn repaired() -> Answer {
         },
         before: Some(analysis(1)),
         input_certificate: certificate(false),
+        further_inputs: Vec::new(),
         plan: None,
         actions: vec![Action {
             step: "fill-holes",
@@ -133,6 +134,7 @@ pub(crate) fn identical() -> Answer {
     let report = Report {
         before: Some(analysis(0)),
         input_certificate: certificate(true),
+        further_inputs: Vec::new(),
         plan: None,
         actions: Vec::new(),
         after: None,
