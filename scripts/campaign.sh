@@ -23,6 +23,7 @@ declare -A filters=(
   [wrap]="bad_soup"
   [injected]="injected_defect"
   [holes]="holes_cut_into_closed_meshes"
+  [arrangement]="arrangement::tests"
   [kill]="killed_at_random_points"
 )
 
@@ -31,6 +32,7 @@ declare -A places=(
   [modeller]="--test properties"
   [wrap]="--test properties"
   [holes]="--test properties"
+  [arrangement]="--lib"
   [kill]="--test service"
 )
 

@@ -4,8 +4,8 @@ use super::colours::{BAD, DOUBTFUL, GOOD, PLAIN, QUIET, STRONG, aligned, painted
 use super::figures::{counted, figure};
 use super::model;
 use crate::wire::{
-    Action, Certificate, Claim, Defect, DefectCode, Deviation, Fidelity, Hole, JoinedEdges, Level, MeshInfo,
-    Operation, PrintingCheck, Proposal, Report, Severity, TargetSpec, Witness,
+    Action, Certificate, Claim, Defect, DefectCode, Deviation, Fidelity, Hole, InputInfo, JoinedEdges, Level,
+    MeshInfo, Operation, PrintingCheck, Proposal, Report, Severity, TargetSpec, Witness,
 };
 use anstyle::Style;
 use std::fmt::Write as _;
@@ -36,6 +36,13 @@ pub(super) fn summary(report: &Report, subject: &Subject) -> String {
                 put_table(&mut text, "holes", &hole_rows(mesh));
             }
             None => {}
+        }
+    }
+    for (further, number) in report.further_inputs.iter().zip(2..) {
+        put(&mut text, &format!("mesh {number}: {}", facts(&further.input)));
+        if let Some(mesh) = &further.before {
+            put(&mut text, &format!("  {}", size(mesh)));
+            put_styled(&mut text, "defects", &mesh.defects.iter().map(defect_row).collect::<Vec<_>>());
         }
     }
     if let Some(plan) = report.plan.as_ref().filter(|_| report.operation == Operation::Plan) {
@@ -107,9 +114,12 @@ fn put_styled<const N: usize>(text: &mut String, heading: &str, rows: &[(Style, 
 }
 
 fn head(report: &Report, subject: &Subject) -> String {
-    let input = &report.input;
+    format!("{}: {}", subject.input, facts(&report.input))
+}
+
+fn facts(input: &InputInfo) -> String {
     let known = if input.units.is_stated { "" } else { " (assumed)" };
-    format!("{}: {}, {} bytes, unit {}{known}", subject.input, input.encoding, input.bytes, input.units.unit)
+    format!("{}, {} bytes, unit {}{known}", input.encoding, input.bytes, input.units.unit)
 }
 
 fn size(mesh: &MeshInfo) -> String {

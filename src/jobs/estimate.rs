@@ -25,6 +25,8 @@ pub(super) fn estimated_bytes(
         Operation::Analyze | Operation::Verify | Operation::Convert | Operation::CutStitch => (170, CHANGED),
         Operation::Simplify => (410, CHANGED),
         Operation::Plan | Operation::Repair | Operation::FillHoles => (410, REBUILT),
+        // The arrangement of all, with winding numbers for each.
+        Operation::Boolean => (1000, CHANGED),
         // Exact planes and points, and the boxes around them: 1 to 2 kB for each triangle of parts that were measured.
         Operation::Modeller => (2000, CHANGED),
     };

@@ -9,6 +9,7 @@ mod divide;
 mod edges;
 mod fans;
 pub mod half_edge;
+mod joined;
 mod materials;
 mod outlines;
 mod parity;

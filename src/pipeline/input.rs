@@ -95,6 +95,7 @@ impl Input {
             input: self.facts.clone(),
             before: None,
             input_certificate: self.examination.certificate.clone(),
+            further_inputs: Vec::new(),
             plan: None,
             tried: Vec::new(),
             actions: Vec::new(),

@@ -1,5 +1,6 @@
 //! Operations from bytes to bytes: read, analyze, repair by a plan that the client can read, write, certify.
 
+mod boolean;
 mod convert;
 mod cut_stitch;
 mod describe;
@@ -22,6 +23,7 @@ mod stitches;
 mod texture;
 mod units;
 
+pub use self::boolean::MESHES_MAX;
 pub use self::cut_stitch::{CutStitchChoices, Stitching};
 pub use self::faithful::{Change, ChangeKind, Fidelity, FidelityVerdict};
 pub use self::fidelity::Losses;
@@ -45,7 +47,9 @@ use crate::distance::SurfaceDistance;
 use crate::formats::{Encoding, Format, ReadError, ReadOptions, WriteError};
 use crate::printing::Policy;
 use crate::repair::nest;
+pub use crate::repair::unite::{NotCombined, NotSolid, SetOperation};
 use crate::simplify::{CriterionKind, Mode, Placement, Report as SimplifyReport, Target};
+use std::ops::RangeInclusive;
 
 /// What to do with a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -68,11 +72,13 @@ pub enum Operation {
     FillHoles,
     /// A closed polyhedron edited by its planes; the certificate states what holds.
     Modeller,
+    /// Several solids combined into one that is certified.
+    Boolean,
 }
 
 impl Operation {
     /// Every operation.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Analyze,
         Self::Plan,
         Self::Repair,
@@ -82,6 +88,7 @@ impl Operation {
         Self::CutStitch,
         Self::FillHoles,
         Self::Modeller,
+        Self::Boolean,
     ];
 
     /// Name in paths, options and reports.
@@ -96,6 +103,19 @@ impl Operation {
             Self::CutStitch => "cut-stitch",
             Self::FillHoles => "fill-holes",
             Self::Modeller => "modeller",
+            Self::Boolean => "boolean",
+        }
+    }
+
+    /// Numbers of files that it takes.
+    pub fn meshes(self) -> RangeInclusive<usize> {
+        if self == Self::Boolean { 2..=MESHES_MAX } else { 1..=1 }
+    }
+
+    fn meshes_taken(self) -> String {
+        match self {
+            Self::Boolean => format!("2 to {MESHES_MAX} meshes"),
+            _ => "one mesh".to_owned(),
         }
     }
 }
@@ -203,6 +223,10 @@ pub struct Options {
     pub filling: FillHolesChoices,
     /// What `modeller` does.
     pub modeller: ModellerChoices,
+    /// What `boolean` makes of its solids.
+    pub set_operation: SetOperation,
+    /// Sizes in bytes of the files that stand one behind the other in the bytes of a run; none: it is one file.
+    pub file_sizes: Vec<u64>,
     /// Largest distance of features that are reported as near, in the unit of the file; `None`: 1e-5 of the diagonal for
     /// `analyze` up to 100,000 triangles, and no search otherwise.
     pub near: Option<f64>,
@@ -212,6 +236,22 @@ pub struct Options {
     pub policy: Option<Policy>,
     /// The MTL file of an OBJ: its diffuse colours become face colours, which OFF and PLY can hold.
     pub material: Option<Vec<u8>>,
+}
+
+impl Options {
+    /// The files in the bytes of a run.
+    fn files_in<'b>(&self, bytes: &'b [u8]) -> Vec<&'b [u8]> {
+        if self.file_sizes.is_empty() {
+            return vec![bytes];
+        }
+        let mut rest = bytes;
+        let mut take = |&size: &u64| {
+            let (file, after) = rest.split_at(rest.len().min(size as usize));
+            rest = after;
+            file
+        };
+        self.file_sizes.iter().map(&mut take).collect()
+    }
 }
 
 /// How far a result may be from the file.
@@ -297,6 +337,8 @@ pub enum Outcome {
     Filled,
     /// Edited by its planes, as asked; the certificate says what holds.
     Modelled,
+    /// Valid; several solids became one, as asked.
+    Combined,
     /// Not valid; only on request.
     Partial,
     /// No result.
@@ -348,11 +390,25 @@ pub enum Refusal {
         /// Unit of the distances in it.
         units: Units,
     },
+    /// Solids cannot be combined.
+    Boolean {
+        /// Why.
+        reason: BooleanRefusal,
+    },
     /// A coordinate cannot be written in the output format.
     NotRepresentable {
         /// Which, and why.
         reason: WriteError,
     },
+}
+
+/// Why solids cannot be combined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BooleanRefusal {
+    /// What was asked.
+    pub operation: SetOperation,
+    /// Why there is no result.
+    pub reason: NotCombined,
 }
 
 /// One step of a repair: what it was asked to do, why, and what it changed.
@@ -390,6 +446,17 @@ pub struct InputFacts {
     pub result_units: Units,
 }
 
+/// What is told of a file beside the first.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FurtherInput {
+    /// Its bytes.
+    pub facts: InputFacts,
+    /// Its mesh.
+    pub before: Option<Analysis>,
+    /// Its bytes, judged.
+    pub certificate: Certificate,
+}
+
 /// The full account of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
@@ -401,6 +468,8 @@ pub struct Report {
     pub before: Option<Analysis>,
     /// The uploaded bytes, judged.
     pub input_certificate: Certificate,
+    /// The files after the first, which `input`, `before` and `input_certificate` are about; none but for `boolean`.
+    pub further_inputs: Vec<FurtherInput>,
     /// What may be done about each defect, and what was; `None` for operations other than `plan` and `repair`.
     pub plan: Option<Plan>,
     /// Rungs of the ladder in the order they were tried; empty where no repair was looked for.
@@ -470,6 +539,22 @@ pub enum Failure {
     /// The plan is not for this file.
     #[error("the plan is not for this file")]
     PlanMismatch(PlanMismatch),
+    /// Something is wrong with one of several files.
+    #[error("mesh {number}: {failure}")]
+    InMesh {
+        /// Its place among the files, from 1.
+        number: usize,
+        /// What.
+        failure: Box<Failure>,
+    },
+    /// More or fewer files than the operation takes.
+    #[error("{} takes {}, not {count}", .operation.name(), .operation.meshes_taken())]
+    MeshCount {
+        /// What was asked.
+        operation: Operation,
+        /// Number of files.
+        count: usize,
+    },
     /// A hole was chosen that the file does not have.
     #[error("the file has no hole {number}: it has {holes}, numbered from 0")]
     NoSuchHole {
@@ -478,6 +563,16 @@ pub enum Failure {
         /// How many there are.
         holes: u64,
     },
+}
+
+impl Failure {
+    /// The same about the file of this number, from 1, among several; that the run was stopped is about none.
+    fn in_mesh(self, number: usize) -> Self {
+        match self {
+            Self::Stopped(_) => self,
+            failure => Self::InMesh { number, failure: Box::new(failure) },
+        }
+    }
 }
 
 impl From<PlanMismatch> for Failure {
@@ -505,10 +600,16 @@ pub fn run(
     options: &Options,
     budget: &Budget,
 ) -> Result<Answer, Failure> {
+    if operation == Operation::Boolean {
+        return boolean::boolean(bytes, options, budget);
+    }
+    if options.file_sizes.len() > 1 {
+        return Err(Failure::MeshCount { operation, count: options.file_sizes.len() });
+    }
     let mut input = Input::read(bytes, options, budget)?;
     let in_result_units = input.take_units_of_result(operation, options)?;
     let options = in_result_units.as_ref().unwrap_or(options);
-    let mut answer = match operation {
+    let answer = match operation {
         Operation::Analyze => input.report(operation, budget)?.into_answer(),
         Operation::Plan => input.planned(operation, budget)?.into_answer(),
         Operation::Verify => input.verification().into_answer(),
@@ -518,12 +619,23 @@ pub fn run(
         Operation::CutStitch => cut_stitch::cut_stitch(&input, options, budget)?,
         Operation::FillHoles => fill_holes::fill_holes(&input, options, budget)?,
         Operation::Modeller => modeller::model(&input, options, budget)?,
+        Operation::Boolean => return Err(Failure::MeshCount { operation, count: 1 }),
     };
+    finished(&input, options, answer, budget)
+}
+
+/// The answer with what every operation tells.
+fn finished(
+    input: &Input,
+    options: &Options,
+    mut answer: Answer,
+    budget: &Budget,
+) -> Result<Answer, Failure> {
     if options.require == Some(Require::Faithful) {
         answer = demand_faithful(answer);
     }
     if let Some(policy) = &options.policy {
-        answer.report.printing = printing::measure(&input, &answer, policy, budget)?;
+        answer.report.printing = printing::measure(input, &answer, policy, budget)?;
     }
     answer.report.work_used = budget.work_used();
     answer.report.bytes_peak = budget.bytes_peak();

@@ -185,7 +185,10 @@ impl Candidate {
         outcome: Outcome,
         budget: &Budget,
     ) -> Result<Answer, Stopped> {
-        let fidelity = faithful::judge(&input.soup, &self.soup, origins, &mut report, budget)?;
+        let fidelity = match report.fidelity.take() {
+            Some(fidelity) => fidelity,
+            None => faithful::judge(&input.soup, &self.soup, origins, &mut report, budget)?,
+        };
         let after = describe(&self.soup, &self.examination, &input.analyze_options(), budget)?;
         let share = identical_triangle_share(&input.soup, &self.soup, origins, budget)?;
         let lost = [self.lost_texture(input, origins), self.lost_materials(input, origins)];

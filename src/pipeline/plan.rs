@@ -382,6 +382,8 @@ pub(super) struct Attempt {
     pub(super) effects: Effects,
     /// True when the edges that steps join are told one by one.
     lists_stitches: bool,
+    /// True when no shell is turned before bodies are united: the draft was united as it points before.
+    is_oriented: bool,
     /// Which triangles of the soup are known to be on the surface or inside of the solid.
     coverage: Known,
 }
@@ -419,6 +421,7 @@ impl Attempt {
             holes: Vec::new(),
             effects: Effects::default(),
             lists_stitches: false,
+            is_oriented: false,
             coverage: Known::NotYet,
         }
     }
@@ -427,15 +430,13 @@ impl Attempt {
     pub(super) fn start_with_polygons(soup: &Soup, before: Option<&Analysis>) -> Self {
         let (draft, changes) = Draft::with_polygons(soup);
         let actions = vec![action("take-usable", &UNUSABLE, changes, soup, before)];
-        Self {
-            draft,
-            actions,
-            steps: Vec::new(),
-            holes: Vec::new(),
-            effects: Effects::default(),
-            lists_stitches: true,
-            coverage: Known::NotYet,
-        }
+        Self { draft, actions, lists_stitches: true, ..Self::start(&Soup::default(), None) }
+    }
+
+    /// The triangles of `soup`, of which each says what is solid behind it.
+    pub(super) fn start_as_oriented(soup: &Soup) -> Self {
+        let (draft, _) = Draft::from_soup(soup);
+        Self { draft, actions: Vec::new(), is_oriented: true, ..Self::start(&Soup::default(), None) }
     }
 
     /// Runs `steps`, and notes what each did, and why by the defects found `before`.
@@ -448,7 +449,10 @@ impl Attempt {
     ) -> Result<(), Stopped> {
         for step in steps {
             budget.check()?;
-            let mut changes = step.run(&mut self.draft, soup, &mut self.holes, budget)?;
+            let mut changes = match step {
+                Step::Unite if self.is_oriented => repair::unite::unite_as_oriented(&mut self.draft, budget)?,
+                _ => step.run(&mut self.draft, soup, &mut self.holes, budget)?,
+            };
             self.coverage.go_on(step, &mut changes);
             self.effects.add(changes.effects);
             debug_assert_eq!(self.draft.check(), Vec::<String>::new(), "after {step:?}");

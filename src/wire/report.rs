@@ -26,8 +26,10 @@ pub struct Report {
     pub operation: Operation,
     /// Who made it.
     pub engine: EngineInfo,
-    /// The uploaded bytes.
+    /// The uploaded bytes; of several meshes, the first.
     pub input: InputInfo,
+    /// The meshes after the first, in their order; empty but for `boolean`.
+    pub further_inputs: Vec<FurtherInput>,
     /// The mesh as uploaded; null: not analyzed.
     #[schema(required)]
     pub before: Option<MeshInfo>,
@@ -94,6 +96,18 @@ pub struct InputInfo {
     pub sha256: String,
     /// Unit of the coordinates and how it is known.
     pub units: UnitsInfo,
+}
+
+/// A mesh after the first, as it was uploaded.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct FurtherInput {
+    /// The uploaded bytes.
+    pub input: InputInfo,
+    /// The mesh.
+    #[schema(required)]
+    pub before: Option<MeshInfo>,
+    /// The uploaded bytes, judged.
+    pub input_certificate: Certificate,
 }
 
 /// A unit and how it is known.
@@ -284,6 +298,7 @@ impl Report {
             operation: inner.operation.into(),
             engine: EngineInfo { name: super::ENGINE_NAME, version: super::ENGINE_VERSION },
             input: InputInfo::from(&inner.input),
+            further_inputs: inner.further_inputs.iter().map(FurtherInput::from).collect(),
             output_units: units,
             before: inner
                 .before
@@ -321,6 +336,17 @@ impl From<&pipeline::InputFacts> for InputInfo {
             bytes: inner.bytes,
             sha256: hex(&inner.sha256),
             units: UnitsInfo { unit: inner.units.into(), is_stated: inner.units_are_stated },
+        }
+    }
+}
+
+impl From<&pipeline::FurtherInput> for FurtherInput {
+    fn from(inner: &pipeline::FurtherInput) -> Self {
+        let mesh = inner.before.as_ref();
+        Self {
+            input: InputInfo::from(&inner.facts),
+            before: mesh.map(|mesh| MeshInfo::new(mesh, None).with_units_of(&inner.facts)),
+            input_certificate: Certificate::from(&inner.certificate),
         }
     }
 }
@@ -405,6 +431,7 @@ mod tests {
             "operation",
             "engine",
             "input",
+            "further_inputs",
             "before",
             "output_units",
             "plan",

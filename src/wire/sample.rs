@@ -96,6 +96,7 @@ pub(crate) fn repaired() -> Answer {
         },
         before: Some(analysis(1)),
         input_certificate: certificate(false),
+        further_inputs: Vec::new(),
         plan: None,
         tried: vec!["as-drawn"],
         actions: vec![Action {
@@ -134,6 +135,7 @@ pub(crate) fn identical() -> Answer {
     let report = Report {
         before: Some(analysis(0)),
         input_certificate: certificate(true),
+        further_inputs: Vec::new(),
         plan: None,
         tried: Vec::new(),
         actions: Vec::new(),

@@ -127,13 +127,22 @@ mirror! { pipeline::Operation =>
         FillHoles = "fill-holes",
         /// A closed polyhedron edited by its planes; the certificate states what holds.
         Modeller = "modeller",
+        /// Several solids combined into one that is certified.
+        Boolean = "boolean",
     }
 }
 
 impl Operation {
     /// Those whose product is a mesh.
-    pub const WITH_MESH: &'static [Self] =
-        &[Self::Repair, Self::Convert, Self::Simplify, Self::CutStitch, Self::FillHoles, Self::Modeller];
+    pub const WITH_MESH: &'static [Self] = &[
+        Self::Repair,
+        Self::Convert,
+        Self::Simplify,
+        Self::CutStitch,
+        Self::FillHoles,
+        Self::Modeller,
+        Self::Boolean,
+    ];
     /// Those that describe the mesh.
     pub const DESCRIBING: &'static [Self] = &[
         Self::Analyze,
@@ -144,7 +153,13 @@ impl Operation {
         Self::CutStitch,
         Self::FillHoles,
         Self::Modeller,
+        Self::Boolean,
     ];
+
+    /// Most meshes that it takes.
+    pub fn meshes_max(self) -> usize {
+        *pipeline::Operation::from(self).meshes().end()
+    }
 
     /// True when its product is a mesh.
     pub fn makes_mesh(self) -> bool {
@@ -328,6 +343,18 @@ mirror! { pipeline::Effort =>
         Normal = "normal",
         /// Ever finer ones.
         High = "high",
+    }
+}
+
+mirror! { pipeline::SetOperation =>
+    /// What becomes of several solids.
+    SetOperation {
+        /// What is in any of them.
+        Union = "union",
+        /// What is in all of them.
+        Intersection = "intersection",
+        /// What is in the first and in no other.
+        Difference = "difference",
     }
 }
 
@@ -602,6 +629,8 @@ mirror! { pipeline::Outcome =>
         Filled = "filled",
         /// Edited by its planes, as asked; the certificate says what holds.
         Modelled = "modelled",
+        /// Valid; several solids became one, as asked.
+        Combined = "combined",
         /// Not valid; only on request.
         Partial = "partial",
         /// No result.
@@ -798,6 +827,12 @@ words! {
         NotAPolyhedron = "not-a-polyhedron",
         /// The modeller refuses an operator, a range or the dual.
         OperatorRefused = "operator-refused",
+        /// A mesh that is to be combined with others is no closed solid.
+        InputNotSolid = "input-not-solid",
+        /// Nothing is left of the solids.
+        EmptyResult = "empty-result",
+        /// The solids meet in too many places, or combining them failed.
+        NotCombined = "not-combined",
         /// No result keeps the caller's own limits.
         LimitExceeded = "limit-exceeded",
         /// No result is exact or faithful, as the caller demands.
@@ -839,6 +874,7 @@ mod tests {
             Remedy::WORDS,
             OpenShells::WORDS,
             Contact::WORDS,
+            SetOperation::WORDS,
             Across::WORDS,
             Cut::WORDS,
             Stitch::WORDS,
@@ -875,6 +911,9 @@ mod tests {
         }
         for operation in pipeline::Operation::ALL {
             assert_eq!(Operation::from(operation).word(), operation.name());
+        }
+        for &operation in SetOperation::ALL {
+            assert_eq!(operation.word(), pipeline::SetOperation::from(operation).name());
         }
         for stage in budget::Stage::ALL {
             assert_eq!(Stage::from(stage).word(), stage.name());

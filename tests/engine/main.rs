@@ -21,6 +21,7 @@ mod raw_files;
 mod solids;
 
 mod bad_input;
+mod boolean;
 mod cut_stitch;
 mod fidelity;
 mod fill_holes;

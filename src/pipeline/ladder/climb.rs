@@ -189,7 +189,7 @@ impl Climb<'_> {
     }
 
     /// Runs further steps.
-    pub(super) fn go_on(&self, attempt: &mut Attempt, steps: &[Step]) -> Result<(), Stopped> {
+    pub(in crate::pipeline) fn go_on(&self, attempt: &mut Attempt, steps: &[Step]) -> Result<(), Stopped> {
         self.budget.stage(Stage::Repair, || attempt.run(steps, &self.input.soup, self.before, self.budget))
     }
 

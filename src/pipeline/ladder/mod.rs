@@ -12,6 +12,7 @@ mod sheets;
 mod unite;
 
 pub(super) use self::climb::{Certified, Climb};
+pub(super) use self::unite::Tried;
 use self::climb::{Found, Situation};
 use super::plan::Attempt;
 use super::rebuild::Rebuilt;

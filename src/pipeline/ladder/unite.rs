@@ -30,8 +30,8 @@ pub(super) const BEFORE_TRIANGLES_GO: Rung = Rung {
 /// How often what does not hold in float32 is rounded in places, before all is.
 const ROUNDINGS_MAX: u32 = 4;
 
-/// What uniting one kind of bodies led to.
-enum Tried {
+/// What uniting bodies led to.
+pub(in crate::pipeline) enum Tried {
     Certified(Box<(Attempt, Candidate)>),
     /// A solid as f64 alone.
     SolidInF64,
@@ -121,6 +121,11 @@ impl Climb<'_> {
         if !attempt.has_united() {
             return Ok(Tried::Nothing);
         }
+        self.settled(attempt)
+    }
+
+    /// Goes on with united bodies until their bytes are certified: rounds where it matters, and joins or parts what touches itself.
+    pub(in crate::pipeline) fn settled(&self, mut attempt: Attempt) -> Result<Tried, Failure> {
         let mut roundings = ROUNDINGS_MAX;
         let mut tries = Variant::settling(self.options.contact, self.choices).into_iter();
         loop {
