@@ -146,7 +146,10 @@ impl Candidate {
         let kept = (0..self.soup.triangles.len()).filter(|&t| after.of_triangle(t).is_some()).count();
         let reason = match kept {
             0 => "the texture coordinates of the file are lost: the output has none",
-            _ => "texture coordinates stay where a triangle kept its corners; other triangles have none",
+            _ => {
+                "texture coordinates stay where a triangle kept its corners, and a patch that no seam runs into has \
+                 those between its rim's; other triangles have none"
+            }
         };
         let changes =
             vec![("triangles_with_texture", kept as u64), ("triangles_without_texture", lost as u64)];
