@@ -129,7 +129,12 @@ pub(super) fn fidelity_of(
     let all = Original::new(&input.soup, volume, None);
     let covered = attempt.covered();
     let measure = |original: &Original<'_>| {
-        original.measure_rest(candidate.soup(), &draft.triangle_origin, covered.as_ref(), budget)
+        original.measure_rest(
+            candidate.soup(),
+            &candidate.origins(&draft.triangle_origin),
+            covered.as_ref(),
+            budget,
+        )
     };
     let fidelity = measure(&all)?;
     if fidelity.passes(&options.limits) {
@@ -418,7 +423,7 @@ impl Search<'_> {
 
     /// True when the encoding holds no more than float32, so that every plan has to round.
     fn needs_f32(&self) -> bool {
-        self.encoding == Encoding::StlBinary && !self.input.soup.is_f32_exact
+        self.encoding.is_float32() && !self.input.soup.is_f32_exact
     }
 }
 

@@ -1,4 +1,4 @@
-//! The unit of a result: a file in inches becomes an STL in millimetres.
+//! The unit of a result: a file in inches becomes an STL in millimetres or a GLB in metres.
 //!
 //! The mesh takes the unit of the result before anything is done to it, so that what is certified is what was made, and
 //! not a rounding of it.
@@ -8,10 +8,16 @@ use super::{CutStitchChoices, Limits, Operation, Options, SimplifyChoices, Units
 use crate::formats::{Encoding, Format, Place, ReadError, ReadErrorKind};
 use crate::simplify::Target;
 
-/// The unit of what `operation` returns of a file in `units`, laid out as `encoding`.
-fn units_of_result(operation: Operation, options: &Options, units: Units, encoding: Encoding) -> Units {
+/// The unit of what `operation` returns of a file of `input_format` in `units`, laid out as `encoding`.
+fn units_of_result(
+    operation: Operation,
+    options: &Options,
+    (input_format, units): (Format, Units),
+    encoding: Encoding,
+) -> Units {
     let default = match encoding.format() {
         Format::Stl => Units::Millimetre,
+        format if format.is_in_metres() && !input_format.is_in_metres() => Units::Metre,
         _ => units,
     };
     match operation {
@@ -31,7 +37,8 @@ impl Input {
         options: &Options,
     ) -> Result<Option<Options>, ReadError> {
         let units = self.facts.units;
-        let result_units = units_of_result(operation, options, units, self.output_encoding(options));
+        let of_input = (self.facts.encoding.format(), units);
+        let result_units = units_of_result(operation, options, of_input, self.output_encoding(options));
         if result_units == units {
             return Ok(None);
         }

@@ -163,6 +163,10 @@ mirror! { formats::Format =>
         Off = "off",
         /// Polygon file format.
         Ply = "ply",
+        /// glTF 2.0 in one binary file.
+        Glb = "glb",
+        /// glTF 2.0 as JSON that holds its data.
+        Gltf = "gltf",
     }
 }
 
@@ -185,6 +189,10 @@ mirror! { formats::Encoding =>
         PlyBinaryLittleEndian = "ply-binary-little-endian",
         /// Binary big-endian PLY.
         PlyBinaryBigEndian = "ply-binary-big-endian",
+        /// Binary glTF.
+        Glb = "glb",
+        /// glTF JSON.
+        Gltf = "gltf",
     }
 }
 
