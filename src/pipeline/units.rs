@@ -4,8 +4,12 @@
 //! not a rounding of it.
 
 use super::input::Input;
-use super::{CutStitchChoices, Limits, Operation, Options, SimplifyChoices, Units, WrapChoices};
+use super::{
+    CutStitchChoices, FillHolesChoices, Limits, Operation, Options, SimplifyChoices, Units, WrapChoices,
+};
 use crate::formats::{Encoding, Format, Place, ReadError, ReadErrorKind};
+use crate::implicit::RbfOptions;
+use crate::repair::fill::FillOptions;
 use crate::simplify::Target;
 
 /// The unit of what `operation` returns of a file of `input_format` in `units`, laid out as `encoding`.
@@ -27,6 +31,16 @@ fn units_of_result(
 }
 
 impl Input {
+    /// The options in the unit that the format of the file states, if the caller stated none.
+    pub(super) fn take_units_of_format(&mut self, options: &Options) -> Option<Options> {
+        if options.units.is_some() || self.facts.units == Units::default() {
+            return None;
+        }
+        let factor = 1.0 / self.facts.units.millimetres();
+        self.scale_near(factor);
+        Some(options.scaled(factor))
+    }
+
     /// Gives the mesh the unit of the result; the options in that unit, if it is another one than the file's.
     ///
     /// # Errors
@@ -78,6 +92,13 @@ impl Options {
             cut_stitch: CutStitchChoices {
                 epsilon: scaled(self.cut_stitch.epsilon),
                 ..self.cut_stitch.clone()
+            },
+            filling: FillHolesChoices {
+                fill: FillOptions {
+                    rbf: RbfOptions { lambda: scaled(self.filling.fill.rbf.lambda), ..self.filling.fill.rbf },
+                    ..self.filling.fill.clone()
+                },
+                ..self.filling.clone()
             },
             modeller: self.modeller.scaled(factor),
             near: scaled(self.near),

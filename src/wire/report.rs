@@ -99,7 +99,7 @@ pub struct InputInfo {
 pub struct UnitsInfo {
     /// The unit.
     pub unit: Units,
-    /// The caller stated it; false: it is assumed.
+    /// The caller or the format stated it; false: it is assumed.
     pub is_stated: bool,
 }
 

@@ -586,7 +586,7 @@ mirror! { pipeline::VertexColors =>
     VertexColors {
         /// Those of the file, mixed where vertices were merged.
         Kept = "kept",
-        /// The order in which they would go next, from blue to red: a picture for OFF and PLY.
+        /// The order in which they would go next, from blue to red: a picture for OFF, PLY and glTF.
         Priority = "priority",
     }
 }

@@ -4,7 +4,9 @@ use crate::oracle::RawSoup;
 use crate::raw_files::encode;
 use crate::solids::{cube, cuboid};
 use meshmend::budget::{Budget, StopFlag, Stopped};
-use meshmend::formats::{Encoding, Format, ReadError, ReadErrorKind, ReadLimits, ReadOptions, read, sniff, write};
+use meshmend::formats::{
+    Encoding, Format, ReadError, ReadErrorKind, ReadLimits, ReadOptions, read, sniff, write,
+};
 use meshmend::geom::DVec3;
 use meshmend::mesh::{Color, NO_POINT, Soup};
 use meshmend::pipeline::{Answer, Operation, Options, Outcome, Units, run};
@@ -36,7 +38,8 @@ impl File {
 
     fn accessor(&mut self, bytes: &[u8], component: u32, kind: &str, count: usize) -> usize {
         let view = self.view(bytes);
-        self.accessors.push(json!({ "bufferView": view, "componentType": component, "count": count, "type": kind }));
+        self.accessors
+            .push(json!({ "bufferView": view, "componentType": component, "count": count, "type": kind }));
         self.accessors.len() - 1
     }
 
@@ -106,8 +109,11 @@ impl File {
 fn base64_of(bytes: &[u8]) -> String {
     const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let letters = |group: &[u8]| {
-        let bits = group.iter().fold(0u32, |bits, &byte| bits << 8 | u32::from(byte)) << (8 * (3 - group.len()));
-        let letter = |k: usize| if k <= group.len() { LETTERS[(bits >> (18 - 6 * k)) as usize & 63] as char } else { '=' };
+        let bits =
+            group.iter().fold(0u32, |bits, &byte| bits << 8 | u32::from(byte)) << (8 * (3 - group.len()));
+        let letter = |k: usize| {
+            if k <= group.len() { LETTERS[(bits >> (18 - 6 * k)) as usize & 63] as char } else { '=' }
+        };
         (0..4).map(letter).collect::<String>()
     };
     bytes.chunks(3).map(letters).collect()
@@ -303,10 +309,8 @@ fn a_sparse_accessor_puts_elements_in_the_place_of_others() {
 #[test]
 fn quantized_positions_are_scaled_back_by_their_node() {
     let mut file = File::default();
-    let bytes: Vec<u8> = [0i16, 0, 0, 0, 32767, 0, 0, 0, -32768, 16384, 0, 0]
-        .iter()
-        .flat_map(|c| c.to_le_bytes())
-        .collect();
+    let bytes: Vec<u8> =
+        [0i16, 0, 0, 0, 32767, 0, 0, 0, -32768, 16384, 0, 0].iter().flat_map(|c| c.to_le_bytes()).collect();
     let view = file.view(&bytes);
     file.views[view]["byteStride"] = 8.into();
     for is_normalized in [false, true] {
@@ -347,7 +351,8 @@ fn nodes_put_meshes_where_they_are_once_for_each() {
     let bytes = file.glb();
     let soup = soup_of(&bytes).unwrap();
     let point = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
-    let near = |found: [DVec3; 3], want: [DVec3; 3]| found.iter().zip(want).all(|(a, b)| a.distance(b) < 1e-12);
+    let near =
+        |found: [DVec3; 3], want: [DVec3; 3]| found.iter().zip(want).all(|(a, b)| a.distance(b) < 1e-12);
     let triangles = triangles_of(&soup);
     assert_eq!(triangles.len(), 3);
     assert_eq!(triangles[0], [point(10.0, 0.0, 0.0), point(12.0, 0.0, 0.0), point(12.0, 1.0, 0.0)]);
@@ -366,7 +371,10 @@ fn nodes_put_meshes_where_they_are_once_for_each() {
 #[test]
 fn a_placed_solid_stays_one() {
     let mut file = split(&cube());
-    file.set("nodes", json!([{ "mesh": 0, "rotation": [0.1, 0.2, 0.3, 0.9273618], "scale": [0.3, 0.7, 1.1] }]));
+    file.set(
+        "nodes",
+        json!([{ "mesh": 0, "rotation": [0.1, 0.2, 0.3, 0.9273618], "scale": [0.3, 0.7, 1.1] }]),
+    );
     let report = answer(Operation::Verify, &file.glb(), &Options::default()).report;
     assert!(report.input_certificate.is_printable(), "{:?}", report.input_certificate.witnesses);
     assert_eq!(report.input_certificate.readings.len(), 2, "as f64 and as f32");
@@ -408,8 +416,15 @@ fn what_a_small_file_claims_is_not_believed() {
         file.with_primitive(json!({ "attributes": { "POSITION": 0 } }))
     };
     let vec3 = |count: Value| json!({ "componentType": F32, "count": count, "type": "VEC3" });
-    for count in [json!(4_000_000_000u64), json!(200_000), json!(u64::MAX), json!(1e300), json!(-1), json!(2.5), json!("3")]
-    {
+    for count in [
+        json!(4_000_000_000u64),
+        json!(200_000),
+        json!(u64::MAX),
+        json!(1e300),
+        json!(-1),
+        json!(2.5),
+        json!("3"),
+    ] {
         let error = error_of(&file(vec3(count.clone())));
         assert!(error.contains("/accessors/0/count") || error.contains("vertices_max"), "{count}: {error}");
     }
@@ -419,7 +434,10 @@ fn what_a_small_file_claims_is_not_believed() {
             accessor["bufferView"] = 0.into();
             accessor[member] = value.into();
             let error = error_of(&file(accessor));
-            assert!(error.contains("ends here") || error.contains("vertices_max"), "{member} {value}: {error}");
+            assert!(
+                error.contains("ends here") || error.contains("vertices_max"),
+                "{member} {value}: {error}"
+            );
         }
     }
     for member in ["byteOffset", "byteLength", "byteStride", "buffer"] {
@@ -460,11 +478,16 @@ fn what_cannot_be_read_is_refused_by_name() {
         json!({ "extensions": { "KHR_draco_mesh_compression": { "bufferView": 0 } } })
     });
     assert!(error_of(&draco).contains("glTF with Draco compression"), "{}", error_of(&draco));
-    let fallback = square_with(|_| json!({ "extensions": { "KHR_draco_mesh_compression": { "bufferView": 0 } } }));
+    let fallback =
+        square_with(|_| json!({ "extensions": { "KHR_draco_mesh_compression": { "bufferView": 0 } } }));
     assert_eq!(soup_of(&fallback.glb()).unwrap().triangles.len(), 1);
     let mut external = square_with(|_| json!({}));
     external.set("buffers", json!([{ "byteLength": 48, "uri": "part.bin" }]));
-    assert!(error_of(&external).contains("the external file `part.bin` at /buffers/0/uri"), "{}", error_of(&external));
+    assert!(
+        error_of(&external).contains("the external file `part.bin` at /buffers/0/uri"),
+        "{}",
+        error_of(&external)
+    );
     let mut broken = square_with(|_| json!({}));
     broken.set("buffers", json!([{ "byteLength": 48, "uri": "data:;base64,AAA*" }]));
     assert!(error_of(&broken).contains("broken base64"), "{}", error_of(&broken));
@@ -495,14 +518,19 @@ fn a_file_cut_anywhere_or_with_a_byte_changed_is_an_error_or_a_sound_soup() {
         let mut changed = bytes.clone();
         changed[end] ^= 1 << (end % 8);
         if let Ok(encoding) = sniff(&changed, None) {
-            if let Ok(soup) = meshmend::formats::read(&changed, encoding, &ReadOptions::default(), &Budget::unlimited()) {
+            if let Ok(soup) =
+                meshmend::formats::read(&changed, encoding, &ReadOptions::default(), &Budget::unlimited())
+            {
                 assert_eq!(soup.check(), Vec::<String>::new(), "byte {end}");
             }
         }
     }
     let text = String::from_utf8(file.gltf()).unwrap();
     let error = soup_of(text.replace("\"nodes\":[", "\"nodes\":[}").as_bytes()).unwrap_err();
-    assert!(matches!(error.place, meshmend::formats::Place::Byte(at) if text[at as usize - 1..].starts_with('[')), "{error}");
+    assert!(
+        matches!(error.place, meshmend::formats::Place::Byte(at) if text[at as usize - 1..].starts_with('[')),
+        "{error}"
+    );
     let deep = format!("{{\"asset\":{}1{}}}", "[".repeat(100_000), "]".repeat(100_000));
     assert!(soup_of(deep.as_bytes()).unwrap_err().to_string().contains("recursion limit"));
 }
@@ -535,7 +563,10 @@ fn colours_of_vertices_are_read_from_bytes_shorts_and_floats_and_stay() {
         assert_eq!((&soup.vertex_colors[..], soup.face_colors.len()), (&want[..], 0), "{kind}");
         for encoding in [Encoding::Glb, Encoding::Gltf] {
             let back = soup_of(&write(&soup, encoding, &Budget::unlimited()).unwrap()).unwrap();
-            assert_eq!((back.vertex_colors, back.triangles), (soup.vertex_colors.clone(), soup.triangles.clone()));
+            assert_eq!(
+                (back.vertex_colors, back.triangles),
+                (soup.vertex_colors.clone(), soup.triangles.clone())
+            );
         }
     }
     let short = square_with(|file| {
@@ -570,7 +601,10 @@ fn colours_of_faces_by_split_vertices_are_colours_of_faces() {
         Some(Color::Bytes(rgb, _)) => *rgb,
         other => panic!("{other:?}"),
     };
-    assert_eq!(again.iter().map(without_alpha).collect::<Vec<_>>(), of_ply.iter().map(without_alpha).collect::<Vec<_>>());
+    assert_eq!(
+        again.iter().map(without_alpha).collect::<Vec<_>>(),
+        of_ply.iter().map(without_alpha).collect::<Vec<_>>()
+    );
 }
 
 #[test]
@@ -691,14 +725,16 @@ fn a_face_without_texture_has_none_again() {
 
 #[test]
 fn more_colours_than_materials_go_to_vertices() {
-    let grid: Vec<DVec3> = (0..21 * 21).map(|i| DVec3::new(f64::from(i % 21), f64::from(i / 21), 0.0)).collect();
+    let grid: Vec<DVec3> =
+        (0..21 * 21).map(|i| DVec3::new(f64::from(i % 21), f64::from(i / 21), 0.0)).collect();
     let triangles: Vec<[u32; 3]> = (0..400)
         .flat_map(|i| {
             let v = i / 20 * 21 + i % 20;
             [[v, v + 1, v + 22], [v, v + 22, v + 21]]
         })
         .collect();
-    let color = |i: usize| Some(Color::Linear([(i % 256) as f32 / 255.0, (i / 256) as f32 / 255.0, 0.3], None));
+    let color =
+        |i: usize| Some(Color::Linear([(i % 256) as f32 / 255.0, (i / 256) as f32 / 255.0, 0.3], None));
     let soup = Soup {
         face_count: 800,
         face_colors: (0..800).map(color).collect(),
@@ -718,16 +754,22 @@ fn a_glb_is_in_metres_and_takes_the_unit_of_other_formats_along() {
     let report = answer(Operation::Analyze, &bytes, &Options::default()).report;
     assert_eq!((report.input.units, report.input.units_are_stated), (Units::Metre, true));
     let sides = |bytes: &[u8]| {
-        let bounds = answer(Operation::Analyze, bytes, &Options::default()).report.before.unwrap().measures.bounds;
+        let bounds =
+            answer(Operation::Analyze, bytes, &Options::default()).report.before.unwrap().measures.bounds;
         bounds.map(|bounds| (bounds.max - bounds.min).to_array()).unwrap()
     };
-    let is_near = |found: [f64; 3], want: [f64; 3]| found.iter().zip(want).all(|(a, b)| (a / b - 1.0).abs() < 1e-6);
+    let is_near =
+        |found: [f64; 3], want: [f64; 3]| found.iter().zip(want).all(|(a, b)| (a / b - 1.0).abs() < 1e-6);
     let stl = converted(&bytes, Format::Stl);
     assert!(is_near(sides(&stl), [20.0, 30.0, 40.0]), "{:?}", sides(&stl));
     assert!(is_near(sides(&converted(&stl, Format::Glb)), [0.02, 0.03, 0.04]));
-    assert!(is_near(sides(&converted(&bytes, Format::Ply)), [0.02, 0.03, 0.04]), "a PLY has the unit of its file");
+    assert!(
+        is_near(sides(&converted(&bytes, Format::Ply)), [0.02, 0.03, 0.04]),
+        "a PLY has the unit of its file"
+    );
     // The caller's word counts more.
-    let options = Options { units: Some(Units::Millimetre), output_format: Some(Format::Stl), ..Options::default() };
+    let options =
+        Options { units: Some(Units::Millimetre), output_format: Some(Format::Stl), ..Options::default() };
     let as_said = answer(Operation::Convert, &bytes, &options).output.unwrap().bytes.unwrap();
     assert!(is_near(sides(&as_said), [0.02, 0.03, 0.04]));
     let same = Options { units: Some(Units::Millimetre), ..Options::default() };
@@ -736,7 +778,8 @@ fn a_glb_is_in_metres_and_takes_the_unit_of_other_formats_along() {
 
 #[test]
 fn what_is_written_obeys_the_rules_of_the_container() {
-    let soups = [soup_of(&painted_cube().glb()).unwrap(), soup_of(&split(&cuboid([1.0, 2.0, 3.0])).glb()).unwrap()];
+    let soups =
+        [soup_of(&painted_cube().glb()).unwrap(), soup_of(&split(&cuboid([1.0, 2.0, 3.0])).glb()).unwrap()];
     for soup in soups {
         let bytes = write(&soup, Encoding::Glb, &Budget::unlimited()).unwrap();
         assert_eq!(bytes, write(&soup, Encoding::Glb, &Budget::unlimited()).unwrap());
@@ -765,7 +808,8 @@ fn every_format_becomes_a_glb_and_comes_back_with_the_same_triangles() {
     let soup = cube().with(&cube().moved([3.0; 3]));
     for encoding in [Encoding::Obj, Encoding::StlBinary, Encoding::Off, Encoding::PlyAscii] {
         let bytes = encode(&soup, encoding);
-        let metres = Options { units: Some(Units::Metre), output_format: Some(Format::Glb), ..Options::default() };
+        let metres =
+            Options { units: Some(Units::Metre), output_format: Some(Format::Glb), ..Options::default() };
         let output = answer(Operation::Convert, &bytes, &metres);
         assert_eq!(output.report.outcome, Some(Outcome::Converted));
         assert_eq!(output.report.identical_triangle_share, Some(1.0));

@@ -91,10 +91,15 @@ fn picture_of<'b>(
     if let Some(uri) = image.get("uri") {
         let of_uri = uri.value.as_str().and_then(|text| text.strip_prefix("data:")?.split(';').next());
         let media_type = stated.or_else(|| of_uri.map(str::to_owned));
-        return Ok(decode(&uri, budget)?.ok().map(|(bytes, charge)| (bytes, media_type, charge)));
+        let decoded = decode(&uri, budget)?.ok().filter(|(bytes, _)| !bytes.is_empty());
+        return Ok(decoded.map(|(bytes, charge)| (bytes, media_type, charge)));
     }
     let Some(view) = image.get("bufferView") else { return Ok(None) };
-    let bytes = buffers.view(&view)?.bytes;
+    // A picture says nothing of the shape: one that cannot be had is absent.
+    let Ok(bytes) = buffers.view(&view).map(|view| view.bytes) else { return Ok(None) };
+    if bytes.is_empty() {
+        return Ok(None);
+    }
     let (mut copy, charge) = budget.vec::<u8>(bytes.len())?;
     copy.extend_from_slice(bytes);
     Ok(Some((copy, stated, charge)))

@@ -111,7 +111,7 @@ fn left_out(
     let mut is_placed = vec![false; meshes.len()];
     placed.iter().for_each(|place| is_placed[place.mesh] = true);
     let of = |f: fn(&Mesh) -> u64| {
-        meshes.iter().zip(&is_placed).filter(|(_, is_placed)| **is_placed).map(|(m, _)| f(m)).sum()
+        meshes.iter().zip(&is_placed).filter(|(_, is_placed)| **is_placed).map(|(m, _)| f(m)).sum::<u64>()
     };
     Ok(vec![
         ("animations", count("animations")?),

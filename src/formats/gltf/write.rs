@@ -108,7 +108,8 @@ impl Vertices {
                     vertices.position.len() as u32 - 1
                 })
             };
-            vertices.of_corner.push([0, 1, 2].map(number));
+            let corners = [0, 1, 2].map(number);
+            vertices.of_corner.push(corners);
         }
         Ok((vertices, charges))
     }
