@@ -426,7 +426,7 @@ fn what_a_small_file_claims_is_not_believed() {
         json!("3"),
     ] {
         let error = error_of(&file(vec3(count.clone())));
-        assert!(error.contains("/accessors/0/count") || error.contains("vertices_max"), "{count}: {error}");
+        assert!(error.contains("/accessors/0/count"), "{count}: {error}");
     }
     for member in ["byteOffset", "count"] {
         for value in [4u64, 1 << 31, 1 << 32, u64::MAX / 3, u64::MAX] {
@@ -435,7 +435,7 @@ fn what_a_small_file_claims_is_not_believed() {
             accessor[member] = value.into();
             let error = error_of(&file(accessor));
             assert!(
-                error.contains("ends here") || error.contains("vertices_max"),
+                error.contains("ends here") || error.contains("/accessors/0/count"),
                 "{member} {value}: {error}"
             );
         }

@@ -35,7 +35,7 @@ pub(super) struct Accessor<'a> {
 pub(super) struct Accessors<'a> {
     pub(super) list: List<'a>,
     pub(super) buffers: Buffers<'a>,
-    /// Length of the file, which bounds how many elements may have no bytes of their own.
+    /// Length of the file.
     pub(super) file_bytes: usize,
     pub(super) budget: &'a Budget,
 }
@@ -63,11 +63,18 @@ impl Component {
 }
 
 impl Accessors<'_> {
-    /// How many elements the accessor number `index` claims to have.
+    /// How many elements the accessor number `index` has: no more than the file has bytes, even where it claims to be zeros that
+    /// no bytes stand behind.
     pub(super) fn claimed(&self, index: usize) -> Result<u64, ReadError> {
         let part = self.list.item(index);
         let count = part.need("count")?;
-        part.count("count")?.ok_or_else(|| count.wrong("a number of elements"))
+        let claimed = part.count("count")?.ok_or_else(|| count.wrong("a number of elements"))?;
+        if claimed > self.file_bytes as u64 {
+            return Err(
+                count.wrong(&format!("no more elements than the file has bytes, {}", self.file_bytes))
+            );
+        }
+        Ok(claimed)
     }
 
     /// The accessor number `index`, whose elements have one of so many components.
@@ -110,13 +117,6 @@ impl Accessors<'_> {
             _charge: None,
         };
         if of_view.is_none() {
-            if len > self.file_bytes as u64 {
-                let expected = format!(
-                    "no more than the file has bytes, {}, where no bytes stand behind it",
-                    self.file_bytes
-                );
-                return Err(part.need("count")?.wrong(&expected));
-            }
             let (mut zeros, charge) = self.budget.vec::<u8>(accessor.len * element)?;
             zeros.resize(accessor.len * element, 0);
             (accessor.bytes, accessor._charge) = (Cow::Owned(zeros), Some(charge));
