@@ -11,7 +11,9 @@ pub fn check_reader(bytes: &[u8], format: Format) {
     let soup = match read(bytes, encoding, &ReadOptions::default(), &budget) {
         Ok(soup) => soup,
         Err(error) => {
-            assert!(!matches!(error.kind, ReadErrorKind::Stopped(_)), "{error}");
+            // Instances of a mesh make more triangles than a file has bytes; the budget is what holds them.
+            let has_instances = matches!(format, Format::Glb | Format::Gltf);
+            assert!(has_instances || !matches!(error.kind, ReadErrorKind::Stopped(_)), "{error}");
             return;
         }
     };

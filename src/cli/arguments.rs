@@ -149,7 +149,7 @@ struct InputArguments {
     /// Write the report for people to this file: one page that loads nothing.
     #[arg(long, value_name = "FILE")]
     report_html: Option<PathBuf>,
-    /// Material file (MTL) of an OBJ: its diffuse colours become face colours, which OFF and PLY hold.
+    /// Material file (MTL) of an OBJ: its diffuse colours become face colours, which OFF, PLY and glTF hold.
     #[arg(long, value_name = "FILE")]
     material: Option<PathBuf>,
     #[command(flatten)]

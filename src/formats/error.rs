@@ -84,10 +84,10 @@ impl ReadError {
     pub(super) fn foreign(name: &'static str) -> Self {
         let expected = match name {
             "gzip" => {
-                "the mesh itself in STL, OBJ, OFF or PLY; `Content-Encoding: gzip` says that a body is compressed"
+                "the mesh itself in STL, OBJ, OFF, PLY or glTF; `Content-Encoding: gzip` says that a body is compressed"
             }
-            "text in UTF-16" => "a mesh in STL, OBJ, OFF or PLY, as text in UTF-8",
-            _ => "a mesh in STL, OBJ, OFF or PLY",
+            "text in UTF-16" => "a mesh in STL, OBJ, OFF, PLY or glTF, as text in UTF-8",
+            _ => "a mesh in STL, OBJ, OFF, PLY or glTF",
         };
         Self { kind: ReadErrorKind::Foreign { name }, place: Place::Whole, expected: expected.to_owned() }
     }
@@ -123,6 +123,16 @@ pub enum WriteError {
         vertex: u32,
         /// The coordinate.
         value: f64,
+        /// Name of the encoding.
+        encoding: &'static str,
+    },
+    /// The file would be longer than its format allows.
+    #[error("{bytes} bytes are more than the {bytes_max} that {encoding} can hold")]
+    TooLarge {
+        /// Its length, or that of its largest part.
+        bytes: u64,
+        /// The most there may be.
+        bytes_max: u64,
         /// Name of the encoding.
         encoding: &'static str,
     },

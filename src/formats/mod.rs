@@ -11,6 +11,7 @@ mod error;
 mod faces;
 mod float32;
 mod foreign;
+mod gltf;
 mod numbers;
 mod obj;
 mod off;
@@ -40,6 +41,10 @@ pub enum Format {
     Off,
     /// Polygon file format, ASCII or binary.
     Ply,
+    /// glTF 2.0 in one binary file.
+    Glb,
+    /// glTF 2.0 as JSON that holds its data.
+    Gltf,
 }
 
 /// A format together with the way its bytes are laid out.
@@ -61,11 +66,15 @@ pub enum Encoding {
     PlyBinaryLittleEndian,
     /// Binary big-endian PLY.
     PlyBinaryBigEndian,
+    /// GLB.
+    Glb,
+    /// glTF JSON.
+    Gltf,
 }
 
 impl Format {
     /// Every format.
-    pub const ALL: [Self; 4] = [Self::Obj, Self::Stl, Self::Off, Self::Ply];
+    pub const ALL: [Self; 6] = [Self::Obj, Self::Stl, Self::Off, Self::Ply, Self::Glb, Self::Gltf];
 
     /// The format's name in options and its usual file extension.
     pub fn name(self) -> &'static str {
@@ -74,12 +83,19 @@ impl Format {
             Self::Stl => "stl",
             Self::Off => "off",
             Self::Ply => "ply",
+            Self::Glb => "glb",
+            Self::Gltf => "gltf",
         }
     }
 
     /// The format of this name or file extension, in any case.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|f| f.name().eq_ignore_ascii_case(name))
+    }
+
+    /// True when the format itself says that its coordinates are metres.
+    pub fn is_in_metres(self) -> bool {
+        matches!(self, Self::Glb | Self::Gltf)
     }
 
     /// How a new file of this format is laid out when nothing else is asked.
@@ -89,6 +105,8 @@ impl Format {
             Self::Stl => Encoding::StlBinary,
             Self::Off => Encoding::Off,
             Self::Ply => Encoding::PlyBinaryLittleEndian,
+            Self::Glb => Encoding::Glb,
+            Self::Gltf => Encoding::Gltf,
         }
     }
 }
@@ -101,12 +119,19 @@ impl Encoding {
             Self::StlBinary | Self::StlAscii => Format::Stl,
             Self::Off | Self::OffBinary => Format::Off,
             Self::PlyAscii | Self::PlyBinaryLittleEndian | Self::PlyBinaryBigEndian => Format::Ply,
+            Self::Glb => Format::Glb,
+            Self::Gltf => Format::Gltf,
         }
     }
 
     /// Whether all of it is text.
     fn is_text(self) -> bool {
         matches!(self, Self::Obj | Self::StlAscii | Self::Off | Self::PlyAscii)
+    }
+
+    /// True when coordinates are float32 and nothing else.
+    pub fn is_float32(self) -> bool {
+        matches!(self, Self::StlBinary | Self::Glb | Self::Gltf)
     }
 
     /// Name in reports.
@@ -120,6 +145,8 @@ impl Encoding {
             Self::PlyAscii => "ply-ascii",
             Self::PlyBinaryLittleEndian => "ply-binary-little-endian",
             Self::PlyBinaryBigEndian => "ply-binary-big-endian",
+            Self::Glb => "glb",
+            Self::Gltf => "gltf",
         }
     }
 }
@@ -200,11 +227,12 @@ pub fn read(
         Encoding::PlyAscii | Encoding::PlyBinaryLittleEndian | Encoding::PlyBinaryBigEndian => {
             ply::read::read(bytes, options, budget)
         }
+        Encoding::Glb | Encoding::Gltf => gltf::read::read(bytes, encoding, options, budget),
     }
 }
 
 /// Writes the triangles of `soup` (not its polygons) with its vertex colours and, where the format holds them, its
-/// face colours. Deterministic: the same soup gives the same bytes. Binary STL and text hold coordinates exactly when
+/// face colours. Deterministic: the same soup gives the same bytes. Binary STL and glTF hold coordinates exactly when
 /// they are float32 values; text prints the shortest decimal that reads back as the same f64.
 ///
 /// # Errors
@@ -219,6 +247,16 @@ pub fn write(soup: &Soup, encoding: Encoding, budget: &Budget) -> Result<Vec<u8>
         Encoding::PlyAscii | Encoding::PlyBinaryLittleEndian | Encoding::PlyBinaryBigEndian => {
             ply::write::write(soup, encoding, budget)
         }
+        Encoding::Glb | Encoding::Gltf => gltf::write::write(soup, encoding, budget),
+    }
+}
+
+/// The order in which [`write`] writes the triangles of `soup`; `None`: their own. glTF keeps triangles of one material
+/// together.
+pub fn stored_order(soup: &Soup, encoding: Encoding) -> Option<Vec<u32>> {
+    match encoding {
+        Encoding::Glb | Encoding::Gltf => gltf::stored_order(soup),
+        _ => None,
     }
 }
 

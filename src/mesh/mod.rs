@@ -26,7 +26,7 @@ pub use cut::{ChosenEdges, Cut, CutMethod, Marks, cut, cut_singular};
 pub use divide::divide;
 pub use edges::EdgeGroups;
 pub use fans::{Fan, NO_TWIN, fan_heads, singular_vertices, twins};
-pub use materials::{Materials, NO_MATERIAL};
+pub use materials::{Descriptions, Materials, NO_MATERIAL};
 pub use outlines::{Outlines, PolygonRuns};
 pub use parity::ParityUnionFind;
 pub use polygon_copies::{PolygonCopy, polygon_copies};

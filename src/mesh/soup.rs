@@ -11,6 +11,9 @@ pub enum Color {
     Bytes([u8; 3], Option<u8>),
     /// Red, green, blue and, if given, alpha, each 0 to 1 in most files.
     Floats([f32; 3], Option<f32>),
+    /// Red, green, blue and, if given, alpha, each 0 to 1, in proportion to light as glTF gives them; the other ways are
+    /// those of sRGB.
+    Linear([f32; 3], Option<f32>),
     /// An index into a colour map of the reader's choice (OFF with one number).
     Index(i32),
 }
@@ -47,6 +50,15 @@ impl Color {
                     _ => None,
                 })?;
                 Some(Self::Floats([r? as f32, g? as f32, b? as f32], a.map(|a| a as f32)))
+            }
+            Self::Linear(..) => {
+                let [r, g, b, a] = floats(|color| match color {
+                    Self::Linear([r, g, b], a) => {
+                        Some([Some(*r), Some(*g), Some(*b), *a].map(|x| x.map(f64::from)))
+                    }
+                    _ => None,
+                })?;
+                Some(Self::Linear([r? as f32, g? as f32, b? as f32], a.map(|a| a as f32)))
             }
             Self::Index(_) => {
                 let largest = colors.iter().fold(0.0, |most: f64, &(_, share)| most.max(share));
@@ -133,7 +145,8 @@ pub struct Soup {
     pub non_finite_vertices: Vec<u32>,
     /// Lines of faces and vertices.
     pub places: Places,
-    /// True when the format has no indices (STL), so that bit-equal corners are one vertex, numbered by first use.
+    /// True when the format has no indices (STL) or one set of them for all attributes (glTF), so that it cannot but repeat
+    /// positions: bit-equal ones are one vertex, numbered by first use.
     pub is_welded_by_format: bool,
     /// True when every coordinate is exactly a float32, so both readings of the contract are the same.
     pub is_f32_exact: bool,
@@ -145,6 +158,8 @@ pub struct Soup {
     pub texture: Texture,
     /// Materials of the faces of the file.
     pub materials: Materials,
+    /// What the file has beside its mesh and no new file takes over, by name and number.
+    pub left_out: Vec<(&'static str, u64)>,
 }
 
 impl Polygons {

@@ -10,7 +10,7 @@ use super::{
     Refusal, Report, finished,
 };
 use crate::budget::{Budget, Stage};
-use crate::formats::{Encoding, Place, ReadError, ReadErrorKind};
+use crate::formats::{Place, ReadError, ReadErrorKind};
 use crate::mesh::Soup;
 use crate::repair::unite::{NotCombined, combine};
 
@@ -60,7 +60,10 @@ impl Reading {
     fn next(&mut self, file: &[u8], budget: &Budget) -> Result<(Input, Report), Failure> {
         let mut input = Input::read(file, &self.options, budget)?;
         self.options.output_format.get_or_insert(input.facts.encoding.format());
-        self.scaled = input.take_units_of_result(Operation::Boolean, &self.options)?;
+        let in_units_of_format = input.take_units_of_format(&self.options);
+        let options = in_units_of_format.as_ref().unwrap_or(&self.options);
+        self.scaled = input.take_units_of_result(Operation::Boolean, options)?.or(in_units_of_format);
+        self.options.output_units.get_or_insert(input.facts.result_units);
         self.triangles += input.soup.triangles.len() as u64;
         self.vertices += input.soup.positions.len() as u64;
         let limits = self.options.read.limits;
@@ -111,8 +114,8 @@ fn combined(
     let climb = Climb { input, encoding, options, choices: &choices, before: None, budget };
     let rounding = [Step::RoundToF32, Step::Unite, Step::JoinCopies];
     climb.go_on(&mut attempt, &[Step::JoinCopies])?;
-    let is_rounded = encoding == Encoding::StlBinary || input.soup.is_f32_exact;
-    if encoding == Encoding::StlBinary && !input.soup.is_f32_exact {
+    let is_rounded = encoding.is_float32() || input.soup.is_f32_exact;
+    if encoding.is_float32() && !input.soup.is_f32_exact {
         climb.go_on(&mut attempt, &rounding)?;
     }
     let unrounded = (!is_rounded).then(|| attempt.clone());

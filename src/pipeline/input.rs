@@ -4,7 +4,7 @@ use super::describe::describe;
 use super::remedies::proposals;
 use super::{
     Answer, ChosenPlan, ELEMENTS_MAX, Failure, FidelityVerdict, InputFacts, Operation, Options, Outcome,
-    Output, Plan, Refusal, Report, Step,
+    Output, Plan, Refusal, Report, Step, Units,
 };
 use crate::analysis::{Analysis, AnalyzeOptions, NearSearch};
 use crate::budget::{Budget, Stage, Stopped};
@@ -44,13 +44,14 @@ impl Input {
         let examination = budget.stage(Stage::Certify, || {
             certificate::examine(&soup, bytes, encoding, &options.read, Depth::Count { samples }, budget)
         })?;
+        let units = options.units.or_else(|| encoding.format().is_in_metres().then_some(Units::Metre));
         let facts = InputFacts {
             encoding,
             bytes: bytes.len() as u64,
             sha256: examination.certificate.sha256,
-            units: options.units.unwrap_or_default(),
-            units_are_stated: options.units.is_some(),
-            result_units: options.units.unwrap_or_default(),
+            units: units.unwrap_or_default(),
+            units_are_stated: units.is_some(),
+            result_units: units.unwrap_or_default(),
         };
         Ok(Self { facts, soup, examination, samples, near: options.near })
     }

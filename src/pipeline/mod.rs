@@ -197,9 +197,11 @@ pub struct Options {
     pub output_format: Option<Format>,
     /// Limits and choice of reader.
     pub read: ReadOptions,
-    /// Unit as the caller stated it; `None`: assumed to be millimetres.
+    /// Unit as the caller stated it, in which all lengths here are; `None`: lengths are in millimetres, and the file is in
+    /// the unit of its format or, where that says none, in millimetres too.
     pub units: Option<Units>,
-    /// Unit of the result; `None`: millimetres for STL, which says none and is read so, that of the file otherwise.
+    /// Unit of the result; `None`: millimetres for STL, which says none and is read so, metres for glTF made of another
+    /// format, that of the file otherwise.
     pub output_units: Option<Units>,
     /// What the result must be; `None`: the operation's default.
     pub require: Option<Require>,
@@ -234,7 +236,7 @@ pub struct Options {
     pub samples: Option<usize>,
     /// What the process can do that the mesh is to be printed with; `None`: the mesh is not measured for printing.
     pub policy: Option<Policy>,
-    /// The MTL file of an OBJ: its diffuse colours become face colours, which OFF and PLY can hold.
+    /// The MTL file of an OBJ: its diffuse colours become face colours, which OFF, PLY and glTF can hold.
     pub material: Option<Vec<u8>>,
 }
 
@@ -439,7 +441,7 @@ pub struct InputFacts {
     pub sha256: [u8; 32],
     /// Unit of the coordinates.
     pub units: Units,
-    /// True when the caller stated the unit, false when it is assumed.
+    /// True when the caller or the format stated the unit, false when it is assumed.
     pub units_are_stated: bool,
     /// Unit of the result, and of all lengths, areas, volumes and places of the report but those of the certificate of the
     /// uploaded bytes.
@@ -607,6 +609,8 @@ pub fn run(
         return Err(Failure::MeshCount { operation, count: options.file_sizes.len() });
     }
     let mut input = Input::read(bytes, options, budget)?;
+    let in_units_of_format = input.take_units_of_format(options);
+    let options = in_units_of_format.as_ref().unwrap_or(options);
     let in_result_units = input.take_units_of_result(operation, options)?;
     let options = in_result_units.as_ref().unwrap_or(options);
     let answer = match operation {

@@ -9,6 +9,7 @@ use crate::certificate::{self, Certificate, Depth, Examination};
 use crate::formats::{self, Encoding, ReadLimits, ReadOptions, WriteError};
 use crate::mesh::Soup;
 use crate::repair::NEW;
+use std::borrow::Cow;
 
 /// Why a mesh with this certificate is not returned: the caller demands a valid solid.
 pub(super) fn refusal(options: &Options, certificate: &Certificate) -> Option<Refusal> {
@@ -24,6 +25,16 @@ pub(super) fn unchanged(input: &Input, options: &Options, report: Report, otherw
         Some(refusal) => report.refused(refusal),
         None => input.returned_as_it_is(report, outcome),
     }
+}
+
+/// What is said of what the file has beside its mesh.
+fn left_out(counts: &[(&'static str, u64)]) -> Option<Action> {
+    if counts.is_empty() {
+        return None;
+    }
+    let reason = "what the file has beside its mesh is not in the output".to_owned();
+    let (step, causes, changes) = ("left_out", Vec::new(), counts.to_vec());
+    Some(Action { step, causes, changes, move_max: 0.0, reason, stitches: None })
 }
 
 /// A mesh that an operation has made which is no repair.
@@ -67,6 +78,8 @@ pub(super) struct Candidate {
     /// The bytes, read back.
     soup: Soup,
     examination: Examination,
+    /// For each of its triangles the one of the soup that was written; `None`: the same.
+    order: Option<Vec<u32>>,
 }
 
 /// Why there is no candidate.
@@ -107,6 +120,7 @@ impl Candidate {
             Err(WriteError::Stopped(stopped)) => return Err(stopped.into()),
             Err(reason) => return Err(NoCandidate::Refused(Refusal::NotRepresentable { reason })),
         };
+        let order = formats::stored_order(&soup, encoding);
         drop(soup);
         // What we write may be larger than what we would take in.
         let limits =
@@ -115,13 +129,21 @@ impl Candidate {
         budget.stage(Stage::Certify, || {
             let soup = formats::read(&bytes, encoding, &options, budget).map_err(Failure::from)?;
             let examination = certificate::examine(&soup, &bytes, encoding, &options, depth, budget)?;
-            Ok(Self { bytes, encoding, soup, examination })
+            Ok(Self { bytes, encoding, soup, examination, order })
         })
     }
 
     /// The bytes, read back.
     pub(super) fn soup(&self) -> &Soup {
         &self.soup
+    }
+
+    /// The origins of the triangles of the bytes, of which `origins` are those of the soup that was written.
+    pub(super) fn origins<'o>(&self, origins: &'o [u32]) -> Cow<'o, [u32]> {
+        match &self.order {
+            Some(order) => Cow::Owned(order.iter().map(|&t| origins[t as usize]).collect()),
+            None => Cow::Borrowed(origins),
+        }
     }
 
     pub(super) fn certificate(&self) -> &Certificate {
@@ -188,13 +210,18 @@ impl Candidate {
         outcome: Outcome,
         budget: &Budget,
     ) -> Result<Answer, Stopped> {
+        let origins = &*self.origins(origins);
         let fidelity = match report.fidelity.take() {
             Some(fidelity) => fidelity,
             None => faithful::judge(&input.soup, &self.soup, origins, &mut report, budget)?,
         };
         let after = describe(&self.soup, &self.examination, &input.analyze_options(), budget)?;
         let share = identical_triangle_share(&input.soup, &self.soup, origins, budget)?;
-        let lost = [self.lost_texture(input, origins), self.lost_materials(input, origins)];
+        let lost = [
+            self.lost_texture(input, origins),
+            self.lost_materials(input, origins),
+            left_out(&input.soup.left_out),
+        ];
         let actions = report.actions.into_iter().chain(lost.into_iter().flatten()).collect();
         let report = Report {
             actions,

@@ -115,7 +115,15 @@ impl Writer<'_> {
             result.triangle_origin.iter().map(|&t| self.draft.triangle_origin[t as usize]).collect();
         let volume = report.before.as_ref().and_then(|analysis| analysis.measures.volume);
         let (input, budget) = (&self.input.soup, self.budget);
-        Ok(faithful::judge_alone(input, candidate.soup(), &origins, distance, volume, budget)?.0)
+        Ok(faithful::judge_alone(
+            input,
+            candidate.soup(),
+            &candidate.origins(&origins),
+            distance,
+            volume,
+            budget,
+        )?
+        .0)
     }
 
     fn write(&self, result: &Simplified) -> Result<Candidate, NoCandidate> {
@@ -161,9 +169,10 @@ impl Fewer {
             Solid::of(&draft.positions, &draft.triangles, options.wrap.open_shells, budget)
         })?;
         let original = Original::new(&input.soup, volume, Some(solid));
-        let fidelity = original.measure(candidate.soup(), &origins, budget)?;
+        let fidelity = original.measure(candidate.soup(), &candidate.origins(&origins), budget)?;
         for (level, (candidate, origins)) in levels.iter_mut().skip(1).zip(&others) {
-            let of_level = original.measure(candidate.soup(), &of_input(origins), budget)?;
+            let of_level =
+                original.measure(candidate.soup(), &candidate.origins(&of_input(origins)), budget)?;
             level.fidelity = Some(of_level.verdict(&input.soup));
         }
         let of_draft = report.distance.map_or(0.0, |distance| distance.upper());
@@ -329,6 +338,7 @@ fn face_groups(mesh: &Soup) -> Vec<u32> {
         None => (0, [0; 4]),
         Some(Color::Bytes([r, g, b], a)) => (1, [r, g, b, a.unwrap_or(255)].map(u32::from)),
         Some(Color::Floats([r, g, b], a)) => (2, [r, g, b, a.unwrap_or(1.0)].map(f32::to_bits)),
+        Some(Color::Linear([r, g, b], a)) => (4, [r, g, b, a.unwrap_or(1.0)].map(f32::to_bits)),
         Some(Color::Index(index)) => (3, [index as u32, 0, 0, 0]),
     };
     let mut number = |f: u32| {

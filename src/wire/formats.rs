@@ -49,6 +49,8 @@ impl FormatInfo {
                 &["application/x-ply", "model/ply"],
                 &[Encoding::PlyAscii, Encoding::PlyBinaryLittleEndian, Encoding::PlyBinaryBigEndian],
             ),
+            Format::Glb => (&["model/gltf-binary"], &[Encoding::Glb]),
+            Format::Gltf => (&["model/gltf+json"], &[Encoding::Gltf]),
         };
         Self {
             name: format,
@@ -67,6 +69,8 @@ fn extensions_of(format: Format) -> &'static [&'static str] {
         Format::Stl => &["stl"],
         Format::Off => &["off"],
         Format::Ply => &["ply"],
+        Format::Glb => &["glb"],
+        Format::Gltf => &["gltf"],
     }
 }
 

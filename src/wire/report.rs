@@ -115,7 +115,7 @@ pub struct FurtherInput {
 pub struct UnitsInfo {
     /// The unit.
     pub unit: Units,
-    /// The caller stated it; false: it is assumed.
+    /// The caller or the format stated it; false: it is assumed.
     pub is_stated: bool,
 }
 

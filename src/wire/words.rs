@@ -178,6 +178,10 @@ mirror! { formats::Format =>
         Off = "off",
         /// Polygon file format.
         Ply = "ply",
+        /// glTF 2.0 in one binary file.
+        Glb = "glb",
+        /// glTF 2.0 as JSON that holds its data.
+        Gltf = "gltf",
     }
 }
 
@@ -200,6 +204,10 @@ mirror! { formats::Encoding =>
         PlyBinaryLittleEndian = "ply-binary-little-endian",
         /// Binary big-endian PLY.
         PlyBinaryBigEndian = "ply-binary-big-endian",
+        /// Binary glTF.
+        Glb = "glb",
+        /// glTF JSON.
+        Gltf = "gltf",
     }
 }
 
@@ -605,7 +613,7 @@ mirror! { pipeline::VertexColors =>
     VertexColors {
         /// Those of the file, mixed where vertices were merged.
         Kept = "kept",
-        /// The order in which they would go next, from blue to red: a picture for OFF and PLY.
+        /// The order in which they would go next, from blue to red: a picture for OFF, PLY and glTF.
         Priority = "priority",
     }
 }

@@ -27,6 +27,7 @@ mod fidelity;
 mod fill_holes;
 #[cfg(feature = "server")]
 mod fixtures;
+mod gltf;
 mod modeller;
 mod operations;
 mod plan;

@@ -70,7 +70,9 @@ fn form(parts: &[&str], schema: &str, about: &str, meshes: usize) -> ObjectBuild
         .required("mesh");
     parts.iter().fold(begun, part).property(
         "material",
-        bytes("The MTL file of an OBJ: its diffuse colours become face colours, which OFF and PLY hold."),
+        bytes(
+            "The MTL file of an OBJ: its diffuse colours become face colours, which OFF, PLY and glTF hold.",
+        ),
     )
 }
 

@@ -218,7 +218,7 @@ impl Climb<'_> {
 
     /// True when the encoding holds no more than float32, so that every plan has to round.
     pub(super) fn needs_f32(&self) -> bool {
-        self.encoding == Encoding::StlBinary && !self.input.soup.is_f32_exact
+        self.encoding.is_float32() && !self.input.soup.is_f32_exact
     }
 
     /// True unless it is known that no triangles meet others.
@@ -274,8 +274,9 @@ impl Certified {
         let Climb { input, options, before, budget, .. } = *climb;
         let (draft, volume) = (&attempt.draft, defined_volume(before));
         let covered = attempt.covered();
+        let origins = candidate.origins(&draft.triangle_origin);
         let measure = |original: &Original<'_>| {
-            original.measure_rest(candidate.soup(), &draft.triangle_origin, covered.as_ref(), budget)
+            original.measure_rest(candidate.soup(), &origins, covered.as_ref(), budget)
         };
         // Mostly nothing is gone, and what is hidden does not matter.
         let mut fidelity = measure(&Original::new(&input.soup, volume, None))?;
@@ -284,6 +285,7 @@ impl Certified {
             let solid = budget.stage(Stage::Measure, read)?;
             fidelity = measure(&Original::new(&input.soup, volume, Some(solid)))?;
         }
+        drop(origins);
         Ok(Self { attempt, candidate, fidelity })
     }
 }

@@ -183,7 +183,8 @@ impl Search<'_> {
                 break;
             }
             cells_before = made.account.cells;
-            let fidelity = original.measure(made.candidate.soup(), &made.origins, budget)?;
+            let fidelity =
+                original.measure(made.candidate.soup(), &made.candidate.origins(&made.origins), budget)?;
             let is_better = |best: &Rebuilt| !best.fidelity.is_no_worse(&fidelity, limits);
             if best.as_ref().is_none_or(is_better) {
                 let wrap = action(&made, choices.open_shells, self.before);

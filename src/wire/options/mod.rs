@@ -53,11 +53,11 @@ options! {
     output_format: Format, in Operation::WITH_MESH,
         "Format of the output. Default: that of the input.";
     output_units: Units, in Operation::WITH_MESH,
-        "Unit of the coordinates of the output. Default: mm for STL, which names no unit; that of the input otherwise.";
+        "Unit of the coordinates of the output. Default: mm for STL, which names no unit; m for glTF made of another format; that of the input otherwise.";
     reader: Reader, in Operation::ALL,
         "Reader of OBJ files. Default: own.";
     units: Units, in Operation::ALL,
-        "Unit of the coordinates. Default: mm, reported as assumed.";
+        "Unit of the coordinates. Default: m for glTF, which says so; mm otherwise, reported as assumed.";
     require: Require, in Operation::WITH_MESH,
         "What the result must be. Default: printable for repair, none for the other operations; boolean returns what is printable or nothing.";
     fill_holes: FillHoles, in REPAIR,
@@ -97,7 +97,7 @@ options! {
     placement: Placement, in FEWER,
         "Where the vertex goes that an edge becomes. Default: optimal.";
     vertex_colors: VertexColors, in FEWER,
-        "Colours of the vertices of a simplified mesh; priority needs format or output_format off or ply. Default: kept.";
+        "Colours of the vertices of a simplified mesh; priority needs format or output_format off, ply, glb or gltf. Default: kept.";
     normal_turn_max: f64 = OptionKind::Number { min: 0.0, max: 180.0 }, in FEWER,
         "Largest angle in degrees by which a collapse may turn the normal of a face; 180 lets it turn as it will. Default: 78.46.";
     weld: Weld, in CUT_STITCH,
@@ -201,9 +201,9 @@ impl Options {
             return Err(OptionError::Excluded { spec: table::spec_of(name)?, by });
         }
         let written = self.output_format.or(self.format);
-        let shows_colors = matches!(written, Some(Format::Off | Format::Ply));
+        let shows_colors = matches!(written, Some(Format::Off | Format::Ply | Format::Glb | Format::Gltf));
         if self.vertex_colors == Some(VertexColors::Priority) && !shows_colors {
-            let needs = "a `format` or `output_format` of off or ply";
+            let needs = "a `format` or `output_format` of off, ply, glb or gltf";
             return Err(OptionError::Lacking { spec: table::spec_of("vertex_colors")?, needs });
         }
         Ok(())
