@@ -84,10 +84,10 @@ impl ReadError {
     pub(super) fn foreign(name: &'static str) -> Self {
         let expected = match name {
             "gzip" => {
-                "the mesh itself in STL, OBJ, OFF or PLY; `Content-Encoding: gzip` says that a body is compressed"
+                "the mesh itself in STL, OBJ, OFF, PLY or 3MF; `Content-Encoding: gzip` says that a body is compressed"
             }
-            "text in UTF-16" => "a mesh in STL, OBJ, OFF or PLY, as text in UTF-8",
-            _ => "a mesh in STL, OBJ, OFF or PLY",
+            "text in UTF-16" => "a mesh in STL, OBJ, OFF, PLY or 3MF, as text in UTF-8",
+            _ => "a mesh in STL, OBJ, OFF, PLY or 3MF",
         };
         Self { kind: ReadErrorKind::Foreign { name }, place: Place::Whole, expected: expected.to_owned() }
     }
@@ -125,6 +125,12 @@ pub enum WriteError {
         value: f64,
         /// Name of the encoding.
         encoding: &'static str,
+    },
+    /// The package around the mesh cannot be made.
+    #[error("the package cannot be written: {reason}")]
+    Package {
+        /// Why.
+        reason: String,
     },
     /// The run was stopped.
     #[error("{0}")]

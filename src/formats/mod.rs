@@ -18,6 +18,7 @@ mod ply;
 mod polygons;
 mod sniff;
 mod stl;
+pub mod threemf;
 mod words;
 
 pub use announced::triangles_at_most;
@@ -40,6 +41,8 @@ pub enum Format {
     Off,
     /// Polygon file format, ASCII or binary.
     Ply,
+    /// 3D Manufacturing Format.
+    ThreeMf,
 }
 
 /// A format together with the way its bytes are laid out.
@@ -61,11 +64,13 @@ pub enum Encoding {
     PlyBinaryLittleEndian,
     /// Binary big-endian PLY.
     PlyBinaryBigEndian,
+    /// The package of a 3MF.
+    ThreeMf,
 }
 
 impl Format {
     /// Every format.
-    pub const ALL: [Self; 4] = [Self::Obj, Self::Stl, Self::Off, Self::Ply];
+    pub const ALL: [Self; 5] = [Self::Obj, Self::Stl, Self::Off, Self::Ply, Self::ThreeMf];
 
     /// The format's name in options and its usual file extension.
     pub fn name(self) -> &'static str {
@@ -74,6 +79,7 @@ impl Format {
             Self::Stl => "stl",
             Self::Off => "off",
             Self::Ply => "ply",
+            Self::ThreeMf => "3mf",
         }
     }
 
@@ -89,6 +95,7 @@ impl Format {
             Self::Stl => Encoding::StlBinary,
             Self::Off => Encoding::Off,
             Self::Ply => Encoding::PlyBinaryLittleEndian,
+            Self::ThreeMf => Encoding::ThreeMf,
         }
     }
 }
@@ -101,6 +108,7 @@ impl Encoding {
             Self::StlBinary | Self::StlAscii => Format::Stl,
             Self::Off | Self::OffBinary => Format::Off,
             Self::PlyAscii | Self::PlyBinaryLittleEndian | Self::PlyBinaryBigEndian => Format::Ply,
+            Self::ThreeMf => Format::ThreeMf,
         }
     }
 
@@ -120,6 +128,7 @@ impl Encoding {
             Self::PlyAscii => "ply-ascii",
             Self::PlyBinaryLittleEndian => "ply-binary-little-endian",
             Self::PlyBinaryBigEndian => "ply-binary-big-endian",
+            Self::ThreeMf => "3mf",
         }
     }
 }
@@ -200,6 +209,24 @@ pub fn read(
         Encoding::PlyAscii | Encoding::PlyBinaryLittleEndian | Encoding::PlyBinaryBigEndian => {
             ply::read::read(bytes, options, budget)
         }
+        Encoding::ThreeMf => threemf::read::read(bytes, options, budget),
+    }
+}
+
+/// Reads the parts of a file, each in its own coordinates: the meshes of a 3MF that have to be solids. A file of another
+/// format is one part.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_parts(
+    bytes: &[u8],
+    encoding: Encoding,
+    options: &ReadOptions,
+    budget: &Budget,
+) -> Result<Vec<Soup>, ReadError> {
+    match encoding {
+        Encoding::ThreeMf => threemf::read::read_solids(bytes, options, budget),
+        _ => Ok(vec![read(bytes, encoding, options, budget)?]),
     }
 }
 
@@ -219,6 +246,7 @@ pub fn write(soup: &Soup, encoding: Encoding, budget: &Budget) -> Result<Vec<u8>
         Encoding::PlyAscii | Encoding::PlyBinaryLittleEndian | Encoding::PlyBinaryBigEndian => {
             ply::write::write(soup, encoding, budget)
         }
+        Encoding::ThreeMf => threemf::write::write(soup, budget),
     }
 }
 

@@ -20,7 +20,7 @@ const LOOKED_AT_BYTES: usize = 4096;
 /// Empty or unrecognisable bytes; content that contradicts `named`.
 pub fn sniff(bytes: &[u8], named: Option<Format>) -> Result<Encoding, ReadError> {
     if bytes.iter().all(u8::is_ascii_whitespace) {
-        return Err(ReadError::empty("a mesh in STL, OBJ, OFF or PLY"));
+        return Err(ReadError::empty("a mesh in STL, OBJ, OFF, PLY or 3MF"));
     }
     match (certain(bytes), named) {
         (Some(found), Some(named)) if found.format() != named => {
@@ -41,6 +41,8 @@ fn certain(bytes: &[u8]) -> Option<Encoding> {
     let first = first_word(bytes);
     if announced_length(bytes) == Some(bytes.len() as u64) {
         Some(Encoding::StlBinary)
+    } else if is_package(bytes) {
+        Some(Encoding::ThreeMf)
     } else if first.eq_ignore_ascii_case(b"ply") {
         Some(ply_layout(bytes))
     } else if HeaderWord::parse(first).is_some() {
@@ -52,6 +54,12 @@ fn certain(bytes: &[u8]) -> Option<Encoding> {
     }
 }
 
+/// A zip archive with a part that may be the model of a 3MF. Their names stand in front of each entry and at the end.
+fn is_package(bytes: &[u8]) -> bool {
+    let names_model = |word: &[u8]| memchr::memmem::find(bytes, word).is_some();
+    bytes.starts_with(b"PK\x03\x04") && (names_model(b".model") || names_model(b".MODEL"))
+}
+
 /// The layout of content that has no mark of `format` but shall be in it.
 fn layout_of(bytes: &[u8], format: Format) -> Encoding {
     match format {
@@ -60,6 +68,7 @@ fn layout_of(bytes: &[u8], format: Format) -> Encoding {
         Format::Ply => Encoding::PlyAscii,
         Format::Off => Encoding::Off,
         Format::Obj => Encoding::Obj,
+        Format::ThreeMf => Encoding::ThreeMf,
     }
 }
 
@@ -90,7 +99,7 @@ fn is_damaged_text(bytes: &[u8]) -> bool {
 }
 
 fn unknown(bytes: &[u8]) -> ReadError {
-    let mut expected = "a mesh in STL, OBJ, OFF or PLY, or the format's name".to_owned();
+    let mut expected = "a mesh in STL, OBJ, OFF, PLY or 3MF, or the format's name".to_owned();
     if let Some(length) = announced_length(bytes).filter(|_| !is_text(bytes)) {
         expected += &format!("; as binary STL the file would have {length} bytes instead of {}", bytes.len());
     }
@@ -230,7 +239,7 @@ mod tests {
         assert_eq!(page.kind, ReadErrorKind::Foreign { name: "a web page" });
         assert_eq!(
             page.to_string(),
-            "file: this is a web page, which is not read here; expected a mesh in STL, OBJ, OFF or PLY"
+            "file: this is a web page, which is not read here; expected a mesh in STL, OBJ, OFF, PLY or 3MF"
         );
     }
 

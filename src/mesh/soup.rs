@@ -2,6 +2,7 @@
 
 use super::materials::{Materials, NO_MATERIAL};
 use super::texture::{NO_POINT, Texture};
+use super::units::Units;
 use crate::geom::DVec3;
 
 /// A colour as a file gives it; absent channels are not invented.
@@ -145,6 +146,8 @@ pub struct Soup {
     pub texture: Texture,
     /// Materials of the faces of the file.
     pub materials: Materials,
+    /// Unit of the positions, where the format states one.
+    pub units: Option<Units>,
 }
 
 impl Polygons {

@@ -42,6 +42,7 @@ use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stopped};
 use crate::certificate::{Certificate, Violation};
 use crate::distance::SurfaceDistance;
+pub use crate::mesh::Units;
 use crate::formats::{Encoding, Format, ReadError, ReadOptions, WriteError};
 use crate::printing::Policy;
 use crate::repair::nest;
@@ -118,32 +119,6 @@ impl Require {
     /// True when P0, P1 and P2 must hold.
     pub fn is_of_a_solid(self) -> bool {
         matches!(self, Self::Printable | Self::Faithful)
-    }
-}
-
-/// The length of one unit of the file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Units {
-    /// Millimetre.
-    #[default]
-    Millimetre,
-    /// Centimetre.
-    Centimetre,
-    /// Metre.
-    Metre,
-    /// Inch.
-    Inch,
-}
-
-impl Units {
-    /// Length of the unit in millimetres.
-    pub fn millimetres(self) -> f64 {
-        match self {
-            Self::Millimetre => 1.0,
-            Self::Centimetre => 10.0,
-            Self::Metre => 1000.0,
-            Self::Inch => 25.4,
-        }
     }
 }
 

@@ -201,6 +201,8 @@ mirror! { formats::ObjReader =>
 mirror! { pipeline::Units =>
     /// The length of one unit of the file.
     Units {
+        /// Micrometre.
+        Micrometre = "um",
         /// Millimetre.
         Millimetre = "mm",
         /// Centimetre.
@@ -209,6 +211,8 @@ mirror! { pipeline::Units =>
         Metre = "m",
         /// Inch.
         Inch = "in",
+        /// Foot.
+        Foot = "ft",
     }
 }
 
