@@ -13,6 +13,7 @@ mod output;
 mod plan;
 mod printing;
 mod priority;
+mod project;
 mod rebuild;
 mod remedies;
 mod repair;
@@ -33,17 +34,18 @@ pub use self::modeller::{
 };
 pub use self::plan::Step;
 pub use self::printing::PrintingReport;
+pub use self::project::{AttributeCounts, PartFacts, PartReport};
 pub use self::rebuild::{Effort, WrapChoices};
 pub use self::remedies::{
     ChosenPlan, ChosenRemedy, ELEMENTS_MAX, ElementProposal, Plan, PlanMismatch, Proposal, Remedy,
 };
 pub use self::stitches::{JoinedEdges, Stitches};
 use crate::analysis::{Analysis, DefectCode};
-use crate::budget::{Budget, Stopped};
+use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::{Certificate, Violation};
 use crate::distance::SurfaceDistance;
 pub use crate::mesh::Units;
-use crate::formats::{Encoding, Format, ReadError, ReadOptions, WriteError};
+use crate::formats::{self, Encoding, Format, ReadError, ReadOptions, WriteError};
 use crate::printing::Policy;
 use crate::repair::nest;
 use crate::simplify::{CriterionKind, Mode, Placement, Report as SimplifyReport, Target};
@@ -143,6 +145,18 @@ pub enum Contact {
     Join,
 }
 
+/// What of a file of several parts is one solid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Parts {
+    /// Each part by itself, in its own coordinates and once however often it is there.
+    #[default]
+    Separate,
+    /// All parts at their places, after each was repaired by itself.
+    Union,
+    /// All parts at their places, as they are.
+    Together,
+}
+
 /// Options of every operation; those that do not apply are ignored.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
@@ -150,6 +164,8 @@ pub struct Options {
     pub format: Option<Format>,
     /// Format of the output; the input's own encoding when `None`.
     pub output_format: Option<Format>,
+    /// What of a file of several parts is one solid.
+    pub parts: Parts,
     /// Limits and choice of reader.
     pub read: ReadOptions,
     /// Unit as the caller stated it; `None`: assumed to be millimetres.
@@ -405,6 +421,10 @@ pub struct Report {
     pub refusal: Option<Refusal>,
     /// The result, or else the input, measured for printing; `None`: no policy was given, or nothing can be measured.
     pub printing: Option<PrintingReport>,
+    /// The parts of the file that were handled one by one; empty when all triangles were handled together.
+    pub parts: Vec<PartReport>,
+    /// What of the file is kept and not judged, and which rules of its format it breaks, as sentences.
+    pub remarks: Vec<String>,
     /// Work units used (deterministic).
     pub work_used: u64,
     /// Largest number of bytes charged at one time (deterministic).
@@ -418,6 +438,9 @@ pub struct Output {
     pub bytes: Option<Vec<u8>>,
     /// How they are laid out.
     pub encoding: Encoding,
+    /// For each triangle the triangle of the input behind it, or [`u32::MAX`]; empty where the bytes are those that were
+    /// uploaded, and for a file of several parts.
+    pub origins: Vec<u32>,
 }
 
 /// The result of a run.
@@ -443,6 +466,14 @@ pub enum Failure {
     /// The plan is not for this file.
     #[error("the plan is not for this file")]
     PlanMismatch(PlanMismatch),
+    /// An option does not go with this file.
+    #[error("{reason}")]
+    NotApplicable {
+        /// Name of the option.
+        option: &'static str,
+        /// Why, in a sentence.
+        reason: String,
+    },
     /// A hole was chosen that the file does not have.
     #[error("the file has no hole {number}: it has {holes}, numbered from 0")]
     NoSuchHole {
@@ -478,7 +509,26 @@ pub fn run(
     options: &Options,
     budget: &Budget,
 ) -> Result<Answer, Failure> {
-    let mut input = Input::read(bytes, options, budget)?;
+    let encoding = budget.stage(Stage::Read, || formats::sniff(bytes, options.format))?;
+    let mut answer = if project::is_by_parts(encoding, operation, options) {
+        project::run_by_parts(operation, bytes, options, budget)?
+    } else {
+        run_on(operation, Input::read(bytes, encoding, options, budget)?, options, budget)?
+    };
+    answer.report.work_used = budget.work_used();
+    answer.report.bytes_peak = budget.bytes_peak();
+    Ok(answer)
+}
+
+/// Runs `operation` on a mesh that was read.
+fn run_on(
+    operation: Operation,
+    mut input: Input,
+    options: &Options,
+    budget: &Budget,
+) -> Result<Answer, Failure> {
+    let in_units_of_file = input.take_lengths(options);
+    let options = in_units_of_file.as_ref().unwrap_or(options);
     let in_result_units = input.take_units_of_result(operation, options)?;
     let options = in_result_units.as_ref().unwrap_or(options);
     let mut answer = match operation {
@@ -498,8 +548,6 @@ pub fn run(
     if let Some(policy) = &options.policy {
         answer.report.printing = printing::measure(&input, &answer, policy, budget)?;
     }
-    answer.report.work_used = budget.work_used();
-    answer.report.bytes_peak = budget.bytes_peak();
     Ok(answer)
 }
 

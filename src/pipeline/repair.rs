@@ -429,7 +429,7 @@ pub(super) fn write(
     depth: Depth,
     budget: &Budget,
 ) -> Result<Candidate, NoCandidate> {
-    Candidate::write(draft.to_soup(&input.soup), encoding, depth, budget)
+    Candidate::write(draft.to_soup(&input.soup), input, encoding, depth, budget)
 }
 
 /// The result that is not certified, on request.

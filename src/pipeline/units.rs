@@ -4,8 +4,10 @@
 //! not a rounding of it.
 
 use super::input::Input;
-use super::{CutStitchChoices, Limits, Operation, Options, SimplifyChoices, Units, WrapChoices};
+use super::{CutStitchChoices, FillHolesChoices, Limits, Operation, Options, SimplifyChoices, Units, WrapChoices};
 use crate::formats::{Encoding, Format, Place, ReadError, ReadErrorKind};
+use crate::implicit::RbfOptions;
+use crate::repair::fill::FillOptions;
 use crate::simplify::Target;
 
 /// The unit of what `operation` returns of a file in `units`, laid out as `encoding`.
@@ -21,6 +23,15 @@ fn units_of_result(operation: Operation, options: &Options, units: Units, encodi
 }
 
 impl Input {
+    /// The options with lengths in the unit of the file, where that states one and the caller does not: lengths are
+    /// millimetres then.
+    pub(super) fn take_lengths(&mut self, options: &Options) -> Option<Options> {
+        let units = self.soup.units.filter(|&units| options.units.is_none() && units != Units::Millimetre)?;
+        let factor = Units::Millimetre.millimetres() / units.millimetres();
+        self.scale_near(factor);
+        Some(options.scaled(factor))
+    }
+
     /// Gives the mesh the unit of the result; the options in that unit, if it is another one than the file's.
     ///
     /// # Errors
@@ -71,6 +82,16 @@ impl Options {
             cut_stitch: CutStitchChoices {
                 epsilon: scaled(self.cut_stitch.epsilon),
                 ..self.cut_stitch.clone()
+            },
+            filling: FillHolesChoices {
+                fill: FillOptions {
+                    rbf: RbfOptions {
+                        lambda: scaled(self.filling.fill.rbf.lambda),
+                        ..self.filling.fill.rbf.clone()
+                    },
+                    ..self.filling.fill.clone()
+                },
+                ..self.filling.clone()
             },
             modeller: self.modeller.scaled(factor),
             near: scaled(self.near),

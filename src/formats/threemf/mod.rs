@@ -18,4 +18,4 @@ mod xml;
 
 pub use model::{FaceAttributes, NO_NUMBER, ObjectKind, Property};
 pub use read::{Body, Project, read_project};
-pub use rewrite::{FaceSource, NewBody, rewrite_project};
+pub use rewrite::{FaceSource, NewBody, RewriteError, rewrite_project};

@@ -46,10 +46,9 @@ pub struct Body {
 }
 
 impl Body {
-    /// True when it has to be a solid: the rules of 3MF say so, and it has triangles or nothing else.
+    /// True when it has to be a solid: the rules of 3MF say so, and it has triangles.
     pub fn is_solid(&self) -> bool {
-        let is_lattice = self.soup.face_count == 0 && !self.extras.is_empty();
-        self.kind.is_solid() && !is_lattice
+        self.kind.is_solid() && self.soup.face_count > 0
     }
 }
 

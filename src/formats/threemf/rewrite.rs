@@ -1,6 +1,6 @@
 //! A 3MF with new meshes in the places of some: everything else keeps its bytes.
 
-use super::model::{NO_NUMBER, Property};
+use super::model::{FaceAttributes, NO_NUMBER, Property};
 use super::package::Package;
 use super::read::{Body, Project};
 use super::write::{add_entry, not_packed, triangle, vertices};
@@ -248,12 +248,19 @@ fn write_property(text: &mut Text<'_>, property: Property, source: FaceSource) {
 
 /// True when an attribute is the paint of a part of a triangle, which is stated from its first corner on: the tree of such a
 /// paint begins at the end of the text, and the lower two bits of its first digit say how often it is divided.
-pub(super) fn is_of_corners(key: &str, value: &str) -> bool {
+fn is_of_corners(key: &str, value: &str) -> bool {
     let local = key.rsplit(':').next().unwrap_or(key);
     let is_paint = local.starts_with("paint_")
         || matches!(local, "mmu_segmentation" | "custom_supports" | "custom_seam" | "fuzzy_skin");
     let root = value.chars().last().and_then(|digit| digit.to_digit(16));
     is_paint && root.is_none_or(|digit| digit & 3 != 0)
+}
+
+impl FaceAttributes {
+    /// True when the other attributes of this number hold paint that is stated by corners.
+    pub fn is_divided(&self, number: u32) -> bool {
+        Attributes::of(&self.texts[number as usize]).flatten().any(|(key, value)| is_of_corners(key, value))
+    }
 }
 
 #[cfg(test)]
