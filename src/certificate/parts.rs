@@ -86,7 +86,9 @@ fn whole(
                 witnesses.push(Violation { faces, ..violation.clone() });
             }
         }
-        readings.extend(part.readings.iter().filter(|reading| !readings.contains(reading)).copied().collect::<Vec<_>>());
+        readings.extend(
+            part.readings.iter().filter(|reading| !readings.contains(reading)).copied().collect::<Vec<_>>(),
+        );
         first_face += count;
     }
     let p0 = parts.iter().all(|part| part.p0);

@@ -114,7 +114,10 @@ mod tests {
         let big: Vec<u8> = "OFF\n4 4 0\n0 0 0\n".encode_utf16().flat_map(u16::to_be_bytes).collect();
         let marked = [&b"\xff\xfe"[..], &utf_16].concat();
         for (bytes, name) in [
-            (&b"PK\x03\x04\x14\0\0\0\x08\0________________\x13\0\0\0[Content_Types].xml"[..], "an Office document or another package without a 3MF model"),
+            (
+                &b"PK\x03\x04\x14\0\0\0\x08\0________________\x13\0\0\0[Content_Types].xml"[..],
+                "an Office document or another package without a 3MF model",
+            ),
             (b"PK\x03\x04\x14\0\0\0\x08\0________________\x08\0\0\0part.stl", "a zip archive"),
             (b"glTF\x02\0\0\0", "binary glTF (GLB)"),
             (b"{\n  \"asset\": {\"version\": \"2.0\"}}", "glTF"),

@@ -4,7 +4,9 @@
 //! not a rounding of it.
 
 use super::input::Input;
-use super::{CutStitchChoices, FillHolesChoices, Limits, Operation, Options, SimplifyChoices, Units, WrapChoices};
+use super::{
+    CutStitchChoices, FillHolesChoices, Limits, Operation, Options, SimplifyChoices, Units, WrapChoices,
+};
 use crate::formats::{Encoding, Format, Place, ReadError, ReadErrorKind};
 use crate::implicit::RbfOptions;
 use crate::repair::fill::FillOptions;

@@ -49,6 +49,7 @@ impl FormatInfo {
                 &["application/x-ply", "model/ply"],
                 &[Encoding::PlyAscii, Encoding::PlyBinaryLittleEndian, Encoding::PlyBinaryBigEndian],
             ),
+            Format::ThreeMf => (&["model/3mf", "application/vnd.ms-3mfdocument"], &[Encoding::ThreeMf]),
         };
         Self {
             name: format,
@@ -67,6 +68,7 @@ fn extensions_of(format: Format) -> &'static [&'static str] {
         Format::Stl => &["stl"],
         Format::Off => &["off"],
         Format::Ply => &["ply"],
+        Format::ThreeMf => &["3mf"],
     }
 }
 

@@ -18,6 +18,7 @@ mod mesh_info;
 mod modeller;
 mod option_schema;
 mod options;
+mod part;
 mod plan;
 mod printing;
 mod problem;
@@ -58,6 +59,7 @@ pub use option_schema::{
     camel_case, option_parameters, option_schemas, options_object, options_of, with_input,
 };
 pub use options::{OptionError, OptionKind, OptionSpec, Options, SPECS};
+pub use part::{Attributes, Part};
 pub use plan::{
     ChosenElement, ChosenFinding, ChosenShell, ElementProposal, FillSettings, Plan, PlanRequest, PlanStep,
     Proposal, SingleHole,
@@ -86,6 +88,6 @@ pub use words::{
     Across, ChangeKind, Condition, ConstraintValues, Contact, Criterion, Cut, DefectCode, Degenerate, Effort,
     Encoding, Extract, Fidelity, FillHoles, FillMethod, Format, HoleClass, HoleFate, Kernel, LambdaFrom,
     Mode, Nesting, OpenShells, Operation, Opposite, Outcome, Placement, ProximityTest, Reader, ReasonCode,
-    Rejection, Remedy, Require, Severity, ShellFate, Stage, Stitch, StitchValidity, Units, VertexColors,
-    Weld,
+    Rejection, Remedy, Require, Severity, ShellFate, SolidParts, Stage, Stitch, StitchValidity, Units,
+    VertexColors, Weld,
 };

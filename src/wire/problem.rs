@@ -383,6 +383,10 @@ impl From<&Failure> for Problem {
             Failure::Unreadable(error) => Self::from(error),
             Failure::Stopped(stopped) => Self::from(stopped),
             Failure::PlanMismatch(mismatch) => Self::from(mismatch),
+            Failure::NotApplicable { option, reason } => Self {
+                parameter: Some((*option).to_owned()),
+                ..Self::new(ProblemCode::InvalidParameter, reason.clone())
+            },
             &Failure::NoSuchHole { holes, .. } => Self {
                 parameter: Some("holes".to_owned()),
                 expected: Some(match holes {

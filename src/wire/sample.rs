@@ -126,7 +126,8 @@ pub(crate) fn repaired() -> Answer {
         work_used: 7,
         bytes_peak: 1000,
     };
-    let output = Some(Output { bytes: Some(b"mended".to_vec()), encoding: Encoding::StlBinary, origins: Vec::new() });
+    let output =
+        Some(Output { bytes: Some(b"mended".to_vec()), encoding: Encoding::StlBinary, origins: Vec::new() });
     Answer { report, output, levels: Vec::new() }
 }
 

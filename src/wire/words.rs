@@ -163,6 +163,8 @@ mirror! { formats::Format =>
         Off = "off",
         /// Polygon file format.
         Ply = "ply",
+        /// 3D Manufacturing Format.
+        ThreeMf = "3mf",
     }
 }
 
@@ -185,6 +187,8 @@ mirror! { formats::Encoding =>
         PlyBinaryLittleEndian = "ply-binary-little-endian",
         /// Binary big-endian PLY.
         PlyBinaryBigEndian = "ply-binary-big-endian",
+        /// The package of a 3MF.
+        ThreeMf = "3mf",
     }
 }
 
@@ -220,6 +224,18 @@ impl Units {
     /// Length of the unit in millimetres.
     pub fn millimetres(self) -> f64 {
         pipeline::Units::from(self).millimetres()
+    }
+}
+
+mirror! { pipeline::Parts =>
+    /// What of a file of several parts is one solid.
+    SolidParts {
+        /// Each part by itself, in its own coordinates; the file keeps everything around them.
+        Separate = "separate",
+        /// All parts at their places, after each was repaired by itself; the result is a new file of one mesh.
+        Union = "union",
+        /// All parts at their places, as they are; the result is a new file of one mesh.
+        Together = "together",
     }
 }
 

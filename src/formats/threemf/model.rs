@@ -190,7 +190,12 @@ impl Model {
     }
 
     /// The colour of face `f` of an object: where its corners differ, the mean.
-    pub(super) fn color_of_face(&self, object: &Object, attributes: &FaceAttributes, f: usize) -> Option<[u8; 4]> {
+    pub(super) fn color_of_face(
+        &self,
+        object: &Object,
+        attributes: &FaceAttributes,
+        f: usize,
+    ) -> Option<[u8; 4]> {
         let Property { group, members } = Self::property_of(object, attributes, f);
         let [first, ..] = members;
         let of = |member: u32| self.color(group, if member == NO_NUMBER { first } else { member });

@@ -129,10 +129,16 @@ impl Models {
                 continue;
             }
             if models.all.len() as u64 >= MODEL_PARTS_MAX {
-                return Err(too_large("model parts", "model_parts_max", MODEL_PARTS_MAX, MODEL_PARTS_MAX + 1));
+                return Err(too_large(
+                    "model parts",
+                    "model_parts_max",
+                    MODEL_PARTS_MAX,
+                    MODEL_PARTS_MAX + 1,
+                ));
             }
             let Some(number) = package.find(&part) else {
-                let found = format!("a package without the model part {} that is referred to", shortened(&part));
+                let found =
+                    format!("a package without the model part {} that is referred to", shortened(&part));
                 return Err(ReadError::unparseable(Place::Whole, found, "the part"));
             };
             let (bytes, _charge) = package.inflate(number, budget)?;
@@ -266,7 +272,8 @@ impl Models {
             let Model { part, objects, remarks: more, units: own, .. } = model;
             remarks.extend(more);
             if own != units {
-                remarks.push(format!("The file breaks a rule of 3MF: {part} has another unit than the model."));
+                remarks
+                    .push(format!("The file breaks a rule of 3MF: {part} has another unit than the model."));
             }
             for (o, object) in objects.into_iter().enumerate() {
                 let Object { id, kind, name, content, .. } = object;

@@ -131,7 +131,12 @@ impl<'x> ModelReader<'x> {
         Ok(())
     }
 
-    fn take_extension(&mut self, root: &Element<'x>, prefix: &str, is_required: bool) -> Result<(), ReadError> {
+    fn take_extension(
+        &mut self,
+        root: &Element<'x>,
+        prefix: &str,
+        is_required: bool,
+    ) -> Result<(), ReadError> {
         match self.scanner.namespace(prefix) {
             Some(Namespace::Other | Namespace::None) if is_required => {
                 let declared = format!("xmlns:{prefix}");
@@ -219,11 +224,14 @@ impl<'x> ModelReader<'x> {
             return Err(self.error(element.at, &found, "a whole number from 1"));
         };
         let model = &self.model;
-        let is_known = model.numbers.contains_key(&id)
-            || model.groups.contains_key(&id)
-            || self.other_ids.contains(&id);
+        let is_known =
+            model.numbers.contains_key(&id) || model.groups.contains_key(&id) || self.other_ids.contains(&id);
         if is_known {
-            return Err(self.error(element.at, &format!("a second resource with the id {id}"), "ids used once"));
+            return Err(self.error(
+                element.at,
+                &format!("a second resource with the id {id}"),
+                "ids used once",
+            ));
         }
         Ok(Some(id))
     }
@@ -237,9 +245,7 @@ impl<'x> ModelReader<'x> {
                 read_properties::colors(self, element, "color", "color").map(Some)
             }
             (Namespace::Material, "texture2dgroup") => read_properties::places(self, element).map(Some),
-            (Namespace::Material, "compositematerials") => {
-                read_properties::mixtures(self, element).map(Some)
-            }
+            (Namespace::Material, "compositematerials") => read_properties::mixtures(self, element).map(Some),
             (Namespace::Material, "multiproperties") => read_properties::layers(self, element).map(Some),
             (Namespace::Material, "texture2d") => {
                 read_properties::check_texture(self, element)?;
@@ -387,7 +393,8 @@ impl<'x> ModelReader<'x> {
             break;
         }
         if is_default_missing {
-            let text = format!("triangles of the object {} have properties and the object has no pid", object.id);
+            let text =
+                format!("triangles of the object {} have properties and the object has no pid", object.id);
             self.remark(at, &text);
         }
     }
@@ -413,7 +420,9 @@ impl<'x> ModelReader<'x> {
         }
         let text = self.scanner.document.text.as_bytes();
         let line = memchr::memchr_iter(b'\n', text.get(..at).unwrap_or(text)).count() + 1;
-        self.model.remarks.push(format!("The file breaks a rule of 3MF: {what} ({}, line {line}).", self.model.part));
+        self.model
+            .remarks
+            .push(format!("The file breaks a rule of 3MF: {what} ({}, line {line}).", self.model.part));
     }
 
     pub(super) fn error(&self, at: usize, found: &str, expected: impl Into<String>) -> ReadError {

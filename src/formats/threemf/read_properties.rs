@@ -19,7 +19,8 @@ pub(super) fn colors<'x>(
         let text = value(&attributes, key);
         let color = text.and_then(color);
         if color.is_none() && (text.is_some() || member == "color") {
-            let found = text.map_or("no colour".to_owned(), |text| format!("the colour {:?}", shortened(text)));
+            let found =
+                text.map_or("no colour".to_owned(), |text| format!("the colour {:?}", shortened(text)));
             reader.remark(element.at, &format!("<{}> has {found}", element.name));
         }
         colors.push(color);
@@ -43,7 +44,10 @@ pub(super) fn places<'x>(reader: &mut ModelReader<'x>, group: &Element<'x>) -> R
 }
 
 /// That a texture names a picture that may be one; whether it is there, the package knows.
-pub(super) fn check_texture<'x>(reader: &mut ModelReader<'x>, texture: &Element<'x>) -> Result<(), ReadError> {
+pub(super) fn check_texture<'x>(
+    reader: &mut ModelReader<'x>,
+    texture: &Element<'x>,
+) -> Result<(), ReadError> {
     let attributes = reader.scanner.attributes(texture)?;
     match value(&attributes, "path") {
         None => reader.remark(texture.at, "a texture names no picture"),

@@ -34,18 +34,23 @@ pub(super) fn read_start(package: &mut Package<'_>, budget: &Budget) -> Result<S
     let mut remarks = Vec::new();
     let Some(number) = package.find(PACKAGE_RELATIONSHIPS) else {
         let part = only_model(package)?;
-        remarks.push("The file breaks a rule of 3MF: the package has no relationships (_rels/.rels).".to_owned());
+        remarks.push(
+            "The file breaks a rule of 3MF: the package has no relationships (_rels/.rels).".to_owned(),
+        );
         return Ok(Start { part, remarks });
     };
     let (bytes, _charge) = package.inflate(number, budget)?;
     let document = Document::of(PACKAGE_RELATIONSHIPS, &bytes)?;
     let all = relationships(&document, budget)?;
     let whole = |found: String, expected: &str| ReadError::unparseable(Place::Whole, found, expected);
-    let is_of = |relationship: &&Relationship, end: &str| relationship.kind.to_ascii_lowercase().ends_with(end);
+    let is_of =
+        |relationship: &&Relationship, end: &str| relationship.kind.to_ascii_lowercase().ends_with(end);
     for relationship in &all {
         let kind = relationship.kind.to_ascii_lowercase();
         if kind.contains("/digital-signature/") {
-            return Err(ReadError::foreign("a signed 3MF, which no longer is what was signed once it is changed"));
+            return Err(ReadError::foreign(
+                "a signed 3MF, which no longer is what was signed once it is changed",
+            ));
         }
         if kind.ends_with("/keystore") || kind.contains("securecontent") {
             return Err(ReadError::foreign("an encrypted 3MF"));
@@ -56,7 +61,9 @@ pub(super) fn read_start(package: &mut Package<'_>, budget: &Budget) -> Result<S
         [model] => model,
         [] => {
             let part = only_model(package)?;
-            remarks.push("The file breaks a rule of 3MF: no relationship of the package names the model.".to_owned());
+            remarks.push(
+                "The file breaks a rule of 3MF: no relationship of the package names the model.".to_owned(),
+            );
             return Ok(Start { part, remarks });
         }
         _ => return Err(whole(format!("{} models in the package", models.len()), "one")),
@@ -80,7 +87,9 @@ pub(super) fn read_start(package: &mut Package<'_>, budget: &Budget) -> Result<S
             remarks.push(text);
         }
     }
-    let beside = part.rsplit_once('/').map_or_else(String::new, |(folder, name)| format!("{folder}/_rels/{name}.rels"));
+    let beside = part
+        .rsplit_once('/')
+        .map_or_else(String::new, |(folder, name)| format!("{folder}/_rels/{name}.rels"));
     let of_model = match package.find(&beside) {
         Some(number) => {
             let (bytes, _charge) = package.inflate(number, budget)?;

@@ -97,4 +97,3 @@ fn drop_what_became_infinite(scene: &mut Soup) {
     let mut marks = kept.iter();
     scene.triangle_face.retain(|_| marks.next() == Some(&true));
 }
-

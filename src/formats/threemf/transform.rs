@@ -6,14 +6,14 @@ use crate::geom::{DMat3, DVec3};
 
 /// A point `p` goes to `linear * p + shift`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Transform {
+pub(super) struct Transform {
     pub(super) linear: DMat3,
     pub(super) shift: DVec3,
 }
 
 impl Transform {
     /// Everything stays where it is.
-    pub const IDENTITY: Self = Self { linear: DMat3::IDENTITY, shift: DVec3::ZERO };
+    pub(super) const IDENTITY: Self = Self { linear: DMat3::IDENTITY, shift: DVec3::ZERO };
 
     /// The transform that the twelve numbers of `text` spell: the images of the axes, then the shift. `None`: they are not
     /// twelve finite numbers, or the images lie in one plane, so that every solid would become flat.
@@ -68,7 +68,13 @@ mod tests {
 
     #[test]
     fn what_is_no_transform_is_refused() {
-        for text in ["", "1 0 0 0 1 0 0 0 1 0 0", "1 0 0 0 1 0 0 0 1 0 0 0 0", "1 0 0 2 0 0 0 0 1 0 0 0", "nan 0 0 0 1 0 0 0 1 0 0 0"] {
+        for text in [
+            "",
+            "1 0 0 0 1 0 0 0 1 0 0",
+            "1 0 0 0 1 0 0 0 1 0 0 0 0",
+            "1 0 0 2 0 0 0 0 1 0 0 0",
+            "nan 0 0 0 1 0 0 0 1 0 0 0",
+        ] {
             assert_eq!(Transform::parse(text), None, "{text}");
         }
         assert!(Transform::parse("-1 0 0 0 1 0 0 0 1 0 0 0").unwrap().is_mirror());

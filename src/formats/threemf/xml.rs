@@ -160,7 +160,8 @@ impl<'x> Scanner<'x> {
                     }
                 }
                 Event::Eof if self.depth > 0 => {
-                    let expected = format!("the end tags of {} elements in {}", self.depth, self.document.part);
+                    let expected =
+                        format!("the end tags of {} elements in {}", self.depth, self.document.part);
                     return Err(ReadError::truncated(Place::Byte(from as u64), expected));
                 }
                 Event::Eof => return Ok(Node::End),

@@ -127,7 +127,8 @@ fn mean(
     of: impl Fn(&Report) -> Option<f64>,
 ) -> Option<f64> {
     let known = reports.iter().filter_map(|report| Some((size(report), of(report)?)));
-    let (sizes, sum) = known.fold((0.0, 0.0), |(sizes, sum), (size, value)| (sizes + size, sum + size * value));
+    let (sizes, sum) =
+        known.fold((0.0, 0.0), |(sizes, sum), (size, value)| (sizes + size, sum + size * value));
     let is_known = reports.iter().any(|report| of(report).is_some());
     is_known.then_some(if sizes > 0.0 { sum / sizes } else { 1.0 })
 }
@@ -254,10 +255,8 @@ fn levels(reports: &[&Report]) -> Vec<Level> {
             simplified.refusals.add_all(&more.refusals);
             simplified.error_max = simplified.error_max.max(more.error_max);
         }
-        let farthest = of_parts
-            .iter()
-            .filter_map(|level| level.distance)
-            .max_by(|a, b| a.upper().total_cmp(&b.upper()));
+        let farthest =
+            of_parts.iter().filter_map(|level| level.distance).max_by(|a, b| a.upper().total_cmp(&b.upper()));
         Some(Level { simplified, distance: farthest, ..(*first).clone() })
     };
     (0..count).filter_map(level).collect()

@@ -101,7 +101,8 @@ fn both(a: Option<bool>, b: Option<bool>) -> Option<bool> {
 
 fn shifted(witness: &Witness, [faces, vertices]: [u64; 2]) -> Witness {
     let shift = |elements: &[Element], by: u64| {
-        let shifted = |element: &Element| Element { index: element.index.saturating_add(by as u32), ..*element };
+        let shifted =
+            |element: &Element| Element { index: element.index.saturating_add(by as u32), ..*element };
         elements.iter().map(shifted).collect()
     };
     Witness {

@@ -115,7 +115,8 @@ impl Run<'_> {
         let (options, count) = (self.options, self.solids().len());
         let makes_mesh = !matches!(self.operation, Operation::Analyze | Operation::Plan | Operation::Verify);
         if makes_mesh && options.output_units.is_some_and(|units| units != self.project.units) {
-            let reason = "a 3MF that keeps its parts keeps its unit; `parts=together` makes a new file of one mesh";
+            let reason =
+                "a 3MF that keeps its parts keeps its unit; `parts=together` makes a new file of one mesh";
             return Err(Failure::NotApplicable { option: "output_units", reason: reason.to_owned() });
         }
         if count < 2 {
@@ -129,8 +130,9 @@ impl Run<'_> {
         ];
         match named.into_iter().find(|&(_, is_given)| is_given) {
             Some((option, _)) => {
-                let reason =
-                    format!("the file has {count} parts and this is about one; `parts=together` takes all as one mesh");
+                let reason = format!(
+                    "the file has {count} parts and this is about one; `parts=together` takes all as one mesh"
+                );
                 Err(Failure::NotApplicable { option, reason })
             }
             None => Ok(()),
@@ -190,7 +192,9 @@ impl Run<'_> {
             if let Some(refused) = refused {
                 let refusal = done[refused].answer.report.refusal.clone();
                 report = Report { outcome: Some(Outcome::Refused), refusal, ..report };
-            } else if done.is_empty() && !matches!(self.operation, Operation::Analyze | Operation::Plan | Operation::Verify) {
+            } else if done.is_empty()
+                && !matches!(self.operation, Operation::Analyze | Operation::Plan | Operation::Verify)
+            {
                 return Ok(self.without_parts(report));
             }
             return Ok(report.into_answer());
@@ -256,8 +260,7 @@ impl Run<'_> {
             .iter()
             .map(|remade| NewBody { body: remade.body, soup: &remade.soup, sources: &remade.sources })
             .collect();
-        let bytes =
-            budget.stage(Stage::Write, || rewrite_project(self.bytes, self.project, &new, budget))?;
+        let bytes = budget.stage(Stage::Write, || rewrite_project(self.bytes, self.project, &new, budget))?;
         let certificate = self.certify(&bytes)?;
         let output = Output { bytes: Some(bytes), encoding: Encoding::ThreeMf, origins: Vec::new() };
         Ok((output, certificate))
@@ -292,10 +295,9 @@ impl Run<'_> {
         let input = answer.report.input;
         let input_certificate = answer.report.input_certificate;
         // What was uploaded is several parts: it is another file even where nothing had to be done.
-        let output = united.output.map(|output| Output {
-            bytes: Some(output.bytes.unwrap_or_else(|| bytes.to_vec())),
-            ..output
-        });
+        let output = united
+            .output
+            .map(|output| Output { bytes: Some(output.bytes.unwrap_or_else(|| bytes.to_vec())), ..output });
         let report = Report { parts, remarks, input, input_certificate, ..united.report };
         Ok(Answer { report, output, levels: united.levels })
     }
@@ -313,9 +315,10 @@ impl From<RewriteError> for Failure {
         match error {
             RewriteError::Unreadable(error) => error.into(),
             RewriteError::Unwritable(WriteError::Stopped(stopped)) => Self::Stopped(stopped),
-            RewriteError::Unwritable(error) => {
-                Self::NotApplicable { option: "parts", reason: format!("the file cannot be written: {error}") }
-            }
+            RewriteError::Unwritable(error) => Self::NotApplicable {
+                option: "parts",
+                reason: format!("the file cannot be written: {error}"),
+            },
         }
     }
 }

@@ -20,7 +20,7 @@ use super::request::InputRef;
 use super::target::TargetSpec;
 use super::words::{
     ConstraintValues, Contact, Criterion, Cut, Degenerate, Effort, Extract, FillHoles, FillMethod, Format,
-    Kernel, LambdaFrom, Mode, Nesting, OpenShells, Operation, Placement, Reader, Require, Stitch,
+    Kernel, LambdaFrom, Mode, Nesting, OpenShells, Operation, Placement, Reader, Require, SolidParts, Stitch,
     StitchValidity, Units, VertexColors, Weld,
 };
 use crate::formats::{ReadLimits, ReadOptions};
@@ -54,7 +54,9 @@ options! {
     reader: Reader, in Operation::ALL,
         "Reader of OBJ files. Default: own.";
     units: Units, in Operation::ALL,
-        "Unit of the coordinates. Default: mm, reported as assumed.";
+        "Unit of the coordinates, where the format states none. Default: mm, reported as assumed.";
+    parts: SolidParts, in Operation::ALL,
+        "What of a 3MF of several parts is one solid; a result in a format that holds one mesh takes all parts together. Default: separate.";
     require: Require, in Operation::WITH_MESH,
         "What the result must be. Default: printable for repair, none for the other operations.";
     fill_holes: FillHoles, in REPAIR,
@@ -269,6 +271,7 @@ impl Options {
         pipeline::Options {
             format: self.format.map(Into::into),
             output_format: self.output_format.map(Into::into),
+            parts: self.parts.map(Into::into).unwrap_or_default(),
             read: ReadOptions {
                 limits,
                 obj_reader: self.reader.map(Into::into).unwrap_or_default(),
