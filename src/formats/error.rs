@@ -86,6 +86,16 @@ impl ReadError {
             "gzip" => {
                 "the mesh itself in STL, OBJ, OFF, PLY or 3MF; `Content-Encoding: gzip` says that a body is compressed"
             }
+            "STEP" | "OpenCASCADE BREP" => {
+                "a mesh in STL, OBJ, OFF, PLY or 3MF: export one from the CAD program, which divides curved surfaces as finely as it is told"
+            }
+            "AMF" | "compressed AMF" => {
+                "a mesh in STL, OBJ, OFF, PLY or 3MF: slicers save an AMF as 3MF, with its parts and colours"
+            }
+            "VRML" | "X3D" => "a mesh in STL, OBJ, OFF, PLY or 3MF: PLY keeps the colours of vertices",
+            "COLLADA" => {
+                "a mesh in STL, OBJ, OFF, PLY or 3MF: modelling programs export the scene as OBJ with its materials"
+            }
             "text in UTF-16" => "a mesh in STL, OBJ, OFF, PLY or 3MF, as text in UTF-8",
             _ => "a mesh in STL, OBJ, OFF, PLY or 3MF",
         };

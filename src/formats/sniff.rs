@@ -244,6 +244,21 @@ mod tests {
     }
 
     #[test]
+    fn formats_that_are_not_read_are_named_with_a_hint() {
+        let cases: [(&[u8], &str, &str); 4] = [
+            (b"ISO-10303-21;\nHEADER;", "STEP", "CAD program"),
+            (b"<?xml version=\"1.0\"?><amf unit=\"millimeter\">", "AMF", "save an AMF as 3MF"),
+            (b"#VRML V2.0 utf8\n", "VRML", "PLY keeps"),
+            (b"<?xml version=\"1.0\"?><COLLADA>", "COLLADA", "export the scene as OBJ"),
+        ];
+        for (bytes, name, hint) in cases {
+            let error = sniff(bytes, None).unwrap_err();
+            assert_eq!(error.kind, ReadErrorKind::Foreign { name });
+            assert!(error.expected.contains(hint), "{error}");
+        }
+    }
+
+    #[test]
     fn content_that_certainly_is_another_format_contradicts_the_name() {
         let error = sniff(b"ply\nformat ascii 1.0\n", Some(Format::Stl)).unwrap_err().to_string();
         assert_eq!(error, "file: found ply-ascii content; expected stl as the request says");

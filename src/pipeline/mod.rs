@@ -515,6 +515,9 @@ pub fn run(
     } else {
         run_on(operation, Input::read(bytes, encoding, options, budget)?, options, budget)?
     };
+    if encoding == Encoding::ThreeMf && answer.report.remarks.is_empty() && answer.report.parts.is_empty() {
+        answer.report.remarks = project::remarks_on_scene(bytes, &answer, options, budget)?;
+    }
     answer.report.work_used = budget.work_used();
     answer.report.bytes_peak = budget.bytes_peak();
     Ok(answer)

@@ -18,6 +18,9 @@ pub struct Part {
     pub object: u32,
     /// Its name; empty when it has none.
     pub name: String,
+    /// Its number among the volumes of the object; null: the object is one part.
+    #[schema(required)]
+    pub volume: Option<u32>,
     /// How often the file has it at a place.
     pub instances: u32,
     /// Number of its first face, where faces are numbered through all parts.
@@ -62,6 +65,7 @@ impl From<&pipeline::PartReport> for Part {
             path: facts.path.clone(),
             object: facts.object,
             name: facts.name.clone(),
+            volume: facts.volume,
             instances: facts.instances,
             first_face: facts.first_face,
             triangles_before: report.input_certificate.triangles,

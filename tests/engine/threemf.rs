@@ -49,8 +49,18 @@ fn model(attributes: &str, resources: &str, build: &str) -> String {
 fn cuboid(low: [f64; 3], high: [f64; 3]) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
     let corner = |i: usize| [0, 1, 2].map(|k| if i >> k & 1 == 1 { high[k] } else { low[k] });
     let triangles = vec![
-        [0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4],
-        [2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6], [1, 3, 5], [3, 7, 5],
+        [0, 2, 1],
+        [1, 2, 3],
+        [4, 5, 6],
+        [5, 7, 6],
+        [0, 1, 4],
+        [1, 5, 4],
+        [2, 6, 3],
+        [3, 6, 7],
+        [0, 4, 2],
+        [2, 4, 6],
+        [1, 3, 5],
+        [3, 7, 5],
     ];
     ((0..8).map(corner).collect(), triangles)
 }
@@ -120,12 +130,15 @@ fn a_valid_file_comes_back_byte_for_byte() {
 fn packages_that_break_other_readers_are_read() {
     let model = simple();
     let marked = format!("\u{feff}{model}");
-    let absolute = package(&[("/_rels/.rels", RELATIONSHIPS.as_bytes()), ("/3D/3dmodel.model", model.as_bytes())]);
-    let slashes = package(&[("_rels\\.rels", RELATIONSHIPS.as_bytes()), ("3D\\3dmodel.model", model.as_bytes())]);
+    let absolute =
+        package(&[("/_rels/.rels", RELATIONSHIPS.as_bytes()), ("/3D/3dmodel.model", model.as_bytes())]);
+    let slashes =
+        package(&[("_rels\\.rels", RELATIONSHIPS.as_bytes()), ("3D\\3dmodel.model", model.as_bytes())]);
     let loose = package(&[("3D/3dmodel.model", model.as_bytes())]);
     let entries: [(&str, &[u8]); 2] =
         [("_rels/.rels", RELATIONSHIPS.as_bytes()), ("3D/3dmodel.model", model.as_bytes())];
-    let stored = package_with(&entries, SimpleFileOptions::default().compression_method(CompressionMethod::Stored));
+    let stored =
+        package_with(&entries, SimpleFileOptions::default().compression_method(CompressionMethod::Stored));
     let large = package_with(&entries, SimpleFileOptions::default().large_file(true));
     let mut streamed = ZipWriter::new_stream(Vec::new());
     for (name, content) in entries {
@@ -199,7 +212,8 @@ fn a_bomb_is_refused_before_it_is_memory() {
     let size = ((1_u64 << 30) + simple().len() as u64) as u32;
     let lie = 100_000_u32;
     let mut bytes = bytes;
-    let places: Vec<usize> = (0..bytes.len() - 4).filter(|&i| bytes[i..i + 4] == size.to_le_bytes()).collect();
+    let places: Vec<usize> =
+        (0..bytes.len() - 4).filter(|&i| bytes[i..i + 4] == size.to_le_bytes()).collect();
     assert_eq!(places.len(), 2, "in the entry and in the directory");
     for i in places {
         bytes[i..i + 4].copy_from_slice(&lie.to_le_bytes());
@@ -216,10 +230,16 @@ fn what_is_no_model_is_refused_with_its_place() {
         (simple().replace("unit=\"millimeter\"", "unit=\"parsec\""), "parsec"),
         (simple().replace("</build>", "</built>"), "no XML"),
         (simple().replace("objectid=\"1\"", "objectid=\"7\""), "the object 7"),
-        (simple().replace("<model", "<model requiredextensions=\"v\" xmlns:v=\"urn:volumes\""), "urn:volumes"),
+        (
+            simple().replace("<model", "<model requiredextensions=\"v\" xmlns:v=\"urn:volumes\""),
+            "urn:volumes",
+        ),
         (simple().replace("v1=\"0\"", "v1=\"x\""), "triangle"),
         (simple().replace("x=\"10\"", "x=\"ten\""), "vertex"),
-        (simple().replace("objectid=\"1\"/>", "objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 0 0 0 0\"/>"), "transform"),
+        (
+            simple().replace("objectid=\"1\"/>", "objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 0 0 0 0\"/>"),
+            "transform",
+        ),
     ];
     for (model, what) in cases {
         let error = error_of(&file(&model));
@@ -241,7 +261,13 @@ fn components_may_not_go_in_a_circle_and_may_be_many() {
 
     let mut many = format!("{cube}<object id=\"2\"><components>");
     for i in 0..10_000 {
-        write!(many, "<component objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 {} {} 0\"/>", 2 * (i % 100), 2 * (i / 100)).unwrap();
+        write!(
+            many,
+            "<component objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 {} {} 0\"/>",
+            2 * (i % 100),
+            2 * (i / 100)
+        )
+        .unwrap();
     }
     many += "</components></object>";
     let bytes = file(&model("", &many, "<item objectid=\"2\"/>"));
@@ -318,15 +344,23 @@ fn colours_go_from_a_project_to_other_formats_and_back() {
     let expected = [[0, 255, 0], [0, 0, 255], [128, 0, 128], [0, 255, 0], [85, 0, 170], [255, 0, 0]];
     let colors_of = |bytes: &[u8], encoding| {
         let soup = read(bytes, encoding, &ReadOptions::default(), &Budget::unlimited()).unwrap();
-        soup.face_colors.iter().map(|color| match color {
-            Some(Color::Bytes(rgb, _)) => *rgb,
-            other => panic!("{other:?}"),
-        }).collect::<Vec<_>>()
+        soup.face_colors
+            .iter()
+            .map(|color| match color {
+                Some(Color::Bytes(rgb, _)) => *rgb,
+                other => panic!("{other:?}"),
+            })
+            .collect::<Vec<_>>()
     };
     assert_eq!(colors_of(&bytes, Encoding::ThreeMf)[..6], expected);
     let to = |format| Options { output_format: Some(format), ..Options::default() };
     let off = run(Operation::Convert, &bytes, &to(Format::Off));
     assert_eq!(colors_of(result(&off), Encoding::Off)[..6], expected);
+    assert!(
+        off.report.remarks.last().unwrap().contains("textures and materials that 5 triangles state"),
+        "{:?}",
+        off.report.remarks
+    );
     let back = run(Operation::Convert, result(&off), &to(Format::ThreeMf));
     assert_eq!(colors_of(result(&back), Encoding::ThreeMf)[..6], expected);
     assert!(back.report.certificate.unwrap().is_printable());
@@ -352,14 +386,19 @@ fn painted(is_broken: bool) -> Vec<u8> {
         format!("<object id=\"{id}\" type=\"model\" name=\"{name}\" pid=\"1\" pindex=\"0\">{mesh}</object>\n")
     };
     let materials = "<basematerials id=\"1\"><base name=\"PLA\" displaycolor=\"#808080\"/></basematerials>";
-    let own = model("", &[materials, &object(2, "valid", &mesh(&points, &cuboid([0.0; 3], [10.0; 3]).1, paint))].concat(), "");
+    let own = model(
+        "",
+        &[materials, &object(2, "valid", &mesh(&points, &cuboid([0.0; 3], [10.0; 3]).1, paint))].concat(),
+        "",
+    );
     let root = [
         materials.to_owned(),
         object(2, "open", &mesh(&points, &open, paint)),
         object(3, "crossed", &mesh(&crossed_points, &crossed, paint)),
         object(4, "turned", &mesh(&points, &turned, divided)),
         "<object id=\"5\" name=\"assembly\"><components><component objectid=\"2\"/>\
-         <component objectid=\"3\" transform=\"1 0 0 0 1 0 0 0 1 40 0 0\"/></components></object>\n".to_owned(),
+         <component objectid=\"3\" transform=\"1 0 0 0 1 0 0 0 1 40 0 0\"/></components></object>\n"
+            .to_owned(),
     ]
     .concat();
     let build = "<item objectid=\"5\"/><item objectid=\"4\" transform=\"1 0 0 0 1 0 0 0 1 0 40 0\"/>\
@@ -382,7 +421,9 @@ fn marks(bytes: &[u8], name: &str) -> Vec<([[f64; 3]; 3], String)> {
         let number = body.attributes.others.get(t).copied().unwrap_or(u32::MAX);
         body.attributes.texts.get(number as usize).cloned().unwrap_or_default()
     };
-    (0..body.soup.triangles.len()).map(|t| (body.soup.corners(t as u32).map(|p| p.to_array()), text(t))).collect()
+    (0..body.soup.triangles.len())
+        .map(|t| (body.soup.corners(t as u32).map(|p| p.to_array()), text(t)))
+        .collect()
 }
 
 /// The same triangle from its smallest corner on, whichever way around it goes.
@@ -409,7 +450,13 @@ fn a_painted_project_is_mended_part_by_part_and_keeps_its_paint() {
     let outcomes: Vec<_> = answer.report.parts.iter().map(|part| part.report.outcome.unwrap()).collect();
     assert_eq!(outcomes, [Outcome::Repaired, Outcome::Repaired, Outcome::Repaired, Outcome::Identical]);
 
-    for name in ["[Content_Types].xml", "_rels/.rels", "3D/Objects/valid.model", "Metadata/plate_1.png", "Metadata/model_settings.config"] {
+    for name in [
+        "[Content_Types].xml",
+        "_rels/.rels",
+        "3D/Objects/valid.model",
+        "Metadata/plate_1.png",
+        "Metadata/model_settings.config",
+    ] {
         assert_eq!(part(new, name), part(&bytes, name), "{name}");
     }
     let (old_project, new_project) = (project(&bytes), project(new));
@@ -448,6 +495,42 @@ fn a_painted_project_is_mended_part_by_part_and_keeps_its_paint() {
 }
 
 #[test]
+fn volumes_that_a_slicer_notes_are_parts_and_their_ranges_are_kept_up() {
+    let (mut points, mut triangles) = cuboid([0.0; 3], [10.0; 3]);
+    triangles.pop();
+    // The second volume overlaps the first, as the parts of an assembly may.
+    let (more, second) = cuboid([5.0; 3], [15.0; 3]);
+    points.extend(more);
+    triangles.extend(second.iter().map(|t| t.map(|v| v + 8)));
+    let paint = |t: usize| format!(" slic3rpe:mmu_segmentation=\"{}\"", if t < 11 { "4" } else { "8" });
+    let object = format!("<object id=\"1\" type=\"model\">{}</object>", mesh(&points, &triangles, paint));
+    let config = "<?xml version=\"1.0\"?>\n<config>\n <object id=\"1\">\n  <volume firstid=\"0\" lastid=\"10\">\n\
+        <metadata type=\"volume\" key=\"name\" value=\"first\"/>\n  </volume>\n  <volume firstid=\"11\" lastid=\"22\">\n\
+        <metadata type=\"volume\" key=\"name\" value=\"second\"/>\n  </volume>\n </object>\n</config>\n";
+    let bytes = package(&[
+        ("_rels/.rels", RELATIONSHIPS.as_bytes()),
+        ("3D/3dmodel.model", model("", &object, "<item objectid=\"1\"/>").as_bytes()),
+        ("Metadata/Slic3r_PE_model.config", config.as_bytes()),
+    ]);
+    let names: Vec<String> = project(&bytes).bodies.into_iter().map(|body| body.name).collect();
+    assert_eq!(names, ["first", "second"]);
+    let answer = run(Operation::Repair, &bytes, &Options::default());
+    let new = result(&answer);
+    assert!(answer.report.certificate.clone().unwrap().is_printable());
+    let outcomes: Vec<_> = answer.report.parts.iter().map(|part| part.report.outcome.unwrap()).collect();
+    assert_eq!(outcomes, [Outcome::Repaired, Outcome::Identical]);
+    let written = String::from_utf8(part(new, "Metadata/Slic3r_PE_model.config")).unwrap();
+    assert_eq!(
+        written,
+        config.replace("\"10\"", "\"11\"").replace("\"11\" lastid=\"22\"", "\"12\" lastid=\"23\"")
+    );
+    let again = project(new);
+    assert_eq!(again.bodies[1].soup.triangles.len(), 12);
+    assert!(marks(new, "second").iter().all(|(_, text)| text == "slic3rpe:mmu_segmentation=\"8\""));
+    assert!(marks(new, "first").iter().all(|(_, text)| text == "slic3rpe:mmu_segmentation=\"4\""));
+}
+
+#[test]
 fn the_same_file_gives_the_same_bytes_with_one_thread_and_with_many() {
     let bytes = painted(true);
     let of = |threads| {
@@ -482,7 +565,10 @@ fn parts_become_one_solid_only_when_that_is_asked() {
 fn a_part_that_cannot_be_mended_is_named_and_nothing_is_dropped() {
     let flat = "<mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/><vertex x=\"2\" y=\"0\" z=\"0\"/>\
                 </vertices><triangles><triangle v1=\"0\" v2=\"1\" v3=\"2\"/></triangles></mesh>";
-    let objects = format!("<object id=\"1\">{}</object><object id=\"2\" name=\"flat\">{flat}</object>", plain_cuboid(1.0));
+    let objects = format!(
+        "<object id=\"1\">{}</object><object id=\"2\" name=\"flat\">{flat}</object>",
+        plain_cuboid(1.0)
+    );
     let bytes = file(&model("", &objects, "<item objectid=\"1\"/><item objectid=\"2\"/>"));
     let answer = run(Operation::Repair, &bytes, &Options::default());
     assert_eq!(answer.report.outcome, Some(Outcome::Refused));
@@ -500,9 +586,13 @@ fn supports_and_surfaces_need_no_solid_and_are_kept() {
         "<object id=\"1\">{}</object><object id=\"2\" type=\"surface\">{sheet}</object><object id=\"3\" type=\"support\">{sheet}</object>",
         plain_cuboid(1.0)
     );
-    let bytes = file(&model("", &objects, "<item objectid=\"1\"/><item objectid=\"2\"/><item objectid=\"3\"/>"));
+    let bytes =
+        file(&model("", &objects, "<item objectid=\"1\"/><item objectid=\"2\"/><item objectid=\"3\"/>"));
     let all = project(&bytes);
-    assert_eq!(all.bodies.iter().map(|b| b.kind).collect::<Vec<_>>(), [ObjectKind::Model, ObjectKind::Surface, ObjectKind::Support]);
+    assert_eq!(
+        all.bodies.iter().map(|b| b.kind).collect::<Vec<_>>(),
+        [ObjectKind::Model, ObjectKind::Surface, ObjectKind::Support]
+    );
     let answer = run(Operation::Repair, &bytes, &Options::default());
     assert_eq!(answer.report.outcome, Some(Outcome::Identical));
     assert_eq!(answer.report.certificate.unwrap().parts, Some(1));
@@ -582,7 +672,8 @@ fn damaged_projects_are_answered_or_refused() {
             for body in &project.bodies {
                 assert_eq!(body.soup.check(), Vec::<String>::new());
             }
-            let scene = read(&bytes, Encoding::ThreeMf, &ReadOptions::default(), &Budget::unlimited()).unwrap();
+            let scene =
+                read(&bytes, Encoding::ThreeMf, &ReadOptions::default(), &Budget::unlimited()).unwrap();
             assert_eq!(scene.check(), Vec::<String>::new());
         }
     }

@@ -4,7 +4,9 @@ use super::model::{Content, FaceAttributes, Mesh, Model, Object, ObjectKind, Ref
 use super::package::{Package, shortened, too_large};
 use super::read_model::read_model;
 use super::read_relationships::read_start;
+use super::read_volumes::{Volume, are_all, read_volumes};
 use super::scene;
+use super::split::volume_of;
 use super::transform::Transform;
 use super::xml::Document;
 use crate::budget::Budget;
@@ -27,8 +29,10 @@ pub struct Body {
     pub part: String,
     /// Id of the object in that part.
     pub object: u32,
-    /// Name of the object; empty when it has none.
+    /// Name of the object or of the volume; empty when it has none.
     pub name: String,
+    /// Number of the volume among those of the object, where the project parts its triangles into several.
+    pub volume: Option<u32>,
     /// What the object is for.
     pub kind: ObjectKind,
     /// How often the build has it.
@@ -50,6 +54,15 @@ impl Body {
     pub fn is_solid(&self) -> bool {
         self.kind.is_solid() && self.soup.face_count > 0
     }
+
+    /// One volume of it, as a body of its own.
+    fn volume(&self, number: u32, volume: &Volume) -> Self {
+        let (soup, attributes) = volume_of(&self.soup, &self.attributes, volume);
+        let name = if volume.name.is_empty() { self.name.clone() } else { volume.name.clone() };
+        let (part, extras, extra_spans) = (self.part.clone(), self.extras.clone(), self.extra_spans.clone());
+        let (spans, volume) = (self.spans.clone(), Some(number));
+        Self { part, name, volume, soup, attributes, extras, extra_spans, spans, ..*self }
+    }
 }
 
 /// What a 3MF holds.
@@ -61,6 +74,10 @@ pub struct Project {
     pub bodies: Vec<Body>,
     /// What is kept and not judged, and which rules of 3MF the file breaks, as sentences.
     pub remarks: Vec<String>,
+    /// Name of the first model part.
+    pub(super) root: String,
+    /// Volumes as ranges of triangles of its objects.
+    pub(super) volumes: Vec<Volume>,
 }
 
 /// Reads all meshes of a 3MF.
@@ -112,13 +129,15 @@ pub(super) struct Models {
     /// What the build holds, in its order.
     pub(super) placements: Vec<Placement>,
     remarks: Vec<String>,
+    volumes: Vec<Volume>,
 }
 
 impl Models {
     fn read(bytes: &[u8], options: &ReadOptions, budget: &Budget) -> Result<Self, ReadError> {
         let mut package = Package::open(bytes, budget)?;
         let start = read_start(&mut package, budget)?;
-        let mut models = Self { all: Vec::new(), placements: Vec::new(), remarks: start.remarks };
+        let volumes = read_volumes(&mut package, budget)?;
+        let mut models = Self { all: Vec::new(), placements: Vec::new(), remarks: start.remarks, volumes };
         let mut numbers: FxHashMap<String, usize> = FxHashMap::default();
         let mut waiting = vec![start.part];
         let (mut triangles, mut vertices) = (0_u64, 0_u64);
@@ -267,6 +286,7 @@ impl Models {
             *instances.entry(placement.object).or_default() += 1;
         }
         let units = self.all.first().map(|model| model.units).unwrap_or_default();
+        let root = self.all.first().map(|model| model.part.clone()).unwrap_or_default();
         let (mut bodies, mut remarks) = (Vec::new(), self.remarks);
         for (m, model) in self.all.into_iter().enumerate() {
             let Model { part, objects, remarks: more, units: own, .. } = model;
@@ -281,11 +301,11 @@ impl Models {
                 let Mesh { soup, attributes, spans, extras, extra_spans } = *mesh;
                 let instances = instances.get(&[m, o]).copied().unwrap_or(0);
                 let soup = Soup { units: Some(units), ..soup };
-                let part = part.clone();
-                bodies.push(Body {
-                    part,
+                let body = Body {
+                    part: part.clone(),
                     object: id,
                     name,
+                    volume: None,
                     kind,
                     instances,
                     soup,
@@ -293,9 +313,21 @@ impl Models {
                     extras,
                     spans,
                     extra_spans,
-                });
+                };
+                let of_object = |volume: &&Volume| m == 0 && volume.object == id;
+                let own: Vec<&Volume> = self.volumes.iter().filter(of_object).collect();
+                if own.len() < 2 {
+                    bodies.push(body);
+                } else if are_all(&own, body.soup.face_count) {
+                    bodies.extend((0_u32..).zip(own).map(|(number, volume)| body.volume(number, volume)));
+                } else {
+                    remarks.push(format!(
+                        "The volumes that the project notes for the object {id} are not its triangles: it is taken as one part."
+                    ));
+                    bodies.push(body);
+                }
             }
         }
-        Project { units, bodies, remarks }
+        Project { units, bodies, remarks, root, volumes: self.volumes }
     }
 }

@@ -3,6 +3,7 @@
 use super::model::{FaceAttributes, NO_NUMBER, Property};
 use super::package::Package;
 use super::read::{Body, Project};
+use super::read_volumes::{VOLUMES, Volume};
 use super::write::{add_entry, not_packed, triangle, vertices};
 use super::xml::{Attributes, Document};
 use crate::budget::{Budget, Stopped};
@@ -76,10 +77,10 @@ impl From<Stopped> for RewriteError {
 ///
 /// # Errors
 /// A coordinate that is not finite, a stopped budget.
-pub fn rewrite_project(
+pub fn rewrite_project<'a>(
     bytes: &[u8],
-    project: &Project,
-    new: &[NewBody<'_>],
+    project: &'a Project,
+    new: &[NewBody<'a>],
     budget: &Budget,
 ) -> Result<Vec<u8>, RewriteError> {
     let mut package = Package::open(bytes, budget)?;
@@ -88,12 +89,16 @@ pub fn rewrite_project(
     for number in 0..package.names().len() {
         let part = package.names()[number].clone();
         let is_in = |new: &&NewBody<'_>| project.bodies[new.body].part.eq_ignore_ascii_case(&part);
-        let of_part: Vec<&NewBody<'_>> = new.iter().filter(is_in).collect();
-        if of_part.is_empty() || package.find(&part) != Some(number) {
+        let of_part: Vec<&NewBody<'a>> = new.iter().filter(is_in).collect();
+        let is_of_volumes = part.eq_ignore_ascii_case(VOLUMES) && !project.volumes.is_empty();
+        if (of_part.is_empty() && !is_of_volumes) || package.find(&part) != Some(number) {
             continue;
         }
         let (old, charge) = package.inflate(number, budget)?;
-        let text = rewritten(&part, &old, project, &of_part, budget)?;
+        let text = match is_of_volumes {
+            true => renumbered(&old, project, &new.iter().collect::<Vec<_>>())?,
+            false => rewritten(&part, &old, project, &of_part, budget)?,
+        };
         charges.push(budget.charge(text.len() as u64)?);
         drop(charge);
         texts.insert(number, text);
@@ -116,34 +121,45 @@ pub fn rewrite_project(
 }
 
 /// The text of a part with new meshes in it.
-fn rewritten(
+fn rewritten<'a>(
     part: &str,
     old: &[u8],
-    project: &Project,
-    new: &[&NewBody<'_>],
+    project: &'a Project,
+    new: &[&NewBody<'a>],
     budget: &Budget,
 ) -> Result<Vec<u8>, RewriteError> {
     let document = Document::of(part, old)?;
-    let mark = old.len() - document.text.len();
-    let mut edits: Vec<(Range<usize>, Vec<u8>)> = Vec::new();
-    for new in new {
-        let body = &project.bodies[new.body];
+    let mut edits = Vec::new();
+    for object in objects(project, new) {
+        let body = object.pieces[0].body;
         let [vertices_at, triangles_at] = body.spans.clone();
         let start = start_tag(document.text, &vertices_at);
         let mut text = Text::new(budget);
         text.word(&start.tag);
-        vertices(&mut text, new.soup, start.prefix)?;
+        for piece in &object.pieces {
+            vertices(&mut text, piece.soup, start.prefix)?;
+        }
         text.word(&start.end_tag);
         edits.push((vertices_at, text.into_bytes()));
         let start = start_tag(document.text, &triangles_at);
         let mut text = Text::new(budget);
         text.word(&start.tag);
-        triangles(&mut text, new, body, start.prefix)?;
+        let mut first_vertex = 0;
+        for piece in &object.pieces {
+            triangles(&mut text, piece, first_vertex, start.prefix)?;
+            first_vertex += piece.soup.positions.len() as u32;
+        }
         text.word(&start.end_tag);
         edits.push((triangles_at, text.into_bytes()));
         edits.extend(body.extra_spans.iter().map(|span| (span.clone(), Vec::new())));
     }
+    Ok(edited(old, &document, edits))
+}
+
+/// The bytes of a part with some of its spans replaced.
+fn edited(old: &[u8], document: &Document<'_>, mut edits: Vec<(Range<usize>, Vec<u8>)>) -> Vec<u8> {
     edits.sort_by_key(|(span, _)| span.start);
+    let mark = old.len() - document.text.len();
     let mut text = old[..mark].to_vec();
     let mut at = 0;
     for (span, new) in edits {
@@ -152,7 +168,78 @@ fn rewritten(
         at = span.end;
     }
     text.extend_from_slice(&document.text.as_bytes()[at..]);
-    Ok(text)
+    text
+}
+
+/// The mesh of an object as it is written: one piece, or one for each of its volumes.
+struct NewObject<'a> {
+    pieces: Vec<Piece<'a>>,
+}
+
+struct Piece<'a> {
+    body: &'a Body,
+    soup: &'a Soup,
+    /// `None`: its faces stay as they are.
+    sources: Option<&'a [FaceSource]>,
+}
+
+/// The objects of which some volume is new.
+fn objects<'a>(project: &'a Project, new: &[&NewBody<'a>]) -> Vec<NewObject<'a>> {
+    let mut objects = Vec::new();
+    let bodies = &project.bodies;
+    let same = |a: &Body, b: &Body| a.part == b.part && a.object == b.object;
+    let mut at = 0;
+    while at < bodies.len() {
+        let end = at + bodies[at..].iter().take_while(|body| same(body, &bodies[at])).count();
+        let of = |i: usize| new.iter().find(|new| new.body == i);
+        if (at..end).any(|i| of(i).is_some()) {
+            let piece = |i: usize| match of(i) {
+                Some(new) => Piece { body: &bodies[i], soup: new.soup, sources: Some(new.sources) },
+                None => Piece { body: &bodies[i], soup: &bodies[i].soup, sources: None },
+            };
+            objects.push(NewObject { pieces: (at..end).map(piece).collect() });
+        }
+        at = end;
+    }
+    objects
+}
+
+/// The text of the part that notes volumes, with the ranges of `new` triangles.
+fn renumbered(old: &[u8], project: &Project, new: &[&NewBody<'_>]) -> Result<Vec<u8>, RewriteError> {
+    let document = Document::of(VOLUMES, old)?;
+    let mut edits = Vec::new();
+    for object in objects(project, new) {
+        let id = object.pieces[0].body.object;
+        let of_object: Vec<&Volume> = project.volumes.iter().filter(|volume| volume.object == id).collect();
+        if of_object.len() != object.pieces.len() || object.pieces[0].body.part != project.root {
+            continue;
+        }
+        let mut first = 0;
+        for (volume, piece) in of_object.iter().zip(&object.pieces) {
+            let end = first + piece.soup.triangles.len();
+            let tag = &document.text[volume.tag.clone()];
+            let (inside, close) = match tag.strip_suffix("/>") {
+                Some(inside) => (inside, "/>"),
+                None => (tag.trim_end_matches('>'), ">"),
+            };
+            let name_length = inside.find(|c: char| c.is_ascii_whitespace()).unwrap_or(inside.len());
+            let mut text = inside[..name_length].to_owned();
+            for (key, value) in Attributes::of(&inside[name_length..]).flatten() {
+                let quote = if value.contains('"') { '\'' } else { '"' };
+                let number = match key {
+                    "firstid" => Some(first),
+                    "lastid" => Some(end.saturating_sub(1)),
+                    _ => None,
+                };
+                let value = number.map_or(value.to_owned(), |number| number.to_string());
+                text += &format!(" {key}={quote}{value}{quote}");
+            }
+            text += close;
+            edits.push((volume.tag.clone(), text.into_bytes()));
+            first = end;
+        }
+    }
+    Ok(edited(old, &document, edits))
 }
 
 /// How the list in a span of a text begins and ends.
@@ -172,14 +259,23 @@ fn start_tag<'x>(text: &'x str, span: &Range<usize>) -> StartTag<'x> {
     StartTag { prefix, tag: format!("<{inside}>\n"), end_tag: format!("</{name}>") }
 }
 
-fn triangles(text: &mut Text<'_>, new: &NewBody<'_>, body: &Body, prefix: &str) -> Result<(), WriteError> {
-    let attributes = &body.attributes;
+fn triangles(
+    text: &mut Text<'_>,
+    piece: &Piece<'_>,
+    first_vertex: u32,
+    prefix: &str,
+) -> Result<(), WriteError> {
+    let (attributes, old) = (&piece.body.attributes, &piece.body.soup);
     // A tag takes so many bytes without other attributes, whose texts may be long.
     let longest = attributes.texts.iter().map(String::len).max().unwrap_or(0);
-    for (t, (&corners, &source)) in new.soup.triangles.iter().zip(new.sources).enumerate() {
+    for (t, &corners) in piece.soup.triangles.iter().enumerate() {
         text.before_item(t, 170 + longest)?;
+        let source = match piece.sources {
+            Some(sources) => sources.get(t).copied().unwrap_or(FaceSource::Nothing),
+            None => FaceSource::Whole { face: old.face_of(t as u32), corners: [0, 1, 2] },
+        };
         let (corners, source) = turned(corners, source);
-        triangle(text, prefix, corners);
+        triangle(text, prefix, corners.map(|v| first_vertex + v));
         let face = match source {
             FaceSource::Nothing => {
                 text.word("/>\n");

@@ -3,7 +3,8 @@
 use super::merged_analysis::merged_analysis;
 use super::{Done, PartFacts, PartReport};
 use crate::distance::{DirectedDistance, SurfaceDistance};
-use crate::formats::threemf::Project;
+use crate::formats::threemf::{Body, NO_NUMBER, Project, Property};
+use crate::formats::{Encoding, Format};
 use crate::pipeline::{
     Action, Fidelity, FidelityVerdict, Filling, Level, Losses, Operation, Outcome, PrintingReport, Report,
 };
@@ -40,7 +41,6 @@ pub(super) fn merged(project: &Project, done: &[Done], whole: Report) -> Report 
             ..whole
         },
     };
-    let parts = if merged.operation == Operation::Verify && parts.is_empty() { Vec::new() } else { parts };
     Report { parts, remarks, ..merged }
 }
 
@@ -53,6 +53,7 @@ fn parts(project: &Project, done: &[Done]) -> Vec<PartReport> {
                 path: body.part.clone(),
                 object: body.object,
                 name: body.name.clone(),
+                volume: body.volume,
                 instances: body.instances,
                 first_face,
             };
@@ -88,11 +89,27 @@ fn remarks(project: &Project, done: &[Done]) -> Vec<String> {
     remarks
 }
 
-/// What is said where all parts become one mesh in a new file.
-pub(super) fn left_behind(project: &Project) -> Vec<String> {
-    let text = "All parts became one mesh in a new file: names, build items, pictures, settings and everything else of the \
-                project are left behind.";
-    project.remarks.iter().cloned().chain([text.to_owned()]).collect()
+/// What is said where all parts become one mesh of this encoding: which of the project that leaves out.
+pub(super) fn left_out(project: &Project, encoding: Encoding) -> Vec<String> {
+    let bodies = &project.bodies;
+    let count = |of: &dyn Fn(&Body) -> usize| bodies.iter().map(of).sum::<usize>();
+    let names = bodies.iter().filter(|body| !body.name.is_empty()).count();
+    let places = count(&|body| body.instances as usize);
+    let is_stated = |property: &&Property| **property != Property::NONE;
+    let properties = count(&|body| body.attributes.properties.iter().filter(is_stated).count());
+    let marks = count(&|body| body.attributes.others.iter().filter(|&&number| number != NO_NUMBER).count());
+    let has_colors = matches!(encoding.format(), Format::Off | Format::Ply | Format::ThreeMf);
+    let of_properties = if has_colors { "textures and materials" } else { "colours, textures and materials" };
+    let lost = [
+        (names, format!("{names} names of parts")),
+        (places.saturating_sub(1), format!("{places} build items")),
+        (properties, format!("{of_properties} that {properties} triangles state")),
+        (marks, format!("paint and other marks of {marks} triangles")),
+        (1, "pictures, metadata and settings".to_owned()),
+    ];
+    let lost: Vec<String> = lost.into_iter().filter(|(count, _)| *count > 0).map(|(_, text)| text).collect();
+    let text = format!("One mesh takes the place of the project, which leaves out: {}.", lost.join("; "));
+    project.remarks.iter().cloned().chain([text]).collect()
 }
 
 /// One for each step, with the sums of what it changed.

@@ -31,6 +31,8 @@ pub struct PartFacts {
     pub object: u32,
     /// Its name; empty when it has none.
     pub name: String,
+    /// Its number among the volumes of the object, where that has several.
+    pub volume: Option<u32>,
     /// How often the file has it at a place.
     pub instances: u32,
     /// Number of its first face, where faces are numbered through all parts.
@@ -78,6 +80,20 @@ pub(super) fn run_by_parts(
         Parts::Union if answer.report.refusal.is_none() => run.unite(answer),
         _ => Ok(answer),
     }
+}
+
+/// What is said of a 3MF whose parts were taken as one mesh.
+pub(super) fn remarks_on_scene(
+    bytes: &[u8],
+    answer: &Answer,
+    options: &Options,
+    budget: &Budget,
+) -> Result<Vec<String>, Failure> {
+    let project = budget.stage(Stage::Read, || read_project(bytes, &options.read, budget))?;
+    Ok(match &answer.output {
+        Some(Output { bytes: Some(_), encoding, .. }) => merge::left_out(&project, *encoding),
+        _ => project.remarks,
+    })
 }
 
 struct Run<'a> {
@@ -290,7 +306,7 @@ impl Run<'_> {
         let bytes = answer.output.as_ref().and_then(|output| output.bytes.as_deref()).unwrap_or(self.bytes);
         let input = Input::read(bytes, Encoding::ThreeMf, self.options, self.budget)?;
         let united = run_on(self.operation, input, self.options, self.budget)?;
-        let remarks = merge::left_behind(self.project);
+        let remarks = merge::left_out(self.project, Encoding::ThreeMf);
         let parts = answer.report.parts;
         let input = answer.report.input;
         let input_certificate = answer.report.input_certificate;
