@@ -5,7 +5,7 @@ use super::figures::{counted, figure};
 use super::model;
 use crate::wire::{
     Action, Certificate, Claim, Defect, DefectCode, Deviation, Fidelity, Hole, InputInfo, JoinedEdges, Level,
-    MeshInfo, Operation, PrintingCheck, Proposal, Report, Severity, TargetSpec, Witness,
+    MeshInfo, Operation, Part, PrintingCheck, Proposal, Report, Severity, TargetSpec, Witness,
 };
 use anstyle::Style;
 use std::fmt::Write as _;
@@ -83,12 +83,26 @@ pub(super) fn summary(report: &Report, subject: &Subject) -> String {
         let heading = format!("printing ({}, {} up)", printing.policy, printing.build_direction);
         put_table(&mut text, &heading, &printing.checks.iter().map(check_row).collect::<Vec<_>>());
     }
+    if report.parts.len() > 1 {
+        put_table(&mut text, "parts", &report.parts.iter().map(part_row).collect::<Vec<_>>());
+    }
+    put_table(&mut text, "remarks", &report.remarks.iter().map(|text| [text.clone()]).collect::<Vec<_>>());
     let judged = report.certificate.as_ref().unwrap_or(&report.input_certificate);
     put_styled(&mut text, "certificate", &claim_rows(judged));
     if let Some(line) = written(report, subject) {
         put(&mut text, &line);
     }
     text
+}
+
+/// A part: where it is, its name, what became of it, and how many triangles it has.
+fn part_row(part: &Part) -> [String; 4] {
+    let verdict = &part.verdict;
+    let state = if verdict.printable { "printable" } else { "not printable" };
+    let outcome = verdict.outcome.map_or(state.to_owned(), |outcome| format!("{outcome}, {state}"));
+    let triangles = part.triangles_after.unwrap_or(part.triangles_before);
+    let place = format!("{} {}", part.path, part.object);
+    [place, part.name.clone(), outcome, counted(triangles, "triangle")]
 }
 
 fn put(text: &mut String, line: &str) {

@@ -65,8 +65,8 @@ pub(super) fn foreign(bytes: &[u8]) -> Option<&'static str> {
 /// What is in a zip archive, by the names at its start.
 fn archive(start: &[u8]) -> &'static str {
     let lower = start.to_ascii_lowercase();
-    if has(&lower, b"3d/3dmodel.model") || has(&lower, b"[content_types].xml") {
-        "3MF"
+    if has(&lower, b"[content_types].xml") {
+        "an Office document or another package without a 3MF model"
     } else if has(&lower, b".amf") {
         "compressed AMF"
     } else {
@@ -110,7 +110,10 @@ mod tests {
         let big: Vec<u8> = "OFF\n4 4 0\n0 0 0\n".encode_utf16().flat_map(u16::to_be_bytes).collect();
         let marked = [&b"\xff\xfe"[..], &utf_16].concat();
         for (bytes, name) in [
-            (&b"PK\x03\x04\x14\0\0\0\x08\0________________\x13\0\0\0[Content_Types].xml"[..], "3MF"),
+            (
+                &b"PK\x03\x04\x14\0\0\0\x08\0________________\x13\0\0\0[Content_Types].xml"[..],
+                "an Office document or another package without a 3MF model",
+            ),
             (b"PK\x03\x04\x14\0\0\0\x08\0________________\x08\0\0\0part.stl", "a zip archive"),
             (b"ISO-10303-21;\nHEADER;", "STEP"),
             (b"Kaydara FBX Binary  \0\x1a\0", "binary FBX"),

@@ -19,6 +19,7 @@ mod ply;
 mod polygons;
 mod sniff;
 mod stl;
+pub mod threemf;
 mod words;
 
 pub use announced::triangles_at_most;
@@ -45,6 +46,8 @@ pub enum Format {
     Glb,
     /// glTF 2.0 as JSON that holds its data.
     Gltf,
+    /// 3D Manufacturing Format.
+    ThreeMf,
 }
 
 /// A format together with the way its bytes are laid out.
@@ -70,11 +73,14 @@ pub enum Encoding {
     Glb,
     /// glTF JSON.
     Gltf,
+    /// The package of a 3MF.
+    ThreeMf,
 }
 
 impl Format {
     /// Every format.
-    pub const ALL: [Self; 6] = [Self::Obj, Self::Stl, Self::Off, Self::Ply, Self::Glb, Self::Gltf];
+    pub const ALL: [Self; 7] =
+        [Self::Obj, Self::Stl, Self::Off, Self::Ply, Self::ThreeMf, Self::Glb, Self::Gltf];
 
     /// The format's name in options and its usual file extension.
     pub fn name(self) -> &'static str {
@@ -85,6 +91,7 @@ impl Format {
             Self::Ply => "ply",
             Self::Glb => "glb",
             Self::Gltf => "gltf",
+            Self::ThreeMf => "3mf",
         }
     }
 
@@ -107,6 +114,7 @@ impl Format {
             Self::Ply => Encoding::PlyBinaryLittleEndian,
             Self::Glb => Encoding::Glb,
             Self::Gltf => Encoding::Gltf,
+            Self::ThreeMf => Encoding::ThreeMf,
         }
     }
 }
@@ -121,6 +129,7 @@ impl Encoding {
             Self::PlyAscii | Self::PlyBinaryLittleEndian | Self::PlyBinaryBigEndian => Format::Ply,
             Self::Glb => Format::Glb,
             Self::Gltf => Format::Gltf,
+            Self::ThreeMf => Format::ThreeMf,
         }
     }
 
@@ -147,6 +156,7 @@ impl Encoding {
             Self::PlyBinaryBigEndian => "ply-binary-big-endian",
             Self::Glb => "glb",
             Self::Gltf => "gltf",
+            Self::ThreeMf => "3mf",
         }
     }
 }
@@ -228,6 +238,24 @@ pub fn read(
             ply::read::read(bytes, options, budget)
         }
         Encoding::Glb | Encoding::Gltf => gltf::read::read(bytes, encoding, options, budget),
+        Encoding::ThreeMf => threemf::read::read(bytes, options, budget),
+    }
+}
+
+/// Reads the parts of a file, each in its own coordinates: the meshes of a 3MF that have to be solids. A file of another
+/// format is one part.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_parts(
+    bytes: &[u8],
+    encoding: Encoding,
+    options: &ReadOptions,
+    budget: &Budget,
+) -> Result<Vec<Soup>, ReadError> {
+    match encoding {
+        Encoding::ThreeMf => threemf::read::read_solids(bytes, options, budget),
+        _ => Ok(vec![read(bytes, encoding, options, budget)?]),
     }
 }
 
@@ -248,6 +276,7 @@ pub fn write(soup: &Soup, encoding: Encoding, budget: &Budget) -> Result<Vec<u8>
             ply::write::write(soup, encoding, budget)
         }
         Encoding::Glb | Encoding::Gltf => gltf::write::write(soup, encoding, budget),
+        Encoding::ThreeMf => threemf::write::write(soup, budget),
     }
 }
 

@@ -20,7 +20,7 @@ const LOOKED_AT_BYTES: usize = 4096;
 /// Empty or unrecognisable bytes; content that contradicts `named`.
 pub fn sniff(bytes: &[u8], named: Option<Format>) -> Result<Encoding, ReadError> {
     if bytes.iter().all(u8::is_ascii_whitespace) {
-        return Err(ReadError::empty("a mesh in STL, OBJ, OFF, PLY or glTF"));
+        return Err(ReadError::empty("a mesh in STL, OBJ, OFF, PLY, 3MF or glTF"));
     }
     match (certain(bytes), named) {
         (Some(found), Some(named)) if found.format() != named => {
@@ -45,6 +45,8 @@ fn certain(bytes: &[u8]) -> Option<Encoding> {
         Some(Encoding::StlBinary)
     } else if is_gltf_text(bytes) {
         Some(Encoding::Gltf)
+    } else if is_package(bytes) {
+        Some(Encoding::ThreeMf)
     } else if first.eq_ignore_ascii_case(b"ply") {
         Some(ply_layout(bytes))
     } else if HeaderWord::parse(first).is_some() {
@@ -62,6 +64,12 @@ fn is_gltf_text(bytes: &[u8]) -> bool {
     text.starts_with(b"{") && memchr::memmem::find(text, b"\"asset\"").is_some()
 }
 
+/// A zip archive with a part that may be the model of a 3MF. Their names stand in front of each entry and at the end.
+fn is_package(bytes: &[u8]) -> bool {
+    let names_model = |word: &[u8]| memchr::memmem::find(bytes, word).is_some();
+    bytes.starts_with(b"PK\x03\x04") && (names_model(b".model") || names_model(b".MODEL"))
+}
+
 /// The layout of content that has no mark of `format` but shall be in it.
 fn layout_of(bytes: &[u8], format: Format) -> Encoding {
     match format {
@@ -72,6 +80,7 @@ fn layout_of(bytes: &[u8], format: Format) -> Encoding {
         Format::Obj => Encoding::Obj,
         Format::Glb => Encoding::Glb,
         Format::Gltf => Encoding::Gltf,
+        Format::ThreeMf => Encoding::ThreeMf,
     }
 }
 
@@ -102,7 +111,7 @@ fn is_damaged_text(bytes: &[u8]) -> bool {
 }
 
 fn unknown(bytes: &[u8]) -> ReadError {
-    let mut expected = "a mesh in STL, OBJ, OFF, PLY or glTF, or the format's name".to_owned();
+    let mut expected = "a mesh in STL, OBJ, OFF, PLY, 3MF or glTF, or the format's name".to_owned();
     if let Some(length) = announced_length(bytes).filter(|_| !is_text(bytes)) {
         expected += &format!("; as binary STL the file would have {length} bytes instead of {}", bytes.len());
     }
@@ -245,8 +254,23 @@ mod tests {
         assert_eq!(page.kind, ReadErrorKind::Foreign { name: "a web page" });
         assert_eq!(
             page.to_string(),
-            "file: this is a web page, which is not read here; expected a mesh in STL, OBJ, OFF, PLY or glTF"
+            "file: this is a web page, which is not read here; expected a mesh in STL, OBJ, OFF, PLY, 3MF or glTF"
         );
+    }
+
+    #[test]
+    fn formats_that_are_not_read_are_named_with_a_hint() {
+        let cases: [(&[u8], &str, &str); 4] = [
+            (b"ISO-10303-21;\nHEADER;", "STEP", "CAD program"),
+            (b"<?xml version=\"1.0\"?><amf unit=\"millimeter\">", "AMF", "save an AMF as 3MF"),
+            (b"#VRML V2.0 utf8\n", "VRML", "PLY keeps"),
+            (b"<?xml version=\"1.0\"?><COLLADA>", "COLLADA", "export the scene as OBJ"),
+        ];
+        for (bytes, name, hint) in cases {
+            let error = sniff(bytes, None).unwrap_err();
+            assert_eq!(error.kind, ReadErrorKind::Foreign { name });
+            assert!(error.expected.contains(hint), "{error}");
+        }
     }
 
     #[test]

@@ -13,7 +13,7 @@ const CHANGED: u64 = 256 << 20;
 ///
 /// Measured peaks of a whole process are 166 bytes for a triangle of an analysis and 405 of a repair that rebuilds
 /// (docs/campaigns/speed.md). How many bytes of a file make a triangle depends on its format: 50 in a binary STL, about
-/// 36 in OBJ and OFF, 19 in a binary PLY, 12 in a GLB of short numbers. A format that is not known yet may be the densest one. So much is reserved for the
+/// 36 in OBJ and OFF, 19 in a binary PLY, 12 in a GLB of short numbers, 8 to 12 in a 3MF. A format that is not known yet may be the densest one. So much is reserved for the
 /// run, and it may charge no more; should it need more, it starts again when there is room for as much as any job may have.
 pub(super) fn estimated_bytes(
     operation: Operation,
@@ -37,6 +37,7 @@ pub(super) fn estimated_bytes(
         // Strips of small numbers have fewer, and instances none.
         Some(Format::Gltf) => 16,
         Some(Format::Glb) | None => 12,
+        Some(Format::ThreeMf) => 8,
     };
     let triangles = triangles.unwrap_or(upload_bytes / file_bytes_per_triangle);
     // The upload itself is read into memory.

@@ -90,6 +90,7 @@ mod tests {
                 libraries: vec![b"a.mtl".to_vec()],
                 names: vec![b"oak".to_vec()],
                 of_face: vec![NO_MATERIAL, 0],
+                descriptions: None,
             },
             ..plain.clone()
         };

@@ -18,6 +18,7 @@ pub mod polyhedron;
 mod soup;
 mod stitch;
 mod texture;
+mod units;
 
 pub use boundary::{Boundary, BoundaryLoop};
 pub use components::{Components, UnionFind};
@@ -33,3 +34,4 @@ pub use polygon_copies::{PolygonCopy, polygon_copies};
 pub use soup::{Color, FaceFault, FaceFaultReason, Places, Polygons, Segment, Soup};
 pub use stitch::{AnyJoin, JoinRule, Stitched, Validity, stitch, stitch_faces};
 pub use texture::{NO_POINT, Texture};
+pub use units::Units;

@@ -2,6 +2,7 @@
 
 use super::materials::{Materials, NO_MATERIAL};
 use super::texture::{NO_POINT, Texture};
+use super::units::Units;
 use crate::geom::DVec3;
 
 /// A colour as a file gives it; absent channels are not invented.
@@ -160,6 +161,8 @@ pub struct Soup {
     pub materials: Materials,
     /// What the file has beside its mesh and no new file takes over, by name and number.
     pub left_out: Vec<(&'static str, u64)>,
+    /// Unit of the positions, where the format states one.
+    pub units: Option<Units>,
 }
 
 impl Polygons {

@@ -10,7 +10,7 @@ use super::{
     Refusal, Report, finished,
 };
 use crate::budget::{Budget, Stage};
-use crate::formats::{Place, ReadError, ReadErrorKind};
+use crate::formats::{self, Place, ReadError, ReadErrorKind};
 use crate::mesh::Soup;
 use crate::repair::unite::{NotCombined, combine};
 
@@ -58,9 +58,10 @@ struct Reading {
 
 impl Reading {
     fn next(&mut self, file: &[u8], budget: &Budget) -> Result<(Input, Report), Failure> {
-        let mut input = Input::read(file, &self.options, budget)?;
+        let encoding = budget.stage(Stage::Read, || formats::sniff(file, self.options.format))?;
+        let mut input = Input::read(file, encoding, &self.options, budget)?;
         self.options.output_format.get_or_insert(input.facts.encoding.format());
-        let in_units_of_format = input.take_units_of_format(&self.options);
+        let in_units_of_format = input.take_lengths(&self.options);
         let options = in_units_of_format.as_ref().unwrap_or(&self.options);
         self.scaled = input.take_units_of_result(Operation::Boolean, options)?.or(in_units_of_format);
         self.options.output_units.get_or_insert(input.facts.result_units);

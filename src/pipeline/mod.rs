@@ -15,6 +15,7 @@ mod output;
 mod plan;
 mod printing;
 mod priority;
+mod project;
 mod rebuild;
 mod remedies;
 mod repair;
@@ -35,16 +36,18 @@ pub use self::modeller::{
 };
 pub use self::plan::Step;
 pub use self::printing::PrintingReport;
+pub use self::project::{AttributeCounts, PartFacts, PartReport};
 pub use self::rebuild::{Effort, WrapChoices};
 pub use self::remedies::{
     ChosenPlan, ChosenRemedy, ELEMENTS_MAX, ElementProposal, Plan, PlanMismatch, Proposal, Remedy,
 };
 pub use self::stitches::{JoinedEdges, Stitches};
 use crate::analysis::{Analysis, DefectCode};
-use crate::budget::{Budget, Stopped};
+use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::{Certificate, Violation};
 use crate::distance::SurfaceDistance;
-use crate::formats::{Encoding, Format, ReadError, ReadOptions, WriteError};
+use crate::formats::{self, Encoding, Format, ReadError, ReadOptions, WriteError};
+pub use crate::mesh::Units;
 use crate::printing::Policy;
 use crate::repair::nest;
 pub use crate::repair::unite::{NotCombined, NotSolid, SetOperation};
@@ -141,32 +144,6 @@ impl Require {
     }
 }
 
-/// The length of one unit of the file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Units {
-    /// Millimetre.
-    #[default]
-    Millimetre,
-    /// Centimetre.
-    Centimetre,
-    /// Metre.
-    Metre,
-    /// Inch.
-    Inch,
-}
-
-impl Units {
-    /// Length of the unit in millimetres.
-    pub fn millimetres(self) -> f64 {
-        match self {
-            Self::Millimetre => 1.0,
-            Self::Centimetre => 10.0,
-            Self::Metre => 1000.0,
-            Self::Inch => 25.4,
-        }
-    }
-}
-
 /// Whether simple holes are filled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum FillHoles {
@@ -188,6 +165,18 @@ pub enum Contact {
     Join,
 }
 
+/// What of a file of several parts is one solid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Parts {
+    /// Each part by itself, in its own coordinates and once however often it is there.
+    #[default]
+    Separate,
+    /// All parts at their places, after each was repaired by itself.
+    Union,
+    /// All parts at their places, as they are.
+    Together,
+}
+
 /// Options of every operation; those that do not apply are ignored.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
@@ -195,6 +184,8 @@ pub struct Options {
     pub format: Option<Format>,
     /// Format of the output; the input's own encoding when `None`.
     pub output_format: Option<Format>,
+    /// What of a file of several parts is one solid.
+    pub parts: Parts,
     /// Limits and choice of reader.
     pub read: ReadOptions,
     /// Unit as the caller stated it, in which all lengths here are; `None`: lengths are in millimetres, and the file is in
@@ -503,6 +494,10 @@ pub struct Report {
     pub refusal: Option<Refusal>,
     /// The result, or else the input, measured for printing; `None`: no policy was given, or nothing can be measured.
     pub printing: Option<PrintingReport>,
+    /// The parts of the file that were handled one by one; empty when all triangles were handled together.
+    pub parts: Vec<PartReport>,
+    /// What of the file is kept and not judged, and which rules of its format it breaks, as sentences.
+    pub remarks: Vec<String>,
     /// Work units used (deterministic).
     pub work_used: u64,
     /// Largest number of bytes charged at one time (deterministic).
@@ -516,6 +511,9 @@ pub struct Output {
     pub bytes: Option<Vec<u8>>,
     /// How they are laid out.
     pub encoding: Encoding,
+    /// For each triangle the triangle of the input behind it, or [`u32::MAX`]; empty where the bytes are those that were
+    /// uploaded, and for a file of several parts.
+    pub origins: Vec<u32>,
 }
 
 /// The result of a run.
@@ -556,6 +554,14 @@ pub enum Failure {
         operation: Operation,
         /// Number of files.
         count: usize,
+    },
+    /// An option does not go with this file.
+    #[error("{reason}")]
+    NotApplicable {
+        /// Name of the option.
+        option: &'static str,
+        /// Why, in a sentence.
+        reason: String,
     },
     /// A hole was chosen that the file does not have.
     #[error("the file has no hole {number}: it has {holes}, numbered from 0")]
@@ -602,15 +608,46 @@ pub fn run(
     options: &Options,
     budget: &Budget,
 ) -> Result<Answer, Failure> {
-    if operation == Operation::Boolean {
-        return boolean::boolean(bytes, options, budget);
-    }
-    if options.file_sizes.len() > 1 {
+    if operation != Operation::Boolean && options.file_sizes.len() > 1 {
         return Err(Failure::MeshCount { operation, count: options.file_sizes.len() });
     }
-    let mut input = Input::read(bytes, options, budget)?;
-    let in_units_of_format = input.take_units_of_format(options);
-    let options = in_units_of_format.as_ref().unwrap_or(options);
+    let mut answer = match operation {
+        Operation::Boolean => boolean::boolean(bytes, options, budget)?,
+        _ => run_on_file(operation, bytes, options, budget)?,
+    };
+    answer.report.work_used = budget.work_used();
+    answer.report.bytes_peak = budget.bytes_peak();
+    Ok(answer)
+}
+
+/// Runs `operation` on one file.
+fn run_on_file(
+    operation: Operation,
+    bytes: &[u8],
+    options: &Options,
+    budget: &Budget,
+) -> Result<Answer, Failure> {
+    let encoding = budget.stage(Stage::Read, || formats::sniff(bytes, options.format))?;
+    let mut answer = if project::is_by_parts(encoding, operation, options) {
+        project::run_by_parts(operation, bytes, options, budget)?
+    } else {
+        run_on(operation, Input::read(bytes, encoding, options, budget)?, options, budget)?
+    };
+    if encoding == Encoding::ThreeMf && answer.report.remarks.is_empty() && answer.report.parts.is_empty() {
+        answer.report.remarks = project::remarks_on_scene(bytes, &answer, options, budget)?;
+    }
+    Ok(answer)
+}
+
+/// Runs `operation` on a mesh that was read.
+fn run_on(
+    operation: Operation,
+    mut input: Input,
+    options: &Options,
+    budget: &Budget,
+) -> Result<Answer, Failure> {
+    let in_units_of_file = input.take_lengths(options);
+    let options = in_units_of_file.as_ref().unwrap_or(options);
     let in_result_units = input.take_units_of_result(operation, options)?;
     let options = in_result_units.as_ref().unwrap_or(options);
     let answer = match operation {
@@ -641,8 +678,6 @@ fn finished(
     if let Some(policy) = &options.policy {
         answer.report.printing = printing::measure(input, &answer, policy, budget)?;
     }
-    answer.report.work_used = budget.work_used();
-    answer.report.bytes_peak = budget.bytes_peak();
     Ok(answer)
 }
 

@@ -59,7 +59,8 @@ impl Made<'_> {
             return Ok(report.refused(Refusal::NothingToRepair));
         }
         let depth = Depth::Count { samples: input.samples };
-        let candidate = match Candidate::write(self.soup, input.output_encoding(options), depth, budget) {
+        let encoding = input.output_encoding(options);
+        let candidate = match Candidate::write(self.soup, input, encoding, depth, budget) {
             Ok(candidate) => candidate,
             Err(reason) => return Ok(report.refused(reason.refusal()?)),
         };
@@ -108,13 +109,16 @@ impl<E: Into<Failure>> From<E> for NoCandidate {
 }
 
 impl Candidate {
-    /// Writes `soup` and judges the bytes. The soup is gone by then: the largest buffers never live at the same time.
+    /// Writes `soup`, which is a result of `input`, and judges the bytes. The soup is gone by then: the largest buffers never
+    /// live at the same time.
     pub(super) fn write(
-        soup: Soup,
+        mut soup: Soup,
+        input: &Input,
         encoding: Encoding,
         depth: Depth,
         budget: &Budget,
     ) -> Result<Self, NoCandidate> {
+        soup.units = Some(input.facts.result_units);
         let bytes = match budget.stage(Stage::Write, || formats::write(&soup, encoding, budget)) {
             Ok(bytes) => bytes,
             Err(WriteError::Stopped(stopped)) => return Err(stopped.into()),
@@ -232,7 +236,8 @@ impl Candidate {
             outcome: Some(outcome),
             ..report
         };
-        let output = Some(Output { bytes: Some(self.bytes), encoding: self.encoding });
+        let output =
+            Some(Output { bytes: Some(self.bytes), encoding: self.encoding, origins: origins.to_vec() });
         Ok(Answer { report, output, levels: Vec::new() })
     }
 }

@@ -172,7 +172,7 @@ fn write(
     depth: Depth,
     budget: &Budget,
 ) -> Result<Candidate, NoCandidate> {
-    Candidate::write(draft.to_soup(&input.soup), encoding, depth, budget)
+    Candidate::write(draft.to_soup(&input.soup), input, encoding, depth, budget)
 }
 
 /// The result that is not certified, on request.

@@ -89,7 +89,11 @@ impl Writer<'_> {
             report.levels.push(Level { simplified: result.report, certificate, distance, fidelity });
             match &first {
                 None => first = Some((candidate, result.triangle_origin)),
-                Some(_) => others.push(Output { encoding: candidate.encoding, bytes: Some(candidate.bytes) }),
+                Some(_) => others.push(Output {
+                    encoding: candidate.encoding,
+                    bytes: Some(candidate.bytes),
+                    origins: self.origins(&result),
+                }),
             }
         }
         let Some((candidate, origins)) = first else {
@@ -111,8 +115,7 @@ impl Writer<'_> {
         distance: Option<&SurfaceDistance>,
         report: &Report,
     ) -> Result<FidelityVerdict, Stopped> {
-        let origins: Vec<u32> =
-            result.triangle_origin.iter().map(|&t| self.draft.triangle_origin[t as usize]).collect();
+        let origins = self.origins(result);
         let volume = report.before.as_ref().and_then(|analysis| analysis.measures.volume);
         let (input, budget) = (&self.input.soup, self.budget);
         Ok(faithful::judge_alone(
@@ -126,10 +129,15 @@ impl Writer<'_> {
         .0)
     }
 
+    /// The input's triangle behind each triangle of a result.
+    fn origins(&self, result: &Simplified) -> Vec<u32> {
+        result.triangle_origin.iter().map(|&t| self.draft.triangle_origin[t as usize]).collect()
+    }
+
     fn write(&self, result: &Simplified) -> Result<Candidate, NoCandidate> {
         let encoding = self.input.output_encoding(self.options);
         let depth = Depth::Count { samples: self.input.samples };
-        Candidate::write(soup_of(result, self.mesh), encoding, depth, self.budget)
+        Candidate::write(soup_of(result, self.mesh), self.input, encoding, depth, self.budget)
     }
 }
 
@@ -189,9 +197,10 @@ impl Fewer {
         }
         let mut answer = candidate.returned(input, &origins, report, outcome, budget)?;
         answer.report.levels[0].fidelity = answer.report.fidelity.clone();
-        let file = |(candidate, _): (Candidate, _)| Output {
+        let file = |(candidate, origins): (Candidate, Vec<u32>)| Output {
             encoding: candidate.encoding,
             bytes: Some(candidate.bytes),
+            origins: of_input(&origins),
         };
         Ok(Answer { levels: others.into_iter().map(file).collect(), ..answer })
     }
@@ -218,7 +227,7 @@ pub(super) fn of_certified(
     let mut fewer: Option<Fewer> = None;
     for result in results {
         let soup = soup_of(&result, &mesh);
-        let candidate = match Candidate::write(soup, encoding, Depth::FirstViolation, budget) {
+        let candidate = match Candidate::write(soup, input, encoding, Depth::FirstViolation, budget) {
             Ok(candidate) if candidate.certificate().is_printable() => candidate,
             Ok(_) | Err(NoCandidate::Refused(_)) => return Ok(None),
             Err(NoCandidate::Failed(failure)) => return Err(failure),

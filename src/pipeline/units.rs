@@ -31,9 +31,10 @@ fn units_of_result(
 }
 
 impl Input {
-    /// The options in the unit that the format of the file states, if the caller stated none.
-    pub(super) fn take_units_of_format(&mut self, options: &Options) -> Option<Options> {
-        if options.units.is_some() || self.facts.units == Units::default() {
+    /// The options with lengths in the unit of the file, where that or its format states one and the caller does not: lengths
+    /// are millimetres then.
+    pub(super) fn take_lengths(&mut self, options: &Options) -> Option<Options> {
+        if options.units.is_some() || self.facts.units == Units::Millimetre {
             return None;
         }
         let factor = 1.0 / self.facts.units.millimetres();
@@ -95,7 +96,10 @@ impl Options {
             },
             filling: FillHolesChoices {
                 fill: FillOptions {
-                    rbf: RbfOptions { lambda: scaled(self.filling.fill.rbf.lambda), ..self.filling.fill.rbf },
+                    rbf: RbfOptions {
+                        lambda: scaled(self.filling.fill.rbf.lambda),
+                        ..self.filling.fill.rbf.clone()
+                    },
                     ..self.filling.fill.clone()
                 },
                 ..self.filling.clone()

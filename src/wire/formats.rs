@@ -51,6 +51,7 @@ impl FormatInfo {
             ),
             Format::Glb => (&["model/gltf-binary"], &[Encoding::Glb]),
             Format::Gltf => (&["model/gltf+json"], &[Encoding::Gltf]),
+            Format::ThreeMf => (&["model/3mf", "application/vnd.ms-3mfdocument"], &[Encoding::ThreeMf]),
         };
         Self {
             name: format,
@@ -71,6 +72,7 @@ fn extensions_of(format: Format) -> &'static [&'static str] {
         Format::Ply => &["ply"],
         Format::Glb => &["glb"],
         Format::Gltf => &["gltf"],
+        Format::ThreeMf => &["3mf"],
     }
 }
 

@@ -19,6 +19,7 @@ mod mesh_info;
 mod modeller;
 mod option_schema;
 mod options;
+mod part;
 mod plan;
 mod printing;
 mod problem;
@@ -59,6 +60,7 @@ pub use option_schema::{
     camel_case, option_parameters, option_schemas, options_object, options_of, with_input,
 };
 pub use options::{OptionError, OptionKind, OptionSpec, Options, SPECS};
+pub use part::{Attributes, Part};
 pub use plan::{
     ChosenElement, ChosenFinding, ChosenShell, ElementProposal, FillSettings, Plan, PlanRequest, PlanStep,
     Proposal, SingleHole,
@@ -87,6 +89,6 @@ pub use words::{
     Across, ChangeKind, Condition, ConstraintValues, Contact, Criterion, Cut, DefectCode, Degenerate, Effort,
     Encoding, Extract, Fidelity, FillHoles, FillMethod, Format, HoleClass, HoleFate, Kernel, LambdaFrom,
     Mode, Nesting, OpenShells, Operation, Opposite, Outcome, Placement, ProximityTest, Reader, ReasonCode,
-    Rejection, Remedy, Require, SetOperation, Severity, ShellFate, Stage, Stitch, StitchValidity, Units,
-    VertexColors, Weld,
+    Rejection, Remedy, Require, SetOperation, Severity, ShellFate, SolidParts, Stage, Stitch, StitchValidity,
+    Units, VertexColors, Weld,
 };

@@ -392,6 +392,10 @@ impl From<&Failure> for Problem {
                 parameter: Some("mesh".to_owned()),
                 ..Self::new(ProblemCode::InvalidParameter, failure.to_string())
             },
+            Failure::NotApplicable { option, reason } => Self {
+                parameter: Some((*option).to_owned()),
+                ..Self::new(ProblemCode::InvalidParameter, reason.clone())
+            },
             &Failure::NoSuchHole { holes, .. } => Self {
                 parameter: Some("holes".to_owned()),
                 expected: Some(match holes {

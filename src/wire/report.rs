@@ -10,6 +10,7 @@ use super::holes::Hole;
 use super::level::Level;
 use super::mesh_info::{MeshInfo, finite};
 use super::modeller::Modeller;
+use super::part::Part;
 use super::plan::Plan;
 use super::printing::Printing;
 use super::stitches::Stitches;
@@ -60,6 +61,10 @@ pub struct Report {
     pub deviation: Deviation,
     /// The conclusion.
     pub verdict: Verdict,
+    /// The parts of the file that were handled one by one, in its order; empty when all triangles were handled together.
+    pub parts: Vec<Part>,
+    /// What of the file is kept and not judged, and which rules of its format it breaks, in sentences.
+    pub remarks: Vec<String>,
     /// The uploaded bytes, judged.
     pub input_certificate: Certificate,
     /// The returned bytes, judged; null: no bytes are returned.
@@ -115,7 +120,7 @@ pub struct FurtherInput {
 pub struct UnitsInfo {
     /// The unit.
     pub unit: Units,
-    /// The caller or the format stated it; false: it is assumed.
+    /// The caller, the file or its format states it; false: it is assumed.
     pub is_stated: bool,
 }
 
@@ -313,6 +318,8 @@ impl Report {
             after: inner.after.as_ref().map(|mesh| MeshInfo::new(mesh, None)),
             deviation: Deviation::of(inner),
             verdict: Verdict::of(inner),
+            parts: inner.parts.iter().map(Part::from).collect(),
+            remarks: inner.remarks.clone(),
             input_certificate: Certificate::from(&inner.input_certificate),
             certificate: inner.certificate.as_ref().map(Certificate::from),
             printing: inner.printing.as_ref().map(|printing| Printing::new(printing, units.millimetres())),
@@ -443,6 +450,8 @@ mod tests {
             "after",
             "deviation",
             "verdict",
+            "parts",
+            "remarks",
             "input_certificate",
             "certificate",
             "printing",

@@ -25,6 +25,7 @@ fn certificate(is_valid: bool) -> Certificate {
         sha256: [0xab; 32],
         bytes: 284,
         encoding: Encoding::StlBinary,
+        parts: None,
         p0: is_valid,
         p1: is_valid.then_some(true),
         p2: is_valid.then_some(true),
@@ -122,10 +123,13 @@ pub(crate) fn repaired() -> Answer {
         outcome: Some(Outcome::Repaired),
         refusal: None,
         printing: None,
+        parts: Vec::new(),
+        remarks: Vec::new(),
         work_used: 7,
         bytes_peak: 1000,
     };
-    let output = Some(Output { bytes: Some(b"mended".to_vec()), encoding: Encoding::StlBinary });
+    let output =
+        Some(Output { bytes: Some(b"mended".to_vec()), encoding: Encoding::StlBinary, origins: Vec::new() });
     Answer { report, output, levels: Vec::new() }
 }
 

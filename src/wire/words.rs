@@ -182,6 +182,8 @@ mirror! { formats::Format =>
         Glb = "glb",
         /// glTF 2.0 as JSON that holds its data.
         Gltf = "gltf",
+        /// 3D Manufacturing Format.
+        ThreeMf = "3mf",
     }
 }
 
@@ -208,6 +210,8 @@ mirror! { formats::Encoding =>
         Glb = "glb",
         /// glTF JSON.
         Gltf = "gltf",
+        /// The package of a 3MF.
+        ThreeMf = "3mf",
     }
 }
 
@@ -224,6 +228,8 @@ mirror! { formats::ObjReader =>
 mirror! { pipeline::Units =>
     /// The length of one unit of the file.
     Units {
+        /// Micrometre.
+        Micrometre = "um",
         /// Millimetre.
         Millimetre = "mm",
         /// Centimetre.
@@ -232,6 +238,8 @@ mirror! { pipeline::Units =>
         Metre = "m",
         /// Inch.
         Inch = "in",
+        /// Foot.
+        Foot = "ft",
     }
 }
 
@@ -239,6 +247,18 @@ impl Units {
     /// Length of the unit in millimetres.
     pub fn millimetres(self) -> f64 {
         pipeline::Units::from(self).millimetres()
+    }
+}
+
+mirror! { pipeline::Parts =>
+    /// What of a file of several parts is one solid.
+    SolidParts {
+        /// Each part by itself, in its own coordinates; the file keeps everything around them.
+        Separate = "separate",
+        /// All parts at their places, after each was repaired by itself; the result is a new file of one mesh.
+        Union = "union",
+        /// All parts at their places, as they are; the result is a new file of one mesh.
+        Together = "together",
     }
 }
 

@@ -38,5 +38,6 @@ mod repair;
 mod simplify;
 mod simplify_real_files;
 mod stray_faces;
+mod threemf;
 mod units;
 mod winding_of_parts;

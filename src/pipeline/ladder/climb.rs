@@ -199,7 +199,7 @@ impl Climb<'_> {
             return Ok(Judged::Not(Refusal::NothingToRepair));
         }
         let soup = attempt.draft.to_soup(&self.input.soup);
-        match Candidate::write(soup, self.encoding, Depth::FirstViolation, self.budget) {
+        match Candidate::write(soup, self.input, self.encoding, Depth::FirstViolation, self.budget) {
             Ok(candidate) if candidate.certificate().is_printable() => {
                 Ok(Judged::Certified(Box::new(candidate)))
             }

@@ -12,8 +12,8 @@ mod sheets;
 mod unite;
 
 pub(super) use self::climb::{Certified, Climb};
-pub(super) use self::unite::Tried;
 use self::climb::{Found, Situation};
+pub(super) use self::unite::Tried;
 use super::plan::Attempt;
 use super::rebuild::Rebuilt;
 use super::{Action, Failure, Refusal};

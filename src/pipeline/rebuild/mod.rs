@@ -368,7 +368,7 @@ impl Rebuilding<'_> {
         if !soup.face_colors.is_empty() {
             soup.face_colors.resize(soup.triangles.len(), None);
         }
-        Candidate::write(soup, self.encoding, Depth::FirstViolation, self.budget)
+        Candidate::write(soup, self.input, self.encoding, Depth::FirstViolation, self.budget)
     }
 }
 

@@ -21,7 +21,7 @@ use super::target::TargetSpec;
 use super::words::{
     ConstraintValues, Contact, Criterion, Cut, Degenerate, Effort, Extract, FillHoles, FillMethod, Format,
     Kernel, LambdaFrom, Mode, Nesting, OpenShells, Operation, Placement, Reader, Require, SetOperation,
-    Stitch, StitchValidity, Units, VertexColors, Weld,
+    SolidParts, Stitch, StitchValidity, Units, VertexColors, Weld,
 };
 use crate::formats::{ReadLimits, ReadOptions};
 use crate::implicit::RbfOptions;
@@ -57,7 +57,9 @@ options! {
     reader: Reader, in Operation::ALL,
         "Reader of OBJ files. Default: own.";
     units: Units, in Operation::ALL,
-        "Unit of the coordinates. Default: m for glTF, which says so; mm otherwise, reported as assumed.";
+        "Unit of the coordinates; a 3MF states its own. Default: m for glTF, which says so; mm otherwise, reported as assumed.";
+    parts: SolidParts, in Operation::ALL,
+        "What of a 3MF of several parts is one solid; a result in a format that holds one mesh takes all parts together. Default: separate.";
     require: Require, in Operation::WITH_MESH,
         "What the result must be. Default: printable for repair, none for the other operations; boolean returns what is printable or nothing.";
     fill_holes: FillHoles, in REPAIR,
@@ -274,6 +276,7 @@ impl Options {
         pipeline::Options {
             format: self.format.map(Into::into),
             output_format: self.output_format.map(Into::into),
+            parts: self.parts.map(Into::into).unwrap_or_default(),
             read: ReadOptions {
                 limits,
                 obj_reader: self.reader.map(Into::into).unwrap_or_default(),
