@@ -80,7 +80,7 @@ fn random_small_bodies_agree_with_the_oracle() {
 
 #[test]
 fn volumes_of_random_pairs_of_solids_add_up_exactly() {
-    let count = cases(200, 10_000) as usize;
+    let count = cases(100, 10_000) as usize;
     let meeting = par::map_ranges(count, 16, |range| {
         let mut meeting = 0;
         for seed in range {

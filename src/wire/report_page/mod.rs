@@ -75,7 +75,7 @@ fn verdict(page: &mut Page, report: &Value) {
     page.add(format_args!("<div class=\"verdict {}\"><strong>{title}</strong>", tone.class()));
     page.paragraph(plain::outcome(text(&verdict["outcome"])));
     if let Some(word) = verdict["fidelity"].as_str() {
-        page.paragraph(plain::fidelity(word));
+        page.paragraph(plain::fidelity(word, verdict["outcome"] == "combined"));
     }
     for change in items(&verdict["changes"]) {
         page.paragraph(&sentence(text(&change["message"])));
