@@ -1,19 +1,21 @@
 #!/usr/bin/env python3
 """Runs every GLB and glTF file of ../shared/formats through the program and prints Markdown: what is read or refused and why, what a repair makes of it, and whether its result verifies.
 
-usage: gltf.py [--binary PATH] [--speed N]      with MESHMEND_SHARED; --speed times a GLB of N triangles beside trimesh (PyPI, with numpy)
+usage: gltf.py [--binary PATH] [--speed N] [--seconds 120]      with MESHMEND_SHARED; --speed times a GLB of N triangles beside trimesh (PyPI, with numpy)
 """
 import argparse, collections, json, os, struct, subprocess, sys, tempfile, time
 here = os.path.dirname(os.path.abspath(__file__)); root = os.path.dirname(here)
 shared = os.environ.get("MESHMEND_SHARED", os.path.join(root, "../shared"))
 p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-p.add_argument("--binary"); p.add_argument("--speed", type=int, default=0); o = p.parse_args()
+p.add_argument("--binary"); p.add_argument("--speed", type=int, default=0); p.add_argument("--seconds", type=float, default=120); o = p.parse_args()
 folder = os.path.join(shared, "formats")
 if not os.path.exists(os.path.join(folder, "MANIFEST.tsv")): sys.exit("the files are not here; set MESHMEND_SHARED")
 binary = o.binary or os.path.join(os.environ.get("CARGO_TARGET_DIR", os.path.join(root, "target")), "release/meshmend")
 
 def run(*args):
-    start = time.time(); done = subprocess.run([binary, *args], capture_output=True, timeout=600)
+    start = time.time()
+    try: done = subprocess.run([binary, *args], capture_output=True, timeout=o.seconds)
+    except subprocess.TimeoutExpired: return "timeout", b"", [f"meshmend: not done after {o.seconds:.0f} s"], o.seconds
     return done.returncode, done.stdout, done.stderr.decode("utf-8", "replace").strip().splitlines(), time.time() - start
 rows = []
 for kind in ("glb", "gltf"):
@@ -31,7 +33,7 @@ for kind in ("glb", "gltf"):
 
 def cells(r):
     report = r["report"]
-    if not report: return ["refused", "", "", r["why"].replace("|", "\\|")]
+    if not report: return ["refused" if r["code"] == 2 else f"{r['code']}", "", "", r["why"].replace("|", "\\|")]
     verdict = report.get("verdict") or {}; outcome = verdict.get("outcome") or f"exit {r['code']}"
     before = report.get("before") or {}; triangles = (before.get("counts") or {}).get("triangles", "")
     left = [f"{k} {v}" for a in report.get("actions") or [] if a.get("step") == "left_out" for k, v in (a.get("changes") or {}).items()]
@@ -42,7 +44,7 @@ commit = subprocess.run(["git", "log", "-1", "--format=%h", "--", "src"], cwd=ro
 print(f"# GLB and glTF files nobody here made\n\n{len(rows)} files of trimesh, assimp and Online3DViewer, commit {commit}; made by `experiments/gltf.py`.\n")
 print("| figure | value |\n|---|---|")
 returned = [r for r in rows if r["verified"] is not None]
-print(f"| files without a report or a named reason | {sum(r['report'] is None and r['code'] != 2 for r in rows)} |")
+print(f"| files without a report or a named reason | {sum(r['report'] is None and r['code'] not in (2, 'timeout') for r in rows)} |")
 print(f"| read | {sum(r['report'] is not None for r in rows)} |\n| refused by name | {sum(r['report'] is None and r['code'] == 2 for r in rows)} |")
 print(f"| returned | {len(returned)} |\n| of those verified as valid solids | {sum(r['verified'] for r in returned)} |\n| of those byte for byte | {sum(r['same'] for r in returned)} |")
 print(f"| longest, whole process | {max(r['seconds'] for r in rows):.2f} s |\n")

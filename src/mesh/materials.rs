@@ -1,6 +1,6 @@
 //! What faces are made of, by the names that a file gives.
 
-use super::Color;
+use super::color::Color;
 use std::sync::Arc;
 
 /// In the place of the number of a material: the face has none.

@@ -80,7 +80,9 @@ function glb(isOpen) {
       accessor(0, "VEC3", 0, half), accessor(1, "VEC2", 0, half),
       accessor(0, "VEC3", half, list.length - half),
     ],
-    bufferViews: parts.map((part, i) => ({ buffer: 0, byteOffset: offsets[i], byteLength: part.length })),
+    bufferViews: parts.map((part, i) => ({
+      buffer: 0, byteOffset: offsets[i], byteLength: part.length, ...(i < 2 ? { byteStride: [12, 8][i] } : {}),
+    })),
     buffers: [{ byteLength: parts.reduce((sum, part) => sum + part.length, 0) }],
   };
   const padded = (buffer, fill) => Buffer.concat([buffer, Buffer.alloc((4 - (buffer.length % 4)) % 4, fill)]);
