@@ -535,7 +535,8 @@ fn the_same_file_gives_the_same_bytes_with_one_thread_and_with_many() {
     let bytes = painted(true);
     let of = |threads| {
         let repair = || pipeline::run(Operation::Repair, &bytes, &Options::default(), &Budget::unlimited());
-        meshmend::par::with_threads(threads, repair).unwrap()
+        let answer = meshmend::par::with_threads(threads, repair).unwrap();
+        (answer.output, answer.report.certificate, answer.report.work_used)
     };
     let (one, two, eight) = (of(1), of(2), of(8));
     assert_eq!(one, two);

@@ -197,7 +197,8 @@ impl Run<'_> {
     fn finish(&self, mut done: Vec<Done>, input_certificate: Certificate) -> Result<Answer, Failure> {
         let refused = done.iter().position(|done| done.answer.report.refusal.is_some());
         let mut outputs = Vec::new();
-        if refused.is_none() && done.iter().all(|done| done.answer.output.is_some()) {
+        let has_results = !done.is_empty() && done.iter().all(|done| done.answer.output.is_some());
+        if refused.is_none() && has_results {
             let levels = done.iter().map(|done| done.answer.levels.len()).max().unwrap_or(0);
             for level in 0..=levels {
                 outputs.push(self.write(&mut done, level)?);
@@ -215,9 +216,6 @@ impl Run<'_> {
             }
             return Ok(report.into_answer());
         };
-        if done.is_empty() {
-            return Ok(self.without_parts(report));
-        }
         if let Some(refusal) = refusal(&self.with_default_require(), &certificate) {
             return Ok(Report { certificate: None, after: None, ..report }.refused(refusal));
         }
