@@ -100,7 +100,7 @@ pub(super) fn without_copies<'c>(
     if !contacts.list.iter().any(is_copy) {
         return contacts;
     }
-    let mut left = Contacts::default();
+    let mut left = Contacts { is_cut_short: contacts.is_cut_short, ..Contacts::default() };
     for &contact in contacts.list.iter().filter(|c| !is_copy(c)) {
         left.count += 1;
         left.count_by_kind[contact.kind as usize] += 1;

@@ -58,7 +58,9 @@ pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
             witness
         };
         let count = cx.contacts.count_by_kind[kind as usize];
-        Finding::with(code, count, pairs().map(witness).collect())
+        let mut found = Finding::with(code, count, pairs().map(witness).collect());
+        found.iter_mut().for_each(|finding| finding.is_at_least = cx.contacts.is_cut_short);
+        found
     };
     Ok([
         found(DefectCode::SelfIntersection, ContactKind::Cross),

@@ -156,7 +156,8 @@ fn defect_row(defect: &Defect) -> (Style, [String; 4]) {
         Severity::Info => (QUIET, "info"),
     };
     let first = defect.witnesses.first().map(witness).unwrap_or_default();
-    (style, [defect.code.to_string(), defect.count.to_string(), severity.to_owned(), first])
+    let count = format!("{}{}", defect.count, if defect.is_at_least { " or more" } else { "" });
+    (style, [defect.code.to_string(), count, severity.to_owned(), first])
 }
 
 /// Most holes of which a screen tells what became of them.

@@ -1,5 +1,6 @@
 //! Operations from bytes to bytes: read, analyze, repair by a plan that the client can read, write, certify.
 
+mod bounds;
 mod convert;
 mod cut_stitch;
 mod describe;
@@ -22,6 +23,7 @@ mod texture;
 mod united;
 mod units;
 
+pub use self::bounds::work_units_max;
 pub use self::cut_stitch::{CutStitchChoices, Stitching};
 pub use self::faithful::{Change, ChangeKind, Fidelity, FidelityVerdict};
 pub use self::fidelity::Losses;
@@ -308,6 +310,11 @@ pub enum Outcome {
 pub enum Refusal {
     /// No finite non-degenerate triangle.
     NothingToRepair,
+    /// No valid solid was found in the work that a file of this size may take.
+    OverBudget {
+        /// The bound, in units of work.
+        units: u64,
+    },
     /// No step of the plan led to a valid solid; the first violation of the last attempt.
     NotRepairable {
         /// What still breaks the contract.
@@ -465,6 +472,12 @@ pub enum Failure {
     /// The run was stopped.
     #[error("{0}")]
     Stopped(#[from] Stopped),
+    /// What was asked takes more work than a file of this size may.
+    #[error("the mesh takes more than the {units} units of work that a file of its size may take")]
+    OverBudget {
+        /// The bound, in units of work.
+        units: u64,
+    },
     /// The plan is not for this file.
     #[error("the plan is not for this file")]
     PlanMismatch(PlanMismatch),
@@ -498,6 +511,17 @@ impl From<ReadError> for Failure {
 /// # Errors
 /// Only unreadable input and a stopped budget; a broken mesh is a successful analysis, a refusal part of the report.
 pub fn run(
+    operation: Operation,
+    bytes: &[u8],
+    options: &Options,
+    budget: &Budget,
+) -> Result<Answer, Failure> {
+    bounds::within_bounds(operation, bytes.len(), options, budget, || {
+        run_unbounded(operation, bytes, options, budget)
+    })
+}
+
+fn run_unbounded(
     operation: Operation,
     bytes: &[u8],
     options: &Options,

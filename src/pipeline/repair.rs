@@ -8,7 +8,7 @@ use super::rebuild::{NotRebuilt, Rebuilt};
 use super::remedies::{Choices, PlanMismatch, Walls};
 use super::united::United;
 use super::{
-    Answer, Contact, Failure, Operation, Options, Outcome, Refusal, Report, Require, rebuild, simplify,
+    Answer, Contact, Failure, Operation, Options, Outcome, Refusal, Report, Require, bounds, rebuild, simplify,
 };
 use crate::analysis::Analysis;
 use crate::budget::{Budget, Stage, Stopped};
@@ -28,8 +28,19 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
     }
     let choices = Choices::of(options, report.before.as_ref())?;
     if let Some(steps) = plan.and_then(|plan| plan.steps.as_deref()) {
-        return replay(input, steps, options, report, budget);
+        return bounds::or_refused(report, budget, |report| replay(input, steps, options, report, budget));
     }
+    bounds::or_refused(report, budget, |report| planned(input, &choices, options, report, budget))
+}
+
+/// Repairs `input` by the plans that may lead to a solid.
+fn planned(
+    input: &Input,
+    choices: &Choices,
+    options: &Options,
+    report: Report,
+    budget: &Budget,
+) -> Result<Answer, Failure> {
     let encoding = input.output_encoding(options);
     // Cavities and small parts make no mesh invalid, but the caller may want them filled and removed.
     let is_as_asked = || {
@@ -59,14 +70,18 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
         }
     }
     let before = report.before.clone();
-    let search = Search { input, encoding, options, choices: &choices, before: before.as_ref(), budget };
-    match search.run()? {
+    let search = Search { input, encoding, options, choices, before: before.as_ref(), budget };
+    // What local edits do not do in half of the work is left to the lattice.
+    let found = budget.within_part(2, || search.run())?.unwrap_or(Found::Nowhere);
+    match found {
         Found::Certified(found) => {
             let (attempt, candidate) = *found;
             let fidelity = fidelity_of(&attempt, &candidate, &search)?;
             certified(United { attempt, candidate, fidelity }, &search, report)
         }
         Found::United(united) => certified(*united, &search, report),
+        Found::Nowhere if choices.rebuilds => Ok(search.rebuilt(report)?),
+        Found::Nowhere => Ok(report.refused(Refusal::OverBudget { units: budget.work_used() })),
         Found::Nothing { refusal: Refusal::NotRepairable { .. }, mended: Some(mended), .. }
             if options.require == Some(Require::None) =>
         {
@@ -76,7 +91,7 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
             refusal: Refusal::NotRepairable { .. } | Refusal::NothingToRepair, mended, ..
         } if choices.rebuilds => match (search.rebuild(), mended) {
             (Ok(rebuilt), _) => {
-                let report = report.made_by(rebuilding(&choices));
+                let report = report.made_by(rebuilding(choices));
                 Ok(rebuilt.returned(input, report, budget)?)
             }
             (Err(NotRebuilt::Failed(failure)), _) => Err(failure),
@@ -104,8 +119,8 @@ fn certified(found: United, search: &Search<'_>, report: Report) -> Result<Answe
     let United { attempt, candidate, fidelity } = found;
     // What was removed as chosen is no loss that a rebuilt surface could make good.
     if !fidelity.passes(&options.limits) && search.choices.rebuilds && !search.choices.removes() {
-        let rebuilt = match search.rebuild() {
-            Ok(rebuilt) => Some(rebuilt),
+        let rebuilt = match budget.within_part(2, || search.rebuild()) {
+            Ok(rebuilt) => rebuilt,
             Err(NotRebuilt::Refused { .. }) => None,
             Err(NotRebuilt::Failed(failure)) => return Err(failure),
         };
@@ -185,13 +200,7 @@ fn replay(
     let options = &settings;
     let search = Search { input, encoding, options, choices, before: before.as_ref(), budget };
     if steps.contains(&Step::Rebuild) {
-        return match search.rebuild() {
-            Ok(rebuilt) => Ok(rebuilt.returned(input, report.made_by(rebuilding(choices)), budget)?),
-            Err(NotRebuilt::Failed(failure)) => Err(failure),
-            Err(NotRebuilt::Refused { refusal, actions }) => {
-                Ok(Report { actions, ..report }.refused(refusal))
-            }
-        };
+        return search.rebuilt(report);
     }
     if steps.is_empty() && input.may_come_back_as(encoding) {
         let is_valid = input.examination.certificate.is_printable();
@@ -258,6 +267,8 @@ pub(super) struct Search<'a> {
 const RINGS_MAX: u32 = 2;
 
 enum Found {
+    /// The search took too much work.
+    Nowhere,
     Certified(Box<(Attempt, Candidate)>),
     United(Box<United>),
     Nothing {
@@ -286,7 +297,10 @@ impl Search<'_> {
         let mut fails_in_f32 = false;
         let (mut may_unite, has_contacts) = (self.may_unite(), self.has_contacts());
         loop {
-            let (mended, last) = self.attempt(variant)?;
+            let Some((mended, last)) = self.budget.within_part(4, || self.attempt(variant))? else {
+                let united = if may_unite { self.united(variant)? } else { None };
+                return Ok(united.map_or(Found::Nowhere, |united| Found::United(Box::new(united))));
+            };
             if last.draft.triangles.is_empty() {
                 return Ok(Found::nothing(Refusal::NothingToRepair, last, mended));
             }
@@ -410,6 +424,15 @@ impl Search<'_> {
         }
         let most = self.input.soup.triangles.len() as u64 / 20;
         self.input.examination.contacts.as_ref().is_none_or(|contacts| (1..=most).contains(&contacts.count))
+    }
+
+    /// The rebuilt surface as the answer, or why there is none.
+    fn rebuilt(&self, report: Report) -> Result<Answer, Failure> {
+        match self.rebuild() {
+            Ok(rebuilt) => Ok(rebuilt.returned(self.input, report.made_by(rebuilding(self.choices)), self.budget)?),
+            Err(NotRebuilt::Failed(failure)) => Err(failure),
+            Err(NotRebuilt::Refused { refusal, actions }) => Ok(Report { actions, ..report }.refused(refusal)),
+        }
     }
 
     fn rebuild(&self) -> Result<Rebuilt, NotRebuilt> {

@@ -52,7 +52,8 @@ impl Search<'_> {
         let limits = &self.options.limits;
         let mut best: Option<United> = None;
         for uniting in self.kinds()? {
-            let Some((attempt, candidate)) = self.united_from(uniting, variant)? else { continue };
+            let tried = self.budget.within_part(3, || self.united_from(uniting, variant))?;
+            let Some((attempt, candidate)) = tried.flatten() else { continue };
             let fidelity = fidelity_of(&attempt, &candidate, self)?;
             let passes = fidelity.passes(limits);
             if best.as_ref().is_none_or(|best| passes || !best.fidelity.is_no_worse(&fidelity, limits)) {

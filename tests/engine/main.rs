@@ -26,6 +26,7 @@ mod fidelity;
 mod fill_holes;
 #[cfg(feature = "server")]
 mod fixtures;
+mod hostile;
 mod modeller;
 mod operations;
 mod plan;

@@ -7,7 +7,7 @@ mod terrains;
 use super::Bvh;
 use super::bvh::{Frame, Leaf, Sliver, Star, Tree};
 use crate::budget::{Budget, Stopped};
-use crate::geom::{ContactKind, DVec3};
+use crate::geom::{ContactKind, DVec3, suits_expansions};
 use crate::par;
 use directions::Directions;
 pub use terrains::Terrains;
@@ -32,6 +32,8 @@ pub struct Contacts {
     pub count_by_kind: [u64; 3],
     /// The pairs, sorted; the first ones when there are more than were asked for.
     pub list: Vec<Contact>,
+    /// The search ended before it had looked everywhere: there may be more pairs than `count`.
+    pub is_cut_short: bool,
 }
 
 /// When a search may end.
@@ -39,19 +41,32 @@ pub struct Contacts {
 pub enum Search {
     /// After a contact is found; which one depends on the mesh alone, not on the threads.
     First,
-    /// Count all, keep the first ones (sorted by `(a, b)`).
+    /// Count all, keep the first ones (sorted by `(a, b)`). Where some are found and looking at so many pairs takes more than
+    /// [`WORK_PER_TRIANGLE`], the rest is not counted.
     All {
         /// Most pairs to keep.
         keep: usize,
     },
 }
 
+/// Units of work after which a search for all contacts ends with those it has found, for each triangle and whatever their number.
+/// Meshes that are as they are meant take 20 to 150 units a triangle.
+pub const WORK_PER_TRIANGLE: u64 = 1024;
+const WORK_MIN: u64 = 1 << 26;
+
+/// What a pair of triangles counts, and what more it counts when they meet: then most signs are those of exact arithmetic.
+const COST: u64 = 4;
+const COST_OF_CONTACT: u64 = 32;
+
+/// What a pair of triangles counts whose coordinates are so far apart that their signs are those of big integers.
+const COST_IN_BIG_INTEGERS: u64 = 2048;
+
 /// Finds the pairs of triangles in `bvh` that meet in more than a common vertex or a common edge, exactly.
 ///
 /// Equal positions must have equal indices, triangles must not be degenerate. Two triangles with the same three
 /// vertices are not reported. Pairs at a vertex of `terrains`, if there are any, are not looked at.
 ///
-/// Spends one work unit for each pair of boxes and of triangles it looks at.
+/// Spends one work unit for each pair of boxes it looks at, and more for each pair of triangles.
 ///
 /// # Errors
 /// When the budget stops the run.
@@ -63,17 +78,28 @@ pub fn self_contacts(
     search: Search,
     budget: &Budget,
 ) -> Result<Contacts, Stopped> {
-    let surface = Surface { positions, triangles, terrains, frame: bvh.frame() };
-    let found = descent::pairs(bvh.tree(), surface, search, budget)?;
+    let cost_of_pair = if suits_expansions(positions) { COST } else { COST_IN_BIG_INTEGERS };
+    let surface = Surface { positions, triangles, terrains, frame: bvh.frame(), cost_of_pair };
+    let work_max = WORK_MIN + WORK_PER_TRIANGLE * triangles.len() as u64;
+    let (found, mut work) = descent::pairs(bvh.tree(), surface, search, work_max, budget)?;
     if search == Search::First && found.count > 0 {
         return Ok(found);
     }
     let mut all = Gathered::new(search);
     all.merge(found);
     for stars in bvh.stars().chunks(STARS_AT_A_TIME) {
-        let found =
-            par::try_map_ranges(stars.len(), 1, |i| star_contacts(surface, &stars[i.start], search, budget))?;
-        found.into_iter().for_each(|contacts| all.merge(contacts));
+        let left = work_max.saturating_sub(work);
+        if left == 0 && all.has_any() {
+            all.cut_short();
+            break;
+        }
+        let found = par::try_map_ranges(stars.len(), 1, |i| {
+            star_contacts(surface, &stars[i.start], search, left, budget)
+        })?;
+        for (contacts, its_work) in found {
+            all.merge(contacts);
+            work += its_work;
+        }
         if all.is_enough() {
             break;
         }
@@ -84,19 +110,20 @@ pub fn self_contacts(
 /// Stars that are searched before it is seen whether that is enough.
 const STARS_AT_A_TIME: usize = 64;
 
-/// The contacts inside a star: two triangles of one hub meet beyond it exactly when they have a common direction from
-/// it, so the boxes to compare are those of their directions. A flat fan of any size has few pairs of them.
+/// The contacts inside a star, and the units of work they took: two triangles of one hub meet beyond it exactly when they have a
+/// common direction from it, so the boxes to compare are those of their directions. A flat fan of any size has few pairs of them.
 fn star_contacts(
     surface: Surface<'_>,
     star: &Star,
     search: Search,
+    work_max: u64,
     budget: &Budget,
-) -> Result<Contacts, Stopped> {
+) -> Result<(Contacts, u64), Stopped> {
     if surface.terrains.is_some_and(|terrains| terrains.holds(star.hub)) {
-        return Ok(Contacts::default());
+        return Ok((Contacts::default(), 0));
     }
     let directions = Tree::build(&Directions { surface, star }, budget)?;
-    descent::pairs(&directions, surface, search, budget)
+    descent::pairs(&directions, surface, search, work_max, budget)
 }
 
 /// The triangles that are searched.
@@ -106,6 +133,8 @@ struct Surface<'s> {
     triangles: &'s [[u32; 3]],
     terrains: Option<&'s Terrains>,
     frame: Frame,
+    /// Work units of a pair of triangles.
+    cost_of_pair: u64,
 }
 
 impl<'s> Surface<'s> {
@@ -149,6 +178,14 @@ impl Gathered {
         self.is_one_enough && self.contacts.count > 0
     }
 
+    fn has_any(&self) -> bool {
+        self.contacts.count > 0
+    }
+
+    fn cut_short(&mut self) {
+        self.contacts.is_cut_short = true;
+    }
+
     fn add(&mut self, contact: Contact) {
         self.contacts.count += 1;
         self.contacts.count_by_kind[contact.kind as usize] += 1;
@@ -164,6 +201,7 @@ impl Gathered {
             *sum += of_kind;
         }
         self.contacts.list.append(&mut found.list);
+        self.contacts.is_cut_short |= found.is_cut_short;
         if self.contacts.list.len() / 2 > self.keep {
             self.trim();
         }
