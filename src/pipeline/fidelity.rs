@@ -136,7 +136,7 @@ impl<'i> Original<'i> {
         covered: Option<&Covered>,
         budget: &Budget,
     ) -> Result<Fidelity, Stopped> {
-        let measured = |care| self.measure_with(care, result, origins, covered, budget);
+        let measured = |care: &DistanceOptions| self.measure_with(care, result, origins, covered, budget);
         match budget.within_part(3, || measured(&DISTANCE))? {
             Some(fidelity) => Ok(fidelity),
             None => measured(&COARSE_DISTANCE),
