@@ -27,7 +27,7 @@ pub(super) fn search(
     let ids = (sound.len() < mesh.triangles.len()).then_some(sound.as_slice());
     let bvh = Bvh::build(positions, &mesh.triangles, ids, budget)?;
     let mut contacts =
-        self_contacts(positions, &mesh.triangles, &bvh, None, Search::All { keep: KEEP }, budget)?;
+        self_contacts(positions, &mesh.triangles, &bvh, None, Search::Most { keep: KEEP }, budget)?;
     for contact in &mut contacts.list {
         (contact.a, contact.b) = (mesh.source(contact.a), mesh.source(contact.b));
     }

@@ -164,7 +164,7 @@ impl<'a> Judge<'a> {
         let search = if self.verdict.is_brief() {
             Search::First
         } else {
-            Search::All { keep: self.verdict.samples().max(CONTACTS_KEPT_MIN) }
+            Search::Most { keep: self.verdict.samples().max(CONTACTS_KEPT_MIN) }
         };
         let contacts = self_contacts(positions, triangles, &bvh, Some(&terrains), search, budget)?;
         let is_p1 = contacts.count == 0 && !contacts.is_cut_short;

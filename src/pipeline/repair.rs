@@ -80,7 +80,7 @@ fn planned(
             certified(United { attempt, candidate, fidelity }, &search, report)
         }
         Found::United(united) => certified(*united, &search, report),
-        Found::Nowhere if choices.rebuilds => Ok(search.rebuilt(report)?),
+        Found::Nowhere if choices.rebuilds => search.rebuilt(report),
         Found::Nowhere => Ok(report.refused(Refusal::OverBudget { units: budget.work_used() })),
         Found::Nothing { refusal: Refusal::NotRepairable { .. }, mended: Some(mended), .. }
             if options.require == Some(Require::None) =>

@@ -178,7 +178,7 @@ impl Search<'_> {
         let volume = defined_volume(self.before);
         let original = Original::new(soup, volume, solid);
         let asked = choices.cells.map(|cells| [(cells, f64::INFINITY)]);
-        let mut lattices = match &asked {
+        let mut lattices: &[(u32, f64)] = match &asked {
             Some(one) => one,
             None => choices.effort.lattices(),
         };

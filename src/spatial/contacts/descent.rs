@@ -29,9 +29,9 @@ pub(super) fn pairs(
 ) -> Result<(Contacts, u64), Stopped> {
     let tasks = tasks(tree, TASKS_AIM, &|leaf, i| surface.sliver(leaf, i));
     let mut all = Gathered::new(search);
-    let (at_a_time, work_of_task) = match search {
-        Search::First => (TASKS_AT_A_TIME, u64::MAX),
-        Search::All { .. } => (TASKS_AT_A_TIME_OF_ALL, work_max / SHARE_OF_TASK),
+    let at_a_time = match search {
+        Search::First => TASKS_AT_A_TIME,
+        Search::All { .. } | Search::Most { .. } => TASKS_AT_A_TIME_OF_ALL,
     };
     let mut work = 0;
     let count = tasks.len();
@@ -39,7 +39,7 @@ pub(super) fn pairs(
         // All of them end before an error is passed on: whether the work limit is reached depends on their sum alone.
         let found = par::try_map_ranges(tasks.len(), 1, |i| {
             let found = Gathered::new(search);
-            Descent { tree, surface, budget, found, unpaid: 0, work: 0, work_max: work_of_task }
+            Descent { tree, surface, budget, found, unpaid: 0, work: 0, work_max: work_max / SHARE_OF_TASK }
                 .run(tasks[i.start])
         })?;
         for (contacts, its_work) in found {

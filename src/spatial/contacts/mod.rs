@@ -41,9 +41,13 @@ pub struct Contacts {
 pub enum Search {
     /// After a contact is found; which one depends on the mesh alone, not on the threads.
     First,
-    /// Count all, keep the first ones (sorted by `(a, b)`). Where some are found and looking at so many pairs takes more than
-    /// [`WORK_PER_TRIANGLE`], the rest is not counted.
+    /// Count all, keep the first ones (sorted by `(a, b)`).
     All {
+        /// Most pairs to keep.
+        keep: usize,
+    },
+    /// The same, but where some are found and that takes more than [`WORK_PER_TRIANGLE`], the rest is not counted.
+    Most {
         /// Most pairs to keep.
         keep: usize,
     },
@@ -80,7 +84,10 @@ pub fn self_contacts(
 ) -> Result<Contacts, Stopped> {
     let cost_of_pair = if suits_expansions(positions) { COST } else { COST_IN_BIG_INTEGERS };
     let surface = Surface { positions, triangles, terrains, frame: bvh.frame(), cost_of_pair };
-    let work_max = WORK_MIN + WORK_PER_TRIANGLE * triangles.len() as u64;
+    let work_max = match search {
+        Search::Most { .. } => WORK_MIN + WORK_PER_TRIANGLE * triangles.len() as u64,
+        Search::First | Search::All { .. } => u64::MAX,
+    };
     let (found, mut work) = descent::pairs(bvh.tree(), surface, search, work_max, budget)?;
     if search == Search::First && found.count > 0 {
         return Ok(found);
@@ -94,7 +101,7 @@ pub fn self_contacts(
             break;
         }
         let found = par::try_map_ranges(stars.len(), 1, |i| {
-            star_contacts(surface, &stars[i.start], search, left, budget)
+            star_contacts(surface, &stars[i.start], search, left / SHARE_OF_STAR, budget)
         })?;
         for (contacts, its_work) in found {
             all.merge(contacts);
@@ -106,6 +113,9 @@ pub fn self_contacts(
     }
     Ok(all.finish())
 }
+
+/// A star may use this share of the work that is left, once it has found something.
+const SHARE_OF_STAR: u64 = 8;
 
 /// Stars that are searched before it is seen whether that is enough.
 const STARS_AT_A_TIME: usize = 64;
@@ -169,7 +179,7 @@ impl Gathered {
     fn new(search: Search) -> Self {
         let (keep, is_one_enough) = match search {
             Search::First => (1, true),
-            Search::All { keep } => (keep, false),
+            Search::All { keep } | Search::Most { keep } => (keep, false),
         };
         Self { contacts: Contacts::default(), keep, is_one_enough }
     }
@@ -215,5 +225,46 @@ impl Gathered {
     fn finish(mut self) -> Contacts {
         self.trim();
         self.contacts
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Triangles all through each other.
+    fn tangle(count: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let mut state = 1u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state >> 8)
+        };
+        let positions = (0..3 * count).map(|_| DVec3::new(random(), random(), random())).collect();
+        (positions, (0..count).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect())
+    }
+
+    #[test]
+    fn a_count_ends_at_its_bound_of_work_and_says_so() {
+        let (positions, triangles) = tangle(5000);
+        let count = |search, threads| {
+            par::with_threads(threads, || {
+                let budget = Budget::unlimited();
+                let bvh = Bvh::build(&positions, &triangles, None, &budget).unwrap();
+                let found = self_contacts(&positions, &triangles, &bvh, None, search, &budget).unwrap();
+                (found, budget.work_used())
+            })
+        };
+        let (all, _) = count(Search::All { keep: 0 }, 8);
+        let (most, work) = count(Search::Most { keep: 0 }, 8);
+        assert!(!all.is_cut_short && most.is_cut_short);
+        assert!(0 < most.count && most.count < all.count, "{} of {}", most.count, all.count);
+        assert!(work < 4 * (WORK_MIN + 5000 * WORK_PER_TRIANGLE), "{work}");
+        assert_eq!((most, work), count(Search::Most { keep: 0 }, 1));
+        // What is within the bound is counted in full.
+        let (positions, triangles) = tangle(200);
+        let budget = Budget::unlimited();
+        let bvh = Bvh::build(&positions, &triangles, None, &budget).unwrap();
+        let of = |search| self_contacts(&positions, &triangles, &bvh, None, search, &budget).unwrap();
+        assert_eq!(of(Search::Most { keep: 9 }), of(Search::All { keep: 9 }));
     }
 }
