@@ -194,12 +194,10 @@ mod tests {
                 };
                 let is_in = |p: DVec2| {
                     let sides = [[0, 1], [1, 2], [2, 0]];
-                    let is_left =
-                        |[i, j]: [usize; 2]| orient2d(corners[i], corners[j], p) != Sign::Negative;
+                    let is_left = |[i, j]: [usize; 2]| orient2d(corners[i], corners[j], p) != Sign::Negative;
                     !corners.contains(&p) && sides.into_iter().all(is_left)
                 };
-                let want =
-                    (0..points.len()).any(|id| id % 5 != 3 && counts[id] && is_in(points[id]));
+                let want = (0..points.len()).any(|id| id % 5 != 3 && counts[id] && is_in(points[id]));
                 let got = obstacles.is_one_in(&points, corners, |id| counts[id as usize], &mut 0);
                 assert_eq!(got, want, "round {round}");
                 found += u32::from(want);

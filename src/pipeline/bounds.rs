@@ -25,7 +25,9 @@ pub fn work_units_max(operation: Operation, bytes: usize, options: &Options) -> 
         Operation::Analyze | Operation::Plan | Operation::Verify | Operation::Convert => LOOKING,
         Operation::Repair if options.wrap.effort == Effort::High => REPAIRING * HIGH_EFFORT,
         Operation::Repair => REPAIRING,
-        Operation::Simplify | Operation::CutStitch | Operation::FillHoles | Operation::Modeller => return None,
+        Operation::Simplify | Operation::CutStitch | Operation::FillHoles | Operation::Modeller => {
+            return None;
+        }
     };
     let bytes = (bytes as u64).max(SMALL_BYTES);
     Some((u128::from(of_small) * u128::from(bytes) / u128::from(SMALL_BYTES)).min(u128::from(u64::MAX)) as u64)

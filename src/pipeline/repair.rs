@@ -8,7 +8,8 @@ use super::rebuild::{NotRebuilt, Rebuilt};
 use super::remedies::{Choices, PlanMismatch, Walls};
 use super::united::United;
 use super::{
-    Answer, Contact, Failure, Operation, Options, Outcome, Refusal, Report, Require, bounds, rebuild, simplify,
+    Answer, Contact, Failure, Operation, Options, Outcome, Refusal, Report, Require, bounds, rebuild,
+    simplify,
 };
 use crate::analysis::Analysis;
 use crate::budget::{Budget, Stage, Stopped};
@@ -429,9 +430,13 @@ impl Search<'_> {
     /// The rebuilt surface as the answer, or why there is none.
     fn rebuilt(&self, report: Report) -> Result<Answer, Failure> {
         match self.rebuild() {
-            Ok(rebuilt) => Ok(rebuilt.returned(self.input, report.made_by(rebuilding(self.choices)), self.budget)?),
+            Ok(rebuilt) => {
+                Ok(rebuilt.returned(self.input, report.made_by(rebuilding(self.choices)), self.budget)?)
+            }
             Err(NotRebuilt::Failed(failure)) => Err(failure),
-            Err(NotRebuilt::Refused { refusal, actions }) => Ok(Report { actions, ..report }.refused(refusal)),
+            Err(NotRebuilt::Refused { refusal, actions }) => {
+                Ok(Report { actions, ..report }.refused(refusal))
+            }
         }
     }
 

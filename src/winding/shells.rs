@@ -229,7 +229,10 @@ fn read_open(
     }
     let sides = par::try_map_ranges(samples.len(), 256, |range| {
         budget.spend(range.len() as u64 * 8)?;
-        samples[range].iter().map(|&t| both_sides(&tree, open[t], beside, budget)).collect::<Result<Vec<_>, _>>()
+        samples[range]
+            .iter()
+            .map(|&t| both_sides(&tree, open[t], beside, budget))
+            .collect::<Result<Vec<_>, _>>()
     })?;
     let (mut sum, mut area) = (vec![0.0; part_count], vec![0.0; part_count]);
     for (&t, (mean, size)) in samples.iter().zip(sides.into_iter().flatten()) {

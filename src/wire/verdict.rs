@@ -89,7 +89,9 @@ impl From<&pipeline::Refusal> for Reason {
             pipeline::Refusal::OverBudget { units } => (
                 ReasonCode::OverBudget,
                 None,
-                format!("no valid solid was found in the {units} units of work that a file of this size may take"),
+                format!(
+                    "no valid solid was found in the {units} units of work that a file of this size may take"
+                ),
             ),
             pipeline::Refusal::NotRepairable { witness } => (
                 ReasonCode::NotRepairable,

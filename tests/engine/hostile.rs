@@ -202,7 +202,11 @@ fn hostile_numbers_end_within_their_bound() {
     let corners = |random: &mut Random| -> [[f64; 3]; 3] {
         std::array::from_fn(|_| std::array::from_fn(|_| number(random)))
     };
-    check_soup("mixed exponents", &soup_of((0..40).map(|_| corners(&mut random))), Encoding::PlyBinaryBigEndian);
+    check_soup(
+        "mixed exponents",
+        &soup_of((0..40).map(|_| corners(&mut random))),
+        Encoding::PlyBinaryBigEndian,
+    );
     let sized = (0..20).fold(RawSoup::default(), |all, _| {
         let size = 10f64.powf(600.0 * random.unit() - 300.0);
         all.with(&cuboid([size; 3]).moved([size * random.unit(); 3]))
@@ -238,8 +242,9 @@ fn hostile_files_end_the_same_with_any_number_of_threads() {
         polygon(&(0..64).map(|i| [f64::from(i * 37 % 64), f64::from(i * 23 % 64), 0.0]).collect::<Vec<_>>()),
     ];
     for bytes in files {
-        let one_two_eight = [1, 2, 8]
-            .map(|threads| par::with_threads(threads, || ended(Operation::Repair, "", &bytes, &Options::default())));
+        let one_two_eight = [1, 2, 8].map(|threads| {
+            par::with_threads(threads, || ended(Operation::Repair, "", &bytes, &Options::default()))
+        });
         assert_eq!(one_two_eight[0], one_two_eight[1]);
         assert_eq!(one_two_eight[0], one_two_eight[2]);
     }

@@ -130,16 +130,17 @@ pub(super) fn rebuild(
         attempt.run(&steps.collect::<Vec<_>>(), &input.soup, before, budget)?;
         Ok::<_, Stopped>(attempt)
     };
-    let Attempt { draft, actions, .. } = budget.stage(Stage::Repair, || match budget.within_part(4, mend)? {
-        Some(attempt) => Ok::<_, Stopped>(attempt),
-        // The lattice takes the triangles as they are.
-        None => {
-            let mut attempt = start.clone();
-            let steps = variant.welding(&choices.before_rebuilding());
-            attempt.run(&[steps, vec![Step::JoinCopies]].concat(), &input.soup, before, budget)?;
-            Ok(attempt)
-        }
-    })?;
+    let Attempt { draft, actions, .. } =
+        budget.stage(Stage::Repair, || match budget.within_part(4, mend)? {
+            Some(attempt) => Ok::<_, Stopped>(attempt),
+            // The lattice takes the triangles as they are.
+            None => {
+                let mut attempt = start.clone();
+                let steps = variant.welding(&choices.before_rebuilding());
+                attempt.run(&[steps, vec![Step::JoinCopies]].concat(), &input.soup, before, budget)?;
+                Ok(attempt)
+            }
+        })?;
     let search = Search { input, encoding, options, before, budget };
     match search.run(&input.soup, &draft, &actions) {
         Err(NotRebuilt::Refused { refusal: Refusal::BeyondFloat32 { .. }, .. })
@@ -168,7 +169,8 @@ impl Search<'_> {
     fn run(&self, soup: &Soup, draft: &Draft, actions: &[Action]) -> Result<Rebuilt, NotRebuilt> {
         let (choices, limits, budget) = (&self.options.wrap, &self.options.limits, self.budget);
         let refused = |refusal| NotRebuilt::Refused { refusal, actions: actions.to_vec() };
-        let split = budget.within_part(4, || budget.stage(Stage::Repair, || parts::split(draft, budget)))?.flatten();
+        let split =
+            budget.within_part(4, || budget.stage(Stage::Repair, || parts::split(draft, budget)))?.flatten();
         // Where it is too much work to say what is hidden, everything counts as seen.
         let solid = budget.within_part(4, || {
             budget.stage(Stage::Measure, || {

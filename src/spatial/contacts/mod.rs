@@ -46,7 +46,8 @@ pub enum Search {
         /// Most pairs to keep.
         keep: usize,
     },
-    /// The same, but where some are found and that takes more than [`WORK_PER_TRIANGLE`], the rest is not counted.
+    /// The same, but where some are found and that takes more than 2^26 units of work and 1,024 for each triangle, the rest is not
+    /// counted.
     Most {
         /// Most pairs to keep.
         keep: usize,
@@ -55,7 +56,7 @@ pub enum Search {
 
 /// Units of work after which a search for all contacts ends with those it has found, for each triangle and whatever their number.
 /// Meshes that are as they are meant take 20 to 150 units a triangle.
-pub const WORK_PER_TRIANGLE: u64 = 1024;
+const WORK_PER_TRIANGLE: u64 = 1024;
 const WORK_MIN: u64 = 1 << 26;
 
 /// What a pair of triangles counts, and what more it counts when they meet: then most signs are those of exact arithmetic.
