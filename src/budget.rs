@@ -141,8 +141,8 @@ pub struct Budget {
     stop: StopFlag,
     work: AtomicU64,
     work_max: u64,
-    /// The limit in force: that of the run, or of the innermost share of it.
-    work_limit: AtomicU64,
+    /// The limit of the innermost share in force. The caller's own limit makes no share smaller: it ends the run.
+    share_limit: AtomicU64,
     /// Work units at which the observer is told of them next.
     work_told_at: AtomicU64,
     bytes: AtomicU64,
@@ -180,7 +180,7 @@ impl Budget {
             stop,
             work: AtomicU64::new(0),
             work_max,
-            work_limit: AtomicU64::new(work_max),
+            share_limit: AtomicU64::new(u64::MAX),
             work_told_at: AtomicU64::new(WORK_TOLD_FIRST),
             bytes: AtomicU64::new(0),
             bytes_peak: AtomicU64::new(0),
@@ -207,7 +207,10 @@ impl Budget {
     /// Counts `units` of work, then [checks](Self::check).
     pub fn spend(&self, units: u64) -> Result<(), Stopped> {
         let used = self.work.fetch_add(units, Ordering::Relaxed).saturating_add(units);
-        let limit = self.work_limit.load(Ordering::Relaxed);
+        if used > self.work_max {
+            return Err(Stopped::Work { limit: self.work_max });
+        }
+        let limit = self.share_limit.load(Ordering::Relaxed);
         if used > limit {
             return Err(Stopped::Work { limit });
         }
@@ -228,16 +231,16 @@ impl Budget {
         units: u64,
         body: impl FnOnce() -> Result<T, E>,
     ) -> Result<Option<T>, E> {
-        let outer = self.work_limit.load(Ordering::Relaxed);
+        let outer = self.share_limit.load(Ordering::Relaxed);
         let limit = self.work_used().saturating_add(units);
         if limit >= outer {
             return body().map(Some);
         }
-        self.work_limit.store(limit, Ordering::Relaxed);
+        self.share_limit.store(limit, Ordering::Relaxed);
         let result = body();
-        self.work_limit.store(outer, Ordering::Relaxed);
+        self.share_limit.store(outer, Ordering::Relaxed);
         match result {
-            Err(error) if error.as_stopped() == Some(Stopped::Work { limit }) => {
+            Err(error) if limit != self.work_max && error.as_stopped() == Some(Stopped::Work { limit }) => {
                 // What other threads spent beyond it depends on their number.
                 self.work.store(limit, Ordering::Relaxed);
                 self.check()?;
@@ -316,9 +319,9 @@ impl Budget {
         }
     }
 
-    /// Work units that are left of the share in force.
+    /// Work units that are left of the share in force; the caller's limit does not count.
     pub fn work_left(&self) -> u64 {
-        self.work_limit.load(Ordering::Relaxed).saturating_sub(self.work_used())
+        self.share_limit.load(Ordering::Relaxed).saturating_sub(self.work_used())
     }
 
     /// Work units used so far.
