@@ -7,6 +7,7 @@ use super::figures::counted;
 use super::files::Place;
 use super::summary::{Subject, summary};
 use super::work::{Done, Errand, run as run_one, wrong};
+use crate::pipeline::Operation;
 use crate::wire::{Fidelity, Problem};
 use anstyle::Style;
 use serde_json::{Value, json};
@@ -72,6 +73,9 @@ fn place_in(folder: &Path, input: &Place, request: &Request) -> Result<Place, Pr
     let mut path = folder.join(name);
     if let Some((_, format)) = request.options.iter().find(|(option, _)| option == "output_format") {
         path.set_extension(format);
+    }
+    if request.operation == Operation::Render {
+        path.set_extension("png");
     }
     let is_input =
         fs::canonicalize(&path).ok().is_some_and(|path| fs::canonicalize(input).ok() == Some(path));

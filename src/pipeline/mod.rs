@@ -10,6 +10,7 @@ mod identical;
 mod input;
 mod modeller;
 mod output;
+mod picture;
 mod plan;
 mod printing;
 mod priority;
@@ -31,6 +32,7 @@ pub use self::modeller::{
     Blocker, BlockerKind, EdgeName, Edit, EditKind, FaceName, FaceRange, ModelFace, ModellerChoices,
     ModellerRefusal, ModellerReport, ModellerStep, RangeName, RangeSide,
 };
+pub use self::picture::PictureChoices;
 pub use self::plan::Step;
 pub use self::printing::PrintingReport;
 pub use self::rebuild::{Effort, WrapChoices};
@@ -68,11 +70,13 @@ pub enum Operation {
     FillHoles,
     /// A closed polyhedron edited by its planes; the certificate states what holds.
     Modeller,
+    /// A picture.
+    Render,
 }
 
 impl Operation {
     /// Every operation.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Analyze,
         Self::Plan,
         Self::Repair,
@@ -82,6 +86,7 @@ impl Operation {
         Self::CutStitch,
         Self::FillHoles,
         Self::Modeller,
+        Self::Render,
     ];
 
     /// Name in paths, options and reports.
@@ -96,6 +101,7 @@ impl Operation {
             Self::CutStitch => "cut-stitch",
             Self::FillHoles => "fill-holes",
             Self::Modeller => "modeller",
+            Self::Render => "render",
         }
     }
 }
@@ -212,6 +218,10 @@ pub struct Options {
     pub policy: Option<Policy>,
     /// The MTL file of an OBJ: its diffuse colours become face colours, which OFF and PLY can hold.
     pub material: Option<Vec<u8>>,
+    /// The picture that is made beside everything else; `None`: none, and of `render` the usual one.
+    pub picture: Option<PictureChoices>,
+    /// A second file, which `render` shows beside the first.
+    pub after: Option<Vec<u8>>,
 }
 
 /// How far a result may be from the file.
@@ -454,6 +464,8 @@ pub struct Answer {
     pub output: Option<Output>,
     /// The files of further targets of a simplification.
     pub levels: Vec<Output>,
+    /// A picture of the mesh and of the result, as PNG, if one was asked for.
+    pub picture: Option<Vec<u8>>,
 }
 
 /// A run without a report.
@@ -507,7 +519,7 @@ pub fn run(
     let in_result_units = input.take_units_of_result(operation, options)?;
     let options = in_result_units.as_ref().unwrap_or(options);
     let mut answer = match operation {
-        Operation::Analyze => input.report(operation, budget)?.into_answer(),
+        Operation::Analyze | Operation::Render => input.report(operation, budget)?.into_answer(),
         Operation::Plan => input.planned(operation, budget)?.into_answer(),
         Operation::Verify => input.verification().into_answer(),
         Operation::Convert => convert::convert(&input, options, budget)?,
@@ -523,6 +535,7 @@ pub fn run(
     if let Some(policy) = &options.policy {
         answer.report.printing = printing::measure(&input, &answer, policy, budget)?;
     }
+    answer.picture = picture::make(operation, &input, &answer, options, budget)?;
     answer.report.work_used = budget.work_used();
     answer.report.bytes_peak = budget.bytes_peak();
     Ok(answer)

@@ -188,6 +188,6 @@ impl Candidate {
             ..report
         };
         let output = Some(Output { bytes: Some(self.bytes), encoding: self.encoding });
-        Ok(Answer { report, output, levels: Vec::new() })
+        Ok(Answer { report, output, levels: Vec::new(), picture: None })
     }
 }

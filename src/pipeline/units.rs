@@ -15,7 +15,7 @@ fn units_of_result(operation: Operation, options: &Options, units: Units, encodi
         _ => units,
     };
     match operation {
-        Operation::Analyze | Operation::Plan | Operation::Verify => units,
+        Operation::Analyze | Operation::Plan | Operation::Verify | Operation::Render => units,
         _ => options.output_units.unwrap_or(default),
     }
 }

@@ -83,9 +83,9 @@ pub use webhook::{
     Deliveries, Delivery, DeliveryState, DeliveryTry, WebhookEvent, WebhookMessage, WebhookRequest,
 };
 pub use words::{
-    Across, ChangeKind, Condition, ConstraintValues, Contact, Criterion, Cut, DefectCode, Degenerate, Effort,
-    Encoding, Extract, Fidelity, FillHoles, FillMethod, Format, HoleClass, HoleFate, Kernel, LambdaFrom,
-    Mode, Nesting, OpenShells, Operation, Opposite, Outcome, Placement, ProximityTest, Reader, ReasonCode,
-    Rejection, Remedy, Require, Severity, ShellFate, Stage, Stitch, StitchValidity, Units, VertexColors,
-    Weld,
+    Across, ChangeKind, Condition, ConstraintValues, Contact, Criterion, Cut, DefectCode, Degenerate,
+    DrawnEdges, Effort, Encoding, Extract, Fidelity, FillHoles, FillMethod, Format, HoleClass, HoleFate,
+    Kernel, LambdaFrom, Mode, Nesting, OpenShells, Operation, Opposite, Outcome, Placement, Projection,
+    ProximityTest, Reader, ReasonCode, Rejection, Remedy, Require, Severity, Shade, ShellFate, Stage, Stitch,
+    StitchValidity, Units, VertexColors, Views, Weld,
 };

@@ -124,7 +124,7 @@ pub(crate) fn repaired() -> Answer {
         bytes_peak: 1000,
     };
     let output = Some(Output { bytes: Some(b"mended".to_vec()), encoding: Encoding::StlBinary });
-    Answer { report, output, levels: Vec::new() }
+    Answer { report, output, levels: Vec::new(), picture: None }
 }
 
 /// The answer to a repair of a mesh that was valid already.
@@ -156,5 +156,5 @@ pub(crate) fn refused() -> Answer {
         refusal: Some(Refusal::NotRepairable { witness }),
         ..report
     };
-    Answer { report, output: None, levels: Vec::new() }
+    Answer { report, output: None, levels: Vec::new(), picture: None }
 }

@@ -33,6 +33,7 @@ mod random;
 mod rational;
 mod raw_files;
 mod rbf;
+mod render;
 mod repair_pipeline;
 mod repair_steps;
 mod round_trip;
