@@ -15,7 +15,7 @@ use crate::par;
 pub enum Edges {
     /// None, nor silhouettes.
     None,
-    /// Those where the surface turns by more than 25 degrees.
+    /// Those where the surface turns by more than 40 degrees, from which on shading does not round them.
     #[default]
     Creases,
     /// All edges of triangles.
@@ -33,8 +33,8 @@ pub struct Style {
     pub back: Option<Rgb>,
 }
 
-/// Cosine of the angle by which the surface turns at a crease: 25 degrees.
-const CREASE_COSINE: f32 = 0.906;
+/// Cosine of the angle by which the surface turns at a crease: 40 degrees, as for normals.
+const CREASE_COSINE: f32 = 0.766;
 /// Change of the slope of the depth, in shares of the depth of the scene, that is a jump.
 const JUMP: f32 = 0.012;
 /// Colour of edges.

@@ -732,7 +732,7 @@ mirror! { render::Edges =>
     DrawnEdges {
         /// None.
         None = "none",
-        /// Outlines, and edges at which the surface turns by more than 25 degrees.
+        /// Outlines, and edges at which the surface turns by more than 40 degrees.
         Creases = "creases",
         /// All edges of triangles.
         All = "all",
