@@ -59,9 +59,9 @@ export async function reference(browser) {
     const [download] = await Promise.all([page.waitForEvent("download"), page.click("#repair .answer a[download]")]);
     assert.match(download.suggestedFilename(), /\.stl$/);
 
-    await page.click("#limits .try > summary");
-    await page.click("#limits .try button");
-    await page.waitForSelector("#limits .answer pre");
+    await page.click("#get_limits .try > summary");
+    await page.click("#get_limits .try button");
+    await page.waitForSelector("#get_limits .answer pre");
     await page.click("#get_job .try > summary");
     await page.fill('#get_job [data-name="id"]', "none");
     await page.click("#get_job .try button");
@@ -74,7 +74,8 @@ export async function reference(browser) {
 }
 
 export async function report(browser) {
-  const made = await fetch(`${url}/v1/jobs?operation=repair&thumbnail=true&policy=fdm`, { method: "POST", body: broken() });
+  const headers = { "Content-Type": "application/octet-stream" };
+  const made = await fetch(`${url}/v1/jobs?operation=repair&thumbnail=true&policy=fdm`, { method: "POST", headers, body: broken() });
   const { links } = await made.json();
   await fetch(`${url}${links.self}?wait=60`);
   const answer = await fetch(`${url}${links.self}/report`, { headers: { Accept: "text/html" } });
@@ -99,7 +100,7 @@ export async function report(browser) {
   await context.close();
 
   // A job without a picture has a page as well.
-  const plain = await (await fetch(`${url}/v1/jobs?operation=analyze`, { method: "POST", body: heap(3) })).json();
+  const plain = await (await fetch(`${url}/v1/jobs?operation=analyze`, { method: "POST", headers, body: heap(3) })).json();
   await fetch(`${url}${plain.links.self}?wait=60`);
   const page2 = await (await fetch(`${url}${plain.links.self}/report`, { headers: { Accept: "text/html" } })).text();
   assert.ok(!page2.includes("<img"));
