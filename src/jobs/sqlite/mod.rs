@@ -50,13 +50,20 @@ pub struct SqliteStore {
     /// By which leases end: one that goes on evenly, however the time of day is set. It begins anew with
     /// each process.
     lease_clock: StoreClock,
+    connections: Arc<Connections>,
+}
+
+/// The connections to one file. A reader closes before the writer, also when it still looks into the file as the store is
+/// dropped: the last connection takes the log file with it, which one that only reads cannot do.
+struct Connections {
+    // Dropped in this order.
+    readers: Readers,
     writer: Writer,
-    readers: Arc<Readers>,
 }
 
 impl fmt::Debug for SqliteStore {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("SqliteStore").field("path", &self.readers.path).finish_non_exhaustive()
+        f.debug_struct("SqliteStore").field("path", &self.connections.readers.path).finish_non_exhaustive()
     }
 }
 
@@ -89,7 +96,7 @@ impl SqliteStore {
         let writer = Writer::start(connection)
             .map_err(|error| rusqlite::Error::ToSqlConversionFailure(Box::new(error)))?;
         let readers = Readers { path: path.to_owned(), idle: Mutex::default() };
-        Ok(Self { clock, lease_clock, writer, readers: Arc::new(readers) })
+        Ok(Self { clock, lease_clock, connections: Arc::new(Connections { readers, writer }) })
     }
 
     /// What the file at `path` is, before it is opened or made. Blocks.
@@ -122,7 +129,7 @@ impl SqliteStore {
         body: impl FnOnce(&Connection, i64) -> Result<T, StoreError> + Send + 'static,
     ) -> StoreFuture<'_, T> {
         let clock = Arc::clone(&self.clock);
-        self.writer.write(move |connection| body(connection, clock()))
+        self.connections.writer.write(move |connection| body(connection, clock()))
     }
 
     /// Looks one row or a few numbers up, at once: they are in memory nearly always, and take less time than handing the
@@ -132,7 +139,7 @@ impl SqliteStore {
         body: impl FnOnce(&Connection, i64) -> Result<T, StoreError>,
     ) -> StoreFuture<'_, T> {
         let now = (self.clock)();
-        Box::pin(std::future::ready(self.readers.with(|connection| body(connection, now))))
+        Box::pin(std::future::ready(self.connections.readers.with(|connection| body(connection, now))))
     }
 
     /// Looks into the file, at the time of the store's clock.
@@ -140,8 +147,8 @@ impl SqliteStore {
         &self,
         body: impl FnOnce(&Connection, i64) -> Result<T, StoreError> + Send + 'static,
     ) -> StoreFuture<'_, T> {
-        let (clock, readers) = (Arc::clone(&self.clock), Arc::clone(&self.readers));
-        let look = move || readers.with(|connection| body(connection, clock()));
+        let (clock, connections) = (Arc::clone(&self.clock), Arc::clone(&self.connections));
+        let look = move || connections.readers.with(|connection| body(connection, clock()));
         Box::pin(async move {
             let looked = tokio::task::spawn_blocking(look).await;
             looked.map_err(|error| StoreError::Unavailable(error.to_string()))?

@@ -3,9 +3,11 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
+use std::time::Duration;
 
+use super::super::PATIENCE;
 use super::{StoreHouse, cases, contract};
-use crate::jobs::{JobStore, SqliteStore, StoreClock};
+use crate::jobs::{JobStore, ListQuery, SqliteStore, StoreClock};
 
 struct SqliteHouse {
     store: Arc<SqliteStore>,
@@ -75,7 +77,30 @@ async fn a_row_that_cannot_be_read_fails_and_does_not_stand_in_the_way() {
     assert_eq!(claim(&*house.store).await.unwrap().id, next);
     let changes = house.store.changes(strange, 0).await.unwrap();
     assert_eq!(changes.last().unwrap().state, JobState::Failed);
-    let query = crate::jobs::ListQuery { limit: 10, ..Default::default() };
+    let query = ListQuery { limit: 10, ..Default::default() };
     assert_eq!(house.store.list(query).await.unwrap().len(), 1);
     house.store.delete(strange).await.unwrap();
+}
+
+#[tokio::test]
+async fn a_store_that_is_closed_leaves_one_file_also_while_it_is_read() {
+    let dir = tempfile::tempdir().unwrap();
+    let (path, log) = (dir.path().join("jobs.sqlite3"), dir.path().join("jobs.sqlite3-wal"));
+    for _ in 0..200 {
+        let store = Arc::new(SqliteStore::open(&path).unwrap());
+        store.counts().await.unwrap();
+        let reading = Arc::clone(&store);
+        let reading = tokio::spawn(async move { drop(reading.list(ListQuery::default()).await) });
+        tokio::task::yield_now().await;
+        // The call ends; what it asked of another thread goes on.
+        reading.abort();
+        let _ = reading.await;
+        drop(store);
+        let is_gone = async {
+            while log.exists() {
+                tokio::time::sleep(Duration::from_millis(1)).await;
+            }
+        };
+        tokio::time::timeout(PATIENCE, is_gone).await.expect("the log stays beside the store");
+    }
 }
