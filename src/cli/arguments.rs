@@ -49,6 +49,9 @@ pub(super) enum Command {
     /// may move. The certificate of the result says what holds.
     #[command(arg_required_else_help = true)]
     Modeller(ModellerArguments),
+    /// Combine solids into one that is certified: their union, their intersection, or the first without all others.
+    #[command(arg_required_else_help = true)]
+    Boolean(BooleanArguments),
     /// Say whether the faces of a file, as indexed, make a half-edge mesh (a manifold, coherently oriented).
     #[command(arg_required_else_help = true)]
     Check {
@@ -146,7 +149,7 @@ struct InputArguments {
     /// Write the report for people to this file: one page that loads nothing.
     #[arg(long, value_name = "FILE")]
     report_html: Option<PathBuf>,
-    /// Material file (MTL) of an OBJ: its diffuse colours become face colours, which OFF and PLY hold.
+    /// Material file (MTL) of an OBJ: its diffuse colours become face colours, which OFF, PLY and glTF hold.
     #[arg(long, value_name = "FILE")]
     material: Option<PathBuf>,
     #[command(flatten)]
@@ -258,6 +261,16 @@ pub(super) struct ModellerArguments {
     output: Option<Place>,
 }
 
+#[derive(Debug, Args)]
+pub(super) struct BooleanArguments {
+    #[command(flatten)]
+    given: InputArguments,
+    /// File to write, or - for standard output, which needs --output-format. Its extension names the format unless
+    /// --output-format does.
+    #[arg(short, long, value_name = "OUT")]
+    output: Place,
+}
+
 /// An operation on a file, whichever command named it.
 #[derive(Debug, Clone)]
 pub(super) struct Request {
@@ -331,6 +344,12 @@ impl From<FillHolesArguments> for Request {
 impl From<ModellerArguments> for Request {
     fn from(given: ModellerArguments) -> Self {
         given.given.request(Operation::Modeller, given.output.map_or(Target::None, Target::Place))
+    }
+}
+
+impl From<BooleanArguments> for Request {
+    fn from(given: BooleanArguments) -> Self {
+        given.given.request(Operation::Boolean, Target::Place(given.output))
     }
 }
 

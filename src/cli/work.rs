@@ -14,13 +14,21 @@ use crate::wire::{Options, Problem, ProblemCode, Report, TimingMs, report_page};
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// One file, and where its result goes.
+/// One file, or several that become one, and where the result goes.
 #[derive(Debug)]
 pub(super) struct Errand<'r> {
     pub request: &'r Request,
-    pub input: &'r Place,
+    /// At least one.
+    pub inputs: &'r [Place],
     /// `None`: nowhere.
     pub output: Option<Place>,
+}
+
+impl Errand<'_> {
+    /// Names of the files.
+    pub(super) fn subject(&self) -> String {
+        self.inputs.iter().map(Place::to_string).collect::<Vec<_>>().join(", ")
+    }
 }
 
 /// What came of one file.
@@ -41,7 +49,7 @@ pub(super) fn run(errand: &Errand<'_>) -> Result<Done, Problem> {
 }
 
 fn attempt(errand: &Errand<'_>) -> Result<Done, Problem> {
-    let &Errand { request, input, ref output } = errand;
+    let &Errand { request, inputs, ref output } = errand;
     check_streams(errand)?;
     let options =
         Options::from_pairs(request.options.iter().map(|(n, v)| (n, v))).map_err(|e| Problem::from(&e))?;
@@ -59,23 +67,31 @@ fn attempt(errand: &Errand<'_>) -> Result<Done, Problem> {
         let place = Place::File(page.clone());
         place.check_writable().map_err(|e| wrong(format!("{place} cannot be written: {e}")))?;
     }
-    let bytes = input.read().map_err(|e| unreadable(input, &e))?;
+    // One behind the other.
+    let mut bytes = Vec::new();
+    let mut file_sizes = Vec::new();
+    for input in inputs {
+        let file = input.read().map_err(|e| unreadable(input, &e))?;
+        file_sizes.push(file.len() as u64);
+        if bytes.is_empty() { bytes = file } else { bytes.extend(file) }
+    }
     let material = match &request.material {
         Some(path) => Some(std::fs::read(path).map_err(|e| unreadable(&path.display(), &e))?),
         None => None,
     };
     let options = engine_options(errand, &options, &loaded.config, &bytes);
-    let options = pipeline::Options { material, ..options };
-    let (answer, timing) = execute(request.operation, &bytes, &options, &loaded)
-        .map_err(|problem| Problem { detail: format!("{input}: {}", problem.detail), ..problem })?;
+    let options = pipeline::Options { material, file_sizes, ..options };
+    let (answer, timing) = execute(request.operation, &bytes, &options, &loaded).map_err(|problem| {
+        Problem { detail: format!("{}: {}", errand.subject(), problem.detail), ..problem }
+    })?;
     deliver(errand, options.require, &bytes, &answer, timing)
 }
 
 /// Streams have no extension that could name their format, and standard output holds one thing only.
 fn check_streams(errand: &Errand<'_>) -> Result<(), Problem> {
-    let &Errand { request, input, ref output } = errand;
+    let &Errand { request, inputs, ref output } = errand;
     let is_named = |name: &str| request.options.iter().any(|(given, _)| given == name);
-    if *input == Place::Stream && !is_named("format") {
+    if inputs.contains(&Place::Stream) && !is_named("format") {
         return Err(wrong("standard input needs --format"));
     }
     if *output == Some(Place::Stream) && !is_named("output_format") {
@@ -114,7 +130,8 @@ fn engine_options(
     };
     let engine = options.to_engine(limits);
     // The content decides; the extension only where the content leaves it open.
-    let by_extension = || errand.input.format().filter(|_| formats::sniff(bytes, None).is_err());
+    let named = if let [input] = errand.inputs { input.format() } else { None };
+    let by_extension = || named.filter(|_| formats::sniff(bytes, None).is_err());
     pipeline::Options {
         format: engine.format.or_else(by_extension),
         output_format: engine.output_format.or_else(|| errand.output.as_ref()?.format()),
@@ -175,7 +192,7 @@ fn deliver(
 
 fn verdict(operation: Operation, require: Option<Require>, report: &Report, has_result: bool) -> Exit {
     let is_done = match operation {
-        Operation::Repair => has_result && report.verdict.printable,
+        Operation::Repair | Operation::Boolean => has_result && report.verdict.printable,
         Operation::Verify => report.verdict.printable,
         Operation::Analyze | Operation::Plan => true,
         Operation::Convert

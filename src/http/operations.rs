@@ -102,6 +102,15 @@ pub(super) async fn modeller(state: State, caller: Extension<Caller>, request: R
     result_of(&state, &caller, Operation::Modeller, request).await
 }
 
+/// Combine solids.
+///
+/// Two or more meshes, each a part `mesh` of a form, become one certified solid: their union, their intersection, or the first
+/// without all others, as `set_operation` says. Each must be a closed solid; otherwise the refusal says which is not, and why.
+#[utoipa::path(post, path = "/v1/boolean", tag = "operations")]
+pub(super) async fn boolean(state: State, caller: Extension<Caller>, request: Request) -> Handled {
+    result_of(&state, &caller, Operation::Boolean, request).await
+}
+
 /// Make a job and do not wait for it.
 #[utoipa::path(post, path = "/v1/jobs", tag = "jobs", params(
     ("operation" = Option<Operation>, Query, description = "What to do, unless the body says it."),

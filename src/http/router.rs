@@ -39,6 +39,7 @@ fn api() -> OpenApiRouter<Arc<Service>> {
         .routes(routes!(operations::cut_stitch))
         .routes(routes!(operations::fill_holes))
         .routes(routes!(operations::modeller))
+        .routes(routes!(operations::boolean))
         .routes(routes!(operations::create_job, listing::list_jobs))
         .routes(routes!(lifecycle::show, lifecycle::delete))
         .routes(routes!(lifecycle::cancel))

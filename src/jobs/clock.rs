@@ -63,6 +63,8 @@ impl StageClock {
             Operation::Convert => 5.0,
             Operation::CutStitch | Operation::FillHoles | Operation::Modeller => 7.0,
             Operation::Repair => 8.0,
+            // At least two meshes are read, certified and analyzed.
+            Operation::Boolean => 11.0,
             Operation::Simplify => 9.0,
         };
         Self { started: Instant::now(), passes, heard: Arc::default(), changes: Arc::default() }

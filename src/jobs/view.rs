@@ -73,6 +73,7 @@ pub(super) fn result_name(row: &JobRow, encoding: Encoding, level: usize) -> Str
         Some(Outcome::CutStitched) => "-cut-stitched",
         Some(Outcome::Filled) => "-filled",
         Some(Outcome::Modelled) => "-modelled",
+        Some(Outcome::Combined) => "-combined",
         Some(Outcome::Repaired) => "-repaired",
         Some(Outcome::Rebuilt) => "-rebuilt",
         Some(Outcome::Partial) => "-partial",

@@ -25,6 +25,7 @@ fn certificate(is_valid: bool) -> Certificate {
         sha256: [0xab; 32],
         bytes: 284,
         encoding: Encoding::StlBinary,
+        parts: None,
         p0: is_valid,
         p1: is_valid.then_some(true),
         p2: is_valid.then_some(true),
@@ -96,7 +97,9 @@ pub(crate) fn repaired() -> Answer {
         },
         before: Some(analysis(1)),
         input_certificate: certificate(false),
+        further_inputs: Vec::new(),
         plan: None,
+        tried: vec!["as-drawn"],
         actions: vec![Action {
             step: "fill-holes",
             causes: vec![DefectCode::BoundaryLoop],
@@ -120,10 +123,13 @@ pub(crate) fn repaired() -> Answer {
         outcome: Some(Outcome::Repaired),
         refusal: None,
         printing: None,
+        parts: Vec::new(),
+        remarks: Vec::new(),
         work_used: 7,
         bytes_peak: 1000,
     };
-    let output = Some(Output { bytes: Some(b"mended".to_vec()), encoding: Encoding::StlBinary });
+    let output =
+        Some(Output { bytes: Some(b"mended".to_vec()), encoding: Encoding::StlBinary, origins: Vec::new() });
     Answer { report, output, levels: Vec::new() }
 }
 
@@ -133,7 +139,9 @@ pub(crate) fn identical() -> Answer {
     let report = Report {
         before: Some(analysis(0)),
         input_certificate: certificate(true),
+        further_inputs: Vec::new(),
         plan: None,
+        tried: Vec::new(),
         actions: Vec::new(),
         after: None,
         outcome: Some(Outcome::Identical),

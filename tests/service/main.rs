@@ -6,6 +6,7 @@ mod support;
 
 mod about;
 mod access;
+mod boolean;
 mod cli;
 mod connections;
 mod contract;

@@ -18,8 +18,10 @@ schemathesis.openapi.media_type("model/stl", meshes("stl"))
 schemathesis.openapi.media_type("model/obj", meshes("obj"))
 schemathesis.openapi.media_type("text/off", meshes("off"))
 schemathesis.openapi.media_type("application/x-ply", meshes("ply"))
+schemathesis.openapi.media_type("model/gltf-binary", meshes("glb"))
+schemathesis.openapi.media_type("model/gltf+json", meshes("gltf"))
 # Without a name the content tells the format.
-schemathesis.openapi.media_type("application/octet-stream", meshes("stl", "obj", "off", "ply"))
+schemathesis.openapi.media_type("application/octet-stream", meshes("stl", "obj", "off", "ply", "glb", "gltf"))
 
 
 # At most one of these may be given.

@@ -22,8 +22,8 @@ pub(super) use self::yaml::yaml;
 use crate::wire::{
     self, BuildDirection, Contact, Criterion, Cut, Degenerate, DualEmbedding, EditSpec, Effort, Fidelity,
     FillHoles, Format, InputRef, Job, JobRequest, LABELS_MAX, Mode, Nesting, OpenShells, Options, Outcome,
-    Placement, PlanRequest, PolicyName, Problem, ProblemCode, RangeSpec, Reader, Report, Require, StageEvent,
-    StateEvent, Stitch, StitchValidity, TargetSpec, Units, VertexColors, Weld,
+    Placement, PlanRequest, PolicyName, Problem, ProblemCode, RangeSpec, Reader, Report, Require,
+    SetOperation, StageEvent, StateEvent, Stitch, StitchValidity, TargetSpec, Units, VertexColors, Weld,
 };
 
 /// Problems that any path may answer with.
@@ -127,7 +127,7 @@ fn schemas() -> Vec<(String, RefOr<Schema>)> {
     );
     add!(Format, Reader, Units, Require, FillHoles, OpenShells, Effort, Nesting, Contact, Mode, Criterion);
     add!(Placement, VertexColors, Cut, Stitch, StitchValidity, Degenerate, PolicyName, BuildDirection);
-    add!(DualEmbedding, Weld);
+    add!(DualEmbedding, Weld, SetOperation);
     let own = wire::option_schemas().map(|(name, schema)| (name, RefOr::T(schema)));
     schemas.into_iter().chain(own).chain(bodies::schemas()).collect()
 }

@@ -189,7 +189,7 @@ fn an_option_that_the_operation_does_not_take_is_refused_with_those_that_do() {
     let walls = Options::from_pairs([("wall_mm", "1")]).unwrap();
     assert_eq!(walls.check(Operation::Repair), Ok(()));
     let error = walls.check(Operation::Verify).unwrap_err();
-    assert_eq!(error.to_string(), "`verify` takes no `wall_mm`; it is an option of repair");
+    assert_eq!(error.to_string(), "`verify` takes no `wall_mm`; it is an option of repair, boolean");
     let problem = Problem::from(&error);
     assert_eq!(
         (problem.code, problem.parameter.as_deref()),

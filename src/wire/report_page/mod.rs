@@ -52,6 +52,11 @@ fn head(page: &mut Page, report: &Value) {
         Escaped(text(&report["engine"]["name"])),
         Escaped(text(&report["engine"]["version"])),
     ));
+    for (further, number) in report["further_inputs"].as_array().into_iter().flatten().zip(2..) {
+        let input = &further["input"];
+        let encoding = Escaped(text(&input["encoding"]));
+        page.add(format_args!("<p class=quiet>Mesh {number}: {encoding}, {} bytes.</p>", input["bytes"]));
+    }
 }
 
 fn verdict(page: &mut Page, report: &Value) {
@@ -70,7 +75,7 @@ fn verdict(page: &mut Page, report: &Value) {
     page.add(format_args!("<div class=\"verdict {}\"><strong>{title}</strong>", tone.class()));
     page.paragraph(plain::outcome(text(&verdict["outcome"])));
     if let Some(word) = verdict["fidelity"].as_str() {
-        page.paragraph(plain::fidelity(word));
+        page.paragraph(plain::fidelity(word, verdict["outcome"] == "combined"));
     }
     for change in items(&verdict["changes"]) {
         page.paragraph(&sentence(text(&change["message"])));

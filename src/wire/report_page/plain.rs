@@ -64,15 +64,18 @@ pub(super) fn outcome(word: &str) -> &'static str {
         "cut-stitched" => "The surface was cut where more than two faces meet, and joined again as asked.",
         "filled" => "Holes were closed as asked, where a sound patch was found.",
         "modelled" => "The solid was edited by its planes, as asked.",
+        "combined" => "Several solids were combined into one, as asked.",
         "partial" => "The best result there is was returned, although it is not sound.",
         "refused" => "No result is returned.",
         _ => "The file was only looked at.",
     }
 }
 
-/// How true the result is to the file; empty without a result.
-pub(super) fn fidelity(word: &str) -> &'static str {
+/// How true the result is to the file, or of several solids to what they become; empty without a result.
+pub(super) fn fidelity(word: &str, is_combined: bool) -> &'static str {
     match word {
+        "exact" if is_combined => "It is exactly what they become.",
+        "faithful" if is_combined => "It is what they become, moved by no more than small limits.",
         "exact" => "Its surface is exactly that of your file.",
         "faithful" => "Nothing that can be seen was lost, made up or moved beyond small limits.",
         "changed" => "It is not the same as your file:",
