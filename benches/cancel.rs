@@ -120,7 +120,7 @@ fn tube(corners: u32) -> Vec<[[f32; 3]; 3]> {
     let at = |row: u32, i: u32| {
         let i = i % corners;
         let turn = std::f64::consts::TAU * f64::from(i) / f64::from(corners);
-        let tooth = if i % 2 == 0 { 0.3 } else { 0.0 } * std::f64::consts::TAU / f64::from(corners);
+        let tooth = if i.is_multiple_of(2) { 0.3 } else { 0.0 } * std::f64::consts::TAU / f64::from(corners);
         let radius = 50.0 * (1.0 - tooth);
         [radius * turn.cos(), radius * turn.sin(), 12.0 * f64::from(row) + 5.0 * (5.0 * turn).sin()]
             .map(|x| x as f32)

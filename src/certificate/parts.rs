@@ -1,6 +1,6 @@
 //! A file of several parts, each of which has to be a solid by itself, in its own coordinates.
 
-use super::verdict::MergedCounts;
+use super::verdict::sum_of;
 use super::{Certificate, CertifyError, Condition, Depth, Examination, Reading, Violation, digest, judge};
 use crate::budget::Budget;
 use crate::formats::{self, Encoding, Precision, ReadOptions};
@@ -92,7 +92,9 @@ fn whole(
         first_face += count;
     }
     let p0 = parts.iter().all(|part| part.p0);
-    let mut p2 = all_hold(parts.iter().map(|part| part.p2));
+    let claims =
+        |of: fn(&Certificate) -> Option<bool>| -> Vec<_> { parts.iter().map(|part| of(part)).collect() };
+    let mut p2 = all_hold(&claims(|part| part.p2));
     if parts.is_empty() {
         // Nothing is no solid.
         p2 = Some(false);
@@ -108,9 +110,9 @@ fn whole(
         encoding,
         parts: Some(parts.len() as u32),
         p0,
-        p1: all_hold(parts.iter().map(|part| part.p1)),
+        p1: all_hold(&claims(|part| part.p1)),
         p2,
-        violations: MergedCounts::of(parts.iter().map(|part| &part.violations)),
+        violations: sum_of(&parts.iter().map(|part| &part.violations).collect::<Vec<_>>()),
         witnesses,
         readings,
         triangles: sum(|part| part.triangles),
@@ -124,12 +126,14 @@ fn whole(
 }
 
 /// A claim about all parts: broken where one breaks it, open where one leaves it open.
-fn all_hold(claims: impl Iterator<Item = Option<bool>>) -> Option<bool> {
-    claims.fold(Some(true), |all, claim| match (all, claim) {
-        (Some(false), _) | (_, Some(false)) => Some(false),
-        (None, _) | (_, None) => None,
-        _ => Some(true),
-    })
+fn all_hold(claims: &[Option<bool>]) -> Option<bool> {
+    if claims.contains(&Some(false)) {
+        Some(false)
+    } else if claims.contains(&None) {
+        None
+    } else {
+        Some(true)
+    }
 }
 
 #[cfg(test)]
@@ -138,9 +142,9 @@ mod tests {
 
     #[test]
     fn one_part_that_breaks_a_claim_breaks_it_for_all() {
-        assert_eq!(all_hold([Some(true), None, Some(false)].into_iter()), Some(false));
-        assert_eq!(all_hold([Some(true), None].into_iter()), None);
-        assert_eq!(all_hold([Some(true); 3].into_iter()), Some(true));
+        assert_eq!(all_hold(&[Some(true), None, Some(false)]), Some(false));
+        assert_eq!(all_hold(&[Some(true), None]), None);
+        assert_eq!(all_hold(&[Some(true); 3]), Some(true));
     }
 
     #[test]

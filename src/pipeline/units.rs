@@ -96,10 +96,7 @@ impl Options {
             },
             filling: FillHolesChoices {
                 fill: FillOptions {
-                    rbf: RbfOptions {
-                        lambda: scaled(self.filling.fill.rbf.lambda),
-                        ..self.filling.fill.rbf.clone()
-                    },
+                    rbf: RbfOptions { lambda: scaled(self.filling.fill.rbf.lambda), ..self.filling.fill.rbf },
                     ..self.filling.fill.clone()
                 },
                 ..self.filling.clone()

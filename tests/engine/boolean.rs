@@ -32,7 +32,7 @@ fn certified(answer: &Answer) -> (Soup, RawSoup) {
     let bytes = output.bytes.as_ref().unwrap();
     let soup = formats::read(bytes, output.encoding, &ReadOptions::default(), &Budget::unlimited()).unwrap();
     let raw = RawSoup {
-        positions: soup.positions.iter().map(|p| p.to_array()).collect(),
+        positions: soup.positions.iter().map(glam::DVec3::to_array).collect(),
         triangles: soup.triangles.clone(),
     };
     assert!(judge_welded(&raw).is_valid());
@@ -186,7 +186,7 @@ fn rotated_cubes_have_volumes_that_add_up() {
             .map(|[x, y, z]| [x, y * cos - z * sin, y * sin + z * cos])
             .moved([0.3, 0.1, 0.2])
     };
-    for angle in [0.1, 0.5, 0.7853981633974483, 1.3] {
+    for angle in [0.1, 0.5, std::f64::consts::FRAC_PI_4, 1.3] {
         for encoding in [Encoding::Obj, Encoding::StlBinary] {
             let two = [block(2.0, [-1.0; 3]), turned(angle)];
             let volume = |operation| volume_of(&certified(&answer(operation, &two, encoding)).1);

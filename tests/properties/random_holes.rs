@@ -315,6 +315,7 @@ impl Tally {
         self.faults.extend(other.faults);
     }
 
+    #[allow(clippy::print_stdout, reason = "the campaign's table")]
     fn print(&self) {
         println!("| meshes, seed 1717 | {} | | |", self.meshes);
         println!("| cuts, seed 10000, each closed by every method | {} | | |", self.cases);

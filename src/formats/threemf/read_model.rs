@@ -69,9 +69,8 @@ pub(super) struct ModelReader<'x> {
 
 impl<'x> ModelReader<'x> {
     fn read(&mut self) -> Result<(), ReadError> {
-        let root = match self.scanner.next()? {
-            Node::Open(root) => root,
-            _ => return Err(self.error(0, "no element", "<model>")),
+        let Node::Open(root) = self.scanner.next()? else {
+            return Err(self.error(0, "no element", "<model>"));
         };
         if (root.namespace, root.local) != (Namespace::Core, "model") {
             let expected = "<model> in the namespace of the 3MF core specification";
@@ -286,11 +285,11 @@ impl<'x> ModelReader<'x> {
                 match (child.namespace, child.local) {
                     (Namespace::Core, "mesh") => {
                         let mesh = read_mesh::mesh(self, &child)?;
-                        content = self.only(content, Content::Mesh(Box::new(mesh)), &child)?;
+                        content = self.only(&content, Content::Mesh(Box::new(mesh)), &child)?;
                     }
                     (Namespace::Core, "components") => {
                         let all = self.read_references(&child, "component")?;
-                        content = self.only(content, Content::Components(all), &child)?;
+                        content = self.only(&content, Content::Components(all), &child)?;
                     }
                     _ => self.scanner.skip(&child)?,
                 }
@@ -307,7 +306,7 @@ impl<'x> ModelReader<'x> {
     }
 
     /// `new`, where there was nothing before.
-    fn only(&self, old: Content, new: Content, element: &Element<'x>) -> Result<Content, ReadError> {
+    fn only(&self, old: &Content, new: Content, element: &Element<'x>) -> Result<Content, ReadError> {
         match old {
             Content::Nothing => Ok(new),
             _ => {

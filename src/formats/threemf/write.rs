@@ -92,13 +92,13 @@ impl Colors {
 fn members(soup: &Soup, colors: &mut Colors) -> Vec<Option<[u32; 3]>> {
     let is_color = |color: &Option<Color>| matches!(color, Some(Color::Bytes(..) | Color::Floats(..)));
     let of_face = |t: usize| soup.face_colors.get(soup.face_of(t as u32) as usize).copied().flatten();
-    if soup.face_colors.iter().any(|color| is_color(color)) {
+    if soup.face_colors.iter().any(is_color) {
         // What has no colour is white.
         colors.number([u8::MAX; 4]);
         let member = |t: usize| Some(of_face(t)).filter(is_color).map(|c| [colors.number(as_bytes(c)); 3]);
         return (0..soup.triangles.len()).map(member).collect();
     }
-    if soup.vertex_colors.iter().any(|color| is_color(color)) {
+    if soup.vertex_colors.iter().any(is_color) {
         let white = colors.number([u8::MAX; 4]);
         let mut of_vertex = |v: u32| match soup.vertex_colors.get(v as usize).copied() {
             Some(color) if is_color(&color) => colors.number(as_bytes(color)),

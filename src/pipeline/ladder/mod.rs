@@ -86,17 +86,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_page_lists_the_rungs_in_their_order() {
-        let page = include_str!("../../../docs/ladder.md");
-        let listed: Vec<&str> = page
-            .lines()
-            .filter_map(|line| line.strip_prefix("| `"))
-            .filter_map(|line| line.split_once('`').map(|(name, _)| name))
-            .collect();
-        assert_eq!(listed, RUNGS.map(|rung| rung.name));
-    }
-
-    #[test]
     fn only_the_last_rung_makes_a_new_surface() {
         let last = RUNGS.len() - 1;
         assert!(RUNGS.iter().enumerate().all(|(at, rung)| rung.is_new_surface == (at == last)));
