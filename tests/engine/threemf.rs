@@ -150,6 +150,15 @@ fn packages_that_break_other_readers_are_read() {
         "<resources>",
         "<metadata name=\"Title\">a</metadata><metadata name=\"Title\">b</metadata><resources>",
     );
+    let of_model =
+        RELATIONSHIPS.replace("/3D/3dmodel.model", "C:/picture.png").replace("3dmodel\"", "texture\"");
+    let [relationships, root] = entries;
+    let dangling = package(&[relationships, root, ("3D/_rels/3dmodel.model.rels", of_model.as_bytes())]);
+    let mixed = model.replace(
+        "<resources>",
+        "<resources><m:colorgroup id=\"90\"><m:color color=\"#FF0000\"/></m:colorgroup>\
+         <m:compositematerials id=\"91\" matid=\"90\" matindices=\"0\"><m:composite values=\"1\"/></m:compositematerials>",
+    );
     let cases = [
         ("byte order mark", file(&marked), 0),
         ("absolute names", absolute, 0),
@@ -159,6 +168,9 @@ fn packages_that_break_other_readers_are_read() {
         ("data descriptors", streamed, 0),
         ("no relationships", loose, 1),
         ("metadata twice", file(&repeated), 1),
+        ("a part of the model that is not there", dangling, 1),
+        ("xml:space", file(&model.replace("<model ", "<model xml:space=\"default\" ")), 1),
+        ("a composite of colours", file(&mixed), 1),
     ];
     for (what, bytes, remarks) in cases {
         let project = project(&bytes);
@@ -167,6 +179,13 @@ fn packages_that_break_other_readers_are_read() {
         let answer = run(Operation::Verify, &bytes, &Options::default());
         assert!(answer.report.input_certificate.is_printable(), "{what}");
     }
+}
+
+#[test]
+fn an_element_of_thousands_of_attributes_is_refused() {
+    let many: String = (0..20_000).map(|i| format!("a{i}=\"\" ")).collect();
+    let error = error_of(&file(&simple().replace("<item ", &format!("<item {many}"))));
+    assert!(error.to_string().contains("more than 200 attributes in <item>"), "{error}");
 }
 
 #[test]
