@@ -5,7 +5,7 @@ use super::package::{Package, shortened, too_large};
 use super::read_model::read_model;
 use super::read_relationships::read_start;
 use super::read_volumes::{Volume, are_all, read_volumes};
-use super::scene;
+use super::scene::{self, Assembled, Placed};
 use super::split::volume_of;
 use super::transform::Transform;
 use super::xml::Document;
@@ -29,6 +29,8 @@ pub struct Body {
     pub part: String,
     /// Id of the object in that part.
     pub object: u32,
+    /// Number of the model part among all that are read, and of the object in it.
+    pub source: [usize; 2],
     /// Name of the object or of the volume; empty when it has none.
     pub name: String,
     /// Number of the volume among those of the object, where the project parts its triangles into several.
@@ -112,7 +114,21 @@ pub(in crate::formats) fn read(
     budget: &Budget,
 ) -> Result<Soup, ReadError> {
     let models = Models::read(bytes, options, budget)?;
-    scene::assemble(&models, options, budget)
+    Ok(scene::assemble(&models, options, budget)?.soup)
+}
+
+/// The same with the places of objects in it.
+///
+/// # Errors
+/// As [`read_project`]; more triangles than the limits allow.
+pub fn read_scene(
+    bytes: &[u8],
+    options: &ReadOptions,
+    budget: &Budget,
+) -> Result<(Soup, Vec<Placed>), ReadError> {
+    let models = Models::read(bytes, options, budget)?;
+    let Assembled { soup, placed } = scene::assemble(&models, options, budget)?;
+    Ok((soup, placed))
 }
 
 /// An object at a place of the scene.
@@ -304,6 +320,7 @@ impl Models {
                 let body = Body {
                     part: part.clone(),
                     object: id,
+                    source: [m, o],
                     name,
                     volume: None,
                     kind,
