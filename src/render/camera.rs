@@ -239,6 +239,11 @@ impl Camera {
         }
     }
 
+    /// True unless `p`, a point of the frame, is behind the eye.
+    pub(super) fn is_before(&self, p: DVec3) -> bool {
+        self.eye.is_none_or(|eye| self.direction.turn(p).z < eye)
+    }
+
     /// True when a triangle with this normal at `corner` shows its front.
     pub(super) fn sees_front(&self, normal: DVec3, corner: DVec3) -> bool {
         let Direction { toward, .. } = self.direction;

@@ -139,6 +139,10 @@ pub(super) fn fill(
             if number % 64 == 0 {
                 budget.spend(64)?;
             }
+            // A place that no triangle has may be anywhere.
+            if !camera.is_before(spot.at) {
+                continue;
+            }
             draw_spot(
                 &mut samples,
                 &band,

@@ -108,6 +108,29 @@ fn a_line_and_a_spot_are_seen_where_nothing_is_before_them() {
 }
 
 #[test]
+fn a_spot_behind_the_eye_is_not_seen() {
+    let (positions, triangles) = square(0.0);
+    let picture = |at: DVec3| {
+        let spots = [Spot { at, color: [255, 0, 255] }];
+        let scene = Scene {
+            positions: &positions,
+            triangles: &triangles,
+            palette: &PALETTE,
+            spots: &spots,
+            ..Scene::default()
+        };
+        let budget = Budget::unlimited();
+        let model = Model::of(scene, Frame::around([scene.bounds()]), Shade::Flat, &budget).unwrap();
+        let camera =
+            Camera::at(&[&model], View::Top.direction(), Projection::Perspective, 1.0, &budget).unwrap();
+        let canvas = draw(&model, &camera, 40, 40, &STYLE, &budget).unwrap();
+        (0..1600).filter(|at| canvas.pixel(at % 40, at / 40) == Some([255, 0, 255])).count()
+    };
+    assert!(picture(DVec3::ZERO) > 0);
+    assert_eq!(picture(DVec3::new(0.0, 0.0, 1e6)), 0);
+}
+
+#[test]
 fn the_picture_is_the_same_with_any_number_of_threads() {
     let (positions, triangles) = square(0.0);
     let scene = Scene { positions: &positions, triangles: &triangles, palette: &PALETTE, ..Scene::default() };

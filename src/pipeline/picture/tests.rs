@@ -1,6 +1,7 @@
 //! Pictures of small files.
 
 use super::*;
+use crate::formats::Format;
 use crate::pipeline::{FillHoles, run};
 
 /// A cube without its top, as OBJ.
@@ -91,6 +92,27 @@ fn a_second_file_stands_beside_the_first() {
     let (width, _, pixels) = pixels(&picture_of(Operation::Render, &options));
     assert_eq!(width, 1280);
     assert_eq!(count(&pixels, is_green), 0, "every triangle is there before");
+}
+
+#[test]
+fn a_second_file_in_metres_is_as_large_as_the_same_in_millimetres() {
+    let options = Options { output_format: Some(Format::Glb), ..Options::default() };
+    let glb = run(Operation::Convert, BOX, &options, &Budget::unlimited()).unwrap().output.unwrap().bytes;
+    let options = Options { after: glb, ..Options::default() };
+    let (width, _, pixels) = pixels(&picture_of(Operation::Render, &options));
+    let seen = |right: usize| {
+        let half = pixels.iter().enumerate().filter(|(at, _)| at % width / 640 == right);
+        half.filter(|(_, p)| **p != BACKGROUND).count()
+    };
+    assert!(seen(0) > 20_000 && seen(1) * 10 > seen(0) * 9, "{} and {}", seen(0), seen(1));
+    assert_eq!(count(&pixels, is_green), 0, "it is the same");
+}
+
+#[test]
+fn a_second_file_that_cannot_be_read_is_named() {
+    let options = Options { after: Some(b"OFF\n4 4 6\n0 0 zero\n".to_vec()), ..Options::default() };
+    let failure = run(Operation::Render, BOX, &options, &Budget::unlimited()).unwrap_err();
+    assert!(matches!(failure, Failure::InMesh { number: 2, .. }), "{failure}");
 }
 
 #[test]
