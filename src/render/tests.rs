@@ -192,7 +192,7 @@ fn a_picture_is_a_png_and_several_are_an_animation() {
     assert_eq!(sizes.iter().map(|(number, _)| *number).collect::<Vec<_>>(), [0, 1, 2]);
     assert!(sizes.is_sorted_by(|a, b| a.1 < b.1) && sizes[2].1 < many.len(), "{sizes:?}");
     assert_eq!(animation(2, 50, |number, _| if number == 0 { Ok(canvas.clone()) } else { Err(7) }), Err(7));
-    assert_eq!(animation::<()>(0, 50, |..| Err(())), Ok(Vec::new()));
+    assert_eq!(animation::<()>(0, 50, |_, _| Err(())), Ok(Vec::new()));
     let read = ::png::Decoder::new(std::io::Cursor::new(&many)).read_info().unwrap();
     assert_eq!(read.info().animation_control().unwrap().num_frames, 3);
 }
