@@ -736,3 +736,23 @@ fn a_picture_shows_every_part_at_its_places_with_the_defects_of_its_own() {
     assert_eq!(width, 960, "before and after");
     assert!(mended.iter().any(|&[r, g, b]| g > r.saturating_add(50) && g > b), "the new lid");
 }
+
+#[test]
+fn a_project_that_is_too_large_to_be_drawn_is_mended_without_a_picture_and_says_so() {
+    let object = format!("<object id=\"1\" type=\"model\">{}</object>", plain_cuboid(10.0));
+    let bytes = file(&model("unit=\"millimeter\"", &object, &"<item objectid=\"1\"/>".repeat(3)));
+    let mut options = Options { picture: Some(PictureChoices::default()), ..Options::default() };
+    assert!(run(Operation::Repair, &bytes, &options).picture.is_some());
+    options.read.limits.triangles_max = 35;
+    let answer = run(Operation::Repair, &bytes, &options);
+    assert_eq!((answer.report.outcome, answer.picture), (Some(Outcome::Identical), None));
+    assert!(
+        answer.report.remarks.iter().any(|remark| remark.contains("no picture")),
+        "{:?}",
+        answer.report.remarks
+    );
+    let failure = pipeline::run(Operation::Render, &bytes, &options, &Budget::unlimited()).unwrap_err();
+    assert!(
+        matches!(failure, Failure::Unreadable(error) if matches!(error.kind, ReadErrorKind::TooLarge { .. }))
+    );
+}

@@ -43,7 +43,14 @@ fn a_mesh_comes_in_and_a_picture_goes_out() {
 fn what_is_no_wish_for_a_picture_is_refused() {
     let server = Server::start();
     let ask = |path: &str| problem(server.post(path).body(SOLID).send().unwrap());
-    for path in ["/v1/render?width=8", "/v1/render?views=inside", "/v1/render?turntable=1"] {
+    for path in [
+        "/v1/render?width=8",
+        "/v1/render?views=inside",
+        "/v1/render?turntable=1",
+        "/v1/render?turntable=4&views=front",
+        "/v1/render?turntable=4&projection=perspective",
+        "/v1/render?turntable=120&width=2048&height=2048",
+    ] {
         let (status, code, _) = ask(path);
         assert_eq!((status, code.as_str()), (400, "invalid-parameter"), "{path}");
     }

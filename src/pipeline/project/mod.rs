@@ -19,7 +19,7 @@ use crate::certificate::{self, Certificate, Depth, Examination, PartsExamination
 use crate::formats::threemf::{
     Body, FaceSource, NewBody, ObjectKind, Project, RewriteError, read_project, rewrite_project,
 };
-use crate::formats::{self, Encoding, Format, ReadLimits, ReadOptions, WriteError};
+use crate::formats::{self, Encoding, Format, ReadErrorKind, ReadLimits, ReadOptions, WriteError};
 use crate::mesh::Soup;
 use crate::simplify::Target;
 
@@ -81,8 +81,18 @@ pub(super) fn run_by_parts(
         Parts::Union if answer.report.refusal.is_none() => run.unite(answer)?,
         _ => answer,
     };
-    let picture = drawn::picture(&run, &answer)?;
-    Ok(Answer { picture, ..answer })
+    match drawn::picture(&run, &answer) {
+        Ok(picture) => Ok(Answer { picture, ..answer }),
+        // Parts that are few may be at so many places that all together are too large to be drawn.
+        Err(Failure::Unreadable(error))
+            if operation != Operation::Render && matches!(error.kind, ReadErrorKind::TooLarge { .. }) =>
+        {
+            let mut answer = answer;
+            answer.report.remarks.push(format!("There is no picture of the file: {}.", error.kind));
+            Ok(answer)
+        }
+        Err(failure) => Err(failure),
+    }
 }
 
 /// What is said of a 3MF whose parts were taken as one mesh.

@@ -43,6 +43,8 @@ const BOOLEAN: &[Operation] = &[Operation::Boolean];
 /// Operations whose result may touch itself.
 const TOUCHING: &[Operation] = &[Operation::Repair, Operation::Boolean];
 const RENDER: &[Operation] = &[Operation::Render];
+/// Most pixels in all pictures of a full turn.
+const TURN_PIXELS_MAX: u64 = 64_000_000;
 const SHARE: OptionKind = OptionKind::Number { min: 0.0, max: 1.0 };
 
 // One row: name, type, range where it is not all of the type's, who takes it, what it does.
@@ -167,7 +169,7 @@ options! {
     defects: bool, in RENDER,
         "Whether render colours and marks defects. Default: true.";
     turntable: u32 = OptionKind::Integer { min: 2, max: 120 }, in RENDER,
-        "Number of pictures of a full turn, which render returns as an animated PNG instead of views. Default: none.";
+        "Number of pictures of a full turn, which render returns as an animated PNG instead of views; at most 64 million pixels in all. Default: none.";
     thumbnail: bool, in Operation::BESIDE_PICTURE, of the service,
         "Whether a picture of the mesh with its defects, and of the result with its new triangles, is made and kept with the job. Default: false.";
     policy: PolicyName, in Operation::ALL,
@@ -227,6 +229,26 @@ impl Options {
         if self.vertex_colors == Some(VertexColors::Priority) && !shows_colors {
             let needs = "a `format` or `output_format` of off, ply, glb or gltf";
             return Err(OptionError::Lacking { spec: table::spec_of("vertex_colors")?, needs });
+        }
+        self.check_turntable()
+    }
+
+    /// That a full turn has no choice that it would leave out, and is no file of any size.
+    fn check_turntable(&self) -> Result<(), OptionError> {
+        let Some(pictures) = self.turntable else { return Ok(()) };
+        let spec = table::spec_of("turntable")?;
+        let others = [
+            ("views", self.views.is_some()),
+            ("projection", self.projection == Some(Projection::Perspective)),
+        ];
+        if let Some((by, _)) = others.into_iter().find(|&(_, is_given)| is_given) {
+            return Err(OptionError::Excluded { spec, by });
+        }
+        let (width, height) = pipeline::PictureChoices::RENDERED;
+        let [width, height] = [self.width.unwrap_or(width), self.height.unwrap_or(height)].map(u64::from);
+        if width * height * u64::from(pictures) > TURN_PIXELS_MAX {
+            let needs = "`width` and `height` of at most 64 million pixels in all its pictures";
+            return Err(OptionError::Lacking { spec, needs });
         }
         Ok(())
     }
