@@ -171,6 +171,7 @@ impl Operation {
         Self::FillHoles,
         Self::Modeller,
         Self::Boolean,
+        Self::Render,
     ];
 
     /// Most meshes that it takes.

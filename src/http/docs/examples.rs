@@ -31,7 +31,6 @@ impl Call {
     /// The call of `path` by `method`.
     pub(super) fn of(path: &str, method: &'static str) -> Self {
         let (query, answer) = match (method, path) {
-            ("POST", "/v1/repair") => ("", Answer::Saved("repaired.stl")),
             ("POST", "/v1/convert") => ("?output_format=obj", Answer::Saved("part.obj")),
             ("POST", "/v1/simplify") => ("?ratio=0.5", Answer::Saved("small.stl")),
             ("POST", "/v1/cut-stitch") => ("?output_format=off", Answer::Saved("sheets.off")),
@@ -42,7 +41,7 @@ impl Call {
             ("POST", "/v1/jobs") => ("?operation=repair&thumbnail=true", Answer::Told),
             ("GET", "/v1/jobs") => ("?limit=20", Answer::Told),
             ("GET", "/v1/jobs/{id}") => ("?wait=60", Answer::Told),
-            ("GET", "/v1/jobs/{id}/result") => ("", Answer::Saved("repaired.stl")),
+            ("POST", "/v1/repair") | ("GET", "/v1/jobs/{id}/result") => ("", Answer::Saved("repaired.stl")),
             ("GET", "/v1/jobs/{id}/thumbnail.png") => ("", Answer::Saved("part.png")),
             ("GET", "/openapi.yaml") => ("", Answer::Saved("openapi.yaml")),
             ("GET", "/openapi.json") => ("", Answer::Saved("openapi.json")),

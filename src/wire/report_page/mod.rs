@@ -96,7 +96,7 @@ fn verdict(page: &mut Page, report: &Value) {
 fn show(page: &mut Page, report: &Value, picture: &[u8]) {
     let has_other = report["after"].is_object();
     let is_drawing = text(&report["operation"]) == "render";
-    let several = items(&report["further_inputs"]).len() > 0;
+    let several = !items(&report["further_inputs"]).is_empty();
     let (title, told) = if is_drawing {
         (
             "The picture",
