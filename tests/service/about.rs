@@ -38,7 +38,8 @@ fn pages_load_nothing_from_other_hosts() {
         ("/page.js", "text/javascript; charset=utf-8"),
         ("/worker.js", "text/javascript; charset=utf-8"),
         ("/page.css", "text/css; charset=utf-8"),
-        ("/style.css", "text/css; charset=utf-8"),
+        ("/docs.css", "text/css; charset=utf-8"),
+        ("/docs.js", "text/javascript; charset=utf-8"),
     ] {
         let response = server.get(path).send().unwrap();
         assert_eq!(
