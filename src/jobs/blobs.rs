@@ -12,6 +12,8 @@ pub struct StoredBlob {
     pub key: String,
     /// Number of bytes.
     pub bytes: u64,
+    /// It was written a short time ago, in a store where another process may be about to name it in a row.
+    pub is_recent: bool,
 }
 
 /// A file that is being written. Dropped before it is committed, it leaves nothing behind.
@@ -44,13 +46,13 @@ pub trait BlobStore: Send + Sync {
     /// There is no such file, or it cannot be had.
     fn local(&self, key: &str) -> io::Result<PathBuf>;
 
-    /// Removes a file.
+    /// Removes a file; one that is as good as gone may fill its room a moment longer.
     ///
     /// # Errors
-    /// There is no such file, or the disk fails.
+    /// There is no such file, where that is known, or the disk fails.
     fn remove(&self, key: &str) -> io::Result<()>;
 
-    /// Every file, also those that were begun and never committed.
+    /// Every file, also those that were begun and never committed, where that leaves any.
     ///
     /// # Errors
     /// The disk fails.
@@ -61,7 +63,7 @@ pub trait BlobStore: Send + Sync {
 }
 
 /// The directories that hold all files.
-const DIRS: [&str; 2] = ["in", "out"];
+pub(super) const DIRS: [&str; 2] = ["in", "out"];
 
 /// Files in a directory.
 #[derive(Debug)]
@@ -118,7 +120,7 @@ impl BlobStore for LocalBlobs {
                 let entry = entry?;
                 let key = format!("{dir}/{}", entry.file_name().to_string_lossy());
                 match entry.metadata() {
-                    Ok(metadata) => blobs.push(StoredBlob { key, bytes: metadata.len() }),
+                    Ok(metadata) => blobs.push(StoredBlob { key, bytes: metadata.len(), is_recent: false }),
                     // Removed since the directory was read.
                     Err(error) if error.kind() == io::ErrorKind::NotFound => {}
                     Err(error) => return Err(error),
@@ -210,7 +212,7 @@ mod tests {
         writer.write_all(b"hello").unwrap();
         writer.commit().unwrap();
         assert_eq!(fs::read(blobs.local(key).unwrap()).unwrap(), b"hello");
-        assert_eq!(blobs.list().unwrap(), [StoredBlob { key: key.to_owned(), bytes: 5 }]);
+        assert_eq!(blobs.list().unwrap(), [StoredBlob { key: key.to_owned(), bytes: 5, is_recent: false }]);
         assert!(blobs.create(key).is_err(), "a file is written once");
         blobs.remove(key).unwrap();
         assert!(blobs.list().unwrap().is_empty());

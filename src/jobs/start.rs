@@ -22,7 +22,7 @@ use super::spool::{SpaceLimits, Spool};
 use super::store::JobStore;
 use super::stores::{Stores, StoresError};
 use super::webhook::{Sender, Vault};
-use super::{load, retention};
+use super::{load, neighbours, retention};
 
 /// A service that cannot start.
 #[derive(Debug, thiserror::Error)]
@@ -93,8 +93,11 @@ impl Jobs {
     ) -> Result<Self, StartError> {
         let Stores { rows: store, blobs, worker, lock } = stores;
         let settings = Arc::new(settings);
-        let space =
-            SpaceLimits { bytes_max: settings.data_bytes_max, free_bytes_min: settings.disk_free_bytes_min };
+        let space = SpaceLimits {
+            bytes_max: settings.data_bytes_max,
+            free_bytes_min: settings.disk_free_bytes_min,
+            is_shared: store.is_shared(),
+        };
         let spool = on_disk(move || Spool::of(blobs, space)).await;
         let spool = spool.map_err(|problem| StartError::TakeOver { why: problem.detail })?;
         let executor = Executor::new(&settings, &spool, engine).await?;
@@ -138,5 +141,8 @@ fn begin_tasks(service: &Arc<Service>) {
     }
     service.slots.spawn(retention::sweep_forever(Arc::clone(service)));
     service.slots.spawn(load::tell_forever(Arc::clone(service)));
+    if service.store.is_shared() {
+        service.slots.spawn(neighbours::look_forever(Arc::clone(service)));
+    }
     service.slots.close();
 }

@@ -1,0 +1,84 @@
+//! A PostgreSQL server for tests: Debian's own, in a temporary directory, without a port. It ends with the process that
+//! started it, however that ends.
+
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::os::unix::process::CommandExt as _;
+use std::path::PathBuf;
+use std::process::{ChildStdin, ChildStdout, Command, Stdio};
+use std::sync::{Mutex, OnceLock};
+
+/// Makes the server, tells its directory, and starts it anew for each line that it reads; at the end of its input all goes.
+const KEEPER: &str = r#"
+cd / && dir=$(mktemp -d /tmp/meshmend-postgres.XXXXXX) || exit 1
+control() {
+    "$1/pg_ctl" -D "$dir/data" -l "$dir/log" -w -t 60 \
+        -o "-k '$dir' -c listen_addresses='' -c max_connections=400" "$2" -m immediate >>"$dir/log" 2>&1 </dev/null
+}
+if "$1/initdb" -D "$dir/data" -U meshmend --auth=trust --no-sync --encoding=UTF8 --locale=C >"$dir/log" 2>&1 &&
+    control "$1" start
+then
+    echo "$dir"
+    while read -r _; do control "$1" restart; echo "$?"; done
+    control "$1" stop
+else
+    cat "$dir/log" >&2
+fi
+rm -rf "$dir"
+"#;
+
+/// A server that runs.
+pub(super) struct Server {
+    dir: PathBuf,
+    keeper: Mutex<(ChildStdin, BufReader<ChildStdout>)>,
+}
+
+/// Where the server's programs are, if they are installed: those of the newest version.
+pub(super) fn programs() -> Option<PathBuf> {
+    let versions = std::fs::read_dir("/usr/lib/postgresql").ok()?;
+    let number = |path: &PathBuf| path.file_name()?.to_str()?.parse::<u32>().ok();
+    let newest = versions.flatten().map(|entry| entry.path()).max_by_key(number)?;
+    Some(newest.join("bin")).filter(|bin| bin.join("initdb").exists())
+}
+
+impl Server {
+    /// The one that all tests of this process share.
+    pub(super) fn shared() -> &'static Self {
+        static SHARED: OnceLock<Server> = OnceLock::new();
+        SHARED.get_or_init(Self::start)
+    }
+
+    /// Starts another one.
+    pub(super) fn start() -> Self {
+        let programs = programs().expect("PostgreSQL is installed");
+        // The server refuses to run as root.
+        let mut command = if rustix::process::geteuid().is_root() {
+            let mut command = Command::new("runuser");
+            command.args(["-u", "nobody", "--", "sh"]);
+            command
+        } else {
+            Command::new("sh")
+        };
+        command.args(["-c", KEEPER, "keeper"]).arg(programs).process_group(0);
+        let mut keeper = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+        let input = keeper.stdin.take().unwrap();
+        let mut output = BufReader::new(keeper.stdout.take().unwrap());
+        let mut dir = String::new();
+        output.read_line(&mut dir).unwrap();
+        assert!(!dir.is_empty(), "PostgreSQL cannot be started: see above");
+        Self { dir: dir.trim().into(), keeper: Mutex::new((input, output)) }
+    }
+
+    /// How a database of it is addressed.
+    pub(super) fn url(&self, database: &str) -> String {
+        format!("host={} user=meshmend dbname={database}", self.dir.display())
+    }
+
+    /// Ends the server at once, as a crash does, and starts it anew. Blocks.
+    pub(super) fn crash_and_start(&self) {
+        let mut keeper = self.keeper.lock().unwrap();
+        writeln!(keeper.0, "anew").unwrap();
+        let mut result = String::new();
+        keeper.1.read_line(&mut result).unwrap();
+        assert_eq!(result.trim(), "0");
+    }
+}
