@@ -36,6 +36,7 @@ mod s3;
 mod service;
 mod settings;
 mod settle;
+mod shared;
 mod shares;
 mod slot;
 mod soundness;
@@ -67,6 +68,7 @@ pub use meters::describe as describe_metrics;
 pub use postgres::{DatabaseAccess, OpenError as PostgresOpenError, PostgresStore};
 pub use s3::{BucketAccess, BucketError, S3Blobs};
 pub use settings::{Isolation, JobsSettings};
+pub use shared::SharedStores;
 pub use sqlite::{OpenError as SqliteOpenError, SqliteStore, StoreClock, StoreFile};
 pub use start::StartError;
 pub use store::{

@@ -56,6 +56,10 @@ type Sending = (Arc<Vault>, Arc<Sender>);
 /// What webhooks need; `None`: none are sent.
 fn webhooks(settings: &JobsSettings, store: &Arc<dyn JobStore>) -> Result<Option<Sending>, String> {
     let Some(webhooks) = settings.webhooks.clone() else { return Ok(None) };
+    if settings.shared.is_some() && settings.store_key_file.is_none() {
+        // Each server would seal with a key of its own, which the others do not have.
+        return Err("servers that share their stores need one store_key_file, the same on each".to_owned());
+    }
     let path = settings.store_key_file.clone().unwrap_or_else(|| settings.data_dir.join(KEY_FILE));
     let vault = Arc::new(Vault::open(&path).map_err(|error| error.to_string())?);
     let sender = Sender::new(webhooks, Arc::clone(&vault), Arc::clone(store));
@@ -69,7 +73,7 @@ impl Jobs {
     /// # Errors
     /// The data directory cannot be used, another server uses it, or jobs cannot run as the settings ask.
     pub async fn start(settings: JobsSettings) -> Result<Self, StartError> {
-        let stores = Stores::local(&settings).await?;
+        let stores = Stores::open(&settings).await?;
         Self::start_on(stores, settings, None).await
     }
 
@@ -78,7 +82,7 @@ impl Jobs {
     /// # Errors
     /// As [`start`](Self::start).
     pub async fn start_with(settings: JobsSettings, engine: Engine) -> Result<Self, StartError> {
-        let stores = Stores::local(&settings).await?;
+        let stores = Stores::open(&settings).await?;
         Self::start_on(stores, settings, Some(engine)).await
     }
 

@@ -10,6 +10,8 @@ mod postgres;
 mod sharing;
 mod sqlite;
 
+pub(super) use postgres::Database;
+
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
@@ -44,7 +46,7 @@ const AFTER_LEASE_MS: i64 = 30_001;
 const ATTEMPTS_MAX: u32 = 3;
 
 /// Says on the terminal that a test is left out.
-fn leave_out(missing: &str) {
+pub(super) fn leave_out(missing: &str) {
     use std::io::Write as _;
     // Not the output that a test which passes keeps to itself.
     let _ = writeln!(std::io::stderr(), "not run: {missing} is not installed");

@@ -38,6 +38,22 @@ async fn connect(url: &str) -> Client {
     client
 }
 
+/// The server, for tests beside the cases.
+pub(in crate::jobs::tests) struct Database(());
+
+impl Database {
+    /// Where it is installed; otherwise what is missing.
+    pub(in crate::jobs::tests) fn installed() -> Result<Self, &'static str> {
+        PostgresHouse::missing().map_or(Ok(Self(())), Err)
+    }
+
+    /// A new database.
+    pub(in crate::jobs::tests) async fn access(&self) -> DatabaseAccess {
+        let Self(()) = self;
+        DatabaseAccess { url: database(Server::shared()).await, password: None, connections_max: 8 }
+    }
+}
+
 /// A new database of this server.
 async fn database(server: &Server) -> String {
     let name = format!("d{}", Uuid::now_v7().simple());
