@@ -59,8 +59,8 @@ shared_tests! {
         let job = first.order(b"a mesh").await.unwrap();
         let ended = first.end_of(&job).await;
         assert_eq!(ended.state, JobState::Succeeded, "{:?}", ended.problem);
-        let here = content(first.result(id(&job), 0).await.unwrap()).await;
-        let there = content(third.result(id(&job), 0).await.unwrap()).await;
+        let here = content(first.result(id(&job)).await.unwrap()).await;
+        let there = content(third.result(id(&job)).await.unwrap()).await;
         assert!(!here.is_empty() && here == there);
         third.delete(id(&job)).await.unwrap();
         assert!(first.get(id(&job)).await.is_err());
