@@ -9,7 +9,7 @@ use super::store::StoreError;
 /// Time between two looks. All who wait here wait for the same look, which costs two short questions however many they are.
 const LOOK_EVERY: Duration = Duration::from_millis(250);
 
-/// Looks for what others have done until the service drains; who waits for the end of a job is told until it stops.
+/// Looks for what others have done until the service stops.
 pub(super) async fn look_forever(service: Arc<Service>) {
     loop {
         tokio::select! {
@@ -18,10 +18,6 @@ pub(super) async fn look_forever(service: Arc<Service>) {
         }
         if let Err(error) = service.look_at_neighbours().await {
             tracing::debug!(%error, "what other servers do is not known");
-        }
-        // Nobody waits when all slots are empty and no job is asked for any more.
-        if service.draining.is_cancelled() && service.live.all().is_empty() {
-            return;
         }
     }
 }

@@ -146,7 +146,8 @@ fn begin_tasks(service: &Arc<Service>) {
     service.slots.spawn(retention::sweep_forever(Arc::clone(service)));
     service.slots.spawn(load::tell_forever(Arc::clone(service)));
     if service.store.is_shared() {
-        service.slots.spawn(neighbours::look_forever(Arc::clone(service)));
+        // Who waits for a job that another server runs does so until this one stops.
+        tokio::spawn(neighbours::look_forever(Arc::clone(service)));
     }
     service.slots.close();
 }

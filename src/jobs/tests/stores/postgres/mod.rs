@@ -254,7 +254,7 @@ postgres_tests! {
                 let (mut told, mut refused, mut after) = (Vec::new(), 0, 0);
                 // Until it has seen the crash and some of what comes after.
                 while after < 20 {
-                    assert!(begun.elapsed() < PATIENCE, "the database is not found again");
+                    assert!(begun.elapsed() < 3 * PATIENCE, "the database is not found again");
                     match store.create(job(), 1_000_000).await {
                         Ok(Created::New(row)) => {
                             told.push(row.id);
