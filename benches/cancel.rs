@@ -1,15 +1,17 @@
-//! Time from the stop flag to the return of a running engine: `cargo bench --bench cancel -- [CANCELS] [ROWS] [crossing]`.
+//! Time from the stop flag to the return of a running engine: `cargo bench --bench cancel -- [CANCELS] [ROWS] [crossing | holes]`.
 //!
 //! A wavy sphere with holes, flipped and doubled faces, so that every pass has work, is repaired again and again and
 //! stopped after a random share of the time of a full run (fixed seed). Prints the number of cancels that came in
 //! time, the median, the 99th percentile and the worst time to return in milliseconds, and the pass that was slowest
 //! to return. 1,000 cancels of 160,000 triangles (200 rows) take a few minutes, of 500,000 (354 rows) about ten.
 //! With `crossing` it is two such spheres that pass through each other, so that the surface is rebuilt, which takes seconds.
+//! With `holes` it is the filling of holes by each method instead, of rims with 2,048 and 65,536 corners and of 10,000 small ones.
 
 #![allow(clippy::print_stdout, reason = "a bench prints its figures")]
 
 use meshmend::budget::{Budget, Event, Stage, StopFlag, Stopped};
-use meshmend::pipeline::{Failure, Operation, Options, run};
+use meshmend::pipeline::{Failure, FillHolesChoices, Operation, Options, run};
+use meshmend::repair::fill::{Extract, FillOptions, Method};
 use std::sync::{Arc, Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
@@ -79,8 +81,15 @@ struct Return {
     stage: Stage,
 }
 
-/// Repairs `bytes` and raises the flag after `delay`; `None`: the run was faster.
-fn cancel_after(bytes: &[u8], delay: Duration) -> Option<Return> {
+/// What is run again and again.
+struct Case {
+    operation: Operation,
+    options: Options,
+    bytes: Vec<u8>,
+}
+
+/// Runs a case and raises the flag after `delay`; `None`: the run was faster.
+fn cancel_after(case: &Case, delay: Duration) -> Option<Return> {
     let stop = StopFlag::default();
     let stage = Arc::new(Mutex::new(Stage::Read));
     let entered = Arc::clone(&stage);
@@ -97,7 +106,7 @@ fn cancel_after(bytes: &[u8], delay: Duration) -> Option<Return> {
             raised.set(Instant::now()).expect("raised once");
             stop.cancel();
         });
-        let result = run(Operation::Repair, bytes, &Options::default(), &budget);
+        let result = run(case.operation, &case.bytes, &case.options, &budget);
         (result, Instant::now())
     });
     let is_cancelled = matches!(result, Err(Failure::Stopped(Stopped::Cancelled)));
@@ -106,33 +115,82 @@ fn cancel_after(bytes: &[u8], delay: Duration) -> Option<Return> {
     is_cancelled.then(|| Return { time: returned.duration_since(raised), stage })
 }
 
-fn main() {
-    let numbers: Vec<u32> = std::env::args().skip(1).filter_map(|argument| argument.parse().ok()).collect();
-    let cancels = numbers.first().copied().unwrap_or(1000);
-    let rows = numbers.get(1).copied().unwrap_or(200);
-    let mut triangles = triangles(rows);
-    if std::env::args().any(|argument| argument == "crossing") {
-        let across = triangles.clone().into_iter().map(|t| t.map(|[x, y, z]| [x + 41.0, y + 7.0, z + 3.0]));
-        triangles.extend(across);
+/// A tube of `corners` triangles around in three rows, open at both ends, whose rims wave and are jagged.
+fn tube(corners: u32) -> Vec<[[f32; 3]; 3]> {
+    let at = |row: u32, i: u32| {
+        let i = i % corners;
+        let turn = std::f64::consts::TAU * f64::from(i) / f64::from(corners);
+        let tooth = if i.is_multiple_of(2) { 0.3 } else { 0.0 } * std::f64::consts::TAU / f64::from(corners);
+        let radius = 50.0 * (1.0 - tooth);
+        [radius * turn.cos(), radius * turn.sin(), 12.0 * f64::from(row) + 5.0 * (5.0 * turn).sin()]
+            .map(|x| x as f32)
+    };
+    let cells = (0..3).flat_map(|row| (0..corners).map(move |i| (row, i)));
+    cells
+        .flat_map(|(row, i)| {
+            let [a, b, c, d] = [at(row, i), at(row, i + 1), at(row + 1, i + 1), at(row + 1, i)];
+            [[a, b, c], [a, c, d]]
+        })
+        .collect()
+}
+
+/// A sphere without the triangles around every fourth vertex of every fourth row.
+fn sieve(rows: u32) -> Vec<[[f32; 3]; 3]> {
+    let mut left = Vec::new();
+    for row in 1..rows - 1 {
+        for column in 0..2 * rows {
+            let corners = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(r, c)| (row + r, (column + c) % (2 * rows)));
+            let is_out = |k: usize| corners[k].0 % 4 == 2 && corners[k].1 % 4 == 0;
+            let corner = |k: usize| point(corners[k].0, corners[k].1, rows);
+            for t in [[0, 1, 2], [2, 1, 3]] {
+                if !t.into_iter().any(is_out) {
+                    left.push(t.map(corner));
+                }
+            }
+        }
     }
-    let bytes = binary_stl(&triangles);
+    left
+}
+
+fn hole_cases() -> Vec<(String, Case)> {
+    let meshes =
+        [("2,048 corners", tube(2_048)), ("65,536 corners", tube(65_536)), ("10,000 holes", sieve(284))];
+    let methods = [Method::Flat, Method::Minimal, Method::Smooth, Method::Creased, Method::Rbf, Method::Auto];
+    let extracts = [Extract::March, Extract::Mesh].map(|extract| (Method::Rbf, extract));
+    let ways = methods.map(|method| (method, Extract::Project)).into_iter().chain(extracts);
+    let case = |(method, extract): (Method, Extract), triangles: &[[[f32; 3]; 3]]| {
+        let fill = FillOptions { method, extract, ..FillOptions::default() };
+        let filling = FillHolesChoices { fill, ..FillHolesChoices::default() };
+        let options = Options { filling, ..Options::default() };
+        Case { operation: Operation::FillHoles, options, bytes: binary_stl(triangles) }
+    };
+    let all = meshes.iter().flat_map(|(name, triangles)| ways.clone().map(move |way| (name, way, triangles)));
+    all.map(|(name, way, triangles)| (format!("{name}, {:?}, {:?}", way.0, way.1), case(way, triangles)))
+        .collect()
+}
+
+fn measure(name: &str, case: &Case, cancels: u32) {
     let start = Instant::now();
-    let answer =
-        run(Operation::Repair, &bytes, &Options::default(), &Budget::unlimited()).expect("a full run");
+    let answer = run(case.operation, &case.bytes, &case.options, &Budget::unlimited()).expect("a full run");
     let full = start.elapsed();
     let outcome = answer.report.outcome;
+    let holes = answer.report.filling.as_ref().map(|filling| {
+        let told = filling.holes.iter().filter_map(|hole| hole.told.as_ref());
+        let used: std::collections::BTreeSet<_> = told.map(|told| format!("{:?}", told.used)).collect();
+        format!(", \"used\": {used:?}")
+    });
     drop(answer);
     let mut seed = 7;
     let delay = |_| full.mul_f64((next(&mut seed) >> 11) as f64 / (1_u64 << 53) as f64);
     let mut returns: Vec<Return> =
-        (0..cancels).map(delay).filter_map(|delay| cancel_after(&bytes, delay)).collect();
+        (0..cancels).map(delay).filter_map(|delay| cancel_after(case, delay)).collect();
     assert!(!returns.is_empty(), "no cancel came in time");
     returns.sort_unstable_by_key(|returned| returned.time);
     let at = |share: f64| &returns[((share * returns.len() as f64).ceil() as usize).saturating_sub(1)];
     let ms_at = |share: f64| at(share).time.as_secs_f64() * 1000.0;
     println!(
-        "{{\"triangles\": {}, \"outcome\": \"{outcome:?}\", \"full_ms\": {:.0}, \"cancels\": {}, \"p50_ms\": {:.2}, \"p99_ms\": {:.2}, \"max_ms\": {:.2}, \"slowest\": \"{}\"}}",
-        triangles.len(),
+        "{{\"case\": \"{name}\", \"outcome\": \"{outcome:?}\"{}, \"full_ms\": {:.0}, \"cancels\": {}, \"p50_ms\": {:.2}, \"p99_ms\": {:.2}, \"max_ms\": {:.2}, \"slowest\": \"{}\"}}",
+        holes.unwrap_or_default(),
         full.as_secs_f64() * 1000.0,
         returns.len(),
         ms_at(0.5),
@@ -140,4 +198,24 @@ fn main() {
         ms_at(1.0),
         at(1.0).stage.name(),
     );
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let has = |word: &str| arguments.iter().any(|argument| argument == word);
+    let numbers: Vec<u32> = arguments.iter().filter_map(|argument| argument.parse().ok()).collect();
+    let cancels = numbers.first().copied().unwrap_or(1000);
+    if has("holes") {
+        hole_cases().iter().for_each(|(name, case)| measure(name, case, cancels));
+        return;
+    }
+    let rows = numbers.get(1).copied().unwrap_or(200);
+    let mut triangles = triangles(rows);
+    if has("crossing") {
+        let across = triangles.clone().into_iter().map(|t| t.map(|[x, y, z]| [x + 41.0, y + 7.0, z + 3.0]));
+        triangles.extend(across);
+    }
+    let name = format!("repair of {} triangles", triangles.len());
+    let bytes = binary_stl(&triangles);
+    measure(&name, &Case { operation: Operation::Repair, options: Options::default(), bytes }, cancels);
 }

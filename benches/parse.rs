@@ -8,7 +8,7 @@ use meshmend::mesh::Soup;
 use std::f64::consts::TAU;
 use std::hint::black_box;
 
-const ENCODINGS: [Encoding; 8] = [
+const ENCODINGS: [Encoding; 10] = [
     Encoding::StlBinary,
     Encoding::StlAscii,
     Encoding::Obj,
@@ -17,6 +17,8 @@ const ENCODINGS: [Encoding; 8] = [
     Encoding::PlyAscii,
     Encoding::PlyBinaryLittleEndian,
     Encoding::PlyBinaryBigEndian,
+    Encoding::Glb,
+    Encoding::Gltf,
 ];
 
 /// A torus of `2 * rings * segments` triangles with float32 coordinates.

@@ -22,7 +22,8 @@ declare -A filters=(
   [modeller]="modeller_"
   [wrap]="bad_soup"
   [injected]="injected_defect"
-  [holes]="holes_cut_into_closed_meshes"
+  [arrangement]="arrangement::tests"
+  [random-holes]="random_holes"
   [kill]="killed_at_random_points"
 )
 
@@ -30,7 +31,8 @@ declare -A filters=(
 declare -A places=(
   [modeller]="--test properties"
   [wrap]="--test properties"
-  [holes]="--test properties"
+  [arrangement]="--lib"
+  [random-holes]="--test properties"
   [kill]="--test service"
 )
 

@@ -5,6 +5,7 @@ Each is the smallest mesh that shows one thing, in whole numbers where that is p
 standard library is used, so every run writes the same bytes.
 """
 
+import base64
 import json
 import struct
 import sys
@@ -129,6 +130,38 @@ def ply_binary(mesh, order, kind):
     return ply_head(kind, mesh) + b"".join(body)
 
 
+def gltf_parts(mesh, uri=None):
+    """The document and the buffer of a glTF file in which each triangle has vertices of its own, as exporters write flat shading."""
+    vertices, faces = in_triangles(mesh)
+    corners = [vertices[v] for face in faces for v in face]
+    data = b"".join(struct.pack("<3f", *corner) for corner in corners)
+    buffer = {"byteLength": len(data)}
+    if uri:
+        buffer["uri"] = uri(data)
+    positions = {
+        "bufferView": 0, "componentType": 5126, "count": len(corners), "type": "VEC3",
+        "min": [min(c[k] for c in corners) for k in range(3)], "max": [max(c[k] for c in corners) for k in range(3)],
+    }
+    return {
+        "asset": {"version": "2.0", "generator": "fixture"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "accessors": [positions],
+        "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": len(data)}], "buffers": [buffer],
+    }, data
+
+
+def glb(mesh):
+    document, data = gltf_parts(mesh)
+    text = json.dumps(document, separators=(",", ":")).encode()
+    text += b" " * (-len(text) % 4)
+    chunks = struct.pack("<I", len(text)) + b"JSON" + text + struct.pack("<I", len(data)) + b"BIN\0" + data
+    return b"glTF" + struct.pack("<II", 2, 12 + len(chunks)) + chunks
+
+
+def gltf(mesh):
+    document, _ = gltf_parts(mesh, lambda data: "data:application/octet-stream;base64," + base64.b64encode(data).decode())
+    return (json.dumps(document, indent=1) + "\n").encode()
+
+
 # --- meshes ----------------------------------------------------------------------------------------------------------
 
 CUBE = box((0, 0, 0), (10, 10, 10))
@@ -149,6 +182,8 @@ def valid():
         "cube_little_endian.ply": ply_binary(cube, "<", "binary_little_endian"),
         "cube_big_endian.ply": ply_binary(cube, ">", "binary_big_endian"),
         "cube_of_squares.obj": obj(CUBE),
+        "cube_split.glb": glb(cube),
+        "cube_split.gltf": gltf(cube),
         "hollow_cube.off": off(joined(cube, cavity)),
         "two_parts.stl": stl_binary(joined(tetrahedron(), tetrahedron((20, 0, 0)))),
     }
@@ -158,6 +193,7 @@ def boundary():
     return {
         "open_sheet.off": off(([(0, 0, 0), (10, 0, 0), (10, 10, 0), (0, 10, 0)], [(0, 1, 2), (0, 2, 3)])),
         "boundary_loop.off": off(without(tetrahedron(), (1, 2, 3))),
+        "boundary_loop.glb": glb(without(tetrahedron(), (1, 2, 3))),
         "isolated_face.obj": obj(added(tetrahedron(), [(20, 0, 0), (30, 0, 0), (20, 10, 0)], [(4, 5, 6)])),
     }
 

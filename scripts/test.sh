@@ -13,7 +13,7 @@ export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never} CARGO_INCREMENTAL=0 PYTHONDON
 # Settings of the caller's own service must not reach the tests.
 for name in $(compgen -e | grep '^MESHMEND_' | grep -v -e '^MESHMEND_CORPUS$'); do unset "$name"; done
 
-steps=(format lint lint_engine lint_otel build tests doc_tests fixtures contract fuzz_contract clients browser licences)
+steps=(format lint lint_engine lint_otel build tests doc_tests fixtures contract fuzz_contract clients browser gltf_rules licences)
 scratch=target/test-run
 python=target/python/bin
 server_pid=
@@ -134,6 +134,22 @@ set_up_browser() {
   cmp -s tests/browser/package-lock.json $into/installed.json && return 0
   rm -rf $into && mkdir -p $into && cp tests/browser/package*.json $into/ &&
     npm ci --prefix $into --no-audit --no-fund --silent && cp tests/browser/package-lock.json $into/installed.json
+}
+
+# What the program writes as glTF, judged by the validator of the standard's makers.
+gltf_rules() {
+  set_up_gltf_rules || { echo "not run: the validator cannot be installed here"; return 0; }
+  rm -rf "$scratch/gltf" && GLTF_VALIDATOR=target/gltf-validator node tests/gltf_rules/run.mjs target/debug/meshmend "$scratch/gltf"
+}
+
+set_up_gltf_rules() {
+  local into=target/gltf-validator
+  if ! command -v npm >/dev/null; then
+    install_packages nodejs npm || return 1
+  fi
+  cmp -s tests/gltf_rules/package-lock.json $into/installed.json && return 0
+  rm -rf $into && mkdir -p $into && cp tests/gltf_rules/package*.json $into/ &&
+    npm ci --prefix $into --no-audit --no-fund --silent && cp tests/gltf_rules/package-lock.json $into/installed.json
 }
 
 licences() {

@@ -70,7 +70,7 @@ fn check_closed(
     budget: &Budget,
 ) -> Result<(), ArrangementError> {
     let operands = arrangement.operands;
-    let mut edges = 0;
+    let mut edges = vec![0; operands];
     for (e, group) in groups.iter().enumerate() {
         if e % CHECK_EVERY == 0 {
             budget.spend(CHECK_EVERY as u64)?;
@@ -83,9 +83,14 @@ fn check_closed(
             };
             group.iter().map(of).sum::<i32>()
         };
-        edges += u64::from((0..operands).any(|operand| balance(operand) != 0));
+        for (operand, edges) in edges.iter_mut().enumerate() {
+            *edges += u64::from(balance(operand) != 0);
+        }
     }
-    if edges > 0 { Err(ArrangementError::NotClosed { edges }) } else { Ok(()) }
+    match edges.iter().enumerate().find(|&(_, &edges)| edges > 0) {
+        Some((operand, &edges)) => Err(ArrangementError::NotClosed { operand: operand as u8, edges }),
+        None => Ok(()),
+    }
 }
 
 /// For each side of each half-edge, `2 h` in front of it and `2 h + 1` behind it, the side that it looks at.

@@ -25,7 +25,9 @@ pub enum ArrangementError {
     /// The triangles bound no volume: along an edge they do not balance.
     #[error("the surface is not closed along {edges} edges of the arrangement")]
     NotClosed {
-        /// Number of edges at which the triangles of an operand do not balance.
+        /// The first operand of which that is so.
+        operand: u8,
+        /// Number of edges at which its triangles do not balance.
         edges: u64,
     },
     /// What must hold by construction does not: a fault of this module, or of its numbers.

@@ -40,6 +40,21 @@ pub enum Condition {
     Alternating,
 }
 
+impl Condition {
+    /// Every condition.
+    pub(super) const ALL: [Self; 9] = [
+        Self::Usable,
+        Self::NonDegenerate,
+        Self::Distinct,
+        Self::TwoTrianglesPerEdge,
+        Self::OppositeDirections,
+        Self::OneFanPerVertex,
+        Self::Embedded,
+        Self::NotEmpty,
+        Self::Alternating,
+    ];
+}
+
 /// The element that breaks a [`Condition`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Violation {
@@ -118,6 +133,8 @@ pub struct Certificate {
     pub bytes: u64,
     /// Encoding of the bytes.
     pub encoding: Encoding,
+    /// Number of parts that were judged one by one, each in its own coordinates; `None`: all triangles were judged together.
+    pub parts: Option<u32>,
     /// P0: closed, oriented, 2-manifold, without degenerate or duplicate triangles.
     pub p0: bool,
     /// P1: no two triangles meet except in a common vertex or edge. `None`: found nowhere, but not evaluated everywhere.

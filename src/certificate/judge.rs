@@ -35,17 +35,33 @@ pub(super) fn judge(
     depth: Depth,
     budget: &Budget,
 ) -> Result<Judged, CertifyError> {
-    let rounded;
     let mut judge = Judge::new(depth, budget);
     judge.judge_soup(soup, false)?;
+    let rounded;
     if !soup.is_f32_exact && !judge.verdict.has_ended() {
         let options = ReadOptions { precision: Precision::F32, ..*options };
         rounded = formats::read(bytes, encoding, &options, budget)?;
         judge.judge_soup(&rounded, true)?;
     }
-    let Judge { verdict, first, .. } = judge;
-    let First { census, contacts, shells } = first.unwrap_or_default();
-    Ok(Judged { verdict, census, contacts, shells })
+    Ok(judge.into_judged())
+}
+
+/// As [`judge`] of a part that was read already: `rounded` is its f32 reading, which is needed unless the other is the same.
+pub(super) fn judge_read(
+    soup: &Soup,
+    rounded: Option<&Soup>,
+    depth: Depth,
+    budget: &Budget,
+) -> Result<Judged, CertifyError> {
+    let mut judge = Judge::new(depth, budget);
+    judge.judge_soup(soup, false)?;
+    if !soup.is_f32_exact && !judge.verdict.has_ended() {
+        match rounded {
+            Some(rounded) => judge.judge_soup(rounded, true)?,
+            None => judge.leave_open(),
+        }
+    }
+    Ok(judge.into_judged())
 }
 
 /// What is kept of the first reading.
@@ -76,6 +92,19 @@ struct Judge<'a> {
 impl<'a> Judge<'a> {
     fn new(depth: Depth, budget: &'a Budget) -> Self {
         Self { budget, verdict: Verdict::new(depth), first: None, known_lists: Vec::new() }
+    }
+
+    /// Leaves every condition open: a reading is missing.
+    fn leave_open(&mut self) {
+        for condition in Condition::ALL {
+            self.verdict.leave_open(condition);
+        }
+    }
+
+    fn into_judged(self) -> Judged {
+        let Self { verdict, first, .. } = self;
+        let First { census, contacts, shells } = first.unwrap_or_default();
+        Judged { verdict, census, contacts, shells }
     }
 
     fn judge_soup(&mut self, soup: &'a Soup, is_f32: bool) -> Result<(), Stopped> {

@@ -5,12 +5,14 @@
 
 mod claims;
 mod judge;
+mod parts;
 mod solid;
 mod surface;
 mod topology;
 mod verdict;
 
 pub use claims::{Certificate, Condition, Reading, Shell, Violation, ViolationCounts};
+pub use parts::{PartsExamination, certify_parts, examine_parts};
 
 use crate::budget::{Budget, Stopped};
 use crate::formats::{self, Encoding, ReadError, ReadErrorKind, ReadOptions};
@@ -92,23 +94,31 @@ pub fn examine(
     let (sha256, judged) =
         par::join(|| digest(bytes, budget), || judge::judge(soup, bytes, encoding, options, depth, budget));
     let (sha256, judged) = (sha256?, judged?);
-    let (census, verdict) = (judged.census, judged.verdict);
-    let certificate = Certificate {
-        sha256,
-        bytes: bytes.len() as u64,
-        encoding,
-        p0: verdict.p0(),
-        p1: verdict.p1(),
-        p2: verdict.p2(),
-        violations: verdict.counts(),
-        triangles: soup.triangles.len() as u64,
-        vertices: census.vertices,
-        euler_characteristic: census.euler_characteristic(),
-        shells: if verdict.is_valid() { judged.shells } else { Vec::new() },
-        witnesses: verdict.witnesses,
-        readings: verdict.readings,
-    };
-    Ok(Examination { certificate, contacts: judged.contacts })
+    Ok(judged.into_examination(sha256, bytes.len() as u64, encoding, soup))
+}
+
+impl judge::Judged {
+    /// As what is told of the file, or the part of one, that was read as `soup`.
+    fn into_examination(self, sha256: [u8; 32], bytes: u64, encoding: Encoding, soup: &Soup) -> Examination {
+        let Self { census, verdict, contacts, shells } = self;
+        let certificate = Certificate {
+            sha256,
+            bytes,
+            encoding,
+            parts: None,
+            p0: verdict.p0(),
+            p1: verdict.p1(),
+            p2: verdict.p2(),
+            violations: verdict.counts(),
+            triangles: soup.triangles.len() as u64,
+            vertices: census.vertices,
+            euler_characteristic: census.euler_characteristic(),
+            shells: if verdict.is_valid() { shells } else { Vec::new() },
+            witnesses: verdict.witnesses,
+            readings: verdict.readings,
+        };
+        Examination { certificate, contacts }
+    }
 }
 
 /// Bytes hashed between two looks at the budget: about a millisecond.

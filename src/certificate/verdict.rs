@@ -118,6 +118,25 @@ impl Verdict {
     }
 }
 
+/// The counts of several parts as one: the sum of each, `None` where a part left it open and none found any.
+pub(super) fn sum_of(parts: &[&ViolationCounts]) -> ViolationCounts {
+    let sum = |of: fn(&ViolationCounts) -> Option<u64>| {
+        let known: u64 = parts.iter().filter_map(|part| of(part)).sum();
+        let is_open = parts.iter().any(|part| of(part).is_none());
+        if known == 0 && is_open { None } else { Some(known) }
+    };
+    ViolationCounts {
+        unusable: sum(|part| part.unusable),
+        degenerate: sum(|part| part.degenerate),
+        duplicate: sum(|part| part.duplicate),
+        edges_without_two_triangles: sum(|part| part.edges_without_two_triangles),
+        edges_in_one_direction: sum(|part| part.edges_in_one_direction),
+        singular_vertices: sum(|part| part.singular_vertices),
+        contacts: sum(|part| part.contacts),
+        misnested_shells: sum(|part| part.misnested_shells),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -5,13 +5,21 @@ use super::flags::options;
 use crate::wire::Operation;
 use clap::{Command, CommandFactory as _};
 
+/// What `boolean` takes in the place of files that are taken one after the other.
+const MESHES: &str = "Two or more mesh files. The difference is the first without all others.";
+
 /// The command line, on which the help of each operation lists the options that it takes. The others are understood, so
 /// that the answer is who takes them.
 pub(super) fn command() -> Command {
     Operation::ALL.iter().fold(Arguments::command(), |command, &operation| {
         command.mut_subcommand(operation.word(), |command| {
             let foreign = options().filter(|spec| !spec.is_taken_by(operation));
-            foreign.fold(command, |command, spec| command.mut_arg(spec.name, |flag| flag.hide(true)))
+            let command =
+                foreign.fold(command, |command, spec| command.mut_arg(spec.name, |flag| flag.hide(true)));
+            match operation {
+                Operation::Boolean => command.mut_arg("inputs", |inputs| inputs.help(MESHES)),
+                _ => command,
+            }
         })
     })
 }

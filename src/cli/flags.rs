@@ -42,6 +42,8 @@ fn option_flag(spec: &'static OptionSpec) -> Arg {
     let flag = Arg::new(spec.name).long(spec.flag()).help(spec.about).help_heading("Mesh options");
     // The name as it stands in JSON is understood as well.
     let flag = if spec.name.contains('_') { flag.alias(spec.name) } else { flag };
+    // As the command says what is done, so that this cannot be another operation.
+    let flag = if spec.name == "set_operation" { flag.visible_alias("operation") } else { flag };
     match spec.kind {
         OptionKind::Word { words, .. } => {
             flag.value_name("WORD").value_parser(PossibleValuesParser::new(words))

@@ -96,6 +96,8 @@ fn execute(command: Command, service: Service) -> Exit {
         Command::CutStitch(given) => several::run(&given.into()),
         Command::FillHoles(given) => several::run(&given.into()),
         Command::Modeller(given) => several::run(&given.into()),
+        Command::Boolean(given) => several::run(&given.into()),
+        Command::Render(given) => several::run(&given.into()),
         Command::Check { input, format } => {
             check::run(&input, format.and_then(|word| Format::from_name(&word)))
         }

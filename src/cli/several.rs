@@ -7,6 +7,7 @@ use super::figures::counted;
 use super::files::Place;
 use super::summary::{Subject, summary};
 use super::work::{Done, Errand, run as run_one, wrong};
+use crate::pipeline::Operation;
 use crate::wire::{Fidelity, Problem};
 use anstyle::Style;
 use serde_json::{Value, json};
@@ -32,46 +33,50 @@ pub(super) fn run(request: &Request) -> Exit {
 
 /// What is to be done, file by file; nothing is done where two results would have one name.
 fn errands(request: &Request) -> Result<Vec<Errand<'_>>, Problem> {
-    let many = request.inputs.len() > 1;
+    let each = if request.operation == Operation::Boolean { request.inputs.len() } else { 1 };
+    let many = request.inputs.len() > each;
     if many && matches!(request.target, Target::Place(_)) {
         return Err(wrong("one --output holds the result of one file; several files need --out-dir"));
     }
     if many && request.report_html.is_some() {
         return Err(wrong("--report-html writes the page of one file; leave it out, or give one file"));
     }
-    if many && request.inputs.contains(&Place::Stream) {
+    if request.inputs.len() > 1 && request.inputs.contains(&Place::Stream) {
         return Err(wrong("standard input cannot be one of several files"));
     }
     if let Target::Folder(folder) = &request.target {
         fs::create_dir_all(folder).map_err(|e| wrong(format!("{} cannot be made: {e}", folder.display())))?;
     }
     let mut taken = BTreeSet::new();
-    let errand = |input| {
+    let errand = |inputs| {
         let output = match &request.target {
             Target::None => None,
             Target::Place(place) => Some(place.clone()),
-            Target::Folder(folder) => Some(place_in(folder, input, request)?),
+            Target::Folder(folder) => Some(place_in(folder, inputs, request)?),
         };
         match &output {
             Some(Place::File(path)) if !taken.insert(path.clone()) => Err(wrong(format!(
                 "two files have the name {}; give them one after the other",
                 path.display()
             ))),
-            _ => Ok(Errand { request, input, output }),
+            _ => Ok(Errand { request, inputs, output }),
         }
     };
-    request.inputs.iter().map(errand).collect()
+    request.inputs.chunks(each.max(1)).map(errand).collect()
 }
 
 /// The file of this name in `folder`, with the extension of the format that is asked for.
-fn place_in(folder: &Path, input: &Place, request: &Request) -> Result<Place, Problem> {
-    let Place::File(input) = input else {
+fn place_in(folder: &Path, inputs: &[Place], request: &Request) -> Result<Place, Problem> {
+    let [Place::File(input), ..] = inputs else {
         return Err(wrong("the result of standard input has no name in a folder; give --output"));
     };
     let name = input.file_name().ok_or_else(|| wrong(format!("{} names no file", input.display())))?;
     let mut path = folder.join(name);
     if let Some((_, format)) = request.options.iter().find(|(option, _)| option == "output_format") {
         path.set_extension(format);
+    }
+    if request.operation == Operation::Render {
+        path.set_extension("png");
     }
     let is_input =
         fs::canonicalize(&path).ok().is_some_and(|path| fs::canonicalize(input).ok() == Some(path));
@@ -86,7 +91,7 @@ fn tell(errand: &Errand<'_>, done: &Done) -> Exit {
     if errand.request.is_json {
         print_json(&done.report);
     } else {
-        let subject = Subject { input: errand.input.to_string(), written: done.written.clone() };
+        let subject = Subject { input: errand.subject(), written: done.written.clone() };
         let text = summary(&done.report, &subject);
         if errand.output == Some(Place::Stream) {
             // The mesh has standard output for itself.
@@ -108,10 +113,10 @@ fn tell_problem(request: &Request, problem: &Problem) -> Exit {
 
 /// A line for each file as it ends, and the sum.
 fn run_all(request: &Request, errands: &[Errand<'_>]) -> Exit {
-    let width = errands.iter().map(|errand| errand.input.to_string().chars().count()).max().unwrap_or(0);
+    let width = errands.iter().map(|errand| errand.subject().chars().count()).max().unwrap_or(0);
     let mut exits = Vec::with_capacity(errands.len());
     for errand in errands {
-        let input = errand.input.to_string();
+        let input = errand.subject();
         let result = run_one(errand);
         exits.push(result.as_ref().map_or_else(Exit::of, |done| done.exit));
         if request.is_json {

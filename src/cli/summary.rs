@@ -4,8 +4,8 @@ use super::colours::{BAD, DOUBTFUL, GOOD, PLAIN, QUIET, STRONG, aligned, painted
 use super::figures::{counted, figure};
 use super::model;
 use crate::wire::{
-    Action, Certificate, Claim, Defect, DefectCode, Deviation, Fidelity, Hole, JoinedEdges, Level, MeshInfo,
-    Operation, PrintingCheck, Proposal, Report, Severity, TargetSpec, Witness,
+    Action, Certificate, Claim, Defect, DefectCode, Deviation, Fidelity, Hole, InputInfo, JoinedEdges, Level,
+    MeshInfo, Operation, Part, PrintingCheck, Proposal, Report, Severity, TargetSpec, Witness,
 };
 use anstyle::Style;
 use std::fmt::Write as _;
@@ -36,6 +36,13 @@ pub(super) fn summary(report: &Report, subject: &Subject) -> String {
                 put_table(&mut text, "holes", &hole_rows(mesh));
             }
             None => {}
+        }
+    }
+    for (further, number) in report.further_inputs.iter().zip(2..) {
+        put(&mut text, &format!("mesh {number}: {}", facts(&further.input)));
+        if let Some(mesh) = &further.before {
+            put(&mut text, &format!("  {}", size(mesh)));
+            put_styled(&mut text, "defects", &mesh.defects.iter().map(defect_row).collect::<Vec<_>>());
         }
     }
     if let Some(plan) = report.plan.as_ref().filter(|_| report.operation == Operation::Plan) {
@@ -76,12 +83,26 @@ pub(super) fn summary(report: &Report, subject: &Subject) -> String {
         let heading = format!("printing ({}, {} up)", printing.policy, printing.build_direction);
         put_table(&mut text, &heading, &printing.checks.iter().map(check_row).collect::<Vec<_>>());
     }
+    if report.parts.len() > 1 {
+        put_table(&mut text, "parts", &report.parts.iter().map(part_row).collect::<Vec<_>>());
+    }
+    put_table(&mut text, "remarks", &report.remarks.iter().map(|text| [text.clone()]).collect::<Vec<_>>());
     let judged = report.certificate.as_ref().unwrap_or(&report.input_certificate);
     put_styled(&mut text, "certificate", &claim_rows(judged));
     if let Some(line) = written(report, subject) {
         put(&mut text, &line);
     }
     text
+}
+
+/// A part: where it is, its name, what became of it, and how many triangles it has.
+fn part_row(part: &Part) -> [String; 4] {
+    let verdict = &part.verdict;
+    let state = if verdict.printable { "printable" } else { "not printable" };
+    let outcome = verdict.outcome.map_or(state.to_owned(), |outcome| format!("{outcome}, {state}"));
+    let triangles = part.triangles_after.unwrap_or(part.triangles_before);
+    let place = format!("{} {}", part.path, part.object);
+    [place, part.name.clone(), outcome, counted(triangles, "triangle")]
 }
 
 fn put(text: &mut String, line: &str) {
@@ -107,9 +128,12 @@ fn put_styled<const N: usize>(text: &mut String, heading: &str, rows: &[(Style, 
 }
 
 fn head(report: &Report, subject: &Subject) -> String {
-    let input = &report.input;
+    format!("{}: {}", subject.input, facts(&report.input))
+}
+
+fn facts(input: &InputInfo) -> String {
     let known = if input.units.is_stated { "" } else { " (assumed)" };
-    format!("{}: {}, {} bytes, unit {}{known}", subject.input, input.encoding, input.bytes, input.units.unit)
+    format!("{}, {} bytes, unit {}{known}", input.encoding, input.bytes, input.units.unit)
 }
 
 fn size(mesh: &MeshInfo) -> String {

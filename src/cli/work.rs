@@ -9,18 +9,27 @@ use crate::config::{Config, Loaded};
 use crate::formats::{self, ReadLimits};
 use crate::jobs::StageClock;
 use crate::par;
-use crate::pipeline::{self, Answer, Operation, Require};
+use crate::pipeline::{self, Answer, Operation, PictureChoices, Require};
 use crate::wire::{Options, Problem, ProblemCode, Report, TimingMs, report_page};
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
 
-/// One file, and where its result goes.
+/// One file, or several that become one, and where the result goes.
 #[derive(Debug)]
 pub(super) struct Errand<'r> {
     pub request: &'r Request,
-    pub input: &'r Place,
+    /// At least one.
+    pub inputs: &'r [Place],
     /// `None`: nowhere.
     pub output: Option<Place>,
+}
+
+impl Errand<'_> {
+    /// Names of the files.
+    pub(super) fn subject(&self) -> String {
+        self.inputs.iter().map(Place::to_string).collect::<Vec<_>>().join(", ")
+    }
 }
 
 /// What came of one file.
@@ -41,11 +50,13 @@ pub(super) fn run(errand: &Errand<'_>) -> Result<Done, Problem> {
 }
 
 fn attempt(errand: &Errand<'_>) -> Result<Done, Problem> {
-    let &Errand { request, input, ref output } = errand;
+    let &Errand { request, inputs, ref output } = errand;
     check_streams(errand)?;
     let options =
         Options::from_pairs(request.options.iter().map(|(n, v)| (n, v))).map_err(|e| Problem::from(&e))?;
-    let by_name = output.as_ref().and_then(Place::format).map(Into::into);
+    // A picture has one format, whatever its name.
+    let is_picture = request.operation == Operation::Render;
+    let by_name = output.as_ref().filter(|_| !is_picture).and_then(Place::format).map(Into::into);
     let options = Options { output_format: options.output_format.or(by_name), ..options };
     options.check(request.operation.into()).map_err(|e| Problem::from(&e))?;
     if *output == Some(Place::Stream) && options.targets.as_ref().is_some_and(|t| t.len() > 1) {
@@ -59,26 +70,39 @@ fn attempt(errand: &Errand<'_>) -> Result<Done, Problem> {
         let place = Place::File(page.clone());
         place.check_writable().map_err(|e| wrong(format!("{place} cannot be written: {e}")))?;
     }
-    let bytes = input.read().map_err(|e| unreadable(input, &e))?;
-    let material = match &request.material {
-        Some(path) => Some(std::fs::read(path).map_err(|e| unreadable(&path.display(), &e))?),
-        None => None,
+    // One behind the other.
+    let mut bytes = Vec::new();
+    let mut file_sizes = Vec::new();
+    for input in inputs {
+        let file = input.read().map_err(|e| unreadable(input, &e))?;
+        file_sizes.push(file.len() as u64);
+        if bytes.is_empty() { bytes = file } else { bytes.extend(file) }
+    }
+    let beside = |path: &Option<PathBuf>| {
+        let read = |path: &PathBuf| std::fs::read(path).map_err(|e| unreadable(&path.display(), &e));
+        path.as_ref().map(read).transpose()
     };
+    let (material, after) = (beside(&request.material)?, beside(&request.after)?);
     let options = engine_options(errand, &options, &loaded.config, &bytes);
-    let options = pipeline::Options { material, ..options };
-    let (answer, timing) = execute(request.operation, &bytes, &options, &loaded)
-        .map_err(|problem| Problem { detail: format!("{input}: {}", problem.detail), ..problem })?;
+    // The page for people has a picture.
+    let page_picture = request.report_html.is_some().then(PictureChoices::default);
+    let picture = options.picture.clone().or(page_picture.filter(|_| !is_picture));
+    let options = pipeline::Options { material, after, picture, file_sizes, ..options };
+    let (answer, timing) = execute(request.operation, &bytes, &options, &loaded).map_err(|problem| {
+        Problem { detail: format!("{}: {}", errand.subject(), problem.detail), ..problem }
+    })?;
     deliver(errand, options.require, &bytes, &answer, timing)
 }
 
 /// Streams have no extension that could name their format, and standard output holds one thing only.
 fn check_streams(errand: &Errand<'_>) -> Result<(), Problem> {
-    let &Errand { request, input, ref output } = errand;
+    let &Errand { request, inputs, ref output } = errand;
     let is_named = |name: &str| request.options.iter().any(|(given, _)| given == name);
-    if *input == Place::Stream && !is_named("format") {
+    if inputs.contains(&Place::Stream) && !is_named("format") {
         return Err(wrong("standard input needs --format"));
     }
-    if *output == Some(Place::Stream) && !is_named("output_format") {
+    let is_picture = request.operation == Operation::Render;
+    if *output == Some(Place::Stream) && !is_named("output_format") && !is_picture {
         return Err(wrong("standard output needs --output-format"));
     }
     if *output == Some(Place::Stream) && request.is_json {
@@ -114,7 +138,8 @@ fn engine_options(
     };
     let engine = options.to_engine(limits);
     // The content decides; the extension only where the content leaves it open.
-    let by_extension = || errand.input.format().filter(|_| formats::sniff(bytes, None).is_err());
+    let named = if let [input] = errand.inputs { input.format() } else { None };
+    let by_extension = || named.filter(|_| formats::sniff(bytes, None).is_err());
     pipeline::Options {
         format: engine.format.or_else(by_extension),
         output_format: engine.output_format.or_else(|| errand.output.as_ref()?.format()),
@@ -161,12 +186,19 @@ fn deliver(
             .map_err(|e| Problem::new(ProblemCode::StorageFull, format!("{place} cannot be written: {e}")))?;
         written.push(place.to_string());
     }
+    let drawn = answer.picture.as_ref().filter(|_| request.operation == Operation::Render);
+    if let (Some(place), Some(picture)) = (&errand.output, drawn) {
+        place
+            .write(picture)
+            .map_err(|e| Problem::new(ProblemCode::StorageFull, format!("{place} cannot be written: {e}")))?;
+        written.push(place.to_string());
+    }
     let report = Report::new(&answer.report, timing);
     if let Some(path) = &request.report_html {
         let value = serde_json::to_value(&report).unwrap_or_default();
         let place = Place::File(path.clone());
         place
-            .write(report_page(&value).as_bytes())
+            .write(report_page(&value, answer.picture.as_deref()).as_bytes())
             .map_err(|e| Problem::new(ProblemCode::StorageFull, format!("{place} cannot be written: {e}")))?;
     }
     let exit = verdict(request.operation, require, &report, answer.output.is_some());
@@ -175,9 +207,9 @@ fn deliver(
 
 fn verdict(operation: Operation, require: Option<Require>, report: &Report, has_result: bool) -> Exit {
     let is_done = match operation {
-        Operation::Repair => has_result && report.verdict.printable,
+        Operation::Repair | Operation::Boolean => has_result && report.verdict.printable,
         Operation::Verify => report.verdict.printable,
-        Operation::Analyze | Operation::Plan => true,
+        Operation::Analyze | Operation::Plan | Operation::Render => true,
         Operation::Convert
         | Operation::Simplify
         | Operation::CutStitch

@@ -32,6 +32,8 @@ impl ColorLayout {
                     layout.is_bytes = false;
                     layout.has_alpha |= alpha.is_some();
                 }
+                // As bytes, which every program reads.
+                Color::Linear(_, alpha) => layout.has_alpha |= alpha.is_some(),
                 Color::Index(_) => continue,
             }
             has_any = true;
@@ -53,11 +55,56 @@ pub(super) fn as_bytes(color: Option<Color>) -> [u8; 4] {
     }
 }
 
-/// Red, green, blue and alpha, 0 to 1.
+/// Red, green, blue and alpha of sRGB, 0 to 1.
 pub(super) fn as_floats(color: Option<Color>) -> [f32; 4] {
     match color {
         Some(Color::Floats([r, g, b], a)) => [r, g, b, a.unwrap_or(1.0)],
         Some(Color::Bytes([r, g, b], a)) => [r, g, b, a.unwrap_or(255)].map(|c| f32::from(c) / 255.0),
+        Some(Color::Linear([r, g, b], a)) => {
+            let [r, g, b] = [r, g, b].map(srgb_of_linear);
+            [r, g, b, a.unwrap_or(1.0)]
+        }
         Some(Color::Index(_)) | None => [1.0; 4],
+    }
+}
+
+/// Red, green, blue and alpha in proportion to light, 0 to 1.
+pub(super) fn as_linear(color: Option<Color>) -> [f32; 4] {
+    let [r, g, b, a] = match color {
+        Some(Color::Linear([r, g, b], a)) => [r, g, b, a.unwrap_or(1.0)],
+        _ => {
+            let [r, g, b, a] = as_floats(color);
+            let [r, g, b] = [r, g, b].map(linear_of_srgb);
+            [r, g, b, a]
+        }
+    };
+    [r, g, b, a].map(|channel| if channel.is_nan() { 1.0 } else { channel.clamp(0.0, 1.0) })
+}
+
+/// A channel by the transfer function of IEC 61966-2-1.
+fn srgb_of_linear(channel: f32) -> f32 {
+    let c = f64::from(channel);
+    (if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * libm::pow(c, 1.0 / 2.4) - 0.055 }) as f32
+}
+
+/// A channel by the inverse of that function.
+fn linear_of_srgb(channel: f32) -> f32 {
+    let c = f64::from(channel);
+    (if c <= 0.040_45 { c / 12.92 } else { libm::pow((c + 0.055) / 1.055, 2.4) }) as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_byte_of_srgb_comes_back_from_linear_light() {
+        for byte in 0..=255 {
+            let [r, _, _, a] = as_linear(Some(Color::Bytes([byte, 0, 255], Some(byte))));
+            let back = as_bytes(Some(Color::Linear([r, 0.0, 1.0], Some(a))));
+            assert_eq!(back, [byte, 0, 255, byte]);
+        }
+        let half = as_linear(Some(Color::Floats([0.5; 3], None)))[0];
+        assert!((half - 0.214_041).abs() < 1e-6, "{half}");
     }
 }

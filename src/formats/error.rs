@@ -84,10 +84,20 @@ impl ReadError {
     pub(super) fn foreign(name: &'static str) -> Self {
         let expected = match name {
             "gzip" => {
-                "the mesh itself in STL, OBJ, OFF or PLY; `Content-Encoding: gzip` says that a body is compressed"
+                "the mesh itself in STL, OBJ, OFF, PLY, 3MF or glTF; `Content-Encoding: gzip` says that a body is compressed"
             }
-            "text in UTF-16" => "a mesh in STL, OBJ, OFF or PLY, as text in UTF-8",
-            _ => "a mesh in STL, OBJ, OFF or PLY",
+            "STEP" | "OpenCASCADE BREP" => {
+                "a mesh in STL, OBJ, OFF, PLY, 3MF or glTF: export one from the CAD program, which divides curved surfaces as finely as it is told"
+            }
+            "AMF" | "compressed AMF" => {
+                "a mesh in STL, OBJ, OFF, PLY, 3MF or glTF: slicers save an AMF as 3MF, with its parts and colours"
+            }
+            "VRML" | "X3D" => "a mesh in STL, OBJ, OFF, PLY, 3MF or glTF: PLY keeps the colours of vertices",
+            "COLLADA" => {
+                "a mesh in STL, OBJ, OFF, PLY, 3MF or glTF: modelling programs export the scene as OBJ with its materials"
+            }
+            "text in UTF-16" => "a mesh in STL, OBJ, OFF, PLY, 3MF or glTF, as text in UTF-8",
+            _ => "a mesh in STL, OBJ, OFF, PLY, 3MF or glTF",
         };
         Self { kind: ReadErrorKind::Foreign { name }, place: Place::Whole, expected: expected.to_owned() }
     }
@@ -125,6 +135,22 @@ pub enum WriteError {
         value: f64,
         /// Name of the encoding.
         encoding: &'static str,
+    },
+    /// The file would be longer than its format allows.
+    #[error("{bytes} bytes are more than the {bytes_max} that {encoding} can hold")]
+    TooLarge {
+        /// Its length, or that of its largest part.
+        bytes: u64,
+        /// The most there may be.
+        bytes_max: u64,
+        /// Name of the encoding.
+        encoding: &'static str,
+    },
+    /// The package around the mesh cannot be made.
+    #[error("the package cannot be written: {reason}")]
+    Package {
+        /// Why.
+        reason: String,
     },
     /// The run was stopped.
     #[error("{0}")]

@@ -5,7 +5,6 @@ const LOOKED_AT_BYTES: usize = 4096;
 
 /// What bytes at the very beginning mean.
 const MARKS: &[(&[u8], &str)] = &[
-    (b"glTF", "binary glTF (GLB)"),
     (b"Kaydara FBX Binary", "binary FBX"),
     (b"; FBX", "FBX text"),
     (b"ISO-10303-21", "STEP"),
@@ -56,12 +55,9 @@ pub(super) fn foreign(bytes: &[u8]) -> Option<&'static str> {
     let marked = of(MARKS, &|mark| start.starts_with(mark) || text.starts_with(mark));
     marked.or_else(|| {
         let lower = text.to_ascii_lowercase();
-        let is_gltf = lower.starts_with(b"{") && has(&lower, b"\"asset\"");
-        let is_markup = lower.starts_with(b"<");
-        match (is_gltf, is_markup) {
-            (true, _) => Some("glTF"),
-            (_, true) => of(WORDS, &|word| has(&lower, word)),
-            _ => dxf(&lower),
+        match lower.starts_with(b"<") {
+            true => of(WORDS, &|word| has(&lower, word)),
+            false => dxf(&lower),
         }
     })
 }
@@ -69,8 +65,8 @@ pub(super) fn foreign(bytes: &[u8]) -> Option<&'static str> {
 /// What is in a zip archive, by the names at its start.
 fn archive(start: &[u8]) -> &'static str {
     let lower = start.to_ascii_lowercase();
-    if has(&lower, b"3d/3dmodel.model") || has(&lower, b"[content_types].xml") {
-        "3MF"
+    if has(&lower, b"[content_types].xml") {
+        "an Office document or another package without a 3MF model"
     } else if has(&lower, b".amf") {
         "compressed AMF"
     } else {
@@ -114,10 +110,11 @@ mod tests {
         let big: Vec<u8> = "OFF\n4 4 0\n0 0 0\n".encode_utf16().flat_map(u16::to_be_bytes).collect();
         let marked = [&b"\xff\xfe"[..], &utf_16].concat();
         for (bytes, name) in [
-            (&b"PK\x03\x04\x14\0\0\0\x08\0________________\x13\0\0\0[Content_Types].xml"[..], "3MF"),
+            (
+                &b"PK\x03\x04\x14\0\0\0\x08\0________________\x13\0\0\0[Content_Types].xml"[..],
+                "an Office document or another package without a 3MF model",
+            ),
             (b"PK\x03\x04\x14\0\0\0\x08\0________________\x08\0\0\0part.stl", "a zip archive"),
-            (b"glTF\x02\0\0\0", "binary glTF (GLB)"),
-            (b"{\n  \"asset\": {\"version\": \"2.0\"}}", "glTF"),
             (b"ISO-10303-21;\nHEADER;", "STEP"),
             (b"Kaydara FBX Binary  \0\x1a\0", "binary FBX"),
             (b"; FBX 7.7.0 project file", "FBX text"),

@@ -11,6 +11,7 @@ mod error;
 mod faces;
 mod float32;
 mod foreign;
+mod gltf;
 mod numbers;
 mod obj;
 mod off;
@@ -18,6 +19,7 @@ mod ply;
 mod polygons;
 mod sniff;
 mod stl;
+pub mod threemf;
 mod words;
 
 pub use announced::triangles_at_most;
@@ -40,6 +42,12 @@ pub enum Format {
     Off,
     /// Polygon file format, ASCII or binary.
     Ply,
+    /// glTF 2.0 in one binary file.
+    Glb,
+    /// glTF 2.0 as JSON that holds its data.
+    Gltf,
+    /// 3D Manufacturing Format.
+    ThreeMf,
 }
 
 /// A format together with the way its bytes are laid out.
@@ -61,11 +69,18 @@ pub enum Encoding {
     PlyBinaryLittleEndian,
     /// Binary big-endian PLY.
     PlyBinaryBigEndian,
+    /// GLB.
+    Glb,
+    /// glTF JSON.
+    Gltf,
+    /// The package of a 3MF.
+    ThreeMf,
 }
 
 impl Format {
     /// Every format.
-    pub const ALL: [Self; 4] = [Self::Obj, Self::Stl, Self::Off, Self::Ply];
+    pub const ALL: [Self; 7] =
+        [Self::Obj, Self::Stl, Self::Off, Self::Ply, Self::ThreeMf, Self::Glb, Self::Gltf];
 
     /// The format's name in options and its usual file extension.
     pub fn name(self) -> &'static str {
@@ -74,12 +89,20 @@ impl Format {
             Self::Stl => "stl",
             Self::Off => "off",
             Self::Ply => "ply",
+            Self::Glb => "glb",
+            Self::Gltf => "gltf",
+            Self::ThreeMf => "3mf",
         }
     }
 
     /// The format of this name or file extension, in any case.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|f| f.name().eq_ignore_ascii_case(name))
+    }
+
+    /// True when the format itself says that its coordinates are metres.
+    pub fn is_in_metres(self) -> bool {
+        matches!(self, Self::Glb | Self::Gltf)
     }
 
     /// How a new file of this format is laid out when nothing else is asked.
@@ -89,6 +112,9 @@ impl Format {
             Self::Stl => Encoding::StlBinary,
             Self::Off => Encoding::Off,
             Self::Ply => Encoding::PlyBinaryLittleEndian,
+            Self::Glb => Encoding::Glb,
+            Self::Gltf => Encoding::Gltf,
+            Self::ThreeMf => Encoding::ThreeMf,
         }
     }
 }
@@ -101,12 +127,20 @@ impl Encoding {
             Self::StlBinary | Self::StlAscii => Format::Stl,
             Self::Off | Self::OffBinary => Format::Off,
             Self::PlyAscii | Self::PlyBinaryLittleEndian | Self::PlyBinaryBigEndian => Format::Ply,
+            Self::Glb => Format::Glb,
+            Self::Gltf => Format::Gltf,
+            Self::ThreeMf => Format::ThreeMf,
         }
     }
 
     /// Whether all of it is text.
     fn is_text(self) -> bool {
         matches!(self, Self::Obj | Self::StlAscii | Self::Off | Self::PlyAscii)
+    }
+
+    /// True when coordinates are float32 and nothing else.
+    pub fn is_float32(self) -> bool {
+        matches!(self, Self::StlBinary | Self::Glb | Self::Gltf)
     }
 
     /// Name in reports.
@@ -120,6 +154,9 @@ impl Encoding {
             Self::PlyAscii => "ply-ascii",
             Self::PlyBinaryLittleEndian => "ply-binary-little-endian",
             Self::PlyBinaryBigEndian => "ply-binary-big-endian",
+            Self::Glb => "glb",
+            Self::Gltf => "gltf",
+            Self::ThreeMf => "3mf",
         }
     }
 }
@@ -200,11 +237,30 @@ pub fn read(
         Encoding::PlyAscii | Encoding::PlyBinaryLittleEndian | Encoding::PlyBinaryBigEndian => {
             ply::read::read(bytes, options, budget)
         }
+        Encoding::Glb | Encoding::Gltf => gltf::read::read(bytes, encoding, options, budget),
+        Encoding::ThreeMf => threemf::read::read(bytes, options, budget),
+    }
+}
+
+/// Reads the parts of a file, each in its own coordinates: the meshes of a 3MF that have to be solids. A file of another
+/// format is one part.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_parts(
+    bytes: &[u8],
+    encoding: Encoding,
+    options: &ReadOptions,
+    budget: &Budget,
+) -> Result<Vec<Soup>, ReadError> {
+    match encoding {
+        Encoding::ThreeMf => threemf::read::read_solids(bytes, options, budget),
+        _ => Ok(vec![read(bytes, encoding, options, budget)?]),
     }
 }
 
 /// Writes the triangles of `soup` (not its polygons) with its vertex colours and, where the format holds them, its
-/// face colours. Deterministic: the same soup gives the same bytes. Binary STL and text hold coordinates exactly when
+/// face colours. Deterministic: the same soup gives the same bytes. Binary STL and glTF hold coordinates exactly when
 /// they are float32 values; text prints the shortest decimal that reads back as the same f64.
 ///
 /// # Errors
@@ -219,6 +275,17 @@ pub fn write(soup: &Soup, encoding: Encoding, budget: &Budget) -> Result<Vec<u8>
         Encoding::PlyAscii | Encoding::PlyBinaryLittleEndian | Encoding::PlyBinaryBigEndian => {
             ply::write::write(soup, encoding, budget)
         }
+        Encoding::Glb | Encoding::Gltf => gltf::write::write(soup, encoding, budget),
+        Encoding::ThreeMf => threemf::write::write(soup, budget),
+    }
+}
+
+/// The order in which [`write`] writes the triangles of `soup`; `None`: their own. glTF keeps triangles of one material
+/// together.
+pub fn stored_order(soup: &Soup, encoding: Encoding) -> Option<Vec<u32>> {
+    match encoding {
+        Encoding::Glb | Encoding::Gltf => gltf::stored_order(soup),
+        _ => None,
     }
 }
 

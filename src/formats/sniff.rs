@@ -13,14 +13,14 @@ const LOOKED_AT_BYTES: usize = 4096;
 /// Finds the encoding of `bytes` by content. `named` is the caller's word for the format, which wins where the
 /// content leaves it open and is contradicted only by content that certainly is another format (then the error says so).
 ///
-/// In this order: the exact length of a binary STL, whatever its header says (in text the four bytes that count would
-/// announce gigabytes); the word `ply`; the header word of OFF; `solid` followed by `facet`; a binary STL with extra bytes at its end, fewer than its own; a statement of OBJ.
+/// In this order: the letters `glTF`; the exact length of a binary STL, whatever its header says (in text the four bytes that count would
+/// announce gigabytes); a JSON object with an `asset`; the word `ply`; the header word of OFF; `solid` followed by `facet`; a binary STL with extra bytes at its end, fewer than its own; a statement of OBJ.
 ///
 /// # Errors
 /// Empty or unrecognisable bytes; content that contradicts `named`.
 pub fn sniff(bytes: &[u8], named: Option<Format>) -> Result<Encoding, ReadError> {
     if bytes.iter().all(u8::is_ascii_whitespace) {
-        return Err(ReadError::empty("a mesh in STL, OBJ, OFF or PLY"));
+        return Err(ReadError::empty("a mesh in STL, OBJ, OFF, PLY, 3MF or glTF"));
     }
     match (certain(bytes), named) {
         (Some(found), Some(named)) if found.format() != named => {
@@ -39,8 +39,14 @@ pub fn sniff(bytes: &[u8], named: Option<Format>) -> Result<Encoding, ReadError>
 /// The encoding, if the content can hardly be anything else.
 fn certain(bytes: &[u8]) -> Option<Encoding> {
     let first = first_word(bytes);
-    if announced_length(bytes) == Some(bytes.len() as u64) {
+    if bytes.starts_with(b"glTF") {
+        Some(Encoding::Glb)
+    } else if announced_length(bytes) == Some(bytes.len() as u64) {
         Some(Encoding::StlBinary)
+    } else if is_gltf_text(bytes) {
+        Some(Encoding::Gltf)
+    } else if is_package(bytes) {
+        Some(Encoding::ThreeMf)
     } else if first.eq_ignore_ascii_case(b"ply") {
         Some(ply_layout(bytes))
     } else if HeaderWord::parse(first).is_some() {
@@ -52,6 +58,18 @@ fn certain(bytes: &[u8]) -> Option<Encoding> {
     }
 }
 
+/// A JSON object that has what every glTF document must have.
+fn is_gltf_text(bytes: &[u8]) -> bool {
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
+    text.starts_with(b"{") && memchr::memmem::find(text, b"\"asset\"").is_some()
+}
+
+/// A zip archive with a part that may be the model of a 3MF. Their names stand in front of each entry and at the end.
+fn is_package(bytes: &[u8]) -> bool {
+    let names_model = |word: &[u8]| memchr::memmem::find(bytes, word).is_some();
+    bytes.starts_with(b"PK\x03\x04") && (names_model(b".model") || names_model(b".MODEL"))
+}
+
 /// The layout of content that has no mark of `format` but shall be in it.
 fn layout_of(bytes: &[u8], format: Format) -> Encoding {
     match format {
@@ -60,6 +78,9 @@ fn layout_of(bytes: &[u8], format: Format) -> Encoding {
         Format::Ply => Encoding::PlyAscii,
         Format::Off => Encoding::Off,
         Format::Obj => Encoding::Obj,
+        Format::Glb => Encoding::Glb,
+        Format::Gltf => Encoding::Gltf,
+        Format::ThreeMf => Encoding::ThreeMf,
     }
 }
 
@@ -90,7 +111,7 @@ fn is_damaged_text(bytes: &[u8]) -> bool {
 }
 
 fn unknown(bytes: &[u8]) -> ReadError {
-    let mut expected = "a mesh in STL, OBJ, OFF or PLY, or the format's name".to_owned();
+    let mut expected = "a mesh in STL, OBJ, OFF, PLY, 3MF or glTF, or the format's name".to_owned();
     if let Some(length) = announced_length(bytes).filter(|_| !is_text(bytes)) {
         expected += &format!("; as binary STL the file would have {length} bytes instead of {}", bytes.len());
     }
@@ -183,7 +204,10 @@ mod tests {
 
     #[test]
     fn each_format_is_known_by_its_content() {
-        let cases: [(&[u8], Encoding); 16] = [
+        let cases: [(&[u8], Encoding); 19] = [
+            (b"glTF\x02\0\0\0", Encoding::Glb),
+            (b"{\n  \"asset\": {\"version\": \"2.0\"}}", Encoding::Gltf),
+            (b"\xef\xbb\xbf{\"meshes\": [], \"asset\": {}}", Encoding::Gltf),
             (b"ply\nformat ascii 1.0\n", Encoding::PlyAscii),
             (b"ply\r\ncomment x\r\nformat binary_big_endian 1.0\r\n", Encoding::PlyBinaryBigEndian),
             (b"ply\nformat binary_little_endian 1.0\nelement", Encoding::PlyBinaryLittleEndian),
@@ -230,8 +254,23 @@ mod tests {
         assert_eq!(page.kind, ReadErrorKind::Foreign { name: "a web page" });
         assert_eq!(
             page.to_string(),
-            "file: this is a web page, which is not read here; expected a mesh in STL, OBJ, OFF or PLY"
+            "file: this is a web page, which is not read here; expected a mesh in STL, OBJ, OFF, PLY, 3MF or glTF"
         );
+    }
+
+    #[test]
+    fn formats_that_are_not_read_are_named_with_a_hint() {
+        let cases: [(&[u8], &str, &str); 4] = [
+            (b"ISO-10303-21;\nHEADER;", "STEP", "CAD program"),
+            (b"<?xml version=\"1.0\"?><amf unit=\"millimeter\">", "AMF", "save an AMF as 3MF"),
+            (b"#VRML V2.0 utf8\n", "VRML", "PLY keeps"),
+            (b"<?xml version=\"1.0\"?><COLLADA>", "COLLADA", "export the scene as OBJ"),
+        ];
+        for (bytes, name, hint) in cases {
+            let error = sniff(bytes, None).unwrap_err();
+            assert_eq!(error.kind, ReadErrorKind::Foreign { name });
+            assert!(error.expected.contains(hint), "{error}");
+        }
     }
 
     #[test]

@@ -16,7 +16,7 @@ mod volume;
 pub use closest::closest_point_on_triangle;
 pub use directions::{Cone, arc_box, direction};
 pub(crate) use exact::Span;
-pub use glam::{DVec2, DVec3};
+pub use glam::{DMat3, DVec2, DVec3};
 pub use pitch::{exponent_above, power_of_two, print_pitch};
 pub use predicates::{Plane, certain_turns, orient2d, orient3d};
 pub use projection::{Projection, are_collinear, is_on_segment};

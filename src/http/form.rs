@@ -1,4 +1,4 @@
-//! Uploads as `multipart/form-data`: parts `mesh`, `params` and `material`.
+//! Uploads as `multipart/form-data`: parts `mesh`, of which some operations take several, `params` and `material`.
 
 use super::body::IncomingBody;
 use super::entrance::{Entrance, Intake, finish_if_any};
@@ -19,7 +19,9 @@ pub(super) async fn receive(
     operation: Option<Operation>,
 ) -> Result<Intake, Problem> {
     let parts = if operation.is_some() { PARTS } else { PARTS_WITH_JOB };
-    let mut mesh = Some(entrance.upload(None).await?);
+    let mut mesh = entrance.upload(None).await?;
+    let meshes_max = Operation::ALL.iter().filter(|&&one| operation.is_none_or(|named| named == one));
+    let meshes_max = meshes_max.map(|one| one.meshes_max()).max().unwrap_or(1);
     let mut form = Multipart::new(body, boundary);
     let mut intake = Intake::default();
     let mut seen = Vec::new();
@@ -29,18 +31,15 @@ pub(super) async fn receive(
         let Some(&part) = parts.iter().find(|part| **part == name) else {
             return Err(unknown(&head.name, parts));
         };
-        if seen.contains(&part) {
-            return Err(about(part, format!("the part `{part}` is there twice")));
+        let count = seen.iter().filter(|&&other| other == part).count();
+        let count_max = if part == "mesh" { meshes_max } else { 1 };
+        if count == count_max {
+            let times = if count == 1 { "twice".to_owned() } else { format!("more than {count_max} times") };
+            return Err(about(part, format!("the part `{part}` is there {times}")));
         }
         seen.push(part);
         match part {
-            "mesh" => {
-                intake.upload = match mesh.take() {
-                    Some(upload) => receive_mesh(upload, &mut form).await?,
-                    None => None,
-                };
-                intake.take_names(head);
-            }
+            "mesh" => receive_mesh(&mut mesh, &mut form, head, &mut intake, count == 0).await?,
             "material" => intake.material = receive_material(entrance, &mut form).await?,
             _ => {
                 let text = receive_small(&mut form, JSON_BYTES_MAX, "json_bytes_max").await?;
@@ -48,23 +47,39 @@ pub(super) async fn receive(
             }
         }
     }
+    intake.upload = finish_if_any(mesh).await?;
     Ok(intake)
 }
 
 impl Intake {
-    fn take_names(&mut self, head: PartHead) {
+    /// Of several meshes the first gives its name, and a format counts that all name.
+    fn take_names(&mut self, head: PartHead, is_first: bool) {
         // Browsers make up media types for file extensions, so one that is not a mesh's says nothing.
-        self.named = head.media_type.and_then(|media| format_of_media_type(&media));
-        self.file_name = head.file_name.filter(|name| !name.is_empty());
+        let named = head.media_type.and_then(|media| format_of_media_type(&media));
+        self.named = named.filter(|_| is_first || self.named == named);
+        if is_first {
+            self.file_name = head.file_name.filter(|name| !name.is_empty());
+        }
     }
 }
 
-/// `None` when the part has no byte: browsers send one for a file input that was left empty.
-async fn receive_mesh(mut upload: Upload, form: &mut Multipart) -> Result<Option<Uploaded>, Problem> {
+/// A part with neither a byte nor a name is none: browsers send one for a file input that was left empty.
+async fn receive_mesh(
+    upload: &mut Upload,
+    form: &mut Multipart,
+    head: PartHead,
+    intake: &mut Intake,
+    is_first: bool,
+) -> Result<(), Problem> {
+    let begin = upload.bytes();
     while let Some(piece) = form.next_piece().await? {
         upload.write(&piece).await?;
     }
-    finish_if_any(upload).await
+    if upload.bytes() > begin || head.file_name.as_ref().is_some_and(|name| !name.is_empty()) {
+        upload.end_file();
+        intake.take_names(head, is_first);
+    }
+    Ok(())
 }
 
 /// `None` when the part has no byte.

@@ -33,7 +33,7 @@ pub fn march(
     budget: &Budget,
 ) -> Result<Result<Patch, Unmeshed>, Stopped> {
     let is_positive = cell > 0.0 && cell.is_finite();
-    let lines = match RimLines::new(field, rims) {
+    let lines = match RimLines::new(field, rims, budget)? {
         Ok(lines) if is_positive => lines,
         _ => return Ok(Err(Unmeshed::Input)),
     };

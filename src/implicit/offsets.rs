@@ -68,9 +68,11 @@ fn fitting(
     budget: &Budget,
 ) -> Result<f64, Stopped> {
     let mut lambda = first;
+    // What was closest last is a good guess for the next place.
+    let mut hint = None;
     for _ in 0..HALVINGS_MAX {
         let (out, inward) = (x + normal * lambda, x - normal * lambda);
-        if belongs(surface, x, out, budget)? && belongs(surface, x, inward, budget)? {
+        if belongs(surface, x, out, &mut hint, budget)? && belongs(surface, x, inward, &mut hint, budget)? {
             break;
         }
         lambda *= 0.5;
@@ -79,8 +81,15 @@ fn fitting(
 }
 
 /// True when the point of the surface closest to `offset` is `x`, or on a triangle at `x`, or beside it.
-fn belongs(surface: &NearestSearch<'_>, x: DVec3, offset: DVec3, budget: &Budget) -> Result<bool, Stopped> {
-    let Some(nearest) = surface.find(offset, None, budget)? else { return Ok(true) };
+fn belongs(
+    surface: &NearestSearch<'_>,
+    x: DVec3,
+    offset: DVec3,
+    hint: &mut Option<u32>,
+    budget: &Budget,
+) -> Result<bool, Stopped> {
+    let Some(nearest) = surface.find(offset, *hint, budget)? else { return Ok(true) };
+    *hint = Some(nearest.triangle);
     if surface.corners(nearest.triangle).contains(&x) || nearest.point == x {
         return Ok(true);
     }

@@ -43,7 +43,7 @@ pub fn mesh_surface(
         Ok(patch) => patch,
         Err(refusal) => return Ok(Err(refusal)),
     };
-    let lines = match RimLines::new(field, rims) {
+    let lines = match RimLines::new(field, rims, budget)? {
         Ok(lines) => lines,
         Err(refusal) => return Ok(Err(refusal)),
     };

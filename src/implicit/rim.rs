@@ -4,7 +4,11 @@ use super::field::Field;
 use super::patch::Unmeshed;
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
+use crate::par;
 use crate::spatial::NearestSearch;
+
+/// Segments handled between two checks of the budget.
+const SEGMENTS: usize = 32;
 
 /// The segments of all rims, with the direction into the hole at each segment and vertex.
 #[derive(Debug)]
@@ -22,9 +26,13 @@ pub(super) struct RimLines {
 }
 
 impl RimLines {
-    pub(super) fn new(field: &Field, rims: &[Vec<DVec3>]) -> Result<Self, Unmeshed> {
+    pub(super) fn new(
+        field: &Field,
+        rims: &[Vec<DVec3>],
+        budget: &Budget,
+    ) -> Result<Result<Self, Unmeshed>, Stopped> {
         if rims.is_empty() || rims.iter().any(|rim| rim.len() < 3 || rim.iter().any(|p| !p.is_finite())) {
-            return Err(Unmeshed::Input);
+            return Ok(Err(Unmeshed::Input));
         }
         let points = rims.concat();
         let mut starts = vec![0];
@@ -40,7 +48,11 @@ impl RimLines {
             let normal = field.normal(a * 0.5 + b * 0.5).unwrap_or(DVec3::ZERO);
             normal.cross(b - a).normalize_or_zero()
         };
-        let into_at_segment: Vec<DVec3> = segments.iter().map(into).collect();
+        let of = |range: std::ops::Range<usize>| -> Result<Vec<DVec3>, Stopped> {
+            budget.check()?;
+            Ok(segments[range].iter().map(into).collect())
+        };
+        let into_at_segment = par::try_map_ranges(segments.len(), SEGMENTS, of)?.concat();
         let mut into_at_vertex = vec![DVec3::ZERO; points.len()];
         let mut length_at = vec![0.0; points.len()];
         for (s, into) in segments.iter().zip(&into_at_segment) {
@@ -50,7 +62,7 @@ impl RimLines {
                 length_at[v as usize] += 0.5 * length;
             }
         }
-        Ok(Self { points, starts, segments, into_at_segment, into_at_vertex, length_at })
+        Ok(Ok(Self { points, starts, segments, into_at_segment, into_at_vertex, length_at }))
     }
 
     /// The search for the closest segment.

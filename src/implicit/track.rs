@@ -62,7 +62,13 @@ pub(super) fn track(
     let mut values: FxHashMap<Place, f64> = FxHashMap::default();
     let mut seen: FxHashSet<Place> = FxHashSet::default();
     let mut layer = Vec::new();
-    for place in seeds(&grid, lines) {
+    for (n, place) in seeds(&grid, lines).enumerate() {
+        if n.is_multiple_of(CHECK_EVERY) {
+            budget.check()?;
+            if seen.len() > CELLS_MAX {
+                break;
+            }
+        }
         if seen.insert(place) {
             layer.push(place);
         }
@@ -72,7 +78,10 @@ pub(super) fn track(
         if seen.len() > CELLS_MAX {
             return Ok(Err(Unmeshed::TooFine { cells_max: CELLS_MAX }));
         }
-        evaluate(field, &grid, &layer, &mut values, budget)?;
+        // In parts, so that the run can be stopped between them.
+        for part in layer.chunks(CHECK_EVERY) {
+            evaluate(field, &grid, part, &mut values, budget)?;
+        }
         let mut next = Vec::new();
         for (n, &place) in layer.iter().enumerate() {
             if n.is_multiple_of(CHECK_EVERY) {

@@ -82,7 +82,10 @@ impl Submission {
             input.sha256,
             material.map(|blob| blob.sha256),
         );
-        let text = serde_json::to_vec(&asked).map_err(|error| internal(&error))?;
+        let mut text = serde_json::to_vec(&asked).map_err(|error| internal(&error))?;
+        if !input.files.is_empty() {
+            text.extend(serde_json::to_vec(&input.files).map_err(|error| internal(&error))?);
+        }
         Ok(Sha256::digest(text).into())
     }
 }
@@ -92,7 +95,7 @@ impl Jobs {
     /// ends, whatever becomes of this process.
     ///
     /// # Errors
-    /// `queue-full`, `draining`, `invalid-parameter` (no mesh, or two), `not-found` or `expired` (of `options.input`),
+    /// `queue-full`, `draining`, `invalid-parameter` (no mesh, or not as many as the operation takes), `not-found` or `expired` (of `options.input`),
     /// `idempotency-key-reused`, `storage-full`, `store-unavailable`.
     pub async fn submit(&self, submission: Submission) -> Result<Job, Problem> {
         let service = Arc::clone(&self.0);
@@ -129,6 +132,7 @@ impl Service {
             _ => None,
         };
         let Some(input) = input else { return Err(no_single_mesh()) };
+        submission.operation.check_mesh_count(input.file_count())?;
         let own_material = submission.material.as_ref().and_then(Uploaded::blob).cloned();
         let material = own_material.or_else(|| source.as_ref()?.material.clone());
         let fingerprint = submission.fingerprint(&input, material.as_ref())?;

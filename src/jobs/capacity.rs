@@ -113,7 +113,9 @@ async fn reserved_bytes(row: &JobRow, spool: &Spool) -> u64 {
     });
     // A file that cannot be read ends its job soon enough.
     let start = reading.await.ok().and_then(Result::ok).unwrap_or_default();
-    let triangles = triangles_at_most(&start, row.input.bytes);
+    // Of several meshes only the first is at the start.
+    let is_one = row.input.file_count() == 1;
+    let triangles = triangles_at_most(&start, row.input.bytes).filter(|_| is_one);
     estimated_bytes(row.operation, row.options.format, row.input.bytes, triangles)
 }
 

@@ -13,7 +13,7 @@ const CHANGED: u64 = 256 << 20;
 ///
 /// Measured peaks of a whole process are 166 bytes for a triangle of an analysis and 405 of a repair that rebuilds
 /// (docs/campaigns/speed.md). How many bytes of a file make a triangle depends on its format: 50 in a binary STL, about
-/// 36 in OBJ and OFF, 19 in a binary PLY. A format that is not known yet may be the densest one. So much is reserved for the
+/// 36 in OBJ and OFF, 19 in a binary PLY, 12 in a GLB of short numbers, 8 to 12 in a 3MF. A format that is not known yet may be the densest one. So much is reserved for the
 /// run, and it may charge no more; should it need more, it starts again when there is room for as much as any job may have.
 pub(super) fn estimated_bytes(
     operation: Operation,
@@ -22,16 +22,26 @@ pub(super) fn estimated_bytes(
     triangles: Option<u64>,
 ) -> u64 {
     let (per_triangle, at_least) = match operation {
-        Operation::Analyze | Operation::Verify | Operation::Convert | Operation::CutStitch => (170, CHANGED),
+        Operation::Analyze
+        | Operation::Verify
+        | Operation::Convert
+        | Operation::CutStitch
+        | Operation::Render => (170, CHANGED),
         Operation::Simplify => (410, CHANGED),
         Operation::Plan | Operation::Repair | Operation::FillHoles => (410, REBUILT),
+        // The arrangement of all, with winding numbers for each.
+        Operation::Boolean => (1000, CHANGED),
         // Exact planes and points, and the boxes around them: 1 to 2 kB for each triangle of parts that were measured.
         Operation::Modeller => (2000, CHANGED),
     };
     let file_bytes_per_triangle = match format {
         Some(Format::Stl) => 50,
         Some(Format::Obj | Format::Off) => 36,
-        Some(Format::Ply) | None => 19,
+        Some(Format::Ply) => 19,
+        // Strips of small numbers have fewer, and instances none.
+        Some(Format::Gltf) => 16,
+        Some(Format::Glb) | None => 12,
+        Some(Format::ThreeMf) => 8,
     };
     let triangles = triangles.unwrap_or(upload_bytes / file_bytes_per_triangle);
     // The upload itself is read into memory.

@@ -103,6 +103,7 @@ impl Executor {
         let (path, material_path) = (local(&row.input)?, row.material.as_ref().map(local).transpose()?);
         let (bytes, operation) = (row.input.bytes, row.operation.into());
         let mut options = row.options.to_engine(settings.read_limits);
+        options.file_sizes.clone_from(&row.input.files);
         let budget =
             Budget::new(live.stop.clone(), settings.engine_work_max, bytes_max).observed_by(clock.observer());
         let (engine, threads) = (Arc::clone(engine), settings.engine_threads);

@@ -122,7 +122,12 @@ mod tests {
     fn a_file_is_sound_until_a_byte_of_it_changes_or_is_gone() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("mesh");
-        let blob = BlobRef { key: "out/mesh".to_owned(), bytes: 5, sha256: Sha256::digest(b"hello").into() };
+        let blob = BlobRef {
+            key: "out/mesh".to_owned(),
+            bytes: 5,
+            sha256: Sha256::digest(b"hello").into(),
+            files: Vec::new(),
+        };
         let known = KnownSound::default();
         std::fs::write(&path, b"hello").unwrap();
         for _ in 0..2 {

@@ -118,6 +118,7 @@ impl Spool {
             key: unnamed.key.clone(),
             bytes: content.len() as u64,
             sha256: Sha256::digest(content).into(),
+            files: Vec::new(),
         };
         space.hand_over(&blob);
         Ok(Written { blob: Some(blob), unnamed })
@@ -134,7 +135,8 @@ impl Spool {
         let unnamed = self.unnamed(key_of(claim, &name));
         self.blobs.adopt(&file.path, &unnamed.key)?;
         self.note_sound(&unnamed.key);
-        let blob = BlobRef { key: unnamed.key.clone(), bytes: file.bytes, sha256: file.sha256 };
+        let blob =
+            BlobRef { key: unnamed.key.clone(), bytes: file.bytes, sha256: file.sha256, files: Vec::new() };
         space.hand_over(&blob);
         Ok(Written { blob: Some(blob), unnamed })
     }

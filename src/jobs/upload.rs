@@ -26,6 +26,8 @@ pub struct Upload {
     sink: Sink,
     block: Vec<u8>,
     bytes: u64,
+    /// Sizes of the files that have ended.
+    files: Vec<u64>,
     space: Space,
     /// It becomes a job, and has no place in the queue yet.
     needs_place: bool,
@@ -90,6 +92,7 @@ impl Upload {
             sink: Sink::Fresh,
             block: Vec::new(),
             bytes: 0,
+            files: Vec::new(),
             space,
             needs_place,
             place: None,
@@ -127,6 +130,11 @@ impl Upload {
         self.bytes
     }
 
+    /// Ends a file of several that come one behind the other. It is the last one, unless more bytes or ends follow.
+    pub fn end_file(&mut self) {
+        self.files.push(self.bytes - self.files.iter().sum::<u64>());
+    }
+
     /// Ends the upload; it is on the disk then.
     ///
     /// # Errors
@@ -143,7 +151,8 @@ impl Upload {
             Ok((unnamed, digest.finalize().into()))
         });
         let (unnamed, sha256) = written.await?;
-        let blob = BlobRef { key: unnamed.key.clone(), bytes: self.bytes, sha256 };
+        let files = if self.files.len() > 1 { self.files } else { Vec::new() };
+        let blob = BlobRef { key: unnamed.key.clone(), bytes: self.bytes, sha256, files };
         Ok(Uploaded {
             written: Written::upload(unnamed, blob, self.space),
             _place: self.place,

@@ -1,5 +1,8 @@
 //! What faces are made of, by the names that a file gives.
 
+use super::color::Color;
+use std::sync::Arc;
+
 /// In the place of the number of a material: the face has none.
 pub const NO_MATERIAL: u32 = u32::MAX;
 
@@ -12,6 +15,20 @@ pub struct Materials {
     pub names: Vec<Vec<u8>>,
     /// For each face of the file the number of its material, or [`NO_MATERIAL`].
     pub of_face: Vec<u32>,
+    /// What the file says of them beyond their names, where it holds that itself.
+    pub descriptions: Option<Arc<Descriptions>>,
+}
+
+/// What a glTF file says of its materials, kept as it stands.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Descriptions {
+    /// A JSON object with the arrays `materials` (one for each name), `textures`, `samplers` and `images` of glTF 2.0; the
+    /// `bufferView` of an image is the number of its picture, and all textures take the first set of coordinates.
+    pub json: Vec<u8>,
+    /// Pictures, as the files that they are.
+    pub pictures: Vec<Vec<u8>>,
+    /// The colour of each material that states one and has no picture for it.
+    pub colors: Vec<Option<Color>>,
 }
 
 impl Materials {
@@ -35,6 +52,11 @@ impl Materials {
         if of_face.iter().all(|&material| material == NO_MATERIAL) {
             return Self::default();
         }
-        Self { libraries: self.libraries.clone(), names: self.names.clone(), of_face }
+        Self {
+            libraries: self.libraries.clone(),
+            names: self.names.clone(),
+            of_face,
+            descriptions: self.descriptions.clone(),
+        }
     }
 }

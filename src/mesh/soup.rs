@@ -1,60 +1,10 @@
 //! What a file says, before anyone judges it.
 
+use super::color::Color;
 use super::materials::{Materials, NO_MATERIAL};
 use super::texture::{NO_POINT, Texture};
+use super::units::Units;
 use crate::geom::DVec3;
-
-/// A colour as a file gives it; absent channels are not invented.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Color {
-    /// Red, green, blue and, if given, alpha, each 0 to 255.
-    Bytes([u8; 3], Option<u8>),
-    /// Red, green, blue and, if given, alpha, each 0 to 1 in most files.
-    Floats([f32; 3], Option<f32>),
-    /// An index into a colour map of the reader's choice (OFF with one number).
-    Index(i32),
-}
-
-impl Color {
-    /// The colour between `colors`, which have shares with the sum 1. `None` when one of them is missing, or they are given
-    /// in different ways; of indices the one with the largest share, and of those the first.
-    pub fn blend(colors: &[(Option<Self>, f64)]) -> Option<Self> {
-        let floats = |f: fn(&Self) -> Option<[Option<f64>; 4]>| {
-            let mut sums = [Some(0.0); 4];
-            for (color, share) in colors {
-                for (sum, channel) in sums.iter_mut().zip(f(color.as_ref()?)?) {
-                    *sum = sum.zip(channel).map(|(sum, channel): (f64, f64)| sum + share * channel);
-                }
-            }
-            Some(sums)
-        };
-        match colors.first()?.0? {
-            Self::Bytes(..) => {
-                let [r, g, b, a] = floats(|color| match color {
-                    Self::Bytes([r, g, b], a) => {
-                        Some([Some(*r), Some(*g), Some(*b), *a].map(|x| x.map(f64::from)))
-                    }
-                    _ => None,
-                })?;
-                let byte = |x: f64| x.round() as u8;
-                Some(Self::Bytes([byte(r?), byte(g?), byte(b?)], a.map(byte)))
-            }
-            Self::Floats(..) => {
-                let [r, g, b, a] = floats(|color| match color {
-                    Self::Floats([r, g, b], a) => {
-                        Some([Some(*r), Some(*g), Some(*b), *a].map(|x| x.map(f64::from)))
-                    }
-                    _ => None,
-                })?;
-                Some(Self::Floats([r? as f32, g? as f32, b? as f32], a.map(|a| a as f32)))
-            }
-            Self::Index(_) => {
-                let largest = colors.iter().fold(0.0, |most: f64, &(_, share)| most.max(share));
-                colors.iter().find(|&&(_, share)| share == largest)?.0
-            }
-        }
-    }
-}
 
 /// Why a face of the file has no triangles in the soup.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -133,7 +83,8 @@ pub struct Soup {
     pub non_finite_vertices: Vec<u32>,
     /// Lines of faces and vertices.
     pub places: Places,
-    /// True when the format has no indices (STL), so that bit-equal corners are one vertex, numbered by first use.
+    /// True when the format has no indices (STL) or one set of them for all attributes (glTF), so that it cannot but repeat
+    /// positions: bit-equal ones are one vertex, numbered by first use.
     pub is_welded_by_format: bool,
     /// True when every coordinate is exactly a float32, so both readings of the contract are the same.
     pub is_f32_exact: bool,
@@ -145,6 +96,10 @@ pub struct Soup {
     pub texture: Texture,
     /// Materials of the faces of the file.
     pub materials: Materials,
+    /// What the file has beside its mesh and no new file takes over, by name and number.
+    pub left_out: Vec<(&'static str, u64)>,
+    /// Unit of the positions, where the format states one.
+    pub units: Option<Units>,
 }
 
 impl Polygons {

@@ -105,6 +105,8 @@ pub(super) fn cut_stitch(input: &Input, options: &Options, budget: &Budget) -> R
     let form = match encoding.format() {
         _ if draft.polygons.is_empty() => Form::Triangles,
         Format::Stl => Form::Split("STL holds triangles alone"),
+        Format::Glb | Format::Gltf => Form::Split("glTF holds triangles alone"),
+        Format::ThreeMf => Form::Split("3MF holds triangles alone"),
         Format::Obj | Format::Off | Format::Ply => Form::Polygons,
     };
     written(&draft, form, input, options, Report { actions, ..report }, budget)

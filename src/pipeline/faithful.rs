@@ -98,6 +98,11 @@ impl FidelityVerdict {
         Self { word, changes }
     }
 
+    /// That of a result which is what was asked for up to moves by so much.
+    pub(super) fn of_move(moved: f64, diagonal: f64) -> Self {
+        Self::of(&NO_LOSSES, moved, diagonal)
+    }
+
     /// True when a bound is exceeded.
     pub(super) fn is_changed(&self) -> bool {
         self.word == Fidelity::Changed

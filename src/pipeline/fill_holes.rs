@@ -126,7 +126,7 @@ fn run(
     let whole = attempt.draft.clone();
     let told = attempt.actions.len();
     attempt.run(&[Step::DropDegenerate, Step::Orient], soup, before, budget)?;
-    let turned = attempt.count("triangles_flipped");
+    let turned = attempt.effects.turned_triangles;
     attempt.actions.truncate(told);
     let first = attempt.draft.triangles.len();
     attempt.run(&[Step::FillHoles(fill.clone())], soup, before, budget)?;

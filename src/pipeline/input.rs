@@ -4,12 +4,12 @@ use super::describe::describe;
 use super::remedies::proposals;
 use super::{
     Answer, ChosenPlan, ELEMENTS_MAX, Failure, FidelityVerdict, InputFacts, Operation, Options, Outcome,
-    Output, Plan, Refusal, Report, Step,
+    Output, Plan, Refusal, Report, Step, Units,
 };
 use crate::analysis::{Analysis, AnalyzeOptions, NearSearch};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::{self, CertifyError, Depth, Examination};
-use crate::formats::{self, Encoding, ReadError};
+use crate::formats::{self, Encoding, Place, ReadError, ReadErrorKind};
 use crate::mesh::Soup;
 
 /// Witnesses to keep of each defect when the caller does not say.
@@ -30,29 +30,44 @@ pub(super) struct Input {
 
 impl Input {
     /// Reads and judges `bytes`.
-    pub(super) fn read(bytes: &[u8], options: &Options, budget: &Budget) -> Result<Self, Failure> {
-        let (encoding, soup) = budget.stage(Stage::Read, || {
-            let encoding = formats::sniff(bytes, options.format)?;
+    pub(super) fn read(
+        bytes: &[u8],
+        encoding: Encoding,
+        options: &Options,
+        budget: &Budget,
+    ) -> Result<Self, Failure> {
+        let soup = budget.stage(Stage::Read, || {
             let mut soup = formats::read(bytes, encoding, &options.read, budget)?;
             if let (Encoding::Obj, Some(material)) = (encoding, &options.material) {
                 formats::color_faces(&mut soup, bytes, material, budget)?;
             }
-            Ok::<_, ReadError>((encoding, soup))
+            Ok::<_, ReadError>(soup)
         })?;
-        let of_plan = options.plan.as_ref().map_or(0, ChosenPlan::samples_min);
-        let samples = options.samples.unwrap_or(SAMPLES_DEFAULT).max(of_plan);
+        let samples = samples_of(options);
         let examination = budget.stage(Stage::Certify, || {
             certificate::examine(&soup, bytes, encoding, &options.read, Depth::Count { samples }, budget)
         })?;
+        Self::of(soup, examination, options)
+    }
+
+    /// A mesh that was read and judged.
+    ///
+    /// # Errors
+    /// A unit that is not the one the caller states.
+    pub(super) fn of(soup: Soup, examination: Examination, options: &Options) -> Result<Self, Failure> {
+        let certificate = &examination.certificate;
+        // glTF is in metres by its rules, but many programs write other units, so that the caller's word counts.
+        let of_format = certificate.encoding.format().is_in_metres().then_some(Units::Metre);
+        let units = units_of_file(soup.units, options)?.or(of_format);
         let facts = InputFacts {
-            encoding,
-            bytes: bytes.len() as u64,
-            sha256: examination.certificate.sha256,
-            units: options.units.unwrap_or_default(),
-            units_are_stated: options.units.is_some(),
-            result_units: options.units.unwrap_or_default(),
+            encoding: certificate.encoding,
+            bytes: certificate.bytes,
+            sha256: certificate.sha256,
+            units: units.unwrap_or_default(),
+            units_are_stated: units.is_some(),
+            result_units: units.unwrap_or_default(),
         };
-        Ok(Self { facts, soup, examination, samples, near: options.near })
+        Ok(Self { facts, soup, examination, samples: samples_of(options), near: options.near })
     }
 
     /// Takes the length of what is near in another unit.
@@ -95,7 +110,9 @@ impl Input {
             input: self.facts.clone(),
             before: None,
             input_certificate: self.examination.certificate.clone(),
+            further_inputs: Vec::new(),
             plan: None,
+            tried: Vec::new(),
             actions: Vec::new(),
             levels: Vec::new(),
             after: None,
@@ -109,6 +126,8 @@ impl Input {
             outcome: None,
             refusal: None,
             printing: None,
+            parts: Vec::new(),
+            remarks: Vec::new(),
             work_used: 0,
             bytes_peak: 0,
         }
@@ -148,9 +167,32 @@ impl Input {
                 outcome: Some(outcome),
                 ..report
             },
-            output: Some(Output { bytes: None, encoding: self.facts.encoding }),
+            output: Some(Output { bytes: None, encoding: self.facts.encoding, origins: Vec::new() }),
             levels: Vec::new(),
+            picture: None,
         }
+    }
+}
+
+/// Witnesses to keep of each defect.
+pub(super) fn samples_of(options: &Options) -> usize {
+    let of_plan = options.plan.as_ref().map_or(0, ChosenPlan::samples_min);
+    options.samples.unwrap_or(SAMPLES_DEFAULT).max(of_plan)
+}
+
+/// The unit of a file that states `of_file`, or else of the caller.
+///
+/// # Errors
+/// They contradict each other.
+pub(super) fn units_of_file(of_file: Option<Units>, options: &Options) -> Result<Option<Units>, Failure> {
+    match (of_file, options.units) {
+        (Some(stated), Some(asked)) if stated != asked => {
+            let of = |units: Units| format!("units of {} mm", units.millimetres());
+            let kind = ReadErrorKind::Unparseable { found: of(stated) };
+            let expected = format!("{} as the request says", of(asked));
+            Err(Failure::Unreadable(ReadError { kind, place: Place::Whole, expected }))
+        }
+        (stated, asked) => Ok(stated.or(asked)),
     }
 }
 
@@ -165,7 +207,7 @@ impl Report {
 
     /// An answer without a file.
     pub(super) fn into_answer(self) -> Answer {
-        Answer { report: self, output: None, levels: Vec::new() }
+        Answer { report: self, output: None, levels: Vec::new(), picture: None }
     }
 
     /// An answer that refuses a file.

@@ -1,5 +1,6 @@
 //! Operations from bytes to bytes: read, analyze, repair by a plan that the client can read, write, certify.
 
+mod boolean;
 mod convert;
 mod cut_stitch;
 mod describe;
@@ -8,20 +9,23 @@ mod fidelity;
 mod fill_holes;
 mod identical;
 mod input;
+mod ladder;
 mod modeller;
 mod output;
+mod picture;
 mod plan;
 mod printing;
 mod priority;
+mod project;
 mod rebuild;
 mod remedies;
 mod repair;
 mod simplify;
 mod stitches;
 mod texture;
-mod united;
 mod units;
 
+pub use self::boolean::MESHES_MAX;
 pub use self::cut_stitch::{CutStitchChoices, Stitching};
 pub use self::faithful::{Change, ChangeKind, Fidelity, FidelityVerdict};
 pub use self::fidelity::Losses;
@@ -31,21 +35,26 @@ pub use self::modeller::{
     Blocker, BlockerKind, EdgeName, Edit, EditKind, FaceName, FaceRange, ModelFace, ModellerChoices,
     ModellerRefusal, ModellerReport, ModellerStep, RangeName, RangeSide,
 };
+pub use self::picture::PictureChoices;
 pub use self::plan::Step;
 pub use self::printing::PrintingReport;
+pub use self::project::{AttributeCounts, PartFacts, PartReport};
 pub use self::rebuild::{Effort, WrapChoices};
 pub use self::remedies::{
     ChosenPlan, ChosenRemedy, ELEMENTS_MAX, ElementProposal, Plan, PlanMismatch, Proposal, Remedy,
 };
 pub use self::stitches::{JoinedEdges, Stitches};
 use crate::analysis::{Analysis, DefectCode};
-use crate::budget::{Budget, Stopped};
+use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::{Certificate, Violation};
 use crate::distance::SurfaceDistance;
-use crate::formats::{Encoding, Format, ReadError, ReadOptions, WriteError};
+use crate::formats::{self, Encoding, Format, ReadError, ReadOptions, WriteError};
+pub use crate::mesh::Units;
 use crate::printing::Policy;
 use crate::repair::nest;
+pub use crate::repair::unite::{NotCombined, NotSolid, SetOperation};
 use crate::simplify::{CriterionKind, Mode, Placement, Report as SimplifyReport, Target};
+use std::ops::RangeInclusive;
 
 /// What to do with a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -68,11 +77,15 @@ pub enum Operation {
     FillHoles,
     /// A closed polyhedron edited by its planes; the certificate states what holds.
     Modeller,
+    /// Several solids combined into one that is certified.
+    Boolean,
+    /// A picture.
+    Render,
 }
 
 impl Operation {
     /// Every operation.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 11] = [
         Self::Analyze,
         Self::Plan,
         Self::Repair,
@@ -82,6 +95,8 @@ impl Operation {
         Self::CutStitch,
         Self::FillHoles,
         Self::Modeller,
+        Self::Boolean,
+        Self::Render,
     ];
 
     /// Name in paths, options and reports.
@@ -96,6 +111,25 @@ impl Operation {
             Self::CutStitch => "cut-stitch",
             Self::FillHoles => "fill-holes",
             Self::Modeller => "modeller",
+            Self::Boolean => "boolean",
+            Self::Render => "render",
+        }
+    }
+
+    /// True when its answer has no mesh.
+    pub(crate) fn only_reports(self) -> bool {
+        matches!(self, Self::Analyze | Self::Plan | Self::Verify | Self::Render)
+    }
+
+    /// Numbers of files that it takes.
+    pub fn meshes(self) -> RangeInclusive<usize> {
+        if self == Self::Boolean { 2..=MESHES_MAX } else { 1..=1 }
+    }
+
+    fn meshes_taken(self) -> String {
+        match self {
+            Self::Boolean => format!("2 to {MESHES_MAX} meshes"),
+            _ => "one mesh".to_owned(),
         }
     }
 }
@@ -121,32 +155,6 @@ impl Require {
     }
 }
 
-/// The length of one unit of the file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Units {
-    /// Millimetre.
-    #[default]
-    Millimetre,
-    /// Centimetre.
-    Centimetre,
-    /// Metre.
-    Metre,
-    /// Inch.
-    Inch,
-}
-
-impl Units {
-    /// Length of the unit in millimetres.
-    pub fn millimetres(self) -> f64 {
-        match self {
-            Self::Millimetre => 1.0,
-            Self::Centimetre => 10.0,
-            Self::Metre => 1000.0,
-            Self::Inch => 25.4,
-        }
-    }
-}
-
 /// Whether simple holes are filled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum FillHoles {
@@ -168,6 +176,18 @@ pub enum Contact {
     Join,
 }
 
+/// What of a file of several parts is one solid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Parts {
+    /// Each part by itself, in its own coordinates and once however often it is there.
+    #[default]
+    Separate,
+    /// All parts at their places, after each was repaired by itself.
+    Union,
+    /// All parts at their places, as they are.
+    Together,
+}
+
 /// Options of every operation; those that do not apply are ignored.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
@@ -175,11 +195,15 @@ pub struct Options {
     pub format: Option<Format>,
     /// Format of the output; the input's own encoding when `None`.
     pub output_format: Option<Format>,
+    /// What of a file of several parts is one solid.
+    pub parts: Parts,
     /// Limits and choice of reader.
     pub read: ReadOptions,
-    /// Unit as the caller stated it; `None`: assumed to be millimetres.
+    /// Unit as the caller stated it, in which all lengths here are; `None`: lengths are in millimetres, and the file is in
+    /// the unit of its format or, where that says none, in millimetres too.
     pub units: Option<Units>,
-    /// Unit of the result; `None`: millimetres for STL, which says none and is read so, that of the file otherwise.
+    /// Unit of the result; `None`: millimetres for STL, which says none and is read so, metres for glTF made of another
+    /// format, that of the file otherwise.
     pub output_units: Option<Units>,
     /// What the result must be; `None`: the operation's default.
     pub require: Option<Require>,
@@ -203,6 +227,10 @@ pub struct Options {
     pub filling: FillHolesChoices,
     /// What `modeller` does.
     pub modeller: ModellerChoices,
+    /// What `boolean` makes of its solids.
+    pub set_operation: SetOperation,
+    /// Sizes in bytes of the files that stand one behind the other in the bytes of a run; none: it is one file.
+    pub file_sizes: Vec<u64>,
     /// Largest distance of features that are reported as near, in the unit of the file; `None`: 1e-5 of the diagonal for
     /// `analyze` up to 100,000 triangles, and no search otherwise.
     pub near: Option<f64>,
@@ -210,8 +238,28 @@ pub struct Options {
     pub samples: Option<usize>,
     /// What the process can do that the mesh is to be printed with; `None`: the mesh is not measured for printing.
     pub policy: Option<Policy>,
-    /// The MTL file of an OBJ: its diffuse colours become face colours, which OFF and PLY can hold.
+    /// The MTL file of an OBJ: its diffuse colours become face colours, which OFF, PLY and glTF can hold.
     pub material: Option<Vec<u8>>,
+    /// The picture that is made beside everything else; `None`: none, and of `render` the usual one.
+    pub picture: Option<PictureChoices>,
+    /// A second file, which `render` shows beside the first.
+    pub after: Option<Vec<u8>>,
+}
+
+impl Options {
+    /// The files in the bytes of a run.
+    fn files_in<'b>(&self, bytes: &'b [u8]) -> Vec<&'b [u8]> {
+        if self.file_sizes.is_empty() {
+            return vec![bytes];
+        }
+        let mut rest = bytes;
+        let mut take = |&size: &u64| {
+            let (file, after) = rest.split_at(rest.len().min(size as usize));
+            rest = after;
+            file
+        };
+        self.file_sizes.iter().map(&mut take).collect()
+    }
 }
 
 /// How far a result may be from the file.
@@ -297,6 +345,8 @@ pub enum Outcome {
     Filled,
     /// Edited by its planes, as asked; the certificate says what holds.
     Modelled,
+    /// Valid; several solids became one, as asked.
+    Combined,
     /// Not valid; only on request.
     Partial,
     /// No result.
@@ -348,11 +398,25 @@ pub enum Refusal {
         /// Unit of the distances in it.
         units: Units,
     },
+    /// Solids cannot be combined.
+    Boolean {
+        /// Why.
+        reason: BooleanRefusal,
+    },
     /// A coordinate cannot be written in the output format.
     NotRepresentable {
         /// Which, and why.
         reason: WriteError,
     },
+}
+
+/// Why solids cannot be combined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BooleanRefusal {
+    /// What was asked.
+    pub operation: SetOperation,
+    /// Why there is no result.
+    pub reason: NotCombined,
 }
 
 /// One step of a repair: what it was asked to do, why, and what it changed.
@@ -383,11 +447,22 @@ pub struct InputFacts {
     pub sha256: [u8; 32],
     /// Unit of the coordinates.
     pub units: Units,
-    /// True when the caller stated the unit, false when it is assumed.
+    /// True when the caller or the format stated the unit, false when it is assumed.
     pub units_are_stated: bool,
     /// Unit of the result, and of all lengths, areas, volumes and places of the report but those of the certificate of the
     /// uploaded bytes.
     pub result_units: Units,
+}
+
+/// What is told of a file beside the first.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FurtherInput {
+    /// Its bytes.
+    pub facts: InputFacts,
+    /// Its mesh.
+    pub before: Option<Analysis>,
+    /// Its bytes, judged.
+    pub certificate: Certificate,
 }
 
 /// The full account of a run.
@@ -401,8 +476,12 @@ pub struct Report {
     pub before: Option<Analysis>,
     /// The uploaded bytes, judged.
     pub input_certificate: Certificate,
+    /// The files after the first, which `input`, `before` and `input_certificate` are about; none but for `boolean`.
+    pub further_inputs: Vec<FurtherInput>,
     /// What may be done about each defect, and what was; `None` for operations other than `plan` and `repair`.
     pub plan: Option<Plan>,
+    /// Rungs of the ladder in the order they were tried; empty where no repair was looked for.
+    pub tried: Vec<&'static str>,
     /// Steps in the order they ran; empty when none did.
     pub actions: Vec<Action>,
     /// The results of a simplification, in the order of the targets; the first is the one that `after`, `certificate`
@@ -430,6 +509,10 @@ pub struct Report {
     pub refusal: Option<Refusal>,
     /// The result, or else the input, measured for printing; `None`: no policy was given, or nothing can be measured.
     pub printing: Option<PrintingReport>,
+    /// The parts of the file that were handled one by one; empty when all triangles were handled together.
+    pub parts: Vec<PartReport>,
+    /// What of the file is kept and not judged, and which rules of its format it breaks, as sentences.
+    pub remarks: Vec<String>,
     /// Work units used (deterministic).
     pub work_used: u64,
     /// Largest number of bytes charged at one time (deterministic).
@@ -443,6 +526,9 @@ pub struct Output {
     pub bytes: Option<Vec<u8>>,
     /// How they are laid out.
     pub encoding: Encoding,
+    /// For each triangle the triangle of the input behind it, or [`u32::MAX`]; empty where the bytes are those that were
+    /// uploaded, and for a file of several parts.
+    pub origins: Vec<u32>,
 }
 
 /// The result of a run.
@@ -454,6 +540,8 @@ pub struct Answer {
     pub output: Option<Output>,
     /// The files of further targets of a simplification.
     pub levels: Vec<Output>,
+    /// A picture of the mesh and of the result, as PNG, if one was asked for.
+    pub picture: Option<Vec<u8>>,
 }
 
 /// A run without a report.
@@ -468,6 +556,30 @@ pub enum Failure {
     /// The plan is not for this file.
     #[error("the plan is not for this file")]
     PlanMismatch(PlanMismatch),
+    /// Something is wrong with one of several files.
+    #[error("mesh {number}: {failure}")]
+    InMesh {
+        /// Its place among the files, from 1.
+        number: usize,
+        /// What.
+        failure: Box<Failure>,
+    },
+    /// More or fewer files than the operation takes.
+    #[error("{} takes {}, not {count}", .operation.name(), .operation.meshes_taken())]
+    MeshCount {
+        /// What was asked.
+        operation: Operation,
+        /// Number of files.
+        count: usize,
+    },
+    /// An option does not go with this file.
+    #[error("{reason}")]
+    NotApplicable {
+        /// Name of the option.
+        option: &'static str,
+        /// Why, in a sentence.
+        reason: String,
+    },
     /// A hole was chosen that the file does not have.
     #[error("the file has no hole {number}: it has {holes}, numbered from 0")]
     NoSuchHole {
@@ -476,6 +588,16 @@ pub enum Failure {
         /// How many there are.
         holes: u64,
     },
+}
+
+impl Failure {
+    /// The same about the file of this number, from 1, among several; that the run was stopped is about none.
+    fn in_mesh(self, number: usize) -> Self {
+        match self {
+            Self::Stopped(_) => self,
+            failure => Self::InMesh { number, failure: Box::new(failure) },
+        }
+    }
 }
 
 impl From<PlanMismatch> for Failure {
@@ -503,28 +625,79 @@ pub fn run(
     options: &Options,
     budget: &Budget,
 ) -> Result<Answer, Failure> {
-    let mut input = Input::read(bytes, options, budget)?;
+    if operation != Operation::Boolean && options.file_sizes.len() > 1 {
+        return Err(Failure::MeshCount { operation, count: options.file_sizes.len() });
+    }
+    let mut answer = match operation {
+        Operation::Boolean => boolean::boolean(bytes, options, budget)?,
+        _ => run_on_file(operation, bytes, options, budget)?,
+    };
+    answer.report.work_used = budget.work_used();
+    answer.report.bytes_peak = budget.bytes_peak();
+    Ok(answer)
+}
+
+/// Runs `operation` on one file.
+fn run_on_file(
+    operation: Operation,
+    bytes: &[u8],
+    options: &Options,
+    budget: &Budget,
+) -> Result<Answer, Failure> {
+    let encoding = budget.stage(Stage::Read, || formats::sniff(bytes, options.format))?;
+    let mut answer = if project::is_by_parts(encoding, operation, options) {
+        project::run_by_parts(operation, bytes, options, budget)?
+    } else {
+        let mut input = Input::read(bytes, encoding, options, budget)?;
+        let mut answer = run_on(operation, &mut input, options, budget)?;
+        answer.picture = picture::of_mesh(operation, &input, &answer, options, budget)?;
+        answer
+    };
+    if encoding == Encoding::ThreeMf && answer.report.remarks.is_empty() && answer.report.parts.is_empty() {
+        answer.report.remarks = project::remarks_on_scene(bytes, &answer, options, budget)?;
+    }
+    Ok(answer)
+}
+
+/// Runs `operation` on a mesh that was read.
+fn run_on(
+    operation: Operation,
+    input: &mut Input,
+    options: &Options,
+    budget: &Budget,
+) -> Result<Answer, Failure> {
+    let in_units_of_file = input.take_lengths(options);
+    let options = in_units_of_file.as_ref().unwrap_or(options);
     let in_result_units = input.take_units_of_result(operation, options)?;
     let options = in_result_units.as_ref().unwrap_or(options);
-    let mut answer = match operation {
-        Operation::Analyze => input.report(operation, budget)?.into_answer(),
+    let answer = match operation {
+        Operation::Analyze | Operation::Render => input.report(operation, budget)?.into_answer(),
         Operation::Plan => input.planned(operation, budget)?.into_answer(),
         Operation::Verify => input.verification().into_answer(),
-        Operation::Convert => convert::convert(&input, options, budget)?,
-        Operation::Repair => repair::repair(&input, options, budget)?,
-        Operation::Simplify => simplify::simplify(&input, options, budget)?,
-        Operation::CutStitch => cut_stitch::cut_stitch(&input, options, budget)?,
-        Operation::FillHoles => fill_holes::fill_holes(&input, options, budget)?,
-        Operation::Modeller => modeller::model(&input, options, budget)?,
+        Operation::Convert => convert::convert(input, options, budget)?,
+        Operation::Repair => repair::repair(input, options, budget)?,
+        Operation::Simplify => simplify::simplify(input, options, budget)?,
+        Operation::CutStitch => cut_stitch::cut_stitch(input, options, budget)?,
+        Operation::FillHoles => fill_holes::fill_holes(input, options, budget)?,
+        Operation::Modeller => modeller::model(input, options, budget)?,
+        Operation::Boolean => return Err(Failure::MeshCount { operation, count: 1 }),
     };
+    finished(input, options, answer, budget)
+}
+
+/// The answer with what every operation tells.
+fn finished(
+    input: &Input,
+    options: &Options,
+    mut answer: Answer,
+    budget: &Budget,
+) -> Result<Answer, Failure> {
     if options.require == Some(Require::Faithful) {
         answer = demand_faithful(answer);
     }
     if let Some(policy) = &options.policy {
-        answer.report.printing = printing::measure(&input, &answer, policy, budget)?;
+        answer.report.printing = printing::measure(input, &answer, policy, budget)?;
     }
-    answer.report.work_used = budget.work_used();
-    answer.report.bytes_peak = budget.bytes_peak();
     Ok(answer)
 }
 

@@ -9,6 +9,7 @@ use crate::certificate::{self, Certificate, Depth, Examination};
 use crate::formats::{self, Encoding, ReadLimits, ReadOptions, WriteError};
 use crate::mesh::Soup;
 use crate::repair::NEW;
+use std::borrow::Cow;
 
 /// Why a mesh with this certificate is not returned: the caller demands a valid solid.
 pub(super) fn refusal(options: &Options, certificate: &Certificate) -> Option<Refusal> {
@@ -24,6 +25,16 @@ pub(super) fn unchanged(input: &Input, options: &Options, report: Report, otherw
         Some(refusal) => report.refused(refusal),
         None => input.returned_as_it_is(report, outcome),
     }
+}
+
+/// What is said of what the file has beside its mesh.
+fn left_out(counts: &[(&'static str, u64)]) -> Option<Action> {
+    if counts.is_empty() {
+        return None;
+    }
+    let reason = "what the file has beside its mesh is not in the output".to_owned();
+    let (step, causes, changes) = ("left_out", Vec::new(), counts.to_vec());
+    Some(Action { step, causes, changes, move_max: 0.0, reason, stitches: None })
 }
 
 /// A mesh that an operation has made which is no repair.
@@ -48,10 +59,10 @@ impl Made<'_> {
             return Ok(report.refused(Refusal::NothingToRepair));
         }
         let depth = Depth::Count { samples: input.samples };
-        let candidate = match Candidate::write(self.soup, input.output_encoding(options), depth, budget) {
+        let encoding = input.output_encoding(options);
+        let candidate = match Candidate::write(self.soup, input, encoding, depth, budget) {
             Ok(candidate) => candidate,
-            Err(NoCandidate::Refused(refusal)) => return Ok(report.refused(refusal)),
-            Err(NoCandidate::Failed(failure)) => return Err(failure),
+            Err(reason) => return Ok(report.refused(reason.refusal()?)),
         };
         if let Some(refusal) = refusal(options, candidate.certificate()) {
             return Ok(report.refused(refusal));
@@ -68,12 +79,27 @@ pub(super) struct Candidate {
     /// The bytes, read back.
     soup: Soup,
     examination: Examination,
+    /// For each of its triangles the one of the soup that was written; `None`: the same.
+    order: Option<Vec<u32>>,
 }
 
 /// Why there is no candidate.
 pub(super) enum NoCandidate {
     Refused(Refusal),
     Failed(Failure),
+}
+
+impl NoCandidate {
+    /// Why it is refused.
+    ///
+    /// # Errors
+    /// The failure, where it is one.
+    pub(super) fn refusal(self) -> Result<Refusal, Failure> {
+        match self {
+            Self::Refused(refusal) => Ok(refusal),
+            Self::Failed(failure) => Err(failure),
+        }
+    }
 }
 
 impl<E: Into<Failure>> From<E> for NoCandidate {
@@ -83,18 +109,22 @@ impl<E: Into<Failure>> From<E> for NoCandidate {
 }
 
 impl Candidate {
-    /// Writes `soup` and judges the bytes. The soup is gone by then: the largest buffers never live at the same time.
+    /// Writes `soup`, which is a result of `input`, and judges the bytes. The soup is gone by then: the largest buffers never
+    /// live at the same time.
     pub(super) fn write(
-        soup: Soup,
+        mut soup: Soup,
+        input: &Input,
         encoding: Encoding,
         depth: Depth,
         budget: &Budget,
     ) -> Result<Self, NoCandidate> {
+        soup.units = Some(input.facts.result_units);
         let bytes = match budget.stage(Stage::Write, || formats::write(&soup, encoding, budget)) {
             Ok(bytes) => bytes,
             Err(WriteError::Stopped(stopped)) => return Err(stopped.into()),
             Err(reason) => return Err(NoCandidate::Refused(Refusal::NotRepresentable { reason })),
         };
+        let order = formats::stored_order(&soup, encoding);
         drop(soup);
         // What we write may be larger than what we would take in.
         let limits =
@@ -103,13 +133,21 @@ impl Candidate {
         budget.stage(Stage::Certify, || {
             let soup = formats::read(&bytes, encoding, &options, budget).map_err(Failure::from)?;
             let examination = certificate::examine(&soup, &bytes, encoding, &options, depth, budget)?;
-            Ok(Self { bytes, encoding, soup, examination })
+            Ok(Self { bytes, encoding, soup, examination, order })
         })
     }
 
     /// The bytes, read back.
     pub(super) fn soup(&self) -> &Soup {
         &self.soup
+    }
+
+    /// The origins of the triangles of the bytes, of which `origins` are those of the soup that was written.
+    pub(super) fn origins<'o>(&self, origins: &'o [u32]) -> Cow<'o, [u32]> {
+        match &self.order {
+            Some(order) => Cow::Owned(order.iter().map(|&t| origins[t as usize]).collect()),
+            None => Cow::Borrowed(origins),
+        }
     }
 
     pub(super) fn certificate(&self) -> &Certificate {
@@ -134,7 +172,10 @@ impl Candidate {
         let kept = (0..self.soup.triangles.len()).filter(|&t| after.of_triangle(t).is_some()).count();
         let reason = match kept {
             0 => "the texture coordinates of the file are lost: the output has none",
-            _ => "texture coordinates stay where a triangle kept its corners; other triangles have none",
+            _ => {
+                "texture coordinates stay where a triangle kept its corners, and a patch that no seam runs into has \
+                 those between its rim's; other triangles have none"
+            }
         };
         let changes =
             vec![("triangles_with_texture", kept as u64), ("triangles_without_texture", lost as u64)];
@@ -173,10 +214,18 @@ impl Candidate {
         outcome: Outcome,
         budget: &Budget,
     ) -> Result<Answer, Stopped> {
-        let fidelity = faithful::judge(&input.soup, &self.soup, origins, &mut report, budget)?;
+        let origins = &*self.origins(origins);
+        let fidelity = match report.fidelity.take() {
+            Some(fidelity) => fidelity,
+            None => faithful::judge(&input.soup, &self.soup, origins, &mut report, budget)?,
+        };
         let after = describe(&self.soup, &self.examination, &input.analyze_options(), budget)?;
         let share = identical_triangle_share(&input.soup, &self.soup, origins, budget)?;
-        let lost = [self.lost_texture(input, origins), self.lost_materials(input, origins)];
+        let lost = [
+            self.lost_texture(input, origins),
+            self.lost_materials(input, origins),
+            left_out(&input.soup.left_out),
+        ];
         let actions = report.actions.into_iter().chain(lost.into_iter().flatten()).collect();
         let report = Report {
             actions,
@@ -187,7 +236,8 @@ impl Candidate {
             outcome: Some(outcome),
             ..report
         };
-        let output = Some(Output { bytes: Some(self.bytes), encoding: self.encoding });
-        Ok(Answer { report, output, levels: Vec::new() })
+        let output =
+            Some(Output { bytes: Some(self.bytes), encoding: self.encoding, origins: origins.to_vec() });
+        Ok(Answer { report, output, levels: Vec::new(), picture: None })
     }
 }

@@ -15,7 +15,7 @@ use crate::repair::polygons::DegenerateFaces;
 use crate::repair::snap::SnapOptions;
 use crate::repair::thin_faces::ThinFaces;
 use crate::repair::unite::Coverage;
-use crate::repair::{self, Changes, Draft};
+use crate::repair::{self, Changes, Draft, Effects};
 
 /// One step of a plan, with its parameters.
 #[derive(Debug, Clone, PartialEq)]
@@ -378,8 +378,12 @@ pub(super) struct Attempt {
     pub(super) steps: Vec<Step>,
     /// What the filling told of each hole.
     pub(super) holes: Vec<HoleReport>,
+    /// What the steps did that later attempts depend on.
+    pub(super) effects: Effects,
     /// True when the edges that steps join are told one by one.
     lists_stitches: bool,
+    /// True when no shell is turned before bodies are united: the draft was united as it points before.
+    is_oriented: bool,
     /// Which triangles of the soup are known to be on the surface or inside of the solid.
     coverage: Known,
 }
@@ -415,7 +419,9 @@ impl Attempt {
             actions,
             steps: Vec::new(),
             holes: Vec::new(),
+            effects: Effects::default(),
             lists_stitches: false,
+            is_oriented: false,
             coverage: Known::NotYet,
         }
     }
@@ -424,14 +430,13 @@ impl Attempt {
     pub(super) fn start_with_polygons(soup: &Soup, before: Option<&Analysis>) -> Self {
         let (draft, changes) = Draft::with_polygons(soup);
         let actions = vec![action("take-usable", &UNUSABLE, changes, soup, before)];
-        Self {
-            draft,
-            actions,
-            steps: Vec::new(),
-            holes: Vec::new(),
-            lists_stitches: true,
-            coverage: Known::NotYet,
-        }
+        Self { draft, actions, lists_stitches: true, ..Self::start(&Soup::default(), None) }
+    }
+
+    /// The triangles of `soup`, of which each says what is solid behind it.
+    pub(super) fn start_as_oriented(soup: &Soup) -> Self {
+        let (draft, _) = Draft::from_soup(soup);
+        Self { draft, actions: Vec::new(), is_oriented: true, ..Self::start(&Soup::default(), None) }
     }
 
     /// Runs `steps`, and notes what each did, and why by the defects found `before`.
@@ -444,8 +449,12 @@ impl Attempt {
     ) -> Result<(), Stopped> {
         for step in steps {
             budget.check()?;
-            let mut changes = step.run(&mut self.draft, soup, &mut self.holes, budget)?;
+            let mut changes = match step {
+                Step::Unite if self.is_oriented => repair::unite::unite_as_oriented(&mut self.draft, budget)?,
+                _ => step.run(&mut self.draft, soup, &mut self.holes, budget)?,
+            };
             self.coverage.go_on(step, &mut changes);
+            self.effects.add(changes.effects);
             debug_assert_eq!(self.draft.check(), Vec::<String>::new(), "after {step:?}");
             let stitches = (self.lists_stitches && matches!(step, Step::Pinch(..) | Step::Snap(_)))
                 .then(|| Stitches::of(&changes.stitches, soup));
@@ -454,11 +463,6 @@ impl Attempt {
             self.steps.push(step.clone());
         }
         Ok(())
-    }
-
-    /// True when needles, caps or folds went.
-    pub(super) fn has_mended_thin_faces(&self) -> bool {
-        ["needles_collapsed", "caps_flipped", "folds_closed"].into_iter().any(|name| self.count(name) > 0)
     }
 
     /// True when bodies were united.
@@ -475,16 +479,6 @@ impl Attempt {
             buried_area: *buried_area,
             moved: self.actions.iter().map(|action| action.move_max).sum(),
         })
-    }
-
-    /// Count of this name, over all steps.
-    pub(super) fn count(&self, name: &str) -> u64 {
-        self.actions
-            .iter()
-            .flat_map(|action| &action.changes)
-            .filter(|(n, _)| *n == name)
-            .map(|(_, count)| count)
-            .sum()
     }
 }
 

@@ -1,23 +1,16 @@
-//! A broken file to a certified one: plans in order, the first whose bytes are certified wins.
+//! A broken file to a certified one: valid already, or a plan that is replayed, or a climb of the ladder.
 
-use super::fidelity::{Fidelity, Original, defined_volume};
 use super::input::Input;
+use super::ladder::{self, Certified, Climb, Climbed};
 use super::output::{Candidate, NoCandidate};
-use super::plan::{Attempt, Step, Variant};
-use super::rebuild::{NotRebuilt, Rebuilt};
-use super::remedies::{Choices, PlanMismatch, Walls};
-use super::united::United;
-use super::{
-    Answer, Contact, Failure, Operation, Options, Outcome, Refusal, Report, Require, rebuild, simplify,
-};
-use crate::analysis::Analysis;
+use super::plan::{Attempt, Step};
+use super::remedies::{Choices, PlanMismatch};
+use super::{Answer, Failure, Operation, Options, Outcome, Refusal, Report, Require, simplify};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::Depth;
 use crate::formats::Encoding;
-use crate::repair::duplicates::OppositePairs;
+use crate::repair::Draft;
 use crate::repair::nest::Policy;
-use crate::repair::{self, Draft};
-use crate::winding::{OpenShells, Solid};
 
 /// Repairs `input`. A valid one comes back as it is, or converted.
 pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Result<Answer, Failure> {
@@ -54,102 +47,32 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
             }
             // The rounding of the other format broke it: it goes on as a broken mesh.
             Ok(_) => {}
-            Err(NoCandidate::Refused(refusal)) => return Ok(report.refused(refusal)),
-            Err(NoCandidate::Failed(failure)) => return Err(failure),
+            Err(reason) => return Ok(report.refused(reason.refusal()?)),
         }
     }
     let before = report.before.clone();
-    let search = Search { input, encoding, options, choices: &choices, before: before.as_ref(), budget };
-    match search.run()? {
-        Found::Certified(found) => {
-            let (attempt, candidate) = *found;
-            let fidelity = fidelity_of(&attempt, &candidate, &search)?;
-            certified(United { attempt, candidate, fidelity }, &search, report)
+    let climb = Climb { input, encoding, options, choices: &choices, before: before.as_ref(), budget };
+    let (end, tried) = ladder::climb(&climb)?;
+    let report = Report { tried, ..report };
+    match end {
+        Climbed::Certified(certified) => finished(*certified, Outcome::Repaired, &climb, report),
+        Climbed::Rebuilt(rebuilt) => {
+            Ok(rebuilt.returned(input, report.made_by(rebuilding(&choices)), budget)?)
         }
-        Found::United(united) => certified(*united, &search, report),
-        Found::Nothing { refusal: Refusal::NotRepairable { .. }, mended: Some(mended), .. }
-            if options.require == Some(Require::None) =>
-        {
-            partial(input, encoding, report, *mended, budget)
-        }
-        Found::Nothing {
-            refusal: Refusal::NotRepairable { .. } | Refusal::NothingToRepair, mended, ..
-        } if choices.rebuilds => match (search.rebuild(), mended) {
-            (Ok(rebuilt), _) => {
-                let report = report.made_by(rebuilding(&choices));
-                Ok(rebuilt.returned(input, report, budget)?)
-            }
-            (Err(NotRebuilt::Failed(failure)), _) => Err(failure),
-            (Err(NotRebuilt::Refused { refusal, .. }), Some(mended))
-                if refusal != Refusal::NothingToRepair =>
-            {
-                partial(input, encoding, report, *mended, budget)
-            }
-            (Err(NotRebuilt::Refused { refusal, actions }), _) => {
-                Ok(Report { actions, ..report }.refused(refusal))
-            }
-        },
-        Found::Nothing { refusal: Refusal::NotRepairable { .. }, mended: Some(mended), .. } => {
-            partial(input, encoding, report, *mended, budget)
-        }
-        Found::Nothing { refusal, last, .. } => {
-            Ok(Report { actions: last.actions, ..report }.refused(refusal))
-        }
+        Climbed::Mended(mended) => partial(input, encoding, report, *mended, budget),
+        Climbed::Refused { refusal, actions } => Ok(Report { actions, ..report }.refused(refusal)),
     }
-}
-
-/// A result of local steps, unless it lost too much and one that is rebuilt is closer.
-fn certified(found: United, search: &Search<'_>, report: Report) -> Result<Answer, Failure> {
-    let Search { input, options, budget, .. } = *search;
-    let United { attempt, candidate, fidelity } = found;
-    // What was removed as chosen is no loss that a rebuilt surface could make good.
-    if !fidelity.passes(&options.limits) && search.choices.rebuilds && !search.choices.removes() {
-        let rebuilt = match search.rebuild() {
-            Ok(rebuilt) => Some(rebuilt),
-            Err(NotRebuilt::Refused { .. }) => None,
-            Err(NotRebuilt::Failed(failure)) => return Err(failure),
-        };
-        let closer = rebuilt.filter(|rebuilt| !fidelity.is_no_worse(&rebuilt.fidelity, &options.limits));
-        if let Some(rebuilt) = closer {
-            return Ok(rebuilt.returned(input, report.made_by(rebuilding(search.choices)), budget)?);
-        }
-    }
-    finished((attempt, candidate), fidelity, Outcome::Repaired, search, report)
-}
-
-/// How far a result of local steps is from the file.
-pub(super) fn fidelity_of(
-    attempt: &Attempt,
-    candidate: &Candidate,
-    search: &Search<'_>,
-) -> Result<Fidelity, Failure> {
-    let Search { input, options, before, budget, .. } = *search;
-    let (draft, volume) = (&attempt.draft, defined_volume(before));
-    // Mostly nothing is gone, and what is hidden does not matter.
-    let all = Original::new(&input.soup, volume, None);
-    let covered = attempt.covered();
-    let measure = |original: &Original<'_>| {
-        original.measure_rest(candidate.soup(), &draft.triangle_origin, covered.as_ref(), budget)
-    };
-    let fidelity = measure(&all)?;
-    if fidelity.passes(&options.limits) {
-        return Ok(fidelity);
-    }
-    let read = || Solid::of(&draft.positions, &draft.triangles, options.wrap.open_shells, budget);
-    let solid = budget.stage(Stage::Measure, read)?;
-    let visible = Original::new(&input.soup, volume, Some(solid));
-    Ok(measure(&visible)?)
 }
 
 /// A result of local steps as the answer, with fewer triangles if that is asked, unless it is beyond the caller's limits.
 fn finished(
-    (attempt, candidate): (Attempt, Candidate),
-    fidelity: Fidelity,
+    certified: Certified,
     outcome: Outcome,
-    search: &Search<'_>,
+    climb: &Climb<'_>,
     report: Report,
 ) -> Result<Answer, Failure> {
-    let Search { input, options, budget, .. } = *search;
+    let Climb { input, options, budget, .. } = *climb;
+    let Certified { attempt, candidate, fidelity } = certified;
     let Attempt { draft, actions, steps, .. } = attempt;
     if let Some(refusal) = fidelity.breach(&options.limits) {
         return Ok(Report { actions, ..report }.refused(refusal));
@@ -183,12 +106,12 @@ fn replay(
         settings.simplify.targets.clear();
     }
     let options = &settings;
-    let search = Search { input, encoding, options, choices, before: before.as_ref(), budget };
+    let climb = Climb { input, encoding, options, choices, before: before.as_ref(), budget };
     if steps.contains(&Step::Rebuild) {
-        return match search.rebuild() {
+        return match climb.rebuild() {
             Ok(rebuilt) => Ok(rebuilt.returned(input, report.made_by(rebuilding(choices)), budget)?),
-            Err(NotRebuilt::Failed(failure)) => Err(failure),
-            Err(NotRebuilt::Refused { refusal, actions }) => {
+            Err(reason) => {
+                let (refusal, actions) = reason.refusal()?;
                 Ok(Report { actions, ..report }.refused(refusal))
             }
         };
@@ -210,10 +133,9 @@ fn replay(
     }
     let candidate = match write(&attempt.draft, input, encoding, Depth::FirstViolation, budget) {
         Ok(candidate) => candidate,
-        Err(NoCandidate::Refused(refusal)) => {
-            return Ok(Report { actions: attempt.actions, ..report }.refused(refusal));
+        Err(reason) => {
+            return Ok(Report { actions: attempt.actions, ..report }.refused(reason.refusal()?));
         }
-        Err(NoCandidate::Failed(failure)) => return Err(failure),
     };
     if !candidate.certificate().is_printable() {
         if options.require.unwrap_or(Require::Printable).is_of_a_solid() {
@@ -228,8 +150,7 @@ fn replay(
         (true, true) => Outcome::Simplified,
         (true, false) => Outcome::Converted,
     };
-    let fidelity = fidelity_of(&attempt, &candidate, &search)?;
-    finished((attempt, candidate), fidelity, outcome, &search, report)
+    finished(Certified::measured(attempt, candidate, &climb)?, outcome, &climb, report)
 }
 
 /// The steps of a surface that is rebuilt: what was removed as chosen is not there any more.
@@ -244,192 +165,14 @@ fn has_cavities(input: &Input) -> bool {
     input.examination.certificate.shells.iter().any(|shell| shell.depth > 0)
 }
 
-/// The search for a plan that leads to certified bytes.
-pub(super) struct Search<'a> {
-    pub(super) input: &'a Input,
-    pub(super) encoding: Encoding,
-    pub(super) options: &'a Options,
-    pub(super) choices: &'a Choices,
-    pub(super) before: Option<&'a Analysis>,
-    pub(super) budget: &'a Budget,
-}
-
-/// Rings that are removed around triangles that meet others, at most.
-const RINGS_MAX: u32 = 2;
-
-enum Found {
-    Certified(Box<(Attempt, Candidate)>),
-    United(Box<United>),
-    Nothing {
-        refusal: Refusal,
-        /// The last plan, run to its end.
-        last: Box<Attempt>,
-        /// The last plan without the steps that join what was cut, if the best effort was asked for.
-        mended: Option<Box<Attempt>>,
-    },
-}
-
-impl Found {
-    fn nothing(refusal: Refusal, last: Attempt, mended: Option<Attempt>) -> Self {
-        Self::Nothing { refusal, last: Box::new(last), mended: mended.map(Box::new) }
-    }
-}
-
-impl Search<'_> {
-    /// Tries the plans, least invasive first.
-    fn run(&self) -> Result<Found, Failure> {
-        let clears_noise = self.starts_with_clearing()?;
-        let first = Variant { opposite: self.choices.opposite, ..Variant::default() };
-        let thickens = self.choices.walls == Walls::First;
-        let rounds = self.needs_f32();
-        let mut variant = Variant { clears_noise, rounds, thickens, mends_thin_faces: true, ..first };
-        let mut fails_in_f32 = false;
-        let (mut may_unite, has_contacts) = (self.may_unite(), self.has_contacts());
-        loop {
-            let (mended, last) = self.attempt(variant)?;
-            if last.draft.triangles.is_empty() {
-                return Ok(Found::nothing(Refusal::NothingToRepair, last, mended));
-            }
-            let candidate =
-                match write(&last.draft, self.input, self.encoding, Depth::FirstViolation, self.budget) {
-                    Ok(candidate) if candidate.certificate().is_printable() => {
-                        return Ok(Found::Certified(Box::new((last, candidate))));
-                    }
-                    Ok(candidate) => candidate,
-                    Err(NoCandidate::Refused(refusal)) => {
-                        return Ok(Found::nothing(refusal, last, mended));
-                    }
-                    Err(NoCandidate::Failed(failure)) => return Err(failure),
-                };
-            let witness = candidate.certificate().witnesses.first().cloned();
-            fails_in_f32 |= witness.as_ref().is_some_and(|violation| violation.reading.is_f32);
-            // A vertex that was merged may have taken a face through another one.
-            if variant.mends_thin_faces && last.has_mended_thin_faces() {
-                variant.mends_thin_faces = false;
-                continue;
-            }
-            let next = self.next(variant, clears_noise, &last, fails_in_f32)?;
-            // Where nothing meets, all that moves no triangle through another comes first.
-            let is_last = next.is_none_or(|next| next.removes_crossing.is_some());
-            if (has_contacts || is_last)
-                && std::mem::take(&mut may_unite)
-                && let Some(united) = self.united(variant)?
-            {
-                return Ok(Found::United(Box::new(united)));
-            }
-            let Some(next) = next else {
-                return Ok(Found::nothing(Refusal::NotRepairable { witness }, last, mended));
-            };
-            variant = next;
-        }
-    }
-
-    /// Runs a plan: the mended mesh if the best effort may be asked for it, and the one that may be a solid.
-    fn attempt(&self, variant: Variant) -> Result<(Option<Attempt>, Attempt), Stopped> {
-        let (input, budget) = (self.input, self.budget);
-        let has_contacts = self.has_contacts();
-        let is_best_effort = matches!(self.options.require, Some(Require::BestEffort | Require::None));
-        budget.stage(Stage::Repair, || {
-            let mut attempt = Attempt::start(&input.soup, self.before);
-            let _charge = budget.charge(attempt.draft.bytes() * if is_best_effort { 2 } else { 1 })?;
-            attempt.run(&variant.mending(self.choices), &input.soup, self.before, budget)?;
-            let mended = is_best_effort.then(|| attempt.clone());
-            attempt.run(
-                &variant.solidifying(self.choices, has_contacts),
-                &input.soup,
-                self.before,
-                budget,
-            )?;
-            Ok((mended, attempt))
-        })
-    }
-
-    /// True when noise about zero keeps rims apart. Clearing it is then the smaller change: both rims could be closed
-    /// instead, which would leave two bodies with nothing between them.
-    fn starts_with_clearing(&self) -> Result<bool, Stopped> {
-        let (draft, _) = Draft::from_soup(&self.input.soup);
-        repair::noise::parts_rims(&draft, self.budget)
-    }
-
-    /// The plan to try after `variant`, if one can make a difference. `first_clears`: what the first plan did about noise.
-    fn next(
-        &self,
-        variant: Variant,
-        first_clears: bool,
-        last: &Attempt,
-        fails_in_f32: bool,
-    ) -> Result<Option<Variant>, Stopped> {
-        if let Some(rings) = variant.removes_crossing {
-            let may_help = rings < RINGS_MAX && last.count("triangles_removed") > 0;
-            return Ok(may_help.then_some(Variant { removes_crossing: Some(rings + 1), ..variant }));
-        }
-        if last.count("opposite_pairs_cancelled") > 0 {
-            return Ok(Some(Variant { opposite: OppositePairs::KeepFirst, ..variant }));
-        }
-        let first = Variant { opposite: self.choices.opposite, ..variant };
-        if fails_in_f32 && self.choices.rounds && !variant.rounds && !self.input.soup.is_f32_exact {
-            return Ok(Some(Variant { rounds: true, ..first }));
-        }
-        let is_second_try = variant.clears_noise != first_clears;
-        if !is_second_try && repair::noise::has_noise(&self.input.soup.positions) {
-            return Ok(Some(Variant { clears_noise: !first_clears, rounds: self.needs_f32(), ..first }));
-        }
-        let first = Variant { clears_noise: first_clears, ..first };
-        if !variant.thickens && variant.contact.is_none() && self.reads_as_sheets()? {
-            return Ok(Some(Variant { thickens: true, ..first }));
-        }
-        let first = Variant { thickens: false, ..first };
-        // Bodies that lie on each other would be parted by a gap that nobody wants.
-        let only_touches = self.before.is_some_and(|before| before.properties.is_embedded == Some(true));
-        if only_touches && variant.contact.is_none() && last.count("vertices_copied") > 0 {
-            return Ok(Some(Variant { contact: Some(self.options.contact), ..first }));
-        }
-        if variant.contact == Some(Contact::Join) {
-            return Ok(Some(Variant { contact: Some(Contact::Open), ..first }));
-        }
-        Ok(self.may_cross_locally().then_some(Variant { removes_crossing: Some(0), ..first }))
-    }
-
-    /// Whether the open parts are mostly sheets that may become walls. A surface with few boundary edges for its triangles
-    /// is none: a square of them has three for the root of their number.
-    pub(super) fn reads_as_sheets(&self) -> Result<bool, Stopped> {
-        let counts = self.before.map(|analysis| analysis.counts).unwrap_or_default();
-        let [rim, triangles] = [counts.boundary_edges, counts.triangles].map(|count| count as f64);
-        let may_be = rim > 0.0 && rim >= triangles.sqrt() && self.choices.walls == Walls::ForSheets;
-        if !may_be || self.options.wrap.open_shells == OpenShells::Close {
-            return Ok(false);
-        }
-        let (draft, _) = Draft::from_soup(&self.input.soup);
-        self.budget.stage(Stage::Measure, || rebuild::is_mostly_sheets(&draft, self.options, self.budget))
-    }
-
-    /// True unless it is known that no triangles meet others, or that a large share of them does.
-    fn may_cross_locally(&self) -> bool {
-        if !self.choices.removes_crossing {
-            return false;
-        }
-        let most = self.input.soup.triangles.len() as u64 / 20;
-        self.input.examination.contacts.as_ref().is_none_or(|contacts| (1..=most).contains(&contacts.count))
-    }
-
-    fn rebuild(&self) -> Result<Rebuilt, NotRebuilt> {
-        rebuild::rebuild(self.input, self.encoding, self.options, self.choices, self.before, self.budget)
-    }
-
-    /// True when the encoding holds no more than float32, so that every plan has to round.
-    fn needs_f32(&self) -> bool {
-        self.encoding == Encoding::StlBinary && !self.input.soup.is_f32_exact
-    }
-}
-
-pub(super) fn write(
+fn write(
     draft: &Draft,
     input: &Input,
     encoding: Encoding,
     depth: Depth,
     budget: &Budget,
 ) -> Result<Candidate, NoCandidate> {
-    Candidate::write(draft.to_soup(&input.soup), encoding, depth, budget)
+    Candidate::write(draft.to_soup(&input.soup), input, encoding, depth, budget)
 }
 
 /// The result that is not certified, on request.
@@ -445,7 +188,6 @@ fn partial(
         Ok(candidate) => {
             Ok(candidate.returned(input, &mended.draft.triangle_origin, report, Outcome::Partial, budget)?)
         }
-        Err(NoCandidate::Refused(refusal)) => Ok(report.refused(refusal)),
-        Err(NoCandidate::Failed(failure)) => Err(failure),
+        Err(reason) => Ok(report.refused(reason.refusal()?)),
     }
 }

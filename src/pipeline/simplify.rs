@@ -74,8 +74,7 @@ impl Writer<'_> {
         for result in results {
             let candidate = match self.write(&result) {
                 Ok(candidate) => candidate,
-                Err(NoCandidate::Refused(refusal)) => return Ok(report.refused(refusal)),
-                Err(NoCandidate::Failed(failure)) => return Err(failure),
+                Err(reason) => return Ok(report.refused(reason.refusal()?)),
             };
             let certificate = candidate.certificate().clone();
             if let Some(refusal) = refusal(self.options, &certificate) {
@@ -90,7 +89,11 @@ impl Writer<'_> {
             report.levels.push(Level { simplified: result.report, certificate, distance, fidelity });
             match &first {
                 None => first = Some((candidate, result.triangle_origin)),
-                Some(_) => others.push(Output { encoding: candidate.encoding, bytes: Some(candidate.bytes) }),
+                Some(_) => others.push(Output {
+                    encoding: candidate.encoding,
+                    bytes: Some(candidate.bytes),
+                    origins: self.origins(&result),
+                }),
             }
         }
         let Some((candidate, origins)) = first else {
@@ -112,17 +115,29 @@ impl Writer<'_> {
         distance: Option<&SurfaceDistance>,
         report: &Report,
     ) -> Result<FidelityVerdict, Stopped> {
-        let origins: Vec<u32> =
-            result.triangle_origin.iter().map(|&t| self.draft.triangle_origin[t as usize]).collect();
+        let origins = self.origins(result);
         let volume = report.before.as_ref().and_then(|analysis| analysis.measures.volume);
         let (input, budget) = (&self.input.soup, self.budget);
-        Ok(faithful::judge_alone(input, candidate.soup(), &origins, distance, volume, budget)?.0)
+        Ok(faithful::judge_alone(
+            input,
+            candidate.soup(),
+            &candidate.origins(&origins),
+            distance,
+            volume,
+            budget,
+        )?
+        .0)
+    }
+
+    /// The input's triangle behind each triangle of a result.
+    fn origins(&self, result: &Simplified) -> Vec<u32> {
+        result.triangle_origin.iter().map(|&t| self.draft.triangle_origin[t as usize]).collect()
     }
 
     fn write(&self, result: &Simplified) -> Result<Candidate, NoCandidate> {
         let encoding = self.input.output_encoding(self.options);
         let depth = Depth::Count { samples: self.input.samples };
-        Candidate::write(soup_of(result, self.mesh), encoding, depth, self.budget)
+        Candidate::write(soup_of(result, self.mesh), self.input, encoding, depth, self.budget)
     }
 }
 
@@ -162,9 +177,10 @@ impl Fewer {
             Solid::of(&draft.positions, &draft.triangles, options.wrap.open_shells, budget)
         })?;
         let original = Original::new(&input.soup, volume, Some(solid));
-        let fidelity = original.measure(candidate.soup(), &origins, budget)?;
+        let fidelity = original.measure(candidate.soup(), &candidate.origins(&origins), budget)?;
         for (level, (candidate, origins)) in levels.iter_mut().skip(1).zip(&others) {
-            let of_level = original.measure(candidate.soup(), &of_input(origins), budget)?;
+            let of_level =
+                original.measure(candidate.soup(), &candidate.origins(&of_input(origins)), budget)?;
             level.fidelity = Some(of_level.verdict(&input.soup));
         }
         let of_draft = report.distance.map_or(0.0, |distance| distance.upper());
@@ -181,9 +197,10 @@ impl Fewer {
         }
         let mut answer = candidate.returned(input, &origins, report, outcome, budget)?;
         answer.report.levels[0].fidelity = answer.report.fidelity.clone();
-        let file = |(candidate, _): (Candidate, _)| Output {
+        let file = |(candidate, origins): (Candidate, Vec<u32>)| Output {
             encoding: candidate.encoding,
             bytes: Some(candidate.bytes),
+            origins: of_input(&origins),
         };
         Ok(Answer { levels: others.into_iter().map(file).collect(), ..answer })
     }
@@ -210,7 +227,7 @@ pub(super) fn of_certified(
     let mut fewer: Option<Fewer> = None;
     for result in results {
         let soup = soup_of(&result, &mesh);
-        let candidate = match Candidate::write(soup, encoding, Depth::FirstViolation, budget) {
+        let candidate = match Candidate::write(soup, input, encoding, Depth::FirstViolation, budget) {
             Ok(candidate) if candidate.certificate().is_printable() => candidate,
             Ok(_) | Err(NoCandidate::Refused(_)) => return Ok(None),
             Err(NoCandidate::Failed(failure)) => return Err(failure),
@@ -330,6 +347,7 @@ fn face_groups(mesh: &Soup) -> Vec<u32> {
         None => (0, [0; 4]),
         Some(Color::Bytes([r, g, b], a)) => (1, [r, g, b, a.unwrap_or(255)].map(u32::from)),
         Some(Color::Floats([r, g, b], a)) => (2, [r, g, b, a.unwrap_or(1.0)].map(f32::to_bits)),
+        Some(Color::Linear([r, g, b], a)) => (4, [r, g, b, a.unwrap_or(1.0)].map(f32::to_bits)),
         Some(Color::Index(index)) => (3, [index as u32, 0, 0, 0]),
     };
     let mut number = |f: u32| {

@@ -1,26 +1,44 @@
-//! The unit of a result: a file in inches becomes an STL in millimetres.
+//! The unit of a result: a file in inches becomes an STL in millimetres or a GLB in metres.
 //!
 //! The mesh takes the unit of the result before anything is done to it, so that what is certified is what was made, and
 //! not a rounding of it.
 
 use super::input::Input;
-use super::{CutStitchChoices, Limits, Operation, Options, SimplifyChoices, Units, WrapChoices};
+use super::{
+    CutStitchChoices, FillHolesChoices, Limits, Operation, Options, SimplifyChoices, Units, WrapChoices,
+};
 use crate::formats::{Encoding, Format, Place, ReadError, ReadErrorKind};
+use crate::implicit::RbfOptions;
+use crate::repair::fill::FillOptions;
 use crate::simplify::Target;
 
-/// The unit of what `operation` returns of a file in `units`, laid out as `encoding`.
-fn units_of_result(operation: Operation, options: &Options, units: Units, encoding: Encoding) -> Units {
+/// The unit of what `operation` returns of a file of `input_format` in `units`, laid out as `encoding`.
+fn units_of_result(
+    operation: Operation,
+    options: &Options,
+    (input_format, units): (Format, Units),
+    encoding: Encoding,
+) -> Units {
     let default = match encoding.format() {
         Format::Stl => Units::Millimetre,
+        format if format.is_in_metres() && !input_format.is_in_metres() => Units::Metre,
         _ => units,
     };
-    match operation {
-        Operation::Analyze | Operation::Plan | Operation::Verify => units,
-        _ => options.output_units.unwrap_or(default),
-    }
+    if operation.only_reports() { units } else { options.output_units.unwrap_or(default) }
 }
 
 impl Input {
+    /// The options with lengths in the unit of the file, where that or its format states one and the caller does not: lengths
+    /// are millimetres then.
+    pub(super) fn take_lengths(&mut self, options: &Options) -> Option<Options> {
+        if options.units.is_some() || self.facts.units == Units::Millimetre {
+            return None;
+        }
+        let factor = 1.0 / self.facts.units.millimetres();
+        self.scale_near(factor);
+        Some(options.scaled(factor))
+    }
+
     /// Gives the mesh the unit of the result; the options in that unit, if it is another one than the file's.
     ///
     /// # Errors
@@ -31,7 +49,8 @@ impl Input {
         options: &Options,
     ) -> Result<Option<Options>, ReadError> {
         let units = self.facts.units;
-        let result_units = units_of_result(operation, options, units, self.output_encoding(options));
+        let of_input = (self.facts.encoding.format(), units);
+        let result_units = units_of_result(operation, options, of_input, self.output_encoding(options));
         if result_units == units {
             return Ok(None);
         }
@@ -71,6 +90,13 @@ impl Options {
             cut_stitch: CutStitchChoices {
                 epsilon: scaled(self.cut_stitch.epsilon),
                 ..self.cut_stitch.clone()
+            },
+            filling: FillHolesChoices {
+                fill: FillOptions {
+                    rbf: RbfOptions { lambda: scaled(self.filling.fill.rbf.lambda), ..self.filling.fill.rbf },
+                    ..self.filling.fill.clone()
+                },
+                ..self.filling.clone()
             },
             modeller: self.modeller.scaled(factor),
             near: scaled(self.near),

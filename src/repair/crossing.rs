@@ -1,7 +1,7 @@
 //! Takes out triangles that meet others where they must not, with some around them, so that what is left can be closed
 //! as holes are.
 
-use super::{Changes, Draft};
+use super::{Changes, Draft, Effects};
 use crate::budget::{Budget, Stopped};
 use crate::geom::are_collinear;
 use crate::mesh::{EdgeGroups, UnionFind, triangle_of};
@@ -52,7 +52,8 @@ pub fn remove_crossing(draft: &mut Draft, rings: u32, budget: &Budget) -> Result
     let reason =
         format!("{} pairs of triangles met; they went with {rings} rings around them", contacts.count);
     let changes = Changes::counted([("triangles_removed", removed as u64), ("crumbs_removed", crumbs)]);
-    Ok(Changes { reason, ..changes })
+    let effects = Effects { removed_crossing: true, ..Effects::default() };
+    Ok(Changes { reason, effects, ..changes })
 }
 
 /// Pairs that are looked at; where there are more, nothing is removed.

@@ -1,6 +1,6 @@
 //! Cuts marked edges and singular vertices. The copies stay at their positions, so a reader that welds joins them again.
 
-use super::{Changes, Draft};
+use super::{Changes, Draft, Effects};
 use crate::budget::{Budget, Stopped};
 use crate::mesh::{self, ChosenEdges, CutMethod, Marks};
 
@@ -36,7 +36,8 @@ pub fn cut(draft: &mut Draft, options: &CutOptions, budget: &Budget) -> Result<C
         ("isolated_singular_vertices", marks.isolated_vertices),
         ("vertices_copied", copies.len() as u64),
     ]);
-    Ok(Changes { reason: reason(&marks, method, options.method.is_some(), vertex_count), ..changes })
+    let effects = Effects { copied_vertices: !copies.is_empty(), ..Effects::default() };
+    Ok(Changes { reason: reason(&marks, method, options.method.is_some(), vertex_count), effects, ..changes })
 }
 
 /// The chosen edges as vertices of the draft.

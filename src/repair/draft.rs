@@ -1,8 +1,10 @@
 //! The mesh that repair steps work on: a plain triangle list that remembers where everything came from.
 
 mod faces;
+mod seams;
 
 pub use faces::Faced;
+use seams::are_over_seams;
 
 use super::Changes;
 use crate::geom::DVec3;
@@ -185,7 +187,8 @@ impl Draft {
     }
 
     /// The texture of the triangles whose corners are still at vertices of their triangle in `source`, or where these
-    /// were before they moved, and of patches, between the points at their rims; other triangles have none.
+    /// were before they moved, and of patches, between the points at their rims, where no seam runs into them; other
+    /// triangles have none.
     fn texture(&self, texture: &Texture, source: &Soup) -> Texture {
         if texture.is_empty() {
             return Texture::default();
@@ -201,6 +204,11 @@ impl Draft {
             let [a, b, c] = self.triangles[t].map(point);
             Some([a?, b?, c?])
         };
+        let values = |t: usize| {
+            let corners = of_triangle(t)?;
+            corners.iter().all(|&p| p != NO_POINT).then(|| corners.map(|p| texture.points[p as usize]))
+        };
+        let is_over_seam = are_over_seams(self, values);
         let mut points = texture.points.clone();
         let of_blends: Vec<Option<u32>> =
             self.blends.vertices.iter().map(|blend| blended(blend, texture, &mut points)).collect();
@@ -217,7 +225,7 @@ impl Draft {
                 origin => at_rim(origin),
             };
             let [a, b, c] = self.triangles[t].map(point);
-            (self.triangle_origin[t] == NEW).then_some([a?, b?, c?])
+            (self.triangle_origin[t] == NEW && !is_over_seam[t]).then_some([a?, b?, c?])
         };
         let corners = (0..self.triangles.len())
             .map(|t| of_triangle(t).or_else(|| of_patch(t)).unwrap_or([NO_POINT; 3]))

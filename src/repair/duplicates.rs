@@ -1,6 +1,6 @@
 //! Drops faces that have the vertices of another one: triangles, and polygons with the same corners in the same order.
 
-use super::{Changes, Draft};
+use super::{Changes, Draft, Effects};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::mesh::{
     EdgeGroups, Outlines, Polygons, UnionFind, edge_of, polygon_copies, prev_corner, triangle_of,
@@ -65,6 +65,7 @@ pub fn drop_duplicates(
     draft.retain_triangles(&is_kept);
     Ok(Changes {
         reason: reason(pairs.len() as u64, cancelled),
+        effects: Effects { cancelled_opposite_pairs: cancelled > 0, ..Effects::default() },
         ..Changes::counted([("copies_dropped", copies - cancelled), ("opposite_pairs_cancelled", cancelled)])
     })
 }

@@ -52,9 +52,42 @@ pub struct Changes {
     pub stitches: Stitches,
     /// What became of the triangles of the soup, where bodies were united.
     pub coverage: Option<unite::Coverage>,
+    /// What later attempts of a repair depend on.
+    pub effects: Effects,
+}
+
+/// What steps did that decides what is tried after them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Effects {
+    /// Both triangles of an opposite pair went.
+    pub cancelled_opposite_pairs: bool,
+    /// Vertices were copied where bodies touch or the surface is cut.
+    pub copied_vertices: bool,
+    /// Triangles went because they met others.
+    pub removed_crossing: bool,
+    /// Needles, caps or folds went.
+    pub mended_thin_faces: bool,
+    /// Triangles that were turned.
+    pub turned_triangles: u64,
+}
+
+impl Effects {
+    /// Takes in those of a further step.
+    pub fn add(&mut self, other: Self) {
+        self.cancelled_opposite_pairs |= other.cancelled_opposite_pairs;
+        self.copied_vertices |= other.copied_vertices;
+        self.removed_crossing |= other.removed_crossing;
+        self.mended_thin_faces |= other.mended_thin_faces;
+        self.turned_triangles += other.turned_triangles;
+    }
 }
 
 impl Changes {
+    /// These changes with their effects.
+    pub fn with(self, effects: Effects) -> Self {
+        Self { effects, ..self }
+    }
+
     /// Changes that are counts alone.
     pub fn counted(counts: impl Into<Vec<(&'static str, u64)>>) -> Self {
         Self { counts: counts.into(), ..Self::default() }

@@ -1,6 +1,6 @@
 //! Turns triangles so that neighbours agree. Inside and outside are not decided here.
 
-use super::{Changes, Draft};
+use super::{Changes, Draft, Effects};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::triangle_area;
 use crate::mesh::{ParityUnionFind, edge_of, triangle_of};
@@ -27,7 +27,8 @@ pub fn orient(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
         }
     }
     let flipped = flip_minorities(draft, &mut parts, budget)?;
-    Ok(Changes::counted([("triangles_flipped", flipped), ("edges_in_conflict", conflicts)]))
+    let changes = Changes::counted([("triangles_flipped", flipped), ("edges_in_conflict", conflicts)]);
+    Ok(changes.with(Effects { turned_triangles: flipped, ..Effects::default() }))
 }
 
 /// In each part, flips the triangles of the direction that holds less area.

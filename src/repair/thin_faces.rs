@@ -2,7 +2,7 @@
 //! and of two faces that lie on each other like a closed book the outer corners become one. No vertex gets a new place, and
 //! the surface stays within a few hundredths of the face's longest edge.
 
-use super::{Changes, Draft};
+use super::{Changes, Draft, Effects};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec3, NEEDLE_RATIO, Thinness, are_collinear, is_folded, thinness};
 use crate::mesh::half_edge::{BuildError, FaceId, HalfEdgeId, HalfEdgeMesh, VertexId};
@@ -102,6 +102,7 @@ fn counted([collapsed, flipped, closed, left]: [u64; 4]) -> Changes {
         ("folds_closed", closed),
         ("thin_faces_left", left),
     ])
+    .with(Effects { mended_thin_faces: collapsed + flipped + closed > 0, ..Effects::default() })
 }
 
 struct Mending<'d> {

@@ -19,6 +19,12 @@ pub(super) fn blend(a: Option<Color>, b: Option<Color>, t: f64) -> Option<Color>
         (Some(Color::Floats(p, Some(x))), Some(Color::Floats(q, Some(y)))) => {
             Some(Color::Floats(std::array::from_fn(|i| float(p[i], q[i])), Some(float(x, y))))
         }
+        (Some(Color::Linear(p, None)), Some(Color::Linear(q, None))) => {
+            Some(Color::Linear(std::array::from_fn(|i| float(p[i], q[i])), None))
+        }
+        (Some(Color::Linear(p, Some(x))), Some(Color::Linear(q, Some(y)))) => {
+            Some(Color::Linear(std::array::from_fn(|i| float(p[i], q[i])), Some(float(x, y))))
+        }
         _ => {
             if t < 0.5 {
                 a

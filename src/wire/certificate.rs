@@ -77,6 +77,9 @@ pub struct Certificate {
     pub bytes: u64,
     /// Layout of the bytes.
     pub encoding: Encoding,
+    /// Parts that were judged one by one, each in its own coordinates; null: all triangles were judged together.
+    #[schema(required)]
+    pub parts: Option<u32>,
     /// P0, P1 and P2 hold.
     pub printable: bool,
     /// P0: closed, oriented and 2-manifold, without degenerate or duplicate triangles.
@@ -107,6 +110,7 @@ impl From<&judge::Certificate> for Certificate {
             sha256: hex(&inner.sha256),
             bytes: inner.bytes,
             encoding: inner.encoding.into(),
+            parts: inner.parts,
             printable: inner.is_printable(),
             p0,
             p1,

@@ -49,6 +49,9 @@ impl FormatInfo {
                 &["application/x-ply", "model/ply"],
                 &[Encoding::PlyAscii, Encoding::PlyBinaryLittleEndian, Encoding::PlyBinaryBigEndian],
             ),
+            Format::Glb => (&["model/gltf-binary"], &[Encoding::Glb]),
+            Format::Gltf => (&["model/gltf+json"], &[Encoding::Gltf]),
+            Format::ThreeMf => (&["model/3mf", "application/vnd.ms-3mfdocument"], &[Encoding::ThreeMf]),
         };
         Self {
             name: format,
@@ -67,6 +70,9 @@ fn extensions_of(format: Format) -> &'static [&'static str] {
         Format::Stl => &["stl"],
         Format::Off => &["off"],
         Format::Ply => &["ply"],
+        Format::Glb => &["glb"],
+        Format::Gltf => &["gltf"],
+        Format::ThreeMf => &["3mf"],
     }
 }
 

@@ -3,6 +3,7 @@
 //! Everything here mirrors an engine type, so that a rename inside cannot change the contract; exhaustive matches make
 //! the compiler ask for a public word when the engine learns a new one.
 
+mod boolean;
 mod certificate;
 mod edges;
 mod event;
@@ -18,6 +19,7 @@ mod mesh_info;
 mod modeller;
 mod option_schema;
 mod options;
+mod part;
 mod plan;
 mod printing;
 mod problem;
@@ -58,6 +60,7 @@ pub use option_schema::{
     camel_case, option_parameters, option_schemas, options_object, options_of, with_input,
 };
 pub use options::{OptionError, OptionKind, OptionSpec, Options, SPECS};
+pub use part::{Attributes, Part};
 pub use plan::{
     ChosenElement, ChosenFinding, ChosenShell, ElementProposal, FillSettings, Plan, PlanRequest, PlanStep,
     Proposal, SingleHole,
@@ -69,8 +72,8 @@ pub use printing::{
 };
 pub use problem::{ErrorInfo, Problem, ProblemCode, errors};
 pub use report::{
-    Action, Change, Deviation, DirectedDistance, Distance, EngineInfo, InputInfo, Report, Resources,
-    TimingMs, UnitsInfo,
+    Action, Change, Deviation, DirectedDistance, Distance, EngineInfo, FurtherInput, InputInfo, Report,
+    Resources, TimingMs, UnitsInfo,
 };
 pub use report_page::{Escaped, REPORT_PAGE_CSP, report_page};
 pub use request::{InputRef, JobRequest};
@@ -83,9 +86,9 @@ pub use webhook::{
     Deliveries, Delivery, DeliveryState, DeliveryTry, WebhookEvent, WebhookMessage, WebhookRequest,
 };
 pub use words::{
-    Across, ChangeKind, Condition, ConstraintValues, Contact, Criterion, Cut, DefectCode, Degenerate, Effort,
-    Encoding, Extract, Fidelity, FillHoles, FillMethod, Format, HoleClass, HoleFate, Kernel, LambdaFrom,
-    Mode, Nesting, OpenShells, Operation, Opposite, Outcome, Placement, ProximityTest, Reader, ReasonCode,
-    Rejection, Remedy, Require, Severity, ShellFate, Stage, Stitch, StitchValidity, Units, VertexColors,
-    Weld,
+    Across, ChangeKind, Condition, ConstraintValues, Contact, Criterion, Cut, DefectCode, Degenerate,
+    DrawnEdges, Effort, Encoding, Extract, Fidelity, FillHoles, FillMethod, Format, HoleClass, HoleFate,
+    Kernel, LambdaFrom, Mode, Nesting, OpenShells, Operation, Opposite, Outcome, Placement, Projection,
+    ProximityTest, Reader, ReasonCode, Rejection, Remedy, Require, SetOperation, Severity, Shade, ShellFate,
+    SolidParts, Stage, Stitch, StitchValidity, Units, VertexColors, Views, Weld,
 };

@@ -383,6 +383,19 @@ impl From<&Failure> for Problem {
             Failure::Unreadable(error) => Self::from(error),
             Failure::Stopped(stopped) => Self::from(stopped),
             Failure::PlanMismatch(mismatch) => Self::from(mismatch),
+            Failure::InMesh { failure: inner, .. } => Self {
+                parameter: Some("mesh".to_owned()),
+                detail: failure.to_string(),
+                ..Self::from(&**inner)
+            },
+            Failure::MeshCount { .. } => Self {
+                parameter: Some("mesh".to_owned()),
+                ..Self::new(ProblemCode::InvalidParameter, failure.to_string())
+            },
+            Failure::NotApplicable { option, reason } => Self {
+                parameter: Some((*option).to_owned()),
+                ..Self::new(ProblemCode::InvalidParameter, reason.clone())
+            },
             &Failure::NoSuchHole { holes, .. } => Self {
                 parameter: Some("holes".to_owned()),
                 expected: Some(match holes {
@@ -391,6 +404,20 @@ impl From<&Failure> for Problem {
                 }),
                 ..Self::new(ProblemCode::InvalidParameter, failure.to_string())
             },
+        }
+    }
+}
+
+impl wire::Operation {
+    /// That it takes so many meshes.
+    ///
+    /// # Errors
+    /// `invalid-parameter`.
+    pub fn check_mesh_count(self, count: usize) -> Result<(), Problem> {
+        let operation = crate::pipeline::Operation::from(self);
+        match operation.meshes().contains(&count) {
+            true => Ok(()),
+            false => Err(Problem::from(&Failure::MeshCount { operation, count })),
         }
     }
 }

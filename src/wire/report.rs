@@ -10,6 +10,7 @@ use super::holes::Hole;
 use super::level::Level;
 use super::mesh_info::{MeshInfo, finite};
 use super::modeller::Modeller;
+use super::part::Part;
 use super::plan::Plan;
 use super::printing::Printing;
 use super::stitches::Stitches;
@@ -26,8 +27,10 @@ pub struct Report {
     pub operation: Operation,
     /// Who made it.
     pub engine: EngineInfo,
-    /// The uploaded bytes.
+    /// The uploaded bytes; of several meshes, the first.
     pub input: InputInfo,
+    /// The meshes after the first, in their order; empty but for `boolean`.
+    pub further_inputs: Vec<FurtherInput>,
     /// The mesh as uploaded; null: not analyzed.
     #[schema(required)]
     pub before: Option<MeshInfo>,
@@ -38,6 +41,8 @@ pub struct Report {
     /// `plan`; null for operations other than `plan` and `repair`.
     #[schema(required)]
     pub plan: Option<Plan>,
+    /// What was tried to repair the file, in its order, by the names of `docs/ladder.md`; empty where no repair was looked for.
+    pub tried: Vec<&'static str>,
     /// The steps of the plan in the order they ran.
     pub actions: Vec<Action>,
     /// The results of a simplification, in the order of its targets; the first is what `after`, `deviation` and
@@ -56,6 +61,10 @@ pub struct Report {
     pub deviation: Deviation,
     /// The conclusion.
     pub verdict: Verdict,
+    /// The parts of the file that were handled one by one, in its order; empty when all triangles were handled together.
+    pub parts: Vec<Part>,
+    /// What of the file is kept and not judged, and which rules of its format it breaks, in sentences.
+    pub remarks: Vec<String>,
     /// The uploaded bytes, judged.
     pub input_certificate: Certificate,
     /// The returned bytes, judged; null: no bytes are returned.
@@ -94,12 +103,24 @@ pub struct InputInfo {
     pub units: UnitsInfo,
 }
 
+/// A mesh after the first, as it was uploaded.
+#[derive(Debug, Clone, Serialize, ToSchema)]
+pub struct FurtherInput {
+    /// The uploaded bytes.
+    pub input: InputInfo,
+    /// The mesh.
+    #[schema(required)]
+    pub before: Option<MeshInfo>,
+    /// The uploaded bytes, judged.
+    pub input_certificate: Certificate,
+}
+
 /// A unit and how it is known.
 #[derive(Debug, Clone, Serialize, ToSchema)]
 pub struct UnitsInfo {
     /// The unit.
     pub unit: Units,
-    /// The caller stated it; false: it is assumed.
+    /// The caller, the file or its format states it; false: it is assumed.
     pub is_stated: bool,
 }
 
@@ -231,6 +252,9 @@ pub struct TimingMs {
     /// How far the result is from the input.
     #[schema(required)]
     pub measure: Option<f64>,
+    /// A picture.
+    #[schema(required)]
+    pub draw: Option<f64>,
     /// The whole run of the engine.
     pub total: f64,
 }
@@ -246,6 +270,7 @@ impl TimingMs {
             Stage::Write => self.write,
             Stage::Certify => self.certify,
             Stage::Measure => self.measure,
+            Stage::Draw => self.draw,
         }
     }
 
@@ -259,6 +284,7 @@ impl TimingMs {
             Stage::Write => &mut self.write,
             Stage::Certify => &mut self.certify,
             Stage::Measure => &mut self.measure,
+            Stage::Draw => &mut self.draw,
         }
     }
 }
@@ -282,12 +308,14 @@ impl Report {
             operation: inner.operation.into(),
             engine: EngineInfo { name: super::ENGINE_NAME, version: super::ENGINE_VERSION },
             input: InputInfo::from(&inner.input),
+            further_inputs: inner.further_inputs.iter().map(FurtherInput::from).collect(),
             output_units: units,
             before: inner
                 .before
                 .as_ref()
                 .map(|mesh| MeshInfo::new(mesh, remaining).with_units_of(&inner.input)),
             plan: inner.plan.as_ref().map(Plan::from),
+            tried: inner.tried.clone(),
             actions: inner.actions.iter().map(Action::from).collect(),
             levels: inner.levels.iter().map(|level| Level::new(level, units)).collect(),
             holes: inner.filling.as_ref().map(|filling| filling.holes.iter().map(Hole::from).collect()),
@@ -295,6 +323,8 @@ impl Report {
             after: inner.after.as_ref().map(|mesh| MeshInfo::new(mesh, None)),
             deviation: Deviation::of(inner),
             verdict: Verdict::of(inner),
+            parts: inner.parts.iter().map(Part::from).collect(),
+            remarks: inner.remarks.clone(),
             input_certificate: Certificate::from(&inner.input_certificate),
             certificate: inner.certificate.as_ref().map(Certificate::from),
             printing: inner.printing.as_ref().map(|printing| Printing::new(printing, units.millimetres())),
@@ -318,6 +348,17 @@ impl From<&pipeline::InputFacts> for InputInfo {
             bytes: inner.bytes,
             sha256: hex(&inner.sha256),
             units: UnitsInfo { unit: inner.units.into(), is_stated: inner.units_are_stated },
+        }
+    }
+}
+
+impl From<&pipeline::FurtherInput> for FurtherInput {
+    fn from(inner: &pipeline::FurtherInput) -> Self {
+        let mesh = inner.before.as_ref();
+        Self {
+            input: InputInfo::from(&inner.facts),
+            before: mesh.map(|mesh| MeshInfo::new(mesh, None).with_units_of(&inner.facts)),
+            input_certificate: Certificate::from(&inner.certificate),
         }
     }
 }
@@ -402,9 +443,11 @@ mod tests {
             "operation",
             "engine",
             "input",
+            "further_inputs",
             "before",
             "output_units",
             "plan",
+            "tried",
             "actions",
             "levels",
             "holes",
@@ -412,6 +455,8 @@ mod tests {
             "after",
             "deviation",
             "verdict",
+            "parts",
+            "remarks",
             "input_certificate",
             "certificate",
             "printing",
@@ -443,7 +488,7 @@ mod tests {
             );
             assert_eq!(
                 members(&report["timing_ms"]),
-                ["read", "analyze", "repair", "simplify", "write", "certify", "measure", "total"]
+                ["read", "analyze", "repair", "simplify", "write", "certify", "measure", "draw", "total"]
             );
         }
     }

@@ -25,6 +25,7 @@ fn certificate(is_valid: bool) -> Certificate {
         sha256: [0xab; 32],
         bytes: 284,
         encoding: Encoding::StlBinary,
+        parts: None,
         p0: is_valid,
         p1: is_valid.then_some(true),
         p2: is_valid.then_some(true),
@@ -96,7 +97,9 @@ pub(crate) fn repaired() -> Answer {
         },
         before: Some(analysis(1)),
         input_certificate: certificate(false),
+        further_inputs: Vec::new(),
         plan: None,
+        tried: vec!["as-drawn"],
         actions: vec![Action {
             step: "fill-holes",
             causes: vec![DefectCode::BoundaryLoop],
@@ -120,27 +123,32 @@ pub(crate) fn repaired() -> Answer {
         outcome: Some(Outcome::Repaired),
         refusal: None,
         printing: None,
+        parts: Vec::new(),
+        remarks: Vec::new(),
         work_used: 7,
         bytes_peak: 1000,
     };
-    let output = Some(Output { bytes: Some(b"mended".to_vec()), encoding: Encoding::StlBinary });
-    Answer { report, output, levels: Vec::new() }
+    let output =
+        Some(Output { bytes: Some(b"mended".to_vec()), encoding: Encoding::StlBinary, origins: Vec::new() });
+    Answer { report, output, levels: Vec::new(), picture: None }
 }
 
 /// The answer to a repair of a mesh that was valid already.
 pub(crate) fn identical() -> Answer {
-    let Answer { report, output, levels } = repaired();
+    let Answer { report, output, levels, picture } = repaired();
     let report = Report {
         before: Some(analysis(0)),
         input_certificate: certificate(true),
+        further_inputs: Vec::new(),
         plan: None,
+        tried: Vec::new(),
         actions: Vec::new(),
         after: None,
         outcome: Some(Outcome::Identical),
         fidelity: Some(FidelityVerdict { word: Fidelity::Exact, changes: Vec::new() }),
         ..report
     };
-    Answer { report, output: output.map(|output| Output { bytes: None, ..output }), levels }
+    Answer { report, output: output.map(|output| Output { bytes: None, ..output }), levels, picture }
 }
 
 /// The answer to a repair without a valid result.
@@ -156,5 +164,5 @@ pub(crate) fn refused() -> Answer {
         refusal: Some(Refusal::NotRepairable { witness }),
         ..report
     };
-    Answer { report, output: None, levels: Vec::new() }
+    Answer { report, output: None, levels: Vec::new(), picture: None }
 }

@@ -27,6 +27,9 @@ pub struct UnitHypothesis {
     pub question: Option<String>,
 }
 
+/// Units that files without one are made in.
+const GUESSED: [Units; 4] = [Units::Millimetre, Units::Centimetre, Units::Metre, Units::Inch];
+
 impl UnitHypothesis {
     /// A guess from the box around a mesh; `None` without a size.
     pub(super) fn of(bounds: Aabb) -> Option<Self> {
@@ -36,7 +39,7 @@ impl UnitHypothesis {
         }
         let in_mm = |unit: &Units| longest * unit.millimetres();
         let plausible: Vec<Units> =
-            Units::ALL.iter().copied().filter(|unit| PRINTED_MM.contains(&in_mm(unit))).collect();
+            GUESSED.iter().copied().filter(|unit| PRINTED_MM.contains(&in_mm(unit))).collect();
         let oddity = |unit: &&Units| oddity(in_mm(unit));
         let unit = if plausible.contains(&Units::Millimetre) {
             Some(Units::Millimetre)
@@ -101,10 +104,12 @@ fn question(longest: f64, plausible: &[Units]) -> String {
 
 fn name(unit: Units) -> &'static str {
     match unit {
+        Units::Micrometre => "micrometres",
         Units::Millimetre => "millimetres",
         Units::Centimetre => "centimetres",
         Units::Metre => "metres",
         Units::Inch => "inches",
+        Units::Foot => "feet",
     }
 }
 

@@ -139,6 +139,10 @@ impl From<&pipeline::Refusal> for Reason {
                 };
                 (code, None, super::modeller::sentence(reason, Units::from(*units).millimetres()))
             }
+            pipeline::Refusal::Boolean { reason } => {
+                let (code, message) = super::boolean::told(reason);
+                (code, None, message)
+            }
             pipeline::Refusal::NotRepresentable { reason } => {
                 (ReasonCode::NotRepresentable, None, reason.to_string())
             }

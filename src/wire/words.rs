@@ -1,6 +1,8 @@
 //! One public word for each value of the engine's enumerations.
 
-use crate::{analysis, budget, certificate, formats, implicit, mesh, pipeline, repair, simplify, winding};
+use crate::{
+    analysis, budget, certificate, formats, implicit, mesh, pipeline, render, repair, simplify, winding,
+};
 
 /// An enumeration whose values have public words, as options see it.
 pub(super) trait Word: Sized {
@@ -127,13 +129,37 @@ mirror! { pipeline::Operation =>
         FillHoles = "fill-holes",
         /// A closed polyhedron edited by its planes; the certificate states what holds.
         Modeller = "modeller",
+        /// Several solids combined into one that is certified.
+        Boolean = "boolean",
+        /// A picture.
+        Render = "render",
     }
 }
 
 impl Operation {
     /// Those whose product is a mesh.
-    pub const WITH_MESH: &'static [Self] =
-        &[Self::Repair, Self::Convert, Self::Simplify, Self::CutStitch, Self::FillHoles, Self::Modeller];
+    pub const WITH_MESH: &'static [Self] = &[
+        Self::Repair,
+        Self::Convert,
+        Self::Simplify,
+        Self::CutStitch,
+        Self::FillHoles,
+        Self::Modeller,
+        Self::Boolean,
+    ];
+    /// Those that do more than make a picture.
+    pub const BESIDE_PICTURE: &'static [Self] = &[
+        Self::Analyze,
+        Self::Plan,
+        Self::Repair,
+        Self::Convert,
+        Self::Verify,
+        Self::Simplify,
+        Self::CutStitch,
+        Self::FillHoles,
+        Self::Modeller,
+        Self::Boolean,
+    ];
     /// Those that describe the mesh.
     pub const DESCRIBING: &'static [Self] = &[
         Self::Analyze,
@@ -144,7 +170,14 @@ impl Operation {
         Self::CutStitch,
         Self::FillHoles,
         Self::Modeller,
+        Self::Boolean,
+        Self::Render,
     ];
+
+    /// Most meshes that it takes.
+    pub fn meshes_max(self) -> usize {
+        *pipeline::Operation::from(self).meshes().end()
+    }
 
     /// True when its product is a mesh.
     pub fn makes_mesh(self) -> bool {
@@ -163,6 +196,12 @@ mirror! { formats::Format =>
         Off = "off",
         /// Polygon file format.
         Ply = "ply",
+        /// glTF 2.0 in one binary file.
+        Glb = "glb",
+        /// glTF 2.0 as JSON that holds its data.
+        Gltf = "gltf",
+        /// 3D Manufacturing Format.
+        ThreeMf = "3mf",
     }
 }
 
@@ -185,6 +224,12 @@ mirror! { formats::Encoding =>
         PlyBinaryLittleEndian = "ply-binary-little-endian",
         /// Binary big-endian PLY.
         PlyBinaryBigEndian = "ply-binary-big-endian",
+        /// Binary glTF.
+        Glb = "glb",
+        /// glTF JSON.
+        Gltf = "gltf",
+        /// The package of a 3MF.
+        ThreeMf = "3mf",
     }
 }
 
@@ -201,6 +246,8 @@ mirror! { formats::ObjReader =>
 mirror! { pipeline::Units =>
     /// The length of one unit of the file.
     Units {
+        /// Micrometre.
+        Micrometre = "um",
         /// Millimetre.
         Millimetre = "mm",
         /// Centimetre.
@@ -209,6 +256,8 @@ mirror! { pipeline::Units =>
         Metre = "m",
         /// Inch.
         Inch = "in",
+        /// Foot.
+        Foot = "ft",
     }
 }
 
@@ -216,6 +265,18 @@ impl Units {
     /// Length of the unit in millimetres.
     pub fn millimetres(self) -> f64 {
         pipeline::Units::from(self).millimetres()
+    }
+}
+
+mirror! { pipeline::Parts =>
+    /// What of a file of several parts is one solid.
+    SolidParts {
+        /// Each part by itself, in its own coordinates; the file keeps everything around them.
+        Separate = "separate",
+        /// All parts at their places, after each was repaired by itself; the result is a new file of one mesh.
+        Union = "union",
+        /// All parts at their places, as they are; the result is a new file of one mesh.
+        Together = "together",
     }
 }
 
@@ -328,6 +389,18 @@ mirror! { pipeline::Effort =>
         Normal = "normal",
         /// Ever finer ones.
         High = "high",
+    }
+}
+
+mirror! { pipeline::SetOperation =>
+    /// What becomes of several solids.
+    SetOperation {
+        /// What is in any of them.
+        Union = "union",
+        /// What is in all of them.
+        Intersection = "intersection",
+        /// What is in the first and in no other.
+        Difference = "difference",
     }
 }
 
@@ -578,7 +651,7 @@ mirror! { pipeline::VertexColors =>
     VertexColors {
         /// Those of the file, mixed where vertices were merged.
         Kept = "kept",
-        /// The order in which they would go next, from blue to red: a picture for OFF and PLY.
+        /// The order in which they would go next, from blue to red: a picture for OFF, PLY and glTF.
         Priority = "priority",
     }
 }
@@ -602,6 +675,8 @@ mirror! { pipeline::Outcome =>
         Filled = "filled",
         /// Edited by its planes, as asked; the certificate says what holds.
         Modelled = "modelled",
+        /// Valid; several solids became one, as asked.
+        Combined = "combined",
         /// Not valid; only on request.
         Partial = "partial",
         /// No result.
@@ -654,6 +729,82 @@ mirror! { budget::Stage =>
         Certify = "certify",
         /// How far the result is from the input.
         Measure = "measure",
+        /// A picture.
+        Draw = "draw",
+    }
+}
+
+words! {
+    /// From which sides a mesh is drawn; z is up, and the front is the side of small y.
+    Views {
+        /// From the front, the right and above.
+        Iso = "iso",
+        /// From small y.
+        Front = "front",
+        /// From large y.
+        Back = "back",
+        /// From small x.
+        Left = "left",
+        /// From large x.
+        Right = "right",
+        /// From above.
+        Top = "top",
+        /// From below.
+        Bottom = "bottom",
+        /// Iso, front, right and top.
+        Four = "four",
+        /// All seven.
+        All = "all",
+    }
+}
+
+impl Views {
+    /// The views by themselves.
+    pub fn to_engine(self) -> Vec<render::View> {
+        use render::View;
+        vec![match self {
+            Self::Iso => View::Iso,
+            Self::Front => View::Front,
+            Self::Back => View::Back,
+            Self::Left => View::Left,
+            Self::Right => View::Right,
+            Self::Top => View::Top,
+            Self::Bottom => View::Bottom,
+            Self::Four => return vec![View::Iso, View::Front, View::Right, View::Top],
+            Self::All => return View::ALL.to_vec(),
+        }]
+    }
+}
+
+mirror! { render::Shade =>
+    /// How faces are shaded.
+    Shade {
+        /// Each in one colour.
+        Flat = "flat",
+        /// Rounded where neighbours meet at less than 40 degrees.
+        Smooth = "smooth",
+    }
+}
+
+mirror! { render::Edges =>
+    /// Which edges are drawn.
+    DrawnEdges {
+        /// None.
+        None = "none",
+        /// Outlines, and edges at which the surface turns by more than 40 degrees.
+        Creases = "creases",
+        /// All edges of triangles.
+        All = "all",
+    }
+}
+
+mirror! { render::Projection =>
+    /// How depth changes what is seen.
+    Projection {
+        /// Not at all: parallel lines stay parallel.
+        Orthographic = "orthographic",
+        /// What is farther is smaller.
+        Perspective = "perspective",
     }
 }
 
@@ -798,6 +949,12 @@ words! {
         NotAPolyhedron = "not-a-polyhedron",
         /// The modeller refuses an operator, a range or the dual.
         OperatorRefused = "operator-refused",
+        /// A mesh that is to be combined with others is no closed solid.
+        InputNotSolid = "input-not-solid",
+        /// Nothing is left of the solids.
+        EmptyResult = "empty-result",
+        /// The solids meet in too many places, or combining them failed.
+        NotCombined = "not-combined",
         /// No result keeps the caller's own limits.
         LimitExceeded = "limit-exceeded",
         /// No result is exact or faithful, as the caller demands.
@@ -839,6 +996,7 @@ mod tests {
             Remedy::WORDS,
             OpenShells::WORDS,
             Contact::WORDS,
+            SetOperation::WORDS,
             Across::WORDS,
             Cut::WORDS,
             Stitch::WORDS,
@@ -875,6 +1033,9 @@ mod tests {
         }
         for operation in pipeline::Operation::ALL {
             assert_eq!(Operation::from(operation).word(), operation.name());
+        }
+        for &operation in SetOperation::ALL {
+            assert_eq!(operation.word(), pipeline::SetOperation::from(operation).name());
         }
         for stage in budget::Stage::ALL {
             assert_eq!(Stage::from(stage).word(), stage.name());

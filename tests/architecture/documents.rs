@@ -147,3 +147,28 @@ fn every_path_through_the_code_that_a_document_names_exists() {
     assert!(looked_up > 3, "the paths were not found");
     assert!(missing.is_empty(), "names that the code does not have:\n{}", missing.join("\n"));
 }
+
+/// What stands between `start` and `end` in `text`, from the first place where `start` does.
+fn between<'t>(text: &'t str, start: &str, end: &str) -> &'t str {
+    let (_, rest) = text.split_once(start).unwrap_or_else(|| panic!("`{start}` is gone"));
+    rest.split_once(end).unwrap_or_else(|| panic!("`{end}` is gone")).0
+}
+
+#[test]
+fn the_page_on_the_ladder_lists_the_rungs_in_their_order() {
+    let read = |path: &str| std::fs::read_to_string(root().join(path)).expect(path);
+    let list = read("src/pipeline/ladder/mod.rs");
+    let name_of = |rung: &str| {
+        let (file, constant) = rung.split_once("::").expect("a file and a constant");
+        let source = read(&format!("src/pipeline/ladder/{file}.rs"));
+        let body = between(&source, &format!("const {constant}: Rung = Rung {{"), "};");
+        between(body, "name: \"", "\"").to_owned()
+    };
+    let rungs = between(&list, "] = [", "];").split(',').map(str::trim).filter(|rung| !rung.is_empty());
+    let in_code: Vec<String> = rungs.map(|rung| name_of(rung.trim_start_matches('&'))).collect();
+    let page = read("docs/ladder.md");
+    let rows = page.lines().filter_map(|line| line.strip_prefix("| `"));
+    let on_page: Vec<&str> = rows.filter_map(|row| row.split_once('`').map(|(name, _)| name)).collect();
+    assert!(in_code.len() > 5, "the rungs were not found");
+    assert_eq!(on_page, in_code);
+}

@@ -267,6 +267,73 @@ fn colours_of_new_vertices_are_between_those_of_the_rim() {
     assert!(after.vertex_colors.iter().all(|color| *color == one), "{:?}", after.vertex_colors.last());
 }
 
+/// A tube of `n` by 8 squares as OBJ whose texture goes once around, with two by two squares missing at the seam and as many
+/// across from it.
+fn textured_tube(n: u32) -> String {
+    let rows = 8;
+    let turn = |i: u32| f64::from(i) / f64::from(n) * std::f64::consts::TAU;
+    let mut text = String::new();
+    for (row, i) in (0..=rows).flat_map(|row| (0..n).map(move |i| (row, i))) {
+        writeln!(text, "v {} {} {}", turn(i).cos(), turn(i).sin(), f64::from(row) / 4.0).unwrap();
+    }
+    // One point more than places, so that the seam has two at each.
+    for (row, i) in (0..=rows).flat_map(|row| (0..=n).map(move |i| (row, i))) {
+        writeln!(text, "vt {} {}", f64::from(i) / f64::from(n), f64::from(row) / f64::from(rows)).unwrap();
+    }
+    let is_gone = |row: u32, i: u32| {
+        (3..5).contains(&row) && ([0, n - 1].contains(&i) || (n / 2 - 1..=n / 2).contains(&i))
+    };
+    for (row, i) in
+        (0..rows).flat_map(|row| (0..n).map(move |i| (row, i))).filter(|&(row, i)| !is_gone(row, i))
+    {
+        let corner = |row: u32, i: u32| format!("{}/{}", row * n + i % n + 1, row * (n + 1) + i + 1);
+        let [a, b, c, d] = [corner(row, i), corner(row, i + 1), corner(row + 1, i + 1), corner(row + 1, i)];
+        writeln!(text, "f {a} {b} {c}\nf {a} {c} {d}").unwrap();
+    }
+    text
+}
+
+#[test]
+fn a_patch_has_texture_between_that_of_its_rim_and_none_over_a_seam_and_the_report_says_so() {
+    let text = textured_tube(24);
+    for method in [Method::Minimal, Method::Smooth, Method::Rbf] {
+        let answer = filled(text.as_bytes(), by(method)).unwrap();
+        assert_eq!(
+            holes(&answer).iter().filter(|hole| hole.fate == HoleFate::Filled).count(),
+            4,
+            "{method:?}"
+        );
+        let soup = |bytes| read(bytes, Encoding::Obj, &ReadOptions::default(), &Budget::unlimited()).unwrap();
+        let (before, after) = (soup(text.as_bytes()), soup(output(&answer)));
+        let (mut with, mut without) = (0, 0);
+        for t in before.triangles.len()..after.triangles.len() {
+            let corners = after.triangles[t].map(|v| after.positions[v as usize]);
+            let is_across = corners.iter().all(|p| p.x < -0.5 && (0.5..1.5).contains(&p.z));
+            let Some(points) = after.texture.of_triangle(t) else {
+                assert!(!is_across, "{method:?}: {corners:?} has no texture");
+                without += 1;
+                continue;
+            };
+            with += 1;
+            assert!(is_across, "{method:?}: {corners:?} has {points:?}");
+            for ([u, v], p) in points.into_iter().zip(corners) {
+                // The texture is linear in the angle and the height; shares are of the rim around.
+                let angle = libm::atan2(p.y, p.x).rem_euclid(std::f64::consts::TAU) / std::f64::consts::TAU;
+                assert!(
+                    (u - angle).abs() < 0.03 && (v - p.z / 2.0).abs() < 0.06,
+                    "{method:?}: {u} {v} at {p}"
+                );
+            }
+        }
+        assert!(with >= 6 && without >= 6 + 2 * 22, "{method:?}: {with} with, {without} without");
+        let said = answer.report.actions.iter().find(|action| action.step == "texture").unwrap();
+        let count = |name: &str| said.changes.iter().find(|change| change.0 == name).unwrap().1;
+        assert_eq!(count("triangles_without_texture"), without, "{method:?}");
+        assert_eq!(count("triangles_with_texture"), before.triangles.len() as u64 + with, "{method:?}");
+        assert!(said.reason.contains("seam"), "{}", said.reason);
+    }
+}
+
 #[test]
 fn the_result_is_written_in_another_format_where_that_is_asked() {
     let options = Options { output_format: Some(Format::Stl), ..Options::default() };

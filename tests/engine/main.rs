@@ -21,11 +21,13 @@ mod raw_files;
 mod solids;
 
 mod bad_input;
+mod boolean;
 mod cut_stitch;
 mod fidelity;
 mod fill_holes;
 #[cfg(feature = "server")]
 mod fixtures;
+mod gltf;
 mod modeller;
 mod operations;
 mod plan;
@@ -36,5 +38,6 @@ mod repair;
 mod simplify;
 mod simplify_real_files;
 mod stray_faces;
+mod threemf;
 mod units;
 mod winding_of_parts;

@@ -373,3 +373,17 @@ fn the_number_of_threads_does_not_change_a_byte() {
     assert_eq!(answers[0], answers[1]);
     assert_eq!(answers[0], answers[2]);
 }
+
+#[test]
+fn the_rungs_that_were_tried_are_told_in_their_order() {
+    let valid = cube();
+    assert!(repaired(&valid).report.tried.is_empty());
+    assert_eq!(repaired(&without(cube(), &[0])).report.tried, ["as-drawn"]);
+    let overlapping = cube().with(&cuboid([0.5; 3]).moved([0.75, 0.25, 0.25]));
+    assert_eq!(repaired(&overlapping).report.tried, ["as-drawn", "unite"]);
+    let mut lone = cube();
+    lone.triangles.truncate(1);
+    let tried = repaired(&lone).report.tried;
+    assert_eq!(tried.first(), Some(&"as-drawn"));
+    assert!(tried.iter().all(|name| tried.iter().filter(|other| *other == name).count() == 1), "{tried:?}");
+}

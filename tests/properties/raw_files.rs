@@ -33,7 +33,9 @@ pub(crate) fn encode(soup: &RawSoup, encoding: Encoding) -> Vec<u8> {
         }
         Encoding::StlAscii => stl_ascii(soup).into_bytes(),
         Encoding::StlBinary => stl_binary(soup),
-        Encoding::OffBinary => panic!("not written here"),
+        Encoding::OffBinary | Encoding::Glb | Encoding::Gltf | Encoding::ThreeMf => {
+            panic!("{encoding:?} is not written here")
+        }
     }
 }
 

@@ -154,6 +154,26 @@ fn exit_codes_say_what_happened() {
         (2, &["repair", "solid.off", "-d", "."]),
         (2, &["repair", "solid.off", "-o", "out.off", "-d", "out"]),
         (2, &["verify", "solid.off", "-"]),
+        (0, &["boolean", "solid.off", "crossing.off", "-o", "out.stl"]),
+        (
+            0,
+            &[
+                "boolean",
+                "--operation",
+                "intersection",
+                "crossing.off",
+                "solid.off",
+                "solid.off",
+                "-o",
+                "out.off",
+            ],
+        ),
+        (1, &["boolean", "solid.off", "solid.off", "-o", "out.off", "--set-operation", "difference"]),
+        (1, &["boolean", "solid.off", "open.off", "-o", "out.off"]),
+        (2, &["boolean", "solid.off", "-o", "out.off"]),
+        (2, &["boolean", "solid.off", "crossing.off"]),
+        (2, &["boolean", "solid.off", "broken.off", "-o", "out.off"]),
+        (2, &["boolean", "solid.off", "-", "-o", "out.off", "--format", "off"]),
         (2, &["completions", "tcsh9"]),
         (3, &["analyze", "solid.off", "--triangles-max", "3"]),
         (3, &["repair", "solid.off", "-o", "out.off", "--engine-bytes-max", "1B"]),
@@ -163,6 +183,36 @@ fn exit_codes_say_what_happened() {
         let output = Desk::new().run(args);
         assert_eq!(output.status.code(), Some(*code), "{args:?}: {}{}", stdout(&output), stderr(&output));
     }
+}
+
+#[test]
+fn solids_are_combined_into_one_file() {
+    let desk = Desk::new();
+    let made = desk.run(&[
+        "boolean",
+        "--operation",
+        "difference",
+        "crossing.off",
+        "solid.off",
+        "-o",
+        "out.stl",
+        "--json",
+    ]);
+    assert_eq!(made.status.code(), Some(0), "{}", stderr(&made));
+    let report = json(&made);
+    assert_eq!(
+        (&report["verdict"]["outcome"], &report["verdict"]["printable"]),
+        (&"combined".into(), &true.into())
+    );
+    assert_eq!(desk.run(&["verify", "out.stl"]).status.code(), Some(0));
+    let told = stdout(&desk.run(&["boolean", "crossing.off", "solid.off", "-o", "out.off"]));
+    assert!(
+        told.contains("crossing.off, solid.off") && told.contains("mesh 2: off") && told.contains("union"),
+        "{told}"
+    );
+    let told = stderr(&desk.run(&["boolean", "solid.off", "broken.off", "-o", "none.off"]));
+    assert!(told.contains("mesh 2: "), "{told}");
+    assert!(!desk.new_files().contains(&"none.off".to_owned()));
 }
 
 #[cfg(target_os = "linux")]
@@ -179,7 +229,7 @@ fn a_command_without_arguments_prints_a_short_help() {
     {
         let output = Desk::new().run(&[command]);
         assert!(stderr(&output).contains(&format!("Usage: meshmend {command}")), "{}", stderr(&output));
-        assert!(stderr(&output).lines().count() < 100, "it is short");
+        assert!(stderr(&output).lines().count() < 120, "it is short");
     }
 }
 

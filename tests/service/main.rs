@@ -6,6 +6,7 @@ mod support;
 
 mod about;
 mod access;
+mod boolean;
 mod cli;
 mod connections;
 mod contract;
@@ -21,6 +22,7 @@ mod meshes;
 mod neighbours;
 mod operations;
 mod ordering;
+mod pictures;
 mod printing;
 mod privacy;
 mod problems;

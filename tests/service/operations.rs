@@ -78,6 +78,33 @@ fn a_mesh_of_another_format_than_named_is_refused_unless_format_says_otherwise()
 }
 
 #[test]
+fn a_3mf_is_converted_to_repaired_as_itself_and_back() {
+    let server = Server::start();
+    let made = server.post("/v1/convert?output_format=3mf").body(SOLID).send().unwrap();
+    assert_eq!(made.headers()["content-type"], "model/3mf");
+    let project = made.bytes().unwrap();
+    assert!(project.starts_with(b"PK"));
+    let repair = |accept: &str| {
+        let request = server.post("/v1/repair").header("content-type", "model/3mf").header("accept", accept);
+        request.body(project.clone()).send().unwrap()
+    };
+    assert_eq!(repair("*/*").bytes().unwrap(), project, "a valid project comes back byte for byte");
+    let report: Value = repair("application/json").json().unwrap();
+    assert_eq!(report["verdict"]["outcome"], "identical");
+    assert_eq!(
+        (&report["certificate"]["parts"], &report["parts"][0]["path"]),
+        (&1.into(), &"/3D/3dmodel.model".into())
+    );
+    let back =
+        server.post("/v1/convert?output_format=off&parts=together").body(project.clone()).send().unwrap();
+    assert_eq!(back.headers()["content-type"], "text/off");
+    let (status, code, problem) =
+        problem(server.post("/v1/repair?output_units=in").body(project).send().unwrap());
+    assert_eq!((status, code.as_str()), (400, "invalid-parameter"));
+    assert_eq!(problem["parameter"], "output_units");
+}
+
+#[test]
 fn an_unreadable_mesh_is_a_problem_with_its_place() {
     let server = Server::start();
     for path in ["/v1/analyze", "/v1/repair", "/v1/convert", "/v1/verify"] {

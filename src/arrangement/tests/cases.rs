@@ -38,6 +38,13 @@ pub(super) struct Bodies {
 type Body = Vec<[[i64; 3]; 3]>;
 
 impl Bodies {
+    /// Those of one operand.
+    pub(super) fn only(&self, operand: u8) -> Self {
+        let triangles = self.triangles.iter().zip(&self.operands).filter(|&(_, &of)| of == operand);
+        let triangles: Vec<[u32; 3]> = triangles.map(|(&t, _)| t).collect();
+        Self { positions: self.positions.clone(), operands: vec![operand; triangles.len()], triangles }
+    }
+
     pub(super) fn add(&mut self, body: Body, operand: u8) {
         for corners in body {
             let first = self.positions.len() as u32;
@@ -119,6 +126,40 @@ pub(super) fn random(random: &mut Random) -> Bodies {
         }
     }
     bodies
+}
+
+/// Two solids of up to three boxes and tetrahedra each, which may share planes, edges and vertices, on a grid of `end` steps.
+pub(super) fn pair(random: &mut Random, end: u64) -> Bodies {
+    let mut bodies = Bodies::default();
+    for operand in 0..2 {
+        for _ in 0..=random.below(3) {
+            let body = match random.below(3) {
+                0 => {
+                    let (a, b) = (random.place(end), random.place(end));
+                    let [low, high] =
+                        [[0, 1, 2].map(|k| a[k].min(b[k])), [0, 1, 2].map(|k| a[k].max(b[k]) + 1)];
+                    cube(low, high, random.below(64))
+                }
+                _ => outward(random, end),
+            };
+            bodies.add(body, operand);
+        }
+    }
+    bodies
+}
+
+/// A tetrahedron with a volume that points outward.
+fn outward(random: &mut Random, end: u64) -> Body {
+    loop {
+        let [a, b, c, d] = [0; 4].map(|_| random.place(end));
+        let [u, v, w] = [b, c, d].map(|p| [0, 1, 2].map(|k| p[k] - a[k]));
+        let minor = |i: usize, j: usize| v[i] * w[j] - v[j] * w[i];
+        match u[0] * minor(1, 2) + u[1] * minor(2, 0) + u[2] * minor(0, 1) {
+            0 => {}
+            ..0 => return tetrahedron([a, b, c, d]),
+            1.. => return tetrahedron([b, a, c, d]),
+        }
+    }
 }
 
 /// Many tetrahedra on a larger grid.

@@ -79,6 +79,30 @@ fn random_small_bodies_agree_with_the_oracle() {
 }
 
 #[test]
+fn volumes_of_random_pairs_of_solids_add_up_exactly() {
+    let count = cases(100, 10_000) as usize;
+    let meeting = par::map_ranges(count, 16, |range| {
+        let mut meeting = 0;
+        for seed in range {
+            // Small grids make common planes and edges, large ones long numbers.
+            let end = [4, 12, 1_000, 1_000_000][seed % 4];
+            let bodies = cases::pair(&mut Random::new(seed as u64 + 2_000_000), end);
+            let arrangement = arranged(&bodies).unwrap();
+            let broken = oracle::volumes(&arrangement);
+            assert!(broken.is_empty(), "seed {seed}: {broken:?}\n{bodies:?}");
+            let volume = |inside: fn(&[i32]) -> bool| oracle::volume_sixfold(&arrangement, inside);
+            let alone = [0, 1].map(|operand| arranged(&bodies.only(operand)).unwrap());
+            assert_eq!(volume(|w| w[0] > 0), oracle::volume_sixfold(&alone[0], |w| w[0] > 0), "seed {seed}");
+            assert_eq!(volume(|w| w[1] > 0), oracle::volume_sixfold(&alone[1], |w| w[1] > 0), "seed {seed}");
+            meeting += usize::from(volume(|w| w[0] > 0 && w[1] > 0) != oracle::whole(0));
+        }
+        meeting
+    });
+    let meeting: usize = meeting.into_iter().sum();
+    assert!(meeting * 2 > count, "{meeting} of {count} pairs have something in common");
+}
+
+#[test]
 fn thirty_sheets_through_one_line_are_ordered_around_it() {
     let mut random = Random::new(7);
     for round in 0..3 {

@@ -86,8 +86,9 @@ fn passes([p, q]: [Place; 2], t: [Place; 3], normal: [i128; 3]) -> bool {
 pub(super) fn volume_sixfold(arrangement: &Arrangement, is_inside: impl Fn(&[i32]) -> bool) -> Rational {
     let surface = arrangement.boundary(is_inside);
     let det = |corners: [u32; 3]| {
-        let [a, b, c] = corners.map(|p| place(arrangement, p));
-        Rational::new(BigInt::from(det3(a.0, b.0, c.0)), BigInt::from(a.1) * b.1 * c.1)
+        let [a, b, c] = corners.map(|p| arrangement.coordinates(p));
+        let minor = |i: usize, j: usize| &b[i] * &c[j] - &b[j] * &c[i];
+        &a[0] * minor(1, 2) + &a[1] * minor(2, 0) + &a[2] * minor(0, 1)
     };
     surface.pieces.iter().map(|piece| det(piece.corners)).fold(Rational::zero(), |sum, x| sum + x)
 }
@@ -242,7 +243,7 @@ fn sides(
 }
 
 /// What holds of the volumes of any two solids.
-fn volumes(arrangement: &Arrangement) -> Vec<String> {
+pub(super) fn volumes(arrangement: &Arrangement) -> Vec<String> {
     let volume = |inside: fn(&[i32]) -> bool| volume_sixfold(arrangement, inside);
     let (a, b) = (volume(|w| w[0] > 0), volume(|w| w[1] > 0));
     let (either, both) = (volume(|w| w[0] > 0 || w[1] > 0), volume(|w| w[0] > 0 && w[1] > 0));

@@ -65,6 +65,7 @@ impl<'a> MaterialsOfFile<'a> {
             libraries,
             names: names.into_iter().map(|(_, name)| name.to_vec()).collect(),
             of_face: self.of_face,
+            descriptions: None,
         }
     }
 }

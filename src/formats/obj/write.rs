@@ -23,7 +23,9 @@ pub(in crate::formats) fn write(soup: &Soup, budget: &Budget) -> Result<Vec<u8>,
         text.before_item(i, VERTEX_BYTES_MAX)?;
         text.word("v ");
         text.point(i as u32, *p, "obj")?;
-        if let Some(color @ Some(Color::Bytes(..) | Color::Floats(..))) = soup.vertex_colors.get(i) {
+        if let Some(color @ Some(Color::Bytes(..) | Color::Floats(..) | Color::Linear(..))) =
+            soup.vertex_colors.get(i)
+        {
             text.color(*color, COLORS);
         }
         text.word("\n");

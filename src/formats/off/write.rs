@@ -53,7 +53,7 @@ fn put_face_color(text: &mut Text<'_>, color: Option<Color>, layout: Option<Colo
             return;
         }
         Some(Color::Bytes(_, alpha)) => alpha.is_some(),
-        Some(Color::Floats(_, alpha)) => alpha.is_some(),
+        Some(Color::Floats(_, alpha) | Color::Linear(_, alpha)) => alpha.is_some(),
     };
     if let Some(layout) = layout {
         text.color(color, ColorLayout { has_alpha, ..layout });
@@ -99,11 +99,12 @@ pub(in crate::formats) fn binary(soup: &Soup, budget: &Budget) -> Result<Vec<u8>
         put_integers(&mut out, &[corners.len() as u32]);
         put_integers(&mut out, corners);
         match face_color(soup, t as usize) {
-            color @ Some(Color::Bytes(_, Some(_)) | Color::Floats(_, Some(_))) => {
+            color
+            @ Some(Color::Bytes(_, Some(_)) | Color::Floats(_, Some(_)) | Color::Linear(_, Some(_))) => {
                 put_integers(&mut out, &[4]);
                 put_floats(&mut out, &as_floats(color));
             }
-            color @ Some(Color::Bytes(..) | Color::Floats(..)) => {
+            color @ Some(Color::Bytes(..) | Color::Floats(..) | Color::Linear(..)) => {
                 put_integers(&mut out, &[3]);
                 put_floats(&mut out, &as_floats(color)[..3]);
             }

@@ -4,7 +4,7 @@ use utoipa::ToSchema as _;
 use utoipa::openapi::content::ContentBuilder;
 use utoipa::openapi::encoding::Encoding;
 use utoipa::openapi::request_body::{RequestBody, RequestBodyBuilder};
-use utoipa::openapi::schema::{AdditionalProperties, ObjectBuilder, Schema, Type};
+use utoipa::openapi::schema::{AdditionalProperties, ArrayBuilder, ObjectBuilder, Schema, Type};
 use utoipa::openapi::{Content, Ref, RefOr, Required};
 
 use super::{binary, text};
@@ -19,23 +19,24 @@ pub(super) fn mesh_media_types() -> impl Iterator<Item = &'static str> {
 /// The body of `operation`.
 pub(super) fn of_operation(operation: Operation) -> RequestBody {
     let named = |what: &str| Ref::from_schema_name(name_of(operation, what));
-    upload(named("Form"), named("OptionsWithInput"))
+    upload(named("Form"), named("OptionsWithInput"), operation.meshes_max() > 1)
 }
 
 /// The body of a request for a job.
 pub(super) fn of_job() -> RequestBody {
-    upload(Ref::from_schema_name("JobForm"), Ref::from_schema_name("JobRequestWithInput"))
+    upload(Ref::from_schema_name("JobForm"), Ref::from_schema_name("JobRequestWithInput"), false)
 }
 
 /// The schemas that the bodies refer to, by name.
 pub(super) fn schemas() -> Vec<(String, RefOr<Schema>)> {
     let mut schemas = vec![
-        ("JobForm".to_owned(), form(&["job", "params"], &JobRequest::name(), "What to do, with options.")),
+        ("JobForm".to_owned(), form(&["job", "params"], &JobRequest::name(), "What to do, with options.", 1)),
         ("JobRequestWithInput".to_owned(), with_input(JobRequest::object())),
     ];
     for &operation in Operation::ALL {
         let options = name_of(operation, "Options");
-        schemas.push((name_of(operation, "Form"), form(&["params"], &options, "Options.")));
+        let meshes = operation.meshes_max();
+        schemas.push((name_of(operation, "Form"), form(&["params"], &options, "Options.", meshes)));
         schemas.push((options, options_object(Some(operation))));
         let again = with_input(options_object(Some(operation)));
         schemas.push((name_of(operation, "OptionsWithInput"), again));
@@ -47,13 +48,20 @@ fn name_of(operation: Operation, what: &str) -> String {
     camel_case(operation.word()) + what
 }
 
-/// A form with a mesh and, in each of `parts`, a `schema`.
-fn form(parts: &[&str], schema: &str, about: &str) -> ObjectBuilder {
+/// A form with a mesh, or two to so many, and, in each of `parts`, a `schema`.
+fn form(parts: &[&str], schema: &str, about: &str, meshes: usize) -> ObjectBuilder {
     let part = |part: ObjectBuilder, name: &&str| {
         let reference = Ref::builder().ref_location_from_schema_name(schema).description(Some(about));
         part.property(*name, reference.build())
     };
-    let mesh = ObjectBuilder::from(bytes("The mesh.")).min_length(Some(1));
+    let mesh = RefOr::T(Schema::Object(ObjectBuilder::from(bytes("The mesh.")).min_length(Some(1)).build()));
+    let mesh = match meshes {
+        1 => mesh,
+        most => {
+            let several = ArrayBuilder::new().items(mesh).min_items(Some(2)).max_items(Some(most));
+            RefOr::T(Schema::Array(several.build()))
+        }
+    };
     let begun = ObjectBuilder::new()
         .schema_type(Type::Object)
         .description(Some("Upload of a mesh as a form."))
@@ -62,7 +70,9 @@ fn form(parts: &[&str], schema: &str, about: &str) -> ObjectBuilder {
         .required("mesh");
     parts.iter().fold(begun, part).property(
         "material",
-        bytes("The MTL file of an OBJ: its diffuse colours become face colours, which OFF and PLY hold."),
+        bytes(
+            "The MTL file of an OBJ: its diffuse colours become face colours, which OFF, PLY and glTF hold.",
+        ),
     )
 }
 
@@ -71,19 +81,23 @@ fn bytes(about: &str) -> utoipa::openapi::Object {
     text().format(Some(format)).description(Some(about)).build()
 }
 
-fn upload(form: Ref, json: Ref) -> RequestBody {
-    let body = RequestBodyBuilder::new()
-        .description(Some(
+fn upload(form: Ref, json: Ref, takes_several: bool) -> RequestBody {
+    let about = match takes_several {
+        true => {
+            "A form with the meshes; or, to use an earlier upload of several meshes again, options with `input` as JSON."
+        }
+        false => {
             "The mesh itself, with or without a media type that names its format; or a form; or, to use an earlier \
-             upload again, options with `input` as JSON.",
-        ))
-        .required(Some(Required::True));
+             upload again, options with `input` as JSON."
+        }
+    };
+    let body = RequestBodyBuilder::new().description(Some(about)).required(Some(Required::True));
     let mesh = |body: RequestBodyBuilder, media_type| body.content(media_type, Content::new(Some(binary())));
     let json_part = || Encoding::builder().content_type(Some("application/json")).build();
     let form =
         ContentBuilder::new().schema(Some(form)).encoding("params", json_part()).encoding("job", json_part());
-    mesh_media_types()
-        .fold(body, mesh)
+    let bare = mesh_media_types().filter(|_| !takes_several);
+    bare.fold(body, mesh)
         .content("multipart/form-data", form.build())
         .content("application/json", Content::new(Some(json)))
         .build()

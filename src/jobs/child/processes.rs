@@ -60,6 +60,7 @@ impl Processes {
             operation: row.operation,
             options: row.options.clone(),
             input_bytes: row.input.bytes,
+            file_sizes: row.input.files.clone(),
             has_material: row.material.is_some(),
             triangles_max: settings.read_limits.triangles_max,
             vertices_max: settings.read_limits.vertices_max,

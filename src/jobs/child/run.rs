@@ -94,6 +94,7 @@ fn run(task: &Task, files: &Files, engine: &Engine) -> Result<Product<FileMade>,
         }),
     );
     let mut options = task.options.to_engine(task.read_limits());
+    options.file_sizes.clone_from(&task.file_sizes);
     let stopped = |stopped| Problem::from(&Failure::Stopped(stopped));
     let (mut content, _charge) = budget.vec(task.input_bytes as usize).map_err(stopped)?;
     File::open(files.rooms.mesh())

@@ -28,8 +28,10 @@ pub(super) struct Task {
     pub(super) operation: Operation,
     /// How.
     pub(super) options: Options,
-    /// Size of the mesh in bytes.
+    /// Size of the mesh in bytes; of several meshes, of all together.
     pub(super) input_bytes: u64,
+    /// Sizes of several meshes, which stand one behind the other in one file; none: it is one mesh.
+    pub(super) file_sizes: Vec<u64>,
     /// With the mesh, an OBJ, comes its MTL file.
     pub(super) has_material: bool,
     /// Most triangles of a mesh.

@@ -52,6 +52,7 @@ pub(super) fn try_out(workspaces: &Workspaces, setting: &Setting) -> Result<Prot
         operation: Operation::Repair,
         options: Options::default(),
         input_bytes: MESH.len() as u64,
+        file_sizes: Vec::new(),
         has_material: false,
         triangles_max,
         vertices_max,

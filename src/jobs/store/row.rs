@@ -22,6 +22,16 @@ pub struct BlobRef {
     pub bytes: u64,
     /// SHA-256 of the bytes.
     pub sha256: [u8; 32],
+    /// Sizes in bytes of the files that stand in it one behind the other; none: it is one file.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub files: Vec<u64>,
+}
+
+impl BlobRef {
+    /// Number of files in it.
+    pub fn file_count(&self) -> usize {
+        self.files.len().max(1)
+    }
 }
 
 /// The mesh of a finished job.
@@ -161,7 +171,7 @@ impl JobRow {
     pub fn does_the_same_as(&self, job: &NewJob) -> bool {
         let digest = |blob: &BlobRef| blob.sha256;
         self.operation == job.operation
-            && self.input.sha256 == job.input.sha256
+            && (self.input.sha256, &self.input.files) == (job.input.sha256, &job.input.files)
             && self.material.as_ref().map(digest) == job.material.as_ref().map(digest)
             && self.options.give_the_same_as(&job.options)
     }
@@ -198,6 +208,9 @@ pub struct Ending {
     pub result: Option<ResultRef>,
     /// The meshes of further targets of a simplification.
     pub levels: Vec<ResultRef>,
+    /// Its picture, as PNG.
+    #[serde(default)]
+    pub picture: Option<BlobRef>,
 }
 
 impl Ending {
@@ -213,6 +226,7 @@ impl Ending {
             report: None,
             result: None,
             levels: Vec::new(),
+            picture: None,
         }
     }
 
@@ -223,6 +237,6 @@ impl Ending {
 
     /// Its files.
     pub fn blobs(&self) -> impl Iterator<Item = &BlobRef> {
-        self.report.iter().chain(self.results().map(|result| &result.blob))
+        self.report.iter().chain(self.results().map(|result| &result.blob)).chain(&self.picture)
     }
 }

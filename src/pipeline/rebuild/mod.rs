@@ -183,7 +183,8 @@ impl Search<'_> {
                 break;
             }
             cells_before = made.account.cells;
-            let fidelity = original.measure(made.candidate.soup(), &made.origins, budget)?;
+            let fidelity =
+                original.measure(made.candidate.soup(), &made.candidate.origins(&made.origins), budget)?;
             let is_better = |best: &Rebuilt| !best.fidelity.is_no_worse(&fidelity, limits);
             if best.as_ref().is_none_or(is_better) {
                 let wrap = action(&made, choices.open_shells, self.before);
@@ -245,6 +246,19 @@ pub(super) enum NotRebuilt {
         actions: Vec<Action>,
     },
     Failed(Failure),
+}
+
+impl NotRebuilt {
+    /// Why it is refused, with the steps that ran.
+    ///
+    /// # Errors
+    /// The failure, where it is one.
+    pub(super) fn refusal(self) -> Result<(Refusal, Vec<Action>), Failure> {
+        match self {
+            Self::Refused { refusal, actions } => Ok((refusal, actions)),
+            Self::Failed(failure) => Err(failure),
+        }
+    }
 }
 
 impl<E: Into<Failure>> From<E> for NotRebuilt {
@@ -354,7 +368,7 @@ impl Rebuilding<'_> {
         if !soup.face_colors.is_empty() {
             soup.face_colors.resize(soup.triangles.len(), None);
         }
-        Candidate::write(soup, self.encoding, Depth::FirstViolation, self.budget)
+        Candidate::write(soup, self.input, self.encoding, Depth::FirstViolation, self.budget)
     }
 }
 

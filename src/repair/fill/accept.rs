@@ -5,6 +5,7 @@ use super::surface::Surface;
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3, are_collinear};
 use crate::mesh::next_corner;
+use crate::par;
 use crate::spatial::{self, Bvh, Search};
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -13,6 +14,10 @@ const CONTACTS_MAX: usize = 1 << 20;
 /// A patch with more triangles is searched alone first, up to its first contact: one that is crumpled may have pairs of
 /// triangles in proportion to the square of their number.
 const ALONE_FROM: usize = 64;
+/// The mesh is not sorted for the search of what is near to patches when these have less than one in so many triangles.
+const FEW_SHARE: usize = 16;
+/// Triangles of the mesh that are looked at between two checks of the budget.
+const TRIANGLES: usize = 2048;
 
 /// A patch for one hole.
 #[derive(Debug, Clone)]
@@ -132,8 +137,15 @@ impl Surface {
 
     /// Looks for a contact of a patch in itself, and for new vertices of it in one place.
     fn alone(&self, patch: &[[u32; 3]], budget: &Budget) -> Result<Result<(), Rejection>, Stopped> {
-        let bvh = Bvh::build(&self.positions, patch, None, budget)?;
-        let found = spatial::self_contacts(&self.positions, patch, &bvh, None, Search::First, budget)?;
+        // Numbered by themselves, so that the work does not depend on how large the mesh is.
+        let mut own = patch.as_flattened().to_vec();
+        own.sort_unstable();
+        own.dedup();
+        let points: Vec<DVec3> = own.iter().map(|&v| self.positions[v as usize]).collect();
+        let number = |v: u32| own.partition_point(|&other| other < v) as u32;
+        let patch: Vec<[u32; 3]> = patch.iter().map(|t| t.map(number)).collect();
+        let bvh = Bvh::build(&points, &patch, None, budget)?;
+        let found = spatial::self_contacts(&points, &patch, &bvh, None, Search::First, budget)?;
         Ok(if found.count > 0 { Err(Rejection::MeetsItself) } else { Ok(()) })
     }
 
@@ -221,6 +233,9 @@ impl Surface {
 
     /// The triangles of the mesh whose boxes may meet those of `patches`.
     fn triangles_near(&mut self, patches: &[[u32; 3]], budget: &Budget) -> Result<Vec<[u32; 3]>, Stopped> {
+        if self.bvh.is_none() && patches.len() < self.triangles.len() / FEW_SHARE {
+            return self.triangles_in_boxes(patches, budget);
+        }
         let bvh = match self.bvh.take() {
             Some(bvh) => bvh,
             None => Bvh::build(&self.positions, &self.triangles, None, budget)?,
@@ -233,6 +248,22 @@ impl Surface {
         }
         self.bvh = Some(bvh);
         Ok(self.triangles.iter().zip(is_near).filter(|&(_, near)| near).map(|(&t, _)| t).collect())
+    }
+
+    /// As [`Self::triangles_near`] where there are few triangles in `patches`: they are sorted, and the mesh is gone through.
+    fn triangles_in_boxes(&self, patches: &[[u32; 3]], budget: &Budget) -> Result<Vec<[u32; 3]>, Stopped> {
+        let bvh = Bvh::build(&self.positions, patches, None, budget)?;
+        let of = |range: std::ops::Range<usize>| -> Result<Vec<[u32; 3]>, Stopped> {
+            budget.spend(range.len() as u64 / 16)?;
+            let mut near = Vec::new();
+            for &t in &self.triangles[range] {
+                if bvh.any_in_box(Aabb::of(t.map(|v| self.positions[v as usize])), budget, |_| true)? {
+                    near.push(t);
+                }
+            }
+            Ok(near)
+        };
+        Ok(par::try_map_ranges(self.triangles.len(), TRIANGLES, of)?.concat())
     }
 }
 

@@ -1,5 +1,7 @@
 //! Chords of a loop that a triangulation may be made of: all of them, or those near the edges of a coarser triangulation.
 
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
+
 /// Chords between corners `i < k` of a loop, the sides and the chord from the first to the last corner among them.
 pub(super) trait Chords {
     /// How many numbers chords have.
@@ -7,7 +9,10 @@ pub(super) trait Chords {
     /// The number of the chord from `i` to `k`, if it is one.
     fn find(&self, i: usize, k: usize) -> Option<usize>;
     /// Each chord after all that it spans.
-    fn shortest_first(&self) -> impl Iterator<Item = (usize, usize)>;
+    ///
+    /// # Errors
+    /// When the budget stops the run.
+    fn shortest_first(&self, budget: &Budget) -> Result<impl Iterator<Item = (usize, usize)>, Stopped>;
     /// Visits each `m` between `i` and `k` with the numbers of the chords from `i` to `m` and from `m` to `k`, in the order
     /// of the corners.
     fn visit_thirds(&self, i: usize, k: usize, visit: impl FnMut(usize, [usize; 2]));
@@ -27,9 +32,9 @@ impl Chords for All {
         Some(i * self.corners + k)
     }
 
-    fn shortest_first(&self) -> impl Iterator<Item = (usize, usize)> {
+    fn shortest_first(&self, _: &Budget) -> Result<impl Iterator<Item = (usize, usize)>, Stopped> {
         let n = self.corners;
-        (1..n).flat_map(move |span| (0..n - span).map(move |i| (i, i + span)))
+        Ok((1..n).flat_map(move |span| (0..n - span).map(move |i| (i, i + span))))
     }
 
     fn visit_thirds(&self, i: usize, k: usize, mut visit: impl FnMut(usize, [usize; 2])) {
@@ -54,13 +59,18 @@ pub(super) struct Near {
 impl Near {
     /// Of a loop of `corners`, the chords whose ends are at most `reach` corners from those of one of `edges`, or the side
     /// of the loop.
-    pub(super) fn new(corners: usize, edges: &[[usize; 2]], reach: usize) -> Self {
+    pub(super) fn new(
+        corners: usize,
+        edges: &[[usize; 2]],
+        reach: usize,
+        budget: &Budget,
+    ) -> Result<Self, Stopped> {
         let n = corners;
         let steps = 2 * reach + 1;
-        let mut chords: Vec<[u32; 2]> = Vec::with_capacity(edges.len() * steps * steps + n);
+        let mut near: Vec<[u32; 2]> = Vec::with_capacity(edges.len() * steps * steps + n);
         let mut add = |i: usize, k: usize| {
             if i != k {
-                chords.push([i.min(k) as u32, i.max(k) as u32]);
+                near.push([i.min(k) as u32, i.max(k) as u32]);
             }
         };
         for &[a, b] in edges {
@@ -73,19 +83,47 @@ impl Near {
         for i in 0..n {
             add(i, (i + 1) % n);
         }
-        chords.sort_unstable();
+        // Twice, so that those that start at one corner are in the order of their ends.
+        let by_end = in_order(&near, n, |chord| chord[1], budget)?;
+        let mut chords = in_order(&by_end, n, |chord| chord[0], budget)?;
         chords.dedup();
         let starts = starts_of(n, chords.iter().map(|chord| chord[0]));
-        let mut back: Vec<[u32; 2]> = chords.iter().map(|&[i, k]| [k, i]).collect();
-        back.sort_unstable();
-        let from_starts = starts_of(n, back.iter().map(|chord| chord[0]));
-        Self { chords, starts, from: back.into_iter().map(|[_, i]| i).collect(), from_starts }
+        let back = in_order(&chords, n, |chord| chord[1], budget)?;
+        let from_starts = starts_of(n, back.iter().map(|chord| chord[1]));
+        Ok(Self { chords, starts, from: back.into_iter().map(|[i, _]| i).collect(), from_starts })
     }
 
     /// The chords that start at corner `i`.
     fn starting_at(&self, i: usize) -> std::ops::Range<usize> {
         self.starts[i] as usize..self.starts[i + 1] as usize
     }
+}
+
+/// The chords in the order of a number below `n` that each has; those of one number stay in their order.
+fn in_order(
+    chords: &[[u32; 2]],
+    n: usize,
+    number: impl Fn(&[u32; 2]) -> u32,
+    budget: &Budget,
+) -> Result<Vec<[u32; 2]>, Stopped> {
+    let mut next = vec![0u32; n + 1];
+    for part in chords.chunks(CHECK_EVERY) {
+        budget.check()?;
+        part.iter().for_each(|chord| next[number(chord) as usize + 1] += 1);
+    }
+    for i in 0..n {
+        next[i + 1] += next[i];
+    }
+    let mut sorted = vec![[0; 2]; chords.len()];
+    for part in chords.chunks(CHECK_EVERY) {
+        budget.check()?;
+        for chord in part {
+            let place = &mut next[number(chord) as usize];
+            sorted[*place as usize] = *chord;
+            *place += 1;
+        }
+    }
+    Ok(sorted)
 }
 
 /// Where the entries of each of `n` corners begin in a sorted list, and its end.
@@ -110,10 +148,9 @@ impl Chords for Near {
         self.chords[own.clone()].binary_search(&[i as u32, k as u32]).ok().map(|at| own.start + at)
     }
 
-    fn shortest_first(&self) -> impl Iterator<Item = (usize, usize)> {
-        let mut sorted = self.chords.clone();
-        sorted.sort_unstable_by_key(|&[i, k]| (k - i, i));
-        sorted.into_iter().map(|[i, k]| (i as usize, k as usize))
+    fn shortest_first(&self, budget: &Budget) -> Result<impl Iterator<Item = (usize, usize)>, Stopped> {
+        let sorted = in_order(&self.chords, self.starts.len() - 1, |&[i, k]| k - i, budget)?;
+        Ok(sorted.into_iter().map(|[i, k]| (i as usize, k as usize)))
     }
 
     fn visit_thirds(&self, i: usize, k: usize, mut visit: impl FnMut(usize, [usize; 2])) {
@@ -155,7 +192,7 @@ mod tests {
     fn near_chords_are_those_of_the_definition() {
         let (n, edges) = (23, [[0, 7], [7, 15], [3, 22], [0, 15]]);
         for reach in 0..4 {
-            let near = Near::new(n, &edges, reach);
+            let near = Near::new(n, &edges, reach, &Budget::unlimited()).unwrap();
             let apart = |a: usize, b: usize| a.abs_diff(b).min(n - a.abs_diff(b));
             let is_near = |i: usize, k: usize| {
                 let is = |[a, b]: [usize; 2]| apart(i, a) <= reach && apart(k, b) <= reach;
@@ -169,16 +206,18 @@ mod tests {
                     assert_eq!(thirds(&near, i, k), expected, "{i} {k}, reach {reach}");
                 }
             }
-            let order: Vec<_> = near.shortest_first().collect();
+            let order: Vec<_> = near.shortest_first(&Budget::unlimited()).unwrap().collect();
             assert_eq!(order.len(), near.len());
-            assert!(order.windows(2).all(|pair| pair[0].1 - pair[0].0 <= pair[1].1 - pair[1].0));
+            let rank = |&(i, k): &(usize, usize)| (k - i, i);
+            assert!(order.windows(2).all(|pair| rank(&pair[0]) < rank(&pair[1])));
         }
     }
 
     #[test]
     fn all_chords_have_numbers_of_their_own() {
         let all = All { corners: 9 };
-        let mut numbers: Vec<_> = all.shortest_first().map(|(i, k)| all.find(i, k).unwrap()).collect();
+        let mut numbers: Vec<_> =
+            all.shortest_first(&Budget::unlimited()).unwrap().map(|(i, k)| all.find(i, k).unwrap()).collect();
         numbers.sort_unstable();
         numbers.dedup();
         assert_eq!((numbers.len(), thirds(&all, 2, 6).len()), (36, 3));

@@ -5,6 +5,7 @@ use super::make::Way;
 use super::options::{FillOptions, Method};
 use super::regions::Region;
 use super::surface::Surface;
+use crate::budget::{Budget, Stopped};
 
 /// The surface goes on in the plane of a flat loop when it leaves it by less, as the sine of the angle (about a degree).
 const COPLANAR_SINE: f64 = 0.02;
@@ -20,7 +21,9 @@ pub(super) fn ways(
     method: Method,
     surface: &Surface,
     options: &FillOptions,
-) -> (Vec<Way>, Option<Division>) {
+    budget: &Budget,
+) -> Result<(Vec<Way>, Option<Division>), Stopped> {
+    budget.spend(region.rim().len() as u64)?;
     let plain: &[Way] = match (region.loops.len(), region.is_flat) {
         (1, true) => &[Way::Planar, Way::Minimal, Way::Ears],
         (1, false) => &[Way::Minimal, Way::Planar, Way::Ears],
@@ -30,7 +33,7 @@ pub(super) fn ways(
     };
     let is_plain = method == Method::Auto && (!options.refines || is_to_be_plain(region, surface));
     let may_be_creased = method == Method::Creased || (method == Method::Auto && !is_plain);
-    let division = if may_be_creased { Division::of(region, surface) } else { None };
+    let division = if may_be_creased { Division::of(region, surface, budget)? } else { None };
     let own: &[Way] = match method {
         Method::Auto if is_plain => &[],
         Method::Flat => &[Way::Planar],
@@ -48,7 +51,7 @@ pub(super) fn ways(
         let others = plain.iter().filter(|way| !own.contains(way));
         ways.extend(others);
     }
-    (ways, division)
+    Ok((ways, division))
 }
 
 /// True when new vertices would not make a better patch.

@@ -6,7 +6,7 @@
 
 use super::patch::PatchMesh;
 use super::sparse::Symmetric;
-use crate::budget::{Budget, Stopped};
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 
 /// Cotangents are kept within this, about 0.6 degrees, so that a needle at the rim does not outweigh the rest.
@@ -41,7 +41,7 @@ pub(super) fn fair(
     if unknown == 0 {
         return Ok(true);
     }
-    let plate = Plate::new(mesh, around);
+    let plate = Plate::new(mesh, around, budget)?;
     let (matrix, right) = plate.system(tension, budget)?;
     let Some(factor) = matrix.factor(&mesh.points[mesh.rim..], budget)? else { return Ok(false) };
     let solution = factor.solve(&right);
@@ -66,14 +66,17 @@ struct Plate {
 }
 
 impl Plate {
-    fn new(mesh: &PatchMesh, around: &Around) -> Self {
+    fn new(mesh: &PatchMesh, around: &Around, budget: &Budget) -> Result<Self, Stopped> {
         let (rim, own) = (mesh.rim, mesh.points.len());
         let points: Vec<DVec3> = mesh.points.iter().chain(&around.points).copied().collect();
         let shifted = |v: u32| if (v as usize) < rim { v } else { v + (own - rim) as u32 };
         let outer = around.triangles.iter().map(|t| t.map(shifted));
         let mut area = vec![0.0; own];
         let mut entries: Vec<Vec<(u32, f64)>> = vec![Vec::new(); own];
-        for t in mesh.triangles.iter().copied().chain(outer) {
+        for (n, t) in mesh.triangles.iter().copied().chain(outer).enumerate() {
+            if n.is_multiple_of(CHECK_EVERY) {
+                budget.check()?;
+            }
             for c in 0..3 {
                 let [a, b, apex] = [t[c], t[(c + 1) % 3], t[(c + 2) % 3]];
                 let [pa, pb, p] = [a, b, apex].map(|v| points[v as usize]);
@@ -96,7 +99,7 @@ impl Plate {
         let mean = area.iter().sum::<f64>() / own as f64;
         // A vertex of needles has next to no area, and would be all that counts.
         let area = area.into_iter().map(|a| a.max(mean * 1e-3)).collect();
-        Self { rim, inner: own - rim, points, weights, area, is_clamped: around.is_clamped.clone() }
+        Ok(Self { rim, inner: own - rim, points, weights, area, is_clamped: around.is_clamped.clone() })
     }
 
     /// The normal equations: the Laplacian of the Laplacian at each new vertex is 0.

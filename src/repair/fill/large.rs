@@ -109,7 +109,7 @@ fn coarse_to_fine(
             Some(triangles) => {
                 let edges: Vec<_> =
                     triangles.iter().flat_map(edges_of).map(|edge| edge.map(|i| 2 * i)).collect();
-                let near = Near::new(chosen.len(), &edges, reach(n));
+                let near = Near::new(chosen.len(), &edges, reach(n), budget)?;
                 budget.spend(edges.len() as u64)?;
                 without_crossings(corners, &near, may, budget)?
             }

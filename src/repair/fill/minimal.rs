@@ -44,6 +44,8 @@ struct Table<'a, C> {
     weight: Vec<Weight>,
     /// The third corner of the triangle on the chord from `i` to `k`.
     apex: Vec<usize>,
+    /// The unit normal of that triangle, or that of the surface beyond a side of the loop; zero when it has none.
+    normal: Vec<DVec3>,
 }
 
 /// Triangles of the loop through `points`, in its direction, all with an area; `None` when there are none or the loop is too
@@ -90,16 +92,21 @@ pub(super) fn with_least_caps(
         least,
         weight: vec![NOTHING; chords.len()],
         apex: vec![0; chords.len()],
+        normal: vec![DVec3::ZERO; chords.len()],
     };
     let mut spent = 0;
-    for (i, k) in chords.shortest_first() {
+    for (i, k) in chords.shortest_first(budget)? {
         if k == i + 1 {
+            if let Some(chord) = chords.find(i, k) {
+                table.normal[chord] = rim_normals[i];
+            }
             continue;
         }
         let is_rim = k - i == n - 1;
         let (best, looked) = if is_rim || is_free(i, k) { table.best(i, k) } else { ((IMPOSSIBLE, 0), 1) };
         if let Some(chord) = chords.find(i, k) {
             (table.weight[chord], table.apex[chord]) = best;
+            table.normal[chord] = table.facing(i, best.1, k).map_or(DVec3::ZERO, |(normal, _)| normal);
         }
         spent += looked;
         budget.spend(spent / 8)?;
@@ -121,7 +128,7 @@ impl<C: Chords> Table<'_, C> {
         let (mut best, mut looked) = ((IMPOSSIBLE, 0), 0);
         self.chords.visit_thirds(i, k, |m, chords| {
             looked += 1;
-            let weight = self.weigh([i, m, k], chords);
+            let weight = self.weigh([i, m, k], chords, best.0);
             if weight < best.0 {
                 best = (weight, m);
             }
@@ -129,13 +136,17 @@ impl<C: Chords> Table<'_, C> {
         (best, looked)
     }
 
-    /// `chords` are those from `i` to `m` and from `m` to `k`.
-    fn weigh(&self, [i, m, k]: [usize; 3], chords: [usize; 2]) -> Weight {
+    /// `chords` are those from `i` to `m` and from `m` to `k`. What cannot be less than `best` may be impossible.
+    fn weigh(&self, [i, m, k]: [usize; 3], chords: [usize; 2], best: Weight) -> Weight {
         let [one, other] = chords.map(|chord| self.weight[chord]);
         if one == IMPOSSIBLE || other == IMPOSSIBLE {
             return IMPOSSIBLE;
         }
         let (Weight(caps_a, bend_a, area_a), Weight(caps_b, bend_b, area_b)) = (one, other);
+        // The triangle between them adds to each, so most need no look at it.
+        if Weight(caps_a + caps_b, bend_a.max(bend_b), area_a + area_b) >= best {
+            return IMPOSSIBLE;
+        }
         let (cap, (normal, area)) = match self.facing(i, m, k) {
             Some(facing) => (0, facing),
             None => (1, (DVec3::ZERO, 0.0)),
@@ -144,7 +155,7 @@ impl<C: Chords> Table<'_, C> {
             return Weight(caps_a + caps_b + cap, 0.0, area_a + area_b + area);
         }
         let bend = |other: DVec3| bend(normal, other);
-        let beyond = [self.beyond(i, m, chords[0]), self.beyond(m, k, chords[1])].map(bend);
+        let beyond = chords.map(|chord| bend(self.normal[chord]));
         let mut worst = bend_a.max(bend_b).max(beyond[0]).max(beyond[1]);
         if k - i == self.points.len() - 1 {
             worst = worst.max(bend(self.rim_normals[k]));
@@ -157,14 +168,6 @@ impl<C: Chords> Table<'_, C> {
         let cross = (self.points[b] - self.points[a]).cross(self.points[c] - self.points[a]);
         let length = cross.length();
         (length > 0.0 && length.is_finite()).then(|| (cross / length, length / 2.0))
-    }
-
-    /// Normal of the triangle beyond the chord from `a` to `b`, in the patch or on the rim.
-    fn beyond(&self, a: usize, b: usize, chord: usize) -> DVec3 {
-        if b == a + 1 {
-            return self.rim_normals[a];
-        }
-        self.facing(a, self.apex[chord], b).map_or(DVec3::ZERO, |(normal, _)| normal)
     }
 
     /// The triangles of the best triangulation of all.

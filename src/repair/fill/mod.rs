@@ -107,15 +107,19 @@ fn fill_loops(
     let boundary = Boundary::trace(&surface.triangles, surface.positions.len(), &surface.groups, budget)?;
     let is_chosen = |hole: &[u32]| soup.is_none_or(|soup| options.holes.takes(hole, draft, soup));
     let loops: Vec<_> = boundary.loops.into_iter().filter(|hole| is_chosen(hole)).collect();
-    if options.refines && !loops.is_empty() {
-        surface.find_stars(budget)?;
+    if !loops.is_empty() {
+        surface.find_first_edges(budget)?;
+        if options.looks_around() {
+            surface.find_stars(budget)?;
+        }
     }
     let count = loops.len() as u64;
     let ladder = Ladder { draft, soup, options };
     let outward = |h: u32| surface.outward(h);
     let outward: Option<&dyn Fn(u32) -> DVec3> = if options.bridges { Some(&outward) } else { None };
     let regions = regions(loops, |h| surface.point(h), outward, budget)?;
-    let mut open: Vec<Hole> = par::map_items(regions, |_, region| ladder.start(region, Vec::new(), &surface));
+    let start = |_, region| ladder.start(region, Vec::new(), &surface, budget);
+    let mut open = par::map_items(regions, start).into_iter().collect::<Result<Vec<Hole>, Stopped>>()?;
     let has_field = open.iter().any(|hole| hole.ways.contains(&Way::Rbf));
     // The surface grows by patches; what a field is halved by is the mesh as it was.
     let positions = if has_field { surface.positions.clone() } else { Vec::new() };
@@ -132,7 +136,7 @@ fn fill_loops(
         let mut left = Vec::new();
         for (mut hole, offered) in open.into_iter().zip(offers) {
             let Some((way, made)) = offered else {
-                ladder.give_up(hole, &surface, &mut left, &mut done);
+                ladder.give_up(hole, &surface, &mut left, &mut done, budget)?;
                 continue;
             };
             match verdicts.next() {
@@ -152,7 +156,7 @@ fn fill_loops(
     }
     done.sort_by_key(|report| report.order);
     let first = draft.triangles.len();
-    append(draft, soup, &surface, &patches);
+    append(draft, soup, &surface, &patches, budget)?;
     let changes = changes(draft, first, &done, count, boundary.stray_edges);
     Ok(Filled { changes, holes: done })
 }
@@ -165,11 +169,17 @@ struct Ladder<'a> {
 }
 
 impl Ladder<'_> {
-    fn start(&self, region: Region, rejected: Vec<Rejected>, surface: &Surface) -> Hole {
+    fn start(
+        &self,
+        region: Region,
+        rejected: Vec<Rejected>,
+        surface: &Surface,
+        budget: &Budget,
+    ) -> Result<Hole, Stopped> {
         let choice = self.soup.and_then(|soup| self.options.choice(region.rim(), self.draft, soup));
         let asked = choice.and_then(|choice| choice.method).unwrap_or(self.options.method);
         let band_rings = choice.and_then(|choice| choice.band_rings).unwrap_or(self.options.band_rings);
-        let (mut ways, division) = class::ways(&region, asked, surface, self.options);
+        let (mut ways, division) = class::ways(&region, asked, surface, self.options, budget)?;
         ways.reverse();
         let rim = |own: &Vec<u32>| {
             let of_soup = |&h: &u32| self.soup.and_then(|soup| options::soup_half_edge(h, self.draft, soup));
@@ -182,18 +192,27 @@ impl Ladder<'_> {
             rejected,
             ..HoleReport::default()
         };
-        Hole { region, division, band_rings, ways, report }
+        Ok(Hole { region, division, band_rings, ways, report })
     }
 
     /// A hole that ran out of ways stays open. If it has several loops, they are tried alone.
-    fn give_up(&self, hole: Hole, surface: &Surface, left: &mut Vec<Hole>, done: &mut Vec<HoleReport>) {
+    fn give_up(
+        &self,
+        hole: Hole,
+        surface: &Surface,
+        left: &mut Vec<Hole>,
+        done: &mut Vec<HoleReport>,
+        budget: &Budget,
+    ) -> Result<(), Stopped> {
         if hole.region.loops.len() < 2 {
             done.push(hole.report);
-            return;
+            return Ok(());
         }
         let Hole { region, report, .. } = hole;
-        let alone = region.into_single_loops(|h| surface.point(h));
-        left.extend(alone.map(|region| self.start(region, report.rejected.clone(), surface)));
+        for region in region.into_single_loops(|h| surface.point(h)) {
+            left.push(self.start(region, report.rejected.clone(), surface, budget)?);
+        }
+        Ok(())
     }
 }
 
@@ -281,7 +300,13 @@ fn surface_of(draft: &Draft, budget: &Budget) -> Result<Surface, Stopped> {
 }
 
 /// Adds patches, in the order in which they were taken.
-fn append(draft: &mut Draft, soup: Option<&Soup>, surface: &Surface, patches: &[(Made, u32)]) {
+fn append(
+    draft: &mut Draft,
+    soup: Option<&Soup>,
+    surface: &Surface,
+    patches: &[(Made, u32)],
+    budget: &Budget,
+) -> Result<(), Stopped> {
     for (made, first) in patches {
         let Proposal { rim, points, triangles, .. } = &made.proposal;
         let base = draft.positions.len() as u32;
@@ -289,7 +314,7 @@ fn append(draft: &mut Draft, soup: Option<&Soup>, surface: &Surface, patches: &[
         let corners: Vec<u32> =
             rim.iter().map(|&h| corner(h)).chain((0..).map(|i| base + i).take(points.len())).collect();
         let at: Vec<DVec3> = rim.iter().map(|&h| surface.point(h)).collect();
-        for (i, shares) in blend::shares(made, &at).iter().enumerate() {
+        for (i, shares) in blend::shares(made, &at, budget)?.iter().enumerate() {
             let blend = soup.and_then(|soup| blend::of_soup(shares, rim, draft, soup));
             let origin = match blend {
                 Some(blend) => {
@@ -314,4 +339,5 @@ fn append(draft: &mut Draft, soup: Option<&Soup>, surface: &Surface, patches: &[
     }
     draft.blends.rims.sort_unstable();
     draft.blends.rims.dedup_by_key(|rim| rim[0]);
+    Ok(())
 }

@@ -91,6 +91,16 @@ impl FillOptions {
         Self { holes, bridges: false, refines: false, ..Self::default() }
     }
 
+    /// True when a hole may get a method that looks at the mesh around it, not at its rim alone.
+    pub(super) fn looks_around(&self) -> bool {
+        let mut methods = self.choices.iter().filter_map(|choice| choice.method).chain([self.method]);
+        methods.any(|method| match method {
+            Method::Flat | Method::Minimal => false,
+            Method::Auto => self.refines,
+            Method::Smooth | Method::Creased | Method::Rbf => true,
+        })
+    }
+
     /// What is chosen for the hole with these half-edges of `draft`, which was made of `soup`.
     pub(super) fn choice(&self, half_edges: &[u32], draft: &Draft, soup: &Soup) -> Option<HoleChoice> {
         let of_edge = |&h: &u32| {

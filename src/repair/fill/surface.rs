@@ -21,6 +21,8 @@ pub(super) struct Surface {
     /// Edges of patches between vertices of the mesh.
     pub(super) diagonals: FxHashSet<[u32; 2]>,
     stars: Stars,
+    /// Where the edges of each vertex begin in `groups`, of which it is the smaller end; empty until they are asked for.
+    first_edge: Vec<u32>,
 }
 
 /// The triangles at each vertex: where those of each begin, and all of them. Empty until they are asked for.
@@ -47,6 +49,7 @@ impl Surface {
             patches: Vec::new(),
             diagonals: FxHashSet::default(),
             stars: Stars::default(),
+            first_edge: Vec::new(),
         })
     }
 
@@ -80,7 +83,43 @@ impl Surface {
     }
 
     pub(super) fn is_free_edge(&self, edge: [u32; 2]) -> bool {
-        !self.diagonals.contains(&edge) && self.groups.find(&self.triangles, edge).is_none()
+        !self.diagonals.contains(&edge) && !self.has_edge(edge)
+    }
+
+    /// True when a triangle of the mesh has this edge, its smaller end first.
+    fn has_edge(&self, edge: [u32; 2]) -> bool {
+        let [v, to] = edge;
+        let Some(&[from, end]) = self.first_edge.get(v as usize..v as usize + 2) else {
+            return self.groups.find(&self.triangles, edge).is_some();
+        };
+        let other_end = |e: u32| {
+            let [a, b] = edge_of(&self.triangles, self.groups.group(e as usize)[0]);
+            a.max(b)
+        };
+        let (mut low, mut high) = (from, end);
+        while low < high {
+            let middle = low + (high - low) / 2;
+            if other_end(middle) < to { low = middle + 1 } else { high = middle }
+        }
+        low < end && other_end(low) == to
+    }
+
+    /// Lists where the edges of each vertex begin, so that questions after edges are quick.
+    pub(super) fn find_first_edges(&mut self, budget: &Budget) -> Result<(), Stopped> {
+        budget.spend(self.groups.len() as u64 / 16)?;
+        let mut first = vec![0u32; self.positions.len() + 1];
+        for (e, group) in self.groups.edges().enumerate() {
+            if e % CHECK_EVERY == 0 {
+                budget.check()?;
+            }
+            let [a, b] = edge_of(&self.triangles, group[0]);
+            first[a.min(b) as usize + 1] += 1;
+        }
+        for v in 0..self.positions.len() {
+            first[v + 1] += first[v];
+        }
+        self.first_edge = first;
+        Ok(())
     }
 
     /// Lists the triangles at each vertex, for [`around`](Self::around) and [`star`](Self::star).

@@ -10,7 +10,7 @@
 
 mod inside_out;
 
-use super::{Changes, Draft};
+use super::{Changes, Draft, Effects};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{print_pitch, radial_order};
 use crate::mesh::{self, CutMethod, EdgeGroups, Marks, NO_TWIN, divide, edge_of, prev_corner};
@@ -67,7 +67,8 @@ fn changes(edges: u64, divided: u64, copies: u64, turned: u64) -> Changes {
     ];
     let reason =
         if turned > 0 { "bodies that touch were inside out and turned".to_owned() } else { String::new() };
-    Changes { reason, ..Changes::counted(counts) }
+    let effects = Effects { copied_vertices: copies > 0, turned_triangles: turned, ..Effects::default() };
+    Changes { reason, effects, ..Changes::counted(counts) }
 }
 
 /// Which half-edges stay together.

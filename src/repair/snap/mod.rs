@@ -7,7 +7,7 @@
 
 mod facing;
 
-use super::{Changes, Draft, Stitches};
+use super::{Changes, Draft, Effects, Stitches};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3, are_collinear};
 use crate::mesh::{self, Boundary, ChosenEdges, JoinRule, Stitched, Validity, edge_of};
@@ -71,7 +71,8 @@ pub fn snap(draft: &mut Draft, options: &SnapOptions, budget: &Budget) -> Result
     let others = [("vertices_moved", moved), ("triangles_flipped", flipped)];
     let counts = [stitches.counts(), others].concat();
     let reason = if moved > 0 { format!("vertices up to {epsilon:e} apart are one") } else { String::new() };
-    Ok(Changes { counts, move_max, reason, stitches, ..Changes::default() })
+    let effects = Effects { turned_triangles: flipped, ..Effects::default() };
+    Ok(Changes { counts, move_max, reason, stitches, effects, ..Changes::default() })
 }
 
 fn epsilon(draft: &Draft, rim: &Rim, asked: Option<f64>) -> f64 {

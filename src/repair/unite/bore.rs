@@ -46,7 +46,9 @@ pub fn bore_contacts(draft: &mut Draft, steps: u32, budget: &Budget) -> Result<C
     let reason = format!("bodies of {steps} steps of {pitch:e} were taken out of {count} contacts");
     let reason = if united.reason.is_empty() { reason } else { format!("{reason}; {}", united.reason) };
     let counts = [("contacts_bored", count)].into_iter().chain(united.counts).collect();
-    Ok(Changes { counts, reason, coverage: None, ..united })
+    // What touched is nowhere farther than that from what is left.
+    let move_max = united.move_max.max(f64::from(steps.max(16)) * pitch);
+    Ok(Changes { counts, reason, move_max, coverage: None, ..united })
 }
 
 /// Adds bodies to a draft that are turned inside out.

@@ -6,12 +6,14 @@
 
 mod bare;
 mod bore;
+mod combine;
 
 pub use bare::unite_and_copy_bare;
 pub use bore::bore_contacts;
+pub use combine::{NotCombined, NotSolid, SetOperation, combine};
 
 use super::{Changes, Draft, FIRST_BLEND, NEW};
-use crate::arrangement::{self, Arrangement, ArrangementError, Options, arrange};
+use crate::arrangement::{self, Arrangement, ArrangementError, Options, Placed, Surface, arrange};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3, Sign, print_pitch, triangle_area, upward_crossing, volume_sign};
 use crate::mesh::{EdgeGroups, edge_of};
@@ -73,20 +75,12 @@ pub fn unite(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
 ///
 /// # Errors
 /// When the budget stops the run.
-fn unite_as_oriented(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
+pub fn unite_as_oriented(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
     let united = arranged(draft, budget).and_then(|arrangement| {
         let boundary = arrangement.boundary(|winding| winding[0] > 0);
-        let merged = arrangement.merged(&boundary, budget)?;
-        drop(boundary);
         let coverage = Coverage::of(draft, &arrangement);
-        let reach = draft.positions.iter().fold(0.0f64, |reach, p| reach.max(p.abs().max_element()));
-        match print_pitch(reach) {
-            Some(pitch) => {
-                let placed = arrangement::place(&arrangement, &merged, pitch, budget)?;
-                Ok(Some((placed, coverage)))
-            }
-            None => Ok(None),
-        }
+        let placed = placed(draft, &arrangement, boundary, budget)?;
+        Ok(placed.map(|placed| (placed, coverage)))
     });
     match united {
         Ok(Some((placed, coverage))) => Ok(Changes { coverage: Some(coverage), ..replace(draft, placed) }),
@@ -97,13 +91,37 @@ fn unite_as_oriented(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stop
 }
 
 fn arranged(draft: &Draft, budget: &Budget) -> Result<Arrangement, ArrangementError> {
+    arranged_by(draft, 1, |_| 0, budget)
+}
+
+/// The arrangement with winding numbers for each of so many operands; `operand_of` tells that of a triangle.
+fn arranged_by(
+    draft: &Draft,
+    operands: u8,
+    operand_of: impl Fn(u32) -> u8 + Sync,
+    budget: &Budget,
+) -> Result<Arrangement, ArrangementError> {
     let pairs_max = (draft.triangles.len() * PAIRS_PER_TRIANGLE).clamp(PAIRS_MIN, PAIRS_MAX);
-    let options = Options { pairs_max, operands: 1 };
-    arrange(&draft.positions, &draft.triangles, |_| 0, &options, budget)
+    let options = Options { pairs_max, operands };
+    arrange(&draft.positions, &draft.triangles, operand_of, &options, budget)
+}
+
+/// A boundary on the print lattice; `None`: float32 does not go so far.
+fn placed(
+    draft: &Draft,
+    arrangement: &Arrangement,
+    boundary: Surface,
+    budget: &Budget,
+) -> Result<Option<Placed>, ArrangementError> {
+    let merged = arrangement.merged(&boundary, budget)?;
+    drop(boundary);
+    let reach = draft.positions.iter().fold(0.0f64, |reach, p| reach.max(p.abs().max_element()));
+    let pitch = print_pitch(reach);
+    pitch.map(|pitch| arrangement::place(arrangement, &merged, pitch, budget)).transpose()
 }
 
 /// Puts what is placed into the draft.
-fn replace(draft: &mut Draft, placed: arrangement::Placed) -> Changes {
+fn replace(draft: &mut Draft, placed: Placed) -> Changes {
     let before = draft.triangles.len() as u64;
     let points_before = draft.positions.len();
     let move_max = placed.move_max;
@@ -142,7 +160,7 @@ fn first_of_each(triangles: &[[u32; 3]], points: usize) -> Vec<u32> {
 }
 
 /// The origins of the points that are new: blends of the corners of the triangle that they are on.
-fn new_vertices(draft: &mut Draft, placed: &arrangement::Placed, is_first: &[u32]) -> Vec<u32> {
+fn new_vertices(draft: &mut Draft, placed: &Placed, is_first: &[u32]) -> Vec<u32> {
     let old = draft.positions.len();
     let mut origins = Vec::with_capacity(placed.positions.len() - old);
     for (&place, &t) in placed.positions[old..].iter().zip(&is_first[old..]) {

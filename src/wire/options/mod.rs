@@ -19,9 +19,10 @@ use super::printing::{BuildDirection, PolicyInfo, PolicyName};
 use super::request::InputRef;
 use super::target::TargetSpec;
 use super::words::{
-    ConstraintValues, Contact, Criterion, Cut, Degenerate, Effort, Extract, FillHoles, FillMethod, Format,
-    Kernel, LambdaFrom, Mode, Nesting, OpenShells, Operation, Placement, Reader, Require, Stitch,
-    StitchValidity, Units, VertexColors, Weld,
+    ConstraintValues, Contact, Criterion, Cut, Degenerate, DrawnEdges, Effort, Extract, FillHoles,
+    FillMethod, Format, Kernel, LambdaFrom, Mode, Nesting, OpenShells, Operation, Placement, Projection,
+    Reader, Require, SetOperation, Shade, SolidParts, Stitch, StitchValidity, Units, VertexColors, Views,
+    Weld,
 };
 use crate::formats::{ReadLimits, ReadOptions};
 use crate::implicit::RbfOptions;
@@ -38,6 +39,12 @@ const FEWER: &[Operation] = &[Operation::Simplify, Operation::Repair];
 const CUT_STITCH: &[Operation] = &[Operation::CutStitch];
 const FILL_HOLES: &[Operation] = &[Operation::FillHoles];
 const MODELLER: &[Operation] = &[Operation::Modeller];
+const BOOLEAN: &[Operation] = &[Operation::Boolean];
+/// Operations whose result may touch itself.
+const TOUCHING: &[Operation] = &[Operation::Repair, Operation::Boolean];
+const RENDER: &[Operation] = &[Operation::Render];
+/// Most pixels in all pictures of a full turn.
+const TURN_PIXELS_MAX: u64 = 64_000_000;
 const SHARE: OptionKind = OptionKind::Number { min: 0.0, max: 1.0 };
 
 // One row: name, type, range where it is not all of the type's, who takes it, what it does.
@@ -50,13 +57,15 @@ options! {
     output_format: Format, in Operation::WITH_MESH,
         "Format of the output. Default: that of the input.";
     output_units: Units, in Operation::WITH_MESH,
-        "Unit of the coordinates of the output. Default: mm for STL, which names no unit; that of the input otherwise.";
+        "Unit of the coordinates of the output. Default: mm for STL, which names no unit; m for glTF made of another format; that of the input otherwise.";
     reader: Reader, in Operation::ALL,
         "Reader of OBJ files. Default: own.";
     units: Units, in Operation::ALL,
-        "Unit of the coordinates. Default: mm, reported as assumed.";
+        "Unit of the coordinates; a 3MF states its own. Default: m for glTF, which says so; mm otherwise, reported as assumed.";
+    parts: SolidParts, in Operation::ALL,
+        "What of a 3MF of several parts is one solid; a result in a format that holds one mesh takes all parts together. Default: separate.";
     require: Require, in Operation::WITH_MESH,
-        "What the result must be. Default: printable for repair, none for the other operations.";
+        "What the result must be. Default: printable for repair, none for the other operations; boolean returns what is printable or nothing.";
     fill_holes: FillHoles, in REPAIR,
         "Whether repair fills simple holes. Default: simple.";
     open_shells: OpenShells, in REPAIR,
@@ -65,8 +74,8 @@ options! {
         "Cells along the longest side of a surface that repair must rebuild. Default: by the effort and its area.";
     effort: Effort, in REPAIR,
         "How fine and so how long to try where repair must rebuild the surface. Default: normal.";
-    wall_mm: f64, in REPAIR,
-        "Thickness of the walls that open surfaces become, in millimetres. Default: 0.4 % of the diagonal.";
+    wall_mm: f64, in TOUCHING,
+        "Thickness of the walls that open surfaces become in a repair, and of the necks of contact=join, in millimetres. Default: 0.4 % of the diagonal.";
     recenter: bool, in REPAIR,
         "Move a mesh that is too far from the origin for float32 there, instead of refusing it. Default: false.";
     max_deviation_mm: f64, in REPAIR,
@@ -75,8 +84,8 @@ options! {
         "Refuse a repair that changes a defined volume by more than this share. Default: no limit.";
     nesting: Nesting, in REPAIR,
         "How shells inside shells are taken. Default: as_oriented.";
-    contact: Contact, in REPAIR,
-        "What repair does with bodies that touch in vertices or edges: draw them apart, or join them by necks of wall_mm. Default: open.";
+    contact: Contact, in TOUCHING,
+        "What repair and boolean do with bodies that touch in vertices or edges: draw them apart, or join them by necks of wall_mm. Default: open.";
     plan: PlanRequest, in REPAIR,
         "What repair does about each defect: the plan that /v1/plan proposes, edited, or that of an earlier repair, whose steps then run again. Default: as /v1/plan proposes.";
     faces: u32 = OptionKind::Integer { min: 1, max: u32::MAX as u64 }, in FEWER,
@@ -94,7 +103,7 @@ options! {
     placement: Placement, in FEWER,
         "Where the vertex goes that an edge becomes. Default: optimal.";
     vertex_colors: VertexColors, in FEWER,
-        "Colours of the vertices of a simplified mesh; priority needs format or output_format off or ply. Default: kept.";
+        "Colours of the vertices of a simplified mesh; priority needs format or output_format off, ply, glb or gltf. Default: kept.";
     normal_turn_max: f64 = OptionKind::Number { min: 0.0, max: 180.0 }, in FEWER,
         "Largest angle in degrees by which a collapse may turn the normal of a face; 180 lets it turn as it will. Default: 78.46.";
     weld: Weld, in CUT_STITCH,
@@ -143,6 +152,26 @@ options! {
         "Whether the middle of the part is the origin of the dual, instead of that of the file. Default: false.";
     polygons: bool, in MODELLER,
         "Whether modeller writes faces of OBJ and OFF as polygons where every reader splits them alike; others, and those with interior loops, become triangles. Default: false.";
+    set_operation: SetOperation, in BOOLEAN,
+        "What boolean makes of its solids. Default: union.";
+    views: Views, in RENDER,
+        "From which sides render draws the mesh. Default: iso.";
+    width: u32 = OptionKind::Integer { min: 16, max: 2048 }, in RENDER,
+        "Width of each view that render draws, in pixels. Default: 640.";
+    height: u32 = OptionKind::Integer { min: 16, max: 2048 }, in RENDER,
+        "Height of each view that render draws, in pixels. Default: 480.";
+    shade: Shade, in RENDER,
+        "How render shades faces. Default: smooth.";
+    edges: DrawnEdges, in RENDER,
+        "Which edges render draws. Default: creases.";
+    projection: Projection, in RENDER,
+        "How depth changes what render draws; a turntable is always orthographic. Default: orthographic.";
+    defects: bool, in RENDER,
+        "Whether render colours and marks defects. Default: true.";
+    turntable: u32 = OptionKind::Integer { min: 2, max: 120 }, in RENDER,
+        "Number of pictures of a full turn, which render returns as an animated PNG instead of views; at most 64 million pixels in all. Default: none.";
+    thumbnail: bool, in Operation::BESIDE_PICTURE, of the service,
+        "Whether a picture of the mesh with its defects, and of the result with its new triangles, is made and kept with the job. Default: false.";
     policy: PolicyName, in Operation::ALL,
         "Process whose limits the result, or else the file, is measured against; see /v1/policies. Default: none.";
     build_direction: BuildDirection, in Operation::ALL,
@@ -196,10 +225,30 @@ impl Options {
             return Err(OptionError::Excluded { spec: table::spec_of(name)?, by });
         }
         let written = self.output_format.or(self.format);
-        let shows_colors = matches!(written, Some(Format::Off | Format::Ply));
+        let shows_colors = matches!(written, Some(Format::Off | Format::Ply | Format::Glb | Format::Gltf));
         if self.vertex_colors == Some(VertexColors::Priority) && !shows_colors {
-            let needs = "a `format` or `output_format` of off or ply";
+            let needs = "a `format` or `output_format` of off, ply, glb or gltf";
             return Err(OptionError::Lacking { spec: table::spec_of("vertex_colors")?, needs });
+        }
+        self.check_turntable()
+    }
+
+    /// That a full turn has no choice that it would leave out, and is no file of any size.
+    fn check_turntable(&self) -> Result<(), OptionError> {
+        let Some(pictures) = self.turntable else { return Ok(()) };
+        let spec = table::spec_of("turntable")?;
+        let others = [
+            ("views", self.views.is_some()),
+            ("projection", self.projection == Some(Projection::Perspective)),
+        ];
+        if let Some((by, _)) = others.into_iter().find(|&(_, is_given)| is_given) {
+            return Err(OptionError::Excluded { spec, by });
+        }
+        let (width, height) = pipeline::PictureChoices::RENDERED;
+        let [width, height] = [self.width.unwrap_or(width), self.height.unwrap_or(height)].map(u64::from);
+        if width * height * u64::from(pictures) > TURN_PIXELS_MAX {
+            let needs = "`width` and `height` of at most 64 million pixels in all its pictures";
+            return Err(OptionError::Lacking { spec, needs });
         }
         Ok(())
     }
@@ -257,6 +306,34 @@ impl Options {
         Some(PolicyInfo::of(self.policy?)?.to_engine(millimetres, up))
     }
 
+    /// The picture that is asked for.
+    fn picture(&self) -> Option<pipeline::PictureChoices> {
+        let thumbnail = pipeline::PictureChoices::default();
+        if self.thumbnail == Some(true) {
+            return Some(thumbnail);
+        }
+        let wishes = [
+            self.views.is_some(),
+            self.width.is_some(),
+            self.height.is_some(),
+            self.shade.is_some(),
+            self.edges.is_some(),
+            self.projection.is_some(),
+            self.defects.is_some(),
+            self.turntable.is_some(),
+        ];
+        wishes.contains(&true).then(|| pipeline::PictureChoices {
+            views: self.views.map_or(thumbnail.views, Views::to_engine),
+            width: self.width.unwrap_or(pipeline::PictureChoices::RENDERED.0),
+            height: self.height.unwrap_or(pipeline::PictureChoices::RENDERED.1),
+            shade: self.shade.map(Into::into).unwrap_or_default(),
+            edges: self.edges.map(Into::into).unwrap_or_default(),
+            projection: self.projection.map(Into::into).unwrap_or_default(),
+            shows_defects: self.defects.unwrap_or(true),
+            turn_pictures: self.turntable.unwrap_or(0),
+        })
+    }
+
     /// Both ask the engine for the same; how long the result is kept and where the bytes come from do not matter.
     pub fn give_the_same_as(&self, other: &Self) -> bool {
         let essence = |options: &Self| Self { result_ttl: None, input: None, ..options.clone() };
@@ -269,6 +346,7 @@ impl Options {
         pipeline::Options {
             format: self.format.map(Into::into),
             output_format: self.output_format.map(Into::into),
+            parts: self.parts.map(Into::into).unwrap_or_default(),
             read: ReadOptions {
                 limits,
                 obj_reader: self.reader.map(Into::into).unwrap_or_default(),
@@ -311,10 +389,14 @@ impl Options {
             },
             filling: self.filling(millimetres),
             modeller: self.modelling(millimetres),
+            set_operation: self.set_operation.map(Into::into).unwrap_or_default(),
+            file_sizes: Vec::new(),
             near: self.near_mm.map(|length| length / millimetres),
             samples: self.samples.map(|n| n as usize),
             policy: self.policy(millimetres),
             material: None,
+            picture: self.picture(),
+            after: None,
         }
     }
 }

@@ -4,7 +4,7 @@ import { copyButton, el, field, save, select } from "../dom.js";
 import { digits, length, number, percent, t } from "../text/text.js";
 import { verifier } from "./verify.js";
 
-const FORMATS = ["stl", "obj", "ply", "off"];
+const FORMATS = ["stl", "obj", "ply", "off", "glb", "gltf"];
 
 export function verdictCard({ report, policy }) {
   const { verdict, operation, certificate, before } = report;

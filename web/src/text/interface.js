@@ -3,7 +3,7 @@
 export const words = {
   "lead": ["See what is wrong with a mesh, repair it, and get proof.", "Sehen, was an einem Netz nicht stimmt, es reparieren, und den Beweis dazu.", "Voir ce qui ne va pas dans un maillage, le réparer, et en avoir la preuve."],
   "drop": ["Drop a mesh here", "Netz hier ablegen", "Déposez un maillage ici"],
-  "drop.formats": ["STL, OBJ, PLY or OFF. It goes to this service only.", "STL, OBJ, PLY oder OFF. Die Datei geht nur an diesen Dienst.", "STL, OBJ, PLY ou OFF. Il ne va qu’à ce service."],
+  "drop.formats": ["STL, OBJ, PLY, OFF or GLB. It goes to this service only.", "STL, OBJ, PLY, OFF oder GLB. Die Datei geht nur an diesen Dienst.", "STL, OBJ, PLY, OFF ou GLB. Il ne va qu’à ce service."],
   "choose": ["Choose a file", "Datei wählen", "Choisir un fichier"],
   "open.other": ["Open another file", "Andere Datei öffnen", "Ouvrir un autre fichier"],
   "samples": ["or try one of these", "oder eines hiervon ausprobieren", "ou essayez l’un de ceux-ci"],

@@ -99,6 +99,7 @@ export const words = {
   "stage.write": ["Writing", "Schreiben", "Écriture"],
   "stage.certify": ["Proving", "Beweisen", "Preuve"],
   "stage.measure": ["Measuring", "Messen", "Mesure"],
+  "stage.draw": ["Drawing", "Zeichnen", "Dessin"],
 
   // Checks of a print process.
   "check.wall-thickness": ["Wall thickness", "Wandstärke", "Épaisseur des parois"],
@@ -125,7 +126,7 @@ export const words = {
   "problem.mesh-non-finite": ["Some points have no proper position. Export the file again.", "Einige Punkte haben keine gültige Position. Exportieren Sie die Datei erneut.", "Des points n’ont pas de position valable. Exportez le fichier à nouveau."],
   "problem.mesh-too-large": ["The mesh is larger than this service takes. Simplify it before, or ask the operator for more.", "Das Netz ist größer, als dieser Dienst annimmt. Vereinfachen Sie es vorher, oder fragen Sie den Betreiber.", "Le maillage dépasse ce que ce service accepte. Simplifiez-le avant, ou demandez à l’exploitant."],
   "problem.body-too-large": ["The file is larger than this service takes. Save it in a binary format, or simplify it.", "Die Datei ist größer, als dieser Dienst annimmt. Speichern Sie sie binär, oder vereinfachen Sie sie.", "Le fichier dépasse ce que ce service accepte. Enregistrez-le en binaire, ou simplifiez-le."],
-  "problem.unsupported-media-type": ["This kind of file is not read here. Export it as STL, OBJ, PLY or OFF.", "Diese Art von Datei wird hier nicht gelesen. Exportieren Sie sie als STL, OBJ, PLY oder OFF.", "Ce type de fichier n’est pas lu ici. Exportez-le en STL, OBJ, PLY ou OFF."],
+  "problem.unsupported-media-type": ["This kind of file is not read here. Export it as STL, OBJ, PLY, OFF or GLB.", "Diese Art von Datei wird hier nicht gelesen. Exportieren Sie sie als STL, OBJ, PLY, OFF oder GLB.", "Ce type de fichier n’est pas lu ici. Exportez-le en STL, OBJ, PLY, OFF ou GLB."],
   "problem.not-repairable": ["No result was found that is proved to be sound. Change what is done about the findings, or take the best there is.", "Es wurde kein bewiesen fehlerfreies Ergebnis gefunden. Ändern Sie, was mit den Befunden geschieht, oder nehmen Sie das Beste, was geht.", "Aucun résultat prouvé valide. Changez ce qui est fait des constats, ou acceptez le meilleur possible."],
   "problem.plan-mismatch": ["The choices do not fit this file. Drop it again to begin anew.", "Die Auswahl passt nicht zu dieser Datei. Legen Sie sie noch einmal ab.", "Les choix ne correspondent pas à ce fichier. Déposez-le à nouveau."],
   "problem.expired": ["This job is kept no longer. Drop the file again.", "Dieser Auftrag ist nicht mehr gespeichert. Legen Sie die Datei noch einmal ab.", "Cette tâche n’est plus conservée. Déposez le fichier à nouveau."],

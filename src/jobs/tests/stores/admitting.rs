@@ -19,7 +19,12 @@ pub(super) async fn a_job_is_read_back_as_it_was_admitted<H: StoreHouse>() {
         trace: crate::jobs::TraceParent::parse("00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01"),
         labels: Labels::from([("order".to_owned(), "17".to_owned())]),
         webhook: webhook(),
-        material: Some(BlobRef { key: "in/material".to_owned(), bytes: u64::MAX, sha256: [9; 32] }),
+        material: Some(BlobRef {
+            key: "in/material".to_owned(),
+            bytes: u64::MAX,
+            sha256: [9; 32],
+            files: Vec::new(),
+        }),
         lane: Lane::Bulk,
         cancel_after: Some(Duration::from_millis(1500)),
         source: Some(source.id),

@@ -16,6 +16,7 @@ pub(super) async fn an_equal_job_is_found_by_its_bytes_and_options<H: StoreHouse
         NewJob { operation: Operation::Verify, ..same.clone() },
         NewJob { options: Options { samples: Some(1), ..Options::default() }, ..same.clone() },
         NewJob { material: Some(first.input.clone()), ..same.clone() },
+        NewJob { input: BlobRef { files: vec![2, 3], ..same.input.clone() }, ..same.clone() },
         job(),
     ];
     for other in others {

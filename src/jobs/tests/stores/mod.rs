@@ -165,7 +165,7 @@ fn job() -> NewJob {
         trace: None,
         labels: Labels::new(),
         webhook: None,
-        input: BlobRef { key: format!("in/{number}"), bytes: 5, sha256 },
+        input: BlobRef { key: format!("in/{number}"), bytes: 5, sha256, files: Vec::new() },
         material: None,
         lane: Lane::Interactive,
         cancel_after: None,
@@ -224,7 +224,12 @@ async fn succeeded(store: &dyn JobStore, job: NewJob) -> JobRow {
 }
 
 fn blob(row: &JobRow, name: &str) -> BlobRef {
-    BlobRef { key: format!("out/{}.{}.{name}", row.id, row.epoch), bytes: 7, sha256: [7; 32] }
+    BlobRef {
+        key: format!("out/{}.{}.{name}", row.id, row.epoch),
+        bytes: 7,
+        sha256: [7; 32],
+        files: Vec::new(),
+    }
 }
 
 fn success(row: &JobRow) -> Ending {

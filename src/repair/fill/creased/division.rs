@@ -3,6 +3,7 @@
 use super::super::regions::{Region, shape};
 use super::super::surface::Surface;
 use super::ends::{End, ends};
+use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3};
 
 /// Ends that a division can have, and so curves.
@@ -16,6 +17,8 @@ const STRAIGHT_COS_MIN: f64 = 0.99985;
 /// How far from a point that ends meet in their lines may pass it, and how far away it may be, as shares of the diagonal
 /// of the rim's box.
 const MISS_MAX: f64 = 0.1;
+/// As above for lines that pass so near to one point that this is a corner of the part, also where two of them face each other.
+const MISS_OF_CORNER_MAX: f64 = 0.01;
 const FAR_MAX: f64 = 1.0;
 /// How far the surface at the rim may lean from the plane of a flat side, as the cosine of the angle (1.8 degrees).
 const COPLANAR_COS_MIN: f64 = 0.9995;
@@ -42,23 +45,31 @@ enum Course {
 
 impl Division {
     /// `None`: no sharp edge ends at the rim, or nothing tells how they go on.
-    pub(in crate::repair::fill) fn of(region: &Region, surface: &Surface) -> Option<Self> {
-        let ends = ends(region, surface);
-        if !(2..=ENDS_MAX).contains(&ends.len()) {
-            return None;
-        }
+    pub(in crate::repair::fill) fn of(
+        region: &Region,
+        surface: &Surface,
+        budget: &Budget,
+    ) -> Result<Option<Self>, Stopped> {
+        let ends = ends(region, surface, budget)?;
+        Ok(if (2..=ENDS_MAX).contains(&ends.len()) { Self::of_ends(&ends, region, surface) } else { None })
+    }
+
+    /// How these ends divide the region.
+    fn of_ends(ends: &[End], region: &Region, surface: &Surface) -> Option<Self> {
         let points: Vec<DVec3> = region.rim().iter().map(|&h| surface.point(h)).collect();
         let n = points.len() as u32;
         let all: Vec<u32> = (0..n).collect();
         let mut division = Self { points, parents: Vec::new(), sides: vec![all], curves_at: Vec::new() };
-        let (joined, left) = division.matched(&ends);
-        let mut courses: Vec<Course> = joined.into_iter().map(|[a, b]| Course::Join(a, b)).collect();
-        courses.extend(
-            division
-                .apex(&left)
-                .into_iter()
-                .flat_map(|apex| left.iter().map(move |&end| Course::Meet(end, apex))),
-        );
+        let meeting = |ends: &[End], apex: u32| ends.iter().map(|&end| Course::Meet(end, apex)).collect();
+        let courses: Vec<Course> = match division.apex(ends, MISS_OF_CORNER_MAX) {
+            Some(apex) => meeting(ends, apex),
+            None => {
+                let (joined, left) = division.matched(ends);
+                let apex = division.apex(&left, MISS_MAX);
+                let met = apex.map_or_else(Vec::new, |apex| meeting(&left, apex));
+                joined.into_iter().map(|[a, b]| Course::Join(a, b)).chain(met).collect()
+            }
+        };
         if courses.is_empty() {
             return None;
         }
@@ -125,8 +136,9 @@ impl Division {
         a.direction.dot(line).min(-b.direction.dot(line))
     }
 
-    /// Adds the point that three or more ends go to, the nearest to all their lines.
-    fn apex(&mut self, ends: &[End]) -> Option<u32> {
+    /// Adds the point that three or more ends go to, the nearest to all their lines, which may pass it by `miss` of the size
+    /// of the hole.
+    fn apex(&mut self, ends: &[End], miss: f64) -> Option<u32> {
         if ends.len() < 3 {
             return None;
         }
@@ -153,7 +165,7 @@ impl Division {
         let is_met = |end: &End| {
             let to = apex - at(end);
             let along = to.dot(end.direction);
-            along > 0.0 && along <= FAR_MAX * size && (to - along * end.direction).length() <= MISS_MAX * size
+            along > 0.0 && along <= FAR_MAX * size && (to - along * end.direction).length() <= miss * size
         };
         if !ends.iter().all(is_met) {
             return None;
@@ -322,6 +334,26 @@ mod tests {
         let [one, other] = [end(0, -0.5, 0.75f64.sqrt()), end(6, 0.5, 0.75f64.sqrt())];
         assert_eq!(matched(&[one, other]), (vec![[0, 6]], vec![]));
         assert_eq!(matched(&[one, end(3, 0.0, 1.0), other]), (vec![], vec![0, 3, 6]));
+    }
+
+    /// The point that ends go to, if they do.
+    fn corner_of(ends: &[End]) -> Option<DVec3> {
+        let mut division = rim();
+        let apex = division.apex(ends, MISS_OF_CORNER_MAX)?;
+        Some(division.points[apex as usize])
+    }
+
+    #[test]
+    fn edges_whose_lines_pass_one_point_meet_there_even_where_two_face_each_other() {
+        let t = [end(0, -1.0, 0.0), end(3, 0.0, -1.0), end(6, 1.0, 0.0)];
+        assert!(corner_of(&t).is_some_and(|apex| apex.length() < 1e-12));
+        let cross = [end(0, -1.0, 0.0), end(3, 0.0, -1.0), end(6, 1.0, 0.0), end(9, 0.0, 1.0)];
+        assert!(corner_of(&cross).is_some_and(|apex| apex.length() < 1e-12));
+        let side_by_side = [end(1, -1.0, 0.0), end(5, 1.0, 0.0), end(7, 1.0, 0.0), end(11, -1.0, 0.0)];
+        assert_eq!(corner_of(&side_by_side), None);
+        let passing = [end(0, -1.0, 0.0), end(3, 0.1, -1.0), end(6, 1.0, 0.4)];
+        assert_eq!(corner_of(&passing), None);
+        assert_eq!(corner_of(&t[..2]), None);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use super::super::regions::Region;
 use super::super::surface::Surface;
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 
 /// An edge is sharp when its faces turn by more, as the cosine of the angle (35 degrees).
@@ -27,23 +28,29 @@ pub(super) struct End {
 }
 
 /// The ends in the order of the rim; none for a rim that passes a place twice or that very many sharp edges come to.
-pub(super) fn ends(region: &Region, surface: &Surface) -> Vec<End> {
+pub(super) fn ends(region: &Region, surface: &Surface, budget: &Budget) -> Result<Vec<End>, Stopped> {
     let rim = region.rim();
     let n = rim.len();
     let point = |i: usize| surface.point(rim[i % n]);
     let mut vertices: Vec<u32> = rim.iter().map(|&h| surface.corner(h)).collect();
     vertices.sort_unstable();
     if region.loops.len() != 1 || vertices.windows(2).any(|pair| pair[0] == pair[1]) {
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let mean = (0..n).map(|i| point(i).distance(point(i + 1))).sum::<f64>() / n as f64;
-    let start = |i: usize| Some((i, direction(surface, [rim[(i + n - 1) % n], rim[i]], mean)?));
-    let starts: Vec<(usize, DVec3)> = (0..n).filter_map(start).take(STARTS_MAX + 1).collect();
-    if starts.len() > STARTS_MAX {
-        return Vec::new();
+    let mut starts: Vec<(usize, DVec3)> = Vec::new();
+    for i in 0..n {
+        if i.is_multiple_of(CHECK_EVERY) {
+            budget.check()?;
+        }
+        starts.extend(direction(surface, [rim[(i + n - 1) % n], rim[i]], mean).map(|own| (i, own)));
+        if starts.len() > STARTS_MAX {
+            return Ok(Vec::new());
+        }
     }
     let mut ends: Vec<End> = Vec::new();
     for (mut corner, mut direction) in starts {
+        budget.check()?;
         // As far as it runs in the rim, it has not ended.
         for _ in 0..n {
             let along = |k: usize| (k, (point(k) - point(corner)).normalize_or_zero());
@@ -60,7 +67,7 @@ pub(super) fn ends(region: &Region, surface: &Surface) -> Vec<End> {
     let is_alone = |end: &End| ends.iter().filter(|other| other.corner == end.corner).count() == 1;
     let mut alone: Vec<End> = ends.iter().copied().filter(is_alone).collect();
     alone.sort_by_key(|end| end.corner);
-    alone
+    Ok(alone)
 }
 
 /// The direction in which the sharp edges at the corner between two half-edges of the rim go on; `None` when there is none,

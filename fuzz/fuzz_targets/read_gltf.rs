@@ -1,0 +1,9 @@
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use meshmend::formats::Format;
+
+fuzz_target!(|bytes: &[u8]| {
+    meshmend_fuzz::check_reader(bytes, Format::Glb);
+    meshmend_fuzz::check_reader(bytes, Format::Gltf);
+});

@@ -1,0 +1,483 @@
+//! glTF output: one mesh, a primitive for each look, all data in one buffer.
+
+use super::looks::{Look, Looks, own_color};
+use crate::budget::{Budget, CHECK_EVERY, Charge, Stopped};
+use crate::formats::colors::as_linear;
+use crate::formats::{Encoding, WriteError, float32};
+use crate::mesh::{Color, Soup};
+use base64::Engine as _;
+use rustc_hash::FxHashMap;
+use serde_json::{Map, Value, json};
+
+const ARRAY_BUFFER: u32 = 34962;
+const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+const U8: u32 = 5121;
+const U32: u32 = 5125;
+const F32: u32 = 5126;
+
+/// The triangles of `soup`, sorted by what they look like, with float32 positions and the colours, texture coordinates and
+/// materials that they have.
+pub(in crate::formats) fn write(
+    soup: &Soup,
+    encoding: Encoding,
+    budget: &Budget,
+) -> Result<Vec<u8>, WriteError> {
+    let looks = Looks::of(soup);
+    let (vertices, _charge) = Vertices::of(soup, &looks, budget)?;
+    let (mut file, _charge) = File::with_room(soup, &vertices, &looks, encoding, budget)?;
+    if !soup.triangles.is_empty() {
+        file.put_mesh(soup, &vertices, &looks, encoding, budget)?;
+    }
+    match encoding {
+        Encoding::Glb => file.into_glb(budget),
+        _ => file.into_text(budget),
+    }
+}
+
+/// The vertices that are written: those of the soup, or one for each different corner.
+struct Vertices {
+    /// For each corner the number of its vertex; empty: as in the soup.
+    of_corner: Vec<[u32; 3]>,
+    /// The vertex of the soup behind each; empty: the same number.
+    position: Vec<u32>,
+    /// Texture coordinates of each, across and down; empty when there are none.
+    points: Vec<[f32; 2]>,
+    /// Linear colour of each; empty when there are none.
+    colors: Vec<[f32; 4]>,
+    has_alpha: bool,
+}
+
+impl Vertices {
+    fn of<'b>(soup: &Soup, looks: &Looks, budget: &'b Budget) -> Result<(Self, Vec<Charge<'b>>), Stopped> {
+        let has_points = !soup.texture.is_empty();
+        let at_corners = looks.has_colors_at_corners;
+        let has_alpha = |colors: &[Option<Color>]| {
+            let alpha = |color: &Option<Color>| match color {
+                Some(Color::Bytes(_, a)) => a.is_some(),
+                Some(Color::Floats(_, a) | Color::Linear(_, a)) => a.is_some(),
+                _ => false,
+            };
+            colors.iter().any(alpha)
+        };
+        let is_shown = |color: &Option<Color>| !matches!(color, None | Some(Color::Index(_)));
+        let has_colors = !at_corners && soup.vertex_colors.iter().any(is_shown);
+        let of_vertex = |v: u32| as_linear(soup.vertex_colors.get(v as usize).copied().flatten());
+        let mut vertices = Self {
+            of_corner: Vec::new(),
+            position: Vec::new(),
+            points: Vec::new(),
+            colors: Vec::new(),
+            has_alpha: has_alpha(if at_corners { &soup.face_colors } else { &soup.vertex_colors }),
+        };
+        let mut charges = Vec::new();
+        if !has_points && !at_corners {
+            if has_colors {
+                charges.push(budget.reserve(&mut vertices.colors, soup.positions.len())?);
+                vertices.colors.extend((0..soup.positions.len() as u32).map(of_vertex));
+            }
+            return Ok((vertices, charges));
+        }
+        charges.push(budget.reserve(&mut vertices.of_corner, soup.triangles.len())?);
+        // A table and lists with a number, two coordinates and four channels for each different corner.
+        const PER_VERTEX: u64 = 3 * 7 * size_of::<u32>() as u64;
+        let mut charged = 0;
+        let mut numbers: FxHashMap<(u32, [u32; 2], [u32; 4]), u32> = FxHashMap::default();
+        for (t, corners) in soup.triangles.iter().enumerate() {
+            if t.is_multiple_of(CHECK_EVERY) {
+                charges.push(budget.charge((vertices.position.len() - charged) as u64 * PER_VERTEX)?);
+                charged = vertices.position.len();
+            }
+            let points = soup.texture.of_triangle(t);
+            let color = at_corners.then(|| as_linear(own_color(soup, t)));
+            let number = |k: usize| {
+                let v = corners[k];
+                let point =
+                    points.map_or([0.0; 2], |points| [points[k][0] as f32, (1.0 - points[k][1]) as f32]);
+                let color = color.unwrap_or_default();
+                let key = (v, point.map(f32::to_bits), color.map(f32::to_bits));
+                *numbers.entry(key).or_insert_with(|| {
+                    vertices.position.push(v);
+                    if has_points {
+                        vertices.points.push(point);
+                    }
+                    if at_corners {
+                        vertices.colors.push(color);
+                    } else if has_colors {
+                        vertices.colors.push(of_vertex(v));
+                    }
+                    vertices.position.len() as u32 - 1
+                })
+            };
+            let corners = [0, 1, 2].map(number);
+            vertices.of_corner.push(corners);
+        }
+        Ok((vertices, charges))
+    }
+
+    fn len(&self, soup: &Soup) -> usize {
+        if self.of_corner.is_empty() { soup.positions.len() } else { self.position.len() }
+    }
+
+    fn position(&self, i: usize) -> u32 {
+        self.position.get(i).copied().unwrap_or(i as u32)
+    }
+
+    fn corners(&self, soup: &Soup, t: usize) -> [u32; 3] {
+        self.of_corner.get(t).copied().unwrap_or_else(|| soup.triangles[t])
+    }
+
+    /// The colours as bytes, if they are all that.
+    fn color_bytes(&self) -> Option<Vec<[u8; 4]>> {
+        let byte = |channel: f32| {
+            let byte = (channel * 255.0).round() as u8;
+            ((f64::from(byte) / 255.0) as f32 == channel).then_some(byte)
+        };
+        self.colors.iter().map(|&[r, g, b, a]| Some([byte(r)?, byte(g)?, byte(b)?, byte(a)?])).collect()
+    }
+}
+
+/// A file under way.
+struct File {
+    /// The header of a GLB if it is one, then the buffer.
+    bytes: Vec<u8>,
+    /// Where the buffer begins.
+    begin: usize,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+    /// Members of the document beside these lists.
+    members: Map<String, Value>,
+}
+
+impl File {
+    fn with_room<'b>(
+        soup: &Soup,
+        vertices: &Vertices,
+        looks: &Looks,
+        encoding: Encoding,
+        budget: &'b Budget,
+    ) -> Result<(Self, Charge<'b>), WriteError> {
+        let pictures = soup.materials.descriptions.iter().flat_map(|d| &d.pictures);
+        let of_pictures: usize = pictures.map(|picture| picture.len() + 4).sum();
+        let per_vertex = 12
+            + if vertices.points.is_empty() { 0 } else { 8 }
+            + if vertices.colors.is_empty() { 0 } else { 16 };
+        let of_mesh = vertices.len(soup) as u64 * per_vertex + 12 * soup.triangles.len() as u64;
+        let room = of_mesh + of_pictures as u64;
+        // Lengths in a file have 32 bits; a part of them is for the document.
+        const BYTES_MAX: u64 = u32::MAX as u64 - (64 << 20);
+        if room > BYTES_MAX {
+            return Err(WriteError::TooLarge {
+                bytes: room,
+                bytes_max: BYTES_MAX,
+                encoding: encoding.name(),
+            });
+        }
+        let (bytes, charge) = budget.vec::<u8>(room as usize + 512 * (looks.list.len() + 8))?;
+        let file = Self { bytes, begin: 0, views: Vec::new(), accessors: Vec::new(), members: Map::new() };
+        Ok((file, charge))
+    }
+
+    /// Ends a view that began at byte `begin` of the buffer; gives its number.
+    fn end_view(&mut self, begin: usize, target: Option<u32>) -> usize {
+        let length = self.bytes.len() - self.begin - begin;
+        let mut view = json!({ "buffer": 0, "byteOffset": begin, "byteLength": length });
+        if let Some(target) = target {
+            view["target"] = target.into();
+        }
+        self.views.push(view);
+        while !(self.bytes.len() - self.begin).is_multiple_of(4) {
+            self.bytes.push(0);
+        }
+        self.views.len() - 1
+    }
+
+    fn next(&self) -> usize {
+        self.bytes.len() - self.begin
+    }
+
+    /// Adds an accessor; gives its number.
+    fn add_accessor(&mut self, accessor: Value) -> usize {
+        self.accessors.push(accessor);
+        self.accessors.len() - 1
+    }
+
+    fn put_mesh(
+        &mut self,
+        soup: &Soup,
+        vertices: &Vertices,
+        looks: &Looks,
+        encoding: Encoding,
+        budget: &Budget,
+    ) -> Result<(), WriteError> {
+        let count = vertices.len(soup);
+        let mut attributes = Map::new();
+        attributes
+            .insert("POSITION".into(), self.put_positions(soup, vertices, count, encoding, budget)?.into());
+        if !vertices.colors.is_empty() {
+            attributes.insert("COLOR_0".into(), self.put_colors(vertices, count, budget)?.into());
+        }
+        let plain = attributes.clone();
+        if !vertices.points.is_empty() {
+            let begin = self.next();
+            for block in vertices.points.chunks(CHECK_EVERY) {
+                budget.check()?;
+                self.bytes.extend(block.as_flattened().iter().flat_map(|c| c.to_le_bytes()));
+            }
+            let view = self.end_view(begin, Some(ARRAY_BUFFER));
+            let points = self.add_accessor(
+                json!({ "bufferView": view, "componentType": F32, "count": count, "type": "VEC2" }),
+            );
+            attributes.insert("TEXCOORD_0".into(), points.into());
+        }
+        let materials = self.put_materials(soup, &looks.list, budget)?;
+        let begin = self.next();
+        let lists = looks.triangles(soup.triangles.len());
+        let mut primitives = Vec::new();
+        let view = self.views.len();
+        for ((look, list), material) in looks.list.iter().zip(&lists).zip(materials) {
+            let from = self.next() - begin;
+            for block in list.chunks(CHECK_EVERY) {
+                budget.check()?;
+                for &t in block {
+                    self.bytes
+                        .extend(vertices.corners(soup, t as usize).iter().flat_map(|v| v.to_le_bytes()));
+                }
+            }
+            let mut accessor = json!({ "bufferView": view, "componentType": U32, "count": 3 * list.len(), "type": "SCALAR" });
+            if from > 0 {
+                accessor["byteOffset"] = from.into();
+            }
+            let indices = self.add_accessor(accessor);
+            let attributes = if look.has_texture { &attributes } else { &plain };
+            let mut primitive = json!({ "attributes": attributes, "indices": indices });
+            if let Some(material) = material {
+                primitive["material"] = material.into();
+            }
+            primitives.push(primitive);
+        }
+        self.end_view(begin, Some(ELEMENT_ARRAY_BUFFER));
+        self.members.insert("meshes".into(), json!([{ "primitives": primitives }]));
+        Ok(())
+    }
+
+    fn put_positions(
+        &mut self,
+        soup: &Soup,
+        vertices: &Vertices,
+        count: usize,
+        encoding: Encoding,
+        budget: &Budget,
+    ) -> Result<usize, WriteError> {
+        let begin = self.next();
+        let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+        for i in 0..count {
+            if i.is_multiple_of(CHECK_EVERY) {
+                budget.check()?;
+            }
+            let v = vertices.position(i);
+            let position = float32::rounded(v, soup.positions[v as usize], encoding.name())?;
+            for (k, c) in position.into_iter().enumerate() {
+                (low[k], high[k]) = (low[k].min(c), high[k].max(c));
+                self.bytes.extend_from_slice(&c.to_le_bytes());
+            }
+        }
+        let view = self.end_view(begin, Some(ARRAY_BUFFER));
+        Ok(self.add_accessor(json!({
+            "bufferView": view, "componentType": F32, "count": count, "type": "VEC3", "min": low, "max": high
+        })))
+    }
+
+    /// Colours as bytes where that holds them, otherwise as float32.
+    fn put_colors(
+        &mut self,
+        vertices: &Vertices,
+        count: usize,
+        budget: &Budget,
+    ) -> Result<usize, WriteError> {
+        let begin = self.next();
+        let _charge = budget.charge(4 * count as u64)?;
+        if let Some(colors) = vertices.color_bytes() {
+            self.bytes.extend_from_slice(colors.as_flattened());
+            let view = self.end_view(begin, Some(ARRAY_BUFFER));
+            return Ok(self.add_accessor(json!({
+                "bufferView": view, "componentType": U8, "normalized": true, "count": count, "type": "VEC4"
+            })));
+        }
+        let channels = if vertices.has_alpha { 4 } else { 3 };
+        for block in vertices.colors.chunks(CHECK_EVERY) {
+            budget.check()?;
+            self.bytes
+                .extend(block.iter().flat_map(|color| &color[..channels]).flat_map(|c| c.to_le_bytes()));
+        }
+        let view = self.end_view(begin, Some(ARRAY_BUFFER));
+        let kind = if vertices.has_alpha { "VEC4" } else { "VEC3" };
+        Ok(self
+            .add_accessor(json!({ "bufferView": view, "componentType": F32, "count": count, "type": kind })))
+    }
+
+    /// The materials of the soup, as described or by name, and one for each further colour; gives that of each look.
+    fn put_materials(
+        &mut self,
+        soup: &Soup,
+        looks: &[Look],
+        budget: &Budget,
+    ) -> Result<Vec<Option<usize>>, WriteError> {
+        let described = soup.materials.descriptions.as_ref();
+        let mut document = described
+            .and_then(|d| serde_json::from_slice::<Map<String, Value>>(&d.json).ok())
+            .unwrap_or_default();
+        let mut materials = match document.remove("materials") {
+            Some(Value::Array(materials)) => materials,
+            _ => Vec::new(),
+        };
+        let mut numbers: FxHashMap<(Option<u32>, Option<[u32; 4]>), usize> = FxHashMap::default();
+        if described.is_some() {
+            numbers.extend((0..materials.len()).map(|i| ((Some(i as u32), None), i)));
+        }
+        let mut of_look = Vec::new();
+        for look in looks {
+            if look.material.is_none() && look.color.is_none() {
+                of_look.push(None);
+                continue;
+            }
+            of_look.push(Some(*numbers.entry((look.material, look.color)).or_insert_with(|| {
+                let name = look.material.and_then(|material| soup.materials.names.get(material as usize));
+                materials.push(plain_material(name.map(Vec::as_slice), look.color));
+                materials.len() - 1
+            })));
+        }
+        if let Some(described) = described {
+            self.put_pictures(&mut document, &described.pictures, budget)?;
+        }
+        let mut extensions = Vec::new();
+        for value in materials.iter().chain(document.values()) {
+            names_of_extensions(value, &mut extensions);
+        }
+        if !extensions.is_empty() {
+            self.members.insert("extensionsUsed".into(), json!(extensions));
+        }
+        for (key, list) in std::iter::once(("materials".to_owned(), Value::Array(materials))).chain(document)
+        {
+            if list.as_array().is_some_and(|list| !list.is_empty()) {
+                self.members.insert(key, list);
+            }
+        }
+        Ok(of_look)
+    }
+
+    /// Puts the pictures into the buffer, where the images of `document` find them.
+    fn put_pictures(
+        &mut self,
+        document: &mut Map<String, Value>,
+        pictures: &[Vec<u8>],
+        budget: &Budget,
+    ) -> Result<(), WriteError> {
+        let mut views = Vec::new();
+        for picture in pictures {
+            budget.check()?;
+            let begin = self.next();
+            self.bytes.extend_from_slice(picture);
+            views.push(self.end_view(begin, None));
+        }
+        for image in document.get_mut("images").and_then(Value::as_array_mut).into_iter().flatten() {
+            let picture = image.get("bufferView").and_then(Value::as_u64).unwrap_or(u64::MAX);
+            if let Some(&view) = views.get(picture as usize) {
+                image["bufferView"] = view.into();
+            }
+        }
+        Ok(())
+    }
+
+    /// The document, whose buffer is in the file or is `uri`.
+    fn document(&mut self, uri: Option<String>) -> Value {
+        let mut document = Map::new();
+        document.insert("asset".into(), json!({ "version": "2.0", "generator": "Meshmend" }));
+        if self.accessors.is_empty() {
+            return document.into();
+        }
+        document.insert("scene".into(), 0.into());
+        document.insert("scenes".into(), json!([{ "nodes": [0] }]));
+        document.insert("nodes".into(), json!([{ "mesh": 0 }]));
+        document.append(&mut self.members);
+        document.insert("accessors".into(), std::mem::take(&mut self.accessors).into());
+        document.insert("bufferViews".into(), std::mem::take(&mut self.views).into());
+        let mut buffer = json!({ "byteLength": self.next() });
+        if let Some(uri) = uri {
+            buffer["uri"] = uri.into();
+        }
+        document.insert("buffers".into(), json!([buffer]));
+        document.into()
+    }
+
+    fn into_glb(mut self, budget: &Budget) -> Result<Vec<u8>, WriteError> {
+        let mut text = serde_json::to_vec(&self.document(None)).unwrap_or_default();
+        text.resize(text.len().next_multiple_of(4), b' ');
+        let buffer = self.bytes.len() as u64;
+        let of_buffer = if buffer > 0 { 8 + buffer } else { 0 };
+        let length = 12 + 8 + text.len() as u64 + of_buffer;
+        let bytes_max = u64::from(u32::MAX);
+        if length > bytes_max {
+            return Err(WriteError::TooLarge { bytes: length, bytes_max, encoding: "glb" });
+        }
+        let (mut out, _charge) = budget.vec::<u8>(length as usize)?;
+        let word = |out: &mut Vec<u8>, value: u64| out.extend_from_slice(&(value as u32).to_le_bytes());
+        out.extend_from_slice(b"glTF");
+        word(&mut out, 2);
+        word(&mut out, length);
+        word(&mut out, text.len() as u64);
+        out.extend_from_slice(b"JSON");
+        out.extend_from_slice(&text);
+        if buffer > 0 {
+            word(&mut out, buffer);
+            out.extend_from_slice(b"BIN\0");
+            out.extend_from_slice(&self.bytes);
+        }
+        Ok(out)
+    }
+
+    fn into_text(mut self, budget: &Budget) -> Result<Vec<u8>, WriteError> {
+        // The text of the buffer, once by itself and once in the document.
+        let _charge = budget.charge(2 * (self.bytes.len() as u64).div_ceil(3) * 4)?;
+        let mut uri = "data:application/octet-stream;base64,".to_owned();
+        base64::engine::general_purpose::STANDARD.encode_string(&self.bytes, &mut uri);
+        let document = self.document(Some(uri));
+        Ok(serde_json::to_vec(&document).unwrap_or_default())
+    }
+}
+
+/// A material with a name and a colour that has nothing of a metal.
+fn plain_material(name: Option<&[u8]>, color: Option<[u32; 4]>) -> Value {
+    let mut material = Map::new();
+    if let Some(name) = name {
+        material.insert("name".into(), String::from_utf8_lossy(name).into());
+    }
+    if let Some(color) = color {
+        let factor = color.map(f32::from_bits);
+        let pbr = json!({ "baseColorFactor": factor, "metallicFactor": 0, "roughnessFactor": 1 });
+        material.insert("pbrMetallicRoughness".into(), pbr);
+        if factor[3] < 1.0 {
+            material.insert("alphaMode".into(), "BLEND".into());
+        }
+    }
+    material.into()
+}
+
+/// Notes the extensions that `value` uses, each once. No deeper than the reader of JSON goes.
+fn names_of_extensions(value: &Value, names: &mut Vec<String>) {
+    match value {
+        Value::Array(items) => items.iter().for_each(|item| names_of_extensions(item, names)),
+        Value::Object(members) => {
+            for (key, value) in members {
+                if let ("extensions", Some(extensions)) = (key.as_str(), value.as_object()) {
+                    for name in
+                        extensions.keys().filter(|name| !names.contains(name)).cloned().collect::<Vec<_>>()
+                    {
+                        names.push(name);
+                    }
+                }
+                names_of_extensions(value, names);
+            }
+        }
+        _ => {}
+    }
+}

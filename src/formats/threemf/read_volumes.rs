@@ -1,0 +1,87 @@
+//! The volumes of objects, which PrusaSlicer and its kin note as ranges of triangles beside the model.
+
+use super::model_reader::number;
+use super::package::Package;
+use super::xml::{Document, Element, Node, Scanner, value};
+use crate::budget::Budget;
+use crate::formats::ReadError;
+use std::ops::Range;
+
+/// The part that notes them.
+pub(super) const VOLUMES: &str = "/Metadata/Slic3r_PE_model.config";
+
+/// A range of triangles of an object of the first model.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Volume {
+    /// Id of the object.
+    pub(super) object: u32,
+    /// Its triangles.
+    pub(super) triangles: Range<u32>,
+    /// Its name; empty when it has none.
+    pub(super) name: String,
+    /// Bytes of its start tag in the text of the part.
+    pub(super) tag: Range<usize>,
+}
+
+/// The volumes that `package` notes, in the order of the part; none when it is no such project.
+///
+/// # Errors
+/// A part that is no XML.
+pub(super) fn read_volumes(package: &mut Package<'_>, budget: &Budget) -> Result<Vec<Volume>, ReadError> {
+    let Some(entry) = package.find(VOLUMES) else { return Ok(Vec::new()) };
+    let (bytes, _charge) = package.inflate(entry, budget)?;
+    let document = Document::of(VOLUMES, &bytes)?;
+    let mut scanner = Scanner::new(&document, budget);
+    let mut volumes: Vec<Volume> = Vec::new();
+    // The object and the volume that are open, by their depths.
+    let (mut object, mut is_in_volume) = (None, false);
+    loop {
+        match scanner.next()? {
+            Node::Open(element) => match element.local {
+                "object" => object = value(&scanner.attributes(&element)?, "id").and_then(number),
+                "volume" => {
+                    let tag = element.at..scanner.position();
+                    let volume = object.map(|object| volume(&scanner, &element, object, tag)).transpose()?;
+                    is_in_volume = !element.is_empty && volume.as_ref().is_some_and(Option::is_some);
+                    volumes.extend(volume.flatten());
+                }
+                "metadata" if is_in_volume => {
+                    let attributes = scanner.attributes(&element)?;
+                    if let (Some("name"), Some(name)) =
+                        (value(&attributes, "key"), value(&attributes, "value"))
+                        && let Some(volume) = volumes.last_mut()
+                    {
+                        volume.name = name.to_owned();
+                    }
+                }
+                _ => {}
+            },
+            // `config` is at depth 1, objects at 2, volumes at 3.
+            Node::Close => is_in_volume &= scanner.depth >= 3,
+            Node::End => return Ok(volumes),
+        }
+    }
+}
+
+fn volume(
+    scanner: &Scanner<'_>,
+    element: &Element<'_>,
+    object: u32,
+    tag: Range<usize>,
+) -> Result<Option<Volume>, ReadError> {
+    let attributes = scanner.attributes(element)?;
+    let of = |name| value(&attributes, name).and_then(number);
+    let (Some(first), Some(last)) = (of("firstid"), of("lastid")) else { return Ok(None) };
+    Ok(Some(Volume { object, triangles: first..last.saturating_add(1), name: String::new(), tag }))
+}
+
+/// True when `volumes`, in their order, are all of `count` triangles.
+pub(super) fn are_all(volumes: &[&Volume], count: u32) -> bool {
+    let mut next = 0;
+    let goes_on = |volume: &&Volume| {
+        let follows = volume.triangles.start == next && volume.triangles.end > next;
+        next = volume.triangles.end;
+        follows
+    };
+    volumes.iter().all(goes_on) && volumes.last().is_some_and(|last| last.triangles.end == count)
+}

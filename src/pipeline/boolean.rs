@@ -1,0 +1,144 @@
+//! Set operations on several files: one exact arrangement of all of them, settled until its bytes are certified.
+
+use super::fidelity::diagonal;
+use super::input::Input;
+use super::ladder::{Climb, Tried};
+use super::plan::{Attempt, Step};
+use super::remedies::Choices;
+use super::{
+    Action, Answer, BooleanRefusal, Failure, FidelityVerdict, FurtherInput, Operation, Options, Outcome,
+    Refusal, Report, finished, picture,
+};
+use crate::budget::{Budget, Stage};
+use crate::formats::{self, Place, ReadError, ReadErrorKind};
+use crate::mesh::Soup;
+use crate::repair::unite::{NotCombined, combine};
+
+/// Most files that one run combines: each costs twelve bytes for every triangle of the arrangement of all.
+pub const MESHES_MAX: usize = 32;
+
+/// Combines the files that stand one behind the other in `bytes`.
+pub(super) fn boolean(bytes: &[u8], options: &Options, budget: &Budget) -> Result<Answer, Failure> {
+    let files = options.files_in(bytes);
+    if !Operation::Boolean.meshes().contains(&files.len()) {
+        return Err(Failure::MeshCount { operation: Operation::Boolean, count: files.len() });
+    }
+    let mut reading = Reading { options: options.clone(), scaled: None, triangles: 0, vertices: 0 };
+    let (mut input, mut report) = reading.next(files[0], budget).map_err(|failure| failure.in_mesh(1))?;
+    let mut soups = vec![std::mem::take(&mut input.soup)];
+    for (file, number) in files[1..].iter().zip(2..) {
+        let next = reading.next(file, budget).map_err(|failure| failure.in_mesh(number));
+        let (further, Report { before, .. }) = next?;
+        soups.push(further.soup);
+        let certificate = further.examination.certificate;
+        report.further_inputs.push(FurtherInput { facts: further.facts, before, certificate });
+    }
+    // First vertices, triangles and faces.
+    let mut starts = Vec::with_capacity(soups.len());
+    let mut next = [0; 3];
+    for soup in &soups {
+        starts.push(next);
+        let [vertex, triangle, face] = next;
+        let (vertices, triangles) = (soup.positions.len() as u32, soup.triangles.len() as u32);
+        next = [vertex + vertices, triangle + triangles, face + soup.face_count];
+    }
+    let firsts: Vec<u32> = starts.iter().map(|[_, triangle, _]| *triangle).collect();
+    input.soup = Soup::joined(&soups);
+    drop(soups);
+    let options = reading.scaled.as_ref().unwrap_or(&reading.options);
+    let answer = combined(&input, &firsts, report, options, budget)?;
+    let answer = finished(&input, options, answer, budget)?;
+    let picture = picture::of_meshes(&input, &starts, &answer, options, budget)?;
+    Ok(Answer { picture, ..answer })
+}
+
+/// The files as they are read, under limits for all together.
+struct Reading {
+    /// With the format of the output, which is that of the first file unless the caller says.
+    options: Options,
+    /// The same in the unit of the result, if that is another one.
+    scaled: Option<Options>,
+    triangles: u64,
+    vertices: u64,
+}
+
+impl Reading {
+    fn next(&mut self, file: &[u8], budget: &Budget) -> Result<(Input, Report), Failure> {
+        let encoding = budget.stage(Stage::Read, || formats::sniff(file, self.options.format))?;
+        let mut input = Input::read(file, encoding, &self.options, budget)?;
+        self.options.output_format.get_or_insert(input.facts.encoding.format());
+        let in_units_of_format = input.take_lengths(&self.options);
+        let options = in_units_of_format.as_ref().unwrap_or(&self.options);
+        self.scaled = input.take_units_of_result(Operation::Boolean, options)?.or(in_units_of_format);
+        self.options.output_units.get_or_insert(input.facts.result_units);
+        self.triangles += input.soup.triangles.len() as u64;
+        self.vertices += input.soup.positions.len() as u64;
+        let limits = self.options.read.limits;
+        for (what, limit_name, actual, limit) in [
+            ("triangles", "triangles_max", self.triangles, limits.triangles_max),
+            ("vertices", "vertices_max", self.vertices, limits.vertices_max),
+        ] {
+            if actual > u64::from(limit) {
+                let kind = ReadErrorKind::TooLarge { what, limit_name, limit: limit.into(), actual };
+                return Err(ReadError { kind, place: Place::Whole, expected: String::new() }.into());
+            }
+        }
+        let report = input.report(Operation::Boolean, budget)?;
+        Ok((input, report))
+    }
+}
+
+/// `input` is the first file with the triangles of all; `firsts` are the first ones of each.
+fn combined(
+    input: &Input,
+    firsts: &[u32],
+    report: Report,
+    options: &Options,
+    budget: &Budget,
+) -> Result<Answer, Failure> {
+    let mut attempt = Attempt::start_as_oriented(&input.soup);
+    let _charge = budget.charge(3 * attempt.draft.bytes())?;
+    let operation = options.set_operation;
+    let changes = budget.stage(Stage::Repair, || combine(&mut attempt.draft, firsts, operation, budget));
+    let changes = match changes {
+        Ok(changes) => changes,
+        Err(NotCombined::Stopped(stopped)) => return Err(stopped.into()),
+        Err(reason) => {
+            let reason = BooleanRefusal { operation, reason };
+            return Ok(report.refused(Refusal::Boolean { reason }));
+        }
+    };
+    attempt.actions.push(Action {
+        step: operation.name(),
+        causes: Vec::new(),
+        changes: changes.counts,
+        move_max: changes.move_max,
+        reason: changes.reason,
+        stitches: None,
+    });
+    let choices = Choices::of(options, report.before.as_ref())?;
+    let encoding = input.output_encoding(options);
+    let climb = Climb { input, encoding, options, choices: &choices, before: None, budget };
+    let rounding = [Step::RoundToF32, Step::Unite, Step::JoinCopies];
+    climb.go_on(&mut attempt, &[Step::JoinCopies])?;
+    let is_rounded = encoding.is_float32() || input.soup.is_f32_exact;
+    if encoding.is_float32() && !input.soup.is_f32_exact {
+        climb.go_on(&mut attempt, &rounding)?;
+    }
+    let unrounded = (!is_rounded).then(|| attempt.clone());
+    let mut tried = climb.settled(attempt)?;
+    if matches!(tried, Tried::SolidInF64)
+        && let Some(mut attempt) = unrounded
+    {
+        climb.go_on(&mut attempt, &rounding)?;
+        tried = climb.settled(attempt)?;
+    }
+    let Tried::Certified(found) = tried else {
+        return Ok(report.refused(Refusal::NotRepairable { witness: None }));
+    };
+    let (Attempt { draft, actions, .. }, candidate) = *found;
+    let moved = actions.iter().map(|action| action.move_max).sum();
+    let fidelity = FidelityVerdict::of_move(moved, diagonal(&input.soup));
+    let report = Report { actions, fidelity: Some(fidelity), ..report };
+    Ok(candidate.returned(input, &draft.triangle_origin, report, Outcome::Combined, budget)?)
+}

@@ -1,0 +1,291 @@
+//! What a rung sees of the file and of the attempts before it, and how it runs one.
+
+use super::Climbed;
+use crate::analysis::{Analysis, DefectCode};
+use crate::budget::{Budget, Stage, Stopped};
+use crate::certificate::Depth;
+use crate::formats::Encoding;
+use crate::pipeline::fidelity::{Fidelity, Original, defined_volume};
+use crate::pipeline::input::Input;
+use crate::pipeline::output::Candidate;
+use crate::pipeline::plan::{Attempt, Step, Variant};
+use crate::pipeline::rebuild::{self, NotRebuilt, Rebuilt};
+use crate::pipeline::remedies::{Choices, Walls};
+use crate::pipeline::{Action, Failure, Options, Refusal, Require};
+use crate::repair::{Draft, noise};
+use crate::winding::{OpenShells, Solid};
+
+/// What stays the same on all rungs.
+pub(in crate::pipeline) struct Climb<'a> {
+    pub(in crate::pipeline) input: &'a Input,
+    /// Of the result.
+    pub(in crate::pipeline) encoding: Encoding,
+    pub(in crate::pipeline) options: &'a Options,
+    pub(in crate::pipeline) choices: &'a Choices,
+    /// Of the file.
+    pub(in crate::pipeline) before: Option<&'a Analysis>,
+    pub(in crate::pipeline) budget: &'a Budget,
+}
+
+/// A certified result of steps.
+pub(in crate::pipeline) struct Certified {
+    pub(in crate::pipeline) attempt: Attempt,
+    pub(in crate::pipeline) candidate: Candidate,
+    pub(in crate::pipeline) fidelity: Fidelity,
+}
+
+/// What a rung found.
+pub(super) enum Found {
+    Certified(Box<Certified>),
+    Rebuilt(Box<Rebuilt>),
+}
+
+/// What the attempts until now have shown.
+pub(super) struct Situation {
+    /// The plan that was tried last; before the first attempt, the one to try first.
+    pub(super) variant: Variant,
+    /// What it left; `None` before the first attempt.
+    pub(super) last: Option<Uncertified>,
+    /// What the first plan does about noise.
+    pub(super) first_clears_noise: bool,
+    /// An attempt was no solid when its coordinates were read as float32.
+    pub(super) fails_in_f32: bool,
+    /// Bodies were to be united.
+    pub(super) has_tried_uniting: bool,
+    /// A surface was to be rebuilt.
+    pub(super) has_tried_rebuilding: bool,
+    /// The closest certified result.
+    pub(super) certified: Option<Box<Certified>>,
+    rebuilt: Option<Box<Rebuilt>>,
+    /// Why no surface was rebuilt, and what was done before that was known.
+    pub(super) not_rebuilt: Option<(Refusal, Vec<Action>)>,
+}
+
+/// An attempt that is no valid solid.
+pub(super) struct Uncertified {
+    pub(super) attempt: Attempt,
+    /// Without the steps that join what was cut; only where the best effort was asked for.
+    pub(super) mended: Option<Box<Attempt>>,
+    pub(super) refusal: Refusal,
+}
+
+impl Situation {
+    pub(super) fn at_the_foot(climb: &Climb<'_>) -> Result<Self, Stopped> {
+        let (draft, _) = Draft::from_soup(&climb.input.soup);
+        // Where noise about zero keeps rims apart, clearing it is the smaller change: both rims could be closed instead,
+        // which would leave two bodies with nothing between them.
+        let clears_noise = noise::parts_rims(&draft, climb.budget)?;
+        let variant = Variant {
+            clears_noise,
+            rounds: climb.needs_f32(),
+            opposite: climb.choices.opposite,
+            thickens: climb.choices.walls == Walls::First,
+            mends_thin_faces: true,
+            ..Variant::default()
+        };
+        Ok(Self {
+            variant,
+            last: None,
+            first_clears_noise: clears_noise,
+            fails_in_f32: false,
+            has_tried_uniting: false,
+            has_tried_rebuilding: false,
+            certified: None,
+            rebuilt: None,
+            not_rebuilt: None,
+        })
+    }
+
+    /// True while nothing is certified and something is left that another plan could make a solid of.
+    pub(super) fn may_change_the_surface(&self) -> bool {
+        let is_broken = |last: &Uncertified| matches!(last.refusal, Refusal::NotRepairable { .. });
+        self.certified.is_none() && self.last.as_ref().is_none_or(is_broken)
+    }
+
+    /// Takes in what a rung found.
+    pub(super) fn keep_closest(&mut self, found: Option<Found>, climb: &Climb<'_>) {
+        match found {
+            None => {}
+            Some(Found::Certified(certified)) => self.certified = Some(certified),
+            Some(Found::Rebuilt(rebuilt)) => {
+                let limits = &climb.options.limits;
+                let is_closer =
+                    |certified: &Certified| !certified.fidelity.is_no_worse(&rebuilt.fidelity, limits);
+                if self.certified.as_deref().is_none_or(is_closer) {
+                    self.rebuilt = Some(rebuilt);
+                }
+            }
+        }
+    }
+
+    /// The best there is.
+    pub(super) fn outcome(self) -> Climbed {
+        let refused = |refusal, actions| Climbed::Refused { refusal, actions };
+        if let Some(rebuilt) = self.rebuilt {
+            return Climbed::Rebuilt(rebuilt);
+        }
+        if let Some(certified) = self.certified {
+            return Climbed::Certified(certified);
+        }
+        let Some(Uncertified { attempt, mended, refusal }) = self.last else {
+            return refused(Refusal::NothingToRepair, Vec::new());
+        };
+        let may_be_partial = match &self.not_rebuilt {
+            Some((refusal, _)) => *refusal != Refusal::NothingToRepair,
+            None => matches!(refusal, Refusal::NotRepairable { .. }),
+        };
+        let (refusal, actions) = self.not_rebuilt.unwrap_or((refusal, attempt.actions));
+        match mended.filter(|_| may_be_partial) {
+            Some(mended) => Climbed::Mended(mended),
+            None => refused(refusal, actions),
+        }
+    }
+}
+
+impl Climb<'_> {
+    /// Tries the plan of `variant`, and once more without mending thin faces where that did something: a vertex that was
+    /// merged may have taken a face through another one.
+    pub(super) fn try_plan(
+        &self,
+        variant: Variant,
+        situation: &mut Situation,
+    ) -> Result<Option<Found>, Failure> {
+        situation.variant = variant;
+        let (mut mended, mut attempt) = self.run(variant)?;
+        let mut judged = self.judge(&attempt)?;
+        let has_mended = |attempt: &Attempt| attempt.effects.mended_thin_faces;
+        if variant.mends_thin_faces && judged.is_broken() && has_mended(&attempt) {
+            situation.fails_in_f32 |= judged.fails_in_f32();
+            situation.variant.mends_thin_faces = false;
+            (mended, attempt) = self.run(situation.variant)?;
+            judged = self.judge(&attempt)?;
+        }
+        situation.fails_in_f32 |= judged.fails_in_f32();
+        match judged {
+            Judged::Certified(candidate) => {
+                let certified = Certified::measured(attempt, *candidate, self)?;
+                Ok(Some(Found::Certified(Box::new(certified))))
+            }
+            Judged::Not(refusal) => {
+                situation.last = Some(Uncertified { attempt, mended, refusal });
+                Ok(None)
+            }
+        }
+    }
+
+    /// Runs a plan: the mended mesh if the best effort may be asked for it, and the one that may be a solid.
+    fn run(&self, variant: Variant) -> Result<(Option<Box<Attempt>>, Attempt), Stopped> {
+        let (choices, budget) = (self.choices, self.budget);
+        let is_best_effort = matches!(self.options.require, Some(Require::BestEffort | Require::None));
+        let soup = &self.input.soup;
+        budget.stage(Stage::Repair, || {
+            let mut attempt = Attempt::start(soup, self.before);
+            let _charge = budget.charge(attempt.draft.bytes() * if is_best_effort { 2 } else { 1 })?;
+            attempt.run(&variant.mending(choices), soup, self.before, budget)?;
+            let mended = is_best_effort.then(|| Box::new(attempt.clone()));
+            attempt.run(&variant.solidifying(choices, self.has_contacts()), soup, self.before, budget)?;
+            Ok((mended, attempt))
+        })
+    }
+
+    /// Runs further steps.
+    pub(in crate::pipeline) fn go_on(&self, attempt: &mut Attempt, steps: &[Step]) -> Result<(), Stopped> {
+        self.budget.stage(Stage::Repair, || attempt.run(steps, &self.input.soup, self.before, self.budget))
+    }
+
+    /// Writes what an attempt made, and judges the bytes.
+    pub(super) fn judge(&self, attempt: &Attempt) -> Result<Judged, Failure> {
+        if attempt.draft.triangles.is_empty() {
+            return Ok(Judged::Not(Refusal::NothingToRepair));
+        }
+        let soup = attempt.draft.to_soup(&self.input.soup);
+        match Candidate::write(soup, self.input, self.encoding, Depth::FirstViolation, self.budget) {
+            Ok(candidate) if candidate.certificate().is_printable() => {
+                Ok(Judged::Certified(Box::new(candidate)))
+            }
+            Ok(candidate) => {
+                let witness = candidate.certificate().witnesses.first().cloned();
+                Ok(Judged::Not(Refusal::NotRepairable { witness }))
+            }
+            Err(reason) => Ok(Judged::Not(reason.refusal()?)),
+        }
+    }
+
+    /// Makes a new surface.
+    pub(in crate::pipeline) fn rebuild(&self) -> Result<Rebuilt, NotRebuilt> {
+        rebuild::rebuild(self.input, self.encoding, self.options, self.choices, self.before, self.budget)
+    }
+
+    /// True when the encoding holds no more than float32, so that every plan has to round.
+    pub(super) fn needs_f32(&self) -> bool {
+        self.encoding.is_float32() && !self.input.soup.is_f32_exact
+    }
+
+    /// True unless it is known that no triangles meet others.
+    pub(super) fn has_contacts(&self) -> bool {
+        self.input.examination.contacts.as_ref().is_none_or(|contacts| contacts.count > 0)
+    }
+
+    /// True when the file has a defect of this kind.
+    pub(super) fn has_found(&self, code: DefectCode) -> bool {
+        let findings = self.before.map_or(&[][..], |analysis| &analysis.findings);
+        findings.iter().any(|finding| finding.code == code && finding.count > 0)
+    }
+
+    /// Whether the open parts are mostly sheets that may become walls. A surface with few boundary edges for its triangles
+    /// is none: a square of them has three for the root of their number.
+    pub(super) fn reads_as_sheets(&self) -> Result<bool, Stopped> {
+        let counts = self.before.map(|analysis| analysis.counts).unwrap_or_default();
+        let [rim, triangles] = [counts.boundary_edges, counts.triangles].map(|count| count as f64);
+        let may_be = rim > 0.0 && rim >= triangles.sqrt() && self.choices.walls == Walls::ForSheets;
+        if !may_be || self.options.wrap.open_shells == OpenShells::Close {
+            return Ok(false);
+        }
+        let (draft, _) = Draft::from_soup(&self.input.soup);
+        self.budget.stage(Stage::Measure, || rebuild::is_mostly_sheets(&draft, self.options, self.budget))
+    }
+}
+
+/// The judgement on what an attempt made.
+pub(super) enum Judged {
+    Certified(Box<Candidate>),
+    Not(Refusal),
+}
+
+impl Judged {
+    /// True when it was written, and is no valid solid.
+    fn is_broken(&self) -> bool {
+        matches!(self, Self::Not(Refusal::NotRepairable { .. }))
+    }
+
+    /// True when its first violation is one of coordinates that are read as float32.
+    pub(super) fn fails_in_f32(&self) -> bool {
+        matches!(self, Self::Not(Refusal::NotRepairable { witness: Some(witness) }) if witness.reading.is_f32)
+    }
+}
+
+impl Certified {
+    /// A certified result, measured against the file.
+    pub(in crate::pipeline) fn measured(
+        attempt: Attempt,
+        candidate: Candidate,
+        climb: &Climb<'_>,
+    ) -> Result<Self, Failure> {
+        let Climb { input, options, before, budget, .. } = *climb;
+        let (draft, volume) = (&attempt.draft, defined_volume(before));
+        let covered = attempt.covered();
+        let origins = candidate.origins(&draft.triangle_origin);
+        let measure = |original: &Original<'_>| {
+            original.measure_rest(candidate.soup(), &origins, covered.as_ref(), budget)
+        };
+        // Mostly nothing is gone, and what is hidden does not matter.
+        let mut fidelity = measure(&Original::new(&input.soup, volume, None))?;
+        if !fidelity.passes(&options.limits) {
+            let read = || Solid::of(&draft.positions, &draft.triangles, options.wrap.open_shells, budget);
+            let solid = budget.stage(Stage::Measure, read)?;
+            fidelity = measure(&Original::new(&input.soup, volume, Some(solid)))?;
+        }
+        drop(origins);
+        Ok(Self { attempt, candidate, fidelity })
+    }
+}
