@@ -58,6 +58,7 @@ const RUN: &[ProblemCode] = &[
     ProblemCode::Cancelled,
     ProblemCode::PlanMismatch,
     ProblemCode::MeshTooLarge,
+    ProblemCode::OverBudget,
     ProblemCode::EngineOutOfMemory,
     ProblemCode::MeshUnparseable,
     ProblemCode::MeshEmpty,

@@ -64,16 +64,28 @@ pub(super) fn is_by_parts(encoding: Encoding, operation: Operation, options: &Op
         }
 }
 
+/// Reads the 3MF `bytes`.
+pub(super) fn read(bytes: &[u8], options: &Options, budget: &Budget) -> Result<Project, Failure> {
+    Ok(budget.stage(Stage::Read, || read_project(bytes, &options.read, budget))?)
+}
+
+/// Triangles that a run looks at: those of each part once, and of all at their places where they are united.
+pub(super) fn triangles_of(project: &Project, options: &Options) -> u64 {
+    let at_places = |body: &Body| if options.parts == Parts::Union { u64::from(body.instances) } else { 0 };
+    let of = |body: &Body| (body.soup.triangles.len() as u64).saturating_mul(1 + at_places(body));
+    project.bodies.iter().map(of).fold(0, u64::saturating_add)
+}
+
 /// Runs `operation` on every part of the 3MF `bytes`.
 pub(super) fn run_by_parts(
     operation: Operation,
     bytes: &[u8],
+    project: &Project,
     options: &Options,
     budget: &Budget,
 ) -> Result<Answer, Failure> {
-    let project = budget.stage(Stage::Read, || read_project(bytes, &options.read, budget))?;
     units_of_file(Some(project.units), options)?;
-    let run = Run { operation, bytes, project: &project, options, budget };
+    let run = Run { operation, bytes, project, options, budget };
     run.check_options()?;
     let answer = run.answer()?;
     match options.parts {
@@ -89,7 +101,7 @@ pub(super) fn remarks_on_scene(
     options: &Options,
     budget: &Budget,
 ) -> Result<Vec<String>, Failure> {
-    let project = budget.stage(Stage::Read, || read_project(bytes, &options.read, budget))?;
+    let project = read(bytes, options, budget)?;
     Ok(match &answer.output {
         Some(Output { bytes: Some(_), encoding, .. }) => merge::left_out(&project, *encoding),
         _ => project.remarks,
