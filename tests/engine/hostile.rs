@@ -7,6 +7,7 @@ use crate::raw_files::encode;
 use crate::solids::{cube, cuboid};
 use crate::support::cases;
 use meshmend::budget::{Budget, StopFlag};
+use meshmend::certificate::Certificate;
 use meshmend::formats::Encoding;
 use meshmend::par;
 use meshmend::pipeline::{Failure, Limits, Operation, Options, Outcome, run, work_units_max};
@@ -28,7 +29,7 @@ fn ended(operation: Operation, name: &str, bytes: &[u8], options: &Options) -> (
                 let is_refused = report.outcome == Some(Outcome::Refused);
                 assert_eq!(is_refused, report.refusal.is_some(), "{name}");
                 let certificate = report.certificate.as_ref();
-                assert!(is_refused || certificate.is_some_and(|c| c.is_printable()), "{name}");
+                assert!(is_refused || certificate.is_some_and(Certificate::is_printable), "{name}");
             }
             format!("{:?} {:?}", report.outcome, report.refusal.as_ref().map(std::mem::discriminant))
         }
@@ -269,7 +270,7 @@ fn less_work_gives_less_and_never_something_else() {
                 );
                 // Nothing: what was left is not enough to describe the file.
                 let report = answer.unwrap_or_else(|failure| panic!("{name}: {failure}"))?.report;
-                let is_certified = report.certificate.is_some_and(|c| c.is_printable());
+                let is_certified = report.certificate.as_ref().is_some_and(Certificate::is_printable);
                 assert_eq!(is_certified, report.refusal.is_none(), "{name}: {:?}", report.refusal);
                 Some((report.outcome, report.tried, budget.work_used()))
             };
