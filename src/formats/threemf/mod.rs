@@ -4,6 +4,8 @@
 //! triangles and the marks of painting programs are kept as bytes.
 
 mod model;
+mod model_reader;
+mod models;
 mod package;
 pub(super) mod read;
 mod read_mesh;

@@ -1,8 +1,8 @@
 //! The mesh of an object: vertices, triangles and what is said of triangles.
 
 use super::model::{FaceAttributes, Mesh, NO_NUMBER, Property};
+use super::model_reader::{ModelReader, number};
 use super::package::{shortened, too_large};
-use super::read_model::{ModelReader, number};
 use super::xml::{Attributes, Element, Namespace};
 use crate::budget::CHECK_EVERY;
 use crate::formats::{ReadError, numbers};

@@ -1,18 +1,15 @@
 //! A model part: units, resources, objects and the build.
 
 use super::model::{Content, Group, Mesh, Model, NO_NUMBER, Object, ObjectKind, Property, Reference};
+use super::model_reader::{ModelReader, number};
 use super::package::{resolve, shortened};
 use super::read_mesh;
 use super::read_properties;
 use super::transform::Transform;
-use super::xml::{Attribute, Document, Element, Namespace, Node, Scanner, value, value_in};
+use super::xml::{Attribute, Document, Element, Namespace, Node, value, value_in};
 use crate::budget::Budget;
 use crate::formats::{ReadError, ReadOptions};
 use crate::mesh::Units;
-use rustc_hash::{FxHashMap, FxHashSet};
-
-/// Most remarks on one part; more are only counted.
-const REMARKS_MAX: usize = 20;
 
 /// Names of metadata that are compared with each other.
 const METADATA_MAX: usize = 200;
@@ -26,45 +23,9 @@ pub(super) fn read_model(
     options: &ReadOptions,
     budget: &Budget,
 ) -> Result<Model, ReadError> {
-    let mut reader = ModelReader {
-        scanner: Scanner::new(document, budget),
-        model: Model {
-            part: document.part.to_owned(),
-            units: Units::Millimetre,
-            objects: Vec::new(),
-            numbers: FxHashMap::default(),
-            groups: FxHashMap::default(),
-            items: Vec::new(),
-            remarks: Vec::new(),
-        },
-        other_ids: FxHashSet::default(),
-        materials: Vec::new(),
-        metadata: Vec::new(),
-        more_remarks: 0,
-        options,
-        budget,
-    };
+    let mut reader = ModelReader::new(document, options, budget);
     reader.read()?;
-    let more = reader.more_remarks;
-    let mut model = reader.model;
-    if more > 0 {
-        model.remarks.push(format!("{more} more breaches of rules in {}.", document.part));
-    }
-    Ok(model)
-}
-
-pub(super) struct ModelReader<'x> {
-    pub(super) scanner: Scanner<'x>,
-    pub(super) model: Model,
-    /// Ids of resources that are neither objects nor groups.
-    other_ids: FxHashSet<u32>,
-    /// Ids of groups of base materials.
-    materials: Vec<u32>,
-    /// Names of metadata so far.
-    metadata: Vec<String>,
-    more_remarks: usize,
-    pub(super) options: &'x ReadOptions,
-    pub(super) budget: &'x Budget,
+    Ok(reader.into_model())
 }
 
 impl<'x> ModelReader<'x> {
@@ -154,18 +115,6 @@ impl<'x> ModelReader<'x> {
         }
     }
 
-    /// The next element at `depth`, whose parent is open; `None` at the end of the parent.
-    pub(super) fn next_child(&mut self, depth: usize) -> Result<Option<Element<'x>>, ReadError> {
-        loop {
-            match self.scanner.next()? {
-                Node::Open(element) => return Ok(Some(element)),
-                Node::Close if self.scanner.depth < depth => return Ok(None),
-                Node::Close => {}
-                Node::End => return Ok(None),
-            }
-        }
-    }
-
     fn take_metadata(&mut self, element: &Element<'x>) -> Result<(), ReadError> {
         let attributes = self.scanner.attributes(element)?;
         let name = value(&attributes, "name").unwrap_or_default().to_owned();
@@ -192,7 +141,7 @@ impl<'x> ModelReader<'x> {
                         match self.read_group(&element)? {
                             Some(group) => {
                                 if element.namespace == Namespace::Core {
-                                    self.materials.push(id);
+                                    self.materials.insert(id);
                                 }
                                 self.model.groups.insert(id, group);
                             }
@@ -397,42 +346,4 @@ impl<'x> ModelReader<'x> {
             self.remark(at, &text);
         }
     }
-
-    /// True when the group is one of base materials.
-    pub(super) fn is_material(&self, group: u32) -> bool {
-        self.materials.contains(&group)
-    }
-
-    /// Notes that the part uses an extension whose content is kept and not judged.
-    pub(super) fn note_extension(&mut self, what: &str) {
-        let text = format!("{} holds {what}: kept as they are, and not judged.", self.model.part);
-        if !self.model.remarks.contains(&text) {
-            self.model.remarks.push(text);
-        }
-    }
-
-    /// Notes a rule of 3MF that is broken where that does no harm here.
-    pub(super) fn remark(&mut self, at: usize, what: &str) {
-        if self.model.remarks.len() >= REMARKS_MAX {
-            self.more_remarks += 1;
-            return;
-        }
-        let text = self.scanner.document.text.as_bytes();
-        let line = memchr::memchr_iter(b'\n', text.get(..at).unwrap_or(text)).count() + 1;
-        self.model
-            .remarks
-            .push(format!("The file breaks a rule of 3MF: {what} ({}, line {line}).", self.model.part));
-    }
-
-    pub(super) fn error(&self, at: usize, found: &str, expected: impl Into<String>) -> ReadError {
-        self.scanner.document.error(at, found, expected)
-    }
-}
-
-/// A whole number as XML writes it.
-pub(super) fn number(text: &str) -> Option<u32> {
-    let text = text.trim_ascii();
-    let digits = text.strip_prefix('+').unwrap_or(text);
-    let is_number = !digits.is_empty() && digits.bytes().all(|digit| digit.is_ascii_digit());
-    digits.parse().ok().filter(|&number: &u32| is_number && number != NO_NUMBER)
 }

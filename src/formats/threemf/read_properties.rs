@@ -1,8 +1,8 @@
 //! Property groups: materials, colours, places in pictures, mixtures and layers of them.
 
 use super::model::Group;
+use super::model_reader::{ModelReader, number};
 use super::package::{resolve, shortened};
-use super::read_model::{ModelReader, number};
 use super::xml::{Element, Namespace, value};
 use crate::formats::{Precision, ReadError, numbers};
 

@@ -1,7 +1,7 @@
 //! The volumes of objects, which PrusaSlicer and its kin note as ranges of triangles beside the model.
 
+use super::model_reader::number;
 use super::package::Package;
-use super::read_model::number;
 use super::xml::{Document, Element, Node, Scanner, value};
 use crate::budget::Budget;
 use crate::formats::ReadError;

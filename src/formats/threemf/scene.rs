@@ -1,8 +1,8 @@
 //! What the build of a 3MF puts together, as one mesh.
 
 use super::model::Content;
+use super::models::Models;
 use super::package::too_large;
-use super::read::Models;
 use crate::budget::{Budget, CHECK_EVERY};
 use crate::formats::colors::note_color;
 use crate::formats::{ReadError, ReadOptions};
