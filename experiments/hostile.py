@@ -61,9 +61,8 @@ def outcome_of(code, printed):
         return f"**exit {code}**: {printed[:60].decode(errors='replace').strip()}"
     if report.get("code"):
         return report["code"] + (f" ({report['limit_name']})" if report.get("limit_name") else "")
-    refusal = (report.get("refusal") or {}).get("code")
-    if refusal:
-        return f"refused: {refusal}"
+    if report.get("outcome") == "refused":
+        return f"refused: {report['verdict']['reasons'][0]['code']}"
     if report.get("outcome"):
         return report["outcome"]
     return "printable" if report["verdict"]["printable"] else "not printable"

@@ -22,7 +22,8 @@ pub(super) fn first_at_place(
     let mut by_form = Vec::with_capacity(candidates.len());
     for (i, &id) in candidates.iter().enumerate() {
         if i % 1024 == 0 {
-            budget.spend(1024 * EXACT)?;
+            // Most clusters have a few.
+            budget.spend((candidates.len() - i).min(1024) as u64 * EXACT)?;
         }
         let near = points[id as usize].near;
         let form = (0..3).fold(Ball::exactly(0.0), |sum, k| sum + near[k] * Ball::exactly(FACTORS[k]));
