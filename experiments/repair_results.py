@@ -40,7 +40,7 @@ def result(binary, path):
 files = []
 for folder in o.folders:
     for base, _, names in os.walk(folder):
-        files += [os.path.join(base, name) for name in names if name.lower().endswith((".stl", ".obj", ".off", ".ply"))]
+        files += [os.path.join(base, name) for name in names if name.lower().endswith((".stl", ".obj", ".off", ".ply", ".glb", ".gltf", ".3mf"))]
 files = [path for path in sorted(files) if os.path.getsize(path) <= o.most]
 before = json.load(open(o.load)) if o.load else {}
 now, differ = {}, 0
