@@ -64,12 +64,22 @@ pub enum Stage {
     Certify,
     /// How far the result is from the input.
     Measure,
+    /// A picture.
+    Draw,
 }
 
 impl Stage {
     /// Every stage, in the order of a full run.
-    pub const ALL: [Self; 7] =
-        [Self::Read, Self::Analyze, Self::Repair, Self::Simplify, Self::Write, Self::Certify, Self::Measure];
+    pub const ALL: [Self; 8] = [
+        Self::Read,
+        Self::Analyze,
+        Self::Repair,
+        Self::Simplify,
+        Self::Write,
+        Self::Certify,
+        Self::Measure,
+        Self::Draw,
+    ];
 
     /// The stage's name in reports and metrics.
     pub fn name(self) -> &'static str {
@@ -81,6 +91,7 @@ impl Stage {
             Self::Write => "write",
             Self::Certify => "certify",
             Self::Measure => "measure",
+            Self::Draw => "draw",
         }
     }
 }

@@ -21,6 +21,7 @@ pub mod arrangement;
 pub mod implicit;
 pub mod modeller;
 pub mod printing;
+pub mod render;
 pub mod simplify;
 pub mod wrap;
 

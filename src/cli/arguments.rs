@@ -52,6 +52,9 @@ pub(super) enum Command {
     /// Combine solids into one that is certified: their union, their intersection, or the first without all others.
     #[command(arg_required_else_help = true)]
     Boolean(BooleanArguments),
+    /// Draw a mesh as a PNG file: defects coloured and marked, backs red; with --after a second mesh beside it.
+    #[command(arg_required_else_help = true)]
+    Render(RenderArguments),
     /// Say whether the faces of a file, as indexed, make a half-edge mesh (a manifold, coherently oriented).
     #[command(arg_required_else_help = true)]
     Check {
@@ -271,6 +274,22 @@ pub(super) struct BooleanArguments {
     output: Place,
 }
 
+#[derive(Debug, Args)]
+#[group(id = "picture", required = true, multiple = false, args = ["output", "out_dir"])]
+pub(super) struct RenderArguments {
+    #[command(flatten)]
+    given: InputArguments,
+    /// Picture to write (PNG), or - for standard output.
+    #[arg(short, long, value_name = "OUT")]
+    output: Option<Place>,
+    /// Folder to write pictures into, each under the name of its file; it is made where it is missing.
+    #[arg(short = 'd', long, value_name = "DIR")]
+    out_dir: Option<PathBuf>,
+    /// A second mesh, drawn beside the first at the same scale; triangles that the first has not are green.
+    #[arg(long, value_name = "FILE")]
+    after: Option<PathBuf>,
+}
+
 /// An operation on a file, whichever command named it.
 #[derive(Debug, Clone)]
 pub(super) struct Request {
@@ -281,6 +300,8 @@ pub(super) struct Request {
     pub is_json: bool,
     pub report_html: Option<PathBuf>,
     pub material: Option<PathBuf>,
+    /// The second mesh of a picture.
+    pub after: Option<PathBuf>,
     /// Names and values of options.
     pub options: Vec<(String, String)>,
     pub sources: Sources,
@@ -295,6 +316,7 @@ impl InputArguments {
             is_json: self.json,
             report_html: self.report_html,
             material: self.material,
+            after: None,
             options: self.options.0,
             sources: Sources::of_process(self.settings.0, self.config),
         }
@@ -350,6 +372,13 @@ impl From<ModellerArguments> for Request {
 impl From<BooleanArguments> for Request {
     fn from(given: BooleanArguments) -> Self {
         given.given.request(Operation::Boolean, Target::Place(given.output))
+    }
+}
+
+impl From<RenderArguments> for Request {
+    fn from(given: RenderArguments) -> Self {
+        let target = OutputArguments { output: given.output, out_dir: given.out_dir }.target();
+        Self { after: given.after, ..given.given.request(Operation::Render, target) }
     }
 }
 

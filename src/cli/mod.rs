@@ -97,6 +97,7 @@ fn execute(command: Command, service: Service) -> Exit {
         Command::FillHoles(given) => several::run(&given.into()),
         Command::Modeller(given) => several::run(&given.into()),
         Command::Boolean(given) => several::run(&given.into()),
+        Command::Render(given) => several::run(&given.into()),
         Command::Check { input, format } => {
             check::run(&input, format.and_then(|word| Format::from_name(&word)))
         }

@@ -75,6 +75,9 @@ fn place_in(folder: &Path, inputs: &[Place], request: &Request) -> Result<Place,
     if let Some((_, format)) = request.options.iter().find(|(option, _)| option == "output_format") {
         path.set_extension(format);
     }
+    if request.operation == Operation::Render {
+        path.set_extension("png");
+    }
     let is_input =
         fs::canonicalize(&path).ok().is_some_and(|path| fs::canonicalize(input).ok() == Some(path));
     match is_input {

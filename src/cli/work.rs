@@ -9,10 +9,11 @@ use crate::config::{Config, Loaded};
 use crate::formats::{self, ReadLimits};
 use crate::jobs::StageClock;
 use crate::par;
-use crate::pipeline::{self, Answer, Operation, Require};
+use crate::pipeline::{self, Answer, Operation, PictureChoices, Require};
 use crate::wire::{Options, Problem, ProblemCode, Report, TimingMs, report_page};
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
 
 /// One file, or several that become one, and where the result goes.
 #[derive(Debug)]
@@ -53,7 +54,9 @@ fn attempt(errand: &Errand<'_>) -> Result<Done, Problem> {
     check_streams(errand)?;
     let options =
         Options::from_pairs(request.options.iter().map(|(n, v)| (n, v))).map_err(|e| Problem::from(&e))?;
-    let by_name = output.as_ref().and_then(Place::format).map(Into::into);
+    // A picture has one format, whatever its name.
+    let is_picture = request.operation == Operation::Render;
+    let by_name = output.as_ref().filter(|_| !is_picture).and_then(Place::format).map(Into::into);
     let options = Options { output_format: options.output_format.or(by_name), ..options };
     options.check(request.operation.into()).map_err(|e| Problem::from(&e))?;
     if *output == Some(Place::Stream) && options.targets.as_ref().is_some_and(|t| t.len() > 1) {
@@ -75,12 +78,16 @@ fn attempt(errand: &Errand<'_>) -> Result<Done, Problem> {
         file_sizes.push(file.len() as u64);
         if bytes.is_empty() { bytes = file } else { bytes.extend(file) }
     }
-    let material = match &request.material {
-        Some(path) => Some(std::fs::read(path).map_err(|e| unreadable(&path.display(), &e))?),
-        None => None,
+    let beside = |path: &Option<PathBuf>| {
+        let read = |path: &PathBuf| std::fs::read(path).map_err(|e| unreadable(&path.display(), &e));
+        path.as_ref().map(read).transpose()
     };
+    let (material, after) = (beside(&request.material)?, beside(&request.after)?);
     let options = engine_options(errand, &options, &loaded.config, &bytes);
-    let options = pipeline::Options { material, file_sizes, ..options };
+    // The page for people has a picture.
+    let page_picture = request.report_html.is_some().then(PictureChoices::default);
+    let picture = options.picture.clone().or(page_picture.filter(|_| !is_picture));
+    let options = pipeline::Options { material, after, picture, file_sizes, ..options };
     let (answer, timing) = execute(request.operation, &bytes, &options, &loaded).map_err(|problem| {
         Problem { detail: format!("{}: {}", errand.subject(), problem.detail), ..problem }
     })?;
@@ -94,7 +101,8 @@ fn check_streams(errand: &Errand<'_>) -> Result<(), Problem> {
     if inputs.contains(&Place::Stream) && !is_named("format") {
         return Err(wrong("standard input needs --format"));
     }
-    if *output == Some(Place::Stream) && !is_named("output_format") {
+    let is_picture = request.operation == Operation::Render;
+    if *output == Some(Place::Stream) && !is_named("output_format") && !is_picture {
         return Err(wrong("standard output needs --output-format"));
     }
     if *output == Some(Place::Stream) && request.is_json {
@@ -178,12 +186,19 @@ fn deliver(
             .map_err(|e| Problem::new(ProblemCode::StorageFull, format!("{place} cannot be written: {e}")))?;
         written.push(place.to_string());
     }
+    let drawn = answer.picture.as_ref().filter(|_| request.operation == Operation::Render);
+    if let (Some(place), Some(picture)) = (&errand.output, drawn) {
+        place
+            .write(picture)
+            .map_err(|e| Problem::new(ProblemCode::StorageFull, format!("{place} cannot be written: {e}")))?;
+        written.push(place.to_string());
+    }
     let report = Report::new(&answer.report, timing);
     if let Some(path) = &request.report_html {
         let value = serde_json::to_value(&report).unwrap_or_default();
         let place = Place::File(path.clone());
         place
-            .write(report_page(&value).as_bytes())
+            .write(report_page(&value, answer.picture.as_deref()).as_bytes())
             .map_err(|e| Problem::new(ProblemCode::StorageFull, format!("{place} cannot be written: {e}")))?;
     }
     let exit = verdict(request.operation, require, &report, answer.output.is_some());
@@ -194,7 +209,7 @@ fn verdict(operation: Operation, require: Option<Require>, report: &Report, has_
     let is_done = match operation {
         Operation::Repair | Operation::Boolean => has_result && report.verdict.printable,
         Operation::Verify => report.verdict.printable,
-        Operation::Analyze | Operation::Plan => true,
+        Operation::Analyze | Operation::Plan | Operation::Render => true,
         Operation::Convert
         | Operation::Simplify
         | Operation::CutStitch

@@ -7,7 +7,7 @@ use sha2::{Digest as _, Sha256};
 use super::both::{Both, Mesh};
 use super::mesh_file;
 use super::problem::{Handled, json};
-use super::representation::{OCTET_STREAM, Representation};
+use super::representation::{OCTET_STREAM, PNG, Representation};
 use super::state::AboutJob;
 use crate::jobs::{JobId, Jobs, StoredFile};
 use crate::wire::{self, Job, Problem, ProblemCode, Stage};
@@ -68,8 +68,21 @@ pub(super) fn report(stored: Vec<u8>) -> Response {
     ([(header::CONTENT_TYPE, JSON)], stored).into_response()
 }
 
-/// A stored report as a page for people.
-pub(super) fn report_page(stored: &[u8]) -> Handled {
+/// A stored picture; 304 when the client has it.
+pub(super) fn picture((content, sha256): (Vec<u8>, [u8; 32]), request: &HeaderMap) -> Response {
+    let etag = format!("\"{}\"", mesh_file::base64(&sha256));
+    let mut response = if mesh_file::matches_etag(request, &etag) {
+        StatusCode::NOT_MODIFIED.into_response()
+    } else {
+        ([(header::CONTENT_TYPE, PNG)], content).into_response()
+    };
+    put(response.headers_mut(), header::ETAG, &etag);
+    response.headers_mut().insert(header::CACHE_CONTROL, HeaderValue::from_static("private, no-cache"));
+    response
+}
+
+/// A stored report as a page for people, with the picture of the job if it has one.
+pub(super) fn report_page(stored: &[u8], picture: Option<&[u8]>) -> Handled {
     let report = serde_json::from_slice(stored).map_err(|error| {
         Problem::new(ProblemCode::Internal, format!("a stored report cannot be read: {error}"))
     })?;
@@ -77,7 +90,7 @@ pub(super) fn report_page(stored: &[u8]) -> Handled {
         (header::CONTENT_TYPE, "text/html; charset=utf-8"),
         (header::CONTENT_SECURITY_POLICY, wire::REPORT_PAGE_CSP),
     ];
-    Ok((headers, wire::report_page(&report)).into_response())
+    Ok((headers, wire::report_page(&report, picture)).into_response())
 }
 
 /// A job that has ended.
@@ -92,6 +105,7 @@ impl Finished<'_> {
     pub(super) async fn respond(&self, representation: Representation) -> Handled {
         let mut response = match representation {
             Representation::Report => self.report().await?,
+            Representation::Picture => picture(self.jobs.picture(self.id).await?, &HeaderMap::new()),
             Representation::Mesh { is_opaque, .. } => {
                 let mesh = self.jobs.result(self.id).await?;
                 let media_type = if is_opaque { OCTET_STREAM } else { mesh_file::media_type(&mesh) };
@@ -185,7 +199,7 @@ mod tests {
 
     #[test]
     fn the_style_of_a_report_is_the_one_that_its_policy_allows() {
-        let page = wire::report_page(&serde_json::Value::Null);
+        let page = wire::report_page(&serde_json::Value::Null, None);
         let style = page.split("<style>").nth(1).and_then(|rest| rest.split("</style>").next()).unwrap();
         let digest = mesh_file::base64(&Sha256::digest(style.as_bytes()));
         assert!(wire::REPORT_PAGE_CSP.contains(&format!("'sha256-{digest}'")), "{digest}");

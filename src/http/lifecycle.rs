@@ -7,7 +7,7 @@ use axum::response::IntoResponse as _;
 
 use super::prefer::Wait;
 use super::problem::{Handled, ProblemAnswer};
-use super::representation::{OCTET_STREAM, json_only, one_of};
+use super::representation::{OCTET_STREAM, PNG, json_only, one_of};
 use super::state::{Caller, Service, State};
 use super::{answer, mesh_file, query};
 use crate::jobs::JobId;
@@ -69,15 +69,34 @@ pub(super) async fn delete(state: State, caller: Extension<Caller>, id: Id, requ
 /// Read a job's report.
 ///
 /// Also of a refused repair, whose report says why. As JSON, or with `Accept: text/html` as a page for people: one file
-/// that loads nothing.
+/// that loads nothing, with the job's picture if it has one.
 #[utoipa::path(get, path = "/v1/jobs/{id}/report", operation_id = "get_job_report", tag = "jobs",
     params(("id" = String, Path, description = "Id of the job.")),
     responses((status = 200, description = "The report.", body = Report)))]
 pub(super) async fn report(state: State, caller: Extension<Caller>, id: Id, request: Request) -> Handled {
     let media_type = one_of(request.headers(), &["application/json", HTML])?;
     query::none(request.uri())?;
-    let stored = state.jobs.report(visible(&state, &caller, id).await?).await?;
-    if media_type == HTML { answer::report_page(&stored) } else { Ok(answer::report(stored)) }
+    let id = visible(&state, &caller, id).await?;
+    let stored = state.jobs.report(id).await?;
+    if media_type != HTML {
+        return Ok(answer::report(stored));
+    }
+    // A job without a picture has a page all the same.
+    let picture = state.jobs.picture(id).await.ok();
+    answer::report_page(&stored, picture.as_ref().map(|(content, _)| content.as_slice()))
+}
+
+/// Download a job's picture.
+///
+/// Of a job that was made with `thumbnail=true`: the mesh with its defects, and beside it the result with its new
+/// triangles. Of a job that draws: what it has drawn.
+#[utoipa::path(get, path = "/v1/jobs/{id}/thumbnail.png", operation_id = "get_job_thumbnail", tag = "jobs",
+    params(("id" = String, Path, description = "Id of the job.")))]
+pub(super) async fn thumbnail(state: State, caller: Extension<Caller>, id: Id, request: Request) -> Handled {
+    one_of(request.headers(), &[PNG])?;
+    query::none(request.uri())?;
+    let stored = state.jobs.picture(visible(&state, &caller, id).await?).await?;
+    Ok(answer::picture(stored, request.headers()))
 }
 
 /// Download a job's mesh.

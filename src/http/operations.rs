@@ -15,7 +15,7 @@ use super::intake;
 use super::prefer::{Wait, seconds_of};
 use super::problem::Handled;
 use super::query;
-use super::representation::{Representation, json_only};
+use super::representation::{PNG, Representation, json_only, one_of};
 use super::state::{Caller, Service, State};
 use super::trace;
 use crate::jobs::{JobId, Jobs, Submission};
@@ -109,6 +109,24 @@ pub(super) async fn modeller(state: State, caller: Extension<Caller>, request: R
 #[utoipa::path(post, path = "/v1/boolean", tag = "operations")]
 pub(super) async fn boolean(state: State, caller: Extension<Caller>, request: Request) -> Handled {
     result_of(&state, &caller, Operation::Boolean, request).await
+}
+
+/// Draw a mesh.
+///
+/// Mesh in, PNG out: from one side or several, defects coloured and marked, backs red, or turning as an animated PNG.
+/// `Accept: application/json` gives the report of what was found.
+#[utoipa::path(post, path = "/v1/render", tag = "operations")]
+pub(super) async fn render(state: State, caller: Extension<Caller>, request: Request) -> Handled {
+    let (head, body) = request.into_parts();
+    let representation = match one_of(&head.headers, &[PNG, "application/json"])? {
+        PNG => Representation::Picture,
+        _ => Representation::Report,
+    };
+    let operation = Operation::Render;
+    let options = query::options(&head.uri, operation)?;
+    let intake = intake::receive(&state, &caller, &head.headers, body, Some(operation)).await?;
+    let submission = submission(&state, &caller, operation, options, intake, &head.headers).await?;
+    finish(&state, submission, representation, &head).await
 }
 
 /// Make a job and do not wait for it.

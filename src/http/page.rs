@@ -12,12 +12,13 @@ use super::mesh_file;
 use super::state::Service;
 
 /// Paths of the page and of what it loads.
-pub(super) static ASSETS: [Asset; 7] = [
+pub(super) static ASSETS: [Asset; 8] = [
     Asset::new("/", "text/html; charset=utf-8", include_bytes!("../../web/index.html")),
     Asset::new("/page.js", SCRIPT, include_bytes!("../../web/bundle/page.js")),
     Asset::new("/worker.js", SCRIPT, include_bytes!("../../web/bundle/worker.js")),
     Asset::new("/page.css", STYLE, include_bytes!("../../web/bundle/page.css")),
-    Asset::new("/style.css", STYLE, include_bytes!("../../web/style.css")),
+    Asset::new("/docs.css", STYLE, include_bytes!("../../web/docs.css")),
+    Asset::new("/docs.js", SCRIPT, include_bytes!("../../web/docs.js")),
     Asset::new("/favicon.ico", "image/svg+xml", include_bytes!("../../web/icon.svg")),
     Asset::new("/licences.txt", "text/plain; charset=utf-8", include_bytes!("../../web/bundle/LICENCES.txt")),
 ];
@@ -102,7 +103,8 @@ mod tests {
     #[test]
     fn the_page_is_small() {
         use std::io::Write as _;
-        let loaded = ASSETS.iter().filter(|asset| !["/style.css", "/licences.txt"].contains(&asset.path));
+        let loaded =
+            ASSETS.iter().filter(|asset| !["/docs.css", "/docs.js", "/licences.txt"].contains(&asset.path));
         let compressed = loaded.map(|asset| {
             let options = zip::write::SimpleFileOptions::default();
             let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));

@@ -8,6 +8,9 @@ use crate::wire::{Format, Problem, ProblemCode, media_type_of};
 /// Any bytes.
 pub(super) const OCTET_STREAM: &str = "application/octet-stream";
 
+/// A picture.
+pub(super) const PNG: &str = "image/png";
+
 /// A form of the answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Representation {
@@ -20,6 +23,8 @@ pub(super) enum Representation {
     },
     /// The report.
     Report,
+    /// The picture.
+    Picture,
     /// Both as `multipart/mixed`.
     Multipart,
     /// Both as a zip archive.

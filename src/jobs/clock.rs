@@ -60,6 +60,7 @@ impl StageClock {
         let passes = match operation {
             Operation::Verify => 2.0,
             Operation::Analyze | Operation::Plan => 3.0,
+            Operation::Render => 4.0,
             Operation::Convert => 5.0,
             Operation::CutStitch | Operation::FillHoles | Operation::Modeller => 7.0,
             Operation::Repair => 8.0,

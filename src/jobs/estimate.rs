@@ -22,7 +22,11 @@ pub(super) fn estimated_bytes(
     triangles: Option<u64>,
 ) -> u64 {
     let (per_triangle, at_least) = match operation {
-        Operation::Analyze | Operation::Verify | Operation::Convert | Operation::CutStitch => (170, CHANGED),
+        Operation::Analyze
+        | Operation::Verify
+        | Operation::Convert
+        | Operation::CutStitch
+        | Operation::Render => (170, CHANGED),
         Operation::Simplify => (410, CHANGED),
         Operation::Plan | Operation::Repair | Operation::FillHoles => (410, REBUILT),
         // The arrangement of all, with winding numbers for each.

@@ -72,6 +72,24 @@ impl Jobs {
         Ok(files)
     }
 
+    /// The job's picture (PNG), with its digest.
+    ///
+    /// # Errors
+    /// `not-found` (also when none was asked for), `job-not-finished`, `expired`, or the problem for which the job has none.
+    pub async fn picture(&self, id: JobId) -> Result<(Vec<u8>, [u8; 32]), Problem> {
+        let row = self.0.row(id).await?;
+        match &ended(&row)?.picture {
+            Some(blob) => Ok((self.0.read(&row, blob).await?, blob.sha256)),
+            None => {
+                let problem = row.ending.as_ref().and_then(|ending| ending.problem.clone());
+                let detail = "the job has no picture: ask for one with `thumbnail=true`, or have it drawn by \
+                              `POST /v1/render` with the job as `input`";
+                let none = || Problem::new(ProblemCode::NotFound, detail);
+                Err(problem.unwrap_or_else(none).with_instance(format!("/v1/jobs/{}", row.id)))
+            }
+        }
+    }
+
     /// The same problem with the job's report inside, when it is a refusal.
     async fn with_report(&self, problem: Problem, id: JobId) -> Problem {
         let is_refusal = matches!(

@@ -28,6 +28,8 @@ pub(super) struct Product<C> {
     pub(super) result: Option<MadeMesh<C>>,
     /// The meshes of further targets of a simplification.
     pub(super) levels: Vec<MadeMesh<C>>,
+    /// The picture, as PNG.
+    pub(super) picture: Option<C>,
 }
 
 /// A mesh that a run made.
@@ -50,7 +52,7 @@ pub(super) enum Content {
 impl Product<Vec<u8>> {
     /// What is kept of the engine's answer.
     pub(super) fn of(answer: Answer, timing_ms: TimingMs) -> Result<Self, Problem> {
-        let Answer { report, output, levels } = answer;
+        let Answer { report, output, levels, picture } = answer;
         let is_refused = report.outcome == Some(pipeline::Outcome::Refused);
         let text =
             serde_json::to_vec(&wire::Report::new(&report, timing_ms)).map_err(|error| internal(&error))?;
@@ -64,25 +66,32 @@ impl Product<Vec<u8>> {
             report: text,
             result: output.map(made),
             levels: levels.into_iter().map(made).collect(),
+            picture,
         })
     }
 }
 
 impl<C> Product<C> {
-    /// The same with its contents elsewhere; report first, then the meshes in their order.
+    /// The same with its contents elsewhere; report first, then the meshes in their order, then the
+    /// picture.
     pub(super) fn try_map<D, E>(self, mut place: impl FnMut(C) -> Result<D, E>) -> Result<Product<D>, E> {
         let report = place(self.report)?;
         let mut moved = |made: MadeMesh<C>| {
             Ok(MadeMesh { content: made.content.map(&mut place).transpose()?, encoding: made.encoding })
         };
+        let (result, levels) = (
+            self.result.map(&mut moved).transpose()?,
+            self.levels.into_iter().map(moved).collect::<Result<_, E>>()?,
+        );
         Ok(Product {
             outcome: self.outcome,
             fidelity: self.fidelity,
             problem: self.problem,
             timing_ms: self.timing_ms,
             report,
-            result: self.result.map(&mut moved).transpose()?,
-            levels: self.levels.into_iter().map(moved).collect::<Result<_, E>>()?,
+            result,
+            levels,
+            picture: self.picture.map(place).transpose()?,
         })
     }
 }

@@ -179,7 +179,7 @@ async fn keep_files(
     row: &JobRow,
     product: Product<Content>,
 ) -> Result<(Ending, Vec<Written>), Problem> {
-    let Product { outcome, fidelity, problem, timing_ms, report, result, levels } = product;
+    let Product { outcome, fidelity, problem, timing_ms, report, result, levels, picture } = product;
     // Should one file fail, those before it go with this list.
     let mut written = Vec::new();
     let has_result = result.is_some();
@@ -192,6 +192,10 @@ async fn keep_files(
         results.push(ResultRef { blob, encoding });
     }
     let report = service.keep(row, "report.json".to_owned(), report, &mut written).await?;
+    let picture = match picture {
+        Some(content) => Some(service.keep(row, "thumbnail.png".to_owned(), content, &mut written).await?),
+        None => None,
+    };
     let levels = results.split_off(usize::from(has_result).min(results.len()));
     let state = if problem.is_some() { JobState::Failed } else { JobState::Succeeded };
     let ending = Ending {
@@ -202,6 +206,7 @@ async fn keep_files(
         report: Some(report),
         result: results.pop(),
         levels,
+        picture,
         ..Ending::without_files(state, problem)
     };
     Ok((ending, written))

@@ -33,7 +33,8 @@ pub(super) fn job(row: &JobRow, live: Option<&Live>) -> Job {
     let has_files = row.state != JobState::Expired;
     let has_report = has_files && ending.is_some_and(|ending| ending.report.is_some());
     let has_result = has_files && ending.is_some_and(|ending| ending.result.is_some());
-    let links = Links::new(&id, has_report, has_result);
+    let has_picture = has_files && ending.is_some_and(|ending| ending.picture.is_some());
+    let links = Links::new(&id, has_report, has_result, has_picture);
     Job {
         state: row.state,
         operation: row.operation,

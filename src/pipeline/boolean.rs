@@ -8,7 +8,7 @@ use super::plan::{Attempt, Step};
 use super::remedies::Choices;
 use super::{
     Action, Answer, BooleanRefusal, Failure, FidelityVerdict, FurtherInput, Operation, Options, Outcome,
-    Refusal, Report, finished,
+    Refusal, Report, finished, picture,
 };
 use crate::budget::{Budget, Stage};
 use crate::formats::{self, Encoding, Place, ReadError, ReadErrorKind};
@@ -59,18 +59,25 @@ fn combine_all(meshes: Vec<Mesh<'_>>, mut reading: Reading, budget: &Budget) -> 
         let certificate = further.examination.certificate;
         report.further_inputs.push(FurtherInput { facts: further.facts, before, certificate });
     }
-    let mut firsts = Vec::with_capacity(soups.len());
-    let mut count = 0;
+    // First vertices, triangles and faces.
+    let mut starts = Vec::with_capacity(soups.len());
+    let mut next = [0; 3];
     for soup in &soups {
-        firsts.push(count);
-        count += soup.triangles.len() as u32;
+        starts.push(next);
+        let [vertex, triangle, face] = next;
+        let (vertices, triangles) = (soup.positions.len() as u32, soup.triangles.len() as u32);
+        next = [vertex + vertices, triangle + triangles, face + soup.face_count];
     }
+    let firsts: Vec<u32> = starts.iter().map(|[_, triangle, _]| *triangle).collect();
     input.soup = Soup::joined(&soups);
     drop(soups);
     let options = reading.scaled.as_ref().unwrap_or(&reading.options);
     let answer =
         bounds::or_refused(report, budget, |report| combined(&input, &firsts, report, options, budget))?;
-    finished(&input, options, answer, budget)
+    let answer = finished(&input, options, answer, budget)?;
+    bounds::with_picture(Operation::Boolean, answer, budget, |answer| {
+        picture::of_meshes(&input, &starts, answer, options, budget)
+    })
 }
 
 /// The files as they are read, under limits for all together.

@@ -26,7 +26,9 @@ const BYTES_OF_TRIANGLE: u64 = 16;
 /// bytes; `None`: no more than the caller says.
 pub fn work_units_max(operation: Operation, bytes: usize, options: &Options) -> Option<u64> {
     let of_small = match operation {
-        Operation::Analyze | Operation::Plan | Operation::Verify | Operation::Convert => LOOKING,
+        Operation::Analyze | Operation::Plan | Operation::Verify | Operation::Convert | Operation::Render => {
+            LOOKING
+        }
         Operation::Repair if options.wrap.effort == Effort::High => REPAIRING * HIGH_EFFORT,
         Operation::Repair | Operation::Boolean => REPAIRING,
         Operation::Simplify | Operation::CutStitch | Operation::FillHoles | Operation::Modeller => {
@@ -103,6 +105,30 @@ pub(super) fn or_refused(
     let left = budget.work_left().saturating_sub(1);
     let answer = budget.within(left, || body(report))?;
     Ok(answer.unwrap_or_else(|| kept.refused(Refusal::OverBudget { units: budget.work_used() })))
+}
+
+/// The answer with the picture that `draw` gives, if it is asked for. Beside a result, one that takes more work than half of what
+/// is left is left out, and a remark says so.
+pub(super) fn with_picture(
+    operation: Operation,
+    mut answer: Answer,
+    budget: &Budget,
+    draw: impl FnOnce(&Answer) -> Result<Option<Vec<u8>>, Failure>,
+) -> Result<Answer, Failure> {
+    let drawn = match operation {
+        Operation::Render => Some(draw(&answer)?),
+        _ => budget.within_part(2, || draw(&answer))?,
+    };
+    match drawn {
+        Some(picture) => answer.picture = picture,
+        None => answer.report.remarks.push(no_picture(&"it takes more work than a file of its size may")),
+    }
+    Ok(answer)
+}
+
+/// The remark that a picture was left out.
+pub(super) fn no_picture(why: &dyn std::fmt::Display) -> String {
+    format!("There is no picture of the file: {why}.")
 }
 
 impl AsStopped for Failure {

@@ -50,7 +50,7 @@ fn are_one([a, b, c]: [DVec3; 3], other: [DVec3; 3]) -> bool {
 
 /// A number that is the same for a triangle from whichever corner it starts, and different for different triangles but
 /// for a chance of 2^-128.
-fn fingerprint(corners: [DVec3; 3]) -> u128 {
+pub(super) fn fingerprint(corners: [DVec3; 3]) -> u128 {
     // Adding zero makes -0 and 0 one.
     let [a, b, c] = corners.map(|p| p.to_array().map(|x| (x + 0.0).to_bits()));
     let first = [[a, b, c], [b, c, a], [c, a, b]].into_iter().min();

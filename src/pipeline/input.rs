@@ -191,6 +191,7 @@ impl Input {
             },
             output: Some(Output { bytes: None, encoding: self.facts.encoding, origins: Vec::new() }),
             levels: Vec::new(),
+            picture: None,
         }
     }
 }
@@ -228,7 +229,7 @@ impl Report {
 
     /// An answer without a file.
     pub(super) fn into_answer(self) -> Answer {
-        Answer { report: self, output: None, levels: Vec::new() }
+        Answer { report: self, output: None, levels: Vec::new(), picture: None }
     }
 
     /// An answer that refuses a file.

@@ -13,6 +13,7 @@ mod input;
 mod ladder;
 mod modeller;
 mod output;
+mod picture;
 mod plan;
 mod printing;
 mod priority;
@@ -37,6 +38,7 @@ pub use self::modeller::{
     Blocker, BlockerKind, EdgeName, Edit, EditKind, FaceName, FaceRange, ModelFace, ModellerChoices,
     ModellerRefusal, ModellerReport, ModellerStep, RangeName, RangeSide,
 };
+pub use self::picture::PictureChoices;
 pub use self::plan::Step;
 pub use self::printing::PrintingReport;
 pub use self::project::{AttributeCounts, PartFacts, PartReport};
@@ -80,11 +82,13 @@ pub enum Operation {
     Modeller,
     /// Several solids combined into one that is certified.
     Boolean,
+    /// A picture.
+    Render,
 }
 
 impl Operation {
     /// Every operation.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Analyze,
         Self::Plan,
         Self::Repair,
@@ -95,6 +99,7 @@ impl Operation {
         Self::FillHoles,
         Self::Modeller,
         Self::Boolean,
+        Self::Render,
     ];
 
     /// Name in paths, options and reports.
@@ -110,7 +115,13 @@ impl Operation {
             Self::FillHoles => "fill-holes",
             Self::Modeller => "modeller",
             Self::Boolean => "boolean",
+            Self::Render => "render",
         }
+    }
+
+    /// True when its answer has no mesh.
+    pub(crate) fn only_reports(self) -> bool {
+        matches!(self, Self::Analyze | Self::Plan | Self::Verify | Self::Render)
     }
 
     /// Numbers of files that it takes.
@@ -232,6 +243,10 @@ pub struct Options {
     pub policy: Option<Policy>,
     /// The MTL file of an OBJ: its diffuse colours become face colours, which OFF, PLY and glTF can hold.
     pub material: Option<Vec<u8>>,
+    /// The picture that is made beside everything else; `None`: none, and of `render` the usual one.
+    pub picture: Option<PictureChoices>,
+    /// A second file, which `render` shows beside the first.
+    pub after: Option<Vec<u8>>,
 }
 
 impl Options {
@@ -534,6 +549,8 @@ pub struct Answer {
     pub output: Option<Output>,
     /// The files of further targets of a simplification.
     pub levels: Vec<Output>,
+    /// A picture of the mesh and of the result, as PNG, if one was asked for.
+    pub picture: Option<Vec<u8>>,
 }
 
 /// A run without a report.
@@ -646,19 +663,25 @@ fn run_on_file(
     budget: &Budget,
 ) -> Result<Answer, Failure> {
     let encoding = budget.stage(Stage::Read, || formats::sniff(bytes, options.format))?;
-    let mut answer = if project::is_by_parts(encoding, operation, options) {
+    let is_by_parts = project::is_by_parts(encoding, operation, options);
+    let mut answer = if is_by_parts {
         let project = bound.reading(|| project::read(bytes, options, budget))?;
-        let triangles = project::triangles_of(&project, options);
+        let triangles = project::triangles_of(&project, operation, options);
         bound.running(triangles, || project::run_by_parts(operation, bytes, &project, options, budget))?
     } else {
         let soup = bound.reading(|| Input::read_soup(bytes, encoding, options, budget))?;
         bound.running(soup.triangles.len() as u64, || {
-            let input = Input::examined(soup, bytes, encoding, options, budget)?;
-            run_on(operation, input, options, budget)
+            let mut input = Input::examined(soup, bytes, encoding, options, budget)?;
+            let answer = run_on(operation, &mut input, options, budget)?;
+            bounds::with_picture(operation, answer, budget, |answer| {
+                picture::of_mesh(operation, &input, answer, options, budget)
+            })
         })?
     };
-    if encoding == Encoding::ThreeMf && answer.report.remarks.is_empty() && answer.report.parts.is_empty() {
-        answer.report.remarks = project::remarks_on_scene(bytes, &answer, options, budget)?;
+    let Report { remarks, parts, .. } = &answer.report;
+    if encoding == Encoding::ThreeMf && parts.is_empty() && (remarks.is_empty() || !is_by_parts) {
+        let of_scene = project::remarks_on_scene(bytes, &answer, options, budget)?;
+        answer.report.remarks.splice(0..0, of_scene);
     }
     Ok(answer)
 }
@@ -666,7 +689,7 @@ fn run_on_file(
 /// Runs `operation` on a mesh that was read.
 fn run_on(
     operation: Operation,
-    mut input: Input,
+    input: &mut Input,
     options: &Options,
     budget: &Budget,
 ) -> Result<Answer, Failure> {
@@ -675,18 +698,18 @@ fn run_on(
     let in_result_units = input.take_units_of_result(operation, options)?;
     let options = in_result_units.as_ref().unwrap_or(options);
     let answer = match operation {
-        Operation::Analyze => input.report(operation, budget)?.into_answer(),
+        Operation::Analyze | Operation::Render => input.report(operation, budget)?.into_answer(),
         Operation::Plan => input.planned(operation, budget)?.into_answer(),
         Operation::Verify => input.verification().into_answer(),
-        Operation::Convert => convert::convert(&input, options, budget)?,
-        Operation::Repair => repair::repair(&input, options, budget)?,
-        Operation::Simplify => simplify::simplify(&input, options, budget)?,
-        Operation::CutStitch => cut_stitch::cut_stitch(&input, options, budget)?,
-        Operation::FillHoles => fill_holes::fill_holes(&input, options, budget)?,
-        Operation::Modeller => modeller::model(&input, options, budget)?,
+        Operation::Convert => convert::convert(input, options, budget)?,
+        Operation::Repair => repair::repair(input, options, budget)?,
+        Operation::Simplify => simplify::simplify(input, options, budget)?,
+        Operation::CutStitch => cut_stitch::cut_stitch(input, options, budget)?,
+        Operation::FillHoles => fill_holes::fill_holes(input, options, budget)?,
+        Operation::Modeller => modeller::model(input, options, budget)?,
         Operation::Boolean => return Err(Failure::MeshCount { operation, count: 1 }),
     };
-    finished(&input, options, answer, budget)
+    finished(input, options, answer, budget)
 }
 
 /// The answer with what every operation tells.

@@ -247,6 +247,6 @@ impl Candidate {
         };
         let output =
             Some(Output { bytes: Some(self.bytes), encoding: self.encoding, origins: origins.to_vec() });
-        Ok(Answer { report, output, levels: Vec::new() })
+        Ok(Answer { report, output, levels: Vec::new(), picture: None })
     }
 }

@@ -24,10 +24,7 @@ fn units_of_result(
         format if format.is_in_metres() && !input_format.is_in_metres() => Units::Metre,
         _ => units,
     };
-    match operation {
-        Operation::Analyze | Operation::Plan | Operation::Verify => units,
-        _ => options.output_units.unwrap_or(default),
-    }
+    if operation.only_reports() { units } else { options.output_units.unwrap_or(default) }
 }
 
 impl Input {

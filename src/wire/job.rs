@@ -56,15 +56,19 @@ pub struct Links {
     /// Its mesh; null while there is none.
     #[schema(required)]
     pub result: Option<String>,
+    /// Its picture; null while there is none.
+    #[schema(required)]
+    pub thumbnail: Option<String>,
 }
 
 impl Links {
     /// The links of the job `id`.
-    pub fn new(id: &str, has_report: bool, has_result: bool) -> Self {
+    pub fn new(id: &str, has_report: bool, has_result: bool, has_picture: bool) -> Self {
         let this = format!("/v1/jobs/{id}");
         let report = has_report.then(|| format!("{this}/report"));
         let result = has_result.then(|| format!("{this}/result"));
-        Self { this, report, result }
+        let thumbnail = has_picture.then(|| format!("{this}/thumbnail.png"));
+        Self { this, report, result, thumbnail }
     }
 }
 

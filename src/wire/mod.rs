@@ -86,9 +86,9 @@ pub use webhook::{
     Deliveries, Delivery, DeliveryState, DeliveryTry, WebhookEvent, WebhookMessage, WebhookRequest,
 };
 pub use words::{
-    Across, ChangeKind, Condition, ConstraintValues, Contact, Criterion, Cut, DefectCode, Degenerate, Effort,
-    Encoding, Extract, Fidelity, FillHoles, FillMethod, Format, HoleClass, HoleFate, Kernel, LambdaFrom,
-    Mode, Nesting, OpenShells, Operation, Opposite, Outcome, Placement, ProximityTest, Reader, ReasonCode,
-    Rejection, Remedy, Require, SetOperation, Severity, ShellFate, SolidParts, Stage, Stitch, StitchValidity,
-    Units, VertexColors, Weld,
+    Across, ChangeKind, Condition, ConstraintValues, Contact, Criterion, Cut, DefectCode, Degenerate,
+    DrawnEdges, Effort, Encoding, Extract, Fidelity, FillHoles, FillMethod, Format, HoleClass, HoleFate,
+    Kernel, LambdaFrom, Mode, Nesting, OpenShells, Operation, Opposite, Outcome, Placement, Projection,
+    ProximityTest, Reader, ReasonCode, Rejection, Remedy, Require, SetOperation, Severity, Shade, ShellFate,
+    SolidParts, Stage, Stitch, StitchValidity, Units, VertexColors, Views, Weld,
 };

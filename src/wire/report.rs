@@ -252,6 +252,9 @@ pub struct TimingMs {
     /// How far the result is from the input.
     #[schema(required)]
     pub measure: Option<f64>,
+    /// A picture.
+    #[schema(required)]
+    pub draw: Option<f64>,
     /// The whole run of the engine.
     pub total: f64,
 }
@@ -267,6 +270,7 @@ impl TimingMs {
             Stage::Write => self.write,
             Stage::Certify => self.certify,
             Stage::Measure => self.measure,
+            Stage::Draw => self.draw,
         }
     }
 
@@ -280,6 +284,7 @@ impl TimingMs {
             Stage::Write => &mut self.write,
             Stage::Certify => &mut self.certify,
             Stage::Measure => &mut self.measure,
+            Stage::Draw => &mut self.draw,
         }
     }
 }
@@ -483,7 +488,7 @@ mod tests {
             );
             assert_eq!(
                 members(&report["timing_ms"]),
-                ["read", "analyze", "repair", "simplify", "write", "certify", "measure", "total"]
+                ["read", "analyze", "repair", "simplify", "write", "certify", "measure", "draw", "total"]
             );
         }
     }

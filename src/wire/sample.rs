@@ -131,12 +131,12 @@ pub(crate) fn repaired() -> Answer {
     };
     let output =
         Some(Output { bytes: Some(b"mended".to_vec()), encoding: Encoding::StlBinary, origins: Vec::new() });
-    Answer { report, output, levels: Vec::new() }
+    Answer { report, output, levels: Vec::new(), picture: None }
 }
 
 /// The answer to a repair of a mesh that was valid already.
 pub(crate) fn identical() -> Answer {
-    let Answer { report, output, levels } = repaired();
+    let Answer { report, output, levels, picture } = repaired();
     let report = Report {
         before: Some(analysis(0)),
         input_certificate: certificate(true),
@@ -149,7 +149,7 @@ pub(crate) fn identical() -> Answer {
         fidelity: Some(FidelityVerdict { word: Fidelity::Exact, changes: Vec::new() }),
         ..report
     };
-    Answer { report, output: output.map(|output| Output { bytes: None, ..output }), levels }
+    Answer { report, output: output.map(|output| Output { bytes: None, ..output }), levels, picture }
 }
 
 /// The answer to a repair without a valid result.
@@ -165,5 +165,5 @@ pub(crate) fn refused() -> Answer {
         refusal: Some(Refusal::NotRepairable { witness }),
         ..report
     };
-    Answer { report, output: None, levels: Vec::new() }
+    Answer { report, output: None, levels: Vec::new(), picture: None }
 }

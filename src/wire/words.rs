@@ -1,6 +1,8 @@
 //! One public word for each value of the engine's enumerations.
 
-use crate::{analysis, budget, certificate, formats, implicit, mesh, pipeline, repair, simplify, winding};
+use crate::{
+    analysis, budget, certificate, formats, implicit, mesh, pipeline, render, repair, simplify, winding,
+};
 
 /// An enumeration whose values have public words, as options see it.
 pub(super) trait Word: Sized {
@@ -129,6 +131,8 @@ mirror! { pipeline::Operation =>
         Modeller = "modeller",
         /// Several solids combined into one that is certified.
         Boolean = "boolean",
+        /// A picture.
+        Render = "render",
     }
 }
 
@@ -137,6 +141,19 @@ impl Operation {
     pub const WITH_MESH: &'static [Self] = &[
         Self::Repair,
         Self::Convert,
+        Self::Simplify,
+        Self::CutStitch,
+        Self::FillHoles,
+        Self::Modeller,
+        Self::Boolean,
+    ];
+    /// Those that do more than make a picture.
+    pub const BESIDE_PICTURE: &'static [Self] = &[
+        Self::Analyze,
+        Self::Plan,
+        Self::Repair,
+        Self::Convert,
+        Self::Verify,
         Self::Simplify,
         Self::CutStitch,
         Self::FillHoles,
@@ -154,6 +171,7 @@ impl Operation {
         Self::FillHoles,
         Self::Modeller,
         Self::Boolean,
+        Self::Render,
     ];
 
     /// Most meshes that it takes.
@@ -711,6 +729,82 @@ mirror! { budget::Stage =>
         Certify = "certify",
         /// How far the result is from the input.
         Measure = "measure",
+        /// A picture.
+        Draw = "draw",
+    }
+}
+
+words! {
+    /// From which sides a mesh is drawn; z is up, and the front is the side of small y.
+    Views {
+        /// From the front, the right and above.
+        Iso = "iso",
+        /// From small y.
+        Front = "front",
+        /// From large y.
+        Back = "back",
+        /// From small x.
+        Left = "left",
+        /// From large x.
+        Right = "right",
+        /// From above.
+        Top = "top",
+        /// From below.
+        Bottom = "bottom",
+        /// Iso, front, right and top.
+        Four = "four",
+        /// All seven.
+        All = "all",
+    }
+}
+
+impl Views {
+    /// The views by themselves.
+    pub fn to_engine(self) -> Vec<render::View> {
+        use render::View;
+        vec![match self {
+            Self::Iso => View::Iso,
+            Self::Front => View::Front,
+            Self::Back => View::Back,
+            Self::Left => View::Left,
+            Self::Right => View::Right,
+            Self::Top => View::Top,
+            Self::Bottom => View::Bottom,
+            Self::Four => return vec![View::Iso, View::Front, View::Right, View::Top],
+            Self::All => return View::ALL.to_vec(),
+        }]
+    }
+}
+
+mirror! { render::Shade =>
+    /// How faces are shaded.
+    Shade {
+        /// Each in one colour.
+        Flat = "flat",
+        /// Rounded where neighbours meet at less than 40 degrees.
+        Smooth = "smooth",
+    }
+}
+
+mirror! { render::Edges =>
+    /// Which edges are drawn.
+    DrawnEdges {
+        /// None.
+        None = "none",
+        /// Outlines, and edges at which the surface turns by more than 40 degrees.
+        Creases = "creases",
+        /// All edges of triangles.
+        All = "all",
+    }
+}
+
+mirror! { render::Projection =>
+    /// How depth changes what is seen.
+    Projection {
+        /// Not at all: parallel lines stay parallel.
+        Orthographic = "orthographic",
+        /// What is farther is smaller.
+        Perspective = "perspective",
     }
 }
 

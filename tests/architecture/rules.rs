@@ -7,7 +7,7 @@ const LEVELS: [&[&str]; 9] = [
     &["budget", "par", "geom"],
     &["spatial", "mesh"],
     &["formats", "distance", "winding"],
-    &["analysis", "printing", "implicit", "simplify", "modeller", "arrangement"],
+    &["analysis", "printing", "implicit", "simplify", "modeller", "arrangement", "render"],
     &["repair", "certificate", "wrap"],
     &["pipeline"],
     &["wire", "config"],

@@ -31,7 +31,7 @@ export async function withPage(browser, options, test) {
     if (message.type() === "error" && !message.text().startsWith("Failed to load resource")) wrong.push(message.text());
   });
   context.on("request", (request) => {
-    if (!request.url().startsWith(`${url}/`) && !request.url().startsWith("blob:")) wrong.push(`loaded ${request.url()}`);
+    if (!request.url().startsWith(`${url}/`) && !/^(blob|data):/.test(request.url())) wrong.push(`loaded ${request.url()}`);
   });
   await page.goto(url + path);
   await page.waitForSelector("body[data-ready]");

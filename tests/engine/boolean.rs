@@ -10,7 +10,7 @@ use meshmend::mesh::{Color, Soup};
 use meshmend::par;
 use meshmend::pipeline::{
     Answer, BooleanRefusal, Contact, Failure, Fidelity, NotCombined, NotSolid, Operation, Options, Outcome,
-    Refusal, Require, SetOperation, Units, run,
+    PictureChoices, Refusal, Require, SetOperation, Units, run,
 };
 
 fn try_files(files: &[Vec<u8>], options: &Options) -> Result<Answer, Failure> {
@@ -307,4 +307,33 @@ fn the_same_bytes_with_1_2_and_8_threads() {
         par::with_threads(threads, || answer(Difference, &two, Encoding::StlBinary).output.unwrap().bytes)
     });
     assert!(bytes[0] == bytes[1] && bytes[0] == bytes[2]);
+}
+
+/// Width and pixels of the picture of a run on these meshes.
+fn picture_of(meshes: &[RawSoup]) -> (u32, Vec<[u8; 3]>) {
+    let files: Vec<_> = meshes.iter().map(|mesh| encode(mesh, Encoding::Obj)).collect();
+    let options = Options { picture: Some(PictureChoices::default()), ..Options::default() };
+    let bytes = try_files(&files, &options).unwrap().picture.expect("a picture");
+    let mut read = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
+    let mut pixels = vec![0; read.output_buffer_size().unwrap()];
+    read.next_frame(&mut pixels).unwrap();
+    (read.info().width, pixels.chunks(3).map(|p| [p[0], p[1], p[2]]).collect())
+}
+
+#[test]
+fn a_picture_shows_all_solids_with_their_defects_and_what_became_of_them() {
+    const RIM: [u8; 3] = [242, 115, 28];
+    let moved = |mesh: RawSoup, by: f64| RawSoup {
+        positions: mesh.positions.iter().map(|p| p.map(|x| x + by)).collect(),
+        ..mesh
+    };
+    let (width, pixels) = picture_of(&[cube(), moved(cube(), 0.5)]);
+    assert_eq!(width, 960, "the files, and the result");
+    assert!(pixels.iter().any(|&[r, g, b]| g > r.saturating_add(50) && g > b), "what is new");
+    assert!(!pixels.contains(&RIM));
+    let mut open = moved(cube(), 2.0);
+    open.triangles.pop();
+    let (width, pixels) = picture_of(&[cube(), open]);
+    assert_eq!(width, 480, "there is no result");
+    assert!(pixels.contains(&RIM), "the hole in the second file");
 }

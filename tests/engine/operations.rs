@@ -24,9 +24,9 @@ fn open_cube() -> RawSoup {
 fn analyze_and_verify_return_no_file_and_no_outcome() {
     let bytes = encode(&open_cube(), Encoding::Off);
     for operation in [Operation::Analyze, Operation::Verify] {
-        let Answer { report, output, levels } = answer(operation, &bytes, &Options::default());
+        let Answer { report, output, levels, picture } = answer(operation, &bytes, &Options::default());
         assert_eq!((report.operation, report.outcome, report.refusal, output), (operation, None, None, None));
-        assert_eq!(levels, []);
+        assert_eq!((levels, picture), (vec![], None));
         assert!(!report.input_certificate.is_printable());
         assert_eq!(report.before.is_some(), operation == Operation::Analyze);
         assert_eq!(report.input.bytes, bytes.len() as u64);

@@ -5,7 +5,10 @@ use meshmend::certificate::{Depth, certify_parts};
 use meshmend::formats::threemf::{ObjectKind, Project, read_project};
 use meshmend::formats::{self, Encoding, Format, Place, ReadErrorKind, ReadOptions, read, sniff};
 use meshmend::mesh::{Color, Units};
-use meshmend::pipeline::{self, Answer, Failure, Operation, Options, Outcome, Parts, Require};
+use meshmend::pipeline::{
+    self, Answer, Failure, Operation, Options, Outcome, Parts, PictureChoices, Require,
+};
+use meshmend::render::View;
 use std::fmt::Write as _;
 use std::io::{Cursor, Read as _, Write as _};
 use zip::write::SimpleFileOptions;
@@ -150,6 +153,15 @@ fn packages_that_break_other_readers_are_read() {
         "<resources>",
         "<metadata name=\"Title\">a</metadata><metadata name=\"Title\">b</metadata><resources>",
     );
+    let of_model =
+        RELATIONSHIPS.replace("/3D/3dmodel.model", "C:/picture.png").replace("3dmodel\"", "texture\"");
+    let [relationships, root] = entries;
+    let dangling = package(&[relationships, root, ("3D/_rels/3dmodel.model.rels", of_model.as_bytes())]);
+    let mixed = model.replace(
+        "<resources>",
+        "<resources><m:colorgroup id=\"90\"><m:color color=\"#FF0000\"/></m:colorgroup>\
+         <m:compositematerials id=\"91\" matid=\"90\" matindices=\"0\"><m:composite values=\"1\"/></m:compositematerials>",
+    );
     let cases = [
         ("byte order mark", file(&marked), 0),
         ("absolute names", absolute, 0),
@@ -159,6 +171,9 @@ fn packages_that_break_other_readers_are_read() {
         ("data descriptors", streamed, 0),
         ("no relationships", loose, 1),
         ("metadata twice", file(&repeated), 1),
+        ("a part of the model that is not there", dangling, 1),
+        ("xml:space", file(&model.replace("<model ", "<model xml:space=\"default\" ")), 1),
+        ("a composite of colours", file(&mixed), 1),
     ];
     for (what, bytes, remarks) in cases {
         let project = project(&bytes);
@@ -167,6 +182,13 @@ fn packages_that_break_other_readers_are_read() {
         let answer = run(Operation::Verify, &bytes, &Options::default());
         assert!(answer.report.input_certificate.is_printable(), "{what}");
     }
+}
+
+#[test]
+fn an_element_of_thousands_of_attributes_is_refused() {
+    let many: String = (0..20_000).map(|i| format!("a{i}=\"\" ")).collect();
+    let error = error_of(&file(&simple().replace("<item ", &format!("<item {many}"))));
+    assert!(error.to_string().contains("more than 200 attributes in <item>"), "{error}");
 }
 
 #[test]
@@ -678,4 +700,78 @@ fn damaged_projects_are_answered_or_refused() {
             assert_eq!(scene.check(), Vec::<String>::new());
         }
     }
+}
+
+/// Width and pixels of a picture.
+fn pixels(png: &[u8]) -> (usize, Vec<[u8; 3]>) {
+    let mut read = png::Decoder::new(Cursor::new(png)).read_info().unwrap();
+    let mut bytes = vec![0; read.output_buffer_size().unwrap()];
+    read.next_frame(&mut bytes).unwrap();
+    (read.info().width as usize, bytes.chunks(3).map(|p| [p[0], p[1], p[2]]).collect())
+}
+
+#[test]
+fn a_picture_shows_every_part_at_its_places_with_the_defects_of_its_own() {
+    const RIM: [u8; 3] = [242, 115, 28];
+    const CROSSING: [u8; 3] = [224, 53, 127];
+    let (points, triangles) = cuboid([0.0; 3], [10.0; 3]);
+    // Without its lid, whole, and inside out.
+    let open: Vec<_> = triangles.iter().filter(|t| t.iter().any(|&v| v < 4)).copied().collect();
+    assert_eq!(open.len(), 10);
+    let inverted: Vec<_> = triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
+    let object = |(id, triangles): (usize, &Vec<[u32; 3]>)| {
+        format!("<object id=\"{id}\" type=\"model\">{}</object>", mesh(&points, triangles, |_| String::new()))
+    };
+    let objects: String = (1..).zip([&open, &triangles, &inverted]).map(object).collect();
+    let item =
+        |(id, x): (u32, f64)| format!("<item objectid=\"{id}\" transform=\"1 0 0 0 1 0 0 0 1 {x} 0 0\"/>");
+    let build: String = [(1, 0.0), (2, 5.0), (3, 30.0), (3, 50.0)].map(item).concat();
+    let bytes = file(&model("unit=\"millimeter\"", &objects, &build));
+    let picture = |operation: Operation, parts: Parts| {
+        let choices = PictureChoices { views: vec![View::Front], ..PictureChoices::default() };
+        let options = Options { parts, picture: Some(choices), ..Options::default() };
+        let answer = run(operation, &bytes, &options);
+        pixels(&answer.picture.expect("a picture"))
+    };
+    let (width, drawn) = picture(Operation::Render, Parts::Separate);
+    assert_eq!((width, drawn.len()), (480, 480 * 360));
+    let is_blue = |x: usize| matches!(drawn[180 * width + x], [r, _, b] if b > r.saturating_add(40));
+    // 60 mm are nine tenths of the width: a box is 72 pixels wide, and the first begins 24 pixels from the left.
+    assert_eq!(
+        [60, 276, 420].map(is_blue),
+        [false, true, true],
+        "both places of the part that is inside out"
+    );
+    assert!(drawn[..180 * width].contains(&RIM));
+    assert!(!drawn.contains(&CROSSING), "parts that meet are no defect of either");
+    assert_eq!(
+        picture(Operation::Analyze, Parts::Separate),
+        (width, drawn),
+        "the same beside another operation"
+    );
+    let (_, together) = picture(Operation::Render, Parts::Together);
+    assert!(together.contains(&CROSSING) && together.contains(&RIM));
+    let (width, mended) = picture(Operation::Repair, Parts::Separate);
+    assert_eq!(width, 960, "before and after");
+    assert!(mended.iter().any(|&[r, g, b]| g > r.saturating_add(50) && g > b), "the new lid");
+}
+
+#[test]
+fn a_project_that_is_too_large_to_be_drawn_is_mended_without_a_picture_and_says_so() {
+    let object = format!("<object id=\"1\" type=\"model\">{}</object>", plain_cuboid(10.0));
+    let bytes = file(&model("unit=\"millimeter\"", &object, &"<item objectid=\"1\"/>".repeat(3)));
+    let mut options = Options { picture: Some(PictureChoices::default()), ..Options::default() };
+    assert!(run(Operation::Repair, &bytes, &options).picture.is_some());
+    options.read.limits.triangles_max = 35;
+    let answer = run(Operation::Repair, &bytes, &options);
+    assert_eq!((answer.report.outcome, answer.picture), (Some(Outcome::Identical), None));
+    assert!(
+        answer.report.remarks.iter().any(|remark| remark.contains("no picture")),
+        "{:?}",
+        answer.report.remarks
+    );
+    let failure = pipeline::run(Operation::Render, &bytes, &options, &Budget::unlimited()).unwrap_err();
+    assert!(
+        matches!(failure, Failure::Unreadable(error) if matches!(error.kind, ReadErrorKind::TooLarge { .. }))
+    );
 }

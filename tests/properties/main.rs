@@ -36,6 +36,7 @@ mod random_holes;
 mod rational;
 mod raw_files;
 mod rbf;
+mod render;
 mod repair_pipeline;
 mod repair_steps;
 mod round_trip;

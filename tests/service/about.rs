@@ -16,7 +16,7 @@ fn it_describes_its_errors_limits_formats_and_version() {
     assert_eq!((&limits["upload_bytes_max"], &limits["slots"]), (&12345.into(), &3.into()));
     let formats = get("/v1/formats");
     let names: Vec<_> = formats.as_array().unwrap().iter().map(|row| row["name"].as_str().unwrap()).collect();
-    assert_eq!(names, ["obj", "stl", "off", "ply", "3mf", "glb", "gltf"]);
+    assert_eq!(names, ["obj", "stl", "off", "ply", "glb", "gltf", "3mf"]);
     assert_eq!(get("/v1/version")["version"], env!("CARGO_PKG_VERSION"));
 }
 
@@ -38,7 +38,8 @@ fn pages_load_nothing_from_other_hosts() {
         ("/page.js", "text/javascript; charset=utf-8"),
         ("/worker.js", "text/javascript; charset=utf-8"),
         ("/page.css", "text/css; charset=utf-8"),
-        ("/style.css", "text/css; charset=utf-8"),
+        ("/docs.css", "text/css; charset=utf-8"),
+        ("/docs.js", "text/javascript; charset=utf-8"),
     ] {
         let response = server.get(path).send().unwrap();
         assert_eq!(

@@ -22,6 +22,7 @@ mod meshes;
 mod neighbours;
 mod operations;
 mod ordering;
+mod pictures;
 mod printing;
 mod privacy;
 mod problems;

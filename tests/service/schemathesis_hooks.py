@@ -27,6 +27,9 @@ schemathesis.openapi.media_type("application/octet-stream", meshes("stl", "obj",
 # At most one of these may be given.
 TARGETS = {"faces", "ratio", "error_mm", "targets"}
 
+# A full turn goes with neither of these.
+VIEWS = {"views", "projection"}
+
 # The members of each step of a plan beside `step`, where it has any. The schema leaves the steps open, the reader does not.
 STEP_MEMBERS = {
     "split-polygons": {"degenerate"},
@@ -52,12 +55,16 @@ def before_call(context, case, kwargs):
         if place.get("vertex_colors") == "priority":
             # Needs a format that has colours, which a schema cannot say either.
             place["vertex_colors"] = "kept"
+        if "turntable" in place:
+            # All pictures together have a largest size.
+            place["turntable"] = 2
         if isinstance(place.get("plan"), dict):
             for step in place["plan"].get("steps") or []:
                 for name in step.keys() - STEP_MEMBERS.get(step["step"], set()) - {"step"}:
                     del step[name]
         for name in list(place):
-            if name in named or (name in TARGETS and named & TARGETS):
+            is_other_view = (name == "turntable" and named & VIEWS) or (name in VIEWS and "turntable" in named)
+            if name in named or (name in TARGETS and named & TARGETS) or is_other_view:
                 del place[name]
             named.add(name)
     if case.path == "/v1/jobs" and case.method == "POST" and "operation" not in named:

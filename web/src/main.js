@@ -354,7 +354,7 @@ async function repair() {
   of.choices.takesBest = at("best").checked;
   of.choices.share = Number(at("share").value) / 100;
   of.asked = of.repairOptions();
-  const job = await run({ operation: "repair", input: { job: of.inputJob }, ...of.asked }, null);
+  const job = await run({ operation: "repair", thumbnail: true, input: { job: of.inputJob }, ...of.asked }, null);
   if (of !== session) return;
   await showRepair(job);
 }

@@ -21,5 +21,6 @@ pub(super) mod write;
 mod xml;
 
 pub use model::{FaceAttributes, NO_NUMBER, ObjectKind, Property};
-pub use read::{Body, Project, read_project};
+pub use read::{Body, Project, read_project, read_scene};
 pub use rewrite::{FaceSource, NewBody, RewriteError, rewrite_project};
+pub use scene::Placed;

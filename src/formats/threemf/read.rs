@@ -3,7 +3,7 @@
 use super::model::{Content, FaceAttributes, Mesh, Model, Object, ObjectKind};
 use super::models::Models;
 use super::read_volumes::{Volume, are_all};
-use super::scene;
+use super::scene::{self, Assembled, Placed};
 use super::split::volume_of;
 use crate::budget::Budget;
 use crate::formats::{ReadError, ReadOptions};
@@ -18,6 +18,8 @@ pub struct Body {
     pub part: String,
     /// Id of the object in that part.
     pub object: u32,
+    /// Number of the model part among all that are read, and of the object in it.
+    pub source: [usize; 2],
     /// Name of the object or of the volume; empty when it has none.
     pub name: String,
     /// Number of the volume among those of the object, where the project parts its triangles into several.
@@ -101,7 +103,21 @@ pub(in crate::formats) fn read(
     budget: &Budget,
 ) -> Result<Soup, ReadError> {
     let models = Models::read(bytes, options, budget)?;
-    scene::assemble(&models, options, budget)
+    Ok(scene::assemble(&models, options, budget)?.soup)
+}
+
+/// The same with the places of objects in it.
+///
+/// # Errors
+/// As [`read_project`]; more triangles than the limits allow.
+pub fn read_scene(
+    bytes: &[u8],
+    options: &ReadOptions,
+    budget: &Budget,
+) -> Result<(Soup, Vec<Placed>), ReadError> {
+    let models = Models::read(bytes, options, budget)?;
+    let Assembled { soup, placed } = scene::assemble(&models, options, budget)?;
+    Ok((soup, placed))
 }
 
 /// The meshes of all parts, each by itself.
@@ -132,6 +148,7 @@ fn project_of(models: Models) -> Project {
             let body = Body {
                 part: part.clone(),
                 object: id,
+                source: [m, o],
                 name,
                 volume: None,
                 kind,

@@ -82,6 +82,9 @@ impl<'x> ModelReader<'x> {
                 return Err(self.error(root.at, &found, expected));
             }
         };
+        if attributes.iter().any(|attribute| attribute.key() == "xml:space") {
+            self.remark(root.at, "<model> has the attribute xml:space");
+        }
         let listed = ["requiredextensions", "recommendedextensions"];
         for (name, is_required) in listed.into_iter().zip([true, false]) {
             for prefix in value(&attributes, name).unwrap_or_default().split_ascii_whitespace() {

@@ -73,7 +73,12 @@ pub(super) fn mixtures<'x>(reader: &mut ModelReader<'x>, group: &Element<'x>) ->
     }
     if let Some(of) = of {
         match reader.model.groups.get(&of) {
-            Some(Group::Colors(colors)) if members.iter().all(|&m| (m as usize) < colors.len()) => {}
+            Some(Group::Colors(colors))
+                if reader.is_material(of) && members.iter().all(|&m| (m as usize) < colors.len()) => {}
+            Some(Group::Colors(_)) if !reader.is_material(of) => {
+                let text = format!("<{}> mixes the members of {of}, which are no base materials", group.name);
+                reader.remark(group.at, &text);
+            }
             _ => {
                 let text = format!("<{}> mixes materials {of}, which are not there", group.name);
                 reader.remark(group.at, &text);

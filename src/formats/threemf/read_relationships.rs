@@ -77,16 +77,6 @@ pub(super) fn read_start(package: &mut Package<'_>, budget: &Budget) -> Result<S
         let found = format!("a package without the model part {} that it names", shortened(&model.target));
         return Err(whole(found, "the part"));
     };
-    for relationship in all.iter().filter(|r| !r.is_external) {
-        let is_there = resolve("/", &relationship.target).is_some_and(|part| package.find(&part).is_some());
-        if !is_there {
-            let text = format!(
-                "The file breaks a rule of 3MF: the package names the part {}, which is not there.",
-                shortened(&relationship.target)
-            );
-            remarks.push(text);
-        }
-    }
     let beside = part
         .rsplit_once('/')
         .map_or_else(String::new, |(folder, name)| format!("{folder}/_rels/{name}.rels"));
@@ -97,6 +87,24 @@ pub(super) fn read_start(package: &mut Package<'_>, budget: &Budget) -> Result<S
         }
         None => Vec::new(),
     };
+    for (source, of_source) in [("/", &all), (part.as_str(), &of_model)] {
+        let owner = if source == "/" { "the package" } else { source };
+        let is_there = |r: &&Relationship| {
+            resolve(source, &r.target).is_some_and(|named| package.find(&named).is_some())
+        };
+        let missing: Vec<_> = of_source.iter().filter(|r| !r.is_external && !is_there(r)).collect();
+        if let [first, ..] = missing[..] {
+            let others = match missing.len() {
+                1 => String::new(),
+                count => format!(" and {} more", count - 1),
+            };
+            remarks.push(format!(
+                "The file breaks a rule of 3MF: {owner} names the part {}{others}, {} not there.",
+                shortened(&first.target),
+                if missing.len() == 1 { "which is" } else { "which are" }
+            ));
+        }
+    }
     let tickets = all.iter().chain(&of_model).filter(|r| is_of(r, PRINT_TICKET)).count();
     if tickets > 1 {
         remarks.push(format!("The file breaks a rule of 3MF: there are {tickets} print tickets."));

@@ -3,13 +3,48 @@
 use super::model::Content;
 use super::models::Models;
 use super::package::too_large;
+use super::transform::Transform;
 use crate::budget::{Budget, CHECK_EVERY};
 use crate::formats::colors::note_color;
-use crate::formats::{ReadError, ReadOptions};
+use crate::formats::{Precision, ReadError, ReadOptions};
+use crate::geom::DVec3;
 use crate::mesh::{Color, FaceFault, Soup};
 
+/// An object at its place in the scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Placed {
+    /// Number of its model part and its own number there, as of [`Body`](super::Body).
+    pub source: [usize; 2],
+    /// Number of its first vertex in the scene.
+    pub first_vertex: u32,
+    /// Number of its first triangle in the scene.
+    pub first_triangle: u32,
+    /// Number of its first face in the scene.
+    pub first_face: u32,
+    transform: Transform,
+}
+
+impl Placed {
+    /// Where a point of the object lies in the scene.
+    pub fn apply(&self, p: DVec3) -> DVec3 {
+        self.transform.apply(p, Precision::F64)
+    }
+}
+
+/// What is assembled of a build.
+pub(super) struct Assembled {
+    pub(super) soup: Soup,
+    /// The objects in it, in their order.
+    pub(super) placed: Vec<Placed>,
+}
+
 /// All placements in one mesh, in the order of the build.
-pub(super) fn assemble(models: &Models, options: &ReadOptions, budget: &Budget) -> Result<Soup, ReadError> {
+pub(super) fn assemble(
+    models: &Models,
+    options: &ReadOptions,
+    budget: &Budget,
+) -> Result<Assembled, ReadError> {
+    let mut placed = Vec::new();
     let units = models.all.first().map(|model| model.units);
     let mut scene = Soup { units, is_f32_exact: true, ..Soup::default() };
     let mut is_faulty = false;
@@ -33,8 +68,16 @@ pub(super) fn assemble(models: &Models, options: &ReadOptions, budget: &Budget) 
         if triangles > limits.triangles_max.into() {
             return Err(too_large("triangles", "triangles_max", limits.triangles_max.into(), triangles));
         }
-        charges.push(budget.charge(64 * (soup.positions.len() + soup.triangles.len()) as u64)?);
+        let bytes = 64 * (soup.positions.len() + soup.triangles.len()) + size_of::<Placed>();
+        charges.push(budget.charge(bytes as u64)?);
         let (first_vertex, first_face) = (scene.positions.len() as u32, scene.face_count);
+        placed.push(Placed {
+            source: placement.object,
+            first_vertex,
+            first_triangle: scene.triangles.len() as u32,
+            first_face,
+            transform: *transform,
+        });
         for (i, &p) in soup.positions.iter().enumerate() {
             if i % CHECK_EVERY == 0 {
                 budget.check()?;
@@ -74,7 +117,7 @@ pub(super) fn assemble(models: &Models, options: &ReadOptions, budget: &Budget) 
     if !is_faulty && scene.triangles.len() == scene.face_count as usize {
         scene.triangle_face = Vec::new();
     }
-    Ok(scene)
+    Ok(Assembled { soup: scene, placed })
 }
 
 fn as_color([r, g, b, a]: [u8; 4]) -> Color {

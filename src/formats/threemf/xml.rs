@@ -9,6 +9,8 @@ use std::borrow::Cow;
 
 /// Deepest nesting of elements.
 const DEPTH_MAX: usize = 64;
+/// Most attributes of an element.
+const ATTRIBUTES_MAX: usize = 200;
 
 /// Namespaces that are known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -243,6 +245,10 @@ impl<'x> Scanner<'x> {
         let mut all: Vec<Attribute<'x>> = Vec::new();
         for attribute in Attributes::of(element.attributes) {
             let (key, raw) = attribute.map_err(|()| self.bad_attributes(element.at, element.name))?;
+            if all.len() >= ATTRIBUTES_MAX {
+                let found = format!("more than {ATTRIBUTES_MAX} attributes in <{}>", element.name);
+                return Err(self.document.error(element.at, &found, "fewer"));
+            }
             if all.iter().any(|other| other.key == key) {
                 let found = format!("the attribute {key} twice in <{}>", element.name);
                 return Err(self.document.error(element.at, &found, "each attribute once"));

@@ -19,11 +19,13 @@ use utoipa::openapi::{Content, Header, InfoBuilder, OpenApi, Ref, RefOr, Require
 use utoipa::{PartialSchema as _, ToSchema};
 
 pub(super) use self::yaml::yaml;
+use super::representation::PNG;
 use crate::wire::{
-    self, BuildDirection, Contact, Criterion, Cut, Degenerate, DualEmbedding, EditSpec, Effort, Fidelity,
-    FillHoles, Format, InputRef, Job, JobRequest, LABELS_MAX, Mode, Nesting, OpenShells, Options, Outcome,
-    Placement, PlanRequest, PolicyName, Problem, ProblemCode, RangeSpec, Reader, Report, Require,
-    SetOperation, StageEvent, StateEvent, Stitch, StitchValidity, TargetSpec, Units, VertexColors, Weld,
+    self, BuildDirection, Contact, Criterion, Cut, Degenerate, DrawnEdges, DualEmbedding, EditSpec, Effort,
+    Fidelity, FillHoles, Format, InputRef, Job, JobRequest, LABELS_MAX, Mode, Nesting, OpenShells, Options,
+    Outcome, Placement, PlanRequest, PolicyName, Problem, ProblemCode, Projection, RangeSpec, Reader, Report,
+    Require, SetOperation, Shade, StageEvent, StateEvent, Stitch, StitchValidity, TargetSpec, Units,
+    VertexColors, Views, Weld,
 };
 
 /// Problems that any path may answer with.
@@ -128,7 +130,7 @@ fn schemas() -> Vec<(String, RefOr<Schema>)> {
     );
     add!(Format, Reader, Units, Require, FillHoles, OpenShells, Effort, Nesting, Contact, Mode, Criterion);
     add!(Placement, VertexColors, Cut, Stitch, StitchValidity, Degenerate, PolicyName, BuildDirection);
-    add!(DualEmbedding, Weld, SetOperation);
+    add!(DualEmbedding, Weld, SetOperation, Views, Shade, DrawnEdges, Projection);
     let own = wire::option_schemas().map(|(name, schema)| (name, RefOr::T(schema)));
     schemas.into_iter().chain(own).chain(bodies::schemas()).collect()
 }
@@ -179,6 +181,11 @@ fn complete_operation(path: &str, operation: &mut Operation) {
             add_problems(operation, &[JOB, PRODUCT, RUN].concat());
             add_answer(operation, "200", report_answer());
         }
+        "get_job_thumbnail" => {
+            add_problems(operation, &[JOB, PRODUCT, RUN].concat());
+            add_answer(operation, "200", picture_answer("The picture.").build());
+            add_answer(operation, "304", Response::new("Not changed."));
+        }
         "get_job_result" => {
             add_problems(
                 operation,
@@ -216,6 +223,11 @@ fn complete_run(operation: &mut Operation, on_mesh: wire::Operation) {
     add_parameter(operation, idempotency_key());
     add_problems(operation, &[UPLOAD, RUN].concat());
     add_answer(operation, "202", accepted());
+    if on_mesh == wire::Operation::Render {
+        let answer = picture_answer("The picture, or the report, as `Accept` asks for.");
+        let answer = answer.content("application/json", Content::new(Some(reference::<Report>())));
+        add_answer(operation, "200", answer.build());
+    }
     if on_mesh.makes_mesh() {
         add_problems(operation, MESH_OUT);
         add_answer(operation, "200", mesh_answer().build());
@@ -283,6 +295,13 @@ fn report_answer() -> Response {
         .content("application/json", Content::new(Some(reference::<Report>())))
         .content("text/html", Content::new(Some(Schema::Object(text().build()))))
         .build()
+}
+
+fn picture_answer(description: &str) -> ResponseBuilder {
+    ResponseBuilder::new()
+        .description(description)
+        .content(PNG, Content::new(Some(binary())))
+        .header("ETag", header("The digest of the picture."))
 }
 
 fn file_answer(description: &str) -> Response {

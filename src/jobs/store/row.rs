@@ -208,6 +208,9 @@ pub struct Ending {
     pub result: Option<ResultRef>,
     /// The meshes of further targets of a simplification.
     pub levels: Vec<ResultRef>,
+    /// Its picture, as PNG.
+    #[serde(default)]
+    pub picture: Option<BlobRef>,
 }
 
 impl Ending {
@@ -223,6 +226,7 @@ impl Ending {
             report: None,
             result: None,
             levels: Vec::new(),
+            picture: None,
         }
     }
 
@@ -233,6 +237,6 @@ impl Ending {
 
     /// Its files.
     pub fn blobs(&self) -> impl Iterator<Item = &BlobRef> {
-        self.report.iter().chain(self.results().map(|result| &result.blob))
+        self.report.iter().chain(self.results().map(|result| &result.blob)).chain(&self.picture)
     }
 }

@@ -247,7 +247,7 @@ fn outcome(reports: &[&Report], operation: Operation) -> Option<Outcome> {
         Outcome::Partial => 5,
         Outcome::Refused => 6,
     };
-    if matches!(operation, Operation::Analyze | Operation::Plan | Operation::Verify) {
+    if operation.only_reports() {
         return None;
     }
     reports.iter().filter_map(|report| report.outcome).max_by_key(|&outcome| rank(outcome))

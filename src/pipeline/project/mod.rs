@@ -3,11 +3,13 @@
 //! A part that is valid keeps its bytes, and so does everything around the parts. The file that is returned is judged as a
 //! whole, from its own bytes, part by part.
 
+mod drawn;
 mod merge;
 mod merged_analysis;
 mod sources;
 
 pub use self::sources::AttributeCounts;
+use super::bounds;
 use super::input::{Input, samples_of, units_of_file};
 use super::output::refusal;
 use super::{
@@ -18,7 +20,7 @@ use crate::certificate::{self, Certificate, Depth, Examination, PartsExamination
 use crate::formats::threemf::{
     Body, FaceSource, NewBody, ObjectKind, Project, RewriteError, read_project, rewrite_project,
 };
-use crate::formats::{self, Encoding, Format, ReadLimits, ReadOptions, WriteError};
+use crate::formats::{self, Encoding, Format, ReadErrorKind, ReadLimits, ReadOptions, WriteError};
 use crate::mesh::Soup;
 use crate::simplify::Target;
 
@@ -53,8 +55,8 @@ pub struct PartReport {
 /// True when `operation` handles the parts of such a file one by one. A format that holds one mesh takes all parts at their
 /// places.
 pub(super) fn is_by_parts(encoding: Encoding, operation: Operation, options: &Options) -> bool {
-    let stays = matches!(operation, Operation::Analyze | Operation::Plan | Operation::Verify)
-        || options.output_format.is_none_or(|format| format == Format::ThreeMf);
+    let stays =
+        operation.only_reports() || options.output_format.is_none_or(|format| format == Format::ThreeMf);
     encoding == Encoding::ThreeMf
         && stays
         && match options.parts {
@@ -69,9 +71,11 @@ pub(super) fn read(bytes: &[u8], options: &Options, budget: &Budget) -> Result<P
     Ok(budget.stage(Stage::Read, || read_project(bytes, &options.read, budget))?)
 }
 
-/// Triangles that a run looks at: those of each part once, and of all at their places where they are united.
-pub(super) fn triangles_of(project: &Project, options: &Options) -> u64 {
-    let at_places = |body: &Body| if options.parts == Parts::Union { u64::from(body.instances) } else { 0 };
+/// Triangles that a run looks at: those of each part once, and of all at their places where they are united or
+/// drawn.
+pub(super) fn triangles_of(project: &Project, operation: Operation, options: &Options) -> u64 {
+    let has_all = options.parts == Parts::Union || operation == Operation::Render;
+    let at_places = |body: &Body| if has_all { u64::from(body.instances) } else { 0 };
     let of = |body: &Body| (body.soup.triangles.len() as u64).saturating_mul(1 + at_places(body));
     project.bodies.iter().map(of).fold(0, u64::saturating_add)
 }
@@ -88,10 +92,24 @@ pub(super) fn run_by_parts(
     let run = Run { operation, bytes, project, options, budget };
     run.check_options()?;
     let answer = run.answer()?;
-    match options.parts {
-        Parts::Union if answer.report.refusal.is_none() => run.unite(answer),
-        _ => Ok(answer),
-    }
+    let answer = match options.parts {
+        Parts::Union if answer.report.refusal.is_none() => run.unite(answer)?,
+        _ => answer,
+    };
+    let mut too_large = None;
+    let mut answer =
+        bounds::with_picture(operation, answer, budget, |answer| match drawn::picture(&run, answer) {
+            // Parts that are few may be at so many places that all together are too large to be drawn.
+            Err(Failure::Unreadable(error))
+                if operation != Operation::Render && matches!(error.kind, ReadErrorKind::TooLarge { .. }) =>
+            {
+                too_large = Some(bounds::no_picture(&error.kind));
+                Ok(None)
+            }
+            drawn => drawn,
+        })?;
+    answer.report.remarks.extend(too_large);
+    Ok(answer)
 }
 
 /// What is said of a 3MF whose parts were taken as one mesh.
@@ -141,7 +159,7 @@ impl Run<'_> {
     /// That no option names elements of one mesh where there are several.
     fn check_options(&self) -> Result<(), Failure> {
         let (options, count) = (self.options, self.solids().len());
-        let makes_mesh = !matches!(self.operation, Operation::Analyze | Operation::Plan | Operation::Verify);
+        let makes_mesh = !self.operation.only_reports();
         if makes_mesh && options.output_units.is_some_and(|units| units != self.project.units) {
             let reason =
                 "a 3MF that keeps its parts keeps its unit; `parts=together` makes a new file of one mesh";
@@ -186,9 +204,9 @@ impl Run<'_> {
 
     fn run_one(&self, number: usize, examination: Examination) -> Result<Done, Failure> {
         let body = &self.project.bodies[number];
-        let input = Input::of(body.soup.clone(), examination, self.options)?;
+        let mut input = Input::of(body.soup.clone(), examination, self.options)?;
         let options = &self.options_of(body);
-        let answer = run_on(self.operation, input, options, self.budget)?;
+        let answer = run_on(self.operation, &mut input, options, self.budget)?;
         Ok(Done { body: number, answer, attributes: None })
     }
 
@@ -221,9 +239,7 @@ impl Run<'_> {
             if let Some(refused) = refused {
                 let refusal = done[refused].answer.report.refusal.clone();
                 report = Report { outcome: Some(Outcome::Refused), refusal, ..report };
-            } else if done.is_empty()
-                && !matches!(self.operation, Operation::Analyze | Operation::Plan | Operation::Verify)
-            {
+            } else if done.is_empty() && !self.operation.only_reports() {
                 return Ok(self.without_parts(report));
             }
             return Ok(report.into_answer());
@@ -237,7 +253,7 @@ impl Run<'_> {
         }
         report.certificate = Some(certificate);
         let levels = outputs.into_iter().skip(1).map(|(output, _)| output).collect();
-        Ok(Answer { report, output: Some(output), levels })
+        Ok(Answer { report, output: Some(output), levels, picture: None })
     }
 
     /// A repair demands a solid unless the caller says otherwise.
@@ -256,7 +272,7 @@ impl Run<'_> {
         let certificate = Some(report.input_certificate.clone());
         let report = Report { certificate, outcome: Some(Outcome::Partial), ..report };
         let output = Output { bytes: None, encoding: Encoding::ThreeMf, origins: Vec::new() };
-        Answer { report, output: Some(output), levels: Vec::new() }
+        Answer { report, output: Some(output), levels: Vec::new(), picture: None }
     }
 
     /// The file with the results of a level: 0 is the main one.
@@ -314,8 +330,8 @@ impl Run<'_> {
     /// The parts of `answer` at their places, as one solid.
     fn unite(&self, answer: Answer) -> Result<Answer, Failure> {
         let bytes = answer.output.as_ref().and_then(|output| output.bytes.as_deref()).unwrap_or(self.bytes);
-        let input = Input::read(bytes, Encoding::ThreeMf, self.options, self.budget)?;
-        let united = run_on(self.operation, input, self.options, self.budget)?;
+        let mut input = Input::read(bytes, Encoding::ThreeMf, self.options, self.budget)?;
+        let united = run_on(self.operation, &mut input, self.options, self.budget)?;
         let remarks = merge::left_out(self.project, Encoding::ThreeMf);
         let parts = answer.report.parts;
         let input = answer.report.input;
@@ -325,7 +341,7 @@ impl Run<'_> {
             .output
             .map(|output| Output { bytes: Some(output.bytes.unwrap_or_else(|| bytes.to_vec())), ..output });
         let report = Report { parts, remarks, input, input_certificate, ..united.report };
-        Ok(Answer { report, output, levels: united.levels })
+        Ok(Answer { report, output, levels: united.levels, picture: None })
     }
 }
 

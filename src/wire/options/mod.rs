@@ -19,9 +19,10 @@ use super::printing::{BuildDirection, PolicyInfo, PolicyName};
 use super::request::InputRef;
 use super::target::TargetSpec;
 use super::words::{
-    ConstraintValues, Contact, Criterion, Cut, Degenerate, Effort, Extract, FillHoles, FillMethod, Format,
-    Kernel, LambdaFrom, Mode, Nesting, OpenShells, Operation, Placement, Reader, Require, SetOperation,
-    SolidParts, Stitch, StitchValidity, Units, VertexColors, Weld,
+    ConstraintValues, Contact, Criterion, Cut, Degenerate, DrawnEdges, Effort, Extract, FillHoles,
+    FillMethod, Format, Kernel, LambdaFrom, Mode, Nesting, OpenShells, Operation, Placement, Projection,
+    Reader, Require, SetOperation, Shade, SolidParts, Stitch, StitchValidity, Units, VertexColors, Views,
+    Weld,
 };
 use crate::formats::{ReadLimits, ReadOptions};
 use crate::implicit::RbfOptions;
@@ -41,6 +42,9 @@ const MODELLER: &[Operation] = &[Operation::Modeller];
 const BOOLEAN: &[Operation] = &[Operation::Boolean];
 /// Operations whose result may touch itself.
 const TOUCHING: &[Operation] = &[Operation::Repair, Operation::Boolean];
+const RENDER: &[Operation] = &[Operation::Render];
+/// Most pixels in all pictures of a full turn.
+const TURN_PIXELS_MAX: u64 = 64_000_000;
 const SHARE: OptionKind = OptionKind::Number { min: 0.0, max: 1.0 };
 
 // One row: name, type, range where it is not all of the type's, who takes it, what it does.
@@ -150,6 +154,24 @@ options! {
         "Whether modeller writes faces of OBJ and OFF as polygons where every reader splits them alike; others, and those with interior loops, become triangles. Default: false.";
     set_operation: SetOperation, in BOOLEAN,
         "What boolean makes of its solids. Default: union.";
+    views: Views, in RENDER,
+        "From which sides render draws the mesh. Default: iso.";
+    width: u32 = OptionKind::Integer { min: 16, max: 2048 }, in RENDER,
+        "Width of each view that render draws, in pixels. Default: 640.";
+    height: u32 = OptionKind::Integer { min: 16, max: 2048 }, in RENDER,
+        "Height of each view that render draws, in pixels. Default: 480.";
+    shade: Shade, in RENDER,
+        "How render shades faces. Default: smooth.";
+    edges: DrawnEdges, in RENDER,
+        "Which edges render draws. Default: creases.";
+    projection: Projection, in RENDER,
+        "How depth changes what render draws; a turntable is always orthographic. Default: orthographic.";
+    defects: bool, in RENDER,
+        "Whether render colours and marks defects. Default: true.";
+    turntable: u32 = OptionKind::Integer { min: 2, max: 120 }, in RENDER,
+        "Number of pictures of a full turn, which render returns as an animated PNG instead of views; at most 64 million pixels in all. Default: none.";
+    thumbnail: bool, in Operation::BESIDE_PICTURE, of the service,
+        "Whether a picture of the mesh with its defects, and of the result with its new triangles, is made and kept with the job. Default: false.";
     policy: PolicyName, in Operation::ALL,
         "Process whose limits the result, or else the file, is measured against; see /v1/policies. Default: none.";
     build_direction: BuildDirection, in Operation::ALL,
@@ -208,6 +230,26 @@ impl Options {
             let needs = "a `format` or `output_format` of off, ply, glb or gltf";
             return Err(OptionError::Lacking { spec: table::spec_of("vertex_colors")?, needs });
         }
+        self.check_turntable()
+    }
+
+    /// That a full turn has no choice that it would leave out, and is no file of any size.
+    fn check_turntable(&self) -> Result<(), OptionError> {
+        let Some(pictures) = self.turntable else { return Ok(()) };
+        let spec = table::spec_of("turntable")?;
+        let others = [
+            ("views", self.views.is_some()),
+            ("projection", self.projection == Some(Projection::Perspective)),
+        ];
+        if let Some((by, _)) = others.into_iter().find(|&(_, is_given)| is_given) {
+            return Err(OptionError::Excluded { spec, by });
+        }
+        let (width, height) = pipeline::PictureChoices::RENDERED;
+        let [width, height] = [self.width.unwrap_or(width), self.height.unwrap_or(height)].map(u64::from);
+        if width * height * u64::from(pictures) > TURN_PIXELS_MAX {
+            let needs = "`width` and `height` of at most 64 million pixels in all its pictures";
+            return Err(OptionError::Lacking { spec, needs });
+        }
         Ok(())
     }
 
@@ -262,6 +304,34 @@ impl Options {
     fn policy(&self, millimetres: f64) -> Option<crate::printing::Policy> {
         let up = self.build_direction.unwrap_or(BuildDirection::Z);
         Some(PolicyInfo::of(self.policy?)?.to_engine(millimetres, up))
+    }
+
+    /// The picture that is asked for.
+    fn picture(&self) -> Option<pipeline::PictureChoices> {
+        let thumbnail = pipeline::PictureChoices::default();
+        if self.thumbnail == Some(true) {
+            return Some(thumbnail);
+        }
+        let wishes = [
+            self.views.is_some(),
+            self.width.is_some(),
+            self.height.is_some(),
+            self.shade.is_some(),
+            self.edges.is_some(),
+            self.projection.is_some(),
+            self.defects.is_some(),
+            self.turntable.is_some(),
+        ];
+        wishes.contains(&true).then(|| pipeline::PictureChoices {
+            views: self.views.map_or(thumbnail.views, Views::to_engine),
+            width: self.width.unwrap_or(pipeline::PictureChoices::RENDERED.0),
+            height: self.height.unwrap_or(pipeline::PictureChoices::RENDERED.1),
+            shade: self.shade.map(Into::into).unwrap_or_default(),
+            edges: self.edges.map(Into::into).unwrap_or_default(),
+            projection: self.projection.map(Into::into).unwrap_or_default(),
+            shows_defects: self.defects.unwrap_or(true),
+            turn_pictures: self.turntable.unwrap_or(0),
+        })
     }
 
     /// Both ask the engine for the same; how long the result is kept and where the bytes come from do not matter.
@@ -325,6 +395,8 @@ impl Options {
             samples: self.samples.map(|n| n as usize),
             policy: self.policy(millimetres),
             material: None,
+            picture: self.picture(),
+            after: None,
         }
     }
 }

@@ -162,6 +162,26 @@ fn one_target_excludes_the_others_and_errors_are_in_the_unit_of_the_file() {
 }
 
 #[test]
+fn a_turn_takes_no_choice_that_it_would_leave_out_and_no_size_without_end() {
+    let check =
+        |pairs: &[(&str, &str)]| Options::from_pairs(pairs.iter().copied()).unwrap().check(Operation::Render);
+    let (turn, wide) = (("turntable", "120"), ("width", "2048"));
+    for (wrong, told) in [
+        ([turn, ("views", "iso")], "`turntable` does not go with `views`"),
+        ([turn, ("projection", "perspective")], "`turntable` does not go with `projection`"),
+        (
+            [turn, wide],
+            "this `turntable` needs `width` and `height` of at most 64 million pixels in all its pictures",
+        ),
+    ] {
+        assert_eq!(check(&wrong).unwrap_err().to_string(), told);
+    }
+    assert_eq!(check(&[turn, ("projection", "orthographic")]), Ok(()));
+    assert_eq!(check(&[("turntable", "60"), wide]), Ok(()));
+    assert_eq!(check(&[("views", "all"), wide, ("height", "2048")]), Ok(()));
+}
+
+#[test]
 fn colours_of_priorities_need_a_format_that_shows_them() {
     let check = |pairs: &[(&str, &str)]| {
         Options::from_pairs(pairs.iter().copied()).unwrap().check(Operation::Simplify)

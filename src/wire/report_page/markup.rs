@@ -84,9 +84,9 @@ impl Page {
         }
         self.add(format_args!("<table>"));
         if !headings.is_empty() {
-            self.add(format_args!("<tr>"));
+            self.add(format_args!("<thead><tr>"));
             headings.iter().for_each(|heading| self.add(format_args!("<th>{}</th>", Escaped(heading))));
-            self.add(format_args!("</tr>"));
+            self.add(format_args!("</tr></thead>"));
         }
         for row in rows {
             self.add(format_args!("<tr>"));

@@ -1,4 +1,4 @@
-//! The report as a page for people: one file that loads nothing, with a style sheet inside.
+//! The report as a page for people: one file that loads nothing, with a style sheet and a picture inside.
 //!
 //! It is made from the report's JSON, so that a kept report and a fresh one look the same. Every text is escaped.
 
@@ -8,19 +8,22 @@ mod printing;
 
 pub use markup::Escaped;
 
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD as BASE64;
 use markup::{Cell, Page, Tone, figure, items, measured, text};
 use serde_json::Value;
 
 const STYLE: &str = include_str!("style.css");
 
 /// What a browser may do with the page: show it in its own style. The digest is that of the style sheet.
-pub const REPORT_PAGE_CSP: &str = "default-src 'none'; style-src 'sha256-7lm2/sSwmGLzLosgE5rg2lyExM19zNNaohyKXgcmTIo='; base-uri 'none'; form-action 'none'";
+pub const REPORT_PAGE_CSP: &str = "default-src 'none'; img-src data:; style-src 'sha256-jzsHThsjINi25K36WncVg3tDZSBJ/DkbYEo03VOTGJU='; base-uri 'none'; form-action 'none'";
 
 /// Witnesses that are shown of each defect.
 const PLACES: usize = 3;
 
-/// The page of a report, which is `report` as JSON.
-pub fn report_page(report: &Value) -> String {
+/// The page of a report, which is `report` as JSON; `picture`: a PNG of the mesh, and of the result beside it if there is
+/// one.
+pub fn report_page(report: &Value, picture: Option<&[u8]>) -> String {
     let mut page = Page(String::new());
     page.add(format_args!(
         "<!doctype html><html lang=en><head><meta charset=utf-8>\
@@ -30,6 +33,9 @@ pub fn report_page(report: &Value) -> String {
     ));
     head(&mut page, report);
     verdict(&mut page, report);
+    if let Some(picture) = picture {
+        show(&mut page, report, picture);
+    }
     found(&mut page, report);
     done(&mut page, report);
     filled(&mut page, report);
@@ -84,6 +90,47 @@ fn verdict(page: &mut Page, report: &Value) {
         page.paragraph(&sentence(text(&reason["message"])));
     }
     page.add(format_args!("</div>"));
+}
+
+/// The picture, with what its colours mean.
+fn show(page: &mut Page, report: &Value, picture: &[u8]) {
+    let has_other = report["after"].is_object();
+    let is_drawing = text(&report["operation"]) == "render";
+    let several = !items(&report["further_inputs"]).is_empty();
+    let (title, told) = if is_drawing {
+        (
+            "The picture",
+            "Lines, coloured faces and rings show defects; red is the inside of the surface, seen through a hole or \
+             because a part is inside out. Where a second mesh stands beside the first, its green faces are not in the \
+             first.",
+        )
+    } else if several && has_other {
+        (
+            "Your files, and the result",
+            "Left your files as they lie together, right the result, from the same side. Lines, coloured faces and rings \
+             show defects; red is the inside of the surface. In the result green faces are new and grey ones are those \
+             of your files.",
+        )
+    } else if has_other {
+        (
+            "Your file, and the result",
+            "Left your file, right the result, from the same side. Lines, coloured faces and rings show defects; red is \
+             the inside of the surface, seen through a hole or because a part is inside out. In the result green faces \
+             are new and grey ones are those of your file.",
+        )
+    } else {
+        (
+            "Your file",
+            "Lines, coloured faces and rings show defects; red is the inside of the surface, seen through a hole or \
+             because a part is inside out.",
+        )
+    };
+    page.add(format_args!(
+        "<figure><img alt=\"{}\" src=\"data:image/png;base64,{}\"><figcaption>{}</figcaption></figure>",
+        Escaped(title),
+        BASE64.encode(picture),
+        Escaped(told)
+    ));
 }
 
 /// With a capital letter and a full stop.
@@ -178,20 +225,20 @@ fn done(page: &mut Page, report: &Value) {
     if actions.is_empty() {
         return;
     }
-    page.heading("What was done");
+    page.heading("What was changed");
     let row = |action: &&Value| {
         let changes = items(&action["changes"]).iter().filter(|change| change["count"] != 0);
         let changes = changes.map(|change| format!("{} {}", words(text(&change["name"])), change["count"]));
         let causes = items(&action["causes"]).iter().map(|cause| words(text(cause)));
         vec![
-            Cell::Text(words(text(&action["step"]))),
+            Cell::Text(plain::step(text(&action["step"]))),
             Cell::Text(changes.collect::<Vec<_>>().join(", ")),
             Cell::Text(causes.collect::<Vec<_>>().join(", ")),
             Cell::Text(text(&action["reason"]).to_owned()),
         ]
     };
     let rows = actions.iter().map(row).collect();
-    page.table(&["Step", "Changes", "Because of", "Choice"], rows);
+    page.table(&["What", "How many", "Because of", "Choice"], rows);
 }
 
 /// A code as words.

@@ -83,6 +83,44 @@ pub(super) fn fidelity(word: &str, is_combined: bool) -> &'static str {
     }
 }
 
+/// What a step of a repair does; of another code its words.
+pub(super) fn step(code: &str) -> String {
+    let told = match code {
+        "split-polygons" => "Faces that programs read differently were split into triangles.",
+        "clear-noise" => "Tiny parts were left out.",
+        "round-to-float32" | "round-where-it-matters" => {
+            "Positions were rounded to what the format can hold."
+        }
+        "weld" => "Points at one place became one.",
+        "drop-degenerate" => "Faces without area were left out.",
+        "split-collinear" | "split-t-vertices" => "Faces were split where a point lies on their edge.",
+        "drop-duplicates" | "drop-near-duplicates" => "Faces that were there more than once were left out.",
+        "orient" => "Faces were turned so that all show their outside.",
+        "cut" => "The surface was cut where more than two faces meet.",
+        "pinch" | "snap" => "Edges that belong together were joined.",
+        "remove-crossing" => "Faces that pass through others were taken out.",
+        "pair-sheets" => "Two sides of a wall were joined at their rims.",
+        "join-contacts" => "Parts that touch were joined by necks.",
+        "span-rims" => "Open rims were spanned.",
+        "unite" | "unite-and-copy-bare" => "Parts that pass through each other became one.",
+        "bore-contacts" | "open-contacts" => "Parts that touch were drawn apart a little.",
+        "fill-holes" => "Holes were closed.",
+        "mend-thin-faces" => "Faces as thin as needles were mended.",
+        "thicken" => "Surfaces without thickness became walls.",
+        "join-copies" => "Copies of one part were joined.",
+        "nest" => "Parts inside others were turned the right way or left out.",
+        "remove-parts" => "Parts were removed as asked.",
+        "rebuild" | "wrap" => "The surface was rebuilt.",
+        "recenter" => "Everything was moved to the origin, as allowed.",
+        "union" => "The solids were united.",
+        "intersection" => "What all solids share was kept.",
+        "difference" => "The further solids were taken out of the first.",
+        "simplify" => "The surface was written with fewer triangles.",
+        code => return code.replace(['-', '_'], " "),
+    };
+    told.to_owned()
+}
+
 /// What a check for printing is about.
 pub(super) fn check(code: &str) -> &'static str {
     match code {

@@ -5,7 +5,7 @@ use crate::wire::{Report, TimingMs, sample};
 use serde_json::json;
 
 fn page_of(answer: &crate::pipeline::Answer) -> String {
-    report_page(&serde_json::to_value(Report::new(&answer.report, TimingMs::default())).unwrap())
+    report_page(&serde_json::to_value(Report::new(&answer.report, TimingMs::default())).unwrap(), None)
 }
 
 #[test]
@@ -18,7 +18,7 @@ fn a_repair_is_told_from_verdict_to_certificate() {
         "No unit is stated: ",
         "The surface has holes or open rims: it is not watertight.",
         "face 2 (line 17)",
-        "fill holes",
+        "Holes were closed.",
         "faces added 1",
         "How far the result is from your file",
         "of the returned file",
@@ -50,7 +50,7 @@ fn text_of_a_report_cannot_become_markup_and_nothing_is_loaded() {
     report["engine"]["name"] = json!(evil);
     report["certificate"]["sha256"] = json!(evil);
     report["printing"] = json!({"policy": evil, "checks": [{"message": evil, "code": evil}]});
-    let page = report_page(&report);
+    let page = report_page(&report, None);
     assert!(!page.to_lowercase().contains("<script"), "{page}");
     assert_eq!(page.matches('<').count(), page.matches('>').count());
     for word in ["src=", "href=", "url(", "@import", "http:", "https:"] {
@@ -67,6 +67,18 @@ fn text_cannot_become_markup() {
 #[test]
 fn whatever_json_it_is_given_there_is_a_page() {
     for report in [json!(null), json!({}), json!([1]), json!({"before": 5, "printing": {"quote": []}})] {
-        assert!(report_page(&report).ends_with("</html>\n"));
+        assert!(report_page(&report, None).ends_with("</html>\n"));
     }
+}
+
+#[test]
+fn a_picture_stands_in_the_page_itself_and_its_words_say_what_it_shows() {
+    let report = serde_json::to_value(Report::new(&sample::repaired().report, TimingMs::default())).unwrap();
+    let page = report_page(&report, Some(b"picture"));
+    assert!(page.contains("src=\"data:image/png;base64,cGljdHVyZQ==\""), "{page}");
+    assert!(page.contains("Left your file, right the result"));
+    let refused = serde_json::to_value(Report::new(&sample::refused().report, TimingMs::default())).unwrap();
+    assert!(!report_page(&refused, Some(b"picture")).contains("the result, from the same side"));
+    assert!(REPORT_PAGE_CSP.contains("img-src data:;"));
+    assert!(!report_page(&report, None).contains("<img"));
 }

@@ -99,6 +99,7 @@ export const words = {
   "stage.write": ["Writing", "Schreiben", "Écriture"],
   "stage.certify": ["Proving", "Beweisen", "Preuve"],
   "stage.measure": ["Measuring", "Messen", "Mesure"],
+  "stage.draw": ["Drawing", "Zeichnen", "Dessin"],
 
   // Checks of a print process.
   "check.wall-thickness": ["Wall thickness", "Wandstärke", "Épaisseur des parois"],

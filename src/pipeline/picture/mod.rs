@@ -1,0 +1,313 @@
+//! Pictures of a run: the mesh as uploaded with its defects, the result with its new triangles, from one side or several,
+//! or turning.
+
+mod paint;
+
+use self::paint::{Painted, Side};
+use super::{Answer, Failure, Input, Operation, Options, Report, Units};
+use crate::analysis::{Element, Finding, Witness};
+use crate::budget::{Budget, Stage, Stopped};
+use crate::formats::{self, ReadLimits, ReadOptions};
+use crate::geom::DVec3;
+use crate::mesh::Soup;
+use crate::render::{
+    Camera, Canvas, Edges, Frame, LETTER_HEIGHT, LETTER_WIDTH, Model, Projection, Rgb, SIDE_MAX, SIDE_MIN,
+    Shade, Style, View, animation, draw, picture,
+};
+
+/// What a picture shows, and how.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PictureChoices {
+    /// From which sides; one below the other where before and after stand side by side, in a grid otherwise.
+    pub views: Vec<View>,
+    /// Width of each view in pixels.
+    pub width: u32,
+    /// Height of each view in pixels.
+    pub height: u32,
+    /// How faces are shaded.
+    pub shade: Shade,
+    /// Which edges are drawn.
+    pub edges: Edges,
+    /// How depth changes what is seen.
+    pub projection: Projection,
+    /// Whether defects are coloured and marked.
+    pub shows_defects: bool,
+    /// Pictures of a full turn around z, as an animation; 0: none, the views instead.
+    pub turn_pictures: u32,
+}
+
+impl PictureChoices {
+    /// Width and height of a view of `render`, where it is not told another one.
+    pub const RENDERED: (u32, u32) = (640, 480);
+}
+
+impl Default for PictureChoices {
+    /// What is kept of a job: a picture for a list or a mail.
+    fn default() -> Self {
+        Self {
+            views: vec![View::Iso],
+            width: 480,
+            height: 360,
+            shade: Shade::Smooth,
+            edges: Edges::Creases,
+            projection: Projection::Orthographic,
+            shows_defects: true,
+            turn_pictures: 0,
+        }
+    }
+}
+
+/// Colour behind everything.
+const BACKGROUND: Rgb = [255, 255, 255];
+/// Colour of backs, so that holes and inverted parts are seen.
+const BACK: Rgb = [207, 63, 54];
+/// Colour of words.
+const INK: Rgb = [52, 62, 72];
+/// How far the eye of a turn is above the horizon, in degrees.
+const TURN_ELEVATION: f64 = 24.0;
+/// Time of a full turn in milliseconds.
+const TURN_MS: u32 = 6000;
+
+/// How `options` ask for a picture; `None`: they ask for none.
+pub(super) fn choices(operation: Operation, options: &Options) -> Option<PictureChoices> {
+    let (width, height) = PictureChoices::RENDERED;
+    let usual = || PictureChoices { width, height, ..PictureChoices::default() };
+    options.picture.clone().or_else(|| (operation == Operation::Render).then(usual))
+}
+
+/// What is drawn of a file.
+pub(super) struct Drawn<'d> {
+    /// All its triangles, in the unit of the result.
+    pub(super) soup: &'d Soup,
+    /// Its defects, with faces, half-edges and places of `soup`.
+    pub(super) findings: &'d [Finding],
+    /// Numbers of the first vertices of its meshes, each of which was judged by itself; empty: it is one.
+    pub(super) meshes: &'d [u32],
+}
+
+/// By how much the numbers of a mesh are larger where it is drawn with others.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shift {
+    pub(super) face: u32,
+    /// `None`: triangles are not known by their numbers.
+    pub(super) triangle: Option<u32>,
+}
+
+impl Shift {
+    /// `finding` with at most `witnesses_max` of its witnesses, moved by `place`.
+    pub(super) fn shifted(
+        self,
+        finding: &Finding,
+        witnesses_max: usize,
+        place: impl Fn(DVec3) -> DVec3,
+    ) -> Finding {
+        let face = |element: &Element| Element { index: element.index.saturating_add(self.face), ..*element };
+        let witness = |witness: &Witness| Witness {
+            faces: witness.faces.iter().map(face).collect(),
+            position: witness.position.map(&place),
+            anchor: witness.anchor.zip(self.triangle).map(|(anchor, by)| anchor.saturating_add(3 * by)),
+            ..witness.clone()
+        };
+        let witnesses = finding.witnesses.iter().take(witnesses_max).map(witness).collect();
+        Finding { witnesses, ..*finding }
+    }
+}
+
+/// The picture of one mesh that was read, as PNG; `None`: none is asked for.
+pub(super) fn of_mesh(
+    operation: Operation,
+    input: &Input,
+    answer: &Answer,
+    options: &Options,
+    budget: &Budget,
+) -> Result<Option<Vec<u8>>, Failure> {
+    let Some(choices) = choices(operation, options) else { return Ok(None) };
+    let findings = answer.report.before.as_ref().map_or(&[][..], |analysis| &analysis.findings);
+    make(&Drawn { soup: &input.soup, findings, meshes: &[] }, answer, &choices, options, budget).map(Some)
+}
+
+/// The picture of several meshes that became one; `starts` are their first vertices, triangles and faces in that of
+/// `input`.
+pub(super) fn of_meshes(
+    input: &Input,
+    starts: &[[u32; 3]],
+    answer: &Answer,
+    options: &Options,
+    budget: &Budget,
+) -> Result<Option<Vec<u8>>, Failure> {
+    let Some(choices) = choices(answer.report.operation, options) else { return Ok(None) };
+    let Report { before, further_inputs, .. } = &answer.report;
+    let analyses = std::iter::once(before).chain(further_inputs.iter().map(|further| &further.before));
+    let findings: Vec<Finding> = analyses
+        .zip(starts)
+        .flat_map(|(analysis, &[_, triangle, face])| {
+            let shift = Shift { face, triangle: Some(triangle) };
+            let findings = analysis.iter().flat_map(|analysis| &analysis.findings);
+            findings.map(move |finding| shift.shifted(finding, usize::MAX, |p| p))
+        })
+        .collect();
+    let meshes: Vec<u32> = starts.iter().map(|[vertex, ..]| *vertex).collect();
+    let drawn = Drawn { soup: &input.soup, findings: &findings, meshes: &meshes };
+    make(&drawn, answer, &choices, options, budget).map(Some)
+}
+
+/// The picture of `drawn`, and of the result beside it if there is one, as PNG.
+pub(super) fn make(
+    drawn: &Drawn<'_>,
+    answer: &Answer,
+    choices: &PictureChoices,
+    options: &Options,
+    budget: &Budget,
+) -> Result<Vec<u8>, Failure> {
+    budget.stage(Stage::Draw, || {
+        let after = read_after(answer, options, budget)?;
+        let before = Painted::before(drawn, choices.shows_defects, after.is_some(), budget)?;
+        let after_painted =
+            after.as_ref().map(|soup| Painted::after(drawn.soup, soup, budget)).transpose()?;
+        let sides: Vec<(&Soup, Painted)> =
+            std::iter::once((drawn.soup, before)).chain(after.as_ref().zip(after_painted)).collect();
+        Ok(sheet(&sides, choices, budget)?)
+    })
+}
+
+/// The mesh that stands beside the uploaded one, if there is one: a second file in the unit of the first, or the result.
+fn read_after(answer: &Answer, options: &Options, budget: &Budget) -> Result<Option<Soup>, Failure> {
+    if let Some(bytes) = &options.after {
+        let in_after = |failure: Failure| Failure::InMesh { number: 2, failure: Box::new(failure) };
+        let encoding = formats::sniff(bytes, None).map_err(|error| in_after(error.into()))?;
+        let mut soup = formats::read(bytes, encoding, &options.read, budget).map_err(|error| {
+            match Failure::from(error) {
+                stopped @ Failure::Stopped(_) => stopped,
+                failure => in_after(failure),
+            }
+        })?;
+        let of_format = encoding.format().is_in_metres().then_some(Units::Metre);
+        if let Some(units) = soup.units.or(of_format) {
+            scale(&mut soup, units.millimetres() / answer.report.input.result_units.millimetres());
+        }
+        return Ok(Some(soup));
+    }
+    // A result that is the file itself would be the same picture again.
+    let made = answer.output.as_ref().filter(|_| answer.report.after.is_some());
+    let Some((bytes, output)) = made.and_then(|output| output.bytes.as_ref().zip(Some(output))) else {
+        return Ok(None);
+    };
+    // What we write may be larger than what we would take in.
+    let limits =
+        ReadLimits { triangles_max: u32::MAX, vertices_max: u32::MAX, polygon_corners_max: u32::MAX };
+    let options = ReadOptions { limits, ..ReadOptions::default() };
+    Ok(Some(formats::read(bytes, output.encoding, &options, budget)?))
+}
+
+/// Changes the unit of `soup`; what would be out of range stays where it is at the end of the range.
+fn scale(soup: &mut Soup, factor: f64) {
+    if factor != 1.0 {
+        let most = DVec3::splat(f64::MAX);
+        for position in soup.positions.iter_mut().filter(|position| position.is_finite()) {
+            *position = (*position * factor).clamp(-most, most);
+        }
+    }
+}
+
+/// All views of all sides, as PNG.
+fn sheet(sides: &[(&Soup, Painted)], choices: &PictureChoices, budget: &Budget) -> Result<Vec<u8>, Stopped> {
+    let [width, height] = [choices.width, choices.height].map(|side| side.clamp(SIDE_MIN, SIDE_MAX));
+    let frame = Frame::around(sides.iter().map(|(soup, painted)| painted.scene(soup).bounds()));
+    let models = sides
+        .iter()
+        .map(|(soup, painted)| Model::of(painted.scene(soup), frame, choices.shade, budget))
+        .collect::<Result<Vec<_>, _>>()?;
+    let all: Vec<&Model<'_>> = models.iter().collect();
+    let aspect = f64::from(width) / f64::from(height);
+    let style = Style { edges: choices.edges, background: BACKGROUND, back: Some(BACK) };
+    let tile = |camera: &Camera, side: usize, view: Option<View>| {
+        let mut canvas = draw(all[side], camera, width, height, &style, budget)?;
+        label(&mut canvas, &sides[side].1, view);
+        Ok(canvas)
+    };
+    if choices.turn_pictures > 0 {
+        let pictures = choices.turn_pictures;
+        let camera = Camera::turning(&all, TURN_ELEVATION, aspect, budget)?;
+        let pixels = u64::from(width) * u64::from(height) * sides.len() as u64;
+        // A row of tiles and the same as one, and the file as it grows.
+        let _memory = budget.charge(6 * pixels)?;
+        let (mut of_file, mut charged) = (Vec::new(), 0);
+        let frame = |number: u32, file_bytes: usize| {
+            of_file.push(budget.charge((file_bytes - charged) as u64)?);
+            charged = file_bytes;
+            budget.spend(pixels / 4)?;
+            // From the front and the right, as the iso view.
+            let camera = camera(45.0 + 360.0 * f64::from(number) / f64::from(pictures));
+            let row = (0..sides.len())
+                .map(|side| tile(&camera, side, None))
+                .collect::<Result<Vec<_>, Stopped>>()?;
+            Ok(grid(&row, row.len()))
+        };
+        return animation(pictures, (TURN_MS / pictures) as u16, frame);
+    }
+    let mut tiles = Vec::new();
+    let _memory = budget
+        .charge(u64::from(width) * u64::from(height) * 6 * sides.len() as u64 * choices.views.len() as u64)?;
+    for &view in &choices.views {
+        let camera = Camera::at(&all, view.direction(), choices.projection, aspect, budget)?;
+        let named = (choices.views.len() > 1).then_some(view);
+        for side in 0..sides.len() {
+            tiles.push(tile(&camera, side, named)?);
+        }
+    }
+    let columns = if sides.len() > 1 { sides.len() } else { columns_of(tiles.len()) };
+    Ok(picture(&grid(&tiles, columns)))
+}
+
+/// Columns of a grid of so many tiles that is about as wide as high.
+fn columns_of(tiles: usize) -> usize {
+    (1..).find(|columns| columns * columns >= tiles).unwrap_or(1)
+}
+
+/// Tiles of one size, row by row.
+fn grid(tiles: &[Canvas], columns: usize) -> Canvas {
+    let Some(first) = tiles.first() else { return Canvas::filled(1, 1, BACKGROUND) };
+    let (width, height) = (first.width(), first.height());
+    let rows = tiles.len().div_ceil(columns.max(1));
+    let mut canvas = Canvas::filled(width * columns, height * rows, BACKGROUND);
+    for (at, tile) in tiles.iter().enumerate() {
+        canvas.put(tile, at % columns * width, at / columns * height);
+    }
+    canvas
+}
+
+/// Names the side and the view above, what the colours mean and the size below.
+fn label(canvas: &mut Canvas, painted: &Painted, view: Option<View>) {
+    // Letters of about a thirtieth of the width.
+    let scale = ((canvas.width() + 120) / 300).max(1);
+    let (margin, step) = (5 * scale, (LETTER_HEIGHT + 3) * scale);
+    let side = match painted.side {
+        Side::Only => "",
+        Side::Before => "before",
+        Side::After => "after",
+    };
+    let title = [side, view.map_or("", View::name)].join(" ");
+    canvas.write(title.trim(), margin, margin, scale, INK);
+    let fitting = canvas.width().saturating_sub(2 * margin) / ((LETTER_WIDTH + 1) * scale);
+    let size = (!painted.size.is_empty()).then_some((None, &painted.size));
+    let legend = painted.legend.iter().map(|(color, text)| (Some(*color), text));
+    let lines: Vec<_> = legend.chain(size).collect();
+    let height = canvas.height();
+    for (at, (color, text)) in lines.iter().enumerate() {
+        let below = (lines.len() - at) * step + margin - 3 * scale;
+        let Some(y) = height.checked_sub(below).filter(|&y| y > margin + step) else { continue };
+        let left = match color {
+            Some(color) => {
+                canvas.fill(margin, y, LETTER_HEIGHT * scale, LETTER_HEIGHT * scale, *color);
+                margin + (LETTER_HEIGHT + 3) * scale
+            }
+            None => margin,
+        };
+        let text: String =
+            text.chars().take(fitting.saturating_sub(if color.is_some() { 2 } else { 0 })).collect();
+        canvas.write(&text, left, y, scale, INK);
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,124 @@
+//! Pictures of small files.
+
+use super::*;
+use crate::formats::Format;
+use crate::pipeline::{FillHoles, run};
+
+/// A cube without its top, as OBJ.
+const BOX: &[u8] = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
+    f 1 3 2\nf 1 4 3\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n";
+
+fn pixels(png: &[u8]) -> (usize, usize, Vec<Rgb>) {
+    let mut read = png::Decoder::new(std::io::Cursor::new(png)).read_info().unwrap();
+    let mut bytes = vec![0; read.output_buffer_size().unwrap()];
+    read.next_frame(&mut bytes).unwrap();
+    let info = read.info();
+    (info.width as usize, info.height as usize, bytes.chunks(3).map(|p| [p[0], p[1], p[2]]).collect())
+}
+
+fn picture_of(operation: Operation, options: &Options) -> Vec<u8> {
+    run(operation, BOX, options, &Budget::unlimited()).unwrap().picture.unwrap()
+}
+
+fn count(pixels: &[Rgb], is: impl Fn(i32, i32, i32) -> bool) -> usize {
+    pixels.iter().filter(|p| is(p[0].into(), p[1].into(), p[2].into())).count()
+}
+
+fn is_orange(r: i32, g: i32, b: i32) -> bool {
+    r > 200 && (90..140).contains(&g) && b < 60
+}
+
+fn is_red(r: i32, g: i32, b: i32) -> bool {
+    r > g + 60 && r > b + 60 && (g - b).abs() < 30
+}
+
+fn is_green(r: i32, g: i32, b: i32) -> bool {
+    g > r + 50 && g > b
+}
+
+#[test]
+fn an_open_box_shows_its_rim_and_its_inside() {
+    let (width, height, pixels) = pixels(&picture_of(Operation::Render, &Options::default()));
+    assert_eq!((width, height), (640, 480));
+    assert!(count(&pixels, is_orange) > 500, "the rim");
+    assert!(count(&pixels, is_red) > 5000, "the inside");
+    assert_eq!(count(&pixels, is_green), 0);
+}
+
+#[test]
+fn a_repair_shows_before_and_after_with_what_is_new() {
+    let options = Options {
+        picture: Some(PictureChoices::default()),
+        fill_holes: FillHoles::Simple,
+        ..Options::default()
+    };
+    let (width, height, pixels) = pixels(&picture_of(Operation::Repair, &options));
+    assert_eq!((width, height), (960, 360));
+    let half = |right: usize| -> Vec<Rgb> {
+        pixels.iter().enumerate().filter(|(at, _)| at % width / 480 == right).map(|(_, &p)| p).collect()
+    };
+    let [before, after] = [half(0), half(1)];
+    assert!(count(&before, is_red) > 5000 && count(&before, is_green) == 0);
+    assert!(count(&after, is_green) > 5000 && count(&after, is_red) == 0);
+}
+
+#[test]
+fn without_a_wish_there_is_no_picture_and_with_one_the_rest_is_as_it_was() {
+    let budget = Budget::unlimited();
+    let plain = run(Operation::Analyze, BOX, &Options::default(), &budget).unwrap();
+    assert_eq!(plain.picture, None);
+    let options = Options { picture: Some(PictureChoices::default()), ..Options::default() };
+    let with = run(Operation::Analyze, BOX, &options, &Budget::unlimited()).unwrap();
+    assert_eq!(with.report.before, plain.report.before);
+    assert!(with.picture.is_some());
+}
+
+#[test]
+fn several_views_stand_in_a_grid_and_a_turn_is_an_animation() {
+    let choices = PictureChoices { views: View::ALL.to_vec(), width: 100, height: 80, ..Default::default() };
+    let options = Options { picture: Some(choices.clone()), ..Options::default() };
+    let (width, height, _) = pixels(&picture_of(Operation::Render, &options));
+    assert_eq!((width, height), (300, 240));
+    let choices = PictureChoices { turn_pictures: 5, ..choices };
+    let options = Options { picture: Some(choices), ..Options::default() };
+    let turning = picture_of(Operation::Render, &options);
+    let read = png::Decoder::new(std::io::Cursor::new(&turning)).read_info().unwrap();
+    assert_eq!(read.info().animation_control().unwrap().num_frames, 5);
+}
+
+#[test]
+fn a_second_file_stands_beside_the_first() {
+    let options = Options { after: Some(BOX.to_vec()), ..Options::default() };
+    let (width, _, pixels) = pixels(&picture_of(Operation::Render, &options));
+    assert_eq!(width, 1280);
+    assert_eq!(count(&pixels, is_green), 0, "every triangle is there before");
+}
+
+#[test]
+fn a_second_file_in_metres_is_as_large_as_the_same_in_millimetres() {
+    let options = Options { output_format: Some(Format::Glb), ..Options::default() };
+    let glb = run(Operation::Convert, BOX, &options, &Budget::unlimited()).unwrap().output.unwrap().bytes;
+    let options = Options { after: glb, ..Options::default() };
+    let (width, _, pixels) = pixels(&picture_of(Operation::Render, &options));
+    let seen = |right: usize| {
+        let half = pixels.iter().enumerate().filter(|(at, _)| at % width / 640 == right);
+        half.filter(|(_, p)| **p != BACKGROUND).count()
+    };
+    assert!(seen(0) > 20_000 && seen(1) * 10 > seen(0) * 9, "{} and {}", seen(0), seen(1));
+    assert_eq!(count(&pixels, is_green), 0, "it is the same");
+}
+
+#[test]
+fn a_second_file_that_cannot_be_read_is_named() {
+    let options = Options { after: Some(b"OFF\n4 4 6\n0 0 zero\n".to_vec()), ..Options::default() };
+    let failure = run(Operation::Render, BOX, &options, &Budget::unlimited()).unwrap_err();
+    assert!(matches!(failure, Failure::InMesh { number: 2, .. }), "{failure}");
+}
+
+#[test]
+fn the_same_picture_comes_with_any_number_of_threads() {
+    let of =
+        |threads| crate::par::with_threads(threads, || picture_of(Operation::Render, &Options::default()));
+    assert_eq!(of(1), of(2));
+    assert_eq!(of(1), of(8));
+}

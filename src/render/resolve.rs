@@ -1,0 +1,206 @@
+//! Samples to pixels: light, creases and silhouettes, and the mean of the samples of a pixel.
+
+use super::SAMPLES;
+use super::camera::Camera;
+use super::canvas::{Canvas, Rgb};
+use super::model::Model;
+use super::normals::normal;
+use super::raster::{Seen, Visible};
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::geom::DVec3;
+use crate::par;
+
+/// Which edges are drawn dark, beside silhouettes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Edges {
+    /// None, nor silhouettes.
+    None,
+    /// Those where the surface turns by more than 40 degrees, from which on shading does not round them.
+    #[default]
+    Creases,
+    /// All edges of triangles.
+    All,
+}
+
+/// How a picture looks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Style {
+    /// Edges that are drawn.
+    pub edges: Edges,
+    /// Colour behind everything.
+    pub background: Rgb,
+    /// Colour of backs; `None`: as their fronts.
+    pub back: Option<Rgb>,
+}
+
+/// Cosine of the angle by which the surface turns at a crease: 40 degrees, as for normals.
+const CREASE_COSINE: f32 = 0.766;
+/// Change of the slope of the depth, in shares of the depth of the scene, that is a jump.
+const JUMP: f32 = 0.012;
+/// Colour of edges.
+const INK: [f32; 3] = [32.0, 41.0, 50.0];
+/// How much of it a crease, a silhouette and any other edge has.
+const CREASE_INK: f32 = 0.62;
+const OTHER_INK: f32 = 0.38;
+
+/// Light from everywhere, and from the lamps: directions along the picture's right, its upper side and toward the eye,
+/// with their strengths.
+const AMBIENT: f32 = 0.46;
+const LAMPS: [([f32; 3], f32); 3] =
+    [([-0.346, 0.593, 0.727], 0.46), ([0.802, 0.107, 0.588], 0.2), ([0.0, 1.0, 0.0], 0.07)];
+
+/// Rows of pixels that are made at once.
+const ROWS: usize = 8;
+
+/// What is known of a triangle.
+#[derive(Debug, Clone, Copy)]
+struct Face {
+    /// Toward the eye, along the axes of the picture; zero where it has none.
+    normal: [f32; 3],
+    is_back: bool,
+}
+
+pub(super) fn resolve(
+    model: &Model<'_>,
+    camera: &Camera,
+    seen: &Visible,
+    style: &Style,
+    budget: &Budget,
+) -> Result<Canvas, Stopped> {
+    let (width, height) = (seen.width / SAMPLES, seen.height / SAMPLES);
+    let triangles = model.scene.triangles.len();
+    let _memory = budget.charge((triangles * size_of::<Face>() + width * height * 3) as u64)?;
+    let faces = par::try_map_ranges(triangles, CHECK_EVERY, |range| {
+        budget.spend(range.len() as u64 / 8)?;
+        let face = |t: usize| {
+            let is_back = seen.is_back[t];
+            let outward = camera.turn(normal(model.corners(t as u32)).normalize_or_zero());
+            let toward = if is_back { -outward } else { outward };
+            Face { normal: toward.as_vec3().to_array(), is_back }
+        };
+        Ok(range.map(face).collect::<Vec<_>>())
+    })?
+    .concat();
+    budget.spend((width * height) as u64 / 4)?;
+    let light = Light { model, camera, seen, style, faces: &faces };
+    let mut canvas = Canvas::filled(width, height, style.background);
+    par::for_each_chunk_mut(&mut canvas.bytes, width * 3 * ROWS, |begin, bytes| {
+        let top = begin / (width * 3);
+        for (at, pixel) in bytes.chunks_exact_mut(3).enumerate() {
+            let (column, row) = (at % width, top + at / width);
+            if let Some(color) = light.pixel(column, row) {
+                pixel.copy_from_slice(&color);
+            }
+        }
+    });
+    Ok(canvas)
+}
+
+struct Light<'l> {
+    model: &'l Model<'l>,
+    camera: &'l Camera,
+    seen: &'l Visible,
+    style: &'l Style,
+    faces: &'l [Face],
+}
+
+impl Light<'_> {
+    /// The mean of the samples of a pixel; `None`: nothing is there.
+    fn pixel(&self, column: usize, row: usize) -> Option<Rgb> {
+        let mut sum = [0.0; 3];
+        let mut is_empty = true;
+        for y in row * SAMPLES..(row + 1) * SAMPLES {
+            for x in column * SAMPLES..(column + 1) * SAMPLES {
+                let color = match self.seen.samples[y * self.seen.width + x].seen() {
+                    Seen::Nothing => self.style.background.map(f32::from),
+                    Seen::Triangle(t) => {
+                        is_empty = false;
+                        self.inked(self.lit(t, x, y), t, x, y)
+                    }
+                    Seen::Line(number) => {
+                        is_empty = false;
+                        self.model.marks.lines[number].color.map(f32::from)
+                    }
+                    Seen::Spot(number) => {
+                        is_empty = false;
+                        self.model.marks.spots[number].color.map(f32::from)
+                    }
+                };
+                sum = [sum[0] + color[0], sum[1] + color[1], sum[2] + color[2]];
+            }
+        }
+        let share = 1.0 / (SAMPLES * SAMPLES) as f32;
+        (!is_empty).then(|| sum.map(|channel| (channel * share).round() as u8))
+    }
+
+    /// The colour of triangle `t` at a sample, in the light.
+    fn lit(&self, t: u32, x: usize, y: usize) -> [f32; 3] {
+        let face = self.faces[t as usize];
+        let palette = self.model.scene.palette;
+        let paint = self.model.paint(t);
+        let color = match self.style.back {
+            Some(back) if face.is_back && paint == 0 => back,
+            _ => palette.get(paint).copied().unwrap_or([128; 3]),
+        };
+        let normal = self.smooth(t, face, x, y).unwrap_or(face.normal);
+        let lamps = LAMPS.iter().map(|(toward, strength)| strength * dot(*toward, normal).max(0.0));
+        let light = AMBIENT + lamps.sum::<f32>();
+        color.map(|channel| (f32::from(channel) * light).min(255.0))
+    }
+
+    /// The normal between those of the corners.
+    fn smooth(&self, t: u32, face: Face, x: usize, y: usize) -> Option<[f32; 3]> {
+        let corners = self.model.corner_normals.as_ref()?.of_triangle(t);
+        let weights = self.seen.weights(self.model.scene.triangles[t as usize], x, y)?;
+        let between = |k: usize| (0..3).map(|i| weights[i] * corners[i][k]).sum::<f32>();
+        let outward = DVec3::new(f64::from(between(0)), f64::from(between(1)), f64::from(between(2)));
+        let normal = self.camera.turn(outward).normalize_or_zero();
+        let toward = if face.is_back { -normal } else { normal };
+        (toward != DVec3::ZERO).then(|| toward.as_vec3().to_array())
+    }
+
+    /// `color` with ink where an edge passes the sample.
+    fn inked(&self, color: [f32; 3], t: u32, x: usize, y: usize) -> [f32; 3] {
+        let ink = if self.style.edges == Edges::None { 0.0 } else { self.ink(t, x, y) };
+        let mut inked = color;
+        for (channel, dark) in inked.iter_mut().zip(INK) {
+            *channel += (dark - *channel) * ink;
+        }
+        inked
+    }
+
+    fn ink(&self, t: u32, x: usize, y: usize) -> f32 {
+        let Visible { width, height, samples, .. } = self.seen;
+        let own = samples[y * width + x];
+        let normal = self.faces[t as usize].normal;
+        let mut ink: f32 = 0.0;
+        for (dx, dy) in [(1, 0), (0, 1)] {
+            let before = (x >= dx && y >= dy).then(|| samples[(y - dy) * width + x - dx]);
+            let after = (x + dx < *width && y + dy < *height).then(|| samples[(y + dy) * width + x + dx]);
+            let (Some(before), Some(after)) = (before, after) else { continue };
+            // The depth of a plane is linear on the picture, so its second difference shows where one ends.
+            let bend = before.near - 2.0 * own.near + after.near;
+            for other in [before, after] {
+                match other.seen() {
+                    Seen::Nothing => ink = ink.max(CREASE_INK),
+                    Seen::Triangle(neighbour) if neighbour != t => {
+                        let turn = dot(normal, self.faces[neighbour as usize].normal);
+                        // Of the two sides of a jump the nearer one is inked.
+                        let is_jump = bend.abs() > JUMP && own.near > other.near;
+                        if turn < CREASE_COSINE || is_jump {
+                            ink = ink.max(CREASE_INK);
+                        } else if self.style.edges == Edges::All {
+                            ink = ink.max(OTHER_INK);
+                        }
+                    }
+                    _ => {}
+                }
+            }
+        }
+        ink
+    }
+}
+
+fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
