@@ -33,7 +33,7 @@ def result(binary, path):
         except ValueError:
             return [f"exit {ran.returncode}", [], None]
         digest = hashlib.sha256(open(made, "rb").read()).hexdigest()[:16] if os.path.exists(made) else None
-        outcome = report.get("outcome") or report.get("code")
+        outcome = (report.get("verdict") or {}).get("outcome") or report.get("code")
         return [outcome, [action["step"] for action in report.get("actions", [])], digest]
 
 
