@@ -14,7 +14,7 @@ import { SAMPLES, sample } from "./samples.js";
 import { Session, curlOf, millimetres } from "./session.js";
 import { LANGUAGES, current, digits, number, percent, speak, t, translate } from "./text/text.js";
 import { ofDefect } from "./view/colors.js";
-import { View } from "./view/view.js";
+import { COPIES, View } from "./view/view.js";
 
 const api = new Api();
 const meshes = new Meshes();
@@ -117,10 +117,10 @@ async function draw(side, bytes, fileName, unit = session.fileUnit) {
   at("view").dataset.drawn = Object.keys(of.pictures).join(" ");
   if (side === "before") factsOf(picture);
   if (of.report && side === "before") overlays();
-  const more = await meshes.ask("look", { name: side });
+  const more = await meshes.ask("look", { name: side, sizes: COPIES });
   if (of !== session) return null;
   Object.assign(picture, { rims: more.rims, edges: more.edges });
-  if (more.coarse) view?.setCoarse(side, more.coarse);
+  if (more.coarse.length) view?.setCoarse(side, more.coarse);
   tellEased();
   if (of.report && side === "before") overlays();
   return picture;
@@ -128,11 +128,10 @@ async function draw(side, bytes, fileName, unit = session.fileUnit) {
 
 // Says so when less is drawn while the view moves.
 function tellEased() {
-  const coarse = view?.sides.before.coarse;
   at("coarse").hidden = !view?.easing;
   if (!view?.easing) return;
-  const drawn = coarse?.geometry.getAttribute("position").count / 3;
-  at("coarse").textContent = coarse ? t("view.coarse", { n: number(drawn), m: number(session.pictures.before.faceOf.length) }) : t("view.rough");
+  const copy = view.easedCopy("before");
+  at("coarse").textContent = copy ? t("view.coarse", { n: number(copy.geometry.index.count / 3), m: number(session.pictures.before.faceOf.length) }) : t("view.rough");
 }
 
 // The file as the service has it: for jobs that are opened again, and for formats that are not read here.

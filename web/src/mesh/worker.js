@@ -28,17 +28,17 @@ const work = {
     return { format, faceOf: faceOf.slice(), faceCount, bounds, origin, positions: positions.slice(), normals };
   },
 
-  // What else there is to see of a mesh, and a coarse copy of a large one.
-  look({ name }) {
+  // What else there is to see of a mesh, and coarse copies of a large one, of about so many triangles.
+  look({ name, sizes }) {
     const mesh = meshes.get(name);
     const { open, crowded, turned } = brokenEdges(mesh);
     const drawn = (halves) => segmentsOf(halves, mesh.positions);
-    const isLarge = mesh.faceOf.length > COARSE_ABOVE;
+    const wanted = mesh.faceOf.length > COARSE_ABOVE ? sizes.filter((size) => size < mesh.faceOf.length / 2) : [];
     const ends = Uint32Array.from(open, (half) => mesh.corners[half]);
     const others = Uint32Array.from(open, (half) => mesh.corners[next(half)]);
     return {
       rims: { halves: open, ends, others }, edges: { open: drawn(open), crowded: drawn(crowded), turned: drawn(turned) },
-      coarse: isLarge ? coarse(mesh.positions, mesh.bounds) : null,
+      coarse: wanted.map((size) => coarse(mesh, mesh.bounds, size)),
     };
   },
 
