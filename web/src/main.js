@@ -5,10 +5,13 @@ import { at, el, save } from "./dom.js";
 import { Meshes } from "./meshes.js";
 import { findingsList, isShownFirst, openFinding } from "./panel/findings.js";
 import { calm, complain, rest, told, wordsOf, working } from "./panel/progress.js";
+import { partsList } from "./panel/parts.js";
 import { checksList, resultSection, verdictCard } from "./panel/result.js";
+import { SEVERAL_MAX, askAboutSeveral } from "./panel/several.js";
 import { Tools } from "./panel/tools.js";
 import { droppable } from "./panel/verify.js";
 import { Picture, aim } from "./places.js";
+import { NO_PARTS } from "./project.js";
 import * as jobs from "./recent.js";
 import { SAMPLES, sample } from "./samples.js";
 import { Session, curlOf, millimetres } from "./session.js";
@@ -45,11 +48,12 @@ async function guarded(action, of = session) {
 function begin(name, file) {
   session = new Session(name, file);
   document.body.dataset.state = "open";
-  for (const id of ["verdict", "findings", "checks", "result"]) at(id).replaceChildren();
+  for (const id of ["verdict", "findings", "parts-list", "checks", "result"]) at(id).replaceChildren();
   for (const id of ["units", "policy"]) at(id).value = "";
   for (const id of ["facts", "findings-section", "repair-section"]) at(id).hidden = true;
   at("best").checked = false;
   at("share").value = 100;
+  at("levels").value = "1";
   at("file-name").textContent = name;
   document.title = `${name} – Meshmend`;
   view?.clear("before");
@@ -58,6 +62,34 @@ function begin(name, file) {
   light(null);
   calm();
   jobs.name(null);
+}
+
+// One file is opened; several become one, if they shall.
+function openFiles(files) {
+  const chosen = [...files];
+  if (chosen.length < 2) return openFile(chosen[0]);
+  if (document.body.dataset.state === "start") document.body.dataset.state = "failed";
+  if (chosen.length > SEVERAL_MAX) return complain(new Problem({ code: "too-many-files" }));
+  return askAboutSeveral(chosen, { combine: (operation) => combine(chosen, operation), openFirst: () => openFile(chosen[0]) });
+}
+
+// The result of a set operation is opened as a file of its own.
+async function combine(files, operation) {
+  begin(t(`several.${operation}`));
+  const of = session;
+  await guarded(async () => {
+    const job = await run({ operation: "boolean", set_operation: operation }, files);
+    if (of !== session) return;
+    // The reason says more than that there is no result.
+    if (job.problem) throw new Problem({ ...job.problem, code: (await api.report(job)).verdict.reasons[0]?.code ?? job.problem.code });
+    await openResult(job, operation);
+  }, of);
+}
+
+async function openResult(job, stem) {
+  const of = session;
+  const { name, blob } = await api.file(job.links.result);
+  if (of === session) openFile(new File([blob], name.replace(/^.*(?=\.)/, stem)));
 }
 
 async function openFile(file) {
@@ -111,11 +143,12 @@ async function draw(side, bytes, fileName, unit = session.fileUnit) {
   const scale = unit;
   const read = await meshes.ask("read", { name: side, bytes, fileName, scale, isFirst: side === "before" }, [bytes]);
   if (of !== session) return null;
-  const picture = new Picture(read, scale);
+  const picture = new Picture(read);
   of.pictures[side] = picture;
   view?.setMesh(side, picture, side === "before");
   at("view").dataset.drawn = Object.keys(of.pictures).join(" ");
   if (side === "before") factsOf(picture);
+  picture.project?.setParts(of.report?.parts ?? []);
   if (of.report && side === "before") overlays();
   const more = await meshes.ask("look", { name: side, sizes: COPIES });
   if (of !== session) return null;
@@ -138,20 +171,25 @@ function tellEased() {
 async function drawFromService() {
   const of = session;
   const { input } = of.report;
-  const isReadHere = ["stl", "obj", "ply", "off"].includes(input.format) && !of.file;
+  const isReadHere = ["stl", "obj", "ply", "off", "3mf"].includes(input.format) && !of.file;
   const format = isReadHere ? input.format : "stl";
   const unit = of.unit || input.units.unit;
   const request = { operation: "convert", input: { job: of.inputJob }, output_format: format, units: unit, output_units: unit };
   const job = await api.follow(await api.create(request), () => {});
   if (!job.links.result || of !== session) return;
   const { blob, name } = await api.file(job.links.result);
-  await draw("before", await blob.arrayBuffer(), name.replace(/[^.]*$/, format));
+  const drawn = await draw("before", await blob.arrayBuffer(), name.replace(/[^.]*$/, format));
+  // In one mesh nothing says which face is which part's.
+  if (drawn && input.format === "3mf" && !drawn.project) {
+    drawn.project = NO_PARTS;
+    overlays();
+  }
 }
 
 // The result beside the file, and what they have in common.
-async function drawResult(job) {
+async function drawResult(job, level = 0) {
   const of = session;
-  const { blob, name } = await api.file(job.links.result);
+  const { blob, name } = await api.file(levelOf(job, level));
   const bytes = await blob.arrayBuffer();
   if (of !== session) return;
   await draw("after", bytes, name, of.reportUnit);
@@ -164,6 +202,8 @@ async function drawResult(job) {
   at("colors").value = "kept";
   tools?.offer(true);
 }
+
+const levelOf = (job, level) => (level ? `${job.links.result}?level=${level + 1}` : job.links.result);
 
 // --- the panel -------------------------------------------------------------------------------------------------
 
@@ -197,14 +237,17 @@ function panel() {
   at("verdict").replaceChildren(verdictCard({ report, policy: session.checked }));
   list = findingsList(session, host);
   at("findings").replaceChildren(list);
-  at("checks").replaceChildren(...[checksList(report.printing, host)].filter(Boolean));
+  at("parts-list").replaceChildren(...[partsList(report, host)].filter(Boolean));
+  at("checks").replaceChildren(...[checksList(report, host)].filter(Boolean));
   at("result").replaceChildren(...[session.isRepaired && resultSection(session, host)].filter(Boolean));
   at("findings-section").hidden = false;
   at("repair-section").hidden = false;
   at("repair").textContent = t(session.isRepaired ? "repair.again" : report.verdict.printable ? "certify" : "repair");
   at("repair").disabled = false;
   const { unit, is_stated: isStated } = report.input.units;
-  at("units").options[0].textContent = isStated ? "–" : t("unit.assumed", { u: unit });
+  at("units").options[0].textContent = isStated ? (session.unit ? "–" : unit) : t("unit.assumed", { u: unit });
+  // A 3MF is right about its own unit.
+  at("units").disabled = report.input.format === "3mf";
   question(report.before.unit_hypothesis, isStated);
   if (!session.pictures.before && report.before.measures.bounds) {
     const { min, max } = report.before.measures.bounds;
@@ -228,6 +271,7 @@ function question(hypothesis, isStated) {
 function overlays() {
   const picture = session.pictures.before;
   if (!picture || !session.report) return;
+  picture.project?.setParts(session.report.parts ?? []);
   for (const defect of session.report.before.defects) {
     view?.setMarks("before", defect.code, picture.overlayOf(defect, session.reportUnit), ofDefect(defect.code), 0.5);
     view?.showMarks("before", defect.code, session.shown.has(defect.code));
@@ -271,8 +315,8 @@ const host = {
     const picture = session.pictures.before;
     at("view").dataset.place = `${code} ${at_}`;
     if (!witness || !picture || !view) return;
-    const parts = picture.partsOf(code, witness, session.reportUnit);
-    const position = witness.position && picture.place(witness.position, session.reportUnit);
+    const parts = picture.partsOf(code, witness, session.reportUnit, true);
+    const position = witness.position && picture.place(witness.position, session.reportUnit, witness.faces[0]?.index);
     if (view.settings.arrangement === "after") tools.arrange("before");
     light(parts, ofDefect(code), "before", position ?? [0, 0, 0]);
     const { place, normal, radius } = aim(parts, position ?? [0, 0, 0]);
@@ -300,7 +344,8 @@ const host = {
     const side = session.report.printing.about === "result" ? "after" : "before";
     const picture = session.pictures[side];
     if (!picture || !view) return;
-    const place = picture.place(witnesses[0].position, session.reportUnit);
+    const place = picture.place(witnesses[0].position, session.reportUnit, witnesses[0].face);
+    if (!place) return;
     const parts = { segments: [], faces: picture.facesAt([witnesses[0].face]), points: place };
     if (view.settings.arrangement !== "beside") tools.arrange(side);
     light({ ...parts, faces: [] }, "#f2a51c", side);
@@ -308,17 +353,45 @@ const host = {
     view.fly(place, normal, Math.hypot(...view.size) * 0.06);
   },
 
+  visitPart(number_) {
+    const where = session.pictures.before?.whereIs(number_);
+    at("view").dataset.place = `part ${number_}`;
+    if (!where || !view) return;
+    if (view.settings.arrangement === "after") tools.arrange("before");
+    session.place = null;
+    light(null);
+    openFinding(list, session, host, null, 0);
+    view.fly(where.place, [0, 0, 0], where.radius / 2);
+  },
+
+  showLevel: (level) => guarded(async () => {
+    const of = session;
+    working(t("status.fetching"));
+    await drawResult(of.job, level);
+    if (of !== session) return;
+    of.level = level;
+    rest();
+    panel();
+    at("result").querySelector(`[data-level="${level}"]`).focus();
+  }),
+
+  downloadLevel: (level) => guarded(async () => {
+    const { name, blob } = await api.file(levelOf(session.job, level));
+    save(blob, name);
+  }),
+
   // Another format is another file, so it is made and certified anew.
   download: (format) => guarded(async () => {
     const of = session;
     let { job } = of;
-    if (format !== of.report.input.format) {
+    if (format !== of.given) {
       job = await run({ operation: "repair", input: { job: of.inputJob }, ...of.asked, output_format: format }, null);
       if (of !== session) return;
-      of.report = await api.report(job);
-      of.job = job;
+      if (job.problem) throw new Problem(job.problem);
+      Object.assign(of, { report: await api.report(job), job, given: format });
       rest();
       panel();
+      overlays();
     }
     const { name, blob } = await api.file(job.links.result);
     save(blob, name);
@@ -352,6 +425,7 @@ async function repair() {
   at("repair").classList.remove("wanted");
   of.choices.takesBest = at("best").checked;
   of.choices.share = Number(at("share").value) / 100;
+  of.choices.levels = Number(at("levels").value);
   of.asked = of.repairOptions();
   const job = await run({ operation: "repair", thumbnail: true, input: { job: of.inputJob }, ...of.asked }, null);
   if (of !== session) return;
@@ -363,6 +437,7 @@ async function showRepair(job) {
   if (job.links.result) working(t("status.fetching"));
   await show(job);
   if (of !== session) return;
+  Object.assign(of, { given: of.report.certificate?.encoding.split("-")[0], level: 0 });
   light(null);
   of.place = null;
   openFinding(list, of, host, null, 0);
@@ -410,6 +485,7 @@ async function openJob(id) {
     working(t("status.queued"));
     const job = await follow(await api.job(id));
     if (of !== session) return;
+    if (job.operation === "boolean" && job.links.result) return void openResult(job, of.name);
     of.inputJob = id;
     if (!["plan", "repair"].includes(job.operation)) throw new Problem({ code: "not-found" });
     await show(job);
@@ -459,13 +535,13 @@ function texts() {
 }
 
 function listen() {
-  droppable(document.body, openFile);
-  at("file").addEventListener("change", () => { openFile(at("file").files[0]); at("file").value = ""; });
+  droppable(document.body, openFiles);
+  at("file").addEventListener("change", () => { openFiles(at("file").files); at("file").value = ""; });
   for (const name of Object.keys(SAMPLES)) at(`sample-${name}`).addEventListener("click", () => openFile(sample(name)));
   at("repair").addEventListener("click", () => guarded(repair));
   at("cancel").addEventListener("click", () => running && guarded(() => api.cancel(running)));
   at("share").addEventListener("input", () => { shareText(); host.changed(); });
-  at("best").addEventListener("change", host.changed);
+  for (const id of ["best", "levels"]) at(id).addEventListener("change", host.changed);
   for (const id of ["units", "policy"]) at(id).addEventListener("change", () => guarded(lookAgain));
   at("jobs").addEventListener("toggle", showJobs);
   at("jobs-forget").addEventListener("click", () => { jobs.forgetAll(); showJobs(); });
