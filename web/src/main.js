@@ -174,11 +174,9 @@ async function drawFromService() {
   const isReadHere = ["stl", "obj", "ply", "off", "3mf"].includes(input.format) && !of.file;
   const format = isReadHere ? input.format : "stl";
   const unit = of.unit || input.units.unit;
-  const request = { operation: "convert", input: { job: of.inputJob }, output_format: format, units: unit, output_units: unit };
-  const job = await api.follow(await api.create(request), () => {});
-  if (!job.links.result || of !== session) return;
-  const { blob, name } = await api.file(job.links.result);
-  const drawn = await draw("before", await blob.arrayBuffer(), name.replace(/[^.]*$/, format));
+  const bytes = await converted(format, unit, { input: { job: of.inputJob } });
+  if (!bytes || of !== session) return;
+  const drawn = await draw("before", bytes, `mesh.${format}`);
   // In one mesh nothing says which face is which part's.
   if (drawn && input.format === "3mf" && !drawn.project) {
     drawn.project = NO_PARTS;
@@ -186,14 +184,26 @@ async function drawFromService() {
   }
 }
 
+// A mesh as the service writes it in `format`, in its own unit; null: it cannot.
+async function converted(format, unit, more, file = null) {
+  const job = await api.follow(await api.create({ operation: "convert", output_format: format, units: unit, output_units: unit, ...more }, file), () => {});
+  if (!job.links.result) return null;
+  return (await api.file(job.links.result)).blob.arrayBuffer();
+}
+
 // The result beside the file, and what they have in common.
 async function drawResult(job, level = 0) {
   const of = session;
+  delete of.pictures.after;
   const { blob, name } = await api.file(levelOf(job, level));
   const bytes = await blob.arrayBuffer();
   if (of !== session) return;
-  await draw("after", bytes, name, of.reportUnit);
-  if (!of.pictures.before || of !== session) return;
+  await draw("after", bytes, name, of.reportUnit).catch(async (error) => {
+    if (error.code !== "not-drawn-here") throw error;
+    const stl = await converted("stl", of.report.output_units, {}, new File([blob], name));
+    if (stl && of === session) await draw("after", stl, "mesh.stl", of.reportUnit);
+  });
+  if (!of.pictures.before || !of.pictures.after || of !== session) return;
   const kept = await meshes.ask("compare");
   if (of !== session) return;
   of.pictures.before.kept = kept.before;
