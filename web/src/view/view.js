@@ -12,7 +12,9 @@ const STILL_MS = 160; // without a movement, all of it is drawn again
 // What is drawn while the view moves, where frames are slow: less and less. A coarse copy is taken where there is one.
 const EASINGS = [{ copy: null, pixels: 1 }, { copy: 0, pixels: 1 }, { copy: 1, pixels: 1 }, { copy: 1, pixels: 0.6 }, { copy: 1, pixels: 0.4 }];
 // Triangles of the coarse copies, about.
-export const COPIES = [120_000, 24_000];
+export const COPIES = [120_000, 16_000];
+// Triangles from which on a surface is drawn in one pass where no graphics card draws it: two take twice as long.
+const ONE_PASS_ABOVE = 300_000;
 
 export class View {
   constructor(canvas, { onDrawn, onEased }) {
@@ -20,7 +22,8 @@ export class View {
     this.onDrawn = onDrawn;
     this.onEased = onEased;
     this.easing = 0;
-    this.renderer = new WebGLRenderer({ canvas, antialias: !isSoftware(), alpha: true, powerPreference: "high-performance" });
+    this.isSoftware = isSoftware();
+    this.renderer = new WebGLRenderer({ canvas, antialias: !this.isSoftware, alpha: true, powerPreference: "high-performance" });
     this.camera = new Camera(canvas, { moved: () => this.moved(), held: (isHeld) => this.hold(isHeld) });
     this.shared = { pixels: { value: new Vector2(1, 1) }, isCut: { value: false }, plane: { value: [0, 0, 1, 0] } };
     this.sides = { before: this.side(), after: this.side() };
@@ -39,7 +42,8 @@ export class View {
   setMesh(name, { positions, normals, bounds }, isFirst) {
     this.clear(name);
     const side = this.sides[name];
-    side.surface = surface({ positions, normals }, side.materials.sides);
+    const isQuick = this.isSoftware && positions.length / 9 > ONE_PASS_ABOVE;
+    side.surface = surface({ positions, normals }, isQuick ? side.materials.both : side.materials.sides);
     side.scene.add(side.surface);
     if (isFirst) {
       this.easing = 0;
