@@ -2,6 +2,7 @@
 
 import { Api, Problem, isOver } from "./api.js";
 import { at, el, save } from "./dom.js";
+import { Drawing, levelOf } from "./drawing.js";
 import { Meshes } from "./meshes.js";
 import { findingsList, isShownFirst, openFinding } from "./panel/findings.js";
 import { calm, complain, rest, told, wordsOf, working } from "./panel/progress.js";
@@ -10,17 +11,17 @@ import { checksList, resultSection, verdictCard } from "./panel/result.js";
 import { SEVERAL_MAX, askAboutSeveral } from "./panel/several.js";
 import { Tools } from "./panel/tools.js";
 import { droppable } from "./panel/verify.js";
-import { Picture, aim } from "./places.js";
-import { NO_PARTS } from "./project.js";
+import { aim } from "./places.js";
 import * as jobs from "./recent.js";
 import { SAMPLES, sample } from "./samples.js";
 import { Session, curlOf, millimetres } from "./session.js";
 import { LANGUAGES, current, digits, number, percent, speak, t, translate } from "./text/text.js";
 import { ofDefect } from "./view/colors.js";
-import { COPIES, View } from "./view/view.js";
+import { View } from "./view/view.js";
 
 const api = new Api();
 const meshes = new Meshes();
+const drawing = new Drawing({ api, meshes, current: () => session, sized: (picture) => factsOf(picture) });
 let session = null;
 let running = null; // the job that is followed
 let view = null;
@@ -59,7 +60,7 @@ function begin(name, file) {
   view?.clear("before");
   view?.clear("after");
   tools?.offer(false);
-  light(null);
+  drawing.light(null);
   calm();
   jobs.name(null);
 }
@@ -97,7 +98,7 @@ async function openFile(file) {
   begin(file.name, file);
   const of = session;
   working(t("status.reading"));
-  const picture = file.arrayBuffer().then((bytes) => draw("before", bytes, file.name)).catch((error) => ({ error }));
+  const picture = file.arrayBuffer().then((bytes) => drawing.draw("before", bytes, file.name)).catch((error) => ({ error }));
   await guarded(() => look(picture), of);
 }
 
@@ -110,7 +111,7 @@ async function look(picture) {
   of.inputJob ??= job.id;
   await show(job);
   const drawn = await picture;
-  if (drawn?.error && of === session) await drawFromService();
+  if (drawn?.error && of === session) await drawing.drawFromService();
 }
 
 // Makes a job and follows it to its end; one that failed without a report is a problem.
@@ -136,85 +137,6 @@ async function follow(job) {
   return ended;
 }
 
-// --- pictures --------------------------------------------------------------------------------------------------
-
-async function draw(side, bytes, fileName, unit = session.fileUnit) {
-  const of = session;
-  const scale = unit;
-  const read = await meshes.ask("read", { name: side, bytes, fileName, scale, isFirst: side === "before" }, [bytes]);
-  if (of !== session) return null;
-  const picture = new Picture(read);
-  of.pictures[side] = picture;
-  view?.setMesh(side, picture, side === "before");
-  at("view").dataset.drawn = Object.keys(of.pictures).join(" ");
-  if (side === "before") factsOf(picture);
-  picture.project?.setParts(of.report?.parts ?? []);
-  if (of.report && side === "before") overlays();
-  const more = await meshes.ask("look", { name: side, sizes: COPIES });
-  if (of !== session) return null;
-  Object.assign(picture, { rims: more.rims, edges: more.edges });
-  if (more.coarse.length) view?.setCoarse(side, more.coarse);
-  tellEased();
-  if (of.report && side === "before") overlays();
-  return picture;
-}
-
-// Says so when less is drawn while the view moves.
-function tellEased() {
-  at("coarse").hidden = !view?.easing;
-  if (!view?.easing) return;
-  const copy = view.easedCopy("before");
-  at("coarse").textContent = copy ? t("view.coarse", { n: number(copy.geometry.index.count / 3), m: number(session.pictures.before.faceOf.length) }) : t("view.rough");
-}
-
-// The file as the service has it: for jobs that are opened again, and for formats that are not read here.
-async function drawFromService() {
-  const of = session;
-  const { input } = of.report;
-  const isReadHere = ["stl", "obj", "ply", "off", "3mf"].includes(input.format) && !of.file;
-  const format = isReadHere ? input.format : "stl";
-  const unit = of.unit || input.units.unit;
-  const bytes = await converted(format, unit, { input: { job: of.inputJob } });
-  if (!bytes || of !== session) return;
-  const drawn = await draw("before", bytes, `mesh.${format}`);
-  // In one mesh nothing says which face is which part's.
-  if (drawn && input.format === "3mf" && !drawn.project) {
-    drawn.project = NO_PARTS;
-    overlays();
-  }
-}
-
-// A mesh as the service writes it in `format`, in its own unit; null: it cannot.
-async function converted(format, unit, more, file = null) {
-  const job = await api.follow(await api.create({ operation: "convert", output_format: format, units: unit, output_units: unit, ...more }, file), () => {});
-  if (!job.links.result) return null;
-  return (await api.file(job.links.result)).blob.arrayBuffer();
-}
-
-// The result beside the file, and what they have in common.
-async function drawResult(job, level = 0) {
-  const of = session;
-  delete of.pictures.after;
-  const { blob, name } = await api.file(levelOf(job, level));
-  const bytes = await blob.arrayBuffer();
-  if (of !== session) return;
-  await draw("after", bytes, name, of.reportUnit).catch(async (error) => {
-    if (error.code !== "not-drawn-here") throw error;
-    const stl = await converted("stl", of.report.output_units, {}, new File([blob], name));
-    if (stl && of === session) await draw("after", stl, "mesh.stl", of.reportUnit);
-  });
-  if (!of.pictures.before || !of.pictures.after || of !== session) return;
-  const kept = await meshes.ask("compare");
-  if (of !== session) return;
-  of.pictures.before.kept = kept.before;
-  of.pictures.after.kept = kept.after;
-  of.maps = {};
-  at("colors").value = "kept";
-  tools?.offer(true);
-}
-
-const levelOf = (job, level) => (level ? `${job.links.result}?level=${level + 1}` : job.links.result);
-
 // --- the panel -------------------------------------------------------------------------------------------------
 
 function factsOf({ bounds, faceCount }) {
@@ -239,7 +161,7 @@ async function show(job) {
   of.checked = report.printing?.policy ?? "";
   rest();
   panel();
-  overlays();
+  drawing.overlays();
 }
 
 function panel() {
@@ -278,31 +200,6 @@ function question(hypothesis, isStated) {
   at("unit-question").textContent = t("unit.question", { a: told.join(", ") });
 }
 
-function overlays() {
-  const picture = session.pictures.before;
-  if (!picture || !session.report) return;
-  picture.project?.setParts(session.report.parts ?? []);
-  for (const defect of session.report.before.defects) {
-    view?.setMarks("before", defect.code, picture.overlayOf(defect, session.reportUnit), ofDefect(defect.code), 0.5);
-    view?.showMarks("before", defect.code, session.shown.has(defect.code));
-  }
-}
-
-// Lights what parts show, with a ring around its place.
-function light(parts, color, side = "before", position = null) {
-  session.lit = parts ? { place: parts && aim(parts, position).place, side } : null;
-  for (const name of ["before", "after"]) view?.setMarks(name, "lit", null);
-  if (parts) view?.setMarks(side, "lit", parts, color, 1.3);
-  ring();
-}
-
-// The ring is an element over the picture, so that it is as wide wherever the place is.
-function ring() {
-  const place = session?.lit && view?.project(session.lit.place);
-  at("ring").hidden = !place;
-  if (place) at("ring").style.transform = `translate(${place[0]}px, ${place[1]}px)`;
-}
-
 // What lists ask for.
 const host = {
   show(code, isShown) {
@@ -315,7 +212,7 @@ const host = {
   visit(code, at_, isOpen = false) {
     if (isOpen) {
       session.place = null;
-      light(null);
+      drawing.light(null);
       openFinding(list, session, host, null, 0);
       return;
     }
@@ -328,7 +225,7 @@ const host = {
     const parts = picture.partsOf(code, witness, session.reportUnit, true);
     const position = witness.position && picture.place(witness.position, session.reportUnit, witness.faces[0]?.index);
     if (view.settings.arrangement === "after") tools.arrange("before");
-    light(parts, ofDefect(code), "before", position ?? [0, 0, 0]);
+    drawing.light(parts, ofDefect(code), "before", position ?? [0, 0, 0]);
     const { place, normal, radius } = aim(parts, position ?? [0, 0, 0]);
     view.fly(place, normal, radius);
   },
@@ -358,7 +255,7 @@ const host = {
     if (!place) return;
     const parts = { segments: [], faces: picture.facesAt([witnesses[0].face]), points: place };
     if (view.settings.arrangement !== "beside") tools.arrange(side);
-    light({ ...parts, faces: [] }, "#f2a51c", side);
+    drawing.light({ ...parts, faces: [] }, "#f2a51c", side);
     const { normal } = aim(parts, place);
     view.fly(place, normal, Math.hypot(...view.size) * 0.06);
   },
@@ -369,7 +266,7 @@ const host = {
     if (!where || !view) return;
     if (view.settings.arrangement === "after") tools.arrange("before");
     session.place = null;
-    light(null);
+    drawing.light(null);
     openFinding(list, session, host, null, 0);
     view.fly(where.place, [0, 0, 0], where.radius / 2);
   },
@@ -377,7 +274,7 @@ const host = {
   showLevel: (level) => guarded(async () => {
     const of = session;
     working(t("status.fetching"));
-    await drawResult(of.job, level);
+    await drawing.drawResult(of.job, level);
     if (of !== session) return;
     of.level = level;
     rest();
@@ -401,7 +298,7 @@ const host = {
       Object.assign(of, { report: await api.report(job), job, given: format });
       rest();
       panel();
-      overlays();
+      drawing.overlays();
     }
     const { name, blob } = await api.file(job.links.result);
     save(blob, name);
@@ -448,10 +345,10 @@ async function showRepair(job) {
   await show(job);
   if (of !== session) return;
   Object.assign(of, { given: of.report.certificate?.encoding.split("-")[0], level: 0 });
-  light(null);
+  drawing.light(null);
   of.place = null;
   openFinding(list, of, host, null, 0);
-  if (job.links.result) await drawResult(job);
+  if (job.links.result) await drawing.drawResult(job);
   else delete of.pictures.after;
   if (!job.links.result) tools?.offer(false);
   at("panel").scrollTop = 0;
@@ -480,8 +377,8 @@ async function lookAgain() {
 }
 
 async function redraw() {
-  if (!session.file) return drawFromService();
-  return draw("before", await session.file.arrayBuffer(), session.name);
+  if (!session.file) return drawing.drawFromService();
+  return drawing.draw("before", await session.file.arrayBuffer(), session.name);
 }
 
 // --- jobs of this browser --------------------------------------------------------------------------------------
@@ -501,7 +398,7 @@ async function openJob(id) {
     await show(job);
     if (of !== session) return;
     of.asked = of.options();
-    await drawFromService();
+    await drawing.drawFromService();
     if (of !== session) return;
     rest();
     if (job.operation === "repair") await showRepair(job);
@@ -520,13 +417,15 @@ function showJobs() {
 
 function showPicture() {
   try {
-    view = new View(at("canvas"), { onDrawn: () => { ring(); at("view").dataset.frames = String(Number(at("view").dataset.frames ?? 0) + 1); }, onEased: tellEased });
+    view = new View(at("canvas"), { onDrawn: () => { drawing.ring(); at("view").dataset.frames = String(Number(at("view").dataset.frames ?? 0) + 1); }, onEased: () => drawing.tellEased() });
+    drawing.view = view;
   } catch {
     at("no-webgl").hidden = false;
     document.body.classList.add("flat");
     return;
   }
   tools = new Tools(view, meshes, () => session);
+  drawing.tools = tools;
 }
 
 const dark = matchMedia("(prefers-color-scheme: dark)");
@@ -541,7 +440,7 @@ function texts() {
   translate(document);
   shareText();
   if (session?.report) panel();
-  tellEased();
+  drawing.tellEased();
 }
 
 function listen() {
