@@ -90,7 +90,7 @@ function levelsList(session, host) {
       el("span", { className: "name" }, t("level.told", { n: number(level.faces_after) }), level.distance && el("small", {}, t("level.away", { d: length(farthest(level) * session.reportUnit) }))),
       !level.is_reached && el("span", { className: "tag" }, t("level.short"))),
     el("button", { type: "button", className: "quiet", "data-level-file": String(at), "aria-label": `${t("download")}: ${t("level.told", { n: number(level.faces_after) })}`, onclick: () => host.downloadLevel(at) }, "⤓"));
-  return el("div", {}, el("h4", {}, t("levels")), el("ol", { className: "findings levels" }, levels.map(row)));
+  return el("div", {}, el("h3", {}, t("levels")), el("ol", { className: "findings levels" }, levels.map(row)));
 }
 
 const farthest = ({ distance }) => Math.max(distance.input_to_result.max, distance.result_to_input.max);

@@ -9,7 +9,7 @@ export const words = {
   "samples": ["or try one of these", "oder eines hiervon ausprobieren", "ou essayez l’un de ceux-ci"],
   "sample.scan": ["Broken scan", "Löchriger Scan", "Scan abîmé"],
   "sample.bodies": ["Several bodies", "Mehrere Körper", "Plusieurs corps"],
-  "sample.project": ["Coloured 3MF project", "Farbiges 3MF-Projekt", "Projet 3MF en couleurs"],
+  "sample.project": ["3MF project", "3MF-Projekt", "Projet 3MF"],
   "sample.sound": ["Sound part", "Fehlerfreies Teil", "Pièce correcte"],
 
   "file": ["File", "Datei", "Fichier"],
