@@ -25,7 +25,7 @@ use crate::wire::{
     Fidelity, FillHoles, Format, InputRef, Job, JobRequest, LABELS_MAX, Mode, Nesting, OpenShells, Options,
     Outcome, Placement, PlanRequest, PolicyName, Problem, ProblemCode, Projection, RangeSpec, Reader, Report,
     Require, SetOperation, Shade, StageEvent, StateEvent, Stitch, StitchValidity, TargetSpec, Units,
-    VertexColors, Views, Weld,
+    VertexColors, Views, WebhookMessage, Weld,
 };
 
 /// Problems that any path may answer with.
@@ -125,7 +125,8 @@ fn schemas() -> Vec<(String, RefOr<Schema>)> {
         Report,
         Problem,
         StateEvent,
-        StageEvent
+        StageEvent,
+        WebhookMessage
     );
     add!(Format, Reader, Units, Require, FillHoles, OpenShells, Effort, Nesting, Contact, Mode, Criterion);
     add!(Placement, VertexColors, Cut, Stitch, StitchValidity, Degenerate, PolicyName, BuildDirection);
