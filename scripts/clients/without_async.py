@@ -1,4 +1,4 @@
-"""Makes the synchronous half of the Python client of the asynchronous one, word by word.
+"""Makes the synchronous half of the Python client of the asynchronous one, word by word, and the same of the scenario.
 
     without_async.py _async.py > _sync.py
 """
@@ -10,6 +10,7 @@ import sys
 WORDS = [
     (r"^\"\"\"The client\..*$", '"""The client, made of `_async.py` by scripts/clients/without_async.py: change that one."""'),
     (r"\bawait anyio\.sleep\b", "time.sleep"),
+    (r"\banyio\.run\((\w+)\)", r"\1()"),
     (r"\bawait anyio\.open_file\b", "open"),
     (r"^import anyio\n", ""),
     (r"^import uuid\n", "import time\nimport uuid\n"),
@@ -22,7 +23,7 @@ WORDS = [
     (r"\bhttpx\.AsyncClient\b", "httpx.Client"),
     (r"\b__aenter__\b", "__enter__"),
     (r"\b__aexit__\b", "__exit__"),
-    (r"\ba(close|read|iter_raw|iter_bytes)\b", r"\1"),
+    (r"\ba(close|read|iter_raw|iter_bytes|pieces)\b", r"\1"),
 ]
 
 

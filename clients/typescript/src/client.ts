@@ -185,8 +185,10 @@ export class Meshmend {
   /** Waits for a job's end. Throws its problem when it did not succeed. */
   async result(jobId: string, how: { timeoutS?: number; signal?: AbortSignal } = {}): Promise<Result> {
     const job = await this.wait(jobId, how);
-    if (job.problem) throw problemError(job.problem);
-    return new Result(this.#connection, jobId, await this.report(jobId));
+    const { problem } = job;
+    if (!problem) return new Result(this.#connection, jobId, await this.report(jobId));
+    // A job tells its problem without the report, which may be long.
+    throw problemError(problem.code === "not-repairable" ? { ...problem, report: await this.report(jobId) } : problem);
   }
 
   /** The report of a job, also of one that was refused. */
@@ -298,7 +300,7 @@ function isOver(end: number | undefined): boolean {
   return end !== undefined && performance.now() / 1000 >= end;
 }
 
-/** Whole seconds that one request may wait; a bit more than is left rather than none. */
+/** Whole seconds that one request may wait; a bit more than is left rather than less. */
 function waitUntil(end: number | undefined): number {
-  return end === undefined ? WAIT_S : Math.min(Math.max(Math.floor(end - performance.now() / 1000), 0) + 1, WAIT_S);
+  return end === undefined ? WAIT_S : Math.min(Math.max(Math.ceil(end - performance.now() / 1000), 0), WAIT_S);
 }

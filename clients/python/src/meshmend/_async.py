@@ -227,9 +227,13 @@ class AsyncMeshmend:
     async def result(self, job_id: str, *, timeout_s: float | None = None) -> AsyncResult:
         """Waits for a job's end. Raises its problem when it did not succeed."""
         job = await self.wait(job_id, timeout_s=timeout_s)
-        if job["problem"] is not None:
-            raise problem_error(job["problem"])
-        return AsyncResult(self, job_id, await self.report(job_id))
+        problem = job["problem"]
+        if problem is None:
+            return AsyncResult(self, job_id, await self.report(job_id))
+        if problem["code"] == "not-repairable":
+            # A job tells its problem without the report, which may be long.
+            problem = {**problem, "report": await self.report(job_id)}
+        raise problem_error(problem)
 
     async def report(self, job_id: str) -> types.Report:
         """The report of a job, also of one that was refused."""
@@ -313,7 +317,8 @@ class AsyncMeshmend:
         attempt = 1
         while True:
             sent = {**self._headers, **(headers or {}), **(body.headers() if body else {})}
-            request = self._http.build_request(method, self._url + path, params=query, headers=sent, content=body)
+            content = body.apieces() if body else None
+            request = self._http.build_request(method, self._url + path, params=query, headers=sent, content=content)
             error: MeshmendError
             try:
                 response = await self._http.send(request, stream=True)

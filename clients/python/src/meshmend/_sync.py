@@ -227,9 +227,13 @@ class Meshmend:
     def result(self, job_id: str, *, timeout_s: float | None = None) -> Result:
         """Waits for a job's end. Raises its problem when it did not succeed."""
         job = self.wait(job_id, timeout_s=timeout_s)
-        if job["problem"] is not None:
-            raise problem_error(job["problem"])
-        return Result(self, job_id, self.report(job_id))
+        problem = job["problem"]
+        if problem is None:
+            return Result(self, job_id, self.report(job_id))
+        if problem["code"] == "not-repairable":
+            # A job tells its problem without the report, which may be long.
+            problem = {**problem, "report": self.report(job_id)}
+        raise problem_error(problem)
 
     def report(self, job_id: str) -> types.Report:
         """The report of a job, also of one that was refused."""
@@ -313,7 +317,8 @@ class Meshmend:
         attempt = 1
         while True:
             sent = {**self._headers, **(headers or {}), **(body.headers() if body else {})}
-            request = self._http.build_request(method, self._url + path, params=query, headers=sent, content=body)
+            content = body.pieces() if body else None
+            request = self._http.build_request(method, self._url + path, params=query, headers=sent, content=content)
             error: MeshmendError
             try:
                 response = self._http.send(request, stream=True)

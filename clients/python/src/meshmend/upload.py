@@ -73,12 +73,14 @@ class Body:
             headers["Content-Length"] = str(sum(known) + heads + len(self._end))
         return headers
 
-    def __iter__(self) -> Iterator[bytes]:
+    def pieces(self) -> Iterator[bytes]:
+        """The body, for a client that waits."""
         for part in self._parts:
             yield from part.pieces()
         yield self._end
 
-    async def __aiter__(self) -> AsyncIterator[bytes]:
+    async def apieces(self) -> AsyncIterator[bytes]:
+        """The body, for a client that does not."""
         for part in self._parts:
             if isinstance(part.source, AsyncIterable):
                 yield part.head

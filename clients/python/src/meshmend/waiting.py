@@ -1,5 +1,6 @@
 """How long a call waits."""
 
+import math
 import time
 
 # Longest wait of one request: well below what proxies and the client's own time limit allow.
@@ -19,6 +20,6 @@ class Deadline:
         return self.left_s() == 0.0
 
     def wait_s(self) -> int:
-        """Whole seconds that one request may wait; a bit more than is left rather than none."""
+        """Whole seconds that one request may wait; a bit more than is left rather than less."""
         left = self.left_s()
-        return WAIT_S if left is None else min(int(left) + 1, WAIT_S)
+        return WAIT_S if left is None else min(math.ceil(left), WAIT_S)
