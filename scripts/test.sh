@@ -88,11 +88,15 @@ fuzz_contract() {
   end_server_with $?
 }
 
-# Clients that three generators make of openapi.yaml: each repairs a mesh, reads a report, waits for a job, reads events.
+# Clients that three generators make of openapi.yaml: each repairs a mesh, reads a report, waits for a job, reads events. Then
+# those in clients/, which go through one scenario with a difficult neighbour between them and the server.
 clients() {
   set_up_clients || { echo "not run: what the generators of clients need cannot be installed here"; return 0; }
-  start_server || return 1
-  scripts/clients/run.sh "$server_url"
+  local neighbour_port
+  read -r neighbour_port _ < <(free_ports) || return 1
+  MESHMEND_WEBHOOKS=true MESHMEND_WEBHOOK_PRIVATE_HOSTS=127.0.0.1:$neighbour_port MESHMEND_WEBHOOK_PAUSE=1s \
+    start_server || return 1
+  scripts/clients/run.sh "$server_url" && scripts/clients/scenarios.sh "$server_url" "$neighbour_port"
   end_server_with $?
 }
 

@@ -6,7 +6,8 @@
     /NAME/asked          what was asked: method, path, manner, status and the headers that matter, as JSON
     /NAME/hook           receives a webhook; the first one of each NAME is answered 500
     /NAME/calls          the webhooks that came, as JSON
-    /files/...           files of FOLDER, for the scenario in a browser
+    /NAME/printed        what a scenario in a browser has printed, as it posts it
+    /files/...           files of FOLDER, for that scenario
 
 Manners: `plain`: as it is. `busy`: of each NAME the first POST is answered 503, the second 429, each with a `Retry-After`.
 `away`: the first request is answered 502 with a page that is no problem document. `lost`: the first POST reaches the
@@ -24,7 +25,8 @@ import urllib.parse
 from collections import defaultdict
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
-HOP = {"connection", "transfer-encoding", "keep-alive", "host"}
+# What is between two neighbours only, and what a browser says of the page that asks: to the server it is a page of its own.
+HOP = {"connection", "transfer-encoding", "keep-alive", "host", "origin", "referer"}
 KEPT = ["idempotency-key", "last-event-id", "content-length", "prefer"]
 PROBLEM = "application/problem+json"
 
@@ -36,6 +38,7 @@ class Neighbour(BaseHTTPRequestHandler):
     lock = threading.Lock()
     asked = defaultdict(list)
     calls = defaultdict(list)
+    printed = {}
 
     def handle_any(self):
         name, _, rest = self.path.lstrip("/").partition("/")
@@ -45,6 +48,10 @@ class Neighbour(BaseHTTPRequestHandler):
         body = self.read_body()
         if rest in ("asked", "calls"):
             return self.answer(200, "application/json", json.dumps((self.asked if rest == "asked" else self.calls)[name]).encode())
+        if rest == "printed":
+            if self.command == "POST":
+                self.printed[name] = body
+            return self.answer(200, "text/plain", self.printed.get(name, b""))
         if rest == "hook":
             with self.lock:
                 self.calls[name].append({"headers": dict(self.headers.items()), "body": body.decode()})

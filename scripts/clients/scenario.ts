@@ -70,13 +70,15 @@ async function* streamOf(content: Uint8Array): AsyncGenerator<Uint8Array> {
 const pause = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
 
 class Scenario {
-  readonly client = this.through("plain");
+  readonly client: Meshmend;
 
   constructor(
     readonly url: string,
     readonly name: string,
     readonly place: Place,
-  ) {}
+  ) {
+    this.client = this.through("plain");
+  }
 
   through(manner: string): Meshmend {
     return new Meshmend(`${this.url}/${this.name}/${manner}/`, { retries: { pauseS: 0.05 } });

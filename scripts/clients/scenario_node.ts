@@ -15,7 +15,7 @@ await run(url, name, {
   meshAt: (path) => meshAt(at(path)),
   save: async (result, file) => {
     await save(result, join(folder, file));
-    return readFile(join(folder, file));
+    return new Uint8Array(await readFile(join(folder, file)));
   },
   leftOf: async (file) => (await readdir(folder)).filter((other) => other.includes(file)).length,
   canStream: true,
