@@ -312,9 +312,11 @@ fn file_answer(description: &str) -> Response {
         .build()
 }
 
-/// A mesh in any format. The type that every mesh has stands first: generators of clients look no further.
+/// A mesh in any format. The type that every mesh has stands first: generators of clients look no further, but for a name
+/// that ends in `+json`, which they would ask for first. So glTF is only one of `model/*` here.
 fn mesh_contents(answer: ResponseBuilder) -> ResponseBuilder {
-    let media_types = bodies::mesh_media_types();
+    let media_types =
+        bodies::mesh_media_types().map(|name| if name.ends_with("+json") { "model/*" } else { name });
     media_types.fold(answer, |answer, media_type| answer.content(media_type, Content::new(Some(binary()))))
 }
 
