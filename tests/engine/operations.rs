@@ -150,7 +150,7 @@ fn every_stage_is_entered_and_left() {
         let heard = Arc::clone(&heard);
         move |event| heard.lock().unwrap().push(event)
     }));
-    for operation in [Operation::Repair, Operation::Simplify] {
+    for operation in [Operation::Repair, Operation::Simplify, Operation::Render] {
         run(operation, &encode(&open_cube(), Encoding::Obj), &Options::default(), &budget).unwrap();
     }
     let heard = heard.lock().unwrap();

@@ -73,14 +73,17 @@ fn a_report_is_a_page_for_browsers_and_json_for_everybody_else() {
     assert_eq!(header(&response, "content-type"), "text/html; charset=utf-8");
     let policy = header(&response, "content-security-policy").to_owned();
     assert!(
-        policy.starts_with("default-src 'none'; style-src 'sha256-") && !policy.contains("unsafe"),
+        policy.starts_with("default-src 'none'; img-src data:; style-src 'sha256-")
+            && !policy.contains("unsafe"),
         "{policy}"
     );
     let page = response.text().unwrap();
     assert!(page.contains("A valid solid") && page.contains("it is not watertight"), "{page}");
-    for outside in ["http://", "https://", "src=", "href="] {
+    for outside in ["http://", "https://", "href="] {
         assert!(!page.contains(outside), "{outside}");
     }
+    let mut pictures = page.split("src=").skip(1);
+    assert!(pictures.all(|picture| picture.trim_start_matches('"').starts_with("data:image/png;base64,")));
     for accept in ["application/json", "*/*"] {
         let response = server.get(path).header("accept", accept).send().unwrap();
         assert_eq!(header(&response, "content-type"), "application/json", "{accept}");

@@ -60,6 +60,7 @@ const RUN: &[ProblemCode] = &[
     ProblemCode::Cancelled,
     ProblemCode::PlanMismatch,
     ProblemCode::MeshTooLarge,
+    ProblemCode::OverBudget,
     ProblemCode::EngineOutOfMemory,
     ProblemCode::MeshUnparseable,
     ProblemCode::MeshEmpty,

@@ -124,7 +124,7 @@ impl<'d> Page<'d> {
              <p>In the examples <code>url</code> is the address of this service, <code>part.stl</code> a mesh, <code>other.stl</code> another and \
              <code>job</code> the path of a job, such as <code>/v1/jobs/ID</code>, as <code>Location</code> tells it.</p>\
              <p>An error is a document of type <code>application/problem+json</code> with a stable <code>code</code>, a \
-             <code>detail</code> in words and, where one was met, the limit and the value; <a href=#errors>all codes</a> \
+             <code>detail</code> in words and, where one was met, the limit and the value; <a href=#list_errors>all codes</a> \
              are listed by the service.</p>\
              <p>A service with keys takes one as <code>Authorization: Bearer KEY</code> or <code>X-API-Key: KEY</code>.</p>\
              <p id=key-field><label>Key for trying calls on this page: <input id=key type=password autocomplete=off \

@@ -83,6 +83,7 @@ fn add(sum: &mut Analysis, one: &Analysis, [faces, vertices]: [u64; 2]) {
         match sum.findings.iter_mut().find(|known| known.code == finding.code) {
             Some(known) => {
                 known.count += finding.count;
+                known.is_at_least |= finding.is_at_least;
                 known.severity = known.severity.max(finding.severity);
                 known.witnesses.extend(witnesses);
             }

@@ -36,6 +36,7 @@ export const words = {
   "sure": ["how sure: {p}", "wie sicher: {p}", "certitude : {p}"],
   "fixed": ["mended", "behoben", "réparé"],
   "left": ["{n} left", "{n} übrig", "{n} restants"],
+  "or.more": ["{n} or more", "{n} oder mehr", "{n} ou plus"],
   "place.told": ["{x}, {n} of {m}", "{x}, {n} von {m}", "{x}, {n} sur {m}"],
 
   "verdict.bad": ["Not printable as it is", "So nicht druckbar", "Pas imprimable en l’état"],
