@@ -169,6 +169,17 @@ class Scenario {
     return [...sizes, `level 2 ${(await simplified.bytes(2)).length}`].join(", ");
   }
 
+  async drawn(): Promise<string> {
+    const crossing = await this.place.meshAt("intersection/self_intersection.off");
+    const sides = await this.client.render(crossing, { views: "four", width: 320, height: 240 });
+    const job = await this.client.submit(crossing, { operation: "repair", thumbnail: true });
+    await this.untilFinal(job);
+    const thumbnail = await this.client.thumbnail(job.id);
+    for (const picture of [sides, thumbnail]) check(String(picture.slice(0, 4)) === "137,80,78,71");
+    const digest = new Uint8Array(await crypto.subtle.digest("SHA-256", sides));
+    return `${[...digest].map((byte) => byte.toString(16).padStart(2, "0")).join("")}, ${thumbnail.length} bytes`;
+  }
+
   async followed(): Promise<string> {
     const client = this.through("cut");
     const job = await client.submit(await this.slowMesh(), { operation: "verify" });
@@ -296,8 +307,8 @@ class Scenario {
 }
 
 const STEPS = [
-  "wrong_input", "repaired", "refused", "described", "made", "followed", "cancelled", "sent_again", "guarded", "called",
-  "streamed", "tidied",
+  "wrong_input", "repaired", "refused", "described", "made", "drawn", "followed", "cancelled", "sent_again", "guarded",
+  "called", "streamed", "tidied",
 ] as const;
 
 export async function run(url: string, name: string, place: Place): Promise<void> {

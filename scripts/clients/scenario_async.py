@@ -5,6 +5,7 @@
 The other scenarios do the same, step by step, and must print the same lines. `scenario_sync.py` is made of this file.
 """
 
+import hashlib
 import json
 import pathlib
 import sys
@@ -129,6 +130,14 @@ class Scenario:
         sizes["level 2"] = len(await results["simplify"].read(level=2))
         return ", ".join(f"{name} {size}" for name, size in sizes.items())
 
+    async def drawn(self) -> str:
+        sides = await self.client.render(self.crossing, views="four", width=320, height=240)
+        job = await self.client.submit(self.crossing, operation="repair", thumbnail=True)
+        await self.until_final(self.client, job)
+        pictures = [sides, await self.client.thumbnail(job["id"])]
+        check(all(picture.startswith(b"\x89PNG\r\n") for picture in pictures))
+        return f"{hashlib.sha256(sides).hexdigest()}, {len(pictures[1])} bytes"
+
     async def followed(self) -> str:
         client = self.through("cut")
         job = await client.submit(self.slow_mesh(), operation="verify")
@@ -252,8 +261,8 @@ async def stream_of(content: bytes) -> AsyncIterator[bytes]:
 
 
 STEPS = [
-    "wrong_input", "repaired", "refused", "described", "made", "followed", "cancelled", "sent_again", "guarded", "called",
-    "streamed", "tidied",
+    "wrong_input", "repaired", "refused", "described", "made", "drawn", "followed", "cancelled", "sent_again", "guarded",
+    "called", "streamed", "tidied",
 ]
 
 

@@ -17,7 +17,7 @@ source=$PWD/scripts/clients
 rm -rf "$run" && mkdir -p "$run/made" "$run/folder" "$run/files" "$run/printed"
 
 # --- what is made of the contract
-scripts/clients/generate.sh "$run/made"
+scripts/clients/generate.sh "$run/made" >"$run/generate.log" 2>&1 || { cat "$run/generate.log"; exit 1; }
 for file in python/src/meshmend/types.py python/src/meshmend/_sync.py typescript/src/types.ts; do
   cmp "$run/made/$file" "clients/$file" || { echo "clients/$file is not up to date: run scripts/clients/generate.sh"; exit 1; }
 done

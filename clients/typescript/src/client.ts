@@ -63,6 +63,11 @@ export class Meshmend {
     return (await this.#run("plan", [mesh], options, call)).report.plan as types.Plan;
   }
 
+  /** A picture of a mesh, as PNG: from one side or several, defects coloured and marked, or turning. */
+  async render(mesh: Mesh | UploadOf, options: types.RenderOptions = {}, call: CallOptions = {}): Promise<Uint8Array<ArrayBuffer>> {
+    return this.thumbnail((await this.#run("render", [mesh], options, call)).jobId);
+  }
+
   // --- operations with a mesh as their answer
 
   /** Makes a certified valid solid of a mesh. Throws `NotRepairableError` where there is none as asked. */
@@ -194,6 +199,12 @@ export class Meshmend {
   /** The report of a job, also of one that was refused. */
   report(jobId: string): Promise<types.Report> {
     return this.#get(`/v1/jobs/${jobId}/report`);
+  }
+
+  /** The picture of a job that was made with `thumbnail`, as PNG. */
+  async thumbnail(jobId: string): Promise<Uint8Array<ArrayBuffer>> {
+    const path = `/v1/jobs/${jobId}/thumbnail.png`;
+    return new Uint8Array(await this.#connection.receive({ method: "GET", path }, (response) => response.arrayBuffer()));
   }
 
   /** Cancels a job; one that has ended stays as it is. */

@@ -36,6 +36,8 @@ export interface components {
             format?: components["schemas"]["Format"];
             reader?: components["schemas"]["Reader"];
             units?: components["schemas"]["Units"];
+            parts?: components["schemas"]["SolidParts"];
+            thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
             near_mm?: components["schemas"]["NearMm"];
@@ -47,12 +49,37 @@ export interface components {
             format?: components["schemas"]["Format"];
             reader?: components["schemas"]["Reader"];
             units?: components["schemas"]["Units"];
+            parts?: components["schemas"]["SolidParts"];
+            thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
             near_mm?: components["schemas"]["NearMm"];
             samples?: components["schemas"]["Samples"];
             result_ttl?: components["schemas"]["ResultTtl"];
             input: components["schemas"]["InputRef"];
+        };
+        /** @description What became of what a file says of faces, in triangles of the result. */
+        Attributes: {
+            /**
+             * Format: int64
+             * @description They are faces of the file and keep all.
+             */
+            kept: number;
+            /**
+             * Format: int64
+             * @description They are parts of such faces, were turned around or moved, and take what is at the nearest corner of the face.
+             */
+            from_face: number;
+            /**
+             * Format: int64
+             * @description They are new, and take what is on the nearest face of the file.
+             */
+            from_nearest: number;
+            /**
+             * Format: double
+             * @description Share of the area of the result that keeps all, from 0 to 1.
+             */
+            kept_area_share: number | null;
         };
         /** @description Rings of neighbours around a rim that a surface of method=rbf is fitted to. Default: 2. */
         BandRings: number;
@@ -82,10 +109,12 @@ export interface components {
             output_units?: components["schemas"]["Units"];
             reader?: components["schemas"]["Reader"];
             units?: components["schemas"]["Units"];
+            parts?: components["schemas"]["SolidParts"];
             require?: components["schemas"]["Require"];
             wall_mm?: components["schemas"]["WallMm"];
             contact?: components["schemas"]["Contact"];
             set_operation?: components["schemas"]["SetOperation"];
+            thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
             near_mm?: components["schemas"]["NearMm"];
@@ -99,10 +128,12 @@ export interface components {
             output_units?: components["schemas"]["Units"];
             reader?: components["schemas"]["Reader"];
             units?: components["schemas"]["Units"];
+            parts?: components["schemas"]["SolidParts"];
             require?: components["schemas"]["Require"];
             wall_mm?: components["schemas"]["WallMm"];
             contact?: components["schemas"]["Contact"];
             set_operation?: components["schemas"]["SetOperation"];
+            thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
             near_mm?: components["schemas"]["NearMm"];
@@ -148,6 +179,11 @@ export interface components {
             bytes: number;
             /** @description Layout of the bytes. */
             encoding: components["schemas"]["Encoding"];
+            /**
+             * Format: int32
+             * @description Parts that were judged one by one, each in its own coordinates; null: all triangles were judged together.
+             */
+            parts: number | null;
             /** @description P0, P1 and P2 hold. */
             printable: boolean;
             /** @description P0: closed, oriented and 2-manifold, without degenerate or duplicate triangles. */
@@ -307,7 +343,9 @@ export interface components {
             output_units?: components["schemas"]["Units"];
             reader?: components["schemas"]["Reader"];
             units?: components["schemas"]["Units"];
+            parts?: components["schemas"]["SolidParts"];
             require?: components["schemas"]["Require"];
+            thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
             near_mm?: components["schemas"]["NearMm"];
@@ -321,7 +359,9 @@ export interface components {
             output_units?: components["schemas"]["Units"];
             reader?: components["schemas"]["Reader"];
             units?: components["schemas"]["Units"];
+            parts?: components["schemas"]["SolidParts"];
             require?: components["schemas"]["Require"];
+            thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
             near_mm?: components["schemas"]["NearMm"];
@@ -404,6 +444,7 @@ export interface components {
             output_units?: components["schemas"]["Units"];
             reader?: components["schemas"]["Reader"];
             units?: components["schemas"]["Units"];
+            parts?: components["schemas"]["SolidParts"];
             require?: components["schemas"]["Require"];
             weld?: components["schemas"]["Weld"];
             cut?: components["schemas"]["Cut"];
@@ -412,6 +453,7 @@ export interface components {
             stitch_validity?: components["schemas"]["StitchValidity"];
             degenerate?: components["schemas"]["Degenerate"];
             cut_edges?: components["schemas"]["CutEdges"];
+            thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
             near_mm?: components["schemas"]["NearMm"];
@@ -425,6 +467,7 @@ export interface components {
             output_units?: components["schemas"]["Units"];
             reader?: components["schemas"]["Reader"];
             units?: components["schemas"]["Units"];
+            parts?: components["schemas"]["SolidParts"];
             require?: components["schemas"]["Require"];
             weld?: components["schemas"]["Weld"];
             cut?: components["schemas"]["Cut"];
@@ -433,6 +476,7 @@ export interface components {
             stitch_validity?: components["schemas"]["StitchValidity"];
             degenerate?: components["schemas"]["Degenerate"];
             cut_edges?: components["schemas"]["CutEdges"];
+            thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
             near_mm?: components["schemas"]["NearMm"];
@@ -451,6 +495,8 @@ export interface components {
              * @description How many.
              */
             count: number;
+            /** @description There may be more: the search for pairs ended at its bound of work. */
+            is_at_least: boolean;
             /**
              * Format: int64
              * @description How many of them the result has no longer; null: there is no result to compare with.
@@ -498,6 +544,8 @@ export interface components {
          * @enum {string}
          */
         DefectCode: "no-triangle" | "non-finite-vertex" | "non-finite-face" | "index-out-of-range" | "too-few-corners" | "non-planar-polygon" | "concave-polygon" | "coincident-corners" | "collinear-face" | "needle" | "cap" | "duplicate-face" | "opposite-duplicate-face" | "isolated-vertex" | "isolated-edge" | "duplicate-vertex" | "isolated-face" | "boundary-loop" | "non-manifold-edge" | "non-manifold-vertex" | "orientation-conflict" | "non-orientable" | "folded-edge" | "inverted-shell" | "misnested-shell" | "zero-volume-shell" | "double-skin" | "open-sheet" | "noise-shell" | "self-intersection" | "overlap" | "touch" | "near" | "unsound-reading";
+        /** @description Whether render colours and marks defects. Default: true. */
+        Defects: boolean;
         /**
          * @description What becomes of faces that pass a vertex more than once.
          *     - `split`: The simple cycles that they are made of become faces of their own.
@@ -651,6 +699,14 @@ export interface components {
             result_to_input: components["schemas"]["DirectedDistance"];
         };
         /**
+         * @description Which edges are drawn.
+         *     - `none`: None.
+         *     - `creases`: Outlines, and edges at which the surface turns by more than 40 degrees.
+         *     - `all`: All edges of triangles.
+         * @enum {string}
+         */
+        DrawnEdges: "none" | "creases" | "all";
+        /**
          * @description Where the dual has the vertex of a face with the plane n . x = d.
          *     - `polar`: n / d, the pole; exact.
          *     - `offset-normal`: n (d + 1), with a unit normal.
@@ -770,9 +826,10 @@ export interface components {
          *     - `ply-binary-big-endian`: Binary big-endian PLY.
          *     - `glb`: Binary glTF.
          *     - `gltf`: glTF JSON.
+         *     - `3mf`: The package of a 3MF.
          * @enum {string}
          */
-        Encoding: "obj" | "stl-binary" | "stl-ascii" | "off" | "off-binary" | "ply-ascii" | "ply-binary-little-endian" | "ply-binary-big-endian" | "glb" | "gltf";
+        Encoding: "obj" | "stl-binary" | "stl-ascii" | "off" | "off-binary" | "ply-ascii" | "ply-binary-little-endian" | "ply-binary-big-endian" | "glb" | "gltf" | "3mf";
         /** @description Who made a report. */
         EngineInfo: {
             /** @description Name. */
@@ -968,6 +1025,7 @@ export interface components {
             output_units?: components["schemas"]["Units"];
             reader?: components["schemas"]["Reader"];
             units?: components["schemas"]["Units"];
+            parts?: components["schemas"]["SolidParts"];
             require?: components["schemas"]["Require"];
             holes?: components["schemas"]["Holes"];
             method?: components["schemas"]["FillMethod"];
@@ -978,6 +1036,7 @@ export interface components {
             lambda_from?: components["schemas"]["LambdaFrom"];
             constraint_values?: components["schemas"]["ConstraintValues"];
             constraints?: components["schemas"]["Constraints"];
+            thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
             near_mm?: components["schemas"]["NearMm"];
@@ -991,6 +1050,7 @@ export interface components {
             output_units?: components["schemas"]["Units"];
             reader?: components["schemas"]["Reader"];
             units?: components["schemas"]["Units"];
+            parts?: components["schemas"]["SolidParts"];
             require?: components["schemas"]["Require"];
             holes?: components["schemas"]["Holes"];
             method?: components["schemas"]["FillMethod"];
@@ -1001,6 +1061,7 @@ export interface components {
             lambda_from?: components["schemas"]["LambdaFrom"];
             constraint_values?: components["schemas"]["ConstraintValues"];
             constraints?: components["schemas"]["Constraints"];
+            thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
             near_mm?: components["schemas"]["NearMm"];
@@ -1110,9 +1171,10 @@ export interface components {
          *     - `ply`: Polygon file format.
          *     - `glb`: glTF 2.0 in one binary file.
          *     - `gltf`: glTF 2.0 as JSON that holds its data.
+         *     - `3mf`: 3D Manufacturing Format.
          * @enum {string}
          */
-        Format: "obj" | "stl" | "off" | "ply" | "glb" | "gltf";
+        Format: "obj" | "stl" | "off" | "ply" | "glb" | "gltf" | "3mf";
         /** @description What is to be known about a format. */
         FormatInfo: {
             /** @description Name in options. */
@@ -1136,6 +1198,8 @@ export interface components {
             /** @description The uploaded bytes, judged. */
             input_certificate: components["schemas"]["Certificate"];
         };
+        /** @description Height of each view that render draws, in pixels. Default: 480. */
+        Height: number;
         /** @description What became of one hole: a boundary loop, or several that got one patch. */
         Hole: {
             /** @description Places of its loops among the witnesses of `boundary-loop` when all are listed, from 0. */
@@ -1327,6 +1391,7 @@ export interface components {
             output_units?: components["schemas"]["Units"];
             reader?: components["schemas"]["Reader"];
             units?: components["schemas"]["Units"];
+            parts?: components["schemas"]["SolidParts"];
             require?: components["schemas"]["Require"];
             fill_holes?: components["schemas"]["FillHoles"];
             open_shells?: components["schemas"]["OpenShells"];
@@ -1372,6 +1437,15 @@ export interface components {
             dual_recenter?: components["schemas"]["DualRecenter"];
             polygons?: components["schemas"]["Polygons"];
             set_operation?: components["schemas"]["SetOperation"];
+            views?: components["schemas"]["Views"];
+            width?: components["schemas"]["Width"];
+            height?: components["schemas"]["Height"];
+            shade?: components["schemas"]["Shade"];
+            edges?: components["schemas"]["DrawnEdges"];
+            projection?: components["schemas"]["Projection"];
+            defects?: components["schemas"]["Defects"];
+            turntable?: components["schemas"]["Turntable"];
+            thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
             near_mm?: components["schemas"]["NearMm"];
@@ -1398,6 +1472,7 @@ export interface components {
             output_units?: components["schemas"]["Units"];
             reader?: components["schemas"]["Reader"];
             units?: components["schemas"]["Units"];
+            parts?: components["schemas"]["SolidParts"];
             require?: components["schemas"]["Require"];
             fill_holes?: components["schemas"]["FillHoles"];
             open_shells?: components["schemas"]["OpenShells"];
@@ -1443,6 +1518,15 @@ export interface components {
             dual_recenter?: components["schemas"]["DualRecenter"];
             polygons?: components["schemas"]["Polygons"];
             set_operation?: components["schemas"]["SetOperation"];
+            views?: components["schemas"]["Views"];
+            width?: components["schemas"]["Width"];
+            height?: components["schemas"]["Height"];
+            shade?: components["schemas"]["Shade"];
+            edges?: components["schemas"]["DrawnEdges"];
+            projection?: components["schemas"]["Projection"];
+            defects?: components["schemas"]["Defects"];
+            turntable?: components["schemas"]["Turntable"];
+            thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
             near_mm?: components["schemas"]["NearMm"];
@@ -1716,6 +1800,8 @@ export interface components {
             report: string | null;
             /** @description Its mesh; null while there is none. */
             result: string | null;
+            /** @description Its picture; null while there is none. */
+            thumbnail: string | null;
         };
         /** @description Whether modeller lists the faces of the polyhedron with their numbers and planes, after the operators. Default: false. */
         ListFaces: boolean;
@@ -1869,6 +1955,7 @@ export interface components {
             output_units?: components["schemas"]["Units"];
             reader?: components["schemas"]["Reader"];
             units?: components["schemas"]["Units"];
+            parts?: components["schemas"]["SolidParts"];
             require?: components["schemas"]["Require"];
             operators?: components["schemas"]["Operators"];
             ranges?: components["schemas"]["Ranges"];
@@ -1877,6 +1964,7 @@ export interface components {
             dual?: components["schemas"]["DualEmbedding"];
             dual_recenter?: components["schemas"]["DualRecenter"];
             polygons?: components["schemas"]["Polygons"];
+            thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
             near_mm?: components["schemas"]["NearMm"];
@@ -1890,6 +1978,7 @@ export interface components {
             output_units?: components["schemas"]["Units"];
             reader?: components["schemas"]["Reader"];
             units?: components["schemas"]["Units"];
+            parts?: components["schemas"]["SolidParts"];
             require?: components["schemas"]["Require"];
             operators?: components["schemas"]["Operators"];
             ranges?: components["schemas"]["Ranges"];
@@ -1898,6 +1987,7 @@ export interface components {
             dual?: components["schemas"]["DualEmbedding"];
             dual_recenter?: components["schemas"]["DualRecenter"];
             polygons?: components["schemas"]["Polygons"];
+            thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
             near_mm?: components["schemas"]["NearMm"];
@@ -1970,9 +2060,10 @@ export interface components {
          *     - `fill-holes`: Holes closed; the certificate states what holds.
          *     - `modeller`: A closed polyhedron edited by its planes; the certificate states what holds.
          *     - `boolean`: Several solids combined into one that is certified.
+         *     - `render`: A picture.
          * @enum {string}
          */
-        Operation: "analyze" | "plan" | "repair" | "convert" | "verify" | "simplify" | "cut-stitch" | "fill-holes" | "modeller" | "boolean";
+        Operation: "analyze" | "plan" | "repair" | "convert" | "verify" | "simplify" | "cut-stitch" | "fill-holes" | "modeller" | "boolean" | "render";
         /**
          * @description Why an operator is refused.
          *     - `nothing-moves`: No face moves.
@@ -2011,6 +2102,7 @@ export interface components {
             output_units?: components["schemas"]["Units"];
             reader?: components["schemas"]["Reader"];
             units?: components["schemas"]["Units"];
+            parts?: components["schemas"]["SolidParts"];
             require?: components["schemas"]["Require"];
             fill_holes?: components["schemas"]["FillHoles"];
             open_shells?: components["schemas"]["OpenShells"];
@@ -2056,6 +2148,15 @@ export interface components {
             dual_recenter?: components["schemas"]["DualRecenter"];
             polygons?: components["schemas"]["Polygons"];
             set_operation?: components["schemas"]["SetOperation"];
+            views?: components["schemas"]["Views"];
+            width?: components["schemas"]["Width"];
+            height?: components["schemas"]["Height"];
+            shade?: components["schemas"]["Shade"];
+            edges?: components["schemas"]["DrawnEdges"];
+            projection?: components["schemas"]["Projection"];
+            defects?: components["schemas"]["Defects"];
+            turntable?: components["schemas"]["Turntable"];
+            thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
             near_mm?: components["schemas"]["NearMm"];
@@ -2121,6 +2222,49 @@ export interface components {
              * @description The smallest angle from the horizontal among those faces; null: there are none.
              */
             angle_min: number | null;
+        };
+        /** @description A part of a file that was handled by itself, in its own coordinates. */
+        Part: {
+            /** @description Where in the file it is, such as `/3D/3dmodel.model`. */
+            path: string;
+            /**
+             * Format: int32
+             * @description Its id there.
+             */
+            object: number;
+            /** @description Its name; empty when it has none. */
+            name: string;
+            /**
+             * Format: int32
+             * @description Its number among the volumes of the object; null: the object is one part.
+             */
+            volume: number | null;
+            /**
+             * Format: int32
+             * @description How often the file has it at a place.
+             */
+            instances: number;
+            /**
+             * Format: int32
+             * @description Number of its first face, where faces are numbered through all parts.
+             */
+            first_face: number;
+            /**
+             * Format: int64
+             * @description Triangles of the part as uploaded.
+             */
+            triangles_before: number;
+            /**
+             * Format: int64
+             * @description Triangles of the part as returned; null: it is not returned.
+             */
+            triangles_after: number | null;
+            /** @description The conclusion about the part. */
+            verdict: components["schemas"]["Verdict"];
+            plan: components["schemas"]["Plan"] | null;
+            /** @description The steps that ran, in their order. */
+            actions: components["schemas"]["Action"][];
+            attributes: components["schemas"]["Attributes"] | null;
         };
         /** @description Parts of their own and cavities. */
         Parts: {
@@ -2190,6 +2334,8 @@ export interface components {
             format?: components["schemas"]["Format"];
             reader?: components["schemas"]["Reader"];
             units?: components["schemas"]["Units"];
+            parts?: components["schemas"]["SolidParts"];
+            thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
             near_mm?: components["schemas"]["NearMm"];
@@ -2201,6 +2347,8 @@ export interface components {
             format?: components["schemas"]["Format"];
             reader?: components["schemas"]["Reader"];
             units?: components["schemas"]["Units"];
+            parts?: components["schemas"]["SolidParts"];
+            thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
             near_mm?: components["schemas"]["NearMm"];
@@ -2609,6 +2757,7 @@ export interface components {
          *     - `mesh-truncated`: The file ends too early.
          *     - `archive-unsafe`: The archive breaks a safety rule.
          *     - `not-repairable`: No result meets what was required.
+         *     - `over-budget`: The mesh takes more work than a file of its size may.
          *     - `webhook-refused`: The webhook is not one that the server calls.
          *     - `rate-limited`: Too many requests.
          *     - `queue-full`: The queue has no room.
@@ -2623,7 +2772,7 @@ export interface components {
          *     - `internal`: A fault of the server.
          * @enum {string}
          */
-        ProblemCode: "invalid-parameter" | "body-incomplete" | "unknown-parameter" | "unauthenticated" | "forbidden" | "not-found" | "expired" | "method-not-allowed" | "not-acceptable" | "range-not-satisfiable" | "precondition-failed" | "head-too-large" | "unsupported-media-type" | "upload-timeout" | "job-not-finished" | "plan-mismatch" | "idempotency-key-reused" | "body-too-large" | "mesh-too-large" | "mesh-unparseable" | "mesh-empty" | "mesh-non-finite" | "mesh-truncated" | "archive-unsafe" | "not-repairable" | "webhook-refused" | "rate-limited" | "queue-full" | "engine-timeout" | "engine-out-of-memory" | "engine-crashed" | "worker-lost" | "cancelled" | "draining" | "store-unavailable" | "storage-full" | "internal";
+        ProblemCode: "invalid-parameter" | "body-incomplete" | "unknown-parameter" | "unauthenticated" | "forbidden" | "not-found" | "expired" | "method-not-allowed" | "not-acceptable" | "range-not-satisfiable" | "precondition-failed" | "head-too-large" | "unsupported-media-type" | "upload-timeout" | "job-not-finished" | "plan-mismatch" | "idempotency-key-reused" | "body-too-large" | "mesh-too-large" | "mesh-unparseable" | "mesh-empty" | "mesh-non-finite" | "mesh-truncated" | "archive-unsafe" | "not-repairable" | "over-budget" | "webhook-refused" | "rate-limited" | "queue-full" | "engine-timeout" | "engine-out-of-memory" | "engine-crashed" | "worker-lost" | "cancelled" | "draining" | "store-unavailable" | "storage-full" | "internal";
         /** @description How far a running job is. */
         Progress: {
             stage: components["schemas"]["Stage"] | null;
@@ -2633,6 +2782,13 @@ export interface components {
              */
             fraction: number;
         };
+        /**
+         * @description How depth changes what is seen.
+         *     - `orthographic`: Not at all: parallel lines stay parallel.
+         *     - `perspective`: What is farther is smaller.
+         * @enum {string}
+         */
+        Projection: "orthographic" | "perspective";
         /** @description Properties that hold after welding. */
         Properties: {
             /** @description Every edge has exactly two triangles. */
@@ -2761,6 +2917,7 @@ export interface components {
          * @description Why a verdict is as it is: a refusal, or a condition that does not hold.
          *     - `nothing-to-repair`: There is no finite non-degenerate triangle.
          *     - `not-repairable`: No step of the plan led to a valid solid.
+         *     - `over-budget`: No valid solid was found in the work that a file of this size may take.
          *     - `not-representable`: A coordinate cannot be written in the output format.
          *     - `not-a-polyhedron`: The modeller cannot read the mesh as a polyhedron.
          *     - `operator-refused`: The modeller refuses an operator, a range or the dual.
@@ -2772,7 +2929,7 @@ export interface components {
          *     - `condition-broken`: A condition of P0, P1 or P2 does not hold in the judged bytes.
          * @enum {string}
          */
-        ReasonCode: "nothing-to-repair" | "not-repairable" | "not-representable" | "not-a-polyhedron" | "operator-refused" | "input-not-solid" | "empty-result" | "not-combined" | "limit-exceeded" | "not-faithful" | "condition-broken";
+        ReasonCode: "nothing-to-repair" | "not-repairable" | "over-budget" | "not-representable" | "not-a-polyhedron" | "operator-refused" | "input-not-solid" | "empty-result" | "not-combined" | "limit-exceeded" | "not-faithful" | "condition-broken";
         /** @description Move a mesh that is too far from the origin for float32 there, instead of refusing it. Default: false. */
         Recenter: boolean;
         /** @description An operator that was refused. */
@@ -2832,12 +2989,54 @@ export interface components {
          */
         Remedy: "drop" | "drop-both" | "drop-one" | "collapse" | "flip" | "split" | "join" | "fill" | "thicken" | "cut" | "turn" | "remove" | "unite" | "round" | "rebuild" | "keep";
         /** @description Options; the same names are query parameters and command-line flags. */
+        RenderOptions: {
+            format?: components["schemas"]["Format"];
+            reader?: components["schemas"]["Reader"];
+            units?: components["schemas"]["Units"];
+            parts?: components["schemas"]["SolidParts"];
+            views?: components["schemas"]["Views"];
+            width?: components["schemas"]["Width"];
+            height?: components["schemas"]["Height"];
+            shade?: components["schemas"]["Shade"];
+            edges?: components["schemas"]["DrawnEdges"];
+            projection?: components["schemas"]["Projection"];
+            defects?: components["schemas"]["Defects"];
+            turntable?: components["schemas"]["Turntable"];
+            policy?: components["schemas"]["PolicyName"];
+            build_direction?: components["schemas"]["BuildDirection"];
+            near_mm?: components["schemas"]["NearMm"];
+            samples?: components["schemas"]["Samples"];
+            result_ttl?: components["schemas"]["ResultTtl"];
+        };
+        /** @description Options; the same names are query parameters and command-line flags. */
+        RenderOptionsWithInput: {
+            format?: components["schemas"]["Format"];
+            reader?: components["schemas"]["Reader"];
+            units?: components["schemas"]["Units"];
+            parts?: components["schemas"]["SolidParts"];
+            views?: components["schemas"]["Views"];
+            width?: components["schemas"]["Width"];
+            height?: components["schemas"]["Height"];
+            shade?: components["schemas"]["Shade"];
+            edges?: components["schemas"]["DrawnEdges"];
+            projection?: components["schemas"]["Projection"];
+            defects?: components["schemas"]["Defects"];
+            turntable?: components["schemas"]["Turntable"];
+            policy?: components["schemas"]["PolicyName"];
+            build_direction?: components["schemas"]["BuildDirection"];
+            near_mm?: components["schemas"]["NearMm"];
+            samples?: components["schemas"]["Samples"];
+            result_ttl?: components["schemas"]["ResultTtl"];
+            input: components["schemas"]["InputRef"];
+        };
+        /** @description Options; the same names are query parameters and command-line flags. */
         RepairOptions: {
             format?: components["schemas"]["Format"];
             output_format?: components["schemas"]["Format"];
             output_units?: components["schemas"]["Units"];
             reader?: components["schemas"]["Reader"];
             units?: components["schemas"]["Units"];
+            parts?: components["schemas"]["SolidParts"];
             require?: components["schemas"]["Require"];
             fill_holes?: components["schemas"]["FillHoles"];
             open_shells?: components["schemas"]["OpenShells"];
@@ -2859,6 +3058,7 @@ export interface components {
             vertex_colors?: components["schemas"]["VertexColors"];
             normal_turn_max?: components["schemas"]["NormalTurnMax"];
             snap_epsilon_mm?: components["schemas"]["SnapEpsilonMm"];
+            thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
             near_mm?: components["schemas"]["NearMm"];
@@ -2872,6 +3072,7 @@ export interface components {
             output_units?: components["schemas"]["Units"];
             reader?: components["schemas"]["Reader"];
             units?: components["schemas"]["Units"];
+            parts?: components["schemas"]["SolidParts"];
             require?: components["schemas"]["Require"];
             fill_holes?: components["schemas"]["FillHoles"];
             open_shells?: components["schemas"]["OpenShells"];
@@ -2893,6 +3094,7 @@ export interface components {
             vertex_colors?: components["schemas"]["VertexColors"];
             normal_turn_max?: components["schemas"]["NormalTurnMax"];
             snap_epsilon_mm?: components["schemas"]["SnapEpsilonMm"];
+            thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
             near_mm?: components["schemas"]["NearMm"];
@@ -2919,6 +3121,8 @@ export interface components {
              */
             output_units: components["schemas"]["Units"];
             plan: components["schemas"]["Plan"] | null;
+            /** @description What was tried to repair the file, in its order, by the names of `docs/ladder.md`; empty where no repair was looked for. */
+            tried: string[];
             /** @description The steps of the plan in the order they ran. */
             actions: components["schemas"]["Action"][];
             /**
@@ -2934,6 +3138,10 @@ export interface components {
             deviation: components["schemas"]["Deviation"];
             /** @description The conclusion. */
             verdict: components["schemas"]["Verdict"];
+            /** @description The parts of the file that were handled one by one, in its order; empty when all triangles were handled together. */
+            parts: components["schemas"]["Part"][];
+            /** @description What of the file is kept and not judged, and which rules of its format it breaks, in sentences. */
+            remarks: string[];
             /** @description The uploaded bytes, judged. */
             input_certificate: components["schemas"]["Certificate"];
             certificate: components["schemas"]["Certificate"] | null;
@@ -2985,6 +3193,13 @@ export interface components {
          * @enum {string}
          */
         Severity: "info" | "warning" | "error";
+        /**
+         * @description How faces are shaded.
+         *     - `flat`: Each in one colour.
+         *     - `smooth`: Rounded where neighbours meet at less than 40 degrees.
+         * @enum {string}
+         */
+        Shade: "flat" | "smooth";
         /** @description One connected component of a valid solid's surface. */
         Shell: {
             /**
@@ -3030,6 +3245,7 @@ export interface components {
             output_units?: components["schemas"]["Units"];
             reader?: components["schemas"]["Reader"];
             units?: components["schemas"]["Units"];
+            parts?: components["schemas"]["SolidParts"];
             require?: components["schemas"]["Require"];
             faces?: components["schemas"]["Faces"];
             ratio?: components["schemas"]["Ratio"];
@@ -3040,6 +3256,7 @@ export interface components {
             placement?: components["schemas"]["Placement"];
             vertex_colors?: components["schemas"]["VertexColors"];
             normal_turn_max?: components["schemas"]["NormalTurnMax"];
+            thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
             near_mm?: components["schemas"]["NearMm"];
@@ -3053,6 +3270,7 @@ export interface components {
             output_units?: components["schemas"]["Units"];
             reader?: components["schemas"]["Reader"];
             units?: components["schemas"]["Units"];
+            parts?: components["schemas"]["SolidParts"];
             require?: components["schemas"]["Require"];
             faces?: components["schemas"]["Faces"];
             ratio?: components["schemas"]["Ratio"];
@@ -3063,6 +3281,7 @@ export interface components {
             placement?: components["schemas"]["Placement"];
             vertex_colors?: components["schemas"]["VertexColors"];
             normal_turn_max?: components["schemas"]["NormalTurnMax"];
+            thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
             near_mm?: components["schemas"]["NearMm"];
@@ -3086,6 +3305,14 @@ export interface components {
         };
         /** @description How far apart vertices of rims may be that repair and stitch=snap join, in millimetres, but never more than half the shortest boundary edge. Default: 1e-5 of the diagonal for cut-stitch, 0 for repair. */
         SnapEpsilonMm: number;
+        /**
+         * @description What of a file of several parts is one solid.
+         *     - `separate`: Each part by itself, in its own coordinates; the file keeps everything around them.
+         *     - `union`: All parts at their places, after each was repaired by itself; the result is a new file of one mesh.
+         *     - `together`: All parts at their places, as they are; the result is a new file of one mesh.
+         * @enum {string}
+         */
+        SolidParts: "separate" | "union" | "together";
         /** @description A vertex of more than three faces that becomes several because a face moves. */
         SplitSpec: {
             /** @description A place near the vertex, in the unit of the file. */
@@ -3127,9 +3354,10 @@ export interface components {
          *     - `write`: Mesh to bytes.
          *     - `certify`: The exact check of bytes.
          *     - `measure`: How far the result is from the input.
+         *     - `draw`: A picture.
          * @enum {string}
          */
-        Stage: "read" | "analyze" | "repair" | "simplify" | "write" | "certify" | "measure";
+        Stage: "read" | "analyze" | "repair" | "simplify" | "write" | "certify" | "measure" | "draw";
         /** @description Data of an event `stage`: a pass of the job's run begins or ends. */
         StageEvent: {
             /** @description The pass. */
@@ -3263,6 +3491,8 @@ export interface components {
              */
             samples: number;
         };
+        /** @description Whether a picture of the mesh with its defects, and of the result with its new triangles, is made and kept with the job. Default: false. */
+        Thumbnail: boolean;
         /** @description Milliseconds by the clock; null: the pass did not run. */
         TimingMs: {
             /**
@@ -3302,6 +3532,11 @@ export interface components {
             measure: number | null;
             /**
              * Format: double
+             * @description A picture.
+             */
+            draw: number | null;
+            /**
+             * Format: double
              * @description The whole run of the engine.
              */
             total: number;
@@ -3311,6 +3546,8 @@ export interface components {
             /** @description The faces. */
             together: components["schemas"]["FaceRate"][];
         };
+        /** @description Number of pictures of a full turn, which render returns as an animated PNG instead of views; at most 64 million pixels in all. Default: none. */
+        Turntable: number;
         /** @description The last operator that is not taken back is taken back. */
         UndoSpec: Record<string, never>;
         /** @description A guess at the unit of the coordinates. Nothing is rescaled by it. */
@@ -3325,18 +3562,20 @@ export interface components {
         };
         /**
          * @description The length of one unit of the file.
+         *     - `um`: Micrometre.
          *     - `mm`: Millimetre.
          *     - `cm`: Centimetre.
          *     - `m`: Metre.
          *     - `in`: Inch.
+         *     - `ft`: Foot.
          * @enum {string}
          */
-        Units: "mm" | "cm" | "m" | "in";
+        Units: "um" | "mm" | "cm" | "m" | "in" | "ft";
         /** @description A unit and how it is known. */
         UnitsInfo: {
             /** @description The unit. */
             unit: components["schemas"]["Units"];
-            /** @description The caller or the format stated it; false: it is assumed. */
+            /** @description The caller, the file or its format states it; false: it is assumed. */
             is_stated: boolean;
         };
         /** @description Three coordinates. */
@@ -3361,6 +3600,8 @@ export interface components {
             format?: components["schemas"]["Format"];
             reader?: components["schemas"]["Reader"];
             units?: components["schemas"]["Units"];
+            parts?: components["schemas"]["SolidParts"];
+            thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
             samples?: components["schemas"]["Samples"];
@@ -3371,6 +3612,8 @@ export interface components {
             format?: components["schemas"]["Format"];
             reader?: components["schemas"]["Reader"];
             units?: components["schemas"]["Units"];
+            parts?: components["schemas"]["SolidParts"];
+            thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
             samples?: components["schemas"]["Samples"];
@@ -3393,6 +3636,20 @@ export interface components {
          * @enum {string}
          */
         VertexColors: "kept" | "priority";
+        /**
+         * @description From which sides a mesh is drawn; z is up, and the front is the side of small y.
+         *     - `iso`: From the front, the right and above.
+         *     - `front`: From small y.
+         *     - `back`: From large y.
+         *     - `left`: From small x.
+         *     - `right`: From large x.
+         *     - `top`: From above.
+         *     - `bottom`: From below.
+         *     - `four`: Iso, front, right and top.
+         *     - `all`: All seven.
+         * @enum {string}
+         */
+        Views: "iso" | "front" | "back" | "left" | "right" | "top" | "bottom" | "four" | "all";
         /** @description The element that breaks a condition. */
         Violation: {
             /** @description What is broken. */
@@ -3413,6 +3670,8 @@ export interface components {
              * @description Faces, edges, vertices, pairs or shells that break it; null: not counted.
              */
             count: number | null;
+            /** @description There may be more: the search for pairs ended at its bound of work. */
+            is_at_least: boolean;
         };
         /** @description Where the enclosed volume lies, in cubic units of the file. */
         VolumeInterval: {
@@ -3477,6 +3736,8 @@ export interface components {
          * @enum {string}
          */
         Weld: "exact" | "none";
+        /** @description Width of each view that render draws, in pixels. Default: 640. */
+        Width: number;
         /** @description Where a defect is. */
         Witness: {
             /** @description Faces of the file that show it. */
@@ -3503,6 +3764,7 @@ export type Across = components['schemas']['Across'];
 export type Action = components['schemas']['Action'];
 export type AnalyzeOptions = components['schemas']['AnalyzeOptions'];
 export type AnalyzeOptionsWithInput = components['schemas']['AnalyzeOptionsWithInput'];
+export type Attributes = components['schemas']['Attributes'];
 export type BandRings = components['schemas']['BandRings'];
 export type Blocker = components['schemas']['Blocker'];
 export type BlockerKind = components['schemas']['BlockerKind'];
@@ -3534,6 +3796,7 @@ export type CutStitchOptions = components['schemas']['CutStitchOptions'];
 export type CutStitchOptionsWithInput = components['schemas']['CutStitchOptionsWithInput'];
 export type Defect = components['schemas']['Defect'];
 export type DefectCode = components['schemas']['DefectCode'];
+export type Defects = components['schemas']['Defects'];
 export type Degenerate = components['schemas']['Degenerate'];
 export type Deliveries = components['schemas']['Deliveries'];
 export type Delivery = components['schemas']['Delivery'];
@@ -3542,6 +3805,7 @@ export type DeliveryTry = components['schemas']['DeliveryTry'];
 export type Deviation = components['schemas']['Deviation'];
 export type DirectedDistance = components['schemas']['DirectedDistance'];
 export type Distance = components['schemas']['Distance'];
+export type DrawnEdges = components['schemas']['DrawnEdges'];
 export type DualEmbedding = components['schemas']['DualEmbedding'];
 export type DualRecenter = components['schemas']['DualRecenter'];
 export type EdgeRef = components['schemas']['EdgeRef'];
@@ -3579,6 +3843,7 @@ export type FlipSpec = components['schemas']['FlipSpec'];
 export type Format = components['schemas']['Format'];
 export type FormatInfo = components['schemas']['FormatInfo'];
 export type FurtherInput = components['schemas']['FurtherInput'];
+export type Height = components['schemas']['Height'];
 export type Hole = components['schemas']['Hole'];
 export type HoleClass = components['schemas']['HoleClass'];
 export type HoleCounts = components['schemas']['HoleCounts'];
@@ -3625,6 +3890,7 @@ export type Options = components['schemas']['Options'];
 export type OrientedBox = components['schemas']['OrientedBox'];
 export type Outcome = components['schemas']['Outcome'];
 export type Overhang = components['schemas']['Overhang'];
+export type Part = components['schemas']['Part'];
 export type Parts = components['schemas']['Parts'];
 export type Phase = components['schemas']['Phase'];
 export type PickingRay = components['schemas']['PickingRay'];
@@ -3647,6 +3913,7 @@ export type PrintingWitness = components['schemas']['PrintingWitness'];
 export type Problem = components['schemas']['Problem'];
 export type ProblemCode = components['schemas']['ProblemCode'];
 export type Progress = components['schemas']['Progress'];
+export type Projection = components['schemas']['Projection'];
 export type Properties = components['schemas']['Properties'];
 export type Proposal = components['schemas']['Proposal'];
 export type Proximity = components['schemas']['Proximity'];
@@ -3665,6 +3932,8 @@ export type RefusedOperator = components['schemas']['RefusedOperator'];
 export type RejectedPatch = components['schemas']['RejectedPatch'];
 export type Rejection = components['schemas']['Rejection'];
 export type Remedy = components['schemas']['Remedy'];
+export type RenderOptions = components['schemas']['RenderOptions'];
+export type RenderOptionsWithInput = components['schemas']['RenderOptionsWithInput'];
 export type RepairOptions = components['schemas']['RepairOptions'];
 export type RepairOptionsWithInput = components['schemas']['RepairOptionsWithInput'];
 export type Report = components['schemas']['Report'];
@@ -3674,6 +3943,7 @@ export type ResultTtl = components['schemas']['ResultTtl'];
 export type Samples = components['schemas']['Samples'];
 export type SetOperation = components['schemas']['SetOperation'];
 export type Severity = components['schemas']['Severity'];
+export type Shade = components['schemas']['Shade'];
 export type Shell = components['schemas']['Shell'];
 export type ShellFate = components['schemas']['ShellFate'];
 export type ShiftSpec = components['schemas']['ShiftSpec'];
@@ -3681,6 +3951,7 @@ export type SimplifyOptions = components['schemas']['SimplifyOptions'];
 export type SimplifyOptionsWithInput = components['schemas']['SimplifyOptionsWithInput'];
 export type SingleHole = components['schemas']['SingleHole'];
 export type SnapEpsilonMm = components['schemas']['SnapEpsilonMm'];
+export type SolidParts = components['schemas']['SolidParts'];
 export type SplitSpec = components['schemas']['SplitSpec'];
 export type Spread = components['schemas']['Spread'];
 export type Stage = components['schemas']['Stage'];
@@ -3694,8 +3965,10 @@ export type TargetSpec = components['schemas']['TargetSpec'];
 export type Targets = components['schemas']['Targets'];
 export type TestCounts = components['schemas']['TestCounts'];
 export type Thickness = components['schemas']['Thickness'];
+export type Thumbnail = components['schemas']['Thumbnail'];
 export type TimingMs = components['schemas']['TimingMs'];
 export type TogetherSpec = components['schemas']['TogetherSpec'];
+export type Turntable = components['schemas']['Turntable'];
 export type UndoSpec = components['schemas']['UndoSpec'];
 export type UnitHypothesis = components['schemas']['UnitHypothesis'];
 export type Units = components['schemas']['Units'];
@@ -3706,6 +3979,7 @@ export type VerifyOptions = components['schemas']['VerifyOptions'];
 export type VerifyOptionsWithInput = components['schemas']['VerifyOptionsWithInput'];
 export type Version = components['schemas']['Version'];
 export type VertexColors = components['schemas']['VertexColors'];
+export type Views = components['schemas']['Views'];
 export type Violation = components['schemas']['Violation'];
 export type ViolationCount = components['schemas']['ViolationCount'];
 export type VolumeInterval = components['schemas']['VolumeInterval'];
@@ -3715,6 +3989,7 @@ export type Watertight = components['schemas']['Watertight'];
 export type WebhookEvent = components['schemas']['WebhookEvent'];
 export type WebhookMessage = components['schemas']['WebhookMessage'];
 export type Weld = components['schemas']['Weld'];
+export type Width = components['schemas']['Width'];
 export type Witness = components['schemas']['Witness'];
 export type WrapCells = components['schemas']['WrapCells'];
 export type $defs = Record<string, never>;

@@ -24,8 +24,8 @@ use crate::wire::{
     self, BuildDirection, Contact, Criterion, Cut, Degenerate, DrawnEdges, DualEmbedding, EditSpec, Effort,
     Fidelity, FillHoles, Format, InputRef, Job, JobRequest, LABELS_MAX, Mode, Nesting, OpenShells, Options,
     Outcome, Placement, PlanRequest, PolicyName, Problem, ProblemCode, Projection, RangeSpec, Reader, Report,
-    Require, SetOperation, Shade, StageEvent, StateEvent, Stitch, StitchValidity, TargetSpec, Units,
-    VertexColors, Views, WebhookMessage, Weld,
+    Require, SetOperation, Shade, SolidParts, StageEvent, StateEvent, Stitch, StitchValidity, TargetSpec,
+    Units, VertexColors, Views, WebhookMessage, Weld,
 };
 
 /// Problems that any path may answer with.
@@ -131,7 +131,7 @@ fn schemas() -> Vec<(String, RefOr<Schema>)> {
     );
     add!(Format, Reader, Units, Require, FillHoles, OpenShells, Effort, Nesting, Contact, Mode, Criterion);
     add!(Placement, VertexColors, Cut, Stitch, StitchValidity, Degenerate, PolicyName, BuildDirection);
-    add!(DualEmbedding, Weld, SetOperation, Views, Shade, DrawnEdges, Projection);
+    add!(DualEmbedding, Weld, SetOperation, SolidParts, Views, Shade, DrawnEdges, Projection);
     let own = wire::option_schemas().map(|(name, schema)| (name, RefOr::T(schema)));
     schemas.into_iter().chain(own).chain(bodies::schemas()).collect()
 }

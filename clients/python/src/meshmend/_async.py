@@ -98,6 +98,14 @@ class AsyncMeshmend:
         report = (await self._run("plan", [mesh], options, material, idempotency_key, timeout_s)).report
         return cast(types.Plan, report["plan"])
 
+    async def render(
+        self, mesh: AsyncMesh | UploadOf, *, material: Mesh | None = None, idempotency_key: str | None = None,
+        timeout_s: float | None = None, **options: Unpack[types.RenderOptions],
+    ) -> bytes:
+        """A picture of a mesh, as PNG: from one side or several, defects coloured and marked, or turning."""
+        drawn = await self._run("render", [mesh], options, material, idempotency_key, timeout_s)
+        return await self.thumbnail(drawn.job_id)
+
     # --- operations with a mesh as their answer -------------------------------------------------------------------
 
     async def repair(
@@ -239,6 +247,10 @@ class AsyncMeshmend:
         """The report of a job, also of one that was refused."""
         return cast(types.Report, await self._get(f"/v1/jobs/{job_id}/report", {}))
 
+    async def thumbnail(self, job_id: str) -> bytes:
+        """The picture of a job that was made with `thumbnail=True`, as PNG."""
+        return (await _whole(await self._send("GET", f"/v1/jobs/{job_id}/thumbnail.png"))).content
+
     async def cancel(self, job_id: str) -> types.Job:
         """Cancels a job; one that has ended stays as it is."""
         response = await self._send("POST", f"/v1/jobs/{job_id}/cancel")
@@ -297,14 +309,7 @@ class AsyncMeshmend:
             raise ValueError("the upload of an earlier job is used again as it is, alone")
         body = json_body_of(options, uploads[0]) if uploads else body_of(field, options, cast(Sequence[AsyncMesh], meshes), material)
         key = {"Idempotency-Key": idempotency_key or str(uuid.uuid4())}
-        response = await self._send("POST", path, headers={**headers, **key}, body=body)
-        try:
-            await response.aread()
-        except httpx.TransportError as error:
-            raise ConnectionFailedError(str(error)) from error
-        finally:
-            await response.aclose()
-        return response
+        return await _whole(await self._send("POST", path, headers={**headers, **key}, body=body))
 
     async def _get(self, path: str, query: Mapping[str, str | list[str]]) -> Any:
         return await _json(await self._send("GET", path, query=query, headers={"Accept": JSON}))
@@ -382,9 +387,13 @@ class AsyncMeshmend:
 
 
 async def _json(response: httpx.Response) -> Any:
+    return (await _whole(response)).json()
+
+
+async def _whole(response: httpx.Response) -> httpx.Response:
     try:
         await response.aread()
-        return response.json()
+        return response
     except httpx.TransportError as error:
         raise ConnectionFailedError(str(error)) from error
     finally:

@@ -98,6 +98,14 @@ class Meshmend:
         report = (self._run("plan", [mesh], options, material, idempotency_key, timeout_s)).report
         return cast(types.Plan, report["plan"])
 
+    def render(
+        self, mesh: Mesh | UploadOf, *, material: Mesh | None = None, idempotency_key: str | None = None,
+        timeout_s: float | None = None, **options: Unpack[types.RenderOptions],
+    ) -> bytes:
+        """A picture of a mesh, as PNG: from one side or several, defects coloured and marked, or turning."""
+        drawn = self._run("render", [mesh], options, material, idempotency_key, timeout_s)
+        return self.thumbnail(drawn.job_id)
+
     # --- operations with a mesh as their answer -------------------------------------------------------------------
 
     def repair(
@@ -239,6 +247,10 @@ class Meshmend:
         """The report of a job, also of one that was refused."""
         return cast(types.Report, self._get(f"/v1/jobs/{job_id}/report", {}))
 
+    def thumbnail(self, job_id: str) -> bytes:
+        """The picture of a job that was made with `thumbnail=True`, as PNG."""
+        return (_whole(self._send("GET", f"/v1/jobs/{job_id}/thumbnail.png"))).content
+
     def cancel(self, job_id: str) -> types.Job:
         """Cancels a job; one that has ended stays as it is."""
         response = self._send("POST", f"/v1/jobs/{job_id}/cancel")
@@ -297,14 +309,7 @@ class Meshmend:
             raise ValueError("the upload of an earlier job is used again as it is, alone")
         body = json_body_of(options, uploads[0]) if uploads else body_of(field, options, cast(Sequence[Mesh], meshes), material)
         key = {"Idempotency-Key": idempotency_key or str(uuid.uuid4())}
-        response = self._send("POST", path, headers={**headers, **key}, body=body)
-        try:
-            response.read()
-        except httpx.TransportError as error:
-            raise ConnectionFailedError(str(error)) from error
-        finally:
-            response.close()
-        return response
+        return _whole(self._send("POST", path, headers={**headers, **key}, body=body))
 
     def _get(self, path: str, query: Mapping[str, str | list[str]]) -> Any:
         return _json(self._send("GET", path, query=query, headers={"Accept": JSON}))
@@ -382,9 +387,13 @@ class Meshmend:
 
 
 def _json(response: httpx.Response) -> Any:
+    return (_whole(response)).json()
+
+
+def _whole(response: httpx.Response) -> httpx.Response:
     try:
         response.read()
-        return response.json()
+        return response
     except httpx.TransportError as error:
         raise ConnectionFailedError(str(error)) from error
     finally:

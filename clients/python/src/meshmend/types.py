@@ -13,6 +13,29 @@ What lies between triangles that are paired.
 """
 
 
+class Attributes(TypedDict):
+    """
+    What became of what a file says of faces, in triangles of the result.
+    """
+
+    kept: int
+    """
+    They are faces of the file and keep all.
+    """
+    from_face: int
+    """
+    They are parts of such faces, were turned around or moved, and take what is at the nearest corner of the face.
+    """
+    from_nearest: int
+    """
+    They are new, and take what is on the nearest face of the file.
+    """
+    kept_area_share: float | None
+    """
+    Share of the area of the result that keeps all, from 0 to 1.
+    """
+
+
 BandRings: TypeAlias = int
 """
 Rings of neighbours around a rim that a surface of method=rbf is fitted to. Default: 2.
@@ -315,6 +338,12 @@ A kind of defect.
 """
 
 
+Defects: TypeAlias = bool
+"""
+Whether render colours and marks defects. Default: true.
+"""
+
+
 Degenerate: TypeAlias = Literal["split", "drop"]
 """
 What becomes of faces that pass a vertex more than once.
@@ -396,6 +425,15 @@ class Distance(TypedDict):
     """
     From the result to the input.
     """
+
+
+DrawnEdges: TypeAlias = Literal["none", "creases", "all"]
+"""
+Which edges are drawn.
+- `none`: None.
+- `creases`: Outlines, and edges at which the surface turns by more than 40 degrees.
+- `all`: All edges of triangles.
+"""
 
 
 DualEmbedding: TypeAlias = Literal["polar", "offset-normal", "foot", "centroid"]
@@ -487,6 +525,7 @@ Encoding: TypeAlias = Literal[
     "ply-binary-big-endian",
     "glb",
     "gltf",
+    "3mf",
 ]
 """
 A format together with the way its bytes are laid out.
@@ -500,6 +539,7 @@ A format together with the way its bytes are laid out.
 - `ply-binary-big-endian`: Binary big-endian PLY.
 - `glb`: Binary glTF.
 - `gltf`: glTF JSON.
+- `3mf`: The package of a 3MF.
 """
 
 
@@ -662,7 +702,7 @@ How a part fits the largest box of a process.
 """
 
 
-Format: TypeAlias = Literal["obj", "stl", "off", "ply", "glb", "gltf"]
+Format: TypeAlias = Literal["obj", "stl", "off", "ply", "glb", "gltf", "3mf"]
 """
 A file format.
 - `obj`: Wavefront OBJ.
@@ -671,6 +711,7 @@ A file format.
 - `ply`: Polygon file format.
 - `glb`: glTF 2.0 in one binary file.
 - `gltf`: glTF 2.0 as JSON that holds its data.
+- `3mf`: 3D Manufacturing Format.
 """
 
 
@@ -703,6 +744,12 @@ class FormatInfo(TypedDict):
     """
     It can be written.
     """
+
+
+Height: TypeAlias = int
+"""
+Height of each view that render draws, in pixels. Default: 480.
+"""
 
 
 HoleClass: TypeAlias = Literal[
@@ -1054,6 +1101,10 @@ class Links(TypedDict):
     """
     Its mesh; null while there is none.
     """
+    thumbnail: str | None
+    """
+    Its picture; null while there is none.
+    """
 
 
 ListFaces: TypeAlias = bool
@@ -1203,6 +1254,7 @@ Operation: TypeAlias = Literal[
     "fill-holes",
     "modeller",
     "boolean",
+    "render",
 ]
 """
 What to do with a file.
@@ -1216,6 +1268,7 @@ What to do with a file.
 - `fill-holes`: Holes closed; the certificate states what holds.
 - `modeller`: A closed polyhedron edited by its planes; the certificate states what holds.
 - `boolean`: Several solids combined into one that is certified.
+- `render`: A picture.
 """
 
 
@@ -1784,6 +1837,7 @@ ProblemCode: TypeAlias = Literal[
     "mesh-truncated",
     "archive-unsafe",
     "not-repairable",
+    "over-budget",
     "webhook-refused",
     "rate-limited",
     "queue-full",
@@ -1824,6 +1878,7 @@ Stable code of a problem. `/v1/errors` explains each.
 - `mesh-truncated`: The file ends too early.
 - `archive-unsafe`: The archive breaks a safety rule.
 - `not-repairable`: No result meets what was required.
+- `over-budget`: The mesh takes more work than a file of its size may.
 - `webhook-refused`: The webhook is not one that the server calls.
 - `rate-limited`: Too many requests.
 - `queue-full`: The queue has no room.
@@ -1836,6 +1891,14 @@ Stable code of a problem. `/v1/errors` explains each.
 - `store-unavailable`: The job store does not answer.
 - `storage-full`: There is no room for more data.
 - `internal`: A fault of the server.
+"""
+
+
+Projection: TypeAlias = Literal["orthographic", "perspective"]
+"""
+How depth changes what is seen.
+- `orthographic`: Not at all: parallel lines stay parallel.
+- `perspective`: What is farther is smaller.
 """
 
 
@@ -1946,6 +2009,7 @@ class Reading(TypedDict):
 ReasonCode: TypeAlias = Literal[
     "nothing-to-repair",
     "not-repairable",
+    "over-budget",
     "not-representable",
     "not-a-polyhedron",
     "operator-refused",
@@ -1960,6 +2024,7 @@ ReasonCode: TypeAlias = Literal[
 Why a verdict is as it is: a refusal, or a condition that does not hold.
 - `nothing-to-repair`: There is no finite non-degenerate triangle.
 - `not-repairable`: No step of the plan led to a valid solid.
+- `over-budget`: No valid solid was found in the work that a file of this size may take.
 - `not-representable`: A coordinate cannot be written in the output format.
 - `not-a-polyhedron`: The modeller cannot read the mesh as a polyhedron.
 - `operator-refused`: The modeller refuses an operator, a range or the dual.
@@ -2097,6 +2162,14 @@ How bad a defect is for printing.
 """
 
 
+Shade: TypeAlias = Literal["flat", "smooth"]
+"""
+How faces are shaded.
+- `flat`: Each in one colour.
+- `smooth`: Rounded where neighbours meet at less than 40 degrees.
+"""
+
+
 class Shell(TypedDict):
     """
     One connected component of a valid solid's surface.
@@ -2151,6 +2224,15 @@ How far apart vertices of rims may be that repair and stitch=snap join, in milli
 """
 
 
+SolidParts: TypeAlias = Literal["separate", "union", "together"]
+"""
+What of a file of several parts is one solid.
+- `separate`: Each part by itself, in its own coordinates; the file keeps everything around them.
+- `union`: All parts at their places, after each was repaired by itself; the result is a new file of one mesh.
+- `together`: All parts at their places, as they are; the result is a new file of one mesh.
+"""
+
+
 class Spread(TypedDict):
     """
     How a figure is spread over the surface.
@@ -2175,7 +2257,7 @@ class Spread(TypedDict):
 
 
 Stage: TypeAlias = Literal[
-    "read", "analyze", "repair", "simplify", "write", "certify", "measure"
+    "read", "analyze", "repair", "simplify", "write", "certify", "measure", "draw"
 ]
 """
 A pass of the engine.
@@ -2186,6 +2268,7 @@ A pass of the engine.
 - `write`: Mesh to bytes.
 - `certify`: The exact check of bytes.
 - `measure`: How far the result is from the input.
+- `draw`: A picture.
 """
 
 
@@ -2376,6 +2459,12 @@ class Thickness(TypedDict):
     """
 
 
+Thumbnail: TypeAlias = bool
+"""
+Whether a picture of the mesh with its defects, and of the result with its new triangles, is made and kept with the job. Default: false.
+"""
+
+
 class TimingMs(TypedDict):
     """
     Milliseconds by the clock; null: the pass did not run.
@@ -2409,10 +2498,20 @@ class TimingMs(TypedDict):
     """
     How far the result is from the input.
     """
+    draw: float | None
+    """
+    A picture.
+    """
     total: float
     """
     The whole run of the engine.
     """
+
+
+Turntable: TypeAlias = int
+"""
+Number of pictures of a full turn, which render returns as an animated PNG instead of views; at most 64 million pixels in all. Default: none.
+"""
 
 
 class UndoSpec(TypedDict):
@@ -2421,13 +2520,15 @@ class UndoSpec(TypedDict):
     """
 
 
-Units: TypeAlias = Literal["mm", "cm", "m", "in"]
+Units: TypeAlias = Literal["um", "mm", "cm", "m", "in", "ft"]
 """
 The length of one unit of the file.
+- `um`: Micrometre.
 - `mm`: Millimetre.
 - `cm`: Centimetre.
 - `m`: Metre.
 - `in`: Inch.
+- `ft`: Foot.
 """
 
 
@@ -2442,7 +2543,7 @@ class UnitsInfo(TypedDict):
     """
     is_stated: bool
     """
-    The caller or the format stated it; false: it is assumed.
+    The caller, the file or its format states it; false: it is assumed.
     """
 
 
@@ -2463,6 +2564,8 @@ class VerifyOptions(TypedDict):
     format: NotRequired[Format]
     reader: NotRequired[Reader]
     units: NotRequired[Units]
+    parts: NotRequired[SolidParts]
+    thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
     samples: NotRequired[Samples]
@@ -2477,6 +2580,8 @@ class VerifyOptionsWithInput(TypedDict):
     format: NotRequired[Format]
     reader: NotRequired[Reader]
     units: NotRequired[Units]
+    parts: NotRequired[SolidParts]
+    thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
     samples: NotRequired[Samples]
@@ -2508,6 +2613,23 @@ VertexColors: TypeAlias = Literal["kept", "priority"]
 What colours the vertices of a simplified mesh have.
 - `kept`: Those of the file, mixed where vertices were merged.
 - `priority`: The order in which they would go next, from blue to red: a picture for OFF, PLY and glTF.
+"""
+
+
+Views: TypeAlias = Literal[
+    "iso", "front", "back", "left", "right", "top", "bottom", "four", "all"
+]
+"""
+From which sides a mesh is drawn; z is up, and the front is the side of small y.
+- `iso`: From the front, the right and above.
+- `front`: From small y.
+- `back`: From large y.
+- `left`: From small x.
+- `right`: From large x.
+- `top`: From above.
+- `bottom`: From below.
+- `four`: Iso, front, right and top.
+- `all`: All seven.
 """
 
 
@@ -2546,6 +2668,10 @@ class ViolationCount(TypedDict):
     count: int | None
     """
     Faces, edges, vertices, pairs or shells that break it; null: not counted.
+    """
+    is_at_least: bool
+    """
+    There may be more: the search for pairs ended at its bound of work.
     """
 
 
@@ -2599,6 +2725,12 @@ Weld: TypeAlias = Literal["exact", "none"]
 Which vertices a cut takes as one.
 - `exact`: All at one position, as programs do that read a file without indices.
 - `none`: Those that have one number in the file. Coincident rims stay apart.
+"""
+
+
+Width: TypeAlias = int
+"""
+Width of each view that render draws, in pixels. Default: 640.
 """
 
 
@@ -2669,6 +2801,8 @@ class AnalyzeOptions(TypedDict):
     format: NotRequired[Format]
     reader: NotRequired[Reader]
     units: NotRequired[Units]
+    parts: NotRequired[SolidParts]
+    thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
     near_mm: NotRequired[NearMm]
@@ -2684,6 +2818,8 @@ class AnalyzeOptionsWithInput(TypedDict):
     format: NotRequired[Format]
     reader: NotRequired[Reader]
     units: NotRequired[Units]
+    parts: NotRequired[SolidParts]
+    thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
     near_mm: NotRequired[NearMm]
@@ -2721,10 +2857,12 @@ class BooleanOptions(TypedDict):
     output_units: NotRequired[Units]
     reader: NotRequired[Reader]
     units: NotRequired[Units]
+    parts: NotRequired[SolidParts]
     require: NotRequired[Require]
     wall_mm: NotRequired[WallMm]
     contact: NotRequired[Contact]
     set_operation: NotRequired[SetOperation]
+    thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
     near_mm: NotRequired[NearMm]
@@ -2742,10 +2880,12 @@ class BooleanOptionsWithInput(TypedDict):
     output_units: NotRequired[Units]
     reader: NotRequired[Reader]
     units: NotRequired[Units]
+    parts: NotRequired[SolidParts]
     require: NotRequired[Require]
     wall_mm: NotRequired[WallMm]
     contact: NotRequired[Contact]
     set_operation: NotRequired[SetOperation]
+    thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
     near_mm: NotRequired[NearMm]
@@ -2850,7 +2990,9 @@ class ConvertOptions(TypedDict):
     output_units: NotRequired[Units]
     reader: NotRequired[Reader]
     units: NotRequired[Units]
+    parts: NotRequired[SolidParts]
     require: NotRequired[Require]
+    thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
     near_mm: NotRequired[NearMm]
@@ -2868,7 +3010,9 @@ class ConvertOptionsWithInput(TypedDict):
     output_units: NotRequired[Units]
     reader: NotRequired[Reader]
     units: NotRequired[Units]
+    parts: NotRequired[SolidParts]
     require: NotRequired[Require]
+    thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
     near_mm: NotRequired[NearMm]
@@ -2887,6 +3031,7 @@ class CutStitchOptions(TypedDict):
     output_units: NotRequired[Units]
     reader: NotRequired[Reader]
     units: NotRequired[Units]
+    parts: NotRequired[SolidParts]
     require: NotRequired[Require]
     weld: NotRequired[Weld]
     cut: NotRequired[Cut]
@@ -2895,6 +3040,7 @@ class CutStitchOptions(TypedDict):
     stitch_validity: NotRequired[StitchValidity]
     degenerate: NotRequired[Degenerate]
     cut_edges: NotRequired[CutEdges]
+    thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
     near_mm: NotRequired[NearMm]
@@ -2912,6 +3058,7 @@ class CutStitchOptionsWithInput(TypedDict):
     output_units: NotRequired[Units]
     reader: NotRequired[Reader]
     units: NotRequired[Units]
+    parts: NotRequired[SolidParts]
     require: NotRequired[Require]
     weld: NotRequired[Weld]
     cut: NotRequired[Cut]
@@ -2920,6 +3067,7 @@ class CutStitchOptionsWithInput(TypedDict):
     stitch_validity: NotRequired[StitchValidity]
     degenerate: NotRequired[Degenerate]
     cut_edges: NotRequired[CutEdges]
+    thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
     near_mm: NotRequired[NearMm]
@@ -2944,6 +3092,10 @@ class Defect(TypedDict):
     count: int
     """
     How many.
+    """
+    is_at_least: bool
+    """
+    There may be more: the search for pairs ended at its bound of work.
     """
     fixed: int | None
     """
@@ -3135,6 +3287,7 @@ class FillHolesOptions(TypedDict):
     output_units: NotRequired[Units]
     reader: NotRequired[Reader]
     units: NotRequired[Units]
+    parts: NotRequired[SolidParts]
     require: NotRequired[Require]
     holes: NotRequired[Holes]
     method: NotRequired[FillMethod]
@@ -3145,6 +3298,7 @@ class FillHolesOptions(TypedDict):
     lambda_from: NotRequired[LambdaFrom]
     constraint_values: NotRequired[ConstraintValues]
     constraints: NotRequired[Constraints]
+    thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
     near_mm: NotRequired[NearMm]
@@ -3162,6 +3316,7 @@ class FillHolesOptionsWithInput(TypedDict):
     output_units: NotRequired[Units]
     reader: NotRequired[Reader]
     units: NotRequired[Units]
+    parts: NotRequired[SolidParts]
     require: NotRequired[Require]
     holes: NotRequired[Holes]
     method: NotRequired[FillMethod]
@@ -3172,6 +3327,7 @@ class FillHolesOptionsWithInput(TypedDict):
     lambda_from: NotRequired[LambdaFrom]
     constraint_values: NotRequired[ConstraintValues]
     constraints: NotRequired[Constraints]
+    thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
     near_mm: NotRequired[NearMm]
@@ -3243,6 +3399,8 @@ class PlanOptions(TypedDict):
     format: NotRequired[Format]
     reader: NotRequired[Reader]
     units: NotRequired[Units]
+    parts: NotRequired[SolidParts]
+    thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
     near_mm: NotRequired[NearMm]
@@ -3258,6 +3416,8 @@ class PlanOptionsWithInput(TypedDict):
     format: NotRequired[Format]
     reader: NotRequired[Reader]
     units: NotRequired[Units]
+    parts: NotRequired[SolidParts]
+    thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
     near_mm: NotRequired[NearMm]
@@ -3530,6 +3690,55 @@ class RejectedPatch(TypedDict):
     """
 
 
+class RenderOptions(TypedDict):
+    """
+    Options; the same names are query parameters and command-line flags.
+    """
+
+    format: NotRequired[Format]
+    reader: NotRequired[Reader]
+    units: NotRequired[Units]
+    parts: NotRequired[SolidParts]
+    views: NotRequired[Views]
+    width: NotRequired[Width]
+    height: NotRequired[Height]
+    shade: NotRequired[Shade]
+    edges: NotRequired[DrawnEdges]
+    projection: NotRequired[Projection]
+    defects: NotRequired[Defects]
+    turntable: NotRequired[Turntable]
+    policy: NotRequired[PolicyName]
+    build_direction: NotRequired[BuildDirection]
+    near_mm: NotRequired[NearMm]
+    samples: NotRequired[Samples]
+    result_ttl: NotRequired[ResultTtl]
+
+
+class RenderOptionsWithInput(TypedDict):
+    """
+    Options; the same names are query parameters and command-line flags.
+    """
+
+    format: NotRequired[Format]
+    reader: NotRequired[Reader]
+    units: NotRequired[Units]
+    parts: NotRequired[SolidParts]
+    views: NotRequired[Views]
+    width: NotRequired[Width]
+    height: NotRequired[Height]
+    shade: NotRequired[Shade]
+    edges: NotRequired[DrawnEdges]
+    projection: NotRequired[Projection]
+    defects: NotRequired[Defects]
+    turntable: NotRequired[Turntable]
+    policy: NotRequired[PolicyName]
+    build_direction: NotRequired[BuildDirection]
+    near_mm: NotRequired[NearMm]
+    samples: NotRequired[Samples]
+    result_ttl: NotRequired[ResultTtl]
+    input: InputRef
+
+
 class SimplifyOptions(TypedDict):
     """
     Options; the same names are query parameters and command-line flags.
@@ -3540,6 +3749,7 @@ class SimplifyOptions(TypedDict):
     output_units: NotRequired[Units]
     reader: NotRequired[Reader]
     units: NotRequired[Units]
+    parts: NotRequired[SolidParts]
     require: NotRequired[Require]
     faces: NotRequired[Faces]
     ratio: NotRequired[Ratio]
@@ -3550,6 +3760,7 @@ class SimplifyOptions(TypedDict):
     placement: NotRequired[Placement]
     vertex_colors: NotRequired[VertexColors]
     normal_turn_max: NotRequired[NormalTurnMax]
+    thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
     near_mm: NotRequired[NearMm]
@@ -3567,6 +3778,7 @@ class SimplifyOptionsWithInput(TypedDict):
     output_units: NotRequired[Units]
     reader: NotRequired[Reader]
     units: NotRequired[Units]
+    parts: NotRequired[SolidParts]
     require: NotRequired[Require]
     faces: NotRequired[Faces]
     ratio: NotRequired[Ratio]
@@ -3577,6 +3789,7 @@ class SimplifyOptionsWithInput(TypedDict):
     placement: NotRequired[Placement]
     vertex_colors: NotRequired[VertexColors]
     normal_turn_max: NotRequired[NormalTurnMax]
+    thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
     near_mm: NotRequired[NearMm]
@@ -3673,6 +3886,10 @@ class Certificate(TypedDict):
     encoding: Encoding
     """
     Layout of the bytes.
+    """
+    parts: int | None
+    """
+    Parts that were judged one by one, each in its own coordinates; null: all triangles were judged together.
     """
     printable: bool
     """
@@ -4027,6 +4244,7 @@ class RepairOptions(TypedDict):
     output_units: NotRequired[Units]
     reader: NotRequired[Reader]
     units: NotRequired[Units]
+    parts: NotRequired[SolidParts]
     require: NotRequired[Require]
     fill_holes: NotRequired[FillHoles]
     open_shells: NotRequired[OpenShells]
@@ -4048,6 +4266,7 @@ class RepairOptions(TypedDict):
     vertex_colors: NotRequired[VertexColors]
     normal_turn_max: NotRequired[NormalTurnMax]
     snap_epsilon_mm: NotRequired[SnapEpsilonMm]
+    thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
     near_mm: NotRequired[NearMm]
@@ -4065,6 +4284,7 @@ class RepairOptionsWithInput(TypedDict):
     output_units: NotRequired[Units]
     reader: NotRequired[Reader]
     units: NotRequired[Units]
+    parts: NotRequired[SolidParts]
     require: NotRequired[Require]
     fill_holes: NotRequired[FillHoles]
     open_shells: NotRequired[OpenShells]
@@ -4086,6 +4306,7 @@ class RepairOptionsWithInput(TypedDict):
     vertex_colors: NotRequired[VertexColors]
     normal_turn_max: NotRequired[NormalTurnMax]
     snap_epsilon_mm: NotRequired[SnapEpsilonMm]
+    thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
     near_mm: NotRequired[NearMm]
@@ -4211,6 +4432,55 @@ class MergeSpec(TypedDict):
     """
     The face that moves.
     """
+
+
+class Part(TypedDict):
+    """
+    A part of a file that was handled by itself, in its own coordinates.
+    """
+
+    path: str
+    """
+    Where in the file it is, such as `/3D/3dmodel.model`.
+    """
+    object: int
+    """
+    Its id there.
+    """
+    name: str
+    """
+    Its name; empty when it has none.
+    """
+    volume: int | None
+    """
+    Its number among the volumes of the object; null: the object is one part.
+    """
+    instances: int
+    """
+    How often the file has it at a place.
+    """
+    first_face: int
+    """
+    Number of its first face, where faces are numbered through all parts.
+    """
+    triangles_before: int
+    """
+    Triangles of the part as uploaded.
+    """
+    triangles_after: int | None
+    """
+    Triangles of the part as returned; null: it is not returned.
+    """
+    verdict: Verdict
+    """
+    The conclusion about the part.
+    """
+    plan: Plan | None
+    actions: list[Action]
+    """
+    The steps that ran, in their order.
+    """
+    attributes: Attributes | None
 
 
 class ShiftSpec(TypedDict):
@@ -4375,6 +4645,7 @@ class ModellerOptions(TypedDict):
     output_units: NotRequired[Units]
     reader: NotRequired[Reader]
     units: NotRequired[Units]
+    parts: NotRequired[SolidParts]
     require: NotRequired[Require]
     operators: NotRequired[Operators]
     ranges: NotRequired[Ranges]
@@ -4383,6 +4654,7 @@ class ModellerOptions(TypedDict):
     dual: NotRequired[DualEmbedding]
     dual_recenter: NotRequired[DualRecenter]
     polygons: NotRequired[Polygons]
+    thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
     near_mm: NotRequired[NearMm]
@@ -4400,6 +4672,7 @@ class ModellerOptionsWithInput(TypedDict):
     output_units: NotRequired[Units]
     reader: NotRequired[Reader]
     units: NotRequired[Units]
+    parts: NotRequired[SolidParts]
     require: NotRequired[Require]
     operators: NotRequired[Operators]
     ranges: NotRequired[Ranges]
@@ -4408,6 +4681,7 @@ class ModellerOptionsWithInput(TypedDict):
     dual: NotRequired[DualEmbedding]
     dual_recenter: NotRequired[DualRecenter]
     polygons: NotRequired[Polygons]
+    thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
     near_mm: NotRequired[NearMm]
@@ -4426,6 +4700,7 @@ class Options(TypedDict):
     output_units: NotRequired[Units]
     reader: NotRequired[Reader]
     units: NotRequired[Units]
+    parts: NotRequired[SolidParts]
     require: NotRequired[Require]
     fill_holes: NotRequired[FillHoles]
     open_shells: NotRequired[OpenShells]
@@ -4471,6 +4746,15 @@ class Options(TypedDict):
     dual_recenter: NotRequired[DualRecenter]
     polygons: NotRequired[Polygons]
     set_operation: NotRequired[SetOperation]
+    views: NotRequired[Views]
+    width: NotRequired[Width]
+    height: NotRequired[Height]
+    shade: NotRequired[Shade]
+    edges: NotRequired[DrawnEdges]
+    projection: NotRequired[Projection]
+    defects: NotRequired[Defects]
+    turntable: NotRequired[Turntable]
+    thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
     near_mm: NotRequired[NearMm]
@@ -4510,6 +4794,10 @@ class Report(TypedDict):
     where this says "unit of the file", and the result has another unit, it is this one.
     """
     plan: Plan | None
+    tried: list[str]
+    """
+    What was tried to repair the file, in its order, by the names of `docs/ladder.md`; empty where no repair was looked for.
+    """
     actions: list[Action]
     """
     The steps of the plan in the order they ran.
@@ -4532,6 +4820,14 @@ class Report(TypedDict):
     verdict: Verdict
     """
     The conclusion.
+    """
+    parts: list[Part]
+    """
+    The parts of the file that were handled one by one, in its order; empty when all triangles were handled together.
+    """
+    remarks: list[str]
+    """
+    What of the file is kept and not judged, and which rules of its format it breaks, in sentences.
     """
     input_certificate: Certificate
     """
@@ -4559,6 +4855,7 @@ class JobRequest(TypedDict):
     output_units: NotRequired[Units]
     reader: NotRequired[Reader]
     units: NotRequired[Units]
+    parts: NotRequired[SolidParts]
     require: NotRequired[Require]
     fill_holes: NotRequired[FillHoles]
     open_shells: NotRequired[OpenShells]
@@ -4604,6 +4901,15 @@ class JobRequest(TypedDict):
     dual_recenter: NotRequired[DualRecenter]
     polygons: NotRequired[Polygons]
     set_operation: NotRequired[SetOperation]
+    views: NotRequired[Views]
+    width: NotRequired[Width]
+    height: NotRequired[Height]
+    shade: NotRequired[Shade]
+    edges: NotRequired[DrawnEdges]
+    projection: NotRequired[Projection]
+    defects: NotRequired[Defects]
+    turntable: NotRequired[Turntable]
+    thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
     near_mm: NotRequired[NearMm]
@@ -4631,6 +4937,7 @@ class JobRequestWithInput(TypedDict):
     output_units: NotRequired[Units]
     reader: NotRequired[Reader]
     units: NotRequired[Units]
+    parts: NotRequired[SolidParts]
     require: NotRequired[Require]
     fill_holes: NotRequired[FillHoles]
     open_shells: NotRequired[OpenShells]
@@ -4676,6 +4983,15 @@ class JobRequestWithInput(TypedDict):
     dual_recenter: NotRequired[DualRecenter]
     polygons: NotRequired[Polygons]
     set_operation: NotRequired[SetOperation]
+    views: NotRequired[Views]
+    width: NotRequired[Width]
+    height: NotRequired[Height]
+    shade: NotRequired[Shade]
+    edges: NotRequired[DrawnEdges]
+    projection: NotRequired[Projection]
+    defects: NotRequired[Defects]
+    turntable: NotRequired[Turntable]
+    thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
     near_mm: NotRequired[NearMm]
