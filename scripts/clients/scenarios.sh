@@ -58,10 +58,10 @@ processes=($!)
 trap 'kill "${processes[@]}" 2>/dev/null || true; wait' EXIT
 for _ in $(seq 100); do curl -sf "$here/nobody/asked" >/dev/null && break; sleep 0.1; done
 
-# --- the scenario, with each of them
-"$run/python/bin/python" "$run/programs/scenario_async.py" "$here" python-async fixtures "$run/folder" | tee "$run/printed/python-async"
-"$run/python/bin/python" "$run/programs/scenario_sync.py" "$here" python-sync fixtures "$run/folder" >"$run/printed/python-sync"
-node "$run/node/scenario_node.js" "$here" node fixtures "$run/folder" >"$run/printed/node"
+# --- the scenario, with each of them; only what hangs meets the time limit
+timeout 300 "$run/python/bin/python" "$run/programs/scenario_async.py" "$here" python-async fixtures "$run/folder" | tee "$run/printed/python-async"
+timeout 300 "$run/python/bin/python" "$run/programs/scenario_sync.py" "$here" python-sync fixtures "$run/folder" >"$run/printed/python-sync"
+timeout 300 node "$run/node/scenario_node.js" "$here" node fixtures "$run/folder" >"$run/printed/node"
 names=(python-async python-sync node)
 for name in python-sync node; do diff "$run/printed/python-async" "$run/printed/$name"; done
 if command -v chromium >/dev/null; then

@@ -151,8 +151,10 @@ export class Meshmend {
             ({ cut } = piece);
             break;
           }
+          // Also a comment, which a long pass has for hours: proxies that cut what is long do not end this.
+          attempt = 1;
           for (const event of reader.feed(piece.value)) {
-            [attempt, lastEventId] = [1, event.id];
+            lastEventId = event.id;
             yield event;
             if (event.name === "state" && isFinal(event.state)) return;
           }

@@ -18,6 +18,8 @@ export class Result {
 
   /** The mesh, its SHA-256 compared with the certificate's. `level`: which target of a simplification, from 1. */
   async bytes(level = 1): Promise<Uint8Array<ArrayBuffer>> {
+    // Browsers give it to pages of https and of the own machine only.
+    if (!globalThis.crypto?.subtle) throw new IntegrityError("a mesh cannot be checked on a page that is not secure");
     const content = await this.receive(level, (response) => response.arrayBuffer());
     const digest = new Uint8Array(await crypto.subtle.digest("SHA-256", content));
     this.check([...digest].map((byte) => byte.toString(16).padStart(2, "0")).join(""), level);

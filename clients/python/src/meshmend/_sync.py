@@ -200,8 +200,10 @@ class Meshmend:
                     return
                 reader = EventReader()
                 for piece in response.iter_raw():
+                    # Also a comment, which a long pass has for hours: proxies that cut what is long do not end this.
+                    attempt = 1
                     for event in reader.feed(piece):
-                        attempt, last_event_id = 1, event.id
+                        last_event_id = event.id
                         yield event
                         if isinstance(event, StateChanged) and event.state in FINAL_STATES:
                             return
