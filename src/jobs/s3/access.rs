@@ -79,7 +79,9 @@ impl BucketAccess {
         let (bucket, folder) = self.bucket_and_folder()?;
         // Another part of the process may have chosen the same already.
         let _ = rustls::crypto::ring::default_provider().install_default();
+        let is_http = self.endpoint.as_deref().is_some_and(|endpoint| endpoint.starts_with("http://"));
         let client = ClientOptions::new()
+            .with_allow_http(is_http)
             .with_connect_timeout(CONNECT_TIMEOUT)
             .with_timeout_disabled()
             .with_read_timeout(SILENCE);
@@ -92,7 +94,7 @@ impl BucketAccess {
             None => AmazonS3Builder::from_env(),
         };
         if let Some(endpoint) = &self.endpoint {
-            builder = builder.with_endpoint(endpoint).with_allow_http(endpoint.starts_with("http://"));
+            builder = builder.with_endpoint(endpoint);
         }
         let store = builder
             .with_bucket_name(bucket)
