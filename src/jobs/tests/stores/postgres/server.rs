@@ -4,7 +4,7 @@
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::os::unix::process::CommandExt as _;
 use std::path::PathBuf;
-use std::process::{ChildStdin, ChildStdout, Command, Stdio};
+use std::process::{Child, ChildStdout, Command, Stdio};
 use std::sync::{Mutex, OnceLock};
 
 /// Makes the server, tells its directory, and starts it anew for each line that it reads; at the end of its input all goes.
@@ -29,7 +29,22 @@ rm -rf "$dir"
 /// A server that runs.
 pub(super) struct Server {
     dir: PathBuf,
-    keeper: Mutex<(ChildStdin, BufReader<ChildStdout>)>,
+    keeper: Mutex<Keeper>,
+}
+
+/// The process that started it.
+struct Keeper {
+    process: Child,
+    answers: BufReader<ChildStdout>,
+}
+
+impl Drop for Keeper {
+    fn drop(&mut self) {
+        // At the end of its input it stops the server and removes the directory.
+        drop(self.process.stdin.take());
+        // One that is gone already is waited for, too.
+        let _ = self.process.wait();
+    }
 }
 
 /// Where the server's programs are, if they are installed: those of the newest version.
@@ -59,13 +74,13 @@ impl Server {
             Command::new("sh")
         };
         command.args(["-c", KEEPER, "keeper"]).arg(programs).process_group(0);
-        let mut keeper = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
-        let input = keeper.stdin.take().unwrap();
-        let mut output = BufReader::new(keeper.stdout.take().unwrap());
+        let mut process = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+        let answers = BufReader::new(process.stdout.take().unwrap());
+        let mut keeper = Keeper { process, answers };
         let mut dir = String::new();
-        output.read_line(&mut dir).unwrap();
+        keeper.answers.read_line(&mut dir).unwrap();
         assert!(!dir.is_empty(), "PostgreSQL cannot be started: see above");
-        Self { dir: dir.trim().into(), keeper: Mutex::new((input, output)) }
+        Self { dir: dir.trim().into(), keeper: Mutex::new(keeper) }
     }
 
     /// How a database of it is addressed.
@@ -76,9 +91,9 @@ impl Server {
     /// Ends the server at once, as a crash does, and starts it anew. Blocks.
     pub(super) fn crash_and_start(&self) {
         let mut keeper = self.keeper.lock().unwrap();
-        writeln!(keeper.0, "anew").unwrap();
+        writeln!(keeper.process.stdin.as_mut().unwrap(), "anew").unwrap();
         let mut result = String::new();
-        keeper.1.read_line(&mut result).unwrap();
+        keeper.answers.read_line(&mut result).unwrap();
         assert_eq!(result.trim(), "0");
     }
 }
