@@ -1,11 +1,15 @@
 //! The search structures on a dented sphere of about a million triangles, without self-intersections: weld, tree,
 //! self-contacts; and self-contacts of a closed fan, whose boxes all meet.
 
+#[path = "support/dented_sphere.rs"]
+mod dented_sphere;
+
+use self::dented_sphere::dented_sphere;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use meshmend::budget::Budget;
 use meshmend::geom::DVec3;
 use meshmend::spatial::{Bvh, Search, coincident_f32, self_contacts};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use std::hint::black_box;
 
 struct Mesh {
@@ -13,32 +17,10 @@ struct Mesh {
     triangles: Vec<[u32; 3]>,
 }
 
-/// A sphere of `2 * columns * (rows - 1)` triangles, moved in and out along its radius, so still embedded.
-fn dented_sphere(columns: u32, rows: u32) -> Mesh {
-    let at = |column: u32, row: u32| {
-        let (a, b) = (TAU * f64::from(column) / f64::from(columns), PI * f64::from(row) / f64::from(rows));
-        let radius = 1.0 + 0.05 * (17.0 * a).sin() * (13.0 * b).sin().powi(2);
-        let p = DVec3::new(a.cos() * b.sin(), a.sin() * b.sin(), b.cos()) * radius;
-        // As an STL file would hold it.
-        DVec3::from_array(p.to_array().map(|x| f64::from(x as f32)))
-    };
-    let rings = (1..rows).flat_map(|row| (0..columns).map(move |column| at(column, row)));
-    let positions: Vec<DVec3> = [at(0, 0), at(0, rows)].into_iter().chain(rings).collect();
-    let id = |column: u32, row: u32| match row {
-        0 => 0,
-        _ if row == rows => 1,
-        _ => 2 + (row - 1) * columns + column % columns,
-    };
-    let triangles = (0..rows)
-        .flat_map(|row| (0..columns).map(move |column| (row, column)))
-        .flat_map(|(row, column)| {
-            let [a, b] = [id(column, row), id(column + 1, row)];
-            let [c, d] = [id(column, row + 1), id(column + 1, row + 1)];
-            [[a, c, d], [a, d, b]]
-        })
-        .filter(|[a, b, c]| a != b && b != c && c != a)
-        .collect();
-    Mesh { positions, triangles }
+/// The dented sphere as an STL file would hold it.
+fn sphere(columns: u32, rows: u32) -> Mesh {
+    let (positions, triangles) = dented_sphere(columns, rows);
+    Mesh { positions: positions.into_iter().map(|p| p.as_vec3().as_dvec3()).collect(), triangles }
 }
 
 fn double_cone(count: u32) -> Mesh {
@@ -63,7 +45,7 @@ fn contacts(mesh: &Mesh, bvh: &Bvh) -> u64 {
 }
 
 fn benches(criterion: &mut Criterion) {
-    let sphere = dented_sphere(1000, 520);
+    let sphere = sphere(1000, 520);
     let corners: Vec<[f32; 3]> = sphere
         .triangles
         .iter()

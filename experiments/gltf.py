@@ -29,7 +29,7 @@ for kind in ("glb", "gltf"):
             if os.path.exists(dst):
                 verified = run("verify", dst)[0] == 0
                 same = open(src, "rb").read() == open(dst, "rb").read()
-        rows.append(dict(name=f"{kind}/{name}", code=code, report=report, why=complaint[0].removeprefix("meshmend: ") if complaint else "", verified=verified, same=same, seconds=seconds))
+        rows.append(dict(name=f"{kind}/{name}", code=code, report=report, why=complaint[0].removeprefix("meshmend: ").replace(f"{src}: ", "") if complaint else "", verified=verified, same=same, seconds=seconds))
 
 def cells(r):
     report = r["report"]

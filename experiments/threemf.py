@@ -18,8 +18,11 @@ def run(binary, *arguments):
     done = subprocess.run([binary, *arguments, "--json"], capture_output=True, text=True)
     try: report = json.loads(done.stdout)
     except ValueError: report = None
-    if report is not None and "schema" not in report: return done.returncode, None, report.get("detail") or report.get("title") or ""
-    return done.returncode, report, done.stderr.strip().splitlines()[-1] if done.stderr.strip() else ""
+    if report is not None and "schema" not in report: said = report.get("detail") or report.get("title") or ""; report = None
+    else: said = done.stderr.strip().splitlines()[-1] if done.stderr.strip() else ""
+    # The table names the file beside it; where it lies on this disk is nobody's business.
+    for path in sorted(arguments, key=len, reverse=True): said = said.replace(f"{path}: ", "").replace(path, os.path.basename(path))
+    return done.returncode, report, said.removeprefix("meshmend: ")
 def by_lib3mf(path):
     """Objects and triangles as lib3mf reads them, or why it does not."""
     if wrapper is None: return None

@@ -1,5 +1,6 @@
 //! 3MF: packages that break other readers, projects that keep what is theirs, and parts that are mended one by one.
 
+use meshmend::analysis::DefectCode;
 use meshmend::budget::{Budget, StopFlag};
 use meshmend::certificate::{Depth, certify_parts};
 use meshmend::formats::threemf::{ObjectKind, Project, read_project};
@@ -774,4 +775,35 @@ fn a_project_that_is_too_large_to_be_drawn_is_mended_without_a_picture_and_says_
     assert!(
         matches!(failure, Failure::Unreadable(error) if matches!(error.kind, ReadErrorKind::TooLarge { .. }))
     );
+}
+
+#[test]
+fn more_meshes_than_the_limit_are_refused_by_name() {
+    let (points, triangles) = cuboid([0.0; 3], [1.0; 3]);
+    let tetrahedron = mesh(&points[..4], &triangles[..1], |_| String::new());
+    let objects = |count: u32| -> String {
+        (1..=count).map(|id| format!("<object id=\"{id}\">{tetrahedron}</object>")).collect()
+    };
+    assert_eq!(project(&file(&model("", &objects(10_000), ""))).bodies.len(), 10_000);
+    let error = error_of(&file(&model("", &objects(10_001), "")));
+    let limit_name = match error.kind {
+        ReadErrorKind::TooLarge { limit_name, .. } => limit_name,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(limit_name, "meshes_max");
+}
+
+#[test]
+fn a_defect_of_several_parts_has_no_more_witnesses_than_asked() {
+    let (points, triangles) = cuboid([0.0; 3], [1.0; 3]);
+    let open = mesh(&points, &triangles[1..], |_| String::new());
+    let objects: String = (1..=3).map(|id| format!("<object id=\"{id}\">{open}</object>")).collect();
+    let items: String = (1..=3).map(|id| format!("<item objectid=\"{id}\"/>")).collect();
+    let bytes = file(&model("", &objects, &items));
+    for samples in [1, 2, 10] {
+        let options = Options { samples: Some(samples), ..Options::default() };
+        let before = run(Operation::Analyze, &bytes, &options).report.before.unwrap();
+        let rims = before.findings.iter().find(|finding| finding.code == DefectCode::BoundaryLoop).unwrap();
+        assert_eq!((rims.count, rims.witnesses.len()), (3, samples.min(3)));
+    }
 }

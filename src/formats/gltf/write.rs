@@ -8,6 +8,7 @@ use crate::mesh::{Color, Soup};
 use base64::Engine as _;
 use rustc_hash::FxHashMap;
 use serde_json::{Map, Value, json};
+use std::collections::BTreeSet;
 
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
@@ -349,7 +350,7 @@ impl File {
         if let Some(described) = described {
             self.put_pictures(&mut document, &described.pictures, budget)?;
         }
-        let mut extensions = Vec::new();
+        let mut extensions = BTreeSet::new();
         for value in materials.iter().chain(document.values()) {
             names_of_extensions(value, &mut extensions);
         }
@@ -463,17 +464,13 @@ fn plain_material(name: Option<&[u8]>, color: Option<[u32; 4]>) -> Value {
 }
 
 /// Notes the extensions that `value` uses, each once. No deeper than the reader of JSON goes.
-fn names_of_extensions(value: &Value, names: &mut Vec<String>) {
+fn names_of_extensions(value: &Value, names: &mut BTreeSet<String>) {
     match value {
         Value::Array(items) => items.iter().for_each(|item| names_of_extensions(item, names)),
         Value::Object(members) => {
             for (key, value) in members {
                 if let ("extensions", Some(extensions)) = (key.as_str(), value.as_object()) {
-                    for name in
-                        extensions.keys().filter(|name| !names.contains(name)).cloned().collect::<Vec<_>>()
-                    {
-                        names.push(name);
-                    }
+                    names.extend(extensions.keys().cloned());
                 }
                 names_of_extensions(value, names);
             }

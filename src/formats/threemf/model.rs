@@ -4,6 +4,7 @@ use super::transform::Transform;
 use crate::mesh::{Soup, Units};
 use rustc_hash::FxHashMap;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// In the place of the number of a property or a text: there is none.
 pub const NO_NUMBER: u32 = u32::MAX;
@@ -64,7 +65,7 @@ pub struct FaceAttributes {
     /// For each face the number of the other attributes in its tag, or [`NO_NUMBER`]; empty when no face has any.
     pub others: Vec<u32>,
     /// Other attributes as the file writes them, such as `paint_color="4"`.
-    pub texts: Vec<String>,
+    pub texts: Arc<Vec<String>>,
 }
 
 /// An object of a model part.

@@ -13,6 +13,8 @@ use rustc_hash::FxHashMap;
 
 /// Most model parts of a package that are read.
 const MODEL_PARTS_MAX: u64 = 10_000;
+/// Most meshes, and volumes that are noted of them.
+const MESHES_MAX: u64 = 10_000;
 /// Most levels of components in each other.
 const LEVELS_MAX: usize = 64;
 /// Most places into which the build puts objects, and steps on the way there.
@@ -44,7 +46,8 @@ impl Models {
         let mut models = Self { all: Vec::new(), placements: Vec::new(), remarks: start.remarks, volumes };
         let mut numbers: FxHashMap<String, usize> = FxHashMap::default();
         let mut waiting = vec![start.part];
-        let (mut triangles, mut vertices) = (0_u64, 0_u64);
+        let (mut triangles, mut vertices, mut meshes) = (0_u64, 0_u64, models.volumes.len() as u64);
+        let mut charges = Vec::new();
         let mut next = 0;
         while let Some(part) = waiting.get(next).cloned() {
             next += 1;
@@ -70,9 +73,16 @@ impl Models {
             let model = read_model(&Document::of(&part, &bytes)?, options, budget)?;
             for object in &model.objects {
                 if let Content::Mesh(mesh) = &object.content {
-                    triangles += mesh.soup.triangles.len() as u64;
-                    vertices += mesh.soup.positions.len() as u64;
+                    let own =
+                        [mesh.soup.triangles.len(), mesh.soup.positions.len()].map(|count| count as u64);
+                    charges.push(budget.charge(32 * own[0] + 24 * own[1])?);
+                    triangles += own[0];
+                    vertices += own[1];
+                    meshes += 1;
                 }
+            }
+            if meshes > MESHES_MAX {
+                return Err(too_large("meshes and volumes", "meshes_max", MESHES_MAX, meshes));
             }
             let limits = &options.limits;
             if triangles > limits.triangles_max.into() {

@@ -2,7 +2,7 @@
 
 use super::model::{Content, FaceAttributes, Mesh, Model, Object, ObjectKind};
 use super::models::Models;
-use super::read_volumes::{Volume, are_all};
+use super::read_volumes::{Volume, are_all, by_object};
 use super::scene::{self, Assembled, Placed};
 use super::split::volume_of;
 use crate::budget::Budget;
@@ -126,10 +126,7 @@ fn project_of(models: Models) -> Project {
     for placement in &models.placements {
         *instances.entry(placement.object).or_default() += 1;
     }
-    let mut of_object: FxHashMap<u32, Vec<&Volume>> = FxHashMap::default();
-    for volume in &models.volumes {
-        of_object.entry(volume.object).or_default().push(volume);
-    }
+    let of_object = by_object(&models.volumes);
     let units = models.all.first().map(|model| model.units).unwrap_or_default();
     let root = models.all.first().map(|model| model.part.clone()).unwrap_or_default();
     let (mut bodies, mut remarks) = (Vec::new(), models.remarks);

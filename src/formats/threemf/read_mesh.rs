@@ -9,6 +9,7 @@ use crate::formats::{ReadError, numbers};
 use crate::geom::DVec3;
 use crate::mesh::{FaceFault, FaceFaultReason, Soup};
 use rustc_hash::FxHashMap;
+use std::sync::Arc;
 
 /// Reads the content of the element `mesh`.
 pub(super) fn mesh<'x>(reader: &mut ModelReader<'x>, element: &Element<'x>) -> Result<Mesh, ReadError> {
@@ -163,7 +164,7 @@ impl Triangles {
             Some(&number) => number,
             None => {
                 let number = attributes.texts.len() as u32;
-                attributes.texts.push(text.to_owned());
+                Arc::make_mut(&mut attributes.texts).push(text.to_owned());
                 self.numbers.insert(text.to_owned(), number);
                 number
             }

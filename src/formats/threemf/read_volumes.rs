@@ -5,6 +5,7 @@ use super::package::Package;
 use super::xml::{Document, Element, Node, Scanner, value};
 use crate::budget::Budget;
 use crate::formats::ReadError;
+use rustc_hash::FxHashMap;
 use std::ops::Range;
 
 /// The part that notes them.
@@ -73,6 +74,15 @@ fn volume(
     let of = |name| value(&attributes, name).and_then(number);
     let (Some(first), Some(last)) = (of("firstid"), of("lastid")) else { return Ok(None) };
     Ok(Some(Volume { object, triangles: first..last.saturating_add(1), name: String::new(), tag }))
+}
+
+/// The volumes of each object, in their order.
+pub(super) fn by_object(volumes: &[Volume]) -> FxHashMap<u32, Vec<&Volume>> {
+    let mut by_object: FxHashMap<u32, Vec<&Volume>> = FxHashMap::default();
+    for volume in volumes {
+        by_object.entry(volume.object).or_default().push(volume);
+    }
+    by_object
 }
 
 /// True when `volumes`, in their order, are all of `count` triangles.

@@ -3,7 +3,7 @@
 use super::model::{FaceAttributes, NO_NUMBER, Property};
 use super::package::Package;
 use super::read::{Body, Project};
-use super::read_volumes::{VOLUMES, Volume};
+use super::read_volumes::{VOLUMES, by_object};
 use super::write::{add_entry, not_packed, triangle, vertices};
 use super::xml::{Attributes, Document};
 use crate::budget::{Budget, Stopped};
@@ -84,12 +84,15 @@ pub fn rewrite_project<'a>(
     budget: &Budget,
 ) -> Result<Vec<u8>, RewriteError> {
     let mut package = Package::open(bytes, budget)?;
+    let mut by_part: FxHashMap<String, Vec<&NewBody<'a>>> = FxHashMap::default();
+    for new in new {
+        by_part.entry(project.bodies[new.body].part.to_ascii_lowercase()).or_default().push(new);
+    }
     let mut texts: FxHashMap<usize, Vec<u8>> = FxHashMap::default();
     let mut charges = Vec::new();
     for number in 0..package.names().len() {
         let part = package.names()[number].clone();
-        let is_in = |new: &&NewBody<'_>| project.bodies[new.body].part.eq_ignore_ascii_case(&part);
-        let of_part: Vec<&NewBody<'a>> = new.iter().filter(is_in).collect();
+        let of_part = by_part.get(&part.to_ascii_lowercase()).map_or(&[][..], Vec::as_slice);
         let is_of_volumes = part.eq_ignore_ascii_case(VOLUMES) && !project.volumes.is_empty();
         if (of_part.is_empty() && !is_of_volumes) || package.find(&part) != Some(number) {
             continue;
@@ -97,7 +100,7 @@ pub fn rewrite_project<'a>(
         let (old, charge) = package.inflate(number, budget)?;
         let text = match is_of_volumes {
             true => renumbered(&old, project, &new.iter().collect::<Vec<_>>())?,
-            false => rewritten(&part, &old, project, &of_part, budget)?,
+            false => rewritten(&part, &old, project, of_part, budget)?,
         };
         charges.push(budget.charge(text.len() as u64)?);
         drop(charge);
@@ -142,11 +145,15 @@ fn rewritten<'a>(
         text.word(&start.end_tag);
         edits.push((vertices_at, text.into_bytes()));
         let start = start_tag(document.text, &triangles_at);
+        // Pieces of one object have one list of texts, or none.
+        let texts =
+            object.pieces.iter().map(|piece| &piece.body.attributes.texts).find(|texts| !texts.is_empty());
+        let longest = texts.into_iter().flat_map(|texts| texts.iter()).map(String::len).max().unwrap_or(0);
         let mut text = Text::new(budget);
         text.word(&start.tag);
         let mut first_vertex = 0;
         for piece in &object.pieces {
-            triangles(&mut text, piece, first_vertex, start.prefix)?;
+            triangles(&mut text, piece, first_vertex, start.prefix, longest)?;
             first_vertex += piece.soup.positions.len() as u32;
         }
         text.word(&start.end_tag);
@@ -188,10 +195,11 @@ fn objects<'a>(project: &'a Project, new: &[&NewBody<'a>]) -> Vec<NewObject<'a>>
     let mut objects = Vec::new();
     let bodies = &project.bodies;
     let same = |a: &Body, b: &Body| a.part == b.part && a.object == b.object;
+    let by_body: FxHashMap<usize, &NewBody<'a>> = new.iter().map(|&new| (new.body, new)).collect();
     let mut at = 0;
     while at < bodies.len() {
         let end = at + bodies[at..].iter().take_while(|body| same(body, &bodies[at])).count();
-        let of = |i: usize| new.iter().find(|new| new.body == i);
+        let of = |i: usize| by_body.get(&i);
         if (at..end).any(|i| of(i).is_some()) {
             let piece = |i: usize| match of(i) {
                 Some(new) => Piece { body: &bodies[i], soup: new.soup, sources: Some(new.sources) },
@@ -207,10 +215,10 @@ fn objects<'a>(project: &'a Project, new: &[&NewBody<'a>]) -> Vec<NewObject<'a>>
 /// The text of the part that notes volumes, with the ranges of `new` triangles.
 fn renumbered(old: &[u8], project: &Project, new: &[&NewBody<'_>]) -> Result<Vec<u8>, RewriteError> {
     let document = Document::of(VOLUMES, old)?;
+    let by_object = by_object(&project.volumes);
     let mut edits = Vec::new();
     for object in objects(project, new) {
-        let id = object.pieces[0].body.object;
-        let of_object: Vec<&Volume> = project.volumes.iter().filter(|volume| volume.object == id).collect();
+        let of_object = by_object.get(&object.pieces[0].body.object).map_or(&[][..], Vec::as_slice);
         if of_object.len() != object.pieces.len() || object.pieces[0].body.part != project.root {
             continue;
         }
@@ -259,16 +267,17 @@ fn start_tag<'x>(text: &'x str, span: &Range<usize>) -> StartTag<'x> {
     StartTag { prefix, tag: format!("<{inside}>\n"), end_tag: format!("</{name}>") }
 }
 
+/// Writes the triangles of a piece; `longest`: bytes of the longest text of other attributes.
 fn triangles(
     text: &mut Text<'_>,
     piece: &Piece<'_>,
     first_vertex: u32,
     prefix: &str,
+    longest: usize,
 ) -> Result<(), WriteError> {
     let (attributes, old) = (&piece.body.attributes, &piece.body.soup);
-    // A tag takes so many bytes without other attributes, whose texts may be long.
-    let longest = attributes.texts.iter().map(String::len).max().unwrap_or(0);
     for (t, &corners) in piece.soup.triangles.iter().enumerate() {
+        // A tag takes so many bytes without other attributes.
         text.before_item(t, 170 + longest)?;
         let source = match piece.sources {
             Some(sources) => sources.get(t).copied().unwrap_or(FaceSource::Nothing),

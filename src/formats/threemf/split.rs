@@ -3,6 +3,7 @@
 use super::model::{FaceAttributes, NO_NUMBER};
 use super::read_volumes::Volume;
 use crate::mesh::{FaceFault, Soup};
+use std::sync::Arc;
 
 /// The faces of one volume, with the vertices that they use in their order.
 pub(super) fn volume_of(soup: &Soup, attributes: &FaceAttributes, volume: &Volume) -> (Soup, FaceAttributes) {
@@ -41,6 +42,6 @@ pub(super) fn volume_of(soup: &Soup, attributes: &FaceAttributes, volume: &Volum
     let properties = attributes.properties.get(range.clone()).map(<[_]>::to_vec).unwrap_or_default();
     let others = attributes.others.get(range).map(<[_]>::to_vec).unwrap_or_default();
     let has_others = others.iter().any(|&number| number != NO_NUMBER);
-    let texts = if has_others { attributes.texts.clone() } else { Vec::new() };
+    let texts = if has_others { Arc::clone(&attributes.texts) } else { Arc::default() };
     (part, FaceAttributes { properties, others: if has_others { others } else { Vec::new() }, texts })
 }

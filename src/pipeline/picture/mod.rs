@@ -161,9 +161,10 @@ pub(super) fn make(
 ) -> Result<Vec<u8>, Failure> {
     budget.stage(Stage::Draw, || {
         let after = read_after(answer, options, budget)?;
-        let before = Painted::before(drawn, choices.shows_defects, after.is_some(), budget)?;
+        let units = answer.report.input.result_units;
+        let before = Painted::before(drawn, choices.shows_defects, after.is_some(), units, budget)?;
         let after_painted =
-            after.as_ref().map(|soup| Painted::after(drawn.soup, soup, budget)).transpose()?;
+            after.as_ref().map(|soup| Painted::after(drawn.soup, soup, units, budget)).transpose()?;
         let sides: Vec<(&Soup, Painted)> =
             std::iter::once((drawn.soup, before)).chain(after.as_ref().zip(after_painted)).collect();
         Ok(sheet(&sides, choices, budget)?)

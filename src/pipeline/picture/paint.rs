@@ -4,7 +4,7 @@ use super::Drawn;
 use crate::analysis::{DefectCode, Finding, Severity};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
-use crate::mesh::{EdgeGroups, Soup, edge_of, triangle_of};
+use crate::mesh::{EdgeGroups, Soup, Units, edge_of, triangle_of};
 use crate::par;
 use crate::pipeline::identical::fingerprint;
 use crate::render::{Line, Rgb, Scene, Spot, first_at_position};
@@ -104,9 +104,11 @@ impl Painted {
         drawn: &Drawn<'_>,
         shows_defects: bool,
         has_other: bool,
+        units: Units,
         budget: &Budget,
     ) -> Result<Self, Stopped> {
-        let mut painted = Self::plain(drawn.soup, if has_other { Side::Before } else { Side::Only });
+        let side = if has_other { Side::Before } else { Side::Only };
+        let mut painted = Self::plain(drawn.soup, side, units);
         let is_defect = |finding: &&Finding| finding.severity != Severity::Info;
         let findings: Vec<&Finding> =
             drawn.findings.iter().filter(|_| shows_defects).filter(is_defect).collect();
@@ -128,8 +130,8 @@ impl Painted {
     }
 
     /// The mesh as returned, with the triangles that `before` has not.
-    pub(super) fn after(before: &Soup, after: &Soup, budget: &Budget) -> Result<Self, Stopped> {
-        let mut painted = Self::plain(after, Side::After);
+    pub(super) fn after(before: &Soup, after: &Soup, units: Units, budget: &Budget) -> Result<Self, Stopped> {
+        let mut painted = Self::plain(after, Side::After, units);
         let _memory = budget.charge((before.triangles.len() as u64 + after.triangles.len() as u64) * 16)?;
         let mut known = fingerprints(before, budget)?;
         par::sort_unstable(&mut known);
@@ -149,13 +151,14 @@ impl Painted {
         Ok(painted)
     }
 
-    fn plain(soup: &Soup, side: Side) -> Self {
+    fn plain(soup: &Soup, side: Side, units: Units) -> Self {
         let bounds =
             Scene { positions: &soup.positions, triangles: &soup.triangles, ..Scene::default() }.bounds();
         let size = if bounds.is_empty() {
             String::new()
         } else {
-            (bounds.max - bounds.min).to_array().map(length).join(" x ")
+            let size = (bounds.max - bounds.min) * units.millimetres();
+            format!("{} mm", size.to_array().map(length).join(" x "))
         };
         Self { side, paints: Vec::new(), lines: Vec::new(), spots: Vec::new(), legend: Vec::new(), size }
     }

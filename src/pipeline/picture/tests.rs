@@ -37,6 +37,16 @@ fn is_green(r: i32, g: i32, b: i32) -> bool {
 }
 
 #[test]
+fn the_size_is_in_millimetres_whatever_the_unit() {
+    let positions = vec![DVec3::ZERO, DVec3::new(1.0, 0.0, 0.0), DVec3::new(0.0, 2.0, 0.5)];
+    let soup = Soup { positions, triangles: vec![[0, 1, 2]], face_count: 1, ..Soup::default() };
+    let drawn = Drawn { soup: &soup, findings: &[], meshes: &[] };
+    let size = |units| Painted::before(&drawn, true, false, units, &Budget::unlimited()).unwrap().size;
+    assert_eq!(size(Units::Millimetre), "1 x 2 x 0.5 mm");
+    assert_eq!(size(Units::Inch), "25.4 x 50.8 x 12.7 mm");
+}
+
+#[test]
 fn an_open_box_shows_its_rim_and_its_inside() {
     let (width, height, pixels) = pixels(&picture_of(Operation::Render, &Options::default()));
     assert_eq!((width, height), (640, 480));

@@ -10,8 +10,8 @@ use crate::pipeline::{
 };
 use crate::simplify;
 
-/// The account of all parts; `whole` says what is known of the file.
-pub(super) fn merged(project: &Project, done: &[Done], whole: Report) -> Report {
+/// The account of all parts, with so many `samples` of each defect; `whole` says what is known of the file.
+pub(super) fn merged(project: &Project, done: &[Done], whole: Report, samples: usize) -> Report {
     let remarks = remarks(project, done);
     let parts = parts(project, done);
     let reports: Vec<&Report> = parts.iter().map(|part| &part.report).collect();
@@ -26,11 +26,11 @@ pub(super) fn merged(project: &Project, done: &[Done], whole: Report) -> Report 
             ..only.clone()
         },
         _ => Report {
-            before: merged_analysis(&parts, |report| report.before.as_ref()),
+            before: merged_analysis(&parts, samples, |report| report.before.as_ref()),
             plan: None,
             actions: actions(&reports),
             levels: levels(&reports),
-            after: after(&parts),
+            after: after(&parts, samples),
             identical_triangle_share: mean(&reports, triangles, |report| report.identical_triangle_share),
             distance: distance(&reports),
             losses: losses(&reports),
@@ -101,11 +101,11 @@ pub(super) fn left_out(project: &Project, encoding: Encoding) -> Vec<String> {
     let has_colors = matches!(encoding.format(), Format::Off | Format::Ply | Format::ThreeMf);
     let of_properties = if has_colors { "textures and materials" } else { "colours, textures and materials" };
     let lost = [
-        (names, format!("{names} names of parts")),
-        (places.saturating_sub(1), format!("{places} build items")),
+        (names, format!("names of parts ({names})")),
+        (places.saturating_sub(1), format!("build items ({places})")),
         (properties, format!("{of_properties} that {properties} triangles state")),
         (marks, format!("paint and other marks of {marks} triangles")),
-        (1, "pictures, metadata and settings".to_owned()),
+        (1, "what it holds beside meshes, such as pictures, metadata and settings".to_owned()),
     ];
     let lost: Vec<String> = lost.into_iter().filter(|(count, _)| *count > 0).map(|(_, text)| text).collect();
     let text = format!("One mesh takes the place of the project, which leaves out: {}.", lost.join("; "));
@@ -151,13 +151,13 @@ fn mean(
 }
 
 /// The mesh as returned: parts that kept their bytes are as they were. `None`: all did, or there is no result.
-fn after(parts: &[PartReport]) -> Option<crate::analysis::Analysis> {
+fn after(parts: &[PartReport], samples: usize) -> Option<crate::analysis::Analysis> {
     let is_new = parts.iter().any(|part| part.report.after.is_some());
     let has_all = parts.iter().all(|part| part.report.certificate.is_some());
     let of = |report: &Report| report.certificate.is_some();
     (is_new && has_all)
         .then(|| {
-            merged_analysis(parts, |report| {
+            merged_analysis(parts, samples, |report| {
                 report.after.as_ref().or(report.before.as_ref()).filter(|_| of(report))
             })
         })

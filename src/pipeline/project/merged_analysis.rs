@@ -5,10 +5,12 @@ use crate::analysis::{Analysis, Element, Finding, HoleCounts, Watertight, Witnes
 use crate::geom::Aabb;
 use crate::pipeline::Report;
 
-/// The sum of what `of` gives for each part; `None` unless it gives something for all. Elements are numbered through all
+/// The sum of what `of` gives for each part, with at most so many `samples` of each defect; `None` unless it gives something
+/// for all. Elements are numbered through all
 /// parts, and places are in the coordinates of their part.
 pub(super) fn merged_analysis<'r>(
     parts: &'r [PartReport],
+    samples: usize,
     of: impl Fn(&'r Report) -> Option<&'r Analysis>,
 ) -> Option<Analysis> {
     let mut merged: Option<Analysis> = None;
@@ -17,7 +19,7 @@ pub(super) fn merged_analysis<'r>(
         let one = of(&part.report)?;
         match &mut merged {
             None => merged = Some(Analysis { proximity: None, loop_edges: Vec::new(), ..one.clone() }),
-            Some(merged) => add(merged, one, [faces, vertices]),
+            Some(merged) => add(merged, one, [faces, vertices], samples),
         }
         faces += one.counts.faces;
         vertices += one.counts.vertices;
@@ -32,7 +34,7 @@ pub(super) fn merged_analysis<'r>(
     merged
 }
 
-fn add(sum: &mut Analysis, one: &Analysis, [faces, vertices]: [u64; 2]) {
+fn add(sum: &mut Analysis, one: &Analysis, [faces, vertices]: [u64; 2], samples: usize) {
     let (counts, more) = (&mut sum.counts, &one.counts);
     counts.vertices += more.vertices;
     counts.faces += more.faces;
@@ -84,7 +86,7 @@ fn add(sum: &mut Analysis, one: &Analysis, [faces, vertices]: [u64; 2]) {
             Some(known) => {
                 known.count += finding.count;
                 known.severity = known.severity.max(finding.severity);
-                known.witnesses.extend(witnesses);
+                known.witnesses.extend(witnesses.take(samples.saturating_sub(known.witnesses.len())));
             }
             None => sum.findings.push(Finding { witnesses: witnesses.collect(), ..finding.clone() }),
         }

@@ -74,7 +74,9 @@ pub(super) fn run_by_parts(
 ) -> Result<Answer, Failure> {
     let project = budget.stage(Stage::Read, || read_project(bytes, &options.read, budget))?;
     units_of_file(Some(project.units), options)?;
-    let run = Run { operation, bytes, project: &project, options, budget };
+    let triangles =
+        project.bodies.iter().filter(|body| body.is_solid()).map(|body| body.soup.triangles.len()).sum();
+    let run = Run { operation, bytes, project: &project, triangles, options, budget };
     run.check_options()?;
     let answer = run.answer()?;
     let answer = match options.parts {
@@ -113,6 +115,8 @@ struct Run<'a> {
     operation: Operation,
     bytes: &'a [u8],
     project: &'a Project,
+    /// Of all its solids.
+    triangles: usize,
     options: &'a Options,
     budget: &'a Budget,
 }
@@ -195,8 +199,7 @@ impl Run<'_> {
 
     /// The options for one part: its share of the faces that a simplification may leave.
     fn options_of(&self, body: &Body) -> Options {
-        let all: usize = self.solids().iter().map(|&i| self.project.bodies[i].soup.triangles.len()).sum();
-        let share = body.soup.triangles.len() as f64 / all.max(1) as f64;
+        let share = body.soup.triangles.len() as f64 / self.triangles.max(1) as f64;
         let target = |target: &Target| match *target {
             Target::Faces(faces) => Target::Faces(((faces as f64 * share) as usize).max(4)),
             other => other,
@@ -217,7 +220,12 @@ impl Run<'_> {
                 outputs.push(self.write(&mut done, level)?);
             }
         }
-        let mut report = merge::merged(self.project, &done, self.verification(input_certificate));
+        let mut report = merge::merged(
+            self.project,
+            &done,
+            self.verification(input_certificate),
+            samples_of(self.options),
+        );
         let Some((output, certificate)) = outputs.first().cloned() else {
             if let Some(refused) = refused {
                 let refusal = done[refused].answer.report.refusal.clone();
