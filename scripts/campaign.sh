@@ -46,6 +46,7 @@ declare -A scripts=(
   [service-cancel]="cancel.py"
   [uploads]="uploads.py"
   [holes-bench]="holes.py"
+  [hostile]="hostile.py"
   [holes-speed]="holes_speed.py"
 )
 

@@ -13,7 +13,7 @@ export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never} CARGO_INCREMENTAL=0 PYTHONDON
 # Settings of the caller's own service must not reach the tests.
 for name in $(compgen -e | grep '^MESHMEND_' | grep -v -e '^MESHMEND_CORPUS$'); do unset "$name"; done
 
-steps=(format lint lint_engine lint_otel build tests doc_tests fixtures contract fuzz_contract clients browser gltf_rules licences)
+steps=(format lint lint_engine lint_otel build tests doc_tests fixtures contract fuzz_contract clients browser gltf_rules deploy licences)
 scratch=target/test-run
 python=target/python/bin
 server_pid=
@@ -88,11 +88,15 @@ fuzz_contract() {
   end_server_with $?
 }
 
-# Clients that three generators make of openapi.yaml: each repairs a mesh, reads a report, waits for a job, reads events.
+# Clients that three generators make of openapi.yaml: each repairs a mesh, reads a report, waits for a job, reads events. Then
+# those in clients/, which go through one scenario with a difficult neighbour between them and the server.
 clients() {
   set_up_clients || { echo "not run: what the generators of clients need cannot be installed here"; return 0; }
-  start_server || return 1
-  scripts/clients/run.sh "$server_url"
+  local neighbour_port
+  read -r neighbour_port _ < <(free_ports) || return 1
+  MESHMEND_WEBHOOKS=true MESHMEND_WEBHOOK_PRIVATE_HOSTS=127.0.0.1:$neighbour_port MESHMEND_WEBHOOK_PAUSE=1s \
+    start_server || return 1
+  scripts/clients/run.sh "$server_url" && scripts/clients/scenarios.sh "$server_url" "$neighbour_port"
   end_server_with $?
 }
 
@@ -150,6 +154,32 @@ set_up_gltf_rules() {
   cmp -s tests/gltf_rules/package-lock.json $into/installed.json && return 0
   rm -rf $into && mkdir -p $into && cp tests/gltf_rules/package*.json $into/ &&
     npm ci --prefix $into --no-audit --no-fund --silent && cp tests/gltf_rules/package-lock.json $into/installed.json
+}
+
+# What deploy/ has, by the tools of those who read it: Helm, the schemas of Kubernetes, promtool.
+deploy() {
+  python3 scripts/deploy/names.py || return 1
+  set_up_deploy || { echo "the rest is not run: what judges it cannot be installed here"; return 0; }
+  target/deploy/python/bin/python scripts/deploy/chart.py target/debug/meshmend || return 1
+  local promtool=target/deploy/prometheus/usr/bin/promtool
+  python3 scripts/deploy/expressions.py deploy/monitoring/dashboard.json >"$scratch/dashboard.json" &&
+    $promtool check rules deploy/monitoring/alerts.yaml "$scratch/dashboard.json" &&
+    $promtool test rules deploy/monitoring/alerts_test.yaml
+}
+
+# Prometheus is unpacked only: installed, it would run.
+set_up_deploy() {
+  local into=target/deploy
+  mkdir -p $into || return 1
+  if ! cmp -s scripts/deploy/requirements.txt $into/python/requirements.txt; then
+    rm -rf $into/python && python3 -m venv $into/python &&
+      $into/python/bin/pip install -q --disable-pip-version-check --retries 5 -r scripts/deploy/requirements.txt &&
+      cp scripts/deploy/requirements.txt $into/python/requirements.txt || return 1
+  fi
+  [ -x $into/prometheus/usr/bin/promtool ] && return 0
+  command -v dpkg >/dev/null || return 1
+  { (cd $into && apt-get download -q prometheus) || { as_root apt-get update -q && (cd $into && apt-get download -q prometheus); }; } &&
+    dpkg -x $into/prometheus_*.deb $into/prometheus
 }
 
 licences() {

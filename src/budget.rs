@@ -35,6 +35,18 @@ pub enum Stopped {
     },
 }
 
+/// An error that may be the end of a budget.
+pub trait AsStopped {
+    /// That end, if it is one.
+    fn as_stopped(&self) -> Option<Stopped>;
+}
+
+impl AsStopped for Stopped {
+    fn as_stopped(&self) -> Option<Stopped> {
+        Some(*self)
+    }
+}
+
 /// A pass of the engine, as progress and timing name it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Stage {
@@ -140,6 +152,8 @@ pub struct Budget {
     stop: StopFlag,
     work: AtomicU64,
     work_max: u64,
+    /// The limit of the innermost share in force. The caller's own limit makes no share smaller: it ends the run.
+    share_limit: AtomicU64,
     /// Work units at which the observer is told of them next.
     work_told_at: AtomicU64,
     bytes: AtomicU64,
@@ -177,6 +191,7 @@ impl Budget {
             stop,
             work: AtomicU64::new(0),
             work_max,
+            share_limit: AtomicU64::new(u64::MAX),
             work_told_at: AtomicU64::new(WORK_TOLD_FIRST),
             bytes: AtomicU64::new(0),
             bytes_peak: AtomicU64::new(0),
@@ -206,10 +221,56 @@ impl Budget {
         if used > self.work_max {
             return Err(Stopped::Work { limit: self.work_max });
         }
+        let limit = self.share_limit.load(Ordering::Relaxed);
+        if used > limit {
+            return Err(Stopped::Work { limit });
+        }
         if used >= self.work_told_at.load(Ordering::Relaxed) {
             self.tell_work(used);
         }
         self.check()
+    }
+
+    /// Runs `body`, which may use up to `units` of work; `None` when it needs more, and so many are counted then. Shares may lie
+    /// within each other, but not side by side in several threads. Whether one is enough depends on the sum of what is spent
+    /// in it, so it is the same with any number of threads as long as all of them end before an error is passed on.
+    ///
+    /// # Errors
+    /// Those of `body`, and the end of what the share is a part of.
+    pub fn within<T, E: From<Stopped> + AsStopped>(
+        &self,
+        units: u64,
+        body: impl FnOnce() -> Result<T, E>,
+    ) -> Result<Option<T>, E> {
+        let outer = self.share_limit.load(Ordering::Relaxed);
+        let limit = self.work_used().saturating_add(units);
+        if limit >= outer {
+            return body().map(Some);
+        }
+        self.share_limit.store(limit, Ordering::Relaxed);
+        let result = body();
+        self.share_limit.store(outer, Ordering::Relaxed);
+        match result {
+            Err(error) if limit != self.work_max && error.as_stopped() == Some(Stopped::Work { limit }) => {
+                // What other threads spent beyond it depends on their number.
+                self.work.store(limit, Ordering::Relaxed);
+                self.check()?;
+                Ok(None)
+            }
+            result => result.map(Some),
+        }
+    }
+
+    /// As [`within`](Self::within), with one `part`th of what is left.
+    ///
+    /// # Errors
+    /// Those of `body`, and the end of what the share is a part of.
+    pub fn within_part<T, E: From<Stopped> + AsStopped>(
+        &self,
+        part: u64,
+        body: impl FnOnce() -> Result<T, E>,
+    ) -> Result<Option<T>, E> {
+        self.within(self.work_left() / part.max(1), body)
     }
 
     /// Tells the observer of the work, and the next time when there is a 32nd more: a few hundred times in the longest run.
@@ -269,6 +330,11 @@ impl Budget {
         }
     }
 
+    /// Work units that are left of the share in force; the caller's limit does not count.
+    pub fn work_left(&self) -> u64 {
+        self.share_limit.load(Ordering::Relaxed).saturating_sub(self.work_used())
+    }
+
     /// Work units used so far.
     pub fn work_used(&self) -> u64 {
         self.work.load(Ordering::Relaxed)
@@ -313,6 +379,27 @@ mod tests {
         let budget = Budget::new(StopFlag::default(), 10, 100);
         assert_eq!(budget.spend(10), Ok(()));
         assert_eq!(budget.spend(1), Err(Stopped::Work { limit: 10 }));
+    }
+
+    #[test]
+    fn a_share_of_the_work_ends_without_ending_the_run() {
+        let budget = Budget::new(StopFlag::default(), 100, 100);
+        let budget = &budget;
+        let needs = |units: u64| {
+            move || {
+                (0..units).try_for_each(|_| budget.spend(1))?;
+                Ok::<_, Stopped>(units)
+            }
+        };
+        assert_eq!(budget.within(10, needs(10)), Ok(Some(10)));
+        assert_eq!(budget.within(10, needs(11)), Ok(None));
+        assert_eq!(budget.work_used(), 20, "what is over a share is not counted");
+        // The inner share ends the outer one too where that has no more.
+        let nested = budget.within(5, || budget.within(50, needs(6)));
+        assert_eq!((nested, budget.work_used()), (Ok(None), 25));
+        let nested = budget.within(50, || Ok::<_, Stopped>((budget.within(5, needs(6))?, needs(3)()?)));
+        assert_eq!(nested, Ok(Some((None, 3))));
+        assert_eq!(budget.within(1000, needs(1000)), Err(Stopped::Work { limit: 100 }));
     }
 
     #[test]

@@ -1,8 +1,10 @@
 //! What must hold of any bytes. Run one target with `cargo fuzz run read_obj`.
 
 use meshmend::budget::{Budget, StopFlag};
+use meshmend::certificate::{Depth, certify};
 use meshmend::formats::threemf::{FaceSource, NewBody, read_project, rewrite_project};
 use meshmend::formats::{Encoding, Format, ReadErrorKind, ReadOptions, read, sniff, write};
+use meshmend::pipeline::{Failure, Operation, Options, Outcome, run, work_units_max};
 
 /// Reads `bytes` as a file of `format`: no panic, no more memory than the size allows, a sound soup, and the same
 /// triangles again after writing it.
@@ -78,4 +80,56 @@ fn packed_model(model: &[u8]) -> Vec<u8> {
     archive.start_file("3D/3dmodel.model", options).expect("an entry");
     archive.write_all(model).expect("bytes in memory");
     archive.finish().expect("an archive").into_inner()
+}
+
+/// Takes `bytes` as a list of triangles and repairs, verifies and describes it: every operation ends within its bound of work, and
+/// what a repair returns is certified, by a second look at its bytes too, or refused.
+pub fn check_mesh(bytes: &[u8]) {
+    let Some(mesh) = obj_of(bytes) else { return };
+    for operation in [Operation::Analyze, Operation::Verify, Operation::Repair] {
+        let (options, budget) = (Options::default(), Budget::new(StopFlag::default(), u64::MAX, 1 << 30));
+        let answer = match run(operation, &mesh, &options, &budget) {
+            Ok(answer) => answer,
+            // The first bytes may leave no vertex and no face.
+            Err(Failure::OverBudget { .. } | Failure::Unreadable(_)) => return,
+            Err(failure) => panic!("{failure}"),
+        };
+        let units = work_units_max(operation, mesh.len(), &options).unwrap_or(u64::MAX);
+        assert!(budget.work_used() <= units, "{} of {units} units", budget.work_used());
+        if operation != Operation::Repair {
+            continue;
+        }
+        let is_refused = answer.report.outcome == Some(Outcome::Refused);
+        assert_eq!(is_refused, answer.output.is_none());
+        if let Some(output) = answer.output {
+            let returned = output.bytes.as_deref().unwrap_or(&mesh);
+            let depth = Depth::Count { samples: 1 };
+            let judged = certify(returned, output.encoding, &ReadOptions::default(), depth, &Budget::unlimited());
+            assert!(judged.is_ok_and(|certificate| certificate.is_printable()), "what is returned is certified");
+        }
+    }
+}
+
+/// An OBJ of up to 512 triangles: the first byte says how far apart its coordinates are, the others are coordinates and corners.
+fn obj_of(bytes: &[u8]) -> Option<Vec<u8>> {
+    let (&kind, rest) = bytes.split_first()?;
+    let (&count, rest) = rest.split_first()?;
+    let points = rest.get(..3 * usize::from(count))?;
+    let corners = &rest[points.len()..];
+    let coordinate = |byte: u8| match kind % 4 {
+        0 => f64::from(byte as i8),
+        1 => f64::from(byte as i8) / 7.0,
+        2 => f64::from(byte & 7),
+        _ => (f64::from(byte & 3) - 1.5) * 10f64.powi(i32::from(byte as i8) * 2),
+    };
+    let mut text = String::new();
+    for point in points.chunks_exact(3) {
+        let [x, y, z] = [point[0], point[1], point[2]].map(coordinate);
+        text.push_str(&format!("v {x:?} {y:?} {z:?}\n"));
+    }
+    for face in corners.chunks_exact(3).take(512) {
+        let [a, b, c] = [face[0], face[1], face[2]].map(|v| u32::from(v) % u32::from(count).max(1) + 1);
+        text.push_str(&format!("f {a} {b} {c}\n"));
+    }
+    Some(text.into_bytes())
 }

@@ -146,6 +146,8 @@ pub struct Finding {
     pub severity: Severity,
     /// How many.
     pub count: u64,
+    /// There may be more: the search ended at its bound of work.
+    pub is_at_least: bool,
     /// The first ones.
     pub witnesses: Vec<Witness>,
 }
@@ -167,6 +169,6 @@ impl Finding {
         if count == 0 {
             return Vec::new();
         }
-        vec![Self { code, severity: code.severity(), count, witnesses }]
+        vec![Self { code, severity: code.severity(), count, is_at_least: false, witnesses }]
     }
 }

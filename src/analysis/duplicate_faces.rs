@@ -82,7 +82,7 @@ pub(super) fn without_copies<'c>(
     repeats: &[Repeat],
 ) -> Cow<'c, Contacts> {
     let polygons = &mesh.soup.polygons;
-    if polygons.faces.len() < 2 || repeats.is_empty() || contacts.list.len() as u64 != contacts.count {
+    if polygons.faces.len() < 2 || repeats.is_empty() || !contacts.are_all_listed() {
         return contacts;
     }
     let repeat_of = |t: u32| {

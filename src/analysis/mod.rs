@@ -178,8 +178,8 @@ pub enum NearSearch {
     Within(f64),
 }
 
-/// Describes `soup`. `known_contacts` are its self-contacts where a certificate has found them already (all counted,
-/// at least `samples` of each kind kept where there are that many); otherwise they are searched here.
+/// Describes `soup`. `known_contacts` are its self-contacts where a certificate has found them already (counted as by
+/// [`Search::Most`](crate::spatial::Search::Most), at least `samples` of each kind kept where there are that many); otherwise they are searched here.
 ///
 /// # Errors
 /// Only when the budget stops the run.
@@ -197,9 +197,11 @@ pub fn analyze(
         par::join(|| Measures::of(&cx), || par::map_items(CHECKS.to_vec(), |_, find| find(&cx)));
     let findings = findings.into_iter().collect::<Result<Vec<_>, _>>()?.concat();
     let measures = measures?;
+    let estimate = || volume_interval::volume_interval(&cx, measures.volume, options.volume_interval);
+    let estimate = budget.within(ESTIMATE_WORK.min(budget.work_left() / ESTIMATE_PART), estimate)?;
     Ok(Analysis {
         counts: Counts::of(&cx, &findings),
-        volume_interval: volume_interval::volume_interval(&cx, measures.volume, options.volume_interval)?,
+        volume_interval: estimate.flatten(),
         measures,
         properties: Properties::of(&cx),
         watertight: Watertight::of(&cx)?,
@@ -209,6 +211,11 @@ pub fn analyze(
         findings,
     })
 }
+
+/// Units of work of an estimate of the volume, at most, and at most one of so many parts of what is left; where that is not
+/// enough there is none. Most meshes take a tenth.
+const ESTIMATE_WORK: u64 = 1 << 27;
+const ESTIMATE_PART: u64 = 4;
 
 /// Edges 18, twins 12, components 4 and members 4, and 8 for lists that come and go.
 const BYTES_PER_TRIANGLE: u64 = 46;

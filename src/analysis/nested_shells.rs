@@ -77,8 +77,8 @@ fn ways(cx: &Context<'_>) -> Result<Ways, Stopped> {
 fn free_shells(cx: &Context<'_>) -> Result<Vec<bool>, Stopped> {
     let mesh = &cx.mesh;
     let mut is_free = vec![false; mesh.parts.len()];
-    if cx.contacts.list.len() as u64 != cx.contacts.count {
-        // Which parts the pairs that were not kept belong to is not known.
+    if !cx.contacts.are_all_listed() {
+        // Which parts the pairs belong to that were not kept or not found is not known.
         return Ok(is_free);
     }
     for shell in &cx.shells {

@@ -121,7 +121,7 @@ impl Proximity {
     pub(super) fn of(cx: &Context<'_>) -> Result<Option<Self>, Stopped> {
         let Some(near) = &cx.near else { return Ok(None) };
         let list = &cx.contacts.list;
-        let is_complete = list.len() as u64 == cx.contacts.count;
+        let is_complete = cx.contacts.are_all_listed();
         let (mut intersect, mut touch) = ([0; 6], [0; 6]);
         if is_complete {
             let sides = PolygonSides::of(cx, list.iter());

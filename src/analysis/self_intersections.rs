@@ -27,7 +27,7 @@ pub(super) fn search(
     let ids = (sound.len() < mesh.triangles.len()).then_some(sound.as_slice());
     let bvh = Bvh::build(positions, &mesh.triangles, ids, budget)?;
     let mut contacts =
-        self_contacts(positions, &mesh.triangles, &bvh, None, Search::All { keep: KEEP }, budget)?;
+        self_contacts(positions, &mesh.triangles, &bvh, None, Search::Most { keep: KEEP }, budget)?;
     for contact in &mut contacts.list {
         (contact.a, contact.b) = (mesh.source(contact.a), mesh.source(contact.b));
     }
@@ -58,7 +58,9 @@ pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
             witness
         };
         let count = cx.contacts.count_by_kind[kind as usize];
-        Finding::with(code, count, pairs().map(witness).collect())
+        let mut found = Finding::with(code, count, pairs().map(witness).collect());
+        found.iter_mut().for_each(|finding| finding.is_at_least = cx.contacts.is_cut_short);
+        found
     };
     Ok([
         found(DefectCode::SelfIntersection, ContactKind::Cross),

@@ -102,9 +102,10 @@ fn shares(tree: &WindingTree, bounds: Aabb, cx: &Context<'_>) -> Result<[f64; 2]
     let count = CELLS.pow(3);
     let parts = par::try_map_ranges(count, CHUNK, |range| {
         cx.budget.spend(range.len() as u64 * 8)?;
-        let numbers = range.map(|cell| tree.at(place_in_cell(cell, bounds), 0.0));
         let mut sums = Sums::default();
-        numbers.for_each(|number| sums.add(number));
+        for cell in range {
+            sums.add(tree.at(place_in_cell(cell, bounds), 0.0, cx.budget)?);
+        }
         Ok(sums)
     })?;
     let mut all = Sums::default();

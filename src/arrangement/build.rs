@@ -48,11 +48,11 @@ pub fn arrange(
     let sound = sound(positions, &welded, budget)?;
     let bvh = Bvh::build(positions, &welded, Some(&sound), budget)?;
     let mut pairs = copies(&welded, &sound, budget)?;
-    let keep = options.pairs_max;
-    let contacts = self_contacts(positions, &welded, &bvh, None, Search::All { keep }, budget)?;
+    let most = options.pairs_max;
+    let contacts = self_contacts(positions, &welded, &bvh, None, Search::UpTo { most }, budget)?;
     let count = contacts.count + pairs.len() as u64;
-    if count > keep as u64 {
-        return Err(ArrangementError::TooManyPairs { count, limit: keep as u64 });
+    if count > most as u64 {
+        return Err(ArrangementError::TooManyPairs { count, limit: most as u64 });
     }
     pairs.extend(contacts.list.iter().map(|c| Pair { triangles: [c.a, c.b], kind: c.kind }));
     let mut arrangement = Arrangement {

@@ -2,7 +2,7 @@
 
 use super::constraints::{Constrained, Constraint, Line, TagSets};
 use super::error::ArrangementError;
-use super::kernel::{Kernel, View};
+use super::kernel::{EXACT, Kernel, View};
 use super::point::{Definition, Point};
 use super::triangulation::{NONE, Sight, Triangulation};
 use crate::budget::Budget;
@@ -74,7 +74,7 @@ pub(super) fn divide(
         let last = mesh.half_edges() - 1;
         let v = mesh.insert(&sight, point, last, &mut steps)?;
         vertices.insert(point, v);
-        budget.spend(std::mem::take(&mut steps) + 1)?;
+        budget.spend((std::mem::take(&mut steps) + 1) * EXACT)?;
     }
     let mut constrained = Constrained::new(sight, mesh, budget);
     let find = |point: u32| {

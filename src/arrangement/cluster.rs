@@ -3,7 +3,7 @@
 use super::carrier::{Carrier, Pieces, divide};
 use super::error::ArrangementError;
 use super::intern::first_at_place;
-use super::kernel::Kernel;
+use super::kernel::{EXACT, Kernel};
 use super::pairs::{Meeting, meeting};
 use super::point::{Definition, Point};
 use crate::budget::Budget;
@@ -97,7 +97,7 @@ fn points_of_pairs(
     budget: &Budget,
 ) -> Result<(Vec<Point>, Vec<u32>), ArrangementError> {
     let meetings = par::try_map_ranges(pairs.len(), CHUNK, |range| {
-        budget.spend(16 * range.len() as u64)?;
+        budget.spend(4 * EXACT * range.len() as u64)?;
         pairs[range]
             .iter()
             .map(|pair| match pair.kind {
@@ -119,7 +119,8 @@ fn points_of_pairs(
     let mut points: Vec<Point> = (0..vertex_count).map(|v| kernel.point(Definition::Vertex(v))).collect();
     for (i, &name) in names.iter().enumerate() {
         if i % 1024 == 0 {
-            budget.spend(1024)?;
+            // Most clusters have a few.
+            budget.spend((names.len() - i).min(1024) as u64 * EXACT)?;
         }
         points.push(kernel.point(name));
     }

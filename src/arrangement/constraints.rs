@@ -1,6 +1,7 @@
 //! Segments that a triangulation of a plane must have as edges.
 
 use super::error::ArrangementError;
+use super::kernel::EXACT;
 use super::point::Definition;
 use super::triangulation::{NONE, Sight, Triangulation};
 use crate::budget::Budget;
@@ -84,20 +85,20 @@ impl<'k, 'b> Constrained<'k, 'b> {
         let [mut from, to] = constraint.ends;
         let mut crossed = VecDeque::new();
         while from != to {
-            self.budget.spend(1)?;
+            self.budget.spend(EXACT)?;
             match self.leaving(from, to)? {
                 Leaving::Along(h) => {
-                    self.tag(h, tag);
+                    self.tag(h, tag)?;
                     from = self.mesh.to(h);
                 }
                 Leaving::Back(h) => {
-                    self.tag(h, tag);
+                    self.tag(h, tag)?;
                     from = self.mesh.from(h);
                 }
                 Leaving::Across(h) => {
                     let end = self.cross(from, to, h, constraint.line, &mut crossed)?;
                     let h = self.clear(from, end, &mut crossed)?;
-                    self.tag(h, tag);
+                    self.tag(h, tag)?;
                     from = end;
                 }
             }
@@ -105,14 +106,18 @@ impl<'k, 'b> Constrained<'k, 'b> {
         Ok(tag)
     }
 
-    fn tag(&mut self, h: u32, tag: u32) {
+    fn tag(&mut self, h: u32, tag: u32) -> Result<(), ArrangementError> {
         let set = &mut self.mesh.tags[h as usize];
+        // A set is copied for each member that it gets: many copies of a triangle are dear.
+        self.budget.spend(4 * self.sets.of(*set).len() as u64)?;
         *set = self.sets.with(*set, tag);
+        Ok(())
     }
 
     fn leaving(&self, from: u32, to: u32) -> Result<Leaving, ArrangementError> {
         let mesh = &self.mesh;
         for h in mesh.around(from) {
+            self.budget.spend(EXACT / 4)?;
             let (x, y) = (mesh.to(h), mesh.apex(h));
             if x == to {
                 return Ok(Leaving::Along(h));
@@ -164,7 +169,7 @@ impl<'k, 'b> Constrained<'k, 'b> {
         crossed.clear();
         let mut h = h;
         loop {
-            self.budget.spend(1)?;
+            self.budget.spend(EXACT)?;
             if self.mesh.is_constrained(h) {
                 let definition = self.crossing(h, line);
                 let point = self.sight.kernel.point(definition);
@@ -214,7 +219,7 @@ impl<'k, 'b> Constrained<'k, 'b> {
     fn clear(&mut self, from: u32, to: u32, crossed: &mut VecDeque<u32>) -> Result<u32, ArrangementError> {
         let mut left = (crossed.len() as u64 + 4).pow(2) * 4;
         while let Some(h) = crossed.pop_front() {
-            self.budget.spend(1)?;
+            self.budget.spend(EXACT)?;
             left -= 1;
             if left == 0 {
                 return Err(ArrangementError::Inconsistent("flips do not end"));
@@ -247,7 +252,7 @@ impl Constrained<'_, '_> {
         for _ in 0..ROUNDS_MAX {
             let mut is_changed = false;
             for h in 0..self.mesh.half_edges() {
-                self.budget.spend(1)?;
+                self.budget.spend(8)?;
                 let g = self.mesh.twin(h);
                 if g == NONE || g < h || self.mesh.is_constrained(h) {
                     continue;

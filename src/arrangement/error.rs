@@ -9,9 +9,9 @@ pub enum ArrangementError {
     #[error(transparent)]
     Stopped(#[from] Stopped),
     /// More pairs of triangles meet than the caller allows.
-    #[error("{count} pairs of triangles meet, more than {limit}")]
+    #[error("{count} or more pairs of triangles meet, more than {limit}")]
     TooManyPairs {
-        /// How many meet.
+        /// How many meet at least.
         count: u64,
         /// How many may.
         limit: u64,

@@ -5,7 +5,7 @@
 
 use super::ball::Ball;
 use super::error::ArrangementError;
-use super::kernel::Kernel;
+use super::kernel::{EXACT, Kernel};
 use super::point::Point;
 use crate::budget::Budget;
 
@@ -22,7 +22,8 @@ pub(super) fn first_at_place(
     let mut by_form = Vec::with_capacity(candidates.len());
     for (i, &id) in candidates.iter().enumerate() {
         if i % 1024 == 0 {
-            budget.spend(1024)?;
+            // Most clusters have a few.
+            budget.spend((candidates.len() - i).min(1024) as u64 * EXACT)?;
         }
         let near = points[id as usize].near;
         let form = (0..3).fold(Ball::exactly(0.0), |sum, k| sum + near[k] * Ball::exactly(FACTORS[k]));
@@ -39,7 +40,7 @@ pub(super) fn first_at_place(
     let mut open: Vec<(f64, u32)> = Vec::new();
     for (low, high, i) in by_form {
         open.retain(|&(end, _)| end >= low);
-        budget.spend(1 + open.len() as u64)?;
+        budget.spend(8 * (1 + open.len() as u64))?;
         let point = |i: u32| &points[candidates[i as usize] as usize];
         match open.iter_mut().find(|(_, other)| kernel.is_same(point(i), point(*other))) {
             Some((end, other)) => {

@@ -13,6 +13,9 @@ use num_bigint::BigInt;
 use std::cmp::Ordering;
 use std::sync::OnceLock;
 
+/// Units of work that a step counts which decides with exact points: most of them are decided by balls, some by integers.
+pub(super) const EXACT: u64 = 64;
+
 /// The two coordinates of a plane that are looked at, mirrored so that the plane's own triangle turns counter-clockwise, and that
 /// triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

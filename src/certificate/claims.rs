@@ -88,6 +88,8 @@ pub struct ViolationCounts {
     pub singular_vertices: Option<u64>,
     /// [`Condition::Embedded`]: pairs of triangles; degenerate triangles and duplicates are left out.
     pub contacts: Option<u64>,
+    /// There may be more of these: a search that had found some ended at its bound of work.
+    pub contacts_are_at_least: bool,
     /// [`Condition::Alternating`]: shells.
     pub misnested_shells: Option<u64>,
 }

@@ -193,10 +193,15 @@ impl<'a> Judge<'a> {
         let search = if self.verdict.is_brief() {
             Search::First
         } else {
-            Search::All { keep: self.verdict.samples().max(CONTACTS_KEPT_MIN) }
+            Search::Most { keep: self.verdict.samples().max(CONTACTS_KEPT_MIN) }
         };
         let contacts = self_contacts(positions, triangles, &bvh, Some(&terrains), search, budget)?;
-        let is_p1 = contacts.count == 0;
+        let is_p1 = contacts.count == 0 && !contacts.is_cut_short;
+        if contacts.is_cut_short {
+            self.verdict.leave_contacts_uncounted();
+            // A search is cut short only after it has found something; nothing is proved in any case.
+            self.verdict.leave_open(Condition::Embedded);
+        }
         self.verdict.note(Condition::Embedded, contacts.count, |samples| {
             let first = contacts.list.iter().take(samples);
             first.map(|c| surface.violation_between(Condition::Embedded, [c.a, c.b])).collect()

@@ -23,6 +23,8 @@ pub(super) struct Verdict {
     most: [u64; CONDITIONS],
     /// Conditions that some reading left open.
     is_open: [bool; CONDITIONS],
+    /// Some contacts were not counted.
+    contacts_are_at_least: bool,
     pub(super) witnesses: Vec<Violation>,
     pub(super) readings: Vec<Reading>,
 }
@@ -38,6 +40,7 @@ impl Verdict {
             is_brief,
             most: [0; CONDITIONS],
             is_open: [false; CONDITIONS],
+            contacts_are_at_least: false,
             witnesses: Vec::new(),
             readings: Vec::new(),
         }
@@ -57,6 +60,11 @@ impl Verdict {
         }
         let most = &mut self.most[condition as usize];
         *most = count.max(*most);
+    }
+
+    /// Notes that there may be more contacts than are counted; some are.
+    pub(super) fn leave_contacts_uncounted(&mut self) {
+        self.contacts_are_at_least = true;
     }
 
     /// Notes that the reading at hand leaves `condition` open.
@@ -113,6 +121,7 @@ impl Verdict {
             edges_in_one_direction: self.count(Condition::OppositeDirections),
             singular_vertices: self.count(Condition::OneFanPerVertex),
             contacts: self.count(Condition::Embedded),
+            contacts_are_at_least: self.contacts_are_at_least,
             misnested_shells: self.count(Condition::Alternating),
         }
     }
@@ -133,6 +142,7 @@ pub(super) fn sum_of(parts: &[&ViolationCounts]) -> ViolationCounts {
         edges_in_one_direction: sum(|part| part.edges_in_one_direction),
         singular_vertices: sum(|part| part.singular_vertices),
         contacts: sum(|part| part.contacts),
+        contacts_are_at_least: parts.iter().any(|part| part.contacts_are_at_least),
         misnested_shells: sum(|part| part.misnested_shells),
     }
 }

@@ -30,6 +30,7 @@ impl Exit {
     pub(super) fn of(problem: &Problem) -> Self {
         match problem.code {
             ProblemCode::MeshTooLarge
+            | ProblemCode::OverBudget
             | ProblemCode::EngineTimeout
             | ProblemCode::EngineOutOfMemory
             | ProblemCode::Cancelled => Self::Stopped,

@@ -5,7 +5,8 @@ use super::figures::{counted, figure};
 use super::model;
 use crate::wire::{
     Action, Certificate, Claim, Defect, DefectCode, Deviation, Fidelity, Hole, InputInfo, JoinedEdges, Level,
-    MeshInfo, Operation, Part, PrintingCheck, Proposal, Report, Severity, TargetSpec, Witness,
+    MeshInfo, Operation, Part, PrintingCheck, Proposal, Report, Severity, TargetSpec, ViolationCount,
+    Witness,
 };
 use anstyle::Style;
 use std::fmt::Write as _;
@@ -180,7 +181,8 @@ fn defect_row(defect: &Defect) -> (Style, [String; 4]) {
         Severity::Info => (QUIET, "info"),
     };
     let first = defect.witnesses.first().map(witness).unwrap_or_default();
-    (style, [defect.code.to_string(), defect.count.to_string(), severity.to_owned(), first])
+    let count = format!("{}{}", defect.count, or_more(defect.is_at_least));
+    (style, [defect.code.to_string(), count, severity.to_owned(), first])
 }
 
 /// Most holes of which a screen tells what became of them.
@@ -310,9 +312,16 @@ fn claim_rows(certificate: &Certificate) -> Vec<(Style, [String; 2])> {
     claims.map(|(name, claim)| (style(claim), [name.to_owned(), claim_text(claim)])).into()
 }
 
+/// What is said behind a count that may be larger.
+fn or_more(is_at_least: bool) -> &'static str {
+    if is_at_least { " or more" } else { "" }
+}
+
 fn claim_text(claim: &Claim) -> String {
-    let broken = claim.violations.iter().filter_map(|v| Some((v.condition, v.count.filter(|&n| n > 0)?)));
-    let broken = broken.map(|(condition, count)| format!("{condition} {count}")).collect::<Vec<_>>();
+    let broken = claim.violations.iter().filter_map(|v| Some((v, v.count.filter(|&n| n > 0)?)));
+    let told =
+        |(v, count): (&ViolationCount, u64)| format!("{} {count}{}", v.condition, or_more(v.is_at_least));
+    let broken = broken.map(told).collect::<Vec<_>>();
     match claim.holds {
         Some(true) => "holds".to_owned(),
         Some(false) if broken.is_empty() => "broken".to_owned(),

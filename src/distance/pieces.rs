@@ -129,7 +129,7 @@ fn split(
 }
 
 /// Triangles that are walked over in the time that it takes to find a closest point.
-pub(super) const WALKED_FOR_ONE: u64 = 4;
+const WALKED_FOR_ONE: u64 = 4;
 
 /// The bound of what covers a piece, if it is less than `upper`, and the triangles that were walked over. The walk starts
 /// where a corner is closest, the farthest corner first, and looks along the way from there.

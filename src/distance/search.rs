@@ -1,7 +1,7 @@
 //! The distance from one surface to another: vertices and samples first, then the triangles that may exceed them.
 
 use super::bound::{Corner, upper_bound};
-use super::pieces::{Farthest, Piece, Refined, Tolerance, WALKED_FOR_ONE, WORK_MAX, refine};
+use super::pieces::{Farthest, Piece, Refined, Tolerance, WORK_MAX, refine};
 use super::samples::Areas;
 use super::scale::Common;
 use super::target::Target;
@@ -47,6 +47,10 @@ impl Sampled {
     const NONE: Self =
         Self { taken: 0, count: 0, lost: 0, sum: 0.0, sum_of_squares: 0.0, farthest: Farthest::NONE };
 }
+
+/// Units of work that a triangle counts over which a bound walks, and that a unit of refinement counts.
+const WALKED: u64 = 4;
+const REFINED: u64 = 16;
 
 /// Vertices or samples looked at by one task.
 const POINTS_OF_TASK: usize = 1024;
@@ -286,7 +290,7 @@ impl Directed<'_> {
         }
         let (covered, walked) =
             self.to.cloth.bound(&corners, nearest.point - middle, nearest.triangle, bound);
-        self.budget.spend(walked / WALKED_FOR_ONE)?;
+        self.budget.spend(walked * WALKED)?;
         Ok(covered.map_or(bound, |covered| covered.min(bound)))
     }
 
@@ -345,7 +349,7 @@ impl Directed<'_> {
             let mut all = Vec::with_capacity(range.len());
             for &piece in &wave[range] {
                 let refined = refine(self.to, &self.view, piece, farthest, self.tolerance(), self.budget)?;
-                self.budget.spend(refined.work)?;
+                self.budget.spend(refined.work * REFINED)?;
                 all.push(refined);
             }
             Ok(all)

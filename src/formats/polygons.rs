@@ -1,5 +1,7 @@
 //! Splits a polygon into triangles.
 
+use super::obstacles::Obstacles;
+use super::ring_set::RingSet;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{DVec2, DVec3, Sign, orient2d};
 
@@ -8,7 +10,8 @@ use crate::geom::{DVec2, DVec3, Sign, orient2d};
 /// A polygon is seen along the coordinate axis nearest to its normal, so that its coordinates stay as they are and
 /// all turns are decided exactly. If the fan around its first corner covers it properly there, that is the answer.
 /// Otherwise ears are clipped (Meisters 1975), first those beside a straight corner: that way a vertex on a side gets
-/// a triangle with area. What is not a simple polygon and has no ear left is given as a fan after all.
+/// a triangle with area. What is not a simple polygon and has no ear left is given as a fan after all, and so is one whose ears
+/// take more than [`STEPS_PER_CORNER`] to find.
 #[derive(Debug, Default)]
 pub(super) struct Splitter {
     flat: Vec<DVec2>,
@@ -16,12 +19,28 @@ pub(super) struct Splitter {
     next: Vec<u32>,
     turn: Vec<Turn>,
     rank: Vec<Rank>,
-    /// How many corners rank highest.
-    beside_straight: usize,
+    /// The ears beside a straight corner.
+    beside_straight: RingSet,
+    /// The other ears.
+    ears: RingSet,
+    /// The straight corners.
+    straight: RingSet,
     /// Corners that were not convex at the start, by x.
     obstacles: Vec<u32>,
+    /// The same in a tree, where they are many.
+    tree: Obstacles,
+    /// Steps not yet paid for.
     steps: u64,
+    /// Steps that may still be made for this polygon.
+    steps_left: u64,
 }
+
+/// Steps for each corner of a polygon, at most. A step looks at a corner or a box of corners, in a few nanoseconds; polygons of ten
+/// thousand corners in a row of teeth or a spiral take some dozens.
+const STEPS_PER_CORNER: u64 = 4096;
+
+/// Obstacles from which on they are put into a tree.
+const TREE_FROM: usize = 48;
 
 /// How the boundary turns at a corner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -56,7 +75,8 @@ pub fn split_polygon(
 
 impl Splitter {
     /// Appends `corners.len() - 2` triangles over `corners` to `triangles`; true if they are the fan around the first
-    /// corner. All positions are finite. Up to O(n²) steps on an n-gon that is far from convex.
+    /// corner. All positions are finite. O(n log n) steps on most n-gons, at most
+    /// [`STEPS_PER_CORNER`] for each corner.
     ///
     /// # Errors
     /// When the budget stops the run.
@@ -119,7 +139,7 @@ impl Splitter {
         self.link(budget)?;
         let mut from = 0;
         for clipped in 2..corners.len() {
-            let Some(ear) = self.find_ear(from) else { return Ok(false) };
+            let Some(ear) = self.find_ear(from).filter(|_| self.steps_left > 0) else { return Ok(false) };
             let is_without_area = clipped == 2 && self.rank[ear as usize] == Rank::NoEar;
             if is_without_area {
                 return Ok(false);
@@ -138,26 +158,35 @@ impl Splitter {
         if self.steps < CHECK_EVERY as u64 {
             return Ok(());
         }
+        self.steps_left = self.steps_left.saturating_sub(self.steps);
         budget.spend(std::mem::take(&mut self.steps))
     }
 
     fn link(&mut self, budget: &Budget) -> Result<(), Stopped> {
         let n = self.flat.len() as u32;
+        self.steps_left = STEPS_PER_CORNER * u64::from(n);
         self.previous.clear();
         self.previous.extend((0..n).map(|i| if i == 0 { n - 1 } else { i - 1 }));
         self.next.clear();
         self.next.extend((0..n).map(|i| if i + 1 == n { 0 } else { i + 1 }));
+        [&mut self.beside_straight, &mut self.ears, &mut self.straight]
+            .into_iter()
+            .for_each(|set| set.reset(n as usize));
         self.turn.clear();
         for i in 0..n {
             let turn = self.turn_of(i);
             self.turn.push(turn);
+            if turn == Turn::Straight {
+                self.straight.insert(i);
+            }
         }
         self.obstacles.clear();
         self.obstacles.extend((0..n).filter(|&i| self.turn[i as usize] != Turn::Convex));
         self.obstacles.sort_unstable_by(|&i, &j| self.flat[i as usize].x.total_cmp(&self.flat[j as usize].x));
+        let many = self.obstacles.iter().copied().filter(|_| self.obstacles.len() >= TREE_FROM);
+        self.tree.reset(&self.flat, many);
         self.rank.clear();
         self.rank.resize(n as usize, Rank::NoEar);
-        self.beside_straight = 0;
         for i in 0..n {
             self.update_rank(i);
             self.pay(budget)?;
@@ -175,41 +204,55 @@ impl Splitter {
 
     fn update_rank(&mut self, i: u32) {
         let rank = self.rank_of(i);
-        let before = std::mem::replace(&mut self.rank[i as usize], rank);
-        self.beside_straight += usize::from(rank == Rank::EarBesideStraight);
-        self.beside_straight -= usize::from(before == Rank::EarBesideStraight);
+        self.set_rank(i, rank);
     }
 
-    /// The first of the most welcome ears from `from` on; a straight corner if there is no ear.
-    fn find_ear(&mut self, from: u32) -> Option<u32> {
-        let wanted = if self.beside_straight > 0 { Rank::EarBesideStraight } else { Rank::Ear };
-        let mut straight = None;
-        let mut i = from;
-        loop {
-            self.steps += 1;
-            if self.rank[i as usize] == wanted {
-                return Some(i);
-            }
-            if self.turn[i as usize] == Turn::Straight {
-                straight = Some(i);
-            }
-            i = self.next[i as usize];
-            if i == from {
-                return straight;
-            }
+    fn set_rank(&mut self, i: u32, rank: Rank) {
+        let before = std::mem::replace(&mut self.rank[i as usize], rank);
+        if before == rank {
+            return;
         }
+        match before {
+            Rank::EarBesideStraight => self.beside_straight.remove(i),
+            Rank::Ear => self.ears.remove(i),
+            Rank::NoEar => {}
+        }
+        match rank {
+            Rank::EarBesideStraight => self.beside_straight.insert(i),
+            Rank::Ear => self.ears.insert(i),
+            Rank::NoEar => {}
+        }
+    }
+
+    fn set_turn(&mut self, i: u32, turn: Turn) {
+        let before = std::mem::replace(&mut self.turn[i as usize], turn);
+        match (before == Turn::Straight, turn == Turn::Straight) {
+            (true, false) => self.straight.remove(i),
+            (false, true) => self.straight.insert(i),
+            _ => {}
+        }
+        let blocks = |turn| matches!(turn, Turn::Reflex | Turn::Straight);
+        if !self.tree.is_empty() && blocks(before) != blocks(turn) {
+            self.tree.change(i, blocks(turn));
+        }
+    }
+
+    /// The first of the most welcome ears from `from` on; the last straight corner before it if there is no ear.
+    fn find_ear(&mut self, from: u32) -> Option<u32> {
+        self.steps += 1;
+        let ear = self.beside_straight.next(from).or_else(|| self.ears.next(from));
+        ear.or_else(|| self.straight.previous(from))
     }
 
     fn clip(&mut self, ear: u32) {
         let (a, c) = (self.previous[ear as usize], self.next[ear as usize]);
-        self.turn[ear as usize] = Turn::Gone;
+        self.set_turn(ear, Turn::Gone);
         self.next[a as usize] = c;
         self.previous[c as usize] = a;
         // The ear's own rank is left behind for good.
-        self.beside_straight -= usize::from(self.rank[ear as usize] == Rank::EarBesideStraight);
-        self.rank[ear as usize] = Rank::NoEar;
+        self.set_rank(ear, Rank::NoEar);
         for i in [a, c] {
-            self.turn[i as usize] = self.turn_of(i);
+            self.set_turn(i, self.turn_of(i));
         }
         for i in [self.previous[a as usize], a, c, self.next[c as usize]] {
             self.update_rank(i);
@@ -229,6 +272,11 @@ impl Splitter {
     /// place of the triangle's own (where a boundary touches itself) do not count.
     fn is_blocked(&mut self, a: u32, b: u32, c: u32) -> bool {
         let own = [a, b, c].map(|i| self.flat[i as usize]);
+        let blocks = |turn| matches!(turn, Turn::Reflex | Turn::Straight);
+        if !self.tree.is_empty() {
+            let counts = |i: u32| blocks(self.turn[i as usize]);
+            return self.tree.is_one_in(&self.flat, own, counts, &mut self.steps);
+        }
         let left = own[0].x.min(own[1].x).min(own[2].x);
         let right = own[0].x.max(own[1].x).max(own[2].x);
         let from = self.obstacles.partition_point(|&i| self.flat[i as usize].x < left);
@@ -238,7 +286,7 @@ impl Splitter {
             if p.x > right {
                 return false;
             }
-            if matches!(self.turn[i as usize], Turn::Reflex | Turn::Straight)
+            if blocks(self.turn[i as usize])
                 && !own.contains(&p)
                 && self.area_sign(a, b, i) != Sign::Negative
                 && self.area_sign(b, c, i) != Sign::Negative

@@ -88,6 +88,19 @@ fn decompose(value: f64) -> (i64, i32) {
     (if value.is_sign_negative() { -digits } else { digits }, field.max(1) - 1075)
 }
 
+/// True when the signs of determinants of those points that are finite never take big integers. One pass.
+pub fn suits_expansions<'p>(points: impl IntoIterator<Item = &'p DVec3>) -> bool {
+    // As of the largest and the smallest magnitude: each number has at most 53 digits.
+    let (mut least, mut most) = (f64::INFINITY, 0.0f64);
+    for x in points.into_iter().flat_map(DVec3::to_array).map(f64::abs).filter(|x| x.is_finite()) {
+        most = most.max(x);
+        if x > 0.0 {
+            least = least.min(x);
+        }
+    }
+    least == f64::INFINITY || Span { low: decompose(least).1, high: 0 }.with(most).suits_expansions()
+}
+
 /// Coordinates of at most 62 bits: differences fit 63 bits, products 126, the determinant 127, with its sign 128.
 const ORIENT2D_BITS_MAX: i32 = 62;
 

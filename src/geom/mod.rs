@@ -16,6 +16,7 @@ mod volume;
 pub use closest::closest_point_on_triangle;
 pub use directions::{Cone, arc_box, direction};
 pub(crate) use exact::Span;
+pub use exact::suits_expansions;
 pub use glam::{DMat3, DVec2, DVec3};
 pub use pitch::{exponent_above, power_of_two, print_pitch};
 pub use predicates::{Plane, certain_turns, orient2d, orient3d};

@@ -92,7 +92,10 @@ impl Jobs {
 
     /// The same problem with the job's report inside, when it is a refusal.
     async fn with_report(&self, problem: Problem, id: JobId) -> Problem {
-        let is_refusal = matches!(problem.code, ProblemCode::NotRepairable | ProblemCode::MeshNonFinite);
+        let is_refusal = matches!(
+            problem.code,
+            ProblemCode::NotRepairable | ProblemCode::MeshNonFinite | ProblemCode::OverBudget
+        );
         if !is_refusal {
             return problem;
         }

@@ -1,5 +1,6 @@
 //! Set operations on several files: one exact arrangement of all of them, settled until its bytes are certified.
 
+use super::bounds::{self, Bound};
 use super::fidelity::diagonal;
 use super::input::Input;
 use super::ladder::{Climb, Tried};
@@ -10,7 +11,7 @@ use super::{
     Refusal, Report, finished, picture,
 };
 use crate::budget::{Budget, Stage};
-use crate::formats::{self, Place, ReadError, ReadErrorKind};
+use crate::formats::{self, Encoding, Place, ReadError, ReadErrorKind};
 use crate::mesh::Soup;
 use crate::repair::unite::{NotCombined, combine};
 
@@ -18,17 +19,42 @@ use crate::repair::unite::{NotCombined, combine};
 pub const MESHES_MAX: usize = 32;
 
 /// Combines the files that stand one behind the other in `bytes`.
-pub(super) fn boolean(bytes: &[u8], options: &Options, budget: &Budget) -> Result<Answer, Failure> {
+pub(super) fn boolean(
+    bytes: &[u8],
+    options: &Options,
+    bound: &Bound<'_>,
+    budget: &Budget,
+) -> Result<Answer, Failure> {
     let files = options.files_in(bytes);
     if !Operation::Boolean.meshes().contains(&files.len()) {
         return Err(Failure::MeshCount { operation: Operation::Boolean, count: files.len() });
     }
     let mut reading = Reading { options: options.clone(), scaled: None, triangles: 0, vertices: 0 };
-    let (mut input, mut report) = reading.next(files[0], budget).map_err(|failure| failure.in_mesh(1))?;
+    let mut meshes = Vec::with_capacity(files.len());
+    for (&bytes, number) in files.iter().zip(1..) {
+        let read = bound.reading(|| reading.next(bytes, budget)).map_err(|failure| failure.in_mesh(number));
+        meshes.push(read?);
+    }
+    bound.running(reading.triangles, || combine_all(meshes, reading, budget))
+}
+
+/// A file that was read.
+struct Mesh<'b> {
+    bytes: &'b [u8],
+    encoding: Encoding,
+    soup: Soup,
+}
+
+/// Describes the files and combines them.
+fn combine_all(meshes: Vec<Mesh<'_>>, mut reading: Reading, budget: &Budget) -> Result<Answer, Failure> {
+    let mut meshes = meshes.into_iter().zip(1..);
+    let mut describe =
+        |(mesh, number)| reading.describe(mesh, budget).map_err(|failure: Failure| failure.in_mesh(number));
+    let Some(first) = meshes.next() else { unreachable!("the number of files was looked at") };
+    let (mut input, mut report) = describe(first)?;
     let mut soups = vec![std::mem::take(&mut input.soup)];
-    for (file, number) in files[1..].iter().zip(2..) {
-        let next = reading.next(file, budget).map_err(|failure| failure.in_mesh(number));
-        let (further, Report { before, .. }) = next?;
+    for next in meshes {
+        let (further, Report { before, .. }) = describe(next)?;
         soups.push(further.soup);
         let certificate = further.examination.certificate;
         report.further_inputs.push(FurtherInput { facts: further.facts, before, certificate });
@@ -46,10 +72,12 @@ pub(super) fn boolean(bytes: &[u8], options: &Options, budget: &Budget) -> Resul
     input.soup = Soup::joined(&soups);
     drop(soups);
     let options = reading.scaled.as_ref().unwrap_or(&reading.options);
-    let answer = combined(&input, &firsts, report, options, budget)?;
+    let answer =
+        bounds::or_refused(report, budget, |report| combined(&input, &firsts, report, options, budget))?;
     let answer = finished(&input, options, answer, budget)?;
-    let picture = picture::of_meshes(&input, &starts, &answer, options, budget)?;
-    Ok(Answer { picture, ..answer })
+    bounds::with_picture(Operation::Boolean, answer, budget, |answer| {
+        picture::of_meshes(&input, &starts, answer, options, budget)
+    })
 }
 
 /// The files as they are read, under limits for all together.
@@ -63,16 +91,11 @@ struct Reading {
 }
 
 impl Reading {
-    fn next(&mut self, file: &[u8], budget: &Budget) -> Result<(Input, Report), Failure> {
-        let encoding = budget.stage(Stage::Read, || formats::sniff(file, self.options.format))?;
-        let mut input = Input::read(file, encoding, &self.options, budget)?;
-        self.options.output_format.get_or_insert(input.facts.encoding.format());
-        let in_units_of_format = input.take_lengths(&self.options);
-        let options = in_units_of_format.as_ref().unwrap_or(&self.options);
-        self.scaled = input.take_units_of_result(Operation::Boolean, options)?.or(in_units_of_format);
-        self.options.output_units.get_or_insert(input.facts.result_units);
-        self.triangles += input.soup.triangles.len() as u64;
-        self.vertices += input.soup.positions.len() as u64;
+    fn next<'b>(&mut self, bytes: &'b [u8], budget: &Budget) -> Result<Mesh<'b>, Failure> {
+        let encoding = budget.stage(Stage::Read, || formats::sniff(bytes, self.options.format))?;
+        let soup = Input::read_soup(bytes, encoding, &self.options, budget)?;
+        self.triangles += soup.triangles.len() as u64;
+        self.vertices += soup.positions.len() as u64;
         let limits = self.options.read.limits;
         for (what, limit_name, actual, limit) in [
             ("triangles", "triangles_max", self.triangles, limits.triangles_max),
@@ -83,6 +106,18 @@ impl Reading {
                 return Err(ReadError { kind, place: Place::Whole, expected: String::new() }.into());
             }
         }
+        Ok(Mesh { bytes, encoding, soup })
+    }
+
+    /// Judges and describes the next of the files that were read.
+    fn describe(&mut self, mesh: Mesh<'_>, budget: &Budget) -> Result<(Input, Report), Failure> {
+        let Mesh { bytes, encoding, soup } = mesh;
+        let mut input = Input::examined(soup, bytes, encoding, &self.options, budget)?;
+        self.options.output_format.get_or_insert(input.facts.encoding.format());
+        let in_units_of_format = input.take_lengths(&self.options);
+        let options = in_units_of_format.as_ref().unwrap_or(&self.options);
+        self.scaled = input.take_units_of_result(Operation::Boolean, options)?.or(in_units_of_format);
+        self.options.output_units.get_or_insert(input.facts.result_units);
         let report = input.report(Operation::Boolean, budget)?;
         Ok((input, report))
     }

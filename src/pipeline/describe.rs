@@ -26,7 +26,9 @@ fn unsound_reading(soup: &Soup, certificate: &Certificate, samples: usize) -> Fi
     let code = DefectCode::UnsoundReading;
     let witnesses =
         certificate.witnesses.iter().take(samples).map(|violation| witness(soup, violation)).collect();
-    Finding { code, severity: code.severity(), count: certificate.violations.total().max(1), witnesses }
+    let count = certificate.violations.total().max(1);
+    let is_at_least = certificate.violations.contacts_are_at_least;
+    Finding { code, severity: code.severity(), count, is_at_least, witnesses }
 }
 
 fn witness(soup: &Soup, violation: &Violation) -> Witness {

@@ -27,6 +27,10 @@ const DISTANCE: DistanceOptions = DistanceOptions {
     refinements_max: 1 << 20,
 };
 
+/// The same where that takes too much work: the distance is enclosed as far as a few samples and refinements go.
+const COARSE_DISTANCE: DistanceOptions =
+    DistanceOptions { samples: 1 << 10, refinements_max: 1 << 14, ..DISTANCE };
+
 /// Bodies beyond which none is looked at alone.
 const BODIES_MAX: u32 = 4096;
 
@@ -132,6 +136,21 @@ impl<'i> Original<'i> {
         covered: Option<&Covered>,
         budget: &Budget,
     ) -> Result<Fidelity, Stopped> {
+        let measured = |care: &DistanceOptions| self.measure_with(care, result, origins, covered, budget);
+        match budget.within_part(3, || measured(&DISTANCE))? {
+            Some(fidelity) => Ok(fidelity),
+            None => measured(&COARSE_DISTANCE),
+        }
+    }
+
+    fn measure_with(
+        &self,
+        care: &DistanceOptions,
+        result: &Soup,
+        origins: &[u32],
+        covered: Option<&Covered>,
+        budget: &Budget,
+    ) -> Result<Fidelity, Stopped> {
         budget.stage(Stage::Measure, || {
             let mut changed = Changed::of(self.input, result, origins, budget)?;
             let mut moved = [0.0; 2];
@@ -147,12 +166,12 @@ impl<'i> Original<'i> {
             }
             let gone_area = area_of(self.input, &changed.gone);
             let area = gone_area + covered_area + changed.stayed_area;
-            let forward = self.forward(result, &changed.gone, budget)?;
+            let forward = self.forward(result, &changed.gone, care, budget)?;
             let seen = forward.and_then(|forward| forward.seen);
             let hidden_area = buried_area + gone_area * seen.map_or(0.0, |seen| seen.hidden_share);
             let lost_area =
                 (gone_area + buried_area - hidden_area) * seen.map_or(0.0, |seen| seen.lost_share);
-            let backward = self.backward(result, &changed.new, budget)?;
+            let backward = self.backward(result, &changed.new, care, budget)?;
             let invented = backward.and_then(|backward| backward.seen).map_or(0.0, |seen| seen.lost_share);
             let new_area = area_of(result, &changed.new);
             let share = |part: f64, all: f64| if all > 0.0 { part / all } else { 0.0 };
@@ -189,13 +208,14 @@ impl<'i> Original<'i> {
         &self,
         result: &Soup,
         gone: &[u32],
+        care: &DistanceOptions,
         budget: &Budget,
     ) -> Result<Option<DirectedDistance>, Stopped> {
         let triangles: Vec<[u32; 3]> = gone.iter().map(|&t| self.input.triangles[t as usize]).collect();
         let hides = |place: DVec3, triangle: u32| self.is_hidden(place, gone[triangle as usize], budget);
         let sight = Sight { hides: &hides, lost_beyond: self.lost_beyond };
         let from = Surface { positions: &self.input.positions, triangles: &triangles };
-        directed_distance(from, surface(result), Some(sight), &DISTANCE, budget)
+        directed_distance(from, surface(result), Some(sight), care, budget)
     }
 
     /// The distance of what is new from the input, all of which counts.
@@ -203,12 +223,13 @@ impl<'i> Original<'i> {
         &self,
         result: &Soup,
         new: &[u32],
+        care: &DistanceOptions,
         budget: &Budget,
     ) -> Result<Option<DirectedDistance>, Stopped> {
         let triangles: Vec<[u32; 3]> = new.iter().map(|&t| result.triangles[t as usize]).collect();
         let sight = Sight { hides: &|_, _| Ok(false), lost_beyond: self.lost_beyond };
         let from = Surface { positions: &result.positions, triangles: &triangles };
-        directed_distance(from, surface(self.input), Some(sight), &DISTANCE, budget)
+        directed_distance(from, surface(self.input), Some(sight), care, budget)
     }
 
     fn volume_change(&self, result: &Soup) -> Option<f64> {

@@ -36,6 +36,17 @@ impl Input {
         options: &Options,
         budget: &Budget,
     ) -> Result<Self, Failure> {
+        let soup = Self::read_soup(bytes, encoding, options, budget)?;
+        Self::examined(soup, bytes, encoding, options, budget)
+    }
+
+    /// Reads `bytes`.
+    pub(super) fn read_soup(
+        bytes: &[u8],
+        encoding: Encoding,
+        options: &Options,
+        budget: &Budget,
+    ) -> Result<Soup, Failure> {
         let soup = budget.stage(Stage::Read, || {
             let mut soup = formats::read(bytes, encoding, &options.read, budget)?;
             if let (Encoding::Obj, Some(material)) = (encoding, &options.material) {
@@ -43,6 +54,17 @@ impl Input {
             }
             Ok::<_, ReadError>(soup)
         })?;
+        Ok(soup)
+    }
+
+    /// Judges `bytes`, which were read as `soup`.
+    pub(super) fn examined(
+        soup: Soup,
+        bytes: &[u8],
+        encoding: Encoding,
+        options: &Options,
+        budget: &Budget,
+    ) -> Result<Self, Failure> {
         let samples = samples_of(options);
         let examination = budget.stage(Stage::Certify, || {
             certificate::examine(&soup, bytes, encoding, &options.read, Depth::Count { samples }, budget)

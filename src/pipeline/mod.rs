@@ -1,6 +1,7 @@
 //! Operations from bytes to bytes: read, analyze, repair by a plan that the client can read, write, certify.
 
 mod boolean;
+mod bounds;
 mod convert;
 mod cut_stitch;
 mod describe;
@@ -26,6 +27,8 @@ mod texture;
 mod units;
 
 pub use self::boolean::MESHES_MAX;
+use self::bounds::Bound;
+pub use self::bounds::work_units_max;
 pub use self::cut_stitch::{CutStitchChoices, Stitching};
 pub use self::faithful::{Change, ChangeKind, Fidelity, FidelityVerdict};
 pub use self::fidelity::Losses;
@@ -358,6 +361,11 @@ pub enum Outcome {
 pub enum Refusal {
     /// No finite non-degenerate triangle.
     NothingToRepair,
+    /// No valid solid was found in the work that a file of this size may take.
+    OverBudget {
+        /// The bound, in units of work.
+        units: u64,
+    },
     /// No step of the plan led to a valid solid; the first violation of the last attempt.
     NotRepairable {
         /// What still breaks the contract.
@@ -507,7 +515,8 @@ pub struct Report {
     pub outcome: Option<Outcome>,
     /// Why there is no result.
     pub refusal: Option<Refusal>,
-    /// The result, or else the input, measured for printing; `None`: no policy was given, or nothing can be measured.
+    /// The result, or else the input, measured for printing; `None`: no policy was given, nothing can be measured, or the run is
+    /// over budget.
     pub printing: Option<PrintingReport>,
     /// The parts of the file that were handled one by one; empty when all triangles were handled together.
     pub parts: Vec<PartReport>,
@@ -553,6 +562,12 @@ pub enum Failure {
     /// The run was stopped.
     #[error("{0}")]
     Stopped(#[from] Stopped),
+    /// What was asked takes more work than a file of this size may.
+    #[error("the mesh takes more than the {units} units of work that a file of its size may take")]
+    OverBudget {
+        /// The bound, in units of work.
+        units: u64,
+    },
     /// The plan is not for this file.
     #[error("the plan is not for this file")]
     PlanMismatch(PlanMismatch),
@@ -591,10 +606,10 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// The same about the file of this number, from 1, among several; that the run was stopped is about none.
+    /// The same about the file of this number, from 1, among several; that the run was stopped or takes too much is about none.
     fn in_mesh(self, number: usize) -> Self {
         match self {
-            Self::Stopped(_) => self,
+            Self::Stopped(_) | Self::OverBudget { .. } => self,
             failure => Self::InMesh { number, failure: Box::new(failure) },
         }
     }
@@ -618,7 +633,8 @@ impl From<ReadError> for Failure {
 /// Runs `operation` on `bytes`. A pure function: the same arguments give the same answer, whatever the thread count.
 ///
 /// # Errors
-/// Only unreadable input and a stopped budget; a broken mesh is a successful analysis, a refusal part of the report.
+/// Only unreadable input, options that do not go with it, a stopped budget, and a mesh that takes more work than its file may; a
+/// broken mesh is a successful analysis, a refusal part of the report.
 pub fn run(
     operation: Operation,
     bytes: &[u8],
@@ -628,9 +644,10 @@ pub fn run(
     if operation != Operation::Boolean && options.file_sizes.len() > 1 {
         return Err(Failure::MeshCount { operation, count: options.file_sizes.len() });
     }
+    let bound = Bound::of(operation, bytes.len(), options, budget);
     let mut answer = match operation {
-        Operation::Boolean => boolean::boolean(bytes, options, budget)?,
-        _ => run_on_file(operation, bytes, options, budget)?,
+        Operation::Boolean => boolean::boolean(bytes, options, &bound, budget)?,
+        _ => run_on_file(operation, bytes, options, &bound, budget)?,
     };
     answer.report.work_used = budget.work_used();
     answer.report.bytes_peak = budget.bytes_peak();
@@ -642,19 +659,29 @@ fn run_on_file(
     operation: Operation,
     bytes: &[u8],
     options: &Options,
+    bound: &Bound<'_>,
     budget: &Budget,
 ) -> Result<Answer, Failure> {
     let encoding = budget.stage(Stage::Read, || formats::sniff(bytes, options.format))?;
-    let mut answer = if project::is_by_parts(encoding, operation, options) {
-        project::run_by_parts(operation, bytes, options, budget)?
+    let is_by_parts = project::is_by_parts(encoding, operation, options);
+    let mut answer = if is_by_parts {
+        let project = bound.reading(|| project::read(bytes, options, budget))?;
+        let triangles = project::triangles_of(&project, operation, options);
+        bound.running(triangles, || project::run_by_parts(operation, bytes, &project, options, budget))?
     } else {
-        let mut input = Input::read(bytes, encoding, options, budget)?;
-        let mut answer = run_on(operation, &mut input, options, budget)?;
-        answer.picture = picture::of_mesh(operation, &input, &answer, options, budget)?;
-        answer
+        let soup = bound.reading(|| Input::read_soup(bytes, encoding, options, budget))?;
+        bound.running(soup.triangles.len() as u64, || {
+            let mut input = Input::examined(soup, bytes, encoding, options, budget)?;
+            let answer = run_on(operation, &mut input, options, budget)?;
+            bounds::with_picture(operation, answer, budget, |answer| {
+                picture::of_mesh(operation, &input, answer, options, budget)
+            })
+        })?
     };
-    if encoding == Encoding::ThreeMf && answer.report.remarks.is_empty() && answer.report.parts.is_empty() {
-        answer.report.remarks = project::remarks_on_scene(bytes, &answer, options, budget)?;
+    let Report { remarks, parts, .. } = &answer.report;
+    if encoding == Encoding::ThreeMf && parts.is_empty() && (remarks.is_empty() || !is_by_parts) {
+        let of_scene = project::remarks_on_scene(bytes, &answer, options, budget)?;
+        answer.report.remarks.splice(0..0, of_scene);
     }
     Ok(answer)
 }
@@ -695,7 +722,9 @@ fn finished(
     if options.require == Some(Require::Faithful) {
         answer = demand_faithful(answer);
     }
-    if let Some(policy) = &options.policy {
+    // What is over budget has nothing left to measure with.
+    let is_over_budget = matches!(answer.report.refusal, Some(Refusal::OverBudget { .. }));
+    if let Some(policy) = options.policy.as_ref().filter(|_| !is_over_budget) {
         answer.report.printing = printing::measure(input, &answer, policy, budget)?;
     }
     Ok(answer)

@@ -4,7 +4,7 @@ use super::describe::describe;
 use super::identical::identical_triangle_share;
 use super::input::Input;
 use super::{Action, Answer, Failure, Options, Outcome, Output, Refusal, Report, Require, faithful};
-use crate::budget::{Budget, Stage, Stopped};
+use crate::budget::{AsStopped, Budget, Stage, Stopped};
 use crate::certificate::{self, Certificate, Depth, Examination};
 use crate::formats::{self, Encoding, ReadLimits, ReadOptions, WriteError};
 use crate::mesh::Soup;
@@ -98,6 +98,15 @@ impl NoCandidate {
         match self {
             Self::Refused(refusal) => Ok(refusal),
             Self::Failed(failure) => Err(failure),
+        }
+    }
+}
+
+impl AsStopped for NoCandidate {
+    fn as_stopped(&self) -> Option<Stopped> {
+        match self {
+            Self::Failed(failure) => failure.as_stopped(),
+            Self::Refused(_) => None,
         }
     }
 }

@@ -174,7 +174,7 @@ impl Variant {
     }
 
     /// The steps that take what is no triangle away and make vertices at one place one.
-    fn welding(self, choices: &Choices) -> Vec<Step> {
+    pub(super) fn welding(self, choices: &Choices) -> Vec<Step> {
         let mut steps = vec![Step::SplitPolygons(DegenerateFaces::Split)];
         steps.extend(self.clears_noise.then_some(Step::ClearNoise));
         steps.extend(self.rounds.then_some(Step::RoundToF32));

@@ -5,7 +5,7 @@ use super::ladder::{self, Certified, Climb, Climbed};
 use super::output::{Candidate, NoCandidate};
 use super::plan::{Attempt, Step};
 use super::remedies::{Choices, PlanMismatch};
-use super::{Answer, Failure, Operation, Options, Outcome, Refusal, Report, Require, simplify};
+use super::{Answer, Failure, Operation, Options, Outcome, Refusal, Report, Require, bounds, simplify};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::Depth;
 use crate::formats::Encoding;
@@ -21,8 +21,19 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
     }
     let choices = Choices::of(options, report.before.as_ref())?;
     if let Some(steps) = plan.and_then(|plan| plan.steps.as_deref()) {
-        return replay(input, steps, options, report, budget);
+        return bounds::or_refused(report, budget, |report| replay(input, steps, options, report, budget));
     }
+    bounds::or_refused(report, budget, |report| planned(input, &choices, options, report, budget))
+}
+
+/// Repairs `input` by what may lead to a solid.
+fn planned(
+    input: &Input,
+    choices: &Choices,
+    options: &Options,
+    report: Report,
+    budget: &Budget,
+) -> Result<Answer, Failure> {
     let encoding = input.output_encoding(options);
     // Cavities and small parts make no mesh invalid, but the caller may want them filled and removed.
     let is_as_asked = || {
@@ -51,13 +62,13 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
         }
     }
     let before = report.before.clone();
-    let climb = Climb { input, encoding, options, choices: &choices, before: before.as_ref(), budget };
+    let climb = Climb { input, encoding, options, choices, before: before.as_ref(), budget };
     let (end, tried) = ladder::climb(&climb)?;
     let report = Report { tried, ..report };
     match end {
         Climbed::Certified(certified) => finished(*certified, Outcome::Repaired, &climb, report),
         Climbed::Rebuilt(rebuilt) => {
-            Ok(rebuilt.returned(input, report.made_by(rebuilding(&choices)), budget)?)
+            Ok(rebuilt.returned(input, report.made_by(rebuilding(choices)), budget)?)
         }
         Climbed::Mended(mended) => partial(input, encoding, report, *mended, budget),
         Climbed::Refused { refusal, actions } => Ok(Report { actions, ..report }.refused(refusal)),

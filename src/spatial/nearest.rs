@@ -117,10 +117,11 @@ impl<'m> NearestSearch<'m> {
             depth -= 1;
             let Place { gap, node: id, star } = stack[depth];
             if visited.is_multiple_of(CHECK_EVERY) {
-                budget.check()?;
+                budget.spend(if visited > 0 { BOX_UNITS * CHECK_EVERY as u64 } else { 0 })?;
             }
             if visited == boxes_max {
                 let (more, is_exact) = query.look_at_nearest(&stack[..=depth], boxes_max);
+                budget.spend(BOX_UNITS * (visited % CHECK_EVERY + more) as u64)?;
                 return Ok(Some(Found { nearest: query.best, is_exact, boxes: visited + more }));
             }
             visited += 1;
@@ -144,6 +145,7 @@ impl<'m> NearestSearch<'m> {
                 }
             }
         }
+        budget.spend(BOX_UNITS * (visited % CHECK_EVERY) as u64)?;
         Ok(Some(Found { nearest: query.best, is_exact: true, boxes: visited }))
     }
 
@@ -159,6 +161,9 @@ impl<'m> NearestSearch<'m> {
         tree.leaf(tree.node(at.node)).id(0)
     }
 }
+
+/// Units of work that a box counts.
+const BOX_UNITS: u64 = 2;
 
 /// More than twice the relative error of a coordinate rounded to f32, and of the few f32 operations behind a gap.
 const ROUNDING_32: f32 = 1e-6;

@@ -95,9 +95,9 @@ impl<'a> Octree<'a> {
             if bounds.is_empty() || !is_within(p, p.clamp(bounds.min, bounds.max), distance) {
                 continue;
             }
-            steps += 1;
-            if steps % CHECK_EVERY == 0 {
-                budget.check()?;
+            steps += 1 + (to - from) as usize * usize::from(first == last);
+            if steps > CHECK_EVERY {
+                budget.spend(std::mem::take(&mut steps) as u64)?;
             }
             if first < last {
                 open.extend((*first..*last).map(|child| child as usize));
@@ -106,6 +106,7 @@ impl<'a> Octree<'a> {
                 near.extend(ids.filter(|&id| is_within(p, self.points[id as usize], distance)));
             }
         }
+        budget.spend((steps + 4 * near.len()) as u64)?;
         near.sort_unstable();
         Ok(near)
     }

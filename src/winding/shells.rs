@@ -229,7 +229,10 @@ fn read_open(
     }
     let sides = par::try_map_ranges(samples.len(), 256, |range| {
         budget.spend(range.len() as u64 * 8)?;
-        Ok(samples[range].iter().map(|&t| both_sides(&tree, open[t], beside)).collect::<Vec<_>>())
+        samples[range]
+            .iter()
+            .map(|&t| both_sides(&tree, open[t], beside, budget))
+            .collect::<Result<Vec<_>, _>>()
     })?;
     let (mut sum, mut area) = (vec![0.0; part_count], vec![0.0; part_count]);
     for (&t, (mean, size)) in samples.iter().zip(sides.into_iter().flatten()) {
@@ -280,12 +283,18 @@ pub fn are_sheets(
 }
 
 /// The mean of the winding numbers on both sides of a triangle, and its area.
-fn both_sides(tree: &WindingTree, [a, b, c]: [DVec3; 3], beside: f64) -> (f64, f64) {
+fn both_sides(
+    tree: &WindingTree,
+    [a, b, c]: [DVec3; 3],
+    beside: f64,
+    budget: &Budget,
+) -> Result<(f64, f64), Stopped> {
     let normal = (b - a).cross(c - a);
     let twice_area = normal.length();
     if twice_area == 0.0 {
-        return (0.0, 0.0);
+        return Ok((0.0, 0.0));
     }
     let (middle, step) = ((a + b + c) / 3.0, normal * (beside / twice_area));
-    ((tree.at(middle + step, 0.0) + tree.at(middle - step, 0.0)) / 2.0, twice_area)
+    let sum = tree.at(middle + step, 0.0, budget)? + tree.at(middle - step, 0.0, budget)?;
+    Ok((sum / 2.0, twice_area))
 }

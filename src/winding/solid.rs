@@ -115,7 +115,7 @@ impl Solid {
                 of_parts.extend(self.part.get(t as usize).map(|&part| (part, turn)));
             }
         })?;
-        if self.cones.is_inside(place, f64::from(count)) {
+        if self.cones.is_inside(place, f64::from(count), budget)? {
             return Ok(Surroundings::Inside);
         }
         of_parts.sort_unstable();

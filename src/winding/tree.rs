@@ -23,6 +23,13 @@ const DOUBT: f64 = 0.05;
 /// And this when groups were near.
 const DOUBT_AT_FIRST: f64 = 0.2;
 
+/// Groups and triangles that are looked at for one place, at most. Surfaces whose triangles are small for their size take
+/// hundreds to a few thousand; long triangles all through each other are near everywhere.
+const VISITS_MAX: u64 = 1 << 16;
+
+/// Where it is still too much with less than this, every group is far.
+const FAR_LEAST: f64 = 1.0 / 64.0;
+
 /// What a group of triangles is from afar.
 #[derive(Debug, Clone, Copy)]
 struct Node {
@@ -88,25 +95,50 @@ impl WindingTree {
     }
 
     /// The winding number at `p` plus `more`, evaluated more closely where that sum is near 1/2.
-    pub fn at(&self, p: DVec3, more: f64) -> f64 {
-        let first = self.evaluate(p, FAR) + more;
-        if (first - 0.5).abs() < DOUBT { self.evaluate(p, FAR_IN_DOUBT) + more } else { first }
+    ///
+    /// # Errors
+    /// When the budget stops the run.
+    pub fn at(&self, p: DVec3, more: f64, budget: &Budget) -> Result<f64, Stopped> {
+        let first = self.evaluate(p, FAR, budget)? + more;
+        let is_doubtful = (first - 0.5).abs() < DOUBT;
+        Ok(if is_doubtful { self.evaluate(p, FAR_IN_DOUBT, budget)? + more } else { first })
     }
 
     /// Whether the winding number at `p` plus `more` is at least 1/2, with no more care than that takes.
-    pub fn is_inside(&self, p: DVec3, more: f64) -> bool {
+    ///
+    /// # Errors
+    /// When the budget stops the run.
+    pub fn is_inside(&self, p: DVec3, more: f64, budget: &Budget) -> Result<bool, Stopped> {
         if self.is_empty() {
-            return more >= 0.5;
+            return Ok(more >= 0.5);
         }
-        let first = self.evaluate(p, FAR_AT_FIRST) + more;
+        let first = self.evaluate(p, FAR_AT_FIRST, budget)? + more;
         let is_clear = (first - 0.5).abs() >= DOUBT_AT_FIRST;
-        (if is_clear { first } else { self.at(p, more) }) >= 0.5
+        Ok((if is_clear { first } else { self.at(p, more, budget)? }) >= 0.5)
     }
 
-    fn evaluate(&self, p: DVec3, far: f64) -> f64 {
+    /// The winding number; where groups are so large that too many are near, nearer ones are taken together too.
+    fn evaluate(&self, p: DVec3, far: f64, budget: &Budget) -> Result<f64, Stopped> {
+        let mut far = far;
+        loop {
+            let (found, visits) = self.evaluate_within(p, far);
+            budget.spend(visits)?;
+            match found {
+                Some(number) => return Ok(number),
+                None => far = if far > FAR_LEAST { far / 2.0 } else { 0.0 },
+            }
+        }
+    }
+
+    /// The same unless it takes more than [`VISITS_MAX`] of groups and triangles; and how many it took.
+    fn evaluate_within(&self, p: DVec3, far: f64) -> (Option<f64>, u64) {
         let (mut dipoles, mut angles) = (0.0, 0.0);
-        let mut n = 0;
+        let (mut n, mut visits) = (0, 0);
         while let Some(node) = self.nodes.get(n) {
+            visits += 1;
+            if visits > VISITS_MAX {
+                return (None, visits);
+            }
             let r = node.center - p;
             let square = r.length_squared();
             let reach = node.radius * far;
@@ -115,14 +147,21 @@ impl WindingTree {
                 n = node.skip as usize;
                 continue;
             }
+            if far == 0.0 {
+                // The place is the very middle of a group: from there it winds as much one way as the other.
+                n = node.skip as usize;
+                continue;
+            }
             let is_leaf = node.len as usize <= LEAF;
             if is_leaf {
                 let range = node.first as usize..(node.first + node.len) as usize;
+                visits += u64::from(node.len);
                 angles += self.triangles[range].iter().map(|&t| half_solid_angle(p, t)).sum::<f64>();
             }
             n += 1;
         }
-        dipoles / (4.0 * std::f64::consts::PI) + angles / (2.0 * std::f64::consts::PI)
+        let number = dipoles / (4.0 * std::f64::consts::PI) + angles / (2.0 * std::f64::consts::PI);
+        (Some(number), visits)
     }
 }
 
@@ -244,7 +283,7 @@ mod tests {
             let p = DVec3::new((i % 10) as f64, (i / 10 % 10) as f64, (i / 100) as f64) * 3.1 - 14.0;
             let exact =
                 triangles.iter().map(|&t| half_solid_angle(p, t)).sum::<f64>() / (2.0 * std::f64::consts::PI);
-            worst = worst.max((tree.at(p, 0.0) - exact).abs());
+            worst = worst.max((tree.at(p, 0.0, &Budget::unlimited()).unwrap() - exact).abs());
         }
         assert!(worst < 0.02, "{worst}");
     }
@@ -252,12 +291,12 @@ mod tests {
     #[test]
     fn inside_is_where_the_winding_number_is_at_least_a_half() {
         let tree = WindingTree::build(bowl(60, 5.0), &Budget::unlimited()).unwrap();
-        let mut inside = 0;
+        let (mut inside, unlimited) = (0, Budget::unlimited());
         for i in 0..8000 {
             let p = DVec3::new((i % 20) as f64, (i / 20 % 20) as f64, (i / 400) as f64) * 1.3 - 12.7;
-            let w = tree.at(p, 0.0);
+            let w = tree.at(p, 0.0, &unlimited).unwrap();
             if (w - 0.5).abs() > 1e-3 {
-                assert_eq!(tree.is_inside(p, 0.0), w >= 0.5, "{p} {w}");
+                assert_eq!(tree.is_inside(p, 0.0, &unlimited).unwrap(), w >= 0.5, "{p} {w}");
             }
             inside += usize::from(w >= 0.5);
         }
@@ -267,8 +306,37 @@ mod tests {
     #[test]
     fn a_closed_surface_winds_once_around_what_is_inside() {
         let tree = WindingTree::build(bowl(40, 11.0), &Budget::unlimited()).unwrap();
-        assert!((tree.at(DVec3::new(1.0, 2.0, 3.0), 0.0) - 1.0).abs() < 0.03);
-        assert!(tree.at(DVec3::new(1.0, 12.0, 3.0), 0.0).abs() < 0.03);
-        assert_eq!(WindingTree::default().at(DVec3::ZERO, 0.0), 0.0);
+        let at = |tree: &WindingTree, p| tree.at(p, 0.0, &Budget::unlimited()).unwrap();
+        assert!((at(&tree, DVec3::new(1.0, 2.0, 3.0)) - 1.0).abs() < 0.03);
+        assert!(at(&tree, DVec3::new(1.0, 12.0, 3.0)).abs() < 0.03);
+        assert_eq!(at(&WindingTree::default(), DVec3::ZERO), 0.0);
+    }
+
+    #[test]
+    fn no_place_takes_more_than_a_bounded_number_of_visits() {
+        // Long triangles through the middle of a ball: each is near every place in it.
+        let mut state = 3u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state >> 8) / f64::from(1 << 23) - 1.0
+        };
+        let mut point = || DVec3::new(random(), random(), random());
+        let triangles = (0..100_000).map(|_| [point(), point(), point()]).collect();
+        let budget = Budget::unlimited();
+        let tree = WindingTree::build(triangles, &budget).unwrap();
+        let before = budget.work_used();
+        tree.at(DVec3::splat(0.1), 0.0, &budget).unwrap();
+        // Each try halves how far is near, down to none.
+        assert!(budget.work_used() - before < 40 * (VISITS_MAX + 9));
+        // The middle of them all is near every group at any distance.
+        let copies =
+            vec![
+                [DVec3::new(2.0, -1.0, -1.0), DVec3::new(-1.0, 2.0, -1.0), DVec3::new(-1.0, -1.0, 2.0)];
+                100_000
+            ];
+        let tree = WindingTree::build(copies, &budget).unwrap();
+        let before = budget.work_used();
+        assert_eq!(tree.at(DVec3::ZERO, 0.0, &budget).unwrap(), 0.0);
+        assert!(budget.work_used() - before < 40 * (VISITS_MAX + 9));
     }
 }

@@ -28,7 +28,7 @@ pub(super) fn told(refusal: &BooleanRefusal) -> (ReasonCode, String) {
             (ReasonCode::EmptyResult, format!("the {} is empty: {why}", refusal.operation.name()))
         }
         NotCombined::TooManyPairs { count, limit } => {
-            let message = format!("{count} pairs of triangles meet, more than the {limit} that are divided");
+            let message = format!("{count} or more pairs of triangles meet, and {limit} at most are divided");
             (ReasonCode::NotCombined, message)
         }
         NotCombined::BeyondFloat32 => {

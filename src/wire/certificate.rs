@@ -24,6 +24,8 @@ pub struct ViolationCount {
     /// Faces, edges, vertices, pairs or shells that break it; null: not counted.
     #[schema(required)]
     pub count: Option<u64>,
+    /// There may be more: the search for pairs ended at its bound of work.
+    pub is_at_least: bool,
 }
 
 /// One way of reading a file.
@@ -127,7 +129,10 @@ impl From<&judge::Certificate> for Certificate {
 
 fn claims(inner: &judge::Certificate) -> [Claim; 3] {
     let counts = &inner.violations;
-    let count = |condition: judge::Condition, count| ViolationCount { condition: condition.into(), count };
+    let count = |condition: judge::Condition, count| {
+        let is_at_least = condition == judge::Condition::Embedded && counts.contacts_are_at_least;
+        ViolationCount { condition: condition.into(), count, is_at_least }
+    };
     let p0 = vec![
         count(judge::Condition::Usable, counts.unusable),
         count(judge::Condition::NonDegenerate, counts.degenerate),

@@ -126,6 +126,8 @@ pub struct Defect {
     pub severity: Severity,
     /// How many.
     pub count: u64,
+    /// There may be more: the search for pairs ended at its bound of work.
+    pub is_at_least: bool,
     /// How many of them the result has no longer; null: there is no result to compare with.
     #[schema(required)]
     pub fixed: Option<u64>,
@@ -181,6 +183,7 @@ impl MeshInfo {
             code: finding.code.into(),
             severity: finding.severity.into(),
             count: finding.count,
+            is_at_least: finding.is_at_least,
             fixed: remaining.map(|mesh| finding.count.saturating_sub(count_of(mesh, finding.code))),
             witnesses: finding.witnesses.iter().map(Witness::from).collect(),
         };

@@ -65,6 +65,8 @@ words! {
         ArchiveUnsafe = "archive-unsafe",
         /// No result meets what was required.
         NotRepairable = "not-repairable",
+        /// The mesh takes more work than a file of its size may.
+        OverBudget = "over-budget",
         /// The webhook is not one that the server calls.
         WebhookRefused = "webhook-refused",
         /// Too many requests.
@@ -185,6 +187,12 @@ impl ProblemCode {
                 422,
                 "Not repairable",
                 "No result meets `require`; `report` names the first violation that remains.",
+            ),
+            Self::OverBudget => (
+                422,
+                "Over budget",
+                "No answer was found in the work that a file of this size may take: parts of the mesh are so many in one place, or \
+                 so far apart in scale, that a decision is too dear. `limit` is the bound in units of work.",
             ),
             Self::WebhookRefused => (
                 422,
@@ -382,6 +390,9 @@ impl From<&Failure> for Problem {
         match failure {
             Failure::Unreadable(error) => Self::from(error),
             Failure::Stopped(stopped) => Self::from(stopped),
+            &Failure::OverBudget { units } => {
+                Self { limit: Some(units), ..Self::new(ProblemCode::OverBudget, failure.to_string()) }
+            }
             Failure::PlanMismatch(mismatch) => Self::from(mismatch),
             Failure::InMesh { failure: inner, .. } => Self {
                 parameter: Some("mesh".to_owned()),
@@ -479,9 +490,11 @@ impl From<&Refusal> for Problem {
     fn from(refusal: &Refusal) -> Self {
         let code = match refusal {
             Refusal::NotRepresentable { reason } if is_non_finite(reason) => ProblemCode::MeshNonFinite,
+            Refusal::OverBudget { .. } => ProblemCode::OverBudget,
             _ => ProblemCode::NotRepairable,
         };
-        Self::new(code, super::verdict::Reason::from(refusal).message)
+        let limit = if let &Refusal::OverBudget { units } = refusal { Some(units) } else { None };
+        Self { limit, ..Self::new(code, super::verdict::Reason::from(refusal).message) }
     }
 }
 

@@ -47,6 +47,7 @@ fn analysis(holes: u64) -> Analysis {
         code: DefectCode::BoundaryLoop,
         severity: Severity::Error,
         count: holes,
+        is_at_least: false,
         witnesses: vec![Witness {
             faces: vec![Element { index: 2, line: Some(17) }],
             figures: vec![("edges", 3.0), ("length", f64::INFINITY)],

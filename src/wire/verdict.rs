@@ -86,6 +86,13 @@ impl From<&pipeline::Refusal> for Reason {
                 None,
                 "there is no finite triangle with three distinct corners off one line".to_owned(),
             ),
+            pipeline::Refusal::OverBudget { units } => (
+                ReasonCode::OverBudget,
+                None,
+                format!(
+                    "no valid solid was found in the {units} units of work that a file of this size may take"
+                ),
+            ),
             pipeline::Refusal::NotRepairable { witness } => (
                 ReasonCode::NotRepairable,
                 witness.as_ref().map(|violation| violation.condition.into()),

@@ -943,6 +943,8 @@ words! {
         NothingToRepair = "nothing-to-repair",
         /// No step of the plan led to a valid solid.
         NotRepairable = "not-repairable",
+        /// No valid solid was found in the work that a file of this size may take.
+        OverBudget = "over-budget",
         /// A coordinate cannot be written in the output format.
         NotRepresentable = "not-representable",
         /// The modeller cannot read the mesh as a polyhedron.

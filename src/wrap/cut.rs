@@ -103,7 +103,10 @@ impl Cutter<'_> {
         places: [DVec3; 2],
     ) -> Result<f64, Stopped> {
         let (values, threshold) = match why {
-            Inside::Wound => (indices.map(|index| self.signs.winding(index)), 0.5),
+            Inside::Wound => {
+                let [high, low] = indices.map(|index| self.signs.winding(index, self.budget));
+                ([high?, low?], 0.5)
+            }
             Inside::NearSheet => (self.distances(&self.sheets, places)?, -self.signs.sheet_reach),
             Inside::NearThin => (self.distances(&self.thin, places)?, -THIN),
         };

@@ -4,13 +4,22 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Folders with documents.
-const FOLDERS: [&str; 6] =
-    ["", "docs", "docs/decisions", "experiments", "fixtures", "examples/ordering-backend"];
+const FOLDERS: [&str; 8] = [
+    "",
+    "docs",
+    "docs/decisions",
+    "experiments",
+    "fixtures",
+    "examples/ordering-backend",
+    "clients/python",
+    "clients/typescript",
+];
 /// Pages of runs at earlier commits, and the list of changes, speak of what was there then.
 const HISTORY: [&str; 1] = ["CHANGELOG.md"];
 /// Where a file that is named by the end of its path may be.
-const TREES: [&str; 10] = [
+const TREES: [&str; 11] = [
     "src",
+    "clients",
     "tests",
     "benches",
     "docs",

@@ -2,12 +2,17 @@
 
 import assert from "node:assert/strict";
 import { createHash, randomBytes } from "node:crypto";
+import { deflateRawSync } from "node:zlib";
 import { Grid, squareTo } from "../../web/src/mesh/grid.js";
+import { coarse } from "../../web/src/mesh/cluster.js";
 import { brokenEdges } from "../../web/src/mesh/edges.js";
+import { boundsOf, faceNormals, positionsOf } from "../../web/src/mesh/soup.js";
 import { kept, weld } from "../../web/src/mesh/weld.js";
 import { read } from "../../web/src/read/read.js";
 import { sha256 } from "../../web/src/read/sha256.js";
+import { Picture } from "../../web/src/places.js";
 import { SAMPLES } from "../../web/src/samples.js";
+import { stored } from "../../web/src/stored.js";
 import { url } from "./browser.mjs";
 
 let seed = 7;
@@ -26,10 +31,10 @@ export async function readers() {
     const text = SAMPLES[name]();
     const ask = async (path) => (await fetch(`${url}/v1/${path}`, { method: "POST", headers: { "Content-Type": "application/octet-stream" }, body: text })).arrayBuffer();
     const { before } = JSON.parse(Buffer.from(await ask("analyze")).toString());
-    const original = weld(read(Buffer.from(text), `${name}.${text.startsWith("OFF") ? "off" : "obj"}`));
+    const original = weld(await read(Buffer.from(text), `${name}.${text.startsWith("OFF") ? "off" : "obj"}`));
     assert.equal(brokenEdges(original).open.length, before.counts.boundary_edges);
-    for (const format of ["stl", "obj", "off", "ply"]) {
-      const mesh = weld(read(new Uint8Array(await ask(`convert?output_format=${format}`)), `mesh.${format}`));
+    for (const format of ["stl", "obj", "off", "ply", "3mf"]) {
+      const mesh = weld(await read(new Uint8Array(await ask(`convert?output_format=${format}`)), `mesh.${format}`));
       assert.equal(mesh.faceOf.length, before.counts.triangles, format);
       assert.ok(kept(original, mesh).every((flag) => flag === 1), `${format}: all triangles are there`);
       assert.ok(kept(mesh, original).every((flag) => flag === 1), `${format}: and no others`);
@@ -39,12 +44,91 @@ export async function readers() {
 
 export async function asciiAndPlyText() {
   const facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1e1 0 0\nvertex 0 -1.5E0 +0\nendloop\nendfacet\n";
-  const stl = read(Buffer.from(`solid a\n${facet}endsolid a\n`), "a.stl");
+  const stl = await read(Buffer.from(`solid a\n${facet}endsolid a\n`), "a.stl");
   assert.deepEqual([...stl.vertices], [0, 0, 0, 10, 0, 0, 0, -1.5, 0]);
-  const ply = read(Buffer.from("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty uchar red\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 9 0 0\n1 9 0 0\n1 9 1 0\n0 9 1 0\n4 0 1 2 3\n"), "a");
+  const ply = await read(Buffer.from("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty uchar red\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 9 0 0\n1 9 0 0\n1 9 1 0\n0 9 1 0\n4 0 1 2 3\n"), "a");
   assert.deepEqual([[...ply.corners], [...ply.faceOf], ply.faceCount], [[0, 1, 2, 0, 2, 3], [0, 0], 1]);
-  const obj = read(Buffer.from("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3/1 -2//2 \\\n -1\nf 1 2 9\n"), "a.obj");
+  const obj = await read(Buffer.from("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3/1 -2//2 \\\n -1\nf 1 2 9\n"), "a.obj");
   assert.deepEqual([[...obj.corners], obj.faceCount], [[0, 1, 2], 2], "a face that names a missing vertex is counted, not drawn");
+}
+
+// Each part of a 3MF is read where the build has it, and faces of reports are found in it: of parts by themselves, and of
+// the same file as one mesh.
+export async function projects() {
+  const bytes = SAMPLES.project();
+  const ask = async (path) => Buffer.from(await (await fetch(`${url}/v1/${path}`, { method: "POST", headers: { "Content-Type": "application/octet-stream" }, body: bytes })).arrayBuffer());
+  const mesh = await read(new Uint8Array(bytes), "project.3mf");
+  const scene = await read(new Uint8Array(await ask("convert?output_format=stl")), "scene.stl");
+  const [own, others] = [mesh, scene].map((one) => weld({ ...one, vertices: one.vertices.map(Math.fround) }));
+  assert.equal(own.faceOf.length, others.faceOf.length);
+  assert.ok(kept(own, others).every((flag) => flag === 1) && kept(others, own).every((flag) => flag === 1), "the scene of the service");
+
+  const { parts, before } = JSON.parse((await ask("analyze")).toString());
+  assert.deepEqual(parts.map(({ name, instances }) => [name, instances]), [["Plate", 1], ["Cup", 2], ["Ball", 1]]);
+  const corner = (triangle, at) => [0, 1, 2].map((axis) => mesh.vertices[mesh.corners[triangle * 3 + at] * 3 + axis]);
+  const places = (triangle) => [0, 1, 2].map((at) => corner(triangle, at));
+  const picture = new Picture({ ...mesh, origin: [0, 0, 0] });
+  picture.project.setParts(parts);
+  const rim = before.defects.find(({ code }) => code === "boundary-loop").witnesses[0];
+  for (const { index } of rim.faces) {
+    assert.equal(picture.trianglesOf(index).length, 2, "the cup is there twice");
+    assert.equal(picture.trianglesOf(index, true).length, 1);
+  }
+  const place = picture.place(rim.position, 1, rim.faces[0].index);
+  assert.ok(rim.faces.some(({ index }) => places(picture.trianglesOf(index, true)[0]).some((point) => point.every((value, axis) => Math.abs(value - place[axis]) < 1e-9))), "a witness lies on its face");
+
+  picture.project.setParts([]);
+  for (let face = 0; face < mesh.faceCount; face += 1) {
+    const wanted = [0, 1, 2].map((at) => [0, 1, 2].map((axis) => scene.vertices[face * 9 + at * 3 + axis]).join());
+    const found = picture.trianglesOf(face).map((triangle) => places(triangle).map((point) => point.map(Math.fround).join()));
+    assert.ok(found.some((points) => points.join(";") === wanted.join(";")), `face ${face} of the whole`);
+  }
+  assert.equal(picture.place([1, 2, 3], 1, 0).join(), "1,2,3", "as one mesh, places are those of the build");
+}
+
+// Archives that are broken are left to the service; deflated ones, components, another unit and prefixes are read.
+export async function packages() {
+  const model = (inside) => `<?xml version="1.0"?><!-- <m:object id="9"> --><m:model xmlns:m="http://schemas.microsoft.com/3dmanufacturing/core/2015/02" unit='inch'>${inside}</m:model>`;
+  const tetra = "<m:mesh><m:vertices><m:vertex x='0' y='0' z='0'/><m:vertex x='1' y='0' z='0'/><m:vertex x='0' y='1' z='0'/><m:vertex x='0' y='0' z='1'/></m:vertices><m:triangles><m:triangle v1='0' v2='2' v3='1'/><m:triangle v1='0' v2='1' v3='9'/></m:triangles></m:mesh>";
+  const text = model(`<m:resources><m:object id="1" name="a > b">${tetra}</m:object><m:object id="2"><m:components><m:component objectid="1" transform="1 0 0 0 1 0 0 0 1 5 0 0"/></m:components></m:object></m:resources><m:build><m:item objectid="2" transform="0 1 0 -1 0 0 0 0 1 0 0 7"/></m:build>`);
+  const plain = stored([["3D/3dmodel.model", text]]);
+  const mesh = await read(plain, "a.3mf");
+  assert.deepEqual([mesh.millimetres, [...mesh.faceOf], mesh.faceCount], [25.4, [0], 2]);
+  assert.deepEqual([...mesh.vertices.subarray(0, 6)].map((value) => value + 0), [0, 5, 7, 0, 6, 7], "first the component's place, then the item's");
+  const packed = deflateRawSync(Buffer.from(text));
+  const zip = Buffer.from(stored([["3D/3dmodel.model", packed.toString("latin1").replace(/[^]/g, "x")]]));
+  const head = 30 + "3D/3dmodel.model".length;
+  packed.copy(zip, head);
+  for (const at of [0, zip.length - 22 - 46 - "3D/3dmodel.model".length + 2]) {
+    zip.writeUInt16LE(8, at + 8);
+    zip.writeUInt32LE(text.length, at + 22);
+  }
+  assert.deepEqual([...(await read(zip, "a.3mf")).vertices], [...mesh.vertices], "deflated");
+  zip.fill(255, head, head + 40);
+  const loop = model('<m:resources><m:object id="1"><m:components><m:component objectid="1"/></m:components></m:object></m:resources><m:build><m:item objectid="1"/></m:build>');
+  for (const broken of [zip, plain.subarray(0, plain.length - 30), stored([["3D/3dmodel.model", loop]]), stored([["a.txt", ""]])]) {
+    await assert.rejects(read(broken, "a.3mf"), /not-drawn-here/);
+  }
+}
+
+// A coarse copy has no triangle twice, none without area in its numbers, lies within the part, and faces outward.
+export async function copies() {
+  const mesh = weld(await read(Buffer.from(SAMPLES.sound()), "sound.off"));
+  const bounds = boundsOf(mesh);
+  const positions = positionsOf(mesh, bounds.min.map((low, axis) => (low + bounds.max[axis]) / 2));
+  const copy = coarse({ ...mesh, positions, flat: faceNormals(positions) }, bounds, 2000);
+  const triangles = Array.from({ length: copy.index.length / 3 }, (_, at) => [...copy.index.subarray(at * 3, at * 3 + 3)]);
+  assert.ok(triangles.length > 100 && triangles.length <= mesh.faceOf.length, `${triangles.length}`);
+  assert.equal(new Set(triangles.map((corners) => corners.toSorted((a, b) => a - b).join())).size, triangles.length);
+  assert.ok(triangles.every(([a, b, c]) => a !== b && b !== c && a !== c));
+  const half = [0, 1, 2].map((axis) => (bounds.max[axis] - bounds.min[axis]) / 2 + 1e-3);
+  assert.ok(copy.positions.every((value, at) => Math.abs(value) <= half[at % 3]));
+  for (let at = 0; at < copy.positions.length / 3; at += 1) {
+    const [, y, z] = copy.positions.subarray(at * 3);
+    const [, ny, nz] = copy.normals.subarray(at * 4);
+    // Of the ring's outer side, along its axis x, normals point away from the axis; of the inner side, towards it.
+    if (Math.hypot(ny, nz) > 60) assert.equal(Math.sign(y * ny + z * nz), Math.hypot(y, z) > 11.5 ? 1 : -1);
+  }
 }
 
 export async function distances() {

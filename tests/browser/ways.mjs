@@ -171,7 +171,7 @@ export async function forEverybody(browser) {
 }
 
 // The rules are run without their script element, which the page's policy forbids.
-async function serious(page, where) {
+export async function serious(page, where) {
   await page.evaluate(axe);
   const { violations } = await page.evaluate(() => window.axe.run());
   const found = violations.filter(({ impact }) => ["serious", "critical"].includes(impact));

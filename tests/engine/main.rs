@@ -28,6 +28,7 @@ mod fill_holes;
 #[cfg(feature = "server")]
 mod fixtures;
 mod gltf;
+mod hostile;
 mod modeller;
 mod operations;
 mod plan;

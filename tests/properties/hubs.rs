@@ -267,7 +267,7 @@ fn the_work_on_cones_and_cylinders_grows_far_slower_than_the_square_of_their_fac
             let [of_few, of_many] = [few, many].map(|soup| work(soup) as f64 / soup.triangles.len() as f64);
             println!("| {name}, shape {shape} | {of_few:.1} and {of_many:.1} for each triangle |");
             // With the square of the faces it would be 16 times as much.
-            assert!(of_many < 6.0 * of_few && of_many < 400.0, "{name} {shape}: {of_few} {of_many}");
+            assert!(of_many < 6.0 * of_few && of_many < 1_600.0, "{name} {shape}: {of_few} {of_many}");
         }
     }
 }

@@ -35,12 +35,12 @@ export class Api {
     return (await this.call(path, options)).json();
   }
 
-  // A new job, of a file or of the upload of an earlier job.
-  create(request, file = null) {
-    if (!file) return this.json("/v1/jobs", { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(request) });
+  // A new job, of a file or several, or of the upload of an earlier job.
+  create(request, files = null) {
+    if (!files) return this.json("/v1/jobs", { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(request) });
     const form = new FormData();
     form.append("job", new Blob([JSON.stringify(request)], { type: "application/json" }));
-    form.append("mesh", file, file.name);
+    for (const file of [files].flat()) form.append("mesh", file, file.name);
     return this.json("/v1/jobs", { method: "POST", body: form });
   }
 

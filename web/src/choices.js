@@ -6,6 +6,7 @@ export class Choices {
     this.elements = new Map(); // by code: by number, { remedy, method }
     this.takesBest = false;
     this.share = 1; // of the triangles
+    this.levels = 1; // results, each with half the triangles of the one before
   }
 
   setRemedy(code, remedy) {
@@ -43,8 +44,13 @@ export class Choices {
     return {
       ...(plan ? { plan } : {}),
       ...(this.takesBest ? { require: "best_effort" } : {}),
-      ...(this.share < 1 ? { ratio: this.share } : {}),
+      ...this.simplification(),
     };
+  }
+
+  simplification() {
+    if (this.levels > 1) return { targets: Array.from({ length: this.levels }, (_, level) => ({ ratio: this.share / 2 ** level })) };
+    return this.share < 1 ? { ratio: this.share } : {};
   }
 }
 

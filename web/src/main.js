@@ -2,13 +2,16 @@
 
 import { Api, Problem, isOver } from "./api.js";
 import { at, el, save } from "./dom.js";
+import { Drawing, levelOf } from "./drawing.js";
 import { Meshes } from "./meshes.js";
 import { findingsList, isShownFirst, openFinding } from "./panel/findings.js";
 import { calm, complain, rest, told, wordsOf, working } from "./panel/progress.js";
+import { partsList } from "./panel/parts.js";
 import { checksList, resultSection, verdictCard } from "./panel/result.js";
+import { SEVERAL_MAX, askAboutSeveral } from "./panel/several.js";
 import { Tools } from "./panel/tools.js";
 import { droppable } from "./panel/verify.js";
-import { Picture, aim } from "./places.js";
+import { aim } from "./places.js";
 import * as jobs from "./recent.js";
 import { SAMPLES, sample } from "./samples.js";
 import { Session, curlOf, millimetres } from "./session.js";
@@ -18,6 +21,7 @@ import { View } from "./view/view.js";
 
 const api = new Api();
 const meshes = new Meshes();
+const drawing = new Drawing({ api, meshes, current: () => session, sized: (picture) => factsOf(picture) });
 let session = null;
 let running = null; // the job that is followed
 let view = null;
@@ -45,19 +49,48 @@ async function guarded(action, of = session) {
 function begin(name, file) {
   session = new Session(name, file);
   document.body.dataset.state = "open";
-  for (const id of ["verdict", "findings", "checks", "result"]) at(id).replaceChildren();
+  for (const id of ["verdict", "findings", "parts-list", "checks", "result"]) at(id).replaceChildren();
   for (const id of ["units", "policy"]) at(id).value = "";
   for (const id of ["facts", "findings-section", "repair-section"]) at(id).hidden = true;
   at("best").checked = false;
   at("share").value = 100;
+  at("levels").value = "1";
   at("file-name").textContent = name;
   document.title = `${name} – Meshmend`;
   view?.clear("before");
   view?.clear("after");
   tools?.offer(false);
-  light(null);
+  drawing.light(null);
   calm();
   jobs.name(null);
+}
+
+// One file is opened; several become one, if they shall.
+function openFiles(files) {
+  const chosen = [...files];
+  if (chosen.length < 2) return openFile(chosen[0]);
+  if (document.body.dataset.state === "start") document.body.dataset.state = "failed";
+  if (chosen.length > SEVERAL_MAX) return complain(new Problem({ code: "too-many-files" }));
+  return askAboutSeveral(chosen, { combine: (operation) => combine(chosen, operation), openFirst: () => openFile(chosen[0]) });
+}
+
+// The result of a set operation is opened as a file of its own.
+async function combine(files, operation) {
+  begin(t(`several.${operation}`));
+  const of = session;
+  await guarded(async () => {
+    const job = await run({ operation: "boolean", set_operation: operation }, files);
+    if (of !== session) return;
+    // The reason says more than that there is no result.
+    if (job.problem) throw new Problem({ ...job.problem, code: (await api.report(job)).verdict.reasons[0]?.code ?? job.problem.code });
+    await openResult(job, operation);
+  }, of);
+}
+
+async function openResult(job, stem) {
+  const of = session;
+  const { name, blob } = await api.file(job.links.result);
+  if (of === session) openFile(new File([blob], name.replace(/^.*(?=\.)/, stem)));
 }
 
 async function openFile(file) {
@@ -65,7 +98,7 @@ async function openFile(file) {
   begin(file.name, file);
   const of = session;
   working(t("status.reading"));
-  const picture = file.arrayBuffer().then((bytes) => draw("before", bytes, file.name)).catch((error) => ({ error }));
+  const picture = file.arrayBuffer().then((bytes) => drawing.draw("before", bytes, file.name)).catch((error) => ({ error }));
   await guarded(() => look(picture), of);
 }
 
@@ -78,7 +111,7 @@ async function look(picture) {
   of.inputJob ??= job.id;
   await show(job);
   const drawn = await picture;
-  if (drawn?.error && of === session) await drawFromService();
+  if (drawn?.error && of === session) await drawing.drawFromService();
 }
 
 // Makes a job and follows it to its end; one that failed without a report is a problem.
@@ -102,68 +135,6 @@ async function follow(job) {
   if (ended.problem && !ended.links.report) throw new Problem(ended.problem);
   if (ended.state === "cancelled" || ended.state === "expired") throw new Problem({ code: ended.state });
   return ended;
-}
-
-// --- pictures --------------------------------------------------------------------------------------------------
-
-async function draw(side, bytes, fileName, unit = session.fileUnit) {
-  const of = session;
-  const scale = unit;
-  const read = await meshes.ask("read", { name: side, bytes, fileName, scale, isFirst: side === "before" }, [bytes]);
-  if (of !== session) return null;
-  const picture = new Picture(read, scale);
-  of.pictures[side] = picture;
-  view?.setMesh(side, picture, side === "before");
-  at("view").dataset.drawn = Object.keys(of.pictures).join(" ");
-  if (side === "before") factsOf(picture);
-  if (of.report && side === "before") overlays();
-  const more = await meshes.ask("look", { name: side });
-  if (of !== session) return null;
-  Object.assign(picture, { rims: more.rims, edges: more.edges });
-  if (more.coarse) view?.setCoarse(side, more.coarse);
-  tellEased();
-  if (of.report && side === "before") overlays();
-  return picture;
-}
-
-// Says so when less is drawn while the view moves.
-function tellEased() {
-  const coarse = view?.sides.before.coarse;
-  at("coarse").hidden = !view?.easing;
-  if (!view?.easing) return;
-  const drawn = coarse?.geometry.getAttribute("position").count / 3;
-  at("coarse").textContent = coarse ? t("view.coarse", { n: number(drawn), m: number(session.pictures.before.faceOf.length) }) : t("view.rough");
-}
-
-// The file as the service has it: for jobs that are opened again, and for formats that are not read here.
-async function drawFromService() {
-  const of = session;
-  const { input } = of.report;
-  const isReadHere = ["stl", "obj", "ply", "off"].includes(input.format) && !of.file;
-  const format = isReadHere ? input.format : "stl";
-  const unit = of.unit || input.units.unit;
-  const request = { operation: "convert", input: { job: of.inputJob }, output_format: format, units: unit, output_units: unit };
-  const job = await api.follow(await api.create(request), () => {});
-  if (!job.links.result || of !== session) return;
-  const { blob, name } = await api.file(job.links.result);
-  await draw("before", await blob.arrayBuffer(), name.replace(/[^.]*$/, format));
-}
-
-// The result beside the file, and what they have in common.
-async function drawResult(job) {
-  const of = session;
-  const { blob, name } = await api.file(job.links.result);
-  const bytes = await blob.arrayBuffer();
-  if (of !== session) return;
-  await draw("after", bytes, name, of.reportUnit);
-  if (!of.pictures.before || of !== session) return;
-  const kept = await meshes.ask("compare");
-  if (of !== session) return;
-  of.pictures.before.kept = kept.before;
-  of.pictures.after.kept = kept.after;
-  of.maps = {};
-  at("colors").value = "kept";
-  tools?.offer(true);
 }
 
 // --- the panel -------------------------------------------------------------------------------------------------
@@ -190,7 +161,7 @@ async function show(job) {
   of.checked = report.printing?.policy ?? "";
   rest();
   panel();
-  overlays();
+  drawing.overlays();
 }
 
 function panel() {
@@ -198,14 +169,17 @@ function panel() {
   at("verdict").replaceChildren(verdictCard({ report, policy: session.checked }));
   list = findingsList(session, host);
   at("findings").replaceChildren(list);
-  at("checks").replaceChildren(...[checksList(report.printing, host)].filter(Boolean));
+  at("parts-list").replaceChildren(...[partsList(report, host)].filter(Boolean));
+  at("checks").replaceChildren(...[checksList(report, host)].filter(Boolean));
   at("result").replaceChildren(...[session.isRepaired && resultSection(session, host)].filter(Boolean));
   at("findings-section").hidden = false;
   at("repair-section").hidden = false;
   at("repair").textContent = t(session.isRepaired ? "repair.again" : report.verdict.printable ? "certify" : "repair");
   at("repair").disabled = false;
   const { unit, is_stated: isStated } = report.input.units;
-  at("units").options[0].textContent = isStated ? "–" : t("unit.assumed", { u: unit });
+  at("units").options[0].textContent = isStated ? (session.unit ? "–" : unit) : t("unit.assumed", { u: unit });
+  // A 3MF is right about its own unit.
+  at("units").disabled = report.input.format === "3mf";
   question(report.before.unit_hypothesis, isStated);
   if (!session.pictures.before && report.before.measures.bounds) {
     const { min, max } = report.before.measures.bounds;
@@ -226,30 +200,6 @@ function question(hypothesis, isStated) {
   at("unit-question").textContent = t("unit.question", { a: told.join(", ") });
 }
 
-function overlays() {
-  const picture = session.pictures.before;
-  if (!picture || !session.report) return;
-  for (const defect of session.report.before.defects) {
-    view?.setMarks("before", defect.code, picture.overlayOf(defect, session.reportUnit), ofDefect(defect.code), 0.5);
-    view?.showMarks("before", defect.code, session.shown.has(defect.code));
-  }
-}
-
-// Lights what parts show, with a ring around its place.
-function light(parts, color, side = "before", position = null) {
-  session.lit = parts ? { place: parts && aim(parts, position).place, side } : null;
-  for (const name of ["before", "after"]) view?.setMarks(name, "lit", null);
-  if (parts) view?.setMarks(side, "lit", parts, color, 1.3);
-  ring();
-}
-
-// The ring is an element over the picture, so that it is as wide wherever the place is.
-function ring() {
-  const place = session?.lit && view?.project(session.lit.place);
-  at("ring").hidden = !place;
-  if (place) at("ring").style.transform = `translate(${place[0]}px, ${place[1]}px)`;
-}
-
 // What lists ask for.
 const host = {
   show(code, isShown) {
@@ -262,7 +212,7 @@ const host = {
   visit(code, at_, isOpen = false) {
     if (isOpen) {
       session.place = null;
-      light(null);
+      drawing.light(null);
       openFinding(list, session, host, null, 0);
       return;
     }
@@ -272,10 +222,10 @@ const host = {
     const picture = session.pictures.before;
     at("view").dataset.place = `${code} ${at_}`;
     if (!witness || !picture || !view) return;
-    const parts = picture.partsOf(code, witness, session.reportUnit);
-    const position = witness.position && picture.place(witness.position, session.reportUnit);
+    const parts = picture.partsOf(code, witness, session.reportUnit, true);
+    const position = witness.position && picture.place(witness.position, session.reportUnit, witness.faces[0]?.index);
     if (view.settings.arrangement === "after") tools.arrange("before");
-    light(parts, ofDefect(code), "before", position ?? [0, 0, 0]);
+    drawing.light(parts, ofDefect(code), "before", position ?? [0, 0, 0]);
     const { place, normal, radius } = aim(parts, position ?? [0, 0, 0]);
     view.fly(place, normal, radius);
   },
@@ -301,25 +251,54 @@ const host = {
     const side = session.report.printing.about === "result" ? "after" : "before";
     const picture = session.pictures[side];
     if (!picture || !view) return;
-    const place = picture.place(witnesses[0].position, session.reportUnit);
+    const place = picture.place(witnesses[0].position, session.reportUnit, witnesses[0].face);
+    if (!place) return;
     const parts = { segments: [], faces: picture.facesAt([witnesses[0].face]), points: place };
     if (view.settings.arrangement !== "beside") tools.arrange(side);
-    light({ ...parts, faces: [] }, "#f2a51c", side);
+    drawing.light({ ...parts, faces: [] }, "#f2a51c", side);
     const { normal } = aim(parts, place);
     view.fly(place, normal, Math.hypot(...view.size) * 0.06);
   },
+
+  visitPart(number_) {
+    const where = session.pictures.before?.whereIs(number_);
+    at("view").dataset.place = `part ${number_}`;
+    if (!where || !view) return;
+    if (view.settings.arrangement === "after") tools.arrange("before");
+    session.place = null;
+    drawing.light(null);
+    openFinding(list, session, host, null, 0);
+    view.fly(where.place, [0, 0, 0], where.radius / 2);
+  },
+
+  showLevel: (level) => guarded(async () => {
+    const of = session;
+    working(t("status.fetching"));
+    await drawing.drawResult(of.job, level);
+    if (of !== session) return;
+    of.level = level;
+    rest();
+    panel();
+    at("result").querySelector(`[data-level="${level}"]`).focus();
+  }),
+
+  downloadLevel: (level) => guarded(async () => {
+    const { name, blob } = await api.file(levelOf(session.job, level));
+    save(blob, name);
+  }),
 
   // Another format is another file, so it is made and certified anew.
   download: (format) => guarded(async () => {
     const of = session;
     let { job } = of;
-    if (format !== of.report.input.format) {
+    if (format !== of.given) {
       job = await run({ operation: "repair", input: { job: of.inputJob }, ...of.asked, output_format: format }, null);
       if (of !== session) return;
-      of.report = await api.report(job);
-      of.job = job;
+      if (job.problem) throw new Problem(job.problem);
+      Object.assign(of, { report: await api.report(job), job, given: format });
       rest();
       panel();
+      drawing.overlays();
     }
     const { name, blob } = await api.file(job.links.result);
     save(blob, name);
@@ -353,6 +332,7 @@ async function repair() {
   at("repair").classList.remove("wanted");
   of.choices.takesBest = at("best").checked;
   of.choices.share = Number(at("share").value) / 100;
+  of.choices.levels = Number(at("levels").value);
   of.asked = of.repairOptions();
   const job = await run({ operation: "repair", thumbnail: true, input: { job: of.inputJob }, ...of.asked }, null);
   if (of !== session) return;
@@ -364,10 +344,11 @@ async function showRepair(job) {
   if (job.links.result) working(t("status.fetching"));
   await show(job);
   if (of !== session) return;
-  light(null);
+  Object.assign(of, { given: of.report.certificate?.encoding.split("-")[0], level: 0 });
+  drawing.light(null);
   of.place = null;
   openFinding(list, of, host, null, 0);
-  if (job.links.result) await drawResult(job);
+  if (job.links.result) await drawing.drawResult(job);
   else delete of.pictures.after;
   if (!job.links.result) tools?.offer(false);
   at("panel").scrollTop = 0;
@@ -396,8 +377,8 @@ async function lookAgain() {
 }
 
 async function redraw() {
-  if (!session.file) return drawFromService();
-  return draw("before", await session.file.arrayBuffer(), session.name);
+  if (!session.file) return drawing.drawFromService();
+  return drawing.draw("before", await session.file.arrayBuffer(), session.name);
 }
 
 // --- jobs of this browser --------------------------------------------------------------------------------------
@@ -411,12 +392,13 @@ async function openJob(id) {
     working(t("status.queued"));
     const job = await follow(await api.job(id));
     if (of !== session) return;
+    if (job.operation === "boolean" && job.links.result) return void openResult(job, of.name);
     of.inputJob = id;
     if (!["plan", "repair"].includes(job.operation)) throw new Problem({ code: "not-found" });
     await show(job);
     if (of !== session) return;
     of.asked = of.options();
-    await drawFromService();
+    await drawing.drawFromService();
     if (of !== session) return;
     rest();
     if (job.operation === "repair") await showRepair(job);
@@ -435,13 +417,15 @@ function showJobs() {
 
 function showPicture() {
   try {
-    view = new View(at("canvas"), { onDrawn: () => { ring(); at("view").dataset.frames = String(Number(at("view").dataset.frames ?? 0) + 1); }, onEased: tellEased });
+    view = new View(at("canvas"), { onDrawn: () => { drawing.ring(); at("view").dataset.frames = String(Number(at("view").dataset.frames ?? 0) + 1); }, onEased: () => drawing.tellEased() });
+    drawing.view = view;
   } catch {
     at("no-webgl").hidden = false;
     document.body.classList.add("flat");
     return;
   }
   tools = new Tools(view, meshes, () => session);
+  drawing.tools = tools;
 }
 
 const dark = matchMedia("(prefers-color-scheme: dark)");
@@ -456,17 +440,17 @@ function texts() {
   translate(document);
   shareText();
   if (session?.report) panel();
-  tellEased();
+  drawing.tellEased();
 }
 
 function listen() {
-  droppable(document.body, openFile);
-  at("file").addEventListener("change", () => { openFile(at("file").files[0]); at("file").value = ""; });
+  droppable(document.body, openFiles);
+  at("file").addEventListener("change", () => { openFiles(at("file").files); at("file").value = ""; });
   for (const name of Object.keys(SAMPLES)) at(`sample-${name}`).addEventListener("click", () => openFile(sample(name)));
   at("repair").addEventListener("click", () => guarded(repair));
   at("cancel").addEventListener("click", () => running && guarded(() => api.cancel(running)));
   at("share").addEventListener("input", () => { shareText(); host.changed(); });
-  at("best").addEventListener("change", host.changed);
+  for (const id of ["best", "levels"]) at(id).addEventListener("change", host.changed);
   for (const id of ["units", "policy"]) at(id).addEventListener("change", () => guarded(lookAgain));
   at("jobs").addEventListener("toggle", showJobs);
   at("jobs-forget").addEventListener("click", () => { jobs.forgetAll(); showJobs(); });

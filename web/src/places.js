@@ -1,16 +1,19 @@
 // From the elements that a report names to what is drawn of them.
 
 import { crossing } from "./mesh/crossing.js";
+import { Project } from "./project.js";
 
 // The picture of a mesh, as the worker read it, with what finds faces and rims in it.
 export class Picture {
-  constructor(read, millimetres) {
+  constructor({ project, ...read }) {
     Object.assign(this, read);
-    this.millimetres = millimetres;
+    this.project = project ? new Project(project) : null;
   }
 
-  // Triangles of a face of the file; their faces ascend.
-  trianglesOf(face) {
+  // Triangles of a face that a report names; their faces ascend. A part that is in several places has it in each, unless only
+  // the first is wanted.
+  trianglesOf(named, isFirst = false) {
+    const face = this.project ? this.project.face(named) : named;
     let [low, high] = [0, this.faceOf.length];
     while (low < high) {
       const middle = (low + high) >> 1;
@@ -19,41 +22,58 @@ export class Picture {
     }
     const found = [];
     for (; this.faceOf[low] === face; low += 1) found.push(low);
-    return found;
+    return isFirst && this.project ? found.slice(0, 1) : found;
   }
 
-  facesAt(faces) {
-    return faces.flatMap((face) => this.trianglesOf(face)).flatMap((triangle) => [...this.positions.subarray(triangle * 9, triangle * 9 + 9)]);
+  facesAt(faces, isFirst) {
+    return faces.flatMap((face) => this.trianglesOf(face, isFirst)).flatMap((triangle) => [...this.positions.subarray(triangle * 9, triangle * 9 + 9)]);
   }
 
-  // A place of a report in the picture; `unit`: millimetres of the report's unit.
-  place(position, unit) {
-    return position.map((value, axis) => value * unit - this.origin[axis]);
+  // A place of a report in the picture, near `face`; null: it is not there. `unit`: millimetres of the report's unit.
+  place(position, unit, face) {
+    const placed = this.project ? this.project.placed(position, face) : position;
+    return placed && placed.map((value, axis) => value * unit - this.origin[axis]);
+  }
+
+  // The middle and the radius of a part at the first of its places; null: it is not in the picture.
+  whereIs(part) {
+    const found = this.project?.trianglesOf(part, this.faceOf);
+    if (!found?.length) return null;
+    const [min, max] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+    for (const triangle of found) {
+      for (let i = 0; i < 9; i += 1) {
+        const value = this.positions[triangle * 9 + i];
+        if (value < min[i % 3]) min[i % 3] = value;
+        if (value > max[i % 3]) max[i % 3] = value;
+      }
+    }
+    return { place: min.map((low, axis) => (low + max[axis]) / 2), radius: Math.hypot(...min.map((low, axis) => max[axis] - low)) / 2 };
   }
 
   // The whole rim that these faces lie on: open edges that hang together.
-  rimAt(faces) {
+  rimAt(faces, isFirst) {
     if (!this.rims) return [];
     this.rimNumbers ??= numberRims(this.rims);
     const wanted = new Set();
-    const triangles = new Set(faces.flatMap((face) => this.trianglesOf(face)));
+    const triangles = new Set(faces.flatMap((face) => this.trianglesOf(face, isFirst)));
     this.rims.halves.forEach((half, at) => { if (triangles.has(Math.floor(half / 3))) wanted.add(this.rimNumbers[at]); });
     return [...this.rimNumbers.keys()].filter((at) => wanted.has(this.rimNumbers[at])).flatMap((at) => [...this.edges.open.subarray(at * 6, at * 6 + 6)]);
   }
 
   // What shows a witness: its rim, its faces, or its place alone.
-  partsOf(code, witness, unit) {
+  partsOf(code, witness, unit, isFirst = false) {
     const indices = witness.faces.map(({ index }) => index);
-    const segments = code === "boundary-loop" ? this.rimAt(indices) : code === "self-intersection" ? this.crossingOf(indices) : [];
-    const faces = code === "boundary-loop" && segments.length ? [] : this.facesAt(indices);
-    const points = !segments.length && !faces.length && witness.position ? this.place(witness.position, unit) : [];
+    const segments = code === "boundary-loop" ? this.rimAt(indices, isFirst) : code === "self-intersection" ? this.crossingOf(indices, isFirst) : [];
+    const faces = code === "boundary-loop" && segments.length ? [] : this.facesAt(indices, isFirst);
+    const points = !segments.length && !faces.length && witness.position ? this.place(witness.position, unit, indices[0]) ?? [] : [];
     return { segments, faces, points };
   }
 
   // The line in which two faces pass through each other.
-  crossingOf(faces) {
-    const [one, other] = faces.map((face) => this.facesAt([face]));
-    return one?.length === 9 && other?.length === 9 ? crossing(one, other) : [];
+  crossingOf(faces, isFirst) {
+    const [one, other] = faces.map((face) => this.facesAt([face], isFirst));
+    if (!one?.length || one.length !== other?.length) return [];
+    return one.flatMap((_, at) => (at % 9 ? [] : crossing(one.slice(at, at + 9), other.slice(at, at + 9))));
   }
 
   // All that is known of a kind of defect: all of its edges, or its witnesses.

@@ -1,10 +1,13 @@
-// Three files to try the page with, made on the spot.
+// Files to try the page with, made on the spot.
 
-export const SAMPLES = { scan, bodies, sound };
+import { stored } from "./stored.js";
+
+export const SAMPLES = { scan, bodies, project, sound };
 
 export function sample(name) {
-  const text = SAMPLES[name]();
-  return new File([text], `${name}.${text.startsWith("OFF") ? "off" : "obj"}`, { type: "application/octet-stream" });
+  const content = SAMPLES[name]();
+  const ending = typeof content !== "string" ? "3mf" : content.startsWith("OFF") ? "off" : "obj";
+  return new File([content], `${name}.${ending}`, { type: "application/octet-stream" });
 }
 
 // A smooth lump as of a scanner, with holes, a torn strip, scraps that float around it, and some faces turned.
@@ -50,6 +53,28 @@ function bodies() {
   mesh.tube([22, 20, 17], 6, 3, 50);
   mesh.ball([49, 20, 12.5], 8, true);
   return mesh.obj();
+}
+
+// A project of a slicer: a sound plate, a box without its lid that is there twice, once mirrored, and a ball that is inside
+// out and has another colour.
+function project() {
+  const [plate, cup, ball] = [new Mesh(), new Mesh(), new Mesh()];
+  plate.box([0, 0, 0], [80, 40, 4]);
+  cup.box([0, 0, 0], [20, 24, 16]);
+  cup.faces.splice(2, 2);
+  ball.ball([0, 0, 0], 9, true);
+  const object = (id, name, mesh, color) => `<object id="${id}" name="${name}" type="model" pid="1" pindex="${color}">${mesh.xml()}</object>`;
+  const item = (id, transform) => `<item objectid="${id}" transform="${transform}"/>`;
+  const model = `<?xml version="1.0" encoding="UTF-8"?>
+<model unit="millimeter" xml:lang="en-US" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources>
+<basematerials id="1"><base name="Grey" displaycolor="#9AA4AE"/><base name="Green" displaycolor="#1F9E86"/><base name="Red" displaycolor="#CF3F36"/></basematerials>
+${object(2, "Plate", plate, 0)}${object(3, "Cup", cup, 1)}${object(4, "Ball", ball, 2)}
+</resources><build>${item(2, "1 0 0 0 1 0 0 0 1 0 0 0")}${item(3, "1 0 0 0 1 0 0 0 1 5 8 5")}${item(3, "-1 0 0 0 1 0 0 0 1 75 8 5")}${item(4, "1 0 0 0 1 0 0 0 1 40 20 14")}</build></model>`;
+  return stored([
+    ["[Content_Types].xml", '<?xml version="1.0" encoding="UTF-8"?><Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/><Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>'],
+    ["_rels/.rels", '<?xml version="1.0" encoding="UTF-8"?><Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Id="r0" Target="/3D/3dmodel.model" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>'],
+    ["3D/3dmodel.model", model],
+  ]);
 }
 
 // A washer: closed, and with nothing to mend.
@@ -110,6 +135,11 @@ class Mesh {
 
   off() {
     return `OFF\n${this.vertices.length} ${this.faces.length} 0\n${this.vertices.map((v) => v.join(" ")).join("\n")}\n${this.faces.map((f) => `3 ${f.join(" ")}`).join("\n")}\n`;
+  }
+
+  xml() {
+    const vertices = this.vertices.map(([x, y, z]) => `<vertex x="${x}" y="${y}" z="${z}"/>`).join("");
+    return `<mesh><vertices>${vertices}</vertices><triangles>${this.faces.map(([a, b, c]) => `<triangle v1="${a}" v2="${b}" v3="${c}"/>`).join("")}</triangles></mesh>`;
   }
 
   obj() {

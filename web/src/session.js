@@ -2,7 +2,7 @@
 
 import { Choices } from "./choices.js";
 
-const MILLIMETRES = { mm: 1, cm: 10, m: 1000, in: 25.4 };
+const MILLIMETRES = { um: 0.001, mm: 1, cm: 10, m: 1000, in: 25.4, ft: 304.8 };
 export const millimetres = (unit) => MILLIMETRES[unit] ?? 1;
 
 export class Session {
@@ -14,6 +14,8 @@ export class Session {
     this.unit = ""; // stated by the person
     this.policy = "";
     this.format = null; // of the download
+    this.given = null; // the format of the job's result
+    this.level = 0; // the level of detail that is drawn
     this.report = null;
     this.pictures = {}; // before, after
     this.choices = new Choices();

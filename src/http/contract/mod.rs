@@ -24,8 +24,8 @@ use crate::wire::{
     self, BuildDirection, Contact, Criterion, Cut, Degenerate, DrawnEdges, DualEmbedding, EditSpec, Effort,
     Fidelity, FillHoles, Format, InputRef, Job, JobRequest, LABELS_MAX, Mode, Nesting, OpenShells, Options,
     Outcome, Placement, PlanRequest, PolicyName, Problem, ProblemCode, Projection, RangeSpec, Reader, Report,
-    Require, SetOperation, Shade, StageEvent, StateEvent, Stitch, StitchValidity, TargetSpec, Units,
-    VertexColors, Views, Weld,
+    Require, SetOperation, Shade, SolidParts, StageEvent, StateEvent, Stitch, StitchValidity, TargetSpec,
+    Units, VertexColors, Views, WebhookMessage, Weld,
 };
 
 /// Problems that any path may answer with.
@@ -60,6 +60,7 @@ const RUN: &[ProblemCode] = &[
     ProblemCode::Cancelled,
     ProblemCode::PlanMismatch,
     ProblemCode::MeshTooLarge,
+    ProblemCode::OverBudget,
     ProblemCode::EngineOutOfMemory,
     ProblemCode::MeshUnparseable,
     ProblemCode::MeshEmpty,
@@ -125,11 +126,12 @@ fn schemas() -> Vec<(String, RefOr<Schema>)> {
         Report,
         Problem,
         StateEvent,
-        StageEvent
+        StageEvent,
+        WebhookMessage
     );
     add!(Format, Reader, Units, Require, FillHoles, OpenShells, Effort, Nesting, Contact, Mode, Criterion);
     add!(Placement, VertexColors, Cut, Stitch, StitchValidity, Degenerate, PolicyName, BuildDirection);
-    add!(DualEmbedding, Weld, SetOperation, Views, Shade, DrawnEdges, Projection);
+    add!(DualEmbedding, Weld, SetOperation, SolidParts, Views, Shade, DrawnEdges, Projection);
     let own = wire::option_schemas().map(|(name, schema)| (name, RefOr::T(schema)));
     schemas.into_iter().chain(own).chain(bodies::schemas()).collect()
 }
@@ -311,9 +313,11 @@ fn file_answer(description: &str) -> Response {
         .build()
 }
 
-/// A mesh in any format. The type that every mesh has stands first: generators of clients look no further.
+/// A mesh in any format. The type that every mesh has stands first: generators of clients look no further, but for a name
+/// that ends in `+json`, which they would ask for first. So glTF is only one of `model/*` here.
 fn mesh_contents(answer: ResponseBuilder) -> ResponseBuilder {
-    let media_types = bodies::mesh_media_types();
+    let media_types =
+        bodies::mesh_media_types().map(|name| if name.ends_with("+json") { "model/*" } else { name });
     media_types.fold(answer, |answer, media_type| answer.content(media_type, Content::new(Some(binary()))))
 }
 

@@ -1,10 +1,10 @@
 //! The steps that mend the surface, on the file as it is drawn.
 
-use super::Rung;
+use super::{Kind, Rung};
 
 pub(super) const RUNG: Rung = Rung {
     name: "as-drawn",
-    is_new_surface: false,
+    kind: Kind::Plan,
     applies: |_, situation| Ok(situation.last.is_none()),
     tries: |climb, situation| climb.try_plan(situation.variant, situation),
 };

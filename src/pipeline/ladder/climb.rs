@@ -1,6 +1,6 @@
 //! What a rung sees of the file and of the attempts before it, and how it runs one.
 
-use super::Climbed;
+use super::{Climbed, Kind};
 use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::Depth;
@@ -14,6 +14,12 @@ use crate::pipeline::remedies::{Choices, Walls};
 use crate::pipeline::{Action, Failure, Options, Refusal, Require};
 use crate::repair::{Draft, noise};
 use crate::winding::{OpenShells, Solid};
+
+/// A plan may take one of so many parts of the work that is left.
+const ATTEMPT_PART: u64 = 4;
+
+/// What is hidden, the same.
+const HIDDEN_PART: u64 = 4;
 
 /// What stays the same on all rungs.
 pub(in crate::pipeline) struct Climb<'a> {
@@ -50,6 +56,8 @@ pub(super) struct Situation {
     pub(super) first_clears_noise: bool,
     /// An attempt was no solid when its coordinates were read as float32.
     pub(super) fails_in_f32: bool,
+    /// A plan took more than its share of the work, or all changes of the surface took more than theirs.
+    pub(super) has_run_out: bool,
     /// Bodies were to be united.
     pub(super) has_tried_uniting: bool,
     /// A surface was to be rebuilt.
@@ -74,7 +82,8 @@ impl Situation {
         let (draft, _) = Draft::from_soup(&climb.input.soup);
         // Where noise about zero keeps rims apart, clearing it is the smaller change: both rims could be closed instead,
         // which would leave two bodies with nothing between them.
-        let clears_noise = noise::parts_rims(&draft, climb.budget)?;
+        let parts_rims = || noise::parts_rims(&draft, climb.budget);
+        let clears_noise = climb.budget.within_part(ATTEMPT_PART, parts_rims)?.unwrap_or(false);
         let variant = Variant {
             clears_noise,
             rounds: climb.needs_f32(),
@@ -88,6 +97,7 @@ impl Situation {
             last: None,
             first_clears_noise: clears_noise,
             fails_in_f32: false,
+            has_run_out: false,
             has_tried_uniting: false,
             has_tried_rebuilding: false,
             certified: None,
@@ -96,8 +106,17 @@ impl Situation {
         })
     }
 
-    /// True while nothing is certified and something is left that another plan could make a solid of.
-    pub(super) fn may_change_the_surface(&self) -> bool {
+    /// Whether a rung of this kind may still come. Another plan takes as much as one that took too much.
+    pub(super) fn may_try(&self, kind: Kind) -> bool {
+        match kind {
+            Kind::Plan => !self.has_run_out && self.may_change_the_surface(),
+            Kind::Union => self.may_change_the_surface(),
+            Kind::NewSurface => true,
+        }
+    }
+
+    /// True while nothing is certified and something is left that another change could make a solid of.
+    fn may_change_the_surface(&self) -> bool {
         let is_broken = |last: &Uncertified| matches!(last.refusal, Refusal::NotRepairable { .. });
         self.certified.is_none() && self.last.as_ref().is_none_or(is_broken)
     }
@@ -119,7 +138,8 @@ impl Situation {
     }
 
     /// The best there is.
-    pub(super) fn outcome(self) -> Climbed {
+    pub(super) fn outcome(self, climb: &Climb<'_>) -> Climbed {
+        let over_budget = Refusal::OverBudget { units: climb.budget.work_used() };
         let refused = |refusal, actions| Climbed::Refused { refusal, actions };
         if let Some(rebuilt) = self.rebuilt {
             return Climbed::Rebuilt(rebuilt);
@@ -128,12 +148,14 @@ impl Situation {
             return Climbed::Certified(certified);
         }
         let Some(Uncertified { attempt, mended, refusal }) = self.last else {
-            return refused(Refusal::NothingToRepair, Vec::new());
+            let (refusal, actions) = self.not_rebuilt.unwrap_or((over_budget, Vec::new()));
+            return refused(refusal, actions);
         };
         let may_be_partial = match &self.not_rebuilt {
             Some((refusal, _)) => *refusal != Refusal::NothingToRepair,
             None => matches!(refusal, Refusal::NotRepairable { .. }),
         };
+        let refusal = if self.has_run_out { over_budget } else { refusal };
         let (refusal, actions) = self.not_rebuilt.unwrap_or((refusal, attempt.actions));
         match mended.filter(|_| may_be_partial) {
             Some(mended) => Climbed::Mended(mended),
@@ -151,14 +173,23 @@ impl Climb<'_> {
         situation: &mut Situation,
     ) -> Result<Option<Found>, Failure> {
         situation.variant = variant;
-        let (mut mended, mut attempt) = self.run(variant)?;
+        let run = |variant| self.budget.within_part(ATTEMPT_PART, || self.run(variant));
+        let Some((mut mended, mut attempt)) = run(variant)? else {
+            situation.has_run_out = true;
+            return Ok(None);
+        };
         let mut judged = self.judge(&attempt)?;
         let has_mended = |attempt: &Attempt| attempt.effects.mended_thin_faces;
         if variant.mends_thin_faces && judged.is_broken() && has_mended(&attempt) {
             situation.fails_in_f32 |= judged.fails_in_f32();
             situation.variant.mends_thin_faces = false;
-            (mended, attempt) = self.run(situation.variant)?;
-            judged = self.judge(&attempt)?;
+            match run(situation.variant)? {
+                Some(again) => {
+                    (mended, attempt) = again;
+                    judged = self.judge(&attempt)?;
+                }
+                None => situation.has_run_out = true,
+            }
         }
         situation.fails_in_f32 |= judged.fails_in_f32();
         match judged {
@@ -282,8 +313,10 @@ impl Certified {
         let mut fidelity = measure(&Original::new(&input.soup, volume, None))?;
         if !fidelity.passes(&options.limits) {
             let read = || Solid::of(&draft.positions, &draft.triangles, options.wrap.open_shells, budget);
-            let solid = budget.stage(Stage::Measure, read)?;
-            fidelity = measure(&Original::new(&input.soup, volume, Some(solid)))?;
+            // Where it is too much work to say what is hidden, everything counts as seen.
+            if let Some(solid) = budget.within_part(HIDDEN_PART, || budget.stage(Stage::Measure, read))? {
+                fidelity = measure(&Original::new(&input.soup, volume, Some(solid)))?;
+            }
         }
         drop(origins);
         Ok(Self { attempt, candidate, fidelity })

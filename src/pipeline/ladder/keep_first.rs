@@ -1,12 +1,12 @@
 //! Of two copies of opposite direction one stays.
 
-use super::Rung;
+use super::{Kind, Rung};
 use crate::pipeline::plan::Variant;
 use crate::repair::duplicates::OppositePairs;
 
 pub(super) const RUNG: Rung = Rung {
     name: "keep-first",
-    is_new_surface: false,
+    kind: Kind::Plan,
     applies: |_, situation| {
         Ok(situation.last.as_ref().is_some_and(|last| last.attempt.effects.cancelled_opposite_pairs))
     },

@@ -19,13 +19,25 @@ use super::rebuild::Rebuilt;
 use super::{Action, Failure, Refusal};
 use crate::budget::Stopped;
 
+/// Changing the surface of the file may take one of so many parts of the work that is left; the rest is for a new one.
+const CHANGES_PART: u64 = 2;
+
+/// What a rung does to the surface of the file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// Changes it by the steps of a plan.
+    Plan,
+    /// Unites its bodies.
+    Union,
+    /// Makes a new one.
+    NewSurface,
+}
+
 /// One thing to try.
 struct Rung {
     /// As in reports and `docs/ladder.md`.
     name: &'static str,
-    /// True for the rung that makes a new surface. The others change the surface of the file; they are tried until one is
-    /// certified.
-    is_new_surface: bool,
+    kind: Kind,
     /// Whether it can make a difference.
     applies: fn(&Climb<'_>, &Situation) -> Result<bool, Stopped>,
     /// Tries it and notes in the situation what it left.
@@ -63,18 +75,37 @@ pub(super) enum Climbed {
 pub(super) fn climb(climb: &Climb<'_>) -> Result<(Climbed, Vec<&'static str>), Failure> {
     let mut situation = Situation::at_the_foot(climb)?;
     let mut tried = Vec::new();
-    while let Some(rung) = next(climb, &situation)? {
-        tried.push(rung.name);
-        let found = (rung.tries)(climb, &mut situation)?;
-        situation.keep_closest(found, climb);
-    }
-    Ok((situation.outcome(), tried))
+    let changes = |kind| kind != Kind::NewSurface;
+    let changing = || climb_by(changes, climb, &mut situation, &mut tried);
+    let has_run_out = climb.budget.within_part(CHANGES_PART, changing)?.is_none();
+    situation.has_run_out |= has_run_out;
+    climb_by(|kind| !changes(kind), climb, &mut situation, &mut tried)?;
+    Ok((situation.outcome(climb), tried))
 }
 
-/// The first rung that applies.
-fn next(climb: &Climb<'_>, situation: &Situation) -> Result<Option<&'static Rung>, Stopped> {
+/// Climbs by the rungs of these kinds until none applies.
+fn climb_by(
+    is_one: impl Fn(Kind) -> bool,
+    climb: &Climb<'_>,
+    situation: &mut Situation,
+    tried: &mut Vec<&'static str>,
+) -> Result<(), Failure> {
+    while let Some(rung) = next(&is_one, climb, situation)? {
+        tried.push(rung.name);
+        let found = (rung.tries)(climb, situation)?;
+        situation.keep_closest(found, climb);
+    }
+    Ok(())
+}
+
+/// The first of those rungs that applies.
+fn next(
+    is_one: impl Fn(Kind) -> bool,
+    climb: &Climb<'_>,
+    situation: &Situation,
+) -> Result<Option<&'static Rung>, Stopped> {
     for rung in RUNGS {
-        if (rung.is_new_surface || situation.may_change_the_surface()) && (rung.applies)(climb, situation)? {
+        if is_one(rung.kind) && situation.may_try(rung.kind) && (rung.applies)(climb, situation)? {
             return Ok(Some(rung));
         }
     }
@@ -88,6 +119,6 @@ mod tests {
     #[test]
     fn only_the_last_rung_makes_a_new_surface() {
         let last = RUNGS.len() - 1;
-        assert!(RUNGS.iter().enumerate().all(|(at, rung)| rung.is_new_surface == (at == last)));
+        assert!(RUNGS.iter().enumerate().all(|(at, rung)| (rung.kind == Kind::NewSurface) == (at == last)));
     }
 }

@@ -1,12 +1,12 @@
 //! Coordinates that are all but zero become zero, or stay where the first plan made them zero.
 
-use super::Rung;
+use super::{Kind, Rung};
 use crate::pipeline::plan::Variant;
 use crate::repair::noise;
 
 pub(super) const RUNG: Rung = Rung {
     name: "noise",
-    is_new_surface: false,
+    kind: Kind::Plan,
     applies: |climb, situation| {
         let is_first = situation.variant.clears_noise == situation.first_clears_noise;
         Ok(is_first && noise::has_noise(&climb.input.soup.positions))

@@ -1,17 +1,19 @@
 //! A new surface on a lattice around what no other rung could make a solid, or where what they made lost much.
 
-use super::Rung;
 use super::climb::{Climb, Found, Situation};
+use super::{Kind, Rung};
 use crate::pipeline::{Refusal, Require};
 
 pub(super) const RUNG: Rung = Rung {
     name: "rebuild",
-    is_new_surface: true,
+    kind: Kind::NewSurface,
     applies: |climb, situation| Ok(climb.choices.rebuilds && is_wanted(climb, situation)),
     tries: |climb, situation| {
         situation.has_tried_rebuilding = true;
-        match climb.rebuild() {
-            Ok(rebuilt) => Ok(Some(Found::Rebuilt(Box::new(rebuilt)))),
+        // Beside a certified result it takes no more than half of what is left, which the result needs too.
+        let part = if situation.certified.is_some() { 2 } else { 1 };
+        match climb.budget.within_part(part, || climb.rebuild()) {
+            Ok(rebuilt) => Ok(rebuilt.map(|rebuilt| Found::Rebuilt(Box::new(rebuilt)))),
             Err(reason) => {
                 situation.not_rebuilt = Some(reason.refusal()?);
                 Ok(None)
@@ -20,7 +22,7 @@ pub(super) const RUNG: Rung = Rung {
     },
 };
 
-/// True where nothing is certified, or what is lost much of the file.
+/// True where nothing is certified, or what is certified has lost much of the file.
 fn is_wanted(climb: &Climb<'_>, situation: &Situation) -> bool {
     if situation.has_tried_rebuilding {
         return false;
@@ -29,8 +31,12 @@ fn is_wanted(climb: &Climb<'_>, situation: &Situation) -> bool {
         // What was removed as chosen is no loss that a new surface could make good.
         return !certified.fidelity.passes(&climb.options.limits) && !climb.choices.removes();
     }
+    let may_invent = climb.options.require != Some(Require::None);
+    if situation.has_run_out {
+        return may_invent;
+    }
     situation.last.as_ref().is_some_and(|last| match last.refusal {
-        Refusal::NotRepairable { .. } => climb.options.require != Some(Require::None),
+        Refusal::NotRepairable { .. } => may_invent,
         Refusal::NothingToRepair => true,
         _ => false,
     })

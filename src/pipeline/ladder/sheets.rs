@@ -1,11 +1,11 @@
 //! Open parts that are read as sheets get walls, and no hole is filled.
 
-use super::Rung;
+use super::{Kind, Rung};
 use crate::pipeline::plan::Variant;
 
 pub(super) const RUNG: Rung = Rung {
     name: "sheets",
-    is_new_surface: false,
+    kind: Kind::Plan,
     applies: |climb, situation| {
         let Variant { thickens, contact, .. } = situation.variant;
         Ok(!thickens && contact.is_none() && climb.reads_as_sheets()?)

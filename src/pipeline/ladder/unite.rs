@@ -1,7 +1,7 @@
 //! Bodies that pass through each other, as one: the exact arrangement.
 
-use super::Rung;
 use super::climb::{Certified, Climb, Found, Judged, Situation};
+use super::{Kind, Rung};
 use crate::analysis::DefectCode;
 use crate::budget::Stopped;
 use crate::pipeline::output::Candidate;
@@ -14,7 +14,7 @@ use crate::winding::OpenShells;
 /// Where triangles of the file meet.
 pub(super) const WHERE_BODIES_MEET: Rung = Rung {
     name: "unite",
-    is_new_surface: false,
+    kind: Kind::Union,
     applies: |climb, situation| Ok(climb.has_contacts() && may_unite(climb, situation)),
     tries: |climb, situation| unite(climb, situation),
 };
@@ -22,13 +22,16 @@ pub(super) const WHERE_BODIES_MEET: Rung = Rung {
 /// Where they do not, after all that moves no triangle through another.
 pub(super) const BEFORE_TRIANGLES_GO: Rung = Rung {
     name: "unite-what-mending-made",
-    is_new_surface: false,
+    kind: Kind::Union,
     applies: |climb, situation| Ok(may_unite(climb, situation)),
     tries: |climb, situation| unite(climb, situation),
 };
 
 /// How often what does not hold in float32 is rounded in places, before all is.
 const ROUNDINGS_MAX: u32 = 4;
+
+/// One kind of bodies may take one of so many parts of the work that is left.
+const KIND_PART: u64 = 3;
 
 /// What uniting bodies led to.
 pub(in crate::pipeline) enum Tried {
@@ -58,7 +61,10 @@ fn unite(climb: &Climb<'_>, situation: &mut Situation) -> Result<Option<Found>, 
     let limits = &climb.options.limits;
     let mut best: Option<Certified> = None;
     for uniting in climb.kinds()? {
-        let Some((attempt, candidate)) = climb.united_from(uniting, situation.variant)? else { continue };
+        // What takes too much work is left to the next kind.
+        let tried =
+            climb.budget.within_part(KIND_PART, || climb.united_from(uniting, situation.variant))?.flatten();
+        let Some((attempt, candidate)) = tried else { continue };
         let certified = Certified::measured(attempt, candidate, climb)?;
         let passes = certified.fidelity.passes(limits);
         if best.as_ref().is_none_or(|best| passes || !best.fidelity.is_no_worse(&certified.fidelity, limits))

@@ -85,6 +85,7 @@ fn add(sum: &mut Analysis, one: &Analysis, [faces, vertices]: [u64; 2], samples:
         match sum.findings.iter_mut().find(|known| known.code == finding.code) {
             Some(known) => {
                 known.count += finding.count;
+                known.is_at_least |= finding.is_at_least;
                 known.severity = known.severity.max(finding.severity);
                 known.witnesses.extend(witnesses.take(samples.saturating_sub(known.witnesses.len())));
             }

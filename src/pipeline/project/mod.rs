@@ -9,6 +9,7 @@ mod merged_analysis;
 mod sources;
 
 pub use self::sources::AttributeCounts;
+use super::bounds;
 use super::input::{Input, samples_of, units_of_file};
 use super::output::refusal;
 use super::{
@@ -65,36 +66,52 @@ pub(super) fn is_by_parts(encoding: Encoding, operation: Operation, options: &Op
         }
 }
 
+/// Reads the 3MF `bytes`.
+pub(super) fn read(bytes: &[u8], options: &Options, budget: &Budget) -> Result<Project, Failure> {
+    Ok(budget.stage(Stage::Read, || read_project(bytes, &options.read, budget))?)
+}
+
+/// Triangles that a run looks at: those of each part once, and of all at their places where they are united or
+/// drawn.
+pub(super) fn triangles_of(project: &Project, operation: Operation, options: &Options) -> u64 {
+    let has_all = options.parts == Parts::Union || operation == Operation::Render;
+    let at_places = |body: &Body| if has_all { u64::from(body.instances) } else { 0 };
+    let of = |body: &Body| (body.soup.triangles.len() as u64).saturating_mul(1 + at_places(body));
+    project.bodies.iter().map(of).fold(0, u64::saturating_add)
+}
+
 /// Runs `operation` on every part of the 3MF `bytes`.
 pub(super) fn run_by_parts(
     operation: Operation,
     bytes: &[u8],
+    project: &Project,
     options: &Options,
     budget: &Budget,
 ) -> Result<Answer, Failure> {
-    let project = budget.stage(Stage::Read, || read_project(bytes, &options.read, budget))?;
     units_of_file(Some(project.units), options)?;
     let triangles =
         project.bodies.iter().filter(|body| body.is_solid()).map(|body| body.soup.triangles.len()).sum();
-    let run = Run { operation, bytes, project: &project, triangles, options, budget };
+    let run = Run { operation, bytes, project, triangles, options, budget };
     run.check_options()?;
     let answer = run.answer()?;
     let answer = match options.parts {
         Parts::Union if answer.report.refusal.is_none() => run.unite(answer)?,
         _ => answer,
     };
-    match drawn::picture(&run, &answer) {
-        Ok(picture) => Ok(Answer { picture, ..answer }),
-        // Parts that are few may be at so many places that all together are too large to be drawn.
-        Err(Failure::Unreadable(error))
-            if operation != Operation::Render && matches!(error.kind, ReadErrorKind::TooLarge { .. }) =>
-        {
-            let mut answer = answer;
-            answer.report.remarks.push(format!("There is no picture of the file: {}.", error.kind));
-            Ok(answer)
-        }
-        Err(failure) => Err(failure),
-    }
+    let mut too_large = None;
+    let mut answer =
+        bounds::with_picture(operation, answer, budget, |answer| match drawn::picture(&run, answer) {
+            // Parts that are few may be at so many places that all together are too large to be drawn.
+            Err(Failure::Unreadable(error))
+                if operation != Operation::Render && matches!(error.kind, ReadErrorKind::TooLarge { .. }) =>
+            {
+                too_large = Some(bounds::no_picture(&error.kind));
+                Ok(None)
+            }
+            drawn => drawn,
+        })?;
+    answer.report.remarks.extend(too_large);
+    Ok(answer)
 }
 
 /// What is said of a 3MF whose parts were taken as one mesh.
@@ -104,7 +121,7 @@ pub(super) fn remarks_on_scene(
     options: &Options,
     budget: &Budget,
 ) -> Result<Vec<String>, Failure> {
-    let project = budget.stage(Stage::Read, || read_project(bytes, &options.read, budget))?;
+    let project = read(bytes, options, budget)?;
     Ok(match &answer.output {
         Some(Output { bytes: Some(_), encoding, .. }) => merge::left_out(&project, *encoding),
         _ => project.remarks,

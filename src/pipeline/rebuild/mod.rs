@@ -11,7 +11,7 @@ use super::plan::{Attempt, Step, Variant};
 use super::remedies::Choices;
 use super::{Action, Answer, Failure, FillHoles, Options, Outcome, Refusal, Report};
 use crate::analysis::{Analysis, DefectCode};
-use crate::budget::{Budget, Stage, Stopped};
+use crate::budget::{AsStopped, Budget, Stage, Stopped};
 use crate::certificate::Depth;
 use crate::formats::Encoding;
 use crate::geom::{Aabb, DVec3};
@@ -76,6 +76,15 @@ impl Effort {
     }
 }
 
+/// Coarser lattices than all that an effort begins with, for what takes too much work on those.
+const COARSER: [(u32, f64); 3] = [(128, 7.5e3), (64, 1.9e3), (32, 500.0)];
+
+/// The coarser lattices below one of so many cells.
+fn coarser_than(cells: u32) -> &'static [(u32, f64)] {
+    let first = COARSER.iter().position(|&(coarser, _)| coarser < cells).unwrap_or(COARSER.len());
+    &COARSER[first..]
+}
+
 /// A certified mesh, how it came to be, and how far it is from the input.
 pub(super) struct Rebuilt {
     candidate: Candidate,
@@ -105,10 +114,11 @@ pub(super) fn rebuild(
     before: Option<&Analysis>,
     budget: &Budget,
 ) -> Result<Rebuilt, NotRebuilt> {
-    let mut attempt = Attempt::start(&input.soup, before);
-    let _charge = budget.charge(attempt.draft.bytes())?;
+    let start = Attempt::start(&input.soup, before);
+    let _charge = budget.charge(2 * start.draft.bytes())?;
     let variant = Variant { opposite: OppositePairs::KeepFirst, ..Variant::default() };
-    budget.stage(Stage::Repair, || {
+    let mend = || {
+        let mut attempt = start.clone();
         attempt.run(&variant.mending(&choices.before_rebuilding()), &input.soup, before, budget)?;
         // A hole in a sheet is a part of its shape; one in a shell around a volume is a defect.
         let fill =
@@ -117,9 +127,20 @@ pub(super) fn rebuild(
             .then_some(Step::FillHoles(FillOptions::plain(Selection::default())))
             .into_iter()
             .chain([Step::JoinCopies]);
-        attempt.run(&steps.collect::<Vec<_>>(), &input.soup, before, budget)
-    })?;
-    let Attempt { draft, actions, .. } = attempt;
+        attempt.run(&steps.collect::<Vec<_>>(), &input.soup, before, budget)?;
+        Ok::<_, Stopped>(attempt)
+    };
+    let Attempt { draft, actions, .. } =
+        budget.stage(Stage::Repair, || match budget.within_part(4, mend)? {
+            Some(attempt) => Ok::<_, Stopped>(attempt),
+            // The lattice takes the triangles as they are.
+            None => {
+                let mut attempt = start.clone();
+                let steps = variant.welding(&choices.before_rebuilding());
+                attempt.run(&[steps, vec![Step::JoinCopies]].concat(), &input.soup, before, budget)?;
+                Ok(attempt)
+            }
+        })?;
     let search = Search { input, encoding, options, before, budget };
     match search.run(&input.soup, &draft, &actions) {
         Err(NotRebuilt::Refused { refusal: Refusal::BeyondFloat32 { .. }, .. })
@@ -148,20 +169,25 @@ impl Search<'_> {
     fn run(&self, soup: &Soup, draft: &Draft, actions: &[Action]) -> Result<Rebuilt, NotRebuilt> {
         let (choices, limits, budget) = (&self.options.wrap, &self.options.limits, self.budget);
         let refused = |refusal| NotRebuilt::Refused { refusal, actions: actions.to_vec() };
-        let split = budget.stage(Stage::Repair, || parts::split(draft, budget))?;
-        let solid = budget.stage(Stage::Measure, || {
-            Solid::of(&draft.positions, &draft.triangles, choices.open_shells, budget)
+        let split =
+            budget.within_part(4, || budget.stage(Stage::Repair, || parts::split(draft, budget)))?.flatten();
+        // Where it is too much work to say what is hidden, everything counts as seen.
+        let solid = budget.within_part(4, || {
+            budget.stage(Stage::Measure, || {
+                Solid::of(&draft.positions, &draft.triangles, choices.open_shells, budget)
+            })
         })?;
         let volume = defined_volume(self.before);
-        let original = Original::new(soup, volume, Some(solid));
+        let original = Original::new(soup, volume, solid);
         let asked = choices.cells.map(|cells| [(cells, f64::INFINITY)]);
-        let lattices = match &asked {
+        let mut lattices: &[(u32, f64)] = match &asked {
             Some(one) => one,
             None => choices.effort.lattices(),
         };
         let mut best: Option<Rebuilt> = None;
-        let mut cells_before = 0;
-        for &(cells, area_max) in lattices {
+        let (mut cells_before, mut is_coarser) = (0, false);
+        while let Some((&(cells, area_max), finer)) = lattices.split_first() {
+            lattices = finer;
             let wrap_options = WrapOptions {
                 cells,
                 open_shells: choices.open_shells,
@@ -171,15 +197,20 @@ impl Search<'_> {
             };
             let (input, encoding, options) = (self.input, self.encoding, self.options);
             let rebuilding = Rebuilding { input, encoding, options, wrap_options, budget };
-            let made = match rebuilding.run(draft, split.as_ref()) {
-                Ok(made) => made,
+            let made = match budget.within_part(2, || rebuilding.run(draft, split.as_ref())) {
+                Ok(Some(made)) => made,
                 // Finer was too much; what there is stays.
-                Err(NoCandidate::Refused(_)) if best.is_some() => break,
+                Ok(None) | Err(NoCandidate::Refused(_)) if best.is_some() => break,
+                Ok(None) if asked.is_some() => break,
+                Ok(None) => {
+                    (lattices, is_coarser) = (coarser_than(cells), true);
+                    continue;
+                }
                 Err(NoCandidate::Refused(refusal)) => return Err(refused(refusal)),
                 Err(NoCandidate::Failed(failure)) => return Err(failure.into()),
             };
             // The limits of the lattice allow no finer one.
-            if made.account.cells <= cells_before {
+            if made.account.cells <= cells_before && best.is_some() {
                 break;
             }
             cells_before = made.account.cells;
@@ -192,11 +223,11 @@ impl Search<'_> {
                 let Made { candidate, origins, .. } = made;
                 best = Some(Rebuilt { candidate, origins, fidelity, actions });
             }
-            if fidelity.passes(limits) {
+            if fidelity.passes(limits) || is_coarser {
                 break;
             }
         }
-        let best = best.ok_or_else(|| refused(Refusal::NotRepairable { witness: None }))?;
+        let best = best.ok_or_else(|| refused(Refusal::OverBudget { units: budget.work_used() }))?;
         match best.fidelity.breach(limits) {
             None => Ok(best),
             Some(refusal) => Err(NotRebuilt::Refused { refusal, actions: best.actions }),
@@ -257,6 +288,15 @@ impl NotRebuilt {
         match self {
             Self::Refused { refusal, actions } => Ok((refusal, actions)),
             Self::Failed(failure) => Err(failure),
+        }
+    }
+}
+
+impl AsStopped for NotRebuilt {
+    fn as_stopped(&self) -> Option<Stopped> {
+        match self {
+            Self::Failed(failure) => failure.as_stopped(),
+            Self::Refused { .. } => None,
         }
     }
 }
@@ -331,7 +371,9 @@ impl Rebuilding<'_> {
         let account = wrapped.account;
         let fewer = Fewer { wrapped, choices: &self.options.simplify, budget: self.budget };
         for mode in [Mode::Fast, Mode::Guarded] {
-            let Some((simplified, action)) = fewer.triangles(mode)? else { continue };
+            // What takes too much work keeps its triangles.
+            let Some(found) = self.budget.within_part(3, || fewer.triangles(mode))? else { break };
+            let Some((simplified, action)) = found else { continue };
             let candidate = self.write(&simplified.positions, &simplified.triangles, kept)?;
             if candidate.certificate().is_printable() {
                 let origins = origins(simplified.triangles.len());

@@ -139,7 +139,7 @@ impl Rim {
         let octree = Octree::build(&draft.positions, vertices, budget)?;
         let mut found = [Vec::new(), Vec::new()];
         for &g in &self.half_edges {
-            budget.spend(1)?;
+            budget.spend(8)?;
             let [from, to] = edge_of(&draft.triangles, g);
             if chosen.contains([from, to].map(|v| draft.vertex_origin[v as usize])) {
                 continue;

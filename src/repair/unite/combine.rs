@@ -48,7 +48,7 @@ pub enum NotCombined {
     Empty,
     /// More pairs of triangles meet than are divided.
     TooManyPairs {
-        /// How many meet.
+        /// How many meet at least.
         count: u64,
         /// How many may.
         limit: u64,

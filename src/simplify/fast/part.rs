@@ -26,6 +26,9 @@ use crate::simplify::report::{Refusal, Refusals};
 use crate::simplify::surface::{LINE, Rule, Surface};
 use std::sync::Arc;
 
+/// Units of work that an attempt to collapse an edge counts.
+const ATTEMPT: u64 = 256;
+
 /// The topology of a part.
 #[derive(Debug)]
 pub(super) struct Piece {
@@ -225,7 +228,7 @@ impl<'r, C: Criterion> Part<'r, C> {
                 Err(reason) => self.set_aside(h, reason),
             }
         }
-        budget.spend(count as u64)
+        budget.spend(count as u64 * ATTEMPT)
     }
 
     fn is_twin_queued(&self, h: u32) -> bool {

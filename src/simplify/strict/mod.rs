@@ -21,6 +21,9 @@ use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::mesh::Color;
 use crate::mesh::corner_table::{CornerTable, EdgeRings};
 
+/// Units of work that a step counts.
+const STEP: u64 = 256;
+
 /// Simplifies `input` by collapsing the cheapest edge again and again: by the exact order of costs (to 24 bits, then by
 /// edge). One result for each target, from one run. The topology of the input is kept: its Euler characteristic, its
 /// components, its boundary loops. A collapse that is refused is set aside and tried again when something around it
@@ -140,7 +143,7 @@ impl<C: Criterion> Strict<'_, C> {
         while self.surface.table.triangle_count() > faces_wanted && !is_exhausted {
             since_check += 1;
             if since_check == CHECK_EVERY {
-                self.budget.spend(CHECK_EVERY as u64)?;
+                self.budget.spend(CHECK_EVERY as u64 * STEP)?;
                 since_check = 0;
             }
             is_exhausted = !self.step();

@@ -126,10 +126,10 @@ impl Bvh {
         while depth > 0 {
             depth -= 1;
             let node = self.tree.node(stack[depth]);
-            if visited.is_multiple_of(CHECK_EVERY) {
-                budget.check()?;
-            }
             visited += 1;
+            if visited == CHECK_EVERY {
+                budget.spend(std::mem::take(&mut visited) as u64)?;
+            }
             if !may_hold(&node.bounds) {
                 continue;
             }
@@ -142,12 +142,12 @@ impl Bvh {
                 None => {
                     let leaf = self.tree.leaf(node);
                     if !leaf.meeting(&query).all(|k| visit(leaf.id(k))) {
-                        return Ok(());
+                        break;
                     }
                 }
             }
         }
-        Ok(())
+        budget.spend(visited as u64)
     }
 
     pub(super) fn tree(&self) -> &Tree {

@@ -1,6 +1,6 @@
 //! Simultaneous descent of a tree with itself.
 
-use super::{Contact, Contacts, Gathered, Search, Surface};
+use super::{COST_OF_CONTACT, Contact, Contacts, Gathered, Search, Surface};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Plane, Shared, contact};
 use crate::par;
@@ -10,31 +10,55 @@ use crate::spatial::pairs::{Pair, expand, tasks};
 /// Pairs of nodes that the descent starts from: enough for many threads, fixed, so that results do not depend on them.
 const TASKS_AIM: usize = 1024;
 
-/// Tasks that are run before it is seen whether that is enough.
+/// Tasks that are run before it is seen whether that is enough, where one contact is.
 const TASKS_AT_A_TIME: usize = 256;
+
+/// The same where all are counted: what they keep is in memory until then.
+const TASKS_AT_A_TIME_OF_ALL: usize = 64;
+
+/// The same up to a number, all of which each of them may keep.
+const TASKS_AT_A_TIME_UP_TO: usize = 8;
+
+/// A task that has found something may use this share of all work.
+const SHARE_OF_TASK: u64 = 64;
 
 /// The contacts between the triangles of `tree`, except those inside one star.
 pub(super) fn pairs(
     tree: &Tree,
     surface: Surface<'_>,
     search: Search,
+    work_max: u64,
     budget: &Budget,
-) -> Result<Contacts, Stopped> {
+) -> Result<(Contacts, u64), Stopped> {
     let tasks = tasks(tree, TASKS_AIM, &|leaf, i| surface.sliver(leaf, i));
     let mut all = Gathered::new(search);
-    for tasks in tasks.chunks(TASKS_AT_A_TIME) {
+    let at_a_time = match search {
+        Search::First => TASKS_AT_A_TIME,
+        Search::UpTo { .. } => TASKS_AT_A_TIME_UP_TO,
+        Search::All { .. } | Search::Most { .. } => TASKS_AT_A_TIME_OF_ALL,
+    };
+    let mut work = 0;
+    let count = tasks.len();
+    for (n, tasks) in tasks.chunks(at_a_time).enumerate() {
         // All of them end before an error is passed on: whether the work limit is reached depends on their sum alone.
         let found = par::try_map_ranges(tasks.len(), 1, |i| {
-            Descent { tree, surface, budget, found: Gathered::new(search), work: 0 }.run(tasks[i.start])
+            let found = Gathered::new(search);
+            Descent { tree, surface, budget, found, unpaid: 0, work: 0, work_max: work_max / SHARE_OF_TASK }
+                .run(tasks[i.start])
         })?;
-        for contacts in found {
+        for (contacts, its_work) in found {
             all.merge(contacts);
+            work += its_work;
             if all.is_enough() {
-                return Ok(all.finish());
+                return Ok((all.finish(), work));
             }
         }
+        if work > work_max && all.has_any() && (n + 1) * at_a_time < count {
+            all.cut_short();
+            break;
+        }
     }
-    Ok(all.finish())
+    Ok((all.finish(), work))
 }
 
 /// The search below one pair of nodes.
@@ -44,11 +68,16 @@ struct Descent<'d> {
     budget: &'d Budget,
     found: Gathered,
     /// Units not yet spent.
+    unpaid: u64,
+    /// Units used.
     work: u64,
+    /// Units after which it ends if it has found something.
+    work_max: u64,
 }
 
 impl Descent<'_> {
-    fn run(mut self, start: Pair) -> Result<Contacts, Stopped> {
+    /// What it found, and the units that took.
+    fn run(mut self, start: Pair) -> Result<(Contacts, u64), Stopped> {
         let mut stack = vec![start];
         while let Some(pair) = stack.pop() {
             self.count(1)?;
@@ -64,15 +93,20 @@ impl Descent<'_> {
             if self.found.is_enough() {
                 break;
             }
+            if self.work > self.work_max && self.found.has_any() && !stack.is_empty() {
+                self.found.cut_short();
+                break;
+            }
         }
-        self.budget.spend(self.work)?;
-        Ok(self.found.finish())
+        self.budget.spend(self.unpaid)?;
+        Ok((self.found.finish(), self.work))
     }
 
     fn count(&mut self, units: u64) -> Result<(), Stopped> {
         self.work += units;
-        if self.work >= CHECK_EVERY as u64 {
-            self.budget.spend(std::mem::take(&mut self.work))?;
+        self.unpaid += units;
+        if self.unpaid >= CHECK_EVERY as u64 {
+            self.budget.spend(std::mem::take(&mut self.unpaid))?;
         }
         Ok(())
     }
@@ -135,9 +169,10 @@ impl Descent<'_> {
         }
         let plane = Plane::through(self.surface.points(corners).map(|p| *p));
         for j in meeting {
-            self.count(1)?;
+            self.count(self.surface.cost_of_pair(corners, y.corners(j)))?;
             if let Some(kind) = contact(&plane, self.surface.points(y.corners(j)), Shared::by_pairs(pairs[j]))
             {
+                self.count(COST_OF_CONTACT)?;
                 let (a, b) = (x.id(i), y.id(j));
                 self.found.add(Contact { a: a.min(b), b: a.max(b), kind });
             }

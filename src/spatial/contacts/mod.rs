@@ -7,7 +7,7 @@ mod terrains;
 use super::Bvh;
 use super::bvh::{Frame, Leaf, Sliver, Star, Tree};
 use crate::budget::{Budget, Stopped};
-use crate::geom::{ContactKind, DVec3};
+use crate::geom::{ContactKind, DVec3, suits_expansions};
 use crate::par;
 use directions::Directions;
 pub use terrains::Terrains;
@@ -32,6 +32,15 @@ pub struct Contacts {
     pub count_by_kind: [u64; 3],
     /// The pairs, sorted; the first ones when there are more than were asked for.
     pub list: Vec<Contact>,
+    /// The search ended before it had looked everywhere: there may be more pairs than `count`.
+    pub is_cut_short: bool,
+}
+
+impl Contacts {
+    /// True when every pair that there is stands in the list.
+    pub fn are_all_listed(&self) -> bool {
+        !self.is_cut_short && self.list.len() as u64 == self.count
+    }
 }
 
 /// When a search may end.
@@ -44,14 +53,37 @@ pub enum Search {
         /// Most pairs to keep.
         keep: usize,
     },
+    /// The same, but where there are more than so many pairs, the rest is not counted.
+    UpTo {
+        /// Most pairs to count and to keep.
+        most: usize,
+    },
+    /// As [`All`](Self::All), but where some are found and that takes more than 2^26 units of work and 1,024 for each triangle, the rest is not
+    /// counted.
+    Most {
+        /// Most pairs to keep.
+        keep: usize,
+    },
 }
+
+/// Units of work after which a search for all contacts ends with those it has found, for each triangle and whatever their number.
+/// Meshes that are as they are meant take 20 to 150 units a triangle.
+const WORK_PER_TRIANGLE: u64 = 1024;
+const WORK_MIN: u64 = 1 << 26;
+
+/// What a pair of triangles counts, and what more it counts when they meet: then most signs are those of exact arithmetic.
+const COST: u64 = 4;
+const COST_OF_CONTACT: u64 = 32;
+
+/// What a pair of triangles counts whose coordinates are so far apart that their signs are those of big integers.
+const COST_IN_BIG_INTEGERS: u64 = 2048;
 
 /// Finds the pairs of triangles in `bvh` that meet in more than a common vertex or a common edge, exactly.
 ///
 /// Equal positions must have equal indices, triangles must not be degenerate. Two triangles with the same three
 /// vertices are not reported. Pairs at a vertex of `terrains`, if there are any, are not looked at.
 ///
-/// Spends one work unit for each pair of boxes and of triangles it looks at.
+/// Spends one work unit for each pair of boxes it looks at, and more for each pair of triangles.
 ///
 /// # Errors
 /// When the budget stops the run.
@@ -63,17 +95,31 @@ pub fn self_contacts(
     search: Search,
     budget: &Budget,
 ) -> Result<Contacts, Stopped> {
-    let surface = Surface { positions, triangles, terrains, frame: bvh.frame() };
-    let found = descent::pairs(bvh.tree(), surface, search, budget)?;
-    if search == Search::First && found.count > 0 {
-        return Ok(found);
-    }
+    let may_take_big_integers = !suits_expansions(positions);
+    let surface = Surface { positions, triangles, terrains, frame: bvh.frame(), may_take_big_integers };
+    let work_max = match search {
+        Search::Most { .. } => WORK_MIN + WORK_PER_TRIANGLE * triangles.len() as u64,
+        Search::First | Search::All { .. } | Search::UpTo { .. } => u64::MAX,
+    };
+    let (found, mut work) = descent::pairs(bvh.tree(), surface, search, work_max, budget)?;
     let mut all = Gathered::new(search);
     all.merge(found);
+    if all.is_enough() {
+        return Ok(all.finish());
+    }
     for stars in bvh.stars().chunks(STARS_AT_A_TIME) {
-        let found =
-            par::try_map_ranges(stars.len(), 1, |i| star_contacts(surface, &stars[i.start], search, budget))?;
-        found.into_iter().for_each(|contacts| all.merge(contacts));
+        let left = work_max.saturating_sub(work);
+        if left == 0 && all.has_any() {
+            all.cut_short();
+            break;
+        }
+        let found = par::try_map_ranges(stars.len(), 1, |i| {
+            star_contacts(surface, &stars[i.start], search, left / SHARE_OF_STAR, budget)
+        })?;
+        for (contacts, its_work) in found {
+            all.merge(contacts);
+            work += its_work;
+        }
         if all.is_enough() {
             break;
         }
@@ -81,22 +127,26 @@ pub fn self_contacts(
     Ok(all.finish())
 }
 
+/// A star may use this share of the work that is left, once it has found something.
+const SHARE_OF_STAR: u64 = 8;
+
 /// Stars that are searched before it is seen whether that is enough.
 const STARS_AT_A_TIME: usize = 64;
 
-/// The contacts inside a star: two triangles of one hub meet beyond it exactly when they have a common direction from
-/// it, so the boxes to compare are those of their directions. A flat fan of any size has few pairs of them.
+/// The contacts inside a star, and the units of work they took: two triangles of one hub meet beyond it exactly when they have a
+/// common direction from it, so the boxes to compare are those of their directions. A flat fan of any size has few pairs of them.
 fn star_contacts(
     surface: Surface<'_>,
     star: &Star,
     search: Search,
+    work_max: u64,
     budget: &Budget,
-) -> Result<Contacts, Stopped> {
+) -> Result<(Contacts, u64), Stopped> {
     if surface.terrains.is_some_and(|terrains| terrains.holds(star.hub)) {
-        return Ok(Contacts::default());
+        return Ok((Contacts::default(), 0));
     }
     let directions = Tree::build(&Directions { surface, star }, budget)?;
-    descent::pairs(&directions, surface, search, budget)
+    descent::pairs(&directions, surface, search, work_max, budget)
 }
 
 /// The triangles that are searched.
@@ -106,12 +156,22 @@ struct Surface<'s> {
     triangles: &'s [[u32; 3]],
     terrains: Option<&'s Terrains>,
     frame: Frame,
+    /// Coordinates of some triangles are so far apart that signs are those of big integers.
+    may_take_big_integers: bool,
 }
 
 impl<'s> Surface<'s> {
     #[inline]
     fn points(&self, corners: [u32; 3]) -> [&'s DVec3; 3] {
         corners.map(|v| &self.positions[v as usize])
+    }
+
+    /// Work units of a pair of triangles.
+    #[inline]
+    fn cost_of_pair(&self, a: [u32; 3], b: [u32; 3]) -> u64 {
+        let takes_big_integers =
+            self.may_take_big_integers && !suits_expansions(self.points(a).into_iter().chain(self.points(b)));
+        if takes_big_integers { COST_IN_BIG_INTEGERS } else { COST }
     }
 
     /// Triangle `i` of a leaf, to be compared with boxes.
@@ -133,20 +193,30 @@ impl<'s> Surface<'s> {
 struct Gathered {
     contacts: Contacts,
     keep: usize,
-    is_one_enough: bool,
+    /// More than so many are enough.
+    most: u64,
 }
 
 impl Gathered {
     fn new(search: Search) -> Self {
-        let (keep, is_one_enough) = match search {
-            Search::First => (1, true),
-            Search::All { keep } => (keep, false),
+        let (keep, most) = match search {
+            Search::First => (1, 0),
+            Search::UpTo { most } => (most, most as u64),
+            Search::All { keep } | Search::Most { keep } => (keep, u64::MAX),
         };
-        Self { contacts: Contacts::default(), keep, is_one_enough }
+        Self { contacts: Contacts::default(), keep, most }
     }
 
     fn is_enough(&self) -> bool {
-        self.is_one_enough && self.contacts.count > 0
+        self.contacts.count > self.most
+    }
+
+    fn has_any(&self) -> bool {
+        self.contacts.count > 0
+    }
+
+    fn cut_short(&mut self) {
+        self.contacts.is_cut_short = true;
     }
 
     fn add(&mut self, contact: Contact) {
@@ -164,6 +234,7 @@ impl Gathered {
             *sum += of_kind;
         }
         self.contacts.list.append(&mut found.list);
+        self.contacts.is_cut_short |= found.is_cut_short;
         if self.contacts.list.len() / 2 > self.keep {
             self.trim();
         }
@@ -177,5 +248,54 @@ impl Gathered {
     fn finish(mut self) -> Contacts {
         self.trim();
         self.contacts
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Triangles all through each other.
+    fn tangle(count: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let mut state = 1u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state >> 8)
+        };
+        let positions = (0..3 * count).map(|_| DVec3::new(random(), random(), random())).collect();
+        (positions, (0..count).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect())
+    }
+
+    #[test]
+    fn a_count_ends_at_its_bound_of_work_and_says_so() {
+        let (positions, triangles) = tangle(5000);
+        let count = |search, threads| {
+            par::with_threads(threads, || {
+                let budget = Budget::unlimited();
+                let bvh = Bvh::build(&positions, &triangles, None, &budget).unwrap();
+                let found = self_contacts(&positions, &triangles, &bvh, None, search, &budget).unwrap();
+                (found, budget.work_used())
+            })
+        };
+        let (all, _) = count(Search::All { keep: 0 }, 8);
+        let (most, work) = count(Search::Most { keep: 0 }, 8);
+        assert!(!all.is_cut_short && most.is_cut_short);
+        assert!(0 < most.count && most.count < all.count, "{} of {}", most.count, all.count);
+        assert!(work < 4 * (WORK_MIN + 5000 * WORK_PER_TRIANGLE), "{work}");
+        assert_eq!((most, work), count(Search::Most { keep: 0 }, 1));
+        // What is within the bound is counted in full.
+        let (positions, triangles) = tangle(200);
+        let budget = Budget::unlimited();
+        let bvh = Bvh::build(&positions, &triangles, None, &budget).unwrap();
+        let of = |search| self_contacts(&positions, &triangles, &bvh, None, search, &budget).unwrap();
+        let all = of(Search::All { keep: 9 });
+        assert_eq!(of(Search::Most { keep: 9 }), all);
+        // Up to so many are all counted, and of more there are more than that.
+        let count = all.count as usize;
+        assert_eq!(of(Search::UpTo { most: count }), of(Search::All { keep: count }));
+        let more = of(Search::UpTo { most: count - 1 });
+        assert!(more.count >= count as u64 && more.list.len() == count - 1);
+        let some = of(Search::UpTo { most: 50 });
+        assert!((51..all.count).contains(&some.count), "{} of {}", some.count, all.count);
     }
 }

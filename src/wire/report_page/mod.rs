@@ -170,7 +170,7 @@ fn found(page: &mut Page, report: &Value) {
         vec![
             Cell::Mark(tone, word),
             Cell::Text(plain::defect(text(&defect["code"])).to_owned()),
-            Cell::Number(defect["count"].to_string()),
+            Cell::Number(format!("{}{}", defect["count"], or_more(defect))),
             Cell::Text(places.join("; ")),
         ]
     };
@@ -242,6 +242,11 @@ fn done(page: &mut Page, report: &Value) {
 }
 
 /// A code as words.
+/// What is said behind the count of a defect that may be there more often.
+fn or_more(defect: &Value) -> &'static str {
+    if defect["is_at_least"] == true { " or more" } else { "" }
+}
+
 fn words(code: &str) -> String {
     code.replace(['-', '_'], " ")
 }

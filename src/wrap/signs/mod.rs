@@ -164,15 +164,15 @@ impl<'l> Signs<'l> {
     }
 
     /// Winding number at a vertex.
-    pub(super) fn winding(&self, index: usize) -> f64 {
+    pub(super) fn winding(&self, index: usize, budget: &Budget) -> Result<f64, Stopped> {
         let place = self.lattice.units(index);
-        self.open.at(place, f64::from(self.closed[index]))
+        self.open.at(place, f64::from(self.closed[index]), budget)
     }
 
     /// Whether the winding number at a vertex is at least 1/2.
-    fn is_wound(&self, index: usize) -> bool {
+    fn is_wound(&self, index: usize, budget: &Budget) -> Result<bool, Stopped> {
         let place = self.lattice.units(index);
-        self.open.is_inside(place, f64::from(self.closed[index]))
+        self.open.is_inside(place, f64::from(self.closed[index]), budget)
     }
 
     /// The outermost vertices are outside, whatever winds around them.
@@ -262,8 +262,8 @@ impl<'l> Signs<'l> {
     fn evaluate(&mut self, wanted: &[u32], budget: &Budget) -> Result<(), Stopped> {
         let signs = par::try_map_ranges(wanted.len(), 1024, |range| {
             budget.spend(range.len() as u64 * 8)?;
-            let is_inside = |&v: &u32| self.is_wound(v as usize);
-            Ok(wanted[range].iter().map(is_inside).collect::<Vec<bool>>())
+            let is_inside = |&v: &u32| self.is_wound(v as usize, budget);
+            wanted[range].iter().map(is_inside).collect::<Result<Vec<bool>, Stopped>>()
         })?;
         for (&v, is_inside) in wanted.iter().zip(signs.into_iter().flatten()) {
             self.state[v as usize] |= if is_inside { KNOWN | INSIDE } else { KNOWN };

@@ -14,9 +14,10 @@ const meshes = new Map(); // by the names that the page gives them
 let origin = null; // the middle of the mesh that came first: both are drawn around it
 
 const work = {
-  // What is needed for a first picture. `scale`: millimetres of a unit of the file.
-  read({ name, bytes, fileName, scale, isFirst }) {
-    const mesh = weld(scaled(read(new Uint8Array(bytes), fileName), scale));
+  // What is needed for a first picture. `scale`: millimetres of a unit of the file, where it does not state its own.
+  async read({ name, bytes, fileName, scale, isFirst }) {
+    const file = await read(new Uint8Array(bytes), fileName);
+    const mesh = weld(scaled(file, file.millimetres ?? scale));
     const bounds = boundsOf(mesh);
     if (!bounds.min.every(Number.isFinite)) throw new FileProblem("no-triangle");
     if (isFirst || !origin) origin = bounds.min.map((low, axis) => (low + bounds.max[axis]) / 2);
@@ -24,21 +25,21 @@ const work = {
     const flat = faceNormals(positions);
     const normals = cornerNormals(mesh, flat, mesh.vertices.length / 3);
     meshes.set(name, { ...mesh, positions, flat, bounds });
-    const { format, faceOf, faceCount } = mesh;
-    return { format, faceOf: faceOf.slice(), faceCount, bounds, origin, positions: positions.slice(), normals };
+    const { format, faceOf, faceCount, project } = mesh;
+    return { format, faceOf: faceOf.slice(), faceCount, bounds, origin, positions: positions.slice(), normals, project };
   },
 
-  // What else there is to see of a mesh, and a coarse copy of a large one.
-  look({ name }) {
+  // What else there is to see of a mesh, and coarse copies of a large one, of about so many triangles.
+  look({ name, sizes }) {
     const mesh = meshes.get(name);
     const { open, crowded, turned } = brokenEdges(mesh);
     const drawn = (halves) => segmentsOf(halves, mesh.positions);
-    const isLarge = mesh.faceOf.length > COARSE_ABOVE;
+    const wanted = mesh.faceOf.length > COARSE_ABOVE ? sizes.filter((size) => size < mesh.faceOf.length / 2) : [];
     const ends = Uint32Array.from(open, (half) => mesh.corners[half]);
     const others = Uint32Array.from(open, (half) => mesh.corners[next(half)]);
     return {
       rims: { halves: open, ends, others }, edges: { open: drawn(open), crowded: drawn(crowded), turned: drawn(turned) },
-      coarse: isLarge ? coarse(mesh.positions, mesh.bounds) : null,
+      coarse: wanted.map((size) => coarse(mesh, mesh.bounds, size)),
     };
   },
 
@@ -71,9 +72,9 @@ function scaled(mesh, scale) {
   return scale === 1 ? mesh : { ...mesh, vertices: mesh.vertices.map((value) => value * scale) };
 }
 
-self.onmessage = ({ data }) => {
+self.onmessage = async ({ data }) => {
   try {
-    const answer = work[data.work](data);
+    const answer = await work[data.work](data);
     self.postMessage({ id: data.id, answer }, buffersOf(answer));
   } catch (error) {
     const isKnown = error instanceof FileProblem;

@@ -17,13 +17,13 @@ export function findingsList(session, host) {
 export const isShownFirst = (defect) => defect.severity === "error";
 
 function finding(defect, session, host) {
-  const { code, severity, count } = defect;
+  const { code, severity, count, is_at_least: isAtLeast } = defect;
   const name = t(`defect.${code}`);
   const body = el("div", { className: "finding-body", hidden: true, id: `finding-${code}` });
   const title = el("button", {
     type: "button", className: "finding-title", "aria-expanded": "false", "aria-controls": body.id, "data-code": code,
     onclick: () => host.visit(code, 0, title.getAttribute("aria-expanded") === "true"),
-  }, el("span", { className: "name" }, name), mended(defect), el("span", { className: "count" }, number(count)));
+  }, el("span", { className: "name" }, name), mended(defect), el("span", { className: "count" }, isAtLeast ? t("or.more", { n: number(count) }) : number(count)));
   const shown = el("input", {
     type: "checkbox", checked: session.shown.has(code), "aria-label": t("show.in.view", { x: name }), title: t("show.in.view", { x: name }),
     onchange: (event) => host.show(code, event.target.checked),

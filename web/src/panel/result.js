@@ -4,7 +4,7 @@ import { copyButton, el, field, save, select } from "../dom.js";
 import { digits, length, number, percent, t } from "../text/text.js";
 import { verifier } from "./verify.js";
 
-const FORMATS = ["stl", "obj", "ply", "off", "glb", "gltf"];
+const FORMATS = ["stl", "obj", "ply", "off", "3mf", "glb", "gltf"];
 
 export function verdictCard({ report, policy }) {
   const { verdict, operation, certificate, before } = report;
@@ -35,11 +35,13 @@ function policyLine({ p3_holds: holds }, policy) {
 }
 
 // The checks of a process; those with a place fly there.
-export function checksList(printing, host) {
+export function checksList({ printing, parts = [] }, host) {
+  const hasPlaces = parts.length < 2;
   if (!printing) return null;
   const row = (check) => {
     const text = [el("span", { className: "name" }, t(`check.${check.code}`)), el("span", { className: "count" }, figure(check))];
-    const place = check.witnesses[0]?.position;
+    // Of several parts it is not said which one was measured.
+    const place = hasPlaces && check.witnesses[0]?.position;
     return el("li", { className: `check ${check.status ?? "unknown"}`, title: check.message },
       place ? el("button", { type: "button", className: "finding-title", onclick: () => host.flyToCheck(check) }, text) : el("span", { className: "finding-title" }, text));
   };
@@ -66,6 +68,7 @@ export function resultSection(session, host) {
       ...pair(t("triangles"), `${number(report.before.counts.triangles)} → ${number(certificate.triangles)}`),
       ...(deviation.hausdorff_max === null ? [] : pair(t("deviation"), length(deviation.hausdorff_max * session.reportUnit))),
       ...volume(report, session.reportUnit)),
+    report.levels.length > 1 && levelsList(session, host),
     el("div", { className: "row" }, field(t("format"), format),
       el("button", { type: "button", className: "primary", id: "download", onclick: () => host.download(session.format ?? original) }, t("download"))),
     el("div", { className: "row links" },
@@ -76,8 +79,21 @@ export function resultSection(session, host) {
     el("h3", {}, t("certificate")),
     el("p", { className: "hash" }, el("span", {}, t("hash")), el("code", { id: "hash" }, certificate.sha256), el("span", { className: "ends" }, copyButton(t("copy"), () => certificate.sha256),
       el("button", { type: "button", className: "quiet", id: "certificate", onclick: () => saveJson(certificate, `${session.stem}.certificate.json`) }, t("certificate.save")))),
-    verifier(certificate.sha256, host));
+    verifier([certificate, ...report.levels.map((level) => level.certificate)].map(({ sha256 }) => sha256), host));
 }
+
+// Levels of detail: each can be drawn, and is a file with a certificate of its own.
+function levelsList(session, host) {
+  const { levels } = session.report;
+  const row = (level, at) => el("li", {},
+    el("button", { type: "button", className: "finding-title", "data-level": String(at), "aria-pressed": String(at === session.level), title: `SHA-256 ${level.certificate.sha256}`, onclick: () => host.showLevel(at) },
+      el("span", { className: "name" }, t("level.told", { n: number(level.faces_after) }), level.distance && el("small", {}, t("level.away", { d: length(farthest(level) * session.reportUnit) }))),
+      !level.is_reached && el("span", { className: "tag" }, t("level.short"))),
+    el("button", { type: "button", className: "quiet", "data-level-file": String(at), "aria-label": `${t("download")}: ${t("level.told", { n: number(level.faces_after) })}`, onclick: () => host.downloadLevel(at) }, "⤓"));
+  return el("div", {}, el("h3", {}, t("levels")), el("ol", { className: "findings levels" }, levels.map(row)));
+}
+
+const farthest = ({ distance }) => Math.max(distance.input_to_result.max, distance.result_to_input.max);
 
 const pair = (name, value) => [el("dt", {}, name), el("dd", {}, value)];
 const saveJson = (value, name) => save(new Blob([JSON.stringify(value, null, 2)], { type: "application/json" }), name);

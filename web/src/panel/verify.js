@@ -3,14 +3,15 @@
 import { el } from "../dom.js";
 import { t } from "../text/text.js";
 
-export function verifier(sha256, host) {
+// `digests`: of the certified files.
+export function verifier(digests, host) {
   const answer = el("p", { className: "answer", role: "status", id: "verified" });
   const check = async (file) => {
     answer.className = "answer";
     answer.textContent = t("view.working");
     try {
       const { digest, isValid } = await host.verify(file);
-      const isSame = digest === sha256;
+      const isSame = digests.includes(digest);
       answer.classList.add(isSame && isValid ? "good" : "bad");
       answer.textContent = `${t(isSame ? "verify.same" : "verify.other")} ${t(isValid ? "verify.valid" : "verify.invalid")}`;
     } catch (error) {
@@ -20,7 +21,7 @@ export function verifier(sha256, host) {
   };
   const input = el("input", { type: "file", id: "verify-file", className: "unseen", onchange: () => { if (input.files[0]) check(input.files[0]); input.value = ""; } });
   const zone = el("label", { className: "drop small", for: "verify-file" }, el("strong", {}, t("verify")), el("span", {}, t("verify.more")));
-  droppable(zone, check);
+  droppable(zone, ([file]) => check(file));
   return el("div", { className: "verify" }, input, zone, answer);
 }
 
@@ -35,7 +36,7 @@ export function droppable(element, taken) {
   element.addEventListener("dragleave", (event) => stop(event, false));
   element.addEventListener("drop", (event) => {
     stop(event, false);
-    const [file] = event.dataTransfer.files;
-    if (file) taken(file);
+    const files = [...event.dataTransfer.files];
+    if (files.length) taken(files);
   });
 }

@@ -4,26 +4,29 @@ import { FileProblem } from "./bytes.js";
 import { readObj } from "./obj.js";
 import { readOff } from "./off.js";
 import { readPly } from "./ply.js";
-import { isBinaryStl, looksLikeAsciiStl, readStl } from "./stl.js";
+import { isWholeStl, looksLikeAsciiStl, readStl } from "./stl.js";
+import { readThreemf } from "./threemf.js";
 
-const READERS = { stl: readStl, obj: readObj, off: readOff, ply: readPly };
+const READERS = { stl: readStl, obj: readObj, off: readOff, ply: readPly, "3mf": readThreemf };
 
 export function sniff(bytes, name) {
   const begin = new TextDecoder("latin1").decode(bytes.subarray(0, 64)).trimStart();
   const extension = name.toLowerCase().split(".").pop();
+  if (begin.startsWith("PK\u0003\u0004")) return "3mf";
+  if (/^(glTF|\{)/.test(begin)) return null; // glTF: the service makes an STL of it
   if (/^ply\s/.test(begin)) return "ply";
   if (/^(ST)?C?N?4?OFF\b/i.test(begin)) return "off";
   if (looksLikeAsciiStl(bytes)) return "stl";
   if (READERS[extension]) return extension;
-  if (isBinaryStl(bytes)) return "stl";
+  if (isWholeStl(bytes)) return "stl";
   return /^(#|v |f |o |g |mtllib)/.test(begin) ? "obj" : null;
 }
 
 // A mesh to draw. Files of other formats, and broken ones, are problems: the service says more about them.
-export function read(bytes, name) {
+export async function read(bytes, name) {
   const format = sniff(bytes, name);
   if (!format) throw new FileProblem("not-drawn-here");
-  const mesh = READERS[format](bytes);
+  const mesh = await READERS[format](bytes);
   if (mesh.faceOf.length === 0) throw new FileProblem("no-triangle");
   return { format, ...mesh };
 }

@@ -5,11 +5,10 @@ import { FileProblem, Numbers, lines } from "./bytes.js";
 const HEAD = 84;
 const RECORD = 50;
 
-export const isBinaryStl = (bytes) => {
-  if (bytes.length < HEAD) return false;
-  const count = new DataView(bytes.buffer, bytes.byteOffset).getUint32(80, true);
-  return bytes.length === HEAD + count * RECORD || !startsWithSolid(bytes);
-};
+// True when it is exactly as long as its count says.
+export const isWholeStl = (bytes) => bytes.length >= HEAD && bytes.length === HEAD + new DataView(bytes.buffer, bytes.byteOffset).getUint32(80, true) * RECORD;
+
+const isBinaryStl = (bytes) => isWholeStl(bytes) || (bytes.length >= HEAD && !startsWithSolid(bytes));
 
 const startsWithSolid = (bytes) => /^\s*solid/i.test(new TextDecoder("latin1").decode(bytes.subarray(0, 80)));
 

@@ -10,13 +10,15 @@ const STEP = Math.PI / 18; // of an arrow key
 const isCalm = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 export class Camera {
-  constructor(element, changed) {
-    this.changed = changed;
+  constructor(element, { moved, held }) {
+    this.changed = moved;
     this.camera = new PerspectiveCamera(35, 1, 0.1, 1000);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, element);
     this.controls.zoomToCursor = true;
     this.controls.addEventListener("change", () => this.moved());
+    this.controls.addEventListener("start", () => held(true));
+    this.controls.addEventListener("end", () => held(false));
     this.radius = 1;
   }
 

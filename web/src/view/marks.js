@@ -1,9 +1,6 @@
 // What is drawn over a surface: lines some pixels wide, faces, and points. What is hidden shines through faintly.
 
-import {
-  BufferAttribute, BufferGeometry, DoubleSide, GLSL3, Group, InstancedBufferAttribute, InstancedBufferGeometry, Mesh, Points,
-  RawShaderMaterial, Sphere,
-} from "three";
+import { BufferAttribute, BufferGeometry, DoubleSide, GLSL3, Group, Mesh, Points, RawShaderMaterial, Sphere } from "three";
 import { rgb } from "./colors.js";
 
 const head = `
@@ -14,8 +11,7 @@ uniform float width;
 out vec3 place;`;
 
 const lineShader = `${head}
-in vec2 position;
-in vec3 from;
+in vec3 position;
 in vec3 to;
 vec4 clip(vec3 at) {
   vec4 view = modelViewMatrix * vec4(at, 1.0);
@@ -23,15 +19,17 @@ vec4 clip(vec3 at) {
   return projectionMatrix * view;
 }
 void main() {
-  vec4 a = clip(from);
+  int number = gl_VertexID % 4;
+  vec2 corner = vec2(number == 1 || number == 2, number < 2 ? -1.0 : 1.0);
+  vec4 a = clip(position);
   vec4 b = clip(to);
-  place = mix(from, to, position.x);
+  place = mix(position, to, corner.x);
   if (a.w < 0.001 || b.w < 0.001) { gl_Position = vec4(2.0, 2.0, 2.0, 1.0); return; }
   vec2 along = (b.xy / b.w - a.xy / a.w) * pixels;
   float size = length(along);
   vec2 unit = size > 0.0001 ? along / size : vec2(1.0, 0.0);
-  vec4 end = mix(a, b, position.x);
-  vec2 aside = vec2(-unit.y, unit.x) * position.y + unit * (position.x - 0.5);
+  vec4 end = mix(a, b, corner.x);
+  vec2 aside = vec2(-unit.y, unit.x) * corner.y + unit * (corner.x - 0.5);
   end.xy += aside * width / pixels * end.w;
   gl_Position = end;
 }`;
@@ -60,25 +58,28 @@ void main() {
   color = vec4(tint, opacity);
 }`;
 
-// `shared`: uniforms that all marks of a view have in common.
+// `shared`: uniforms that all marks of a view have in common. What is behind the surface is in a group of its own, `hidden`.
 export function marks({ segments, faces, points }, color, shared, strength = 1) {
   const group = new Group();
-  const add = (make, shader, values) => {
+  const hidden = new Group();
+  group.add(hidden);
+  group.hidden = hidden;
+  const add = (Kind, geometry, shader, values) => {
+    geometry.boundingSphere = new Sphere(); // its own would be sought in vain
     for (const [depthTest, opacity] of [[true, values.opacity], [false, values.opacity * 0.22]]) {
       const uniforms = { ...shared, tint: { value: rgb(color) }, width: { value: values.width }, opacity: { value: opacity }, isPoint: { value: Boolean(values.isPoint) } };
       const material = new RawShaderMaterial({
         vertexShader: shader, fragmentShader, uniforms, glslVersion: GLSL3, side: DoubleSide, transparent: true, depthTest, depthWrite: false,
       });
-      const object = make(material);
-      object.geometry.boundingSphere = new Sphere(); // its own would be sought in vain
+      const object = new Kind(geometry, material);
       object.frustumCulled = false;
       object.renderOrder = depthTest ? 2 : 1;
-      group.add(object);
+      (depthTest ? group : hidden).add(object);
     }
   };
-  if (faces?.length) add((material) => new Mesh(plain(faces), material), plainShader, { opacity: 0.4 * strength + 0.05, width: 1 });
-  if (segments?.length) add((material) => new Mesh(lines(segments), material), lineShader, { opacity: 0.95, width: 1.6 + 1.6 * strength });
-  if (points?.length) add((material) => new Points(plain(points), material), plainShader, { opacity: 0.95, width: 5 + 4 * strength, isPoint: true });
+  if (faces?.length) add(Mesh, plain(faces), plainShader, { opacity: 0.4 * strength + 0.05, width: 1 });
+  if (segments?.length) add(Mesh, lines(segments), lineShader, { opacity: 0.95, width: 1.6 + 1.6 * strength });
+  if (points?.length) add(Points, plain(points), plainShader, { opacity: 0.95, width: 5 + 4 * strength, isPoint: true });
   return group;
 }
 
@@ -88,15 +89,23 @@ function plain(positions) {
   return geometry;
 }
 
+// Four corners for each segment, each with both ends. Instances would be fewer bytes, but each is a call of its own where
+// no graphics card draws.
 function lines(segments) {
-  const geometry = new InstancedBufferGeometry();
-  geometry.setAttribute("position", new BufferAttribute(new Float32Array([0, -1, 1, -1, 1, 1, 0, 1]), 2));
-  geometry.setIndex([0, 1, 2, 0, 2, 3]);
-  const ends = Float32Array.from(segments);
-  const half = (offset) => Float32Array.from({ length: ends.length / 2 }, (_, i) => ends[((i / 3) | 0) * 6 + offset + (i % 3)]);
-  geometry.setAttribute("from", new InstancedBufferAttribute(half(0), 3));
-  geometry.setAttribute("to", new InstancedBufferAttribute(half(3), 3));
-  geometry.instanceCount = ends.length / 6;
+  const count = segments.length / 6;
+  const [from, to] = [new Float32Array(count * 12), new Float32Array(count * 12)];
+  const index = new Uint32Array(count * 6);
+  for (let at = 0; at < count; at += 1) {
+    for (let i = 0; i < 12; i += 1) {
+      from[at * 12 + i] = segments[at * 6 + (i % 3)];
+      to[at * 12 + i] = segments[at * 6 + 3 + (i % 3)];
+    }
+    for (let i = 0; i < 6; i += 1) index[at * 6 + i] = at * 4 + [0, 1, 2, 0, 2, 3][i];
+  }
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(from, 3));
+  geometry.setAttribute("to", new BufferAttribute(to, 3));
+  geometry.setIndex(new BufferAttribute(index, 1));
   return geometry;
 }
 

@@ -12,17 +12,21 @@ uniform mat4 projectionMatrix;
 uniform mat3 normalMatrix;
 in vec3 position;
 in vec4 normal;
-in float value;
 out vec3 seen;
 out vec3 turned;
 out vec3 place;
+#ifndef COARSE
+in float value;
 out vec3 share;
 out float shown;
+#endif
 void main() {
+#ifndef COARSE
   int corner = gl_VertexID % 3;
   share = vec3(corner == 0, corner == 1, corner == 2);
-  place = position;
   shown = value;
+#endif
+  place = position;
   turned = normalMatrix * normal.xyz;
   vec4 view = modelViewMatrix * vec4(position, 1.0);
   seen = view.xyz;
@@ -36,8 +40,11 @@ uniform vec3 ramp[4];
 uniform vec4 plane;
 uniform int mode;
 uniform bool isSmooth, hasEdges, hasBacks, isCut;
-in vec3 seen, turned, place, share;
+in vec3 seen, turned, place;
+#ifndef COARSE
+in vec3 share;
 in float shown;
+#endif
 out vec4 color;
 
 vec3 ofRamp(float t) {
@@ -59,27 +66,34 @@ void main() {
     color = vec4(mix(cut, cut * 1.12, stripe), 1.0);
     return;
   }
+  vec3 tint = base;
+#ifdef COARSE
+  vec3 n = normalize(turned);
+  if (dot(n, seen) > 0.0) n = -n;
+#else
   vec3 flatNormal = normalize(cross(dFdx(seen), dFdy(seen)));
   vec3 n = isSmooth && length(turned) > 0.1 ? normalize(turned) : flatNormal;
   if (dot(n, seen) > 0.0 && (isBack || !isSmooth)) n = -n;
-  vec3 tint = base;
   if (mode == 1 && shown < 0.5) tint = fresh;
   if (mode == 2 && shown < 0.999) tint = ofRamp(shown * 255.0 / 254.0);
+#endif
   if (isBack && hasBacks) tint = back;
   float key = max(dot(n, normalize(vec3(-0.35, 0.55, 0.75))), 0.0);
   float rim = max(dot(n, normalize(vec3(0.6, -0.3, 0.5))), 0.0);
   vec3 lit = tint * (0.5 + 0.5 * key + 0.22 * rim);
   lit += 0.10 * pow(max(dot(reflect(normalize(seen), n), normalize(vec3(-0.35, 0.55, 0.75))), 0.0), 24.0);
+#ifndef COARSE
   if (hasEdges) {
     vec3 width = fwidth(share);
     vec3 near = smoothstep(width * 0.2, width * 1.1, share);
     lit = mix(edge, lit, 0.45 + 0.55 * min(near.x, min(near.y, near.z)));
   }
+#endif
   color = vec4(lit, 1.0);
 }`;
 
 // Materials of one set of uniforms. Of two sides, the back faces lie a little deeper, so that they do not shine out along
-// edges; `both` is the quicker way.
+// edges; `both` is the quicker way. A coarse copy is smooth, without edges and values.
 export function surfaceMaterials() {
   const uniforms = {
     base: { value: [1, 1, 1] }, fresh: { value: [0, 1, 0] }, back: { value: [1, 0, 0] }, cut: { value: [0, 0, 0] },
@@ -89,14 +103,16 @@ export function surfaceMaterials() {
   };
   const make = (values) => new RawShaderMaterial({ vertexShader, fragmentShader, uniforms, glslVersion: GLSL3, ...values });
   const back = { side: BackSide, defines: { ONLY_BACKS: "" }, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 8 };
-  return { uniforms, sides: [make({ side: FrontSide }), make(back)], both: [make({ side: DoubleSide })] };
+  return { uniforms, sides: [make({ side: FrontSide }), make(back)], both: [make({ side: DoubleSide })], coarse: [make({ side: DoubleSide, defines: { COARSE: "" } })] };
 }
 
-export function surface(positions, normals, materials) {
+// Triangles one by one, which have values; or of a coarse copy, by `index`.
+export function surface({ positions, normals, index }, materials) {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(positions, 3));
   geometry.setAttribute("normal", new BufferAttribute(normals, 4, true));
-  geometry.setAttribute("value", new BufferAttribute(new Uint8Array(positions.length / 3).fill(NO_VALUE), 1, true));
+  if (index) geometry.setIndex(new BufferAttribute(index, 1));
+  else geometry.setAttribute("value", new BufferAttribute(new Uint8Array(positions.length / 3).fill(NO_VALUE), 1, true));
   geometry.boundingSphere = new Sphere(new Vector3(), 1);
   const group = new Group();
   for (const material of materials) {

@@ -9,8 +9,12 @@ import { modeOf, setValues, surface, surfaceMaterials } from "./surface.js";
 
 const SLOW_MS = 45; // a frame that takes longer makes turning tedious
 const STILL_MS = 160; // without a movement, all of it is drawn again
-// What is drawn while the view moves, where frames are slow: less and less. The coarse copy is taken where there is one.
-const EASINGS = [{ isCoarse: false, pixels: 1 }, { isCoarse: true, pixels: 1 }, { isCoarse: true, pixels: 0.5 }, { isCoarse: true, pixels: 0.33 }];
+// What is drawn while the view moves, where frames are slow: less and less. A coarse copy is taken where there is one.
+const EASINGS = [{ copy: null, pixels: 1 }, { copy: 0, pixels: 1 }, { copy: 1, pixels: 1 }, { copy: 1, pixels: 0.6 }, { copy: 1, pixels: 0.4 }];
+// Triangles of the coarse copies, about.
+export const COPIES = [120_000, 16_000];
+// Triangles from which on a surface is drawn in one pass where no graphics card draws it: two take twice as long.
+const ONE_PASS_ABOVE = 300_000;
 
 export class View {
   constructor(canvas, { onDrawn, onEased }) {
@@ -18,8 +22,9 @@ export class View {
     this.onDrawn = onDrawn;
     this.onEased = onEased;
     this.easing = 0;
-    this.renderer = new WebGLRenderer({ canvas, antialias: !isSoftware(), alpha: true, powerPreference: "high-performance" });
-    this.camera = new Camera(canvas, () => this.moved());
+    this.isSoftware = isSoftware();
+    this.renderer = new WebGLRenderer({ canvas, antialias: !this.isSoftware, alpha: true, powerPreference: "high-performance" });
+    this.camera = new Camera(canvas, { moved: () => this.moved(), held: (isHeld) => this.hold(isHeld) });
     this.shared = { pixels: { value: new Vector2(1, 1) }, isCut: { value: false }, plane: { value: [0, 0, 1, 0] } };
     this.sides = { before: this.side(), after: this.side() };
     this.settings = { arrangement: "before", divider: 0.5, colors: "plain", smooth: false, edges: false, backs: true, grid: true };
@@ -30,14 +35,15 @@ export class View {
   }
 
   side() {
-    return { scene: new Scene(), materials: surfaceMaterials(), surface: null, coarse: null, marks: new Map() };
+    return { scene: new Scene(), materials: surfaceMaterials(), surface: null, coarse: [], marks: new Map() };
   }
 
   // A mesh for a side; the first one of a file says where the bed is and how far the camera.
   setMesh(name, { positions, normals, bounds }, isFirst) {
     this.clear(name);
     const side = this.sides[name];
-    side.surface = surface(positions, normals, side.materials.sides);
+    const isQuick = this.isSoftware && positions.length / 9 > ONE_PASS_ABOVE;
+    side.surface = surface({ positions, normals }, isQuick ? side.materials.both : side.materials.sides);
     side.scene.add(side.surface);
     if (isFirst) {
       this.easing = 0;
@@ -48,18 +54,25 @@ export class View {
     this.applyAll();
   }
 
-  // A coarse copy to draw in its place while the view moves, where whole frames are slow.
-  setCoarse(name, positions) {
+  // Coarse copies, the finest first, to draw in its place while the view moves, where whole frames are slow.
+  setCoarse(name, copies) {
     const side = this.sides[name];
     if (!side.surface) return;
-    side.coarse = surface(positions, new Int8Array((positions.length / 3) * 4), side.materials.both);
-    side.coarse.visible = false;
-    side.scene.add(side.coarse);
-    if (this.measure() > SLOW_MS) this.easing = Math.max(this.easing, 1);
+    side.coarse = copies.map((copy) => surface(copy, side.materials.coarse));
+    side.scene.add(...side.coarse);
+    this.isMoving = true;
+    while (this.easing < EASINGS.length - 1 && this.measure() > SLOW_MS) this.easing += 1;
+    this.isMoving = false;
+    this.invalidate();
   }
 
-  // Milliseconds of a frame of the whole mesh.
+  // Milliseconds of a frame, once what it needs has been loaded.
   measure() {
+    this.timed();
+    return this.timed();
+  }
+
+  timed() {
     const gl = this.renderer.getContext();
     const begin = performance.now();
     this.draw();
@@ -81,11 +94,11 @@ export class View {
   clear(name) {
     const side = this.sides[name];
     for (const code of [...side.marks.keys()]) this.setMarks(name, code, null);
-    for (const key of ["surface", "coarse"]) {
-      side[key]?.geometry.dispose();
-      side[key]?.removeFromParent();
-      side[key] = null;
+    for (const mesh of [side.surface, ...side.coarse]) {
+      mesh?.geometry.dispose();
+      mesh?.removeFromParent();
     }
+    Object.assign(side, { surface: null, coarse: [] });
     this.invalidate();
   }
 
@@ -192,9 +205,19 @@ export class View {
 
   moved() {
     this.isMoving = true;
-    clearTimeout(this.rest);
-    this.rest = setTimeout(() => { this.isMoving = false; this.invalidate(); }, STILL_MS);
+    this.waitForRest();
     this.invalidate();
+  }
+
+  // While the view is held it moves: after a slow frame, the next movement is still on its way.
+  hold(isHeld) {
+    this.isHeld = isHeld;
+    this.waitForRest();
+  }
+
+  waitForRest() {
+    clearTimeout(this.rest);
+    if (!this.isHeld) this.rest = setTimeout(() => { this.isMoving = false; this.invalidate(); }, STILL_MS);
   }
 
   invalidate() {
@@ -229,13 +252,18 @@ export class View {
     this.onDrawn();
   }
 
+  // The copy of a side that is drawn while the view moves; undefined: none.
+  easedCopy(name) {
+    const { copy } = EASINGS[this.easing];
+    const { coarse } = this.sides[name];
+    return copy === null ? undefined : coarse[Math.min(copy, coarse.length - 1)];
+  }
+
   drawSide(name, [left, right], [from, to], height) {
     const side = this.sides[name];
-    const isCoarse = this.ease.isCoarse && Boolean(side.coarse);
-    if (side.surface) side.surface.visible = !isCoarse;
-    if (side.coarse) side.coarse.visible = isCoarse;
-    // Corners of the coarse copy have no normals of their own.
-    side.materials.uniforms.isSmooth.value = this.settings.smooth && !isCoarse;
+    const drawn = (this.isMoving && this.easedCopy(name)) || side.surface;
+    for (const mesh of [side.surface, ...side.coarse]) if (mesh) mesh.visible = mesh === drawn;
+    for (const { hidden } of side.marks.values()) hidden.visible = this.ease === EASINGS[0];
     this.renderer.setViewport(left, 0, right - left, height);
     this.renderer.setScissor(from, 0, to - from, height);
     this.renderer.render(side.scene, this.camera.camera);

@@ -1,0 +1,142 @@
+// Kinds of files and of results: projects of several parts, GLB, levels of detail, several files at once.
+
+import assert from "node:assert/strict";
+import { createHash } from "node:crypto";
+import { readFileSync } from "node:fs";
+import { SAMPLES } from "../../web/src/samples.js";
+import { drop, opened, picture, repaired, shot, url, withPage } from "./browser.mjs";
+import { serious } from "./ways.mjs";
+
+const sha256 = (bytes) => createHash("sha256").update(bytes).digest("hex");
+
+async function saved(page, selector) {
+  const [download] = await Promise.all([page.waitForEvent("download"), page.click(selector)]);
+  return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
+}
+
+export async function project(browser) {
+  await withPage(browser, {}, async (page) => {
+    await page.click("#sample-project");
+    await opened(page);
+    const told = async () => page.locator("#parts .part").evaluateAll((rows) => rows.map((row) => [row.querySelector(".name").firstChild.textContent, row.querySelector(".tag").textContent]));
+    assert.deepEqual(await told(), [["Plate", "sound"], ["Cup", "defects"], ["Ball", "defects"]]);
+    assert.ok(await page.isDisabled("#units"), "a 3MF states its unit");
+    const whole = await picture(page);
+    assert.ok(whole.orange > 0.0005 && whole.red > 0.005, "both cups are open, and the ball is inside out");
+
+    await page.click("[data-part='2']");
+    await page.waitForSelector("#view[data-place='part 2']");
+    assert.ok((await picture(page)).red > whole.red * 2, "the ball is near");
+    // In its own coordinates the rim is where the plate is.
+    await page.click(".finding-title[data-code=boundary-loop]");
+    await page.waitForSelector("#ring:not([hidden])");
+    assert.ok((await picture(page)).orange > whole.orange, "the rim is lit where the build has it");
+    await serious(page, "with parts");
+    await shot(page, "project");
+
+    await page.click("#repair");
+    await repaired(page);
+    assert.deepEqual((await told()).map(([, tag]) => tag), ["sound", "sound", "sound"]);
+    assert.match(await page.textContent("#parts"), /the same bytes come back.*2 times/);
+    await page.waitForSelector("#legend .new");
+    assert.match(await page.textContent("#legend"), /kept 1,248new 4gone 0/);
+    await shot(page, "project-mended");
+
+    // Each format is a file of its own, and the first one can be had again.
+    for (const format of ["glb", "gltf", "stl", "3mf"]) {
+      await page.selectOption("#format", format);
+      const { name, bytes } = await saved(page, "#download");
+      assert.equal(name, `project-repaired.${format}`);
+      assert.equal(sha256(bytes), await page.textContent("#hash"), format);
+      const verdict = await fetch(`${url}/v1/verify`, { method: "POST", headers: { "Content-Type": "application/octet-stream" }, body: bytes });
+      assert.equal((await verdict.json()).input.format, format);
+    }
+    assert.equal(await page.locator("#parts .part").count(), 3);
+
+    await page.reload();
+    await repaired(page);
+    assert.equal(await page.locator("#parts .part").count(), 3, "a job of a project opens again");
+    assert.ok((await picture(page)).variance > 200);
+  });
+}
+
+// The service draws what is not read here.
+export async function glb(browser) {
+  const convert = async (format) => Buffer.from(await (await fetch(`${url}/v1/convert?output_format=${format}`, { method: "POST", headers: { "Content-Type": "application/octet-stream" }, body: SAMPLES.scan() })).arrayBuffer());
+  for (const format of ["glb", "gltf"]) {
+    await withPage(browser, {}, async (page) => {
+      await drop(page, "body", `scan.${format}`, await convert(format));
+      await page.waitForSelector("#view[data-drawn=before]");
+      await opened(page);
+      assert.match(await page.textContent("#size"), /75\.\d+ × 58\.\d+ × 68\.\d+ mm/, "metres are millimetres here");
+      assert.equal(await page.locator("#units option").first().textContent(), "m");
+      assert.ok((await picture(page)).orange > 0.0005, "rims are lit");
+      await page.click("#repair");
+      await repaired(page);
+      assert.equal((await saved(page, "#download")).name, `scan-repaired.${format}`);
+    });
+  }
+}
+
+export async function levels(browser) {
+  await withPage(browser, { acceptDownloads: true }, async (page) => {
+    await page.click("#sample-scan");
+    await opened(page);
+    await page.locator("#share").fill("50");
+    await page.selectOption("#levels", "3");
+    const sent = page.waitForRequest((request) => request.method() === "POST" && (request.postData() ?? "").includes('"repair"'));
+    await page.click("#repair");
+    assert.deepEqual(JSON.parse((await sent).postData()).targets, [{ ratio: 0.5 }, { ratio: 0.25 }, { ratio: 0.125 }]);
+    await repaired(page);
+    const counts = (await page.locator(".levels .name").evaluateAll((names) => names.map((name) => Number(name.firstChild.textContent.replace(/\D/g, "")))));
+    assert.equal(counts.length, 3);
+    assert.ok(counts[0] > counts[1] * 1.8 && counts[1] > counts[2] * 1.8, counts.join());
+    await page.waitForSelector("#legend .new");
+    const first = await page.textContent("#legend");
+    await page.click("[data-level='2']");
+    await page.waitForSelector("[data-level='2'][aria-pressed=true]");
+    await page.waitForFunction((before) => document.querySelector("#legend .new") && document.querySelector("#legend").textContent !== before, first);
+    const [shown, fresh] = (await page.textContent("#legend")).replaceAll(",", "").match(/\d+/g).map(Number);
+    assert.equal(shown + fresh, counts[2], "the third level is drawn");
+    await serious(page, "with levels");
+    await shot(page, "levels");
+    const { name, bytes } = await saved(page, "[data-level-file='1']");
+    assert.equal(name, "scan-repaired-2.off");
+    assert.equal(Number(bytes.toString().split(/\s+/)[2]), counts[1]);
+    await drop(page, ".verify .drop", name, bytes);
+    await page.waitForSelector("#verified.good");
+  });
+}
+
+// Two washers that share a half, and a file that is no solid.
+export async function several(browser) {
+  const other = SAMPLES.sound().split("\n").map((line, at) => {
+    const [x, ...more] = line.split(" ");
+    return at > 1 && more.length === 2 ? [Number(x) + 6, ...more].join(" ") : line;
+  }).join("\n");
+  const file = (name, text) => ({ name, mimeType: "", buffer: Buffer.from(text) });
+  await withPage(browser, {}, async (page) => {
+    await page.setInputFiles("#file", [file("a.off", SAMPLES.sound()), file("b.off", other)]);
+    await page.waitForSelector(".several");
+    assert.deepEqual(await page.locator(".several li").allTextContents(), ["a.off", "b.off"]);
+    await serious(page, "with several files");
+    await shot(page, "several");
+    await page.selectOption("#several-how", "intersection");
+    await page.click("#several-combine");
+    await opened(page);
+    assert.equal(await page.textContent("#file-name"), "intersection.off");
+    assert.match(await page.textContent("#size"), /^6 × /);
+    assert.match(await page.textContent("#verdict h2"), /A valid solid/);
+
+    await page.setInputFiles("#file", [file("a.off", SAMPLES.sound()), file("scan.off", SAMPLES.scan())]);
+    await page.click("#several-combine");
+    const notice = await page.waitForSelector('.notice[data-code="input-not-solid"]');
+    assert.match(await notice.textContent(), /no closed solid/);
+    await page.setInputFiles("#file", [file("a.off", SAMPLES.sound()), file("b.off", other)]);
+    await page.click(".several .quiet");
+    await opened(page);
+    assert.equal(await page.textContent("#file-name"), "a.off");
+    await page.setInputFiles("#file", Array.from({ length: 33 }, (_, at) => file(`${at}.off`, "OFF\n")));
+    await page.waitForSelector('.notice[data-code="too-many-files"]');
+  });
+}
