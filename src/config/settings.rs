@@ -88,6 +88,22 @@ settings! {
     admin_listen: Option<SocketAddr> = "127.0.0.1:8081",
     /// Folder for uploads and results; one server owns it.
     data_dir: PathBuf = "meshmend-data",
+    /// PostgreSQL database for jobs that several servers share, such as postgresql://meshmend@db.example/meshmend; with blobs_url. Empty: a file in data_dir.
+    database_url: String = "",
+    /// File of its password, if it asks for one.
+    database_password_file: Option<PathBuf> = "",
+    /// Most connections of this server to it.
+    database_connections_max: NonZeroUsize = "16",
+    /// S3 bucket for uploads and results that several servers share, such as s3://meshes/shop; with database_url. Empty: a folder in data_dir.
+    blobs_url: String = "",
+    /// S3 server, such as https://s3.example; empty: Amazon's.
+    blobs_endpoint: String = "",
+    /// Region of the bucket.
+    blobs_region: String = "us-east-1",
+    /// File of the key to the bucket, its id and its secret, one a line. Default: what the machine has been given.
+    blobs_key_file: Option<PathBuf> = "",
+    /// Most bytes of copies of its files in data_dir, but for those in use.
+    blobs_copies_bytes_max: Bytes = "5GiB",
 
     /// File of API keys, one a line: a key, or NAME:SHA-256 of a key in hexadecimal, perhaps with :read or :submit behind it.
     api_keys_file: Option<PathBuf> = "",

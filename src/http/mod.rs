@@ -46,6 +46,7 @@ mod router;
 mod scope;
 mod server;
 mod settings;
+mod shared_stores;
 mod shutdown;
 mod sizes;
 mod start;

@@ -14,13 +14,14 @@ use super::keys::ApiKeys;
 use super::rate::RateSettings;
 use super::server::Server;
 use super::settings::HttpSettings;
+use super::shared_stores::shared_stores;
 use super::shutdown::Shutdown;
 use super::{cors, descriptors};
 use crate::config::{ConfigError, IsolationChoice, Loaded, LogFormat, SandboxChoice};
 use crate::formats::ReadLimits;
 use crate::jobs::{
-    Isolation, Jobs, JobsSettings, LostStore, PrivateHosts, RetryPlan, Sandbox, StartError, TrialError,
-    WebhookSecret, WebhookSettings,
+    Isolation, Jobs, JobsSettings, LostStore, PrivateHosts, RetryPlan, Sandbox, StartError, StoresError,
+    TrialError, WebhookSecret, WebhookSettings,
 };
 
 /// Time for jobs that a second signal gave up: the process is not to wait for them.
@@ -61,6 +62,8 @@ pub fn start(loaded: &Loaded, lost_store: LostStore) -> anyhow::Result<()> {
 /// The setting that a service which cannot start is about.
 fn setting_of(error: &StartError) -> &'static str {
     match error {
+        StartError::Stores(StoresError::Database { .. }) => "database_url",
+        StartError::Stores(StoresError::Bucket { .. }) => "blobs_url",
         StartError::Stores(_) | StartError::TakeOver { .. } => "data_dir",
         StartError::Isolation(TrialError::NoProcess | TrialError::Incomplete(_)) => "sandbox",
         StartError::Isolation(TrialError::Folder(_) | TrialError::NoAnswer(_)) => "isolation",
@@ -227,6 +230,7 @@ fn jobs_settings(loaded: &Loaded) -> Result<JobsSettings, ConfigError> {
         owner_slots_max: config.owner_slots_max.map(NonZero::get),
         owner_jobs_max: config.owner_jobs_max.map(NonZero::get),
         owner_data_bytes_max: config.owner_data_bytes_max.map(|bytes| bytes.0),
+        shared: shared_stores(loaded)?,
         store_key_file: config.store_key_file.clone(),
         memory_bytes_max: config.memory_bytes_max.map_or(defaults.memory_bytes_max, |bytes| bytes.0),
         webhooks: webhooks(loaded)?,

@@ -12,6 +12,8 @@ pub struct StoredBlob {
     pub key: String,
     /// Number of bytes.
     pub bytes: u64,
+    /// It was written a short time ago, in a store where another process may be about to name it in a row.
+    pub is_recent: bool,
 }
 
 /// A file that is being written. Dropped before it is committed, it leaves nothing behind.
@@ -44,13 +46,13 @@ pub trait BlobStore: Send + Sync {
     /// There is no such file, or it cannot be had.
     fn local(&self, key: &str) -> io::Result<PathBuf>;
 
-    /// Removes a file.
+    /// Removes a file; one that is as good as gone may fill its room a moment longer.
     ///
     /// # Errors
-    /// There is no such file, or the disk fails.
+    /// There is no such file, where that is known, or the disk fails.
     fn remove(&self, key: &str) -> io::Result<()>;
 
-    /// Every file, also those that were begun and never committed.
+    /// Every file, also those that were begun and never committed, where that leaves any.
     ///
     /// # Errors
     /// The disk fails.
@@ -61,7 +63,7 @@ pub trait BlobStore: Send + Sync {
 }
 
 /// The directories that hold all files.
-const DIRS: [&str; 2] = ["in", "out"];
+pub(super) const DIRS: [&str; 2] = ["in", "out"];
 
 /// Files in a directory.
 #[derive(Debug)]
@@ -118,7 +120,7 @@ impl BlobStore for LocalBlobs {
                 let entry = entry?;
                 let key = format!("{dir}/{}", entry.file_name().to_string_lossy());
                 match entry.metadata() {
-                    Ok(metadata) => blobs.push(StoredBlob { key, bytes: metadata.len() }),
+                    Ok(metadata) => blobs.push(StoredBlob { key, bytes: metadata.len(), is_recent: false }),
                     // Removed since the directory was read.
                     Err(error) if error.kind() == io::ErrorKind::NotFound => {}
                     Err(error) => return Err(error),
@@ -189,62 +191,4 @@ fn sync_dir_of(path: &Path) -> io::Result<()> {
 /// Makes the entries of a directory outlast a loss of power.
 fn sync_dir(dir: &Path) -> io::Result<()> {
     File::open(dir)?.sync_all()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn keys(blobs: &LocalBlobs) -> Vec<String> {
-        let mut keys: Vec<_> = blobs.list().unwrap().into_iter().map(|blob| blob.key).collect();
-        keys.sort();
-        keys
-    }
-
-    #[test]
-    fn a_file_is_there_once_from_its_commit_to_its_removal() {
-        let dir = tempfile::tempdir().unwrap();
-        let blobs = LocalBlobs::open(dir.path()).unwrap();
-        let key = "out/job.1.mesh";
-        let mut writer = blobs.create(key).unwrap();
-        writer.write_all(b"hello").unwrap();
-        writer.commit().unwrap();
-        assert_eq!(fs::read(blobs.local(key).unwrap()).unwrap(), b"hello");
-        assert_eq!(blobs.list().unwrap(), [StoredBlob { key: key.to_owned(), bytes: 5 }]);
-        assert!(blobs.create(key).is_err(), "a file is written once");
-        blobs.remove(key).unwrap();
-        assert!(blobs.list().unwrap().is_empty());
-        assert_eq!(blobs.remove(key).unwrap_err().kind(), io::ErrorKind::NotFound);
-    }
-
-    #[test]
-    fn a_file_that_is_taken_over_moves_and_takes_no_other_s_place() {
-        let dir = tempfile::tempdir().unwrap();
-        let blobs = LocalBlobs::open(&dir.path().join("spool")).unwrap();
-        let (file, key) = (dir.path().join("made"), "out/job.1.mesh");
-        fs::write(&file, b"hello").unwrap();
-        blobs.adopt(&file, key).unwrap();
-        assert!(!file.exists());
-        assert_eq!(fs::read(blobs.local(key).unwrap()).unwrap(), b"hello");
-        fs::write(&file, b"other").unwrap();
-        assert!(blobs.adopt(&file, key).is_err(), "a file is written once");
-        assert_eq!(fs::read(blobs.local(key).unwrap()).unwrap(), b"hello");
-    }
-
-    #[test]
-    fn a_file_that_is_given_up_leaves_nothing() {
-        let dir = tempfile::tempdir().unwrap();
-        let blobs = LocalBlobs::open(dir.path()).unwrap();
-        let mut writer = blobs.create("in/upload").unwrap();
-        writer.write_all(b"hello").unwrap();
-        assert_eq!(keys(&blobs), ["in/upload"], "a listing shows what is not committed");
-        drop(writer);
-        assert!(keys(&blobs).is_empty());
-    }
-
-    #[test]
-    fn the_disk_says_how_much_room_it_has() {
-        let dir = tempfile::tempdir().unwrap();
-        assert!(LocalBlobs::open(dir.path()).unwrap().free_bytes() > Some(0));
-    }
 }

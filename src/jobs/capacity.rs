@@ -85,7 +85,7 @@ impl Capacity {
     }
 
     /// Waits for the memory of a run; `None`: the run is to stop before there is any.
-    pub(super) async fn room_for(&self, row: &JobRow, live: &Live, spool: &Spool) -> Option<Room> {
+    pub(super) async fn room_for(&self, row: &JobRow, live: &Live, spool: &Arc<Spool>) -> Option<Room> {
         let is_known = row.is_outgrown || row.lane == Lane::Interactive;
         let reserved = if is_known { None } else { Some(reserved_bytes(row, spool).await) };
         let room = self.room(row.lane, reserved);
@@ -104,11 +104,11 @@ impl Capacity {
 }
 
 /// What a job will probably take at most, as its upload begins.
-async fn reserved_bytes(row: &JobRow, spool: &Spool) -> u64 {
-    let path = spool.path(&row.input.key);
+async fn reserved_bytes(row: &JobRow, spool: &Arc<Spool>) -> u64 {
+    let (spool, key) = (Arc::clone(spool), row.input.key.clone());
     let reading = tokio::task::spawn_blocking(move || {
         let mut start = Vec::new();
-        fs::File::open(path?)?.take(LOOKED_AT_BYTES).read_to_end(&mut start)?;
+        fs::File::open(spool.path(&key)?)?.take(LOOKED_AT_BYTES).read_to_end(&mut start)?;
         Ok::<_, io::Error>(start)
     });
     // A file that cannot be read ends its job soon enough.

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::child::{Processes, Sandbox, TrialError};
 use super::clock::StageClock;
+use super::disk::on_disk;
 use super::live::Live;
 use super::problems::{disk_problem, engine_crashed};
 use super::product::{Content, Product};
@@ -99,8 +100,12 @@ impl Executor {
         bytes_max: u64,
     ) -> Result<Product<Content>, Problem> {
         let settings = &self.settings;
-        let local = |blob: &BlobRef| self.spool.path(&blob.key).map_err(|error| disk_problem(&error));
-        let (path, material_path) = (local(&row.input)?, row.material.as_ref().map(local).transpose()?);
+        let (spool, input, material) = (Arc::clone(&self.spool), row.input.clone(), row.material.clone());
+        let (path, material_path) = on_disk(move || {
+            let local = |blob: &BlobRef| spool.path(&blob.key);
+            Ok((local(&input)?, material.as_ref().map(local).transpose()?))
+        })
+        .await?;
         let (bytes, operation) = (row.input.bytes, row.operation.into());
         let mut options = row.options.to_engine(settings.read_limits);
         options.file_sizes.clone_from(&row.input.files);

@@ -6,6 +6,7 @@ use std::time::Duration;
 use super::belonging::LostStore;
 use super::child::Sandbox;
 use super::memory;
+use super::shared::SharedStores;
 use super::webhook::WebhookSettings;
 use crate::formats::ReadLimits;
 use crate::wire::{Options, Problem, ProblemCode};
@@ -25,6 +26,8 @@ pub enum Isolation {
 pub struct JobsSettings {
     /// Directory for uploads and results; one server owns it.
     pub data_dir: PathBuf,
+    /// Where rows and files are instead, when several servers share them. Default: in the directory.
+    pub shared: Option<SharedStores>,
     /// Jobs that run at one time. Default: half the cores, because the engine's passes use several themselves, and one more,
     /// which no tenant has alone.
     pub slots: usize,
@@ -94,6 +97,7 @@ impl JobsSettings {
         let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
         Self {
             data_dir: data_dir.into(),
+            shared: None,
             slots: (cores / 2).max(1) + 1,
             interactive_slots: 2,
             interactive_bytes_max: 4 << 20,

@@ -20,8 +20,12 @@ use super::store::{BlobRef, ClaimRef};
 pub(super) struct Spool {
     blobs: Arc<dyn BlobStore>,
     bytes: AtomicU64,
+    /// Those of them that are about to come.
+    reserved: AtomicU64,
     bytes_max: u64,
     free_bytes_min: u64,
+    /// Other servers write and remove files too.
+    is_shared: bool,
     /// Files that this process writes or has written and that no row names yet.
     unnamed: Mutex<HashSet<String>>,
     known: KnownSound,
@@ -40,6 +44,8 @@ pub(super) struct SpaceLimits {
     pub(super) bytes_max: u64,
     /// Bytes of the disk that stay free.
     pub(super) free_bytes_min: u64,
+    /// Other servers use it too.
+    pub(super) is_shared: bool,
 }
 
 impl Spool {
@@ -49,14 +55,16 @@ impl Spool {
         Ok(Arc::new(Self {
             blobs,
             bytes: AtomicU64::new(bytes),
+            reserved: AtomicU64::new(0),
             bytes_max: limits.bytes_max,
             free_bytes_min: limits.free_bytes_min,
+            is_shared: limits.is_shared,
             unnamed: Mutex::default(),
             known: KnownSound::default(),
         }))
     }
 
-    /// The path of a file.
+    /// The path of a file. Blocks where it has to be brought here.
     pub(super) fn path(&self, key: &str) -> io::Result<PathBuf> {
         self.blobs.local(key)
     }
@@ -91,6 +99,7 @@ impl Spool {
     pub(super) fn reserve(self: &Arc<Self>, bytes: u64) -> Option<Space> {
         let grown = |used: u64| used.checked_add(bytes).filter(|&total| total <= self.bytes_max);
         self.bytes.fetch_update(Ordering::Relaxed, Ordering::Relaxed, grown).ok()?;
+        self.reserved.fetch_add(bytes, Ordering::Relaxed);
         Some(Space { spool: Arc::clone(self), bytes })
     }
 
@@ -177,12 +186,16 @@ impl Spool {
         self.unnamed.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Files that this process does not hold. Blocks.
+    /// Files that nobody may be about to name. What other servers wrote and removed counts from then on. Blocks.
     pub(super) fn list(&self) -> io::Result<Vec<StoredBlob>> {
         // A file is held before it is made, so what is listed was made by now, and who holds it is asked afterwards.
         let listed = self.blobs.list()?;
+        if self.is_shared {
+            let stored = listed.iter().map(|blob| blob.bytes).sum::<u64>();
+            self.bytes.store(stored.saturating_add(self.reserved.load(Ordering::Relaxed)), Ordering::Relaxed);
+        }
         let held = self.held();
-        Ok(listed.into_iter().filter(|blob| !held.contains(&blob.key)).collect())
+        Ok(listed.into_iter().filter(|blob| !blob.is_recent && !held.contains(&blob.key)).collect())
     }
 
     /// Removes files that nobody names. Blocks.
@@ -269,11 +282,13 @@ impl Space {
     /// The room now belongs to the file, which fills it, until [`Spool::remove`].
     pub(super) fn hand_over(mut self, blob: &BlobRef) {
         self.bytes -= blob.bytes;
+        self.spool.reserved.fetch_sub(blob.bytes, Ordering::Relaxed);
     }
 }
 
 impl Drop for Space {
     fn drop(&mut self) {
+        self.spool.reserved.fetch_sub(self.bytes, Ordering::Relaxed);
         self.spool.give_back(self.bytes);
     }
 }
@@ -284,7 +299,7 @@ mod tests {
     use crate::jobs::blobs::LocalBlobs;
     use crate::jobs::store::JobId;
 
-    const LIMITS: SpaceLimits = SpaceLimits { bytes_max: 10, free_bytes_min: 0 };
+    const LIMITS: SpaceLimits = SpaceLimits { bytes_max: 10, free_bytes_min: 0, is_shared: false };
 
     fn hello(spool: &Arc<Spool>) -> Written {
         let claim = ClaimRef { id: JobId::unique(), epoch: 1 };
@@ -335,7 +350,7 @@ mod tests {
         assert!(claim_of(&key).is_some_and(|claim| claim.epoch == 1) && claim_of(&upload.key).is_none());
         written.named();
         drop((upload, writer));
-        assert_eq!(spool.list().unwrap(), [StoredBlob { key, bytes: 5 }]);
+        assert_eq!(spool.list().unwrap(), [StoredBlob { key, bytes: 5, is_recent: false }]);
     }
 
     #[test]

@@ -22,7 +22,7 @@ use super::spool::{SpaceLimits, Spool};
 use super::store::JobStore;
 use super::stores::{Stores, StoresError};
 use super::webhook::{Sender, Vault};
-use super::{load, retention};
+use super::{load, neighbours, retention};
 
 /// A service that cannot start.
 #[derive(Debug, thiserror::Error)]
@@ -56,6 +56,10 @@ type Sending = (Arc<Vault>, Arc<Sender>);
 /// What webhooks need; `None`: none are sent.
 fn webhooks(settings: &JobsSettings, store: &Arc<dyn JobStore>) -> Result<Option<Sending>, String> {
     let Some(webhooks) = settings.webhooks.clone() else { return Ok(None) };
+    if settings.shared.is_some() && settings.store_key_file.is_none() {
+        // Each server would seal with a key of its own, which the others do not have.
+        return Err("servers that share their stores need one store_key_file, the same on each".to_owned());
+    }
     let path = settings.store_key_file.clone().unwrap_or_else(|| settings.data_dir.join(KEY_FILE));
     let vault = Arc::new(Vault::open(&path).map_err(|error| error.to_string())?);
     let sender = Sender::new(webhooks, Arc::clone(&vault), Arc::clone(store));
@@ -69,7 +73,7 @@ impl Jobs {
     /// # Errors
     /// The data directory cannot be used, another server uses it, or jobs cannot run as the settings ask.
     pub async fn start(settings: JobsSettings) -> Result<Self, StartError> {
-        let stores = Stores::local(&settings).await?;
+        let stores = Stores::open(&settings).await?;
         Self::start_on(stores, settings, None).await
     }
 
@@ -78,7 +82,7 @@ impl Jobs {
     /// # Errors
     /// As [`start`](Self::start).
     pub async fn start_with(settings: JobsSettings, engine: Engine) -> Result<Self, StartError> {
-        let stores = Stores::local(&settings).await?;
+        let stores = Stores::open(&settings).await?;
         Self::start_on(stores, settings, Some(engine)).await
     }
 
@@ -93,8 +97,11 @@ impl Jobs {
     ) -> Result<Self, StartError> {
         let Stores { rows: store, blobs, worker, lock } = stores;
         let settings = Arc::new(settings);
-        let space =
-            SpaceLimits { bytes_max: settings.data_bytes_max, free_bytes_min: settings.disk_free_bytes_min };
+        let space = SpaceLimits {
+            bytes_max: settings.data_bytes_max,
+            free_bytes_min: settings.disk_free_bytes_min,
+            is_shared: store.is_shared(),
+        };
         let spool = on_disk(move || Spool::of(blobs, space)).await;
         let spool = spool.map_err(|problem| StartError::TakeOver { why: problem.detail })?;
         let executor = Executor::new(&settings, &spool, engine).await?;
@@ -138,5 +145,9 @@ fn begin_tasks(service: &Arc<Service>) {
     }
     service.slots.spawn(retention::sweep_forever(Arc::clone(service)));
     service.slots.spawn(load::tell_forever(Arc::clone(service)));
+    if service.store.is_shared() {
+        // Who waits for a job that another server runs does so until this one stops.
+        tokio::spawn(neighbours::look_forever(Arc::clone(service)));
+    }
     service.slots.close();
 }

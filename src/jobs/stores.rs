@@ -9,6 +9,7 @@ use super::belonging::open_together;
 use super::blobs::{BlobStore, LocalBlobs};
 use super::data_dir::{DataDirLock, LockError};
 use super::settings::JobsSettings;
+use super::shared::{SharedError, SharedStores};
 use super::store::JobStore;
 
 /// The file of rows in the data directory.
@@ -52,6 +53,18 @@ pub enum StoresError {
         /// The directory.
         path: PathBuf,
     },
+    /// The database of jobs cannot be used.
+    #[error("{why}")]
+    Database {
+        /// Why.
+        why: String,
+    },
+    /// The bucket of files cannot be used.
+    #[error("{why}")]
+    Bucket {
+        /// Why.
+        why: String,
+    },
     /// The rows of jobs cannot be read.
     #[error("job store {path}: {why}")]
     Rows {
@@ -63,16 +76,52 @@ pub enum StoresError {
 }
 
 impl Stores {
+    /// Those that the settings name: shared ones, or those in the data directory. This process owns the directory from
+    /// then on.
+    ///
+    /// # Errors
+    /// The directory or the stores cannot be used, or another server uses the directory.
+    pub async fn open(settings: &JobsSettings) -> Result<Self, StoresError> {
+        match &settings.shared {
+            Some(shared) => Self::shared(settings, shared).await,
+            None => Self::local(settings).await,
+        }
+    }
+
+    /// A database and a bucket, which other servers use too.
+    async fn shared(settings: &JobsSettings, shared: &SharedStores) -> Result<Self, StoresError> {
+        let path = &settings.data_dir;
+        let lock = Self::own(settings).await?;
+        if path.join(ROWS_FILE).exists() {
+            tracing::warn!(
+                "the data directory holds jobs of its own, which are not seen while database_url is set: {}",
+                path.join(ROWS_FILE).display()
+            );
+        }
+        let (rows, blobs, worker) = shared.open(path).await.map_err(|error| match error {
+            SharedError::DataDir(source) => StoresError::DataDir { path: path.clone(), source },
+            SharedError::Database(why) => StoresError::Database { why },
+            SharedError::Bucket(why) => StoresError::Bucket { why },
+        })?;
+        Ok(Self { rows: Arc::new(rows), blobs, worker, lock: Some(lock) })
+    }
+
+    /// Takes the data directory over.
+    async fn own(settings: &JobsSettings) -> Result<DataDirLock, StoresError> {
+        let path = &settings.data_dir;
+        DataDirLock::take(path).await.map_err(|error| match error {
+            LockError::InUse => StoresError::DataDirInUse { path: path.clone() },
+            LockError::Io(source) => StoresError::DataDir { path: path.clone(), source },
+        })
+    }
+
     /// Those in the data directory, which this process owns from then on.
     ///
     /// # Errors
     /// The directory or the rows in it cannot be used, or another server uses them.
     pub async fn local(settings: &JobsSettings) -> Result<Self, StoresError> {
         let path = &settings.data_dir;
-        let lock = DataDirLock::take(path).await.map_err(|error| match error {
-            LockError::InUse => StoresError::DataDirInUse { path: path.clone() },
-            LockError::Io(source) => StoresError::DataDir { path: path.clone(), source },
-        })?;
+        let lock = Self::own(settings).await?;
         let blobs = LocalBlobs::open(&path.join(BLOBS_DIR))
             .map_err(|source| StoresError::DataDir { path: path.clone(), source })?;
         let file = path.join(ROWS_FILE);

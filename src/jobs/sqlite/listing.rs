@@ -101,6 +101,18 @@ pub(super) fn changes(connection: &Connection, id: JobId, after: u64) -> Result<
     Ok(rows.collect::<rusqlite::Result<_>>()?)
 }
 
+pub(super) fn ended(connection: &Connection, jobs: Vec<JobId>) -> Result<Vec<JobId>, StoreError> {
+    let mut statement =
+        connection.prepare_cached("SELECT 1 FROM jobs WHERE id = ?1 AND finished_at IS NULL")?;
+    let mut ended = Vec::new();
+    for id in jobs {
+        if !statement.exists([id.to_string()])? {
+            ended.push(id);
+        }
+    }
+    Ok(ended)
+}
+
 pub(super) fn counts(connection: &Connection, now: i64) -> Result<JobCounts, StoreError> {
     let mut statement = connection.prepare_cached("SELECT state, jobs FROM tallies")?;
     let mut counts = JobCounts::default();

@@ -260,6 +260,14 @@ impl JobStore for SqliteStore {
         self.read(move |connection, _| listing::changes(connection, id, after))
     }
 
+    fn ended(&self, jobs: Vec<JobId>) -> StoreFuture<'_, Vec<JobId>> {
+        self.read(move |connection, _| listing::ended(connection, jobs))
+    }
+
+    fn is_shared(&self) -> bool {
+        false
+    }
+
     fn counts(&self) -> StoreFuture<'_, JobCounts> {
         self.look_up(listing::counts)
     }

@@ -183,6 +183,12 @@ pub trait JobStore: Send + Sync {
     /// Changes of a job's state after the one of that number, the first one first.
     fn changes(&self, id: JobId, after: u64) -> StoreFuture<'_, Vec<Change>>;
 
+    /// Those of the jobs that have ended or are gone.
+    fn ended(&self, jobs: Vec<JobId>) -> StoreFuture<'_, Vec<JobId>>;
+
+    /// Whether other processes change these rows too, so that what they do has to be looked for.
+    fn is_shared(&self) -> bool;
+
     /// Numbers of jobs.
     fn counts(&self) -> StoreFuture<'_, JobCounts>;
 

@@ -1,10 +1,12 @@
 //! The rules of a job's life, each on the smallest case that shows it, with engines made for the purpose.
 
+mod blobs;
 mod keeping;
 mod losing;
 mod neighbours;
 mod restarting;
 mod running;
+mod sharing;
 mod stores;
 
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -4,7 +4,7 @@ use super::*;
 use crate::wire::InputRef;
 
 pub(super) async fn a_job_is_read_back_as_it_was_admitted<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let source = succeeded(&*store, job()).await;
     let new = NewJob {
@@ -14,10 +14,10 @@ pub(super) async fn a_job_is_read_back_as_it_was_admitted<H: StoreHouse>() {
             input: Some(InputRef { job: source.id.to_string() }),
             ..Options::default()
         },
-        file_name: Some("part \"ü\"\n.stl".to_owned()),
+        file_name: Some("part \"ü\"\n\0.stl".to_owned()),
         owner: Some("shop".to_owned()),
         trace: crate::jobs::TraceParent::parse("00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01"),
-        labels: Labels::from([("order".to_owned(), "17".to_owned())]),
+        labels: Labels::from([("order".to_owned(), "17\0".to_owned())]),
         webhook: webhook(),
         material: Some(BlobRef {
             key: "in/material".to_owned(),
@@ -48,7 +48,7 @@ pub(super) async fn a_job_is_read_back_as_it_was_admitted<H: StoreHouse>() {
 }
 
 pub(super) async fn an_unknown_job_is_not_found<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let id = JobId::unique();
     assert_eq!(store.get(id).await.unwrap_err(), StoreError::NotFound);
@@ -60,7 +60,7 @@ pub(super) async fn an_unknown_job_is_not_found<H: StoreHouse>() {
 }
 
 pub(super) async fn a_full_queue_refuses_and_only_waiting_jobs_count<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     running(&*store, job()).await;
     succeeded(&*store, job()).await;
@@ -76,7 +76,7 @@ pub(super) async fn a_full_queue_refuses_and_only_waiting_jobs_count<H: StoreHou
 }
 
 pub(super) async fn a_job_whose_source_is_gone_or_expired_is_refused<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let (gone, expired) = (succeeded(&*store, job()).await.id, succeeded(&*store, job()).await.id);
     store.delete(gone).await.unwrap();
@@ -88,7 +88,7 @@ pub(super) async fn a_job_whose_source_is_gone_or_expired_is_refused<H: StoreHou
 }
 
 pub(super) async fn an_answered_job_is_admitted_to_a_full_queue_and_has_ended<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let first = succeeded(&*store, job()).await;
     admit(&*store, job()).await;
@@ -101,7 +101,7 @@ pub(super) async fn an_answered_job_is_admitted_to_a_full_queue_and_has_ended<H:
 }
 
 pub(super) async fn the_same_key_and_request_give_the_same_job<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let first = admit(&*store, NewJob { key: key("k", 1), ..job() }).await;
     let again = NewJob { key: key("k", 1), ..job() };
@@ -114,7 +114,7 @@ pub(super) async fn the_same_key_and_request_give_the_same_job<H: StoreHouse>() 
 }
 
 pub(super) async fn the_same_key_with_another_request_is_refused<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     admit(&*store, NewJob { key: key("k", 1), ..job() }).await;
     let other = NewJob { key: key("k", 2), ..job() };
@@ -124,7 +124,7 @@ pub(super) async fn the_same_key_with_another_request_is_refused<H: StoreHouse>(
 }
 
 pub(super) async fn sixty_four_creators_with_one_key_make_one_job<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let creators = (0..64).map(|_| {
         let store = house.store();
         tokio::spawn(async move { store.create(NewJob { key: key("k", 1), ..job() }, 100).await.unwrap() })
@@ -145,7 +145,7 @@ pub(super) async fn sixty_four_creators_with_one_key_make_one_job<H: StoreHouse>
 }
 
 pub(super) async fn keys_of_two_owners_do_not_meet<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     for (asked, owner) in [None, Some("a"), Some("b")].into_iter().enumerate() {
         let owner = owner.map(str::to_owned);
@@ -156,7 +156,7 @@ pub(super) async fn keys_of_two_owners_do_not_meet<H: StoreHouse>() {
 }
 
 pub(super) async fn a_known_key_is_answered_although_the_queue_is_full<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let first = NewJob { key: key("k", 1), ..job() };
     store.create(first.clone(), 1).await.unwrap();
@@ -165,7 +165,7 @@ pub(super) async fn a_known_key_is_answered_although_the_queue_is_full<H: StoreH
 }
 
 pub(super) async fn a_key_is_free_again_once_its_job_is_deleted<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let first = admit(&*store, NewJob { key: key("k", 1), ..job() }).await;
     store.delete(first.id).await.unwrap();
@@ -173,9 +173,9 @@ pub(super) async fn a_key_is_free_again_once_its_job_is_deleted<H: StoreHouse>()
 }
 
 pub(super) async fn a_key_outlasts_the_process<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let first = admit(&*house.store(), NewJob { key: key("k", 1), ..job() }).await;
-    let house = house.reopen();
+    let house = house.reopen().await;
     let found = house.store().find_keyed(None, key("k", 1).unwrap()).await.unwrap().unwrap();
     assert_eq!(found.id, first.id);
 }

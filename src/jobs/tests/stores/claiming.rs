@@ -6,7 +6,7 @@ use super::*;
 use crate::jobs::{AfterLoss, Leases};
 
 pub(super) async fn nothing_is_claimed_when_nothing_waits<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     assert!(claim(&*store).await.is_none());
     running(&*store, job()).await;
@@ -15,12 +15,12 @@ pub(super) async fn nothing_is_claimed_when_nothing_waits<H: StoreHouse>() {
 }
 
 pub(super) async fn jobs_are_claimed_in_the_order_they_came<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let mut came = Vec::new();
     for _ in 0..5 {
         came.push(admit(&*store, job()).await.id);
-        house.advance_ms(1);
+        house.advance_ms(1).await;
     }
     let mut claimed = Vec::new();
     while let Some(row) = claim(&*store).await {
@@ -32,7 +32,7 @@ pub(super) async fn jobs_are_claimed_in_the_order_they_came<H: StoreHouse>() {
 }
 
 pub(super) async fn a_preferred_lane_comes_first_and_the_other_one_is_not_left<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let mut ids = Vec::new();
     for lane in [Lane::Bulk, Lane::Interactive, Lane::Bulk, Lane::Interactive] {
@@ -51,7 +51,7 @@ pub(super) async fn a_preferred_lane_comes_first_and_the_other_one_is_not_left<H
 }
 
 pub(super) async fn many_workers_claim_each_job_once<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     for _ in 0..40 {
         admit(&*house.store(), job()).await;
     }
@@ -74,7 +74,7 @@ pub(super) async fn many_workers_claim_each_job_once<H: StoreHouse>() {
 }
 
 pub(super) async fn each_claim_has_a_larger_epoch<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     admit(&*store, job()).await;
     for epoch in 1..=4 {
@@ -85,35 +85,35 @@ pub(super) async fn each_claim_has_a_larger_epoch<H: StoreHouse>() {
 }
 
 pub(super) async fn a_claim_that_is_not_renewed_is_taken_back_after_its_lease<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let row = running(&*store, job()).await;
-    house.advance_ms(29_999);
+    house.advance_ms(29_999).await;
     assert!(recover(&*store, Leases::Expired).await.is_empty());
-    house.advance_ms(2);
+    house.advance_ms(2).await;
     assert_eq!(recover(&*store, Leases::Expired).await, [(row.id, AfterLoss::Queued)]);
     let again = claim(&*store).await.unwrap();
     assert_eq!((again.id, again.epoch, again.attempts), (row.id, 2, 1));
 }
 
 pub(super) async fn a_renewed_claim_is_kept<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let row = running(&*store, job()).await;
     for _ in 0..5 {
-        house.advance_ms(20_000);
+        house.advance_ms(20_000).await;
         assert_eq!(store.renew(row.claim(), LEASE).await, Ok(false));
         assert!(recover(&*store, Leases::Expired).await.is_empty());
     }
-    house.advance_ms(AFTER_LEASE_MS);
+    house.advance_ms(AFTER_LEASE_MS).await;
     assert_eq!(recover(&*store, Leases::Expired).await.len(), 1);
 }
 
 pub(super) async fn a_void_claim_cannot_be_renewed<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let row = running(&*store, job()).await;
-    house.advance_ms(AFTER_LEASE_MS);
+    house.advance_ms(AFTER_LEASE_MS).await;
     recover(&*store, Leases::Expired).await;
     assert_eq!(store.renew(row.claim(), LEASE).await, Err(StoreError::ClaimVoid));
     let again = claim(&*store).await.unwrap();
@@ -124,22 +124,22 @@ pub(super) async fn a_void_claim_cannot_be_renewed<H: StoreHouse>() {
 }
 
 pub(super) async fn a_lost_job_runs_before_later_ones<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let lost = running(&*store, job()).await;
     admit(&*store, job()).await;
-    house.advance_ms(AFTER_LEASE_MS);
+    house.advance_ms(AFTER_LEASE_MS).await;
     recover(&*store, Leases::Expired).await;
     assert_eq!(claim(&*store).await.unwrap().id, lost.id);
 }
 
 pub(super) async fn a_job_that_is_lost_too_often_fails_with_the_problem<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let id = admit(&*store, job()).await.id;
     for attempt in 1..=ATTEMPTS_MAX {
         claim(&*store).await.unwrap();
-        house.advance_ms(AFTER_LEASE_MS);
+        house.advance_ms(AFTER_LEASE_MS).await;
         let after = recover(&*store, Leases::Expired).await;
         let expected = if attempt < ATTEMPTS_MAX { AfterLoss::Queued } else { AfterLoss::Ended };
         assert_eq!(after, [(id, expected)]);
@@ -151,12 +151,12 @@ pub(super) async fn a_job_that_is_lost_too_often_fails_with_the_problem<H: Store
 }
 
 pub(super) async fn every_claim_of_a_worker_that_starts_anew_is_void_and_no_other<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let first = running(&*house.store(), job()).await;
     let second = running(&*house.store(), job()).await;
     let other = Leases::OfWorker("another".to_owned());
     assert!(recover(&*house.store(), other).await.is_empty());
-    let house = house.reopen();
+    let house = house.reopen().await;
     let store = house.store();
     let after = recover(&*store, Leases::OfWorker("w".to_owned())).await;
     assert_eq!(after, [(first.id, AfterLoss::Queued), (second.id, AfterLoss::Queued)]);
@@ -166,7 +166,7 @@ pub(super) async fn every_claim_of_a_worker_that_starts_anew_is_void_and_no_othe
 }
 
 pub(super) async fn a_job_that_is_given_back_counts_no_attempt<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let row = running(&*store, job()).await;
     assert_eq!(store.release(row.claim()).await, Ok(AfterLoss::Queued));
@@ -176,7 +176,7 @@ pub(super) async fn a_job_that_is_given_back_counts_no_attempt<H: StoreHouse>() 
 }
 
 pub(super) async fn a_crash_counts_an_attempt_and_ends_with_its_own_problem<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let id = admit(&*store, job()).await.id;
     for attempt in 1..=2 {
@@ -191,10 +191,10 @@ pub(super) async fn a_crash_counts_an_attempt_and_ends_with_its_own_problem<H: S
 }
 
 pub(super) async fn a_paused_executor_is_fenced_and_one_result_is_seen<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let paused = running(&*store, job()).await;
-    house.advance_ms(AFTER_LEASE_MS);
+    house.advance_ms(AFTER_LEASE_MS).await;
     recover(&*store, Leases::Expired).await;
     let other = claim(&*store).await.unwrap();
     assert_eq!(store.finish(paused.claim(), success(&paused)).await, VOID, "it wakes too late");
@@ -207,18 +207,18 @@ pub(super) async fn a_paused_executor_is_fenced_and_one_result_is_seen<H: StoreH
 }
 
 pub(super) async fn a_clock_that_is_set_back_takes_no_claim<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let row = running(&*store, job()).await;
-    house.advance_ms(-3_600_000);
+    house.advance_ms(-3_600_000).await;
     assert!(recover(&*store, Leases::Expired).await.is_empty());
     assert_eq!(store.renew(row.claim(), LEASE).await, Ok(false));
-    house.advance_ms(3_600_000);
+    house.advance_ms(3_600_000).await;
     assert_eq!(recover(&*store, Leases::Expired).await.len(), 1, "the lease counts from its renewal");
 }
 
 pub(super) async fn a_job_that_is_lost_again_and_again_is_not_starved_and_starves_nobody<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let poison = admit(&*store, job()).await.id;
     let mut others = Vec::new();

@@ -26,7 +26,7 @@ async fn delivery(store: &dyn JobStore) -> Delivery {
 }
 
 pub(super) async fn a_delivery_is_made_with_every_kind_of_end<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let row = succeeded(&*store, hooked()).await;
     let mut ended = vec![row.id];
@@ -46,7 +46,7 @@ pub(super) async fn a_delivery_is_made_with_every_kind_of_end<H: StoreHouse>() {
 }
 
 pub(super) async fn a_job_without_a_webhook_makes_no_delivery<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let row = succeeded(&*store, job()).await;
     assert!(due(&*store).await.is_empty() && store.deliveries(row.id).await.unwrap().is_empty());
@@ -54,18 +54,18 @@ pub(super) async fn a_job_without_a_webhook_makes_no_delivery<H: StoreHouse>() {
 }
 
 pub(super) async fn a_delivery_is_claimed_once_until_its_lease_is_over<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let first = delivery(&*store).await;
     assert!(due(&*store).await.is_empty());
-    house.advance_ms(AFTER_LEASE_MS);
+    house.advance_ms(AFTER_LEASE_MS).await;
     let again = due(&*store).await;
     assert_eq!((again.len(), &again[0].id), (1, &first.id), "its sender is not heard of");
     assert!(again[0].epoch > first.epoch && again[0].tries.is_empty());
 }
 
 pub(super) async fn many_senders_claim_each_delivery_once<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     for _ in 0..20 {
         succeeded(&*house.store(), hooked()).await;
     }
@@ -91,7 +91,7 @@ pub(super) async fn many_senders_claim_each_delivery_once<H: StoreHouse>() {
 }
 
 pub(super) async fn no_receiver_gets_more_than_its_share<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let to = |url: &str| NewJob { webhook: Some(Webhook { url: url.to_owned(), secret: None }), ..job() };
     for place in 0..30 {
@@ -114,16 +114,16 @@ pub(super) async fn no_receiver_gets_more_than_its_share<H: StoreHouse>() {
 }
 
 pub(super) async fn a_try_is_noted_and_the_next_one_waits<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let first = delivery(&*store).await;
     let outcome = TryOutcome::Failed("no answer".to_owned());
     let next = NextTry::After(Duration::from_secs(5));
     store.note_try(first.id.clone(), first.epoch, outcome.clone(), next).await.unwrap();
-    house.advance_ms(4999);
+    house.advance_ms(4999).await;
     assert!(due(&*store).await.is_empty());
     assert!(store.next_delivery().await.unwrap().is_some());
-    house.advance_ms(1);
+    house.advance_ms(1).await;
     let second = due(&*store).await.remove(0);
     assert_eq!((&second.id, second.tries.len(), &second.tries[0].outcome), (&first.id, 1, &outcome));
     let answered = TryOutcome::Answered(503);
@@ -134,14 +134,14 @@ pub(super) async fn a_try_is_noted_and_the_next_one_waits<H: StoreHouse>() {
 }
 
 pub(super) async fn a_delivered_or_given_up_delivery_is_not_sent_again<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     for (next, state) in
         [(NextTry::Delivered, DeliveryState::Delivered), (NextTry::GiveUp, DeliveryState::Failed)]
     {
         let one = delivery(&*store).await;
         store.note_try(one.id, one.epoch, TryOutcome::Answered(200), next).await.unwrap();
-        house.advance_ms(AFTER_LEASE_MS);
+        house.advance_ms(AFTER_LEASE_MS).await;
         assert!(due(&*store).await.is_empty());
         let listed = store.deliveries(one.job).await.unwrap();
         assert_eq!((listed[0].state, listed[0].next_at), (state, None));
@@ -150,7 +150,7 @@ pub(super) async fn a_delivered_or_given_up_delivery_is_not_sent_again<H: StoreH
 }
 
 pub(super) async fn a_delivery_is_sent_again_on_request_under_its_id<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let one = delivery(&*store).await;
     let outcome = TryOutcome::Answered(410);
@@ -165,10 +165,10 @@ pub(super) async fn a_delivery_is_sent_again_on_request_under_its_id<H: StoreHou
 }
 
 pub(super) async fn the_try_of_an_old_claim_does_not_count<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let old = delivery(&*store).await;
-    house.advance_ms(AFTER_LEASE_MS);
+    house.advance_ms(AFTER_LEASE_MS).await;
     let new = due(&*store).await.remove(0);
     let note = async |one: &Delivery| {
         store.note_try(one.id.clone(), one.epoch, TryOutcome::Answered(200), NextTry::Delivered).await
@@ -186,7 +186,7 @@ pub(super) async fn the_try_of_an_old_claim_does_not_count<H: StoreHouse>() {
 }
 
 pub(super) async fn deliveries_go_with_their_job<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let one = delivery(&*store).await;
     store.delete(one.job).await.unwrap();
@@ -196,12 +196,12 @@ pub(super) async fn deliveries_go_with_their_job<H: StoreHouse>() {
 }
 
 pub(super) async fn deliveries_outlast_the_process<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let one = delivery(&*house.store()).await;
     let next = NextTry::After(Duration::from_secs(1));
     house.store().note_try(one.id.clone(), one.epoch, TryOutcome::Answered(500), next).await.unwrap();
-    let house = house.reopen();
-    house.advance_ms(1000);
+    let house = house.reopen().await;
+    house.advance_ms(1000).await;
     let again = due(&*house.store()).await.remove(0);
     assert_eq!((again.id, again.tries.len(), again.created_at), (one.id, 1, one.created_at));
 }

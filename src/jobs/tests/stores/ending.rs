@@ -5,7 +5,7 @@ use crate::jobs::{AfterLoss, ClaimRef, Leases};
 use crate::wire::{Stage, TimingMs};
 
 pub(super) async fn only_the_latest_claim_may_end_a_job<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let row = running(&*store, job()).await;
     for epoch in [0, 2, u32::MAX] {
@@ -16,7 +16,7 @@ pub(super) async fn only_the_latest_claim_may_end_a_job<H: StoreHouse>() {
 }
 
 pub(super) async fn a_job_ends_once<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let row = succeeded(&*store, job()).await;
     assert_eq!(store.finish(row.claim(), failure()).await, VOID);
@@ -28,7 +28,7 @@ pub(super) async fn a_job_ends_once<H: StoreHouse>() {
 }
 
 pub(super) async fn a_job_that_waits_is_not_ended_by_an_old_claim<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let row = running(&*store, job()).await;
     store.release(row.claim()).await.unwrap();
@@ -37,7 +37,7 @@ pub(super) async fn a_job_that_waits_is_not_ended_by_an_old_claim<H: StoreHouse>
 }
 
 pub(super) async fn a_queued_job_is_cancelled_at_once<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let id = admit(&*store, job()).await.id;
     assert_eq!(store.cancel(id, cancelled()).await, Ok(true));
@@ -46,7 +46,7 @@ pub(super) async fn a_queued_job_is_cancelled_at_once<H: StoreHouse>() {
 }
 
 pub(super) async fn a_running_job_hears_of_its_cancellation_when_it_renews<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let row = running(&*store, job()).await;
     assert_eq!(store.renew(row.claim(), LEASE).await, Ok(false));
@@ -58,7 +58,7 @@ pub(super) async fn a_running_job_hears_of_its_cancellation_when_it_renews<H: St
 }
 
 pub(super) async fn a_cancelled_job_whose_run_is_lost_does_not_run_again<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let row = running(&*store, job()).await;
     store.cancel(row.id, cancelled()).await.unwrap();
@@ -67,7 +67,7 @@ pub(super) async fn a_cancelled_job_whose_run_is_lost_does_not_run_again<H: Stor
 }
 
 pub(super) async fn a_cancelled_job_that_is_given_back_has_ended<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let row = running(&*store, job()).await;
     store.cancel(row.id, cancelled()).await.unwrap();
@@ -76,7 +76,7 @@ pub(super) async fn a_cancelled_job_that_is_given_back_has_ended<H: StoreHouse>(
 }
 
 pub(super) async fn an_ended_job_is_not_cancelled<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let row = succeeded(&*store, job()).await;
     assert_eq!(store.cancel(row.id, cancelled()).await, Ok(false));
@@ -84,7 +84,7 @@ pub(super) async fn an_ended_job_is_not_cancelled<H: StoreHouse>() {
 }
 
 pub(super) async fn only_a_queued_job_is_ended_as_one<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let queued = admit(&*store, job()).await.id;
     assert_eq!(store.end_queued(queued, failure()).await, Ok(true));
@@ -95,12 +95,12 @@ pub(super) async fn only_a_queued_job_is_ended_as_one<H: StoreHouse>() {
 }
 
 pub(super) async fn a_deadline_is_kept_as_a_time<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let new = NewJob { cancel_after: Some(Duration::from_secs(60)), ..job() };
     let row = admit(&*house.store(), new).await;
     admit(&*house.store(), job()).await;
-    house.advance_ms(10_000);
-    let house = house.reopen();
+    house.advance_ms(10_000).await;
+    let house = house.reopen().await;
     let store = house.store();
     assert_eq!(row.time_left, Some(Duration::from_secs(60)));
     assert_eq!(store.deadlines().await.unwrap(), [(row.id, Duration::from_secs(50))]);
@@ -114,12 +114,12 @@ pub(super) async fn a_deadline_is_kept_as_a_time<H: StoreHouse>() {
     store.end_queued(far.id, failure()).await.unwrap();
     let far = store.get(far.id).await.unwrap();
     assert!(far.expires_at > row.finished_at.or(Some(far.created_at)) && !far.is_due);
-    house.advance_ms(100_000);
+    house.advance_ms(100_000).await;
     assert_eq!(store.get(row.id).await.unwrap().time_left, Some(Duration::ZERO), "it is over");
 }
 
 pub(super) async fn every_change_is_noted_once_in_order<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let row = running(&*store, job()).await;
     store.release(row.claim()).await.unwrap();
@@ -143,7 +143,7 @@ pub(super) async fn every_change_is_noted_once_in_order<H: StoreHouse>() {
 }
 
 pub(super) async fn an_ending_is_read_back_as_it_was_told<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let row = running(&*store, job()).await;
     let told = Ending {
@@ -154,7 +154,7 @@ pub(super) async fn an_ending_is_read_back_as_it_was_told<H: StoreHouse>() {
         ..success(&row)
     };
     store.finish(row.claim(), told.clone()).await.unwrap();
-    let house = house.reopen();
+    let house = house.reopen().await;
     let row = house.store().get(row.id).await.unwrap();
     let read = row.ending.unwrap();
     assert_eq!((read.state, read.progress, read.outcome), (told.state, told.progress, told.outcome));

@@ -4,7 +4,7 @@ use super::*;
 use crate::jobs::ListQuery;
 
 pub(super) async fn an_equal_job_is_found_by_its_bytes_and_options<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let first = succeeded(&*store, job()).await;
     let same = NewJob { input: BlobRef { key: "in/again".into(), ..first.input.clone() }, ..job() };
@@ -25,7 +25,7 @@ pub(super) async fn an_equal_job_is_found_by_its_bytes_and_options<H: StoreHouse
 }
 
 pub(super) async fn an_equal_job_of_another_owner_is_not_found<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let first = succeeded(&*store, NewJob { owner: Some("a".to_owned()), ..job() }).await;
     let of =
@@ -37,14 +37,14 @@ pub(super) async fn an_equal_job_of_another_owner_is_not_found<H: StoreHouse>() 
 }
 
 pub(super) async fn what_failed_or_has_expired_answers_nothing<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let failed = running(&*store, job()).await;
     store.finish(failed.claim(), failure()).await.unwrap();
     let expired = succeeded(&*store, job()).await;
     store.expire(expired.id).await.unwrap();
     let due = succeeded(&*store, NewJob { keep_for: Duration::from_secs(1), ..job() }).await;
-    house.advance_ms(1000);
+    house.advance_ms(1000).await;
     for row in [failed, expired, due] {
         let same = NewJob { input: row.input, ..job() };
         assert!(store.find_equal(&same).await.unwrap().is_none());
@@ -52,7 +52,7 @@ pub(super) async fn what_failed_or_has_expired_answers_nothing<H: StoreHouse>() 
 }
 
 pub(super) async fn jobs_are_listed_the_latest_first_page_by_page<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let mut came = Vec::new();
     for _ in 0..7 {
@@ -73,7 +73,7 @@ pub(super) async fn jobs_are_listed_the_latest_first_page_by_page<H: StoreHouse>
 }
 
 pub(super) async fn jobs_are_listed_for_their_owner_only<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let mut ids = Vec::new();
     for owner in [None, Some("a"), Some("b")] {
@@ -87,7 +87,7 @@ pub(super) async fn jobs_are_listed_for_their_owner_only<H: StoreHouse>() {
 }
 
 pub(super) async fn jobs_are_listed_by_state_and_labels<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let label = |pairs: &[(&str, &str)]| {
         pairs.iter().map(|&(name, value)| (name.to_owned(), value.to_owned())).collect::<Labels>()
@@ -110,7 +110,7 @@ pub(super) async fn jobs_are_listed_by_state_and_labels<H: StoreHouse>() {
 }
 
 pub(super) async fn counts_follow_the_jobs<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let counts = async || {
         let counts = store.counts().await.unwrap();
@@ -128,4 +128,21 @@ pub(super) async fn counts_follow_the_jobs<H: StoreHouse>() {
     assert_eq!(counts().await, (1, 0, 2));
     store.delete(first.id).await.unwrap();
     assert_eq!(counts().await, (1, 0, 1));
+}
+
+pub(super) async fn who_waits_for_jobs_is_told_which_have_ended_or_are_gone<H: StoreHouse>() {
+    let house = H::open().await;
+    let store = house.store();
+    let ended = succeeded(&*store, job()).await.id;
+    let expired = succeeded(&*store, job()).await.id;
+    store.expire(expired).await.unwrap();
+    let running = running(&*store, job()).await.id;
+    let queued = admit(&*store, job()).await.id;
+    let gone = JobId::unique();
+    let mut told = store.ended(vec![queued, gone, running, ended, expired]).await.unwrap();
+    let mut expected = vec![ended, expired, gone];
+    told.sort_unstable();
+    expected.sort_unstable();
+    assert_eq!(told, expected);
+    assert!(store.ended(Vec::new()).await.unwrap().is_empty());
 }

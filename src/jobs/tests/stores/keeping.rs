@@ -6,14 +6,14 @@ use super::*;
 use crate::jobs::{ClaimRef, Kept, Leases, Tenant};
 
 pub(super) async fn an_ended_job_is_due_after_its_time<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let short = succeeded(&*store, NewJob { keep_for: Duration::from_secs(60), ..job() }).await.id;
     succeeded(&*store, job()).await;
     admit(&*store, NewJob { keep_for: Duration::ZERO, ..job() }).await;
-    house.advance_ms(59_999);
+    house.advance_ms(59_999).await;
     assert!(store.due().await.unwrap().is_empty());
-    house.advance_ms(1);
+    house.advance_ms(1).await;
     assert_eq!(store.due().await.unwrap(), [short]);
     assert!(store.get(short).await.unwrap().is_due);
     store.expire(short).await.unwrap();
@@ -22,7 +22,7 @@ pub(super) async fn an_ended_job_is_due_after_its_time<H: StoreHouse>() {
 }
 
 pub(super) async fn an_expired_job_keeps_its_row_and_loses_its_files<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let row = succeeded(&*store, job()).await;
     let orphans = store.expire(row.id).await.unwrap();
@@ -36,7 +36,7 @@ pub(super) async fn an_expired_job_keeps_its_row_and_loses_its_files<H: StoreHou
 }
 
 pub(super) async fn a_running_job_does_not_expire<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let row = running(&*store, job()).await;
     let queued = admit(&*store, job()).await;
@@ -48,7 +48,7 @@ pub(super) async fn a_running_job_does_not_expire<H: StoreHouse>() {
 }
 
 pub(super) async fn a_file_that_two_jobs_name_goes_with_the_second<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let first = succeeded(&*store, job()).await;
     let again = NewJob { input: first.input.clone(), source: Some(first.id), ..job() };
@@ -59,7 +59,7 @@ pub(super) async fn a_file_that_two_jobs_name_goes_with_the_second<H: StoreHouse
 }
 
 pub(super) async fn a_deleted_job_is_gone_whatever_its_state<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let labels = Labels::from([("a".to_owned(), "b".to_owned())]);
     let ended = succeeded(&*store, NewJob { labels: labels.clone(), webhook: webhook(), ..job() }).await;
@@ -76,11 +76,11 @@ pub(super) async fn a_deleted_job_is_gone_whatever_its_state<H: StoreHouse>() {
 }
 
 pub(super) async fn the_job_that_ended_first_is_the_oldest<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let (a, b) = (running(&*store, job()).await, running(&*store, job()).await);
     store.finish(b.claim(), success(&b)).await.unwrap();
-    house.advance_ms(1);
+    house.advance_ms(1).await;
     store.finish(a.claim(), success(&a)).await.unwrap();
     assert_eq!(store.first_to_go(Kept::WithFiles, Tenant::nobody()).await.unwrap(), Some(b.id));
     store.expire(b.id).await.unwrap();
@@ -89,7 +89,7 @@ pub(super) async fn the_job_that_ended_first_is_the_oldest<H: StoreHouse>() {
 }
 
 pub(super) async fn files_are_known_by_their_names_and_runs_by_their_claims<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let ended = succeeded(&*store, job()).await;
     let running = running(&*store, job()).await;
@@ -102,13 +102,13 @@ pub(super) async fn files_are_known_by_their_names_and_runs_by_their_claims<H: S
 }
 
 pub(super) async fn everything_outlasts_the_process<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let ended = succeeded(&*store, NewJob { webhook: webhook(), ..job() }).await;
     let running = running(&*store, job()).await;
     let queued = admit(&*store, job()).await;
     drop(store);
-    let house = house.reopen();
+    let house = house.reopen().await;
     let store = house.store();
     for (row, expected) in
         [(&ended, JobState::Succeeded), (&running, JobState::Running), (&queued, JobState::Queued)]
@@ -122,9 +122,9 @@ pub(super) async fn everything_outlasts_the_process<H: StoreHouse>() {
 }
 
 pub(super) async fn a_result_that_is_stored_is_seen_by_the_next_process_once<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let row = succeeded(&*house.store(), job()).await;
-    let house = house.reopen();
+    let house = house.reopen().await;
     let store = house.store();
     assert!(
         recover(&*store, Leases::OfWorker("w".to_owned())).await.is_empty(),

@@ -14,7 +14,7 @@ async fn claim_with(store: &dyn JobStore, share: usize, is_only: bool) -> Option
 }
 
 pub(super) async fn tenants_are_served_in_turn_and_those_with_fewer_running_jobs_first<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     for tenant in ["a", "a", "a", "a", "b", "b"] {
         admit(&*store, of(tenant)).await;
@@ -37,7 +37,7 @@ pub(super) async fn tenants_are_served_in_turn_and_those_with_fewer_running_jobs
 }
 
 pub(super) async fn no_tenant_has_more_running_jobs_than_its_share_in_slots_of_a_kind<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     for tenant in ["a", "a", "a", "", ""] {
         admit(&*store, of(tenant)).await;
@@ -61,7 +61,7 @@ pub(super) async fn no_tenant_has_more_running_jobs_than_its_share_in_slots_of_a
 }
 
 pub(super) async fn a_tenant_has_as_many_places_in_the_queue_as_are_free<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let fill = async |tenant: &str| {
         let mut taken = 0;
@@ -80,7 +80,7 @@ pub(super) async fn a_tenant_has_as_many_places_in_the_queue_as_are_free<H: Stor
 }
 
 pub(super) async fn nobody_loses_what_is_within_its_share<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let oldest = succeeded(&*store, of("quiet")).await.id;
     let mut loud = Vec::new();
@@ -119,7 +119,7 @@ pub(super) async fn nobody_loses_what_is_within_its_share<H: StoreHouse>() {
 }
 
 pub(super) async fn a_job_whose_webhook_is_still_to_be_sent_goes_last<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let told = succeeded(&*store, NewJob { webhook: webhook(), ..of("a") }).await.id;
     let plain = succeeded(&*store, of("a")).await.id;
@@ -130,7 +130,7 @@ pub(super) async fn a_job_whose_webhook_is_still_to_be_sent_goes_last<H: StoreHo
 }
 
 pub(super) async fn what_a_tenant_has_follows_its_jobs<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let holding = async |tenant: &str| store.holding(Tenant::named(tenant)).await.unwrap();
     assert_eq!(holding("a").await, Holding::default());
@@ -152,7 +152,7 @@ pub(super) async fn what_a_tenant_has_follows_its_jobs<H: StoreHouse>() {
 }
 
 pub(super) async fn a_job_that_is_larger_than_was_thought_waits_among_the_large_ones<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let row = running(&*store, job()).await;
     assert_eq!(store.demote(row.claim(), false).await, Ok(AfterLoss::Queued));
@@ -165,7 +165,7 @@ pub(super) async fn a_job_that_is_larger_than_was_thought_waits_among_the_large_
 }
 
 pub(super) async fn plain_secrets_are_sealed_once<H: StoreHouse>() {
-    let house = H::open();
+    let house = H::open().await;
     let store = house.store();
     let hook = Webhook { url: "https://shop.example/done".to_owned(), secret: Some("plain".to_owned()) };
     let ended = succeeded(&*store, NewJob { webhook: Some(hook.clone()), ..job() }).await.id;

@@ -27,7 +27,7 @@ impl SqliteHouse {
 }
 
 impl StoreHouse for SqliteHouse {
-    fn open() -> Self {
+    async fn open() -> Self {
         let dir = Arc::new(tempfile::tempdir().unwrap());
         // Any time will do; this one is in 2027.
         Self::at(dir, Arc::new(AtomicI64::new(1_800_000_000_000)))
@@ -37,11 +37,11 @@ impl StoreHouse for SqliteHouse {
         Arc::clone(&self.store) as Arc<dyn JobStore>
     }
 
-    fn advance_ms(&self, by: i64) {
+    async fn advance_ms(&self, by: i64) {
         self.clock.fetch_add(by, Ordering::SeqCst);
     }
 
-    fn reopen(self) -> Self {
+    async fn reopen(self) -> Self {
         let Self { store, clock, path, _dir } = self;
         drop(store);
         assert!(path.exists());
@@ -55,7 +55,7 @@ contract!(SqliteHouse);
 async fn a_file_that_another_process_holds_is_written_again_once_it_is_free() {
     use super::{admit, job};
     use crate::jobs::StoreError;
-    let house = SqliteHouse::open();
+    let house = SqliteHouse::open().await;
     let other = rusqlite::Connection::open(&house.path).unwrap();
     other.execute_batch("BEGIN IMMEDIATE").unwrap();
     let refused = house.store.create(job(), 10).await.unwrap_err();
@@ -69,7 +69,7 @@ async fn a_file_that_another_process_holds_is_written_again_once_it_is_free() {
 async fn a_row_that_cannot_be_read_fails_and_does_not_stand_in_the_way() {
     use super::{admit, claim, job};
     use crate::wire::JobState;
-    let house = SqliteHouse::open();
+    let house = SqliteHouse::open().await;
     let (strange, next) = (admit(&*house.store, job()).await.id, admit(&*house.store, job()).await.id);
     let other = rusqlite::Connection::open(&house.path).unwrap();
     let options = r#"{"an option of another version":1}"#;

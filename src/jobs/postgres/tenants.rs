@@ -1,0 +1,140 @@
+//! Shares: whose job runs next, whose results go first, and how many places of the queue one tenant may have. What a tenant
+//! has is counted, not kept: a row of sums would be one that all who change anything wait for.
+
+use super::locks;
+use super::rows::{id as id_of, number, number_of, value};
+use super::session::Session;
+use crate::jobs::store::{ClaimRequest, Holding, JobId, Kept, Lane, StoreError, Tenant};
+
+/// Refuses when the tenant has as many jobs in the queue as there are `free` places.
+pub(super) async fn check_share(session: &Session, tenant: &Tenant, free: usize) -> Result<(), StoreError> {
+    if tenant.is_nobody() {
+        return Ok(());
+    }
+    let sql = "SELECT count(*) FROM jobs WHERE state = 'queued' AND tenant = $1";
+    let queued: usize = number(&session.row(sql, &[&tenant.name()]).await?, 0)?;
+    if queued < free { Ok(()) } else { Err(StoreError::ShareFull { queued, limit: free }) }
+}
+
+pub(super) async fn holding(session: &Session, tenant: Tenant) -> Result<Holding, StoreError> {
+    // Sums of what callers claim may be larger than an integer holds.
+    let sql = "SELECT count(*), count(*) FILTER (WHERE state = 'queued'),
+            least(coalesce(sum(input_bytes) FILTER (WHERE state IN ('queued', 'running')), 0), 9223372036854775807)::bigint,
+            (SELECT least(coalesce(sum(input_bytes), 0), 9223372036854775807)::bigint FROM jobs
+             WHERE state IN ('queued', 'running')),
+            least(coalesce(sum(file_bytes), 0), 9223372036854775807)::bigint
+        FROM jobs WHERE tenant = $1";
+    let row = session.row(sql, &[&tenant.name()]).await?;
+    Ok(Holding {
+        jobs: number(&row, 0)?,
+        queued: number(&row, 1)?,
+        open_bytes: number(&row, 2)?,
+        open_bytes_of_all: number(&row, 3)?,
+        bytes: number(&row, 4)?,
+    })
+}
+
+/// The tenants that a job may be claimed of, whose turn it is first, each with the lane of its job. A claim tries one after
+/// the other: what another worker takes meanwhile is not there any more.
+pub(super) async fn in_turn(
+    session: &Session,
+    request: ClaimRequest,
+) -> Result<Vec<(String, Lane)>, StoreError> {
+    let other = match request.prefer {
+        Lane::Interactive => Lane::Bulk,
+        Lane::Bulk => Lane::Interactive,
+    };
+    let mut turns = Vec::new();
+    for lane in [Some(request.prefer), (!request.is_only).then_some(other)].into_iter().flatten() {
+        let sql = "SELECT tenant
+            FROM (SELECT DISTINCT ON (tenant) tenant, id AS first FROM jobs WHERE state = 'queued' AND lane = $1
+                  ORDER BY tenant, id) AS own
+            WHERE tenant = '' OR $3 > (SELECT count(*) FROM jobs
+                WHERE state = 'running' AND tenant = own.tenant AND is_quick = $2)
+            ORDER BY (SELECT count(*) FROM jobs WHERE state = 'running' AND tenant = own.tenant),
+                coalesce((SELECT max(turn) FROM jobs WHERE tenant = own.tenant), 0), first";
+        let share = i64::try_from(request.share).unwrap_or(i64::MAX);
+        for row in session.rows(sql, &[&number_of(lane), &request.is_only, &share]).await? {
+            turns.push((value(&row, 0)?, lane));
+        }
+    }
+    Ok(turns)
+}
+
+/// Locks the first job of a tenant that nobody else is about to take, if the tenant may have another one.
+pub(super) async fn take(
+    session: &Session,
+    request: &ClaimRequest,
+    tenant: &str,
+    lane: Lane,
+) -> Result<Option<JobId>, StoreError> {
+    if !tenant.is_empty() {
+        locks::hold_share(session, tenant).await?;
+    }
+    let sql = "SELECT id FROM jobs WHERE state = 'queued' AND tenant = $1 AND lane = $2
+            AND ($1 = '' OR $4 > (SELECT count(*) FROM jobs WHERE state = 'running' AND tenant = $1 AND is_quick = $3))
+        ORDER BY id LIMIT 1 FOR UPDATE SKIP LOCKED";
+    let share = i64::try_from(request.share).unwrap_or(i64::MAX);
+    let found = session.row_if_any(sql, &[&tenant, &number_of(lane), &request.is_only, &share]).await?;
+    found.map(|row| id_of(&row, 0)).transpose()
+}
+
+/// The ended job that makes room for one of `asker`.
+pub(super) async fn first_to_go(
+    session: &Session,
+    kept: Kept,
+    asker: Tenant,
+) -> Result<Option<JobId>, StoreError> {
+    let what = match kept {
+        Kept::WithFiles => "sum(file_bytes)",
+        Kept::Any => "count(*)",
+    };
+    let held = format!("WITH held AS (SELECT tenant, {what} AS n FROM jobs GROUP BY tenant)");
+    let sql = format!(
+        "{held} SELECT n * (SELECT count(*) FROM held) >= (SELECT sum(n) FROM held) FROM held WHERE tenant = $1"
+    );
+    let has_share = session.row_if_any(&sql, &[&asker.name()]).await?;
+    if let Some(row) = has_share
+        && value(&row, 0)?
+        && let Some(own) = first_to_go_of(session, kept, &asker).await?
+    {
+        return Ok(Some(own));
+    }
+    let sql = format!(
+        "{held} SELECT tenant FROM held WHERE n * (SELECT count(*) FROM held) > (SELECT sum(n) FROM held)
+         ORDER BY n DESC, tenant"
+    );
+    for row in session.rows(&sql, &[]).await? {
+        let tenant = Tenant::named(value::<&str>(&row, 0)?);
+        if let Some(id) = first_to_go_of(session, kept, &tenant).await? {
+            return Ok(Some(id));
+        }
+    }
+    Ok(None)
+}
+
+/// The ended job of a tenant that is to go first.
+pub(super) async fn first_to_go_of(
+    session: &Session,
+    kept: Kept,
+    tenant: &Tenant,
+) -> Result<Option<JobId>, StoreError> {
+    let statements = match kept {
+        // Webhooks stay with their row.
+        Kept::WithFiles => &["SELECT id FROM jobs
+             WHERE tenant = $1 AND finished_at IS NOT NULL AND state <> 'expired' ORDER BY finished_at, id LIMIT 1"][..],
+        Kept::Any => &[
+            "SELECT id FROM jobs AS own
+             WHERE tenant = $1 AND finished_at IS NOT NULL AND NOT EXISTS
+                 (SELECT 1 FROM deliveries WHERE deliveries.job = own.id AND next_at IS NOT NULL)
+             ORDER BY finished_at, id LIMIT 1",
+            "SELECT id FROM jobs WHERE tenant = $1 AND finished_at IS NOT NULL ORDER BY finished_at, id LIMIT 1",
+        ],
+    };
+    for statement in statements {
+        if let Some(row) = session.row_if_any(statement, &[&tenant.name()]).await? {
+            return id_of(&row, 0).map(Some);
+        }
+    }
+    Ok(None)
+}

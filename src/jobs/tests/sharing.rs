@@ -1,0 +1,100 @@
+//! Several servers on one database and one bucket.
+
+use super::blobs::s3::S3Server;
+use super::stores::{Database, leave_out};
+use super::*;
+
+/// What several servers share, and a service of each.
+struct Street {
+    shared: SharedStores,
+    _bucket: S3Server,
+}
+
+impl Street {
+    async fn open(database: &Database) -> Self {
+        let bucket = S3Server::start();
+        let shared = SharedStores { database: database.access().await, bucket: bucket.access() };
+        Self { shared, _bucket: bucket }
+    }
+
+    /// A server in a directory of its own.
+    async fn house(
+        &self,
+        slots: usize,
+        engine: impl Fn(&[u8], &Budget) -> Result<Answer, Failure> + Send + Sync + 'static,
+    ) -> House {
+        let change = |settings: &mut JobsSettings| {
+            settings.shared = Some(self.shared.clone());
+            settings.slots = slots;
+            settings.interactive_slots = 0;
+            settings.lease = Duration::from_secs(1);
+        };
+        house(change, engine).await
+    }
+}
+
+/// A test that is left out where there is no PostgreSQL.
+macro_rules! shared_tests {
+    ($(async fn $name:ident($street:ident) $body:block)+) => { $(
+        #[tokio::test(flavor = "multi_thread", worker_threads = 4)]
+        async fn $name() {
+            match Database::installed() {
+                Ok(database) => {
+                    let $street = Street::open(&database).await;
+                    $body
+                }
+                Err(missing) => leave_out(missing),
+            }
+        }
+    )+ };
+}
+
+shared_tests! {
+    async fn a_job_is_sent_to_one_server_run_by_another_and_read_from_a_third(street) {
+        let (first, third) = (street.house(0, mend).await, street.house(0, mend).await);
+        let _second = street.house(1, |bytes, _| {
+            assert_eq!(bytes, b"a mesh", "the upload came from the first one");
+            Ok(sample::repaired())
+        }).await;
+        let job = first.order(b"a mesh").await.unwrap();
+        let ended = first.end_of(&job).await;
+        assert_eq!(ended.state, JobState::Succeeded, "{:?}", ended.problem);
+        let here = content(first.result(id(&job)).await.unwrap()).await;
+        let there = content(third.result(id(&job)).await.unwrap()).await;
+        assert!(!here.is_empty() && here == there);
+        third.delete(id(&job)).await.unwrap();
+        assert!(first.get(id(&job)).await.is_err());
+    }
+
+    async fn a_job_is_cancelled_by_a_server_that_does_not_run_it(street) {
+        let (first, second) = (street.house(0, mend).await, street.house(1, work_forever).await);
+        let job = first.order(b"a mesh").await.unwrap();
+        first.until("running", |load| load.running == 1).await;
+        first.cancel(id(&job)).await.unwrap();
+        assert_eq!(first.end_of(&job).await.state, JobState::Cancelled);
+        drop(second);
+    }
+
+    async fn the_next_start_of_one_server_leaves_the_jobs_of_others_alone(street) {
+        let (told, heard) = mpsc::channel();
+        let working = street.house(1, work_until_told(heard)).await;
+        let job = working.order(b"a mesh").await.unwrap();
+        working.until("running", |load| load.running == 1).await;
+        let other = street.house(0, mend).await;
+        assert_eq!(other.get(id(&job)).await.unwrap().state, JobState::Running);
+        told.send(()).unwrap();
+        assert_eq!(other.end_of(&job).await.state, JobState::Succeeded);
+        assert_eq!(working.service().store.get(id(&job)).await.unwrap().attempts, 0);
+    }
+
+    async fn a_bucket_of_another_database_is_refused(street) {
+        let first = street.house(0, mend).await;
+        first.order(b"a mesh").await.unwrap();
+        let dir = tempfile::tempdir().unwrap();
+        let another = Database::installed().unwrap().access().await;
+        let shared = SharedStores { database: another, ..street.shared.clone() };
+        let settings = JobsSettings { shared: Some(shared), ..JobsSettings::new(dir.path()) };
+        let error = Jobs::start(settings).await.unwrap_err().to_string();
+        assert!(error.contains("another database"), "{error}");
+    }
+}
