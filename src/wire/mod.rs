@@ -8,6 +8,7 @@ mod certificate;
 mod edges;
 mod event;
 mod fidelity;
+mod fill_settings;
 mod formats;
 mod holes;
 mod job;
@@ -23,6 +24,8 @@ mod part;
 mod plan;
 mod printing;
 mod problem;
+mod problem_code;
+mod proposal;
 mod report;
 mod report_page;
 mod request;
@@ -32,6 +35,7 @@ mod unit_hypothesis;
 mod verdict;
 mod version;
 mod webhook;
+mod whole_number;
 mod words;
 
 #[cfg(test)]
@@ -40,6 +44,7 @@ pub(crate) mod sample;
 pub use certificate::{Certificate, Claim, Reading, Shell, Violation, ViolationCount};
 pub use event::{Phase, StageEvent, StateEvent};
 pub use fidelity::FidelityChange;
+pub use fill_settings::{FillSettings, SingleHole};
 pub use formats::{FormatInfo, extension_of, format_of_media_type, formats, media_type_of};
 pub use holes::{ChosenHole, FieldFit, Hole, Holes, RejectedPatch};
 pub use job::{Job, JobList, JobState, Links, Progress};
@@ -61,16 +66,15 @@ pub use option_schema::{
 };
 pub use options::{OptionError, OptionKind, OptionSpec, Options, SPECS};
 pub use part::{Attributes, Part};
-pub use plan::{
-    ChosenElement, ChosenFinding, ChosenShell, ElementProposal, FillSettings, Plan, PlanRequest, PlanStep,
-    Proposal, SingleHole,
-};
+pub use plan::{ChosenElement, ChosenFinding, ChosenShell, PlanRequest, PlanStep};
 pub use printing::{
     BoundKind, BuildDirection, CheckCode, Edges, Fit, OrientedBox, Overhang, Parts, PolicyInfo, PolicyLimit,
     PolicyName, PolicyVolume, PrintedMesh, Printing, PrintingCheck, PrintingUnit, PrintingWitness, Quote,
     Spread, Status, Thickness, policies,
 };
-pub use problem::{ErrorInfo, Problem, ProblemCode, errors};
+pub use problem::Problem;
+pub use problem_code::{ErrorInfo, ProblemCode, errors};
+pub use proposal::{ElementProposal, Plan, Proposal};
 pub use report::{
     Action, Change, Deviation, DirectedDistance, Distance, EngineInfo, FurtherInput, InputInfo, Report,
     Resources, TimingMs, UnitsInfo,

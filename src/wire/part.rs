@@ -4,7 +4,7 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::mesh_info::finite;
-use super::plan::Plan;
+use super::proposal::Plan;
 use super::report::Action;
 use super::verdict::Verdict;
 use crate::pipeline;

@@ -9,7 +9,8 @@ use utoipa::{PartialSchema, ToSchema};
 use super::labels::{Labels, about_labels, labels_from_json, labels_schema};
 use super::option_schema::options_object;
 use super::options::{Options, nearest};
-use super::problem::{Problem, ProblemCode};
+use super::problem::Problem;
+use super::problem_code::ProblemCode;
 use super::webhook::WebhookRequest;
 use super::words::Operation;
 

@@ -3,7 +3,8 @@
 use std::fmt;
 
 use super::table::{OptionSpec, nearest};
-use crate::wire::problem::{Problem, ProblemCode};
+use crate::wire::problem::Problem;
+use crate::wire::problem_code::ProblemCode;
 use crate::wire::words::Operation;
 
 /// An option that cannot be taken.
