@@ -1,7 +1,7 @@
 //! How far a result is from its input, what of the input it lost, and whether that is little enough.
 
 use super::plan::Covered;
-use super::{FidelityVerdict, Limits, Refusal};
+use super::{Limits, Refusal};
 use crate::analysis::Analysis;
 use crate::budget::{Budget, CHECK_EVERY, Stage, Stopped};
 use crate::distance::{
@@ -64,12 +64,6 @@ impl Fidelity {
     /// True when no other result needs to be looked for.
     pub(super) fn passes(&self, limits: &Limits) -> bool {
         self.losses.visible_loss <= LOSS_MAX && self.losses.bodies_lost == 0 && self.breach(limits).is_none()
-    }
-
-    /// How true a result is to `input` that was measured so.
-    pub(super) fn verdict(&self, input: &Soup) -> FidelityVerdict {
-        let moved = self.distance.map_or(0.0, |distance| distance.upper());
-        FidelityVerdict::of(&self.losses, moved, diagonal(input))
     }
 
     /// The limit of the caller that this exceeds.

@@ -44,7 +44,7 @@ pub use self::modeller::{
     Blocker, BlockerKind, EdgeName, Edit, EditKind, FaceName, FaceRange, ModelFace, ModellerChoices,
     ModellerRefusal, ModellerReport, ModellerStep, RangeName, RangeSide,
 };
-pub use self::operation::{MESHES_MAX, Operation, Require};
+pub use self::operation::{Facts, MESHES_MAX, Operation, Product, Require, Work};
 pub use self::picture::PictureChoices;
 pub use self::printing::PrintingReport;
 pub use self::project::{AttributeCounts, PartFacts, PartReport};

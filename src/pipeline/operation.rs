@@ -32,6 +32,55 @@ pub enum Operation {
     Render,
 }
 
+/// What a run of `repair` may take however few triangles the file has, in bytes: its surface may be rebuilt.
+const REBUILT: u64 = 1 << 30;
+/// The same of other operations.
+const CHANGED: u64 = 256 << 20;
+
+/// What an operation gives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Product {
+    /// Its report.
+    Report,
+    /// A mesh; the certificate says what holds.
+    Mesh,
+    /// A mesh that is printable.
+    Solid,
+    /// A picture.
+    Picture,
+}
+
+/// What bounds the work of a run, in proportion to its files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Work {
+    /// As much as looking at a mesh takes.
+    Looking,
+    /// As much as a repair takes.
+    Repairing,
+    /// Nothing but the caller's own limit.
+    Unbounded,
+}
+
+/// What is particular to an operation: its row in the table of operations.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Facts {
+    /// Name in paths, options and reports.
+    pub name: &'static str,
+    /// What it gives.
+    pub product: Product,
+    /// What bounds its work.
+    pub work: Work,
+    /// Passes of a usual run, by which progress is told.
+    pub passes: f64,
+    /// Bytes that it takes for each triangle, measured as peaks of a whole process (`docs/campaigns/speed.md`) or estimated from its
+    /// lists.
+    pub bytes_per_triangle: u64,
+    /// Bytes that it may take however few the triangles are.
+    pub bytes_min: u64,
+    /// Numbers of files that it takes.
+    pub meshes: RangeInclusive<usize>,
+}
+
 impl Operation {
     /// Every operation.
     pub const ALL: [Self; 11] = [
@@ -48,37 +97,58 @@ impl Operation {
         Self::Render,
     ];
 
+    /// Its row.
+    pub fn facts(self) -> Facts {
+        // The passes: read, certify and analyze the input; two lists of steps; write, certify and analyze the output.
+        let row = |name, product, work, passes, bytes_per_triangle, bytes_min| Facts {
+            name,
+            product,
+            work,
+            passes,
+            bytes_per_triangle,
+            bytes_min,
+            meshes: 1..=1,
+        };
+        use Product::{Mesh, Picture, Report, Solid};
+        use Work::{Looking, Repairing, Unbounded};
+        match self {
+            Self::Analyze => row("analyze", Report, Looking, 3.0, 170, CHANGED),
+            Self::Plan => row("plan", Report, Looking, 3.0, 410, REBUILT),
+            Self::Repair => row("repair", Solid, Repairing, 8.0, 410, REBUILT),
+            Self::Convert => row("convert", Mesh, Looking, 5.0, 170, CHANGED),
+            Self::Verify => row("verify", Report, Looking, 2.0, 170, CHANGED),
+            Self::Simplify => row("simplify", Mesh, Unbounded, 9.0, 410, CHANGED),
+            Self::CutStitch => row("cut-stitch", Mesh, Unbounded, 7.0, 170, CHANGED),
+            Self::FillHoles => row("fill-holes", Mesh, Unbounded, 7.0, 410, REBUILT),
+            // Exact planes and points, and the boxes around them: 1 to 2 kB for each triangle of parts that were measured.
+            Self::Modeller => row("modeller", Mesh, Unbounded, 7.0, 2000, CHANGED),
+            // At least two meshes are read, certified and analyzed; the arrangement of all, with winding numbers for each.
+            Self::Boolean => {
+                Facts { meshes: 2..=MESHES_MAX, ..row("boolean", Solid, Repairing, 11.0, 1000, CHANGED) }
+            }
+            Self::Render => row("render", Picture, Looking, 4.0, 170, CHANGED),
+        }
+    }
+
     /// Name in paths, options and reports.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Analyze => "analyze",
-            Self::Plan => "plan",
-            Self::Repair => "repair",
-            Self::Convert => "convert",
-            Self::Verify => "verify",
-            Self::Simplify => "simplify",
-            Self::CutStitch => "cut-stitch",
-            Self::FillHoles => "fill-holes",
-            Self::Modeller => "modeller",
-            Self::Boolean => "boolean",
-            Self::Render => "render",
-        }
+        self.facts().name
     }
 
     /// True when its answer has no mesh.
     pub(crate) fn only_reports(self) -> bool {
-        matches!(self, Self::Analyze | Self::Plan | Self::Verify | Self::Render)
+        matches!(self.facts().product, Product::Report | Product::Picture)
     }
 
     /// Numbers of files that it takes.
     pub fn meshes(self) -> RangeInclusive<usize> {
-        if self == Self::Boolean { 2..=MESHES_MAX } else { 1..=1 }
+        self.facts().meshes
     }
 
     pub(super) fn meshes_taken(self) -> String {
-        match self {
-            Self::Boolean => format!("2 to {MESHES_MAX} meshes"),
-            _ => "one mesh".to_owned(),
+        match self.meshes().into_inner() {
+            (_, 1) => "one mesh".to_owned(),
+            (least, most) => format!("{least} to {most} meshes"),
         }
     }
 }

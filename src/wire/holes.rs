@@ -9,7 +9,7 @@ use utoipa::openapi::schema::{
 };
 use utoipa::{PartialSchema, ToSchema};
 
-use super::mesh_info::finite;
+use super::finite::finite;
 use super::whole_number::whole_number;
 use super::words::{FillMethod, HoleClass, HoleFate, Kernel, Rejection};
 use crate::implicit::FitFacts;

@@ -5,17 +5,19 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::action::Action;
 use super::certificate::{Certificate, hex};
+use super::distance::Distance;
+use super::finite::finite;
 use super::holes::Hole;
 use super::level::Level;
-use super::mesh_info::{MeshInfo, finite};
+use super::mesh_info::MeshInfo;
 use super::modeller::Modeller;
 use super::part::Part;
 use super::printing::Printing;
 use super::proposal::Plan;
-use super::stitches::Stitches;
 use super::verdict::Verdict;
-use super::words::{DefectCode, Encoding, Format, Operation, Stage, Units};
+use super::words::{Encoding, Format, Operation, Stage, Units};
 use crate::{analysis, pipeline};
 
 /// The account of a run.
@@ -124,35 +126,6 @@ pub struct UnitsInfo {
     pub is_stated: bool,
 }
 
-/// One step of a repair.
-#[derive(Debug, Clone, Serialize, ToSchema)]
-pub struct Action {
-    /// Name of the step.
-    pub step: &'static str,
-    /// The defects that caused it.
-    pub causes: Vec<DefectCode>,
-    /// What it changed; all zero: there was nothing to do.
-    pub changes: Vec<Change>,
-    /// Largest distance that a vertex moved, in the unit of the file.
-    #[schema(required)]
-    pub move_max: Option<f64>,
-    /// What was decided where there was a choice; empty otherwise.
-    pub reason: String,
-    /// The edges that the step joined, one by one; null for steps other than `pinch` and `snap` and for operations other
-    /// than `cut-stitch`.
-    #[schema(required)]
-    pub stitches: Option<Stitches>,
-}
-
-/// How many elements a step changed.
-#[derive(Debug, Clone, Serialize, ToSchema)]
-pub struct Change {
-    /// What was changed.
-    pub name: &'static str,
-    /// How many.
-    pub count: u64,
-}
-
 /// How far the result is from the input.
 #[derive(Debug, Clone, Serialize, ToSchema)]
 pub struct Deviation {
@@ -194,38 +167,6 @@ pub struct Deviation {
     /// Share of the input's triangles that are bit-identical in the result, from 0 to 1.
     #[schema(required)]
     pub identical_triangle_share: Option<f64>,
-}
-
-/// How far two surfaces are from each other, in the unit of the file.
-#[derive(Debug, Clone, Serialize, ToSchema)]
-pub struct Distance {
-    /// From the input to the result.
-    pub input_to_result: DirectedDistance,
-    /// From the result to the input.
-    pub result_to_input: DirectedDistance,
-}
-
-/// How far one surface is from another, in the unit of the file.
-#[derive(Debug, Clone, Serialize, ToSchema)]
-pub struct DirectedDistance {
-    /// No point of the surface is farther away than this.
-    #[schema(required)]
-    pub max: Option<f64>,
-    /// The distance at `place`; the largest one lies between this and `max`.
-    #[schema(required)]
-    pub found: Option<f64>,
-    /// True when `max` and `found` are as close as the search aims at; false when the work that a file of this size is worth
-    /// was used up before. Both bounds hold either way.
-    pub is_close: bool,
-    /// The farthest point that was found.
-    #[schema(required)]
-    pub place: Option<[f64; 3]>,
-    /// Mean over the area, by sampling.
-    #[schema(required)]
-    pub mean: Option<f64>,
-    /// Root of the mean square over the area, by sampling.
-    #[schema(required)]
-    pub root_mean_square: Option<f64>,
 }
 
 /// Milliseconds by the clock; null: the pass did not run.
@@ -363,19 +304,6 @@ impl From<&pipeline::FurtherInput> for FurtherInput {
     }
 }
 
-impl From<&pipeline::Action> for Action {
-    fn from(inner: &pipeline::Action) -> Self {
-        Self {
-            step: inner.step,
-            causes: inner.causes.iter().copied().map(DefectCode::from).collect(),
-            changes: inner.changes.iter().map(|&(name, count)| Change { name, count }).collect(),
-            move_max: finite(inner.move_max),
-            reason: inner.reason.clone(),
-            stitches: inner.stitches.as_ref().map(Stitches::from),
-        }
-    }
-}
-
 impl Deviation {
     fn of(inner: &pipeline::Report) -> Self {
         let measures = |mesh: Option<&analysis::Analysis>| mesh.map(|mesh| mesh.measures);
@@ -396,28 +324,6 @@ impl Deviation {
                 .as_ref()
                 .and_then(|filling| finite(filling.interpolated_area_share)),
             identical_triangle_share: inner.identical_triangle_share.and_then(finite),
-        }
-    }
-}
-
-impl From<&crate::distance::SurfaceDistance> for Distance {
-    fn from(inner: &crate::distance::SurfaceDistance) -> Self {
-        Self {
-            input_to_result: DirectedDistance::from(&inner.forward),
-            result_to_input: DirectedDistance::from(&inner.backward),
-        }
-    }
-}
-
-impl From<&crate::distance::DirectedDistance> for DirectedDistance {
-    fn from(inner: &crate::distance::DirectedDistance) -> Self {
-        Self {
-            max: finite(inner.upper),
-            found: finite(inner.lower),
-            is_close: inner.is_within_tolerance,
-            place: inner.farthest.place.is_finite().then(|| inner.farthest.place.to_array()),
-            mean: inner.mean.and_then(finite),
-            root_mean_square: inner.root_mean_square.and_then(finite),
         }
     }
 }

@@ -14,14 +14,6 @@ use super::problem_code::ProblemCode;
 use super::webhook::WebhookRequest;
 use super::words::Operation;
 
-/// An earlier job whose upload is used again.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct InputRef {
-    /// Id of the job.
-    pub job: String,
-}
-
 /// What to do, with options: `{"operation":"repair","units":"mm"}`. Options may also stand in a member `params`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JobRequest {
@@ -164,7 +156,7 @@ impl ToSchema for JobRequest {}
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::wire::Units;
+    use crate::wire::{InputRef, Units};
 
     #[test]
     fn options_stand_beside_the_operation_or_in_params() {

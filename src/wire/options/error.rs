@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use super::table::{OptionSpec, nearest};
+use super::nearest::nearest;
+use super::table::OptionSpec;
 use crate::wire::problem::Problem;
 use crate::wire::problem_code::ProblemCode;
 use crate::wire::words::Operation;
