@@ -1,6 +1,7 @@
 //! Whether a mesh is watertight, under the definitions that tools use; they differ in which vertices are one.
 
 use super::closed::is_closed;
+use super::welded::indices_where;
 use super::{Context, proximity};
 use crate::budget::Stopped;
 use crate::spatial::coincident_f32;

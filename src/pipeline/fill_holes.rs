@@ -8,7 +8,7 @@ use super::{Answer, ChosenHole, ELEMENTS_MAX, Failure, Operation, Options, Outco
 use crate::analysis::{Analysis, DefectCode, HoleGuess, Witness};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::geom::triangle_area;
-use crate::repair::fill::{FillOptions, HoleChoice, HoleReport, Method, Rejected};
+use crate::repair::fill::{FillOptions, HoleChoice, HoleReport, Rejected};
 use crate::repair::{Draft, NEW, Selection};
 
 /// Which holes are filled, and how.

@@ -55,15 +55,15 @@ pub use self::remedies::{
 pub use self::step::Step;
 pub use self::stitches::{JoinedEdges, Stitches};
 use crate::analysis::{Analysis, DefectCode};
-use crate::budget::{Budget, Stage, Stopped};
+use crate::budget::{Budget, Stage};
 use crate::certificate::{Certificate, Violation};
 use crate::distance::SurfaceDistance;
-use crate::formats::{self, Encoding, Format, ReadError, ReadOptions, WriteError};
+use crate::formats::{self, Encoding, Format, ReadOptions, WriteError};
 pub use crate::mesh::Units;
 use crate::printing::Policy;
 use crate::repair::nest;
 pub use crate::repair::unite::{NotCombined, NotSolid, SetOperation};
-use crate::simplify::{CriterionKind, Mode, Placement, Report as SimplifyReport, Target};
+use crate::simplify::Report as SimplifyReport;
 
 /// Options of every operation; those that do not apply are ignored.
 #[derive(Debug, Clone, Default)]

@@ -15,7 +15,7 @@ use crate::repair::pair_sheets::Across;
 use crate::repair::polygons::DegenerateFaces;
 use crate::repair::snap::SnapOptions;
 use crate::repair::unite::Coverage;
-use crate::repair::{Changes, Draft, Effects};
+use crate::repair::{self, Changes, Draft, Effects};
 
 /// What distinguishes the plans that are tried for one file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

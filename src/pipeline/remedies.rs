@@ -2,7 +2,7 @@
 
 use super::choices::ChosenHole;
 use super::step::Step;
-use crate::analysis::{Analysis, DefectCode, Finding, HoleGuess, Severity, Witness};
+use crate::analysis::{Analysis, DefectCode, Finding, HoleGuess, Witness};
 
 /// What is done about a defect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -132,7 +132,7 @@ impl FillSettings {
 }
 
 /// A number of rings, or none.
-fn rings<'de, D: Deserializer<'de>>(from: D) -> Result<Option<u32>, D::Error> {
+pub(super) fn rings<'de, D: Deserializer<'de>>(from: D) -> Result<Option<u32>, D::Error> {
     let number = Option::<f64>::deserialize(from)?;
     let rings = number.map(|number| whole_number(number).filter(|&rings| rings <= BAND_RINGS_MAX));
     rings.map(|rings| rings.ok_or_else(|| D::Error::custom("not a number of rings"))).transpose()

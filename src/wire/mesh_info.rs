@@ -1,6 +1,5 @@
 //! A mesh described as JSON: counts, sizes, properties and defects.
 
-use glam::DVec3;
 use serde::Serialize;
 use utoipa::ToSchema;
 

@@ -6,8 +6,7 @@ use serde_json::Value;
 use utoipa::ToSchema;
 
 use super::certificate::digest_of_hex;
-use super::fill_settings::FillSettings;
-use super::holes::BAND_RINGS_MAX;
+use super::fill_settings::{FillSettings, rings};
 use super::whole_number::{whole, whole_number};
 use super::words::{Across, DefectCode, Degenerate, FillMethod, Nesting, Opposite, Remedy, ShellFate};
 use crate::pipeline::{self, ELEMENTS_MAX, Step};

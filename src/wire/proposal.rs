@@ -1,6 +1,6 @@
 //! What `/v1/plan` proposes, and what a repair did.
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use utoipa::ToSchema;
 
 use super::certificate::hex;

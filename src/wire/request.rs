@@ -1,6 +1,5 @@
 //! The request that makes a job, as JSON.
 
-use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::openapi::schema::{ObjectBuilder, Schema};
 use utoipa::openapi::{Ref, RefOr};

@@ -1,6 +1,5 @@
 //! Names of faces and edges, as a list of options says them.
 
-use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 use utoipa::openapi::RefOr;
 use utoipa::openapi::schema::{ArrayBuilder, ObjectBuilder, Schema, Type};
