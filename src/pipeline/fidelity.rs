@@ -27,8 +27,12 @@ const DISTANCE: DistanceOptions = DistanceOptions {
     refinements_max: 1 << 20,
 };
 
-/// The same where that takes too much work: the distance is enclosed as far as a few samples and refinements go.
-const COARSE_DISTANCE: DistanceOptions =
+/// The same where that takes too much work: the distance is enclosed as far as fewer samples and refinements go.
+const WIDER_DISTANCE: DistanceOptions =
+    DistanceOptions { samples: 1 << 12, refinements_max: 1 << 17, ..DISTANCE };
+
+/// The same where that is still too much.
+const WIDEST_DISTANCE: DistanceOptions =
     DistanceOptions { samples: 1 << 10, refinements_max: 1 << 14, ..DISTANCE };
 
 /// Bodies beyond which none is looked at alone.
@@ -131,10 +135,12 @@ impl<'i> Original<'i> {
         budget: &Budget,
     ) -> Result<Fidelity, Stopped> {
         let measured = |care: &DistanceOptions| self.measure_with(care, result, origins, covered, budget);
-        match budget.within_part(3, || measured(&DISTANCE))? {
-            Some(fidelity) => Ok(fidelity),
-            None => measured(&COARSE_DISTANCE),
+        for care in [&DISTANCE, &WIDER_DISTANCE] {
+            if let Some(fidelity) = budget.within_part(3, || measured(care))? {
+                return Ok(fidelity);
+            }
         }
+        measured(&WIDEST_DISTANCE)
     }
 
     fn measure_with(
