@@ -13,7 +13,7 @@ export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never} CARGO_INCREMENTAL=0 PYTHONDON
 # Settings of the caller's own service must not reach the tests.
 for name in $(compgen -e | grep '^MESHMEND_' | grep -v -e '^MESHMEND_CORPUS$'); do unset "$name"; done
 
-steps=(format lint lint_engine lint_otel build tests doc_tests fixtures contract fuzz_contract clients browser gltf_rules deploy licences)
+steps=(format lint lint_engine build tests doc_tests documentation fixtures contract fuzz_contract clients browser gltf_rules deploy licences)
 scratch=target/test-run
 python=target/python/bin
 server_pid=
@@ -56,19 +56,30 @@ set_up() {
 # --- steps ---------------------------------------------------------------------------------------------------------
 
 format() { cargo fmt --check; }
-lint() { cargo clippy --locked --all-targets -- -D warnings; }
+# With every feature: what the features leave out is compiled by `lint_engine` and by `build`.
+lint() { cargo clippy --locked --features otel --all-targets -- -D warnings; }
 lint_engine() { cargo clippy --locked --no-default-features --all-targets -- -D warnings; }
-lint_otel() { cargo clippy --locked --features otel --lib --bins -- -D warnings; }
-build() { cargo build --locked; }
+
+# The program and all tests, in one go: the library is compiled twice, with unit tests and without, side by side.
+build() {
+  if command -v cargo-nextest >/dev/null; then
+    cargo nextest run --locked --no-run
+  else
+    cargo test --locked --no-run --lib --bins --tests
+  fi
+}
 
 tests() {
   if command -v cargo-nextest >/dev/null; then
     cargo nextest run --locked
-  else
-    cargo test --locked --no-fail-fast --lib --bins --tests
+    local result=$?
+    python3 scripts/slowest_tests.py target/nextest/default/tests.xml
+    return $result
   fi
+  cargo test --locked --no-fail-fast --lib --bins --tests
 }
 doc_tests() { cargo test --locked --doc; }
+documentation() { RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps --lib; }
 
 # Fixtures are made by a script of the project; what is committed must be what it makes.
 fixtures() {

@@ -148,6 +148,19 @@ impl StopFlag {
 }
 
 /// The limits of one run and what it has used. Shared by reference between the engine's threads.
+///
+/// ```
+/// use meshmend::budget::{Budget, StopFlag, Stopped};
+///
+/// let stop = StopFlag::default();
+/// // At most a million units of work and a gibibyte.
+/// let budget = Budget::new(stop.clone(), 1_000_000, 1 << 30);
+/// assert_eq!(budget.spend(400_000), Ok(()));
+/// assert_eq!(budget.spend(600_001), Err(Stopped::Work { limit: 1_000_000 }));
+/// // Another thread may end the run.
+/// stop.cancel();
+/// assert_eq!(budget.check(), Err(Stopped::Cancelled));
+/// ```
 pub struct Budget {
     stop: StopFlag,
     work: AtomicU64,

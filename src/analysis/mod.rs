@@ -3,6 +3,7 @@
 mod around;
 mod best_plane;
 mod boundary_loops;
+mod closed;
 mod coincident_corners;
 mod collinear_faces;
 mod defect;

@@ -5,6 +5,7 @@
 //! (see [`meeting_features`](super::meeting_features)), near ones those of which no smaller ones are within reach of each
 //! other. Features of one face or with a common vertex are no pair: when they are close, the face is a needle or a cap.
 
+use super::closed::is_closed;
 use super::meeting_features::{Meeting, PolygonSides, meetings};
 use super::welded::Welded;
 use super::{Context, DefectCode, Finding, NearSearch, ProximityTest};
@@ -211,5 +212,5 @@ pub(super) fn is_closed_when_joined(cx: &Context<'_>) -> Result<Option<bool>, St
         sets.unite(pair.a[0], pair.b[0]);
     }
     let joined = sets.into_components().of;
-    super::watertight::is_closed(&cx.mesh.triangles, |v| joined[v as usize], cx.budget).map(Some)
+    is_closed(&cx.mesh.triangles, |v| joined[v as usize], cx.budget).map(Some)
 }

@@ -1,9 +1,9 @@
 //! Whether a mesh is watertight, under the definitions that tools use; they differ in which vertices are one.
 
+use super::closed::is_closed;
 use super::welded::indices_where;
 use super::{Context, proximity};
-use crate::budget::{Budget, Stopped};
-use crate::mesh::EdgeGroups;
+use crate::budget::Stopped;
 use crate::spatial::coincident_f32;
 
 /// Whether every edge has exactly two triangles, under four definitions of what a vertex is. Triangles with two equal
@@ -63,19 +63,6 @@ fn in_float32(cx: &Context<'_>, after_exact_weld: bool) -> Result<bool, Stopped>
         of_vertex[v as usize] = group;
     }
     is_closed(&mesh.triangles, |v| of_vertex[v as usize], cx.budget)
-}
-
-/// Whether every edge has exactly two triangles when vertices of the same name are one.
-pub(super) fn is_closed(
-    triangles: &[[u32; 3]],
-    name: impl Fn(u32) -> u32,
-    budget: &Budget,
-) -> Result<bool, Stopped> {
-    let named = triangles.iter().map(|t| t.map(&name));
-    let named: Vec<[u32; 3]> = named.filter(|[a, b, c]| a != b && b != c && c != a).collect();
-    let count = named.as_flattened().iter().max().map_or(0, |&v| v as usize + 1);
-    let edges = EdgeGroups::build(&named, count, budget)?;
-    Ok(!named.is_empty() && indices_where(edges.len(), budget, |e| edges.group(e).len() != 2)?.is_empty())
 }
 
 #[cfg(test)]

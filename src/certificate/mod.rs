@@ -65,6 +65,19 @@ pub struct Examination {
 
 /// Reads `bytes` and judges them.
 ///
+/// ```
+/// use meshmend::budget::Budget;
+/// use meshmend::certificate::{Depth, certify};
+/// use meshmend::formats::{ReadOptions, sniff};
+///
+/// let file = b"OFF\n4 4 0\n0 0 0\n9 0 0\n0 9 0\n0 0 9\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+/// let encoding = sniff(file, None)?;
+/// let certificate =
+///     certify(file, encoding, &ReadOptions::default(), Depth::FirstViolation, &Budget::unlimited())?;
+/// assert!(certificate.is_printable());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// Unreadable bytes, or a stopped budget. An invalid mesh is no error.
 pub fn certify(

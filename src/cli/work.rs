@@ -9,7 +9,7 @@ use crate::config::{Config, Loaded};
 use crate::formats::{self, ReadLimits};
 use crate::jobs::StageClock;
 use crate::par;
-use crate::pipeline::{self, Answer, Operation, PictureChoices, Require};
+use crate::pipeline::{self, Answer, Operation, PictureChoices, Product, Require};
 use crate::wire::{Options, Problem, ProblemCode, Report, TimingMs, report_page};
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -206,17 +206,11 @@ fn deliver(
 }
 
 fn verdict(operation: Operation, require: Option<Require>, report: &Report, has_result: bool) -> Exit {
-    let is_done = match operation {
-        Operation::Repair | Operation::Boolean => has_result && report.verdict.printable,
-        Operation::Verify => report.verdict.printable,
-        Operation::Analyze | Operation::Plan | Operation::Render => true,
-        Operation::Convert
-        | Operation::Simplify
-        | Operation::CutStitch
-        | Operation::FillHoles
-        | Operation::Modeller => {
-            has_result && (require != Some(Require::Printable) || report.verdict.printable)
-        }
+    let is_done = match operation.facts().product {
+        Product::Solid => has_result && report.verdict.printable,
+        Product::Report => operation != Operation::Verify || report.verdict.printable,
+        Product::Picture => true,
+        Product::Mesh => has_result && (require != Some(Require::Printable) || report.verdict.printable),
     };
     if is_done { Exit::Done } else { Exit::Negative }
 }

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use tokio::sync::watch;
 
 use crate::budget::{Event, Observer};
+use crate::pipeline;
 use crate::wire::{Operation, Progress, Stage, TimingMs};
 
 /// Most events of one run that are kept for those who follow it; no operation makes so many.
@@ -56,18 +57,7 @@ struct Heard {
 impl StageClock {
     /// A clock for a run of `operation` that begins now.
     pub fn start(operation: Operation) -> Self {
-        // Read, certify and analyze the input; two lists of steps; write, certify and analyze the output.
-        let passes = match operation {
-            Operation::Verify => 2.0,
-            Operation::Analyze | Operation::Plan => 3.0,
-            Operation::Render => 4.0,
-            Operation::Convert => 5.0,
-            Operation::CutStitch | Operation::FillHoles | Operation::Modeller => 7.0,
-            Operation::Repair => 8.0,
-            // At least two meshes are read, certified and analyzed.
-            Operation::Boolean => 11.0,
-            Operation::Simplify => 9.0,
-        };
+        let passes = pipeline::Operation::from(operation).facts().passes;
         Self { started: Instant::now(), passes, heard: Arc::default(), changes: Arc::default() }
     }
 

@@ -1,13 +1,10 @@
 //! How much memory a job will take, as far as its upload tells.
 
+use crate::pipeline;
 use crate::wire::{Format, Operation};
 
 /// What every run takes, in bytes.
 const BASE: u64 = 64 << 20;
-/// What a surface that is rebuilt may take however few triangles the file has, in bytes.
-const REBUILT: u64 = 1 << 30;
-/// The same of what is done to a mesh beside that.
-const CHANGED: u64 = 256 << 20;
 
 /// The most that a run probably takes, in bytes; `triangles`: how many there are at most, where the upload tells.
 ///
@@ -21,19 +18,7 @@ pub(super) fn estimated_bytes(
     upload_bytes: u64,
     triangles: Option<u64>,
 ) -> u64 {
-    let (per_triangle, at_least) = match operation {
-        Operation::Analyze
-        | Operation::Verify
-        | Operation::Convert
-        | Operation::CutStitch
-        | Operation::Render => (170, CHANGED),
-        Operation::Simplify => (410, CHANGED),
-        Operation::Plan | Operation::Repair | Operation::FillHoles => (410, REBUILT),
-        // The arrangement of all, with winding numbers for each.
-        Operation::Boolean => (1000, CHANGED),
-        // Exact planes and points, and the boxes around them: 1 to 2 kB for each triangle of parts that were measured.
-        Operation::Modeller => (2000, CHANGED),
-    };
+    let facts = pipeline::Operation::from(operation).facts();
     let file_bytes_per_triangle = match format {
         Some(Format::Stl) => 50,
         Some(Format::Obj | Format::Off) => 36,
@@ -45,8 +30,9 @@ pub(super) fn estimated_bytes(
     };
     let triangles = triangles.unwrap_or(upload_bytes / file_bytes_per_triangle);
     // The upload itself is read into memory.
-    let of_mesh = triangles.saturating_mul(per_triangle).saturating_add(upload_bytes).saturating_add(BASE);
-    of_mesh.max(at_least)
+    let of_mesh =
+        triangles.saturating_mul(facts.bytes_per_triangle).saturating_add(upload_bytes).saturating_add(BASE);
+    of_mesh.max(facts.bytes_min)
 }
 
 #[cfg(test)]
@@ -66,6 +52,6 @@ mod tests {
     fn what_the_upload_announces_counts_more_than_its_size() {
         let of = |triangles| estimated_bytes(Operation::Verify, Some(Format::Ply), 4 << 20, Some(triangles));
         assert_eq!(of(4 << 20), BASE + (4 << 20) + (4 << 20) * 170);
-        assert_eq!(of(12), CHANGED, "few triangles may still be much work");
+        assert_eq!(of(12), 256 << 20, "few triangles may still be much work");
     }
 }

@@ -13,13 +13,12 @@
 //! Edges that lose their lengths are contracted (a merge), and a vertex whose planes do not stay concurrent is split for
 //! what comes just after. So an edge flip is a merge and a split.
 
-use super::conflict::Contact;
 use super::events::{Event, next_event, vanishing_time};
 use super::exact::{Rational, det, sign};
 use super::journal::Journal;
 use super::motion::{Motion, Moving};
+use super::refusal::Refusal;
 use super::resolve;
-use super::rule::Fault;
 use super::solid::Solid;
 use super::validity::check_changed;
 use crate::budget::{Budget, Stopped};
@@ -77,82 +76,6 @@ pub enum Operator {
         /// next one if that is less.
         by: Option<Rational>,
     },
-}
-
-/// Why an operator does nothing.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Refusal {
-    /// No plane moves.
-    NothingMoves,
-    /// An event is in the way; the offsets of the faces may grow by less than this.
-    Limit {
-        /// The growth of each moving face at the event.
-        limits: Vec<(FaceId, Rational)>,
-        /// What would meet.
-        blocking: Vec<Contact>,
-    },
-    /// No split of the vertex opens every new edge and keeps its faces apart, in this direction.
-    NoSplit {
-        /// The vertex.
-        vertex: VertexId,
-        /// Its faces.
-        faces: Vec<FaceId>,
-    },
-    /// A face would shrink to a segment or a point.
-    FaceVanishes {
-        /// The face.
-        face: FaceId,
-    },
-    /// A face would touch itself at the merged vertex, whose link would be no circle.
-    LinkNotADisk {
-        /// The face.
-        face: FaceId,
-    },
-    /// The vertex has three faces only.
-    VertexIsTrihedral {
-        /// The vertex.
-        vertex: VertexId,
-    },
-    /// The face is not at the vertex, or moves no end of the edge.
-    NotThere {
-        /// The face.
-        face: FaceId,
-    },
-    /// The edge never loses its length, however far the face moves.
-    EdgeStays,
-    /// The faces at both ends of the edge are one face.
-    EndsAreOneFace {
-        /// The face.
-        face: FaceId,
-    },
-    /// The faces at both ends of the edge have an edge there already.
-    EndsAreNeighbours {
-        /// The faces.
-        faces: [FaceId; 2],
-    },
-    /// A face beside the edge has three sides: its edges vanish together, which is a merge and no flip.
-    FaceHasThreeSides {
-        /// The face.
-        face: FaceId,
-    },
-    /// The flipped edge would have no positive length: the determinants of the end faces with either face beside the
-    /// edge have the same sign.
-    DoesNotOpen {
-        /// The faces at the ends.
-        faces: [FaceId; 2],
-    },
-    /// Other edges lose their lengths at the same time.
-    SeveralVanish {
-        /// How many in all.
-        count: usize,
-    },
-    /// More events than one operator passes.
-    TooManyEvents {
-        /// The limit.
-        limit: usize,
-    },
-    /// The check after the edit found a broken rule.
-    Invalid(Fault),
 }
 
 /// A change of topology along the way.

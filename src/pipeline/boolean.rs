@@ -4,8 +4,9 @@ use super::bounds::{self, Bound};
 use super::fidelity::diagonal;
 use super::input::Input;
 use super::ladder::{Climb, Tried};
-use super::plan::{Attempt, Step};
-use super::remedies::Choices;
+use super::plan::Attempt;
+use super::repair_choices::Choices;
+use super::step::Step;
 use super::{
     Action, Answer, BooleanRefusal, Failure, FidelityVerdict, FurtherInput, Operation, Options, Outcome,
     Refusal, Report, finished, picture,
@@ -14,9 +15,6 @@ use crate::budget::{Budget, Stage};
 use crate::formats::{self, Encoding, Place, ReadError, ReadErrorKind};
 use crate::mesh::Soup;
 use crate::repair::unite::{NotCombined, combine};
-
-/// Most files that one run combines: each costs twelve bytes for every triangle of the arrangement of all.
-pub const MESHES_MAX: usize = 32;
 
 /// Combines the files that stand one behind the other in `bytes`.
 pub(super) fn boolean(

@@ -4,7 +4,7 @@
 //! instead: the next plan, a coarser lattice, a surface with more triangles, a distance enclosed more widely. Where nothing
 //! is left the run ends over its bound. `docs/bounds.md` lists what is bounded by what.
 
-use super::{Answer, Effort, Failure, Operation, Options, Refusal, Report};
+use super::{Answer, Effort, Failure, Operation, Options, Refusal, Report, Work};
 use crate::budget::{AsStopped, Budget, Stopped};
 
 /// Files of fewer bytes may take as much as one of so many.
@@ -25,15 +25,11 @@ const BYTES_OF_TRIANGLE: u64 = 16;
 /// Units of work that `operation` may use for files of so many `bytes` in all, where none of them has more than a triangle in 16
 /// bytes; `None`: no more than the caller says.
 pub fn work_units_max(operation: Operation, bytes: usize, options: &Options) -> Option<u64> {
-    let of_small = match operation {
-        Operation::Analyze | Operation::Plan | Operation::Verify | Operation::Convert | Operation::Render => {
-            LOOKING
-        }
-        Operation::Repair if options.wrap.effort == Effort::High => REPAIRING * HIGH_EFFORT,
-        Operation::Repair | Operation::Boolean => REPAIRING,
-        Operation::Simplify | Operation::CutStitch | Operation::FillHoles | Operation::Modeller => {
-            return None;
-        }
+    let of_small = match operation.facts().work {
+        Work::Looking => LOOKING,
+        Work::Repairing if options.wrap.effort == Effort::High => REPAIRING * HIGH_EFFORT,
+        Work::Repairing => REPAIRING,
+        Work::Unbounded => return None,
     };
     let bytes = (bytes as u64).max(SMALL_BYTES);
     Some((u128::from(of_small) * u128::from(bytes) / u128::from(SMALL_BYTES)).min(u128::from(u64::MAX)) as u64)

@@ -2,7 +2,8 @@
 
 use super::input::Input;
 use super::output::{Made, unchanged};
-use super::plan::{Attempt, Step};
+use super::plan::Attempt;
+use super::step::Step;
 use super::{Action, Answer, Failure, Operation, Options, Outcome, Report};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::formats::Format;

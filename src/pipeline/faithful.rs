@@ -71,6 +71,14 @@ pub struct FidelityVerdict {
     pub changes: Vec<Change>,
 }
 
+impl super::fidelity::Fidelity {
+    /// How true a result is to `input` that was measured so.
+    pub(super) fn verdict(&self, input: &Soup) -> FidelityVerdict {
+        let moved = self.distance.map_or(0.0, |distance| distance.upper());
+        FidelityVerdict::of(&self.losses, moved, diagonal(input))
+    }
+}
+
 impl FidelityVerdict {
     /// That of the file itself.
     pub(super) const EXACT: Self = Self { word: Fidelity::Exact, changes: Vec::new() };

@@ -1,7 +1,7 @@
 //! How far a result is from its input, what of the input it lost, and whether that is little enough.
 
 use super::plan::Covered;
-use super::{FidelityVerdict, Limits, Refusal};
+use super::{Limits, Refusal};
 use crate::analysis::Analysis;
 use crate::budget::{Budget, CHECK_EVERY, Stage, Stopped};
 use crate::distance::{
@@ -27,8 +27,12 @@ const DISTANCE: DistanceOptions = DistanceOptions {
     refinements_max: 1 << 20,
 };
 
-/// The same where that takes too much work: the distance is enclosed as far as a few samples and refinements go.
-const COARSE_DISTANCE: DistanceOptions =
+/// The same where that takes too much work: the distance is enclosed as far as fewer samples and refinements go.
+const WIDER_DISTANCE: DistanceOptions =
+    DistanceOptions { samples: 1 << 12, refinements_max: 1 << 17, ..DISTANCE };
+
+/// The same where that is still too much.
+const WIDEST_DISTANCE: DistanceOptions =
     DistanceOptions { samples: 1 << 10, refinements_max: 1 << 14, ..DISTANCE };
 
 /// Bodies beyond which none is looked at alone.
@@ -64,12 +68,6 @@ impl Fidelity {
     /// True when no other result needs to be looked for.
     pub(super) fn passes(&self, limits: &Limits) -> bool {
         self.losses.visible_loss <= LOSS_MAX && self.losses.bodies_lost == 0 && self.breach(limits).is_none()
-    }
-
-    /// How true a result is to `input` that was measured so.
-    pub(super) fn verdict(&self, input: &Soup) -> FidelityVerdict {
-        let moved = self.distance.map_or(0.0, |distance| distance.upper());
-        FidelityVerdict::of(&self.losses, moved, diagonal(input))
     }
 
     /// The limit of the caller that this exceeds.
@@ -137,10 +135,12 @@ impl<'i> Original<'i> {
         budget: &Budget,
     ) -> Result<Fidelity, Stopped> {
         let measured = |care: &DistanceOptions| self.measure_with(care, result, origins, covered, budget);
-        match budget.within_part(3, || measured(&DISTANCE))? {
-            Some(fidelity) => Ok(fidelity),
-            None => measured(&COARSE_DISTANCE),
+        for care in [&DISTANCE, &WIDER_DISTANCE] {
+            if let Some(fidelity) = budget.within_part(3, || measured(care))? {
+                return Ok(fidelity);
+            }
         }
+        measured(&WIDEST_DISTANCE)
     }
 
     fn measure_with(

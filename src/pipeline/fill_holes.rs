@@ -2,12 +2,13 @@
 
 use super::input::Input;
 use super::output::{Made, unchanged};
-use super::plan::{Attempt, Step};
-use super::{Answer, ELEMENTS_MAX, Failure, Operation, Options, Outcome, Report};
+use super::plan::Attempt;
+use super::step::Step;
+use super::{Answer, ChosenHole, ELEMENTS_MAX, Failure, Operation, Options, Outcome, Report};
 use crate::analysis::{Analysis, DefectCode, HoleGuess, Witness};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::geom::triangle_area;
-use crate::repair::fill::{FillOptions, HoleChoice, HoleReport, Method, Rejected};
+use crate::repair::fill::{FillOptions, HoleChoice, HoleReport, Rejected};
 use crate::repair::{Draft, NEW, Selection};
 
 /// Which holes are filled, and how.
@@ -17,17 +18,6 @@ pub struct FillHolesChoices {
     pub holes: Option<Vec<ChosenHole>>,
     /// How; which ones is said by `holes`.
     pub fill: FillOptions,
-}
-
-/// A hole that is to be filled.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct ChosenHole {
-    /// Place among the witnesses of the boundary loops, from 0.
-    pub number: u32,
-    /// `None`: as for all.
-    pub method: Option<Method>,
-    /// Rings of neighbours around the rim that the patch is fitted to; `None`: as for all.
-    pub band_rings: Option<u32>,
 }
 
 /// What became of the holes of a file.

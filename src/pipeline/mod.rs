@@ -2,9 +2,11 @@
 
 mod boolean;
 mod bounds;
+mod choices;
 mod convert;
 mod cut_stitch;
 mod describe;
+mod failure;
 mod faithful;
 mod fidelity;
 mod fill_holes;
@@ -12,6 +14,7 @@ mod identical;
 mod input;
 mod ladder;
 mod modeller;
+mod operation;
 mod output;
 mod picture;
 mod plan;
@@ -21,175 +24,46 @@ mod project;
 mod rebuild;
 mod remedies;
 mod repair;
+mod repair_choices;
 mod simplify;
+mod step;
 mod stitches;
 mod texture;
 mod units;
 
-pub use self::boolean::MESHES_MAX;
 use self::bounds::Bound;
 pub use self::bounds::work_units_max;
+pub use self::choices::{ChosenHole, Contact, FillHoles, Limits, Parts, SimplifyChoices, VertexColors};
 pub use self::cut_stitch::{CutStitchChoices, Stitching};
+pub use self::failure::Failure;
 pub use self::faithful::{Change, ChangeKind, Fidelity, FidelityVerdict};
 pub use self::fidelity::Losses;
-pub use self::fill_holes::{ChosenHole, FillHolesChoices, Filling, HoleFate, HoleOutcome};
+pub use self::fill_holes::{FillHolesChoices, Filling, HoleFate, HoleOutcome};
 use self::input::Input;
 pub use self::modeller::{
     Blocker, BlockerKind, EdgeName, Edit, EditKind, FaceName, FaceRange, ModelFace, ModellerChoices,
     ModellerRefusal, ModellerReport, ModellerStep, RangeName, RangeSide,
 };
+pub use self::operation::{Facts, MESHES_MAX, Operation, Product, Require, Work};
 pub use self::picture::PictureChoices;
-pub use self::plan::Step;
 pub use self::printing::PrintingReport;
 pub use self::project::{AttributeCounts, PartFacts, PartReport};
 pub use self::rebuild::{Effort, WrapChoices};
 pub use self::remedies::{
     ChosenPlan, ChosenRemedy, ELEMENTS_MAX, ElementProposal, Plan, PlanMismatch, Proposal, Remedy,
 };
+pub use self::step::Step;
 pub use self::stitches::{JoinedEdges, Stitches};
 use crate::analysis::{Analysis, DefectCode};
-use crate::budget::{Budget, Stage, Stopped};
+use crate::budget::{Budget, Stage};
 use crate::certificate::{Certificate, Violation};
 use crate::distance::SurfaceDistance;
-use crate::formats::{self, Encoding, Format, ReadError, ReadOptions, WriteError};
+use crate::formats::{self, Encoding, Format, ReadOptions, WriteError};
 pub use crate::mesh::Units;
 use crate::printing::Policy;
 use crate::repair::nest;
 pub use crate::repair::unite::{NotCombined, NotSolid, SetOperation};
-use crate::simplify::{CriterionKind, Mode, Placement, Report as SimplifyReport, Target};
-use std::ops::RangeInclusive;
-
-/// What to do with a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Operation {
-    /// Report only.
-    Analyze,
-    /// Report and what a repair would do about each defect.
-    Plan,
-    /// Report and a certified repair.
-    Repair,
-    /// The same mesh in another format; its certificate states what holds.
-    Convert,
-    /// The certificate of the file as it is.
-    Verify,
-    /// Fewer triangles; the certificate states what holds.
-    Simplify,
-    /// A manifold with boundary; the certificate states what holds.
-    CutStitch,
-    /// Holes closed; the certificate states what holds.
-    FillHoles,
-    /// A closed polyhedron edited by its planes; the certificate states what holds.
-    Modeller,
-    /// Several solids combined into one that is certified.
-    Boolean,
-    /// A picture.
-    Render,
-}
-
-impl Operation {
-    /// Every operation.
-    pub const ALL: [Self; 11] = [
-        Self::Analyze,
-        Self::Plan,
-        Self::Repair,
-        Self::Convert,
-        Self::Verify,
-        Self::Simplify,
-        Self::CutStitch,
-        Self::FillHoles,
-        Self::Modeller,
-        Self::Boolean,
-        Self::Render,
-    ];
-
-    /// Name in paths, options and reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Analyze => "analyze",
-            Self::Plan => "plan",
-            Self::Repair => "repair",
-            Self::Convert => "convert",
-            Self::Verify => "verify",
-            Self::Simplify => "simplify",
-            Self::CutStitch => "cut-stitch",
-            Self::FillHoles => "fill-holes",
-            Self::Modeller => "modeller",
-            Self::Boolean => "boolean",
-            Self::Render => "render",
-        }
-    }
-
-    /// True when its answer has no mesh.
-    pub(crate) fn only_reports(self) -> bool {
-        matches!(self, Self::Analyze | Self::Plan | Self::Verify | Self::Render)
-    }
-
-    /// Numbers of files that it takes.
-    pub fn meshes(self) -> RangeInclusive<usize> {
-        if self == Self::Boolean { 2..=MESHES_MAX } else { 1..=1 }
-    }
-
-    fn meshes_taken(self) -> String {
-        match self {
-            Self::Boolean => format!("2 to {MESHES_MAX} meshes"),
-            _ => "one mesh".to_owned(),
-        }
-    }
-}
-
-/// What the caller demands of a result.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Require {
-    /// P0, P1 and P2 hold, or the answer is a refusal. Default of `repair`.
-    Printable,
-    /// That, and the result is exact or faithful to the file, or the answer is a refusal.
-    Faithful,
-    /// The best result there is, called `partial` when it is not printable.
-    BestEffort,
-    /// Whatever the operation gives, and nothing is rebuilt; the certificate says what holds. Default of all other
-    /// operations.
-    None,
-}
-
-impl Require {
-    /// True when P0, P1 and P2 must hold.
-    pub fn is_of_a_solid(self) -> bool {
-        matches!(self, Self::Printable | Self::Faithful)
-    }
-}
-
-/// Whether simple holes are filled.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum FillHoles {
-    /// Leave boundary loops as they are.
-    None,
-    /// Planar loops by triangulation, others by ears or a fan, each kept only where it adds no contact.
-    #[default]
-    Simple,
-}
-
-/// What becomes of bodies that touch in vertices or edges only, so that a reader that welds would make one of them that is
-/// no manifold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Contact {
-    /// All but one are drawn back a little.
-    #[default]
-    Open,
-    /// They become one body by necks as thick as a wall, where there is room; elsewhere they are drawn apart.
-    Join,
-}
-
-/// What of a file of several parts is one solid.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Parts {
-    /// Each part by itself, in its own coordinates and once however often it is there.
-    #[default]
-    Separate,
-    /// All parts at their places, after each was repaired by itself.
-    Union,
-    /// All parts at their places, as they are.
-    Together,
-}
+use crate::simplify::Report as SimplifyReport;
 
 /// Options of every operation; those that do not apply are ignored.
 #[derive(Debug, Clone, Default)]
@@ -262,57 +136,6 @@ impl Options {
             file
         };
         self.file_sizes.iter().map(&mut take).collect()
-    }
-}
-
-/// How far a result may be from the file.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Limits {
-    /// Largest distance, in the unit of the file, of a place of the result from the file and of a visible place of the
-    /// file from the result.
-    pub deviation_max: Option<f64>,
-    /// Largest share by which the volume may change, where the file's is defined.
-    pub volume_change_max: Option<f64>,
-}
-
-/// How far to simplify, and how.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SimplifyChoices {
-    /// One result for each, from one run, finest first; errors in the unit of the file. None: a `simplify` halves the
-    /// number of faces, a repair leaves it.
-    pub targets: Vec<Target>,
-    /// Which guarantees and what speed; `None`: guarded.
-    pub mode: Option<Mode>,
-    /// What a collapse costs.
-    pub criterion: CriterionKind,
-    /// Where the merged vertex goes.
-    pub placement: Placement,
-    /// What colours the vertices of the results have.
-    pub vertex_colors: VertexColors,
-    /// Largest angle in degrees by which a collapse may turn the normal of a face, from 180 on any; `None`: 78.46.
-    pub normal_turn_max: Option<f64>,
-}
-
-/// What colours the vertices of a simplified mesh have.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum VertexColors {
-    /// Those of the file, mixed where vertices were merged.
-    #[default]
-    Kept,
-    /// The order in which they would go, from blue to red.
-    Priority,
-}
-
-impl Default for SimplifyChoices {
-    fn default() -> Self {
-        Self {
-            targets: Vec::new(),
-            mode: None,
-            criterion: CriterionKind::Quadric,
-            placement: Placement::Optimal,
-            vertex_colors: VertexColors::Kept,
-            normal_turn_max: None,
-        }
     }
 }
 
@@ -553,84 +376,21 @@ pub struct Answer {
     pub picture: Option<Vec<u8>>,
 }
 
-/// A run without a report.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum Failure {
-    /// The input could not be read.
-    #[error("{0}")]
-    Unreadable(ReadError),
-    /// The run was stopped.
-    #[error("{0}")]
-    Stopped(#[from] Stopped),
-    /// What was asked takes more work than a file of this size may.
-    #[error("the mesh takes more than the {units} units of work that a file of its size may take")]
-    OverBudget {
-        /// The bound, in units of work.
-        units: u64,
-    },
-    /// The plan is not for this file.
-    #[error("the plan is not for this file")]
-    PlanMismatch(PlanMismatch),
-    /// Something is wrong with one of several files.
-    #[error("mesh {number}: {failure}")]
-    InMesh {
-        /// Its place among the files, from 1.
-        number: usize,
-        /// What.
-        failure: Box<Failure>,
-    },
-    /// More or fewer files than the operation takes.
-    #[error("{} takes {}, not {count}", .operation.name(), .operation.meshes_taken())]
-    MeshCount {
-        /// What was asked.
-        operation: Operation,
-        /// Number of files.
-        count: usize,
-    },
-    /// An option does not go with this file.
-    #[error("{reason}")]
-    NotApplicable {
-        /// Name of the option.
-        option: &'static str,
-        /// Why, in a sentence.
-        reason: String,
-    },
-    /// A hole was chosen that the file does not have.
-    #[error("the file has no hole {number}: it has {holes}, numbered from 0")]
-    NoSuchHole {
-        /// The number.
-        number: u32,
-        /// How many there are.
-        holes: u64,
-    },
-}
-
-impl Failure {
-    /// The same about the file of this number, from 1, among several; that the run was stopped or takes too much is about none.
-    fn in_mesh(self, number: usize) -> Self {
-        match self {
-            Self::Stopped(_) | Self::OverBudget { .. } => self,
-            failure => Self::InMesh { number, failure: Box::new(failure) },
-        }
-    }
-}
-
-impl From<PlanMismatch> for Failure {
-    fn from(mismatch: PlanMismatch) -> Self {
-        Self::PlanMismatch(mismatch)
-    }
-}
-
-impl From<ReadError> for Failure {
-    fn from(error: ReadError) -> Self {
-        match error.kind {
-            crate::formats::ReadErrorKind::Stopped(stopped) => Self::Stopped(stopped),
-            _ => Self::Unreadable(error),
-        }
-    }
-}
-
 /// Runs `operation` on `bytes`. A pure function: the same arguments give the same answer, whatever the thread count.
+///
+/// ```
+/// use meshmend::budget::Budget;
+/// use meshmend::pipeline::{Operation, Options, Outcome, run};
+///
+/// // A tetrahedron, one triangle of which is missing.
+/// let file = b"v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nf 1 3 2\nf 1 2 4\nf 1 4 3\n";
+/// let answer = run(Operation::Repair, file, &Options::default(), &Budget::unlimited())?;
+/// assert_eq!(answer.report.outcome, Some(Outcome::Repaired));
+/// assert!(answer.report.certificate.is_some_and(|certificate| certificate.is_printable()));
+/// let repaired = answer.output.and_then(|output| output.bytes).expect("the file is not as it was");
+/// assert!(repaired.starts_with(b"v 0 0 0\n"));
+/// # Ok::<(), meshmend::pipeline::Failure>(())
+/// ```
 ///
 /// # Errors
 /// Only unreadable input, options that do not go with it, a stopped budget, and a mesh that takes more work than its file may; a

@@ -1,6 +1,7 @@
 //! The repair plan: a list of steps that a client can read, and the loop that runs it.
 
-use super::remedies::Choices;
+use super::repair_choices::Choices;
+use super::step::Step;
 use super::stitches::Stitches;
 use super::{Action, Contact};
 use crate::analysis::{Analysis, DefectCode};
@@ -8,94 +9,13 @@ use crate::budget::{Budget, Stopped};
 use crate::mesh::{ChosenEdges, Soup, Validity};
 use crate::repair::cut::CutOptions;
 use crate::repair::duplicates::OppositePairs;
-use crate::repair::fill::{FillOptions, HoleReport};
+use crate::repair::fill::HoleReport;
 use crate::repair::nest::NestOptions;
 use crate::repair::pair_sheets::Across;
 use crate::repair::polygons::DegenerateFaces;
 use crate::repair::snap::SnapOptions;
-use crate::repair::thin_faces::ThinFaces;
 use crate::repair::unite::Coverage;
 use crate::repair::{self, Changes, Draft, Effects};
-
-/// One step of a plan, with its parameters.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Step {
-    /// Polygons that pass a vertex more than once become simple ones, or go.
-    SplitPolygons(DegenerateFaces),
-    /// Coordinates that are all but zero become zero.
-    ClearNoise,
-    /// Coordinates become float32.
-    RoundToF32,
-    /// Those of triangles that meet others when all are read as float32 become float32.
-    RoundWhereItMatters,
-    /// Vertices at one position become one.
-    Weld,
-    /// Triangles with a repeated vertex go.
-    DropDegenerate,
-    /// Collinear triangles go and their neighbours are divided.
-    SplitCollinear,
-    /// Boundary edges are divided where a boundary vertex lies on them.
-    SplitTVertices,
-    /// The parts in which these triangles of the soup are go.
-    RemoveParts(Vec<u32>),
-    /// Copies of triangles go.
-    DropDuplicates(OppositePairs),
-    /// Triangles that meet others go.
-    RemoveCrossing {
-        /// Rings of triangles around them that go too.
-        rings: u32,
-    },
-    /// Sheets that lie triangle by triangle near other ones go.
-    DropNearDuplicates {
-        /// Largest distance of their corners, in the unit of the file.
-        epsilon: f64,
-    },
-    /// Faces are turned so that neighbours agree.
-    Orient,
-    /// Triangles at edges with four or more are paired by their angles.
-    PairSheets(Across),
-    /// Singular edges and vertices are cut.
-    Cut(CutOptions),
-    /// Edges that the cut has parted are joined from where boundaries turn back on themselves.
-    Pinch(ChosenEdges, Validity),
-    /// Boundary edges that are close are joined.
-    Snap(SnapOptions),
-    /// Holes are closed.
-    FillHoles(FillOptions),
-    /// Needles, caps and folds go.
-    MendThinFaces(ThinFaces),
-    /// Open parts get a wall behind them.
-    Thicken {
-        /// Thickness, in the unit of the file.
-        wall: f64,
-    },
-    /// What is open is closed by triangles between its rims that may pass through others.
-    SpanRims,
-    /// Bodies that pass through each other or overlap become one.
-    Unite,
-    /// As `Unite`; triangles with void on both sides, which go then, leave copies that are open parts of their own.
-    UniteAndCopyBare,
-    /// Small bodies are taken out where the solid touches itself.
-    BoreContacts {
-        /// From their middle out, in steps of the lattice.
-        steps: u32,
-    },
-    /// Bodies that touch become one.
-    JoinContacts {
-        /// Thickness of the necks between them, in the unit of the file.
-        size: f64,
-    },
-    /// Bodies that touch are drawn apart.
-    OpenContacts,
-    /// Vertices at one position become one again.
-    JoinCopies,
-    /// Shells are turned and dropped so that they alternate.
-    Nest(NestOptions),
-    /// The surface is rebuilt on a lattice.
-    Rebuild,
-    /// The certified mesh gets fewer triangles.
-    Simplify,
-}
 
 /// What distinguishes the plans that are tried for one file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -165,7 +85,7 @@ impl Variant {
     /// The steps that join what touches itself, or part it.
     fn parting(contact: Contact, choices: &Choices) -> Vec<Step> {
         let pinch = Step::Pinch(ChosenEdges::default(), Validity::Exact);
-        let mut steps = vec![Step::pairing(contact), Step::Cut(CutOptions::default()), pinch];
+        let mut steps = vec![pairing(contact), Step::Cut(CutOptions::default()), pinch];
         if contact == Contact::Join {
             steps.push(Step::JoinContacts { size: choices.wall });
         }
@@ -196,7 +116,7 @@ impl Variant {
         // What is not cut cannot be joined by the rules of a manifold.
         let join = choices.cuts.then(|| {
             // Which copies belong together matters only where they come apart for good.
-            let pair = self.contact.map(Step::pairing);
+            let pair = self.contact.map(pairing);
             let pinch = self.contact.map(|_| Step::Pinch(ChosenEdges::default(), Validity::Exact));
             // Only what coincides, so that no vertex moves, unless the caller says how far.
             let snap = Step::Snap(SnapOptions {
@@ -232,140 +152,12 @@ impl Variant {
     }
 }
 
-impl Step {
-    /// What decides which copies belong together where bodies touch.
-    fn pairing(contact: Contact) -> Self {
-        Self::PairSheets(match contact {
-            Contact::Open => Across::Solid,
-            Contact::Join => Across::Void,
-        })
-    }
-
-    /// Name in reports.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::SplitPolygons(_) => "split-polygons",
-            Self::ClearNoise => "clear-noise",
-            Self::RoundToF32 => "round-to-float32",
-            Self::RoundWhereItMatters => "round-where-it-matters",
-            Self::Weld => "weld",
-            Self::DropDegenerate => "drop-degenerate",
-            Self::SplitCollinear => "split-collinear",
-            Self::SplitTVertices => "split-t-vertices",
-            Self::DropDuplicates(_) => "drop-duplicates",
-            Self::Orient => "orient",
-            Self::Cut(_) => "cut",
-            Self::Pinch(..) => "pinch",
-            Self::Snap(_) => "snap",
-            Self::RemoveCrossing { .. } => "remove-crossing",
-            Self::PairSheets(_) => "pair-sheets",
-            Self::JoinContacts { .. } => "join-contacts",
-            Self::SpanRims => "span-rims",
-            Self::UniteAndCopyBare => "unite-and-copy-bare",
-            Self::Unite => "unite",
-            Self::BoreContacts { .. } => "bore-contacts",
-            Self::DropNearDuplicates { .. } => "drop-near-duplicates",
-            Self::OpenContacts => "open-contacts",
-            Self::FillHoles(_) => "fill-holes",
-            Self::MendThinFaces(_) => "mend-thin-faces",
-            Self::Thicken { .. } => "thicken",
-            Self::JoinCopies => "join-copies",
-            Self::Nest(_) => "nest",
-            Self::RemoveParts(_) => "remove-parts",
-            Self::Rebuild => "rebuild",
-            Self::Simplify => "simplify",
-        }
-    }
-
-    /// The defects that the step is for.
-    fn cures(&self) -> &'static [DefectCode] {
-        match self {
-            Self::ClearNoise => &[
-                DefectCode::BoundaryLoop,
-                DefectCode::SelfIntersection,
-                DefectCode::Overlap,
-                DefectCode::Touch,
-            ],
-            Self::RoundToF32 | Self::RoundWhereItMatters => &[DefectCode::UnsoundReading],
-            Self::JoinCopies | Self::Rebuild | Self::Simplify => &[],
-            Self::MendThinFaces(_) => &[DefectCode::Needle, DefectCode::Cap, DefectCode::FoldedEdge],
-            Self::Thicken { .. } => &[DefectCode::IsolatedFace, DefectCode::BoundaryLoop],
-            Self::RemoveParts(_) => &[
-                DefectCode::IsolatedFace,
-                DefectCode::InvertedShell,
-                DefectCode::MisnestedShell,
-                DefectCode::ZeroVolumeShell,
-            ],
-            Self::RemoveCrossing { .. } | Self::Unite | Self::UniteAndCopyBare => {
-                &[DefectCode::SelfIntersection, DefectCode::Overlap, DefectCode::Touch]
-            }
-            Self::PairSheets(_)
-            | Self::JoinContacts { .. }
-            | Self::OpenContacts
-            | Self::BoreContacts { .. } => &[DefectCode::NonManifoldEdge, DefectCode::NonManifoldVertex],
-            Self::DropNearDuplicates { .. } => &[DefectCode::BoundaryLoop, DefectCode::DoubleSkin],
-            Self::SplitPolygons(_) => &[DefectCode::CoincidentCorners, DefectCode::DuplicateVertex],
-            Self::Weld => &[DefectCode::DuplicateVertex],
-            Self::DropDegenerate => &[DefectCode::CoincidentCorners],
-            Self::SplitCollinear => &[DefectCode::CollinearFace],
-            Self::DropDuplicates(_) => &[DefectCode::DuplicateFace, DefectCode::OppositeDuplicateFace],
-            Self::Orient => &[DefectCode::OrientationConflict, DefectCode::NonOrientable],
-            Self::Cut(_) => {
-                &[DefectCode::NonManifoldEdge, DefectCode::NonManifoldVertex, DefectCode::NonOrientable]
-            }
-            Self::SplitTVertices | Self::Pinch(..) | Self::Snap(_) | Self::FillHoles(_) | Self::SpanRims => {
-                &[DefectCode::BoundaryLoop]
-            }
-            Self::Nest(_) => &[DefectCode::InvertedShell, DefectCode::MisnestedShell],
-        }
-    }
-
-    /// Runs the step on `draft`, which was made of `soup`; `holes` gets what is told of each hole.
-    fn run(
-        &self,
-        draft: &mut Draft,
-        soup: &Soup,
-        holes: &mut Vec<HoleReport>,
-        budget: &Budget,
-    ) -> Result<Changes, Stopped> {
-        match self {
-            Self::SplitPolygons(how) => repair::polygons::split_polygons(draft, soup, *how, budget),
-            Self::ClearNoise => Ok(repair::noise::clear_noise(draft)),
-            Self::RoundToF32 => Ok(repair::round::round_to_f32(draft)),
-            Self::RoundWhereItMatters => repair::round::round_where_it_matters(draft, budget),
-            Self::Weld | Self::JoinCopies => repair::weld::weld(draft, budget),
-            Self::DropDegenerate => Ok(repair::degenerate::drop_degenerate(draft)),
-            Self::SplitCollinear => repair::collinear::split_collinear(draft, budget),
-            Self::SplitTVertices => repair::t_vertices::split_t_vertices(draft, budget),
-            Self::DropDuplicates(opposite) => repair::duplicates::drop_duplicates(draft, *opposite, budget),
-            Self::Orient => repair::orient::orient(draft, budget),
-            Self::Cut(options) => repair::cut::cut(draft, options, budget),
-            Self::Pinch(chosen, validity) => repair::pinch::pinch(draft, chosen, *validity, budget),
-            Self::Snap(options) => repair::snap::snap(draft, options, budget),
-            Self::RemoveCrossing { rings } => repair::crossing::remove_crossing(draft, *rings, budget),
-            Self::SpanRims => repair::fill::span_rims(draft, budget),
-            Self::UniteAndCopyBare => repair::unite::unite_and_copy_bare(draft, budget),
-            Self::Unite => repair::unite::unite(draft, budget),
-            Self::BoreContacts { steps } => repair::unite::bore_contacts(draft, *steps, budget),
-            Self::OpenContacts => repair::contact::open_contacts(draft, budget),
-            Self::JoinContacts { size } => repair::joint::join_contacts(draft, *size, budget),
-            Self::PairSheets(across) => repair::pair_sheets::pair_sheets(draft, *across, budget),
-            Self::DropNearDuplicates { epsilon } => {
-                repair::near_duplicates::drop_near_duplicates(draft, *epsilon, budget)
-            }
-            Self::FillHoles(options) => {
-                let filled = repair::fill::fill(draft, soup, options, budget)?;
-                holes.extend(filled.holes);
-                Ok(filled.changes)
-            }
-            Self::MendThinFaces(which) => repair::thin_faces::mend_thin_faces(draft, *which, budget),
-            Self::Thicken { wall } => repair::thicken::thicken(draft, *wall, budget),
-            Self::Nest(options) => repair::nest::nest(draft, options, budget),
-            Self::RemoveParts(triangles) => repair::parts::remove_parts(draft, triangles, budget),
-            // These make new meshes and are not for a draft; see `replay`.
-            Self::Rebuild | Self::Simplify => Ok(Changes::default()),
-        }
-    }
+/// What decides which copies belong together where bodies touch.
+fn pairing(contact: Contact) -> Step {
+    Step::PairSheets(match contact {
+        Contact::Open => Across::Solid,
+        Contact::Join => Across::Void,
+    })
 }
 
 /// A mesh on its way through the steps of a plan.

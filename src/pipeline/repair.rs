@@ -3,8 +3,10 @@
 use super::input::Input;
 use super::ladder::{self, Certified, Climb, Climbed};
 use super::output::{Candidate, NoCandidate};
-use super::plan::{Attempt, Step};
-use super::remedies::{Choices, PlanMismatch};
+use super::plan::Attempt;
+use super::remedies::PlanMismatch;
+use super::repair_choices::Choices;
+use super::step::Step;
 use super::{Answer, Failure, Operation, Options, Outcome, Refusal, Report, Require, bounds, simplify};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::Depth;

@@ -3,7 +3,8 @@
 use super::fidelity::Original;
 use super::input::Input;
 use super::output::{Candidate, NoCandidate, refusal};
-use super::plan::{Attempt, Step};
+use super::plan::Attempt;
+use super::step::Step;
 use super::texture::{points_of, texture_of};
 use super::{
     Action, Answer, Failure, FidelityVerdict, Level, Operation, Options, Outcome, Output, Refusal, Report,

@@ -1,7 +1,8 @@
 //! Finds the edges along which vertices must stay: borders, creases, seams and borders between face groups.
 
+use super::marks::LINE;
 use super::options::{Borders, SimplifyOptions};
-use super::surface::{LINE, Surface};
+use super::surface::Surface;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::mesh::corner_table::{NONE, triangle_of};
 

@@ -2,8 +2,9 @@
 
 use super::blend::blend;
 use super::criterion::Criterion;
+use super::marks::LINE;
 use super::report::Refusal;
-use super::surface::{LINE, NEW, Rule, Surface};
+use super::surface::{NEW, Rule, Surface};
 use crate::geom::DVec3;
 use crate::mesh::Color;
 use crate::mesh::corner_table::{EdgeRings, NONE, next, prev};

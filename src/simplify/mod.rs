@@ -13,6 +13,7 @@ mod key;
 mod layout;
 mod length;
 mod lines;
+mod marks;
 mod memoryless;
 mod merge;
 mod mode;

@@ -6,9 +6,10 @@
 //! distance.
 
 use super::criterion::{Criterion, Placed, Reach, cheaper};
+use super::marks::LINE;
 use super::options::Placement;
 use super::quadric::Quadric;
-use super::surface::{LINE, Rule, Surface, Vertex};
+use super::surface::{Rule, Surface, Vertex};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::corner_table::next;

@@ -1,12 +1,11 @@
 //! The mesh under simplification: triangles, and what each vertex carries.
 
+use super::marks::LINE;
 use super::wedges::Wedges;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3};
 use crate::mesh::corner_table::{CornerTable, NONE, next, prev};
 
-/// Marks an edge along which vertices must stay: a border, a crease, or a border between face groups.
-pub(super) const LINE: u8 = 1;
 /// In the place of an origin: a position that the input does not have.
 pub const NEW: u32 = u32::MAX;
 

@@ -4,7 +4,7 @@
 //! around a vertex between two seams are a *wedge*: they have one point there. Seams are lines, so vertices move and
 //! merge along them only, and what they separate (the *charts*) stays apart.
 
-use super::surface::LINE;
+use super::marks::LINE;
 use crate::mesh::corner_table::{CornerTable, EdgeRings, NONE, next, prev, triangle_of};
 
 /// Across and up in the picture.

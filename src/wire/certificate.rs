@@ -3,6 +3,7 @@
 use serde::Serialize;
 use utoipa::ToSchema;
 
+use super::finite::{finite, point};
 use super::words::{Condition, Encoding};
 use crate::certificate as judge;
 
@@ -163,7 +164,7 @@ impl From<&judge::Violation> for Violation {
             condition: inner.condition.into(),
             reading: inner.reading.into(),
             faces: inner.faces.clone(),
-            position: inner.position.and_then(|p| super::mesh_info::point(&p)),
+            position: inner.position.and_then(|p| point(&p)),
         }
     }
 }
@@ -174,7 +175,7 @@ impl From<&judge::Shell> for Shell {
             triangles: inner.triangles,
             depth: inner.depth,
             genus: inner.genus,
-            volume: super::mesh_info::finite(inner.volume),
+            volume: finite(inner.volume),
         }
     }
 }

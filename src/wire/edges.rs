@@ -1,6 +1,6 @@
 //! Edges of a file, as a list of options says them: `[[u,v],…]`, by the numbers of their vertices from 0.
 
-use super::target::whole_number;
+use super::whole_number::whole_number;
 use utoipa::openapi::schema::{ArrayBuilder, ObjectBuilder, Schema, Type};
 
 /// Most edges that may be listed.

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use super::mesh_info::finite;
+use super::finite::finite;
 use super::words::{ChangeKind, Fidelity, Units};
 use crate::pipeline;
 

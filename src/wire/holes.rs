@@ -9,8 +9,8 @@ use utoipa::openapi::schema::{
 };
 use utoipa::{PartialSchema, ToSchema};
 
-use super::mesh_info::finite;
-use super::target::whole_number;
+use super::finite::finite;
+use super::whole_number::whole_number;
 use super::words::{FillMethod, HoleClass, HoleFate, Kernel, Rejection};
 use crate::implicit::FitFacts;
 use crate::pipeline::{self, ELEMENTS_MAX};

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 use utoipa::openapi::schema::{AdditionalProperties, ObjectBuilder, Schema, Type};
 
-use super::problem::{Problem, ProblemCode};
+use super::problem::Problem;
+use super::problem_code::ProblemCode;
 
 /// Words of the caller about a job, by name.
 pub type Labels = BTreeMap<String, String>;

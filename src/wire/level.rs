@@ -3,10 +3,11 @@
 use serde::Serialize;
 use utoipa::ToSchema;
 
+use super::action::Change;
 use super::certificate::Certificate;
+use super::distance::Distance;
 use super::fidelity::{FidelityChange, fidelity_of};
-use super::mesh_info::finite;
-use super::report::{Change, Distance};
+use super::finite::finite;
 use super::target::TargetSpec;
 use super::words::{Fidelity, Units};
 use crate::{pipeline, simplify};

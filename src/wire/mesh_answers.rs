@@ -3,7 +3,7 @@
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::mesh_info::finite;
+use super::finite::finite;
 use crate::analysis;
 
 /// Whether every edge has exactly two triangles, under four definitions of what a vertex is; tools differ in which they

@@ -1,9 +1,9 @@
 //! A mesh described as JSON: counts, sizes, properties and defects.
 
-use glam::DVec3;
 use serde::Serialize;
 use utoipa::ToSchema;
 
+use super::finite::{finite, point};
 use super::mesh_answers::{Proximity, VolumeInterval, Watertight};
 use super::unit_hypothesis::UnitHypothesis;
 use super::words::{DefectCode, HoleClass, ProximityTest, Severity};
@@ -291,14 +291,4 @@ impl From<analysis::Element> for Element {
     fn from(inner: analysis::Element) -> Self {
         Self { index: inner.index, line: inner.line }
     }
-}
-
-/// The number, if JSON can hold it.
-pub(super) fn finite(value: f64) -> Option<f64> {
-    value.is_finite().then_some(value)
-}
-
-/// The point, if JSON can hold it.
-pub(super) fn point(position: &DVec3) -> Option<[f64; 3]> {
-    position.is_finite().then(|| position.to_array())
 }

@@ -3,13 +3,18 @@
 //! Everything here mirrors an engine type, so that a rename inside cannot change the contract; exhaustive matches make
 //! the compiler ask for a public word when the engine learns a new one.
 
+mod action;
 mod boolean;
 mod certificate;
+mod distance;
 mod edges;
 mod event;
 mod fidelity;
+mod fill_settings;
+mod finite;
 mod formats;
 mod holes;
+mod input_ref;
 mod job;
 mod labels;
 mod level;
@@ -23,6 +28,8 @@ mod part;
 mod plan;
 mod printing;
 mod problem;
+mod problem_code;
+mod proposal;
 mod report;
 mod report_page;
 mod request;
@@ -32,16 +39,21 @@ mod unit_hypothesis;
 mod verdict;
 mod version;
 mod webhook;
+mod whole_number;
 mod words;
 
 #[cfg(test)]
 pub(crate) mod sample;
 
+pub use action::{Action, Change};
 pub use certificate::{Certificate, Claim, Reading, Shell, Violation, ViolationCount};
+pub use distance::{DirectedDistance, Distance};
 pub use event::{Phase, StageEvent, StateEvent};
 pub use fidelity::FidelityChange;
+pub use fill_settings::{FillSettings, SingleHole};
 pub use formats::{FormatInfo, extension_of, format_of_media_type, formats, media_type_of};
 pub use holes::{ChosenHole, FieldFit, Hole, Holes, RejectedPatch};
+pub use input_ref::InputRef;
 pub use job::{Job, JobList, JobState, Links, Progress};
 pub use labels::{LABELS_MAX, Labels, label_from_text};
 pub use level::Level;
@@ -61,22 +73,18 @@ pub use option_schema::{
 };
 pub use options::{OptionError, OptionKind, OptionSpec, Options, SPECS};
 pub use part::{Attributes, Part};
-pub use plan::{
-    ChosenElement, ChosenFinding, ChosenShell, ElementProposal, FillSettings, Plan, PlanRequest, PlanStep,
-    Proposal, SingleHole,
-};
+pub use plan::{ChosenElement, ChosenFinding, ChosenShell, PlanRequest, PlanStep};
 pub use printing::{
     BoundKind, BuildDirection, CheckCode, Edges, Fit, OrientedBox, Overhang, Parts, PolicyInfo, PolicyLimit,
     PolicyName, PolicyVolume, PrintedMesh, Printing, PrintingCheck, PrintingUnit, PrintingWitness, Quote,
     Spread, Status, Thickness, policies,
 };
-pub use problem::{ErrorInfo, Problem, ProblemCode, errors};
-pub use report::{
-    Action, Change, Deviation, DirectedDistance, Distance, EngineInfo, FurtherInput, InputInfo, Report,
-    Resources, TimingMs, UnitsInfo,
-};
+pub use problem::Problem;
+pub use problem_code::{ErrorInfo, ProblemCode, errors};
+pub use proposal::{ElementProposal, Plan, Proposal};
+pub use report::{Deviation, EngineInfo, FurtherInput, InputInfo, Report, Resources, TimingMs, UnitsInfo};
 pub use report_page::{Escaped, REPORT_PAGE_CSP, report_page};
-pub use request::{InputRef, JobRequest};
+pub use request::JobRequest;
 pub use stitches::{JoinedEdges, Stitches};
 pub use target::TargetSpec;
 pub use unit_hypothesis::UnitHypothesis;

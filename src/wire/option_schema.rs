@@ -8,10 +8,10 @@ use utoipa::{PartialSchema, ToSchema};
 
 use super::edges::edges_schema;
 use super::holes::holes_schema;
+use super::input_ref::InputRef;
 use super::modeller::{edits_schema, ranges_schema};
 use super::options::{OptionKind, OptionSpec, Options, SPECS};
 use super::plan::PlanRequest;
-use super::request::InputRef;
 use super::target::TargetSpec;
 use super::words::Operation;
 

@@ -3,9 +3,9 @@
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::mesh_info::finite;
-use super::plan::Plan;
-use super::report::Action;
+use super::action::Action;
+use super::finite::finite;
+use super::proposal::Plan;
 use super::verdict::Verdict;
 use crate::pipeline;
 

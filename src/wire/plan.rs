@@ -1,68 +1,21 @@
-//! Plans as JSON: what `/v1/plan` proposes, what a repair did, and what a caller gives back to it.
+//! Plans as JSON, as a caller gives them back, and their steps.
 
 use serde::de::{Error as _, IgnoredAny};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
 use utoipa::ToSchema;
 
-use super::certificate::{digest_of_hex, hex};
-use super::holes::BAND_RINGS_MAX;
-use super::target::whole_number;
-use super::words::{
-    Across, ConstraintValues, DefectCode, Degenerate, Extract, FillMethod, Kernel, LambdaFrom, Nesting,
-    Opposite, Remedy, ShellFate,
-};
-use crate::implicit::RbfOptions;
+use super::certificate::digest_of_hex;
+use super::fill_settings::{FillSettings, rings};
+use super::whole_number::{whole, whole_number};
+use super::words::{Across, DefectCode, Degenerate, FillMethod, Nesting, Opposite, Remedy, ShellFate};
 use crate::pipeline::{self, ELEMENTS_MAX, Step};
 use crate::repair::Selection;
 use crate::repair::cut::CutOptions;
-use crate::repair::fill::{FillOptions, HoleChoice};
 use crate::repair::nest::NestOptions;
 use crate::repair::snap::SnapOptions;
 use crate::repair::thin_faces::ThinFaces;
 use crate::{mesh, repair};
-
-/// What may be done about each defect of a file, and what was.
-#[derive(Debug, Clone, Serialize, ToSchema)]
-pub struct Plan {
-    /// SHA-256 of the file, in hexadecimal.
-    pub input_sha256: String,
-    /// For each kind of defect that was found.
-    pub findings: Vec<Proposal>,
-    /// The steps that made the result; null: none was made. Given back, exactly these run.
-    #[schema(required)]
-    pub steps: Option<Vec<PlanStep>>,
-}
-
-/// What is proposed for the defects of one kind.
-#[derive(Debug, Clone, Serialize, ToSchema)]
-pub struct Proposal {
-    /// The kind.
-    pub code: DefectCode,
-    /// How many.
-    pub count: u64,
-    /// What is to be done about all that `elements` do not name.
-    pub remedy: Remedy,
-    /// What there is to choose from.
-    pub choices: Vec<Remedy>,
-    /// How sure it is that the maker of the file would want this, from 0 to 1.
-    pub confidence: f64,
-    /// Why.
-    pub reason: &'static str,
-    /// One for each witness of the defect, where elements can be chosen one by one.
-    pub elements: Vec<ElementProposal>,
-}
-
-/// What is proposed for one element.
-#[derive(Debug, Clone, Serialize, ToSchema)]
-pub struct ElementProposal {
-    /// Place among the witnesses of the defect, from 0.
-    pub number: u32,
-    /// What is to be done.
-    pub remedy: Remedy,
-    /// How sure that is, from 0 to 1.
-    pub confidence: f64,
-}
 
 /// A plan as it is given back: one that was proposed, edited, or that of an earlier repair. What is left out is done as
 /// proposed.
@@ -286,125 +239,6 @@ pub enum PlanStep {
     Simplify {},
 }
 
-/// How a step fills holes. What is left out is as in a repair without choices.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct FillSettings {
-    /// How those are filled that `single` does not name.
-    method: FillMethod,
-    /// Rings of neighbours around the rim that a surface of radial basis functions is fitted to.
-    #[serde(deserialize_with = "whole")]
-    #[schema(maximum = 8)]
-    band_rings: u32,
-    /// How triangles are made of such a surface.
-    extract: Extract,
-    /// The radial function of such a surface.
-    kernel: Kernel,
-    /// Distance of its offset constraints from their points, in the unit of the file; null: by `lambda_from`.
-    lambda: Option<f64>,
-    /// Whose box that distance is a share of.
-    lambda_from: LambdaFrom,
-    /// The values at the offset constraints.
-    constraint_values: ConstraintValues,
-    /// Share of the points that have offset constraints.
-    #[schema(minimum = 0.01, maximum = 1.0)]
-    constraints: f64,
-    /// A hole whose method gives no sound patch is offered those of the plainer methods.
-    falls_back: bool,
-    /// Loops that face each other across a gap get one patch between them.
-    bridges: bool,
-    /// The method `auto` may make new vertices.
-    refines: bool,
-    /// Holes that are filled in a way of their own.
-    #[schema(max_items = 10_000)]
-    single: Vec<SingleHole>,
-}
-
-/// A hole that is filled in a way of its own.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SingleHole {
-    /// A half-edge of the hole: three times the number of its triangle, plus the place of its corner in it.
-    #[serde(deserialize_with = "whole")]
-    half_edge: u32,
-    /// How; null: as for all.
-    #[serde(default)]
-    method: Option<FillMethod>,
-    /// Rings of neighbours; null: as for all.
-    #[serde(default, deserialize_with = "rings")]
-    #[schema(maximum = 8)]
-    band_rings: Option<u32>,
-}
-
-impl Default for FillSettings {
-    fn default() -> Self {
-        Self::from(&FillOptions::plain(Selection::default()))
-    }
-}
-
-impl From<&FillOptions> for FillSettings {
-    fn from(inner: &FillOptions) -> Self {
-        let single = |choice: &HoleChoice| SingleHole {
-            half_edge: choice.half_edge,
-            method: choice.method.map(Into::into),
-            band_rings: choice.band_rings,
-        };
-        Self {
-            method: inner.method.into(),
-            band_rings: inner.band_rings,
-            extract: inner.extract.into(),
-            kernel: inner.rbf.kernel.into(),
-            lambda: inner.rbf.lambda,
-            lambda_from: inner.rbf.lambda_from.into(),
-            constraint_values: inner.rbf.values.into(),
-            constraints: inner.rbf.share,
-            falls_back: inner.falls_back,
-            bridges: inner.bridges,
-            refines: inner.refines,
-            single: inner.choices.iter().map(single).collect(),
-        }
-    }
-}
-
-impl FillSettings {
-    fn to_engine(&self, holes: Selection) -> FillOptions {
-        let single = |hole: &SingleHole| HoleChoice {
-            half_edge: hole.half_edge,
-            method: hole.method.map(Into::into),
-            band_rings: hole.band_rings,
-        };
-        let mut choices: Vec<HoleChoice> = self.single.iter().map(single).collect();
-        choices.sort_by_key(|choice| choice.half_edge);
-        FillOptions {
-            holes,
-            method: self.method.into(),
-            band_rings: self.band_rings,
-            extract: self.extract.into(),
-            rbf: RbfOptions {
-                kernel: self.kernel.into(),
-                lambda: self.lambda,
-                lambda_from: self.lambda_from.into(),
-                values: self.constraint_values.into(),
-                share: self.constraints,
-                ..RbfOptions::default()
-            },
-            falls_back: self.falls_back,
-            bridges: self.bridges,
-            refines: self.refines,
-            choices,
-        }
-    }
-
-    fn is_small(&self) -> bool {
-        let rings = self.single.iter().filter_map(|hole| hole.band_rings).chain([self.band_rings]);
-        let is_in_range = (0.01..=1.0).contains(&self.constraints)
-            && self.lambda.is_none_or(|lambda| lambda > 0.0 && lambda <= 1e30);
-        is_in_range
-            && self.single.len() <= ELEMENTS_MAX
-            && rings.max().is_none_or(|rings| rings <= BAND_RINGS_MAX)
-    }
-}
-
 /// A shell whose fate was chosen.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
@@ -414,18 +248,6 @@ pub struct ChosenShell {
     pub triangle: u32,
     /// What becomes of it.
     pub fate: ShellFate,
-}
-
-/// A whole number, also one that JSON writes with a fraction of zero.
-fn whole<'de, D: Deserializer<'de>>(from: D) -> Result<u32, D::Error> {
-    whole_number(f64::deserialize(from)?).ok_or_else(|| D::Error::custom("not a whole number"))
-}
-
-/// A number of rings, or none.
-fn rings<'de, D: Deserializer<'de>>(from: D) -> Result<Option<u32>, D::Error> {
-    let number = Option::<f64>::deserialize(from)?;
-    let rings = number.map(|number| whole_number(number).filter(|&rings| rings <= BAND_RINGS_MAX));
-    rings.map(|rings| rings.ok_or_else(|| D::Error::custom("not a number of rings"))).transpose()
 }
 
 fn whole_list<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<u32>, D::Error> {
@@ -482,35 +304,6 @@ impl PlanRequest {
             input_sha256: self.input_sha256.as_deref().and_then(digest_of_hex),
             findings: self.findings.iter().map(finding).collect(),
             steps: self.steps.as_ref().map(|steps| steps.iter().map(PlanStep::to_engine).collect()),
-        }
-    }
-}
-
-impl From<&pipeline::Plan> for Plan {
-    fn from(inner: &pipeline::Plan) -> Self {
-        Self {
-            input_sha256: hex(&inner.input_sha256),
-            findings: inner.findings.iter().map(Proposal::from).collect(),
-            steps: inner.steps.as_ref().map(|steps| steps.iter().map(PlanStep::from).collect()),
-        }
-    }
-}
-
-impl From<&pipeline::Proposal> for Proposal {
-    fn from(inner: &pipeline::Proposal) -> Self {
-        let element = |element: &pipeline::ElementProposal| ElementProposal {
-            number: element.number,
-            remedy: element.remedy.into(),
-            confidence: element.confidence,
-        };
-        Self {
-            code: inner.code.into(),
-            count: inner.count,
-            remedy: inner.remedy.into(),
-            choices: inner.choices.iter().copied().map(Remedy::from).collect(),
-            confidence: inner.confidence,
-            reason: inner.reason,
-            elements: inner.elements.iter().map(element).collect(),
         }
     }
 }
@@ -639,122 +432,4 @@ impl From<&Step> for PlanStep {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use serde_json::json;
-
-    fn all_steps() -> Vec<Step> {
-        let degenerate = repair::polygons::DegenerateFaces::Split;
-        vec![
-            Step::SplitPolygons(degenerate),
-            Step::ClearNoise,
-            Step::RoundToF32,
-            Step::RoundWhereItMatters,
-            Step::Weld,
-            Step::DropDegenerate,
-            Step::SplitCollinear,
-            Step::SplitTVertices,
-            Step::RemoveParts(vec![3, 7]),
-            Step::DropDuplicates(repair::duplicates::OppositePairs::KeepFirst),
-            Step::DropNearDuplicates { epsilon: 0.25 },
-            Step::RemoveCrossing { rings: 2 },
-            Step::Orient,
-            Step::PairSheets(repair::pair_sheets::Across::Void),
-            Step::JoinContacts { size: 0.5 },
-            Step::Cut(CutOptions::default()),
-            Step::Pinch(mesh::ChosenEdges::default(), mesh::Validity::Exact),
-            Step::Snap(SnapOptions { epsilon: Some(0.5), keeps_winding: true, ..SnapOptions::default() }),
-            Step::MendThinFaces(ThinFaces { needles: true, caps: false, folds: true }),
-            Step::FillHoles(FillOptions::plain(Selection::Only(vec![5]))),
-            Step::FillHoles(FillOptions {
-                method: repair::fill::Method::Smooth,
-                band_rings: 3,
-                rbf: RbfOptions { lambda: Some(0.25), share: 0.5, ..RbfOptions::default() },
-                choices: vec![HoleChoice {
-                    half_edge: 7,
-                    method: Some(repair::fill::Method::Flat),
-                    band_rings: Some(1),
-                }],
-                ..FillOptions::default()
-            }),
-            Step::Thicken { wall: 0.25 },
-            Step::Unite,
-            Step::UniteAndCopyBare,
-            Step::BoreContacts { steps: 64 },
-            Step::SpanRims,
-            Step::OpenContacts,
-            Step::JoinCopies,
-            Step::Nest(NestOptions {
-                policy: repair::nest::Policy::Fill,
-                is_embedded: false,
-                chosen: vec![(4, repair::nest::Fate::Goes)],
-            }),
-            Step::Rebuild,
-            Step::Simplify,
-        ]
-    }
-
-    #[test]
-    fn every_step_comes_back_from_json_as_it_was_under_the_name_of_its_action() {
-        for step in all_steps() {
-            let value = serde_json::to_value(PlanStep::from(&step)).unwrap();
-            assert_eq!(value["step"], step.name(), "{value}");
-            let back: PlanStep = serde_json::from_value(value).unwrap();
-            assert_eq!(back.to_engine(), step);
-        }
-    }
-
-    #[test]
-    fn a_plan_that_was_answered_can_be_given_back_as_it_is() {
-        let plan = pipeline::Plan {
-            input_sha256: [0xab; 32],
-            findings: vec![pipeline::Proposal {
-                code: crate::analysis::DefectCode::BoundaryLoop,
-                count: 2,
-                remedy: pipeline::Remedy::Fill,
-                choices: &[pipeline::Remedy::Fill, pipeline::Remedy::Keep],
-                confidence: 0.5,
-                reason: "because",
-                elements: vec![pipeline::ElementProposal {
-                    number: 1,
-                    remedy: pipeline::Remedy::Keep,
-                    confidence: 0.5,
-                }],
-            }],
-            steps: Some(all_steps()),
-        };
-        let text = serde_json::to_string(&Plan::from(&plan)).unwrap();
-        let back = PlanRequest::from_json(&text).unwrap().to_engine();
-        assert_eq!(back.input_sha256, Some([0xab; 32]));
-        assert_eq!(back.steps, plan.steps);
-        assert_eq!(back.findings[0].remedy, Some(pipeline::Remedy::Fill));
-        assert_eq!(back.findings[0].elements, [(1, pipeline::Remedy::Keep)]);
-    }
-
-    #[test]
-    fn what_is_no_plan_is_not_taken() {
-        assert!(PlanRequest::from_json("{}").is_some());
-        let elements: Vec<_> = (0..=ELEMENTS_MAX).map(|n| json!({"number": n, "remedy": "keep"})).collect();
-        for wrong in [
-            json!([]),
-            json!({"findings": [["boundary-loop"]]}),
-            json!({"input_sha256": "ab"}),
-            json!({"findings": [{"code": "no-such"}]}),
-            json!({"findings": [{"code": "boundary-loop", "remedy": "burn"}]}),
-            json!({"findings": [{"code": "boundary-loop", "elements": elements}]}),
-            json!({"findings": [{"code": "boundary-loop", "elements": [{"number": 1.5, "remedy": "keep"}]}]}),
-            json!({"steps": [{"step": "weld", "strength": 3}]}),
-            json!({"steps": [{"step": "remove-crossing", "rings": 11}]}),
-            json!({"steps": [{"step": "remove-crossing"}]}),
-            json!({"stepps": []}),
-            json!({"findings": [{"code": "boundary-loop", "elements": [
-                {"number": 0, "remedy": "fill", "method": "best"}]}]}),
-            json!({"findings": [{"code": "boundary-loop", "elements": [
-                {"number": 0, "remedy": "fill", "band_rings": 9}]}]}),
-            json!({"steps": [{"step": "fill-holes", "all": true, "except": [], "how": {"band_rings": 9}}]}),
-            json!({"steps": [{"step": "fill-holes", "all": true, "except": [], "how": {"bridge": true}}]}),
-        ] {
-            assert_eq!(PlanRequest::from_json(&wrong.to_string()), None, "{wrong}");
-        }
-    }
-}
+mod tests;

@@ -5,17 +5,19 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use super::action::Action;
 use super::certificate::{Certificate, hex};
+use super::distance::Distance;
+use super::finite::finite;
 use super::holes::Hole;
 use super::level::Level;
-use super::mesh_info::{MeshInfo, finite};
+use super::mesh_info::MeshInfo;
 use super::modeller::Modeller;
 use super::part::Part;
-use super::plan::Plan;
 use super::printing::Printing;
-use super::stitches::Stitches;
+use super::proposal::Plan;
 use super::verdict::Verdict;
-use super::words::{DefectCode, Encoding, Format, Operation, Stage, Units};
+use super::words::{Encoding, Format, Operation, Stage, Units};
 use crate::{analysis, pipeline};
 
 /// The account of a run.
@@ -124,35 +126,6 @@ pub struct UnitsInfo {
     pub is_stated: bool,
 }
 
-/// One step of a repair.
-#[derive(Debug, Clone, Serialize, ToSchema)]
-pub struct Action {
-    /// Name of the step.
-    pub step: &'static str,
-    /// The defects that caused it.
-    pub causes: Vec<DefectCode>,
-    /// What it changed; all zero: there was nothing to do.
-    pub changes: Vec<Change>,
-    /// Largest distance that a vertex moved, in the unit of the file.
-    #[schema(required)]
-    pub move_max: Option<f64>,
-    /// What was decided where there was a choice; empty otherwise.
-    pub reason: String,
-    /// The edges that the step joined, one by one; null for steps other than `pinch` and `snap` and for operations other
-    /// than `cut-stitch`.
-    #[schema(required)]
-    pub stitches: Option<Stitches>,
-}
-
-/// How many elements a step changed.
-#[derive(Debug, Clone, Serialize, ToSchema)]
-pub struct Change {
-    /// What was changed.
-    pub name: &'static str,
-    /// How many.
-    pub count: u64,
-}
-
 /// How far the result is from the input.
 #[derive(Debug, Clone, Serialize, ToSchema)]
 pub struct Deviation {
@@ -194,38 +167,6 @@ pub struct Deviation {
     /// Share of the input's triangles that are bit-identical in the result, from 0 to 1.
     #[schema(required)]
     pub identical_triangle_share: Option<f64>,
-}
-
-/// How far two surfaces are from each other, in the unit of the file.
-#[derive(Debug, Clone, Serialize, ToSchema)]
-pub struct Distance {
-    /// From the input to the result.
-    pub input_to_result: DirectedDistance,
-    /// From the result to the input.
-    pub result_to_input: DirectedDistance,
-}
-
-/// How far one surface is from another, in the unit of the file.
-#[derive(Debug, Clone, Serialize, ToSchema)]
-pub struct DirectedDistance {
-    /// No point of the surface is farther away than this.
-    #[schema(required)]
-    pub max: Option<f64>,
-    /// The distance at `place`; the largest one lies between this and `max`.
-    #[schema(required)]
-    pub found: Option<f64>,
-    /// True when `max` and `found` are as close as the search aims at; false when the work that a file of this size is worth
-    /// was used up before. Both bounds hold either way.
-    pub is_close: bool,
-    /// The farthest point that was found.
-    #[schema(required)]
-    pub place: Option<[f64; 3]>,
-    /// Mean over the area, by sampling.
-    #[schema(required)]
-    pub mean: Option<f64>,
-    /// Root of the mean square over the area, by sampling.
-    #[schema(required)]
-    pub root_mean_square: Option<f64>,
 }
 
 /// Milliseconds by the clock; null: the pass did not run.
@@ -363,19 +304,6 @@ impl From<&pipeline::FurtherInput> for FurtherInput {
     }
 }
 
-impl From<&pipeline::Action> for Action {
-    fn from(inner: &pipeline::Action) -> Self {
-        Self {
-            step: inner.step,
-            causes: inner.causes.iter().copied().map(DefectCode::from).collect(),
-            changes: inner.changes.iter().map(|&(name, count)| Change { name, count }).collect(),
-            move_max: finite(inner.move_max),
-            reason: inner.reason.clone(),
-            stitches: inner.stitches.as_ref().map(Stitches::from),
-        }
-    }
-}
-
 impl Deviation {
     fn of(inner: &pipeline::Report) -> Self {
         let measures = |mesh: Option<&analysis::Analysis>| mesh.map(|mesh| mesh.measures);
@@ -400,147 +328,5 @@ impl Deviation {
     }
 }
 
-impl From<&crate::distance::SurfaceDistance> for Distance {
-    fn from(inner: &crate::distance::SurfaceDistance) -> Self {
-        Self {
-            input_to_result: DirectedDistance::from(&inner.forward),
-            result_to_input: DirectedDistance::from(&inner.backward),
-        }
-    }
-}
-
-impl From<&crate::distance::DirectedDistance> for DirectedDistance {
-    fn from(inner: &crate::distance::DirectedDistance) -> Self {
-        Self {
-            max: finite(inner.upper),
-            found: finite(inner.lower),
-            is_close: inner.is_within_tolerance,
-            place: inner.farthest.place.is_finite().then(|| inner.farthest.place.to_array()),
-            mean: inner.mean.and_then(finite),
-            root_mean_square: inner.root_mean_square.and_then(finite),
-        }
-    }
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::wire::sample;
-    use serde_json::{Value, json};
-
-    fn json_of(answer: &pipeline::Answer) -> Value {
-        serde_json::to_value(Report::new(&answer.report, TimingMs::default())).unwrap()
-    }
-
-    fn members(value: &Value) -> Vec<&str> {
-        value.as_object().unwrap().keys().map(String::as_str).collect()
-    }
-
-    #[test]
-    fn a_report_has_the_same_members_whatever_came_out() {
-        let expected = [
-            "schema",
-            "operation",
-            "engine",
-            "input",
-            "further_inputs",
-            "before",
-            "output_units",
-            "plan",
-            "tried",
-            "actions",
-            "levels",
-            "holes",
-            "modeller",
-            "after",
-            "deviation",
-            "verdict",
-            "parts",
-            "remarks",
-            "input_certificate",
-            "certificate",
-            "printing",
-            "timing_ms",
-            "resources",
-        ];
-        for answer in [sample::repaired(), sample::identical(), sample::refused()] {
-            let report = json_of(&answer);
-            assert_eq!(members(&report), expected);
-            assert_eq!(
-                members(&report["deviation"]),
-                [
-                    "hausdorff_max",
-                    "distance",
-                    "volume_change",
-                    "area_change",
-                    "volume_change_share",
-                    "visible_loss",
-                    "hidden_area",
-                    "invented",
-                    "bodies_lost",
-                    "interpolated_area_share",
-                    "identical_triangle_share"
-                ]
-            );
-            assert_eq!(
-                members(&report["verdict"]),
-                ["printable", "outcome", "fidelity", "changes", "p3_holds", "p3_breaches", "reasons"]
-            );
-            assert_eq!(
-                members(&report["timing_ms"]),
-                ["read", "analyze", "repair", "simplify", "write", "certify", "measure", "draw", "total"]
-            );
-        }
-    }
-
-    #[test]
-    fn what_was_not_computed_or_is_not_finite_is_null() {
-        let report = json_of(&sample::repaired());
-        assert_eq!(report["deviation"]["hausdorff_max"], Value::Null);
-        assert_eq!(report["deviation"]["volume_change"], Value::Null, "the input has no volume");
-        assert_eq!(report["deviation"]["area_change"], json!(1.0));
-        assert_eq!(report["timing_ms"]["repair"], Value::Null);
-        let defect = &report["before"]["defects"][0];
-        assert_eq!(defect["witnesses"][0]["position"], Value::Null);
-        assert_eq!(defect["witnesses"][0]["figures"][1], json!({"name": "length", "value": null}));
-        assert_eq!(report["input_certificate"]["witnesses"][0]["position"], Value::Null);
-        assert_eq!(report["input_certificate"]["p1"]["holds"], Value::Null);
-    }
-
-    #[test]
-    fn a_defect_speaks_the_file_s_numbering_and_says_how_many_are_fixed() {
-        let defect = &json_of(&sample::repaired())["before"]["defects"][0];
-        assert_eq!(defect["code"], "boundary-loop");
-        assert_eq!(defect["severity"], "error");
-        assert_eq!((&defect["count"], &defect["fixed"]), (&json!(1), &json!(1)));
-        assert_eq!(defect["witnesses"][0]["faces"], json!([{"index": 2, "line": 17}]));
-        let refused = json_of(&sample::refused());
-        assert_eq!(
-            refused["before"]["defects"][0]["fixed"],
-            Value::Null,
-            "there is no result to compare with"
-        );
-    }
-
-    #[test]
-    fn a_verdict_gives_its_reasons_each_condition_once() {
-        let refused = &json_of(&sample::refused())["verdict"];
-        assert_eq!((&refused["printable"], &refused["outcome"]), (&json!(false), &json!("refused")));
-        let codes: Vec<_> =
-            refused["reasons"].as_array().unwrap().iter().map(|reason| &reason["code"]).collect();
-        assert_eq!(codes, ["not-repairable", "condition-broken"]);
-        assert_eq!(refused["reasons"][1]["condition"], "two-triangles-per-edge");
-        let repaired = &json_of(&sample::repaired())["verdict"];
-        assert_eq!((&repaired["printable"], &repaired["outcome"]), (&json!(true), &json!("repaired")));
-        assert_eq!((&repaired["reasons"], &repaired["p3_holds"]), (&json!([]), &Value::Null));
-        let changes: Vec<_> =
-            repaired["changes"].as_array().unwrap().iter().map(|change| &change["reason"]).collect();
-        assert_eq!((&repaired["fidelity"], changes), (&json!("changed"), vec![&json!("invented")]));
-        assert_eq!(refused["fidelity"], Value::Null);
-    }
-
-    #[test]
-    fn digests_are_lower_case_hexadecimal() {
-        assert_eq!(json_of(&sample::repaired())["input"]["sha256"], "ab".repeat(32));
-    }
-}
+mod tests;

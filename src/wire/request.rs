@@ -1,6 +1,5 @@
 //! The request that makes a job, as JSON.
 
-use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use utoipa::openapi::schema::{ObjectBuilder, Schema};
 use utoipa::openapi::{Ref, RefOr};
@@ -9,17 +8,10 @@ use utoipa::{PartialSchema, ToSchema};
 use super::labels::{Labels, about_labels, labels_from_json, labels_schema};
 use super::option_schema::options_object;
 use super::options::{Options, nearest};
-use super::problem::{Problem, ProblemCode};
+use super::problem::Problem;
+use super::problem_code::ProblemCode;
 use super::webhook::WebhookRequest;
 use super::words::Operation;
-
-/// An earlier job whose upload is used again.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct InputRef {
-    /// Id of the job.
-    pub job: String,
-}
 
 /// What to do, with options: `{"operation":"repair","units":"mm"}`. Options may also stand in a member `params`.
 #[derive(Debug, Clone, PartialEq)]
@@ -163,7 +155,7 @@ impl ToSchema for JobRequest {}
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::wire::Units;
+    use crate::wire::{InputRef, Units};
 
     #[test]
     fn options_stand_beside_the_operation_or_in_params() {

@@ -1,11 +1,11 @@
 //! Targets of a simplification, as a list of options says them: `{"faces":N}`, `{"ratio":X}` or `{"error_mm":X}`.
 
-use serde::de::Error as _;
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Serialize};
 use utoipa::openapi::RefOr;
 use utoipa::openapi::schema::{AdditionalProperties, ObjectBuilder, OneOfBuilder, Schema, Type};
 use utoipa::{PartialSchema, ToSchema};
 
+use super::whole_number::whole;
 use crate::simplify;
 
 /// Most targets of one run.
@@ -21,17 +21,6 @@ pub enum TargetSpec {
     Ratio(f64),
     /// As far as no collapse has an error above this, in millimetres.
     ErrorMm(f64),
-}
-
-/// A whole number, also one that JSON writes with a fraction of zero.
-fn whole<'de, D: Deserializer<'de>>(from: D) -> Result<u32, D::Error> {
-    whole_number(f64::deserialize(from)?).ok_or_else(|| D::Error::custom("not a whole number of faces"))
-}
-
-/// The number, if it is whole and in range.
-pub(super) fn whole_number(number: f64) -> Option<u32> {
-    let is_whole = number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&number);
-    is_whole.then_some(number as u32)
 }
 
 impl TargetSpec {

@@ -5,22 +5,6 @@
 use crate::scan::SourceFile;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Circles that stand until their modules are next worked on: each goes from here with the change that opens it.
-const KNOWN: [&str; 12] = [
-    "src/analysis/proximity.rs",
-    "src/pipeline/faithful.rs",
-    "src/repair/draft.rs",
-    "src/repair/fill/facing.rs",
-    "src/simplify/fast/rollback.rs",
-    "src/simplify/surface.rs",
-    "src/spatial/bvh/build.rs",
-    "src/wire/level.rs",
-    "src/wire/mesh_answers.rs",
-    "src/wire/modeller/refusal.rs",
-    "src/wire/option_schema.rs",
-    "src/wire/options/error.rs",
-];
-
 /// Circles of files inside modules, each as a line `a -> b -> a` with the names that tie one to the next.
 pub(crate) fn circles(files: &[SourceFile]) -> Vec<String> {
     let tree = Tree::of(files);
@@ -35,8 +19,7 @@ pub(crate) fn circles(files: &[SourceFile]) -> Vec<String> {
             }
         }
     }
-    let is_new = |knot: &&BTreeSet<&str>| knot.first().is_none_or(|first| !KNOWN.contains(first));
-    knots(&arrows).iter().filter(is_new).map(|knot| shortest_circle(knot, &arrows)).collect()
+    knots(&arrows).iter().map(|knot| shortest_circle(knot, &arrows)).collect()
 }
 
 /// The files of `src` by the path of the module that each is.

@@ -2,7 +2,7 @@
 //! where a band is missing of a tube, and an island and the hole around it; the rims at the ends of a tube look away from
 //! each other, and those of two holes on both sides of a wall past each other.
 
-use super::regions::Shape;
+use super::shape::Shape;
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::BoundaryLoop;

@@ -27,6 +27,7 @@ mod rbf;
 mod refine;
 mod regions;
 mod report;
+mod shape;
 mod span;
 mod sparse;
 mod surface;

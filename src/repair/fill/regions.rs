@@ -1,14 +1,12 @@
 //! What a patch has to cover: a boundary loop, flat loops that lie in each other like the rims of a pipe's end, or loops
 //! that face each other across a gap.
 
+use super::shape::{FLAT_SHARE_MAX, Shape, shape};
 use super::{facing, planar};
 use crate::budget::{Budget, Stopped};
-use crate::geom::{Aabb, DVec2, DVec3, Sign, orient2d};
+use crate::geom::{DVec2, DVec3, Sign, orient2d};
 use crate::mesh::BoundaryLoop;
 
-/// How far from its mean plane a loop may be to count as flat, as a share of its size: some float32 steps of a
-/// coordinate ten times that size.
-const FLAT_SHARE_MAX: f64 = 1e-5;
 /// How far the normals of loops in one plane may differ, as the cosine of the angle (0.08 degrees).
 const PARALLEL_COS_MIN: f64 = 0.999_999;
 /// Most flat loops that are searched for islands, in time that grows with their square.
@@ -76,14 +74,6 @@ impl Region {
     }
 }
 
-pub(super) struct Shape {
-    pub(super) normal: DVec3,
-    pub(super) area: f64,
-    pub(super) bounds: Aabb,
-    pub(super) is_flat: bool,
-    pub(super) points: Vec<DVec3>,
-}
-
 /// Groups the loops into regions, in the order of the loops. `corner(h)` is the corner of a loop at half-edge `h`.
 /// `outward(h)`, if it is given, is the unit direction in which the surface would go on there; loops that face each other
 /// across a gap are then grouped, flat or not.
@@ -116,19 +106,6 @@ pub(super) fn regions(
         }
     }
     Ok(regions.into_iter().flatten().collect())
-}
-
-/// Newell's normal and what else is asked of a loop.
-pub(super) fn shape(points: Vec<DVec3>) -> Shape {
-    let bounds = Aabb::of(points.iter().copied());
-    let (origin, size) = (points[0], bounds.diagonal());
-    let next = points.iter().cycle().skip(1);
-    let cross: DVec3 =
-        points.iter().zip(next).map(|(a, b)| ((a - origin) / size).cross((b - origin) / size)).sum();
-    let normal = cross.try_normalize().unwrap_or(DVec3::ZERO);
-    let is_flat = normal != DVec3::ZERO
-        && points.iter().all(|p| (p - origin).dot(normal).abs() <= FLAT_SHARE_MAX * size);
-    Shape { normal, area: cross.length() * size * size, bounds, is_flat, points }
 }
 
 /// For each loop the one whose island it is: the smallest flat loop around it, if that is not an island itself and runs

@@ -11,6 +11,7 @@ mod boxes;
 mod buckets;
 mod check;
 mod fans;
+mod guard;
 mod hubs;
 mod lines;
 mod mesh;

@@ -21,9 +21,10 @@ use crate::mesh::Color;
 use crate::mesh::corner_table::{CornerTable, EdgeRings, NONE, next, prev, triangle_of};
 use crate::simplify::criterion::{Criterion, Placed};
 use crate::simplify::guard::check_faces;
+use crate::simplify::marks::LINE;
 use crate::simplify::options::SimplifyOptions;
 use crate::simplify::report::{Refusal, Refusals};
-use crate::simplify::surface::{LINE, Rule, Surface};
+use crate::simplify::surface::{Rule, Surface};
 use std::sync::Arc;
 
 /// Units of work that an attempt to collapse an edge counts.

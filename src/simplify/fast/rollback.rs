@@ -9,46 +9,20 @@
 //! Where the input meets itself its triangles stay as they are.
 
 use super::check::{Check, Found, Left};
+use super::guard::{Course, Guard};
 use super::mesh::Division;
 use super::part::Part;
 use super::rounds::Rounds;
-use super::shells::Shells;
-use super::strays::Strays;
 use crate::budget::Stopped;
 use crate::par;
 use crate::simplify::criterion::Criterion;
 use crate::simplify::report::Refusal;
 use crate::simplify::surface::NEW;
-use std::sync::Arc;
 
 /// Tries after which one more ring around what must be locked is locked too.
 const TRIES_TO_RING: usize = 4;
 /// Tries after which whole parts are locked.
 const TRIES_MAX: usize = 40;
-
-/// What the guarded mode knows of the input.
-pub(super) struct Guard {
-    shells: Shells,
-    /// For each reading that the surface must be sound in, whether coordinates are rounded to f32 in it.
-    roundings: Vec<bool>,
-}
-
-impl Guard {
-    pub(super) fn new(shells: Shells, is_f32_exact: bool) -> Self {
-        Self { shells, roundings: if is_f32_exact { vec![false] } else { vec![false, true] } }
-    }
-}
-
-/// How a round was run.
-#[derive(Clone)]
-pub(super) struct Course {
-    /// The first round prepares the vertices.
-    pub(super) is_first: bool,
-    /// The last class that parts went to.
-    pub(super) class_max: usize,
-    /// What parts must not meet.
-    pub(super) strays: Option<Arc<Strays>>,
-}
 
 impl<'r, C: Criterion> Rounds<'r, C> {
     /// Does parts again until the surface they leave is sound.

@@ -3,10 +3,10 @@
 use super::Settings;
 use super::buckets::CLASSES;
 use super::fans::are_fans_between;
+use super::guard::{Course, Guard};
 use super::lines::Lines;
 use super::mesh::{Division, Mesh};
 use super::part::{Part, Piece, Room, Rules, Tally};
-use super::rollback::{Course, Guard};
 use super::shells::Shells;
 use super::space::Space;
 use super::strays::Strays;
@@ -15,10 +15,11 @@ use crate::geom::{Aabb, DVec3};
 use crate::mesh::corner_table::CornerTable;
 use crate::par;
 use crate::simplify::criterion::Criterion;
+use crate::simplify::marks::LINE;
 use crate::simplify::options::{SimplifyOptions, Target};
 use crate::simplify::priority::costs_of_vertices;
 use crate::simplify::result::{Input, SimplifyError};
-use crate::simplify::surface::{LINE, Surface};
+use crate::simplify::surface::Surface;
 use crate::spatial::Bvh;
 use std::sync::Arc;
 

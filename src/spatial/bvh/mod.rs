@@ -5,6 +5,7 @@
 //! whole; see [`super::self_contacts`].
 
 mod build;
+mod forest;
 mod frame;
 mod leaf;
 mod line;

@@ -1,8 +1,6 @@
 //! A tree of boxes, stored flat.
 
-use super::build::{self, Elements};
 use super::{Box32, Leaf};
-use crate::budget::{Budget, Stopped};
 
 /// A box and what is inside it.
 #[derive(Debug, Clone, Copy)]
@@ -42,6 +40,16 @@ impl Node {
         self.left != NO_CHILD && self.right & STAR != 0
     }
 
+    /// The same as the top node of a star.
+    pub(super) fn as_star(self) -> Self {
+        Self { right: self.right | STAR, ..self }
+    }
+
+    /// The number of a leaf.
+    pub(super) fn leaf_number(&self) -> Option<u32> {
+        (self.left == NO_CHILD).then_some(self.right)
+    }
+
     fn moved(self, nodes_by: u32, leaves_by: u32) -> Self {
         match self.children() {
             Some([left, right]) => Self::inner(self.bounds, [left + nodes_by, right + nodes_by]),
@@ -62,28 +70,6 @@ impl Tree {
     /// and above both is one joint.
     pub(in crate::spatial) const DEPTH_MAX: usize = 66;
 
-    /// Builds over `elements`. O(n log n).
-    pub(in crate::spatial) fn build(elements: &impl Elements, budget: &Budget) -> Result<Self, Stopped> {
-        build::tree(elements, super::leaf::LEAF_LEN, budget)
-    }
-
-    /// A tree of trees, none of them a single leaf, each marked as a star; and the place of each one's root.
-    pub(super) fn forest(trees: &[Self], budget: &Budget) -> Result<(Self, Vec<u32>), Stopped> {
-        let top = build::tree(&Roots(trees), 1, budget)?;
-        let mut roots = vec![0; trees.len()];
-        let mut forest = Self { nodes: top.nodes, leaves: Vec::new() };
-        for place in 0..forest.nodes.len() {
-            if forest.nodes[place].children().is_none() {
-                let number = top.leaves[forest.nodes[place].right as usize].id(0) as usize;
-                roots[number] = place as u32;
-                let root = forest.append(&trees[number]);
-                forest.nodes[place] = forest.nodes[root as usize];
-                forest.nodes[place].right |= STAR;
-            }
-        }
-        Ok((forest, roots))
-    }
-
     /// One tree of both, of which the second is not empty; and the place of the root of that.
     pub(super) fn join(first: &Self, second: &Self) -> (Self, u32) {
         if first.is_empty() {
@@ -97,7 +83,7 @@ impl Tree {
     }
 
     /// Adds the nodes of another tree; gives the place of its root.
-    fn append(&mut self, tree: &Self) -> u32 {
+    pub(super) fn append(&mut self, tree: &Self) -> u32 {
         let (nodes_by, leaves_by) = (self.nodes.len() as u32, self.leaves.len() as u32);
         let is_star = |node: &Node| if node.is_star() { STAR } else { 0 };
         self.nodes.extend(tree.nodes.iter().map(|node| {
@@ -135,26 +121,5 @@ impl Tree {
     #[inline]
     pub(in crate::spatial) fn leaf(&self, node: &Node) -> &Leaf {
         &self.leaves[node.right as usize]
-    }
-}
-
-/// Trees as the elements of a tree.
-struct Roots<'t>(&'t [Tree]);
-
-impl Elements for Roots<'_> {
-    fn len(&self) -> usize {
-        self.0.len()
-    }
-
-    fn id(&self, place: usize) -> u32 {
-        place as u32
-    }
-
-    fn bounds(&self, id: u32) -> Box32 {
-        self.0[id as usize].nodes[0].bounds
-    }
-
-    fn corners(&self, _: u32) -> [u32; 3] {
-        [0; 3]
     }
 }

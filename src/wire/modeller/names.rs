@@ -1,6 +1,5 @@
 //! Names of faces and edges, as a list of options says them.
 
-use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 use utoipa::openapi::RefOr;
 use utoipa::openapi::schema::{ArrayBuilder, ObjectBuilder, Schema, Type};
@@ -8,7 +7,7 @@ use utoipa::{PartialSchema, ToSchema};
 
 use crate::geom::DVec3;
 use crate::pipeline::{EdgeName, FaceName};
-use crate::wire::target::whole_number;
+use crate::wire::whole_number::whole;
 
 /// Largest coordinate or length.
 const LENGTH_MAX: f64 = 1e30;
@@ -109,11 +108,6 @@ pub struct EdgeRef {
     /// A place near the edge, in the unit of the file, where the faces share several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at: Option<Vector>,
-}
-
-/// A whole number, also one that JSON writes with a fraction of zero.
-fn whole<'de, D: Deserializer<'de>>(from: D) -> Result<u32, D::Error> {
-    whole_number(f64::deserialize(from)?).ok_or_else(|| D::Error::custom("not a whole number of a face"))
 }
 
 impl Vector {

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::report::{Blocker, MovedFace};
+use super::blocker::{Blocker, MovedFace};
 use super::words::OperatorReason;
 use crate::mesh::polyhedron::FaceId;
 use crate::modeller::{DualRefusal, ExportRefusal, ImportRefusal, Refusal};

@@ -3,14 +3,14 @@
 use serde::Serialize;
 use utoipa::ToSchema;
 
+use super::blocker::{Blocker, MovedFace};
 use super::names::{FaceRef, Length};
 use super::operators::{EditSpec, FaceMove, ShiftSpec};
 use super::refusal::RefusedOperator;
-use super::words::{BlockerKind, EditKind, ModelRule};
-use crate::geom::DVec3;
+use super::words::{EditKind, ModelRule};
 use crate::modeller::Validity;
 use crate::pipeline;
-use crate::wire::mesh_info::finite;
+use crate::wire::finite::finite;
 
 /// What the modeller found and did.
 #[derive(Debug, Clone, Serialize, ToSchema)]
@@ -79,15 +79,6 @@ pub struct FaceInfo {
     pub corner: [f64; 3],
 }
 
-/// A face and how far it moved or may move.
-#[derive(Debug, Clone, Serialize, ToSchema)]
-pub struct MovedFace {
-    /// The face.
-    pub face: u32,
-    /// How far outward, in millimetres.
-    pub by_mm: f64,
-}
-
 /// An operator that was applied.
 #[derive(Debug, Clone, Serialize, ToSchema)]
 pub struct ModellerStep {
@@ -137,50 +128,6 @@ pub struct RangeSideInfo {
     pub limit_mm: Option<f64>,
     /// What is in the way there.
     pub blocking: Vec<Blocker>,
-}
-
-/// Elements that are in the way.
-#[derive(Debug, Clone, Serialize, ToSchema)]
-pub struct Blocker {
-    /// How they would meet.
-    pub kind: BlockerKind,
-    /// Their faces.
-    pub faces: Vec<u32>,
-    /// Where their vertices are before the move, in the unit of the file.
-    pub places: Vec<[f64; 3]>,
-}
-
-impl From<&pipeline::Blocker> for Blocker {
-    fn from(inner: &pipeline::Blocker) -> Self {
-        Self {
-            kind: inner.kind.into(),
-            faces: inner.faces.clone(),
-            places: inner.places.iter().map(DVec3::to_array).collect(),
-        }
-    }
-}
-
-impl Blocker {
-    /// What would happen, in a sentence.
-    pub(super) fn sentence(&self) -> String {
-        let faces = self.faces.iter().map(u32::to_string).collect::<Vec<_>>().join(", ");
-        let place = self.places.first().map(|[x, y, z]| format!(" at {x}, {y}, {z}")).unwrap_or_default();
-        match self.kind {
-            BlockerKind::EdgeVanishes => {
-                format!("the edge between the faces {faces} would lose its length")
-            }
-            BlockerKind::VertexFace => format!("the vertex{place} would reach face {faces}"),
-            BlockerKind::EdgeEdge => format!("edges of the faces {faces} would cross"),
-            BlockerKind::LoopLoop => format!("two loops of face {faces} would touch at the vertex{place}"),
-            BlockerKind::NoSplit => format!("the vertex{place} has no good split"),
-        }
-    }
-}
-
-impl MovedFace {
-    pub(super) fn of((face, by): (u32, f64), millimetres: f64) -> Self {
-        Self { face, by_mm: by * millimetres }
-    }
 }
 
 impl From<&Validity> for ModelValidity {

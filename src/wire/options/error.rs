@@ -2,8 +2,10 @@
 
 use std::fmt;
 
-use super::table::{OptionSpec, nearest};
-use crate::wire::problem::{Problem, ProblemCode};
+use super::nearest::nearest;
+use super::table::OptionSpec;
+use crate::wire::problem::Problem;
+use crate::wire::problem_code::ProblemCode;
 use crate::wire::words::Operation;
 
 /// An option that cannot be taken.

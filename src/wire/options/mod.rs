@@ -1,6 +1,8 @@
 //! The options of every operation: one table for query parameters, JSON members and command-line flags.
 
 mod error;
+mod lookup;
+mod nearest;
 #[macro_use]
 mod row;
 mod parse;
@@ -13,10 +15,10 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::holes::{BAND_RINGS_MAX, Holes};
+use super::input_ref::InputRef;
 use super::modeller::{DualEmbedding, EditSpec, RangeSpec};
 use super::plan::PlanRequest;
 use super::printing::{BuildDirection, PolicyInfo, PolicyName};
-use super::request::InputRef;
 use super::target::TargetSpec;
 use super::words::{
     ConstraintValues, Contact, Criterion, Cut, Degenerate, DrawnEdges, Effort, Extract, FillHoles,
@@ -29,7 +31,7 @@ use crate::implicit::RbfOptions;
 use crate::repair::fill::FillOptions;
 use crate::{pipeline, simplify};
 pub use error::OptionError;
-pub(super) use table::nearest;
+pub(super) use nearest::nearest;
 pub use table::{OptionKind, OptionSpec};
 
 const REPAIR: &[Operation] = &[Operation::Repair];
@@ -222,13 +224,13 @@ impl Options {
         ];
         let mut given = given.into_iter().filter(|&(_, is_given)| is_given).map(|(name, _)| name);
         if let (Some(by), Some(name)) = (given.next(), given.next()) {
-            return Err(OptionError::Excluded { spec: table::spec_of(name)?, by });
+            return Err(OptionError::Excluded { spec: lookup::spec_of(name)?, by });
         }
         let written = self.output_format.or(self.format);
         let shows_colors = matches!(written, Some(Format::Off | Format::Ply | Format::Glb | Format::Gltf));
         if self.vertex_colors == Some(VertexColors::Priority) && !shows_colors {
             let needs = "a `format` or `output_format` of off, ply, glb or gltf";
-            return Err(OptionError::Lacking { spec: table::spec_of("vertex_colors")?, needs });
+            return Err(OptionError::Lacking { spec: lookup::spec_of("vertex_colors")?, needs });
         }
         self.check_turntable()
     }
@@ -236,7 +238,7 @@ impl Options {
     /// That a full turn has no choice that it would leave out, and is no file of any size.
     fn check_turntable(&self) -> Result<(), OptionError> {
         let Some(pictures) = self.turntable else { return Ok(()) };
-        let spec = table::spec_of("turntable")?;
+        let spec = lookup::spec_of("turntable")?;
         let others = [
             ("views", self.views.is_some()),
             ("projection", self.projection == Some(Projection::Perspective)),

@@ -2,7 +2,8 @@
 
 use serde_json::{Map, Value};
 
-use super::table::{OptionKind, OptionSpec, spec_of};
+use super::lookup::spec_of;
+use super::table::{OptionKind, OptionSpec};
 use super::{OptionError, Options};
 
 impl Options {

@@ -54,7 +54,7 @@ macro_rules! options {
             pub fn join(mut self, other: Self) -> Result<Self, OptionError> {
                 $(
                     parse::put_if_given(&mut self.$name, other.$name)
-                        .into_result(table::spec_of(stringify!($name))?, "")?;
+                        .into_result(lookup::spec_of(stringify!($name))?, "")?;
                 )+
                 Ok(self)
             }

@@ -1,6 +1,5 @@
 //! What a row of the table of options says: its name, its values, who takes it, and what it does.
 
-use super::{OptionError, SPECS};
 use crate::wire::words::Operation;
 
 /// What values an option takes.
@@ -58,28 +57,6 @@ pub struct OptionSpec {
     pub about: &'static str,
     /// It has no meaning on the command line.
     pub is_for_service_only: bool,
-}
-
-pub(super) fn spec_of(name: &str) -> Result<&'static OptionSpec, OptionError> {
-    let names = || SPECS.iter().map(|spec| spec.name);
-    SPECS
-        .iter()
-        .find(|spec| spec.name == name)
-        .ok_or_else(|| OptionError::Unknown { name: name.to_owned(), suggestion: nearest(name, names()) })
-}
-
-/// The candidate that `word` was probably meant to be. The threshold is that of common command-line parsers: below a
-/// Jaro similarity of 0.7 suggestions are noise.
-pub(in crate::wire) fn nearest(
-    word: &str,
-    candidates: impl Iterator<Item = &'static str>,
-) -> Option<&'static str> {
-    let word = word.to_ascii_lowercase().replace('-', "_");
-    candidates
-        .map(|candidate| (strsim::jaro(&word, candidate), candidate))
-        .filter(|&(similarity, _)| similarity > 0.7)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, candidate)| candidate)
 }
 
 impl OptionSpec {

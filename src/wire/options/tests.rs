@@ -3,7 +3,8 @@
 use serde_json::{Map, Value, json};
 
 use super::*;
-use crate::wire::problem::{Problem, ProblemCode};
+use crate::wire::problem::Problem;
+use crate::wire::problem_code::ProblemCode;
 
 /// A value that the option takes, as JSON.
 fn some_value(spec: &OptionSpec) -> Value {

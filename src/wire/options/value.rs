@@ -4,9 +4,9 @@ use super::parse::{parse_digits, parse_number};
 use super::table::OptionKind;
 use crate::wire::edges::edges_from_json;
 use crate::wire::holes::Holes;
+use crate::wire::input_ref::InputRef;
 use crate::wire::modeller::{EditSpec, RangeSpec, edits_from_json, ranges_from_json};
 use crate::wire::plan::PlanRequest;
-use crate::wire::request::InputRef;
 use crate::wire::target::{TargetSpec, targets_from_json};
 use crate::wire::words::Word;
 

@@ -5,7 +5,8 @@ use utoipa::ToSchema;
 
 use super::words::BuildDirection;
 use crate::printing;
-use crate::wire::mesh_info::{Bounds, finite, point};
+use crate::wire::finite::{finite, point};
+use crate::wire::mesh_info::Bounds;
 
 /// Thickness of walls, or width of gaps, by samples. Both definitions are about places that have a wall opposite: one whose
 /// normal is at least 150 degrees away.

@@ -15,7 +15,7 @@ pub use words::{BoundKind, BuildDirection, CheckCode, Fit, PolicyName, PrintedMe
 use serde::Serialize;
 use utoipa::ToSchema;
 
-use super::mesh_info::{finite, point};
+use super::finite::{finite, point};
 use crate::{pipeline, printing};
 
 /// A mesh measured for printing. Lengths are in millimetres, areas and volumes in their squares and cubes, angles in

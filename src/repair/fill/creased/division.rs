@@ -1,6 +1,7 @@
 //! How sharp edges that end at a rim go on through the hole, and the sides that they divide it into.
 
-use super::super::regions::{Region, shape};
+use super::super::regions::Region;
+use super::super::shape::shape;
 use super::super::surface::Surface;
 use super::ends::{End, ends};
 use crate::budget::{Budget, Stopped};

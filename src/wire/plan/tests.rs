@@ -1,0 +1,117 @@
+use super::*;
+use serde_json::json;
+
+fn all_steps() -> Vec<Step> {
+    let degenerate = repair::polygons::DegenerateFaces::Split;
+    vec![
+        Step::SplitPolygons(degenerate),
+        Step::ClearNoise,
+        Step::RoundToF32,
+        Step::RoundWhereItMatters,
+        Step::Weld,
+        Step::DropDegenerate,
+        Step::SplitCollinear,
+        Step::SplitTVertices,
+        Step::RemoveParts(vec![3, 7]),
+        Step::DropDuplicates(repair::duplicates::OppositePairs::KeepFirst),
+        Step::DropNearDuplicates { epsilon: 0.25 },
+        Step::RemoveCrossing { rings: 2 },
+        Step::Orient,
+        Step::PairSheets(repair::pair_sheets::Across::Void),
+        Step::JoinContacts { size: 0.5 },
+        Step::Cut(CutOptions::default()),
+        Step::Pinch(mesh::ChosenEdges::default(), mesh::Validity::Exact),
+        Step::Snap(SnapOptions { epsilon: Some(0.5), keeps_winding: true, ..SnapOptions::default() }),
+        Step::MendThinFaces(ThinFaces { needles: true, caps: false, folds: true }),
+        Step::FillHoles(FillOptions::plain(Selection::Only(vec![5]))),
+        Step::FillHoles(FillOptions {
+            method: repair::fill::Method::Smooth,
+            band_rings: 3,
+            rbf: RbfOptions { lambda: Some(0.25), share: 0.5, ..RbfOptions::default() },
+            choices: vec![HoleChoice {
+                half_edge: 7,
+                method: Some(repair::fill::Method::Flat),
+                band_rings: Some(1),
+            }],
+            ..FillOptions::default()
+        }),
+        Step::Thicken { wall: 0.25 },
+        Step::Unite,
+        Step::UniteAndCopyBare,
+        Step::BoreContacts { steps: 64 },
+        Step::SpanRims,
+        Step::OpenContacts,
+        Step::JoinCopies,
+        Step::Nest(NestOptions {
+            policy: repair::nest::Policy::Fill,
+            is_embedded: false,
+            chosen: vec![(4, repair::nest::Fate::Goes)],
+        }),
+        Step::Rebuild,
+        Step::Simplify,
+    ]
+}
+
+#[test]
+fn every_step_comes_back_from_json_as_it_was_under_the_name_of_its_action() {
+    for step in all_steps() {
+        let value = serde_json::to_value(PlanStep::from(&step)).unwrap();
+        assert_eq!(value["step"], step.name(), "{value}");
+        let back: PlanStep = serde_json::from_value(value).unwrap();
+        assert_eq!(back.to_engine(), step);
+    }
+}
+
+#[test]
+fn a_plan_that_was_answered_can_be_given_back_as_it_is() {
+    let plan = pipeline::Plan {
+        input_sha256: [0xab; 32],
+        findings: vec![pipeline::Proposal {
+            code: crate::analysis::DefectCode::BoundaryLoop,
+            count: 2,
+            remedy: pipeline::Remedy::Fill,
+            choices: &[pipeline::Remedy::Fill, pipeline::Remedy::Keep],
+            confidence: 0.5,
+            reason: "because",
+            elements: vec![pipeline::ElementProposal {
+                number: 1,
+                remedy: pipeline::Remedy::Keep,
+                confidence: 0.5,
+            }],
+        }],
+        steps: Some(all_steps()),
+    };
+    let text = serde_json::to_string(&Plan::from(&plan)).unwrap();
+    let back = PlanRequest::from_json(&text).unwrap().to_engine();
+    assert_eq!(back.input_sha256, Some([0xab; 32]));
+    assert_eq!(back.steps, plan.steps);
+    assert_eq!(back.findings[0].remedy, Some(pipeline::Remedy::Fill));
+    assert_eq!(back.findings[0].elements, [(1, pipeline::Remedy::Keep)]);
+}
+
+#[test]
+fn what_is_no_plan_is_not_taken() {
+    assert!(PlanRequest::from_json("{}").is_some());
+    let elements: Vec<_> = (0..=ELEMENTS_MAX).map(|n| json!({"number": n, "remedy": "keep"})).collect();
+    for wrong in [
+        json!([]),
+        json!({"findings": [["boundary-loop"]]}),
+        json!({"input_sha256": "ab"}),
+        json!({"findings": [{"code": "no-such"}]}),
+        json!({"findings": [{"code": "boundary-loop", "remedy": "burn"}]}),
+        json!({"findings": [{"code": "boundary-loop", "elements": elements}]}),
+        json!({"findings": [{"code": "boundary-loop", "elements": [{"number": 1.5, "remedy": "keep"}]}]}),
+        json!({"steps": [{"step": "weld", "strength": 3}]}),
+        json!({"steps": [{"step": "remove-crossing", "rings": 11}]}),
+        json!({"steps": [{"step": "remove-crossing"}]}),
+        json!({"stepps": []}),
+        json!({"findings": [{"code": "boundary-loop", "elements": [
+            {"number": 0, "remedy": "fill", "method": "best"}]}]}),
+        json!({"findings": [{"code": "boundary-loop", "elements": [
+            {"number": 0, "remedy": "fill", "band_rings": 9}]}]}),
+        json!({"steps": [{"step": "fill-holes", "all": true, "except": [], "how": {"band_rings": 9}}]}),
+        json!({"steps": [{"step": "fill-holes", "all": true, "except": [], "how": {"bridge": true}}]}),
+    ] {
+        assert_eq!(PlanRequest::from_json(&wrong.to_string()), None, "{wrong}");
+    }
+}
