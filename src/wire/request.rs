@@ -1,5 +1,6 @@
 //! The request that makes a job, as JSON.
 
+use serde::Deserialize as _;
 use serde_json::Value;
 use utoipa::openapi::schema::{ObjectBuilder, Schema};
 use utoipa::openapi::{Ref, RefOr};

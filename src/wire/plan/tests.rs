@@ -1,4 +1,7 @@
 use super::*;
+use crate::implicit::RbfOptions;
+use crate::repair::fill::{FillOptions, HoleChoice};
+use crate::wire::proposal::Plan;
 use serde_json::json;
 
 fn all_steps() -> Vec<Step> {

@@ -1,5 +1,6 @@
 use super::*;
 use crate::formats::WriteError;
+use crate::wire::problem_code::errors;
 
 fn read_error(kind: ReadErrorKind, place: Place) -> ReadError {
     ReadError { kind, place, expected: "a number".to_owned() }
