@@ -1,5 +1,5 @@
 // Writes small GLB and glTF files with meshopt compression and the same models without it: `node make.mjs FOLDER`, after
-// `npm ci` here. The streams are those of the package meshoptimizer, the documents those of gltfpack or made here; nothing
+// `npm ci` here; `node make.mjs FOLDER torus`: only the torus, of a million triangles. The streams are those of the package meshoptimizer, the documents those of gltfpack or made here; nothing
 // is random, so every run of the same versions writes the same bytes.
 
 import { MeshoptEncoder as encoder } from "meshoptimizer";
@@ -8,7 +8,7 @@ import { statSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { dirname, join } from "node:path";
 
-const [folder] = process.argv.slice(2);
+const [folder, large] = process.argv.slice(2);
 const gltfpack = join(dirname(createRequire(import.meta.url).resolve("gltfpack")), "cli.js");
 await encoder.ready;
 
@@ -98,7 +98,7 @@ function write(name, content) {
 
 const EXT = { name: "EXT_meshopt_compression", version: 0, level: 2 };
 const KHR = { name: "KHR_meshopt_compression", version: 1, level: 3 };
-const [RINGS, SEGMENTS] = [20, 15];
+const [RINGS, SEGMENTS] = large ? [1000, 500] : [20, 15];
 const COUNT = RINGS * SEGMENTS;
 
 const grid = (make) => Array.from({ length: COUNT }, (_, i) => make(Math.floor(i / SEGMENTS), i % SEGMENTS)).flat();
@@ -118,7 +118,7 @@ const triangles = grid((r, s) => {
 
 const of = (view, type, componentType, count, more = {}) => ({ view, type, componentType, count, ...more });
 const bounds = (values, size) => {
-  const all = (fold) => Array.from({ length: size }, (_, k) => fold(...values.filter((_, i) => i % size === k)));
+  const all = (fold) => Array.from({ length: size }, (_, k) => values.filter((_, i) => i % size === k).reduce((a, b) => fold(a, b)));
   return { min: all(Math.min), max: all(Math.max) };
 };
 const colorsOf = (view, componentType = UBYTE) => of(view, "VEC4", componentType, COUNT, { normalized: true });
@@ -145,8 +145,26 @@ const padded = (source, size, stride) => {
 
 write("torus.glb", file(torus()));
 write("torus-ext.glb", file(torus({ how: EXT })));
-write("torus-ext.gltf", file(torus({ how: EXT, text: true })));
 write("torus-khr.glb", file(torus({ how: KHR })));
+
+// --- the same in quantized coordinates ---------------------------------------------------------------------------------
+
+const shorts = padded(Int16Array.from(positions, (c) => Math.round((c / 7) * 32767)), 3, 4);
+const quantized = (how) => {
+  const parts = torus({ how, node: { scale: [7, 7, 7] }, required: ["KHR_mesh_quantization"] });
+  parts.views[0] = { data: shorts, stride: 8 };
+  parts.attributes.POSITION = of(0, "VEC3", SHORT, COUNT, { normalized: true });
+  return parts;
+};
+write("quantized.glb", file(quantized()));
+write("quantized-ext.glb", file(quantized(EXT)));
+write("quantized-khr.glb", file(quantized(KHR)));
+
+if (large) process.exit();
+
+// --- the torus in every other way ------------------------------------------------------------------------------------------
+
+write("torus-ext.gltf", file(torus({ how: EXT, text: true })));
 write("torus-16-bit.glb", file(torus({ how: EXT, indexed: Uint16Array })));
 write("torus-sequence.glb", file(torus({ how: KHR, mode: "INDICES" })));
 write("torus-sequence-16-bit.glb", file(torus({ how: EXT, mode: "INDICES", indexed: Uint16Array })));
@@ -178,19 +196,6 @@ interleaved.attributes.COLOR_0 = { ...colorsOf(0), byteOffset: 12 };
 interleaved.attributes.TEXCOORD_0 = { ...interleaved.attributes.TEXCOORD_0, view: 0, byteOffset: 16 };
 interleaved.indices.view = 1;
 write("torus-interleaved.glb", file(interleaved));
-
-// --- the same in quantized coordinates ---------------------------------------------------------------------------------
-
-const shorts = padded(Int16Array.from(positions, (c) => Math.round((c / 7) * 32767)), 3, 4);
-const quantized = (how) => {
-  const parts = torus({ how, node: { scale: [7, 7, 7] }, required: ["KHR_mesh_quantization"] });
-  parts.views[0] = { data: shorts, stride: 8 };
-  parts.attributes.POSITION = of(0, "VEC3", SHORT, COUNT, { normalized: true });
-  return parts;
-};
-write("quantized.glb", file(quantized()));
-write("quantized-ext.glb", file(quantized(EXT)));
-write("quantized-khr.glb", file(quantized(KHR)));
 
 // --- what makes version 1 store shorts and rotated words: ramps of 16 bits, and floats that change in few bits -----------
 

@@ -94,3 +94,20 @@ impl<'s> Data<'s> {
         self.wrong(self.end, "the end of the data", "more, as the number of elements says")
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_begin_with_their_lowest_bits() {
+        let of = |bytes: &[u8]| Data::of(bytes, "").varint();
+        assert_eq!(of(&[0x7f]), Ok(0x7f));
+        assert_eq!(of(&[0x81, 0x04]), Ok(0x201));
+        // The text has 0x1fd005 for it, which is the other way round than its rule and its example before.
+        assert_eq!(of(&[0xff, 0xa0, 0x05]), Ok(0x1_507f));
+        assert_eq!(of(&[0xff, 0xff, 0xff, 0xff, 0x7f]), Ok(u32::MAX), "what is beyond 32 bits is left out");
+        assert!(of(&[0x80; 4]).unwrap_err().to_string().contains("the end of the data at byte 4"));
+        assert!(of(&[0x80; 6]).unwrap_err().to_string().contains("more than 5 bytes at byte 4"));
+    }
+}

@@ -137,3 +137,36 @@ fn color(y: i32, co: i32, cg: i32, a: i32, most: f32) -> [f32; 4] {
     let share = |c: i32| (c as f32 * (most / scale as f32)).round();
     [y + co - cg, y + cg, y - co - cg, alpha << 1 | alpha & 1].map(share)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_exponent_is_exact() {
+        let of =
+            |exponent: i32, mantissa: i32| exponential((exponent << 24 | mantissa & 0xff_ffff).to_le_bytes());
+        assert_eq!(of(0, 1), 1.0);
+        assert_eq!(of(-2, -3), -0.75);
+        assert_eq!(of(100, (1 << 23) - 1), ((1 << 23) - 1) as f32 * 2f32.powi(100));
+        assert_eq!(of(-100, -(1 << 23)), -(2f32.powi(-77)));
+        assert_eq!(of(-128, 1), f32::from_bits(1 << 21), "2^-128 has no full mantissa");
+        assert_eq!((of(127, 2), of(-128, 0)), (f32::INFINITY, 0.0));
+    }
+
+    #[test]
+    fn the_sides_of_the_octahedron_are_unit_vectors() {
+        assert_eq!(octahedral([0.0, 0.0, 7.0]), [0.0, 0.0, 1.0]);
+        assert_eq!(octahedral([7.0, 0.0, 7.0]), [1.0, 0.0, 0.0]);
+        assert_eq!(octahedral([-7.0, -7.0, 7.0]), [0.0, 0.0, -1.0]);
+        assert_eq!(quaternion([0, 0, 0, 0x7ffe]), [0, 0, 32767, 0]);
+    }
+
+    #[test]
+    fn white_grey_and_what_is_no_colour() {
+        // Luma of eight bits, and alpha of seven with a bit above it.
+        assert_eq!(color(255, 0, 0, 255, 255.0), [255.0; 4]);
+        assert_eq!(color(3, 0, 0, 0b111, 255.0), [109.0, 109.0, 109.0, 255.0]);
+        assert_eq!(color(0, 0, 0, 0, 255.0).map(|share| share as u8), [0; 4]);
+    }
+}

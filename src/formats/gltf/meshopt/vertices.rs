@@ -178,3 +178,26 @@ fn add_up<'e>(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_group_of_the_text_is_decoded() {
+        let bytes = [0x17, 0x5f, 0xf0, 0xbc, 0x77, 0xa9, 0x21, 0x00, 0x34, 0xb5];
+        let mut data = Data::of(&bytes, "");
+        let mut group = [0; GROUP];
+        group_into::<4>(&mut group, &mut data).unwrap();
+        data.finish().unwrap();
+        let differences = group.map(|coded| (coded >> 1 ^ (coded & 1).wrapping_neg()) as i8);
+        assert_eq!(differences, [-1, -4, -3, 26, -91, 0, -6, 6, -4, -4, 5, -5, 1, -1, 0, 0]);
+        let mut short = Data::of(&bytes[..9], "");
+        assert!(group_into::<4>(&mut group, &mut short).is_err());
+    }
+
+    #[test]
+    fn blocks_are_as_large_as_the_text_says() {
+        assert_eq!([4, 12, 32, 36, 64, 256].map(block_elements), [256, 256, 256, 224, 128, 32]);
+    }
+}
