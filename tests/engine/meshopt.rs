@@ -187,11 +187,12 @@ fn filters_are_undone_within_their_precision() {
         ("vectors-12-bit.glb", 12),
         ("vectors-16-bit.glb", 16),
     ] {
-        // A step of the octahedron's coordinates, which a fold lengthens to at most three halves of itself, and one of the output.
+        // Half a step in two coordinates of the octahedron and one in the third, at most 3^0.5 times that on the sphere, and one of
+        // the output.
         let step = 1.0 / f64::from((1 << (bits - 1)) - 1);
         let output = if bits <= 8 { 1.0 / 127.0 } else { 1.0 / 32767.0 };
         let gap = apart(&file(name), &vectors);
-        assert!(gap <= 1.5 * step + output, "{name}: {gap}");
+        assert!(gap <= 4.5f64.sqrt() * step + output, "{name}: {gap}");
         assert!(gap > 0.0, "{name}");
     }
     let quaternions = file("quaternions.glb");
@@ -352,7 +353,7 @@ fn a_stream_with_changed_bytes_is_an_error_or_a_sound_soup() {
                 for _ in 0..1 + random.below(3) {
                     let at = range.start + random.below(range.len());
                     broken.bin[at] ^= match random.below(2) {
-                        0 => 1 << random.below(8),
+                        0 => 1u8 << random.below(8),
                         _ => random.below(256) as u8,
                     };
                 }
@@ -415,7 +416,7 @@ fn what_a_small_stream_claims_is_held_against_its_length_and_the_limits() {
         let budget = Budget::new(StopFlag::default(), u64::MAX, bytes_max);
         let soup = read(&bytes, Encoding::Glb, &ReadOptions { limits, ..ReadOptions::default() }, &budget);
         assert!(budget.bytes_peak() <= bytes_max);
-        soup.map(|soup| soup.triangles.len()).map_err(|error| error.kind)
+        soup.map(|soup| soup.face_count).map_err(|error| error.kind)
     };
     assert_eq!(with(ReadLimits::default(), u64::MAX), Ok(100_000));
     for bytes_max in [100_000, 4_000_000, 9_000_000] {
