@@ -1,4 +1,5 @@
-//! Time to read and to write a torus of a million triangles in each encoding: `cargo bench --bench parse`.
+//! Time to read and to write a torus of a million triangles in each encoding: `cargo bench --bench parse`. Where
+//! `node tests/meshopt_files/make.mjs target/meshopt torus` has written one, also to read it with meshopt compression.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use meshmend::budget::Budget;
@@ -62,5 +63,20 @@ fn parse(criterion: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, parse);
+fn meshopt(criterion: &mut Criterion) {
+    let budget = Budget::unlimited();
+    let mut group = criterion.benchmark_group("meshopt");
+    group.sample_size(10).throughput(Throughput::Elements(1_000_000));
+    for name in ["torus", "torus-ext", "torus-khr", "quantized", "quantized-ext", "quantized-khr"] {
+        let Ok(bytes) = std::fs::read(format!("target/meshopt/{name}.glb")) else { continue };
+        group.bench_function(BenchmarkId::from_parameter(name), |bench| {
+            bench.iter(|| {
+                read(black_box(&bytes), Encoding::Glb, &ReadOptions::default(), &budget).expect("read")
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, parse, meshopt);
 criterion_main!(benches);

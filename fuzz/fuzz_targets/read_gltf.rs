@@ -1,3 +1,4 @@
+//! `tests/meshopt_files` is a good first corpus: `cargo fuzz run read_gltf fuzz/corpus/read_gltf tests/meshopt_files`.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -23,7 +23,7 @@ pub(super) fn estimated_bytes(
         Some(Format::Stl) => 50,
         Some(Format::Obj | Format::Off) => 36,
         Some(Format::Ply) => 19,
-        // Strips of small numbers have fewer, and instances none.
+        // Strips of small numbers and compressed views have fewer, and instances none.
         Some(Format::Gltf) => 16,
         Some(Format::Glb) | None => 12,
         Some(Format::ThreeMf) => 8,

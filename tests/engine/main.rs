@@ -29,6 +29,7 @@ mod fill_holes;
 mod fixtures;
 mod gltf;
 mod hostile;
+mod meshopt;
 mod modeller;
 mod operations;
 mod plan;

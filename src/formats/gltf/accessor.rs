@@ -63,16 +63,19 @@ impl Component {
 }
 
 impl Accessors<'_> {
-    /// How many elements the accessor number `index` has: no more than the file has bytes, even where it claims to be zeros that
-    /// no bytes stand behind.
+    /// How many elements the accessor number `index` has: no more than the file has bytes, or its buffer view where that is
+    /// compressed, even where it claims to be zeros that no bytes stand behind.
     pub(super) fn claimed(&self, index: usize) -> Result<u64, ReadError> {
         let part = self.list.item(index);
         let count = part.need("count")?;
         let claimed = part.count("count")?.ok_or_else(|| count.wrong("a number of elements"))?;
-        if claimed > self.file_bytes as u64 {
-            return Err(
-                count.wrong(&format!("no more elements than the file has bytes, {}", self.file_bytes))
-            );
+        let view = part.get("bufferView").map(|view| self.buffers.decoded_bytes(&view)).transpose()?;
+        let (what, bytes) = match view.flatten() {
+            Some(bytes) => ("its buffer view", bytes),
+            None => ("the file", self.file_bytes as u64),
+        };
+        if claimed > bytes {
+            return Err(count.wrong(&format!("no more elements than {what} has bytes, {bytes}")));
         }
         Ok(claimed)
     }

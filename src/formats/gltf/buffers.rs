@@ -1,11 +1,13 @@
 //! The bytes behind a glTF document: buffers and the views into them.
 
+use super::meshopt::{self, Compressed};
 use super::part::{List, Part};
 use crate::budget::{Budget, Charge, Stopped};
 use crate::formats::{Place, ReadError, ReadErrorKind};
 use base64::Engine as _;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use std::borrow::Cow;
+use std::cell::OnceCell;
 
 /// Padding is left out by some writers.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
@@ -17,6 +19,9 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
 pub(super) struct Buffers<'a> {
     buffers: Vec<Buffer<'a>>,
     views: List<'a>,
+    /// What compressed views hold, once it was needed.
+    decoded: Vec<OnceCell<(Vec<u8>, Charge<'a>)>>,
+    budget: &'a Budget,
     _charges: Vec<Charge<'a>>,
 }
 
@@ -56,18 +61,48 @@ impl<'a> Buffers<'a> {
                 },
             });
         }
-        Ok(Self { buffers, views: root.list("bufferViews")?, _charges: charges })
+        let views = root.list("bufferViews")?;
+        let decoded = (0..views.len()).map(|_| OnceCell::new()).collect();
+        Ok(Self { buffers, views, decoded, budget, _charges: charges })
+    }
+
+    /// How many of the views are compressed.
+    pub(super) fn compressed_views(&self) -> u64 {
+        self.views.items().filter(|view| meshopt::extension(view).is_some()).count() as u64
+    }
+
+    /// How many bytes the view that `part` names by its number is said to hold, if it is compressed: no more than its stream
+    /// can make.
+    pub(super) fn decoded_bytes(&self, part: &Part<'_>) -> Result<Option<u64>, ReadError> {
+        let view = self.views.item(part.as_index(&self.views)?);
+        let Some(compressed) = Compressed::of(&view)? else { return Ok(None) };
+        compressed.check_length(self.bytes_of(&compressed.part)?)?;
+        Ok(Some(compressed.decoded_bytes))
     }
 
     /// The view that `part` names by its number.
     pub(super) fn view(&self, part: &Part<'_>) -> Result<View<'_>, ReadError> {
-        let view = self.views.item(part.as_index(&self.views)?);
-        if let Some(compressed) = ["EXT_meshopt_compression", "KHR_meshopt_compression"]
-            .into_iter()
-            .find(|name| has_extension(&view, name))
-        {
-            return Err(compressed_by(compressed));
+        let number = part.as_index(&self.views)?;
+        let view = self.views.item(number);
+        let stride = view.count("byteStride")?.filter(|&stride| stride != 0).map(|stride| stride as usize);
+        let bytes = match Compressed::of(&view)? {
+            None => self.bytes_of(&view)?,
+            Some(compressed) => self.decoded(number, &compressed)?,
+        };
+        Ok(View { bytes, stride })
+    }
+
+    /// What the view number `number` holds.
+    fn decoded(&self, number: usize, compressed: &Compressed<'_>) -> Result<&[u8], ReadError> {
+        if let Some((bytes, _)) = self.decoded[number].get() {
+            return Ok(bytes);
         }
+        let decoded = compressed.decode(self.bytes_of(&compressed.part)?, self.budget)?;
+        Ok(&self.decoded[number].get_or_init(|| decoded).0)
+    }
+
+    /// The bytes of a buffer that `view` names.
+    fn bytes_of(&self, view: &Part<'_>) -> Result<&[u8], ReadError> {
         let buffer = view.need("buffer")?;
         let number = buffer.value.as_u64().filter(|&i| i < self.buffers.len() as u64);
         let number = number.ok_or_else(|| buffer.wrong("the number of a buffer"))?;
@@ -79,9 +114,8 @@ impl<'a> Buffers<'a> {
         let length = view.need("byteLength")?;
         let length = view.count("byteLength")?.ok_or_else(|| length.wrong("a number of bytes"))?;
         let range = begin..begin.saturating_add(length);
-        let stride = view.count("byteStride")?.filter(|&stride| stride != 0).map(|stride| stride as usize);
         match bytes.get(range.start as usize..range.end as usize) {
-            Some(bytes) if range.end < u64::MAX => Ok(View { bytes, stride }),
+            Some(bytes) if range.end < u64::MAX => Ok(bytes),
             _ => Err(ReadError::truncated(
                 Place::Whole,
                 format!(
@@ -103,12 +137,8 @@ pub(super) fn has_extension(part: &Part<'_>, name: &str) -> bool {
 }
 
 /// The file is compressed in a way that is not read.
-pub(super) fn compressed_by(extension: &str) -> ReadError {
-    let name = match extension {
-        "KHR_draco_mesh_compression" => "glTF with Draco compression (KHR_draco_mesh_compression)",
-        "KHR_meshopt_compression" => "glTF with meshopt compression (KHR_meshopt_compression)",
-        _ => "glTF with meshopt compression (EXT_meshopt_compression)",
-    };
+pub(super) fn compressed_by_draco() -> ReadError {
+    let name = "glTF with Draco compression (KHR_draco_mesh_compression)";
     let expected = "the same model exported without compression".to_owned();
     ReadError { kind: ReadErrorKind::Foreign { name }, place: Place::Whole, expected }
 }

@@ -3,7 +3,7 @@
 use super::buffers::{Buffers, decode};
 use super::part::{List, Part};
 use crate::budget::{Budget, Charge};
-use crate::formats::ReadError;
+use crate::formats::{ReadError, ReadErrorKind};
 use crate::mesh::{Color, Descriptions};
 use serde_json::{Map, Value, json};
 
@@ -96,10 +96,11 @@ fn picture_of<'b>(
     }
     let Some(view) = image.get("bufferView") else { return Ok(None) };
     // A picture says nothing of the shape: one that cannot be had is absent.
-    let Ok(bytes) = buffers.view(&view).map(|view| view.bytes) else { return Ok(None) };
-    if bytes.is_empty() {
-        return Ok(None);
-    }
+    let bytes = match buffers.view(&view) {
+        Ok(view) if !view.bytes.is_empty() => view.bytes,
+        Err(error) if matches!(error.kind, ReadErrorKind::Stopped(_)) => return Err(error),
+        _ => return Ok(None),
+    };
     let (mut copy, charge) = budget.vec::<u8>(bytes.len())?;
     copy.extend_from_slice(bytes);
     Ok(Some((copy, stated, charge)))

@@ -8,6 +8,7 @@ mod buffers;
 mod container;
 mod looks;
 mod materials;
+mod meshopt;
 mod part;
 mod primitive;
 mod scene;

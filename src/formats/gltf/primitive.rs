@@ -1,7 +1,7 @@
 //! Meshes as lists of primitives, and the triangles of these.
 
 use super::accessor::{Accessor, Accessors, Component};
-use super::buffers::{compressed_by, has_extension};
+use super::buffers::{compressed_by_draco, has_extension};
 use super::part::{List, Part};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::formats::ReadError;
@@ -91,7 +91,7 @@ impl Mesh {
         let is_stored =
             |i: usize| list.item(i).get("bufferView").is_some() || list.item(i).get("sparse").is_some();
         if has_extension(part, "KHR_draco_mesh_compression") && !is_stored(positions) {
-            return Err(compressed_by("KHR_draco_mesh_compression"));
+            return Err(compressed_by_draco());
         }
         let material = part.index("material", materials)?.map(|material| material as u32);
         let uv_set = material.map_or(0, |material| uv_set_of[material as usize]);

@@ -41,6 +41,7 @@ pub(in crate::formats) fn read(
     let mut left_out = left_out(&root, &placed, &meshes)?;
     left_out.push(("meshes_outside_of_the_scene", nodes_left_out));
     left_out.push(("textures", materials.left_out));
+    left_out.push(("compressed_views", accessors.buffers.compressed_views()));
     let mut soup = raw.into_soup(materials, &mut left_out, options, budget)?;
     soup.left_out = left_out.into_iter().filter(|&(_, count)| count > 0).collect();
     Ok(soup)
