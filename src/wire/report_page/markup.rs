@@ -77,12 +77,12 @@ impl Page {
         self.add(format_args!("<p>{}</p>", Escaped(text)));
     }
 
-    /// A table with a line of headings; nothing without rows.
+    /// A table with a line of headings, in a box of its own that scrolls where it is too wide for the page; nothing without rows.
     pub(super) fn table(&mut self, headings: &[&str], rows: Vec<Vec<Cell>>) {
         if rows.is_empty() {
             return;
         }
-        self.add(format_args!("<table>"));
+        self.add(format_args!("<div class=table tabindex=0><table>"));
         if !headings.is_empty() {
             self.add(format_args!("<thead><tr>"));
             headings.iter().for_each(|heading| self.add(format_args!("<th>{}</th>", Escaped(heading))));
@@ -93,7 +93,7 @@ impl Page {
             row.iter().for_each(|cell| self.add(format_args!("{cell}")));
             self.add(format_args!("</tr>"));
         }
-        self.add(format_args!("</table>"));
+        self.add(format_args!("</table></div>"));
     }
 }
 

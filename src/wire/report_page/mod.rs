@@ -16,7 +16,7 @@ use serde_json::Value;
 const STYLE: &str = include_str!("style.css");
 
 /// What a browser may do with the page: show it in its own style. The digest is that of the style sheet.
-pub const REPORT_PAGE_CSP: &str = "default-src 'none'; img-src data:; style-src 'sha256-jzsHThsjINi25K36WncVg3tDZSBJ/DkbYEo03VOTGJU='; base-uri 'none'; form-action 'none'";
+pub const REPORT_PAGE_CSP: &str = "default-src 'none'; img-src data:; style-src 'sha256-kKw7wLNHGE4HKkoSVwZG5MFg0Nmjx8COv8qMgft/Q8k='; base-uri 'none'; form-action 'none'";
 
 /// Witnesses that are shown of each defect.
 const PLACES: usize = 3;
