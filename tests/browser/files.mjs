@@ -4,6 +4,7 @@ import assert from "node:assert/strict";
 import { createHash } from "node:crypto";
 import { readFileSync } from "node:fs";
 import { SAMPLES } from "../../web/src/samples.js";
+import { stored } from "../../web/src/stored.js";
 import { drop, opened, picture, repaired, shot, url, withPage } from "./browser.mjs";
 import { serious } from "./ways.mjs";
 
@@ -38,9 +39,11 @@ export async function project(browser) {
     await repaired(page);
     assert.deepEqual((await told()).map(([, tag]) => tag), ["sound", "sound", "sound"]);
     assert.match(await page.textContent("#parts"), /the same bytes come back.*2 times/);
+    assert.equal(await page.inputValue("#colors"), "file", "the file has colours");
+    await shot(page, "project-mended");
+    await page.selectOption("#colors", "kept");
     await page.waitForSelector("#legend .new");
     assert.match(await page.textContent("#legend"), /kept 1,248new 4gone 0/);
-    await shot(page, "project-mended");
 
     // Each format is a file of its own, and the first one can be had again.
     for (const format of ["glb", "gltf", "stl", "3mf"]) {
@@ -57,6 +60,69 @@ export async function project(browser) {
     await repaired(page);
     assert.equal(await page.locator("#parts .part").count(), 3, "a job of a project opens again");
     assert.ok((await picture(page)).variance > 200);
+  });
+}
+
+// What of several parts is one solid: united after each was mended, or one together, which has one plan and no parts.
+export async function solids(browser) {
+  await withPage(browser, {}, async (page) => {
+    const asked = () => page.waitForRequest((request) => request.method() === "POST" && (request.postData() ?? "").includes('"operation"'));
+    const parts = async (request) => JSON.parse(/\{"operation".*\}/.exec((await request).postData())[0]).parts;
+    const open = (name, content) => page.setInputFiles("#file", { name, mimeType: "", buffer: Buffer.from(content) });
+    await open("scan.off", SAMPLES.scan());
+    await opened(page);
+    assert.equal(await page.isVisible("#solid"), false, "one part has nothing to choose");
+    await open("project.3mf", SAMPLES.project());
+    await page.waitForSelector("#parts .part");
+    assert.equal(await page.inputValue("#solid"), "separate");
+    await page.selectOption("#solid", "union");
+    let request = asked();
+    await page.click("#repair");
+    assert.equal(await parts(request), "union");
+    await repaired(page);
+    assert.match(await page.textContent("#verdict h2"), /Certified/);
+
+    request = asked();
+    await page.selectOption("#solid", "together");
+    assert.equal(await parts(request), "together", "it is looked at anew");
+    await page.waitForSelector("#panel[data-operation=plan]");
+    await page.click(".finding-title[data-code=boundary-loop]");
+    await page.waitForSelector("#ring:not([hidden])");
+    assert.ok(await page.isVisible("[data-role=method]"), "and has a plan, hole by hole");
+    await page.selectOption("[data-role=method]", "flat");
+    await serious(page, "with the parts together");
+    request = asked();
+    await page.click("#repair");
+    assert.equal(await parts(request), "together");
+    await repaired(page);
+    assert.equal(await page.isVisible("#solid"), true, "the choice stays");
+    assert.match(await page.textContent("#verdict h2"), /Certified/);
+  });
+}
+
+// A box of four colours as each format has them: of faces, of vertices, and of parts; before and after the repair.
+export async function colors(browser) {
+  await withPage(browser, {}, async (page) => {
+    for (const [name, content, hue] of colored()) {
+      await page.setInputFiles("#file", { name, mimeType: "", buffer: Buffer.from(content) });
+      await page.waitForSelector("#view[data-drawn=before]");
+      await opened(page);
+      assert.equal(await page.inputValue("#colors"), "file", name);
+      await page.click("#backs");
+      assert.ok((await picture(page))[hue] > 0.02, `${name}: ${hue}`);
+      await page.selectOption("#colors", "plain");
+      assert.ok((await picture(page))[hue] < 0.002, `${name} without its colours`);
+      await page.selectOption("#colors", "file");
+      await page.click("#backs");
+      await page.click("#repair");
+      await repaired(page);
+      await page.click("[data-arrangement=after]");
+      assert.ok((await picture(page))[hue] > 0.02, `${name}: ${hue} of the result`);
+    }
+    await page.setInputFiles("#file", { name: "sound.off", mimeType: "", buffer: Buffer.from(SAMPLES.sound()) });
+    await opened(page);
+    assert.equal(await page.inputValue("#colors"), "plain");
+    assert.ok(await page.locator("#colors option[value=file]").evaluate((option) => option.disabled), "a file without colours");
   });
 }
 
@@ -139,4 +205,27 @@ export async function several(browser) {
     await page.setInputFiles("#file", Array.from({ length: 33 }, (_, at) => file(`${at}.off`, "OFF\n")));
     await page.waitForSelector('.notice[data-code="too-many-files"]');
   });
+}
+
+// Boxes without their lids, blue or teal, in each format that has colours.
+function colored() {
+  const at = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => [i & 1, (i >> 1) & 1, i >> 2].map((side) => side * 10));
+  const faces = [[0, 2, 3], [0, 3, 1], [0, 1, 5], [0, 5, 4], [1, 3, 7], [1, 7, 5], [3, 2, 6], [3, 6, 7], [2, 0, 4], [2, 4, 6]];
+  const rows = (list, of) => list.map(of).join("\n");
+  const ply = (vertex, face) => `ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n${vertex}element face 10\nproperty list uchar int vertex_indices\n${face}end_header\n`;
+  const channels = (type) => ["red", "green", "blue"].map((name) => `property ${type} ${name}\n`).join("");
+  const model = (resources, object, more) => stored([["3D/3dmodel.model", `<model unit="millimeter" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02" xmlns:m="http://schemas.microsoft.com/3dmanufacturing/material/2015/02" xmlns:slic3rpe="http://schemas.slic3r.org/3mf/2017/06"><resources>${resources}<object id="9" ${object}><mesh><vertices>${at.map(([x, y, z]) => `<vertex x="${x}" y="${y}" z="${z}"/>`).join("")}</vertices><triangles>${faces.map(([a, b, c]) => `<triangle v1="${a}" v2="${b}" v3="${c}" ${more}/>`).join("")}</triangles></mesh></object></resources><build><item objectid="9"/></build></model>`],
+    ["[Content_Types].xml", '<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/><Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/><Default Extension="config" ContentType="text/plain"/></Types>'],
+    ["_rels/.rels", '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Id="r" Target="/3D/3dmodel.model" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>'],
+    ["Metadata/Slic3r_PE.config", "; extruder_colour = #FF0000;#105AE0\n"]]);
+  return [
+    ["faces.off", `OFF\n8 10 0\n${rows(at, (v) => v.join(" "))}\n${rows(faces, (f) => `3 ${f.join(" ")} 16 90 224`)}\n`, "blue"],
+    ["vertices.off", `COFF\n8 10 0\n${rows(at, (v) => `${v.join(" ")} 0.06 0.35 0.88 1`)}\n${rows(faces, (f) => `3 ${f.join(" ")}`)}\n`, "blue"],
+    ["vertices.obj", `${rows(at, (v) => `v ${v.join(" ")} 0.06 0.35 0.88`)}\n${rows(faces, (f) => `f ${f.map((id) => id + 1).join(" ")}`)}\n`, "blue"],
+    ["vertices.ply", `${ply(channels("uchar"), "")}${rows(at, (v) => `${v.join(" ")} 16 90 224`)}\n${rows(faces, (f) => `3 ${f.join(" ")}`)}\n`, "blue"],
+    ["faces.ply", `${ply("", channels("float"))}${rows(at, (v) => v.join(" "))}\n${rows(faces, (f) => `3 ${f.join(" ")} 0.06 0.35 0.88`)}\n`, "blue"],
+    ["material.3mf", model('<basematerials id="1"><base name="a" displaycolor="#FF0000"/><base name="b" displaycolor="#105AE0"/></basematerials>', 'pid="1" pindex="1"', ""), "blue"],
+    ["group.3mf", model('<m:colorgroup id="1"><m:color color="#105AE0FF"/></m:colorgroup>', "", 'pid="1" p1="0"'), "blue"],
+    ["painted.3mf", model("", "", 'slic3rpe:mmu_segmentation="8"'), "blue"],
+  ];
 }

@@ -1,6 +1,7 @@
 // The page: one file at a time, from drop to download.
 
 import { Api, Problem, isOver } from "./api.js";
+import { Choices } from "./choices.js";
 import { at, el, save } from "./dom.js";
 import { Drawing, levelOf } from "./drawing.js";
 import { Meshes } from "./meshes.js";
@@ -51,7 +52,8 @@ function begin(name, file) {
   document.body.dataset.state = "open";
   for (const id of ["verdict", "findings", "parts-list", "checks", "result"]) at(id).replaceChildren();
   for (const id of ["units", "policy"]) at(id).value = "";
-  for (const id of ["facts", "findings-section", "repair-section"]) at(id).hidden = true;
+  for (const id of ["facts", "findings-section", "repair-section", "solid-field"]) at(id).hidden = true;
+  at("solid").value = "separate";
   at("best").checked = false;
   at("share").value = 100;
   at("levels").value = "1";
@@ -159,6 +161,7 @@ async function show(job) {
   of.report = report;
   if (isFirst) for (const defect of report.before.defects) if (isShownFirst(defect)) of.shown.add(defect.code);
   of.checked = report.printing?.policy ?? "";
+  of.partCount = Math.max(of.partCount, report.parts?.length ?? 0);
   rest();
   panel();
   drawing.overlays();
@@ -174,6 +177,7 @@ function panel() {
   at("result").replaceChildren(...[session.isRepaired && resultSection(session, host)].filter(Boolean));
   at("findings-section").hidden = false;
   at("repair-section").hidden = false;
+  at("solid-field").hidden = session.partCount < 2;
   at("repair").textContent = t(session.isRepaired ? "repair.again" : report.verdict.printable ? "certify" : "repair");
   at("repair").disabled = false;
   const { unit, is_stated: isStated } = report.input.units;
@@ -376,6 +380,18 @@ async function lookAgain() {
   await look(picture);
 }
 
+// What of several parts is one solid. Together they have other findings than one by one.
+async function chooseSolid() {
+  const isSeenAnew = [session.solid, at("solid").value].includes("together");
+  session.solid = at("solid").value;
+  host.changed();
+  if (!isSeenAnew) return;
+  session.choices = new Choices();
+  session.place = null;
+  drawing.light(null);
+  await lookAgain();
+}
+
 async function redraw() {
   if (!session.file) return drawing.drawFromService();
   return drawing.draw("before", await session.file.arrayBuffer(), session.name);
@@ -452,6 +468,7 @@ function listen() {
   at("share").addEventListener("input", () => { shareText(); host.changed(); });
   for (const id of ["best", "levels"]) at(id).addEventListener("change", host.changed);
   for (const id of ["units", "policy"]) at(id).addEventListener("change", () => guarded(lookAgain));
+  at("solid").addEventListener("change", () => guarded(chooseSolid));
   at("jobs").addEventListener("toggle", showJobs);
   at("jobs-forget").addEventListener("click", () => { jobs.forgetAll(); showJobs(); });
   at("language").value = current();
