@@ -5,6 +5,7 @@ import { Choices } from "./choices.js";
 import { at, el, save } from "./dom.js";
 import { Drawing, levelOf } from "./drawing.js";
 import { Meshes } from "./meshes.js";
+import { question, sizeText } from "./panel/facts.js";
 import { findingsList, isShownFirst, openFinding } from "./panel/findings.js";
 import { calm, complain, rest, told, wordsOf, working } from "./panel/progress.js";
 import { partsList } from "./panel/parts.js";
@@ -15,8 +16,8 @@ import { droppable } from "./panel/verify.js";
 import { aim } from "./places.js";
 import * as jobs from "./recent.js";
 import { SAMPLES, sample } from "./samples.js";
-import { Session, curlOf, millimetres } from "./session.js";
-import { LANGUAGES, current, digits, number, percent, speak, t, translate } from "./text/text.js";
+import { Session, curlOf } from "./session.js";
+import { LANGUAGES, current, number, percent, speak, t, translate } from "./text/text.js";
 import { ofDefect } from "./view/colors.js";
 import { View } from "./view/view.js";
 
@@ -142,10 +143,9 @@ async function follow(job) {
 // --- the panel -------------------------------------------------------------------------------------------------
 
 function factsOf({ bounds, faceCount }) {
-  const size = bounds.max.map((high, axis) => high - bounds.min[axis]);
-  at("size").textContent = `${size.map((value) => digits(value)).join(" × ")} mm`;
+  session.size = bounds.max.map((high, axis) => high - bounds.min[axis]);
+  sizeText(session);
   at("triangles").textContent = number(faceCount);
-  at("dimensions").textContent = at("size").textContent;
   at("facts").hidden = false;
   session.faceCount = faceCount;
   shareText();
@@ -184,24 +184,14 @@ function panel() {
   at("units").options[0].textContent = isStated ? (session.unit ? "–" : unit) : t("unit.assumed", { u: unit });
   // A 3MF is right about its own unit.
   at("units").disabled = report.input.format === "3mf";
-  question(report.before.unit_hypothesis, isStated);
+  question(report);
   if (!session.pictures.before && report.before.measures.bounds) {
     const { min, max } = report.before.measures.bounds;
     factsOf({ bounds: { min: min.map((v) => v * session.reportUnit), max: max.map((v) => v * session.reportUnit) }, faceCount: report.before.counts.faces });
   }
+  if (session.size) sizeText(session);
   at("panel").dataset.operation = report.operation;
   if (session.place) openFinding(list, session, host, session.place.code, session.place.number);
-}
-
-// Which size is meant, where it could be several.
-function question(hypothesis, isStated) {
-  const isOpen = hypothesis && !isStated && hypothesis.plausible.length > 1;
-  at("unit-question").hidden = !isOpen;
-  if (!isOpen) return;
-  const { min, max } = session.report.before.measures.bounds;
-  const longest = Math.max(...max.map((high, axis) => high - min[axis]));
-  const told = hypothesis.plausible.map((unit) => t("unit.as", { a: `${digits(longest * millimetres(unit), 3)} mm`, u: unit }));
-  at("unit-question").textContent = t("unit.question", { a: told.join(", ") });
 }
 
 // What lists ask for.

@@ -20,6 +20,7 @@ export class Session {
     this.level = 0; // the level of detail that is drawn
     this.report = null;
     this.pictures = {}; // before, after
+    this.size = null; // in millimetres, along each axis
     this.choices = new Choices();
     this.shown = new Set(); // kinds of defects with their overlay on
     this.place = null; // { code, number } that is lit
