@@ -60,6 +60,7 @@ function begin(name, file) {
   at("levels").value = "1";
   at("file-name").textContent = name;
   document.title = `${name} – Meshmend`;
+  delete at("view").dataset.drawn;
   view?.clear("before");
   view?.clear("after");
   tools?.offer(false);

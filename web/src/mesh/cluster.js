@@ -3,8 +3,8 @@
 export const COARSE_ABOVE = 30_000; // triangles
 
 // A surface in a grid of n cells a side meets about 2 n^2 of them, with two triangles each. `positions` are those of
-// corners, `corners` their vertices. Each vertex of the copy has the mean direction of the triangles around it, and where there are colours that of
-// one of its corners.
+// corners, `corners` their vertices. Each vertex of the copy has the mean direction of the triangles around it, and where there are
+// colours that of one of its corners.
 export function coarse({ positions, corners, flat, colors }, bounds, triangles) {
   const size = [0, 1, 2].map((axis) => bounds.max[axis] - bounds.min[axis]);
   const cell = Math.max(...size) / Math.sqrt(triangles / 6) || 1;

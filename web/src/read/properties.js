@@ -16,8 +16,8 @@ export class Properties {
     else if (name === "multiproperties") this.open(of, { layers: numbers(of("pids")).map(String), members: [] });
     else if (name === "base") this.group?.colors?.push(ofHex(of("displaycolor")));
     else if (name === "color") this.group?.colors?.push(ofHex(of("color")));
-    else if (name === "composite") this.group?.colors?.push(this.mixed(this.group, numbers(of("values"))));
-    else if (name === "multi") this.group?.members?.push(numbers(of("pindices")));
+    else if (name === "composite" && this.group?.of) this.group.colors.push(this.mixed(this.group, numbers(of("values"))));
+    else if (name === "multi" && this.group?.layers) this.group.members.push(numbers(of("pindices")));
     this.isTextured ||= name === "texture2dgroup";
   }
 
