@@ -4,6 +4,7 @@ import assert from "node:assert/strict";
 import { createHash } from "node:crypto";
 import { readFileSync } from "node:fs";
 import { SAMPLES } from "../../web/src/samples.js";
+import { stored } from "../../web/src/stored.js";
 import { drop, opened, picture, repaired, shot, url, withPage } from "./browser.mjs";
 import { serious } from "./ways.mjs";
 
@@ -38,9 +39,11 @@ export async function project(browser) {
     await repaired(page);
     assert.deepEqual((await told()).map(([, tag]) => tag), ["sound", "sound", "sound"]);
     assert.match(await page.textContent("#parts"), /the same bytes come back.*2 times/);
+    assert.equal(await page.inputValue("#colors"), "file", "the file has colours");
+    await shot(page, "project-mended");
+    await page.selectOption("#colors", "kept");
     await page.waitForSelector("#legend .new");
     assert.match(await page.textContent("#legend"), /kept 1,248new 4gone 0/);
-    await shot(page, "project-mended");
 
     // Each format is a file of its own, and the first one can be had again.
     for (const format of ["glb", "gltf", "stl", "3mf"]) {
@@ -60,15 +63,80 @@ export async function project(browser) {
   });
 }
 
-// The service draws what is not read here.
-export async function glb(browser) {
-  const convert = async (format) => Buffer.from(await (await fetch(`${url}/v1/convert?output_format=${format}`, { method: "POST", headers: { "Content-Type": "application/octet-stream" }, body: SAMPLES.scan() })).arrayBuffer());
-  for (const format of ["glb", "gltf"]) {
-    await withPage(browser, {}, async (page) => {
-      await drop(page, "body", `scan.${format}`, await convert(format));
+const converted = async (format, body) => Buffer.from(await (await fetch(`${url}/v1/convert?output_format=${format}`, { method: "POST", headers: { "Content-Type": "application/octet-stream" }, body })).arrayBuffer());
+
+// What of several parts is one solid: united after each was mended, or one together, which has one plan and no parts.
+export async function solids(browser) {
+  await withPage(browser, {}, async (page) => {
+    const asked = () => page.waitForRequest((request) => request.method() === "POST" && (request.postData() ?? "").includes('"operation"'));
+    const parts = async (request) => JSON.parse(/\{"operation".*\}/.exec((await request).postData())[0]).parts;
+    const open = (name, content) => page.setInputFiles("#file", { name, mimeType: "", buffer: Buffer.from(content) });
+    await open("scan.off", SAMPLES.scan());
+    await opened(page);
+    assert.equal(await page.isVisible("#solid"), false, "one part has nothing to choose");
+    await open("project.3mf", SAMPLES.project());
+    await page.waitForSelector("#parts .part");
+    assert.equal(await page.inputValue("#solid"), "separate");
+    await page.selectOption("#solid", "union");
+    let request = asked();
+    await page.click("#repair");
+    assert.equal(await parts(request), "union");
+    await repaired(page);
+    assert.match(await page.textContent("#verdict h2"), /Certified/);
+
+    request = asked();
+    await page.selectOption("#solid", "together");
+    assert.equal(await parts(request), "together", "it is looked at anew");
+    await page.waitForSelector("#panel[data-operation=plan]");
+    await page.click(".finding-title[data-code=boundary-loop]");
+    await page.waitForSelector("#ring:not([hidden])");
+    assert.ok(await page.isVisible("[data-role=method]"), "and has a plan, hole by hole");
+    await page.selectOption("[data-role=method]", "flat");
+    await serious(page, "with the parts together");
+    request = asked();
+    await page.click("#repair");
+    assert.equal(await parts(request), "together");
+    await repaired(page);
+    assert.equal(await page.isVisible("#solid"), true, "the choice stays");
+    assert.match(await page.textContent("#verdict h2"), /Certified/);
+  });
+}
+
+// An open box that is blue, as each format says it; before and after the repair.
+export async function colors(browser) {
+  await withPage(browser, {}, async (page) => {
+    const boxes = colored();
+    for (const [name, content] of [...boxes, ["faces.glb", await converted("glb", boxes[0][1])]]) {
+      await page.setInputFiles("#file", { name, mimeType: "", buffer: Buffer.from(content) });
       await page.waitForSelector("#view[data-drawn=before]");
       await opened(page);
-      assert.match(await page.textContent("#size"), /75\.\d+ × 58\.\d+ × 68\.\d+ mm/, "metres are millimetres here");
+      assert.equal(await page.inputValue("#colors"), "file", name);
+      await page.click("#backs");
+      assert.ok((await picture(page)).blue > 0.02, name);
+      await page.selectOption("#colors", "plain");
+      assert.ok((await picture(page)).blue < 0.002, `${name} without its colours`);
+      await page.selectOption("#colors", "file");
+      await page.click("#backs");
+      await page.click("#repair");
+      await repaired(page);
+      await page.click("[data-arrangement=after]");
+      assert.ok((await picture(page)).blue > 0.02, `${name}: the result`);
+    }
+    await page.setInputFiles("#file", { name: "sound.off", mimeType: "", buffer: Buffer.from(SAMPLES.sound()) });
+    await opened(page);
+    assert.equal(await page.inputValue("#colors"), "plain");
+    assert.ok(await page.locator("#colors option[value=file]").evaluate((option) => option.disabled), "a file without colours");
+  });
+}
+
+// The service draws what is not read here.
+export async function glb(browser) {
+  for (const format of ["glb", "gltf"]) {
+    await withPage(browser, {}, async (page) => {
+      await drop(page, "body", `scan.${format}`, await converted(format, SAMPLES.scan()));
+      await page.waitForSelector("#view[data-drawn=before]");
+      await opened(page);
+      assert.match(await page.textContent("#size"), /^75\.\d+ × 58\.\d+ × 68\.\d+ mm \(0\.0\d+ × .* m\)$/, "metres are millimetres here");
       assert.equal(await page.locator("#units option").first().textContent(), "m");
       assert.ok((await picture(page)).orange > 0.0005, "rims are lit");
       await page.click("#repair");
@@ -139,4 +207,27 @@ export async function several(browser) {
     await page.setInputFiles("#file", Array.from({ length: 33 }, (_, at) => file(`${at}.off`, "OFF\n")));
     await page.waitForSelector('.notice[data-code="too-many-files"]');
   });
+}
+
+// A blue box without its lid in each format that has colours.
+function colored() {
+  const at = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => [i & 1, (i >> 1) & 1, i >> 2].map((side) => side * 10));
+  const faces = [[0, 2, 3], [0, 3, 1], [0, 1, 5], [0, 5, 4], [1, 3, 7], [1, 7, 5], [3, 2, 6], [3, 6, 7], [2, 0, 4], [2, 4, 6]];
+  const rows = (list, of) => list.map(of).join("\n");
+  const ply = (vertex, face) => `ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n${vertex}element face 10\nproperty list uchar int vertex_indices\n${face}end_header\n`;
+  const channels = (type) => ["red", "green", "blue"].map((name) => `property ${type} ${name}\n`).join("");
+  const model = (resources, object, more) => stored([["3D/3dmodel.model", `<model unit="millimeter" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02" xmlns:m="http://schemas.microsoft.com/3dmanufacturing/material/2015/02" xmlns:slic3rpe="http://schemas.slic3r.org/3mf/2017/06"><resources>${resources}<object id="9" ${object}><mesh><vertices>${at.map(([x, y, z]) => `<vertex x="${x}" y="${y}" z="${z}"/>`).join("")}</vertices><triangles>${faces.map(([a, b, c]) => `<triangle v1="${a}" v2="${b}" v3="${c}" ${more}/>`).join("")}</triangles></mesh></object></resources><build><item objectid="9"/></build></model>`],
+    ["[Content_Types].xml", '<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/><Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/><Default Extension="config" ContentType="text/plain"/></Types>'],
+    ["_rels/.rels", '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Id="r" Target="/3D/3dmodel.model" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>'],
+    ["Metadata/Slic3r_PE.config", "; extruder_colour = #FF0000;#105AE0\n"]]);
+  return [
+    ["faces.off", `OFF\n8 10 0\n${rows(at, (v) => v.join(" "))}\n${rows(faces, (f) => `3 ${f.join(" ")} 16 90 224`)}\n`],
+    ["vertices.off", `COFF\n8 10 0\n${rows(at, (v) => `${v.join(" ")} 0.06 0.35 0.88 1`)}\n${rows(faces, (f) => `3 ${f.join(" ")}`)}\n`],
+    ["vertices.obj", `${rows(at, (v) => `v ${v.join(" ")} 0.06 0.35 0.88`)}\n${rows(faces, (f) => `f ${f.map((id) => id + 1).join(" ")}`)}\n`],
+    ["vertices.ply", `${ply(channels("uchar"), "")}${rows(at, (v) => `${v.join(" ")} 16 90 224`)}\n${rows(faces, (f) => `3 ${f.join(" ")}`)}\n`],
+    ["faces.ply", `${ply("", channels("float"))}${rows(at, (v) => v.join(" "))}\n${rows(faces, (f) => `3 ${f.join(" ")} 0.06 0.35 0.88`)}\n`],
+    ["material.3mf", model('<basematerials id="1"><base name="a" displaycolor="#FF0000"/><base name="b" displaycolor="#105AE0"/></basematerials>', 'pid="1" pindex="1"', "")],
+    ["group.3mf", model('<m:colorgroup id="1"><m:color color="#105AE0FF"/></m:colorgroup>', "", 'pid="1" p1="0"')],
+    ["painted.3mf", model("", "", 'slic3rpe:mmu_segmentation="8"')],
+  ];
 }

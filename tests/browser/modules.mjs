@@ -8,6 +8,7 @@ import { coarse } from "../../web/src/mesh/cluster.js";
 import { brokenEdges } from "../../web/src/mesh/edges.js";
 import { boundsOf, faceNormals, positionsOf } from "../../web/src/mesh/soup.js";
 import { kept, weld } from "../../web/src/mesh/weld.js";
+import { paintOf } from "../../web/src/read/properties.js";
 import { read } from "../../web/src/read/read.js";
 import { sha256 } from "../../web/src/read/sha256.js";
 import { Picture } from "../../web/src/places.js";
@@ -109,6 +110,44 @@ export async function packages() {
   for (const broken of [zip, plain.subarray(0, plain.length - 30), stored([["3D/3dmodel.model", loop]]), stored([["a.txt", ""]])]) {
     await assert.rejects(read(broken, "a.3mf"), /not-drawn-here/);
   }
+}
+
+// The colours of corners, as each format states them.
+export async function shades() {
+  const colors = async (text, name) => Buffer.from((await read(Buffer.from(text), name)).colors ?? "").toString("hex").match(/.{8}/g);
+  const places = [[0, 0, 0], [1, 0, 0], [0, 1, 0]];
+  const rows = (more) => places.map((place, at) => `${place.join(" ")}${more[at] ?? ""}`).join("\n");
+  const [red, green, blue, none] = ["ff0000ff", "00ff00ff", "0000ffff", "00000000"];
+  assert.deepEqual(await colors(`OFF\n3 2 0\n${rows([])}\n3 0 1 2 255 0 0\n3 0 1 2 7\n`, "a.off"), [red, red, red, none, none, none], "one number is no colour");
+  assert.deepEqual(await colors(`CNOFF\n3 1 0\n${rows([" 0 0 1 1 0 0 1", " 0 0 1 0 1 0 1", " 0 0 1 0 0 1 1"])}\n3 0 1 2\n`, "a.off"), [red, green, blue], "behind the normal");
+  assert.equal(await colors(`NOFF\n3 1 0\n${rows([" 0 0 1", " 0 0 1", " 0 0 1"])}\n3 0 1 2\n`, "a.off"), null);
+  assert.deepEqual(await colors(`v 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0 0 0 1 0.5\nf 1 2 3\n`, "a.obj"), [red, none, blue]);
+  const ply = (type, one) => `ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n${["red", "green", "blue"].map((name) => `property ${type} ${name}\n`).join("")}element face 1\nproperty list uchar int vertex_indices\nend_header\n${rows([` ${one} 0 0`, ` 0 ${one} 0`, ` 0 0 ${one}`])}\n3 0 1 2\n`;
+  assert.deepEqual(await colors(ply("uchar", 255), "a.ply"), [red, green, blue]);
+  assert.deepEqual(await colors(ply("uchar", 1), "a.ply"), ["010000ff", "000100ff", "000001ff"], "bytes are bytes");
+  assert.deepEqual(await colors(ply("float", 1), "a.ply"), [red, green, blue]);
+
+  const groups = `<basematerials id="1"><base name="a" displaycolor="#FF0000"/><base name="b" displaycolor="#0000FF80"/><base name="c"/></basematerials>
+    <m:colorgroup id="2"><m:color color="#FF0000"/><m:color color="#00FF00"/><m:color color="#0000FF"/></m:colorgroup><m:compositematerials id="3" matid="1" matindices="0 1"><m:composite values="1 3"/></m:compositematerials>
+    <m:texture2dgroup id="4" texid="9"><m:tex2coord u="0" v="0"/></m:texture2dgroup><m:multiproperties id="5" pids="1 2 4"><m:multi pindices="0 1 0"/></m:multiproperties>`;
+  const project = async (object, triangle, settings = "") => {
+    const model = `<model unit="millimeter"><resources>${groups}<object id="8" ${object}><mesh><vertices>${places.map(([x, y, z]) => `<vertex x="${x}" y="${y}" z="${z}"/>`).join("")}</vertices><triangles><triangle v1="0" v2="1" v3="2" ${triangle}/></triangles></mesh></object></resources><build><item objectid="8"/></build></model>`;
+    return colors(stored([["3D/3dmodel.model", model], ["Metadata/project_settings.config", settings]]), "a.3mf");
+  };
+  assert.deepEqual(await project('pid="1" pindex="1"', ""), [blue, blue, blue], "of the object");
+  assert.deepEqual(await project('pid="1" pindex="1"', 'pid="2" p1="0" p2="1" p3="2"'), [red, green, blue], "of its corners");
+  assert.deepEqual(await project('pid="2" pindex="1"', 'p1="0"'), [red, red, red], "of its object's group");
+  assert.deepEqual(await project("", 'pid="3" p1="0"'), Array(3).fill("4000bfff"), "a mixture");
+  assert.deepEqual(await project("", 'pid="5" p1="0"'), [green, green, green], "the uppermost layer with a colour");
+  for (const [object, triangle] of [["", ""], ["", 'pid="1" p1="2"'], ["", 'pid="4" p1="0"'], ["", 'pid="7" p1="0"'], ["", 'pid="2" p1="9"']]) assert.equal(await project(object, triangle), null, triangle);
+  const settings = '{"filament_colour": ["#FF0000", "#00FF00", "#0000FF"], "more": ["#123456"]}';
+  assert.deepEqual(await project("", 'paint_color="8"', settings), [green, green, green]);
+  assert.deepEqual(await project("", 'paint_color="0C"', settings), [blue, blue, blue], "a number of two digits");
+  // Divided in four, of which one has another material; it is read from the end.
+  assert.deepEqual(await project("", 'paint_color="48443"', settings), [red, red, red], "the largest share");
+  assert.deepEqual(await project('pid="1" pindex="1"', 'paint_color=""', settings), [blue, blue, blue], "not painted");
+  for (const wrong of ["3", "xyz", "3".repeat(9999)]) assert.deepEqual(await project('pid="1" pindex="1"', `paint_color="${wrong}"`, settings), [blue, blue, blue], wrong.slice(0, 9));
+  for (let round = 0; round < 200; round += 1) paintOf(randomBytes(20).toString("hex"));
 }
 
 // A coarse copy has no triangle twice, none without area in its numbers, lies within the part, and faces outward.

@@ -7,6 +7,8 @@ import { number, t } from "./text/text.js";
 import { ofDefect } from "./view/colors.js";
 import { COPIES } from "./view/view.js";
 
+const TEXT_BYTES = 4_000_000; // of a glTF, where its materials stand
+
 export class Drawing {
   view = null; // none where the browser shows no 3D
   tools = null;
@@ -29,6 +31,7 @@ export class Drawing {
     this.view?.setMesh(side, picture, side === "before");
     at("view").dataset.drawn = Object.keys(of.pictures).join(" ");
     if (side === "before") this.sized(picture);
+    this.tools?.colorsCame(side);
     picture.project?.setParts(of.report?.parts ?? []);
     if (of.report && side === "before") this.overlays();
     const more = await this.meshes.ask("look", { name: side, sizes: COPIES });
@@ -53,11 +56,12 @@ export class Drawing {
     const of = this.session;
     const { input } = of.report;
     const isReadHere = ["stl", "obj", "ply", "off", "3mf"].includes(input.format) && !of.file;
-    const format = isReadHere ? input.format : "stl";
+    const format = isReadHere ? input.format : "ply";
     const unit = of.unit || input.units.unit;
     const bytes = await this.converted(format, unit, { input: { job: of.inputJob } });
     if (!bytes || of !== this.session) return;
     const drawn = await this.draw("before", bytes, `mesh.${format}`);
+    if (drawn && of.file) await this.seekPictures(drawn, of.file);
     // In one mesh nothing says which face is which part's.
     if (drawn && input.format === "3mf" && !drawn.project) {
       drawn.project = NO_PARTS;
@@ -81,8 +85,9 @@ export class Drawing {
     if (of !== this.session) return;
     await this.draw("after", bytes, name, of.reportUnit).catch(async (error) => {
       if (error.code !== "not-drawn-here") throw error;
-      const stl = await this.converted("stl", of.report.output_units, {}, new File([blob], name));
-      if (stl && of === this.session) await this.draw("after", stl, "mesh.stl", of.reportUnit);
+      const ply = await this.converted("ply", of.report.output_units, {}, new File([blob], name));
+      const drawn = ply && of === this.session && await this.draw("after", ply, "mesh.ply", of.reportUnit);
+      if (drawn) await this.seekPictures(drawn, blob);
     });
     if (!of.pictures.before || !of.pictures.after || of !== this.session) return;
     const kept = await this.meshes.ask("compare");
@@ -90,8 +95,14 @@ export class Drawing {
     of.pictures.before.kept = kept.before;
     of.pictures.after.kept = kept.after;
     of.maps = {};
-    at("colors").value = "kept";
+    at("colors").value = this.tools?.hasColors ? "file" : "kept";
     this.tools?.offer(true);
+  }
+
+  // A mesh that the service made of a glTF says nothing of its pictures; the text of the file does.
+  async seekPictures(picture, file) {
+    picture.isTextured ||= (await file.slice(0, TEXT_BYTES).text()).includes('"baseColorTexture"');
+    this.tools?.tellTextures();
   }
 
   overlays() {

@@ -1,9 +1,11 @@
 // The page: one file at a time, from drop to download.
 
 import { Api, Problem, isOver } from "./api.js";
+import { Choices } from "./choices.js";
 import { at, el, save } from "./dom.js";
 import { Drawing, levelOf } from "./drawing.js";
 import { Meshes } from "./meshes.js";
+import { question, sizeText } from "./panel/facts.js";
 import { findingsList, isShownFirst, openFinding } from "./panel/findings.js";
 import { calm, complain, rest, told, wordsOf, working } from "./panel/progress.js";
 import { partsList } from "./panel/parts.js";
@@ -14,8 +16,8 @@ import { droppable } from "./panel/verify.js";
 import { aim } from "./places.js";
 import * as jobs from "./recent.js";
 import { SAMPLES, sample } from "./samples.js";
-import { Session, curlOf, millimetres } from "./session.js";
-import { LANGUAGES, current, digits, number, percent, speak, t, translate } from "./text/text.js";
+import { Session, curlOf } from "./session.js";
+import { LANGUAGES, current, number, percent, speak, t, translate } from "./text/text.js";
 import { ofDefect } from "./view/colors.js";
 import { View } from "./view/view.js";
 
@@ -51,12 +53,14 @@ function begin(name, file) {
   document.body.dataset.state = "open";
   for (const id of ["verdict", "findings", "parts-list", "checks", "result"]) at(id).replaceChildren();
   for (const id of ["units", "policy"]) at(id).value = "";
-  for (const id of ["facts", "findings-section", "repair-section"]) at(id).hidden = true;
+  for (const id of ["facts", "findings-section", "repair-section", "solid-field"]) at(id).hidden = true;
+  at("solid").value = "separate";
   at("best").checked = false;
   at("share").value = 100;
   at("levels").value = "1";
   at("file-name").textContent = name;
   document.title = `${name} – Meshmend`;
+  delete at("view").dataset.drawn;
   view?.clear("before");
   view?.clear("after");
   tools?.offer(false);
@@ -140,10 +144,9 @@ async function follow(job) {
 // --- the panel -------------------------------------------------------------------------------------------------
 
 function factsOf({ bounds, faceCount }) {
-  const size = bounds.max.map((high, axis) => high - bounds.min[axis]);
-  at("size").textContent = `${size.map((value) => digits(value)).join(" × ")} mm`;
+  session.size = bounds.max.map((high, axis) => high - bounds.min[axis]);
+  sizeText(session);
   at("triangles").textContent = number(faceCount);
-  at("dimensions").textContent = at("size").textContent;
   at("facts").hidden = false;
   session.faceCount = faceCount;
   shareText();
@@ -159,6 +162,7 @@ async function show(job) {
   of.report = report;
   if (isFirst) for (const defect of report.before.defects) if (isShownFirst(defect)) of.shown.add(defect.code);
   of.checked = report.printing?.policy ?? "";
+  of.partCount = Math.max(of.partCount, report.parts?.length ?? 0);
   rest();
   panel();
   drawing.overlays();
@@ -174,30 +178,21 @@ function panel() {
   at("result").replaceChildren(...[session.isRepaired && resultSection(session, host)].filter(Boolean));
   at("findings-section").hidden = false;
   at("repair-section").hidden = false;
+  at("solid-field").hidden = session.partCount < 2;
   at("repair").textContent = t(session.isRepaired ? "repair.again" : report.verdict.printable ? "certify" : "repair");
   at("repair").disabled = false;
   const { unit, is_stated: isStated } = report.input.units;
   at("units").options[0].textContent = isStated ? (session.unit ? "–" : unit) : t("unit.assumed", { u: unit });
   // A 3MF is right about its own unit.
   at("units").disabled = report.input.format === "3mf";
-  question(report.before.unit_hypothesis, isStated);
+  question(report);
   if (!session.pictures.before && report.before.measures.bounds) {
     const { min, max } = report.before.measures.bounds;
     factsOf({ bounds: { min: min.map((v) => v * session.reportUnit), max: max.map((v) => v * session.reportUnit) }, faceCount: report.before.counts.faces });
   }
+  if (session.size) sizeText(session);
   at("panel").dataset.operation = report.operation;
   if (session.place) openFinding(list, session, host, session.place.code, session.place.number);
-}
-
-// Which size is meant, where it could be several.
-function question(hypothesis, isStated) {
-  const isOpen = hypothesis && !isStated && hypothesis.plausible.length > 1;
-  at("unit-question").hidden = !isOpen;
-  if (!isOpen) return;
-  const { min, max } = session.report.before.measures.bounds;
-  const longest = Math.max(...max.map((high, axis) => high - min[axis]));
-  const told = hypothesis.plausible.map((unit) => t("unit.as", { a: `${digits(longest * millimetres(unit), 3)} mm`, u: unit }));
-  at("unit-question").textContent = t("unit.question", { a: told.join(", ") });
 }
 
 // What lists ask for.
@@ -376,6 +371,18 @@ async function lookAgain() {
   await look(picture);
 }
 
+// What of several parts is one solid. Together they have other findings than one by one.
+async function chooseSolid() {
+  const isSeenAnew = [session.solid, at("solid").value].includes("together");
+  session.solid = at("solid").value;
+  host.changed();
+  if (!isSeenAnew) return;
+  session.choices = new Choices();
+  session.place = null;
+  drawing.light(null);
+  await lookAgain();
+}
+
 async function redraw() {
   if (!session.file) return drawing.drawFromService();
   return drawing.draw("before", await session.file.arrayBuffer(), session.name);
@@ -452,6 +459,7 @@ function listen() {
   at("share").addEventListener("input", () => { shareText(); host.changed(); });
   for (const id of ["best", "levels"]) at(id).addEventListener("change", host.changed);
   for (const id of ["units", "policy"]) at(id).addEventListener("change", () => guarded(lookAgain));
+  at("solid").addEventListener("change", () => guarded(chooseSolid));
   at("jobs").addEventListener("toggle", showJobs);
   at("jobs-forget").addEventListener("click", () => { jobs.forgetAll(); showJobs(); });
   at("language").value = current();

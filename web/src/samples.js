@@ -67,7 +67,7 @@ function project() {
   const item = (id, transform) => `<item objectid="${id}" transform="${transform}"/>`;
   const model = `<?xml version="1.0" encoding="UTF-8"?>
 <model unit="millimeter" xml:lang="en-US" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources>
-<basematerials id="1"><base name="Grey" displaycolor="#9AA4AE"/><base name="Green" displaycolor="#1F9E86"/><base name="Red" displaycolor="#CF3F36"/></basematerials>
+<basematerials id="1"><base name="Grey" displaycolor="#9AA4AE"/><base name="Yellow" displaycolor="#E3B23C"/><base name="Blue" displaycolor="#2F7FE0"/></basematerials>
 ${object(2, "Plate", plate, 0)}${object(3, "Cup", cup, 1)}${object(4, "Ball", ball, 2)}
 </resources><build>${item(2, "1 0 0 0 1 0 0 0 1 0 0 0")}${item(3, "1 0 0 0 1 0 0 0 1 5 8 5")}${item(3, "-1 0 0 0 1 0 0 0 1 75 8 5")}${item(4, "1 0 0 0 1 0 0 0 1 40 20 14")}</build></model>`;
   return stored([

@@ -13,11 +13,14 @@ export class Session {
     this.job = null; // the one that the page is about
     this.unit = ""; // stated by the person
     this.policy = "";
+    this.partCount = 0; // of a project, as far as it is known
+    this.solid = "separate"; // what of several parts is one solid
     this.format = null; // of the download
     this.given = null; // the format of the job's result
     this.level = 0; // the level of detail that is drawn
     this.report = null;
     this.pictures = {}; // before, after
+    this.size = null; // in millimetres, along each axis
     this.choices = new Choices();
     this.shown = new Set(); // kinds of defects with their overlay on
     this.place = null; // { code, number } that is lit
@@ -44,14 +47,15 @@ export class Session {
     return this.report.before.defects.find((defect) => defect.code === code);
   }
 
-  // What every request about this file has in common.
+  // What every request about this file has in common. Parts are looked at one by one before they are united, and all at once
+  // where they are together.
   options() {
-    return { samples: 1000, ...(this.unit ? { units: this.unit } : {}), ...(this.policy ? { policy: this.policy } : {}) };
+    return { samples: 1000, ...(this.unit ? { units: this.unit } : {}), ...(this.policy ? { policy: this.policy } : {}), ...(this.solid === "together" ? { parts: "together" } : {}) };
   }
 
   // What a repair is asked for.
   repairOptions() {
-    return { ...this.options(), ...this.choices.options(this.report?.plan) };
+    return { ...this.options(), ...(this.solid === "union" ? { parts: "union" } : {}), ...this.choices.options(this.report?.plan) };
   }
 }
 

@@ -3,8 +3,9 @@
 export const COARSE_ABOVE = 30_000; // triangles
 
 // A surface in a grid of n cells a side meets about 2 n^2 of them, with two triangles each. `positions` are those of
-// corners, `corners` their vertices. Each vertex of the copy has the mean direction of the triangles around it.
-export function coarse({ positions, corners, flat }, bounds, triangles) {
+// corners, `corners` their vertices. Each vertex of the copy has the mean direction of the triangles around it, and where there are
+// colours that of one of its corners.
+export function coarse({ positions, corners, flat, colors }, bounds, triangles) {
   const size = [0, 1, 2].map((axis) => bounds.max[axis] - bounds.min[axis]);
   const cell = Math.max(...size) / Math.sqrt(triangles / 6) || 1;
   const columns = size.map((length) => Math.ceil(length / cell) + 2);
@@ -30,7 +31,14 @@ export function coarse({ positions, corners, flat }, bounds, triangles) {
     const length = Math.hypot(...normal) || 1;
     copy.normals.set(normal.map((value) => (127 * value) / length), at * 4);
   }
+  if (colors) copy.colors = colorsOf(colors, corners, cellOf, count);
   return copy;
+}
+
+function colorsOf(colors, corners, cellOf, count) {
+  const [own, all] = [new Uint32Array(count), new Uint32Array(colors.buffer, colors.byteOffset, corners.length)];
+  corners.forEach((corner, at) => { own[cellOf[corner]] ||= all[at]; });
+  return new Uint8Array(own.buffer);
 }
 
 // The cell of each vertex, numbered as they come, and of each cell the sum of its places, their number, and room for a direction.

@@ -25,8 +25,8 @@ const work = {
     const flat = faceNormals(positions);
     const normals = cornerNormals(mesh, flat, mesh.vertices.length / 3);
     meshes.set(name, { ...mesh, positions, flat, bounds });
-    const { format, faceOf, faceCount, project } = mesh;
-    return { format, faceOf: faceOf.slice(), faceCount, bounds, origin, positions: positions.slice(), normals, project };
+    const { format, faceOf, faceCount, project, colors, isTextured } = mesh;
+    return { format, faceOf: faceOf.slice(), faceCount, bounds, origin, positions: positions.slice(), normals, project, colors: colors && colors.slice(), isTextured };
   },
 
   // What else there is to see of a mesh, and coarse copies of a large one, of about so many triangles.

@@ -78,11 +78,28 @@ export class Tools {
     });
   }
 
+  get hasColors() {
+    return Object.values(this.session()?.pictures ?? {}).some(({ colors }) => colors);
+  }
+
+  // A mesh came: its own colours are shown, unless another way was chosen.
+  colorsCame(side) {
+    at("colors").options[0].hidden = !this.hasColors;
+    at("colors").options[0].disabled = !this.hasColors;
+    if (side === "before" && this.hasColors && at("colors").value === "plain") this.color(at("colors").value = "file");
+    this.tellTextures();
+  }
+
+  tellTextures() {
+    at("textured").hidden = !Object.values(this.session()?.pictures ?? {}).some(({ isTextured }) => isTextured);
+  }
+
   // What there is to choose from, now that a mesh or a result came.
   offer(hasResult) {
     at("arrangement").hidden = !hasResult;
     for (const option of at("colors").options) option.disabled = !hasResult && ["kept", "deviation"].includes(option.value);
-    if (!hasResult) at("colors").value = "plain";
+    if (!hasResult) at("colors").value = this.hasColors ? "file" : "plain";
+    this.colorsCame("after");
     this.color(at("colors").value);
     this.arrange(hasResult ? "slider" : "before");
   }
@@ -90,9 +107,9 @@ export class Tools {
   // Colours the surfaces; the figures for it are computed when they are first wanted.
   async color(name) {
     const session = this.session();
-    at("legend").hidden = name === "plain";
+    at("legend").hidden = ["plain", "file"].includes(name);
     this.view.set({ colors: name });
-    if (name === "plain") return;
+    if (at("legend").hidden) return;
     at("legend").replaceChildren(t("view.working"));
     const maps = await this.maps(session, name);
     if (this.session() !== session || at("colors").value !== name) return;

@@ -77,4 +77,8 @@ export class Faces {
       this.faceOf.push(face);
     }
   }
+
+  mesh(vertices) {
+    return { vertices, corners: this.corners.done(), faceOf: this.faceOf.done(), faceCount: this.count };
+  }
 }

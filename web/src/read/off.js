@@ -1,6 +1,7 @@
-// OFF text. The variants with colours and normals have more numbers a line; what follows the corners is skipped.
+// OFF text. The variants with colours and normals have more numbers a line; a face may have a colour after its corners.
 
 import { Faces, FileProblem, lines } from "./bytes.js";
+import { Channels, ofCorners } from "./colors.js";
 
 export function readOff(bytes) {
   const all = lines(bytes);
@@ -18,14 +19,21 @@ export function readOff(bytes) {
     throw new FileProblem("unreadable");
   }
   const vertices = new Float64Array(vertexCount * 3);
+  const [ofVertices, ofFaces] = [new Channels(), new Channels()];
+  const colorAt = head?.[2] ? (head[3] ? 6 : 3) : Infinity;
   for (let i = 0; i < vertexCount; i += 1) {
     const numbers = next();
     for (let axis = 0; axis < 3; axis += 1) vertices[i * 3 + axis] = Number(numbers[axis]);
+    if (colorAt < numbers.length) ofVertices.add(...numbers.slice(colorAt, colorAt + 3).map(Number));
+    else ofVertices.add();
   }
   const faces = new Faces(() => vertexCount);
   for (let i = 0; i < faceCount; i += 1) {
     const numbers = next().map(Number);
     faces.add(numbers.slice(1, 1 + numbers[0]));
+    // One number would be a place in a table that is not there.
+    ofFaces.add(...numbers.slice(1 + numbers[0], 4 + numbers[0]));
   }
-  return { vertices, corners: faces.corners.done(), faceOf: faces.faceOf.done(), faceCount: faces.count };
+  const mesh = faces.mesh(vertices);
+  return { ...mesh, colors: ofCorners(mesh, ofVertices.done(), ofFaces.done()) };
 }

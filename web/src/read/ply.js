@@ -1,6 +1,7 @@
-// PLY, text and binary: positions and the lists of faces.
+// PLY, text and binary: positions, the lists of faces, and the colours of both.
 
 import { Faces, FileProblem, words } from "./bytes.js";
+import { Channels, ofCorners } from "./colors.js";
 
 const TYPES = {
   char: ["getInt8", 1], int8: ["getInt8", 1], uchar: ["getUint8", 1], uint8: ["getUint8", 1],
@@ -10,19 +11,21 @@ const TYPES = {
 };
 
 export function readPly(bytes) {
-  const { format, elements, end } = header(bytes);
+  const { format, elements, end, isTextured } = header(bytes);
   const number = format === "ascii" ? textNumbers(bytes, end) : binaryNumbers(bytes, end, format);
   let vertices = new Float64Array(0);
   let faces = new Faces(() => 0);
+  let [ofVertices, ofFaces] = [null, null];
   for (const element of elements) {
     if (element.name === "vertex") {
-      vertices = readVertices(element, number);
+      ({ vertices, colors: ofVertices } = readVertices(element, number));
     } else {
       const read = readElements(element, number, vertices.length / 3);
-      if (element.name === "face") faces = read;
+      if (element.name === "face") ({ faces, colors: ofFaces } = read);
     }
   }
-  return { vertices, corners: faces.corners.done(), faceOf: faces.faceOf.done(), faceCount: faces.count };
+  const mesh = faces.mesh(vertices);
+  return { ...mesh, colors: ofCorners(mesh, ofVertices, ofFaces), isTextured };
 }
 
 function header(bytes) {
@@ -38,7 +41,7 @@ function header(bytes) {
     if (word === "property") elements.at(-1)?.properties.push(property(rest));
   }
   if (elements.some(({ count }) => !(count >= 0 && count <= bytes.length))) throw new FileProblem("unreadable");
-  return { format, elements, end: last.index + last[0].length };
+  return { format, elements, end: last.index + last[0].length, isTextured: /^comment TextureFile\b/m.test(text) };
 }
 
 function property(words) {
@@ -69,27 +72,45 @@ function binaryNumbers(bytes, from, format) {
   };
 }
 
+// Which channel of a colour a property is; -1: none. Integers go to 255, others to 1.
+function channelsOf(properties) {
+  const channels = properties.map(({ name }) => ["red", "green", "blue"].indexOf(name.replace(/^diffuse_/, "")));
+  const first = properties[channels.indexOf(0)];
+  return { channels, scale: /^(float|double)/.test(first?.type ?? "") ? 255 : 1 };
+}
+
 function readVertices({ count, properties }, number) {
   const vertices = new Float64Array(count * 3);
+  const [colors, color] = [new Channels(), [NaN, NaN, NaN]];
+  const { channels, scale } = channelsOf(properties);
   const axis = properties.map(({ name }) => "xyz".indexOf(name));
   for (let i = 0; i < count; i += 1) {
     properties.forEach(({ type, list }, at) => {
       if (list) for (let left = number(list); left > 0; left -= 1) number(type);
       else if (axis[at] >= 0) vertices[i * 3 + axis[at]] = number(type);
+      else if (channels[at] >= 0) color[channels[at]] = number(type);
       else number(type);
     });
+    colors.add(...color);
   }
-  return vertices;
+  return { vertices, colors: colors.done(scale) };
 }
 
 function readElements({ count, properties }, number, vertexCount) {
   const faces = new Faces(() => vertexCount);
+  const [colors, color] = [new Channels(), [NaN, NaN, NaN]];
+  const { channels, scale } = channelsOf(properties);
   for (let i = 0; i < count; i += 1) {
-    for (const { name, type, list } of properties) {
-      if (!list) { number(type); continue; }
+    for (const [at, { name, type, list }] of properties.entries()) {
+      if (!list) {
+        const value = number(type);
+        if (channels[at] >= 0) color[channels[at]] = value;
+        continue;
+      }
       const items = Array.from({ length: number(list) }, () => number(type));
       if (name === "vertex_indices" || name === "vertex_index") faces.add(items);
     }
+    colors.add(...color);
   }
-  return faces;
+  return { faces, colors: colors.done(scale) };
 }

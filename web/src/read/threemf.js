@@ -1,6 +1,8 @@
 // 3MF: what the build puts together, each mesh at each of its places. What is not understood here the service draws or refuses.
 
 import { FileProblem, Numbers } from "./bytes.js";
+import { bytesOf } from "./colors.js";
+import { Properties, filaments, paintOf } from "./properties.js";
 import { Zip } from "./zip.js";
 
 const MILLIMETRES = { micron: 0.001, millimeter: 1, centimeter: 10, inch: 25.4, foot: 304.8, meter: 1000 };
@@ -30,7 +32,9 @@ export async function readThreemf(bytes) {
     if (object.corners.length && DRAWN.includes(object.kind)) places.push({ object, matrix: own });
   };
   for (const item of model.items) await put(item, root, UNMOVED, 0);
-  return { ...sceneOf(places), millimetres: model.millimetres };
+  const all = await Promise.all(models.values());
+  const materials = all.some(({ isPainted }) => isPainted) ? await filaments(zip, MODEL_BYTES_MAX) : [];
+  return { ...sceneOf(places, materials), millimetres: model.millimetres, isTextured: all.some(({ properties }) => properties.isTextured) };
 }
 
 // The model that the relationships of the package name.
@@ -47,7 +51,7 @@ async function startOf(zip) {
 function* elements(text) {
   const plain = text.includes("<!--") ? text.replace(/<!--[^]*?-->/g, "") : text;
   for (const [, name, inside] of plain.matchAll(/<(?:[\w.-]+:)?([\w.-]+)((?:[^>"']|"[^"]*"|'[^']*')*)>/g)) {
-    yield { name, of: (wanted) => attribute(inside, wanted) };
+    yield { name, inside, of: (wanted) => attribute(inside, wanted) };
   }
 }
 
@@ -60,18 +64,28 @@ function attribute(inside, name) {
 }
 
 function modelFrom(text, path) {
-  const model = { millimetres: 1, objects: new Map(), items: [] };
+  const properties = new Properties();
+  const model = { millimetres: 1, objects: new Map(), items: [], properties, isPainted: false };
   let object = null;
   const reference = (of) => ({ id: of("objectid"), path: of("path"), matrix: matrixOf(of("transform")) });
-  for (const { name, of } of elements(text)) {
+  for (const { name, inside, of } of elements(text)) {
     if (name === "model") model.millimetres = MILLIMETRES[of("unit") ?? "millimeter"] ?? 1;
     else if (name === "object") {
-      object = { path, id: of("id"), kind: of("type") ?? "model", vertices: new Numbers(Float64Array), corners: new Numbers(Uint32Array), components: [] };
+      object = { path, id: of("id"), kind: of("type") ?? "model", vertices: new Numbers(Float64Array), corners: new Numbers(Uint32Array), components: [], colors: new Map(), paints: new Map() };
+      object.pid = of("pid");
+      object.color = object.pid === null ? 0 : properties.color(object.pid, Number(of("pindex") ?? 0));
       model.objects.set(object.id, object);
     } else if (name === "vertex") for (const axis of ["x", "y", "z"]) object?.vertices.push(Number(of(axis)));
-    else if (name === "triangle") for (const corner of ["v1", "v2", "v3"]) object?.corners.push(Number(of(corner)));
-    else if (name === "component") object?.components.push(reference(of));
+    else if (name === "triangle" && object) {
+      const at = object.corners.length / 3;
+      for (const corner of ["v1", "v2", "v3"]) object.corners.push(Number(of(corner)));
+      if (inside.includes("p1")) object.colors.set(at, properties.ofTriangle(of, object));
+      const painted = inside.includes("_color") || inside.includes("mmu_segmentation") ? of("paint_color") ?? of("mmu_segmentation") : null;
+      if (painted) object.paints.set(at, paintOf(painted));
+      model.isPainted ||= Boolean(painted);
+    } else if (name === "component") object?.components.push(reference(of));
     else if (name === "item") model.items.push(reference(of));
+    else properties.take(name, of);
   }
   return model;
 }
@@ -97,11 +111,11 @@ const isMirror = (m) => m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8]
 
 // Faces are numbered by objects; copies of one stand one after the other, so that numbers ascend. `objects` says which
 // faces are whose, and `order` in which order the build has them.
-function sceneOf(places) {
+function sceneOf(places, materials) {
   const objects = [...new Set(places.map(({ object }) => object))].map((object) => ({ object, places: places.filter((place) => place.object === object).map(({ matrix }) => matrix) }));
   const total = objects.reduce((sum, { object, places: own }) => sum + (object.corners.length / 3) * own.length, 0);
   if (total > TRIANGLES_MAX) throw new FileProblem("not-drawn-here");
-  const [vertices, corners, faceOf] = [new Numbers(Float64Array), new Numbers(Uint32Array), new Numbers(Uint32Array)];
+  const [vertices, corners, faceOf, colors] = [new Numbers(Float64Array), new Numbers(Uint32Array), new Numbers(Uint32Array), new Numbers(Uint32Array)];
   const told = [];
   let first = 0;
   for (const { object, places: own } of objects) {
@@ -114,8 +128,12 @@ function sceneOf(places) {
     for (let at = 0; at < object.corners.length; at += 3) {
       const ends = object.corners.items.subarray(at, at + 3);
       if (!ends.every((end) => end < count)) continue;
+      const color = materials[object.paints.get(at / 3)] || (object.colors.get(at / 3) ?? object.color);
       for (const { begin, turns } of begins) {
-        for (const turn of turns) corners.push(begin + ends[turn]);
+        for (const turn of turns) {
+          corners.push(begin + ends[turn]);
+          colors.push(color[turn] ?? color);
+        }
         faceOf.push(first + at / 3);
       }
     }
@@ -123,5 +141,9 @@ function sceneOf(places) {
     first += object.corners.length / 3;
   }
   const order = places.map(({ object }) => objects.findIndex((one) => one.object === object));
-  return { vertices: vertices.done(), corners: corners.done(), faceOf: faceOf.done(), faceCount: total, project: { objects: told, order } };
+  const shown = colors.done();
+  return {
+    vertices: vertices.done(), corners: corners.done(), faceOf: faceOf.done(), faceCount: total, project: { objects: told, order },
+    colors: shown.some(Boolean) ? bytesOf(shown) : null,
+  };
 }

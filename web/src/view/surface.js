@@ -4,7 +4,7 @@ import { BackSide, BufferAttribute, BufferGeometry, DoubleSide, FrontSide, GLSL3
 import { RAMP, rgb } from "./colors.js";
 
 export const NO_VALUE = 255;
-const MODES = { plain: 0, kept: 1, deviation: 2, thickness: 2 };
+const MODES = { plain: 0, kept: 1, deviation: 2, thickness: 2, file: 3 };
 
 const vertexShader = `
 uniform mat4 modelViewMatrix;
@@ -15,6 +15,10 @@ in vec4 normal;
 out vec3 seen;
 out vec3 turned;
 out vec3 place;
+#ifdef COLORED
+in vec4 tint;
+out vec4 own;
+#endif
 #ifndef COARSE
 in float value;
 out vec3 share;
@@ -25,6 +29,9 @@ void main() {
   int corner = gl_VertexID % 3;
   share = vec3(corner == 0, corner == 1, corner == 2);
   shown = value;
+#endif
+#ifdef COLORED
+  own = tint;
 #endif
   place = position;
   turned = normalMatrix * normal.xyz;
@@ -41,6 +48,9 @@ uniform vec4 plane;
 uniform int mode;
 uniform bool isSmooth, hasEdges, hasBacks, isCut;
 in vec3 seen, turned, place;
+#ifdef COLORED
+in vec4 own;
+#endif
 #ifndef COARSE
 in vec3 share;
 in float shown;
@@ -67,6 +77,10 @@ void main() {
     return;
   }
   vec3 tint = base;
+#ifdef COLORED
+  // Between a corner with a colour and one without, as much of it as there is.
+  if (mode == 3) tint = mix(base, own.rgb / max(own.a, 0.001), own.a);
+#endif
 #ifdef COARSE
   vec3 n = normalize(turned);
   if (dot(n, seen) > 0.0) n = -n;
@@ -93,24 +107,25 @@ void main() {
 }`;
 
 // Materials of one set of uniforms. Of two sides, the back faces lie a little deeper, so that they do not shine out along
-// edges; `both` is the quicker way. A coarse copy is smooth, without edges and values.
-export function surfaceMaterials() {
+// edges; `both` is the quicker way. A coarse copy is smooth, without edges and values. `isColored`: corners have colours.
+export function surfaceMaterials(isColored) {
   const uniforms = {
     base: { value: [1, 1, 1] }, fresh: { value: [0, 1, 0] }, back: { value: [1, 0, 0] }, cut: { value: [0, 0, 0] },
     edge: { value: [0, 0, 0] }, ramp: { value: RAMP.map((hex) => new Vector3(...rgb(hex))) },
     plane: { value: [0, 0, 1, 0] }, mode: { value: 0 },
     isSmooth: { value: false }, hasEdges: { value: false }, hasBacks: { value: true }, isCut: { value: false },
   };
-  const make = (values) => new RawShaderMaterial({ vertexShader, fragmentShader, uniforms, glslVersion: GLSL3, ...values });
+  const make = ({ defines, ...values }) => new RawShaderMaterial({ vertexShader, fragmentShader, uniforms, glslVersion: GLSL3, defines: { ...defines, ...(isColored ? { COLORED: "" } : {}) }, ...values });
   const back = { side: BackSide, defines: { ONLY_BACKS: "" }, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 8 };
   return { uniforms, sides: [make({ side: FrontSide }), make(back)], both: [make({ side: DoubleSide })], coarse: [make({ side: DoubleSide, defines: { COARSE: "" } })] };
 }
 
 // Triangles one by one, which have values; or of a coarse copy, by `index`.
-export function surface({ positions, normals, index }, materials) {
+export function surface({ positions, normals, colors, index }, materials) {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(positions, 3));
   geometry.setAttribute("normal", new BufferAttribute(normals, 4, true));
+  if (colors) geometry.setAttribute("tint", new BufferAttribute(colors, 4, true));
   if (index) geometry.setIndex(new BufferAttribute(index, 1));
   else geometry.setAttribute("value", new BufferAttribute(new Uint8Array(positions.length / 3).fill(NO_VALUE), 1, true));
   geometry.boundingSphere = new Sphere(new Vector3(), 1);

@@ -35,15 +35,16 @@ export class View {
   }
 
   side() {
-    return { scene: new Scene(), materials: surfaceMaterials(), surface: null, coarse: [], marks: new Map() };
+    return { scene: new Scene(), materials: surfaceMaterials(false), isColored: false, surface: null, coarse: [], marks: new Map() };
   }
 
   // A mesh for a side; the first one of a file says where the bed is and how far the camera.
-  setMesh(name, { positions, normals, bounds }, isFirst) {
+  setMesh(name, { positions, normals, colors, bounds }, isFirst) {
     this.clear(name);
     const side = this.sides[name];
+    if (side.isColored !== Boolean(colors)) Object.assign(side, { isColored: Boolean(colors), materials: surfaceMaterials(Boolean(colors)) });
     const isQuick = this.isSoftware && positions.length / 9 > ONE_PASS_ABOVE;
-    side.surface = surface({ positions, normals }, isQuick ? side.materials.both : side.materials.sides);
+    side.surface = surface({ positions, normals, colors }, isQuick ? side.materials.both : side.materials.sides);
     side.scene.add(side.surface);
     if (isFirst) {
       this.easing = 0;
