@@ -73,8 +73,9 @@ pub use sqlite::{OpenError as SqliteOpenError, SqliteStore, StoreClock, StoreFil
 pub use start::StartError;
 pub use store::{
     AfterLoss, BlobRef, Change, ClaimRef, ClaimRequest, Created, Delivery, DeliveryRequest, DeliveryState,
-    DeliveryTry, Ending, Holding, IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept, Lane, Leases,
-    ListQuery, NewJob, NextTry, ResultRef, Sealer, StoreError, StoreFuture, Tenant, TryOutcome, Webhook,
+    DeliveryTry, Ending, Hint, Hints, Holding, IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept,
+    Lane, Leases, ListQuery, NewJob, NextTry, ResultRef, Sealer, StoreError, StoreFuture, Tenant, TryOutcome,
+    Webhook,
 };
 pub use stores::{Stores, StoresError};
 pub use trace::TraceParent;
