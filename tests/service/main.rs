@@ -19,6 +19,7 @@ mod lanes;
 mod lifecycle;
 mod listing;
 mod meshes;
+mod migrated;
 mod neighbours;
 mod operations;
 mod ordering;

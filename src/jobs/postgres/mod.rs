@@ -6,6 +6,7 @@
 mod access;
 mod claims;
 mod hints;
+mod import;
 mod keeping;
 mod listing;
 mod locks;
@@ -32,6 +33,7 @@ use super::store::{
 use crate::wire::{JobState, Problem};
 pub use access::DatabaseAccess;
 use hints::HintLine;
+pub(super) use import::Rows;
 use session::{Body, Session};
 
 /// A store in a database.
