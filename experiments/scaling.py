@@ -137,11 +137,11 @@ with Town(o.binary, o.s3, shared_preload_libraries="pg_stat_statements") as town
     api, worker = town.server("api", *settings), town.server("worker", *settings)
     post(api.port, 0)
     time.sleep(3)
-    then, asked = numbers(town), proxy.requests.copy()
-    own = difference(numbers(town), then, 1)
+    town.database.ask("SELECT pg_stat_statements_reset()")
+    then, begun = numbers(town), time.perf_counter()
     time.sleep(o.idle)
     now = numbers(town)
-    idle = {name: cost / (o.idle + 1.5) / 2 for name, cost in difference(now, then, 1).items()}
+    idle = difference(now, then, 2 * (time.perf_counter() - begun))
     # One after the other, each waited for.
     then, asked, times = numbers(town), proxy.requests.copy(), []
     for number in range(1, o.jobs + 1):
@@ -150,9 +150,9 @@ with Town(o.binary, o.s3, shared_preload_libraries="pg_stat_statements") as town
         ended = get(api.port, f"/v1/jobs/{job}?wait=60")
         assert ended["state"] == "succeeded", ended
         times.append((time.perf_counter() - begun) * 1e3)
-    took = sum(times) / 1e3
-    spent = difference(numbers(town), then, o.jobs)
-    each = {name: cost - idle[name] * 2 * took / o.jobs for name, cost in spent.items()}
+    now = numbers(town)
+    took = sum(times) / 1e3 + 1.5
+    each = {name: cost - idle[name] * 2 * took / o.jobs for name, cost in difference(now, then, o.jobs).items()}
     requests = {f"{name} at the bucket": (count - asked[name]) / o.jobs for name, count in sorted(proxy.requests.items()) if "list" not in name}
     kept = {name: float(town.database.ask(f"SELECT count(*) FROM {name}")[0][0]) / (o.jobs + 1) for name in ("jobs", "names", "changes")}
     size = float(town.database.ask("SELECT sum(pg_total_relation_size(relid)) FROM pg_stat_user_tables")[0][0]) / (o.jobs + 1)

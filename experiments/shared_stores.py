@@ -5,6 +5,7 @@ import os
 import pwd
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -61,6 +62,12 @@ class Bucket:
     def __init__(self, program):
         self.folder, (self.port,) = tempfile.mkdtemp(prefix="meshmend-bucket-"), free_ports(1)
         self.process = subprocess.Popen([program, self.folder, str(self.port)], stdin=subprocess.PIPE)
+        for _ in range(200):
+            try:
+                return socket.create_connection(("127.0.0.1", self.port), timeout=1).close()
+            except OSError:
+                time.sleep(0.05)
+        sys.exit("the S3 server did not start")
 
     def files(self):
         """The paths of all files of jobs, by their keys."""

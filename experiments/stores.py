@@ -29,7 +29,7 @@ p.add_argument("--clients", type=int, default=3)
 o = p.parse_args()
 dice, over, lock = random.Random(o.seed), threading.Event(), threading.Lock()
 LEASE_S = 2
-SMALL, LARGE = sphere_stl(12), sphere_stl(120)
+SMALL, LARGE = sphere_stl(12), sphere_stl(200)
 asked, unanswered = {}, collections.Counter()
 begun = time.time()
 
@@ -62,7 +62,7 @@ def client(number):
     while not over.is_set():
         count += 1
         key = f"{number}-{count}"
-        mesh = LARGE if count % 5 == 0 else SMALL
+        mesh = LARGE if count % 3 == 0 else SMALL
         body = f"{key:<80}".encode() + mesh[80:]
         path = f"/v1/jobs?operation=repair&labels=%7B%22n%22:%22{key}%22%7D"
         with lock:
@@ -89,9 +89,11 @@ def cycle():
     elif blow == "worker":
         killed(dice.choice(workers))
     elif blow == "child":
-        at_work = [pid for worker in workers for pid in worker.children_at_work()]
-        if not at_work:
-            return "child, where none was at work"
+        until = time.time() + 5
+        while not (at_work := [pid for worker in workers for pid in worker.children_at_work()]):
+            if time.time() > until:
+                return "child, where none was at work"
+            time.sleep(0.01)
         try:
             os.kill(dice.choice(at_work), signal.SIGKILL)
         except ProcessLookupError:
