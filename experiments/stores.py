@@ -152,7 +152,7 @@ with Town(o.binary, o.s3) as town:
 kinds = ", ".join(f"{count} {blow}" for blow, count in sorted(blows.items()))
 print(f"""# Campaign `stores`
 
-Made by `scripts/campaign.sh stores` at commit {commit()}: {o.cycles} cycles with seed {o.seed} in {time.time() - begun:.0f} s on {os.cpu_count()} cores, where the
+Made by `experiments/stores.py` at commit {commit()}: {o.cycles} cycles with seed {o.seed} in {time.time() - begun:.0f} s on {os.cpu_count()} cores, where the
 load of the machine was {os.getloadavg()[2]:.1f} on average of the last 15 minutes. Two servers for requests, two that run jobs (two slots each, lease {LEASE_S} s), PostgreSQL and an S3
 server, all on one machine. Blows: {kinds}.
 
