@@ -12,9 +12,8 @@ pub(super) fn shared_stores(loaded: &Loaded) -> Result<Option<SharedStores>, Con
     match (database_url.is_empty(), blobs_url.is_empty()) {
         (true, true) if config.role == Role::All => return Ok(None),
         (true, true) => {
-            let why =
-                "a server that does a part only shares its jobs with others: set database_url and blobs_url";
-            return Err(loaded.refused("role", &format!("`{}`: {why}", config.role.word())));
+            let why = "takes jobs to or from other servers, so it needs database_url and blobs_url";
+            return Err(loaded.refused("role", &format!("`{}` {why}", config.role.word())));
         }
         (false, true) => {
             return Err(

@@ -11,8 +11,8 @@ use super::store::{ClaimRef, Ending, JobId, JobRow, StoreError};
 use crate::budget::Stopped;
 use crate::wire::{JobState, Problem};
 
-/// Renews the claim at a third of its lease, and when another server has done something with the job, until the run is over; stops the run when it is in vain, cancelled, or when
-/// the caller's time for it is over.
+/// Renews the claim at a third of its lease, and when another server has done something with the job, until the run is over;
+/// stops the run when it is in vain, cancelled, or when the caller's time for it is over.
 pub(super) async fn beat(
     service: Arc<Service>,
     claim: ClaimRef,
