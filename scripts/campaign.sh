@@ -48,6 +48,12 @@ declare -A scripts=(
   [holes-bench]="holes.py"
   [hostile]="hostile.py"
   [holes-speed]="holes_speed.py"
+  [stores]="stores.py"
+)
+
+# What a script needs beside the program.
+declare -A programs=(
+  [stores]="--example s3_server"
 )
 
 name=${1:-}
@@ -55,7 +61,8 @@ script=${scripts[$name]:-}
 if [ -n "$script" ]; then
   shift
   mkdir -p docs/campaigns target
-  cargo build --release --locked
+  read -ra more <<< "${programs[$name]:-}"
+  cargo build --release --locked --bins "${more[@]}"
   result=0
   # A page that is begun and not ended is not kept.
   python3 "experiments/$script" "$@" > "target/campaign-$name.md" || result=$?

@@ -4,5 +4,8 @@ use meshmend::cli::{self, Service};
 use meshmend::http;
 
 fn main() -> std::process::ExitCode {
-    cli::run(std::env::args_os(), Service { serve: http::start, healthcheck: http::healthcheck })
+    cli::run(
+        std::env::args_os(),
+        Service { serve: http::start, healthcheck: http::healthcheck, migrate: http::migrate },
+    )
 }

@@ -17,6 +17,10 @@ from helm_python.errors import HelmError
 CHART = pathlib.Path(__file__).resolve().parents[2] / "deploy/helm/meshmend"
 KUBERNETES = ["1.27", "1.34"]
 KEYS = {"apiKeys": {"secretName": "keys"}}
+SHARED = {
+    "enabled": True, "databaseUrl": "postgresql://meshmend@db.example/meshmend", "databasePassword": {"secretName": "db"},
+    "blobsUrl": "s3://meshes/shop", "blobsEndpoint": "https://s3.example", "blobsKey": {"secretName": "bucket"},
+}
 ACCEPTED = {
     "keys": KEYS,
     "anonymous": {"allowAnonymous": True, "settings": {"allowed_hosts": "mesh.example", "rate_per_minute": 1200000}},
@@ -31,11 +35,23 @@ ACCEPTED = {
         "podAnnotations": {"note": "a"}, "podLabels": {"team": "a"}, "nodeSelector": {"disk": "fast"},
         "tolerations": [{"key": "a", "operator": "Exists"}], "priorityClassName": "high",
     },
+    "several": {**KEYS, "shared": SHARED},
+    "everything of several": {
+        **KEYS,
+        "shared": {**SHARED, "storeKey": {"secretName": "store"}},
+        "webhooks": {"enabled": True, "secretName": "hooks"},
+        "keda": {"enabled": True, "prometheus": "http://prometheus:9090"},
+        "networkPolicy": {"stores": {"to": [{"namespaceSelector": {}}]}},
+    },
 }
 REFUSED = {
     "no keys": {},
     "a setting that the chart makes": {**KEYS, "settings": {"listen": "0.0.0.0:1"}},
     "a name that is none": {**KEYS, "persistance": {}},
+    "one of two stores": {**KEYS, "shared": {**SHARED, "blobsUrl": ""}},
+    "a password for all to read": {**KEYS, "shared": {**SHARED, "databaseUrl": "postgresql://meshmend:open@db.example/meshmend"}},
+    "webhooks whose secrets no other server could read": {**KEYS, "shared": SHARED, "webhooks": {"enabled": True}},
+    "one node that becomes several": {**KEYS, "keda": {"enabled": True, "prometheus": "http://prometheus:9090"}},
     "a grace that is too short": {**KEYS, "terminationGracePeriodSeconds": 5},
 }
 
@@ -49,17 +65,21 @@ def main(program):
             sys.exit(f"{name}: {wrong} {report['errors']}")
         made = rendered(values)
         for document in made:
-            # A kind of the Prometheus operator, of which Kubernetes has no schema.
-            if document["kind"] != "ServiceMonitor":
+            # Kinds of the Prometheus operator and of KEDA, of which Kubernetes has no schema.
+            if document["kind"] not in ("ServiceMonitor", "ScaledObject"):
                 for version in KUBERNETES:
                     kubernetes_validate.validate(document, version, strict=True)
-        environment = check_pod(next(document for document in made if document["kind"] == "StatefulSet"))
-        check = subprocess.run([program, "config", "check", "--strict"], env=environment, capture_output=True, text=True)
-        if check.returncode:
-            sys.exit(f"{name}: {check.stdout}{check.stderr}")
+        pods = [document for document in made if document["kind"] in ("StatefulSet", "Deployment")]
+        for environment in map(check_pod, pods):
+            check = subprocess.run([program, "config", "check", "--strict"], env=environment, capture_output=True, text=True)
+            if check.returncode:
+                sys.exit(f"{name}: {check.stdout}{check.stderr}")
         kinds = {document["kind"] for document in made}
         if not {"NetworkPolicy", "PodDisruptionBudget", "Service"} <= kinds or ("ServiceMonitor" in kinds) != (name == "everything"):
             sys.exit(f"{name}: it makes {kinds}")
+        if ("ScaledObject" in kinds) != (name == "everything of several"):
+            sys.exit(f"{name}: it makes {kinds}")
+        check_selectors(name, pods, made)
     for name, values in REFUSED.items():
         try:
             rendered(values)
@@ -76,13 +96,32 @@ def rendered(values):
     return [document for text in manifests.values() for document in yaml.safe_load_all(text) if document]
 
 
+def check_selectors(name, pods, made):
+    """Every pod has a policy and a budget of its own, and the service of requests finds exactly those that take them."""
+    labels = {pod["metadata"]["name"]: pod["spec"]["template"]["metadata"]["labels"] for pod in pods}
+    if len(pods) != (2 if "several" in name else 1):
+        sys.exit(f"{name}: it makes {list(labels)}")
+
+    def found(selector):
+        return {pod for pod, own in labels.items() if selector.items() <= own.items()}
+
+    for document in made:
+        selector = document["spec"].get("podSelector" if document["kind"] == "NetworkPolicy" else "selector", {})
+        if document["kind"] in ("NetworkPolicy", "PodDisruptionBudget") and len(found(selector["matchLabels"])) != 1:
+            sys.exit(f"{name}: {document['kind']} {document['metadata']['name']} is one of {found(selector['matchLabels'])}")
+        if document["kind"] == "Service" and not document["metadata"]["name"].endswith("-admin"):
+            if any("worker" in pod for pod in found(selector)) or len(found(selector)) != 1:
+                sys.exit(f"{name}: the service leads to {found(selector)}")
+
+
 def check_pod(document):
     """No root, no rights, nothing in the environment that Kubernetes puts there, and time to drain. Gives its environment."""
     pod = document["spec"]["template"]["spec"]
     container = pod["containers"][0]
     environment = {entry["name"]: entry["value"] for entry in container["env"]}
     promises = {
-        "one owner of the store": document["spec"]["replicas"] == 1,
+        "one owner of the store": document["kind"] == "Deployment" or document["spec"]["replicas"] == 1,
+        "shared stores for several": (document["kind"] == "Deployment") == ("MESHMEND_DATABASE_URL" in environment),
         "no service links": pod["enableServiceLinks"] is False,
         "no token": pod["automountServiceAccountToken"] is False,
         "no root": pod["securityContext"]["runAsNonRoot"] is True,
@@ -90,7 +129,7 @@ def check_pod(document):
         "a file system that is read": container["securityContext"]["readOnlyRootFilesystem"] is True,
         "probes on the admin port": {container[f"{kind}Probe"]["httpGet"]["port"] for kind in ("liveness", "readiness", "startup")} == {"admin"},
         "time to drain": pod["terminationGracePeriodSeconds"] > 25,
-        "keys or everybody": ("MESHMEND_API_KEYS_FILE" in environment) != ("MESHMEND_ALLOW_ANONYMOUS" in environment),
+        "keys or everybody, where requests are taken": environment["MESHMEND_ROLE"] == "worker" or ("MESHMEND_API_KEYS_FILE" in environment) != ("MESHMEND_ALLOW_ANONYMOUS" in environment),
         "plain numbers": environment.get("MESHMEND_RATE_PER_MINUTE") in (None, "1200000"),
     }
     broken = [promise for promise, holds in promises.items() if not holds]

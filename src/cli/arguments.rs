@@ -79,6 +79,9 @@ pub(super) enum Command {
     },
     /// Exit with 0 if the service on this machine is ready (for containers).
     Healthcheck(ServiceArguments),
+    /// Carry what is in data_dir over to the database and the bucket that the settings name; both must be empty, and no server
+    /// may run on either side. Cut off, it can be run again.
+    Migrate(ServiceArguments),
     /// Show or check the configuration.
     #[command(subcommand)]
     Config(SettingsCommand),

@@ -9,6 +9,7 @@ mod figures;
 mod files;
 mod flags;
 mod manual;
+mod migrate;
 mod model;
 mod settings;
 mod several;
@@ -18,7 +19,7 @@ mod work;
 
 use crate::config::{Config, Loaded};
 use crate::formats::Format;
-use crate::jobs::{LostStore, RUN_JOB, run_job};
+use crate::jobs::{LostStore, Migrated, RUN_JOB, run_job};
 use crate::pipeline::{self, Operation};
 use arguments::{Arguments, Command, SettingsCommand};
 use clap::FromArgMatches as _;
@@ -33,6 +34,8 @@ pub struct Service {
     pub serve: fn(&Loaded, LostStore) -> anyhow::Result<()>,
     /// Fails unless the service of this configuration is ready.
     pub healthcheck: fn(&Config) -> anyhow::Result<()>,
+    /// Carries what is in the data directory over to the stores that several servers share.
+    pub migrate: fn(&Loaded) -> anyhow::Result<Migrated>,
 }
 
 /// Runs the command line `args`, the program's name first.
@@ -81,6 +84,7 @@ fn execute(command: Command, service: Service) -> Exit {
                 _ => Exit::Negative,
             }
         }
+        Command::Migrate(given) => migrate::run(&given.sources(), service.migrate),
         Command::Config(SettingsCommand::Show(given)) => settings::show(&given.sources()),
         Command::Config(SettingsCommand::Check { given, strict }) => {
             settings::check(&given.sources(), strict)

@@ -45,6 +45,19 @@ pub enum ConfigError {
         /// What it takes.
         expected: &'static str,
     },
+    /// The value has a password in it, which is not repeated here.
+    #[error(
+        "`{name}` ({origin}) has a password in it, which everybody would read who sees the settings: put it into a file \
+         and name that in `{file}`"
+    )]
+    Password {
+        /// The setting.
+        name: &'static str,
+        /// Where its value is from.
+        origin: Origin,
+        /// The setting that names the file.
+        file: &'static str,
+    },
     /// The machine does not give what the setting asks for.
     #[error("`{name}` ({origin}): {reason}")]
     Refused {

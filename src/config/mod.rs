@@ -3,6 +3,7 @@
 //! One table ([`SETTINGS`]) names every setting; the same name is the TOML key, in capitals behind `MESHMEND_` the
 //! environment variable, and with hyphens the flag.
 
+mod addresses;
 mod error;
 mod origin;
 mod settings;
@@ -13,7 +14,7 @@ pub use error::ConfigError;
 pub use origin::Origin;
 pub use settings::{Config, Entry, SETTINGS, Setting};
 pub use sources::{Loaded, Sources};
-pub use values::{Bytes, IsolationChoice, LogFormat, SandboxChoice};
+pub use values::{Bytes, IsolationChoice, LogFormat, Role, SandboxChoice};
 
 impl Config {
     /// Whether the API may be used without a key.
@@ -24,7 +25,7 @@ impl Config {
         match (&self.api_keys_file, self.allow_anonymous) {
             (Some(_), true) => Err(ConfigError::KeysAndAnonymous),
             (Some(_), false) => Ok(false),
-            (None, false) if !self.listen.ip().is_loopback() => {
+            (None, false) if self.role != Role::Worker && !self.listen.ip().is_loopback() => {
                 Err(ConfigError::OpenWithoutKeys { listen: self.listen })
             }
             (None, _) => Ok(true),
@@ -57,6 +58,7 @@ mod tests {
         );
         assert_eq!(config(&[open, ("allow_anonymous", "true")]).is_anonymous(), Ok(true));
         assert_eq!(config(&[open, ("api_keys_file", "keys")]).is_anonymous(), Ok(false));
+        assert_eq!(config(&[open, ("role", "worker")]).is_anonymous(), Ok(true), "it listens to nobody");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::error::ConfigError;
 use super::origin::Origin;
-use super::values::{Bytes, IsolationChoice, LogFormat, SandboxChoice, Value};
+use super::values::{Bytes, IsolationChoice, LogFormat, Role, SandboxChoice, Value};
 use std::net::{IpAddr, SocketAddr};
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::PathBuf;
@@ -82,6 +82,8 @@ fn value<T: Value>(entry: Option<&Entry>, name: &'static str) -> Result<T, Confi
 }
 
 settings! {
+    /// What this server does among several that share their stores: all, only take requests (api), or only run jobs (worker).
+    role: Role = "all",
     /// Where the API listens.
     listen: SocketAddr = "127.0.0.1:8080",
     /// Where health and metrics listen; off: nowhere.

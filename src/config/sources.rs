@@ -1,5 +1,6 @@
 //! Where values come from, and which of them wins.
 
+use super::addresses::has_password;
 use super::error::{ConfigError, did_you_mean};
 use super::origin::Origin;
 use super::settings::{Config, Entry, SETTINGS};
@@ -100,6 +101,12 @@ impl Sources {
         for (name, value) in &self.flags {
             put(name, value.clone(), Origin::Flag(name.replace('_', "-")))?;
         }
+        // Before anything is told of the values.
+        if let Some(entry) = entries.iter().find(|entry| has_password(entry)) {
+            let name = entry.setting.name;
+            let file = if name == "database_url" { "database_password_file" } else { "blobs_key_file" };
+            return Err(ConfigError::Password { name, origin: entry.origin.clone(), file });
+        }
         Ok(Loaded { config: Config::from_entries(&entries)?, entries, warnings })
     }
 
@@ -124,10 +131,17 @@ fn name_of(variable: &str) -> Option<String> {
 fn read_file(path: &Path) -> Result<Vec<(String, String)>, ConfigError> {
     let text = std::fs::read_to_string(path)
         .map_err(|e| ConfigError::File { path: path.to_owned(), reason: e.to_string() })?;
-    let table: toml::Table = text
-        .parse()
-        .map_err(|e: toml::de::Error| ConfigError::Toml { path: path.to_owned(), reason: e.to_string() })?;
+    let table: toml::Table =
+        text.parse().map_err(|e| ConfigError::Toml { path: path.to_owned(), reason: placed(&text, &e) })?;
     Ok(table.into_iter().map(|(name, value)| (name, text_of(&value))).collect())
+}
+
+/// What is wrong and in which line, without the line itself: a secret may stand there.
+fn placed(text: &str, error: &toml::de::Error) -> String {
+    match error.span().and_then(|span| text.get(..span.start)) {
+        Some(before) => format!("line {}: {}", before.split('\n').count(), error.message()),
+        None => error.message().to_owned(),
+    }
 }
 
 /// A TOML value as the text that a flag would have.
@@ -235,6 +249,27 @@ mod tests {
             "`listen` (environment MESHMEND_LISTEN) cannot be `localhost`; expected an IP address and a port, such as \
              127.0.0.1:8080"
         );
+    }
+
+    #[test]
+    fn an_address_with_a_password_is_refused_and_the_password_is_told_nowhere() {
+        let of_flag = Sources {
+            flags: pairs(&[("database_url", "postgresql://a:hidden@localhost/b")]),
+            ..Sources::default()
+        };
+        let error = of_flag.load().unwrap_err().to_string();
+        assert!(error.starts_with("`database_url` (flag --database-url) has a password"), "{error}");
+        assert!(error.contains("`database_password_file`") && !error.contains("hidden"), "{error}");
+        for (text, told) in [
+            ("blobs_endpoint = \"https://id:hidden@s3.example\"", "blobs_key_file"),
+            ("queue_max = 2\ndatabase_url = \"postgresql://a:hidden@localhost/b", "line 2"),
+        ] {
+            let file = file(text);
+            let error =
+                Sources { file: Some(file.path().to_owned()), ..Sources::default() }.load().unwrap_err();
+            let error = error.to_string();
+            assert!(error.contains(told) && !error.contains("hidden"), "{error}");
+        }
     }
 
     #[test]

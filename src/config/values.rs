@@ -30,6 +30,29 @@ pub enum LogFormat {
     Json,
 }
 
+/// What a server does among several.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Role {
+    /// Takes requests and runs jobs.
+    #[default]
+    All,
+    /// Takes requests.
+    Api,
+    /// Runs jobs.
+    Worker,
+}
+
+impl Role {
+    /// The word of the setting.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::All => "all",
+            Self::Api => "api",
+            Self::Worker => "worker",
+        }
+    }
+}
+
 /// Where a job runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum IsolationChoice {
@@ -204,6 +227,14 @@ impl Value for Duration {
         // A bound, so that adding it to any clock cannot overflow.
         let total = number.checked_mul(millis).filter(|total| (1..=1000 * 86_400_000).contains(total))?;
         Some(Self::from_millis(total))
+    }
+}
+
+impl Value for Role {
+    const EXPECTED: &'static str = "all, api or worker";
+
+    fn parse(text: &str) -> Option<Self> {
+        [Self::All, Self::Api, Self::Worker].into_iter().find(|role| role.word() == text)
     }
 }
 

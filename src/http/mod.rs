@@ -31,6 +31,7 @@ mod listen;
 mod listing;
 mod mesh_file;
 mod metrics;
+mod migrate;
 mod multipart;
 mod operations;
 #[cfg(feature = "otel")]
@@ -58,6 +59,7 @@ mod unread;
 pub use access::{Access, Neighbours};
 pub use healthcheck::healthcheck;
 pub use keys::{ApiKeys, KeyFileError};
+pub use migrate::migrate;
 pub use rate::RateSettings;
 pub use server::Server;
 pub use settings::HttpSettings;

@@ -28,7 +28,7 @@ const LAST_ANSWERS: Duration = Duration::from_secs(5);
 pub struct Server {
     settings: HttpSettings,
     jobs: Jobs,
-    listener: TcpListener,
+    listener: Option<TcpListener>,
     admin: Option<TcpListener>,
 }
 
@@ -41,19 +41,16 @@ impl Server {
         // Before the first request, so that every one is counted.
         metrics::recorder();
         let listener = listen_on(settings.listen).await?;
-        let admin = match settings.admin_listen {
-            Some(address) => Some(listen_on(address).await?),
-            None => None,
-        };
+        let admin = listen_on(settings.admin_listen).await?;
         Ok(Self { settings, jobs, listener, admin })
     }
 
-    /// Where the API listens.
+    /// Where the API listens, if it does.
     ///
     /// # Errors
     /// When the system does not say.
-    pub fn address(&self) -> io::Result<SocketAddr> {
-        self.listener.local_addr()
+    pub fn address(&self) -> io::Result<Option<SocketAddr>> {
+        self.listener.as_ref().map(TcpListener::local_addr).transpose()
     }
 
     /// Where health and metrics listen.
@@ -79,7 +76,12 @@ impl Server {
         let limited = Arc::clone(&service);
         let answered = CancellationToken::new();
         let serving = async {
-            listen::serve(self.listener, public, limits, connections_max, shares, &shutdown).await;
+            match self.listener {
+                Some(listener) => {
+                    listen::serve(listener, public, limits, connections_max, shares, &shutdown).await;
+                }
+                None => shutdown.drain.cancelled().await,
+            }
             answered.cancel();
         };
         let ending = async {
@@ -124,8 +126,9 @@ async fn forget_idle_callers(service: &Service) {
     }
 }
 
-async fn listen_on(address: SocketAddr) -> io::Result<TcpListener> {
+async fn listen_on(address: Option<SocketAddr>) -> io::Result<Option<TcpListener>> {
+    let Some(address) = address else { return Ok(None) };
     let told =
         |error: io::Error| io::Error::new(error.kind(), format!("cannot listen on {address}: {error}"));
-    TcpListener::bind(address).await.map_err(told)
+    TcpListener::bind(address).await.map(Some).map_err(told)
 }

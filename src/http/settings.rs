@@ -9,8 +9,8 @@ use super::rate::RateSettings;
 /// Addresses, access and limits of the HTTP side. The names are those of the configuration.
 #[derive(Debug, Clone)]
 pub struct HttpSettings {
-    /// Where the API listens.
-    pub listen: SocketAddr,
+    /// Where the API listens; `None`: nowhere, the server only runs jobs.
+    pub listen: Option<SocketAddr>,
     /// Where health and metrics listen; `None`: nowhere.
     pub admin_listen: Option<SocketAddr>,
     /// Who may use the API.
@@ -41,7 +41,7 @@ impl Default for HttpSettings {
     /// Loopback only, anonymous, no admin listener.
     fn default() -> Self {
         Self {
-            listen: (Ipv4Addr::LOCALHOST, 8080).into(),
+            listen: Some((Ipv4Addr::LOCALHOST, 8080).into()),
             admin_listen: None,
             access: Access::Anonymous(Neighbours::default()),
             cors_origins: Vec::new(),

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::config::{ConfigError, Loaded};
+use crate::config::{ConfigError, Loaded, Role};
 use crate::jobs::{BucketAccess, DatabaseAccess, SharedStores};
 
 /// The shared stores; `None`: those in the data directory.
@@ -10,7 +10,11 @@ pub(super) fn shared_stores(loaded: &Loaded) -> Result<Option<SharedStores>, Con
     let config = &loaded.config;
     let (database_url, blobs_url) = (config.database_url.trim(), config.blobs_url.trim());
     match (database_url.is_empty(), blobs_url.is_empty()) {
-        (true, true) => return Ok(None),
+        (true, true) if config.role == Role::All => return Ok(None),
+        (true, true) => {
+            let why = "takes jobs to or from other servers, so it needs database_url and blobs_url";
+            return Err(loaded.refused("role", &format!("`{}` {why}", config.role.word())));
+        }
         (false, true) => {
             return Err(
                 loaded.refused("database_url", &"it needs blobs_url: jobs are shared with their files")
@@ -100,6 +104,14 @@ mod tests {
             let refused = shared_stores(&loaded(&[alone])).unwrap_err().to_string();
             assert!(refused.contains(other), "{refused}");
         }
+        for role in ["api", "worker"] {
+            let refused = shared_stores(&loaded(&[("role", role)])).unwrap_err().to_string();
+            assert!(
+                refused.starts_with("`role` (flag --role)") && refused.contains("database_url"),
+                "{refused}"
+            );
+            assert!(shared_stores(&loaded(&[("role", role), database, blobs])).unwrap().is_some());
+        }
         let shared = shared_stores(&loaded(&[database, blobs])).unwrap().unwrap();
         assert_eq!((shared.database.url.as_str(), shared.bucket.url.as_str()), (database.1, blobs.1));
         assert_eq!((shared.bucket.endpoint, shared.bucket.key, shared.database.password), (None, None, None));
@@ -132,8 +144,7 @@ mod tests {
         };
         assert!(refused("blobs_key_file", &password).contains("found 1"));
         assert!(refused("database_password_file", &key).contains("found 2"));
-        let open = refused("database_url", "postgresql://a:hidden@localhost/b");
-        assert!(open.contains("password") && !open.contains("hidden"), "{open}");
+        assert!(refused("database_url", "postgresql://a@localhost/b?what=hidden").contains("database_url"));
         assert!(refused("blobs_url", "https://meshes.example").contains("s3://"));
         assert!(refused("blobs_endpoint", "s3.example").contains("https://"));
     }

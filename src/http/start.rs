@@ -17,7 +17,7 @@ use super::settings::HttpSettings;
 use super::shared_stores::shared_stores;
 use super::shutdown::Shutdown;
 use super::{cors, descriptors};
-use crate::config::{ConfigError, IsolationChoice, Loaded, LogFormat, SandboxChoice};
+use crate::config::{ConfigError, IsolationChoice, Loaded, LogFormat, Role, SandboxChoice};
 use crate::formats::ReadLimits;
 use crate::jobs::{
     Isolation, Jobs, JobsSettings, LostStore, PrivateHosts, RetryPlan, Sandbox, StartError, StoresError,
@@ -86,12 +86,10 @@ fn fitting(http: HttpSettings) -> HttpSettings {
 /// Says where the service is and how to try it.
 fn tell(server: &Server) -> std::io::Result<()> {
     let address = server.address()?;
-    let host = if address.ip().is_unspecified() {
-        format!("localhost:{}", address.port())
-    } else {
-        address.to_string()
-    };
-    tracing::info!("listening on http://{address}");
+    match address {
+        Some(address) => tracing::info!("listening on http://{address}"),
+        None => tracing::info!("running jobs that other servers take in"),
+    }
     if let Some(admin) = server.admin_address()? {
         if !admin.ip().is_loopback() {
             tracing::warn!(
@@ -100,9 +98,16 @@ fn tell(server: &Server) -> std::io::Result<()> {
         }
         tracing::info!("health and metrics on http://{admin}");
     }
-    tracing::info!(
-        "try: curl --fail-with-body --data-binary @part.stl http://{host}/v1/repair --output repaired.stl"
-    );
+    if let Some(address) = address {
+        let host = if address.ip().is_unspecified() {
+            format!("localhost:{}", address.port())
+        } else {
+            address.to_string()
+        };
+        tracing::info!(
+            "try: curl --fail-with-body --data-binary @part.stl http://{host}/v1/repair --output repaired.stl"
+        );
+    }
     Ok(())
 }
 
@@ -125,7 +130,7 @@ fn log_as(loaded: &Loaded) -> Result<(), ConfigError> {
 fn http_settings(loaded: &Loaded) -> Result<HttpSettings, ConfigError> {
     let config = &loaded.config;
     Ok(HttpSettings {
-        listen: config.listen,
+        listen: (config.role != Role::Worker).then_some(config.listen),
         admin_listen: config.admin_listen,
         access: access(loaded)?,
         cors_origins: cors_origins(loaded)?,
@@ -143,7 +148,7 @@ fn http_settings(loaded: &Loaded) -> Result<HttpSettings, ConfigError> {
 
 fn access(loaded: &Loaded) -> Result<Access, ConfigError> {
     let config = &loaded.config;
-    if config.is_anonymous()? {
+    if config.role == Role::Worker || config.is_anonymous()? {
         return Ok(Access::Anonymous(Neighbours {
             allowed_hosts: config.allowed_hosts.clone(),
             allowed_origins: cors_origins(loaded)?,
@@ -171,7 +176,7 @@ fn rate(loaded: &Loaded) -> Result<Option<RateSettings>, ConfigError> {
 
 fn webhooks(loaded: &Loaded) -> Result<Option<WebhookSettings>, ConfigError> {
     let config = &loaded.config;
-    if !config.webhooks {
+    if !config.webhooks || config.role == Role::Worker {
         return Ok(None);
     }
     let refused = |why: &dyn Display| loaded.refused("webhook_secret_file", why);
@@ -198,7 +203,10 @@ fn jobs_settings(loaded: &Loaded) -> Result<JobsSettings, ConfigError> {
     }
     let defaults = JobsSettings::new(&config.data_dir);
     Ok(JobsSettings {
-        slots: config.slots.map_or(defaults.slots, NonZero::get),
+        slots: match config.role {
+            Role::Api => 0,
+            Role::All | Role::Worker => config.slots.map_or(defaults.slots, NonZero::get),
+        },
         queue_max: config.queue_max.get(),
         jobs_max: config.jobs_max.get(),
         upload_bytes_max: config.upload_bytes_max.0,

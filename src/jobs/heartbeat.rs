@@ -11,8 +11,8 @@ use super::store::{ClaimRef, Ending, JobId, JobRow, StoreError};
 use crate::budget::Stopped;
 use crate::wire::{JobState, Problem};
 
-/// Renews the claim at a third of its lease until the run is over; stops the run when it is in vain, cancelled, or when
-/// the caller's time for it is over.
+/// Renews the claim at a third of its lease, and when another server has done something with the job, until the run is over;
+/// stops the run when it is in vain, cancelled, or when the caller's time for it is over.
 pub(super) async fn beat(
     service: Arc<Service>,
     claim: ClaimRef,
@@ -28,7 +28,10 @@ pub(super) async fn beat(
     };
     let renewals = async {
         loop {
-            tokio::time::sleep(service.settings.lease / 3).await;
+            tokio::select! {
+                () = tokio::time::sleep(service.settings.lease / 3) => {}
+                () = live.heard.notified() => {}
+            }
             match service.store.renew(claim, service.settings.lease).await {
                 Ok(false) => {}
                 Ok(true) => live.cancel(),

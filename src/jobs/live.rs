@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use tokio::sync::watch;
+use tokio::sync::{Notify, watch};
 use tokio_util::sync::CancellationToken;
 
 use super::clock::StageClock;
@@ -25,6 +25,8 @@ pub(super) struct Live {
     pub(super) is_outgrown: OnceLock<()>,
     /// The claim by which the job runs; 0: it waits.
     pub(super) epoch: u32,
+    /// Wakes who renews the claim: another server has done something with the job.
+    pub(super) heard: Notify,
     /// What is heard of the run.
     pub(super) clock: Option<StageClock>,
     /// Shared by all claims of the job in this process.
@@ -56,6 +58,12 @@ impl Live {
         // Told twice, the first word stays.
         let _ = self.is_void.set(());
         self.stop.cancel();
+    }
+
+    /// Another server has changed something: those who follow the job look at its row, and its run asks whether it is to stop.
+    pub(super) fn hear(&self) {
+        self.job.changes.send_modify(|count| *count += 1);
+        self.heard.notify_one();
     }
 
     /// The run goes on elsewhere, from its beginning.

@@ -9,6 +9,7 @@ use crate::wire::{Operation, Problem, Stage};
 /// Says what each series is.
 pub fn describe() {
     describe_gauge!("meshmend_jobs_queued", "Jobs that wait for a slot.");
+    describe_gauge!("meshmend_queued_bytes", "Bytes of the uploads of jobs that wait for a slot.");
     describe_gauge!("meshmend_jobs_running", "Jobs in a slot.");
     describe_gauge!("meshmend_jobs_kept", "Jobs in any state.");
     describe_gauge!("meshmend_queue_oldest_seconds", "Age of the job that waits for longest; 0: none waits.");
@@ -35,6 +36,7 @@ pub fn describe() {
 /// Jobs that wait and run, bytes on disk.
 pub(super) fn load(counts: JobCounts, data_bytes: u64) {
     gauge!("meshmend_jobs_queued").set(counts.queued as f64);
+    gauge!("meshmend_queued_bytes").set(counts.queued_bytes as f64);
     gauge!("meshmend_jobs_running").set(counts.running as f64);
     gauge!("meshmend_jobs_kept").set(counts.all as f64);
     let waited = counts.longest_queued.unwrap_or_default();

@@ -25,6 +25,7 @@ mod live;
 mod load;
 mod memory;
 mod meters;
+mod migrate;
 mod neighbours;
 mod pace;
 mod postgres;
@@ -65,6 +66,7 @@ pub use executor::Engine;
 pub use handle::Jobs;
 pub use load::Load;
 pub use meters::describe as describe_metrics;
+pub use migrate::{MigrateError, Migrated, migrate};
 pub use postgres::{DatabaseAccess, OpenError as PostgresOpenError, PostgresStore};
 pub use s3::{BucketAccess, BucketError, S3Blobs};
 pub use settings::{Isolation, JobsSettings};
@@ -73,8 +75,9 @@ pub use sqlite::{OpenError as SqliteOpenError, SqliteStore, StoreClock, StoreFil
 pub use start::StartError;
 pub use store::{
     AfterLoss, BlobRef, Change, ClaimRef, ClaimRequest, Created, Delivery, DeliveryRequest, DeliveryState,
-    DeliveryTry, Ending, Holding, IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept, Lane, Leases,
-    ListQuery, NewJob, NextTry, ResultRef, Sealer, StoreError, StoreFuture, Tenant, TryOutcome, Webhook,
+    DeliveryTry, Ending, Hint, Hints, Holding, IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept,
+    Lane, Leases, ListQuery, NewJob, NextTry, ResultRef, Sealer, StoreError, StoreFuture, Tenant, TryOutcome,
+    Webhook,
 };
 pub use stores::{Stores, StoresError};
 pub use trace::TraceParent;

@@ -68,6 +68,8 @@ pub struct JobsSettings {
     pub disk_free_bytes_min: u64,
     /// Time after which a job whose executor is not heard of is queued again. Default 30 s.
     pub lease: Duration,
+    /// Longest time between two looks at what other servers do while these are heard. Default 5 s.
+    pub look_every: Duration,
     /// Lost runs after which a job fails. Default 3.
     pub attempts_max: u32,
     /// Time for which a finished job is kept. Default 24 h.
@@ -116,6 +118,7 @@ impl JobsSettings {
             data_bytes_max: 20 << 30,
             disk_free_bytes_min: 256 << 20,
             lease: Duration::from_secs(30),
+            look_every: Duration::from_secs(5),
             attempts_max: 3,
             result_ttl: Duration::from_secs(24 * 60 * 60),
             deadline_max: Duration::from_secs(10 * 60),

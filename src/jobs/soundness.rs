@@ -58,6 +58,19 @@ impl Version {
     }
 }
 
+/// Opens the file, from its beginning, if it has the bytes that it had. Blocks.
+pub(super) fn open_sound(path: &Path, blob: &BlobRef) -> Result<File, Unsound> {
+    sound(File::open(path)?, blob)
+}
+
+fn sound(mut file: File, blob: &BlobRef) -> Result<File, Unsound> {
+    if digest(&mut file)? != blob.sha256 {
+        return Err(Unsound::Damaged);
+    }
+    file.rewind()?;
+    Ok(file)
+}
+
 impl KnownSound {
     /// Opens the file, from its beginning.
     pub(super) fn open(&self, path: &Path, blob: &BlobRef) -> Result<File, Unsound> {
@@ -70,10 +83,7 @@ impl KnownSound {
         if known.is_some_and(|(at, sound)| sound == version && at.elapsed() < LASTS) {
             return Ok(file);
         }
-        if digest(&mut file)? != blob.sha256 {
-            return Err(Unsound::Damaged);
-        }
-        file.rewind()?;
+        file = sound(file, blob)?;
         self.keep(&blob.key, version);
         Ok(file)
     }

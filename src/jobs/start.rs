@@ -147,7 +147,7 @@ fn begin_tasks(service: &Arc<Service>) {
     service.slots.spawn(load::tell_forever(Arc::clone(service)));
     if service.store.is_shared() {
         // Who waits for a job that another server runs does so until this one stops.
-        tokio::spawn(neighbours::look_forever(Arc::clone(service)));
+        tokio::spawn(neighbours::follow_forever(Arc::clone(service)));
     }
     service.slots.close();
 }

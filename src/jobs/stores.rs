@@ -13,9 +13,9 @@ use super::shared::{SharedError, SharedStores};
 use super::store::JobStore;
 
 /// The file of rows in the data directory.
-const ROWS_FILE: &str = "jobs.sqlite3";
+pub(super) const ROWS_FILE: &str = "jobs.sqlite3";
 /// The folder of files in the data directory.
-const BLOBS_DIR: &str = "spool";
+pub(super) const BLOBS_DIR: &str = "spool";
 
 /// The stores of a service.
 pub struct Stores {

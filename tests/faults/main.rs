@@ -34,9 +34,10 @@ macro_rules! trials {
 fn main() -> ExitCode {
     match std::env::args().nth(1).as_deref() {
         Some(jobs::RUN_JOB) => jobs::run_job(engine::run),
-        Some("serve") => {
-            cli::run(std::env::args_os(), cli::Service { serve: http::start, healthcheck: http::healthcheck })
-        }
+        Some("serve") => cli::run(
+            std::env::args_os(),
+            cli::Service { serve: http::start, healthcheck: http::healthcheck, migrate: http::migrate },
+        ),
         _ => libtest_mimic::run(&Arguments::from_args(), trials()).exit_code(),
     }
 }

@@ -56,6 +56,11 @@ impl Receiver {
         Self { host, calls }
     }
 
+    /// Whether no further call has come so far.
+    pub(crate) fn is_left_alone(&self) -> bool {
+        self.calls.try_recv().is_err()
+    }
+
     /// The next call.
     pub(crate) fn next(&self) -> Received {
         self.calls.recv_timeout(PATIENCE).unwrap()

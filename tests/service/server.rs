@@ -92,7 +92,10 @@ impl Server {
         let mut child = command.spawn().unwrap();
         let mut log = BufReader::new(child.stderr.take().unwrap());
         let mut seen = String::new();
-        let address = bound(&mut log, "listening on http://", &mut seen);
+        // A server that only runs jobs has no such address.
+        let is_worker = settings.windows(2).any(|pair| pair == ["--role", "worker"]);
+        let address =
+            if is_worker { String::new() } else { bound(&mut log, "listening on http://", &mut seen) };
         let admin = bound(&mut log, "health and metrics on http://", &mut seen);
         // The pipe must not fill up.
         let heard = Arc::new(Mutex::new(seen));

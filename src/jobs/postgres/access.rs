@@ -6,8 +6,9 @@ use std::time::Duration;
 
 use deadpool_postgres::{Hook, HookError, Manager, ManagerConfig, Pool, RecyclingMethod, Runtime};
 use rustls_platform_verifier::BuilderVerifierExt;
-use tokio_postgres::Config;
 use tokio_postgres::config::{Host, SslMode};
+use tokio_postgres::tls::MakeTlsConnect;
+use tokio_postgres::{Client, Config, Connection, Socket};
 use tokio_postgres_rustls::MakeRustlsConnect;
 
 use super::OpenError;
@@ -20,6 +21,9 @@ const SILENCE: Duration = Duration::from_secs(10);
 const SET_UP: &str = "SET statement_timeout = '30s'; SET lock_timeout = '20s'; \
      SET idle_in_transaction_session_timeout = '60s'; SET default_transaction_isolation = 'read committed'; \
      SET client_min_messages = 'warning'";
+
+/// An encrypted stream to the database.
+pub(super) type TlsStream = <MakeRustlsConnect as MakeTlsConnect<Socket>>::Stream;
 
 /// Where the database is, and how it is used.
 #[derive(Clone)]
@@ -86,16 +90,29 @@ fn is_this_machine(host: &Host) -> bool {
     }
 }
 
+/// What connections are encrypted with, where they are.
+fn tls() -> Result<MakeRustlsConnect, OpenError> {
+    let config =
+        rustls::ClientConfig::builder_with_provider(Arc::new(rustls::crypto::ring::default_provider()))
+            .with_safe_default_protocol_versions()
+            .and_then(BuilderVerifierExt::with_platform_verifier)
+            .map_err(|error| OpenError::Database(format!("TLS cannot be used: {error}")))?
+            .with_no_client_auth();
+    Ok(MakeRustlsConnect::new(config))
+}
+
+/// A connection beside the pool, which goes on as long as both are kept.
+pub(super) async fn connect(
+    access: &DatabaseAccess,
+) -> Result<(Client, Connection<Socket, TlsStream>), OpenError> {
+    let mut config = access.config()?;
+    Ok(config.application_name("meshmend hints").connect(tls()?).await?)
+}
+
 /// The pool; no connection is made yet.
 pub(super) fn pool(access: &DatabaseAccess) -> Result<Pool, OpenError> {
-    let config = access.config()?;
-    let tls = rustls::ClientConfig::builder_with_provider(Arc::new(rustls::crypto::ring::default_provider()))
-        .with_safe_default_protocol_versions()
-        .and_then(BuilderVerifierExt::with_platform_verifier)
-        .map_err(|error| OpenError::Database(format!("TLS cannot be used: {error}")))?
-        .with_no_client_auth();
     let how = ManagerConfig { recycling_method: RecyclingMethod::Fast };
-    let manager = Manager::from_config(config, MakeRustlsConnect::new(tls), how);
+    let manager = Manager::from_config(access.config()?, tls()?, how);
     let set_up = Hook::async_fn(|client, _| {
         Box::pin(async move { client.batch_execute(SET_UP).await.map_err(HookError::Backend) })
     });

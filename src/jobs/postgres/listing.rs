@@ -106,13 +106,15 @@ pub(super) async fn ended(session: &Session, jobs: Vec<JobId>) -> Result<Vec<Job
 pub(super) async fn counts(session: &Session) -> Result<JobCounts, StoreError> {
     let sql = "SELECT (SELECT count(*) FROM jobs WHERE state = 'queued'), (SELECT count(*) FROM jobs WHERE state = 'running'),
         (SELECT count(*) FROM jobs),
-        (SELECT greatest(now_ms() - created_at, 0) FROM jobs WHERE state = 'queued' ORDER BY id LIMIT 1)";
+        (SELECT greatest(now_ms() - created_at, 0) FROM jobs WHERE state = 'queued' ORDER BY id LIMIT 1),
+        (SELECT least(coalesce(sum(input_bytes), 0), 9223372036854775807)::bigint FROM jobs WHERE state = 'queued')";
     let row = session.row(sql, &[]).await?;
     let longest: Option<i64> = value(&row, 3)?;
     Ok(JobCounts {
         queued: number(&row, 0)?,
         running: number(&row, 1)?,
         all: number(&row, 2)?,
+        queued_bytes: number(&row, 4)?,
         longest_queued: longest.map(|ms| Duration::from_millis(ms.unsigned_abs())),
     })
 }

@@ -5,6 +5,8 @@
 
 mod access;
 mod claims;
+mod hints;
+mod import;
 mod keeping;
 mod listing;
 mod locks;
@@ -16,6 +18,7 @@ mod tenants;
 
 use std::collections::HashSet;
 use std::fmt;
+use std::sync::Arc;
 use std::time::Duration;
 
 use deadpool_postgres::Pool;
@@ -23,18 +26,21 @@ use jiff::Timestamp;
 use tokio_postgres::error::SqlState;
 
 use super::store::{
-    AfterLoss, BlobRef, Change, ClaimRef, ClaimRequest, Created, Delivery, DeliveryRequest, Ending, Holding,
-    IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept, Leases, ListQuery, NewJob, NextTry, Sealer,
-    StoreError, StoreFuture, Tenant, TryOutcome,
+    AfterLoss, BlobRef, Change, ClaimRef, ClaimRequest, Created, Delivery, DeliveryRequest, Ending, Hint,
+    Hints, Holding, IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept, Leases, ListQuery, NewJob,
+    NextTry, Sealer, StoreError, StoreFuture, Tenant, TryOutcome,
 };
-use crate::wire::Problem;
+use crate::wire::{JobState, Problem};
 pub use access::DatabaseAccess;
+use hints::HintLine;
+pub(super) use import::Rows;
 use session::{Body, Session};
 
 /// A store in a database.
 pub struct PostgresStore {
     pool: Pool,
     mark: String,
+    line: Arc<HintLine>,
 }
 
 impl fmt::Debug for PostgresStore {
@@ -86,7 +92,7 @@ impl PostgresStore {
         schema::migrate(&client).await?;
         let mark = client.query_one("SELECT mark FROM identity", &[]).await?.try_get(0)?;
         drop(client);
-        Ok(Self { pool, mark })
+        Ok(Self { pool, mark, line: Arc::new(HintLine::open(access.clone())) })
     }
 
     /// The mark that this store and its files have.
@@ -94,14 +100,25 @@ impl PostgresStore {
         &self.mark
     }
 
-    /// Makes a change.
+    /// Makes a change that no other server waits for.
     fn write<T: Send + 'static>(
         &self,
         body: impl for<'s> FnOnce(&'s Session) -> Body<'s, T> + Send + 'static,
     ) -> StoreFuture<'_, T> {
-        let pool = self.pool.clone();
+        self.write_and_tell(body, |_| Vec::new())
+    }
+
+    /// Makes a change, and tells other servers of it.
+    fn write_and_tell<T: Send + 'static>(
+        &self,
+        body: impl for<'s> FnOnce(&'s Session) -> Body<'s, T> + Send + 'static,
+        hints: impl FnOnce(&T) -> Vec<Hint> + Send + 'static,
+    ) -> StoreFuture<'_, T> {
+        let (pool, line) = (self.pool.clone(), Arc::clone(&self.line));
         Box::pin(async move {
-            let change = tokio::spawn(async move { Session::transact(&pool, body).await });
+            let change = tokio::spawn(async move {
+                Session::transact(&pool, body).await.inspect(|made| line.tell(hints(made)))
+            });
             change.await.map_err(|error| StoreError::Unavailable(error.to_string()))?
         })
     }
@@ -112,6 +129,14 @@ impl PostgresStore {
         body: impl for<'s> FnOnce(&'s Session) -> Body<'s, T> + Send + 'static,
     ) -> StoreFuture<'_, T> {
         Box::pin(Session::look(&self.pool, body))
+    }
+}
+
+/// What others are told of a job whose run is over.
+fn after_run(id: JobId, after: AfterLoss) -> Vec<Hint> {
+    match after {
+        AfterLoss::Queued => vec![Hint::Job(id), Hint::Work],
+        AfterLoss::Ended => vec![Hint::Job(id)],
     }
 }
 
@@ -136,7 +161,13 @@ fn told(error: &tokio_postgres::Error) -> String {
 
 impl JobStore for PostgresStore {
     fn create(&self, job: NewJob, queue_max: usize) -> StoreFuture<'_, Created> {
-        self.write(move |session| Box::pin(claims::create(session, job, queue_max)))
+        self.write_and_tell(
+            move |session| Box::pin(claims::create(session, job, queue_max)),
+            |created| match created {
+                Created::New(row) if row.state == JobState::Queued => vec![Hint::Work],
+                Created::New(_) | Created::Known(_) => Vec::new(),
+            },
+        )
     }
 
     fn get(&self, id: JobId) -> StoreFuture<'_, JobRow> {
@@ -174,6 +205,10 @@ impl JobStore for PostgresStore {
         true
     }
 
+    fn hints(&self) -> Option<Hints> {
+        Some(self.line.hints())
+    }
+
     fn counts(&self) -> StoreFuture<'_, JobCounts> {
         self.read(|session| Box::pin(listing::counts(session)))
     }
@@ -188,8 +223,10 @@ impl JobStore for PostgresStore {
             let turns = self.read(move |session| Box::pin(tenants::in_turn(session, asked))).await?;
             for (tenant, lane) in turns {
                 let request = request.clone();
-                let claim =
-                    self.write(move |session| Box::pin(claims::claim(session, request, tenant, lane)));
+                let claim = self.write_and_tell(
+                    move |session| Box::pin(claims::claim(session, request, tenant, lane)),
+                    |row| row.iter().map(|row| Hint::Job(row.id)).collect(),
+                );
                 if let Some(row) = claim.await? {
                     return Ok(Some(row));
                 }
@@ -203,19 +240,31 @@ impl JobStore for PostgresStore {
     }
 
     fn finish(&self, claim: ClaimRef, ending: Ending) -> StoreFuture<'_, ()> {
-        self.write(move |session| Box::pin(claims::finish(session, claim, ending)))
+        self.write_and_tell(
+            move |session| Box::pin(claims::finish(session, claim, ending)),
+            move |()| vec![Hint::Job(claim.id)],
+        )
     }
 
     fn release(&self, claim: ClaimRef) -> StoreFuture<'_, AfterLoss> {
-        self.write(move |session| Box::pin(claims::release(session, claim)))
+        self.write_and_tell(
+            move |session| Box::pin(claims::release(session, claim)),
+            move |&after| after_run(claim.id, after),
+        )
     }
 
     fn demote(&self, claim: ClaimRef, is_outgrown: bool) -> StoreFuture<'_, AfterLoss> {
-        self.write(move |session| Box::pin(claims::demote(session, claim, is_outgrown)))
+        self.write_and_tell(
+            move |session| Box::pin(claims::demote(session, claim, is_outgrown)),
+            move |&after| after_run(claim.id, after),
+        )
     }
 
     fn lose(&self, claim: ClaimRef, problem: Problem, attempts_max: u32) -> StoreFuture<'_, AfterLoss> {
-        self.write(move |session| Box::pin(claims::lose(session, claim, problem, attempts_max)))
+        self.write_and_tell(
+            move |session| Box::pin(claims::lose(session, claim, problem, attempts_max)),
+            move |&after| after_run(claim.id, after),
+        )
     }
 
     fn recover(
@@ -224,15 +273,24 @@ impl JobStore for PostgresStore {
         problem: Problem,
         attempts_max: u32,
     ) -> StoreFuture<'_, Vec<(JobId, AfterLoss)>> {
-        self.write(move |session| Box::pin(claims::recover(session, leases, problem, attempts_max)))
+        self.write_and_tell(
+            move |session| Box::pin(claims::recover(session, leases, problem, attempts_max)),
+            |recovered| recovered.iter().flat_map(|&(id, after)| after_run(id, after)).collect(),
+        )
     }
 
     fn end_queued(&self, id: JobId, ending: Ending) -> StoreFuture<'_, bool> {
-        self.write(move |session| Box::pin(claims::end_queued(session, id, ending)))
+        self.write_and_tell(
+            move |session| Box::pin(claims::end_queued(session, id, ending)),
+            move |_| vec![Hint::Job(id)],
+        )
     }
 
     fn cancel(&self, id: JobId, ending: Ending) -> StoreFuture<'_, bool> {
-        self.write(move |session| Box::pin(claims::cancel(session, id, ending)))
+        self.write_and_tell(
+            move |session| Box::pin(claims::cancel(session, id, ending)),
+            move |_| vec![Hint::Job(id)],
+        )
     }
 
     fn expire(&self, id: JobId) -> StoreFuture<'_, Vec<BlobRef>> {
@@ -240,7 +298,10 @@ impl JobStore for PostgresStore {
     }
 
     fn delete(&self, id: JobId) -> StoreFuture<'_, Vec<BlobRef>> {
-        self.write(move |session| Box::pin(keeping::delete(session, id)))
+        self.write_and_tell(
+            move |session| Box::pin(keeping::delete(session, id)),
+            move |_| vec![Hint::Job(id)],
+        )
     }
 
     fn due(&self) -> StoreFuture<'_, Vec<JobId>> {

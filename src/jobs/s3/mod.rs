@@ -19,6 +19,8 @@ use object_store::path::Path;
 use object_store::{ObjectStore, ObjectStoreExt as _, PutMode, PutOptions};
 use tokio::runtime::{self, Runtime};
 
+use sha2::{Digest as _, Sha256};
+
 use super::blobs::{BlobStore, BlobWriter, StoredBlob};
 pub use access::{BucketAccess, BucketError};
 use cache::Cache;
@@ -96,6 +98,30 @@ impl S3Blobs {
                 Err(object_store::Error::NotFound { .. }) => Ok(None),
                 Err(error) => Err(error),
             }
+        })
+    }
+
+    /// Sends a complete file of this machine, which stays as it is. Blocks.
+    ///
+    /// # Errors
+    /// The bucket does not take it, or has one of that name.
+    pub(super) fn send(&self, file: &FilePath, key: &str) -> io::Result<()> {
+        self.parts.upload(file, key)
+    }
+
+    /// The SHA-256 of a file in the bucket, of which no copy is kept. Blocks.
+    ///
+    /// # Errors
+    /// There is no such file, or the bucket does not answer.
+    pub(super) fn digest(&self, key: &str) -> io::Result<[u8; 32]> {
+        let place = self.parts.place(key);
+        self.parts.run(move |parts| async move {
+            let mut content = parts.bucket.get(&place).await?.into_stream();
+            let mut digest = Sha256::new();
+            while let Some(piece) = content.try_next().await? {
+                digest.update(&piece);
+            }
+            Ok(digest.finalize().into())
         })
     }
 

@@ -132,5 +132,12 @@ pub(super) fn counts(connection: &Connection, now: i64) -> Result<JobCounts, Sto
     let oldest: Option<i64> = statement.query_row([], |row| row.get(0)).optional()?;
     counts.longest_queued =
         oldest.map(|at| Duration::from_millis(u64::try_from(now.saturating_sub(at)).unwrap_or_default()));
+    // All open ones but those that run, of which there are few.
+    let mut statement = connection.prepare_cached(
+        "SELECT (SELECT coalesce(sum(open_bytes), 0) FROM holdings WHERE open_bytes > 0)
+            - (SELECT coalesce(sum(input ->> 'bytes'), 0) FROM jobs WHERE state = 'running')",
+    )?;
+    let queued_bytes: i64 = statement.query_row([], |row| row.get(0))?;
+    counts.queued_bytes = u64::try_from(queued_bytes).unwrap_or_default();
     Ok(counts)
 }

@@ -4,6 +4,7 @@
 //! disk before it is told, and readers see whole changes only.
 
 mod claims;
+mod export;
 mod identity;
 mod keeping;
 mod listing;
@@ -32,6 +33,7 @@ use super::store::{
     StoreError, StoreFuture, Tenant, TryOutcome,
 };
 use crate::wire::Problem;
+pub(super) use export::Export;
 pub use identity::StoreFile;
 pub use schema::OpenError;
 use writer::Writer;

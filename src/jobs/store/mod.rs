@@ -1,8 +1,10 @@
 //! Where the rows of jobs live: the trait that every store keeps.
 
+mod hint;
 mod id;
 mod outbox;
 mod row;
+pub(super) mod tables;
 mod tenant;
 
 use std::collections::HashSet;
@@ -12,6 +14,7 @@ use std::time::Duration;
 use jiff::Timestamp;
 
 use crate::wire::{JobState, Problem};
+pub use hint::{Hint, Hints};
 pub use id::JobId;
 pub use outbox::{Delivery, DeliveryRequest, DeliveryState, DeliveryTry, NextTry, TryOutcome, Webhook};
 pub use row::{BlobRef, ClaimRef, Ending, IdempotencyKey, JobRow, Lane, NewJob, ResultRef};
@@ -59,6 +62,8 @@ pub type StoreFuture<'s, T> = Pin<Box<dyn Future<Output = Result<T, StoreError>>
 pub struct JobCounts {
     /// Waiting for a slot.
     pub queued: usize,
+    /// Bytes of the uploads of those.
+    pub queued_bytes: u64,
     /// In a slot.
     pub running: usize,
     /// In any state.
@@ -188,6 +193,11 @@ pub trait JobStore: Send + Sync {
 
     /// Whether other processes change these rows too, so that what they do has to be looked for.
     fn is_shared(&self) -> bool;
+
+    /// What other processes tell of what they do, where they do.
+    fn hints(&self) -> Option<Hints> {
+        None
+    }
 
     /// Numbers of jobs.
     fn counts(&self) -> StoreFuture<'_, JobCounts>;

@@ -23,13 +23,62 @@ impl Street {
         slots: usize,
         engine: impl Fn(&[u8], &Budget) -> Result<Answer, Failure> + Send + Sync + 'static,
     ) -> House {
+        self.house_with(|settings| (settings.slots, settings.lease) = (slots, Duration::from_secs(1)), engine)
+            .await
+    }
+
+    /// One that looks at what others do, and renews its claims, once in an hour.
+    async fn listening_house(
+        &self,
+        slots: usize,
+        engine: impl Fn(&[u8], &Budget) -> Result<Answer, Failure> + Send + Sync + 'static,
+    ) -> House {
+        let change = |settings: &mut JobsSettings| {
+            (settings.slots, settings.lease, settings.look_every) = (slots, HOURS, HOURS);
+        };
+        let house = self.house_with(change, engine).await;
+        house.hears(true).await;
+        house
+    }
+
+    async fn house_with(
+        &self,
+        change: impl FnOnce(&mut JobsSettings),
+        engine: impl Fn(&[u8], &Budget) -> Result<Answer, Failure> + Send + Sync + 'static,
+    ) -> House {
         let change = |settings: &mut JobsSettings| {
             settings.shared = Some(self.shared.clone());
-            settings.slots = slots;
             settings.interactive_slots = 0;
-            settings.lease = Duration::from_secs(1);
+            change(settings);
         };
         house(change, engine).await
+    }
+
+    /// The connections by which servers tell each other what they do are lost. How many there were.
+    async fn cut_the_lines(&self) -> i64 {
+        let (client, connection) =
+            tokio_postgres::connect(&self.shared.database.url, tokio_postgres::NoTls).await.unwrap();
+        tokio::spawn(connection);
+        let sql = "SELECT count(pg_terminate_backend(pid)) FROM pg_stat_activity
+            WHERE datname = current_database() AND application_name = 'meshmend hints'";
+        client.query_one(sql, &[]).await.unwrap().get(0)
+    }
+}
+
+/// Longer than any test.
+const HOURS: Duration = Duration::from_secs(3 * 60 * 60);
+
+impl House {
+    /// Waits until it hears what others tell, or until it does not.
+    async fn hears(&self, hears: bool) {
+        let hints = self.service().store.hints().unwrap();
+        for _ in 0..PATIENCE.as_millis() / 5 {
+            if hints.are_heard() == hears {
+                return;
+            }
+            tokio::time::sleep(Duration::from_millis(5)).await;
+        }
+        panic!("hears others: {}", hints.are_heard());
     }
 }
 
@@ -73,6 +122,45 @@ shared_tests! {
         first.cancel(id(&job)).await.unwrap();
         assert_eq!(first.end_of(&job).await.state, JobState::Cancelled);
         drop(second);
+    }
+
+    async fn what_others_do_is_heard_by_servers_that_do_not_look(street) {
+        let (told, heard) = mpsc::channel();
+        let first = street.listening_house(0, mend).await;
+        let _second = street.listening_house(1, work_until_told(heard)).await;
+        let job = first.order(b"a mesh").await.unwrap();
+        let mut events = first.events(id(&job), EventId::default()).await.unwrap().unwrap();
+        let mut states = Vec::new();
+        while let Some(event) = events.next().await {
+            if let Happened::State { state, .. } = event.what {
+                states.push(state);
+                if state == JobState::Running {
+                    told.send(()).unwrap();
+                }
+            }
+        }
+        assert_eq!(states, [JobState::Queued, JobState::Running, JobState::Succeeded]);
+        let stopped = first.order(b"another mesh").await.unwrap();
+        first.until("running", |load| load.running == 1).await;
+        first.cancel(id(&stopped)).await.unwrap();
+        assert_eq!(first.end_of(&stopped).await.state, JobState::Cancelled, "long before the claim is renewed");
+    }
+
+    async fn servers_that_do_not_hear_each_other_look(street) {
+        let (told, heard) = mpsc::channel();
+        let first = street.listening_house(0, mend).await;
+        let second = street.listening_house(1, work_until_told(heard)).await;
+        let job = first.order(b"a mesh").await.unwrap();
+        second.until("running", |load| load.running == 1).await;
+        assert_eq!(street.cut_the_lines().await, 2);
+        first.hears(false).await;
+        told.send(()).unwrap();
+        assert_eq!(first.end_of(&job).await.state, JobState::Succeeded);
+        for house in [&first, &second] {
+            house.hears(true).await;
+        }
+        told.send(()).unwrap();
+        assert_eq!(first.run(b"another mesh").await.state, JobState::Succeeded, "and they hear each other again");
     }
 
     async fn the_next_start_of_one_server_leaves_the_jobs_of_others_alone(street) {

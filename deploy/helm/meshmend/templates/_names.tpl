@@ -7,6 +7,11 @@ app.kubernetes.io/name: meshmend
 app.kubernetes.io/instance: {{ .Release.Name }}
 {{- end }}
 
+{{- /* What a server does, where there are several: of its role. Alone it has no such label, as its service has none. */ -}}
+{{- define "meshmend.component" -}}
+{{- if ne . "all" }}app.kubernetes.io/component: {{ . }}{{ end }}
+{{- end }}
+
 {{- define "meshmend.labels" -}}
 {{ include "meshmend.selector" . }}
 app.kubernetes.io/version: {{ .Chart.AppVersion | quote }}

@@ -1,64 +1,31 @@
 //! The cases on S3: a server of its own for each test, in this process, with its files in a temporary directory.
 
-use std::net::{Ipv4Addr, SocketAddr, TcpListener};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use hyper::server::conn::http1;
-use hyper_util::rt::TokioIo;
-use s3s::auth::SimpleAuth;
-use s3s::service::S3ServiceBuilder;
-use tokio_util::sync::{CancellationToken, DropGuard};
-
 use super::{BlobHouse, blob_contract, listed, read, write};
 use crate::jobs::{BlobStore, BucketAccess, S3Blobs};
+use server::{BUCKET, KEY};
+
+#[path = "../../../../tests/support/s3_server.rs"]
+mod server;
 
 /// A server with one bucket, until it is dropped.
 pub(in crate::jobs::tests) struct S3Server {
-    address: SocketAddr,
+    running: server::S3Server,
     dir: tempfile::TempDir,
-    _running: DropGuard,
 }
-
-const BUCKET: &str = "meshes";
-const KEY: (&str, &str) = ("an-id", "a secret");
 
 impl S3Server {
     pub(in crate::jobs::tests) fn start() -> Self {
         let dir = tempfile::tempdir().unwrap();
-        std::fs::create_dir(dir.path().join(BUCKET)).unwrap();
-        let mut service = S3ServiceBuilder::new(s3s_fs::FileSystem::new(dir.path()).unwrap());
-        service.set_auth(SimpleAuth::from_single(KEY.0, KEY.1));
-        let service = service.build();
-        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
-        listener.set_nonblocking(true).unwrap();
-        let address = listener.local_addr().unwrap();
-        let stop = CancellationToken::new();
-        let stopped = stop.clone();
-        std::thread::spawn(move || {
-            let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
-            runtime.block_on(async {
-                let listener = tokio::net::TcpListener::from_std(listener).unwrap();
-                loop {
-                    let stream = tokio::select! {
-                        () = stopped.cancelled() => return,
-                        accepted = listener.accept() => accepted.unwrap().0,
-                    };
-                    let service = service.clone();
-                    tokio::spawn(async move {
-                        // A client that goes away is none of this server's business.
-                        drop(http1::Builder::new().serve_connection(TokioIo::new(stream), service).await);
-                    });
-                }
-            });
-        });
-        Self { address, dir, _running: stop.drop_guard() }
+        Self { running: server::S3Server::start(dir.path(), 0), dir }
     }
 
     pub(in crate::jobs::tests) fn access(&self) -> BucketAccess {
         BucketAccess {
             url: format!("s3://{BUCKET}/a-shop"),
-            endpoint: Some(format!("http://{}", self.address)),
+            endpoint: Some(format!("http://{}", self.running.address)),
             region: "us-east-1".to_owned(),
             key: Some((KEY.0.to_owned(), KEY.1.to_owned())),
             cache_bytes_max: 1 << 30,

@@ -114,6 +114,7 @@ pub(super) async fn counts_follow_the_jobs<H: StoreHouse>() {
     let store = house.store();
     let counts = async || {
         let counts = store.counts().await.unwrap();
+        assert_eq!(counts.queued_bytes, counts.queued as u64 * job().input.bytes);
         (counts.queued, counts.running, counts.all)
     };
     assert_eq!(counts().await, (0, 0, 0));

@@ -1,5 +1,6 @@
 //! The cases on PostgreSQL.
 
+#[path = "../../../../../tests/support/postgres_server.rs"]
 mod server;
 
 use std::sync::Arc;

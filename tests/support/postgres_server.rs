@@ -27,7 +27,7 @@ rm -rf "$dir"
 "#;
 
 /// A server that runs.
-pub(super) struct Server {
+pub(crate) struct Server {
     dir: PathBuf,
     keeper: Mutex<Keeper>,
 }
@@ -48,7 +48,7 @@ impl Drop for Keeper {
 }
 
 /// Where the server's programs are, if they are installed: those of the newest version.
-pub(super) fn programs() -> Option<PathBuf> {
+pub(crate) fn programs() -> Option<PathBuf> {
     let versions = std::fs::read_dir("/usr/lib/postgresql").ok()?;
     let number = |path: &PathBuf| path.file_name()?.to_str()?.parse::<u32>().ok();
     let newest = versions.flatten().map(|entry| entry.path()).max_by_key(number)?;
@@ -57,13 +57,13 @@ pub(super) fn programs() -> Option<PathBuf> {
 
 impl Server {
     /// The one that all tests of this process share.
-    pub(super) fn shared() -> &'static Self {
+    pub(crate) fn shared() -> &'static Self {
         static SHARED: OnceLock<Server> = OnceLock::new();
         SHARED.get_or_init(Self::start)
     }
 
     /// Starts another one.
-    pub(super) fn start() -> Self {
+    pub(crate) fn start() -> Self {
         let programs = programs().expect("PostgreSQL is installed");
         // The server refuses to run as root.
         let mut command = if rustix::process::geteuid().is_root() {
@@ -84,12 +84,12 @@ impl Server {
     }
 
     /// How a database of it is addressed.
-    pub(super) fn url(&self, database: &str) -> String {
+    pub(crate) fn url(&self, database: &str) -> String {
         format!("host={} user=meshmend dbname={database}", self.dir.display())
     }
 
     /// Ends the server at once, as a crash does, and starts it anew. Blocks.
-    pub(super) fn crash_and_start(&self) {
+    pub(crate) fn crash_and_start(&self) {
         let mut keeper = self.keeper.lock().unwrap();
         writeln!(keeper.process.stdin.as_mut().unwrap(), "anew").unwrap();
         let mut result = String::new();
