@@ -286,6 +286,19 @@ impl Budget {
         self.within(self.work_left() / part.max(1), body)
     }
 
+    /// As [`within`](Self::within), with all that is left but one `part`th of it.
+    ///
+    /// # Errors
+    /// Those of `body`, and the end of what the share is a part of.
+    pub fn within_all_but<T, E: From<Stopped> + AsStopped>(
+        &self,
+        part: u64,
+        body: impl FnOnce() -> Result<T, E>,
+    ) -> Result<Option<T>, E> {
+        let left = self.work_left();
+        self.within(left - left / part.max(1), body)
+    }
+
     /// Tells the observer of the work, and the next time when there is a 32nd more: a few hundred times in the longest run.
     fn tell_work(&self, used: u64) {
         let before = self.work_told_at.fetch_max(used.saturating_add(1 + used / 32), Ordering::Relaxed);

@@ -586,6 +586,30 @@ fn parts_become_one_solid_only_when_that_is_asked() {
 }
 
 #[test]
+fn parts_that_were_mended_and_needed_no_union_are_told_as_mended() {
+    let (points, mut open) = cuboid([0.0; 3], [1.0; 3]);
+    open.pop();
+    let objects = format!("<object id=\"1\">{}</object>", mesh(&points, &open, |_| String::new()));
+    let build = "<item objectid=\"1\"/><item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 5 0 0\"/>";
+    let bytes = file(&model("", &objects, build));
+    let answer = run(Operation::Repair, &bytes, &Options { parts: Parts::Union, ..Options::default() });
+    let report = &answer.report;
+    assert_eq!(report.outcome, Some(Outcome::Repaired));
+    assert_eq!(report.parts[0].report.outcome, Some(Outcome::Repaired));
+    assert!(report.actions.iter().any(|action| action.step == "fill-holes"));
+    assert!(report.before.as_ref().is_some_and(|before| before.counts.boundary_edges > 0));
+    let certificate = report.certificate.as_ref().unwrap();
+    assert!(certificate.is_printable());
+    assert_ne!(certificate.sha256, report.input.sha256);
+    assert_eq!(project(result(&answer)).bodies[0].soup.triangles.len(), 12, "the mended part, still once");
+    // A file whose parts are sound and apart is the very file that came.
+    let sound = file(&model("", &format!("<object id=\"1\">{}</object>", plain_cuboid(1.0)), build));
+    let answer = run(Operation::Repair, &sound, &Options { parts: Parts::Union, ..Options::default() });
+    assert_eq!(answer.report.outcome, Some(Outcome::Identical));
+    assert_eq!(answer.output.unwrap().bytes, None);
+}
+
+#[test]
 fn a_part_that_cannot_be_mended_is_named_and_nothing_is_dropped() {
     let flat = "<mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/><vertex x=\"2\" y=\"0\" z=\"0\"/>\
                 </vertices><triangles><triangle v1=\"0\" v2=\"1\" v3=\"2\"/></triangles></mesh>";

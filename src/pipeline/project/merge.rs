@@ -150,6 +150,37 @@ fn mean(
     is_known.then_some(if sizes > 0.0 { sum / sizes } else { 1.0 })
 }
 
+/// The account of two runs, of which the second was on the result of the first, if that `has_changed` the file.
+pub(super) fn in_turn(first: Report, second: Report, has_changed: bool) -> Report {
+    let both = Report {
+        parts: first.parts.clone(),
+        input: first.input.clone(),
+        input_certificate: first.input_certificate.clone(),
+        ..second
+    };
+    if !has_changed {
+        return both;
+    }
+    let of_both = [&first, &both];
+    let (outcome, fidelity) = (outcome(&of_both, both.operation), fidelity(&of_both));
+    // What was measured of the second run is from its own input, so that it says something of the file only where the second
+    // run changed nothing.
+    let is_kept = both.outcome == Some(Outcome::Identical);
+    let actions = first.actions.into_iter().chain(both.actions).collect();
+    Report {
+        outcome,
+        fidelity: fidelity.filter(|_| both.certificate.is_some()),
+        actions,
+        after: both.after.or(both.before),
+        before: first.before,
+        plan: None,
+        identical_triangle_share: first.identical_triangle_share.filter(|_| is_kept),
+        distance: first.distance.filter(|_| is_kept),
+        losses: first.losses.filter(|_| is_kept),
+        ..both
+    }
+}
+
 /// The mesh as returned: parts that kept their bytes are as they were. `None`: all did, or there is no result.
 fn after(parts: &[PartReport], samples: usize) -> Option<crate::analysis::Analysis> {
     let is_new = parts.iter().any(|part| part.report.after.is_some());

@@ -340,15 +340,17 @@ impl Run<'_> {
         let bytes = answer.output.as_ref().and_then(|output| output.bytes.as_deref()).unwrap_or(self.bytes);
         let mut input = Input::read(bytes, Encoding::ThreeMf, self.options, self.budget)?;
         let united = run_on(self.operation, &mut input, self.options, self.budget)?;
-        let remarks = merge::left_out(self.project, Encoding::ThreeMf);
-        let parts = answer.report.parts;
-        let input = answer.report.input;
-        let input_certificate = answer.report.input_certificate;
-        // What was uploaded is several parts: it is another file even where nothing had to be done.
-        let output = united
-            .output
-            .map(|output| Output { bytes: Some(output.bytes.unwrap_or_else(|| bytes.to_vec())), ..output });
-        let report = Report { parts, remarks, input, input_certificate, ..united.report };
+        let has_changed = bytes.as_ptr() != self.bytes.as_ptr();
+        // Where the parts were mended and nothing had to be united, the file is that of the mended parts.
+        let output = united.output.map(|output| match output.bytes {
+            None if has_changed => Output { bytes: Some(bytes.to_vec()), ..output },
+            _ => output,
+        });
+        let remarks = match &output {
+            Some(Output { bytes: None, .. }) => answer.report.remarks.clone(),
+            _ => merge::left_out(self.project, Encoding::ThreeMf),
+        };
+        let report = Report { remarks, ..merge::in_turn(answer.report, united.report, has_changed) };
         Ok(Answer { report, output, levels: united.levels, picture: None })
     }
 }

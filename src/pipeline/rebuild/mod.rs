@@ -372,8 +372,8 @@ impl Rebuilding<'_> {
         let account = wrapped.account;
         let fewer = Fewer { wrapped, choices: &self.options.simplify, budget: self.budget };
         for mode in [Mode::Fast, Mode::Guarded] {
-            // What takes too much work keeps its triangles.
-            let Some(found) = self.budget.within_part(3, || fewer.triangles(mode))? else { break };
+            // What takes too much work keeps its triangles, all of which are judged and measured then: that is dear too.
+            let Some(found) = self.budget.within_all_but(5, || fewer.triangles(mode))? else { break };
             let Some((simplified, action)) = found else { continue };
             let candidate = self.write(&simplified.positions, &simplified.triangles, kept)?;
             if candidate.certificate().is_printable() {
