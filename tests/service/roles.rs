@@ -123,8 +123,7 @@ impl Balancer {
             }
             let url = api.server.read().unwrap().as_ref().unwrap().url(path);
             let answer = client.post(url).header("accept", "application/json").body(body.to_owned()).send();
-            let told =
-                answer.and_then(|answer| Ok((answer.status().as_u16(), answer.json().unwrap_or_default())));
+            let told = answer.map(|answer| (answer.status().as_u16(), answer.json().unwrap_or_default()));
             api.under_way.fetch_sub(1, Ordering::SeqCst);
             return told.unwrap_or((0, Value::Null));
         }
