@@ -2,7 +2,7 @@
 
 use super::plan::Covered;
 use super::{Limits, Refusal};
-use crate::analysis::Analysis;
+use crate::analysis::{Analysis, DefectCode, Finding};
 use crate::budget::{Budget, CHECK_EVERY, Stage, Stopped};
 use crate::distance::{
     DirectedDistance, DistanceOptions, FarPoint, Sight, Surface, SurfaceDistance, directed_distance,
@@ -94,10 +94,16 @@ impl Fidelity {
     }
 }
 
-/// The volume of an input, where it is defined: that of bodies which pass through each other counts what they share twice.
+/// The volume of an input, where it is defined: that of bodies which pass through each other counts what they share twice, and
+/// that of bodies some of which are inside out is taken off. Where all are, it is what they bound.
 pub(super) fn defined_volume(before: Option<&Analysis>) -> Option<f64> {
-    let embedded = before.filter(|analysis| analysis.properties.is_embedded != Some(false));
-    embedded.and_then(|analysis| analysis.measures.volume)
+    let embedded = before.filter(|analysis| analysis.properties.is_embedded != Some(false))?;
+    let volume = embedded.measures.volume?;
+    let is_inverted = |finding: &&Finding| finding.code == DefectCode::InvertedShell;
+    match embedded.findings.iter().find(is_inverted) {
+        None => Some(volume),
+        Some(inverted) => (inverted.count == embedded.counts.components).then_some(-volume),
+    }
 }
 
 /// An input to measure results against.

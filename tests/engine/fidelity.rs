@@ -6,7 +6,7 @@ use crate::solids::{cube, cuboid};
 use meshmend::budget::Budget;
 use meshmend::formats::{Encoding, Format};
 use meshmend::pipeline::{
-    Answer, ChangeKind, Fidelity, Operation, Options, Outcome, Refusal, Require, SimplifyChoices, run,
+    Answer, ChangeKind, Fidelity, Limits, Operation, Options, Outcome, Refusal, Require, SimplifyChoices, run,
 };
 use meshmend::simplify::Target;
 
@@ -31,6 +31,18 @@ fn a_valid_file_and_one_whose_faces_are_turned_are_exact() {
     turned.triangles[0].swap(0, 1);
     let turned = answer(Operation::Repair, &turned, &Options::default());
     assert_eq!((turned.report.outcome, word(&turned)), (Some(Outcome::Repaired), Fidelity::Exact));
+}
+
+#[test]
+fn bodies_that_are_inside_out_are_exact_once_they_are_turned() {
+    let inside_out = || cube().inside_out();
+    let apart = inside_out().moved([5.0; 3]);
+    for soup in [inside_out(), inside_out().with(&apart), cube().with(&apart)] {
+        let limits = Limits { volume_change_max: Some(1e-6), ..Limits::default() };
+        let options = Options { require: Some(Require::Faithful), limits, ..Options::default() };
+        let turned = answer(Operation::Repair, &soup, &options);
+        assert_eq!((turned.report.outcome, word(&turned)), (Some(Outcome::Repaired), Fidelity::Exact));
+    }
 }
 
 #[test]

@@ -5,6 +5,7 @@ use super::{Done, PartFacts, PartReport};
 use crate::distance::{DirectedDistance, SurfaceDistance};
 use crate::formats::threemf::{Body, NO_NUMBER, Project, Property};
 use crate::formats::{Encoding, Format};
+use crate::pipeline::fidelity::defined_volume;
 use crate::pipeline::{
     Action, Fidelity, FidelityVerdict, Filling, Level, Losses, Operation, Outcome, PrintingReport, Report,
 };
@@ -215,7 +216,7 @@ fn losses(reports: &[&Report]) -> Option<Losses> {
     let share = |of: fn(&Losses) -> f64| {
         mean(reports, area, |report| Some(report.losses.as_ref().map_or(0.0, of))).unwrap_or(0.0)
     };
-    let volume = |report: &Report| report.before.as_ref().and_then(|before| before.measures.volume);
+    let volume = |report: &Report| defined_volume(report.before.as_ref());
     let is_defined = reports.iter().all(|report| volume(report).is_some());
     let changed: f64 = reports
         .iter()
