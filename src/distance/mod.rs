@@ -47,6 +47,8 @@ pub struct DistanceOptions {
     /// Closest points to find, for each direction, beyond one for each vertex, sample and triangle. When they are used
     /// up the upper bound still holds, but may be farther from the lower one than the tolerances.
     pub refinements_max: u64,
+    /// Units of work for them, for each direction; the wave of refinements in which they are used up is the last.
+    pub refining_work_max: u64,
 }
 
 impl Default for DistanceOptions {
@@ -56,6 +58,7 @@ impl Default for DistanceOptions {
             tolerance_of_diagonal: 1e-6,
             samples: 1 << 17,
             refinements_max: 1 << 26,
+            refining_work_max: u64::MAX,
         }
     }
 }

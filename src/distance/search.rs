@@ -311,7 +311,9 @@ impl Directed<'_> {
             let of_candidate = candidates.get(next).map(|&(bound, _)| bound);
             of_candidate.into_iter().chain(waiting.peek().map(|piece| piece.0.upper)).reduce(f64::max)
         };
-        while work < self.options.refinements_max {
+        let start = self.budget.work_used();
+        let may_go_on = || self.budget.work_used() - start < self.options.refining_work_max;
+        while work < self.options.refinements_max && may_go_on() {
             let enough = tolerance.enough(farthest.distance);
             // No more pieces than the work that is left is enough for.
             let most = ((self.options.refinements_max - work) / WORK_MAX + 1).min(wave_len as u64) as usize;

@@ -25,15 +25,11 @@ const DISTANCE: DistanceOptions = DistanceOptions {
     tolerance_of_diagonal: 1e-5,
     samples: 1 << 14,
     refinements_max: 1 << 20,
+    refining_work_max: u64::MAX,
 };
 
-/// The same where that takes too much work: the distance is enclosed as far as fewer samples and refinements go.
-const WIDER_DISTANCE: DistanceOptions =
-    DistanceOptions { samples: 1 << 12, refinements_max: 1 << 17, ..DISTANCE };
-
-/// The same where that is still too much.
-const WIDEST_DISTANCE: DistanceOptions =
-    DistanceOptions { samples: 1 << 10, refinements_max: 1 << 14, ..DISTANCE };
+/// The refinements of each direction take at most this part of the work that is left; the distance is enclosed more widely then.
+const REFINING_PART: u64 = 8;
 
 /// Bodies beyond which none is looked at alone.
 const BODIES_MAX: u32 = 4096;
@@ -140,23 +136,7 @@ impl<'i> Original<'i> {
         covered: Option<&Covered>,
         budget: &Budget,
     ) -> Result<Fidelity, Stopped> {
-        let measured = |care: &DistanceOptions| self.measure_with(care, result, origins, covered, budget);
-        for care in [&DISTANCE, &WIDER_DISTANCE] {
-            if let Some(fidelity) = budget.within_part(3, || measured(care))? {
-                return Ok(fidelity);
-            }
-        }
-        measured(&WIDEST_DISTANCE)
-    }
-
-    fn measure_with(
-        &self,
-        care: &DistanceOptions,
-        result: &Soup,
-        origins: &[u32],
-        covered: Option<&Covered>,
-        budget: &Budget,
-    ) -> Result<Fidelity, Stopped> {
+        let care = DistanceOptions { refining_work_max: budget.work_left() / REFINING_PART, ..DISTANCE };
         budget.stage(Stage::Measure, || {
             let mut changed = Changed::of(self.input, result, origins, budget)?;
             let mut moved = [0.0; 2];
@@ -172,12 +152,12 @@ impl<'i> Original<'i> {
             }
             let gone_area = area_of(self.input, &changed.gone);
             let area = gone_area + covered_area + changed.stayed_area;
-            let forward = self.forward(result, &changed.gone, care, budget)?;
+            let forward = self.forward(result, &changed.gone, &care, budget)?;
             let seen = forward.and_then(|forward| forward.seen);
             let hidden_area = buried_area + gone_area * seen.map_or(0.0, |seen| seen.hidden_share);
             let lost_area =
                 (gone_area + buried_area - hidden_area) * seen.map_or(0.0, |seen| seen.lost_share);
-            let backward = self.backward(result, &changed.new, care, budget)?;
+            let backward = self.backward(result, &changed.new, &care, budget)?;
             let invented = backward.and_then(|backward| backward.seen).map_or(0.0, |seen| seen.lost_share);
             let new_area = area_of(result, &changed.new);
             let share = |part: f64, all: f64| if all > 0.0 { part / all } else { 0.0 };
