@@ -474,7 +474,7 @@ fn a_view_against_the_rules_of_the_extension_is_refused_with_its_place() {
         assert!(error.contains("found 3600 at /bufferViews/0/byteLength"), "{key} {value}: {error}");
     }
     assert!(with(0, "buffer", json!(1)).contains("a buffer without bytes at /buffers/1"));
-    assert!(with(0, "byteOffset", json!(1 << 40)).contains("in buffer 0 for /bufferViews/0/extensions/"));
+    assert!(with(0, "byteOffset", json!(1u64 << 40)).contains("in buffer 0 for /bufferViews/0/extensions/"));
     let mut headers = Glb::named("torus-ext.glb");
     for (view, stream) in headers.streams() {
         let at = Glb::range(&stream).start;

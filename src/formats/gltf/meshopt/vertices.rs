@@ -26,7 +26,7 @@ enum Delta {
 
 /// Elements of a block.
 fn block_elements(stride: usize) -> usize {
-    (8192 / stride & !(GROUP - 1)).min(BLOCK_MAX)
+    ((8192 / stride) & !(GROUP - 1)).min(BLOCK_MAX)
 }
 
 /// Bytes of the baseline and of what says how differences are stored, and of both with what they are padded by.
