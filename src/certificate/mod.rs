@@ -92,7 +92,7 @@ pub fn certify(
 }
 
 /// As [`certify`] where the caller has the f64 reading of `bytes` already: `soup` must be what
-/// [`formats::read`](crate::formats::read) gives for them.
+/// [`formats::read`] gives for them.
 ///
 /// # Errors
 /// As [`certify`].

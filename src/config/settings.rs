@@ -1,5 +1,7 @@
 //! Every setting: its name, type, default and meaning.
 
+#![allow(rustdoc::bare_urls, reason = "the sentences are those of the help, which are no links")]
+
 use super::error::ConfigError;
 use super::origin::Origin;
 use super::values::{Bytes, IsolationChoice, LogFormat, Role, SandboxChoice, Value};

@@ -4,7 +4,7 @@
 //! another is the largest over the points of the first, the *Hausdorff* distance is the larger of both directions. It is
 //! enclosed between a lower bound, which is a distance at a place that is named, and an upper bound that no point of the
 //! surface exceeds: branch and bound over ever smaller pieces of triangles (as Guthe, Borodin and Klein 2005, with other
-//! bounds; see [`bound`] and [`cover`]). The mean is over the area, by systematic sampling. The work is bounded in
+//! bounds; see `bound` and `cover`). The mean is over the area, by systematic sampling. The work is bounded in
 //! proportion to the triangles of both surfaces; where that ends the search the bounds hold, and it is told that they are
 //! farther apart than was asked.
 

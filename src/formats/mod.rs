@@ -282,7 +282,7 @@ pub fn write(soup: &Soup, encoding: Encoding, budget: &Budget) -> Result<Vec<u8>
     }
 }
 
-/// The order in which [`write`] writes the triangles of `soup`; `None`: their own. glTF keeps triangles of one material
+/// The order in which [`write`](fn@write) writes the triangles of `soup`; `None`: their own. glTF keeps triangles of one material
 /// together.
 pub fn stored_order(soup: &Soup, encoding: Encoding) -> Option<Vec<u32>> {
     match encoding {

@@ -59,7 +59,7 @@ pub(super) fn quotient(numerator: &BigInt, denominator: &BigInt) -> f64 {
     value
 }
 
-/// The f64 near `x`; see [`quotient`].
+/// The f64 near `x`; see `quotient`.
 pub fn to_f64(x: &Rational) -> f64 {
     quotient(x.numer(), x.denom())
 }

@@ -99,6 +99,7 @@ const OPTIONS: DistanceOptions = DistanceOptions {
     tolerance_of_diagonal: 1e-6,
     samples: 4_000,
     refinements_max: 1 << 22,
+    refining_work_max: u64::MAX,
 };
 
 #[test]

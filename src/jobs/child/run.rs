@@ -19,7 +19,7 @@ use crate::par;
 use crate::pipeline::{self, Answer, Failure};
 use crate::wire::Problem;
 
-/// The command that makes a process a child: its arguments are a folder and a [`Setting`] as JSON. For servers only: a
+/// The command that makes a process a child: its arguments are a folder and a `Setting` as JSON. For servers only: a
 /// person has no use for it.
 pub const RUN_JOB: &str = "run-job";
 /// How a process is called, as `ps` and `top` show it, while it waits for a task.

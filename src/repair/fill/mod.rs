@@ -1,7 +1,7 @@
 //! Closes holes: boundary loops, alone or several with one patch between them.
 //!
-//! Each hole is offered patches in one way after another, see [`class`]. A patch stays only if it adds no defect and meets
-//! nothing (see [`accept`]); a hole with no such patch stays open, and the report says why each was not taken. A single
+//! Each hole is offered patches in one way after another, see `class`. A patch stays only if it adds no defect and meets
+//! nothing (see `accept`); a hole with no such patch stays open, and the report says why each was not taken. A single
 //! triangle or a flat sheet cannot be closed, because every patch would be its double or lie on it. No vertex of the mesh
 //! moves; new vertices are born on the print lattice. `docs/holes.md` describes the methods.
 

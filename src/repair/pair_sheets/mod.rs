@@ -26,7 +26,7 @@ pub enum Across {
 }
 
 /// Pairs triangles and gives each fan that is left a vertex of its own. The draft must be welded and oriented. What is inside
-/// out is turned first (see [`inside_out`]): otherwise the solid would be taken for the space around it. Edges
+/// out is turned first (see `inside_out`): otherwise the solid would be taken for the space around it. Edges
 /// whose triangles do not alternate in direction around them, or lie on each other, are left to the cut. Where both pairs
 /// of an edge would still have the same ends, it is divided in its middle.
 ///

@@ -1,5 +1,7 @@
 //! The options of every operation: one table for query parameters, JSON members and command-line flags.
 
+#![allow(rustdoc::broken_intra_doc_links, reason = "the sentences are those of the help, which are no links")]
+
 mod error;
 mod lookup;
 mod nearest;
