@@ -1,3 +1,5 @@
+//! The summary of a report, on small reports.
+
 use super::*;
 use crate::distance::{DirectedDistance, FarPoint, SurfaceDistance};
 use crate::geom::DVec3;

@@ -1,3 +1,5 @@
+//! Plans go out and come back as they were.
+
 use super::*;
 use crate::implicit::RbfOptions;
 use crate::repair::fill::{FillOptions, HoleChoice};

@@ -1,3 +1,5 @@
+//! What each fault is told as.
+
 use super::*;
 use crate::formats::WriteError;
 use crate::wire::problem_code::errors;

@@ -1,3 +1,5 @@
+//! Reports of small runs.
+
 use super::*;
 use crate::wire::sample;
 use serde_json::{Value, json};
