@@ -198,7 +198,7 @@ impl Search<'_> {
             };
             let (input, encoding, options) = (self.input, self.encoding, self.options);
             let rebuilding = Rebuilding { input, encoding, options, wrap_options, budget };
-            let made = match budget.within_part(2, || rebuilding.run(draft, split.as_ref())) {
+            let made = match budget.within_all_but(4, || rebuilding.run(draft, split.as_ref())) {
                 Ok(Some(made)) => made,
                 // Finer was too much; what there is stays.
                 Ok(None) | Err(NoCandidate::Refused(_)) if best.is_some() => break,
