@@ -29,6 +29,8 @@ for kind in ("glb", "gltf"):
             if os.path.exists(dst):
                 verified = run("verify", dst)[0] == 0
                 same = open(src, "rb").read() == open(dst, "rb").read()
+        # A file that cannot be read has a problem in the place of a report.
+        if report is not None and "schema" not in report: complaint, report = [report.get("detail") or report.get("title") or ""], None
         rows.append(dict(name=f"{kind}/{name}", code=code, report=report, why=complaint[0].removeprefix("meshmend: ").replace(f"{src}: ", "") if complaint else "", verified=verified, same=same, seconds=seconds))
 
 def cells(r):
@@ -36,9 +38,10 @@ def cells(r):
     if not report: return ["refused" if r["code"] == 2 else f"{r['code']}", "", "", r["why"].replace("|", "\\|")]
     verdict = report.get("verdict") or {}; outcome = verdict.get("outcome") or f"exit {r['code']}"
     before = report.get("before") or {}; triangles = (before.get("counts") or {}).get("triangles", "")
-    left = [f"{k} {v}" for a in report.get("actions") or [] if a.get("step") == "left_out" for k, v in (a.get("changes") or {}).items()]
-    share = report.get("identical_triangle_share")
-    note = "; ".join(left) or (verdict.get("reason") or "" if outcome == "refused" else "")
+    left = [f"{c['name']} {c['count']}" for a in report.get("actions") or [] if a.get("step") == "left_out" for c in a.get("changes") or []]
+    share = (report.get("deviation") or {}).get("identical_triangle_share")
+    reasons = [reason["message"] for reason in verdict.get("reasons") or []]
+    note = "; ".join(left) or (reasons[0] if outcome == "refused" and reasons else "")
     return [outcome, triangles, "" if share is None else f"{100 * share:.1f} %", note]
 commit = subprocess.run(["git", "log", "-1", "--format=%h", "--", "src"], cwd=root, capture_output=True, text=True).stdout.strip()
 print(f"# GLB and glTF files nobody here made\n\n{len(rows)} files of trimesh, assimp and Online3DViewer, commit {commit}; made by `experiments/gltf.py`.\n")
