@@ -12,6 +12,7 @@ mod fidelity;
 mod fill_holes;
 mod identical;
 mod input;
+mod input_facts;
 mod ladder;
 mod modeller;
 mod operation;
@@ -40,6 +41,7 @@ pub use self::faithful::{Change, ChangeKind, Fidelity, FidelityVerdict};
 pub use self::fidelity::Losses;
 pub use self::fill_holes::{FillHolesChoices, Filling, HoleFate, HoleOutcome};
 use self::input::Input;
+pub use self::input_facts::InputFacts;
 pub use self::modeller::{
     Blocker, BlockerKind, EdgeName, Edit, EditKind, FaceName, FaceRange, ModelFace, ModellerChoices,
     ModellerRefusal, ModellerReport, ModellerStep, RangeName, RangeSide,
@@ -265,24 +267,6 @@ pub struct Action {
     pub reason: String,
     /// The edges that a step of `cut-stitch` joined; `None` for other steps and operations.
     pub stitches: Option<Stitches>,
-}
-
-/// Facts about the uploaded bytes.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct InputFacts {
-    /// How the bytes are laid out.
-    pub encoding: Encoding,
-    /// Number of bytes.
-    pub bytes: u64,
-    /// SHA-256 of the bytes.
-    pub sha256: [u8; 32],
-    /// Unit of the coordinates.
-    pub units: Units,
-    /// True when the caller or the format stated the unit, false when it is assumed.
-    pub units_are_stated: bool,
-    /// Unit of the result, and of all lengths, areas, volumes and places of the report but those of the certificate of the
-    /// uploaded bytes.
-    pub result_units: Units,
 }
 
 /// What is told of a file beside the first.
