@@ -61,7 +61,7 @@ pub(super) enum Command {
         /// Mesh file, or - for standard input.
         #[arg(value_name = "IN")]
         input: Place,
-        /// Format of the input. Default: told by the content.
+        /// Format of the input. Default: found from the content.
         #[arg(long, value_name = "WORD", value_parser = clap::builder::PossibleValuesParser::new(crate::wire::Format::WORDS))]
         format: Option<String>,
     },

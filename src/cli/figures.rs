@@ -2,9 +2,9 @@
 
 /// So many things of that name.
 pub(super) fn counted(count: u64, name: &str) -> String {
-    let plural = match name {
-        "vertex" => "vertices".to_owned(),
-        name => format!("{name}s"),
+    let plural = match name.strip_suffix("vertex") {
+        Some(which) => format!("{which}vertices"),
+        None => format!("{name}s"),
     };
     if count == 1 { format!("1 {name}") } else { format!("{count} {plural}") }
 }
@@ -49,5 +49,6 @@ mod tests {
         assert_eq!(counted(1, "vertex"), "1 vertex");
         assert_eq!(counted(0, "triangle"), "0 triangles");
         assert_eq!(counted(8, "vertex"), "8 vertices");
+        assert_eq!(counted(4, "new vertex"), "4 new vertices");
     }
 }

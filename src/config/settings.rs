@@ -113,7 +113,7 @@ settings! {
     api_keys_file: Option<PathBuf> = "",
     /// Lets everybody who reaches the service use it, also from other machines.
     allow_anonymous: bool = "false",
-    /// Host names under which an anonymous service may be addressed beside loopback, and from whose pages.
+    /// Host names, besides loopback, that requests to a service without keys may name, and whose pages may send them; `*`: any.
     allowed_hosts: Vec<String> = "",
     /// Addresses of proxies whose forwarding headers are believed.
     trusted_proxies: Vec<IpAddr> = "",
@@ -121,7 +121,7 @@ settings! {
     cors_origins: Vec<String> = "",
     /// Requests that one key, or one address without keys, may make in a minute; 0: any number.
     rate_per_minute: u32 = "1_200",
-    /// Requests that it may make at one time.
+    /// Requests that one key, or one address without keys, may make at one time.
     rate_burst: u32 = "240",
 
     /// Jobs that run at one time; auto: half the cores and one more.
@@ -130,29 +130,29 @@ settings! {
     interactive_slots: usize = "2",
     /// Most slots of each of both kinds that one key, or one address without keys, has at one time; auto: all but one.
     owner_slots_max: Option<NonZeroUsize> = "auto",
-    /// Largest upload of such a mesh.
+    /// Largest upload that may use an interactive slot.
     interactive_bytes_max: Bytes = "4MiB",
-    /// Time that a job may take in such a slot for each begun MiB of its upload; then it goes on as a large one.
+    /// Time that a job may take in an interactive slot for each begun MiB of its upload; then it goes on in an ordinary slot.
     interactive_deadline: Duration = "10s",
     /// Most memory that all running jobs may take together, as estimated from their uploads; auto: three quarters of the machine's.
     memory_bytes_max: Option<Bytes> = "auto",
     /// Most queued jobs.
     queue_max: NonZeroUsize = "128",
-    /// Most of them of one key, or of one address without keys; auto: no more than there are free places.
+    /// Most queued jobs of one key, or of one address without keys; auto: no more than there are free places.
     owner_queue_max: Option<NonZeroUsize> = "auto",
     /// Most jobs kept, whatever their state; the oldest finished ones go first.
     jobs_max: NonZeroUsize = "20_000",
-    /// Most of them of one key, or of one address without keys; auto: all, but at the limit those go first that are over its share.
+    /// Most jobs kept of one key, or of one address without keys; auto: all, but at the limit those over its share go first.
     owner_jobs_max: Option<NonZeroUsize> = "auto",
     /// Time for which a finished job is kept.
     result_ttl: Duration = "24h",
     /// Most bytes of uploads and results on disk; the oldest finished jobs go first.
     data_bytes_max: Bytes = "20GiB",
-    /// Most of them of one key, or of one address without keys; auto: all, but at the limit those go first that are over its share.
+    /// Most bytes of uploads and results of one key, or of one address without keys; auto: all, but at the limit those over its share go first.
     owner_data_bytes_max: Option<Bytes> = "auto",
     /// Bytes of the disk that stay free.
     disk_free_bytes_min: Bytes = "256MiB",
-    /// Time after which a job whose executor is not heard of is queued again.
+    /// Time after which a job is queued again whose server has stopped reporting.
     lease: Duration = "30s",
     /// Lost runs after which a job fails.
     attempts_max: NonZeroU32 = "3",

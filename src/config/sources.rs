@@ -93,7 +93,7 @@ impl Sources {
                 }
                 Some(name) => {
                     let near = nearest(&name).map(|near| format!("MESHMEND_{}", near.to_ascii_uppercase()));
-                    warnings.push(format!("{variable} is no setting{}", did_you_mean(near.as_deref())));
+                    warnings.push(format!("there is no setting {variable}{}", did_you_mean(near.as_deref())));
                 }
                 None => {}
             }
@@ -235,7 +235,7 @@ mod tests {
         let loaded = Sources { environment, ..Sources::default() }.load().unwrap();
         assert_eq!(
             loaded.warnings,
-            ["MESHMEND_QUEUE_MAXX is no setting; did you mean `MESHMEND_QUEUE_MAX`?"]
+            ["there is no setting MESHMEND_QUEUE_MAXX; did you mean `MESHMEND_QUEUE_MAX`?"]
         );
         assert_eq!(queue_max(&loaded).0, 128);
     }

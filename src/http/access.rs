@@ -33,8 +33,8 @@ pub enum Access {
 /// The hosts and proxies that anonymous access trusts.
 #[derive(Debug, Clone, Default)]
 pub struct Neighbours {
-    /// Host names or addresses, without port, under which the service may be addressed beside loopback, and from whose
-    /// pages it may be used. `*` allows any.
+    /// Host names or addresses, without port and besides loopback, that requests may name, and whose pages may send them.
+    /// `*` allows any.
     pub allowed_hosts: Vec<String>,
     /// Origins whose pages may use the service.
     pub allowed_origins: Vec<String>,

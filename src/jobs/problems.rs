@@ -11,9 +11,9 @@ pub(super) fn not_found() -> Problem {
     Problem::new(ProblemCode::NotFound, "there is no such job")
 }
 
-/// What is asked for is kept no longer.
+/// What is asked for is no longer kept.
 pub(super) fn expired() -> Problem {
-    Problem::new(ProblemCode::Expired, "the job's files are kept no longer")
+    Problem::new(ProblemCode::Expired, "the job's files are no longer kept")
 }
 
 /// The disk has not kept the upload of a job.

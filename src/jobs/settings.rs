@@ -33,7 +33,7 @@ pub struct JobsSettings {
     pub slots: usize,
     /// Jobs beside those, for small meshes that somebody waits for. Default 2.
     pub interactive_slots: usize,
-    /// Largest upload of such a mesh, in bytes. Default 4 MiB.
+    /// Largest upload that may use an interactive slot, in bytes. Default 4 MiB.
     pub interactive_bytes_max: u64,
     /// Most memory that all running jobs may take together, as estimated, in bytes. Default: three quarters of the
     /// machine's.
@@ -66,7 +66,7 @@ pub struct JobsSettings {
     pub data_bytes_max: u64,
     /// Bytes of the disk that stay free. Default 256 MiB.
     pub disk_free_bytes_min: u64,
-    /// Time after which a job whose executor is not heard of is queued again. Default 30 s.
+    /// Time after which a job is queued again whose server has stopped reporting. Default 30 s.
     pub lease: Duration,
     /// Longest time between two looks at what other servers do while these are heard. Default 5 s.
     pub look_every: Duration,

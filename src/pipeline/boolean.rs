@@ -1,11 +1,11 @@
 //! Set operations on several files: one exact arrangement of all of them, settled until its bytes are certified.
 
 use super::bounds::{self, Bound};
-use super::fidelity::diagonal;
 use super::input::Input;
 use super::ladder::{Climb, Tried};
 use super::plan::Attempt;
 use super::repair_choices::Choices;
+use super::size::diagonal;
 use super::step::Step;
 use super::{
     Action, Answer, BooleanRefusal, Failure, FidelityVerdict, FurtherInput, Operation, Options, Outcome,
@@ -149,7 +149,7 @@ fn combined(
         reason: changes.reason,
         stitches: None,
     });
-    let choices = Choices::of(options, report.before.as_ref())?;
+    let choices = Choices::of(options, &input.soup, report.before.as_ref())?;
     let encoding = input.output_encoding(options);
     let climb = Climb { input, encoding, options, choices: &choices, before: None, budget };
     let rounding = [Step::RoundToF32, Step::Unite, Step::JoinCopies];

@@ -59,6 +59,7 @@ impl CutStitchChoices {
             validity: self.validity,
             chosen: chosen.clone(),
             keeps_winding: false,
+            by_edge: false,
         };
         let (insert, join) = match self.stitching {
             Stitching::None => (None, None),

@@ -1,13 +1,14 @@
 //! How far a result is from its input, what of the input it lost, and whether that is little enough.
 
 use super::plan::Covered;
+use super::size::diagonal;
 use super::{Limits, Refusal};
 use crate::analysis::{Analysis, DefectCode, Finding};
 use crate::budget::{Budget, CHECK_EVERY, Stage, Stopped};
 use crate::distance::{
     DirectedDistance, DistanceOptions, FarPoint, Sight, Surface, SurfaceDistance, directed_distance,
 };
-use crate::geom::{Aabb, DVec3, are_collinear, closest_point_on_triangle, signed_volume, triangle_area};
+use crate::geom::{DVec3, are_collinear, closest_point_on_triangle, signed_volume, triangle_area};
 use crate::mesh::{Components, Soup, UnionFind};
 use crate::repair::NEW;
 use crate::spatial::{NearestSearch, coincident_f64};
@@ -336,12 +337,6 @@ impl Changed {
 
 fn surface(mesh: &Soup) -> Surface<'_> {
     Surface { positions: &mesh.positions, triangles: &mesh.triangles }
-}
-
-/// Diagonal of the box around the triangles of `mesh`.
-pub(super) fn diagonal(mesh: &Soup) -> f64 {
-    let bounds = Aabb::of(mesh.triangles.as_flattened().iter().map(|&v| mesh.positions[v as usize]));
-    if mesh.triangles.is_empty() { 0.0 } else { (bounds.max - bounds.min).length() }
 }
 
 pub(super) fn area_of(mesh: &Soup, triangles: &[u32]) -> f64 {

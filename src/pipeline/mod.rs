@@ -27,6 +27,7 @@ mod remedies;
 mod repair;
 mod repair_choices;
 mod simplify;
+mod size;
 mod step;
 mod stitches;
 mod texture;

@@ -18,12 +18,14 @@ use crate::repair::unite::Coverage;
 use crate::repair::{self, Changes, Draft, Effects};
 
 /// What distinguishes the plans that are tried for one file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Variant {
     /// Coordinates that are all but zero become zero first.
     pub(super) clears_noise: bool,
     /// Coordinates become float32 first.
     pub(super) rounds: bool,
+    /// How far apart rims are joined where the caller says nothing, in the unit of the file; 0: only where they coincide.
+    pub(super) snap_epsilon: f64,
     /// What becomes of opposite duplicates.
     pub(super) opposite: OppositePairs,
     /// Triangles that meet others go first, with this many rings around them.
@@ -55,6 +57,9 @@ pub(super) enum Uniting {
 /// it, and a larger one takes that too.
 const BORINGS: [u32; 4] = [16, 64, 256, 1024];
 
+/// Steps of the print lattice in those of the coarser ones that are tried, one after the other.
+const COARSER: [u32; 2] = [16, 128];
+
 impl Variant {
     /// The steps that unite bodies which pass through each other.
     pub(super) fn uniting(self, uniting: Uniting, choices: &Choices) -> Vec<Step> {
@@ -75,11 +80,22 @@ impl Variant {
     }
 
     /// What may follow where the united bodies are no solid yet: what touches itself is joined or parted, what meets after that or
-    /// after rounding is united once more, and what still touches is bored.
+    /// after rounding is united once more.
     pub(super) fn settling(contact: Contact, choices: &Choices) -> Vec<Vec<Step>> {
-        let mut tries = vec![vec![Step::Unite], Self::parting(contact, choices), vec![Step::Unite]];
-        tries.extend(BORINGS.map(|steps| vec![Step::BoreContacts { steps }]));
-        tries
+        vec![vec![Step::Unite], Self::parting(contact, choices), vec![Step::Unite]]
+    }
+
+    /// What may follow where that did not help: what still touches is bored.
+    pub(super) fn boring() -> Vec<Vec<Step>> {
+        BORINGS.map(|steps| vec![Step::BoreContacts { steps }]).into()
+    }
+
+    /// What may be done to united bodies of which nothing that settles them made a solid, before they are settled once more.
+    pub(super) fn coarsening() -> [Vec<Step>; 2] {
+        COARSER.map(|steps| {
+            let round = Step::RoundToCoarser { steps };
+            vec![round, Step::JoinCopies, Step::DropDegenerate, Step::SplitCollinear, Step::Unite]
+        })
     }
 
     /// The steps that join what touches itself, or part it.
@@ -109,8 +125,8 @@ impl Variant {
     /// The steps that mend the surface, least invasive first; each finds what those before it leave.
     pub(super) fn mending(self, choices: &Choices) -> Vec<Step> {
         let single = [Step::SplitTVertices, Step::DropDuplicates(self.opposite)];
-        let near = (choices.snap_epsilon > 0.0)
-            .then_some(Step::DropNearDuplicates { epsilon: choices.snap_epsilon });
+        let chosen = choices.snap_epsilon.filter(|&epsilon| epsilon > 0.0);
+        let near = chosen.map(|epsilon| Step::DropNearDuplicates { epsilon });
         let remove = self.removes_crossing.map(|rings| Step::RemoveCrossing { rings });
         let orient = choices.orients.then_some(Step::Orient);
         // What is not cut cannot be joined by the rules of a manifold.
@@ -118,9 +134,9 @@ impl Variant {
             // Which copies belong together matters only where they come apart for good.
             let pair = self.contact.map(pairing);
             let pinch = self.contact.map(|_| Step::Pinch(ChosenEdges::default(), Validity::Exact));
-            // Only what coincides, so that no vertex moves, unless the caller says how far.
             let snap = Step::Snap(SnapOptions {
-                epsilon: Some(choices.snap_epsilon),
+                epsilon: Some(choices.snap_epsilon.unwrap_or(self.snap_epsilon)),
+                by_edge: choices.snap_epsilon.is_none(),
                 keeps_winding: !choices.orients,
                 ..SnapOptions::default()
             });
@@ -140,7 +156,11 @@ impl Variant {
     /// certified has none. `has_contacts`: triangles of the input meet beyond common vertices and edges. Nothing that
     /// mends adds a contact, but moving vertices can.
     pub(super) fn solidifying(self, choices: &Choices, has_contacts: bool) -> Vec<Step> {
-        let moves = self.thickens || self.rounds || self.clears_noise || self.contact.is_some();
+        let moves = self.thickens
+            || self.rounds
+            || self.clears_noise
+            || self.contact.is_some()
+            || choices.snap_epsilon.unwrap_or(self.snap_epsilon) > 0.0;
         let join = (self.contact == Some(Contact::Join)).then_some(Step::JoinContacts { size: choices.wall });
         let open = self.contact.map(|_| Step::OpenContacts);
         let nest = Step::Nest(NestOptions {

@@ -21,7 +21,7 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
     if plan.and_then(|plan| plan.input_sha256).is_some_and(|asked| asked != input.facts.sha256) {
         return Err(PlanMismatch::OtherFile.into());
     }
-    let choices = Choices::of(options, report.before.as_ref())?;
+    let choices = Choices::of(options, &input.soup, report.before.as_ref())?;
     if let Some(steps) = plan.and_then(|plan| plan.steps.as_deref()) {
         return bounds::or_refused(report, budget, |report| replay(input, steps, options, report, budget));
     }

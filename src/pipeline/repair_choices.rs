@@ -3,7 +3,9 @@
 use super::Options;
 use super::choices::{ChosenHole, FillHoles};
 use super::remedies::{ChosenRemedy, PlanMismatch, Remedy, has_elements, remedies_of};
+use super::size::diagonal;
 use crate::analysis::{Analysis, DefectCode, Finding, Severity};
+use crate::mesh::Soup;
 use crate::repair::Selection;
 use crate::repair::duplicates::OppositePairs;
 use crate::repair::fill::{FillOptions, HoleChoice};
@@ -21,10 +23,6 @@ pub(super) enum Walls {
     ForSheets,
     /// Whatever they are.
     First,
-}
-
-fn diagonal_of(analysis: &Analysis) -> f64 {
-    analysis.measures.bounds.map_or(0.0, |bounds| (bounds.max - bounds.min).length())
 }
 
 /// What a repair does and leaves, by the options and a plan.
@@ -46,8 +44,8 @@ pub(super) struct Choices {
     pub(super) wall: f64,
     /// Which thin faces go.
     pub(super) thin_faces: ThinFaces,
-    /// How far apart vertices of rims may be that are joined, in the unit of the file.
-    pub(super) snap_epsilon: f64,
+    /// How far apart vertices of rims may be that are joined, in the unit of the file; `None`: as the rims suggest.
+    pub(super) snap_epsilon: Option<f64>,
     /// Shells whose fate is chosen, each by a triangle of the soup.
     pub(super) shells: Vec<(u32, Fate)>,
     /// What becomes of opposite duplicates first.
@@ -76,7 +74,7 @@ impl Default for Choices {
             walls: Walls::default(),
             wall: 0.0,
             thin_faces: ThinFaces::default(),
-            snap_epsilon: 0.0,
+            snap_epsilon: None,
             shells: Vec::new(),
             opposite: OppositePairs::default(),
             unites: true,
@@ -88,17 +86,20 @@ impl Default for Choices {
 }
 
 impl Choices {
-    /// The choices for a file with `analysis`.
+    /// The choices for a file with this mesh and `analysis`.
     ///
     /// # Errors
     /// When the plan names what the file does not have or what cannot be chosen.
-    pub(super) fn of(options: &Options, analysis: Option<&Analysis>) -> Result<Self, PlanMismatch> {
-        let diagonal = analysis.map_or(0.0, diagonal_of);
+    pub(super) fn of(
+        options: &Options,
+        mesh: &Soup,
+        analysis: Option<&Analysis>,
+    ) -> Result<Self, PlanMismatch> {
         let mut choices = Self {
             fills_holes: options.fill_holes == FillHoles::Simple,
             walls: if options.fill_holes == FillHoles::None { Walls::Never } else { Walls::default() },
-            wall: options.wrap.wall.unwrap_or(WALL_OF_DIAGONAL * diagonal),
-            snap_epsilon: options.cut_stitch.epsilon.unwrap_or(0.0),
+            wall: options.wrap.wall.unwrap_or_else(|| WALL_OF_DIAGONAL * diagonal(mesh)),
+            snap_epsilon: options.cut_stitch.epsilon,
             nesting: options.nesting,
             ..Self::default()
         };

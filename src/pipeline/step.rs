@@ -76,6 +76,11 @@ pub enum Step {
         /// From their middle out, in steps of the lattice.
         steps: u32,
     },
+    /// Corners of triangles that meet others when all coordinates are read on a coarser lattice go to it.
+    RoundToCoarser {
+        /// Its step, in steps of the print lattice.
+        steps: u32,
+    },
     /// Bodies that touch become one.
     JoinContacts {
         /// Thickness of the necks between them, in the unit of the file.
@@ -117,6 +122,7 @@ impl Step {
             Self::UniteAndCopyBare => "unite-and-copy-bare",
             Self::Unite => "unite",
             Self::BoreContacts { .. } => "bore-contacts",
+            Self::RoundToCoarser { .. } => "round-to-coarser",
             Self::DropNearDuplicates { .. } => "drop-near-duplicates",
             Self::OpenContacts => "open-contacts",
             Self::FillHoles(_) => "fill-holes",
@@ -155,7 +161,8 @@ impl Step {
             Self::PairSheets(_)
             | Self::JoinContacts { .. }
             | Self::OpenContacts
-            | Self::BoreContacts { .. } => &[DefectCode::NonManifoldEdge, DefectCode::NonManifoldVertex],
+            | Self::BoreContacts { .. }
+            | Self::RoundToCoarser { .. } => &[DefectCode::NonManifoldEdge, DefectCode::NonManifoldVertex],
             Self::DropNearDuplicates { .. } => &[DefectCode::BoundaryLoop, DefectCode::DoubleSkin],
             Self::SplitPolygons(_) => &[DefectCode::CoincidentCorners, DefectCode::DuplicateVertex],
             Self::Weld => &[DefectCode::DuplicateVertex],
@@ -200,6 +207,7 @@ impl Step {
             Self::UniteAndCopyBare => repair::unite::unite_and_copy_bare(draft, budget),
             Self::Unite => repair::unite::unite(draft, budget),
             Self::BoreContacts { steps } => repair::unite::bore_contacts(draft, *steps, budget),
+            Self::RoundToCoarser { steps } => repair::round::round_to_coarser(draft, *steps, budget),
             Self::OpenContacts => repair::contact::open_contacts(draft, budget),
             Self::JoinContacts { size } => repair::joint::join_contacts(draft, *size, budget),
             Self::PairSheets(across) => repair::pair_sheets::pair_sheets(draft, *across, budget),

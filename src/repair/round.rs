@@ -2,7 +2,7 @@
 
 use super::{Changes, Draft};
 use crate::budget::{Budget, Stopped};
-use crate::geom::{DVec3, are_collinear};
+use crate::geom::{DVec3, are_collinear, print_pitch};
 use crate::spatial::{Bvh, Search, coincident_f64, self_contacts};
 
 /// Pairs of triangles that meet beyond which every coordinate is rounded.
@@ -11,7 +11,7 @@ const CONTACTS_MAX: usize = 1 << 16;
 /// Moves every vertex to the nearest float32 point, at most half a float32 step on each axis. A coordinate beyond the
 /// range of float32 stays as it is.
 pub fn round_to_f32(draft: &mut Draft) -> Changes {
-    round_those(draft, |_| true)
+    round_those(draft, |_| true, in_f32)
 }
 
 /// As [`round_to_f32`], but only vertices of triangles that meet others or lose their area when all coordinates are read as
@@ -20,7 +20,33 @@ pub fn round_to_f32(draft: &mut Draft) -> Changes {
 /// # Errors
 /// When the budget stops the run.
 pub fn round_where_it_matters(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
-    let read: Vec<DVec3> = draft.positions.iter().map(|&position| in_f32(position)).collect();
+    round_clusters(draft, in_f32, budget)
+}
+
+/// Moves the vertices of triangles that meet others, or lose their area, when all coordinates are read as whole multiples of so many
+/// `steps` of the print lattice, to such multiples: what is all but in one plane is in one plane then, or apart by more than
+/// new vertices are rounded by. Vertices that fall together stay several.
+///
+/// # Errors
+/// When the budget stops the run.
+pub fn round_to_coarser(draft: &mut Draft, steps: u32, budget: &Budget) -> Result<Changes, Stopped> {
+    let reach = draft.positions.iter().fold(0.0, |reach, p| p.abs().max_element().max(reach));
+    match print_pitch(reach) {
+        Some(pitch) => {
+            let coarse = pitch * f64::from(steps.max(1));
+            round_clusters(draft, |position| (position / coarse).round() * coarse + DVec3::ZERO, budget)
+        }
+        None => Ok(Changes::counted([("vertices_moved", 0)])),
+    }
+}
+
+/// Moves the vertices of triangles that meet others, or lose their area, when all positions are `rounded`, to where they are then.
+fn round_clusters(
+    draft: &mut Draft,
+    rounded: impl Fn(DVec3) -> DVec3,
+    budget: &Budget,
+) -> Result<Changes, Stopped> {
+    let read: Vec<DVec3> = draft.positions.iter().map(|&position| rounded(position)).collect();
     let places = coincident_f64(&read, budget)?;
     let triangles: Vec<[u32; 3]> =
         draft.triangles.iter().map(|t| t.map(|v| places.first[places.group[v as usize] as usize])).collect();
@@ -34,7 +60,7 @@ pub fn round_where_it_matters(draft: &mut Draft, budget: &Budget) -> Result<Chan
     let search = Search::All { keep: CONTACTS_MAX };
     let contacts = self_contacts(&read, &triangles, &bvh, None, search, budget)?;
     if contacts.count > CONTACTS_MAX as u64 {
-        return Ok(round_to_f32(draft));
+        return Ok(round_those(draft, |_| true, rounded));
     }
     let mut matters = vec![false; read.len()];
     let meeting = contacts.list.iter().flat_map(|contact| [contact.a, contact.b]);
@@ -48,7 +74,7 @@ pub fn round_where_it_matters(draft: &mut Draft, budget: &Budget) -> Result<Chan
             (matters[v], matters[first]) = (true, true);
         }
     }
-    Ok(round_those(draft, |v| matters[v]))
+    Ok(round_those(draft, |v| matters[v], rounded))
 }
 
 /// A position as a reader of float32 has it. One beyond the range of float32 stays as it is.
@@ -57,14 +83,18 @@ fn in_f32(position: DVec3) -> DVec3 {
     if rounded.is_finite() { rounded } else { position }
 }
 
-fn round_those(draft: &mut Draft, is_chosen: impl Fn(usize) -> bool) -> Changes {
+fn round_those(
+    draft: &mut Draft,
+    is_chosen: impl Fn(usize) -> bool,
+    rounded: impl Fn(DVec3) -> DVec3,
+) -> Changes {
     let (mut moved, mut move_max) = (0, 0.0f64);
     for (_, position) in draft.positions.iter_mut().enumerate().filter(|&(v, _)| is_chosen(v)) {
-        let rounded = in_f32(*position);
-        if rounded != *position {
+        let place = rounded(*position);
+        if place != *position {
             moved += 1;
-            move_max = move_max.max(rounded.distance(*position));
-            *position = rounded;
+            move_max = move_max.max(place.distance(*position));
+            *position = place;
         }
     }
     Changes { move_max, ..Changes::counted([("vertices_moved", moved)]) }

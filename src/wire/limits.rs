@@ -41,14 +41,14 @@ pub struct Limits {
     pub slots: usize,
     /// Requests that one key, or one address without keys, may make in a minute; 0: any number.
     pub rate_per_minute: u32,
-    /// Requests that it may make at one time; 0: any number.
+    /// Requests that one key, or one address without keys, may make at one time; 0: any number.
     pub rate_burst: u32,
     /// Jobs that run beside those of `slots`, for small meshes that somebody waits for.
     pub interactive_slots: usize,
-    /// Largest upload of such a mesh, in bytes.
+    /// Largest upload that may use an interactive slot, in bytes.
     pub interactive_bytes_max: u64,
-    /// Time that a job may take in a slot for such meshes for each begun MiB of its upload, in seconds; then it goes on as a
-    /// large one.
+    /// Time that a job may take in an interactive slot for each begun MiB of its upload, in seconds; then it goes on in
+    /// an ordinary slot.
     pub interactive_deadline_s: f64,
     /// Most memory that all running jobs may take together, as estimated, in bytes.
     pub memory_bytes_max: u64,

@@ -173,6 +173,10 @@ pub enum PlanStep {
         /// No part is turned to be joined.
         #[serde(default)]
         keeps_winding: bool,
+        /// Of edges that do not coincide, only those are joined that lie side by side: with ends closer than an eighth of the
+        /// shorter one, and triangles that do not lie back to back.
+        #[serde(default)]
+        by_edge: bool,
     },
     /// Needles, caps and folds go.
     MendThinFaces {
@@ -215,6 +219,13 @@ pub enum PlanStep {
     /// Where the solid touches itself, a body of some steps of the print lattice is taken out of it.
     BoreContacts {
         /// From its middle out, in steps of the lattice.
+        #[serde(deserialize_with = "whole")]
+        #[schema(maximum = 65_536)]
+        steps: u32,
+    },
+    /// Corners of triangles that meet others when all coordinates are read on a coarser lattice go to it.
+    RoundToCoarser {
+        /// Its step, in steps of the print lattice.
         #[serde(deserialize_with = "whole")]
         #[schema(maximum = 65_536)]
         steps: u32,
@@ -341,8 +352,9 @@ impl PlanStep {
             Self::PairSheets { across } => Step::PairSheets((*across).into()),
             Self::Cut {} => Step::Cut(CutOptions::default()),
             Self::Pinch {} => Step::Pinch(mesh::ChosenEdges::default(), mesh::Validity::Exact),
-            &Self::Snap { epsilon, keeps_winding } => {
-                Step::Snap(SnapOptions { epsilon: Some(epsilon), keeps_winding, ..SnapOptions::default() })
+            &Self::Snap { epsilon, keeps_winding, by_edge } => {
+                let epsilon = Some(epsilon);
+                Step::Snap(SnapOptions { epsilon, keeps_winding, by_edge, ..SnapOptions::default() })
             }
             Self::MendThinFaces { needles, caps, folds } => {
                 Step::MendThinFaces(ThinFaces { needles: *needles, caps: *caps, folds: *folds })
@@ -358,6 +370,7 @@ impl PlanStep {
             Self::Unite {} => Step::Unite,
             Self::UniteAndCopyBare {} => Step::UniteAndCopyBare,
             Self::BoreContacts { steps } => Step::BoreContacts { steps: *steps },
+            Self::RoundToCoarser { steps } => Step::RoundToCoarser { steps: *steps },
             Self::SpanRims {} => Step::SpanRims,
             Self::OpenContacts {} => Step::OpenContacts,
             Self::JoinCopies {} => Step::JoinCopies,
@@ -397,9 +410,11 @@ impl From<&Step> for PlanStep {
             Step::PairSheets(across) => Self::PairSheets { across: (*across).into() },
             Step::Cut(_) => Self::Cut {},
             Step::Pinch(..) => Self::Pinch {},
-            Step::Snap(options) => {
-                Self::Snap { epsilon: options.epsilon.unwrap_or(0.0), keeps_winding: options.keeps_winding }
-            }
+            Step::Snap(options) => Self::Snap {
+                epsilon: options.epsilon.unwrap_or(0.0),
+                keeps_winding: options.keeps_winding,
+                by_edge: options.by_edge,
+            },
             Step::MendThinFaces(which) => {
                 Self::MendThinFaces { needles: which.needles, caps: which.caps, folds: which.folds }
             }
@@ -415,6 +430,7 @@ impl From<&Step> for PlanStep {
             Step::Unite => Self::Unite {},
             Step::UniteAndCopyBare => Self::UniteAndCopyBare {},
             Step::BoreContacts { steps } => Self::BoreContacts { steps: *steps },
+            Step::RoundToCoarser { steps } => Self::RoundToCoarser { steps: *steps },
             Step::SpanRims => Self::SpanRims {},
             Step::OpenContacts => Self::OpenContacts {},
             Step::JoinCopies => Self::JoinCopies {},

@@ -20,7 +20,7 @@ words! {
         Forbidden = "forbidden",
         /// There is no such thing.
         NotFound = "not-found",
-        /// It was there and is kept no longer.
+        /// It was there and is no longer kept.
         Expired = "expired",
         /// The path does not take this method.
         MethodNotAllowed = "method-not-allowed",
@@ -114,7 +114,7 @@ impl ProblemCode {
                 (404, "Not found", "There is no such path, job or file. A deleted job is not found either.")
             }
             Self::Expired => {
-                (410, "Expired", "The job's report and result are kept no longer. Send the mesh again.")
+                (410, "Expired", "The job's report and result are no longer kept. Send the mesh again.")
             }
             Self::MethodNotAllowed => {
                 (405, "Method not allowed", "The path exists; `Allow` lists its methods.")
@@ -196,9 +196,7 @@ impl ProblemCode {
             Self::RateLimited => {
                 (429, "Rate limited", "Too many requests. Wait as long as `Retry-After` says.")
             }
-            Self::QueueFull => {
-                (429, "Queue full", "As many jobs wait as may. Wait as long as `Retry-After` says.")
-            }
+            Self::QueueFull => (429, "Queue full", "The queue is full. Wait as long as `Retry-After` says."),
             Self::EngineTimeout => (
                 504,
                 "Engine timeout",

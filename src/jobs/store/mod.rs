@@ -23,7 +23,7 @@ pub use tenant::{Holding, Tenant};
 /// A store that could not do what was asked.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum StoreError {
-    /// As many jobs wait as may.
+    /// The queue is full.
     #[error("{queued} jobs wait already")]
     QueueFull {
         /// How many.

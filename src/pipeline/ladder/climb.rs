@@ -5,14 +5,16 @@ use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::Depth;
 use crate::formats::Encoding;
-use crate::pipeline::fidelity::{Fidelity, Original, defined_volume};
+use crate::pipeline::fidelity::{Fidelity, LOST_BEYOND, Original, defined_volume};
 use crate::pipeline::input::Input;
 use crate::pipeline::output::Candidate;
 use crate::pipeline::plan::{Attempt, Variant};
 use crate::pipeline::rebuild::{self, NotRebuilt, Rebuilt};
 use crate::pipeline::repair_choices::{Choices, Walls};
+use crate::pipeline::size::diagonal;
 use crate::pipeline::step::Step;
 use crate::pipeline::{Action, Failure, Options, Refusal, Require};
+use crate::repair::snap::gap_between_rims;
 use crate::repair::{Draft, noise};
 use crate::winding::{OpenShells, Solid};
 
@@ -85,9 +87,11 @@ impl Situation {
         // which would leave two bodies with nothing between them.
         let parts_rims = || noise::parts_rims(&draft, climb.budget);
         let clears_noise = climb.budget.within_part(ATTEMPT_PART, parts_rims)?.unwrap_or(false);
+        let snap_epsilon = climb.gap_between_rims(&draft)?;
         let variant = Variant {
             clears_noise,
             rounds: climb.needs_f32(),
+            snap_epsilon,
             opposite: climb.choices.opposite,
             thickens: climb.choices.walls == Walls::First,
             mends_thin_faces: true,
@@ -203,6 +207,19 @@ impl Climb<'_> {
                 Ok(None)
             }
         }
+    }
+
+    /// How far apart rims of the file lie that should be one, at most what counts as lost; 0 where none do, or where that was
+    /// chosen.
+    fn gap_between_rims(&self, draft: &Draft) -> Result<f64, Stopped> {
+        let choices = self.choices;
+        let is_free = choices.snap_epsilon.is_none() && choices.cuts && choices.fills_all_holes();
+        if !is_free || !self.has_found(DefectCode::BoundaryLoop) || choices.walls == Walls::First {
+            return Ok(0.0);
+        }
+        let most = LOST_BEYOND * diagonal(&self.input.soup);
+        let gap = || gap_between_rims(draft, most, self.budget);
+        Ok(self.budget.within_part(ATTEMPT_PART, gap)?.unwrap_or(0.0))
     }
 
     /// Runs a plan: the mended mesh if the best effort may be asked for it, and the one that may be a solid.

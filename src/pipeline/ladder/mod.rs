@@ -10,6 +10,7 @@ mod noise;
 mod rebuild;
 mod sheets;
 mod unite;
+mod unsnapped;
 
 pub(super) use self::climb::{Certified, Climb};
 use self::climb::{Found, Situation};
@@ -45,10 +46,11 @@ struct Rung {
 }
 
 /// After each attempt that fails, the first of these that applies comes next.
-const RUNGS: [&Rung; 10] = [
+const RUNGS: [&Rung; 11] = [
     &as_drawn::RUNG,
     &unite::WHERE_BODIES_MEET,
     &keep_first::RUNG,
+    &unsnapped::RUNG,
     &float32::RUNG,
     &noise::RUNG,
     &sheets::RUNG,

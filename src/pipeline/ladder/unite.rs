@@ -131,27 +131,51 @@ impl Climb<'_> {
         self.settled(attempt)
     }
 
-    /// Goes on with united bodies until their bytes are certified: rounds where it matters, and joins or parts what touches itself.
-    pub(in crate::pipeline) fn settled(&self, mut attempt: Attempt) -> Result<Tried, Failure> {
+    /// Goes on with united bodies until their bytes are certified; where nothing helps, from coarser places of what touches itself.
+    pub(in crate::pipeline) fn settled(&self, united: Attempt) -> Result<Tried, Failure> {
+        let _charge = self.budget.charge(2 * united.draft.bytes())?;
+        let settling = Variant::settling(self.options.contact, self.choices);
+        let mut last = united.clone();
+        let mut tried = self.settled_by(&settling, &mut last)?;
+        for steps in Variant::coarsening() {
+            if !matches!(tried, Tried::Nothing) || !self.choices.rounds {
+                break;
+            }
+            let mut attempt = united.clone();
+            self.go_on(&mut attempt, &steps)?;
+            if attempt.draft != united.draft {
+                tried = self.settled_by(&settling, &mut attempt)?;
+            }
+        }
+        match tried {
+            Tried::Nothing => self.settled_by(&Variant::boring(), &mut last),
+            tried => Ok(tried),
+        }
+    }
+
+    /// Rounds where it matters, and runs these steps until the bytes are certified.
+    fn settled_by(&self, tries: &[Vec<Step>], attempt: &mut Attempt) -> Result<Tried, Failure> {
         let mut roundings = ROUNDINGS_MAX;
-        let mut tries = Variant::settling(self.options.contact, self.choices).into_iter();
+        let mut tries = tries.iter();
         loop {
-            let judged = self.judge(&attempt)?;
+            let judged = self.judge(attempt)?;
             if judged.fails_in_f32() {
                 if !self.choices.rounds || roundings == 0 {
                     return Ok(Tried::SolidInF64);
                 }
                 roundings -= 1;
-                self.go_on(&mut attempt, &[Step::RoundWhereItMatters, Step::Unite])?;
+                self.go_on(attempt, &[Step::RoundWhereItMatters, Step::Unite])?;
                 continue;
             }
             match judged {
-                Judged::Certified(candidate) => return Ok(Tried::Certified(Box::new((attempt, *candidate)))),
+                Judged::Certified(candidate) => {
+                    return Ok(Tried::Certified(Box::new((attempt.clone(), *candidate))));
+                }
                 Judged::Not(Refusal::NotRepairable { .. }) => {}
                 Judged::Not(_) => return Ok(Tried::Nothing),
             }
             let Some(steps) = tries.next() else { return Ok(Tried::Nothing) };
-            self.go_on(&mut attempt, &steps)?;
+            self.go_on(attempt, steps)?;
         }
     }
 }

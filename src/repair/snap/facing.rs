@@ -1,7 +1,8 @@
 //! Which parts to turn so that their boundaries can be joined: two edges that lie on each other are joined only where
 //! they run in opposite directions, and how a sheet is wound says nothing about where it belongs.
 
-use super::Rim;
+use super::beside::Reach;
+use super::{Rim, flank};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::triangle_area;
 use crate::mesh::{ChosenEdges, Components, ParityUnionFind, edge_of, triangle_of};
@@ -11,7 +12,7 @@ use crate::spatial::{Octree, is_within};
 /// Partners that are looked at for each edge, in each direction.
 const PARTNERS_MAX: usize = 32;
 
-/// Turns whole parts (triangles connected by edges) so that boundary edges within `epsilon` of each other, each used once
+/// Turns whole parts (triangles connected by edges) so that boundary edges within `reach` of each other, each used once
 /// and the closest first, run in opposite directions. Of parts that are related so, those with more area stay. Gives the
 /// number of triangles that were turned. The draft must be a manifold, coherently oriented.
 ///
@@ -20,7 +21,7 @@ const PARTNERS_MAX: usize = 32;
 pub(super) fn turn_to_face(
     draft: &mut Draft,
     rim: &Rim,
-    epsilon: f64,
+    reach: Reach,
     chosen: &ChosenEdges,
     budget: &Budget,
 ) -> Result<u64, Stopped> {
@@ -31,7 +32,7 @@ pub(super) fn turn_to_face(
     if parts.count < 2 {
         return Ok(0);
     }
-    let meetings = meetings(draft, rim, &parts, epsilon, chosen, budget)?;
+    let meetings = meetings(draft, rim, &parts, reach, chosen, budget)?;
     if meetings.iter().all(|meeting| !meeting.run_alike) {
         return Ok(0);
     }
@@ -68,7 +69,7 @@ fn meetings(
     draft: &Draft,
     rim: &Rim,
     parts: &Components,
-    epsilon: f64,
+    reach: Reach,
     chosen: &ChosenEdges,
     budget: &Budget,
 ) -> Result<Vec<Meeting>, Stopped> {
@@ -91,14 +92,19 @@ fn meetings(
             continue;
         }
         let mut partners = Vec::new();
-        for end in octree.near(at(from), epsilon, budget)? {
+        for end in octree.near(at(from), reach.of_edge([at(from), at(to)]), budget)? {
             let alike = leaving(end).map(|j| (j, edge_of(&draft.triangles, rim.half_edges[j])[1], true));
             let against = rim.into(end).and_then(|h| {
                 let j = rim.half_edges.binary_search(&h).ok()?;
                 Some((j, edge_of(&draft.triangles, h)[0], false))
             });
             for (j, other, run_alike) in alike.into_iter().chain(against) {
-                if j > i && part(rim.half_edges[j]) != part(g) && is_within(at(other), at(to), epsilon) {
+                let may_join = || {
+                    let [a, b, third] = flank(draft, rim.half_edges[j]);
+                    reach.may_join(flank(draft, g), if run_alike { [a, b, third] } else { [b, a, third] })
+                };
+                let is_elsewhere = j > i && part(rim.half_edges[j]) != part(g);
+                if is_elsewhere && is_within(at(other), at(to), reach.epsilon) && may_join() {
                     let apart = at(end).distance(at(from)).max(at(other).distance(at(to)));
                     partners.push(Meeting { apart, edges: [i, j], run_alike });
                 }

@@ -5,12 +5,16 @@
 //! when its turn comes, and what was refused is tried again after others. Of two joined vertices the one with the
 //! smaller id keeps its place, so no new coordinates arise.
 
+mod beside;
 mod facing;
+mod gap;
 
+use self::beside::{Flank, Reach};
+pub use self::gap::gap_between_rims;
 use super::{Changes, Draft, Effects, Stitches};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3, are_collinear};
-use crate::mesh::{self, Boundary, ChosenEdges, JoinRule, Stitched, Validity, edge_of};
+use crate::mesh::{self, Boundary, ChosenEdges, JoinRule, Stitched, Validity, edge_of, triangle_of};
 use crate::spatial::{Octree, is_within};
 use rustc_hash::FxHashMap;
 
@@ -26,6 +30,9 @@ pub struct SnapOptions {
     pub chosen: ChosenEdges,
     /// No part is turned to be joined.
     pub keeps_winding: bool,
+    /// Of edges that do not coincide, only those are joined that lie side by side: with ends closer than an eighth of the
+    /// shorter one, and triangles that do not lie back to back. Half the shortest boundary edge is no limit then.
+    pub by_edge: bool,
 }
 
 /// Share of the diagonal that vertices may be apart when nothing is asked.
@@ -43,15 +50,19 @@ const PARTNERS_MAX: usize = 32;
 /// When the budget stops the run.
 pub fn snap(draft: &mut Draft, options: &SnapOptions, budget: &Budget) -> Result<Changes, Stopped> {
     let mut rim = Rim::of(draft, budget)?;
-    let epsilon = epsilon(draft, &rim, options.epsilon);
+    let epsilon = match options.epsilon {
+        Some(epsilon) if options.by_edge => epsilon,
+        asked => epsilon(draft, &rim, asked),
+    };
+    let reach = Reach { epsilon, by_edge: options.by_edge };
     let flipped = match options.keeps_winding {
         true => 0,
-        false => facing::turn_to_face(draft, &rim, epsilon, &options.chosen, budget)?,
+        false => facing::turn_to_face(draft, &rim, reach, &options.chosen, budget)?,
     };
     if flipped > 0 {
         rim = Rim::of(draft, budget)?;
     }
-    let [apart, same] = rim.pairs(draft, epsilon, &options.chosen, budget)?;
+    let [apart, same] = rim.pairs(draft, reach, &options.chosen, budget)?;
     let outlines = draft.outlines(budget)?;
     let _charge = budget.charge(draft.triangles.len() as u64 * 12)?;
     let before = draft.triangles.clone();
@@ -73,6 +84,13 @@ pub fn snap(draft: &mut Draft, options: &SnapOptions, budget: &Budget) -> Result
     let reason = if moved > 0 { format!("vertices up to {epsilon:e} apart are one") } else { String::new() };
     let effects = Effects { turned_triangles: flipped, ..Effects::default() };
     Ok(Changes { counts, move_max, reason, stitches, effects, ..Changes::default() })
+}
+
+/// A half-edge and the third corner of its triangle.
+fn flank(draft: &Draft, h: u32) -> Flank {
+    let [from, to] = edge_of(&draft.triangles, h);
+    let third = draft.triangles[triangle_of(h) as usize][(h as usize % 3 + 2) % 3];
+    [from, to, third].map(|v| draft.positions[v as usize])
 }
 
 fn epsilon(draft: &Draft, rim: &Rim, asked: Option<f64>) -> f64 {
@@ -125,12 +143,12 @@ impl Rim {
         Some(self.loop_of[i])
     }
 
-    /// Pairs of half-edges in opposite directions with both ends at most `epsilon` apart: those of different loops, and
+    /// Pairs of half-edges in opposite directions with both ends within `reach`: those of different loops, and
     /// the others; each by the larger distance of their ends, then id.
     fn pairs(
         &self,
         draft: &Draft,
-        epsilon: f64,
+        reach: Reach,
         chosen: &ChosenEdges,
         budget: &Budget,
     ) -> Result<[Vec<(u32, u32)>; 2], Stopped> {
@@ -145,10 +163,14 @@ impl Rim {
                 continue;
             }
             let mut partners = Vec::new();
-            for end in octree.near(at(from), epsilon, budget)? {
+            for end in octree.near(at(from), reach.of_edge([at(from), at(to)]), budget)? {
                 let Some(h) = self.into(end).filter(|&h| h > g) else { continue };
                 let begin = edge_of(&draft.triangles, h)[0];
-                if is_within(at(begin), at(to), epsilon) {
+                let may_join = || {
+                    let [a, b, third] = flank(draft, h);
+                    reach.may_join(flank(draft, g), [b, a, third])
+                };
+                if is_within(at(begin), at(to), reach.epsilon) && may_join() {
                     let apart = at(end).distance(at(from)).max(at(begin).distance(at(to)));
                     partners.push((apart, h));
                 }

@@ -57,7 +57,7 @@ options! {
     ///
     /// As JSON it is an object of those that are given, by the names of [`SPECS`]; it is read back as it was written.
     format: Format, in Operation::ALL,
-        "Format of the input. Default: told by the content.";
+        "Format of the input. Default: found from the content.";
     output_format: Format, in Operation::WITH_MESH,
         "Format of the output. Default: that of the input.";
     output_units: Units, in Operation::WITH_MESH,
@@ -117,7 +117,7 @@ options! {
     stitch: Stitch, in CUT_STITCH,
         "Which boundary edges cut-stitch joins after the cut. Default: pinch.";
     snap_epsilon_mm: f64, in &[Operation::Repair, Operation::CutStitch],
-        "How far apart vertices of rims may be that repair and stitch=snap join, in millimetres, but never more than half the shortest boundary edge. Default: 1e-5 of the diagonal for cut-stitch, 0 for repair.";
+        "Largest distance of vertices of rims that repair and stitch=snap join, in millimetres; never more than half the shortest boundary edge; 0: only where they coincide. Default: 1e-5 of the diagonal for cut-stitch; for repair as far as rims that lie side by side are apart, at most 2^-14 of the diagonal.";
     stitch_validity: StitchValidity, in CUT_STITCH,
         "When cut-stitch may join two boundary edges. Default: exact.";
     degenerate: Degenerate, in CUT_STITCH,
@@ -181,7 +181,7 @@ options! {
     build_direction: BuildDirection, in Operation::ALL,
         "Direction of the file that is up in the machine; matters with policy. Default: z.";
     near_mm: f64, in Operation::DESCRIBING,
-        "How far apart vertices, edges and faces are at most that are reported as near, in millimetres, but never more than half the edges around them. Default: 1e-5 of the diagonal for analyze up to 100000 triangles; everything else is searched only when this is given.";
+        "Largest distance of vertices, edges and faces that are reported as near, in millimetres; never more than half the edges around them. Default: 1e-5 of the diagonal for analyze of up to 100000 triangles; otherwise nothing near is looked for.";
     samples: u32 = OptionKind::Integer { min: 0, max: 10_000 }, in Operation::ALL,
         "Witnesses that the report keeps of each defect. Default: 16.";
     result_ttl: u64 = OptionKind::Integer { min: 1, max: 31_536_000 }, in Operation::ALL, of the service,

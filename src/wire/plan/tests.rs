@@ -26,7 +26,12 @@ fn all_steps() -> Vec<Step> {
         Step::JoinContacts { size: 0.5 },
         Step::Cut(CutOptions::default()),
         Step::Pinch(mesh::ChosenEdges::default(), mesh::Validity::Exact),
-        Step::Snap(SnapOptions { epsilon: Some(0.5), keeps_winding: true, ..SnapOptions::default() }),
+        Step::Snap(SnapOptions {
+            epsilon: Some(0.5),
+            keeps_winding: true,
+            by_edge: true,
+            ..SnapOptions::default()
+        }),
         Step::MendThinFaces(ThinFaces { needles: true, caps: false, folds: true }),
         Step::FillHoles(FillOptions::plain(Selection::Only(vec![5]))),
         Step::FillHoles(FillOptions {
@@ -44,6 +49,7 @@ fn all_steps() -> Vec<Step> {
         Step::Unite,
         Step::UniteAndCopyBare,
         Step::BoreContacts { steps: 64 },
+        Step::RoundToCoarser { steps: 16 },
         Step::SpanRims,
         Step::OpenContacts,
         Step::JoinCopies,

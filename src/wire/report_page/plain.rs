@@ -104,6 +104,7 @@ pub(super) fn step(code: &str) -> String {
         "span-rims" => "Open rims were spanned.",
         "unite" | "unite-and-copy-bare" => "Parts that pass through each other became one.",
         "bore-contacts" | "open-contacts" => "Parts that touch were drawn apart a little.",
+        "round-to-coarser" => "Corners where parts touch were moved a little.",
         "fill-holes" => "Holes were closed.",
         "mend-thin-faces" => "Faces as thin as needles were mended.",
         "thicken" => "Surfaces without thickness became walls.",

@@ -1,0 +1,84 @@
+//! Which edges lie side by side, so that they may be one.
+
+use crate::geom::DVec3;
+
+/// Two edges lie side by side only where their ends are closer than this share of both their lengths.
+const SHARE_OF_EDGE: f64 = 0.125;
+
+/// Cosine of the angle between two triangles below which they lie back to back, as the inside and the outside of a cup at its lip:
+/// 20 degrees.
+const BACK_TO_BACK: f64 = 0.94;
+
+/// Which boundary edges may be joined.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Reach {
+    /// Largest distance of ends.
+    pub(super) epsilon: f64,
+    /// Only edges that lie side by side, unless they coincide.
+    pub(super) by_edge: bool,
+}
+
+/// A boundary edge from its first end to its second, and the third corner of its triangle.
+pub(super) type Flank = [DVec3; 3];
+
+impl Reach {
+    /// How far from an end of an edge to look.
+    pub(super) fn of_edge(self, [from, to]: [DVec3; 2]) -> f64 {
+        if self.by_edge { self.epsilon.min(SHARE_OF_EDGE * from.distance(to)) } else { self.epsilon }
+    }
+
+    /// True when edges within reach of each other may be joined, the first end of one to the first of the other.
+    pub(super) fn may_join(self, a: Flank, b: Flank) -> bool {
+        !self.by_edge || (a[0] == b[0] && a[1] == b[1]) || lie_side_by_side(a, b)
+    }
+}
+
+/// True when two edges are little apart for their lengths and their triangles do not lie back to back.
+pub(super) fn lie_side_by_side(a: Flank, b: Flank) -> bool {
+    let apart = a[0].distance(b[0]).max(a[1].distance(b[1]));
+    let least = a[0].distance(a[1]).min(b[0].distance(b[1]));
+    apart <= SHARE_OF_EDGE * least && inward(a).dot(inward(b)) < BACK_TO_BACK
+}
+
+/// The direction from an edge into its triangle.
+fn inward([from, to, third]: Flank) -> DVec3 {
+    let along = (to - from).normalize_or_zero();
+    let side = (third - from).normalize_or_zero();
+    (side - along * side.dot(along)).normalize_or_zero()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn flank(y: f64, third: [f64; 3]) -> Flank {
+        [DVec3::new(0.0, y, 0.0), DVec3::new(1.0, y, 0.0), DVec3::from_array(third)]
+    }
+
+    #[test]
+    fn sheets_that_go_on_lie_side_by_side_and_those_that_turn_back_do_not() {
+        let first = flank(0.0, [0.5, -1.0, 0.0]);
+        for (third, is_beside) in [
+            ([0.5, 1.0, 0.0], true),
+            ([3.0, 1.0, 0.0], true),
+            ([0.5, 0.01, 1.0], true),
+            ([0.5, -0.7, 0.7], true),
+            ([0.5, -1.0, 0.1], false),
+            ([-2.0, -1.0, 0.01], false),
+        ] {
+            assert_eq!(lie_side_by_side(first, flank(0.01, third)), is_beside, "{third:?}");
+        }
+    }
+
+    #[test]
+    fn edges_are_side_by_side_only_where_they_are_longer_than_eight_times_their_distance() {
+        let first = flank(0.0, [0.5, -1.0, 0.0]);
+        assert!(lie_side_by_side(first, flank(0.125, [0.5, 1.0, 0.0])));
+        assert!(!lie_side_by_side(first, flank(0.126, [0.5, 1.0, 0.0])));
+        let by_edge = Reach { epsilon: 1.0, by_edge: true };
+        assert_eq!(by_edge.of_edge([DVec3::ZERO, DVec3::X]), 0.125);
+        assert!(by_edge.may_join(first, first), "edges that coincide are one");
+        assert!(!by_edge.may_join(first, flank(0.01, [0.5, -1.0, 0.01])));
+        assert!(Reach { epsilon: 1.0, by_edge: false }.may_join(first, flank(0.01, [0.5, -1.0, 0.01])));
+    }
+}
