@@ -158,13 +158,19 @@ fn combined(
     if encoding.is_float32() && !input.soup.is_f32_exact {
         climb.go_on(&mut attempt, &rounding)?;
     }
-    let unrounded = (!is_rounded).then(|| attempt.clone());
-    let mut tried = climb.settled(attempt)?;
-    if matches!(tried, Tried::SolidInF64)
-        && let Some(mut attempt) = unrounded
-    {
+    let coarser = |combined: &Attempt, steps: u32| {
+        let mut attempt = combined.clone();
+        if steps > 0 {
+            let round = Step::RoundToCoarser { steps };
+            let steps = [round, Step::JoinCopies, Step::DropDegenerate, Step::SplitCollinear, Step::Unite];
+            climb.go_on(&mut attempt, &steps)?;
+        }
+        Ok(Some(attempt))
+    };
+    let mut tried = climb.settled(|steps| coarser(&attempt, steps))?;
+    if matches!(tried, Tried::SolidInF64) && !is_rounded {
         climb.go_on(&mut attempt, &rounding)?;
-        tried = climb.settled(attempt)?;
+        tried = climb.settled(|steps| coarser(&attempt, steps))?;
     }
     let Tried::Certified(found) = tried else {
         return Ok(report.refused(Refusal::NotRepairable { witness: None }));

@@ -24,6 +24,8 @@ pub(super) struct Variant {
     pub(super) clears_noise: bool,
     /// Coordinates become float32 first.
     pub(super) rounds: bool,
+    /// Corners of triangles that all but meet others go to a lattice of so many steps of the print lattice first; 0: none do.
+    pub(super) coarse: u32,
     /// How far apart rims are joined where the caller says nothing, in the unit of the file; 0: only where they coincide.
     pub(super) snap_epsilon: f64,
     /// What becomes of opposite duplicates.
@@ -57,8 +59,8 @@ pub(super) enum Uniting {
 /// it, and a larger one takes that too.
 const BORINGS: [u32; 4] = [16, 64, 256, 1024];
 
-/// Steps of the print lattice in those of the coarser ones that are tried, one after the other.
-const COARSER: [u32; 2] = [16, 128];
+/// How often what touches itself is joined or parted, since what is drawn apart there may meet something else.
+const PARTINGS: usize = 3;
 
 impl Variant {
     /// The steps that unite bodies which pass through each other.
@@ -82,20 +84,13 @@ impl Variant {
     /// What may follow where the united bodies are no solid yet: what touches itself is joined or parted, what meets after that or
     /// after rounding is united once more.
     pub(super) fn settling(contact: Contact, choices: &Choices) -> Vec<Vec<Step>> {
-        vec![vec![Step::Unite], Self::parting(contact, choices), vec![Step::Unite]]
+        let parting = [Self::parting(contact, choices), vec![Step::Unite]];
+        std::iter::once(vec![Step::Unite]).chain(vec![parting; PARTINGS].into_iter().flatten()).collect()
     }
 
     /// What may follow where that did not help: what still touches is bored.
     pub(super) fn boring() -> Vec<Vec<Step>> {
         BORINGS.map(|steps| vec![Step::BoreContacts { steps }]).into()
-    }
-
-    /// What may be done to united bodies of which nothing that settles them made a solid, before they are settled once more.
-    pub(super) fn coarsening() -> [Vec<Step>; 2] {
-        COARSER.map(|steps| {
-            let round = Step::RoundToCoarser { steps };
-            vec![round, Step::JoinCopies, Step::DropDegenerate, Step::SplitCollinear, Step::Unite]
-        })
     }
 
     /// The steps that join what touches itself, or part it.
@@ -114,6 +109,9 @@ impl Variant {
         let mut steps = vec![Step::SplitPolygons(DegenerateFaces::Split)];
         steps.extend(self.clears_noise.then_some(Step::ClearNoise));
         steps.extend(self.rounds.then_some(Step::RoundToF32));
+        if self.coarse > 0 {
+            steps.push(Step::RoundToCoarser { steps: self.coarse });
+        }
         steps.extend([Step::Weld, Step::DropDegenerate]);
         steps.extend(choices.splits_collinear.then_some(Step::SplitCollinear));
         if !choices.removed_parts.is_empty() {

@@ -4,9 +4,11 @@ use super::climb::{Certified, Climb, Found, Judged, Situation};
 use super::{Kind, Rung};
 use crate::analysis::DefectCode;
 use crate::budget::Stopped;
+use crate::geom::print_pitch;
 use crate::pipeline::output::Candidate;
 use crate::pipeline::plan::{Attempt, Uniting, Variant};
 use crate::pipeline::repair_choices::Walls;
+use crate::pipeline::size::diagonal;
 use crate::pipeline::step::Step;
 use crate::pipeline::{Failure, Refusal, Require};
 use crate::repair::nest::Policy;
@@ -30,6 +32,10 @@ pub(super) const BEFORE_TRIANGLES_GO: Rung = Rung {
 
 /// How often what does not hold in float32 is rounded in places, before all is.
 const ROUNDINGS_MAX: u32 = 4;
+
+/// Steps of the coarser lattices that are tried, as shares of the diagonal: at the second, rounding moves a corner by no more than
+/// 2^-14 of it.
+const COARSER: [f64; 2] = [1.0 / (1u64 << 18) as f64, 1.0 / (1u64 << 14) as f64];
 
 /// One kind of bodies may take one of so many parts of the work that is left.
 const KIND_PART: u64 = 3;
@@ -107,10 +113,11 @@ impl Climb<'_> {
         uniting: Uniting,
         variant: Variant,
     ) -> Result<Option<(Attempt, Candidate)>, Failure> {
-        match self.try_uniting(uniting, variant)? {
+        match self.settled(|coarse| self.united(uniting, Variant { coarse, ..variant }))? {
             Tried::Certified(found) => Ok(Some(*found)),
             Tried::SolidInF64 if self.choices.rounds && !variant.rounds && !self.input.soup.is_f32_exact => {
-                match self.try_uniting(uniting, Variant { rounds: true, ..variant })? {
+                let rounded = |coarse| self.united(uniting, Variant { rounds: true, coarse, ..variant });
+                match self.settled(rounded)? {
                     Tried::Certified(found) => Ok(Some(*found)),
                     _ => Ok(None),
                 }
@@ -119,63 +126,80 @@ impl Climb<'_> {
         }
     }
 
-    /// Unites the bodies, and where the result touches itself, joins or parts that.
-    fn try_uniting(&self, uniting: Uniting, variant: Variant) -> Result<Tried, Failure> {
+    /// The bodies as one, if they can be united.
+    fn united(&self, uniting: Uniting, variant: Variant) -> Result<Option<Attempt>, Failure> {
         let steps = variant.uniting(uniting, self.choices);
         let mut attempt = Attempt::start(&self.input.soup, self.before);
         let _charge = self.budget.charge(2 * attempt.draft.bytes())?;
         self.go_on(&mut attempt, &steps)?;
-        if !attempt.has_united() {
-            return Ok(Tried::Nothing);
-        }
-        self.settled(attempt)
+        Ok(attempt.has_united().then_some(attempt))
     }
 
-    /// Goes on with united bodies until their bytes are certified; where nothing helps, from coarser places of what touches itself.
-    pub(in crate::pipeline) fn settled(&self, united: Attempt) -> Result<Tried, Failure> {
-        let _charge = self.budget.charge(2 * united.draft.bytes())?;
-        let settling = Variant::settling(self.options.contact, self.choices);
-        let mut last = united.clone();
-        let mut tried = self.settled_by(&settling, &mut last)?;
-        for steps in Variant::coarsening() {
-            if !matches!(tried, Tried::Nothing) || !self.choices.rounds {
-                break;
-            }
-            let mut attempt = united.clone();
-            self.go_on(&mut attempt, &steps)?;
-            if attempt.draft != united.draft {
-                tried = self.settled_by(&settling, &mut attempt)?;
+    /// Settles united bodies, which are made with triangles that all but meet on ever coarser lattices (0: where they are) until
+    /// that leads to certified bytes; where it does not, what touches is bored.
+    pub(in crate::pipeline) fn settled(
+        &self,
+        united: impl Fn(u32) -> Result<Option<Attempt>, Failure>,
+    ) -> Result<Tried, Failure> {
+        let mut unsettled = Vec::new();
+        for coarse in [0].into_iter().chain(self.coarser_lattices()) {
+            let Some(attempt) = united(coarse)? else { return Ok(Tried::Nothing) };
+            let charge = self.budget.charge(2 * attempt.draft.bytes())?;
+            match self.settle(attempt, Variant::settling(self.options.contact, self.choices))? {
+                Ok(tried) => return Ok(tried),
+                Err(attempt) => unsettled.push((attempt, charge)),
             }
         }
-        match tried {
-            Tried::Nothing => self.settled_by(&Variant::boring(), &mut last),
-            tried => Ok(tried),
+        for (attempt, _charge) in unsettled {
+            if let Ok(tried) = self.settle(*attempt, Variant::boring())? {
+                return Ok(tried);
+            }
         }
+        Ok(Tried::Nothing)
     }
 
-    /// Rounds where it matters, and runs these steps until the bytes are certified.
-    fn settled_by(&self, tries: &[Vec<Step>], attempt: &mut Attempt) -> Result<Tried, Failure> {
+    /// The steps of lattices to which what all but meets may go, in steps of the print lattice.
+    fn coarser_lattices(&self) -> Vec<u32> {
+        let reach =
+            self.input.soup.positions.iter().fold(0.0f64, |reach, p| reach.max(p.abs().max_element()));
+        let Some(pitch) = print_pitch(reach).filter(|_| self.choices.rounds) else { return Vec::new() };
+        let size = diagonal(&self.input.soup);
+        let steps = |share: f64| (size * share / pitch).log2().floor().exp2();
+        COARSER
+            .map(steps)
+            .into_iter()
+            .filter(|steps| (4.0..=65_536.0).contains(steps))
+            .map(|steps| steps as u32)
+            .collect()
+    }
+
+    /// Rounds where it matters, and runs these steps until the bytes are certified; the attempt where they never are.
+    fn settle(
+        &self,
+        mut attempt: Attempt,
+        tries: Vec<Vec<Step>>,
+    ) -> Result<Result<Tried, Box<Attempt>>, Failure> {
         let mut roundings = ROUNDINGS_MAX;
-        let mut tries = tries.iter();
+        let mut tries = tries.into_iter();
         loop {
-            let judged = self.judge(attempt)?;
+            let judged = self.judge(&attempt)?;
             if judged.fails_in_f32() {
                 if !self.choices.rounds || roundings == 0 {
-                    return Ok(Tried::SolidInF64);
+                    return Ok(Ok(Tried::SolidInF64));
                 }
                 roundings -= 1;
-                self.go_on(attempt, &[Step::RoundWhereItMatters, Step::Unite])?;
+                self.go_on(&mut attempt, &[Step::RoundWhereItMatters, Step::Unite])?;
                 continue;
             }
             match judged {
                 Judged::Certified(candidate) => {
-                    return Ok(Tried::Certified(Box::new((attempt.clone(), *candidate))));
+                    return Ok(Ok(Tried::Certified(Box::new((attempt, *candidate)))));
                 }
                 Judged::Not(Refusal::NotRepairable { .. }) => {}
-                Judged::Not(_) => return Ok(Tried::Nothing),
+                Judged::Not(_) => return Ok(Ok(Tried::Nothing)),
             }
-            let Some(steps) = tries.next() else { return Ok(Tried::Nothing) };
-            self.go_on(attempt, steps)?;
+            let Some(steps) = tries.next() else { return Ok(Err(Box::new(attempt))) };
+            self.go_on(&mut attempt, &steps)?;
         }
     }
 }
