@@ -54,7 +54,7 @@ fn table(loaded: &Loaded) -> String {
 
 /// Says whether the service could start with this configuration.
 pub(super) fn check(sources: &Sources, is_strict: bool) -> Exit {
-    let loaded = sources.load().and_then(|loaded| loaded.config.is_anonymous().map(|_| loaded));
+    let loaded = sources.load().and_then(|loaded| crate::http::check(&loaded).map(|()| loaded));
     match loaded {
         Ok(loaded) => {
             warn(&loaded.warnings);

@@ -64,7 +64,7 @@ pub use rate::RateSettings;
 pub use server::Server;
 pub use settings::HttpSettings;
 pub use shutdown::Shutdown;
-pub use start::start;
+pub use start::{check, start};
 
 /// The contract, as it is committed and served.
 pub fn openapi_yaml() -> String {

@@ -42,6 +42,8 @@ pub fn start(loaded: &Loaded, lost_store: LostStore) -> anyhow::Result<()> {
         tracing::warn!("{warning}");
     }
     let http = fitting(http_settings(loaded)?);
+    // Before jobs are taken over, so that the runs that were lost are counted.
+    let _ = super::metrics::recorder();
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
     let served = runtime.block_on(async {
         let shutdown = Shutdown::on_signals()?;
@@ -57,6 +59,17 @@ pub fn start(loaded: &Loaded, lost_store: LostStore) -> anyhow::Result<()> {
     #[cfg(feature = "otel")]
     super::otel::flush();
     served
+}
+
+/// Looks at all that [`start`] takes from the configuration, without opening stores or addresses.
+///
+/// # Errors
+/// The setting with which the service would not start.
+pub fn check(loaded: &Loaded) -> Result<(), ConfigError> {
+    log_filter(loaded)?;
+    http_settings(loaded)?;
+    jobs_settings(loaded)?;
+    Ok(())
 }
 
 /// The setting that a service which cannot start is about.
@@ -111,9 +124,13 @@ fn tell(server: &Server) -> std::io::Result<()> {
     Ok(())
 }
 
+fn log_filter(loaded: &Loaded) -> Result<EnvFilter, ConfigError> {
+    EnvFilter::try_new(&loaded.config.log).map_err(|e| loaded.refused("log", &e))
+}
+
 /// Log lines go to standard error, as the configuration says.
 fn log_as(loaded: &Loaded) -> Result<(), ConfigError> {
-    let filter = EnvFilter::try_new(&loaded.config.log).map_err(|e| loaded.refused("log", &e))?;
+    let filter = log_filter(loaded)?;
     let lines = tracing_subscriber::fmt::layer().with_writer(std::io::stderr);
     let lines = match loaded.config.log_format {
         LogFormat::Text => lines.with_ansi(std::io::stderr().is_terminal()).boxed(),
@@ -281,6 +298,23 @@ mod tests {
         for path in ["/nowhere/keys", empty.path().to_str().unwrap()] {
             let error = access(&loaded(&[("api_keys_file", path)])).unwrap_err().to_string();
             assert!(error.starts_with("`api_keys_file` (flag --api-keys-file)"), "{error}");
+        }
+    }
+
+    #[test]
+    fn what_the_service_would_not_start_with_is_refused_when_the_configuration_is_checked() {
+        assert_eq!(check(&loaded(&[])), Ok(()));
+        for (setting, value) in [
+            ("role", "worker"),
+            ("database_url", "postgresql://a@localhost/b"),
+            ("api_keys_file", "/nowhere/keys"),
+            ("webhook_secret_file", "/nowhere/secret"),
+            ("log", "=loud="),
+            ("lease", "1ms"),
+            ("rate_burst", "0"),
+        ] {
+            let error = check(&loaded(&[(setting, value)])).unwrap_err().to_string();
+            assert!(error.starts_with(&format!("`{setting}`")), "{error}");
         }
     }
 

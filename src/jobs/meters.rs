@@ -6,7 +6,8 @@ use super::soundness::Unsound;
 use super::store::{Ending, JobCounts, NextTry, TryOutcome};
 use crate::wire::{Operation, Problem, Stage};
 
-/// Says what each series is.
+/// Says what each series is, and begins those at 0 whose first event is worth an alert: an increase is seen only from a value that
+/// was there before.
 pub fn describe() {
     describe_gauge!("meshmend_jobs_queued", "Jobs that wait for a slot.");
     describe_gauge!("meshmend_queued_bytes", "Bytes of the uploads of jobs that wait for a slot.");
@@ -31,7 +32,16 @@ pub fn describe() {
         "meshmend_stage_seconds",
         "Time of each pass of the jobs that have ended, in seconds."
     );
+    for operation in Operation::ALL {
+        counter!("meshmend_runs_lost_total", "operation" => operation.word()).absolute(0);
+    }
+    for kind in UNSOUND {
+        counter!("meshmend_files_unsound_total", "kind" => kind).absolute(0);
+    }
 }
+
+/// How a stored file can be one that nobody can be given.
+const UNSOUND: [&str; 3] = ["lost", "damaged", "unreadable"];
 
 /// Jobs that wait and run, bytes on disk.
 pub(super) fn load(counts: JobCounts, data_bytes: u64) {
@@ -51,10 +61,11 @@ pub(super) fn refused(problem: &Problem) {
 
 /// A stored file that nobody can be given.
 pub(super) fn unsound(unsound: &Unsound) {
+    let [lost, damaged, unreadable] = UNSOUND;
     let kind = match unsound {
-        Unsound::Lost => "lost",
-        Unsound::Damaged => "damaged",
-        Unsound::Disk(_) => "unreadable",
+        Unsound::Lost => lost,
+        Unsound::Damaged => damaged,
+        Unsound::Disk(_) => unreadable,
     };
     counter!("meshmend_files_unsound_total", "kind" => kind).increment(1);
 }

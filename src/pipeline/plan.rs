@@ -57,7 +57,8 @@ pub(super) enum Uniting {
 
 /// Steps of the lattice by which contacts are bored, one time after the other: a body that is taken out can touch what is beside
 /// it, and a larger one takes that too.
-const BORINGS: [u32; 4] = [16, 64, 256, 1024];
+const LITTLE_BORINGS: [u32; 2] = [16, 64];
+const MORE_BORINGS: [u32; 2] = [256, 1024];
 
 /// How often what touches itself is joined or parted, since what is drawn apart there may meet something else.
 const PARTINGS: usize = 3;
@@ -89,8 +90,13 @@ impl Variant {
     }
 
     /// What may follow where that did not help: what still touches is bored.
-    pub(super) fn boring() -> Vec<Vec<Step>> {
-        BORINGS.map(|steps| vec![Step::BoreContacts { steps }]).into()
+    pub(super) fn boring_a_little() -> Vec<Vec<Step>> {
+        LITTLE_BORINGS.map(|steps| vec![Step::BoreContacts { steps }]).into()
+    }
+
+    /// What may follow where nothing else helped.
+    pub(super) fn boring_more() -> Vec<Vec<Step>> {
+        MORE_BORINGS.map(|steps| vec![Step::BoreContacts { steps }]).into()
     }
 
     /// The steps that join what touches itself, or part it.
@@ -273,6 +279,12 @@ impl Attempt {
             self.steps.push(step.clone());
         }
         Ok(())
+    }
+
+    /// This count of the last step.
+    pub(super) fn last_count(&self, name: &str) -> u64 {
+        let counts = self.actions.last().map_or(&[][..], |action| &action.changes);
+        counts.iter().find(|(other, _)| *other == name).map_or(0, |&(_, count)| count)
     }
 
     /// True when bodies were united.

@@ -3,14 +3,16 @@
 
 use super::{Changes, Draft, Star};
 use crate::budget::{Budget, Stopped};
-use crate::geom::{DVec3, print_pitch};
+use crate::geom::print_pitch;
 use crate::spatial::coincident_f64;
 
-/// Steps of the lattice that a vertex is drawn back by: a quarter of a micrometre on a bed of 256 mm.
-const STEPS: f64 = 16.0;
+/// Steps of the lattice that a vertex is drawn back by: a quarter of a micrometre on a bed of 256 mm. Where that turns a triangle
+/// over, less and then more is tried.
+const STEPS: [f64; 5] = [16.0, 8.0, 4.0, 32.0, 64.0];
 
 /// Draws every vertex that has the position of an earlier one away from that: into the solid behind its own triangles, or
-/// out of it where the earlier one is inside of that. One that would turn a triangle over stays. The draft must be a manifold (see [`cut`](super::cut::cut)).
+/// out of it where the earlier one is inside of that. Where every distance would turn a triangle over, the earlier one is drawn away
+/// instead, or both stay. The draft must be a manifold (see [`cut`](super::cut::cut)).
 ///
 /// ```text
 ///      \   /             \   /
@@ -39,22 +41,31 @@ pub fn open_contacts(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stop
         budget.spend(star.triangles.len() as u64 / 8 + 1)?;
         let from = draft.positions[star.vertex as usize];
         let first = firsts.binary_search(&first_at(star.vertex)).map_or(&star, |i| &stars_of_firsts[i]);
-        let away = star.away_from(first, draft);
-        let place = star.place(draft, from + away * (STEPS * pitch), pitch);
-        if let Some(place) = place.filter(|_| away != DVec3::ZERO) {
+        let drawn = |one: &Star, other: &Star, draft: &Draft| {
+            let away = one.away_from(other, draft);
+            let places =
+                STEPS.into_iter().filter_map(|steps| one.place(draft, from + away * (steps * pitch), pitch));
+            places.filter(|&place| place != from).map(|place| (one.vertex, place)).next()
+        };
+        let is_where_it_was = draft.positions[first.vertex as usize] == from;
+        let place = drawn(&star, first, draft).or_else(|| {
+            drawn(first, &star, draft).filter(|_| is_where_it_was && first.vertex != star.vertex)
+        });
+        if let Some((vertex, place)) = place {
             move_max = move_max.max(place.distance(from));
-            draft.positions[star.vertex as usize] = place;
+            draft.positions[vertex as usize] = place;
             moved += 1;
         }
     }
     let reason =
-        format!("contacts were opened by drawing {moved} vertices back by {STEPS} steps of {pitch:e}");
+        format!("contacts were opened by drawing {moved} vertices back by {} steps of {pitch:e}", STEPS[0]);
     Ok(Changes { move_max, reason, ..Changes::counted([("vertices_moved", moved)]) })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geom::DVec3;
 
     /// A tetrahedron with its right angle at `tip` that opens this way along every axis.
     fn corner(tip: [f64; 3], open: f64) -> [DVec3; 4] {

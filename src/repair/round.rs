@@ -126,6 +126,28 @@ mod tests {
     }
 
     #[test]
+    fn only_vertices_of_triangles_that_all_but_meet_go_to_a_coarser_lattice() {
+        // Two triangles over each other, less than half a coarse step apart, and one a step and a half above them.
+        let pitch = print_pitch(6.1).unwrap();
+        let step = 16.0 * pitch;
+        let flat = |z: f64, x: f64| [[x, 0.1, z], [x + 1.0, 0.1, z], [x, 1.1, z]];
+        let corners = [flat(step, 0.0), flat(step * 1.375, 0.25), flat(step * 2.75, 0.125), flat(0.0, 5.1)];
+        let positions: Vec<DVec3> = corners.as_flattened().iter().map(|&p| DVec3::from_array(p)).collect();
+        let mut draft = Draft {
+            vertex_origin: (0..12).collect(),
+            triangle_origin: (0..4).collect(),
+            triangles: (0..4).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect(),
+            positions: positions.clone(),
+            ..Draft::default()
+        };
+        let changes = round_to_coarser(&mut draft, 16, &Budget::unlimited()).unwrap();
+        assert_eq!(changes.count("vertices_moved"), 6);
+        assert!(draft.positions[..6].iter().all(|p| p.z == step && (*p / step).fract() == DVec3::ZERO));
+        assert_eq!(draft.positions[6..], positions[6..]);
+        assert!(changes.move_max <= step, "{}", changes.move_max / step);
+    }
+
+    #[test]
     fn only_what_float32_cannot_hold_moves_and_the_distance_is_told() {
         let mut draft = Draft {
             positions: vec![

@@ -37,6 +37,9 @@ const ROUNDINGS_MAX: u32 = 4;
 /// 2^-14 of it.
 const COARSER: [f64; 2] = [1.0 / (1u64 << 18) as f64, 1.0 / (1u64 << 14) as f64];
 
+/// Contacts that may be left for large bodies to be bored.
+const CONTACTS_MAX: u64 = 8;
+
 /// One kind of bodies may take one of so many parts of the work that is left.
 const KIND_PART: u64 = 3;
 
@@ -135,8 +138,8 @@ impl Climb<'_> {
         Ok(attempt.has_united().then_some(attempt))
     }
 
-    /// Settles united bodies, which are made with triangles that all but meet on ever coarser lattices (0: where they are) until
-    /// that leads to certified bytes; where it does not, what touches is bored.
+    /// Settles united bodies, which are made with triangles that all but meet on ever coarser lattices (0: where they are), until
+    /// that leads to certified bytes. What touches is bored a little each time, and more where nothing else helps.
     pub(in crate::pipeline) fn settled(
         &self,
         united: impl Fn(u32) -> Result<Option<Attempt>, Failure>,
@@ -145,13 +148,15 @@ impl Climb<'_> {
         for coarse in [0].into_iter().chain(self.coarser_lattices()) {
             let Some(attempt) = united(coarse)? else { return Ok(Tried::Nothing) };
             let charge = self.budget.charge(2 * attempt.draft.bytes())?;
-            match self.settle(attempt, Variant::settling(self.options.contact, self.choices))? {
+            let tries = [Variant::settling(self.options.contact, self.choices), Variant::boring_a_little()];
+            match self.settle(attempt, tries.concat())? {
                 Ok(tried) => return Ok(tried),
                 Err(attempt) => unsettled.push((attempt, charge)),
             }
         }
-        for (attempt, _charge) in unsettled {
-            if let Ok(tried) = self.settle(*attempt, Variant::boring())? {
+        let is_hopeful = |attempt: &Attempt| attempt.last_count("contacts_bored") <= CONTACTS_MAX;
+        for (attempt, _charge) in unsettled.into_iter().filter(|(attempt, _)| is_hopeful(attempt)) {
+            if let Ok(tried) = self.settle(*attempt, Variant::boring_more())? {
                 return Ok(tried);
             }
         }

@@ -197,7 +197,9 @@ impl Search<'_> {
                 ..WrapOptions::default()
             };
             let (input, encoding, options) = (self.input, self.encoding, self.options);
-            let rebuilding = Rebuilding { input, encoding, options, wrap_options, budget };
+            // Beside a smaller result, one whose triangles are too many to simplify is too much.
+            let must_simplify = best.is_some();
+            let rebuilding = Rebuilding { input, encoding, options, wrap_options, must_simplify, budget };
             let made = match budget.within_all_but(4, || rebuilding.run(draft, split.as_ref())) {
                 Ok(Some(made)) => made,
                 // Finer was too much; what there is stays.
@@ -323,6 +325,8 @@ struct Rebuilding<'a> {
     encoding: Encoding,
     options: &'a Options,
     wrap_options: WrapOptions,
+    /// A surface that is too much work to simplify is no result.
+    must_simplify: bool,
     budget: &'a Budget,
 }
 
@@ -373,7 +377,13 @@ impl Rebuilding<'_> {
         let fewer = Fewer { wrapped, choices: &self.options.simplify, budget: self.budget };
         for mode in [Mode::Fast, Mode::Guarded] {
             // What takes too much work keeps its triangles, all of which are judged and measured then: that is dear too.
-            let Some(found) = self.budget.within_all_but(5, || fewer.triangles(mode))? else { break };
+            let Some(found) = self.budget.within_all_but(5, || fewer.triangles(mode))? else {
+                if self.must_simplify {
+                    let units = self.budget.work_used();
+                    return Err(NoCandidate::Refused(Refusal::OverBudget { units }));
+                }
+                break;
+            };
             let Some((simplified, action)) = found else { continue };
             let candidate = self.write(&simplified.positions, &simplified.triangles, kept)?;
             if candidate.certificate().is_printable() {
