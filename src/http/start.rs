@@ -308,7 +308,6 @@ mod tests {
             ("role", "worker"),
             ("database_url", "postgresql://a@localhost/b"),
             ("api_keys_file", "/nowhere/keys"),
-            ("webhook_secret_file", "/nowhere/secret"),
             ("log", "=loud="),
             ("lease", "1ms"),
             ("rate_burst", "0"),

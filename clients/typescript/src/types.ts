@@ -1695,20 +1695,20 @@ export interface components {
             rate_per_minute: number;
             /**
              * Format: int32
-             * @description Requests that it may make at one time; 0: any number.
+             * @description Requests that one key, or one address without keys, may make at one time; 0: any number.
              */
             rate_burst: number;
             /** @description Jobs that run beside those of `slots`, for small meshes that somebody waits for. */
             interactive_slots: number;
             /**
              * Format: int64
-             * @description Largest upload of such a mesh, in bytes.
+             * @description Largest upload that may use an interactive slot, in bytes.
              */
             interactive_bytes_max: number;
             /**
              * Format: double
-             * @description Time that a job may take in a slot for such meshes for each begun MiB of its upload, in seconds; then it goes on as a
-             *     large one.
+             * @description Time that a job may take in an interactive slot for each begun MiB of its upload, in seconds; then it goes on in
+             *     an ordinary slot.
              */
             interactive_deadline_s: number;
             /**
@@ -2028,7 +2028,7 @@ export interface components {
              */
             by_mm: number;
         };
-        /** @description How far apart vertices, edges and faces are at most that are reported as near, in millimetres, but never more than half the edges around them. Default: 1e-5 of the diagonal for analyze up to 100000 triangles; everything else is searched only when this is given. */
+        /** @description Largest distance of vertices, edges and faces that are reported as near, in millimetres; never more than half the edges around them. Default: 1e-5 of the diagonal for analyze of up to 100000 triangles; otherwise nothing near is looked for. */
         NearMm: number;
         /**
          * @description How shells inside shells are taken.
@@ -2443,6 +2443,11 @@ export interface components {
             epsilon: number;
             /** @description No part is turned to be joined. */
             keeps_winding?: boolean;
+            /**
+             * @description Of edges that do not coincide, only those are joined that lie side by side: with ends closer than an eighth of the
+             *     shorter one, and triangles that do not lie back to back.
+             */
+            by_edge?: boolean;
             /** @enum {string} */
             step: "snap";
         } | {
@@ -2493,6 +2498,14 @@ export interface components {
             steps: number;
             /** @enum {string} */
             step: "bore-contacts";
+        } | {
+            /**
+             * Format: int32
+             * @description Its step, in steps of the print lattice.
+             */
+            steps: number;
+            /** @enum {string} */
+            step: "round-to-coarser";
         } | {
             /** @enum {string} */
             step: "span-rims";
@@ -2738,7 +2751,7 @@ export interface components {
          *     - `unauthenticated`: No valid key.
          *     - `forbidden`: Not allowed for this caller.
          *     - `not-found`: There is no such thing.
-         *     - `expired`: It was there and is kept no longer.
+         *     - `expired`: It was there and is no longer kept.
          *     - `method-not-allowed`: The path does not take this method.
          *     - `not-acceptable`: None of the accepted media types can be given.
          *     - `range-not-satisfiable`: The file has no such bytes.
@@ -3303,7 +3316,7 @@ export interface components {
              */
             band_rings?: number | null;
         };
-        /** @description How far apart vertices of rims may be that repair and stitch=snap join, in millimetres, but never more than half the shortest boundary edge. Default: 1e-5 of the diagonal for cut-stitch, 0 for repair. */
+        /** @description Largest distance of vertices of rims that repair and stitch=snap join, in millimetres; never more than half the shortest boundary edge; 0: only where they coincide. Default: 1e-5 of the diagonal for cut-stitch; for repair as far as rims that lie side by side are apart, at most 0.2 % of the diagonal. */
         SnapEpsilonMm: number;
         /**
          * @description What of a file of several parts is one solid.

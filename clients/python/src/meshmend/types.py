@@ -991,7 +991,7 @@ class Limits(TypedDict):
     """
     rate_burst: int
     """
-    Requests that it may make at one time; 0: any number.
+    Requests that one key, or one address without keys, may make at one time; 0: any number.
     """
     interactive_slots: int
     """
@@ -999,12 +999,12 @@ class Limits(TypedDict):
     """
     interactive_bytes_max: int
     """
-    Largest upload of such a mesh, in bytes.
+    Largest upload that may use an interactive slot, in bytes.
     """
     interactive_deadline_s: float
     """
-    Time that a job may take in a slot for such meshes for each begun MiB of its upload, in seconds; then it goes on as a
-    large one.
+    Time that a job may take in an interactive slot for each begun MiB of its upload, in seconds; then it goes on in
+    an ordinary slot.
     """
     memory_bytes_max: int
     """
@@ -1215,7 +1215,7 @@ class MovedFace(TypedDict):
 
 NearMm: TypeAlias = float
 """
-How far apart vertices, edges and faces are at most that are reported as near, in millimetres, but never more than half the edges around them. Default: 1e-5 of the diagonal for analyze up to 100000 triangles; everything else is searched only when this is given.
+Largest distance of vertices, edges and faces that are reported as near, in millimetres; never more than half the edges around them. Default: 1e-5 of the diagonal for analyze of up to 100000 triangles; otherwise nothing near is looked for.
 """
 
 
@@ -1619,6 +1619,11 @@ class PlanStep17(TypedDict):
     """
     No part is turned to be joined.
     """
+    by_edge: NotRequired[bool]
+    """
+    Of edges that do not coincide, only those are joined that lie side by side: with ends closer than an eighth of the
+    shorter one, and triangles that do not lie back to back.
+    """
     step: Literal["snap"]
 
 
@@ -1700,13 +1705,25 @@ class PlanStep24(TypedDict):
 
 class PlanStep25(TypedDict):
     """
+    Corners of triangles that meet others when all coordinates are read on a coarser lattice go to it.
+    """
+
+    steps: int
+    """
+    Its step, in steps of the print lattice.
+    """
+    step: Literal["round-to-coarser"]
+
+
+class PlanStep26(TypedDict):
+    """
     What is still open is closed by triangles between its rims that may pass through others; `unite` resolves that.
     """
 
     step: Literal["span-rims"]
 
 
-class PlanStep26(TypedDict):
+class PlanStep27(TypedDict):
     """
     Bodies that touch are drawn apart.
     """
@@ -1714,7 +1731,7 @@ class PlanStep26(TypedDict):
     step: Literal["open-contacts"]
 
 
-class PlanStep27(TypedDict):
+class PlanStep28(TypedDict):
     """
     Vertices at one position become one again.
     """
@@ -1722,7 +1739,7 @@ class PlanStep27(TypedDict):
     step: Literal["join-copies"]
 
 
-class PlanStep29(TypedDict):
+class PlanStep30(TypedDict):
     """
     The surface is rebuilt, by the options of the request; local steps do not count then.
     """
@@ -1730,7 +1747,7 @@ class PlanStep29(TypedDict):
     step: Literal["rebuild"]
 
 
-class PlanStep30(TypedDict):
+class PlanStep31(TypedDict):
     """
     The certified mesh gets fewer triangles, by the options of the request.
     """
@@ -1859,7 +1876,7 @@ Stable code of a problem. `/v1/errors` explains each.
 - `unauthenticated`: No valid key.
 - `forbidden`: Not allowed for this caller.
 - `not-found`: There is no such thing.
-- `expired`: It was there and is kept no longer.
+- `expired`: It was there and is no longer kept.
 - `method-not-allowed`: The path does not take this method.
 - `not-acceptable`: None of the accepted media types can be given.
 - `range-not-satisfiable`: The file has no such bytes.
@@ -2220,7 +2237,7 @@ class SingleHole(TypedDict):
 
 SnapEpsilonMm: TypeAlias = float
 """
-How far apart vertices of rims may be that repair and stitch=snap join, in millimetres, but never more than half the shortest boundary edge. Default: 1e-5 of the diagonal for cut-stitch, 0 for repair.
+Largest distance of vertices of rims that repair and stitch=snap join, in millimetres; never more than half the shortest boundary edge; 0: only where they coincide. Default: 1e-5 of the diagonal for cut-stitch; for repair as far as rims that lie side by side are apart, at most 0.2 % of the diagonal.
 """
 
 
@@ -3437,7 +3454,7 @@ PlanStep19 = TypedDict(
 )
 
 
-class PlanStep28(TypedDict):
+class PlanStep29(TypedDict):
     """
     Shells are turned and dropped so that they alternate.
     """
@@ -3484,6 +3501,7 @@ PlanStep: TypeAlias = (
     | PlanStep28
     | PlanStep29
     | PlanStep30
+    | PlanStep31
 )
 """
 One step of a repair, with its parameters.
