@@ -6,6 +6,11 @@ use meshmend::http;
 fn main() -> std::process::ExitCode {
     cli::run(
         std::env::args_os(),
-        Service { serve: http::start, healthcheck: http::healthcheck, migrate: http::migrate },
+        Service {
+            serve: http::start,
+            check: http::check,
+            healthcheck: http::healthcheck,
+            migrate: http::migrate,
+        },
     )
 }

@@ -17,7 +17,7 @@ mod summary;
 mod watch;
 mod work;
 
-use crate::config::{Config, Loaded};
+use crate::config::{Config, ConfigError, Loaded};
 use crate::formats::Format;
 use crate::jobs::{LostStore, Migrated, RUN_JOB, run_job};
 use crate::pipeline::{self, Operation};
@@ -32,6 +32,8 @@ use std::process::ExitCode;
 pub struct Service {
     /// Serves until it is told to stop.
     pub serve: fn(&Loaded, LostStore) -> anyhow::Result<()>,
+    /// Finds the setting with which it would not serve.
+    pub check: fn(&Loaded) -> Result<(), ConfigError>,
     /// Fails unless the service of this configuration is ready.
     pub healthcheck: fn(&Config) -> anyhow::Result<()>,
     /// Carries what is in the data directory over to the stores that several servers share.
@@ -87,7 +89,7 @@ fn execute(command: Command, service: Service) -> Exit {
         Command::Migrate(given) => migrate::run(&given.sources(), service.migrate),
         Command::Config(SettingsCommand::Show(given)) => settings::show(&given.sources()),
         Command::Config(SettingsCommand::Check { given, strict }) => {
-            settings::check(&given.sources(), strict)
+            settings::check(&given.sources(), strict, service.check)
         }
         Command::Completions { shell } => manual::print_completions(shell),
         Command::Man { folder } => manual::write_pages(&folder),

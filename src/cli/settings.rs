@@ -1,7 +1,7 @@
 //! `config show` and `config check`, and commands that need a configuration.
 
 use super::exit::{Exit, print, say};
-use crate::config::{Loaded, Sources};
+use crate::config::{ConfigError, Loaded, Sources};
 use std::fmt::Write as _;
 
 /// Runs `body` with the configuration; its error is a message on standard error.
@@ -17,7 +17,7 @@ pub(super) fn with_loaded(sources: &Sources, body: impl FnOnce(&Loaded) -> anyho
         Ok(()) => Exit::Done,
         Err(error) => {
             say(&format!("{error:#}"));
-            let is_configuration = error.is::<crate::config::ConfigError>();
+            let is_configuration = error.is::<ConfigError>();
             if is_configuration { Exit::Usage } else { Exit::Internal }
         }
     }
@@ -53,8 +53,12 @@ fn table(loaded: &Loaded) -> String {
 }
 
 /// Says whether the service could start with this configuration.
-pub(super) fn check(sources: &Sources, is_strict: bool) -> Exit {
-    let loaded = sources.load().and_then(|loaded| crate::http::check(&loaded).map(|()| loaded));
+pub(super) fn check(
+    sources: &Sources,
+    is_strict: bool,
+    check: fn(&Loaded) -> Result<(), ConfigError>,
+) -> Exit {
+    let loaded = sources.load().and_then(|loaded| check(&loaded).map(|()| loaded));
     match loaded {
         Ok(loaded) => {
             warn(&loaded.warnings);

@@ -36,7 +36,12 @@ fn main() -> ExitCode {
         Some(jobs::RUN_JOB) => jobs::run_job(engine::run),
         Some("serve") => cli::run(
             std::env::args_os(),
-            cli::Service { serve: http::start, healthcheck: http::healthcheck, migrate: http::migrate },
+            cli::Service {
+                serve: http::start,
+                check: http::check,
+                healthcheck: http::healthcheck,
+                migrate: http::migrate,
+            },
         ),
         _ => libtest_mimic::run(&Arguments::from_args(), trials()).exit_code(),
     }
