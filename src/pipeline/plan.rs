@@ -281,12 +281,6 @@ impl Attempt {
         Ok(())
     }
 
-    /// This count of the last step.
-    pub(super) fn last_count(&self, name: &str) -> u64 {
-        let counts = self.actions.last().map_or(&[][..], |action| &action.changes);
-        counts.iter().find(|(other, _)| *other == name).map_or(0, |&(_, count)| count)
-    }
-
     /// True when bodies were united.
     pub(super) fn has_united(&self) -> bool {
         self.coverage != Known::NotYet

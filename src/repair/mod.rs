@@ -69,6 +69,8 @@ pub struct Effects {
     pub mended_thin_faces: bool,
     /// Triangles that were turned.
     pub turned_triangles: u64,
+    /// Vertices and edges in which the solid touched itself when that was bored last.
+    pub bored_contacts: Option<u64>,
 }
 
 impl Effects {
@@ -79,6 +81,7 @@ impl Effects {
         self.removed_crossing |= other.removed_crossing;
         self.mended_thin_faces |= other.mended_thin_faces;
         self.turned_triangles += other.turned_triangles;
+        self.bored_contacts = other.bored_contacts.or(self.bored_contacts);
     }
 }
 

@@ -154,7 +154,9 @@ impl Climb<'_> {
                 Err(attempt) => unsettled.push((attempt, charge)),
             }
         }
-        let is_hopeful = |attempt: &Attempt| attempt.last_count("contacts_bored") <= CONTACTS_MAX;
+        let is_hopeful = |attempt: &Attempt| {
+            attempt.effects.bored_contacts.is_none_or(|contacts| contacts <= CONTACTS_MAX)
+        };
         for (attempt, _charge) in unsettled.into_iter().filter(|(attempt, _)| is_hopeful(attempt)) {
             if let Ok(tried) = self.settle(*attempt, Variant::boring_more())? {
                 return Ok(tried);
@@ -165,8 +167,8 @@ impl Climb<'_> {
 
     /// The steps of lattices to which what all but meets may go, in steps of the print lattice.
     fn coarser_lattices(&self) -> Vec<u32> {
-        let reach =
-            self.input.soup.positions.iter().fold(0.0f64, |reach, p| reach.max(p.abs().max_element()));
+        let finite = self.input.soup.positions.iter().filter(|p| p.is_finite());
+        let reach = finite.fold(0.0f64, |reach, p| reach.max(p.abs().max_element()));
         let Some(pitch) = print_pitch(reach).filter(|_| self.choices.rounds) else { return Vec::new() };
         let size = diagonal(&self.input.soup);
         let steps = |share: f64| (size * share / pitch).log2().floor().exp2();

@@ -5,7 +5,7 @@ use super::unite_as_oriented;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{DVec3, print_pitch};
 use crate::mesh::{EdgeGroups, edge_of, singular_vertices, twins};
-use crate::repair::{Changes, Draft, NEW};
+use crate::repair::{Changes, Draft, Effects, NEW};
 
 /// Corners of the body around a vertex, in steps of the lattice from it for a body of 16 steps, one opposite the other. They are on no common plane
 /// with the axes, so that faces of a part seldom lie in its sides.
@@ -48,7 +48,8 @@ pub fn bore_contacts(draft: &mut Draft, steps: u32, budget: &Budget) -> Result<C
     let counts = [("contacts_bored", count)].into_iter().chain(united.counts).collect();
     // What touched is nowhere farther than that from what is left.
     let move_max = united.move_max.max(f64::from(steps.max(16)) * pitch);
-    Ok(Changes { counts, reason, move_max, coverage: None, ..united })
+    let effects = Effects { bored_contacts: Some(count), ..united.effects };
+    Ok(Changes { counts, reason, move_max, effects, coverage: None, ..united })
 }
 
 /// Adds bodies to a draft that are turned inside out.
