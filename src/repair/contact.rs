@@ -57,8 +57,9 @@ pub fn open_contacts(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stop
             moved += 1;
         }
     }
+    let most = (move_max / pitch).round();
     let reason =
-        format!("contacts were opened by drawing {moved} vertices back by {} steps of {pitch:e}", STEPS[0]);
+        format!("contacts were opened by drawing {moved} vertices back by up to {most} steps of {pitch:e}");
     Ok(Changes { move_max, reason, ..Changes::counted([("vertices_moved", moved)]) })
 }
 
