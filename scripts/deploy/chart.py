@@ -5,15 +5,25 @@
 PROGRAM says whether the settings in the pod's environment are settings.
 """
 
+import base64
 import pathlib
 import subprocess
 import sys
+import tempfile
 
 import kubernetes_validate
 import yaml
 from helm_python.chart import Chart, lint
 from helm_python.errors import HelmError
 
+# What stands in the files that secrets become.
+FILES = {
+    "MESHMEND_API_KEYS_FILE": "a key of this test\n",
+    "MESHMEND_DATABASE_PASSWORD_FILE": "open\n",
+    "MESHMEND_BLOBS_KEY_FILE": "id\nsecret\n",
+    "MESHMEND_STORE_KEY_FILE": "",
+    "MESHMEND_WEBHOOK_SECRET_FILE": f"whsec_{base64.b64encode(bytes(32)).decode()}\n",
+}
 CHART = pathlib.Path(__file__).resolve().parents[2] / "deploy/helm/meshmend"
 KUBERNETES = ["1.27", "1.34"]
 KEYS = {"apiKeys": {"secretName": "keys"}}
@@ -71,7 +81,7 @@ def main(program):
                     kubernetes_validate.validate(document, version, strict=True)
         pods = [document for document in made if document["kind"] in ("StatefulSet", "Deployment")]
         for environment in map(check_pod, pods):
-            check = subprocess.run([program, "config", "check", "--strict"], env=environment, capture_output=True, text=True)
+            check = checked(program, environment)
             if check.returncode:
                 sys.exit(f"{name}: {check.stdout}{check.stderr}")
         kinds = {document["kind"] for document in made}
@@ -87,6 +97,17 @@ def main(program):
             continue
         sys.exit(f"{name} is taken")
     print(f"{len(ACCEPTED)} sets of values are taken, {len(REFUSED)} refused")
+
+
+def checked(program, environment):
+    """What the program says about the settings of a pod, whose files are here for as long as that takes."""
+    with tempfile.TemporaryDirectory() as folder:
+        environment = dict(environment)
+        for name in FILES.keys() & environment.keys():
+            file = pathlib.Path(folder, name)
+            file.write_text(FILES[name])
+            environment[name] = str(file)
+        return subprocess.run([program, "config", "check", "--strict"], env=environment, capture_output=True, text=True)
 
 
 def rendered(values):

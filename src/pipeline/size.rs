@@ -12,21 +12,26 @@ const STRAY_BEYOND: f64 = 2.0;
 /// Triangles are sorted by their distance into so many rings.
 const RINGS: usize = 1 << 12;
 
+/// Triangles that are looked at to say where the body is.
+const SAMPLE: usize = 1 << 16;
+
 /// The diagonal of the box around the triangles of `mesh`, in the unit of the file; 0 without any. Where something lies more
 /// than twice as far from the middle of the surface as nine tenths of it, the box is around the rest: a single triangle far away
 /// would make everything else look small.
 pub(super) fn diagonal(mesh: &Soup) -> f64 {
     let is_finite = |corners: &[DVec3; 3]| corners.iter().all(|p| p.is_finite());
-    let all = || (0..mesh.triangles.len() as u32).map(|t| mesh.corners(t)).filter(is_finite);
-    let bounds = Aabb::of(all().flatten());
+    let count = mesh.triangles.len();
+    let every = |n: usize| (0..count as u32).step_by(n).map(|t| mesh.corners(t)).filter(is_finite);
+    let bounds = Aabb::of(every(1).flatten());
     if bounds.is_empty() {
         return 0.0;
     }
     let whole = bounds.diagonal();
     // By the box, so that neither sums nor areas overflow.
     let seen = |p: DVec3| (p - bounds.min) / whole;
+    let sample = || every(count.div_ceil(SAMPLE)).map(|corners| corners.map(seen));
     let (mut area, mut moment) = (0.0, DVec3::ZERO);
-    for corners in all().map(|corners| corners.map(seen)) {
+    for corners in sample() {
         let of_triangle = triangle_area(corners);
         area += of_triangle;
         moment += corners.iter().sum::<DVec3>() / 3.0 * of_triangle;
@@ -35,20 +40,24 @@ pub(super) fn diagonal(mesh: &Soup) -> f64 {
         return whole;
     }
     let middle = moment / area;
-    let ring = |p: DVec3| ((p.distance(middle) * RINGS as f64) as usize).min(RINGS - 1);
-    let outermost = |corners: [DVec3; 3]| corners.map(ring).into_iter().fold(0, usize::max);
+    let outermost = |corners: [DVec3; 3]| corners.map(|p| p.distance(middle)).into_iter().fold(0.0, f64::max);
     let mut areas = vec![0.0; RINGS];
-    for corners in all().map(|corners| corners.map(seen)) {
-        areas[outermost(corners)] += triangle_area(corners);
+    for corners in sample() {
+        areas[((outermost(corners) * RINGS as f64) as usize).min(RINGS - 1)] += triangle_area(corners);
     }
     let mut inside = 0.0;
     let reaches = |of_ring: &f64| {
         inside += of_ring;
         inside >= BODY_SHARE * area
     };
-    let radius = areas.iter().position(reaches).unwrap_or(RINGS - 1) as f64 + 1.0;
-    let is_body = |corners: &[DVec3; 3]| outermost(corners.map(seen)) as f64 <= STRAY_BEYOND * radius;
-    Aabb::of(all().filter(is_body).flatten()).diagonal()
+    let rings = areas.iter().position(reaches).unwrap_or(RINGS - 1) + 1;
+    let reach = STRAY_BEYOND * rings as f64 / RINGS as f64;
+    // Seen from the corner of the box, which is the origin then.
+    let farthest = middle.max(seen(bounds.max) - middle).length();
+    if farthest <= reach {
+        return whole;
+    }
+    Aabb::of(every(1).filter(|&corners| outermost(corners.map(seen)) <= reach).flatten()).diagonal()
 }
 
 #[cfg(test)]
