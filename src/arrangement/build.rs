@@ -2,10 +2,11 @@
 
 use super::cells;
 use super::cluster::{self, Divided, Pair};
+use super::enclosed;
 use super::error::ArrangementError;
 use super::point::Definition;
 use super::{Arrangement, Cluster};
-use crate::budget::{Budget, CHECK_EVERY};
+use crate::budget::{Budget, CHECK_EVERY, Charge};
 use crate::geom::{DVec3, are_collinear};
 use crate::mesh::UnionFind;
 use crate::par;
@@ -44,6 +45,43 @@ pub fn arrange(
     options: &Options,
     budget: &Budget,
 ) -> Result<Arrangement, ArrangementError> {
+    let Unwound { mut arrangement, triangles, bvh, _charge } = divide(positions, triangles, options, budget)?;
+    cells::wind(&mut arrangement, &triangles, operand_of, &bvh, budget)?;
+    Ok(arrangement)
+}
+
+/// As [`arrange`], but it does not matter which way triangles turn or whether they are closed: the winding number of the only operand
+/// is 0 on sides that can be reached from outside of the connected part that they are of, and 1 on all others.
+///
+/// # Errors
+/// See [`ArrangementError`].
+pub fn arrange_enclosed(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    pairs_max: usize,
+    budget: &Budget,
+) -> Result<Arrangement, ArrangementError> {
+    let options = Options { pairs_max, operands: 1 };
+    let Unwound { mut arrangement, triangles, _charge, .. } = divide(positions, triangles, &options, budget)?;
+    enclosed::enclose(&mut arrangement, &triangles, budget)?;
+    Ok(arrangement)
+}
+
+/// An arrangement without winding numbers, and what finds them.
+struct Unwound<'b> {
+    arrangement: Arrangement,
+    /// The triangles between the first of all vertices at one position.
+    triangles: Vec<[u32; 3]>,
+    bvh: Bvh,
+    _charge: Charge<'b>,
+}
+
+fn divide<'b>(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    options: &Options,
+    budget: &'b Budget,
+) -> Result<Unwound<'b>, ArrangementError> {
     let welded = weld(positions, triangles, budget)?;
     let sound = sound(positions, &welded, budget)?;
     let bvh = Bvh::build(positions, &welded, Some(&sound), budget)?;
@@ -71,8 +109,7 @@ pub fn arrange(
     for &t in sound.iter().filter(|&&t| !is_met[t as usize]) {
         arrangement.push(welded[t as usize], t, [(t, false)]);
     }
-    cells::wind(&mut arrangement, &welded, operand_of, &bvh, budget)?;
-    Ok(arrangement)
+    Ok(Unwound { arrangement, triangles: welded, bvh, _charge })
 }
 
 /// The triangles with the first of all vertices at one position in the place of each.

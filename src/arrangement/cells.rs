@@ -13,7 +13,7 @@ use crate::par;
 use crate::spatial::Bvh;
 
 /// A side of a piece is `2 f` where the piece `f` turns counter-clockwise, `2 f + 1` on the other.
-type Side = u32;
+pub(super) type Side = u32;
 
 const UNKNOWN: i32 = i32::MIN;
 
@@ -94,7 +94,7 @@ fn check_closed(
 }
 
 /// For each side of each half-edge, `2 h` in front of it and `2 h + 1` behind it, the side that it looks at.
-fn links(
+pub(super) fn links(
     arrangement: &Arrangement,
     triangles: &[[u32; 3]],
     groups: &EdgeGroups,

@@ -18,6 +18,7 @@ mod carrier;
 mod cells;
 mod cluster;
 mod constraints;
+mod enclosed;
 mod error;
 mod exact;
 mod extract;
@@ -33,7 +34,7 @@ mod ray;
 mod tests;
 mod triangulation;
 
-pub use build::{Options, arrange};
+pub use build::{Options, arrange, arrange_enclosed};
 pub use error::ArrangementError;
 pub use extract::{Piece, Surface};
 pub use merge::Merged;

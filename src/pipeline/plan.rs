@@ -11,6 +11,7 @@ use crate::repair::cut::CutOptions;
 use crate::repair::duplicates::OppositePairs;
 use crate::repair::fill::HoleReport;
 use crate::repair::nest::NestOptions;
+use crate::repair::noise::Noise;
 use crate::repair::pair_sheets::Across;
 use crate::repair::polygons::DegenerateFaces;
 use crate::repair::snap::SnapOptions;
@@ -20,8 +21,8 @@ use crate::repair::{self, Changes, Draft, Effects};
 /// What distinguishes the plans that are tried for one file.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Variant {
-    /// Coordinates that are all but zero become zero first.
-    pub(super) clears_noise: bool,
+    /// What is done about coordinates that are all but zero, first.
+    pub(super) noise: Noise,
     /// Coordinates become float32 first.
     pub(super) rounds: bool,
     /// Corners of triangles that all but meet others go to a lattice of so many steps of the print lattice first; 0: none do.
@@ -53,6 +54,10 @@ pub(super) enum Uniting {
     Thickened,
     /// As `Spanned`, with walls behind triangles that bound nothing.
     Walled,
+    /// All that the triangles of each part enclose, whichever way they turn.
+    Enclosed,
+    /// As `Enclosed`, with walls behind triangles that bound nothing.
+    EnclosedAndWalled,
 }
 
 /// Steps of the lattice by which contacts are bored, one time after the other: a body that is taken out can touch what is beside
@@ -68,15 +73,21 @@ impl Variant {
     pub(super) fn uniting(self, uniting: Uniting, choices: &Choices) -> Vec<Step> {
         let mended = Self { contact: None, ..self };
         let (mut steps, may_be_open) = match uniting {
-            Uniting::AsDrawn => (self.welding(choices), false),
+            Uniting::AsDrawn | Uniting::Enclosed | Uniting::EnclosedAndWalled => {
+                (self.welding(choices), false)
+            }
             Uniting::Mended => (mended.mending(choices), choices.fills_all_holes()),
             Uniting::Spanned | Uniting::Walled => (self.welding(choices), true),
             Uniting::Thickened => (Self { thickens: true, ..mended }.mending(choices), false),
         };
         steps.push(Step::JoinCopies);
         steps.extend(may_be_open.then_some(Step::SpanRims));
-        if uniting == Uniting::Walled {
-            steps.extend([Step::UniteAndCopyBare, Step::Thicken { wall: choices.wall }]);
+        let wall = Step::Thicken { wall: choices.wall };
+        match uniting {
+            Uniting::Walled => steps.extend([Step::UniteAndCopyBare, wall]),
+            Uniting::Enclosed => steps.push(Step::Enclose),
+            Uniting::EnclosedAndWalled => steps.extend([Step::EncloseAndCopyBare, wall]),
+            Uniting::AsDrawn | Uniting::Mended | Uniting::Spanned | Uniting::Thickened => {}
         }
         steps.push(Step::Unite);
         steps
@@ -113,7 +124,11 @@ impl Variant {
     /// The steps that take what is no triangle away and make vertices at one place one.
     pub(super) fn welding(self, choices: &Choices) -> Vec<Step> {
         let mut steps = vec![Step::SplitPolygons(DegenerateFaces::Split)];
-        steps.extend(self.clears_noise.then_some(Step::ClearNoise));
+        steps.extend(match self.noise {
+            Noise::Stays => None,
+            Noise::Joined => Some(Step::JoinOverNoise),
+            Noise::Cleared => Some(Step::ClearNoise),
+        });
         steps.extend(self.rounds.then_some(Step::RoundToF32));
         if self.coarse > 0 {
             steps.push(Step::RoundToCoarser { steps: self.coarse });
@@ -162,7 +177,7 @@ impl Variant {
     pub(super) fn solidifying(self, choices: &Choices, has_contacts: bool) -> Vec<Step> {
         let moves = self.thickens
             || self.rounds
-            || self.clears_noise
+            || self.noise != Noise::Stays
             || self.contact.is_some()
             || choices.snap_epsilon.unwrap_or(self.snap_epsilon) > 0.0;
         let join = (self.contact == Some(Contact::Join)).then_some(Step::JoinContacts { size: choices.wall });

@@ -18,6 +18,8 @@ use crate::repair::{self, Changes, Draft};
 pub enum Step {
     /// Polygons that pass a vertex more than once become simple ones, or go.
     SplitPolygons(DegenerateFaces),
+    /// Vertices that only coordinates which are all but zero keep apart go to where one of them is.
+    JoinOverNoise,
     /// Coordinates that are all but zero become zero.
     ClearNoise,
     /// Coordinates become float32.
@@ -71,6 +73,10 @@ pub enum Step {
     Unite,
     /// As `Unite`; triangles with void on both sides, which go then, leave copies that are open parts of their own.
     UniteAndCopyBare,
+    /// What the triangles of each connected part enclose becomes solid, whichever way they turn; rims are spanned first.
+    Enclose,
+    /// As `Enclose`; triangles that enclose nothing leave copies that are open parts of their own.
+    EncloseAndCopyBare,
     /// Small bodies are taken out where the solid touches itself.
     BoreContacts {
         /// From their middle out, in steps of the lattice.
@@ -103,6 +109,7 @@ impl Step {
     pub fn name(&self) -> &'static str {
         match self {
             Self::SplitPolygons(_) => "split-polygons",
+            Self::JoinOverNoise => "join-over-noise",
             Self::ClearNoise => "clear-noise",
             Self::RoundToF32 => "round-to-float32",
             Self::RoundWhereItMatters => "round-where-it-matters",
@@ -120,6 +127,8 @@ impl Step {
             Self::JoinContacts { .. } => "join-contacts",
             Self::SpanRims => "span-rims",
             Self::UniteAndCopyBare => "unite-and-copy-bare",
+            Self::Enclose => "enclose",
+            Self::EncloseAndCopyBare => "enclose-and-copy-bare",
             Self::Unite => "unite",
             Self::BoreContacts { .. } => "bore-contacts",
             Self::RoundToCoarser { .. } => "round-to-coarser",
@@ -139,7 +148,7 @@ impl Step {
     /// The defects that the step is for.
     pub(super) fn cures(&self) -> &'static [DefectCode] {
         match self {
-            Self::ClearNoise => &[
+            Self::JoinOverNoise | Self::ClearNoise => &[
                 DefectCode::BoundaryLoop,
                 DefectCode::SelfIntersection,
                 DefectCode::Overlap,
@@ -158,6 +167,15 @@ impl Step {
             Self::RemoveCrossing { .. } | Self::Unite | Self::UniteAndCopyBare => {
                 &[DefectCode::SelfIntersection, DefectCode::Overlap, DefectCode::Touch]
             }
+            Self::Enclose | Self::EncloseAndCopyBare => &[
+                DefectCode::BoundaryLoop,
+                DefectCode::NonManifoldEdge,
+                DefectCode::NonOrientable,
+                DefectCode::OrientationConflict,
+                DefectCode::SelfIntersection,
+                DefectCode::Overlap,
+                DefectCode::Touch,
+            ],
             Self::PairSheets(_)
             | Self::JoinContacts { .. }
             | Self::OpenContacts
@@ -190,6 +208,7 @@ impl Step {
     ) -> Result<Changes, Stopped> {
         match self {
             Self::SplitPolygons(how) => repair::polygons::split_polygons(draft, soup, *how, budget),
+            Self::JoinOverNoise => repair::noise::join_over_noise(draft, budget),
             Self::ClearNoise => Ok(repair::noise::clear_noise(draft)),
             Self::RoundToF32 => Ok(repair::round::round_to_f32(draft)),
             Self::RoundWhereItMatters => repair::round::round_where_it_matters(draft, budget),
@@ -205,6 +224,8 @@ impl Step {
             Self::RemoveCrossing { rings } => repair::crossing::remove_crossing(draft, *rings, budget),
             Self::SpanRims => repair::fill::span_rims(draft, budget),
             Self::UniteAndCopyBare => repair::unite::unite_and_copy_bare(draft, budget),
+            Self::Enclose => repair::unite::enclose(draft, budget),
+            Self::EncloseAndCopyBare => repair::unite::enclose_and_copy_bare(draft, budget),
             Self::Unite => repair::unite::unite(draft, budget),
             Self::BoreContacts { steps } => repair::unite::bore_contacts(draft, *steps, budget),
             Self::RoundToCoarser { steps } => repair::round::round_to_coarser(draft, *steps, budget),

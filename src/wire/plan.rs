@@ -114,6 +114,8 @@ pub enum PlanStep {
         /// Which.
         degenerate: Degenerate,
     },
+    /// Vertices that only coordinates which are all but zero keep apart go to where one of them is.
+    JoinOverNoise {},
     /// Coordinates that are all but zero become zero.
     ClearNoise {},
     /// Coordinates become float32.
@@ -216,6 +218,11 @@ pub enum PlanStep {
     /// As `unite`; triangles with void on both sides, which go then, leave copies that are open parts of their own, for `thicken` to
     /// put walls behind.
     UniteAndCopyBare {},
+    /// What the triangles of each connected part enclose becomes solid, whichever way they turn; rims are spanned first.
+    Enclose {},
+    /// As `enclose`; triangles that enclose nothing, which go then, leave copies that are open parts of their own, for `thicken` to put
+    /// walls behind.
+    EncloseAndCopyBare {},
     /// Where the solid touches itself, a body of some steps of the print lattice is taken out of it.
     BoreContacts {
         /// From its middle out, in steps of the lattice.
@@ -337,6 +344,7 @@ impl PlanStep {
     fn to_engine(&self) -> Step {
         match self {
             Self::SplitPolygons { degenerate } => Step::SplitPolygons((*degenerate).into()),
+            Self::JoinOverNoise {} => Step::JoinOverNoise,
             Self::ClearNoise {} => Step::ClearNoise,
             Self::RoundToF32 {} => Step::RoundToF32,
             Self::RoundWhereItMatters {} => Step::RoundWhereItMatters,
@@ -369,6 +377,8 @@ impl PlanStep {
             Self::JoinContacts { size } => Step::JoinContacts { size: *size },
             Self::Unite {} => Step::Unite,
             Self::UniteAndCopyBare {} => Step::UniteAndCopyBare,
+            Self::Enclose {} => Step::Enclose,
+            Self::EncloseAndCopyBare {} => Step::EncloseAndCopyBare,
             Self::BoreContacts { steps } => Step::BoreContacts { steps: *steps },
             Self::RoundToCoarser { steps } => Step::RoundToCoarser { steps: *steps },
             Self::SpanRims {} => Step::SpanRims,
@@ -395,6 +405,7 @@ impl From<&Step> for PlanStep {
     fn from(inner: &Step) -> Self {
         match inner {
             Step::SplitPolygons(degenerate) => Self::SplitPolygons { degenerate: (*degenerate).into() },
+            Step::JoinOverNoise => Self::JoinOverNoise {},
             Step::ClearNoise => Self::ClearNoise {},
             Step::RoundToF32 => Self::RoundToF32 {},
             Step::RoundWhereItMatters => Self::RoundWhereItMatters {},
@@ -429,6 +440,8 @@ impl From<&Step> for PlanStep {
             Step::JoinContacts { size } => Self::JoinContacts { size: *size },
             Step::Unite => Self::Unite {},
             Step::UniteAndCopyBare => Self::UniteAndCopyBare {},
+            Step::Enclose => Self::Enclose {},
+            Step::EncloseAndCopyBare => Self::EncloseAndCopyBare {},
             Step::BoreContacts { steps } => Self::BoreContacts { steps: *steps },
             Step::RoundToCoarser { steps } => Self::RoundToCoarser { steps: *steps },
             Step::SpanRims => Self::SpanRims {},

@@ -138,8 +138,8 @@ fn rims_that_only_noise_keeps_apart_are_joined() {
     let soup = half(-1.0, 0.0, 0.0).with(&half(1e-17, 1.0, 1e-17));
     let answer = answer(Operation::Repair, &encode(&soup, Encoding::Obj), &Options::default());
     assert_eq!(answer.report.outcome, Some(Outcome::Repaired), "{:?}", answer.report.refusal);
-    let clearing = answer.report.actions.iter().find(|action| action.step == "clear-noise").unwrap();
-    assert_eq!((clearing.changes[0], clearing.move_max), (("vertices_moved", 4), 1e-17));
+    let joining = answer.report.actions.iter().find(|action| action.step == "join-over-noise").unwrap();
+    assert_eq!((joining.changes[0], joining.move_max), (("vertices_moved", 4), 1e-17));
     assert_eq!(answer.report.certificate.unwrap().shells.len(), 1);
 }
 

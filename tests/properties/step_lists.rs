@@ -29,7 +29,7 @@ fn any_step(random: &mut Random, soup: &RawSoup) -> Step {
     let length = random.pick(&[0.0, 1e-3, 0.3, 1.0, 1e300]);
     match random.below(25) {
         0 => Step::SplitPolygons(random.pick(&[DegenerateFaces::Split, DegenerateFaces::Drop])),
-        1 => Step::ClearNoise,
+        1 => [Step::ClearNoise, Step::JoinOverNoise][random.below(2)].clone(),
         2 => Step::RoundToF32,
         3 => Step::Weld,
         4 => Step::DropDegenerate,
@@ -56,13 +56,8 @@ fn any_step(random: &mut Random, soup: &RawSoup) -> Step {
         17 => Step::OpenContacts,
         18 => Step::JoinContacts { size: length },
         19 => Step::PairSheets(random.pick(&[Across::Solid, Across::Void])),
-        21 => {
-            if random.one_in(2) {
-                Step::Unite
-            } else {
-                Step::UniteAndCopyBare
-            }
-        }
+        21 => [Step::Unite, Step::UniteAndCopyBare, Step::Enclose, Step::EncloseAndCopyBare][random.below(4)]
+            .clone(),
         22 => {
             if random.one_in(2) {
                 Step::SpanRims

@@ -14,6 +14,7 @@ use crate::pipeline::repair_choices::{Choices, Walls};
 use crate::pipeline::size::diagonal;
 use crate::pipeline::step::Step;
 use crate::pipeline::{Action, Failure, Options, Refusal, Require};
+use crate::repair::noise::Noise;
 use crate::repair::snap::gap_between_rims;
 use crate::repair::{Draft, noise};
 use crate::winding::{OpenShells, Solid};
@@ -56,7 +57,7 @@ pub(super) struct Situation {
     /// What it left; `None` before the first attempt.
     pub(super) last: Option<Uncertified>,
     /// What the first plan does about noise.
-    pub(super) first_clears_noise: bool,
+    pub(super) first_noise: Noise,
     /// An attempt was no solid when its coordinates were read as float32.
     pub(super) fails_in_f32: bool,
     /// A plan took more than its share of the work, or all changes of the surface took more than theirs.
@@ -83,13 +84,14 @@ pub(super) struct Uncertified {
 impl Situation {
     pub(super) fn at_the_foot(climb: &Climb<'_>) -> Result<Self, Stopped> {
         let (draft, _) = Draft::from_soup(&climb.input.soup);
-        // Where noise about zero keeps rims apart, clearing it is the smaller change: both rims could be closed instead,
+        // Where noise about zero keeps rims apart, joining them is the smaller change: both rims could be closed instead,
         // which would leave two bodies with nothing between them.
         let parts_rims = || noise::parts_rims(&draft, climb.budget);
-        let clears_noise = climb.budget.within_part(ATTEMPT_PART, parts_rims)?.unwrap_or(false);
+        let parts_rims = climb.budget.within_part(ATTEMPT_PART, parts_rims)?.unwrap_or(false);
+        let noise = if parts_rims { Noise::Joined } else { Noise::Stays };
         let snap_epsilon = climb.gap_between_rims(&draft)?;
         let variant = Variant {
-            clears_noise,
+            noise,
             rounds: climb.needs_f32(),
             snap_epsilon,
             opposite: climb.choices.opposite,
@@ -100,7 +102,7 @@ impl Situation {
         Ok(Self {
             variant,
             last: None,
-            first_clears_noise: clears_noise,
+            first_noise: noise,
             fails_in_f32: false,
             has_run_out: false,
             has_tried_uniting: false,

@@ -13,7 +13,7 @@ pub(super) const RUNG: Rung = Rung {
         let variant = Variant {
             contact: contact(climb, situation),
             thickens: false,
-            clears_noise: situation.first_clears_noise,
+            noise: situation.first_noise,
             opposite: climb.choices.opposite,
             ..situation.variant
         };

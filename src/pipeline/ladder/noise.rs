@@ -1,19 +1,19 @@
-//! Coordinates that are all but zero become zero, or stay where the first plan made them zero.
+//! Coordinates that are all but zero become zero.
 
 use super::{Kind, Rung};
 use crate::pipeline::plan::Variant;
-use crate::repair::noise;
+use crate::repair::noise::{self, Noise};
 
 pub(super) const RUNG: Rung = Rung {
     name: "noise",
     kind: Kind::Plan,
     applies: |climb, situation| {
-        let is_first = situation.variant.clears_noise == situation.first_clears_noise;
-        Ok(is_first && noise::has_noise(&climb.input.soup.positions))
+        let is_left = situation.variant.noise != Noise::Cleared;
+        Ok(is_left && noise::has_noise(&climb.input.soup.positions))
     },
     tries: |climb, situation| {
         let variant = Variant {
-            clears_noise: !situation.first_clears_noise,
+            noise: Noise::Cleared,
             rounds: climb.needs_f32(),
             opposite: climb.choices.opposite,
             ..situation.variant

@@ -13,7 +13,7 @@ pub(super) const RUNG: Rung = Rung {
     tries: |climb, situation| {
         let variant = Variant {
             thickens: true,
-            clears_noise: situation.first_clears_noise,
+            noise: situation.first_noise,
             opposite: climb.choices.opposite,
             ..situation.variant
         };

@@ -106,7 +106,15 @@ impl Climb<'_> {
             filled.push(Uniting::Mended);
             filled.extend(self.choices.fills_all_holes().then_some(Uniting::Spanned));
         }
-        kinds.extend(if is_sheets { [walled, filled].concat() } else { [filled, walled].concat() });
+        // Whichever way triangles turn: after all that goes by their directions, except that walls come last for what is no sheet.
+        let encloses = walls != Walls::First && self.choices.fills_all_holes();
+        let enclosed = |kind| encloses.then_some(kind);
+        let by_direction = if is_sheets { [walled, filled].concat() } else { filled };
+        kinds.extend(by_direction.into_iter().chain(enclosed(Uniting::Enclosed)));
+        if !is_sheets {
+            kinds.extend(may_wall.then_some(Uniting::Walled));
+        }
+        kinds.extend(enclosed(Uniting::EnclosedAndWalled).filter(|_| may_wall));
         Ok(kinds)
     }
 

@@ -38,6 +38,7 @@ use self::make::{Made, Scene, Way, make};
 pub use self::options::{Extract, FillOptions, HoleChoice, Method};
 use self::regions::{Region, regions};
 pub use self::report::{Filled, HoleReport, Rejected, Rejection, Rim};
+pub(in crate::repair) use self::span::span_odd_edges;
 pub use self::span::span_rims;
 use self::surface::Surface;
 use super::{Changes, Draft, FIRST_BLEND, NEW, Selection};

@@ -22,8 +22,29 @@ const CORNERS_MAX: usize = 1 << 14;
 /// When the budget stops the run.
 pub fn span_rims(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
     let missing = missing_edges(draft, budget)?;
-    let loops = loops(&missing);
     let first = draft.triangles.len();
+    let spanned = span(draft, &missing, budget)?;
+    let added = (draft.triangles.len() - first) as u64;
+    Ok(Changes::counted([("rims_spanned", spanned), ("triangles_added", added)]))
+}
+
+/// As [`span_rims`], but it does not matter which way triangles turn: what is spanned are the edges that an odd number of them
+/// have. Gives the number of rims.
+///
+/// # Errors
+/// When the budget stops the run.
+pub(in crate::repair) fn span_odd_edges(draft: &mut Draft, budget: &Budget) -> Result<u64, Stopped> {
+    let groups = EdgeGroups::build(&draft.triangles, draft.positions.len(), budget)?;
+    budget.spend(draft.triangles.len() as u64)?;
+    let odd = groups.iter().filter(|group| group.len() % 2 == 1);
+    let edges: Vec<[u32; 2]> = odd.map(|group| edge_of(&draft.triangles, group[0])).collect();
+    drop(groups);
+    span(draft, &directed(&edges), budget)
+}
+
+/// Closes loops of directed edges, as many of which begin at each vertex as end there; gives the number of loops.
+fn span(draft: &mut Draft, edges: &[[u32; 2]], budget: &Budget) -> Result<u64, Stopped> {
+    let loops = loops(edges);
     for corners in &loops {
         let points: Vec<DVec3> = corners.iter().map(|&v| draft.positions[v as usize]).collect();
         for t in triangulate(&points, budget)? {
@@ -31,8 +52,33 @@ pub fn span_rims(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped>
             draft.triangle_origin.push(NEW);
         }
     }
-    let added = (draft.triangles.len() - first) as u64;
-    Ok(Changes::counted([("rims_spanned", loops.len() as u64), ("triangles_added", added)]))
+    Ok(loops.len() as u64)
+}
+
+/// These edges, of which an even number are at each vertex, directed so that as many begin there as end there; sorted.
+fn directed(edges: &[[u32; 2]]) -> Vec<[u32; 2]> {
+    let mut at: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
+    for (i, edge) in edges.iter().enumerate().rev() {
+        for &v in edge {
+            at.entry(v).or_default().push(i as u32);
+        }
+    }
+    let mut is_used = vec![false; edges.len()];
+    let mut directed = Vec::with_capacity(edges.len());
+    for start in edges.iter().map(|edge| edge[0]) {
+        let mut from = start;
+        while let Some(i) = at.get_mut(&from).and_then(Vec::pop) {
+            if std::mem::replace(&mut is_used[i as usize], true) {
+                continue;
+            }
+            let [a, b] = edges[i as usize];
+            let to = if from == a { b } else { a };
+            directed.push([from, to]);
+            from = to;
+        }
+    }
+    directed.sort_unstable();
+    directed
 }
 
 /// The directed edges that balance the triangles along every edge, sorted.

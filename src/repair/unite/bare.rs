@@ -1,7 +1,7 @@
 //! Unites bodies and keeps a copy of what that would lose: triangles of which a part has void on both sides.
 
-use super::{Coverage, arranged, turn_inverted, unite_as_oriented};
-use crate::arrangement::{Arrangement, ArrangementError};
+use super::{arranged, become_solid, left_alone, turn_inverted};
+use crate::arrangement::{Arrangement, ArrangementError, Surface};
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::cut_singular;
@@ -14,41 +14,74 @@ use crate::repair::{Changes, Draft, NEW};
 /// When the budget stops the run.
 pub fn unite_and_copy_bare(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
     let turned = turn_inverted(draft, budget)?;
-    let arrangement = match arranged(draft, budget) {
-        Ok(arrangement) => arrangement,
-        Err(ArrangementError::Stopped(stopped)) => return Err(stopped),
-        Err(error) => return Ok(super::left_alone(&error.to_string())),
-    };
-    let is_bare = |f: &usize| arrangement.windings(*f).iter().all(|winding| winding[0] <= 0);
-    let bare = (0..arrangement.pieces().len()).filter(is_bare);
-    let mut bare: Vec<u32> = bare.map(|f| source(draft, &arrangement, f)).collect();
-    drop(arrangement);
-    bare.sort_unstable();
-    bare.dedup();
-    let mut corners: Vec<u32> = bare.iter().flat_map(|&t| draft.triangles[t as usize]).collect();
-    corners.sort_unstable();
-    corners.dedup();
-    let number = |v: u32| corners.partition_point(|&c| c < v) as u32;
-    let mut copies: Vec<[u32; 3]> = bare.iter().map(|&t| draft.triangles[t as usize].map(number)).collect();
-    let cut = cut_singular(&mut copies, corners.len(), budget)?;
-    corners.extend(cut.copies.iter().map(|&v| corners[v as usize]).collect::<Vec<u32>>());
-    let origins: Vec<u32> = bare.iter().map(|&t| draft.triangle_origin[t as usize]).collect();
-    let places: Vec<(DVec3, u32)> =
-        corners.into_iter().map(|v| (draft.positions[v as usize], draft.vertex_origin[v as usize])).collect();
-    let united = unite_as_oriented(draft, budget)?;
+    let united = arranged(draft, budget).and_then(|arrangement| {
+        let boundary = arrangement.boundary(|winding| winding[0] > 0);
+        become_solid_and_copy_bare(draft, &arrangement, boundary, budget)
+    });
+    let united = united.or_else(left_alone)?;
+    let counts = [("shells_turned", turned)].into_iter().chain(united.counts).collect();
+    Ok(Changes { counts, ..united })
+}
+
+/// As [`become_solid`]; then adds the copies.
+pub(super) fn become_solid_and_copy_bare(
+    draft: &mut Draft,
+    arrangement: &Arrangement,
+    boundary: Surface,
+    budget: &Budget,
+) -> Result<Changes, ArrangementError> {
+    let copies = Copies::of_bare(draft, arrangement, budget)?;
+    let united = become_solid(draft, arrangement, boundary, budget)?;
     let Some(coverage) = united.coverage else { return Ok(united) };
-    let first = draft.positions.len() as u32;
-    for (place, origin) in places {
-        draft.positions.push(place);
-        draft.vertex_origin.push(origin);
-    }
-    draft.triangles.extend(copies.into_iter().map(|t| t.map(|v| first + v)));
-    draft.triangle_origin.extend(origins);
-    let copied = [("shells_turned", turned), ("triangles_copied", bare.len() as u64)];
-    let counts = copied.into_iter().chain(united.counts).collect();
+    let counts = [("triangles_copied", copies.triangles.len() as u64)].into_iter().chain(united.counts);
+    let counts = counts.collect();
+    copies.add_to(draft);
     // What is copied is still there.
-    let coverage = Some(Coverage { bare: Vec::new(), ..coverage });
+    let coverage = Some(super::Coverage { bare: Vec::new(), ..coverage });
     Ok(Changes { counts, coverage, ..united })
+}
+
+/// Copies of triangles, cut into manifold parts.
+struct Copies {
+    /// Their vertices: where they are and their origins.
+    vertices: Vec<(DVec3, u32)>,
+    /// Their corners, as numbers of these vertices, and their origins.
+    triangles: Vec<([u32; 3], u32)>,
+}
+
+impl Copies {
+    /// Of the triangles of which a piece has void on both sides.
+    fn of_bare(draft: &Draft, arrangement: &Arrangement, budget: &Budget) -> Result<Self, Stopped> {
+        let is_bare = |f: &usize| arrangement.windings(*f).iter().all(|winding| winding[0] <= 0);
+        let pieces = (0..arrangement.pieces().len()).filter(is_bare);
+        let mut bare: Vec<u32> = pieces.map(|f| source(draft, arrangement, f)).collect();
+        bare.sort_unstable();
+        bare.dedup();
+        let mut corners: Vec<u32> = bare.iter().flat_map(|&t| draft.triangles[t as usize]).collect();
+        corners.sort_unstable();
+        corners.dedup();
+        let number = |v: u32| corners.partition_point(|&c| c < v) as u32;
+        let mut triangles: Vec<[u32; 3]> =
+            bare.iter().map(|&t| draft.triangles[t as usize].map(number)).collect();
+        let cut = cut_singular(&mut triangles, corners.len(), budget)?;
+        corners.extend(cut.copies.iter().map(|&v| corners[v as usize]).collect::<Vec<u32>>());
+        let origins = bare.iter().map(|&t| draft.triangle_origin[t as usize]);
+        let triangles = triangles.into_iter().zip(origins).collect();
+        let vertex = |v: u32| (draft.positions[v as usize], draft.vertex_origin[v as usize]);
+        Ok(Self { vertices: corners.into_iter().map(vertex).collect(), triangles })
+    }
+
+    fn add_to(self, draft: &mut Draft) {
+        let first = draft.positions.len() as u32;
+        for (place, origin) in self.vertices {
+            draft.positions.push(place);
+            draft.vertex_origin.push(origin);
+        }
+        for (corners, origin) in self.triangles {
+            draft.triangles.push(corners.map(|v| first + v));
+            draft.triangle_origin.push(origin);
+        }
+    }
 }
 
 /// Of the triangles that cover a piece the first one that is of the file, or else the first.

@@ -7,10 +7,12 @@
 mod bare;
 mod bore;
 mod combine;
+mod enclose;
 
 pub use bare::unite_and_copy_bare;
 pub use bore::bore_contacts;
 pub use combine::{NotCombined, NotSolid, SetOperation, combine};
+pub use enclose::{enclose, enclose_and_copy_bare};
 
 use super::{Changes, Draft, FIRST_BLEND, NEW};
 use crate::arrangement::{self, Arrangement, ArrangementError, Options, Placed, Surface, arrange};
@@ -78,16 +80,23 @@ pub fn unite(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
 pub fn unite_as_oriented(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
     let united = arranged(draft, budget).and_then(|arrangement| {
         let boundary = arrangement.boundary(|winding| winding[0] > 0);
-        let coverage = Coverage::of(draft, &arrangement);
-        let placed = placed(draft, &arrangement, boundary, budget)?;
-        Ok(placed.map(|placed| (placed, coverage)))
+        become_solid(draft, &arrangement, boundary, budget)
     });
-    match united {
-        Ok(Some((placed, coverage))) => Ok(Changes { coverage: Some(coverage), ..replace(draft, placed) }),
-        Ok(None) => Ok(left_alone("float32 does not go so far")),
-        Err(ArrangementError::Stopped(stopped)) => Err(stopped),
-        Err(error) => Ok(left_alone(&error.to_string())),
-    }
+    united.or_else(left_alone)
+}
+
+/// The boundary of a solid takes the place of the draft, which is left as it is where float32 does not go so far.
+fn become_solid(
+    draft: &mut Draft,
+    arrangement: &Arrangement,
+    boundary: Surface,
+    budget: &Budget,
+) -> Result<Changes, ArrangementError> {
+    let coverage = Coverage::of(draft, arrangement);
+    Ok(match placed(draft, arrangement, boundary, budget)? {
+        Some(placed) => Changes { coverage: Some(coverage), ..replace(draft, placed) },
+        None => not_united("float32 does not go so far"),
+    })
 }
 
 fn arranged(draft: &Draft, budget: &Budget) -> Result<Arrangement, ArrangementError> {
@@ -101,9 +110,13 @@ fn arranged_by(
     operand_of: impl Fn(u32) -> u8 + Sync,
     budget: &Budget,
 ) -> Result<Arrangement, ArrangementError> {
-    let pairs_max = (draft.triangles.len() * PAIRS_PER_TRIANGLE).clamp(PAIRS_MIN, PAIRS_MAX);
-    let options = Options { pairs_max, operands };
+    let options = Options { pairs_max: pairs_max(draft), operands };
     arrange(&draft.positions, &draft.triangles, operand_of, &options, budget)
+}
+
+/// Most pairs of triangles of a draft that may meet.
+fn pairs_max(draft: &Draft) -> usize {
+    (draft.triangles.len() * PAIRS_PER_TRIANGLE).clamp(PAIRS_MIN, PAIRS_MAX)
 }
 
 /// A boundary on the print lattice; `None`: float32 does not go so far.
@@ -143,7 +156,15 @@ fn replace(draft: &mut Draft, placed: Placed) -> Changes {
     Changes { move_max, reason, ..Changes::counted(counts) }
 }
 
-fn left_alone(why: &str) -> Changes {
+/// What is told of a draft that is left as it is because there is no arrangement.
+fn left_alone(error: ArrangementError) -> Result<Changes, Stopped> {
+    match error {
+        ArrangementError::Stopped(stopped) => Err(stopped),
+        error => Ok(not_united(&error.to_string())),
+    }
+}
+
+fn not_united(why: &str) -> Changes {
     let reason = format!("bodies were not united: {why}");
     Changes { reason, ..Changes::counted([("triangles_after", 0)]) }
 }

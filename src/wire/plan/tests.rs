@@ -10,6 +10,7 @@ fn all_steps() -> Vec<Step> {
     let degenerate = repair::polygons::DegenerateFaces::Split;
     vec![
         Step::SplitPolygons(degenerate),
+        Step::JoinOverNoise,
         Step::ClearNoise,
         Step::RoundToF32,
         Step::RoundWhereItMatters,
@@ -48,6 +49,8 @@ fn all_steps() -> Vec<Step> {
         Step::Thicken { wall: 0.25 },
         Step::Unite,
         Step::UniteAndCopyBare,
+        Step::Enclose,
+        Step::EncloseAndCopyBare,
         Step::BoreContacts { steps: 64 },
         Step::RoundToCoarser { steps: 16 },
         Step::SpanRims,

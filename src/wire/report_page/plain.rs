@@ -87,7 +87,8 @@ pub(super) fn fidelity(word: &str, is_combined: bool) -> &'static str {
 pub(super) fn step(code: &str) -> String {
     let told = match code {
         "split-polygons" => "Faces that programs read differently were split into triangles.",
-        "clear-noise" => "Tiny parts were left out.",
+        "join-over-noise" => "Points that only rounding kept apart were made one.",
+        "clear-noise" => "Coordinates that are all but zero became zero.",
         "round-to-float32" | "round-where-it-matters" => {
             "Positions were rounded to what the format can hold."
         }
@@ -103,6 +104,7 @@ pub(super) fn step(code: &str) -> String {
         "join-contacts" => "Parts that touch were joined by necks.",
         "span-rims" => "Open rims were spanned.",
         "unite" | "unite-and-copy-bare" => "Parts that pass through each other became one.",
+        "enclose" | "enclose-and-copy-bare" => "What the surface encloses became solid.",
         "bore-contacts" | "open-contacts" => "Parts that touch were drawn apart a little.",
         "round-to-coarser" => "Corners where parts touch were moved a little.",
         "fill-holes" => "Holes were closed.",
