@@ -42,11 +42,12 @@ fn described(input: &Place, format: Option<Format>) -> Result<(String, bool), Pr
             let counts = mesh.counts();
             let kind = if soup.polygons.faces.is_empty() { "triangular" } else { "polygonal" };
             let mut text = format!(
-                "{input}: a {kind} half-edge mesh\n  {} vertices, {} edges, {} faces, {} boundary loops; Euler characteristic {}\n",
+                "{input}: a {kind} half-edge mesh\n  {} vertices, {} edges, {} faces, {} boundary loop{}; Euler characteristic {}\n",
                 counts.vertices,
                 counts.edges,
                 counts.faces,
                 counts.boundary_loops,
+                if counts.boundary_loops == 1 { "" } else { "s" },
                 counts.euler()
             );
             for fault in &faults {

@@ -36,7 +36,15 @@ impl Place {
     pub(super) fn format(&self) -> Option<Format> {
         match self {
             Self::Stream => None,
-            Self::File(path) => Format::from_name(path.extension()?.to_str()?),
+            Self::File(_) => Format::from_name(self.extension()?),
+        }
+    }
+
+    /// The file's extension.
+    pub(super) fn extension(&self) -> Option<&str> {
+        match self {
+            Self::Stream => None,
+            Self::File(path) => path.extension()?.to_str(),
         }
     }
 

@@ -51,7 +51,7 @@ pub(super) fn run(errand: &Errand<'_>) -> Result<Done, Problem> {
 
 fn attempt(errand: &Errand<'_>) -> Result<Done, Problem> {
     let &Errand { request, inputs, ref output } = errand;
-    check_streams(errand)?;
+    check_places(errand)?;
     let options =
         Options::from_pairs(request.options.iter().map(|(n, v)| (n, v))).map_err(|e| Problem::from(&e))?;
     // A picture has one format, whatever its name.
@@ -94,8 +94,8 @@ fn attempt(errand: &Errand<'_>) -> Result<Done, Problem> {
     deliver(errand, options.require, &bytes, &answer, timing)
 }
 
-/// Streams have no extension that could name their format, and standard output holds one thing only.
-fn check_streams(errand: &Errand<'_>) -> Result<(), Problem> {
+/// Streams have no extension that could name their format, extensions must be those of formats, and standard output holds one thing only.
+fn check_places(errand: &Errand<'_>) -> Result<(), Problem> {
     let &Errand { request, inputs, ref output } = errand;
     let is_named = |name: &str| request.options.iter().any(|(given, _)| given == name);
     if inputs.contains(&Place::Stream) && !is_named("format") {
@@ -107,6 +107,12 @@ fn check_streams(errand: &Errand<'_>) -> Result<(), Problem> {
     }
     if *output == Some(Place::Stream) && request.is_json {
         return Err(wrong("--json and --output - both want standard output"));
+    }
+    let unnamed = output.as_ref().filter(|place| !is_picture && place.format().is_none());
+    if let Some(extension) = unnamed.and_then(Place::extension).filter(|_| !is_named("output_format")) {
+        return Err(wrong(format!(
+            "no mesh format has the file extension .{extension}: --output-format names the format"
+        )));
     }
     let has_format = |place: &Place| place.format().is_some() || is_named("output_format");
     match output {

@@ -89,6 +89,7 @@ impl CutStitchChoices {
 
 /// Cuts and stitches `input`; one that this does not change comes back as it is.
 pub(super) fn cut_stitch(input: &Input, options: &Options, budget: &Budget) -> Result<Answer, Failure> {
+    check_chosen(&options.cut_stitch.chosen, input.soup.positions.len())?;
     let report = input.report(Operation::CutStitch, budget)?;
     let before = report.before.as_ref();
     let mut attempt = Attempt::start_with_polygons(&input.soup, before);
@@ -112,6 +113,16 @@ pub(super) fn cut_stitch(input: &Input, options: &Options, budget: &Budget) -> R
         Format::Obj | Format::Off | Format::Ply => Form::Polygons,
     };
     written(&draft, form, input, options, Report { actions, ..report }, budget)
+}
+
+/// Edges can only be cut between vertices that the file has.
+fn check_chosen(chosen: &[[u32; 2]], vertices: usize) -> Result<(), Failure> {
+    let unknown = chosen.as_flattened().iter().find(|&&v| v as usize >= vertices);
+    unknown.map_or(Ok(()), |v| {
+        let reason =
+            format!("cut_edges names vertex {v}, but the file has {vertices} vertices, numbered from 0");
+        Err(Failure::NotApplicable { option: "cut_edges", reason })
+    })
 }
 
 /// What becomes of polygons in a file.

@@ -303,11 +303,18 @@ impl Attempt {
 
     /// What of the soup need not be looked for in the result, if bodies were united.
     pub(super) fn covered(&self) -> Option<Covered> {
-        let Known::By(Coverage { present, bare, buried_area }) = &self.coverage else { return None };
-        let is_covered = |t: &u32| bare.binary_search(t).is_err();
+        let Known::By(Coverage { present, bare, buried, buried_area }) = &self.coverage else { return None };
+        // What is inside a wall, or behind what closes an opening, may have been seen in the file.
+        let hides_more = |step: &Step| {
+            let is_enclosing = matches!(step, Step::Enclose | Step::EncloseAndCopyBare | Step::SpanRims);
+            is_enclosing || matches!(step, Step::Thicken { .. } | Step::FillHoles(_))
+        };
+        let hides_more = self.steps.iter().any(hides_more);
+        let is_in = |list: &[u32], t: &u32| list.binary_search(t).is_ok();
+        let is_covered = |t: &u32| !is_in(bare, t) && !(hides_more && is_in(buried, t));
         Some(Covered {
             triangles: present.iter().copied().filter(is_covered).collect(),
-            buried_area: *buried_area,
+            buried_area: if hides_more { 0.0 } else { *buried_area },
             moved: self.actions.iter().map(|action| action.move_max).sum(),
         })
     }
@@ -322,9 +329,12 @@ impl Known {
             (_, _, Step::BoreContacts { .. } | Step::MendThinFaces(_)) => Self::No,
             (Self::NotYet, Some(coverage), _) => Self::By(coverage),
             (Self::By(mut known), Some(coverage), _) => {
-                known.bare.extend(coverage.bare);
-                known.bare.sort_unstable();
-                known.bare.dedup();
+                let more = [(&mut known.bare, coverage.bare), (&mut known.buried, coverage.buried)];
+                for (known, more) in more {
+                    known.extend(more);
+                    known.sort_unstable();
+                    known.dedup();
+                }
                 Self::By(known)
             }
             (known, ..) => known,

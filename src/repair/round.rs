@@ -2,8 +2,11 @@
 
 use super::{Changes, Draft};
 use crate::budget::{Budget, Stopped};
-use crate::geom::{DVec3, are_collinear, print_pitch};
+use crate::geom::{DVec3, are_collinear, closest_point_on_triangle, print_pitch};
 use crate::spatial::{Bvh, Search, coincident_f64, self_contacts};
+
+/// Triangles are clear of each other from so many steps of a coarser lattice on: more than two vertices may move there together.
+const CLEAR_OF: f64 = 2.0;
 
 /// Pairs of triangles that meet beyond which every coordinate is rounded.
 const CONTACTS_MAX: usize = 1 << 16;
@@ -20,12 +23,13 @@ pub fn round_to_f32(draft: &mut Draft) -> Changes {
 /// # Errors
 /// When the budget stops the run.
 pub fn round_where_it_matters(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
-    round_clusters(draft, in_f32, budget)
+    round_clusters(draft, in_f32, f64::INFINITY, budget)
 }
 
 /// Moves the vertices of triangles that meet others, or lose their area, when all coordinates are read as whole multiples of so many
 /// `steps` of the print lattice, to such multiples: what is all but in one plane is in one plane then, or apart by more than
-/// new vertices are rounded by. Vertices that fall together stay several.
+/// new vertices are rounded by. Two triangles that pass clearly through each other, so that no vertex of one is within two such
+/// multiples of the other and no edge within that of another's, stay where they are. Vertices that fall together stay several.
 ///
 /// # Errors
 /// When the budget stops the run.
@@ -34,16 +38,19 @@ pub fn round_to_coarser(draft: &mut Draft, steps: u32, budget: &Budget) -> Resul
     match print_pitch(reach) {
         Some(pitch) => {
             let coarse = pitch * f64::from(steps.max(1));
-            round_clusters(draft, |position| (position / coarse).round() * coarse + DVec3::ZERO, budget)
+            let rounded = |position: DVec3| (position / coarse).round() * coarse + DVec3::ZERO;
+            round_clusters(draft, rounded, CLEAR_OF * coarse, budget)
         }
         None => Ok(Changes::counted([("vertices_moved", 0)])),
     }
 }
 
-/// Moves the vertices of triangles that meet others, or lose their area, when all positions are `rounded`, to where they are then.
+/// Moves the vertices of triangles that meet others, or lose their area, when all positions are `rounded`, to where they are then;
+/// those that pass through others and are `clear` of their vertices and edges stay.
 fn round_clusters(
     draft: &mut Draft,
     rounded: impl Fn(DVec3) -> DVec3,
+    clear: f64,
     budget: &Budget,
 ) -> Result<Changes, Stopped> {
     let read: Vec<DVec3> = draft.positions.iter().map(|&position| rounded(position)).collect();
@@ -63,7 +70,10 @@ fn round_clusters(
         return Ok(round_those(draft, |_| true, rounded));
     }
     let mut matters = vec![false; read.len()];
-    let meeting = contacts.list.iter().flat_map(|contact| [contact.a, contact.b]);
+    budget.spend(contacts.list.len() as u64)?;
+    let corners = |t: u32| draft.corners(t as usize);
+    let close = contacts.list.iter().filter(|pair| come_within(corners(pair.a), corners(pair.b), clear));
+    let meeting = close.flat_map(|contact| [contact.a, contact.b]);
     for v in meeting.chain(flat).flat_map(|t| draft.triangles[t as usize]) {
         matters[v as usize] = true;
     }
@@ -75,6 +85,28 @@ fn round_clusters(
         }
     }
     Ok(round_those(draft, |v| matters[v], rounded))
+}
+
+/// True when a vertex of one triangle is no farther than `distance` from the other, or an edge of one from an edge of the other.
+fn come_within(one: [DVec3; 3], other: [DVec3; 3], distance: f64) -> bool {
+    let has_near_vertex = |of: [DVec3; 3], to: [DVec3; 3]| {
+        of.iter().any(|&p| closest_point_on_triangle(p, to).distance(p) <= distance)
+    };
+    let edges = |[a, b, c]: [DVec3; 3]| [[a, b], [b, c], [c, a]];
+    distance == f64::INFINITY
+        || has_near_vertex(one, other)
+        || has_near_vertex(other, one)
+        || edges(one).iter().any(|&e| edges(other).iter().any(|&f| cross_within(e, f, distance)))
+}
+
+/// True when two edges come no farther than `distance` to each other between their ends.
+fn cross_within([a, b]: [DVec3; 2], [c, d]: [DVec3; 2], distance: f64) -> bool {
+    let (along, other, between) = (b - a, d - c, c - a);
+    let normal = along.cross(other);
+    let square = normal.length_squared();
+    let shares = [other, along].map(|edge| between.cross(edge).dot(normal) / square);
+    shares.iter().all(|share| (0.0..=1.0).contains(share))
+        && between.dot(normal).abs() <= distance * square.sqrt()
 }
 
 /// A position as a reader of float32 has it. One beyond the range of float32 stays as it is.
@@ -145,6 +177,29 @@ mod tests {
         assert!(draft.positions[..6].iter().all(|p| p.z == step && (*p / step).fract() == DVec3::ZERO));
         assert_eq!(draft.positions[6..], positions[6..]);
         assert!(changes.move_max <= step, "{}", changes.move_max / step);
+    }
+
+    #[test]
+    fn triangles_that_pass_clearly_through_each_other_stay_and_those_whose_edges_all_but_meet_move() {
+        let step = 16.0 * print_pitch(8.0).unwrap();
+        let through = |beside: f64| {
+            // An upright triangle through the middle of a flat one, or with its edge beside one of its edges.
+            let upright =
+                [[1.0 / 3.0, beside, -1.03], [1.0 / 3.0, beside, 2.03], [1.0 / 3.0, 3.03 + beside, 0.01]];
+            let flat = [[-7.01, -0.013, 0.007], [7.03, -0.013, 0.007], [0.1, 7.01, 0.007]];
+            let positions = [flat, upright].as_flattened().iter().map(|&p| DVec3::from_array(p)).collect();
+            let mut draft = Draft {
+                vertex_origin: (0..6).collect(),
+                triangle_origin: vec![0, 1],
+                triangles: vec![[0, 1, 2], [3, 4, 5]],
+                positions,
+                ..Draft::default()
+            };
+            round_to_coarser(&mut draft, 16, &Budget::unlimited()).unwrap().count("vertices_moved")
+        };
+        assert_eq!(through(1.0), 0);
+        assert_eq!(through(-0.013 + 1.5 * step), 6);
+        assert_eq!(through(-0.013 + 8.0 * step), 0);
     }
 
     #[test]

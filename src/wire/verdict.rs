@@ -98,9 +98,9 @@ impl From<&pipeline::Refusal> for Reason {
                 witness.as_ref().map(|violation| violation.condition.into()),
                 match witness {
                     Some(violation) => {
-                        format!("no step led to a valid solid; what remains: {}", sentence(violation))
+                        format!("the result is no valid solid: {}", sentence(violation))
                     }
-                    None => "no step led to a valid solid".to_owned(),
+                    None => "the result is no valid solid".to_owned(),
                 },
             ),
             pipeline::Refusal::BeyondFloat32 { pitch, diagonal } => (

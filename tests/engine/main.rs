@@ -23,6 +23,7 @@ mod solids;
 mod bad_input;
 mod boolean;
 mod cut_stitch;
+mod enclosed;
 mod fidelity;
 mod fill_holes;
 #[cfg(feature = "server")]

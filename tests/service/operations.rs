@@ -230,6 +230,10 @@ fn cutting_and_stitching_parts_what_only_touches_and_says_what_ran() {
     let wrong = server.post("/v1/cut-stitch?cut_edges=[[1,1]]").body(touching).send().unwrap();
     let (status, code, body) = problem(wrong);
     assert_eq!((status, &code[..], &body["parameter"]), (400, "invalid-parameter", &"cut_edges".into()));
+    let unknown = server.post("/v1/cut-stitch?cut_edges=[[0,7]]").body(touching).send().unwrap();
+    let (status, code, body) = problem(unknown);
+    assert_eq!((status, &code[..], &body["parameter"]), (400, "invalid-parameter", &"cut_edges".into()));
+    assert!(body["detail"].as_str().unwrap().contains("vertex 7"), "{body}");
 }
 
 #[test]

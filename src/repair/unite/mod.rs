@@ -34,6 +34,8 @@ pub struct Coverage {
     pub present: Vec<u32>,
     /// Those of which some piece has void on both sides, so that it is gone, ascending.
     pub bare: Vec<u32>,
+    /// Those of which some piece is inside the solid, so that it is gone, ascending.
+    pub buried: Vec<u32>,
     /// Area of the pieces inside the solid, in square units of the file.
     pub buried_area: f64,
 }
@@ -48,12 +50,14 @@ impl Coverage {
             let sources = arrangement.sources(f).iter().filter_map(|&(t, _)| of_file(t));
             if front && back {
                 let area = triangle_area(corners.map(|p| arrangement.position(p)));
-                coverage.buried_area += area * sources.count() as f64;
+                let before = coverage.buried.len();
+                coverage.buried.extend(sources);
+                coverage.buried_area += area * (coverage.buried.len() - before) as f64;
             } else if !front && !back {
                 coverage.bare.extend(sources);
             }
         }
-        for list in [&mut coverage.present, &mut coverage.bare] {
+        for list in [&mut coverage.present, &mut coverage.bare, &mut coverage.buried] {
             list.sort_unstable();
             list.dedup();
         }
