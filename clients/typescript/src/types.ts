@@ -2376,6 +2376,9 @@ export interface components {
             step: "split-polygons";
         } | {
             /** @enum {string} */
+            step: "join-over-noise";
+        } | {
+            /** @enum {string} */
             step: "clear-noise";
         } | {
             /** @enum {string} */
@@ -2490,6 +2493,12 @@ export interface components {
         } | {
             /** @enum {string} */
             step: "unite-and-copy-bare";
+        } | {
+            /** @enum {string} */
+            step: "enclose";
+        } | {
+            /** @enum {string} */
+            step: "enclose-and-copy-bare";
         } | {
             /**
              * Format: int32

@@ -1465,13 +1465,21 @@ class PlanStep1(TypedDict):
 
 class PlanStep2(TypedDict):
     """
+    Vertices that only coordinates which are all but zero keep apart go to where one of them is.
+    """
+
+    step: Literal["join-over-noise"]
+
+
+class PlanStep3(TypedDict):
+    """
     Coordinates that are all but zero become zero.
     """
 
     step: Literal["clear-noise"]
 
 
-class PlanStep3(TypedDict):
+class PlanStep4(TypedDict):
     """
     Coordinates become float32.
     """
@@ -1479,7 +1487,7 @@ class PlanStep3(TypedDict):
     step: Literal["round-to-float32"]
 
 
-class PlanStep4(TypedDict):
+class PlanStep5(TypedDict):
     """
     Coordinates of triangles that meet others when all are read as float32 become float32.
     """
@@ -1487,7 +1495,7 @@ class PlanStep4(TypedDict):
     step: Literal["round-where-it-matters"]
 
 
-class PlanStep5(TypedDict):
+class PlanStep6(TypedDict):
     """
     Vertices at one position become one.
     """
@@ -1495,7 +1503,7 @@ class PlanStep5(TypedDict):
     step: Literal["weld"]
 
 
-class PlanStep6(TypedDict):
+class PlanStep7(TypedDict):
     """
     Triangles with a repeated vertex go.
     """
@@ -1503,7 +1511,7 @@ class PlanStep6(TypedDict):
     step: Literal["drop-degenerate"]
 
 
-class PlanStep7(TypedDict):
+class PlanStep8(TypedDict):
     """
     Collinear triangles go and their neighbours are divided.
     """
@@ -1511,7 +1519,7 @@ class PlanStep7(TypedDict):
     step: Literal["split-collinear"]
 
 
-class PlanStep8(TypedDict):
+class PlanStep9(TypedDict):
     """
     Boundary edges are divided where a boundary vertex lies on them.
     """
@@ -1522,7 +1530,7 @@ class PlanStep8(TypedDict):
 Triangle: TypeAlias = int
 
 
-class PlanStep9(TypedDict):
+class PlanStep10(TypedDict):
     """
     Whole parts go.
     """
@@ -1534,7 +1542,7 @@ class PlanStep9(TypedDict):
     step: Literal["remove-parts"]
 
 
-class PlanStep10(TypedDict):
+class PlanStep11(TypedDict):
     """
     Copies of triangles go.
     """
@@ -1546,7 +1554,7 @@ class PlanStep10(TypedDict):
     step: Literal["drop-duplicates"]
 
 
-class PlanStep11(TypedDict):
+class PlanStep12(TypedDict):
     """
     Triangles that meet others go.
     """
@@ -1558,7 +1566,7 @@ class PlanStep11(TypedDict):
     step: Literal["remove-crossing"]
 
 
-class PlanStep12(TypedDict):
+class PlanStep13(TypedDict):
     """
     Sheets that lie triangle by triangle near other ones go.
     """
@@ -1570,7 +1578,7 @@ class PlanStep12(TypedDict):
     step: Literal["drop-near-duplicates"]
 
 
-class PlanStep13(TypedDict):
+class PlanStep14(TypedDict):
     """
     Faces are turned so that neighbours agree.
     """
@@ -1578,7 +1586,7 @@ class PlanStep13(TypedDict):
     step: Literal["orient"]
 
 
-class PlanStep14(TypedDict):
+class PlanStep15(TypedDict):
     """
     Triangles at edges with four or more are paired by their angles.
     """
@@ -1590,7 +1598,7 @@ class PlanStep14(TypedDict):
     step: Literal["pair-sheets"]
 
 
-class PlanStep15(TypedDict):
+class PlanStep16(TypedDict):
     """
     Singular edges and vertices are cut.
     """
@@ -1598,7 +1606,7 @@ class PlanStep15(TypedDict):
     step: Literal["cut"]
 
 
-class PlanStep16(TypedDict):
+class PlanStep17(TypedDict):
     """
     Edges that the cut has parted are joined from where boundaries turn back on themselves.
     """
@@ -1606,7 +1614,7 @@ class PlanStep16(TypedDict):
     step: Literal["pinch"]
 
 
-class PlanStep17(TypedDict):
+class PlanStep18(TypedDict):
     """
     Boundary edges that are close are joined.
     """
@@ -1627,7 +1635,7 @@ class PlanStep17(TypedDict):
     step: Literal["snap"]
 
 
-class PlanStep18(TypedDict):
+class PlanStep19(TypedDict):
     """
     Needles, caps and folds go.
     """
@@ -1650,7 +1658,7 @@ class PlanStep18(TypedDict):
 ExceptItem: TypeAlias = int
 
 
-class PlanStep20(TypedDict):
+class PlanStep21(TypedDict):
     """
     Open parts get a wall behind them.
     """
@@ -1662,7 +1670,7 @@ class PlanStep20(TypedDict):
     step: Literal["thicken"]
 
 
-class PlanStep21(TypedDict):
+class PlanStep22(TypedDict):
     """
     Bodies that touch become one.
     """
@@ -1674,7 +1682,7 @@ class PlanStep21(TypedDict):
     step: Literal["join-contacts"]
 
 
-class PlanStep22(TypedDict):
+class PlanStep23(TypedDict):
     """
     Bodies that pass through each other or overlap become one.
     """
@@ -1682,7 +1690,7 @@ class PlanStep22(TypedDict):
     step: Literal["unite"]
 
 
-class PlanStep23(TypedDict):
+class PlanStep24(TypedDict):
     """
     As `unite`; triangles with void on both sides, which go then, leave copies that are open parts of their own, for `thicken` to
     put walls behind.
@@ -1691,7 +1699,24 @@ class PlanStep23(TypedDict):
     step: Literal["unite-and-copy-bare"]
 
 
-class PlanStep24(TypedDict):
+class PlanStep25(TypedDict):
+    """
+    What the triangles of each connected part enclose becomes solid, whichever way they turn; rims are spanned first.
+    """
+
+    step: Literal["enclose"]
+
+
+class PlanStep26(TypedDict):
+    """
+    As `enclose`; triangles that enclose nothing, which go then, leave copies that are open parts of their own, for `thicken` to put
+    walls behind.
+    """
+
+    step: Literal["enclose-and-copy-bare"]
+
+
+class PlanStep27(TypedDict):
     """
     Where the solid touches itself, a body of some steps of the print lattice is taken out of it.
     """
@@ -1703,7 +1728,7 @@ class PlanStep24(TypedDict):
     step: Literal["bore-contacts"]
 
 
-class PlanStep25(TypedDict):
+class PlanStep28(TypedDict):
     """
     Corners of triangles that meet others when all coordinates are read on a coarser lattice go to it.
     """
@@ -1715,7 +1740,7 @@ class PlanStep25(TypedDict):
     step: Literal["round-to-coarser"]
 
 
-class PlanStep26(TypedDict):
+class PlanStep29(TypedDict):
     """
     What is still open is closed by triangles between its rims that may pass through others; `unite` resolves that.
     """
@@ -1723,7 +1748,7 @@ class PlanStep26(TypedDict):
     step: Literal["span-rims"]
 
 
-class PlanStep27(TypedDict):
+class PlanStep30(TypedDict):
     """
     Bodies that touch are drawn apart.
     """
@@ -1731,7 +1756,7 @@ class PlanStep27(TypedDict):
     step: Literal["open-contacts"]
 
 
-class PlanStep28(TypedDict):
+class PlanStep31(TypedDict):
     """
     Vertices at one position become one again.
     """
@@ -1739,7 +1764,7 @@ class PlanStep28(TypedDict):
     step: Literal["join-copies"]
 
 
-class PlanStep30(TypedDict):
+class PlanStep33(TypedDict):
     """
     The surface is rebuilt, by the options of the request; local steps do not count then.
     """
@@ -1747,7 +1772,7 @@ class PlanStep30(TypedDict):
     step: Literal["rebuild"]
 
 
-class PlanStep31(TypedDict):
+class PlanStep34(TypedDict):
     """
     The certified mesh gets fewer triangles, by the options of the request.
     """
@@ -3443,8 +3468,8 @@ class PlanOptionsWithInput(TypedDict):
     input: InputRef
 
 
-PlanStep19 = TypedDict(
-    "PlanStep19",
+PlanStep20 = TypedDict(
+    "PlanStep20",
     {
         "all": bool,
         "except": list[ExceptItem],
@@ -3454,7 +3479,7 @@ PlanStep19 = TypedDict(
 )
 
 
-class PlanStep29(TypedDict):
+class PlanStep32(TypedDict):
     """
     Shells are turned and dropped so that they alternate.
     """
@@ -3502,6 +3527,9 @@ PlanStep: TypeAlias = (
     | PlanStep29
     | PlanStep30
     | PlanStep31
+    | PlanStep32
+    | PlanStep33
+    | PlanStep34
 )
 """
 One step of a repair, with its parameters.
