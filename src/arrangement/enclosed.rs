@@ -28,8 +28,8 @@ pub(super) fn enclose(
     let groups = EdgeGroups::build(&arrangement.pieces, arrangement.point_count(), budget)?;
     let links = cells::links(arrangement, triangles, &groups, budget)?;
     let mut outside = Vec::new();
-    for pieces in around_highest(arrangement, &groups, budget)? {
-        outside.extend(shown_upward(arrangement, &pieces, budget)?);
+    for top in tops(arrangement, &groups, budget)? {
+        outside.extend(top.shown_upward(arrangement, budget)?);
     }
     let mut windings = vec![1; 2 * count];
     for &side in &outside {
@@ -48,12 +48,20 @@ pub(super) fn enclose(
     Ok(())
 }
 
-/// For each connected part the pieces at its highest vertex. Every triangle is in one part as a whole, so that it is one of the input.
-fn around_highest(
+/// The highest vertex of a connected part.
+struct Top {
+    /// It is one of the input, since every triangle is in one part as a whole.
+    vertex: u32,
+    /// The pieces that have it.
+    pieces: Vec<u32>,
+}
+
+/// That of each connected part.
+fn tops(
     arrangement: &Arrangement,
     groups: &EdgeGroups,
     budget: &Budget,
-) -> Result<Vec<Vec<u32>>, ArrangementError> {
+) -> Result<Vec<Top>, ArrangementError> {
     let parts = groups.components(budget)?;
     let inputs = arrangement.positions.len() as u32;
     let place = |p: u32| {
@@ -72,75 +80,81 @@ fn around_highest(
             }
         }
     }
-    let mut around = vec![Vec::new(); parts.count as usize];
+    let top = |vertex: Option<u32>| {
+        let vertex = vertex.ok_or(ArrangementError::Inconsistent("a part has no vertex of the input"))?;
+        Ok::<_, ArrangementError>(Top { vertex, pieces: Vec::new() })
+    };
+    let mut tops = highest.into_iter().map(top).collect::<Result<Vec<Top>, _>>()?;
     for (f, (&part, corners)) in parts.of.iter().zip(&arrangement.pieces).enumerate() {
-        if highest[part as usize].is_some_and(|top| corners.contains(&top)) {
-            around[part as usize].push(f as u32);
+        let top = &mut tops[part as usize];
+        if corners.contains(&top.vertex) {
+            top.pieces.push(f as u32);
         }
     }
-    let tops = highest.iter().map(|top| top.ok_or(ArrangementError::Inconsistent("a part has no vertex")));
-    let tops = tops.collect::<Result<Vec<u32>, _>>()?;
-    // The vertex first in each of them.
-    Ok(around.into_iter().zip(tops).map(|(pieces, top)| [vec![top], pieces].concat()).collect())
+    Ok(tops)
 }
 
-/// The sides that the pieces around a highest vertex, which comes first in the list, show upward at the flattest edge there.
-fn shown_upward(
-    arrangement: &Arrangement,
-    list: &[u32],
-    budget: &Budget,
-) -> Result<Vec<Side>, ArrangementError> {
-    let (top, pieces) = (list[0], &list[1..]);
-    budget.spend(32 * pieces.len() as u64)?;
-    let origin = arrangement.coordinates(top);
-    let from_top = |p: u32| -> Vector {
-        let place = arrangement.coordinates(p);
-        std::array::from_fn(|k| &place[k] - &origin[k])
-    };
-    let mut ends: Vec<u32> = pieces.iter().flat_map(|&f| arrangement.pieces[f as usize]).collect();
-    ends.sort_unstable();
-    ends.dedup();
-    // Squares of how far an edge goes down for how far it goes aside.
-    let steepness = |d: &Vector| {
-        let aside = &d[0] * &d[0] + &d[1] * &d[1];
-        (!aside.is_zero()).then(|| &d[2] * &d[2] / aside)
-    };
-    let slopes = ends.iter().filter(|&&p| p != top).filter_map(|&p| {
-        let along = from_top(p);
-        Some((steepness(&along)?, p, along))
-    });
-    let flattest = slopes.min_by(|a, b| a.0.cmp(&b.0));
-    let (_, end, along) =
-        flattest.ok_or(ArrangementError::Inconsistent("all edges at a vertex are vertical"))?;
-    // Seen along the edge, x is upward and y aside; `e x z` and `z |e|^2 - e (e . z)` without their lengths.
-    let square = along.iter().map(|x| x * x).sum::<Number>();
-    let seen = |d: &Vector| {
-        let y = &d[0] * &along[1] - &d[1] * &along[0];
-        let x = &d[2] * &square - d.iter().zip(&along).map(|(d, e)| d * e).sum::<Number>() * &along[2];
-        (x, y)
-    };
-    let mut next: [Option<(Number, Side)>; 2] = [None, None];
-    let mut below = Vec::new();
-    for &f in pieces {
-        let corners = arrangement.pieces[f as usize];
-        let Some(k) = corners.iter().position(|&p| p != top && p != end).filter(|_| corners.contains(&end))
-        else {
-            continue;
+impl Top {
+    /// The sides that the pieces around it show upward at the flattest edge there.
+    fn shown_upward(
+        &self,
+        arrangement: &Arrangement,
+        budget: &Budget,
+    ) -> Result<Vec<Side>, ArrangementError> {
+        let Self { vertex: top, pieces } = self;
+        let top = *top;
+        budget.spend(32 * pieces.len() as u64)?;
+        let origin = arrangement.coordinates(top);
+        let from_top = |p: u32| -> Vector {
+            let place = arrangement.coordinates(p);
+            std::array::from_fn(|k| &place[k] - &origin[k])
         };
-        let (x, y) = seen(&from_top(corners[k]));
-        if y.is_zero() {
-            below.extend([2 * f, 2 * f + 1]);
-            continue;
+        let mut ends: Vec<u32> = pieces.iter().flat_map(|&f| arrangement.pieces[f as usize]).collect();
+        ends.sort_unstable();
+        ends.dedup();
+        // Squares of how far an edge goes down for how far it goes aside.
+        let steepness = |d: &Vector| {
+            let aside = &d[0] * &d[0] + &d[1] * &d[1];
+            (!aside.is_zero()).then(|| &d[2] * &d[2] / aside)
+        };
+        let slopes = ends.iter().filter(|&&p| p != top).filter_map(|&p| {
+            let along = from_top(p);
+            Some((steepness(&along)?, p, along))
+        });
+        let flattest = slopes.min_by(|a, b| a.0.cmp(&b.0));
+        let (_, end, along) =
+            flattest.ok_or(ArrangementError::Inconsistent("all edges at a vertex are vertical"))?;
+        // Seen along the edge, x is upward and y aside; `e x z` and `z |e|^2 - e (e . z)` without their lengths.
+        let square = along.iter().map(|x| x * x).sum::<Number>();
+        let seen = |d: &Vector| {
+            let y = &d[0] * &along[1] - &d[1] * &along[0];
+            let x = &d[2] * &square - d.iter().zip(&along).map(|(d, e)| d * e).sum::<Number>() * &along[2];
+            (x, y)
+        };
+        let mut next: [Option<(Number, Side)>; 2] = [None, None];
+        let mut below = Vec::new();
+        for &f in pieces {
+            let corners = arrangement.pieces[f as usize];
+            let Some(k) =
+                corners.iter().position(|&p| p != top && p != end).filter(|_| corners.contains(&end))
+            else {
+                continue;
+            };
+            let (x, y) = seen(&from_top(corners[k]));
+            if y.is_zero() {
+                below.extend([2 * f, 2 * f + 1]);
+                continue;
+            }
+            // `z . (e x d)` is -y; a piece turns by `e x d` where its corners are the vertex, the end and this one.
+            let is_along = corners[(k + 1) % 3] == top;
+            let is_front = is_along == y.is_negative();
+            let height = x / y.abs();
+            let next = &mut next[usize::from(y.is_negative())];
+            if next.as_ref().is_none_or(|(best, _)| height > *best) {
+                *next = Some((height, 2 * f + u32::from(!is_front)));
+            }
         }
-        // `z . (e x d)` is -y; a piece turns by `e x d` where its corners are the vertex, the end and this one.
-        let is_along = corners[(k + 1) % 3] == top;
-        let is_front = is_along == y.is_negative();
-        let height = x / y.abs();
-        let next = &mut next[usize::from(y.is_negative())];
-        if next.as_ref().is_none_or(|(best, _)| height > *best) {
-            *next = Some((height, 2 * f + u32::from(!is_front)));
-        }
+        let shown: Vec<Side> = next.into_iter().flatten().map(|(_, side)| side).collect();
+        Ok(if shown.is_empty() { below } else { shown })
     }
-    let shown: Vec<Side> = next.into_iter().flatten().map(|(_, side)| side).collect();
-    Ok(if shown.is_empty() { below } else { shown })
 }

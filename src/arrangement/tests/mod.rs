@@ -3,9 +3,10 @@
 mod cases;
 mod oracle;
 
-use super::{Arrangement, ArrangementError, Options, arrange};
+use super::{Arrangement, ArrangementError, Options, arrange, arrange_enclosed};
 use crate::budget::{Budget, StopFlag, Stopped};
 use crate::geom::DVec3;
+use crate::mesh::EdgeGroups;
 use crate::par;
 use cases::{Bodies, Random, cube, tetrahedron};
 
@@ -100,6 +101,35 @@ fn volumes_of_random_pairs_of_solids_add_up_exactly() {
     });
     let meeting: usize = meeting.into_iter().sum();
     assert!(meeting * 2 > count, "{meeting} of {count} pairs have something in common");
+}
+
+#[test]
+fn what_random_solids_enclose_is_their_union_whichever_way_their_triangles_turn() {
+    let count = cases(2_000, 20_000) as usize;
+    let compared = par::map_ranges(count, 16, |range| {
+        let (mut whole, mut with_voids) = (0, 0);
+        for seed in range {
+            let mut random = Random::new(seed as u64 + 3_000_000);
+            let bodies = cases::pair(&mut random, [4, 12, 1_000, 1_000_000][seed % 4]);
+            let union = oracle::volume_sixfold(&arranged(&bodies).unwrap(), |w| w[0] > 0 || w[1] > 0);
+            let mut turned = bodies.triangles.clone();
+            turned.iter_mut().filter(|_| random.below(2) == 0).for_each(|corners| corners.swap(0, 1));
+            let budget = Budget::unlimited();
+            let enclosed = arrange_enclosed(&bodies.positions, &turned, 1 << 20, &budget).unwrap();
+            let groups = EdgeGroups::build(enclosed.pieces(), enclosed.point_count(), &budget).unwrap();
+            // Parts of their own are not united.
+            if groups.components(&budget).unwrap().count > 1 {
+                continue;
+            }
+            let volume = oracle::volume_sixfold(&enclosed, |w| w[0] > 0);
+            assert!(volume >= union, "seed {seed}: {volume} of {union}\n{bodies:?}");
+            whole += 1;
+            with_voids += usize::from(volume != union);
+        }
+        [whole, with_voids]
+    });
+    let [whole, with_voids] = [0, 1].map(|k| compared.iter().map(|found| found[k]).sum::<usize>());
+    assert!(whole * 3 > count && with_voids * 50 < whole, "{whole} of {count}, {with_voids} with voids");
 }
 
 #[test]
