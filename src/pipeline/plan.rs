@@ -85,8 +85,10 @@ impl Variant {
         let wall = Step::Thicken { wall: choices.wall };
         match uniting {
             Uniting::Walled => steps.extend([Step::UniteAndCopyBare, wall]),
-            Uniting::Enclosed => steps.push(Step::Enclose),
-            Uniting::EnclosedAndWalled => steps.extend([Step::EncloseAndCopyBare, wall]),
+            Uniting::Enclosed => steps.extend([Step::SpanOddEdges, Step::Enclose]),
+            Uniting::EnclosedAndWalled => {
+                steps.extend([Step::SpanOddEdges, Step::EncloseAndCopyBare, wall]);
+            }
             Uniting::AsDrawn | Uniting::Mended | Uniting::Spanned | Uniting::Thickened => {}
         }
         steps.push(Step::Unite);
@@ -306,12 +308,12 @@ impl Attempt {
         let Known::By(Coverage { present, bare, buried, buried_area }) = &self.coverage else { return None };
         // What is inside a wall, or behind what closes an opening, may have been seen in the file.
         let hides_more = |step: &Step| {
-            let is_enclosing = matches!(step, Step::Enclose | Step::EncloseAndCopyBare | Step::SpanRims);
-            is_enclosing || matches!(step, Step::Thicken { .. } | Step::FillHoles(_))
+            let spans = matches!(step, Step::SpanRims | Step::SpanOddEdges | Step::FillHoles(_));
+            spans || matches!(step, Step::Thicken { .. })
         };
         let hides_more = self.steps.iter().any(hides_more);
         let is_in = |list: &[u32], t: &u32| list.binary_search(t).is_ok();
-        let is_covered = |t: &u32| !is_in(bare, t) && !(hides_more && is_in(buried, t));
+        let is_covered = |t: &u32| !(is_in(bare, t) || hides_more && is_in(buried, t));
         Some(Covered {
             triangles: present.iter().copied().filter(is_covered).collect(),
             buried_area: if hides_more { 0.0 } else { *buried_area },

@@ -73,7 +73,9 @@ pub enum Step {
     Unite,
     /// As `Unite`; triangles with void on both sides, which go then, leave copies that are open parts of their own.
     UniteAndCopyBare,
-    /// What the triangles of each connected part enclose becomes solid, whichever way they turn; rims are spanned first.
+    /// Edges that an odd number of triangles have are closed as by `SpanRims`, whichever way these turn.
+    SpanOddEdges,
+    /// What the triangles of each connected part enclose becomes solid, whichever way they turn.
     Enclose,
     /// As `Enclose`; triangles that enclose nothing leave copies that are open parts of their own.
     EncloseAndCopyBare,
@@ -126,6 +128,7 @@ impl Step {
             Self::PairSheets(_) => "pair-sheets",
             Self::JoinContacts { .. } => "join-contacts",
             Self::SpanRims => "span-rims",
+            Self::SpanOddEdges => "span-odd-edges",
             Self::UniteAndCopyBare => "unite-and-copy-bare",
             Self::Enclose => "enclose",
             Self::EncloseAndCopyBare => "enclose-and-copy-bare",
@@ -191,9 +194,12 @@ impl Step {
             Self::Cut(_) => {
                 &[DefectCode::NonManifoldEdge, DefectCode::NonManifoldVertex, DefectCode::NonOrientable]
             }
-            Self::SplitTVertices | Self::Pinch(..) | Self::Snap(_) | Self::FillHoles(_) | Self::SpanRims => {
-                &[DefectCode::BoundaryLoop]
-            }
+            Self::SpanOddEdges
+            | Self::SplitTVertices
+            | Self::Pinch(..)
+            | Self::Snap(_)
+            | Self::FillHoles(_)
+            | Self::SpanRims => &[DefectCode::BoundaryLoop],
             Self::Nest(_) => &[DefectCode::InvertedShell, DefectCode::MisnestedShell],
         }
     }
@@ -223,6 +229,7 @@ impl Step {
             Self::Snap(options) => repair::snap::snap(draft, options, budget),
             Self::RemoveCrossing { rings } => repair::crossing::remove_crossing(draft, *rings, budget),
             Self::SpanRims => repair::fill::span_rims(draft, budget),
+            Self::SpanOddEdges => repair::fill::span_odd_edges(draft, budget),
             Self::UniteAndCopyBare => repair::unite::unite_and_copy_bare(draft, budget),
             Self::Enclose => repair::unite::enclose(draft, budget),
             Self::EncloseAndCopyBare => repair::unite::enclose_and_copy_bare(draft, budget),

@@ -218,7 +218,9 @@ pub enum PlanStep {
     /// As `unite`; triangles with void on both sides, which go then, leave copies that are open parts of their own, for `thicken` to
     /// put walls behind.
     UniteAndCopyBare {},
-    /// What the triangles of each connected part enclose becomes solid, whichever way they turn; rims are spanned first.
+    /// Edges that an odd number of triangles have are closed as by `span-rims`, whichever way these turn.
+    SpanOddEdges {},
+    /// What the triangles of each connected part enclose becomes solid, whichever way they turn.
     Enclose {},
     /// As `enclose`; triangles that enclose nothing, which go then, leave copies that are open parts of their own, for `thicken` to put
     /// walls behind.
@@ -377,6 +379,7 @@ impl PlanStep {
             Self::JoinContacts { size } => Step::JoinContacts { size: *size },
             Self::Unite {} => Step::Unite,
             Self::UniteAndCopyBare {} => Step::UniteAndCopyBare,
+            Self::SpanOddEdges {} => Step::SpanOddEdges,
             Self::Enclose {} => Step::Enclose,
             Self::EncloseAndCopyBare {} => Step::EncloseAndCopyBare,
             Self::BoreContacts { steps } => Step::BoreContacts { steps: *steps },
@@ -440,6 +443,7 @@ impl From<&Step> for PlanStep {
             Step::JoinContacts { size } => Self::JoinContacts { size: *size },
             Step::Unite => Self::Unite {},
             Step::UniteAndCopyBare => Self::UniteAndCopyBare {},
+            Step::SpanOddEdges => Self::SpanOddEdges {},
             Step::Enclose => Self::Enclose {},
             Step::EncloseAndCopyBare => Self::EncloseAndCopyBare {},
             Step::BoreContacts { steps } => Self::BoreContacts { steps: *steps },

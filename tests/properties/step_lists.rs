@@ -60,7 +60,7 @@ fn any_step(random: &mut Random, soup: &RawSoup) -> Step {
             .clone(),
         22 => {
             if random.one_in(2) {
-                Step::SpanRims
+                [Step::SpanRims, Step::SpanOddEdges][random.below(2)].clone()
             } else {
                 Step::RoundWhereItMatters
             }

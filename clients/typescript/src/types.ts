@@ -2495,6 +2495,9 @@ export interface components {
             step: "unite-and-copy-bare";
         } | {
             /** @enum {string} */
+            step: "span-odd-edges";
+        } | {
+            /** @enum {string} */
             step: "enclose";
         } | {
             /** @enum {string} */

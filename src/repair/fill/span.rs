@@ -22,18 +22,15 @@ const CORNERS_MAX: usize = 1 << 14;
 /// When the budget stops the run.
 pub fn span_rims(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
     let missing = missing_edges(draft, budget)?;
-    let first = draft.triangles.len();
-    let spanned = span(draft, &missing, budget)?;
-    let added = (draft.triangles.len() - first) as u64;
-    Ok(Changes::counted([("rims_spanned", spanned), ("triangles_added", added)]))
+    span(draft, &missing, budget)
 }
 
 /// As [`span_rims`], but it does not matter which way triangles turn: what is spanned are the edges that an odd number of them
-/// have. Gives the number of rims.
+/// have.
 ///
 /// # Errors
 /// When the budget stops the run.
-pub(in crate::repair) fn span_odd_edges(draft: &mut Draft, budget: &Budget) -> Result<u64, Stopped> {
+pub fn span_odd_edges(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
     let groups = EdgeGroups::build(&draft.triangles, draft.positions.len(), budget)?;
     budget.spend(draft.triangles.len() as u64)?;
     let odd = groups.iter().filter(|group| group.len() % 2 == 1);
@@ -42,9 +39,10 @@ pub(in crate::repair) fn span_odd_edges(draft: &mut Draft, budget: &Budget) -> R
     span(draft, &directed(&edges), budget)
 }
 
-/// Closes loops of directed edges, as many of which begin at each vertex as end there; gives the number of loops.
-fn span(draft: &mut Draft, edges: &[[u32; 2]], budget: &Budget) -> Result<u64, Stopped> {
+/// Closes loops of directed edges, as many of which begin at each vertex as end there.
+fn span(draft: &mut Draft, edges: &[[u32; 2]], budget: &Budget) -> Result<Changes, Stopped> {
     let loops = loops(edges);
+    let first = draft.triangles.len();
     for corners in &loops {
         let points: Vec<DVec3> = corners.iter().map(|&v| draft.positions[v as usize]).collect();
         for t in triangulate(&points, budget)? {
@@ -52,7 +50,8 @@ fn span(draft: &mut Draft, edges: &[[u32; 2]], budget: &Budget) -> Result<u64, S
             draft.triangle_origin.push(NEW);
         }
     }
-    Ok(loops.len() as u64)
+    let added = (draft.triangles.len() - first) as u64;
+    Ok(Changes::counted([("rims_spanned", loops.len() as u64), ("triangles_added", added)]))
 }
 
 /// These edges, of which an even number are at each vertex, directed so that as many begin there as end there; sorted.

@@ -54,6 +54,7 @@ fn all_steps() -> Vec<Step> {
         Step::BoreContacts { steps: 64 },
         Step::RoundToCoarser { steps: 16 },
         Step::SpanRims,
+        Step::SpanOddEdges,
         Step::OpenContacts,
         Step::JoinCopies,
         Step::Nest(NestOptions {

@@ -102,7 +102,7 @@ pub(super) fn step(code: &str) -> String {
         "remove-crossing" => "Faces that pass through others were taken out.",
         "pair-sheets" => "Two sides of a wall were joined at their rims.",
         "join-contacts" => "Parts that touch were joined by necks.",
-        "span-rims" => "Open rims were spanned.",
+        "span-rims" | "span-odd-edges" => "Open rims were spanned.",
         "unite" | "unite-and-copy-bare" => "Parts that pass through each other became one.",
         "enclose" | "enclose-and-copy-bare" => "What the surface encloses became solid.",
         "bore-contacts" | "open-contacts" => "Parts that touch were drawn apart a little.",

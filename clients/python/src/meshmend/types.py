@@ -1701,13 +1701,21 @@ class PlanStep24(TypedDict):
 
 class PlanStep25(TypedDict):
     """
-    What the triangles of each connected part enclose becomes solid, whichever way they turn; rims are spanned first.
+    Edges that an odd number of triangles have are closed as by `span-rims`, whichever way these turn.
+    """
+
+    step: Literal["span-odd-edges"]
+
+
+class PlanStep26(TypedDict):
+    """
+    What the triangles of each connected part enclose becomes solid, whichever way they turn.
     """
 
     step: Literal["enclose"]
 
 
-class PlanStep26(TypedDict):
+class PlanStep27(TypedDict):
     """
     As `enclose`; triangles that enclose nothing, which go then, leave copies that are open parts of their own, for `thicken` to put
     walls behind.
@@ -1716,7 +1724,7 @@ class PlanStep26(TypedDict):
     step: Literal["enclose-and-copy-bare"]
 
 
-class PlanStep27(TypedDict):
+class PlanStep28(TypedDict):
     """
     Where the solid touches itself, a body of some steps of the print lattice is taken out of it.
     """
@@ -1728,7 +1736,7 @@ class PlanStep27(TypedDict):
     step: Literal["bore-contacts"]
 
 
-class PlanStep28(TypedDict):
+class PlanStep29(TypedDict):
     """
     Corners of triangles that meet others when all coordinates are read on a coarser lattice go to it.
     """
@@ -1740,7 +1748,7 @@ class PlanStep28(TypedDict):
     step: Literal["round-to-coarser"]
 
 
-class PlanStep29(TypedDict):
+class PlanStep30(TypedDict):
     """
     What is still open is closed by triangles between its rims that may pass through others; `unite` resolves that.
     """
@@ -1748,7 +1756,7 @@ class PlanStep29(TypedDict):
     step: Literal["span-rims"]
 
 
-class PlanStep30(TypedDict):
+class PlanStep31(TypedDict):
     """
     Bodies that touch are drawn apart.
     """
@@ -1756,7 +1764,7 @@ class PlanStep30(TypedDict):
     step: Literal["open-contacts"]
 
 
-class PlanStep31(TypedDict):
+class PlanStep32(TypedDict):
     """
     Vertices at one position become one again.
     """
@@ -1764,7 +1772,7 @@ class PlanStep31(TypedDict):
     step: Literal["join-copies"]
 
 
-class PlanStep33(TypedDict):
+class PlanStep34(TypedDict):
     """
     The surface is rebuilt, by the options of the request; local steps do not count then.
     """
@@ -1772,7 +1780,7 @@ class PlanStep33(TypedDict):
     step: Literal["rebuild"]
 
 
-class PlanStep34(TypedDict):
+class PlanStep35(TypedDict):
     """
     The certified mesh gets fewer triangles, by the options of the request.
     """
@@ -3479,7 +3487,7 @@ PlanStep20 = TypedDict(
 )
 
 
-class PlanStep32(TypedDict):
+class PlanStep33(TypedDict):
     """
     Shells are turned and dropped so that they alternate.
     """
@@ -3530,6 +3538,7 @@ PlanStep: TypeAlias = (
     | PlanStep32
     | PlanStep33
     | PlanStep34
+    | PlanStep35
 )
 """
 One step of a repair, with its parameters.
