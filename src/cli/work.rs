@@ -94,7 +94,7 @@ fn attempt(errand: &Errand<'_>) -> Result<Done, Problem> {
     deliver(errand, options.require, &bytes, &answer, timing)
 }
 
-/// Streams have no extension that could name their format, extensions must be those of formats, and standard output holds one thing only.
+/// Streams have no extension that could name their format, other files have one of a format, and standard output holds one thing only.
 fn check_places(errand: &Errand<'_>) -> Result<(), Problem> {
     let &Errand { request, inputs, ref output } = errand;
     let is_named = |name: &str| request.options.iter().any(|(given, _)| given == name);

@@ -306,17 +306,13 @@ impl Attempt {
     /// What of the soup need not be looked for in the result, if bodies were united.
     pub(super) fn covered(&self) -> Option<Covered> {
         let Known::By(Coverage { present, bare, buried, buried_area }) = &self.coverage else { return None };
-        // What is inside a wall, or behind what closes an opening, may have been seen in the file.
-        let hides_more = |step: &Step| {
-            let spans = matches!(step, Step::SpanRims | Step::SpanOddEdges | Step::FillHoles(_));
-            spans || matches!(step, Step::Thicken { .. })
-        };
-        let hides_more = self.steps.iter().any(hides_more);
+        // What is inside a wall may have been seen in the file.
+        let has_walls = self.steps.iter().any(|step| matches!(step, Step::Thicken { .. }));
         let is_in = |list: &[u32], t: &u32| list.binary_search(t).is_ok();
-        let is_covered = |t: &u32| !(is_in(bare, t) || hides_more && is_in(buried, t));
+        let is_covered = |t: &u32| !(is_in(bare, t) || has_walls && is_in(buried, t));
         Some(Covered {
             triangles: present.iter().copied().filter(is_covered).collect(),
-            buried_area: if hides_more { 0.0 } else { *buried_area },
+            buried_area: if has_walls { 0.0 } else { *buried_area },
             moved: self.actions.iter().map(|action| action.move_max).sum(),
         })
     }

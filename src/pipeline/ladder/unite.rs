@@ -40,6 +40,9 @@ const COARSER: [f64; 2] = [1.0 / (1u64 << 18) as f64, 1.0 / (1u64 << 14) as f64]
 /// Contacts that may be left for large bodies to be bored.
 const CONTACTS_MAX: u64 = 8;
 
+/// What encloses something has at least so many triangles for each open edge: what spans many rims would hide what can be seen.
+const TRIANGLES_PER_OPEN_EDGE: u64 = 20;
+
 /// One kind of bodies may take one of so many parts of the work that is left.
 const KIND_PART: u64 = 3;
 
@@ -107,7 +110,9 @@ impl Climb<'_> {
             filled.extend(self.choices.fills_all_holes().then_some(Uniting::Spanned));
         }
         // Whichever way triangles turn: after all that goes by their directions, except that walls come last for what is no sheet.
-        let encloses = walls != Walls::First && self.choices.fills_all_holes();
+        let counts = self.before.map(|analysis| analysis.counts).unwrap_or_default();
+        let is_open = counts.boundary_edges > counts.triangles / TRIANGLES_PER_OPEN_EDGE;
+        let encloses = walls != Walls::First && self.choices.fills_all_holes() && !is_open;
         let enclosed = |kind| encloses.then_some(kind);
         let by_direction = if is_sheets { [walled, filled].concat() } else { filled };
         kinds.extend(by_direction.into_iter().chain(enclosed(Uniting::Enclosed)));

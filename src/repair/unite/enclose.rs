@@ -11,8 +11,9 @@ use crate::repair::{Changes, Draft};
 /// A part of which this share of the boundary turns inward points inward.
 const INWARD_SHARE: f64 = 0.9;
 
-/// Makes solid what cannot be reached from outside without passing through a triangle, each connected part for itself. What encloses nothing is gone. Parts inside others stay, and those that point inward stay so: they are cavities.
-/// A draft of which too many triangles meet is left as it is.
+/// Makes solid what cannot be reached from outside without passing through a triangle, each connected part for itself. What encloses
+/// nothing is gone. Parts inside others stay, and those that point inward stay so: they are cavities. A draft of which too many
+/// triangles meet is left as it is.
 ///
 /// # Errors
 /// When the budget stops the run.
