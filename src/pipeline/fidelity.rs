@@ -108,15 +108,16 @@ pub(super) struct Original<'i> {
     input: &'i Soup,
     /// Volume, where it is defined.
     volume: Option<f64>,
-    /// What hides parts of it; `None`: nothing does.
-    solid: Option<Solid>,
+    /// What is hidden in all of these is not seen; none: all is.
+    solids: Vec<Solid>,
     /// Visible surface farther away than this is lost, surface of a result farther away than this invented.
     lost_beyond: f64,
 }
 
 impl<'i> Original<'i> {
-    pub(super) fn new(input: &'i Soup, volume: Option<f64>, solid: Option<Solid>) -> Self {
-        Self { input, volume, solid, lost_beyond: LOST_BEYOND * diagonal(input) }
+    pub(super) fn new(input: &'i Soup, volume: Option<f64>, solids: impl IntoIterator<Item = Solid>) -> Self {
+        let solids = solids.into_iter().collect();
+        Self { input, volume, solids, lost_beyond: LOST_BEYOND * diagonal(input) }
     }
 
     /// Measures a result; `origins` name the triangle of the input that each of its triangles is, or [`NEW`].
@@ -184,10 +185,12 @@ impl<'i> Original<'i> {
     }
 
     fn is_hidden(&self, place: DVec3, triangle: u32, budget: &Budget) -> Result<bool, Stopped> {
-        match &self.solid {
-            None => Ok(false),
-            Some(solid) => solid.hides(place, self.input.corners(triangle), budget),
+        for solid in &self.solids {
+            if !solid.hides(place, self.input.corners(triangle), budget)? {
+                return Ok(false);
+            }
         }
+        Ok(!self.solids.is_empty())
     }
 
     /// The distance of what is gone from the result.

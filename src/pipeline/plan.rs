@@ -6,6 +6,7 @@ use super::stitches::Stitches;
 use super::{Action, Contact};
 use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stopped};
+use crate::geom::DVec3;
 use crate::mesh::{ChosenEdges, Soup, Validity};
 use crate::repair::cut::CutOptions;
 use crate::repair::duplicates::OppositePairs;
@@ -219,6 +220,8 @@ pub(super) struct Attempt {
     is_oriented: bool,
     /// Which triangles of the soup are known to be on the surface or inside of the solid.
     coverage: Known,
+    /// The positions and triangles of the draft before walls were put behind open parts, which hide what was seen before.
+    pub(super) before_walls: Option<(Vec<DVec3>, Vec<[u32; 3]>)>,
 }
 
 /// Which triangles of the soup are known to be on the surface or inside of the solid, as bodies are united.
@@ -256,6 +259,7 @@ impl Attempt {
             lists_stitches: false,
             is_oriented: false,
             coverage: Known::NotYet,
+            before_walls: None,
         }
     }
 
@@ -282,6 +286,9 @@ impl Attempt {
     ) -> Result<(), Stopped> {
         for step in steps {
             budget.check()?;
+            if matches!(step, Step::Thicken { .. }) {
+                self.before_walls = Some((self.draft.positions.clone(), self.draft.triangles.clone()));
+            }
             let mut changes = match step {
                 Step::Unite if self.is_oriented => repair::unite::unite_as_oriented(&mut self.draft, budget)?,
                 _ => step.run(&mut self.draft, soup, &mut self.holes, budget)?,
@@ -307,7 +314,7 @@ impl Attempt {
     pub(super) fn covered(&self) -> Option<Covered> {
         let Known::By(Coverage { present, bare, buried, buried_area }) = &self.coverage else { return None };
         // What is inside a wall may have been seen in the file.
-        let has_walls = self.steps.iter().any(|step| matches!(step, Step::Thicken { .. }));
+        let has_walls = self.before_walls.is_some();
         let is_in = |list: &[u32], t: &u32| list.binary_search(t).is_ok();
         let is_covered = |t: &u32| !(is_in(bare, t) || has_walls && is_in(buried, t));
         Some(Covered {

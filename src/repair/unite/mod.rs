@@ -34,7 +34,7 @@ pub struct Coverage {
     pub present: Vec<u32>,
     /// Those of which some piece has void on both sides, so that it is gone, ascending.
     pub bare: Vec<u32>,
-    /// Those of which some piece is inside the solid, so that it is gone, ascending.
+    /// Those of which some piece is gone because it is inside the solid, or on that of another one, ascending.
     pub buried: Vec<u32>,
     /// Area of the pieces inside the solid, in square units of the file.
     pub buried_area: f64,
@@ -47,14 +47,17 @@ impl Coverage {
         coverage.present.extend((0..draft.triangles.len() as u32).filter_map(of_file));
         for (f, corners) in arrangement.pieces().iter().enumerate() {
             let [front, back] = arrangement.windings(f).map(|winding| winding[0] > 0);
-            let sources = arrangement.sources(f).iter().filter_map(|&(t, _)| of_file(t));
+            let sources = || arrangement.sources(f).iter().filter_map(|&(t, _)| of_file(t));
+            let count = sources().count();
             if front && back {
                 let area = triangle_area(corners.map(|p| arrangement.position(p)));
-                let before = coverage.buried.len();
-                coverage.buried.extend(sources);
-                coverage.buried_area += area * (coverage.buried.len() - before) as f64;
+                coverage.buried_area += area * count as f64;
             } else if !front && !back {
-                coverage.bare.extend(sources);
+                coverage.bare.extend(sources());
+            }
+            // Of several on each other, one stands for all from here on.
+            if front && back || count > 1 {
+                coverage.buried.extend(sources());
             }
         }
         for list in [&mut coverage.present, &mut coverage.bare, &mut coverage.buried] {
