@@ -12,7 +12,7 @@ use crate::geom::{DVec3, are_collinear, closest_point_on_triangle, signed_volume
 use crate::mesh::{Components, Soup, UnionFind};
 use crate::repair::NEW;
 use crate::spatial::{NearestSearch, coincident_f64};
-use crate::winding::Solid;
+use crate::winding::{Outlook, Solid};
 
 /// Visible surface farther than this from the result is lost, as a share of the diagonal of the input.
 pub(super) const LOST_BEYOND: f64 = 2e-3;
@@ -108,16 +108,23 @@ pub(super) struct Original<'i> {
     input: &'i Soup,
     /// Volume, where it is defined.
     volume: Option<f64>,
-    /// What is hidden in all of these is not seen; none: all is.
-    solids: Vec<Solid>,
+    /// What hides parts of it; `None`: nothing does.
+    solid: Option<Solid>,
+    /// What is seen all the same.
+    outlook: Option<Outlook>,
     /// Visible surface farther away than this is lost, surface of a result farther away than this invented.
     lost_beyond: f64,
 }
 
 impl<'i> Original<'i> {
-    pub(super) fn new(input: &'i Soup, volume: Option<f64>, solids: impl IntoIterator<Item = Solid>) -> Self {
-        let solids = solids.into_iter().collect();
-        Self { input, volume, solids, lost_beyond: LOST_BEYOND * diagonal(input) }
+    pub(super) fn new(input: &'i Soup, volume: Option<f64>, solid: Option<Solid>) -> Self {
+        Self { input, volume, solid, outlook: None, lost_beyond: LOST_BEYOND * diagonal(input) }
+    }
+
+    /// What a straight line leads to from outside of the input is seen, even if it is inside of the solid.
+    pub(super) fn with_outlook(self, budget: &Budget) -> Result<Self, Stopped> {
+        let triangles = (0..self.input.triangles.len() as u32).map(|t| self.input.corners(t));
+        Ok(Self { outlook: Some(Outlook::past(triangles, budget)?), ..self })
     }
 
     /// Measures a result; `origins` name the triangle of the input that each of its triangles is, or [`NEW`].
@@ -185,12 +192,13 @@ impl<'i> Original<'i> {
     }
 
     fn is_hidden(&self, place: DVec3, triangle: u32, budget: &Budget) -> Result<bool, Stopped> {
-        for solid in &self.solids {
-            if !solid.hides(place, self.input.corners(triangle), budget)? {
-                return Ok(false);
-            }
+        let corners = self.input.corners(triangle);
+        let Some(solid) = &self.solid else { return Ok(false) };
+        if !solid.hides(place, corners, budget)? {
+            return Ok(false);
         }
-        Ok(!self.solids.is_empty())
+        let sees = |outlook: &Outlook| outlook.sees(place, corners, budget);
+        Ok(!self.outlook.as_ref().map_or(Ok(false), sees)?)
     }
 
     /// The distance of what is gone from the result.

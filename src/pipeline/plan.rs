@@ -6,7 +6,6 @@ use super::stitches::Stitches;
 use super::{Action, Contact};
 use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stopped};
-use crate::geom::DVec3;
 use crate::mesh::{ChosenEdges, Soup, Validity};
 use crate::repair::cut::CutOptions;
 use crate::repair::duplicates::OppositePairs;
@@ -220,8 +219,8 @@ pub(super) struct Attempt {
     is_oriented: bool,
     /// Which triangles of the soup are known to be on the surface or inside of the solid.
     coverage: Known,
-    /// The positions and triangles of the draft before walls were put behind open parts, which hide what was seen before.
-    pub(super) before_walls: Option<(Vec<DVec3>, Vec<[u32; 3]>)>,
+    /// True when walls or patches may hide what can be seen in the file.
+    pub(super) hides_more: bool,
 }
 
 /// Which triangles of the soup are known to be on the surface or inside of the solid, as bodies are united.
@@ -259,7 +258,7 @@ impl Attempt {
             lists_stitches: false,
             is_oriented: false,
             coverage: Known::NotYet,
-            before_walls: None,
+            hides_more: false,
         }
     }
 
@@ -286,14 +285,13 @@ impl Attempt {
     ) -> Result<(), Stopped> {
         for step in steps {
             budget.check()?;
-            if matches!(step, Step::Thicken { .. }) {
-                self.before_walls = Some((self.draft.positions.clone(), self.draft.triangles.clone()));
-            }
             let mut changes = match step {
                 Step::Unite if self.is_oriented => repair::unite::unite_as_oriented(&mut self.draft, budget)?,
                 _ => step.run(&mut self.draft, soup, &mut self.holes, budget)?,
             };
             self.coverage.go_on(step, &mut changes);
+            let hides = matches!(step, Step::Thicken { .. } | Step::SpanOddEdges);
+            self.hides_more |= hides && changes.count("triangles_added") > 0;
             self.effects.add(changes.effects);
             debug_assert_eq!(self.draft.check(), Vec::<String>::new(), "after {step:?}");
             let stitches = (self.lists_stitches && matches!(step, Step::Pinch(..) | Step::Snap(_)))
@@ -313,13 +311,11 @@ impl Attempt {
     /// What of the soup need not be looked for in the result, if bodies were united.
     pub(super) fn covered(&self) -> Option<Covered> {
         let Known::By(Coverage { present, bare, buried, buried_area }) = &self.coverage else { return None };
-        // What is inside a wall may have been seen in the file.
-        let has_walls = self.before_walls.is_some();
         let is_in = |list: &[u32], t: &u32| list.binary_search(t).is_ok();
-        let is_covered = |t: &u32| !(is_in(bare, t) || has_walls && is_in(buried, t));
+        let is_covered = |t: &u32| !(is_in(bare, t) || self.hides_more && is_in(buried, t));
         Some(Covered {
             triangles: present.iter().copied().filter(is_covered).collect(),
-            buried_area: if has_walls { 0.0 } else { *buried_area },
+            buried_area: if self.hides_more { 0.0 } else { *buried_area },
             moved: self.actions.iter().map(|action| action.move_max).sum(),
         })
     }

@@ -4,10 +4,12 @@
 //! An open surface S and a cone C over its rim are closed together, so the winding number of S is that of both, an integer
 //! which crossings of a line decide exactly, less that of C, which has as few triangles as S has rim edges.
 
+mod outlook;
 mod shells;
 mod solid;
 mod tree;
 
+pub use outlook::Outlook;
 pub use shells::{Shells, are_sheets, sort};
 pub use solid::Solid;
 pub use tree::{WindingTree, turned};

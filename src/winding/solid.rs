@@ -1,27 +1,10 @@
 //! The solid that any triangles stand for, and which of them are hidden in it.
 
+use super::outlook::{BESIDE, GAP, Unit, has_way_out, is_met};
 use super::{OpenShells, Shells, WindingTree, sort, turned};
 use crate::budget::{Budget, Stopped};
-use crate::geom::{Aabb, DVec3, Sign, triangle_area, upward_crossing};
+use crate::geom::{DVec3, Sign, triangle_area, upward_crossing};
 use crate::spatial::Bvh;
-
-/// Sides of a triangle are looked at this far from it, as a share of the longest side of the box around all.
-const BESIDE: f64 = 1e-6;
-
-/// Places on a triangle are moved this much of the way to its middle first, so that neighbours do not decide.
-const INWARD: f64 = 1e-3;
-
-/// Gaps are narrower than this share of the longest side.
-const GAP: f64 = 0.01;
-
-/// Directions in which a way out of a gap is looked for.
-const DIRECTIONS: u32 = 24;
-
-/// Turn from each direction to the next, which spreads them evenly.
-const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
-
-/// Farther than the diagonal of the box around all, whose longest side is 1.
-const OUT: f64 = 2.0;
 
 /// The solid that triangles stand for: what their closed shells and those that nearly bound a volume wind around.
 #[derive(Debug)]
@@ -35,8 +18,7 @@ pub struct Solid {
     bvh: Bvh,
     /// The cones, turned around.
     cones: WindingTree,
-    center: DVec3,
-    scale: f64,
+    unit: Unit,
     /// Area of the open parts that bound a volume, and of those that are sheets.
     open_areas: [f64; 2],
 }
@@ -52,13 +34,11 @@ impl Solid {
         open_shells: OpenShells,
         budget: &Budget,
     ) -> Result<Self, Stopped> {
-        let bounds = Aabb::of(triangles.as_flattened().iter().map(|&v| positions[v as usize]));
-        let (center, size) = ((bounds.min + bounds.max) / 2.0, (bounds.max - bounds.min).max_element());
-        let scale = if size > 0.0 && size.is_finite() { 1.0 / size } else { 1.0 };
+        let unit = Unit::around(triangles.as_flattened().iter().map(|&v| positions[v as usize]));
         let _charge = budget.charge((positions.len() * 24 + triangles.len() * 160) as u64)?;
-        let unit: Vec<DVec3> = positions.iter().map(|&p| (p - center) * scale).collect();
+        let places: Vec<DVec3> = positions.iter().map(|&p| unit.of(p)).collect();
         let Shells { closed: mut corners, closed_part: part, open, cones, sheets, .. } =
-            sort(&unit, triangles, open_shells, BESIDE, budget)?;
+            sort(&places, triangles, open_shells, BESIDE, budget)?;
         let open_areas = [&open, &sheets].map(|part| part.iter().map(|&t| triangle_area(t)).sum());
         corners.extend(open);
         corners.extend(&cones);
@@ -66,7 +46,7 @@ impl Solid {
         let bvh = Bvh::build(corners.as_flattened(), &names, None, budget)?;
         let cone_count = cones.len();
         let cones = WindingTree::build(turned(&cones), budget)?;
-        Ok(Self { corners, part, cone_count, bvh, cones, center, scale, open_areas })
+        Ok(Self { corners, part, cone_count, bvh, cones, unit, open_areas })
     }
 
     /// Whether most of the open surface is read as sheets, which bound no volume.
@@ -85,15 +65,8 @@ impl Solid {
         if self.corners.is_empty() {
             return Ok(false);
         }
-        let [a, b, c, place] =
-            [corners[0], corners[1], corners[2], place].map(|p| (p - self.center) * self.scale);
-        let normal = (b - a).cross(c - a).normalize_or_zero();
-        let place = place.lerp((a + b + c) / 3.0, INWARD);
-        if normal == DVec3::ZERO {
-            return Ok(false);
-        }
-        for side in [normal, -normal] {
-            let beside = place + side * BESIDE;
+        let mut is_seen = true;
+        for [beside, side] in self.unit.both_sides(place, corners) {
             let is_hidden = match self.surroundings(beside, budget)? {
                 Surroundings::Inside => true,
                 Surroundings::Cavity => false,
@@ -102,8 +75,9 @@ impl Solid {
             if !is_hidden {
                 return Ok(false);
             }
+            is_seen = false;
         }
-        Ok(true)
+        Ok(!is_seen)
     }
 
     fn surroundings(&self, place: DVec3, budget: &Budget) -> Result<Surroundings, Stopped> {
@@ -126,38 +100,10 @@ impl Solid {
 
     /// Whether what is opposite is near and something is in the way in all directions.
     fn is_in_gap(&self, place: DVec3, normal: DVec3, budget: &Budget) -> Result<bool, Stopped> {
-        if !self.is_met([place, place + normal * GAP], budget)? {
-            return Ok(false);
-        }
-        let (u, v) = normal.any_orthonormal_pair();
-        for k in 0..DIRECTIONS {
-            // A spiral around the hemisphere, steepest first.
-            let height = 1.0 - (f64::from(k) + 0.5) / f64::from(DIRECTIONS);
-            let (sin, cos) = libm::sincos(f64::from(k) * GOLDEN_ANGLE);
-            let radius = (1.0 - height * height).sqrt();
-            let direction = normal * height + (u * cos + v * sin) * radius;
-            // What is in the way is mostly near.
-            let mut is_met = false;
-            for length in [4.0 * GAP, OUT] {
-                is_met = is_met || self.is_met([place, place + direction * length], budget)?;
-            }
-            if !is_met {
-                return Ok(false);
-            }
-        }
-        Ok(true)
-    }
-
-    /// Whether a segment meets a triangle.
-    fn is_met(&self, [from, to]: [DVec3; 2], budget: &Budget) -> Result<bool, Stopped> {
-        let mut is_met = false;
         // Cones are not there.
-        let is_real = |t: u32| (t as usize) < self.corners.len() - self.cone_count;
-        self.bvh.visit_segment([from, to], budget, |t| {
-            is_met = is_real(t) && meets(from, to, self.corners[t as usize]);
-            !is_met
-        })?;
-        Ok(is_met)
+        let real = &self.corners[..self.corners.len() - self.cone_count];
+        let is_met = |ends| is_met(&self.bvh, real, ends, budget);
+        Ok(is_met([place, place + normal * GAP])? && !has_way_out(place, normal, is_met)?)
     }
 }
 
@@ -168,18 +114,6 @@ enum Surroundings {
     /// Outside, but a closed shell winds around it and another one back.
     Cavity,
     Outside,
-}
-
-/// Whether a segment meets a triangle, rounded.
-fn meets(from: DVec3, to: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
-    let (ab, ac, along) = (b - a, c - a, to - from);
-    let normal = ab.cross(ac);
-    let slope = normal.dot(along);
-    let offset = from - a;
-    let share = -normal.dot(offset) / slope;
-    let turn = along.cross(offset);
-    let (v, w) = (ac.dot(turn) / slope, -ab.dot(turn) / slope);
-    (0.0..=1.0).contains(&share) && v >= 0.0 && w >= 0.0 && v + w <= 1.0
 }
 
 #[cfg(test)]

@@ -4,7 +4,8 @@ use crate::oracle::RawSoup;
 use crate::raw_files::encode;
 use crate::solids::{cube, cuboid};
 use meshmend::budget::Budget;
-use meshmend::formats::{Encoding, Format};
+use meshmend::formats::{self, Encoding, Format, ReadOptions};
+use meshmend::geom::{DVec3, closest_point_on_triangle};
 use meshmend::pipeline::{
     Answer, ChangeKind, Fidelity, Limits, Operation, Options, Outcome, Refusal, Require, SimplifyChoices, run,
 };
@@ -96,4 +97,74 @@ fn what_is_only_looked_at_has_no_word() {
     for operation in [Operation::Analyze, Operation::Plan, Operation::Verify] {
         assert_eq!(answer(operation, &cube(), &Options::default()).report.fidelity, None);
     }
+}
+
+/// A box of 10 each way with `n` by `n` squares on each side, open at the top or not, in which two vertices are one.
+fn folded_box(n: usize, is_open: bool, [kept, gone]: [u32; 2]) -> RawSoup {
+    let mut soup = RawSoup::default();
+    for (axis, side) in (0..3).flat_map(|axis| [(axis, 0), (axis, n)]) {
+        if is_open && (axis, side) == (2, n) {
+            continue;
+        }
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+            let mut corner = |along_u: usize, along_v: usize| {
+                let mut at = [side; 3];
+                (at[u], at[v]) = (i + along_u, j + along_v);
+                let place = at.map(|k| 10.0 * k as f64 / n as f64);
+                soup.positions.iter().position(|&known| known == place).unwrap_or_else(|| {
+                    soup.positions.push(place);
+                    soup.positions.len() - 1
+                }) as u32
+            };
+            let mut square = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
+            if side == 0 {
+                square.reverse();
+            }
+            let [a, b, c, d] = square;
+            soup.triangles.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    for v in soup.triangles.iter_mut().flatten().filter(|v| **v == gone) {
+        *v = kept;
+    }
+    soup.triangles.retain(|[a, b, c]| a != b && b != c && c != a);
+    soup
+}
+
+#[test]
+fn nothing_that_walls_bury_is_farther_than_the_report_says() {
+    let cases = [
+        (2, false, [15, 6]),
+        (2, false, [13, 24]),
+        (2, true, [12, 22]),
+        (3, true, [21, 43]),
+        (3, true, [1, 17]),
+        (3, false, [30, 54]),
+    ];
+    let mut walls = 0;
+    for case @ (n, is_open, merged) in cases {
+        let soup = folded_box(n, is_open, merged);
+        let Answer { report, output, .. } = answer(Operation::Repair, &soup, &Options::default());
+        walls += u32::from(report.actions.iter().any(|action| action.step == "thicken"));
+        let budget = Budget::unlimited();
+        let output = output.unwrap();
+        let bytes = output.bytes.unwrap();
+        let result = formats::read(&bytes, output.encoding, &ReadOptions::default(), &budget).unwrap();
+        let nearest = |place: DVec3| {
+            let to = |t: u32| closest_point_on_triangle(place, result.corners(t)).distance(place);
+            (0..result.triangles.len() as u32).map(to).fold(f64::INFINITY, f64::min)
+        };
+        let mut sampled: f64 = 0.0;
+        for triangle in &soup.triangles {
+            let [a, b, c] = triangle.map(|v| DVec3::from(soup.positions[v as usize]));
+            for (i, j) in (0..=8u8).flat_map(|i| (0..=8 - i).map(move |j| (i, j))) {
+                let [i, j] = [i, j].map(|k| f64::from(k) / 8.0);
+                sampled = sampled.max(nearest(a + (b - a) * i + (c - a) * j));
+            }
+        }
+        let told = report.distance.unwrap().forward.upper;
+        assert!(told >= sampled * (1.0 - 1e-9), "{case:?}: {told} is told, and a place is at {sampled}");
+    }
+    assert!(walls >= 3, "{walls} of the results have walls");
 }

@@ -142,6 +142,7 @@ fn exit_codes_say_what_happened() {
         (2, &["repair", "solid.off", "-o", "absent/out.off"]),
         (2, &["repair", "solid.off", "-o", "."]),
         (2, &["convert", "solid.off", "-o", "out.unknown"]),
+        (2, &["repair", "open.off", "-o", "out.unknown"]),
         (2, &["convert", "solid.off", "-o", "-"]),
         (2, &["convert", "solid.off", "-o", "-", "--output-format", "stl", "--json"]),
         (2, &["verify", "-"]),
@@ -385,6 +386,10 @@ fn the_extension_of_the_output_names_its_format() {
     assert!(desk.read("out.obj").contains("\nf ") || desk.read("out.obj").starts_with("f "));
     assert!(desk.run(&["convert", "solid.off", "-o", "out.obj", "--output-format", "off"]).status.success());
     assert!(desk.read("out.obj").starts_with("OFF"));
+    let unknown = desk.run(&["repair", "open.off", "-o", "out.unknown"]);
+    let complaint = String::from_utf8(unknown.stderr).unwrap();
+    assert!(complaint.contains("no mesh format has the file extension .unknown"), "{complaint}");
+    assert!(!desk.path().join("out.unknown").exists());
 }
 
 #[test]

@@ -332,15 +332,14 @@ impl Certified {
         // Mostly nothing is gone, and what is hidden does not matter.
         let mut fidelity = measure(&Original::new(&input.soup, volume, None))?;
         if !fidelity.passes(&options.limits) {
-            let walled = attempt.before_walls.iter().map(|(positions, triangles)| (positions, triangles));
-            let meshes = [(&draft.positions, &draft.triangles)].into_iter().chain(walled);
-            let solid = |(positions, triangles): (&Vec<_>, &Vec<_>)| {
-                Solid::of(positions, triangles, options.wrap.open_shells, budget)
+            let read = || {
+                let solid = Solid::of(&draft.positions, &draft.triangles, options.wrap.open_shells, budget)?;
+                let original = Original::new(&input.soup, volume, Some(solid));
+                if attempt.hides_more { original.with_outlook(budget) } else { Ok(original) }
             };
-            let read = || budget.stage(Stage::Measure, || meshes.map(solid).collect::<Result<Vec<_>, _>>());
             // Where it is too much work to say what is hidden, everything counts as seen.
-            if let Some(solids) = budget.within_part(HIDDEN_PART, read)? {
-                fidelity = measure(&Original::new(&input.soup, volume, solids))?;
+            if let Some(original) = budget.within_part(HIDDEN_PART, || budget.stage(Stage::Measure, read))? {
+                fidelity = measure(&original)?;
             }
         }
         drop(origins);

@@ -1,0 +1,176 @@
+//! What can be seen from outside, along straight lines.
+
+use crate::budget::{Budget, Stopped};
+use crate::geom::{Aabb, DVec3};
+use crate::spatial::Bvh;
+
+/// Sides of a triangle are looked at this far from it, as a share of the longest side of the box around all.
+pub(super) const BESIDE: f64 = 1e-6;
+
+/// Gaps are narrower than this share of the longest side.
+pub(super) const GAP: f64 = 0.01;
+
+/// Places on a triangle are moved this much of the way to its middle first, so that neighbours do not decide.
+const INWARD: f64 = 1e-3;
+
+/// Directions in which a way out is looked for.
+const DIRECTIONS: u32 = 24;
+
+/// Turn from each direction to the next, which spreads them evenly.
+const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
+
+/// Farther than the diagonal of the box around all, whose longest side is 1.
+const OUT: f64 = 2.0;
+
+/// Coordinates in which the longest side of the box around all is 1.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Unit {
+    center: DVec3,
+    scale: f64,
+}
+
+impl Unit {
+    pub(super) fn around(places: impl Iterator<Item = DVec3>) -> Self {
+        let bounds = Aabb::of(places);
+        let (center, size) = ((bounds.min + bounds.max) / 2.0, (bounds.max - bounds.min).max_element());
+        Self { center, scale: if size > 0.0 && size.is_finite() { 1.0 / size } else { 1.0 } }
+    }
+
+    pub(super) fn of(&self, place: DVec3) -> DVec3 {
+        (place - self.center) * self.scale
+    }
+
+    /// Two places, one on each side of a `place` on a triangle, with the directions to them; none where it has no area.
+    pub(super) fn both_sides(&self, place: DVec3, corners: [DVec3; 3]) -> impl Iterator<Item = [DVec3; 2]> {
+        let [a, b, c] = corners.map(|p| self.of(p));
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let place = self.of(place).lerp((a + b + c) / 3.0, INWARD);
+        let sides = [normal, -normal].into_iter().filter(|&side| side != DVec3::ZERO);
+        sides.map(move |side| [place + side * BESIDE, side])
+    }
+}
+
+/// Triangles that are in the way of a look.
+#[derive(Debug)]
+pub struct Outlook {
+    corners: Vec<[DVec3; 3]>,
+    bvh: Bvh,
+    unit: Unit,
+}
+
+impl Outlook {
+    /// With all of these triangles in the way whose corners are finite.
+    ///
+    /// # Errors
+    /// When the budget stops the run.
+    pub fn past(triangles: impl Iterator<Item = [DVec3; 3]>, budget: &Budget) -> Result<Self, Stopped> {
+        let finite = triangles.filter(|corners| corners.iter().all(|p| p.is_finite()));
+        let mut corners: Vec<[DVec3; 3]> = finite.collect();
+        let unit = Unit::around(corners.as_flattened().iter().copied());
+        corners.as_flattened_mut().iter_mut().for_each(|p| *p = unit.of(*p));
+        let names: Vec<[u32; 3]> = (0..corners.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let bvh = Bvh::build(corners.as_flattened(), &names, None, budget)?;
+        Ok(Self { corners, bvh, unit })
+    }
+
+    /// Whether a `place` on a triangle is seen from outside: a straight way out leads from one of its sides, in one of many
+    /// directions.
+    ///
+    /// # Errors
+    /// When the budget stops the run.
+    pub fn sees(&self, place: DVec3, corners: [DVec3; 3], budget: &Budget) -> Result<bool, Stopped> {
+        for [beside, side] in self.unit.both_sides(place, corners) {
+            if has_way_out(beside, side, |ends| is_met(&self.bvh, &self.corners, ends, budget))? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+}
+
+/// Whether nothing is in the way in one of many directions on the side of a plane that `normal` points to.
+pub(super) fn has_way_out(
+    place: DVec3,
+    normal: DVec3,
+    is_met: impl Fn([DVec3; 2]) -> Result<bool, Stopped>,
+) -> Result<bool, Stopped> {
+    let (u, v) = normal.any_orthonormal_pair();
+    for k in 0..DIRECTIONS {
+        // A spiral around the hemisphere, steepest first.
+        let height = 1.0 - (f64::from(k) + 0.5) / f64::from(DIRECTIONS);
+        let (sin, cos) = libm::sincos(f64::from(k) * GOLDEN_ANGLE);
+        let radius = (1.0 - height * height).sqrt();
+        let direction = normal * height + (u * cos + v * sin) * radius;
+        // What is in the way is mostly near.
+        let mut is_closed = false;
+        for length in [4.0 * GAP, OUT] {
+            is_closed = is_closed || is_met([place, place + direction * length])?;
+        }
+        if !is_closed {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// Whether a segment meets one of the first triangles of a tree, those with `corners`.
+pub(super) fn is_met(
+    bvh: &Bvh,
+    corners: &[[DVec3; 3]],
+    [from, to]: [DVec3; 2],
+    budget: &Budget,
+) -> Result<bool, Stopped> {
+    let mut is_met = false;
+    bvh.visit_segment([from, to], budget, |t| {
+        is_met = corners.get(t as usize).is_some_and(|&corners| meets(from, to, corners));
+        !is_met
+    })?;
+    Ok(is_met)
+}
+
+/// Whether a segment meets a triangle, rounded.
+fn meets(from: DVec3, to: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
+    let (ab, ac, along) = (b - a, c - a, to - from);
+    let normal = ab.cross(ac);
+    let slope = normal.dot(along);
+    let offset = from - a;
+    let share = -normal.dot(offset) / slope;
+    let turn = along.cross(offset);
+    let (v, w) = (ac.dot(turn) / slope, -ab.dot(turn) / slope);
+    (0.0..=1.0).contains(&share) && v >= 0.0 && w >= 0.0 && v + w <= 1.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The squares of a box from 0 to 4 along each axis.
+    const SQUARES: [[[f64; 3]; 4]; 6] = [
+        [[0.0, 0.0, 0.0], [0.0, 4.0, 0.0], [4.0, 4.0, 0.0], [4.0, 0.0, 0.0]],
+        [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [4.0, 0.0, 4.0], [0.0, 0.0, 4.0]],
+        [[0.0, 4.0, 0.0], [0.0, 4.0, 4.0], [4.0, 4.0, 4.0], [4.0, 4.0, 0.0]],
+        [[0.0, 0.0, 0.0], [0.0, 0.0, 4.0], [0.0, 4.0, 4.0], [0.0, 4.0, 0.0]],
+        [[4.0, 0.0, 0.0], [4.0, 4.0, 0.0], [4.0, 4.0, 4.0], [4.0, 0.0, 4.0]],
+        [[0.0, 0.0, 4.0], [4.0, 0.0, 4.0], [4.0, 4.0, 4.0], [0.0, 4.0, 4.0]],
+    ];
+
+    #[test]
+    fn the_inside_of_a_box_is_seen_through_an_opening_only() {
+        let triangles = |squares: usize| {
+            let corners = SQUARES[..squares].iter().map(|square| square.map(DVec3::from));
+            corners.flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect::<Vec<_>>()
+        };
+        // Of a triangle in the middle, and of a side of the box.
+        let middle = [[1.0, 2.0, 1.0], [3.0, 2.0, 1.0], [2.0, 2.0, 3.0]].map(DVec3::from);
+        let of = |corners: [DVec3; 3]| corners.iter().sum::<DVec3>() / 3.0;
+        let budget = Budget::unlimited();
+        for (squares, is_seen) in [(6, false), (5, true)] {
+            let way = triangles(squares).into_iter().chain([middle]);
+            let outlook = Outlook::past(way, &budget).unwrap();
+            assert_eq!(outlook.sees(of(middle), middle, &budget), Ok(is_seen), "{squares}");
+            let side = triangles(1)[0];
+            assert_eq!(outlook.sees(of(side), side, &budget), Ok(true), "{squares}");
+            assert_eq!(outlook.sees(DVec3::ONE, [DVec3::ONE; 3], &budget), Ok(false), "no area");
+        }
+    }
+}
