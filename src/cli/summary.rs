@@ -5,8 +5,8 @@ use super::figures::{counted, figure};
 use super::model;
 use crate::wire::{
     Action, Certificate, Claim, Defect, DefectCode, Deviation, Fidelity, Hole, InputInfo, JoinedEdges, Level,
-    MeshInfo, Operation, Part, PrintingCheck, Proposal, Report, Severity, TargetSpec, ViolationCount,
-    Witness,
+    MeshInfo, Operation, Outcome, Part, PrintingCheck, Proposal, Report, Severity, TargetSpec,
+    ViolationCount, Witness,
 };
 use anstyle::Style;
 use std::fmt::Write as _;
@@ -344,7 +344,12 @@ fn style_of(report: &Report) -> Style {
 fn headline(report: &Report) -> String {
     let verdict = &report.verdict;
     let outcome = verdict.outcome.map_or_else(String::new, |outcome| format!("{outcome}, "));
-    let printable = if verdict.printable { "printable: a valid solid" } else { "not printable" };
+    // Without a result it is said of the input.
+    let printable = match (verdict.printable, verdict.outcome) {
+        (true, Some(Outcome::Refused)) => "the input is a valid solid",
+        (true, _) => "printable: a valid solid",
+        (false, _) => "not printable",
+    };
     let mut text = format!("verdict: {outcome}{printable}");
     if let Some(fidelity) = verdict.fidelity {
         let _ = write!(text, "; {fidelity}");

@@ -143,6 +143,13 @@ impl Variant {
         steps
     }
 
+    /// Of the steps that mend the surface, those up to the joining of rims.
+    pub(super) fn joining(self, choices: &Choices) -> Vec<Step> {
+        let closes =
+            |step: &Step| matches!(step, Step::MendThinFaces(_) | Step::Thicken { .. } | Step::FillHoles(_));
+        self.mending(choices).into_iter().take_while(|step| !closes(step)).collect()
+    }
+
     /// The steps that mend the surface, least invasive first; each finds what those before it leave.
     pub(super) fn mending(self, choices: &Choices) -> Vec<Step> {
         let single = [Step::SplitTVertices, Step::DropDuplicates(self.opposite)];

@@ -176,7 +176,8 @@ pub enum PlanStep {
         #[serde(default)]
         keeps_winding: bool,
         /// Of edges that do not coincide, only those are joined that lie side by side: with ends closer than an eighth of the
-        /// shorter one, and triangles that do not lie back to back.
+        /// shorter one, and triangles that do not lie back to back. Edges are divided first where vertices of another boundary
+        /// lie beside them.
         #[serde(default)]
         by_edge: bool,
     },

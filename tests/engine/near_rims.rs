@@ -8,28 +8,30 @@ type Face = Vec<[f64; 3]>;
 
 /// The squares of a cube of side 10, outward, each of so many by so many.
 fn cube(cells: u32) -> Vec<Face> {
-    let side = 10.0 / f64::from(cells);
-    let mut faces = Vec::new();
-    for axis in 0..3 {
-        for (i, j) in (0..cells).flat_map(|i| (0..cells).map(move |j| (i, j))) {
-            for is_far in [false, true] {
-                let mut face: Face = [(0, 0), (1, 0), (1, 1), (0, 1)]
-                    .map(|(a, b)| {
-                        let mut p = [0.0; 3];
-                        p[axis] = if is_far { 10.0 } else { 0.0 };
-                        p[(axis + 1) % 3] = f64::from(i + a) * side;
-                        p[(axis + 2) % 3] = f64::from(j + b) * side;
-                        p
-                    })
-                    .to_vec();
-                if !is_far {
-                    face.reverse();
-                }
-                faces.push(face);
+    sides([[cells; 2]; 6]).concat()
+}
+
+/// The six sides of a cube of side 10, outward, each of so many by so many rectangles.
+fn sides(cells: [[u32; 2]; 6]) -> Vec<Vec<Face>> {
+    let side = |(number, [n, m]): (usize, [u32; 2])| {
+        let (axis, is_far) = (number / 2, number % 2 == 1);
+        let face = |(i, j): (u32, u32)| {
+            let corner = |(a, b): (u32, u32)| {
+                let mut p = [0.0; 3];
+                p[axis] = if is_far { 10.0 } else { 0.0 };
+                p[(axis + 1) % 3] = f64::from(i + a) * 10.0 / f64::from(n);
+                p[(axis + 2) % 3] = f64::from(j + b) * 10.0 / f64::from(m);
+                p
+            };
+            let mut face: Face = [(0, 0), (1, 0), (1, 1), (0, 1)].map(corner).to_vec();
+            if !is_far {
+                face.reverse();
             }
-        }
-    }
-    faces
+            face
+        };
+        (0..n).flat_map(|i| (0..m).map(move |j| (i, j))).map(face).collect()
+    };
+    cells.into_iter().enumerate().map(side).collect()
 }
 
 /// Each square as two triangles.
@@ -115,6 +117,91 @@ fn a_crack_is_closed_and_not_both_of_its_sides() {
     }
 }
 
+/// Numbers of rectangles of which no side divides its edges as its neighbours do.
+const UNLIKE: [[u32; 2]; 6] = [[2, 3], [5, 4], [7, 6], [1, 8], [3, 5], [4, 7]];
+
+/// Turned about two axes, so that no edge is along an axis and rounding takes vertices off edges, with six digits.
+fn turned(faces: &[Face]) -> Vec<Face> {
+    let turn = |[x, y, z]: [f64; 3]| {
+        let [x, y] = [0.8 * x - 0.6 * y, 0.6 * x + 0.8 * y];
+        [x, 12.0 / 13.0 * y - 5.0 / 13.0 * z, 5.0 / 13.0 * y + 12.0 / 13.0 * z]
+            .map(|c| (c * 1e6).round() / 1e6)
+    };
+    faces.iter().map(|face| face.iter().map(|&p| turn(p)).collect()).collect()
+}
+
+#[test]
+fn sides_that_divide_their_common_edges_differently_are_joined() {
+    let rectangles = turned(&sides(UNLIKE).concat());
+    assert_is_the_cube(&apart(&rectangles, 0.0), &Options::default(), "rectangles");
+    let mut faces = triangles(&rectangles);
+    assert_is_the_cube(&apart(&faces, 0.0), &Options::default(), "triangles");
+    for (share, gap) in gaps() {
+        assert_is_the_cube(&apart(&faces, gap), &Options::default(), &format!("{share:e}"));
+    }
+    faces.iter_mut().for_each(|face| face.reverse());
+    assert_is_the_cube(&apart(&faces, 0.0), &Options::default(), "inside out");
+}
+
+#[test]
+fn sides_that_divide_their_common_edges_differently_are_turned_to_be_joined() {
+    let mut sides = sides(UNLIKE);
+    sides.iter_mut().step_by(2).flatten().for_each(|face| face.reverse());
+    let faces = turned(&triangles(&sides.concat()));
+    assert_is_the_cube(&apart(&faces, 0.0), &Options::default(), "every other side");
+}
+
+/// Two cylinders of radius 5 and height 4 on each other, of so many sides, each with a polygon at one end.
+fn stack(sides: [u32; 2]) -> Vec<Face> {
+    let ring = |sides: u32, z: f64| -> Face {
+        (0..sides)
+            .map(|i| std::f64::consts::TAU * f64::from(i) / f64::from(sides))
+            .map(|angle| [5.0 * angle.cos(), 5.0 * angle.sin(), z])
+            .collect()
+    };
+    let wall = |sides: u32, z: f64| -> Vec<Face> {
+        let (low, high) = (ring(sides, z), ring(sides, z + 4.0));
+        let next = |i: usize| (i + 1) % sides as usize;
+        (0..sides as usize).map(|i| vec![low[i], low[next(i)], high[next(i)], high[i]]).collect()
+    };
+    let floor = ring(sides[0], 0.0).into_iter().rev().collect();
+    [wall(sides[0], 0.0), wall(sides[1], 4.0), vec![floor, ring(sides[1], 8.0)]].concat()
+}
+
+#[test]
+fn round_parts_of_different_numbers_of_sides_are_joined() {
+    for sides in [[48, 36], [36, 48], [50, 64]] {
+        for faces in [stack(sides), triangles_of(&stack(sides))] {
+            let report = answer(apart(&faces, 0.0).as_bytes(), &Options::default()).report;
+            let what = format!("{sides:?}: {:?}", report.tried);
+            assert_eq!(report.fidelity.unwrap().word, Fidelity::Faithful, "{what}");
+            let after = report.after.unwrap();
+            assert_eq!(after.counts.components, 1, "{what}");
+            let area = |n: u32| 12.5 * f64::from(n) * (std::f64::consts::TAU / f64::from(n)).sin();
+            let truth = 4.0 * (area(sides[0]) + area(sides[1]));
+            let volume = after.measures.volume.unwrap();
+            assert!((volume / truth - 1.0).abs() < 0.005, "{what}: {volume} instead of {truth}");
+        }
+    }
+}
+
+/// Each convex polygon as a fan of triangles.
+fn triangles_of(polygons: &[Face]) -> Vec<Face> {
+    let fan = |p: &Face| (2..p.len()).map(|k| vec![p[0], p[k - 1], p[k]]).collect::<Vec<_>>();
+    polygons.iter().flat_map(fan).collect()
+}
+
+#[test]
+fn a_slit_is_closed_between_the_triangles_that_are_there() {
+    // One vertex a little beside the middle of an edge: the slit has a rim of its own.
+    let text = "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nv 4.5 0.0001 -0.0001\n\
+                f 1 5 4\nf 5 2 4\nf 1 3 2\nf 1 4 3\nf 2 3 4\n";
+    let report = answer(text.as_bytes(), &Options::default()).report;
+    assert_eq!(report.outcome, Some(Outcome::Repaired), "{:?}", report.refusal);
+    assert!(report.actions.iter().flat_map(|a| &a.changes).all(|c| c.0 != "edges_divided" || c.1 == 0));
+    assert_eq!(report.after.unwrap().counts.triangles, 6, "those of the file and one in the slit");
+}
+
 #[test]
 fn the_caller_says_how_far_or_that_nothing_is_to_be_joined() {
     let (_, gap) = gaps().nth(2).unwrap();
@@ -130,31 +217,31 @@ fn the_caller_says_how_far_or_that_nothing_is_to_be_joined() {
     }
 }
 
-/// A cup of `sides` sides without a lip: the outside of radius 10, and the inside so much narrower and higher.
-fn cup(sides: u32, wall: f64) -> Vec<Face> {
-    let ring = |radius: f64, z: f64| -> Face {
+/// A cup of so many sides outside and inside without a lip: the outside of radius 10, and the inside so much narrower and higher.
+fn cup(sides: [u32; 2], wall: f64) -> Vec<Face> {
+    let ring = |sides: u32, radius: f64, z: f64| -> Face {
         (0..sides)
             .map(|i| std::f64::consts::TAU * f64::from(i) / f64::from(sides))
             .map(|angle| [radius * angle.cos(), radius * angle.sin(), z])
             .collect()
     };
-    let shell = |radius: f64, floor: f64| -> Vec<Face> {
-        let (low, high) = (ring(radius, floor), ring(radius, 20.0));
+    let shell = |sides: u32, radius: f64, floor: f64| -> Vec<Face> {
+        let (low, high) = (ring(sides, radius, floor), ring(sides, radius, 20.0));
         let next = |i: usize| (i + 1) % sides as usize;
         let mut faces: Vec<Face> =
             (0..sides as usize).map(|i| vec![low[i], low[next(i)], high[next(i)], high[i]]).collect();
         faces.push(low.into_iter().rev().collect());
         faces
     };
-    let mut inside = shell(10.0 - wall, wall);
+    let mut inside = shell(sides[1], 10.0 - wall, wall);
     inside.iter_mut().for_each(|face| face.reverse());
-    [shell(10.0, 0.0), inside].concat()
+    [shell(sides[0], 10.0, 0.0), inside].concat()
 }
 
 #[test]
 fn the_inside_and_the_outside_of_a_cup_are_not_pulled_together_at_the_lip() {
     for wall in [0.003, 0.03, 0.3] {
-        let report = answer(apart(&cup(16, wall), 0.0).as_bytes(), &Options::default()).report;
+        let report = answer(apart(&cup([16; 2], wall), 0.0).as_bytes(), &Options::default()).report;
         assert_eq!(report.outcome, Some(Outcome::Repaired), "{wall}: {:?}", report.refusal);
         assert!(report.actions.iter().all(|action| action.move_max == 0.0), "{wall}");
         let after = report.after.unwrap();
@@ -164,6 +251,22 @@ fn the_inside_and_the_outside_of_a_cup_are_not_pulled_together_at_the_lip() {
         let inside = 10.0 - wall;
         let truth = area * (100.0 * 20.0 - inside * inside * (20.0 - wall));
         let volume = after.measures.volume.unwrap();
+        assert!((volume / truth - 1.0).abs() < 0.01, "{wall}: {volume} instead of {truth}");
+    }
+}
+
+#[test]
+fn nor_where_the_inside_has_other_vertices_than_the_outside() {
+    // The inside stays within the outside, whose sides are 0.003 nearer to the middle than its corners.
+    for wall in [0.01, 0.03] {
+        let report = answer(apart(&cup([128, 64], wall), 0.0).as_bytes(), &Options::default()).report;
+        assert_eq!(report.outcome, Some(Outcome::Repaired), "{wall}: {:?}", report.refusal);
+        let divided = report.actions.iter().flat_map(|a| &a.changes).filter(|c| c.0 == "edges_divided");
+        assert_eq!(divided.map(|c| c.1).sum::<u64>(), 0, "{wall}");
+        let volume = report.after.unwrap().measures.volume.unwrap();
+        let area = |n: f64| n / 2.0 * (std::f64::consts::TAU / n).sin();
+        let inside = 10.0 - wall;
+        let truth = area(128.0) * 2000.0 - area(64.0) * inside * inside * (20.0 - wall);
         assert!((volume / truth - 1.0).abs() < 0.01, "{wall}: {volume} instead of {truth}");
     }
 }

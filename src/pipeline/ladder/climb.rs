@@ -5,6 +5,7 @@ use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::Depth;
 use crate::formats::Encoding;
+use crate::geom::print_pitch;
 use crate::pipeline::fidelity::{Fidelity, LOST_BEYOND, Original, defined_volume};
 use crate::pipeline::input::Input;
 use crate::pipeline::output::Candidate;
@@ -18,12 +19,16 @@ use crate::repair::noise::Noise;
 use crate::repair::snap::gap_between_rims;
 use crate::repair::{Draft, noise};
 use crate::winding::{OpenShells, Solid};
+use std::cell::OnceCell;
 
 /// A plan may take one of so many parts of the work that is left.
 const ATTEMPT_PART: u64 = 4;
 
 /// What is hidden, the same.
 const HIDDEN_PART: u64 = 4;
+
+/// Steps of the print lattice by which rounding may take rims apart.
+const ROUNDING_STEPS: f64 = 4.0;
 
 /// What stays the same on all rungs.
 pub(in crate::pipeline) struct Climb<'a> {
@@ -71,6 +76,17 @@ pub(super) struct Situation {
     rebuilt: Option<Box<Rebuilt>>,
     /// Why no surface was rebuilt, and what was done before that was known.
     pub(super) not_rebuilt: Option<(Refusal, Vec<Action>)>,
+    /// How open the surface is with rims joined; asked once.
+    openness: OnceCell<Openness>,
+}
+
+/// How open a surface is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Openness {
+    pub(super) boundary_edges: u64,
+    pub(super) triangles: u64,
+    /// The open parts are mostly sheets that may become walls.
+    pub(super) is_sheets: bool,
 }
 
 /// An attempt that is no valid solid.
@@ -110,6 +126,7 @@ impl Situation {
             certified: None,
             rebuilt: None,
             not_rebuilt: None,
+            openness: OnceCell::new(),
         })
     }
 
@@ -221,7 +238,10 @@ impl Climb<'_> {
         }
         let most = LOST_BEYOND * diagonal(&self.input.soup);
         let gap = || gap_between_rims(draft, most, self.budget);
-        Ok(self.budget.within_part(ATTEMPT_PART, gap)?.unwrap_or(0.0))
+        let gap = self.budget.within_part(ATTEMPT_PART, gap)?.flatten();
+        // Coordinates that become float32 may come farther apart.
+        let rounding = ROUNDING_STEPS * print_pitch(self.reach()).unwrap_or(0.0);
+        Ok(gap.map_or(0.0, |gap| (gap + rounding).min(most)))
     }
 
     /// Runs a plan: the mended mesh if the best effort may be asked for it, and the one that may be a solid.
@@ -283,17 +303,49 @@ impl Climb<'_> {
         findings.iter().any(|finding| finding.code == code && finding.count > 0)
     }
 
-    /// Whether the open parts are mostly sheets that may become walls. A surface with few boundary edges for its triangles
-    /// is none: a square of them has three for the root of their number.
-    pub(super) fn reads_as_sheets(&self) -> Result<bool, Stopped> {
-        let counts = self.before.map(|analysis| analysis.counts).unwrap_or_default();
-        let [rim, triangles] = [counts.boundary_edges, counts.triangles].map(|count| count as f64);
-        let may_be = rim > 0.0 && rim >= triangles.sqrt() && self.choices.walls == Walls::ForSheets;
-        if !may_be || self.options.wrap.open_shells == OpenShells::Close {
-            return Ok(false);
+    /// The largest coordinate.
+    pub(super) fn reach(&self) -> f64 {
+        let finite = self.input.soup.positions.iter().filter(|p| p.is_finite());
+        finite.fold(0.0f64, |reach, p| reach.max(p.abs().max_element()))
+    }
+
+    /// How open the surface is: once rims are joined that lie beside each other, if that does not take too much work.
+    pub(super) fn openness(&self, situation: &Situation) -> Result<Openness, Stopped> {
+        let variant = situation.variant;
+        if variant.snap_epsilon > 0.0 {
+            if let Some(&known) = situation.openness.get() {
+                return Ok(known);
+            }
+            if let Some(found) = self.budget.within_part(ATTEMPT_PART, || self.openness_joined(variant))? {
+                return Ok(*situation.openness.get_or_init(|| found));
+            }
         }
-        let (draft, _) = Draft::from_soup(&self.input.soup);
-        self.budget.stage(Stage::Measure, || rebuild::is_mostly_sheets(&draft, self.options, self.budget))
+        let counts = self.before.map(|analysis| analysis.counts).unwrap_or_default();
+        self.openness_of([counts.boundary_edges, counts.triangles], || Draft::from_soup(&self.input.soup).0)
+    }
+
+    fn openness_joined(&self, variant: Variant) -> Result<Openness, Stopped> {
+        let mut attempt = Attempt::start(&self.input.soup, self.before);
+        let _charge = self.budget.charge(attempt.draft.bytes())?;
+        self.go_on(&mut attempt, &variant.joining(self.choices))?;
+        let rim = attempt.draft.edge_groups(self.budget)?.iter().filter(|group| group.len() == 1).count();
+        let counts = [rim as u64, attempt.draft.triangles.len() as u64];
+        self.openness_of(counts, || attempt.draft)
+    }
+
+    /// A surface with few boundary edges for its triangles is no sheet: a square of them has three for the root of their number.
+    fn openness_of(
+        &self,
+        [boundary_edges, triangles]: [u64; 2],
+        draft: impl FnOnce() -> Draft,
+    ) -> Result<Openness, Stopped> {
+        let may_be_sheets = boundary_edges > 0
+            && boundary_edges as f64 >= (triangles as f64).sqrt()
+            && self.choices.walls == Walls::ForSheets
+            && self.options.wrap.open_shells != OpenShells::Close;
+        let is_sheets = || rebuild::is_mostly_sheets(&draft(), self.options, self.budget);
+        let is_sheets = may_be_sheets && self.budget.stage(Stage::Measure, is_sheets)?;
+        Ok(Openness { boundary_edges, triangles, is_sheets })
     }
 }
 

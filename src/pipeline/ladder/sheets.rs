@@ -8,7 +8,7 @@ pub(super) const RUNG: Rung = Rung {
     kind: Kind::Plan,
     applies: |climb, situation| {
         let Variant { thickens, contact, .. } = situation.variant;
-        Ok(!thickens && contact.is_none() && climb.reads_as_sheets()?)
+        Ok(!thickens && contact.is_none() && climb.openness(situation)?.is_sheets)
     },
     tries: |climb, situation| {
         let variant = Variant {

@@ -1,6 +1,6 @@
 //! Bodies that pass through each other, as one: the exact arrangement.
 
-use super::climb::{Certified, Climb, Found, Judged, Situation};
+use super::climb::{Certified, Climb, Found, Judged, Openness, Situation};
 use super::{Kind, Rung};
 use crate::analysis::DefectCode;
 use crate::budget::Stopped;
@@ -68,12 +68,12 @@ fn may_unite(climb: &Climb<'_>, situation: &Situation) -> bool {
 fn unite(climb: &Climb<'_>, situation: &mut Situation) -> Result<Option<Found>, Failure> {
     situation.has_tried_uniting = true;
     // A wall behind a sheet without two sides changes sides somewhere; the lattice gives it both.
-    if climb.has_found(DefectCode::NonOrientable) && climb.reads_as_sheets()? {
+    if climb.has_found(DefectCode::NonOrientable) && climb.openness(situation)?.is_sheets {
         return Ok(None);
     }
     let limits = &climb.options.limits;
     let mut best: Option<Certified> = None;
-    for uniting in climb.kinds()? {
+    for uniting in climb.kinds(situation)? {
         // What takes too much work is left to the next kind.
         let tried =
             climb.budget.within_part(KIND_PART, || climb.united_from(uniting, situation.variant))?.flatten();
@@ -93,13 +93,14 @@ fn unite(climb: &Climb<'_>, situation: &mut Situation) -> Result<Option<Found>, 
 
 impl Climb<'_> {
     /// The kinds of bodies to try, in their order. Where no solid is required, nothing is invented to make one.
-    fn kinds(&self) -> Result<Vec<Uniting>, Stopped> {
+    fn kinds(&self, situation: &Situation) -> Result<Vec<Uniting>, Stopped> {
         let mut kinds = vec![Uniting::AsDrawn];
         if self.options.require == Some(Require::None) {
             return Ok(kinds);
         }
         let walls = self.choices.walls;
-        let is_sheets = walls == Walls::First || self.reads_as_sheets()?;
+        let Openness { boundary_edges, triangles, is_sheets } = self.openness(situation)?;
+        let is_sheets = walls == Walls::First || is_sheets;
         let may_wall = walls != Walls::Never && self.options.wrap.open_shells != OpenShells::Close;
         let mut walled = Vec::new();
         walled.extend(is_sheets.then_some(Uniting::Thickened));
@@ -110,8 +111,7 @@ impl Climb<'_> {
             filled.extend(self.choices.fills_all_holes().then_some(Uniting::Spanned));
         }
         // Whichever way triangles turn: after all that goes by their directions, except that walls come last for what is no sheet.
-        let counts = self.before.map(|analysis| analysis.counts).unwrap_or_default();
-        let is_open = counts.boundary_edges > counts.triangles / TRIANGLES_PER_OPEN_EDGE;
+        let is_open = boundary_edges > triangles / TRIANGLES_PER_OPEN_EDGE;
         let encloses = walls != Walls::First && self.choices.fills_all_holes() && !is_open;
         let enclosed = |kind| encloses.then_some(kind);
         let by_direction = if is_sheets { [walled, filled].concat() } else { filled };
@@ -180,9 +180,9 @@ impl Climb<'_> {
 
     /// The steps of lattices to which what all but meets may go, in steps of the print lattice.
     fn coarser_lattices(&self) -> Vec<u32> {
-        let finite = self.input.soup.positions.iter().filter(|p| p.is_finite());
-        let reach = finite.fold(0.0f64, |reach, p| reach.max(p.abs().max_element()));
-        let Some(pitch) = print_pitch(reach).filter(|_| self.choices.rounds) else { return Vec::new() };
+        let Some(pitch) = print_pitch(self.reach()).filter(|_| self.choices.rounds) else {
+            return Vec::new();
+        };
         let size = diagonal(&self.input.soup);
         let steps = |share: f64| (size * share / pitch).log2().floor().exp2();
         COARSER

@@ -1,6 +1,7 @@
 //! Which edges lie side by side, so that they may be one.
 
 use crate::geom::DVec3;
+use crate::mesh::triangle_of;
 
 /// Two edges lie side by side only where their ends are closer than this share of both their lengths.
 const SHARE_OF_EDGE: f64 = 0.125;
@@ -8,6 +9,15 @@ const SHARE_OF_EDGE: f64 = 0.125;
 /// Cosine of the angle between two triangles below which they lie back to back, as the inside and the outside of a cup at its lip:
 /// 20 degrees.
 const BACK_TO_BACK: f64 = 0.94;
+
+/// A vertex lies beside an edge only where its distance is at most this share of the heights of the triangles there.
+const SHARE_OF_HEIGHT: f64 = 0.25;
+
+/// Cosine of the angle between two edges up to which they go along each other: 30 degrees.
+const ALONG: f64 = 0.866;
+
+/// Edges that one, or a vertex, is compared with at most. Where more are as close, they do not say which belong together.
+pub(super) const NEAR_MAX: usize = 256;
 
 /// Which boundary edges may be joined.
 #[derive(Debug, Clone, Copy)]
@@ -38,6 +48,51 @@ pub(super) fn lie_side_by_side(a: Flank, b: Flank) -> bool {
     let apart = a[0].distance(b[0]).max(a[1].distance(b[1]));
     let least = a[0].distance(a[1]).min(b[0].distance(b[1]));
     apart <= SHARE_OF_EDGE * least && inward(a).dot(inward(b)) < BACK_TO_BACK
+}
+
+/// The ends of a half-edge and the third corner of its triangle.
+pub(super) fn flank_of(triangles: &[[u32; 3]], h: u32) -> [u32; 3] {
+    let corners = triangles[triangle_of(h) as usize];
+    [0, 1, 2].map(|k| corners[(h as usize + k) % 3])
+}
+
+/// How far from the inside of an edge a vertex is, where it lies beside it: at most `most` and little for the lengths and the
+/// heights of the triangles, farther than `off_ends` from the ends, and with an edge of its own that goes along and whose triangle
+/// does not lie back to back. `own`: the boundary edges at the vertex.
+pub(super) fn vertex_beside(
+    place: DVec3,
+    own: &[Flank],
+    edge: Flank,
+    most: f64,
+    off_ends: f64,
+) -> Option<f64> {
+    let [from, to, _] = edge;
+    let along = (to - from).normalize_or_zero();
+    let length = from.distance(to);
+    let share = (place - from).dot(along);
+    let apart = place.distance(from + along * share);
+    let is_little = |of: Flank| SHARE_OF_HEIGHT * height(of) >= apart;
+    let goes_along = |own: &Flank| {
+        let direction = (own[1] - own[0]).normalize_or_zero();
+        direction.dot(along).abs() >= ALONG
+            && is_little(*own)
+            && inward(*own).dot(inward(edge)) < BACK_TO_BACK
+    };
+    let is_inside = share > 0.0 && share < length;
+    let is_off_the_ends = place.distance(from).min(place.distance(to)) > off_ends.max(2.0 * apart);
+    let is_beside = is_inside
+        && is_off_the_ends
+        && apart <= most.min(SHARE_OF_EDGE * length)
+        && is_little(edge)
+        && own.iter().any(goes_along);
+    is_beside.then_some(apart)
+}
+
+/// The distance of the third corner of a triangle from the line of the edge.
+fn height([from, to, third]: Flank) -> f64 {
+    let along = (to - from).normalize_or_zero();
+    let side = third - from;
+    (side - along * side.dot(along)).length()
 }
 
 /// The direction from an edge into its triangle.

@@ -3,18 +3,21 @@
 //! The snapping of Guéziec, Taubin, Lazarus and Horn, "Cutting and stitching" (2001): first edges of different
 //! boundaries, then the rest; in each pass those that coincide, then by the distance of their ends. Every join is tested
 //! when its turn comes, and what was refused is tried again after others. Of two joined vertices the one with the
-//! smaller id keeps its place, so no new coordinates arise.
+//! smaller id keeps its place, so no new coordinates arise. Where the two sides of a crack have different vertices, edges are
+//! divided first.
 
 mod beside;
+mod divide;
 mod facing;
 mod gap;
 
-use self::beside::{Flank, Reach};
+use self::beside::{Flank, Reach, flank_of};
+use self::divide::{Divided, divide_beside, slits};
 pub use self::gap::gap_between_rims;
 use super::{Changes, Draft, Effects, Stitches};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3, are_collinear};
-use crate::mesh::{self, Boundary, ChosenEdges, JoinRule, Stitched, Validity, edge_of, triangle_of};
+use crate::mesh::{self, Boundary, ChosenEdges, JoinRule, Stitched, Validity, edge_of};
 use crate::spatial::{Octree, is_within};
 use rustc_hash::FxHashMap;
 
@@ -31,7 +34,8 @@ pub struct SnapOptions {
     /// No part is turned to be joined.
     pub keeps_winding: bool,
     /// Of edges that do not coincide, only those are joined that lie side by side: with ends closer than an eighth of the
-    /// shorter one, and triangles that do not lie back to back. Half the shortest boundary edge is no limit then.
+    /// shorter one, and triangles that do not lie back to back. Half the shortest boundary edge is no limit then. Edges are
+    /// divided first where vertices of another boundary lie beside them.
     pub by_edge: bool,
 }
 
@@ -55,6 +59,13 @@ pub fn snap(draft: &mut Draft, options: &SnapOptions, budget: &Budget) -> Result
         asked => epsilon(draft, &rim, asked),
     };
     let reach = Reach { epsilon, by_edge: options.by_edge };
+    let mut divided = Divided::default();
+    if options.by_edge && epsilon > 0.0 {
+        divided = divide_beside(draft, &rim, epsilon, &options.chosen, budget)?;
+        if divided.edges > 0 {
+            rim = Rim::of(draft, budget)?;
+        }
+    }
     let flipped = match options.keeps_winding {
         true => 0,
         false => facing::turn_to_face(draft, &rim, reach, &options.chosen, budget)?,
@@ -76,11 +87,15 @@ pub fn snap(draft: &mut Draft, options: &SnapOptions, budget: &Budget) -> Result
         done.explicit.extend(stitched.explicit);
         done.implicit.extend(stitched.implicit);
     }
-    let (moved, move_max) = rule.moves();
+    let (moved, moved_by) = rule.moves();
     let stitches = Stitches::of(draft, &before, &done);
     draft.drop_unused_vertices();
     let others = [("vertices_moved", moved), ("triangles_flipped", flipped)];
-    let counts = [stitches.counts(), others].concat();
+    let edges_divided = (divided.edges > 0).then_some(("edges_divided", divided.edges));
+    let triangles_split = (divided.edges > 0).then_some(("triangles_split", divided.triangles));
+    let mut counts = [stitches.counts(), others].concat();
+    counts.extend(edges_divided.into_iter().chain(triangles_split));
+    let move_max = moved_by.max(divided.move_max);
     let reason = if moved > 0 { format!("vertices up to {epsilon:e} apart are one") } else { String::new() };
     let effects = Effects { turned_triangles: flipped, ..Effects::default() };
     Ok(Changes { counts, move_max, reason, stitches, effects, ..Changes::default() })
@@ -88,9 +103,7 @@ pub fn snap(draft: &mut Draft, options: &SnapOptions, budget: &Budget) -> Result
 
 /// A half-edge and the third corner of its triangle.
 fn flank(draft: &Draft, h: u32) -> Flank {
-    let [from, to] = edge_of(&draft.triangles, h);
-    let third = draft.triangles[triangle_of(h) as usize][(h as usize % 3 + 2) % 3];
-    [from, to, third].map(|v| draft.positions[v as usize])
+    flank_of(&draft.triangles, h).map(|v| draft.positions[v as usize])
 }
 
 fn epsilon(draft: &Draft, rim: &Rim, asked: Option<f64>) -> f64 {
@@ -131,6 +144,15 @@ impl Rim {
         into.sort_unstable();
         let (half_edges, loop_of) = edges.into_iter().unzip();
         Ok(Self { half_edges, loop_of, into })
+    }
+
+    /// For each loop, whether it is all but without area for its length and `width`.
+    fn slits(&self, draft: &Draft, width: f64) -> Vec<bool> {
+        let mut by_loop: Vec<(u32, u32)> =
+            self.loop_of.iter().copied().zip(self.half_edges.iter().copied()).collect();
+        by_loop.sort_unstable();
+        let loops = by_loop.chunk_by(|a, b| a.0 == b.0).map(|own| own.iter().map(|&(_, h)| h));
+        slits(&draft.positions, &draft.triangles, loops, width)
     }
 
     fn into(&self, v: u32) -> Option<u32> {

@@ -120,6 +120,11 @@ fn named(what: &str, faces: &[FaceId]) -> String {
     format!("{what}{} {}", if numbers.len() == 1 { "" } else { "s" }, numbers.join(", "))
 }
 
+/// The twelve digits of a calculated length that its rounding leaves.
+fn without_rounding(value: f64) -> f64 {
+    format!("{value:.11e}").parse().unwrap_or(value)
+}
+
 fn because(
     refusal: &Refusal,
     limits: &[(u32, f64)],
@@ -131,7 +136,9 @@ fn because(
         Refusal::Limit { .. } => {
             let limits: Vec<String> = limits
                 .iter()
-                .map(|(f, distance)| format!("face {f} by less than {} mm", distance * millimetres))
+                .map(|(f, distance)| {
+                    format!("face {f} by less than {} mm", without_rounding(distance * millimetres))
+                })
                 .collect();
             let meeting = blocking.first().map(|b| format!("; there {}", Blocker::from(b).sentence()));
             format!("an event is in the way: move {}{}", limits.join(", "), meeting.unwrap_or_default())
