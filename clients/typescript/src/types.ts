@@ -2448,7 +2448,8 @@ export interface components {
             keeps_winding?: boolean;
             /**
              * @description Of edges that do not coincide, only those are joined that lie side by side: with ends closer than an eighth of the
-             *     shorter one, and triangles that do not lie back to back.
+             *     shorter one, and triangles that do not lie back to back. Edges are divided first where vertices of another boundary
+             *     lie beside them.
              */
             by_edge?: boolean;
             /** @enum {string} */

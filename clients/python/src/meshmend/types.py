@@ -1630,7 +1630,8 @@ class PlanStep18(TypedDict):
     by_edge: NotRequired[bool]
     """
     Of edges that do not coincide, only those are joined that lie side by side: with ends closer than an eighth of the
-    shorter one, and triangles that do not lie back to back.
+    shorter one, and triangles that do not lie back to back. Edges are divided first where vertices of another boundary
+    lie beside them.
     """
     step: Literal["snap"]
 
