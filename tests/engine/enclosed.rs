@@ -154,19 +154,6 @@ fn assert_whole(answer: &Answer, body: f64, which: &str) {
 }
 
 #[test]
-fn cells_that_are_open_are_not_closed_by_what_they_would_enclose() {
-    for n in [2, 3] {
-        let mut open = walls(n);
-        let top = SIDE * n as f64;
-        let positions = &open.positions;
-        open.faces.retain(|face| face.iter().any(|&v| positions[v as usize][2] < top));
-        let report = repaired(&open.split().turned_by_chance(1, top).soup()).report;
-        let steps: Vec<_> = report.actions.iter().map(|action| action.step).collect();
-        assert!(!steps.iter().any(|step| step.starts_with("enclose")), "{n}: {steps:?}");
-    }
-}
-
-#[test]
 fn a_cone_turned_by_chance_and_a_body_through_it_are_faithful() {
     let mut cone = Faces { positions: vec![[0.0, 0.0, 10.0], [0.0; 3]], ..Faces::default() };
     let n = 60;
