@@ -344,9 +344,10 @@ fn style_of(report: &Report) -> Style {
 fn headline(report: &Report) -> String {
     let verdict = &report.verdict;
     let outcome = verdict.outcome.map_or_else(String::new, |outcome| format!("{outcome}, "));
-    // Without a result it is said of the input.
+    // Without a result it is said of the input, of several of the first.
     let printable = match (verdict.printable, verdict.outcome) {
-        (true, Some(Outcome::Refused)) => "the input is a valid solid",
+        (true, Some(Outcome::Refused)) if report.further_inputs.is_empty() => "the input is a valid solid",
+        (true, Some(Outcome::Refused)) => "the first input is a valid solid",
         (true, _) => "printable: a valid solid",
         (false, _) => "not printable",
     };

@@ -65,7 +65,8 @@ impl Solid {
         if self.corners.is_empty() {
             return Ok(false);
         }
-        let mut is_seen = true;
+        // A triangle without area has no sides, and is not hidden.
+        let mut has_sides = false;
         for [beside, side] in self.unit.both_sides(place, corners) {
             let is_hidden = match self.surroundings(beside, budget)? {
                 Surroundings::Inside => true,
@@ -75,9 +76,9 @@ impl Solid {
             if !is_hidden {
                 return Ok(false);
             }
-            is_seen = false;
+            has_sides = true;
         }
-        Ok(!is_seen)
+        Ok(has_sides)
     }
 
     fn surroundings(&self, place: DVec3, budget: &Budget) -> Result<Surroundings, Stopped> {

@@ -34,9 +34,10 @@ fn sides(cells: [[u32; 2]; 6]) -> Vec<Vec<Face>> {
     cells.into_iter().enumerate().map(side).collect()
 }
 
-/// Each square as two triangles.
-fn triangles(squares: &[Face]) -> Vec<Face> {
-    squares.iter().flat_map(|q| [vec![q[0], q[1], q[2]], vec![q[0], q[2], q[3]]]).collect()
+/// Each convex polygon as a fan of triangles.
+fn triangles(polygons: &[Face]) -> Vec<Face> {
+    let fan = |p: &Face| (2..p.len()).map(|k| vec![p[0], p[k - 1], p[k]]).collect::<Vec<_>>();
+    polygons.iter().flat_map(fan).collect()
 }
 
 /// An OBJ of faces without common vertices, every corner up to `gap` / 2 from its place along each axis.
@@ -151,27 +152,31 @@ fn sides_that_divide_their_common_edges_differently_are_turned_to_be_joined() {
     assert_is_the_cube(&apart(&faces, 0.0), &Options::default(), "every other side");
 }
 
+/// The corners of a regular polygon around the z axis.
+fn ring(sides: u32, radius: f64, z: f64) -> Face {
+    (0..sides)
+        .map(|i| std::f64::consts::TAU * f64::from(i) / f64::from(sides))
+        .map(|angle| [radius * angle.cos(), radius * angle.sin(), z])
+        .collect()
+}
+
+/// The rectangles between two such polygons of as many sides, outward.
+fn band(low: &Face, high: &Face) -> Vec<Face> {
+    let next = |i: usize| (i + 1) % low.len();
+    (0..low.len()).map(|i| vec![low[i], low[next(i)], high[next(i)], high[i]]).collect()
+}
+
 /// Two cylinders of radius 5 and height 4 on each other, of so many sides, each with a polygon at one end.
 fn stack(sides: [u32; 2]) -> Vec<Face> {
-    let ring = |sides: u32, z: f64| -> Face {
-        (0..sides)
-            .map(|i| std::f64::consts::TAU * f64::from(i) / f64::from(sides))
-            .map(|angle| [5.0 * angle.cos(), 5.0 * angle.sin(), z])
-            .collect()
-    };
-    let wall = |sides: u32, z: f64| -> Vec<Face> {
-        let (low, high) = (ring(sides, z), ring(sides, z + 4.0));
-        let next = |i: usize| (i + 1) % sides as usize;
-        (0..sides as usize).map(|i| vec![low[i], low[next(i)], high[next(i)], high[i]]).collect()
-    };
-    let floor = ring(sides[0], 0.0).into_iter().rev().collect();
-    [wall(sides[0], 0.0), wall(sides[1], 4.0), vec![floor, ring(sides[1], 8.0)]].concat()
+    let wall = |sides: u32, z: f64| band(&ring(sides, 5.0, z), &ring(sides, 5.0, z + 4.0));
+    let floor = ring(sides[0], 5.0, 0.0).into_iter().rev().collect();
+    [wall(sides[0], 0.0), wall(sides[1], 4.0), vec![floor, ring(sides[1], 5.0, 8.0)]].concat()
 }
 
 #[test]
 fn round_parts_of_different_numbers_of_sides_are_joined() {
     for sides in [[48, 36], [36, 48], [50, 64]] {
-        for faces in [stack(sides), triangles_of(&stack(sides))] {
+        for faces in [stack(sides), triangles(&stack(sides))] {
             let report = answer(apart(&faces, 0.0).as_bytes(), &Options::default()).report;
             let what = format!("{sides:?}: {:?}", report.tried);
             assert_eq!(report.fidelity.unwrap().word, Fidelity::Faithful, "{what}");
@@ -183,12 +188,6 @@ fn round_parts_of_different_numbers_of_sides_are_joined() {
             assert!((volume / truth - 1.0).abs() < 0.005, "{what}: {volume} instead of {truth}");
         }
     }
-}
-
-/// Each convex polygon as a fan of triangles.
-fn triangles_of(polygons: &[Face]) -> Vec<Face> {
-    let fan = |p: &Face| (2..p.len()).map(|k| vec![p[0], p[k - 1], p[k]]).collect::<Vec<_>>();
-    polygons.iter().flat_map(fan).collect()
 }
 
 #[test]
@@ -219,17 +218,9 @@ fn the_caller_says_how_far_or_that_nothing_is_to_be_joined() {
 
 /// A cup of so many sides outside and inside without a lip: the outside of radius 10, and the inside so much narrower and higher.
 fn cup(sides: [u32; 2], wall: f64) -> Vec<Face> {
-    let ring = |sides: u32, radius: f64, z: f64| -> Face {
-        (0..sides)
-            .map(|i| std::f64::consts::TAU * f64::from(i) / f64::from(sides))
-            .map(|angle| [radius * angle.cos(), radius * angle.sin(), z])
-            .collect()
-    };
     let shell = |sides: u32, radius: f64, floor: f64| -> Vec<Face> {
-        let (low, high) = (ring(sides, radius, floor), ring(sides, radius, 20.0));
-        let next = |i: usize| (i + 1) % sides as usize;
-        let mut faces: Vec<Face> =
-            (0..sides as usize).map(|i| vec![low[i], low[next(i)], high[next(i)], high[i]]).collect();
+        let low = ring(sides, radius, floor);
+        let mut faces = band(&low, &ring(sides, radius, 20.0));
         faces.push(low.into_iter().rev().collect());
         faces
     };

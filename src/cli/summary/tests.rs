@@ -35,6 +35,14 @@ written: out.stl
 }
 
 #[test]
+fn the_headline_of_a_refusal_calls_no_result_printable() {
+    let mut answer = sample::repaired();
+    answer.report.outcome = Some(crate::pipeline::Outcome::Refused);
+    let text = of(&answer, None);
+    assert!(text.starts_with("verdict: refused, the input is a valid solid"), "{text}");
+}
+
+#[test]
 fn an_analysis_lists_holes_by_the_numbers_under_which_they_can_be_chosen() {
     let mut answer = sample::repaired();
     assert!(!of(&answer, None).contains("holes\n"));

@@ -303,7 +303,7 @@ impl Climb<'_> {
         findings.iter().any(|finding| finding.code == code && finding.count > 0)
     }
 
-    /// The largest coordinate.
+    /// The largest coordinate by its amount, in the unit of the file.
     pub(super) fn reach(&self) -> f64 {
         let finite = self.input.soup.positions.iter().filter(|p| p.is_finite());
         finite.fold(0.0f64, |reach, p| reach.max(p.abs().max_element()))
@@ -312,14 +312,18 @@ impl Climb<'_> {
     /// How open the surface is: once rims are joined that lie beside each other, if that does not take too much work.
     pub(super) fn openness(&self, situation: &Situation) -> Result<Openness, Stopped> {
         let variant = situation.variant;
-        if variant.snap_epsilon > 0.0 {
-            if let Some(&known) = situation.openness.get() {
-                return Ok(known);
-            }
-            if let Some(found) = self.budget.within_part(ATTEMPT_PART, || self.openness_joined(variant))? {
-                return Ok(*situation.openness.get_or_init(|| found));
-            }
+        if variant.snap_epsilon == 0.0 {
+            return self.openness_as_read();
         }
+        if let Some(&known) = situation.openness.get() {
+            return Ok(known);
+        }
+        let joined = self.budget.within_part(ATTEMPT_PART, || self.openness_joined(variant))?;
+        let found = joined.map_or_else(|| self.openness_as_read(), Ok)?;
+        Ok(*situation.openness.get_or_init(|| found))
+    }
+
+    fn openness_as_read(&self) -> Result<Openness, Stopped> {
         let counts = self.before.map(|analysis| analysis.counts).unwrap_or_default();
         self.openness_of([counts.boundary_edges, counts.triangles], || Draft::from_soup(&self.input.soup).0)
     }

@@ -24,7 +24,7 @@ const PART_TURNS: f64 = 0.5;
 pub(super) struct Divided {
     pub(super) edges: u64,
     pub(super) triangles: u64,
-    /// Largest distance of a vertex from the edge that goes through it now.
+    /// Largest distance of a vertex from the edge that goes through it now, in the unit of the file.
     pub(super) move_max: f64,
 }
 
@@ -42,6 +42,7 @@ pub(super) struct RimSearch<'a> {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Beside {
     pub(super) half_edge: u32,
+    /// Its distance from the half-edge, in the unit of the file.
     pub(super) apart: f64,
 }
 

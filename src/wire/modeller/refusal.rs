@@ -175,3 +175,15 @@ fn because(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_are_told_without_the_last_digits_that_rounding_leaves() {
+        assert_eq!(without_rounding(0.1 + 0.2), 0.3);
+        assert_eq!(without_rounding(-1.0 / 3.0), -0.333_333_333_333);
+        assert_eq!(without_rounding(0.0), 0.0);
+    }
+}
