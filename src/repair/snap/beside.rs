@@ -136,4 +136,21 @@ mod tests {
         assert!(!by_edge.may_join(first, flank(0.01, [0.5, -1.0, 0.01])));
         assert!(Reach { epsilon: 1.0, by_edge: false }.may_join(first, flank(0.01, [0.5, -1.0, 0.01])));
     }
+
+    #[test]
+    fn a_vertex_lies_beside_an_edge_where_its_sheet_goes_on_from_there() {
+        let edge = flank(0.0, [0.5, -1.0, 0.0]);
+        let place = DVec3::new(0.5, 0.01, 0.0);
+        let beside = |to: [f64; 3], third: [f64; 3], most: f64, off_ends: f64| {
+            let own = [place, DVec3::from_array(to), DVec3::from_array(third)];
+            vertex_beside(place, &[own], edge, most, off_ends)
+        };
+        let (along, beyond) = ([1.5, 0.01, 0.0], [1.0, 1.0, 0.0]);
+        assert_eq!(beside(along, beyond, 0.1, 0.1), Some(0.01));
+        assert_eq!(beside(along, [1.0, -1.0, 0.1], 0.1, 0.1), None, "back to back");
+        assert_eq!(beside([0.5, 1.0, 0.0], [1.5, 1.0, 0.0], 0.1, 0.1), None, "its edge goes across");
+        assert_eq!(beside(along, [1.0, 0.04, 0.0], 0.1, 0.1), None, "little higher than it is apart");
+        assert_eq!(beside(along, beyond, 0.009, 0.1), None, "too far");
+        assert_eq!(beside(along, beyond, 0.1, 0.6), None, "too near to an end");
+    }
 }
