@@ -31,6 +31,9 @@ const ROUNDS_MAX: usize = 5;
 /// Conflicts beyond which no mending is tried.
 const CONFLICTS_MAX: usize = 1 << 14;
 
+/// Triangles near those of a star, beyond which its point stays where it is.
+const NEIGHBORS_MAX: usize = 1 << 20;
+
 /// Puts the new points of `merged` on the lattice of this pitch, which must be a power of two.
 ///
 /// # Errors
@@ -197,11 +200,13 @@ impl Placing<'_> {
         let bvh = Bvh::build(&self.placed.positions, &self.placed.triangles, None, self.budget)?;
         for star in stars.chunk_by(|a, b| a.0 == b.0) {
             let point = star[0].0;
+            let places = self.around(point);
             let star: Vec<u32> = star.iter().map(|&(_, t)| t).collect();
+            let Some(pairs) = self.pairs(point, &star, &places, &bvh)? else { continue };
             let mut best = (u64::MAX, self.placed.positions[point as usize]);
-            for place in self.around(point) {
+            for place in places {
                 self.placed.positions[point as usize] = place;
-                let meets = self.meets(&star, &bvh)?;
+                let meets = self.meets(&star, &pairs, best.0)?;
                 if meets < best.0 {
                     best = (meets, place);
                 }
@@ -225,34 +230,79 @@ impl Placing<'_> {
         places
     }
 
-    /// With how many triangles those of a star meet beyond common vertices and edges; one without an area counts for many.
-    fn meets(&self, star: &[u32], bvh: &Bvh) -> Result<u64, ArrangementError> {
-        let triangles = &self.placed.triangles;
-        let mut count = 0;
-        for &t in star {
+    /// Which triangles those of the `star` of a point may meet with it at any of these `places`; `None`: too many.
+    fn pairs(
+        &self,
+        point: u32,
+        star: &[u32],
+        places: &[DVec3],
+        bvh: &Bvh,
+    ) -> Result<Option<Vec<Pair>>, ArrangementError> {
+        let mut pairs = Vec::new();
+        for (n, &t) in (0..).zip(star) {
+            let names = self.placed.triangles[t as usize];
+            let stay = names.into_iter().filter(|&p| p != point).map(|p| self.placed.positions[p as usize]);
+            let bounds = Aabb::of(stay.chain(places.iter().copied()));
+            // Points may have moved by two pitches in each coordinate since the tree was built.
+            let margin = DVec3::splat(4.0 * self.pitch);
+            let query = Aabb { min: bounds.min - margin, max: bounds.max + margin };
+            let before = pairs.len();
+            bvh.visit_box(query, self.budget, |other| {
+                let moves = || self.placed.triangles[other as usize].contains(&point);
+                let has_area = |[a, b, c]: [DVec3; 3]| !are_collinear(a, b, c);
+                // One that moves may have an area at another place.
+                if pairs.len() < NEIGHBORS_MAX && other != t && (moves() || has_area(self.corners(other))) {
+                    let shared = Shared::between(names, self.placed.triangles[other as usize]);
+                    pairs.push(Pair { of_star: n, other, moves: moves(), shared });
+                }
+            })?;
+            self.budget.spend(1 + (pairs.len() - before) as u64)?;
+            if pairs.len() == NEIGHBORS_MAX {
+                return Ok(None);
+            }
+        }
+        Ok(Some(pairs))
+    }
+
+    /// How many of the `pairs` of a star meet beyond common vertices and edges, or `enough` and more; a triangle of it without an
+    /// area counts for many.
+    fn meets(&self, star: &[u32], pairs: &[Pair], enough: u64) -> Result<u64, ArrangementError> {
+        let (mut count, mut looks) = (0, 0);
+        let mut pairs = pairs.chunk_by(|a, b| a.of_star == b.of_star).peekable();
+        for (n, &t) in (0..).zip(star) {
+            let near = pairs.next_if(|near| near[0].of_star == n).unwrap_or_default();
             let corners = self.corners(t);
             if are_collinear(corners[0], corners[1], corners[2]) {
                 count += 1 << 20;
                 continue;
             }
-            let bounds = Aabb::of(corners);
-            // Points may have moved by two pitches in each coordinate since the tree was built.
-            let margin = DVec3::splat(4.0 * self.pitch);
-            let query = Aabb { min: bounds.min - margin, max: bounds.max + margin };
-            let plane = Plane::through(corners);
-            let mut seen = 0;
-            bvh.visit_box(query, self.budget, |other| {
-                seen += 1;
-                let [a, b, c] = self.corners(other);
-                if other == t || are_collinear(a, b, c) {
-                    return;
+            let (bounds, plane) = (Aabb::of(corners), Plane::through(corners));
+            for pair in near {
+                if count >= enough {
+                    break;
                 }
-                let shared = Shared::between(triangles[t as usize], triangles[other as usize]);
-                let is_copy = matches!(shared, Shared::Triangle);
-                count += u64::from(is_copy || contact(&plane, [&a, &b, &c], shared).is_some());
-            })?;
-            self.budget.spend(1 + seen)?;
+                looks += 1;
+                let others = self.corners(pair.other);
+                let [a, b, c] = others;
+                if !bounds.meets(Aabb::of(others)) || pair.moves && are_collinear(a, b, c) {
+                    continue;
+                }
+                let is_copy = matches!(pair.shared, Shared::Triangle);
+                count += u64::from(is_copy || contact(&plane, [&a, &b, &c], pair.shared).is_some());
+            }
         }
+        self.budget.spend(star.len() as u64 + looks)?;
         Ok(count)
     }
+}
+
+/// A triangle of a star, and one near it.
+struct Pair {
+    /// Which of the star.
+    of_star: u32,
+    other: u32,
+    /// True when the other one is of the star too.
+    moves: bool,
+    /// What the first has in common with the other.
+    shared: Shared,
 }

@@ -67,8 +67,8 @@ impl Default for DistanceOptions {
 /// farther than others some places are asked about, and it counts unless all are hidden.
 #[derive(Clone, Copy)]
 pub struct Sight<'v> {
-    /// Whether a place on a triangle of the first surface is hidden.
-    pub hides: &'v (dyn Fn(DVec3, u32) -> Result<bool, Stopped> + Sync),
+    /// Whether all of these places on a triangle of the first surface are hidden.
+    pub hides: &'v (dyn Fn(&mut dyn Iterator<Item = DVec3>, u32) -> Result<bool, Stopped> + Sync),
     /// What can be seen and is farther than this from the second surface is lost, in the unit of the coordinates.
     pub lost_beyond: f64,
 }

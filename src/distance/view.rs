@@ -24,17 +24,11 @@ pub(super) struct View<'v> {
 impl View<'_> {
     /// Whether a place of a triangle counts.
     pub(super) fn counts(&self, place: DVec3, triangle: u32) -> Result<bool, Stopped> {
-        match self.sight {
-            None => Ok(true),
-            Some(sight) => Ok(!(sight.hides)(place / self.factor, triangle)?),
-        }
+        Ok(!self.hides_all(std::iter::once(place), triangle)?)
     }
 
     /// Whether all places of a piece that are asked about are hidden.
     pub(super) fn hides(&self, corners: &[Corner; 3], triangle: u32) -> Result<bool, Stopped> {
-        if self.sight.is_none() {
-            return Ok(false);
-        }
         let [a, b, c] = corners.map(|corner| corner.place);
         let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
         let rows = ((longest / (RESOLUTION * self.diagonal)).ceil() as usize).clamp(1, ROWS_MAX);
@@ -43,15 +37,17 @@ impl View<'_> {
             a + (b - a) * share(i) + (c - a) * share(j)
         };
         // The middles of the triangles into which the rows cut the piece: those like it, and those upside down.
-        for (i, j) in (0..rows).flat_map(|i| (0..rows - i).map(move |j| (i, j))) {
+        let places = (0..rows).flat_map(|i| (0..rows - i).map(move |j| (i, j))).flat_map(|(i, j)| {
             let is_last = i + j + 1 == rows;
-            if self.counts(place(i, j, 1.0 / 3.0), triangle)?
-                || (!is_last && self.counts(place(i, j, 2.0 / 3.0), triangle)?)
-            {
-                return Ok(false);
-            }
-        }
-        Ok(true)
+            let upside_down = (!is_last).then(|| place(i, j, 2.0 / 3.0));
+            std::iter::once(place(i, j, 1.0 / 3.0)).chain(upside_down)
+        });
+        self.hides_all(places, triangle)
+    }
+
+    fn hides_all(&self, places: impl Iterator<Item = DVec3>, triangle: u32) -> Result<bool, Stopped> {
+        let Some(sight) = self.sight else { return Ok(false) };
+        (sight.hides)(&mut places.map(|place| place / self.factor), triangle)
     }
 
     /// Whether something at this distance is lost.

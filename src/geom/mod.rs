@@ -52,6 +52,11 @@ impl Aabb {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
+    /// True when the boxes have a point in common.
+    pub fn meets(self, other: Self) -> bool {
+        (self.min.cmple(other.max) & other.min.cmple(self.max)).all()
+    }
+
     /// True for the box of nothing.
     pub fn is_empty(self) -> bool {
         self.min.x > self.max.x

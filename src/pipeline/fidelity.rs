@@ -12,7 +12,7 @@ use crate::geom::{DVec3, are_collinear, closest_point_on_triangle, signed_volume
 use crate::mesh::{Components, Soup, UnionFind};
 use crate::repair::NEW;
 use crate::spatial::{NearestSearch, coincident_f64};
-use crate::winding::{Outlook, Solid};
+use crate::winding::{InTheWay, Outlook, Solid};
 
 /// Visible surface farther than this from the result is lost, as a share of the diagonal of the input.
 pub(super) const LOST_BEYOND: f64 = 2e-3;
@@ -191,14 +191,23 @@ impl<'i> Original<'i> {
         })
     }
 
-    fn is_hidden(&self, place: DVec3, triangle: u32, budget: &Budget) -> Result<bool, Stopped> {
+    /// Whether all of these places on a triangle of the input are hidden.
+    fn are_hidden(
+        &self,
+        places: impl Iterator<Item = DVec3>,
+        triangle: u32,
+        budget: &Budget,
+    ) -> Result<bool, Stopped> {
         let corners = self.input.corners(triangle);
         let Some(solid) = &self.solid else { return Ok(false) };
-        if !solid.hides(place, corners, budget)? {
-            return Ok(false);
+        let mut in_the_way = InTheWay::default();
+        for place in places {
+            let sees = |outlook: &Outlook| outlook.sees(place, corners, &mut in_the_way, budget);
+            if !solid.hides(place, corners, budget)? || self.outlook.as_ref().map_or(Ok(false), sees)? {
+                return Ok(false);
+            }
         }
-        let sees = |outlook: &Outlook| outlook.sees(place, corners, budget);
-        Ok(!self.outlook.as_ref().map_or(Ok(false), sees)?)
+        Ok(true)
     }
 
     /// The distance of what is gone from the result.
@@ -210,7 +219,9 @@ impl<'i> Original<'i> {
         budget: &Budget,
     ) -> Result<Option<DirectedDistance>, Stopped> {
         let triangles: Vec<[u32; 3]> = gone.iter().map(|&t| self.input.triangles[t as usize]).collect();
-        let hides = |place: DVec3, triangle: u32| self.is_hidden(place, gone[triangle as usize], budget);
+        let hides = |places: &mut dyn Iterator<Item = DVec3>, triangle: u32| {
+            self.are_hidden(places, gone[triangle as usize], budget)
+        };
         let sight = Sight { hides: &hides, lost_beyond: self.lost_beyond };
         let from = Surface { positions: &self.input.positions, triangles: &triangles };
         directed_distance(from, surface(result), Some(sight), care, budget)
@@ -265,7 +276,7 @@ impl<'i> Original<'i> {
             let (mut seen, mut found) = (0, 0);
             for &t in part.iter().step_by(part.len().div_ceil(PLACES_OF_BODY)) {
                 let place = self.input.corners(t).iter().sum::<DVec3>() / 3.0;
-                if !self.is_hidden(place, t, budget)? {
+                if !self.are_hidden(std::iter::once(place), t, budget)? {
                     budget.spend(1)?;
                     let nearest = near.find(place, None, budget)?;
                     seen += 1;

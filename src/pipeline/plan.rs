@@ -228,6 +228,8 @@ pub(super) struct Attempt {
     coverage: Known,
     /// True when walls or patches may hide what can be seen in the file.
     pub(super) hides_more: bool,
+    /// True when patches close openings, behind which something may be seen in the file.
+    pub(super) closes_openings: bool,
 }
 
 /// Which triangles of the soup are known to be on the surface or inside of the solid, as bodies are united.
@@ -266,6 +268,7 @@ impl Attempt {
             is_oriented: false,
             coverage: Known::NotYet,
             hides_more: false,
+            closes_openings: false,
         }
     }
 
@@ -297,8 +300,9 @@ impl Attempt {
                 _ => step.run(&mut self.draft, soup, &mut self.holes, budget)?,
             };
             self.coverage.go_on(step, &mut changes);
-            let hides = matches!(step, Step::Thicken { .. } | Step::SpanOddEdges);
-            self.hides_more |= hides && changes.count("triangles_added") > 0;
+            let adds = changes.count("triangles_added") > 0;
+            self.hides_more |= adds && matches!(step, Step::Thicken { .. } | Step::SpanOddEdges);
+            self.closes_openings |= adds && matches!(step, Step::FillHoles(_) | Step::SpanRims);
             self.effects.add(changes.effects);
             debug_assert_eq!(self.draft.check(), Vec::<String>::new(), "after {step:?}");
             let stitches = (self.lists_stitches && matches!(step, Step::Pinch(..) | Step::Snap(_)))
@@ -315,14 +319,15 @@ impl Attempt {
         self.coverage != Known::NotYet
     }
 
-    /// What of the soup need not be looked for in the result, if bodies were united.
-    pub(super) fn covered(&self) -> Option<Covered> {
+    /// What of the soup need not be looked for in the result, if bodies were united; nothing that is buried where that may be
+    /// seen all the same.
+    pub(super) fn covered(&self, looks_out: bool) -> Option<Covered> {
         let Known::By(Coverage { present, bare, buried, buried_area }) = &self.coverage else { return None };
         let is_in = |list: &[u32], t: &u32| list.binary_search(t).is_ok();
-        let is_covered = |t: &u32| !(is_in(bare, t) || self.hides_more && is_in(buried, t));
+        let is_covered = |t: &u32| !(is_in(bare, t) || looks_out && is_in(buried, t));
         Some(Covered {
             triangles: present.iter().copied().filter(is_covered).collect(),
-            buried_area: if self.hides_more { 0.0 } else { *buried_area },
+            buried_area: if looks_out { 0.0 } else { *buried_area },
             moved: self.actions.iter().map(|action| action.move_max).sum(),
         })
     }

@@ -85,7 +85,7 @@ fn finished(
     report: Report,
 ) -> Result<Answer, Failure> {
     let Climb { input, options, budget, .. } = *climb;
-    let Certified { attempt, candidate, fidelity } = certified;
+    let Certified { attempt, candidate, as_seen: fidelity, .. } = certified;
     let Attempt { draft, actions, steps, .. } = attempt;
     if let Some(refusal) = fidelity.breach(&options.limits) {
         return Ok(Report { actions, ..report }.refused(refusal));

@@ -14,7 +14,7 @@ pub(super) const GAP: f64 = 0.01;
 const INWARD: f64 = 1e-3;
 
 /// Directions in which a way out is looked for.
-const DIRECTIONS: u32 = 24;
+const DIRECTIONS: usize = 24;
 
 /// Turn from each direction to the next, which spreads them evenly.
 const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
@@ -74,13 +74,33 @@ impl Outlook {
     }
 
     /// Whether a `place` on a triangle is seen from outside: a straight way out leads from one of its sides, in one of many
-    /// directions.
+    /// directions. What was in the way from a place nearby is looked at first.
     ///
     /// # Errors
     /// When the budget stops the run.
-    pub fn sees(&self, place: DVec3, corners: [DVec3; 3], budget: &Budget) -> Result<bool, Stopped> {
-        for [beside, side] in self.unit.both_sides(place, corners) {
-            if has_way_out(beside, side, |ends| is_met(&self.bvh, &self.corners, ends, budget))? {
+    pub fn sees(
+        &self,
+        place: DVec3,
+        corners: [DVec3; 3],
+        in_the_way: &mut InTheWay,
+        budget: &Budget,
+    ) -> Result<bool, Stopped> {
+        for ([beside, side], known) in self.unit.both_sides(place, corners).zip(&mut in_the_way.0) {
+            let mut known = known.iter_mut();
+            let is_closed = |direction| {
+                let known = known.next();
+                let last = known.as_ref().and_then(|last| last.and_then(|t| self.corners.get(t as usize)));
+                if last.is_some_and(|&corners| meets(beside, beside + direction * OUT, corners)) {
+                    budget.spend(1)?;
+                    return Ok(true);
+                }
+                let found = first_met(&self.bvh, &self.corners, [beside, direction], budget)?;
+                if let Some(known) = known {
+                    *known = found;
+                }
+                Ok(found.is_some())
+            };
+            if has_way_out(side, is_closed)? {
                 return Ok(true);
             }
         }
@@ -88,44 +108,58 @@ impl Outlook {
     }
 }
 
-/// Whether nothing is in the way in one of many directions on the side of a plane that `normal` points to.
+/// What was in the way in each direction on both sides of a place.
+#[derive(Debug, Default)]
+pub struct InTheWay([[Option<u32>; DIRECTIONS]; 2]);
+
+/// Whether one of many directions on the side of a plane that `normal` points to is not closed; these come in a fixed order.
 pub(super) fn has_way_out(
-    place: DVec3,
     normal: DVec3,
-    is_met: impl Fn([DVec3; 2]) -> Result<bool, Stopped>,
+    mut is_closed: impl FnMut(DVec3) -> Result<bool, Stopped>,
 ) -> Result<bool, Stopped> {
     let (u, v) = normal.any_orthonormal_pair();
-    for k in 0..DIRECTIONS {
+    for k in 0..DIRECTIONS as u32 {
         // A spiral around the hemisphere, steepest first.
-        let height = 1.0 - (f64::from(k) + 0.5) / f64::from(DIRECTIONS);
+        let height = 1.0 - (f64::from(k) + 0.5) / DIRECTIONS as f64;
         let (sin, cos) = libm::sincos(f64::from(k) * GOLDEN_ANGLE);
         let radius = (1.0 - height * height).sqrt();
-        let direction = normal * height + (u * cos + v * sin) * radius;
-        // What is in the way is mostly near.
-        let mut is_closed = false;
-        for length in [4.0 * GAP, OUT] {
-            is_closed = is_closed || is_met([place, place + direction * length])?;
-        }
-        if !is_closed {
+        if !is_closed(normal * height + (u * cos + v * sin) * radius)? {
             return Ok(true);
         }
     }
     Ok(false)
 }
 
-/// Whether a segment meets one of the first triangles of a tree, those with `corners`.
-pub(super) fn is_met(
+/// One of the first triangles of a tree, those with `corners`, that is in the way out from a place in a direction.
+pub(super) fn first_met(
+    bvh: &Bvh,
+    corners: &[[DVec3; 3]],
+    [place, direction]: [DVec3; 2],
+    budget: &Budget,
+) -> Result<Option<u32>, Stopped> {
+    // What is in the way is mostly near.
+    for length in [4.0 * GAP, OUT] {
+        let found = met(bvh, corners, [place, place + direction * length], budget)?;
+        if found.is_some() {
+            return Ok(found);
+        }
+    }
+    Ok(None)
+}
+
+/// One of the first triangles of a tree, those with `corners`, that a segment meets.
+pub(super) fn met(
     bvh: &Bvh,
     corners: &[[DVec3; 3]],
     [from, to]: [DVec3; 2],
     budget: &Budget,
-) -> Result<bool, Stopped> {
-    let mut is_met = false;
+) -> Result<Option<u32>, Stopped> {
+    let mut met = None;
     bvh.visit_segment([from, to], budget, |t| {
-        is_met = corners.get(t as usize).is_some_and(|&corners| meets(from, to, corners));
-        !is_met
+        met = corners.get(t as usize).is_some_and(|&corners| meets(from, to, corners)).then_some(t);
+        met.is_none()
     })?;
-    Ok(is_met)
+    Ok(met)
 }
 
 /// Whether a segment meets a triangle, rounded.
@@ -163,14 +197,36 @@ mod tests {
         // Of a triangle in the middle, and of a side of the box.
         let middle = [[1.0, 2.0, 1.0], [3.0, 2.0, 1.0], [2.0, 2.0, 3.0]].map(DVec3::from);
         let of = |corners: [DVec3; 3]| corners.iter().sum::<DVec3>() / 3.0;
-        let budget = Budget::unlimited();
+        let (budget, nothing) = (Budget::unlimited(), InTheWay::default);
         for (squares, is_seen) in [(6, false), (5, true)] {
             let way = triangles(squares).into_iter().chain([middle]);
             let outlook = Outlook::past(way, &budget).unwrap();
-            assert_eq!(outlook.sees(of(middle), middle, &budget), Ok(is_seen), "{squares}");
+            assert_eq!(outlook.sees(of(middle), middle, &mut nothing(), &budget), Ok(is_seen), "{squares}");
             let side = triangles(1)[0];
-            assert_eq!(outlook.sees(of(side), side, &budget), Ok(true), "{squares}");
-            assert_eq!(outlook.sees(DVec3::ONE, [DVec3::ONE; 3], &budget), Ok(false), "no area");
+            assert_eq!(outlook.sees(of(side), side, &mut nothing(), &budget), Ok(true), "{squares}");
+            assert_eq!(
+                outlook.sees(DVec3::ONE, [DVec3::ONE; 3], &mut nothing(), &budget),
+                Ok(false),
+                "no area"
+            );
         }
+    }
+
+    #[test]
+    fn what_was_in_the_way_nearby_changes_no_answer() {
+        let all = SQUARES.iter().map(|square| square.map(DVec3::from));
+        let triangles: Vec<[DVec3; 3]> =
+            all.flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).take(11).collect();
+        let budget = Budget::unlimited();
+        let outlook = Outlook::past(triangles.into_iter(), &budget).unwrap();
+        let (mut kept, mut seen) = (InTheWay::default(), 0);
+        for i in 0..1000 {
+            let place = DVec3::new((i % 10) as f64, (i / 10 % 10) as f64, (i / 100) as f64) * 0.39 + 0.2;
+            let corners = [place, place + DVec3::new(0.01, 0.02, 0.0), place + DVec3::new(0.0, 0.01, 0.03)];
+            let is_seen = outlook.sees(place, corners, &mut InTheWay::default(), &budget).unwrap();
+            assert_eq!(outlook.sees(place, corners, &mut kept, &budget), Ok(is_seen), "{place}");
+            seen += u32::from(is_seen);
+        }
+        assert!((100..900).contains(&seen), "{seen}");
     }
 }

@@ -1,6 +1,6 @@
 //! The solid that any triangles stand for, and which of them are hidden in it.
 
-use super::outlook::{BESIDE, GAP, Unit, has_way_out, is_met};
+use super::outlook::{BESIDE, GAP, Unit, first_met, has_way_out, met};
 use super::{OpenShells, Shells, WindingTree, sort, turned};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec3, Sign, triangle_area, upward_crossing};
@@ -103,8 +103,11 @@ impl Solid {
     fn is_in_gap(&self, place: DVec3, normal: DVec3, budget: &Budget) -> Result<bool, Stopped> {
         // Cones are not there.
         let real = &self.corners[..self.corners.len() - self.cone_count];
-        let is_met = |ends| is_met(&self.bvh, real, ends, budget);
-        Ok(is_met([place, place + normal * GAP])? && !has_way_out(place, normal, is_met)?)
+        if met(&self.bvh, real, [place, place + normal * GAP], budget)?.is_none() {
+            return Ok(false);
+        }
+        let is_closed = |direction| Ok(first_met(&self.bvh, real, [place, direction], budget)?.is_some());
+        Ok(!has_way_out(normal, is_closed)?)
     }
 }
 

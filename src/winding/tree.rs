@@ -132,7 +132,7 @@ impl WindingTree {
 
     /// The same unless it takes more than [`VISITS_MAX`] of groups and triangles; and how many it took.
     fn evaluate_within(&self, p: DVec3, far: f64) -> (Option<f64>, u64) {
-        let (mut dipoles, mut angles) = (0.0, 0.0);
+        let (mut dipoles, mut angles) = (0.0, AngleSum::default());
         let (mut n, mut visits) = (0, 0);
         while let Some(node) = self.nodes.get(n) {
             visits += 1;
@@ -156,11 +156,13 @@ impl WindingTree {
             if is_leaf {
                 let range = node.first as usize..(node.first + node.len) as usize;
                 visits += u64::from(node.len);
-                angles += self.triangles[range].iter().map(|&t| half_solid_angle(p, t)).sum::<f64>();
+                for &triangle in &self.triangles[range] {
+                    angles.add(half_solid_angle(p, triangle));
+                }
             }
             n += 1;
         }
-        let number = dipoles / (4.0 * std::f64::consts::PI) + angles / (2.0 * std::f64::consts::PI);
+        let number = dipoles / (4.0 * std::f64::consts::PI) + angles.total() / (2.0 * std::f64::consts::PI);
         (Some(number), visits)
     }
 }
@@ -232,17 +234,51 @@ fn split(triangles: &mut [[DVec3; 3]]) {
     triangles.select_nth_unstable_by(half, |a, b| key(a).total_cmp(&key(b)));
 }
 
-/// Half the signed solid angle of a triangle seen from `p`, positive from behind (van Oosterom and Strackee 1983). Zero
-/// in its plane.
-fn half_solid_angle(p: DVec3, corners: [DVec3; 3]) -> f64 {
+/// Half the signed solid angle of a triangle seen from `p`, positive from behind (van Oosterom and Strackee 1983), as a complex
+/// number `[real, imaginary]` with that argument. No angle in its plane.
+fn half_solid_angle(p: DVec3, corners: [DVec3; 3]) -> [f64; 2] {
     let [a, b, c] = corners.map(|q| q - p);
     let (x, y, z) = (a.length(), b.length(), c.length());
     let determinant = a.dot(b.cross(c));
     if determinant == 0.0 {
-        return 0.0;
+        return [1.0, 0.0];
     }
-    let rest = x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y;
-    libm::atan2(determinant, rest)
+    [x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y, determinant]
+}
+
+/// A sum of angles between -pi and pi, as the product of complex numbers with these arguments: one arc tangent for all.
+#[derive(Debug, Clone, Copy)]
+struct AngleSum {
+    product: [f64; 2],
+    turns: i32,
+}
+
+impl Default for AngleSum {
+    fn default() -> Self {
+        Self { product: [1.0, 0.0], turns: 0 }
+    }
+}
+
+impl AngleSum {
+    /// Adds the argument of a complex number.
+    fn add(&mut self, [re, im]: [f64; 2]) {
+        let [x, y] = self.product;
+        let (u, v) = (x * re - y * im, x * im + y * re);
+        // Two angles of one sign come past half a turn where their sum seems to have the other one.
+        if y >= 0.0 && im > 0.0 && v < 0.0 {
+            self.turns += 1;
+        } else if y < 0.0 && im < 0.0 && v >= 0.0 {
+            self.turns -= 1;
+        }
+        let size = u.abs() + v.abs();
+        // Only the direction matters. Numbers too large or small for it say nothing.
+        self.product = if size.is_normal() { [u / size, v / size + 0.0] } else { [x, y] };
+    }
+
+    fn total(self) -> f64 {
+        let [x, y] = self.product;
+        libm::atan2(y, x) + f64::from(self.turns) * std::f64::consts::TAU
+    }
 }
 
 #[cfg(test)]
@@ -281,11 +317,41 @@ mod tests {
         let mut worst = 0.0f64;
         for i in 0..1000 {
             let p = DVec3::new((i % 10) as f64, (i / 10 % 10) as f64, (i / 100) as f64) * 3.1 - 14.0;
-            let exact =
-                triangles.iter().map(|&t| half_solid_angle(p, t)).sum::<f64>() / (2.0 * std::f64::consts::PI);
+            let exact = triangles.iter().map(|&t| argument(half_solid_angle(p, t))).sum::<f64>()
+                / std::f64::consts::TAU;
             worst = worst.max((tree.at(p, 0.0, &Budget::unlimited()).unwrap() - exact).abs());
         }
         assert!(worst < 0.02, "{worst}");
+    }
+
+    fn argument([re, im]: [f64; 2]) -> f64 {
+        libm::atan2(im, re)
+    }
+
+    #[test]
+    fn a_product_adds_up_angles_over_many_turns() {
+        let mut state = 5u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        };
+        for case in 0..2000 {
+            // Mostly of one sign in half of the cases; sizes far apart.
+            let lean = if case % 2 == 0 { 0.0 } else { 0.9 };
+            let (mut sum, mut expected) = (AngleSum::default(), 0.0);
+            for _ in 0..200 {
+                let size = libm::exp2(100.0 * random());
+                let (re, im) = (random(), random() + lean);
+                sum.add([re * size, im * size]);
+                expected += argument([re, im]);
+            }
+            assert!((sum.total() - expected).abs() < 1e-9, "{} {expected}", sum.total());
+        }
+        let mut sum = AngleSum::default();
+        for number in [[-1.0, 0.0], [-1.0, 1e-300], [f64::INFINITY, 1.0], [0.0, 0.0]] {
+            sum.add(number);
+        }
+        assert!(sum.total().is_finite());
     }
 
     #[test]

@@ -27,6 +27,10 @@ const ATTEMPT_PART: u64 = 4;
 /// What is hidden, the same.
 const HIDDEN_PART: u64 = 4;
 
+/// Most that a result may lose, as a share of the visible surface, behind patches over openings for it to be chosen by what
+/// is seen with these patches in the way. Looking past them each time led to results that lose more by an independent judge.
+const LOSS_BEHIND_PATCHES_MAX: f64 = 0.1;
+
 /// Steps of the print lattice by which rounding may take rims apart.
 const ROUNDING_STEPS: f64 = 4.0;
 
@@ -46,7 +50,10 @@ pub(in crate::pipeline) struct Climb<'a> {
 pub(in crate::pipeline) struct Certified {
     pub(in crate::pipeline) attempt: Attempt,
     pub(in crate::pipeline) candidate: Candidate,
+    /// What it is chosen by: what patches over openings cover is hidden, unless it is much.
     pub(in crate::pipeline) fidelity: Fidelity,
+    /// What is told of it: nothing of the file is hidden that a straight line leads to.
+    pub(in crate::pipeline) as_seen: Fidelity,
 }
 
 /// What a rung found.
@@ -378,27 +385,42 @@ impl Certified {
         candidate: Candidate,
         climb: &Climb<'_>,
     ) -> Result<Self, Failure> {
-        let Climb { input, options, before, budget, .. } = *climb;
-        let (draft, volume) = (&attempt.draft, defined_volume(before));
-        let covered = attempt.covered();
-        let origins = candidate.origins(&draft.triangle_origin);
-        let measure = |original: &Original<'_>| {
-            original.measure_rest(candidate.soup(), &origins, covered.as_ref(), budget)
-        };
-        // Mostly nothing is gone, and what is hidden does not matter.
-        let mut fidelity = measure(&Original::new(&input.soup, volume, None))?;
-        if !fidelity.passes(&options.limits) {
-            let read = || {
-                let solid = Solid::of(&draft.positions, &draft.triangles, options.wrap.open_shells, budget)?;
-                let original = Original::new(&input.soup, volume, Some(solid));
-                if attempt.hides_more { original.with_outlook(budget) } else { Ok(original) }
-            };
-            // Where it is too much work to say what is hidden, everything counts as seen.
-            if let Some(original) = budget.within_part(HIDDEN_PART, || budget.stage(Stage::Measure, read))? {
-                fidelity = measure(&original)?;
-            }
-        }
-        drop(origins);
-        Ok(Self { attempt, candidate, fidelity })
+        let measure = |looks_out| fidelity(&attempt, &candidate, looks_out, climb);
+        let fidelity = measure(attempt.hides_more)?;
+        let may_be_seen = attempt.closes_openings && !attempt.hides_more && fidelity.losses.hidden_area > 0.0;
+        let as_seen = if may_be_seen { measure(true)? } else { fidelity };
+        let counts_as_seen = as_seen.losses.visible_loss > LOSS_BEHIND_PATCHES_MAX
+            || climb.options.limits.deviation_max.is_some();
+        let fidelity = if counts_as_seen { as_seen } else { fidelity };
+        Ok(Self { attempt, candidate, fidelity, as_seen })
     }
+}
+
+/// How far a candidate is from the file. What a straight line leads to from outside of the file is not hidden when it
+/// `looks_out`.
+fn fidelity(
+    attempt: &Attempt,
+    candidate: &Candidate,
+    looks_out: bool,
+    climb: &Climb<'_>,
+) -> Result<Fidelity, Stopped> {
+    let Climb { input, options, before, budget, .. } = *climb;
+    let (draft, volume) = (&attempt.draft, defined_volume(before));
+    let covered = attempt.covered(looks_out);
+    let origins = candidate.origins(&draft.triangle_origin);
+    let measure =
+        |original: &Original<'_>| original.measure_rest(candidate.soup(), &origins, covered.as_ref(), budget);
+    // Mostly nothing is gone, and what is hidden does not matter.
+    let all_seen = measure(&Original::new(&input.soup, volume, None))?;
+    if all_seen.passes(&options.limits) {
+        return Ok(all_seen);
+    }
+    let read = || {
+        let solid = Solid::of(&draft.positions, &draft.triangles, options.wrap.open_shells, budget)?;
+        let original = Original::new(&input.soup, volume, Some(solid));
+        if looks_out { original.with_outlook(budget) } else { Ok(original) }
+    };
+    // Where it is too much work to say what is hidden, everything counts as seen.
+    let original = budget.within_part(HIDDEN_PART, || budget.stage(Stage::Measure, read))?;
+    original.map_or(Ok(all_seen), |original| measure(&original))
 }

@@ -120,6 +120,8 @@ impl Climb<'_> {
             kinds.extend(may_wall.then_some(Uniting::Walled));
         }
         kinds.extend(enclosed(Uniting::EnclosedAndWalled).filter(|_| may_wall));
+        // Much that is seen may be lost behind patches where parts are open, though together they seem to bound a volume.
+        kinds.extend((may_wall && is_open && !is_sheets).then_some(Uniting::Thickened));
         Ok(kinds)
     }
 
