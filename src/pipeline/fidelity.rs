@@ -20,6 +20,10 @@ pub(super) const LOST_BEYOND: f64 = 2e-3;
 /// Most of the visible surface that a result may lose for no other to be looked for.
 pub(super) const LOSS_MAX: f64 = 0.01;
 
+/// Most of the visible surface that a result may lose behind patches over openings for it to be chosen by what is seen with
+/// these patches in the way. Where results were always chosen by what is seen past them, some lost more by an independent judge.
+const LOSS_BEHIND_PATCHES_MAX: f64 = 0.1;
+
 /// What a measurement may cost, and how close it encloses a distance.
 const DISTANCE: DistanceOptions = DistanceOptions {
     tolerance_relative: 0.05,
@@ -62,6 +66,16 @@ pub struct Losses {
 }
 
 impl Fidelity {
+    /// What a result is chosen by, of what it is with patches over openings in the way and `as_seen` past them.
+    pub(super) fn to_choose_by(self, as_seen: Self, limits: &Limits) -> Self {
+        if as_seen.loses_much() || limits.deviation_max.is_some() { as_seen } else { self }
+    }
+
+    /// True when so much is lost behind patches that the opening was better left open.
+    pub(super) fn loses_much(&self) -> bool {
+        self.losses.visible_loss > LOSS_BEHIND_PATCHES_MAX
+    }
+
     /// True when no other result needs to be looked for.
     pub(super) fn passes(&self, limits: &Limits) -> bool {
         self.losses.visible_loss <= LOSS_MAX && self.losses.bodies_lost == 0 && self.breach(limits).is_none()

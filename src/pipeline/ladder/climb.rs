@@ -27,10 +27,6 @@ const ATTEMPT_PART: u64 = 4;
 /// What is hidden, the same.
 const HIDDEN_PART: u64 = 4;
 
-/// Most that a result may lose, as a share of the visible surface, behind patches over openings for it to be chosen by what
-/// is seen with these patches in the way. Looking past them each time led to results that lose more by an independent judge.
-const LOSS_BEHIND_PATCHES_MAX: f64 = 0.1;
-
 /// Steps of the print lattice by which rounding may take rims apart.
 const ROUNDING_STEPS: f64 = 4.0;
 
@@ -235,6 +231,29 @@ impl Climb<'_> {
         }
     }
 
+    /// Tries walls beside a result that patches over openings take much from, and gives the closer one.
+    pub(super) fn with_walls_if_closer(
+        &self,
+        closed: Box<Certified>,
+        situation: &mut Situation,
+    ) -> Result<Found, Failure> {
+        let may_wall = self.choices.walls == Walls::ForSheets
+            && self.options.wrap.open_shells != OpenShells::Close
+            && self.options.require != Some(Require::None);
+        if !may_wall || !closed.attempt.closes_openings || !closed.as_seen.loses_much() {
+            return Ok(Found::Certified(closed));
+        }
+        let variant = Variant { thickens: true, ..situation.variant };
+        Ok(match self.try_plan(variant, situation)? {
+            Some(Found::Certified(walled))
+                if !closed.fidelity.is_no_worse(&walled.fidelity, &self.options.limits) =>
+            {
+                Found::Certified(walled)
+            }
+            _ => Found::Certified(closed),
+        })
+    }
+
     /// How far apart rims of the file lie that should be one, at most what counts as lost; 0 where none do, or where that was
     /// chosen.
     fn gap_between_rims(&self, draft: &Draft) -> Result<f64, Stopped> {
@@ -389,9 +408,7 @@ impl Certified {
         let fidelity = measure(attempt.hides_more)?;
         let may_be_seen = attempt.closes_openings && !attempt.hides_more && fidelity.losses.hidden_area > 0.0;
         let as_seen = if may_be_seen { measure(true)? } else { fidelity };
-        let counts_as_seen = as_seen.losses.visible_loss > LOSS_BEHIND_PATCHES_MAX
-            || climb.options.limits.deviation_max.is_some();
-        let fidelity = if counts_as_seen { as_seen } else { fidelity };
+        let fidelity = fidelity.to_choose_by(as_seen, &climb.options.limits);
         Ok(Self { attempt, candidate, fidelity, as_seen })
     }
 }

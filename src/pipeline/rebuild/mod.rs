@@ -91,13 +91,16 @@ pub(super) struct Rebuilt {
     candidate: Candidate,
     /// The triangle of the input that each triangle is, or [`NEW`].
     origins: Vec<u32>,
+    /// What it is chosen by, with patches over openings in the way.
     pub(super) fidelity: Fidelity,
+    /// What is told of it: nothing of the file is hidden that a straight line leads to.
+    as_seen: Fidelity,
     actions: Vec<Action>,
 }
 
 impl Rebuilt {
     pub(super) fn returned(self, input: &Input, report: Report, budget: &Budget) -> Result<Answer, Stopped> {
-        let Fidelity { distance, losses } = self.fidelity;
+        let Fidelity { distance, losses } = self.as_seen;
         let report = Report { actions: self.actions, distance, losses: Some(losses), ..report };
         self.candidate.returned(input, &self.origins, report, Outcome::Rebuilt, budget)
     }
@@ -224,14 +227,24 @@ impl Search<'_> {
                 let wrap = action(&made, choices.open_shells, self.before);
                 let actions = actions.iter().cloned().chain([wrap]).chain(made.simplified).collect();
                 let Made { candidate, origins, .. } = made;
-                best = Some(Rebuilt { candidate, origins, fidelity, actions });
+                best = Some(Rebuilt { candidate, origins, fidelity, as_seen: fidelity, actions });
             }
             if fidelity.passes(limits) || is_coarser {
                 break;
             }
         }
-        let best = best.ok_or_else(|| refused(Refusal::OverBudget { units: budget.work_used() }))?;
-        match best.fidelity.breach(limits) {
+        let mut best = best.ok_or_else(|| refused(Refusal::OverBudget { units: budget.work_used() }))?;
+        let is_open = self.before.is_none_or(|before| before.counts.boundary_edges > 0);
+        if is_open && best.fidelity.losses.hidden_area > 0.0 {
+            let (made, origins) = (best.candidate.soup(), best.candidate.origins(&best.origins));
+            let look = || original.with_outlook(budget)?.measure(made, &origins, budget);
+            // Where it is too much work, patches stay in the way.
+            if let Some(as_seen) = budget.within_part(4, look)? {
+                best.as_seen = as_seen;
+                best.fidelity = best.fidelity.to_choose_by(as_seen, limits);
+            }
+        }
+        match best.as_seen.breach(limits) {
             None => Ok(best),
             Some(refusal) => Err(NotRebuilt::Refused { refusal, actions: best.actions }),
         }
