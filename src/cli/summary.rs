@@ -1,8 +1,9 @@
 //! The report for people: a screen of text, the most telling things first.
 
 use super::colours::{BAD, DOUBTFUL, GOOD, PLAIN, QUIET, STRONG, aligned, painted};
-use super::figures::{counted, figure};
+use super::figures::counted;
 use super::model;
+use crate::figures::figure;
 use crate::wire::{
     Action, Certificate, Claim, Defect, DefectCode, Deviation, Fidelity, Hole, InputInfo, JoinedEdges, Level,
     MeshInfo, Operation, Outcome, Part, PrintingCheck, Proposal, Report, Severity, TargetSpec,

@@ -1,6 +1,7 @@
 //! Where and why reading or writing ended.
 
 use crate::budget::Stopped;
+use crate::figures::figure;
 use std::fmt;
 
 /// A place in a file.
@@ -127,7 +128,7 @@ impl std::error::Error for ReadError {}
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum WriteError {
     /// A coordinate is not finite or beyond what the encoding can hold.
-    #[error("vertex {vertex}: coordinate {value} cannot be written as {encoding}")]
+    #[error("vertex {vertex}: coordinate {} cannot be written as {encoding}", figure(*.value))]
     NotRepresentable {
         /// The vertex.
         vertex: u32,
