@@ -1805,7 +1805,7 @@ export interface components {
         };
         /** @description Whether modeller lists the faces of the polyhedron with their numbers and planes, after the operators. Default: false. */
         ListFaces: boolean;
-        /** @description Refuse a repair farther than this from the file, in millimetres. Default: no limit. */
+        /** @description Refuse a repair that is or may be farther than this from the file, in millimetres. Default: no limit. */
         MaxDeviationMm: number;
         /** @description Refuse a repair that changes a defined volume by more than this share. Default: no limit. */
         MaxVolumeChange: number;

@@ -83,7 +83,7 @@ options! {
     recenter: bool, in REPAIR,
         "Move a mesh that is too far from the origin for float32 there, instead of refusing it. Default: false.";
     max_deviation_mm: f64, in REPAIR,
-        "Refuse a repair farther than this from the file, in millimetres. Default: no limit.";
+        "Refuse a repair that is or may be farther than this from the file, in millimetres. Default: no limit.";
     max_volume_change: f64 = SHARE, in REPAIR,
         "Refuse a repair that changes a defined volume by more than this share. Default: no limit.";
     nesting: Nesting, in REPAIR,

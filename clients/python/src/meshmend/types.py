@@ -1115,7 +1115,7 @@ Whether modeller lists the faces of the polyhedron with their numbers and planes
 
 MaxDeviationMm: TypeAlias = float
 """
-Refuse a repair farther than this from the file, in millimetres. Default: no limit.
+Refuse a repair that is or may be farther than this from the file, in millimetres. Default: no limit.
 """
 
 
