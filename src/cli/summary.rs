@@ -5,9 +5,9 @@ use super::figures::counted;
 use super::model;
 use crate::figures::figure;
 use crate::wire::{
-    Action, Certificate, Claim, Defect, DefectCode, Deviation, Fidelity, Hole, InputInfo, JoinedEdges, Level,
-    MeshInfo, Operation, Outcome, Part, PrintingCheck, Proposal, Report, Severity, TargetSpec,
-    ViolationCount, Witness,
+    Action, Certificate, Claim, Defect, DefectCode, Deviation, Distance, Fidelity, Hole, InputInfo,
+    JoinedEdges, Level, MeshInfo, Operation, Outcome, Part, PrintingCheck, Proposal, Report, Severity,
+    TargetSpec, ViolationCount, Witness,
 };
 use anstyle::Style;
 use std::fmt::Write as _;
@@ -80,6 +80,10 @@ pub(super) fn summary(report: &Report, subject: &Subject) -> String {
             "defects that remain",
             &mesh.defects.iter().map(defect_row).collect::<Vec<_>>(),
         );
+    }
+    if report.levels.len() > 1 {
+        let rows: Vec<_> = (1..).zip(&report.levels).map(level_row).collect();
+        put_table(&mut text, "results", &rows);
     }
     if let Some(printing) = &report.printing {
         let heading = format!("printing ({}, {} up)", printing.policy, printing.build_direction);
@@ -289,13 +293,32 @@ fn stitch_rows(action: &Action) -> Vec<[String; 3]> {
     kinds.into_iter().flat_map(of_kind).collect()
 }
 
-/// What was asked, how far it came, and what spoke against collapses, the most frequent first.
-fn missed_row(level: &Level) -> [String; 3] {
-    let asked = match level.target {
+/// What a target asks.
+fn asked(target: TargetSpec) -> String {
+    match target {
         TargetSpec::Faces(count) => counted(count.into(), "face"),
         TargetSpec::Ratio(share) => format!("{} of the faces", figure(share)),
         TargetSpec::ErrorMm(error) => format!("error of {} mm", figure(error)),
-    };
+    }
+}
+
+/// One of several results: its number, which its file has, what was asked, and what it is.
+fn level_row((number, level): (usize, &Level)) -> [String; 6] {
+    let farthest = |of: &Distance| Some(of.input_to_result.max?.max(of.result_to_input.max?));
+    let distance = level.distance.as_ref().and_then(farthest);
+    let valid = if level.certificate.printable { "a valid solid" } else { "not a valid solid" };
+    [
+        number.to_string(),
+        asked(level.target),
+        counted(level.faces_after, "face"),
+        distance.map_or_else(String::new, |most| format!("at most {} away", figure(most))),
+        level.fidelity.map_or_else(String::new, |fidelity| fidelity.to_string()),
+        valid.to_owned(),
+    ]
+}
+
+/// What was asked, how far it came, and what spoke against collapses, the most frequent first.
+fn missed_row(level: &Level) -> [String; 3] {
     let mut refusals: Vec<_> = level.refusals.iter().filter(|refusal| refusal.count > 0).collect();
     refusals.sort_by_key(|refusal| std::cmp::Reverse(refusal.count));
     let reasons: Vec<String> = refusals.iter().map(|r| format!("{} {}", r.name, r.count)).collect();
@@ -303,7 +326,7 @@ fn missed_row(level: &Level) -> [String; 3] {
         [] => "no edge is left to collapse".to_owned(),
         reasons => format!("collapses refused: {}", reasons.join(", ")),
     };
-    [asked, format!("{} left", counted(level.faces_after, "face")), why]
+    [asked(level.target), format!("{} left", counted(level.faces_after, "face")), why]
 }
 
 fn claim_rows(certificate: &Certificate) -> Vec<(Style, [String; 2])> {
