@@ -122,7 +122,7 @@ fn run_all(request: &Request, errands: &[Errand<'_>]) -> Exit {
         if request.is_json {
             print(&format!("{}\n", json_line(&input, &result)));
         } else {
-            let (style, told) = row(&result);
+            let (style, told) = row(&input, &result);
             print(&format!("{input:width$}  {}\n", painted(style, &told)));
         }
     }
@@ -132,11 +132,11 @@ fn run_all(request: &Request, errands: &[Errand<'_>]) -> Exit {
     exits.into_iter().max_by_key(|&exit| exit as u8).unwrap_or(Exit::Done)
 }
 
-/// What became of a file, in a line.
-fn row(result: &Result<Done, Problem>) -> (Style, String) {
+/// What became of a file, in a line that begins with its name.
+fn row(input: &str, result: &Result<Done, Problem>) -> (Style, String) {
     let done = match result {
         Ok(done) => done,
-        Err(problem) => return (BAD, problem.detail.clone()),
+        Err(problem) => return (BAD, without_name(input, &problem.detail).to_owned()),
     };
     let verdict = &done.report.verdict;
     let style = match (done.exit, verdict.printable, verdict.fidelity) {
@@ -155,6 +155,12 @@ fn row(result: &Result<Done, Problem>) -> (Style, String) {
     let written = done.written.as_ref().map(|place| format!("written: {place}"));
     let words = [outcome, Some(printable.to_owned()), fidelity, defects, reason, written];
     (style, words.into_iter().flatten().collect::<Vec<_>>().join(", "))
+}
+
+/// What is told of the file alone, without its name in front.
+fn without_name<'t>(input: &str, told: &'t str) -> &'t str {
+    let rest = told.strip_prefix(input).and_then(|rest| rest.strip_prefix([':', ' ']));
+    rest.map_or(told, str::trim_start)
 }
 
 /// How many files ended in which way.
@@ -191,5 +197,26 @@ fn print_json(value: &impl serde::Serialize) {
     match serde_json::to_string_pretty(value) {
         Ok(text) => print(&format!("{text}\n")),
         Err(error) => say(&error.to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_named_once_in_its_line() {
+        for (told, want) in [
+            ("a.stl cannot be read: it is a folder", "cannot be read: it is a folder"),
+            ("a.stl: line 3: a number is missing", "line 3: a number is missing"),
+            ("a.stla is another name", "a.stla is another name"),
+            (
+                "--json and --output - both want standard output",
+                "--json and --output - both want standard output",
+            ),
+        ] {
+            let result = Err(Problem::new(crate::wire::ProblemCode::NotFound, told));
+            assert_eq!(row("a.stl", &result).1, want);
+        }
     }
 }
