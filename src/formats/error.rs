@@ -85,7 +85,7 @@ impl ReadError {
     pub(super) fn foreign(name: &'static str) -> Self {
         let expected = match name {
             "gzip" => {
-                "the mesh itself in STL, OBJ, OFF, PLY, 3MF or glTF; `Content-Encoding: gzip` says that a body is compressed"
+                "the mesh itself in STL, OBJ, OFF, PLY, 3MF or glTF: unpack the file first; a request may be compressed, which its header `Content-Encoding: gzip` says"
             }
             "STEP" | "OpenCASCADE BREP" => {
                 "a mesh in STL, OBJ, OFF, PLY, 3MF or glTF: export one from the CAD program, which divides curved surfaces as finely as it is told"
