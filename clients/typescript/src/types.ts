@@ -3329,7 +3329,7 @@ export interface components {
              */
             band_rings?: number | null;
         };
-        /** @description Largest distance of vertices of rims that repair and stitch=snap join, in millimetres; never more than half the shortest boundary edge; 0: only where they coincide. Default: 1e-5 of the diagonal for cut-stitch; for repair as far as rims that lie side by side are apart, at most 0.2 % of the diagonal. */
+        /** @description Largest distance of vertices of rims that repair and stitch=snap join, in millimetres; never more than half the shortest boundary edge; 0: only where they coincide. Default: 1e-5 of the diagonal for cut-stitch; for repair as far as rims that lie side by side are apart, at most 0.2 % of the diagonal, after edges are divided where a vertex of another rim lies beside them. */
         SnapEpsilonMm: number;
         /**
          * @description What of a file of several parts is one solid.

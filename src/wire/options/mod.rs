@@ -117,7 +117,7 @@ options! {
     stitch: Stitch, in CUT_STITCH,
         "Which boundary edges cut-stitch joins after the cut. Default: pinch.";
     snap_epsilon_mm: f64, in &[Operation::Repair, Operation::CutStitch],
-        "Largest distance of vertices of rims that repair and stitch=snap join, in millimetres; never more than half the shortest boundary edge; 0: only where they coincide. Default: 1e-5 of the diagonal for cut-stitch; for repair as far as rims that lie side by side are apart, at most 0.2 % of the diagonal.";
+        "Largest distance of vertices of rims that repair and stitch=snap join, in millimetres; never more than half the shortest boundary edge; 0: only where they coincide. Default: 1e-5 of the diagonal for cut-stitch; for repair as far as rims that lie side by side are apart, at most 0.2 % of the diagonal, after edges are divided where a vertex of another rim lies beside them.";
     stitch_validity: StitchValidity, in CUT_STITCH,
         "When cut-stitch may join two boundary edges. Default: exact.";
     degenerate: Degenerate, in CUT_STITCH,
