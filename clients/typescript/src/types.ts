@@ -1198,7 +1198,7 @@ export interface components {
             /** @description The uploaded bytes, judged. */
             input_certificate: components["schemas"]["Certificate"];
         };
-        /** @description Height of each view that render draws, in pixels. Default: 480. */
+        /** @description Height of each view that render draws, in pixels, with its share of the text below. Default: 480. */
         Height: number;
         /** @description What became of one hole: a boundary loop, or several that got one patch. */
         Hole: {

@@ -318,13 +318,13 @@ struct Footer<'p> {
 }
 
 impl<'p> Footer<'p> {
-    /// Below `rows` of tiles that would be of this size without it. It takes a third of the picture at most; further lines are
-    /// left out.
+    /// Below `rows` of tiles that would be of this size without it. It takes two fifths of the picture at most; further lines
+    /// are left out.
     fn of(sides: &'p [(&Soup, Painted)], tile: [u32; 2], rows: usize) -> Self {
         let ([tile_width, tile_height], rows) = (tile.map(|side| side as usize), rows.max(1));
         let scale = scale_of(tile_width);
         let line_height = LINE_HEIGHT * scale;
-        let room = (rows * tile_height / 3).saturating_sub(MARGIN * scale) / line_height;
+        let room = (rows * tile_height * 2 / 5).saturating_sub(MARGIN * scale) / line_height;
         let columns: Vec<Vec<Line<'p>>> = sides.iter().map(|(_, painted)| lines_of(painted, room)).collect();
         let lines = columns.iter().map(Vec::len).max().unwrap_or(0);
         let height = if lines > 0 { lines * line_height + MARGIN * scale } else { 0 };

@@ -163,7 +163,7 @@ options! {
     width: u32 = OptionKind::Integer { min: 16, max: 2048 }, in RENDER,
         "Width of each view that render draws, in pixels. Default: 640.";
     height: u32 = OptionKind::Integer { min: 16, max: 2048 }, in RENDER,
-        "Height of each view that render draws, in pixels. Default: 480.";
+        "Height of each view that render draws, in pixels, with its share of the text below. Default: 480.";
     shade: Shade, in RENDER,
         "How render shades faces. Default: smooth.";
     edges: DrawnEdges, in RENDER,

@@ -748,7 +748,7 @@ class FormatInfo(TypedDict):
 
 Height: TypeAlias = int
 """
-Height of each view that render draws, in pixels. Default: 480.
+Height of each view that render draws, in pixels, with its share of the text below. Default: 480.
 """
 
 
