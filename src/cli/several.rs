@@ -4,7 +4,8 @@ use super::arguments::{Request, Target};
 use super::colours::{BAD, DOUBTFUL, GOOD, aligned, painted};
 use super::exit::{Exit, print, say};
 use super::figures::counted;
-use super::files::Place;
+use super::files::{Place, told};
+use super::flags::with_flags;
 use super::summary::{Subject, summary};
 use super::work::{Done, Errand, run as run_one, wrong};
 use crate::pipeline::Operation;
@@ -45,7 +46,8 @@ fn errands(request: &Request) -> Result<Vec<Errand<'_>>, Problem> {
         return Err(wrong("standard input cannot be one of several files"));
     }
     if let Target::Folder(folder) = &request.target {
-        fs::create_dir_all(folder).map_err(|e| wrong(format!("{} cannot be made: {e}", folder.display())))?;
+        fs::create_dir_all(folder)
+            .map_err(|e| wrong(format!("{} cannot be made: {}", folder.display(), told(&e))))?;
     }
     let mut taken = BTreeSet::new();
     let errand = |inputs| {
@@ -151,7 +153,7 @@ fn row(input: &str, result: &Result<Done, Problem>) -> (Style, String) {
         let errors = mesh.defects.iter().filter(|defect| defect.severity == crate::wire::Severity::Error);
         counted(errors.map(|defect| defect.count).sum(), "error")
     });
-    let reason = verdict.reasons.first().map(|reason| reason.message.clone());
+    let reason = verdict.reasons.first().map(|reason| with_flags(&reason.message));
     let written = done.written.as_ref().map(|place| format!("written: {place}"));
     let words = [outcome, Some(printable.to_owned()), fidelity, defects, reason, written];
     (style, words.into_iter().flatten().collect::<Vec<_>>().join(", "))

@@ -114,7 +114,11 @@ impl ReadError {
 
 impl fmt::Display for ReadError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.place, self.kind)?;
+        // What is said of the whole file needs no place.
+        if self.place != Place::Whole {
+            write!(f, "{}: ", self.place)?;
+        }
+        self.kind.fmt(f)?;
         if !self.expected.is_empty() {
             write!(f, "; expected {}", self.expected)?;
         }

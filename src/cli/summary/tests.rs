@@ -18,14 +18,14 @@ fn a_repair_is_told_from_defect_to_verdict() {
     let want = "\
 verdict: repaired, printable: a valid solid; changed: 50 % of the surface is invented (faithful: at most 1 %)
 part.stl: stl-binary, 234 bytes, unit mm (assumed)
-  3 triangles, 0 vertices, 0 components; 1 x 1 x 1; area 1
-  No unit is stated: is the longest side 10 mm (if the unit is cm) or 1000 mm (if the unit is m) or 25.4 mm (if the unit is in)? Say so with `units`; without it the file is taken in millimetres.
+  3 triangles, 0 vertices, 0 components; 1 x 1 x 1 mm; area 1 mm²
+  No unit is stated: is the longest side 10 mm (if the unit is cm) or 1000 mm (if the unit is m) or 25.4 mm (if the unit is in)? Say so with `--units`; without it the file is taken in millimetres.
 defects
   boundary-loop  1  error  face 2 (line 17), edges 3
 done
   fill-holes  faces_added 1  because of boundary-loop
 result
-  4 triangles, 0 vertices, 0 components; 1 x 1 x 1; area 2; volume 0.5
+  4 triangles, 0 vertices, 0 components; 1 x 1 x 1 mm; area 2 mm²; volume 0.5 mm³
 certificate
   P0 topology   holds
   P1 embedding  holds
@@ -75,7 +75,7 @@ fn a_measured_repair_tells_how_close_it_is() {
         Losses { visible_loss: 0.012, hidden_area: 2.5, invented: 0.0, bodies_lost: 1, volume_change: None };
     answer.report.losses = Some(losses);
     answer.report.distance = Some(quarter_away());
-    let want = "  at most 0.25 from the file; 1.2 % of the visible surface lost; hidden area 2.5 left out; bodies lost: 1\n";
+    let want = "  at most 0.25 mm from the file; 1.2 % of the visible surface lost; hidden area 2.5 mm² left out; bodies lost: 1\n";
     let text = of(&answer, None);
     assert!(text.contains(want), "{text}");
 }
@@ -130,11 +130,19 @@ fn each_of_several_results_has_a_row_with_its_number() {
     answer.report.levels.push(level(Target::Ratio(0.25), &[], false));
     let want = "\
 results
-  1  50 faces           40 faces  at most 0.25 away  changed  not a valid solid
-  2  0.25 of the faces  40 faces  at most 0.25 away  changed  not a valid solid
+  1  50 faces           40 faces  at most 0.25 mm away  changed  not a valid solid
+  2  0.25 of the faces  40 faces  at most 0.25 mm away  changed  not a valid solid
 ";
     let text = of(&answer, None);
     assert!(text.contains(want), "{text}");
+}
+
+#[test]
+fn sizes_of_a_file_whose_result_has_another_unit_are_told_in_that_unit() {
+    let mut answer = sample::repaired();
+    answer.report.input.result_units = pipeline::Units::Inch;
+    let text = of(&answer, None);
+    assert!(text.contains("unit mm (assumed)") && text.contains("; 1 x 1 x 1 in; area 1 in²\n"), "{text}");
 }
 
 #[test]

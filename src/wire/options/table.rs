@@ -12,6 +12,8 @@ pub enum OptionKind {
         name: &'static str,
         /// All of them.
         words: &'static [&'static str],
+        /// What each of them means, in the same order.
+        abouts: &'static [&'static str],
     },
     /// A whole number in this range.
     Integer {
