@@ -6,6 +6,7 @@
 //! (on by default) adds the service and the command line.
 
 pub mod budget;
+pub mod figures;
 pub mod geom;
 pub mod par;
 

@@ -103,6 +103,12 @@ impl Place {
     }
 }
 
+/// What went wrong with a file, without the number that the system has for it.
+pub(super) fn told(error: &io::Error) -> String {
+    let text = error.to_string();
+    text.split(" (os error ").next().unwrap_or(&text).to_owned()
+}
+
 fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
@@ -163,6 +169,12 @@ mod tests {
         assert!(Place::File(folder.path().join("no/out.stl")).check_writable().is_err());
         assert!(Place::File(folder.path().join("out.stl")).check_writable().is_ok());
         assert!(Place::File("out.stl".into()).check_writable().is_ok());
+    }
+
+    #[test]
+    fn what_went_wrong_has_no_number() {
+        assert_eq!(told(&io::Error::from_raw_os_error(2)), "No such file or directory");
+        assert_eq!(told(&io::Error::other("it is a folder")), "it is a folder");
     }
 
     #[test]

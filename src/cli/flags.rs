@@ -2,7 +2,7 @@
 
 use crate::config::{SETTINGS, Setting};
 use crate::wire::{OptionKind, OptionSpec, SPECS};
-use clap::builder::PossibleValuesParser;
+use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgMatches, Command};
 use std::fs::File;
 use std::io::Read as _;
@@ -38,15 +38,38 @@ pub(super) fn engine_settings() -> impl Iterator<Item = &'static Setting> {
     SETTINGS.iter().filter(|setting| ENGINE_SETTINGS.contains(&setting.name))
 }
 
+/// What an option does; where the service answers on a path, a command or a page says the same.
+fn about(spec: &OptionSpec) -> String {
+    spec.about.replace("/v1/plan", "`meshmend plan`").replace("/v1/policies", "docs/printing.md")
+}
+
+/// `text` with options in the words of the command line: `--wall-mm` for `wall_mm`, if that stands between such signs.
+pub(super) fn with_flags(text: &str) -> String {
+    let worded = |(place, piece): (usize, &str)| {
+        let (name, value) = piece.split_once('=').map_or((piece, None), |(name, value)| (name, Some(value)));
+        match options().find(|spec| spec.name == name).filter(|_| place % 2 == 1) {
+            Some(spec) => {
+                format!("--{}{}", spec.flag(), value.map_or_else(String::new, |value| format!("={value}")))
+            }
+            None => piece.to_owned(),
+        }
+    };
+    text.split('`').enumerate().map(worded).collect::<Vec<_>>().join("`")
+}
+
 fn option_flag(spec: &'static OptionSpec) -> Arg {
-    let flag = Arg::new(spec.name).long(spec.flag()).help(spec.about).help_heading("Mesh options");
+    let flag = Arg::new(spec.name).long(spec.flag()).help(about(spec)).help_heading("Mesh options");
     // The name as it stands in JSON is understood as well.
     let flag = if spec.name.contains('_') { flag.alias(spec.name) } else { flag };
     // As the command says what is done, so that this cannot be another operation.
     let flag = if spec.name == "set_operation" { flag.visible_alias("operation") } else { flag };
     match spec.kind {
-        OptionKind::Word { words, .. } => {
-            flag.value_name("WORD").value_parser(PossibleValuesParser::new(words))
+        OptionKind::Word { words, abouts, .. } => {
+            let value = |(&word, about): (&&'static str, &&'static str)| {
+                PossibleValue::new(word).help(about.trim().trim_end_matches('.'))
+            };
+            let values = words.iter().zip(abouts).map(value);
+            flag.value_name("WORD").value_parser(PossibleValuesParser::new(values))
         }
         // A negative number is a value out of range, not a flag of that name.
         OptionKind::Integer { .. } | OptionKind::Number { .. } => {
@@ -132,3 +155,26 @@ macro_rules! flags {
 flags!(OptionFlags, options(), option_flag);
 flags!(SettingFlags, SETTINGS.iter(), setting_flag);
 flags!(EngineSettingFlags, engine_settings(), setting_flag);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_in_a_sentence_are_named_as_flags() {
+        for (text, want) in [
+            ("`max_deviation_mm` allows 0.5 mm", "`--max-deviation-mm` allows 0.5 mm"),
+            ("set `recenter=true`", "set `--recenter=true`"),
+            ("`/v1/plan` and units", "`/v1/plan` and units"),
+        ] {
+            assert_eq!(with_flags(text), want);
+        }
+    }
+
+    #[test]
+    fn no_help_sends_to_a_path_of_the_service() {
+        for spec in options() {
+            assert!(!about(spec).contains("/v1/"), "{}", about(spec));
+        }
+    }
+}

@@ -1,6 +1,7 @@
 //! What the modeller found and did, as tables for people.
 
-use super::figures::{counted, figure};
+use super::figures::counted;
+use crate::figures::figure;
 use crate::wire::{FaceInfo, FaceRangeInfo, Modeller, ModellerStep, RangeSideInfo};
 
 /// Most faces of which a screen tells.

@@ -4,7 +4,8 @@ use super::arguments::{Request, Target};
 use super::colours::{BAD, DOUBTFUL, GOOD, aligned, painted};
 use super::exit::{Exit, print, say};
 use super::figures::counted;
-use super::files::Place;
+use super::files::{Place, told};
+use super::flags::with_flags;
 use super::summary::{Subject, summary};
 use super::work::{Done, Errand, run as run_one, wrong};
 use crate::pipeline::Operation;
@@ -45,7 +46,8 @@ fn errands(request: &Request) -> Result<Vec<Errand<'_>>, Problem> {
         return Err(wrong("standard input cannot be one of several files"));
     }
     if let Target::Folder(folder) = &request.target {
-        fs::create_dir_all(folder).map_err(|e| wrong(format!("{} cannot be made: {e}", folder.display())))?;
+        fs::create_dir_all(folder)
+            .map_err(|e| wrong(format!("{} cannot be made: {}", folder.display(), told(&e))))?;
     }
     let mut taken = BTreeSet::new();
     let errand = |inputs| {
@@ -122,7 +124,7 @@ fn run_all(request: &Request, errands: &[Errand<'_>]) -> Exit {
         if request.is_json {
             print(&format!("{}\n", json_line(&input, &result)));
         } else {
-            let (style, told) = row(&result);
+            let (style, told) = row(&input, &result);
             print(&format!("{input:width$}  {}\n", painted(style, &told)));
         }
     }
@@ -132,11 +134,11 @@ fn run_all(request: &Request, errands: &[Errand<'_>]) -> Exit {
     exits.into_iter().max_by_key(|&exit| exit as u8).unwrap_or(Exit::Done)
 }
 
-/// What became of a file, in a line.
-fn row(result: &Result<Done, Problem>) -> (Style, String) {
+/// What became of a file, in a line that begins with its name.
+fn row(input: &str, result: &Result<Done, Problem>) -> (Style, String) {
     let done = match result {
         Ok(done) => done,
-        Err(problem) => return (BAD, problem.detail.clone()),
+        Err(problem) => return (BAD, without_name(input, &problem.detail).to_owned()),
     };
     let verdict = &done.report.verdict;
     let style = match (done.exit, verdict.printable, verdict.fidelity) {
@@ -151,10 +153,16 @@ fn row(result: &Result<Done, Problem>) -> (Style, String) {
         let errors = mesh.defects.iter().filter(|defect| defect.severity == crate::wire::Severity::Error);
         counted(errors.map(|defect| defect.count).sum(), "error")
     });
-    let reason = verdict.reasons.first().map(|reason| reason.message.clone());
+    let reason = verdict.reasons.first().map(|reason| with_flags(&reason.message));
     let written = done.written.as_ref().map(|place| format!("written: {place}"));
     let words = [outcome, Some(printable.to_owned()), fidelity, defects, reason, written];
     (style, words.into_iter().flatten().collect::<Vec<_>>().join(", "))
+}
+
+/// What is told of the file alone, without its name in front.
+fn without_name<'t>(input: &str, told: &'t str) -> &'t str {
+    let rest = told.strip_prefix(input).and_then(|rest| rest.strip_prefix([':', ' ']));
+    rest.map_or(told, str::trim_start)
 }
 
 /// How many files ended in which way.
@@ -191,5 +199,26 @@ fn print_json(value: &impl serde::Serialize) {
     match serde_json::to_string_pretty(value) {
         Ok(text) => print(&format!("{text}\n")),
         Err(error) => say(&error.to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_named_once_in_its_line() {
+        for (told, want) in [
+            ("a.stl cannot be read: it is a folder", "cannot be read: it is a folder"),
+            ("a.stl: line 3: a number is missing", "line 3: a number is missing"),
+            ("a.stla is another name", "a.stla is another name"),
+            (
+                "--json and --output - both want standard output",
+                "--json and --output - both want standard output",
+            ),
+        ] {
+            let result = Err(Problem::new(crate::wire::ProblemCode::NotFound, told));
+            assert_eq!(row("a.stl", &result).1, want);
+        }
     }
 }

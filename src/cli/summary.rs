@@ -1,12 +1,14 @@
 //! The report for people: a screen of text, the most telling things first.
 
 use super::colours::{BAD, DOUBTFUL, GOOD, PLAIN, QUIET, STRONG, aligned, painted};
-use super::figures::{counted, figure};
+use super::figures::counted;
+use super::flags::with_flags;
 use super::model;
+use crate::figures::figure;
 use crate::wire::{
-    Action, Certificate, Claim, Defect, DefectCode, Deviation, Fidelity, Hole, InputInfo, JoinedEdges, Level,
-    MeshInfo, Operation, Outcome, Part, PrintingCheck, Proposal, Report, Severity, TargetSpec,
-    ViolationCount, Witness,
+    Action, Certificate, Claim, Defect, DefectCode, Deviation, Distance, Fidelity, Hole, InputInfo,
+    JoinedEdges, Level, MeshInfo, Operation, Outcome, Part, PrintingCheck, Proposal, Report, Severity,
+    TargetSpec, Units, ViolationCount, Witness,
 };
 use anstyle::Style;
 use std::fmt::Write as _;
@@ -26,9 +28,9 @@ pub(super) fn summary(report: &Report, subject: &Subject) -> String {
     put(&mut text, &painted(style_of(report), &headline(report)));
     put(&mut text, &head(report, subject));
     if let Some(mesh) = &report.before {
-        put(&mut text, &format!("  {}", size(mesh)));
+        put(&mut text, &format!("  {}", size(mesh, report.output_units)));
         if let Some(question) = mesh.unit_hypothesis.as_ref().and_then(|told| told.question.as_ref()) {
-            put(&mut text, &format!("  {question}"));
+            put(&mut text, &format!("  {}", with_flags(question)));
         }
         put_styled(&mut text, "defects", &mesh.defects.iter().map(defect_row).collect::<Vec<_>>());
         match &report.holes {
@@ -42,7 +44,7 @@ pub(super) fn summary(report: &Report, subject: &Subject) -> String {
     for (further, number) in report.further_inputs.iter().zip(2..) {
         put(&mut text, &format!("mesh {number}: {}", facts(&further.input)));
         if let Some(mesh) = &further.before {
-            put(&mut text, &format!("  {}", size(mesh)));
+            put(&mut text, &format!("  {}", size(mesh, report.output_units)));
             put_styled(&mut text, "defects", &mesh.defects.iter().map(defect_row).collect::<Vec<_>>());
         }
     }
@@ -68,10 +70,8 @@ pub(super) fn summary(report: &Report, subject: &Subject) -> String {
         );
     }
     if let Some(mesh) = &report.after {
-        let unit = report.output_units;
-        let scaled = if unit == report.input.units.unit { String::new() } else { format!(" in {unit}") };
-        put(&mut text, &format!("result{scaled}\n  {}", size(mesh)));
-        if let Some(kept) = closeness(&report.deviation) {
+        put(&mut text, &format!("result\n  {}", size(mesh, report.output_units)));
+        if let Some(kept) = closeness(&report.deviation, report.output_units) {
             put(&mut text, &format!("  {kept}"));
         }
         put_styled(
@@ -79,6 +79,11 @@ pub(super) fn summary(report: &Report, subject: &Subject) -> String {
             "defects that remain",
             &mesh.defects.iter().map(defect_row).collect::<Vec<_>>(),
         );
+    }
+    if report.levels.len() > 1 {
+        let row = |(number, level)| level_row(number, level, report.output_units);
+        let rows: Vec<_> = (1..).zip(&report.levels).map(row).collect();
+        put_table(&mut text, "results", &rows);
     }
     if let Some(printing) = &report.printing {
         let heading = format!("printing ({}, {} up)", printing.policy, printing.build_direction);
@@ -128,8 +133,10 @@ fn put_styled<const N: usize>(text: &mut String, heading: &str, rows: &[(Style, 
     }
 }
 
+/// The file and what is known of it; of several each has its own line.
 fn head(report: &Report, subject: &Subject) -> String {
-    format!("{}: {}", subject.input, facts(&report.input))
+    let between = if report.further_inputs.is_empty() { ": " } else { "\nmesh 1: " };
+    format!("{}{between}{}", subject.input, facts(&report.input))
 }
 
 fn facts(input: &InputInfo) -> String {
@@ -137,7 +144,8 @@ fn facts(input: &InputInfo) -> String {
     format!("{}, {} bytes, unit {}{known}", input.encoding, input.bytes, input.units.unit)
 }
 
-fn size(mesh: &MeshInfo) -> String {
+/// Counts and measures, in the unit that they are in: that of the result also for the input, which is taken in it.
+fn size(mesh: &MeshInfo, unit: Units) -> String {
     let counts = &mesh.counts;
     let mut text = format!(
         "{}, {}, {}",
@@ -147,26 +155,26 @@ fn size(mesh: &MeshInfo) -> String {
     );
     if let Some(bounds) = &mesh.measures.bounds {
         let [x, y, z] = std::array::from_fn(|i| figure(bounds.max[i] - bounds.min[i]));
-        let _ = write!(text, "; {x} x {y} x {z}");
+        let _ = write!(text, "; {x} x {y} x {z} {unit}");
     }
-    for (name, value) in [("area", mesh.measures.area), ("volume", mesh.measures.volume)] {
+    for (name, value, power) in [("area", mesh.measures.area, '²'), ("volume", mesh.measures.volume, '³')] {
         if let Some(value) = value {
-            let _ = write!(text, "; {name} {}", figure(value));
+            let _ = write!(text, "; {name} {} {unit}{power}", figure(value));
         }
     }
     text
 }
 
 /// How far a repair is from its file, and what it lost; `None`: it was not measured.
-fn closeness(deviation: &Deviation) -> Option<String> {
+fn closeness(deviation: &Deviation, unit: Units) -> Option<String> {
     let (most, lost) = (deviation.hausdorff_max?, deviation.visible_loss?);
     let mut text = format!(
-        "at most {} from the file; {} % of the visible surface lost",
+        "at most {} {unit} from the file; {} % of the visible surface lost",
         figure(most),
         figure(lost * 100.0)
     );
     if let Some(area) = deviation.hidden_area.filter(|&area| area > 0.0) {
-        let _ = write!(text, "; hidden area {} left out", figure(area));
+        let _ = write!(text, "; hidden area {} {unit}² left out", figure(area));
     }
     if let Some(count) = deviation.bodies_lost.filter(|&count| count > 0) {
         let _ = write!(text, "; bodies lost: {count}");
@@ -249,7 +257,9 @@ fn witness(witness: &Witness) -> String {
     if let Some(position) = witness.position {
         parts.push(format!("at {}", position.map(figure).join(" ")));
     }
-    parts.extend(witness.figures.iter().filter_map(|f| Some(format!("{} {}", f.name, figure(f.value?)))));
+    // How sure a guess at a hole is stands beside the guess, in the table of holes.
+    let told = witness.figures.iter().filter(|f| !["confidence", "is_closed"].contains(&f.name));
+    parts.extend(told.filter_map(|f| Some(format!("{} {}", f.name, figure(f.value?)))));
     parts.join(", ")
 }
 
@@ -288,13 +298,32 @@ fn stitch_rows(action: &Action) -> Vec<[String; 3]> {
     kinds.into_iter().flat_map(of_kind).collect()
 }
 
-/// What was asked, how far it came, and what spoke against collapses, the most frequent first.
-fn missed_row(level: &Level) -> [String; 3] {
-    let asked = match level.target {
+/// What a target asks.
+fn asked(target: TargetSpec) -> String {
+    match target {
         TargetSpec::Faces(count) => counted(count.into(), "face"),
         TargetSpec::Ratio(share) => format!("{} of the faces", figure(share)),
         TargetSpec::ErrorMm(error) => format!("error of {} mm", figure(error)),
-    };
+    }
+}
+
+/// One of several results: its number, which its file has, what was asked, and what it is.
+fn level_row(number: usize, level: &Level, unit: Units) -> [String; 6] {
+    let farthest = |of: &Distance| Some(of.input_to_result.max?.max(of.result_to_input.max?));
+    let distance = level.distance.as_ref().and_then(farthest);
+    let valid = if level.certificate.printable { "a valid solid" } else { "not a valid solid" };
+    [
+        number.to_string(),
+        asked(level.target),
+        counted(level.faces_after, "face"),
+        distance.map_or_else(String::new, |most| format!("at most {} {unit} away", figure(most))),
+        level.fidelity.map_or_else(String::new, |fidelity| fidelity.to_string()),
+        valid.to_owned(),
+    ]
+}
+
+/// What was asked, how far it came, and what spoke against collapses, the most frequent first.
+fn missed_row(level: &Level) -> [String; 3] {
     let mut refusals: Vec<_> = level.refusals.iter().filter(|refusal| refusal.count > 0).collect();
     refusals.sort_by_key(|refusal| std::cmp::Reverse(refusal.count));
     let reasons: Vec<String> = refusals.iter().map(|r| format!("{} {}", r.name, r.count)).collect();
@@ -302,7 +331,7 @@ fn missed_row(level: &Level) -> [String; 3] {
         [] => "no edge is left to collapse".to_owned(),
         reasons => format!("collapses refused: {}", reasons.join(", ")),
     };
-    [asked, format!("{} left", counted(level.faces_after, "face")), why]
+    [asked(level.target), format!("{} left", counted(level.faces_after, "face")), why]
 }
 
 fn claim_rows(certificate: &Certificate) -> Vec<(Style, [String; 2])> {
@@ -367,7 +396,7 @@ fn headline(report: &Report) -> String {
         };
     }
     if let Some(reason) = verdict.reasons.first() {
-        let _ = write!(text, "; {}", reason.message);
+        let _ = write!(text, "; {}", with_flags(&reason.message));
     }
     text
 }

@@ -2,7 +2,8 @@
 
 use super::arguments::Request;
 use super::exit::Exit;
-use super::files::Place;
+use super::files::{Place, told};
+use super::flags::with_flags;
 use super::watch::{Share, watched};
 use crate::budget::{Budget, StopFlag};
 use crate::config::{Config, Loaded};
@@ -10,7 +11,7 @@ use crate::formats::{self, ReadLimits};
 use crate::jobs::StageClock;
 use crate::par;
 use crate::pipeline::{self, Answer, Operation, PictureChoices, Product, Require};
-use crate::wire::{Options, Problem, ProblemCode, Report, TimingMs, report_page};
+use crate::wire::{OptionError, Options, Problem, ProblemCode, Report, TimingMs, report_page};
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -53,22 +54,22 @@ fn attempt(errand: &Errand<'_>) -> Result<Done, Problem> {
     let &Errand { request, inputs, ref output } = errand;
     check_places(errand)?;
     let options =
-        Options::from_pairs(request.options.iter().map(|(n, v)| (n, v))).map_err(|e| Problem::from(&e))?;
+        Options::from_pairs(request.options.iter().map(|(n, v)| (n, v))).map_err(|e| about_options(&e))?;
     // A picture has one format, whatever its name.
     let is_picture = request.operation == Operation::Render;
     let by_name = output.as_ref().filter(|_| !is_picture).and_then(Place::format).map(Into::into);
     let options = Options { output_format: options.output_format.or(by_name), ..options };
-    options.check(request.operation.into()).map_err(|e| Problem::from(&e))?;
+    options.check(request.operation.into()).map_err(|e| about_options(&e))?;
     if *output == Some(Place::Stream) && options.targets.as_ref().is_some_and(|t| t.len() > 1) {
         return Err(wrong("standard output holds one mesh; several --targets need a file name"));
     }
     let loaded = request.sources.load().map_err(|e| wrong(e.to_string()))?;
     if let Some(output) = output {
-        output.check_writable().map_err(|e| wrong(format!("{output} cannot be written: {e}")))?;
+        output.check_writable().map_err(|e| wrong(format!("{output} cannot be written: {}", told(&e))))?;
     }
     if let Some(page) = &request.report_html {
         let place = Place::File(page.clone());
-        place.check_writable().map_err(|e| wrong(format!("{place} cannot be written: {e}")))?;
+        place.check_writable().map_err(|e| wrong(format!("{place} cannot be written: {}", told(&e))))?;
     }
     // One behind the other.
     let mut bytes = Vec::new();
@@ -127,8 +128,17 @@ pub(super) fn wrong(detail: impl Into<String>) -> Problem {
     Problem::new(ProblemCode::InvalidParameter, detail)
 }
 
+/// The problem, in which options are called as the flags that set them; what stands in a plan keeps its words.
+fn about_options(error: &OptionError) -> Problem {
+    let problem = Problem::from(error);
+    match error {
+        OptionError::NoPlan { .. } => problem,
+        _ => Problem { detail: with_flags(&problem.detail), ..problem },
+    }
+}
+
 fn unreadable(input: &dyn std::fmt::Display, error: &io::Error) -> Problem {
-    Problem::new(ProblemCode::NotFound, format!("{input} cannot be read: {error}"))
+    Problem::new(ProblemCode::NotFound, format!("{input} cannot be read: {}", told(error)))
 }
 
 fn engine_options(
@@ -187,25 +197,25 @@ fn deliver(
     for (i, output) in answer.output.iter().chain(&answer.levels).enumerate() {
         let Some(place) = &errand.output else { continue };
         let place = if answer.levels.is_empty() { place.clone() } else { place.numbered(i + 1) };
-        place
-            .write(output.bytes.as_deref().unwrap_or(bytes))
-            .map_err(|e| Problem::new(ProblemCode::StorageFull, format!("{place} cannot be written: {e}")))?;
+        place.write(output.bytes.as_deref().unwrap_or(bytes)).map_err(|e| {
+            Problem::new(ProblemCode::StorageFull, format!("{place} cannot be written: {}", told(&e)))
+        })?;
         written.push(place.to_string());
     }
     let drawn = answer.picture.as_ref().filter(|_| request.operation == Operation::Render);
     if let (Some(place), Some(picture)) = (&errand.output, drawn) {
-        place
-            .write(picture)
-            .map_err(|e| Problem::new(ProblemCode::StorageFull, format!("{place} cannot be written: {e}")))?;
+        place.write(picture).map_err(|e| {
+            Problem::new(ProblemCode::StorageFull, format!("{place} cannot be written: {}", told(&e)))
+        })?;
         written.push(place.to_string());
     }
     let report = Report::new(&answer.report, timing);
     if let Some(path) = &request.report_html {
         let value = serde_json::to_value(&report).unwrap_or_default();
         let place = Place::File(path.clone());
-        place
-            .write(report_page(&value, answer.picture.as_deref()).as_bytes())
-            .map_err(|e| Problem::new(ProblemCode::StorageFull, format!("{place} cannot be written: {e}")))?;
+        place.write(report_page(&value, answer.picture.as_deref()).as_bytes()).map_err(|e| {
+            Problem::new(ProblemCode::StorageFull, format!("{place} cannot be written: {}", told(&e)))
+        })?;
     }
     let exit = verdict(request.operation, require, &report, answer.output.is_some());
     Ok(Done { report, written: (!written.is_empty()).then(|| written.join(", ")), exit })

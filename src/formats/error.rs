@@ -1,6 +1,7 @@
 //! Where and why reading or writing ended.
 
 use crate::budget::Stopped;
+use crate::figures::figure;
 use std::fmt;
 
 /// A place in a file.
@@ -84,7 +85,7 @@ impl ReadError {
     pub(super) fn foreign(name: &'static str) -> Self {
         let expected = match name {
             "gzip" => {
-                "the mesh itself in STL, OBJ, OFF, PLY, 3MF or glTF; `Content-Encoding: gzip` says that a body is compressed"
+                "the mesh itself in STL, OBJ, OFF, PLY, 3MF or glTF: unpack the file first; a request may be compressed, which its header `Content-Encoding: gzip` says"
             }
             "STEP" | "OpenCASCADE BREP" => {
                 "a mesh in STL, OBJ, OFF, PLY, 3MF or glTF: export one from the CAD program, which divides curved surfaces as finely as it is told"
@@ -113,7 +114,11 @@ impl ReadError {
 
 impl fmt::Display for ReadError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.place, self.kind)?;
+        // What is said of the whole file needs no place.
+        if self.place != Place::Whole {
+            write!(f, "{}: ", self.place)?;
+        }
+        self.kind.fmt(f)?;
         if !self.expected.is_empty() {
             write!(f, "; expected {}", self.expected)?;
         }
@@ -127,7 +132,7 @@ impl std::error::Error for ReadError {}
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum WriteError {
     /// A coordinate is not finite or beyond what the encoding can hold.
-    #[error("vertex {vertex}: coordinate {value} cannot be written as {encoding}")]
+    #[error("vertex {vertex}: coordinate {} cannot be written as {encoding}", figure(*.value))]
     NotRepresentable {
         /// The vertex.
         vertex: u32,

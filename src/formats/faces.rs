@@ -402,8 +402,8 @@ mod tests {
             faces.push(face);
             faces.into_soup(square_and(extra), &limits, &Budget::unlimited()).unwrap_err().to_string()
         };
-        assert_eq!(error(&[0, 1, 2, 3], &[]), "file: 2 triangles is over the limit triangles_max = 1");
-        assert_eq!(error(&[0, 1, 2], &[DVec3::ONE]), "file: 5 vertices is over the limit vertices_max = 4");
+        assert_eq!(error(&[0, 1, 2, 3], &[]), "2 triangles is over the limit triangles_max = 1");
+        assert_eq!(error(&[0, 1, 2], &[DVec3::ONE]), "5 vertices is over the limit vertices_max = 4");
         assert_eq!(
             limits.check_polygon(6, Place::Line(3)).unwrap_err().to_string(),
             "line 3: 6 corners of one polygon is over the limit polygon_corners_max = 5"

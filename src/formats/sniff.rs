@@ -254,7 +254,7 @@ mod tests {
         assert_eq!(page.kind, ReadErrorKind::Foreign { name: "a web page" });
         assert_eq!(
             page.to_string(),
-            "file: this is a web page, which is not read here; expected a mesh in STL, OBJ, OFF, PLY, 3MF or glTF"
+            "this is a web page, which is not read here; expected a mesh in STL, OBJ, OFF, PLY, 3MF or glTF"
         );
     }
 
@@ -276,7 +276,7 @@ mod tests {
     #[test]
     fn content_that_certainly_is_another_format_contradicts_the_name() {
         let error = sniff(b"ply\nformat ascii 1.0\n", Some(Format::Stl)).unwrap_err().to_string();
-        assert_eq!(error, "file: found ply-ascii content; expected stl as the request says");
+        assert_eq!(error, "found ply-ascii content; expected stl as the request says");
         assert!(sniff(&binary_stl(b"", 1, 1), Some(Format::Obj)).is_err());
     }
 }

@@ -1,5 +1,6 @@
 //! The body of a request as it comes in: bounded in size, in the pauses it may make, in its rate, and in time.
 
+use std::io;
 use std::time::Duration;
 
 use axum::body::{Body, HttpBody as _};
@@ -78,7 +79,7 @@ impl IncomingBody {
                 .map_err(|_| self.timed_out(patience))?;
             let Some(frame) = frame else { return Ok(None) };
             // Trailers have no meaning here.
-            let Ok(piece) = frame.map_err(|error| incomplete(&error))?.into_data() else { continue };
+            let Ok(piece) = frame.map_err(|error| self.incomplete(&error))?.into_data() else { continue };
             self.received += piece.len() as u64;
             if self.received > self.limits.bytes_max {
                 return Err(self.limits.too_large(None));
@@ -130,6 +131,27 @@ impl IncomingBody {
         [pause, total].into_iter().chain(rate).min().unwrap_or(pause)
     }
 
+    /// Why no more comes. What a connection does not send has the connection's own error; what cannot be unpacked has none but
+    /// that of the unpacking.
+    fn incomplete(&self, error: &axum::Error) -> Problem {
+        let of_packing =
+            std::error::Error::source(error).and_then(|source| source.downcast_ref::<io::Error>());
+        let detail = match of_packing {
+            Some(fault) => {
+                let what = match fault.kind() {
+                    io::ErrorKind::UnexpectedEof => "its data ends early",
+                    _ => "its data is damaged",
+                };
+                format!(
+                    "the body is compressed with gzip, but {what}; {} bytes could be unpacked before that",
+                    self.received
+                )
+            }
+            None => format!("the body could not be received: {error}"),
+        };
+        Problem::new(ProblemCode::BodyIncomplete, detail)
+    }
+
     fn timed_out(&self, patience: Patience) -> Problem {
         let limits = &self.limits;
         let (name, limit) = match patience {
@@ -151,10 +173,6 @@ impl BodyLimits {
             actual,
         )
     }
-}
-
-fn incomplete(error: &axum::Error) -> Problem {
-    Problem::new(ProblemCode::BodyIncomplete, format!("the body could not be received: {error}"))
 }
 
 #[cfg(test)]

@@ -56,12 +56,13 @@ impl Product<Vec<u8>> {
         let is_refused = report.outcome == Some(pipeline::Outcome::Refused);
         let text =
             serde_json::to_vec(&wire::Report::new(&report, timing_ms)).map_err(|error| internal(&error))?;
+        let refused = report.refusal.as_ref().filter(|_| is_refused);
         let made =
             |output: pipeline::Output| MadeMesh { content: output.bytes, encoding: output.encoding.into() };
         Ok(Self {
             outcome: report.outcome.map(Outcome::from),
             fidelity: report.fidelity.as_ref().filter(|_| !is_refused).map(|fidelity| fidelity.word.into()),
-            problem: report.refusal.as_ref().map(Problem::from).filter(|_| is_refused),
+            problem: refused.map(|refusal| Problem::of_refusal(refusal, report.input.result_units)),
             timing_ms,
             report: text,
             result: output.map(made),

@@ -85,7 +85,8 @@ impl Fidelity {
     pub(super) fn breach(&self, limits: &Limits) -> Option<Refusal> {
         let deviation = self.distance.map_or(0.0, |distance| distance.upper());
         if let Some(limit) = limits.deviation_max.filter(|&limit| deviation > limit) {
-            return Some(Refusal::DeviationBeyondLimit { deviation, limit });
+            let found = self.distance.map_or(0.0, |distance| distance.lower());
+            return Some(Refusal::DeviationBeyondLimit { deviation, found, limit });
         }
         let (change, limit) = (self.losses.volume_change?.abs(), limits.volume_change_max?);
         (change > limit).then_some(Refusal::VolumeChangeBeyondLimit { change, limit })

@@ -206,8 +206,10 @@ pub enum Refusal {
     },
     /// No result is as close to the file as the caller demands.
     DeviationBeyondLimit {
-        /// The least deviation that was reached, in the unit of the file.
+        /// No point of the closest result is farther away than this, in the unit of the result.
         deviation: f64,
+        /// One is at least this far away, in the same unit.
+        found: f64,
         /// What was demanded, in the same unit.
         limit: f64,
     },

@@ -192,7 +192,9 @@ impl Fewer {
         let bounds = report.levels.iter().skip(1).filter_map(|level| level.distance);
         let farthest = bounds.map(|distance| distance.upper() + of_draft).fold(0.0, f64::max);
         let exceeded = options.limits.deviation_max.filter(|&limit| farthest > limit);
-        let too_far = exceeded.map(|limit| Refusal::DeviationBeyondLimit { deviation: farthest, limit });
+        // How far the farthest is at least is not known: both distances may be in opposite directions.
+        let too_far =
+            exceeded.map(|limit| Refusal::DeviationBeyondLimit { deviation: farthest, found: 0.0, limit });
         if let Some(refusal) = fidelity.breach(&options.limits).or(too_far) {
             return Ok(Report { levels: Vec::new(), ..report }.refused(refusal));
         }

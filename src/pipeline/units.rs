@@ -7,6 +7,7 @@ use super::input::Input;
 use super::{
     CutStitchChoices, FillHolesChoices, Limits, Operation, Options, SimplifyChoices, Units, WrapChoices,
 };
+use crate::figures::figure;
 use crate::formats::{Encoding, Format, Place, ReadError, ReadErrorKind};
 use crate::implicit::RbfOptions;
 use crate::repair::fill::FillOptions;
@@ -58,7 +59,7 @@ impl Input {
         let finite = self.soup.positions.iter().filter(|position| position.is_finite());
         let largest = finite.map(|position| position.abs().max_element()).fold(0.0, f64::max);
         if !(largest * factor).is_finite() {
-            let kind = ReadErrorKind::Unparseable { found: format!("the coordinate {largest:e}") };
+            let kind = ReadErrorKind::Unparseable { found: format!("the coordinate {}", figure(largest)) };
             let expected = "coordinates that have a number in the unit of the result".to_owned();
             return Err(ReadError { kind, place: Place::Whole, expected });
         }

@@ -3,6 +3,7 @@
 
 use super::{Changes, Draft, Star};
 use crate::budget::{Budget, Stopped};
+use crate::figures::figure;
 use crate::geom::print_pitch;
 use crate::spatial::coincident_f64;
 
@@ -58,8 +59,10 @@ pub fn open_contacts(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stop
         }
     }
     let most = (move_max / pitch).round();
-    let reason =
-        format!("contacts were opened by drawing {moved} vertices back by up to {most} steps of {pitch:e}");
+    let reason = format!(
+        "contacts were opened by drawing {moved} vertices back by up to {most} steps of {}",
+        figure(pitch)
+    );
     Ok(Changes { move_max, reason, ..Changes::counted([("vertices_moved", moved)]) })
 }
 

@@ -2,6 +2,7 @@
 
 use super::{Changes, Draft, NEW};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::figures::figure;
 use crate::geom::{DVec3, print_pitch};
 use crate::mesh::{EdgeGroups, edge_of, triangle_of};
 
@@ -52,7 +53,7 @@ pub fn thicken(draft: &mut Draft, wall: f64, budget: &Budget) -> Result<Changes,
     let triangles = added.len();
     draft.triangles.extend(added);
     draft.triangle_origin.extend(std::iter::repeat_n(NEW, triangles));
-    let reason = format!("open parts are read as sheets and given walls of {wall:.3e} behind them");
+    let reason = format!("open parts are read as sheets and given walls of {} behind them", figure(wall));
     Ok(Changes { reason, ..counted(count, triangles as u64) })
 }
 

@@ -5,6 +5,7 @@ use utoipa::ToSchema;
 
 use super::finite::finite;
 use super::words::{ChangeKind, Fidelity, Units};
+use crate::figures::significant;
 use crate::pipeline;
 
 /// A bound of faithful results that a result exceeds.
@@ -63,19 +64,9 @@ pub(super) fn fidelity_of(
     (word, changes.iter().map(|change| FidelityChange::new(change, unit)).collect())
 }
 
-/// A figure of a headline: three significant digits.
+/// A figure of a headline.
 fn short(value: f64) -> String {
-    let magnitude = value.abs();
-    if value == 0.0 || (1e-3..1e6).contains(&magnitude) {
-        let digits = if value == 0.0 { 0 } else { 2 - magnitude.log10().floor() as i32 };
-        let text = format!("{value:.*}", digits.max(0) as usize);
-        return if text.contains('.') {
-            text.trim_end_matches('0').trim_end_matches('.').to_owned()
-        } else {
-            text
-        };
-    }
-    format!("{value:.2e}")
+    significant(value, 3)
 }
 
 #[cfg(test)]
@@ -97,7 +88,5 @@ mod tests {
             "up to 75 mm from the file (faithful: at most 1.73 mm)"
         );
         assert_eq!(message(Kind::Bodies, 2.0, 0.0), "bodies lost: 2");
-        assert_eq!(short(1e-9), "1.00e-9");
-        assert_eq!(short(1234.5), "1234");
     }
 }

@@ -278,7 +278,7 @@ fn whole_list<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<u32>, D::Error> 
 }
 
 /// Most steps of a plan, and most kinds of defects.
-const LIST_MAX: usize = 100;
+pub(super) const LIST_MAX: usize = 100;
 /// Most rings.
 const RINGS_MAX: u32 = 10;
 
@@ -330,7 +330,7 @@ impl PlanRequest {
 }
 
 impl PlanStep {
-    fn is_small(&self) -> bool {
+    pub(super) fn is_small(&self) -> bool {
         match self {
             Self::RemoveParts { triangles } => triangles.len() <= ELEMENTS_MAX,
             Self::FillHoles { except, how, .. } => except.len() <= ELEMENTS_MAX && how.is_small(),

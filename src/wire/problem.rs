@@ -9,7 +9,7 @@ use super::problem_code::ProblemCode;
 use crate::analysis::DefectCode;
 use crate::budget::Stopped;
 use crate::formats::{Place, ReadError, ReadErrorKind};
-use crate::pipeline::{ELEMENTS_MAX, Failure, PlanMismatch, Refusal};
+use crate::pipeline::{ELEMENTS_MAX, Failure, PlanMismatch, Refusal, Units};
 use crate::wire;
 
 /// A problem (RFC 9457), sent as `application/problem+json`. Members that do not apply are absent.
@@ -217,15 +217,16 @@ impl From<&Stopped> for Problem {
     }
 }
 
-impl From<&Refusal> for Problem {
-    fn from(refusal: &Refusal) -> Self {
+impl Problem {
+    /// Why there is no result; `units`: that of the result.
+    pub fn of_refusal(refusal: &Refusal, units: Units) -> Self {
         let code = match refusal {
             Refusal::NotRepresentable { reason } if is_non_finite(reason) => ProblemCode::MeshNonFinite,
             Refusal::OverBudget { .. } => ProblemCode::OverBudget,
             _ => ProblemCode::NotRepairable,
         };
         let limit = if let &Refusal::OverBudget { units } = refusal { Some(units) } else { None };
-        Self { limit, ..Self::new(code, super::verdict::Reason::from(refusal).message) }
+        Self { limit, ..Self::new(code, super::verdict::Reason::of(refusal, units).message) }
     }
 }
 

@@ -6,6 +6,7 @@ use utoipa::ToSchema;
 use super::fidelity::{FidelityChange, fidelity_of};
 use super::printing::CheckCode;
 use super::words::{Condition, Fidelity, Outcome, ReasonCode, Units};
+use crate::figures::figure;
 use crate::{certificate as judge, pipeline, printing};
 
 /// The conclusion.
@@ -45,7 +46,7 @@ pub struct Reason {
 impl Verdict {
     pub(super) fn of(inner: &pipeline::Report) -> Self {
         let judged = inner.certificate.as_ref().unwrap_or(&inner.input_certificate);
-        let refusal = inner.refusal.iter().map(Reason::from);
+        let refusal = inner.refusal.iter().map(|refusal| Reason::of(refusal, inner.input.result_units));
         let printing = inner.printing.as_ref().map(|measured| &measured.printing);
         let checks = printing.map_or(&[][..], |printing| &printing.checks);
         let broken = checks.iter().filter(|check| check.status == Some(printing::Status::Error));
@@ -78,8 +79,9 @@ fn broken_conditions(judged: &judge::Certificate) -> Vec<Reason> {
     firsts.into_iter().map(reason).collect()
 }
 
-impl From<&pipeline::Refusal> for Reason {
-    fn from(refusal: &pipeline::Refusal) -> Self {
+impl Reason {
+    /// `units`: that of the result, in which the refusal has its lengths.
+    pub(super) fn of(refusal: &pipeline::Refusal, units: pipeline::Units) -> Self {
         let (code, condition, message) = match refusal {
             pipeline::Refusal::NothingToRepair => (
                 ReasonCode::NothingToRepair,
@@ -103,22 +105,21 @@ impl From<&pipeline::Refusal> for Reason {
                     None => "the result is no valid solid".to_owned(),
                 },
             ),
-            pipeline::Refusal::BeyondFloat32 { pitch, diagonal } => (
+            &pipeline::Refusal::BeyondFloat32 { pitch, diagonal } => (
                 ReasonCode::NotRepresentable,
                 None,
                 format!(
-                    "the mesh must be rebuilt, but coordinates of float32 are {pitch:e} apart there: too coarse for \
-                     a part with a diagonal of {diagonal:e}; move it to the origin, or set `recenter=true`"
+                    "the mesh must be rebuilt, but coordinates of float32 are {} apart there: too coarse for \
+                     a part with a diagonal of {}; move it to the origin, or set `recenter=true`",
+                    figure(pitch),
+                    figure(diagonal)
                 ),
             ),
-            pipeline::Refusal::DeviationBeyondLimit { deviation, limit } => (
-                ReasonCode::LimitExceeded,
-                None,
-                format!(
-                    "the closest valid result is up to {deviation:.3e} away, in the unit of the file; \
-                     `max_deviation_mm` allows {limit:.3e}"
-                ),
-            ),
+            &pipeline::Refusal::DeviationBeyondLimit { deviation, found, limit } => {
+                let [deviation, found, limit] =
+                    [deviation, found, limit].map(|length| length * units.millimetres());
+                (ReasonCode::LimitExceeded, None, too_far(deviation, found, limit))
+            }
             pipeline::Refusal::VolumeChangeBeyondLimit { change, limit } => (
                 ReasonCode::LimitExceeded,
                 None,
@@ -158,6 +159,21 @@ impl From<&pipeline::Refusal> for Reason {
     }
 }
 
+/// What a result is farther away than, in millimetres: it is at least `found` and at most `deviation` away, and may be `limit`.
+fn too_far(deviation: f64, found: f64, limit: f64) -> String {
+    let [at_most, at_least, allowed] = [deviation, found, limit].map(figure);
+    if found > limit {
+        return format!(
+            "the closest valid result is up to {at_most} mm from the file; `max_deviation_mm` allows {allowed} mm"
+        );
+    }
+    let at_least = if found > 0.0 { format!(" and at least {at_least} mm") } else { String::new() };
+    format!(
+        "the closest valid result is at most {at_most} mm from the file{at_least}; that it keeps the {allowed} mm of \
+         `max_deviation_mm` is not certain"
+    )
+}
+
 /// A violation in a sentence, with its place.
 fn sentence(violation: &judge::Violation) -> String {
     let what = match violation.condition {
@@ -179,4 +195,39 @@ fn sentence(violation: &judge::Violation) -> String {
         faces => format!(" (faces {})", faces.iter().map(u32::to_string).collect::<Vec<_>>().join(", ")),
     };
     format!("{what}{faces}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn told(deviation: f64, found: f64, limit: f64, units: pipeline::Units) -> String {
+        Reason::of(&pipeline::Refusal::DeviationBeyondLimit { deviation, found, limit }, units).message
+    }
+
+    #[test]
+    fn a_deviation_and_its_limit_are_told_in_millimetres_whatever_the_unit() {
+        let inch = told(0.75, 0.74, 0.5 / 25.4, pipeline::Units::Inch);
+        assert_eq!(
+            inch,
+            "the closest valid result is up to 19.05 mm from the file; `max_deviation_mm` allows 0.5 mm"
+        );
+        let metre = told(0.002, 0.002, 0.001, pipeline::Units::Metre);
+        assert!(metre.contains("up to 2 mm") && metre.ends_with("allows 1 mm"), "{metre}");
+    }
+
+    #[test]
+    fn a_distance_whose_bounds_lie_around_the_limit_is_not_called_farther() {
+        let text = told(0.505, 0.499, 0.5, pipeline::Units::Millimetre);
+        assert_eq!(
+            text,
+            "the closest valid result is at most 0.505 mm from the file and at least 0.499 mm; \
+             that it keeps the 0.5 mm of `max_deviation_mm` is not certain"
+        );
+        let unknown = told(0.505, 0.0, 0.5, pipeline::Units::Millimetre);
+        assert!(
+            unknown.starts_with("the closest valid result is at most 0.505 mm from the file; "),
+            "{unknown}"
+        );
+    }
 }

@@ -4,7 +4,7 @@ use crate::scan::{Mention, SourceFile};
 
 /// Modules of the engine and the service by level. A module may use lower levels and itself, nothing else.
 const LEVELS: [&[&str]; 9] = [
-    &["budget", "par", "geom"],
+    &["budget", "figures", "par", "geom"],
     &["spatial", "mesh"],
     &["formats", "distance", "winding"],
     &["analysis", "printing", "implicit", "simplify", "modeller", "arrangement", "render"],

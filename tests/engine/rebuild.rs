@@ -112,10 +112,11 @@ fn what_is_farther_than_the_caller_allows_is_refused_with_the_least_there_is() {
     let bytes = encode(&crossing(), Encoding::Obj);
     let with = |limits| answer(&bytes, &Options { limits, ..rebuilding() });
     let deviation = |limit| with(Limits { deviation_max: Some(limit), ..Limits::default() });
-    let Refusal::DeviationBeyondLimit { deviation: least, limit } = *refused(&deviation(1e-6)) else {
+    let Refusal::DeviationBeyondLimit { deviation: least, found, limit } = *refused(&deviation(1e-6)) else {
         panic!("another refusal")
     };
     assert!(limit == 1e-6 && least > 1e-6 && least < 0.1, "{least}");
+    assert!(found <= least && found > 0.9 * least, "{found} to {least}");
     rebuilt(&deviation(least * 1.01));
 }
 

@@ -347,11 +347,11 @@ fn a_misspelt_flag_value_or_command_is_answered_with_the_nearest_one() {
         (&["convert", "solid.off", "-o", "out.stl", "--require", "printible"], "'printable'"),
         (
             &["verify", "solid.off", "--wall-mm", "1"],
-            "`verify` takes no `wall_mm`; it is an option of repair",
+            "`verify` takes no `--wall-mm`; it is an option of repair",
         ),
         (
             &["repair", "open.off", "-o", "out.off", "--wall-mm", "-1"],
-            "`wall_mm` cannot be `-1`; expected a number from 0",
+            "`--wall-mm` cannot be `-1`; expected a number from 0",
         ),
         (&["serve", "--admin-listn", "off"], "'--admin-listen'"),
     ] {

@@ -373,7 +373,16 @@ fn a_compressed_body_is_taken_and_counts_by_what_it_holds() {
     );
     let large = [SOLID.as_bytes(), &[b'#'; 2000]].concat();
     assert_eq!(problem(send(gzip(&large), "gzip")).1, "body-too-large");
-    assert_eq!(problem(send(gzip(SOLID.as_bytes())[..40].to_vec(), "gzip")).1, "body-incomplete");
+    let packed = gzip(SOLID.as_bytes());
+    let mut damaged = packed.clone();
+    damaged[packed.len() - 8] ^= 1;
+    for (body, what) in [(packed[..40].to_vec(), "its data ends early; "), (damaged, "its data is damaged; ")]
+    {
+        let (_, code, told) = problem(send(body, "gzip"));
+        let detail = told["detail"].as_str().unwrap();
+        assert_eq!(code, "body-incomplete");
+        assert!(detail.starts_with(&format!("the body is compressed with gzip, but {what}")), "{detail}");
+    }
     let (status, code, told) = problem(send(SOLID.into(), "br"));
     assert_eq!(
         (status, &*code, &told["allowed"]),

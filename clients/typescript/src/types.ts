@@ -1198,7 +1198,7 @@ export interface components {
             /** @description The uploaded bytes, judged. */
             input_certificate: components["schemas"]["Certificate"];
         };
-        /** @description Height of each view that render draws, in pixels. Default: 480. */
+        /** @description Height of each view that render draws, in pixels, with its share of the text below. Default: 480. */
         Height: number;
         /** @description What became of one hole: a boundary loop, or several that got one patch. */
         Hole: {
@@ -1805,7 +1805,7 @@ export interface components {
         };
         /** @description Whether modeller lists the faces of the polyhedron with their numbers and planes, after the operators. Default: false. */
         ListFaces: boolean;
-        /** @description Refuse a repair farther than this from the file, in millimetres. Default: no limit. */
+        /** @description Refuse a repair that is or may be farther than this from the file, in millimetres. Default: no limit. */
         MaxDeviationMm: number;
         /** @description Refuse a repair that changes a defined volume by more than this share. Default: no limit. */
         MaxVolumeChange: number;
@@ -3329,7 +3329,7 @@ export interface components {
              */
             band_rings?: number | null;
         };
-        /** @description Largest distance of vertices of rims that repair and stitch=snap join, in millimetres; never more than half the shortest boundary edge; 0: only where they coincide. Default: 1e-5 of the diagonal for cut-stitch; for repair as far as rims that lie side by side are apart, at most 0.2 % of the diagonal. */
+        /** @description Largest distance of vertices of rims that repair and stitch=snap join, in millimetres; never more than half the shortest boundary edge; 0: only where they coincide. Default: 1e-5 of the diagonal for cut-stitch; for repair as far as rims that lie side by side are apart, at most 0.2 % of the diagonal, after edges are divided where a vertex of another rim lies beside them. */
         SnapEpsilonMm: number;
         /**
          * @description What of a file of several parts is one solid.

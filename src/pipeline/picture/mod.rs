@@ -63,6 +63,10 @@ const BACKGROUND: Rgb = [255, 255, 255];
 const BACK: Rgb = [207, 63, 54];
 /// Colour of words.
 const INK: Rgb = [52, 62, 72];
+/// Dots around words.
+const MARGIN: usize = 5;
+/// Dots from one line to the next.
+const LINE_HEIGHT: usize = LETTER_HEIGHT + 3;
 /// How far the eye of a turn is above the horizon, in degrees.
 const TURN_ELEVATION: f64 = 24.0;
 /// Time of a full turn in milliseconds.
@@ -219,11 +223,15 @@ fn sheet(sides: &[(&Soup, Painted)], choices: &PictureChoices, budget: &Budget) 
         .map(|(soup, painted)| Model::of(painted.scene(soup), frame, choices.shade, budget))
         .collect::<Result<Vec<_>, _>>()?;
     let all: Vec<&Model<'_>> = models.iter().collect();
+    let columns = if sides.len() > 1 { sides.len() } else { columns_of(choices.views.len()) };
+    let views = if choices.turn_pictures > 0 { 1 } else { choices.views.len() };
+    let footer = Footer::of(sides, [width, height], (views * sides.len()).div_ceil(columns));
+    let height = height - footer.taken;
     let aspect = f64::from(width) / f64::from(height);
     let style = Style { edges: choices.edges, background: BACKGROUND, back: Some(BACK) };
     let tile = |camera: &Camera, side: usize, view: Option<View>| {
         let mut canvas = draw(all[side], camera, width, height, &style, budget)?;
-        label(&mut canvas, &sides[side].1, view);
+        entitle(&mut canvas, &sides[side].1, view);
         Ok(canvas)
     };
     if choices.turn_pictures > 0 {
@@ -242,7 +250,7 @@ fn sheet(sides: &[(&Soup, Painted)], choices: &PictureChoices, budget: &Budget) 
             let row = (0..sides.len())
                 .map(|side| tile(&camera, side, None))
                 .collect::<Result<Vec<_>, Stopped>>()?;
-            Ok(grid(&row, row.len()))
+            Ok(footer.below(&grid(&row, row.len())))
         };
         return animation(pictures, (TURN_MS / pictures) as u16, frame);
     }
@@ -256,8 +264,7 @@ fn sheet(sides: &[(&Soup, Painted)], choices: &PictureChoices, budget: &Budget) 
             tiles.push(tile(&camera, side, named)?);
         }
     }
-    let columns = if sides.len() > 1 { sides.len() } else { columns_of(tiles.len()) };
-    Ok(picture(&grid(&tiles, columns)))
+    Ok(picture(&footer.below(&grid(&tiles, columns))))
 }
 
 /// Columns of a grid of so many tiles that is about as wide as high.
@@ -277,37 +284,87 @@ fn grid(tiles: &[Canvas], columns: usize) -> Canvas {
     canvas
 }
 
-/// Names the side and the view above, what the colours mean and the size below.
-fn label(canvas: &mut Canvas, painted: &Painted, view: Option<View>) {
-    // Letters of about a thirtieth of the width.
-    let scale = ((canvas.width() + 120) / 300).max(1);
-    let (margin, step) = (5 * scale, (LETTER_HEIGHT + 3) * scale);
+/// Pixels for each dot of a letter, so that letters are about a thirtieth of the width of a tile.
+fn scale_of(tile_width: usize) -> usize {
+    ((tile_width + 120) / 300).max(1)
+}
+
+/// Names the side and the view at the top of a tile.
+fn entitle(canvas: &mut Canvas, painted: &Painted, view: Option<View>) {
+    let scale = scale_of(canvas.width());
     let side = match painted.side {
         Side::Only => "",
         Side::Before => "before",
         Side::After => "after",
     };
     let title = [side, view.map_or("", View::name)].join(" ");
-    canvas.write(title.trim(), margin, margin, scale, INK);
-    let fitting = canvas.width().saturating_sub(2 * margin) / ((LETTER_WIDTH + 1) * scale);
-    let size = (!painted.size.is_empty()).then_some((None, &painted.size));
-    let legend = painted.legend.iter().map(|(color, text)| (Some(*color), text));
-    let lines: Vec<_> = legend.chain(size).collect();
-    let height = canvas.height();
-    for (at, (color, text)) in lines.iter().enumerate() {
-        let below = (lines.len() - at) * step + margin - 3 * scale;
-        let Some(y) = height.checked_sub(below).filter(|&y| y > margin + step) else { continue };
-        let left = match color {
-            Some(color) => {
-                canvas.fill(margin, y, LETTER_HEIGHT * scale, LETTER_HEIGHT * scale, *color);
-                margin + (LETTER_HEIGHT + 3) * scale
-            }
-            None => margin,
-        };
-        let text: String =
-            text.chars().take(fitting.saturating_sub(if color.is_some() { 2 } else { 0 })).collect();
-        canvas.write(&text, left, y, scale, INK);
+    canvas.write(title.trim(), MARGIN * scale, MARGIN * scale, scale, INK);
+}
+
+/// A line of text; a colour that it explains stands before it.
+type Line<'p> = (Option<Rgb>, &'p str);
+
+/// What the colours mean and the size of each side, below all tiles.
+struct Footer<'p> {
+    /// Of each side.
+    columns: Vec<Vec<Line<'p>>>,
+    column_width: usize,
+    /// Pixels for each dot.
+    scale: usize,
+    /// Height in pixels.
+    height: usize,
+    /// By how much each tile is lower for it, so that the picture is not higher.
+    taken: u32,
+}
+
+impl<'p> Footer<'p> {
+    /// Below `rows` of tiles that would be of this size without it. It takes two fifths of the picture at most; further lines
+    /// are left out.
+    fn of(sides: &'p [(&Soup, Painted)], tile: [u32; 2], rows: usize) -> Self {
+        let ([tile_width, tile_height], rows) = (tile.map(|side| side as usize), rows.max(1));
+        let scale = scale_of(tile_width);
+        let line_height = LINE_HEIGHT * scale;
+        let room = (rows * tile_height * 2 / 5).saturating_sub(MARGIN * scale) / line_height;
+        let columns: Vec<Vec<Line<'p>>> = sides.iter().map(|(_, painted)| lines_of(painted, room)).collect();
+        let lines = columns.iter().map(Vec::len).max().unwrap_or(0);
+        let height = if lines > 0 { lines * line_height + MARGIN * scale } else { 0 };
+        let taken = height.div_ceil(rows);
+        Self { columns, column_width: tile_width, scale, height: taken * rows, taken: taken as u32 }
     }
+
+    /// The picture of `tiles` with the text below.
+    fn below(&self, tiles: &Canvas) -> Canvas {
+        let mut canvas = Canvas::filled(tiles.width(), tiles.height() + self.height, BACKGROUND);
+        canvas.put(tiles, 0, 0);
+        for (side, lines) in self.columns.iter().enumerate() {
+            // One side has the whole width for its text.
+            let width = if self.columns.len() == 1 { tiles.width() } else { self.column_width };
+            for (line, number) in lines.iter().zip(0..) {
+                let y = tiles.height() + number * LINE_HEIGHT * self.scale;
+                self.write(&mut canvas, line, [side * self.column_width, y], width);
+            }
+        }
+        canvas
+    }
+
+    /// Writes `line` into a column that begins at `x` and is `width` wide.
+    fn write(&self, canvas: &mut Canvas, (color, text): &Line<'_>, [x, y]: [usize; 2], width: usize) {
+        let Self { scale, .. } = *self;
+        let (mut left, right) = (x + MARGIN * scale, x + width.saturating_sub(MARGIN * scale));
+        if let Some(color) = color {
+            canvas.fill(left, y, LETTER_HEIGHT * scale, LETTER_HEIGHT * scale, *color);
+            left += (LETTER_HEIGHT + 3) * scale;
+        }
+        let fitting = right.saturating_sub(left) / ((LETTER_WIDTH + 1) * scale);
+        canvas.write(&text.chars().take(fitting).collect::<String>(), left, y, scale, INK);
+    }
+}
+
+/// What the colours of a side mean and its size, in `room` lines at most; the size is told before further colours.
+fn lines_of(painted: &Painted, room: usize) -> Vec<Line<'_>> {
+    let size = (!painted.size.is_empty() && room > 0).then_some((None, painted.size.as_str()));
+    let legend = painted.legend.iter().map(|(color, text)| (Some(*color), text.as_str()));
+    legend.take(room - usize::from(size.is_some())).chain(size).collect()
 }
 
 #[cfg(test)]

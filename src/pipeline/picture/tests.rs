@@ -97,6 +97,24 @@ fn several_views_stand_in_a_grid_and_a_turn_is_an_animation() {
 }
 
 #[test]
+fn what_the_colours_mean_stands_below_the_mesh_and_not_on_it() {
+    let front = PictureChoices { views: vec![View::Front], width: 640, height: 480, ..Default::default() };
+    let four = PictureChoices { views: vec![View::Front; 4], ..front.clone() };
+    for choices in [front, four] {
+        let options = Options { picture: Some(choices), ..Options::default() };
+        let (width, height, pixels) = pixels(&picture_of(Operation::Render, &options));
+        let row = |y: usize| &pixels[y * width..][..width];
+        assert!(height % 480 == 0 && (height - 480 + 100..height - 80).all(|y| row(y)[320] != BACKGROUND));
+        // Two short lines on the left: the hole and the size.
+        let below = || (height - 50..height).flat_map(row);
+        assert!(
+            below().any(|&p| p == INK) && below().any(|p| is_orange(p[0].into(), p[1].into(), p[2].into()))
+        );
+        assert!((height - 50..height).all(|y| row(y)[320] == BACKGROUND));
+    }
+}
+
+#[test]
 fn a_second_file_stands_beside_the_first() {
     let options = Options { after: Some(BOX.to_vec()), ..Options::default() };
     let (width, _, pixels) = pixels(&picture_of(Operation::Render, &options));

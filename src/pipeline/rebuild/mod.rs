@@ -14,6 +14,7 @@ use super::{Action, Answer, Failure, FillHoles, Options, Outcome, Refusal, Repor
 use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{AsStopped, Budget, Stage, Stopped};
 use crate::certificate::Depth;
+use crate::figures::figure;
 use crate::formats::Encoding;
 use crate::geom::{Aabb, DVec3};
 use crate::mesh::Soup;
@@ -278,8 +279,8 @@ fn recentered(center: DVec3, vertices: usize) -> Action {
         changes: vec![("vertices_moved", vertices as u64)],
         move_max: center.length(),
         reason: format!(
-            "moved by [{:e}, {:e}, {:e}] as allowed: float32 is too coarse where it was; distances do not count this",
-            -center.x, -center.y, -center.z
+            "moved by [{}] as allowed: float32 is too coarse where it was; distances do not count this",
+            (DVec3::ZERO - center).to_array().map(|x| x.to_string()).join(", ")
         ),
         stitches: None,
     }
@@ -487,10 +488,10 @@ fn reason(account: &Account, open_shells: OpenShells) -> String {
     let confidence = account.closedness.map_or(1.0, |closedness| (2.0 * closedness - 1.0).abs());
     let walls = match account.sheet_parts {
         0 => String::new(),
-        _ => format!(", with walls of {:.3e}", account.wall),
+        _ => format!(", with walls of {}", figure(account.wall)),
     };
     format!(
-        "rebuilt on a lattice with a spacing of {:e}; read as {reading}{walls}: {why} (confidence {confidence:.2})",
-        account.spacing
+        "rebuilt on a lattice with a spacing of {}; read as {reading}{walls}: {why} (confidence {confidence:.2})",
+        figure(account.spacing)
     )
 }

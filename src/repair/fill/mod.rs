@@ -287,7 +287,8 @@ fn share_of_patches(draft: &Draft, added: usize) -> Option<String> {
 }
 
 fn reason(patches: Option<String>, left: u64, stray_edges: u64) -> String {
-    let left = (left > 0).then(|| format!("{left} holes stay open: no patch meets the rest only at its rim"));
+    let stay = if left == 1 { "hole stays" } else { "holes stay" };
+    let left = (left > 0).then(|| format!("{left} {stay} open: no patch meets the rest only at its rim"));
     let stray = (stray_edges > 0).then(|| format!("{stray_edges} boundary edges are in no simple loop"));
     patches.into_iter().chain(left).chain(stray).collect::<Vec<_>>().join("; ")
 }

@@ -5,6 +5,7 @@ mod tips;
 
 use super::{Changes, Draft, Star};
 use crate::budget::{Budget, Stopped};
+use crate::figures::figure;
 use crate::geom::{DVec3, print_pitch};
 use crate::mesh::edge_of;
 use crate::spatial::{Coincident, coincident_f64};
@@ -56,7 +57,7 @@ pub fn join_contacts(draft: &mut Draft, size: f64, budget: &Budget) -> Result<Ch
         }
     }
     let counts = [("vertices_moved", moved), ("tips_joined", tips)];
-    let reason = format!("what touched was joined by necks of up to {size:e}");
+    let reason = format!("what touched was joined by necks of up to {}", figure(size));
     Ok(Changes { move_max, reason, ..Changes::counted(counts) })
 }
 

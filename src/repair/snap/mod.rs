@@ -16,6 +16,7 @@ use self::divide::{Divided, divide_beside, slits};
 pub use self::gap::gap_between_rims;
 use super::{Changes, Draft, Effects, Stitches};
 use crate::budget::{Budget, Stopped};
+use crate::figures::figure;
 use crate::geom::{Aabb, DVec3, are_collinear};
 use crate::mesh::{self, Boundary, ChosenEdges, JoinRule, Stitched, Validity, edge_of};
 use crate::spatial::{Octree, is_within};
@@ -96,7 +97,8 @@ pub fn snap(draft: &mut Draft, options: &SnapOptions, budget: &Budget) -> Result
     let mut counts = [stitches.counts(), others].concat();
     counts.extend(edges_divided.into_iter().chain(triangles_split));
     let move_max = moved_by.max(divided.move_max);
-    let reason = if moved > 0 { format!("vertices up to {epsilon:e} apart are one") } else { String::new() };
+    let reason =
+        if moved > 0 { format!("vertices up to {} apart are one", figure(epsilon)) } else { String::new() };
     let effects = Effects { turned_triangles: flipped, ..Effects::default() };
     Ok(Changes { counts, move_max, reason, stitches, effects, ..Changes::default() })
 }

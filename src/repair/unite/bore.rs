@@ -3,6 +3,7 @@
 
 use super::unite_as_oriented;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::figures::figure;
 use crate::geom::{DVec3, print_pitch};
 use crate::mesh::{EdgeGroups, edge_of, singular_vertices, twins};
 use crate::repair::{Changes, Draft, Effects, NEW};
@@ -43,7 +44,7 @@ pub fn bore_contacts(draft: &mut Draft, steps: u32, budget: &Budget) -> Result<C
         bodies.push_along_edge(edge);
     }
     let united = unite_as_oriented(draft, budget)?;
-    let reason = format!("bodies of {steps} steps of {pitch:e} were taken out of {count} contacts");
+    let reason = format!("bodies of {steps} steps of {} were taken out of {count} contacts", figure(pitch));
     let reason = if united.reason.is_empty() { reason } else { format!("{reason}; {}", united.reason) };
     let counts = [("contacts_bored", count)].into_iter().chain(united.counts).collect();
     // What touched is nowhere farther than that from what is left.

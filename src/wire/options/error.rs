@@ -1,11 +1,14 @@
 //! Options that cannot be taken.
 
+use std::borrow::Cow;
 use std::fmt;
 
 use super::nearest::nearest;
 use super::table::OptionSpec;
+use crate::wire::plan_fault::PlanFault;
 use crate::wire::problem::Problem;
 use crate::wire::problem_code::ProblemCode;
+use crate::wire::shortened::shortened;
 use crate::wire::words::Operation;
 
 /// An option that cannot be taken.
@@ -24,6 +27,13 @@ pub enum OptionError {
         spec: &'static OptionSpec,
         /// The value that was given.
         value: String,
+    },
+    /// The value is no plan.
+    NoPlan {
+        /// The option.
+        spec: &'static OptionSpec,
+        /// What is wrong with it.
+        fault: PlanFault,
     },
     /// The operation does not take it.
     NotTaken {
@@ -61,12 +71,13 @@ impl fmt::Display for OptionError {
             }
             Self::Unknown { name, suggestion: None } => write!(f, "unknown option `{name}`"),
             Self::Invalid { spec, value } => {
-                write!(f, "`{}` cannot be `{value}`; expected {}", spec.name, spec.expected())?;
+                write!(f, "`{}` cannot be `{}`; expected {}", spec.name, shortened(value), spec.expected())?;
                 match nearest(value, spec.words().iter().copied()) {
                     Some(near) => write!(f, "; did you mean `{near}`?"),
                     None => Ok(()),
                 }
             }
+            Self::NoPlan { fault, .. } => f.write_str(&fault.told),
             Self::NotTaken { spec, operation } => {
                 let takers: Vec<_> = spec.operations.iter().map(|taker| taker.word()).collect();
                 write!(f, "`{operation}` takes no `{}`; it is an option of {}", spec.name, takers.join(", "))
@@ -94,6 +105,12 @@ impl From<&OptionError> for Problem {
                 expected: Some(spec.expected()),
                 suggestion: nearest(value, spec.words().iter().copied()).map(Into::into),
                 ..of(ProblemCode::InvalidParameter, spec.name).with_allowed(spec.words().iter().copied())
+            },
+            OptionError::NoPlan { spec, fault } => Self {
+                expected: Some(spec.expected()),
+                suggestion: fault.suggestion.clone().map(Cow::Owned),
+                allowed: fault.allowed.iter().cloned().map(Cow::Owned).collect(),
+                ..of(ProblemCode::InvalidParameter, spec.name)
             },
             OptionError::NotTaken { spec, .. } => of(ProblemCode::UnknownParameter, spec.name),
             OptionError::Contradictory { spec }

@@ -83,7 +83,7 @@ options! {
     recenter: bool, in REPAIR,
         "Move a mesh that is too far from the origin for float32 there, instead of refusing it. Default: false.";
     max_deviation_mm: f64, in REPAIR,
-        "Refuse a repair farther than this from the file, in millimetres. Default: no limit.";
+        "Refuse a repair that is or may be farther than this from the file, in millimetres. Default: no limit.";
     max_volume_change: f64 = SHARE, in REPAIR,
         "Refuse a repair that changes a defined volume by more than this share. Default: no limit.";
     nesting: Nesting, in REPAIR,
@@ -117,7 +117,7 @@ options! {
     stitch: Stitch, in CUT_STITCH,
         "Which boundary edges cut-stitch joins after the cut. Default: pinch.";
     snap_epsilon_mm: f64, in &[Operation::Repair, Operation::CutStitch],
-        "Largest distance of vertices of rims that repair and stitch=snap join, in millimetres; never more than half the shortest boundary edge; 0: only where they coincide. Default: 1e-5 of the diagonal for cut-stitch; for repair as far as rims that lie side by side are apart, at most 0.2 % of the diagonal.";
+        "Largest distance of vertices of rims that repair and stitch=snap join, in millimetres; never more than half the shortest boundary edge; 0: only where they coincide. Default: 1e-5 of the diagonal for cut-stitch; for repair as far as rims that lie side by side are apart, at most 0.2 % of the diagonal, after edges are divided where a vertex of another rim lies beside them.";
     stitch_validity: StitchValidity, in CUT_STITCH,
         "When cut-stitch may join two boundary edges. Default: exact.";
     degenerate: Degenerate, in CUT_STITCH,
@@ -163,7 +163,7 @@ options! {
     width: u32 = OptionKind::Integer { min: 16, max: 2048 }, in RENDER,
         "Width of each view that render draws, in pixels. Default: 640.";
     height: u32 = OptionKind::Integer { min: 16, max: 2048 }, in RENDER,
-        "Height of each view that render draws, in pixels. Default: 480.";
+        "Height of each view that render draws, in pixels, with its share of the text below. Default: 480.";
     shade: Shade, in RENDER,
         "How render shades faces. Default: smooth.";
     edges: DrawnEdges, in RENDER,

@@ -5,6 +5,7 @@ use serde_json::{Map, Value};
 use super::lookup::spec_of;
 use super::table::{OptionKind, OptionSpec};
 use super::{OptionError, Options};
+use crate::wire::plan_fault::PlanFault;
 
 impl Options {
     /// Options from names and values, as in a query.
@@ -91,7 +92,13 @@ impl Taken {
     pub(super) fn into_result(self, spec: &'static OptionSpec, value: &str) -> Result<(), OptionError> {
         match self {
             Self::Yes => Ok(()),
-            Self::Invalid => Err(OptionError::Invalid { spec, value: value.to_owned() }),
+            Self::Invalid => {
+                let fault = if spec.kind == OptionKind::Plan { PlanFault::of(value) } else { None };
+                Err(match fault {
+                    Some(fault) => OptionError::NoPlan { spec, fault },
+                    None => OptionError::Invalid { spec, value: value.to_owned() },
+                })
+            }
             Self::Contradictory => Err(OptionError::Contradictory { spec }),
         }
     }

@@ -1,5 +1,6 @@
 //! What a row of the table of options says: its name, its values, who takes it, and what it does.
 
+use crate::figures::figure;
 use crate::wire::words::Operation;
 
 /// What values an option takes.
@@ -11,6 +12,8 @@ pub enum OptionKind {
         name: &'static str,
         /// All of them.
         words: &'static [&'static str],
+        /// What each of them means, in the same order.
+        abouts: &'static [&'static str],
     },
     /// A whole number in this range.
     Integer {
@@ -82,7 +85,7 @@ impl OptionSpec {
         match self.kind {
             OptionKind::Word { words, .. } => words.join(", "),
             OptionKind::Integer { min, max } => format!("a whole number from {min} to {max}"),
-            OptionKind::Number { min, max } => format!("a number from {min} to {max:e}"),
+            OptionKind::Number { min, max } => format!("a number from {} to {}", figure(min), figure(max)),
             OptionKind::Flag => "true or false".to_owned(),
             OptionKind::Edges => "1 to 100000 pairs of different vertex numbers in a list".to_owned(),
             OptionKind::Holes => {

@@ -20,7 +20,7 @@ pub(super) trait OptionValue: Sized + PartialEq {
 }
 
 impl<W: Word + PartialEq> OptionValue for W {
-    const KIND: OptionKind = OptionKind::Word { name: W::NAME, words: W::ALL_WORDS };
+    const KIND: OptionKind = OptionKind::Word { name: W::NAME, words: W::ALL_WORDS, abouts: W::ALL_ABOUTS };
 
     fn from_text(text: &str) -> Option<Self> {
         W::of_word(text)

@@ -3,6 +3,7 @@
 use super::*;
 use crate::implicit::RbfOptions;
 use crate::repair::fill::{FillOptions, HoleChoice};
+use crate::wire::plan_fault::PlanFault;
 use crate::wire::proposal::Plan;
 use serde_json::json;
 
@@ -129,4 +130,67 @@ fn what_is_no_plan_is_not_taken() {
     ] {
         assert_eq!(PlanRequest::from_json(&wrong.to_string()), None, "{wrong}");
     }
+}
+
+fn fault(plan: &serde_json::Value) -> String {
+    PlanFault::of(&plan.to_string()).map_or_else(String::new, |fault| fault.told)
+}
+
+#[test]
+fn a_wrong_word_of_a_plan_is_named_with_its_place_and_what_is_allowed() {
+    let steps = json!({"steps": [{"step": "weld"}, {"step": "wold"}, {"step": "snap", "epsilon": 1}]});
+    let told = fault(&steps);
+    assert!(told.starts_with("`plan`, step 2: `step` cannot be `wold`; expected split-polygons, "), "{told}");
+    assert!(told.ends_with("; did you mean `weld`?") && !told.contains("epsilon"), "{told}");
+    let findings =
+        json!({"findings": [{"code": "boundary-loop"}, {"code": "boundary-loop", "remedy": "burn"}]});
+    let told = fault(&findings);
+    assert!(told.starts_with("`plan`, finding 2: `remedy` cannot be `burn`; expected "), "{told}");
+    assert!(told.contains("fill") && !told.contains("boundary-loop"), "{told}");
+    let elements =
+        json!([{"number": 0, "remedy": "fill"}, {"number": 1, "remedy": "fill", "method": "best"}]);
+    let told = fault(&json!({"findings": [{"code": "boundary-loop", "elements": elements}]}));
+    assert!(told.starts_with("`plan`, finding 1, element 2: `method` cannot be `best`; expected "), "{told}");
+}
+
+#[test]
+fn other_faults_of_a_plan_are_told_with_their_place() {
+    let how = |how: serde_json::Value| json!({"steps": [{"step": "fill-holes", "all": true, "except": [], "how": how}]});
+    for (plan, want) in [
+        (json!([]), "`plan` is no object"),
+        (
+            json!({"stepps": []}),
+            "`plan` has no member `stepps`; expected input_sha256, findings, steps; did you mean `steps`?",
+        ),
+        (json!({"input_sha256": "ab"}), "`plan`: `input_sha256` is not 64 hexadecimal digits"),
+        (json!({"steps": 7}), "`plan`: `steps` is no list"),
+        (json!({"steps": ["weld"]}), "`plan`, step 1 is no object: `\"weld\"`"),
+        (
+            json!({"steps": [{"step": "weld", "strength": 3}]}),
+            "`plan`, step 1 has no member `strength`; expected none",
+        ),
+        (json!({"steps": [{"step": "remove-crossing"}]}), "`plan`, step 1 lacks the member `rings`"),
+        (json!({"steps": [{"rings": 2}]}), "`plan`, step 1 lacks the member `step`"),
+        (
+            json!({"steps": [{"step": "remove-crossing", "rings": 11}]}),
+            "`plan`, step 1: a number is out of range, or a list has more than 10000 items",
+        ),
+        (
+            json!({"steps": [{"step": "snap", "epsilon": "wide"}]}),
+            "`plan`, step 1: `epsilon` cannot be `wide`: expected a number",
+        ),
+        (
+            json!({"steps": [{"step": "remove-crossing", "rings": 1.5}]}),
+            "`plan`, step 1: `rings` cannot be `1.5`: not a whole number",
+        ),
+        (json!({"steps": [{"step": "unite"}, {"step": "weld"}]}), ""),
+    ] {
+        assert_eq!(fault(&plan), want);
+    }
+    assert!(PlanFault::of("{").unwrap().told.starts_with("`plan` is no JSON: "));
+    let told = fault(&how(json!({"bridge": true})));
+    assert!(
+        told.starts_with("`plan`, step 1, `how` has no member `bridge`; expected method, band_rings, "),
+        "{told}"
+    );
 }

@@ -48,8 +48,9 @@ fn a_coordinate_that_is_not_finite_has_a_code_of_its_own() {
     let refusal = |value| Refusal::NotRepresentable {
         reason: WriteError::NotRepresentable { vertex: 3, value, encoding: "stl-binary" },
     };
-    assert_eq!(Problem::from(&refusal(f64::NAN)).code, ProblemCode::MeshNonFinite);
-    assert_eq!(Problem::from(&refusal(1e300)).code, ProblemCode::NotRepairable);
+    let problem = |value| Problem::of_refusal(&refusal(value), Units::Millimetre);
+    assert_eq!(problem(f64::NAN).code, ProblemCode::MeshNonFinite);
+    assert_eq!(problem(1e300).code, ProblemCode::NotRepairable);
 }
 
 #[test]

@@ -6,6 +6,8 @@ pub(super) trait Word: Sized {
     const NAME: &'static str;
     /// The words of all values.
     const ALL_WORDS: &'static [&'static str];
+    /// What each of them means, in the same order.
+    const ALL_ABOUTS: &'static [&'static str];
 
     /// The value of this word.
     fn of_word(word: &str) -> Option<Self>;
@@ -42,6 +44,7 @@ macro_rules! words {
         impl $crate::wire::words::Word for $name {
             const NAME: &'static str = stringify!($name);
             const ALL_WORDS: &'static [&'static str] = Self::WORDS;
+            const ALL_ABOUTS: &'static [&'static str] = &[$(concat!($($about),+)),+];
 
             fn of_word(word: &str) -> Option<Self> {
                 Self::from_word(word)

@@ -748,7 +748,7 @@ class FormatInfo(TypedDict):
 
 Height: TypeAlias = int
 """
-Height of each view that render draws, in pixels. Default: 480.
+Height of each view that render draws, in pixels, with its share of the text below. Default: 480.
 """
 
 
@@ -1115,7 +1115,7 @@ Whether modeller lists the faces of the polyhedron with their numbers and planes
 
 MaxDeviationMm: TypeAlias = float
 """
-Refuse a repair farther than this from the file, in millimetres. Default: no limit.
+Refuse a repair that is or may be farther than this from the file, in millimetres. Default: no limit.
 """
 
 
@@ -2271,7 +2271,7 @@ class SingleHole(TypedDict):
 
 SnapEpsilonMm: TypeAlias = float
 """
-Largest distance of vertices of rims that repair and stitch=snap join, in millimetres; never more than half the shortest boundary edge; 0: only where they coincide. Default: 1e-5 of the diagonal for cut-stitch; for repair as far as rims that lie side by side are apart, at most 0.2 % of the diagonal.
+Largest distance of vertices of rims that repair and stitch=snap join, in millimetres; never more than half the shortest boundary edge; 0: only where they coincide. Default: 1e-5 of the diagonal for cut-stitch; for repair as far as rims that lie side by side are apart, at most 0.2 % of the diagonal, after edges are divided where a vertex of another rim lies beside them.
 """
 
 
