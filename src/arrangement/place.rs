@@ -246,17 +246,28 @@ impl Placing<'_> {
             // Points may have moved by two pitches in each coordinate since the tree was built.
             let margin = DVec3::splat(4.0 * self.pitch);
             let query = Aabb { min: bounds.min - margin, max: bounds.max + margin };
-            let before = pairs.len();
+            // From where it is with its point at one of the places.
+            let reach = 4.0 * self.pitch;
+            let corners =
+                names.map(|p| if p == point { places[0] } else { self.placed.positions[p as usize] });
+            let mut seen = 0;
             bvh.visit_box(query, self.budget, |other| {
-                let moves = || self.placed.triangles[other as usize].contains(&point);
-                let has_area = |[a, b, c]: [DVec3; 3]| !are_collinear(a, b, c);
-                // One that moves may have an area at another place.
-                if pairs.len() < NEIGHBORS_MAX && other != t && (moves() || has_area(self.corners(other))) {
-                    let shared = Shared::between(names, self.placed.triangles[other as usize]);
-                    pairs.push(Pair { of_star: n, other, moves: moves(), shared });
+                seen += 1;
+                if pairs.len() == NEIGHBORS_MAX || other == t {
+                    return;
                 }
+                let moves = self.placed.triangles[other as usize].contains(&point);
+                let others = self.corners(other);
+                // One that moves may have an area at another place.
+                if !moves
+                    && (are_apart(corners, others, reach) || are_collinear(others[0], others[1], others[2]))
+                {
+                    return;
+                }
+                let shared = Shared::between(names, self.placed.triangles[other as usize]);
+                pairs.push(Pair { of_star: n, other, moves, shared });
             })?;
-            self.budget.spend(1 + (pairs.len() - before) as u64)?;
+            self.budget.spend(1 + seen)?;
             if pairs.len() == NEIGHBORS_MAX {
                 return Ok(None);
             }
@@ -296,6 +307,25 @@ impl Placing<'_> {
     }
 }
 
+/// Whether there is more than `gap` between two triangles along a normal of one of them or of an edge of each. Any direction
+/// proves it, so rounded ones do.
+fn are_apart(a: [DVec3; 3], b: [DVec3; 3], gap: f64) -> bool {
+    let (a, b) = (a.map(|p| p - a[0]), b.map(|p| p - a[0]));
+    let edges = |[p, q, r]: [DVec3; 3]| [q - p, r - q, p - r];
+    let (of_a, of_b) = (edges(a), edges(b));
+    let is_between = |axis: DVec3| {
+        let span = |corners: [DVec3; 3]| {
+            let [x, y, z] = corners.map(|p| p.dot(axis));
+            [x.min(y).min(z), x.max(y).max(z)]
+        };
+        let ([low_a, high_a], [low_b, high_b]) = (span(a), span(b));
+        (low_b - high_a).max(low_a - high_b) > gap * axis.length()
+    };
+    is_between(of_a[0].cross(of_a[1]))
+        || is_between(of_b[0].cross(of_b[1]))
+        || of_a.into_iter().any(|u| of_b.into_iter().any(|v| is_between(u.cross(v))))
+}
+
 /// A triangle of a star, and one near it.
 struct Pair {
     /// Which of the star.
@@ -305,4 +335,34 @@ struct Pair {
     moves: bool,
     /// What the first has in common with the other.
     shared: Shared,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn triangles_that_are_apart_are_so_from_each_place_within_the_gap() {
+        let mut state = 7u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state >> 20) / 256.0
+        };
+        let mut triangle = || [(); 3].map(|()| DVec3::new(random(), random(), random()));
+        let (mut apart, mut near) = (0, 0);
+        for _ in 0..4000 {
+            let (a, b) = (triangle(), triangle());
+            let contact =
+                |a: [DVec3; 3]| contact(&Plane::through(a), b.each_ref(), Shared::Nothing).is_some();
+            let moved = |k: usize| {
+                let step = DVec3::new((k % 3) as f64, (k / 3 % 3) as f64, (k / 9) as f64) - 1.0;
+                [a[0] + step, a[1], a[2]]
+            };
+            let meets_anywhere = (0..27).any(|k| contact(moved(k)));
+            assert!(!are_apart(a, b, 4.0) || !meets_anywhere, "{a} {b}", a = a[0], b = b[0]);
+            apart += u32::from(are_apart(a, b, 4.0));
+            near += u32::from(meets_anywhere);
+        }
+        assert!(apart > 500 && near > 500, "{apart} {near}");
+    }
 }

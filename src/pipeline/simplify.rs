@@ -287,7 +287,6 @@ fn run(mesh: &Soup, choices: &SimplifyChoices, budget: &Budget) -> Result<Vec<Si
         [] => vec![Target::Ratio(RATIO_DEFAULT)],
         targets => targets.to_vec(),
     };
-    let order = finest_first(&targets, mesh.triangles.len());
     let groups = face_groups(mesh);
     let texture = points_of(mesh);
     let _charge = budget.charge(size_of_val(&texture[..]) as u64)?;
@@ -304,15 +303,19 @@ fn run(mesh: &Soup, choices: &SimplifyChoices, budget: &Budget) -> Result<Vec<Si
             normal_cos_min: choices.normal_turn_max.map_or(usual.normal_cos_min, cosine_of_turn),
             ..usual
         },
-        targets: order.iter().map(|&i| targets[i]).collect(),
         criterion: choices.criterion,
         placement: choices.placement,
         priorities: choices.vertex_colors == VertexColors::Priority,
         ..SimplifyOptions::default()
     };
     let mode = choices.mode.unwrap_or(Mode::Guarded);
-    let results = budget.stage(Stage::Simplify, || simplify::simplify(&input, mode, &options, budget))?;
-    let mut by_target: Vec<_> = order.into_iter().zip(results).collect();
+    let mut by_target = Vec::new();
+    for order in finest_first(&targets, mesh.triangles.len()) {
+        let targets = order.iter().map(|&i| targets[i]).collect();
+        let options = SimplifyOptions { targets, ..options.clone() };
+        let results = budget.stage(Stage::Simplify, || simplify::simplify(&input, mode, &options, budget))?;
+        by_target.extend(order.into_iter().zip(results));
+    }
     by_target.sort_by_key(|&(i, _)| i);
     Ok(by_target.into_iter().map(|(_, result)| result).collect())
 }
@@ -322,25 +325,22 @@ fn cosine_of_turn(degrees: f64) -> f64 {
     if degrees >= 180.0 { -2.0 } else { libm::cos(degrees.to_radians()) }
 }
 
-/// The order in which one run meets the targets. Errors and counts cannot be compared before the run: among targets of
-/// both kinds, the order is the caller's.
-fn finest_first(targets: &[Target], faces: usize) -> Vec<usize> {
-    let count = |target: &Target| match *target {
-        Target::Faces(count) => Some(count as f64),
-        Target::Ratio(ratio) => Some(ratio * faces as f64),
-        Target::Error(_) => None,
-    };
-    let error = |target: &Target| match *target {
-        Target::Error(error) => Some(error),
-        _ => None,
-    };
-    let mut order: Vec<usize> = (0..targets.len()).collect();
-    if let Some(counts) = targets.iter().map(count).collect::<Option<Vec<_>>>() {
-        order.sort_by(|&a, &b| counts[b].total_cmp(&counts[a]));
-    } else if let Some(errors) = targets.iter().map(error).collect::<Option<Vec<_>>>() {
-        order.sort_by(|&a, &b| errors[a].total_cmp(&errors[b]));
+/// The targets of each run, from the finest to the coarsest: those of counts and those of errors, which cannot be compared before
+/// a run. In one run a count could take the mesh past an error that was asked for.
+fn finest_first(targets: &[Target], faces: usize) -> Vec<Vec<usize>> {
+    let (mut counts, mut errors) = (Vec::new(), Vec::new());
+    for (i, target) in targets.iter().enumerate() {
+        match *target {
+            Target::Faces(count) => counts.push((-(count as f64), i)),
+            Target::Ratio(ratio) => counts.push((-ratio * faces as f64, i)),
+            Target::Error(error) => errors.push((error, i)),
+        }
     }
-    order
+    let order = |mut run: Vec<(f64, usize)>| {
+        run.sort_by(|a, b| a.0.total_cmp(&b.0));
+        run.into_iter().map(|(_, i)| i).collect::<Vec<_>>()
+    };
+    [counts, errors].into_iter().filter(|run| !run.is_empty()).map(order).collect()
 }
 
 /// A number for each triangle, the same for the same colour and material of the face; empty when faces have neither.
@@ -404,9 +404,10 @@ mod tests {
     #[test]
     fn targets_are_met_from_the_finest_to_the_coarsest() {
         let order = |targets: &[Target]| finest_first(targets, 1000);
-        assert_eq!(order(&[Target::Faces(10), Target::Ratio(0.5), Target::Faces(600)]), [2, 1, 0]);
-        assert_eq!(order(&[Target::Error(0.2), Target::Error(0.1)]), [1, 0]);
-        assert_eq!(order(&[Target::Error(0.2), Target::Faces(10), Target::Error(0.1)]), [0, 1, 2]);
+        assert_eq!(order(&[Target::Faces(10), Target::Ratio(0.5), Target::Faces(600)]), [[2, 1, 0]]);
+        assert_eq!(order(&[Target::Error(0.2), Target::Error(0.1)]), [[1, 0]]);
+        let both = order(&[Target::Error(0.2), Target::Faces(10), Target::Error(0.1)]);
+        assert_eq!(both, [vec![1], vec![2, 0]]);
     }
 
     #[test]

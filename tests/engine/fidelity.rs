@@ -69,6 +69,46 @@ fn a_missing_side_is_invented_and_refused_where_the_result_must_be_faithful() {
     assert_eq!(answer(Operation::Repair, &cube(), &faithful).report.outcome, Some(Outcome::Identical));
 }
 
+/// A box of 10 each way without a lid, and a cube in the middle of it that does not touch it.
+fn cup_with_a_cube(size: f64) -> RawSoup {
+    let mut cup = cuboid([10.0; 3]);
+    cup.triangles.truncate(10);
+    let low = (10.0 - size) / 2.0;
+    cup.with(&cuboid([size; 3]).moved([low; 3]))
+}
+
+#[test]
+fn what_a_patch_over_an_opening_covers_is_told_as_lost() {
+    let report = answer(Operation::Repair, &cup_with_a_cube(2.0), &Options::default()).report;
+    let losses = report.losses.unwrap();
+    // The cube had 24 of 524, all of which could be seen through the opening.
+    assert!((losses.visible_loss - 24.0 / 524.0).abs() < 0.01, "{losses:?}");
+    assert_eq!((losses.bodies_lost, report.fidelity.unwrap().word), (1, Fidelity::Changed));
+}
+
+#[test]
+fn where_much_is_behind_patches_open_parts_become_walls() {
+    let report = answer(Operation::Repair, &cup_with_a_cube(6.0), &Options::default()).report;
+    let losses = report.losses.unwrap();
+    assert!(losses.visible_loss < 1e-3 && losses.bodies_lost == 0, "{losses:?}");
+    assert!(report.actions.iter().any(|action| action.step == "thicken"), "{:?}", report.tried);
+    // A body through a wall of the cup besides, so that they have to be united.
+    let bar = cuboid([4.0, 4.0, 9.0]).moved([3.0, 3.0, 5.0]);
+    let mut cup = cuboid([10.0; 3]);
+    cup.triangles.truncate(10);
+    let losses = answer(Operation::Repair, &cup.with(&bar), &Options::default()).report.losses.unwrap();
+    assert!(losses.visible_loss < 1e-3, "{losses:?}");
+}
+
+#[test]
+fn a_limit_of_the_deviation_is_kept_by_what_patches_cover() {
+    let limits = Limits { deviation_max: Some(1.0), ..Limits::default() };
+    let options = Options { limits, require: Some(Require::Printable), ..Options::default() };
+    let answer = answer(Operation::Repair, &cup_with_a_cube(2.0), &options);
+    let distance = answer.report.distance;
+    assert!(answer.output.is_none() || distance.unwrap().upper() <= 1.0, "{distance:?}");
+}
+
 #[test]
 fn a_conversion_that_rounds_is_faithful() {
     let options = Options { output_format: Some(Format::Stl), ..Options::default() };

@@ -176,6 +176,29 @@ fn a_repair_with_several_targets_gives_a_certified_file_for_each() {
 }
 
 #[test]
+fn an_error_is_kept_beside_a_count_that_goes_past_it() {
+    // A ball of 768 triangles.
+    let ball = grid_cube(8).map(|p| {
+        let q = p.map(|x| x - 0.5);
+        let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
+        q.map(|x| x / length)
+    });
+    for mode in [Mode::Fast, Mode::Strict, Mode::Guarded] {
+        let levels = |targets: Vec<Target>| {
+            let simplify = SimplifyChoices { targets, mode: Some(mode), ..SimplifyChoices::default() };
+            let options = Options { simplify, ..Options::default() };
+            let answer =
+                run(Operation::Simplify, &encode(&ball, Encoding::Off), &options, &Budget::unlimited());
+            answer.unwrap().report.levels.iter().map(|l| l.simplified.faces_after).collect::<Vec<_>>()
+        };
+        let alone = levels(vec![Target::Error(0.005)]);
+        assert!(alone[0] > 40, "{mode:?}: {alone:?}");
+        let both = levels(vec![Target::Faces(40), Target::Error(0.005)]);
+        assert_eq!(both[1], alone[0], "{mode:?}: {both:?}");
+    }
+}
+
+#[test]
 fn a_simplified_repair_says_how_far_it_is_and_keeps_the_limits_of_the_caller() {
     // A ball of 768 triangles.
     let ball = grid_cube(8).map(|p| {

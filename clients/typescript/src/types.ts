@@ -3457,7 +3457,7 @@ export interface components {
             /** @description As far as no collapse has an error above this, in millimetres. */
             error_mm: number;
         };
-        /** @description Several results from one run: [{"ratio":0.5},{"faces":1000},{"error_mm":0.1}]. */
+        /** @description Several results from one call, each within its own target: [{"ratio":0.5},{"faces":1000},{"error_mm":0.1}]. */
         Targets: components["schemas"]["TargetSpec"][];
         /** @description How many pairs each test found. After the weld vertices at one position are one, so `vv` is exact nowhere. */
         TestCounts: {

@@ -99,7 +99,7 @@ options! {
     error_mm: f64, in FEWER,
         "Simplify as far as no collapse has an error above this, in millimetres.";
     targets: Vec<TargetSpec>, in FEWER,
-        "Several results from one run: [{\"ratio\":0.5},{\"faces\":1000},{\"error_mm\":0.1}].";
+        "Several results from one call, each within its own target: [{\"ratio\":0.5},{\"faces\":1000},{\"error_mm\":0.1}].";
     mode: Mode, in SIMPLIFY,
         "How a simplification works. Default: guarded, which a repair always uses.";
     criterion: Criterion, in FEWER,

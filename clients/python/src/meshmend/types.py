@@ -2447,7 +2447,7 @@ How far to simplify: one member.
 
 Targets: TypeAlias = list[TargetSpec]
 """
-Several results from one run: [{"ratio":0.5},{"faces":1000},{"error_mm":0.1}].
+Several results from one call, each within its own target: [{"ratio":0.5},{"faces":1000},{"error_mm":0.1}].
 """
 
 
