@@ -1,5 +1,5 @@
-//! The inputs: a dented sphere of radius 50 mm, and what befalls it. All coordinates are float32, and those that do not say so
-//! otherwise come out the same with every C library.
+//! The inputs: a dented sphere of radius 50 mm, and what befalls it. All coordinates are rounded to float32, so that the last
+//! digits of the C library's sines do not matter.
 
 use crate::dented_sphere::dented_sphere;
 use meshmend::geom::DVec3;
