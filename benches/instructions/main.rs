@@ -47,6 +47,10 @@ fn main() -> ExitCode {
     let is_chosen =
         |pass: &&Pass| words.is_empty() || words.iter().any(|word| pass.name.contains(word.as_str()));
     let chosen: Vec<&Pass> = PASSES.iter().filter(is_chosen).collect();
+    if chosen.is_empty() {
+        println!("there is no such pass; there are: {}", names().join(", "));
+        return ExitCode::FAILURE;
+    }
     let counts = match count_all(&chosen) {
         Ok(counts) => counts,
         Err(fault) => {
@@ -57,8 +61,7 @@ fn main() -> ExitCode {
     let table = Table::read(TABLE);
     let is_blessed = std::env::var_os("MESHMEND_BLESS").is_some();
     if is_blessed {
-        let names: Vec<&str> = PASSES.iter().map(|pass| pass.name).collect();
-        table.blessed(&names, &counts).write(TABLE);
+        table.blessed(&names(), &counts).write(TABLE);
     }
     let is_as_before = compare(&table, &chosen, &counts);
     if is_blessed {
@@ -68,6 +71,10 @@ fn main() -> ExitCode {
         println!("if that is right: MESHMEND_BLESS=1 cargo bench --profile dev --bench instructions");
     }
     if is_as_before || is_blessed { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+fn names() -> Vec<&'static str> {
+    PASSES.iter().map(|pass| pass.name).collect()
 }
 
 /// The instructions of these passes, by name, as many at a time as there are cores.
@@ -110,7 +117,7 @@ fn compare(table: &Table, passes: &[&Pass], counts: &BTreeMap<String, u64>) -> b
         cheaper += usize::from(row.judge(now) == Word::Cheaper);
         println!("{:<24} {:>15} {now:>15} {:>8.4}{word}", pass.name, row.instructions, row.ratio(now));
     }
-    let stale = table.names_beside(PASSES.iter().map(|pass| pass.name));
+    let stale = table.names_beside(&names());
     if cheaper > 0 {
         println!("{cheaper} of {} passes are cheaper: lower the table (MESHMEND_BLESS=1)", passes.len());
     }

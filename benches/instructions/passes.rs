@@ -56,8 +56,8 @@ pub(crate) const PASSES: &[Pass] = &[
     Pass { name: "fill-smooth", prepare: || filling(Method::Smooth) },
     Pass { name: "fill-rbf", prepare: || filling(Method::Rbf) },
     Pass { name: "unite", prepare: uniting },
-    Pass { name: "snap-corners", prepare: || snapping(apart(&sphere(32, 26), 0.05)) },
-    Pass { name: "snap-divided-edges", prepare: || snapping(halves(64)) },
+    Pass { name: "snap-corners", prepare: || snapping(&apart(&sphere(32, 26), 0.05)) },
+    Pass { name: "snap-divided-edges", prepare: || snapping(&halves(64)) },
     Pass { name: "wrap", prepare: wrapping },
     Pass { name: "round", prepare: rounding },
     Pass { name: "round-coarser", prepare: rounding_coarser },
@@ -220,8 +220,8 @@ fn uniting() -> Body {
 }
 
 /// Finds how far apart the rims are and joins them.
-fn snapping(mesh: Soup) -> Body {
-    let mut draft = draft(&mesh);
+fn snapping(mesh: &Soup) -> Body {
+    let mut draft = draft(mesh);
     body(move || {
         let budget = unlimited();
         let epsilon = gap_between_rims(&draft, 0.35, &budget).expect("no limit");

@@ -69,9 +69,8 @@ impl Table {
     }
 
     /// Names of rows that are not among `names`.
-    pub(crate) fn names_beside<'n>(&self, names: impl Iterator<Item = &'n str> + Clone) -> Vec<&str> {
-        let is_other = |name: &&str| !names.clone().any(|other| other == *name);
-        self.0.iter().map(|(name, _)| name.as_str()).filter(is_other).collect()
+    pub(crate) fn names_beside(&self, names: &[&str]) -> Vec<&str> {
+        self.0.iter().map(|(name, _)| name.as_str()).filter(|name| !names.contains(name)).collect()
     }
 
     /// The rows of these passes, with the counts that were taken now where there are any, and with their tolerances.

@@ -27,7 +27,7 @@ fn a_blessed_table_has_the_new_counts_the_old_tolerances_and_no_other_passes() {
     let blessed = table.blessed(&["wide", "kept", "new"], &counts);
     let expected = [("wide", Row { instructions: 21, ..wide }), ("kept", row(10)), ("new", row(30))];
     assert_eq!(blessed, Table(expected.map(|(name, row)| (name.to_owned(), row)).to_vec()));
-    assert_eq!(table.names_beside(["wide", "kept"].into_iter()), ["gone"]);
+    assert_eq!(table.names_beside(&["wide", "kept"]), ["gone"]);
 }
 
 #[test]
