@@ -4,16 +4,16 @@
 #   scripts/test.sh              every step
 #   scripts/test.sh STEP...      only these (see `steps` below)
 #
-# Needs Rust (rustup or Debian) and a C compiler; python3 with venv, PostgreSQL, for the step `clients` Java and Node, and for the step
-# `browser` Chromium and Node, are installed where they are missing and root or sudo allows it. Where that is not possible,
-# that step says so and is left out. Everything else lands under target/.
+# Needs Rust (rustup or Debian) and a C compiler; python3 with venv, PostgreSQL, for the step `instructions` Valgrind, for the
+# step `clients` Java and Node, and for the step `browser` Chromium and Node, are installed where they are missing and root or
+# sudo allows it. Where that is not possible, that step says so and is left out. Everything else lands under target/.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never} CARGO_INCREMENTAL=0 PYTHONDONTWRITEBYTECODE=1
 # Settings of the caller's own service must not reach the tests.
 for name in $(compgen -e | grep '^MESHMEND_' | grep -v -e '^MESHMEND_CORPUS$'); do unset "$name"; done
 
-steps=(format lint lint_engine build tests doc_tests documentation fixtures contract fuzz_contract clients browser gltf_rules deploy licences)
+steps=(format lint lint_engine build tests instructions doc_tests documentation fixtures contract fuzz_contract clients browser gltf_rules deploy licences)
 scratch=target/test-run
 python=target/python/bin
 server_pid=
@@ -77,6 +77,13 @@ tests() {
     return $result
   fi
   cargo test --locked --no-fail-fast --lib --bins --tests
+}
+# Instructions of the hot passes, which other work on the machine does not change, beside benches/instructions.json. The
+# library is that of the tests.
+instructions() {
+  command -v valgrind >/dev/null || install_packages valgrind ||
+    { echo "not run: Valgrind cannot be installed here"; return 0; }
+  cargo bench --locked --profile dev --bench instructions
 }
 doc_tests() { cargo test --locked --doc; }
 documentation() { RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps --lib; }
