@@ -3,7 +3,6 @@
 use super::climb::{Certified, Climb, Found, Judged, Openness, Situation};
 use super::{Kind, Rung};
 use crate::analysis::DefectCode;
-use crate::budget::Stopped;
 use crate::geom::print_pitch;
 use crate::pipeline::output::Candidate;
 use crate::pipeline::plan::{Attempt, Uniting, Variant};
@@ -68,12 +67,19 @@ fn may_unite(climb: &Climb<'_>, situation: &Situation) -> bool {
 fn unite(climb: &Climb<'_>, situation: &mut Situation) -> Result<Option<Found>, Failure> {
     situation.has_tried_uniting = true;
     // A wall behind a sheet without two sides changes sides somewhere; the lattice gives it both.
-    if climb.has_found(DefectCode::NonOrientable) && climb.openness(situation)?.is_sheets {
+    let openness = climb.openness(situation)?;
+    if climb.has_found(DefectCode::NonOrientable) && openness.is_sheets {
         return Ok(None);
     }
     let limits = &climb.options.limits;
     let mut best: Option<Certified> = None;
-    for uniting in climb.kinds(situation)? {
+    for uniting in climb.kinds(openness) {
+        // Parts that seem to bound a volume become walls only where patches over their openings cover much that is seen.
+        let is_last_resort = uniting == Uniting::Thickened && !climb.reads_sheets(openness);
+        let covers_much = |best: &Certified| best.attempt.closes_openings && best.as_seen.loses_much();
+        if is_last_resort && !best.as_ref().is_some_and(covers_much) {
+            continue;
+        }
         // What takes too much work is left to the next kind.
         let tried =
             climb.budget.within_part(KIND_PART, || climb.united_from(uniting, situation.variant))?.flatten();
@@ -93,14 +99,14 @@ fn unite(climb: &Climb<'_>, situation: &mut Situation) -> Result<Option<Found>, 
 
 impl Climb<'_> {
     /// The kinds of bodies to try, in their order. Where no solid is required, nothing is invented to make one.
-    fn kinds(&self, situation: &Situation) -> Result<Vec<Uniting>, Stopped> {
+    fn kinds(&self, openness: Openness) -> Vec<Uniting> {
         let mut kinds = vec![Uniting::AsDrawn];
         if self.options.require == Some(Require::None) {
-            return Ok(kinds);
+            return kinds;
         }
         let walls = self.choices.walls;
-        let Openness { boundary_edges, triangles, is_sheets } = self.openness(situation)?;
-        let is_sheets = walls == Walls::First || is_sheets;
+        let Openness { boundary_edges, triangles, .. } = openness;
+        let is_sheets = self.reads_sheets(openness);
         let may_wall = walls != Walls::Never && self.options.wrap.open_shells != OpenShells::Close;
         let mut walled = Vec::new();
         walled.extend(is_sheets.then_some(Uniting::Thickened));
@@ -109,6 +115,7 @@ impl Climb<'_> {
         if walls != Walls::First {
             filled.push(Uniting::Mended);
             filled.extend(self.choices.fills_all_holes().then_some(Uniting::Spanned));
+            filled.extend((may_wall && !is_sheets).then_some(Uniting::Thickened));
         }
         // Whichever way triangles turn: after all that goes by their directions, except that walls come last for what is no sheet.
         let is_open = boundary_edges > triangles / TRIANGLES_PER_OPEN_EDGE;
@@ -120,9 +127,12 @@ impl Climb<'_> {
             kinds.extend(may_wall.then_some(Uniting::Walled));
         }
         kinds.extend(enclosed(Uniting::EnclosedAndWalled).filter(|_| may_wall));
-        // Much that is seen may be lost behind patches where parts are open, though together they seem to bound a volume.
-        kinds.extend((may_wall && is_open && !is_sheets).then_some(Uniting::Thickened));
-        Ok(kinds)
+        kinds
+    }
+
+    /// True when open parts are walls in the first place.
+    fn reads_sheets(&self, openness: Openness) -> bool {
+        self.choices.walls == Walls::First || openness.is_sheets
     }
 
     /// One kind of bodies as one. Coordinates become float32 first where only those of the result do not hold.
