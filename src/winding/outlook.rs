@@ -227,6 +227,6 @@ mod tests {
             assert_eq!(outlook.sees(place, corners, &mut kept, &budget), Ok(is_seen), "{place}");
             seen += u32::from(is_seen);
         }
-        assert!((100..900).contains(&seen), "{seen}");
+        assert!((50..950).contains(&seen), "{seen}");
     }
 }

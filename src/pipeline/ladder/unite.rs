@@ -80,9 +80,10 @@ fn unite(climb: &Climb<'_>, situation: &mut Situation) -> Result<Option<Found>, 
         if is_last_resort && !best.as_ref().is_some_and(covers_much) {
             continue;
         }
-        // What takes too much work is left to the next kind.
+        // What takes too much work is left to the next kind; after walls as the last resort nothing better comes.
+        let part = if is_last_resort { 1 } else { KIND_PART };
         let tried =
-            climb.budget.within_part(KIND_PART, || climb.united_from(uniting, situation.variant))?.flatten();
+            climb.budget.within_part(part, || climb.united_from(uniting, situation.variant))?.flatten();
         let Some((attempt, candidate)) = tried else { continue };
         let certified = Certified::measured(attempt, candidate, climb)?;
         let passes = certified.fidelity.passes(limits);
@@ -107,6 +108,7 @@ impl Climb<'_> {
         let walls = self.choices.walls;
         let Openness { boundary_edges, triangles, .. } = openness;
         let is_sheets = self.reads_sheets(openness);
+        let is_open = boundary_edges > triangles / TRIANGLES_PER_OPEN_EDGE;
         let may_wall = walls != Walls::Never && self.options.wrap.open_shells != OpenShells::Close;
         let mut walled = Vec::new();
         walled.extend(is_sheets.then_some(Uniting::Thickened));
@@ -115,10 +117,9 @@ impl Climb<'_> {
         if walls != Walls::First {
             filled.push(Uniting::Mended);
             filled.extend(self.choices.fills_all_holes().then_some(Uniting::Spanned));
-            filled.extend((may_wall && !is_sheets).then_some(Uniting::Thickened));
+            filled.extend((is_open && may_wall && !is_sheets).then_some(Uniting::Thickened));
         }
         // Whichever way triangles turn: after all that goes by their directions, except that walls come last for what is no sheet.
-        let is_open = boundary_edges > triangles / TRIANGLES_PER_OPEN_EDGE;
         let encloses = walls != Walls::First && self.choices.fills_all_holes() && !is_open;
         let enclosed = |kind| encloses.then_some(kind);
         let by_direction = if is_sheets { [walled, filled].concat() } else { filled };
