@@ -63,12 +63,15 @@ impl Default for DistanceOptions {
     }
 }
 
+/// Whether all of these places on a triangle, which is named, are hidden.
+pub type Hides<'v> = dyn Fn(&mut dyn Iterator<Item = DVec3>, u32) -> Result<bool, Stopped> + Sync + 'v;
+
 /// What of a surface counts. The distance is then that of the places that can be seen: of a piece of a triangle that is
 /// farther than others some places are asked about, and it counts unless all are hidden.
 #[derive(Clone, Copy)]
 pub struct Sight<'v> {
     /// Whether all of these places on a triangle of the first surface are hidden.
-    pub hides: &'v (dyn Fn(&mut dyn Iterator<Item = DVec3>, u32) -> Result<bool, Stopped> + Sync),
+    pub hides: &'v Hides<'v>,
     /// What can be seen and is farther than this from the second surface is lost, in the unit of the coordinates.
     pub lost_beyond: f64,
 }
