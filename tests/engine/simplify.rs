@@ -175,20 +175,23 @@ fn a_repair_with_several_targets_gives_a_certified_file_for_each() {
     }
 }
 
-#[test]
-fn an_error_is_kept_beside_a_count_that_goes_past_it() {
-    // A ball of 768 triangles.
-    let ball = grid_cube(8).map(|p| {
+/// A ball of 768 triangles.
+fn ball() -> RawSoup {
+    grid_cube(8).map(|p| {
         let q = p.map(|x| x - 0.5);
         let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
         q.map(|x| x / length)
-    });
+    })
+}
+
+#[test]
+fn an_error_is_kept_beside_a_count_that_goes_past_it() {
     for mode in [Mode::Fast, Mode::Strict, Mode::Guarded] {
         let levels = |targets: Vec<Target>| {
             let simplify = SimplifyChoices { targets, mode: Some(mode), ..SimplifyChoices::default() };
             let options = Options { simplify, ..Options::default() };
             let answer =
-                run(Operation::Simplify, &encode(&ball, Encoding::Off), &options, &Budget::unlimited());
+                run(Operation::Simplify, &encode(&ball(), Encoding::Off), &options, &Budget::unlimited());
             answer.unwrap().report.levels.iter().map(|l| l.simplified.faces_after).collect::<Vec<_>>()
         };
         let alone = levels(vec![Target::Error(0.005)]);
@@ -200,13 +203,7 @@ fn an_error_is_kept_beside_a_count_that_goes_past_it() {
 
 #[test]
 fn a_simplified_repair_says_how_far_it_is_and_keeps_the_limits_of_the_caller() {
-    // A ball of 768 triangles.
-    let ball = grid_cube(8).map(|p| {
-        let q = p.map(|x| x - 0.5);
-        let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
-        q.map(|x| x / length)
-    });
-    let bytes = encode(&ball, Encoding::Off);
+    let bytes = encode(&ball(), Encoding::Off);
     let repaired = |targets: &[usize], limit| {
         let targets = targets.iter().map(|&count| Target::Faces(count)).collect();
         let simplify = SimplifyChoices { targets, ..SimplifyChoices::default() };

@@ -27,6 +27,9 @@ const ATTEMPT_PART: u64 = 4;
 /// What is hidden, the same.
 const HIDDEN_PART: u64 = 4;
 
+/// Walls beside a result that patches take much from, the same.
+const WALLS_PART: u64 = 2;
+
 /// Steps of the print lattice by which rounding may take rims apart.
 const ROUNDING_STEPS: f64 = 4.0;
 
@@ -244,7 +247,9 @@ impl Climb<'_> {
             return Ok(Found::Certified(closed));
         }
         let variant = Variant { thickens: true, ..situation.variant };
-        Ok(match self.try_plan(variant, situation)? {
+        // What is certified already is kept where walls take too much work.
+        let walled = self.budget.within_part(WALLS_PART, || self.try_plan(variant, situation))?;
+        Ok(match walled.flatten() {
             Some(Found::Certified(walled))
                 if !closed.fidelity.is_no_worse(&walled.fidelity, &self.options.limits) =>
             {
@@ -407,7 +412,9 @@ impl Certified {
         let measure = |looks_out| fidelity(&attempt, &candidate, looks_out, climb);
         let fidelity = measure(attempt.hides_more)?;
         let may_be_seen = attempt.closes_openings && !attempt.hides_more && fidelity.losses.hidden_area > 0.0;
-        let as_seen = if may_be_seen { measure(true)? } else { fidelity };
+        // Where that is too much work, patches stay in the way.
+        let seen_past = || if may_be_seen { measure(true) } else { Ok(fidelity) };
+        let as_seen = climb.budget.within_part(HIDDEN_PART, seen_past)?.unwrap_or(fidelity);
         let fidelity = fidelity.to_choose_by(as_seen, &climb.options.limits);
         Ok(Self { attempt, candidate, fidelity, as_seen })
     }

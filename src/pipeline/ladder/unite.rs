@@ -80,11 +80,13 @@ fn unite(climb: &Climb<'_>, situation: &mut Situation) -> Result<Option<Found>, 
         if is_last_resort && !best.as_ref().is_some_and(covers_much) {
             continue;
         }
-        // What takes too much work is left to the next kind; after walls as the last resort nothing better comes.
-        let part = if is_last_resort { 1 } else { KIND_PART };
-        let tried =
-            climb.budget.within_part(part, || climb.united_from(uniting, situation.variant))?.flatten();
-        let Some((attempt, candidate)) = tried else { continue };
+        // What takes too much work is left to the next kind. Walls as the last resort may take more; the rest measures them.
+        let united = || climb.united_from(uniting, situation.variant);
+        let tried = match is_last_resort {
+            true => climb.budget.within_all_but(KIND_PART, united)?,
+            false => climb.budget.within_part(KIND_PART, united)?,
+        };
+        let Some((attempt, candidate)) = tried.flatten() else { continue };
         let certified = Certified::measured(attempt, candidate, climb)?;
         let passes = certified.fidelity.passes(limits);
         if best.as_ref().is_none_or(|best| passes || !best.fidelity.is_no_worse(&certified.fidelity, limits))
