@@ -7,13 +7,14 @@ FROM ${BUILD_BASE} AS build
 WORKDIR /build
 COPY . .
 ENV CARGO_PROFILE_RELEASE_DEBUG=none CARGO_PROFILE_RELEASE_STRIP=symbols
-RUN cargo build --release --locked --bin meshmend && mkdir /data
+# With a list of what is in it (CycloneDX).
+RUN cargo build --release --locked --bin meshmend && python3 scripts/sbom.py > /sbom.cdx.json && mkdir /data
 
 FROM ${RUN_BASE}
 COPY --from=build /build/target/release/meshmend /usr/local/bin/meshmend
 # Whom to believe when a webhook is called.
 COPY --from=build /etc/ssl/certs/ca-certificates.crt /etc/ssl/certs/ca-certificates.crt
-COPY --from=build /build/LICENSE-MIT /build/LICENSE-APACHE /usr/share/doc/meshmend/
+COPY --from=build /build/LICENSE-MIT /build/LICENSE-APACHE /sbom.cdx.json /usr/share/doc/meshmend/
 # A new volume takes its owner from here.
 COPY --from=build --chown=65532:65532 /data /data
 USER 65532:65532
