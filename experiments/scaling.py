@@ -133,7 +133,7 @@ with Town(o.binary, o.s3, shared_preload_libraries="pg_stat_statements") as town
     town.database.ask("CREATE EXTENSION pg_stat_statements")
     proxy = Counter(town.bucket.port)
     town.shared[town.shared.index("--blobs-endpoint") + 1] = f"http://127.0.0.1:{proxy.port}"
-    settings = ["--queue-max", "100000", "--interactive-slots", "0", "--slots", "2"]
+    settings = ["--queue-max", "100000", "--interactive-slots", "0", "--slots", "2", "--owner-slots-max", "2"]
     api, worker = town.server("api", *settings), town.server("worker", *settings)
     post(api.port, 0)
     time.sleep(3)

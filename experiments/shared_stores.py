@@ -6,9 +6,11 @@ import pwd
 import shutil
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 from campaign_server import Server, free_ports, root
@@ -87,6 +89,98 @@ class Bucket:
         shutil.rmtree(self.folder, ignore_errors=True)
 
 
+class Line:
+    """The network between servers and one thing that they share: a proxy that can be cut in the middle of what it passes on."""
+
+    def __init__(self, connect):
+        self.connect, (self.port,) = connect, free_ports(1)
+        self.change, self.pairs, self.whole, self.closes = threading.Condition(), set(), True, False
+        # After so many bytes in that direction the line is cut, which is told by `cut`.
+        self.left, self.direction, self.seconds = None, None, 0
+        self.cut = threading.Event()
+        threading.Thread(target=self.accept, args=(socket.create_server(("127.0.0.1", self.port), backlog=500),), daemon=True).start()
+
+    def cut_after(self, count, direction, closes, seconds):
+        """Cuts it for a time after `count` more bytes "to" the server or "from" it. Connections are closed, or nothing comes through."""
+        self.cut.clear()
+        with self.change:
+            self.left, self.direction, self.closes, self.seconds = count, direction, closes, seconds
+
+    def cut_now(self):
+        with self.change:
+            self.fire()
+
+    def fire(self):
+        self.left, self.whole = None, False
+        if self.closes:
+            self.close_all()
+        self.cut.set()
+        threading.Timer(self.seconds, self.mend).start()
+
+    def mend(self):
+        with self.change:
+            self.whole = True
+            # What was under way when nothing came through does not go on.
+            self.close_all()
+            self.change.notify_all()
+
+    def close_all(self):
+        for pair in self.pairs:
+            for end in pair:
+                try:
+                    end.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+                    end.shutdown(socket.SHUT_RDWR)
+                except OSError:
+                    pass
+        self.pairs.clear()
+
+    def accept(self, listener):
+        while True:
+            client, _ = listener.accept()
+            with self.change:
+                refuses = not self.whole and self.closes
+            try:
+                server = None if refuses else self.connect()
+            except OSError:
+                server = None
+            if server is None:
+                client.close()
+                continue
+            client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            pair = (client, server)
+            with self.change:
+                self.pairs.add(pair)
+            for one, other, direction in ((client, server, "to"), (server, client, "from")):
+                threading.Thread(target=self.pass_on, args=(one, other, direction, pair), daemon=True).start()
+
+    def pass_on(self, one, other, direction, pair):
+        try:
+            while piece := one.recv(1 << 16):
+                with self.change:
+                    self.change.wait_for(lambda: self.whole)
+                    if pair not in self.pairs:
+                        break
+                    if self.left is not None and direction == self.direction:
+                        before, self.left = piece[:self.left], self.left - len(piece)
+                        if self.left <= 0:
+                            other.sendall(before)
+                            self.fire()
+                            piece = piece[len(before):]
+                            self.change.wait_for(lambda: self.whole)
+                            if pair not in self.pairs:
+                                break
+                other.sendall(piece)
+            other.shutdown(socket.SHUT_WR)
+        except OSError:
+            pass
+        finally:
+            if direction == "from":
+                with self.change:
+                    self.pairs.discard(pair)
+                for end in pair:
+                    end.close()
+
+
 class Town:
     """What servers share."""
 
@@ -97,6 +191,19 @@ class Town:
             file.write(KEY)
         self.shared = ["--database-url", self.database.url, "--database-connections-max", "8", "--blobs-url", f"s3://{BUCKET}/shop",
                        "--blobs-endpoint", f"http://127.0.0.1:{self.bucket.port}", "--blobs-key-file", f"{self.folder}/key"]
+
+    def with_lines(self):
+        """Puts lines that can be cut before the database and the bucket. Both."""
+        def to_database():
+            found = socket.socket(socket.AF_UNIX)
+            found.connect(f"{self.database.folder}/.s.PGSQL.5432")
+            return found
+
+        lines = Line(to_database), Line(lambda: socket.create_connection(("127.0.0.1", self.bucket.port)))
+        for setting, value in (("--database-url", f"host=127.0.0.1 port={lines[0].port} user=meshmend dbname=postgres sslmode=disable"),
+                               ("--blobs-endpoint", f"http://127.0.0.1:{lines[1].port}")):
+            self.shared[self.shared.index(setting) + 1] = value
+        return lines
 
     def server(self, role, *settings):
         return Server(self.binary, "--role", role, *self.shared, *settings)

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """Servers that share their stores, killed, paused and cut off from their database at random points; prints Markdown.
 
-usage: stores.py [--binary PATH] [--s3 PATH] [--cycles 500] [--seed 1]
+usage: stores.py [--binary PATH] [--s3 PATH] [--cycles 500] [--seed 1] [--lines]
 Two servers take requests and two run jobs, on PostgreSQL and S3. In each cycle one of them, the process of a job or the database is
 killed, or a server that runs jobs is stopped past its lease, while clients send jobs, each with a key of its own, and send again
 what was not answered. At the end every accepted job must have ended once, and no file may be left that no row names.
+With `--lines` the network to the database or to the bucket is cut instead, after some bytes in one direction: in the middle of a
+statement, of an answer or of an upload.
 """
 import argparse
 import collections
@@ -17,7 +19,7 @@ import sys
 import threading
 import time
 
-from campaign_server import commit, default_binary, sphere_stl
+from campaign_server import commit, default_binary, quantile, sphere_stl
 from shared_stores import Town, default_s3, killed, paused
 
 p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -26,10 +28,14 @@ p.add_argument("--s3", default=default_s3)
 p.add_argument("--cycles", type=int, default=500)
 p.add_argument("--seed", type=int, default=1)
 p.add_argument("--clients", type=int, default=3)
+p.add_argument("--lines", action="store_true")
 o = p.parse_args()
 dice, over, lock = random.Random(o.seed), threading.Event(), threading.Lock()
 LEASE_S = 2
 SMALL, LARGE = sphere_stl(12), sphere_stl(200)
+# In several parts.
+VAST = sphere_stl(300) if o.lines else LARGE
+accepted_at, recovered = [], []
 asked, unanswered = {}, collections.Counter()
 begun = time.time()
 
@@ -62,7 +68,7 @@ def client(number):
     while not over.is_set():
         count += 1
         key = f"{number}-{count}"
-        mesh = LARGE if count % 3 == 0 else SMALL
+        mesh = VAST if count % 12 == 6 else LARGE if count % 3 == 0 else SMALL
         body = f"{key:<80}".encode() + mesh[80:]
         path = f"/v1/jobs?operation=repair&labels=%7B%22n%22:%22{key}%22%7D"
         with lock:
@@ -72,6 +78,7 @@ def client(number):
             if told and told[0] == 202:
                 with lock:
                     asked[key] = json.loads(told[1])["id"]
+                    accepted_at.append(time.time())
                 break
             if told and told[0] not in (429, 503):
                 sys.exit(f"{told[0]}: {told[1][:500]}")
@@ -80,9 +87,40 @@ def client(number):
         time.sleep(0.2)
 
 
+def until_accepted(begun, since):
+    """Notes how long after `begun` a job was accepted that was accepted after `since`."""
+    until = time.time() + 60
+    while time.time() < until:
+        with lock:
+            later = [at for at in accepted_at[-50:] if at > since]
+        if later:
+            recovered.append(later[0] - begun)
+            return
+        time.sleep(0.02)
+    recovered.append(60)
+
+
+def cut():
+    """The line to the database or the bucket is cut, at a random byte in a random direction. Its name."""
+    which, closes, direction = dice.randrange(2), dice.random() < 0.5, dice.choice(["to", "from"])
+    line, most = lines[which], [20_000, 12_000_000 if direction == "to" else 2_000_000][which]
+    line.cut_after(int(most ** dice.random()), direction, closes, dice.choice([0.2, 1, 2 * LEASE_S]))
+    hit = line.cut.wait(10)
+    if not hit:
+        line.cut_now()
+    begun = time.time()
+    with line.change:
+        line.change.wait_for(lambda: line.whole)
+    until_accepted(begun, time.time())
+    how = "closed" if closes else "silent"
+    return f"{['database', 'bucket'][which]} {how} {'at' if hit else 'between'} bytes {direction} it"
+
+
 def cycle():
     """One blow, at a random moment. Its name."""
     time.sleep(dice.uniform(0, 1.2))
+    if o.lines:
+        return cut()
     blow = dice.choice(["api", "worker", "worker", "child", "child", "pause", "database"])
     if blow == "api":
         killed(dice.choice(apis))
@@ -101,12 +139,15 @@ def cycle():
     elif blow == "pause":
         paused(dice.choice(workers), 2 * LEASE_S)
     else:
+        begun = time.time()
         town.database.control("restart")
+        until_accepted(begun, time.time())
     return blow
 
 
 with Town(o.binary, o.s3) as town:
-    settings = ["--lease", f"{LEASE_S}s", "--queue-max", "100000", "--slots", "2"]
+    lines = town.with_lines() if o.lines else ()
+    settings = ["--lease", f"{LEASE_S}s", "--queue-max", "100000", "--slots", "2", "--owner-slots-max", "4"]
     apis, workers = [town.server("api", *settings) for _ in range(2)], [town.server("worker", *settings) for _ in range(2)]
     clients = [threading.Thread(target=client, args=(number,)) for number in range(o.clients)]
     for thread in clients:
@@ -116,7 +157,7 @@ with Town(o.binary, o.s3) as town:
     for thread in clients:
         thread.join()
     accepted = {key: job for key, job in asked.items() if job}
-    lost, doubles, states, attempts = [], 0, collections.Counter(), 0
+    lost, doubles, states, attempts, without_files = [], 0, collections.Counter(), 0, 0
     for key in asked:
         made = patient(apis[0], "GET", f"/v1/jobs?label=n:{key}")[1]["jobs"]
         doubles += len(made) > 1
@@ -131,6 +172,7 @@ with Town(o.binary, o.s3) as town:
                     break
             states[ended["state"] + (f" ({ended['problem']['code']})" if ended.get("problem") else "")] += 1
             attempts += ended["attempts"]
+            without_files += (ended.get("problem") or {}).get("code") == "expired"
             if ended["state"] not in ("succeeded", "failed"):
                 lost.append(job["id"])
             ends = town.database.ask(f"SELECT count(*) FROM changes WHERE job = '{job['id']}' AND state IN ('succeeded', 'failed', 'cancelled')")
@@ -146,11 +188,25 @@ with Town(o.binary, o.s3) as town:
     while set(town.bucket.files()) - named and time.time() < until:
         time.sleep(0.2)
     after = set(town.bucket.files())
+    # Servers end also while nothing answers them.
+    for line in lines:
+        line.closes, line.seconds = False, 3600
+        line.cut_now()
+    begun = time.time()
+    for server in apis + workers:
+        server.process.send_signal(signal.SIGTERM)
+    hung = 0
+    for server in apis + workers:
+        try:
+            server.process.wait(60)
+        except Exception:
+            hung += 1
+    ended_in = time.time() - begun
     for server in apis + workers:
         server.__exit__()
 
 kinds = ", ".join(f"{count} {blow}" for blow, count in sorted(blows.items()))
-print(f"""# Campaign `stores`
+print(f"""# Campaign `{'stores-cut' if o.lines else 'stores'}`
 
 Made by `experiments/stores.py` at commit {commit()}: {o.cycles} cycles with seed {o.seed} in {time.time() - begun:.0f} s on {os.cpu_count()} cores, where the
 load of the machine was {os.getloadavg()[2]:.1f} on average of the last 15 minutes. Two servers for requests, two that run jobs (two slots each, lease {LEASE_S} s), PostgreSQL and an S3
@@ -162,6 +218,7 @@ server, all on one machine. Blows: {kinds}.
 | answers that did not come or were 503 or 429, sent again | {sum(unanswered.values())} |
 | jobs accepted | {len(accepted)} |
 | accepted jobs lost | {len(lost)} |
+| accepted jobs whose files were lost | {without_files} |
 | requests that made two jobs, jobs that ended twice | {doubles} |
 {chr(10).join(f"| jobs {state} | {count} |" for state, count in sorted(states.items()))}
 | runs lost and made again | {attempts} |
@@ -169,5 +226,7 @@ server, all on one machine. Blows: {kinds}.
 | files that no row named before the collection | {len(before - named)} |
 | files that no row named after it | {len(after - named)} |
 | files that a row names and that are not there | {len(named - after)} |
+| seconds from {"a cut" if o.lines else "the order to restart the database"} until a job was accepted again: median, longest | {quantile(recovered, 0.5):.1f}, {max(recovered, default=0):.1f} |
+| servers that had not ended 60 s after SIGTERM{" while neither the database nor the bucket answered" if o.lines else ""} (the last ended after {ended_in:.0f} s) | {hung} |
 """)
-sys.exit(bool(lost or doubles or after - named or named - after))
+sys.exit(bool(lost or doubles or without_files or after - named or named - after or hung))

@@ -25,6 +25,7 @@ declare -A filters=(
   [arrangement]="arrangement::tests"
   [random-holes]="random_holes"
   [kill]="killed_at_random_points"
+  [claims]="claims_at_a_steady_pace"
 )
 
 # Where the tests of a campaign are, when not everywhere: the rest is not built.
@@ -34,6 +35,7 @@ declare -A places=(
   [arrangement]="--lib"
   [random-holes]="--test properties"
   [kill]="--test service"
+  [claims]="--lib"
 )
 
 # Campaigns that are scripts and print their page: of those against a running service each starts its own server on loopback.
@@ -49,11 +51,16 @@ declare -A scripts=(
   [hostile]="hostile.py"
   [holes-speed]="holes_speed.py"
   [stores]="stores.py"
+  [stores-cut]="stores.py --lines --cycles 100"
+  [sleepers]="sleepers.py"
+  [processors]="processors.py"
 )
 
 # What a script needs beside the program.
 declare -A programs=(
   [stores]="--example s3_server"
+  [stores-cut]="--example s3_server"
+  [sleepers]="--example s3_server --example sleeper"
 )
 
 name=${1:-}
@@ -65,7 +72,8 @@ if [ -n "$script" ]; then
   cargo build --release --locked --bins "${more[@]}"
   result=0
   # A page that is begun and not ended is not kept.
-  python3 "experiments/$script" "$@" > "target/campaign-$name.md" || result=$?
+  read -ra command <<< "$script"
+  python3 "experiments/${command[0]}" "${command[@]:1}" "$@" > "target/campaign-$name.md" || result=$?
   [ -s "target/campaign-$name.md" ] && cp "target/campaign-$name.md" "docs/campaigns/$name.md" && echo "wrote docs/campaigns/$name.md"
   exit $result
 fi

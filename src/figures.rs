@@ -19,7 +19,7 @@ pub fn significant(value: f64, digits: usize) -> String {
             None => text,
         };
     }
-    let before = value.abs().log10().floor() as i32 + 1;
+    let before = libm::log10(value.abs()).floor() as i32 + 1;
     let decimals = usize::try_from(digits as i32 - before).unwrap_or(0);
     trimmed(&format!("{value:.decimals$}")).to_owned()
 }

@@ -128,7 +128,8 @@ settings! {
     slots: Option<NonZeroUsize> = "auto",
     /// Jobs beside those that run at one time, for small meshes that somebody waits for.
     interactive_slots: usize = "2",
-    /// Most slots of each of both kinds that one key, or one address without keys, has at one time; auto: all but one.
+    /// Most slots of each of both kinds that one key, or one address without keys, has at one time, on all servers together;
+    /// auto: all but one of each server.
     owner_slots_max: Option<NonZeroUsize> = "auto",
     /// Largest upload that may use an interactive slot.
     interactive_bytes_max: Bytes = "4MiB",

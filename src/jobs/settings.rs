@@ -52,7 +52,8 @@ pub struct JobsSettings {
     /// Most of them that are charged to one tenant, beside the rule that a tenant has no more than there are free places.
     /// Default: no further limit.
     pub owner_queue_max: Option<usize>,
-    /// Most slots of each kind that jobs of one tenant have at one time. Default: all but one.
+    /// Most slots of each kind that jobs of one tenant have at one time, on all servers together. Default: all but one of each
+    /// server.
     pub owner_slots_max: Option<usize>,
     /// Most jobs of one tenant that are kept; its oldest finished ones go first. Default: what others leave.
     pub owner_jobs_max: Option<usize>,

@@ -51,6 +51,8 @@ pub(super) async fn serve(service: Arc<Service>, kind: SlotKind) {
                 SlotKind::General => service.settings.slots,
                 SlotKind::Interactive => service.settings.interactive_slots,
             }),
+            // A server knows its own slots, not those of all; a number that somebody has set is for all together.
+            is_share_of_worker: service.settings.owner_slots_max.is_none(),
         };
         match service.store.claim(request).await {
             Ok(Some(row)) => {

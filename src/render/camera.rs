@@ -182,7 +182,7 @@ impl Camera {
             for points in model.points().chunks(CHECK_EVERY) {
                 budget.spend(points.len() as u64 / 16)?;
                 for p in points {
-                    radius = radius.max(p.x.hypot(p.y));
+                    radius = radius.max(libm::hypot(p.x, p.y));
                     (low, high) = (low.min(p.z), high.max(p.z));
                 }
             }

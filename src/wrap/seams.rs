@@ -91,7 +91,7 @@ impl Page {
             return None;
         }
         let across = along.any_orthonormal_vector();
-        let angle = away.dot(along.cross(across)).atan2(away.dot(across));
+        let angle = libm::atan2(away.dot(along.cross(across)), away.dot(across));
         // Counter-clockwise around `along` is toward the normal of a triangle that runs along the edge.
         Some(Self { angle: angle.rem_euclid(TAU).to_degrees(), is_wall_after: !is_along })
     }

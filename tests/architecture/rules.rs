@@ -31,6 +31,7 @@ pub(crate) const RULES: &[Rule] = &[
     Rule { name: "no-printing-in-the-engine", breaches: no_printing_in_the_engine },
     Rule { name: "threads-only-in-par", breaches: threads_only_in_par },
     Rule { name: "hash-maps-have-fixed-seeds", breaches: hash_maps_have_fixed_seeds },
+    Rule { name: "elementary-functions-from-libm", breaches: elementary_functions_from_libm },
     Rule { name: "no-serialization-in-the-engine", breaches: no_serialization_in_the_engine },
     Rule { name: "http-only-in-http", breaches: http_only_in_http },
     Rule { name: "certificate-is-independent", breaches: certificate_is_independent },
@@ -332,6 +333,29 @@ fn no_stubs(file: &SourceFile) -> Vec<String> {
     );
     breaches.extend(report(file.attributes.iter().filter(|m| m.path[0] == "ignore"), "skips a test"));
     breaches
+}
+
+/// Those of the standard library are the platform's, whose last digit differs from one processor to another.
+fn elementary_functions_from_libm(file: &SourceFile) -> Vec<String> {
+    let functions = [
+        "sin", "cos", "tan", "sin_cos", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh",
+        "acosh", "atanh", "exp", "exp2", "exp_m1", "ln", "ln_1p", "log", "log2", "log10", "powf", "cbrt",
+        "hypot",
+    ];
+    if !is_engine(file) {
+        return vec![];
+    }
+    let lines: Vec<&str> = file.text.lines().collect();
+    let is_called = |m: &&Mention| {
+        let name = m.path[0].as_str();
+        let calls = [format!(".{name}("), format!("f64::{name}"), format!("f32::{name}")];
+        functions.contains(&name)
+            && lines.get(m.line - 1).is_some_and(|line| calls.iter().any(|call| line.contains(call)))
+    };
+    report(
+        file.words.iter().filter(|m| !m.is_test).filter(is_called),
+        "is the platform's: `libm` has one for all",
+    )
 }
 
 /// `use std as s` or `use std::*` would hide from the other rules what a file uses.

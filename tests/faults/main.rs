@@ -64,6 +64,8 @@ fn trials() -> Vec<Trial> {
             a_process_that_computes_without_end_ends_at_its_deadline,
             a_server_that_is_killed_leaves_no_process,
             a_process_that_is_killed_while_it_waits_costs_no_job,
+            a_job_whose_process_ends_before_it_takes_the_job_goes_to_another_at_no_cost,
+            a_job_whose_processes_all_end_before_they_take_it_ends_as_lost,
             a_process_that_is_paused_while_it_waits_ends_at_the_deadline_of_its_job,
             a_task_that_is_longer_than_a_pipe_holds_comes_through_whole,
             a_server_that_ends_in_order_leaves_no_process_and_no_folder,

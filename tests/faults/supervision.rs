@@ -59,25 +59,28 @@ pub(crate) fn a_process_that_computes_without_end_ends_at_its_deadline() {
 pub(crate) fn a_server_that_is_killed_leaves_no_process() {
     let mut server = server(&["--slots", "2"]);
     let (_, child) = hanging(&server);
-    let waiting = spare_of(&server);
+    let waiting = waiting_of(&server, 0);
     server.signal("KILL");
     assert_eq!(server.exit_code(), None, "killed by a signal");
     until_gone(child);
     until_gone(waiting);
 }
 
-/// The process that waits for the next task.
-fn spare_of(server: &Server) -> u32 {
-    patiently(|| {
-        let at_work = children_of(server);
-        all_children_of(server).into_iter().find(|pid| !at_work.contains(pid))
-    })
+/// A living process that waits for the next task, and is not `but`. It is known by its name, which it has once it can be
+/// stopped: a server waits for a process that is about to become another program.
+fn waiting_of(server: &Server, but: u32) -> u32 {
+    let waits = |pid| {
+        let name = std::fs::read_to_string(format!("/proc/{pid}/comm")).ok();
+        name.as_deref() == Some("meshmend-waits\n")
+            && parent_and_state(pid).is_some_and(|(_, state)| state != 'Z')
+    };
+    patiently(|| all_children_of(server).into_iter().find(|&pid| pid != but && waits(pid)))
 }
 
 pub(crate) fn a_process_that_is_killed_while_it_waits_costs_no_job() {
     let server = server(&["--slots", "1"]);
     for number in 0..3 {
-        let waiting = spare_of(&server);
+        let waiting = waiting_of(&server, 0);
         signal(waiting, "KILL");
         until_gone(waiting);
         let job = server.ended(&server.job("repair", format!("{}# {number}\n", crate::meshes::OPEN)));
@@ -85,9 +88,43 @@ pub(crate) fn a_process_that_is_killed_while_it_waits_costs_no_job() {
     }
 }
 
+pub(crate) fn a_job_whose_process_ends_before_it_takes_the_job_goes_to_another_at_no_cost() {
+    let server = server(&["--slots", "1"]);
+    let first = waiting_of(&server, 0);
+    signal(first, "STOP");
+    let job = server.job("repair", crate::meshes::OPEN);
+    // Another one waits only once the first is to have the job.
+    waiting_of(&server, first);
+    signal(first, "KILL");
+    let ended = server.ended(&job);
+    assert_eq!((&ended["state"], &ended["attempts"]), (&json!("succeeded"), &json!(0)), "{ended}");
+    let metrics = server.admin("/metrics").text().unwrap();
+    assert!(metrics.contains("meshmend_child_exits_total{kind=\"waiting\"} 1\n"), "{metrics}");
+    goes_on(&server);
+}
+
+pub(crate) fn a_job_whose_processes_all_end_before_they_take_it_ends_as_lost() {
+    let server = server(&["--slots", "1"]);
+    let mut given = waiting_of(&server, 0);
+    signal(given, "STOP");
+    let job = server.job("repair", crate::meshes::OPEN);
+    for _ in 0..3 {
+        let next = waiting_of(&server, given);
+        signal(next, "STOP");
+        signal(given, "KILL");
+        until_gone(given);
+        given = next;
+    }
+    let ended = server.ended(&job);
+    assert_eq!(ended["problem"]["code"], "worker-lost", "{ended}");
+    assert!(ended["problem"]["detail"].as_str().unwrap().contains("before they took the job"), "{ended}");
+    signal(given, "CONT");
+    goes_on(&server);
+}
+
 pub(crate) fn a_process_that_is_paused_while_it_waits_ends_at_the_deadline_of_its_job() {
     let server = server(&["--slots", "1", "--deadline-max", "2s"]);
-    signal(spare_of(&server), "STOP");
+    signal(waiting_of(&server, 0), "STOP");
     let job = server.ended(&job_with_a_long_task(&server));
     assert_eq!(job["problem"]["code"], "engine-timeout", "{job}");
     goes_on(&server);

@@ -17,6 +17,8 @@ pub(in crate::jobs) enum Death {
     Stopped(Stopped),
     /// It could not be started or watched.
     NotStarted(io::Error),
+    /// It ended so before it had its task.
+    Waiting(Box<Death>),
     /// The system gave it no more memory.
     OutOfMemory,
     /// A thread of it used up its stack.
@@ -65,6 +67,7 @@ impl Death {
             Self::Stopped(Stopped::Cancelled) => "cancelled",
             Self::Stopped(_) => "deadline",
             Self::NotStarted(_) => "not-started",
+            Self::Waiting(_) => "waiting",
             Self::OutOfMemory => "out-of-memory",
             Self::StackOverflow => "stack-overflow",
             Self::Aborted => "aborted",
@@ -94,6 +97,11 @@ impl Death {
             Self::Stopped(stopped) => Problem::from(stopped),
             Self::NotStarted(_) => {
                 Problem::new(ProblemCode::WorkerLost, "no process could be started for the job")
+            }
+            Self::Waiting(last) => {
+                let how = last.kind();
+                let detail = format!("several processes ended before they took the job, the last by `{how}`");
+                Problem::new(ProblemCode::WorkerLost, detail)
             }
             Self::OutOfMemory => of(ProblemCode::EngineOutOfMemory, "got no more memory").with_limit(
                 "engine_bytes_max",

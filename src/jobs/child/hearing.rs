@@ -26,6 +26,8 @@ pub(super) struct Hearing {
     line: Vec<u8>,
     /// What holds the child, once it says so.
     pub(super) protections: Option<Protections>,
+    /// Whether it has its task: what it does from then on is the job's.
+    pub(super) has_task: bool,
     last: Option<Last>,
 }
 
@@ -60,7 +62,8 @@ impl Hearing {
             Message::Confined(protections) if self.protections.is_none() => {
                 self.protections = Some(protections);
             }
-            Message::Confined(_) => return Err(Garbled),
+            Message::Taken if !self.has_task => self.has_task = true,
+            Message::Confined(_) | Message::Taken => return Err(Garbled),
             Message::Enter(stage) => hear(Event::Enter(stage.into())),
             Message::Leave(stage) => hear(Event::Leave(stage.into())),
             Message::Work(units) => hear(Event::Work(units)),
@@ -89,6 +92,7 @@ mod tests {
         let problem = Problem::new(ProblemCode::MeshEmpty, "empty");
         let said = [
             line(&Message::Confined(Protections { landlock_abi: Some(7), is_filtered: true })),
+            line(&Message::Taken),
             line(&Message::Enter(Stage::Read)),
             line(&Message::Leave(Stage::Read)),
             line(&Message::Failed(Box::new(problem.clone()))),
@@ -103,6 +107,7 @@ mod tests {
             let read = budget::Stage::Read;
             assert_eq!(*heard.borrow(), [Event::Enter(read), Event::Leave(read)]);
             assert_eq!(hearing.protections.unwrap().landlock_abi, Some(7));
+            assert!(hearing.has_task);
             assert_eq!(hearing.last(), Some(Last::Failed(Box::new(problem.clone()))));
         }
     }
@@ -118,8 +123,10 @@ mod tests {
     #[test]
     fn noise_a_word_after_the_last_one_and_a_line_without_end_are_garbled() {
         let last = line(&Message::Failed(Box::new(Problem::new(ProblemCode::MeshEmpty, "empty"))));
+        let taken = line(&Message::Taken);
         let endless = vec![b'1'; LINE_BYTES_MAX + 1];
-        for said in [&b"panic!\n"[..], b"\n", b"{\"made\":{}}\n", &last.repeat(2), &endless] {
+        for said in [&b"panic!\n"[..], b"\n", b"{\"made\":{}}\n", &last.repeat(2), &taken.repeat(2), &endless]
+        {
             assert_eq!(Hearing::default().take(said, &|_| {}), Err(Garbled));
         }
     }

@@ -2,6 +2,7 @@
 
 use std::io::ErrorKind;
 use std::num::NonZero;
+use std::time::{Duration, Instant};
 
 use super::death::Death;
 use super::limits::Limits;
@@ -10,7 +11,7 @@ use super::sandbox::Protections;
 use super::starter::Starter;
 use super::task::{Setting, Task};
 use super::trial::{TrialError, try_out};
-use super::watch::watch;
+use super::watch::{Answered, watch};
 use super::workspace::{MadeFile, Workspaces};
 use crate::jobs::clock::StageClock;
 use crate::jobs::live::Live;
@@ -21,6 +22,9 @@ use crate::jobs::settings::JobsSettings;
 use crate::jobs::spool::Spool;
 use crate::jobs::store::{BlobRef, JobRow};
 use crate::wire::Problem;
+
+/// Most children that a job is given to, when each ends before it takes the job.
+const GIVEN_MAX: u32 = 3;
 
 /// Gives jobs to children, one to each.
 #[derive(Debug)]
@@ -68,20 +72,19 @@ impl Processes {
             engine_work_max: settings.engine_work_max,
             engine_bytes_max: bytes_max,
         };
-        let answered = match self.starter.child() {
-            Ok(running) => {
-                let local = |blob: &BlobRef| spool.path(&blob.key).map_err(|error| disk_problem(&error));
-                let material = row.material.as_ref().map(local).transpose()?;
-                let given = running.workspace.give(&local(&row.input)?, material.as_deref());
-                given.map_err(|error| disk_problem(&error))?;
-                watch(running, &task, &live.stop, settings.deadline_max, &clock.observer())
-            }
-            // Its folder needs the disk.
-            Err(error) if matches!(error.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded) => {
-                return Err(disk_problem(&error));
-            }
-            Err(error) => Err(Death::NotStarted(error)),
+        let begun = Instant::now();
+        let give = || {
+            let patience = settings.deadline_max.saturating_sub(begun.elapsed());
+            self.give(row, &task, spool, live, patience, clock)
         };
+        let mut answered = give()?;
+        for _ in 1..GIVEN_MAX {
+            // It was ended while it waited, whatever its task: that is nothing about the job.
+            let Err(death @ Death::Waiting(_)) = &answered else { break };
+            tracing::warn!(job = %row.id, ?death, "a process ended before it took its job: another one gets it");
+            meters::child_ended(death.kind());
+            answered = give()?;
+        }
         match answered {
             Ok(answered) => {
                 if let Some(place) = answered.panicked_at {
@@ -105,6 +108,31 @@ impl Processes {
                 Err(problem)
             }
         }
+    }
+
+    /// Gives a job to one child and hears it to its end.
+    fn give(
+        &self,
+        row: &JobRow,
+        task: &Task,
+        spool: &Spool,
+        live: &Live,
+        patience: Duration,
+        clock: &StageClock,
+    ) -> Result<Result<Answered, Death>, Problem> {
+        let running = match self.starter.child() {
+            Ok(running) => running,
+            // Its folder needs the disk.
+            Err(error) if matches!(error.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded) => {
+                return Err(disk_problem(&error));
+            }
+            Err(error) => return Ok(Err(Death::NotStarted(error))),
+        };
+        let local = |blob: &BlobRef| spool.path(&blob.key).map_err(|error| disk_problem(&error));
+        let material = row.material.as_ref().map(local).transpose()?;
+        let given = running.workspace.give(&local(&row.input)?, material.as_deref());
+        given.map_err(|error| disk_problem(&error))?;
+        Ok(watch(running, task, &live.stop, patience, &clock.observer()))
     }
 }
 

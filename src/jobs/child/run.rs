@@ -67,6 +67,7 @@ fn wait_and_obey(engine: &Engine) -> io::Result<()> {
     say(&Message::Confined(protections))?;
     let task = serde_json::from_reader(io::stdin().lock())?;
     let _ = rustix::thread::set_name(WORKING);
+    say(&Message::Taken)?;
     threads.run(|| obey(&task, &files, engine))
 }
 

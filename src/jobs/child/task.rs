@@ -62,6 +62,8 @@ impl Task {
 pub(super) enum Message {
     /// It is confined and waits for its task.
     Confined(Protections),
+    /// It has its task.
+    Taken,
     /// A pass begins.
     Enter(Stage),
     /// A pass ends.

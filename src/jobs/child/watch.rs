@@ -76,7 +76,8 @@ pub(super) fn watch(
     }
     if !status.success() {
         let is_for_memory = memory_kills::are_more();
-        return Err(Death::of(status, &words, is_for_memory));
+        let death = Death::of(status, &words, is_for_memory);
+        return Err(if hearing.has_task { death } else { Death::Waiting(Box::new(death)) });
     }
     let protections = hearing.protections.unwrap_or_default();
     let outcome = match hearing.last() {

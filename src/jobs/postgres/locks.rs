@@ -19,7 +19,12 @@ pub(super) async fn hold(session: &Session, lock: i32) -> Result<(), StoreError>
     session.change("SELECT pg_advisory_xact_lock($1, 0)", &[&lock]).await.map(drop)
 }
 
-/// Waits until nobody else claims a job of this tenant.
-pub(super) async fn hold_share(session: &Session, tenant: &str) -> Result<(), StoreError> {
-    session.change("SELECT pg_advisory_xact_lock($1, hashtext($2))", &[&SHARE, &tenant]).await.map(drop)
+/// Waits until nobody else claims a job of this tenant, or nobody else for this worker.
+pub(super) async fn hold_share(
+    session: &Session,
+    tenant: &str,
+    worker: Option<&str>,
+) -> Result<(), StoreError> {
+    let sql = "SELECT pg_advisory_xact_lock($1, hashtext($2::text || coalesce(' ' || $3::text, '')))";
+    session.change(sql, &[&SHARE, &tenant, &worker]).await.map(drop)
 }

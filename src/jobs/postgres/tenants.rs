@@ -50,15 +50,21 @@ pub(super) async fn in_turn(
             FROM (SELECT DISTINCT ON (tenant) tenant, id AS first FROM jobs WHERE state = 'queued' AND lane = $1
                   ORDER BY tenant, id) AS own
             WHERE tenant = '' OR $3 > (SELECT count(*) FROM jobs
-                WHERE state = 'running' AND tenant = own.tenant AND is_quick = $2)
+                WHERE state = 'running' AND tenant = own.tenant AND is_quick = $2 AND worker = coalesce($4::text, worker))
             ORDER BY (SELECT count(*) FROM jobs WHERE state = 'running' AND tenant = own.tenant),
                 coalesce((SELECT max(turn) FROM jobs WHERE tenant = own.tenant), 0), first";
         let share = i64::try_from(request.share).unwrap_or(i64::MAX);
-        for row in session.rows(sql, &[&number_of(lane), &request.is_only, &share]).await? {
+        let worker = counted_of(&request);
+        for row in session.rows(sql, &[&number_of(lane), &request.is_only, &share, &worker]).await? {
             turns.push((value(&row, 0)?, lane));
         }
     }
     Ok(turns)
+}
+
+/// The worker whose running jobs count for a share; `None`: those of all do.
+fn counted_of(request: &ClaimRequest) -> Option<&str> {
+    request.is_share_of_worker.then_some(request.worker.as_str())
 }
 
 /// Locks the first job of a tenant that nobody else is about to take, if the tenant may have another one.
@@ -69,13 +75,16 @@ pub(super) async fn take(
     lane: Lane,
 ) -> Result<Option<JobId>, StoreError> {
     if !tenant.is_empty() {
-        locks::hold_share(session, tenant).await?;
+        locks::hold_share(session, tenant, counted_of(request)).await?;
     }
     let sql = "SELECT id FROM jobs WHERE state = 'queued' AND tenant = $1 AND lane = $2
-            AND ($1 = '' OR $4 > (SELECT count(*) FROM jobs WHERE state = 'running' AND tenant = $1 AND is_quick = $3))
+            AND ($1 = '' OR $4 > (SELECT count(*) FROM jobs
+                WHERE state = 'running' AND tenant = $1 AND is_quick = $3 AND worker = coalesce($5::text, worker)))
         ORDER BY id LIMIT 1 FOR UPDATE SKIP LOCKED";
     let share = i64::try_from(request.share).unwrap_or(i64::MAX);
-    let found = session.row_if_any(sql, &[&tenant, &number_of(lane), &request.is_only, &share]).await?;
+    let worker = counted_of(request);
+    let found =
+        session.row_if_any(sql, &[&tenant, &number_of(lane), &request.is_only, &share, &worker]).await?;
     found.map(|row| id_of(&row, 0)).transpose()
 }
 

@@ -94,6 +94,8 @@ pub struct ClaimRequest {
     pub is_only: bool,
     /// Most jobs of one tenant that run in slots of this kind.
     pub share: usize,
+    /// Those of this worker count; otherwise those of all. A store that has one worker need not look.
+    pub is_share_of_worker: bool,
 }
 
 /// What became of a job whose run was lost.

@@ -199,7 +199,7 @@ impl Climb<'_> {
             return Vec::new();
         };
         let size = diagonal(&self.input.soup);
-        let steps = |share: f64| (size * share / pitch).log2().floor().exp2();
+        let steps = |share: f64| libm::exp2(libm::log2(size * share / pitch).floor());
         COARSER
             .map(steps)
             .into_iter()

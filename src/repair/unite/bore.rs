@@ -82,7 +82,7 @@ impl Bodies<'_> {
         let along = (ends[1] - ends[0]).normalize_or(DVec3::X);
         let (across, beside) = along.any_orthonormal_pair();
         let size = 10.0 * self.size * self.pitch;
-        let turned = |angle: f64| (across * angle.cos() + beside * angle.sin()) * size;
+        let turned = |angle: f64| (across * libm::cos(angle) + beside * libm::sin(angle)) * size;
         let offsets = [0.3, 0.3 + std::f64::consts::TAU / 3.0, 0.3 + 2.0 * std::f64::consts::TAU / 3.0]
             .map(|angle| (turned(angle) / self.pitch).round() * self.pitch);
         let first = self.push_places(offsets.iter().flat_map(|&o| ends.map(|end| end + o)), a);

@@ -39,7 +39,14 @@ pub(super) async fn a_preferred_lane_comes_first_and_the_other_one_is_not_left<H
         ids.push(admit(&*store, NewJob { lane, ..job() }).await.id);
     }
     let ask = async |prefer, is_only| {
-        let request = ClaimRequest { worker: "w".to_owned(), lease: LEASE, prefer, is_only, share: 1 };
+        let request = ClaimRequest {
+            worker: "w".to_owned(),
+            lease: LEASE,
+            prefer,
+            is_only,
+            share: 1,
+            is_share_of_worker: false,
+        };
         store.claim(request).await.unwrap().map(|row| row.id)
     };
     let claim = async |prefer| ask(prefer, false).await;

@@ -222,6 +222,7 @@ async fn claim_of_many(store: &dyn JobStore, share: usize) -> Option<JobRow> {
         prefer: Lane::Interactive,
         is_only: false,
         share,
+        is_share_of_worker: false,
     };
     store.claim(request).await.unwrap()
 }

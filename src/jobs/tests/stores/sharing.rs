@@ -9,7 +9,14 @@ fn of(tenant: &str) -> NewJob {
 
 async fn claim_with(store: &dyn JobStore, share: usize, is_only: bool) -> Option<JobRow> {
     let prefer = if is_only { Lane::Interactive } else { Lane::Bulk };
-    let request = ClaimRequest { worker: "w".to_owned(), lease: LEASE, prefer, is_only, share };
+    let request = ClaimRequest {
+        worker: "w".to_owned(),
+        lease: LEASE,
+        prefer,
+        is_only,
+        share,
+        is_share_of_worker: false,
+    };
     store.claim(request).await.unwrap()
 }
 

@@ -1,5 +1,6 @@
 //! The cases on PostgreSQL.
 
+mod pace;
 #[path = "../../../../../tests/support/postgres_server.rs"]
 mod server;
 
@@ -181,6 +182,7 @@ postgres_tests! {
                 prefer: Lane::Interactive,
                 is_only: false,
                 share: 2,
+                is_share_of_worker: false,
             };
             tokio::spawn(async move { store.claim(request).await.unwrap().map(|row| row.tenant) })
         });
@@ -191,6 +193,29 @@ postgres_tests! {
         claimed.sort_unstable();
         let tenants: Vec<_> = claimed.iter().map(Tenant::name).collect();
         assert_eq!(tenants, ["a", "a", "b", "b"]);
+    }
+
+    async fn a_share_of_the_slots_of_one_server_does_not_count_what_runs_on_others() {
+        let house = PostgresHouse::open().await;
+        for _ in 0..5 {
+            admit(&*house.store, NewJob { tenant: Tenant::named("a"), ..job() }).await;
+        }
+        let claim = async |worker: &str, share, is_share_of_worker| {
+            let request = ClaimRequest {
+                worker: worker.to_owned(),
+                lease: super::LEASE,
+                prefer: Lane::Interactive,
+                is_only: false,
+                share,
+                is_share_of_worker,
+            };
+            house.store.claim(request).await.unwrap().is_some()
+        };
+        assert!(claim("first", 1, true).await);
+        assert!(!claim("first", 1, true).await, "it has its share here");
+        assert!(claim("second", 1, true).await && claim("third", 1, true).await);
+        assert!(!claim("fourth", 3, false).await, "it has three of all");
+        assert!(claim("fourth", 4, false).await);
     }
 
     async fn a_change_that_nobody_waits_for_is_made_all_the_same() {
