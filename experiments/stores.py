@@ -113,6 +113,7 @@ def cut():
         line.change.wait_for(lambda: line.whole)
     until_accepted(begun, time.time())
     how = "closed" if closes else "silent"
+    print(f"{['database', 'bucket'][which]} {how} {'at' if hit else 'between'} bytes {direction}: {recovered[-1]:.1f} s", file=sys.stderr, flush=True)
     return f"{['database', 'bucket'][which]} {how} {'at' if hit else 'between'} bytes {direction} it"
 
 
@@ -192,7 +193,7 @@ with Town(o.binary, o.s3) as town:
     for line in lines:
         line.closes, line.seconds = False, 3600
         line.cut_now()
-    begun = time.time()
+    told = time.time()
     for server in apis + workers:
         server.process.send_signal(signal.SIGTERM)
     hung = 0
@@ -201,7 +202,7 @@ with Town(o.binary, o.s3) as town:
             server.process.wait(60)
         except Exception:
             hung += 1
-    ended_in = time.time() - begun
+    ended_in = time.time() - told
     for server in apis + workers:
         server.__exit__()
 

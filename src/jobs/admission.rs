@@ -177,12 +177,20 @@ impl Service {
                 creating.await
             }
         };
-        let row = match created.map_err(|error| self.not_admitted(&error))? {
-            Created::Known(row) => return Ok(row),
-            Created::New(row) => row,
+        let files = [submission.upload, submission.material].into_iter().flatten();
+        let row = match created {
+            Ok(Created::Known(row)) => return Ok(row),
+            Ok(Created::New(row)) => row,
+            Err(error) => {
+                if matches!(error, StoreError::Unavailable(_)) {
+                    // The row may be there all the same, and name them; otherwise they are found as orphans.
+                    files.for_each(Uploaded::named);
+                }
+                return Err(self.not_admitted(&error));
+            }
         };
         // From here on the row owns the files.
-        [submission.upload, submission.material].into_iter().flatten().for_each(Uploaded::named);
+        files.for_each(Uploaded::named);
         if let Some(left) = row.time_left {
             tokio::spawn(end_overdue(Arc::clone(self), row.id, left));
         }

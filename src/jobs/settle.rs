@@ -36,23 +36,32 @@ pub(super) async fn settle(service: &Service, row: &JobRow, live: &Arc<Live>, co
     let (id, claim) = (row.id, row.claim());
     let after = match conclusion {
         Conclusion::End(ending, written) => {
-            let finished = persist(row, || service.store.finish(claim, Ending::clone(&ending))).await;
-            finished.map(|()| {
-                written.into_iter().for_each(Written::named);
-                note(row, &ending);
-                meters::finished(row.operation, &ending);
-                AfterLoss::Ended
-            })
+            match persist(row, || service.store.finish(claim, Ending::clone(&ending))).await {
+                Ok(()) => {
+                    written.into_iter().for_each(Written::named);
+                    note(row, &ending);
+                    meters::finished(row.operation, &ending);
+                    Some(AfterLoss::Ended)
+                }
+                Err(Void { was_silent }) => {
+                    if was_silent {
+                        // The end that was not answered may have been stored, and name them; otherwise they are found as
+                        // orphans.
+                        written.into_iter().for_each(Written::named);
+                    }
+                    None
+                }
+            }
         }
         Conclusion::Demote { is_outgrown } => {
             tracing::info!(job = %id, is_outgrown, "a job is larger than was thought");
-            persist(row, || service.store.demote(claim, is_outgrown)).await
+            persist(row, || service.store.demote(claim, is_outgrown)).await.ok()
         }
-        Conclusion::Release => persist(row, || service.store.release(claim)).await,
+        Conclusion::Release => persist(row, || service.store.release(claim)).await.ok(),
         Conclusion::Lose(problem) => {
             meters::lost(row.operation, 1);
             let attempts_max = service.settings.attempts_max;
-            persist(row, || service.store.lose(claim, Problem::clone(&problem), attempts_max)).await
+            persist(row, || service.store.lose(claim, Problem::clone(&problem), attempts_max)).await.ok()
         }
         Conclusion::Void => None,
     };
@@ -87,18 +96,26 @@ fn note(row: &JobRow, ending: &Ending) {
     );
 }
 
-/// Asks the store until it answers; `None`: the claim is void.
-async fn persist<'s, T>(row: &JobRow, ask: impl Fn() -> StoreFuture<'s, T>) -> Option<T> {
+/// The claim is void.
+struct Void {
+    /// The store was asked before and did not answer: perhaps it did what it was asked, which ended the claim.
+    was_silent: bool,
+}
+
+/// Asks the store until it answers.
+async fn persist<'s, T>(row: &JobRow, ask: impl Fn() -> StoreFuture<'s, T>) -> Result<T, Void> {
+    let mut was_silent = false;
     loop {
         match ask().await {
-            Ok(answer) => return Some(answer),
+            Ok(answer) => return Ok(answer),
             Err(error @ (StoreError::Unavailable(_) | StoreError::Full(_))) => {
+                was_silent |= matches!(error, StoreError::Unavailable(_));
                 tracing::error!(job = %row.id, %error, "the end of a run could not be stored");
                 tokio::time::sleep(STORE_PAUSE).await;
             }
             Err(error) => {
                 tracing::warn!(job = %row.id, epoch = row.epoch, %error, "a run was in vain");
-                return None;
+                return Err(Void { was_silent });
             }
         }
     }

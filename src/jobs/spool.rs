@@ -252,7 +252,7 @@ impl Written {
         self.blob.as_ref()
     }
 
-    /// A row names the file now.
+    /// A row names the file now, or may do so.
     pub(super) fn named(mut self) {
         self.blob = None;
     }

@@ -191,7 +191,7 @@ pub struct Uploaded {
 }
 
 impl Uploaded {
-    /// A row names the file now.
+    /// A row names the file now, or may do so.
     pub(super) fn named(self) {
         self.written.named();
     }

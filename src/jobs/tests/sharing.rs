@@ -3,6 +3,7 @@
 use super::blobs::s3::S3Server;
 use super::stores::{Database, leave_out};
 use super::*;
+use tokio::io::AsyncWriteExt as _;
 
 /// What several servers share, and a service of each.
 struct Street {
@@ -62,6 +63,66 @@ impl Street {
         let sql = "SELECT count(pg_terminate_backend(pid)) FROM pg_stat_activity
             WHERE datname = current_database() AND application_name = 'meshmend hints'";
         client.query_one(sql, &[]).await.unwrap().get(0)
+    }
+}
+
+/// A way to the database on which the answer to a commit can be lost.
+struct Line {
+    url: String,
+    /// What the values of the transaction hold whose answer is to be lost.
+    marker: Arc<Mutex<Option<Vec<u8>>>>,
+}
+
+impl Line {
+    async fn to(url: &str) -> Self {
+        let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let port = listener.local_addr().unwrap().port();
+        let (host, rest) = url.strip_prefix("host=").unwrap().split_once(' ').unwrap();
+        let (socket, marker) = (format!("{host}/.s.PGSQL.5432"), Arc::default());
+        let line = Self { url: format!("host=127.0.0.1 port={port} {rest}"), marker: Arc::clone(&marker) };
+        tokio::spawn(async move {
+            while let Ok((client, _)) = listener.accept().await {
+                let server = tokio::net::UnixStream::connect(&socket).await.unwrap();
+                tokio::spawn(pass_on(client, server, Arc::clone(&marker)));
+            }
+        });
+        line
+    }
+
+    /// The answer to the commit of the next transaction with this among its values is lost.
+    fn lose(&self, marker: &[u8]) {
+        *self.marker.lock().unwrap() = Some(marker.to_vec());
+    }
+}
+
+/// Passes on what both sides say, until one of them ends or an answer is to be lost.
+async fn pass_on(
+    mut client: tokio::net::TcpStream,
+    mut server: tokio::net::UnixStream,
+    marker: Arc<Mutex<Option<Vec<u8>>>>,
+) {
+    let has = |bytes: &[u8], part: &[u8]| bytes.windows(part.len()).any(|window| window == part);
+    let (mut asked, mut answered) = (vec![0; 64 << 10], vec![0; 64 << 10]);
+    let (mut is_marked, mut is_lost) = (false, false);
+    loop {
+        tokio::select! {
+            read = client.read(&mut asked) => {
+                let Ok(bytes @ 1..) = read else { return };
+                let said = &asked[..bytes];
+                is_marked |= marker.lock().unwrap().as_ref().is_some_and(|marker| has(said, marker));
+                if is_marked && has(said, b"COMMIT") {
+                    is_lost = marker.lock().unwrap().take().is_some();
+                }
+                server.write_all(said).await.unwrap();
+            }
+            read = server.read(&mut answered) => {
+                let Ok(bytes @ 1..) = read else { return };
+                // The database has done it, and nobody hears of that.
+                if is_lost || client.write_all(&answered[..bytes]).await.is_err() {
+                    return;
+                }
+            }
+        }
     }
 }
 
@@ -173,6 +234,34 @@ shared_tests! {
         told.send(()).unwrap();
         assert_eq!(other.end_of(&job).await.state, JobState::Succeeded);
         assert_eq!(working.service().store.get(id(&job)).await.unwrap().attempts, 0);
+    }
+
+    async fn files_stay_where_nobody_knows_whether_a_row_names_them(street) {
+        let line = Line::to(&street.shared.database.url).await;
+        let (tell, told) = mpsc::channel();
+        let url = line.url.clone();
+        let change = move |settings: &mut JobsSettings| {
+            (settings.slots, settings.lease) = (1, HOURS);
+            settings.shared.as_mut().unwrap().database.url = url;
+        };
+        let house = street.house_with(change, work_until_told(told)).await;
+        let order = async || {
+            let upload = Some(house.send(b"a mesh").await.unwrap());
+            let asked = Submission::new(Operation::Repair, Options::default());
+            house.submit(Submission { upload, key: Some("a key of mine".to_owned()), ..asked }).await
+        };
+        line.lose(b"a key of mine");
+        assert!(order().await.is_err(), "the answer is lost");
+        let job = order().await.unwrap();
+        house.until("running", |load| load.running == 1).await;
+        line.lose(uuid::Uuid::from(id(&job)).as_bytes());
+        tell.send(()).unwrap();
+        let ended = house.end_of(&job).await;
+        assert_eq!((ended.state, ended.attempts), (JobState::Succeeded, 0), "{:?}", ended.problem);
+        // Whoever made the end known has come to know of the loss by now.
+        tokio::time::sleep(2 * crate::jobs::settle::STORE_PAUSE).await;
+        assert!(line.marker.lock().unwrap().is_none(), "the answer is lost");
+        assert!(!content(house.result(id(&job)).await.unwrap()).await.is_empty());
     }
 
     async fn a_bucket_of_another_database_is_refused(street) {
