@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The program for x86-64 and the one for 64-bit ARM on the same files: digests of results and of reports; prints Markdown.
 
-usage: processors.py [--binary PATH] [--other PATH] [--emulator "qemu-aarch64-static -L /usr/aarch64-linux-gnu"] [--files 200] [--bytes 1048576] [--seed 1]
+usage: processors.py [--binary PATH] [--other PATH] [--emulator "qemu-aarch64-static -L /usr/aarch64-linux-gnu"] [--files 200] [--bytes 300000] [--seed 1]
 Every fixture, and of the corpus in `shared` (or MESHMEND_SHARED) `--files` files of at most `--bytes`, drawn with the seed, are repaired and
 analysed by both programs. Without `--other` the program for ARM is built, which needs gcc-aarch64-linux-gnu, libc6-dev-arm64-cross and
 qemu-user-static (Debian), and the target aarch64-unknown-linux-gnu of the toolchain.
@@ -27,7 +27,7 @@ p.add_argument("--binary", default=default_binary)
 p.add_argument("--other")
 p.add_argument("--emulator", default="qemu-aarch64-static -L /usr/aarch64-linux-gnu")
 p.add_argument("--files", type=int, default=200)
-p.add_argument("--bytes", type=int, default=1 << 20)
+p.add_argument("--bytes", type=int, default=300_000)
 p.add_argument("--seed", type=int, default=1)
 p.add_argument("--seconds", type=float, default=1200, help="most for one run")
 o = p.parse_args()
@@ -94,20 +94,24 @@ if len(small) < o.files:
 groups = {"fixtures": meshes(os.path.join(root, "fixtures")), "corpus": sorted(random.Random(o.seed).sample(small, o.files))}
 counts, differing = collections.defaultdict(collections.Counter), []
 with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-    for group, paths in groups.items():
-        for done, (path, (here, there)) in enumerate(zip(paths, pool.map(both, paths)), 1):
-            differ = [what for what in here if here[what] != there.get(what)]
-            count = counts[group]
-            count["files"] += 1
-            count["equal"] += not differ
-            count["results"] += here["result"] != "none"
-            count["no result from either"] += here["result"] == there["result"] == "none"
-            count["over time"] += "time" in [*here.values(), *there.values()]
-            if differ:
-                differing.append((os.path.relpath(path, root if group == "fixtures" else shared), ", ".join(differ)))
-            print(f"{group} {done}/{len(paths)} {os.path.basename(path)} {differ or 'equal'}", file=sys.stderr, flush=True)
+    # Small files first.
+    order = sorted(((group, path) for group, paths in groups.items() for path in paths), key=lambda one: os.path.getsize(one[1]))
+    runs = {pool.submit(both, path): (group, path) for group, path in order}
+    for run in concurrent.futures.as_completed(runs):
+        (group, path), (here, there) = runs[run], run.result()
+        differ = [what for what in here if here[what] != there.get(what)]
+        count = counts[group]
+        count["files"] += 1
+        count["equal"] += not differ
+        count["results"] += here["result"] != "none"
+        count["no result from either"] += here["result"] == there["result"] == "none"
+        count["over time"] += "time" in [*here.values(), *there.values()]
+        if differ:
+            differing.append((os.path.relpath(path, root if group == "fixtures" else shared), ", ".join(differ)))
+        print(f"{group} {count['files']}/{len(groups[group])} {os.path.basename(path)} {differ or 'equal'}", file=sys.stderr, flush=True)
 
-rows = "\n".join(f"| {group}: {what} | {count[what]} |" for group, count in counts.items()
+differing.sort()
+rows = "\n".join(f"| {group}: {what} | {count[what]} |" for group, count in sorted(counts.items())
                  for what in ("files", "equal", "results", "no result from either", "over time"))
 named = "\n".join(f"| `{path}` | {what} |" for path, what in differing)
 size = os.path.getsize

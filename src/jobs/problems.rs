@@ -46,6 +46,10 @@ pub(super) fn disk_problem(error: &io::Error) -> Problem {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
             Problem::new(ProblemCode::StorageFull, "the disk is full")
         }
+        // No disk says so, but a bucket.
+        io::ErrorKind::HostUnreachable => {
+            Problem::new(ProblemCode::StoreUnavailable, "the store of files does not answer")
+        }
         _ => Problem::new(ProblemCode::Internal, "the data directory failed"),
     }
 }

@@ -170,8 +170,10 @@ async fn conclude(
             Conclusion::Demote { is_outgrown: false }
         }
         ProblemCode::Cancelled => end(JobState::Cancelled, problem),
-        // The run is lost with its executor, not ended by what it was given.
-        ProblemCode::EngineCrashed | ProblemCode::WorkerLost => Conclusion::Lose(Box::new(problem)),
+        // The run is lost with its executor, or for want of its files, not ended by what it was given.
+        ProblemCode::EngineCrashed | ProblemCode::WorkerLost | ProblemCode::StoreUnavailable => {
+            Conclusion::Lose(Box::new(problem))
+        }
         _ => end(JobState::Failed, problem),
     }
 }

@@ -275,7 +275,8 @@ fn failure(error: object_store::Error) -> io::Error {
         object_store::Error::PermissionDenied { .. } | object_store::Error::Unauthenticated { .. } => {
             io::ErrorKind::PermissionDenied
         }
-        _ => io::ErrorKind::Other,
+        // The bucket, or the way to it, does not do its work now.
+        _ => io::ErrorKind::HostUnreachable,
     };
     io::Error::new(kind, error)
 }
