@@ -46,8 +46,8 @@ pub(super) fn disk_problem(error: &io::Error) -> Problem {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
             Problem::new(ProblemCode::StorageFull, "the disk is full")
         }
-        // No disk says so, but a bucket.
-        io::ErrorKind::HostUnreachable => {
+        // No disk says so, but a bucket; the second one where it took a file and its answer was lost: no name is given twice.
+        io::ErrorKind::HostUnreachable | io::ErrorKind::AlreadyExists => {
             Problem::new(ProblemCode::StoreUnavailable, "the store of files does not answer")
         }
         _ => Problem::new(ProblemCode::Internal, "the data directory failed"),
