@@ -2,12 +2,14 @@
 //!
 //! Rounding moves a new point by at most half a pitch in each coordinate, which can push it through a triangle that is nearer. Where
 //! triangles meet afterwards, each new point of theirs goes to the one of the lattice points around it at which its triangles
-//! meet the fewest others. What is left is counted; the result is for the certificate to judge.
+//! meet the fewest others. What is left is counted; the result is for the certificate to judge. Triangles that rounding does not
+//! move meet nowhere in an arrangement, so that only those that it moves are looked at, and what is near them.
 
 use super::error::ArrangementError;
 use super::{Arrangement, Merged};
-use crate::budget::Budget;
+use crate::budget::{Budget, CHECK_EVERY};
 use crate::geom::{Aabb, DVec3, Plane, Shared, are_collinear, contact};
+use crate::par;
 use crate::spatial::{Bvh, Search, self_contacts};
 
 /// A boundary in numbers of a file.
@@ -33,6 +35,9 @@ const CONFLICTS_MAX: usize = 1 << 14;
 
 /// Triangles near those of a star, beyond which its point stays where it is.
 const NEIGHBORS_MAX: usize = 1 << 20;
+
+/// Pitches that a point may be from where it is exactly, in each coordinate, and that two of them may be closer by.
+const REACH: f64 = 4.0;
 
 /// Puts the new points of `merged` on the lattice of this pitch, which must be a power of two.
 ///
@@ -67,11 +72,13 @@ pub fn place(
             sources: merged.sources.clone(),
             ..Placed::default()
         },
+        is_near: Vec::new(),
         exact,
         first_new,
         pitch,
         budget,
     };
+    placing.is_near = placing.near_new_points()?;
     placing.weld(&used);
     let mut best = u64::MAX;
     for round in 0..=ROUNDS_MAX {
@@ -98,6 +105,8 @@ fn nearest(place: DVec3, pitch: f64) -> DVec3 {
 
 struct Placing<'b> {
     placed: Placed,
+    /// For each triangle, whether it is or may come to be on or through one with a new point.
+    is_near: Vec<bool>,
     /// Where the new points are, to the last place.
     exact: Vec<DVec3>,
     first_new: u32,
@@ -110,12 +119,41 @@ impl Placing<'_> {
         self.placed.triangles[t as usize].map(|p| self.placed.positions[p as usize])
     }
 
+    /// The triangles with a new point, wherever mending may put it, and those whose boxes come near theirs.
+    fn near_new_points(&self) -> Result<Vec<bool>, ArrangementError> {
+        let triangles = &self.placed.triangles;
+        let has_new = |t: &u32| triangles[*t as usize].iter().any(|&p| p >= self.first_new);
+        let new: Vec<u32> = (0..triangles.len() as u32).filter(has_new).collect();
+        let bvh = Bvh::build(&self.placed.positions, triangles, Some(&new), self.budget)?;
+        let parts = par::try_map_ranges(triangles.len(), CHECK_EVERY, |range| {
+            let is_near = |t: usize| {
+                let bounds = self.with_margin(Aabb::of(self.corners(t as u32)), 2.0 * REACH);
+                bvh.any_in_box(bounds, self.budget, |_| true)
+            };
+            self.budget.spend(range.len() as u64)?;
+            range.map(is_near).collect::<Result<Vec<bool>, _>>()
+        })?;
+        Ok(parts.into_iter().flatten().collect())
+    }
+
+    /// A box that is larger by so many pitches on each side.
+    fn with_margin(&self, bounds: Aabb, pitches: f64) -> Aabb {
+        let margin = DVec3::splat(pitches * self.pitch);
+        Aabb { min: bounds.min - margin, max: bounds.max + margin }
+    }
+
+    /// The triangles that are near new points, ascending.
+    fn near(&self) -> impl Iterator<Item = u32> {
+        (0..).zip(&self.is_near).filter_map(|(t, &is_near)| is_near.then_some(t))
+    }
+
     /// Makes new points one with the first point at their position, and drops the triangles that this leaves without three
     /// corners, and pairs of them that lie on each other the opposite way.
     fn weld(&mut self, used: &[u32]) {
         let key = |p: DVec3| (p + DVec3::ZERO).to_array().map(f64::to_bits);
         let positions = &self.placed.positions;
-        let mut points: Vec<u32> = self.placed.triangles.as_flattened().to_vec();
+        let corners = |t: u32| self.placed.triangles[t as usize];
+        let mut points: Vec<u32> = self.near().flat_map(corners).collect();
         points.sort_unstable();
         points.dedup();
         let mut order: Vec<([u64; 3], u32)> =
@@ -132,13 +170,18 @@ impl Placing<'_> {
         if !is_any {
             return;
         }
+        let near: Vec<u32> = self.near().collect();
         let Placed { triangles, sources, .. } = &mut self.placed;
-        for p in triangles.as_flattened_mut() {
-            *p = first[*p as usize];
+        let mut is_kept = vec![true; triangles.len()];
+        for &t in &near {
+            let corners = &mut triangles[t as usize];
+            *corners = corners.map(|p| first[p as usize]);
+            let [a, b, c] = *corners;
+            is_kept[t as usize] = a != b && b != c && c != a;
         }
-        let mut is_kept: Vec<bool> = triangles.iter().map(|&[a, b, c]| a != b && b != c && c != a).collect();
         // Corners, ascending, and whether the triangle runs through them the other way.
-        let mut by_corners: Vec<([u32; 3], bool, u32)> = (0..triangles.len() as u32)
+        let mut by_corners: Vec<([u32; 3], bool, u32)> = near
+            .into_iter()
             .filter(|&t| is_kept[t as usize])
             .map(|t| {
                 let [a, b, c] = triangles[t as usize];
@@ -159,9 +202,11 @@ impl Placing<'_> {
         triangles.retain(|_| marks.next() == Some(&true));
         let mut marks = is_kept.iter();
         sources.retain(|_| marks.next() == Some(&true));
+        let mut marks = is_kept.iter();
+        self.is_near.retain(|_| marks.next() == Some(&true));
     }
 
-    /// How many pairs of triangles meet or have no area, and the new points of these, ascending.
+    /// How many pairs of triangles near new points meet or have no area, and the new points of these, ascending.
     fn conflicts(&self) -> Result<(u64, Vec<u32>), ArrangementError> {
         let triangles = &self.placed.triangles;
         let has_area = |&t: &u32| {
@@ -169,7 +214,7 @@ impl Placing<'_> {
             !are_collinear(a, b, c)
         };
         self.budget.spend(triangles.len() as u64)?;
-        let (sound, flat): (Vec<u32>, Vec<u32>) = (0..triangles.len() as u32).partition(has_area);
+        let (sound, flat): (Vec<u32>, Vec<u32>) = self.near().partition(has_area);
         let bvh = Bvh::build(&self.placed.positions, triangles, Some(&sound), self.budget)?;
         let search = Search::All { keep: CONFLICTS_MAX };
         let found = self_contacts(&self.placed.positions, triangles, &bvh, None, search, self.budget)?;
@@ -193,11 +238,13 @@ impl Placing<'_> {
     /// Moves each of `points` to where its triangles meet the fewest others.
     fn mend(&mut self, points: &[u32]) -> Result<(), ArrangementError> {
         let mut stars: Vec<(u32, u32)> = Vec::new();
-        for (t, corners) in self.placed.triangles.iter().enumerate() {
-            stars.extend(corners.iter().filter(|p| points.binary_search(p).is_ok()).map(|&p| (p, t as u32)));
+        let near: Vec<u32> = self.near().collect();
+        for &t in &near {
+            let corners = self.placed.triangles[t as usize];
+            stars.extend(corners.into_iter().filter(|p| points.binary_search(p).is_ok()).map(|p| (p, t)));
         }
         stars.sort_unstable();
-        let bvh = Bvh::build(&self.placed.positions, &self.placed.triangles, None, self.budget)?;
+        let bvh = Bvh::build(&self.placed.positions, &self.placed.triangles, Some(&near), self.budget)?;
         for star in stars.chunk_by(|a, b| a.0 == b.0) {
             let point = star[0].0;
             let places = self.around(point);
@@ -244,10 +291,9 @@ impl Placing<'_> {
             let stay = names.into_iter().filter(|&p| p != point).map(|p| self.placed.positions[p as usize]);
             let bounds = Aabb::of(stay.chain(places.iter().copied()));
             // Points may have moved by two pitches in each coordinate since the tree was built.
-            let margin = DVec3::splat(4.0 * self.pitch);
-            let query = Aabb { min: bounds.min - margin, max: bounds.max + margin };
+            let query = self.with_margin(bounds, REACH);
             // From where it is with its point at one of the places.
-            let reach = 4.0 * self.pitch;
+            let reach = REACH * self.pitch;
             let corners =
                 names.map(|p| if p == point { places[0] } else { self.placed.positions[p as usize] });
             let mut seen = 0;

@@ -115,6 +115,10 @@ fn check_places(errand: &Errand<'_>) -> Result<(), Problem> {
             "no mesh format has the file extension .{extension}: --output-format names the format"
         )));
     }
+    let of_picture = output.as_ref().filter(|_| is_picture).and_then(Place::extension);
+    if let Some(extension) = of_picture.filter(|extension| !is_png(extension)) {
+        return Err(wrong(format!("a picture is a PNG file, which cannot have the extension .{extension}")));
+    }
     let has_format = |place: &Place| place.format().is_some() || is_named("output_format");
     match output {
         Some(output) if request.operation == Operation::Convert && !has_format(output) => {
@@ -122,6 +126,11 @@ fn check_places(errand: &Errand<'_>) -> Result<(), Problem> {
         }
         _ => Ok(()),
     }
+}
+
+/// Whether a file of this extension can be a PNG, of one picture or, as APNG, of several.
+fn is_png(extension: &str) -> bool {
+    ["png", "apng"].iter().any(|png| extension.eq_ignore_ascii_case(png))
 }
 
 pub(super) fn wrong(detail: impl Into<String>) -> Problem {

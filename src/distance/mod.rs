@@ -63,15 +63,18 @@ impl Default for DistanceOptions {
     }
 }
 
-/// Whether all of these places on a triangle, which is named, are hidden.
-pub type Hides<'v> = dyn Fn(&mut dyn Iterator<Item = DVec3>, u32) -> Result<bool, Stopped> + Sync + 'v;
+/// Gives the first of these places on a triangle, which is named, that can be seen. It may keep what hid one place to look at it
+/// first for the next.
+pub type Look<'v> =
+    Box<dyn FnMut(&mut dyn Iterator<Item = DVec3>, u32) -> Result<Option<DVec3>, Stopped> + 'v>;
 
 /// What of a surface counts. The distance is then that of the places that can be seen: of a piece of a triangle that is
 /// farther than others some places are asked about, and it counts unless all are hidden.
 #[derive(Clone, Copy)]
 pub struct Sight<'v> {
-    /// Whether all of these places on a triangle of the first surface are hidden.
-    pub hides: &'v Hides<'v>,
+    /// Makes a look at places on triangles of the first surface, whose answers do not depend on earlier ones; `None`: all of it
+    /// can be seen.
+    pub look: Option<&'v (dyn Fn() -> Look<'v> + Sync)>,
     /// What can be seen and is farther than this from the second surface is lost, in the unit of the coordinates.
     pub lost_beyond: f64,
 }

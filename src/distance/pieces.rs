@@ -1,9 +1,9 @@
 //! Pieces of triangles that may hold the farthest point, cut smaller until they do not.
 
-use super::FarPoint;
 use super::bound::{Corner, upper_bound};
 use super::target::Target;
-use super::view::View;
+use super::view::{View, Visible};
+use super::{FarPoint, Look};
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use crate::spatial::Nearest;
@@ -67,6 +67,24 @@ pub(super) struct Refined {
     pub(super) work: u64,
 }
 
+impl Refined {
+    /// Takes a place on a triangle that can be seen as the farthest point, if it is.
+    fn look_at(
+        &mut self,
+        to: &Target<'_>,
+        place: DVec3,
+        triangle: u32,
+        hint: u32,
+        budget: &Budget,
+    ) -> Result<(), Stopped> {
+        self.work += 1;
+        if let Some(found) = to.find(place, Some(hint), budget)?.filter(|found| found.is_exact) {
+            self.farthest = self.farthest.or(Farthest::at(place, triangle, &found.nearest));
+        }
+        Ok(())
+    }
+}
+
 /// Work on a piece before what is left of it is handed back.
 pub(super) const WORK_MAX: u64 = 48;
 
@@ -74,6 +92,7 @@ pub(super) const WORK_MAX: u64 = 48;
 pub(super) fn refine(
     to: &Target<'_>,
     view: &View<'_>,
+    look: &mut Option<Look<'_>>,
     piece: Piece,
     farthest: Farthest,
     tolerance: Tolerance,
@@ -85,7 +104,7 @@ pub(super) fn refine(
         if piece.upper <= tolerance.enough(refined.farthest.distance) {
             refined.upper = refined.upper.max(piece.upper);
         } else {
-            split(to, view, &piece, &mut refined, tolerance, budget)?;
+            split(to, view, look, &piece, &mut refined, tolerance, budget)?;
         }
     }
     Ok(refined)
@@ -95,6 +114,7 @@ pub(super) fn refine(
 fn split(
     to: &Target<'_>,
     view: &View<'_>,
+    look: &mut Option<Look<'_>>,
     piece: &Piece,
     refined: &mut Refined,
     tolerance: Tolerance,
@@ -107,7 +127,7 @@ fn split(
         let Some(found) = to.find(place, Some(a.closest_triangle), budget)? else { return Ok(a) };
         let nearest = found.nearest;
         let is_farther = found.is_exact && nearest.distance > refined.farthest.distance;
-        if is_farther && view.counts(place, piece.triangle)? {
+        if is_farther && view.counts(look, place, piece.triangle)? {
             refined.farthest = Farthest::at(place, piece.triangle, &nearest);
         }
         Ok(Corner { place, closest_triangle: nearest.triangle, distance: nearest.distance })
@@ -121,9 +141,18 @@ fn split(
             refined.work += walked / WALKED_FOR_ONE;
             upper = covered;
         }
-        if upper <= enough || !view.hides(&corners, piece.triangle)? {
-            refined.left.push(Piece { corners, upper, ..*piece });
+        let visible = match upper > enough {
+            true => view.visible(look, &corners, piece.triangle)?,
+            false => Visible::All,
+        };
+        match visible {
+            Visible::Nothing => continue,
+            Visible::At(place) => {
+                refined.look_at(to, place, piece.triangle, corners[0].closest_triangle, budget)?
+            }
+            Visible::All => {}
         }
+        refined.left.push(Piece { corners, upper, ..*piece });
     }
     Ok(())
 }

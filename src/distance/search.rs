@@ -5,18 +5,18 @@ use super::pieces::{Farthest, Piece, Refined, Tolerance, WORK_MAX, refine};
 use super::samples::Areas;
 use super::scale::Common;
 use super::target::Target;
-use super::view::View;
-use super::{DirectedDistance, DistanceOptions, Seen, Surface};
+use super::view::{View, Visible};
+use super::{DirectedDistance, DistanceOptions, Look, Seen, Surface};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::par;
 use crate::spatial::Found;
 use std::collections::BinaryHeap;
 
 /// One direction.
-pub(super) struct Directed<'d> {
+pub(super) struct Directed<'d, 'v> {
     pub(super) from: Surface<'d>,
     pub(super) to: &'d Target<'d>,
-    pub(super) view: View<'d>,
+    pub(super) view: View<'v>,
     pub(super) common: &'d Common<'d>,
     pub(super) options: &'d DistanceOptions,
     pub(super) budget: &'d Budget,
@@ -102,7 +102,7 @@ impl Ord for Waiting {
     }
 }
 
-impl Directed<'_> {
+impl Directed<'_, '_> {
     pub(super) fn measure(&self) -> Result<DirectedDistance, Stopped> {
         let _charge = self.budget.charge(self.from.positions.len() as u64 * 16)?;
         let (vertices, at_vertices) = self.at_vertices()?;
@@ -146,7 +146,7 @@ impl Directed<'_> {
         }
         let parts = par::try_map_ranges(triangle_of.len(), POINTS_OF_TASK, |range| {
             let mut found = Vec::with_capacity(range.len());
-            let (mut hint, mut farthest) = (None, Farthest::NONE);
+            let (mut hint, mut farthest, mut look) = (None, Farthest::NONE, self.view.look());
             self.budget.spend(range.len() as u64)?;
             for v in range {
                 let close = match triangle_of[v] {
@@ -157,7 +157,7 @@ impl Directed<'_> {
                     hint = Some(nearest.triangle);
                     let (place, triangle) = (self.from.positions[v], triangle_of[v]);
                     let is_farther = is_exact && nearest.distance > farthest.distance;
-                    if is_farther && self.view.counts(place, triangle)? {
+                    if is_farther && self.view.counts(&mut look, place, triangle)? {
                         farthest = Farthest::at(place, triangle, &nearest);
                     }
                 }
@@ -193,10 +193,10 @@ impl Directed<'_> {
         let parts = par::try_map_ranges(count, POINTS_OF_TASK, |range| {
             self.budget.spend(range.len() as u64)?;
             let mut of = Sampled { taken: range.len() as u32, ..Sampled::NONE };
-            let (mut hint, mut boxes) = (None, 0);
+            let (mut hint, mut boxes, mut look) = (None, 0, self.view.look());
             for k in range {
                 let sample = areas.sample(self.from, k, count);
-                if !self.view.counts(sample.place, sample.triangle)? {
+                if !self.view.counts(&mut look, sample.place, sample.triangle)? {
                     continue;
                 }
                 let found = self.to.near.find_roughly(sample.place, hint, usize::MAX, self.budget)?;
@@ -243,9 +243,9 @@ impl Directed<'_> {
         let parts = par::try_map_ranges(self.from.triangles.len(), CHECK_EVERY, |range| {
             self.budget.check()?;
             let mut below = 0f64;
-            let (mut farthest, mut above) = (known, Vec::new());
+            let (mut farthest, mut above, mut look) = (known, Vec::new(), self.view.look());
             for t in range {
-                let bound = self.triangle_bound(vertices, t as u32, &mut farthest)?;
+                let bound = self.triangle_bound(vertices, &mut look, t as u32, &mut farthest)?;
                 if bound <= self.tolerance().enough(farthest.distance) {
                     below = below.max(bound);
                 } else {
@@ -263,7 +263,13 @@ impl Directed<'_> {
 
     /// The bound of a whole triangle. Where the corners do not decide, the triangle closest to its middle may: surfaces
     /// that are the same in a region are seen to be so at once.
-    fn triangle_bound(&self, vertices: &[AtVertex], t: u32, farthest: &mut Farthest) -> Result<f64, Stopped> {
+    fn triangle_bound(
+        &self,
+        vertices: &[AtVertex],
+        look: &mut Option<Look<'_>>,
+        t: u32,
+        farthest: &mut Farthest,
+    ) -> Result<f64, Stopped> {
         let corners = self.corners(vertices, t);
         let enough = self.tolerance().enough(farthest.distance);
         let bound = upper_bound(&self.to.near, &corners, enough);
@@ -275,12 +281,19 @@ impl Directed<'_> {
         let Some(found) = self.to.find(middle, Some(corners[0].closest_triangle), self.budget)? else {
             return Ok(bound);
         };
-        if self.view.hides(&corners, t)? {
-            return Ok(0.0);
+        match self.view.visible(look, &corners, t)? {
+            Visible::Nothing => return Ok(0.0),
+            Visible::At(place) => {
+                let hint = Some(found.nearest.triangle);
+                if let Some(seen) = self.to.find(place, hint, self.budget)?.filter(|seen| seen.is_exact) {
+                    *farthest = farthest.or(Farthest::at(place, t, &seen.nearest));
+                }
+            }
+            Visible::All => {}
         }
         let nearest = found.nearest;
         let is_farther = found.is_exact && nearest.distance > farthest.distance;
-        if is_farther && self.view.counts(middle, t)? {
+        if is_farther && self.view.counts(look, middle, t)? {
             *farthest = Farthest::at(middle, t, &nearest);
         }
         let from_one = corners.map(|c| self.to.near.on_triangle(c.place, nearest.triangle).distance);
@@ -348,9 +361,10 @@ impl Directed<'_> {
 
     fn refine_wave(&self, wave: &[Piece], farthest: Farthest) -> Result<Vec<Refined>, Stopped> {
         let parts = par::try_map_ranges(wave.len(), PIECES_OF_TASK, |range| {
-            let mut all = Vec::with_capacity(range.len());
+            let (mut all, mut look) = (Vec::with_capacity(range.len()), self.view.look());
             for &piece in &wave[range] {
-                let refined = refine(self.to, &self.view, piece, farthest, self.tolerance(), self.budget)?;
+                let (look, tolerance) = (&mut look, self.tolerance());
+                let refined = refine(self.to, &self.view, look, piece, farthest, tolerance, self.budget)?;
                 self.budget.spend(refined.work * REFINED)?;
                 all.push(refined);
             }

@@ -1,7 +1,7 @@
 //! What of the first surface counts.
 
-use super::Sight;
 use super::bound::Corner;
+use super::{Look, Sight};
 use crate::budget::Stopped;
 use crate::geom::DVec3;
 
@@ -21,14 +21,40 @@ pub(super) struct View<'v> {
     pub(super) diagonal: f64,
 }
 
-impl View<'_> {
-    /// Whether a place of a triangle counts.
-    pub(super) fn counts(&self, place: DVec3, triangle: u32) -> Result<bool, Stopped> {
-        Ok(!self.hides_all(std::iter::once(place), triangle)?)
+/// What of a piece can be seen.
+pub(super) enum Visible {
+    /// No place that was asked about.
+    Nothing,
+    /// This place.
+    At(DVec3),
+    /// Nothing is hidden anywhere.
+    All,
+}
+
+impl<'v> View<'v> {
+    /// A look for places that are near each other; `None`: nothing is hidden anywhere.
+    pub(super) fn look(&self) -> Option<Look<'v>> {
+        self.sight.and_then(|sight| sight.look).map(|look| look())
     }
 
-    /// Whether all places of a piece that are asked about are hidden.
-    pub(super) fn hides(&self, corners: &[Corner; 3], triangle: u32) -> Result<bool, Stopped> {
+    /// Whether a place of a triangle counts.
+    pub(super) fn counts(
+        &self,
+        look: &mut Option<Look<'_>>,
+        place: DVec3,
+        triangle: u32,
+    ) -> Result<bool, Stopped> {
+        let visible = self.first_visible(look, std::iter::once(place), triangle)?;
+        Ok(!matches!(visible, Visible::Nothing))
+    }
+
+    /// What of the places of a piece that are asked about can be seen.
+    pub(super) fn visible(
+        &self,
+        look: &mut Option<Look<'_>>,
+        corners: &[Corner; 3],
+        triangle: u32,
+    ) -> Result<Visible, Stopped> {
         let [a, b, c] = corners.map(|corner| corner.place);
         let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
         let rows = ((longest / (RESOLUTION * self.diagonal)).ceil() as usize).clamp(1, ROWS_MAX);
@@ -42,12 +68,18 @@ impl View<'_> {
             let upside_down = (!is_last).then(|| place(i, j, 2.0 / 3.0));
             std::iter::once(place(i, j, 1.0 / 3.0)).chain(upside_down)
         });
-        self.hides_all(places, triangle)
+        self.first_visible(look, places, triangle)
     }
 
-    fn hides_all(&self, places: impl Iterator<Item = DVec3>, triangle: u32) -> Result<bool, Stopped> {
-        let Some(sight) = self.sight else { return Ok(false) };
-        (sight.hides)(&mut places.map(|place| place / self.factor), triangle)
+    fn first_visible(
+        &self,
+        look: &mut Option<Look<'_>>,
+        places: impl Iterator<Item = DVec3>,
+        triangle: u32,
+    ) -> Result<Visible, Stopped> {
+        let Some(look) = look else { return Ok(Visible::All) };
+        let first = look(&mut places.map(|place| place / self.factor), triangle)?;
+        Ok(first.map_or(Visible::Nothing, |place| Visible::At(place * self.factor)))
     }
 
     /// Whether something at this distance is lost.

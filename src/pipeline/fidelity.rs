@@ -6,13 +6,13 @@ use super::{Limits, Refusal};
 use crate::analysis::{Analysis, DefectCode, Finding};
 use crate::budget::{Budget, CHECK_EVERY, Stage, Stopped};
 use crate::distance::{
-    DirectedDistance, DistanceOptions, FarPoint, Sight, Surface, SurfaceDistance, directed_distance,
+    DirectedDistance, DistanceOptions, FarPoint, Look, Sight, Surface, SurfaceDistance, directed_distance,
 };
 use crate::geom::{DVec3, are_collinear, closest_point_on_triangle, signed_volume, triangle_area};
 use crate::mesh::{Components, Soup, UnionFind};
 use crate::repair::NEW;
 use crate::spatial::{NearestSearch, coincident_f64};
-use crate::winding::{InTheWay, Outlook, Solid};
+use crate::winding::{LookedFrom, Outlook, Solid};
 
 /// Visible surface farther than this from the result is lost, as a share of the diagonal of the input.
 pub(super) const LOST_BEYOND: f64 = 2e-3;
@@ -206,23 +206,23 @@ impl<'i> Original<'i> {
         })
     }
 
-    /// Whether all of these places on a triangle of the input are hidden.
-    fn are_hidden(
+    /// The first of these places on a triangle of the input that can be seen.
+    fn first_visible(
         &self,
-        places: impl Iterator<Item = DVec3>,
+        places: &mut dyn Iterator<Item = DVec3>,
         triangle: u32,
+        nearby: &mut LookedFrom,
         budget: &Budget,
-    ) -> Result<bool, Stopped> {
+    ) -> Result<Option<DVec3>, Stopped> {
         let corners = self.input.corners(triangle);
-        let Some(solid) = &self.solid else { return Ok(false) };
-        let mut in_the_way = InTheWay::default();
+        let Some(solid) = &self.solid else { return Ok(places.next()) };
         for place in places {
-            let sees = |outlook: &Outlook| outlook.sees(place, corners, &mut in_the_way, budget);
+            let sees = |outlook: &Outlook| outlook.sees(place, corners, nearby, budget);
             if !solid.hides(place, corners, budget)? || self.outlook.as_ref().map_or(Ok(false), sees)? {
-                return Ok(false);
+                return Ok(Some(place));
             }
         }
-        Ok(true)
+        Ok(None)
     }
 
     /// The distance of what is gone from the result.
@@ -234,10 +234,14 @@ impl<'i> Original<'i> {
         budget: &Budget,
     ) -> Result<Option<DirectedDistance>, Stopped> {
         let triangles: Vec<[u32; 3]> = gone.iter().map(|&t| self.input.triangles[t as usize]).collect();
-        let hides = |places: &mut dyn Iterator<Item = DVec3>, triangle: u32| {
-            self.are_hidden(places, gone[triangle as usize], budget)
+        let look = || -> Look<'_> {
+            let mut nearby = LookedFrom::default();
+            Box::new(move |places, triangle| {
+                self.first_visible(places, gone[triangle as usize], &mut nearby, budget)
+            })
         };
-        let sight = Sight { hides: &hides, lost_beyond: self.lost_beyond };
+        let hides = self.solid.is_some();
+        let sight = Sight { look: if hides { Some(&look) } else { None }, lost_beyond: self.lost_beyond };
         let from = Surface { positions: &self.input.positions, triangles: &triangles };
         directed_distance(from, surface(result), Some(sight), care, budget)
     }
@@ -251,7 +255,7 @@ impl<'i> Original<'i> {
         budget: &Budget,
     ) -> Result<Option<DirectedDistance>, Stopped> {
         let triangles: Vec<[u32; 3]> = new.iter().map(|&t| result.triangles[t as usize]).collect();
-        let sight = Sight { hides: &|_, _| Ok(false), lost_beyond: self.lost_beyond };
+        let sight = Sight { look: None, lost_beyond: self.lost_beyond };
         let from = Surface { positions: &result.positions, triangles: &triangles };
         directed_distance(from, surface(self.input), Some(sight), care, budget)
     }
@@ -288,10 +292,10 @@ impl<'i> Original<'i> {
         let near = NearestSearch::build(&result.positions, &result.triangles, budget)?;
         let mut lost = 0;
         for part in of_part.iter().filter(|part| !part.is_empty()) {
-            let (mut seen, mut found) = (0, 0);
+            let (mut seen, mut found, mut nearby) = (0, 0, LookedFrom::default());
             for &t in part.iter().step_by(part.len().div_ceil(PLACES_OF_BODY)) {
                 let place = self.input.corners(t).iter().sum::<DVec3>() / 3.0;
-                if !self.are_hidden(std::iter::once(place), t, budget)? {
+                if self.first_visible(&mut std::iter::once(place), t, &mut nearby, budget)?.is_some() {
                     budget.spend(1)?;
                     let nearest = near.find(place, None, budget)?;
                     seen += 1;

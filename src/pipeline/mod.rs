@@ -54,6 +54,7 @@ pub use self::project::{AttributeCounts, PartFacts, PartReport};
 pub use self::rebuild::{Effort, WrapChoices};
 pub use self::remedies::{
     ChosenPlan, ChosenRemedy, ELEMENTS_MAX, ElementProposal, Plan, PlanMismatch, Proposal, Remedy,
+    remedies_of,
 };
 pub use self::step::Step;
 pub use self::stitches::{JoinedEdges, Stitches};

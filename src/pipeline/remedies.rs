@@ -141,7 +141,7 @@ pub enum PlanMismatch {
 }
 
 /// The remedies of a kind of defect; the first is the usual one.
-pub(super) fn remedies_of(code: DefectCode) -> &'static [Remedy] {
+pub fn remedies_of(code: DefectCode) -> &'static [Remedy] {
     use Remedy::{
         Collapse, Cut, Drop, DropBoth, DropOne, Fill, Flip, Join, Keep, Rebuild, Remove, Round, Split,
         Thicken, Turn, Unite,

@@ -9,7 +9,7 @@ mod shells;
 mod solid;
 mod tree;
 
-pub use outlook::{InTheWay, Outlook};
+pub use outlook::{LookedFrom, Outlook};
 pub use shells::{Shells, are_sheets, sort};
 pub use solid::Solid;
 pub use tree::{WindingTree, turned};

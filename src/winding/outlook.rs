@@ -74,7 +74,7 @@ impl Outlook {
     }
 
     /// Whether a `place` on a triangle is seen from outside: a straight way out leads from one of its sides, in one of many
-    /// directions. What was in the way from a place nearby is looked at first.
+    /// directions. What was in the way from a place nearby is looked at first, and the way out from there.
     ///
     /// # Errors
     /// When the budget stops the run.
@@ -82,25 +82,29 @@ impl Outlook {
         &self,
         place: DVec3,
         corners: [DVec3; 3],
-        in_the_way: &mut InTheWay,
+        nearby: &mut LookedFrom,
         budget: &Budget,
     ) -> Result<bool, Stopped> {
-        for ([beside, side], known) in self.unit.both_sides(place, corners).zip(&mut in_the_way.0) {
-            let mut known = known.iter_mut();
-            let is_closed = |direction| {
-                let known = known.next();
-                let last = known.as_ref().and_then(|last| last.and_then(|t| self.corners.get(t as usize)));
-                if last.is_some_and(|&corners| meets(beside, beside + direction * OUT, corners)) {
+        if let Some([side, k]) = nearby.way_out {
+            if let Some([beside, side]) = self.unit.both_sides(place, corners).nth(side) {
+                let end = beside + Hemisphere::around(side).direction(k) * OUT;
+                if met(&self.bvh, &self.corners, [beside, end], budget)?.is_none() {
+                    return Ok(true);
+                }
+            }
+        }
+        for (n, [beside, side]) in self.unit.both_sides(place, corners).enumerate() {
+            let is_closed = |k: usize, direction| {
+                let known = nearby.in_the_way[n][k].and_then(|t| self.corners.get(t as usize));
+                if known.is_some_and(|&corners| meets(beside, beside + direction * OUT, corners)) {
                     budget.spend(1)?;
                     return Ok(true);
                 }
-                let found = first_met(&self.bvh, &self.corners, [beside, direction], budget)?;
-                if let Some(known) = known {
-                    *known = found;
-                }
-                Ok(found.is_some())
+                nearby.in_the_way[n][k] = first_met(&self.bvh, &self.corners, [beside, direction], budget)?;
+                Ok(nearby.in_the_way[n][k].is_some())
             };
-            if has_way_out(side, is_closed)? {
+            if let Some(k) = way_out(side, is_closed)? {
+                nearby.way_out = Some([n, k]);
                 return Ok(true);
             }
         }
@@ -108,26 +112,48 @@ impl Outlook {
     }
 }
 
-/// What was in the way in each direction on both sides of a place.
+/// What a look from a place nearby found.
 #[derive(Debug, Default)]
-pub struct InTheWay([[Option<u32>; DIRECTIONS]; 2]);
+pub struct LookedFrom {
+    /// What was in the way in each direction on both sides.
+    in_the_way: [[Option<u32>; DIRECTIONS]; 2],
+    /// The side and the direction in which nothing was.
+    way_out: Option<[usize; 2]>,
+}
 
-/// Whether one of many directions on the side of a plane that `normal` points to is not closed; these come in a fixed order.
-pub(super) fn has_way_out(
+/// The directions on the side of a plane that its normal points to, in a fixed order.
+struct Hemisphere {
     normal: DVec3,
-    mut is_closed: impl FnMut(DVec3) -> Result<bool, Stopped>,
-) -> Result<bool, Stopped> {
-    let (u, v) = normal.any_orthonormal_pair();
-    for k in 0..DIRECTIONS as u32 {
-        // A spiral around the hemisphere, steepest first.
-        let height = 1.0 - (f64::from(k) + 0.5) / DIRECTIONS as f64;
-        let (sin, cos) = libm::sincos(f64::from(k) * GOLDEN_ANGLE);
-        let radius = (1.0 - height * height).sqrt();
-        if !is_closed(normal * height + (u * cos + v * sin) * radius)? {
-            return Ok(true);
+    across: [DVec3; 2],
+}
+
+impl Hemisphere {
+    fn around(normal: DVec3) -> Self {
+        let (u, v) = normal.any_orthonormal_pair();
+        Self { normal, across: [u, v] }
+    }
+
+    /// One of a spiral around the hemisphere, steepest first.
+    fn direction(&self, k: usize) -> DVec3 {
+        let [u, v] = self.across;
+        let height = 1.0 - (k as f64 + 0.5) / DIRECTIONS as f64;
+        let (sin, cos) = libm::sincos(k as f64 * GOLDEN_ANGLE);
+        self.normal * height + (u * cos + v * sin) * (1.0 - height * height).sqrt()
+    }
+}
+
+/// Which of many directions on the side of a plane that `normal` points to is the first that is not closed.
+pub(super) fn way_out(
+    normal: DVec3,
+    mut is_closed: impl FnMut(usize, DVec3) -> Result<bool, Stopped>,
+) -> Result<Option<usize>, Stopped> {
+    let hemisphere = Hemisphere::around(normal);
+    for k in 0..DIRECTIONS {
+        if !is_closed(k, hemisphere.direction(k))? {
+            return Ok(Some(k));
         }
     }
-    Ok(false)
+    Ok(None)
 }
 
 /// One of the first triangles of a tree, those with `corners`, that is in the way out from a place in a direction.
@@ -197,7 +223,7 @@ mod tests {
         // Of a triangle in the middle, and of a side of the box.
         let middle = [[1.0, 2.0, 1.0], [3.0, 2.0, 1.0], [2.0, 2.0, 3.0]].map(DVec3::from);
         let of = |corners: [DVec3; 3]| corners.iter().sum::<DVec3>() / 3.0;
-        let (budget, nothing) = (Budget::unlimited(), InTheWay::default);
+        let (budget, nothing) = (Budget::unlimited(), LookedFrom::default);
         for (squares, is_seen) in [(6, false), (5, true)] {
             let way = triangles(squares).into_iter().chain([middle]);
             let outlook = Outlook::past(way, &budget).unwrap();
@@ -219,11 +245,11 @@ mod tests {
             all.flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).take(11).collect();
         let budget = Budget::unlimited();
         let outlook = Outlook::past(triangles.into_iter(), &budget).unwrap();
-        let (mut kept, mut seen) = (InTheWay::default(), 0);
+        let (mut kept, mut seen) = (LookedFrom::default(), 0);
         for i in 0..1000 {
             let place = DVec3::new((i % 10) as f64, (i / 10 % 10) as f64, (i / 100) as f64) * 0.39 + 0.2;
             let corners = [place, place + DVec3::new(0.01, 0.02, 0.0), place + DVec3::new(0.0, 0.01, 0.03)];
-            let is_seen = outlook.sees(place, corners, &mut InTheWay::default(), &budget).unwrap();
+            let is_seen = outlook.sees(place, corners, &mut LookedFrom::default(), &budget).unwrap();
             assert_eq!(outlook.sees(place, corners, &mut kept, &budget), Ok(is_seen), "{place}");
             seen += u32::from(is_seen);
         }

@@ -1,6 +1,6 @@
 //! The solid that any triangles stand for, and which of them are hidden in it.
 
-use super::outlook::{BESIDE, GAP, Unit, first_met, has_way_out, met};
+use super::outlook::{BESIDE, GAP, Unit, first_met, met, way_out};
 use super::{OpenShells, Shells, WindingTree, sort, turned};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec3, Sign, triangle_area, upward_crossing};
@@ -106,8 +106,8 @@ impl Solid {
         if met(&self.bvh, real, [place, place + normal * GAP], budget)?.is_none() {
             return Ok(false);
         }
-        let is_closed = |direction| Ok(first_met(&self.bvh, real, [place, direction], budget)?.is_some());
-        Ok(!has_way_out(normal, is_closed)?)
+        let is_closed = |_, direction| Ok(first_met(&self.bvh, real, [place, direction], budget)?.is_some());
+        Ok(way_out(normal, is_closed)?.is_none())
     }
 }
 

@@ -9,7 +9,7 @@ use super::problem_code::ProblemCode;
 use crate::analysis::DefectCode;
 use crate::budget::Stopped;
 use crate::formats::{Place, ReadError, ReadErrorKind};
-use crate::pipeline::{ELEMENTS_MAX, Failure, PlanMismatch, Refusal, Units};
+use crate::pipeline::{ELEMENTS_MAX, Failure, PlanMismatch, Refusal, Remedy, Units, remedies_of};
 use crate::wire;
 
 /// A problem (RFC 9457), sent as `application/problem+json`. Members that do not apply are absent.
@@ -175,7 +175,10 @@ impl From<&PlanMismatch> for Problem {
             }
             PlanMismatch::NotFirst(step) => format!("the step `{step}` can only be the first"),
             PlanMismatch::NoSuchRemedy(defect, remedy) => {
-                format!("`{}` is no remedy of `{}`", wire::Remedy::from(remedy).word(), code(defect))
+                let word = |remedy: Remedy| wire::Remedy::from(remedy).word();
+                let known: Vec<&str> = remedies_of(defect).iter().map(|&remedy| word(remedy)).collect();
+                let (remedy, defect) = (word(remedy), code(defect));
+                format!("`{remedy}` is no remedy of `{defect}`; these are: {}", known.join(", "))
             }
         };
         Self { parameter: Some("plan".to_owned()), ..Self::new(ProblemCode::PlanMismatch, detail) }

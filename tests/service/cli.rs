@@ -390,6 +390,10 @@ fn the_extension_of_the_output_names_its_format() {
     let complaint = String::from_utf8(unknown.stderr).unwrap();
     assert!(complaint.contains("no mesh format has the file extension .unknown"), "{complaint}");
     assert!(!desk.path().join("out.unknown").exists());
+    let picture = desk.run(&["render", "solid.off", "-o", "out.jpg"]);
+    let complaint = String::from_utf8(picture.stderr).unwrap();
+    assert!(complaint.contains("cannot have the extension .jpg"), "{complaint}");
+    assert!(!desk.path().join("out.jpg").exists());
 }
 
 #[test]

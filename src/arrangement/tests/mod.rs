@@ -3,11 +3,12 @@
 mod cases;
 mod oracle;
 
-use super::{Arrangement, ArrangementError, Options, arrange, arrange_enclosed};
+use super::{Arrangement, ArrangementError, Options, Placed, arrange, arrange_enclosed};
 use crate::budget::{Budget, StopFlag, Stopped};
-use crate::geom::DVec3;
+use crate::geom::{DVec3, are_collinear};
 use crate::mesh::EdgeGroups;
 use crate::par;
+use crate::spatial::{Bvh, Search, self_contacts};
 use cases::{Bodies, Random, cube, tetrahedron};
 
 fn arranged(bodies: &Bodies) -> Result<Arrangement, ArrangementError> {
@@ -281,9 +282,22 @@ fn what_nothing_passes_through_any_more_is_whole_again() {
     assert_eq!((placed.conflicts, placed.move_max), (0, 0.0));
 }
 
+/// Pairs of all triangles that meet, and triangles without an area.
+fn conflicts(Placed { positions, triangles, .. }: &Placed) -> u64 {
+    let budget = Budget::unlimited();
+    let has_area = |&t: &u32| {
+        let [a, b, c] = triangles[t as usize].map(|p| positions[p as usize]);
+        !are_collinear(a, b, c)
+    };
+    let (sound, flat): (Vec<u32>, Vec<u32>) = (0..triangles.len() as u32).partition(has_area);
+    let bvh = Bvh::build(positions, triangles, Some(&sound), &budget).unwrap();
+    let search = Search::All { keep: 0 };
+    self_contacts(positions, triangles, &bvh, None, search, &budget).unwrap().count + flat.len() as u64
+}
+
 #[test]
 fn placed_boundaries_are_on_the_lattice_and_conflicts_are_counted() {
-    let (mut clean, mut all) = (0, 0);
+    let (mut clean, mut all, mut most) = (0, 0, 0);
     for seed in 0..cases(40, 1_000) {
         let mut bodies = cases::crowd(&mut Random::new(seed), 6);
         for p in &mut bodies.positions {
@@ -300,6 +314,9 @@ fn placed_boundaries_are_on_the_lattice_and_conflicts_are_counted() {
                 let place = placed.positions[p as usize];
                 assert_eq!((place / pitch).round() * pitch, place);
             }
+            let conflicts = conflicts(&placed);
+            assert_eq!(placed.conflicts, conflicts, "{seed}");
+            most = most.max(conflicts);
             if pitch < 1e-3 {
                 all += 1;
                 clean += u32::from(placed.conflicts == 0);
@@ -307,6 +324,7 @@ fn placed_boundaries_are_on_the_lattice_and_conflicts_are_counted() {
         }
     }
     assert!(clean * 20 >= all * 19, "{clean} of {all} without conflicts");
+    assert!(most > 10, "{most}");
 }
 
 #[test]

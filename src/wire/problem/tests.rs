@@ -54,6 +54,13 @@ fn a_coordinate_that_is_not_finite_has_a_code_of_its_own() {
 }
 
 #[test]
+fn a_remedy_that_does_not_fit_is_told_with_those_that_do() {
+    let mismatch = PlanMismatch::NoSuchRemedy(DefectCode::Needle, Remedy::Fill);
+    let told = Problem::from(&mismatch).detail;
+    assert_eq!(told, "`fill` is no remedy of `needle`; these are: keep, collapse");
+}
+
+#[test]
 fn a_problem_is_read_back_as_it_was_written() {
     let plain = Problem::new(ProblemCode::Cancelled, "the job was cancelled");
     let full = Problem {
