@@ -106,6 +106,10 @@ settings! {
     blobs_region: String = "us-east-1",
     /// File of the key to the bucket, its id and its secret, one a line. Default: what the machine has been given.
     blobs_key_file: Option<PathBuf> = "",
+    /// S3 server as clients reach it by presigned URLs, when that is another address. Default: blobs_endpoint.
+    blobs_public_endpoint: String = "",
+    /// Time for which a presigned URL of the bucket is valid, by which clients send and fetch meshes without this server in between; off: none are given.
+    presigned_ttl: Option<Duration> = "off",
     /// Most bytes of copies of its files in data_dir, but for those in use.
     blobs_copies_bytes_max: Bytes = "5GiB",
 
@@ -162,6 +166,10 @@ settings! {
 
     /// Largest upload.
     upload_bytes_max: Bytes = "512MiB",
+    /// Most uploads in pieces (/v1/uploads) that no job has taken yet; one key, or one address without keys, has half of them at most.
+    uploads_max: NonZeroUsize = "1_000",
+    /// Time for which an upload in pieces is kept after its last bytes came.
+    upload_ttl: Duration = "24h",
     /// Most triangles of a mesh after polygons are split.
     triangles_max: u32 = "100_000_000",
     /// Most vertices of a mesh.

@@ -230,6 +230,15 @@ impl Value for Duration {
     }
 }
 
+impl Value for Option<Duration> {
+    const EXPECTED: &'static str =
+        "a time from 1 ms to 1000 d, such as 15min (units: ms, s, min, h, d; none: seconds), or off";
+
+    fn parse(text: &str) -> Option<Self> {
+        if text == "off" { Some(None) } else { Duration::parse(text).map(Some) }
+    }
+}
+
 impl Value for Role {
     const EXPECTED: &'static str = "all, api or worker";
 

@@ -32,7 +32,7 @@ pub(super) fn layer(origins: &[String]) -> Option<CorsLayer> {
     let values: Vec<_> = origins.iter().filter_map(|origin| HeaderValue::from_str(origin).ok()).collect();
     let layer = CorsLayer::new()
         .allow_origin(values)
-        .allow_methods([Method::GET, Method::HEAD, Method::POST, Method::DELETE])
+        .allow_methods([Method::GET, Method::HEAD, Method::POST, Method::PATCH, Method::DELETE])
         .allow_headers([
             header::ACCEPT,
             header::AUTHORIZATION,
@@ -44,6 +44,10 @@ pub(super) fn layer(origins: &[String]) -> Option<CorsLayer> {
             named("last-event-id"),
             named("prefer"),
             named("traceparent"),
+            named("tus-resumable"),
+            named("upload-length"),
+            named("upload-metadata"),
+            named("upload-offset"),
             named("x-api-key"),
             named("x-request-id"),
         ])
@@ -60,6 +64,14 @@ pub(super) fn layer(origins: &[String]) -> Option<CorsLayer> {
             named("ratelimit-policy"),
             named("repr-digest"),
             named("server-timing"),
+            named("tus-extension"),
+            named("tus-max-size"),
+            named("tus-resumable"),
+            named("tus-version"),
+            named("upload-expires"),
+            named("upload-length"),
+            named("upload-metadata"),
+            named("upload-offset"),
             named("x-request-id"),
         ])
         .max_age(MAX_AGE);

@@ -9,6 +9,8 @@ use crate::wire::{Format, JobRequest, Labels, Operation, Options, Problem, Webho
 pub(super) struct Intake {
     /// The key under which it may be repeated.
     pub(super) key: Option<String>,
+    /// Its key made a job before.
+    pub(super) is_repeat: bool,
     /// The mesh, on disk.
     pub(super) upload: Option<Uploaded>,
     /// The MTL file of an OBJ, on disk.

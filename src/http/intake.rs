@@ -104,7 +104,7 @@ pub(super) async fn receive(
             intake
         }
     };
-    Ok(Intake { key, ..intake })
+    Ok(Intake { key, is_repeat, ..intake })
 }
 
 /// Streams a raw body to disk; `None` when it has no byte.

@@ -101,13 +101,24 @@ pub(super) async fn thumbnail(state: State, caller: Extension<Caller>, id: Id, r
 
 /// Download a job's mesh.
 ///
-/// Whole or in part (`Range`); of a refused repair the same problem that the repair was answered with.
+/// Whole or in part (`Range`); of a refused repair the same problem that the repair was answered with. With `redirect` the answer
+/// is a presigned URL of the bucket, where the server gives any.
 #[utoipa::path(get, path = "/v1/jobs/{id}/result", operation_id = "get_job_result", tag = "jobs",
     params(("id" = String, Path, description = "Id of the job."),
            ("level" = Option<usize>, Query, minimum = 1,
-            description = "Which target's mesh of a simplification, from 1. Default: 1.")))]
+            description = "Which target's mesh of a simplification, from 1. Default: 1."),
+           ("redirect" = Option<bool>, Query,
+            description = "Whether to answer with 307 and a URL of the bucket in `Location`, from which the mesh comes without this service in between. Default: false.")),
+    responses((status = 307, description = "`Location` is where the mesh is, for as long as `presigned_ttl_s` of `/v1/limits` says.",
+        headers(("Location" = String, description = "A presigned URL.")))))]
 pub(super) async fn result(state: State, caller: Extension<Caller>, id: Id, request: Request) -> Handled {
-    let level = query::level(request.uri())?;
+    let query::AskedResult { level, redirect } = query::result(request.uri())?;
+    if redirect {
+        let id = visible(&state, &caller, id).await?;
+        let url = state.jobs.presign_level(id, level - 1, mesh_file::disposition).await?;
+        let headers = [(header::LOCATION, url), (header::CACHE_CONTROL, "no-store".to_owned())];
+        return Ok((StatusCode::TEMPORARY_REDIRECT, headers).into_response());
+    }
     let stored = state.jobs.level(visible(&state, &caller, id).await?, level - 1).await?;
     let media_type = one_of(request.headers(), &[mesh_file::media_type(&stored), OCTET_STREAM])?;
     Ok(mesh_file::asked_for(stored, media_type, request.headers()).await)

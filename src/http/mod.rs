@@ -38,6 +38,7 @@ mod operations;
 mod otel;
 mod page;
 mod prefer;
+mod presigned;
 mod problem;
 mod query;
 mod range;
@@ -55,6 +56,7 @@ mod state;
 mod tenant;
 mod trace;
 mod unread;
+mod uploads;
 
 pub use access::{Access, Neighbours};
 pub use healthcheck::healthcheck;

@@ -18,8 +18,8 @@ use super::query;
 use super::representation::{PNG, Representation, json_only, one_of};
 use super::state::{Caller, Service, State};
 use super::trace;
-use crate::jobs::{JobId, Jobs, Submission};
-use crate::wire::{Job, Operation, Options, Problem, ProblemCode, Report};
+use crate::jobs::{JobId, Jobs, NamedUpload, Submission};
+use crate::wire::{InputRef, Job, Operation, Options, Problem, ProblemCode, Report};
 
 /// Describe a mesh.
 ///
@@ -240,16 +240,29 @@ async fn submission(
     let mut options = in_query.join(intake.options).map_err(|error| Problem::from(&error))?;
     options.check(operation).map_err(|error| Problem::from(&error))?;
     options.format = options.format.or(intake.named);
-    match (&intake.upload, &options.input) {
+    let (mut upload, mut file_name, mut taken_by) = (intake.upload, intake.file_name, None);
+    match (&upload, &options.input) {
         (None, None) => return Err(no_mesh(headers)),
-        (_, Some(input)) => drop(service.visible(&input.job, caller).await?),
-        _ => {}
+        (_, Some(InputRef::Job(job))) => drop(service.visible(job, caller).await?),
+        (None, Some(InputRef::Upload(id))) => {
+            let owner = caller.owner.as_deref();
+            match service.jobs.take_upload(id, owner, intake.is_repeat).await? {
+                NamedUpload::Mesh(mesh, name) => {
+                    upload = Some(mesh);
+                    file_name = file_name.or(name);
+                }
+                NamedUpload::TakenBy(job) => taken_by = Some(job),
+            }
+        }
+        (Some(_), Some(InputRef::Upload(_))) => return Err(mesh_twice()),
+        (Some(_), None) => {}
     }
     Ok(Submission {
         key: intake.key,
-        upload: intake.upload,
+        upload,
+        taken_by,
         material: intake.material,
-        file_name: intake.file_name,
+        file_name,
         labels: intake.labels.unwrap_or_default(),
         cancel_after: cancel_after(headers)?,
         owner: caller.owner.clone(),
@@ -260,11 +273,16 @@ async fn submission(
     })
 }
 
+fn mesh_twice() -> Problem {
+    let detail = "send one mesh, or name an upload in `input`, not both";
+    Problem { parameter: Some("input".to_owned()), ..Problem::new(ProblemCode::InvalidParameter, detail) }
+}
+
 fn no_mesh(headers: &HeaderMap) -> Problem {
     let content_type =
         headers.get(header::CONTENT_TYPE).and_then(|value| value.to_str().ok()).unwrap_or_default();
     if content_type.starts_with("multipart/form-data") {
-        let detail = "the form has no part `mesh`, or it is empty; send the file there, or name an earlier job in `input`";
+        let detail = "the form has no part `mesh`, or it is empty; send the file there, or name an earlier job or upload in `input`";
         return Problem {
             parameter: Some("mesh".to_owned()),
             ..Problem::new(ProblemCode::InvalidParameter, detail)
@@ -272,7 +290,7 @@ fn no_mesh(headers: &HeaderMap) -> Problem {
     }
     if content_type.starts_with("application/json") {
         let detail =
-            "JSON brings options only: name an earlier job in `input`, or send the mesh itself as the body";
+            "JSON brings options only: name an earlier job or upload in `input`, or send the mesh itself as the body";
         return Problem {
             parameter: Some("input".to_owned()),
             ..Problem::new(ProblemCode::InvalidParameter, detail)

@@ -106,12 +106,27 @@ pub(super) fn wait(uri: &Uri) -> Result<Option<u64>, Problem> {
     Ok(seconds)
 }
 
-/// The number of `?level=`, the only parameter; 1 without it.
-pub(super) fn level(uri: &Uri) -> Result<usize, Problem> {
-    let mut level = None;
+/// Which mesh of a job is asked for.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct AskedResult {
+    /// The number of its target, from 1.
+    pub(super) level: usize,
+    /// By a URL of the bucket.
+    pub(super) redirect: bool,
+}
+
+/// The mesh that `?level=` and `?redirect=` ask for: without them the first one, from here.
+pub(super) fn result(uri: &Uri) -> Result<AskedResult, Problem> {
+    let (mut level, mut redirect) = (None, None);
     for (name, value) in pairs(uri)? {
+        if name == "redirect" {
+            if put(&mut redirect, value.parse().ok()).is_none() {
+                return Err(invalid("redirect", "`redirect` is one of true and false").with_allowed(["true", "false"]));
+            }
+            continue;
+        }
         if name != "level" {
-            return Err(unknown(&name, &["level"]));
+            return Err(unknown(&name, &["level", "redirect"]));
         }
         // More than can be counted is more than there are.
         let is_number = !value.is_empty() && value.bytes().all(|b| b.is_ascii_digit());
@@ -121,7 +136,7 @@ pub(super) fn level(uri: &Uri) -> Result<usize, Problem> {
         }
         level = given;
     }
-    Ok(level.unwrap_or(1))
+    Ok(AskedResult { level: level.unwrap_or(1), redirect: redirect.unwrap_or_default() })
 }
 
 /// Refuses any parameter, for paths that take none.
@@ -157,6 +172,7 @@ fn about_operation(word: &str) -> Problem {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::wire::InputRef;
 
     fn uri(query: &str) -> Uri {
         format!("/x?{query}").parse().unwrap()
@@ -169,7 +185,8 @@ mod tests {
         ))
         .unwrap();
         assert_eq!((found.operation, found.options.samples), (Some(Operation::Repair), Some(3)));
-        assert_eq!((found.options.input.unwrap().job, &*found.labels.unwrap()["a"]), ("7".to_owned(), "b"));
+        let input = found.options.input.unwrap();
+        assert_eq!((input, &*found.labels.unwrap()["a"]), (InputRef::Job("7".to_owned()), "b"));
         let code = |query| job_request(&uri(query)).unwrap_err().code;
         assert_eq!(code("labels=a"), ProblemCode::InvalidParameter);
         assert_eq!(code("labels=%7B%7D&labels=%7B%22a%22:%22b%22%7D"), ProblemCode::InvalidParameter);

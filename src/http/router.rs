@@ -23,7 +23,7 @@ use super::scope::Scopes;
 use super::settings::HttpSettings;
 use super::state::{Caller, Service, State};
 use super::tenant::{client, tenant};
-use super::{about, contract, cors, deliveries, docs, events, framing, lifecycle, listing, operations, page};
+use super::{about, contract, cors, deliveries, docs, events, framing, lifecycle, listing, operations, page, presigned, uploads};
 use crate::jobs::Jobs;
 use crate::wire::{Problem, ProblemCode};
 
@@ -55,7 +55,17 @@ fn api() -> OpenApiRouter<Arc<Service>> {
         .routes(routes!(about::formats))
         .routes(routes!(about::policies))
         .routes(routes!(about::version))
+        .merge(uploads())
         .merge(documents())
+}
+
+/// Uploads that come before their job.
+fn uploads() -> OpenApiRouter<Arc<Service>> {
+    OpenApiRouter::new()
+        .routes(routes!(uploads::create, uploads::protocol))
+        .routes(routes!(uploads::stand, uploads::append, uploads::delete))
+        .layer(middleware::map_response(uploads::tell_version))
+        .routes(routes!(presigned::create))
 }
 
 /// The contract itself, compressed for clients that take that: nothing in it is secret and repeated by a caller.
@@ -139,7 +149,7 @@ async fn let_in(service: State, mut request: Request, next: Next) -> Response {
     let counted = service.rates.as_ref().filter(|_| !is_page).map(|rates| rates.count(&caller.tenant));
     let refusal = match &counted {
         Some((_, Some(refusal))) => Some(refusal.clone()),
-        _ => scopes.check(request.method()).err(),
+        _ => scopes.check(request.method(), request.uri().path()).err(),
     };
     request.extensions_mut().insert(caller.clone());
     let mut response = match refusal {

@@ -6,6 +6,9 @@ use axum::http::Method;
 
 use crate::wire::{Problem, ProblemCode};
 
+/// What paths of uploads begin with.
+const UPLOADS: &str = "/v1/uploads";
+
 /// What a key may be used for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Scopes {
@@ -23,9 +26,10 @@ enum Scope {
 }
 
 impl Scope {
-    /// What a request of this method needs.
-    fn of(method: &Method) -> Self {
-        if method.is_safe() { Self::Read } else { Self::Submit }
+    /// What a request needs. Who sends an upload asks where it stands.
+    fn of(method: &Method, path: &str) -> Self {
+        let is_of_upload = path.starts_with(UPLOADS);
+        if method.is_safe() && !is_of_upload { Self::Read } else { Self::Submit }
     }
 }
 
@@ -55,9 +59,9 @@ impl Scopes {
         Some(scopes)
     }
 
-    /// Refuses a request of a method that needs a scope which is not there.
-    pub(super) fn check(self, method: &Method) -> Result<(), Problem> {
-        let scope = Scope::of(method);
+    /// Refuses a request that needs a scope which is not there.
+    pub(super) fn check(self, method: &Method, path: &str) -> Result<(), Problem> {
+        let scope = Scope::of(method, path);
         let is_there = match scope {
             Scope::Read => self.can_read,
             Scope::Submit => self.can_submit,
@@ -75,10 +79,12 @@ mod tests {
 
     #[test]
     fn a_method_that_changes_something_needs_submit_and_any_other_read() {
-        let is_allowed = |list: &str, method| Scopes::parse(list).unwrap().check(&method).is_ok();
+        let on = |list: &str, method, path| Scopes::parse(list).unwrap().check(&method, path).is_ok();
+        let is_allowed = |list: &str, method| on(list, method, "/v1/jobs");
         assert!(is_allowed("read", Method::GET) && is_allowed("read", Method::HEAD));
         assert!(!is_allowed("read", Method::POST) && !is_allowed("read", Method::DELETE));
         assert!(is_allowed("submit", Method::POST) && !is_allowed("submit", Method::GET));
+        assert!(on("submit", Method::HEAD, "/v1/uploads/7") && !on("read", Method::HEAD, "/v1/uploads/7"));
         assert!(is_allowed("read, submit", Method::DELETE) && is_allowed("submit,read", Method::GET));
     }
 

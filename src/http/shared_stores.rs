@@ -1,9 +1,13 @@
 //! The stores that several servers share, as the configuration names them.
 
 use std::path::Path;
+use std::time::Duration;
 
 use crate::config::{ConfigError, Loaded, Role};
 use crate::jobs::{BucketAccess, DatabaseAccess, SharedStores};
+
+/// Longest validity of a presigned URL that S3 takes.
+const PRESIGNED_TTL_MAX: Duration = Duration::from_secs(7 * 24 * 60 * 60);
 
 /// The shared stores; `None`: those in the data directory.
 pub(super) fn shared_stores(loaded: &Loaded) -> Result<Option<SharedStores>, ConfigError> {
@@ -41,19 +45,40 @@ pub(super) fn shared_stores(loaded: &Loaded) -> Result<Option<SharedStores>, Con
         Some(path) => Some(key_of(loaded, path)?),
         None => None,
     };
-    let endpoint = config.blobs_endpoint.trim();
-    if !endpoint.is_empty() && !endpoint.starts_with("https://") && !endpoint.starts_with("http://") {
-        return Err(loaded.refused("blobs_endpoint", &"expected a URL, such as https://s3.example"));
-    }
+    let endpoint = endpoint_of(loaded, "blobs_endpoint", &config.blobs_endpoint)?;
+    let public_endpoint = endpoint_of(loaded, "blobs_public_endpoint", &config.blobs_public_endpoint)?;
     let bucket = BucketAccess {
         url: blobs_url.to_owned(),
-        endpoint: (!endpoint.is_empty()).then(|| endpoint.to_owned()),
+        endpoint,
+        public_endpoint,
         region: config.blobs_region.clone(),
         key,
         cache_bytes_max: config.blobs_copies_bytes_max.0,
     };
     bucket.check().map_err(|e| loaded.refused("blobs_url", &e))?;
     Ok(Some(SharedStores { database, bucket }))
+}
+
+/// For how long presigned URLs are valid; `None`: none are given.
+pub(super) fn presigned_ttl(loaded: &Loaded) -> Result<Option<Duration>, ConfigError> {
+    let Some(lasts) = loaded.config.presigned_ttl else { return Ok(None) };
+    if lasts > PRESIGNED_TTL_MAX {
+        return Err(loaded.refused("presigned_ttl", &"S3 takes no URL that is valid for longer than 7 days"));
+    }
+    if loaded.config.blobs_url.trim().is_empty() {
+        return Err(loaded.refused("presigned_ttl", &"presigned URLs are those of a bucket: it needs blobs_url"));
+    }
+    // A part of a second is no validity that S3 knows.
+    Ok(Some(lasts.max(Duration::from_secs(1))))
+}
+
+/// The address of an S3 server; `None`: Amazon's.
+fn endpoint_of(loaded: &Loaded, setting: &'static str, text: &str) -> Result<Option<String>, ConfigError> {
+    let text = text.trim();
+    if !text.is_empty() && !text.starts_with("https://") && !text.starts_with("http://") {
+        return Err(loaded.refused(setting, &"expected a URL, such as https://s3.example"));
+    }
+    Ok((!text.is_empty()).then(|| text.to_owned()))
 }
 
 fn read(loaded: &Loaded, setting: &'static str, path: &Path) -> Result<String, ConfigError> {
@@ -118,6 +143,17 @@ mod tests {
     }
 
     #[test]
+    fn presigned_urls_need_a_bucket_and_last_a_week_at_most() {
+        let shared = [("database_url", "postgresql://a@localhost/b"), ("blobs_url", "s3://meshes")];
+        let ttl = |text, shared: &[_]| presigned_ttl(&loaded(&[shared, &[("presigned_ttl", text)]].concat()));
+        assert_eq!(ttl("off", &[]), Ok(None));
+        assert_eq!(ttl("15min", &shared), Ok(Some(Duration::from_secs(900))));
+        assert_eq!(ttl("1ms", &shared), Ok(Some(Duration::from_secs(1))));
+        assert!(ttl("15min", &[]).unwrap_err().to_string().contains("blobs_url"));
+        assert!(ttl("8d", &shared).unwrap_err().to_string().contains("7 days"));
+    }
+
+    #[test]
     fn secrets_are_read_from_files_and_never_shown() {
         let dir = tempfile::tempdir().unwrap();
         let file = |name: &str, text: &str| {
@@ -147,5 +183,6 @@ mod tests {
         assert!(refused("database_url", "postgresql://a@localhost/b?what=hidden").contains("database_url"));
         assert!(refused("blobs_url", "https://meshes.example").contains("s3://"));
         assert!(refused("blobs_endpoint", "s3.example").contains("https://"));
+        assert!(refused("blobs_public_endpoint", "s3.example").contains("https://"));
     }
 }

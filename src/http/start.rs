@@ -14,7 +14,7 @@ use super::keys::ApiKeys;
 use super::rate::RateSettings;
 use super::server::Server;
 use super::settings::HttpSettings;
-use super::shared_stores::shared_stores;
+use super::shared_stores::{presigned_ttl, shared_stores};
 use super::shutdown::Shutdown;
 use super::{cors, descriptors};
 use crate::config::{ConfigError, IsolationChoice, Loaded, LogFormat, Role, SandboxChoice};
@@ -227,6 +227,9 @@ fn jobs_settings(loaded: &Loaded) -> Result<JobsSettings, ConfigError> {
         queue_max: config.queue_max.get(),
         jobs_max: config.jobs_max.get(),
         upload_bytes_max: config.upload_bytes_max.0,
+        uploads_max: config.uploads_max.get(),
+        upload_ttl: config.upload_ttl,
+        presigned_ttl: presigned_ttl(loaded)?,
         data_bytes_max: config.data_bytes_max.0,
         result_ttl: config.result_ttl,
         deadline_max: config.deadline_max,

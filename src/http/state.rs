@@ -9,7 +9,7 @@ use super::prefer::{WAIT_DEFAULT, WAIT_MAX};
 use super::rate::Rates;
 use super::settings::HttpSettings;
 use super::sizes;
-use crate::jobs::{JobId, Jobs, Tenant};
+use crate::jobs::{JobId, Jobs, Tenant, UPLOAD_PIECES_MAX};
 use crate::wire::{LABELS_MAX, Limits, Problem, ProblemCode};
 
 /// The state of the router.
@@ -68,6 +68,10 @@ impl Service {
         let (jobs, http) = (self.jobs.settings(), &self.settings);
         Limits {
             upload_bytes_max: jobs.upload_bytes_max,
+            uploads_max: jobs.uploads_max,
+            upload_pieces_max: UPLOAD_PIECES_MAX,
+            upload_ttl_s: jobs.upload_ttl.as_secs(),
+            presigned_ttl_s: jobs.presigned_ttl.map_or(0, |lasts| lasts.as_secs().max(1)),
             triangles_max: jobs.read_limits.triangles_max,
             vertices_max: jobs.read_limits.vertices_max,
             polygon_corners_max: jobs.read_limits.polygon_corners_max,

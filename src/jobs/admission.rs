@@ -19,17 +19,20 @@ use super::store::{
 use super::trace::TraceParent;
 use super::upload::Uploaded;
 use super::view;
-use crate::wire::{Job, JobState, Labels, Operation, Options, Problem, ProblemCode};
+use crate::wire::{InputRef, Job, JobState, Labels, Operation, Options, Problem, ProblemCode};
 
 /// What is asked for.
 #[derive(Debug)]
 pub struct Submission {
     /// What to do.
     pub operation: Operation,
-    /// How. `options.input` names the earlier job whose upload is used when `upload` is `None`.
+    /// How. `options.input` names the earlier job whose upload is used when `upload` is `None`, or the upload that `upload` or
+    /// `taken_by` is of.
     pub options: Options,
     /// The mesh.
     pub upload: Option<Uploaded>,
+    /// The job that has taken the upload which `options.input` names.
+    pub taken_by: Option<JobId>,
     /// The MTL file of an OBJ.
     pub material: Option<Uploaded>,
     /// Name of the uploaded file, if the caller gave one.
@@ -59,6 +62,7 @@ impl Submission {
             operation,
             options,
             upload: None,
+            taken_by: None,
             material: None,
             file_name: None,
             labels: Labels::new(),
@@ -162,11 +166,20 @@ impl Service {
             cancel_after: submission.cancel_after,
             key,
             source: source.map(|source| source.id),
+            taken: submission.upload.as_ref().and_then(Uploaded::taken),
             ending: None,
         };
-        if let Some(row) = self.answer_from_cache(&new).await {
-            return Ok(row);
+        match self.answer_from_cache(&new).await {
+            Some(Created::New(row)) => {
+                if let Some(upload) = submission.upload {
+                    upload.not_needed();
+                }
+                return Ok(row);
+            }
+            Some(Created::Known(row)) => return Ok(row),
+            None => {}
         }
+        let is_taken_over = new.taken.is_some();
         let mut creating = self.store.create(new, self.settings.queue_max);
         let created = match poll_fn(|context| Poll::Ready(creating.as_mut().poll(context))).await {
             Poll::Ready(created) => created,
@@ -181,10 +194,11 @@ impl Service {
         let row = match created {
             Ok(Created::Known(row)) => return Ok(row),
             Ok(Created::New(row)) => row,
+            Err(StoreError::NotFound) if is_taken_over => return Err(taken_meanwhile()),
             Err(error) => {
                 if matches!(error, StoreError::Unavailable(_)) {
                     // The row may be there all the same, and name them; otherwise they are found as orphans.
-                    files.for_each(Uploaded::named);
+                    files.for_each(Uploaded::maybe_named);
                 }
                 return Err(self.not_admitted(&error));
             }
@@ -206,7 +220,11 @@ impl Service {
     async fn source_of(&self, submission: &Submission) -> Result<Option<JobRow>, Problem> {
         let Some(input) = &submission.options.input else { return Ok(None) };
         let about_input = |problem: Problem| Problem { parameter: Some("input".to_owned()), ..problem };
-        let id = input.job.parse().map_err(|_| about_input(not_found()))?;
+        let id = match (input, submission.taken_by) {
+            (InputRef::Job(id), _) => id.parse().map_err(|_| about_input(not_found()))?,
+            (InputRef::Upload(_), Some(job)) => job,
+            (InputRef::Upload(_), None) => return Ok(None),
+        };
         let row = self.row(id).await.map_err(about_input)?;
         if row.state == JobState::Expired {
             return Err(about_input(expired()));
@@ -257,7 +275,7 @@ impl Service {
     }
 
     /// A new job that ends at once, because an earlier one did the same with the same bytes.
-    async fn answer_from_cache(&self, new: &NewJob) -> Option<JobRow> {
+    async fn answer_from_cache(&self, new: &NewJob) -> Option<Created> {
         let equal = self.find_sound_equal(new).await?;
         let cached = NewJob {
             input: equal.input,
@@ -267,14 +285,18 @@ impl Service {
             ..new.clone()
         };
         // The earlier job may be gone by now: then the new one runs.
-        let row = match self.store.create(cached, usize::MAX).await.ok()? {
-            Created::New(row) => row,
-            Created::Known(row) => return Some(row),
-        };
-        meters::cached(row.operation);
-        self.note_load();
-        Some(row)
+        let created = self.store.create(cached, usize::MAX).await.ok()?;
+        if let Created::New(row) = &created {
+            meters::cached(row.operation);
+            self.note_load();
+        }
+        Some(created)
     }
+}
+
+fn taken_meanwhile() -> Problem {
+    let detail = "another request has taken or deleted the upload meanwhile; send this one again";
+    Problem { parameter: Some("input".to_owned()), ..Problem::new(ProblemCode::UploadConflict, detail) }
 }
 
 fn no_single_mesh() -> Problem {
@@ -282,7 +304,7 @@ fn no_single_mesh() -> Problem {
         parameter: Some("input".to_owned()),
         ..Problem::new(
             ProblemCode::InvalidParameter,
-            "send one mesh, or name an earlier job in `input`, not both",
+            "send one mesh, or name an earlier job or upload in `input`, not both",
         )
     }
 }

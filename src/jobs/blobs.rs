@@ -1,9 +1,13 @@
-//! Where the files of jobs live: uploads under `in/`, what runs write under `out/<job>.<epoch>.<name>`.
+//! Where the files of jobs live: meshes under `in/`, what runs write under `out/<job>.<epoch>.<name>`, and under `pieces/` what
+//! comes of a mesh before its job.
 
 use std::fs::{self, DirBuilder, File, Permissions};
 use std::io::{self, Write};
 use std::os::unix::fs::{DirBuilderExt as _, OpenOptionsExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use super::store::BlobRef;
 
 /// A file as a listing shows it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -25,7 +29,7 @@ pub trait BlobWriter: Write + Send {
     fn commit(self: Box<Self>) -> io::Result<()>;
 }
 
-/// Files by name, each written once. Methods block; a name is `in/` or `out/` and then letters, digits, dots and hyphens.
+/// Files by name, each written once. Methods block; a name is one of the folders and then letters, digits, dots and hyphens.
 pub trait BlobStore: Send + Sync {
     /// Begins a file.
     ///
@@ -60,10 +64,49 @@ pub trait BlobStore: Send + Sync {
 
     /// Bytes that can still be written, if that is known.
     fn free_bytes(&self) -> Option<u64>;
+
+    /// The way by which clients reach files without this service in between, where there is one.
+    fn presigned(&self) -> Option<&dyn PresignedUrls> {
+        None
+    }
+}
+
+/// A request by which a client may write one file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PresignedPut {
+    /// Where.
+    pub url: String,
+    /// Headers that it must have, as they stand here.
+    pub headers: Vec<(String, String)>,
+}
+
+/// URLs that let whoever has them read or write one file for a while. Methods block.
+pub trait PresignedUrls: Send + Sync {
+    /// By which a file of this name can be written, with these bytes and no others.
+    ///
+    /// # Errors
+    /// The key to the bucket cannot be had.
+    fn put(&self, blob: &BlobRef, lasts: Duration) -> io::Result<PresignedPut>;
+
+    /// By which a file can be read, with this `Content-Disposition`.
+    ///
+    /// # Errors
+    /// The key to the bucket cannot be had.
+    fn get(&self, key: &str, disposition: &str, lasts: Duration) -> io::Result<String>;
+
+    /// The number of bytes of a file; `None`: there is none.
+    ///
+    /// # Errors
+    /// The bucket does not answer.
+    fn size(&self, key: &str) -> io::Result<Option<u64>>;
 }
 
 /// The directories that hold all files.
-pub(super) const DIRS: [&str; 2] = ["in", "out"];
+pub(super) const DIRS: [&str; 3] = [MESHES, "out", PIECES];
+/// The one of the meshes of jobs.
+pub(super) const MESHES: &str = "in";
+/// The one of pieces of meshes, and of meshes that clients write to the bucket by themselves.
+pub(super) const PIECES: &str = "pieces";
 
 /// Files in a directory.
 #[derive(Debug)]

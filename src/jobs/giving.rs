@@ -10,7 +10,7 @@ use super::meters;
 use super::problems::{disk_problem, expired, upload_gone};
 use super::service::Service;
 use super::soundness::Unsound;
-use super::store::{BlobRef, Ending, JobId, JobRow};
+use super::store::{BlobRef, Ending, JobId, JobRow, ResultRef};
 use super::view::{self, StoredFile};
 use crate::wire::{JobState, Problem, ProblemCode};
 
@@ -41,21 +41,30 @@ impl Jobs {
     /// # Errors
     /// As [`result`](Self::result); `not-found` when there are fewer.
     pub async fn level(&self, id: JobId, level: usize) -> Result<StoredFile, Problem> {
+        let (row, result) = self.result_at(id, level).await?;
+        let name = view::result_name(&row, result.encoding, level);
+        let file = self.0.open_file(&row, &result.blob).await?;
+        Ok(StoredFile::of(file, &result, name))
+    }
+
+    /// The file of one of the job's meshes, and the name that it is given under.
+    pub(super) async fn level_of(&self, id: JobId, level: usize) -> Result<(BlobRef, String), Problem> {
+        let (row, result) = self.result_at(id, level).await?;
+        let name = view::result_name(&row, result.encoding, level);
+        Ok((result.blob, name))
+    }
+
+    async fn result_at(&self, id: JobId, level: usize) -> Result<(JobRow, ResultRef), Problem> {
         let row = self.0.row(id).await?;
         let ending = ended(&row)?;
         if ending.result.is_none() {
             return Err(self.with_report(reason_for_nothing(&row, "mesh"), id).await);
         }
-        match ending.results().nth(level) {
-            Some(result) => {
-                let name = view::result_name(&row, result.encoding, level);
-                let file = self.0.open_file(&row, &result.blob).await?;
-                Ok(StoredFile::of(file, result, name))
-            }
-            None => {
-                let detail = format!("the job has {} meshes", ending.results().count());
-                Err(Problem::new(ProblemCode::NotFound, detail))
-            }
+        let count = ending.results().count();
+        let result = ending.results().nth(level).cloned();
+        match result {
+            Some(result) => Ok((row, result)),
+            None => Err(Problem::new(ProblemCode::NotFound, format!("the job has {count} meshes"))),
         }
     }
 

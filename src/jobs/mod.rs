@@ -28,7 +28,9 @@ mod meters;
 mod migrate;
 mod neighbours;
 mod pace;
+mod pieces;
 mod postgres;
+mod presigned;
 mod problems;
 mod product;
 mod retention;
@@ -57,7 +59,7 @@ mod tests;
 
 pub use admission::Submission;
 pub use belonging::LostStore;
-pub use blobs::{BlobStore, BlobWriter, LocalBlobs, StoredBlob};
+pub use blobs::{BlobStore, BlobWriter, LocalBlobs, PresignedPut, PresignedUrls, StoredBlob};
 pub use child::{RUN_JOB, Sandbox, TrialError, run_job};
 pub use clock::StageClock;
 pub use data_dir::DataDirLock;
@@ -67,6 +69,7 @@ pub use handle::Jobs;
 pub use load::Load;
 pub use meters::describe as describe_metrics;
 pub use migrate::{MigrateError, Migrated, migrate};
+pub use pieces::{AskedUpload, NamedUpload, Pieces, UPLOAD_PIECES_MAX};
 pub use postgres::{DatabaseAccess, OpenError as PostgresOpenError, PostgresStore};
 pub use s3::{BucketAccess, BucketError, S3Blobs};
 pub use settings::{Isolation, JobsSettings};
@@ -76,8 +79,8 @@ pub use start::StartError;
 pub use store::{
     AfterLoss, BlobRef, Change, ClaimRef, ClaimRequest, Created, Delivery, DeliveryRequest, DeliveryState,
     DeliveryTry, Ending, Hint, Hints, Holding, IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept,
-    Lane, Leases, ListQuery, NewJob, NextTry, ResultRef, Sealer, StoreError, StoreFuture, Tenant, TryOutcome,
-    Webhook,
+    Lane, Leases, ListQuery, NewJob, NewUpload, NextTry, ResultRef, Sealer, StoreError, StoreFuture, Tenant,
+    TryOutcome, UploadId, UploadRow, UploadStore, Webhook,
 };
 pub use stores::{Stores, StoresError};
 pub use trace::TraceParent;

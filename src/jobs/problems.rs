@@ -20,7 +20,7 @@ pub(super) fn expired() -> Problem {
 pub(super) fn upload_gone() -> Problem {
     Problem::new(
         ProblemCode::Expired,
-        "the upload was lost or damaged on the server's disk; send the mesh again",
+        "the upload was lost or damaged where the server stores it, or is not what its SHA-256 says; send the mesh again",
     )
 }
 
@@ -69,6 +69,15 @@ pub(super) fn store_problem(error: &StoreError) -> Problem {
             ProblemCode::IdempotencyKeyReused,
             "the `Idempotency-Key` was used with another mesh, operation or options",
         ),
+        StoreError::UploadMoved { received } => Problem::new(
+            ProblemCode::UploadConflict,
+            format!("the upload goes on at byte {received}"),
+        ),
+        StoreError::UploadsFull { limit, .. } => Problem::new(
+            ProblemCode::StorageFull,
+            "there are as many unfinished uploads as may be, or as this caller may have beside those of others; finish or delete some",
+        )
+        .with_limit("uploads_max", *limit as u64, None),
         StoreError::QueueFull { .. } | StoreError::ShareFull { .. } | StoreError::ClaimVoid => {
             internal(error)
         }

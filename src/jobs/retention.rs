@@ -8,7 +8,7 @@ use super::disk::on_disk;
 use super::problems::store_problem;
 use super::service::Service;
 use super::spool::claim_of;
-use super::store::{ClaimRef, JobId, JobRow, Leases};
+use super::store::{ClaimRef, JobId, JobRow, Leases, StoreError, UploadId};
 use crate::wire::Problem;
 
 /// Longest pause between two looks for results and leases whose time is over. Whoever asks for such a result finds it
@@ -49,6 +49,14 @@ impl Service {
             }
             Err(error) => tracing::error!(%error, "expired jobs could not be found"),
         }
+        match self.store.due_uploads().await {
+            Ok(due) => {
+                for id in due {
+                    self.drop_upload(id).await;
+                }
+            }
+            Err(error) => tracing::error!(%error, "expired uploads could not be found"),
+        }
         if let Err(error) = self.recover(Leases::Expired).await {
             tracing::error!(%error, "lost jobs could not be found");
         }
@@ -81,6 +89,16 @@ impl Service {
         match self.store.expire(id).await {
             Ok(orphans) => self.spool.remove_all(&orphans),
             Err(error) => tracing::warn!(job = %id, %error, "a job could not be expired"),
+        }
+    }
+
+    /// An upload whose time is over goes with its files.
+    async fn drop_upload(&self, id: UploadId) {
+        match self.store.delete_upload(id).await {
+            Ok(orphans) => self.spool.remove_all(&orphans),
+            // Its owner, or another server, was quicker.
+            Err(StoreError::NotFound) => {}
+            Err(error) => tracing::warn!(upload = %id, %error, "an upload could not be removed"),
         }
     }
 

@@ -43,10 +43,27 @@ impl Service {
             if bytes > 0 && self.spool.is_disk_short_of(bytes) {
                 return Err(self.storage_full(bytes));
             }
+            if let Some(space) = self.room_or_one_fewer(tenant, bytes).await? {
+                return Ok(space);
+            }
+        }
+    }
+
+    /// The same for a file that does not come to the disk of this machine.
+    pub(super) async fn make_room_in_store(&self, tenant: &Tenant, bytes: u64) -> Result<Space, Problem> {
+        loop {
+            if let Some(space) = self.room_or_one_fewer(tenant, bytes).await? {
+                return Ok(space);
+            }
+        }
+    }
+
+    /// Room, if there is; otherwise a job that has ended has expired.
+    async fn room_or_one_fewer(&self, tenant: &Tenant, bytes: u64) -> Result<Option<Space>, Problem> {
             let first = if self.is_over_own_bytes(tenant, bytes).await? {
                 self.store.first_to_go_of(Kept::WithFiles, tenant.clone()).await
             } else if let Some(space) = self.spool.reserve(bytes) {
-                return Ok(space);
+                return Ok(Some(space));
             } else {
                 self.store.first_to_go(Kept::WithFiles, tenant.clone()).await
             };
@@ -59,7 +76,7 @@ impl Service {
                 Err(StoreError::NotFound) => {}
                 Err(error) => return Err(store_problem(&error)),
             }
-        }
+            Ok(None)
     }
 
     /// Whether `bytes` more are over what the operator allows one tenant.

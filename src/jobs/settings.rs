@@ -63,6 +63,12 @@ pub struct JobsSettings {
     pub jobs_max: usize,
     /// Largest upload, in bytes. Default 512 MiB.
     pub upload_bytes_max: u64,
+    /// Most uploads in pieces that no job has taken yet; one tenant has half of them at most. Default 1,000.
+    pub uploads_max: usize,
+    /// Time for which an upload in pieces is kept after its last bytes came. Default 24 h.
+    pub upload_ttl: Duration,
+    /// Time for which a presigned URL of the bucket is valid; `None`: none are given. Default: none.
+    pub presigned_ttl: Option<Duration>,
     /// Most bytes of uploads and results on disk; the oldest finished jobs go first. Default 20 GiB.
     pub data_bytes_max: u64,
     /// Bytes of the disk that stay free. Default 256 MiB.
@@ -116,6 +122,9 @@ impl JobsSettings {
             owner_data_bytes_max: None,
             jobs_max: 20_000,
             upload_bytes_max: 512 << 20,
+            uploads_max: 1000,
+            upload_ttl: Duration::from_secs(24 * 60 * 60),
+            presigned_ttl: None,
             data_bytes_max: 20 << 30,
             disk_free_bytes_min: 256 << 20,
             lease: Duration::from_secs(30),

@@ -49,15 +49,21 @@ impl Incoming {
 
     /// Refuses `bytes` more of uploads whose jobs have not ended when the tenant would have more than what is free: one alone
     /// has half of the room at most, two a third each. An upload that is the only one has all the room there is.
-    /// `here`: how many it has by the upload that grows.
-    pub(super) async fn check(&self, tenant: &Tenant, here: u64, bytes: u64) -> Result<(), Problem> {
+    /// `here`: how many it has by the upload that grows; `instead_of`: how many go when it is complete.
+    pub(super) async fn check(
+        &self,
+        tenant: &Tenant,
+        here: u64,
+        instead_of: u64,
+        bytes: u64,
+    ) -> Result<(), Problem> {
         if tenant.is_nobody() {
             return Ok(());
         }
         let holding = self.store.holding(tenant.clone()).await.map_err(|error| store_problem(&error))?;
         let (own, all) = self.of(tenant);
-        let own = holding.open_bytes.saturating_add(own);
-        let all = holding.open_bytes_of_all.saturating_add(all);
+        let own = holding.open_bytes.saturating_sub(instead_of).saturating_add(own);
+        let all = holding.open_bytes_of_all.saturating_sub(instead_of).saturating_add(all);
         // An upload that is the only one of its tenant may fill what others leave.
         let limit = self.spool.bytes_max().saturating_sub(if own == here { all - own.min(all) } else { all });
         if own.saturating_add(bytes) <= limit {
@@ -80,6 +86,8 @@ pub(super) struct IncomingBytes {
     incoming: Arc<Incoming>,
     tenant: Tenant,
     bytes: u64,
+    /// How many of the tenant go when these have come.
+    instead_of: u64,
 }
 
 impl std::fmt::Debug for IncomingBytes {
@@ -89,8 +97,8 @@ impl std::fmt::Debug for IncomingBytes {
 }
 
 impl IncomingBytes {
-    pub(super) fn none(incoming: Arc<Incoming>, tenant: Tenant) -> Self {
-        Self { incoming, tenant, bytes: 0 }
+    pub(super) fn none(incoming: Arc<Incoming>, tenant: Tenant, instead_of: u64) -> Self {
+        Self { incoming, tenant, bytes: 0, instead_of }
     }
 
     pub(super) fn tenant(&self) -> &Tenant {
@@ -99,7 +107,7 @@ impl IncomingBytes {
 
     /// Adds bytes, unless the tenant has its share.
     pub(super) async fn grow(&mut self, bytes: u64) -> Result<(), Problem> {
-        self.incoming.check(&self.tenant, self.bytes, bytes).await?;
+        self.incoming.check(&self.tenant, self.bytes, self.instead_of, bytes).await?;
         self.incoming.add(&self.tenant, bytes);
         self.bytes += bytes;
         Ok(())

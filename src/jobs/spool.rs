@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use sha2::{Digest, Sha256};
 use uuid::Uuid;
 
-use super::blobs::{BlobStore, BlobWriter, StoredBlob};
+use super::blobs::{BlobStore, BlobWriter, PresignedUrls, StoredBlob};
 use super::child::MadeFile;
 use super::soundness::{KnownSound, Unsound};
 use super::store::{BlobRef, ClaimRef};
@@ -103,9 +103,12 @@ impl Spool {
         Some(Space { spool: Arc::clone(self), bytes })
     }
 
-    /// Begins an upload. Blocks.
-    pub(super) fn begin(self: &Arc<Self>) -> io::Result<(Unnamed, Box<dyn BlobWriter>)> {
-        let unnamed = self.unnamed(format!("in/{}", Uuid::now_v7().simple()));
+    /// Begins an upload, in this folder. Blocks.
+    pub(super) fn begin(
+        self: &Arc<Self>,
+        folder: &'static str,
+    ) -> io::Result<(Unnamed, Box<dyn BlobWriter>)> {
+        let unnamed = self.unnamed(format!("{folder}/{}", Uuid::now_v7().simple()));
         let writer = self.blobs.create(&unnamed.key)?;
         Ok((unnamed, writer))
     }
@@ -130,7 +133,7 @@ impl Spool {
             files: Vec::new(),
         };
         space.hand_over(&blob);
-        Ok(Written { blob: Some(blob), unnamed })
+        Ok(Written { blob: Some(blob), unnamed, is_anothers: false })
     }
 
     /// Takes over a file that another process made for a run, into reserved room. Blocks.
@@ -147,7 +150,7 @@ impl Spool {
         let blob =
             BlobRef { key: unnamed.key.clone(), bytes: file.bytes, sha256: file.sha256, files: Vec::new() };
         space.hand_over(&blob);
-        Ok(Written { blob: Some(blob), unnamed })
+        Ok(Written { blob: Some(blob), unnamed, is_anothers: false })
     }
 
     /// Removes a file and gives its room back.
@@ -175,6 +178,11 @@ impl Spool {
         let shrunk = |used: u64| Some(used.saturating_sub(bytes));
         // The update never refuses.
         let _ = self.bytes.fetch_update(Ordering::Relaxed, Ordering::Relaxed, shrunk);
+    }
+
+    /// The way by which clients reach files without this service in between, where there is one.
+    pub(super) fn presigned(&self) -> Option<&dyn PresignedUrls> {
+        self.blobs.presigned()
     }
 
     fn unnamed(self: &Arc<Self>, key: String) -> Unnamed {
@@ -232,11 +240,13 @@ impl Drop for Unnamed {
     }
 }
 
-/// A complete file that no row names yet. Dropped before it is [named](Self::named), it is removed.
+/// A complete file that no row of a job names yet. Dropped before it is [named](Self::named), it is removed, unless it is another
+/// row's by now.
 #[derive(Debug)]
 pub(super) struct Written {
     blob: Option<BlobRef>,
     unnamed: Unnamed,
+    is_anothers: bool,
 }
 
 impl Written {
@@ -244,7 +254,13 @@ impl Written {
     pub(super) fn upload(unnamed: Unnamed, blob: BlobRef, space: Space) -> Self {
         space.hand_over(&blob);
         unnamed.spool.note_sound(&unnamed.key);
-        Self { blob: Some(blob), unnamed }
+        Self { blob: Some(blob), unnamed, is_anothers: false }
+    }
+
+    /// A file of an upload that the client has written to the bucket, and that is to become a job's.
+    pub(super) fn of_bucket(spool: &Arc<Spool>, blob: BlobRef) -> Self {
+        let unnamed = spool.unnamed(blob.key.clone());
+        Self { blob: Some(blob), unnamed, is_anothers: true }
     }
 
     /// The file.
@@ -254,13 +270,16 @@ impl Written {
 
     /// A row names the file now, or may do so.
     pub(super) fn named(mut self) {
-        self.blob = None;
+        if let Some(blob) = self.blob.take().filter(|_| self.is_anothers) {
+            // It came past this service and fills room all the same.
+            self.unnamed.spool.bytes.fetch_add(blob.bytes, Ordering::Relaxed);
+        }
     }
 }
 
 impl Drop for Written {
     fn drop(&mut self) {
-        if let Some(blob) = &self.blob {
+        if let Some(blob) = self.blob.as_ref().filter(|_| !self.is_anothers) {
             self.unnamed.spool.remove(blob);
         }
     }
@@ -343,7 +362,7 @@ mod tests {
     fn what_the_process_still_holds_is_no_orphan() {
         let dir = tempfile::tempdir().unwrap();
         let spool = spool_in(&dir);
-        let (upload, writer) = spool.begin().unwrap();
+        let (upload, writer) = spool.begin("in").unwrap();
         let written = hello(&spool);
         assert!(spool.list().unwrap().is_empty());
         let key = written.blob().unwrap().key.clone();

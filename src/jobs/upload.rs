@@ -8,13 +8,13 @@ use sha2::{Digest, Sha256};
 use tokio::task::JoinHandle;
 
 use super::arrivals::QueuePlace;
-use super::blobs::BlobWriter;
+use super::blobs::{BlobWriter, MESHES};
 use super::disk::{joined, on_disk};
 use super::meters;
 use super::service::Service;
 use super::shares::IncomingBytes;
 use super::spool::{Space, Spool, Unnamed, Written};
-use super::store::{BlobRef, Tenant};
+use super::store::{BlobRef, Tenant, UploadId};
 use crate::wire::Problem;
 
 /// Bytes gathered before they are hashed and written, off the threads that serve connections and while more come in.
@@ -29,6 +29,8 @@ pub struct Upload {
     /// Sizes of the files that have ended.
     files: Vec<u64>,
     space: Space,
+    /// Where its file is put.
+    folder: &'static str,
     /// It becomes a job, and has no place in the queue yet.
     needs_place: bool,
     place: Option<QueuePlace>,
@@ -38,6 +40,24 @@ pub struct Upload {
 impl std::fmt::Debug for Upload {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Upload").field("bytes", &self.bytes).finish_non_exhaustive()
+    }
+}
+
+/// What the bytes are for.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Purpose {
+    /// Where the file is put.
+    pub(super) folder: &'static str,
+    /// It becomes a job, which needs a place in the queue.
+    pub(super) needs_place: bool,
+    /// Bytes of the tenant that go when these have come.
+    pub(super) instead_of: u64,
+}
+
+impl Purpose {
+    /// The mesh of a job, or what comes beside it and needs no place of its own.
+    pub(super) fn of_mesh(needs_place: bool) -> Self {
+        Self { folder: MESHES, needs_place, instead_of: 0 }
     }
 }
 
@@ -60,10 +80,10 @@ struct OpenSink {
 
 impl Sink {
     /// The open file, begun when there is none. Blocks.
-    fn open(self, spool: &Arc<Spool>) -> io::Result<Box<OpenSink>> {
+    fn open(self, spool: &Arc<Spool>, folder: &'static str) -> io::Result<Box<OpenSink>> {
         match self {
             Self::Fresh => {
-                let (unnamed, writer) = spool.begin()?;
+                let (unnamed, writer) = spool.begin(folder)?;
                 Ok(Box::new(OpenSink { unnamed, writer, digest: Sha256::new() }))
             }
             Self::Open(sink) => Ok(sink),
@@ -83,11 +103,13 @@ impl Upload {
     pub(super) async fn begin(
         service: Arc<Service>,
         tenant: Tenant,
-        needs_place: bool,
+        purpose: Purpose,
     ) -> Result<Self, Problem> {
         let space = service.make_room(&tenant, 0).await?;
+        let Purpose { folder, needs_place, instead_of } = purpose;
         Ok(Self {
-            incoming: IncomingBytes::none(Arc::clone(&service.incoming), tenant),
+            incoming: IncomingBytes::none(Arc::clone(&service.incoming), tenant, instead_of),
+            folder,
             service,
             sink: Sink::Fresh,
             block: Vec::new(),
@@ -113,9 +135,9 @@ impl Upload {
             if self.block.len() == BLOCK_BYTES {
                 let (sink, spare) = self.next_sink().await?;
                 let mut block = std::mem::replace(&mut self.block, spare);
-                let spool = Arc::clone(&self.service.spool);
+                let (spool, folder) = (Arc::clone(&self.service.spool), self.folder);
                 self.sink = Sink::Busy(tokio::task::spawn_blocking(move || {
-                    let mut sink = sink.open(&spool)?;
+                    let mut sink = sink.open(&spool, folder)?;
                     sink.write(&block)?;
                     block.clear();
                     Ok((sink, block))
@@ -142,9 +164,9 @@ impl Upload {
     pub async fn finish(mut self) -> Result<Uploaded, Problem> {
         let (sink, _) = self.next_sink().await?;
         let block = std::mem::take(&mut self.block);
-        let spool = Arc::clone(&self.service.spool);
+        let (spool, folder) = (Arc::clone(&self.service.spool), self.folder);
         let written = on_disk(move || {
-            let mut sink = sink.open(&spool)?;
+            let mut sink = sink.open(&spool, folder)?;
             sink.write(&block)?;
             let OpenSink { unnamed, writer, digest } = *sink;
             writer.commit()?;
@@ -155,8 +177,9 @@ impl Upload {
         let blob = BlobRef { key: unnamed.key.clone(), bytes: self.bytes, sha256, files };
         Ok(Uploaded {
             written: Written::upload(unnamed, blob, self.space),
+            taken: None,
             _place: self.place,
-            _incoming: self.incoming,
+            _incoming: Some(self.incoming),
         })
     }
 
@@ -185,15 +208,63 @@ impl Upload {
 #[derive(Debug)]
 pub struct Uploaded {
     written: Written,
+    /// The upload that it was made of, which goes when it is a job's.
+    taken: Option<Taken>,
     /// Given up when this is dropped, as are its bytes among those that come in.
     _place: Option<QueuePlace>,
-    _incoming: IncomingBytes,
+    _incoming: Option<IncomingBytes>,
+}
+
+/// An upload whose bytes become a job's.
+#[derive(Debug)]
+pub(super) struct Taken {
+    pub(super) id: UploadId,
+    /// Its files, which nobody names once a job has taken it.
+    pub(super) pieces: Vec<BlobRef>,
+    pub(super) spool: Arc<Spool>,
 }
 
 impl Uploaded {
-    /// A row names the file now, or may do so.
+    /// A file that a client has written to the bucket: that of an upload.
+    pub(super) fn of_bucket(spool: &Arc<Spool>, blob: BlobRef, id: UploadId) -> Self {
+        Self {
+            written: Written::of_bucket(spool, blob),
+            taken: Some(Taken { id, pieces: Vec::new(), spool: Arc::clone(spool) }),
+            _place: None,
+            _incoming: None,
+        }
+    }
+
+    /// The same, made of the pieces of an upload.
+    pub(super) fn made_of(self, taken: Taken) -> Self {
+        Self { taken: Some(taken), ..self }
+    }
+
+    /// The upload that it was made of.
+    pub(super) fn taken(&self) -> Option<UploadId> {
+        self.taken.as_ref().map(|taken| taken.id)
+    }
+
+    /// A row names the file now.
     pub(super) fn named(self) {
         self.written.named();
+        if let Some(Taken { pieces, spool, .. }) = self.taken {
+            spool.remove_all(&pieces);
+        }
+    }
+
+    /// A row may name the file now, and have taken the upload: what it was made of stays as well.
+    pub(super) fn maybe_named(self) {
+        self.written.named();
+    }
+
+    /// A row was made that has taken the upload and names other files with the same bytes.
+    pub(super) fn not_needed(self) {
+        let Some(Taken { pieces, spool, .. }) = self.taken else { return };
+        spool.remove_all(&pieces);
+        if pieces.is_empty() {
+            self.written.blob().into_iter().for_each(|blob| spool.remove(blob));
+        }
     }
 
     pub(super) fn blob(&self) -> Option<&BlobRef> {

@@ -8,6 +8,14 @@ use utoipa::ToSchema;
 pub struct Limits {
     /// Largest upload, in bytes.
     pub upload_bytes_max: u64,
+    /// Most uploads by `/v1/uploads` that no job has taken yet; one caller alone has half of them at most.
+    pub uploads_max: usize,
+    /// Most pieces in which the bytes of one such upload are stored.
+    pub upload_pieces_max: usize,
+    /// Time for which such an upload is kept after its last bytes came, in seconds.
+    pub upload_ttl_s: u64,
+    /// Time for which a presigned URL is valid, in seconds; 0: none are given.
+    pub presigned_ttl_s: u64,
     /// Most triangles of a mesh after polygons are split.
     pub triangles_max: u32,
     /// Most vertices of a mesh.

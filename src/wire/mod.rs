@@ -38,6 +38,7 @@ mod shortened;
 mod stitches;
 mod target;
 mod unit_hypothesis;
+mod upload;
 mod verdict;
 mod version;
 mod webhook;
@@ -90,6 +91,7 @@ pub use request::JobRequest;
 pub use stitches::{JoinedEdges, Stitches};
 pub use target::TargetSpec;
 pub use unit_hypothesis::UnitHypothesis;
+pub use upload::{PresignedRequest, PutRequest, UploadInfo};
 pub use verdict::{Reason, Verdict};
 pub use version::{ENGINE_NAME, ENGINE_VERSION, REPORT_SCHEMA, Version};
 pub use webhook::{

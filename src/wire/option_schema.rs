@@ -50,7 +50,7 @@ impl OptionSpec {
     /// The value in a query: as in JSON, but a structured value is its JSON text.
     fn query_schema(&self) -> RefOr<Schema> {
         let (pattern, about) = match self.kind {
-            OptionKind::Input => (r#"^\{"job":"[0-9a-f-]{36}"\}$"#, "JSON text of the object."),
+            OptionKind::Input => (r#"^\{"(job|upload)":"[0-9a-f-]{36}"\}$"#, "JSON text of the object."),
             OptionKind::Targets => (r#"^\[\{"ratio":0\.[0-9]{1,3}\}\]$"#, "JSON text of the list."),
             OptionKind::Plan => (
                 r#"^\{"findings":\[\{"code":"boundary-loop","remedy":"(keep|fill)"\}\]\}$"#,

@@ -10,6 +10,14 @@ words! {
     ProblemCode {
         /// A parameter has a value that is not allowed.
         InvalidParameter = "invalid-parameter",
+        /// The upload is not where the request takes it to be.
+        UploadConflict = "upload-conflict",
+        /// Bytes of the upload are still to come.
+        UploadUnfinished = "upload-unfinished",
+        /// The protocol's version is not spoken here.
+        UnsupportedVersion = "unsupported-version",
+        /// No presigned URL is given.
+        PresignedRefused = "presigned-refused",
         /// The body ends early or is cut into parts wrongly.
         BodyIncomplete = "body-incomplete",
         /// There is no such parameter, or this operation does not take it.
@@ -101,6 +109,28 @@ impl ProblemCode {
                 "Unknown parameter",
                 "There is no `parameter` of this name here; `suggestion` is the nearest one there is, `detail` says who takes it.",
             ),
+            Self::UploadConflict => (
+                409,
+                "Upload conflict",
+                "The upload goes on at another offset, or another request was quicker. Ask where it stands with `HEAD`, and go \
+                 on from there.",
+            ),
+            Self::UploadUnfinished => (
+                409,
+                "Upload unfinished",
+                "Bytes of the upload are still to come. Send them first; `HEAD` tells where to go on.",
+            ),
+            Self::UnsupportedVersion => (
+                412,
+                "Unsupported version",
+                "`Tus-Resumable` is missing or names another version of the protocol than `Tus-Version`.",
+            ),
+            Self::PresignedRefused => (
+                422,
+                "Presigned refused",
+                "The server gives no presigned URLs: its files are not in a bucket, or its operator has not allowed it. Send and \
+                 fetch meshes by the other calls.",
+            ),
             Self::BodyIncomplete => (
                 400,
                 "Body incomplete",
@@ -111,7 +141,7 @@ impl ProblemCode {
             }
             Self::Forbidden => (403, "Forbidden", "The server does not answer this caller, host or origin."),
             Self::NotFound => {
-                (404, "Not found", "There is no such path, job or file. A deleted job is not found either.")
+                (404, "Not found", "There is no such path, job, upload or file. A deleted job is not found either.")
             }
             Self::Expired => {
                 (410, "Expired", "The job's report and result are no longer kept. Send the mesh again.")

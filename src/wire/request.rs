@@ -166,7 +166,7 @@ mod tests {
             JobRequest::from_json(br#"{"params":{"units":"cm"},"operation":"repair","input":{"job":"7"}}"#);
         assert_eq!(flat, nested.unwrap());
         assert_eq!(flat.options.units, Some(Units::Centimetre));
-        assert_eq!(flat.options.input, Some(InputRef { job: "7".into() }));
+        assert_eq!(flat.options.input, Some(InputRef::Job("7".into())));
     }
 
     #[test]

@@ -64,7 +64,8 @@ fn every_operation_of_the_contract_is_in_the_documentation() {
         let Some(path) = line.strip_prefix("  /").and_then(|rest| rest.strip_suffix(':')) else { continue };
         let shown = format!("/{path}")
             .replace("/v1/jobs/{id}/deliveries/{delivery}", "$job/deliveries/$delivery")
-            .replace("/v1/jobs/{id}", "$job");
+            .replace("/v1/jobs/{id}", "$job")
+            .replace("/v1/uploads/{id}", "$upload");
         assert!(page.contains(&format!("$url{shown}")), "{path} is not in docs/http.md");
     }
 }

@@ -70,7 +70,7 @@ impl Town {
     /// Keys of all files in the bucket.
     pub(crate) fn stored_files(&self) -> Vec<String> {
         let mut found = Vec::new();
-        for folder in ["in", "out"] {
+        for folder in ["in", "out", "pieces"] {
             let folder = self.dir.path().join("bucket").join(s3_server::BUCKET).join("shop").join(folder);
             let Ok(entries) = std::fs::read_dir(folder) else { continue };
             found.extend(entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()));

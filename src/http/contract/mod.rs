@@ -4,6 +4,7 @@
 //! uploads, answers in several media types, headers, and the problems each may answer with.
 
 mod bodies;
+mod uploads;
 mod yaml;
 
 use std::collections::BTreeMap;
@@ -46,6 +47,8 @@ const UPLOAD: &[ProblemCode] = &[
     ProblemCode::NotFound,
     ProblemCode::UploadTimeout,
     ProblemCode::Expired,
+    ProblemCode::UploadConflict,
+    ProblemCode::UploadUnfinished,
     ProblemCode::IdempotencyKeyReused,
     ProblemCode::BodyTooLarge,
     ProblemCode::MeshEmpty,
@@ -98,7 +101,9 @@ pub(super) fn complete(mut document: OpenApi) -> OpenApi {
     components
         .add_security_scheme("key", SecurityScheme::ApiKey(ApiKey::Header(ApiKeyValue::new("X-API-Key"))));
     for (path, item) in &mut document.paths.paths {
-        for operation in [&mut item.get, &mut item.post, &mut item.delete].into_iter().flatten() {
+        let [get, head, post] = [&mut item.get, &mut item.head, &mut item.post];
+        let [patch, delete, options] = [&mut item.patch, &mut item.delete, &mut item.options];
+        for operation in [get, head, post, patch, delete, options].into_iter().flatten() {
             complete_operation(path, operation);
         }
     }
@@ -195,7 +200,11 @@ fn complete_operation(path: &str, operation: &mut Operation) {
             add_answer(operation, "200", file_answer("The mesh."));
             add_answer(operation, "206", file_answer("The part of the mesh that `Range` asks for."));
             add_answer(operation, "304", Response::new("Not changed."));
+            add_problems(operation, &[ProblemCode::PresignedRefused]);
             add_parameter(operation, header_parameter("Range", "One range of bytes.", text()));
+        }
+        "create_upload" | "append_to_upload" | "get_upload" | "delete_upload" | "create_presigned_upload" => {
+            uploads::complete(&id, operation);
         }
         _ if path.starts_with("/v1/jobs/") => add_problems(operation, JOB),
         _ => {}

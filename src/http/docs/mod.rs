@@ -24,7 +24,7 @@ pub(super) async fn show(state: State) -> Response {
 }
 
 /// Groups of calls, by their tags, with what is said of them.
-const GROUPS: [(&str, &str, &str); 3] = [
+const GROUPS: [(&str, &str, &str); 4] = [
     (
         "operations",
         "Operations",
@@ -35,6 +35,12 @@ const GROUPS: [(&str, &str, &str); 3] = [
         "jobs",
         "Jobs",
         "Every request is a job. It is kept with its report, mesh and picture until it expires or is deleted.",
+    ),
+    (
+        "uploads",
+        "Uploads",
+        "A mesh may come before its job: over as many requests as it takes, by the protocol tus, or past this service into its \
+         bucket. A job then names it in `input`.",
     ),
     ("service", "The service", "What the service reads, writes and allows, and its contract."),
 ];
@@ -143,7 +149,10 @@ impl<'d> Page<'d> {
             Escaped(text(&operation["summary"])),
             Prose(text(&operation["description"]))
         ));
-        self.examples(&Call::of(path, method));
+        // Uploads go over several calls, which programs have clients for: one call by itself is no example.
+        if tag_of(operation) != "uploads" {
+            self.examples(&Call::of(path, method));
+        }
         self.parameters(operation);
         self.body(&operation["requestBody"]);
         self.answers(operation);
@@ -261,9 +270,19 @@ impl<'d> Page<'d> {
 }
 
 /// Paths, methods and operations, in the order of the document.
+/// Methods, as the contract and as requests write them.
+const METHODS: [(&str, &str); 6] = [
+    ("get", "GET"),
+    ("head", "HEAD"),
+    ("post", "POST"),
+    ("patch", "PATCH"),
+    ("delete", "DELETE"),
+    ("options", "OPTIONS"),
+];
+
 fn operations(document: &Value) -> impl Iterator<Item = (&str, &'static str, &Value)> {
     members(&document["paths"]).flat_map(|(path, item)| {
-        [("get", "GET"), ("post", "POST"), ("delete", "DELETE")]
+        METHODS
             .into_iter()
             .filter_map(move |(key, method)| Some((path, method, item.get(key)?)))
     })

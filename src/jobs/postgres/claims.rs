@@ -8,7 +8,7 @@ use uuid::Uuid;
 use super::locks::{self, ARRIVALS};
 use super::rows::{get, id as id_of, json_if_any, last_ms, later, number, number_of, state, to_json, value};
 use super::session::Session;
-use super::{keeping, listing, outbox, tenants};
+use super::{keeping, listing, outbox, tenants, uploads};
 use crate::jobs::store::{
     AfterLoss, ClaimRef, ClaimRequest, Created, Ending, JobId, JobRow, Lane, Leases, NewJob, StoreError,
 };
@@ -40,6 +40,9 @@ pub(super) async fn create(session: &Session, new: NewJob, queue_max: usize) -> 
         tenants::check_share(session, &new.tenant, queue_max - queued).await?;
     }
     insert(session, &new).await?;
+    if let Some(upload) = new.taken {
+        uploads::take(session, upload, new.id).await?;
+    }
     change(session, new.id).await?;
     if let Some(ending) = &new.ending {
         let sql = "UPDATE jobs SET started_at = $2, is_cached = true WHERE id = $1";

@@ -82,6 +82,7 @@ pub(super) async fn current(
 
 pub(super) async fn named(session: &Session, keys: Vec<String>) -> Result<HashSet<String>, StoreError> {
     let sql = "SELECT key FROM unnest($1::text[]) AS asked (key)
-        WHERE EXISTS (SELECT 1 FROM names WHERE names.key = asked.key)";
+        WHERE EXISTS (SELECT 1 FROM names WHERE names.key = asked.key)
+            OR EXISTS (SELECT 1 FROM pieces WHERE pieces.key = asked.key)";
     session.rows(sql, &[&keys]).await?.iter().map(|row| value(row, 0)).collect()
 }

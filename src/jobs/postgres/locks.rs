@@ -13,6 +13,8 @@ const SHARE: i32 = 0x6d65_0003;
 pub(super) const NAMES: i32 = 0x6d65_0004;
 /// Deliveries are claimed.
 pub(super) const OUTBOX: i32 = 0x6d65_0005;
+/// Uploads that come before their job are made: how many there are is counted, and one is added.
+pub(super) const UPLOADS: i32 = 0x6d65_0006;
 
 /// Waits until nobody else holds the lock.
 pub(super) async fn hold(session: &Session, lock: i32) -> Result<(), StoreError> {

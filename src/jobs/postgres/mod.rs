@@ -15,6 +15,7 @@ mod rows;
 mod schema;
 mod session;
 mod tenants;
+mod uploads;
 
 use std::collections::HashSet;
 use std::fmt;

@@ -15,7 +15,10 @@ struct Step {
 }
 
 /// Steps are added, never changed.
-const STEPS: &[Step] = &[Step { sql: include_str!("schema.sql"), oldest: 1 }];
+const STEPS: &[Step] = &[
+    Step { sql: include_str!("schema.sql"), oldest: 1 },
+    Step { sql: include_str!("uploads.sql"), oldest: 1 },
+];
 
 /// Brings the tables to the newest version, all steps or none.
 pub(super) async fn migrate(client: &Client) -> Result<(), OpenError> {

@@ -4,6 +4,7 @@
 use super::locks;
 use super::rows::{id as id_of, number, number_of, value};
 use super::session::Session;
+use super::uploads;
 use crate::jobs::store::{ClaimRequest, Holding, JobId, Kept, Lane, StoreError, Tenant};
 
 /// Refuses when the tenant has as many jobs in the queue as there are `free` places.
@@ -25,13 +26,15 @@ pub(super) async fn holding(session: &Session, tenant: Tenant) -> Result<Holding
             least(coalesce(sum(file_bytes), 0), 9223372036854775807)::bigint
         FROM jobs WHERE tenant = $1";
     let row = session.row(sql, &[&tenant.name()]).await?;
-    Ok(Holding {
+    let (own_uploads, all_uploads) = uploads::held(session, &tenant).await?;
+    let of_jobs = Holding {
         jobs: number(&row, 0)?,
         queued: number(&row, 1)?,
         open_bytes: number(&row, 2)?,
         open_bytes_of_all: number(&row, 3)?,
         bytes: number(&row, 4)?,
-    })
+    };
+    Ok(of_jobs.with_uploads(own_uploads, all_uploads))
 }
 
 /// The tenants that a job may be claimed of, whose turn it is first, each with the lane of its job. A claim tries one after

@@ -4,9 +4,9 @@ use std::fmt;
 use std::io;
 use std::time::Duration;
 
-use object_store::aws::{AmazonS3Builder, S3ConditionalPut};
+use object_store::aws::{AmazonS3, AmazonS3Builder, S3ConditionalPut};
 use object_store::path::Path;
-use object_store::{BackoffConfig, ClientOptions, ObjectStore, RetryConfig};
+use object_store::{BackoffConfig, ClientOptions, RetryConfig};
 
 /// Longest time for a connection to be made.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(5);
@@ -22,6 +22,8 @@ pub struct BucketAccess {
     pub url: String,
     /// The server, when it is not Amazon's; `http` is taken where it is said.
     pub endpoint: Option<String>,
+    /// The same server as clients reach it by presigned URLs, where that is another address.
+    pub public_endpoint: Option<String>,
     /// The region.
     pub region: String,
     /// Id and secret of the key; `None`: what the machine has been given by its host or its environment.
@@ -74,12 +76,21 @@ impl BucketAccess {
         Ok((bucket, Path::parse(folder.trim_end_matches('/')).map_err(|_| about())?))
     }
 
-    /// What speaks to the bucket, and the folder in it.
-    pub(super) fn connect(&self) -> Result<(Box<dyn ObjectStore>, Path), BucketError> {
+    /// What speaks to the bucket, what signs URLs for clients, and the folder in the bucket.
+    pub(super) fn connect(&self) -> Result<(AmazonS3, AmazonS3, Path), BucketError> {
         let (bucket, folder) = self.bucket_and_folder()?;
         // Another part of the process may have chosen the same already.
         let _ = rustls::crypto::ring::default_provider().install_default();
-        let is_http = self.endpoint.as_deref().is_some_and(|endpoint| endpoint.starts_with("http://"));
+        let store = self.connect_to(bucket, self.endpoint.as_deref())?;
+        let signer = match &self.public_endpoint {
+            Some(endpoint) => self.connect_to(bucket, Some(endpoint))?,
+            None => store.clone(),
+        };
+        Ok((store, signer, folder))
+    }
+
+    fn connect_to(&self, bucket: &str, endpoint: Option<&str>) -> Result<AmazonS3, BucketError> {
+        let is_http = endpoint.is_some_and(|endpoint| endpoint.starts_with("http://"));
         let client = ClientOptions::new()
             .with_allow_http(is_http)
             .with_connect_timeout(CONNECT_TIMEOUT)
@@ -93,18 +104,17 @@ impl BucketAccess {
             }
             None => AmazonS3Builder::from_env(),
         };
-        if let Some(endpoint) = &self.endpoint {
+        if let Some(endpoint) = endpoint {
             builder = builder.with_endpoint(endpoint);
         }
-        let store = builder
+        builder
             .with_bucket_name(bucket)
             .with_region(&self.region)
             .with_conditional_put(S3ConditionalPut::ETagMatch)
             .with_client_options(client)
             .with_retry(retry)
             .build()
-            .map_err(|error| BucketError::SetUp(error.to_string()))?;
-        Ok((Box::new(store), folder))
+            .map_err(|error| BucketError::SetUp(error.to_string()))
     }
 }
 
@@ -116,6 +126,7 @@ mod tests {
         BucketAccess {
             url: url.to_owned(),
             endpoint: None,
+            public_endpoint: None,
             region: "us-east-1".to_owned(),
             key: Some(("id".to_owned(), "hidden".to_owned())),
             cache_bytes_max: 1,

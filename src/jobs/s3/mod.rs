@@ -5,6 +5,7 @@
 
 mod access;
 mod cache;
+mod presigned;
 mod transfer;
 
 use std::fmt;
@@ -15,13 +16,14 @@ use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
 use futures_util::TryStreamExt as _;
+use object_store::aws::AmazonS3;
 use object_store::path::Path;
 use object_store::{ObjectStore, ObjectStoreExt as _, PutMode, PutOptions};
 use tokio::runtime::{self, Runtime};
 
 use sha2::{Digest as _, Sha256};
 
-use super::blobs::{BlobStore, BlobWriter, StoredBlob};
+use super::blobs::{BlobStore, BlobWriter, PresignedUrls, StoredBlob};
 pub use access::{BucketAccess, BucketError};
 use cache::Cache;
 
@@ -42,6 +44,8 @@ pub struct S3Blobs {
 /// What writers and removals share with the store.
 struct Parts {
     bucket: Box<dyn ObjectStore>,
+    /// The same bucket, by the address that clients know.
+    signer: AmazonS3,
     prefix: Path,
     cache: Cache,
     handle: runtime::Handle,
@@ -68,7 +72,7 @@ impl S3Blobs {
     /// # Errors
     /// The address cannot be used, or the disk fails. The bucket is not asked yet.
     pub fn open(access: &BucketAccess, cache: &FilePath) -> Result<Self, BucketError> {
-        let (bucket, prefix) = access.connect()?;
+        let (bucket, signer, prefix) = access.connect()?;
         let runtime = runtime::Builder::new_multi_thread()
             .worker_threads(THREADS)
             .thread_name("bucket")
@@ -76,7 +80,8 @@ impl S3Blobs {
             .build()
             .map_err(BucketError::Disk)?;
         let parts = Parts {
-            bucket,
+            bucket: Box::new(bucket),
+            signer,
             prefix,
             cache: Cache::open(cache, access.cache_bytes_max).map_err(BucketError::Disk)?,
             handle: runtime.handle().clone(),
@@ -223,6 +228,10 @@ impl BlobStore for S3Blobs {
     /// Those of the disk of this machine, where every file is first.
     fn free_bytes(&self) -> Option<u64> {
         self.parts.cache.free_bytes()
+    }
+
+    fn presigned(&self) -> Option<&dyn PresignedUrls> {
+        Some(self)
     }
 }
 

@@ -5,7 +5,7 @@ use std::time::Duration;
 use rusqlite::{Connection, OptionalExtension as _, named_params, params};
 
 use super::rows::{get, later, number_of, parsed, state, to_json};
-use super::{keeping, listing, outbox, tenants};
+use super::{keeping, listing, outbox, tenants, uploads};
 use crate::jobs::store::{
     AfterLoss, ClaimRef, ClaimRequest, Created, Ending, JobId, JobRow, Lane, Leases, NewJob, StoreError,
 };
@@ -35,6 +35,9 @@ pub(super) fn create(
         tenants::check_share(connection, &new.tenant, queue_max - queued)?;
     }
     insert(connection, new, now)?;
+    if let Some(upload) = new.taken {
+        uploads::take(connection, upload, new.id)?;
+    }
     change(connection, new.id, now)?;
     if let Some(ending) = &new.ending {
         connection

@@ -13,6 +13,7 @@ mod rows;
 mod schema;
 mod secrets;
 mod tenants;
+mod uploads;
 mod wall;
 mod writer;
 

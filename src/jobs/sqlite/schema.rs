@@ -115,6 +115,8 @@ const MIGRATIONS: &[&str] = &[
     ALTER TABLE jobs ADD COLUMN trace TEXT;",
     // Who is charged with a job, what that comes to, and the mark by which the store knows its files.
     include_str!("tenants.sql"),
+    // Uploads that come before their job.
+    include_str!("uploads.sql"),
 ];
 
 /// A file that cannot be used.

@@ -3,6 +3,7 @@
 use rusqlite::{Connection, OptionalExtension as _, params};
 
 use super::rows::{number_of, parsed};
+use super::uploads;
 use crate::jobs::store::{ClaimRequest, Holding, JobId, Kept, Lane, StoreError, Tenant};
 
 /// Refuses when the tenant has as many jobs in the queue as there are `free` places.
@@ -44,7 +45,9 @@ pub(super) fn holding(connection: &Connection, tenant: &Tenant) -> Result<Holdin
             })
         })
         .optional()?;
-    Ok(own.unwrap_or(Holding { open_bytes_of_all, ..Holding::default() }))
+    let own = own.unwrap_or(Holding { open_bytes_of_all, ..Holding::default() });
+    let (own_uploads, all_uploads) = uploads::held(connection, tenant)?;
+    Ok(own.with_uploads(own_uploads, all_uploads))
 }
 
 /// The queued job whose turn it is.

@@ -6,6 +6,7 @@ mod outbox;
 mod row;
 pub(super) mod tables;
 mod tenant;
+mod uploads;
 
 use std::collections::HashSet;
 use std::pin::Pin;
@@ -19,6 +20,7 @@ pub use id::JobId;
 pub use outbox::{Delivery, DeliveryRequest, DeliveryState, DeliveryTry, NextTry, TryOutcome, Webhook};
 pub use row::{BlobRef, ClaimRef, Ending, IdempotencyKey, JobRow, Lane, NewJob, ResultRef};
 pub use tenant::{Holding, Tenant};
+pub use uploads::{NewUpload, UploadId, UploadRow, UploadStore};
 
 /// A store that could not do what was asked.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -37,7 +39,21 @@ pub enum StoreError {
         /// How many may.
         limit: usize,
     },
-    /// There is no such job or delivery.
+    /// There are as many uploads as may be that no job has taken, or as this tenant may have of them beside others.
+    #[error("{open} uploads wait for their jobs already")]
+    UploadsFull {
+        /// How many there are.
+        open: usize,
+        /// How many may be.
+        limit: usize,
+    },
+    /// The upload does not go on where a piece was to be appended.
+    #[error("the upload goes on at byte {received}")]
+    UploadMoved {
+        /// Where it goes on.
+        received: u64,
+    },
+    /// There is no such job, delivery or upload.
     #[error("no such job")]
     NotFound,
     /// The claim is not the latest one, or the job has ended.
@@ -164,11 +180,12 @@ pub type Sealer = Box<dyn Fn(&str) -> Option<String> + Send>;
 ///
 /// Several rows may name one blob. A method that drops rows, or what they name, returns the blobs that no row names
 /// any longer, and the caller removes those files. Files are written before the row that names them.
-pub trait JobStore: Send + Sync {
+pub trait JobStore: UploadStore {
     /// Admits a job, unless its key made one before. A job that must run is refused with [`StoreError::QueueFull`] when
     /// `queue_max` jobs are queued already, and with [`StoreError::ShareFull`] when its tenant has as many in the queue as
     /// there are free places: one tenant alone has half of them at most, two a third each, and there is always room for
-    /// another one. When its source is gone or expired: [`StoreError::NotFound`].
+    /// another one. When its source is gone or expired, or the upload that
+    /// it is to take is gone or taken: [`StoreError::NotFound`].
     fn create(&self, job: NewJob, queue_max: usize) -> StoreFuture<'_, Created>;
 
     /// The row.

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::id::JobId;
 use super::outbox::Webhook;
 use super::tenant::Tenant;
+use super::uploads::UploadId;
 use crate::jobs::trace::TraceParent;
 use crate::wire::{
     Encoding, Fidelity, JobState, Labels, Operation, Options, Outcome, Problem, Progress, TimingMs,
@@ -97,6 +98,8 @@ pub struct NewJob {
     pub key: Option<IdempotencyKey>,
     /// The earlier job whose files it names; when that is gone or expired, there is nothing to run.
     pub source: Option<JobId>,
+    /// The upload whose files become its own, or are replaced by them.
+    pub taken: Option<UploadId>,
     /// It has ended already: the answer of `source`.
     pub ending: Option<Ending>,
 }

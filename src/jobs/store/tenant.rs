@@ -49,10 +49,22 @@ pub struct Holding {
     pub jobs: u64,
     /// Those that wait for a slot.
     pub queued: u64,
-    /// Bytes of its uploads whose jobs have not ended.
+    /// Bytes of its uploads whose jobs have not ended, and of those that no job has taken yet.
     pub open_bytes: u64,
     /// The same of all tenants together.
     pub open_bytes_of_all: u64,
-    /// Bytes of its files, each counted for every job that names it.
+    /// Bytes of its files, each counted for every job or upload that names it.
     pub bytes: u64,
+}
+
+impl Holding {
+    /// The same with the bytes of uploads that no job has taken yet: of the tenant, and of all.
+    pub(in crate::jobs) fn with_uploads(self, own: u64, all: u64) -> Self {
+        Self {
+            open_bytes: self.open_bytes.saturating_add(own),
+            open_bytes_of_all: self.open_bytes_of_all.saturating_add(all),
+            bytes: self.bytes.saturating_add(own),
+            ..self
+        }
+    }
 }

@@ -167,7 +167,7 @@ async fn an_upload_is_used_again_and_stays_as_long_as_a_job_uses_it() {
     )
     .await;
     let first = house.run(b"shared").await;
-    let input = InputRef { job: first.id.clone() };
+    let input = InputRef::Job(first.id.clone());
     let again = |operation, options: Options| {
         Submission::new(operation, Options { input: Some(input.clone()), ..options })
     };
@@ -185,13 +185,13 @@ async fn an_upload_is_used_again_and_stays_as_long_as_a_job_uses_it() {
 async fn one_mesh_is_needed_and_only_one() {
     let house = house(|settings| settings.slots = 0, mend).await;
     let job = house.order(b"x").await.unwrap();
-    let options = Options { input: Some(InputRef { job: job.id }), ..Options::default() };
+    let options = Options { input: Some(InputRef::Job(job.id)), ..Options::default() };
     let both = house.order_with(b"y", options, None).await.unwrap_err();
     assert_eq!(both.code, ProblemCode::InvalidParameter);
     let options = Options::default();
     let none = Submission::new(Operation::Verify, options);
     assert_eq!(house.submit(none).await.unwrap_err().code, ProblemCode::InvalidParameter);
-    let options = Options { input: Some(InputRef { job: "seven".into() }), ..Options::default() };
+    let options = Options { input: Some(InputRef::Job("seven".into())), ..Options::default() };
     let strange = Submission::new(Operation::Verify, options);
     assert_eq!(house.submit(strange).await.unwrap_err().code, ProblemCode::NotFound);
 }

@@ -109,7 +109,7 @@ async fn an_upload_that_is_not_as_it_was_sent_is_not_used() {
         let (house, runs) = counting_house().await;
         let first = house.run(b"whole").await;
         change(&house.stored_upload());
-        let input = Some(InputRef { job: first.id.clone() });
+        let input = Some(InputRef::Job(first.id.clone()));
         let again = Submission::new(Operation::Verify, Options { input, ..Options::default() });
         let problem = house.submit(again).await.unwrap_err();
         assert_eq!((problem.status, problem.parameter.as_deref()), (410, Some("input")), "{harm}");

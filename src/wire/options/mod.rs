@@ -187,7 +187,7 @@ options! {
     result_ttl: u64 = OptionKind::Integer { min: 1, max: 31_536_000 }, in Operation::ALL, of the service,
         "Seconds for which the result is kept, at most the server's own limit. Default: that limit.";
     input: InputRef, in Operation::ALL, of the service,
-        "An earlier job whose upload is used again: {\"job\":\"ID\"}.";
+        "A mesh that is there already: the upload of an earlier job, {\"job\":\"ID\"}, or one made beforehand at /v1/uploads, {\"upload\":\"ID\"}.";
 }
 
 impl TryFrom<Map<String, Value>> for Options {

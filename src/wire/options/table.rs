@@ -103,7 +103,7 @@ impl OptionSpec {
             OptionKind::Targets => {
                 "1 to 16 of {\"faces\":N}, {\"ratio\":X} and {\"error_mm\":X} in a list".to_owned()
             }
-            OptionKind::Input => "{\"job\":\"ID\"}".to_owned(),
+            OptionKind::Input => "{\"job\":\"ID\"} or {\"upload\":\"ID\"}".to_owned(),
         }
     }
 }

@@ -26,6 +26,7 @@ impl S3Server {
         BucketAccess {
             url: format!("s3://{BUCKET}/a-shop"),
             endpoint: Some(format!("http://{}", self.running.address)),
+            public_endpoint: None,
             region: "us-east-1".to_owned(),
             key: Some((KEY.0.to_owned(), KEY.1.to_owned())),
             cache_bytes_max: 1 << 30,

@@ -11,7 +11,7 @@ pub(super) async fn a_job_is_read_back_as_it_was_admitted<H: StoreHouse>() {
         operation: Operation::Simplify,
         options: Options {
             ratio: Some(0.1 + 0.2),
-            input: Some(InputRef { job: source.id.to_string() }),
+            input: Some(InputRef::Job(source.id.to_string())),
             ..Options::default()
         },
         file_name: Some("part \"ü\"\n\0.stl".to_owned()),

@@ -190,6 +190,7 @@ fn job() -> NewJob {
         keep_for: Duration::from_secs(3600),
         key: None,
         source: None,
+        taken: None,
         ending: None,
     }
 }
