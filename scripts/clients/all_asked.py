@@ -1,4 +1,4 @@
-"""A client has made every call of the contract, but for the contract itself.
+"""A client has made every call of the contract, but for the contract itself and uploads in pieces, which have clients of their own.
 
     all_asked.py openapi.yaml NEIGHBOUR_URL NAME...
 """
@@ -14,7 +14,7 @@ import yaml
 def main(path, url, *names):
     with open(path, encoding="utf-8") as file:
         paths = yaml.safe_load(file)["paths"]
-    calls = {(method.upper(), path) for path, item in paths.items() for method in item if path.startswith("/v1/")}
+    calls = {(method.upper(), path) for path, item in paths.items() for method in item if path.startswith("/v1/") and not path.startswith("/v1/uploads")}
     for name in names:
         with urllib.request.urlopen(f"{url}/{name}/asked") as answer:
             asked = [(entry["method"], entry["path"]) for entry in json.load(answer)]

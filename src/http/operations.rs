@@ -289,8 +289,7 @@ fn no_mesh(headers: &HeaderMap) -> Problem {
         };
     }
     if content_type.starts_with("application/json") {
-        let detail =
-            "JSON brings options only: name an earlier job or upload in `input`, or send the mesh itself as the body";
+        let detail = "JSON brings options only: name an earlier job or upload in `input`, or send the mesh itself as the body";
         return Problem {
             parameter: Some("input".to_owned()),
             ..Problem::new(ProblemCode::InvalidParameter, detail)

@@ -15,8 +15,8 @@ use crate::wire::{PresignedRequest, Problem, ProblemCode, PutRequest, UploadInfo
 
 /// Begin an upload to the bucket.
 ///
-/// The answer says by which request the client writes the mesh to the bucket, without this service in between: exactly these bytes,
-/// once. Then a job may name the upload. `presigned_ttl_s` of `/v1/limits` is 0 where the server gives no such URLs.
+/// The answer says by which request the client writes the mesh to the bucket, without this service in between: exactly these bytes.
+/// Then a job may name the upload. `presigned_ttl_s` of `/v1/limits` is 0 where the server gives no such URLs.
 #[utoipa::path(post, path = "/v1/uploads/presigned", operation_id = "create_presigned_upload", tag = "uploads",
     request_body = PresignedRequest, responses(
     (status = 201, description = "The upload, with `put`.", body = UploadInfo, headers(
@@ -31,12 +31,10 @@ pub(super) async fn create(state: State, caller: Extension<Caller>, request: Req
         let problem = Problem::new(ProblemCode::UnsupportedMediaType, "the request is JSON");
         return Err(problem.with_allowed(["application/json"]).into());
     }
-    let limits = BodyLimits {
-        bytes_max: JSON_BYTES_MAX,
-        bytes_max_name: "json_bytes_max",
-        ..state.upload_limits(0)
-    };
-    let asked = PresignedRequest::from_json(&IncomingBody::new(&head.headers, body, limits)?.into_bytes().await?)?;
+    let limits =
+        BodyLimits { bytes_max: JSON_BYTES_MAX, bytes_max_name: "json_bytes_max", ..state.upload_limits(0) };
+    let asked =
+        PresignedRequest::from_json(&IncomingBody::new(&head.headers, body, limits)?.into_bytes().await?)?;
     let digest = asked.digest()?;
     let asked = AskedUpload {
         owner: caller.owner.clone(),

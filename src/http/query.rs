@@ -121,7 +121,8 @@ pub(super) fn result(uri: &Uri) -> Result<AskedResult, Problem> {
     for (name, value) in pairs(uri)? {
         if name == "redirect" {
             if put(&mut redirect, value.parse().ok()).is_none() {
-                return Err(invalid("redirect", "`redirect` is one of true and false").with_allowed(["true", "false"]));
+                return Err(invalid("redirect", "`redirect` is one of true and false")
+                    .with_allowed(["true", "false"]));
             }
             continue;
         }

@@ -23,7 +23,10 @@ use super::scope::Scopes;
 use super::settings::HttpSettings;
 use super::state::{Caller, Service, State};
 use super::tenant::{client, tenant};
-use super::{about, contract, cors, deliveries, docs, events, framing, lifecycle, listing, operations, page, presigned, uploads};
+use super::{
+    about, contract, cors, deliveries, docs, events, framing, lifecycle, listing, operations, page,
+    presigned, uploads,
+};
 use crate::jobs::Jobs;
 use crate::wire::{Problem, ProblemCode};
 

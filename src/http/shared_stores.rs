@@ -66,7 +66,9 @@ pub(super) fn presigned_ttl(loaded: &Loaded) -> Result<Option<Duration>, ConfigE
         return Err(loaded.refused("presigned_ttl", &"S3 takes no URL that is valid for longer than 7 days"));
     }
     if loaded.config.blobs_url.trim().is_empty() {
-        return Err(loaded.refused("presigned_ttl", &"presigned URLs are those of a bucket: it needs blobs_url"));
+        return Err(
+            loaded.refused("presigned_ttl", &"presigned URLs are those of a bucket: it needs blobs_url")
+        );
     }
     // A part of a second is no validity that S3 knows.
     Ok(Some(lasts.max(Duration::from_secs(1))))

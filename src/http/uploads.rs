@@ -97,7 +97,12 @@ pub(super) async fn create(state: State, caller: Extension<Caller>, request: Req
         }
     }
     let place = [(header::LOCATION, format!("/v1/uploads/{}", row.id))];
-    Ok((StatusCode::CREATED, place, standing(row.received, row.expires_at), super::answer::json_answer(&info(&row)))
+    Ok((
+        StatusCode::CREATED,
+        place,
+        standing(row.received, row.expires_at),
+        super::answer::json_answer(&info(&row)),
+    )
         .into_response())
 }
 
@@ -311,7 +316,11 @@ mod tests {
         assert_eq!(length(&with(LENGTH, "17")).unwrap(), 17);
         assert_eq!(length(&with(LENGTH, "99999999999999999999")).unwrap(), u64::MAX);
         for text in ["", "-1", "1.5", "+1", "0x1"] {
-            assert_eq!(length(&with(LENGTH, text)).unwrap_err().code, ProblemCode::InvalidParameter, "{text}");
+            assert_eq!(
+                length(&with(LENGTH, text)).unwrap_err().code,
+                ProblemCode::InvalidParameter,
+                "{text}"
+            );
         }
         assert!(length(&HeaderMap::new()).is_err());
         assert!(length(&with(HeaderName::from_static("upload-defer-length"), "1")).is_err());
@@ -326,7 +335,11 @@ mod tests {
         assert_eq!(file_name("other YQ=="), None);
         assert_eq!(metadata(&HeaderMap::new()).unwrap(), None);
         for text in ["filename not-base64!", ",", "a YQ==,,b YQ=="] {
-            assert_eq!(metadata(&with(METADATA, text)).unwrap_err().code, ProblemCode::InvalidParameter, "{text}");
+            assert_eq!(
+                metadata(&with(METADATA, text)).unwrap_err().code,
+                ProblemCode::InvalidParameter,
+                "{text}"
+            );
         }
     }
 

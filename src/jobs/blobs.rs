@@ -94,6 +94,12 @@ pub trait PresignedUrls: Send + Sync {
     /// The key to the bucket cannot be had.
     fn get(&self, key: &str, disposition: &str, lasts: Duration) -> io::Result<String>;
 
+    /// Copies a file within the store, under a name that no file has.
+    ///
+    /// # Errors
+    /// There is no such file, or the bucket does not answer.
+    fn copy(&self, from: &str, to: &str) -> io::Result<()>;
+
     /// The number of bytes of a file; `None`: there is none.
     ///
     /// # Errors

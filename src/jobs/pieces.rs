@@ -123,7 +123,8 @@ impl Jobs {
             return Err(store_problem(&StoreError::UploadMoved { received: row.received }));
         }
         if row.pieces >= UPLOAD_PIECES_MAX {
-            let (limit, detail) = (UPLOAD_PIECES_MAX as u64, "the upload came in too many pieces; send larger ones");
+            let (limit, detail) =
+                (UPLOAD_PIECES_MAX as u64, "the upload came in too many pieces; send larger ones");
             return Err(Problem::new(ProblemCode::BodyTooLarge, detail).with_limit(
                 "upload_pieces_max",
                 limit,
@@ -204,12 +205,19 @@ impl Service {
             return Ok(NamedUpload::TakenBy(job));
         }
         let pieces = self.store.pieces(row.id).await.map_err(|error| upload_problem(&error))?;
-        let uploaded = if row.is_presigned {
-            self.mesh_in_bucket(&row, pieces).await?
+        let mesh = if row.is_presigned {
+            self.mesh_in_bucket(&row, pieces).await
         } else {
-            self.joined_pieces(&row, pieces, needs_place).await?
+            self.joined_pieces(&row, pieces, needs_place).await
         };
-        Ok(NamedUpload::Mesh(uploaded, row.file_name))
+        match mesh {
+            Ok(mesh) => Ok(NamedUpload::Mesh(mesh, row.file_name)),
+            Err(problem) => {
+                // Its files may have gone to a job in this moment.
+                let now = self.upload_of(row.id, row.owner.as_deref()).await?;
+                now.job.map(NamedUpload::TakenBy).ok_or(problem)
+            }
+        }
     }
 
     /// The pieces of an upload as one file.
@@ -234,8 +242,8 @@ impl Service {
                 Ok(file) => file,
                 Err(Unsound::Disk(error)) => return Err(disk_problem(&error)),
                 Err(unsound) => {
-                    tracing::error!(upload = %row.id, "{unsound}: the upload cannot be used");
-                    meters::unsound(&unsound);
+                    // Also where another request has taken the upload meanwhile, which its row tells.
+                    tracing::warn!(upload = %row.id, "{unsound}: the upload cannot be read");
                     return Err(upload_gone());
                 }
             };
@@ -307,9 +315,15 @@ impl Pieces {
             let Some((piece, begun)) = &mut self.open else { return Ok(()) };
             let room = usize::try_from(PIECE_BYTES_MAX - piece.bytes()).unwrap_or(usize::MAX);
             let (now, later) = bytes.split_at(bytes.len().min(room));
-            piece.write(now).await?;
+            let written = piece.write(now).await;
+            let is_complete = piece.bytes() == PIECE_BYTES_MAX || begun.elapsed() > PIECE_PATIENCE;
+            if written.is_err() {
+                // It cannot go on.
+                self.open = None;
+            }
+            written?;
             bytes = later;
-            if piece.bytes() == PIECE_BYTES_MAX || begun.elapsed() > PIECE_PATIENCE {
+            if is_complete {
                 self.keep().await?;
             }
         }

@@ -3,15 +3,16 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::blobs::{PIECES, PresignedPut};
+use super::blobs::{MESHES, PIECES, PresignedPut};
 use super::disk::on_disk;
 use super::handle::Jobs;
 use super::meters;
 use super::pieces::{AskedUpload, unfinished};
 use super::problems::upload_gone;
 use super::service::Service;
+use super::spool::Written;
 use super::store::{BlobRef, JobId, UploadId, UploadRow};
-use super::upload::Uploaded;
+use super::upload::{Taken, Uploaded};
 use crate::wire::{Problem, ProblemCode};
 
 fn refused(detail: &str) -> Problem {
@@ -97,14 +98,34 @@ impl Service {
         match self.bytes_in_bucket(row).await? {
             Some(bytes) if bytes == file.bytes => {}
             Some(bytes) => {
-                let detail = format!("the bucket has {bytes} bytes of the upload, which is to have {}", file.bytes);
+                let detail =
+                    format!("the bucket has {bytes} bytes of the upload, which is to have {}", file.bytes);
                 return Err(unfinished(detail));
             }
-            None => return Err(unfinished("nothing has come into the bucket by the presigned URL".to_owned())),
+            None => {
+                return Err(unfinished("nothing has come into the bucket by the presigned URL".to_owned()));
+            }
         }
         if file.bytes == 0 {
             return Err(Problem::new(ProblemCode::MeshEmpty, "the upload has no byte"));
         }
-        Ok(Uploaded::of_bucket(&self.spool, file, row.id))
+        // Whoever has the URL may still write to that name: the job gets a copy, which is within the limit.
+        let space = self.make_room_in_store(&row.tenant, file.bytes).await?;
+        let name = self.spool.new_name(MESHES);
+        let (from, to) = (file.key.clone(), name.key.clone());
+        let written = Written::unseen(name, BlobRef { key: to.clone(), ..file.clone() }, space);
+        let spool = Arc::clone(&self.spool);
+        let copied = on_disk(move || match spool.presigned() {
+            Some(urls) => {
+                urls.copy(&from, &to)?;
+                urls.size(&to)
+            }
+            None => Err(std::io::ErrorKind::Unsupported.into()),
+        });
+        if copied.await? != Some(file.bytes) {
+            return Err(unfinished("the bucket has other bytes than it had a moment ago".to_owned()));
+        }
+        let taken = Taken { id: row.id, pieces: vec![file], spool: Arc::clone(&self.spool) };
+        Ok(Uploaded::of_bucket(written).made_of(taken))
     }
 }

@@ -60,23 +60,23 @@ impl Service {
 
     /// Room, if there is; otherwise a job that has ended has expired.
     async fn room_or_one_fewer(&self, tenant: &Tenant, bytes: u64) -> Result<Option<Space>, Problem> {
-            let first = if self.is_over_own_bytes(tenant, bytes).await? {
-                self.store.first_to_go_of(Kept::WithFiles, tenant.clone()).await
-            } else if let Some(space) = self.spool.reserve(bytes) {
-                return Ok(Some(space));
-            } else {
-                self.store.first_to_go(Kept::WithFiles, tenant.clone()).await
-            };
-            let first = first.map_err(|error| store_problem(&error))?;
-            let Some(first) = first else { return Err(self.storage_full(bytes)) };
-            tracing::info!(job = %first, "expired early to make room");
-            match self.store.expire(first).await {
-                Ok(orphans) => self.spool.remove_all(&orphans),
-                // Another one, who needs room too, was quicker.
-                Err(StoreError::NotFound) => {}
-                Err(error) => return Err(store_problem(&error)),
-            }
-            Ok(None)
+        let first = if self.is_over_own_bytes(tenant, bytes).await? {
+            self.store.first_to_go_of(Kept::WithFiles, tenant.clone()).await
+        } else if let Some(space) = self.spool.reserve(bytes) {
+            return Ok(Some(space));
+        } else {
+            self.store.first_to_go(Kept::WithFiles, tenant.clone()).await
+        };
+        let first = first.map_err(|error| store_problem(&error))?;
+        let Some(first) = first else { return Err(self.storage_full(bytes)) };
+        tracing::info!(job = %first, "expired early to make room");
+        match self.store.expire(first).await {
+            Ok(orphans) => self.spool.remove_all(&orphans),
+            // Another one, who needs room too, was quicker.
+            Err(StoreError::NotFound) => {}
+            Err(error) => return Err(store_problem(&error)),
+        }
+        Ok(None)
     }
 
     /// Whether `bytes` more are over what the operator allows one tenant.

@@ -108,7 +108,7 @@ impl Spool {
         self: &Arc<Self>,
         folder: &'static str,
     ) -> io::Result<(Unnamed, Box<dyn BlobWriter>)> {
-        let unnamed = self.unnamed(format!("{folder}/{}", Uuid::now_v7().simple()));
+        let unnamed = self.new_name(folder);
         let writer = self.blobs.create(&unnamed.key)?;
         Ok((unnamed, writer))
     }
@@ -133,7 +133,7 @@ impl Spool {
             files: Vec::new(),
         };
         space.hand_over(&blob);
-        Ok(Written { blob: Some(blob), unnamed, is_anothers: false })
+        Ok(Written { blob: Some(blob), unnamed })
     }
 
     /// Takes over a file that another process made for a run, into reserved room. Blocks.
@@ -150,7 +150,7 @@ impl Spool {
         let blob =
             BlobRef { key: unnamed.key.clone(), bytes: file.bytes, sha256: file.sha256, files: Vec::new() };
         space.hand_over(&blob);
-        Ok(Written { blob: Some(blob), unnamed, is_anothers: false })
+        Ok(Written { blob: Some(blob), unnamed })
     }
 
     /// Removes a file and gives its room back.
@@ -178,6 +178,11 @@ impl Spool {
         let shrunk = |used: u64| Some(used.saturating_sub(bytes));
         // The update never refuses.
         let _ = self.bytes.fetch_update(Ordering::Relaxed, Ordering::Relaxed, shrunk);
+    }
+
+    /// A name that no file has.
+    pub(super) fn new_name(self: &Arc<Self>, folder: &'static str) -> Unnamed {
+        self.unnamed(format!("{folder}/{}", Uuid::now_v7().simple()))
     }
 
     /// The way by which clients reach files without this service in between, where there is one.
@@ -240,13 +245,11 @@ impl Drop for Unnamed {
     }
 }
 
-/// A complete file that no row of a job names yet. Dropped before it is [named](Self::named), it is removed, unless it is another
-/// row's by now.
+/// A complete file that no row names yet. Dropped before it is [named](Self::named), it is removed.
 #[derive(Debug)]
 pub(super) struct Written {
     blob: Option<BlobRef>,
     unnamed: Unnamed,
-    is_anothers: bool,
 }
 
 impl Written {
@@ -254,13 +257,13 @@ impl Written {
     pub(super) fn upload(unnamed: Unnamed, blob: BlobRef, space: Space) -> Self {
         space.hand_over(&blob);
         unnamed.spool.note_sound(&unnamed.key);
-        Self { blob: Some(blob), unnamed, is_anothers: false }
+        Self { blob: Some(blob), unnamed }
     }
 
-    /// A file of an upload that the client has written to the bucket, and that is to become a job's.
-    pub(super) fn of_bucket(spool: &Arc<Spool>, blob: BlobRef) -> Self {
-        let unnamed = spool.unnamed(blob.key.clone());
-        Self { blob: Some(blob), unnamed, is_anothers: true }
+    /// A file that comes to be in the store without this process, whose bytes nobody has looked at.
+    pub(super) fn unseen(unnamed: Unnamed, blob: BlobRef, space: Space) -> Self {
+        space.hand_over(&blob);
+        Self { blob: Some(blob), unnamed }
     }
 
     /// The file.
@@ -270,16 +273,13 @@ impl Written {
 
     /// A row names the file now, or may do so.
     pub(super) fn named(mut self) {
-        if let Some(blob) = self.blob.take().filter(|_| self.is_anothers) {
-            // It came past this service and fills room all the same.
-            self.unnamed.spool.bytes.fetch_add(blob.bytes, Ordering::Relaxed);
-        }
+        self.blob = None;
     }
 }
 
 impl Drop for Written {
     fn drop(&mut self) {
-        if let Some(blob) = self.blob.as_ref().filter(|_| !self.is_anothers) {
+        if let Some(blob) = &self.blob {
             self.unnamed.spool.remove(blob);
         }
     }

@@ -225,14 +225,9 @@ pub(super) struct Taken {
 }
 
 impl Uploaded {
-    /// A file that a client has written to the bucket: that of an upload.
-    pub(super) fn of_bucket(spool: &Arc<Spool>, blob: BlobRef, id: UploadId) -> Self {
-        Self {
-            written: Written::of_bucket(spool, blob),
-            taken: Some(Taken { id, pieces: Vec::new(), spool: Arc::clone(spool) }),
-            _place: None,
-            _incoming: None,
-        }
+    /// A file that came into the bucket without this service.
+    pub(super) fn of_bucket(written: Written) -> Self {
+        Self { written, taken: None, _place: None, _incoming: None }
     }
 
     /// The same, made of the pieces of an upload.
@@ -258,12 +253,10 @@ impl Uploaded {
         self.written.named();
     }
 
-    /// A row was made that has taken the upload and names other files with the same bytes.
+    /// A row was made that has taken the upload and names another file with the same bytes.
     pub(super) fn not_needed(self) {
-        let Some(Taken { pieces, spool, .. }) = self.taken else { return };
-        spool.remove_all(&pieces);
-        if pieces.is_empty() {
-            self.written.blob().into_iter().for_each(|blob| spool.remove(blob));
+        if let Some(Taken { pieces, spool, .. }) = self.taken {
+            spool.remove_all(&pieces);
         }
     }
 

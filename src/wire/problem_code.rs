@@ -140,9 +140,11 @@ impl ProblemCode {
                 (401, "Unauthenticated", "Send a valid key as `Authorization: Bearer KEY`.")
             }
             Self::Forbidden => (403, "Forbidden", "The server does not answer this caller, host or origin."),
-            Self::NotFound => {
-                (404, "Not found", "There is no such path, job, upload or file. A deleted job is not found either.")
-            }
+            Self::NotFound => (
+                404,
+                "Not found",
+                "There is no such path, job, upload or file. A deleted job is not found either.",
+            ),
             Self::Expired => {
                 (410, "Expired", "The job's report and result are no longer kept. Send the mesh again.")
             }

@@ -89,7 +89,13 @@ mod tests {
         let read = |text: &str| PresignedRequest::from_json(text.as_bytes());
         let asked = read(&format!(r#"{{"length":7,"sha256":"{digest}"}}"#)).unwrap();
         assert_eq!((asked.length, asked.digest().unwrap(), asked.file_name), (7, [10; 32], None));
-        for text in ["", "[]", r#"{"length":7}"#, r#"{"length":-1,"sha256":"0a"}"#, r#"{"length":7,"sha256":"0a","a":1}"#] {
+        for text in [
+            "",
+            "[]",
+            r#"{"length":7}"#,
+            r#"{"length":-1,"sha256":"0a"}"#,
+            r#"{"length":7,"sha256":"0a","a":1}"#,
+        ] {
             assert_eq!(read(text).unwrap_err().code, ProblemCode::InvalidParameter, "{text}");
         }
         let problem = read(r#"{"length":7,"sha256":"0A"}"#).unwrap().digest().unwrap_err();

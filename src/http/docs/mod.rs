@@ -282,9 +282,7 @@ const METHODS: [(&str, &str); 6] = [
 
 fn operations(document: &Value) -> impl Iterator<Item = (&str, &'static str, &Value)> {
     members(&document["paths"]).flat_map(|(path, item)| {
-        METHODS
-            .into_iter()
-            .filter_map(move |(key, method)| Some((path, method, item.get(key)?)))
+        METHODS.into_iter().filter_map(move |(key, method)| Some((path, method, item.get(key)?)))
     })
 }
 

@@ -9,7 +9,7 @@ use base64::engine::general_purpose::STANDARD;
 use object_store::ObjectStoreExt as _;
 use object_store::signer::{SignedUrlOptions, Signer as _};
 use reqwest::Method;
-use reqwest::header::{CONTENT_LENGTH, HeaderName, HeaderValue};
+use reqwest::header::{HeaderName, HeaderValue};
 
 use super::S3Blobs;
 use crate::jobs::blobs::{PresignedPut, PresignedUrls};
@@ -19,24 +19,24 @@ use crate::jobs::store::BlobRef;
 const CHECKSUM: HeaderName = HeaderName::from_static("x-amz-checksum-sha256");
 
 impl PresignedUrls for S3Blobs {
-    /// Size and digest are signed: S3 takes nothing else. A server that knows no checksums takes other bytes of that size, which
-    /// is found out when they are read.
+    /// The digest is signed: S3 takes nothing else. A server that knows no checksums takes other bytes, which is found out when they
+    /// are read.
     fn put(&self, blob: &BlobRef, lasts: Duration) -> io::Result<PresignedPut> {
-        let headers =
-            [(CONTENT_LENGTH, blob.bytes.to_string()), (CHECKSUM, STANDARD.encode(blob.sha256))];
-        let mut options = SignedUrlOptions::new();
-        for (name, value) in &headers {
-            let value = HeaderValue::from_str(value).map_err(io::Error::other)?;
-            options = options.with_signed_header(name.clone(), value);
-        }
+        let digest = STANDARD.encode(blob.sha256);
+        let value = HeaderValue::from_str(&digest).map_err(io::Error::other)?;
+        let options = SignedUrlOptions::new().with_signed_header(CHECKSUM, value);
         let url = self.signed(Method::PUT, &blob.key, lasts, options)?;
-        let headers = headers.map(|(name, value)| (name.to_string(), value));
-        Ok(PresignedPut { url, headers: headers.into() })
+        Ok(PresignedPut { url, headers: vec![(CHECKSUM.to_string(), digest)] })
     }
 
     fn get(&self, key: &str, disposition: &str, lasts: Duration) -> io::Result<String> {
         let options = SignedUrlOptions::new().with_query([("response-content-disposition", disposition)]);
         self.signed(Method::GET, key, lasts, options)
+    }
+
+    fn copy(&self, from: &str, to: &str) -> io::Result<()> {
+        let (from, to) = (self.parts.place(from), self.parts.place(to));
+        self.parts.run(move |parts| async move { parts.bucket.copy(&from, &to).await })
     }
 
     fn size(&self, key: &str) -> io::Result<Option<u64>> {

@@ -71,9 +71,8 @@ pub(super) fn current(connection: &Connection, claims: &[ClaimRef]) -> Result<Ha
 }
 
 pub(super) fn named(connection: &Connection, keys: Vec<String>) -> Result<HashSet<String>, StoreError> {
-    let mut statement = connection.prepare_cached(
-        "SELECT 1 FROM names WHERE key = ?1 UNION ALL SELECT 1 FROM pieces WHERE key = ?1",
-    )?;
+    let mut statement = connection
+        .prepare_cached("SELECT 1 FROM names WHERE key = ?1 UNION ALL SELECT 1 FROM pieces WHERE key = ?1")?;
     let mut named = HashSet::new();
     for key in keys {
         if statement.exists([&key])? {

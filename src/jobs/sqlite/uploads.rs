@@ -70,7 +70,9 @@ fn create(
     now: i64,
 ) -> Result<UploadRow, StoreError> {
     let (all, own) = connection
-        .prepare_cached("SELECT count(*), count(*) FILTER (WHERE tenant = ?1) FROM uploads WHERE job IS NULL")?
+        .prepare_cached(
+            "SELECT count(*), count(*) FILTER (WHERE tenant = ?1) FROM uploads WHERE job IS NULL",
+        )?
         .query_row([new.tenant.name()], |row| Ok((count(row, 0)?, count(row, 1)?)))?;
     let free = uploads_max.saturating_sub(all);
     if free == 0 || (!new.tenant.is_nobody() && own >= free) {

@@ -17,9 +17,18 @@ CHUNK_BYTES = 1 << 16
 
 @dataclass(frozen=True)
 class UploadOf:
-    """The upload of an earlier job, used again instead of sending it twice."""
+    """A mesh that the service has: the upload of an earlier job, or one that was made beforehand at `/v1/uploads`."""
 
-    job_id: str
+    job_id: str | None = None
+    upload_id: str | None = None
+
+    def __post_init__(self) -> None:
+        if (self.job_id is None) == (self.upload_id is None):
+            raise ValueError("name a job or an upload")
+
+    def reference(self) -> dict[str, str | None]:
+        """Its name in `input`."""
+        return {"upload": self.upload_id} if self.job_id is None else {"job": self.job_id}
 
 
 @dataclass(frozen=True)
@@ -105,8 +114,8 @@ def body_of(field: str, options: Mapping[str, object], meshes: Sequence[AsyncMes
 
 
 def json_body_of(options: Mapping[str, object], upload: UploadOf) -> Body:
-    """Options as JSON that name the upload of an earlier job."""
-    return Body("application/json", [], json.dumps({**options, "input": {"job": upload.job_id}}).encode())
+    """Options as JSON that name a mesh which the service has."""
+    return Body("application/json", [], json.dumps({**options, "input": upload.reference()}).encode())
 
 
 def _part(boundary: str, field: str, source: AsyncMesh, content_type: str) -> Part:

@@ -9,6 +9,7 @@ mod keeping;
 mod postgres;
 mod sharing;
 mod sqlite;
+mod uploading;
 
 pub(super) use postgres::Database;
 
@@ -148,6 +149,14 @@ macro_rules! contract {
                 what_a_tenant_has_follows_its_jobs,
                 a_job_that_is_larger_than_was_thought_waits_among_the_large_ones,
                 plain_secrets_are_sealed_once,
+            }
+            uploading {
+                an_upload_is_read_back_as_it_was_made_and_outlasts_the_process,
+                a_piece_goes_on_where_the_upload_stands_and_nowhere_else,
+                of_many_pieces_at_one_offset_one_is_appended,
+                an_upload_is_due_a_while_after_its_last_piece,
+                a_job_takes_an_upload_once_and_takes_it_along_when_it_goes,
+                uploads_are_as_many_as_may_be_and_count_for_their_tenant,
             }
             delivering {
                 a_delivery_is_made_with_every_kind_of_end,
