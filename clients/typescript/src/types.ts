@@ -1324,10 +1324,12 @@ export interface components {
             /** @description Unit of the coordinates and how it is known. */
             units: components["schemas"]["UnitsInfo"];
         };
-        /** @description An earlier job whose upload is used again. */
+        /** @description Where a mesh comes from that is not in the request: exactly one of both. */
         InputRef: {
-            /** @description Id of the job. */
-            job: string;
+            /** @description Id of an earlier job, whose upload is used again. */
+            job?: string;
+            /** @description Id of an upload that was made beforehand at `/v1/uploads`. */
+            upload?: string;
         };
         /** @description A job. */
         Job: {
@@ -1626,6 +1628,20 @@ export interface components {
              * @description Largest upload, in bytes.
              */
             upload_bytes_max: number;
+            /** @description Most uploads by `/v1/uploads` that no job has taken yet; one caller alone has half of them at most. */
+            uploads_max: number;
+            /** @description Most pieces in which the bytes of one such upload are stored. */
+            upload_pieces_max: number;
+            /**
+             * Format: int64
+             * @description Time for which such an upload is kept after its last bytes came, in seconds.
+             */
+            upload_ttl_s: number;
+            /**
+             * Format: int64
+             * @description Time for which a presigned URL is valid, in seconds; 0: none are given.
+             */
+            presigned_ttl_s: number;
             /**
              * Format: int32
              * @description Most triangles of a mesh after polygons are split.
@@ -2600,6 +2616,18 @@ export interface components {
         };
         /** @description Whether modeller writes faces of OBJ and OFF as polygons where every reader splits them alike; others, and those with interior loops, become triangles. Default: false. */
         Polygons: boolean;
+        /** @description An upload that the client writes to the bucket by itself. */
+        PresignedRequest: {
+            /**
+             * Format: int64
+             * @description Number of its bytes.
+             */
+            length: number;
+            /** @description SHA-256 of its bytes, 64 hexadecimal digits. */
+            sha256: string;
+            /** @description Name of the file. */
+            file_name?: string | null;
+        };
         /**
          * @description What a printing report is about.
          *     - `result`: The mesh that is returned.
@@ -2759,6 +2787,10 @@ export interface components {
         /**
          * @description Stable code of a problem. `/v1/errors` explains each.
          *     - `invalid-parameter`: A parameter has a value that is not allowed.
+         *     - `upload-conflict`: The upload is not where the request takes it to be.
+         *     - `upload-unfinished`: Bytes of the upload are still to come.
+         *     - `unsupported-version`: The protocol's version is not spoken here.
+         *     - `presigned-refused`: No presigned URL is given.
          *     - `body-incomplete`: The body ends early or is cut into parts wrongly.
          *     - `unknown-parameter`: There is no such parameter, or this operation does not take it.
          *     - `unauthenticated`: No valid key.
@@ -2798,7 +2830,7 @@ export interface components {
          *     - `internal`: A fault of the server.
          * @enum {string}
          */
-        ProblemCode: "invalid-parameter" | "body-incomplete" | "unknown-parameter" | "unauthenticated" | "forbidden" | "not-found" | "expired" | "method-not-allowed" | "not-acceptable" | "range-not-satisfiable" | "precondition-failed" | "head-too-large" | "unsupported-media-type" | "upload-timeout" | "job-not-finished" | "plan-mismatch" | "idempotency-key-reused" | "body-too-large" | "mesh-too-large" | "mesh-unparseable" | "mesh-empty" | "mesh-non-finite" | "mesh-truncated" | "archive-unsafe" | "not-repairable" | "over-budget" | "webhook-refused" | "rate-limited" | "queue-full" | "engine-timeout" | "engine-out-of-memory" | "engine-crashed" | "worker-lost" | "cancelled" | "draining" | "store-unavailable" | "storage-full" | "internal";
+        ProblemCode: "invalid-parameter" | "upload-conflict" | "upload-unfinished" | "unsupported-version" | "presigned-refused" | "body-incomplete" | "unknown-parameter" | "unauthenticated" | "forbidden" | "not-found" | "expired" | "method-not-allowed" | "not-acceptable" | "range-not-satisfiable" | "precondition-failed" | "head-too-large" | "unsupported-media-type" | "upload-timeout" | "job-not-finished" | "plan-mismatch" | "idempotency-key-reused" | "body-too-large" | "mesh-too-large" | "mesh-unparseable" | "mesh-empty" | "mesh-non-finite" | "mesh-truncated" | "archive-unsafe" | "not-repairable" | "over-budget" | "webhook-refused" | "rate-limited" | "queue-full" | "engine-timeout" | "engine-out-of-memory" | "engine-crashed" | "worker-lost" | "cancelled" | "draining" | "store-unavailable" | "storage-full" | "internal";
         /** @description How far a running job is. */
         Progress: {
             stage: components["schemas"]["Stage"] | null;
@@ -2874,6 +2906,20 @@ export interface components {
          * @enum {string}
          */
         ProximityTest: "vv" | "ve" | "vf" | "ee" | "ef" | "ff";
+        /** @description The request by which a client writes an upload to the bucket: `PUT`, with these headers as they stand here. */
+        PutRequest: {
+            /** @description Where. */
+            url: string;
+            /** @description Headers by their names. */
+            headers: {
+                [key: string]: string;
+            };
+            /**
+             * Format: int64
+             * @description Time from now for which the URL is valid, in seconds.
+             */
+            valid_s: number;
+        };
         /** @description What a price depends on. */
         Quote: {
             /** @description The figures can be relied on: the mesh is certified to be a valid solid, so that its volume is meant as it stands. */
@@ -3604,6 +3650,27 @@ export interface components {
             /** @description The caller, the file or its format states it; false: it is assumed. */
             is_stated: boolean;
         };
+        /** @description An upload that comes before its job. */
+        UploadInfo: {
+            /** @description Its id, which a request names in `input`: `{"upload":"ID"}`. */
+            id: string;
+            /**
+             * Format: int64
+             * @description Bytes that it is to have.
+             */
+            length: number;
+            /**
+             * Format: int64
+             * @description Bytes that are stored, from the first one on.
+             */
+            received: number;
+            /**
+             * Format: date-time
+             * @description When it goes, unless more of it comes.
+             */
+            expires_at: string;
+            put?: components["schemas"]["PutRequest"] | null;
+        };
         /** @description Three coordinates. */
         Vector: number[];
         /** @description The conclusion. */
@@ -3931,6 +3998,7 @@ export type PolicyLimit = components['schemas']['PolicyLimit'];
 export type PolicyName = components['schemas']['PolicyName'];
 export type PolicyVolume = components['schemas']['PolicyVolume'];
 export type Polygons = components['schemas']['Polygons'];
+export type PresignedRequest = components['schemas']['PresignedRequest'];
 export type PrintedMesh = components['schemas']['PrintedMesh'];
 export type Printing = components['schemas']['Printing'];
 export type PrintingCheck = components['schemas']['PrintingCheck'];
@@ -3944,6 +4012,7 @@ export type Properties = components['schemas']['Properties'];
 export type Proposal = components['schemas']['Proposal'];
 export type Proximity = components['schemas']['Proximity'];
 export type ProximityTest = components['schemas']['ProximityTest'];
+export type PutRequest = components['schemas']['PutRequest'];
 export type Quote = components['schemas']['Quote'];
 export type RangeSideInfo = components['schemas']['RangeSideInfo'];
 export type RangeSpec = components['schemas']['RangeSpec'];
@@ -3999,6 +4068,7 @@ export type UndoSpec = components['schemas']['UndoSpec'];
 export type UnitHypothesis = components['schemas']['UnitHypothesis'];
 export type Units = components['schemas']['Units'];
 export type UnitsInfo = components['schemas']['UnitsInfo'];
+export type UploadInfo = components['schemas']['UploadInfo'];
 export type Vector = components['schemas']['Vector'];
 export type Verdict = components['schemas']['Verdict'];
 export type VerifyOptions = components['schemas']['VerifyOptions'];

@@ -835,12 +835,16 @@ Which holes fill-holes closes: all, or a list of the numbers under which analyze
 
 class InputRef(TypedDict):
     """
-    An earlier job whose upload is used again.
+    Where a mesh comes from that is not in the request: exactly one of both.
     """
 
-    job: str
+    job: NotRequired[str]
     """
-    Id of the job.
+    Id of an earlier job, whose upload is used again.
+    """
+    upload: NotRequired[str]
+    """
+    Id of an upload that was made beforehand at `/v1/uploads`.
     """
 
 
@@ -925,6 +929,22 @@ class Limits(TypedDict):
     upload_bytes_max: int
     """
     Largest upload, in bytes.
+    """
+    uploads_max: int
+    """
+    Most uploads by `/v1/uploads` that no job has taken yet; one caller alone has half of them at most.
+    """
+    upload_pieces_max: int
+    """
+    Most pieces in which the bytes of one such upload are stored.
+    """
+    upload_ttl_s: int
+    """
+    Time for which such an upload is kept after its last bytes came, in seconds.
+    """
+    presigned_ttl_s: int
+    """
+    Time for which a presigned URL is valid, in seconds; 0: none are given.
     """
     triangles_max: int
     """
@@ -1825,6 +1845,25 @@ Whether modeller writes faces of OBJ and OFF as polygons where every reader spli
 """
 
 
+class PresignedRequest(TypedDict):
+    """
+    An upload that the client writes to the bucket by itself.
+    """
+
+    length: int
+    """
+    Number of its bytes.
+    """
+    sha256: str
+    """
+    SHA-256 of its bytes, 64 hexadecimal digits.
+    """
+    file_name: NotRequired[str | None]
+    """
+    Name of the file.
+    """
+
+
 PrintedMesh: TypeAlias = Literal["result", "input"]
 """
 What a printing report is about.
@@ -1864,6 +1903,10 @@ class PrintingWitness(TypedDict):
 
 ProblemCode: TypeAlias = Literal[
     "invalid-parameter",
+    "upload-conflict",
+    "upload-unfinished",
+    "unsupported-version",
+    "presigned-refused",
     "body-incomplete",
     "unknown-parameter",
     "unauthenticated",
@@ -1905,6 +1948,10 @@ ProblemCode: TypeAlias = Literal[
 """
 Stable code of a problem. `/v1/errors` explains each.
 - `invalid-parameter`: A parameter has a value that is not allowed.
+- `upload-conflict`: The upload is not where the request takes it to be.
+- `upload-unfinished`: Bytes of the upload are still to come.
+- `unsupported-version`: The protocol's version is not spoken here.
+- `presigned-refused`: No presigned URL is given.
 - `body-incomplete`: The body ends early or is cut into parts wrongly.
 - `unknown-parameter`: There is no such parameter, or this operation does not take it.
 - `unauthenticated`: No valid key.
@@ -1990,6 +2037,25 @@ Which features of two faces meet or are near each other, lowest dimension first.
 - `ef`: An edge and a face.
 - `ff`: Two faces.
 """
+
+
+class PutRequest(TypedDict):
+    """
+    The request by which a client writes an upload to the bucket: `PUT`, with these headers as they stand here.
+    """
+
+    url: str
+    """
+    Where.
+    """
+    headers: dict[str, str]
+    """
+    Headers by their names.
+    """
+    valid_s: int
+    """
+    Time from now for which the URL is valid, in seconds.
+    """
 
 
 class Quote(TypedDict):
@@ -2596,6 +2662,30 @@ class UnitsInfo(TypedDict):
     """
     The caller, the file or its format states it; false: it is assumed.
     """
+
+
+class UploadInfo(TypedDict):
+    """
+    An upload that comes before its job.
+    """
+
+    id: str
+    """
+    Its id, which a request names in `input`: `{"upload":"ID"}`.
+    """
+    length: int
+    """
+    Bytes that it is to have.
+    """
+    received: int
+    """
+    Bytes that are stored, from the first one on.
+    """
+    expires_at: str
+    """
+    When it goes, unless more of it comes.
+    """
+    put: NotRequired[PutRequest | None]
 
 
 VectorItem: TypeAlias = float
