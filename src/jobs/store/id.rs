@@ -1,4 +1,4 @@
-//! Names of jobs.
+//! Names of jobs and uploads.
 
 use std::fmt;
 use std::str::FromStr;
@@ -35,6 +35,43 @@ impl fmt::Display for JobId {
 }
 
 impl FromStr for JobId {
+    type Err = uuid::Error;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Uuid::from_str(text).map(Self)
+    }
+}
+
+/// Id of an upload.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct UploadId(Uuid);
+
+impl UploadId {
+    /// An id that no other upload has.
+    pub fn unique() -> Self {
+        Self(Uuid::now_v7())
+    }
+}
+
+impl From<UploadId> for Uuid {
+    fn from(id: UploadId) -> Self {
+        id.0
+    }
+}
+
+impl From<Uuid> for UploadId {
+    fn from(id: Uuid) -> Self {
+        Self(id)
+    }
+}
+
+impl fmt::Display for UploadId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+impl FromStr for UploadId {
     type Err = uuid::Error;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {

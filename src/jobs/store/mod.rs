@@ -16,11 +16,11 @@ use jiff::Timestamp;
 
 use crate::wire::{JobState, Problem};
 pub use hint::{Hint, Hints};
-pub use id::JobId;
+pub use id::{JobId, UploadId};
 pub use outbox::{Delivery, DeliveryRequest, DeliveryState, DeliveryTry, NextTry, TryOutcome, Webhook};
 pub use row::{BlobRef, ClaimRef, Ending, IdempotencyKey, JobRow, Lane, NewJob, ResultRef};
 pub use tenant::{Holding, Tenant};
-pub use uploads::{NewUpload, UploadId, UploadRow, UploadStore};
+pub use uploads::{NewUpload, UploadRow, UploadStore};
 
 /// A store that could not do what was asked.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

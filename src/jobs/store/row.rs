@@ -5,10 +5,9 @@ use std::time::Duration;
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 
-use super::id::JobId;
+use super::id::{JobId, UploadId};
 use super::outbox::Webhook;
 use super::tenant::Tenant;
-use super::uploads::UploadId;
 use crate::jobs::trace::TraceParent;
 use crate::wire::{
     Encoding, Fidelity, JobState, Labels, Operation, Options, Outcome, Problem, Progress, TimingMs,

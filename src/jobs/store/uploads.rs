@@ -1,50 +1,13 @@
 //! Uploads that come before the job that they are for: rows of their own, until a job takes their bytes.
 
-use std::fmt;
-use std::str::FromStr;
 use std::time::Duration;
 
 use jiff::Timestamp;
-use uuid::Uuid;
 
-use super::{BlobRef, JobId, StoreFuture, Tenant};
-
-/// Id of an upload.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct UploadId(Uuid);
-
-impl UploadId {
-    /// An id that no other upload has.
-    pub fn unique() -> Self {
-        Self(Uuid::now_v7())
-    }
-}
-
-impl From<UploadId> for Uuid {
-    fn from(id: UploadId) -> Self {
-        id.0
-    }
-}
-
-impl From<Uuid> for UploadId {
-    fn from(id: Uuid) -> Self {
-        Self(id)
-    }
-}
-
-impl fmt::Display for UploadId {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.fmt(f)
-    }
-}
-
-impl FromStr for UploadId {
-    type Err = uuid::Error;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        Uuid::from_str(text).map(Self)
-    }
-}
+use super::StoreFuture;
+use super::id::{JobId, UploadId};
+use super::row::BlobRef;
+use super::tenant::Tenant;
 
 /// An upload that is to come.
 #[derive(Debug, Clone)]
