@@ -248,7 +248,7 @@ async fn submission(
             let owner = caller.owner.as_deref();
             match service.jobs.take_upload(id, owner, intake.is_repeat).await? {
                 NamedUpload::Mesh(mesh, name) => {
-                    upload = Some(mesh);
+                    upload = Some(*mesh);
                     file_name = file_name.or(name);
                 }
                 NamedUpload::TakenBy(job) => taken_by = Some(job),

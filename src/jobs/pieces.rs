@@ -50,7 +50,7 @@ pub struct AskedUpload {
 #[derive(Debug)]
 pub enum NamedUpload {
     /// Its mesh, and the name of the file if the caller gave one.
-    Mesh(Uploaded, Option<String>),
+    Mesh(Box<Uploaded>, Option<String>),
     /// An earlier job has taken it.
     TakenBy(JobId),
 }
@@ -211,7 +211,7 @@ impl Service {
             self.joined_pieces(&row, pieces, needs_place).await
         };
         match mesh {
-            Ok(mesh) => Ok(NamedUpload::Mesh(mesh, row.file_name)),
+            Ok(mesh) => Ok(NamedUpload::Mesh(Box::new(mesh), row.file_name)),
             Err(problem) => {
                 // Its files may have gone to a job in this moment.
                 let now = self.upload_of(row.id, row.owner.as_deref()).await?;

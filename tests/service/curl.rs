@@ -1,6 +1,7 @@
 //! Every block of `docs/http.md` runs as it stands there.
 
 use crate::server::Server;
+use crate::town::Town;
 use std::path::Path;
 use std::process::Command;
 
@@ -31,6 +32,13 @@ fn every_curl_line_of_the_documentation_works() {
 fn every_curl_line_of_the_documentation_works_on_a_server_with_its_defaults() {
     let page = include_str!("../../docs/http.md");
     run(&blocks(page), &[]);
+}
+
+#[test]
+fn every_curl_line_of_the_documentation_works_on_a_server_that_gives_presigned_urls() {
+    let Some(town) = Town::open() else { return };
+    let page = include_str!("../../docs/http.md");
+    run(&blocks(page), &town.settings("all", &["--presigned-ttl", "15min"]));
 }
 
 fn run(blocks: &[&str], settings: &[&str]) {

@@ -28,7 +28,7 @@ pub(super) fn complete(id: &str, operation: &mut Operation) {
     match id {
         "create_upload" => {
             add_parameter(operation, required(bytes("Upload-Length", "Bytes that the upload is to have.")));
-            let pairs = text().pattern(Some("^(filename [A-Za-z0-9+/]{4,64})?$"));
+            let pairs = text().pattern(Some("^(filename ([A-Za-z0-9+/]{4}){1,16})?$"));
             let about =
                 "Pairs of a name and a value in base64, with commas in between; `filename` names the file.";
             add_parameter(operation, header_parameter("Upload-Metadata", about, pairs));
