@@ -148,7 +148,7 @@ fn split(
         match visible {
             Visible::Nothing => continue,
             Visible::At(place) => {
-                refined.look_at(to, place, piece.triangle, corners[0].closest_triangle, budget)?
+                refined.look_at(to, place, piece.triangle, corners[0].closest_triangle, budget)?;
             }
             Visible::All => {}
         }

@@ -85,13 +85,14 @@ impl Outlook {
         nearby: &mut LookedFrom,
         budget: &Budget,
     ) -> Result<bool, Stopped> {
-        if let Some([side, k]) = nearby.way_out {
-            if let Some([beside, side]) = self.unit.both_sides(place, corners).nth(side) {
-                let end = beside + Hemisphere::around(side).direction(k) * OUT;
-                if met(&self.bvh, &self.corners, [beside, end], budget)?.is_none() {
-                    return Ok(true);
-                }
-            }
+        let known = nearby.way_out.and_then(|[side, k]| {
+            let [beside, side] = self.unit.both_sides(place, corners).nth(side)?;
+            Some([beside, beside + Hemisphere::around(side).direction(k) * OUT])
+        });
+        if let Some(way) = known
+            && met(&self.bvh, &self.corners, way, budget)?.is_none()
+        {
+            return Ok(true);
         }
         for (n, [beside, side]) in self.unit.both_sides(place, corners).enumerate() {
             let is_closed = |k: usize, direction| {
