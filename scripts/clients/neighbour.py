@@ -12,7 +12,8 @@
 Manners: `plain`: as it is. `busy`: of each NAME the first POST is answered 503, the second 429, each with a `Retry-After`.
 `away`: the first request is answered 502 with a page that is no problem document. `lost`: the first POST reaches the
 server, but its answer does not come back. `cut`: streams of events break off within their second event.
-`short`: the first result ends before its last byte. `bent`: one byte of each result is another.
+`short`: the first result ends before its last byte. `bent`: one byte of each result is another. `torn`: of the first PATCH one half
+reaches the server, which stores it, and no answer comes back.
 """
 
 import http.client
@@ -21,6 +22,7 @@ import mimetypes
 import pathlib
 import sys
 import threading
+import time
 import urllib.parse
 from collections import defaultdict
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -64,7 +66,7 @@ class Neighbour(BaseHTTPRequestHandler):
             self.asked[name].append(entry)
         self.pass_on(manner, times, path, body, entry)
 
-    do_GET = do_POST = do_DELETE = handle_any
+    do_GET = do_HEAD = do_POST = do_PATCH = do_DELETE = handle_any
 
     def read_body(self):
         if self.headers.get("transfer-encoding", "").lower() == "chunked":
@@ -88,6 +90,9 @@ class Neighbour(BaseHTTPRequestHandler):
         server = urllib.parse.urlsplit(self.server_url)
         connection = http.client.HTTPConnection(server.hostname, server.port, timeout=120)
         headers = {name: value for name, value in self.headers.items() if name.lower() not in HOP}
+        if manner == "torn" and self.command == "PATCH" and times == 0:
+            self.close_connection = True
+            return self.tear(connection, "/" + path, body, {**headers, "Host": server.netloc})
         connection.request(self.command, "/" + path, body=body or None, headers={**headers, "Host": server.netloc, "Content-Length": str(len(body))})
         reply = connection.getresponse()
         entry["status"] = reply.status
@@ -103,6 +108,21 @@ class Neighbour(BaseHTTPRequestHandler):
             content = content[:-1] + bytes([content[-1] ^ 1])
         is_short = manner == "short" and is_result and sum(e["path"] == entry["path"] for e in self.all_asked()) == 1
         self.answer(reply.status, reply.headers.get("content-type"), content, passed, cut=1 if is_short else 0)
+
+    def tear(self, connection, path, body, headers):
+        """Sends half of a piece of an upload, and waits until the server has stored it."""
+        connection.putrequest(self.command, path, skip_host=True, skip_accept_encoding=True)
+        for name, value in headers.items():
+            connection.putheader(name, value)
+        connection.endheaders(body[: len(body) // 2])
+        connection.close()
+        for _ in range(600):
+            connection.request("HEAD", path, headers={"Tus-Resumable": "1.0.0"})
+            reply = connection.getresponse()
+            reply.read()
+            if reply.headers["upload-offset"] != headers["Upload-Offset"]:
+                return
+            time.sleep(0.1)
 
     def all_asked(self):
         return [entry for entries in self.asked.values() for entry in entries]

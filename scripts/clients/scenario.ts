@@ -7,6 +7,7 @@ import {
   IntegrityError,
   type Job,
   type JobEvent,
+  type KeptMesh,
   type Mesh,
   Meshmend,
   MeshmendError,
@@ -128,6 +129,20 @@ class Scenario {
     }
     const { verdict } = first.report;
     return `${verdict.outcome}, ${verdict.fidelity}, ${mesh.length} bytes, ${first.sha256()}`;
+  }
+
+  async brought(): Promise<string> {
+    const [client, path] = [this.through("torn"), "intersection/self_intersection.off"];
+    const content = await this.place.read(path);
+    const upload = await client.upload((await this.place.meshAt(path)) as KeptMesh);
+    const asked = await this.asked("torn", "PATCH");
+    // The second request brings what the first one did not.
+    check(Number(asked.at(-1)?.["content-length"]) === content.length - Math.floor(content.length / 2), asked);
+    const first = await client.repair(upload, { output_format: "stl" });
+    const second = await client.repair(await client.upload(content), { output_format: "stl" });
+    const missing = UploadOf.upload("00000000-0000-7000-8000-000000000000");
+    const gone = await errorOf(ProblemError, () => client.repair(missing));
+    return `${first.sha256()}, ${second.sha256()}; ${gone.code}`;
   }
 
   async refused(): Promise<string> {
@@ -314,8 +329,8 @@ class Scenario {
 }
 
 const STEPS = [
-  "wrong_input", "repaired", "refused", "described", "made", "drawn", "followed", "cancelled", "sent_again", "guarded",
-  "called", "streamed", "tidied",
+  "wrong_input", "repaired", "brought", "refused", "described", "made", "drawn", "followed", "cancelled", "sent_again",
+  "guarded", "called", "streamed", "tidied",
 ] as const;
 
 export async function run(url: string, name: string, place: Place): Promise<void> {

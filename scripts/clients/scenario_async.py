@@ -96,6 +96,17 @@ class Scenario:
         verdict = results[0].report["verdict"]
         return f"{verdict['outcome']}, {verdict['fidelity']}, {len(mesh)} bytes, {results[0].sha256()}"
 
+    async def brought(self) -> str:
+        client, content = self.through("torn"), self.crossing.read_bytes()
+        upload = await client.upload(self.crossing)
+        asked = self.asked("torn", "PATCH")
+        # The second request brings what the first one did not.
+        check(int(asked[-1]["content-length"]) == len(content) - len(content) // 2, asked)
+        results = [await client.repair(mesh, output_format="stl") for mesh in (upload, await client.upload(content))]
+        gone = await error_of(lambda: client.repair(UploadOf(upload_id="00000000-0000-7000-8000-000000000000")))
+        assert isinstance(gone, ProblemError)
+        return f"{results[0].sha256()}, {results[1].sha256()}; {gone.code}"
+
     async def refused(self) -> str:
         error = await error_of(lambda: self.client.repair(self.sheet, require="faithful"))
         assert isinstance(error, NotRepairableError) and error.report is not None
@@ -268,8 +279,8 @@ async def stream_of(content: bytes) -> AsyncIterator[bytes]:
 
 
 STEPS = [
-    "wrong_input", "repaired", "refused", "described", "made", "drawn", "followed", "cancelled", "sent_again", "guarded",
-    "called", "streamed", "tidied",
+    "wrong_input", "repaired", "brought", "refused", "described", "made", "drawn", "followed", "cancelled", "sent_again",
+    "guarded", "called", "streamed", "tidied",
 ]
 
 

@@ -1,12 +1,12 @@
 // The client: one method for each call of the service.
 
-import { Connection, failed } from "./connection.js";
-import { NotFinishedError, problemError } from "./errors.js";
+import { Connection, failed, type Request } from "./connection.js";
+import { ConnectionFailedError, MeshmendError, NotFinishedError, ProblemError, problemError } from "./errors.js";
 import { EventReader, isFinal, type JobEvent } from "./events.js";
 import { Result } from "./result.js";
 import { RETRIES, type Retries } from "./retries.js";
 import type * as types from "./types.js";
-import { bodyOf, chunksOf, jsonBodyOf, type Mesh, randomText, UploadOf } from "./upload.js";
+import { announced, bodyOf, chunksOf, jsonBodyOf, type KeptMesh, type Mesh, randomText, restOf, TUS, UploadOf } from "./upload.js";
 
 /** Longest wait of one request, in seconds: well below what proxies allow. */
 const WAIT_S = 45;
@@ -103,6 +103,45 @@ export class Meshmend {
   /** Combines solids; a difference is the first without all others. */
   boolean(meshes: readonly Mesh[] | UploadOf, options: types.BooleanOptions = {}, call: CallOptions = {}): Promise<Result> {
     return this.#run("boolean", meshes instanceof UploadOf ? [meshes] : meshes, options, call);
+  }
+
+  // --- meshes before their job
+
+  /**
+   * Brings a mesh to the service before its job, and goes on where a connection broke: give what it returns to an operation
+   * instead of the mesh. Only requests in a row that bring nothing are counted by `retries`.
+   */
+  async upload(mesh: KeptMesh, how: { signal?: AbortSignal } = {}): Promise<UploadOf> {
+    const whole = mesh instanceof Blob ? mesh : new Blob([mesh]);
+    const { signal } = how;
+    const creating = { method: "POST" as const, path: "/v1/uploads", headers: announced(mesh, whole.size), signal };
+    const location = await this.#connection.receive(creating, async (response) => {
+      await response.text();
+      return response.headers.get("location") ?? "";
+    });
+    const id = location.slice(location.lastIndexOf("/") + 1);
+    const path = `/v1/uploads/${id}`;
+    const stands = async (request: Pick<Request, "method" | "headers" | "body">) =>
+      this.#connection.receive({ ...request, path, signal }, async (response) => {
+        await response.text();
+        return Number(response.headers.get("upload-offset"));
+      });
+    for (let [offset, attempt] = [0, 1]; offset < whole.size; ) {
+      const before = offset;
+      try {
+        const headers = { ...TUS, "Upload-Offset": String(offset) };
+        offset = await stands({ method: "PATCH", headers, body: restOf(whole, offset) });
+      } catch (error) {
+        if (!(error instanceof MeshmendError)) throw error;
+        attempt += 1;
+        // What an earlier request brought was stored after the service was asked how far it came.
+        const isBehind = error instanceof ProblemError && error.code === "upload-conflict";
+        await this.#connection.pause(attempt, isBehind ? new ConnectionFailedError(error.message) : error, true, signal);
+        offset = await stands({ method: "HEAD", headers: TUS });
+      }
+      if (offset > before) attempt = 1;
+    }
+    return UploadOf.upload(id);
   }
 
   // --- jobs

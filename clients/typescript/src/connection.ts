@@ -5,7 +5,7 @@ import { pauseBefore, type Retries } from "./retries.js";
 import type { Body } from "./upload.js";
 
 export interface Request {
-  method: "GET" | "POST" | "DELETE";
+  method: "GET" | "HEAD" | "POST" | "PATCH" | "DELETE";
   path: string;
   query?: [string, string][];
   headers?: Record<string, string>;

@@ -15,5 +15,5 @@ export type { JobEvent } from "./events.js";
 export { Result } from "./result.js";
 export type { Retries } from "./retries.js";
 export type * from "./types.js";
-export { type Mesh, UploadOf } from "./upload.js";
+export { type KeptMesh, type Mesh, UploadOf } from "./upload.js";
 export { verifyWebhook, type WebhookCheck } from "./webhooks.js";

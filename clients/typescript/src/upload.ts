@@ -20,7 +20,25 @@ export class UploadOf {
   }
 }
 
-/** The body of a POST. */
+/** A mesh that can be sent again from any place on. */
+export type KeptMesh = Exclude<Mesh, Stream>;
+
+/** The protocol of uploads that come before their job: https://tus.io/protocols/resumable-upload. */
+export const TUS = { "Tus-Resumable": "1.0.0" };
+
+/** What is said of a mesh before it comes: its length and the name of its file. */
+export function announced(mesh: KeptMesh, size: number): Record<string, string> {
+  const name = nameOf(mesh);
+  const encoded = name === undefined ? "" : btoa(String.fromCharCode(...new TextEncoder().encode(name)));
+  return { ...TUS, "Upload-Length": String(size), ...(encoded && { "Upload-Metadata": `filename ${encoded}` }) };
+}
+
+/** What follows after so many bytes of a mesh. It is sent once: how far it came is asked before more is sent. */
+export function restOf(mesh: Blob, offset: number): Body {
+  return { contentType: "application/offset+octet-stream", content: mesh.slice(offset), isReplayable: false };
+}
+
+/** The body of a POST or PATCH. */
 export interface Body {
   contentType: string;
   content: Blob | ReadableStream<Uint8Array>;

@@ -19,7 +19,7 @@ from .errors import (
 )
 from .events import JobEvent, StagePassed, StateChanged
 from .retries import Retries
-from .upload import AsyncMesh, Mesh, UploadOf
+from .upload import AsyncMesh, KeptMesh, Mesh, UploadOf
 from .webhooks import verify_webhook
 
 __all__ = [
@@ -29,6 +29,7 @@ __all__ = [
     "ConnectionFailedError",
     "IntegrityError",
     "JobEvent",
+    "KeptMesh",
     "Mesh",
     "Meshmend",
     "MeshmendError",

@@ -17,6 +17,7 @@ from .errors import ProblemError, answer_error, problem_error
 from .events import FINAL_STATES, EventReader, JobEvent, StateChanged
 from .retries import Retries
 from .upload import AsyncMesh, Body, Mesh, UploadOf, body_of, json_body_of
+from .upload import TUS, KeptMesh, Rest, announced, size_of
 from .waiting import Deadline
 
 JSON = "application/json"
@@ -157,6 +158,30 @@ class AsyncMeshmend:
         """Combines solids; a difference is the first without all others."""
         given: Sequence[AsyncMesh | UploadOf] = [meshes] if isinstance(meshes, UploadOf) else meshes
         return await self._run("boolean", given, options, material, idempotency_key, timeout_s)
+
+    # --- meshes before their job ----------------------------------------------------------------------------------
+
+    async def upload(self, mesh: KeptMesh) -> UploadOf:
+        """Brings a mesh to the service before its job, and goes on where a connection broke: give what it returns to an
+        operation instead of the mesh. Only requests in a row that bring nothing are counted by `retries`.
+        """
+        created = await _whole(await self._send("POST", "/v1/uploads", headers=announced(mesh)))
+        upload = UploadOf(upload_id=created.headers["location"].rpartition("/")[2])
+        path = f"/v1/uploads/{upload.upload_id}"
+        size, stands, attempt = size_of(mesh), 0, 1
+        while stands < size:
+            try:
+                brought = await _whole(await self._send("PATCH", path, headers=TUS, body=Rest(mesh, stands)))
+            except MeshmendError as error:
+                attempt += 1
+                # What an earlier request brought was stored after the service was asked how far it came.
+                is_behind = isinstance(error, ProblemError) and error.code == "upload-conflict"
+                cause = ConnectionFailedError(str(error)) if is_behind else error
+                await self._pause(attempt, cause, is_replayable=True)
+                brought = await _whole(await self._send("HEAD", path, headers=TUS))
+            before, stands = stands, int(brought.headers["upload-offset"])
+            attempt = 1 if stands > before else attempt
+        return upload
 
     # --- jobs -----------------------------------------------------------------------------------------------------
 

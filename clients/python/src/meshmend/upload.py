@@ -1,5 +1,6 @@
 """Bodies of requests: a form of options and meshes, as pieces of bytes."""
 
+import base64
 import json
 import os
 import uuid
@@ -12,7 +13,13 @@ Mesh = Union[str, os.PathLike[str], bytes, bytearray, memoryview, IO[bytes], Ite
 AsyncMesh = Union[Mesh, AsyncIterable[bytes]]
 """A mesh to send by an `AsyncMeshmend`: as `Mesh`, or an asynchronous stream of pieces."""
 
+KeptMesh = Union[str, os.PathLike[str], bytes, bytearray, memoryview]
+"""A mesh that can be sent again from any place on: the path of a file, or its bytes."""
+
 CHUNK_BYTES = 1 << 16
+
+TUS = {"Tus-Resumable": "1.0.0"}
+"""The protocol of uploads that come before their job: https://tus.io/protocols/resumable-upload."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +68,7 @@ class Part:
 
 
 class Body:
-    """The body of a POST."""
+    """The body of a POST or PATCH."""
 
     def __init__(self, content_type: str, parts: Sequence[Part], end: bytes) -> None:
         self.content_type = content_type
@@ -101,6 +108,51 @@ class Body:
                 for piece in part.pieces():
                     yield piece
         yield self._end
+
+
+class Rest(Body):
+    """What follows after so many bytes of a mesh. It is sent once: how far it came is asked before more is sent."""
+
+    def __init__(self, mesh: KeptMesh, offset: int) -> None:
+        super().__init__("application/offset+octet-stream", [], b"")
+        self._mesh = mesh
+        self._offset = offset
+
+    @property
+    def is_replayable(self) -> bool:
+        return False
+
+    def headers(self) -> dict[str, str]:
+        length = size_of(self._mesh) - self._offset
+        return {"Content-Type": self.content_type, "Upload-Offset": str(self._offset), "Content-Length": str(length)}
+
+    def pieces(self) -> Iterator[bytes]:
+        if isinstance(self._mesh, str | os.PathLike):
+            with open(self._mesh, "rb") as file:
+                file.seek(self._offset)
+                yield from iter(lambda: file.read(CHUNK_BYTES), b"")
+        else:
+            content = memoryview(self._mesh).cast("B")
+            for begin in range(self._offset, content.nbytes, CHUNK_BYTES):
+                yield bytes(content[begin : begin + CHUNK_BYTES])
+
+    async def apieces(self) -> AsyncIterator[bytes]:
+        for piece in self.pieces():
+            yield piece
+
+
+def announced(mesh: KeptMesh) -> dict[str, str]:
+    """What is said of a mesh before it comes: its length and the name of its file."""
+    headers = {**TUS, "Upload-Length": str(size_of(mesh))}
+    if isinstance(mesh, str | os.PathLike):
+        name = os.path.basename(os.fspath(mesh)).encode("utf-8", "surrogateescape")
+        headers["Upload-Metadata"] = f"filename {base64.b64encode(name).decode()}"
+    return headers
+
+
+def size_of(mesh: KeptMesh) -> int:
+    """Bytes of a mesh."""
+    return os.stat(mesh).st_size if isinstance(mesh, str | os.PathLike) else memoryview(mesh).nbytes
 
 
 def body_of(field: str, options: Mapping[str, object], meshes: Sequence[AsyncMesh], material: Mesh | None) -> Body:
