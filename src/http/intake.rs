@@ -54,7 +54,7 @@ impl BodyKind {
 }
 
 /// Refuses a body in an encoding that nobody has undone.
-fn check_encoding(headers: &HeaderMap) -> Result<(), Problem> {
+pub(super) fn check_encoding(headers: &HeaderMap) -> Result<(), Problem> {
     let encoding =
         headers.get(header::CONTENT_ENCODING).map(|value| value.to_str().unwrap_or_default().trim());
     match encoding {

@@ -11,6 +11,7 @@ use jiff::Timestamp;
 use tracing::Instrument as _;
 
 use super::body::{BodyLimits, IncomingBody};
+use super::intake::check_encoding;
 use super::lifecycle::Id;
 use super::problem::{Handled, ProblemAnswer};
 use super::query;
@@ -73,6 +74,7 @@ pub(super) async fn create(state: State, caller: Extension<Caller>, request: Req
     let (head, body) = request.into_parts();
     check_version(&head.headers)?;
     query::none(&head.uri)?;
+    check_encoding(&head.headers)?;
     let brings_bytes = match media_type(&head.headers) {
         "" => false,
         BYTES => true,
@@ -146,6 +148,7 @@ pub(super) async fn append(state: State, caller: Extension<Caller>, id: Id, requ
     if media_type(&head.headers) != BYTES {
         return Err(not_bytes("what is sent are bytes of an upload").into());
     }
+    check_encoding(&head.headers)?;
     let at = number(&head.headers, &OFFSET)?;
     let pieces = state.jobs.receive_pieces(id_of(id)?, caller.owner.as_deref(), at).await?;
     let pieces = received(&state, pieces, &head.headers, body).await?;

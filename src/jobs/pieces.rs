@@ -86,7 +86,7 @@ impl Jobs {
         let row = self.0.upload_of(id, owner).await?;
         if row.is_presigned && row.job.is_none() {
             let received = self.0.bytes_in_bucket(&row).await?.unwrap_or_default();
-            return Ok(UploadRow { received, ..row });
+            return Ok(UploadRow { received: received.min(row.length), ..row });
         }
         Ok(row)
     }
@@ -98,7 +98,7 @@ impl Jobs {
     pub async fn delete_upload(&self, id: UploadId, owner: Option<&str>) -> Result<(), Problem> {
         self.0.upload_of(id, owner).await?;
         let orphans = self.0.store.delete_upload(id).await.map_err(|error| upload_problem(&error))?;
-        self.0.spool.remove_all(&orphans);
+        self.0.remove_pieces(orphans).await;
         Ok(())
     }
 
@@ -200,6 +200,18 @@ impl Service {
         if row.owner.as_deref() == owner && !row.is_due { Ok(row) } else { Err(no_such_upload()) }
     }
 
+    /// Removes files of an upload, which may be many.
+    pub(super) async fn remove_pieces(&self, pieces: Vec<BlobRef>) {
+        let spool = Arc::clone(&self.spool);
+        let removed = on_disk(move || {
+            spool.remove_all(&pieces);
+            Ok(())
+        });
+        if let Err(problem) = removed.await {
+            tracing::warn!(detail = problem.detail, "files of an upload could not be removed");
+        }
+    }
+
     async fn mesh_of(self: &Arc<Self>, row: UploadRow, needs_place: bool) -> Result<NamedUpload, Problem> {
         if let Some(job) = row.job {
             return Ok(NamedUpload::TakenBy(job));
@@ -268,6 +280,16 @@ impl Service {
         }
         let taken = Taken { id: row.id, pieces, spool: Arc::clone(&self.spool) };
         Ok(upload.finish().await?.made_of(taken))
+    }
+}
+
+/// A piece that a row may name already, also when the store did not say so or this ends before it does: its file stays, and
+/// goes as an orphan where no row names it.
+struct MaybeNamed(Option<Uploaded>);
+
+impl Drop for MaybeNamed {
+    fn drop(&mut self) {
+        self.0.take().into_iter().for_each(Uploaded::maybe_named);
     }
 }
 
@@ -342,9 +364,12 @@ impl Pieces {
         let (service, id, at) = (Arc::clone(&self.service), self.id, self.received);
         // Who sends may go away, but what is begun is done: a row must not name a file that goes.
         let appending = tokio::spawn(async move {
-            let expires_at = service.store.append_piece(id, at, blob, keep_for).await?;
-            piece.named();
-            Ok::<_, StoreError>(expires_at)
+            let mut piece = MaybeNamed(Some(piece));
+            let appended = service.store.append_piece(id, at, blob, keep_for).await;
+            if matches!(&appended, Err(error) if !matches!(error, StoreError::Unavailable(_))) {
+                drop(piece.0.take());
+            }
+            appended
         });
         let lost = |error: tokio::task::JoinError| StoreError::Unavailable(error.to_string());
         let appended = appending.await.map_err(lost).and_then(|appended| appended);

@@ -94,9 +94,9 @@ impl Service {
 
     /// An upload whose time is over goes with its files.
     async fn drop_upload(&self, id: UploadId) {
-        match self.store.delete_upload(id).await {
-            Ok(orphans) => self.spool.remove_all(&orphans),
-            // Its owner, or another server, was quicker.
+        match self.store.drop_due_upload(id).await {
+            Ok(orphans) => self.remove_pieces(orphans).await,
+            // More of it has come, a job has taken it, or its owner or another server was quicker.
             Err(StoreError::NotFound) => {}
             Err(error) => tracing::warn!(upload = %id, %error, "an upload could not be removed"),
         }

@@ -202,6 +202,9 @@ fn a_client_is_told_what_is_wrong_with_an_upload() {
     let path = create(&server, 100);
     let untyped = tus(&server, "PATCH", &path).header("upload-offset", "0").body("a").send().unwrap();
     assert_eq!(refused(untyped), is(415, "unsupported-media-type"));
+    let packed = tus(&server, "PATCH", &path).header("upload-offset", "0").header("content-type", BYTES);
+    let packed = packed.header("content-encoding", "br").body("a").send().unwrap();
+    assert_eq!(refused(packed), is(415, "unsupported-media-type"));
     let without = tus(&server, "PATCH", &path).header("content-type", BYTES).body("a").send().unwrap();
     assert_eq!(refused(without), is(400, "invalid-parameter"));
     assert_eq!(offset(&server, &path), 0, "nothing of it was stored");

@@ -1,7 +1,7 @@
 // The client: one method for each call of the service.
 
 import { Connection, failed, type Request } from "./connection.js";
-import { ConnectionFailedError, MeshmendError, NotFinishedError, ProblemError, problemError } from "./errors.js";
+import { ConnectionFailedError, MeshmendError, NotFinishedError, ProblemError, problemError, UnexpectedAnswerError } from "./errors.js";
 import { EventReader, isFinal, type JobEvent } from "./events.js";
 import { Result } from "./result.js";
 import { RETRIES, type Retries } from "./retries.js";
@@ -124,7 +124,9 @@ export class Meshmend {
     const stands = async (request: Pick<Request, "method" | "headers" | "body">) =>
       this.#connection.receive({ ...request, path, signal }, async (response) => {
         await response.text();
-        return Number(response.headers.get("upload-offset"));
+        const offset = response.headers.get("upload-offset");
+        if (offset === null) throw new UnexpectedAnswerError(response.status, "the answer does not say where the upload stands");
+        return Number(offset);
       });
     for (let [offset, attempt] = [0, 1]; offset < whole.size; ) {
       const before = offset;

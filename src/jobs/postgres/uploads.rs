@@ -40,10 +40,21 @@ impl UploadStore for PostgresStore {
         self.write(move |session| Box::pin(delete(session, id)))
     }
 
+    fn drop_due_upload(&self, id: UploadId) -> StoreFuture<'_, Vec<BlobRef>> {
+        self.write(move |session| {
+            Box::pin(async move {
+                let sql =
+                    "SELECT 1 FROM uploads WHERE id = $1 AND expires_at <= $2 AND job IS NULL FOR UPDATE";
+                session.row(sql, &[&Uuid::from(id), &session.now]).await?;
+                delete(session, id).await
+            })
+        })
+    }
+
     fn due_uploads(&self) -> StoreFuture<'_, Vec<UploadId>> {
         self.read(|session| {
             Box::pin(async move {
-                let sql = "SELECT id FROM uploads WHERE expires_at <= (SELECT now_ms())";
+                let sql = "SELECT id FROM uploads WHERE expires_at <= (SELECT now_ms()) AND job IS NULL";
                 let rows = session.rows(sql, &[]).await?;
                 rows.iter().map(|row| value::<Uuid>(row, 0).map(UploadId::from)).collect()
             })
@@ -92,6 +103,7 @@ async fn get(session: &Session, id: UploadId) -> Result<UploadRow, StoreError> {
             (SELECT count(*) FROM pieces WHERE upload = $1), now_ms() FROM uploads WHERE id = $1";
     let row = session.row(sql, &[&Uuid::from(id)]).await?;
     let expires_at = time(&row, 8)?;
+    let job = value::<Option<Uuid>>(&row, 7)?.map(JobId::from);
     Ok(UploadRow {
         id,
         owner: value(&row, 0)?,
@@ -101,9 +113,9 @@ async fn get(session: &Session, id: UploadId) -> Result<UploadRow, StoreError> {
         length: number(&row, 4)?,
         received: number(&row, 5)?,
         is_presigned: value(&row, 6)?,
-        job: value::<Option<Uuid>>(&row, 7)?.map(JobId::from),
+        is_due: job.is_none() && expires_at.as_millisecond() <= value::<i64>(&row, 10)?,
+        job,
         expires_at,
-        is_due: expires_at.as_millisecond() <= value::<i64>(&row, 10)?,
         pieces: number(&row, 9)?,
     })
 }
@@ -143,7 +155,7 @@ async fn append(
 /// A job takes the files of an upload, which names none from then on. [`StoreError::NotFound`] when there is no such upload, or
 /// another job was quicker.
 pub(super) async fn take(session: &Session, upload: UploadId, job: JobId) -> Result<(), StoreError> {
-    let sql = "UPDATE uploads SET job = $2 WHERE id = $1 AND job IS NULL";
+    let sql = "UPDATE uploads SET job = $2, received = length WHERE id = $1 AND job IS NULL";
     if session.change(sql, &[&Uuid::from(upload), &Uuid::from(job)]).await? == 0 {
         return Err(StoreError::NotFound);
     }

@@ -38,9 +38,19 @@ impl UploadStore for SqliteStore {
         self.write(move |connection, _| delete(connection, id))
     }
 
+    fn drop_due_upload(&self, id: UploadId) -> StoreFuture<'_, Vec<BlobRef>> {
+        self.write(move |connection, now| {
+            let is_due = connection
+                .prepare_cached("SELECT 1 FROM uploads WHERE id = ?1 AND expires_at <= ?2 AND job IS NULL")?
+                .exists(params![id.to_string(), now])?;
+            if is_due { delete(connection, id) } else { Err(StoreError::NotFound) }
+        })
+    }
+
     fn due_uploads(&self) -> StoreFuture<'_, Vec<UploadId>> {
         self.read(|connection, now| {
-            let mut statement = connection.prepare_cached("SELECT id FROM uploads WHERE expires_at <= ?1")?;
+            let sql = "SELECT id FROM uploads WHERE expires_at <= ?1 AND job IS NULL";
+            let mut statement = connection.prepare_cached(sql)?;
             Ok(statement.query_map([now], |row| id(row, 0))?.collect::<rusqlite::Result<_>>()?)
         })
     }
@@ -106,6 +116,10 @@ fn get(connection: &Connection, id: UploadId, now: i64) -> Result<UploadRow, Sto
     )?;
     let row = |row: &Row<'_>| {
         let expires_at = time(row, 8)?;
+        let job = match row.get::<_, Option<String>>(7)? {
+            Some(_) => Some(super::rows::parsed(row, 7)?),
+            None => None,
+        };
         Ok(UploadRow {
             id,
             owner: row.get(0)?,
@@ -115,12 +129,9 @@ fn get(connection: &Connection, id: UploadId, now: i64) -> Result<UploadRow, Sto
             length: bytes(row, 4)?,
             received: bytes(row, 5)?,
             is_presigned: row.get(6)?,
-            job: match row.get::<_, Option<String>>(7)? {
-                Some(_) => Some(super::rows::parsed(row, 7)?),
-                None => None,
-            },
+            is_due: job.is_none() && expires_at.as_millisecond() <= now,
+            job,
             expires_at,
-            is_due: expires_at.as_millisecond() <= now,
             pieces: count(row, 9)?,
         })
     };
@@ -171,7 +182,7 @@ fn append(
 /// another job was quicker.
 pub(super) fn take(connection: &Connection, upload: UploadId, job: JobId) -> Result<(), StoreError> {
     let taken = connection
-        .prepare_cached("UPDATE uploads SET job = ?2 WHERE id = ?1 AND job IS NULL")?
+        .prepare_cached("UPDATE uploads SET job = ?2, received = length WHERE id = ?1 AND job IS NULL")?
         .execute([upload.to_string(), job.to_string()])?;
     if taken == 0 {
         return Err(StoreError::NotFound);

@@ -12,7 +12,8 @@ CREATE TABLE uploads (
     job TEXT REFERENCES jobs (id) ON DELETE CASCADE,
     expires_at INTEGER NOT NULL
 );
-CREATE INDEX uploads_open ON uploads (tenant) WHERE job IS NULL;
+-- With all that the sums over open uploads need. `job` is in it because SQLite asks for it although it is always null.
+CREATE INDEX uploads_open ON uploads (job, tenant, is_presigned, length, received) WHERE job IS NULL;
 CREATE INDEX uploads_by_job ON uploads (job) WHERE job IS NOT NULL;
 CREATE INDEX uploads_expiring ON uploads (expires_at);
 

@@ -86,6 +86,9 @@ pub trait UploadStore: Send + Sync {
     /// Removes the row. Its files, which nobody names any longer.
     fn delete_upload(&self, id: UploadId) -> StoreFuture<'_, Vec<BlobRef>>;
 
-    /// Uploads that should have gone by now.
+    /// The same, but [`StoreError::NotFound`](super::StoreError::NotFound) where its time is not over, or a job has taken it.
+    fn drop_due_upload(&self, id: UploadId) -> StoreFuture<'_, Vec<BlobRef>>;
+
+    /// Uploads that no job has taken and that should have gone by now. What a job has taken goes with it.
     fn due_uploads(&self) -> StoreFuture<'_, Vec<UploadId>>;
 }

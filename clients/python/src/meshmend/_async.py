@@ -171,7 +171,7 @@ class AsyncMeshmend:
         size, stands, attempt = size_of(mesh), 0, 1
         while stands < size:
             try:
-                brought = await _whole(await self._send("PATCH", path, headers=TUS, body=Rest(mesh, stands)))
+                brought = await _whole(await self._send("PATCH", path, headers=TUS, body=Rest(mesh, stands, size)))
             except MeshmendError as error:
                 attempt += 1
                 # What an earlier request brought was stored after the service was asked how far it came.

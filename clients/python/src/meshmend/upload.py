@@ -113,18 +113,19 @@ class Body:
 class Rest(Body):
     """What follows after so many bytes of a mesh. It is sent once: how far it came is asked before more is sent."""
 
-    def __init__(self, mesh: KeptMesh, offset: int) -> None:
+    def __init__(self, mesh: KeptMesh, offset: int, size: int) -> None:
         super().__init__("application/offset+octet-stream", [], b"")
         self._mesh = mesh
         self._offset = offset
+        self._size = size
 
     @property
     def is_replayable(self) -> bool:
         return False
 
     def headers(self) -> dict[str, str]:
-        length = size_of(self._mesh) - self._offset
-        return {"Content-Type": self.content_type, "Upload-Offset": str(self._offset), "Content-Length": str(length)}
+        length = str(self._size - self._offset)
+        return {"Content-Type": self.content_type, "Upload-Offset": str(self._offset), "Content-Length": length}
 
     def pieces(self) -> Iterator[bytes]:
         if isinstance(self._mesh, str | os.PathLike):

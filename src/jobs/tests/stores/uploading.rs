@@ -93,7 +93,8 @@ pub(super) async fn an_upload_is_due_a_while_after_its_last_piece<H: StoreHouse>
     house.advance_ms(1).await;
     assert_eq!(store.due_uploads().await.unwrap(), [left]);
     assert!(store.get_upload(left).await.unwrap().is_due);
-    assert_eq!(store.delete_upload(left).await.unwrap(), [piece(1, 5)]);
+    assert_eq!(store.drop_due_upload(going).await, Err(StoreError::NotFound), "more of it has come");
+    assert_eq!(store.drop_due_upload(left).await.unwrap(), [piece(1, 5)]);
     assert_eq!(store.delete_upload(left).await, Err(StoreError::NotFound));
     assert!(store.named(vec!["pieces/1".to_owned()]).await.unwrap().is_empty());
     assert_eq!(append(&*store, left, 5, piece(3, 1)).await, Err(StoreError::NotFound));
@@ -108,6 +109,10 @@ pub(super) async fn a_job_takes_an_upload_once_and_takes_it_along_when_it_goes<H
     let row = store.get_upload(id).await.unwrap();
     assert_eq!((row.job, row.received), (Some(first.id), 5));
     assert!(store.pieces(id).await.unwrap().is_empty(), "the job has a file of its own");
+    house.advance_ms(1_000_000).await;
+    assert!(!store.get_upload(id).await.unwrap().is_due, "it stays as long as its job");
+    assert!(store.due_uploads().await.unwrap().is_empty());
+    assert_eq!(store.drop_due_upload(id).await, Err(StoreError::NotFound));
     let second = store.create(NewJob { taken: Some(id), ..job() }, 1000).await;
     assert_eq!(second.unwrap_err(), StoreError::NotFound);
     assert_eq!(store.counts().await.unwrap().all, 1, "nothing of it was made");
