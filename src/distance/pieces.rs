@@ -35,6 +35,19 @@ impl Farthest {
         Self { distance: nearest.distance, point: FarPoint { place, triangle, closest, closest_triangle } }
     }
 
+    /// A place on a triangle that can be seen, if it is farther than this. The search for what is closest begins at `hint`.
+    pub(super) fn or_seen(
+        self,
+        to: &Target<'_>,
+        place: DVec3,
+        triangle: u32,
+        hint: u32,
+        budget: &Budget,
+    ) -> Result<Self, Stopped> {
+        let found = to.find(place, Some(hint), budget)?.filter(|found| found.is_exact);
+        Ok(found.map_or(self, |found| self.or(Self::at(place, triangle, &found.nearest))))
+    }
+
     /// The farther one, or this one when both are as far.
     pub(super) fn or(self, other: Self) -> Self {
         if other.distance > self.distance { other } else { self }
@@ -65,24 +78,6 @@ pub(super) struct Refined {
     pub(super) left: Vec<Piece>,
     /// Closest points that were found, and triangles that were walked over in the place of some.
     pub(super) work: u64,
-}
-
-impl Refined {
-    /// Takes a place on a triangle that can be seen as the farthest point, if it is.
-    fn look_at(
-        &mut self,
-        to: &Target<'_>,
-        place: DVec3,
-        triangle: u32,
-        hint: u32,
-        budget: &Budget,
-    ) -> Result<(), Stopped> {
-        self.work += 1;
-        if let Some(found) = to.find(place, Some(hint), budget)?.filter(|found| found.is_exact) {
-            self.farthest = self.farthest.or(Farthest::at(place, triangle, &found.nearest));
-        }
-        Ok(())
-    }
 }
 
 /// Work on a piece before what is left of it is handed back.
@@ -141,16 +136,16 @@ fn split(
             refined.work += walked / WALKED_FOR_ONE;
             upper = covered;
         }
-        let visible = match upper > enough {
-            true => view.visible(look, &corners, piece.triangle)?,
-            false => Visible::All,
-        };
-        match visible {
-            Visible::Nothing => continue,
-            Visible::At(place) => {
-                refined.look_at(to, place, piece.triangle, corners[0].closest_triangle, budget)?;
+        if upper > enough {
+            match view.visible(look, &corners, piece.triangle)? {
+                Visible::Nothing => continue,
+                Visible::At(place) => {
+                    refined.work += 1;
+                    let hint = corners[0].closest_triangle;
+                    refined.farthest = refined.farthest.or_seen(to, place, piece.triangle, hint, budget)?;
+                }
+                Visible::All => {}
             }
-            Visible::All => {}
         }
         refined.left.push(Piece { corners, upper, ..*piece });
     }

@@ -284,10 +284,7 @@ impl Directed<'_, '_> {
         match self.view.visible(look, &corners, t)? {
             Visible::Nothing => return Ok(0.0),
             Visible::At(place) => {
-                let hint = Some(found.nearest.triangle);
-                if let Some(seen) = self.to.find(place, hint, self.budget)?.filter(|seen| seen.is_exact) {
-                    *farthest = farthest.or(Farthest::at(place, t, &seen.nearest));
-                }
+                *farthest = farthest.or_seen(self.to, place, t, found.nearest.triangle, self.budget)?;
             }
             Visible::All => {}
         }

@@ -87,3 +87,39 @@ impl<'v> View<'v> {
         self.sight.is_some_and(|sight| distance > sight.lost_beyond * self.factor)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::budget::Budget;
+    use crate::distance::{DistanceOptions, Surface, directed_distance};
+
+    #[test]
+    fn a_place_that_is_seen_counts_where_no_corner_and_no_middle_is() {
+        // The first of the places of a triangle that rises from the other one: a ninth along each side, at a ninth of its height.
+        let seen = DVec3::new(1.0, 1.0, 2.0);
+        let corners = [DVec3::ZERO, DVec3::new(9.0, 0.0, 9.0), DVec3::new(0.0, 9.0, 9.0)];
+        let ground =
+            [DVec3::new(-20.0, -20.0, 0.0), DVec3::new(40.0, -20.0, 0.0), DVec3::new(-20.0, 40.0, 0.0)];
+        let found = |sees: &(dyn Fn(DVec3) -> bool + Sync)| {
+            let look = || -> Look<'_> {
+                Box::new(|places, _| {
+                    for place in places {
+                        if sees(place) {
+                            return Ok(Some(place));
+                        }
+                    }
+                    Ok(None)
+                })
+            };
+            let sight = Sight { look: Some(&look), lost_beyond: 1.0 };
+            let options = DistanceOptions { samples: 0, refinements_max: 0, ..DistanceOptions::default() };
+            let [from, to] =
+                [&corners, &ground].map(|positions| Surface { positions, triangles: &[[0, 1, 2]] });
+            directed_distance(from, to, Some(sight), &options, &Budget::unlimited()).unwrap().unwrap()
+        };
+        let spot = found(&|place| place.distance(seen) < 0.01);
+        assert!((spot.lower - seen.z).abs() < 1e-6 && spot.upper > 5.0, "{spot:?}");
+        assert_eq!(found(&|_| false).lower, 0.0, "nothing of it is seen");
+    }
+}

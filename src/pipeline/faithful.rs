@@ -4,7 +4,8 @@
 //! beyond bounds that are stated. *Changed*: a bound is exceeded, and which. The bounds and where they are from:
 //! `docs/decisions/0032-printable-is-not-faithful.md`.
 
-use super::fidelity::{LOSS_MAX, LOST_BEYOND, Losses, Original, area_of, defined_volume};
+use super::changed::area_of;
+use super::fidelity::{LOSS_MAX, LOST_BEYOND, Losses, Original, defined_volume};
 use super::size::diagonal;
 use super::{Outcome, Report};
 use crate::budget::{Budget, CHECK_EVERY, Stage, Stopped};

@@ -1,5 +1,6 @@
 //! How far a result is from its input, what of the input it lost, and whether that is little enough.
 
+use super::changed::{Changed, area_of};
 use super::plan::Covered;
 use super::size::diagonal;
 use super::{Limits, Refusal};
@@ -8,9 +9,8 @@ use crate::budget::{Budget, CHECK_EVERY, Stage, Stopped};
 use crate::distance::{
     DirectedDistance, DistanceOptions, FarPoint, Look, Sight, Surface, SurfaceDistance, directed_distance,
 };
-use crate::geom::{DVec3, are_collinear, closest_point_on_triangle, signed_volume, triangle_area};
+use crate::geom::{DVec3, signed_volume};
 use crate::mesh::{Components, Soup, UnionFind};
-use crate::repair::NEW;
 use crate::spatial::{NearestSearch, coincident_f64};
 use crate::winding::{LookedFrom, Outlook, Solid};
 
@@ -142,7 +142,7 @@ impl<'i> Original<'i> {
         Ok(Self { outlook: Some(Outlook::past(triangles, budget)?), ..self })
     }
 
-    /// Measures a result; `origins` name the triangle of the input that each of its triangles is, or [`NEW`].
+    /// Measures a result; `origins` name the triangle of the input that each of its triangles is, or [`NEW`](crate::repair::NEW).
     pub(super) fn measure(
         &self,
         result: &Soup,
@@ -308,80 +308,8 @@ impl<'i> Original<'i> {
     }
 }
 
-/// What is not the same in an input and a result.
-struct Changed {
-    /// For each triangle of the input, whether the result has it.
-    stays: Vec<bool>,
-    /// Triangles of the input that the result does not have, ascending. Those without area are no surface that could be
-    /// lost, seen or be a body, so they are not among them.
-    gone: Vec<u32>,
-    /// Triangles of the result that the input does not have.
-    new: Vec<u32>,
-    /// Area of the others.
-    stayed_area: f64,
-    /// Area of triangles of the result that are pieces of some of the input.
-    pieces_area: f64,
-}
-
-impl Changed {
-    fn of(input: &Soup, result: &Soup, origins: &[u32], budget: &Budget) -> Result<Self, Stopped> {
-        let mut stays = vec![false; input.triangles.len()];
-        let mut new = Vec::new();
-        for (t, &origin) in origins.iter().enumerate().take(result.triangles.len()) {
-            if t % CHECK_EVERY == 0 {
-                budget.check()?;
-            }
-            let is_same = origin != NEW && {
-                let before = input.corners(origin);
-                result.corners(t as u32).iter().all(|corner| before.contains(corner))
-            };
-            if is_same {
-                stays[origin as usize] = true;
-            } else {
-                new.push(t as u32);
-            }
-        }
-        let all = 0..input.triangles.len() as u32;
-        let (stayed, mut gone): (Vec<u32>, Vec<u32>) = all.partition(|&t| stays[t as usize]);
-        gone.retain(|&t| {
-            let [a, b, c] = input.corners(t);
-            !are_collinear(a, b, c)
-        });
-        Ok(Self { stayed_area: area_of(input, &stayed), pieces_area: 0.0, stays, gone, new })
-    }
-
-    /// Takes those triangles out of `new` that are pieces of triangles of the input, up to a tenth of `lost_beyond`; gives the
-    /// largest distance of one from its triangle, which is that of a corner: a triangle is convex.
-    fn drop_pieces(&mut self, input: &Soup, result: &Soup, origins: &[u32], lost_beyond: f64) -> f64 {
-        let mut most: f64 = 0.0;
-        let mut pieces_area = 0.0;
-        self.new.retain(|&t| {
-            let origin = origins[t as usize];
-            if origin == NEW {
-                return true;
-            }
-            let whole = input.corners(origin);
-            let corners = result.corners(t);
-            let far = corners.map(|corner| corner.distance(closest_point_on_triangle(corner, whole)));
-            let far = far.into_iter().fold(0.0, f64::max);
-            if far > lost_beyond / 10.0 {
-                return true;
-            }
-            most = most.max(far);
-            pieces_area += triangle_area(corners);
-            false
-        });
-        self.pieces_area = pieces_area;
-        most
-    }
-}
-
 fn surface(mesh: &Soup) -> Surface<'_> {
     Surface { positions: &mesh.positions, triangles: &mesh.triangles }
-}
-
-pub(super) fn area_of(mesh: &Soup, triangles: &[u32]) -> f64 {
-    triangles.iter().map(|&t| triangle_area(mesh.corners(t))).sum()
 }
 
 /// A distance of which a part of the surface is known to be no farther than `moved`.
@@ -431,6 +359,7 @@ fn parts(mesh: &Soup, budget: &Budget) -> Result<Components, Stopped> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::repair::NEW;
     use crate::winding::OpenShells;
 
     /// Cubes with these lowest corners and sizes.

@@ -2,6 +2,7 @@
 
 mod boolean;
 mod bounds;
+mod changed;
 mod choices;
 mod convert;
 mod cut_stitch;

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use sha2::{Digest as _, Sha256};
 
 use crate::meshes::{OPEN, SOLID};
-use crate::server::{Server, header, link, problem};
+use crate::server::{Server, header, is, link, refused};
 use crate::town::Town;
 
 fn asked(mesh: &str) -> Value {
@@ -29,15 +29,6 @@ fn put(upload: &Value, bytes: &str) -> u16 {
 
 fn input(upload: &Value) -> Value {
     json!({ "input": { "upload": upload["id"] } })
-}
-
-fn refused(response: Response) -> (u16, String) {
-    let (status, code, _) = problem(response);
-    (status, code)
-}
-
-fn is(status: u16, code: &str) -> (u16, String) {
-    (status, code.to_owned())
 }
 
 #[test]

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use sha2::{Digest as _, Sha256};
 
 use crate::meshes::{OPEN, SOLID};
-use crate::server::{Server, header, link, patiently, problem};
+use crate::server::{Server, header, is, link, patiently, problem, refused};
 use crate::town::Town;
 
 /// What counts at one time of what comes quickly.
@@ -74,15 +74,6 @@ fn send_and_break(server: &Server, path: &str, at: usize, bytes: &[u8], announce
 /// The request that names an upload.
 fn input(path: &str) -> Value {
     json!({ "input": { "upload": path.rsplit('/').next().unwrap() } })
-}
-
-fn refused(response: Response) -> (u16, String) {
-    let (status, code, _) = problem(response);
-    (status, code)
-}
-
-fn is(status: u16, code: &str) -> (u16, String) {
-    (status, code.to_owned())
 }
 
 #[test]

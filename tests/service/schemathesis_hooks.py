@@ -20,6 +20,8 @@ schemathesis.openapi.media_type("text/off", meshes("off"))
 schemathesis.openapi.media_type("application/x-ply", meshes("ply"))
 schemathesis.openapi.media_type("model/gltf-binary", meshes("glb"))
 schemathesis.openapi.media_type("model/gltf+json", meshes("gltf"))
+# A piece of an upload may be any bytes.
+schemathesis.openapi.media_type("application/offset+octet-stream", meshes("off"))
 # Without a name the content tells the format.
 schemathesis.openapi.media_type("application/octet-stream", meshes("stl", "obj", "off", "ply", "glb", "gltf"))
 

@@ -255,6 +255,17 @@ pub(crate) fn header<'r>(response: &'r Response, name: &str) -> &'r str {
     response.headers().get(name).map_or("", |value| value.to_str().unwrap())
 }
 
+/// The status of the problem that an answer must be, and its code.
+pub(crate) fn refused(response: Response) -> (u16, String) {
+    let (status, code, _) = problem(response);
+    (status, code)
+}
+
+/// The same, expected.
+pub(crate) fn is(status: u16, code: &str) -> (u16, String) {
+    (status, code.to_owned())
+}
+
 /// The problem that an answer must be, with its code. Every problem is checked for what all have in common.
 pub(crate) fn problem(response: Response) -> (u16, String, Value) {
     let status = response.status().as_u16();

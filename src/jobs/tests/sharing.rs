@@ -264,6 +264,26 @@ shared_tests! {
         assert!(!content(house.result(id(&job)).await.unwrap()).await.is_empty());
     }
 
+    async fn a_piece_stays_where_nobody_knows_whether_a_row_names_it(street) {
+        let line = Line::to(&street.shared.database.url).await;
+        let url = line.url.clone();
+        let change = move |settings: &mut JobsSettings| {
+            settings.shared.as_mut().unwrap().database.url = url;
+        };
+        let house = street.house_with(change, mend).await;
+        let tenant = Tenant::named("key:a".to_owned());
+        let asked = AskedUpload { owner: None, tenant, file_name: None, metadata: None, length: 6 };
+        let id = house.create_upload(asked).await.unwrap().id;
+        let mut pieces = house.receive_pieces(id, None, 0).await.unwrap();
+        pieces.write(b"a mesh").await.unwrap();
+        line.lose(uuid::Uuid::from(id).as_bytes());
+        assert_eq!(pieces.keep().await.unwrap_err().code, ProblemCode::StoreUnavailable, "the answer is lost");
+        assert!(line.marker.lock().unwrap().is_none(), "the answer is lost");
+        assert_eq!(house.get_upload(id, None).await.unwrap().received, 6, "the row names it");
+        let named = house.take_upload(&id.to_string(), None, true).await.unwrap();
+        assert!(matches!(named, NamedUpload::Mesh(..)), "{named:?}");
+    }
+
     async fn a_bucket_of_another_database_is_refused(street) {
         let first = street.house(0, mend).await;
         first.order(b"a mesh").await.unwrap();
