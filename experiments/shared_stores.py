@@ -74,7 +74,7 @@ class Bucket:
     def files(self):
         """The paths of all files of jobs, by their keys."""
         base = f"{self.folder}/{BUCKET}/shop"
-        return {f"{kind}/{name}": f"{base}/{kind}/{name}" for kind in ("in", "out") if os.path.isdir(f"{base}/{kind}")
+        return {f"{kind}/{name}": f"{base}/{kind}/{name}" for kind in ("in", "out", "pieces") if os.path.isdir(f"{base}/{kind}")
                 for name in os.listdir(f"{base}/{kind}")}
 
     def age(self, seconds):

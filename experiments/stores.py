@@ -4,7 +4,7 @@
 usage: stores.py [--binary PATH] [--s3 PATH] [--cycles 500] [--seed 1] [--lines]
 Two servers take requests and two run jobs, on PostgreSQL and S3. In each cycle one of them, the process of a job or the database is
 killed, or a server that runs jobs is stopped past its lease, while clients send jobs, each with a key of its own, and send again
-what was not answered. At the end every accepted job must have ended once, and no file may be left that no row names.
+what was not answered; one in four brings its mesh in pieces before the job. At the end every accepted job must have ended once, and no file may be left that no row names.
 With `--lines` the network to the database or to the bucket is cut instead, after some bytes in one direction: in the middle of a
 statement, of an answer or of an upload.
 """
@@ -35,7 +35,7 @@ LEASE_S = 2
 SMALL, LARGE = sphere_stl(12), sphere_stl(200)
 # In several parts.
 VAST = sphere_stl(300) if o.lines else LARGE
-accepted_at, recovered, strange = [], [], []
+accepted_at, recovered, strange, brought = [], [], [], []
 asked, unanswered = {}, collections.Counter()
 begun = time.time()
 
@@ -47,7 +47,7 @@ def ask(server, method, path, body=None, headers={}, patience=30):
         connection.request(method, path, body, headers)
         response = connection.getresponse()
         content = response.read()
-        return response.status, content
+        return response.status, content, response.headers
     except (OSError, http.client.HTTPException):
         return None
 
@@ -63,6 +63,27 @@ def patient(server, method, path):
     sys.exit(f"no answer to {method} {path}: {told}")
 
 
+def uploaded(server, body):
+    """The request of a job whose mesh was brought in pieces, over as many connections as it took; `None`: not this time."""
+    version = {"Tus-Resumable": "1.0.0"}
+    made = ask(server, "POST", "/v1/uploads", None, {**version, "Upload-Length": str(len(body))})
+    if not made or made[0] != 201:
+        return None
+    name, until = json.loads(made[1])["id"], time.time() + 60
+    while time.time() < until:
+        stands = ask(server, "HEAD", f"/v1/uploads/{name}", None, version)
+        at = int(stands[2]["upload-offset"]) if stands and stands[0] == 200 else None
+        if at == len(body):
+            return json.dumps({"input": {"upload": name}})
+        if at is not None:
+            end = at + max(len(body) // 3, 1)
+            bytes_of = {**version, "Content-Type": "application/offset+octet-stream", "Upload-Offset": str(at)}
+            ask(server, "PATCH", f"/v1/uploads/{name}", body[at:end], bytes_of)
+        else:
+            time.sleep(0.1)
+    return None
+
+
 def client(number):
     count = 0
     while not over.is_set():
@@ -70,17 +91,26 @@ def client(number):
         key = f"{number}-{count}"
         mesh = VAST if count % 12 == 6 else LARGE if count % 3 == 0 else SMALL
         body = f"{key:<80}".encode() + mesh[80:]
-        path = f"/v1/jobs?operation=repair&labels=%7B%22n%22:%22{key}%22%7D"
+        path, headers = f"/v1/jobs?operation=repair&labels=%7B%22n%22:%22{key}%22%7D", {"Idempotency-Key": key}
+        if count % 4 == 1:
+            body = uploaded(apis[(number + count) % len(apis)], body)
+            if body is None:
+                unanswered[number] += 1
+                continue
+            headers["Content-Type"] = "application/json"
+            with lock:
+                brought.append(key)
         with lock:
             asked[key] = None
         while not over.is_set():
-            told = ask(apis[(number + count + unanswered[number]) % len(apis)], "POST", path, body, {"Idempotency-Key": key})
+            told = ask(apis[(number + count + unanswered[number]) % len(apis)], "POST", path, body, headers)
             if told and told[0] == 202:
                 with lock:
                     asked[key] = json.loads(told[1])["id"]
                     accepted_at.append(time.time())
                 break
-            if told and told[0] not in (429, 503):
+            # 409: what was sent before the connection broke is still under way.
+            if told and told[0] not in (429, 503) and not (told[0] == 409 and key in brought):
                 # It would end this client only, and the others would hide that.
                 strange.append(told[0])
                 print(f"{told[0]}: {told[1][:500]}", file=sys.stderr, flush=True)
@@ -182,7 +212,7 @@ with Town(o.binary, o.s3) as town:
             doubles += ends != [["1"]]
     fenced = sum(open(server.log.name, errors="replace").read().count("a run was in vain")
                  + open(server.log.name, errors="replace").read().count("the claim of a run is void") for server in workers)
-    named = {row[0] for row in town.database.ask("SELECT DISTINCT key FROM names")}
+    named = {row[0] for row in town.database.ask("SELECT key FROM names UNION SELECT key FROM pieces")}
     before = set(town.bucket.files())
     # Files are left alone for an hour, since somebody may be about to name them: it is made to be over.
     town.bucket.age(2 * 60 * 60)
@@ -218,6 +248,7 @@ server, all on one machine. Blows: {kinds}.
 | what | number |
 | --- | --- |
 | requests, each with a key | {len(asked)} |
+| of these with a mesh that came in pieces before | {len(brought)} |
 | answers that did not come or were 503 or 429, sent again | {sum(unanswered.values())} |
 | other answers to a request | {', '.join(map(str, strange)) or 'none'} |
 | jobs accepted | {len(accepted)} |

@@ -52,6 +52,7 @@ declare -A scripts=(
   [holes-speed]="holes_speed.py"
   [stores]="stores.py"
   [stores-cut]="stores.py --lines --cycles 100"
+  [versions]="versions.py"
   [sleepers]="sleepers.py"
   [processors]="processors.py"
 )
@@ -60,6 +61,7 @@ declare -A scripts=(
 declare -A programs=(
   [stores]="--example s3_server"
   [stores-cut]="--example s3_server"
+  [versions]="--example s3_server"
   [sleepers]="--example s3_server --example sleeper"
 )
 

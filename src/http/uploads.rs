@@ -16,7 +16,7 @@ use super::lifecycle::Id;
 use super::problem::{Handled, ProblemAnswer};
 use super::query;
 use super::state::{Caller, Service, State};
-use crate::jobs::{AskedUpload, Pieces, UploadId, UploadRow};
+use crate::jobs::{AskedUpload, Jobs, Pieces, UploadId, UploadRow};
 use crate::wire::{Problem, ProblemCode, UploadInfo};
 
 /// The version of the protocol.
@@ -181,8 +181,9 @@ async fn received(
         ..service.upload_limits(0)
     };
     let mut body = IncomingBody::new(headers, body, limits)?;
+    let jobs = service.jobs.clone();
     let receiving = async move {
-        let taken = take_all(&mut pieces, &mut body).await;
+        let taken = take_all(&jobs, &mut pieces, &mut body).await;
         let kept = pieces.keep().await;
         if taken.is_err() || kept.is_err() {
             body.discard_small().await;
@@ -194,11 +195,18 @@ async fn received(
     receiving.await.map_err(|error| Problem::new(ProblemCode::Internal, error.to_string()))?
 }
 
-async fn take_all(pieces: &mut Pieces, body: &mut IncomingBody) -> Result<(), Problem> {
-    while let Some(bytes) = body.next().await? {
-        pieces.write(&bytes).await?;
+/// Takes what comes, until the body or the service ends: an upload goes on at another server, which is sooner than it may be over.
+async fn take_all(jobs: &Jobs, pieces: &mut Pieces, body: &mut IncomingBody) -> Result<(), Problem> {
+    loop {
+        tokio::select! {
+            bytes = body.next() => match bytes? {
+                Some(bytes) => pieces.write(&bytes).await?,
+                None => return Ok(()),
+            },
+            () = pieces.patience() => pieces.keep().await?,
+            problem = jobs.closed() => return Err(problem),
+        }
     }
-    Ok(())
 }
 
 /// The upload as JSON.

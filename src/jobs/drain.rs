@@ -3,6 +3,8 @@
 use std::time::Duration;
 
 use super::handle::Jobs;
+use super::problems::draining;
+use crate::wire::Problem;
 
 /// Time that stopped jobs get to return when the server ends. The engine needs 50 ms; more means that it hangs.
 const STOP_PATIENCE: Duration = Duration::from_secs(5);
@@ -14,6 +16,12 @@ impl Jobs {
     /// The service takes no more jobs.
     pub fn is_draining(&self) -> bool {
         self.0.draining.is_cancelled()
+    }
+
+    /// Returns when the service is to take no more jobs: what a request that is under way is then answered with.
+    pub async fn closed(&self) -> Problem {
+        self.0.draining.cancelled().await;
+        draining()
     }
 
     /// Takes no more jobs, gives running ones `drain_grace`, stops the rest and queues them again. Queued jobs stay

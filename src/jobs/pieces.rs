@@ -180,8 +180,10 @@ impl Service {
         self.check_open()?;
         let AskedUpload { owner, tenant, file_name, metadata, length } = asked;
         self.settings.check_upload_size(length)?;
-        if length > self.spool.bytes_max() || (presigned.is_none() && self.spool.is_disk_short_of(length)) {
-            return Err(self.storage_full(length));
+        // Its pieces and the mesh that a job gets are there at one time.
+        let needed = length.saturating_mul(2);
+        if needed > self.spool.bytes_max() || (presigned.is_none() && self.spool.is_disk_short_of(needed)) {
+            return Err(self.storage_full(needed));
         }
         self.incoming.check(&tenant, 0, 0, length).await?;
         if presigned.is_some() {
@@ -334,11 +336,11 @@ impl Pieces {
                 let piece = Upload::begin(Arc::clone(&self.service), self.tenant.clone(), purpose).await?;
                 self.open = Some((piece, Instant::now()));
             }
-            let Some((piece, begun)) = &mut self.open else { return Ok(()) };
+            let Some((piece, _)) = &mut self.open else { return Ok(()) };
             let room = usize::try_from(PIECE_BYTES_MAX - piece.bytes()).unwrap_or(usize::MAX);
             let (now, later) = bytes.split_at(bytes.len().min(room));
             let written = piece.write(now).await;
-            let is_complete = piece.bytes() == PIECE_BYTES_MAX || begun.elapsed() > PIECE_PATIENCE;
+            let is_complete = piece.bytes() == PIECE_BYTES_MAX;
             if written.is_err() {
                 // It cannot go on.
                 self.open = None;
@@ -350,6 +352,17 @@ impl Pieces {
             }
         }
         Ok(())
+    }
+
+    /// Returns when what has come has waited for more for long enough, and is to be kept as it is.
+    pub fn patience(&self) -> impl Future<Output = ()> + use<> {
+        let due = self.open.as_ref().map(|(_, begun)| *begun + PIECE_PATIENCE);
+        async move {
+            match due {
+                Some(due) => tokio::time::sleep_until(due).await,
+                None => std::future::pending().await,
+            }
+        }
     }
 
     /// Stores all that has come; it outlasts this process then.

@@ -224,6 +224,14 @@ pub(super) struct Taken {
     pub(super) spool: Arc<Spool>,
 }
 
+impl Taken {
+    /// Removes its files, which may be many, off the threads that serve connections. What a process that ends before leaves goes as
+    /// orphans.
+    fn remove(self) {
+        tokio::task::spawn_blocking(move || self.spool.remove_all(&self.pieces));
+    }
+}
+
 impl Uploaded {
     /// A file that came into the bucket without this service.
     pub(super) fn of_bucket(written: Written) -> Self {
@@ -243,9 +251,7 @@ impl Uploaded {
     /// A row names the file now.
     pub(super) fn named(self) {
         self.written.named();
-        if let Some(Taken { pieces, spool, .. }) = self.taken {
-            spool.remove_all(&pieces);
-        }
+        self.taken.into_iter().for_each(Taken::remove);
     }
 
     /// A row may name the file now, and have taken the upload: what it was made of stays as well.
@@ -255,9 +261,7 @@ impl Uploaded {
 
     /// A row was made that has taken the upload and names another file with the same bytes.
     pub(super) fn not_needed(self) {
-        if let Some(Taken { pieces, spool, .. }) = self.taken {
-            spool.remove_all(&pieces);
-        }
+        self.taken.into_iter().for_each(Taken::remove);
     }
 
     pub(super) fn blob(&self) -> Option<&BlobRef> {

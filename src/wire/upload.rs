@@ -10,6 +10,9 @@ use super::certificate::digest_of_hex;
 use super::problem::Problem;
 use super::problem_code::ProblemCode;
 
+/// Longest name of a file, in characters.
+const FILE_NAME_MAX: usize = 1024;
+
 /// An upload that comes before its job.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct UploadInfo {
@@ -49,6 +52,7 @@ pub struct PresignedRequest {
     pub sha256: String,
     /// Name of the file.
     #[serde(default)]
+    #[schema(max_length = 1024)]
     pub file_name: Option<String>,
 }
 
@@ -58,13 +62,23 @@ impl PresignedRequest {
     /// # Errors
     /// `invalid-parameter`.
     pub fn from_json(text: &[u8]) -> Result<Self, Problem> {
-        serde_json::from_slice(text).map_err(|error| Problem {
+        let asked: Self = serde_json::from_slice(text).map_err(|error| Problem {
             line: Some(error.line() as u64),
             ..Problem::new(
                 ProblemCode::InvalidParameter,
                 format!("expected a JSON object with `length`, `sha256` and perhaps `file_name`: {error}"),
             )
-        })
+        })?;
+        if asked.file_name.as_ref().is_some_and(|name| name.chars().count() > FILE_NAME_MAX) {
+            return Err(Problem {
+                parameter: Some("file_name".to_owned()),
+                ..Problem::new(
+                    ProblemCode::InvalidParameter,
+                    format!("`file_name` has at most {FILE_NAME_MAX} characters"),
+                )
+            });
+        }
+        Ok(asked)
     }
 
     /// The SHA-256.
@@ -98,6 +112,11 @@ mod tests {
         ] {
             assert_eq!(read(text).unwrap_err().code, ProblemCode::InvalidParameter, "{text}");
         }
+        let named = |letters| {
+            read(&format!(r#"{{"length":7,"sha256":"{digest}","file_name":"{}"}}"#, "ä".repeat(letters)))
+        };
+        assert!(named(FILE_NAME_MAX).is_ok());
+        assert_eq!(named(FILE_NAME_MAX + 1).unwrap_err().parameter.as_deref(), Some("file_name"));
         let problem = read(r#"{"length":7,"sha256":"0A"}"#).unwrap().digest().unwrap_err();
         assert_eq!(problem.parameter.as_deref(), Some("sha256"));
     }

@@ -35,6 +35,8 @@ use crate::wire::{JobState, Problem};
 pub use access::DatabaseAccess;
 use hints::HintLine;
 pub(super) use import::Rows;
+#[cfg(test)]
+pub(super) use schema::schema_steps;
 use session::{Body, Session};
 
 /// A store in a database.

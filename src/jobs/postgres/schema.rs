@@ -20,6 +20,12 @@ const STEPS: &[Step] = &[
     Step { sql: include_str!("uploads.sql"), oldest: 1 },
 ];
 
+/// The SQL of each step and the oldest version whose programs work after it.
+#[cfg(test)]
+pub(in crate::jobs) fn schema_steps() -> impl Iterator<Item = (&'static str, i64)> {
+    STEPS.iter().map(|step| (step.sql, step.oldest))
+}
+
 /// Brings the tables to the newest version, all steps or none.
 pub(super) async fn migrate(client: &Client) -> Result<(), OpenError> {
     client.batch_execute("BEGIN").await?;

@@ -23,28 +23,35 @@ pub(super) fn look_at(path: &Path) -> Result<StoreFile, OpenError> {
     }
     // Not to read only: what a killed server left beside the file is taken in.
     let connection = Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_WRITE)?;
-    let has = |table: &str| {
-        connection
-            .query_row("SELECT 1 FROM sqlite_schema WHERE type = 'table' AND name = ?1", [table], |_| Ok(()))
-            .optional()
-    };
-    if has("jobs")?.is_none() {
+    if !has_table(&connection, "jobs")? {
         return Ok(StoreFile::Empty);
     }
-    if has("identity")?.is_none() {
+    if !has_table(&connection, "identity")? {
         return Ok(StoreFile::Unmarked);
     }
     let mark = connection.query_row("SELECT mark FROM identity", [], |row| row.get(0)).optional()?;
     Ok(mark.map_or(StoreFile::Unmarked, StoreFile::Marked))
 }
 
+/// Whether there is such a table, which an older program may not have made.
+fn has_table(connection: &Connection, name: &str) -> Result<bool, OpenError> {
+    let mut statement =
+        connection.prepare("SELECT 1 FROM sqlite_schema WHERE type = 'table' AND name = ?1")?;
+    Ok(statement.exists([name])?)
+}
+
 /// Whether a row of the store at `path` names one of these files.
 pub(super) fn names_any(path: &Path, keys: &[&str]) -> Result<bool, OpenError> {
     let connection = Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_WRITE)?;
-    let mut statement = connection.prepare("SELECT 1 FROM names WHERE key = ?1")?;
-    for key in keys {
-        if statement.exists([key])? {
-            return Ok(true);
+    for table in ["names", "pieces"] {
+        if !has_table(&connection, table)? {
+            continue;
+        }
+        let mut statement = connection.prepare(&format!("SELECT 1 FROM {table} WHERE key = ?1"))?;
+        for key in keys {
+            if statement.exists([key])? {
+                return Ok(true);
+            }
         }
     }
     Ok(false)

@@ -1,5 +1,6 @@
 //! The cases on PostgreSQL.
 
+mod older;
 mod pace;
 #[path = "../../../../../tests/support/postgres_server.rs"]
 mod server;
@@ -119,6 +120,7 @@ macro_rules! postgres_tests {
         }
     )+ };
 }
+use postgres_tests;
 
 postgres_tests! {
     async fn many_servers_make_the_tables_once() {
