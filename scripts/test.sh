@@ -178,10 +178,10 @@ set_up_gltf_rules() {
     npm ci --prefix $into --no-audit --no-fund --silent && cp tests/gltf_rules/package-lock.json $into/installed.json
 }
 
-# What deploy/ has, by the tools of those who read it: Helm, the schemas of Kubernetes, promtool; the list of the image's parts by the
-# schema of CycloneDX.
+# What the image is built from; what deploy/ has, by the tools of those who read it: Helm, the schemas of Kubernetes, promtool; the list of
+# the image's parts by the schema of CycloneDX.
 deploy() {
-  python3 scripts/deploy/names.py || return 1
+  python3 scripts/deploy/names.py && python3 scripts/deploy/image.py || return 1
   set_up_deploy || { echo "the rest is not run: what judges it cannot be installed here"; return 0; }
   target/deploy/python/bin/python scripts/deploy/chart.py target/debug/meshmend || return 1
   target/deploy/python/bin/python scripts/deploy/compose.py target/debug/meshmend || return 1
