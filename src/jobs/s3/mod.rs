@@ -281,10 +281,8 @@ fn failure(error: object_store::Error) -> io::Error {
         object_store::Error::AlreadyExists { .. } | object_store::Error::Precondition { .. } => {
             io::ErrorKind::AlreadyExists
         }
-        object_store::Error::PermissionDenied { .. } | object_store::Error::Unauthenticated { .. } => {
-            io::ErrorKind::PermissionDenied
-        }
-        // The bucket, or the way to it, does not do its work now.
+        // The bucket, or the way to it, does not do its work now. Also where it refuses what is asked: a request that a line has cut
+        // may look like one that was changed.
         _ => io::ErrorKind::HostUnreachable,
     };
     io::Error::new(kind, error)

@@ -47,7 +47,7 @@ impl Parts {
             Err(error) => return Err(error),
         }
         let content = Arc::new(content);
-        self.run(move |parts| async move {
+        let uploaded = self.run(move |parts| async move {
             let mut upload = parts.bucket.put_multipart(&place).await?;
             let sent = send_parts(&mut *upload, &content, bytes).await;
             match sent {
@@ -60,7 +60,8 @@ impl Parts {
                     Err(error)
                 }
             }
-        })
+        });
+        uploaded.map_err(in_vain)
     }
 
     /// Brings a file here. Blocks.
@@ -82,6 +83,15 @@ impl Parts {
             }
         }
     }
+}
+
+/// Why a file was not brought into the bucket. When the answer to the end of an upload is lost, the client asks for the end again, and is
+/// told that there is no such upload: then it may have become a file, which is removed.
+fn in_vain(error: io::Error) -> io::Error {
+    if error.kind() == io::ErrorKind::NotFound {
+        return io::Error::new(io::ErrorKind::HostUnreachable, error);
+    }
+    error
 }
 
 /// Sends the parts of a file, a few at a time.
@@ -131,4 +141,16 @@ async fn bring(
 
 fn generic(source: impl std::error::Error + Send + Sync + 'static) -> object_store::Error {
     object_store::Error::Generic { store: "this machine", source: Box::new(source) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_upload_whose_end_was_not_answered_is_no_file_that_is_missing() {
+        let of = |kind: io::ErrorKind| in_vain(kind.into()).kind();
+        assert_eq!(of(io::ErrorKind::NotFound), io::ErrorKind::HostUnreachable);
+        assert_eq!(of(io::ErrorKind::AlreadyExists), io::ErrorKind::AlreadyExists);
+    }
 }

@@ -119,5 +119,6 @@ fn a_wrong_key_is_refused_and_said() {
     let refused = S3Blobs::open(&access, &house.copies.path().join("others")).unwrap();
     let error = write(&refused, "in/upload", b"hello").unwrap_err();
     assert!(!error.to_string().contains("wrong"), "{error}");
+    assert_eq!(error.kind(), std::io::ErrorKind::HostUnreachable, "callers are to come again");
     assert!(listed(&*house.store).is_empty());
 }
