@@ -210,6 +210,9 @@ with Town(o.binary, o.s3) as town:
                 lost.append(job["id"])
             ends = town.database.ask(f"SELECT count(*) FROM changes WHERE job = '{job['id']}' AND state IN ('succeeded', 'failed', 'cancelled')")
             doubles += ends != [["1"]]
+    if strange:
+        for server in apis:
+            sys.stderr.writelines(line for line in open(server.log.name, errors="replace") if " ERROR " in line or '"ERROR"' in line)
     fenced = sum(open(server.log.name, errors="replace").read().count("a run was in vain")
                  + open(server.log.name, errors="replace").read().count("the claim of a run is void") for server in workers)
     named = {row[0] for row in town.database.ask("SELECT key FROM names UNION SELECT key FROM pieces")}
