@@ -6,7 +6,9 @@ use tokio_postgres::Row;
 use uuid::Uuid;
 
 use super::locks::{self, ARRIVALS};
-use super::rows::{get, id as id_of, json_if_any, last_ms, later, number, number_of, state, to_json, value};
+use super::rows::{
+    self, COLUMNS, get, id as id_of, json_if_any, last_ms, later, number, number_of, state, to_json, value,
+};
 use super::session::Session;
 use super::{keeping, listing, outbox, tenants, uploads};
 use crate::jobs::store::{
@@ -121,6 +123,24 @@ async fn end(session: &Session, id: JobId, ending: &Ending) -> Result<(), StoreE
     outbox::post(session, id).await
 }
 
+/// Claims a job of the first tenant that has one and that nobody else claims one of at this moment: many who claim do not wait for
+/// each other. The tenants before it that are left.
+pub(super) async fn claim_in_turn(
+    session: &Session,
+    request: ClaimRequest,
+    turns: Vec<(String, Lane)>,
+) -> Result<(Option<JobRow>, Vec<(String, Lane)>), StoreError> {
+    let mut left = Vec::new();
+    for (tenant, lane) in turns {
+        if !tenants::try_hold(session, &request, &tenant).await? {
+            left.push((tenant, lane));
+        } else if let Some(row) = claim_held(session, &request, &tenant, lane).await? {
+            return Ok((Some(row), left));
+        }
+    }
+    Ok((None, left))
+}
+
 /// Claims a job of this tenant in this lane, if one is still there and the tenant has not got its share meanwhile.
 pub(super) async fn claim(
     session: &Session,
@@ -128,24 +148,31 @@ pub(super) async fn claim(
     tenant: String,
     lane: Lane,
 ) -> Result<Option<JobRow>, StoreError> {
+    tenants::hold(session, &request, &tenant).await?;
+    claim_held(session, &request, &tenant, lane).await
+}
+
+async fn claim_held(
+    session: &Session,
+    request: &ClaimRequest,
+    tenant: &str,
+    lane: Lane,
+) -> Result<Option<JobRow>, StoreError> {
+    let sql = format!(
+        "WITH claimed AS (UPDATE jobs SET state = 'running', epoch = epoch + 1, worker = $2, lease_until = $3, started_at = $4,
+                 is_quick = $5, turn = nextval('turns')
+             WHERE id = $1 RETURNING *),
+         noted AS (INSERT INTO changes (job, number, state, epoch, at)
+             SELECT id, 1 + (SELECT coalesce(max(number), 0) FROM changes WHERE job = $1), state, epoch, $4 FROM claimed)
+         SELECT {COLUMNS} FROM claimed"
+    );
     loop {
-        let Some(id) = tenants::take(session, &request, &tenant, lane).await? else { return Ok(None) };
-        session
-            .change(
-                "UPDATE jobs SET state = 'running', epoch = epoch + 1, worker = $2, lease_until = $3, started_at = $4,
-                     is_quick = $5, turn = nextval('turns')
-                 WHERE id = $1",
-                &[
-                    &Uuid::from(id),
-                    &request.worker,
-                    &later(session.now, request.lease),
-                    &session.now,
-                    &request.is_only,
-                ],
-            )
+        let Some(id) = tenants::take(session, request, tenant, lane).await? else { return Ok(None) };
+        let lease_until = later(session.now, request.lease);
+        let row = session
+            .row(&sql, &[&Uuid::from(id), &request.worker, &lease_until, &session.now, &request.is_only])
             .await?;
-        change(session, id).await?;
-        match get(session, id).await {
+        match rows::job(&row) {
             Ok(row) => return Ok(Some(row)),
             // A row that an older program wrote and this one cannot read must not stand in the way of the others.
             Err(StoreError::Unavailable(error)) => {

@@ -1,5 +1,6 @@
 //! Locks of the database that a transaction holds until its end, where one row is not what must not change.
 
+use super::rows::value;
 use super::session::Session;
 use crate::jobs::store::StoreError;
 
@@ -29,4 +30,14 @@ pub(super) async fn hold_share(
 ) -> Result<(), StoreError> {
     let sql = "SELECT pg_advisory_xact_lock($1, hashtext($2::text || coalesce(' ' || $3::text, '')))";
     session.change(sql, &[&SHARE, &tenant, &worker]).await.map(drop)
+}
+
+/// The same without a wait: whether nobody does.
+pub(super) async fn try_hold_share(
+    session: &Session,
+    tenant: &str,
+    worker: Option<&str>,
+) -> Result<bool, StoreError> {
+    let sql = "SELECT pg_try_advisory_xact_lock($1, hashtext($2::text || coalesce(' ' || $3::text, '')))";
+    value(&session.row(sql, &[&SHARE, &tenant, &worker]).await?, 0)
 }

@@ -224,7 +224,20 @@ impl JobStore for PostgresStore {
         Box::pin(async move {
             let asked = request.clone();
             let turns = self.read(move |session| Box::pin(tenants::in_turn(session, asked))).await?;
-            for (tenant, lane) in turns {
+            if turns.is_empty() {
+                return Ok(None);
+            }
+            let asked = request.clone();
+            let claim = self.write_and_tell(
+                move |session| Box::pin(claims::claim_in_turn(session, asked, turns)),
+                |(row, _)| row.iter().map(|row| Hint::Job(row.id)).collect(),
+            );
+            let (row, left) = claim.await?;
+            if row.is_some() {
+                return Ok(row);
+            }
+            // Jobs may be left to those of whom others have claimed one meanwhile.
+            for (tenant, lane) in left {
                 let request = request.clone();
                 let claim = self.write_and_tell(
                     move |session| Box::pin(claims::claim(session, request, tenant, lane)),

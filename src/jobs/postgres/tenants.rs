@@ -49,13 +49,18 @@ pub(super) async fn in_turn(
     };
     let mut turns = Vec::new();
     for lane in [Some(request.prefer), (!request.is_only).then_some(other)].into_iter().flatten() {
-        let sql = "SELECT tenant
-            FROM (SELECT DISTINCT ON (tenant) tenant, id AS first FROM jobs WHERE state = 'queued' AND lane = $1
-                  ORDER BY tenant, id) AS own
+        // From tenant to tenant, past their jobs: a long queue costs no more than its tenants do.
+        let sql = "WITH RECURSIVE own (tenant) AS (
+                (SELECT tenant FROM jobs WHERE state = 'queued' ORDER BY tenant LIMIT 1)
+                UNION ALL
+                SELECT (SELECT tenant FROM jobs WHERE state = 'queued' AND tenant > own.tenant ORDER BY tenant LIMIT 1)
+                FROM own WHERE tenant IS NOT NULL)
+            SELECT tenant FROM own, LATERAL (SELECT id FROM jobs
+                WHERE state = 'queued' AND tenant = own.tenant AND lane = $1 ORDER BY id LIMIT 1) AS first
             WHERE tenant = '' OR $3 > (SELECT count(*) FROM jobs
                 WHERE state = 'running' AND tenant = own.tenant AND is_quick = $2 AND worker = coalesce($4::text, worker))
             ORDER BY (SELECT count(*) FROM jobs WHERE state = 'running' AND tenant = own.tenant),
-                coalesce((SELECT max(turn) FROM jobs WHERE tenant = own.tenant), 0), first";
+                coalesce((SELECT max(turn) FROM jobs WHERE tenant = own.tenant), 0), first.id";
         let share = i64::try_from(request.share).unwrap_or(i64::MAX);
         let worker = counted_of(&request);
         for row in session.rows(sql, &[&number_of(lane), &request.is_only, &share, &worker]).await? {
@@ -70,16 +75,31 @@ fn counted_of(request: &ClaimRequest) -> Option<&str> {
     request.is_share_of_worker.then_some(request.worker.as_str())
 }
 
-/// Locks the first job of a tenant that nobody else is about to take, if the tenant may have another one.
+/// Waits until nobody else claims a job of the tenant, so that its share is exact.
+pub(super) async fn hold(session: &Session, request: &ClaimRequest, tenant: &str) -> Result<(), StoreError> {
+    if tenant.is_empty() { Ok(()) } else { locks::hold_share(session, tenant, counted_of(request)).await }
+}
+
+/// The same without a wait: whether nobody else does.
+pub(super) async fn try_hold(
+    session: &Session,
+    request: &ClaimRequest,
+    tenant: &str,
+) -> Result<bool, StoreError> {
+    if tenant.is_empty() {
+        Ok(true)
+    } else {
+        locks::try_hold_share(session, tenant, counted_of(request)).await
+    }
+}
+
+/// Locks the first job of a tenant that is held and that nobody else is about to take, if the tenant may have another one.
 pub(super) async fn take(
     session: &Session,
     request: &ClaimRequest,
     tenant: &str,
     lane: Lane,
 ) -> Result<Option<JobId>, StoreError> {
-    if !tenant.is_empty() {
-        locks::hold_share(session, tenant, counted_of(request)).await?;
-    }
     let sql = "SELECT id FROM jobs WHERE state = 'queued' AND tenant = $1 AND lane = $2
             AND ($1 = '' OR $4 > (SELECT count(*) FROM jobs
                 WHERE state = 'running' AND tenant = $1 AND is_quick = $3 AND worker = coalesce($5::text, worker)))

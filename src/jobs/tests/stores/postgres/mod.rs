@@ -158,6 +158,23 @@ postgres_tests! {
         assert_eq!(claim(&*house.store).await.unwrap().id, first);
     }
 
+    async fn a_tenant_of_whom_another_server_claims_a_job_is_not_waited_for_while_others_have_some() {
+        let house = PostgresHouse::open().await;
+        let of = |tenant: &str| NewJob { tenant: Tenant::named(tenant), ..job() };
+        let first = admit(&*house.store, of("a")).await.id;
+        let second = admit(&*house.store, of("b")).await.id;
+        // As a server does that claims a job of `a`.
+        let lock = "BEGIN; SELECT pg_advisory_xact_lock(x'6d650003'::integer, hashtext('a'))";
+        house.aside.batch_execute(lock).await.unwrap();
+        assert_eq!(claim(&*house.store).await.unwrap().id, second);
+        let store = Arc::clone(&house.store);
+        let waiting = tokio::spawn(async move { claim(&*store).await });
+        tokio::time::sleep(Duration::from_millis(200)).await;
+        assert!(!waiting.is_finished(), "no other tenant has one: it is waited for");
+        house.aside.batch_execute("ROLLBACK").await.unwrap();
+        assert_eq!(waiting.await.unwrap().unwrap().id, first);
+    }
+
     async fn no_limit_is_passed_by_servers_that_come_at_one_time() {
         let house = PostgresHouse::open().await;
         let other = Arc::new(open_store(&house.url).await.unwrap());
