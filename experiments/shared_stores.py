@@ -115,7 +115,10 @@ class Line:
         if self.closes:
             self.close_all()
         self.cut.set()
-        threading.Timer(self.seconds, self.mend).start()
+        timer = threading.Timer(self.seconds, self.mend)
+        # The campaign may end before.
+        timer.daemon = True
+        timer.start()
 
     def mend(self):
         with self.change:
