@@ -128,6 +128,19 @@ impl Jobs {
 }
 
 impl Service {
+    async fn create(&self, new: NewJob) -> Result<Created, StoreError> {
+        let mut creating = self.store.create(new, self.settings.queue_max);
+        match poll_fn(|context| Poll::Ready(creating.as_mut().poll(context))).await {
+            Poll::Ready(created) => created,
+            Poll::Pending => {
+                // A slot that asks for work now asks a store that has been told of the job: its claim becomes durable
+                // with the job, not after it.
+                self.work.notify_one();
+                creating.await
+            }
+        }
+    }
+
     async fn admit(self: &Arc<Self>, submission: Submission) -> Result<JobRow, Problem> {
         let source = self.source_of(&submission).await?;
         let input = match (&submission.upload, &source) {
@@ -179,22 +192,22 @@ impl Service {
             Some(Created::Known(row)) => return Ok(row),
             None => {}
         }
-        let is_taken_over = new.taken.is_some();
-        let mut creating = self.store.create(new, self.settings.queue_max);
-        let created = match poll_fn(|context| Poll::Ready(creating.as_mut().poll(context))).await {
-            Poll::Ready(created) => created,
-            Poll::Pending => {
-                // A slot that asks for work now asks a store that has been told of the job: its claim becomes durable
-                // with the job, not after it.
-                self.work.notify_one();
-                creating.await
-            }
-        };
-        let files = [submission.upload, submission.material].into_iter().flatten();
+        let mut upload = submission.upload;
+        let mut created = self.create(new.clone()).await;
+        if let (Err(StoreError::NotFound), Some(taken)) = (&created, new.taken) {
+            // Another request that names the upload was quicker: it is the same as to name its job.
+            let row = self.upload_of(taken, new.owner.as_deref()).await;
+            let job = row.map_err(|_| taken_meanwhile())?.job.ok_or_else(taken_meanwhile)?;
+            let source = self.store.get(job).await.map_err(|error| store_problem(&error))?;
+            upload = None;
+            created = self
+                .create(NewJob { input: source.input, source: Some(source.id), taken: None, ..new })
+                .await;
+        }
+        let files = [upload, submission.material].into_iter().flatten();
         let row = match created {
             Ok(Created::Known(row)) => return Ok(row),
             Ok(Created::New(row)) => row,
-            Err(StoreError::NotFound) if is_taken_over => return Err(taken_meanwhile()),
             Err(error) => {
                 if matches!(error, StoreError::Unavailable(_)) {
                     // The row may be there all the same, and name them; otherwise they are found as orphans.

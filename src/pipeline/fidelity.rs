@@ -107,12 +107,16 @@ impl Fidelity {
 }
 
 /// The volume of an input, where it is defined: that of bodies which pass through each other counts what they share twice, and
-/// that of bodies some of which are inside out is taken off. Where all are, it is what they bound.
+/// so does that of a body inside another that turns the same way; that of bodies some of which are inside out is taken off. Where all are, it
+/// is what they bound.
 pub(super) fn defined_volume(before: Option<&Analysis>) -> Option<f64> {
     let embedded = before.filter(|analysis| analysis.properties.is_embedded != Some(false))?;
     let volume = embedded.measures.volume?;
-    let is_inverted = |finding: &&Finding| finding.code == DefectCode::InvertedShell;
-    match embedded.findings.iter().find(is_inverted) {
+    let found = |code: DefectCode| embedded.findings.iter().find(|finding: &&Finding| finding.code == code);
+    if found(DefectCode::MisnestedShell).is_some() {
+        return None;
+    }
+    match found(DefectCode::InvertedShell) {
         None => Some(volume),
         Some(inverted) => (inverted.count == embedded.counts.components).then_some(-volume),
     }
@@ -262,7 +266,8 @@ impl<'i> Original<'i> {
 
     fn volume_change(&self, result: &Soup) -> Option<f64> {
         let before = self.volume.filter(|&volume| volume != 0.0)?;
-        let after = signed_volume((0..result.triangles.len() as u32).map(|t| result.corners(t)));
+        // Where all bodies are inside out, a file with fewer triangles is it too.
+        let after = signed_volume((0..result.triangles.len() as u32).map(|t| result.corners(t))).abs();
         Some((after - before) / before.abs())
     }
 

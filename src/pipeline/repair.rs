@@ -130,9 +130,14 @@ fn replay(
         };
     }
     if steps.is_empty() && input.may_come_back_as(encoding) {
-        let is_valid = input.examination.certificate.is_printable();
-        let outcome = if is_valid { Outcome::Identical } else { Outcome::Partial };
-        return Ok(input.returned_as_it_is(report.made_by(Vec::new()), outcome));
+        let certificate = &input.examination.certificate;
+        if certificate.is_printable() {
+            return Ok(input.returned_as_it_is(report.made_by(Vec::new()), Outcome::Identical));
+        }
+        if options.require.unwrap_or(Require::Printable).is_of_a_solid() {
+            return Ok(report.refused(Refusal::NotRepairable { witness: certificate.witnesses.first().cloned() }));
+        }
+        return Ok(input.returned_as_it_is(report.made_by(Vec::new()), Outcome::Partial));
     }
     let local: Vec<Step> = steps.iter().filter(|&step| *step != Step::Simplify).cloned().collect();
     let attempt = budget.stage(Stage::Repair, || {

@@ -1,6 +1,6 @@
 //! Fewer triangles: a manifold from the file, simplified, written and judged at each target.
 
-use super::fidelity::Original;
+use super::fidelity::{Original, defined_volume};
 use super::input::Input;
 use super::output::{Candidate, NoCandidate, refusal};
 use super::plan::Attempt;
@@ -117,7 +117,7 @@ impl Writer<'_> {
         report: &Report,
     ) -> Result<FidelityVerdict, Stopped> {
         let origins = self.origins(result);
-        let volume = report.before.as_ref().and_then(|analysis| analysis.measures.volume);
+        let volume = defined_volume(report.before.as_ref());
         let (input, budget) = (&self.input.soup, self.budget);
         Ok(faithful::judge_alone(
             input,
@@ -173,7 +173,7 @@ impl Fewer {
             origins.iter().map(|&t| draft.triangle_origin[t as usize]).collect()
         };
         let origins = of_input(&origins);
-        let volume = report.before.as_ref().and_then(|analysis| analysis.measures.volume);
+        let volume = defined_volume(report.before.as_ref());
         let solid = budget.stage(Stage::Measure, || {
             Solid::of(&draft.positions, &draft.triangles, options.wrap.open_shells, budget)
         })?;
