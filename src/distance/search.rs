@@ -1,7 +1,7 @@
 //! The distance from one surface to another: vertices and samples first, then the triangles that may exceed them.
 
 use super::bound::{Corner, upper_bound};
-use super::pieces::{Farthest, Piece, Refined, Tolerance, WORK_MAX, refine};
+use super::pieces::{Farthest, Piece, Refined, Refining, Tolerance, WORK_MAX};
 use super::samples::Areas;
 use super::scale::Common;
 use super::target::Target;
@@ -55,8 +55,11 @@ const REFINED: u64 = 16;
 /// Vertices or samples looked at by one task.
 const POINTS_OF_TASK: usize = 1024;
 
-/// Pieces that are refined before it is seen how far the farthest point is now: few at first.
-const WAVES: std::ops::RangeInclusive<usize> = 64..=16_384;
+/// Pieces that are refined before it is seen how far the farthest point is now and which have the largest bounds: few at first.
+const WAVES: std::ops::RangeInclusive<usize> = 64..=256;
+
+/// Share of the largest bound at which pieces wait for the next wave.
+const GOAL: f64 = 0.8;
 
 /// Pieces that one task refines.
 const PIECES_OF_TASK: usize = 16;
@@ -327,13 +330,16 @@ impl Directed<'_, '_> {
             let enough = tolerance.enough(farthest.distance);
             // No more pieces than the work that is left is enough for.
             let most = ((self.options.refinements_max - work) / WORK_MAX + 1).min(wave_len as u64) as usize;
+            let goal = largest(&waiting, next).map_or(enough, |bound| enough.max(bound * GOAL));
             wave.clear();
-            while wave.len() < most && largest(&waiting, next).is_some_and(|bound| bound > enough) {
+            while wave.len() < most && largest(&waiting, next).is_some_and(|bound| bound > goal) {
                 let is_candidate = candidates
                     .get(next)
                     .is_some_and(|&(bound, _)| waiting.peek().is_none_or(|p| p.0.upper < bound));
                 if let (true, Some(&(upper, t))) = (is_candidate, candidates.get(next)) {
-                    wave.push(Piece { corners: self.corners(vertices, t), triangle: t, upper });
+                    let corners = self.corners(vertices, t);
+                    // It was asked about when it became one.
+                    wave.push(Piece { corners, triangle: t, upper, is_seen: true });
                     next += 1;
                 } else if let Some(Waiting(piece)) = waiting.pop() {
                     wave.push(piece);
@@ -343,7 +349,7 @@ impl Directed<'_, '_> {
                 break;
             }
             for Refined { farthest: found, upper: aside, left, work: spent } in
-                self.refine_wave(&wave, farthest)?
+                self.refine_wave(&wave, farthest, goal)?
             {
                 farthest = farthest.or(found);
                 *upper = upper.max(aside);
@@ -356,12 +362,13 @@ impl Directed<'_, '_> {
         Ok(farthest)
     }
 
-    fn refine_wave(&self, wave: &[Piece], farthest: Farthest) -> Result<Vec<Refined>, Stopped> {
+    fn refine_wave(&self, wave: &[Piece], farthest: Farthest, goal: f64) -> Result<Vec<Refined>, Stopped> {
+        let Self { to, view, budget, .. } = self;
+        let refining = Refining { to, view, tolerance: self.tolerance(), goal, budget };
         let parts = par::try_map_ranges(wave.len(), PIECES_OF_TASK, |range| {
             let (mut all, mut look) = (Vec::with_capacity(range.len()), self.view.look());
             for &piece in &wave[range] {
-                let (look, tolerance) = (&mut look, self.tolerance());
-                let refined = refine(self.to, &self.view, look, piece, farthest, tolerance, self.budget)?;
+                let refined = refining.refine(&mut look, piece, farthest)?;
                 self.budget.spend(refined.work * REFINED)?;
                 all.push(refined);
             }

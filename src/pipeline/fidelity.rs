@@ -221,8 +221,9 @@ impl<'i> Original<'i> {
         let corners = self.input.corners(triangle);
         let Some(solid) = &self.solid else { return Ok(places.next()) };
         for place in places {
+            let is_hidden = solid.hides(place, corners, nearby, budget)?;
             let sees = |outlook: &Outlook| outlook.sees(place, corners, nearby, budget);
-            if !solid.hides(place, corners, budget)? || self.outlook.as_ref().map_or(Ok(false), sees)? {
+            if !is_hidden || self.outlook.as_ref().map_or(Ok(false), sees)? {
                 return Ok(Some(place));
             }
         }

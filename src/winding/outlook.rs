@@ -95,14 +95,9 @@ impl Outlook {
             return Ok(true);
         }
         for (n, [beside, side]) in self.unit.both_sides(place, corners).enumerate() {
+            let known = &mut nearby.in_the_way[n];
             let is_closed = |k: usize, direction| {
-                let known = nearby.in_the_way[n][k].and_then(|t| self.corners.get(t as usize));
-                if known.is_some_and(|&corners| meets(beside, beside + direction * OUT, corners)) {
-                    budget.spend(1)?;
-                    return Ok(true);
-                }
-                nearby.in_the_way[n][k] = first_met(&self.bvh, &self.corners, [beside, direction], budget)?;
-                Ok(nearby.in_the_way[n][k].is_some())
+                is_closed(&self.bvh, &self.corners, [beside, direction], (k, &mut *known), budget)
             };
             if let Some(k) = way_out(side, is_closed)? {
                 nearby.way_out = Some([n, k]);
@@ -113,11 +108,21 @@ impl Outlook {
     }
 }
 
+/// What was in the way in each direction.
+pub(super) type InTheWay = [Option<u32>; DIRECTIONS];
+
+/// A direction of the spiral, and so many before it those that are near it: what is in the way there mostly is here.
+const NEAR_DIRECTIONS: [usize; 4] = [0, 3, 5, 8];
+
 /// What a look from a place nearby found.
 #[derive(Debug, Default)]
 pub struct LookedFrom {
-    /// What was in the way in each direction on both sides.
-    in_the_way: [[Option<u32>; DIRECTIONS]; 2],
+    /// What was in the way on both sides.
+    in_the_way: [InTheWay; 2],
+    /// What of a solid was.
+    pub(super) in_the_gap: [InTheWay; 2],
+    /// What of a solid was opposite.
+    pub(super) opposite: [Option<u32>; 2],
     /// The side and the direction in which nothing was.
     way_out: Option<[usize; 2]>,
 }
@@ -157,8 +162,30 @@ pub(super) fn way_out(
     Ok(None)
 }
 
+/// Whether one of the first triangles of a tree, those with `corners`, is in the way out from a place in direction `k`. What is
+/// known to have been in the way nearby is looked at first.
+pub(super) fn is_closed(
+    bvh: &Bvh,
+    corners: &[[DVec3; 3]],
+    [place, direction]: [DVec3; 2],
+    (k, known): (usize, &mut InTheWay),
+    budget: &Budget,
+) -> Result<bool, Stopped> {
+    let out = place + direction * OUT;
+    for before in NEAR_DIRECTIONS {
+        let Some(t) = k.checked_sub(before).and_then(|k| known[k]) else { continue };
+        budget.spend(1)?;
+        if corners.get(t as usize).is_some_and(|&corners| meets(place, out, corners)) {
+            known[k] = Some(t);
+            return Ok(true);
+        }
+    }
+    known[k] = first_met(bvh, corners, [place, direction], budget)?;
+    Ok(known[k].is_some())
+}
+
 /// One of the first triangles of a tree, those with `corners`, that is in the way out from a place in a direction.
-pub(super) fn first_met(
+fn first_met(
     bvh: &Bvh,
     corners: &[[DVec3; 3]],
     [place, direction]: [DVec3; 2],
@@ -174,8 +201,27 @@ pub(super) fn first_met(
     Ok(None)
 }
 
+/// Whether one of the first triangles of a tree, those with `corners`, meets a segment. The one that is `known` to meet one nearby
+/// is looked at first.
+pub(super) fn is_met(
+    bvh: &Bvh,
+    corners: &[[DVec3; 3]],
+    segment: [DVec3; 2],
+    known: &mut Option<u32>,
+    budget: &Budget,
+) -> Result<bool, Stopped> {
+    let [from, to] = segment;
+    let before = known.and_then(|t| corners.get(t as usize));
+    if before.is_some_and(|&corners| meets(from, to, corners)) {
+        budget.spend(1)?;
+        return Ok(true);
+    }
+    *known = met(bvh, corners, segment, budget)?;
+    Ok(known.is_some())
+}
+
 /// One of the first triangles of a tree, those with `corners`, that a segment meets.
-pub(super) fn met(
+fn met(
     bvh: &Bvh,
     corners: &[[DVec3; 3]],
     [from, to]: [DVec3; 2],

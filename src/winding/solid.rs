@@ -1,9 +1,9 @@
 //! The solid that any triangles stand for, and which of them are hidden in it.
 
-use super::outlook::{BESIDE, GAP, Unit, first_met, met, way_out};
-use super::{OpenShells, Shells, WindingTree, sort, turned};
+use super::outlook::{BESIDE, GAP, InTheWay, Unit, is_closed, is_met, way_out};
+use super::{LookedFrom, OpenShells, Shells, WindingTree, sort, turned};
 use crate::budget::{Budget, Stopped};
-use crate::geom::{DVec3, Sign, triangle_area, upward_crossing};
+use crate::geom::{Aabb, DVec3, Sign, triangle_area, upward_crossing};
 use crate::spatial::Bvh;
 
 /// The solid that triangles stand for: what their closed shells and those that nearly bound a volume wind around.
@@ -57,21 +57,38 @@ impl Solid {
 
     /// Whether nobody sees a triangle at a `place` on it: both sides are inside, or a side that is not is a gap between
     /// bodies that is narrower than 1 % of the longest side of all and that no way leads out of in a straight line. A cavity
-    /// that a shell of its own bounds is no gap. The triangle need not be one of those that were read.
+    /// that a shell of its own bounds is no gap. The triangle need not be one of those that were read. What was in the way from a place
+    /// nearby is looked at first.
     ///
     /// # Errors
     /// When the budget stops the run.
-    pub fn hides(&self, place: DVec3, corners: [DVec3; 3], budget: &Budget) -> Result<bool, Stopped> {
+    pub fn hides(
+        &self,
+        place: DVec3,
+        corners: [DVec3; 3],
+        nearby: &mut LookedFrom,
+        budget: &Budget,
+    ) -> Result<bool, Stopped> {
         if self.corners.is_empty() {
             return Ok(false);
         }
+        // What is above one side is mostly above the other: the tree is asked once.
+        let column = Aabb::of(self.unit.both_sides(place, corners).map(|[beside, _]| beside));
+        let mut above = Vec::new();
+        if column.min.is_finite() {
+            let column = Aabb { max: column.max.with_z(f64::MAX), ..column };
+            self.bvh.visit_box(column, budget, |t| above.push(t))?;
+        }
         // A triangle without area has no sides, and is not hidden.
         let mut has_sides = false;
-        for [beside, side] in self.unit.both_sides(place, corners) {
-            let is_hidden = match self.surroundings(beside, budget)? {
+        for (n, [beside, side]) in self.unit.both_sides(place, corners).enumerate() {
+            let is_hidden = match self.surroundings(beside, &above, budget)? {
                 Surroundings::Inside => true,
                 Surroundings::Cavity => false,
-                Surroundings::Outside => self.is_in_gap(beside, side, budget)?,
+                Surroundings::Outside => {
+                    let known = (&mut nearby.opposite[n], &mut nearby.in_the_gap[n]);
+                    self.is_in_gap(beside, side, known, budget)?
+                }
             };
             if !is_hidden {
                 return Ok(false);
@@ -81,15 +98,16 @@ impl Solid {
         Ok(has_sides)
     }
 
-    fn surroundings(&self, place: DVec3, budget: &Budget) -> Result<Surroundings, Stopped> {
+    /// Where a place is that these triangles may be `above`.
+    fn surroundings(&self, place: DVec3, above: &[u32], budget: &Budget) -> Result<Surroundings, Stopped> {
         let (mut count, mut of_parts) = (0, Vec::new());
-        self.bvh.visit_upward_ray(place, budget, |t| {
+        for &t in above {
             if let Some(turn) = upward_crossing(place, self.corners[t as usize]) {
                 let turn = if turn == Sign::Positive { 1 } else { -1 };
                 count += turn;
                 of_parts.extend(self.part.get(t as usize).map(|&part| (part, turn)));
             }
-        })?;
+        }
         if self.cones.is_inside(place, f64::from(count), budget)? {
             return Ok(Surroundings::Inside);
         }
@@ -100,13 +118,20 @@ impl Solid {
     }
 
     /// Whether what is opposite is near and something is in the way in all directions.
-    fn is_in_gap(&self, place: DVec3, normal: DVec3, budget: &Budget) -> Result<bool, Stopped> {
+    fn is_in_gap(
+        &self,
+        place: DVec3,
+        normal: DVec3,
+        (opposite, known): (&mut Option<u32>, &mut InTheWay),
+        budget: &Budget,
+    ) -> Result<bool, Stopped> {
         // Cones are not there.
         let real = &self.corners[..self.corners.len() - self.cone_count];
-        if met(&self.bvh, real, [place, place + normal * GAP], budget)?.is_none() {
+        if !is_met(&self.bvh, real, [place, place + normal * GAP], opposite, budget)? {
             return Ok(false);
         }
-        let is_closed = |_, direction| Ok(first_met(&self.bvh, real, [place, direction], budget)?.is_some());
+        let is_closed =
+            |k: usize, direction| is_closed(&self.bvh, real, [place, direction], (k, &mut *known), budget);
         Ok(way_out(normal, is_closed)?.is_none())
     }
 }
@@ -142,12 +167,14 @@ mod tests {
         (positions, triangles)
     }
 
+    fn hides(solid: &Solid, place: DVec3, corners: [DVec3; 3]) -> bool {
+        solid.hides(place, corners, &mut LookedFrom::default(), &Budget::unlimited()).unwrap()
+    }
+
     fn hidden(mesh: &(Vec<DVec3>, Vec<[u32; 3]>)) -> Vec<u32> {
         let solid = Solid::of(&mesh.0, &mesh.1, OpenShells::Auto, &Budget::unlimited()).unwrap();
         let corners = |t: usize| mesh.1[t].map(|v| mesh.0[v as usize]);
-        let is_hidden = |t: &usize| {
-            solid.hides(corners(*t).iter().sum::<DVec3>() / 3.0, corners(*t), &Budget::unlimited()).unwrap()
-        };
+        let is_hidden = |t: &usize| hides(&solid, corners(*t).iter().sum::<DVec3>() / 3.0, corners(*t));
         (0..mesh.1.len()).filter(is_hidden).map(|t| t as u32).collect()
     }
 
@@ -167,10 +194,9 @@ mod tests {
         // The bottom of the second cube, at z = 5.
         let bottom =
             (12..24).find(|&t| crossing.1[t].iter().all(|&v| crossing.0[v as usize].z == 5.0)).unwrap();
-        let unlimited = Budget::unlimited();
         let corners = crossing.1[bottom].map(|v| crossing.0[v as usize]);
-        assert!(solid.hides(DVec3::new(7.0, 7.0, 5.0), corners, &unlimited).unwrap());
-        assert!(!solid.hides(DVec3::new(12.0, 12.0, 5.0), corners, &unlimited).unwrap());
+        assert!(hides(&solid, DVec3::new(7.0, 7.0, 5.0), corners));
+        assert!(!hides(&solid, DVec3::new(12.0, 12.0, 5.0), corners));
     }
 
     #[test]
@@ -181,13 +207,34 @@ mod tests {
             both(cube(0.0, 10.0), (positions, triangles))
         };
         let top = |mesh: &(Vec<DVec3>, Vec<[u32; 3]>), place: DVec3| {
-            let unlimited = Budget::unlimited();
-            let solid = Solid::of(&mesh.0, &mesh.1, OpenShells::Auto, &unlimited).unwrap();
-            solid.hides(place, mesh.1[2].map(|v| mesh.0[v as usize]), &unlimited).unwrap()
+            let solid = Solid::of(&mesh.0, &mesh.1, OpenShells::Auto, &Budget::unlimited()).unwrap();
+            hides(&solid, place, mesh.1[2].map(|v| mesh.0[v as usize]))
         };
         let (middle, rim) = (DVec3::new(6.0, 5.0, 10.0), DVec3::new(6.0, 0.004, 10.0));
         assert!(top(&lid(10.01), middle));
         assert!(!top(&lid(10.01), rim));
         assert!(!top(&lid(11.0), middle));
+    }
+
+    #[test]
+    fn what_was_in_the_way_nearby_changes_no_answer_and_saves_work() {
+        // A gap between two cubes, which ends where the upper one does.
+        let mut upper = cube(0.0, 10.0);
+        upper.0.iter_mut().for_each(|p| *p += DVec3::new(5.0, 0.0, 10.01));
+        let mesh = both(cube(0.0, 10.0), upper);
+        let solid = Solid::of(&mesh.0, &mesh.1, OpenShells::Auto, &Budget::unlimited()).unwrap();
+        let (mut nearby, alone, after_others) =
+            (LookedFrom::default(), Budget::unlimited(), Budget::unlimited());
+        let mut hidden = 0;
+        for i in 0..900 {
+            let place = DVec3::new(f64::from(i % 30) / 3.0 + 0.1, f64::from(i / 30) / 3.0 + 0.1, 10.0);
+            let corners = [place, place + DVec3::X * 0.01, place + DVec3::Y * 0.01];
+            let is_hidden = solid.hides(place, corners, &mut LookedFrom::default(), &alone).unwrap();
+            assert_eq!(solid.hides(place, corners, &mut nearby, &after_others), Ok(is_hidden), "{place}");
+            hidden += u32::from(is_hidden);
+        }
+        assert!((200..700).contains(&hidden), "{hidden}");
+        let [alone, after_others] = [alone, after_others].map(|budget| budget.work_used());
+        assert!(10 * after_others < 9 * alone, "{after_others} of {alone}");
     }
 }
