@@ -135,7 +135,9 @@ fn replay(
             return Ok(input.returned_as_it_is(report.made_by(Vec::new()), Outcome::Identical));
         }
         if options.require.unwrap_or(Require::Printable).is_of_a_solid() {
-            return Ok(report.refused(Refusal::NotRepairable { witness: certificate.witnesses.first().cloned() }));
+            return Ok(
+                report.refused(Refusal::NotRepairable { witness: certificate.witnesses.first().cloned() })
+            );
         }
         return Ok(input.returned_as_it_is(report.made_by(Vec::new()), Outcome::Partial));
     }

@@ -10,6 +10,7 @@ use meshmend::pipeline::{
     Answer, ChangeKind, Fidelity, Limits, Operation, Options, Outcome, Refusal, Require, SimplifyChoices, run,
 };
 use meshmend::simplify::Target;
+use std::f64::consts::PI;
 
 fn answer(operation: Operation, soup: &RawSoup, options: &Options) -> Answer {
     run(operation, &encode(soup, Encoding::Obj), options, &Budget::unlimited()).unwrap()
@@ -130,6 +131,58 @@ fn each_level_of_a_simplification_has_its_own_word() {
     let all = Options { simplify, require: Some(Require::Faithful), ..Options::default() };
     let refused = answer(Operation::Simplify, &cube(), &all).report;
     assert!(matches!(refused.refusal, Some(Refusal::NotFaithful { .. })), "{:?}", refused.refusal);
+}
+
+/// A ball of radius 1 in `n` rows of `2 n` squares.
+fn ball(n: u32) -> RawSoup {
+    let place = |row: u32, column: u32| {
+        let [polar, around] = [row, column].map(|step| f64::from(step) / f64::from(n) * PI);
+        [polar.sin() * around.cos(), polar.sin() * around.sin(), polar.cos()]
+    };
+    let columns = 2 * n;
+    let id = |row: u32, column: u32| match row {
+        0 => 0,
+        row if row == n => 1,
+        row => 2 + (row - 1) * columns + column % columns,
+    };
+    let mut soup = RawSoup { positions: vec![[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]], ..RawSoup::default() };
+    soup.positions.extend((1..n).flat_map(|row| (0..columns).map(move |column| place(row, column))));
+    for (row, column) in (0..n).flat_map(|row| (0..columns).map(move |column| (row, column))) {
+        let [a, b, c, d] =
+            [id(row, column), id(row + 1, column), id(row + 1, column + 1), id(row, column + 1)];
+        soup.triangles
+            .extend([[a, b, c], [a, c, d]].into_iter().filter(|[a, b, c]| a != b && b != c && c != a));
+    }
+    soup
+}
+
+#[test]
+fn with_fewer_triangles_volumes_are_compared_where_they_are_defined() {
+    let (upright, apart) = (ball(24), ball(24).inside_out().moved([5.0; 3]));
+    let fewer = SimplifyChoices { targets: vec![Target::Ratio(0.5)], ..SimplifyChoices::default() };
+    let options = Options { simplify: fewer, require: Some(Require::Faithful), ..Options::default() };
+    for soup in [
+        &upright,
+        &apart,
+        &upright.clone().with(&apart),
+        &upright.clone().with(&upright.clone().moved([0.5, 0.0, 0.0])),
+    ] {
+        let repaired = answer(Operation::Repair, soup, &options);
+        assert_eq!(word(&repaired), Fidelity::Faithful, "{:?}", repaired.report.fidelity);
+    }
+    for soup in [&upright, &apart] {
+        let simplified = answer(Operation::Simplify, soup, &Options { require: None, ..options.clone() });
+        assert_eq!(word(&simplified), Fidelity::Faithful, "{:?}", simplified.report.fidelity);
+    }
+}
+
+#[test]
+fn a_body_inside_another_that_turns_the_same_way_counts_for_no_volume() {
+    let soup = cuboid([30.0; 3]).with(&ball(8).moved([15.0; 3]));
+    let limits = Limits { volume_change_max: Some(1e-6), ..Limits::default() };
+    let repaired = answer(Operation::Repair, &soup, &Options { limits, ..Options::default() });
+    assert_eq!(repaired.report.outcome, Some(Outcome::Repaired), "{:?}", repaired.report.refusal);
+    assert_ne!(word(&repaired), Fidelity::Changed, "{:?}", repaired.report.fidelity);
 }
 
 #[test]

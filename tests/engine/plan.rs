@@ -10,7 +10,7 @@ use meshmend::budget::Budget;
 use meshmend::formats::Encoding;
 use meshmend::pipeline::{
     Answer, ChosenPlan, ChosenRemedy, CutStitchChoices, Failure, Operation, Options, Outcome, PlanMismatch,
-    Proposal, Remedy, Require, SimplifyChoices, Step, run,
+    Proposal, Refusal, Remedy, Require, SimplifyChoices, Step, run,
 };
 use meshmend::repair::nest::Policy;
 use meshmend::simplify::Target;
@@ -41,6 +41,24 @@ fn with_two_holes() -> Vec<u8> {
 
 fn loops(answer: &Answer) -> u64 {
     answer.report.after.as_ref().unwrap().counts.boundary_loops
+}
+
+#[test]
+fn a_plan_without_steps_gives_an_invalid_file_back_only_where_no_solid_is_asked_for() {
+    let (open, solid) = (with_two_holes(), encode(&cube(), Encoding::Off));
+    let nothing = || ChosenPlan { steps: Some(Vec::new()), ..ChosenPlan::default() };
+    for require in [None, Some(Require::Printable), Some(Require::Faithful)] {
+        let refused = repair(&open, &with_plan(nothing(), require)).unwrap();
+        assert!(refused.output.is_none(), "{require:?}");
+        assert!(matches!(refused.report.refusal, Some(Refusal::NotRepairable { witness: Some(_) })));
+        let kept = repair(&solid, &with_plan(nothing(), require)).unwrap();
+        assert_eq!(
+            (bytes_of(&kept, &solid), kept.report.outcome),
+            (Some(&solid[..]), Some(Outcome::Identical))
+        );
+    }
+    let kept = repair(&open, &with_plan(nothing(), Some(Require::None))).unwrap();
+    assert_eq!((bytes_of(&kept, &open), kept.report.outcome), (Some(&open[..]), Some(Outcome::Partial)));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use utoipa::ToSchema;
 use super::blocker::{Blocker, MovedFace};
 use super::words::OperatorReason;
 use crate::mesh::polyhedron::FaceId;
-use crate::modeller::{DualRefusal, ExportRefusal, ImportRefusal, Refusal};
+use crate::modeller::{DualRefusal, ExportRefusal, ImportRefusal, Refusal, Rule};
 use crate::pipeline::ModellerRefusal;
 
 /// An operator that was refused.
@@ -93,6 +93,11 @@ fn import(refusal: &ImportRefusal) -> String {
             format!("the planes around the vertex at {}, {}, {} do not meet in one point", p.x, p.y, p.z)
         }
         ImportRefusal::Invalid(validity) => match validity.faults.first() {
+            Some(fault) if fault.rule == Rule::OneVolume => format!(
+                "it is not one body with its cavities, for the shell of {}; repair the mesh first where it is inside out, or give each \
+                 body a file of its own",
+                named("face", &fault.faces)
+            ),
             Some(fault) => format!(
                 "the rule `{}` is broken at {}; repair the mesh first",
                 fault.rule.name(),

@@ -153,7 +153,11 @@ def announced(mesh: KeptMesh) -> dict[str, str]:
 
 def size_of(mesh: KeptMesh) -> int:
     """Bytes of a mesh."""
-    return os.stat(mesh).st_size if isinstance(mesh, str | os.PathLike) else memoryview(mesh).nbytes
+    if isinstance(mesh, str | os.PathLike):
+        return os.stat(mesh).st_size
+    if isinstance(mesh, bytes | bytearray | memoryview):
+        return memoryview(mesh).nbytes
+    raise TypeError(f"an upload is a path or bytes, which can be read again from where it stands, and no {type(mesh).__name__}")
 
 
 def body_of(field: str, options: Mapping[str, object], meshes: Sequence[AsyncMesh], material: Mesh | None) -> Body:
