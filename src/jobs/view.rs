@@ -86,12 +86,12 @@ pub(super) fn result_name(row: &JobRow, encoding: Encoding, level: usize) -> Str
     format!("{}{mark}{number}.{}", stem(row), wire::extension_of(format))
 }
 
-/// The uploaded file's name without directories and extension, in harmless characters.
+/// The uploaded file's name without directories and extension, in harmless characters: letters of every script are.
 fn stem(row: &JobRow) -> String {
     let name = row.file_name.as_deref().unwrap_or_default();
     let base = name.rsplit(['/', '\\']).next().unwrap_or_default();
     let stem = base.rsplit_once('.').map_or(base, |(stem, _)| stem);
-    let is_harmless = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_');
+    let is_harmless = |c: char| c.is_alphanumeric() || matches!(c, '.' | '-' | '_');
     let stem: String = stem.chars().take(100).map(|c| if is_harmless(c) { c } else { '_' }).collect();
     let stem = stem.trim_start_matches('.');
     if stem.is_empty() { format!("mesh-{}", row.id) } else { stem.to_owned() }

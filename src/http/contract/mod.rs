@@ -383,13 +383,17 @@ fn add_problems(operation: &mut Operation, codes: &[ProblemCode]) {
         }
     }
     for (status, codes) in by_status {
-        let lines: Vec<_> = codes.iter().map(|code| format!("`{code}`: {}", code.explanation())).collect();
+        let lines = codes.iter().map(|code| format!("`{code}`: {}", code.explanation()));
         let answers = &mut operation.responses.responses;
         let answer = answers.entry(status.to_string()).or_insert_with(|| RefOr::T(problem_answer()));
         if let RefOr::T(answer) = answer {
-            let known =
-                if answer.description.is_empty() { Vec::new() } else { vec![answer.description.clone()] };
-            answer.description = [known, lines].concat().join("\n");
+            let mut told: Vec<String> = answer.description.lines().map(str::to_owned).collect();
+            for line in lines {
+                if !told.contains(&line) {
+                    told.push(line);
+                }
+            }
+            answer.description = told.join("\n");
         }
     }
 }
