@@ -134,7 +134,7 @@ fn each_level_of_a_simplification_has_its_own_word() {
 }
 
 /// A ball of radius 1 in `n` rows of `2 n` squares.
-fn ball(n: u32) -> RawSoup {
+pub(crate) fn ball(n: u32) -> RawSoup {
     let place = |row: u32, column: u32| {
         let [polar, around] = [row, column].map(|step| f64::from(step) / f64::from(n) * PI);
         [polar.sin() * around.cos(), polar.sin() * around.sin(), polar.cos()]
