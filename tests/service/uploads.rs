@@ -1,7 +1,7 @@
 //! How a mesh comes in, and what stops it.
 
 use crate::meshes::{OPEN, SOLID, long_job};
-use crate::server::{Server, link, problem};
+use crate::server::{Server, header, link, problem};
 use reqwest::blocking::multipart::{Form, Part};
 use serde_json::{Value, json};
 use std::time::Duration;
@@ -40,6 +40,21 @@ fn a_form_brings_the_mesh_and_its_options_in_any_order() {
         let name = response.headers()["content-disposition"].to_str().unwrap();
         assert!(name.contains("part_one") && name.contains(".stl"), "{name}");
     }
+}
+
+#[test]
+fn a_result_keeps_the_letters_of_the_name_of_its_file() {
+    let server = Server::start();
+    // As curl and browsers send it.
+    let form = format!(
+        "--b\r\nContent-Disposition: form-data; name=\"mesh\"; filename=\"Stück 1.off\"\r\n\r\n{SOLID}\r\n--b--\r\n"
+    );
+    let request = server.post("/v1/repair").header("content-type", "multipart/form-data; boundary=b");
+    let response = request.body(form).send().unwrap();
+    assert_eq!(
+        header(&response, "content-disposition"),
+        "attachment; filename=\"St_ck_1.off\"; filename*=UTF-8''St%C3%BCck_1.off"
+    );
 }
 
 #[test]
