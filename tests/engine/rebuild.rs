@@ -4,7 +4,7 @@ use crate::fidelity::ball;
 use crate::oracle::RawSoup;
 use crate::raw_files::encode;
 use crate::repair::{answer, coarse, count, flat, refused, repaired, without};
-use crate::solids::{cube, cuboid};
+use crate::solids::cube;
 use meshmend::analysis::{Analysis, DefectCode};
 use meshmend::formats::Encoding;
 use meshmend::pipeline::{
