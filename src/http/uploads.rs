@@ -195,7 +195,8 @@ async fn received(
     receiving.await.map_err(|error| Problem::new(ProblemCode::Internal, error.to_string()))?
 }
 
-/// Takes what comes, until the body or the service ends: an upload goes on at another server, which is sooner than it may be over.
+/// Takes what comes until the body or the service ends. The rest of an upload may take longer than a server that ends has; the client
+/// sends it to another one.
 async fn take_all(jobs: &Jobs, pieces: &mut Pieces, body: &mut IncomingBody) -> Result<(), Problem> {
     loop {
         tokio::select! {

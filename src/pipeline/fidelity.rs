@@ -267,7 +267,7 @@ impl<'i> Original<'i> {
 
     fn volume_change(&self, result: &Soup) -> Option<f64> {
         let before = self.volume.filter(|&volume| volume != 0.0)?;
-        // Where all bodies are inside out, a file with fewer triangles is it too.
+        // Simplified alone, a file whose bodies are all inside out stays so; what it bounds is compared, as in `defined_volume`.
         let after = signed_volume((0..result.triangles.len() as u32).map(|t| result.corners(t))).abs();
         Some((after - before) / before.abs())
     }
