@@ -3,15 +3,17 @@
 ARG BUILD_BASE=docker.io/library/rust:1.95-bookworm
 ARG RUN_BASE=docker.io/library/debian:bookworm-slim
 
-FROM ${BUILD_BASE} AS build
+# Compiled on the processor that builds, for the one that the image is for: only files go into the image, so nothing is emulated.
+FROM --platform=$BUILDPLATFORM ${BUILD_BASE} AS build
+ARG TARGETARCH
 WORKDIR /build
 COPY . .
 ENV CARGO_PROFILE_RELEASE_DEBUG=none CARGO_PROFILE_RELEASE_STRIP=symbols
 # With a list of what is in it (CycloneDX).
-RUN cargo build --release --locked --bin meshmend && python3 scripts/sbom.py > /sbom.cdx.json && mkdir /data
+RUN scripts/deploy/build_for.sh "${TARGETARCH}" /meshmend && python3 scripts/sbom.py > /sbom.cdx.json && mkdir /data
 
 FROM ${RUN_BASE}
-COPY --from=build /build/target/release/meshmend /usr/local/bin/meshmend
+COPY --from=build /meshmend /usr/local/bin/meshmend
 # Whom to believe when a webhook is called.
 COPY --from=build /etc/ssl/certs/ca-certificates.crt /etc/ssl/certs/ca-certificates.crt
 COPY --from=build /build/LICENSE-MIT /build/LICENSE-APACHE /sbom.cdx.json /usr/share/doc/meshmend/

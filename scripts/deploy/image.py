@@ -43,7 +43,7 @@ def not_included(context):
 def not_copied(context):
     """Files that the Dockerfile copies from the folder of the build, or runs there, and that are not there."""
     text = (ROOT / "Dockerfile").read_text()
-    for name in re.findall(r"/build/(?!target/)(\S+)", text) + re.findall(r"python3 (\S+)", text):
+    for name in re.findall(r"/build/(?!target/)(\S+)", text) + re.findall(r"(?<= )scripts/\S+", text):
         if not list(context.glob(name)):
             yield f"the Dockerfile needs {name}"
 

@@ -11,7 +11,7 @@ use crate::formats::{self, ReadLimits};
 use crate::jobs::StageClock;
 use crate::par;
 use crate::pipeline::{self, Answer, Operation, PictureChoices, Product, Require};
-use crate::wire::{OptionError, Options, Problem, ProblemCode, Report, TimingMs, report_page};
+use crate::wire::{OptionError, Options, PictureFormat, Problem, ProblemCode, Report, TimingMs, report_page};
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -58,7 +58,16 @@ fn attempt(errand: &Errand<'_>) -> Result<Done, Problem> {
     // A picture has one format, whatever its name.
     let is_picture = request.operation == Operation::Render;
     let by_name = output.as_ref().filter(|_| !is_picture).and_then(Place::format).map(Into::into);
-    let options = Options { output_format: options.output_format.or(by_name), ..options };
+    let is_model = is_picture && output.as_ref().and_then(Place::extension).is_some_and(is_glb);
+    let picture_format = options.picture_format.or(is_model.then_some(PictureFormat::Glb));
+    if is_picture && picture_format.is_some_and(|format| (format == PictureFormat::Glb) != is_model) {
+        let named = output.as_ref().and_then(Place::extension);
+        if let Some(extension) = named {
+            let detail = format!("--picture-format does not go with the extension .{extension}");
+            return Err(wrong(detail));
+        }
+    }
+    let options = Options { output_format: options.output_format.or(by_name), picture_format, ..options };
     options.check(request.operation.into()).map_err(|e| about_options(&e))?;
     if *output == Some(Place::Stream) && options.targets.as_ref().is_some_and(|t| t.len() > 1) {
         return Err(wrong("standard output holds one mesh; several --targets need a file name"));
@@ -116,8 +125,9 @@ fn check_places(errand: &Errand<'_>) -> Result<(), Problem> {
         )));
     }
     let of_picture = output.as_ref().filter(|_| is_picture).and_then(Place::extension);
-    if let Some(extension) = of_picture.filter(|extension| !is_png(extension)) {
-        return Err(wrong(format!("a picture is a PNG file, which cannot have the extension .{extension}")));
+    if let Some(extension) = of_picture.filter(|extension| !is_png(extension) && !is_glb(extension)) {
+        let detail = format!("a picture is a PNG or GLB file, which cannot have the extension .{extension}");
+        return Err(wrong(detail));
     }
     let has_format = |place: &Place| place.format().is_some() || is_named("output_format");
     match output {
@@ -131,6 +141,10 @@ fn check_places(errand: &Errand<'_>) -> Result<(), Problem> {
 /// Whether a file of this extension can be a PNG, of one picture or, as APNG, of several.
 fn is_png(extension: &str) -> bool {
     ["png", "apng"].iter().any(|png| extension.eq_ignore_ascii_case(png))
+}
+
+fn is_glb(extension: &str) -> bool {
+    extension.eq_ignore_ascii_case("glb")
 }
 
 pub(super) fn wrong(detail: impl Into<String>) -> Problem {

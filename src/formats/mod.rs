@@ -25,6 +25,7 @@ pub mod threemf;
 mod words;
 
 pub use announced::triangles_at_most;
+pub use colors::as_linear;
 pub use error::{Place, ReadError, ReadErrorKind, WriteError};
 pub use obj::materials::color_faces;
 pub use polygons::split_polygon;

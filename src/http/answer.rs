@@ -7,7 +7,7 @@ use sha2::{Digest as _, Sha256};
 use super::both::{Both, Mesh};
 use super::mesh_file;
 use super::problem::{Handled, json};
-use super::representation::{OCTET_STREAM, PNG, Representation};
+use super::representation::{OCTET_STREAM, Representation, media_type_of_picture};
 use super::state::AboutJob;
 use crate::jobs::{JobId, Jobs, StoredFile};
 use crate::wire::{self, Job, Problem, ProblemCode, Stage};
@@ -74,7 +74,7 @@ pub(super) fn picture((content, sha256): (Vec<u8>, [u8; 32]), request: &HeaderMa
     let mut response = if mesh_file::matches_etag(request, &etag) {
         StatusCode::NOT_MODIFIED.into_response()
     } else {
-        ([(header::CONTENT_TYPE, PNG)], content).into_response()
+        ([(header::CONTENT_TYPE, media_type_of_picture(&content))], content).into_response()
     };
     put(response.headers_mut(), header::ETAG, &etag);
     response.headers_mut().insert(header::CACHE_CONTROL, HeaderValue::from_static("private, no-cache"));

@@ -7,11 +7,11 @@ use axum::response::IntoResponse as _;
 
 use super::prefer::Wait;
 use super::problem::{Handled, ProblemAnswer};
-use super::representation::{OCTET_STREAM, PNG, json_only, one_of};
+use super::representation::{OCTET_STREAM, PNG, json_only, media_type_of_picture, one_of};
 use super::state::{Caller, Service, State};
 use super::{answer, mesh_file, query};
 use crate::jobs::JobId;
-use crate::wire::{Job, ProblemCode, Report};
+use crate::wire::{Format, Job, Problem, ProblemCode, Report, media_type_of};
 
 /// Media type of a report for people.
 const HTML: &str = "text/html";
@@ -93,10 +93,37 @@ pub(super) async fn report(state: State, caller: Extension<Caller>, id: Id, requ
 #[utoipa::path(get, path = "/v1/jobs/{id}/thumbnail.png", operation_id = "get_job_thumbnail", tag = "jobs",
     params(("id" = String, Path, description = "Id of the job.")))]
 pub(super) async fn thumbnail(state: State, caller: Extension<Caller>, id: Id, request: Request) -> Handled {
-    one_of(request.headers(), &[PNG])?;
     query::none(request.uri())?;
-    let stored = state.jobs.picture(visible(&state, &caller, id).await?).await?;
-    Ok(answer::picture(stored, request.headers()))
+    let id = visible(&state, &caller, id).await?;
+    picture(&state, id, request.headers(), PNG).await
+}
+
+/// Download a job's picture that is a mesh.
+///
+/// Of a job that draws with `picture_format=glb`.
+#[utoipa::path(get, path = "/v1/jobs/{id}/thumbnail.glb", operation_id = "get_job_thumbnail_mesh", tag = "jobs",
+    params(("id" = String, Path, description = "Id of the job.")))]
+pub(super) async fn thumbnail_mesh(
+    state: State,
+    caller: Extension<Caller>,
+    id: Id,
+    request: Request,
+) -> Handled {
+    query::none(request.uri())?;
+    let id = visible(&state, &caller, id).await?;
+    picture(&state, id, request.headers(), media_type_of(Format::Glb)).await
+}
+
+/// The picture of a job, which must be of this media type.
+async fn picture(state: &State, id: JobId, headers: &HeaderMap, media_type: &'static str) -> Handled {
+    one_of(headers, &[media_type])?;
+    let stored = state.jobs.picture(id).await?;
+    let own = media_type_of_picture(&stored.0);
+    if own != media_type {
+        let detail = format!("the job's picture is of the type {own}: its link `thumbnail` names it");
+        return Err(Problem::new(ProblemCode::NotFound, detail).into());
+    }
+    Ok(answer::picture(stored, headers))
 }
 
 /// Download a job's mesh.

@@ -19,7 +19,9 @@ use super::representation::{PNG, Representation, json_only, one_of};
 use super::state::{Caller, Service, State};
 use super::trace;
 use crate::jobs::{JobId, Jobs, NamedUpload, Submission};
-use crate::wire::{InputRef, Job, Operation, Options, Problem, ProblemCode, Report};
+use crate::wire::{
+    Format, InputRef, Job, Operation, Options, PictureFormat, Problem, ProblemCode, Report, media_type_of,
+};
 
 /// Describe a mesh.
 ///
@@ -113,20 +115,38 @@ pub(super) async fn boolean(state: State, caller: Extension<Caller>, request: Re
 
 /// Draw a mesh.
 ///
-/// Mesh in, PNG out: from one side or several, defects coloured and marked, backs red, or turning as an animated PNG.
-/// `Accept: application/json` gives the report of what was found.
+/// Mesh in, PNG out: from one side or several, defects coloured and marked, backs red, or turning as an animated PNG. Or GLB out,
+/// which viewers turn: `Accept: model/gltf-binary` or `picture_format=glb`. `Accept: application/json` gives the report of what was
+/// found.
 #[utoipa::path(post, path = "/v1/render", tag = "operations")]
 pub(super) async fn render(state: State, caller: Extension<Caller>, request: Request) -> Handled {
     let (head, body) = request.into_parts();
-    let representation = match one_of(&head.headers, &[PNG, "application/json"])? {
-        PNG => Representation::Picture,
-        _ => Representation::Report,
-    };
     let operation = Operation::Render;
     let options = query::options(&head.uri, operation)?;
+    drawn(&head.headers, options.picture_format)?;
     let intake = intake::receive(&state, &caller, &head.headers, body, Some(operation)).await?;
-    let submission = submission(&state, &caller, operation, options, intake, &head.headers).await?;
+    let mut submission = submission(&state, &caller, operation, options, intake, &head.headers).await?;
+    let (representation, format) = drawn(&head.headers, submission.options.picture_format)?;
+    submission.options.picture_format = format;
     finish(&state, submission, representation, &head).await
+}
+
+/// What `Accept` asks for, and in which format a picture is drawn; `format`: the one that the options ask for.
+fn drawn(
+    headers: &HeaderMap,
+    format: Option<PictureFormat>,
+) -> Result<(Representation, Option<PictureFormat>), Problem> {
+    let glb = media_type_of(Format::Glb);
+    let offers = match format {
+        Some(PictureFormat::Png) => &[PNG, "application/json"][..],
+        Some(PictureFormat::Glb) => &[glb, "application/json"],
+        None => &[PNG, glb, "application/json"],
+    };
+    Ok(match one_of(headers, offers)? {
+        PNG => (Representation::Picture, format),
+        media_type if media_type == glb => (Representation::Picture, Some(PictureFormat::Glb)),
+        _ => (Representation::Report, format),
+    })
 }
 
 /// Make a job and do not wait for it.

@@ -11,6 +11,11 @@ pub(super) const OCTET_STREAM: &str = "application/octet-stream";
 /// A picture.
 pub(super) const PNG: &str = "image/png";
 
+/// The media type of a picture that is kept.
+pub(super) fn media_type_of_picture(content: &[u8]) -> &'static str {
+    if content.starts_with(b"glTF") { media_type_of(Format::Glb) } else { PNG }
+}
+
 /// A form of the answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Representation {

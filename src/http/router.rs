@@ -51,6 +51,7 @@ fn api() -> OpenApiRouter<Arc<Service>> {
         .routes(routes!(lifecycle::report))
         .routes(routes!(lifecycle::result))
         .routes(routes!(lifecycle::thumbnail))
+        .routes(routes!(lifecycle::thumbnail_mesh))
         .routes(routes!(deliveries::deliveries))
         .routes(routes!(deliveries::redeliver))
         .routes(routes!(about::errors))

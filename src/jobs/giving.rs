@@ -81,7 +81,7 @@ impl Jobs {
         Ok(files)
     }
 
-    /// The job's picture (PNG), with its digest.
+    /// The job's picture (PNG or GLB), with its digest.
     ///
     /// # Errors
     /// `not-found` (also when none was asked for), `job-not-finished`, `expired`, or the problem for which the job has none.

@@ -28,7 +28,7 @@ pub(super) struct Product<C> {
     pub(super) result: Option<MadeMesh<C>>,
     /// The meshes of further targets of a simplification.
     pub(super) levels: Vec<MadeMesh<C>>,
-    /// The picture, as PNG.
+    /// The picture, as PNG or GLB.
     pub(super) picture: Option<C>,
 }
 

@@ -2,7 +2,7 @@
 
 use super::live::Live;
 use super::store::{JobRow, ResultRef};
-use crate::wire::{self, Encoding, Job, JobState, Links, Outcome, Progress};
+use crate::wire::{self, Encoding, Job, JobState, Links, Outcome, PictureFormat, Progress};
 
 /// A mesh that can be sent.
 #[derive(Debug)]
@@ -34,7 +34,8 @@ pub(super) fn job(row: &JobRow, live: Option<&Live>) -> Job {
     let has_report = has_files && ending.is_some_and(|ending| ending.report.is_some());
     let has_result = has_files && ending.is_some_and(|ending| ending.result.is_some());
     let has_picture = has_files && ending.is_some_and(|ending| ending.picture.is_some());
-    let links = Links::new(&id, has_report, has_result, has_picture);
+    let picture = has_picture.then(|| row.options.picture_format.unwrap_or(PictureFormat::Png));
+    let links = Links::new(&id, has_report, has_result, picture);
     Job {
         state: row.state,
         operation: row.operation,

@@ -49,7 +49,7 @@ pub use self::modeller::{
     ModellerRefusal, ModellerReport, ModellerStep, RangeName, RangeSide,
 };
 pub use self::operation::{Facts, MESHES_MAX, Operation, Product, Require, Work};
-pub use self::picture::PictureChoices;
+pub use self::picture::{PictureChoices, PictureFormat};
 pub use self::printing::PrintingReport;
 pub use self::project::{AttributeCounts, PartFacts, PartReport};
 pub use self::rebuild::{Effort, WrapChoices};

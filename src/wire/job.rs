@@ -7,7 +7,7 @@ use utoipa::ToSchema;
 use super::labels::Labels;
 use super::problem::Problem;
 use super::report::TimingMs;
-use super::words::{Fidelity, Operation, Outcome, Stage, words};
+use super::words::{Fidelity, Operation, Outcome, PictureFormat, Stage, words};
 
 words! {
     /// Where a job stands.
@@ -56,18 +56,21 @@ pub struct Links {
     /// Its mesh; null while there is none.
     #[schema(required)]
     pub result: Option<String>,
-    /// Its picture; null while there is none.
+    /// Its picture, a PNG, or a GLB where `picture_format` asked for that; null while there is none.
     #[schema(required)]
     pub thumbnail: Option<String>,
 }
 
 impl Links {
     /// The links of the job `id`.
-    pub fn new(id: &str, has_report: bool, has_result: bool, has_picture: bool) -> Self {
+    pub fn new(id: &str, has_report: bool, has_result: bool, picture: Option<PictureFormat>) -> Self {
         let this = format!("/v1/jobs/{id}");
         let report = has_report.then(|| format!("{this}/report"));
         let result = has_result.then(|| format!("{this}/result"));
-        let thumbnail = has_picture.then(|| format!("{this}/thumbnail.png"));
+        let thumbnail = picture.map(|format| match format {
+            PictureFormat::Png => format!("{this}/thumbnail.png"),
+            PictureFormat::Glb => format!("{this}/thumbnail.glb"),
+        });
         Self { this, report, result, thumbnail }
     }
 }

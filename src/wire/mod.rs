@@ -100,7 +100,7 @@ pub use webhook::{
 pub use words::{
     Across, ChangeKind, Condition, ConstraintValues, Contact, Criterion, Cut, DefectCode, Degenerate,
     DrawnEdges, Effort, Encoding, Extract, Fidelity, FillHoles, FillMethod, Format, HoleClass, HoleFate,
-    Kernel, LambdaFrom, Mode, Nesting, OpenShells, Operation, Opposite, Outcome, Placement, Projection,
-    ProximityTest, Reader, ReasonCode, Rejection, Remedy, Require, SetOperation, Severity, Shade, ShellFate,
-    SolidParts, Stage, Stitch, StitchValidity, Units, VertexColors, Views, Weld,
+    Kernel, LambdaFrom, Mode, Nesting, OpenShells, Operation, Opposite, Outcome, PictureFormat, Placement,
+    Projection, ProximityTest, Reader, ReasonCode, Rejection, Remedy, Require, SetOperation, Severity, Shade,
+    ShellFate, SolidParts, Stage, Stitch, StitchValidity, Units, VertexColors, Views, Weld,
 };

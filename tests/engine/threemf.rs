@@ -553,6 +553,67 @@ fn volumes_that_a_slicer_notes_are_parts_and_their_ranges_are_kept_up() {
     assert!(marks(new, "first").iter().all(|(_, text)| text == "slic3rpe:mmu_segmentation=\"4\""));
 }
 
+/// A box with one volume that is printed and one that is not, as two kinds of projects note it.
+fn box_with_pocket(purposes: [&str; 2]) -> [Vec<u8>; 2] {
+    let [(body, sides), (pocket, _)] = [cuboid([0.0; 3], [10.0; 3]), cuboid([4.0; 3], [6.0; 3])];
+    let second = || sides.iter().map(|t| t.map(|v| v + 8));
+    let of_both = mesh(
+        &[&body[..], &pocket].concat(),
+        &sides.iter().copied().chain(second()).collect::<Vec<_>>(),
+        |_| String::new(),
+    );
+    let objects = format!("<object id=\"1\" type=\"model\">{of_both}</object>");
+    let [prusa, bambu] = purposes;
+    let ranges = format!(
+        "<config><object id=\"1\"><volume firstid=\"0\" lastid=\"11\"/><volume firstid=\"12\" lastid=\"23\">\
+         <metadata type=\"volume\" key=\"volume_type\" value=\"{prusa}\"/></volume></object></config>"
+    );
+    let of_ranges = package(&[
+        ("_rels/.rels", RELATIONSHIPS.as_bytes()),
+        ("3D/3dmodel.model", model("", &objects, "<item objectid=\"1\"/>").as_bytes()),
+        ("Metadata/Slic3r_PE_model.config", ranges.as_bytes()),
+    ]);
+    let [body, pocket] = [body, pocket].map(|points| mesh(&points, &sides, |_| String::new()));
+    let objects = format!(
+        "<object id=\"1\">{body}</object><object id=\"2\">{pocket}</object><object id=\"3\"><components>\
+         <component objectid=\"1\"/><component objectid=\"2\"/></components></object>"
+    );
+    let parts = format!(
+        "<config><object id=\"3\"><part id=\"1\" subtype=\"normal_part\"/><part id=\"2\" subtype=\"{bambu}\"/></object></config>"
+    );
+    let of_components = package(&[
+        ("_rels/.rels", RELATIONSHIPS.as_bytes()),
+        ("3D/3dmodel.model", model("", &objects, "<item objectid=\"3\"/>").as_bytes()),
+        ("Metadata/model_settings.config", parts.as_bytes()),
+    ]);
+    [of_ranges, of_components]
+}
+
+#[test]
+fn what_is_no_material_is_no_part_of_one_mesh_and_that_is_told() {
+    for (purposes, name) in [
+        (["NegativeVolume", "negative_part"], "negative_parts"),
+        (["ParameterModifier", "modifier_part"], "modifier_parts"),
+        (["SupportBlocker", "support_enforcer"], "support_parts"),
+    ] {
+        for bytes in box_with_pocket(purposes) {
+            let options = Options { output_format: Some(Format::Stl), ..Options::default() };
+            let answer = run(Operation::Repair, &bytes, &options);
+            let certificate = answer.report.certificate.clone().unwrap();
+            assert_eq!((certificate.triangles, certificate.shells.len()), (12, 1), "{name}");
+            let left_out = answer.report.actions.iter().find(|action| action.step == "left_out").unwrap();
+            assert_eq!(left_out.changes, [(name, 1)]);
+            let separate = run(Operation::Repair, &bytes, &Options::default());
+            assert_eq!((separate.report.outcome, separate.report.parts.len()), (Some(Outcome::Identical), 2));
+        }
+    }
+    for bytes in box_with_pocket(["ModelPart", "normal_part"]) {
+        let options = Options { output_format: Some(Format::Stl), ..Options::default() };
+        let certificate = run(Operation::Convert, &bytes, &options).report.certificate.unwrap();
+        assert_eq!(certificate.triangles, 24);
+    }
+}
+
 #[test]
 fn the_same_file_gives_the_same_bytes_with_one_thread_and_with_many() {
     let bytes = painted(true);

@@ -140,6 +140,20 @@ fn what_was_stored_is_there_after_the_server_was_killed_in_the_middle() {
 }
 
 #[test]
+fn what_has_come_is_stored_while_nothing_more_comes() {
+    let server = Server::start();
+    let mesh = padded(OPEN, 64 << 10);
+    let path = create(&server, mesh.len());
+    let half = mesh.len() / 2;
+    let line = sending(&server, &path, 0, &mesh[..half], mesh.len());
+    patiently(|| (offset(&server, &path) == half).then_some(()));
+    let server = server.killed_and_restarted(&[]);
+    drop(line);
+    assert_eq!(offset(&server, &path), half);
+    assert_eq!(patch(&server, &path, half, &mesh[half..]).status(), 204);
+}
+
+#[test]
 fn a_server_that_ends_keeps_what_has_come_and_does_not_wait_for_the_rest() {
     let server = Server::start();
     let mesh = padded(OPEN, 3 << 20);

@@ -96,3 +96,22 @@ fn a_server_whose_store_is_gone_does_not_start_and_says_what_to_do() {
     let server = server.killed_and_restarted(&[]);
     assert_eq!(server.get(link(&job, "result")).send().unwrap().status(), 200);
 }
+
+#[test]
+fn a_store_without_its_mark_is_known_by_the_pieces_of_an_upload() {
+    let server = Server::start();
+    let upload =
+        server.post("/v1/uploads").header("tus-resumable", "1.0.0").header("upload-length", OPEN.len());
+    let begun = upload
+        .header("content-type", "application/offset+octet-stream")
+        .body(OPEN[..OPEN.len() / 2].to_owned())
+        .send()
+        .unwrap();
+    assert_eq!(begun.status(), 201);
+    let path = header(&begun, "location").to_owned();
+    let (dir, data) = (server.data_dir(), server.killed());
+    std::fs::remove_file(dir.join("spool.mark")).unwrap();
+    let server = Server::again(data, &[]);
+    let asked = server.request("HEAD", &path).header("tus-resumable", "1.0.0").send().unwrap();
+    assert_eq!(header(&asked, "upload-offset"), (OPEN.len() / 2).to_string());
+}

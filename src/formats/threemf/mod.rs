@@ -11,6 +11,7 @@ pub(super) mod read;
 mod read_mesh;
 mod read_model;
 mod read_properties;
+mod read_purposes;
 mod read_relationships;
 mod read_volumes;
 mod rewrite;

@@ -3,8 +3,9 @@
 use super::model::{Content, Model, ObjectKind, Reference};
 use super::package::{Package, shortened, too_large};
 use super::read_model::read_model;
+use super::read_purposes::read_purposes;
 use super::read_relationships::read_start;
-use super::read_volumes::{Volume, read_volumes};
+use super::read_volumes::{Purpose, Volume, read_volumes};
 use super::transform::Transform;
 use super::xml::Document;
 use crate::budget::Budget;
@@ -25,6 +26,7 @@ pub(super) struct Placement {
     /// Number of the model and of the object in it.
     pub(super) object: [usize; 2],
     pub(super) transform: Transform,
+    pub(super) purpose: Purpose,
 }
 
 /// All model parts that are needed.
@@ -35,6 +37,8 @@ pub(super) struct Models {
     pub(super) placements: Vec<Placement>,
     pub(super) remarks: Vec<String>,
     pub(super) volumes: Vec<Volume>,
+    /// What components are for, by the ids of the objects of their build item and of themselves, where they are no material.
+    purposes: FxHashMap<[u32; 2], Purpose>,
 }
 
 impl Models {
@@ -43,7 +47,9 @@ impl Models {
         let mut package = Package::open(bytes, budget)?;
         let start = read_start(&mut package, budget)?;
         let volumes = read_volumes(&mut package, budget)?;
-        let mut models = Self { all: Vec::new(), placements: Vec::new(), remarks: start.remarks, volumes };
+        let purposes = read_purposes(&mut package, budget)?;
+        let mut models =
+            Self { all: Vec::new(), placements: Vec::new(), remarks: start.remarks, volumes, purposes };
         let mut numbers: FxHashMap<String, usize> = FxHashMap::default();
         let mut waiting = vec![start.part];
         let (mut triangles, mut vertices, mut meshes) = (0_u64, 0_u64, models.volumes.len() as u64);
@@ -143,7 +149,13 @@ impl Models {
             let transform = transform.after(&reference.transform);
             match &object.content {
                 Content::Components(all) => way.push((target[0], all, transform, target)),
-                Content::Mesh(_) => placements.push(Placement { object: target, transform }),
+                Content::Mesh(_) => {
+                    let id = |[m, o]: [usize; 2]| self.all[m].objects[o].id;
+                    let component = way.get(2).map_or(reference.object, |&(.., object)| id(object));
+                    let noted = way.get(1).and_then(|&(.., item)| self.purposes.get(&[id(item), component]));
+                    let purpose = noted.copied().unwrap_or(Purpose::Material);
+                    placements.push(Placement { object: target, transform, purpose });
+                }
                 Content::Nothing => {}
             }
             if way.len() == 1 && object.kind == ObjectKind::Other {

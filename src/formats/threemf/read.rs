@@ -3,7 +3,7 @@
 use super::model::{Content, FaceAttributes, Mesh, Model, Object, ObjectKind};
 use super::models::Models;
 use super::read_volumes::{Volume, are_all, by_object};
-use super::scene::{self, Assembled, Placed};
+use super::scene::{self, Assembled, Extent, Placed};
 use super::split::volume_of;
 use crate::budget::Budget;
 use crate::formats::{ReadError, ReadOptions};
@@ -93,7 +93,7 @@ pub(in crate::formats) fn read_solids(
 }
 
 /// What the build puts together, as one mesh: each object as often as it is there, at its place, with its colours.
-/// Supports and objects of the type `other` are left out.
+/// Supports and objects of the type `other` are left out, and parts that are no material.
 ///
 /// # Errors
 /// As [`read_project`]; more triangles than the limits allow.
@@ -103,10 +103,10 @@ pub(in crate::formats) fn read(
     budget: &Budget,
 ) -> Result<Soup, ReadError> {
     let models = Models::read(bytes, options, budget)?;
-    Ok(scene::assemble(&models, options, budget)?.soup)
+    Ok(scene::assemble(&models, Extent::Material, options, budget)?.soup)
 }
 
-/// The same with the places of objects in it.
+/// The same with parts that are no material, and with the places of objects in it.
 ///
 /// # Errors
 /// As [`read_project`]; more triangles than the limits allow.
@@ -116,7 +116,7 @@ pub fn read_scene(
     budget: &Budget,
 ) -> Result<(Soup, Vec<Placed>), ReadError> {
     let models = Models::read(bytes, options, budget)?;
-    let Assembled { soup, placed } = scene::assemble(&models, options, budget)?;
+    let Assembled { soup, placed } = scene::assemble(&models, Extent::Everything, options, budget)?;
     Ok((soup, placed))
 }
 

@@ -11,6 +11,41 @@ use std::ops::Range;
 /// The part that notes them.
 pub(super) const VOLUMES: &str = "/Metadata/Slic3r_PE_model.config";
 
+/// What a part of an object is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Purpose {
+    /// It is printed.
+    Material,
+    /// It is taken away from what is printed.
+    Negative,
+    /// Where it is, others are printed with other settings.
+    Modifier,
+    /// Where it is, supports are printed or not.
+    Support,
+}
+
+impl Purpose {
+    /// By its word in the files of PrusaSlicer, or of Bambu Studio and OrcaSlicer.
+    pub(super) fn of_word(word: &str) -> Self {
+        match word {
+            "NegativeVolume" | "negative_part" => Self::Negative,
+            "ParameterModifier" | "modifier_part" => Self::Modifier,
+            "SupportBlocker" | "SupportEnforcer" | "support_blocker" | "support_enforcer" => Self::Support,
+            _ => Self::Material,
+        }
+    }
+
+    /// Under which name those are counted that one mesh leaves out; `None`: it does not.
+    pub(super) fn left_out_as(self) -> Option<&'static str> {
+        match self {
+            Self::Material => None,
+            Self::Negative => Some("negative_parts"),
+            Self::Modifier => Some("modifier_parts"),
+            Self::Support => Some("support_parts"),
+        }
+    }
+}
+
 /// A range of triangles of an object of the first model.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Volume {
@@ -20,6 +55,8 @@ pub(super) struct Volume {
     pub(super) triangles: Range<u32>,
     /// Its name; empty when it has none.
     pub(super) name: String,
+    /// What it is for.
+    pub(super) purpose: Purpose,
     /// Bytes of its start tag in the text of the part.
     pub(super) tag: Range<usize>,
 }
@@ -48,11 +85,15 @@ pub(super) fn read_volumes(package: &mut Package<'_>, budget: &Budget) -> Result
                 }
                 "metadata" if is_in_volume => {
                     let attributes = scanner.attributes(&element)?;
-                    if let (Some("name"), Some(name)) =
-                        (value(&attributes, "key"), value(&attributes, "value"))
-                        && let Some(volume) = volumes.last_mut()
-                    {
-                        volume.name = name.to_owned();
+                    let noted = (value(&attributes, "key"), value(&attributes, "value"));
+                    if let (Some(volume), (Some(key), Some(value))) = (volumes.last_mut(), noted) {
+                        match (key, value) {
+                            ("name", name) => volume.name = name.to_owned(),
+                            ("volume_type", word) => volume.purpose = Purpose::of_word(word),
+                            // As older programs note it.
+                            ("modifier", "1") => volume.purpose = Purpose::Modifier,
+                            _ => {}
+                        }
                     }
                 }
                 _ => {}
@@ -73,7 +114,8 @@ fn volume(
     let attributes = scanner.attributes(element)?;
     let of = |name| value(&attributes, name).and_then(number);
     let (Some(first), Some(last)) = (of("firstid"), of("lastid")) else { return Ok(None) };
-    Ok(Some(Volume { object, triangles: first..last.saturating_add(1), name: String::new(), tag }))
+    let triangles = first..last.saturating_add(1);
+    Ok(Some(Volume { object, triangles, name: String::new(), purpose: Purpose::Material, tag }))
 }
 
 /// The volumes of each object, in their order.

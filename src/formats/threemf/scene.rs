@@ -3,8 +3,10 @@
 use super::model::Content;
 use super::models::Models;
 use super::package::too_large;
+use super::read_volumes::{Purpose, are_all, by_object};
+use super::split::volume_of;
 use super::transform::Transform;
-use crate::budget::{Budget, CHECK_EVERY};
+use crate::budget::{Budget, CHECK_EVERY, Charge};
 use crate::formats::colors::note_color;
 use crate::formats::{Precision, ReadError, ReadOptions};
 use crate::geom::DVec3;
@@ -38,17 +40,27 @@ pub(super) struct Assembled {
     pub(super) placed: Vec<Placed>,
 }
 
+/// Which parts are put together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Extent {
+    /// All that are printed or are for what is.
+    Everything,
+    /// Those that are printed.
+    Material,
+}
+
 /// All placements in one mesh, in the order of the build.
 pub(super) fn assemble(
     models: &Models,
+    extent: Extent,
     options: &ReadOptions,
     budget: &Budget,
 ) -> Result<Assembled, ReadError> {
     let mut placed = Vec::new();
     let units = models.all.first().map(|model| model.units);
-    let mut scene = Soup { units, is_f32_exact: true, ..Soup::default() };
-    let mut is_faulty = false;
-    let mut charges = Vec::new();
+    let soup = Soup { units, is_f32_exact: true, ..Soup::default() };
+    let mut scene = Scene { soup, is_faulty: false, charges: Vec::new(), options, budget };
+    let of_object = by_object(&models.volumes);
     for placement in &models.placements {
         let [m, o] = placement.object;
         let model = &models.all[m];
@@ -58,7 +70,73 @@ pub(super) fn assemble(
         if !is_printed {
             continue;
         }
-        let (soup, transform) = (&mesh.soup, &placement.transform);
+        if let (Extent::Material, Some(name)) = (extent, placement.purpose.left_out_as()) {
+            scene.leave_out(name);
+            continue;
+        }
+        placed.push(Placed {
+            source: placement.object,
+            first_vertex: scene.soup.positions.len() as u32,
+            first_triangle: scene.soup.triangles.len() as u32,
+            first_face: scene.soup.face_count,
+            transform: placement.transform,
+        });
+        let color = |face: usize| model.color_of_face(object, &mesh.attributes, face);
+        let volumes = of_object.get(&object.id).filter(|_| m == 0).map(Vec::as_slice).unwrap_or_default();
+        let is_apart = extent == Extent::Material
+            && volumes.iter().any(|volume| volume.purpose != Purpose::Material)
+            && are_all(volumes, mesh.soup.face_count);
+        if !is_apart {
+            scene.put(&mesh.soup, &placement.transform, color)?;
+            continue;
+        }
+        for volume in volumes {
+            if let Some(name) = volume.purpose.left_out_as() {
+                scene.leave_out(name);
+                continue;
+            }
+            let (soup, _) = volume_of(&mesh.soup, &mesh.attributes, volume);
+            scene.put(&soup, &placement.transform, |face| color(volume.triangles.start as usize + face))?;
+        }
+    }
+    let Scene { mut soup, is_faulty, .. } = scene;
+    if !soup.face_colors.is_empty() {
+        soup.face_colors.resize(soup.face_count as usize, None);
+    }
+    drop_what_became_infinite(&mut soup);
+    if !is_faulty && soup.triangles.len() == soup.face_count as usize {
+        soup.triangle_face = Vec::new();
+    }
+    Ok(Assembled { soup, placed })
+}
+
+/// A mesh to which others are added.
+struct Scene<'s> {
+    soup: Soup,
+    /// Some face has no triangle.
+    is_faulty: bool,
+    charges: Vec<Charge<'s>>,
+    options: &'s ReadOptions,
+    budget: &'s Budget,
+}
+
+impl Scene<'_> {
+    /// Counts a part that is left out.
+    fn leave_out(&mut self, name: &'static str) {
+        match self.soup.left_out.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, count)) => *count += 1,
+            None => self.soup.left_out.push((name, 1)),
+        }
+    }
+
+    /// Adds `soup` at its place; `color`: that of each of its faces.
+    fn put(
+        &mut self,
+        soup: &Soup,
+        transform: &Transform,
+        color: impl Fn(usize) -> Option<[u8; 4]>,
+    ) -> Result<(), ReadError> {
+        let Self { soup: scene, options, budget, .. } = self;
         let limits = &options.limits;
         let vertices = scene.positions.len() as u64 + soup.positions.len() as u64;
         if vertices > limits.vertices_max.into() {
@@ -69,15 +147,8 @@ pub(super) fn assemble(
             return Err(too_large("triangles", "triangles_max", limits.triangles_max.into(), triangles));
         }
         let bytes = 64 * (soup.positions.len() + soup.triangles.len()) + size_of::<Placed>();
-        charges.push(budget.charge(bytes as u64)?);
+        self.charges.push(budget.charge(bytes as u64)?);
         let (first_vertex, first_face) = (scene.positions.len() as u32, scene.face_count);
-        placed.push(Placed {
-            source: placement.object,
-            first_vertex,
-            first_triangle: scene.triangles.len() as u32,
-            first_face,
-            transform: *transform,
-        });
         for (i, &p) in soup.positions.iter().enumerate() {
             if i % CHECK_EVERY == 0 {
                 budget.check()?;
@@ -100,24 +171,16 @@ pub(super) fn assemble(
         }
         let of_scene = |fault: &FaceFault| FaceFault { face: first_face + fault.face, reason: fault.reason };
         scene.face_faults.extend(soup.face_faults.iter().map(of_scene));
-        is_faulty |= !soup.face_faults.is_empty();
+        self.is_faulty |= !soup.face_faults.is_empty();
         for f in 0..soup.face_count as usize {
             if f % CHECK_EVERY == 0 {
                 budget.check()?;
             }
-            let color = model.color_of_face(object, &mesh.attributes, f);
-            note_color(&mut scene.face_colors, first_face as usize + f, color.map(as_color));
+            note_color(&mut scene.face_colors, first_face as usize + f, color(f).map(as_color));
         }
         scene.face_count += soup.face_count;
+        Ok(())
     }
-    if !scene.face_colors.is_empty() {
-        scene.face_colors.resize(scene.face_count as usize, None);
-    }
-    drop_what_became_infinite(&mut scene);
-    if !is_faulty && scene.triangles.len() == scene.face_count as usize {
-        scene.triangle_face = Vec::new();
-    }
-    Ok(Assembled { soup: scene, placed })
 }
 
 fn as_color([r, g, b, a]: [u8; 4]) -> Color {

@@ -24,9 +24,9 @@ use super::representation::PNG;
 use crate::wire::{
     self, BuildDirection, Contact, Criterion, Cut, Degenerate, DrawnEdges, DualEmbedding, EditSpec, Effort,
     Fidelity, FillHoles, Format, InputRef, Job, JobRequest, LABELS_MAX, Mode, Nesting, OpenShells, Options,
-    Outcome, Placement, PlanRequest, PolicyName, Problem, ProblemCode, Projection, RangeSpec, Reader, Report,
-    Require, SetOperation, Shade, SolidParts, StageEvent, StateEvent, Stitch, StitchValidity, TargetSpec,
-    Units, VertexColors, Views, WebhookMessage, Weld,
+    Outcome, PictureFormat, Placement, PlanRequest, PolicyName, Problem, ProblemCode, Projection, RangeSpec,
+    Reader, Report, Require, SetOperation, Shade, SolidParts, StageEvent, StateEvent, Stitch, StitchValidity,
+    TargetSpec, Units, VertexColors, Views, WebhookMessage, Weld,
 };
 
 /// Problems that any path may answer with.
@@ -136,7 +136,7 @@ fn schemas() -> Vec<(String, RefOr<Schema>)> {
     );
     add!(Format, Reader, Units, Require, FillHoles, OpenShells, Effort, Nesting, Contact, Mode, Criterion);
     add!(Placement, VertexColors, Cut, Stitch, StitchValidity, Degenerate, PolicyName, BuildDirection);
-    add!(DualEmbedding, Weld, SetOperation, SolidParts, Views, Shade, DrawnEdges, Projection);
+    add!(DualEmbedding, Weld, SetOperation, SolidParts, Views, Shade, DrawnEdges, Projection, PictureFormat);
     let own = wire::option_schemas().map(|(name, schema)| (name, RefOr::T(schema)));
     schemas.into_iter().chain(own).chain(bodies::schemas()).collect()
 }
@@ -187,9 +187,10 @@ fn complete_operation(path: &str, operation: &mut Operation) {
             add_problems(operation, &[JOB, PRODUCT, RUN].concat());
             add_answer(operation, "200", report_answer());
         }
-        "get_job_thumbnail" => {
+        "get_job_thumbnail" | "get_job_thumbnail_mesh" => {
+            let media_type = if id == "get_job_thumbnail" { PNG } else { wire::media_type_of(Format::Glb) };
             add_problems(operation, &[JOB, PRODUCT, RUN].concat());
-            add_answer(operation, "200", picture_answer("The picture.").build());
+            add_answer(operation, "200", picture_answer("The picture.", &[media_type]).build());
             add_answer(operation, "304", Response::new("Not changed."));
         }
         "get_job_result" => {
@@ -234,7 +235,8 @@ fn complete_run(operation: &mut Operation, on_mesh: wire::Operation) {
     add_problems(operation, &[UPLOAD, RUN].concat());
     add_answer(operation, "202", accepted());
     if on_mesh == wire::Operation::Render {
-        let answer = picture_answer("The picture, or the report, as `Accept` asks for.");
+        let types = [PNG, wire::media_type_of(Format::Glb)];
+        let answer = picture_answer("The picture, or the report, as `Accept` asks for.", &types);
         let answer = answer.content("application/json", Content::new(Some(reference::<Report>())));
         add_answer(operation, "200", answer.build());
     }
@@ -307,11 +309,12 @@ fn report_answer() -> Response {
         .build()
 }
 
-fn picture_answer(description: &str) -> ResponseBuilder {
-    ResponseBuilder::new()
-        .description(description)
-        .content(PNG, Content::new(Some(binary())))
-        .header("ETag", header("The digest of the picture."))
+fn picture_answer(description: &str, media_types: &[&str]) -> ResponseBuilder {
+    let answer = ResponseBuilder::new().description(description);
+    let with = |answer: ResponseBuilder, media_type: &&str| {
+        answer.content(*media_type, Content::new(Some(binary())))
+    };
+    media_types.iter().fold(answer, with).header("ETag", header("The digest of the picture."))
 }
 
 fn file_answer(description: &str) -> Response {

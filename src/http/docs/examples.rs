@@ -43,6 +43,7 @@ impl Call {
             ("GET", "/v1/jobs/{id}") => ("?wait=60", Answer::Told),
             ("POST", "/v1/repair") | ("GET", "/v1/jobs/{id}/result") => ("", Answer::Saved("repaired.stl")),
             ("GET", "/v1/jobs/{id}/thumbnail.png") => ("", Answer::Saved("part.png")),
+            ("GET", "/v1/jobs/{id}/thumbnail.glb") => ("", Answer::Saved("part.glb")),
             ("GET", "/openapi.yaml") => ("", Answer::Saved("openapi.yaml")),
             ("GET", "/openapi.json") => ("", Answer::Saved("openapi.json")),
             ("DELETE", _) => ("", Answer::None),

@@ -12,7 +12,8 @@ use super::rows::{
 use super::session::Session;
 use super::{keeping, listing, outbox, tenants, uploads};
 use crate::jobs::store::{
-    AfterLoss, ClaimRef, ClaimRequest, Created, Ending, JobId, JobRow, Lane, Leases, NewJob, StoreError,
+    AfterLoss, BlobRef, ClaimRef, ClaimRequest, Created, Ending, JobId, JobRow, Lane, Leases, NewJob,
+    StoreError,
 };
 use crate::wire::{ENGINE_VERSION, JobState, Problem, ProblemCode};
 
@@ -49,7 +50,7 @@ pub(super) async fn create(session: &Session, new: NewJob, queue_max: usize) -> 
     if let Some(ending) = &new.ending {
         let sql = "UPDATE jobs SET started_at = $2, is_cached = true WHERE id = $1";
         session.change(sql, &[&Uuid::from(new.id), &session.now]).await?;
-        end(session, new.id, ending).await?;
+        end(session, new.id, None, ending).await?;
     }
     get(session, new.id).await.map(Created::New)
 }
@@ -101,26 +102,52 @@ async fn change(session: &Session, id: JobId) -> Result<(), StoreError> {
     session.change(sql, &[&Uuid::from(id), &session.now]).await.map(drop)
 }
 
-/// Ends a job, whatever its state, and puts its webhook into the outbox.
-async fn end(session: &Session, id: JobId, ending: &Ending) -> Result<(), StoreError> {
-    session
-        .change(
-            "UPDATE jobs SET state = $2, ending = $3, engine = $4, finished_at = $5,
-                 expires_at = least($5 + keep_for, $6), worker = NULL, lease_until = NULL, stop = NULL
-             WHERE id = $1",
+/// Ends a job and puts its webhook into the outbox, in one statement: whatever its state, or as long as it runs by a claim. Whether
+/// it was ended.
+async fn end(
+    session: &Session,
+    id: JobId,
+    claim: Option<ClaimRef>,
+    ending: &Ending,
+) -> Result<bool, StoreError> {
+    let sql = format!(
+        "WITH clock AS MATERIALIZED (SELECT now_ms() AS now),
+        named AS MATERIALIZED (SELECT key, bytes::numeric, blob FROM unnest($7::text[], $8::text[], $9::text[]) AS named (key, bytes, blob)),
+        ended AS (UPDATE jobs SET state = $2, ending = $3, engine = $4, finished_at = clock.now,
+                 expires_at = least(clock.now + keep_for, $5), worker = NULL, lease_until = NULL, stop = NULL,
+                 file_bytes = (SELECT coalesce(sum(bytes), 0) FROM
+                     (SELECT key, bytes FROM names WHERE job = $1 UNION SELECT key, bytes FROM named) AS files)
+             FROM clock WHERE id = $1 AND ($6::bigint IS NULL OR epoch = $6 AND state = 'running')
+             RETURNING id, state, epoch, webhook, finished_at),
+        kept AS (INSERT INTO names SELECT id, key, bytes, blob FROM ended, named ON CONFLICT DO NOTHING),
+        noted AS (INSERT INTO changes (job, number, state, epoch, at)
+             SELECT id, 1 + (SELECT coalesce(max(number), 0) FROM changes WHERE job = $1), state, epoch, finished_at FROM ended),
+        posted AS ({})
+        SELECT 1 FROM ended",
+        outbox::POST_ENDED
+    );
+    let blobs: Vec<&BlobRef> = ending.blobs().collect();
+    let keys: Vec<&str> = blobs.iter().map(|blob| blob.key.as_str()).collect();
+    let bytes: Vec<String> = blobs.iter().map(|blob| blob.bytes.to_string()).collect();
+    let texts = blobs.iter().map(to_json).collect::<Result<Vec<String>, StoreError>>()?;
+    let ended = session
+        .row_if_any(
+            &sql,
             &[
                 &Uuid::from(id),
                 &ending.state.word(),
                 &to_json(ending)?,
                 &ENGINE_VERSION,
-                &session.now,
                 &last_ms(),
+                &claim.map(|claim| i64::from(claim.epoch)),
+                &keys,
+                &bytes,
+                &texts,
+                &outbox::new_id(),
             ],
         )
         .await?;
-    keeping::name(session, id, ending.blobs()).await?;
-    change(session, id).await?;
-    outbox::post(session, id).await
+    Ok(ended.is_some())
 }
 
 /// Claims a job of the first tenant that has one and that nobody else claims one of at this moment: many who claim do not wait for
@@ -178,7 +205,7 @@ async fn claim_held(
             Err(StoreError::Unavailable(error)) => {
                 tracing::error!(job = %id, error, "a row cannot be read");
                 let problem = Problem::new(ProblemCode::Internal, "the job cannot be read by this version");
-                end(session, id, &Ending::without_files(JobState::Failed, Some(problem))).await?;
+                end(session, id, None, &Ending::without_files(JobState::Failed, Some(problem))).await?;
             }
             Err(error) => return Err(error),
         }
@@ -186,10 +213,10 @@ async fn claim_held(
 }
 
 pub(super) async fn renew(session: &Session, claim: ClaimRef, lease: Duration) -> Result<bool, StoreError> {
-    let sql = "UPDATE jobs SET lease_until = $3 WHERE id = $1 AND epoch = $2 AND state = 'running'
+    let sql = "UPDATE jobs SET lease_until = least(now_ms() + $3, $4) WHERE id = $1 AND epoch = $2 AND state = 'running'
         RETURNING stop IS NOT NULL";
     let (id, epoch) = (Uuid::from(claim.id), i64::from(claim.epoch));
-    let renewed = session.row_if_any(sql, &[&id, &epoch, &later(session.now, lease)]).await?;
+    let renewed = session.row_if_any(sql, &[&id, &epoch, &later(0, lease), &last_ms()]).await?;
     value(&renewed.ok_or(StoreError::ClaimVoid)?, 0)
 }
 
@@ -201,8 +228,8 @@ async fn check(session: &Session, claim: ClaimRef) -> Result<(), StoreError> {
 }
 
 pub(super) async fn finish(session: &Session, claim: ClaimRef, ending: Ending) -> Result<(), StoreError> {
-    check(session, claim).await?;
-    end(session, claim.id, &ending).await
+    let is_ended = end(session, claim.id, Some(claim), &ending).await?;
+    is_ended.then_some(()).ok_or(StoreError::ClaimVoid)
 }
 
 pub(super) async fn release(session: &Session, claim: ClaimRef) -> Result<AfterLoss, StoreError> {
@@ -215,7 +242,7 @@ async fn give_back(session: &Session, id: JobId) -> Result<AfterLoss, StoreError
     let row = session.row("SELECT stop FROM jobs WHERE id = $1", &[&Uuid::from(id)]).await?;
     // One that cannot be read is of another version: the job goes on.
     if let Some(ending) = json_if_any(&row, 0).unwrap_or_default() {
-        end(session, id, &ending).await?;
+        end(session, id, None, &ending).await?;
         return Ok(AfterLoss::Ended);
     }
     let sql =
@@ -248,7 +275,7 @@ pub(super) async fn lose(
     if attempts < attempts_max {
         return give_back(session, claim.id).await;
     }
-    end(session, claim.id, &Ending::without_files(JobState::Failed, Some(problem))).await?;
+    end(session, claim.id, None, &Ending::without_files(JobState::Failed, Some(problem))).await?;
     Ok(AfterLoss::Ended)
 }
 
@@ -282,14 +309,14 @@ pub(super) async fn recover(
 pub(super) async fn end_queued(session: &Session, id: JobId, ending: Ending) -> Result<bool, StoreError> {
     let is_queued = locked_state(session, id).await? == JobState::Queued;
     if is_queued {
-        end(session, id, &ending).await?;
+        end(session, id, None, &ending).await?;
     }
     Ok(is_queued)
 }
 
 pub(super) async fn cancel(session: &Session, id: JobId, ending: Ending) -> Result<bool, StoreError> {
     match locked_state(session, id).await? {
-        JobState::Queued => end(session, id, &ending).await.map(|()| true),
+        JobState::Queued => end(session, id, None, &ending).await,
         JobState::Running => {
             let sql = "UPDATE jobs SET stop = $2 WHERE id = $1";
             session.change(sql, &[&Uuid::from(id), &to_json(&ending)?]).await?;

@@ -126,6 +126,20 @@ impl PostgresStore {
         })
     }
 
+    /// Makes a change of one statement, which is a transaction by itself, and tells other servers of it.
+    fn write_at_once<T: Send + 'static>(
+        &self,
+        body: impl for<'s> FnOnce(&'s Session) -> Body<'s, T> + Send + 'static,
+        hint: Option<Hint>,
+    ) -> StoreFuture<'_, T> {
+        let (pool, line) = (self.pool.clone(), Arc::clone(&self.line));
+        Box::pin(async move {
+            let change =
+                tokio::spawn(async move { Session::look(&pool, body).await.inspect(|_| line.tell(hint)) });
+            change.await.map_err(|error| StoreError::Unavailable(error.to_string()))?
+        })
+    }
+
     /// Looks into the tables.
     fn read<T: Send + 'static>(
         &self,
@@ -252,14 +266,12 @@ impl JobStore for PostgresStore {
     }
 
     fn renew(&self, claim: ClaimRef, lease: Duration) -> StoreFuture<'_, bool> {
-        self.write(move |session| Box::pin(claims::renew(session, claim, lease)))
+        self.write_at_once(move |session| Box::pin(claims::renew(session, claim, lease)), None)
     }
 
     fn finish(&self, claim: ClaimRef, ending: Ending) -> StoreFuture<'_, ()> {
-        self.write_and_tell(
-            move |session| Box::pin(claims::finish(session, claim, ending)),
-            move |()| vec![Hint::Job(claim.id)],
-        )
+        let hint = Some(Hint::Job(claim.id));
+        self.write_at_once(move |session| Box::pin(claims::finish(session, claim, ending)), hint)
     }
 
     fn release(&self, claim: ClaimRef) -> StoreFuture<'_, AfterLoss> {

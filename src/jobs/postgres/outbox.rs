@@ -13,13 +13,16 @@ use crate::jobs::store::{
 
 const COLUMNS: &str = "id, job, webhook, state, created_at, next_at, epoch, receiver";
 
-/// Puts the webhook of a job that has ended into the outbox, if it has one.
-pub(super) async fn post(session: &Session, job: JobId) -> Result<(), StoreError> {
-    let sql = "INSERT INTO deliveries (id, job, webhook, receiver, state, created_at, next_at)
-        SELECT $2::text, id, webhook, lower(split_part(substr(url, strpos(url, '://') + 3), '/', 1)), 'pending', $3::bigint, $3
-        FROM (SELECT id, webhook, webhook::json ->> 'url' AS url FROM jobs WHERE id = $1 AND webhook IS NOT NULL) AS ended";
-    let id = format!("msg_{}", Uuid::now_v7().simple());
-    session.change(sql, &[&Uuid::from(job), &id, &session.now]).await.map(drop)
+/// Puts the webhook of a job into the outbox, if it has one: a part of the statement that ends it, whose `ended` has the job, and whose
+/// value 10 is [`new_id`].
+pub(super) const POST_ENDED: &str =
+    "INSERT INTO deliveries (id, job, webhook, receiver, state, created_at, next_at)
+    SELECT $10::text, id, webhook, lower(split_part(substr(url, strpos(url, '://') + 3), '/', 1)), 'pending', finished_at, finished_at
+    FROM (SELECT id, webhook, finished_at, webhook::json ->> 'url' AS url FROM ended WHERE webhook IS NOT NULL) AS called";
+
+/// The id of a new delivery.
+pub(super) fn new_id() -> String {
+    format!("msg_{}", Uuid::now_v7().simple())
 }
 
 /// A claimed delivery is due again when the lease is over, should nothing be heard of it.

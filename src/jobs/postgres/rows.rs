@@ -83,7 +83,8 @@ pub(super) fn number_of(lane: Lane) -> i64 {
     }
 }
 
-fn lane(number: i64) -> Lane {
+/// A lane, by its number.
+pub(super) fn lane(number: i64) -> Lane {
     if number == number_of(Lane::Bulk) { Lane::Bulk } else { Lane::Interactive }
 }
 

@@ -2,7 +2,7 @@
 //! has is counted, not kept: a row of sums would be one that all who change anything wait for.
 
 use super::locks;
-use super::rows::{id as id_of, number, number_of, value};
+use super::rows::{id as id_of, lane, number, number_of, value};
 use super::session::Session;
 use super::uploads;
 use crate::jobs::store::{ClaimRequest, Holding, JobId, Kept, Lane, StoreError, Tenant};
@@ -47,27 +47,30 @@ pub(super) async fn in_turn(
         Lane::Interactive => Lane::Bulk,
         Lane::Bulk => Lane::Interactive,
     };
-    let mut turns = Vec::new();
-    for lane in [Some(request.prefer), (!request.is_only).then_some(other)].into_iter().flatten() {
-        // From tenant to tenant, past their jobs: a long queue costs no more than its tenants do.
-        let sql = "WITH RECURSIVE own (tenant) AS (
-                (SELECT tenant FROM jobs WHERE state = 'queued' ORDER BY tenant LIMIT 1)
-                UNION ALL
-                SELECT (SELECT tenant FROM jobs WHERE state = 'queued' AND tenant > own.tenant ORDER BY tenant LIMIT 1)
-                FROM own WHERE tenant IS NOT NULL)
-            SELECT tenant FROM own, LATERAL (SELECT id FROM jobs
-                WHERE state = 'queued' AND tenant = own.tenant AND lane = $1 ORDER BY id LIMIT 1) AS first
-            WHERE tenant = '' OR $3 > (SELECT count(*) FROM jobs
-                WHERE state = 'running' AND tenant = own.tenant AND is_quick = $2 AND worker = coalesce($4::text, worker))
-            ORDER BY (SELECT count(*) FROM jobs WHERE state = 'running' AND tenant = own.tenant),
-                coalesce((SELECT max(turn) FROM jobs WHERE tenant = own.tenant), 0), first.id";
-        let share = i64::try_from(request.share).unwrap_or(i64::MAX);
-        let worker = counted_of(&request);
-        for row in session.rows(sql, &[&number_of(lane), &request.is_only, &share, &worker]).await? {
-            turns.push((value(&row, 0)?, lane));
-        }
-    }
-    Ok(turns)
+    let lanes: Vec<i64> = [Some(request.prefer), (!request.is_only).then_some(other)]
+        .into_iter()
+        .flatten()
+        .map(number_of)
+        .collect();
+    // From tenant to tenant, past their jobs: a long queue costs no more than its tenants do.
+    let sql = "WITH RECURSIVE own (tenant) AS (
+            (SELECT tenant FROM jobs WHERE state = 'queued' ORDER BY tenant LIMIT 1)
+            UNION ALL
+            SELECT (SELECT tenant FROM jobs WHERE state = 'queued' AND tenant > own.tenant ORDER BY tenant LIMIT 1)
+            FROM own WHERE tenant IS NOT NULL),
+        running AS (SELECT tenant, count(*) AS jobs,
+                count(*) FILTER (WHERE is_quick = $2 AND worker = coalesce($4::text, worker)) AS counted
+            FROM jobs WHERE state = 'running' GROUP BY tenant)
+        SELECT own.tenant, first.lane FROM own LEFT JOIN running ON running.tenant = own.tenant,
+            LATERAL (SELECT lane, place, (SELECT id FROM jobs
+                WHERE state = 'queued' AND tenant = own.tenant AND lane = asked.lane ORDER BY id LIMIT 1) AS id
+                FROM unnest($1::bigint[]) WITH ORDINALITY AS asked (lane, place)) AS first
+        WHERE first.id IS NOT NULL AND (own.tenant = '' OR $3 > coalesce(running.counted, 0))
+        ORDER BY first.place, coalesce(running.jobs, 0),
+            coalesce((SELECT max(turn) FROM jobs WHERE tenant = own.tenant), 0), first.id";
+    let share = i64::try_from(request.share).unwrap_or(i64::MAX);
+    let rows = session.rows(sql, &[&lanes, &request.is_only, &share, &counted_of(&request)]).await?;
+    rows.iter().map(|row| Ok((value(row, 0)?, lane(value(row, 1)?)))).collect()
 }
 
 /// The worker whose running jobs count for a share; `None`: those of all do.

@@ -210,7 +210,7 @@ pub struct Ending {
     pub result: Option<ResultRef>,
     /// The meshes of further targets of a simplification.
     pub levels: Vec<ResultRef>,
-    /// Its picture, as PNG.
+    /// Its picture, as PNG or GLB.
     #[serde(default)]
     pub picture: Option<BlobRef>,
 }

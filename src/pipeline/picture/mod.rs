@@ -1,8 +1,10 @@
 //! Pictures of a run: the mesh as uploaded with its defects, the result with its new triangles, from one side or several,
 //! or turning.
 
+mod model;
 mod paint;
 
+use self::model::model;
 use self::paint::{Painted, Side};
 use super::{Answer, Failure, Input, Operation, Options, Report, Units};
 use crate::analysis::{Element, Finding, Witness};
@@ -14,6 +16,16 @@ use crate::render::{
     Camera, Canvas, Edges, Frame, LETTER_HEIGHT, LETTER_WIDTH, Model, Projection, Rgb, SIDE_MAX, SIDE_MIN,
     Shade, Style, View, animation, draw, picture,
 };
+
+/// What kind of file a picture is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum PictureFormat {
+    /// Pixels, or several pictures that move.
+    #[default]
+    Png,
+    /// A mesh that a viewer turns.
+    Glb,
+}
 
 /// What a picture shows, and how.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -34,6 +46,8 @@ pub struct PictureChoices {
     pub shows_defects: bool,
     /// Pictures of a full turn around z, as an animation; 0: none, the views instead.
     pub turn_pictures: u32,
+    /// What it is; a mesh has colours and marks only.
+    pub format: PictureFormat,
 }
 
 impl PictureChoices {
@@ -53,6 +67,7 @@ impl Default for PictureChoices {
             projection: Projection::Orthographic,
             shows_defects: true,
             turn_pictures: 0,
+            format: PictureFormat::Png,
         }
     }
 }
@@ -117,7 +132,7 @@ impl Shift {
     }
 }
 
-/// The picture of one mesh that was read, as PNG; `None`: none is asked for.
+/// The picture of one mesh that was read; `None`: none is asked for.
 pub(super) fn of_mesh(
     operation: Operation,
     input: &Input,
@@ -155,7 +170,7 @@ pub(super) fn of_meshes(
     make(&drawn, answer, &choices, options, budget).map(Some)
 }
 
-/// The picture of `drawn`, and of the result beside it if there is one, as PNG.
+/// The picture of `drawn`, and of the result beside it if there is one.
 pub(super) fn make(
     drawn: &Drawn<'_>,
     answer: &Answer,
@@ -171,7 +186,10 @@ pub(super) fn make(
             after.as_ref().map(|soup| Painted::after(drawn.soup, soup, units, budget)).transpose()?;
         let sides: Vec<(&Soup, Painted)> =
             std::iter::once((drawn.soup, before)).chain(after.as_ref().zip(after_painted)).collect();
-        Ok(sheet(&sides, choices, budget)?)
+        match choices.format {
+            PictureFormat::Png => Ok(sheet(&sides, choices, budget)?),
+            PictureFormat::Glb => model(&sides, units, budget),
+        }
     })
 }
 

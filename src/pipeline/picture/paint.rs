@@ -84,6 +84,12 @@ fn class_of(code: DefectCode) -> usize {
     }
 }
 
+/// What a colour of triangles, lines and spots stands for.
+pub(super) fn meaning(color: Rgb) -> &'static str {
+    let class = CLASSES.iter().find(|(_, of_class)| *of_class == color);
+    class.map_or(if color == NEW { "new" } else { "surface" }, |(name, _)| name)
+}
+
 /// True of a defect that a whole part has.
 fn is_of_part(code: DefectCode) -> bool {
     matches!(

@@ -150,3 +150,67 @@ fn the_same_picture_comes_with_any_number_of_threads() {
     assert_eq!(of(1), of(2));
     assert_eq!(of(1), of(8));
 }
+
+/// What a picture that is a mesh holds: its triangles and the name of the material of each.
+fn read_model(glb: &[u8]) -> (Soup, Vec<String>) {
+    let soup =
+        formats::read(glb, formats::Encoding::Glb, &ReadOptions::default(), &Budget::unlimited()).unwrap();
+    let name = |t: usize| {
+        let material = soup.materials.of(soup.face_of(t as u32)).unwrap();
+        String::from_utf8(soup.materials.names[material as usize].clone()).unwrap()
+    };
+    let names = (0..soup.triangles.len()).map(name).collect();
+    (soup, names)
+}
+
+/// Six times the volume that these triangles enclose.
+fn volume_of(soup: &Soup, triangles: impl Iterator<Item = usize>) -> f64 {
+    triangles.map(|t| soup.corners(t as u32)).map(|[a, b, c]| a.dot(b.cross(c))).sum()
+}
+
+#[test]
+fn a_picture_that_is_a_mesh_has_the_surface_in_metres_and_a_rod_along_each_edge_of_a_rim() {
+    let choices = PictureChoices { format: PictureFormat::Glb, ..Default::default() };
+    let options = Options { picture: Some(choices), ..Options::default() };
+    let (soup, names) = read_model(&picture_of(Operation::Render, &options));
+    let of = |name: &str| (0..names.len()).filter(|&t| names[t] == name).collect::<Vec<_>>();
+    let (surface, rim) = (of("surface"), of("open rims"));
+    assert_eq!(surface.len(), 10);
+    assert_eq!(surface.len() + rim.len(), names.len());
+    let high = surface.iter().flat_map(|&t| soup.corners(t as u32)).fold(DVec3::ZERO, DVec3::max);
+    assert!((high - DVec3::splat(1e-3)).length() < 1e-9, "{high}");
+    // Four rods of six triangles, and marks of eight; all have their outside out.
+    assert_eq!((rim.len() - 24) % 8, 0);
+    let middle =
+        rim.iter().map(|&t| soup.corners(t as u32)[0]).fold(DVec3::ZERO, |a, b| a + b) / rim.len() as f64;
+    assert!((middle.z - 1e-3).abs() < 2e-5, "they are at the rim: {middle}");
+    for solid in rim[24..].chunks(8) {
+        assert!(volume_of(&soup, solid.iter().copied()) > 0.0);
+    }
+}
+
+#[test]
+fn a_rod_has_its_outside_out_in_every_direction() {
+    for to in [DVec3::X, DVec3::Y, DVec3::Z, -DVec3::X, -DVec3::Y, -DVec3::Z, DVec3::new(1.0, -2.0, 3.0)] {
+        let sides = model::rod_of_tests([DVec3::ONE, DVec3::ONE + to]);
+        for [a, b, c] in sides {
+            let (middle, normal) = ((a + b + c) / 3.0, (b - a).cross(c - a));
+            let axis = DVec3::ONE + to * (middle - DVec3::ONE).dot(to) / to.length_squared();
+            assert!(normal.dot(middle - axis) > 0.0, "{to}");
+        }
+    }
+}
+
+#[test]
+fn before_and_after_stand_beside_each_other_in_a_picture_that_is_a_mesh() {
+    let choices = PictureChoices { format: PictureFormat::Glb, ..Default::default() };
+    let options = Options { picture: Some(choices), fill_holes: FillHoles::Simple, ..Options::default() };
+    let (soup, names) = read_model(&picture_of(Operation::Repair, &options));
+    let of = |name: &str| names.iter().filter(|known| *known == name).count();
+    assert_eq!((of("before: surface"), of("after: surface"), of("after: new")), (10, 10, 2));
+    let least = |name: &str| {
+        let triangles = (0..names.len()).filter(|&t| names[t] == name);
+        triangles.flat_map(|t| soup.corners(t as u32)).map(|p| p.x).fold(f64::MAX, f64::min)
+    };
+    assert!(least("after: surface") > 1.05e-3 && least("before: surface") < 1e-9);
+}

@@ -24,9 +24,9 @@ use super::printing::{BuildDirection, PolicyInfo, PolicyName};
 use super::target::TargetSpec;
 use super::words::{
     ConstraintValues, Contact, Criterion, Cut, Degenerate, DrawnEdges, Effort, Extract, FillHoles,
-    FillMethod, Format, Kernel, LambdaFrom, Mode, Nesting, OpenShells, Operation, Placement, Projection,
-    Reader, Require, SetOperation, Shade, SolidParts, Stitch, StitchValidity, Units, VertexColors, Views,
-    Weld,
+    FillMethod, Format, Kernel, LambdaFrom, Mode, Nesting, OpenShells, Operation, PictureFormat, Placement,
+    Projection, Reader, Require, SetOperation, Shade, SolidParts, Stitch, StitchValidity, Units,
+    VertexColors, Views, Weld,
 };
 use crate::formats::{ReadLimits, ReadOptions};
 use crate::implicit::RbfOptions;
@@ -174,6 +174,8 @@ options! {
         "Whether render colours and marks defects. Default: true.";
     turntable: u32 = OptionKind::Integer { min: 2, max: 120 }, in RENDER,
         "Number of pictures of a full turn, which render returns as an animated PNG instead of views; at most 64 million pixels in all. Default: none.";
+    picture_format: PictureFormat, in RENDER,
+        "What render returns: a picture, or a mesh (GLB) that viewers turn, which has the colours and marks of the picture, and defects as the only choice. Default: png.";
     thumbnail: bool, in Operation::BESIDE_PICTURE, of the service,
         "Whether a picture of the mesh with its defects, and of the result with its new triangles, is made and kept with the job. Default: false.";
     policy: PolicyName, in Operation::ALL,
@@ -234,7 +236,20 @@ impl Options {
             let needs = "a `format` or `output_format` of off, ply, glb or gltf";
             return Err(OptionError::Lacking { spec: lookup::spec_of("vertex_colors")?, needs });
         }
-        self.check_turntable()
+        self.check_turntable()?;
+        self.check_model()
+    }
+
+    /// That a mesh in place of a picture has no choice that it would leave out.
+    fn check_model(&self) -> Result<(), OptionError> {
+        if self.picture_format != Some(PictureFormat::Glb) {
+            return Ok(());
+        }
+        let of_pixels = ["views", "width", "height", "shade", "edges", "projection", "turntable"];
+        match self.given().find(|spec| of_pixels.contains(&spec.name)) {
+            Some(spec) => Err(OptionError::Excluded { spec, by: "picture_format" }),
+            None => Ok(()),
+        }
     }
 
     /// That a full turn has no choice that it would leave out, and is no file of any size.
@@ -325,6 +340,7 @@ impl Options {
             self.projection.is_some(),
             self.defects.is_some(),
             self.turntable.is_some(),
+            self.picture_format.is_some(),
         ];
         wishes.contains(&true).then(|| pipeline::PictureChoices {
             views: self.views.map_or(thumbnail.views, Views::to_engine),
@@ -335,6 +351,7 @@ impl Options {
             projection: self.projection.map(Into::into).unwrap_or_default(),
             shows_defects: self.defects.unwrap_or(true),
             turn_pictures: self.turntable.unwrap_or(0),
+            format: self.picture_format.map(Into::into).unwrap_or_default(),
         })
     }
 

@@ -21,8 +21,8 @@ pub const REPORT_PAGE_CSP: &str = "default-src 'none'; img-src data:; style-src 
 /// Witnesses that are shown of each defect.
 const PLACES: usize = 3;
 
-/// The page of a report, which is `report` as JSON; `picture`: a PNG of the mesh, and of the result beside it if there is
-/// one.
+/// The page of a report, which is `report` as JSON; `picture`: one of the mesh, and of the result beside it if there is one, which
+/// is shown if it is a PNG.
 pub fn report_page(report: &Value, picture: Option<&[u8]>) -> String {
     let mut page = Page(String::new());
     page.add(format_args!(
@@ -33,7 +33,7 @@ pub fn report_page(report: &Value, picture: Option<&[u8]>) -> String {
     ));
     head(&mut page, report);
     verdict(&mut page, report);
-    if let Some(picture) = picture {
+    if let Some(picture) = picture.filter(|picture| !picture.starts_with(b"glTF")) {
         show(&mut page, report, picture);
     }
     found(&mut page, report);
@@ -146,17 +146,28 @@ fn found(page: &mut Page, report: &Value) {
     }
     page.heading("What was found");
     let (counts, measures) = (&before["counts"], &before["measures"]);
+    let unit = text(&report["input"]["units"]["unit"]);
     page.paragraph(&format!(
-        "Triangles: {}. Parts: {}, of which closed: {}. Surface: {} square units.",
+        "Triangles: {}. Parts: {}, of which closed: {}. Surface: {} {unit}\u{b2}.",
         counts["triangles"],
         counts["components"],
         counts["closed_components"],
         measured(&measures["area"], ""),
     ));
-    if let Some(question) = before["unit_hypothesis"]["question"].as_str() {
-        page.paragraph(question);
+    // What follows the question speaks of an option, which is nothing for the one who reads this.
+    if let Some((question, _)) =
+        before["unit_hypothesis"]["question"].as_str().and_then(|q| q.split_once('?'))
+    {
+        page.paragraph(&format!("{question}? The file was taken in {unit}."));
     }
-    let defects = items(&before["defects"]);
+    // The worst first.
+    let mut defects: Vec<&Value> = items(&before["defects"]).iter().collect();
+    let rank = |defect: &&Value| match text(&defect["severity"]) {
+        "error" => 0,
+        "warning" => 1,
+        _ => 2,
+    };
+    defects.sort_by_key(rank);
     if defects.is_empty() {
         page.paragraph("No defects.");
     }
@@ -174,13 +185,13 @@ fn found(page: &mut Page, report: &Value) {
             Cell::Text(places.join("; ")),
         ]
     };
-    let rows = defects.iter().map(row).collect();
+    let rows = defects.iter().copied().map(row).collect();
     page.table(&["", "Defect", "How many", "First places"], rows);
-    holes(page, defects);
+    holes(page, &defects);
 }
 
 /// The boundary loops that are listed, by the numbers under which they can be chosen.
-fn holes(page: &mut Page, defects: &[Value]) {
+fn holes(page: &mut Page, defects: &[&Value]) {
     let loops = defects.iter().filter(|defect| defect["code"] == "boundary-loop");
     let row = |(number, witness): (usize, &Value)| {
         let figure_of = |name: &str| {
@@ -214,9 +225,12 @@ fn place(witness: &Value) -> String {
     [named, at].into_iter().flatten().collect::<Vec<_>>().join(" ")
 }
 
+/// The coordinates of a place; what is nothing beside the largest of them is zero.
 fn coordinates(position: &Value) -> Option<String> {
-    let numbers: Vec<String> = items(position).iter().filter_map(Value::as_f64).map(figure).collect();
-    (numbers.len() == 3).then(|| numbers.join(", "))
+    let numbers: Vec<f64> = items(position).iter().filter_map(Value::as_f64).collect();
+    let largest = numbers.iter().fold(0.0, |largest: f64, number| largest.max(number.abs()));
+    let told = |&number: &f64| figure(if number.abs() < 1e-6 * largest { 0.0 } else { number });
+    (numbers.len() == 3).then(|| numbers.iter().map(told).collect::<Vec<_>>().join(", "))
 }
 
 fn done(page: &mut Page, report: &Value) {
@@ -241,12 +255,12 @@ fn done(page: &mut Page, report: &Value) {
     page.table(&["What", "How many", "Because of", "Choice"], rows);
 }
 
-/// A code as words.
 /// What is said behind the count of a defect that may be there more often.
 fn or_more(defect: &Value) -> &'static str {
     if defect["is_at_least"] == true { " or more" } else { "" }
 }
 
+/// A code as words.
 fn words(code: &str) -> String {
     code.replace(['-', '_'], " ")
 }

@@ -86,6 +86,8 @@ pub(super) fn fidelity(word: &str, is_combined: bool) -> &'static str {
 /// What a step of a repair does; of another code its words.
 pub(super) fn step(code: &str) -> String {
     let told = match code {
+        "take-usable" => "What programs cannot use was left out.",
+        "left_out" => "What the new file cannot hold was left out.",
         "split-polygons" => "Faces that programs read differently were split into triangles.",
         "join-over-noise" => "Points that only rounding kept apart were made one.",
         "clear-noise" => "Coordinates that are all but zero became zero.",

@@ -82,3 +82,23 @@ fn a_picture_stands_in_the_page_itself_and_its_words_say_what_it_shows() {
     assert!(REPORT_PAGE_CSP.contains("img-src data:;"));
     assert!(!report_page(&report, None).contains("<img"));
 }
+
+#[test]
+fn the_worst_defects_stand_first_and_places_have_no_noise() {
+    let defect = |severity: &str, code: &str, x: f64| {
+        let witness = json!({"faces": [{"index": 3}], "position": [x, 0.5, 2.0]});
+        json!({"severity": severity, "code": code, "count": 1, "witnesses": [witness]})
+    };
+    let report = json!({
+        "input": {"units": {"unit": "mm"}},
+        "before": {"defects": [defect("info", "needle", 8.6e-42), defect("error", "overlap", 1e-3)],
+                   "unit_hypothesis": {"question": "Is the side 1 mm? Say so with `units`."}}
+    });
+    let page = report_page(&report, None);
+    assert!(page.find("error</span>").unwrap() < page.find("note</span>").unwrap(), "{page}");
+    assert!(page.contains("at 0, 0.5, 2") && page.contains("at 0.001, 0.5, 2"), "{page}");
+    assert!(
+        page.contains("Is the side 1 mm? The file was taken in mm.") && !page.contains("units`"),
+        "{page}"
+    );
+}

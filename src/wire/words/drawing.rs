@@ -1,6 +1,6 @@
 //! How a mesh is drawn.
 
-use crate::render;
+use crate::{pipeline, render};
 
 words! {
     /// From which sides a mesh is drawn; z is up, and the front is the side of small y.
@@ -73,5 +73,15 @@ mirror! { render::Projection =>
         Orthographic = "orthographic",
         /// What is farther is smaller.
         Perspective = "perspective",
+    }
+}
+
+mirror! { pipeline::PictureFormat =>
+    /// What kind of file a picture is.
+    PictureFormat {
+        /// Pixels.
+        Png = "png",
+        /// A mesh whose colours and marks show the same, which viewers turn.
+        Glb = "glb",
     }
 }

@@ -114,7 +114,7 @@ mod holes;
 mod mending;
 mod reports;
 
-pub use self::drawing::{DrawnEdges, Projection, Shade, Views};
+pub use self::drawing::{DrawnEdges, PictureFormat, Projection, Shade, Views};
 pub use self::files::{Encoding, Format, Operation, Reader, SolidParts, Units};
 pub use self::holes::{
     ConstraintValues, Extract, FillMethod, HoleClass, HoleFate, Kernel, LambdaFrom, Rejection,
