@@ -16,7 +16,7 @@ import { droppable } from "./panel/verify.js";
 import { aim } from "./places.js";
 import * as jobs from "./recent.js";
 import { SAMPLES, sample } from "./samples.js";
-import { Session, curlOf } from "./session.js";
+import { Session, curlOf, formatOf, toldBy } from "./session.js";
 import { LANGUAGES, current, number, percent, speak, t, translate } from "./text/text.js";
 import { ofDefect } from "./view/colors.js";
 import { View } from "./view/view.js";
@@ -52,12 +52,8 @@ function begin(name, file) {
   session = new Session(name, file);
   document.body.dataset.state = "open";
   for (const id of ["verdict", "findings", "parts-list", "checks", "result"]) at(id).replaceChildren();
-  for (const id of ["units", "policy"]) at(id).value = "";
   for (const id of ["facts", "findings-section", "repair-section", "solid-field"]) at(id).hidden = true;
-  at("solid").value = "separate";
-  at("best").checked = false;
-  at("share").value = 100;
-  at("levels").value = "1";
+  showChoices();
   at("file-name").textContent = name;
   document.title = `${name} – Meshmend`;
   delete at("view").dataset.drawn;
@@ -67,6 +63,13 @@ function begin(name, file) {
   drawing.light(null);
   calm();
   jobs.name(null);
+}
+
+function showChoices() {
+  const { unit, policy, solid, choices } = session;
+  for (const [id, value] of Object.entries({ units: unit, policy, solid, levels: choices.levels, share: Math.round(choices.share * 100) })) at(id).value = value;
+  at("best").checked = choices.takesBest;
+  shareText();
 }
 
 // One file is opened; several become one, if they shall.
@@ -123,7 +126,8 @@ async function run(request, file) {
   const of = session;
   working(t(file ? "status.sending" : "status.queued"));
   const job = await api.create(request, file);
-  jobs.remember(job, of.name);
+  const { operation, input, thumbnail, ...asked } = request;
+  jobs.remember(job, of.name, asked);
   if (of !== session) return job;
   return follow(job);
 }
@@ -155,9 +159,9 @@ function factsOf({ bounds, faceCount }) {
 // What a report says, wherever it belongs.
 async function show(job) {
   const of = session;
-  of.job = job;
   const report = await api.report(job);
   if (of !== session) return;
+  Object.assign(of, { job, given: report.certificate && formatOf(report.certificate) });
   const isFirst = !of.report;
   of.report = report;
   if (isFirst) for (const defect of report.before.defects) if (isShownFirst(defect)) of.shown.add(defect.code);
@@ -328,9 +332,10 @@ async function repair() {
   of.choices.takesBest = at("best").checked;
   of.choices.share = Number(at("share").value) / 100;
   of.choices.levels = Number(at("levels").value);
-  of.asked = of.repairOptions();
-  const job = await run({ operation: "repair", thumbnail: true, input: { job: of.inputJob }, ...of.asked }, null);
+  const asked = of.repairOptions();
+  const job = await run({ operation: "repair", thumbnail: true, input: { job: of.inputJob }, ...asked }, null);
   if (of !== session) return;
+  Object.assign(of, { asked, isAskedKnown: true });
   await showRepair(job);
 }
 
@@ -339,7 +344,7 @@ async function showRepair(job) {
   if (job.links.result) working(t("status.fetching"));
   await show(job);
   if (of !== session) return;
-  Object.assign(of, { given: of.report.certificate?.encoding.split("-")[0], level: 0 });
+  of.level = 0;
   drawing.light(null);
   of.place = null;
   openFinding(list, of, host, null, 0);
@@ -392,7 +397,8 @@ async function redraw() {
 
 // Opens a job again, at whatever it has come to.
 async function openJob(id) {
-  begin(jobs.nameOf(id) ?? id.slice(0, 8));
+  const known = jobs.known(id);
+  begin(known?.name ?? id.slice(0, 8));
   const of = session;
   jobs.name(id);
   await guarded(async () => {
@@ -402,14 +408,27 @@ async function openJob(id) {
     if (job.operation === "boolean" && job.links.result) return void openResult(job, of.name);
     of.inputJob = id;
     if (!["plan", "repair"].includes(job.operation)) throw new Problem({ code: "not-found" });
+    await takeChoices(job, known?.asked);
+    if (of !== session) return;
     await show(job);
     if (of !== session) return;
-    of.asked = of.options();
     await drawing.drawFromService();
     if (of !== session) return;
     rest();
     if (job.operation === "repair") await showRepair(job);
   }, of);
+}
+
+// What the page shows and asks for is what the job was made with.
+async function takeChoices(job, asked) {
+  const of = session;
+  const taken = asked ?? toldBy(await api.report(job));
+  if (of !== session) return;
+  of.take(taken);
+  showChoices();
+  // What the lists do not offer was not chosen here.
+  of.take({ ...taken, units: at("units").value, policy: at("policy").value });
+  Object.assign(of, { asked: taken, isAskedKnown: Boolean(asked) });
 }
 
 function showJobs() {

@@ -60,7 +60,9 @@ export function resultSection(session, host) {
   const { certificate, deviation, actions } = report;
   if (!certificate) return null;
   const original = report.input.format;
-  const format = select(FORMATS.map((name) => [name, name === original ? t("format.same", { f: name.toUpperCase() }) : name.toUpperCase()]), session.format ?? original, (value) => { session.format = value; }, { id: "format" });
+  // Another format is made with the same choices, so they have to be known.
+  const formats = session.isAskedKnown ? FORMATS : [session.given];
+  const format = select(formats.map((name) => [name, name === original ? t("format.same", { f: name.toUpperCase() }) : name.toUpperCase()]), session.format ?? original, (value) => { session.format = value; }, { id: "format" });
   const steps = actions.flatMap((action) => action.changes.filter(({ count }) => count > 0).map(({ name, count }) => el("li", {}, `${name.replaceAll("_", " ")}: ${number(count)}`)));
   return el("section", { className: "result" },
     el("h3", {}, t("result")),
