@@ -7,7 +7,8 @@ import { existsSync, mkdtempSync, readFileSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { SAMPLES } from "../../web/src/samples.js";
-import { opened, repaired, withPage } from "./browser.mjs";
+import { opened, repaired, url, withPage } from "./browser.mjs";
+import { heap } from "./ways.mjs";
 
 const open = (page, name, content) => page.setInputFiles("#file", { name, mimeType: "", buffer: Buffer.from(content) });
 const triangles = async (page) => (await page.textContent(".result .figures dd")).replace(/[,.]/g, "").match(/→ (\d+)/)[1];
@@ -63,4 +64,66 @@ export async function choicesOfAJob(browser) {
     assert.deepEqual(await page.locator("#format option").allTextContents(), ["OBJ"]);
     assert.equal((await saved(page, "#download")).name, "scan-repaired.obj");
   });
+}
+
+// Where somebody sees it: not scrolled away, and with nothing over it.
+const inSight = (page, selector) => page.locator(selector).evaluate((element) => {
+  const { x, y, width, height } = element.getBoundingClientRect();
+  return element.contains(document.elementFromPoint(x + width / 2, y + height / 2));
+});
+
+const SCREENS = [{ viewport: { width: 1180, height: 720 } }, { viewport: { width: 375, height: 667 }, hasTouch: true, isMobile: true }];
+
+// While a repair runs, its progress and the way to end it are in sight.
+export async function progressInSight(browser) {
+  for (const screen of SCREENS) {
+    await withPage(browser, screen, async (page) => {
+      await open(page, "heap.off", heap(2000));
+      await opened(page);
+      await page.click(".finding-title >> nth=1");
+      await page.click("#repair");
+      await page.waitForSelector("#cancel:not([hidden])");
+      for (const id of ["#stage", "#cancel"]) assert.ok(await inSight(page, id), `${id} at ${screen.viewport.width} pixels`);
+      await page.click("#cancel");
+      await page.waitForSelector('.notice[data-code="cancelled"]');
+    });
+  }
+}
+
+// A size in two units is not cut off.
+export async function sizeInSight(browser) {
+  const answer = await fetch(`${url}/v1/convert?output_format=glb`, { method: "POST", headers: { "Content-Type": "application/octet-stream" }, body: SAMPLES.scan() });
+  const glb = Buffer.from(await answer.arrayBuffer());
+  for (const [width, height] of [[1366, 768], [375, 667]]) {
+    await withPage(browser, { viewport: { width, height } }, async (page) => {
+      await open(page, "scan.glb", glb);
+      await opened(page);
+      for (const id of ["#size", "#triangles"]) {
+        const { x, width: wide } = await page.locator(id).boundingBox();
+        assert.ok(x >= 0 && x + wide <= width, `${id} ends at ${x + wide} of ${width} pixels`);
+      }
+      assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width);
+    });
+  }
+}
+
+// The menu of jobs is on the screen, and closes by Escape and by a click elsewhere.
+export async function menu(browser) {
+  for (const width of [320, 390, 1180]) {
+    await withPage(browser, { viewport: { width, height: 780 } }, async (page) => {
+      assert.ok(await page.isVisible("header > a"), "the way to the reference is there");
+      await page.click("#sample-sound");
+      await opened(page);
+      await page.click("#jobs summary");
+      const box = await page.locator("#jobs > div").boundingBox();
+      assert.ok(box.x >= 0 && box.x + box.width <= width, `from ${box.x} to ${box.x + box.width} of ${width} pixels`);
+      assert.ok(await inSight(page, "#jobs-forget"));
+      await page.keyboard.press("Escape");
+      assert.equal(await page.isVisible("#jobs-forget"), false, "Escape closes it");
+      assert.ok(await page.evaluate(() => document.activeElement.matches("#jobs summary")));
+      await page.click("#jobs summary");
+      await page.click("header h1");
+      assert.equal(await page.isVisible("#jobs-forget"), false, "so does a click elsewhere");
+    });
+  }
 }

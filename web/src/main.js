@@ -480,6 +480,12 @@ function listen() {
   for (const id of ["units", "policy"]) at(id).addEventListener("change", () => guarded(lookAgain));
   at("solid").addEventListener("change", () => guarded(chooseSolid));
   at("jobs").addEventListener("toggle", showJobs);
+  document.addEventListener("pointerdown", (event) => { if (!at("jobs").contains(event.target)) at("jobs").open = false; });
+  at("jobs").addEventListener("keydown", (event) => {
+    if (event.key !== "Escape") return;
+    at("jobs").open = false;
+    at("jobs").querySelector("summary").focus();
+  });
   at("jobs-forget").addEventListener("click", () => { jobs.forgetAll(); showJobs(); });
   at("language").value = current();
   at("language").addEventListener("change", () => { speak(at("language").value); texts(); });
