@@ -127,3 +127,81 @@ export async function menu(browser) {
     });
   }
 }
+
+// A name in any letters stays what it is, in a download and in the command for a terminal.
+export async function namesOfFiles(browser) {
+  const name = "Grüße & 'x', \"y\"; z.off";
+  await withPage(browser, { permissions: ["clipboard-read", "clipboard-write"] }, async (page) => {
+    await open(page, name, SAMPLES.scan());
+    await opened(page);
+    await page.click("#repair");
+    await repaired(page);
+    // The service has no marks in names.
+    assert.match((await saved(page, "#download")).name, /^Grüße_.*x.*y.*z-repaired\.off$/);
+    await page.click("text=Copy as curl");
+    const command = await page.evaluate(() => navigator.clipboard.readText());
+    const folder = mkdtempSync(join(tmpdir(), "meshmend-"));
+    writeFileSync(join(folder, name), SAMPLES.scan());
+    execFileSync("sh", ["-c", `${command} -s`], { cwd: folder });
+    assert.ok(existsSync(join(folder, name.replace(".off", "-repaired.off"))), command);
+  });
+}
+
+// A process or a unit that is chosen after a repair waits for the next one; the result is still there.
+export async function resultAfterAChoice(browser) {
+  await withPage(browser, {}, async (page) => {
+    await page.click("#sample-scan");
+    await opened(page);
+    await page.click("#repair");
+    await repaired(page);
+    const hash = await page.textContent("#hash");
+    await page.selectOption("#policy", "fdm");
+    assert.match(await page.textContent("#earlier"), /made with another choice/);
+    assert.ok(await page.isVisible("#arrangement"), "before and after are still drawn");
+    const bytes = (await saved(page, "#download")).bytes;
+    assert.equal(createHash("sha256").update(bytes).digest("hex"), hash);
+    await page.selectOption("#policy", "");
+    assert.equal(await page.textContent("#earlier"), "");
+    await page.selectOption("#policy", "fdm");
+    await page.selectOption("#units", "cm");
+    await page.click("#repair");
+    await page.waitForSelector("#verdict .policy");
+    assert.match(await page.textContent("#size"), /^758\.8 .* cm\)$/);
+    assert.equal(await page.textContent("#earlier"), "");
+  });
+}
+
+// A look that was cancelled can be had again, also by choosing a process.
+export async function lookAgain(browser) {
+  await withPage(browser, {}, async (page) => {
+    for (const again of [() => page.click("#look-again"), () => page.selectOption("#policy", "fdm")]) {
+      // Not a file that the service has seen before.
+      await open(page, "heap.off", heap(6000 + Math.floor(Math.random() * 900)));
+      await page.waitForSelector("#cancel:not([hidden])");
+      await page.waitForSelector("#view[data-drawn]");
+      await page.click("#cancel");
+      await page.waitForSelector('.notice[data-code="cancelled"]');
+      assert.equal(await page.isVisible("#start"), false, "nothing lies over the mesh");
+      await again();
+      await opened(page);
+      assert.equal(await page.locator(".notice").count(), 0);
+    }
+    await open(page, "empty.stl", "");
+    assert.match(await (await page.waitForSelector('.notice[data-code="file-empty"]')).textContent(), /file is empty/);
+  });
+}
+
+// The best there is, is not called certified.
+export async function bestThereIs(browser) {
+  await withPage(browser, {}, async (page) => {
+    await page.click("#sample-scan");
+    await opened(page);
+    await page.click(".finding-title[data-code=boundary-loop]");
+    await page.selectOption("[data-role=remedy]", "keep");
+    await page.check("#best");
+    await page.click("#repair");
+    await repaired(page);
+    assert.equal((await page.textContent("#verdict h2")).replace("!", ""), "Not certified");
+    assert.doesNotMatch(await page.textContent("#result"), /certif/i);
+  });
+}

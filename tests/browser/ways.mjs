@@ -22,7 +22,7 @@ export async function errors(browser) {
     await page.click("#sample-sound");
     await page.waitForSelector('.notice[data-code="unreachable"]');
     await page.unroute("**/v1/jobs");
-    await page.click(".notice > button");
+    await page.click("#dismiss");
     assert.equal(await page.locator(".notice").count(), 0);
     await drop(page, "body", "rim.off", "OFF\n3 1 0\n0 0 0\n10 0 0\n0 10 0\n3 0 1 2\n");
     await opened(page);

@@ -42,15 +42,23 @@ async function guarded(action, of = session) {
     rest();
     at("repair").disabled = false;
     if (!session?.report && !session?.pictures.before) document.body.dataset.state = "failed";
-    complain(error instanceof Error ? error : new Problem({ code: "other" }));
+    complain(error instanceof Error ? error : new Problem({ code: "other" }), canLookAgain(error) && (() => guarded(lookAgain)));
     if (error.code === "unauthenticated") at("key-form").hidden = false;
     return undefined;
   }
 }
 
+// Whether there is something to look at that may do better another time.
+function canLookAgain({ code }) {
+  return session && !session.report && (session.file || session.inputJob) && !/^(mesh|archive|body|unsupported|unauth)/.test(code);
+}
+
 function begin(name, file) {
   session = new Session(name, file);
   document.body.dataset.state = "open";
+  at("units").options[0].textContent = "–";
+  at("repair").disabled = false;
+  at("repair").classList.remove("wanted");
   for (const id of ["verdict", "findings", "parts-list", "checks", "result"]) at(id).replaceChildren();
   for (const id of ["facts", "findings-section", "repair-section", "solid-field"]) at(id).hidden = true;
   showChoices();
@@ -75,8 +83,10 @@ function showChoices() {
 // One file is opened; several become one, if they shall.
 function openFiles(files) {
   const chosen = [...files];
-  if (chosen.length < 2) return openFile(chosen[0]);
+  const isEmpty = chosen.some(({ size }) => size === 0);
+  if (chosen.length < 2 && !isEmpty) return openFile(chosen[0]);
   if (document.body.dataset.state === "start") document.body.dataset.state = "failed";
+  if (isEmpty) return complain(new Problem({ code: "file-empty" }));
   if (chosen.length > SEVERAL_MAX) return complain(new Problem({ code: "too-many-files" }));
   return askAboutSeveral(chosen, { combine: (operation) => combine(chosen, operation), openFirst: () => openFile(chosen[0]) });
 }
@@ -105,18 +115,35 @@ async function openFile(file) {
   begin(file.name, file);
   const of = session;
   working(t("status.reading"));
-  const picture = file.arrayBuffer().then((bytes) => drawing.draw("before", bytes, file.name)).catch((error) => ({ error }));
-  await guarded(() => look(picture), of);
+  await guarded(() => look(drawFile(of)), of);
 }
 
-// Asks what is wrong with the file, and what can be done about it.
+// Draws the file as far as it is read here.
+async function drawFile(of) {
+  try {
+    await drawing.draw("before", await of.file.arrayBuffer(), of.name);
+    if (of === session) document.body.dataset.state = "open";
+    return null;
+  } catch (error) {
+    return { error };
+  }
+}
+
+// Asks what is wrong with the file, and what can be done about it. Only what was asked last is told.
 async function look(picture) {
   const of = session;
+  const count = of.looks += 1;
   const request = { operation: "plan", ...of.options(), ...(of.inputJob ? { input: { job: of.inputJob } } : {}) };
   const job = await run(request, of.inputJob ? null : of.file);
-  if (of !== session) return;
+  if (of !== session || count !== of.looks) return;
   of.inputJob ??= job.id;
   await show(job);
+  await drawnSomehow(picture);
+}
+
+// What is not drawn here, the service draws.
+async function drawnSomehow(picture) {
+  const of = session;
   const drawn = await picture;
   if (drawn?.error && of === session) await drawing.drawFromService();
 }
@@ -138,8 +165,10 @@ async function follow(job) {
   running = job;
   at("cancel").hidden = isOver(job);
   const ended = await api.follow(job, (event) => { if (of === session) told(event); });
-  running = null;
-  if (of === session) at("cancel").hidden = true;
+  if (running === job) {
+    running = null;
+    at("cancel").hidden = true;
+  }
   if (ended.problem && !ended.links.report) throw new Problem(ended.problem);
   if (ended.state === "cancelled" || ended.state === "expired") throw new Problem({ code: ended.state });
   return ended;
@@ -190,6 +219,7 @@ function panel() {
   // A 3MF is right about its own unit.
   at("units").disabled = report.input.format === "3mf";
   question(report);
+  tellEarlier();
   if (!session.pictures.before && report.before.measures.bounds) {
     const { min, max } = report.before.measures.bounds;
     factsOf({ bounds: { min: min.map((v) => v * session.reportUnit), max: max.map((v) => v * session.reportUnit) }, faceCount: report.before.counts.faces });
@@ -328,14 +358,17 @@ const host = {
 async function repair() {
   const of = session;
   at("repair").disabled = true;
-  at("repair").classList.remove("wanted");
   of.choices.takesBest = at("best").checked;
   of.choices.share = Number(at("share").value) / 100;
   of.choices.levels = Number(at("levels").value);
-  const asked = of.repairOptions();
+  const chosen = { unit: at("units").value, policy: at("policy").value };
+  const asked = of.repairOptions(chosen);
   const job = await run({ operation: "repair", thumbnail: true, input: { job: of.inputJob }, ...asked }, null);
   if (of !== session) return;
-  Object.assign(of, { asked, isAskedKnown: true });
+  const before = of.fileUnit;
+  Object.assign(of, { asked, isAskedKnown: true }, chosen);
+  at("repair").classList.remove("wanted");
+  if (of.fileUnit !== before) await drawnSomehow(redraw());
   await showRepair(job);
 }
 
@@ -361,19 +394,30 @@ function shareText() {
   at("share").setAttribute("aria-valuetext", at("share-text").textContent);
 }
 
-// A unit or a process changes what is said of the file, not the file.
+// A unit or a process changes what is said of the file, not the file. A result stays as it was made until the next repair.
+async function chooseUnitOrProcess() {
+  if (!session.isRepaired && !at("repair").disabled) return lookAgain();
+  host.changed();
+  return tellEarlier();
+}
+
+function tellEarlier() {
+  const isEarlier = session.isRepaired && (session.unit !== at("units").value || session.policy !== at("policy").value);
+  at("earlier").textContent = isEarlier ? t("earlier") : "";
+}
+
 async function lookAgain() {
-  if (!session.inputJob) return;
+  if (!session.inputJob && !session.file) return;
   const of = session;
+  document.body.dataset.state = "open";
   const before = of.fileUnit;
   of.unit = at("units").value;
   of.policy = at("policy").value;
   tools?.offer(false);
   view?.clear("after");
   delete of.pictures.after;
-  const isResized = before !== of.fileUnit;
-  const picture = isResized ? redraw() : Promise.resolve(null);
-  await look(picture);
+  const isDrawn = of.pictures.before && before === of.fileUnit;
+  await look(isDrawn ? null : redraw());
 }
 
 // What of several parts is one solid. Together they have other findings than one by one.
@@ -389,8 +433,8 @@ async function chooseSolid() {
 }
 
 async function redraw() {
-  if (!session.file) return drawing.drawFromService();
-  return drawing.draw("before", await session.file.arrayBuffer(), session.name);
+  if (session.file) return drawFile(session);
+  return session.report ? drawing.drawFromService().catch((error) => ({ error })) : { error: true };
 }
 
 // --- jobs of this browser --------------------------------------------------------------------------------------
@@ -477,7 +521,7 @@ function listen() {
   at("cancel").addEventListener("click", () => running && guarded(() => api.cancel(running)));
   at("share").addEventListener("input", () => { shareText(); host.changed(); });
   for (const id of ["best", "levels"]) at(id).addEventListener("change", host.changed);
-  for (const id of ["units", "policy"]) at(id).addEventListener("change", () => guarded(lookAgain));
+  for (const id of ["units", "policy"]) at(id).addEventListener("change", () => guarded(chooseUnitOrProcess));
   at("solid").addEventListener("change", () => guarded(chooseSolid));
   at("jobs").addEventListener("toggle", showJobs);
   document.addEventListener("pointerdown", (event) => { if (!at("jobs").contains(event.target)) at("jobs").open = false; });

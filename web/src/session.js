@@ -20,6 +20,7 @@ export class Session {
     this.format = null; // of the download
     this.given = null; // the format of the job's result
     this.level = 0; // the level of detail that is drawn
+    this.looks = 0; // how often it was asked what is wrong with it
     this.report = null;
     this.pictures = {}; // before, after
     this.size = null; // in millimetres, along each axis
@@ -51,8 +52,8 @@ export class Session {
 
   // What every request about this file has in common. Parts are looked at one by one before they are united, and all at once
   // where they are together.
-  options() {
-    return { samples: 1000, ...(this.unit ? { units: this.unit } : {}), ...(this.policy ? { policy: this.policy } : {}), ...(this.solid === "together" ? { parts: "together" } : {}) };
+  options({ unit, policy } = this) {
+    return { samples: 1000, ...(unit ? { units: unit } : {}), ...(policy ? { policy } : {}), ...(this.solid === "together" ? { parts: "together" } : {}) };
   }
 
   // Takes the choices of a request.
@@ -65,9 +66,9 @@ export class Session {
     this.choices = Choices.of(asked);
   }
 
-  // What a repair is asked for.
-  repairOptions() {
-    return { ...this.options(), ...(this.solid === "union" ? { parts: "union" } : {}), ...this.choices.options(this.report?.plan) };
+  // What a repair is asked for, perhaps with another unit and process than what is shown.
+  repairOptions(chosen = this) {
+    return { ...this.options(chosen), ...(this.solid === "union" ? { parts: "union" } : {}), ...this.choices.options(this.report?.plan) };
   }
 }
 
@@ -89,8 +90,12 @@ export const formatOf = (certificate) => certificate.encoding.split("-")[0];
 export function curlOf(session) {
   const options = { ...session.asked, ...(session.format ? { output_format: session.format } : {}) };
   delete options.samples;
-  const params = Object.keys(options).length ? ` -F 'params=${JSON.stringify(options)};type=application/json'` : "";
-  const quoted = session.name.replace(/[^\w.\- ]/g, "_");
-  const extension = session.format ?? session.report.input.format;
-  return `curl --fail-with-body -F 'mesh=@${quoted}'${params} ${location.origin}/v1/repair -o '${session.stem.replace(/[^\w.\- ]/g, "_")}-repaired.${extension}'`;
+  const params = Object.keys(options).length ? ` -F ${quoted(`params=${JSON.stringify(options)};type=application/json`)}` : "";
+  // Within quotes of its own, a name may have the marks that curl reads.
+  const mesh = `mesh=@"${session.name.replace(/[\\"]/g, "\\$&")}"`;
+  const result = `${session.stem}-repaired.${session.format ?? session.report.input.format}`;
+  return `curl --fail-with-body -F ${quoted(mesh)}${params} ${location.origin}/v1/repair -o ${quoted(result)}`;
 }
+
+// For a shell.
+const quoted = (text) => `'${text.replaceAll("'", "'\\''")}'`;

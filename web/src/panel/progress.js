@@ -22,17 +22,27 @@ export function told({ name, data }) {
   if (name === "progress") working(data.progress.stage ? t(`stage.${data.progress.stage}`) : t("status.queued"), data.progress.fraction);
 }
 
+// Problems that are the same to people.
+const SAME = {
+  "upload-conflict": "body-incomplete", "upload-unfinished": "body-incomplete", "upload-timeout": "body-incomplete",
+  "worker-lost": "draining", "store-unavailable": "draining",
+};
+for (const code of ["invalid-parameter", "unsupported-version", "presigned-refused", "method-not-allowed", "not-acceptable", "range-not-satisfiable", "precondition-failed", "head-too-large", "job-not-finished", "idempotency-key-reused", "webhook-refused"]) SAME[code] = "unknown-parameter";
+
 // A problem in people's words.
 export function wordsOf(error) {
-  const key = `problem.${error.code ?? "other"}`;
+  const key = `problem.${SAME[error.code] ?? error.code ?? "other"}`;
   return t(knows(key) ? key : "problem.other");
 }
 
-export function complain(error) {
+// `retry`: what may do better another time.
+export function complain(error, retry) {
   const notice = el("div", { className: "notice", role: "alert", "data-code": error.code ?? "other" },
     el("p", {}, wordsOf(error)),
     error.message && el("details", {}, el("summary", {}, t("detail")), el("p", { lang: "en" }, error.message)),
-    el("button", { type: "button", className: "quiet", onclick: () => notice.remove() }, t("dismiss")));
+    el("div", { className: "row links" },
+      retry && el("button", { type: "button", className: "quiet", id: "look-again", onclick: retry }, t("look.again")),
+      el("button", { type: "button", className: "quiet", id: "dismiss", onclick: () => notice.remove() }, t("dismiss"))));
   at("notices").replaceChildren(notice);
 }
 

@@ -59,6 +59,8 @@ export function resultSection(session, host) {
   const { report } = session;
   const { certificate, deviation, actions } = report;
   if (!certificate) return null;
+  // Of the best there is, nothing is certified.
+  const of = (key) => t(report.verdict.printable ? key : `${key}.partial`);
   const original = report.input.format;
   // Another format is made with the same choices, so they have to be known.
   const formats = session.isAskedKnown ? FORMATS : [session.given];
@@ -78,10 +80,10 @@ export function resultSection(session, host) {
       el("button", { type: "button", className: "quiet", onclick: () => saveJson(report, `${session.stem}.report.json`) }, t("report.json")),
       copyButton(t("copy.curl"), () => host.curl())),
     steps.length > 0 && el("details", {}, el("summary", {}, t("changed.steps")), el("ul", { lang: "en", className: "steps" }, steps)),
-    el("h3", {}, t("certificate")),
-    el("p", { className: "hash" }, el("span", {}, t("hash")), el("code", { id: "hash" }, certificate.sha256), el("span", { className: "ends" }, copyButton(t("copy"), () => certificate.sha256),
+    el("h3", {}, of("certificate")),
+    el("p", { className: "hash" }, el("span", {}, of("hash")), el("code", { id: "hash" }, certificate.sha256), el("span", { className: "ends" }, copyButton(t("copy"), () => certificate.sha256),
       el("button", { type: "button", className: "quiet", id: "certificate", onclick: () => saveJson(certificate, `${session.stem}.certificate.json`) }, t("certificate.save")))),
-    verifier([certificate, ...report.levels.map((level) => level.certificate)].map(({ sha256 }) => sha256), host));
+    verifier([certificate, ...report.levels.map((level) => level.certificate)].map(({ sha256 }) => sha256), of, host));
 }
 
 // Levels of detail: each can be drawn, and is a file with a certificate of its own.
