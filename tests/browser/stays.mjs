@@ -205,3 +205,72 @@ export async function bestThereIs(browser) {
     assert.doesNotMatch(await page.textContent("#result"), /certif/i);
   });
 }
+
+// Another language reaches all that is told, also figures and steps; one thing is told as one.
+export async function languageOfAResult(browser) {
+  await withPage(browser, { locale: "de" }, async (page) => {
+    await page.click("#sample-scan");
+    await opened(page);
+    await page.click("#repair");
+    await page.waitForSelector("#legend .new");
+    assert.match(await page.textContent("#legend"), /behalten [\d.]+neu/);
+    await page.click("text=Was getan wurde");
+    assert.match(await page.textContent(".result .steps"), /Ränder überspannt: 11/);
+    await page.selectOption("#language", "fr");
+    await page.waitForFunction(() => document.querySelector("#legend").textContent.startsWith("gardé"));
+    assert.match(await page.textContent(".result .steps"), /bords reliés\u00a0: 11/);
+    assert.match(await page.textContent("#triangles"), /^10\s309$/);
+    assert.match(await page.textContent("#verdict"), /permis\u00a0: /);
+
+    await open(page, "rim.off", "OFF\n4 3 0\n0 0 0\n10 0 0\n0 10 0\n0 0 10\n3 0 2 1\n3 0 1 3\n3 0 3 2\n");
+    await page.waitForFunction(() => document.querySelector("#triangles").textContent === "3");
+    await page.waitForSelector("#verdict h2");
+    for (const [language, text] of [["fr", /Un type de défauts à/], ["de", /Eine Art von Fehlern muss/], ["en", /One kind of defect must/]]) {
+      await page.selectOption("#language", language);
+      assert.match(await page.textContent("#verdict"), text);
+    }
+    // What is chosen first can be read whole.
+    await page.selectOption("#language", "de");
+    const cut = await page.locator("#units").evaluate((list) => {
+      const text = document.createElement("span");
+      text.style.cssText = "position: absolute; white-space: nowrap";
+      text.textContent = list.selectedOptions[0].textContent;
+      list.after(text);
+      const { paddingLeft } = getComputedStyle(list);
+      const missing = text.offsetWidth + 2 * parseFloat(paddingLeft) + 16 - list.offsetWidth;
+      text.remove();
+      return missing;
+    });
+    assert.ok(cut <= 0, `${cut} pixels are missing`);
+  });
+}
+
+// Without a pointer: the file is chosen first of all, the focus is never lost, the border goes to its ends, the theme stays.
+export async function focus(browser) {
+  await withPage(browser, { colorScheme: "light" }, async (page) => {
+    const focused = () => page.evaluate(() => document.activeElement.id);
+    await page.keyboard.press("Tab");
+    assert.equal(await focused(), "file");
+    assert.equal(await page.locator("#start .drop").evaluate((zone) => getComputedStyle(zone).outlineStyle), "solid");
+    await page.focus("#sample-scan");
+    await page.keyboard.press("Enter");
+    await opened(page);
+    assert.equal(await focused(), "canvas");
+    await page.focus("#file");
+    await page.focus("#repair");
+    await page.keyboard.press("Enter");
+    await repaired(page);
+    await page.waitForFunction(() => document.activeElement.id === "verdict");
+    assert.equal(await page.getAttribute("#verdict", "aria-live"), "polite");
+    await page.focus("#divider");
+    for (const [key, value] of [["Home", "2"], ["PageUp", "12"], ["End", "98"], ["PageDown", "88"]]) {
+      await page.keyboard.press(key);
+      assert.equal(await page.getAttribute("#divider", "aria-valuenow"), value, key);
+    }
+    for (const look of ["back", "left", "bottom"]) await page.click(`[data-look=${look}]`);
+    await page.click("#theme");
+    await page.reload();
+    await repaired(page);
+    assert.equal(await page.getAttribute("html", "data-theme"), "dark", "the choice is kept");
+  });
+}

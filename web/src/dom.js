@@ -17,6 +17,12 @@ export function el(tag, values = {}, ...children) {
   return element;
 }
 
+// Gives the focus to an element where it would be lost with one that is gone.
+export function keepFocus(element) {
+  const { activeElement: focused } = document;
+  if (focused === document.body || focused.disabled || !focused.checkVisibility()) element?.focus({ preventScroll: true });
+}
+
 // A choice: rows of value and text.
 export function select(rows, value, onchange, values = {}) {
   const options = rows.map(([word, text]) => el("option", { value: word, selected: word === value }, text));

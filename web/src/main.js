@@ -2,7 +2,7 @@
 
 import { Api, Problem, isOver } from "./api.js";
 import { Choices } from "./choices.js";
-import { at, el, save } from "./dom.js";
+import { at, el, keepFocus, save } from "./dom.js";
 import { Drawing, levelOf } from "./drawing.js";
 import { Meshes } from "./meshes.js";
 import { question, sizeText } from "./panel/facts.js";
@@ -70,6 +70,7 @@ function begin(name, file) {
   tools?.offer(false);
   drawing.light(null);
   calm();
+  keepFocus(at("canvas"));
   jobs.name(null);
 }
 
@@ -164,6 +165,7 @@ async function follow(job) {
   jobs.name(job.id);
   running = job;
   at("cancel").hidden = isOver(job);
+  if (!at("cancel").hidden) keepFocus(at("cancel"));
   const ended = await api.follow(job, (event) => { if (of === session) told(event); });
   if (running === job) {
     running = null;
@@ -178,10 +180,9 @@ async function follow(job) {
 
 function factsOf({ bounds, faceCount }) {
   session.size = bounds.max.map((high, axis) => high - bounds.min[axis]);
-  sizeText(session);
-  at("triangles").textContent = number(faceCount);
-  at("facts").hidden = false;
   session.faceCount = faceCount;
+  sizeText(session);
+  at("facts").hidden = false;
   shareText();
 }
 
@@ -203,6 +204,7 @@ async function show(job) {
 
 function panel() {
   const { report } = session;
+  const focused = document.activeElement.id;
   at("verdict").replaceChildren(verdictCard({ report, policy: session.checked }));
   list = findingsList(session, host);
   at("findings").replaceChildren(list);
@@ -227,6 +229,7 @@ function panel() {
   if (session.size) sizeText(session);
   at("panel").dataset.operation = report.operation;
   if (session.place) openFinding(list, session, host, session.place.code, session.place.number);
+  if (focused) keepFocus(at(focused));
 }
 
 // What lists ask for.
@@ -386,6 +389,7 @@ async function showRepair(job) {
   if (!job.links.result) tools?.offer(false);
   at("panel").scrollTop = 0;
   window.scrollTo(0, 0);
+  keepFocus(at("verdict"));
 }
 
 function shareText() {
@@ -499,11 +503,25 @@ function showPicture() {
 }
 
 const dark = matchMedia("(prefers-color-scheme: dark)");
+const themeNow = () => document.documentElement.dataset.theme ?? (dark.matches ? "dark" : "light");
+const useTheme = () => view?.setTheme(themeNow());
 
-function useTheme() {
-  const chosen = document.documentElement.dataset.theme;
-  view?.setTheme((chosen ?? (dark.matches ? "dark" : "light")));
+function chooseTheme(name) {
+  document.documentElement.dataset.theme = name;
+  try { localStorage.setItem("theme", name); } catch { /* not kept, then */ }
+  useTheme();
 }
+
+function restoreTheme() {
+  try {
+    const name = localStorage.getItem("theme");
+    if (name) document.documentElement.dataset.theme = name;
+  } catch { /* as the system has it, then */ }
+}
+
+// On a phone there is no room in the picture.
+const phone = matchMedia("(max-width: 760px)");
+const placeNotes = () => at(phone.matches ? "facts" : "corner").append(at("textured"), at("coarse"));
 
 function texts() {
   document.documentElement.lang = current();
@@ -511,6 +529,7 @@ function texts() {
   shareText();
   if (session?.report) panel();
   drawing.tellEased();
+  tools?.color(at("colors").value);
 }
 
 function listen() {
@@ -533,12 +552,9 @@ function listen() {
   at("jobs-forget").addEventListener("click", () => { jobs.forgetAll(); showJobs(); });
   at("language").value = current();
   at("language").addEventListener("change", () => { speak(at("language").value); texts(); });
-  at("theme").addEventListener("click", () => {
-    const isDark = (document.documentElement.dataset.theme ?? (dark.matches ? "dark" : "light")) === "dark";
-    document.documentElement.dataset.theme = isDark ? "light" : "dark";
-    useTheme();
-  });
+  at("theme").addEventListener("click", () => chooseTheme(themeNow() === "dark" ? "light" : "dark"));
   dark.addEventListener("change", useTheme);
+  phone.addEventListener("change", placeNotes);
   at("key-form").addEventListener("submit", (event) => {
     event.preventDefault();
     api.useKey(at("key").value);
@@ -560,6 +576,8 @@ if (!LANGUAGES.includes(current())) speak("en");
 showPicture();
 listen();
 texts();
+restoreTheme();
 useTheme();
+placeNotes();
 if (jobs.named()) openJob(jobs.named());
 document.body.dataset.ready = "true";

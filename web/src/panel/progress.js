@@ -2,6 +2,7 @@
 
 import { at, el } from "../dom.js";
 import { knows, t } from "../text/text.js";
+import { SAME_PROBLEM } from "../text/words.js";
 
 export function working(text, fraction = null) {
   at("progress").hidden = false;
@@ -22,16 +23,9 @@ export function told({ name, data }) {
   if (name === "progress") working(data.progress.stage ? t(`stage.${data.progress.stage}`) : t("status.queued"), data.progress.fraction);
 }
 
-// Problems that are the same to people.
-const SAME = {
-  "upload-conflict": "body-incomplete", "upload-unfinished": "body-incomplete", "upload-timeout": "body-incomplete",
-  "worker-lost": "draining", "store-unavailable": "draining",
-};
-for (const code of ["invalid-parameter", "unsupported-version", "presigned-refused", "method-not-allowed", "not-acceptable", "range-not-satisfiable", "precondition-failed", "head-too-large", "job-not-finished", "idempotency-key-reused", "webhook-refused"]) SAME[code] = "unknown-parameter";
-
 // A problem in people's words.
 export function wordsOf(error) {
-  const key = `problem.${SAME[error.code] ?? error.code ?? "other"}`;
+  const key = `problem.${SAME_PROBLEM[error.code] ?? error.code ?? "other"}`;
   return t(knows(key) ? key : "problem.other");
 }
 
