@@ -17,8 +17,14 @@ export function el(tag, values = {}, ...children) {
   return element;
 }
 
-// Gives the focus to an element where it would be lost with one that is gone.
+let isHeld = false;
+
+// Whoever has the focus somewhere now shall have it afterwards.
+export const holdFocus = () => { isHeld = document.activeElement !== document.body; };
+
+// Gives the focus to an element where it was lost with one that is gone.
 export function keepFocus(element) {
+  if (!isHeld) return;
   const { activeElement: focused } = document;
   if (focused === document.body || focused.disabled || !focused.checkVisibility()) element?.focus({ preventScroll: true });
 }

@@ -2,7 +2,7 @@
 
 import { Api, Problem, isOver } from "./api.js";
 import { Choices } from "./choices.js";
-import { at, el, keepFocus, save } from "./dom.js";
+import { at, el, holdFocus, keepFocus, save } from "./dom.js";
 import { Drawing, levelOf } from "./drawing.js";
 import { Meshes } from "./meshes.js";
 import { question, sizeText } from "./panel/facts.js";
@@ -55,11 +55,12 @@ function canLookAgain({ code }) {
 
 function begin(name, file) {
   session = new Session(name, file);
+  holdFocus();
   document.body.dataset.state = "open";
   at("units").options[0].textContent = "–";
   at("repair").disabled = false;
   at("repair").classList.remove("wanted");
-  for (const id of ["verdict", "findings", "parts-list", "checks", "result"]) at(id).replaceChildren();
+  for (const id of ["verdict", "earlier", "findings", "parts-list", "checks", "result"]) at(id).replaceChildren();
   for (const id of ["facts", "findings-section", "repair-section", "solid-field"]) at(id).hidden = true;
   showChoices();
   at("file-name").textContent = name;
@@ -205,6 +206,7 @@ async function show(job) {
 function panel() {
   const { report } = session;
   const focused = document.activeElement.id;
+  if (focused) holdFocus();
   at("verdict").replaceChildren(verdictCard({ report, policy: session.checked }));
   list = findingsList(session, host);
   at("findings").replaceChildren(list);
@@ -360,6 +362,8 @@ const host = {
 
 async function repair() {
   const of = session;
+  of.looks += 1; // what is still looked at is not told any more
+  holdFocus();
   at("repair").disabled = true;
   of.choices.takesBest = at("best").checked;
   of.choices.share = Number(at("share").value) / 100;
