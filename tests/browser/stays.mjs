@@ -86,6 +86,7 @@ export async function progressInSight(browser) {
       for (const id of ["#stage", "#cancel"]) assert.ok(await inSight(page, id), `${id} at ${screen.viewport.width} pixels`);
       await page.click("#cancel");
       await page.waitForSelector('.notice[data-code="cancelled"]');
+      assert.ok(await inSight(page, ".notice > p"), "and so is what became of it");
     });
   }
 }

@@ -44,6 +44,7 @@ async function guarded(action, of = session) {
     if (!session?.report && !session?.pictures.before) document.body.dataset.state = "failed";
     complain(error instanceof Error ? error : new Problem({ code: "other" }), canLookAgain(error) && (() => guarded(lookAgain)));
     if (error.code === "unauthenticated") at("key-form").hidden = false;
+    keepFocus(at("repair"));
     return undefined;
   }
 }

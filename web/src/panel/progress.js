@@ -38,6 +38,7 @@ export function complain(error, retry) {
       retry && el("button", { type: "button", className: "quiet", id: "look-again", onclick: retry }, t("look.again")),
       el("button", { type: "button", className: "quiet", id: "dismiss", onclick: () => notice.remove() }, t("dismiss"))));
   at("notices").replaceChildren(notice);
+  notice.scrollIntoView({ block: "nearest" });
 }
 
 export const calm = () => at("notices").replaceChildren();
