@@ -8,11 +8,12 @@ import { launch } from "./browser.mjs";
 import * as documents from "./documents.mjs";
 import * as files from "./files.mjs";
 import * as modules from "./modules.mjs";
+import * as stays from "./stays.mjs";
 import * as walk from "./walk.mjs";
 import * as ways from "./ways.mjs";
 
 const wanted = process.argv.slice(4);
-const tests = Object.entries({ ...modules, ...walk, ...ways, ...files, ...documents }).filter(([name]) => !["heap", "serious"].includes(name) && (wanted.length === 0 || wanted.includes(name)));
+const tests = Object.entries({ ...modules, ...walk, ...ways, ...stays, ...files, ...documents }).filter(([name]) => !["heap", "serious"].includes(name) && (wanted.length === 0 || wanted.includes(name)));
 const browser = await launch();
 let failures = 0;
 for (const [name, test] of tests) {

@@ -22,7 +22,7 @@ export async function errors(browser) {
     await page.click("#sample-sound");
     await page.waitForSelector('.notice[data-code="unreachable"]');
     await page.unroute("**/v1/jobs");
-    await page.click(".notice > button");
+    await page.click("#dismiss");
     assert.equal(await page.locator(".notice").count(), 0);
     await drop(page, "body", "rim.off", "OFF\n3 1 0\n0 0 0\n10 0 0\n0 10 0\n3 0 1 2\n");
     await opened(page);
@@ -139,13 +139,14 @@ export async function languages(browser) {
     assert.equal(await page.inputValue("#language"), "fr", "the choice is kept");
   });
   const { words: own } = await import("../../web/src/text/interface.js");
-  const { words: contract } = await import("../../web/src/text/words.js");
+  const { words: contract, SAME_PROBLEM } = await import("../../web/src/text/words.js");
   for (const [key, texts] of Object.entries({ ...own, ...contract })) {
     assert.equal(texts.filter((text) => text.trim()).length, 3, key);
     const names = texts.map((text) => (text.match(/\{\w+\}/g) ?? []).sort().join());
     assert.equal(new Set(names).size, 1, `${key} has the same places in all languages`);
   }
   const schemas = { defect: "DefectCode", remedy: "Remedy", method: "FillMethod", hole: "HoleClass", severity: "Severity", stage: "Stage", fidelity: "Fidelity", change: "ChangeKind", check: "CheckCode", state: "JobState" };
+  for (const code of components.schemas.ProblemCode.enum) assert.ok(contract[`problem.${SAME_PROBLEM[code] ?? code}`], `problem.${code}`);
   for (const [prefix, name] of Object.entries(schemas)) {
     for (const word of components.schemas[name].enum) assert.ok(contract[`${prefix}.${word}`], `${prefix}.${word}`);
   }

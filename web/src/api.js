@@ -51,8 +51,7 @@ export class Api {
   // A file of a job, with the name that the service gives it.
   async file(path, accept = "*/*") {
     const response = await this.call(path, { headers: { Accept: accept } });
-    const name = /filename="([^"]*)"/.exec(response.headers.get("Content-Disposition") ?? "")?.[1] ?? "mesh";
-    return { name, blob: await response.blob() };
+    return { name: nameIn(response.headers.get("Content-Disposition") ?? ""), blob: await response.blob() };
   }
 
   // Follows a job to its end; `told` hears its events. Where the stream breaks, it is waited for.
@@ -71,6 +70,12 @@ export class Api {
     }
     return seen;
   }
+}
+
+// The name of a file: whole as RFC 5987 has it, or what is left of it in ASCII.
+function nameIn(disposition) {
+  const whole = /filename\*=UTF-8''([^;\s]+)/i.exec(disposition)?.[1];
+  return whole ? decodeURIComponent(whole) : /filename="([^"]*)"/.exec(disposition)?.[1] ?? "mesh";
 }
 
 function remembered() {

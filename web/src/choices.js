@@ -9,6 +9,19 @@ export class Choices {
     this.levels = 1; // results, each with half the triangles of the one before
   }
 
+  // Those of a request.
+  static of({ plan, require, ratio, targets }) {
+    const choices = new Choices();
+    choices.takesBest = require === "best_effort";
+    choices.share = targets?.[0]?.ratio ?? ratio ?? 1;
+    choices.levels = targets?.length ?? 1;
+    for (const { code, remedy, elements } of plan?.findings ?? []) {
+      if (remedy) choices.setRemedy(code, remedy);
+      for (const { number, ...own } of elements) choices.setElement(code, number, own);
+    }
+    return choices;
+  }
+
   setRemedy(code, remedy) {
     this.remedies.set(code, remedy);
   }

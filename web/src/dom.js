@@ -17,6 +17,18 @@ export function el(tag, values = {}, ...children) {
   return element;
 }
 
+let isHeld = false;
+
+// Whoever has the focus somewhere now shall have it afterwards.
+export const holdFocus = () => { isHeld = document.activeElement !== document.body; };
+
+// Gives the focus to an element where it was lost with one that is gone.
+export function keepFocus(element) {
+  if (!isHeld) return;
+  const { activeElement: focused } = document;
+  if (focused === document.body || focused.disabled || !focused.checkVisibility()) element?.focus({ preventScroll: true });
+}
+
 // A choice: rows of value and text.
 export function select(rows, value, onchange, values = {}) {
   const options = rows.map(([word, text]) => el("option", { value: word, selected: word === value }, text));

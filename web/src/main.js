@@ -2,7 +2,7 @@
 
 import { Api, Problem, isOver } from "./api.js";
 import { Choices } from "./choices.js";
-import { at, el, save } from "./dom.js";
+import { at, el, holdFocus, keepFocus, save } from "./dom.js";
 import { Drawing, levelOf } from "./drawing.js";
 import { Meshes } from "./meshes.js";
 import { question, sizeText } from "./panel/facts.js";
@@ -16,7 +16,7 @@ import { droppable } from "./panel/verify.js";
 import { aim } from "./places.js";
 import * as jobs from "./recent.js";
 import { SAMPLES, sample } from "./samples.js";
-import { Session, curlOf } from "./session.js";
+import { Session, curlOf, formatOf, toldBy } from "./session.js";
 import { LANGUAGES, current, number, percent, speak, t, translate } from "./text/text.js";
 import { ofDefect } from "./view/colors.js";
 import { View } from "./view/view.js";
@@ -42,22 +42,28 @@ async function guarded(action, of = session) {
     rest();
     at("repair").disabled = false;
     if (!session?.report && !session?.pictures.before) document.body.dataset.state = "failed";
-    complain(error instanceof Error ? error : new Problem({ code: "other" }));
+    complain(error instanceof Error ? error : new Problem({ code: "other" }), canLookAgain(error) && (() => guarded(lookAgain)));
     if (error.code === "unauthenticated") at("key-form").hidden = false;
+    keepFocus(at("repair"));
     return undefined;
   }
 }
 
+// Whether there is something to look at that may do better another time.
+function canLookAgain({ code }) {
+  return session && !session.report && (session.file || session.inputJob) && !/^(mesh|archive|body|unsupported|unauth)/.test(code);
+}
+
 function begin(name, file) {
   session = new Session(name, file);
+  holdFocus();
   document.body.dataset.state = "open";
-  for (const id of ["verdict", "findings", "parts-list", "checks", "result"]) at(id).replaceChildren();
-  for (const id of ["units", "policy"]) at(id).value = "";
+  at("units").options[0].textContent = "–";
+  at("repair").disabled = false;
+  at("repair").classList.remove("wanted");
+  for (const id of ["verdict", "earlier", "findings", "parts-list", "checks", "result"]) at(id).replaceChildren();
   for (const id of ["facts", "findings-section", "repair-section", "solid-field"]) at(id).hidden = true;
-  at("solid").value = "separate";
-  at("best").checked = false;
-  at("share").value = 100;
-  at("levels").value = "1";
+  showChoices();
   at("file-name").textContent = name;
   document.title = `${name} – Meshmend`;
   delete at("view").dataset.drawn;
@@ -66,14 +72,24 @@ function begin(name, file) {
   tools?.offer(false);
   drawing.light(null);
   calm();
+  keepFocus(at("canvas"));
   jobs.name(null);
+}
+
+function showChoices() {
+  const { unit, policy, solid, choices } = session;
+  for (const [id, value] of Object.entries({ units: unit, policy, solid, levels: choices.levels, share: Math.round(choices.share * 100) })) at(id).value = value;
+  at("best").checked = choices.takesBest;
+  shareText();
 }
 
 // One file is opened; several become one, if they shall.
 function openFiles(files) {
   const chosen = [...files];
-  if (chosen.length < 2) return openFile(chosen[0]);
+  const isEmpty = chosen.some(({ size }) => size === 0);
+  if (chosen.length < 2 && !isEmpty) return openFile(chosen[0]);
   if (document.body.dataset.state === "start") document.body.dataset.state = "failed";
+  if (isEmpty) return complain(new Problem({ code: "file-empty" }));
   if (chosen.length > SEVERAL_MAX) return complain(new Problem({ code: "too-many-files" }));
   return askAboutSeveral(chosen, { combine: (operation) => combine(chosen, operation), openFirst: () => openFile(chosen[0]) });
 }
@@ -102,18 +118,35 @@ async function openFile(file) {
   begin(file.name, file);
   const of = session;
   working(t("status.reading"));
-  const picture = file.arrayBuffer().then((bytes) => drawing.draw("before", bytes, file.name)).catch((error) => ({ error }));
-  await guarded(() => look(picture), of);
+  await guarded(() => look(drawFile(of)), of);
 }
 
-// Asks what is wrong with the file, and what can be done about it.
+// Draws the file as far as it is read here.
+async function drawFile(of) {
+  try {
+    await drawing.draw("before", await of.file.arrayBuffer(), of.name);
+    if (of === session) document.body.dataset.state = "open";
+    return null;
+  } catch (error) {
+    return { error };
+  }
+}
+
+// Asks what is wrong with the file, and what can be done about it. Only what was asked last is told.
 async function look(picture) {
   const of = session;
+  const count = of.looks += 1;
   const request = { operation: "plan", ...of.options(), ...(of.inputJob ? { input: { job: of.inputJob } } : {}) };
   const job = await run(request, of.inputJob ? null : of.file);
-  if (of !== session) return;
+  if (of !== session || count !== of.looks) return;
   of.inputJob ??= job.id;
   await show(job);
+  await drawnSomehow(picture);
+}
+
+// What is not drawn here, the service draws.
+async function drawnSomehow(picture) {
+  const of = session;
   const drawn = await picture;
   if (drawn?.error && of === session) await drawing.drawFromService();
 }
@@ -123,7 +156,8 @@ async function run(request, file) {
   const of = session;
   working(t(file ? "status.sending" : "status.queued"));
   const job = await api.create(request, file);
-  jobs.remember(job, of.name);
+  const { operation, input, thumbnail, ...asked } = request;
+  jobs.remember(job, of.name, asked);
   if (of !== session) return job;
   return follow(job);
 }
@@ -133,9 +167,12 @@ async function follow(job) {
   jobs.name(job.id);
   running = job;
   at("cancel").hidden = isOver(job);
+  if (!at("cancel").hidden) keepFocus(at("cancel"));
   const ended = await api.follow(job, (event) => { if (of === session) told(event); });
-  running = null;
-  if (of === session) at("cancel").hidden = true;
+  if (running === job) {
+    running = null;
+    at("cancel").hidden = true;
+  }
   if (ended.problem && !ended.links.report) throw new Problem(ended.problem);
   if (ended.state === "cancelled" || ended.state === "expired") throw new Problem({ code: ended.state });
   return ended;
@@ -145,19 +182,18 @@ async function follow(job) {
 
 function factsOf({ bounds, faceCount }) {
   session.size = bounds.max.map((high, axis) => high - bounds.min[axis]);
-  sizeText(session);
-  at("triangles").textContent = number(faceCount);
-  at("facts").hidden = false;
   session.faceCount = faceCount;
+  sizeText(session);
+  at("facts").hidden = false;
   shareText();
 }
 
 // What a report says, wherever it belongs.
 async function show(job) {
   const of = session;
-  of.job = job;
   const report = await api.report(job);
   if (of !== session) return;
+  Object.assign(of, { job, given: report.certificate && formatOf(report.certificate) });
   const isFirst = !of.report;
   of.report = report;
   if (isFirst) for (const defect of report.before.defects) if (isShownFirst(defect)) of.shown.add(defect.code);
@@ -170,6 +206,8 @@ async function show(job) {
 
 function panel() {
   const { report } = session;
+  const focused = document.activeElement.id;
+  if (focused) holdFocus();
   at("verdict").replaceChildren(verdictCard({ report, policy: session.checked }));
   list = findingsList(session, host);
   at("findings").replaceChildren(list);
@@ -186,6 +224,7 @@ function panel() {
   // A 3MF is right about its own unit.
   at("units").disabled = report.input.format === "3mf";
   question(report);
+  tellEarlier();
   if (!session.pictures.before && report.before.measures.bounds) {
     const { min, max } = report.before.measures.bounds;
     factsOf({ bounds: { min: min.map((v) => v * session.reportUnit), max: max.map((v) => v * session.reportUnit) }, faceCount: report.before.counts.faces });
@@ -193,6 +232,7 @@ function panel() {
   if (session.size) sizeText(session);
   at("panel").dataset.operation = report.operation;
   if (session.place) openFinding(list, session, host, session.place.code, session.place.number);
+  if (focused) keepFocus(at(focused));
 }
 
 // What lists ask for.
@@ -323,14 +363,20 @@ const host = {
 
 async function repair() {
   const of = session;
+  of.looks += 1; // what is still looked at is not told any more
+  holdFocus();
   at("repair").disabled = true;
-  at("repair").classList.remove("wanted");
   of.choices.takesBest = at("best").checked;
   of.choices.share = Number(at("share").value) / 100;
   of.choices.levels = Number(at("levels").value);
-  of.asked = of.repairOptions();
-  const job = await run({ operation: "repair", thumbnail: true, input: { job: of.inputJob }, ...of.asked }, null);
+  const chosen = { unit: at("units").value, policy: at("policy").value };
+  const asked = of.repairOptions(chosen);
+  const job = await run({ operation: "repair", thumbnail: true, input: { job: of.inputJob }, ...asked }, null);
   if (of !== session) return;
+  const before = of.fileUnit;
+  Object.assign(of, { asked, isAskedKnown: true }, chosen);
+  at("repair").classList.remove("wanted");
+  if (of.fileUnit !== before) await drawnSomehow(redraw());
   await showRepair(job);
 }
 
@@ -339,7 +385,7 @@ async function showRepair(job) {
   if (job.links.result) working(t("status.fetching"));
   await show(job);
   if (of !== session) return;
-  Object.assign(of, { given: of.report.certificate?.encoding.split("-")[0], level: 0 });
+  of.level = 0;
   drawing.light(null);
   of.place = null;
   openFinding(list, of, host, null, 0);
@@ -348,6 +394,7 @@ async function showRepair(job) {
   if (!job.links.result) tools?.offer(false);
   at("panel").scrollTop = 0;
   window.scrollTo(0, 0);
+  keepFocus(at("verdict"));
 }
 
 function shareText() {
@@ -356,19 +403,30 @@ function shareText() {
   at("share").setAttribute("aria-valuetext", at("share-text").textContent);
 }
 
-// A unit or a process changes what is said of the file, not the file.
+// A unit or a process changes what is said of the file, not the file. A result stays as it was made until the next repair.
+async function chooseUnitOrProcess() {
+  if (!session.isRepaired && !at("repair").disabled) return lookAgain();
+  host.changed();
+  return tellEarlier();
+}
+
+function tellEarlier() {
+  const isEarlier = session.isRepaired && (session.unit !== at("units").value || session.policy !== at("policy").value);
+  at("earlier").textContent = isEarlier ? t("earlier") : "";
+}
+
 async function lookAgain() {
-  if (!session.inputJob) return;
+  if (!session.inputJob && !session.file) return;
   const of = session;
+  document.body.dataset.state = "open";
   const before = of.fileUnit;
   of.unit = at("units").value;
   of.policy = at("policy").value;
   tools?.offer(false);
   view?.clear("after");
   delete of.pictures.after;
-  const isResized = before !== of.fileUnit;
-  const picture = isResized ? redraw() : Promise.resolve(null);
-  await look(picture);
+  const isDrawn = of.pictures.before && before === of.fileUnit;
+  await look(isDrawn ? null : redraw());
 }
 
 // What of several parts is one solid. Together they have other findings than one by one.
@@ -384,15 +442,16 @@ async function chooseSolid() {
 }
 
 async function redraw() {
-  if (!session.file) return drawing.drawFromService();
-  return drawing.draw("before", await session.file.arrayBuffer(), session.name);
+  if (session.file) return drawFile(session);
+  return session.report ? drawing.drawFromService().catch((error) => ({ error })) : { error: true };
 }
 
 // --- jobs of this browser --------------------------------------------------------------------------------------
 
 // Opens a job again, at whatever it has come to.
 async function openJob(id) {
-  begin(jobs.nameOf(id) ?? id.slice(0, 8));
+  const known = jobs.known(id);
+  begin(known?.name ?? id.slice(0, 8));
   const of = session;
   jobs.name(id);
   await guarded(async () => {
@@ -402,14 +461,27 @@ async function openJob(id) {
     if (job.operation === "boolean" && job.links.result) return void openResult(job, of.name);
     of.inputJob = id;
     if (!["plan", "repair"].includes(job.operation)) throw new Problem({ code: "not-found" });
+    await takeChoices(job, known?.asked);
+    if (of !== session) return;
     await show(job);
     if (of !== session) return;
-    of.asked = of.options();
     await drawing.drawFromService();
     if (of !== session) return;
     rest();
     if (job.operation === "repair") await showRepair(job);
   }, of);
+}
+
+// What the page shows and asks for is what the job was made with.
+async function takeChoices(job, asked) {
+  const of = session;
+  const taken = asked ?? toldBy(await api.report(job));
+  if (of !== session) return;
+  of.take(taken);
+  showChoices();
+  // What the lists do not offer was not chosen here.
+  of.take({ ...taken, units: at("units").value, policy: at("policy").value });
+  Object.assign(of, { asked: taken, isAskedKnown: Boolean(asked) });
 }
 
 function showJobs() {
@@ -436,11 +508,25 @@ function showPicture() {
 }
 
 const dark = matchMedia("(prefers-color-scheme: dark)");
+const themeNow = () => document.documentElement.dataset.theme ?? (dark.matches ? "dark" : "light");
+const useTheme = () => view?.setTheme(themeNow());
 
-function useTheme() {
-  const chosen = document.documentElement.dataset.theme;
-  view?.setTheme((chosen ?? (dark.matches ? "dark" : "light")));
+function chooseTheme(name) {
+  document.documentElement.dataset.theme = name;
+  try { localStorage.setItem("theme", name); } catch { /* not kept, then */ }
+  useTheme();
 }
+
+function restoreTheme() {
+  try {
+    const name = localStorage.getItem("theme");
+    if (name) document.documentElement.dataset.theme = name;
+  } catch { /* as the system has it, then */ }
+}
+
+// On a phone there is no room in the picture.
+const phone = matchMedia("(max-width: 760px)");
+const placeNotes = () => at(phone.matches ? "facts" : "corner").append(at("textured"), at("coarse"));
 
 function texts() {
   document.documentElement.lang = current();
@@ -448,6 +534,7 @@ function texts() {
   shareText();
   if (session?.report) panel();
   drawing.tellEased();
+  tools?.color(at("colors").value);
 }
 
 function listen() {
@@ -458,18 +545,21 @@ function listen() {
   at("cancel").addEventListener("click", () => running && guarded(() => api.cancel(running)));
   at("share").addEventListener("input", () => { shareText(); host.changed(); });
   for (const id of ["best", "levels"]) at(id).addEventListener("change", host.changed);
-  for (const id of ["units", "policy"]) at(id).addEventListener("change", () => guarded(lookAgain));
+  for (const id of ["units", "policy"]) at(id).addEventListener("change", () => guarded(chooseUnitOrProcess));
   at("solid").addEventListener("change", () => guarded(chooseSolid));
   at("jobs").addEventListener("toggle", showJobs);
+  document.addEventListener("pointerdown", (event) => { if (!at("jobs").contains(event.target)) at("jobs").open = false; });
+  at("jobs").addEventListener("keydown", (event) => {
+    if (event.key !== "Escape") return;
+    at("jobs").open = false;
+    at("jobs").querySelector("summary").focus();
+  });
   at("jobs-forget").addEventListener("click", () => { jobs.forgetAll(); showJobs(); });
   at("language").value = current();
   at("language").addEventListener("change", () => { speak(at("language").value); texts(); });
-  at("theme").addEventListener("click", () => {
-    const isDark = (document.documentElement.dataset.theme ?? (dark.matches ? "dark" : "light")) === "dark";
-    document.documentElement.dataset.theme = isDark ? "light" : "dark";
-    useTheme();
-  });
+  at("theme").addEventListener("click", () => chooseTheme(themeNow() === "dark" ? "light" : "dark"));
   dark.addEventListener("change", useTheme);
+  phone.addEventListener("change", placeNotes);
   at("key-form").addEventListener("submit", (event) => {
     event.preventDefault();
     api.useKey(at("key").value);
@@ -491,6 +581,8 @@ if (!LANGUAGES.includes(current())) speak("en");
 showPicture();
 listen();
 texts();
+restoreTheme();
 useTheme();
+placeNotes();
 if (jobs.named()) openJob(jobs.named());
 document.body.dataset.ready = "true";

@@ -6,13 +6,14 @@ export function recent() {
   try { return JSON.parse(localStorage.getItem("jobs") ?? "[]"); } catch { return []; }
 }
 
-export function remember(job, name) {
-  const jobs = [{ id: job.id, operation: job.operation, name, at: Date.now() }, ...recent().filter(({ id }) => id !== job.id)];
+// `asked`: the choices that the job was made with.
+export function remember(job, name, asked) {
+  const jobs = [{ id: job.id, operation: job.operation, name, at: Date.now(), asked }, ...recent().filter(({ id }) => id !== job.id)];
   keep(jobs.slice(0, KEPT));
 }
 
 export const forgetAll = () => keep([]);
-export const nameOf = (id) => recent().find((job) => job.id === id)?.name;
+export const known = (id) => recent().find((job) => job.id === id);
 
 function keep(jobs) {
   try { localStorage.setItem("jobs", JSON.stringify(jobs)); } catch { /* a list for this visit only, then */ }

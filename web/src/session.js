@@ -15,9 +15,12 @@ export class Session {
     this.policy = "";
     this.partCount = 0; // of a project, as far as it is known
     this.solid = "separate"; // what of several parts is one solid
+    this.asked = null; // the choices of the job's request
+    this.isAskedKnown = true; // not so of a job of another browser
     this.format = null; // of the download
     this.given = null; // the format of the job's result
     this.level = 0; // the level of detail that is drawn
+    this.looks = 0; // how often it was asked what is wrong with it
     this.report = null;
     this.pictures = {}; // before, after
     this.size = null; // in millimetres, along each axis
@@ -49,22 +52,50 @@ export class Session {
 
   // What every request about this file has in common. Parts are looked at one by one before they are united, and all at once
   // where they are together.
-  options() {
-    return { samples: 1000, ...(this.unit ? { units: this.unit } : {}), ...(this.policy ? { policy: this.policy } : {}), ...(this.solid === "together" ? { parts: "together" } : {}) };
+  options({ unit, policy } = this) {
+    return { samples: 1000, ...(unit ? { units: unit } : {}), ...(policy ? { policy } : {}), ...(this.solid === "together" ? { parts: "together" } : {}) };
   }
 
-  // What a repair is asked for.
-  repairOptions() {
-    return { ...this.options(), ...(this.solid === "union" ? { parts: "union" } : {}), ...this.choices.options(this.report?.plan) };
+  // Takes the choices of a request.
+  take(asked) {
+    this.unit = asked.units ?? "";
+    this.policy = asked.policy ?? "";
+    this.solid = asked.parts ?? "separate";
+    if (asked.parts) this.partCount = 2;
+    this.format = asked.output_format ?? null;
+    this.choices = Choices.of(asked);
+  }
+
+  // What a repair is asked for, perhaps with another unit and process than what is shown.
+  repairOptions(chosen = this) {
+    return { ...this.options(chosen), ...(this.solid === "union" ? { parts: "union" } : {}), ...this.choices.options(this.report?.plan) };
   }
 }
+
+// What a report tells of the choices of its job: not what was done about each finding.
+export function toldBy({ input, printing, levels, verdict, certificate }) {
+  const ratios = levels.map(({ target }) => target.ratio).filter(Boolean);
+  return {
+    ...(input.units.is_stated && !["3mf", "glb", "gltf"].includes(input.format) ? { units: input.units.unit } : {}),
+    ...(printing ? { policy: printing.policy } : {}),
+    ...(verdict.outcome === "partial" ? { require: "best_effort" } : {}),
+    ...(ratios.length > 1 ? { targets: ratios.map((ratio) => ({ ratio })) } : { ratio: ratios[0] }),
+    ...(certificate ? { output_format: formatOf(certificate) } : {}),
+  };
+}
+
+export const formatOf = (certificate) => certificate.encoding.split("-")[0];
 
 // The same repair for a terminal.
 export function curlOf(session) {
-  const options = { ...session.repairOptions(), ...(session.format ? { output_format: session.format } : {}) };
+  const options = { ...session.asked, ...(session.format ? { output_format: session.format } : {}) };
   delete options.samples;
-  const params = Object.keys(options).length ? ` -F 'params=${JSON.stringify(options)};type=application/json'` : "";
-  const quoted = session.name.replace(/[^\w.\- ]/g, "_");
-  const extension = session.format ?? session.report.input.format;
-  return `curl --fail-with-body -F 'mesh=@${quoted}'${params} ${location.origin}/v1/repair -o '${session.stem.replace(/[^\w.\- ]/g, "_")}-repaired.${extension}'`;
+  const params = Object.keys(options).length ? ` -F ${quoted(`params=${JSON.stringify(options)};type=application/json`)}` : "";
+  // Within quotes of its own, a name may have the marks that curl reads.
+  const mesh = `mesh=@"${session.name.replace(/[\\"]/g, "\\$&")}"`;
+  const result = `${session.stem}-repaired.${session.format ?? session.report.input.format}`;
+  return `curl --fail-with-body -F ${quoted(mesh)}${params} ${location.origin}/v1/repair -o ${quoted(result)}`;
 }
+
+// For a shell.
+const quoted = (text) => `'${text.replaceAll("'", "'\\''")}'`;

@@ -2,14 +2,15 @@
 
 import { at } from "../dom.js";
 import { millimetres } from "../session.js";
-import { digits, t } from "../text/text.js";
+import { digits, number, t } from "../text/text.js";
 
 // In millimetres, and in the unit of the file once that is known.
-export function sizeText({ size, fileUnit, unit, report }) {
+export function sizeText({ size, faceCount, fileUnit, unit, report }) {
   const told = (scale, name) => `${size.map((value) => digits(value / scale)).join(" × ")} ${name}`;
   const own = fileUnit === 1 ? "" : ` (${told(fileUnit, unit || report.input.units.unit)})`;
   at("size").textContent = told(1, "mm") + own;
   at("dimensions").textContent = at("size").textContent;
+  at("triangles").textContent = number(faceCount);
 }
 
 // Which size is meant, where it could be several.

@@ -1,7 +1,7 @@
 // The list of findings: what is wrong, where, and what is to be done about it.
 
 import { el, field, select } from "../dom.js";
-import { knows, length, number, percent, t } from "../text/text.js";
+import { counted, knows, length, number, percent, t } from "../text/text.js";
 import { ofDefect } from "../view/colors.js";
 
 const METHODS = ["auto", "flat", "minimal", "smooth", "creased", "rbf"];
@@ -35,7 +35,7 @@ function finding(defect, session, host) {
 function mended({ fixed, count }) {
   if (fixed === null || fixed === undefined) return null;
   const isDone = fixed >= count;
-  return el("span", { className: isDone ? "tag good" : "tag" }, isDone ? t("fixed") : t("left", { n: number(count - fixed) }));
+  return el("span", { className: isDone ? "tag good" : "tag" }, isDone ? t("fixed") : counted("left", count - fixed));
 }
 
 // Opens the finding of `code` at its place `at`, and closes the others.

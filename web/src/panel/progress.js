@@ -2,6 +2,7 @@
 
 import { at, el } from "../dom.js";
 import { knows, t } from "../text/text.js";
+import { SAME_PROBLEM } from "../text/words.js";
 
 export function working(text, fraction = null) {
   at("progress").hidden = false;
@@ -24,16 +25,20 @@ export function told({ name, data }) {
 
 // A problem in people's words.
 export function wordsOf(error) {
-  const key = `problem.${error.code ?? "other"}`;
+  const key = `problem.${SAME_PROBLEM[error.code] ?? error.code ?? "other"}`;
   return t(knows(key) ? key : "problem.other");
 }
 
-export function complain(error) {
+// `retry`: what may do better another time.
+export function complain(error, retry) {
   const notice = el("div", { className: "notice", role: "alert", "data-code": error.code ?? "other" },
     el("p", {}, wordsOf(error)),
     error.message && el("details", {}, el("summary", {}, t("detail")), el("p", { lang: "en" }, error.message)),
-    el("button", { type: "button", className: "quiet", onclick: () => notice.remove() }, t("dismiss")));
+    el("div", { className: "row links" },
+      retry && el("button", { type: "button", className: "quiet", id: "look-again", onclick: retry }, t("look.again")),
+      el("button", { type: "button", className: "quiet", id: "dismiss", onclick: () => notice.remove() }, t("dismiss"))));
   at("notices").replaceChildren(notice);
+  notice.scrollIntoView({ block: "nearest" });
 }
 
 export const calm = () => at("notices").replaceChildren();

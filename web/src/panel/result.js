@@ -1,7 +1,7 @@
 // What came of a repair: verdict, changes, checks, downloads, certificate.
 
 import { copyButton, el, field, save, select } from "../dom.js";
-import { digits, length, number, percent, t } from "../text/text.js";
+import { counted, digits, knows, length, number, percent, t } from "../text/text.js";
 import { verifier } from "./verify.js";
 
 const FORMATS = ["stl", "obj", "ply", "off", "3mf", "glb", "gltf"];
@@ -13,7 +13,7 @@ export function verdictCard({ report, policy }) {
   const good = isRepair ? !isRefused && verdict.printable : verdict.printable;
   const errors = before.defects.filter(({ severity }) => severity === "error").length;
   const title = isRepair ? t(isRefused ? "verdict.refused" : good ? "verdict.repaired" : "verdict.partial") : t(good ? "verdict.good" : "verdict.bad");
-  const more = isRepair ? t(`outcome.${verdict.outcome ?? "refused"}`) : good ? t("verdict.good.more") : t("verdict.bad.more", { n: number(errors) });
+  const more = isRepair ? t(`outcome.${verdict.outcome ?? "refused"}`) : good ? t("verdict.good.more") : counted("verdict.bad.more", errors);
   return el("div", { className: `card ${good ? "good" : "bad"}` },
     el("h2", {}, el("span", { className: "icon", "aria-hidden": "true" }, good ? "✓" : "!"), title),
     el("p", {}, more),
@@ -26,7 +26,7 @@ export function verdictCard({ report, policy }) {
 function changeText({ reason, measured, limit }, report) {
   const isShare = ["lost", "invented", "volume"].includes(reason);
   const told = (value) => (isShare ? percent(value) : reason === "moved" ? `${digits(value, 3)} ${report.output_units}` : number(value));
-  return t(`change.${reason}`, { a: told(measured), b: limit === null ? "" : told(limit) });
+  return counted(`change.${reason}`, measured, { a: told(measured), b: limit === null ? "" : told(limit) });
 }
 
 function policyLine({ p3_holds: holds }, policy) {
@@ -59,9 +59,13 @@ export function resultSection(session, host) {
   const { report } = session;
   const { certificate, deviation, actions } = report;
   if (!certificate) return null;
+  // Of the best there is, nothing is certified.
+  const of = (key) => t(report.verdict.printable ? key : `${key}.partial`);
   const original = report.input.format;
-  const format = select(FORMATS.map((name) => [name, name === original ? t("format.same", { f: name.toUpperCase() }) : name.toUpperCase()]), session.format ?? original, (value) => { session.format = value; }, { id: "format" });
-  const steps = actions.flatMap((action) => action.changes.filter(({ count }) => count > 0).map(({ name, count }) => el("li", {}, `${name.replaceAll("_", " ")}: ${number(count)}`)));
+  // Another format is made with the same choices, so they have to be known.
+  const formats = session.isAskedKnown ? FORMATS : [session.given];
+  const format = select(formats.map((name) => [name, name === original ? t("format.same", { f: name.toUpperCase() }) : name.toUpperCase()]), session.format ?? original, (value) => { session.format = value; }, { id: "format" });
+  const steps = actions.flatMap((action) => action.changes.filter(({ count }) => count > 0).map(stepRow));
   return el("section", { className: "result" },
     el("h3", {}, t("result")),
     el("dl", { className: "figures" },
@@ -75,11 +79,17 @@ export function resultSection(session, host) {
       el("button", { type: "button", className: "quiet", onclick: () => host.openReport() }, t("report")),
       el("button", { type: "button", className: "quiet", onclick: () => saveJson(report, `${session.stem}.report.json`) }, t("report.json")),
       copyButton(t("copy.curl"), () => host.curl())),
-    steps.length > 0 && el("details", {}, el("summary", {}, t("changed.steps")), el("ul", { lang: "en", className: "steps" }, steps)),
-    el("h3", {}, t("certificate")),
-    el("p", { className: "hash" }, el("span", {}, t("hash")), el("code", { id: "hash" }, certificate.sha256), el("span", { className: "ends" }, copyButton(t("copy"), () => certificate.sha256),
+    steps.length > 0 && el("details", {}, el("summary", {}, t("changed.steps")), el("ul", { className: "steps" }, steps)),
+    el("h3", {}, of("certificate")),
+    el("p", { className: "hash" }, el("span", {}, of("hash")), el("code", { id: "hash" }, certificate.sha256), el("span", { className: "ends" }, copyButton(t("copy"), () => certificate.sha256),
       el("button", { type: "button", className: "quiet", id: "certificate", onclick: () => saveJson(certificate, `${session.stem}.certificate.json`) }, t("certificate.save")))),
-    verifier([certificate, ...report.levels.map((level) => level.certificate)].map(({ sha256 }) => sha256), host));
+    verifier([certificate, ...report.levels.map((level) => level.certificate)].map(({ sha256 }) => sha256), of, host));
+}
+
+// What a step did, as far as there are words for it.
+function stepRow({ name, count }) {
+  const key = `done.${name}`;
+  return el("li", { lang: knows(key) ? undefined : "en" }, t("done", { x: knows(key) ? t(key) : name.replaceAll("_", " "), n: number(count) }));
 }
 
 // Levels of detail: each can be drawn, and is a file with a certificate of its own.

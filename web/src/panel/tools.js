@@ -58,7 +58,7 @@ export class Tools {
       set((event.clientX - box.left) / box.width);
     });
     divider.addEventListener("keydown", (event) => {
-      const by = { ArrowLeft: -0.02, ArrowRight: 0.02 }[event.key];
+      const by = { ArrowLeft: -0.02, ArrowDown: -0.02, ArrowRight: 0.02, ArrowUp: 0.02, PageDown: -0.1, PageUp: 0.1, Home: -1, End: 1 }[event.key];
       if (!by) return;
       event.preventDefault();
       set(this.view.settings.divider + by);
@@ -128,7 +128,7 @@ export class Tools {
     const spread = (flags) => flags && Uint8Array.from({ length: flags.length * 3 }, (_, i) => (flags[(i / 3) | 0] ? NO_VALUE : 0));
     const count = (flags) => number(flags.reduce((sum, flag) => sum + flag, 0));
     const none = (flags) => number(flags.reduce((sum, flag) => sum + 1 - flag, 0));
-    const row = (swatch, key, told) => el("span", {}, el("i", { className: `swatch ${swatch}` }), `${t(key)} ${told}`);
+    const row = (color, key, told) => swatch(color, `${t(key)} ${told}`);
     return {
       bytes: { before: spread(before.kept), after: spread(after.kept) },
       legend: () => [row("kept", "legend.kept", count(after.kept)), row("new", "legend.new", none(after.kept)), row("gone", "legend.gone", none(before.kept))],
@@ -150,8 +150,10 @@ export class Tools {
     // Thin walls are what one looks for, so they have the warm end.
     const byte = (value) => (Number.isFinite(value) ? Math.round((1 - Math.min(1, value / most)) * 254) : NO_VALUE);
     const bytes = Object.fromEntries(sides.map((name, i) => [name, Uint8Array.from(lists[i], byte)]));
-    return { bytes, legend: () => scale(`≥ ${length(most)}`, "0 mm") };
+    const isPart = lists.some((list) => list.some(Number.isNaN));
+    return { bytes, legend: () => [...scale(`≥ ${length(most)}`, "0 mm"), ...(isPart ? [swatch("kept", t("legend.unmeasured"))] : [])] };
   }
 }
 
+const swatch = (color, text) => el("span", {}, el("i", { className: `swatch ${color}` }), text);
 const scale = (low, high) => [el("span", {}, low), el("i", { className: "ramp" }), el("span", {}, high), el("small", {}, t("legend.about"))];

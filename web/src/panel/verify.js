@@ -3,8 +3,8 @@
 import { el } from "../dom.js";
 import { t } from "../text/text.js";
 
-// `digests`: of the certified files.
-export function verifier(digests, host) {
+// `digests`: of the files of the result; `of`: texts about them.
+export function verifier(digests, of, host) {
   const answer = el("p", { className: "answer", role: "status", id: "verified" });
   const check = async (file) => {
     answer.className = "answer";
@@ -13,14 +13,14 @@ export function verifier(digests, host) {
       const { digest, isValid } = await host.verify(file);
       const isSame = digests.includes(digest);
       answer.classList.add(isSame && isValid ? "good" : "bad");
-      answer.textContent = `${t(isSame ? "verify.same" : "verify.other")} ${t(isValid ? "verify.valid" : "verify.invalid")}`;
+      answer.textContent = `${of(isSame ? "verify.same" : "verify.other")} ${t(isValid ? "verify.valid" : "verify.invalid")}`;
     } catch (error) {
       answer.classList.add("bad");
       answer.textContent = host.words(error);
     }
   };
   const input = el("input", { type: "file", id: "verify-file", className: "unseen", onchange: () => { if (input.files[0]) check(input.files[0]); input.value = ""; } });
-  const zone = el("label", { className: "drop small", for: "verify-file" }, el("strong", {}, t("verify")), el("span", {}, t("verify.more")));
+  const zone = el("label", { className: "drop small", for: "verify-file" }, el("strong", {}, t("verify")), el("span", {}, of("verify.more")));
   droppable(zone, ([file]) => check(file));
   return el("div", { className: "verify" }, input, zone, answer);
 }

@@ -30,8 +30,14 @@ export const knows = (key) => key in table;
 // The text of `key`, with `{name}` replaced. A code that is newer than this page is shown as it is.
 export function t(key, values = {}) {
   const text = table[key]?.[LANGUAGES.indexOf(language)] ?? key.replace(/^\w+\./, "").replaceAll("-", " ");
-  return text.replace(/\{(\w+)\}/g, (_, name) => values[name] ?? "");
+  return bound(text.replace(/\{(\w+)\}/g, (_, name) => values[name] ?? ""));
 }
+
+// French has a space before some marks, at which no line ends.
+const bound = (text) => (language === "fr" ? text.replace(/ (?=[:;?!%])/g, "\u00a0") : text);
+
+// The text of `key` for so many things; one may have a text of its own.
+export const counted = (key, count, values = {}) => t(count === 1 && knows(`${key}.one`) ? `${key}.one` : key, { n: number(count), ...values });
 
 export const number = (value, options = {}) => new Intl.NumberFormat(language, { maximumFractionDigits: 0, ...options }).format(value);
 export const percent = (share) => number(share, { style: "percent", maximumSignificantDigits: 3 });

@@ -90,7 +90,38 @@ export const words = {
   "change.invented": ["{a} of the surface is made up (allowed: {b})", "{a} der Oberfläche sind erfunden (erlaubt: {b})", "{a} de la surface est inventée (permis : {b})"],
   "change.moved": ["up to {a} away from the file (allowed: {b})", "bis zu {a} von der Datei entfernt (erlaubt: {b})", "jusqu’à {a} du fichier (permis : {b})"],
   "change.bodies": ["{a} bodies are lost", "{a} Körper fehlen", "{a} corps perdus"],
+  "change.bodies.one": ["one body is lost", "ein Körper fehlt", "un corps perdu"],
   "change.volume": ["the volume changed by {a} (allowed: {b})", "das Volumen änderte sich um {a} (erlaubt: {b})", "le volume a changé de {a} (permis : {b})"],
+
+  // What was done; names of the report that are not here stay as they are.
+  "done.triangles_added": ["triangles added", "Dreiecke hinzugefügt", "triangles ajoutés"],
+  "done.triangles_dropped": ["triangles dropped", "Dreiecke weggelassen", "triangles supprimés"],
+  "done.triangles_flipped": ["triangles turned", "Dreiecke gewendet", "triangles retournés"],
+  "done.triangles_split": ["triangles divided", "Dreiecke geteilt", "triangles divisés"],
+  "done.triangles_copied": ["triangles copied", "Dreiecke verdoppelt", "triangles copiés"],
+  "done.triangles_before": ["triangles before", "Dreiecke vorher", "triangles avant"],
+  "done.triangles_after": ["triangles after", "Dreiecke nachher", "triangles après"],
+  "done.vertices_added": ["points added", "Punkte hinzugefügt", "points ajoutés"],
+  "done.vertices_joined": ["points joined", "Punkte verbunden", "points joints"],
+  "done.vertices_moved": ["points moved", "Punkte verschoben", "points déplacés"],
+  "done.vertices_copied": ["points copied", "Punkte verdoppelt", "points copiés"],
+  "done.unused_vertices_dropped": ["points without a face dropped", "Punkte ohne Fläche weggelassen", "points sans face supprimés"],
+  "done.unusable_faces_dropped": ["unusable faces dropped", "unbrauchbare Flächen weggelassen", "faces inutilisables supprimées"],
+  "done.polygons_split": ["faces divided into triangles", "Flächen in Dreiecke geteilt", "faces divisées en triangles"],
+  "done.edges_joined": ["edges joined", "Kanten verbunden", "arêtes jointes"],
+  "done.edges_divided": ["edges divided", "Kanten geteilt", "arêtes divisées"],
+  "done.edges_collapsed": ["edges contracted", "Kanten zusammengezogen", "arêtes contractées"],
+  "done.edges_paired": ["edges paired", "Kanten zu Paaren gemacht", "arêtes appariées"],
+  "done.faces_removed": ["faces removed by simplifying", "Flächen beim Vereinfachen entfernt", "faces enlevées en simplifiant"],
+  "done.holes_filled": ["holes closed", "Löcher geschlossen", "trous bouchés"],
+  "done.holes_left": ["holes left open", "Löcher offen gelassen", "trous laissés ouverts"],
+  "done.rims_spanned": ["rims spanned", "Ränder überspannt", "bords reliés"],
+  "done.sheets_thickened": ["surfaces given a wall", "Flächen mit Wandstärke versehen", "surfaces épaissies"],
+  "done.shells_turned": ["parts turned", "Teile gewendet", "parties retournées"],
+  "done.copies_dropped": ["copies dropped", "Kopien weggelassen", "copies supprimées"],
+  "done.parts_removed": ["parts removed", "Teile entfernt", "parties enlevées"],
+  "done.part_triangles_removed": ["triangles of removed parts", "Dreiecke entfernter Teile", "triangles des parties enlevées"],
+  "done.open_parts_closed": ["open parts closed", "offene Teile geschlossen", "parties ouvertes fermées"],
 
   // Stages.
   "stage.read": ["Reading", "Lesen", "Lecture"],
@@ -147,5 +178,23 @@ export const words = {
   "problem.engine-out-of-memory": ["The file needs more memory than this service allows. Simplify it before.", "Die Datei braucht mehr Speicher, als dieser Dienst erlaubt. Vereinfachen Sie sie vorher.", "Le fichier demande plus de mémoire que permis. Simplifiez-le avant."],
   "problem.storage-full": ["The service has no room for more files. Try again later.", "Der Dienst hat keinen Platz für weitere Dateien. Versuchen Sie es später.", "Le service n’a plus de place. Réessayez plus tard."],
   "problem.unreachable": ["The service does not answer. Check the connection; the file is still here.", "Der Dienst antwortet nicht. Prüfen Sie die Verbindung; die Datei ist noch hier.", "Le service ne répond pas. Vérifiez la connexion ; le fichier est toujours là."],
+  "problem.file-empty": ["This file is empty: there is not one byte in it. Export it again.", "Diese Datei ist leer: Sie hat kein einziges Byte. Exportieren Sie sie erneut.", "Ce fichier est vide : il n’a pas un seul octet. Exportez-le à nouveau."],
+  "problem.archive-unsafe": ["This archive breaks a rule of safety and is not unpacked. Save the project anew, or export it as STL.", "Dieses Archiv verletzt eine Sicherheitsregel und wird nicht entpackt. Speichern Sie das Projekt neu, oder exportieren Sie es als STL.", "Cette archive enfreint une règle de sécurité et n’est pas décompressée. Enregistrez le projet à nouveau, ou exportez-le en STL."],
+  "problem.body-incomplete": ["The file did not arrive whole. Check the connection, and try again.", "Die Datei kam nicht ganz an. Prüfen Sie die Verbindung, und versuchen Sie es noch einmal.", "Le fichier n’est pas arrivé en entier. Vérifiez la connexion et réessayez."],
+  "problem.draining": ["The service is stopping, or lost this job. Try again in a minute.", "Der Dienst hält gerade an, oder der Auftrag ging ihm verloren. Versuchen Sie es in einer Minute wieder.", "Le service s’arrête, ou a perdu cette tâche. Réessayez dans une minute."],
+  "problem.engine-crashed": ["The service failed on this file. Export it in another format, and tell the operator.", "Der Dienst ist an dieser Datei gescheitert. Exportieren Sie sie in einem anderen Format, und sagen Sie es dem Betreiber.", "Le service a échoué sur ce fichier. Exportez-le dans un autre format, et prévenez l’exploitant."],
+  "problem.unknown-parameter": ["The page and the service do not understand each other. Reload the page; if it stays so, tell the operator.", "Seite und Dienst verstehen sich nicht. Laden Sie die Seite neu; bleibt es so, sagen Sie es dem Betreiber.", "La page et le service ne se comprennent pas. Rechargez la page ; si cela persiste, prévenez l’exploitant."],
   "problem.other": ["Something went wrong in the service. Try again; if it stays so, tell its operator.", "Im Dienst ging etwas schief. Versuchen Sie es noch einmal; bleibt es so, sagen Sie es dem Betreiber.", "Une erreur est survenue. Réessayez ; si elle persiste, prévenez l’exploitant."],
 };
+
+// Problems that are told as another one.
+const TOLD_AS = {
+  "body-incomplete": ["upload-conflict", "upload-unfinished", "upload-timeout"],
+  "draining": ["worker-lost", "store-unavailable"],
+  "other": ["internal"],
+  "unknown-parameter": [
+    "invalid-parameter", "unsupported-version", "presigned-refused", "method-not-allowed", "not-acceptable", "range-not-satisfiable",
+    "precondition-failed", "head-too-large", "job-not-finished", "idempotency-key-reused", "webhook-refused",
+  ],
+};
+export const SAME_PROBLEM = Object.fromEntries(Object.entries(TOLD_AS).flatMap(([told, codes]) => codes.map((code) => [code, told])));

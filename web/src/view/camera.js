@@ -3,7 +3,9 @@
 import { PerspectiveCamera, Vector3 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
-const DIRECTIONS = { front: [0, -1, 0], right: [1, 0, 0], top: [0, -0.0001, 1], iso: [0.62, -0.95, 0.62] };
+const DIRECTIONS = {
+  front: [0, -1, 0], back: [0, 1, 0], left: [-1, 0, 0], right: [1, 0, 0], top: [0, -0.0001, 1], bottom: [0, -0.0001, -1], iso: [0.62, -0.95, 0.62],
+};
 const FLIGHT_MS = 350;
 const STEP = Math.PI / 18; // of an arrow key
 
@@ -57,11 +59,11 @@ export class Camera {
     return this.camera.position.clone().sub(this.controls.target).normalize();
   }
 
-  // Looks at `place` along `normal`, not too steeply from below or above.
+  // Looks at `place` along `normal`, not too steeply from below or above, and not from farther than all is seen from.
   fly(place, normal, radius) {
     const direction = normal.lengthSq() > 0.01 ? normal.clone().normalize() : this.direction();
     direction.add(this.direction().multiplyScalar(0.35)).normalize();
-    this.go(place, direction, this.distanceFor(Math.max(radius * 2.5, this.radius * 0.04)));
+    this.go(place, direction, this.distanceFor(Math.min(this.radius, Math.max(radius * 2.5, this.radius * 0.04))));
   }
 
   go(target, direction, distance, isFlown = true) {

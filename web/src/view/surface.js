@@ -91,7 +91,8 @@ void main() {
   if (mode == 1 && shown < 0.5) tint = fresh;
   if (mode == 2 && shown < 0.999) tint = ofRamp(shown * 255.0 / 254.0);
 #endif
-  if (isBack && hasBacks) tint = back;
+  // In a map red is a figure.
+  if (isBack && hasBacks) tint = mode == 2 ? base * 0.6 : back;
   float key = max(dot(n, normalize(vec3(-0.35, 0.55, 0.75))), 0.0);
   float rim = max(dot(n, normalize(vec3(0.6, -0.3, 0.5))), 0.0);
   vec3 lit = tint * (0.5 + 0.5 * key + 0.22 * rim);
