@@ -424,17 +424,7 @@ impl Rebuilding<'_> {
         kept: &Draft,
     ) -> Result<Candidate, NoCandidate> {
         let mut soup = kept.to_soup(&self.input.soup);
-        let base = soup.positions.len() as u32;
-        soup.positions.extend(positions);
-        soup.triangles.extend(triangles.iter().map(|t| t.map(|v| v + base)));
-        soup.face_count = soup.triangles.len() as u32;
-        // What is new has no colour.
-        if !soup.vertex_colors.is_empty() {
-            soup.vertex_colors.resize(soup.positions.len(), None);
-        }
-        if !soup.face_colors.is_empty() {
-            soup.face_colors.resize(soup.triangles.len(), None);
-        }
+        soup.add_plain(positions, triangles);
         Candidate::write(soup, self.input, self.encoding, Depth::FirstViolation, self.budget)
     }
 }
