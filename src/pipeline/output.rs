@@ -3,6 +3,7 @@
 use super::describe::describe;
 use super::identical::identical_triangle_share;
 use super::input::Input;
+use super::left_out::left_out;
 use super::{Action, Answer, Failure, Options, Outcome, Output, Refusal, Report, Require, faithful};
 use crate::budget::{AsStopped, Budget, Stage, Stopped};
 use crate::certificate::{self, Certificate, Depth, Examination};
@@ -25,16 +26,6 @@ pub(super) fn unchanged(input: &Input, options: &Options, report: Report, otherw
         Some(refusal) => report.refused(refusal),
         None => input.returned_as_it_is(report, outcome),
     }
-}
-
-/// What is said of what the file has beside its mesh.
-fn left_out(counts: &[(&'static str, u64)]) -> Option<Action> {
-    if counts.is_empty() {
-        return None;
-    }
-    let reason = "what the file has beside its mesh is not in the output".to_owned();
-    let (step, causes, changes) = ("left_out", Vec::new(), counts.to_vec());
-    Some(Action { step, causes, changes, move_max: 0.0, reason, stitches: None })
 }
 
 /// A mesh that an operation has made which is no repair.
@@ -233,7 +224,7 @@ impl Candidate {
         let lost = [
             self.lost_texture(input, origins),
             self.lost_materials(input, origins),
-            left_out(&input.soup.left_out),
+            left_out(&input.soup, &self.soup, self.encoding),
         ];
         let actions = report.actions.into_iter().chain(lost.into_iter().flatten()).collect();
         let report = Report {

@@ -384,6 +384,9 @@ fn colours_go_from_a_project_to_other_formats_and_back() {
         "{:?}",
         off.report.remarks
     );
+    // The fifth has other colours at its corners.
+    let told = off.report.actions.iter().find(|action| action.step == "left_out").unwrap();
+    assert_eq!(told.changes, [("colors_at_corners", 1)]);
     for (format, what) in [(Format::Glb, "textures and"), (Format::Obj, "colours, textures and")] {
         let remarks = run(Operation::Convert, &bytes, &to(format)).report.remarks;
         assert!(remarks.last().unwrap().contains(&format!(": {what} materials that")), "{remarks:?}");

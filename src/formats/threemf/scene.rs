@@ -48,6 +48,7 @@ pub(super) fn assemble(
     let units = models.all.first().map(|model| model.units);
     let mut scene = Soup { units, is_f32_exact: true, ..Soup::default() };
     let mut is_faulty = false;
+    let mut means = 0;
     let mut charges = Vec::new();
     for placement in &models.placements {
         let [m, o] = placement.object;
@@ -106,12 +107,16 @@ pub(super) fn assemble(
                 budget.check()?;
             }
             let color = model.color_of_face(object, &mesh.attributes, f);
-            note_color(&mut scene.face_colors, first_face as usize + f, color.map(as_color));
+            means += u64::from(color.is_some_and(|(_, is_mean)| is_mean));
+            note_color(&mut scene.face_colors, first_face as usize + f, color.map(|(c, _)| as_color(c)));
         }
         scene.face_count += soup.face_count;
     }
     if !scene.face_colors.is_empty() {
         scene.face_colors.resize(scene.face_count as usize, None);
+    }
+    if means > 0 {
+        scene.left_out.push(("colors_at_corners", means));
     }
     drop_what_became_infinite(&mut scene);
     if !is_faulty && scene.triangles.len() == scene.face_count as usize {
