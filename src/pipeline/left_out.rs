@@ -3,17 +3,43 @@
 use super::Action;
 use crate::formats::Encoding;
 use crate::mesh::{Color, Soup};
+use crate::repair::NEW;
 
-/// What is said of it: of what no format takes over, and of the colours of `before` that the file read back as `after` does
-/// not hold.
-pub(super) fn left_out(before: &Soup, after: &Soup, encoding: Encoding) -> Option<Action> {
-    let colors = lost_colors(before, after, encoding).into_iter().filter(|&(_, count)| count > 0);
-    let changes: Vec<(&'static str, u64)> = before.left_out.iter().copied().chain(colors).collect();
+/// What is said of it: of what no format takes over, of what was `lost` with changes of the mesh, and of the colours of `before`
+/// that the file read back as `after` does not hold.
+pub(super) fn left_out(
+    before: &Soup,
+    lost: &[(&'static str, u64)],
+    after: &Soup,
+    encoding: Encoding,
+) -> Option<Action> {
+    let colors = lost_colors(before, after, encoding);
+    let has_lost_all = colors[0].1 > 0;
+    let lost = lost.iter().copied().filter(|&(name, _)| !(has_lost_all && name == "colors_at_seams"));
+    let colors = colors.into_iter().filter(|&(_, count)| count > 0);
+    let changes: Vec<_> = before.left_out.iter().copied().chain(lost).chain(colors).collect();
     if changes.is_empty() {
         return None;
     }
     let reason = "what the file has beside its mesh is not in the output".to_owned();
     let (step, causes) = ("left_out", Vec::new());
+    Some(Action { step, causes, changes, move_max: 0.0, reason, stitches: None })
+}
+
+/// What is said of new triangles with the colours and materials of faces of the file. `origins` name the triangles of `before`
+/// behind those of `after`.
+pub(super) fn taken_over(before: &Soup, after: &Soup, origins: &[u32]) -> Option<Action> {
+    let has_color = |f: u32| after.face_colors.get(f as usize).is_some_and(Option::is_some);
+    let new = || (0..).zip(origins).filter(|&(_, &origin)| origin == NEW).map(|(t, _)| after.face_of(t));
+    let colors = if before.face_colors.is_empty() { 0 } else { new().filter(|&f| has_color(f)).count() };
+    let materials = new().filter(|&f| after.materials.of(f).is_some()).count();
+    if colors == 0 && materials == 0 {
+        return None;
+    }
+    let changes =
+        vec![("triangles_with_color", colors as u64), ("triangles_with_material", materials as u64)];
+    let reason = "new triangles have the colours and materials of the nearest faces of the file".to_owned();
+    let (step, causes) = ("taken_over", Vec::new());
     Some(Action { step, causes, changes, move_max: 0.0, reason, stitches: None })
 }
 
@@ -44,7 +70,7 @@ mod tests {
         let (encoding, budget) = (format.default_encoding(), Budget::unlimited());
         let bytes = write(soup, encoding, &budget).unwrap();
         let after = read(&bytes, encoding, &ReadOptions::default(), &budget).unwrap();
-        left_out(soup, &after, encoding).map_or(Vec::new(), |action| action.changes)
+        left_out(soup, &[], &after, encoding).map_or(Vec::new(), |action| action.changes)
     }
 
     #[test]
