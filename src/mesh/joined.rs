@@ -3,6 +3,7 @@
 use super::materials::{Materials, NO_MATERIAL};
 use super::soup::Soup;
 use super::texture::{NO_POINT, Texture};
+use crate::geom::DVec3;
 
 impl Soup {
     /// The triangles of all `soups`, one after the other, with their colours, texture coordinates and materials. What has no
@@ -38,6 +39,31 @@ impl Soup {
         }
         joined
     }
+
+    /// Adds triangles over points of their own, which have no colour, no texture and no material. The soup has no polygons as
+    /// such.
+    pub fn add_plain(&mut self, positions: &[DVec3], triangles: &[[u32; 3]]) {
+        let first = self.positions.len() as u32;
+        self.positions.extend(positions);
+        self.triangles.extend(triangles.iter().map(|t| t.map(|v| first + v)));
+        let faces = self.face_count as usize + triangles.len();
+        if !self.triangle_face.is_empty() {
+            self.triangle_face.extend(self.face_count..faces as u32);
+        }
+        self.face_count = faces as u32;
+        if !self.vertex_colors.is_empty() {
+            self.vertex_colors.resize(self.positions.len(), None);
+        }
+        if !self.face_colors.is_empty() {
+            self.face_colors.resize(faces, None);
+        }
+        if !self.texture.is_empty() {
+            self.texture.corners.resize(self.triangles.len(), [NO_POINT; 3]);
+        }
+        if !self.materials.is_empty() {
+            self.materials.of_face.resize(faces, NO_MATERIAL);
+        }
+    }
 }
 
 impl Texture {
@@ -70,7 +96,6 @@ impl Materials {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geom::DVec3;
     use crate::mesh::Color;
 
     #[test]
@@ -103,5 +128,26 @@ mod tests {
         assert_eq!(joined.texture.corners, [[0, 1, 1], [NO_POINT; 3], [2, 3, 3]]);
         assert_eq!(joined.materials.of_face[1..], [0, NO_MATERIAL, NO_MATERIAL, NO_MATERIAL, 1]);
         assert_eq!(joined.materials.libraries.len(), 1);
+    }
+
+    #[test]
+    fn plain_triangles_have_an_empty_place_in_every_list() {
+        let mut soup = Soup {
+            positions: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
+            triangles: vec![[0, 1, 2]],
+            face_count: 1,
+            vertex_colors: vec![Some(Color::Index(1)); 3],
+            face_colors: vec![Some(Color::Index(2))],
+            texture: Texture { points: vec![[0.5; 2]], corners: vec![[0; 3]] },
+            materials: Materials { names: vec![b"oak".to_vec()], of_face: vec![0], ..Materials::default() },
+            ..Soup::default()
+        };
+        let positions = soup.positions.clone();
+        soup.add_plain(&positions, &[[0, 2, 1], [0, 1, 2]]);
+        assert_eq!(soup.check(), Vec::<String>::new());
+        assert_eq!(soup.triangles, [[0, 1, 2], [3, 5, 4], [3, 4, 5]]);
+        assert_eq!(soup.texture.corners, [[0; 3], [NO_POINT; 3], [NO_POINT; 3]]);
+        assert_eq!((soup.materials.of(0), soup.materials.of(2)), (Some(0), None));
+        assert_eq!((soup.vertex_colors[5], soup.face_colors[1]), (None, None));
     }
 }

@@ -15,6 +15,7 @@ mod identical;
 mod input;
 mod input_facts;
 mod ladder;
+mod left_out;
 mod modeller;
 mod operation;
 mod output;

@@ -3,6 +3,7 @@
 use super::describe::describe;
 use super::identical::identical_triangle_share;
 use super::input::Input;
+use super::left_out::{left_out, taken_over};
 use super::{Action, Answer, Failure, Options, Outcome, Output, Refusal, Report, Require, faithful};
 use crate::budget::{AsStopped, Budget, Stage, Stopped};
 use crate::certificate::{self, Certificate, Depth, Examination};
@@ -25,16 +26,6 @@ pub(super) fn unchanged(input: &Input, options: &Options, report: Report, otherw
         Some(refusal) => report.refused(refusal),
         None => input.returned_as_it_is(report, outcome),
     }
-}
-
-/// What is said of what the file has beside its mesh.
-fn left_out(counts: &[(&'static str, u64)]) -> Option<Action> {
-    if counts.is_empty() {
-        return None;
-    }
-    let reason = "what the file has beside its mesh is not in the output".to_owned();
-    let (step, causes, changes) = ("left_out", Vec::new(), counts.to_vec());
-    Some(Action { step, causes, changes, move_max: 0.0, reason, stitches: None })
 }
 
 /// A mesh that an operation has made which is no repair.
@@ -81,6 +72,8 @@ pub(super) struct Candidate {
     examination: Examination,
     /// For each of its triangles the one of the soup that was written; `None`: the same.
     order: Option<Vec<u32>>,
+    /// What was lost on the way to the soup that was written.
+    left_out: Vec<(&'static str, u64)>,
 }
 
 /// Why there is no candidate.
@@ -134,6 +127,7 @@ impl Candidate {
             Err(reason) => return Err(NoCandidate::Refused(Refusal::NotRepresentable { reason })),
         };
         let order = formats::stored_order(&soup, encoding);
+        let left_out = std::mem::take(&mut soup.left_out);
         drop(soup);
         // What we write may be larger than what we would take in.
         let limits =
@@ -142,7 +136,7 @@ impl Candidate {
         budget.stage(Stage::Certify, || {
             let soup = formats::read(&bytes, encoding, &options, budget).map_err(Failure::from)?;
             let examination = certificate::examine(&soup, &bytes, encoding, &options, depth, budget)?;
-            Ok(Self { bytes, encoding, soup, examination, order })
+            Ok(Self { bytes, encoding, soup, examination, order, left_out })
         })
     }
 
@@ -182,8 +176,8 @@ impl Candidate {
         let reason = match kept {
             0 => "the texture coordinates of the file are lost: the output has none",
             _ => {
-                "texture coordinates stay where a triangle kept its corners, and a patch that no seam runs into has \
-                 those between its rim's; other triangles have none"
+                "texture coordinates stay where a triangle kept its corners, parts of one have those between them, and a \
+                 patch that no seam runs into those between its rim's; other triangles have none"
             }
         };
         let changes =
@@ -206,7 +200,10 @@ impl Candidate {
         let kept = after.triangles.len() - lost;
         let reason = match after.materials.is_empty() {
             true => "the materials of the file are lost: the output has none",
-            false => "materials stay where a triangle comes from the file; other triangles have none",
+            false => {
+                "materials stay where a triangle comes from the file, and new ones have those of the nearest; other \
+                 triangles have none"
+            }
         };
         let changes =
             vec![("triangles_with_material", kept as u64), ("triangles_without_material", lost as u64)];
@@ -233,7 +230,8 @@ impl Candidate {
         let lost = [
             self.lost_texture(input, origins),
             self.lost_materials(input, origins),
-            left_out(&input.soup.left_out),
+            taken_over(&input.soup, &self.soup, origins),
+            left_out(&input.soup, &self.left_out, &self.soup, self.encoding),
         ];
         let actions = report.actions.into_iter().chain(lost.into_iter().flatten()).collect();
         let report = Report {

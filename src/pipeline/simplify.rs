@@ -380,6 +380,7 @@ fn soup_of(result: &Simplified, mesh: &Soup) -> Soup {
             true => Vec::new(),
             false => result.triangle_origin.iter().map(color).collect(),
         },
+        left_out: mesh.left_out.clone(),
         ..Soup::default()
     }
 }

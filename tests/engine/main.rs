@@ -20,6 +20,7 @@ mod raw_files;
 #[allow(dead_code, reason = "not every solid is used")]
 mod solids;
 
+mod attributes;
 mod bad_input;
 mod boolean;
 mod cut_stitch;

@@ -30,7 +30,7 @@ fn crossing() -> RawSoup {
 }
 
 /// A coarse lattice for all that meets.
-fn rebuilding() -> Options {
+pub(crate) fn rebuilding() -> Options {
     let chosen = ChosenRemedy {
         code: DefectCode::SelfIntersection,
         remedy: Some(Remedy::Rebuild),

@@ -384,6 +384,13 @@ fn colours_go_from_a_project_to_other_formats_and_back() {
         "{:?}",
         off.report.remarks
     );
+    // The fifth has other colours at its corners.
+    let told = off.report.actions.iter().find(|action| action.step == "left_out").unwrap();
+    assert_eq!(told.changes, [("colors_at_corners", 1)]);
+    for (format, what) in [(Format::Glb, "textures and"), (Format::Obj, "colours, textures and")] {
+        let remarks = run(Operation::Convert, &bytes, &to(format)).report.remarks;
+        assert!(remarks.last().unwrap().contains(&format!(": {what} materials that")), "{remarks:?}");
+    }
     let back = run(Operation::Convert, result(&off), &to(Format::ThreeMf));
     assert_eq!(colors_of(result(&back), Encoding::ThreeMf)[..6], expected);
     assert!(back.report.certificate.unwrap().is_printable());
@@ -663,11 +670,31 @@ fn parts_that_were_mended_and_needed_no_union_are_told_as_mended() {
     assert!(certificate.is_printable());
     assert_ne!(certificate.sha256, report.input.sha256);
     assert_eq!(project(result(&answer)).bodies[0].soup.triangles.len(), 12, "the mended part, still once");
+    assert!(report.remarks.iter().all(|remark| !remark.contains("takes the place")), "{:?}", report.remarks);
     // A file whose parts are sound and apart is the very file that came.
     let sound = file(&model("", &format!("<object id=\"1\">{}</object>", plain_cuboid(1.0)), build));
     let answer = run(Operation::Repair, &sound, &Options { parts: Parts::Union, ..Options::default() });
     assert_eq!(answer.report.outcome, Some(Outcome::Identical));
     assert_eq!(answer.output.unwrap().bytes, None);
+}
+
+#[test]
+fn a_lattice_beside_a_mesh_is_kept_only_with_it() {
+    let (points, mut open) = cuboid([0.0; 3], [1.0; 3]);
+    open.pop();
+    let beams = "<b:beamlattice radius=\"1\" minlength=\"1\"><b:beams/></b:beamlattice></mesh>";
+    let of = |triangles: &[[u32; 3]]| {
+        let mesh = mesh(&points, triangles, |_| String::new()).replace("</mesh>", beams);
+        let object = format!("<object id=\"1\">{mesh}</object>");
+        let extension = "xmlns:b=\"http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02\"";
+        let bytes = file(&model(extension, &object, "<item objectid=\"1\"/>"));
+        run(Operation::Repair, &bytes, &Options::default()).report.remarks
+    };
+    let kept = "/3D/3dmodel.model holds a beam lattice: kept where the mesh stays as it is, and not judged.";
+    assert_eq!(of(&cuboid([0.0; 3], [1.0; 3]).1), [kept]);
+    let remarks = of(&open);
+    assert_eq!((remarks.len(), &remarks[0][..]), (2, kept));
+    assert!(remarks[1].ends_with("is left out: beamlattice."), "{remarks:?}");
 }
 
 #[test]

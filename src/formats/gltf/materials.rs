@@ -2,6 +2,7 @@
 
 use super::buffers::{Buffers, decode};
 use super::part::{List, Part};
+use super::references::is_reference;
 use crate::budget::{Budget, Charge};
 use crate::formats::{ReadError, ReadErrorKind};
 use crate::mesh::{Color, Descriptions};
@@ -158,10 +159,6 @@ fn main_uv_set(material: &Value) -> u64 {
     let base = material.get("pbrMetallicRoughness").and_then(|pbr| pbr.get("baseColorTexture"));
     let first = || first_reference(material);
     base.and_then(Value::as_object).or_else(first).map_or(0, uv_set)
-}
-
-fn is_reference(key: &str, value: &Value) -> bool {
-    key.ends_with("Texture") && value.get("index").is_some()
 }
 
 /// The first reference to a texture. No deeper than the reader of JSON goes, which is 128 levels.

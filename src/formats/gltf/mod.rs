@@ -11,6 +11,7 @@ mod materials;
 mod meshopt;
 mod part;
 mod primitive;
+mod references;
 mod scene;
 
 pub(super) mod read;

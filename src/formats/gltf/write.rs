@@ -1,6 +1,7 @@
 //! glTF output: one mesh, a primitive for each look, all data in one buffer.
 
 use super::looks::{Look, Looks, own_color};
+use super::references::without_textures;
 use crate::budget::{Budget, CHECK_EVERY, Charge, Stopped};
 use crate::formats::colors::as_linear;
 use crate::formats::{Encoding, WriteError, float32};
@@ -336,10 +337,23 @@ impl File {
             numbers.extend((0..materials.len()).map(|i| ((Some(i as u32), None), i)));
         }
         let mut of_look = Vec::new();
+        let mut bare: FxHashMap<u32, Option<usize>> = FxHashMap::default();
         for look in looks {
             if look.material.is_none() && look.color.is_none() {
                 of_look.push(None);
                 continue;
+            }
+            if let (Some(material), None, false) = (look.material, look.color, look.has_texture)
+                && described.is_some()
+            {
+                let number = *bare.entry(material).or_insert_with(|| {
+                    materials.push(without_textures(materials.get(material as usize)?)?);
+                    Some(materials.len() - 1)
+                });
+                if number.is_some() {
+                    of_look.push(number);
+                    continue;
+                }
             }
             of_look.push(Some(*numbers.entry((look.material, look.color)).or_insert_with(|| {
                 let name = look.material.and_then(|material| soup.materials.names.get(material as usize));

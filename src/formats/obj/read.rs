@@ -127,7 +127,9 @@ fn join(
     let soup = faces.into_soup(positions, &options.limits, budget)?;
     let texture = if has_texture { texture.into_texture(&soup, budget)? } else { Texture::default() };
     let (places, materials) = (Places { face_lines, vertex_lines }, materials.into_materials());
-    Ok(Soup { places, vertex_colors, texture, materials, segments, ..soup })
+    let named = [("objects", total.objects), ("groups", total.groups)];
+    let left_out = named.into_iter().filter(|&(_, count)| count > 0).collect();
+    Ok(Soup { places, vertex_colors, texture, materials, segments, left_out, ..soup })
 }
 
 #[cfg(test)]

@@ -29,6 +29,9 @@ pub(super) struct Counts {
     pub(super) line_corners: u64,
     /// `usemtl` and `mtllib` statements.
     pub(super) materials: u64,
+    /// `o` and `g` statements.
+    pub(super) objects: u64,
+    pub(super) groups: u64,
 }
 
 impl Counts {
@@ -53,6 +56,8 @@ impl Counts {
                 }
                 b"vt" => counts.texture_points += 1,
                 b"usemtl" | b"mtllib" => counts.materials += 1,
+                b"o" => counts.objects += 1,
+                b"g" => counts.groups += 1,
                 b"l" => {
                     while words.next_in_line().is_some() {
                         counts.line_corners += 1;
@@ -85,6 +90,8 @@ impl Counts {
             texture_points: self.texture_points + other.texture_points,
             line_corners: self.line_corners + other.line_corners,
             materials: self.materials + other.materials,
+            objects: self.objects + other.objects,
+            groups: self.groups + other.groups,
         }
     }
 }

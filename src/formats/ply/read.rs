@@ -33,7 +33,8 @@ fn read_body(
     options: &ReadOptions,
     budget: &Budget,
 ) -> Result<Soup, ReadError> {
-    let mut source = Source { values, layout: header.layout, options, budget, charges: Vec::new() };
+    let (layout, charges) = (header.layout, Vec::new());
+    let mut source = Source { values, layout, options, budget, charges, further_properties: 0 };
     let mut mesh = Mesh::default();
     for element in &header.elements {
         match element.name {
@@ -49,7 +50,9 @@ fn read_body(
     let soup = mesh.faces.into_soup(mesh.positions, &options.limits, budget)?;
     let Mesh { vertex_colors, face_colors, places, mut segments, .. } = mesh;
     segments.retain(|segment| segment.ends.iter().all(|&v| (v as usize) < soup.positions.len()));
-    Ok(Soup { vertex_colors, face_colors, places, segments, ..soup })
+    let further = source.further_properties;
+    let left_out = if further > 0 { vec![("further_properties", further)] } else { Vec::new() };
+    Ok(Soup { vertex_colors, face_colors, places, segments, left_out, ..soup })
 }
 
 /// What was read so far.
@@ -159,6 +162,8 @@ struct Source<'a, V> {
     budget: &'a Budget,
     /// For lists that are longer than others.
     charges: Vec<Charge<'a>>,
+    /// Of the elements so far.
+    further_properties: u64,
 }
 
 impl<'a, V: Values> Source<'a, V> {
@@ -175,6 +180,7 @@ impl<'a, V: Values> Source<'a, V> {
         plan: &Plan,
         mut take: impl FnMut(Option<u32>, &Item) -> Result<(), ReadError>,
     ) -> Result<(), ReadError> {
+        self.further_properties += plan.further_properties(element);
         let mut item = Item::default();
         for i in 0..element.count {
             if i.is_multiple_of(CHECK_EVERY as u64) {

@@ -1,6 +1,6 @@
 //! Which properties of a PLY file mean something to us.
 
-use super::header::{Element, Kind, Scalar};
+use super::header::{Element, Kind, Property, Scalar};
 use crate::formats::{Place, ReadError};
 
 /// What a property means to us.
@@ -40,6 +40,14 @@ impl Plan {
     pub(super) fn new(element: &Element<'_>) -> Self {
         let roles = element.properties.iter().map(|property| (Role::Other, property.kind));
         Self { properties: roles.collect(), colors: ColorKind::None }
+    }
+
+    /// Number of properties that mean nothing to us; normals are no loss, as a changed surface has others.
+    pub(super) fn further_properties(&self, element: &Element<'_>) -> u64 {
+        let is_further = |(property, (role, _)): &(&Property<'_>, &(Role, Kind))| {
+            *role == Role::Other && !matches!(property.name, b"nx" | b"ny" | b"nz")
+        };
+        element.properties.iter().zip(&self.properties).filter(is_further).count() as u64
     }
 
     /// Notes x, y and z.

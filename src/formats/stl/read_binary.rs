@@ -62,7 +62,14 @@ pub(in crate::formats) fn read(
     });
 
     let soup = Faces::of_triangles(triangles).into_soup(positions, &options.limits, budget)?;
-    Ok(Soup { is_welded_by_format: true, ..soup })
+    let marked = attributes(records);
+    let left_out = if marked > 0 { vec![("attribute_bytes", marked)] } else { Vec::new() };
+    Ok(Soup { is_welded_by_format: true, left_out, ..soup })
+}
+
+/// Number of triangles whose attribute bytes, the last two, are not zero: some programs keep colours there.
+fn attributes(records: &[u8]) -> u64 {
+    records.chunks_exact(TRIANGLE_BYTES).filter(|record| !record.ends_with(&[0, 0])).count() as u64
 }
 
 /// Corner `i % 3` of triangle `i / 3`.
@@ -120,6 +127,18 @@ mod tests {
         assert_eq!(soup.face_faults, [FaceFault { face: 0, reason: FaceFaultReason::NonFinite }]);
         assert_eq!((soup.triangle_face, soup.non_finite_vertices), (vec![1], vec![2]));
         assert_eq!(soup.triangles, [[0, 1, 3]]);
+    }
+
+    #[test]
+    fn triangles_with_attribute_bytes_are_counted() {
+        let mut bytes = file(&[[A, B, C], [D, C, B], [A, C, D]]);
+        bytes[132..134].fill(0);
+        assert_eq!(read(&bytes).unwrap().left_out, [("attribute_bytes", 2)]);
+        bytes[182..184].fill(0);
+        bytes[232] = 0;
+        assert_eq!(read(&bytes).unwrap().left_out, [("attribute_bytes", 1)]);
+        bytes[233] = 0;
+        assert_eq!(read(&bytes).unwrap().left_out, []);
     }
 
     #[test]

@@ -190,18 +190,19 @@ impl Model {
         }
     }
 
-    /// The colour of face `f` of an object: where its corners differ, the mean.
+    /// The colour of face `f` of an object, and whether it is the mean of corners that differ.
     pub(super) fn color_of_face(
         &self,
         object: &Object,
         attributes: &FaceAttributes,
         f: usize,
-    ) -> Option<[u8; 4]> {
+    ) -> Option<([u8; 4], bool)> {
         let Property { group, members } = Self::property_of(object, attributes, f);
         let [first, ..] = members;
         let of = |member: u32| self.color(group, if member == NO_NUMBER { first } else { member });
         let colors = [of(members[0])?, of(members[1])?, of(members[2])?];
         let mean = |k: usize| (colors.iter().map(|color| u32::from(color[k])).sum::<u32>() + 1) / 3;
-        Some([0, 1, 2, 3].map(|k| mean(k) as u8))
+        let is_mean = colors[1] != colors[0] || colors[2] != colors[0];
+        Some(([0, 1, 2, 3].map(|k| mean(k) as u8), is_mean))
     }
 }

@@ -73,9 +73,9 @@ impl<'x> ModelReader<'x> {
         self.materials.contains(&group)
     }
 
-    /// Notes that the part uses an extension whose content is kept and not judged.
-    pub(super) fn note_extension(&mut self, what: &str) {
-        let text = format!("{} holds {what}: kept as they are, and not judged.", self.model.part);
+    /// Notes that the part uses an extension whose content is not judged, and where it is `kept`.
+    pub(super) fn note_extension(&mut self, what: &str, kept: &str) {
+        let text = format!("{} holds {what}: kept {kept}, and not judged.", self.model.part);
         if !self.model.remarks.contains(&text) {
             self.model.remarks.push(text);
         }

@@ -24,9 +24,11 @@ pub(super) fn mesh<'x>(reader: &mut ModelReader<'x>, element: &Element<'x>) -> R
             (Namespace::Core, "vertices") => 0,
             (Namespace::Core, "triangles") => 1,
             (namespace, local) => {
+                // What speaks of a mesh by number goes with it.
+                let kept = "where the mesh stays as it is";
                 match namespace {
-                    Namespace::BeamLattice => reader.note_extension("a beam lattice"),
-                    Namespace::TriangleSets => reader.note_extension("sets of triangles"),
+                    Namespace::BeamLattice => reader.note_extension("a beam lattice", kept),
+                    Namespace::TriangleSets => reader.note_extension("sets of triangles", kept),
                     _ => {}
                 }
                 mesh.extras.push(local.to_owned());

@@ -157,7 +157,7 @@ impl<'x> ModelReader<'x> {
                     }
                 }
                 (Namespace::Slice, "slicestack") => {
-                    self.note_extension("slices");
+                    self.note_extension("slices", "where the parts stay apart");
                     self.scanner.skip(&element)?;
                 }
                 _ => self.scanner.skip(&element)?,
@@ -228,7 +228,7 @@ impl<'x> ModelReader<'x> {
         let member = member.unwrap_or(if group.is_some() { 0 } else { NO_NUMBER });
         let property = Property { group: group.unwrap_or(NO_NUMBER), members: [member; 3] };
         if value_in(&attributes, Namespace::Slice, "slicestackid").is_some() {
-            self.note_extension("slices");
+            self.note_extension("slices", "where the parts stay apart");
         }
         let mut content = Content::Nothing;
         if !element.is_empty {

@@ -59,7 +59,7 @@ pub(super) fn assemble(
     let mut placed = Vec::new();
     let units = models.all.first().map(|model| model.units);
     let soup = Soup { units, is_f32_exact: true, ..Soup::default() };
-    let mut scene = Scene { soup, is_faulty: false, charges: Vec::new(), options, budget };
+    let mut scene = Scene { soup, is_faulty: false, means: 0, charges: Vec::new(), options, budget };
     let of_object = by_object(&models.volumes);
     for placement in &models.placements {
         let [m, o] = placement.object;
@@ -99,9 +99,12 @@ pub(super) fn assemble(
             scene.put(&soup, &placement.transform, |face| color(volume.triangles.start as usize + face))?;
         }
     }
-    let Scene { mut soup, is_faulty, .. } = scene;
+    let Scene { mut soup, is_faulty, means, .. } = scene;
     if !soup.face_colors.is_empty() {
         soup.face_colors.resize(soup.face_count as usize, None);
+    }
+    if means > 0 {
+        soup.left_out.push(("colors_at_corners", means));
     }
     drop_what_became_infinite(&mut soup);
     if !is_faulty && soup.triangles.len() == soup.face_count as usize {
@@ -115,6 +118,8 @@ struct Scene<'s> {
     soup: Soup,
     /// Some face has no triangle.
     is_faulty: bool,
+    /// Faces whose colour is the mean of those of their corners.
+    means: u64,
     charges: Vec<Charge<'s>>,
     options: &'s ReadOptions,
     budget: &'s Budget,
@@ -129,12 +134,12 @@ impl Scene<'_> {
         }
     }
 
-    /// Adds `soup` at its place; `color`: that of each of its faces.
+    /// Adds `soup` at its place; `color`: that of each of its faces, and whether it is a mean.
     fn put(
         &mut self,
         soup: &Soup,
         transform: &Transform,
-        color: impl Fn(usize) -> Option<[u8; 4]>,
+        color: impl Fn(usize) -> Option<([u8; 4], bool)>,
     ) -> Result<(), ReadError> {
         let Self { soup: scene, options, budget, .. } = self;
         let limits = &options.limits;
@@ -176,7 +181,9 @@ impl Scene<'_> {
             if f % CHECK_EVERY == 0 {
                 budget.check()?;
             }
-            note_color(&mut scene.face_colors, first_face as usize + f, color(f).map(as_color));
+            let color = color(f);
+            self.means += u64::from(color.is_some_and(|(_, is_mean)| is_mean));
+            note_color(&mut scene.face_colors, first_face as usize + f, color.map(|(c, _)| as_color(c)));
         }
         scene.face_count += soup.face_count;
         Ok(())

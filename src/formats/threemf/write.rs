@@ -90,7 +90,7 @@ impl Colors {
 
 /// The members at the corners of each triangle, or `None` where it has no colour; empty when none has.
 fn members(soup: &Soup, colors: &mut Colors) -> Vec<Option<[u32; 3]>> {
-    let is_color = |color: &Option<Color>| matches!(color, Some(Color::Bytes(..) | Color::Floats(..)));
+    let is_color = |color: &Option<Color>| !matches!(color, None | Some(Color::Index(_)));
     let of_face = |t: usize| soup.face_colors.get(soup.face_of(t as u32) as usize).copied().flatten();
     if soup.face_colors.iter().any(is_color) {
         // What has no colour is white.

@@ -99,7 +99,7 @@ pub(super) fn left_out(project: &Project, encoding: Encoding) -> Vec<String> {
     let is_stated = |property: &&Property| **property != Property::NONE;
     let properties = count(&|body| body.attributes.properties.iter().filter(is_stated).count());
     let marks = count(&|body| body.attributes.others.iter().filter(|&&number| number != NO_NUMBER).count());
-    let has_colors = matches!(encoding.format(), Format::Off | Format::Ply | Format::ThreeMf);
+    let has_colors = !matches!(encoding.format(), Format::Obj | Format::Stl);
     let of_properties = if has_colors { "textures and materials" } else { "colours, textures and materials" };
     let lost = [
         (names, format!("names of parts ({names})")),

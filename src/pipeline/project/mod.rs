@@ -341,14 +341,15 @@ impl Run<'_> {
         let mut input = Input::read(bytes, Encoding::ThreeMf, self.options, self.budget)?;
         let united = run_on(self.operation, &mut input, self.options, self.budget)?;
         let has_changed = bytes.as_ptr() != self.bytes.as_ptr();
+        let is_one_mesh = united.output.as_ref().is_some_and(|output| output.bytes.is_some());
         // Where the parts were mended and nothing had to be united, the file is that of the mended parts.
         let output = united.output.map(|output| match output.bytes {
             None if has_changed => Output { bytes: Some(bytes.to_vec()), ..output },
             _ => output,
         });
-        let remarks = match &output {
-            Some(Output { bytes: None, .. }) => answer.report.remarks.clone(),
-            _ => merge::left_out(self.project, Encoding::ThreeMf),
+        let remarks = match is_one_mesh {
+            true => merge::left_out(self.project, Encoding::ThreeMf),
+            false => answer.report.remarks.clone(),
         };
         let report = Report { remarks, ..merge::in_turn(answer.report, united.report, has_changed) };
         Ok(Answer { report, output, levels: united.levels, picture: None })

@@ -1,6 +1,7 @@
 //! The last rung: a surface rebuilt around what no local edit could make a solid.
 
 mod fewer;
+mod nearest;
 mod parts;
 
 use self::fewer::Fewer;
@@ -184,6 +185,7 @@ impl Search<'_> {
         })?;
         let volume = defined_volume(self.before);
         let original = Original::new(soup, volume, solid);
+        let looks = budget.stage(Stage::Repair, || nearest::Source::of(soup, budget))?;
         let asked = choices.cells.map(|cells| [(cells, f64::INFINITY)]);
         let mut lattices: &[(u32, f64)] = match &asked {
             Some(one) => one,
@@ -203,7 +205,9 @@ impl Search<'_> {
             let (input, encoding, options) = (self.input, self.encoding, self.options);
             // Beside a smaller result, one whose triangles are too many to simplify is too much.
             let must_simplify = best.is_some();
-            let rebuilding = Rebuilding { input, encoding, options, wrap_options, must_simplify, budget };
+            let (source, looks) = (soup, looks.as_ref());
+            let rebuilding =
+                Rebuilding { input, source, looks, encoding, options, wrap_options, must_simplify, budget };
             let made = match budget.within_all_but(4, || rebuilding.run(draft, split.as_ref())) {
                 Ok(Some(made)) => made,
                 // Finer was too much; what there is stays.
@@ -336,6 +340,10 @@ struct Made {
 /// What every attempt to rebuild needs.
 struct Rebuilding<'a> {
     input: &'a Input,
+    /// The mesh of the input, where it is rebuilt.
+    source: &'a Soup,
+    /// What a new surface takes over.
+    looks: Option<&'a nearest::Source<'a>>,
     encoding: Encoding,
     options: &'a Options,
     wrap_options: WrapOptions,
@@ -423,17 +431,11 @@ impl Rebuilding<'_> {
         triangles: &[[u32; 3]],
         kept: &Draft,
     ) -> Result<Candidate, NoCandidate> {
-        let mut soup = kept.to_soup(&self.input.soup);
-        let base = soup.positions.len() as u32;
-        soup.positions.extend(positions);
-        soup.triangles.extend(triangles.iter().map(|t| t.map(|v| v + base)));
-        soup.face_count = soup.triangles.len() as u32;
-        // What is new has no colour.
-        if !soup.vertex_colors.is_empty() {
-            soup.vertex_colors.resize(soup.positions.len(), None);
-        }
-        if !soup.face_colors.is_empty() {
-            soup.face_colors.resize(soup.triangles.len(), None);
+        let mut soup = kept.to_soup(self.source);
+        soup.add_plain(positions, triangles);
+        if let Some(looks) = self.looks {
+            let put_on = || looks.put_on(&mut soup, positions.len(), triangles.len(), self.budget);
+            self.budget.stage(Stage::Repair, put_on)?;
         }
         Candidate::write(soup, self.input, self.encoding, Depth::FirstViolation, self.budget)
     }

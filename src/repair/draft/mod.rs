@@ -1,14 +1,15 @@
 //! The mesh that repair steps work on: a plain triangle list that remembers where everything came from.
 
+mod behind;
 mod faces;
 mod seams;
+mod texture;
 
 pub use faces::Faced;
-use seams::are_over_seams;
 
 use super::Changes;
 use crate::geom::DVec3;
-use crate::mesh::{Color, NO_POINT, PolygonRuns, Soup, Texture, triangle_of};
+use crate::mesh::{Color, PolygonRuns, Soup, triangle_of};
 
 /// In the place of an origin: made by a repair step.
 pub const NEW: u32 = u32::MAX;
@@ -150,27 +151,54 @@ impl Draft {
     }
 
     /// The draft as a soup to be written; `source` is the soup it was made from and gives the
-    /// colours, the texture coordinates and the materials.
+    /// colours, the texture coordinates and the materials. New faces have those of the nearest that are not.
     pub fn to_soup(&self, source: &Soup) -> Soup {
+        let has_faces = !source.face_colors.is_empty() || !source.materials.is_empty();
+        let behind = if has_faces { self.triangles_behind() } else { Vec::new() };
         let face_behind = |&t: &u32| (t != NEW).then(|| source.face_of(t));
         let color_of_face = |t: &u32| source.face_colors[face_behind(t)? as usize];
+        let vertex_colors: Vec<Option<Color>> = match source.vertex_colors.is_empty() {
+            true => Vec::new(),
+            false => self.vertex_origin.iter().map(|&v| self.color(v, source)).collect(),
+        };
+        let at_seams = self.colors_at_seams(&vertex_colors, source);
         Soup {
             positions: self.positions.clone(),
             triangles: self.triangles.clone(),
             face_count: self.triangles.len() as u32,
             is_f32_exact: self.positions.iter().all(|p| p.as_vec3().as_dvec3() == *p),
-            vertex_colors: match source.vertex_colors.is_empty() {
-                true => Vec::new(),
-                false => self.vertex_origin.iter().map(|&v| self.color(v, source)).collect(),
-            },
+            vertex_colors,
             face_colors: match source.face_colors.is_empty() {
                 true => Vec::new(),
-                false => self.triangle_origin.iter().map(color_of_face).collect(),
+                false => behind.iter().map(color_of_face).collect(),
             },
             texture: self.texture(&source.texture, source),
-            materials: source.materials.on(self.triangle_origin.iter().map(face_behind)),
+            materials: source.materials.on(behind.iter().map(face_behind)),
+            left_out: if at_seams > 0 { vec![("colors_at_seams", at_seams)] } else { Vec::new() },
             ..Soup::default()
         }
+    }
+
+    /// Number of vertices of `source` that became one with another at their place and lost their colour, which was another.
+    fn colors_at_seams(&self, colors: &[Option<Color>], source: &Soup) -> u64 {
+        if colors.is_empty() {
+            return 0;
+        }
+        let mut is_lost = vec![false; source.positions.len()];
+        let place = |v: u32| source.positions.get(v as usize);
+        for (corners, &origin) in self.triangles.iter().zip(&self.triangle_origin) {
+            let Some(was) = source.triangles.get(origin as usize) else { continue };
+            for &v in corners {
+                let vertex = self.vertex_origin[v as usize];
+                if vertex < FIRST_BLEND
+                    && !was.contains(&vertex)
+                    && let Some(&copy) = was.iter().find(|&&w| place(w) == place(vertex))
+                {
+                    is_lost[copy as usize] |= source.vertex_colors[copy as usize] != colors[v as usize];
+                }
+            }
+        }
+        is_lost.into_iter().filter(|&is_lost| is_lost).count() as u64
     }
 
     /// The colour of a vertex with this origin.
@@ -184,53 +212,6 @@ impl Draft {
             (source.vertex_colors[v as usize], share)
         };
         Color::blend(&blend.iter().map(color_of).collect::<Vec<_>>())
-    }
-
-    /// The texture of the triangles whose corners are still at vertices of their triangle in `source`, or where these
-    /// were before they moved, and of patches, between the points at their rims, where no seam runs into them; other
-    /// triangles have none.
-    fn texture(&self, texture: &Texture, source: &Soup) -> Texture {
-        if texture.is_empty() {
-            return Texture::default();
-        }
-        let place = |v: u32| source.positions.get(v as usize);
-        let of_triangle = |t: usize| {
-            let origin = self.triangle_origin[t] as usize;
-            let (was, points) = (source.triangles.get(origin)?, texture.corners.get(origin)?);
-            let point = |v: u32| {
-                let k = (0..3).find(|&k| place(was[k]) == place(self.vertex_origin[v as usize]))?;
-                Some(points[k])
-            };
-            let [a, b, c] = self.triangles[t].map(point);
-            Some([a?, b?, c?])
-        };
-        let values = |t: usize| {
-            let corners = of_triangle(t)?;
-            corners.iter().all(|&p| p != NO_POINT).then(|| corners.map(|p| texture.points[p as usize]))
-        };
-        let is_over_seam = are_over_seams(self, values);
-        let mut points = texture.points.clone();
-        let of_blends: Vec<Option<u32>> =
-            self.blends.vertices.iter().map(|blend| blended(blend, texture, &mut points)).collect();
-        let at_rim = |origin: u32| {
-            let rims = &self.blends.rims;
-            let [_, corner] =
-                *rims.get(rims.partition_point(|&[v, _]| v < origin)).filter(|r| r[0] == origin)?;
-            Some(texture.corners[triangle_of(corner) as usize][(corner % 3) as usize])
-                .filter(|&point| point != NO_POINT)
-        };
-        let of_patch = |t: usize| {
-            let point = |v: u32| match self.vertex_origin[v as usize] {
-                origin if origin >= FIRST_BLEND => of_blends[(origin - FIRST_BLEND) as usize],
-                origin => at_rim(origin),
-            };
-            let [a, b, c] = self.triangles[t].map(point);
-            (self.triangle_origin[t] == NEW && !is_over_seam[t]).then_some([a?, b?, c?])
-        };
-        let corners = (0..self.triangles.len())
-            .map(|t| of_triangle(t).or_else(|| of_patch(t)).unwrap_or([NO_POINT; 3]))
-            .collect();
-        Texture { points, corners }.without_unused_points()
     }
 
     /// Broken invariants, as sentences; empty when all hold.
@@ -255,17 +236,6 @@ impl Draft {
         }
         broken
     }
-}
-
-/// Adds the point of a blend to `points`; gives its number, if all corners of the blend have points.
-fn blended(blend: &Blend, texture: &Texture, points: &mut Vec<[f64; 2]>) -> Option<u32> {
-    let mut sum = [0.0; 2];
-    for &(corner, share) in blend {
-        let [u, v] = texture.of_triangle(triangle_of(corner) as usize)?[(corner % 3) as usize];
-        sum = [sum[0] + share * u, sum[1] + share * v];
-    }
-    points.push(sum);
-    Some(points.len() as u32 - 1)
 }
 
 /// Keeps the items that are marked, in their order.
@@ -301,33 +271,36 @@ mod tests {
     }
 
     #[test]
-    fn texture_stays_with_its_triangles_and_points_that_none_has_go() {
-        let texture = Texture {
-            points: vec![[0.0, 0.5], [0.1, 0.5], [0.2, 0.5], [0.3, 0.5]],
-            corners: vec![[0, 1, 2], [1, 0, 3]],
-        };
-        let source = Soup { texture, ..soup() };
-        let (mut draft, _) = Draft::from_soup(&source);
-        draft.retain_triangles(&[false, true]);
-        draft.triangles.push([0, 1, 2]);
-        draft.triangle_origin.push(NEW);
-        let written = draft.to_soup(&source).texture;
-        assert_eq!(written.points, [[0.0, 0.5], [0.1, 0.5], [0.3, 0.5]]);
-        assert_eq!(written.corners, [[1, 0, 2], [NO_POINT; 3]]);
-        draft.retain_triangles(&[false, true]);
-        assert_eq!(draft.to_soup(&source).texture, Texture::default());
-    }
-
-    #[test]
     fn colors_follow_their_triangles_and_vertices() {
         let source = soup();
         let (mut draft, _) = Draft::from_soup(&source);
         draft.retain_triangles(&[false, true]);
         draft.triangles.push([0, 1, 2]);
         draft.triangle_origin.push(NEW);
+        draft.triangles.push([2, 1, 0]);
+        draft.triangle_origin.push(0);
         let written = draft.to_soup(&source);
-        assert_eq!(written.face_colors, [Some(Color::Index(6)), None]);
+        assert_eq!(written.face_colors, [6, 5, 5].map(|i| Some(Color::Index(i))));
         assert_eq!(written.vertex_colors, [1, 2, 4].map(|i| Some(Color::Index(i))));
-        assert!(written.check().is_empty());
+        assert!(written.check().is_empty() && written.left_out.is_empty());
+    }
+
+    #[test]
+    fn colors_of_vertices_that_others_at_their_place_replace_are_counted() {
+        let colors = [0, 1, 2, 2, 1, 4].map(|i| Some(Color::Index(i))).to_vec();
+        let source = Soup {
+            positions: [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]
+                .map(|[x, y]| DVec3::new(x, y, 0.0))
+                .to_vec(),
+            triangles: vec![[2, 0, 1], [3, 5, 4]],
+            face_count: 2,
+            vertex_colors: colors.clone(),
+            ..Soup::default()
+        };
+        let (mut draft, _) = Draft::from_soup(&source);
+        let apart = draft.to_soup(&source);
+        assert_eq!((apart.vertex_colors, apart.left_out), (colors, vec![]));
+        crate::repair::weld::weld(&mut draft, &crate::budget::Budget::unlimited()).unwrap();
+        assert_eq!(draft.to_soup(&source).left_out, [("colors_at_seams", 1)]);
     }
 }
