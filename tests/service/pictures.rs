@@ -107,6 +107,43 @@ fn a_thumbnail_is_kept_with_its_job_and_goes_with_it() {
 }
 
 #[test]
+fn a_picture_may_be_a_mesh_that_viewers_turn() {
+    let server = Server::start();
+    let glb = "model/gltf-binary";
+    let drawn = server.post("/v1/render?picture_format=glb").body(CROSSING).send().unwrap();
+    assert_eq!((drawn.status().as_u16(), header(&drawn, "content-type")), (200, glb));
+    let drawn = drawn.bytes().unwrap();
+    assert!(drawn.starts_with(b"glTF"));
+    let accepted = server.post("/v1/render").header("accept", glb).body(CROSSING).send().unwrap();
+    assert_eq!(accepted.bytes().unwrap(), drawn);
+    let without = server.post("/v1/render?picture_format=glb&defects=false").body(CROSSING).send().unwrap();
+    assert_ne!(without.bytes().unwrap(), drawn, "defects have colours");
+    for choice in ["views=front", "turntable=4", "width=100"] {
+        let path = format!("/v1/render?picture_format=glb&{choice}");
+        let (status, code, _) = problem(server.post(&path).body(CROSSING).send().unwrap());
+        assert_eq!((status, code.as_str()), (400, "invalid-parameter"), "{path}");
+    }
+    for (format, accept) in [("png", glb), ("glb", "image/png")] {
+        let path = format!("/v1/render?picture_format={format}");
+        let refused = server.post(&path).header("accept", accept).body(CROSSING).send().unwrap();
+        assert_eq!(problem(refused).0, 406, "{path}");
+    }
+    let response = server.post("/v1/jobs?operation=render&picture_format=glb").body(CROSSING).send().unwrap();
+    let job = server.ended(&response.json().unwrap());
+    let path = link(&job, "thumbnail").to_owned();
+    assert_eq!(path, format!("{}/thumbnail.glb", link(&job, "self")));
+    let kept = server.get(&path).send().unwrap();
+    assert_eq!(header(&kept, "content-type"), glb);
+    assert_eq!(kept.bytes().unwrap(), drawn);
+    let (status, _, body) = problem(server.get(&path.replace(".glb", ".png")).send().unwrap());
+    assert_eq!(status, 404);
+    assert!(body["detail"].as_str().unwrap().contains(glb), "{body}");
+    let report = format!("{}/report", link(&job, "self"));
+    let page = server.get(&report).header("accept", "text/html").send().unwrap().text().unwrap();
+    assert!(!page.contains("<img"), "a page shows no mesh");
+}
+
+#[test]
 fn a_picture_outlasts_a_killed_server_and_is_the_same_in_either_isolation() {
     let of = |isolation: &str| {
         let server = Server::with(&["--isolation", isolation]);
@@ -146,6 +183,11 @@ fn the_command_line_writes_pictures_and_pages_with_them() {
     let (code, bytes) = run(&["render", "open.off", "-o", "-"]);
     assert_eq!((code, size(&bytes)), (Some(0), (640, 480, 1)));
     assert_eq!(run(&["render", "open.off"]).0, Some(2), "a picture has to go somewhere");
+    assert_eq!(run(&["render", "open.off", "--after", "solid.off", "-o", "both.glb"]).0, Some(0));
+    assert!(read("both.glb").starts_with(b"glTF"));
+    for (format, name) in [("glb", "a.png"), ("png", "a.glb"), ("glb", "a.jpg")] {
+        assert_eq!(run(&["render", "open.off", "-o", name, "--picture-format", format]).0, Some(2), "{name}");
+    }
     assert_eq!(run(&["repair", "open.off", "-o", "r.off", "--report-html", "report.html"]).0, Some(0));
     assert!(String::from_utf8(read("report.html")).unwrap().contains("src=\"data:image/png;base64,"));
 }
@@ -183,8 +225,9 @@ fn run_examples(language: &str, command: &str, extension: &str, begin: impl Fn(&
         std::fs::write(folder.path().join(name), SOLID).unwrap();
     }
     let url = format!("http://{}", server.address);
-    // There are no webhooks here, and so no delivery to repeat.
-    for (id, code) in examples.iter().filter(|(id, _)| id != "redeliver") {
+    // There are no webhooks here, and so no delivery to repeat; the picture of the job is no mesh.
+    let has_none = |id: &str| ["redeliver", "get_job_thumbnail_mesh"].contains(&id);
+    for (id, code) in examples.iter().filter(|(id, _)| !has_none(id)) {
         let script = folder.path().join(format!("example.{extension}"));
         std::fs::write(&script, format!("{}\n{code}\n", begin(&url, &job))).unwrap();
         let ran = Command::new(command)
