@@ -69,7 +69,7 @@ pub(super) fn as_floats(color: Option<Color>) -> [f32; 4] {
 }
 
 /// Red, green, blue and alpha in proportion to light, 0 to 1.
-pub fn as_linear(color: Option<Color>) -> [f32; 4] {
+pub(super) fn as_linear(color: Option<Color>) -> [f32; 4] {
     let [r, g, b, a] = match color {
         Some(Color::Linear([r, g, b], a)) => [r, g, b, a.unwrap_or(1.0)],
         _ => {

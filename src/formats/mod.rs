@@ -25,8 +25,8 @@ pub mod threemf;
 mod words;
 
 pub use announced::triangles_at_most;
-pub use colors::as_linear;
 pub use error::{Place, ReadError, ReadErrorKind, WriteError};
+pub use gltf::two_sided_materials;
 pub use obj::materials::color_faces;
 pub use polygons::split_polygon;
 pub use sniff::sniff;

@@ -1447,6 +1447,7 @@ export interface components {
             projection?: components["schemas"]["Projection"];
             defects?: components["schemas"]["Defects"];
             turntable?: components["schemas"]["Turntable"];
+            picture_format?: components["schemas"]["PictureFormat"];
             thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
@@ -1528,6 +1529,7 @@ export interface components {
             projection?: components["schemas"]["Projection"];
             defects?: components["schemas"]["Defects"];
             turntable?: components["schemas"]["Turntable"];
+            picture_format?: components["schemas"]["PictureFormat"];
             thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
@@ -1816,7 +1818,7 @@ export interface components {
             report: string | null;
             /** @description Its mesh; null while there is none. */
             result: string | null;
-            /** @description Its picture; null while there is none. */
+            /** @description Its picture, a PNG, or a GLB where `picture_format` asked for that; null while there is none. */
             thumbnail: string | null;
         };
         /** @description Whether modeller lists the faces of the polyhedron with their numbers and planes, after the operators. Default: false. */
@@ -2172,6 +2174,7 @@ export interface components {
             projection?: components["schemas"]["Projection"];
             defects?: components["schemas"]["Defects"];
             turntable?: components["schemas"]["Turntable"];
+            picture_format?: components["schemas"]["PictureFormat"];
             thumbnail?: components["schemas"]["Thumbnail"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
@@ -2329,6 +2332,13 @@ export interface components {
             /** @description Where it goes, of any length but 0. */
             direction: components["schemas"]["Vector"];
         };
+        /**
+         * @description What kind of file a picture is.
+         *     - `png`: Pixels.
+         *     - `glb`: A mesh whose colours and marks show the same, which viewers turn.
+         * @enum {string}
+         */
+        PictureFormat: "png" | "glb";
         /**
          * @description Where the vertex goes that an edge becomes.
          *     - `optimal`: Where the criterion is smallest.
@@ -3074,6 +3084,7 @@ export interface components {
             projection?: components["schemas"]["Projection"];
             defects?: components["schemas"]["Defects"];
             turntable?: components["schemas"]["Turntable"];
+            picture_format?: components["schemas"]["PictureFormat"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
             near_mm?: components["schemas"]["NearMm"];
@@ -3094,6 +3105,7 @@ export interface components {
             projection?: components["schemas"]["Projection"];
             defects?: components["schemas"]["Defects"];
             turntable?: components["schemas"]["Turntable"];
+            picture_format?: components["schemas"]["PictureFormat"];
             policy?: components["schemas"]["PolicyName"];
             build_direction?: components["schemas"]["BuildDirection"];
             near_mm?: components["schemas"]["NearMm"];
@@ -3987,6 +3999,7 @@ export type Part = components['schemas']['Part'];
 export type Parts = components['schemas']['Parts'];
 export type Phase = components['schemas']['Phase'];
 export type PickingRay = components['schemas']['PickingRay'];
+export type PictureFormat = components['schemas']['PictureFormat'];
 export type Placement = components['schemas']['Placement'];
 export type Plan = components['schemas']['Plan'];
 export type PlanOptions = components['schemas']['PlanOptions'];

@@ -5,6 +5,7 @@
 
 mod accessor;
 mod buffers;
+mod colored;
 mod container;
 mod looks;
 mod materials;
@@ -17,4 +18,5 @@ mod scene;
 pub(super) mod read;
 pub(super) mod write;
 
+pub use colored::two_sided_materials;
 pub(super) use looks::stored_order;

@@ -52,22 +52,20 @@ pub(super) async fn in_turn(
         .flatten()
         .map(number_of)
         .collect();
-    // From tenant to tenant, past their jobs: a long queue costs no more than its tenants do.
-    let sql = "WITH RECURSIVE own (tenant) AS (
-            (SELECT tenant FROM jobs WHERE state = 'queued' ORDER BY tenant LIMIT 1)
+    // From tenant to tenant and lane to lane, past their jobs: a long queue costs no more than its tenants do.
+    let sql = "WITH RECURSIVE first (tenant, lane, id) AS (
+            (SELECT tenant, lane, id FROM jobs WHERE state = 'queued' ORDER BY tenant, lane, id LIMIT 1)
             UNION ALL
-            SELECT (SELECT tenant FROM jobs WHERE state = 'queued' AND tenant > own.tenant ORDER BY tenant LIMIT 1)
-            FROM own WHERE tenant IS NOT NULL),
+            SELECT next.tenant, next.lane, next.id FROM first, LATERAL (SELECT tenant, lane, id FROM jobs
+                WHERE state = 'queued' AND (jobs.tenant, jobs.lane) > (first.tenant, first.lane)
+                ORDER BY tenant, lane, id LIMIT 1) AS next),
         running AS (SELECT tenant, count(*) AS jobs,
                 count(*) FILTER (WHERE is_quick = $2 AND worker = coalesce($4::text, worker)) AS counted
             FROM jobs WHERE state = 'running' GROUP BY tenant)
-        SELECT own.tenant, first.lane FROM own LEFT JOIN running ON running.tenant = own.tenant,
-            LATERAL (SELECT lane, place, (SELECT id FROM jobs
-                WHERE state = 'queued' AND tenant = own.tenant AND lane = asked.lane ORDER BY id LIMIT 1) AS id
-                FROM unnest($1::bigint[]) WITH ORDINALITY AS asked (lane, place)) AS first
-        WHERE first.id IS NOT NULL AND (own.tenant = '' OR $3 > coalesce(running.counted, 0))
-        ORDER BY first.place, coalesce(running.jobs, 0),
-            coalesce((SELECT max(turn) FROM jobs WHERE tenant = own.tenant), 0), first.id";
+        SELECT first.tenant, first.lane FROM first LEFT JOIN running ON running.tenant = first.tenant
+        WHERE first.lane = ANY ($1::bigint[]) AND (first.tenant = '' OR $3 > coalesce(running.counted, 0))
+        ORDER BY array_position($1, first.lane), coalesce(running.jobs, 0),
+            coalesce((SELECT max(turn) FROM jobs WHERE tenant = first.tenant), 0), first.id";
     let share = i64::try_from(request.share).unwrap_or(i64::MAX);
     let rows = session.rows(sql, &[&lanes, &request.is_only, &share, &counted_of(&request)]).await?;
     rows.iter().map(|row| Ok((value(row, 0)?, lane(value(row, 1)?)))).collect()

@@ -89,7 +89,7 @@ impl Line {
         line
     }
 
-    /// The answer to the commit of the next transaction with this among its values is lost.
+    /// The answer to the commit of the next transaction with this among its values is lost, or to the success of the job with this id.
     fn lose(&self, marker: &[u8]) {
         *self.marker.lock().unwrap() = Some(marker.to_vec());
     }
@@ -109,8 +109,10 @@ async fn pass_on(
             read = client.read(&mut asked) => {
                 let Ok(bytes @ 1..) = read else { return };
                 let said = &asked[..bytes];
-                is_marked |= marker.lock().unwrap().as_ref().is_some_and(|marker| has(said, marker));
-                if is_marked && has(said, b"COMMIT") {
+                let is_named = marker.lock().unwrap().as_ref().is_some_and(|marker| has(said, marker));
+                is_marked |= is_named;
+                // The end of a job is one statement, which is a transaction by itself.
+                if is_marked && has(said, b"COMMIT") || is_named && has(said, b"succeeded") {
                     is_lost = marker.lock().unwrap().take().is_some();
                 }
                 server.write_all(said).await.unwrap();

@@ -4,12 +4,10 @@ use super::paint::{Painted, Side, meaning};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::formats::{self, Encoding, WriteError};
 use crate::geom::{Aabb, DVec3};
-use crate::mesh::{Color, Descriptions, Materials, Soup, Units};
+use crate::mesh::{Soup, Units};
 use crate::pipeline::Failure;
 use crate::render::{Line, Rgb, Spot};
 use rustc_hash::FxHashMap;
-use serde_json::json;
-use std::sync::Arc;
 
 /// Half the width of a rod over the largest side of the box of all meshes.
 const ROD: f64 = 1.0 / 800.0;
@@ -150,29 +148,11 @@ impl Made {
     /// In metres, and within what a float32 holds.
     fn soup(self) -> Soup {
         let most = DVec3::splat(f64::from(f32::MAX));
-        // Both sides are seen, so that a hole shows what is behind it.
-        let material = |(name, color): &(String, Rgb)| {
-            let [r, g, b, _] = formats::as_linear(Some(Color::Bytes(*color, None)));
-            let pbr = json!({ "baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0, "roughnessFactor": 1 });
-            json!({ "name": name, "doubleSided": true, "pbrMetallicRoughness": pbr })
-        };
-        let described = json!({ "materials": self.materials.iter().map(material).collect::<Vec<_>>() });
-        let descriptions = Descriptions {
-            json: described.to_string().into_bytes(),
-            colors: vec![None; self.materials.len()],
-            ..Descriptions::default()
-        };
-        let materials = Materials {
-            names: self.materials.into_iter().map(|(name, _)| name.into_bytes()).collect(),
-            of_face: self.material_of,
-            descriptions: Some(Arc::new(descriptions)),
-            ..Materials::default()
-        };
         Soup {
             positions: self.positions.iter().map(|&p| (p * self.metres).clamp(-most, most)).collect(),
             face_count: self.triangles.len() as u32,
             triangles: self.triangles,
-            materials,
+            materials: formats::two_sided_materials(self.materials, self.material_of),
             units: Some(Units::Metre),
             ..Soup::default()
         }

@@ -1123,7 +1123,7 @@ class Links(TypedDict):
     """
     thumbnail: str | None
     """
-    Its picture; null while there is none.
+    Its picture, a PNG, or a GLB where `picture_format` asked for that; null while there is none.
     """
 
 
@@ -1460,6 +1460,14 @@ Phase: TypeAlias = Literal["begin", "end"]
 What a pass does.
 - `begin`: It begins.
 - `end`: It ends.
+"""
+
+
+PictureFormat: TypeAlias = Literal["png", "glb"]
+"""
+What kind of file a picture is.
+- `png`: Pixels.
+- `glb`: A mesh whose colours and marks show the same, which viewers turn.
 """
 
 
@@ -3853,6 +3861,7 @@ class RenderOptions(TypedDict):
     projection: NotRequired[Projection]
     defects: NotRequired[Defects]
     turntable: NotRequired[Turntable]
+    picture_format: NotRequired[PictureFormat]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
     near_mm: NotRequired[NearMm]
@@ -3877,6 +3886,7 @@ class RenderOptionsWithInput(TypedDict):
     projection: NotRequired[Projection]
     defects: NotRequired[Defects]
     turntable: NotRequired[Turntable]
+    picture_format: NotRequired[PictureFormat]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
     near_mm: NotRequired[NearMm]
@@ -4900,6 +4910,7 @@ class Options(TypedDict):
     projection: NotRequired[Projection]
     defects: NotRequired[Defects]
     turntable: NotRequired[Turntable]
+    picture_format: NotRequired[PictureFormat]
     thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
@@ -5055,6 +5066,7 @@ class JobRequest(TypedDict):
     projection: NotRequired[Projection]
     defects: NotRequired[Defects]
     turntable: NotRequired[Turntable]
+    picture_format: NotRequired[PictureFormat]
     thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
@@ -5137,6 +5149,7 @@ class JobRequestWithInput(TypedDict):
     projection: NotRequired[Projection]
     defects: NotRequired[Defects]
     turntable: NotRequired[Turntable]
+    picture_format: NotRequired[PictureFormat]
     thumbnail: NotRequired[Thumbnail]
     policy: NotRequired[PolicyName]
     build_direction: NotRequired[BuildDirection]
