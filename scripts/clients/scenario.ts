@@ -191,6 +191,8 @@ class Scenario {
     await this.untilFinal(job);
     const thumbnail = await this.client.thumbnail(job.id);
     for (const picture of [sides, thumbnail]) check(String(picture.slice(0, 4)) === "137,80,78,71");
+    const turned = await this.client.render(crossing, { picture_format: "glb" });
+    check(new TextDecoder().decode(turned.slice(0, 4)) === "glTF");
     const digest = new Uint8Array(await crypto.subtle.digest("SHA-256", sides));
     return `${[...digest].map((byte) => byte.toString(16).padStart(2, "0")).join("")}, ${thumbnail.length} bytes`;
   }

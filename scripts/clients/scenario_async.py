@@ -147,6 +147,7 @@ class Scenario:
         await self.until_final(self.client, job)
         pictures = [sides, await self.client.thumbnail(job["id"])]
         check(all(picture.startswith(b"\x89PNG\r\n") for picture in pictures))
+        check((await self.client.render(self.crossing, picture_format="glb")).startswith(b"glTF"))
         return f"{hashlib.sha256(sides).hexdigest()}, {len(pictures[1])} bytes"
 
     async def followed(self) -> str:

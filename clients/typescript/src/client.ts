@@ -63,9 +63,9 @@ export class Meshmend {
     return (await this.#run("plan", [mesh], options, call)).report.plan as types.Plan;
   }
 
-  /** A picture of a mesh, as PNG: from one side or several, defects coloured and marked, or turning. */
+  /** A picture of a mesh, as PNG: from one side or several, defects coloured and marked, or turning; or as GLB. */
   async render(mesh: Mesh | UploadOf, options: types.RenderOptions = {}, call: CallOptions = {}): Promise<Uint8Array<ArrayBuffer>> {
-    return this.thumbnail((await this.#run("render", [mesh], options, call)).jobId);
+    return this.thumbnail((await this.#run("render", [mesh], options, call)).jobId, options.picture_format);
   }
 
   // --- operations with a mesh as their answer
@@ -244,9 +244,9 @@ export class Meshmend {
     return this.#get(`/v1/jobs/${jobId}/report`);
   }
 
-  /** The picture of a job that was made with `thumbnail`, as PNG. */
-  async thumbnail(jobId: string): Promise<Uint8Array<ArrayBuffer>> {
-    const path = `/v1/jobs/${jobId}/thumbnail.png`;
+  /** The picture of a job that was made with `thumbnail` or that draws, in the format that it was made in. */
+  async thumbnail(jobId: string, format: types.RenderOptions["picture_format"] = "png"): Promise<Uint8Array<ArrayBuffer>> {
+    const path = `/v1/jobs/${jobId}/thumbnail.${format}`;
     return new Uint8Array(await this.#connection.receive({ method: "GET", path }, (response) => response.arrayBuffer()));
   }
 

@@ -103,9 +103,9 @@ class AsyncMeshmend:
         self, mesh: AsyncMesh | UploadOf, *, material: Mesh | None = None, idempotency_key: str | None = None,
         timeout_s: float | None = None, **options: Unpack[types.RenderOptions],
     ) -> bytes:
-        """A picture of a mesh, as PNG: from one side or several, defects coloured and marked, or turning."""
+        """A picture of a mesh, as PNG: from one side or several, defects coloured and marked, or turning; or as GLB."""
         drawn = await self._run("render", [mesh], options, material, idempotency_key, timeout_s)
-        return await self.thumbnail(drawn.job_id)
+        return await self.thumbnail(drawn.job_id, options.get("picture_format", "png"))
 
     # --- operations with a mesh as their answer -------------------------------------------------------------------
 
@@ -274,9 +274,9 @@ class AsyncMeshmend:
         """The report of a job, also of one that was refused."""
         return cast(types.Report, await self._get(f"/v1/jobs/{job_id}/report", {}))
 
-    async def thumbnail(self, job_id: str) -> bytes:
-        """The picture of a job that was made with `thumbnail=True`, as PNG."""
-        return (await _whole(await self._send("GET", f"/v1/jobs/{job_id}/thumbnail.png"))).content
+    async def thumbnail(self, job_id: str, picture_format: types.PictureFormat = "png") -> bytes:
+        """The picture of a job that was made with `thumbnail=True` or that draws, in the format that it was made in."""
+        return (await _whole(await self._send("GET", f"/v1/jobs/{job_id}/thumbnail.{picture_format}"))).content
 
     async def cancel(self, job_id: str) -> types.Job:
         """Cancels a job; one that has ended stays as it is."""

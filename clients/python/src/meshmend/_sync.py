@@ -103,9 +103,9 @@ class Meshmend:
         self, mesh: Mesh | UploadOf, *, material: Mesh | None = None, idempotency_key: str | None = None,
         timeout_s: float | None = None, **options: Unpack[types.RenderOptions],
     ) -> bytes:
-        """A picture of a mesh, as PNG: from one side or several, defects coloured and marked, or turning."""
+        """A picture of a mesh, as PNG: from one side or several, defects coloured and marked, or turning; or as GLB."""
         drawn = self._run("render", [mesh], options, material, idempotency_key, timeout_s)
-        return self.thumbnail(drawn.job_id)
+        return self.thumbnail(drawn.job_id, options.get("picture_format", "png"))
 
     # --- operations with a mesh as their answer -------------------------------------------------------------------
 
@@ -274,9 +274,9 @@ class Meshmend:
         """The report of a job, also of one that was refused."""
         return cast(types.Report, self._get(f"/v1/jobs/{job_id}/report", {}))
 
-    def thumbnail(self, job_id: str) -> bytes:
-        """The picture of a job that was made with `thumbnail=True`, as PNG."""
-        return (_whole(self._send("GET", f"/v1/jobs/{job_id}/thumbnail.png"))).content
+    def thumbnail(self, job_id: str, picture_format: types.PictureFormat = "png") -> bytes:
+        """The picture of a job that was made with `thumbnail=True` or that draws, in the format that it was made in."""
+        return (_whole(self._send("GET", f"/v1/jobs/{job_id}/thumbnail.{picture_format}"))).content
 
     def cancel(self, job_id: str) -> types.Job:
         """Cancels a job; one that has ended stays as it is."""
