@@ -78,7 +78,8 @@ fn place_in(folder: &Path, inputs: &[Place], request: &Request) -> Result<Place,
         path.set_extension(format);
     }
     if request.operation == Operation::Render {
-        path.set_extension("png");
+        let format = request.options.iter().find(|(option, _)| option == "picture_format");
+        path.set_extension(format.map_or("png", |(_, format)| format.as_str()));
     }
     let is_input =
         fs::canonicalize(&path).ok().is_some_and(|path| fs::canonicalize(input).ok() == Some(path));

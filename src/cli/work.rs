@@ -58,15 +58,8 @@ fn attempt(errand: &Errand<'_>) -> Result<Done, Problem> {
     // A picture has one format, whatever its name.
     let is_picture = request.operation == Operation::Render;
     let by_name = output.as_ref().filter(|_| !is_picture).and_then(Place::format).map(Into::into);
-    let is_model = is_picture && output.as_ref().and_then(Place::extension).is_some_and(is_glb);
-    let picture_format = options.picture_format.or(is_model.then_some(PictureFormat::Glb));
-    if is_picture && picture_format.is_some_and(|format| (format == PictureFormat::Glb) != is_model) {
-        let named = output.as_ref().and_then(Place::extension);
-        if let Some(extension) = named {
-            let detail = format!("--picture-format does not go with the extension .{extension}");
-            return Err(wrong(detail));
-        }
-    }
+    let picture_name = output.as_ref().filter(|_| is_picture).and_then(Place::extension);
+    let picture_format = picture_format(options.picture_format, picture_name)?;
     let options = Options { output_format: options.output_format.or(by_name), picture_format, ..options };
     options.check(request.operation.into()).map_err(|e| about_options(&e))?;
     if *output == Some(Place::Stream) && options.targets.as_ref().is_some_and(|t| t.len() > 1) {
@@ -102,6 +95,21 @@ fn attempt(errand: &Errand<'_>) -> Result<Done, Problem> {
         Problem { detail: format!("{}: {}", errand.subject(), problem.detail), ..problem }
     })?;
     deliver(errand, options.require, &bytes, &answer, timing)
+}
+
+/// The format of a picture: that which is `asked` for, or else that of the extension of its name, with which the other must go.
+fn picture_format(
+    asked: Option<PictureFormat>,
+    extension: Option<&str>,
+) -> Result<Option<PictureFormat>, Problem> {
+    let Some(extension) = extension else { return Ok(asked) };
+    let named = if is_glb(extension) { PictureFormat::Glb } else { PictureFormat::Png };
+    match asked {
+        Some(asked) if asked != named => {
+            Err(wrong(format!("--picture-format does not go with the extension .{extension}")))
+        }
+        _ => Ok((named == PictureFormat::Glb).then_some(named)),
+    }
 }
 
 /// Streams have no extension that could name their format, other files have one of a format, and standard output holds one thing only.

@@ -128,6 +128,8 @@ pub(super) async fn render(state: State, caller: Extension<Caller>, request: Req
     let mut submission = submission(&state, &caller, operation, options, intake, &head.headers).await?;
     let (representation, format) = drawn(&head.headers, submission.options.picture_format)?;
     submission.options.picture_format = format;
+    // Choices for pixels do not go with a mesh that only `Accept` asks for.
+    submission.options.check(operation).map_err(|error| Problem::from(&error))?;
     finish(&state, submission, representation, &head).await
 }
 

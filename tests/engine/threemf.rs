@@ -622,6 +622,24 @@ fn what_is_no_material_is_no_part_of_one_mesh_and_that_is_told() {
 }
 
 #[test]
+fn settings_of_a_slicer_that_cannot_be_read_are_told_and_refuse_no_file() {
+    for settings in ["<config><object id=\"1\"", "no XML", "<!DOCTYPE a><config/>"] {
+        let bytes = package(&[
+            ("_rels/.rels", RELATIONSHIPS.as_bytes()),
+            ("3D/3dmodel.model", simple().as_bytes()),
+            ("Metadata/model_settings.config", settings.as_bytes()),
+        ]);
+        let remarks = project(&bytes).remarks;
+        assert!(
+            remarks.iter().any(|remark| remark.contains("model_settings.config")),
+            "{settings}: {remarks:?}"
+        );
+        let answer = run(Operation::Repair, &bytes, &Options::default());
+        assert_eq!(answer.report.outcome, Some(Outcome::Identical));
+    }
+}
+
+#[test]
 fn the_same_file_gives_the_same_bytes_with_one_thread_and_with_many() {
     let bytes = painted(true);
     let of = |threads| {

@@ -123,6 +123,8 @@ fn a_picture_may_be_a_mesh_that_viewers_turn() {
         let (status, code, _) = problem(server.post(&path).body(CROSSING).send().unwrap());
         assert_eq!((status, code.as_str()), (400, "invalid-parameter"), "{path}");
     }
+    let views = server.post("/v1/render?views=front").header("accept", glb).body(CROSSING).send().unwrap();
+    assert_eq!(problem(views).0, 400);
     for (format, accept) in [("png", glb), ("glb", "image/png")] {
         let path = format!("/v1/render?picture_format={format}");
         let refused = server.post(&path).header("accept", accept).body(CROSSING).send().unwrap();
@@ -185,6 +187,8 @@ fn the_command_line_writes_pictures_and_pages_with_them() {
     assert_eq!(run(&["render", "open.off"]).0, Some(2), "a picture has to go somewhere");
     assert_eq!(run(&["render", "open.off", "--after", "solid.off", "-o", "both.glb"]).0, Some(0));
     assert!(read("both.glb").starts_with(b"glTF"));
+    assert_eq!(run(&["render", "open.off", "solid.off", "-d", "all", "--picture-format", "glb"]).0, Some(0));
+    assert!(read("all/solid.glb").starts_with(b"glTF"));
     for (format, name) in [("glb", "a.png"), ("png", "a.glb"), ("glb", "a.jpg")] {
         assert_eq!(run(&["render", "open.off", "-o", name, "--picture-format", format]).0, Some(2), "{name}");
     }

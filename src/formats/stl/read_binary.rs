@@ -1,6 +1,6 @@
 //! Binary STL: 80 free bytes, the number of triangles, then 50 bytes for each.
 
-use crate::budget::{Budget, CHECK_EVERY};
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::formats::faces::Faces;
 use crate::formats::{Place, ReadError, ReadOptions};
 use crate::geom::DVec3;
@@ -27,8 +27,8 @@ pub(in crate::formats) fn announced_triangles(bytes: &[u8]) -> Option<u32> {
         .filter(|_| bytes.len() >= HEADER_BYTES)
 }
 
-/// Reads as many triangles as the header announces and welds bit-equal corners. Normals, attribute bytes and whatever
-/// follows the last triangle are ignored.
+/// Reads as many triangles as the header announces and welds bit-equal corners. Attribute bytes are counted;
+/// normals and whatever follows the last triangle are ignored.
 pub(in crate::formats) fn read(
     bytes: &[u8],
     options: &ReadOptions,
@@ -62,14 +62,20 @@ pub(in crate::formats) fn read(
     });
 
     let soup = Faces::of_triangles(triangles).into_soup(positions, &options.limits, budget)?;
-    let marked = attributes(records);
+    let marked = count_attributes(records, budget)?;
     let left_out = if marked > 0 { vec![("attribute_bytes", marked)] } else { Vec::new() };
     Ok(Soup { is_welded_by_format: true, left_out, ..soup })
 }
 
 /// Number of triangles whose attribute bytes, the last two, are not zero: some programs keep colours there.
-fn attributes(records: &[u8]) -> u64 {
-    records.chunks_exact(TRIANGLE_BYTES).filter(|record| !record.ends_with(&[0, 0])).count() as u64
+fn count_attributes(records: &[u8], budget: &Budget) -> Result<u64, Stopped> {
+    let counts = par::try_map_ranges(records.len() / TRIANGLE_BYTES, CHECK_EVERY, |range| {
+        budget.check()?;
+        let of_range = &records[range.start * TRIANGLE_BYTES..range.end * TRIANGLE_BYTES];
+        let is_marked = |record: &&[u8]| !record.ends_with(&[0, 0]);
+        Ok(of_range.chunks_exact(TRIANGLE_BYTES).filter(is_marked).count() as u64)
+    })?;
+    Ok(counts.into_iter().sum())
 }
 
 /// Corner `i % 3` of triangle `i / 3`.

@@ -3,7 +3,7 @@
 use super::model::{Content, Model, ObjectKind, Reference};
 use super::package::{Package, shortened, too_large};
 use super::read_model::read_model;
-use super::read_purposes::read_purposes;
+use super::read_purposes::{Purposes, read_purposes};
 use super::read_relationships::read_start;
 use super::read_volumes::{Purpose, Volume, read_volumes};
 use super::transform::Transform;
@@ -38,7 +38,7 @@ pub(super) struct Models {
     pub(super) remarks: Vec<String>,
     pub(super) volumes: Vec<Volume>,
     /// What components are for, by the ids of the objects of their build item and of themselves, where they are no material.
-    purposes: FxHashMap<[u32; 2], Purpose>,
+    purposes: Purposes,
 }
 
 impl Models {
@@ -47,9 +47,9 @@ impl Models {
         let mut package = Package::open(bytes, budget)?;
         let start = read_start(&mut package, budget)?;
         let volumes = read_volumes(&mut package, budget)?;
-        let purposes = read_purposes(&mut package, budget)?;
-        let mut models =
-            Self { all: Vec::new(), placements: Vec::new(), remarks: start.remarks, volumes, purposes };
+        let mut remarks = start.remarks;
+        let purposes = read_purposes(&mut package, &mut remarks, budget)?;
+        let mut models = Self { all: Vec::new(), placements: Vec::new(), remarks, volumes, purposes };
         let mut numbers: FxHashMap<String, usize> = FxHashMap::default();
         let mut waiting = vec![start.part];
         let (mut triangles, mut vertices, mut meshes) = (0_u64, 0_u64, models.volumes.len() as u64);

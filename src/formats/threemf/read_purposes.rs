@@ -5,26 +5,40 @@ use super::package::Package;
 use super::read_volumes::Purpose;
 use super::xml::{Document, Node, Scanner, value};
 use crate::budget::Budget;
-use crate::formats::ReadError;
+use crate::formats::{ReadError, ReadErrorKind};
 use rustc_hash::FxHashMap;
 
 /// The part that notes it.
 const SETTINGS: &str = "/Metadata/model_settings.config";
 
-/// The purposes of components by the ids of their object in the build and of their own object, as far as they are no material.
+/// By the ids of the object of a build item and of a component of it: what the component is for.
+pub(super) type Purposes = FxHashMap<[u32; 2], Purpose>;
+
+/// The purposes of components, as far as they are no material. A part that cannot be read, which is none of the model, says nothing
+/// of them, and `remarks` tell that.
 ///
 /// # Errors
-/// A part that is no XML.
+/// A part that is too large; the budget stops the run.
 pub(super) fn read_purposes(
     package: &mut Package<'_>,
+    remarks: &mut Vec<String>,
     budget: &Budget,
-) -> Result<FxHashMap<[u32; 2], Purpose>, ReadError> {
-    let mut purposes = FxHashMap::default();
-    let Some(entry) = package.find(SETTINGS) else { return Ok(purposes) };
+) -> Result<Purposes, ReadError> {
+    let Some(entry) = package.find(SETTINGS) else { return Ok(Purposes::default()) };
     let (bytes, _charge) = package.inflate(entry, budget)?;
-    let document = Document::of(SETTINGS, &bytes)?;
+    match purposes_in(&bytes, budget) {
+        Err(ReadError { kind: ReadErrorKind::Unparseable { .. }, .. }) => {
+            remarks.push(format!("{SETTINGS} cannot be read: every part is taken as material."));
+            Ok(Purposes::default())
+        }
+        read => read,
+    }
+}
+
+fn purposes_in(bytes: &[u8], budget: &Budget) -> Result<Purposes, ReadError> {
+    let document = Document::of(SETTINGS, bytes)?;
     let mut scanner = Scanner::new(&document, budget);
-    let mut object = None;
+    let (mut purposes, mut object) = (Purposes::default(), None);
     loop {
         match scanner.next()? {
             Node::Open(element) if element.local == "object" => {

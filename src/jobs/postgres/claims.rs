@@ -102,14 +102,9 @@ async fn change(session: &Session, id: JobId) -> Result<(), StoreError> {
     session.change(sql, &[&Uuid::from(id), &session.now]).await.map(drop)
 }
 
-/// Ends a job and puts its webhook into the outbox, in one statement: whatever its state, or as long as it runs by a claim. Whether
-/// it was ended.
-async fn end(
-    session: &Session,
-    id: JobId,
-    claim: Option<ClaimRef>,
-    ending: &Ending,
-) -> Result<bool, StoreError> {
+/// Ends a job and puts its webhook into the outbox, in one statement: whatever its state, or only if it runs by its claim of this
+/// `epoch`. Whether it was ended.
+async fn end(session: &Session, id: JobId, epoch: Option<u32>, ending: &Ending) -> Result<bool, StoreError> {
     let sql = format!(
         "WITH clock AS MATERIALIZED (SELECT now_ms() AS now),
         named AS MATERIALIZED (SELECT key, bytes::numeric, blob FROM unnest($7::text[], $8::text[], $9::text[]) AS named (key, bytes, blob)),
@@ -139,7 +134,7 @@ async fn end(
                 &to_json(ending)?,
                 &ENGINE_VERSION,
                 &last_ms(),
-                &claim.map(|claim| i64::from(claim.epoch)),
+                &epoch.map(i64::from),
                 &keys,
                 &bytes,
                 &texts,
@@ -228,7 +223,7 @@ async fn check(session: &Session, claim: ClaimRef) -> Result<(), StoreError> {
 }
 
 pub(super) async fn finish(session: &Session, claim: ClaimRef, ending: Ending) -> Result<(), StoreError> {
-    let is_ended = end(session, claim.id, Some(claim), &ending).await?;
+    let is_ended = end(session, claim.id, Some(claim.epoch), &ending).await?;
     is_ended.then_some(()).ok_or(StoreError::ClaimVoid)
 }
 

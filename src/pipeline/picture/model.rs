@@ -68,6 +68,7 @@ pub(super) fn rod_of_tests(ends: [DVec3; 2]) -> [[DVec3; 3]; 6] {
     ROD_TRIANGLES.map(|triangle| triangle.map(|v| corners[v as usize]))
 }
 
+/// The file on its way.
 #[derive(Default)]
 struct Made {
     /// Largest side of the boxes of all meshes.
@@ -149,7 +150,7 @@ impl Made {
     fn soup(self) -> Soup {
         let most = DVec3::splat(f64::from(f32::MAX));
         Soup {
-            positions: self.positions.iter().map(|&p| (p * self.metres).clamp(-most, most)).collect(),
+            positions: self.positions.into_iter().map(|p| (p * self.metres).clamp(-most, most)).collect(),
             face_count: self.triangles.len() as u32,
             triangles: self.triangles,
             materials: formats::two_sided_materials(self.materials, self.material_of),

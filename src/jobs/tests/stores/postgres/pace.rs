@@ -21,7 +21,8 @@ const TENANTS: usize = 40;
 /// How long a job sleeps.
 const SLEEP: Duration = Duration::from_millis(50);
 
-/// Times of claims, shortest first, of so many jobs that are claimed, sleep and end at `rate` a second, beside some that are claimed before.
+/// Times of claims, shortest first, of so many jobs that are claimed, sleep and end at `rate` a second, after some on each
+/// connection that do not count.
 async fn times_of_claims(house: &PostgresHouse, rate: usize, count: usize) -> Vec<Duration> {
     // Their admission is not what is measured.
     let set = |value| {
