@@ -108,9 +108,9 @@ impl<'s> Model<'s> {
     /// # Errors
     /// When the budget stops the run.
     pub fn of(scene: Scene<'s>, frame: Frame, shade: Shade, budget: &'s Budget) -> Result<Self, Stopped> {
-        let corners = if shade == Shade::Smooth { size_of::<[[f32; 3]; 3]>() + 28 } else { 0 };
-        let bytes = scene.positions.len() * (size_of::<DVec3>() + 12) + scene.triangles.len() * corners;
-        let memory = budget.charge(bytes as u64)?;
+        let (vertices, triangles) = (scene.positions.len(), scene.triangles.len());
+        let of_normals = if shade == Shade::Smooth { CornerNormals::bytes(vertices, triangles) } else { 0 };
+        let memory = budget.charge((vertices * (size_of::<DVec3>() + 1) + of_normals) as u64)?;
         // What no triangle uses may lie anywhere: it is put into the middle.
         let mut is_used = vec![false; scene.positions.len()];
         for (t, corners) in scene.triangles.iter().enumerate() {

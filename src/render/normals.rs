@@ -3,19 +3,32 @@
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 use crate::par;
-use foldhash::fast::FixedState;
-use std::collections::HashMap;
+use crate::spatial::{Coincident, coincident_f64};
 
 /// Cosine of the angle from which on an edge is seen as a crease: 40 degrees.
 const CREASE_COSINE: f64 = 0.766;
 /// Triangles at a vertex up to which each of its corners looks at all others; the tip of a cone of more is drawn flat.
 const TRIANGLES_AT_VERTEX_MAX: usize = 64;
 
-/// A unit normal for each corner of each triangle, outward as the corners run; zero where a triangle has none.
+/// From what the normals at corners are made.
 #[derive(Debug)]
-pub(super) struct CornerNormals(Vec<[[f32; 3]; 3]>);
+pub(super) struct CornerNormals {
+    /// For each vertex the first one at its place.
+    vertices: Vec<u32>,
+    /// The normal of each triangle, as long as twice its area.
+    faces: Vec<DVec3>,
+    /// Where the triangles of a vertex begin in `around`; those of the last end with it.
+    starts: Vec<u32>,
+    /// Triangles at each vertex that is the first at its place, in order.
+    around: Vec<u32>,
+}
 
 impl CornerNormals {
+    /// Bytes for so many vertices and triangles.
+    pub(super) fn bytes(vertices: usize, triangles: usize) -> usize {
+        vertices * 3 * size_of::<u32>() + triangles * (size_of::<DVec3>() + 3 * size_of::<u32>())
+    }
+
     pub(super) fn of(points: &[DVec3], triangles: &[[u32; 3]], budget: &Budget) -> Result<Self, Stopped> {
         let vertices = first_at_position(points, budget)?;
         let faces = par::try_map_ranges(triangles.len(), CHECK_EVERY, |range| {
@@ -23,7 +36,6 @@ impl CornerNormals {
             Ok(range.map(|t| normal(triangles[t].map(|v| points[v as usize]))).collect::<Vec<_>>())
         })?
         .concat();
-        // Triangles at each vertex, in order.
         let mut starts = vec![0_u32; points.len() + 1];
         for corners in triangles {
             corners.iter().for_each(|&v| starts[vertices[v as usize] as usize + 1] += 1);
@@ -42,27 +54,25 @@ impl CornerNormals {
             }
         }
         budget.spend(triangles.len() as u64 / 8)?;
-        let at_corner = |t: usize, v: u32| {
-            let own = faces[t].normalize_or_zero();
-            let v = vertices[v as usize] as usize;
-            let fan = &around[starts[v] as usize..starts[v + 1] as usize];
-            if fan.len() > TRIANGLES_AT_VERTEX_MAX {
-                return own.as_vec3().to_array();
-            }
-            let is_smooth = |n: &DVec3| n.dot(own) > CREASE_COSINE * n.length();
-            let sum: DVec3 = fan.iter().map(|&other| faces[other as usize]).filter(is_smooth).sum();
-            sum.normalize_or(own).as_vec3().to_array()
-        };
-        let normals = par::try_map_ranges(triangles.len(), CHECK_EVERY, |range| {
-            budget.spend(range.len() as u64)?;
-            Ok(range.map(|t| triangles[t].map(|v| at_corner(t, v))).collect::<Vec<_>>())
-        })?;
-        Ok(Self(normals.concat()))
+        Ok(Self { vertices, faces, starts, around })
     }
 
-    /// The normals of triangle `t`.
-    pub(super) fn of_triangle(&self, t: u32) -> [[f32; 3]; 3] {
-        self.0[t as usize]
+    /// A unit normal for each corner of triangle `t`, outward as the corners run; zero where it has none.
+    pub(super) fn of_triangle(&self, t: u32, corners: [u32; 3]) -> [DVec3; 3] {
+        let own = self.faces[t as usize].normalize_or_zero();
+        let is_smooth = |n: &DVec3| {
+            let along = n.dot(own);
+            along > 0.0 && along * along > CREASE_COSINE * CREASE_COSINE * n.length_squared()
+        };
+        corners.map(|v| {
+            let v = self.vertices[v as usize] as usize;
+            let fan = &self.around[self.starts[v] as usize..self.starts[v + 1] as usize];
+            if fan.len() > TRIANGLES_AT_VERTEX_MAX {
+                return own;
+            }
+            let sum: DVec3 = fan.iter().map(|&other| self.faces[other as usize]).filter(is_smooth).sum();
+            sum.normalize_or(own)
+        })
     }
 }
 
@@ -71,20 +81,11 @@ pub(super) fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// For each point the first one at the same position, bit for bit.
+/// For each point the first one at the same position; -0 equals 0.
 ///
 /// # Errors
 /// When the budget stops the run.
 pub fn first_at_position(points: &[DVec3], budget: &Budget) -> Result<Vec<u32>, Stopped> {
-    let mut first: HashMap<[u64; 3], u32, FixedState> =
-        HashMap::with_capacity_and_hasher(points.len(), FixedState::default());
-    let mut vertices = Vec::with_capacity(points.len());
-    for (v, p) in points.iter().enumerate() {
-        if v % CHECK_EVERY == 0 {
-            budget.spend(CHECK_EVERY as u64 / 8)?;
-        }
-        // Adding zero makes -0 and 0 one.
-        vertices.push(*first.entry(p.to_array().map(|x| (x + 0.0).to_bits())).or_insert(v as u32));
-    }
-    Ok(vertices)
+    let Coincident { group, first } = coincident_f64(points, budget)?;
+    Ok(group.into_iter().map(|group| first[group as usize]).collect())
 }

@@ -268,22 +268,28 @@ impl Filling<'_> {
         [first, last]: [usize; 2],
     ) -> usize {
         let ids = self.triangles[t];
-        let Some(flat) = Flat::of(ids.map(|v| self.corners[v as usize])) else { return 1 };
-        let [a, b, c] = ids.map(|v| f64::from(self.depths[v as usize]));
-        let [near_a, near_b, near_c] = if flat.is_turned { [a, c, b] } else { [a, b, c] };
-        let [xa, xb, xc] = flat.corners.map(|[x, _]| x as i32);
+        let corners = ids.map(|v| self.corners[v as usize]);
+        let [xa, xb, xc] = corners.map(|[x, _]| x);
         let [left, right] = samples_between(xa.min(xb).min(xc), xa.max(xb).max(xc));
         let (left, right) = (left.max(0), right.min(self.width as i64 - 1));
+        if left > right {
+            return 1;
+        }
+        let Some(flat) = Flat::of(corners) else { return 1 };
+        let [a, b, c] = ids.map(|v| f64::from(self.depths[v as usize]));
+        let [near_a, near_b, near_c] = if flat.is_turned { [a, c, b] } else { [a, b, c] };
         let scale = 1.0 / flat.area as f64;
         let behind = if self.is_back[t] { BACK_BEHIND } else { 0.0 };
+        let steps = [0, 1, 2].map(|i| flat.step(i));
         // Weights as in `Visible::weights`: corner 0 by edge 1, corner 1 by edge 2, corner 2 by edge 0.
-        let along =
-            (near_a * flat.step(1) as f64 + near_b * flat.step(2) as f64 + near_c * flat.step(0) as f64)
-                * scale;
+        let depth = |edges: [i64; 3]| {
+            (near_a * edges[1] as f64 + near_b * edges[2] as f64 + near_c * edges[0] as f64) * scale
+        };
+        let along = depth(steps);
+        let is_narrow = right - left <= NARROW;
         let mut work = 1;
         for row in first..=last {
             let y = row as i64 * GRID + GRID / 2;
-            let is_narrow = right - left <= NARROW;
             let [from, to] = if is_narrow { [left, right] } else { flat.span(y, left, right) };
             if from > to {
                 continue;
@@ -291,10 +297,7 @@ impl Filling<'_> {
             work += (to - from + 1) as usize;
             let x = from * GRID + GRID / 2;
             let mut edges = [0, 1, 2].map(|i| flat.edge(i, x, y));
-            let mut near = (near_a * edges[1] as f64 + near_b * edges[2] as f64 + near_c * edges[0] as f64)
-                * scale
-                - behind;
-            let steps = [0, 1, 2].map(|i| flat.step(i));
+            let mut near = depth(edges) - behind;
             let begin = (row - top) * self.width;
             for sample in &mut samples[begin + from as usize..=begin + to as usize] {
                 if edges[0] | edges[1] | edges[2] >= 0 && near as f32 > sample.near {

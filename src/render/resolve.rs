@@ -52,12 +52,62 @@ const LAMPS: [([f32; 3], f32); 3] =
 /// Rows of pixels that are made at once.
 const ROWS: usize = 8;
 
-/// What is known of a triangle.
+/// What is known of a triangle that is seen.
 #[derive(Debug, Clone, Copy)]
 struct Face {
     /// Toward the eye, along the axes of the picture; zero where it has none.
     normal: [f32; 3],
+    /// The same at its corners, where normals are rounded.
+    at_corners: Option<[[f32; 3]; 3]>,
     is_back: bool,
+}
+
+/// What is known of the triangles that are seen.
+struct Faces {
+    /// Number of each triangle in `list`; any where it is not seen.
+    numbers: Vec<u32>,
+    list: Vec<Face>,
+}
+
+impl Faces {
+    fn of(model: &Model<'_>, camera: &Camera, seen: &Visible, budget: &Budget) -> Result<Self, Stopped> {
+        let mut numbers = vec![u32::MAX; model.scene.triangles.len()];
+        let mut triangles = Vec::new();
+        for samples in seen.samples.chunks(CHECK_EVERY) {
+            budget.spend(samples.len() as u64 / 16)?;
+            for t in samples.iter().filter_map(|sample| sample.triangle()) {
+                if numbers[t as usize] == u32::MAX {
+                    numbers[t as usize] = triangles.len() as u32;
+                    triangles.push(t);
+                }
+            }
+        }
+        let face = |t: u32| {
+            let is_back = seen.is_back[t as usize];
+            let toward = |outward: DVec3| {
+                let outward = camera.turn(outward);
+                (if is_back { -outward } else { outward }).as_vec3().to_array()
+            };
+            let smooth = model.corner_normals.as_ref();
+            Face {
+                normal: toward(normal(model.corners(t)).normalize_or_zero()),
+                at_corners: smooth
+                    .map(|normals| normals.of_triangle(t, model.scene.triangles[t as usize]).map(toward)),
+                is_back,
+            }
+        };
+        let list = par::try_map_ranges(triangles.len(), CHECK_EVERY, |range| {
+            budget.spend(range.len() as u64)?;
+            Ok(triangles[range].iter().map(|&t| face(t)).collect::<Vec<_>>())
+        })?
+        .concat();
+        Ok(Self { numbers, list })
+    }
+
+    /// Of a triangle that is seen.
+    fn get(&self, t: u32) -> &Face {
+        &self.list[self.numbers[t as usize] as usize]
+    }
 }
 
 pub(super) fn resolve(
@@ -69,20 +119,11 @@ pub(super) fn resolve(
 ) -> Result<Canvas, Stopped> {
     let (width, height) = (seen.width / SAMPLES, seen.height / SAMPLES);
     let triangles = model.scene.triangles.len();
-    let _memory = budget.charge((triangles * size_of::<Face>() + width * height * 3) as u64)?;
-    let faces = par::try_map_ranges(triangles, CHECK_EVERY, |range| {
-        budget.spend(range.len() as u64 / 8)?;
-        let face = |t: usize| {
-            let is_back = seen.is_back[t];
-            let outward = camera.turn(normal(model.corners(t as u32)).normalize_or_zero());
-            let toward = if is_back { -outward } else { outward };
-            Face { normal: toward.as_vec3().to_array(), is_back }
-        };
-        Ok(range.map(face).collect::<Vec<_>>())
-    })?
-    .concat();
+    let of_faces = 2 * triangles.min(seen.samples.len()) * size_of::<Face>() + triangles * size_of::<u32>();
+    let _memory = budget.charge((of_faces + width * height * 3) as u64)?;
+    let faces = Faces::of(model, camera, seen, budget)?;
     budget.spend((width * height) as u64 / 4)?;
-    let light = Light { model, camera, seen, style, faces: &faces };
+    let light = Light { model, seen, style, faces: &faces };
     let mut canvas = Canvas::filled(width, height, style.background);
     par::for_each_chunk_mut(&mut canvas.bytes, width * 3 * ROWS, |begin, bytes| {
         let top = begin / (width * 3);
@@ -98,10 +139,9 @@ pub(super) fn resolve(
 
 struct Light<'l> {
     model: &'l Model<'l>,
-    camera: &'l Camera,
     seen: &'l Visible,
     style: &'l Style,
-    faces: &'l [Face],
+    faces: &'l Faces,
 }
 
 impl Light<'_> {
@@ -135,7 +175,7 @@ impl Light<'_> {
 
     /// The colour of triangle `t` at a sample, in the light.
     fn lit(&self, t: u32, x: usize, y: usize) -> [f32; 3] {
-        let face = self.faces[t as usize];
+        let face = self.faces.get(t);
         let palette = self.model.scene.palette;
         let paint = self.model.paint(t);
         let color = match self.style.back {
@@ -149,14 +189,13 @@ impl Light<'_> {
     }
 
     /// The normal between those of the corners.
-    fn smooth(&self, t: u32, face: Face, x: usize, y: usize) -> Option<[f32; 3]> {
-        let corners = self.model.corner_normals.as_ref()?.of_triangle(t);
+    fn smooth(&self, t: u32, face: &Face, x: usize, y: usize) -> Option<[f32; 3]> {
+        let corners = face.at_corners.as_ref()?;
         let weights = self.seen.weights(self.model.scene.triangles[t as usize], x, y)?;
-        let between = |k: usize| (0..3).map(|i| weights[i] * corners[i][k]).sum::<f32>();
-        let outward = DVec3::new(f64::from(between(0)), f64::from(between(1)), f64::from(between(2)));
-        let normal = self.camera.turn(outward).normalize_or_zero();
-        let toward = if face.is_back { -normal } else { normal };
-        (toward != DVec3::ZERO).then(|| toward.as_vec3().to_array())
+        let between = [0, 1, 2]
+            .map(|k| weights[0] * corners[0][k] + weights[1] * corners[1][k] + weights[2] * corners[2][k]);
+        let length = dot(between, between).sqrt();
+        (length > 0.0).then(|| between.map(|along| along / length))
     }
 
     /// `color` with ink where an edge passes the sample.
@@ -172,7 +211,7 @@ impl Light<'_> {
     fn ink(&self, t: u32, x: usize, y: usize) -> f32 {
         let Visible { width, height, samples, .. } = self.seen;
         let own = samples[y * width + x];
-        let normal = self.faces[t as usize].normal;
+        let normal = self.faces.get(t).normal;
         let mut ink: f32 = 0.0;
         for (dx, dy) in [(1, 0), (0, 1)] {
             let before = (x >= dx && y >= dy).then(|| samples[(y - dy) * width + x - dx]);
@@ -184,7 +223,7 @@ impl Light<'_> {
                 match other.seen() {
                     Seen::Nothing => ink = ink.max(CREASE_INK),
                     Seen::Triangle(neighbour) if neighbour != t => {
-                        let turn = dot(normal, self.faces[neighbour as usize].normal);
+                        let turn = dot(normal, self.faces.get(neighbour).normal);
                         // Of the two sides of a jump the nearer one is inked.
                         let is_jump = bend.abs() > JUMP && own.near > other.near;
                         if turn < CREASE_COSINE || is_jump {
