@@ -12,20 +12,24 @@ const PROGRESS_EVERY: Duration = Duration::from_millis(100);
 
 /// How far a run is.
 #[derive(Debug, Clone)]
-pub(super) struct Share {
+pub(super) struct Share<'s> {
     operation: Operation,
+    /// Names of its files.
+    subject: &'s str,
     progress: Progress,
 }
 
-impl Share {
+impl<'s> Share<'s> {
     /// Characters of the bar.
     const WIDTH: usize = 24;
+    /// Characters of a line: a longer one would be broken on a terminal, and could not be drawn over.
+    const LINE_WIDTH: usize = 79;
 
-    pub(super) fn of(operation: Operation, progress: Progress) -> Self {
-        Self { operation, progress }
+    pub(super) fn of(operation: Operation, subject: &'s str, progress: Progress) -> Self {
+        Self { operation, subject, progress }
     }
 
-    /// One line: the operation, a bar, the share, the pass, and the time since the beginning.
+    /// One line: the operation, a bar, the share, the time since the beginning, the pass, and the file.
     fn line(&self, since: Duration) -> String {
         let fraction = self.progress.fraction.clamp(0.0, 1.0);
         let full = (fraction * Self::WIDTH as f64) as usize;
@@ -33,16 +37,21 @@ impl Share {
         let stage = self.progress.stage.map_or("", |stage| stage.word());
         let seconds = since.as_secs();
         let (operation, percent) = (self.operation.name(), fraction * 100.0);
-        format!("{operation} [{bar}] {percent:3.0} %  {:02}:{:02}  {stage}", seconds / 60, seconds % 60)
+        let (minutes, seconds) = (seconds / 60, seconds % 60);
+        let told = format!(
+            "{operation} [{bar}] {percent:3.0} %  {minutes:02}:{seconds:02}  {stage:14}  {}",
+            self.subject
+        );
+        told.trim_end().chars().take(Self::LINE_WIDTH).map(|c| if c.is_control() { '?' } else { c }).collect()
     }
 }
 
 /// Runs `body` while a second thread raises `stop` on Ctrl-C, on SIGTERM or after `deadline`, and shows `progress` if
 /// standard error is a terminal.
-pub(super) fn watched<T>(
+pub(super) fn watched<'s, T>(
     stop: &StopFlag,
     deadline: Option<Duration>,
-    progress: impl Fn() -> Share + Send,
+    progress: impl Fn() -> Share<'s> + Send,
     body: impl FnOnce() -> T,
 ) -> T {
     let (done, is_done) = oneshot::channel::<()>();
@@ -55,10 +64,10 @@ pub(super) fn watched<T>(
     })
 }
 
-fn watch(
+fn watch<'s>(
     stop: &StopFlag,
     deadline: Option<Duration>,
-    progress: impl Fn() -> Share,
+    progress: impl Fn() -> Share<'s>,
     mut is_done: oneshot::Receiver<()>,
 ) {
     // Without a runtime the run still works; it only cannot be stopped gently.
@@ -67,7 +76,7 @@ fn watch(
         let mut ticks = tokio::time::interval(PROGRESS_EVERY);
         // The first tick is at once; short runs show nothing.
         ticks.tick().await;
-        let mut line = ProgressLine { is_on: std::io::stderr().is_terminal(), is_drawn: false };
+        let mut line = ProgressLine { is_on: std::io::stderr().is_terminal(), width: 0 };
         let begun = Instant::now();
         let mut stopping = std::pin::pin!(interrupted());
         let mut out_of_time = std::pin::pin!(passed(deadline));
@@ -118,26 +127,24 @@ async fn interrupted() {
     }
 }
 
-/// A line that is drawn over itself.
+/// A line that is drawn over itself, without control sequences that a terminal may not know.
 struct ProgressLine {
     is_on: bool,
-    is_drawn: bool,
+    /// Characters that it has now.
+    width: usize,
 }
 
 impl ProgressLine {
-    /// Carriage return and "erase to the end of the line" (ECMA-48).
-    const ERASE: &str = "\r\x1b[K";
-
     fn draw(&mut self, text: &str) {
         if self.is_on {
-            let _ = write!(std::io::stderr(), "{}{text}", Self::ERASE);
-            self.is_drawn = true;
+            let _ = write!(std::io::stderr(), "\r{text:0$}", self.width);
+            self.width = self.width.max(text.chars().count());
         }
     }
 
     fn clear(&mut self) {
-        if self.is_drawn {
-            let _ = write!(std::io::stderr(), "{}", Self::ERASE);
+        if self.width > 0 {
+            let _ = write!(std::io::stderr(), "\r{:1$}\r", "", self.width);
         }
     }
 }
@@ -148,14 +155,18 @@ mod tests {
     use crate::budget::Stopped;
     use crate::wire::Stage;
 
-    fn share() -> Share {
-        Share::of(Operation::Repair, Progress { stage: Some(Stage::Read), fraction: 0.5 })
+    fn share() -> Share<'static> {
+        Share::of(Operation::Repair, "part.stl", Progress { stage: Some(Stage::Read), fraction: 0.5 })
     }
 
     #[test]
-    fn a_line_tells_operation_share_time_and_pass() {
+    fn a_line_tells_operation_share_time_pass_and_file_and_fits_a_terminal() {
         let line = share().line(Duration::from_secs(125));
-        assert_eq!(line, "repair [############............]  50 %  02:05  read");
+        assert_eq!(line, "repair [############............]  50 %  02:05  read            part.stl");
+        let long = Share { subject: &"long ".repeat(40), ..share() }.line(Duration::ZERO);
+        assert_eq!(long.chars().count(), Share::LINE_WIDTH);
+        let marked = Share { subject: "\x1b[2J", ..share() }.line(Duration::ZERO);
+        assert!(marked.ends_with("?[2J"), "{marked}");
     }
 
     #[test]

@@ -14,7 +14,7 @@ use crate::pipeline::{self, Answer, Operation, PictureChoices, Product, Require}
 use crate::wire::{OptionError, Options, PictureFormat, Problem, ProblemCode, Report, TimingMs, report_page};
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::PathBuf;
+use std::path::{MAIN_SEPARATOR, PathBuf};
 
 /// One file, or several that become one, and where the result goes.
 #[derive(Debug)]
@@ -30,6 +30,12 @@ impl Errand<'_> {
     /// Names of the files.
     pub(super) fn subject(&self) -> String {
         self.inputs.iter().map(Place::to_string).collect::<Vec<_>>().join(", ")
+    }
+
+    /// The same without their folders.
+    fn file_names(&self) -> String {
+        let last = |place: &Place| place.to_string().rsplit(MAIN_SEPARATOR).next().map(str::to_owned);
+        self.inputs.iter().filter_map(last).collect::<Vec<_>>().join(", ")
     }
 }
 
@@ -91,8 +97,9 @@ fn attempt(errand: &Errand<'_>) -> Result<Done, Problem> {
     let page_picture = request.report_html.is_some().then(PictureChoices::default);
     let picture = options.picture.clone().or(page_picture.filter(|_| !is_picture));
     let options = pipeline::Options { material, after, picture, file_sizes, ..options };
-    let (answer, timing) = execute(request.operation, &bytes, &options, &loaded).map_err(|problem| {
-        Problem { detail: format!("{}: {}", errand.subject(), problem.detail), ..problem }
+    let (answer, timing) = execute(errand, &bytes, &options, &loaded).map_err(|problem| Problem {
+        detail: format!("{}: {}", errand.subject(), problem.detail),
+        ..problem
     })?;
     deliver(errand, options.require, &bytes, &answer, timing)
 }
@@ -196,12 +203,12 @@ fn engine_options(
 
 /// Runs the engine under the configured limits.
 fn execute(
-    operation: Operation,
+    errand: &Errand<'_>,
     bytes: &[u8],
     options: &pipeline::Options,
     loaded: &Loaded,
 ) -> Result<(Answer, TimingMs), Problem> {
-    let config = &loaded.config;
+    let (config, operation, subject) = (&loaded.config, errand.request.operation, errand.file_names());
     // The default deadline protects a service from its guests; here the guest is at home.
     let deadline = loaded.is_given("deadline_max").then_some(config.deadline_max);
     let stop = StopFlag::default();
@@ -210,7 +217,7 @@ fn execute(
         .observed_by(clock.observer());
     let engine =
         || par::with_threads(config.engine_threads, || pipeline::run(operation, bytes, options, &budget));
-    let progress = || Share::of(operation, clock.progress());
+    let progress = || Share::of(operation, &subject, clock.progress());
     let answer = watched(&stop, deadline, progress, engine).map_err(|failure| Problem::from(&failure))?;
     Ok((answer, clock.timing_ms()))
 }

@@ -4,7 +4,7 @@ use super::input::Input;
 use super::output::{Made, unchanged};
 use super::plan::Attempt;
 use super::step::Step;
-use super::{Answer, ChosenHole, ELEMENTS_MAX, Failure, Operation, Options, Outcome, Report};
+use super::{Answer, ChosenHole, Failure, Operation, Options, Outcome, Report};
 use crate::analysis::{Analysis, DefectCode, HoleGuess, Witness};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::geom::triangle_area;
@@ -23,8 +23,8 @@ pub struct FillHolesChoices {
 /// What became of the holes of a file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Filling {
-    /// One for each boundary loop, or for several that got one patch, in the order of their first loops; the first
-    /// [`ELEMENTS_MAX`] loops.
+    /// One for each boundary loop, or for several that got one patch, in the order of their first loops; of `fill-holes` the
+    /// first [`ELEMENTS_MAX`](super::ELEMENTS_MAX) loops, of a repair those that were filled or tried of those that are listed.
     pub holes: Vec<HoleOutcome>,
     /// Share of the area of the result that is patches.
     pub interpolated_area_share: f64,
@@ -61,7 +61,7 @@ pub enum HoleFate {
 }
 
 /// The loops of the file, as they are listed.
-struct Loops {
+pub(super) struct Loops {
     /// The first ones.
     witnesses: Vec<Witness>,
     /// Half-edges of the soup and the number of the loop that each is in, ascending.
@@ -150,7 +150,7 @@ fn interpolated_share(draft: &Draft, budget: &Budget) -> Result<f64, Stopped> {
 
 impl Loops {
     /// The loops of the file of `report`, which keeps `samples` witnesses of them.
-    fn take(report: &mut Report, samples: usize) -> Self {
+    pub(super) fn take(report: &mut Report, samples: usize) -> Self {
         let analysis = report.before.as_mut();
         let Some(analysis) = analysis else {
             return Self { witnesses: Vec::new(), edges: Vec::new(), count: 0 };
@@ -195,29 +195,12 @@ impl Loops {
 
     /// What became of each of the listed loops.
     fn outcomes(&self, told: Vec<HoleReport>, chosen: Option<&[ChosenHole]>) -> Vec<HoleOutcome> {
-        let mut outcomes = Vec::with_capacity(self.witnesses.len());
+        let mut outcomes = self.told(told);
         let mut is_told = vec![false; self.witnesses.len()];
-        for report in told {
-            let mut loops: Vec<u32> =
-                report.rims.iter().filter_map(|rim| self.number_of(rim.half_edge?)).collect();
-            loops.sort_unstable();
-            loops.dedup();
-            for &number in &loops {
-                if let Some(is_told) = is_told.get_mut(number as usize) {
-                    *is_told = true;
-                }
+        for &number in outcomes.iter().flat_map(|outcome| &outcome.loops) {
+            if let Some(is_told) = is_told.get_mut(number as usize) {
+                *is_told = true;
             }
-            if loops.first().is_none_or(|&number| number as usize >= ELEMENTS_MAX) {
-                continue;
-            }
-            outcomes.push(HoleOutcome {
-                guess: self.guess(&loops),
-                edges: report.rims.iter().map(|rim| u64::from(rim.edges)).sum(),
-                fate: if report.used.is_some() { HoleFate::Filled } else { HoleFate::Rejected },
-                rejected: report.rejected.clone(),
-                loops,
-                told: Some(report),
-            });
         }
         let mut is_chosen = vec![chosen.is_none(); self.witnesses.len()];
         for hole in chosen.into_iter().flatten() {
@@ -234,6 +217,49 @@ impl Loops {
         }));
         outcomes.sort_by_key(|outcome| outcome.loops.first().copied());
         outcomes
+    }
+
+    /// What a repair that made `draft` tells of the holes that it filled or tried to fill; `None`: of none. What was no loop of
+    /// the file, but became one by a step before, is not listed.
+    pub(super) fn filling(
+        &self,
+        told: Vec<HoleReport>,
+        draft: &Draft,
+        budget: &Budget,
+    ) -> Result<Option<Filling>, Stopped> {
+        if told.is_empty() {
+            return Ok(None);
+        }
+        let mut of_result = 0.0;
+        for t in 0..draft.triangles.len() {
+            budget.spend(u64::from(t % 64 == 0))?;
+            of_result += triangle_area(draft.corners(t));
+        }
+        let of_patches: f64 = told.iter().filter(|hole| hole.used.is_some()).map(|hole| hole.area).sum();
+        let interpolated_area_share = if of_result > 0.0 { (of_patches / of_result).min(1.0) } else { 0.0 };
+        let mut holes = self.told(told);
+        holes.sort_by_key(|outcome| outcome.loops.first().copied());
+        Ok(Some(Filling { holes, interpolated_area_share }))
+    }
+
+    /// What became of the listed loops that reports name.
+    fn told(&self, told: Vec<HoleReport>) -> Vec<HoleOutcome> {
+        let outcome = |report: HoleReport| {
+            let mut loops: Vec<u32> =
+                report.rims.iter().filter_map(|rim| self.number_of(rim.half_edge?)).collect();
+            loops.sort_unstable();
+            loops.dedup();
+            let is_listed = loops.first().is_some_and(|&number| (number as usize) < self.witnesses.len());
+            is_listed.then(|| HoleOutcome {
+                guess: self.guess(&loops),
+                edges: report.rims.iter().map(|rim| u64::from(rim.edges)).sum(),
+                fate: if report.used.is_some() { HoleFate::Filled } else { HoleFate::Rejected },
+                rejected: report.rejected.clone(),
+                loops,
+                told: Some(report),
+            })
+        };
+        told.into_iter().filter_map(outcome).collect()
     }
 
     fn guess(&self, loops: &[u32]) -> Option<HoleGuess> {

@@ -1,5 +1,6 @@
 //! A broken file to a certified one: valid already, or a plan that is replayed, or a climb of the ladder.
 
+use super::fill_holes::Loops;
 use super::input::Input;
 use super::ladder::{self, Certified, Climb, Climbed};
 use super::output::{Candidate, NoCandidate};
@@ -16,22 +17,26 @@ use crate::repair::nest::Policy;
 
 /// Repairs `input`. A valid one comes back as it is, or converted.
 pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Result<Answer, Failure> {
-    let report = input.planned(Operation::Repair, budget)?;
+    let mut report = input.planned(Operation::Repair, budget)?;
+    let loops = Loops::take(&mut report, input.samples);
     let plan = options.plan.as_ref();
     if plan.and_then(|plan| plan.input_sha256).is_some_and(|asked| asked != input.facts.sha256) {
         return Err(PlanMismatch::OtherFile.into());
     }
     let choices = Choices::of(options, &input.soup, report.before.as_ref())?;
     if let Some(steps) = plan.and_then(|plan| plan.steps.as_deref()) {
-        return bounds::or_refused(report, budget, |report| replay(input, steps, options, report, budget));
+        return bounds::or_refused(report, budget, |report| {
+            replay(input, steps, &loops, options, report, budget)
+        });
     }
-    bounds::or_refused(report, budget, |report| planned(input, &choices, options, report, budget))
+    bounds::or_refused(report, budget, |report| planned(input, &choices, &loops, options, report, budget))
 }
 
 /// Repairs `input` by what may lead to a solid.
 fn planned(
     input: &Input,
     choices: &Choices,
+    loops: &Loops,
     options: &Options,
     report: Report,
     budget: &Budget,
@@ -68,11 +73,11 @@ fn planned(
     let (end, tried) = ladder::climb(&climb)?;
     let report = Report { tried, ..report };
     match end {
-        Climbed::Certified(certified) => finished(*certified, Outcome::Repaired, &climb, report),
+        Climbed::Certified(certified) => finished(*certified, Outcome::Repaired, &climb, loops, report),
         Climbed::Rebuilt(rebuilt) => {
             Ok(rebuilt.returned(input, report.made_by(rebuilding(choices)), budget)?)
         }
-        Climbed::Mended(mended) => partial(input, encoding, report, *mended, budget),
+        Climbed::Mended(mended) => partial(input, encoding, loops, report, *mended, budget),
         Climbed::Refused { refusal, actions } => Ok(Report { actions, ..report }.refused(refusal)),
     }
 }
@@ -82,15 +87,18 @@ fn finished(
     certified: Certified,
     outcome: Outcome,
     climb: &Climb<'_>,
+    loops: &Loops,
     report: Report,
 ) -> Result<Answer, Failure> {
     let Climb { input, options, budget, .. } = *climb;
     let Certified { attempt, candidate, as_seen: fidelity, .. } = certified;
-    let Attempt { draft, actions, steps, .. } = attempt;
+    let Attempt { draft, actions, steps, holes, .. } = attempt;
     if let Some(refusal) = fidelity.breach(&options.limits) {
         return Ok(Report { actions, ..report }.refused(refusal));
     }
-    let report = Report { actions, losses: Some(fidelity.losses), distance: fidelity.distance, ..report };
+    let filling = loops.filling(holes, &draft, budget)?;
+    let report =
+        Report { actions, losses: Some(fidelity.losses), distance: fidelity.distance, filling, ..report };
     if let Some(fewer) = simplify::of_certified(&draft, input, options, budget)? {
         let report = report.made_by([steps, vec![Step::Simplify]].concat());
         return fewer.returned(input, &draft, report, outcome, options, budget);
@@ -102,6 +110,7 @@ fn finished(
 fn replay(
     input: &Input,
     steps: &[Step],
+    loops: &Loops,
     options: &Options,
     report: Report,
     budget: &Budget,
@@ -163,14 +172,14 @@ fn replay(
             let refusal = Refusal::NotRepairable { witness };
             return Ok(Report { actions: attempt.actions, ..report }.refused(refusal));
         }
-        return partial(input, encoding, report, attempt, budget);
+        return partial(input, encoding, loops, report, attempt, budget);
     }
     let outcome = match (local.is_empty(), is_simplified) {
         (false, _) => Outcome::Repaired,
         (true, true) => Outcome::Simplified,
         (true, false) => Outcome::Converted,
     };
-    finished(Certified::measured(attempt, candidate, &climb)?, outcome, &climb, report)
+    finished(Certified::measured(attempt, candidate, &climb)?, outcome, &climb, loops, report)
 }
 
 /// The steps of a surface that is rebuilt: what was removed as chosen is not there any more.
@@ -199,11 +208,13 @@ fn write(
 fn partial(
     input: &Input,
     encoding: Encoding,
+    loops: &Loops,
     report: Report,
     mended: Attempt,
     budget: &Budget,
 ) -> Result<Answer, Failure> {
-    let report = Report { actions: mended.actions, ..report }.made_by(mended.steps);
+    let filling = loops.filling(mended.holes, &mended.draft, budget)?;
+    let report = Report { actions: mended.actions, filling, ..report }.made_by(mended.steps);
     match write(&mended.draft, input, encoding, Depth::Count { samples: input.samples }, budget) {
         Ok(candidate) => {
             Ok(candidate.returned(input, &mended.draft.triangle_origin, report, Outcome::Partial, budget)?)

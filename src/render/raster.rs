@@ -84,9 +84,14 @@ pub(super) struct Visible {
 }
 
 impl Visible {
-    /// The weights of the corners of triangle `t` at the middle of a sample; `None` when it has no area on the picture.
-    pub(super) fn weights(&self, corners: [u32; 3], column: usize, row: usize) -> Option<[f32; 3]> {
-        let flat = Flat::of(corners.map(|v| self.corners[v as usize]))?;
+    /// The places of the corners of a triangle, in parts of a sample.
+    pub(super) fn places(&self, corners: [u32; 3]) -> [[i32; 2]; 3] {
+        corners.map(|v| self.corners[v as usize])
+    }
+
+    /// The weights of corners at such places at the middle of a sample; `None` when they have no area on the picture.
+    pub(super) fn weights(places: [[i32; 2]; 3], column: usize, row: usize) -> Option<[f32; 3]> {
+        let flat = Flat::of(places)?;
         let [x, y] = [column, row].map(|at| at as i64 * GRID + GRID / 2);
         let area = flat.area as f32;
         let [a, b, c] = [0, 1, 2].map(|edge| flat.edge(edge, x, y) as f32 / area);

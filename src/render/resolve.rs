@@ -52,20 +52,29 @@ const LAMPS: [([f32; 3], f32); 3] =
 /// Rows of pixels that are made at once.
 const ROWS: usize = 8;
 
+/// The corners of a triangle whose normals are rounded.
+#[derive(Debug, Clone, Copy)]
+struct Corners {
+    /// In parts of a sample.
+    places: [[i32; 2]; 3],
+    /// Toward the eye, along the axes of the picture.
+    normals: [[f32; 3]; 3],
+}
+
 /// What is known of a triangle that is seen.
 #[derive(Debug, Clone, Copy)]
 struct Face {
-    /// Toward the eye, along the axes of the picture; zero where it has none.
-    normal: [f32; 3],
-    /// The same at its corners, where normals are rounded.
-    at_corners: Option<[[f32; 3]; 3]>,
+    /// `None`: it is flat.
+    rounded: Option<Corners>,
     is_back: bool,
 }
 
 /// What is known of the triangles that are seen.
 struct Faces {
-    /// Number of each triangle in `list`; any where it is not seen.
+    /// Number of each triangle in the other lists; any where it is not seen.
     numbers: Vec<u32>,
+    /// Toward the eye, along the axes of the picture; zero where a triangle has none.
+    normals: Vec<[f32; 3]>,
     list: Vec<Face>,
 }
 
@@ -88,25 +97,24 @@ impl Faces {
                 let outward = camera.turn(outward);
                 (if is_back { -outward } else { outward }).as_vec3().to_array()
             };
-            let smooth = model.corner_normals.as_ref();
-            Face {
-                normal: toward(normal(model.corners(t)).normalize_or_zero()),
-                at_corners: smooth
-                    .map(|normals| normals.of_triangle(t, model.scene.triangles[t as usize]).map(toward)),
-                is_back,
-            }
+            let corners = model.scene.triangles[t as usize];
+            let rounded = model.corner_normals.as_ref().map(|normals| Corners {
+                places: seen.places(corners),
+                normals: normals.of_triangle(t, corners).map(toward),
+            });
+            (toward(normal(model.corners(t)).normalize_or_zero()), Face { rounded, is_back })
         };
-        let list = par::try_map_ranges(triangles.len(), CHECK_EVERY, |range| {
+        let made = par::try_map_ranges(triangles.len(), CHECK_EVERY, |range| {
             budget.spend(range.len() as u64)?;
             Ok(triangles[range].iter().map(|&t| face(t)).collect::<Vec<_>>())
-        })?
-        .concat();
-        Ok(Self { numbers, list })
+        })?;
+        let (normals, list) = made.into_iter().flatten().unzip();
+        Ok(Self { numbers, normals, list })
     }
 
-    /// Of a triangle that is seen.
-    fn get(&self, t: u32) -> &Face {
-        &self.list[self.numbers[t as usize] as usize]
+    /// Number of a triangle that is seen.
+    fn number(&self, t: u32) -> usize {
+        self.numbers[t as usize] as usize
     }
 }
 
@@ -119,7 +127,8 @@ pub(super) fn resolve(
 ) -> Result<Canvas, Stopped> {
     let (width, height) = (seen.width / SAMPLES, seen.height / SAMPLES);
     let triangles = model.scene.triangles.len();
-    let of_faces = 2 * triangles.min(seen.samples.len()) * size_of::<Face>() + triangles * size_of::<u32>();
+    let of_faces =
+        2 * triangles.min(seen.samples.len()) * (size_of::<Face>() + 12) + triangles * size_of::<u32>();
     let _memory = budget.charge((of_faces + width * height * 3) as u64)?;
     let faces = Faces::of(model, camera, seen, budget)?;
     budget.spend((width * height) as u64 / 4)?;
@@ -175,27 +184,18 @@ impl Light<'_> {
 
     /// The colour of triangle `t` at a sample, in the light.
     fn lit(&self, t: u32, x: usize, y: usize) -> [f32; 3] {
-        let face = self.faces.get(t);
+        let number = self.faces.number(t);
+        let face = &self.faces.list[number];
         let palette = self.model.scene.palette;
         let paint = self.model.paint(t);
         let color = match self.style.back {
             Some(back) if face.is_back && paint == 0 => back,
             _ => palette.get(paint).copied().unwrap_or([128; 3]),
         };
-        let normal = self.smooth(t, face, x, y).unwrap_or(face.normal);
+        let normal = smooth(face, x, y).unwrap_or(self.faces.normals[number]);
         let lamps = LAMPS.iter().map(|(toward, strength)| strength * dot(*toward, normal).max(0.0));
         let light = AMBIENT + lamps.sum::<f32>();
         color.map(|channel| (f32::from(channel) * light).min(255.0))
-    }
-
-    /// The normal between those of the corners.
-    fn smooth(&self, t: u32, face: &Face, x: usize, y: usize) -> Option<[f32; 3]> {
-        let corners = face.at_corners.as_ref()?;
-        let weights = self.seen.weights(self.model.scene.triangles[t as usize], x, y)?;
-        let between = [0, 1, 2]
-            .map(|k| weights[0] * corners[0][k] + weights[1] * corners[1][k] + weights[2] * corners[2][k]);
-        let length = dot(between, between).sqrt();
-        (length > 0.0).then(|| between.map(|along| along / length))
     }
 
     /// `color` with ink where an edge passes the sample.
@@ -211,7 +211,7 @@ impl Light<'_> {
     fn ink(&self, t: u32, x: usize, y: usize) -> f32 {
         let Visible { width, height, samples, .. } = self.seen;
         let own = samples[y * width + x];
-        let normal = self.faces.get(t).normal;
+        let normal = self.faces.normals[self.faces.number(t)];
         let mut ink: f32 = 0.0;
         for (dx, dy) in [(1, 0), (0, 1)] {
             let before = (x >= dx && y >= dy).then(|| samples[(y - dy) * width + x - dx]);
@@ -223,7 +223,7 @@ impl Light<'_> {
                 match other.seen() {
                     Seen::Nothing => ink = ink.max(CREASE_INK),
                     Seen::Triangle(neighbour) if neighbour != t => {
-                        let turn = dot(normal, self.faces.get(neighbour).normal);
+                        let turn = dot(normal, self.faces.normals[self.faces.number(neighbour)]);
                         // Of the two sides of a jump the nearer one is inked.
                         let is_jump = bend.abs() > JUMP && own.near > other.near;
                         if turn < CREASE_COSINE || is_jump {
@@ -238,6 +238,16 @@ impl Light<'_> {
         }
         ink
     }
+}
+
+/// The normal between those of the corners at the middle of a sample.
+fn smooth(face: &Face, x: usize, y: usize) -> Option<[f32; 3]> {
+    let Corners { places, normals } = face.rounded.as_ref()?;
+    let weights = Visible::weights(*places, x, y)?;
+    let between = [0, 1, 2]
+        .map(|k| weights[0] * normals[0][k] + weights[1] * normals[1][k] + weights[2] * normals[2][k]);
+    let length = dot(between, between).sqrt();
+    (length > 0.0).then(|| between.map(|along| along / length))
 }
 
 fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {

@@ -50,7 +50,8 @@ pub struct Report {
     /// The results of a simplification, in the order of its targets; the first is what `after`, `deviation` and
     /// `certificate` are about. Empty for other operations.
     pub levels: Vec<Level>,
-    /// What became of each hole, at most the first 10,000; null for operations other than `fill-holes`.
+    /// What became of holes: of `fill-holes` each of the first 10,000; of a repair those among the listed ones that it filled
+    /// or tried to fill. Null for other operations, and of a repair that looked at none.
     #[schema(required)]
     pub holes: Option<Vec<Hole>>,
     /// What the modeller found and did; null for other operations.
@@ -160,8 +161,7 @@ pub struct Deviation {
     /// Bodies of the input that can be seen and are lost as a whole; null: not measured.
     #[schema(required)]
     pub bodies_lost: Option<u32>,
-    /// Share of the area of the result, from 0 to 1, that patches of holes make up; null for operations other than
-    /// `fill-holes`.
+    /// Share of the area of the result, from 0 to 1, that patches of holes make up; null where `holes` is null.
     #[schema(required)]
     pub interpolated_area_share: Option<f64>,
     /// Share of the input's triangles that are bit-identical in the result, from 0 to 1.

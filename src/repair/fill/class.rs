@@ -15,10 +15,12 @@ const CUT_SINE: f64 = 0.7;
 /// Loops with fewer corners have no room for a new vertex.
 const CORNERS_TO_REFINE: usize = 5;
 
-/// The ways to try for a hole that is to be filled by `method`, the first first, and how creases divide it if they may.
+/// The ways to try for a hole that is to be filled by `method`, the first first, and how creases divide it if they may;
+/// [`Method::Auto`] makes new vertices only where it `refines`.
 pub(super) fn ways(
     region: &Region,
     method: Method,
+    refines: bool,
     surface: &Surface,
     options: &FillOptions,
     budget: &Budget,
@@ -31,7 +33,7 @@ pub(super) fn ways(
         (_, true) => &[Way::Planar, Way::Minimal],
         (_, false) => &[Way::Minimal, Way::Planar],
     };
-    let is_plain = method == Method::Auto && (!options.refines || is_to_be_plain(region, surface));
+    let is_plain = method == Method::Auto && (!refines || is_to_be_plain(region, surface));
     let may_be_creased = method == Method::Creased || (method == Method::Auto && !is_plain);
     let division = if may_be_creased { Division::of(region, surface, budget)? } else { None };
     let own: &[Way] = match method {

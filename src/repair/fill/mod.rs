@@ -180,7 +180,8 @@ impl Ladder<'_> {
         let choice = self.soup.and_then(|soup| self.options.choice(region.rim(), self.draft, soup));
         let asked = choice.and_then(|choice| choice.method).unwrap_or(self.options.method);
         let band_rings = choice.and_then(|choice| choice.band_rings).unwrap_or(self.options.band_rings);
-        let (mut ways, division) = class::ways(&region, asked, surface, self.options, budget)?;
+        let refines = self.options.refines || choice.is_some_and(|choice| choice.method.is_some());
+        let (mut ways, division) = class::ways(&region, asked, refines, surface, self.options, budget)?;
         ways.reverse();
         let rim = |own: &Vec<u32>| {
             let of_soup = |&h: &u32| self.soup.and_then(|soup| options::soup_half_edge(h, self.draft, soup));

@@ -65,7 +65,7 @@ pub struct FillOptions {
     pub falls_back: bool,
     /// Loops that face each other across a gap or lie in each other without being flat get one patch between them.
     pub bridges: bool,
-    /// [`Method::Auto`] may make new vertices.
+    /// [`Method::Auto`] may make new vertices also where no choice asks for it.
     pub refines: bool,
 }
 
@@ -93,12 +93,9 @@ impl FillOptions {
 
     /// True when a hole may get a method that looks at the mesh around it, not at its rim alone.
     pub(super) fn looks_around(&self) -> bool {
-        let mut methods = self.choices.iter().filter_map(|choice| choice.method).chain([self.method]);
-        methods.any(|method| match method {
-            Method::Flat | Method::Minimal => false,
-            Method::Auto => self.refines,
-            Method::Smooth | Method::Creased | Method::Rbf => true,
-        })
+        let chosen = self.choices.iter().filter_map(|choice| choice.method);
+        let own = (self.method != Method::Auto || self.refines).then_some(self.method);
+        chosen.chain(own).any(|method| !matches!(method, Method::Flat | Method::Minimal))
     }
 
     /// What is chosen for the hole with these half-edges of `draft`, which was made of `soup`.

@@ -107,15 +107,23 @@ pub(super) fn text(value: &Value) -> &str {
     value.as_str().unwrap_or_default()
 }
 
-/// A number for people: up to five significant digits.
+/// The least number that is told for people; what is nearer to 0 is nothing that a machine could print.
+const LEAST: f64 = 1e-9;
+
+/// A number for people: up to five significant digits, without a power of ten where it is not very large.
 pub(super) fn figure(value: f64) -> String {
-    if value != 0.0 && !(1e-4..1e9).contains(&value.abs()) {
+    if value.abs() >= 1e9 {
         return format!("{value:.2e}");
+    }
+    if value.abs() < LEAST {
+        return "0".to_owned();
     }
     let decimals = match value.abs() {
         v if v >= 1000.0 => 0,
         v if v >= 10.0 => 2,
-        _ => 4,
+        v if v >= 1e-4 => 4,
+        v if v >= 1e-6 => 7,
+        _ => 10,
     };
     let text = format!("{value:.decimals$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
@@ -124,6 +132,9 @@ pub(super) fn figure(value: f64) -> String {
 /// The number with its unit; a dash when there is none.
 pub(super) fn measured(value: &Value, unit: &str) -> String {
     match value.as_f64() {
+        Some(number) if number != 0.0 && number.abs() < LEAST => {
+            format!("less than {}{unit}", figure(LEAST))
+        }
         Some(number) => format!("{}{unit}", figure(number)),
         None => "\u{2013}".to_owned(),
     }

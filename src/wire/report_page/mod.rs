@@ -190,7 +190,7 @@ fn found(page: &mut Page, report: &Value) {
     holes(page, &defects);
 }
 
-/// The boundary loops that are listed, by the numbers under which they can be chosen.
+/// The boundary loops that are listed, counted from 1.
 fn holes(page: &mut Page, defects: &[&Value]) {
     let loops = defects.iter().filter(|defect| defect["code"] == "boundary-loop");
     let row = |(number, witness): (usize, &Value)| {
@@ -201,7 +201,7 @@ fn holes(page: &mut Page, defects: &[&Value]) {
         let number_of = |name: &str| figure_of(name).map_or_else(String::new, figure);
         let sure = figure_of("confidence").map(|share| format!("{} %", figure(share * 100.0)));
         vec![
-            Cell::Number(number.to_string()),
+            Cell::Number((number + 1).to_string()),
             Cell::Text(plain::hole(text(&witness["hole"])).to_owned()),
             Cell::Number(sure.unwrap_or_default()),
             Cell::Number(number_of("edges")),
@@ -213,16 +213,19 @@ fn holes(page: &mut Page, defects: &[&Value]) {
     page.table(&["Hole", "Most likely", "How sure", "Edges", "Length", "First place"], rows);
 }
 
-/// Where a defect is: a face or vertex with its line, and coordinates.
+/// Where a defect is: its line in the file and its coordinates; the number of a face or vertex where there is neither.
 fn place(witness: &Value) -> String {
-    let element = |name: &str, list: &Value| {
-        let first = items(list).first()?;
-        let line = first["line"].as_u64().map_or_else(String::new, |line| format!(" (line {line})"));
-        Some(format!("{name} {}{line}", first["index"]))
-    };
-    let named = element("face", &witness["faces"]).or_else(|| element("vertex", &witness["vertices"]));
+    let first = |name: &'static str, list: &Value| items(list).first().map(|first| (name, first.clone()));
+    let element = first("face", &witness["faces"]).or_else(|| first("vertex", &witness["vertices"]));
+    let line = element.as_ref().and_then(|(_, first)| first["line"].as_u64());
+    let line = line.map(|line| format!("line {line}"));
     let at = coordinates(&witness["position"]).map(|at| format!("at {at}"));
-    [named, at].into_iter().flatten().collect::<Vec<_>>().join(" ")
+    match [line, at] {
+        [None, None] => element.map_or_else(String::new, |(name, first)| {
+            format!("{name} {} of the file, counted from 0", first["index"])
+        }),
+        told => told.into_iter().flatten().collect::<Vec<_>>().join(" "),
+    }
 }
 
 /// The coordinates of a place; what is nothing beside the largest of them is zero.
@@ -242,17 +245,28 @@ fn done(page: &mut Page, report: &Value) {
     page.heading("What was changed");
     let row = |action: &&Value| {
         let changes = items(&action["changes"]).iter().filter(|change| change["count"] != 0);
-        let changes = changes.map(|change| format!("{} {}", words(text(&change["name"])), change["count"]));
-        let causes = items(&action["causes"]).iter().map(|cause| words(text(cause)));
+        let changes = changes.map(|change| format!("{}: {}", words(text(&change["name"])), change["count"]));
+        let causes = items(&action["causes"]).iter().map(|cause| plain::cause(text(cause)));
         vec![
             Cell::Text(plain::step(text(&action["step"]))),
             Cell::Text(changes.collect::<Vec<_>>().join(", ")),
-            Cell::Text(causes.collect::<Vec<_>>().join(", ")),
+            Cell::Text(each_once(causes).join(", ")),
             Cell::Text(text(&action["reason"]).to_owned()),
         ]
     };
     let rows = actions.iter().map(row).collect();
     page.table(&["What", "How many", "Because of", "Choice"], rows);
+}
+
+/// The words, each where it stands first.
+fn each_once(words: impl Iterator<Item = String>) -> Vec<String> {
+    let mut told: Vec<String> = Vec::new();
+    for word in words {
+        if !told.contains(&word) {
+            told.push(word);
+        }
+    }
+    told
 }
 
 /// What is said behind the count of a defect that may be there more often.
@@ -275,7 +289,8 @@ fn filled(page: &mut Page, report: &Value) {
     }
     page.heading("What became of the holes");
     let row = |hole: &Value| {
-        let loops: Vec<String> = items(&hole["loops"]).iter().map(Value::to_string).collect();
+        let loops: Vec<String> =
+            items(&hole["loops"]).iter().filter_map(Value::as_u64).map(|at| (at + 1).to_string()).collect();
         let (tone, word) = match text(&hole["fate"]) {
             "filled" => (Tone::Good, "filled"),
             "kept" => (Tone::Open, "kept"),

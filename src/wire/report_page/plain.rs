@@ -41,6 +41,39 @@ pub(super) fn defect(code: &str) -> &'static str {
     }
 }
 
+/// A defect as the cause of a change, in a few words; of another code its words.
+pub(super) fn cause(code: &str) -> String {
+    let told = match code {
+        "boundary-loop" => "open rims",
+        "self-intersection" => "parts that pass through each other",
+        "overlap" => "parts that lie on each other",
+        "touch" => "parts that touch",
+        "near" => "parts that almost touch",
+        "duplicate-vertex" => "points that are there more than once",
+        "duplicate-face" => "faces that are there more than once",
+        "opposite-duplicate-face" => "walls without thickness",
+        "non-manifold-edge" => "edges of more than two faces",
+        "non-manifold-vertex" => "points where parts touch",
+        "orientation-conflict" => "neighbours that disagree which side is outside",
+        "folded-edge" => "folded faces",
+        "inverted-shell" => "parts inside out",
+        "misnested-shell" => "parts hidden inside others",
+        "zero-volume-shell" => "parts without volume",
+        "double-skin" => "two sides with next to nothing between them",
+        "open-sheet" => "surfaces without thickness",
+        "noise-shell" => "tiny parts",
+        "needle" | "cap" | "collinear-face" => "faces as thin as a line",
+        "coincident-corners" => "faces with two corners at one place",
+        "isolated-vertex" => "points without a face",
+        "isolated-edge" => "lines without a face",
+        "isolated-face" => "single faces",
+        "non-planar-polygon" | "concave-polygon" => "faces that programs read differently",
+        "unsound-reading" => "programs that read the file differently",
+        code => return code.replace(['-', '_'], " "),
+    };
+    told.to_owned()
+}
+
 /// What a boundary loop may be.
 pub(super) fn hole(class: &str) -> &'static str {
     match class {

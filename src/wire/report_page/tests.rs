@@ -17,9 +17,9 @@ fn a_repair_is_told_from_verdict_to_certificate() {
         "50 % of the surface is invented (faithful: at most 1 %).",
         "No unit is stated: ",
         "The surface has holes or open rims: it is not watertight.",
-        "face 2 (line 17)",
+        "line 17 at ",
         "Holes were closed.",
-        "faces added 1",
+        "faces added: 1",
         "How far the result is from your file",
         "of the returned file",
     ];
@@ -101,4 +101,29 @@ fn the_worst_defects_stand_first_and_places_have_no_noise() {
         page.contains("Is the side 1 mm? The file was taken in mm.") && !page.contains("units`"),
         "{page}"
     );
+}
+
+#[test]
+fn small_numbers_are_told_without_powers_of_ten_and_nothing_is_below_zero() {
+    let told = [2.1e-14, 3.2e-8, 4.5e-5, -1e-14, 0.0, 12.345, 1234.5].map(figure);
+    assert_eq!(told, ["0", "0.000000032", "0.000045", "0", "0", "12.35", "1234"]);
+    assert_eq!(measured(&json!(2.1e-14), " mm"), "less than 0.000000001 mm");
+    assert_eq!(measured(&json!(0.0), " mm"), "0 mm");
+}
+
+#[test]
+fn holes_are_counted_from_one_and_a_cause_is_told_once() {
+    let hole = json!({"hole": "crack", "faces": [{"index": 7}], "position": null});
+    let defect = json!({"severity": "error", "code": "boundary-loop", "count": 1, "witnesses": [hole]});
+    let action =
+        json!({"step": "fill-holes", "causes": ["needle", "cap"], "changes": [{"name": "n", "count": 2}]});
+    let filled = json!({"loops": [0, 2], "fate": "filled", "class": "crack", "triangles": 4});
+    let report = json!({"before": {"defects": [defect]}, "actions": [action], "holes": [filled]});
+    let page = report_page(&report, None);
+    assert!(
+        page.contains("<td class=number>1</td><td>A crack") && page.contains("<td class=number>1, 3</td>"),
+        "{page}"
+    );
+    assert!(page.contains("face 7 of the file, counted from 0"), "{page}");
+    assert!(page.contains("<td>faces as thin as a line</td>"), "{page}");
 }
