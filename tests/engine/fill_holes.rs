@@ -354,20 +354,38 @@ fn a_plan_fills_each_hole_by_its_own_method_and_its_steps_give_the_same_bytes_ag
         let options = Options { plan: Some(plan), ..Options::default() };
         run(Operation::Repair, &bytes, &options, &Budget::unlimited())
     };
-    let finding = |number| ChosenRemedy {
+    let finding = |number, method| ChosenRemedy {
         code: DefectCode::BoundaryLoop,
         remedy: None,
         elements: vec![(number, Remedy::Fill)],
-        holes: vec![ChosenHole { number, method: Some(Method::Smooth), band_rings: Some(1) }],
+        holes: vec![ChosenHole { number, method: Some(method), band_rings: Some(1) }],
     };
-    let plan = |number| ChosenPlan { findings: vec![finding(number)], ..ChosenPlan::default() };
+    let by = |number, method| ChosenPlan { findings: vec![finding(number, method)], ..ChosenPlan::default() };
+    let plan = |number| by(number, Method::Smooth);
     let plain = repaired(ChosenPlan::default()).unwrap();
     let smooth = repaired(plan(0)).unwrap();
+    let auto = repaired(by(0, Method::Auto)).unwrap();
     let vertices = |answer: &Answer| answer.report.after.as_ref().unwrap().counts.vertices;
     let corners: Vec<u32> = soup_of(&bytes).triangles.concat();
     let used = corners.iter().collect::<std::collections::BTreeSet<_>>().len() as u64;
     assert_eq!(vertices(&plain), used, "a repair adds no vertex by itself");
     assert!(vertices(&smooth) > vertices(&plain));
+    assert!(vertices(&auto) > vertices(&plain), "automatic as `fill-holes` does it, where it is asked for");
+    for (answer, asked, other) in
+        [(&plain, Method::Auto, Method::Auto), (&smooth, Method::Smooth, Method::Auto)]
+    {
+        let told = holes(answer);
+        let methods = |hole: &HoleOutcome| {
+            let report = hole.told.as_ref().unwrap();
+            (hole.loops.clone(), hole.fate, report.asked, report.used.is_some())
+        };
+        let wanted = [(vec![0], HoleFate::Filled, asked, true), (vec![1], HoleFate::Filled, other, true)];
+        assert_eq!(told.iter().map(methods).collect::<Vec<_>>(), wanted);
+        let share = answer.report.filling.as_ref().unwrap().interpolated_area_share;
+        let patches: f64 = told.iter().map(|hole| hole.told.as_ref().unwrap().area).sum();
+        let all = answer.report.after.as_ref().unwrap().measures.area;
+        assert!((share - patches / all).abs() < 1e-6, "{share}");
+    }
     let steps = smooth.report.plan.as_ref().unwrap().steps.clone();
     let again = repaired(ChosenPlan { steps, ..ChosenPlan::default() }).unwrap();
     assert_eq!(output(&again), output(&smooth));

@@ -255,11 +255,16 @@ fn fidelity(reports: &[&Report]) -> Option<FidelityVerdict> {
     Some(FidelityVerdict { word, changes })
 }
 
+/// Of a part that tells nothing of holes no area is a patch.
 fn filling(reports: &[&Report]) -> Option<Filling> {
+    if reports.iter().all(|report| report.filling.is_none()) {
+        return None;
+    }
     let area = |report: &Report| {
         report.after.as_ref().or(report.before.as_ref()).map_or(0.0, |mesh| mesh.measures.area)
     };
-    let share = mean(reports, area, |report| report.filling.as_ref().map(|f| f.interpolated_area_share))?;
+    let of_patches = |report: &Report| report.filling.as_ref().map_or(0.0, |f| f.interpolated_area_share);
+    let share = mean(reports, area, |report| Some(of_patches(report)))?;
     let holes = reports.iter().filter_map(|report| report.filling.as_ref()).flat_map(|f| f.holes.clone());
     Some(Filling { holes: holes.collect(), interpolated_area_share: share })
 }
