@@ -84,10 +84,12 @@ export async function solids(browser) {
     await repaired(page);
     assert.match(await page.textContent("#verdict h2"), /Certified/);
 
+    await open("project.3mf", SAMPLES.project());
+    await page.waitForSelector("#panel[data-operation=plan] #parts .part");
     request = asked();
     await page.selectOption("#solid", "together");
     assert.equal(await parts(request), "together", "it is looked at anew");
-    await page.waitForSelector("#panel[data-operation=plan]");
+    await page.waitForSelector("#parts .part", { state: "detached" });
     await page.click(".finding-title[data-code=boundary-loop]");
     await page.waitForSelector("#ring:not([hidden])");
     assert.ok(await page.isVisible("[data-role=method]"), "and has a plan, hole by hole");

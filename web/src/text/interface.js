@@ -152,7 +152,7 @@ export const words = {
   "legend.kept": ["kept", "behalten", "gardé"],
   "legend.new": ["new", "neu", "nouveau"],
   "legend.gone": ["gone", "entfallen", "supprimé"],
-  "legend.unmeasured": ["not measured", "nicht gemessen", "non mesuré"],
+  "legend.unmeasured": ["not measured: stray pieces, and where no wall is opposite", "nicht gemessen: lose Stücke, und wo keine Wand gegenüberliegt", "non mesuré : morceaux isolés, et là où aucune paroi n’est en face"],
   "legend.about": ["approximate", "ungefähr", "approximatif"],
   "view.picture": ["Picture of the part. Arrow keys turn it, plus and minus zoom, F fits, N and P go from place to place.", "Bild des Teils. Pfeiltasten drehen, Plus und Minus zoomen, F passt ein, N und P gehen von Stelle zu Stelle.", "Image de la pièce. Les flèches la tournent, plus et moins zooment, F ajuste, N et P vont d’un endroit à l’autre."],
   "view.no.webgl": ["This browser shows no 3D. All else works.", "Dieser Browser zeigt kein 3D. Alles andere geht.", "Ce navigateur n’affiche pas la 3D. Tout le reste marche."],
