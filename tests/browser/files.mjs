@@ -131,6 +131,22 @@ export async function colors(browser) {
   });
 }
 
+// What a glTF puts at its place by a matrix is kept where it stays, although the result is rounded in metres.
+export async function keptOfAGlb(browser) {
+  const document = JSON.parse((await converted("gltf", SAMPLES.scan())).toString());
+  document.nodes[0].matrix = [0.013, 0, 0, 0, 0, 0.013, 0, 0, 0, 0, 0.013, 0, 0, 0, 0, 1];
+  await withPage(browser, {}, async (page) => {
+    await drop(page, "body", "scan.gltf", JSON.stringify(document));
+    await page.waitForSelector("#view[data-drawn=before]");
+    await opened(page);
+    await page.click("#repair");
+    await repaired(page);
+    await page.waitForSelector("#legend .new");
+    const [kept, fresh] = (await page.textContent("#legend")).replaceAll(",", "").match(/\d+/g).map(Number);
+    assert.ok(kept > 10_000 && fresh < 500, `${kept} kept, ${fresh} new`);
+  });
+}
+
 // The service draws what is not read here.
 export async function glb(browser) {
   for (const format of ["glb", "gltf"]) {

@@ -256,13 +256,53 @@ export async function listOfJobs(browser) {
   });
 }
 
-// A triangle that hangs over a wall is no wall of nearly nothing.
-export async function strayPieces(browser) {
+// A cube of 20 mm, and a triangle at `places`.
+function cubeAnd(...places) {
   const corners = Array.from({ length: 8 }, (_, at) => [at & 1, (at >> 1) & 1, at >> 2].map((side) => side * 20).join(" "));
   const sides = "0 2 3|0 3 1|4 5 7|4 7 6|0 1 5|0 5 4|1 3 7|1 7 5|3 2 6|3 6 7|2 0 4|2 4 6".split("|");
-  const text = `OFF\n11 13 0\n${corners.join("\n")}\n9 9 20.05\n11 9 20.05\n9 11 20.05\n${[...sides, "8 9 10"].map((face) => `3 ${face}`).join("\n")}\n`;
+  return `OFF\n11 13 0\n${[...corners, ...places].join("\n")}\n${[...sides, "8 9 10"].map((face) => `3 ${face}`).join("\n")}\n`;
+}
+
+// The part is in sight beside a triangle that lies far away, before and after the repair.
+export async function partInSight(browser) {
   await withPage(browser, {}, async (page) => {
-    await open(page, "cube.off", text);
+    await open(page, "far.off", cubeAnd("1e6 1e6 1e6", "1000001 1e6 1e6", "1e6 1000001 1e6"));
+    await opened(page);
+    await page.click("#grid");
+    assert.ok((await picture(page)).variance > 500, "the cube is seen");
+    assert.match(await page.textContent("#far"), /^A triangle lies far away/);
+    await page.click(".finding-title[data-code=isolated-face]");
+    await page.waitForSelector("#ring:not([hidden])");
+    assert.ok((await picture(page)).orange > 0.005, "and so is the triangle");
+    await page.click("#repair");
+    await repaired(page);
+    await page.click("#fit");
+    await page.click("#arrangement [data-arrangement=after]");
+    assert.ok((await picture(page)).variance > 500, "the cube again");
+    await open(page, "sound.off", SAMPLES.sound());
+    await page.waitForFunction(() => document.querySelector("#triangles").textContent === "384");
+    assert.equal(await page.isVisible("#far"), false);
+  });
+}
+
+// What is no mesh is not drawn, and the next file can be dropped. Faces of more corners are counted as triangles.
+export async function trianglesOfAFile(browser) {
+  await withPage(browser, {}, async (page) => {
+    const photo = Buffer.from([0xff, 0xd8, 0xff, 0xe0, ...Array.from({ length: 10_240 }, (_, at) => at % 256)]);
+    await page.setInputFiles("#file", { name: "photo.stl", mimeType: "", buffer: photo });
+    await page.waitForSelector(".notice[data-code=mesh-unparseable]");
+    assert.ok(await page.isVisible("#start .drop"));
+    assert.equal(await page.isVisible("#facts"), false);
+    await open(page, "box.off", "OFF\n8 5 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n4 0 2 3 1\n4 0 1 5 4\n4 1 3 7 5\n4 3 2 6 7\n4 2 0 4 6\n");
+    await opened(page);
+    assert.equal(await page.textContent("#triangles"), "10");
+  });
+}
+
+// A triangle that hangs over a wall is no wall of nearly nothing.
+export async function strayPieces(browser) {
+  await withPage(browser, {}, async (page) => {
+    await open(page, "cube.off", cubeAnd("9 9 20.05", "11 9 20.05", "9 11 20.05"));
     await opened(page);
     for (const shown of await page.locator("#findings input").all()) await shown.uncheck();
     await page.click("[data-look=top]");

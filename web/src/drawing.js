@@ -3,7 +3,7 @@
 import { at } from "./dom.js";
 import { Picture, aim } from "./places.js";
 import { NO_PARTS } from "./project.js";
-import { number, t } from "./text/text.js";
+import { counted, number, t } from "./text/text.js";
 import { ofDefect } from "./view/colors.js";
 import { COPIES } from "./view/view.js";
 
@@ -32,6 +32,7 @@ export class Drawing {
     at("view").dataset.drawn = Object.keys(of.pictures).join(" ");
     if (side === "before") this.sized(picture);
     this.tools?.colorsCame(side);
+    this.tellFar();
     picture.project?.setParts(of.report?.parts ?? []);
     if (of.report && side === "before") this.overlays();
     const more = await this.meshes.ask("look", { name: side, sizes: COPIES });
@@ -49,6 +50,13 @@ export class Drawing {
     if (!this.view?.easing) return;
     const copy = this.view.easedCopy("before");
     at("coarse").textContent = copy ? t("view.coarse", { n: number(copy.geometry.index.count / 3), m: number(this.session.pictures.before.faceOf.length) }) : t("view.rough");
+  }
+
+  // Says so when something lies so far away that the part would not be seen beside it.
+  tellFar() {
+    const far = this.session?.pictures.before?.bulk.far ?? 0;
+    at("far").hidden = !far;
+    at("far").textContent = counted("view.far", far);
   }
 
   // The file as the service has it: for jobs that are opened again, and for formats that are not read here.

@@ -148,6 +148,7 @@ async function look(picture) {
 async function drawnSomehow(picture) {
   const of = session;
   const drawn = await picture;
+  if (of === session && drawn?.error?.code === "too-vast") return complain(drawn.error);
   if (drawn?.error && of === session) await drawing.drawFromService();
 }
 
@@ -180,9 +181,9 @@ async function follow(job) {
 
 // --- the panel -------------------------------------------------------------------------------------------------
 
-function factsOf({ bounds, faceCount }) {
+function factsOf({ bounds, faceCount, faceOf }) {
   session.size = bounds.max.map((high, axis) => high - bounds.min[axis]);
-  session.faceCount = faceCount;
+  session.triangleCount = Math.max(faceCount, faceOf?.length ?? 0); // faces of more corners are several triangles
   sizeText(session);
   at("facts").hidden = false;
   shareText();
@@ -227,7 +228,7 @@ function panel() {
   tellEarlier();
   if (!session.pictures.before && report.before.measures.bounds) {
     const { min, max } = report.before.measures.bounds;
-    factsOf({ bounds: { min: min.map((v) => v * session.reportUnit), max: max.map((v) => v * session.reportUnit) }, faceCount: report.before.counts.faces });
+    factsOf({ bounds: { min: min.map((v) => v * session.reportUnit), max: max.map((v) => v * session.reportUnit) }, faceCount: report.before.counts.triangles });
   }
   if (session.size) sizeText(session);
   at("panel").dataset.operation = report.operation;
@@ -401,7 +402,7 @@ async function showRepair(job) {
 
 function shareText() {
   const share = Number(at("share").value) / 100;
-  at("share-text").textContent = share === 1 ? t("simplify.all") : t("simplify.share", { p: percent(share), n: number((session?.faceCount ?? 0) * share) });
+  at("share-text").textContent = share === 1 ? t("simplify.all") : t("simplify.share", { p: percent(share), n: number((session?.triangleCount ?? 0) * share) });
   at("share").setAttribute("aria-valuetext", at("share-text").textContent);
 }
 
@@ -532,7 +533,7 @@ function restoreTheme() {
 
 // On a phone there is no room in the picture.
 const phone = matchMedia("(max-width: 760px)");
-const placeNotes = () => at(phone.matches ? "facts" : "corner").append(at("textured"), at("coarse"));
+const placeNotes = () => at(phone.matches ? "facts" : "corner").append(at("textured"), at("far"), at("coarse"));
 
 function texts() {
   document.documentElement.lang = current();
@@ -540,6 +541,7 @@ function texts() {
   shareText();
   if (session?.report) panel();
   drawing.tellEased();
+  drawing.tellFar();
   tools?.color(at("colors").value);
 }
 

@@ -43,7 +43,7 @@ export function thickness({ corners, positions, flat }, diagonal) {
   return values;
 }
 
-const STRAY = 0.01; // of the area of the largest piece: with less, an open piece hangs somewhere
+const STRAY = 0.01; // of the area of the largest piece: an open piece with less is none of the walls
 
 // Which triangles belong to small open pieces: 1 where they do.
 function strays(corners, positions) {

@@ -157,6 +157,8 @@ export const words = {
   "view.picture": ["Picture of the part. Arrow keys turn it, plus and minus zoom, F fits, N and P go from place to place.", "Bild des Teils. Pfeiltasten drehen, Plus und Minus zoomen, F passt ein, N und P gehen von Stelle zu Stelle.", "Image de la pièce. Les flèches la tournent, plus et moins zooment, F ajuste, N et P vont d’un endroit à l’autre."],
   "view.no.webgl": ["This browser shows no 3D. All else works.", "Dieser Browser zeigt kein 3D. Alles andere geht.", "Ce navigateur n’affiche pas la 3D. Tout le reste marche."],
   "view.textured": ["Textures and materials in other files are not drawn.", "Texturen und Materialien aus anderen Dateien werden nicht gezeichnet.", "Les textures et les matériaux d’autres fichiers ne sont pas dessinés."],
+  "view.far": ["{n} triangles lie far away from the part. A click on a finding shows them.", "{n} Dreiecke liegen weit weg vom Teil. Ein Klick auf einen Befund zeigt sie.", "{n} triangles sont loin de la pièce. Un clic sur un constat les montre."],
+  "view.far.one": ["A triangle lies far away from the part. A click on a finding shows it.", "Ein Dreieck liegt weit weg vom Teil. Ein Klick auf einen Befund zeigt es.", "Un triangle est loin de la pièce. Un clic sur un constat le montre."],
   "view.coarse": ["While it moves, {n} of {m} triangles are drawn.", "In Bewegung werden {n} von {m} Dreiecken gezeichnet.", "En mouvement, {n} triangles sur {m} sont dessinés."],
   "view.rough": ["While it moves, the picture is rougher: no graphics card draws it.", "In Bewegung ist das Bild gröber: Keine Grafikkarte zeichnet es.", "En mouvement, l’image est plus grossière : aucune carte graphique ne la dessine."],
   "view.working": ["Computing…", "Wird berechnet…", "Calcul…"],
