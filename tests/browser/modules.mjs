@@ -85,6 +85,11 @@ export async function projects() {
     assert.ok(found.some((points) => points.join(";") === wanted.join(";")), `face ${face} of the whole`);
   }
   assert.equal(picture.place([1, 2, 3], 1, 0).join(), "1,2,3", "as one mesh, places are those of the build");
+
+  // Without parts that are not printed, such as negative ones, faces have other numbers: none is lit rather than a wrong one.
+  picture.project.setParts([], mesh.faceCount - 12);
+  assert.deepEqual(picture.trianglesOf(3), []);
+  assert.equal(picture.place([1, 2, 3], 1, 3).join(), "1,2,3");
 }
 
 // Archives that are broken are left to the service; deflated ones, components, another unit and prefixes are read.

@@ -33,7 +33,7 @@ export class Drawing {
     if (side === "before") this.sized(picture);
     this.tools?.colorsCame(side);
     this.tellFar();
-    picture.project?.setParts(of.report?.parts ?? []);
+    picture.project?.setParts(of.report?.parts ?? [], of.report?.before.counts.faces);
     if (of.report && side === "before") this.overlays();
     const more = await this.meshes.ask("look", { name: side, sizes: COPIES });
     if (of !== this.session) return null;
@@ -116,7 +116,7 @@ export class Drawing {
   overlays() {
     const picture = this.session.pictures.before;
     if (!picture || !this.session.report) return;
-    picture.project?.setParts(this.session.report.parts ?? []);
+    picture.project?.setParts(this.session.report.parts ?? [], this.session.report.before.counts.faces);
     for (const defect of this.session.report.before.defects) {
       this.view?.setMarks("before", defect.code, picture.overlayOf(defect, this.session.reportUnit), ofDefect(defect.code), 0.5);
       this.view?.showMarks("before", defect.code, this.session.shown.has(defect.code));
