@@ -256,12 +256,15 @@ export async function listOfJobs(browser) {
   });
 }
 
-// A cube of 20 mm, and a triangle at `places`.
-function cubeAnd(...places) {
-  const corners = Array.from({ length: 8 }, (_, at) => [at & 1, (at >> 1) & 1, at >> 2].map((side) => side * 20).join(" "));
-  const sides = "0 2 3|0 3 1|4 5 7|4 7 6|0 1 5|0 5 4|1 3 7|1 7 5|3 2 6|3 6 7|2 0 4|2 4 6".split("|");
-  return `OFF\n11 13 0\n${[...corners, ...places].join("\n")}\n${[...sides, "8 9 10"].map((face) => `3 ${face}`).join("\n")}\n`;
+const SIDES = "0 2 3|0 3 1|4 5 7|4 7 6|0 1 5|0 5 4|1 3 7|1 7 5|3 2 6|3 6 7|2 0 4|2 4 6".split("|");
+
+function cube(side, faces = SIDES, places = []) {
+  const corners = Array.from({ length: 8 }, (_, at) => [at & 1, (at >> 1) & 1, at >> 2].map((far) => far * side).join(" "));
+  return `OFF\n${8 + places.length} ${faces.length} 0\n${[...corners, ...places].join("\n")}\n${faces.map((face) => `3 ${face}`).join("\n")}\n`;
 }
+
+// One of 20 mm, and a triangle at `places`.
+const cubeAnd = (...places) => cube(20, [...SIDES, "8 9 10"], places);
 
 // The part is in sight beside a triangle that lies far away, before and after the repair.
 export async function partInSight(browser) {
@@ -282,6 +285,24 @@ export async function partInSight(browser) {
     await open(page, "sound.off", SAMPLES.sound());
     await page.waitForFunction(() => document.querySelector("#triangles").textContent === "384");
     assert.equal(await page.isVisible("#far"), false);
+  });
+}
+
+// A part of less than a millionth of a millimetre is seen as a large one is: its rim, the place of a hole, and the bed.
+export async function tinyPart(browser) {
+  await withPage(browser, {}, async (page) => {
+    await open(page, "tiny.off", cube(2e-7, SIDES.slice(0, -1)));
+    await opened(page);
+    const before = await picture(page);
+    await page.click(".finding-title[data-code=boundary-loop]");
+    await page.waitForSelector("#ring:not([hidden])");
+    const { orange, red } = await picture(page);
+    assert.ok(orange > before.orange && orange > 0.002, `the rim is lit: ${orange}`);
+    assert.ok(red > 0.01, `and the hole faces the viewer: ${red}`);
+    await page.click("#fit");
+    const withBed = await picture(page);
+    await page.click("#grid");
+    assert.ok(Math.abs((await picture(page)).variance - withBed.variance) > 1, "the bed is there");
   });
 }
 
