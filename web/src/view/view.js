@@ -100,6 +100,10 @@ export class View {
       mesh?.removeFromParent();
     }
     Object.assign(side, { surface: null, coarse: [] });
+    if (name === "before") {
+      this.size = null;
+      this.layBed();
+    }
     this.invalidate();
   }
 
