@@ -269,7 +269,7 @@ const cubeAnd = (...places) => cube(20, [...SIDES, "8 9 10"], places);
 // The part is in sight beside a triangle that lies far away, before and after the repair.
 export async function partInSight(browser) {
   await withPage(browser, {}, async (page) => {
-    await open(page, "far.off", cubeAnd("1e6 1e6 1e6", "1000001 1e6 1e6", "1e6 1000001 1e6"));
+    await open(page, "far.off", cubeAnd("5000 5000 5000", "5001 5000 5000", "5000 5001 5000"));
     await opened(page);
     await page.click("#grid");
     assert.ok((await picture(page)).variance > 500, "the cube is seen");
