@@ -84,10 +84,12 @@ export async function solids(browser) {
     await repaired(page);
     assert.match(await page.textContent("#verdict h2"), /Certified/);
 
+    await open("project.3mf", SAMPLES.project());
+    await page.waitForSelector("#panel[data-operation=plan] #parts .part");
     request = asked();
     await page.selectOption("#solid", "together");
     assert.equal(await parts(request), "together", "it is looked at anew");
-    await page.waitForSelector("#panel[data-operation=plan]");
+    await page.waitForSelector("#parts .part", { state: "detached" });
     await page.click(".finding-title[data-code=boundary-loop]");
     await page.waitForSelector("#ring:not([hidden])");
     assert.ok(await page.isVisible("[data-role=method]"), "and has a plan, hole by hole");
@@ -126,6 +128,22 @@ export async function colors(browser) {
     await opened(page);
     assert.equal(await page.inputValue("#colors"), "plain");
     assert.ok(await page.locator("#colors option[value=file]").evaluate((option) => option.disabled), "a file without colours");
+  });
+}
+
+// What a glTF puts at its place by a matrix is kept where it stays, although the result is rounded in metres.
+export async function keptOfAGlb(browser) {
+  const document = JSON.parse((await converted("gltf", SAMPLES.scan())).toString());
+  document.nodes[0].matrix = [0.013, 0, 0, 0, 0, 0.013, 0, 0, 0, 0, 0.013, 0, 0, 0, 0, 1];
+  await withPage(browser, {}, async (page) => {
+    await drop(page, "body", "scan.gltf", JSON.stringify(document));
+    await page.waitForSelector("#view[data-drawn=before]");
+    await opened(page);
+    await page.click("#repair");
+    await repaired(page);
+    await page.waitForSelector("#legend .new");
+    const [kept, fresh] = (await page.textContent("#legend")).replaceAll(",", "").match(/\d+/g).map(Number);
+    assert.ok(kept > 10_000 && fresh < 500, `${kept} kept, ${fresh} new`);
   });
 }
 

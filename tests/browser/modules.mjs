@@ -6,7 +6,7 @@ import { deflateRawSync } from "node:zlib";
 import { Grid, squareTo } from "../../web/src/mesh/grid.js";
 import { coarse } from "../../web/src/mesh/cluster.js";
 import { brokenEdges } from "../../web/src/mesh/edges.js";
-import { boundsOf, faceNormals, positionsOf } from "../../web/src/mesh/soup.js";
+import { boundsOf, bulkOf, faceNormals, positionsOf } from "../../web/src/mesh/soup.js";
 import { kept, weld } from "../../web/src/mesh/weld.js";
 import { paintOf } from "../../web/src/read/properties.js";
 import { read } from "../../web/src/read/read.js";
@@ -85,6 +85,11 @@ export async function projects() {
     assert.ok(found.some((points) => points.join(";") === wanted.join(";")), `face ${face} of the whole`);
   }
   assert.equal(picture.place([1, 2, 3], 1, 0).join(), "1,2,3", "as one mesh, places are those of the build");
+
+  // Without parts that are not printed, such as negative ones, faces have other numbers: none is lit rather than a wrong one.
+  picture.project.setParts([], mesh.faceCount - 12);
+  assert.deepEqual(picture.trianglesOf(3), []);
+  assert.equal(picture.place([1, 2, 3], 1, 3).join(), "1,2,3");
 }
 
 // Archives that are broken are left to the service; deflated ones, components, another unit and prefixes are read.
@@ -110,6 +115,44 @@ export async function packages() {
   for (const broken of [zip, plain.subarray(0, plain.length - 30), stored([["3D/3dmodel.model", loop]]), stored([["a.txt", ""]])]) {
     await assert.rejects(read(broken, "a.3mf"), /not-drawn-here/);
   }
+}
+
+// Faces with notches are divided where the service divides them: nothing is new in a picture of what stayed as it was.
+export async function polygons() {
+  const shapes = [
+    [[0, 0], [20, 0], [20, 5], [5, 5], [5, 20], [0, 20]],
+    [[0, 0], [4, 0], [8, 0], [8, 8], [4, 8], [4, 4], [0, 8]],
+    [[0, 0], [3, 1], [6, 0], [5, 3], [6, 6], [3, 5], [0, 6], [1, 3]],
+    [[0, 0], [9, 0], [9, 9], [0, 9], [0, 6], [6, 6], [6, 3], [0, 3]],
+  ];
+  for (let round = 0; round < 40; round += 1) {
+    const count = 5 + Math.floor(random() * 20);
+    shapes.push(Array.from({ length: count }, (_, at) => [Math.cos, Math.sin].map((of) => Math.round(of((at * 2 * Math.PI) / count) * (200 + random() * 800)))));
+  }
+  const spaces = [([x, y]) => [x, y, 0], ([x, y]) => [y, x, 0], ([x, y]) => [7, x, y], ([x, y]) => [x, x + y, y]];
+  for (const [at, shape] of shapes.entries()) {
+    const points = shape.map(spaces[at % 4]);
+    const text = `OFF\n${points.length} 1 0\n${points.map((point) => point.join(" ")).join("\n")}\n${points.length} ${points.map((_, i) => i).join(" ")}\n`;
+    const answer = await fetch(`${url}/v1/convert?output_format=stl`, { method: "POST", headers: { "Content-Type": "application/octet-stream" }, body: text });
+    const wanted = weld(await read(new Uint8Array(await answer.arrayBuffer()), "face.stl"));
+    const own = weld(await read(Buffer.from(text), "face.off"));
+    assert.equal(own.faceOf.length, points.length - 2);
+    assert.ok(kept(own, wanted).every((flag) => flag === 1), text);
+  }
+}
+
+// What lies far away from a part is not what is looked at; bodies that are apart are.
+export async function partsFarAway() {
+  const cube = (x) => Array.from({ length: 8 }, (_, at) => [x + (at & 1), (at >> 1) & 1, at >> 2]).flat();
+  const sides = [0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 1, 3, 7, 1, 7, 5, 3, 2, 6, 3, 6, 7, 2, 0, 4, 2, 4, 6];
+  const seen = (vertices, corners) => {
+    const { far, bounds } = bulkOf({ vertices, corners: Uint32Array.from(corners) }, boundsOf({ vertices, corners }));
+    return [far, bounds.min[0], bounds.max[0]];
+  };
+  assert.deepEqual(seen([...cube(0), 1e6, 1e6, 1e6, 1e6 + 1, 1e6, 1e6, 1e6, 1e6 + 1, 1e6], [...sides, 8, 9, 10]), [1, 0, 1]);
+  assert.deepEqual(seen([...cube(0), ...cube(1000)], [...sides, ...sides.map((at) => at + 8)]), [0, 0, 1001]);
+  assert.deepEqual(seen([...cube(0), 5, 0, 0, 6, 0, 0, 5, 1, 0], [...sides, 8, 9, 10]), [0, 0, 6], "near enough");
+  assert.deepEqual(seen([...cube(0), 1e6, 0, 0], [...sides, 0, 1, 8]), [0, 0, 1e6], "what hangs together");
 }
 
 // The colours of corners, as each format states them.

@@ -75,6 +75,11 @@ export async function phone(browser) {
     await repaired(page);
     assert.ok((await picture(page)).variance > 200);
     await shot(page, "phone-result");
+    await page.setInputFiles("#file", { name: "letter.obj", mimeType: "", buffer: Buffer.from("Dear customer,\n") });
+    await page.waitForSelector(".notice");
+    const [notice, zone] = await Promise.all([".notice", "#start .drop"].map((selector) => page.locator(selector).boundingBox()));
+    assert.ok(notice.y > 0 && notice.y + notice.height < zone.y && zone.y < 780, "below what is wrong the next file can be chosen");
+    await shot(page, "phone-error");
   });
 }
 

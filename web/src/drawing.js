@@ -3,7 +3,7 @@
 import { at } from "./dom.js";
 import { Picture, aim } from "./places.js";
 import { NO_PARTS } from "./project.js";
-import { number, t } from "./text/text.js";
+import { counted, number, t } from "./text/text.js";
 import { ofDefect } from "./view/colors.js";
 import { COPIES } from "./view/view.js";
 
@@ -32,7 +32,8 @@ export class Drawing {
     at("view").dataset.drawn = Object.keys(of.pictures).join(" ");
     if (side === "before") this.sized(picture);
     this.tools?.colorsCame(side);
-    picture.project?.setParts(of.report?.parts ?? []);
+    this.tellFar();
+    picture.project?.setParts(of.report?.parts ?? [], of.report?.before.counts.faces);
     if (of.report && side === "before") this.overlays();
     const more = await this.meshes.ask("look", { name: side, sizes: COPIES });
     if (of !== this.session) return null;
@@ -49,6 +50,13 @@ export class Drawing {
     if (!this.view?.easing) return;
     const copy = this.view.easedCopy("before");
     at("coarse").textContent = copy ? t("view.coarse", { n: number(copy.geometry.index.count / 3), m: number(this.session.pictures.before.faceOf.length) }) : t("view.rough");
+  }
+
+  // Says so when something lies so far away that the part would not be seen beside it.
+  tellFar() {
+    const far = this.session?.pictures.before?.bulk.far ?? 0;
+    at("far").hidden = !far;
+    at("far").textContent = counted("view.far", far);
   }
 
   // The file as the service has it: for jobs that are opened again, and for formats that are not read here.
@@ -108,7 +116,7 @@ export class Drawing {
   overlays() {
     const picture = this.session.pictures.before;
     if (!picture || !this.session.report) return;
-    picture.project?.setParts(this.session.report.parts ?? []);
+    picture.project?.setParts(this.session.report.parts ?? [], this.session.report.before.counts.faces);
     for (const defect of this.session.report.before.defects) {
       this.view?.setMarks("before", defect.code, picture.overlayOf(defect, this.session.reportUnit), ofDefect(defect.code), 0.5);
       this.view?.showMarks("before", defect.code, this.session.shown.has(defect.code));

@@ -54,8 +54,8 @@ function canLookAgain({ code }) {
   return session && !session.report && (session.file || session.inputJob) && !/^(mesh|archive|body|unsupported|unauth)/.test(code);
 }
 
-function begin(name, file) {
-  session = new Session(name, file);
+function begin(name, file, isNamed) {
+  session = new Session(name, file, isNamed);
   holdFocus();
   document.body.dataset.state = "open";
   at("units").options[0].textContent = "–";
@@ -148,6 +148,7 @@ async function look(picture) {
 async function drawnSomehow(picture) {
   const of = session;
   const drawn = await picture;
+  if (of === session && drawn?.error?.code === "too-vast") return complain(drawn.error);
   if (drawn?.error && of === session) await drawing.drawFromService();
 }
 
@@ -180,9 +181,9 @@ async function follow(job) {
 
 // --- the panel -------------------------------------------------------------------------------------------------
 
-function factsOf({ bounds, faceCount }) {
+function factsOf({ bounds, faceCount, faceOf }) {
   session.size = bounds.max.map((high, axis) => high - bounds.min[axis]);
-  session.faceCount = faceCount;
+  session.triangleCount = Math.max(faceCount, faceOf?.length ?? 0); // faces of more corners are several triangles
   sizeText(session);
   at("facts").hidden = false;
   shareText();
@@ -227,7 +228,7 @@ function panel() {
   tellEarlier();
   if (!session.pictures.before && report.before.measures.bounds) {
     const { min, max } = report.before.measures.bounds;
-    factsOf({ bounds: { min: min.map((v) => v * session.reportUnit), max: max.map((v) => v * session.reportUnit) }, faceCount: report.before.counts.faces });
+    factsOf({ bounds: { min: min.map((v) => v * session.reportUnit), max: max.map((v) => v * session.reportUnit) }, faceCount: report.before.counts.triangles });
   }
   if (session.size) sizeText(session);
   at("panel").dataset.operation = report.operation;
@@ -318,8 +319,9 @@ const host = {
   }),
 
   downloadLevel: (level) => guarded(async () => {
-    const { name, blob } = await api.file(levelOf(session.job, level));
-    save(blob, name);
+    const of = session;
+    const { name, blob } = await api.file(levelOf(of.job, level));
+    save(blob, of.named(name));
   }),
 
   // Another format is another file, so it is made and certified anew.
@@ -336,14 +338,15 @@ const host = {
       drawing.overlays();
     }
     const { name, blob } = await api.file(job.links.result);
-    save(blob, name);
+    save(blob, of.named(name));
   }),
 
   openReport: () => guarded(async () => {
     // A tab of its own cannot bring the key, so then it is a download.
     if (!api.key) return void window.open(session.job.links.report, "_blank", "noopener");
-    const { blob } = await api.file(session.job.links.report, "text/html");
-    return save(blob, `${session.stem}.report.html`);
+    const { downloadStem, job } = session;
+    const { blob } = await api.file(job.links.report, "text/html");
+    return save(blob, `${downloadStem}.report.html`);
   }),
 
   curl: () => curlOf(session),
@@ -399,7 +402,7 @@ async function showRepair(job) {
 
 function shareText() {
   const share = Number(at("share").value) / 100;
-  at("share-text").textContent = share === 1 ? t("simplify.all") : t("simplify.share", { p: percent(share), n: number((session?.faceCount ?? 0) * share) });
+  at("share-text").textContent = share === 1 ? t("simplify.all") : t("simplify.share", { p: percent(share), n: number((session?.triangleCount ?? 0) * share) });
   at("share").setAttribute("aria-valuetext", at("share-text").textContent);
 }
 
@@ -411,7 +414,9 @@ async function chooseUnitOrProcess() {
 }
 
 function tellEarlier() {
-  const isEarlier = session.isRepaired && (session.unit !== at("units").value || session.policy !== at("policy").value);
+  const { isRepaired, unit, policy, asked } = session;
+  const isOther = (id, made) => at(id).value !== made;
+  const isEarlier = isRepaired && (isOther("units", unit) || isOther("policy", policy) || isOther("solid", asked?.parts ?? "separate"));
   at("earlier").textContent = isEarlier ? t("earlier") : "";
 }
 
@@ -429,13 +434,15 @@ async function lookAgain() {
   await look(isDrawn ? null : redraw());
 }
 
-// What of several parts is one solid. Together they have other findings than one by one.
+// What of several parts is one solid. Together they have other findings than one by one; those of a result stay with it.
 async function chooseSolid() {
-  const isSeenAnew = [session.solid, at("solid").value].includes("together");
+  const isOfOthers = [session.solid, at("solid").value].includes("together");
   session.solid = at("solid").value;
   host.changed();
-  if (!isSeenAnew) return;
+  tellEarlier();
+  if (!isOfOthers) return;
   session.choices = new Choices();
+  if (session.isRepaired || at("repair").disabled) return host.refresh();
   session.place = null;
   drawing.light(null);
   await lookAgain();
@@ -451,7 +458,7 @@ async function redraw() {
 // Opens a job again, at whatever it has come to.
 async function openJob(id) {
   const known = jobs.known(id);
-  begin(known?.name ?? id.slice(0, 8));
+  begin(known?.name ?? id.slice(0, 8), null, Boolean(known));
   const of = session;
   jobs.name(id);
   await guarded(async () => {
@@ -526,7 +533,7 @@ function restoreTheme() {
 
 // On a phone there is no room in the picture.
 const phone = matchMedia("(max-width: 760px)");
-const placeNotes = () => at(phone.matches ? "facts" : "corner").append(at("textured"), at("coarse"));
+const placeNotes = () => at(phone.matches ? "facts" : "corner").append(at("textured"), at("far"), at("coarse"));
 
 function texts() {
   document.documentElement.lang = current();
@@ -534,6 +541,7 @@ function texts() {
   shareText();
   if (session?.report) panel();
   drawing.tellEased();
+  drawing.tellFar();
   tools?.color(at("colors").value);
 }
 

@@ -9,10 +9,13 @@ export class Project {
     this.objects = objects;
     this.order = order;
     this.parts = [];
+    this.count = order.reduce((sum, at) => sum + objects[at].count, 0);
+    this.isWhole = true; // not so where all parts together leave out those that are not printed
   }
 
-  // Takes the parts of a report. Volumes are ranges of the faces of one object, one after the other.
-  setParts(parts) {
+  // Takes the parts of a report about so many `faces`. Volumes are ranges of the faces of one object, one after the other.
+  setParts(parts, faces = this.count) {
+    this.isWhole = faces === this.count;
     this.parts = parts.map((part, at) => {
       const object = this.objects.find(({ path, id }) => path.toLowerCase() === part.path.toLowerCase() && id === part.object);
       const begin = parts.findIndex((other) => other.path === part.path && other.object === part.object);
@@ -31,6 +34,7 @@ export class Project {
       const part = this.partOf(named);
       return part?.object ? part.object.first + part.inObject + named - part.from : -1;
     }
+    if (!this.isWhole) return -1;
     let left = named;
     for (const at of this.order) {
       const { first, count } = this.objects[at];

@@ -3,11 +3,13 @@
 import { Choices } from "./choices.js";
 
 const MILLIMETRES = { um: 0.001, mm: 1, cm: 10, m: 1000, in: 25.4, ft: 304.8 };
+const UNNAMABLE = /[\u0000-\u001f\u007f\\/:*?"<>|]/g;
 export const millimetres = (unit) => MILLIMETRES[unit] ?? 1;
 
 export class Session {
-  constructor(name, file = null) {
+  constructor(name, file = null, isNamed = true) {
     this.name = name;
+    this.isNamed = isNamed; // not so of a job of another browser
     this.file = file; // null: the service has it, see `inputJob`
     this.inputJob = null; // a job whose upload is this file
     this.job = null; // the one that the page is about
@@ -33,6 +35,17 @@ export class Session {
     return this.name.replace(/\.[^.]*$/, "") || "mesh";
   }
 
+  // The name of a download: the service has `_` where the file's name has marks; those that names have on all systems come back.
+  named(told) {
+    const [own, letters] = [[...this.stem.replaceAll('"', "%22")], [...told]]; // as forms have that mark
+    if (!this.isNamed || !own.every((letter, at) => [letter, "_"].includes(letters[at]))) return told;
+    return this.downloadStem + letters.slice(own.length).join("");
+  }
+
+  get downloadStem() {
+    return this.stem.replace(UNNAMABLE, "_");
+  }
+
   // Millimetres of a unit of the file, and of the lengths and places of its report.
   get fileUnit() {
     return millimetres(this.unit || this.report?.input.units.unit || "mm");
@@ -40,6 +53,11 @@ export class Session {
 
   get reportUnit() {
     return millimetres(this.report.output_units);
+  }
+
+  // What can be chosen of each finding: of several parts one by one there is none. One of all together does not fit them.
+  get plan() {
+    return this.partCount < 2 || this.solid === "together" ? this.report?.plan : null;
   }
 
   get isRepaired() {
@@ -68,7 +86,7 @@ export class Session {
 
   // What a repair is asked for, perhaps with another unit and process than what is shown.
   repairOptions(chosen = this) {
-    return { ...this.options(chosen), ...(this.solid === "union" ? { parts: "union" } : {}), ...this.choices.options(this.report?.plan) };
+    return { ...this.options(chosen), ...(this.solid === "union" ? { parts: "union" } : {}), ...this.choices.options(this.plan) };
   }
 }
 

@@ -13,6 +13,38 @@ export function brokenEdges({ corners }) {
   return Object.fromEntries(Object.entries(found).map(([name, halves]) => [name, Uint32Array.from(halves)]));
 }
 
+// For each triangle a number of its piece, in which triangles hang together by edges that just two of them have.
+export function piecesOf({ corners }) {
+  const partner = new Int32Array(corners.length).fill(-1);
+  for (const { half, other, total } of edges(corners)) {
+    if (total !== 2) continue;
+    partner[half] = other;
+    partner[other] = half;
+  }
+  const pieces = new Int32Array(corners.length / 3).fill(-1);
+  const isOpen = [];
+  for (let first = 0; first < pieces.length; first += 1) {
+    if (pieces[first] >= 0) continue;
+    const number = isOpen.push(false) - 1;
+    const left = [first];
+    pieces[first] = number;
+    while (left.length) {
+      const triangle = left.pop();
+      for (let half = triangle * 3; half < triangle * 3 + 3; half += 1) {
+        if (partner[half] < 0) {
+          isOpen[number] = true;
+          continue;
+        }
+        const beside = (partner[half] / 3) | 0;
+        if (pieces[beside] >= 0) continue;
+        pieces[beside] = number;
+        left.push(beside);
+      }
+    }
+  }
+  return { pieces, isOpen };
+}
+
 export const next = (half) => (half % 3 === 2 ? half - 2 : half + 1);
 
 // Ends of half-edges as six numbers each.
@@ -25,10 +57,11 @@ export function segmentsOf(halves, positions) {
   return segments;
 }
 
-// Every edge once, with a half-edge of it and how many run from its smaller vertex to its larger one.
+// Every edge once, with the first half-edge and the last one of it, and how many run from its smaller vertex to its larger one.
 function* edges(corners) {
   const size = 2 ** Math.ceil(Math.log2(Math.max(16, corners.length * 2)));
   const first = new Uint32Array(size).fill(EMPTY);
+  const last = new Uint32Array(size);
   const total = new Uint16Array(size);
   const forward = new Uint16Array(size);
   for (let half = 0; half < corners.length; half += 1) {
@@ -40,11 +73,12 @@ function* edges(corners) {
     slot = (slot ^ (slot >>> 15)) & (size - 1);
     while (first[slot] !== EMPTY && !joins(corners, first[slot], low, high)) slot = (slot + 1) & (size - 1);
     if (first[slot] === EMPTY) first[slot] = half;
+    last[slot] = half;
     total[slot] += 1;
     if (a < b) forward[slot] += 1;
   }
   for (let slot = 0; slot < size; slot += 1) {
-    if (first[slot] !== EMPTY) yield { half: first[slot], total: total[slot], forward: forward[slot] };
+    if (first[slot] !== EMPTY) yield { half: first[slot], other: last[slot], total: total[slot], forward: forward[slot] };
   }
 }
 

@@ -89,10 +89,10 @@ export class Grid {
     }
   }
 
-  // Length of the ray to the first triangle that it passes through beyond `least`; null where it meets none.
+  // Length of the ray, beyond `least`, to the first triangle, where it passes through its back; null where it meets none, or its front.
   ray(from, direction, least) {
     this.search += 1;
-    let best = Infinity;
+    let [best, front] = [Infinity, Infinity];
     const cell = from.map((value, axis) => this.at(value, axis));
     const step = direction.map(Math.sign);
     const along = direction.map((d, axis) => {
@@ -104,13 +104,16 @@ export class Grid {
       const axis = along.indexOf(Math.min(...along));
       this.visit(...cell, (triangle) => {
         const length = hit(from, direction, this.positions, triangle * 9);
-        if (length > least && length < best) best = length;
+        if (!(length > least && length < Infinity)) return;
+        if (isBack(direction, this.positions, triangle * 9)) best = Math.min(best, length);
+        else front = Math.min(front, length);
       });
-      if (best <= along[axis] || along[axis] === Infinity) break;
+      if (Math.min(best, front) + least <= along[axis] || along[axis] === Infinity) break;
       cell[axis] += step[axis];
       along[axis] += each[axis];
     }
-    return best < Infinity ? best : null;
+    // Bodies that touch have a front and a back at one place.
+    return best < Infinity && best <= front + least ? best : null;
   }
 }
 
@@ -143,6 +146,11 @@ export function squareTo(x, y, z, p, at) {
   if (!isOver) return best;
   const height = (x - p[at]) * nx + (y - p[at + 1]) * ny + (z - p[at + 2]) * nz;
   return (height * height) / area;
+}
+
+function isBack(direction, positions, at) {
+  const a = corner(positions, at);
+  return dot(direction, cross(minus(corner(positions, at + 3), a), minus(corner(positions, at + 6), a))) > 0;
 }
 
 // Lengths of the direction until a ray passes through a triangle (Möller and Trumbore 1997).

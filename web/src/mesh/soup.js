@@ -15,6 +15,57 @@ export function boundsOf({ vertices, corners }) {
   return { min, max };
 }
 
+const BINS = 1024; // along an axis, to find gaps
+const FEW = 0.15; // of the triangles may be far away
+const FAR = 10; // times the size of the part
+
+// Bounds of the part without the few triangles that lie far away from it, and how many these are.
+export function bulkOf({ vertices, corners }, bounds) {
+  const isFar = new Uint8Array(corners.length / 3);
+  const first = new Uint16Array(isFar.length);
+  let far = 0;
+  for (let axis = 0; axis < 3; axis += 1) {
+    const low = bounds.min[axis];
+    const scale = (BINS - 1) / (bounds.max[axis] - low);
+    if (!(scale < Infinity)) continue;
+    const [begins, ends] = [new Uint32Array(BINS), new Uint32Array(BINS)];
+    for (let at = 0; at < isFar.length; at += 1) {
+      const a = vertices[corners[at * 3] * 3 + axis];
+      const b = vertices[corners[at * 3 + 1] * 3 + axis];
+      const c = vertices[corners[at * 3 + 2] * 3 + axis];
+      first[at] = ((a < b ? (a < c ? a : c) : b < c ? b : c) - low) * scale;
+      begins[first[at]] += 1;
+      ends[Math.floor(((a > b ? (a > c ? a : c) : b > c ? b : c) - low) * scale)] += 1;
+    }
+    const { from, to, count } = crowd(begins, ends);
+    if (count === isFar.length || count < isFar.length * (1 - FEW) || (to - from + 1) * FAR > BINS) continue;
+    for (let at = 0; at < isFar.length; at += 1) {
+      if (isFar[at] || (first[at] >= from && first[at] <= to)) continue;
+      isFar[at] = 1;
+      far += 1;
+    }
+  }
+  return { far, bounds: far ? boundsOf({ vertices, corners: corners.filter((_, at) => !isFar[(at / 3) | 0]) }) : bounds };
+}
+
+// The bins from one gap to the next in which most triangles begin.
+function crowd(begins, ends) {
+  let most = { count: 0 };
+  let now = null;
+  let open = 0;
+  begins.forEach((count, at) => {
+    if (open === 0 && count > 0) now = { from: at, count: 0 };
+    open += count;
+    if (now) now.count += count;
+    open -= ends[at];
+    if (open > 0 || !now) return;
+    now.to = at;
+    if (now.count > most.count) most = now;
+    now = null;
+  });
+  return most;
+}
+
 export function positionsOf({ vertices, corners }, origin) {
   const positions = new Float32Array(corners.length * 3);
   for (let i = 0; i < corners.length; i += 1) {

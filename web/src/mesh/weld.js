@@ -45,9 +45,9 @@ export function weld(mesh) {
   return { ...mesh, corners: mesh.corners.map((corner) => first[corner]) };
 }
 
-// Which triangles of `mesh` are triangles of `other`, with 32-bit coordinates and in any direction: 1 where they are.
-export function kept(mesh, other) {
-  const [own, others] = [Float32Array.from(mesh.vertices), Float32Array.from(other.vertices)];
+// Which triangles of `mesh` are triangles of `other`, with 32-bit coordinates in `unit` and in any direction: 1 where they are.
+export function kept(mesh, other, unit = 1) {
+  const [own, others] = [mesh, other].map(({ vertices }) => Float32Array.from(vertices, (value) => value / unit));
   const ids = new Positions(other.vertices.length / 3);
   const ofOther = numbered(other.vertices.length / 3, (at) => {
     const slot = slotOf(ids, others, at, others);

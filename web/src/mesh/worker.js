@@ -7,26 +7,30 @@ import { COARSE_ABOVE, coarse } from "./cluster.js";
 import { brokenEdges, next, segmentsOf } from "./edges.js";
 import { Grid } from "./grid.js";
 import { deviation, thickness } from "./maps.js";
-import { boundsOf, cornerNormals, faceNormals, positionsOf } from "./soup.js";
+import { boundsOf, bulkOf, cornerNormals, faceNormals, positionsOf } from "./soup.js";
 import { kept, weld } from "./weld.js";
 
 const meshes = new Map(); // by the names that the page gives them
 let origin = null; // the middle of the mesh that came first: both are drawn around it
+const VAST = 1e18; // millimetres, of which a square is beyond 32-bit numbers
 
 const work = {
   // What is needed for a first picture. `scale`: millimetres of a unit of the file, where it does not state its own.
   async read({ name, bytes, fileName, scale, isFirst }) {
     const file = await read(new Uint8Array(bytes), fileName);
-    const mesh = weld(scaled(file, file.millimetres ?? scale));
+    const unit = file.millimetres ?? scale;
+    const mesh = weld(scaled(file, unit));
     const bounds = boundsOf(mesh);
     if (!bounds.min.every(Number.isFinite)) throw new FileProblem("no-triangle");
-    if (isFirst || !origin) origin = bounds.min.map((low, axis) => (low + bounds.max[axis]) / 2);
+    if (!(Math.hypot(...bounds.min, ...bounds.max) < VAST)) throw new FileProblem("too-vast");
+    const bulk = bulkOf(mesh, bounds);
+    if (isFirst || !origin) origin = bulk.bounds.min.map((low, axis) => (low + bulk.bounds.max[axis]) / 2);
     const positions = positionsOf(mesh, origin);
     const flat = faceNormals(positions);
     const normals = cornerNormals(mesh, flat, mesh.vertices.length / 3);
-    meshes.set(name, { ...mesh, positions, flat, bounds });
+    meshes.set(name, { ...mesh, positions, flat, bounds, unit });
     const { format, faceOf, faceCount, project, colors, isTextured } = mesh;
-    return { format, faceOf: faceOf.slice(), faceCount, bounds, origin, positions: positions.slice(), normals, project, colors: colors && colors.slice(), isTextured };
+    return { format, faceOf: faceOf.slice(), faceCount, bounds, bulk, origin, positions: positions.slice(), normals, project, colors: colors && colors.slice(), isTextured };
   },
 
   // What else there is to see of a mesh, and coarse copies of a large one, of about so many triangles.
@@ -46,8 +50,9 @@ const work = {
   // Which triangles of each mesh the other one has as well.
   compare() {
     const [before, after] = [meshes.get("before"), meshes.get("after")];
-    before.kept = kept(before, after);
-    after.kept = kept(after, before);
+    // A result is rounded in its own unit.
+    before.kept = kept(before, after, after.unit);
+    after.kept = kept(after, before, after.unit);
     return { before: before.kept.slice(), after: after.kept.slice() };
   },
 

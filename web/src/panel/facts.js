@@ -5,12 +5,12 @@ import { millimetres } from "../session.js";
 import { digits, number, t } from "../text/text.js";
 
 // In millimetres, and in the unit of the file once that is known.
-export function sizeText({ size, faceCount, fileUnit, unit, report }) {
+export function sizeText({ size, triangleCount, fileUnit, unit, report }) {
   const told = (scale, name) => `${size.map((value) => digits(value / scale)).join(" × ")} ${name}`;
   const own = fileUnit === 1 ? "" : ` (${told(fileUnit, unit || report.input.units.unit)})`;
   at("size").textContent = told(1, "mm") + own;
   at("dimensions").textContent = at("size").textContent;
-  at("triangles").textContent = number(faceCount);
+  at("triangles").textContent = number(triangleCount);
 }
 
 // Which size is meant, where it could be several.

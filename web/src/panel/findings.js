@@ -52,7 +52,7 @@ export function openFinding(list, session, host, code, at) {
 
 function fill(body, session, host, code, at) {
   const defect = session.defect(code);
-  const proposal = session.report.plan?.findings.find((finding) => finding.code === code);
+  const proposal = session.plan?.findings.find((finding) => finding.code === code);
   const isEdited = body.contains(document.activeElement);
   const focused = isEdited ? document.activeElement.dataset.role : null;
   body.replaceChildren(...[

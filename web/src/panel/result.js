@@ -77,12 +77,12 @@ export function resultSection(session, host) {
       el("button", { type: "button", className: "primary", id: "download", onclick: () => host.download(session.format ?? original) }, t("download"))),
     el("div", { className: "row links" },
       el("button", { type: "button", className: "quiet", onclick: () => host.openReport() }, t("report")),
-      el("button", { type: "button", className: "quiet", onclick: () => saveJson(report, `${session.stem}.report.json`) }, t("report.json")),
+      el("button", { type: "button", className: "quiet", onclick: () => saveJson(report, `${session.downloadStem}.report.json`) }, t("report.json")),
       copyButton(t("copy.curl"), () => host.curl())),
     steps.length > 0 && el("details", {}, el("summary", {}, t("changed.steps")), el("ul", { className: "steps" }, steps)),
     el("h3", {}, of("certificate")),
     el("p", { className: "hash" }, el("span", {}, of("hash")), el("code", { id: "hash" }, certificate.sha256), el("span", { className: "ends" }, copyButton(t("copy"), () => certificate.sha256),
-      el("button", { type: "button", className: "quiet", id: "certificate", onclick: () => saveJson(certificate, `${session.stem}.certificate.json`) }, t("certificate.save")))),
+      el("button", { type: "button", className: "quiet", id: "certificate", onclick: () => saveJson(certificate, `${session.downloadStem}.certificate.json`) }, t("certificate.save")))),
     verifier([certificate, ...report.levels.map((level) => level.certificate)].map(({ sha256 }) => sha256), of, host));
 }
 

@@ -1,5 +1,7 @@
 // Text out of bytes, without a string of the whole file: a large text file is walked, not split.
 
+import { divide } from "./polygons.js";
+
 export class FileProblem extends Error {}
 
 const SPACE = 32;
@@ -56,7 +58,7 @@ export class Numbers {
   }
 }
 
-// Gathers polygons as triangles: fans, each with the number of its polygon in the file.
+// Gathers polygons as triangles, each with the number of its polygon in the file.
 export class Faces {
   constructor(vertexCount) {
     this.vertexCount = vertexCount;
@@ -79,6 +81,8 @@ export class Faces {
   }
 
   mesh(vertices) {
-    return { vertices, corners: this.corners.done(), faceOf: this.faceOf.done(), faceCount: this.count };
+    const mesh = { vertices, corners: this.corners.done(), faceOf: this.faceOf.done(), faceCount: this.count };
+    divide(mesh);
+    return mesh;
   }
 }

@@ -42,7 +42,8 @@ export const counted = (key, count, values = {}) => t(count === 1 && knows(`${ke
 export const number = (value, options = {}) => new Intl.NumberFormat(language, { maximumFractionDigits: 0, ...options }).format(value);
 export const percent = (share) => number(share, { style: "percent", maximumSignificantDigits: 3 });
 // Four digits, as many as a part is measured with.
-export const digits = (value, count = 4) => number(value, { maximumFractionDigits: 20, maximumSignificantDigits: count });
+export const digits = (value, count = 4) => number(value, { maximumFractionDigits: 20, maximumSignificantDigits: count, notation: isLong(Math.abs(value)) ? "scientific" : "standard" });
+const isLong = (size) => size >= 1e9 || (size > 0 && size < 1e-6);
 export const length = (millimetres) => (millimetres > 0 && millimetres < 1e-3 ? `< ${digits(1e-3)} mm` : `${digits(millimetres)} mm`);
 
 // Puts texts where the markup asks for them: `data-t` in the element, `data-t-label` as its label.

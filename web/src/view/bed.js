@@ -1,9 +1,9 @@
-// The bed under the part: squares of 1, 10 or 100 millimetres, as large as is needed.
+// The bed under the part: squares of a power of ten in millimetres, as large as is needed.
 
 import { BufferAttribute, BufferGeometry, LineBasicMaterial, LineSegments } from "three";
 
 export function stepFor(size) {
-  return 10 ** Math.max(-3, Math.floor(Math.log10(Math.max(size[0], size[1], 1e-3) * 0.9)));
+  return 10 ** Math.floor(Math.log10(Math.max(size[0], size[1], 1e-12) * 0.9));
 }
 
 export function bed(size, color) {

@@ -61,9 +61,11 @@ export class Camera {
 
   // Looks at `place` along `normal`, not too steeply from below or above, and not from farther than all is seen from.
   fly(place, normal, radius) {
-    const direction = normal.lengthSq() > 0.01 ? normal.clone().normalize() : this.direction();
+    const direction = normal.length() > Math.min(0.1, this.radius * 0.01) ? normal.clone().normalize() : this.direction();
     direction.add(this.direction().multiplyScalar(0.35)).normalize();
-    this.go(place, direction, this.distanceFor(Math.min(this.radius, Math.max(radius * 2.5, this.radius * 0.04))));
+    // What is small is seen with what is around it, as long as it is still seen.
+    const around = Math.min(this.radius * 0.04, radius > 0 ? radius * 100 : Infinity);
+    this.go(place, direction, this.distanceFor(Math.min(this.radius, Math.max(radius * 2.5, around))));
   }
 
   go(target, direction, distance, isFlown = true) {

@@ -24,7 +24,8 @@ void main() {
   vec4 a = clip(position);
   vec4 b = clip(to);
   place = mix(position, to, corner.x);
-  if (a.w < 0.001 || b.w < 0.001) { gl_Position = vec4(2.0, 2.0, 2.0, 1.0); return; }
+  float least = 0.01 * projectionMatrix[3][2] / (projectionMatrix[2][2] - 1.0); // of the way to what is near
+  if (a.w < least || b.w < least) { gl_Position = vec4(2.0, 2.0, 2.0, 1.0); return; }
   vec2 along = (b.xy / b.w - a.xy / a.w) * pixels;
   float size = length(along);
   vec2 unit = size > 0.0001 ? along / size : vec2(1.0, 0.0);

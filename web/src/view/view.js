@@ -39,7 +39,7 @@ export class View {
   }
 
   // A mesh for a side; the first one of a file says where the bed is and how far the camera.
-  setMesh(name, { positions, normals, colors, bounds }, isFirst) {
+  setMesh(name, { positions, normals, colors, bulk: { bounds } }, isFirst) {
     this.clear(name);
     const side = this.sides[name];
     if (side.isColored !== Boolean(colors)) Object.assign(side, { isColored: Boolean(colors), materials: surfaceMaterials(Boolean(colors)) });
@@ -100,6 +100,10 @@ export class View {
       mesh?.removeFromParent();
     }
     Object.assign(side, { surface: null, coarse: [] });
+    if (name === "before") {
+      this.size = null;
+      this.layBed();
+    }
     this.invalidate();
   }
 
