@@ -87,13 +87,37 @@ pub(super) fn result_name(row: &JobRow, encoding: Encoding, level: usize) -> Str
     format!("{}{mark}{number}.{}", stem(row), wire::extension_of(format))
 }
 
-/// The uploaded file's name without directories and extension, in harmless characters: letters of every script are.
+/// The uploaded file's name without directories and extension; marks that some system forbids in names, or that hide how a
+/// name reads, become `_`.
 fn stem(row: &JobRow) -> String {
     let name = row.file_name.as_deref().unwrap_or_default();
     let base = name.rsplit(['/', '\\']).next().unwrap_or_default();
     let stem = base.rsplit_once('.').map_or(base, |(stem, _)| stem);
-    let is_harmless = |c: char| c.is_alphanumeric() || matches!(c, '.' | '-' | '_');
-    let stem: String = stem.chars().take(100).map(|c| if is_harmless(c) { c } else { '_' }).collect();
-    let stem = stem.trim_start_matches('.');
-    if stem.is_empty() { format!("mesh-{}", row.id) } else { stem.to_owned() }
+    let stem = without_forbidden(stem);
+    if stem.is_empty() { format!("mesh-{}", row.id) } else { stem }
+}
+
+/// The first 100 letters of `stem` as a name that every system takes.
+fn without_forbidden(stem: &str) -> String {
+    let is_forbidden = |c: char| c.is_control() || "<>:\"/\\|?*".contains(c);
+    let is_unseen = |c: char| matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}');
+    let told = |c: char| if is_forbidden(c) || is_unseen(c) { '_' } else { c };
+    let stem: String = stem.chars().take(100).map(told).collect();
+    stem.trim_start_matches(['.', ' ']).trim_end_matches(['.', ' ']).to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_keep_all_marks_but_those_that_a_system_forbids_or_that_hide_how_they_read() {
+        assert_eq!(
+            without_forbidden("Kapsel & Deckel; 50 % 'neu' e\u{301}"),
+            "Kapsel & Deckel; 50 % 'neu' e\u{301}"
+        );
+        assert_eq!(without_forbidden("..a<b>:\"c|d?*\r\n\u{202e}lts "), "a_b___c_d_____lts");
+        assert_eq!(without_forbidden(" . "), "");
+        assert_eq!(without_forbidden(&"ä".repeat(300)).chars().count(), 100);
+    }
 }

@@ -68,7 +68,7 @@ pub struct Bounds {
 /// Sizes, in the unit of the file.
 #[derive(Debug, Clone, Serialize, ToSchema)]
 pub struct Measures {
-    /// Box of the positions that a triangle uses; null: no triangles.
+    /// Box of the positions that a triangle uses; null: no triangles, or several parts, each in coordinates of its own.
     #[schema(required)]
     pub bounds: Option<Bounds>,
     /// Sum of the triangles' areas.

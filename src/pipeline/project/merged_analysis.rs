@@ -2,7 +2,6 @@
 
 use super::PartReport;
 use crate::analysis::{Analysis, Element, Finding, HoleCounts, Watertight, Witness};
-use crate::geom::Aabb;
 use crate::pipeline::Report;
 
 /// The sum of what `of` gives for each part, with at most so many `samples` of each defect; `None` unless it gives something
@@ -46,10 +45,8 @@ fn add(sum: &mut Analysis, one: &Analysis, [faces, vertices]: [u64; 2], samples:
     counts.boundary_loops += more.boundary_loops;
     counts.boundary_edges += more.boundary_edges;
     let (measures, more) = (&mut sum.measures, &one.measures);
-    measures.bounds = match (measures.bounds, more.bounds) {
-        (Some(a), Some(b)) => Some(Aabb::union(a, b)),
-        (a, b) => a.or(b),
-    };
+    // Boxes in the coordinates of different parts say nothing of the size of all.
+    measures.bounds = None;
     measures.area += more.area;
     measures.volume = measures.volume.zip(more.volume).map(|(a, b)| a + b);
     measures.euler_characteristic += more.euler_characteristic;
