@@ -146,8 +146,7 @@ impl<C: Chords> Table<'_, C> {
         }
         // The triangle between them adds to each, so most need no look at it.
         let (caps, bent) = (caps_a + caps_b, bend_a.max(bend_b));
-        if caps >= best.0
-            && (caps > best.0 || bent > best.1 || (bent == best.1 && area_a + area_b >= best.2))
+        if caps >= best.0 && (caps > best.0 || bent > best.1 || (bent == best.1 && area_a + area_b >= best.2))
         {
             return IMPOSSIBLE;
         }
