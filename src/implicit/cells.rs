@@ -35,8 +35,13 @@ impl<'p> Cells<'p> {
     pub(super) fn near(&self, p: DVec3) -> impl Iterator<Item = u32> + '_ {
         let [x, y, z] = cell_of(p, self.size);
         let rows = (-1..=1).flat_map(move |dx| (-1..=1).map(move |dy| (x + dx, y + dy)));
+        let mut from = 0;
         rows.flat_map(move |(x, y)| {
-            let from = self.entries.partition_point(|(cell, _)| *cell < [x, y, z - 1]);
+            // Rows come in the order of the entries, and mostly the next entry is beyond several of them.
+            let start = [x, y, z - 1];
+            if self.entries.get(from).is_some_and(|(cell, _)| *cell < start) {
+                from += self.entries[from..].partition_point(|(cell, _)| *cell < start);
+            }
             self.entries[from..].iter().take_while(move |(cell, _)| *cell <= [x, y, z + 1]).map(|&(_, i)| i)
         })
         .take(NEAR_MAX)

@@ -52,16 +52,18 @@ impl<'b> Cholesky<'b> {
                 let i = j + at / TILE_AREA;
                 fill_tile(n, i, j, &fill, out);
                 for (k, facing) in facing.iter().enumerate() {
-                    subtract_product(out, tile(&columns[k], i - k), facing);
+                    subtract_product(out, tile(&columns[k], i - k), facing, rows_of(n, i), i == j);
                 }
             });
             budget.spend((tiles - j) as u64 * (j as u64 + 1))?;
             let (diagonal, below) = column.split_at_mut(TILE_AREA);
-            if let Err(row) = factor_tile(diagonal) {
+            if let Err(row) = factor_tile(diagonal, rows_of(n, j)) {
                 return Ok(Err(NotDefinite { row: j * TILE + row }));
             }
             let upper = transposed(diagonal);
-            par::for_each_chunk_mut(below, TILE_AREA, |_, out| solve_tile(out, &upper));
+            par::for_each_chunk_mut(below, TILE_AREA, |at, out| {
+                solve_tile(&mut out[..rows_of(n, j + 1 + at / TILE_AREA) * TILE], &upper);
+            });
             budget.check()?;
             columns.push(column);
         }
@@ -106,7 +108,18 @@ fn tile(column: &[f64], i: usize) -> &[f64] {
 }
 
 fn transposed(tile: &[f64]) -> Vec<f64> {
-    (0..TILE_AREA).map(|at| tile[at % TILE * TILE + at / TILE]).collect()
+    let mut out = vec![0.0; TILE_AREA];
+    for (r, line) in tile.chunks_exact(TILE).enumerate() {
+        for (c, &value) in line.iter().enumerate() {
+            out[c * TILE + r] = value;
+        }
+    }
+    out
+}
+
+/// Rows of the matrix in the tiles of row `i`; those past its end stay rows of the identity.
+fn rows_of(n: usize, i: usize) -> usize {
+    (n - i * TILE).min(TILE)
 }
 
 /// Tile (i, j) of the matrix; of a tile on the diagonal the upper part stays 0.
@@ -130,14 +143,17 @@ fn fill_tile(
     }
 }
 
-/// out -= left * right, all row by row.
-fn subtract_product(out: &mut [f64], left: &[f64], right: &[f64]) {
-    for (rows, left) in out.chunks_exact_mut(BLOCK * TILE).zip(left.chunks_exact(BLOCK * TILE)) {
+/// out -= left * right, all row by row, in the first `rows` rows, or a few more. Of a tile on the diagonal what is above that is
+/// not used, so it is left out.
+fn subtract_product(out: &mut [f64], left: &[f64], right: &[f64], rows: usize, is_diagonal: bool) {
+    let blocks = out.chunks_exact_mut(BLOCK * TILE).zip(left.chunks_exact(BLOCK * TILE));
+    for (block, (rows, left)) in blocks.enumerate().take(rows.div_ceil(BLOCK)) {
+        let end = if is_diagonal { (block + 1) * BLOCK } else { TILE };
         let mut packed = [[0.0; BLOCK]; TILE];
         for (k, lane) in packed.iter_mut().enumerate() {
             *lane = std::array::from_fn(|r| left[r * TILE + k]);
         }
-        for first in (0..TILE).step_by(BLOCK) {
+        for first in (0..end).step_by(BLOCK) {
             let mut sums = [[0.0; BLOCK]; BLOCK];
             for (lane, line) in packed.iter().zip(right.chunks_exact(TILE)) {
                 let line: &[f64; BLOCK] = line[first..first + BLOCK].try_into().unwrap_or(&[0.0; BLOCK]);
@@ -155,21 +171,21 @@ fn subtract_product(out: &mut [f64], left: &[f64], right: &[f64]) {
     }
 }
 
-/// Replaces the lower part of a tile by its Cholesky factor; the row of the first pivot that is not positive is the
-/// error.
-fn factor_tile(a: &mut [f64]) -> Result<(), usize> {
-    for c in 0..TILE {
+/// Replaces the lower part of the first `rows` rows of a tile by its Cholesky factor; the row of the first pivot that is not
+/// positive is the error.
+fn factor_tile(a: &mut [f64], rows: usize) -> Result<(), usize> {
+    for c in 0..rows {
         let pivot = a[c * TILE + c];
         if !(pivot > 0.0 && pivot.is_finite()) {
             return Err(c);
         }
         let root = pivot.sqrt();
         let mut column = [0.0; TILE];
-        for r in c..TILE {
+        for r in c..rows {
             a[r * TILE + c] /= root;
             column[r] = a[r * TILE + c];
         }
-        for r in c + 1..TILE {
+        for r in c + 1..rows {
             let factor = column[r];
             let line = &mut a[r * TILE..][c + 1..=r];
             line.iter_mut().zip(&column[c + 1..=r]).for_each(|(x, l)| *x -= factor * l);

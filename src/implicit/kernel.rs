@@ -2,7 +2,9 @@
 
 use super::logarithm::ln;
 use super::options::Kernel;
+use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
+use crate::par;
 
 /// Centres handled side by side. Sums run in so many lanes on every machine, so their bits are the same.
 const LANES: usize = 8;
@@ -64,6 +66,21 @@ pub(super) struct WeightedCentres {
     z: Vec<[f64; LANES]>,
     weights: Vec<[f64; LANES]>,
     len: usize,
+}
+
+/// phi between all centres, row by row, filled up to whole lanes.
+#[derive(Debug)]
+pub(super) struct Table {
+    values: Vec<[f64; LANES]>,
+    /// Lanes of a row.
+    blocks: usize,
+}
+
+impl Table {
+    /// The row of centre `i`.
+    pub(super) fn row(&self, i: usize) -> &[[f64; LANES]] {
+        &self.values[i * self.blocks..(i + 1) * self.blocks]
+    }
 }
 
 impl WeightedCentres {
@@ -151,6 +168,57 @@ impl WeightedCentres {
             Kernel::ThinPlate => self.row_of::<ThinPlate>(p, range, row),
             Kernel::Cubic => self.row_of::<Cubic>(p, range, row),
             Kernel::Linear => self.row_of::<Linear>(p, range, row),
+        }
+    }
+
+    /// Bytes of [`Self::table`].
+    pub(super) fn table_bytes(&self) -> u64 {
+        (self.len * self.x.len() * size_of::<[f64; LANES]>()) as u64
+    }
+
+    /// phi between all centres, which are at `points`; `rows` of them are made between two checks of the budget.
+    pub(super) fn table(
+        &self,
+        kernel: Kernel,
+        points: &[DVec3],
+        rows: usize,
+        budget: &Budget,
+    ) -> Result<Table, Stopped> {
+        let blocks = self.x.len();
+        let mut values = vec![[0.0; LANES]; self.len * blocks];
+        par::for_each_chunk_mut(&mut values, rows * blocks, |at, out| {
+            if budget.check().is_ok() {
+                for (line, &p) in out.chunks_mut(blocks).zip(&points[at / blocks..]) {
+                    match kernel {
+                        Kernel::ThinPlate => self.fill_line::<ThinPlate>(p, line),
+                        Kernel::Cubic => self.fill_line::<Cubic>(p, line),
+                        Kernel::Linear => self.fill_line::<Linear>(p, line),
+                    }
+                }
+            }
+        });
+        budget.check()?;
+        Ok(Table { values, blocks })
+    }
+
+    /// The sum of weight times phi, given phi between a point and each centre.
+    pub(super) fn sum_of_row(&self, row: &[[f64; LANES]]) -> f64 {
+        let mut sums = [0.0; LANES];
+        for (values, weights) in row.iter().zip(&self.weights) {
+            for l in 0..LANES {
+                sums[l] += weights[l] * values[l];
+            }
+        }
+        total(sums)
+    }
+
+    /// phi between `p` and the centres, in their order.
+    fn fill_line<R: Radial>(&self, p: DVec3, line: &mut [[f64; LANES]]) {
+        for (((x, y), z), values) in self.x.iter().zip(&self.y).zip(&self.z).zip(line) {
+            for l in 0..LANES {
+                let (dx, dy, dz) = (p.x - x[l], p.y - y[l], p.z - z[l]);
+                values[l] = R::value(dx * dx + dy * dy + dz * dz);
+            }
         }
     }
 

@@ -12,6 +12,9 @@ const HALVINGS_MAX: u32 = 10;
 /// Share of lambda that the closest point of the surface may be beside the point itself where the surface is curved
 /// toward the offset, if it is beside it and not behind it.
 const SLIP_SHARE: f64 = 0.5;
+/// What is farther from a point than so many lambdas is farther from its offsets than the point itself. 2, and a little for
+/// rounding.
+const CLEARANCE: f64 = 2.01;
 /// Points handled between two checks of the budget.
 const POINTS: usize = 64;
 
@@ -68,6 +71,9 @@ fn fitting(
     budget: &Budget,
 ) -> Result<f64, Stopped> {
     let mut lambda = first;
+    if has_no_other_near(surface, x, CLEARANCE * first, budget)? {
+        return Ok(first);
+    }
     // What was closest last is a good guess for the next place.
     let mut hint = None;
     for _ in 0..HALVINGS_MAX {
@@ -78,6 +84,23 @@ fn fitting(
         lambda *= 0.5;
     }
     Ok(lambda)
+}
+
+/// True when there are triangles at `x`, and no others within `reach` of it.
+fn has_no_other_near(
+    surface: &NearestSearch<'_>,
+    x: DVec3,
+    reach: f64,
+    budget: &Budget,
+) -> Result<bool, Stopped> {
+    let mut is_corner = false;
+    let is_other = |t: u32| {
+        let is_at_x = surface.corners(t).contains(&x);
+        is_corner |= is_at_x;
+        !is_at_x
+    };
+    let is_crowded = surface.bvh().any_in_box(Aabb { min: x - reach, max: x + reach }, budget, is_other)?;
+    Ok(is_corner && !is_crowded)
 }
 
 /// True when the point of the surface closest to `offset` is `x`, or on a triangle at `x`, or beside it.

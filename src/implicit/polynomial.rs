@@ -77,6 +77,8 @@ pub(super) struct Reflections {
     vectors: Vec<Vec<f64>>,
     /// R by rows.
     r: Vec<Vec<f64>>,
+    /// T of the compact form, by columns.
+    t: Vec<Vec<f64>>,
 }
 
 impl Reflections {
@@ -92,11 +94,13 @@ impl Reflections {
             v[k] += if v[k] < 0.0 { -length } else { length };
             let length = dot(&v, &v).sqrt();
             v.iter_mut().for_each(|x| *x /= length);
-            columns.iter_mut().for_each(|column| reflect(column, &v));
+            // Nothing reads what the columns before have below R.
+            columns[k..].iter_mut().for_each(|column| reflect(column, &v));
             vectors.push(v);
         }
         let r = (0..count).map(|row| (0..count).map(|c| columns[c][row]).collect()).collect();
-        Self { vectors, r }
+        let t = compact(&vectors);
+        Self { vectors, r, t }
     }
 
     /// The number of polynomials.
@@ -126,17 +130,22 @@ impl Reflections {
 
     /// Q = I - V T V^T with V the vectors as columns and T upper triangular (Schreiber and Van Loan 1989): V and T, each
     /// by columns.
-    pub(super) fn compact(&self) -> (&[Vec<f64>], Vec<Vec<f64>>) {
-        let count = self.count();
-        let mut t = vec![vec![0.0; count]; count];
-        for k in 0..count {
-            let products: Vec<f64> = (0..k).map(|i| dot(&self.vectors[i], &self.vectors[k])).collect();
-            let above = |row: usize| -2.0 * (row..k).map(|i| t[i][row] * products[i]).sum::<f64>();
-            let column: Vec<f64> = (0..k).map(above).chain([2.0]).collect();
-            t[k][..=k].copy_from_slice(&column);
-        }
-        (&self.vectors, t)
+    pub(super) fn compact(&self) -> (&[Vec<f64>], &[Vec<f64>]) {
+        (&self.vectors, &self.t)
     }
+}
+
+/// T of the compact form of the reflections by `vectors`.
+fn compact(vectors: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let count = vectors.len();
+    let mut t = vec![vec![0.0; count]; count];
+    for k in 0..count {
+        let products: Vec<f64> = (0..k).map(|i| dot(&vectors[i], &vectors[k])).collect();
+        let above = |row: usize| -2.0 * (row..k).map(|i| t[i][row] * products[i]).sum::<f64>();
+        let column: Vec<f64> = (0..k).map(above).chain([2.0]).collect();
+        t[k][..=k].copy_from_slice(&column);
+    }
+    t
 }
 
 /// x -= 2 v (v . x)

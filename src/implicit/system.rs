@@ -2,15 +2,15 @@
 //!
 //! P = Q [R; 0], Q = [Y Z]. The columns of Z span the weights that meet the side conditions P^T alpha = 0, and Z^T Phi Z
 //! is positive definite for every kernel here (Micchelli 1986; Wendland, Scattered Data Approximation, chapter 8), so
-//! alpha = Z gamma with Z^T Phi Z gamma = Z^T sigma by Cholesky, and R beta = Y^T (sigma - Phi alpha). Phi is never
-//! stored: the entries of Q^T Phi Q = Phi - V W^T - W V^T come from the compact form Q = I - V T V^T.
+//! alpha = Z gamma with Z^T Phi Z gamma = Z^T sigma by Cholesky, and R beta = Y^T (sigma - Phi alpha). Phi is stored for
+//! few centres only: the entries of Q^T Phi Q = Phi - V W^T - W V^T come from the compact form Q = I - V T V^T.
 
 use super::cholesky::Cholesky;
-use super::kernel::WeightedCentres;
+use super::kernel::{Table, WeightedCentres};
 use super::options::Kernel;
 use super::polynomial::{LINEAR_TERMS, Reflections, TERMS, dot, rank, terms};
 use super::unfit::Unfit;
-use crate::budget::{Budget, Stopped};
+use crate::budget::{Budget, Charge, Stopped};
 use crate::geom::DVec3;
 use crate::par;
 
@@ -24,6 +24,8 @@ const REFINEMENTS: usize = 6;
 const SHIFTS: [f64; 2] = [0.0, 1e-13];
 /// Rows handled between two checks of the budget.
 const ROWS: usize = 32;
+/// Centres up to which all values of the kernel between them are kept: 2 MB. They are asked for four times or more.
+const KEPT_MAX: usize = 512;
 
 /// A sum of radial functions and a polynomial of degree 2 or less.
 #[derive(Debug, Clone)]
@@ -74,22 +76,34 @@ struct System<'p> {
     kernel: Kernel,
     points: &'p [DVec3],
     centres: WeightedCentres,
+    /// Phi, where there are few centres.
+    table: Option<Table>,
+    _charge: Charge<'p>,
     q: Reflections,
     /// W of Q^T Phi Q = Phi - V W^T - W V^T, by columns.
     w: Vec<Vec<f64>>,
 }
 
 impl<'p> System<'p> {
-    fn new(kernel: Kernel, points: &'p [DVec3], count: usize, budget: &Budget) -> Result<Self, Stopped> {
+    fn new(kernel: Kernel, points: &'p [DVec3], count: usize, budget: &'p Budget) -> Result<Self, Stopped> {
         let centres = WeightedCentres::new(points);
+        let is_kept = points.len() <= KEPT_MAX;
+        let _charge = budget.charge(if is_kept { centres.table_bytes() } else { 0 })?;
+        let table = if is_kept { Some(centres.table(kernel, points, ROWS, budget)?) } else { None };
         let q = Reflections::new(points, count);
         let (n, (v, t)) = (points.len(), q.compact());
         let rows = |range: std::ops::Range<usize>| -> Result<Vec<Vec<f64>>, Stopped> {
             budget.check()?;
             let mut row = Vec::new();
             let products = |i: usize| {
-                centres.row(kernel, points[i], 0..n, &mut row);
-                v.iter().map(|v| dot(&row, v)).collect()
+                let row = match &table {
+                    Some(table) => &table.row(i).as_flattened()[..n],
+                    None => {
+                        centres.row(kernel, points[i], 0..n, &mut row);
+                        &row[..]
+                    }
+                };
+                v.iter().map(|v| dot(row, v)).collect()
             };
             Ok(range.map(products).collect())
         };
@@ -108,7 +122,7 @@ impl<'p> System<'p> {
             column
         };
         let w = (0..count).map(column).collect();
-        Ok(Self { kernel, points, centres, q, w })
+        Ok(Self { kernel, points, centres, table, _charge, q, w })
     }
 
     /// Z^T Phi Z with `shift` on its diagonal, factored.
@@ -121,7 +135,13 @@ impl<'p> System<'p> {
         let (v, _) = self.q.compact();
         let fill = |i: usize, columns: std::ops::Range<usize>, row: &mut Vec<f64>| {
             let (i, from, to) = (i + count, columns.start + count, columns.end + count);
-            self.centres.row(self.kernel, self.points[i], from..to, row);
+            match &self.table {
+                Some(table) => {
+                    row.clear();
+                    row.extend_from_slice(&table.row(i).as_flattened()[from..to]);
+                }
+                None => self.centres.row(self.kernel, self.points[i], from..to, row),
+            }
             for (v, w) in v.iter().zip(&self.w) {
                 let (vi, wi) = (v[i], w[i]);
                 for ((x, v), w) in row.iter_mut().zip(&v[from..to]).zip(&w[from..to]) {
@@ -190,7 +210,11 @@ impl<'p> System<'p> {
     ) -> Result<Vec<f64>, Stopped> {
         let rows = |range: std::ops::Range<usize>| -> Result<Vec<f64>, Stopped> {
             budget.check()?;
-            Ok(range.map(|i| values[i] - centres.sum(self.kernel, self.points[i])).collect())
+            let sum = |i: usize| match &self.table {
+                Some(table) => centres.sum_of_row(table.row(i)),
+                None => centres.sum(self.kernel, self.points[i]),
+            };
+            Ok(range.map(|i| values[i] - sum(i)).collect())
         };
         Ok(par::try_map_ranges(values.len(), ROWS, rows)?.concat())
     }

@@ -132,9 +132,8 @@ pub(super) fn judge(
     report: &mut Report,
     budget: &Budget,
 ) -> Result<FidelityVerdict, Stopped> {
-    let diagonal = diagonal(input);
     if let (Some(distance), Some(losses)) = (&report.distance, &report.losses) {
-        return Ok(FidelityVerdict::of(losses, distance.upper(), diagonal));
+        return Ok(FidelityVerdict::of(losses, distance.upper(), diagonal(input)));
     }
     let volume = defined_volume(report.before.as_ref());
     let (verdict, measured) = judge_alone(input, result, origins, report.distance.as_ref(), volume, budget)?;
@@ -165,7 +164,8 @@ pub(super) fn judge_alone(
     if let Some(moved) = moved {
         return Ok((FidelityVerdict::of(&NO_LOSSES, moved, diagonal), None));
     }
-    let fidelity = Original::new(input, volume, None).measure(result, origins, budget)?;
+    let original = Original::with_diagonal(input, volume, None, diagonal);
+    let fidelity = original.measure(result, origins, budget)?;
     let moved = fidelity.distance.map_or(0.0, |distance| distance.upper());
     let verdict = FidelityVerdict::of(&fidelity.losses, moved, diagonal);
     Ok((verdict, Some((fidelity.distance, fidelity.losses))))

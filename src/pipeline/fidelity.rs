@@ -137,7 +137,17 @@ pub(super) struct Original<'i> {
 
 impl<'i> Original<'i> {
     pub(super) fn new(input: &'i Soup, volume: Option<f64>, solid: Option<Solid>) -> Self {
-        Self { input, volume, solid, outlook: None, lost_beyond: LOST_BEYOND * diagonal(input) }
+        Self::with_diagonal(input, volume, solid, diagonal(input))
+    }
+
+    /// As [`Self::new`] where the [`diagonal`] of the input is known.
+    pub(super) fn with_diagonal(
+        input: &'i Soup,
+        volume: Option<f64>,
+        solid: Option<Solid>,
+        diagonal: f64,
+    ) -> Self {
+        Self { input, volume, solid, outlook: None, lost_beyond: LOST_BEYOND * diagonal }
     }
 
     /// What a straight line leads to from outside of the input is seen, even if it is inside of the solid.

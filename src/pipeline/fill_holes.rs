@@ -7,7 +7,6 @@ use super::step::Step;
 use super::{Answer, ChosenHole, Failure, Operation, Options, Outcome, Report};
 use crate::analysis::{Analysis, DefectCode, HoleGuess, Witness};
 use crate::budget::{Budget, Stage, Stopped};
-use crate::geom::triangle_area;
 use crate::repair::fill::{FillOptions, HoleChoice, HoleReport, Rejected};
 use crate::repair::{Draft, NEW, Selection};
 
@@ -138,10 +137,9 @@ fn run(
 
 /// Share of the area that new triangles make up; 0 where nothing has an area.
 fn interpolated_share(draft: &Draft, budget: &Budget) -> Result<f64, Stopped> {
+    budget.spend(draft.triangles.len() as u64 / 64)?;
     let (mut new, mut all) = (0.0, 0.0);
-    for (t, &origin) in draft.triangle_origin.iter().enumerate() {
-        budget.spend(u64::from(t % 64 == 0))?;
-        let area = triangle_area(draft.corners(t));
+    for (&origin, area) in draft.triangle_origin.iter().zip(draft.areas()) {
         all += area;
         new += if origin == NEW { area } else { 0.0 };
     }
@@ -230,11 +228,8 @@ impl Loops {
         if told.is_empty() {
             return Ok(None);
         }
-        let mut of_result = 0.0;
-        for t in 0..draft.triangles.len() {
-            budget.spend(u64::from(t % 64 == 0))?;
-            of_result += triangle_area(draft.corners(t));
-        }
+        budget.spend(draft.triangles.len() as u64 / 64)?;
+        let of_result: f64 = draft.areas().into_iter().sum();
         let of_patches: f64 = told.iter().filter(|hole| hole.used.is_some()).map(|hole| hole.area).sum();
         let interpolated_area_share = if of_result > 0.0 { (of_patches / of_result).min(1.0) } else { 0.0 };
         let mut holes = self.told(told);

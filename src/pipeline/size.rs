@@ -2,6 +2,7 @@
 
 use crate::geom::{Aabb, DVec3, triangle_area};
 use crate::mesh::Soup;
+use crate::par;
 
 /// Share of the surface that is the body of a mesh; the rest may be stray.
 const BODY_SHARE: f64 = 0.9;
@@ -11,6 +12,9 @@ const STRAY_BEYOND: f64 = 2.0;
 
 /// Triangles are sorted by their distance into so many rings.
 const RINGS: usize = 1 << 12;
+
+/// Triangles whose box is found at once.
+const TRIANGLES: usize = 1 << 14;
 
 /// Triangles that are looked at to say where the body is.
 const SAMPLE: usize = 1 << 16;
@@ -22,7 +26,11 @@ pub(super) fn diagonal(mesh: &Soup) -> f64 {
     let is_finite = |corners: &[DVec3; 3]| corners.iter().all(|p| p.is_finite());
     let count = mesh.triangles.len();
     let every = |n: usize| (0..count as u32).step_by(n).map(|t| mesh.corners(t)).filter(is_finite);
-    let bounds = Aabb::of(every(1).flatten());
+    let bounds = par::map_ranges(count, TRIANGLES, |range| {
+        let corners = range.map(|t| mesh.corners(t as u32)).filter(is_finite);
+        Aabb::of(corners.flatten())
+    });
+    let bounds = bounds.into_iter().fold(Aabb::EMPTY, Aabb::union);
     if bounds.is_empty() {
         return 0.0;
     }

@@ -3,7 +3,7 @@
 use super::{Changes, Draft, Effects};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::triangle_area;
-use crate::mesh::{ParityUnionFind, edge_of, triangle_of};
+use crate::mesh::{EdgeGroups, ParityUnionFind, edge_of, triangle_of};
 
 /// Orients each part that is connected across edges of exactly two triangles. The direction that holds the larger area
 /// of a part stays; at equal areas that of its first triangle. Edges where a part contradicts itself (Möbius band) keep
@@ -13,6 +13,9 @@ use crate::mesh::{ParityUnionFind, edge_of, triangle_of};
 /// When the budget stops the run.
 pub fn orient(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
     let groups = draft.edge_groups(budget)?;
+    if agree(draft, &groups, budget)? {
+        return Ok(Changes::counted([("triangles_flipped", 0), ("edges_in_conflict", 0)]));
+    }
     let _charge = budget.charge(draft.triangles.len() as u64 * 21)?;
     let mut parts = ParityUnionFind::new(draft.triangles.len());
     let mut conflicts = 0;
@@ -29,6 +32,21 @@ pub fn orient(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
     let flipped = flip_minorities(draft, &mut parts, budget)?;
     let changes = Changes::counted([("triangles_flipped", flipped), ("edges_in_conflict", conflicts)]);
     Ok(changes.with(Effects { turned_triangles: flipped, ..Effects::default() }))
+}
+
+/// Whether the two triangles of each edge and each diagonal run through it in different directions, so that nothing turns.
+fn agree(draft: &Draft, groups: &EdgeGroups, budget: &Budget) -> Result<bool, Stopped> {
+    for (e, group) in groups.diagonals().chain(groups.edges()).enumerate() {
+        if e % CHECK_EVERY == 0 {
+            budget.check()?;
+        }
+        if let &[g, h] = group
+            && edge_of(&draft.triangles, g)[0] == edge_of(&draft.triangles, h)[0]
+        {
+            return Ok(false);
+        }
+    }
+    Ok(true)
 }
 
 /// In each part, flips the triangles of the direction that holds less area.

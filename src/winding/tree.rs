@@ -3,9 +3,13 @@
 
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
+use crate::par;
 
 /// Triangles in a leaf.
 const LEAF: usize = 8;
+
+/// Triangles from which on the two halves of a group are divided at the same time.
+const APART_FROM: usize = 1 << 14;
 
 /// A group is far when its distance exceeds its radius by this factor. The share of the winding number that the third
 /// term would add falls with its cube.
@@ -31,7 +35,7 @@ const VISITS_MAX: u64 = 1 << 16;
 const FAR_LEAST: f64 = 1.0 / 64.0;
 
 /// What a group of triangles is from afar.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Node {
     center: DVec3,
     radius: f64,
@@ -59,32 +63,11 @@ impl WindingTree {
     /// # Errors
     /// When the budget stops the run.
     pub fn build(mut triangles: Vec<[DVec3; 3]>, budget: &Budget) -> Result<Self, Stopped> {
-        let mut nodes = Vec::new();
         if triangles.is_empty() {
             return Ok(Self::default());
         }
-        // Ranges still to be split, each with the nodes whose subtree ends with it.
-        let mut open = vec![(0, triangles.len(), Vec::new())];
-        let mut done = 0usize;
-        while let Some((first, len, mut ends)) = open.pop() {
-            if done.is_multiple_of(CHECK_EVERY / 64) {
-                budget.check()?;
-            }
-            done += 1;
-            let range = &mut triangles[first..first + len];
-            ends.push(nodes.len());
-            nodes.push(summary(range, first));
-            if len <= LEAF {
-                for &n in &ends {
-                    nodes[n].skip = nodes.len() as u32;
-                }
-                continue;
-            }
-            split(range);
-            let half = len / 2;
-            open.push((first + half, len - half, ends));
-            open.push((first, half, Vec::new()));
-        }
+        let mut nodes = vec![Node::default(); node_count(triangles.len())];
+        set_nodes(&mut nodes, &mut triangles, 0, 0, budget)?;
         budget.spend(triangles.len() as u64)?;
         Ok(Self { nodes, triangles })
     }
@@ -180,6 +163,71 @@ impl Node {
     }
 }
 
+/// Nodes of a group of so many triangles.
+fn node_count(len: usize) -> usize {
+    if len <= LEAF { 1 } else { 1 + node_count(len / 2) + node_count(len - len / 2) }
+}
+
+/// Sets the `nodes` of a group of triangles and sorts these; `first` and `begin` are the numbers of the first triangle and the
+/// first node.
+fn set_nodes(
+    nodes: &mut [Node],
+    triangles: &mut [[DVec3; 3]],
+    first: usize,
+    begin: usize,
+    budget: &Budget,
+) -> Result<(), Stopped> {
+    if triangles.len() < APART_FROM {
+        let own = nodes_in_turn(triangles, first, budget)?;
+        for (node, own) in nodes.iter_mut().zip(own) {
+            *node = Node { skip: own.skip + begin as u32, ..own };
+        }
+        return Ok(());
+    }
+    budget.check()?;
+    let end = begin + nodes.len();
+    let Some((top, below)) = nodes.split_first_mut() else { return Ok(()) };
+    *top = Node { skip: end as u32, ..summary(triangles, first) };
+    split(triangles);
+    let half = triangles.len() / 2;
+    let (near, far) = triangles.split_at_mut(half);
+    let count = node_count(half);
+    let (near_nodes, far_nodes) = below.split_at_mut(count);
+    let (near, far) = par::join(
+        || set_nodes(near_nodes, near, first, begin + 1, budget),
+        || set_nodes(far_nodes, far, first + half, begin + 1 + count, budget),
+    );
+    near.and(far)
+}
+
+/// The nodes of a group of triangles one after the other, numbered from 0; `from` is the number of the first triangle.
+fn nodes_in_turn(triangles: &mut [[DVec3; 3]], from: usize, budget: &Budget) -> Result<Vec<Node>, Stopped> {
+    let mut nodes = Vec::new();
+    // Ranges still to be split, each with the nodes whose subtree ends with it.
+    let mut open = vec![(0, triangles.len(), Vec::new())];
+    let mut done = 0usize;
+    while let Some((first, len, mut ends)) = open.pop() {
+        if done.is_multiple_of(CHECK_EVERY / 64) {
+            budget.check()?;
+        }
+        done += 1;
+        let range = &mut triangles[first..first + len];
+        ends.push(nodes.len());
+        nodes.push(summary(range, from + first));
+        if len <= LEAF {
+            for &n in &ends {
+                nodes[n].skip = nodes.len() as u32;
+            }
+            continue;
+        }
+        split(range);
+        let half = len / 2;
+        open.push((first + half, len - half, ends));
+        open.push((first, half, Vec::new()));
+    }
+    Ok(nodes)
+}
+
 /// The same triangles the other way around.
 pub fn turned(triangles: &[[DVec3; 3]]) -> Vec<[DVec3; 3]> {
     triangles.iter().map(|&[a, b, c]| [a, c, b]).collect()
@@ -230,7 +278,8 @@ fn split(triangles: &mut [[DVec3; 3]]) {
     let extent = max - min;
     let axis = if extent.x >= extent.y.max(extent.z) { 0 } else { usize::from(extent.y < extent.z) + 1 };
     let half = triangles.len() / 2;
-    let key = |t: &[DVec3; 3]| middle(*t)[axis];
+    // That of the middle, for this axis alone.
+    let key = |t: &[DVec3; 3]| (t[0][axis] + t[1][axis] + t[2][axis]) / 3.0;
     triangles.select_nth_unstable_by(half, |a, b| key(a).total_cmp(&key(b)));
 }
 
@@ -376,6 +425,18 @@ mod tests {
         assert!((at(&tree, DVec3::new(1.0, 2.0, 3.0)) - 1.0).abs() < 0.03);
         assert!(at(&tree, DVec3::new(1.0, 12.0, 3.0)).abs() < 0.03);
         assert_eq!(at(&WindingTree::default(), DVec3::ZERO), 0.0);
+    }
+
+    #[test]
+    fn groups_that_are_divided_at_the_same_time_are_those_that_are_divided_in_turn() {
+        let mut triangles = bowl(110, 9.0);
+        assert!(triangles.len() > APART_FROM);
+        let mut again = triangles.clone();
+        let mut nodes = vec![Node::default(); node_count(triangles.len())];
+        set_nodes(&mut nodes, &mut triangles, 0, 0, &Budget::unlimited()).unwrap();
+        let in_turn = nodes_in_turn(&mut again, 0, &Budget::unlimited()).unwrap();
+        assert_eq!(format!("{nodes:?}"), format!("{in_turn:?}"));
+        assert_eq!(triangles, again);
     }
 
     #[test]

@@ -178,7 +178,7 @@ pub struct Hole {
     /// Area of the patch, in square units of the file; null: it has none.
     #[schema(required)]
     pub area: Option<f64>,
-    /// The field whose surface the patch is; null: it is of another method.
+    /// The field whose surface the patch is; null: it is of another method, or has no new vertex.
     #[schema(required)]
     pub field: Option<FieldFit>,
 }

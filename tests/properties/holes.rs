@@ -218,6 +218,12 @@ fn a_patch_on_a_field_comes_with_what_was_fitted() {
     assert!(field.residual <= 1e-9 && field.degree == 2 && field.kernel == Kernel::Cubic, "{field:?}");
     let (_, report) = filled(&torn, Method::Smooth);
     assert_eq!(report.holes[0].field, None);
+    // One triangle has no room for a vertex that could be moved to a surface.
+    let mut pricked = sphere(3);
+    pricked.triangles.pop();
+    let (_, report) = filled(&pricked, Method::Rbf);
+    let hole = &report.holes[0];
+    assert_eq!((hole.used, hole.vertices, hole.field), (Some(Method::Rbf), 0, None));
 }
 
 #[test]

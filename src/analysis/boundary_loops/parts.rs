@@ -8,7 +8,7 @@ use crate::analysis::Context;
 use crate::budget::{CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3, triangle_area};
 
-/// The longest loops of a part that may be mouths; each costs a look at all of the part's vertices.
+/// The longest loops of a part that may be mouths; each may cost a look at all of the part's vertices.
 const MOUTHS_MAX: usize = 8;
 
 /// How far beyond the plane of its mouth a part may reach, as a share of the mouth's radius: lips are not quite flat.
@@ -96,20 +96,23 @@ fn mouth_share(number: usize, part: u32, loops: &Loops, cx: &Context<'_>) -> Res
     }
     let unit = |p: DVec3| (p - origin) / half;
     let center = points.iter().map(|&p| unit(p)).sum::<DVec3>() / points.len() as f64;
-    let height = |p: DVec3| (unit(p) - center).dot(normal);
-    let radius = |p: DVec3| {
+    let height_and_radius = |p: DVec3| {
         let from = unit(p) - center;
-        (from - normal * from.dot(normal)).length()
+        let height = from.dot(normal);
+        (height, (from - normal * height).length())
     };
-    let of_loop = points.iter().map(|&p| radius(p)).fold(0.0, f64::max);
+    let of_loop = points.iter().map(|&p| height_and_radius(p).1).fold(0.0, f64::max);
     let (mut of_part, mut low, mut high) = (0.0f64, 0.0f64, 0.0f64);
     for block in cx.members.part(part).chunks(CHECK_EVERY) {
         cx.budget.check()?;
-        for p in block.iter().flat_map(|&t| cx.mesh.corners(t)) {
-            of_part = of_part.max(radius(p));
-            (low, high) = (low.min(height(p)), high.max(height(p)));
+        for (height, radius) in block.iter().flat_map(|&t| cx.mesh.corners(t)).map(height_and_radius) {
+            of_part = of_part.max(radius);
+            (low, high) = (low.min(height), high.max(height));
+        }
+        let is_on_one_side = (-low).min(high) <= BEYOND_MAX * of_loop;
+        if !is_on_one_side {
+            return Ok(0.0);
         }
     }
-    let is_on_one_side = (-low).min(high) <= BEYOND_MAX * of_loop;
-    Ok(if is_on_one_side { of_loop / of_part } else { 0.0 })
+    Ok(of_loop / of_part)
 }

@@ -8,8 +8,10 @@ mod texture;
 pub use faces::Faced;
 
 use super::Changes;
-use crate::geom::DVec3;
+use crate::budget::CHECK_EVERY;
+use crate::geom::{DVec3, triangle_area};
 use crate::mesh::{Color, PolygonRuns, Soup, triangle_of};
+use crate::par;
 
 /// In the place of an origin: made by a repair step.
 pub const NEW: u32 = u32::MAX;
@@ -96,6 +98,14 @@ impl Draft {
     /// The corners of triangle `t`.
     pub fn corners(&self, t: usize) -> [DVec3; 3] {
         self.triangles[t].map(|v| self.positions[v as usize])
+    }
+
+    /// The area of every triangle.
+    pub fn areas(&self) -> Vec<f64> {
+        let of = |range: std::ops::Range<usize>| -> Vec<f64> {
+            range.map(|t| triangle_area(self.corners(t))).collect()
+        };
+        par::map_ranges(self.triangles.len(), CHECK_EVERY, of).concat()
     }
 
     /// Keeps the triangles that are marked.

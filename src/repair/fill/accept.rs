@@ -15,7 +15,7 @@ const CONTACTS_MAX: usize = 1 << 20;
 /// triangles in proportion to the square of their number.
 const ALONE_FROM: usize = 64;
 /// The mesh is not sorted for the search of what is near to patches when these have less than one in so many triangles.
-const FEW_SHARE: usize = 16;
+const FEW_SHARE: usize = 4;
 /// Triangles of the mesh that are looked at between two checks of the budget.
 const TRIANGLES: usize = 2048;
 
@@ -32,6 +32,9 @@ pub(super) struct Proposal {
     pub(super) triangles: Vec<[u32; 3]>,
 }
 
+/// Proposals that are judged one after the other by one thread.
+const PROPOSALS: usize = 16;
+
 /// The triangles of proposals by vertices of the surface, and what is wrong with each.
 struct Judged {
     triangles: Vec<Vec<[u32; 3]>>,
@@ -45,14 +48,14 @@ impl Surface {
     /// Sound is: exactly the rim as boundary, in its direction, connected, one fan at each corner and new vertex, and as
     /// many triangles as a sphere with the loops cut out has; no degenerate triangle; no edge in use already, by the mesh,
     /// by another patch or an earlier proposal; no triangle on the vertices of another one; no new vertex in the place of
-    /// another; and exactly no contact with the mesh, with other patches or in itself.
+    /// another; and exactly no contact with the mesh, with other patches or in itself. `bvh`: that of the mesh, if there is one.
     pub(super) fn accept(
         &mut self,
-        proposals: &[Proposal],
+        proposals: &[&Proposal],
+        bvh: Option<&Bvh>,
         budget: &Budget,
     ) -> Result<Vec<Result<u32, Rejection>>, Stopped> {
-        let mut claimed = FxHashSet::default();
-        let mut judged = Judged { triangles: Vec::new(), verdicts: Vec::new() };
+        let mut triangles = Vec::with_capacity(proposals.len());
         let mut firsts = Vec::with_capacity(proposals.len());
         for proposal in proposals {
             budget.spend(proposal.triangles.len() as u64 + 1)?;
@@ -63,14 +66,11 @@ impl Surface {
                 |v: u32| if v < rim { self.corner(proposal.rim[v as usize]) } else { first + v - rim };
             let patch: Vec<[u32; 3]> = proposal.triangles.iter().map(|t| t.map(vertex)).collect();
             self.positions.extend(&proposal.points);
-            let mut verdict = self.claim(proposal, &patch, &mut claimed);
-            if verdict.is_ok() && patch.len() >= ALONE_FROM {
-                verdict = self.alone(&patch, budget)?;
-            }
-            judged.verdicts.push(verdict);
-            judged.triangles.push(patch);
+            triangles.push(patch);
         }
-        self.reject_contacts(&mut judged, &firsts, budget)?;
+        let verdicts = self.judge_each(proposals, &triangles, budget)?;
+        let mut judged = Judged { triangles, verdicts };
+        self.reject_contacts(&mut judged, &firsts, bvh, budget)?;
         let Judged { triangles, verdicts } = judged;
         for ((patch, verdict), proposal) in triangles.into_iter().zip(&verdicts).zip(proposals) {
             if verdict.is_ok() {
@@ -81,13 +81,39 @@ impl Surface {
         Ok(verdicts.into_iter().zip(firsts).map(|(verdict, first)| verdict.map(|()| first)).collect())
     }
 
-    /// Judges a patch but for contacts, and claims its diagonals.
-    fn claim(
+    /// Judges the `patches` of proposals but for contacts with anything else.
+    fn judge_each(
         &self,
-        proposal: &Proposal,
-        patch: &[[u32; 3]],
-        claimed: &mut FxHashSet<[u32; 2]>,
-    ) -> Result<(), Rejection> {
+        proposals: &[&Proposal],
+        patches: &[Vec<[u32; 3]>],
+        budget: &Budget,
+    ) -> Result<Vec<Result<(), Rejection>>, Stopped> {
+        let shapes = par::try_map_ranges(proposals.len(), PROPOSALS, |range| {
+            budget.check()?;
+            Ok(range.map(|i| self.judge_shape(proposals[i], &patches[i])).collect::<Vec<_>>())
+        })?;
+        let mut claimed = FxHashSet::default();
+        let mut verdicts = Vec::with_capacity(proposals.len());
+        for diagonals in shapes.into_iter().flatten() {
+            let is_claimed = |edge: &[u32; 2]| claimed.contains(edge);
+            verdicts.push(match diagonals {
+                Ok(diagonals) if diagonals.iter().any(is_claimed) => Err(Rejection::EdgeInUse),
+                Ok(diagonals) => {
+                    claimed.extend(diagonals);
+                    Ok(())
+                }
+                Err(reason) => Err(reason),
+            });
+        }
+        let alone = par::try_map_ranges(proposals.len(), 1, |range| match verdicts[range.start] {
+            Ok(()) if patches[range.start].len() >= ALONE_FROM => self.alone(&patches[range.start], budget),
+            verdict => Ok(verdict),
+        })?;
+        Ok(alone)
+    }
+
+    /// Judges a patch but for contacts and other patches; gives its diagonals.
+    fn judge_shape(&self, proposal: &Proposal, patch: &[[u32; 3]]) -> Result<Vec<[u32; 2]>, Rejection> {
         let is_degenerate = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|v| self.positions[v as usize]);
             are_collinear(a, b, c)
@@ -99,12 +125,11 @@ impl Surface {
         let mut diagonals = self.diagonals_of(proposal);
         diagonals.sort_unstable();
         let is_twice = diagonals.windows(2).any(|pair| pair[0] == pair[1]);
-        let is_used = |edge: &[u32; 2]| !self.is_free_edge(*edge) || claimed.contains(edge);
+        let is_used = |edge: &[u32; 2]| !self.is_free_edge(*edge);
         if self.is_double_of_neighbour(proposal) || is_twice || diagonals.iter().any(is_used) {
             return Err(Rejection::EdgeInUse);
         }
-        claimed.extend(diagonals);
-        Ok(())
+        Ok(diagonals)
     }
 
     /// The edges inside a patch that are between corners of its rim, by vertices of the surface.
@@ -154,6 +179,7 @@ impl Surface {
         &mut self,
         judged: &mut Judged,
         firsts: &[u32],
+        bvh: Option<&Bvh>,
         budget: &Budget,
     ) -> Result<(), Stopped> {
         // Triangles of proposals come first, so that contacts, which are sorted, begin with theirs.
@@ -166,7 +192,7 @@ impl Surface {
         if triangles.is_empty() {
             return Ok(());
         }
-        let near = self.triangles_near(&triangles, budget)?;
+        let near = self.triangles_near(&triangles, bvh, budget)?;
         triangles.extend(near);
         triangles.extend(&self.patches);
         self.reject_shared_places(&triangles, firsts, &mut judged.verdicts, budget)?;
@@ -231,22 +257,34 @@ impl Surface {
         Ok(())
     }
 
-    /// The triangles of the mesh whose boxes may meet those of `patches`.
-    fn triangles_near(&mut self, patches: &[[u32; 3]], budget: &Budget) -> Result<Vec<[u32; 3]>, Stopped> {
-        if self.bvh.is_none() && patches.len() < self.triangles.len() / FEW_SHARE {
+    /// The triangles of the mesh, which may be sorted in `bvh` already, whose boxes may meet those of `patches`.
+    fn triangles_near(
+        &mut self,
+        patches: &[[u32; 3]],
+        bvh: Option<&Bvh>,
+        budget: &Budget,
+    ) -> Result<Vec<[u32; 3]>, Stopped> {
+        let is_sorted = bvh.is_some() || self.bvh.is_some();
+        if !is_sorted && patches.len() < self.triangles.len() / FEW_SHARE {
             return self.triangles_in_boxes(patches, budget);
         }
-        let bvh = match self.bvh.take() {
-            Some(bvh) => bvh,
-            None => Bvh::build(&self.positions, &self.triangles, None, budget)?,
+        if !is_sorted {
+            self.bvh = Some(Bvh::build(&self.positions, &self.triangles, None, budget)?);
+        }
+        let Some(bvh) = bvh.or(self.bvh.as_ref()) else { return Ok(Vec::new()) };
+        let of = |range: std::ops::Range<usize>| -> Result<Vec<u32>, Stopped> {
+            budget.spend(range.len() as u64)?;
+            let mut ids = Vec::new();
+            for t in &patches[range] {
+                let bounds = Aabb::of(t.map(|v| self.positions[v as usize]));
+                bvh.visit_box(bounds, budget, |id| ids.push(id))?;
+            }
+            Ok(ids)
         };
         let mut is_near = vec![false; self.triangles.len()];
-        for t in patches {
-            budget.spend(1)?;
-            let bounds = Aabb::of(t.map(|v| self.positions[v as usize]));
-            bvh.visit_box(bounds, budget, |id| is_near[id as usize] = true)?;
+        for id in par::try_map_ranges(patches.len(), TRIANGLES, of)?.into_iter().flatten() {
+            is_near[id as usize] = true;
         }
-        self.bvh = Some(bvh);
         Ok(self.triangles.iter().zip(is_near).filter(|&(_, near)| near).map(|(&t, _)| t).collect())
     }
 

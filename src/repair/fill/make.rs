@@ -223,7 +223,11 @@ fn of_field(
     budget: &Budget,
 ) -> Result<Result<Made, Rejection>, Stopped> {
     let Scene { surface, mesh: Some(mesh), options } = *scene else { return Ok(Err(Rejection::NoFit)) };
-    let field = match rbf::field(region, rings, surface, mesh, options, budget)? {
+    let fit = || rbf::field(region, rings, surface, mesh, options, budget);
+    if options.extract == Extract::Project {
+        return projected(region, fit, surface, budget);
+    }
+    let field = match fit()? {
         Ok(field) => field,
         Err(reason) => return Ok(Err(reason)),
     };
@@ -231,9 +235,8 @@ fn of_field(
         region.loops.iter().map(|l| l.iter().map(|&h| surface.point(h)).collect()).collect();
     let length = edge_length(&rims);
     let extracted = match options.extract {
-        Extract::Project => return projected(region, &field, surface, budget),
-        Extract::March => implicit::march(&field, &rims, length, budget)?,
         Extract::Mesh => implicit::mesh_surface(&field, &rims, length, budget)?,
+        Extract::March | Extract::Project => implicit::march(&field, &rims, length, budget)?,
     };
     Ok(match extracted {
         Ok(patch) => {
@@ -257,10 +260,11 @@ fn edge_length(rims: &[Vec<DVec3>]) -> f64 {
     rims.iter().map(length).sum::<f64>() / edges as f64
 }
 
-/// The smooth patch with its vertices moved to the zeros of `field`.
+/// The smooth patch with its vertices moved to the zeros of the field that `fit` gives. A patch without new vertices, as at a
+/// rim of few corners, needs none.
 fn projected(
     region: &Region,
-    field: &Field,
+    fit: impl FnOnce() -> Result<Result<Field, Rejection>, Stopped>,
     surface: &Surface,
     budget: &Budget,
 ) -> Result<Result<Made, Rejection>, Stopped> {
@@ -270,7 +274,15 @@ fn projected(
     };
     let rim = region.rim();
     let is_free = |a: u32, b: u32| surface.is_free(rim[a as usize], rim[b as usize]);
-    if !rbf::project(&mut patch, field, &is_free, budget)? {
+    if patch.points.len() == patch.rim {
+        turn_edges(&mut patch, &is_free, budget)?;
+        return Made::refined(region, surface, patch, budget);
+    }
+    let field = match fit()? {
+        Ok(field) => field,
+        Err(reason) => return Ok(Err(reason)),
+    };
+    if !rbf::project(&mut patch, &field, &is_free, budget)? {
         return Ok(Err(Rejection::NoFit));
     }
     let made = Made::refined(region, surface, patch, budget)?;

@@ -137,14 +137,17 @@ impl<C: Chords> Table<'_, C> {
     }
 
     /// `chords` are those from `i` to `m` and from `m` to `k`. What cannot be less than `best` may be impossible.
+    #[inline]
     fn weigh(&self, [i, m, k]: [usize; 3], chords: [usize; 2], best: Weight) -> Weight {
-        let [one, other] = chords.map(|chord| self.weight[chord]);
-        if one == IMPOSSIBLE || other == IMPOSSIBLE {
+        let [Weight(caps_a, bend_a, area_a), Weight(caps_b, bend_b, area_b)] =
+            chords.map(|chord| self.weight[chord]);
+        if caps_a == IMPOSSIBLE.0 || caps_b == IMPOSSIBLE.0 {
             return IMPOSSIBLE;
         }
-        let (Weight(caps_a, bend_a, area_a), Weight(caps_b, bend_b, area_b)) = (one, other);
         // The triangle between them adds to each, so most need no look at it.
-        if Weight(caps_a + caps_b, bend_a.max(bend_b), area_a + area_b) >= best {
+        let (caps, bent) = (caps_a + caps_b, bend_a.max(bend_b));
+        if caps >= best.0 && (caps > best.0 || bent > best.1 || (bent == best.1 && area_a + area_b >= best.2))
+        {
             return IMPOSSIBLE;
         }
         let (cap, (normal, area)) = match self.facing(i, m, k) {
@@ -152,15 +155,15 @@ impl<C: Chords> Table<'_, C> {
             None => (1, (DVec3::ZERO, 0.0)),
         };
         if self.least == Least::Area {
-            return Weight(caps_a + caps_b + cap, 0.0, area_a + area_b + area);
+            return Weight(caps + cap, 0.0, area_a + area_b + area);
         }
         let bend = |other: DVec3| bend(normal, other);
         let beyond = chords.map(|chord| bend(self.normal[chord]));
-        let mut worst = bend_a.max(bend_b).max(beyond[0]).max(beyond[1]);
+        let mut worst = bent.max(beyond[0]).max(beyond[1]);
         if k - i == self.points.len() - 1 {
             worst = worst.max(bend(self.rim_normals[k]));
         }
-        Weight(caps_a + caps_b + cap, worst, area_a + area_b + area)
+        Weight(caps + cap, worst, area_a + area_b + area)
     }
 
     /// Unit normal and area of a triangle; `None` when it has no area.

@@ -46,7 +46,6 @@ use crate::geom::{DVec3, triangle_area};
 use crate::mesh::{Boundary, Soup, edge_of};
 use crate::par;
 use crate::spatial::coincident_f64;
-use std::ops::Range;
 
 /// Closes the holes that can be closed soundly by triangles between vertices of their rims, as a repair does. Looks at
 /// places, so vertices need not be welded; triangles must not be degenerate.
@@ -131,9 +130,9 @@ fn fill_loops(
     while !open.is_empty() {
         let scene = Scene { surface: &surface, mesh: mesh.as_ref(), options };
         let offers = offer(&mut open, &scene, budget)?;
-        let proposals: Vec<Proposal> =
-            offers.iter().flatten().map(|(_, made)| made.proposal.clone()).collect();
-        let mut verdicts = surface.accept(&proposals, budget)?.into_iter();
+        let proposals: Vec<&Proposal> = offers.iter().flatten().map(|(_, made)| &made.proposal).collect();
+        let bvh = mesh.as_ref().map(rbf::Mesh::bvh);
+        let mut verdicts = surface.accept(&proposals, bvh, budget)?.into_iter();
         let mut left = Vec::new();
         for (mut hole, offered) in open.into_iter().zip(offers) {
             let Some((way, made)) = offered else {
@@ -282,9 +281,12 @@ fn changes(draft: &Draft, first: usize, holes: &[HoleReport], count: u64, stray_
 /// In words, how much of the surface is new. Closing a sheet makes a body of it, which this shows.
 fn share_of_patches(draft: &Draft, added: usize) -> Option<String> {
     let rim = draft.triangles.len() - added;
-    let area = |triangles: Range<usize>| triangles.map(|t| triangle_area(draft.corners(t))).sum::<f64>();
-    let percent = 100.0 * area(rim..draft.triangles.len()) / area(0..draft.triangles.len());
-    (added > 0 && percent.is_finite()).then(|| format!("patches are {percent:.1} % of the surface"))
+    if added == 0 {
+        return None;
+    }
+    let areas = draft.areas();
+    let percent = 100.0 * areas[rim..].iter().sum::<f64>() / areas.iter().sum::<f64>();
+    (percent.is_finite()).then(|| format!("patches are {percent:.1} % of the surface"))
 }
 
 fn reason(patches: Option<String>, left: u64, stray_edges: u64) -> String {

@@ -9,7 +9,7 @@ use super::surface::Surface;
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3};
 use crate::implicit::{self, Band, Field, Kernel, RbfOptions, Surroundings};
-use crate::spatial::NearestSearch;
+use crate::spatial::{Bvh, NearestSearch};
 use rustc_hash::FxHashSet;
 
 /// Rings that a band may have.
@@ -33,6 +33,11 @@ impl<'m> Mesh<'m> {
     ) -> Result<Self, Stopped> {
         let used = triangles.as_flattened().iter().map(|&v| positions[v as usize]);
         Ok(Self { nearest: NearestSearch::build(positions, triangles, budget)?, bounds: Aabb::of(used) })
+    }
+
+    /// The boxes of its triangles.
+    pub(super) fn bvh(&self) -> &Bvh {
+        self.nearest.bvh()
     }
 }
 

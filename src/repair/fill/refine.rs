@@ -7,6 +7,7 @@
 use super::patch::PatchMesh;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{DVec3, triangle_area};
+use crate::mesh::triangle_of;
 use std::f64::consts::PI;
 
 /// An edge is divided when it is longer than so many of the lengths wanted at its ends: halves are then as near to that
@@ -26,6 +27,8 @@ const VERTICES_EXPECTED_MAX: f64 = 6_000.0;
 pub(super) const VERTICES_MAX: usize = 16_384;
 /// Neighbouring triangles that bend more than they do (or 60 degrees) are not made by turning an edge.
 const TURN_COS_MIN: f64 = 0.5;
+/// Sine of an angle that is surely below half a turn, whatever rounding did.
+const SURE_SINE: f64 = 1e-6;
 /// Turns for each edge, at most. Delaunay turns of a flat patch end by themselves.
 const TURNS_PER_EDGE: usize = 8;
 
@@ -156,6 +159,8 @@ pub(super) fn turn_edges(
     budget: &Budget,
 ) -> Result<(), Stopped> {
     let mut open: Vec<u32> = (0..3 * mesh.triangles.len() as u32).rev().collect();
+    // Half-edges whose circles are empty as long as their triangles stay.
+    let mut is_settled = vec![false; open.len()];
     let mut left = TURNS_PER_EDGE * open.len();
     let mut looked = 0usize;
     while let Some(h) = open.pop() {
@@ -163,28 +168,53 @@ pub(super) fn turn_edges(
         if looked.is_multiple_of(CHECK_EVERY) {
             budget.spend(CHECK_EVERY as u64 / 4)?;
         }
+        let Some(g) = mesh.twin(h).filter(|_| !is_settled[h as usize]) else { continue };
+        if is_circle_empty(mesh, h, g) {
+            (is_settled[h as usize], is_settled[g as usize]) = (true, true);
+            continue;
+        }
         if left > 0
-            && should_turn(mesh, h, is_free)
+            && may_turn(mesh, h, g, is_free)
             && let Some(around) = mesh.flip(h)
         {
             left -= 1;
+            for changed in [triangle_of(h), triangle_of(g)].into_iter().flat_map(|t| 3 * t..3 * t + 3) {
+                is_settled[changed as usize] = false;
+                if let Some(twin) = mesh.twin(changed) {
+                    is_settled[twin as usize] = false;
+                }
+            }
             open.extend(around);
         }
     }
     Ok(())
 }
 
-fn should_turn(mesh: &PatchMesh, h: u32, is_free: &dyn Fn(u32, u32) -> bool) -> bool {
-    let Some(g) = mesh.twin(h) else { return false };
+/// Whether the angles across the edge between half-edges `h` and `g` are no more than half a turn together, so that the circle
+/// of each triangle leaves out the corner of the other.
+fn is_circle_empty(mesh: &PatchMesh, h: u32, g: u32) -> bool {
+    let [pa, pb] = mesh.ends(h).map(|v| mesh.point(v));
+    let sine_and_cosine = |p: DVec3| {
+        let (u, v) = (pa - p, pb - p);
+        (u.cross(v).length(), u.dot(v))
+    };
+    let [(s, c), (t, d)] = [mesh.apex(h), mesh.apex(g)].map(|v| sine_and_cosine(mesh.point(v)));
+    // The sine of both angles together, times the lengths of their sides: clearly positive in most cases.
+    let sine = s * d + t * c;
+    if sine > 0.0 && sine * sine > SURE_SINE * SURE_SINE * (s * s + c * c) * (t * t + d * d) {
+        return true;
+    }
+    // 1e-9: so that rounding does not turn an edge back and forth.
+    libm::atan2(s, c) + libm::atan2(t, d) <= PI * (1.0 + 1e-9)
+}
+
+/// Whether the edge between half-edges `h` and `g` can be turned and that bends nothing.
+fn may_turn(mesh: &PatchMesh, h: u32, g: u32, is_free: &dyn Fn(u32, u32) -> bool) -> bool {
     let ([a, b], c, d) = (mesh.ends(h), mesh.apex(h), mesh.apex(g));
     if c == d || mesh.has_edge(c, d) {
         return false;
     }
     let [pa, pb, pc, pd] = [a, b, c, d].map(|v| mesh.point(v));
-    // 1e-9: so that rounding does not turn an edge back and forth.
-    if angle(pc, pa, pb) + angle(pd, pa, pb) <= PI * (1.0 + 1e-9) {
-        return false;
-    }
     let bend = |n: DVec3, m: DVec3| n.normalize_or_zero().dot(m.normalize_or_zero());
     let normal = |x: DVec3, y: DVec3, z: DVec3| (y - x).cross(z - x);
     let was = bend(normal(pa, pb, pc), normal(pb, pa, pd));
@@ -198,6 +228,7 @@ fn should_turn(mesh: &PatchMesh, h: u32, is_free: &dyn Fn(u32, u32) -> bool) -> 
 }
 
 /// The angle at `p` between two others, in radians.
+#[cfg(test)]
 fn angle(p: DVec3, a: DVec3, b: DVec3) -> f64 {
     let (u, v) = (a - p, b - p);
     libm::atan2(u.cross(v).length(), u.dot(v))

@@ -65,7 +65,7 @@ pub struct HoleReport {
     pub vertices: u64,
     /// Area of the patch, in square units of the file.
     pub area: f64,
-    /// The field whose surface the patch is; `None`: it is of another method.
+    /// The field whose surface the patch is; `None`: it is of another method, or has no new vertex.
     pub field: Option<FitFacts>,
 }
 

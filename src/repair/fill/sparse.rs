@@ -143,8 +143,9 @@ impl Symmetric {
             for &i in pattern.iter().rev() {
                 let i = i as usize;
                 let y = std::mem::take(&mut work[i]);
-                for p in start[i]..end[i] {
-                    work[row[p] as usize] -= value[p] * y;
+                let column = start[i]..end[i];
+                for (&r, &l) in row[column.clone()].iter().zip(&value[column]) {
+                    work[r as usize] -= l * y;
                 }
                 flops += (end[i] - start[i]) as u64;
                 let l = y / diagonal[i];
