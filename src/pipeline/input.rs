@@ -24,7 +24,8 @@ pub(super) struct Input {
     pub(super) soup: Soup,
     pub(super) examination: Examination,
     pub(super) samples: usize,
-    /// The regions of a part of a project, which keeps what is said of faces; `None`: it is none.
+    /// The regions of a part of a project, which keeps what is said of faces, where the run simplifies it; `None`: the mesh is no
+    /// part of one.
     pub(super) regions: Option<Regions>,
     /// What is near, where the caller said so.
     near: Option<f64>,

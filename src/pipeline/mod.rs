@@ -344,7 +344,7 @@ pub struct Report {
 }
 
 /// A file that is returned.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Output {
     /// The bytes; `None`: the very bytes that were uploaded.
     pub bytes: Option<Vec<u8>>,

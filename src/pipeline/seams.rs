@@ -34,7 +34,8 @@ impl Seams {
         if regions.at_corners.is_empty() {
             return Self { groups, ..self };
         }
-        let first = regions.at_corners.iter().flatten().filter(|&&n| n != NO_VALUE).max().map_or(0, |n| n + 1);
+        let first =
+            regions.at_corners.iter().flatten().filter(|&&n| n != NO_VALUE).max().map_or(0, |n| n + 1);
         let of_triangle = |t: usize| {
             if let Some(points) = mesh.texture.of_triangle(t) {
                 return points;

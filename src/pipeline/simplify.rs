@@ -4,8 +4,8 @@ use super::fidelity::{Original, defined_volume};
 use super::input::Input;
 use super::output::{Candidate, NoCandidate, refusal};
 use super::plan::Attempt;
-use super::step::Step;
 use super::seams::Seams;
+use super::step::Step;
 use super::texture::texture_on;
 use super::{
     Action, Answer, Failure, FidelityVerdict, Level, Operation, Options, Outcome, Refusal, Report,
@@ -197,8 +197,7 @@ impl Fewer {
         }
         let mut answer = candidate.returned(input, &origins, report, outcome, budget)?;
         answer.report.levels[0].fidelity = answer.report.fidelity.clone();
-        let file =
-            |(candidate, origins): (Candidate, Vec<u32>)| candidate.into_output(of_input(&origins));
+        let file = |(candidate, origins): (Candidate, Vec<u32>)| candidate.into_output(of_input(&origins));
         Ok(Answer { levels: others.into_iter().map(file).collect(), ..answer })
     }
 }
@@ -277,7 +276,12 @@ const REFINEMENTS_MIN: u64 = 1 << 18;
 const TRIANGLES_PER_REFINEMENT: u64 = 4;
 
 /// Runs the simplification of a manifold; results in the order of the targets.
-fn run(mesh: &Soup, seams: &Seams, choices: &SimplifyChoices, budget: &Budget) -> Result<Vec<Simplified>, SimplifyError> {
+fn run(
+    mesh: &Soup,
+    seams: &Seams,
+    choices: &SimplifyChoices,
+    budget: &Budget,
+) -> Result<Vec<Simplified>, SimplifyError> {
     let targets = match choices.targets.as_slice() {
         [] => vec![Target::Ratio(RATIO_DEFAULT)],
         targets => targets.to_vec(),

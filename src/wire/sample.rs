@@ -130,13 +130,12 @@ pub(crate) fn repaired() -> Answer {
         work_used: 7,
         bytes_peak: 1000,
     };
-    let output =
-        Some(Output {
-            bytes: Some(b"mended".to_vec()),
-            encoding: Encoding::StlBinary,
-            origins: Vec::new(),
-            texture: Texture::default(),
-        });
+    let output = Some(Output {
+        bytes: Some(b"mended".to_vec()),
+        encoding: Encoding::StlBinary,
+        origins: Vec::new(),
+        texture: Texture::default(),
+    });
     Answer { report, output, levels: Vec::new(), picture: None }
 }
 

@@ -335,7 +335,10 @@ fn quantized_positions_are_scaled_back_by_their_node() {
 fn nodes_put_meshes_where_they_are_once_for_each() {
     let mut file = File::default();
     let positions = file.positions(&SQUARE[..3]);
-    file.set("meshes", json!([{ "name": "sail", "primitives": [{ "attributes": { "POSITION": positions } }] }]));
+    file.set(
+        "meshes",
+        json!([{ "name": "sail", "primitives": [{ "attributes": { "POSITION": positions } }] }]),
+    );
     file.set(
         "nodes",
         json!([

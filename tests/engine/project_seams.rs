@@ -46,7 +46,8 @@ impl Painted {
     }
 
     fn colored(mut self, tolerance: [f64; 2], color: impl Fn(DVec3) -> usize) -> Self {
-        let middle = |t: &[u32; 3]| t.iter().map(|&v| DVec3::from(self.points[v as usize])).sum::<DVec3>() / 3.0;
+        let middle =
+            |t: &[u32; 3]| t.iter().map(|&v| DVec3::from(self.points[v as usize])).sum::<DVec3>() / 3.0;
         self.colors = self.triangles.iter().map(|t| color(middle(t))).collect();
         self.tolerance = tolerance;
         self
@@ -68,7 +69,8 @@ impl Painted {
                             points.len() as u32 - 1
                         })
                     };
-                    let [a, b, c, d] = [vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)];
+                    let [a, b, c, d] =
+                        [vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)];
                     triangles.extend(if side == 0 { [[a, c, b], [a, d, c]] } else { [[a, b, c], [a, c, d]] });
                 }
             }
@@ -178,9 +180,12 @@ fn check(shape: &Painted, answer: &Answer, before: &[u8], what: &str) {
     for (t, &color) in (0..).zip(&colors) {
         let corners = new.soup.corners(t);
         let middle = corners.iter().sum::<DVec3>() / 3.0;
-        for p in [middle, corners[0].lerp(middle, 0.3), corners[1].lerp(middle, 0.3), corners[2].lerp(middle, 0.3)] {
+        for p in
+            [middle, corners[0].lerp(middle, 0.3), corners[1].lerp(middle, 0.3), corners[2].lerp(middle, 0.3)]
+        {
             let distance = |&t: &u32| closest_point_on_triangle(p, old.soup.corners(t)).distance_squared(p);
-            let nearest = (0..old.soup.triangles.len() as u32).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+            let nearest =
+                (0..old.soup.triangles.len() as u32).min_by(|a, b| distance(a).total_cmp(&distance(b)));
             if shape.colors[nearest.unwrap() as usize] == color {
                 continue;
             }
@@ -227,7 +232,8 @@ fn triangles_become_as_few_as_without_colours_where_all_have_one() {
 fn paint_that_divides_a_triangle_stays_with_it() {
     let mut shape = Painted::cube();
     shape.colors = (0..shape.triangles.len()).map(|t| usize::from(t % 97 == 5)).collect();
-    let bytes = shape.bytes(|color| if color == 1 { " paint_color=\"4843\"".to_owned() } else { String::new() });
+    let bytes =
+        shape.bytes(|color| if color == 1 { " paint_color=\"4843\"".to_owned() } else { String::new() });
     let answer = simplified(&bytes, 0.3);
     let new = project(result(&answer));
     let body = &new.bodies[0];
@@ -242,9 +248,10 @@ fn texture_stays_where_it_is_on_both_sides_of_its_seam() {
     let mut rod = Painted::rod();
     let side = rod.triangles.len() - 2 * 48;
     // The picture goes once around, and begins again at the last column of squares.
-    let places: String = (0..=48).flat_map(|i| (0..=40).map(move |j| (i, j))).fold(String::new(), |text, (i, j)| {
-        text + &format!("<m:tex2coord u=\"{}\" v=\"{}\"/>", f64::from(i) / 48.0, f64::from(j) / 40.0)
-    });
+    let places: String =
+        (0..=48).flat_map(|i| (0..=40).map(move |j| (i, j))).fold(String::new(), |text, (i, j)| {
+            text + &format!("<m:tex2coord u=\"{}\" v=\"{}\"/>", f64::from(i) / 48.0, f64::from(j) / 40.0)
+        });
     for is_turned in [false, true] {
         if is_turned {
             rod = rod.turned();
@@ -299,7 +306,8 @@ fn shade(p: DVec3) -> [f64; 3] {
 /// The members of the colour group with the id 2.
 fn members(bytes: &[u8]) -> Vec<[f64; 3]> {
     let text = String::from_utf8(part(bytes, "3D/3dmodel.model")).unwrap();
-    let group = text.split("<m:colorgroup id=\"2\">").nth(1).unwrap().split("</m:colorgroup>").next().unwrap();
+    let group =
+        text.split("<m:colorgroup id=\"2\">").nth(1).unwrap().split("</m:colorgroup>").next().unwrap();
     let byte = |color: &str, k: usize| f64::from(u8::from_str_radix(&color[2 * k..2 * k + 2], 16).unwrap());
     group.split('#').skip(1).map(|color| [0, 1, 2].map(|k| byte(color, k))).collect()
 }

@@ -518,7 +518,8 @@ fn a_painted_project_is_mended_part_by_part_and_keeps_its_paint() {
         assert_eq!(found, if t == 3 { "" } else { text.as_str() });
     }
     let counts = answer.report.parts[2].attributes.unwrap();
-    assert_eq!((counts.kept, counts.from_face, counts.from_nearest), (11, 1, 0));
+    assert_eq!((counts.kept, counts.from_face, counts.from_nearest, counts.lost), (11, 0, 0, 1));
+    assert!(counts.lost_area_share > 0.0 && counts.kept_area_share + counts.lost_area_share > 0.999_999);
     // What was mended is valid now and comes back as it is.
     let second = run(Operation::Repair, new, &Options::default());
     assert_eq!(second.report.outcome, Some(Outcome::Identical));

@@ -23,7 +23,10 @@ pub(super) struct Placed {
 pub(super) fn placed_meshes(root: &Part<'_>, budget: &Budget) -> Result<(Vec<Placed>, u64), ReadError> {
     let (nodes, meshes, scenes) = (root.list("nodes")?, root.list("meshes")?, root.list("scenes")?);
     if nodes.len() == 0 {
-        return Ok(((0..meshes.len()).map(|mesh| Placed { mesh, transform: None, is_named: false }).collect(), 0));
+        return Ok((
+            (0..meshes.len()).map(|mesh| Placed { mesh, transform: None, is_named: false }).collect(),
+            0,
+        ));
     }
     let starts = match root.index("scene", &scenes)? {
         Some(scene) => starts_of(&scenes.item(scene), &nodes)?,

@@ -23,8 +23,8 @@ mod transform;
 pub(super) mod write;
 mod xml;
 
-pub use new_members::Between;
 pub use model::{FaceAttributes, NO_NUMBER, ObjectKind, Property};
+pub use new_members::Between;
 pub use read::{Body, Project, read_project, read_scene};
 pub use rewrite::{FaceSource, NewBody, RewriteError, rewrite_project};
 pub use scene::Placed;

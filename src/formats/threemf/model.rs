@@ -167,6 +167,11 @@ impl Groups {
         self.by_id.get(&id)
     }
 
+    /// True when a group has places in a picture.
+    pub(super) fn have_places(&self) -> bool {
+        self.by_id.values().any(|group| matches!(group, Group::Places(_)))
+    }
+
     /// True when the group is one of base materials.
     pub(super) fn is_material(&self, id: u32) -> bool {
         self.materials.contains(&id)

@@ -228,7 +228,12 @@ mod tests {
         groups.insert(3, Group::Places(vec![[0.0, 0.0], [1.0, 0.5]]), false, 30..60);
         let members = vec![vec![0, 0, 1], vec![1, 1, 1]];
         groups.insert(4, Group::Layers { of: vec![1, 2, 3], members }, false, 60..90);
-        groups.insert(5, Group::Mixtures { of: 1, members: vec![0, 1], shares: vec![vec![2.0], vec![0.0, 1.0]] }, false, 0..0);
+        groups.insert(
+            5,
+            Group::Mixtures { of: 1, members: vec![0, 1], shares: vec![vec![2.0], vec![0.0, 1.0]] },
+            false,
+            0..0,
+        );
         groups
     }
 

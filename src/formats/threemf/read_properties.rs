@@ -39,7 +39,8 @@ pub(super) fn places<'x>(reader: &mut ModelReader<'x>, group: &Element<'x>) -> R
     each(reader, group, "tex2coord", |reader, element| {
         let attributes = reader.scanner.attributes(element)?;
         let number = |key: &str| {
-            let number = numbers::coordinate(value(&attributes, key)?.trim_ascii().as_bytes(), Precision::F64);
+            let number =
+                numbers::coordinate(value(&attributes, key)?.trim_ascii().as_bytes(), Precision::F64);
             number.filter(|number| number.is_finite())
         };
         points.push([number("u").unwrap_or(0.0), number("v").unwrap_or(0.0)]);

@@ -73,9 +73,17 @@ impl Body {
         self.property_of(face).group == self.property_of(other).group
     }
 
+    /// True when the corners of face `face` are places in a picture.
+    pub fn is_in_picture(&self, face: u32) -> bool {
+        matches!(self.groups.get(self.property_of(face).group), Some(Group::Places(_)))
+    }
+
     /// Where the corners of triangles are in pictures.
     pub(super) fn places(&self) -> Texture {
         let mut texture = Texture::default();
+        if self.attributes.properties.is_empty() || !self.groups.have_places() {
+            return texture;
+        }
         let mut numbers: FxHashMap<[u64; 2], u32> = FxHashMap::default();
         let mut number = |point: [f64; 2]| {
             *numbers.entry(point.map(f64::to_bits)).or_insert_with(|| {

@@ -22,7 +22,7 @@ use crate::formats::threemf::{
     Between, Body, FaceSource, NewBody, ObjectKind, Project, RewriteError, read_project, rewrite_project,
 };
 use crate::formats::{self, Encoding, Format, ReadErrorKind, ReadLimits, ReadOptions, WriteError};
-use crate::mesh::{Soup, Texture};
+use crate::mesh::{Regions, Soup, Texture};
 use crate::simplify::Target;
 
 /// Which part of a file.
@@ -211,7 +211,9 @@ impl Run<'_> {
     fn run_one(&self, number: usize, examination: Examination) -> Result<Done, Failure> {
         let body = &self.project.bodies[number];
         let mut input = Input::of(body.soup.clone(), examination, self.options)?;
-        input.regions = Some(body.regions(self.budget)?);
+        let is_simplified =
+            self.operation == Operation::Simplify || !self.options.simplify.targets.is_empty();
+        input.regions = Some(if is_simplified { body.regions(self.budget)? } else { Regions::default() });
         let options = &self.options_of(body);
         let answer = run_on(self.operation, &mut input, options, self.budget)?;
         Ok(Done { body: number, answer, attributes: None })

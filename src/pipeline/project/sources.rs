@@ -142,8 +142,8 @@ impl LookUp<'_> {
             return Ok((FaceSource::Corner { face, corner: nearest_corner(was, middle) }, fate));
         }
         let between = match new.texture.of_triangle(t) {
-            Some(points) => Between::Points(points),
-            None => {
+            Some(points) if body.is_in_picture(face) => Between::Points(points),
+            _ => {
                 let part_of = origin.map(|_| was);
                 let mut at = [(face, [0.0; 3]); 3];
                 for (at, corner) in at.iter_mut().zip(corners) {
