@@ -56,7 +56,7 @@ pub fn check_project(bytes: &[u8]) {
     let is_finite = |body: &usize| project.bodies[*body].soup.non_finite_vertices.is_empty();
     let new: Vec<NewBody<'_>> = (0..project.bodies.len())
         .filter(|body| project.bodies[*body].is_solid() && is_finite(body))
-        .map(|body| NewBody { body, soup: &project.bodies[body].soup, sources: &sources[body] })
+        .map(|body| NewBody { body, soup: &project.bodies[body].soup, sources: &sources[body], between: &[] })
         .collect();
     for body in &project.bodies {
         assert_eq!(body.soup.check(), Vec::<String>::new());

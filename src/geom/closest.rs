@@ -37,6 +37,16 @@ pub fn closest_point_on_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
     closest
 }
 
+/// The shares of the corners of a triangle in the point `on` it: they are not negative and have the sum 1, and the mean of the
+/// corners with these weights is the point. `None` when the triangle has no area.
+pub fn shares_of_corners(on: DVec3, [a, b, c]: [DVec3; 3]) -> Option<[f64; 3]> {
+    let normal = (b - a).cross(c - a);
+    let part = |q: DVec3, r: DVec3| (q - on).cross(r - on).dot(normal).max(0.0);
+    let parts = [part(b, c), part(c, a), part(a, b)];
+    let sum: f64 = parts.iter().sum();
+    (sum > 0.0 && sum.is_finite()).then(|| parts.map(|part| part / sum))
+}
+
 fn closest_of(points: [DVec3; 3], p: DVec3) -> DVec3 {
     let nearer = |q: DVec3, r: DVec3| if r.distance_squared(p) < q.distance_squared(p) { r } else { q };
     nearer(nearer(points[0], points[1]), points[2])
@@ -75,6 +85,13 @@ mod tests {
         ] {
             assert_eq!(closest_point_on_triangle(p.into(), CORNERS), DVec3::from(closest), "{p:?}");
         }
+    }
+
+    #[test]
+    fn shares_have_the_sum_1_and_give_the_point_again() {
+        assert_eq!(shares_of_corners(DVec3::new(1.0, 1.0, 0.0), CORNERS), Some([0.5, 0.25, 0.25]));
+        assert_eq!(shares_of_corners(CORNERS[2], CORNERS), Some([0.0, 0.0, 1.0]));
+        assert_eq!(shares_of_corners(DVec3::ZERO, [DVec3::ZERO, DVec3::X, DVec3::X]), None);
     }
 
     #[test]

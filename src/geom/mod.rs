@@ -13,7 +13,7 @@ mod thinness;
 mod tri_tri;
 mod volume;
 
-pub use closest::closest_point_on_triangle;
+pub use closest::{closest_point_on_triangle, shares_of_corners};
 pub use directions::{Cone, arc_box, direction};
 pub(crate) use exact::Span;
 pub use exact::suits_expansions;

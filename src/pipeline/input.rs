@@ -10,7 +10,7 @@ use crate::analysis::{Analysis, AnalyzeOptions, NearSearch};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::{self, CertifyError, Depth, Examination};
 use crate::formats::{self, Encoding, Place, ReadError, ReadErrorKind};
-use crate::mesh::Soup;
+use crate::mesh::{Regions, Soup, Texture};
 
 /// Witnesses to keep of each defect when the caller does not say.
 const SAMPLES_DEFAULT: usize = 16;
@@ -24,6 +24,9 @@ pub(super) struct Input {
     pub(super) soup: Soup,
     pub(super) examination: Examination,
     pub(super) samples: usize,
+    /// The regions of a part of a project, which keeps what is said of faces, where the run simplifies it; `None`: the mesh is no
+    /// part of one.
+    pub(super) regions: Option<Regions>,
     /// What is near, where the caller said so.
     near: Option<f64>,
 }
@@ -89,7 +92,8 @@ impl Input {
             units_are_stated: units.is_some(),
             result_units: units.unwrap_or_default(),
         };
-        Ok(Self { facts, soup, examination, samples: samples_of(options), near: options.near })
+        let (samples, near) = (samples_of(options), options.near);
+        Ok(Self { facts, soup, examination, samples, regions: None, near })
     }
 
     /// Takes the length of what is near in another unit.
@@ -189,7 +193,12 @@ impl Input {
                 outcome: Some(outcome),
                 ..report
             },
-            output: Some(Output { bytes: None, encoding: self.facts.encoding, origins: Vec::new() }),
+            output: Some(Output {
+                bytes: None,
+                encoding: self.facts.encoding,
+                origins: Vec::new(),
+                texture: Texture::default(),
+            }),
             levels: Vec::new(),
             picture: None,
         }

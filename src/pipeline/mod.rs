@@ -28,6 +28,7 @@ mod rebuild;
 mod remedies;
 mod repair;
 mod repair_choices;
+mod seams;
 mod simplify;
 mod size;
 mod step;
@@ -65,6 +66,7 @@ use crate::budget::{Budget, Stage};
 use crate::certificate::{Certificate, Violation};
 use crate::distance::SurfaceDistance;
 use crate::formats::{self, Encoding, Format, ReadOptions, WriteError};
+use crate::mesh::Texture;
 pub use crate::mesh::Units;
 use crate::printing::Policy;
 use crate::repair::nest;
@@ -342,7 +344,7 @@ pub struct Report {
 }
 
 /// A file that is returned.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Output {
     /// The bytes; `None`: the very bytes that were uploaded.
     pub bytes: Option<Vec<u8>>,
@@ -351,6 +353,8 @@ pub struct Output {
     /// For each triangle the triangle of the input behind it, or [`u32::MAX`]; empty where the bytes are those that were
     /// uploaded, and for a file of several parts.
     pub origins: Vec<u32>,
+    /// Texture of the triangles of a part of a project, whose groups hold it; empty otherwise.
+    pub texture: Texture,
 }
 
 /// The result of a run.

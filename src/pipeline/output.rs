@@ -8,7 +8,7 @@ use super::{Action, Answer, Failure, Options, Outcome, Output, Refusal, Report, 
 use crate::budget::{AsStopped, Budget, Stage, Stopped};
 use crate::certificate::{self, Certificate, Depth, Examination};
 use crate::formats::{self, Encoding, ReadLimits, ReadOptions, WriteError};
-use crate::mesh::Soup;
+use crate::mesh::{Soup, Texture};
 use crate::repair::NEW;
 use std::borrow::Cow;
 
@@ -128,16 +128,33 @@ impl Candidate {
         };
         let order = formats::stored_order(&soup, encoding);
         let left_out = std::mem::take(&mut soup.left_out);
+        // The file of a part by itself has no picture; its project has.
+        let is_part = input.regions.is_some() && encoding == Encoding::ThreeMf;
+        let texture = if is_part { std::mem::take(&mut soup.texture) } else { Texture::default() };
         drop(soup);
         // What we write may be larger than what we would take in.
         let limits =
             ReadLimits { triangles_max: u32::MAX, vertices_max: u32::MAX, polygon_corners_max: u32::MAX };
         let options = ReadOptions { limits, ..ReadOptions::default() };
         budget.stage(Stage::Certify, || {
-            let soup = formats::read(&bytes, encoding, &options, budget).map_err(Failure::from)?;
+            let mut soup = formats::read(&bytes, encoding, &options, budget).map_err(Failure::from)?;
             let examination = certificate::examine(&soup, &bytes, encoding, &options, depth, budget)?;
+            if is_part && texture.corners.len() == soup.triangles.len() {
+                soup.texture = texture;
+            }
             Ok(Self { bytes, encoding, soup, examination, order, left_out })
         })
+    }
+
+    /// Its texture, where its project holds it.
+    fn texture_of_part(&self) -> Texture {
+        if self.encoding == Encoding::ThreeMf { self.soup.texture.clone() } else { Texture::default() }
+    }
+
+    /// The file, of whose triangles `origins` are those of the input behind them.
+    pub(super) fn into_output(self, origins: Vec<u32>) -> Output {
+        let texture = self.texture_of_part();
+        Output { bytes: Some(self.bytes), encoding: self.encoding, origins, texture }
     }
 
     /// The bytes, read back.
@@ -161,7 +178,8 @@ impl Candidate {
     /// and its like in the result has none, and where a triangle is new. `origins` as for [`Self::returned`].
     fn lost_texture(&self, input: &Input, origins: &[u32]) -> Option<Action> {
         let (before, after) = (&input.soup.texture, &self.soup.texture);
-        if before.is_empty() {
+        // A project tells what became of all that it says of faces.
+        if before.is_empty() || input.regions.is_some() {
             return None;
         }
         let has_lost = |(t, &origin): (usize, &u32)| {
@@ -227,6 +245,7 @@ impl Candidate {
         };
         let after = describe(&self.soup, &self.examination, &input.analyze_options(), budget)?;
         let share = identical_triangle_share(&input.soup, &self.soup, origins, budget)?;
+        let texture = self.texture_of_part();
         let lost = [
             self.lost_texture(input, origins),
             self.lost_materials(input, origins),
@@ -244,7 +263,7 @@ impl Candidate {
             ..report
         };
         let output =
-            Some(Output { bytes: Some(self.bytes), encoding: self.encoding, origins: origins.to_vec() });
-        Ok(Answer { report, output, levels: Vec::new(), picture: None })
+            Output { bytes: Some(self.bytes), encoding: self.encoding, origins: origins.to_vec(), texture };
+        Ok(Answer { report, output: Some(output), levels: Vec::new(), picture: None })
     }
 }

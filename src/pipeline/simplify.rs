@@ -4,16 +4,17 @@ use super::fidelity::{Original, defined_volume};
 use super::input::Input;
 use super::output::{Candidate, NoCandidate, refusal};
 use super::plan::Attempt;
+use super::seams::Seams;
 use super::step::Step;
-use super::texture::{points_of, texture_of};
+use super::texture::texture_on;
 use super::{
-    Action, Answer, Failure, FidelityVerdict, Level, Operation, Options, Outcome, Output, Refusal, Report,
+    Action, Answer, Failure, FidelityVerdict, Level, Operation, Options, Outcome, Refusal, Report,
     SimplifyChoices, VertexColors, faithful, priority,
 };
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::Depth;
 use crate::distance::{DistanceOptions, Surface, SurfaceDistance, surface_distance};
-use crate::mesh::{Color, Soup};
+use crate::mesh::Soup;
 use crate::repair::Draft;
 use crate::repair::cut::CutOptions;
 use crate::repair::duplicates::OppositePairs;
@@ -21,7 +22,6 @@ use crate::simplify::{
     self, Guards, Mode, Refusal as CollapseRefusal, Simplified, SimplifyError, SimplifyOptions, Target,
 };
 use crate::winding::Solid;
-use rustc_hash::FxHashMap;
 
 /// What makes a manifold of any mesh, without moving a vertex.
 fn manifold() -> [Step; 5] {
@@ -49,7 +49,8 @@ pub(super) fn simplify(input: &Input, options: &Options, budget: &Budget) -> Res
         return Ok(report.refused(Refusal::NothingToRepair));
     }
     let mesh = draft.to_soup(&input.soup);
-    let results = match run(&mesh, &options.simplify, budget) {
+    let seams = Seams::of(&mesh, &draft, input);
+    let results = match run(&mesh, &seams, &options.simplify, budget) {
         Ok(results) => results,
         Err(SimplifyError::Stopped(stopped)) => return Err(stopped.into()),
         Err(SimplifyError::NotManifold(_)) => {
@@ -90,11 +91,7 @@ impl Writer<'_> {
             report.levels.push(Level { simplified: result.report, certificate, distance, fidelity });
             match &first {
                 None => first = Some((candidate, result.triangle_origin)),
-                Some(_) => others.push(Output {
-                    encoding: candidate.encoding,
-                    bytes: Some(candidate.bytes),
-                    origins: self.origins(&result),
-                }),
+                Some(_) => others.push(candidate.into_output(self.origins(&result))),
             }
         }
         let Some((candidate, origins)) = first else {
@@ -200,11 +197,7 @@ impl Fewer {
         }
         let mut answer = candidate.returned(input, &origins, report, outcome, budget)?;
         answer.report.levels[0].fidelity = answer.report.fidelity.clone();
-        let file = |(candidate, origins): (Candidate, Vec<u32>)| Output {
-            encoding: candidate.encoding,
-            bytes: Some(candidate.bytes),
-            origins: of_input(&origins),
-        };
+        let file = |(candidate, origins): (Candidate, Vec<u32>)| candidate.into_output(of_input(&origins));
         Ok(Answer { levels: others.into_iter().map(file).collect(), ..answer })
     }
 }
@@ -221,7 +214,8 @@ pub(super) fn of_certified(
     }
     let mesh = draft.to_soup(&input.soup);
     let guarded = SimplifyChoices { mode: Some(Mode::Guarded), ..options.simplify.clone() };
-    let results = match run(&mesh, &guarded, budget) {
+    let seams = Seams::of(&mesh, draft, input);
+    let results = match run(&mesh, &seams, &guarded, budget) {
         Ok(results) => results,
         Err(SimplifyError::Stopped(stopped)) => return Err(stopped.into()),
         Err(SimplifyError::NotManifold(_)) => return Ok(None),
@@ -282,20 +276,24 @@ const REFINEMENTS_MIN: u64 = 1 << 18;
 const TRIANGLES_PER_REFINEMENT: u64 = 4;
 
 /// Runs the simplification of a manifold; results in the order of the targets.
-fn run(mesh: &Soup, choices: &SimplifyChoices, budget: &Budget) -> Result<Vec<Simplified>, SimplifyError> {
+fn run(
+    mesh: &Soup,
+    seams: &Seams,
+    choices: &SimplifyChoices,
+    budget: &Budget,
+) -> Result<Vec<Simplified>, SimplifyError> {
     let targets = match choices.targets.as_slice() {
         [] => vec![Target::Ratio(RATIO_DEFAULT)],
         targets => targets.to_vec(),
     };
-    let groups = face_groups(mesh);
-    let texture = points_of(mesh);
-    let _charge = budget.charge(size_of_val(&texture[..]) as u64)?;
+    let Seams { groups, points } = seams;
+    let _charge = budget.charge((size_of_val(&points[..]) + size_of_val(&groups[..])) as u64)?;
     let input = simplify::Input {
         positions: &mesh.positions,
         triangles: &mesh.triangles,
-        face_groups: &groups,
+        face_groups: groups,
         vertex_colors: &mesh.vertex_colors,
-        texture: &texture,
+        texture: points,
     };
     let usual = Guards::default();
     let options = SimplifyOptions {
@@ -343,25 +341,6 @@ fn finest_first(targets: &[Target], faces: usize) -> Vec<Vec<usize>> {
     [counts, errors].into_iter().filter(|run| !run.is_empty()).map(order).collect()
 }
 
-/// A number for each triangle, the same for the same colour and material of the face; empty when faces have neither.
-fn face_groups(mesh: &Soup) -> Vec<u32> {
-    let mut numbers = FxHashMap::default();
-    let key = |color: &Option<Color>| match *color {
-        None => (0, [0; 4]),
-        Some(Color::Bytes([r, g, b], a)) => (1, [r, g, b, a.unwrap_or(255)].map(u32::from)),
-        Some(Color::Floats([r, g, b], a)) => (2, [r, g, b, a.unwrap_or(1.0)].map(f32::to_bits)),
-        Some(Color::Linear([r, g, b], a)) => (4, [r, g, b, a.unwrap_or(1.0)].map(f32::to_bits)),
-        Some(Color::Index(index)) => (3, [index as u32, 0, 0, 0]),
-    };
-    let mut number = |f: u32| {
-        let color = mesh.face_colors.get(f as usize).unwrap_or(&None);
-        let next = numbers.len() as u32;
-        *numbers.entry((key(color), mesh.materials.of(f))).or_insert(next)
-    };
-    let has_none = mesh.face_colors.is_empty() && mesh.materials.is_empty();
-    (0..if has_none { 0 } else { mesh.face_count }).map(&mut number).collect()
-}
-
 /// The result with the colours and materials that its faces had in `mesh`, and the texture of its corners.
 fn soup_of(result: &Simplified, mesh: &Soup) -> Soup {
     let color = |&t: &u32| mesh.face_colors.get(t as usize).copied().flatten();
@@ -374,7 +353,7 @@ fn soup_of(result: &Simplified, mesh: &Soup) -> Soup {
             true => result.vertex_colors.clone(),
             false => priority::colors_of(&result.priorities),
         },
-        texture: texture_of(&result.texture),
+        texture: texture_on(result, mesh),
         materials: mesh.materials.on(result.triangle_origin.iter().map(|&t| Some(t))),
         face_colors: match mesh.face_colors.is_empty() {
             true => Vec::new(),
@@ -400,7 +379,6 @@ fn distance(mesh: &Soup, result: &Simplified, budget: &Budget) -> Result<Option<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::Materials;
 
     #[test]
     fn targets_are_met_from_the_finest_to_the_coarsest() {
@@ -415,18 +393,5 @@ mod tests {
     fn a_turn_of_180_degrees_is_no_limit_and_the_usual_one_is_78() {
         assert!((cosine_of_turn(78.46) - Guards::default().normal_cos_min).abs() < 1e-4);
         assert!(cosine_of_turn(180.0) < -1.0 && cosine_of_turn(0.0) == 1.0);
-    }
-
-    #[test]
-    fn faces_of_one_colour_and_material_are_one_group() {
-        let (red, other) = (Some(Color::Bytes([255, 0, 0], None)), Some(Color::Index(7)));
-        let mut mesh = Soup { face_colors: vec![red, other, None, red], face_count: 4, ..Soup::default() };
-        assert_eq!(face_groups(&mesh), [0, 1, 2, 0]);
-        let names = vec![b"wood".to_vec(), b"tin".to_vec()];
-        mesh.materials = Materials { names, of_face: vec![0, 0, 0, 1], ..Materials::default() };
-        assert_eq!(face_groups(&mesh), [0, 1, 2, 3]);
-        mesh.face_colors = Vec::new();
-        assert_eq!(face_groups(&mesh), [0, 0, 0, 1]);
-        assert!(face_groups(&Soup { face_count: 4, ..Soup::default() }).is_empty());
     }
 }

@@ -1,7 +1,7 @@
 //! Texture coordinates on their way through a simplification, which knows points and no table of them.
 
 use crate::mesh::{NO_POINT, Soup, Texture};
-use crate::simplify::NO_TEXTURE;
+use crate::simplify::{NO_TEXTURE, Simplified};
 use rustc_hash::FxHashMap;
 
 /// The points at the corners of all triangles; empty when none has some.
@@ -10,8 +10,19 @@ pub(super) fn points_of(mesh: &Soup) -> Vec<[[f64; 2]; 3]> {
     (0..mesh.texture.corners.len()).map(points).collect()
 }
 
+/// The texture of a simplified `mesh`: triangles have points where those have some from which they come.
+pub(super) fn texture_on(result: &Simplified, mesh: &Soup) -> Texture {
+    let has_points = |t: u32| mesh.texture.corners.get(t as usize).is_some_and(|of| of[0] != NO_POINT);
+    if mesh.texture.is_empty() {
+        return Texture::default();
+    }
+    let points = |(&points, &origin)| if has_points(origin) { points } else { [NO_TEXTURE; 3] };
+    let corners: Vec<_> = result.texture.iter().zip(&result.triangle_origin).map(points).collect();
+    texture_of(&corners)
+}
+
 /// The table of the points at corners, each once, in the order of their first use.
-pub(super) fn texture_of(corners: &[[[f64; 2]; 3]]) -> Texture {
+fn texture_of(corners: &[[[f64; 2]; 3]]) -> Texture {
     let mut texture = Texture::default();
     let mut numbers = FxHashMap::default();
     let mut number = |point: [f64; 2]| {

@@ -35,6 +35,13 @@ impl<'a> Input<'a> {
     }
 }
 
+impl Input<'_> {
+    /// True when lines may part it into regions.
+    pub(super) fn has_regions(&self) -> bool {
+        !self.face_groups.is_empty() || !self.texture.is_empty()
+    }
+}
+
 /// A simplified mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Simplified {

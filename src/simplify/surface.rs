@@ -31,6 +31,8 @@ pub(super) struct Surface<S> {
     pub table: CornerTable,
     pub vertices: Vec<Vertex<S>>,
     pub wedges: Wedges,
+    /// It has face groups or texture, so that lines part it into regions, each of which stays.
+    pub has_regions: bool,
     /// A power of two: the working copy is about a thousand units large, so that no square or fourth power leaves the
     /// range of f64, nor its order of magnitude that of f32.
     pub scale: f64,
@@ -71,12 +73,13 @@ impl<S: Copy + Default> Surface<S> {
             });
         }
         let wedges = Wedges::default();
-        Ok(Self { table, vertices, wedges, scale, rounder: rounder(bounds, scale) })
+        Ok(Self { table, vertices, wedges, has_regions: false, scale, rounder: rounder(bounds, scale) })
     }
 
     /// Some of its vertices and triangles, in the same units and on the same lattice.
     pub(super) fn of_part(&self, table: CornerTable, vertices: Vec<Vertex<S>>) -> Self {
-        Self { table, vertices, wedges: Wedges::default(), scale: self.scale, rounder: self.rounder }
+        let Self { has_regions, scale, rounder, .. } = *self;
+        Self { table, vertices, wedges: Wedges::default(), has_regions, scale, rounder }
     }
 
     #[inline]
@@ -124,6 +127,14 @@ impl<S: Copy + Default> Surface<S> {
             (false, true) => Some(Rule::OntoDestination),
             (true, true) => None,
         }
+    }
+
+    /// False when a region goes with the triangles of the edge of `h`: one of them is a region alone.
+    #[inline]
+    pub(super) fn keeps_regions(&self, h: u32) -> bool {
+        let is_line = |g: u32| self.table.marks(g) & LINE != 0;
+        let is_region = |g: u32| g != NONE && is_line(g) && is_line(next(g)) && is_line(prev(g));
+        !self.has_regions || !(is_region(h) || is_region(self.table.twin(h)))
     }
 
     /// The edges of the origin of `h`, each once.

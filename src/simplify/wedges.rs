@@ -27,14 +27,6 @@ impl Wedges {
         !self.0.is_empty() && (self.at(h) != self.at(next(twin)) || self.at(next(h)) != self.at(twin))
     }
 
-    /// False when a chart goes with the triangles of the edge of `h`: one of them is a chart alone.
-    #[inline]
-    pub(super) fn keep_charts(&self, table: &CornerTable, h: u32) -> bool {
-        let is_line = |g: u32| table.marks(g) & LINE != 0;
-        let is_chart = |g: u32| g != NONE && is_line(g) && is_line(next(g)) && is_line(prev(g));
-        self.0.is_empty() || !(is_chart(h) || is_chart(table.twin(h)))
-    }
-
     /// Gives the wedges of both ends of `h` the points of the vertex that the edge becomes, at `share` of the way. Before
     /// the collapse; `rings` are those of `h`.
     pub(super) fn merge(&mut self, table: &CornerTable, rings: &EdgeRings, h: u32, share: f64) {
@@ -179,9 +171,5 @@ mod tests {
         let mut wedges = of(&table, |t, v| if t < 6 { NO_TEXTURE } else { [f64::from(v), 1.0] });
         merged(&mut wedges, &table, 0.5);
         assert!(wedges.0[..6].as_flattened().iter().all(|&point| point == NO_TEXTURE));
-        let mut table = table;
-        assert!(wedges.keep_charts(&table, 0));
-        (0..3).for_each(|h| table.mark(h, LINE));
-        assert!(!wedges.keep_charts(&table, 0) && Wedges::default().keep_charts(&table, 0));
     }
 }

@@ -49,13 +49,19 @@ pub struct Part {
 pub struct Attributes {
     /// They are faces of the file and keep all.
     pub kept: u64,
-    /// They are parts of such faces, were turned around or moved, and take what is at the nearest corner of the face.
+    /// They are parts of such faces, were turned around or moved, and have what the faces have at their places: what is between
+    /// the values at corners where these differ.
     pub from_face: u64,
     /// They are new, and take what is on the nearest face of the file.
     pub from_nearest: u64,
+    /// They miss paint of a slicer that divides the face behind them, and have the rest of what is said of it.
+    pub lost: u64,
     /// Share of the area of the result that keeps all, from 0 to 1.
     #[schema(required)]
     pub kept_area_share: Option<f64>,
+    /// Share of the area of the result that misses paint, from 0 to 1.
+    #[schema(required)]
+    pub lost_area_share: Option<f64>,
 }
 
 impl From<&pipeline::PartReport> for Part {
@@ -80,7 +86,15 @@ impl From<&pipeline::PartReport> for Part {
 
 impl From<&pipeline::AttributeCounts> for Attributes {
     fn from(inner: &pipeline::AttributeCounts) -> Self {
-        let &pipeline::AttributeCounts { kept, from_face, from_nearest, kept_area_share } = inner;
-        Self { kept, from_face, from_nearest, kept_area_share: finite(kept_area_share) }
+        let &pipeline::AttributeCounts {
+            kept,
+            from_face,
+            from_nearest,
+            lost,
+            kept_area_share,
+            lost_area_share,
+        } = inner;
+        let [kept_area_share, lost_area_share] = [kept_area_share, lost_area_share].map(finite);
+        Self { kept, from_face, from_nearest, lost, kept_area_share, lost_area_share }
     }
 }

@@ -7,6 +7,7 @@ use crate::analysis::{
 use crate::certificate::{Certificate, Condition, Reading, Shell, Violation, ViolationCounts};
 use crate::formats::Encoding;
 use crate::geom::{Aabb, DVec3};
+use crate::mesh::Texture;
 use crate::pipeline::{
     Action, Answer, Change, ChangeKind, Fidelity, FidelityVerdict, InputFacts, Operation, Outcome, Output,
     Refusal, Report, Units,
@@ -129,8 +130,12 @@ pub(crate) fn repaired() -> Answer {
         work_used: 7,
         bytes_peak: 1000,
     };
-    let output =
-        Some(Output { bytes: Some(b"mended".to_vec()), encoding: Encoding::StlBinary, origins: Vec::new() });
+    let output = Some(Output {
+        bytes: Some(b"mended".to_vec()),
+        encoding: Encoding::StlBinary,
+        origins: Vec::new(),
+        texture: Texture::default(),
+    });
     Answer { report, output, levels: Vec::new(), picture: None }
 }
 

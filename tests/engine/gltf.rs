@@ -335,12 +335,15 @@ fn quantized_positions_are_scaled_back_by_their_node() {
 fn nodes_put_meshes_where_they_are_once_for_each() {
     let mut file = File::default();
     let positions = file.positions(&SQUARE[..3]);
-    file.set("meshes", json!([{ "primitives": [{ "attributes": { "POSITION": positions } }] }]));
+    file.set(
+        "meshes",
+        json!([{ "name": "sail", "primitives": [{ "attributes": { "POSITION": positions } }] }]),
+    );
     file.set(
         "nodes",
         json!([
             { "children": [1, 2], "translation": [10.0, 0.0, 0.0] },
-            { "mesh": 0, "scale": [2.0, 1.0, 1.0] },
+            { "mesh": 0, "scale": [2.0, 1.0, 1.0], "name": "wide" },
             { "mesh": 0, "rotation": [0.0, 0.0, 0.70710677, 0.70710677] },
             { "mesh": 0, "matrix": [-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 3, 1] },
             { "mesh": 0, "translation": [100.0, 0.0, 0.0] },
@@ -359,7 +362,8 @@ fn nodes_put_meshes_where_they_are_once_for_each() {
     assert!(near(triangles[1], [point(10.0, 0.0, 0.0), point(10.0, 1.0, 0.0), point(9.0, 1.0, 0.0)]));
     // A mirror turns a triangle around, so that its outside stays.
     assert_eq!(triangles[2], [point(0.0, 0.0, 3.0), point(-1.0, 1.0, 3.0), point(-1.0, 0.0, 3.0)]);
-    assert_eq!(soup.left_out, [("meshes_outside_of_the_scene", 1)]);
+    // The names of a node and of the mesh.
+    assert_eq!(soup.left_out, [("united_nodes", 3), ("names", 2), ("meshes_outside_of_the_scene", 1)]);
     // Without scenes all nodes are shown, and without nodes all meshes.
     file.members.remove("scenes");
     file.members.remove("scene");

@@ -38,6 +38,7 @@ mod operations;
 mod pieces;
 mod plan;
 mod polygon_copies;
+mod project_seams;
 mod real_files;
 mod rebuild;
 mod repair;

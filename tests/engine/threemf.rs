@@ -37,11 +37,11 @@ fn package(entries: &[(&str, &[u8])]) -> Vec<u8> {
 }
 
 /// A 3MF with this model.
-fn file(model: &str) -> Vec<u8> {
+pub(crate) fn file(model: &str) -> Vec<u8> {
     package(&[("_rels/.rels", RELATIONSHIPS.as_bytes()), ("3D/3dmodel.model", model.as_bytes())])
 }
 
-fn model(attributes: &str, resources: &str, build: &str) -> String {
+pub(crate) fn model(attributes: &str, resources: &str, build: &str) -> String {
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model {attributes} xmlns=\"{CORE}\" xmlns:m=\"{MATERIAL}\" \
          xmlns:p=\"{PRODUCTION}\" xmlns:slic3rpe=\"http://schemas.slic3r.org/3mf/2017/06\">\n\
@@ -50,7 +50,7 @@ fn model(attributes: &str, resources: &str, build: &str) -> String {
 }
 
 /// The corners and triangles of the box from `low` to `high`, outward.
-fn cuboid(low: [f64; 3], high: [f64; 3]) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
+pub(crate) fn cuboid(low: [f64; 3], high: [f64; 3]) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
     let corner = |i: usize| [0, 1, 2].map(|k| if i >> k & 1 == 1 { high[k] } else { low[k] });
     let triangles = vec![
         [0, 2, 1],
@@ -70,7 +70,7 @@ fn cuboid(low: [f64; 3], high: [f64; 3]) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
 }
 
 /// The element of a mesh; `marks` gives further attributes of each triangle.
-fn mesh(points: &[[f64; 3]], triangles: &[[u32; 3]], marks: impl Fn(usize) -> String) -> String {
+pub(crate) fn mesh(points: &[[f64; 3]], triangles: &[[u32; 3]], marks: impl Fn(usize) -> String) -> String {
     let mut text = "<mesh><vertices>".to_owned();
     for [x, y, z] in points {
         write!(text, "<vertex x=\"{x}\" y=\"{y}\" z=\"{z}\"/>").unwrap();
@@ -92,7 +92,7 @@ fn simple() -> String {
     model("unit=\"millimeter\"", &object, "<item objectid=\"1\"/>")
 }
 
-fn project(bytes: &[u8]) -> Project {
+pub(crate) fn project(bytes: &[u8]) -> Project {
     read_project(bytes, &ReadOptions::default(), &Budget::unlimited()).unwrap()
 }
 
@@ -103,18 +103,18 @@ fn error_of(bytes: &[u8]) -> formats::ReadError {
     error
 }
 
-fn run(operation: Operation, bytes: &[u8], options: &Options) -> Answer {
+pub(crate) fn run(operation: Operation, bytes: &[u8], options: &Options) -> Answer {
     pipeline::run(operation, bytes, options, &Budget::unlimited()).unwrap()
 }
 
-fn part(bytes: &[u8], name: &str) -> Vec<u8> {
+pub(crate) fn part(bytes: &[u8], name: &str) -> Vec<u8> {
     let mut archive = ZipArchive::new(Cursor::new(bytes)).unwrap();
     let mut content = Vec::new();
     archive.by_name(name).unwrap().read_to_end(&mut content).unwrap();
     content
 }
 
-fn result(answer: &Answer) -> &[u8] {
+pub(crate) fn result(answer: &Answer) -> &[u8] {
     answer.output.as_ref().and_then(|output| output.bytes.as_deref()).expect("a new file")
 }
 
@@ -518,7 +518,8 @@ fn a_painted_project_is_mended_part_by_part_and_keeps_its_paint() {
         assert_eq!(found, if t == 3 { "" } else { text.as_str() });
     }
     let counts = answer.report.parts[2].attributes.unwrap();
-    assert_eq!((counts.kept, counts.from_face, counts.from_nearest), (11, 1, 0));
+    assert_eq!((counts.kept, counts.from_face, counts.from_nearest, counts.lost), (11, 0, 0, 1));
+    assert!(counts.lost_area_share > 0.0 && counts.kept_area_share + counts.lost_area_share > 0.999_999);
     // What was mended is valid now and comes back as it is.
     let second = run(Operation::Repair, new, &Options::default());
     assert_eq!(second.report.outcome, Some(Outcome::Identical));

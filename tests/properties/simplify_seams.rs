@@ -54,6 +54,71 @@ fn charts(triangles: &[[u32; 3]], texture: &[Corners]) -> u32 {
     parts.into_components().count
 }
 
+/// Number of parts of each group that hang together by edges.
+fn regions(triangles: &[[u32; 3]], groups: &[u32]) -> BTreeMap<u32, u32> {
+    let mut sides: BTreeMap<[u32; 2], Vec<u32>> = BTreeMap::new();
+    for (t, corners) in (0..).zip(triangles) {
+        for k in 0..3 {
+            let mut ends = [corners[k], corners[(k + 1) % 3]];
+            ends.sort_unstable();
+            sides.entry(ends).or_default().push(t);
+        }
+    }
+    let mut parts = UnionFind::new(triangles.len());
+    for side in sides.values() {
+        if let [a, b] = side[..]
+            && groups[a as usize] == groups[b as usize]
+        {
+            parts.unite(a, b);
+        }
+    }
+    let mut counts = BTreeMap::new();
+    for (t, &group) in (0..).zip(groups) {
+        *counts.entry(group).or_default() += u32::from(parts.find(t) == t);
+    }
+    counts
+}
+
+#[test]
+fn regions_stay_apart_and_none_is_lost_in_any_mode() {
+    on_all_cores(cases(100, 2_000), |case| {
+        let random = &mut Random::new(5_000 + case as u64);
+        let n = 6 + random.below(12) as u32;
+        let (positions, mut triangles) = torus(random, n);
+        if random.one_in(2) {
+            triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        }
+        // Halves and quarters of the torus, and single triangles that are regions of their own.
+        let mut group_of = |corners: &[u32; 3]| {
+            let middle: DVec3 = corners.iter().map(|&v| positions[v as usize]).sum::<DVec3>() / 3.0;
+            match random.one_in(40) {
+                true => 10 + random.below(3) as u32,
+                false => u32::from(middle.x > 0.0) + 2 * u32::from(middle.z > 0.0),
+            }
+        };
+        let groups: Vec<u32> = triangles.iter().map(&mut group_of).collect();
+        let input = Input { face_groups: &groups, ..Input::new(&positions, &triangles) };
+        let options = SimplifyOptions {
+            targets: [0.5, 0.2, 0.0].map(Target::Ratio).to_vec(),
+            criterion: random.pick(&[
+                CriterionKind::Quadric,
+                CriterionKind::Length,
+                CriterionKind::Memoryless,
+            ]),
+            placement: random.pick(&[Placement::Optimal, Placement::OntoEnd]),
+            ..SimplifyOptions::default()
+        };
+        let budget = Budget::unlimited();
+        let want = regions(&triangles, &groups);
+        for mode in [Mode::Strict, Mode::Fast, Mode::Guarded] {
+            for level in simplify(&input, mode, &options, &budget).unwrap() {
+                let of_level: Vec<u32> = level.triangle_origin.iter().map(|&t| groups[t as usize]).collect();
+                assert_eq!(regions(&level.triangles, &of_level), want, "{case} {mode:?} {:?}", level.report);
+            }
+        }
+    });
+}
+
 #[test]
 fn charts_stay_apart_and_none_is_lost_in_any_mode() {
     on_all_cores(cases(200, 5_000), |case| {

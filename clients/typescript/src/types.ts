@@ -67,7 +67,8 @@ export interface components {
             kept: number;
             /**
              * Format: int64
-             * @description They are parts of such faces, were turned around or moved, and take what is at the nearest corner of the face.
+             * @description They are parts of such faces, were turned around or moved, and have what the faces have at their places: what is between
+             *     the values at corners where these differ.
              */
             from_face: number;
             /**
@@ -76,10 +77,20 @@ export interface components {
              */
             from_nearest: number;
             /**
+             * Format: int64
+             * @description They miss paint of a slicer that divides the face behind them, and have the rest of what is said of it.
+             */
+            lost: number;
+            /**
              * Format: double
              * @description Share of the area of the result that keeps all, from 0 to 1.
              */
             kept_area_share: number | null;
+            /**
+             * Format: double
+             * @description Share of the area of the result that misses paint, from 0 to 1.
+             */
+            lost_area_share: number | null;
         };
         /** @description Rings of neighbours around a rim that a surface of method=rbf is fitted to. Default: 2. */
         BandRings: number;

@@ -114,7 +114,13 @@ fn left_out(
     let of = |f: fn(&Mesh) -> u64| {
         meshes.iter().zip(&is_placed).filter(|(_, is_placed)| **is_placed).map(|(m, _)| f(m)).sum::<u64>()
     };
+    let list = root.list("meshes")?;
+    let has_name = |mesh: usize| list.item(mesh).text("name").is_some_and(|name| !name.is_empty());
+    let names = placed.iter().filter(|place| place.is_named).count()
+        + (0..meshes.len()).filter(|&mesh| is_placed[mesh] && has_name(mesh)).count();
     Ok(vec![
+        ("united_nodes", if placed.len() > 1 { placed.len() as u64 } else { 0 }),
+        ("names", names as u64),
         ("animations", count("animations")?),
         ("skins", count("skins")?),
         ("morph_targets", of(|mesh| mesh.morph_targets)),

@@ -12,6 +12,8 @@ pub(super) struct Placed {
     pub(super) mesh: usize,
     /// Where its points go; `None`: they stay.
     pub(super) transform: Option<DAffine3>,
+    /// The node has a name.
+    pub(super) is_named: bool,
 }
 
 /// The meshes of the scene that the document shows, or of all nodes where it has none, in the order of a walk that visits a
@@ -21,7 +23,10 @@ pub(super) struct Placed {
 pub(super) fn placed_meshes(root: &Part<'_>, budget: &Budget) -> Result<(Vec<Placed>, u64), ReadError> {
     let (nodes, meshes, scenes) = (root.list("nodes")?, root.list("meshes")?, root.list("scenes")?);
     if nodes.len() == 0 {
-        return Ok(((0..meshes.len()).map(|mesh| Placed { mesh, transform: None }).collect(), 0));
+        return Ok((
+            (0..meshes.len()).map(|mesh| Placed { mesh, transform: None, is_named: false }).collect(),
+            0,
+        ));
     }
     let starts = match root.index("scene", &scenes)? {
         Some(scene) => starts_of(&scenes.item(scene), &nodes)?,
@@ -88,7 +93,8 @@ impl Walk<'_, '_> {
             // A mesh with a skin is placed by its joints alone.
             let is_still = node.get("skin").is_some() || transform == DAffine3::IDENTITY;
             let transform = (!is_still).then_some(transform);
-            self.placed.push(Placed { mesh, transform });
+            let is_named = node.text("name").is_some_and(|name| !name.is_empty());
+            self.placed.push(Placed { mesh, transform, is_named });
         }
         let children = node
             .list("children")?

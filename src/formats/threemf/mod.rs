@@ -6,6 +6,7 @@
 mod model;
 mod model_reader;
 mod models;
+mod new_members;
 mod package;
 pub(super) mod read;
 mod read_mesh;
@@ -14,6 +15,7 @@ mod read_properties;
 mod read_purposes;
 mod read_relationships;
 mod read_volumes;
+mod regions;
 mod rewrite;
 mod scene;
 mod split;
@@ -22,6 +24,7 @@ pub(super) mod write;
 mod xml;
 
 pub use model::{FaceAttributes, NO_NUMBER, ObjectKind, Property};
+pub use new_members::Between;
 pub use read::{Body, Project, read_project, read_scene};
 pub use rewrite::{FaceSource, NewBody, RewriteError, rewrite_project};
 pub use scene::Placed;

@@ -2,7 +2,7 @@
 
 use super::transform::Transform;
 use crate::mesh::{Soup, Units};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -68,6 +68,18 @@ pub struct FaceAttributes {
     pub texts: Arc<Vec<String>>,
 }
 
+impl FaceAttributes {
+    /// The property of face `f`: its own, or `of_object`.
+    pub(super) fn property_of(&self, of_object: Property, f: usize) -> Property {
+        let own = self.properties.get(f).copied().unwrap_or(Property::NONE);
+        match own {
+            Property { members: [NO_NUMBER, ..], .. } => of_object,
+            Property { group: NO_NUMBER, members } => Property { group: of_object.group, members },
+            _ => own,
+        }
+    }
+}
+
 /// An object of a model part.
 pub(super) struct Object {
     pub(super) id: u32,
@@ -109,11 +121,12 @@ pub(super) struct Reference {
 }
 
 /// Members of a property group.
+#[derive(Debug, Clone, PartialEq)]
 pub(super) enum Group {
     /// Colours, where they are stated.
     Colors(Vec<Option<[u8; 4]>>),
-    /// So many places in a picture.
-    Places(usize),
+    /// Places in a picture, across and up; those that are not stated are the origin.
+    Places(Vec<[f64; 2]>),
     /// Shares of base materials.
     Mixtures { of: u32, members: Vec<u32>, shares: Vec<Vec<f64>> },
     /// Members of several groups on each other.
@@ -124,10 +137,49 @@ impl Group {
     pub(super) fn len(&self) -> usize {
         match self {
             Self::Colors(colors) => colors.len(),
-            Self::Places(count) => *count,
+            Self::Places(points) => points.len(),
             Self::Mixtures { shares, .. } => shares.len(),
             Self::Layers { members, .. } => members.len(),
         }
+    }
+}
+
+/// The property groups of a model part.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Groups {
+    by_id: FxHashMap<u32, Group>,
+    /// Ids of groups of base materials, which cannot be mixed.
+    materials: FxHashSet<u32>,
+    /// By the ids of groups the bytes of their elements in the text of the part.
+    spans: FxHashMap<u32, Range<usize>>,
+}
+
+impl Groups {
+    pub(super) fn insert(&mut self, id: u32, group: Group, is_material: bool, span: Range<usize>) {
+        self.by_id.insert(id, group);
+        self.spans.insert(id, span);
+        if is_material {
+            self.materials.insert(id);
+        }
+    }
+
+    pub(super) fn get(&self, id: u32) -> Option<&Group> {
+        self.by_id.get(&id)
+    }
+
+    /// True when a group has places in a picture.
+    pub(super) fn have_places(&self) -> bool {
+        self.by_id.values().any(|group| matches!(group, Group::Places(_)))
+    }
+
+    /// True when the group is one of base materials.
+    pub(super) fn is_material(&self, id: u32) -> bool {
+        self.materials.contains(&id)
+    }
+
+    /// The bytes of the element of a group.
+    pub(super) fn span(&self, id: u32) -> Option<Range<usize>> {
+        self.spans.get(&id).cloned()
     }
 }
 
@@ -138,7 +190,7 @@ pub(super) struct Model {
     pub(super) objects: Vec<Object>,
     /// Places in `objects` by id.
     pub(super) numbers: FxHashMap<u32, usize>,
-    pub(super) groups: FxHashMap<u32, Group>,
+    pub(super) groups: Groups,
     pub(super) items: Vec<Reference>,
     /// Rules that it breaks and extensions that it uses, as sentences.
     pub(super) remarks: Vec<String>,
@@ -147,7 +199,7 @@ pub(super) struct Model {
 impl Model {
     /// The colour of a member of a group, if it has one: of mixtures the mean, of layers that of the uppermost.
     pub(super) fn color(&self, group: u32, member: u32) -> Option<[u8; 4]> {
-        match self.groups.get(&group)? {
+        match self.groups.get(group)? {
             Group::Layers { of, members } => {
                 let indices = members.get(member as usize)?;
                 let layers = of.iter().enumerate().rev();
@@ -161,14 +213,14 @@ impl Model {
     }
 
     fn plain_color(&self, group: u32, member: u32) -> Option<[u8; 4]> {
-        match self.groups.get(&group)? {
+        match self.groups.get(group)? {
             Group::Colors(colors) => *colors.get(member as usize)?,
             Group::Mixtures { of, members, shares } => {
                 let shares = shares.get(member as usize)?;
                 let whole: f64 = shares.iter().sum();
                 let mut mean = [0.0; 4];
                 for (&member, share) in members.iter().zip(shares) {
-                    let Some(Group::Colors(colors)) = self.groups.get(of) else { return None };
+                    let Some(Group::Colors(colors)) = self.groups.get(*of) else { return None };
                     let color = (*colors.get(member as usize)?)?;
                     for (sum, channel) in mean.iter_mut().zip(color) {
                         *sum += f64::from(channel) * share / whole;
@@ -182,12 +234,7 @@ impl Model {
 
     /// The property of face `f` of an object: its own, or that of the object.
     pub(super) fn property_of(object: &Object, attributes: &FaceAttributes, f: usize) -> Property {
-        let own = attributes.properties.get(f).copied().unwrap_or(Property::NONE);
-        match own {
-            Property { members: [NO_NUMBER, ..], .. } => object.property,
-            Property { group: NO_NUMBER, members } => Property { group: object.property.group, members },
-            _ => own,
-        }
+        attributes.property_of(object.property, f)
     }
 
     /// The colour of face `f` of an object, and whether it is the mean of corners that differ.

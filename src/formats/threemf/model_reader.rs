@@ -1,6 +1,6 @@
 //! What the readers of a model part share: the scanner, the model so far, errors and remarks with their place.
 
-use super::model::{Model, NO_NUMBER};
+use super::model::{Groups, Model, NO_NUMBER};
 use super::xml::{Document, Element, Node, Scanner};
 use crate::budget::Budget;
 use crate::formats::{ReadError, ReadOptions};
@@ -16,8 +16,6 @@ pub(super) struct ModelReader<'x> {
     pub(super) model: Model,
     /// Ids of resources that are neither objects nor groups.
     pub(super) other_ids: FxHashSet<u32>,
-    /// Ids of groups of base materials.
-    pub(super) materials: FxHashSet<u32>,
     /// Names of metadata so far.
     pub(super) metadata: Vec<String>,
     more_remarks: usize,
@@ -32,7 +30,7 @@ impl<'x> ModelReader<'x> {
             units: Units::Millimetre,
             objects: Vec::new(),
             numbers: FxHashMap::default(),
-            groups: FxHashMap::default(),
+            groups: Groups::default(),
             items: Vec::new(),
             remarks: Vec::new(),
         };
@@ -40,7 +38,6 @@ impl<'x> ModelReader<'x> {
             scanner: Scanner::new(document, budget),
             model,
             other_ids: FxHashSet::default(),
-            materials: FxHashSet::default(),
             metadata: Vec::new(),
             more_remarks: 0,
             options,
@@ -70,7 +67,7 @@ impl<'x> ModelReader<'x> {
 
     /// True when the group is one of base materials.
     pub(super) fn is_material(&self, group: u32) -> bool {
-        self.materials.contains(&group)
+        self.model.groups.is_material(group)
     }
 
     /// Notes that the part uses an extension whose content is not judged, and where it is `kept`.

@@ -1,6 +1,6 @@
 //! A package read: its model, the parts that this refers to, and the meshes in all of them.
 
-use super::model::{Content, FaceAttributes, Mesh, Model, Object, ObjectKind};
+use super::model::{Content, FaceAttributes, Groups, Mesh, Model, Object, ObjectKind, Property};
 use super::models::Models;
 use super::read_volumes::{Volume, are_all, by_object};
 use super::scene::{self, Assembled, Extent, Placed};
@@ -10,6 +10,7 @@ use crate::formats::{ReadError, ReadOptions};
 use crate::mesh::{Soup, Units};
 use rustc_hash::FxHashMap;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// The mesh of an object, in its own coordinates.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,12 +29,16 @@ pub struct Body {
     pub kind: ObjectKind,
     /// How often the build has it.
     pub instances: u32,
-    /// The triangles, without colours.
+    /// The triangles without colours, and with texture coordinates where faces are places in a picture.
     pub soup: Soup,
     /// What the file says of faces.
     pub attributes: FaceAttributes,
     /// What speaks of its vertices or triangles by number, such as `beamlattice`.
     pub extras: Vec<String>,
+    /// The property groups of its part.
+    pub(super) groups: Arc<Groups>,
+    /// Property of faces that state none.
+    pub(super) property: Property,
     /// Bytes of the elements of its vertices and triangles in the text of the part.
     pub(super) spans: [Range<usize>; 2],
     /// Bytes of the elements that `extras` names.
@@ -51,8 +56,8 @@ impl Body {
         let (soup, attributes) = volume_of(&self.soup, &self.attributes, volume);
         let name = if volume.name.is_empty() { self.name.clone() } else { volume.name.clone() };
         let (part, extras, extra_spans) = (self.part.clone(), self.extras.clone(), self.extra_spans.clone());
-        let (spans, volume) = (self.spans.clone(), Some(number));
-        Self { part, name, volume, soup, attributes, extras, extra_spans, spans, ..*self }
+        let (spans, groups, volume) = (self.spans.clone(), Arc::clone(&self.groups), Some(number));
+        Self { part, name, volume, soup, attributes, extras, extra_spans, spans, groups, ..*self }
     }
 }
 
@@ -129,15 +134,16 @@ fn project_of(models: Models) -> Project {
     let of_object = by_object(&models.volumes);
     let units = models.all.first().map(|model| model.units).unwrap_or_default();
     let root = models.all.first().map(|model| model.part.clone()).unwrap_or_default();
-    let (mut bodies, mut remarks) = (Vec::new(), models.remarks);
+    let (mut bodies, mut remarks): (Vec<Body>, _) = (Vec::new(), models.remarks);
     for (m, model) in models.all.into_iter().enumerate() {
-        let Model { part, objects, remarks: more, units: own, .. } = model;
+        let Model { part, objects, remarks: more, units: own, groups, .. } = model;
+        let groups = Arc::new(groups);
         remarks.extend(more);
         if own != units {
             remarks.push(format!("The file breaks a rule of 3MF: {part} has another unit than the model."));
         }
         for (o, object) in objects.into_iter().enumerate() {
-            let Object { id, kind, name, content, .. } = object;
+            let Object { id, kind, name, content, property } = object;
             let Content::Mesh(mesh) = content else { continue };
             let Mesh { soup, attributes, spans, extras, extra_spans } = *mesh;
             let instances = instances.get(&[m, o]).copied().unwrap_or(0);
@@ -153,6 +159,8 @@ fn project_of(models: Models) -> Project {
                 soup,
                 attributes,
                 extras,
+                groups: Arc::clone(&groups),
+                property,
                 spans,
                 extra_spans,
             };
@@ -169,5 +177,6 @@ fn project_of(models: Models) -> Project {
             }
         }
     }
+    bodies.iter_mut().for_each(|body| body.soup.texture = body.places());
     Project { units, bodies, remarks, root, volumes: models.volumes }
 }

@@ -14,6 +14,21 @@ use crate::mesh::Units;
 /// Names of metadata that are compared with each other.
 const METADATA_MAX: usize = 200;
 
+/// Names that the core specification gives to metadata; all others are in the namespace of their maker.
+const METADATA_NAMES: [&str; 9] = [
+    "Title",
+    "Designer",
+    "Description",
+    "Copyright",
+    "LicenseTerms",
+    "Rating",
+    "CreationDate",
+    "ModificationDate",
+    "Application",
+];
+/// Names that a remark lists.
+const NAMES_LISTED: usize = 5;
+
 /// Reads the model of `document`.
 ///
 /// # Errors
@@ -55,6 +70,7 @@ impl<'x> ModelReader<'x> {
                 }
             }
         }
+        self.note_metadata();
         for (has, name) in has.into_iter().zip(["resources", "build"]) {
             if !has {
                 self.remark(root.at, &format!("there is no <{name}>"));
@@ -118,6 +134,30 @@ impl<'x> ModelReader<'x> {
         }
     }
 
+    /// Notes names of metadata that are in no namespace and not those of the core specification. The samples of the
+    /// consortium disagree on whether that breaks a rule: one must pass with such a name, another must fail.
+    fn note_metadata(&mut self) {
+        let is_strange =
+            |name: &&String| !name.contains(':') && !METADATA_NAMES.iter().any(|known| known == *name);
+        let strange: Vec<&String> = self.metadata.iter().filter(is_strange).collect();
+        if strange.is_empty() {
+            return;
+        }
+        let listed: Vec<String> =
+            strange.iter().take(NAMES_LISTED).map(|name| format!("{:?}", shortened(name))).collect();
+        let more = match strange.len() - listed.len() {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        let text = format!(
+            "{} has metadata whose names are neither those of the core specification nor in a namespace: {}{more}. They are \
+             kept.",
+            self.model.part,
+            listed.join(", ")
+        );
+        self.model.remarks.push(text);
+    }
+
     fn take_metadata(&mut self, element: &Element<'x>) -> Result<(), ReadError> {
         let attributes = self.scanner.attributes(element)?;
         let name = value(&attributes, "name").unwrap_or_default().to_owned();
@@ -143,10 +183,9 @@ impl<'x> ModelReader<'x> {
                     if let Some(id) = self.id_of(&element)? {
                         match self.read_group(&element)? {
                             Some(group) => {
-                                if element.namespace == Namespace::Core {
-                                    self.materials.insert(id);
-                                }
-                                self.model.groups.insert(id, group);
+                                let is_material = element.namespace == Namespace::Core;
+                                let span = element.at..self.scanner.position();
+                                self.model.groups.insert(id, group, is_material, span);
                             }
                             None => {
                                 self.other_ids.insert(id);
@@ -176,7 +215,7 @@ impl<'x> ModelReader<'x> {
         };
         let model = &self.model;
         let is_known =
-            model.numbers.contains_key(&id) || model.groups.contains_key(&id) || self.other_ids.contains(&id);
+            model.numbers.contains_key(&id) || model.groups.get(id).is_some() || self.other_ids.contains(&id);
         if is_known {
             return Err(self.error(
                 element.at,
@@ -316,7 +355,7 @@ impl<'x> ModelReader<'x> {
     /// Remarks on properties of an object and its triangles that are not there.
     fn check_properties(&mut self, object: &Object, at: usize) {
         let default = object.property;
-        let names = |model: &Model, Property { group, members }: Property| match model.groups.get(&group) {
+        let names = |model: &Model, Property { group, members }: Property| match model.groups.get(group) {
             None => Some(format!("the property group {group}, which is not there")),
             Some(found) => {
                 let count = found.len();

@@ -35,12 +35,18 @@ pub(super) fn places<'x>(reader: &mut ModelReader<'x>, group: &Element<'x>) -> R
     if value(&attributes, "texid").and_then(number).is_none() {
         reader.remark(group.at, &format!("<{}> names no texture", group.name));
     }
-    let mut count = 0;
-    each(reader, group, "tex2coord", |_, _| {
-        count += 1;
+    let mut points = Vec::new();
+    each(reader, group, "tex2coord", |reader, element| {
+        let attributes = reader.scanner.attributes(element)?;
+        let number = |key: &str| {
+            let number =
+                numbers::coordinate(value(&attributes, key)?.trim_ascii().as_bytes(), Precision::F64);
+            number.filter(|number| number.is_finite())
+        };
+        points.push([number("u").unwrap_or(0.0), number("v").unwrap_or(0.0)]);
         Ok(())
     })?;
-    Ok(Group::Places(count))
+    Ok(Group::Places(points))
 }
 
 /// That a texture names a picture that may be one; whether it is there, the package knows.
@@ -72,7 +78,7 @@ pub(super) fn mixtures<'x>(reader: &mut ModelReader<'x>, group: &Element<'x>) ->
         reader.remark(group.at, &format!("<{}> does not say which materials it mixes", group.name));
     }
     if let Some(of) = of {
-        match reader.model.groups.get(&of) {
+        match reader.model.groups.get(of) {
             Some(Group::Colors(colors))
                 if reader.is_material(of) && members.iter().all(|&m| (m as usize) < colors.len()) => {}
             Some(Group::Colors(_)) if !reader.is_material(of) => {
@@ -108,7 +114,7 @@ pub(super) fn layers<'x>(reader: &mut ModelReader<'x>, group: &Element<'x>) -> R
     }
     let (mut materials, mut colors) = (0, 0);
     for (i, id) in of.iter().enumerate() {
-        let problem = match reader.model.groups.get(id) {
+        let problem = match reader.model.groups.get(*id) {
             None => Some("is not there"),
             Some(Group::Layers { .. }) => Some("is one of layers itself"),
             Some(Group::Mixtures { .. }) => {

@@ -1,18 +1,20 @@
 //! A 3MF with new meshes in the places of some: everything else keeps its bytes.
 
 use super::model::{FaceAttributes, NO_NUMBER, Property};
+use super::new_members::{Between, NewMembers};
 use super::package::Package;
 use super::read::{Body, Project};
 use super::read_volumes::{VOLUMES, by_object};
 use super::write::{add_entry, not_packed, triangle, vertices};
 use super::xml::{Attributes, Document};
-use crate::budget::{Budget, Stopped};
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::formats::decimals::Text;
 use crate::formats::{ReadError, WriteError};
 use crate::mesh::Soup;
 use rustc_hash::FxHashMap;
 use std::io::Cursor;
 use std::ops::Range;
+use std::sync::Arc;
 use zip::ZipWriter;
 
 /// The usual level: what is written here is what is sent.
@@ -30,12 +32,20 @@ pub enum FaceSource {
         /// The corner of the face at each of its corners.
         corners: [u8; 3],
     },
-    /// What is there at one corner of this face, of which it is a part, or beside which it is new.
+    /// What is there at one corner of this face, of which it is a part, or beside which it is new. The face has the same at
+    /// all corners, or what cannot be told between them.
     Corner {
         /// The face.
         face: u32,
         /// The corner.
         corner: u8,
+    },
+    /// What is between corners of faces, at each of its own.
+    Between {
+        /// The face behind it, whose attributes it has otherwise.
+        face: u32,
+        /// Number in the list of [`NewBody::between`].
+        number: u32,
     },
 }
 
@@ -48,6 +58,8 @@ pub struct NewBody<'a> {
     pub soup: &'a Soup,
     /// For each triangle what it takes over.
     pub sources: &'a [FaceSource],
+    /// What corners have that is between those of faces.
+    pub between: &'a [Between],
 }
 
 /// Why there is no new file.
@@ -133,7 +145,16 @@ fn rewritten<'a>(
 ) -> Result<Vec<u8>, RewriteError> {
     let document = Document::of(part, old)?;
     let mut edits = Vec::new();
-    for object in objects(project, new) {
+    let mut objects = objects(project, new);
+    if let Some(object) = objects.first() {
+        let groups = Arc::clone(&object.pieces[0].body.groups);
+        let mut new_members = NewMembers::of(&groups);
+        for piece in objects.iter_mut().flat_map(|object| &mut object.pieces) {
+            piece.find_members(&mut new_members, budget)?;
+        }
+        edits = new_members.edits(document.text, budget)?;
+    }
+    for object in objects {
         let body = object.pieces[0].body;
         let [vertices_at, triangles_at] = body.spans.clone();
         let start = start_tag(document.text, &vertices_at);
@@ -188,6 +209,26 @@ struct Piece<'a> {
     soup: &'a Soup,
     /// `None`: its faces stay as they are.
     sources: Option<&'a [FaceSource]>,
+    between: &'a [Between],
+    /// The members at the corners that are between others, as in `between`.
+    members: Vec<[u32; 3]>,
+}
+
+impl Piece<'_> {
+    /// Finds the members at corners that are between others, in the order of triangles.
+    fn find_members(&mut self, members: &mut NewMembers<'_>, budget: &Budget) -> Result<(), Stopped> {
+        self.members = vec![[NO_NUMBER; 3]; self.between.len()];
+        for (t, source) in self.sources.into_iter().flatten().enumerate() {
+            if t % CHECK_EVERY == 0 {
+                budget.check()?;
+            }
+            let FaceSource::Between { face, number } = *source else { continue };
+            if let Some(between) = self.between.get(number as usize) {
+                self.members[number as usize] = members.at_corners(self.body, face, between);
+            }
+        }
+        Ok(())
+    }
 }
 
 /// The objects of which some volume is new.
@@ -202,8 +243,20 @@ fn objects<'a>(project: &'a Project, new: &[&NewBody<'a>]) -> Vec<NewObject<'a>>
         let of = |i: usize| by_body.get(&i);
         if (at..end).any(|i| of(i).is_some()) {
             let piece = |i: usize| match of(i) {
-                Some(new) => Piece { body: &bodies[i], soup: new.soup, sources: Some(new.sources) },
-                None => Piece { body: &bodies[i], soup: &bodies[i].soup, sources: None },
+                Some(new) => Piece {
+                    body: &bodies[i],
+                    soup: new.soup,
+                    sources: Some(new.sources),
+                    between: new.between,
+                    members: Vec::new(),
+                },
+                None => Piece {
+                    body: &bodies[i],
+                    soup: &bodies[i].soup,
+                    sources: None,
+                    between: &[],
+                    members: Vec::new(),
+                },
             };
             objects.push(NewObject { pieces: (at..end).map(piece).collect() });
         }
@@ -290,10 +343,12 @@ fn triangles(
                 text.word("/>\n");
                 continue;
             }
-            FaceSource::Whole { face, .. } | FaceSource::Corner { face, .. } => face as usize,
+            FaceSource::Whole { face, .. }
+            | FaceSource::Corner { face, .. }
+            | FaceSource::Between { face, .. } => face as usize,
         };
         if let Some(&property) = attributes.properties.get(face) {
-            write_property(text, property, source);
+            write_property(text, property, source, &piece.members);
         }
         let number = attributes.others.get(face).copied().filter(|&number| number != NO_NUMBER);
         if let Some(other) = number.map(|number| &attributes.texts[number as usize]) {
@@ -324,7 +379,8 @@ fn turned(corners: [u32; 3], source: FaceSource) -> ([u32; 3], FaceSource) {
     ([0, 1, 2].map(|k| corners[turn(k)]), FaceSource::Whole { face, corners: order })
 }
 
-fn write_property(text: &mut Text<'_>, property: Property, source: FaceSource) {
+/// Writes the property of a triangle; `between`: members at the corners of those that are between others.
+fn write_property(text: &mut Text<'_>, property: Property, source: FaceSource, between: &[[u32; 3]]) {
     let Property { group, members } = property;
     let at = |corner: u8| match members[usize::from(corner)] {
         NO_NUMBER => members[0],
@@ -333,6 +389,7 @@ fn write_property(text: &mut Text<'_>, property: Property, source: FaceSource) {
     let members = match source {
         FaceSource::Whole { corners, .. } => corners.map(at),
         FaceSource::Corner { corner, .. } => [at(corner); 3],
+        FaceSource::Between { number, .. } => between[number as usize],
         FaceSource::Nothing => return,
     };
     let [first, second, third] = members;

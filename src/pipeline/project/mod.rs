@@ -9,6 +9,7 @@ mod merged_analysis;
 mod sources;
 
 pub use self::sources::AttributeCounts;
+use self::sources::TakenOver;
 use super::bounds;
 use super::input::{Input, samples_of, units_of_file};
 use super::output::refusal;
@@ -18,10 +19,10 @@ use super::{
 use crate::budget::{Budget, Stage};
 use crate::certificate::{self, Certificate, Depth, Examination, PartsExamination};
 use crate::formats::threemf::{
-    Body, FaceSource, NewBody, ObjectKind, Project, RewriteError, read_project, rewrite_project,
+    Between, Body, FaceSource, NewBody, ObjectKind, Project, RewriteError, read_project, rewrite_project,
 };
 use crate::formats::{self, Encoding, Format, ReadErrorKind, ReadLimits, ReadOptions, WriteError};
-use crate::mesh::Soup;
+use crate::mesh::{Regions, Soup, Texture};
 use crate::simplify::Target;
 
 /// Which part of a file.
@@ -151,6 +152,7 @@ struct Remade {
     body: usize,
     soup: Soup,
     sources: Vec<FaceSource>,
+    between: Vec<Between>,
 }
 
 impl Run<'_> {
@@ -209,6 +211,9 @@ impl Run<'_> {
     fn run_one(&self, number: usize, examination: Examination) -> Result<Done, Failure> {
         let body = &self.project.bodies[number];
         let mut input = Input::of(body.soup.clone(), examination, self.options)?;
+        let is_simplified =
+            self.operation == Operation::Simplify || !self.options.simplify.targets.is_empty();
+        input.regions = Some(if is_simplified { body.regions(self.budget)? } else { Regions::default() });
         let options = &self.options_of(body);
         let answer = run_on(self.operation, &mut input, options, self.budget)?;
         Ok(Done { body: number, answer, attributes: None })
@@ -279,7 +284,7 @@ impl Run<'_> {
         }
         let certificate = Some(report.input_certificate.clone());
         let report = Report { certificate, outcome: Some(Outcome::Partial), ..report };
-        let output = Output { bytes: None, encoding: Encoding::ThreeMf, origins: Vec::new() };
+        let output = output_of(None);
         Answer { report, output: Some(output), levels: Vec::new(), picture: None }
     }
 
@@ -292,27 +297,31 @@ impl Run<'_> {
                 0 => done.answer.output.as_ref(),
                 _ => done.answer.levels.get(level - 1).or(done.answer.output.as_ref()),
             };
-            let Some(Output { bytes: Some(bytes), encoding, origins }) = output else { continue };
+            let Some(Output { bytes: Some(bytes), encoding, origins, texture }) = output else { continue };
             let soup = budget.stage(Stage::Read, || formats::read(bytes, *encoding, &unlimited(), budget))?;
             let body = &self.project.bodies[done.body];
-            let (sources, counts) =
-                budget.stage(Stage::Write, || sources::sources(body, &soup, origins, budget))?;
+            let new = sources::NewMesh { soup: &soup, origins, texture };
+            let TakenOver { sources, between, counts } =
+                budget.stage(Stage::Write, || sources::taken_over(body, &new, budget))?;
             if level == 0 {
                 done.attributes = counts;
             }
-            remade.push(Remade { body: done.body, soup, sources });
+            remade.push(Remade { body: done.body, soup, sources, between });
         }
         if remade.is_empty() {
-            let output = Output { bytes: None, encoding: Encoding::ThreeMf, origins: Vec::new() };
+            let output = output_of(None);
             return Ok((output, self.certify(self.bytes)?));
         }
         let new: Vec<NewBody<'_>> = remade
             .iter()
-            .map(|remade| NewBody { body: remade.body, soup: &remade.soup, sources: &remade.sources })
+            .map(|remade| {
+                let Remade { body, soup, sources, between } = remade;
+                NewBody { body: *body, soup, sources, between }
+            })
             .collect();
         let bytes = budget.stage(Stage::Write, || rewrite_project(self.bytes, self.project, &new, budget))?;
         let certificate = self.certify(&bytes)?;
-        let output = Output { bytes: Some(bytes), encoding: Encoding::ThreeMf, origins: Vec::new() };
+        let output = output_of(Some(bytes));
         Ok((output, certificate))
     }
 
@@ -354,6 +363,11 @@ impl Run<'_> {
         let report = Report { remarks, ..merge::in_turn(answer.report, united.report, has_changed) };
         Ok(Answer { report, output, levels: united.levels, picture: None })
     }
+}
+
+/// A project as a file: with these bytes, or with those that were uploaded.
+fn output_of(bytes: Option<Vec<u8>>) -> Output {
+    Output { bytes, encoding: Encoding::ThreeMf, origins: Vec::new(), texture: Texture::default() }
 }
 
 /// What we write may be larger than what we would take in.

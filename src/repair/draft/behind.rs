@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 impl Draft {
     /// The triangle of the source behind each triangle. Of new ones that of a triangle beside them, and so on inwards, ring by
     /// ring; of several the smallest. [`NEW`] where no way over edges leads to one.
-    pub(super) fn triangles_behind(&self) -> Vec<u32> {
+    pub fn triangles_behind(&self) -> Vec<u32> {
         let mut behind = self.triangle_origin.clone();
         let mut around: FxHashMap<[u32; 2], Vec<u32>> = FxHashMap::default();
         let all = || self.triangle_origin.iter().zip(&self.triangles).zip(0u32..);

@@ -2,7 +2,7 @@
 
 use super::seams::are_over_seams;
 use super::{Blend, Draft, FIRST_BLEND, NEW};
-use crate::geom::{DVec3, closest_point_on_triangle};
+use crate::geom::{DVec3, closest_point_on_triangle, shares_of_corners};
 use crate::mesh::{NO_POINT, Soup, Texture, triangle_of};
 use rustc_hash::FxHashMap;
 
@@ -73,15 +73,14 @@ impl Draft {
 
 /// The shares of the corners of a triangle in the place on it that is nearest to `p`; `None`: that is too far away, or the
 /// triangle has no area.
-fn shares([a, b, c]: [DVec3; 3], p: DVec3) -> Option<[f64; 3]> {
-    let on = closest_point_on_triangle(p, [a, b, c]);
+fn shares(corners: [DVec3; 3], p: DVec3) -> Option<[f64; 3]> {
+    let [a, b, c] = corners;
+    let on = closest_point_on_triangle(p, corners);
     let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-    let normal = (b - a).cross(c - a);
-    let part = |q: DVec3, r: DVec3| (q - on).cross(r - on).dot(normal).max(0.0);
-    let parts = [part(b, c), part(c, a), part(a, b)];
-    let sum: f64 = parts.iter().sum();
-    let is_near = on.distance(p) <= GAP_MAX * longest;
-    (is_near && sum > 0.0 && sum.is_finite()).then(|| parts.map(|part| part / sum))
+    if on.distance(p) > GAP_MAX * longest {
+        return None;
+    }
+    shares_of_corners(on, corners)
 }
 
 fn mean(points: impl Iterator<Item = ([f64; 2], f64)>) -> [f64; 2] {

@@ -252,7 +252,7 @@ impl<'r, C: Criterion> Part<'r, C> {
         self.allowance.walked(ends[0], self.rings.origin.corners.len());
         self.allowance.walked(ends[1], self.rings.destination.corners.len());
         self.surface.table.link_condition(h, &self.rings).map_err(Refusal::Link)?;
-        if !self.surface.wedges.keep_charts(&self.surface.table, h) {
+        if !self.surface.keeps_regions(h) {
             return Err(Refusal::Held.into());
         }
         check_faces(&self.surface, h, &self.rings, position, &options.guards)?;

@@ -73,6 +73,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
             CornerTable::unpaired(&[], 0),
             budget,
         )?;
+        frame.has_regions = input.has_regions();
         let mesh = Mesh {
             vertices: std::mem::take(&mut frame.vertices),
             colors: input.vertex_colors.to_vec(),

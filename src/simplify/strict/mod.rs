@@ -56,6 +56,7 @@ fn run<C: Criterion>(
     let order = layout.vertices.iter().copied();
     let mut surface = Surface::<C::State>::new(input.positions, order, table, budget)?;
     surface.wedges.0 = layout.of_triangles(input.texture);
+    surface.has_regions = input.has_regions();
     mark_lines(&mut surface, &layout.of_triangles(input.face_groups), options, budget)?;
     criterion.prepare(&mut surface, budget)?;
     let mut strict = Strict {
@@ -206,7 +207,7 @@ impl<C: Criterion> Strict<'_, C> {
         let (position, origin) = self.surface.landing(h, rule, placed.position, self.options.round)?;
         self.rings.walk(&self.surface.table, h);
         self.surface.table.link_condition(h, &self.rings).map_err(Refusal::Link)?;
-        if !self.surface.wedges.keep_charts(&self.surface.table, h) {
+        if !self.surface.keeps_regions(h) {
             return Err(Refusal::Held);
         }
         check_faces(&self.surface, h, &self.rings, position, &self.options.guards)?;

@@ -24,15 +24,24 @@ class Attributes(TypedDict):
     """
     from_face: int
     """
-    They are parts of such faces, were turned around or moved, and take what is at the nearest corner of the face.
+    They are parts of such faces, were turned around or moved, and have what the faces have at their places: what is between
+    the values at corners where these differ.
     """
     from_nearest: int
     """
     They are new, and take what is on the nearest face of the file.
     """
+    lost: int
+    """
+    They miss paint of a slicer that divides the face behind them, and have the rest of what is said of it.
+    """
     kept_area_share: float | None
     """
     Share of the area of the result that keeps all, from 0 to 1.
+    """
+    lost_area_share: float | None
+    """
+    Share of the area of the result that misses paint, from 0 to 1.
     """
 
 
