@@ -7,7 +7,6 @@ use crate::budget::{Budget, Stopped};
 use crate::formats::decimals::Text;
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 /// Most bytes of a new member beside its numbers, and of each of these.
 const MEMBER_BYTES_MAX: usize = 60;
@@ -97,7 +96,7 @@ impl<'g> NewMembers<'g> {
     ///
     /// # Errors
     /// When the budget stops the run.
-    pub(super) fn edits(&self, text: &str, budget: &Budget) -> Result<Vec<(Range<usize>, Vec<u8>)>, Stopped> {
+    pub(super) fn edits(&self, text: &str, budget: &Budget) -> Result<Vec<(usize, Vec<u8>)>, Stopped> {
         let mut edits = Vec::new();
         for (&group, values) in &self.new {
             let Some(span) = self.groups.span(group) else { continue };
@@ -110,7 +109,7 @@ impl<'g> NewMembers<'g> {
                 new.before_item(i, MEMBER_BYTES_MAX + prefix.len() + NUMBER_BYTES_MAX * numbers_of(value))?;
                 write_member(&mut new, prefix, value);
             }
-            edits.push((end..end, new.into_bytes()));
+            edits.push((end, new.into_bytes()));
         }
         Ok(edits)
     }
@@ -260,6 +259,6 @@ mod tests {
         let mut new = NewMembers::of(&groups);
         new.mixed(2, &[(0, 0.5), (1, 0.5)], true);
         let edits = new.edits(text, &Budget::unlimited()).unwrap();
-        assert_eq!(edits, [(14..14, b"<m:color color=\"#80808080\"/>\n".to_vec())]);
+        assert_eq!(edits, [(14, b"<m:color color=\"#80808080\"/>\n".to_vec())]);
     }
 }

@@ -152,7 +152,8 @@ fn rewritten<'a>(
         for piece in objects.iter_mut().flat_map(|object| &mut object.pieces) {
             piece.find_members(&mut new_members, budget)?;
         }
-        edits = new_members.edits(document.text, budget)?;
+        let new = new_members.edits(document.text, budget)?;
+        edits = new.into_iter().map(|(at, text)| (at..at, text)).collect();
     }
     for object in objects {
         let body = object.pieces[0].body;
