@@ -36,9 +36,12 @@ for row in rows:
     reasons = collections.Counter(why(hole) for hole in holes if hole["fate"] == "rejected").most_common(1)
     told = f"{reasons[0][1]} times {reasons[0][0]}" if reasons else "faces there point against each other, or more than two faces meet"
     lines.append(f"| {row['#id']} | {row['faces']} | {count['filled']} | {count['rejected']} | {count['no-loop']} | {told} |")
-print(f"""`fill-holes` by `auto` on the {sums['files'] + sums['files without a report']} files of the corpus that its manifest calls open and that have at most {o.faces:,} faces ({larger} are larger): of {sum(sums[f] for f in FATES):,} boundary loops {sums['filled']:,} are filled,
+commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=root, capture_output=True, text=True).stdout.strip()
+print(f"""# The boundary loops of the corpus
+
+Engine of commit {commit}; made by `experiments/corpus_holes.py`. `fill-holes` by `auto` on the {sums['files'] + sums['files without a report']} files of the corpus that its manifest calls open and that have at most {o.faces:,} faces ({larger} are larger): of {sum(sums[f] for f in FATES):,} boundary loops {sums['filled']:,} are filled,
 {sums['rejected']:,} have no sound patch and stay open, {sums['no-loop']} are no simple loop. {sums['files with every loop filled']} files have no open loop any more. Nothing is chosen to stay. The rest, one by one, with the reason that most of the loops that stay open have
-([what the reasons mean](../holes.md#the-operation)). The border of a flat sheet, of a terrain or of a shell whose inside is full of other walls has no patch that meets nothing; `repair` makes
-walls of the former, and unites what is left of the latter.
+([what the reasons mean](../holes.md#the-operation)). The border of a flat sheet, of a terrain or of a shell whose inside is full of other walls has no patch that meets nothing; `repair`
+makes walls of sheets, and unites what passes through itself.
 """)
 print("| file | faces | filled | no sound patch | no loop | why |\n|---|---|---|---|---|---|"); print("\n".join(lines))

@@ -624,7 +624,7 @@ fn what_is_no_material_is_no_part_of_one_mesh_and_that_is_told() {
 
 #[test]
 fn settings_of_a_slicer_that_cannot_be_read_are_told_and_refuse_no_file() {
-    for settings in ["<config><object id=\"1\"", "no XML", "<!DOCTYPE a><config/>"] {
+    for settings in ["<config><object id=\"1\"", "<!DOCTYPE a><config/>"] {
         let bytes = package(&[
             ("_rels/.rels", RELATIONSHIPS.as_bytes()),
             ("3D/3dmodel.model", simple().as_bytes()),

@@ -53,7 +53,7 @@ fn a_mesh_goes_to_the_bucket_and_its_result_comes_from_there() {
     assert_eq!(header(&stand(&place), "upload-offset"), OPEN.len().to_string());
     let repaired = server.post("/v1/repair").json(&input(&upload)).send().unwrap();
     assert_eq!(repaired.status(), 200);
-    assert!(header(&repaired, "content-disposition").contains("part_one"));
+    assert!(header(&repaired, "content-disposition").contains("part one"));
     let mesh = repaired.bytes().unwrap();
     let copies = std::fs::read_dir(server.data_dir().join("copies/in")).unwrap().count();
     assert_eq!(copies, 0, "the mesh came past the server that took the request");

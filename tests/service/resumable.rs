@@ -105,7 +105,7 @@ fn an_upload_goes_on_where_a_broken_connection_left_it_and_is_repaired() {
     assert_eq!(report["input"]["sha256"], *digest(&mesh), "{report}");
     let repaired = server.post("/v1/repair").json(&input(&path)).send().unwrap();
     assert_eq!(repaired.status(), 200);
-    assert!(header(&repaired, "content-disposition").contains("part_one"), "the name that came with it");
+    assert!(header(&repaired, "content-disposition").contains("part one"), "the name that came with it");
     let direct = server.post("/v1/repair").body(mesh.clone()).send().unwrap();
     assert_eq!(repaired.bytes().unwrap(), direct.bytes().unwrap());
     // The first job has taken the bytes over: they are there once for each mesh that was sent.

@@ -38,7 +38,7 @@ fn a_form_brings_the_mesh_and_its_options_in_any_order() {
         assert_eq!(response.status(), 200);
         assert_eq!(response.headers()["content-type"], "model/stl");
         let name = response.headers()["content-disposition"].to_str().unwrap();
-        assert!(name.contains("part_one") && name.contains(".stl"), "{name}");
+        assert!(name.contains("part one") && name.contains(".stl"), "{name}");
     }
 }
 

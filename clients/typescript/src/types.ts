@@ -662,8 +662,7 @@ export interface components {
             bodies_lost: number | null;
             /**
              * Format: double
-             * @description Share of the area of the result, from 0 to 1, that patches of holes make up; null for operations other than
-             *     `fill-holes`.
+             * @description Share of the area of the result, from 0 to 1, that patches of holes make up; null where `holes` is null.
              */
             interpolated_area_share: number | null;
             /**
@@ -3225,7 +3224,10 @@ export interface components {
              *     `certificate` are about. Empty for other operations.
              */
             levels: components["schemas"]["Level"][];
-            /** @description What became of each hole, at most the first 10,000; null for operations other than `fill-holes`. */
+            /**
+             * @description What became of holes: of `fill-holes` each of the first 10,000; of a repair those among the listed ones that it filled
+             *     or tried to fill. Null for other operations, and of a repair that looked at none.
+             */
             holes: components["schemas"]["Hole"][] | null;
             modeller: components["schemas"]["Modeller"] | null;
             after: components["schemas"]["MeshInfo"] | null;

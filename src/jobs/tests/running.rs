@@ -19,7 +19,7 @@ async fn a_repair_gives_a_report_and_a_mesh() {
     assert!(job.started_at >= Some(job.created_at) && job.finished_at >= job.started_at);
     assert!(job.timing_ms.unwrap().repair.is_some());
     let mesh = house.result(job.id.parse().unwrap()).await.unwrap();
-    assert_eq!((mesh.bytes, mesh.file_name.as_str()), (6, "part_one-repaired.stl"));
+    assert_eq!((mesh.bytes, mesh.file_name.as_str()), (6, "part one-repaired.stl"));
     assert_eq!(content(mesh).await, b"mended");
     let report = house.report(job.id.parse().unwrap()).await.unwrap();
     let report: serde_json::Value = serde_json::from_slice(&report).unwrap();

@@ -17,7 +17,7 @@ fn a_repair_is_told_from_verdict_to_certificate() {
         "50 % of the surface is invented (faithful: at most 1 %).",
         "No unit is stated: ",
         "The surface has holes or open rims: it is not watertight.",
-        "line 17 at ",
+        "line 17",
         "Holes were closed.",
         "faces added: 1",
         "How far the result is from your file",

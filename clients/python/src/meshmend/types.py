@@ -3340,8 +3340,7 @@ class Deviation(TypedDict):
     """
     interpolated_area_share: float | None
     """
-    Share of the area of the result, from 0 to 1, that patches of holes make up; null for operations other than
-    `fill-holes`.
+    Share of the area of the result, from 0 to 1, that patches of holes make up; null where `holes` is null.
     """
     identical_triangle_share: float | None
     """
@@ -4975,7 +4974,8 @@ class Report(TypedDict):
     """
     holes: list[Hole] | None
     """
-    What became of each hole, at most the first 10,000; null for operations other than `fill-holes`.
+    What became of holes: of `fill-holes` each of the first 10,000; of a repair those among the listed ones that it filled
+    or tried to fill. Null for other operations, and of a repair that looked at none.
     """
     modeller: Modeller | None
     after: MeshInfo | None
