@@ -53,7 +53,7 @@ fn a_result_keeps_the_letters_of_the_name_of_its_file() {
     let response = request.body(form).send().unwrap();
     assert_eq!(
         header(&response, "content-disposition"),
-        "attachment; filename=\"St_ck_1.off\"; filename*=UTF-8''St%C3%BCck_1.off"
+        "attachment; filename=\"St_ck 1.off\"; filename*=UTF-8''St%C3%BCck%201.off"
     );
 }
 
