@@ -31,16 +31,17 @@ for row in rows:
     with tempfile.TemporaryDirectory() as d: report = fill(path, os.path.join(d, "filled" + (own if own in (".stl", ".obj", ".off", ".ply") else ".off")))
     if isinstance(report, str): lines.append(f"| {row['#id']} | {row['faces']} | | | | {report} |"); sums["files without a report"] += 1; continue
     holes = report["holes"] or []; count = collections.Counter(hole["fate"] for hole in holes); sums.update(count); sums["files"] += 1
-    sums["files with every loop filled"] += bool(holes) and count["filled"] == len(holes)
+    sums["files without a loop"] += not holes; sums["files with every loop filled"] += bool(holes) and count["filled"] == len(holes)
     if count["filled"] == len(holes): continue
     reasons = collections.Counter(why(hole) for hole in holes if hole["fate"] == "rejected").most_common(1)
-    told = f"{reasons[0][1]} times {reasons[0][0]}" if reasons else "faces there point against each other, or more than two faces meet"
+    told = f"{reasons[0][0]} ({reasons[0][1]})" if reasons else "faces there point against each other, or more than two faces meet"
     lines.append(f"| {row['#id']} | {row['faces']} | {count['filled']} | {count['rejected']} | {count['no-loop']} | {told} |")
 commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=root, capture_output=True, text=True).stdout.strip()
 print(f"""# The boundary loops of the corpus
 
 Engine of commit {commit}; made by `experiments/corpus_holes.py`. `fill-holes` by `auto` on the {sums['files'] + sums['files without a report']} files of the corpus that its manifest calls open and that have at most {o.faces:,} faces ({larger} are larger): of {sum(sums[f] for f in FATES):,} boundary loops {sums['filled']:,} are filled,
-{sums['rejected']:,} have no sound patch and stay open, {sums['no-loop']} are no simple loop. {sums['files with every loop filled']} files have no open loop any more. Nothing is chosen to stay. The rest, one by one, with the reason that most of the loops that stay open have
+{sums['rejected']:,} have no sound patch and stay open, {sums['no-loop']} are no simple loop. Of the files {sums['files with every loop filled']} have no open loop any more, {sums['files without a loop']} had none,
+and {sums['files without a report']} gave no report. Nothing is chosen to stay. The rest, one by one, with the reason that most of the loops that stay open have
 ([what the reasons mean](../holes.md#the-operation)). The border of a flat sheet, of a terrain or of a shell whose inside is full of other walls has no patch that meets nothing; `repair`
 makes walls of sheets, and unites what passes through itself.
 """)

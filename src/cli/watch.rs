@@ -22,7 +22,7 @@ pub(super) struct Share<'s> {
 impl<'s> Share<'s> {
     /// Characters of the bar.
     const WIDTH: usize = 24;
-    /// Characters of a line: a longer one would be broken on a terminal, and could not be drawn over.
+    /// Columns of a line: a longer one would be broken on a terminal, and could not be drawn over.
     const LINE_WIDTH: usize = 79;
 
     pub(super) fn of(operation: Operation, subject: &'s str, progress: Progress) -> Self {
@@ -42,8 +42,18 @@ impl<'s> Share<'s> {
             "{operation} [{bar}] {percent:3.0} %  {minutes:02}:{seconds:02}  {stage:14}  {}",
             self.subject
         );
-        told.trim_end().chars().take(Self::LINE_WIDTH).map(|c| if c.is_control() { '?' } else { c }).collect()
+        let mut width = 0;
+        let fits = |&c: &char| {
+            width += columns(c);
+            width <= Self::LINE_WIDTH
+        };
+        told.trim_end().chars().map(|c| if c.is_control() { '?' } else { c }).take_while(fits).collect()
     }
+}
+
+/// Columns that a character takes on a terminal, at most.
+fn columns(c: char) -> usize {
+    if c.is_ascii() { 1 } else { 2 }
 }
 
 /// Runs `body` while a second thread raises `stop` on Ctrl-C, on SIGTERM or after `deadline`, and shows `progress` if
@@ -130,15 +140,16 @@ async fn interrupted() {
 /// A line that is drawn over itself, without control sequences that a terminal may not know.
 struct ProgressLine {
     is_on: bool,
-    /// Characters that it has now.
+    /// Columns that it takes now, at most.
     width: usize,
 }
 
 impl ProgressLine {
     fn draw(&mut self, text: &str) {
         if self.is_on {
-            let _ = write!(std::io::stderr(), "\r{text:0$}", self.width);
-            self.width = self.width.max(text.chars().count());
+            let width: usize = text.chars().map(columns).sum();
+            let _ = write!(std::io::stderr(), "\r{text}{:1$}", "", self.width.saturating_sub(width));
+            self.width = self.width.max(width);
         }
     }
 
@@ -165,6 +176,8 @@ mod tests {
         assert_eq!(line, "repair [############............]  50 %  02:05  read            part.stl");
         let long = Share { subject: &"long ".repeat(40), ..share() }.line(Duration::ZERO);
         assert_eq!(long.chars().count(), Share::LINE_WIDTH);
+        let wide = Share { subject: &"部".repeat(40), ..share() }.line(Duration::ZERO);
+        assert!(wide.chars().map(columns).sum::<usize>() <= Share::LINE_WIDTH, "{wide}");
         let marked = Share { subject: "\x1b[2J", ..share() }.line(Duration::ZERO);
         assert!(marked.ends_with("?[2J"), "{marked}");
     }

@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::vec::IntoIter;
 
+use super::mesh_file::disposition;
 use axum::body::Body;
 use bytes::{Bytes, BytesMut};
 use futures_util::StreamExt as _;
@@ -41,8 +42,9 @@ impl<R> Mesh<R> {
     /// What stands before it in a `multipart/mixed` body.
     fn head(&self, boundary: &str) -> String {
         format!(
-            "\r\n--{boundary}\r\nContent-Type: {}\r\nContent-Disposition: attachment; filename=\"{}\"\r\n\r\n",
-            self.media_type, self.file_name
+            "\r\n--{boundary}\r\nContent-Type: {}\r\nContent-Disposition: {}\r\n\r\n",
+            self.media_type,
+            disposition(&self.file_name)
         )
     }
 }

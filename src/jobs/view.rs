@@ -97,12 +97,18 @@ fn stem(row: &JobRow) -> String {
     if stem.is_empty() { format!("mesh-{}", row.id) } else { stem }
 }
 
-/// The first 100 letters of `stem` as a name that every system takes.
+/// Most bytes of the beginning of a name: file systems take 255 in all.
+const STEM_BYTES_MAX: usize = 200;
+
+/// The first 100 letters of `stem`, without what some system forbids in a name and what hides how it reads.
 fn without_forbidden(stem: &str) -> String {
     let is_forbidden = |c: char| c.is_control() || "<>:\"/\\|?*".contains(c);
-    let is_unseen = |c: char| matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}');
+    let is_unseen = |c: char| matches!(c, '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{e0000}'..='\u{e007f}');
     let told = |c: char| if is_forbidden(c) || is_unseen(c) { '_' } else { c };
-    let stem: String = stem.chars().take(100).map(told).collect();
+    let mut stem: String = stem.chars().take(100).map(told).collect();
+    while stem.len() > STEM_BYTES_MAX {
+        stem.pop();
+    }
     stem.trim_start_matches(['.', ' ']).trim_end_matches(['.', ' ']).to_owned()
 }
 
@@ -119,5 +125,6 @@ mod tests {
         assert_eq!(without_forbidden("..a<b>:\"c|d?*\r\n\u{202e}lts "), "a_b___c_d_____lts");
         assert_eq!(without_forbidden(" . "), "");
         assert_eq!(without_forbidden(&"ä".repeat(300)).chars().count(), 100);
+        assert_eq!(without_forbidden(&"部".repeat(300)).len(), 198);
     }
 }

@@ -118,7 +118,7 @@ impl Input {
         if operation == Operation::FillHoles {
             options.loop_samples = ELEMENTS_MAX;
         }
-        options.loop_edges = matches!(operation, Operation::FillHoles | Operation::Repair | Operation::Plan);
+        options.loop_edges = matches!(operation, Operation::FillHoles | Operation::Repair);
         if matches!(operation, Operation::Analyze | Operation::Plan) {
             let is_small = self.soup.triangles.len() <= IN_FULL_MAX;
             options.volume_interval = is_small || self.near.is_some();

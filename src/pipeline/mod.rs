@@ -322,7 +322,7 @@ pub struct Report {
     pub losses: Option<Losses>,
     /// How true the result is to the input; `None` without a result.
     pub fidelity: Option<FidelityVerdict>,
-    /// What became of holes; `None` for operations other than `fill-holes` and `repair`, and of a repair that filled none.
+    /// What became of holes; `None` for operations other than `fill-holes` and `repair`, and of a repair that tried to fill none.
     pub filling: Option<Filling>,
     /// What the modeller found and did; `None` for other operations, and for what is no polyhedron.
     pub modeller: Option<Box<ModellerReport>>,

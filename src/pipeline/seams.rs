@@ -19,10 +19,10 @@ pub(super) struct Seams {
 impl Seams {
     /// Those of `mesh`, which `draft` became; `input` says what the draft was made of.
     pub(super) fn of(mesh: &Soup, draft: &Draft, input: &Input) -> Self {
-        let plain = Self { groups: face_groups(mesh), points: points_of(mesh) };
+        let plain = Self { groups: Vec::new(), points: points_of(mesh) };
         match &input.regions {
             Some(regions) if !regions.is_empty() => plain.with_regions(regions, mesh, draft, &input.soup),
-            _ => plain,
+            _ => Self { groups: face_groups(mesh), ..plain },
         }
     }
 

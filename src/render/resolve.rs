@@ -71,7 +71,7 @@ struct Face {
 
 /// What is known of the triangles that are seen.
 struct Faces {
-    /// Number of each triangle in the other lists; any where it is not seen.
+    /// Number of each triangle in the other lists; `u32::MAX` where it is not seen.
     numbers: Vec<u32>,
     /// Toward the eye, along the axes of the picture; zero where a triangle has none.
     normals: Vec<[f32; 3]>,

@@ -144,18 +144,31 @@ impl Group {
     }
 }
 
+/// Most layers or materials of a member that is mixed with others.
+pub(super) const MIXED_MAX: usize = 16;
+
 /// The property groups of a model part.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Groups {
     by_id: FxHashMap<u32, Group>,
-    /// Ids of groups of base materials, which cannot be mixed.
+    /// Ids of groups of base materials.
     materials: FxHashSet<u32>,
+    /// Ids of groups whose members are not mixed: base materials, and members of more than [`MIXED_MAX`] layers or materials.
+    unmixed: FxHashSet<u32>,
     /// By the ids of groups the bytes of their elements in the text of the part.
     spans: FxHashMap<u32, Range<usize>>,
 }
 
 impl Groups {
     pub(super) fn insert(&mut self, id: u32, group: Group, is_material: bool, span: Range<usize>) {
+        let is_long = match &group {
+            Group::Layers { of, .. } => of.len() > MIXED_MAX,
+            Group::Mixtures { shares, .. } => shares.iter().any(|shares| shares.len() > MIXED_MAX),
+            _ => false,
+        };
+        if is_material || is_long {
+            self.unmixed.insert(id);
+        }
         self.by_id.insert(id, group);
         self.spans.insert(id, span);
         if is_material {
@@ -165,6 +178,16 @@ impl Groups {
 
     pub(super) fn get(&self, id: u32) -> Option<&Group> {
         self.by_id.get(&id)
+    }
+
+    /// A group whose members can be mixed.
+    pub(super) fn mixable(&self, id: u32) -> Option<&Group> {
+        self.get(id).filter(|_| !self.unmixed.contains(&id))
+    }
+
+    /// True when no more than one group has places in a picture.
+    pub(super) fn have_one_picture(&self) -> bool {
+        self.by_id.values().filter(|group| matches!(group, Group::Places(_))).count() <= 1
     }
 
     /// True when a group has places in a picture.

@@ -1,9 +1,9 @@
 //! New members of property groups: what is between those at the corners of a face.
 
-use super::model::{Group, Groups, Property};
+use super::model::{Group, Groups, MIXED_MAX, Property};
 use super::read::Body;
-use super::regions::Value;
-use crate::budget::{Budget, Stopped};
+use super::regions::{VALUE_BYTES, Value};
+use crate::budget::{Budget, Charge, Stopped};
 use crate::formats::decimals::Text;
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
@@ -28,11 +28,28 @@ pub(super) struct NewMembers<'g> {
     /// Numbers of members by what they are, of groups that were asked for.
     known: FxHashMap<u32, FxHashMap<Value, u32>>,
     new: BTreeMap<u32, Vec<Value>>,
+    charges: Vec<Charge<'g>>,
+    /// Bytes that are not charged yet.
+    uncharged: usize,
 }
+
+/// Bytes up to which what is new is charged later.
+const UNCHARGED_MAX: usize = 1 << 20;
 
 impl<'g> NewMembers<'g> {
     pub(super) fn of(groups: &'g Groups) -> Self {
-        Self { groups, known: FxHashMap::default(), new: BTreeMap::new() }
+        Self { groups, known: FxHashMap::default(), new: BTreeMap::new(), charges: Vec::new(), uncharged: 0 }
+    }
+
+    /// Charges what was noted since.
+    ///
+    /// # Errors
+    /// When the budget stops the run.
+    pub(super) fn charge(&mut self, budget: &'g Budget) -> Result<(), Stopped> {
+        if self.uncharged > UNCHARGED_MAX {
+            self.charges.push(budget.charge(std::mem::take(&mut self.uncharged) as u64)?);
+        }
+        Ok(())
     }
 
     /// The members at the corners of a triangle of `body` that takes over what is `between` corners of faces, of which `face`
@@ -54,14 +71,15 @@ impl<'g> NewMembers<'g> {
 
     /// The member of a group that is a mixture of `parts`: members with their shares.
     fn mixed(&mut self, group: u32, parts: &[(u32, f64)], has_layers: bool) -> u32 {
-        let largest = parts.iter().copied().reduce(|a, b| if b.1 > a.1 { b } else { a });
-        let Some((largest, _)) = largest else { return 0 };
+        let share = |member| parts.iter().filter(|part| part.0 == member).map(|part| part.1).sum::<f64>();
+        let members = parts.iter().map(|part| part.0);
+        let Some(largest) = members.reduce(|a, b| if share(b) > share(a) { b } else { a }) else { return 0 };
         if parts.iter().all(|&(member, _)| member == largest) {
             return largest;
         }
         let groups = self.groups;
-        let value = match groups.get(group) {
-            Some(Group::Colors(colors)) if !groups.is_material(group) => mean_color(colors, parts),
+        let value = match groups.mixable(group) {
+            Some(Group::Colors(colors)) => mean_color(colors, parts),
             Some(Group::Places(points)) => mean_point(points, parts),
             Some(Group::Mixtures { shares, .. }) => mean_shares(shares, parts),
             Some(Group::Layers { of, members }) if has_layers => {
@@ -81,12 +99,17 @@ impl<'g> NewMembers<'g> {
     /// The number of the member that is `value`, a new one if there is none yet.
     fn number(&mut self, group: u32, value: Value) -> u32 {
         let groups = self.groups;
-        let known = self.known.entry(group).or_insert_with(|| members_of(groups, group));
+        let count = groups.get(group).map_or(0, Group::len);
+        let known = self.known.entry(group).or_insert_with(|| {
+            self.uncharged += count * VALUE_BYTES;
+            members_of(groups, group)
+        });
         if let Some(&number) = known.get(&value) {
             return number;
         }
+        self.uncharged += 2 * VALUE_BYTES;
         let new = self.new.entry(group).or_default();
-        let number = (groups.get(group).map_or(0, Group::len) + new.len()) as u32;
+        let number = (count + new.len()) as u32;
         new.push(value.clone());
         known.insert(value, number);
         number
@@ -106,7 +129,7 @@ impl<'g> NewMembers<'g> {
             let prefix = name.find(':').map_or("", |colon| &name[..=colon]);
             let mut new = Text::new(budget);
             for (i, value) in values.iter().enumerate() {
-                new.before_item(i, MEMBER_BYTES_MAX + prefix.len() + NUMBER_BYTES_MAX * numbers_of(value))?;
+                new.before_item(i, MEMBER_BYTES_MAX + prefix.len() + NUMBER_BYTES_MAX * MIXED_MAX)?;
                 write_member(&mut new, prefix, value);
             }
             edits.push((end, new.into_bytes()));
@@ -120,7 +143,7 @@ fn members_of(groups: &Groups, group: u32) -> FxHashMap<Value, u32> {
     let count = groups.get(group).map_or(0, Group::len) as u32;
     let mut known = FxHashMap::default();
     for member in 0..count {
-        let value = match groups.get(group) {
+        let value = match groups.mixable(group) {
             Some(Group::Layers { of, members }) => {
                 let indices = &members[member as usize];
                 let index = |i: usize| Value::Member(indices.get(i).copied().unwrap_or(0));
@@ -150,7 +173,7 @@ fn mean_point(points: &[[f64; 2]], parts: &[(u32, f64)]) -> Option<Value> {
         let [u, v] = *points.get(member as usize)?;
         mean = [mean[0] + share * u, mean[1] + share * v];
     }
-    Some(Value::Point(mean.map(f64::to_bits)))
+    mean.iter().all(|x| x.is_finite()).then(|| Value::Point(mean.map(f64::to_bits)))
 }
 
 /// Members state shares of what sum they like, so that each counts by its own.
@@ -168,16 +191,6 @@ fn mean_shares(all: &[Vec<f64>], parts: &[(u32, f64)]) -> Option<Value> {
         }
     }
     Some(Value::Shares(mean.into_iter().map(f64::to_bits).collect()))
-}
-
-/// How many numbers the element of a member has.
-fn numbers_of(value: &Value) -> usize {
-    match value {
-        Value::Member(_) | Value::Color(_) => 1,
-        Value::Point(_) => 2,
-        Value::Shares(shares) => shares.len(),
-        Value::Layers(layers) => layers.len(),
-    }
 }
 
 fn write_member(text: &mut Text<'_>, prefix: &str, value: &Value) {
@@ -245,6 +258,7 @@ mod tests {
         assert_eq!(new.mixed(2, &[(0, 0.5), (2, 0.5)], true), 0, "one that is there");
         assert_eq!(new.mixed(3, &[(0, 0.25), (1, 0.75)], true), 2);
         assert_eq!(new.mixed(1, &[(0, 0.25), (1, 0.75)], true), 1, "materials are not mixed");
+        assert_eq!(new.mixed(1, &[(0, 0.3), (1, 0.4), (0, 0.3)], true), 0, "both shares of a material count");
         assert_eq!(new.mixed(5, &[(0, 0.25), (1, 0.75)], true), 2);
         assert_eq!(new.new[&5], [Value::Shares([0.25f64, 0.75].map(f64::to_bits).to_vec())]);
         assert_eq!(new.mixed(4, &[(0, 0.5), (1, 0.5)], true), 2);

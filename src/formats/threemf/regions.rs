@@ -22,7 +22,7 @@ pub(super) enum Value {
 impl Groups {
     /// What a member of a group is; layers may lie on each other once.
     pub(super) fn value(&self, group: u32, member: u32) -> Value {
-        match self.get(group) {
+        match self.mixable(group) {
             Some(Group::Layers { of, members }) => match members.get(member as usize) {
                 Some(indices) => {
                     let of_layer = |(i, &group): (usize, &u32)| {
@@ -37,10 +37,8 @@ impl Groups {
     }
 
     fn plain_value(&self, group: u32, member: u32) -> Value {
-        let value = match self.get(group) {
-            Some(Group::Colors(colors)) if !self.is_material(group) => {
-                colors.get(member as usize).copied().flatten().map(Value::Color)
-            }
+        let value = match self.mixable(group) {
+            Some(Group::Colors(colors)) => colors.get(member as usize).copied().flatten().map(Value::Color),
             Some(Group::Places(points)) => {
                 points.get(member as usize).map(|point| Value::Point(point.map(f64::to_bits)))
             }
@@ -76,6 +74,11 @@ impl Body {
     /// True when the corners of face `face` are places in a picture.
     pub fn is_in_picture(&self, face: u32) -> bool {
         matches!(self.groups.get(self.property_of(face).group), Some(Group::Places(_)))
+    }
+
+    /// True when all corners that are places in a picture are places in the same one.
+    pub fn has_one_picture(&self) -> bool {
+        self.groups.have_one_picture()
     }
 
     /// Where the corners of triangles are in pictures.
@@ -119,18 +122,27 @@ impl Body {
             return Ok(regions);
         }
         let mut numbers = Numbers::default();
-        let mut of_key: FxHashMap<[u32; 3], u32> = FxHashMap::default();
+        let mut of_key: FxHashMap<[u32; 4], u32> = FxHashMap::default();
+        let is_divided: Vec<bool> =
+            (0..attributes.texts.len() as u32).map(|number| attributes.is_divided(number)).collect();
+        let (mut charges, mut charged) = (Vec::new(), 0);
         let mut is_mixed = false;
         for t in 0..self.soup.triangles.len() {
             if t % CHECK_EVERY == 0 {
                 budget.check()?;
+                let bytes = numbers.of_value.len() * VALUE_BYTES;
+                charges.push(budget.charge((bytes - charged) as u64)?);
+                charged = bytes;
             }
             let face = self.soup.face_of(t as u32);
             let Property { group, members } = self.property_of(face);
             let values = members.map(|member| numbers.of(&self.groups, group, member));
             let is_uniform = values == [values[0]; 3];
             let other = attributes.others.get(face as usize).copied().unwrap_or(NO_NUMBER);
-            let key = [group, if is_uniform { values[0] } else { NO_VALUE }, other];
+            // What is painted inside of a triangle can go on with this triangle only.
+            let alone = is_divided.get(other as usize).is_some_and(|&is_divided| is_divided);
+            let alone = if alone { t as u32 } else { NO_NUMBER };
+            let key = [group, if is_uniform { values[0] } else { NO_VALUE }, other, alone];
             let next = of_key.len() as u32;
             regions.of_triangle.push(*of_key.entry(key).or_insert(next));
             is_mixed |= !is_uniform;
@@ -145,6 +157,9 @@ impl Body {
         Ok(regions)
     }
 }
+
+/// Bytes of a value of as many layers as are mixed, in a list that finds it.
+pub(super) const VALUE_BYTES: usize = 1024;
 
 /// Numbers of values: the same for members of a group that are alike.
 #[derive(Default)]

@@ -33,7 +33,7 @@ pub enum FaceSource {
         corners: [u8; 3],
     },
     /// What is there at one corner of this face, of which it is a part, or beside which it is new. The face has the same at
-    /// all corners, or what cannot be told between them.
+    /// all corners.
     Corner {
         /// The face.
         face: u32,
@@ -217,7 +217,7 @@ struct Piece<'a> {
 
 impl Piece<'_> {
     /// Finds the members at corners that are between others, in the order of triangles.
-    fn find_members(&mut self, members: &mut NewMembers<'_>, budget: &Budget) -> Result<(), Stopped> {
+    fn find_members<'g>(&mut self, members: &mut NewMembers<'g>, budget: &'g Budget) -> Result<(), Stopped> {
         self.members = vec![[NO_NUMBER; 3]; self.between.len()];
         for (t, source) in self.sources.into_iter().flatten().enumerate() {
             if t % CHECK_EVERY == 0 {
@@ -226,6 +226,7 @@ impl Piece<'_> {
             let FaceSource::Between { face, number } = *source else { continue };
             if let Some(between) = self.between.get(number as usize) {
                 self.members[number as usize] = members.at_corners(self.body, face, between);
+                members.charge(budget)?;
             }
         }
         Ok(())

@@ -142,7 +142,14 @@ impl LookUp<'_> {
             return Ok((FaceSource::Corner { face, corner: nearest_corner(was, middle) }, fate));
         }
         let between = match new.texture.of_triangle(t) {
-            Some(points) if body.is_in_picture(face) => Between::Points(points),
+            // A new triangle has the points of its rim, which may be in another picture than the face nearest to it.
+            Some(points)
+                if body.is_in_picture(face)
+                    && (origin.is_some() || body.has_one_picture())
+                    && points.as_flattened().iter().all(|x| x.is_finite()) =>
+            {
+                Between::Points(points)
+            }
             _ => {
                 let part_of = origin.map(|_| was);
                 let mut at = [(face, [0.0; 3]); 3];

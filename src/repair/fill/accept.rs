@@ -8,6 +8,7 @@ use crate::mesh::next_corner;
 use crate::par;
 use crate::spatial::{self, Bvh, Search};
 use rustc_hash::{FxHashMap, FxHashSet};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Contacts to look at in one round; patches that have none among them but come later are put off.
 const CONTACTS_MAX: usize = 1 << 20;
@@ -272,20 +273,17 @@ impl Surface {
             self.bvh = Some(Bvh::build(&self.positions, &self.triangles, None, budget)?);
         }
         let Some(bvh) = bvh.or(self.bvh.as_ref()) else { return Ok(Vec::new()) };
-        let of = |range: std::ops::Range<usize>| -> Result<Vec<u32>, Stopped> {
+        let is_near: Vec<AtomicBool> = self.triangles.iter().map(|_| AtomicBool::new(false)).collect();
+        par::try_map_ranges(patches.len(), TRIANGLES, |range| {
             budget.spend(range.len() as u64)?;
-            let mut ids = Vec::new();
             for t in &patches[range] {
                 let bounds = Aabb::of(t.map(|v| self.positions[v as usize]));
-                bvh.visit_box(bounds, budget, |id| ids.push(id))?;
+                bvh.visit_box(bounds, budget, |id| is_near[id as usize].store(true, Ordering::Relaxed))?;
             }
-            Ok(ids)
-        };
-        let mut is_near = vec![false; self.triangles.len()];
-        for id in par::try_map_ranges(patches.len(), TRIANGLES, of)?.into_iter().flatten() {
-            is_near[id as usize] = true;
-        }
-        Ok(self.triangles.iter().zip(is_near).filter(|&(_, near)| near).map(|(&t, _)| t).collect())
+            Ok(())
+        })?;
+        let near = self.triangles.iter().zip(is_near);
+        Ok(near.filter_map(|(&t, is_near)| is_near.into_inner().then_some(t)).collect())
     }
 
     /// As [`Self::triangles_near`] where there are few triangles in `patches`: they are sorted, and the mesh is gone through.
