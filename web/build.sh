@@ -11,8 +11,8 @@ npm ci --silent --no-audit --no-fund --ignore-scripts
 esbuild() { node_modules/.bin/esbuild "$@" --bundle --minify --target=es2022 --legal-comments=none --log-level=warning; }
 mkdir -p bundle
 esbuild src/main.js --format=esm --outfile=bundle/page.js
-# Lines of their own are left in programs for the graphics card only: their comments, indentation and empty lines go.
-sed -i -E '/^[[:space:]]*\/\//d; s/^[[:space:]]+//; /^$/d' bundle/page.js
+# Programs for the graphics card are indented by tabs, which nothing else begins a line with: these go, and comments after them.
+sed -i -E '/^\t+\/\//d; s/^\t+//' bundle/page.js
 esbuild src/mesh/worker.js --format=iife --outfile=bundle/worker.js
 esbuild src/page.css --outfile=bundle/page.css --target=chrome123
 {
