@@ -4,7 +4,6 @@ use std::io::{self, Write};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::vec::IntoIter;
 
-use super::mesh_file::disposition;
 use axum::body::Body;
 use bytes::{Bytes, BytesMut};
 use futures_util::StreamExt as _;
@@ -12,6 +11,8 @@ use tokio::io::{AsyncRead, AsyncReadExt as _};
 use tokio_util::io::ReaderStream;
 use zip::write::{SimpleFileOptions, StreamWriter};
 use zip::{CompressionMethod, ZipWriter};
+
+use super::mesh_file::disposition;
 
 /// Bytes of a mesh handled at a time.
 const PIECE_BYTES: usize = 64 << 10;

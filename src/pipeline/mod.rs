@@ -18,6 +18,7 @@ mod ladder;
 mod left_out;
 mod modeller;
 mod operation;
+mod outcome;
 mod output;
 mod picture;
 mod plan;
@@ -51,6 +52,7 @@ pub use self::modeller::{
     ModellerRefusal, ModellerReport, ModellerStep, RangeName, RangeSide,
 };
 pub use self::operation::{Facts, MESHES_MAX, Operation, Product, Require, Work};
+pub use self::outcome::Outcome;
 pub use self::picture::{PictureChoices, PictureFormat};
 pub use self::printing::PrintingReport;
 pub use self::project::{AttributeCounts, PartFacts, PartReport};
@@ -158,33 +160,6 @@ pub struct Level {
     pub distance: Option<SurfaceDistance>,
     /// How true it is to the file.
     pub fidelity: Option<FidelityVerdict>,
-}
-
-/// What became of the file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Outcome {
-    /// Already valid; the same bytes.
-    Identical,
-    /// Valid; another format.
-    Converted,
-    /// Valid after local edits.
-    Repaired,
-    /// Valid; the surface was rebuilt within the distance that is reported.
-    Rebuilt,
-    /// Fewer triangles, as asked; the certificate says what holds.
-    Simplified,
-    /// Cut and stitched, as asked; the certificate says what holds.
-    CutStitched,
-    /// Holes closed, as asked and as far as sound patches were found; the certificate says what holds.
-    Filled,
-    /// Edited by its planes, as asked; the certificate says what holds.
-    Modelled,
-    /// Valid; several solids became one, as asked.
-    Combined,
-    /// Not valid; only on request.
-    Partial,
-    /// No result.
-    Refused,
 }
 
 /// Why there is no result.
