@@ -10,7 +10,8 @@ npm ci --silent --no-audit --no-fund --ignore-scripts
 
 esbuild() { node_modules/.bin/esbuild "$@" --bundle --minify --target=es2022 --legal-comments=none --log-level=warning; }
 mkdir -p bundle
-esbuild src/main.js --format=esm --outfile=bundle/page.js
+# Properties with a leading underscore are private to three.js and get short names; its hook for developer tools is left out.
+esbuild src/main.js --format=esm --mangle-props=^_ --define:__THREE_DEVTOOLS__=undefined --outfile=bundle/page.js
 # Programs for the graphics card are indented by tabs, which nothing else begins a line with: these go, and comments after them.
 sed -i -E '/^\t+\/\//d; s/^\t+//' bundle/page.js
 esbuild src/mesh/worker.js --format=iife --outfile=bundle/worker.js

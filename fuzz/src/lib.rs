@@ -2,7 +2,7 @@
 
 use meshmend::budget::{Budget, StopFlag};
 use meshmend::certificate::{Depth, certify};
-use meshmend::formats::threemf::{FaceSource, NewBody, read_project, rewrite_project};
+use meshmend::formats::threemf::{Between, Body, FaceSource, NewBody, read_project, rewrite_project};
 use meshmend::formats::{Encoding, Format, ReadErrorKind, ReadOptions, read, sniff, write};
 use meshmend::pipeline::{Failure, Operation, Options, Outcome, run, work_units_max};
 
@@ -50,13 +50,11 @@ pub fn check_project(bytes: &[u8]) {
     let budget = || Budget::new(StopFlag::default(), u64::MAX, PROJECT_BYTES_MAX);
     let options = ReadOptions::default();
     let Ok(project) = read_project(bytes, &options, &budget()) else { return };
-    let sources: Vec<Vec<FaceSource>> = (project.bodies.iter())
-        .map(|body| vec![FaceSource::Nothing; body.soup.triangles.len()])
-        .collect();
+    let taken: Vec<(Vec<FaceSource>, Vec<Between>)> = project.bodies.iter().map(middles).collect();
     let is_finite = |body: &usize| project.bodies[*body].soup.non_finite_vertices.is_empty();
     let new: Vec<NewBody<'_>> = (0..project.bodies.len())
         .filter(|body| project.bodies[*body].is_solid() && is_finite(body))
-        .map(|body| NewBody { body, soup: &project.bodies[body].soup, sources: &sources[body], between: &[] })
+        .map(|body| NewBody { body, soup: &project.bodies[body].soup, sources: &taken[body].0, between: &taken[body].1 })
         .collect();
     for body in &project.bodies {
         assert_eq!(body.soup.check(), Vec::<String>::new());
@@ -70,6 +68,20 @@ pub fn check_project(bytes: &[u8]) {
             assert_eq!(old.soup.triangles, new.soup.triangles);
         }
     }
+}
+
+/// For each triangle what is in the middle of its face, where its corners have several things, and nothing elsewhere.
+fn middles(body: &Body) -> (Vec<FaceSource>, Vec<Between>) {
+    let mut between = Vec::new();
+    let sources = (0..body.soup.triangles.len() as u32).map(|t| {
+        let face = body.soup.face_of(t);
+        if !body.is_mixed(face) {
+            return FaceSource::Nothing;
+        }
+        between.push(Between::Shares([(face, [0.5, 0.25, 0.25]); 3]));
+        FaceSource::Between { face, number: between.len() as u32 - 1 }
+    });
+    (sources.collect(), between)
 }
 
 /// A package with `model`, whose entries are stored.

@@ -18,7 +18,8 @@ const SAME_SHARE: f64 = 1e-9;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Site {
     pub point: DVec3,
-    /// Centres at the end of point + offset and point - offset, with values `value` and -`value`; 0 without them.
+    /// Centres at the end of point + offset and point - offset, with values `value` and -`value`; both 0 where there is no room
+    /// for them.
     pub offset: DVec3,
     pub value: f64,
     /// Whether the offset centres outside and inside of the surface are there.
@@ -69,8 +70,8 @@ pub(super) fn sites(
             continue;
         }
         let lambda = offsets.lambdas[i] / frame.unit;
-        let value = if options.values == ConstraintValues::Unit { 1.0 } else { lambda };
-        let has = [keeps_offsets(sites.len(), options.share); 2];
+        let value = if options.values == ConstraintValues::Unit && lambda > 0.0 { 1.0 } else { lambda };
+        let has = [lambda > 0.0 && keeps_offsets(sites.len(), options.share); 2];
         sites.push(Site { point, offset: band.normals[i].normalize() * lambda, value, has });
     }
     restore_rank(&mut sites, budget)?;
@@ -87,12 +88,13 @@ fn keeps_offsets(i: usize, share: f64) -> bool {
 /// Gives offsets back to the sites that bring most until the centres tell as many polynomials apart as they would
 /// with all offsets.
 fn restore_rank(sites: &mut [Site], budget: &Budget) -> Result<(), Stopped> {
-    if sites.iter().all(|site| site.has[0]) {
+    let may_have = |site: &Site| site.value > 0.0;
+    if sites.iter().all(|site| site.has[0] || !may_have(site)) {
         return Ok(());
     }
     let all: Vec<DVec3> = sites
         .iter()
-        .map(|site| Site { has: [true; 2], ..*site })
+        .map(|site| Site { has: [may_have(site); 2], ..*site })
         .flat_map(|site| site.centres().map(|(p, _)| p).collect::<Vec<_>>())
         .collect();
     let wanted = rank(&all, TERMS);
@@ -105,7 +107,7 @@ fn restore_rank(sites: &mut [Site], budget: &Budget) -> Result<(), Stopped> {
         let basis = row_basis(&kept);
         let gain =
             |site: &Site| beyond(&basis, site.point + site.offset) + beyond(&basis, site.point - site.offset);
-        let missing = (0..sites.len()).filter(|&i| !sites[i].has[0]);
+        let missing = (0..sites.len()).filter(|&i| !sites[i].has[0] && may_have(&sites[i]));
         let best = missing.fold(None, |best: Option<(usize, f64)>, i| {
             let gain = gain(&sites[i]);
             if best.is_some_and(|(_, most)| most >= gain) { best } else { Some((i, gain)) }

@@ -52,8 +52,10 @@ pub struct FitFacts {
     pub lambda: f64,
     /// The least and the largest lambda used.
     pub lambda_range: [f64; 2],
-    /// Points whose lambda was halved.
+    /// Points whose lambda was halved, and those without offset centres because no lambda fits.
     pub halved: usize,
+    /// Points without offset centres because no lambda fits: another part of the surface is at them.
+    pub without_room: usize,
     /// How the system was solved.
     pub method: SolveMethod,
 }

@@ -71,7 +71,9 @@ fn facts(band: &Band, kernel: Kernel, sites: &[Site], offsets: &Offsets, parts: 
     let with_offsets = sites.iter().filter(|site| site.has != [false; 2]);
     let coincident_offsets = with_offsets.filter(|site| site.has != [true; 2]).count();
     let lambdas = offsets.lambdas.iter().copied();
-    let range = lambdas.fold([f64::INFINITY, 0.0], |[least, most], l| [least.min(l), most.max(l)]);
+    let range = lambdas
+        .filter(|&lambda| lambda > 0.0)
+        .fold([f64::INFINITY, 0.0], |[least, most], l| [least.min(l), most.max(l)]);
     debug_assert!(sites.len() <= band.points.len(), "a site is a point of the band");
     FitFacts {
         kernel,
@@ -84,6 +86,7 @@ fn facts(band: &Band, kernel: Kernel, sites: &[Site], offsets: &Offsets, parts: 
         lambda: offsets.first,
         lambda_range: range,
         halved: offsets.halved,
+        without_room: offsets.lambdas.iter().filter(|&&lambda| lambda == 0.0).count(),
         method,
     }
 }

@@ -7,7 +7,8 @@ use crate::geom::{Aabb, DVec3};
 use crate::par;
 use crate::spatial::NearestSearch;
 
-/// Halvings after which a lambda stays as it is: a thousandth of the first one, 5e-6 of the hole.
+/// Halvings after which a point gets no offsets, because another part of the surface is at it: a thousandth of the first
+/// lambda, 5e-6 of the hole.
 const HALVINGS_MAX: u32 = 10;
 /// Share of lambda that the closest point of the surface may be beside the point itself where the surface is curved
 /// toward the offset, if it is beside it and not behind it.
@@ -23,14 +24,15 @@ const POINTS: usize = 64;
 pub(super) struct Offsets {
     /// Lambda before it is halved, in the unit of the coordinates.
     pub first: f64,
-    /// Lambda of each point.
+    /// Lambda of each point; 0 where no lambda fits.
     pub lambdas: Vec<f64>,
     /// Points whose lambda was halved at least once.
     pub halved: usize,
 }
 
 /// Lambda of each point of `band`: the same for all, halved for each point until the point of the surface closest to
-/// x + lambda n and x - lambda n is x itself (Carr et al. 2001, section 3.1). With unit values the least lambda is that of all.
+/// x + lambda n and x - lambda n is x itself (Carr et al. 2001, section 3.1), and 0 where that never happens. With unit values
+/// the least lambda is that of all.
 ///
 /// On a mesh the closest point is never x itself where the surface is concave; it is then on a triangle at x, or, if
 /// triangles are smaller than lambda, beside x. What must not happen is that it is behind x, on another wall.
@@ -57,8 +59,8 @@ pub(super) fn offsets(
     }
     let halved = lambdas.iter().filter(|&&lambda| lambda < first).count();
     if options.values == ConstraintValues::Unit {
-        let least = lambdas.iter().fold(first, |least, &lambda| least.min(lambda));
-        lambdas.fill(least);
+        let least = lambdas.iter().filter(|&&lambda| lambda > 0.0).fold(first, |least, &l| least.min(l));
+        lambdas.iter_mut().filter(|lambda| **lambda > 0.0).for_each(|lambda| *lambda = least);
     }
     Ok(Offsets { first, lambdas, halved })
 }
@@ -76,14 +78,14 @@ fn fitting(
     }
     // What was closest last is a good guess for the next place.
     let mut hint = None;
-    for _ in 0..HALVINGS_MAX {
+    for _ in 0..=HALVINGS_MAX {
         let (out, inward) = (x + normal * lambda, x - normal * lambda);
         if belongs(surface, x, out, &mut hint, budget)? && belongs(surface, x, inward, &mut hint, budget)? {
-            break;
+            return Ok(lambda);
         }
         lambda *= 0.5;
     }
-    Ok(lambda)
+    Ok(0.0)
 }
 
 /// True when there are triangles at `x`, and no others within `reach` of it.
@@ -161,6 +163,12 @@ mod tests {
                 assert_eq!(found.halved, if lambda > gap / 2.0 { 4 } else { 0 });
             }
         }
+    }
+
+    #[test]
+    fn a_point_on_another_wall_gets_no_offsets() {
+        let found = lambda_at(1e-5, 1.0);
+        assert_eq!((found.lambdas, found.halved), (vec![0.0; 4], 4));
     }
 
     #[test]

@@ -22,6 +22,9 @@ pub enum Unfit {
     /// Lambda, the share or another option is outside of its range.
     #[error("lambda must be a positive number and the share of offset constraints above 0 and at most 1")]
     Options,
+    /// No point has offset constraints, because other parts of the surface are at it everywhere: the field would be zero.
+    #[error("no point of the band has room for offset constraints")]
+    NoRoom,
     /// All centres lie in one plane or on one line, so that no field is determined by them.
     #[error("the centres determine only {rank} of the 4 linear polynomials")]
     Rank {

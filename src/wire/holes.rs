@@ -186,7 +186,7 @@ pub struct Hole {
 /// A field of radial functions that was fitted to the surroundings of a hole.
 #[derive(Debug, Clone, Serialize, ToSchema)]
 pub struct FieldFit {
-    /// The radial function; `thin-plate` also where `cubic` was asked for and did not fit.
+    /// The radial function; `thin-plate` also where `cubic` was asked for and did not fit, which `rejected` tells too.
     pub kernel: Kernel,
     /// Points of the band around the hole.
     pub points: u64,
@@ -196,8 +196,10 @@ pub struct FieldFit {
     pub degree: u32,
     /// The least and the largest distance of offset constraints from their points, in the unit of the file.
     pub lambda: [f64; 2],
-    /// Points whose offset constraints are nearer than the others because another part of the surface is near.
+    /// Points whose offset constraints are nearer than the others, or left out, because another part of the surface is near.
     pub halved: u64,
+    /// Those of them without offset constraints, because another part of the surface is at them.
+    pub without_room: u64,
     /// The largest difference of the field from a value that it should take, over the largest value.
     pub residual: f64,
 }
@@ -211,6 +213,7 @@ impl From<&FitFacts> for FieldFit {
             degree: facts.degree,
             lambda: facts.lambda_range,
             halved: facts.halved as u64,
+            without_room: facts.without_room as u64,
             residual: facts.residual,
         }
     }
@@ -223,6 +226,9 @@ pub struct RejectedPatch {
     pub method: FillMethod,
     /// Why it was not taken.
     pub reason: Rejection,
+    /// Near where it meets something, in the unit of the file; null: that was not what was wrong, or not told.
+    #[schema(required)]
+    pub position: Option<[f64; 3]>,
 }
 
 impl From<&pipeline::HoleOutcome> for Hole {
@@ -232,6 +238,7 @@ impl From<&pipeline::HoleOutcome> for Hole {
         let rejected = |one: &crate::repair::fill::Rejected| RejectedPatch {
             method: one.method.into(),
             reason: one.reason.into(),
+            position: one.at.filter(|at| at.is_finite()).map(|at| at.to_array()),
         };
         Self {
             loops: inner.loops.clone(),

@@ -161,7 +161,8 @@ pub struct Deviation {
     /// Bodies of the input that can be seen and are lost as a whole; null: not measured.
     #[schema(required)]
     pub bodies_lost: Option<u32>,
-    /// Share of the area of the result, from 0 to 1, that patches of holes make up; null where `holes` is null.
+    /// Area of the patches of holes as a share of the surface, from 0 to 1, before its triangles are made fewer; null where `holes`
+    /// is null. A patch that a later step put inside a body or cut counts as it was made.
     #[schema(required)]
     pub interpolated_area_share: Option<f64>,
     /// Share of the input's triangles that are bit-identical in the result, from 0 to 1.

@@ -6,6 +6,7 @@ import { readFileSync } from "node:fs";
 import { SAMPLES } from "../../web/src/samples.js";
 import { stored } from "../../web/src/stored.js";
 import { drop, opened, picture, repaired, shot, url, withPage } from "./browser.mjs";
+import { projectsWithPocket } from "./pocket.mjs";
 import { serious } from "./ways.mjs";
 
 const sha256 = (bytes) => createHash("sha256").update(bytes).digest("hex");
@@ -102,6 +103,38 @@ export async function solids(browser) {
     assert.equal(await page.isVisible("#solid"), true, "the choice stays");
     assert.match(await page.textContent("#verdict h2"), /Certified/);
   });
+}
+
+// A negative part stands out of a box. It is not drawn, also not of a result, and a click on it in the list shows where it is.
+export async function negativePart(browser) {
+  for (const [at, content] of projectsWithPocket(["NegativeVolume", "negative_part"], 23, [[2, 2, 5], [8, 8, 40]]).entries()) {
+    await withPage(browser, {}, async (page) => {
+      await page.setInputFiles("#file", { name: "pocket.3mf", mimeType: "", buffer: Buffer.from(content) });
+      await opened(page);
+      assert.match(await page.textContent("#size"), /^30 × 10 × 10 mm/, "of what is printed");
+      assert.equal(await page.locator("#parts .part").count(), 3);
+      await page.evaluate(() => { document.querySelector("#corner").style.visibility = "hidden"; }); // its notes come and go
+      await page.click("[data-look=front]");
+      const whole = await picture(page);
+      await shot(page, `negative-${at}`);
+      await page.click("[data-part='1']");
+      await page.waitForSelector("#ring:not([hidden])");
+      assert.ok(Math.abs((await picture(page)).variance - whole.variance) > 1, "it is shown");
+      await shot(page, `negative-${at}-shown`);
+      await page.click("[data-part='0']");
+      await page.waitForSelector("#ring", { state: "hidden" });
+      await page.click("[data-look=front]");
+      assert.ok(Math.abs((await picture(page)).variance - whole.variance) < 1, "it is away again");
+
+      await page.selectOption("#solid", "together");
+      await page.waitForSelector("#parts .part", { state: "detached" });
+      await page.click("#repair");
+      await repaired(page);
+      await page.waitForSelector("#legend .new");
+      assert.match(await page.textContent("#legend"), /kept 24new 0gone 0/, "nothing of the drawn part went");
+      await shot(page, `negative-${at}-together`);
+    });
+  }
 }
 
 // An open box that is blue, as each format says it; before and after the repair.

@@ -15,6 +15,7 @@ import { Picture } from "../../web/src/places.js";
 import { SAMPLES } from "../../web/src/samples.js";
 import { stored } from "../../web/src/stored.js";
 import { url } from "./browser.mjs";
+import { projectsWithPocket } from "./pocket.mjs";
 
 let seed = 7;
 const random = () => { seed = (Math.imul(seed, 1103515245) + 12345) & 0x7fffffff; return seed / 0x7fffffff; };
@@ -90,6 +91,38 @@ export async function projects() {
   picture.project.setParts([], mesh.faceCount - 12);
   assert.deepEqual(picture.trianglesOf(3), []);
   assert.equal(picture.place([1, 2, 3], 1, 3).join(), "1,2,3");
+}
+
+// What is no material, as two kinds of slicers note it, is not drawn, as the service leaves it out of one mesh; places in it are
+// found nevertheless. Faces of one mesh of all parts are those of what is printed.
+export async function notPrinted() {
+  const ask = async (path, bytes) => Buffer.from(await (await fetch(`${url}/v1/${path}`, { method: "POST", headers: { "Content-Type": "application/octet-stream" }, body: bytes })).arrayBuffer());
+  const kinds = [["NegativeVolume", "negative_part"], ["ParameterModifier", "modifier_part"], ["SupportBlocker", "support_enforcer"]];
+  for (const [purpose, bytes] of kinds.flatMap((words) => projectsWithPocket(words).map((one) => [words[0], one]))) {
+    const mesh = await read(new Uint8Array(bytes), "pocket.3mf");
+    const scene = await read(new Uint8Array(await ask("convert?output_format=stl", bytes)), "scene.stl");
+    assert.deepEqual([mesh.drawn, mesh.faceOf.length, scene.faceOf.length], [24, 36, 24], purpose);
+    const printed = weld({ ...mesh, corners: mesh.corners.subarray(0, mesh.drawn * 3), faceOf: mesh.faceOf.subarray(0, mesh.drawn) });
+    assert.ok(kept(printed, weld(scene)).every((flag) => flag === 1), purpose);
+
+    const picture = new Picture({ ...mesh, positions: positionsOf(mesh, [0, 0, 0]), origin: [0, 0, 0] });
+    const { parts, before } = JSON.parse((await ask("analyze", bytes)).toString());
+    picture.project.setParts(parts, before.counts.faces);
+    assert.deepEqual(picture.trianglesOf(parts[1].first_face).map((triangle) => triangle >= mesh.drawn), [true], "of the pocket");
+    assert.deepEqual(picture.trianglesOf(parts[2].first_face).map((triangle) => triangle < mesh.drawn), [true], "of what comes behind it");
+    assert.equal(picture.whereIs(1).place.join(), "5,5,5");
+    assert.equal(picture.whereIs(1).undrawn.faces.length, 12 * 9);
+    assert.equal(picture.whereIs(2).undrawn, null);
+    picture.project.setParts([], scene.faceCount);
+    for (let face = 0; face < scene.faceCount; face += 1) {
+      const [triangle] = picture.trianglesOf(face);
+      assert.deepEqual([...picture.positions.subarray(triangle * 9, triangle * 9 + 9)], [...scene.vertices.subarray(face * 9, face * 9 + 9)], `${purpose}: face ${face}`);
+    }
+  }
+  // Notes that do not fit the triangles say nothing, and neither do words that are not known.
+  for (const [words, last] of [[["ModelPart", "normal_part"], 23], [["NegativeVolume", "normal_part"], 22]]) {
+    for (const bytes of projectsWithPocket(words, last)) assert.equal((await read(new Uint8Array(bytes), "pocket.3mf")).drawn, 36, words.join());
+  }
 }
 
 // Archives that are broken are left to the service; deflated ones, components, another unit and prefixes are read.

@@ -74,6 +74,59 @@ const inSight = (page, selector) => page.locator(selector).evaluate((element) =>
 
 const SCREENS = [{ viewport: { width: 1180, height: 720 } }, { viewport: { width: 375, height: 667 }, hasTouch: true, isMobile: true }];
 
+// Nothing was drawn for a while, so that what is drawn is not a rougher picture of a view that moves.
+const atRest = (page) => page.waitForFunction(() => {
+  const { dataset } = document.querySelector("#view");
+  const isAtRest = dataset.frames === dataset.seen;
+  dataset.seen = dataset.frames;
+  return isAtRest;
+}, null, { polling: 500 });
+
+// After a flight to a place, the whole part is seen again when its result comes. A view that was chosen by hand stays.
+export async function viewAfterARepair(browser) {
+  await withPage(browser, {}, async (page) => {
+    const seen = async () => {
+      await page.evaluate(() => document.activeElement.blur()); // without the outline of the focus
+      await atRest(page);
+      return createHash("sha256").update(await page.locator("#canvas").screenshot()).digest("hex");
+    };
+    // The same side for every picture, with nothing over it.
+    const plain = async () => {
+      await page.evaluate(() => { for (const part of document.querySelectorAll("#view > :not(canvas)")) part.style.visibility = "hidden"; });
+      await page.evaluate(() => document.querySelector("#arrangement [data-arrangement=before]").click());
+      await page.evaluate(() => { const list = document.querySelector("#colors"); list.value = "plain"; list.dispatchEvent(new Event("change")); });
+      return seen();
+    };
+    const repair = async () => {
+      const before = await page.evaluate(() => location.hash);
+      await page.click("#repair");
+      await page.waitForFunction((hash) => location.hash !== hash && document.querySelector("#progress").hidden && document.activeElement.id === "verdict", before);
+      return plain();
+    };
+    const press = (keys) => page.focus("#canvas").then(async () => { for (const key of keys) await page.keyboard.press(key); });
+    await open(page, "scan.off", SAMPLES.scan());
+    await opened(page);
+    await page.click(".finding-title[data-code=boundary-loop]");
+    await page.waitForSelector("#ring:not([hidden])");
+    const near = await plain();
+    const whole = await repair();
+    assert.notEqual(whole, near);
+    await press(["f"]);
+    assert.equal(await seen(), whole, "all of it is seen, from the side of the place");
+
+    // Turned and drawn near by hand.
+    await press(["ArrowLeft", "ArrowUp", "+", "+", "+", "+", "+"]);
+    const own = await seen();
+    assert.equal(await repair(), own, "what a hand chose stays");
+    // A flight, and then a hand that leads out again.
+    await page.click(".finding-title[data-code=boundary-loop]");
+    await press(["-", "-", "-", "-", "-", "-", "-", "-", "-", "-", "-", "-", "-", "-", "-", "-", "ArrowLeft"]);
+    await page.click(".finding-title[data-code=boundary-loop]"); // closes the list, so that nothing is lit
+    const far = await plain();
+    assert.equal(await repair(), far, "the whole part was seen");
+  });
+}
+
 // While a repair runs, its progress and the way to end it are in sight.
 export async function progressInSight(browser) {
   for (const screen of SCREENS) {

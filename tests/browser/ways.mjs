@@ -83,6 +83,24 @@ export async function phone(browser) {
   });
 }
 
+// At the width of a narrow phone the head has two rows at most, in every language.
+export async function narrowPhone(browser) {
+  const settings = { viewport: { width: 360, height: 780 }, deviceScaleFactor: 1, hasTouch: true, isMobile: true };
+  for (const locale of ["de", "fr", "en"]) {
+    await withPage(browser, { ...settings, locale }, async (page) => {
+      await page.tap("#sample-sound");
+      await opened(page);
+      const rows = await page.locator("header > :not(.unseen)").evaluateAll((parts) => {
+        const boxes = parts.map((part) => part.getBoundingClientRect()).filter(({ width, height }) => width && height).sort((a, b) => a.top - b.top);
+        return boxes.reduce(({ count, end }, { top, bottom }) => (top >= end ? { count: count + 1, end: bottom } : { count, end: Math.max(end, bottom) }), { count: 0, end: -Infinity }).count;
+      });
+      assert.ok(rows <= 2, `${locale}: ${rows} rows`);
+      assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 360, "nothing is wider than the phone");
+      await shot(page, `phone-360-${locale}`);
+    });
+  }
+}
+
 // A job that takes long: hundreds of triangles thrown together.
 export function heap(count) {
   let seed = 12345;

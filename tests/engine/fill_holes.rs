@@ -3,12 +3,14 @@
 use meshmend::analysis::HoleClass;
 use meshmend::budget::Budget;
 use meshmend::formats::{Encoding, Format, ReadOptions, read};
+use meshmend::geom::DVec3;
+use meshmend::implicit::Kernel;
 use meshmend::mesh::{Color, Soup};
 use meshmend::pipeline::{
     Answer, ChosenHole, ChosenPlan, Failure, FillHolesChoices, HoleFate, HoleOutcome, Operation, Options,
     Outcome, Require, run,
 };
-use meshmend::repair::fill::{FillOptions, Method};
+use meshmend::repair::fill::{FillOptions, Method, Rejection};
 use std::fmt::Write as _;
 
 /// A sphere of radius 1 as rings of quadrangles between two poles, in OFF, without the faces for which `is_gone` holds by
@@ -182,6 +184,59 @@ fn a_file_without_holes_comes_back_as_it_is_and_one_that_cannot_be_filled_too() 
             );
         }
     }
+}
+
+/// A bent plate of 20 by 20 squares with a hole of 5 by 5 in its upper side.
+fn bent_plate(thickness: f64) -> Vec<u8> {
+    const N: usize = 20;
+    let vertex = |i: usize, k: usize, side: usize| (i * (N + 1) + k) * 2 + side;
+    let mut lines = Vec::new();
+    for (i, k) in (0..=N).flat_map(|i| (0..=N).map(move |k| (i, k))) {
+        let [x, y] = [i, k].map(|i| 10.0 * i as f64 / N as f64);
+        let z = 0.05 * ((x - 5.0).powi(2) + (y - 5.0).powi(2));
+        lines.extend([z, z - thickness].map(|z| format!("{x} {y} {z}")));
+    }
+    let mut faces: Vec<[usize; 4]> = Vec::new();
+    for (i, k) in (0..N).flat_map(|i| (0..N).map(move |k| (i, k))) {
+        let square = |side| [(i, k), (i + 1, k), (i + 1, k + 1), (i, k + 1)].map(|(i, k)| vertex(i, k, side));
+        let [a, b, c, d] = square(1);
+        faces.push([d, c, b, a]);
+        if !((7..12).contains(&i) && (7..12).contains(&k)) {
+            faces.push(square(0));
+        }
+    }
+    for i in 0..N {
+        for [(i, k), (m, n)] in
+            [[(i, 0), (i + 1, 0)], [(N, i), (N, i + 1)], [(i + 1, N), (i, N)], [(0, i + 1), (0, i)]]
+        {
+            faces.push([vertex(i, k, 0), vertex(i, k, 1), vertex(m, n, 1), vertex(m, n, 0)]);
+        }
+    }
+    lines.extend(faces.iter().flat_map(|&[a, b, c, d]| [format!("3 {a} {b} {c}"), format!("3 {a} {c} {d}")]));
+    let head = format!("OFF\n{} {} 0\n", 2 * (N + 1) * (N + 1), 2 * faces.len());
+    (head + &lines.join("\n")).into_bytes()
+}
+
+#[test]
+fn a_field_that_does_not_fit_a_thin_wall_is_told_and_where_the_next_ones_meet_the_other_side() {
+    let told = |thickness| {
+        let answer = filled(&bent_plate(thickness), by(Method::Rbf)).unwrap();
+        let [hole] = holes(&answer) else { panic!("one hole") };
+        (hole.told.as_ref().unwrap().used, hole.rejected.clone(), hole.told.as_ref().unwrap().field)
+    };
+    let (used, rejected, field) = told(0.1);
+    assert_eq!((used, rejected.len(), field.unwrap().kernel), (Some(Method::Rbf), 0, Kernel::Cubic));
+    let (used, rejected, _) = told(0.001);
+    let reasons: Vec<_> = rejected.iter().map(|one| (one.method, one.reason)).collect();
+    let meets = Rejection::MeetsOther;
+    let wanted = [(Method::Rbf, Rejection::Inexact), (Method::Rbf, meets), (Method::Smooth, meets)];
+    assert_eq!((used, &reasons[..]), (Some(Method::Minimal), &wanted[..]));
+    for one in &rejected {
+        let is_over_hole = |at: DVec3| (3.4..6.1).contains(&at.x) && (3.4..6.1).contains(&at.y);
+        assert_eq!(one.at.is_some_and(is_over_hole), one.reason == meets, "{one:?}");
+    }
+    let (_, rejected, _) = told(2e-5);
+    assert_eq!(rejected[0].reason, Rejection::NoRoom);
 }
 
 #[test]

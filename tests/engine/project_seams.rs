@@ -375,6 +375,45 @@ fn parts_of_triangles_have_the_colours_between_their_corners() {
     }
 }
 
+/// Two boxes that cross, whose corners have members of `layers` layers of colours.
+fn layered(layers: usize) -> Vec<u8> {
+    let (mut points, mut triangles) = cuboid([0.0; 3], [10.0; 3]);
+    let (more, second) = cuboid([4.0, 5.0, 6.0], [14.0, 15.0, 16.0]);
+    points.extend(more);
+    triangles.extend(second.iter().map(|t| t.map(|v| v + 8)));
+    let mut groups = String::new();
+    for layer in 0..layers {
+        write!(groups, "<m:colorgroup id=\"{}\">", 10 + layer).unwrap();
+        (0..points.len())
+            .for_each(|v| write!(groups, "<m:color color=\"#{:02X}{v:02X}00\"/>", 10 * layer).unwrap());
+        groups += "</m:colorgroup>";
+    }
+    let ids: Vec<String> = (0..layers).map(|layer| (10 + layer).to_string()).collect();
+    write!(groups, "<m:multiproperties id=\"3\" pids=\"{}\">", ids.join(" ")).unwrap();
+    for v in 0..points.len() {
+        write!(groups, "<m:multi pindices=\"{}\"/>", vec![v.to_string(); layers].join(" ")).unwrap();
+    }
+    groups += "</m:multiproperties>";
+    let object = mesh(&points, &triangles, |t| {
+        let [a, b, c] = triangles[t];
+        format!(" pid=\"3\" p1=\"{a}\" p2=\"{b}\" p3=\"{c}\"")
+    });
+    file(&model("", &format!("{groups}<object id=\"1\">{object}</object>"), "<item objectid=\"1\"/>"))
+}
+
+#[test]
+fn members_of_up_to_sixteen_layers_are_mixed_and_those_of_more_stay_as_they_are() {
+    for (layers, are_mixed) in [(2, true), (16, true), (17, false)] {
+        let bytes = layered(layers);
+        let answer = run(Operation::Repair, &bytes, &Options::default());
+        assert!(answer.report.certificate.as_ref().unwrap().is_printable());
+        let count = |bytes: &[u8]| {
+            String::from_utf8(part(bytes, "3D/3dmodel.model")).unwrap().matches("<m:multi ").count()
+        };
+        assert_eq!(count(result(&answer)) > count(&bytes), are_mixed, "{layers} layers");
+    }
+}
+
 #[test]
 fn a_patch_has_the_colours_between_those_of_its_rim() {
     let (points, mut triangles) = cuboid([0.0; 3], [10.0; 3]);

@@ -641,6 +641,45 @@ fn settings_of_a_slicer_that_cannot_be_read_are_told_and_refuse_no_file() {
 }
 
 #[test]
+fn metadata_of_names_in_no_namespace_are_told_and_kept() {
+    let names = ["Title", "slic3rpe:Version3mf", "Colour of the week"];
+    let metadata = names.map(|name| format!("<metadata name=\"{name}\">x</metadata>")).concat();
+    let bytes = file(&simple().replace("<resources>", &format!("{metadata}<resources>")));
+    let answer = run(Operation::Repair, &bytes, &Options::default());
+    let [remark] = &answer.report.remarks[..] else { panic!("one remark: {:?}", answer.report.remarks) };
+    assert_eq!(names.map(|name| remark.contains(name)), [false, false, true], "{remark}");
+    assert_eq!(answer.report.outcome, Some(Outcome::Identical));
+}
+
+#[test]
+fn holes_of_several_parts_are_told_together_and_patches_are_a_share_of_all() {
+    let open = |without: usize| {
+        let (points, mut triangles) = cuboid([0.0; 3], [10.0; 3]);
+        triangles.truncate(triangles.len() - without);
+        mesh(&points, &triangles, |_| String::new())
+    };
+    let objects = [1, 2].map(|id| format!("<object id=\"{id}\" type=\"model\">{}</object>", open(id)));
+    let items = "<item objectid=\"1\"/><item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 40 0 0\"/>";
+    let bytes = file(&model("unit=\"millimeter\"", &objects.concat(), items));
+    for operation in [Operation::Repair, Operation::FillHoles] {
+        let answer = run(operation, &bytes, &Options::default());
+        assert!(answer.report.certificate.as_ref().unwrap().is_printable());
+        let filling = answer.report.filling.as_ref().unwrap();
+        let loops: Vec<_> = filling.holes.iter().map(|hole| (hole.loops.clone(), hole.edges)).collect();
+        assert_eq!(loops, [(vec![0], 3), (vec![0], 4)]);
+        // One and two of the 24 triangles, all of one size.
+        assert!((filling.interpolated_area_share - 3.0 / 24.0).abs() < 1e-12, "{filling:?}");
+        let of_parts: Vec<usize> = answer
+            .report
+            .parts
+            .iter()
+            .map(|part| part.report.filling.as_ref().unwrap().holes.len())
+            .collect();
+        assert_eq!(of_parts, [1, 1]);
+    }
+}
+
+#[test]
 fn the_same_file_gives_the_same_bytes_with_one_thread_and_with_many() {
     let bytes = painted(true);
     let of = |threads| {

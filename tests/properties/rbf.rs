@@ -329,6 +329,35 @@ fn what_cannot_be_fitted_is_refused_with_the_reason() {
     assert_eq!(fit(&good, &ALONE, &options, &stopped).unwrap_err(), Stopped::Cancelled);
 }
 
+#[test]
+fn points_on_another_wall_have_no_offsets_and_where_all_are_there_is_no_field() {
+    let flat = rings(1.0, 12, 2, 1.0, |x, y| (DVec3::new(x, y, 0.0), DVec3::Z));
+    let budget = Budget::unlimited();
+    // A triangle at each point, and a square below them, much nearer than a thousandth of lambda, from x = `from` on.
+    let fit_over = |from: f64| {
+        let corner = |x: f64, y: f64| DVec3::new(x, y, -1e-9);
+        let mut positions = vec![corner(from, -9.0), corner(9.0, -9.0), corner(9.0, 9.0), corner(from, 9.0)];
+        let mut triangles = vec![[0, 2, 1], [0, 3, 2]];
+        for &p in &flat.points {
+            let first = positions.len() as u32;
+            positions.extend([p, p + 0.01 * DVec3::X, p + 0.01 * DVec3::Y]);
+            triangles.push([first, first + 1, first + 2]);
+        }
+        let surface = NearestSearch::build(&positions, &triangles, &budget).unwrap();
+        let around = Surroundings { surface: Some(&surface), mesh_box: Aabb::EMPTY };
+        fit(&flat, &around, &RbfOptions::default(), &budget).unwrap()
+    };
+    assert_eq!(fit_over(-9.0).unwrap_err(), Unfit::NoRoom);
+    let half = fit_over(0.6).unwrap();
+    let facts = half.facts();
+    let crowded = flat.points.iter().filter(|p| p.x >= 0.6).count();
+    assert_eq!(facts.without_room, crowded);
+    assert_eq!(facts.centres, 3 * flat.points.len() - 2 * crowded);
+    assert!(facts.lambda_range[0] > 0.0, "{facts:?}");
+    let place = half.project(DVec3::new(0.1, 0.2, 0.05), 1.0).unwrap();
+    assert!(place.z.abs() < 1e-6, "{place}");
+}
+
 /// The rims are bounded once in their direction with the same bits, every other edge twice in both directions.
 fn check_patch(patch: &Patch, rims: &[Vec<DVec3>]) {
     let rim = rims.concat();

@@ -49,7 +49,7 @@ export class Drawing {
     at("coarse").hidden = !this.view?.easing;
     if (!this.view?.easing) return;
     const copy = this.view.easedCopy("before");
-    at("coarse").textContent = copy ? t("view.coarse", { n: number(copy.geometry.index.count / 3), m: number(this.session.pictures.before.faceOf.length) }) : t("view.rough");
+    at("coarse").textContent = copy ? t("view.coarse", { n: number(copy.geometry.index.count / 3), m: number(this.session.pictures.before.drawn) }) : t("view.rough");
   }
 
   // Says so when something lies so far away that the part would not be seen beside it.

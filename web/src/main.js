@@ -302,7 +302,7 @@ const host = {
     if (!where || !view) return;
     if (view.settings.arrangement === "after") tools.arrange("before");
     session.place = null;
-    drawing.light(null);
+    drawing.light(where.undrawn, "#8a97a4");
     openFinding(list, session, host, null, 0);
     view.fly(where.place, [0, 0, 0], where.radius / 2);
   },
@@ -392,9 +392,14 @@ async function showRepair(job) {
   drawing.light(null);
   of.place = null;
   openFinding(list, of, host, null, 0);
-  if (job.links.result) await drawing.drawResult(job);
-  else delete of.pictures.after;
-  if (!job.links.result) tools?.offer(false);
+  if (job.links.result) {
+    await drawing.drawResult(job);
+    if (of !== session) return;
+    view?.comeBack();
+  } else {
+    delete of.pictures.after;
+    tools?.offer(false);
+  }
   at("panel").scrollTop = 0;
   window.scrollTo(0, 0);
   keepFocus(at("verdict"));

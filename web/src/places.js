@@ -26,7 +26,11 @@ export class Picture {
   }
 
   facesAt(faces, isFirst) {
-    return faces.flatMap((face) => this.trianglesOf(face, isFirst)).flatMap((triangle) => [...this.positions.subarray(triangle * 9, triangle * 9 + 9)]);
+    return faces.flatMap((face) => this.trianglesOf(face, isFirst)).flatMap((triangle) => this.cornersOf(triangle));
+  }
+
+  cornersOf(triangle) {
+    return [...this.positions.subarray(triangle * 9, triangle * 9 + 9)];
   }
 
   // A place of a report in the picture, near `face`; null: it is not there. `unit`: millimetres of the report's unit.
@@ -35,7 +39,8 @@ export class Picture {
     return placed && placed.map((value, axis) => value * unit - this.origin[axis]);
   }
 
-  // The middle and the radius of a part at the first of its places; null: it is not in the picture.
+  // The middle and the radius of a part at the first of its places, and its faces where it is no material, which is not drawn;
+  // null: it is not in the picture.
   whereIs(part) {
     const found = this.project?.trianglesOf(part, this.faceOf);
     if (!found?.length) return null;
@@ -47,7 +52,8 @@ export class Picture {
         if (value > max[i % 3]) max[i % 3] = value;
       }
     }
-    return { place: min.map((low, axis) => (low + max[axis]) / 2), radius: Math.hypot(...min.map((low, axis) => max[axis] - low)) / 2 };
+    const undrawn = found[0] < this.drawn ? null : { segments: [], faces: found.flatMap((triangle) => this.cornersOf(triangle)), points: [] };
+    return { place: min.map((low, axis) => (low + max[axis]) / 2), radius: Math.hypot(...min.map((low, axis) => max[axis] - low)) / 2, undrawn };
   }
 
   // The whole rim that these faces lie on: open edges that hang together.

@@ -10,17 +10,17 @@ export class Project {
     this.order = order;
     this.parts = [];
     this.count = order.reduce((sum, at) => sum + objects[at].count, 0);
-    this.isWhole = true; // not so where all parts together leave out those that are not printed
+    this.isWhole = true; // not so where a report is about other faces than those of all material
   }
 
-  // Takes the parts of a report about so many `faces`. Volumes are ranges of the faces of one object, one after the other.
+  // Takes the parts of a report about so many `faces`. Volumes are ranges of the faces of one object, one after the other; the
+  // picture may have them apart.
   setParts(parts, faces = this.count) {
     this.isWhole = faces === this.count;
     this.parts = parts.map((part, at) => {
-      const object = this.objects.find(({ path, id }) => path.toLowerCase() === part.path.toLowerCase() && id === part.object);
-      const begin = parts.findIndex((other) => other.path === part.path && other.object === part.object);
-      const end = parts[at + 1]?.first_face ?? Infinity;
-      return { object, from: part.first_face, until: end, inObject: part.first_face - parts[begin].first_face };
+      const face = part.first_face - parts.find((other) => other.path === part.path && other.object === part.object).first_face;
+      const object = this.objects.find(({ path, id, from, count }) => path.toLowerCase() === part.path.toLowerCase() && id === part.object && from <= face && face < from + count);
+      return { object, from: part.first_face, until: parts[at + 1]?.first_face ?? Infinity, inObject: face - object?.from };
     });
   }
 

@@ -662,7 +662,8 @@ export interface components {
             bodies_lost: number | null;
             /**
              * Format: double
-             * @description Share of the area of the result, from 0 to 1, that patches of holes make up; null where `holes` is null.
+             * @description Area of the patches of holes as a share of the surface, from 0 to 1, before its triangles are made fewer; null where `holes`
+             *     is null. A patch that a later step put inside a body or cut counts as it was made.
              */
             interpolated_area_share: number | null;
             /**
@@ -981,7 +982,7 @@ export interface components {
         };
         /** @description A field of radial functions that was fitted to the surroundings of a hole. */
         FieldFit: {
-            /** @description The radial function; `thin-plate` also where `cubic` was asked for and did not fit. */
+            /** @description The radial function; `thin-plate` also where `cubic` was asked for and did not fit, which `rejected` tells too. */
             kernel: components["schemas"]["Kernel"];
             /**
              * Format: int64
@@ -1002,9 +1003,14 @@ export interface components {
             lambda: number[];
             /**
              * Format: int64
-             * @description Points whose offset constraints are nearer than the others because another part of the surface is near.
+             * @description Points whose offset constraints are nearer than the others, or left out, because another part of the surface is near.
              */
             halved: number;
+            /**
+             * Format: int64
+             * @description Those of them without offset constraints, because another part of the surface is at them.
+             */
+            without_room: number;
             /**
              * Format: double
              * @description The largest difference of the field from a value that it should take, over the largest value.
@@ -3044,12 +3050,19 @@ export interface components {
             method: components["schemas"]["FillMethod"];
             /** @description Why it was not taken. */
             reason: components["schemas"]["Rejection"];
+            /** @description Near where it meets something, in the unit of the file; null: that was not what was wrong, or not told. */
+            position: number[] | null;
         };
         /**
          * @description Why a patch was not taken.
          *     - `no-patch`: The method makes no patch for such a hole.
          *     - `too-large`: The rim has more corners, or the patch more vertices, than the method takes.
-         *     - `no-fit`: No surface fits the rim and what is around it.
+         *     - `no-fit`: The equations of a smooth patch have no solution.
+         *     - `too-few-points`: The rim and the rings around it have too few points for a field, or lie on one line.
+         *     - `no-room`: Other parts of the surface are at the rim everywhere, so that no side of it can be told from the other.
+         *     - `singular`: The equations of the field are singular to working precision.
+         *     - `inexact`: The field misses the values that it should take.
+         *     - `no-zero`: A vertex finds no zero of the field within half the diagonal of the rim.
          *     - `degenerate-triangle`: A triangle without area.
          *     - `topology`: It is not a surface with exactly the rim as its boundary.
          *     - `edge-in-use`: An edge of it is in use already, or a triangle is the double of another.
@@ -3058,7 +3071,7 @@ export interface components {
          *     - `not-representable`: Its new vertices have no place among the numbers of float32.
          * @enum {string}
          */
-        Rejection: "no-patch" | "too-large" | "no-fit" | "degenerate-triangle" | "topology" | "edge-in-use" | "meets-other" | "meets-itself" | "not-representable";
+        Rejection: "no-patch" | "too-large" | "no-fit" | "too-few-points" | "no-room" | "singular" | "inexact" | "no-zero" | "degenerate-triangle" | "topology" | "edge-in-use" | "meets-other" | "meets-itself" | "not-representable";
         /**
          * @description What is done about a defect.
          *     - `drop`: What is defect goes; what is around it meets.

@@ -71,7 +71,7 @@ const PATCH_AREA_MIN: f64 = 1.5;
 /// Length of a border of a sheet by that of its longest one.
 const BORDER_SHARE_MIN: f64 = 0.5;
 /// Width of a mouth by that of its part.
-const MOUTH_SHARE_MIN: f64 = 0.5;
+pub(super) const MOUTH_SHARE_MIN: f64 = 0.5;
 
 /// What is known of the part that a loop belongs to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,7 +90,7 @@ pub(super) struct Around {
     /// infinite: no rim runs along it.
     pub(super) gap: f64,
     /// Width of the loop by that of its part, seen along the loop's axis, where all of the part is on one side of it; 0
-    /// elsewhere and where it was not measured.
+    /// elsewhere, where it is too small for a mouth, and where it was not measured.
     pub(super) mouth_share: f64,
     /// The part has another such loop.
     pub(super) has_other_mouth: bool,

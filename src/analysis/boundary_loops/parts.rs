@@ -1,12 +1,13 @@
 //! The parts that loops belong to, as far as the class of a loop depends on them.
 
 use super::Loops;
-use super::classify::{Around, FLAT_SHARE_MAX, classify, is_mouth};
+use super::classify::{Around, FLAT_SHARE_MAX, MOUTH_SHARE_MIN, classify, is_mouth};
 use super::gaps::gaps;
 use super::shape::Shape;
 use crate::analysis::Context;
 use crate::budget::{CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3, triangle_area};
+use crate::par;
 
 /// The longest loops of a part that may be mouths; each may cost a look at all of the part's vertices.
 const MOUTHS_MAX: usize = 8;
@@ -68,20 +69,23 @@ fn polygon_corners_max(cx: &Context<'_>) -> u32 {
 
 /// Area of part `part`, and the diagonal of its box.
 fn size(part: u32, cx: &Context<'_>) -> Result<(f64, f64), Stopped> {
-    let (mut area, mut bounds) = (0.0, Aabb::EMPTY);
-    for block in cx.members.part(part).chunks(CHECK_EVERY) {
+    let members = cx.members.part(part);
+    let blocks = par::try_map_ranges(members.len(), CHECK_EVERY, |range| {
         cx.budget.check()?;
-        for &t in block {
+        let (mut area, mut bounds) = (0.0, Aabb::EMPTY);
+        for &t in &members[range] {
             let corners = cx.mesh.corners(t);
             area += triangle_area(corners);
             bounds = bounds.union(Aabb::of(corners));
         }
-    }
-    Ok((area, bounds.diagonal()))
+        Ok((area, bounds))
+    })?;
+    let bounds = blocks.iter().fold(Aabb::EMPTY, |all, &(_, bounds)| all.union(bounds));
+    Ok((blocks.iter().map(|&(area, _)| area).sum(), bounds.diagonal()))
 }
 
 /// Radius of loop `number` by that of its part, both about the axis of the loop, where the loop is flat and the part lies on
-/// one side of its plane; 0 elsewhere.
+/// one side of its plane; 0 elsewhere, and where it is too small for a mouth.
 fn mouth_share(number: usize, part: u32, loops: &Loops, cx: &Context<'_>) -> Result<f64, Stopped> {
     let Some(&Shape { normal, deviation, length, .. }) = loops.shape(number) else { return Ok(0.0) };
     if deviation > FLAT_SHARE_MAX * length {
@@ -110,7 +114,7 @@ fn mouth_share(number: usize, part: u32, loops: &Loops, cx: &Context<'_>) -> Res
             (low, high) = (low.min(height), high.max(height));
         }
         let is_on_one_side = (-low).min(high) <= BEYOND_MAX * of_loop;
-        if !is_on_one_side {
+        if !is_on_one_side || of_loop < MOUTH_SHARE_MIN * of_part {
             return Ok(0.0);
         }
     }

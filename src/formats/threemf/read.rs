@@ -81,7 +81,11 @@ pub struct Project {
 /// # Errors
 /// A package or model that cannot be read, requires an unknown extension, or is signed or encrypted.
 pub fn read_project(bytes: &[u8], options: &ReadOptions, budget: &Budget) -> Result<Project, ReadError> {
-    Ok(project_of(Models::read(bytes, options, budget)?))
+    let mut project = project_of(Models::read(bytes, options, budget)?);
+    for body in &mut project.bodies {
+        body.soup.texture = body.places(budget)?;
+    }
+    Ok(project)
 }
 
 /// The meshes of a 3MF that have to be solids, each in its own coordinates; those that no build item uses too.
@@ -177,6 +181,5 @@ fn project_of(models: Models) -> Project {
             }
         }
     }
-    bodies.iter_mut().for_each(|body| body.soup.texture = body.places());
     Project { units, bodies, remarks, root, volumes: models.volumes }
 }

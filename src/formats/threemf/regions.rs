@@ -82,11 +82,14 @@ impl Body {
     }
 
     /// Where the corners of triangles are in pictures.
-    pub(super) fn places(&self) -> Texture {
+    pub(super) fn places(&self, budget: &Budget) -> Result<Texture, Stopped> {
         let mut texture = Texture::default();
         if self.attributes.properties.is_empty() || !self.groups.have_places() {
-            return texture;
+            return Ok(texture);
         }
+        // The corners, and a number of up to two places for each triangle.
+        const PER_TRIANGLE: u64 = 12 + 2 * 40;
+        let _charge = budget.charge(PER_TRIANGLE * self.soup.triangles.len() as u64)?;
         let mut numbers: FxHashMap<[u64; 2], u32> = FxHashMap::default();
         let mut number = |point: [f64; 2]| {
             *numbers.entry(point.map(f64::to_bits)).or_insert_with(|| {
@@ -104,10 +107,10 @@ impl Body {
             }
         };
         let corners: Vec<[u32; 3]> = (0..self.soup.triangles.len()).map(&mut of_triangle).collect();
-        match texture.points.is_empty() {
+        Ok(match texture.points.is_empty() {
             true => Texture::default(),
             false => Texture { corners, ..texture },
-        }
+        })
     }
 
     /// The regions of its surface: triangles of one region have the same property and the same other attributes, or

@@ -16,7 +16,7 @@ use super::output::refusal;
 use super::{
     Answer, Failure, Level, Operation, Options, Outcome, Output, Parts, Refusal, Report, Require, run_on,
 };
-use crate::budget::{Budget, Stage};
+use crate::budget::{Budget, Charge, Stage};
 use crate::certificate::{self, Certificate, Depth, Examination, PartsExamination};
 use crate::formats::threemf::{
     Between, Body, FaceSource, NewBody, ObjectKind, Project, RewriteError, read_project, rewrite_project,
@@ -148,11 +148,12 @@ struct Done {
 }
 
 /// The new mesh of a part.
-struct Remade {
+struct Remade<'b> {
     body: usize,
     soup: Soup,
     sources: Vec<FaceSource>,
     between: Vec<Between>,
+    _charges: Vec<Charge<'b>>,
 }
 
 impl Run<'_> {
@@ -301,12 +302,12 @@ impl Run<'_> {
             let soup = budget.stage(Stage::Read, || formats::read(bytes, *encoding, &unlimited(), budget))?;
             let body = &self.project.bodies[done.body];
             let new = sources::NewMesh { soup: &soup, origins, texture };
-            let TakenOver { sources, between, counts } =
+            let TakenOver { sources, between, counts, charges } =
                 budget.stage(Stage::Write, || sources::taken_over(body, &new, budget))?;
             if level == 0 {
                 done.attributes = counts;
             }
-            remade.push(Remade { body: done.body, soup, sources, between });
+            remade.push(Remade { body: done.body, soup, sources, between, _charges: charges });
         }
         if remade.is_empty() {
             let output = output_of(None);
@@ -315,7 +316,7 @@ impl Run<'_> {
         let new: Vec<NewBody<'_>> = remade
             .iter()
             .map(|remade| {
-                let Remade { body, soup, sources, between } = remade;
+                let Remade { body, soup, sources, between, .. } = remade;
                 NewBody { body: *body, soup, sources, between }
             })
             .collect();

@@ -1,6 +1,6 @@
 //! What the triangles of a new mesh take over of the faces of the old one: its colours, paint and the like.
 
-use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::budget::{Budget, CHECK_EVERY, Charge, Stopped};
 use crate::formats::threemf::{Between, Body, FaceSource, NO_NUMBER};
 use crate::geom::{DVec3, closest_point_on_triangle, shares_of_corners};
 use crate::mesh::{Soup, Texture};
@@ -42,36 +42,48 @@ pub(super) struct NewMesh<'m> {
 }
 
 /// What is taken over.
-pub(super) struct TakenOver {
+pub(super) struct TakenOver<'b> {
     /// For each triangle.
     pub(super) sources: Vec<FaceSource>,
     /// What is between corners of faces.
     pub(super) between: Vec<Between>,
     /// `None` where the file says nothing of the faces of the body.
     pub(super) counts: Option<AttributeCounts>,
+    /// For the memory of `sources` and `between`.
+    pub(super) charges: Vec<Charge<'b>>,
 }
 
 /// What each triangle of `new`, a result of `body`, takes over.
 ///
 /// # Errors
 /// When the budget stops the run.
-pub(super) fn taken_over(body: &Body, new: &NewMesh<'_>, budget: &Budget) -> Result<TakenOver, Stopped> {
+pub(super) fn taken_over<'b>(
+    body: &Body,
+    new: &NewMesh<'_>,
+    budget: &'b Budget,
+) -> Result<TakenOver<'b>, Stopped> {
     let attributes = &body.attributes;
     let count = new.soup.triangles.len();
+    let mut charges = vec![budget.charge((count * size_of::<FaceSource>()) as u64)?];
     if attributes.properties.is_empty() && attributes.others.is_empty() {
         return Ok(TakenOver {
             sources: vec![FaceSource::Nothing; count],
             between: Vec::new(),
             counts: None,
+            charges,
         });
     }
     let mut look = LookUp { body, new, nearest: None, between: Vec::new(), budget };
     let mut sources = Vec::with_capacity(count);
     let mut counts = AttributeCounts::default();
     let (mut area, mut kept_area, mut lost_area) = (0.0, 0.0, 0.0);
+    let mut charged = 0;
     for t in 0..count {
         if t % CHECK_EVERY == 0 {
-            budget.check()?;
+            // Each may add one.
+            let room = count.min(look.between.len() + CHECK_EVERY) * size_of::<Between>();
+            charges.push(budget.charge(room.saturating_sub(charged) as u64)?);
+            charged = charged.max(room);
         }
         let size = crate::geom::triangle_area(new.soup.corners(t as u32));
         area += size;
@@ -94,7 +106,7 @@ pub(super) fn taken_over(body: &Body, new: &NewMesh<'_>, budget: &Budget) -> Res
     let share = |part: f64, of_nothing: f64| if area > 0.0 { part / area } else { of_nothing };
     counts.kept_area_share = share(kept_area, 1.0);
     counts.lost_area_share = share(lost_area, 0.0);
-    Ok(TakenOver { sources, between: look.between, counts: Some(counts) })
+    Ok(TakenOver { sources, between: look.between, counts: Some(counts), charges })
 }
 
 /// What becomes of the attributes of a triangle.

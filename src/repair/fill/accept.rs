@@ -40,7 +40,12 @@ const PROPOSALS: usize = 16;
 struct Judged {
     triangles: Vec<Vec<[u32; 3]>>,
     verdicts: Vec<Result<(), Rejection>>,
+    /// Near where each meets something, as far as that was found.
+    contacts: Vec<Option<DVec3>>,
 }
+
+/// Why a proposal does not stay, and near where it meets something.
+pub(super) type Refused = (Rejection, Option<DVec3>);
 
 impl Surface {
     /// Accepts the proposals that are sound, and says of the others why they are not. For a sound one it gives the first
@@ -55,7 +60,7 @@ impl Surface {
         proposals: &[&Proposal],
         bvh: Option<&Bvh>,
         budget: &Budget,
-    ) -> Result<Vec<Result<u32, Rejection>>, Stopped> {
+    ) -> Result<Vec<Result<u32, Refused>>, Stopped> {
         let mut triangles = Vec::with_capacity(proposals.len());
         let mut firsts = Vec::with_capacity(proposals.len());
         for proposal in proposals {
@@ -70,16 +75,20 @@ impl Surface {
             triangles.push(patch);
         }
         let verdicts = self.judge_each(proposals, &triangles, budget)?;
-        let mut judged = Judged { triangles, verdicts };
+        let contacts = vec![None; proposals.len()];
+        let mut judged = Judged { triangles, verdicts, contacts };
         self.reject_contacts(&mut judged, &firsts, bvh, budget)?;
-        let Judged { triangles, verdicts } = judged;
+        let Judged { triangles, verdicts, contacts } = judged;
         for ((patch, verdict), proposal) in triangles.into_iter().zip(&verdicts).zip(proposals) {
             if verdict.is_ok() {
                 self.diagonals.extend(self.diagonals_of(proposal));
                 self.patches.extend(patch);
             }
         }
-        Ok(verdicts.into_iter().zip(firsts).map(|(verdict, first)| verdict.map(|()| first)).collect())
+        let judged = verdicts.into_iter().zip(contacts).zip(firsts);
+        Ok(judged
+            .map(|((verdict, at), first)| verdict.map(|()| first).map_err(|reason| (reason, at)))
+            .collect())
     }
 
     /// Judges the `patches` of proposals but for contacts with anything else.
@@ -200,6 +209,10 @@ impl Surface {
         let bvh = Bvh::build(&self.positions, &triangles, None, budget)?;
         let search = Search::All { keep: CONTACTS_MAX };
         let contacts = spatial::self_contacts(&self.positions, &triangles, &bvh, None, search, budget)?;
+        let place = |a: u32, b: u32| {
+            let [a, b] = [a, b].map(|t| Aabb::of(triangles[t as usize].map(|v| self.positions[v as usize])));
+            (a.min.max(b.min) + a.max.min(b.max)) / 2.0
+        };
         let mut between = Vec::new();
         let reject = |verdict: &mut Result<(), Rejection>, reason: Rejection| {
             if verdict.is_ok() {
@@ -207,17 +220,23 @@ impl Surface {
             }
         };
         for contact in &contacts.list {
-            match (owner.get(contact.a as usize), owner.get(contact.b as usize)) {
-                (Some(&a), Some(&b)) if a != b => between.push((a.max(b), a.min(b))),
-                (Some(&a), Some(_)) => reject(&mut judged.verdicts[a], Rejection::MeetsItself),
-                (Some(&a), None) => reject(&mut judged.verdicts[a], Rejection::MeetsOther),
-                (None, _) => break,
+            let Some(&a) = owner.get(contact.a as usize) else { break };
+            let at = place(contact.a, contact.b);
+            match owner.get(contact.b as usize) {
+                Some(&b) if a != b => {
+                    between.push((a.max(b), a.min(b), at));
+                    continue;
+                }
+                Some(_) => reject(&mut judged.verdicts[a], Rejection::MeetsItself),
+                None => reject(&mut judged.verdicts[a], Rejection::MeetsOther),
             }
+            judged.contacts[a].get_or_insert(at);
         }
-        between.sort_unstable();
-        for (later, earlier) in between {
+        between.sort_by_key(|&(later, earlier, _)| (later, earlier));
+        for (later, earlier, at) in between {
             if judged.verdicts[earlier].is_ok() {
                 reject(&mut judged.verdicts[later], Rejection::MeetsOther);
+                judged.contacts[later].get_or_insert(at);
             }
         }
         if contacts.count > contacts.list.len() as u64 {

@@ -7,6 +7,7 @@ use super::creased::{Division, creased};
 use super::fair::{Around, fair};
 use super::options::{Extract, FillOptions, Method};
 use super::patch::PatchMesh;
+use super::rbf::FirstFit;
 use super::refine::{Lengths, refine, turn_edges};
 use super::regions::Region;
 use super::report::Rejection;
@@ -14,7 +15,7 @@ use super::surface::Surface;
 use super::{bridge, ears, large, minimal, planar, rbf};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec3, print_pitch};
-use crate::implicit::{self, Field, FitFacts, Unmeshed};
+use crate::implicit::{self, FitFacts, Unmeshed};
 
 /// A way to make a patch. Several may stand for one method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -60,6 +61,8 @@ pub(super) struct Made {
     pub(super) parents: Vec<[u32; 2]>,
     /// The field on whose surface it is.
     pub(super) field: Option<FitFacts>,
+    /// Why the field that was asked for did not fit, where it is on the surface of another.
+    pub(super) unfit: Option<Rejection>,
 }
 
 /// Times that a faired patch is divided anew where it has grown.
@@ -100,7 +103,12 @@ pub(super) fn make(
 impl Made {
     fn plain(region: &Region, triangles: Vec<[usize; 3]>) -> Self {
         let triangles = triangles.into_iter().map(|t| t.map(|i| i as u32)).collect();
-        Self { proposal: proposal(region, Vec::new(), triangles), parents: Vec::new(), field: None }
+        Self {
+            proposal: proposal(region, Vec::new(), triangles),
+            parents: Vec::new(),
+            field: None,
+            unfit: None,
+        }
     }
 
     /// A refined patch, its new vertices at places that float32 has.
@@ -118,7 +126,7 @@ impl Made {
         let rim = region.rim();
         turn_caps(&mut mesh, &|a, b| surface.is_free(rim[a as usize], rim[b as usize]), budget)?;
         let proposal = proposal(region, points, mesh.triangles);
-        Ok(Ok(Self { proposal, parents: mesh.parents, field: None }))
+        Ok(Ok(Self { proposal, parents: mesh.parents, field: None, unfit: None }))
     }
 }
 
@@ -222,13 +230,13 @@ fn of_field(
     scene: &Scene<'_>,
     budget: &Budget,
 ) -> Result<Result<Made, Rejection>, Stopped> {
-    let Scene { surface, mesh: Some(mesh), options } = *scene else { return Ok(Err(Rejection::NoFit)) };
+    let Scene { surface, mesh: Some(mesh), options } = *scene else { return Ok(Err(Rejection::NoPatch)) };
     let fit = || rbf::field(region, rings, surface, mesh, options, budget);
     if options.extract == Extract::Project {
         return projected(region, fit, surface, budget);
     }
-    let field = match fit()? {
-        Ok(field) => field,
+    let (field, unfit) = match fit()? {
+        Ok(fitted) => fitted,
         Err(reason) => return Ok(Err(reason)),
     };
     let rims: Vec<Vec<DVec3>> =
@@ -243,7 +251,7 @@ fn of_field(
             let points = &patch.points[region.rim().len()..];
             on_lattice(points, surface).map(|points| {
                 let proposal = proposal(region, points, patch.triangles);
-                Made { proposal, parents: Vec::new(), field: Some(*field.facts()) }
+                Made { proposal, parents: Vec::new(), field: Some(*field.facts()), unfit }
             })
         }
         Err(Unmeshed::TooFine { .. }) => Err(Rejection::TooLarge),
@@ -264,7 +272,7 @@ fn edge_length(rims: &[Vec<DVec3>]) -> f64 {
 /// rim of few corners, needs none.
 fn projected(
     region: &Region,
-    fit: impl FnOnce() -> Result<Result<Field, Rejection>, Stopped>,
+    fit: impl FnOnce() -> Result<Result<FirstFit, Rejection>, Stopped>,
     surface: &Surface,
     budget: &Budget,
 ) -> Result<Result<Made, Rejection>, Stopped> {
@@ -278,15 +286,15 @@ fn projected(
         turn_edges(&mut patch, &is_free, budget)?;
         return Made::refined(region, surface, patch, budget);
     }
-    let field = match fit()? {
-        Ok(field) => field,
+    let (field, unfit) = match fit()? {
+        Ok(fitted) => fitted,
         Err(reason) => return Ok(Err(reason)),
     };
     if !rbf::project(&mut patch, &field, &is_free, budget)? {
-        return Ok(Err(Rejection::NoFit));
+        return Ok(Err(Rejection::NoZero));
     }
     let made = Made::refined(region, surface, patch, budget)?;
-    Ok(made.map(|made| Made { field: Some(*field.facts()), ..made }))
+    Ok(made.map(|made| Made { field: Some(*field.facts()), unfit, ..made }))
 }
 
 /// The smooth patch before its vertices are rounded.

@@ -146,8 +146,9 @@ fn fill_loops(
                     done.push(hole.report);
                 }
                 verdict => {
-                    let reason = verdict.and_then(Result::err).unwrap_or(Rejection::NoPatch);
-                    hole.report.rejected.push(Rejected { method: way.method(), reason });
+                    let refused = verdict.and_then(Result::err);
+                    let (reason, at) = refused.unwrap_or((Rejection::NoPatch, None));
+                    hole.report.rejected.push(Rejected { method: way.method(), reason, at });
                     left.push(hole);
                 }
             }
@@ -242,8 +243,12 @@ impl Hole {
     fn next(&mut self, scene: &Scene<'_>, budget: &Budget) -> Result<Option<(Way, Made)>, Stopped> {
         while let Some(way) = self.ways.pop() {
             match make(&self.region, self.division.as_ref(), self.band_rings, way, scene, budget)? {
-                Ok(made) => return Ok(Some((way, made))),
-                Err(reason) => self.report.rejected.push(Rejected { method: way.method(), reason }),
+                Ok(made) => {
+                    let unfit = made.unfit.map(|reason| Rejected::alone(way.method(), reason));
+                    self.report.rejected.extend(unfit);
+                    return Ok(Some((way, made)));
+                }
+                Err(reason) => self.report.rejected.push(Rejected::alone(way.method(), reason)),
             }
         }
         Ok(None)

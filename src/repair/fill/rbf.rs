@@ -8,7 +8,8 @@ use super::report::Rejection;
 use super::surface::Surface;
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3};
-use crate::implicit::{self, Band, Field, Kernel, RbfOptions, Surroundings};
+use crate::implicit::{self, Band, Field, Kernel, RbfOptions, Surroundings, Unfit};
+use crate::par;
 use crate::spatial::{Bvh, NearestSearch};
 use rustc_hash::FxHashSet;
 
@@ -16,6 +17,8 @@ use rustc_hash::FxHashSet;
 const RINGS_MAX: u32 = 8;
 /// Points of a band, at most; a ring that would make it larger is left out, but never the first.
 const POINTS_MAX: usize = 1 << 15;
+/// Vertices moved between two checks of the budget.
+const POINTS: usize = 16;
 /// How far a vertex may go to the surface, as a share of the diagonal of the rim's box: a dome as high as its rim is wide.
 const REACH: f64 = 0.5;
 
@@ -41,6 +44,9 @@ impl<'m> Mesh<'m> {
     }
 }
 
+/// A field, and why the cubic one that was tried before it did not fit.
+pub(super) type FirstFit = (Field, Option<Rejection>);
+
 /// Fits the field of a region. Where a cubic one does not fit, because thin walls make lambda small, the thin plate is
 /// tried, if the options say that plainer patches may be.
 pub(super) fn field(
@@ -50,15 +56,30 @@ pub(super) fn field(
     mesh: &Mesh<'_>,
     options: &FillOptions,
     budget: &Budget,
-) -> Result<Result<Field, Rejection>, Stopped> {
+) -> Result<Result<FirstFit, Rejection>, Stopped> {
     let band = band(region, rings, surface, budget)?;
     let around = Surroundings { surface: Some(&mesh.nearest), mesh_box: mesh.bounds };
-    let mut field = implicit::fit(&band, &around, &options.rbf, budget)?;
-    if field.is_err() && options.rbf.kernel == Kernel::Cubic && options.falls_back {
-        let plainer = RbfOptions { kernel: Kernel::ThinPlate, ..options.rbf };
-        field = implicit::fit(&band, &around, &plainer, budget)?;
+    let unfit = match implicit::fit(&band, &around, &options.rbf, budget)? {
+        Ok(field) => return Ok(Ok((field, None))),
+        Err(unfit) => unfit,
+    };
+    if options.rbf.kernel != Kernel::Cubic || !options.falls_back {
+        return Ok(Err(reason(unfit)));
     }
-    Ok(field.map_err(|_| Rejection::NoFit))
+    let plainer = RbfOptions { kernel: Kernel::ThinPlate, ..options.rbf };
+    let field = implicit::fit(&band, &around, &plainer, budget)?;
+    Ok(field.map(|field| (field, Some(reason(unfit)))).map_err(reason))
+}
+
+fn reason(unfit: Unfit) -> Rejection {
+    match unfit {
+        Unfit::TooFewPoints { .. } | Unfit::NotFinite { .. } | Unfit::Options | Unfit::Rank { .. } => {
+            Rejection::TooFewPoints
+        }
+        Unfit::NoRoom => Rejection::NoRoom,
+        Unfit::Singular { .. } => Rejection::Singular,
+        Unfit::Residual { .. } => Rejection::Inexact,
+    }
 }
 
 /// The vertices of the rim, then those of the rings around it, each once, with the normals that the mesh has there.
@@ -98,11 +119,14 @@ pub(super) fn project(
 ) -> Result<bool, Stopped> {
     let reach = REACH * Aabb::of(mesh.points[..mesh.rim].iter().copied()).diagonal();
     let centres = field.facts().centres as u64;
-    for v in mesh.rim..mesh.points.len() {
-        budget.spend(centres / 16 + 1)?;
-        let Some(place) = field.project(mesh.points[v], reach) else { return Ok(false) };
-        mesh.points[v] = place;
-    }
+    let points = &mesh.points[mesh.rim..];
+    let on_surface = |range: std::ops::Range<usize>| -> Result<Vec<Option<DVec3>>, Stopped> {
+        budget.spend(range.len() as u64 * (centres / 16 + 1))?;
+        Ok(points[range].iter().map(|&point| field.project(point, reach)).collect())
+    };
+    let places = par::try_map_ranges(points.len(), POINTS, on_surface)?.concat();
+    let Some(places) = places.into_iter().collect::<Option<Vec<_>>>() else { return Ok(false) };
+    mesh.points.splice(mesh.rim.., places);
     turn_edges(mesh, is_free, budget)?;
     Ok(true)
 }

@@ -1,6 +1,7 @@
 //! What became of each hole.
 
 use super::Method;
+use crate::geom::DVec3;
 use crate::implicit::FitFacts;
 use crate::repair::Changes;
 
@@ -12,8 +13,18 @@ pub enum Rejection {
     NoPatch,
     /// The rim has more corners, or the patch more vertices, than the method takes.
     TooLarge,
-    /// No surface fits the rim and what is around it.
+    /// The equations of a smooth patch have no solution.
     NoFit,
+    /// The rim and the rings around it have too few points for a field, or lie on one line.
+    TooFewPoints,
+    /// Other parts of the surface are at the rim everywhere, so that no side of it can be told from the other.
+    NoRoom,
+    /// The equations of the field are singular to working precision.
+    Singular,
+    /// The field misses the values that it should take.
+    Inexact,
+    /// A vertex finds no zero of the field within half the diagonal of the rim.
+    NoZero,
     /// A triangle without area.
     DegenerateTriangle,
     /// It is not a surface with exactly the rim as its boundary.
@@ -29,12 +40,21 @@ pub enum Rejection {
 }
 
 /// A patch that was not taken.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rejected {
     /// How it was made.
     pub method: Method,
     /// Why it was not taken.
     pub reason: Rejection,
+    /// Near where it meets something, in the unit of the file; `None`: that was not what was wrong, or not told.
+    pub at: Option<DVec3>,
+}
+
+impl Rejected {
+    /// A patch that was not taken for what it is by itself.
+    pub(super) fn alone(method: Method, reason: Rejection) -> Self {
+        Self { method, reason, at: None }
+    }
 }
 
 /// A boundary loop of a hole.

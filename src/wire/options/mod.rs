@@ -16,7 +16,7 @@ mod value;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use super::holes::{BAND_RINGS_MAX, Holes};
+use super::holes::{BAND_RINGS_MAX, ChosenHole, Holes};
 use super::input_ref::InputRef;
 use super::modeller::{DualEmbedding, EditSpec, RangeSpec};
 use super::plan::PlanRequest;
@@ -237,7 +237,39 @@ impl Options {
             return Err(OptionError::Lacking { spec: lookup::spec_of("vertex_colors")?, needs });
         }
         self.check_turntable()?;
-        self.check_model()
+        self.check_model()?;
+        self.check_filling()
+    }
+
+    /// That each hole is listed once, and that choices about a field come with a method that may fit one.
+    fn check_filling(&self) -> Result<(), OptionError> {
+        let listed: &[ChosenHole] = match &self.holes {
+            Some(Holes::Listed(holes)) => holes,
+            _ => &[],
+        };
+        let mut numbers: Vec<u32> = listed.iter().map(|hole| hole.number).collect();
+        numbers.sort_unstable();
+        if numbers.windows(2).any(|pair| pair[0] == pair[1]) {
+            return Err(OptionError::Lacking { spec: lookup::spec_of("holes")?, needs: "each number once" });
+        }
+        let fits =
+            |method: Option<FillMethod>| matches!(method, None | Some(FillMethod::Auto | FillMethod::Rbf));
+        if fits(self.method) || listed.iter().any(|hole| hole.method.is_some() && fits(hole.method)) {
+            return Ok(());
+        }
+        let of_fields = [
+            "extract",
+            "kernel",
+            "lambda_mm",
+            "lambda_from",
+            "constraint_values",
+            "constraints",
+            "band_rings",
+        ];
+        match self.given().find(|spec| of_fields.contains(&spec.name)) {
+            Some(spec) => Err(OptionError::Lacking { spec, needs: "the method rbf or auto" }),
+            None => Ok(()),
+        }
     }
 
     /// That a mesh in place of a picture has no choice that it would leave out.

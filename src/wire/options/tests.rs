@@ -185,6 +185,26 @@ fn a_turn_takes_no_choice_that_it_would_leave_out_and_no_size_without_end() {
 }
 
 #[test]
+fn choices_about_a_field_need_a_method_that_fits_one_and_each_hole_is_listed_once() {
+    let check = |pairs: &[(&str, &str)]| {
+        Options::from_pairs(pairs.iter().copied()).unwrap().check(Operation::FillHoles)
+    };
+    let (flat, kernel) = (("method", "flat"), ("kernel", "linear"));
+    let told = check(&[flat, kernel]).unwrap_err().to_string();
+    assert_eq!(told, "this `kernel` needs the method rbf or auto");
+    for name in ["lambda_mm", "constraints", "band_rings"] {
+        assert!(check(&[("method", "creased"), (name, "1")]).is_err(), "{name}");
+    }
+    let of_one = r#"[0,{"number":3,"method":"rbf"}]"#;
+    assert_eq!(check(&[flat, kernel, ("holes", of_one)]), Ok(()));
+    assert!(check(&[flat, kernel, ("holes", r#"[0,{"number":3,"band_rings":1}]"#)]).is_err());
+    assert_eq!(check(&[kernel]), Ok(()));
+    assert_eq!(check(&[("method", "rbf"), kernel, ("lambda_from", "mesh")]), Ok(()));
+    let twice = check(&[("holes", r#"[3,{"number":3,"method":"flat"}]"#)]).unwrap_err().to_string();
+    assert_eq!(twice, "this `holes` needs each number once");
+}
+
+#[test]
 fn colours_of_priorities_need_a_format_that_shows_them() {
     let check = |pairs: &[(&str, &str)]| {
         Options::from_pairs(pairs.iter().copied()).unwrap().check(Operation::Simplify)

@@ -310,9 +310,6 @@ fn filled(page: &mut Page, report: &Value) {
     };
     let rows = holes.iter().take(HOLES).map(row).collect();
     page.table(&["Hole", "Most likely", "", "By", "Triangles", "Patches that were not taken"], rows);
-    let share =
-        measured(&report["deviation"]["interpolated_area_share"].as_f64().map(|s| s * 100.0).into(), " %");
-    page.paragraph(&format!("Patches are {share} of the surface."));
 }
 
 fn moved(page: &mut Page, report: &Value) {

@@ -29,10 +29,7 @@ fn check(check: &Value) -> Vec<Cell> {
         _ => (Tone::Open, "not told"),
     };
     let places = items(&check["witnesses"]).iter().take(super::PLACES);
-    let places = places.filter_map(|witness| {
-        let at = coordinates(&witness["position"])?;
-        Some(format!("face {} at {at}", witness["face"]))
-    });
+    let places = places.filter_map(|witness| Some(format!("at {}", coordinates(&witness["position"])?)));
     vec![
         Cell::Mark(tone, word),
         Cell::Text(plain::check(text(&check["code"])).to_owned()),

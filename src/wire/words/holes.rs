@@ -71,8 +71,18 @@ mirror! { repair::fill::Rejection =>
         NoPatch = "no-patch",
         /// The rim has more corners, or the patch more vertices, than the method takes.
         TooLarge = "too-large",
-        /// No surface fits the rim and what is around it.
+        /// The equations of a smooth patch have no solution.
         NoFit = "no-fit",
+        /// The rim and the rings around it have too few points for a field, or lie on one line.
+        TooFewPoints = "too-few-points",
+        /// Other parts of the surface are at the rim everywhere, so that no side of it can be told from the other.
+        NoRoom = "no-room",
+        /// The equations of the field are singular to working precision.
+        Singular = "singular",
+        /// The field misses the values that it should take.
+        Inexact = "inexact",
+        /// A vertex finds no zero of the field within half the diagonal of the rim.
+        NoZero = "no-zero",
         /// A triangle without area.
         DegenerateTriangle = "degenerate-triangle",
         /// It is not a surface with exactly the rim as its boundary.

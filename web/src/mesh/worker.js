@@ -19,18 +19,20 @@ const work = {
   async read({ name, bytes, fileName, scale, isFirst }) {
     const file = await read(new Uint8Array(bytes), fileName);
     const unit = file.millimetres ?? scale;
-    const mesh = weld(scaled(file, unit));
+    const whole = weld(scaled(file, unit));
+    const { drawn, format, faceCount, project, colors, isTextured } = whole;
+    const mesh = { ...whole, corners: whole.corners.subarray(0, drawn * 3), faceOf: whole.faceOf.subarray(0, drawn) };
     const bounds = boundsOf(mesh);
     if (!bounds.min.every(Number.isFinite)) throw new FileProblem("no-triangle");
     if (!(Math.hypot(...bounds.min, ...bounds.max) < VAST)) throw new FileProblem("too-vast");
     const bulk = bulkOf(mesh, bounds);
     if (isFirst || !origin) origin = bulk.bounds.min.map((low, axis) => (low + bulk.bounds.max[axis]) / 2);
-    const positions = positionsOf(mesh, origin);
+    const all = positionsOf(whole, origin);
+    const positions = all.subarray(0, drawn * 9);
     const flat = faceNormals(positions);
     const normals = cornerNormals(mesh, flat, mesh.vertices.length / 3);
     meshes.set(name, { ...mesh, positions, flat, bounds, unit });
-    const { format, faceOf, faceCount, project, colors, isTextured } = mesh;
-    return { format, faceOf: faceOf.slice(), faceCount, bounds, bulk, origin, positions: positions.slice(), normals, project, colors: colors && colors.slice(), isTextured };
+    return { drawn, format, faceOf: whole.faceOf.slice(), faceCount, bounds, bulk, origin, positions: all.slice(), normals, project, colors: colors && colors.slice(), isTextured };
   },
 
   // What else there is to see of a mesh, and coarse copies of a large one, of about so many triangles.

@@ -23,11 +23,11 @@ export function sniff(bytes, name) {
 }
 
 // A mesh to draw. `colors`: red, green, blue and 255 of each corner, zeros of one without a colour; null where none has one.
-// `isTextured`: it has pictures, or materials in other files, that are not read. Files of other formats, and broken ones, are problems: the service says more about them.
+// `drawn`: so many triangles, the first ones, are material. `isTextured`: it has pictures, or materials in other files, that are not read. Files of other formats, and broken ones, are problems: the service says more about them.
 export async function read(bytes, name) {
   const format = sniff(bytes, name);
   if (!format) throw new FileProblem("not-drawn-here");
   const mesh = await READERS[format](bytes);
   if (mesh.faceOf.length === 0) throw new FileProblem("no-triangle");
-  return { format, colors: null, isTextured: false, ...mesh };
+  return { format, colors: null, isTextured: false, drawn: mesh.faceOf.length, ...mesh };
 }

@@ -1,4 +1,5 @@
 // 3MF: what the build puts together, each mesh at each of its places. What is not understood here the service draws or refuses.
+// What slicers note as no material comes behind what is printed: negative parts, modifiers, blockers and enforcers of supports.
 
 import { FileProblem, Numbers } from "./bytes.js";
 import { bytesOf } from "./colors.js";
@@ -16,25 +17,30 @@ const UNMOVED = [1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0];
 export async function readThreemf(bytes) {
   const zip = new Zip(bytes);
   const root = await startOf(zip);
+  const notes = await notesOf(zip);
   const models = new Map();
   const modelOf = async (path) => {
     if (!models.has(path)) models.set(path, modelFrom(await zip.text(path, MODEL_BYTES_MAX), path));
     return models.get(path);
   };
   const model = await modelOf(root);
-  const places = [];
-  const put = async (reference, from, matrix, level) => {
+  const pieces = []; // ranges of triangles of an object, at a place
+  const put = async (reference, from, matrix, above) => {
     const path = reference.path ?? from;
     const object = (await modelOf(path)).objects.get(reference.id);
-    if (!object || level > LEVELS_MAX || places.length > PLACES_MAX) throw new FileProblem("not-drawn-here");
+    if (!object || above.length > LEVELS_MAX || pieces.length > PLACES_MAX) throw new FileProblem("not-drawn-here");
     const own = times(reference.matrix, matrix);
-    for (const part of object.components) await put(part, path, own, level + 1);
-    if (object.corners.length && DRAWN.includes(object.kind)) places.push({ object, matrix: own });
+    const way = [...above, reference.id];
+    for (const part of object.components) await put(part, path, own, way);
+    if (!object.corners.length || !DRAWN.includes(object.kind)) return;
+    const place = { matrix: own };
+    const isAside = notes.parts.has(way.slice(0, 2).join());
+    for (const range of rangesOf(object, path === root && notes.volumes.get(object.id))) pieces.push({ object, place, ...range, isAside: isAside || range.isAside });
   };
-  for (const item of model.items) await put(item, root, UNMOVED, 0);
+  for (const item of model.items) await put(item, root, UNMOVED, []);
   const all = await Promise.all(models.values());
   const materials = all.some(({ isPainted }) => isPainted) ? await filaments(zip, MODEL_BYTES_MAX) : [];
-  return { ...sceneOf(places, materials), millimetres: model.millimetres, isTextured: all.some(({ properties }) => properties.isTextured) };
+  return { ...sceneOf(pieces, materials), millimetres: model.millimetres, isTextured: all.some(({ properties }) => properties.isTextured) };
 }
 
 // The model that the relationships of the package name.
@@ -45,6 +51,36 @@ async function startOf(zip) {
     }
   }
   return "/3D/3dmodel.model";
+}
+
+// What slicers note of objects: `parts`, the ids of an item's object and of a component of it that is no material; and
+// `volumes`, the ranges of an object's triangles.
+async function notesOf(zip) {
+  const [parts, volumes] = [new Set(), new Map()];
+  const isAside = (word) => /negative|modifier|support/i.test(word);
+  for (const path of ["/Metadata/Slic3r_PE_model.config", "/Metadata/model_settings.config"]) {
+    let [object, volume] = [null, null];
+    for (const { name, of } of zip.has(path) ? elements(await zip.text(path, MODEL_BYTES_MAX)) : []) {
+      if (name === "object") {
+        object = of("id");
+        volume = null;
+      } else if (name === "part" && isAside(of("subtype"))) parts.add(`${object},${of("id")}`);
+      else if (name === "volume") {
+        volume = { from: Number(of("firstid")), until: Number(of("lastid")) + 1, isAside: false };
+        if (!volumes.has(object)) volumes.set(object, []);
+        volumes.get(object).push(volume);
+      } else if (volume && ["volume_type", "modifier"].includes(of("key"))) volume.isAside ||= of("value") === "1" || isAside(of("value"));
+    }
+  }
+  return { parts, volumes };
+}
+
+// The volumes of an object where some are no material and they are all of it; otherwise the whole object.
+function rangesOf(object, volumes) {
+  const count = object.corners.length / 3;
+  let end = 0;
+  const isApart = volumes && volumes.some((volume) => volume.isAside) && volumes.every(({ from, until }) => from === end && (end = until) > from);
+  return isApart && end === count ? volumes : [{ from: 0, until: count, isAside: false }];
 }
 
 // Opening tags, with their attributes by local name.
@@ -109,41 +145,50 @@ export const moved = ([x, y, z], m) => [0, 1, 2].map((axis) => x * m[axis] + y *
 
 const isMirror = (m) => m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) + m[2] * (m[3] * m[7] - m[4] * m[6]) < 0;
 
-// Faces are numbered by objects; copies of one stand one after the other, so that numbers ascend. `objects` says which
-// faces are whose, and `order` in which order the build has them.
-function sceneOf(places, materials) {
-  const objects = [...new Set(places.map(({ object }) => object))].map((object) => ({ object, places: places.filter((place) => place.object === object).map(({ matrix }) => matrix) }));
-  const total = objects.reduce((sum, { object, places: own }) => sum + (object.corners.length / 3) * own.length, 0);
+// Faces are numbered by ranges of objects, what is printed first; copies of one stand one after the other, so that numbers
+// ascend. `objects` says which faces are whose, and `order` in which order the build has what is printed.
+function sceneOf(pieces, materials) {
+  const named = new Map();
+  for (const piece of pieces.toSorted((a, b) => a.isAside - b.isAside)) {
+    const name = [piece.object.path, piece.object.id, piece.from, piece.isAside].join();
+    if (!named.has(name)) named.set(name, { ...piece, count: piece.until - piece.from, places: [] });
+    named.get(name).places.push(piece.place);
+    piece.name = name;
+  }
+  const objects = [...named.values()];
+  const total = objects.reduce((sum, { count, places }) => sum + count * places.length, 0);
   if (total > TRIANGLES_MAX) throw new FileProblem("not-drawn-here");
   const [vertices, corners, faceOf, colors] = [new Numbers(Float64Array), new Numbers(Uint32Array), new Numbers(Uint32Array), new Numbers(Uint32Array)];
   const told = [];
-  let first = 0;
-  for (const { object, places: own } of objects) {
-    const count = object.vertices.length / 3;
-    const begins = own.map((matrix) => {
-      const begin = vertices.length / 3;
-      for (let at = 0; at < count; at += 1) for (const value of moved(object.vertices.items.subarray(at * 3, at * 3 + 3), matrix)) vertices.push(value);
-      return { begin, turns: isMirror(matrix) ? [0, 2, 1] : [0, 1, 2] };
-    });
-    for (let at = 0; at < object.corners.length; at += 3) {
-      const ends = object.corners.items.subarray(at, at + 3);
-      if (!ends.every((end) => end < count)) continue;
-      const color = materials[object.paints.get(at / 3)] || (object.colors.get(at / 3) ?? object.color);
-      for (const { begin, turns } of begins) {
+  let [first, drawn] = [0, 0];
+  for (const { object, from, until, isAside, count, places } of objects) {
+    const ends = object.vertices.length / 3;
+    for (const place of places) {
+      if (place.turns) continue; // another range of the object came here
+      Object.assign(place, { begin: vertices.length / 3, turns: isMirror(place.matrix) ? [0, 2, 1] : [0, 1, 2] });
+      for (let at = 0; at < ends; at += 1) for (const value of moved(object.vertices.items.subarray(at * 3, at * 3 + 3), place.matrix)) vertices.push(value);
+    }
+    for (let at = from; at < until; at += 1) {
+      const triangle = object.corners.items.subarray(at * 3, at * 3 + 3);
+      if (!triangle.every((end) => end < ends)) continue;
+      const color = materials[object.paints.get(at)] || (object.colors.get(at) ?? object.color);
+      for (const { begin, turns } of places) {
         for (const turn of turns) {
-          corners.push(begin + ends[turn]);
+          corners.push(begin + triangle[turn]);
           colors.push(color[turn] ?? color);
         }
-        faceOf.push(first + at / 3);
+        faceOf.push(first + at - from);
       }
     }
-    told.push({ path: object.path, id: Number(object.id), first, count: object.corners.length / 3, places: own });
-    first += object.corners.length / 3;
+    if (!isAside) drawn = faceOf.length;
+    told.push({ path: object.path, id: Number(object.id), from, first, count, places: places.map(({ matrix }) => matrix) });
+    first += count;
   }
-  const order = places.map(({ object }) => objects.findIndex((one) => one.object === object));
+  const numbers = new Map([...named.keys()].map((name, at) => [name, at]));
   const shown = colors.done();
   return {
-    vertices: vertices.done(), corners: corners.done(), faceOf: faceOf.done(), faceCount: total, project: { objects: told, order },
+    vertices: vertices.done(), corners: corners.done(), faceOf: faceOf.done(), faceCount: total, drawn,
+    project: { objects: told, order: pieces.filter(({ isAside }) => !isAside).map(({ name }) => numbers.get(name)) },
     colors: shown.some(Boolean) ? bytesOf(shown) : null,
   };
 }

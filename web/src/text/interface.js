@@ -5,7 +5,7 @@ export const words = {
   "drop": ["Drop a mesh here", "Netz hier ablegen", "Déposez un maillage ici"],
   "drop.formats": ["STL, OBJ, PLY, OFF, 3MF, GLB or glTF. It goes to this service only.", "STL, OBJ, PLY, OFF, 3MF, GLB oder glTF. Die Datei geht nur an diesen Dienst.", "STL, OBJ, PLY, OFF, 3MF, GLB ou glTF. Il ne va qu’à ce service."],
   "choose": ["Choose a file", "Datei wählen", "Choisir un fichier"],
-  "open.other": ["Open another file", "Andere Datei öffnen", "Ouvrir un autre fichier"],
+  "open.other": ["Another file", "Andere Datei", "Autre fichier"],
   "samples": ["or try one of these", "oder eines hiervon ausprobieren", "ou essayez l’un de ceux-ci"],
   "sample.scan": ["Broken scan", "Löchriger Scan", "Scan abîmé"],
   "sample.bodies": ["Several bodies", "Mehrere Körper", "Plusieurs corps"],
@@ -163,7 +163,7 @@ export const words = {
   "view.rough": ["While it moves, the picture is rougher: no graphics card draws it.", "In Bewegung ist das Bild gröber: Keine Grafikkarte zeichnet es.", "En mouvement, l’image est plus grossière : aucune carte graphique ne la dessine."],
   "view.working": ["Computing…", "Wird berechnet…", "Calcul…"],
 
-  "jobs": ["Jobs of this browser", "Aufträge dieses Browsers", "Tâches de ce navigateur"],
+  "jobs": ["Jobs", "Aufträge", "Tâches"],
   "jobs.none": ["None yet.", "Noch keine.", "Aucune."],
   "jobs.forget": ["Forget the list", "Liste vergessen", "Oublier la liste"],
   "status.reading": ["Reading the file", "Datei lesen", "Lecture du fichier"],

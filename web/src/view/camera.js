@@ -1,6 +1,6 @@
 // Where one looks from: orbit, standard views, flights to a place.
 
-import { PerspectiveCamera, Vector3 } from "three";
+import { Frustum, PerspectiveCamera, Vector3 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
 const DIRECTIONS = {
@@ -48,11 +48,21 @@ export class Camera {
   }
 
   look(name, isFlown = true) {
+    this.isAtPlace = false;
     this.go(new Vector3(), new Vector3(...DIRECTIONS[name]), this.distanceFor(this.radius), isFlown);
   }
 
   fit() {
+    this.isAtPlace = false;
     this.go(new Vector3(), this.direction(), this.distanceFor(this.radius));
+  }
+
+  // Fits the part again, from the same side, where a flight led into it or where none of it is seen.
+  comeBack() {
+    this.camera.updateMatrixWorld();
+    const { planes } = new Frustum().setFromProjectionMatrix(this.camera.projectionMatrix.clone().multiply(this.camera.matrixWorldInverse));
+    const within = Math.min(...planes.map(({ constant }) => constant)); // how far the middle of the part lies within the picture
+    if (within < this.radius * (this.isAtPlace ? 1 : -1)) this.fit();
   }
 
   direction() {
@@ -63,6 +73,7 @@ export class Camera {
   fly(place, normal, radius) {
     const direction = normal.length() > Math.min(0.1, this.radius * 0.01) ? normal.clone().normalize() : this.direction();
     direction.add(this.direction().multiplyScalar(0.35)).normalize();
+    this.isAtPlace = true;
     // What is small is seen with what is around it, as long as it is still seen.
     const around = Math.min(this.radius * 0.04, radius > 0 ? radius * 100 : Infinity);
     this.go(place, direction, this.distanceFor(Math.min(this.radius, Math.max(radius * 2.5, around))));

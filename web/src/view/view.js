@@ -39,8 +39,9 @@ export class View {
   }
 
   // A mesh for a side; the first one of a file says where the bed is and how far the camera.
-  setMesh(name, { positions, normals, colors, bulk: { bounds } }, isFirst) {
+  setMesh(name, { drawn, positions: all, normals, colors, bulk: { bounds } }, isFirst) {
     this.clear(name);
+    const positions = all.subarray(0, drawn * 9);
     const side = this.sides[name];
     if (side.isColored !== Boolean(colors)) Object.assign(side, { isColored: Boolean(colors), materials: surfaceMaterials(Boolean(colors)) });
     const isQuick = this.isSoftware && positions.length / 9 > ONE_PASS_ABOVE;
@@ -185,6 +186,11 @@ export class View {
 
   fly(place, normal, radius) {
     this.camera.fly(new Vector3(...place), new Vector3(...normal), radius);
+  }
+
+  comeBack() {
+    this.setAspect();
+    this.camera.comeBack();
   }
 
   resize() {

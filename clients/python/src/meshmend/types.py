@@ -2181,6 +2181,11 @@ Rejection: TypeAlias = Literal[
     "no-patch",
     "too-large",
     "no-fit",
+    "too-few-points",
+    "no-room",
+    "singular",
+    "inexact",
+    "no-zero",
     "degenerate-triangle",
     "topology",
     "edge-in-use",
@@ -2192,7 +2197,12 @@ Rejection: TypeAlias = Literal[
 Why a patch was not taken.
 - `no-patch`: The method makes no patch for such a hole.
 - `too-large`: The rim has more corners, or the patch more vertices, than the method takes.
-- `no-fit`: No surface fits the rim and what is around it.
+- `no-fit`: The equations of a smooth patch have no solution.
+- `too-few-points`: The rim and the rings around it have too few points for a field, or lie on one line.
+- `no-room`: Other parts of the surface are at the rim everywhere, so that no side of it can be told from the other.
+- `singular`: The equations of the field are singular to working precision.
+- `inexact`: The field misses the values that it should take.
+- `no-zero`: A vertex finds no zero of the field within half the diagonal of the rim.
 - `degenerate-triangle`: A triangle without area.
 - `topology`: It is not a surface with exactly the rim as its boundary.
 - `edge-in-use`: An edge of it is in use already, or a triangle is the double of another.
@@ -3340,7 +3350,8 @@ class Deviation(TypedDict):
     """
     interpolated_area_share: float | None
     """
-    Share of the area of the result, from 0 to 1, that patches of holes make up; null where `holes` is null.
+    Area of the patches of holes as a share of the surface, from 0 to 1, before its triangles are made fewer; null where `holes`
+    is null. A patch that a later step put inside a body or cut counts as it was made.
     """
     identical_triangle_share: float | None
     """
@@ -3429,6 +3440,7 @@ FieldFit = TypedDict(
         "degree": int,
         "lambda": list[float],
         "halved": int,
+        "without_room": int,
         "residual": float,
     },
 )
@@ -3849,6 +3861,10 @@ class RejectedPatch(TypedDict):
     reason: Rejection
     """
     Why it was not taken.
+    """
+    position: list[float] | None
+    """
+    Near where it meets something, in the unit of the file; null: that was not what was wrong, or not told.
     """
 
 
