@@ -65,13 +65,16 @@ pub(super) fn sites(
     let places: Vec<DVec3> = band.points.iter().map(|&p| frame.inward(p)).collect();
     let first_at = Cells::new(&places, SAME_SHARE).first_within(SAME_SHARE, budget)?;
     let mut sites = Vec::with_capacity(places.len());
+    let mut with_room = 0;
     for (i, &point) in places.iter().enumerate() {
         if first_at[i] != i as u32 {
             continue;
         }
         let lambda = offsets.lambdas[i] / frame.unit;
         let value = if options.values == ConstraintValues::Unit && lambda > 0.0 { 1.0 } else { lambda };
-        let has = [lambda > 0.0 && keeps_offsets(sites.len(), options.share); 2];
+        let has_room = lambda > 0.0;
+        let has = [has_room && keeps_offsets(with_room, options.share); 2];
+        with_room += usize::from(has_room);
         sites.push(Site { point, offset: band.normals[i].normalize() * lambda, value, has });
     }
     restore_rank(&mut sites, budget)?;
@@ -218,6 +221,22 @@ mod tests {
         // Of a planar circular rim with all offsets the rank is 9.
         assert_eq!(rank(&kept, TERMS), 9);
         assert!(kept.len() < 70);
+    }
+
+    #[test]
+    fn points_without_room_take_no_offsets_from_others() {
+        let band = circle(40);
+        let frame = Frame::of(&band.points);
+        let mut offsets = Offsets { first: 0.05, lambdas: vec![0.05; 40], halved: 7 };
+        offsets.lambdas[..7].fill(0.0);
+        for values in [ConstraintValues::Distance, ConstraintValues::Unit] {
+            let options = RbfOptions { share: 0.01, values, ..RbfOptions::default() };
+            let sites = sites(&band, &offsets, &options, &frame, &Budget::unlimited()).unwrap();
+            assert!(sites[..7].iter().all(|site| site.has == [false; 2] && site.value == 0.0));
+            assert_eq!(sites[7].has, [true; 2]);
+            let kept: Vec<DVec3> = sites.iter().flat_map(Site::centres).map(|(p, _)| p).collect();
+            assert_eq!(rank(&kept, TERMS), 9, "as with all offsets that have room");
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The field: a function that is zero on the surface, positive outside and negative inside.
 
 use super::centres::Frame;
-use super::options::Kernel;
+use super::options::{ConstraintValues, Kernel};
 use super::partition::Partition;
 use super::polynomial::{dot, gradient, terms};
 use super::system::Solution;
@@ -52,7 +52,7 @@ pub struct FitFacts {
     pub lambda: f64,
     /// The least and the largest lambda used.
     pub lambda_range: [f64; 2],
-    /// Points whose lambda was halved, and those without offset centres because no lambda fits.
+    /// Points whose lambda was halved; those without offset centres because no lambda fits are among them.
     pub halved: usize,
     /// Points without offset centres because no lambda fits: another part of the surface is at them.
     pub without_room: usize,
@@ -71,6 +71,7 @@ pub(super) enum Parts {
 #[derive(Debug, Clone)]
 pub struct Field {
     pub(super) kernel: Kernel,
+    pub(super) values: ConstraintValues,
     pub(super) frame: Frame,
     /// What a value of the system is in the values of the field.
     pub(super) value_unit: f64,
@@ -154,7 +155,7 @@ impl Field {
     /// The gradient's length where the field is as it should be.
     fn usual_slope(&self) -> f64 {
         let [least, _] = self.facts.lambda_range;
-        if self.value_unit == 1.0 { 1.0 / least } else { 1.0 }
+        if self.values == ConstraintValues::Unit { 1.0 / least } else { 1.0 }
     }
 
     /// What was fitted.

@@ -39,13 +39,16 @@ pub fn fit(
     let offsets = offsets(band, around, options, budget)?;
     let sites = sites(band, &offsets, options, &frame, budget)?;
     budget.spend(sites.len() as u64)?;
+    if sites.iter().all(|site| site.has == [false; 2]) {
+        return Ok(Err(Unfit::NoRoom));
+    }
     let parts = match parts(&sites, options, budget)? {
         Ok(parts) => parts,
         Err(refusal) => return Ok(Err(refusal)),
     };
     let value_unit = if options.values == ConstraintValues::Unit { 1.0 } else { frame.unit };
     let facts = facts(band, options.kernel, &sites, &offsets, &parts);
-    Ok(Ok(Field { kernel: options.kernel, frame, value_unit, parts, facts }))
+    Ok(Ok(Field { kernel: options.kernel, values: options.values, frame, value_unit, parts, facts }))
 }
 
 fn parts(sites: &[Site], options: &RbfOptions, budget: &Budget) -> Result<Result<Parts, Unfit>, Stopped> {

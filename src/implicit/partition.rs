@@ -73,11 +73,18 @@ impl Partition {
         let spacing = spacings(sites, budget)?;
         let boxes = boxes(sites, budget)?;
         let fit = |_, cell: Cell| -> Result<Result<Part, Unfit>, Stopped> {
-            let (reach, chosen) = cell.choose(sites, &spacing);
+            let (reach, mut chosen) = cell.choose(sites, &spacing);
+            let middle = (cell.low + cell.high) * 0.5;
+            let has_offsets = |&i: &u32| sites[i as usize].has != [false; 2];
+            if !chosen.iter().any(has_offsets) {
+                // A field without offset centres would be zero everywhere.
+                let apart = |i: u32| sites[i as usize].point.distance_squared(middle);
+                let with_offsets = (0..sites.len() as u32).filter(has_offsets);
+                chosen.extend(with_offsets.min_by(|&i, &k| apart(i).total_cmp(&apart(k))));
+            }
             let (points, values): (Vec<DVec3>, Vec<f64>) =
                 chosen.iter().flat_map(|&i| sites[i as usize].centres()).unzip();
             budget.spend(points.len() as u64)?;
-            let middle = (cell.low + cell.high) * 0.5;
             Ok(solve(kernel, &points, &values, budget)?.map(|solution| Part { middle, reach, solution }))
         };
         let parts: Result<Vec<_>, Stopped> = par::map_items(boxes, fit).into_iter().collect();

@@ -48,9 +48,6 @@ pub(super) fn solve(
     values: &[f64],
     budget: &Budget,
 ) -> Result<Result<Solution, Unfit>, Stopped> {
-    if values.iter().all(|&value| value == 0.0) {
-        return Ok(Err(Unfit::NoRoom));
-    }
     let quadratic = rank(points, TERMS);
     let (degree, count) = if quadratic == TERMS { (2, TERMS) } else { (1, LINEAR_TERMS) };
     if degree == 1 {

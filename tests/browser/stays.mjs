@@ -75,12 +75,16 @@ const inSight = (page, selector) => page.locator(selector).evaluate((element) =>
 const SCREENS = [{ viewport: { width: 1180, height: 720 } }, { viewport: { width: 375, height: 667 }, hasTouch: true, isMobile: true }];
 
 // Nothing was drawn for a while, so that what is drawn is not a rougher picture of a view that moves.
-const atRest = (page) => page.waitForFunction(() => {
-  const { dataset } = document.querySelector("#view");
-  const isAtRest = dataset.frames === dataset.seen;
-  dataset.seen = dataset.frames;
-  return isAtRest;
-}, null, { polling: 500 });
+const atRest = async (page) => {
+  await page.waitForTimeout(500); // so that what a key began is drawn at all
+  await page.evaluate(() => delete document.querySelector("#view").dataset.seen);
+  await page.waitForFunction(() => {
+    const { dataset } = document.querySelector("#view");
+    const isAtRest = dataset.frames === dataset.seen;
+    dataset.seen = dataset.frames;
+    return isAtRest;
+  }, null, { polling: 500 });
+};
 
 // After a flight to a place, the whole part is seen again when its result comes. A view that was chosen by hand stays.
 export async function viewAfterARepair(browser) {

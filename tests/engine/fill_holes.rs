@@ -4,7 +4,7 @@ use meshmend::analysis::HoleClass;
 use meshmend::budget::Budget;
 use meshmend::formats::{Encoding, Format, ReadOptions, read};
 use meshmend::geom::DVec3;
-use meshmend::implicit::Kernel;
+use meshmend::implicit::{Kernel, RbfOptions};
 use meshmend::mesh::{Color, Soup};
 use meshmend::pipeline::{
     Answer, ChosenHole, ChosenPlan, Failure, FillHolesChoices, HoleFate, HoleOutcome, Operation, Options,
@@ -220,7 +220,10 @@ fn bent_plate(thickness: f64) -> Vec<u8> {
 #[test]
 fn a_field_that_does_not_fit_a_thin_wall_is_told_and_where_the_next_ones_meet_the_other_side() {
     let told = |thickness| {
-        let answer = filled(&bent_plate(thickness), by(Method::Rbf)).unwrap();
+        let rbf = RbfOptions { share: 1.0, ..RbfOptions::default() };
+        let fill = FillOptions { method: Method::Rbf, rbf, ..FillOptions::default() };
+        let filling = FillHolesChoices { fill, ..FillHolesChoices::default() };
+        let answer = filled(&bent_plate(thickness), filling).unwrap();
         let [hole] = holes(&answer) else { panic!("one hole") };
         (hole.told.as_ref().unwrap().used, hole.rejected.clone(), hole.told.as_ref().unwrap().field)
     };

@@ -384,8 +384,9 @@ fn layered(layers: usize) -> Vec<u8> {
     let mut groups = String::new();
     for layer in 0..layers {
         write!(groups, "<m:colorgroup id=\"{}\">", 10 + layer).unwrap();
-        (0..points.len())
-            .for_each(|v| write!(groups, "<m:color color=\"#{:02X}{v:02X}00\"/>", 10 * layer).unwrap());
+        // So far apart that what is between two of them is none of the others.
+        let color = |v: usize| format!("<m:color color=\"#{:02X}{:02X}00\"/>", 10 * layer, 16 * v);
+        groups.extend((0..points.len()).map(color));
         groups += "</m:colorgroup>";
     }
     let ids: Vec<String> = (0..layers).map(|layer| (10 + layer).to_string()).collect();

@@ -7,7 +7,7 @@ use meshmend::budget::Budget;
 use meshmend::geom::DVec3;
 use meshmend::implicit::Kernel;
 use meshmend::mesh::Soup;
-use meshmend::repair::fill::{FillOptions, Filled, Method, fill};
+use meshmend::repair::fill::{Extract, FillOptions, Filled, Method, fill};
 use meshmend::repair::{Draft, Selection};
 use std::collections::BTreeMap;
 
@@ -278,8 +278,24 @@ fn a_hole_on_each_side_of_a_thin_wall_gets_two_patches() {
         assert_eq!(report.holes.len(), 2, "{method:?}: {:?}", report.holes);
         assert!(judge_welded(&raw(&draft)).contacts == 0, "{method:?}");
         assert!(report.holes.iter().all(|hole| hole.used.is_some()), "{method:?}: {:?}", report.holes);
+        let is_fitted = report.holes.iter().all(|hole| hole.used == Some(method) && hole.field.is_some());
+        assert_eq!(is_fitted, method == Method::Rbf, "{method:?}: {:?}", report.holes);
         let off = largest(&patch_points(&draft, &torn), |p| p.z.abs() - 0.02);
         assert!(off < 1e-6, "{method:?}: {off}");
+    }
+}
+
+#[test]
+fn each_way_to_make_triangles_of_a_field_closes_the_hole_soundly() {
+    let torn = cut(sphere(3), [0.48, 0.6, 0.64], 0.5);
+    for extract in [Extract::Project, Extract::March, Extract::Mesh] {
+        let options = FillOptions { method: Method::Rbf, extract, ..FillOptions::default() };
+        let (draft, report) = filled_as(&torn, &options);
+        let [hole] = &report.holes[..] else { panic!("{} holes", report.holes.len()) };
+        assert!(hole.used == Some(Method::Rbf) && hole.field.is_some(), "{extract:?}: {:?}", hole.rejected);
+        assert!(judge_welded(&raw(&draft)).is_valid(), "{extract:?}");
+        let off = largest(&patch_points(&draft, &torn), |p| p.length() - 1.0);
+        assert!(off < 0.03, "{extract:?}: {off} of a hole of 1");
     }
 }
 

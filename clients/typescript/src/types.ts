@@ -338,7 +338,7 @@ export interface components {
          * @enum {string}
          */
         ConstraintValues: "unit" | "distance";
-        /** @description Share of the points of method=rbf that have offset constraints. Default: 1. */
+        /** @description Share of the points of method=rbf that have offset constraints. Default: 0.2. */
         Constraints: number;
         /**
          * @description What becomes of bodies that touch in vertices or edges only.
@@ -1138,7 +1138,7 @@ export interface components {
             /**
              * Format: double
              * @description Share of the points that have offset constraints.
-             * @default 1
+             * @default 0.2
              */
             constraints: number;
             /**
@@ -1306,7 +1306,7 @@ export interface components {
          * @enum {string}
          */
         HoleFate: "filled" | "rejected" | "no-loop" | "kept";
-        /** @description Which holes fill-holes closes: all, or a list of the numbers under which analyze lists them, each perhaps with choices of its own: [0,{"number":3,"method":"flat","band_rings":1}]. Default: all. */
+        /** @description Which holes fill-holes closes: all, or a list of the numbers under which analyze lists them, each perhaps with choices of its own: [0,{"number":3,"method":"rbf","band_rings":1}]. Default: all. */
         Holes: "all" | (number | {
             /** @description Place among the witnesses of the boundary loops. */
             number: number;
@@ -3058,7 +3058,7 @@ export interface components {
          *     - `no-patch`: The method makes no patch for such a hole.
          *     - `too-large`: The rim has more corners, or the patch more vertices, than the method takes.
          *     - `no-fit`: The equations of a smooth patch have no solution.
-         *     - `too-few-points`: The rim and the rings around it have too few points for a field, or lie on one line.
+         *     - `too-few-points`: The rim and the rings around it have too few points for a field, or lie in one plane or on one line.
          *     - `no-room`: Other parts of the surface are at the rim everywhere, so that no side of it can be told from the other.
          *     - `singular`: The equations of the field are singular to working precision.
          *     - `inexact`: The field misses the values that it should take.

@@ -190,6 +190,12 @@ impl Groups {
         self.by_id.values().filter(|group| matches!(group, Group::Places(_))).count() <= 1
     }
 
+    /// How many places in pictures there are in all groups.
+    pub(super) fn count_of_places(&self) -> u64 {
+        let of = |group: &Group| if let Group::Places(points) = group { points.len() as u64 } else { 0 };
+        self.by_id.values().map(of).sum()
+    }
+
     /// True when a group has places in a picture.
     pub(super) fn have_places(&self) -> bool {
         self.by_id.values().any(|group| matches!(group, Group::Places(_)))

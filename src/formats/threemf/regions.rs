@@ -87,9 +87,11 @@ impl Body {
         if self.attributes.properties.is_empty() || !self.groups.have_places() {
             return Ok(texture);
         }
-        // The corners, and a number of up to two places for each triangle.
-        const PER_TRIANGLE: u64 = 12 + 2 * 40;
-        let _charge = budget.charge(PER_TRIANGLE * self.soup.triangles.len() as u64)?;
+        // Three numbers for each triangle; for each place two coordinates, twice while the list grows, and an entry in a table.
+        const PER_PLACE: u64 = 2 * 16 + 64;
+        let triangles = self.soup.triangles.len() as u64;
+        let places = (3 * triangles).min(self.groups.count_of_places());
+        let _charge = budget.charge(12 * triangles + PER_PLACE * places)?;
         let mut numbers: FxHashMap<[u64; 2], u32> = FxHashMap::default();
         let mut number = |point: [f64; 2]| {
             *numbers.entry(point.map(f64::to_bits)).or_insert_with(|| {

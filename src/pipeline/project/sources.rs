@@ -82,8 +82,10 @@ pub(super) fn taken_over<'b>(
         if t % CHECK_EVERY == 0 {
             // Each may add one.
             let room = count.min(look.between.len() + CHECK_EVERY) * size_of::<Between>();
-            charges.push(budget.charge(room.saturating_sub(charged) as u64)?);
-            charged = charged.max(room);
+            if room > charged {
+                charges.push(budget.charge((room - charged) as u64)?);
+                charged = room;
+            }
         }
         let size = crate::geom::triangle_area(new.soup.corners(t as u32));
         area += size;

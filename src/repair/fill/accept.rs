@@ -224,7 +224,10 @@ impl Surface {
             let at = place(contact.a, contact.b);
             match owner.get(contact.b as usize) {
                 Some(&b) if a != b => {
-                    between.push((a.max(b), a.min(b), at));
+                    let pair = (a.max(b), a.min(b));
+                    if between.last().is_none_or(|&(last, _)| last != pair) {
+                        between.push((pair, at));
+                    }
                     continue;
                 }
                 Some(_) => reject(&mut judged.verdicts[a], Rejection::MeetsItself),
@@ -232,8 +235,8 @@ impl Surface {
             }
             judged.contacts[a].get_or_insert(at);
         }
-        between.sort_by_key(|&(later, earlier, _)| (later, earlier));
-        for (later, earlier, at) in between {
+        between.sort_by_key(|&(pair, _)| pair);
+        for ((later, earlier), at) in between {
             if judged.verdicts[earlier].is_ok() {
                 reject(&mut judged.verdicts[later], Rejection::MeetsOther);
                 judged.contacts[later].get_or_insert(at);

@@ -4,10 +4,11 @@
 //! surface that it becomes. Where that has no room for all new vertices, they end in one point or on one line, and their
 //! triangles have no area. Edges that became too short are collapsed, as far as the patch stays a surface.
 
-use super::patch::PatchMesh;
+use super::patch::{PatchMesh, listed_by};
 use super::refine::Lengths;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::are_collinear;
+use crate::mesh::triangle_of;
 
 /// An edge is collapsed when it is shorter than this share of the length wanted at its ends. Division makes none that is
 /// shorter than two thirds.
@@ -72,22 +73,28 @@ struct Pass<'a> {
     /// The neighbours of each vertex: where those of each begin, and all of them.
     start: Vec<u32>,
     others: Vec<u32>,
-    /// The triangles at each vertex, likewise.
-    stars: Vec<Vec<u32>>,
+    /// The corners at each vertex, likewise: three times the number of a triangle, plus the place in it.
+    corners_start: Vec<u32>,
+    corners: Vec<u32>,
 }
 
 impl<'a> Pass<'a> {
     fn new(mesh: &'a PatchMesh, is_free: &'a dyn Fn(u32, u32) -> bool) -> Self {
         let (start, others) = mesh.neighbours();
-        let mut stars = vec![Vec::new(); mesh.points.len()];
-        for (t, corners) in mesh.triangles.iter().enumerate() {
-            corners.iter().for_each(|&v| stars[v as usize].push(t as u32));
-        }
-        Self { mesh, is_free, start, others, stars }
+        let vertices = mesh.triangles.as_flattened();
+        let (corners_start, corners) =
+            listed_by(mesh.points.len(), vertices.len() as u32, |corner| vertices[corner as usize]);
+        Self { mesh, is_free, start, others, corners_start, corners }
     }
 
     fn neighbours(&self, v: u32) -> &[u32] {
         &self.others[self.start[v as usize] as usize..self.start[v as usize + 1] as usize]
+    }
+
+    /// The triangles at vertex `v`, ascending.
+    fn star(&self, v: u32) -> impl Iterator<Item = u32> {
+        let [first, end] = [v, v + 1].map(|v| self.corners_start[v as usize] as usize);
+        self.corners[first..end].iter().map(|&corner| triangle_of(corner))
     }
 
     /// For each vertex the one that it becomes. Around an edge that is collapsed nothing else is.
@@ -123,13 +130,13 @@ impl<'a> Pass<'a> {
         }
         let mut gained =
             self.neighbours(gone).iter().filter(|&&v| v != kept && is_of_rim(v) && !is_common(&v));
-        let is_sound = |&t: &u32| {
+        let is_sound = |t: u32| {
             let corners = self.mesh.triangles[t as usize];
             let turned = corners.map(|v| if v == gone { kept } else { v });
             let [p, q, r] = turned.map(|v| self.mesh.point(v));
             corners.contains(&kept) || !turned.into_iter().all(is_of_rim) || !are_collinear(p, q, r)
         };
-        gained.all(|&v| (self.is_free)(kept, v)) && self.stars[gone as usize].iter().all(is_sound)
+        gained.all(|&v| (self.is_free)(kept, v)) && self.star(gone).all(is_sound)
     }
 }
 

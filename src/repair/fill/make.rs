@@ -7,7 +7,6 @@ use super::creased::{Division, creased};
 use super::fair::{Around, fair};
 use super::options::{Extract, FillOptions, Method};
 use super::patch::PatchMesh;
-use super::rbf::FirstFit;
 use super::refine::{Lengths, refine, turn_edges};
 use super::regions::Region;
 use super::report::Rejection;
@@ -15,7 +14,7 @@ use super::surface::Surface;
 use super::{bridge, ears, large, minimal, planar, rbf};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec3, print_pitch};
-use crate::implicit::{self, FitFacts, Unmeshed};
+use crate::implicit::{self, Field, FitFacts, Unmeshed};
 
 /// A way to make a patch. Several may stand for one method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,8 +60,6 @@ pub(super) struct Made {
     pub(super) parents: Vec<[u32; 2]>,
     /// The field on whose surface it is.
     pub(super) field: Option<FitFacts>,
-    /// Why the field that was asked for did not fit, where it is on the surface of another.
-    pub(super) unfit: Option<Rejection>,
 }
 
 /// Times that a faired patch is divided anew where it has grown.
@@ -75,13 +72,15 @@ const STRETCH_MAX: f64 = 4.0;
 /// Times that vertices which came together are taken out after each.
 const COARSENINGS: usize = 3;
 
-/// The patch of `region`, or why there is none. `division`: how creases divide it, if they do.
+/// The patch of `region`, or why there is none; what was tried before and not taken is put among `rejected`. `division`: how
+/// creases divide it, if they do.
 pub(super) fn make(
     region: &Region,
     division: Option<&Division>,
     rings: u32,
     way: Way,
     scene: &Scene<'_>,
+    rejected: &mut Vec<Rejection>,
     budget: &Budget,
 ) -> Result<Result<Made, Rejection>, Stopped> {
     let surface = scene.surface;
@@ -95,7 +94,7 @@ pub(super) fn make(
             Some(division) => return creased(region, division, surface, budget),
             None => Err(Rejection::NoPatch),
         },
-        Way::Rbf => return of_field(region, rings, scene, budget),
+        Way::Rbf => return of_field(region, rings, scene, rejected, budget),
     };
     Ok(made.map(|triangles| Made::plain(region, triangles)))
 }
@@ -103,12 +102,7 @@ pub(super) fn make(
 impl Made {
     fn plain(region: &Region, triangles: Vec<[usize; 3]>) -> Self {
         let triangles = triangles.into_iter().map(|t| t.map(|i| i as u32)).collect();
-        Self {
-            proposal: proposal(region, Vec::new(), triangles),
-            parents: Vec::new(),
-            field: None,
-            unfit: None,
-        }
+        Self { proposal: proposal(region, Vec::new(), triangles), parents: Vec::new(), field: None }
     }
 
     /// A refined patch, its new vertices at places that float32 has.
@@ -126,7 +120,7 @@ impl Made {
         let rim = region.rim();
         turn_caps(&mut mesh, &|a, b| surface.is_free(rim[a as usize], rim[b as usize]), budget)?;
         let proposal = proposal(region, points, mesh.triangles);
-        Ok(Ok(Self { proposal, parents: mesh.parents, field: None, unfit: None }))
+        Ok(Ok(Self { proposal, parents: mesh.parents, field: None }))
     }
 }
 
@@ -228,15 +222,16 @@ fn of_field(
     region: &Region,
     rings: u32,
     scene: &Scene<'_>,
+    rejected: &mut Vec<Rejection>,
     budget: &Budget,
 ) -> Result<Result<Made, Rejection>, Stopped> {
     let Scene { surface, mesh: Some(mesh), options } = *scene else { return Ok(Err(Rejection::NoPatch)) };
-    let fit = || rbf::field(region, rings, surface, mesh, options, budget);
+    let mut fit = || rbf::field(region, rings, surface, mesh, options, rejected, budget);
     if options.extract == Extract::Project {
         return projected(region, fit, surface, budget);
     }
-    let (field, unfit) = match fit()? {
-        Ok(fitted) => fitted,
+    let field = match fit()? {
+        Ok(field) => field,
         Err(reason) => return Ok(Err(reason)),
     };
     let rims: Vec<Vec<DVec3>> =
@@ -251,7 +246,7 @@ fn of_field(
             let points = &patch.points[region.rim().len()..];
             on_lattice(points, surface).map(|points| {
                 let proposal = proposal(region, points, patch.triangles);
-                Made { proposal, parents: Vec::new(), field: Some(*field.facts()), unfit }
+                Made { proposal, parents: Vec::new(), field: Some(*field.facts()) }
             })
         }
         Err(Unmeshed::TooFine { .. }) => Err(Rejection::TooLarge),
@@ -272,7 +267,7 @@ fn edge_length(rims: &[Vec<DVec3>]) -> f64 {
 /// rim of few corners, needs none.
 fn projected(
     region: &Region,
-    fit: impl FnOnce() -> Result<Result<FirstFit, Rejection>, Stopped>,
+    fit: impl FnOnce() -> Result<Result<Field, Rejection>, Stopped>,
     surface: &Surface,
     budget: &Budget,
 ) -> Result<Result<Made, Rejection>, Stopped> {
@@ -286,15 +281,15 @@ fn projected(
         turn_edges(&mut patch, &is_free, budget)?;
         return Made::refined(region, surface, patch, budget);
     }
-    let (field, unfit) = match fit()? {
-        Ok(fitted) => fitted,
+    let field = match fit()? {
+        Ok(field) => field,
         Err(reason) => return Ok(Err(reason)),
     };
     if !rbf::project(&mut patch, &field, &is_free, budget)? {
         return Ok(Err(Rejection::NoZero));
     }
     let made = Made::refined(region, surface, patch, budget)?;
-    Ok(made.map(|made| Made { field: Some(*field.facts()), unfit, ..made }))
+    Ok(made.map(|made| Made { field: Some(*field.facts()), ..made }))
 }
 
 /// The smooth patch before its vertices are rounded.

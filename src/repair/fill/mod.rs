@@ -242,13 +242,13 @@ fn offer(open: &mut [Hole], scene: &Scene<'_>, budget: &Budget) -> Result<Vec<Op
 impl Hole {
     fn next(&mut self, scene: &Scene<'_>, budget: &Budget) -> Result<Option<(Way, Made)>, Stopped> {
         while let Some(way) = self.ways.pop() {
-            match make(&self.region, self.division.as_ref(), self.band_rings, way, scene, budget)? {
-                Ok(made) => {
-                    let unfit = made.unfit.map(|reason| Rejected::alone(way.method(), reason));
-                    self.report.rejected.extend(unfit);
-                    return Ok(Some((way, made)));
-                }
-                Err(reason) => self.report.rejected.push(Rejected::alone(way.method(), reason)),
+            let (division, mut rejected) = (self.division.as_ref(), Vec::new());
+            let made = make(&self.region, division, self.band_rings, way, scene, &mut rejected, budget)?;
+            rejected.extend(made.as_ref().err());
+            let alone = |reason| Rejected::alone(way.method(), reason);
+            self.report.rejected.extend(rejected.into_iter().map(alone));
+            if let Ok(made) = made {
+                return Ok(Some((way, made)));
             }
         }
         Ok(None)

@@ -4,6 +4,10 @@ use crate::implicit::RbfOptions;
 use crate::mesh::{Soup, edge_of, triangle_of};
 use crate::repair::{Draft, NEW, Selection};
 
+/// Share of the points around a hole that have offset constraints. With fewer, the field follows the normals of a coarse mesh
+/// less closely, and comes closer to what was removed (`docs/holes.md`).
+const OFFSETS_SHARE: f64 = 0.2;
+
 /// A way to make a patch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
 pub enum Method {
@@ -75,7 +79,7 @@ impl Default for FillOptions {
             holes: Selection::default(),
             method: Method::Auto,
             band_rings: 2,
-            rbf: RbfOptions::default(),
+            rbf: RbfOptions { share: OFFSETS_SHARE, ..RbfOptions::default() },
             extract: Extract::Project,
             choices: Vec::new(),
             falls_back: true,

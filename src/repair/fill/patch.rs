@@ -29,28 +29,53 @@ fn undirected(a: u32, b: u32) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
+/// The numbers below `count` by the bins `of` puts them into: where those of each of `bins` begin, and all of them, ascending in
+/// each.
+pub(super) fn listed_by(bins: usize, count: u32, of: impl Fn(u32) -> u32) -> (Vec<u32>, Vec<u32>) {
+    let mut start = vec![0u32; bins + 1];
+    for i in 0..count {
+        start[of(i) as usize + 1] += 1;
+    }
+    for bin in 0..bins {
+        start[bin + 1] += start[bin];
+    }
+    let mut next = start.clone();
+    let mut listed = vec![0; count as usize];
+    for i in 0..count {
+        let at = &mut next[of(i) as usize];
+        listed[*at as usize] = i;
+        *at += 1;
+    }
+    (start, listed)
+}
+
 impl PatchMesh {
     /// `None` when an edge has more than two triangles, or two in the same direction.
     pub(super) fn new(points: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Option<Self> {
         let rim = points.len();
-        let mut half_edges: Vec<([u32; 2], u32)> = (0..3 * triangles.len() as u32)
-            .map(|h| {
-                let [a, b] = edge_of(&triangles, h);
-                (undirected(a, b), h)
-            })
-            .collect();
-        half_edges.sort_unstable();
-        let mut twin = vec![RIM; half_edges.len()];
-        for group in half_edges.chunk_by(|a, b| a.0 == b.0) {
-            match *group {
-                [_] => {}
-                [(_, g), (_, h)] if edge_of(&triangles, g)[0] == edge_of(&triangles, h)[1] => {
-                    (twin[g as usize], twin[h as usize]) = (h, g);
+        let count = 3 * triangles.len() as u32;
+        let ends = |h: u32| {
+            let [a, b] = edge_of(&triangles, h);
+            undirected(a, b)
+        };
+        // The half-edges at each vertex that is the smaller of their ends: few, so that they are quickly sorted.
+        let (start, mut half_edges) = listed_by(rim, count, |h| ends(h)[0]);
+        let mut twin = vec![RIM; count as usize];
+        let mut edges = FxHashSet::with_capacity_and_hasher(count as usize / 2 + rim, Default::default());
+        for range in start.windows(2) {
+            let own = &mut half_edges[range[0] as usize..range[1] as usize];
+            own.sort_unstable_by_key(|&h| (ends(h)[1], h));
+            for group in own.chunk_by(|&g, &h| ends(g)[1] == ends(h)[1]) {
+                match *group {
+                    [_] => {}
+                    [g, h] if edge_of(&triangles, g)[0] == edge_of(&triangles, h)[1] => {
+                        (twin[g as usize], twin[h as usize]) = (h, g);
+                    }
+                    _ => return None,
                 }
-                _ => return None,
+                edges.insert(ends(group[0]));
             }
         }
-        let edges = half_edges.iter().map(|&(edge, _)| edge).collect();
         Some(Self { points, triangles, rim, parents: Vec::new(), twin, edges })
     }
 

@@ -17,7 +17,7 @@ use rustc_hash::FxHashSet;
 const RINGS_MAX: u32 = 8;
 /// Points of a band, at most; a ring that would make it larger is left out, but never the first.
 const POINTS_MAX: usize = 1 << 15;
-/// Vertices moved between two checks of the budget.
+/// Vertices that one thread moves at a time.
 const POINTS: usize = 16;
 /// How far a vertex may go to the surface, as a share of the diagonal of the rim's box: a dome as high as its rim is wide.
 const REACH: f64 = 0.5;
@@ -44,31 +44,30 @@ impl<'m> Mesh<'m> {
     }
 }
 
-/// A field, and why the cubic one that was tried before it did not fit.
-pub(super) type FirstFit = (Field, Option<Rejection>);
-
 /// Fits the field of a region. Where a cubic one does not fit, because thin walls make lambda small, the thin plate is
-/// tried, if the options say that plainer patches may be.
+/// tried, if the options say that plainer patches may be; why the cubic one does not fit is then put among `rejected`.
 pub(super) fn field(
     region: &Region,
     rings: u32,
     surface: &Surface,
     mesh: &Mesh<'_>,
     options: &FillOptions,
+    rejected: &mut Vec<Rejection>,
     budget: &Budget,
-) -> Result<Result<FirstFit, Rejection>, Stopped> {
+) -> Result<Result<Field, Rejection>, Stopped> {
     let band = band(region, rings, surface, budget)?;
     let around = Surroundings { surface: Some(&mesh.nearest), mesh_box: mesh.bounds };
     let unfit = match implicit::fit(&band, &around, &options.rbf, budget)? {
-        Ok(field) => return Ok(Ok((field, None))),
+        Ok(field) => return Ok(Ok(field)),
         Err(unfit) => unfit,
     };
-    if options.rbf.kernel != Kernel::Cubic || !options.falls_back {
+    let is_of_kernel = matches!(unfit, Unfit::Singular { .. } | Unfit::Residual { .. });
+    if options.rbf.kernel != Kernel::Cubic || !options.falls_back || !is_of_kernel {
         return Ok(Err(reason(unfit)));
     }
     let plainer = RbfOptions { kernel: Kernel::ThinPlate, ..options.rbf };
-    let field = implicit::fit(&band, &around, &plainer, budget)?;
-    Ok(field.map(|field| (field, Some(reason(unfit)))).map_err(reason))
+    rejected.push(reason(unfit));
+    Ok(implicit::fit(&band, &around, &plainer, budget)?.map_err(reason))
 }
 
 fn reason(unfit: Unfit) -> Rejection {
@@ -121,8 +120,11 @@ pub(super) fn project(
     let centres = field.facts().centres as u64;
     let points = &mesh.points[mesh.rim..];
     let on_surface = |range: std::ops::Range<usize>| -> Result<Vec<Option<DVec3>>, Stopped> {
-        budget.spend(range.len() as u64 * (centres / 16 + 1))?;
-        Ok(points[range].iter().map(|&point| field.project(point, reach)).collect())
+        let on_surface = |&point: &DVec3| {
+            budget.spend(centres / 16 + 1)?;
+            Ok(field.project(point, reach))
+        };
+        points[range].iter().map(on_surface).collect()
     };
     let places = par::try_map_ranges(points.len(), POINTS, on_surface)?.concat();
     let Some(places) = places.into_iter().collect::<Option<Vec<_>>>() else { return Ok(false) };

@@ -125,7 +125,7 @@ options! {
     cut_edges: Vec<[u32; 2]>, in CUT_STITCH,
         "Edges that cut-stitch cuts besides those that must be, by the numbers of their vertices from 0: [[0,1],[1,2]].";
     holes: Holes, in FILL_HOLES,
-        "Which holes fill-holes closes: all, or a list of the numbers under which analyze lists them, each perhaps with choices of its own: [0,{\"number\":3,\"method\":\"flat\",\"band_rings\":1}]. Default: all.";
+        "Which holes fill-holes closes: all, or a list of the numbers under which analyze lists them, each perhaps with choices of its own: [0,{\"number\":3,\"method\":\"rbf\",\"band_rings\":1}]. Default: all.";
     method: FillMethod, in FILL_HOLES,
         "How fill-holes closes holes. Default: auto.";
     band_rings: u32 = OptionKind::Integer { min: 0, max: BAND_RINGS_MAX as u64 }, in FILL_HOLES,
@@ -141,7 +141,7 @@ options! {
     constraint_values: ConstraintValues, in FILL_HOLES,
         "The values of the field of method=rbf at its offset constraints. Default: distance.";
     constraints: f64 = OptionKind::Number { min: 0.01, max: 1.0 }, in FILL_HOLES,
-        "Share of the points of method=rbf that have offset constraints. Default: 1.";
+        "Share of the points of method=rbf that have offset constraints. Default: 0.2.";
     operators: Vec<EditSpec>, in MODELLER,
         "What modeller does, one operator after the other, such as [{\"shift\":{\"faces\":[{\"face\":3,\"by_mm\":0.4}]}}]; see docs/modeller.md. Default: nothing.";
     ranges: Vec<RangeSpec>, in MODELLER,
@@ -252,9 +252,16 @@ impl Options {
         if numbers.windows(2).any(|pair| pair[0] == pair[1]) {
             return Err(OptionError::Lacking { spec: lookup::spec_of("holes")?, needs: "each number once" });
         }
-        let fits =
-            |method: Option<FillMethod>| matches!(method, None | Some(FillMethod::Auto | FillMethod::Rbf));
-        if fits(self.method) || listed.iter().any(|hole| hole.method.is_some() && fits(hole.method)) {
+        let usual = self.method.unwrap_or(FillMethod::Auto);
+        let fits = |method: FillMethod| matches!(method, FillMethod::Auto | FillMethod::Rbf);
+        let of_hole = |hole: &ChosenHole| hole.method.unwrap_or(usual);
+        if listed.iter().any(|hole| hole.band_rings.is_some() && !fits(of_hole(hole))) {
+            let needs = "the method rbf or auto for each hole with `band_rings`";
+            return Err(OptionError::Lacking { spec: lookup::spec_of("holes")?, needs });
+        }
+        let is_fitted =
+            if listed.is_empty() { fits(usual) } else { listed.iter().any(|hole| fits(of_hole(hole))) };
+        if is_fitted {
             return Ok(());
         }
         let of_fields = [

@@ -197,7 +197,14 @@ fn choices_about_a_field_need_a_method_that_fits_one_and_each_hole_is_listed_onc
     }
     let of_one = r#"[0,{"number":3,"method":"rbf"}]"#;
     assert_eq!(check(&[flat, kernel, ("holes", of_one)]), Ok(()));
-    assert!(check(&[flat, kernel, ("holes", r#"[0,{"number":3,"band_rings":1}]"#)]).is_err());
+    for wrong in [r#"[0,{"number":3,"band_rings":1}]"#, r#"[{"number":3,"method":"smooth"}]"#] {
+        assert!(check(&[flat, kernel, ("holes", wrong)]).is_err(), "{wrong}");
+    }
+    let flat_alone = [kernel, ("holes", r#"[{"number":3,"method":"flat"}]"#)];
+    assert!(check(&flat_alone).is_err(), "no hole is filled by a field");
+    let rings = check(&[("holes", r#"[0,{"number":3,"method":"flat","band_rings":1}]"#)]);
+    let told = "this `holes` needs the method rbf or auto for each hole with `band_rings`";
+    assert_eq!(rings.unwrap_err().to_string(), told);
     assert_eq!(check(&[kernel]), Ok(()));
     assert_eq!(check(&[("method", "rbf"), kernel, ("lambda_from", "mesh")]), Ok(()));
     let twice = check(&[("holes", r#"[3,{"number":3,"method":"flat"}]"#)]).unwrap_err().to_string();

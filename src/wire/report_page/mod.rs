@@ -296,9 +296,11 @@ fn filled(page: &mut Page, report: &Value) {
             "kept" => (Tone::Open, "kept"),
             _ => (Tone::Bad, "open"),
         };
-        let rejected = items(&hole["rejected"]).iter();
-        let rejected =
-            rejected.map(|one| format!("{}: {}", text(&one["method"]), words(text(&one["reason"]))));
+        let why = |one: &Value| {
+            let at = coordinates(&one["position"]).map_or_else(String::new, |at| format!(" near {at}"));
+            format!("{}: {}{at}", text(&one["method"]), plain::rejection(text(&one["reason"])))
+        };
+        let rejected = items(&hole["rejected"]).iter().map(why);
         vec![
             Cell::Number(loops.join(", ")),
             Cell::Text(plain::hole(text(&hole["class"])).to_owned()),

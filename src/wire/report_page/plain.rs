@@ -86,6 +86,25 @@ pub(super) fn hole(class: &str) -> &'static str {
     }
 }
 
+/// Why a patch was not taken.
+pub(super) fn rejection(reason: &str) -> &'static str {
+    match reason {
+        "no-patch" => "no triangles could be made",
+        "too-large" => "the hole is too large for it",
+        "no-fit" => "no smooth surface fits",
+        "too-few-points" => "too little is around the hole",
+        "no-room" => "another wall lies in the same place",
+        "singular" | "inexact" => "the surface could not be computed well enough",
+        "no-zero" => "the surface does not span the hole",
+        "degenerate-triangle" => "a face without area",
+        "topology" => "it does not close the hole alone",
+        "edge-in-use" => "it would double an edge or a face",
+        "meets-other" => "it would meet the rest of the part",
+        "meets-itself" => "it would meet itself",
+        _ => "its corners cannot be written",
+    }
+}
+
 /// What became of the file.
 pub(super) fn outcome(word: &str) -> &'static str {
     match word {

@@ -17,7 +17,7 @@ const UNMOVED = [1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0];
 export async function readThreemf(bytes) {
   const zip = new Zip(bytes);
   const root = await startOf(zip);
-  const notes = await notesOf(zip);
+  const notes = await notesOf(zip).catch(() => ({ parts: new Set(), volumes: new Map() })); // all is material, as the service says
   const models = new Map();
   const modelOf = async (path) => {
     if (!models.has(path)) models.set(path, modelFrom(await zip.text(path, MODEL_BYTES_MAX), path));
@@ -57,7 +57,7 @@ async function startOf(zip) {
 // `volumes`, the ranges of an object's triangles.
 async function notesOf(zip) {
   const [parts, volumes] = [new Set(), new Map()];
-  const isAside = (word) => /negative|modifier|support/i.test(word);
+  const isAside = (word) => /^((negative|modifier)_part|support_(blocker|enforcer)|NegativeVolume|ParameterModifier|Support(Blocker|Enforcer))$/.test(word);
   for (const path of ["/Metadata/Slic3r_PE_model.config", "/Metadata/model_settings.config"]) {
     let [object, volume] = [null, null];
     for (const { name, of } of zip.has(path) ? elements(await zip.text(path, MODEL_BYTES_MAX)) : []) {

@@ -181,7 +181,7 @@ The values of a field at its offset constraints.
 
 Constraints: TypeAlias = float
 """
-Share of the points of method=rbf that have offset constraints. Default: 1.
+Share of the points of method=rbf that have offset constraints. Default: 0.2.
 """
 
 
@@ -838,7 +838,7 @@ class Holes1(TypedDict):
 
 Holes: TypeAlias = Literal["all"] | list[int | Holes1]
 """
-Which holes fill-holes closes: all, or a list of the numbers under which analyze lists them, each perhaps with choices of its own: [0,{"number":3,"method":"flat","band_rings":1}]. Default: all.
+Which holes fill-holes closes: all, or a list of the numbers under which analyze lists them, each perhaps with choices of its own: [0,{"number":3,"method":"rbf","band_rings":1}]. Default: all.
 """
 
 
@@ -2198,7 +2198,7 @@ Why a patch was not taken.
 - `no-patch`: The method makes no patch for such a hole.
 - `too-large`: The rim has more corners, or the patch more vertices, than the method takes.
 - `no-fit`: The equations of a smooth patch have no solution.
-- `too-few-points`: The rim and the rings around it have too few points for a field, or lie on one line.
+- `too-few-points`: The rim and the rings around it have too few points for a field, or lie in one plane or on one line.
 - `no-room`: Other parts of the surface are at the rim everywhere, so that no side of it can be told from the other.
 - `singular`: The equations of the field are singular to working precision.
 - `inexact`: The field misses the values that it should take.
