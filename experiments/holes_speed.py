@@ -92,7 +92,7 @@ def main():
         cases.append((f"ten large holes in {what}, {len(f):,} faces", *ten_large(v, f), [("minimal",), ("smooth",), ("auto",)], ["meshlib", "meshlib_nicely", "cgal"]))
     if not o.only or "many" in o.only: cases.append(("10,000 small holes", *many_small(10_000), [("auto",), ("minimal",)], ["meshlib", "cgal"]))
     for n in (1_000, 20_000):
-        if not o.only or f"rbf-{n}" in o.only: cases.append((f"one round hole, {9 * round(n / 9):,} constraints", *round_hole(round(n / 9)), [("rbf",)], ["meshlib_nicely", "cgal"]))
+        if not o.only or f"rbf-{n}" in o.only: cases.append((f"one round hole, {9 * round(n / 9):,} constraints", *round_hole(round(n / 9)), [("rbf", "--constraints", "1"), ("rbf",)], ["meshlib_nicely", "cgal"]))
     commit = subprocess.run(["git", "log", "-1", "--format=%h", "--", "src"], cwd=root, capture_output=True, text=True).stdout.strip()
     print(f"# Speed of filling holes\n\n{os.cpu_count()} cores, commit {commit}, median of {o.rounds} alternating rounds; made by `experiments/holes_speed.py`. *Whole* is a process with reading and writing, *pass* the step or call that fills. Read the ratios within a table.\n")
     for title, v, f, methods, names in cases:
@@ -101,7 +101,7 @@ def main():
             path = d + "/in.off"
             write_off(path, v, f)
             for _ in range(o.rounds):
-                for m in methods: seconds.setdefault(f"**`{m[0]}`**", []).append(ours(path, *m))
+                for m in methods: seconds.setdefault(f"**`{' '.join(m)}`**", []).append(ours(path, *m))
                 for name in names: seconds.setdefault(TITLES[name], []).append(theirs(path, name))
         print(f"## {title[0].upper()}{title[1:]}\n\n{len(f):,} faces, {len(loops_of(f) or []):,} holes.\n\n| tool | whole, s | pass, s |\n|---|---|---|")
         middle = lambda rows, k: statistics.median([r[k] for r in rows if r and r[k] is not None] or [float("nan")])

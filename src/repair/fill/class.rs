@@ -12,6 +12,9 @@ const COPLANAR_SINE: f64 = 0.02;
 /// A flat loop is where a body was cut off when the surface meets its plane more steeply on average, as the sine of the
 /// angle (45 degrees). Below, it is the rim of a missing dome.
 const CUT_SINE: f64 = 0.7;
+/// Holes with fewer corners get a faired patch from `auto` and no field: it comes closer to what was removed, and takes less time
+/// (`docs/holes.md`).
+const CORNERS_TO_FIT: usize = 26;
 /// Loops with fewer corners have no room for a new vertex.
 const CORNERS_TO_REFINE: usize = 5;
 
@@ -36,13 +39,16 @@ pub(super) fn ways(
     let is_plain = method == Method::Auto && (!refines || is_to_be_plain(region, surface));
     let may_be_creased = method == Method::Creased || (method == Method::Auto && !is_plain);
     let division = if may_be_creased { Division::of(region, surface, budget)? } else { None };
+    let is_small = region.rim().len() < CORNERS_TO_FIT;
     let own: &[Way] = match method {
         Method::Auto if is_plain => &[],
         Method::Flat => &[Way::Planar],
         Method::Minimal => &[Way::Minimal, Way::Ears],
         Method::Smooth => &[Way::Smooth],
         Method::Creased => &[Way::Creased, Way::Smooth],
+        Method::Auto if division.is_some() && is_small => &[Way::Creased, Way::Smooth],
         Method::Auto if division.is_some() => &[Way::Creased, Way::Rbf, Way::Smooth],
+        Method::Auto if is_small => &[Way::Smooth],
         Method::Auto | Method::Rbf => &[Way::Rbf, Way::Smooth],
     };
     let mut ways = own.to_vec();
