@@ -194,11 +194,11 @@ pub struct FieldFit {
     pub centres: u64,
     /// Degree of the polynomial, 1 or 2.
     pub degree: u32,
-    /// The least and the largest distance of offset constraints from their points, in the unit of the file.
+    /// The least and the largest distance at which offset constraints fit, over all points, in the unit of the file.
     pub lambda: [f64; 2],
-    /// Points whose offset constraints are nearer than the others, or left out, because another part of the surface is near.
+    /// Points at which only nearer offset constraints fit, or none, because another part of the surface is near.
     pub halved: u64,
-    /// Those of them without offset constraints, because another part of the surface is at them.
+    /// Those of them at which none fit, because another part of the surface is at them.
     pub without_room: u64,
     /// The largest difference of the field from a value that it should take, over the largest value.
     pub residual: f64,

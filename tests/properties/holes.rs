@@ -7,7 +7,7 @@ use meshmend::budget::Budget;
 use meshmend::geom::DVec3;
 use meshmend::implicit::Kernel;
 use meshmend::mesh::Soup;
-use meshmend::repair::fill::{Extract, FillOptions, Filled, Method, fill};
+use meshmend::repair::fill::{Extract, FillOptions, Filled, HoleReport, Method, fill};
 use meshmend::repair::{Draft, Selection};
 use std::collections::BTreeMap;
 
@@ -278,8 +278,10 @@ fn a_hole_on_each_side_of_a_thin_wall_gets_two_patches() {
         assert_eq!(report.holes.len(), 2, "{method:?}: {:?}", report.holes);
         assert!(judge_welded(&raw(&draft)).contacts == 0, "{method:?}");
         assert!(report.holes.iter().all(|hole| hole.used.is_some()), "{method:?}: {:?}", report.holes);
-        let is_fitted = report.holes.iter().all(|hole| hole.used == Some(method) && hole.field.is_some());
-        assert_eq!(is_fitted, method == Method::Rbf, "{method:?}: {:?}", report.holes);
+        if method == Method::Rbf {
+            let is_fitted = |hole: &HoleReport| hole.used == Some(method) && hole.field.is_some();
+            assert!(report.holes.iter().all(is_fitted), "{:?}", report.holes);
+        }
         let off = largest(&patch_points(&draft, &torn), |p| p.z.abs() - 0.02);
         assert!(off < 1e-6, "{method:?}: {off}");
     }

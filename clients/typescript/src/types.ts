@@ -999,16 +999,16 @@ export interface components {
              * @description Degree of the polynomial, 1 or 2.
              */
             degree: number;
-            /** @description The least and the largest distance of offset constraints from their points, in the unit of the file. */
+            /** @description The least and the largest distance at which offset constraints fit, over all points, in the unit of the file. */
             lambda: number[];
             /**
              * Format: int64
-             * @description Points whose offset constraints are nearer than the others, or left out, because another part of the surface is near.
+             * @description Points at which only nearer offset constraints fit, or none, because another part of the surface is near.
              */
             halved: number;
             /**
              * Format: int64
-             * @description Those of them without offset constraints, because another part of the surface is at them.
+             * @description Those of them at which none fit, because another part of the surface is at them.
              */
             without_room: number;
             /**
@@ -3058,7 +3058,7 @@ export interface components {
          *     - `no-patch`: The method makes no patch for such a hole.
          *     - `too-large`: The rim has more corners, or the patch more vertices, than the method takes.
          *     - `no-fit`: The equations of a smooth patch have no solution.
-         *     - `too-few-points`: The rim and the rings around it have too few points for a field, or lie in one plane or on one line.
+         *     - `too-few-points`: The rim and the rings around it have too few points for a field, or all its centres lie in one plane.
          *     - `no-room`: Other parts of the surface are at the rim everywhere, so that no side of it can be told from the other.
          *     - `singular`: The equations of the field are singular to working precision.
          *     - `inexact`: The field misses the values that it should take.

@@ -120,11 +120,11 @@ pub(super) fn project(
     let centres = field.facts().centres as u64;
     let points = &mesh.points[mesh.rim..];
     let on_surface = |range: std::ops::Range<usize>| -> Result<Vec<Option<DVec3>>, Stopped> {
-        let on_surface = |&point: &DVec3| {
+        let projected = |&point: &DVec3| {
             budget.spend(centres / 16 + 1)?;
             Ok(field.project(point, reach))
         };
-        points[range].iter().map(on_surface).collect()
+        points[range].iter().map(projected).collect()
     };
     let places = par::try_map_ranges(points.len(), POINTS, on_surface)?.concat();
     let Some(places) = places.into_iter().collect::<Option<Vec<_>>>() else { return Ok(false) };

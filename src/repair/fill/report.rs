@@ -15,7 +15,7 @@ pub enum Rejection {
     TooLarge,
     /// The equations of a smooth patch have no solution.
     NoFit,
-    /// The rim and the rings around it have too few points for a field, or lie in one plane or on one line.
+    /// The rim and the rings around it have too few points for a field, or all its centres lie in one plane.
     TooFewPoints,
     /// Other parts of the surface are at the rim everywhere, so that no side of it can be told from the other.
     NoRoom,

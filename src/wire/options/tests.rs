@@ -15,7 +15,7 @@ fn some_value(spec: &OptionSpec) -> Value {
         OptionKind::Flag => json!(true),
         OptionKind::Plan => json!({"findings": [{"code": "boundary-loop", "remedy": "keep"}]}),
         OptionKind::Edges => json!([[0, 1], [5, 3]]),
-        OptionKind::Holes => json!([0, {"number": 3, "method": "flat", "band_rings": 1}]),
+        OptionKind::Holes => json!([0, {"number": 3, "method": "rbf", "band_rings": 1}]),
         OptionKind::Targets => json!([{"ratio": 0.5}, {"faces": 10}]),
         OptionKind::Edits => json!([{"shift": {"faces": [{"face": 3, "by_mm": -0.5}]}}, {"undo": {}}]),
         OptionKind::Ranges => json!([2, {"together": [{"face": 1}, {"face": 4, "rate": -1}]}]),

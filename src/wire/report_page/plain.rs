@@ -97,7 +97,7 @@ pub(super) fn rejection(reason: &str) -> &'static str {
         "singular" | "inexact" => "the surface could not be computed well enough",
         "no-zero" => "the surface does not span the hole",
         "degenerate-triangle" => "a face without area",
-        "topology" => "it does not close the hole alone",
+        "topology" => "its edge would not be exactly that of the hole",
         "edge-in-use" => "it would double an edge or a face",
         "meets-other" => "it would meet the rest of the part",
         "meets-itself" => "it would meet itself",

@@ -73,7 +73,7 @@ mirror! { repair::fill::Rejection =>
         TooLarge = "too-large",
         /// The equations of a smooth patch have no solution.
         NoFit = "no-fit",
-        /// The rim and the rings around it have too few points for a field, or lie in one plane or on one line.
+        /// The rim and the rings around it have too few points for a field, or all its centres lie in one plane.
         TooFewPoints = "too-few-points",
         /// Other parts of the surface are at the rim everywhere, so that no side of it can be told from the other.
         NoRoom = "no-room",

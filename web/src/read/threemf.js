@@ -17,7 +17,7 @@ const UNMOVED = [1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0];
 export async function readThreemf(bytes) {
   const zip = new Zip(bytes);
   const root = await startOf(zip);
-  const notes = await notesOf(zip).catch(() => ({ parts: new Set(), volumes: new Map() })); // all is material, as the service says
+  const notes = await notesOf(zip).catch(() => ({ parts: new Set(), volumes: new Map() })); // where a note cannot be read, all is drawn
   const models = new Map();
   const modelOf = async (path) => {
     if (!models.has(path)) models.set(path, modelFrom(await zip.text(path, MODEL_BYTES_MAX), path));
