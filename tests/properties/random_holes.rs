@@ -7,7 +7,7 @@ use crate::patch_judge::Torn;
 use crate::random::Random;
 use crate::support::{cases, on_all_cores};
 use meshmend::budget::Budget;
-use meshmend::certificate::Depth;
+use meshmend::certificate::{Condition, Depth};
 use meshmend::formats::Encoding;
 use meshmend::geom::DVec3;
 use meshmend::mesh::Soup;
@@ -170,6 +170,54 @@ fn pieces(soup: &RawSoup) -> usize {
     used.len()
 }
 
+/// The places where pieces of `torn` touch that no edge connects: each piece is closed by itself, and the result has two fans of
+/// triangles there as `torn` had.
+fn where_pieces_touch(torn: &RawSoup) -> BTreeSet<[u64; 3]> {
+    let mut of_edge: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
+    for (t, &[a, b, c]) in torn.triangles.iter().enumerate() {
+        for [a, b] in [[a, b], [b, c], [c, a]] {
+            of_edge.entry([a.min(b), a.max(b)]).or_default().push(t);
+        }
+    }
+    let mut piece: Vec<Option<usize>> = vec![None; torn.triangles.len()];
+    for first in 0..piece.len() {
+        let mut open = vec![first];
+        while let Some(t) = open.pop() {
+            if piece[t].is_some() {
+                continue;
+            }
+            piece[t] = Some(first);
+            let [a, b, c] = torn.triangles[t];
+            for [a, b] in [[a, b], [b, c], [c, a]] {
+                open.extend(&of_edge[&[a.min(b), a.max(b)]]);
+            }
+        }
+    }
+    let mut of_vertex: BTreeMap<u32, BTreeSet<Option<usize>>> = BTreeMap::new();
+    for (t, corners) in torn.triangles.iter().enumerate() {
+        for &v in corners {
+            of_vertex.entry(v).or_default().insert(piece[t]);
+        }
+    }
+    let touching = of_vertex.into_iter().filter(|(_, pieces)| pieces.len() > 1);
+    touching.map(|(v, _)| place(torn.positions[v as usize])).collect()
+}
+
+/// Zeros of both signs are one place.
+fn place(position: [f64; 3]) -> [u64; 3] {
+    position.map(|x| (x + 0.0).to_bits())
+}
+
+/// True when all that is wrong with `result` is where pieces of `torn` touch.
+fn are_where_pieces_touch(result: &RawSoup, torn: &RawSoup) -> bool {
+    let touching = where_pieces_touch(torn);
+    let certificate = verify(result, Encoding::StlBinary, Depth::Count { samples: 1000 });
+    certificate.witnesses.iter().all(|violation| {
+        violation.condition == Condition::OneFanPerVertex
+            && violation.position.is_some_and(|p| touching.contains(&place(p.to_array())))
+    })
+}
+
 /// A vertex on an edge whose faces turn by more than 35 degrees; any vertex when a hundred edges are not sharp.
 fn sharp_vertex(solid: &RawSoup, random: &mut Random) -> u32 {
     let normal = |t: &[u32; 3]| {
@@ -219,6 +267,8 @@ struct Tally {
     rejected: BTreeMap<String, usize>,
     /// Results of cuts that tore a piece loose, closed as a body that lies in another.
     misnested: usize,
+    /// Results of cuts that left pieces touching at a vertex, each closed by itself.
+    touching: usize,
     faults: Vec<String>,
 }
 
@@ -271,6 +321,8 @@ impl Tally {
                     let is_surface = certificate.p0 && certificate.p1 == Some(true);
                     if is_surface && is_parted {
                         tally.misnested += usize::from(!certificate.is_printable());
+                    } else if !is_surface && are_where_pieces_touch(&outward, &torn) {
+                        tally.touching += 1;
                     } else if !certificate.is_printable() {
                         tally.faults.push(format!("{place}: all closed, and {:?}", certificate.witnesses));
                     }
@@ -312,6 +364,7 @@ impl Tally {
             others.into_iter().for_each(|(key, count)| *own.entry(key).or_default() += count);
         }
         self.misnested += other.misnested;
+        self.touching += other.touching;
         self.faults.extend(other.faults);
     }
 
@@ -324,6 +377,7 @@ impl Tally {
             "| results with a piece that was torn loose and lies in another body | {} | | |",
             self.misnested
         );
+        println!("| results with pieces that the cut left touching at a vertex | {} | | |", self.touching);
         for (what, own) in [("asked", &self.methods), ("holes", &self.holes), ("meshes", &self.kinds)] {
             println!(
                 "| **{what}** | patches taken | holes left open | results without a hole, all certified |"
