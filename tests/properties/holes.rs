@@ -287,6 +287,34 @@ fn a_hole_on_each_side_of_a_thin_wall_gets_two_patches() {
     }
 }
 
+/// The rule of `docs/holes.md`, both windings; each patch is closer to the sphere than a flat one.
+#[test]
+fn auto_fits_a_field_from_26_corners_on() {
+    let mut corners_seen = Vec::new();
+    for radius in [0.15, 0.25, 0.3, 0.34, 0.38, 0.5] {
+        let torn = cut(sphere(4), [0.48, 0.6, 0.64], radius);
+        let mut turned = torn.clone();
+        turned.triangles.iter_mut().for_each(|t| t.reverse());
+        for torn in [torn, turned] {
+            let off = |method: Method| {
+                let (draft, report) = filled(&torn, method);
+                let [hole] = &report.holes[..] else { panic!("{} holes", report.holes.len()) };
+                (largest(&patch_points(&draft, &torn), |p| p.length() - 1.0), hole.clone())
+            };
+            let ((auto, hole), (flat, _)) = (off(Method::Auto), off(Method::Flat));
+            let corners = hole.rims[0].edges;
+            let wanted = if corners < 26 { Method::Smooth } else { Method::Rbf };
+            assert_eq!((hole.used, hole.field.is_some()), (Some(wanted), corners >= 26), "{corners} corners");
+            assert!(auto < flat, "{corners} corners: {auto} and {flat}");
+            corners_seen.push(corners);
+        }
+    }
+    assert!(
+        corners_seen.iter().any(|&n| n < 26) && corners_seen.iter().any(|&n| n >= 26),
+        "{corners_seen:?}"
+    );
+}
+
 #[test]
 fn each_way_to_make_triangles_of_a_field_closes_the_hole_soundly() {
     let torn = cut(sphere(3), [0.48, 0.6, 0.64], 0.5);

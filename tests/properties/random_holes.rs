@@ -7,7 +7,7 @@ use crate::patch_judge::Torn;
 use crate::random::Random;
 use crate::support::{cases, on_all_cores};
 use meshmend::budget::Budget;
-use meshmend::certificate::{Condition, Depth};
+use meshmend::certificate::{Condition, Depth, Violation};
 use meshmend::formats::Encoding;
 use meshmend::geom::DVec3;
 use meshmend::mesh::Soup;
@@ -212,10 +212,11 @@ fn place(position: [f64; 3]) -> [u64; 3] {
 fn are_where_pieces_touch(result: &RawSoup, torn: &RawSoup) -> bool {
     let touching = where_pieces_touch(torn);
     let certificate = verify(result, Encoding::StlBinary, Depth::Count { samples: 1000 });
-    certificate.witnesses.iter().all(|violation| {
+    let is_of_touch = |violation: &Violation| {
         violation.condition == Condition::OneFanPerVertex
             && violation.position.is_some_and(|p| touching.contains(&place(p.to_array())))
-    })
+    };
+    !certificate.witnesses.is_empty() && certificate.witnesses.iter().all(is_of_touch)
 }
 
 /// A vertex on an edge whose faces turn by more than 35 degrees; any vertex when a hundred edges are not sharp.
