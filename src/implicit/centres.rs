@@ -11,6 +11,8 @@ use crate::geom::{Aabb, DVec3};
 /// An offset centre closer to another centre than this share of lambda is left out: it repeats the other or
 /// contradicts it, and either makes the system singular.
 const APART_SHARE: f64 = 0.05;
+/// Times that offsets which are left out may be made good by others.
+const PARTINGS: usize = 4;
 /// Points closer to one another than this share of the extent are one point.
 const SAME_SHARE: f64 = 1e-9;
 
@@ -77,8 +79,17 @@ pub(super) fn sites(
         with_room += usize::from(has_room);
         sites.push(Site { point, offset: band.normals[i].normalize() * lambda, value, has });
     }
-    restore_rank(&mut sites, budget)?;
-    part(&mut sites, budget)?;
+    let mut is_parted = vec![false; sites.len()];
+    for _ in 0..PARTINGS {
+        restore_rank(&mut sites, &is_parted, budget)?;
+        let parted = part(&mut sites, budget)?;
+        if parted.is_empty() {
+            break;
+        }
+        for i in parted {
+            is_parted[i] = true;
+        }
+    }
     Ok(sites)
 }
 
@@ -89,15 +100,17 @@ fn keeps_offsets(i: usize, share: f64) -> bool {
 }
 
 /// Gives offsets back to the sites that bring most until the centres tell as many polynomials apart as they would
-/// with all offsets.
-fn restore_rank(sites: &mut [Site], budget: &Budget) -> Result<(), Stopped> {
-    let may_have = |site: &Site| site.value > 0.0;
-    if sites.iter().all(|site| site.has[0] || !may_have(site)) {
+/// with all offsets, but for those at sites that have been parted.
+fn restore_rank(sites: &mut [Site], is_parted: &[bool], budget: &Budget) -> Result<(), Stopped> {
+    let may_get: Vec<bool> =
+        sites.iter().zip(is_parted).map(|(site, &is_parted)| site.value > 0.0 && !is_parted).collect();
+    if sites.iter().zip(&may_get).all(|(site, &may_get)| site.has[0] || !may_get) {
         return Ok(());
     }
     let all: Vec<DVec3> = sites
         .iter()
-        .map(|site| Site { has: [may_have(site); 2], ..*site })
+        .zip(&may_get)
+        .map(|(site, &may_get)| if may_get { Site { has: [true; 2], ..*site } } else { *site })
         .flat_map(|site| site.centres().map(|(p, _)| p).collect::<Vec<_>>())
         .collect();
     let wanted = rank(&all, TERMS);
@@ -110,7 +123,7 @@ fn restore_rank(sites: &mut [Site], budget: &Budget) -> Result<(), Stopped> {
         let basis = row_basis(&kept);
         let gain =
             |site: &Site| beyond(&basis, site.point + site.offset) + beyond(&basis, site.point - site.offset);
-        let missing = (0..sites.len()).filter(|&i| !sites[i].has[0] && may_have(&sites[i]));
+        let missing = (0..sites.len()).filter(|&i| !sites[i].has[0] && may_get[i]);
         let best = missing.fold(None, |best: Option<(usize, f64)>, i| {
             let gain = gain(&sites[i]);
             if best.is_some_and(|(_, most)| most >= gain) { best } else { Some((i, gain)) }
@@ -148,8 +161,8 @@ fn beyond(basis: &[[f64; TERMS]], p: DVec3) -> f64 {
     dot(&rest, &rest)
 }
 
-/// Leaves out offset centres that nearly coincide with a centre on the surface or an earlier offset centre.
-fn part(sites: &mut [Site], budget: &Budget) -> Result<(), Stopped> {
+/// Leaves out offset centres that nearly coincide with a centre on the surface or an earlier offset centre; gives their sites.
+fn part(sites: &mut [Site], budget: &Budget) -> Result<Vec<usize>, Stopped> {
     let longest = sites.iter().map(|s| s.offset.length()).fold(0.0, f64::max);
     let (mut points, mut whose) = (Vec::new(), Vec::new());
     for (i, site) in sites.iter().enumerate() {
@@ -166,6 +179,7 @@ fn part(sites: &mut [Site], budget: &Budget) -> Result<(), Stopped> {
     }
     let cells = Cells::new(&points, longest * APART_SHARE);
     let mut is_gone = vec![false; points.len()];
+    let mut parted = Vec::new();
     for at in sites.len()..points.len() {
         if at.is_multiple_of(QUESTIONS) {
             budget.check()?;
@@ -179,9 +193,10 @@ fn part(sites: &mut [Site], budget: &Budget) -> Result<(), Stopped> {
         if cells.near(points[at]).any(is_near) {
             is_gone[at] = true;
             sites[i].has[side] = false;
+            parted.push(i);
         }
     }
-    Ok(())
+    Ok(parted)
 }
 
 #[cfg(test)]

@@ -32,6 +32,8 @@ pub struct Filling {
 /// What became of one hole.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HoleOutcome {
+    /// Which part of the file it is of; `None`: the file was taken as one mesh.
+    pub part: Option<u32>,
     /// Places of its loops among the witnesses of the boundary loops, from 0, ascending.
     pub loops: Vec<u32>,
     /// What the first of them most likely is; `None`: it does not close.
@@ -206,6 +208,7 @@ impl Loops {
         }
         let others = (0..).zip(&self.witnesses).zip(&is_told).filter(|&(_, &is_told)| !is_told);
         outcomes.extend(others.map(|((number, witness), _)| HoleOutcome {
+            part: None,
             loops: vec![number],
             guess: witness.hole,
             edges: witness.figures.iter().find(|(name, _)| *name == "edges").map_or(0, |&(_, n)| n as u64),
@@ -246,6 +249,7 @@ impl Loops {
             loops.dedup();
             let is_listed = loops.first().is_some_and(|&number| (number as usize) < self.witnesses.len());
             is_listed.then(|| HoleOutcome {
+                part: None,
                 guess: self.guess(&loops),
                 edges: report.rims.iter().map(|rim| u64::from(rim.edges)).sum(),
                 fate: if report.used.is_some() { HoleFate::Filled } else { HoleFate::Rejected },

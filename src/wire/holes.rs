@@ -117,6 +117,11 @@ impl<'de> Deserialize<'de> for Holes {
     }
 }
 
+/// True for a method that may fit a field to the rings around a hole.
+pub(super) fn may_fit_a_field(method: FillMethod) -> bool {
+    matches!(method, FillMethod::Auto | FillMethod::Rbf)
+}
+
 /// Schema of the holes to fill.
 pub(super) fn holes_schema(about: &str) -> Schema {
     let number = || {
@@ -151,7 +156,10 @@ impl ToSchema for Holes {}
 /// What became of one hole: a boundary loop, or several that got one patch.
 #[derive(Debug, Clone, Serialize, ToSchema)]
 pub struct Hole {
-    /// Places of its loops among the witnesses of `boundary-loop` when all are listed, from 0.
+    /// The part that it is in, as its place in `parts` from 0; null: the file was taken as one mesh.
+    #[schema(required)]
+    pub part: Option<u32>,
+    /// Places of its loops among the witnesses of `boundary-loop` when all are listed, from 0; in each part anew.
     pub loops: Vec<u32>,
     /// What the first of them most likely is; null: it does not close.
     #[schema(required)]
@@ -241,6 +249,7 @@ impl From<&pipeline::HoleOutcome> for Hole {
             position: one.at.filter(|at| at.is_finite()).map(|at| at.to_array()),
         };
         Self {
+            part: inner.part,
             loops: inner.loops.clone(),
             class: inner.guess.map(|guess| guess.class.into()),
             confidence: inner.guess.map(|guess| guess.confidence),

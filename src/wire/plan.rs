@@ -7,6 +7,7 @@ use utoipa::ToSchema;
 
 use super::certificate::digest_of_hex;
 use super::fill_settings::{FillSettings, rings};
+use super::holes::may_fit_a_field;
 use super::whole_number::{whole, whole_number};
 use super::words::{Across, DefectCode, Degenerate, FillMethod, Nesting, Opposite, Remedy, ShellFate};
 use crate::pipeline::{self, ELEMENTS_MAX, Step};
@@ -87,6 +88,14 @@ pub struct ChosenElement {
     #[serde(default)]
     #[schema(value_type = Option<f64>)]
     confidence: Ignored,
+}
+
+impl ChosenElement {
+    /// What is wrong with an element whose members are right each by itself; `None`: nothing.
+    pub(super) fn contradiction(&self) -> Option<&'static str> {
+        let is_vain = self.band_rings.is_some() && !self.method.is_none_or(may_fit_a_field);
+        is_vain.then_some("`band_rings` needs the method rbf or auto")
+    }
 }
 
 /// A member that a plan has when it is answered and that says nothing when it is given back.
@@ -303,6 +312,11 @@ impl PlanRequest {
         let is_small = plan.findings.len() <= LIST_MAX
             && steps.len() <= LIST_MAX
             && plan.findings.iter().all(|finding| finding.elements.len() <= ELEMENTS_MAX)
+            && plan
+                .findings
+                .iter()
+                .flat_map(|finding| &finding.elements)
+                .all(|own| own.contradiction().is_none())
             && steps.iter().all(PlanStep::is_small);
         (is_digest && is_small).then_some(plan)
     }

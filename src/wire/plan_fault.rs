@@ -83,7 +83,12 @@ fn of_list(place: &str, name: &str, list: &Value, items_max: usize) -> Option<Pl
 }
 
 fn of_finding(place: &str, finding: &Value) -> Option<PlanFault> {
-    let of_element: fn(&str, &Value) -> _ = |place, element| of_object::<ChosenElement>(place, element);
+    let of_element: fn(&str, &Value) -> _ = |place, element| {
+        of_object::<ChosenElement>(place, element).or_else(|| {
+            let read: ChosenElement = serde_json::from_value(element.clone()).ok()?;
+            read.contradiction().map(|why| PlanFault::new(format!("{place}: {why}")))
+        })
+    };
     first(items(finding, "elements"), &format!("{place}, element"), of_element)
         .or_else(|| of_object::<ChosenFinding>(place, finding))
         .or_else(|| of_list(place, "elements", finding.get("elements")?, ELEMENTS_MAX))

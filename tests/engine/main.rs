@@ -36,6 +36,7 @@ mod modeller;
 mod near_rims;
 mod operations;
 mod pieces;
+mod pinched_rims;
 mod plan;
 mod polygon_copies;
 mod project_seams;

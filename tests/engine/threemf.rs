@@ -7,7 +7,7 @@ use meshmend::formats::threemf::{ObjectKind, Project, read_project};
 use meshmend::formats::{self, Encoding, Format, Place, ReadErrorKind, ReadOptions, read, sniff};
 use meshmend::mesh::{Color, Units};
 use meshmend::pipeline::{
-    self, Answer, Failure, Operation, Options, Outcome, Parts, PictureChoices, Require,
+    self, Answer, Failure, HoleOutcome, Operation, Options, Outcome, Parts, PictureChoices, Require,
 };
 use meshmend::render::View;
 use std::fmt::Write as _;
@@ -665,8 +665,9 @@ fn holes_of_several_parts_are_told_together_and_patches_are_a_share_of_all() {
         let answer = run(operation, &bytes, &Options::default());
         assert!(answer.report.certificate.as_ref().unwrap().is_printable());
         let filling = answer.report.filling.as_ref().unwrap();
-        let loops: Vec<_> = filling.holes.iter().map(|hole| (hole.loops.clone(), hole.edges)).collect();
-        assert_eq!(loops, [(vec![0], 3), (vec![0], 4)]);
+        let told = |hole: &HoleOutcome| (hole.part, hole.loops.clone(), hole.edges);
+        let loops: Vec<_> = filling.holes.iter().map(told).collect();
+        assert_eq!(loops, [(Some(0), vec![0], 3), (Some(1), vec![0], 4)]);
         // One and two of the 24 triangles, all of one size.
         assert!((filling.interpolated_area_share - 3.0 / 24.0).abs() < 1e-12, "{filling:?}");
         let of_parts: Vec<usize> = answer

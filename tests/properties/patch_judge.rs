@@ -168,7 +168,7 @@ impl<'a> Torn<'a> {
         let mut planned: Vec<[i64; 3]> = filled
             .map(|hole| {
                 let rim: u32 = hole.rims.iter().map(|rim| rim.edges).sum();
-                [hole.triangles as i64, i64::from(rim), 2 - hole.rims.len() as i64]
+                [hole.triangles as i64, i64::from(rim), 2 - hole.borders as i64]
             })
             .collect();
         patches.sort_unstable();

@@ -7,7 +7,8 @@ use crate::formats::threemf::{Body, NO_NUMBER, Project, Property};
 use crate::formats::{Encoding, Format};
 use crate::pipeline::fidelity::defined_volume;
 use crate::pipeline::{
-    Action, Fidelity, FidelityVerdict, Filling, Level, Losses, Operation, Outcome, PrintingReport, Report,
+    Action, Fidelity, FidelityVerdict, Filling, HoleOutcome, Level, Losses, Operation, Outcome,
+    PrintingReport, Report,
 };
 use crate::simplify;
 
@@ -36,13 +37,13 @@ pub(super) fn merged(project: &Project, done: &[Done], whole: Report, samples: u
             distance: distance(&reports),
             losses: losses(&reports),
             fidelity: fidelity(&reports),
-            filling: filling(&reports),
             outcome: outcome(&reports, whole.operation),
             printing: printing(&reports),
             ..whole
         },
     };
-    Report { parts, remarks, ..merged }
+    let filling = filling(&reports);
+    Report { parts, remarks, filling, ..merged }
 }
 
 fn parts(project: &Project, done: &[Done]) -> Vec<PartReport> {
@@ -264,9 +265,16 @@ fn filling(reports: &[&Report]) -> Option<Filling> {
         report.after.as_ref().or(report.before.as_ref()).map_or(0.0, |mesh| mesh.measures.area)
     };
     let of_patches = |report: &Report| report.filling.as_ref().map_or(0.0, |f| f.interpolated_area_share);
-    let share = mean(reports, area, |report| Some(of_patches(report)))?;
-    let holes = reports.iter().filter_map(|report| report.filling.as_ref()).flat_map(|f| f.holes.clone());
-    Some(Filling { holes: holes.collect(), interpolated_area_share: share })
+    let share = match reports {
+        [only] => of_patches(only),
+        _ => mean(reports, area, |report| Some(of_patches(report)))?,
+    };
+    let mut holes = Vec::new();
+    for (part, report) in (0..).zip(reports) {
+        let own = report.filling.iter().flat_map(|filling| &filling.holes);
+        holes.extend(own.map(|hole| HoleOutcome { part: Some(part), ..hole.clone() }));
+    }
+    Some(Filling { holes, interpolated_area_share: share })
 }
 
 /// The one that changed most.

@@ -6,7 +6,7 @@ use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3, are_collinear};
 use crate::mesh::next_corner;
 use crate::par;
-use crate::spatial::{self, Bvh, Search};
+use crate::spatial::{self, Bvh, Contact, Search};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -39,13 +39,13 @@ const PROPOSALS: usize = 16;
 /// The triangles of proposals by vertices of the surface, and what is wrong with each.
 struct Judged {
     triangles: Vec<Vec<[u32; 3]>>,
-    verdicts: Vec<Result<(), Rejection>>,
-    /// Near where each meets something, as far as that was found.
-    contacts: Vec<Option<DVec3>>,
+    verdicts: Vec<Verdict>,
 }
 
 /// Why a proposal does not stay, and near where it meets something.
 pub(super) type Refused = (Rejection, Option<DVec3>);
+
+type Verdict = Result<(), Refused>;
 
 impl Surface {
     /// Accepts the proposals that are sound, and says of the others why they are not. For a sound one it gives the first
@@ -75,20 +75,16 @@ impl Surface {
             triangles.push(patch);
         }
         let verdicts = self.judge_each(proposals, &triangles, budget)?;
-        let contacts = vec![None; proposals.len()];
-        let mut judged = Judged { triangles, verdicts, contacts };
+        let mut judged = Judged { triangles, verdicts };
         self.reject_contacts(&mut judged, &firsts, bvh, budget)?;
-        let Judged { triangles, verdicts, contacts } = judged;
+        let Judged { triangles, verdicts } = judged;
         for ((patch, verdict), proposal) in triangles.into_iter().zip(&verdicts).zip(proposals) {
             if verdict.is_ok() {
                 self.diagonals.extend(self.diagonals_of(proposal));
                 self.patches.extend(patch);
             }
         }
-        let judged = verdicts.into_iter().zip(contacts).zip(firsts);
-        Ok(judged
-            .map(|((verdict, at), first)| verdict.map(|()| first).map_err(|reason| (reason, at)))
-            .collect())
+        Ok(verdicts.into_iter().zip(firsts).map(|(verdict, first)| verdict.map(|()| first)).collect())
     }
 
     /// Judges the `patches` of proposals but for contacts with anything else.
@@ -97,7 +93,7 @@ impl Surface {
         proposals: &[&Proposal],
         patches: &[Vec<[u32; 3]>],
         budget: &Budget,
-    ) -> Result<Vec<Result<(), Rejection>>, Stopped> {
+    ) -> Result<Vec<Verdict>, Stopped> {
         let shapes = par::try_map_ranges(proposals.len(), PROPOSALS, |range| {
             budget.check()?;
             Ok(range.map(|i| self.judge_shape(proposals[i], &patches[i])).collect::<Vec<_>>())
@@ -107,12 +103,12 @@ impl Surface {
         for diagonals in shapes.into_iter().flatten() {
             let is_claimed = |edge: &[u32; 2]| claimed.contains(edge);
             verdicts.push(match diagonals {
-                Ok(diagonals) if diagonals.iter().any(is_claimed) => Err(Rejection::EdgeInUse),
+                Ok(diagonals) if diagonals.iter().any(is_claimed) => Err((Rejection::EdgeInUse, None)),
                 Ok(diagonals) => {
                     claimed.extend(diagonals);
                     Ok(())
                 }
-                Err(reason) => Err(reason),
+                Err(reason) => Err((reason, None)),
             });
         }
         let alone = par::try_map_ranges(proposals.len(), 1, |range| match verdicts[range.start] {
@@ -171,7 +167,7 @@ impl Surface {
     }
 
     /// Looks for a contact of a patch in itself, and for new vertices of it in one place.
-    fn alone(&self, patch: &[[u32; 3]], budget: &Budget) -> Result<Result<(), Rejection>, Stopped> {
+    fn alone(&self, patch: &[[u32; 3]], budget: &Budget) -> Result<Verdict, Stopped> {
         // Numbered by themselves, so that the work does not depend on how large the mesh is.
         let mut own = patch.as_flattened().to_vec();
         own.sort_unstable();
@@ -181,7 +177,14 @@ impl Surface {
         let patch: Vec<[u32; 3]> = patch.iter().map(|t| t.map(number)).collect();
         let bvh = Bvh::build(&points, &patch, None, budget)?;
         let found = spatial::self_contacts(&points, &patch, &bvh, None, Search::First, budget)?;
-        Ok(if found.count > 0 { Err(Rejection::MeetsItself) } else { Ok(()) })
+        let place = |contact: &Contact| {
+            between([contact.a, contact.b].map(|t| patch[t as usize].map(|v| points[v as usize])))
+        };
+        Ok(if found.count > 0 {
+            Err((Rejection::MeetsItself, found.list.first().map(place)))
+        } else {
+            Ok(())
+        })
     }
 
     /// Rejects proposals that meet the mesh, an accepted patch, themselves, or an earlier proposal that stays.
@@ -209,44 +212,38 @@ impl Surface {
         let bvh = Bvh::build(&self.positions, &triangles, None, budget)?;
         let search = Search::All { keep: CONTACTS_MAX };
         let contacts = spatial::self_contacts(&self.positions, &triangles, &bvh, None, search, budget)?;
-        let place = |a: u32, b: u32| {
-            let [a, b] = [a, b].map(|t| Aabb::of(triangles[t as usize].map(|v| self.positions[v as usize])));
-            (a.min.max(b.min) + a.max.min(b.max)) / 2.0
-        };
-        let mut between = Vec::new();
-        let reject = |verdict: &mut Result<(), Rejection>, reason: Rejection| {
+        let corners = |t: u32| triangles[t as usize].map(|v| self.positions[v as usize]);
+        let mut pairs = Vec::new();
+        let reject = |verdict: &mut Verdict, reason: Rejection, at: Option<DVec3>| {
             if verdict.is_ok() {
-                *verdict = Err(reason);
+                *verdict = Err((reason, at));
             }
         };
         for contact in &contacts.list {
             let Some(&a) = owner.get(contact.a as usize) else { break };
-            let at = place(contact.a, contact.b);
+            let at = Some(between([contact.a, contact.b].map(corners)));
             match owner.get(contact.b as usize) {
                 Some(&b) if a != b => {
                     let pair = (a.max(b), a.min(b));
-                    if between.last().is_none_or(|&(last, _)| last != pair) {
-                        between.push((pair, at));
+                    if pairs.last().is_none_or(|&(last, _)| last != pair) {
+                        pairs.push((pair, at));
                     }
-                    continue;
                 }
-                Some(_) => reject(&mut judged.verdicts[a], Rejection::MeetsItself),
-                None => reject(&mut judged.verdicts[a], Rejection::MeetsOther),
+                Some(_) => reject(&mut judged.verdicts[a], Rejection::MeetsItself, at),
+                None => reject(&mut judged.verdicts[a], Rejection::MeetsOther, at),
             }
-            judged.contacts[a].get_or_insert(at);
         }
-        between.sort_by_key(|&(pair, _)| pair);
-        for ((later, earlier), at) in between {
+        pairs.sort_by_key(|&(pair, _)| pair);
+        for ((later, earlier), at) in pairs {
             if judged.verdicts[earlier].is_ok() {
-                reject(&mut judged.verdicts[later], Rejection::MeetsOther);
-                judged.contacts[later].get_or_insert(at);
+                reject(&mut judged.verdicts[later], Rejection::MeetsOther, at);
             }
         }
         if contacts.count > contacts.list.len() as u64 {
             let last = contacts.list.last().and_then(|contact| owner.get(contact.a as usize));
             let from = last.map_or(judged.verdicts.len(), |&last| last);
             for verdict in &mut judged.verdicts[from..] {
-                reject(verdict, Rejection::MeetsOther);
+                reject(verdict, Rejection::MeetsOther, None);
             }
         }
         Ok(())
@@ -257,7 +254,7 @@ impl Surface {
         &self,
         triangles: &[[u32; 3]],
         firsts: &[u32],
-        verdicts: &mut [Result<(), Rejection>],
+        verdicts: &mut [Verdict],
         budget: &Budget,
     ) -> Result<(), Stopped> {
         let Some(&first) = firsts.first() else { return Ok(()) };
@@ -274,7 +271,8 @@ impl Surface {
         for v in used {
             if seen.insert(place(v), v).is_some() && v >= first {
                 let owner = firsts.partition_point(|&first| first <= v) - 1;
-                verdicts[owner] = verdicts[owner].and(Err(Rejection::MeetsOther));
+                let at = self.positions[v as usize];
+                verdicts[owner] = verdicts[owner].and(Err((Rejection::MeetsOther, Some(at))));
             }
         }
         Ok(())
@@ -323,6 +321,12 @@ impl Surface {
         };
         Ok(par::try_map_ranges(self.triangles.len(), TRIANGLES, of)?.concat())
     }
+}
+
+/// The middle of what the boxes of two triangles have in common.
+fn between(triangles: [[DVec3; 3]; 2]) -> DVec3 {
+    let [a, b] = triangles.map(Aabb::of);
+    (a.min.max(b.min) + a.max.min(b.max)) / 2.0
 }
 
 impl Proposal {

@@ -29,7 +29,7 @@ pub(super) fn ways(
     budget: &Budget,
 ) -> Result<(Vec<Way>, Option<Division>), Stopped> {
     budget.spend(region.rim().len() as u64)?;
-    let plain: &[Way] = match (region.loops.len(), region.is_flat) {
+    let plain: &[Way] = match (region.walks.len(), region.is_flat) {
         (1, true) => &[Way::Planar, Way::Minimal, Way::Ears],
         (1, false) => &[Way::Minimal, Way::Planar, Way::Ears],
         (_, true) if !options.bridges => &[Way::Planar],

@@ -21,7 +21,7 @@ const LOOPS_MAX: usize = 4096;
 /// For each loop the larger one that it shares a patch with. Loops that are islands in a plane, or hold one, have none.
 pub(super) fn partners(
     shapes: &[Shape],
-    loops: &[BoundaryLoop],
+    loops: &[&BoundaryLoop],
     outward: &dyn Fn(u32) -> DVec3,
     in_plane: &[Option<usize>],
     budget: &Budget,
@@ -44,7 +44,7 @@ pub(super) fn partners(
                 continue;
             }
             budget.spend(((loops[inner].len() + loops[outer].len()) * SAMPLES) as u64 / 16)?;
-            let toward = |from: usize, to: usize| facing(&shapes[from], &loops[from], &shapes[to], outward);
+            let toward = |from: usize, to: usize| facing(&shapes[from], loops[from], &shapes[to], outward);
             let limit = GAP_SHARE_MAX * shapes[outer].bounds.diagonal();
             let ((a, gap), (b, _)) = (toward(inner, outer), toward(outer, inner));
             let cos = a.min(b);

@@ -147,13 +147,13 @@ fn planar_view(region: &Region, surface: &Surface) -> Triangles {
         return Err(Rejection::TooLarge);
     }
     let loops: Vec<Vec<DVec3>> =
-        region.loops.iter().map(|l| l.iter().map(|&h| surface.point(h)).collect()).collect();
+        region.loops().map(|l| l.iter().map(|&h| surface.point(h)).collect()).collect();
     planar::triangulate(&loops, region.normal).ok_or(Rejection::NoPatch)
 }
 
 /// The corners of the region as one polygon.
 fn polygon(region: &Region, surface: &Surface, budget: &Budget) -> Result<Option<Vec<usize>>, Stopped> {
-    if region.loops.len() == 1 {
+    if region.walks.len() == 1 {
         return Ok(Some((0..region.rim().len()).collect()));
     }
     let (rim, points) = (region.rim(), rim_points(region, surface));
@@ -235,7 +235,7 @@ fn of_field(
         Err(reason) => return Ok(Err(reason)),
     };
     let rims: Vec<Vec<DVec3>> =
-        region.loops.iter().map(|l| l.iter().map(|&h| surface.point(h)).collect()).collect();
+        region.loops().map(|l| l.iter().map(|&h| surface.point(h)).collect()).collect();
     let length = edge_length(&rims);
     let extracted = match options.extract {
         Extract::Mesh => implicit::mesh_surface(&field, &rims, length, budget)?,

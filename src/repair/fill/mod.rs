@@ -1,6 +1,6 @@
 //! Closes holes: boundary loops, alone or several with one patch between them.
 //!
-//! Each hole is offered patches in one way after another, see `class`. A patch stays only if it adds no defect and meets
+//! Loops that meet in a vertex are joined where that is needed, see `pinched`. Each hole is offered patches in one way after another, see `class`. A patch stays only if it adds no defect and meets
 //! nothing (see `accept`); a hole with no such patch stays open, and the report says why each was not taken. A single
 //! triangle or a flat sheet cannot be closed, because every patch would be its double or lie on it. No vertex of the mesh
 //! moves; new vertices are born on the print lattice. `docs/holes.md` describes the methods.
@@ -22,6 +22,7 @@ mod minimal;
 mod notches;
 mod options;
 mod patch;
+mod pinched;
 mod planar;
 mod rbf;
 mod refine;
@@ -36,6 +37,7 @@ use self::accept::Proposal;
 use self::creased::Division;
 use self::make::{Made, Scene, Way, make};
 pub use self::options::{Extract, FillOptions, HoleChoice, Method};
+use self::pinched::Walk;
 use self::regions::{Region, regions};
 pub use self::report::{Filled, HoleReport, Rejected, Rejection, Rim};
 pub use self::span::{span_odd_edges, span_rims};
@@ -113,11 +115,10 @@ fn fill_loops(
             surface.find_stars(budget)?;
         }
     }
-    let count = loops.len() as u64;
     let ladder = Ladder { draft, soup, options };
     let outward = |h: u32| surface.outward(h);
     let outward: Option<&dyn Fn(u32) -> DVec3> = if options.bridges { Some(&outward) } else { None };
-    let regions = regions(loops, |h| surface.point(h), outward, budget)?;
+    let regions = regions(pinched::join(loops, &surface, budget)?, |h| surface.point(h), outward, budget)?;
     let start = |_, region| ladder.start(region, Vec::new(), &surface, budget);
     let mut open = par::map_items(regions, start).into_iter().collect::<Result<Vec<Hole>, Stopped>>()?;
     let has_field = open.iter().any(|hole| hole.ways.contains(&Way::Rbf));
@@ -158,7 +159,7 @@ fn fill_loops(
     done.sort_by_key(|report| report.order);
     let first = draft.triangles.len();
     append(draft, soup, &surface, &patches, budget)?;
-    let changes = changes(draft, first, &done, count, boundary.stray_edges);
+    let changes = changes(draft, first, &done, boundary.stray_edges);
     Ok(Filled { changes, holes: done })
 }
 
@@ -180,7 +181,8 @@ impl Ladder<'_> {
         let choice = self.soup.and_then(|soup| self.options.choice(region.rim(), self.draft, soup));
         let asked = choice.and_then(|choice| choice.method).unwrap_or(self.options.method);
         let band_rings = choice.and_then(|choice| choice.band_rings).unwrap_or(self.options.band_rings);
-        let refines = self.options.refines || choice.is_some_and(|choice| choice.method.is_some());
+        let is_own = choice.is_some_and(|choice| choice.method.is_some() || choice.band_rings.is_some());
+        let refines = self.options.refines || is_own;
         let (mut ways, division) = class::ways(&region, asked, refines, surface, self.options, budget)?;
         ways.reverse();
         let rim = |own: &Vec<u32>| {
@@ -189,7 +191,9 @@ impl Ladder<'_> {
         };
         let report = HoleReport {
             order: region.rim()[0],
-            rims: region.loops.iter().map(rim).collect(),
+            rims: region.walks.iter().flat_map(|walk| &walk.parts).map(rim).collect(),
+            loops: region.walks.iter().map(Walk::loop_count).sum::<usize>() as u64,
+            borders: region.walks.len() as u64,
             asked,
             rejected,
             ..HoleReport::default()
@@ -197,7 +201,7 @@ impl Ladder<'_> {
         Ok(Hole { region, division, band_rings, ways, report })
     }
 
-    /// A hole that ran out of ways stays open. If it has several loops, they are tried alone.
+    /// A hole that ran out of ways stays open. If it has several loops, or one that joins several, they are tried alone.
     fn give_up(
         &self,
         hole: Hole,
@@ -206,13 +210,13 @@ impl Ladder<'_> {
         done: &mut Vec<HoleReport>,
         budget: &Budget,
     ) -> Result<(), Stopped> {
-        if hole.region.loops.len() < 2 {
-            done.push(hole.report);
-            return Ok(());
-        }
         let Hole { region, report, .. } = hole;
-        for region in region.into_single_loops(|h| surface.point(h)) {
-            left.push(self.start(region, report.rejected.clone(), surface, budget)?);
+        let parts: Vec<Region> = region.into_parts(|h| surface.point(h)).collect();
+        for region in &parts {
+            left.push(self.start(region.clone(), report.rejected.clone(), surface, budget)?);
+        }
+        if parts.is_empty() {
+            done.push(report);
         }
         Ok(())
     }
@@ -270,11 +274,11 @@ impl HoleReport {
     }
 }
 
-fn changes(draft: &Draft, first: usize, holes: &[HoleReport], count: u64, stray_edges: u64) -> Changes {
+fn changes(draft: &Draft, first: usize, holes: &[HoleReport], stray_edges: u64) -> Changes {
     let closed = holes.iter().filter(|hole| hole.used.is_some());
-    let filled: u64 = closed.clone().map(|hole| hole.rims.len() as u64).sum();
+    let filled: u64 = closed.clone().map(|hole| hole.loops).sum();
     let added = (draft.triangles.len() - first) as u64;
-    let left = count - filled;
+    let left = holes.iter().map(|hole| hole.loops).sum::<u64>() - filled;
     let vertices: u64 = closed.map(|hole| hole.vertices).sum();
     let counts = [("holes_filled", filled), ("triangles_added", added), ("holes_left", left)];
     // Only where a method was asked for that makes vertices.

@@ -97,6 +97,9 @@ impl FillOptions {
 
     /// True when a hole may get a method that looks at the mesh around it, not at its rim alone.
     pub(super) fn looks_around(&self) -> bool {
+        if self.choices.iter().any(|choice| choice.band_rings.is_some()) {
+            return true;
+        }
         let chosen = self.choices.iter().filter_map(|choice| choice.method);
         let own = (self.method != Method::Auto || self.refines).then_some(self.method);
         chosen.chain(own).any(|method| !matches!(method, Method::Flat | Method::Minimal))

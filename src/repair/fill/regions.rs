@@ -1,6 +1,7 @@
 //! What a patch has to cover: a boundary loop, flat loops that lie in each other like the rims of a pipe's end, or loops
 //! that face each other across a gap.
 
+use super::pinched::Walk;
 use super::shape::{FLAT_SHARE_MAX, Shape, shape};
 use super::{facing, planar};
 use crate::budget::{Budget, Stopped};
@@ -16,7 +17,7 @@ const FLAT_LOOPS_MAX: usize = 4096;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Region {
     /// The outer loop, then those of islands in it.
-    pub(super) loops: Vec<BoundaryLoop>,
+    pub(super) walks: Vec<Walk>,
     /// Unit normal of the outer loop, counter-clockwise around it; zero when it has none.
     pub(super) normal: DVec3,
     /// True when all loops lie in one plane, as nearly as float32 can say.
@@ -26,14 +27,23 @@ pub(super) struct Region {
 }
 
 impl Region {
-    fn new(loops: Vec<BoundaryLoop>, normal: DVec3, is_flat: bool) -> Self {
-        let rim = loops.concat();
-        Self { loops, normal, is_flat, rim }
+    fn new(outer: Walk, normal: DVec3, is_flat: bool) -> Self {
+        Self { rim: outer.half_edges.clone(), walks: vec![outer], normal, is_flat }
+    }
+
+    fn add(&mut self, island: Walk) {
+        self.rim.extend(&island.half_edges);
+        self.walks.push(island);
     }
 
     /// The half-edges of all loops, one after the other.
     pub(super) fn rim(&self) -> &[u32] {
         &self.rim
+    }
+
+    /// Those of each loop.
+    pub(super) fn loops(&self) -> impl ExactSizeIterator<Item = &BoundaryLoop> {
+        self.walks.iter().map(|walk| &walk.half_edges)
     }
 
     /// Where each loop begins in the rim.
@@ -48,7 +58,7 @@ impl Region {
             end += own.len();
             end - own.len()..end
         };
-        self.loops.iter().map(range).collect()
+        self.loops().map(range).collect()
     }
 
     /// For each corner of the rim the next one in its loop.
@@ -65,24 +75,30 @@ impl Region {
         corners
     }
 
-    /// Its loops as regions of their own.
-    pub(super) fn into_single_loops(self, corner: impl Fn(u32) -> DVec3) -> impl Iterator<Item = Self> {
-        self.loops.into_iter().map(move |only| {
-            let Shape { normal, is_flat, .. } = shape(only.iter().map(|&h| corner(h)).collect());
-            Self::new(vec![only], normal, is_flat)
+    /// Its loops as regions of their own, or those that the only one joins; none when there is nothing to part.
+    pub(super) fn into_parts(self, corner: impl Fn(u32) -> DVec3) -> impl Iterator<Item = Self> {
+        let walks: Vec<Walk> = match &self.walks[..] {
+            [Walk { parts, is_of_loops, .. }] if parts.len() < 2 || !is_of_loops => Vec::new(),
+            [Walk { parts, .. }] => parts.iter().cloned().map(Walk::of_one).collect(),
+            _ => self.walks,
+        };
+        walks.into_iter().map(move |walk| {
+            let Shape { normal, is_flat, .. } = shape(walk.half_edges.iter().map(|&h| corner(h)).collect());
+            Self::new(walk, normal, is_flat)
         })
     }
 }
 
-/// Groups the loops into regions, in the order of the loops. `corner(h)` is the corner of a loop at half-edge `h`.
+/// Groups the walks into regions, in their order. `corner(h)` is the corner of a loop at half-edge `h`.
 /// `outward(h)`, if it is given, is the unit direction in which the surface would go on there; loops that face each other
 /// across a gap are then grouped, flat or not.
 pub(super) fn regions(
-    loops: Vec<BoundaryLoop>,
+    walks: Vec<Walk>,
     corner: impl Fn(u32) -> DVec3,
     outward: Option<&dyn Fn(u32) -> DVec3>,
     budget: &Budget,
 ) -> Result<Vec<Region>, Stopped> {
+    let loops: Vec<&BoundaryLoop> = walks.iter().map(|walk| &walk.half_edges).collect();
     let shapes: Vec<Shape> = loops.iter().map(|l| shape(l.iter().map(|&h| corner(h)).collect())).collect();
     let in_plane = containers(&shapes, budget)?;
     let across = match outward {
@@ -90,19 +106,18 @@ pub(super) fn regions(
         None => vec![None; loops.len()],
     };
     let is_outer = |i: usize| in_plane[i].is_none() && across[i].is_none();
-    let mut regions: Vec<Option<Region>> = loops
+    let mut regions: Vec<Option<Region>> = walks
         .iter()
         .zip(&shapes)
         .enumerate()
         .map(|(i, (outer, shape))| {
-            is_outer(i).then(|| Region::new(vec![outer.clone()], shape.normal, shape.is_flat))
+            is_outer(i).then(|| Region::new(outer.clone(), shape.normal, shape.is_flat))
         })
         .collect();
-    for (i, island) in loops.into_iter().enumerate() {
+    for (i, island) in walks.into_iter().enumerate() {
         if let Some(region) = in_plane[i].or(across[i]).and_then(|c| regions[c].as_mut()) {
             region.is_flat &= across[i].is_none();
-            region.rim.extend(&island);
-            region.loops.push(island);
+            region.add(island);
         }
     }
     Ok(regions.into_iter().flatten().collect())
@@ -166,11 +181,11 @@ mod tests {
                     .map(move |[x, y]| DVec3::new(x, y, 0.0) * half)
             })
             .collect();
-        let loops = (0..squares.len() as u32).map(|s| (4 * s..4 * s + 4).collect()).collect();
-        regions(loops, |h| corners[h as usize], None, &Budget::unlimited())
+        let walks = (0..squares.len() as u32).map(|s| Walk::of_one((4 * s..4 * s + 4).collect())).collect();
+        regions(walks, |h| corners[h as usize], None, &Budget::unlimited())
             .unwrap()
             .into_iter()
-            .map(|region| region.loops.iter().map(|l| l[0] / 4).collect())
+            .map(|region| region.loops().map(|l| l[0] / 4).collect())
             .collect()
     }
 

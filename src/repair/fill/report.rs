@@ -57,12 +57,13 @@ impl Rejected {
     }
 }
 
-/// A boundary loop of a hole.
+/// A boundary loop of a hole, or the part of it that is at the hole: where loops meet in several vertices, each gap between
+/// them may be closed by itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Rim {
-    /// The smallest half-edge of the soup that is in the loop; `None`: all its triangles are new.
+    /// The smallest half-edge of the soup that is in it; `None`: all its triangles are new.
     pub half_edge: Option<u32>,
-    /// Edges of the loop.
+    /// Its edges.
     pub edges: u32,
 }
 
@@ -73,6 +74,10 @@ pub struct HoleReport {
     pub order: u32,
     /// Its loops, the outer one first.
     pub rims: Vec<Rim>,
+    /// The number of loops that are closed with it.
+    pub loops: u64,
+    /// The number of closed walks that its rim is: fewer where loops that meet in a vertex are joined.
+    pub borders: u64,
     /// The method that was asked for.
     pub asked: Method,
     /// The method whose patch it has; `None`: it stays open.

@@ -16,7 +16,7 @@ mod value;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use super::holes::{BAND_RINGS_MAX, ChosenHole, Holes};
+use super::holes::{BAND_RINGS_MAX, ChosenHole, Holes, may_fit_a_field};
 use super::input_ref::InputRef;
 use super::modeller::{DualEmbedding, EditSpec, RangeSpec};
 use super::plan::PlanRequest;
@@ -253,14 +253,15 @@ impl Options {
             return Err(OptionError::Lacking { spec: lookup::spec_of("holes")?, needs: "each number once" });
         }
         let usual = self.method.unwrap_or(FillMethod::Auto);
-        let fits = |method: FillMethod| matches!(method, FillMethod::Auto | FillMethod::Rbf);
         let of_hole = |hole: &ChosenHole| hole.method.unwrap_or(usual);
-        if listed.iter().any(|hole| hole.band_rings.is_some() && !fits(of_hole(hole))) {
+        if listed.iter().any(|hole| hole.band_rings.is_some() && !may_fit_a_field(of_hole(hole))) {
             let needs = "the method rbf or auto for each hole with `band_rings`";
             return Err(OptionError::Lacking { spec: lookup::spec_of("holes")?, needs });
         }
-        let is_fitted =
-            if listed.is_empty() { fits(usual) } else { listed.iter().any(|hole| fits(of_hole(hole))) };
+        let is_fitted = match listed {
+            [] => may_fit_a_field(usual),
+            _ => listed.iter().any(|hole| may_fit_a_field(of_hole(hole))),
+        };
         if is_fitted {
             return Ok(());
         }

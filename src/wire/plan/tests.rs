@@ -125,6 +125,8 @@ fn what_is_no_plan_is_not_taken() {
             {"number": 0, "remedy": "fill", "method": "best"}]}]}),
         json!({"findings": [{"code": "boundary-loop", "elements": [
             {"number": 0, "remedy": "fill", "band_rings": 9}]}]}),
+        json!({"findings": [{"code": "boundary-loop", "elements": [
+            {"number": 0, "remedy": "fill", "method": "flat", "band_rings": 1}]}]}),
         json!({"steps": [{"step": "fill-holes", "all": true, "except": [], "how": {"band_rings": 9}}]}),
         json!({"steps": [{"step": "fill-holes", "all": true, "except": [], "how": {"bridge": true}}]}),
     ] {
@@ -182,6 +184,12 @@ fn other_faults_of_a_plan_are_told_with_their_place() {
         (
             json!({"steps": [{"step": "remove-crossing", "rings": 1.5}]}),
             "`plan`, step 1: `rings` cannot be `1.5`: not a whole number",
+        ),
+        (
+            json!({"findings": [{"code": "boundary-loop", "elements": [
+                {"number": 0, "remedy": "fill", "method": "rbf", "band_rings": 1},
+                {"number": 1, "remedy": "fill", "method": "smooth", "band_rings": 1}]}]}),
+            "`plan`, finding 1, element 2: `band_rings` needs the method rbf or auto",
         ),
         (json!({"steps": [{"step": "unite"}, {"step": "weld"}]}), ""),
     ] {

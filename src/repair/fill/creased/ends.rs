@@ -34,7 +34,7 @@ pub(super) fn ends(region: &Region, surface: &Surface, budget: &Budget) -> Resul
     let point = |i: usize| surface.point(rim[i % n]);
     let mut vertices: Vec<u32> = rim.iter().map(|&h| surface.corner(h)).collect();
     vertices.sort_unstable();
-    if region.loops.len() != 1 || vertices.windows(2).any(|pair| pair[0] == pair[1]) {
+    if region.walks.len() != 1 || vertices.windows(2).any(|pair| pair[0] == pair[1]) {
         return Ok(Vec::new());
     }
     let mean = (0..n).map(|i| point(i).distance(point(i + 1))).sum::<f64>() / n as f64;
