@@ -47,7 +47,7 @@ fn is_ring(i: u32, j: u32) -> bool {
 
 fn filled(bytes: &[u8], method: Method, holes: Option<Vec<ChosenHole>>) -> Answer {
     let fill = FillOptions { method, ..FillOptions::default() };
-    let filling = FillHolesChoices { fill, holes, ..FillHolesChoices::default() };
+    let filling = FillHolesChoices { fill, holes };
     let options = Options { filling, ..Options::default() };
     run(Operation::FillHoles, bytes, &options, &Budget::unlimited()).unwrap()
 }

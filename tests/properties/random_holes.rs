@@ -170,37 +170,25 @@ fn pieces(soup: &RawSoup) -> usize {
     used.len()
 }
 
-/// The places where pieces of `torn` touch that no edge connects: each piece is closed by itself, and the result has two fans of
-/// triangles there as `torn` had.
-fn where_pieces_touch(torn: &RawSoup) -> BTreeSet<[u64; 3]> {
-    let mut of_edge: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
-    for (t, &[a, b, c]) in torn.triangles.iter().enumerate() {
-        for [a, b] in [[a, b], [b, c], [c, a]] {
-            of_edge.entry([a.min(b), a.max(b)]).or_default().push(t);
-        }
+/// The places where the triangles of `torn` are several fans.
+fn where_fans_meet(torn: &RawSoup) -> BTreeSet<[u64; 3]> {
+    let mut of_vertex: BTreeMap<u32, Vec<&[u32; 3]>> = BTreeMap::new();
+    for corners in &torn.triangles {
+        corners.iter().for_each(|&v| of_vertex.entry(v).or_default().push(corners));
     }
-    let mut piece: Vec<Option<usize>> = vec![None; torn.triangles.len()];
-    for first in 0..piece.len() {
-        let mut open = vec![first];
+    let is_one_fan = |(v, star): &(u32, Vec<&[u32; 3]>)| {
+        let have_edge = |t: &[u32; 3], u: &[u32; 3]| t.iter().any(|w| w != v && u.contains(w));
+        let mut left = star[1..].to_vec();
+        let mut open = vec![star[0]];
         while let Some(t) = open.pop() {
-            if piece[t].is_some() {
-                continue;
-            }
-            piece[t] = Some(first);
-            let [a, b, c] = torn.triangles[t];
-            for [a, b] in [[a, b], [b, c], [c, a]] {
-                open.extend(&of_edge[&[a.min(b), a.max(b)]]);
-            }
+            let beside = |u: &&[u32; 3]| have_edge(t, u);
+            open.extend(left.iter().copied().filter(|u| beside(u)));
+            left.retain(|u| !beside(u));
         }
-    }
-    let mut of_vertex: BTreeMap<u32, BTreeSet<Option<usize>>> = BTreeMap::new();
-    for (t, corners) in torn.triangles.iter().enumerate() {
-        for &v in corners {
-            of_vertex.entry(v).or_default().insert(piece[t]);
-        }
-    }
-    let touching = of_vertex.into_iter().filter(|(_, pieces)| pieces.len() > 1);
-    touching.map(|(v, _)| place(torn.positions[v as usize])).collect()
+        left.is_empty()
+    };
+    let several = of_vertex.into_iter().filter(|own| !is_one_fan(own));
+    several.map(|(v, _)| place(torn.positions[v as usize])).collect()
 }
 
 /// Zeros of both signs are one place.
@@ -208,15 +196,15 @@ fn place(position: [f64; 3]) -> [u64; 3] {
     position.map(|x| (x + 0.0).to_bits())
 }
 
-/// True when all that is wrong with `result` is where pieces of `torn` touch.
-fn are_where_pieces_touch(result: &RawSoup, torn: &RawSoup) -> bool {
-    let touching = where_pieces_touch(torn);
+/// True when all that is wrong with `result` is that fans of `torn` stay apart where they meet.
+fn are_fans_of(torn: &RawSoup, result: &RawSoup) -> bool {
+    let meeting = where_fans_meet(torn);
     let certificate = verify(result, Encoding::StlBinary, Depth::Count { samples: 1000 });
-    let is_of_touch = |violation: &Violation| {
+    let is_of_torn = |violation: &Violation| {
         violation.condition == Condition::OneFanPerVertex
-            && violation.position.is_some_and(|p| touching.contains(&place(p.to_array())))
+            && violation.position.is_some_and(|p| meeting.contains(&place(p.to_array())))
     };
-    !certificate.witnesses.is_empty() && certificate.witnesses.iter().all(is_of_touch)
+    !certificate.witnesses.is_empty() && certificate.witnesses.iter().all(is_of_torn)
 }
 
 /// A vertex on an edge whose faces turn by more than 35 degrees; any vertex when a hundred edges are not sharp.
@@ -268,8 +256,9 @@ struct Tally {
     rejected: BTreeMap<String, usize>,
     /// Results of cuts that tore a piece loose, closed as a body that lies in another.
     misnested: usize,
-    /// Results of cuts that left pieces touching at a vertex, each closed by itself.
-    touching: usize,
+    /// Results in which fans stay apart at a vertex where the cut had left several: no patch between the loops there was sound,
+    /// or bodies lean against each other.
+    parted: usize,
     faults: Vec<String>,
 }
 
@@ -322,8 +311,8 @@ impl Tally {
                     let is_surface = certificate.p0 && certificate.p1 == Some(true);
                     if is_surface && is_parted {
                         tally.misnested += usize::from(!certificate.is_printable());
-                    } else if !is_surface && are_where_pieces_touch(&outward, &torn) {
-                        tally.touching += 1;
+                    } else if !is_surface && are_fans_of(&torn, &outward) {
+                        tally.parted += 1;
                     } else if !certificate.is_printable() {
                         tally.faults.push(format!("{place}: all closed, and {:?}", certificate.witnesses));
                     }
@@ -365,7 +354,7 @@ impl Tally {
             others.into_iter().for_each(|(key, count)| *own.entry(key).or_default() += count);
         }
         self.misnested += other.misnested;
-        self.touching += other.touching;
+        self.parted += other.parted;
         self.faults.extend(other.faults);
     }
 
@@ -378,7 +367,7 @@ impl Tally {
             "| results with a piece that was torn loose and lies in another body | {} | | |",
             self.misnested
         );
-        println!("| results with pieces that the cut left touching at a vertex | {} | | |", self.touching);
+        println!("| results with two fans at a vertex, as the cut had left them | {} | | |", self.parted);
         for (what, own) in [("asked", &self.methods), ("holes", &self.holes), ("meshes", &self.kinds)] {
             println!(
                 "| **{what}** | patches taken | holes left open | results without a hole, all certified |"
@@ -407,6 +396,8 @@ fn random_holes_in_closed_meshes_are_filled_without_a_new_defect() {
     tally.print();
     let first: Vec<&String> = tally.faults.iter().take(20).collect();
     assert!(tally.faults.is_empty(), "{} faults: {first:#?}", tally.faults.len());
+    // Where loops meet in a vertex, one patch closes them.
+    assert!(tally.parted * 1000 <= tally.cases * METHODS.len(), "{} results with two fans", tally.parted);
     // What is not closed is told, and it is the exception.
     for (method, [closed, open, _]) in &tally.methods {
         assert!(open * 20 <= closed + open, "{method}: {open} open, {closed} closed");

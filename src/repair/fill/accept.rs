@@ -53,7 +53,7 @@ impl Surface {
     ///
     /// Sound is: exactly the rim as boundary, in its direction, connected, one fan at each corner and new vertex, and as
     /// many triangles as a sphere with the loops cut out has; no degenerate triangle; no edge in use already, by the mesh,
-    /// by another patch or an earlier proposal; no triangle on the vertices of another one; no new vertex in the place of
+    /// by another patch, an earlier proposal or itself; no triangle on the vertices of another one; no new vertex in the place of
     /// another; and exactly no contact with the mesh, with other patches or in itself. `bvh`: that of the mesh, if there is one.
     pub(super) fn accept(
         &mut self,
@@ -132,10 +132,33 @@ impl Surface {
         diagonals.sort_unstable();
         let is_twice = diagonals.windows(2).any(|pair| pair[0] == pair[1]);
         let is_used = |edge: &[u32; 2]| !self.is_free_edge(*edge);
-        if self.is_double_of_neighbour(proposal) || is_twice || diagonals.iter().any(is_used) {
+        if self.is_double_of_neighbour(proposal)
+            || is_twice
+            || diagonals.iter().any(is_used)
+            || self.has_edge_twice(proposal, patch)
+        {
             return Err(Rejection::EdgeInUse);
         }
         Ok(diagonals)
+    }
+
+    /// True when a patch, whose rim passes a vertex several times, reaches another vertex from two of these corners.
+    fn has_edge_twice(&self, proposal: &Proposal, patch: &[[u32; 3]]) -> bool {
+        let mut corners: Vec<u32> = proposal.rim.iter().map(|&h| self.corner(h)).collect();
+        corners.sort_unstable();
+        if corners.windows(2).all(|pair| pair[0] != pair[1]) {
+            return false;
+        }
+        // The edges of the surface, each with that of the proposal which it is.
+        let mut edges: Vec<[[u32; 2]; 2]> = Vec::with_capacity(3 * patch.len());
+        for (own, t) in proposal.triangles.iter().zip(patch) {
+            for c in 0..3 {
+                let ends = |t: &[u32; 3]| [t[c].min(t[(c + 1) % 3]), t[c].max(t[(c + 1) % 3])];
+                edges.push([ends(t), ends(own)]);
+            }
+        }
+        edges.sort_unstable();
+        edges.windows(2).any(|pair| pair[0][0] == pair[1][0] && pair[0][1] != pair[1][1])
     }
 
     /// The edges inside a patch that are between corners of its rim, by vertices of the surface.
