@@ -80,13 +80,12 @@ pub(super) fn sites(
         sites.push(Site { point, offset: band.normals[i].normalize() * lambda, value, has });
     }
     let mut is_parted = vec![false; sites.len()];
-    for _ in 0..PARTINGS {
-        restore_rank(&mut sites, &is_parted, budget)?;
-        let parted = part(&mut sites, budget)?;
-        if parted.is_empty() {
+    for round in 0..PARTINGS {
+        let gained = restore_rank(&mut sites, &is_parted, budget)?;
+        if round > 0 && !gained {
             break;
         }
-        for i in parted {
+        for i in part(&mut sites, budget)? {
             is_parted[i] = true;
         }
     }
@@ -100,13 +99,14 @@ fn keeps_offsets(i: usize, share: f64) -> bool {
 }
 
 /// Gives offsets back to the sites that bring most until the centres tell as many polynomials apart as they would
-/// with all offsets, but for those at sites that have been parted.
-fn restore_rank(sites: &mut [Site], is_parted: &[bool], budget: &Budget) -> Result<(), Stopped> {
+/// with all offsets, but for those at sites that have been parted. `false`: none was given.
+fn restore_rank(sites: &mut [Site], is_parted: &[bool], budget: &Budget) -> Result<bool, Stopped> {
     let may_get: Vec<bool> =
         sites.iter().zip(is_parted).map(|(site, &is_parted)| site.value > 0.0 && !is_parted).collect();
     if sites.iter().zip(&may_get).all(|(site, &may_get)| site.has[0] || !may_get) {
-        return Ok(());
+        return Ok(false);
     }
+    let mut has_gained = false;
     let all: Vec<DVec3> = sites
         .iter()
         .zip(&may_get)
@@ -130,8 +130,9 @@ fn restore_rank(sites: &mut [Site], is_parted: &[bool], budget: &Budget) -> Resu
         });
         let Some((best, _)) = best else { break };
         sites[best].has = [true; 2];
+        has_gained = true;
     }
-    Ok(())
+    Ok(has_gained)
 }
 
 /// An orthonormal basis of the rows of the polynomials at `points`, the longest first.
@@ -161,7 +162,8 @@ fn beyond(basis: &[[f64; TERMS]], p: DVec3) -> f64 {
     dot(&rest, &rest)
 }
 
-/// Leaves out offset centres that nearly coincide with a centre on the surface or an earlier offset centre; gives their sites.
+/// Leaves out offset centres that nearly coincide with a centre on the surface or an earlier offset centre; gives their
+/// sites.
 fn part(sites: &mut [Site], budget: &Budget) -> Result<Vec<usize>, Stopped> {
     let longest = sites.iter().map(|s| s.offset.length()).fold(0.0, f64::max);
     let (mut points, mut whose) = (Vec::new(), Vec::new());
@@ -272,5 +274,18 @@ mod tests {
         assert_eq!(sites[12].has, [true, true]);
         assert_eq!(sites[13].has, [false, true]);
         assert_eq!(count(&sites), 14 * 3 - 1);
+    }
+
+    #[test]
+    fn offsets_that_are_left_out_are_made_good_by_others() {
+        // Both offsets of the first point, the one that a small share keeps, are where other points are.
+        let mut band = circle(40);
+        band.points.extend([DVec3::new(1.0, 0.0, 0.05), DVec3::new(1.0, 0.0, -0.05)]);
+        band.normals.extend([DVec3::Z; 2]);
+        let kept = |share: f64| -> Vec<DVec3> {
+            sites_of(&band, share).iter().flat_map(Site::centres).map(|(p, _)| p).collect()
+        };
+        assert_eq!(sites_of(&band, 1e-3)[0].has, [false; 2]);
+        assert_eq!(rank(&kept(1e-3), TERMS), rank(&kept(1.0), TERMS));
     }
 }

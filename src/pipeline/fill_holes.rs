@@ -22,7 +22,8 @@ pub struct FillHolesChoices {
 /// What became of the holes of a file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Filling {
-    /// One for each boundary loop, or for several that got one patch, in the order of their first loops; of `fill-holes` the
+    /// One for each boundary loop, for several that get one patch, or for a gap between loops that meet in several vertices, in
+    /// the order of their first loops; of `fill-holes` the
     /// first [`ELEMENTS_MAX`](super::ELEMENTS_MAX) loops, of a repair those that were filled or tried of those that are listed.
     pub holes: Vec<HoleOutcome>,
     /// Share of the area of the result that is patches.
@@ -243,8 +244,8 @@ impl Loops {
     /// What became of the listed loops that reports name.
     fn told(&self, told: Vec<HoleReport>) -> Vec<HoleOutcome> {
         let outcome = |report: HoleReport| {
-            let mut loops: Vec<u32> =
-                report.rims.iter().filter_map(|rim| self.number_of(rim.half_edge?)).collect();
+            let half_edges = report.rims.iter().flat_map(|rim| &rim.half_edges);
+            let mut loops: Vec<u32> = half_edges.filter_map(|&h| self.number_of(h)).collect();
             loops.sort_unstable();
             loops.dedup();
             let is_listed = loops.first().is_some_and(|&number| (number as usize) < self.witnesses.len());

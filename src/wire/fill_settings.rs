@@ -4,7 +4,7 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 use utoipa::ToSchema;
 
-use super::holes::BAND_RINGS_MAX;
+use super::holes::{BAND_RINGS_MAX, may_fit_a_field};
 use super::whole_number::{whole, whole_number};
 use super::words::{ConstraintValues, Extract, FillMethod, Kernel, LambdaFrom};
 use crate::implicit::RbfOptions;
@@ -126,9 +126,23 @@ impl FillSettings {
         let is_in_range = (0.01..=1.0).contains(&self.constraints)
             && self.lambda.is_none_or(|lambda| lambda > 0.0 && lambda <= 1e30);
         is_in_range
+            && self.single.iter().all(|hole| hole.contradiction().is_none())
             && self.single.len() <= ELEMENTS_MAX
             && rings.max().is_none_or(|rings| rings <= BAND_RINGS_MAX)
     }
+}
+
+impl SingleHole {
+    /// What is wrong with a choice whose members are right each by itself; `None`: nothing.
+    pub(super) fn contradiction(&self) -> Option<&'static str> {
+        contradiction(self.method, self.band_rings)
+    }
+}
+
+/// What is wrong with a method and a number of rings for one hole; `None`: nothing.
+pub(super) fn contradiction(method: Option<FillMethod>, band_rings: Option<u32>) -> Option<&'static str> {
+    let is_vain = band_rings.is_some() && !method.is_none_or(may_fit_a_field);
+    is_vain.then_some("`band_rings` needs the method rbf or auto")
 }
 
 /// A number of rings, or none.

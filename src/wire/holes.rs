@@ -153,7 +153,7 @@ impl PartialSchema for Holes {
 
 impl ToSchema for Holes {}
 
-/// What became of one hole: a boundary loop, or several that got one patch.
+/// What became of one hole: a boundary loop, several that get one patch, or a gap between loops that meet in several vertices.
 #[derive(Debug, Clone, Serialize, ToSchema)]
 pub struct Hole {
     /// The part that it is in, as its place in `parts` from 0; null: the file was taken as one mesh.

@@ -6,8 +6,7 @@ use serde_json::Value;
 use utoipa::ToSchema;
 
 use super::certificate::digest_of_hex;
-use super::fill_settings::{FillSettings, rings};
-use super::holes::may_fit_a_field;
+use super::fill_settings::{FillSettings, contradiction, rings};
 use super::whole_number::{whole, whole_number};
 use super::words::{Across, DefectCode, Degenerate, FillMethod, Nesting, Opposite, Remedy, ShellFate};
 use crate::pipeline::{self, ELEMENTS_MAX, Step};
@@ -93,8 +92,7 @@ pub struct ChosenElement {
 impl ChosenElement {
     /// What is wrong with an element whose members are right each by itself; `None`: nothing.
     pub(super) fn contradiction(&self) -> Option<&'static str> {
-        let is_vain = self.band_rings.is_some() && !self.method.is_none_or(may_fit_a_field);
-        is_vain.then_some("`band_rings` needs the method rbf or auto")
+        contradiction(self.method, self.band_rings)
     }
 }
 

@@ -84,10 +84,8 @@ fn of_list(place: &str, name: &str, list: &Value, items_max: usize) -> Option<Pl
 
 fn of_finding(place: &str, finding: &Value) -> Option<PlanFault> {
     let of_element: fn(&str, &Value) -> _ = |place, element| {
-        of_object::<ChosenElement>(place, element).or_else(|| {
-            let read: ChosenElement = serde_json::from_value(element.clone()).ok()?;
-            read.contradiction().map(|why| PlanFault::new(format!("{place}: {why}")))
-        })
+        of_object::<ChosenElement>(place, element)
+            .or_else(|| of_contradiction(place, element, ChosenElement::contradiction))
     };
     first(items(finding, "elements"), &format!("{place}, element"), of_element)
         .or_else(|| of_object::<ChosenFinding>(place, finding))
@@ -96,7 +94,10 @@ fn of_finding(place: &str, finding: &Value) -> Option<PlanFault> {
 
 fn of_step(place: &str, step: &Value) -> Option<PlanFault> {
     let of_shell: fn(&str, &Value) -> _ = |place, shell| of_object::<ChosenShell>(place, shell);
-    let of_hole: fn(&str, &Value) -> _ = |place, hole| of_object::<SingleHole>(place, hole);
+    let of_hole: fn(&str, &Value) -> _ = |place, hole| {
+        of_object::<SingleHole>(place, hole)
+            .or_else(|| of_contradiction(place, hole, SingleHole::contradiction))
+    };
     let how = step.get("how").filter(|how| !how.is_null());
     first(items(step, "chosen"), &format!("{place}, shell"), of_shell)
         .or_else(|| first(items(how?, "single"), &format!("{place}, hole"), of_hole))
@@ -108,6 +109,16 @@ fn of_step(place: &str, step: &Value) -> Option<PlanFault> {
                 format!("{place}: a number is out of range, or a list has more than {ELEMENTS_MAX} items");
             (!read.is_small()).then(|| PlanFault::new(told))
         })
+}
+
+/// Why a `T` cannot be taken whose members are right each by itself.
+fn of_contradiction<T: DeserializeOwned>(
+    place: &str,
+    value: &Value,
+    contradiction: fn(&T) -> Option<&'static str>,
+) -> Option<PlanFault> {
+    let read: T = serde_json::from_value(value.clone()).ok()?;
+    contradiction(&read).map(|why| PlanFault::new(format!("{place}: {why}")))
 }
 
 /// Why `value` is no `T`, which is an object.

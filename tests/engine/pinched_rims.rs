@@ -4,12 +4,21 @@ use meshmend::budget::Budget;
 use meshmend::pipeline::{
     Answer, ChosenHole, FillHolesChoices, HoleFate, HoleOutcome, Operation, Options, Outcome, run,
 };
-use meshmend::repair::fill::{FillOptions, Method};
+use meshmend::repair::fill::{Extract, FillOptions, Method};
 use std::fmt::Write as _;
 
-const METHODS: [Method; 5] = [Method::Flat, Method::Minimal, Method::Smooth, Method::Rbf, Method::Auto];
+/// Each method, and the one whose patch closes a band on a torus. A view of its rim passes a place twice, so that none is flat.
+const METHODS: [(Method, Method); 6] = [
+    (Method::Flat, Method::Minimal),
+    (Method::Minimal, Method::Minimal),
+    (Method::Smooth, Method::Smooth),
+    (Method::Creased, Method::Smooth),
+    (Method::Rbf, Method::Rbf),
+    (Method::Auto, Method::Rbf),
+];
 
-/// A grid of quadrangles of `n` by `m` corners that is closed around both ways, in OFF, without those that `is_gone` says.
+/// A grid of quadrangles of `n` by `m` corners on a torus, in OFF, without those that `is_gone` says. `is_turned`: all the
+/// other way around.
 fn torus(n: u32, m: u32, is_turned: bool, is_gone: impl Fn(u32, u32) -> bool) -> Vec<u8> {
     let id = |i: u32, j: u32| (i % n) * m + j % m;
     let cells = (0..n).flat_map(|i| (0..m).map(move |j| (i, j))).filter(|&(i, j)| !is_gone(i, j));
@@ -34,9 +43,14 @@ fn torus(n: u32, m: u32, is_turned: bool, is_gone: impl Fn(u32, u32) -> bool) ->
     text.into_bytes()
 }
 
-/// Where the band through a tube begins whose rims meet in one vertex: it steps aside there, from cell to cell across it.
-fn is_band(i: u32, j: u32) -> bool {
-    (j < 6 && i == 5) || (j >= 6 && i == 6) || (j == 0 && i == 6)
+/// A band through a tube of `m` cells around, which steps aside in its middle, from cell to cell across a vertex.
+fn is_band(m: u32) -> impl Fn(u32, u32) -> bool {
+    move |i, j| (2 * j < m && i == 5) || (2 * j >= m && i == 6) || (j == 0 && i == 6)
+}
+
+/// The same, and it steps back across a vertex where it meets itself.
+fn is_band_that_steps_back(i: u32, j: u32) -> bool {
+    is_band(12)(i, j) && (i, j) != (6, 0)
 }
 
 /// A square ring of cells around one cell that touches what is around the ring in one vertex.
@@ -45,51 +59,88 @@ fn is_ring(i: u32, j: u32) -> bool {
     is_near && ![(9, 2), (10, 3)].contains(&(i, j))
 }
 
-fn filled(bytes: &[u8], method: Method, holes: Option<Vec<ChosenHole>>) -> Answer {
-    let fill = FillOptions { method, ..FillOptions::default() };
+fn filled_by(fill: FillOptions, bytes: &[u8], holes: Option<Vec<ChosenHole>>) -> Answer {
     let filling = FillHolesChoices { fill, holes };
     let options = Options { filling, ..Options::default() };
     run(Operation::FillHoles, bytes, &options, &Budget::unlimited()).unwrap()
+}
+
+fn filled(bytes: &[u8], method: Method, holes: Option<Vec<ChosenHole>>) -> Answer {
+    filled_by(FillOptions { method, ..FillOptions::default() }, bytes, holes)
 }
 
 fn holes(answer: &Answer) -> &[HoleOutcome] {
     &answer.report.filling.as_ref().unwrap().holes
 }
 
-#[test]
-fn a_band_whose_rims_meet_in_a_vertex_is_closed_between_them_by_each_method() {
-    for (is_turned, method) in [false, true].into_iter().flat_map(|turned| METHODS.map(|m| (turned, m))) {
-        let answer = filled(&torus(32, 12, is_turned, is_band), method, None);
-        let told = holes(&answer);
-        assert_eq!(told.len(), 1, "{method:?}");
-        assert_eq!(
-            (&told[0].loops[..], told[0].fate),
-            (&[0, 1][..], HoleFate::Filled),
-            "{method:?}: {told:?}"
-        );
-        let certificate = answer.report.certificate.as_ref().unwrap();
-        assert!(certificate.is_printable() || is_turned, "{method:?}: {:?}", certificate.witnesses);
-        assert_eq!((certificate.p1, certificate.euler_characteristic), (Some(true), 0), "{method:?}");
-        assert_eq!(answer.report.identical_triangle_share, Some(1.0));
+/// A torus without holes, and a solid unless it is inside out.
+fn is_whole(answer: &Answer, is_turned: bool) {
+    let certificate = answer.report.certificate.as_ref().unwrap();
+    assert!(certificate.is_printable() || is_turned, "{:?}", certificate.witnesses);
+    assert_eq!((certificate.p1, certificate.euler_characteristic), (Some(true), 0));
+    assert_eq!(answer.report.identical_triangle_share, Some(1.0));
+}
+
+/// That one patch of the method that `of` gives closes both rims of `is_gone`.
+fn is_closed_by_each_method(is_gone: impl Fn(u32, u32) -> bool, of: impl Fn((Method, Method)) -> Method) {
+    for is_turned in [false, true] {
+        let bytes = torus(32, 12, is_turned, &is_gone);
+        for way in METHODS {
+            let answer = filled(&bytes, way.0, None);
+            let [told] = holes(&answer) else { panic!("{way:?}: {:?}", holes(&answer)) };
+            assert_eq!((told.loops.len(), told.fate), (2, HoleFate::Filled), "{way:?}: {told:?}");
+            assert_eq!(told.told.as_ref().unwrap().used, Some(of(way)), "{told:?}");
+            is_whole(&answer, is_turned);
+        }
     }
 }
 
 #[test]
+fn a_band_whose_rims_meet_in_a_vertex_is_closed_between_them_by_each_method() {
+    is_closed_by_each_method(is_band(12), |(_, used)| used);
+}
+
+#[test]
 fn a_ring_around_a_piece_that_touches_its_outer_rim_is_closed_between_them_by_each_method() {
-    for (is_turned, method) in [false, true].into_iter().flat_map(|turned| METHODS.map(|m| (turned, m))) {
-        let answer = filled(&torus(32, 12, is_turned, is_ring), method, None);
-        let told = holes(&answer);
-        assert_eq!(told.len(), 1, "{method:?}: {told:?}");
-        assert_eq!((told[0].loops.len(), told[0].fate), (2, HoleFate::Filled), "{method:?}: {told:?}");
-        let certificate = answer.report.certificate.as_ref().unwrap();
-        assert!(certificate.is_printable() || is_turned, "{method:?}: {:?}", certificate.witnesses);
-        assert_eq!((certificate.p1, certificate.euler_characteristic), (Some(true), 0), "{method:?}");
+    // Its rims have so few corners that `auto` fits no field.
+    is_closed_by_each_method(
+        is_ring,
+        |(asked, used)| if asked == Method::Auto { Method::Smooth } else { used },
+    );
+}
+
+#[test]
+fn a_surface_of_a_field_that_is_extracted_closes_such_a_band_or_gives_way() {
+    let bytes = torus(32, 12, false, is_band(12));
+    for extract in [Extract::March, Extract::Mesh] {
+        let options = FillOptions { method: Method::Rbf, extract, ..FillOptions::default() };
+        is_whole(&filled_by(options, &bytes, None), false);
+    }
+}
+
+#[test]
+fn rims_that_meet_in_two_vertices_are_closed_gap_by_gap() {
+    for is_turned in [false, true] {
+        let answer = filled(&torus(32, 12, is_turned, is_band_that_steps_back), Method::Auto, None);
+        let fates: Vec<_> = holes(&answer).iter().map(|hole| (hole.edges, hole.fate)).collect();
+        assert_eq!(fates, [(14, HoleFate::Filled); 2]);
+        is_whole(&answer, is_turned);
+    }
+}
+
+#[test]
+fn long_rims_that_meet_in_a_vertex_are_closed_between_them() {
+    let bytes = torus(200, 80, false, is_band(80));
+    for method in [Method::Minimal, Method::Auto] {
+        let answer = filled(&bytes, method, None);
+        assert!(holes(&answer)[0].edges > 128, "{:?}", holes(&answer));
+        is_whole(&answer, false);
     }
 }
 
 #[test]
 fn one_of_two_rims_that_meet_is_closed_alone_where_only_it_is_chosen() {
-    let bytes = torus(32, 12, false, is_band);
+    let bytes = torus(32, 12, false, is_band(12));
     let answer =
         filled(&bytes, Method::Minimal, Some(vec![ChosenHole { number: 0, ..ChosenHole::default() }]));
     let fates: Vec<_> = holes(&answer).iter().map(|hole| (hole.loops.clone(), hole.fate)).collect();
@@ -99,7 +150,7 @@ fn one_of_two_rims_that_meet_is_closed_alone_where_only_it_is_chosen() {
 #[test]
 fn a_repair_closes_such_a_band_too() {
     for is_turned in [false, true] {
-        let bytes = torus(32, 12, is_turned, is_band);
+        let bytes = torus(32, 12, is_turned, is_band(12));
         let answer = run(Operation::Repair, &bytes, &Options::default(), &Budget::unlimited()).unwrap();
         assert_eq!(answer.report.outcome, Some(Outcome::Repaired));
         assert_eq!(answer.report.certificate.as_ref().unwrap().euler_characteristic, 0);
@@ -155,7 +206,7 @@ fn two_cups() -> String {
 
 #[test]
 fn two_cups_that_lean_against_each_other_in_a_vertex_get_a_lid_each() {
-    for method in METHODS {
+    for (method, _) in METHODS {
         let answer = filled(two_cups().as_bytes(), method, None);
         let fates: Vec<_> = holes(&answer).iter().map(|hole| (hole.loops.len(), hole.fate)).collect();
         assert_eq!(fates, [(1, HoleFate::Filled); 2], "{method:?}");

@@ -15,7 +15,7 @@ use super::planar;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{DVec3, triangle_area};
 use crate::mesh::prev_corner;
-use crate::spatial::{Bvh, Search, self_contacts};
+use crate::spatial::{Bvh, Coincident, Search, coincident_f64, self_contacts};
 use rustc_hash::FxHashSet;
 
 /// Turns for each edge, at most.
@@ -165,13 +165,16 @@ struct Meeting {
 }
 
 fn meeting(points: &[DVec3], triangles: &[[usize; 3]], budget: &Budget) -> Result<Meeting, Stopped> {
-    let triangles: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(|i| i as u32)).collect();
-    let bvh = Bvh::build(points, &triangles, None, budget)?;
+    // A loop may pass a place several times.
+    let Coincident { group, first } = coincident_f64(points, budget)?;
+    let places: Vec<DVec3> = first.iter().map(|&i| points[i as usize]).collect();
+    let by_place: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(|i| group[i])).collect();
+    let bvh = Bvh::build(&places, &by_place, None, budget)?;
     let search = Search::All { keep: CONTACTS_MAX };
-    let contacts = self_contacts(points, &triangles, &bvh, None, search, budget)?;
+    let contacts = self_contacts(&places, &by_place, &bvh, None, search, budget)?;
     let mut piercing = Vec::new();
     for contact in &contacts.list {
-        let pair = [contact.a, contact.b].map(|t| triangles[t as usize].map(|v| v as usize));
+        let pair = [contact.a, contact.b].map(|t| triangles[t as usize]);
         let before = piercing.len();
         for [one, other] in [pair, [pair[1], pair[0]]] {
             let through = edges_of(&one).into_iter().filter(|edge| is_chord(*edge, points.len()));

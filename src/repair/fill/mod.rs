@@ -1,6 +1,7 @@
 //! Closes holes: boundary loops, alone or several with one patch between them.
 //!
-//! Loops that meet in a vertex are joined where that is needed, see `pinched`. Each hole is offered patches in one way after another, see `class`. A patch stays only if it adds no defect and meets
+//! Loops that meet in a vertex are joined where that is needed, see `pinched`. Each hole is offered patches in one way after
+//! another, see `class`. A patch stays only if it adds no defect and meets
 //! nothing (see `accept`); a hole with no such patch stays open, and the report says why each was not taken. A single
 //! triangle or a flat sheet cannot be closed, because every patch would be its double or lie on it. No vertex of the mesh
 //! moves; new vertices are born on the print lattice. `docs/holes.md` describes the methods.
@@ -187,11 +188,11 @@ impl Ladder<'_> {
         ways.reverse();
         let rim = |own: &Vec<u32>| {
             let of_soup = |&h: &u32| self.soup.and_then(|soup| options::soup_half_edge(h, self.draft, soup));
-            Rim { half_edge: own.iter().filter_map(of_soup).min(), edges: own.len() as u32 }
+            Rim { half_edges: own.iter().filter_map(of_soup).collect(), edges: own.len() as u32 }
         };
         let report = HoleReport {
             order: region.rim()[0],
-            rims: region.walks.iter().flat_map(|walk| &walk.parts).map(rim).collect(),
+            rims: region.walks.iter().flat_map(Walk::parts).map(rim).collect(),
             loops: region.walks.iter().map(Walk::loop_count).sum::<usize>() as u64,
             borders: region.walks.len() as u64,
             asked,
@@ -211,12 +212,15 @@ impl Ladder<'_> {
         budget: &Budget,
     ) -> Result<(), Stopped> {
         let Hole { region, report, .. } = hole;
-        let parts: Vec<Region> = region.into_parts(|h| surface.point(h)).collect();
-        for region in &parts {
-            left.push(self.start(region.clone(), report.rejected.clone(), surface, budget)?);
+        for part in region.parts_alone(|h| surface.point(h)) {
+            left.push(self.start(part, report.rejected.clone(), surface, budget)?);
         }
-        if parts.is_empty() {
-            done.push(report);
+        // What is not tried alone stays open.
+        if let [only] = &region.walks[..]
+            && only.joined().len() < only.parts().len()
+        {
+            let rims = report.rims[only.joined().len()..].to_vec();
+            done.push(HoleReport { rims, loops: 1, ..report });
         }
         Ok(())
     }

@@ -90,7 +90,7 @@ impl Default for FillOptions {
 }
 
 impl FillOptions {
-    /// Those with which a repair fills: no new vertices, and no patch between loops that are not in one plane.
+    /// Those with which a repair fills: no new vertices, and no patch between loops that only face each other.
     pub fn plain(holes: Selection) -> Self {
         Self { holes, bridges: false, refines: false, ..Self::default() }
     }

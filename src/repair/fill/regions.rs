@@ -76,16 +76,16 @@ impl Region {
     }
 
     /// Its loops as regions of their own, or those that the only one joins; none when there is nothing to part.
-    pub(super) fn into_parts(self, corner: impl Fn(u32) -> DVec3) -> impl Iterator<Item = Self> {
-        let walks: Vec<Walk> = match &self.walks[..] {
-            [Walk { parts, is_of_loops, .. }] if parts.len() < 2 || !is_of_loops => Vec::new(),
-            [Walk { parts, .. }] => parts.iter().cloned().map(Walk::of_one).collect(),
-            _ => self.walks,
+    pub(super) fn parts_alone(&self, corner: impl Fn(u32) -> DVec3) -> Vec<Self> {
+        let walks = match &self.walks[..] {
+            [only] => only.joined().iter().cloned().map(Walk::of_one).collect(),
+            several => several.to_vec(),
         };
-        walks.into_iter().map(move |walk| {
+        let region = |walk: Walk| {
             let Shape { normal, is_flat, .. } = shape(walk.half_edges.iter().map(|&h| corner(h)).collect());
             Self::new(walk, normal, is_flat)
-        })
+        };
+        walks.into_iter().map(region).collect()
     }
 }
 

@@ -59,10 +59,10 @@ impl Rejected {
 
 /// A boundary loop of a hole, or the part of it that is at the hole: where loops meet in several vertices, each gap between
 /// them may be closed by itself.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Rim {
-    /// The smallest half-edge of the soup that is in it; `None`: all its triangles are new.
-    pub half_edge: Option<u32>,
+    /// The half-edges of the soup that are in it; those of new triangles are none.
+    pub half_edges: Vec<u32>,
     /// Its edges.
     pub edges: u32,
 }
@@ -74,7 +74,7 @@ pub struct HoleReport {
     pub order: u32,
     /// Its loops, the outer one first.
     pub rims: Vec<Rim>,
-    /// The number of loops that are closed with it.
+    /// Loops that count as closed with it: whole ones, and one for all that it has only parts of.
     pub loops: u64,
     /// The number of closed walks that its rim is: fewer where loops that meet in a vertex are joined.
     pub borders: u64,

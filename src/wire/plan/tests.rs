@@ -42,7 +42,7 @@ fn all_steps() -> Vec<Step> {
             rbf: RbfOptions { lambda: Some(0.25), share: 0.5, ..RbfOptions::default() },
             choices: vec![HoleChoice {
                 half_edge: 7,
-                method: Some(repair::fill::Method::Flat),
+                method: Some(repair::fill::Method::Rbf),
                 band_rings: Some(1),
             }],
             ..FillOptions::default()
