@@ -297,7 +297,8 @@ mod tests {
         torn.triangles.pop();
         let hole = HoleReport {
             used: Some(Method::Flat),
-            rims: vec![Rim { half_edge: None, edges: 3 }],
+            rims: vec![Rim { half_edges: Vec::new(), edges: 3 }],
+            borders: 1,
             triangles: 1,
             ..HoleReport::default()
         };
