@@ -1216,9 +1216,14 @@ export interface components {
         };
         /** @description Height of each view that render draws, in pixels, with its share of the text below. Default: 480. */
         Height: number;
-        /** @description What became of one hole: a boundary loop, or several that got one patch. */
+        /** @description What became of one hole: a boundary loop, several that get one patch, or a gap between loops that meet in several vertices. */
         Hole: {
-            /** @description Places of its loops among the witnesses of `boundary-loop` when all are listed, from 0. */
+            /**
+             * Format: int32
+             * @description The part that it is in, as its place in `parts` from 0; null: the file was taken as one mesh.
+             */
+            part: number | null;
+            /** @description Places of its loops among the witnesses of `boundary-loop` when all are listed, from 0; in each part anew. */
             loops: number[];
             class: components["schemas"]["HoleClass"] | null;
             /**

@@ -4167,6 +4167,7 @@ A face: its number in the report, its normal and a place on it, or a ray that me
 Hole = TypedDict(
     "Hole",
     {
+        "part": int | None,
         "loops": list[int],
         "class": HoleClass | None,
         "confidence": float | None,
