@@ -61,11 +61,12 @@ def outcome_of(code, printed):
         return f"**exit {code}**: {printed[:60].decode(errors='replace').strip()}"
     if report.get("code"):
         return report["code"] + (f" ({report['limit_name']})" if report.get("limit_name") else "")
-    if report.get("outcome") == "refused":
-        return f"refused: {report['verdict']['reasons'][0]['code']}"
-    if report.get("outcome"):
-        return report["outcome"]
-    return "printable" if report["verdict"]["printable"] else "not printable"
+    verdict = report["verdict"]
+    if verdict["outcome"] == "refused":
+        return f"refused: {verdict['reasons'][0]['code']}"
+    if verdict["outcome"]:
+        return verdict["outcome"]
+    return "printable" if verdict["printable"] else "not printable"
 
 
 rows, beyond = [], 0
