@@ -182,7 +182,6 @@ fn is_above_inside(p: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
 }
 
 /// The corners from the `i`-th on.
-fn rotated(mut corners: [u32; 3], i: usize) -> [u32; 3] {
-    corners.rotate_left(i);
-    corners
+fn rotated(corners: [u32; 3], i: usize) -> [u32; 3] {
+    [i, i + 1, i + 2].map(|k| corners[k % 3])
 }
