@@ -39,7 +39,7 @@ for row in rows:
 commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=root, capture_output=True, text=True).stdout.strip()
 print(f"""# The boundary loops of the corpus
 
-Engine of commit {commit}; made by `experiments/corpus_holes.py`. `fill-holes` by `auto` on the {sums['files'] + sums['files without a report']} files of the corpus that its manifest calls open and that have at most {o.faces:,} faces ({larger} are larger): of {sum(sums[f] for f in FATES):,} boundary loops {sums['filled']:,} are filled,
+Engine of commit {commit}; made by `experiments/corpus_holes.py`. `fill-holes` by `auto` on the {sums['files'] + sums['files without a report']} files of the corpus that its manifest calls open and that have at most {o.faces:,} faces ({larger} are larger): of {sum(sums[f] for f in FATES):,} holes (boundary loops, or several that get one patch) {sums['filled']:,} are filled,
 {sums['rejected']:,} have no sound patch and stay open, {sums['no-loop']} are no simple loop. Of the files {sums['files with every loop filled']} have no open loop any more, {sums['files without a loop']} had none,
 and {sums['files without a report']} gave no report. Nothing is chosen to stay. The rest, one by one, with the reason that most of the loops that stay open have
 ([what the reasons mean](../holes.md#the-operation)). The border of a flat sheet, of a terrain or of a shell whose inside is full of other walls has no patch that meets nothing; `repair`
