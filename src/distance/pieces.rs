@@ -191,8 +191,9 @@ fn longest_edge_first(corners: [Corner; 3]) -> ([Corner; 3], bool) {
     let lengths = [p.distance(q), q.distance(r), r.distance(p)];
     let (longest, shortest) =
         (lengths.into_iter().fold(0.0, f64::max), lengths.into_iter().fold(f64::MAX, f64::min));
-    let first = lengths.iter().position(|&length| length == longest).unwrap_or(0);
-    ([first, first + 1, first + 2].map(|k| corners[k % 3]), longest > LONG * shortest)
+    let mut turned = corners;
+    turned.rotate_left(lengths.iter().position(|&length| length == longest).unwrap_or(0));
+    (turned, longest > LONG * shortest)
 }
 
 /// Triangles that are walked over in the time that it takes to find a closest point.

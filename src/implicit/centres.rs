@@ -85,7 +85,11 @@ pub(super) fn sites(
         if round > 0 && !gained {
             break;
         }
-        for i in part(&mut sites, budget)? {
+        let parted = part(&mut sites, budget)?;
+        if parted.is_empty() {
+            break;
+        }
+        for i in parted {
             is_parted[i] = true;
         }
     }
