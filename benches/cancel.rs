@@ -5,7 +5,8 @@
 //! time, the median, the 99th percentile and the worst time to return in milliseconds, and the pass that was slowest
 //! to return. 1,000 cancels of 160,000 triangles (200 rows) take a few minutes, of 500,000 (354 rows) about ten.
 //! With `crossing` it is two such spheres that pass through each other, so that the surface is rebuilt, which takes seconds.
-//! With `holes` it is the filling of holes by each method instead, of rims with 2,048 and 65,536 corners and of 10,000 small ones.
+//! With `holes` it is the filling of holes by each method instead, of rims with 2,048 and 65,536 corners and of 10,000 small ones;
+//! further words choose cases whose names have them, such as `2,048` and `Rbf`.
 
 #![allow(clippy::print_stdout, reason = "a bench prints its figures")]
 
@@ -206,7 +207,13 @@ fn main() {
     let numbers: Vec<u32> = arguments.iter().filter_map(|argument| argument.parse().ok()).collect();
     let cancels = numbers.first().copied().unwrap_or(1000);
     if has("holes") {
-        hole_cases().iter().for_each(|(name, case)| measure(name, case, cancels));
+        let is_chosen = |name: &str| {
+            let mut words =
+                arguments.iter().filter(|word| word.parse::<u32>().is_err() && !word.starts_with('-'));
+            words.all(|word| word == "holes" || name.contains(word.as_str()))
+        };
+        let chosen = hole_cases().into_iter().filter(|(name, _)| is_chosen(name));
+        chosen.for_each(|(name, case)| measure(&name, &case, cancels));
         return;
     }
     let rows = numbers.get(1).copied().unwrap_or(200);
