@@ -283,11 +283,12 @@ pub fn write(soup: &Soup, encoding: Encoding, budget: &Budget) -> Result<Vec<u8>
     }
 }
 
-/// The order in which [`write`](fn@write) writes the triangles of `soup`; `None`: their own. glTF keeps triangles of one material
-/// together.
+/// The order in which [`write`](fn@write) writes the triangles of `soup`; `None`: their own. OBJ keeps triangles of one object
+/// together, and glTF those of one object and one material.
 pub fn stored_order(soup: &Soup, encoding: Encoding) -> Option<Vec<u32>> {
     match encoding {
         Encoding::Glb | Encoding::Gltf => gltf::stored_order(soup),
+        Encoding::Obj => obj::stored_order(soup),
         _ => None,
     }
 }

@@ -6,6 +6,7 @@
 
 use super::{DVec2, DVec3, Sign};
 use num_bigint::BigInt;
+use std::cell::Cell;
 use std::ops::{Add, Mul, Sub};
 
 /// The bits that a set of finite numbers uses: each is a multiple of `2^low` and smaller than `2^high` in magnitude.
@@ -101,6 +102,16 @@ pub fn suits_expansions<'p>(points: impl IntoIterator<Item = &'p DVec3>) -> bool
     least == f64::INFINITY || Span { low: decompose(least).1, high: 0 }.with(most).suits_expansions()
 }
 
+thread_local! {
+    static SIGNS: Cell<u64> = const { Cell::new(0) };
+}
+
+/// How many signs of determinants this thread has found without filters so far: such a sign takes many times as long as one that a
+/// filter gives, so that work is counted by them.
+pub fn exact_signs() -> u64 {
+    SIGNS.get()
+}
+
 /// Coordinates of at most 62 bits: differences fit 63 bits, products 126, the determinant 127, with its sign 128.
 const ORIENT2D_BITS_MAX: i32 = 62;
 
@@ -110,6 +121,7 @@ const ORIENT3D_BITS_MAX: i32 = 40;
 /// Sign of `det(b - a, c - a)`, exact for all finite coordinates.
 #[cold]
 pub(super) fn orient2d(points: [DVec2; 3]) -> Sign {
+    SIGNS.set(SIGNS.get() + 1);
     let span = Span::of(points.iter().flat_map(DVec2::to_array));
     if span.bits() <= ORIENT2D_BITS_MAX {
         let [a, b, c] = points.map(|p| p.to_array().map(|x| span.to_i128(x)));
@@ -126,6 +138,7 @@ pub(super) fn orient2d(points: [DVec2; 3]) -> Sign {
 /// Sign of `det(b - a, c - a, d - a)`, exact for all finite coordinates.
 #[cold]
 pub(super) fn orient3d(points: [DVec3; 4]) -> Sign {
+    SIGNS.set(SIGNS.get() + 1);
     let span = Span::of(points.iter().flat_map(DVec3::to_array));
     if span.bits() <= ORIENT3D_BITS_MAX {
         let [a, b, c, d] = points.map(|p| p.to_array().map(|x| span.to_i128(x)));

@@ -1,13 +1,14 @@
 //! Several soups as one.
 
 use super::materials::{Materials, NO_MATERIAL};
+use super::objects::{NO_OBJECT, Objects};
 use super::soup::Soup;
 use super::texture::{NO_POINT, Texture};
 use crate::geom::DVec3;
 
 impl Soup {
-    /// The triangles of all `soups`, one after the other, with their colours, texture coordinates and materials. What has no
-    /// triangle stays out, and so do polygons as such and places in files.
+    /// The triangles of all `soups`, one after the other, with their colours, texture coordinates, materials and
+    /// objects. What has no triangle stays out, and so do polygons as such and places in files.
     pub fn joined(soups: &[Self]) -> Self {
         let mut joined = Self { is_f32_exact: soups.iter().all(|soup| soup.is_f32_exact), ..Self::default() };
         let has = |is_there: fn(&Self) -> bool| soups.iter().any(is_there);
@@ -15,6 +16,7 @@ impl Soup {
         let has_face_colors = has(|soup| !soup.face_colors.is_empty());
         let has_texture = has(|soup| !soup.texture.is_empty());
         let has_materials = has(|soup| !soup.materials.is_empty());
+        let has_objects = has(|soup| !soup.objects.is_empty());
         for soup in soups {
             let first = joined.positions.len() as u32;
             joined.positions.extend(&soup.positions);
@@ -36,12 +38,15 @@ impl Soup {
             if has_materials {
                 joined.materials.extend(&soup.materials, joined.face_count as usize);
             }
+            if has_objects {
+                joined.objects.extend(&soup.objects, joined.face_count as usize);
+            }
         }
         joined
     }
 
-    /// Adds triangles over points of their own, which have no colour, no texture and no material. The soup has no polygons as
-    /// such.
+    /// Adds triangles over points of their own, which have no colour, no texture, no material and no object. The soup has no
+    /// polygons as such.
     pub fn add_plain(&mut self, positions: &[DVec3], triangles: &[[u32; 3]]) {
         let first = self.positions.len() as u32;
         self.positions.extend(positions);
@@ -62,6 +67,9 @@ impl Soup {
         }
         if !self.materials.is_empty() {
             self.materials.of_face.resize(faces, NO_MATERIAL);
+        }
+        if !self.objects.is_empty() {
+            self.objects.of_face.resize(faces, NO_OBJECT);
         }
     }
 }
@@ -90,6 +98,17 @@ impl Materials {
         self.names.extend(other.names.iter().cloned());
         self.of_face.extend(other.of_face.iter().map(|&m| shifted(m)));
         self.of_face.resize(faces, NO_MATERIAL);
+    }
+}
+
+impl Objects {
+    /// Adds those of further faces; there are `faces` then.
+    fn extend(&mut self, other: &Self, faces: usize) {
+        let first = self.names.len() as u32;
+        let shifted = |o: u32| if o == NO_OBJECT { o } else { first + o };
+        self.names.extend(other.names.iter().cloned());
+        self.of_face.extend(other.of_face.iter().map(|&o| shifted(o)));
+        self.of_face.resize(faces, NO_OBJECT);
     }
 }
 

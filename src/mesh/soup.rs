@@ -2,6 +2,7 @@
 
 use super::color::Color;
 use super::materials::{Materials, NO_MATERIAL};
+use super::objects::{NO_OBJECT, Objects};
 use super::texture::{NO_POINT, Texture};
 use super::units::Units;
 use crate::geom::DVec3;
@@ -96,6 +97,8 @@ pub struct Soup {
     pub texture: Texture,
     /// Materials of the faces of the file.
     pub materials: Materials,
+    /// Objects of the faces of the file.
+    pub objects: Objects,
     /// What the file has beside its mesh and no new file takes over, by name and number.
     pub left_out: Vec<(&'static str, u64)>,
     /// Unit of the positions, where the format states one.
@@ -159,6 +162,7 @@ impl Soup {
         for (name, len, want) in [
             ("vertex_colors", self.vertex_colors.len(), vertex_count),
             ("materials.of_face", self.materials.of_face.len(), self.face_count as usize),
+            ("objects.of_face", self.objects.of_face.len(), self.face_count as usize),
             ("face_colors", self.face_colors.len(), self.face_count as usize),
             ("places.face_lines", self.places.face_lines.len(), self.face_count as usize),
             ("places.vertex_lines", self.places.vertex_lines.len(), vertex_count),
@@ -175,6 +179,10 @@ impl Soup {
         let names = self.materials.names.len();
         if let Some(m) = self.materials.of_face.iter().find(|&&m| m != NO_MATERIAL && m as usize >= names) {
             broken.push(format!("a face has material {m} of {names}"));
+        }
+        let objects = self.objects.names.len();
+        if let Some(o) = self.objects.of_face.iter().find(|&&o| o != NO_OBJECT && o as usize >= objects) {
+            broken.push(format!("a face has object {o} of {objects}"));
         }
         let texture = &self.texture;
         if !texture.is_empty() && texture.corners.len() != self.triangles.len() {

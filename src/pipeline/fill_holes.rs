@@ -4,7 +4,7 @@ use super::input::Input;
 use super::output::{Made, unchanged};
 use super::plan::Attempt;
 use super::step::Step;
-use super::{Answer, ChosenHole, Failure, Operation, Options, Outcome, Report};
+use super::{Answer, ChosenHole, Failure, Operation, Options, Outcome, Report, looks};
 use crate::analysis::{Analysis, DefectCode, HoleGuess, Witness};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::repair::fill::{FillOptions, HoleChoice, HoleReport, Rejected};
@@ -95,7 +95,8 @@ pub(super) fn fill_holes(input: &Input, options: &Options, budget: &Budget) -> R
         true => |_| Outcome::Filled,
         false => |_| Outcome::Converted,
     };
-    let made = Made { soup: draft.to_soup(&input.soup), origins: &draft.triangle_origin, outcome };
+    let soup = looks::soup_of(&draft, &input.soup, budget)?;
+    let made = Made { soup, origins: &draft.triangle_origin, outcome };
     made.returned(input, options, report, budget)
 }
 

@@ -5,8 +5,8 @@ use crate::formats::Encoding;
 use crate::mesh::{Color, Soup};
 use crate::repair::NEW;
 
-/// What is said of it: of what no format takes over, of what was `lost` with changes of the mesh, and of the colours of `before`
-/// that the file read back as `after` does not hold.
+/// What is said of it: of what no format takes over, of what was `lost` with changes of the mesh, and of the colours and objects of
+/// `before` that the file read back as `after` does not hold.
 pub(super) fn left_out(
     before: &Soup,
     lost: &[(&'static str, u64)],
@@ -17,7 +17,9 @@ pub(super) fn left_out(
     let has_lost_all = colors[0].1 > 0;
     let lost = lost.iter().copied().filter(|&(name, _)| !(has_lost_all && name == "colors_at_seams"));
     let colors = colors.into_iter().filter(|&(_, count)| count > 0);
-    let changes: Vec<_> = before.left_out.iter().copied().chain(lost).chain(colors).collect();
+    let objects = if after.objects.is_empty() { before.objects.names.len() as u64 } else { 0 };
+    let objects = (objects > 0).then_some(("objects", objects));
+    let changes: Vec<_> = before.left_out.iter().copied().chain(lost).chain(objects).chain(colors).collect();
     if changes.is_empty() {
         return None;
     }
@@ -26,19 +28,25 @@ pub(super) fn left_out(
     Some(Action { step, causes, changes, move_max: 0.0, reason, stitches: None })
 }
 
-/// What is said of new triangles with the colours and materials of faces of the file. `origins` name the triangles of `before`
+/// What is said of new triangles with the colours, texture and materials of faces of the file. `origins` name the triangles of `before`
 /// behind those of `after`.
 pub(super) fn taken_over(before: &Soup, after: &Soup, origins: &[u32]) -> Option<Action> {
     let has_color = |f: u32| after.face_colors.get(f as usize).is_some_and(Option::is_some);
     let new = || (0..).zip(origins).filter(|&(_, &origin)| origin == NEW).map(|(t, _)| after.face_of(t));
     let colors = if before.face_colors.is_empty() { 0 } else { new().filter(|&f| has_color(f)).count() };
     let materials = new().filter(|&f| after.materials.of(f).is_some()).count();
-    if colors == 0 && materials == 0 {
+    let has_texture = |(t, &origin): (usize, &u32)| origin == NEW && after.texture.of_triangle(t).is_some();
+    let texture = origins.iter().enumerate().filter(|&at| has_texture(at)).count();
+    if colors == 0 && materials == 0 && texture == 0 {
         return None;
     }
-    let changes =
-        vec![("triangles_with_color", colors as u64), ("triangles_with_material", materials as u64)];
-    let reason = "new triangles have the colours and materials of the nearest faces of the file".to_owned();
+    let changes = vec![
+        ("triangles_with_color", colors as u64),
+        ("triangles_with_material", materials as u64),
+        ("triangles_with_texture", texture as u64),
+    ];
+    let reason =
+        "new triangles have the colours, texture and materials of the nearest faces of the file".to_owned();
     let (step, causes) = ("taken_over", Vec::new());
     Some(Action { step, causes, changes, move_max: 0.0, reason, stitches: None })
 }
@@ -125,9 +133,9 @@ mod tests {
 
     #[test]
     fn what_a_reader_counted_is_told_first() {
-        let text = "o a\ng b\nv 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\ng c\nf 1 2 3\n";
+        let text = "o a\ng b\nv 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\ng c\nf 1 2 3\n";
         let soup = read(text.as_bytes(), Encoding::Obj, &ReadOptions::default(), &Budget::unlimited());
-        let counts = [("objects", 1), ("groups", 2), ("vertex_colors", 1)];
+        let counts = [("objects", 2), ("vertex_colors", 1)];
         assert_eq!(told(&soup.unwrap(), Format::Stl), counts);
         let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
                     property float nx\nproperty float quality\nelement face 1\nproperty list uchar int vertex_indices\n\

@@ -16,6 +16,7 @@ mod input;
 mod input_facts;
 mod ladder;
 mod left_out;
+mod looks;
 mod modeller;
 mod operation;
 mod outcome;
@@ -411,6 +412,9 @@ fn run_on_file(
     if encoding == Encoding::ThreeMf && parts.is_empty() && (remarks.is_empty() || !is_by_parts) {
         let of_scene = project::remarks_on_scene(bytes, &answer, options, budget)?;
         answer.report.remarks.splice(0..0, of_scene);
+    }
+    if encoding == Encoding::ThreeMf && operation == Operation::Repair && options.parts == Parts::Union {
+        return project::without_negative_parts(answer, bytes, options, bound, budget);
     }
     Ok(answer)
 }

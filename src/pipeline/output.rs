@@ -194,8 +194,8 @@ impl Candidate {
         let reason = match kept {
             0 => "the texture coordinates of the file are lost: the output has none",
             _ => {
-                "texture coordinates stay where a triangle kept its corners, parts of one have those between them, and a \
-                 patch that no seam runs into those between its rim's; other triangles have none"
+                "texture coordinates stay where a triangle kept its corners, parts of one have those between them, and new \
+                 triangles those of their rim or of the nearest faces; other triangles have none"
             }
         };
         let changes =

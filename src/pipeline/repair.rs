@@ -8,7 +8,9 @@ use super::plan::Attempt;
 use super::remedies::PlanMismatch;
 use super::repair_choices::Choices;
 use super::step::Step;
-use super::{Answer, Failure, Operation, Options, Outcome, Refusal, Report, Require, bounds, simplify};
+use super::{
+    Answer, Failure, Operation, Options, Outcome, Refusal, Report, Require, bounds, looks, simplify,
+};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::Depth;
 use crate::formats::Encoding;
@@ -201,7 +203,7 @@ fn write(
     depth: Depth,
     budget: &Budget,
 ) -> Result<Candidate, NoCandidate> {
-    Candidate::write(draft.to_soup(&input.soup), input, encoding, depth, budget)
+    Candidate::write(looks::soup_of(draft, &input.soup, budget)?, input, encoding, depth, budget)
 }
 
 /// The result that is not certified, on request.

@@ -341,9 +341,10 @@ fn finest_first(targets: &[Target], faces: usize) -> Vec<Vec<usize>> {
     [counts, errors].into_iter().filter(|run| !run.is_empty()).map(order).collect()
 }
 
-/// The result with the colours and materials that its faces had in `mesh`, and the texture of its corners.
+/// The result with the colours, materials and objects that its faces had in `mesh`, and the texture of its corners.
 fn soup_of(result: &Simplified, mesh: &Soup) -> Soup {
     let color = |&t: &u32| mesh.face_colors.get(t as usize).copied().flatten();
+    let origins = || result.triangle_origin.iter().map(|&t| Some(t));
     Soup {
         is_f32_exact: result.positions.iter().all(|p| p.as_vec3().as_dvec3() == *p),
         positions: result.positions.clone(),
@@ -354,7 +355,8 @@ fn soup_of(result: &Simplified, mesh: &Soup) -> Soup {
             false => priority::colors_of(&result.priorities),
         },
         texture: texture_on(result, mesh),
-        materials: mesh.materials.on(result.triangle_origin.iter().map(|&t| Some(t))),
+        materials: mesh.materials.on(origins()),
+        objects: mesh.objects.on(origins()),
         face_colors: match mesh.face_colors.is_empty() {
             true => Vec::new(),
             false => result.triangle_origin.iter().map(color).collect(),

@@ -34,6 +34,8 @@ mod hostile;
 mod meshopt;
 mod modeller;
 mod near_rims;
+mod objects;
+mod one_mesh_of_parts;
 mod operations;
 mod pieces;
 mod pinched_rims;

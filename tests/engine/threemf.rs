@@ -41,6 +41,15 @@ pub(crate) fn file(model: &str) -> Vec<u8> {
     package(&[("_rels/.rels", RELATIONSHIPS.as_bytes()), ("3D/3dmodel.model", model.as_bytes())])
 }
 
+/// A 3MF with this model and what slicers of the kin of Bambu Studio note of its parts.
+pub(crate) fn with_settings(model: &str, settings: &str) -> Vec<u8> {
+    package(&[
+        ("_rels/.rels", RELATIONSHIPS.as_bytes()),
+        ("3D/3dmodel.model", model.as_bytes()),
+        ("Metadata/model_settings.config", settings.as_bytes()),
+    ])
+}
+
 pub(crate) fn model(attributes: &str, resources: &str, build: &str) -> String {
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model {attributes} xmlns=\"{CORE}\" xmlns:m=\"{MATERIAL}\" \
@@ -562,7 +571,7 @@ fn volumes_that_a_slicer_notes_are_parts_and_their_ranges_are_kept_up() {
 }
 
 /// A box with one volume that is printed and one that is not, as two kinds of projects note it.
-fn box_with_pocket(purposes: [&str; 2]) -> [Vec<u8>; 2] {
+pub(crate) fn box_with_pocket(purposes: [&str; 2]) -> [Vec<u8>; 2] {
     let [(body, sides), (pocket, _)] = [cuboid([0.0; 3], [10.0; 3]), cuboid([4.0; 3], [6.0; 3])];
     let second = || sides.iter().map(|t| t.map(|v| v + 8));
     let of_both = mesh(

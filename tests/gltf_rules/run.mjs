@@ -46,6 +46,15 @@ function obj(isOpen) {
   return corners.map((p) => `v ${p.join(" ")}\n`).join("") + points + faces.join("");
 }
 
+/** Two cubes that cross each other as OBJ, in two objects of which one has two groups. */
+function objects() {
+  const faces = (from) => triangles.map((f) => `f ${f.map((v) => v + from).join(" ")}\n`);
+  const moved = corners.map((p) => p.map((x) => x + 0.5));
+  const points = [...corners, ...moved].map((p) => `v ${p.join(" ")}\n`).join("");
+  const [low, high] = [faces(1), faces(9)];
+  return `${points}o low\n${low.slice(0, 5).join("")}g top\n${low.slice(5).join("")}o high \u00e9\ng\n${high.join("")}`;
+}
+
 /** A GLB of the cube with a picture, a plain material and an extension; all vertices split. */
 function glb(isOpen) {
   const list = (isOpen ? triangles.slice(1) : triangles).flat();
@@ -96,7 +105,7 @@ function glb(isOpen) {
 }
 
 function inputs() {
-  const made = { "textured.obj": obj(false), "open-textured.obj": obj(true), "skin.glb": glb(false), "open-skin.glb": glb(true) };
+  const made = { "objects.obj": objects(), "textured.obj": obj(false), "open-textured.obj": obj(true), "skin.glb": glb(false), "open-skin.glb": glb(true) };
   for (const colors of ["none", "vertices", "faces"]) {
     made[`${colors}.ply`] = ply(colors, false);
     made[`open-${colors}.ply`] = ply(colors, true);

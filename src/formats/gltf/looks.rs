@@ -1,4 +1,4 @@
-//! What the triangles of a soup look like, as the primitives of a glTF mesh hold it: one for each look.
+//! What the triangles of a soup look like, as the primitives of a glTF mesh hold it: one for each look of an object.
 
 use crate::formats::colors::as_linear;
 use crate::mesh::{Color, Soup};
@@ -83,21 +83,24 @@ impl Looks {
         Some(looks)
     }
 
-    /// The triangles of each look, in the order of the soup.
-    pub(super) fn triangles(&self, count: usize) -> Vec<Vec<u32>> {
-        if self.list.len() <= 1 {
-            return vec![(0..count as u32).collect(); self.list.len()];
+    /// The object of triangle `t` of `soup`, plus one, or 0; and the number of its look.
+    pub(super) fn primitive_of(&self, soup: &Soup, t: u32) -> (u32, u32) {
+        let look = self.of_triangle.get(t as usize).copied().unwrap_or(0);
+        (soup.objects.of(soup.face_of(t)).map_or(0, |object| object + 1), look)
+    }
+
+    /// The triangles of `soup` as primitives hold them: those of each object together, and of each look of it.
+    pub(super) fn sorted(&self, soup: &Soup) -> Vec<u32> {
+        let mut triangles: Vec<u32> = (0..soup.triangles.len() as u32).collect();
+        if self.list.len() > 1 || !soup.objects.is_empty() {
+            triangles.sort_by_key(|&t| self.primitive_of(soup, t));
         }
-        let mut lists = vec![Vec::new(); self.list.len()];
-        for (t, &look) in (0..).zip(&self.of_triangle) {
-            lists[look as usize].push(t);
-        }
-        lists
+        triangles
     }
 }
 
-/// The order in which the triangles of `soup` are written, as they are sorted by their looks; `None`: their own.
+/// The order in which the triangles of `soup` are written, as they are sorted by objects and looks; `None`: their own.
 pub(in crate::formats) fn stored_order(soup: &Soup) -> Option<Vec<u32>> {
-    let looks = Looks::of(soup);
-    if looks.of_triangle.is_sorted() { None } else { Some(looks.triangles(soup.triangles.len()).concat()) }
+    let sorted = Looks::of(soup).sorted(soup);
+    if sorted.is_sorted() { None } else { Some(sorted) }
 }

@@ -11,7 +11,9 @@ use crate::budget::{Budget, CHECK_EVERY, Charge, Stopped};
 use crate::formats::faces::Faces;
 use crate::formats::{Encoding, Precision, ReadError, ReadErrorKind, ReadOptions};
 use crate::geom::DVec3;
-use crate::mesh::{Color, Materials, NO_MATERIAL, NO_POINT, Soup, Texture};
+use crate::mesh::{
+    Color, Materials, NAME_BYTES_MAX, NO_MATERIAL, NO_POINT, OBJECTS_MAX, ObjectName, Objects, Soup, Texture,
+};
 use crate::par;
 use crate::spatial::{Coincident, coincident_f64};
 use glam::DAffine3;
@@ -35,16 +37,48 @@ pub(in crate::formats) fn read(
     let (placed, nodes_left_out) = placed_meshes(&root, budget)?;
     let meshes = read_meshes(&root, &placed, &accessors, &materials)?;
     let (mut raw, _charges) = Raw::with_room(&placed, &meshes, options, budget)?;
-    for place in &placed {
+    let names = object_names(&root, &placed)?;
+    let _charge = budget.charge(names.as_deref().map_or(0, bytes_of))?;
+    for (object, place) in placed.iter().enumerate() {
         raw.add(&meshes[place.mesh], place.transform.as_ref(), &accessors, options.precision)?;
+        if names.is_some() {
+            raw.objects.resize(raw.triangles.len(), object as u32);
+        }
     }
     let mut left_out = left_out(&root, &placed, &meshes)?;
+    if placed.len() > OBJECTS_MAX {
+        left_out.push(("objects", placed.len() as u64));
+    }
     left_out.push(("meshes_outside_of_the_scene", nodes_left_out));
     left_out.push(("textures", materials.left_out));
     left_out.push(("compressed_views", accessors.buffers.compressed_views()));
+    let objects = std::mem::take(&mut raw.objects);
     let mut soup = raw.into_soup(materials, &mut left_out, options, budget)?;
+    if let Some(names) = names {
+        soup.objects = Objects { names, of_face: objects };
+    }
     soup.left_out = left_out.into_iter().filter(|&(_, count)| count > 0).collect();
     Ok(soup)
+}
+
+/// The names of the nodes that place a mesh and of their meshes; `None` where one node without any name does, or too many.
+fn object_names(root: &Part<'_>, placed: &[Placed<'_>]) -> Result<Option<Vec<ObjectName>>, ReadError> {
+    if placed.len() > OBJECTS_MAX {
+        return Ok(None);
+    }
+    let list = root.list("meshes")?;
+    let usable = |name: &str| if name.len() > NAME_BYTES_MAX { Vec::new() } else { name.as_bytes().to_vec() };
+    let name = |place: &Placed<'_>| ObjectName {
+        object: usable(place.name),
+        group: usable(list.item(place.mesh).text("name").unwrap_or_default()),
+    };
+    let names: Vec<ObjectName> = placed.iter().map(name).collect();
+    Ok((names.len() > 1 || names.iter().any(|name| *name != ObjectName::default())).then_some(names))
+}
+
+fn bytes_of(names: &[ObjectName]) -> u64 {
+    let bytes = |name: &ObjectName| size_of::<ObjectName>() + name.object.len() + name.group.len();
+    names.iter().map(bytes).sum::<usize>() as u64
 }
 
 /// Extensions that a file may require: those that do not concern the shape, and those that are read or refused where a mesh
@@ -83,7 +117,7 @@ fn check_version(root: &Part<'_>) -> Result<(), ReadError> {
 /// The meshes that are placed, by number; the others are empty.
 fn read_meshes(
     root: &Part<'_>,
-    placed: &[Placed],
+    placed: &[Placed<'_>],
     accessors: &Accessors<'_>,
     materials: &FileMaterials<'_>,
 ) -> Result<Vec<Mesh>, ReadError> {
@@ -103,7 +137,7 @@ fn read_meshes(
 /// What the file has that the soup does not hold.
 fn left_out(
     root: &Part<'_>,
-    placed: &[Placed],
+    placed: &[Placed<'_>],
     meshes: &[Mesh],
 ) -> Result<Vec<(&'static str, u64)>, ReadError> {
     let count = |name| root.list(name).map(|list| list.len() as u64);
@@ -114,13 +148,7 @@ fn left_out(
     let of = |f: fn(&Mesh) -> u64| {
         meshes.iter().zip(&is_placed).filter(|(_, is_placed)| **is_placed).map(|(m, _)| f(m)).sum::<u64>()
     };
-    let list = root.list("meshes")?;
-    let has_name = |mesh: usize| list.item(mesh).text("name").is_some_and(|name| !name.is_empty());
-    let names = placed.iter().filter(|place| place.is_named).count()
-        + (0..meshes.len()).filter(|&mesh| is_placed[mesh] && has_name(mesh)).count();
     Ok(vec![
-        ("united_nodes", if placed.len() > 1 { placed.len() as u64 } else { 0 }),
-        ("names", names as u64),
         ("animations", count("animations")?),
         ("skins", count("skins")?),
         ("morph_targets", of(|mesh| mesh.morph_targets)),
@@ -142,6 +170,8 @@ struct Raw {
     points: Vec<[f64; 2]>,
     /// The material of each triangle.
     materials: Vec<u32>,
+    /// The object of each triangle; empty where the file has no names.
+    objects: Vec<u32>,
 }
 
 const ABSENT: [f64; 2] = [f64::NAN; 2];
@@ -149,7 +179,7 @@ const ABSENT: [f64; 2] = [f64::NAN; 2];
 impl Raw {
     /// Room for everything that is placed, within the limits.
     fn with_room<'b>(
-        placed: &[Placed],
+        placed: &[Placed<'_>],
         meshes: &[Mesh],
         options: &ReadOptions,
         budget: &'b Budget,
@@ -179,6 +209,7 @@ impl Raw {
         charges.push(budget.reserve(&mut raw.positions, vertices)?);
         charges.push(budget.reserve(&mut raw.triangles, triangles)?);
         charges.push(budget.reserve(&mut raw.materials, triangles)?);
+        charges.push(budget.reserve(&mut raw.objects, triangles)?);
         if has(|set| set.colors.is_some()) {
             charges.push(budget.reserve(&mut raw.colors, vertices)?);
         }

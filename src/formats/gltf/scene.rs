@@ -7,26 +7,26 @@ use crate::geom::DVec3;
 use glam::{DAffine3, DMat3, DQuat};
 
 /// A mesh where a node puts it.
-pub(super) struct Placed {
+pub(super) struct Placed<'a> {
     /// Its number.
     pub(super) mesh: usize,
     /// Where its points go; `None`: they stay.
     pub(super) transform: Option<DAffine3>,
-    /// The node has a name.
-    pub(super) is_named: bool,
+    /// The name of the node; empty where it has none.
+    pub(super) name: &'a str,
 }
 
 /// The meshes of the scene that the document shows, or of all nodes where it has none, in the order of a walk that visits a
 /// node before its children; and how many nodes with a mesh are left out.
 ///
 /// A document without nodes gives each of its meshes once.
-pub(super) fn placed_meshes(root: &Part<'_>, budget: &Budget) -> Result<(Vec<Placed>, u64), ReadError> {
+pub(super) fn placed_meshes<'a>(
+    root: &Part<'a>,
+    budget: &Budget,
+) -> Result<(Vec<Placed<'a>>, u64), ReadError> {
     let (nodes, meshes, scenes) = (root.list("nodes")?, root.list("meshes")?, root.list("scenes")?);
     if nodes.len() == 0 {
-        return Ok((
-            (0..meshes.len()).map(|mesh| Placed { mesh, transform: None, is_named: false }).collect(),
-            0,
-        ));
+        return Ok(((0..meshes.len()).map(|mesh| Placed { mesh, transform: None, name: "" }).collect(), 0));
     }
     let starts = match root.index("scene", &scenes)? {
         Some(scene) => starts_of(&scenes.item(scene), &nodes)?,
@@ -72,7 +72,7 @@ struct Walk<'w, 'a> {
     nodes: &'w List<'a>,
     meshes: &'w List<'a>,
     is_visited: Vec<bool>,
-    placed: Vec<Placed>,
+    placed: Vec<Placed<'a>>,
 }
 
 impl Walk<'_, '_> {
@@ -93,8 +93,7 @@ impl Walk<'_, '_> {
             // A mesh with a skin is placed by its joints alone.
             let is_still = node.get("skin").is_some() || transform == DAffine3::IDENTITY;
             let transform = (!is_still).then_some(transform);
-            let is_named = node.text("name").is_some_and(|name| !name.is_empty());
-            self.placed.push(Placed { mesh, transform, is_named });
+            self.placed.push(Placed { mesh, transform, name: node.text("name").unwrap_or_default() });
         }
         let children = node
             .list("children")?

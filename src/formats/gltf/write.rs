@@ -1,4 +1,4 @@
-//! glTF output: one mesh, a primitive for each look, all data in one buffer.
+//! glTF output: a node and a mesh for each object, a primitive for each look of it, all data in one buffer.
 
 use super::looks::{Look, Looks, own_color};
 use super::references::without_textures;
@@ -10,6 +10,7 @@ use base64::Engine as _;
 use rustc_hash::FxHashMap;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
@@ -17,7 +18,7 @@ const U8: u32 = 5121;
 const U32: u32 = 5125;
 const F32: u32 = 5126;
 
-/// The triangles of `soup`, sorted by what they look like, with float32 positions and the colours, texture coordinates and
+/// The triangles of `soup`, sorted by objects and by what they look like, with float32 positions and the colours, texture coordinates and
 /// materials that they have.
 pub(in crate::formats) fn write(
     soup: &Soup,
@@ -25,10 +26,12 @@ pub(in crate::formats) fn write(
     budget: &Budget,
 ) -> Result<Vec<u8>, WriteError> {
     let looks = Looks::of(soup);
-    let (vertices, _charge) = Vertices::of(soup, &looks, budget)?;
+    let _charge = budget.charge((soup.triangles.len() * size_of::<u32>()) as u64)?;
+    let triangles = looks.sorted(soup);
+    let (vertices, _charge) = Vertices::of(soup, &looks, &triangles, budget)?;
     let (mut file, _charge) = File::with_room(soup, &vertices, &looks, encoding, budget)?;
     if !soup.triangles.is_empty() {
-        file.put_mesh(soup, &vertices, &looks, encoding, budget)?;
+        file.put_meshes(soup, &vertices, &looks, &triangles, encoding, budget)?;
     }
     match encoding {
         Encoding::Glb => file.into_glb(budget),
@@ -47,10 +50,18 @@ struct Vertices {
     /// Linear colour of each; empty when there are none.
     colors: Vec<[f32; 4]>,
     has_alpha: bool,
+    /// Of each object with triangles, in the order in which they are written, its first vertex.
+    first_of_object: Vec<u32>,
 }
 
 impl Vertices {
-    fn of<'b>(soup: &Soup, looks: &Looks, budget: &'b Budget) -> Result<(Self, Vec<Charge<'b>>), Stopped> {
+    /// `triangles` are all, sorted by objects.
+    fn of<'b>(
+        soup: &Soup,
+        looks: &Looks,
+        triangles: &[u32],
+        budget: &'b Budget,
+    ) -> Result<(Self, Vec<Charge<'b>>), Stopped> {
         let has_points = !soup.texture.is_empty();
         let at_corners = looks.has_colors_at_corners;
         let has_alpha = |colors: &[Option<Color>]| {
@@ -70,9 +81,13 @@ impl Vertices {
             points: Vec::new(),
             colors: Vec::new(),
             has_alpha: has_alpha(if at_corners { &soup.face_colors } else { &soup.vertex_colors }),
+            first_of_object: vec![0],
         };
         let mut charges = Vec::new();
-        if !has_points && !at_corners {
+        let object_of = |t: u32| looks.primitive_of(soup, t).0;
+        let ends = triangles.first().zip(triangles.last());
+        let is_of_one = ends.is_none_or(|(&first, &last)| object_of(first) == object_of(last));
+        if !has_points && !at_corners && is_of_one {
             if has_colors {
                 charges.push(budget.reserve(&mut vertices.colors, soup.positions.len())?);
                 vertices.colors.extend((0..soup.positions.len() as u32).map(of_vertex));
@@ -80,15 +95,28 @@ impl Vertices {
             return Ok((vertices, charges));
         }
         charges.push(budget.reserve(&mut vertices.of_corner, soup.triangles.len())?);
+        vertices.of_corner.resize(soup.triangles.len(), [0; 3]);
         // A table and lists with a number, two coordinates and four channels for each different corner.
         const PER_VERTEX: u64 = 3 * 7 * size_of::<u32>() as u64;
         let mut charged = 0;
         let mut numbers: FxHashMap<(u32, [u32; 2], [u32; 4]), u32> = FxHashMap::default();
-        for (t, corners) in soup.triangles.iter().enumerate() {
-            if t.is_multiple_of(CHECK_EVERY) {
+        let _charge = budget.charge((soup.triangles.len() * size_of::<u32>()) as u64)?;
+        let mut next = triangles.to_vec();
+        // Inside an object they are numbered in the order of the soup.
+        next.sort_by_key(|&t| (object_of(t), t));
+        let mut object = next.first().map_or(0, |&t| object_of(t));
+        for (i, t) in next.into_iter().enumerate() {
+            if i.is_multiple_of(CHECK_EVERY) {
                 charges.push(budget.charge((vertices.position.len() - charged) as u64 * PER_VERTEX)?);
                 charged = vertices.position.len();
             }
+            if object != object_of(t) {
+                object = object_of(t);
+                vertices.first_of_object.push(vertices.position.len() as u32);
+                numbers.clear();
+            }
+            let t = t as usize;
+            let corners = soup.triangles[t];
             let points = soup.texture.of_triangle(t);
             let color = at_corners.then(|| as_linear(own_color(soup, t)));
             let number = |k: usize| {
@@ -110,8 +138,7 @@ impl Vertices {
                     vertices.position.len() as u32 - 1
                 })
             };
-            let corners = [0, 1, 2].map(number);
-            vertices.of_corner.push(corners);
+            vertices.of_corner[t] = [0, 1, 2].map(number);
         }
         Ok((vertices, charges))
     }
@@ -126,6 +153,12 @@ impl Vertices {
 
     fn corners(&self, soup: &Soup, t: usize) -> [u32; 3] {
         self.of_corner.get(t).copied().unwrap_or_else(|| soup.triangles[t])
+    }
+
+    /// The vertices of each object.
+    fn of_objects(&self, soup: &Soup) -> Vec<Range<usize>> {
+        let ends = self.first_of_object.iter().skip(1).map(|&first| first as usize).chain([self.len(soup)]);
+        self.first_of_object.iter().map(|&first| first as usize).zip(ends).map(|(a, b)| a..b).collect()
     }
 
     /// The colours as bytes, if they are all that.
@@ -203,46 +236,53 @@ impl File {
         self.accessors.len() - 1
     }
 
-    fn put_mesh(
+    /// `triangles` are all, as [`Looks::sorted`] has them.
+    fn put_meshes(
         &mut self,
         soup: &Soup,
         vertices: &Vertices,
         looks: &Looks,
+        triangles: &[u32],
         encoding: Encoding,
         budget: &Budget,
     ) -> Result<(), WriteError> {
-        let count = vertices.len(soup);
-        let mut attributes = Map::new();
-        attributes
-            .insert("POSITION".into(), self.put_positions(soup, vertices, count, encoding, budget)?.into());
-        if !vertices.colors.is_empty() {
-            attributes.insert("COLOR_0".into(), self.put_colors(vertices, count, budget)?.into());
-        }
-        let plain = attributes.clone();
-        if !vertices.points.is_empty() {
-            let begin = self.next();
-            for block in vertices.points.chunks(CHECK_EVERY) {
-                budget.check()?;
-                self.bytes.extend(block.as_flattened().iter().flat_map(|c| c.to_le_bytes()));
+        let color_bytes = vertices.color_bytes();
+        let objects = vertices.of_objects(soup);
+        /// About what the members of an object take in the document.
+        const PER_OBJECT: u64 = 2048;
+        let _charge = budget.charge(4 * vertices.colors.len() as u64 + PER_OBJECT * objects.len() as u64)?;
+        let mut attributes = Vec::with_capacity(objects.len());
+        for of_object in &objects {
+            let mut plain = Map::new();
+            let positions = self.put_positions(soup, vertices, of_object, encoding, budget)?;
+            plain.insert("POSITION".into(), positions.into());
+            if !vertices.colors.is_empty() {
+                let colors = self.put_colors(vertices, color_bytes.as_deref(), of_object, budget)?;
+                plain.insert("COLOR_0".into(), colors.into());
             }
-            let view = self.end_view(begin, Some(ARRAY_BUFFER));
-            let points = self.add_accessor(
-                json!({ "bufferView": view, "componentType": F32, "count": count, "type": "VEC2" }),
-            );
-            attributes.insert("TEXCOORD_0".into(), points.into());
+            let mut textured = plain.clone();
+            if !vertices.points.is_empty() {
+                let points = self.put_points(vertices, of_object, budget)?;
+                textured.insert("TEXCOORD_0".into(), points.into());
+            }
+            attributes.push((plain, textured, of_object.start as u32));
         }
         let materials = self.put_materials(soup, &looks.list, budget)?;
         let begin = self.next();
-        let lists = looks.triangles(soup.triangles.len());
-        let mut primitives = Vec::new();
         let view = self.views.len();
-        for ((look, list), material) in looks.list.iter().zip(&lists).zip(materials) {
+        let (mut meshes, mut nodes, mut primitives) = (Vec::new(), Vec::new(), Vec::new());
+        let mut attributes = attributes.into_iter();
+        let of_primitive = |&a: &u32, &b: &u32| looks.primitive_of(soup, a) == looks.primitive_of(soup, b);
+        let mut lists = triangles.chunk_by(of_primitive).peekable();
+        let mut of_object = attributes.next();
+        while let (Some(list), Some((plain, textured, first))) = (lists.next(), &of_object) {
+            let (object, look) = looks.primitive_of(soup, list[0]);
             let from = self.next() - begin;
             for block in list.chunks(CHECK_EVERY) {
                 budget.check()?;
                 for &t in block {
-                    self.bytes
-                        .extend(vertices.corners(soup, t as usize).iter().flat_map(|v| v.to_le_bytes()));
+                    let corners = vertices.corners(soup, t as usize).map(|v| v - first);
+                    self.bytes.extend(corners.iter().flat_map(|v| v.to_le_bytes()));
                 }
             }
             let mut accessor = json!({ "bufferView": view, "componentType": U32, "count": 3 * list.len(), "type": "SCALAR" });
@@ -250,15 +290,35 @@ impl File {
                 accessor["byteOffset"] = from.into();
             }
             let indices = self.add_accessor(accessor);
-            let attributes = if look.has_texture { &attributes } else { &plain };
-            let mut primitive = json!({ "attributes": attributes, "indices": indices });
-            if let Some(material) = material {
+            let attributes_of_look = if looks.list[look as usize].has_texture { textured } else { plain };
+            let mut primitive = json!({ "attributes": attributes_of_look, "indices": indices });
+            if let Some(material) = materials[look as usize] {
                 primitive["material"] = material.into();
             }
             primitives.push(primitive);
+            let next = lists.peek().map(|list| looks.primitive_of(soup, list[0]).0);
+            if next != Some(object) {
+                let names = object.checked_sub(1).and_then(|object| soup.objects.names.get(object as usize));
+                let mut mesh = json!({ "primitives": std::mem::take(&mut primitives) });
+                let mut node = json!({ "mesh": meshes.len() });
+                for (value, name) in [
+                    (&mut node, names.map(|names| &names.object)),
+                    (&mut mesh, names.map(|names| &names.group)),
+                ] {
+                    if let Some(name) = name.filter(|name| !name.is_empty()) {
+                        value["name"] = String::from_utf8_lossy(name).into();
+                    }
+                }
+                meshes.push(mesh);
+                nodes.push(node);
+                of_object = attributes.next();
+            }
         }
         self.end_view(begin, Some(ELEMENT_ARRAY_BUFFER));
-        self.members.insert("meshes".into(), json!([{ "primitives": primitives }]));
+        let all: Vec<usize> = (0..nodes.len()).collect();
+        self.members.insert("scenes".into(), json!([{ "nodes": all }]));
+        self.members.insert("nodes".into(), nodes.into());
+        self.members.insert("meshes".into(), meshes.into());
         Ok(())
     }
 
@@ -266,13 +326,13 @@ impl File {
         &mut self,
         soup: &Soup,
         vertices: &Vertices,
-        count: usize,
+        of_object: &Range<usize>,
         encoding: Encoding,
         budget: &Budget,
     ) -> Result<usize, WriteError> {
         let begin = self.next();
         let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-        for i in 0..count {
+        for i in of_object.clone() {
             if i.is_multiple_of(CHECK_EVERY) {
                 budget.check()?;
             }
@@ -284,29 +344,30 @@ impl File {
             }
         }
         let view = self.end_view(begin, Some(ARRAY_BUFFER));
+        let count = of_object.len();
         Ok(self.add_accessor(json!({
             "bufferView": view, "componentType": F32, "count": count, "type": "VEC3", "min": low, "max": high
         })))
     }
 
-    /// Colours as bytes where that holds them, otherwise as float32.
+    /// Colours as bytes, if they are given, otherwise as float32.
     fn put_colors(
         &mut self,
         vertices: &Vertices,
-        count: usize,
+        color_bytes: Option<&[[u8; 4]]>,
+        of_object: &Range<usize>,
         budget: &Budget,
     ) -> Result<usize, WriteError> {
-        let begin = self.next();
-        let _charge = budget.charge(4 * count as u64)?;
-        if let Some(colors) = vertices.color_bytes() {
-            self.bytes.extend_from_slice(colors.as_flattened());
+        let (begin, count) = (self.next(), of_object.len());
+        if let Some(colors) = color_bytes {
+            self.bytes.extend_from_slice(colors[of_object.clone()].as_flattened());
             let view = self.end_view(begin, Some(ARRAY_BUFFER));
             return Ok(self.add_accessor(json!({
                 "bufferView": view, "componentType": U8, "normalized": true, "count": count, "type": "VEC4"
             })));
         }
         let channels = if vertices.has_alpha { 4 } else { 3 };
-        for block in vertices.colors.chunks(CHECK_EVERY) {
+        for block in vertices.colors[of_object.clone()].chunks(CHECK_EVERY) {
             budget.check()?;
             self.bytes
                 .extend(block.iter().flat_map(|color| &color[..channels]).flat_map(|c| c.to_le_bytes()));
@@ -315,6 +376,24 @@ impl File {
         let kind = if vertices.has_alpha { "VEC4" } else { "VEC3" };
         Ok(self
             .add_accessor(json!({ "bufferView": view, "componentType": F32, "count": count, "type": kind })))
+    }
+
+    fn put_points(
+        &mut self,
+        vertices: &Vertices,
+        of_object: &Range<usize>,
+        budget: &Budget,
+    ) -> Result<usize, WriteError> {
+        let begin = self.next();
+        for block in vertices.points[of_object.clone()].chunks(CHECK_EVERY) {
+            budget.check()?;
+            self.bytes.extend(block.as_flattened().iter().flat_map(|c| c.to_le_bytes()));
+        }
+        let view = self.end_view(begin, Some(ARRAY_BUFFER));
+        let count = of_object.len();
+        Ok(self.add_accessor(
+            json!({ "bufferView": view, "componentType": F32, "count": count, "type": "VEC2" }),
+        ))
     }
 
     /// The materials of the soup, as described or by name, and one for each further colour; gives that of each look.
@@ -411,8 +490,6 @@ impl File {
             return document.into();
         }
         document.insert("scene".into(), 0.into());
-        document.insert("scenes".into(), json!([{ "nodes": [0] }]));
-        document.insert("nodes".into(), json!([{ "mesh": 0 }]));
         document.append(&mut self.members);
         document.insert("accessors".into(), std::mem::take(&mut self.accessors).into());
         document.insert("bufferViews".into(), std::mem::take(&mut self.views).into());

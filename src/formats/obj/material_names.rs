@@ -4,11 +4,8 @@
 
 use crate::budget::Stopped;
 use crate::formats::decimals::Text;
-use crate::mesh::{Materials, NO_MATERIAL};
+use crate::mesh::{Materials, NAME_BYTES_MAX, NO_MATERIAL};
 use rustc_hash::FxHashMap;
-
-/// Longer names, in bytes, are taken as absent, so that a result is not much longer than its file.
-const NAME_BYTES_MAX: usize = 255;
 
 /// Materials of a part of a file.
 #[derive(Debug, Default)]

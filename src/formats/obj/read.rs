@@ -1,6 +1,7 @@
 //! OBJ input.
 
 use super::material_names::MaterialsOfFile;
+use super::object_names::ObjectsOfFile;
 use super::statements::{Counts, Statements};
 use super::texture::TextureOfFile;
 use crate::budget::Budget;
@@ -14,8 +15,8 @@ use memchr::memchr2;
 /// Parts of a file that are read at the same time have about this many bytes.
 const PART_BYTES: usize = 1 << 20;
 
-/// Reads vertices with their colours, faces with their texture coordinates, and the segments of lines and the names of
-/// materials; groups, normals and all else are ignored. Indices may point to vertices further down.
+/// Reads vertices with their colours, faces with their texture coordinates, the segments of lines, and the names of
+/// materials, objects and groups; normals and all else are ignored. Indices may point to vertices further down.
 ///
 /// Twice through the file: first to count, so that every part knows its first line and vertex, then to read the parts
 /// at the same time.
@@ -74,6 +75,7 @@ fn read_parts(parts: &[&[u8]], options: &ReadOptions, budget: &Budget) -> Result
         + total.further_corners() * 2 * size_of::<u32>() as u64
         + total.line_corners * size_of::<Segment>() as u64
         + total.materials * size_of::<(u32, &[u8])>() as u64
+        + total.objects * size_of::<(u32, [&[u8]; 2])>() as u64
         + of_texture;
     let _charged = budget.charge(bytes_of_parts)?;
     let read = par::try_map_ranges(parts.len(), 1, |i| {
@@ -105,6 +107,10 @@ fn join(
     let (mut segments, _charged) = budget.vec::<Segment>(total.line_corners as usize)?;
     let mut materials = MaterialsOfFile::default();
     let _charged = budget.charge(if total.materials > 0 { 4 * total.faces } else { 0 })?;
+    let mut objects = ObjectsOfFile::default();
+    const PER_OBJECT: u64 = 128;
+    let of_objects = if total.objects > 0 { 4 * total.faces + PER_OBJECT * total.objects } else { 0 };
+    let _charged = budget.charge(of_objects)?;
     let has_colors = parts.iter().any(|part| !part.colors.is_empty());
     let mut vertex_colors: Vec<Option<Color>> = Vec::new();
     for part in parts {
@@ -117,6 +123,9 @@ fn join(
         if total.materials > 0 {
             materials.append(&part.materials, part.faces.len());
         }
+        if total.objects > 0 {
+            objects.append(&part.objects, part.faces.len());
+        }
         let is_there = |segment: &&Segment| segment.ends.iter().all(|&v| (v as usize) < vertex_count);
         segments.extend(part.segments.iter().filter(is_there));
         if has_colors {
@@ -127,9 +136,9 @@ fn join(
     let soup = faces.into_soup(positions, &options.limits, budget)?;
     let texture = if has_texture { texture.into_texture(&soup, budget)? } else { Texture::default() };
     let (places, materials) = (Places { face_lines, vertex_lines }, materials.into_materials());
-    let named = [("objects", total.objects), ("groups", total.groups)];
-    let left_out = named.into_iter().filter(|&(_, count)| count > 0).collect();
-    Ok(Soup { places, vertex_colors, texture, materials, segments, left_out, ..soup })
+    let (objects, objects_left_out) = objects.into_objects();
+    let left_out = if objects_left_out > 0 { vec![("objects", objects_left_out)] } else { Vec::new() };
+    Ok(Soup { places, vertex_colors, texture, materials, objects, segments, left_out, ..soup })
 }
 
 #[cfg(test)]

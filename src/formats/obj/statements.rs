@@ -1,6 +1,7 @@
 //! The statements of a part of an OBJ file that make its mesh.
 
 use super::material_names::MaterialStatements;
+use super::object_names::ObjectStatements;
 use super::texture::{TextureStatements, read_texture_point, texture_index};
 use crate::budget::Stopped;
 use crate::budget::{Budget, CHECK_EVERY};
@@ -31,7 +32,6 @@ pub(super) struct Counts {
     pub(super) materials: u64,
     /// `o` and `g` statements.
     pub(super) objects: u64,
-    pub(super) groups: u64,
 }
 
 impl Counts {
@@ -56,8 +56,7 @@ impl Counts {
                 }
                 b"vt" => counts.texture_points += 1,
                 b"usemtl" | b"mtllib" => counts.materials += 1,
-                b"o" => counts.objects += 1,
-                b"g" => counts.groups += 1,
+                b"o" | b"g" => counts.objects += 1,
                 b"l" => {
                     while words.next_in_line().is_some() {
                         counts.line_corners += 1;
@@ -91,7 +90,6 @@ impl Counts {
             line_corners: self.line_corners + other.line_corners,
             materials: self.materials + other.materials,
             objects: self.objects + other.objects,
-            groups: self.groups + other.groups,
         }
     }
 }
@@ -117,6 +115,7 @@ pub(super) struct Statements<'a> {
     /// Of vertices that may be missing.
     pub(super) segments: Vec<Segment>,
     pub(super) materials: MaterialStatements<'a>,
+    pub(super) objects: ObjectStatements<'a>,
 }
 
 impl<'a> Statements<'a> {
@@ -166,6 +165,8 @@ impl<'a> Statements<'a> {
                 }
                 b"l" => read.read_line(&mut words, before.vertices as i64 + read.positions.len() as i64),
                 b"usemtl" => read.materials.use_from(read.faces.len() as u32, words.rest_of_line()),
+                b"o" => read.objects.object_from(read.faces.len() as u32, words.rest_of_line()),
+                b"g" => read.objects.group_from(read.faces.len() as u32, words.rest_of_line()),
                 b"mtllib" => read.materials.libraries.push(words.rest_of_line()),
                 b"vt" if has_texture => read.texture.points.push(read_texture_point(&mut words)),
                 _ => {}

@@ -1,6 +1,7 @@
 //! OBJ output.
 
 use super::material_names::{MaterialWriter, put_libraries};
+use super::object_names::{ObjectWriter, faces_by_object};
 use crate::budget::Budget;
 use crate::formats::WriteError;
 use crate::formats::colors::ColorLayout;
@@ -12,8 +13,8 @@ use std::ops::Range;
 const COLORS: ColorLayout = ColorLayout { is_bytes: false, has_alpha: false };
 
 /// The names of material files, if faces have materials, vertices, with red, green and blue after the coordinates of those
-/// that have a colour, texture coordinates if there are some, then faces with their materials: polygons as such, unless they
-/// have texture at some corners and not at all, or several at one.
+/// that have a colour, texture coordinates if there are some, then faces with their materials, those of each object together:
+/// polygons as such, unless they have texture at some corners and not at all, or several at one.
 pub(in crate::formats) fn write(soup: &Soup, budget: &Budget) -> Result<Vec<u8>, WriteError> {
     const VERTEX_BYTES_MAX: usize = 160;
     const TEXTURE_BYTES_MAX: usize = 60;
@@ -40,8 +41,18 @@ pub(in crate::formats) fn write(soup: &Soup, budget: &Budget) -> Result<Vec<u8>,
         }
         text.word("\n");
     }
-    let (mut corner_count, mut material) = (0, MaterialWriter::default());
-    for (t, corners) in soup.faces() {
+    let (mut corner_count, mut material, mut object) =
+        (0, MaterialWriter::default(), ObjectWriter::default());
+    let (by_object, _charge) = match soup.objects.is_empty() {
+        true => (None, None),
+        false => faces_by_object(soup, budget).map(|(faces, charge)| (Some(faces), Some(charge)))?,
+    };
+    let faces: &mut dyn Iterator<Item = (u32, &[u32])> = match by_object {
+        Some(faces) => &mut faces.into_iter(),
+        None => &mut soup.faces(),
+    };
+    for (t, corners) in faces {
+        object.before_face(&mut text, &soup.objects, soup.face_of(t))?;
         material.before_face(&mut text, &soup.materials, soup.face_of(t))?;
         let triangles = t as usize..t as usize + corners.len() - 2;
         match points_of(soup, corners, &triangles) {

@@ -6,6 +6,7 @@
 mod model;
 mod model_reader;
 mod models;
+mod negative;
 mod new_members;
 mod package;
 pub(super) mod read;
@@ -24,6 +25,7 @@ pub(super) mod write;
 mod xml;
 
 pub use model::{FaceAttributes, NO_NUMBER, ObjectKind, Property};
+pub use negative::{NegativeParts, read_negative_parts};
 pub use new_members::Between;
 pub use read::{Body, Project, read_project, read_scene};
 pub use rewrite::{FaceSource, NewBody, RewriteError, rewrite_project};

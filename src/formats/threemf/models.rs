@@ -25,6 +25,8 @@ const PLACEMENTS_MAX: u64 = 1_000_000;
 pub(super) struct Placement {
     /// Number of the model and of the object in it.
     pub(super) object: [usize; 2],
+    /// Number of the build item.
+    pub(super) item: usize,
     pub(super) transform: Transform,
     pub(super) purpose: Purpose,
 }
@@ -114,7 +116,7 @@ impl Models {
     /// Follows the build down to the meshes.
     fn place(&mut self, numbers: &FxHashMap<String, usize>, budget: &Budget) -> Result<(), ReadError> {
         let mut placements = Vec::new();
-        let mut steps = 0_u64;
+        let (mut steps, mut items) = (0_u64, 0);
         // Objects on the way from the build, each with the references that are still to be followed.
         let mut way: Vec<(usize, &[Reference], Transform, [usize; 2])> = Vec::new();
         let mut remarks = Vec::new();
@@ -128,6 +130,8 @@ impl Models {
                 continue;
             };
             *references = rest;
+            let is_item = way.len() == 1;
+            items += usize::from(is_item);
             budget.spend(1)?;
             steps += 1;
             if steps > PLACEMENTS_MAX {
@@ -154,11 +158,11 @@ impl Models {
                     let component = way.get(2).map_or(reference.object, |&(.., object)| id(object));
                     let noted = way.get(1).and_then(|&(.., item)| self.purposes.get(&[id(item), component]));
                     let purpose = noted.copied().unwrap_or(Purpose::Material);
-                    placements.push(Placement { object: target, transform, purpose });
+                    placements.push(Placement { object: target, item: items - 1, transform, purpose });
                 }
                 Content::Nothing => {}
             }
-            if way.len() == 1 && object.kind == ObjectKind::Other {
+            if is_item && object.kind == ObjectKind::Other {
                 let text = format!(
                     "The file breaks a rule of 3MF: the build has the object {} of the type other.",
                     object.id

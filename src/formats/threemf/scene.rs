@@ -10,13 +10,15 @@ use crate::budget::{Budget, CHECK_EVERY, Charge};
 use crate::formats::colors::note_color;
 use crate::formats::{Precision, ReadError, ReadOptions};
 use crate::geom::DVec3;
-use crate::mesh::{Color, FaceFault, Soup};
+use crate::mesh::{Color, FaceFault, NAME_BYTES_MAX, OBJECTS_MAX, ObjectName, Objects, Soup};
 
 /// An object at its place in the scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Placed {
     /// Number of its model part and its own number there, as of [`Body`](super::Body).
     pub source: [usize; 2],
+    /// Number of the build item that it belongs to.
+    pub item: usize,
     /// Number of its first vertex in the scene.
     pub first_vertex: u32,
     /// Number of its first triangle in the scene.
@@ -47,9 +49,22 @@ pub(super) enum Extent {
     Everything,
     /// Those that are printed.
     Material,
+    /// Those that are taken away from what is printed.
+    Negative,
 }
 
-/// All placements in one mesh, in the order of the build.
+impl Extent {
+    /// True when it has parts for `purpose`.
+    fn has(self, purpose: Purpose) -> bool {
+        match self {
+            Self::Everything => true,
+            Self::Material => purpose == Purpose::Material,
+            Self::Negative => purpose == Purpose::Negative,
+        }
+    }
+}
+
+/// All placements in one mesh, in the order of the build. Each is an object of it, and so is each volume.
 pub(super) fn assemble(
     models: &Models,
     extent: Extent,
@@ -59,7 +74,8 @@ pub(super) fn assemble(
     let mut placed = Vec::new();
     let units = models.all.first().map(|model| model.units);
     let soup = Soup { units, is_f32_exact: true, ..Soup::default() };
-    let mut scene = Scene { soup, is_faulty: false, means: 0, charges: Vec::new(), options, budget };
+    let objects = Objects::default();
+    let mut scene = Scene { soup, objects, is_faulty: false, means: 0, charges: Vec::new(), options, budget };
     let of_object = by_object(&models.volumes);
     for placement in &models.placements {
         let [m, o] = placement.object;
@@ -70,36 +86,49 @@ pub(super) fn assemble(
         if !is_printed {
             continue;
         }
-        if let (Extent::Material, Some(name)) = (extent, placement.purpose.left_out_as()) {
-            scene.leave_out(name);
+        let color = |face: usize| model.color_of_face(object, &mesh.attributes, face);
+        let volumes = of_object.get(&object.id).filter(|_| m == 0).map(Vec::as_slice).unwrap_or_default();
+        let has_volumes = are_all(volumes, mesh.soup.face_count);
+        let is_apart = extent != Extent::Everything
+            && volumes.iter().any(|volume| volume.purpose != Purpose::Material)
+            && has_volumes;
+        if !extent.has(placement.purpose) && !is_apart {
+            scene.leave_out(placement.purpose);
             continue;
         }
         placed.push(Placed {
             source: placement.object,
+            item: placement.item,
             first_vertex: scene.soup.positions.len() as u32,
             first_triangle: scene.soup.triangles.len() as u32,
             first_face: scene.soup.face_count,
             transform: placement.transform,
         });
-        let color = |face: usize| model.color_of_face(object, &mesh.attributes, face);
-        let volumes = of_object.get(&object.id).filter(|_| m == 0).map(Vec::as_slice).unwrap_or_default();
-        let is_apart = extent == Extent::Material
-            && volumes.iter().any(|volume| volume.purpose != Purpose::Material)
-            && are_all(volumes, mesh.soup.face_count);
         if !is_apart {
+            let first = scene.soup.face_count;
             scene.put(&mesh.soup, &placement.transform, color)?;
+            for volume in volumes.iter().filter(|_| has_volumes) {
+                scene.name_faces(first + volume.triangles.end, &object.name, &volume.name)?;
+            }
+            scene.name_faces(scene.soup.face_count, &object.name, "")?;
             continue;
         }
         for volume in volumes {
-            if let Some(name) = volume.purpose.left_out_as() {
-                scene.leave_out(name);
+            if !extent.has(volume.purpose) {
+                scene.leave_out(volume.purpose);
                 continue;
             }
             let (soup, _) = volume_of(&mesh.soup, &mesh.attributes, volume);
             scene.put(&soup, &placement.transform, |face| color(volume.triangles.start as usize + face))?;
+            scene.name_faces(scene.soup.face_count, &object.name, &volume.name)?;
         }
     }
-    let Scene { mut soup, is_faulty, means, .. } = scene;
+    let Scene { mut soup, objects, is_faulty, means, .. } = scene;
+    match objects.names.len() {
+        1 if objects.names[0] == ObjectName::default() => {}
+        0..=OBJECTS_MAX => soup.objects = objects,
+        count => soup.left_out.push(("objects", count as u64)),
+    }
     if !soup.face_colors.is_empty() {
         soup.face_colors.resize(soup.face_count as usize, None);
     }
@@ -116,6 +145,7 @@ pub(super) fn assemble(
 /// A mesh to which others are added.
 struct Scene<'s> {
     soup: Soup,
+    objects: Objects,
     /// Some face has no triangle.
     is_faulty: bool,
     /// Faces whose colour is the mean of those of their corners.
@@ -126,12 +156,30 @@ struct Scene<'s> {
 }
 
 impl Scene<'_> {
-    /// Counts a part that is left out.
-    fn leave_out(&mut self, name: &'static str) {
+    /// Counts a part that is left out, unless it is material.
+    fn leave_out(&mut self, purpose: Purpose) {
+        let Some(name) = purpose.left_out_as() else { return };
         match self.soup.left_out.iter_mut().find(|(known, _)| *known == name) {
             Some((_, count)) => *count += 1,
             None => self.soup.left_out.push((name, 1)),
         }
+    }
+
+    /// The faces before number `end` that have no object yet are one of these names.
+    fn name_faces(&mut self, end: u32, object: &str, group: &str) -> Result<(), ReadError> {
+        let Objects { names, of_face } = &mut self.objects;
+        let count = (end as usize).saturating_sub(of_face.len());
+        if count == 0 {
+            return Ok(());
+        }
+        let usable =
+            |name: &str| if name.len() > NAME_BYTES_MAX { Vec::new() } else { name.as_bytes().to_vec() };
+        let name = ObjectName { object: usable(object), group: usable(group) };
+        let bytes = size_of::<ObjectName>() + name.object.len() + name.group.len() + 4 * count;
+        self.charges.push(self.budget.charge(bytes as u64)?);
+        of_face.resize(end as usize, names.len() as u32);
+        names.push(name);
+        Ok(())
     }
 
     /// Adds `soup` at its place; `color`: that of each of its faces, and whether it is a mean.

@@ -8,6 +8,7 @@ use crate::formats::Encoding;
 use crate::geom::print_pitch;
 use crate::pipeline::fidelity::{Fidelity, LOST_BEYOND, Original, defined_volume};
 use crate::pipeline::input::Input;
+use crate::pipeline::looks;
 use crate::pipeline::output::Candidate;
 use crate::pipeline::plan::{Attempt, Variant};
 use crate::pipeline::rebuild::{self, NotRebuilt, Rebuilt};
@@ -300,7 +301,7 @@ impl Climb<'_> {
         if attempt.draft.triangles.is_empty() {
             return Ok(Judged::Not(Refusal::NothingToRepair));
         }
-        let soup = attempt.draft.to_soup(&self.input.soup);
+        let soup = looks::soup_of(&attempt.draft, &self.input.soup, self.budget)?;
         match Candidate::write(soup, self.input, self.encoding, Depth::FirstViolation, self.budget) {
             Ok(candidate) if candidate.certificate().is_printable() => {
                 Ok(Judged::Certified(Box::new(candidate)))

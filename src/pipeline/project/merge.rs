@@ -102,9 +102,12 @@ pub(super) fn left_out(project: &Project, encoding: Encoding) -> Vec<String> {
     let marks = count(&|body| body.attributes.others.iter().filter(|&&number| number != NO_NUMBER).count());
     let has_colors = !matches!(encoding.format(), Format::Obj | Format::Stl);
     let of_properties = if has_colors { "textures and materials" } else { "colours, textures and materials" };
+    // Others hold each part at its place as an object with its name.
+    let has_objects = matches!(encoding.format(), Format::Obj | Format::Glb | Format::Gltf);
+    let (names, further_places) = if has_objects { (0, 0) } else { (names, places.saturating_sub(1)) };
     let lost = [
         (names, format!("names of parts ({names})")),
-        (places.saturating_sub(1), format!("build items ({places})")),
+        (further_places, format!("build items ({places})")),
         (properties, format!("{of_properties} that {properties} triangles state")),
         (marks, format!("paint and other marks of {marks} triangles")),
         (1, "what it holds beside meshes, such as pictures, metadata and settings".to_owned()),

@@ -6,8 +6,10 @@
 mod drawn;
 mod merge;
 mod merged_analysis;
+mod negative;
 mod sources;
 
+pub(super) use self::negative::without_negative_parts;
 pub use self::sources::AttributeCounts;
 use self::sources::TakenOver;
 use super::bounds;

@@ -1,7 +1,6 @@
 //! The last rung: a surface rebuilt around what no local edit could make a solid.
 
 mod fewer;
-mod nearest;
 mod parts;
 
 use self::fewer::Fewer;
@@ -11,7 +10,7 @@ use super::output::{Candidate, NoCandidate};
 use super::plan::{Attempt, Variant};
 use super::repair_choices::Choices;
 use super::step::Step;
-use super::{Action, Answer, Failure, FillHoles, Options, Outcome, Refusal, Report};
+use super::{Action, Answer, Failure, FillHoles, Options, Outcome, Refusal, Report, looks};
 use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{AsStopped, Budget, Stage, Stopped};
 use crate::certificate::Depth;
@@ -185,7 +184,7 @@ impl Search<'_> {
         })?;
         let volume = defined_volume(self.before);
         let original = Original::new(soup, volume, solid);
-        let looks = budget.stage(Stage::Repair, || nearest::Source::of(soup, budget))?;
+        let looks = budget.stage(Stage::Repair, || looks::Source::of(soup, budget))?;
         let asked = choices.cells.map(|cells| [(cells, f64::INFINITY)]);
         let mut lattices: &[(u32, f64)] = match &asked {
             Some(one) => one,
@@ -343,7 +342,7 @@ struct Rebuilding<'a> {
     /// The mesh of the input, where it is rebuilt.
     source: &'a Soup,
     /// What a new surface takes over.
-    looks: Option<&'a nearest::Source<'a>>,
+    looks: Option<&'a looks::Source<'a>>,
     encoding: Encoding,
     options: &'a Options,
     wrap_options: WrapOptions,

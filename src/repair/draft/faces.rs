@@ -118,7 +118,9 @@ impl Draft {
         if !soup.face_colors.is_empty() {
             soup.face_colors = first_of_face.iter().map(|&t| soup.face_colors[t]).collect();
         }
-        soup.materials = soup.materials.on(first_of_face.iter().map(|&t| Some(t as u32)));
+        let first_of_faces = || first_of_face.iter().map(|&t| Some(t as u32));
+        soup.materials = soup.materials.on(first_of_faces());
+        soup.objects = soup.objects.on(first_of_faces());
         soup.face_count = first_of_face.len() as u32;
         (soup.triangle_face, soup.polygons) = (triangle_face, polygons);
         Ok(made)

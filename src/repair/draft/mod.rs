@@ -161,10 +161,11 @@ impl Draft {
     }
 
     /// The draft as a soup to be written; `source` is the soup it was made from and gives the
-    /// colours, the texture coordinates and the materials. New faces have those of the nearest that are not.
+    /// colours, the texture coordinates, the materials and the objects. New faces have those of the nearest that are not.
     pub fn to_soup(&self, source: &Soup) -> Soup {
         let has_faces = !source.face_colors.is_empty() || !source.materials.is_empty();
-        let behind = if has_faces { self.triangles_behind() } else { Vec::new() };
+        let behind =
+            if has_faces || !source.objects.is_empty() { self.triangles_behind() } else { Vec::new() };
         let face_behind = |&t: &u32| (t != NEW).then(|| source.face_of(t));
         let color_of_face = |t: &u32| source.face_colors[face_behind(t)? as usize];
         let vertex_colors: Vec<Option<Color>> = match source.vertex_colors.is_empty() {
@@ -184,6 +185,7 @@ impl Draft {
             },
             texture: self.texture(&source.texture, source),
             materials: source.materials.on(behind.iter().map(face_behind)),
+            objects: source.objects.on(behind.iter().map(face_behind)),
             left_out: if at_seams > 0 { vec![("colors_at_seams", at_seams)] } else { Vec::new() },
             ..Soup::default()
         }

@@ -71,9 +71,10 @@ pub enum Search {
 const WORK_PER_TRIANGLE: u64 = 1024;
 const WORK_MIN: u64 = 1 << 26;
 
-/// What a pair of triangles counts, and what more it counts when they meet: then most signs are those of exact arithmetic.
+/// What a pair of triangles counts, what more it counts for each sign of exact arithmetic, and when they meet.
 const COST: u64 = 4;
-const COST_OF_CONTACT: u64 = 32;
+const COST_OF_EXACT_SIGN: u64 = 12;
+const COST_OF_CONTACT: u64 = 8;
 
 /// What a pair of triangles counts whose coordinates are so far apart that their signs are those of big integers.
 const COST_IN_BIG_INTEGERS: u64 = 2048;
