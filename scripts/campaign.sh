@@ -49,6 +49,7 @@ declare -A scripts=(
   [uploads]="uploads.py"
   [holes-bench]="holes.py"
   [hostile]="hostile.py"
+  [neighbours]="neighbours.py"
   [holes-speed]="holes_speed.py"
   [stores]="stores.py"
   [stores-cut]="stores.py --lines --cycles 100"

@@ -1,10 +1,10 @@
 //! Determinants of f64 coordinates without any rounding: the slow tiers behind the filters.
 //!
 //! Every finite f64 is an integer times a power of two. [`Span`] finds the bits that a set of coordinates uses, and
-//! the narrowest arithmetic that holds the determinant then evaluates it: 128-bit integers, floating-point expansions
-//! (Shewchuk 1997, crate `robust`), or big integers.
+//! the narrowest arithmetic that holds the determinant then evaluates it: small integers where differences are such
+//! ([`differences`]), 128-bit integers, floating-point expansions (Shewchuk 1997, crate `robust`), or big integers.
 
-use super::{DVec2, DVec3, Sign};
+use super::{DVec2, DVec3, Sign, differences};
 use num_bigint::BigInt;
 use std::cell::Cell;
 use std::ops::{Add, Mul, Sub};
@@ -106,9 +106,9 @@ thread_local! {
     static SIGNS: Cell<u64> = const { Cell::new(0) };
 }
 
-/// How many signs of determinants this thread has found without filters so far: such a sign takes many times as long as one that a
-/// filter gives, so that work is counted by them.
-pub fn exact_signs() -> u64 {
+/// How many signs of determinants this thread has found so far by wide numbers: such a sign takes many times as long as others, so
+/// that work is counted by them.
+pub fn wide_signs() -> u64 {
     SIGNS.get()
 }
 
@@ -121,6 +121,10 @@ const ORIENT3D_BITS_MAX: i32 = 40;
 /// Sign of `det(b - a, c - a)`, exact for all finite coordinates.
 #[cold]
 pub(super) fn orient2d(points: [DVec2; 3]) -> Sign {
+    differences::orient2d(points).unwrap_or_else(|| wide_orient2d(points))
+}
+
+pub(super) fn wide_orient2d(points: [DVec2; 3]) -> Sign {
     SIGNS.set(SIGNS.get() + 1);
     let span = Span::of(points.iter().flat_map(DVec2::to_array));
     if span.bits() <= ORIENT2D_BITS_MAX {
@@ -138,6 +142,10 @@ pub(super) fn orient2d(points: [DVec2; 3]) -> Sign {
 /// Sign of `det(b - a, c - a, d - a)`, exact for all finite coordinates.
 #[cold]
 pub(super) fn orient3d(points: [DVec3; 4]) -> Sign {
+    differences::orient3d(points).unwrap_or_else(|| wide_orient3d(points))
+}
+
+pub(super) fn wide_orient3d(points: [DVec3; 4]) -> Sign {
     SIGNS.set(SIGNS.get() + 1);
     let span = Span::of(points.iter().flat_map(DVec3::to_array));
     if span.bits() <= ORIENT3D_BITS_MAX {
@@ -208,12 +216,12 @@ mod tests {
         assert_eq!(Span::of([big, 1.0]).bits(), ORIENT3D_BITS_MAX);
         let signs = [[-1.0, -1.0, -1.0], [1.0, 1.0, -1.0], [1.0, -1.0, 1.0], [-1.0, 1.0, 1.0]];
         let [a, b, c, d] = signs.map(|s| DVec3::from_array(s) * big);
-        assert_eq!(orient3d([a, b, c, d]), Sign::Negative);
-        assert_eq!(orient3d([a, c, b, d]), Sign::Positive);
+        assert_eq!(wide_orient3d([a, b, c, d]), Sign::Negative);
+        assert_eq!(wide_orient3d([a, c, b, d]), Sign::Positive);
         let side = f64::from_bits((2f64.powi(62)).to_bits() - 1);
         assert_eq!(Span::of([side, 1.0]).bits(), ORIENT2D_BITS_MAX);
         let [a, b, c] = [DVec2::new(-side, -side), DVec2::new(side, -side), DVec2::new(-side, side)];
-        assert_eq!(orient2d([a, b, c]), Sign::Positive);
-        assert_eq!(orient2d([b, a, c]), Sign::Negative);
+        assert_eq!(wide_orient2d([a, b, c]), Sign::Positive);
+        assert_eq!(wide_orient2d([b, a, c]), Sign::Negative);
     }
 }

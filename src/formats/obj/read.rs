@@ -108,9 +108,11 @@ fn join(
     let mut materials = MaterialsOfFile::default();
     let _charged = budget.charge(if total.materials > 0 { 4 * total.faces } else { 0 })?;
     let mut objects = ObjectsOfFile::default();
+    // An object that is kept has a face.
     const PER_OBJECT: u64 = 128;
-    let of_objects = if total.objects > 0 { 4 * total.faces + PER_OBJECT * total.objects } else { 0 };
-    let _charged = budget.charge(of_objects)?;
+    let objects_max = total.objects.min(total.faces);
+    let _charged =
+        budget.charge(if total.objects > 0 { 4 * total.faces + PER_OBJECT * objects_max } else { 0 })?;
     let has_colors = parts.iter().any(|part| !part.colors.is_empty());
     let mut vertex_colors: Vec<Option<Color>> = Vec::new();
     for part in parts {

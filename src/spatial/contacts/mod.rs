@@ -71,10 +71,10 @@ pub enum Search {
 const WORK_PER_TRIANGLE: u64 = 1024;
 const WORK_MIN: u64 = 1 << 26;
 
-/// What a pair of triangles counts, what more it counts for each sign of exact arithmetic, and when they meet.
+/// What a pair of triangles counts, what more it counts for each sign by wide numbers, and when they meet.
 const COST: u64 = 4;
-const COST_OF_EXACT_SIGN: u64 = 12;
-const COST_OF_CONTACT: u64 = 8;
+const COST_OF_WIDE_SIGN: u64 = 6;
+const COST_OF_CONTACT: u64 = 16;
 
 /// What a pair of triangles counts whose coordinates are so far apart that their signs are those of big integers.
 const COST_IN_BIG_INTEGERS: u64 = 2048;

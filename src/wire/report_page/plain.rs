@@ -139,7 +139,7 @@ pub(super) fn fidelity(word: &str, is_combined: bool) -> &'static str {
 pub(super) fn step(code: &str) -> String {
     let told = match code {
         "take-usable" => "What programs cannot use was left out.",
-        "taken_over" => "New faces have the colours and materials of those beside them.",
+        "taken_over" => "New faces have the colours, texture and materials of those beside them.",
         "left_out" => "What the new file cannot hold was left out.",
         "split-polygons" => "Faces that programs read differently were split into triangles.",
         "join-over-noise" => "Points that only rounding kept apart were made one.",
