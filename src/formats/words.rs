@@ -122,6 +122,16 @@ impl<'a> Words<'a> {
         rest
     }
 
+    /// The rest of this line without blanks around it and without the backslash that joins the next line to it; stays where it is,
+    /// so that [`next_line`](Self::next_line) skips lines that are joined.
+    pub(super) fn name_in_line(&self) -> &'a [u8] {
+        let end = line_end(self.bytes, self.at);
+        let rest = &self.bytes[self.at..end];
+        let is_continued = self.dialect.continued_lines && end < self.bytes.len();
+        let rest = if is_continued { rest.strip_suffix(b"\\").unwrap_or(rest) } else { rest };
+        rest.trim_ascii()
+    }
+
     fn step_over_line_break(&mut self) -> bool {
         let width = match self.remaining() {
             [b'\r', b'\n', ..] => 2,

@@ -43,10 +43,10 @@ fn differences<const N: usize>(origin: f64, values: [f64; N]) -> Option<[i64; N]
         let kept = x + subtracted;
         (subtracted - origin) + (value - kept) != 0.0
     };
-    let largest = rounded.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
-    if largest == 0.0 {
+    if rounded == [0.0; N] {
         return Some([0; N]);
     }
+    let largest = rounded.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
     let exponent = largest.to_bits() >> 52;
     // Neither infinite nor so small that the unit of the largest is no normal number.
     if !(BITS..2047).contains(&exponent) || values.into_iter().zip(rounded).any(is_rounded) {
@@ -55,7 +55,9 @@ fn differences<const N: usize>(origin: f64, values: [f64; N]) -> Option<[i64; N]
     let scale = f64::from_bits((2 * 1023 + BITS - 1 - exponent) << 52);
     let scaled = rounded.map(|x| x * scale);
     let integers = scaled.map(|x| x as i64);
-    integers.iter().zip(scaled).all(|(&i, x)| i as f64 == x).then_some(integers)
+    // What is so small beside the largest that it vanishes is no integer either.
+    let is_whole = |k: usize| integers[k] as f64 == scaled[k] && (integers[k] == 0) == (rounded[k] == 0.0);
+    (0..N).all(is_whole).then_some(integers)
 }
 
 #[cfg(test)]
@@ -97,6 +99,21 @@ mod tests {
     }
 
     #[test]
+    fn what_vanishes_beside_large_numbers_counts() {
+        let tiny = f64::from_bits(1);
+        let far = DVec2::splat(2f64.powi(31));
+        let near = DVec2::new(tiny, 2.0 * tiny);
+        assert_eq!(exact::orient2d([DVec2::ZERO, far, near]), Sign::Positive);
+        assert_eq!(exact::orient2d([DVec2::ZERO, near, far]), Sign::Negative);
+        let far = DVec2::splat(2f64.powi(1000));
+        let near = DVec2::new(2f64.powi(-200), 2f64.powi(-200) * (1.0 + f64::EPSILON));
+        assert_eq!(exact::orient2d([DVec2::ZERO, far, near]), Sign::Positive);
+        let above = |p: DVec2| p.extend(0.0);
+        let points = [DVec3::ZERO, above(far), above(near), DVec3::Z];
+        assert_eq!(exact::orient3d(points), Sign::Positive);
+    }
+
+    #[test]
     fn differences_are_exact_or_none() {
         assert_eq!(differences(1.0, [1.0, 1.5, 0.75]), Some([0, 1 << 29, -(1 << 28)]));
         assert_eq!(differences(0.1, [0.1, 0.1]), Some([0, 0]));
@@ -111,6 +128,8 @@ mod tests {
         let tiny = f64::from_bits(1);
         assert_eq!(differences(0.0, [tiny]), None);
         assert_eq!(differences(f64::NAN, [1.0]), None);
+        assert_eq!(differences(0.0, [2f64.powi(31), tiny]), None);
+        assert_eq!(differences(0.0, [2f64.powi(1000), 2f64.powi(-200)]), None);
         let widest = f64::from((1u32 << 30) - 1);
         assert_eq!(differences(0.0, [widest, -widest]), Some([(1 << 30) - 1, 1 - (1 << 30)]));
     }

@@ -3,7 +3,7 @@
 /// In the place of the number of an object: the face belongs to none.
 pub const NO_OBJECT: u32 = u32::MAX;
 
-/// A file with more of them, each with a face, is read as if it had none.
+/// A file with more of them is read as if it had none.
 pub const OBJECTS_MAX: usize = 1 << 16;
 
 /// Longer names, in bytes, are taken as absent, so that a result is not much longer than its file.
@@ -31,6 +31,13 @@ impl Objects {
     /// True when no face has one.
     pub fn is_empty(&self) -> bool {
         self.of_face.is_empty()
+    }
+
+    /// How many have a face.
+    pub fn in_use(&self) -> u64 {
+        let mut is_used = vec![false; self.names.len()];
+        self.of_face.iter().filter(|&&object| object != NO_OBJECT).for_each(|&o| is_used[o as usize] = true);
+        is_used.into_iter().filter(|&is_used| is_used).count() as u64
     }
 
     /// The object of face `f`, if it has one.

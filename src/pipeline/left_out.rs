@@ -17,7 +17,7 @@ pub(super) fn left_out(
     let has_lost_all = colors[0].1 > 0;
     let lost = lost.iter().copied().filter(|&(name, _)| !(has_lost_all && name == "colors_at_seams"));
     let colors = colors.into_iter().filter(|&(_, count)| count > 0);
-    let objects = if after.objects.is_empty() { before.objects.names.len() as u64 } else { 0 };
+    let objects = if after.objects.is_empty() { before.objects.in_use() } else { 0 };
     let objects = (objects > 0).then_some(("objects", objects));
     let changes: Vec<_> = before.left_out.iter().copied().chain(lost).chain(objects).chain(colors).collect();
     if changes.is_empty() {

@@ -7,7 +7,7 @@ use crate::solids::cube;
 use meshmend::budget::Budget;
 use meshmend::formats::{Encoding, Format, ReadOptions, read, write};
 use meshmend::geom::DVec3;
-use meshmend::mesh::{NO_OBJECT, OBJECTS_MAX, ObjectName, Soup};
+use meshmend::mesh::{Materials, NO_OBJECT, OBJECTS_MAX, ObjectName, Objects, Soup};
 use meshmend::pipeline::{Answer, Operation, Options, Outcome, SimplifyChoices, run};
 use meshmend::simplify::Target;
 use serde_json::Value;
@@ -171,6 +171,19 @@ fn objects_that_the_output_does_not_hold_and_too_many_are_counted() {
     let many = soup_of(text.as_bytes(), Encoding::Obj);
     assert!(many.objects.is_empty());
     assert_eq!(many.left_out, [("objects", OBJECTS_MAX as u64 + 1)]);
+    // What a name of another format holds stays in its line.
+    let name = ObjectName { object: b"a\nf 1 2 3\r#\\".to_vec(), group: Vec::new() };
+    let mut one = soup_of(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", Encoding::Obj);
+    one.objects = Objects { names: vec![name], of_face: vec![0] };
+    one.materials =
+        Materials { names: vec![b"b\nf 3 2 1\\".to_vec()], of_face: vec![0], ..Materials::default() };
+    let text = String::from_utf8(write(&one, Encoding::Obj, &Budget::unlimited()).unwrap()).unwrap();
+    assert!(text.ends_with("o a_f 1 2 3_#_\nusemtl b_f 3 2 1_\nf 1 2 3\n"), "{text}");
+    // A backslash joins the next line, whoever counts.
+    let joined = "v 0 0 0\nv 1 0 0\ng C:\\dir\\\nv 9 9 9\nv 0 1 0\nusemtl a\\\nf 1 1 1\nf -3 -2 -1\n";
+    let soup = soup_of(joined.as_bytes(), Encoding::Obj);
+    assert_eq!((soup.positions.len(), &soup.triangles[..]), (3, &[[0, 1, 2]][..]));
+    assert_eq!(soup.objects.names[0].group, b"C:\\dir");
     // A long name is as none.
     let long = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\no {}\nf 1 2 3\n", "x".repeat(256));
     assert!(soup_of(long.as_bytes(), Encoding::Obj).objects.is_empty());

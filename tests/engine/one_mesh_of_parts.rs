@@ -105,7 +105,8 @@ fn other_formats_get_each_part_as_an_object_with_its_name() {
     // One part with volumes: their names are those of groups.
     let [ranges, _] = box_with_pocket(["ModelPart", "normal_part"]);
     let obj = soup_of(&run(Operation::Convert, &ranges, &options(Parts::Separate, Some(Format::Obj))));
-    assert!(obj.objects.of_face.is_empty() || obj.objects.names.len() == 2, "{:?}", obj.objects.names);
+    let groups: Vec<&[u8]> = obj.objects.names.iter().map(|name| &name.group[..]).collect();
+    assert_eq!((groups, &obj.objects.of_face[11..13]), (vec![&b""[..], b"pocket"], &[0, 1][..]));
     let one = file(&model(
         "",
         "<object id=\"1\"><mesh><vertices/><triangles/></mesh></object>",

@@ -583,7 +583,8 @@ pub(crate) fn box_with_pocket(purposes: [&str; 2]) -> [Vec<u8>; 2] {
     let [prusa, bambu] = purposes;
     let ranges = format!(
         "<config><object id=\"1\"><volume firstid=\"0\" lastid=\"11\"/><volume firstid=\"12\" lastid=\"23\">\
-         <metadata type=\"volume\" key=\"volume_type\" value=\"{prusa}\"/></volume></object></config>"
+         <metadata type=\"volume\" key=\"volume_type\" value=\"{prusa}\"/><metadata type=\"volume\" key=\"name\" \
+         value=\"pocket\"/></volume></object></config>"
     );
     let of_ranges = package(&[
         ("_rels/.rels", RELATIONSHIPS.as_bytes()),

@@ -37,8 +37,7 @@ pub(in crate::formats) fn read(
     let (placed, nodes_left_out) = placed_meshes(&root, budget)?;
     let meshes = read_meshes(&root, &placed, &accessors, &materials)?;
     let (mut raw, _charges) = Raw::with_room(&placed, &meshes, options, budget)?;
-    let names = object_names(&root, &placed)?;
-    let _charge = budget.charge(names.as_deref().map_or(0, bytes_of))?;
+    let (names, _charge) = object_names(&root, &placed, budget)?.unzip();
     for (object, place) in placed.iter().enumerate() {
         raw.add(&meshes[place.mesh], place.transform.as_ref(), &accessors, options.precision)?;
         if names.is_some() {
@@ -62,23 +61,23 @@ pub(in crate::formats) fn read(
 }
 
 /// The names of the nodes that place a mesh and of their meshes; `None` where one node without any name does, or too many.
-fn object_names(root: &Part<'_>, placed: &[Placed<'_>]) -> Result<Option<Vec<ObjectName>>, ReadError> {
+fn object_names<'b>(
+    root: &Part<'_>,
+    placed: &[Placed<'_>],
+    budget: &'b Budget,
+) -> Result<Option<(Vec<ObjectName>, Charge<'b>)>, ReadError> {
     if placed.len() > OBJECTS_MAX {
         return Ok(None);
     }
     let list = root.list("meshes")?;
     let usable = |name: &str| if name.len() > NAME_BYTES_MAX { Vec::new() } else { name.as_bytes().to_vec() };
-    let name = |place: &Placed<'_>| ObjectName {
-        object: usable(place.name),
-        group: usable(list.item(place.mesh).text("name").unwrap_or_default()),
-    };
+    let of_mesh = |place: &Placed<'_>| list.item(place.mesh).text("name").unwrap_or_default();
+    let bytes = |place: &Placed<'_>| size_of::<ObjectName>() + place.name.len() + of_mesh(place).len();
+    let charge = budget.charge(placed.iter().map(bytes).sum::<usize>() as u64)?;
+    let name = |place: &Placed<'_>| ObjectName { object: usable(place.name), group: usable(of_mesh(place)) };
     let names: Vec<ObjectName> = placed.iter().map(name).collect();
-    Ok((names.len() > 1 || names.iter().any(|name| *name != ObjectName::default())).then_some(names))
-}
-
-fn bytes_of(names: &[ObjectName]) -> u64 {
-    let bytes = |name: &ObjectName| size_of::<ObjectName>() + name.object.len() + name.group.len();
-    names.iter().map(bytes).sum::<usize>() as u64
+    let has_names = names.len() > 1 || names.iter().any(|name| *name != ObjectName::default());
+    Ok(has_names.then_some((names, charge)))
 }
 
 /// Extensions that a file may require: those that do not concern the shape, and those that are read or refused where a mesh

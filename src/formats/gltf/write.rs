@@ -18,6 +18,12 @@ const U8: u32 = 5121;
 const U32: u32 = 5125;
 const F32: u32 = 5126;
 
+/// About what a primitive and what it belongs to take in the document, as values and as text.
+const PER_PRIMITIVE: u64 = 6 << 10;
+
+/// Most bytes that one byte of a name takes in the document, as a value and as text.
+const ESCAPED: usize = 9;
+
 /// The triangles of `soup`, sorted by objects and by what they look like, with float32 positions and the colours, texture coordinates and
 /// materials that they have.
 pub(in crate::formats) fn write(
@@ -28,6 +34,10 @@ pub(in crate::formats) fn write(
     let looks = Looks::of(soup);
     let _charge = budget.charge((soup.triangles.len() * size_of::<u32>()) as u64)?;
     let triangles = looks.sorted(soup);
+    let primitives = triangles.chunk_by(|&a, &b| looks.primitive_of(soup, a) == looks.primitive_of(soup, b));
+    let of_names: usize =
+        soup.objects.names.iter().map(|name| ESCAPED * (name.object.len() + name.group.len())).sum();
+    let _charge = budget.charge(PER_PRIMITIVE * primitives.count() as u64 + of_names as u64)?;
     let (vertices, _charge) = Vertices::of(soup, &looks, &triangles, budget)?;
     let (mut file, _charge) = File::with_room(soup, &vertices, &looks, encoding, budget)?;
     if !soup.triangles.is_empty() {
@@ -113,7 +123,7 @@ impl Vertices {
             if object != object_of(t) {
                 object = object_of(t);
                 vertices.first_of_object.push(vertices.position.len() as u32);
-                numbers.clear();
+                numbers = FxHashMap::default();
             }
             let t = t as usize;
             let corners = soup.triangles[t];
@@ -248,11 +258,12 @@ impl File {
     ) -> Result<(), WriteError> {
         let color_bytes = vertices.color_bytes();
         let objects = vertices.of_objects(soup);
-        /// About what the members of an object take in the document.
-        const PER_OBJECT: u64 = 2048;
-        let _charge = budget.charge(4 * vertices.colors.len() as u64 + PER_OBJECT * objects.len() as u64)?;
+        let _charge = budget.charge(4 * vertices.colors.len() as u64)?;
         let mut attributes = Vec::with_capacity(objects.len());
-        for of_object in &objects {
+        let object_of = |t: u32| looks.primitive_of(soup, t).0;
+        let lists = triangles.chunk_by(|&a, &b| object_of(a) == object_of(b));
+        for (of_object, list) in objects.iter().zip(lists) {
+            let has_texture = list.iter().any(|&t| soup.texture.of_triangle(t as usize).is_some());
             let mut plain = Map::new();
             let positions = self.put_positions(soup, vertices, of_object, encoding, budget)?;
             plain.insert("POSITION".into(), positions.into());
@@ -261,7 +272,7 @@ impl File {
                 plain.insert("COLOR_0".into(), colors.into());
             }
             let mut textured = plain.clone();
-            if !vertices.points.is_empty() {
+            if has_texture {
                 let points = self.put_points(vertices, of_object, budget)?;
                 textured.insert("TEXCOORD_0".into(), points.into());
             }

@@ -5,7 +5,7 @@
 use crate::budget::Stopped;
 use crate::formats::decimals::Text;
 use crate::mesh::{Materials, NAME_BYTES_MAX, NO_MATERIAL};
-use rustc_hash::FxHashMap;
+use std::collections::HashMap;
 
 /// Materials of a part of a file.
 #[derive(Debug, Default)]
@@ -30,7 +30,8 @@ impl<'a> MaterialStatements<'a> {
 #[derive(Debug, Default)]
 pub(super) struct MaterialsOfFile<'a> {
     libraries: Vec<&'a [u8]>,
-    names: FxHashMap<&'a [u8], u32>,
+    /// Seeded, since the file chooses the names.
+    names: HashMap<&'a [u8], u32>,
     of_face: Vec<u32>,
     current: Option<u32>,
 }
@@ -71,8 +72,18 @@ impl<'a> MaterialsOfFile<'a> {
 pub(super) fn put_libraries(text: &mut Text<'_>, materials: &Materials) {
     for library in &materials.libraries {
         text.word("mtllib ");
-        text.bytes(library);
+        put_name(text, library);
         text.word("\n");
+    }
+}
+
+/// Writes a name, which may be one of a format whose names hold anything, so that it stays in its line: control characters and a
+/// backslash at the end become `_`.
+pub(super) fn put_name(text: &mut Text<'_>, name: &[u8]) {
+    let last = name.len().saturating_sub(1);
+    for (i, &byte) in name.iter().enumerate() {
+        let would_end_line = byte < b' ' || byte == 0x7f || (i == last && byte == b'\\');
+        text.bytes(if would_end_line { b"_" } else { std::slice::from_ref(&byte) });
     }
 }
 
@@ -100,7 +111,7 @@ impl MaterialWriter {
             text.before_item(self.changes, USE_BYTES_MAX)?;
             self.changes += 1;
             text.word("usemtl ");
-            text.bytes(material.map_or(NO_NAME, |m| &materials.names[m as usize]));
+            put_name(text, material.map_or(NO_NAME, |m| &materials.names[m as usize]));
             text.word("\n");
             self.current = material;
         }

@@ -21,7 +21,7 @@ pub fn color_faces(soup: &mut Soup, obj: &[u8], mtl: &[u8], budget: &Budget) -> 
     let mut statements = 0usize;
     while let Some(keyword) = words.next_word() {
         match keyword {
-            b"usemtl" => current = colors.get(&*String::from_utf8_lossy(words.rest_of_line())).copied(),
+            b"usemtl" => current = colors.get(&*String::from_utf8_lossy(words.name_in_line())).copied(),
             b"f" => face_colors.push(current),
             _ => {}
         }

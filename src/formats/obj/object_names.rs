@@ -2,10 +2,11 @@
 //!
 //! They say nothing of the shape, so nothing in them makes a file unreadable: what cannot be used is taken as absent.
 
+use super::material_names::put_name;
 use crate::budget::{Budget, Charge, Stopped};
 use crate::formats::decimals::Text;
 use crate::mesh::{NAME_BYTES_MAX, NO_OBJECT, OBJECTS_MAX, ObjectName, Objects, Soup};
-use rustc_hash::FxHashMap;
+use std::collections::HashMap;
 
 /// What `o` and `g` say, each until it comes again.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
@@ -48,7 +49,8 @@ fn usable(name: &[u8]) -> &[u8] {
 /// The objects of a whole file, part by part.
 #[derive(Debug, Default)]
 pub(super) struct ObjectsOfFile<'a> {
-    numbers: FxHashMap<Names<'a>, u32>,
+    /// Seeded, since the file chooses the names.
+    numbers: HashMap<Names<'a>, u32>,
     of_face: Vec<u32>,
     current: Names<'a>,
 }
@@ -76,18 +78,20 @@ impl<'a> ObjectsOfFile<'a> {
     }
 
     /// The objects, and how many there are beside them: all, if there are too many.
-    pub(super) fn into_objects(self) -> (Objects, u64) {
+    pub(super) fn into_objects(self, budget: &Budget) -> Result<(Objects, u64), Stopped> {
         let count = self.numbers.len();
         if count == 0 || count > OBJECTS_MAX {
-            return (Objects::default(), count as u64);
+            return Ok((Objects::default(), count as u64));
         }
+        let bytes = |names: &Names<'_>| names.object.len() + names.group.len();
+        let _charge = budget.charge(self.numbers.keys().map(bytes).sum::<usize>() as u64)?;
         let mut names: Vec<(u32, Names<'_>)> =
             self.numbers.into_iter().map(|(names, number)| (number, names)).collect();
         names.sort_unstable_by_key(|&(number, _)| number);
         let name =
             |names: Names<'_>| ObjectName { object: names.object.to_vec(), group: names.group.to_vec() };
         let names = names.into_iter().map(|(_, names)| name(names)).collect();
-        (Objects { names, of_face: self.of_face }, 0)
+        Ok((Objects { names, of_face: self.of_face }, 0))
     }
 }
 
@@ -153,7 +157,7 @@ impl<'s> ObjectWriter<'s> {
                 text.word(word);
                 if !name.is_empty() {
                     text.word(" ");
-                    text.bytes(name);
+                    put_name(text, name);
                 }
                 text.word("\n");
             }

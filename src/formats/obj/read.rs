@@ -138,7 +138,7 @@ fn join(
     let soup = faces.into_soup(positions, &options.limits, budget)?;
     let texture = if has_texture { texture.into_texture(&soup, budget)? } else { Texture::default() };
     let (places, materials) = (Places { face_lines, vertex_lines }, materials.into_materials());
-    let (objects, objects_left_out) = objects.into_objects();
+    let (objects, objects_left_out) = objects.into_objects(budget)?;
     let left_out = if objects_left_out > 0 { vec![("objects", objects_left_out)] } else { Vec::new() };
     Ok(Soup { places, vertex_colors, texture, materials, objects, segments, left_out, ..soup })
 }

@@ -164,10 +164,10 @@ impl<'a> Statements<'a> {
                     }
                 }
                 b"l" => read.read_line(&mut words, before.vertices as i64 + read.positions.len() as i64),
-                b"usemtl" => read.materials.use_from(read.faces.len() as u32, words.rest_of_line()),
-                b"o" => read.objects.object_from(read.faces.len() as u32, words.rest_of_line()),
-                b"g" => read.objects.group_from(read.faces.len() as u32, words.rest_of_line()),
-                b"mtllib" => read.materials.libraries.push(words.rest_of_line()),
+                b"usemtl" => read.materials.use_from(read.faces.len() as u32, words.name_in_line()),
+                b"o" => read.objects.object_from(read.faces.len() as u32, words.name_in_line()),
+                b"g" => read.objects.group_from(read.faces.len() as u32, words.name_in_line()),
+                b"mtllib" => read.materials.libraries.push(words.name_in_line()),
                 b"vt" if has_texture => read.texture.points.push(read_texture_point(&mut words)),
                 _ => {}
             }

@@ -30,25 +30,21 @@ pub fn read_negative_parts(
     if negative.soup.triangles.is_empty() {
         return Ok(None);
     }
-    let material = boxes_of_items(&assemble(&models, Extent::Material, options, budget)?);
+    let material = boxes(&assemble(&models, Extent::Material, options, budget)?);
     let meets_other = |&(item, bounds): &(usize, Aabb)| {
         material.iter().any(|&(other, of_other)| item != other && bounds.meets(of_other))
     };
-    let reach_other_items = boxes_of_items(&negative).iter().any(meets_other);
+    let reach_other_items = boxes(&negative).iter().any(meets_other);
     Ok(Some(NegativeParts { soup: negative.soup, reach_other_items }))
 }
 
-/// The build items that have points, each with the box of these.
-fn boxes_of_items(Assembled { soup, placed }: &Assembled) -> Vec<(usize, Aabb)> {
+/// The boxes of all parts that have points, each with the number of its build item.
+fn boxes(Assembled { soup, placed }: &Assembled) -> Vec<(usize, Aabb)> {
     let mut boxes: Vec<(usize, Aabb)> = Vec::new();
     let ends = placed.iter().skip(1).map(|placed| placed.first_vertex as usize).chain([soup.positions.len()]);
     for (of, end) in placed.iter().zip(ends) {
         let points = soup.positions[of.first_vertex as usize..end].iter().copied();
-        let bounds = Aabb::of(points.filter(|p| p.is_finite()));
-        match boxes.last_mut() {
-            Some((item, all)) if *item == of.item => *all = all.union(bounds),
-            _ => boxes.push((of.item, bounds)),
-        }
+        boxes.push((of.item, Aabb::of(points.filter(|p| p.is_finite()))));
     }
     boxes.retain(|(_, bounds)| !bounds.is_empty());
     boxes

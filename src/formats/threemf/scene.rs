@@ -90,6 +90,7 @@ pub(super) fn assemble(
         let volumes = of_object.get(&object.id).filter(|_| m == 0).map(Vec::as_slice).unwrap_or_default();
         let has_volumes = are_all(volumes, mesh.soup.face_count);
         let is_apart = extent != Extent::Everything
+            && placement.purpose == Purpose::Material
             && volumes.iter().any(|volume| volume.purpose != Purpose::Material)
             && has_volumes;
         if !extent.has(placement.purpose) && !is_apart {

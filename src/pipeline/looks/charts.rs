@@ -12,6 +12,9 @@ const NO_CHART: u32 = u32::MAX;
 /// a chart that is closed around a body meets itself.
 const STRETCH_MAX: f64 = 4.0;
 
+/// So many triangles at one edge are compared with each: surfaces that lie on each other have some there.
+const SHEETS_MAX: usize = 8;
+
 /// How often the way from the middle of a triangle to a corner behind a seam is halved.
 const HALVINGS: usize = 6;
 
@@ -48,7 +51,10 @@ impl<'s> Charts<'s> {
     /// # Errors
     /// When the budget stops the run.
     pub(super) fn of(soup: &'s Soup, budget: &Budget) -> Result<Self, Stopped> {
-        let count = if soup.texture.is_empty() { 0 } else { soup.triangles.len() };
+        let count = soup.triangles.len();
+        if soup.texture.is_empty() {
+            return Ok(Self { soup, of_triangle: Vec::new() });
+        }
         let mut charts = UnionFind::new(count);
         let groups = coincident_f64(&soup.positions, budget)?;
         let (mut edges, _charge) = budget.vec::<([u32; 2], u32)>(3 * count)?;
@@ -70,12 +76,12 @@ impl<'s> Charts<'s> {
             ends.sort_unstable();
             (ends, soup.materials.of(soup.face_of(t as u32)))
         };
-        for (i, pair) in edges.windows(2).enumerate() {
+        for (i, &(edge, a)) in edges.iter().enumerate() {
             if i.is_multiple_of(CHECK_EVERY) {
                 budget.check()?;
             }
-            let [(edge, a), (next, b)] = [pair[0], pair[1]];
-            if edge == next && end_points(a) == end_points(b) {
+            let at_edge = edges[i + 1..].iter().take(SHEETS_MAX).take_while(|(other, _)| *other == edge);
+            for &(_, b) in at_edge.filter(|&&(_, b)| end_points(a) == end_points(b)) {
                 charts.unite(a / 3, b / 3);
             }
         }

@@ -101,6 +101,9 @@ impl<'s> Source<'s> {
         if self.soup.texture.is_empty() {
             return Ok(Vec::new());
         }
+        /// What is found, its points, and their table.
+        const PER_TRIANGLE: u64 = 192;
+        let _charge = budget.charge(PER_TRIANGLE * triangles.len() as u64)?;
         let found = par::try_map_ranges(triangles.len(), CHECK_EVERY, |range| {
             triangles[range]
                 .iter()

@@ -240,7 +240,7 @@ fn losses(reports: &[&Report]) -> Option<Losses> {
 }
 
 /// The worst of all parts, with every bound that one exceeds.
-fn fidelity(reports: &[&Report]) -> Option<FidelityVerdict> {
+pub(super) fn fidelity(reports: &[&Report]) -> Option<FidelityVerdict> {
     let all: Vec<&FidelityVerdict> = reports.iter().filter_map(|report| report.fidelity.as_ref()).collect();
     let rank = |word: Fidelity| match word {
         Fidelity::Exact => 0,
@@ -281,7 +281,7 @@ fn filling(reports: &[&Report]) -> Option<Filling> {
 }
 
 /// The one that changed most.
-fn outcome(reports: &[&Report], operation: Operation) -> Option<Outcome> {
+pub(super) fn outcome(reports: &[&Report], operation: Operation) -> Option<Outcome> {
     let rank = |outcome: Outcome| match outcome {
         Outcome::Identical => 0,
         Outcome::Converted => 1,
