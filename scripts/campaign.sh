@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Runs the tests of one campaign at their full counts and writes the table to docs/campaigns/NAME.md.
 #
-#   scripts/campaign.sh NAME     one of the names below
+#   scripts/campaign.sh NAME          one of the names below
+#   scripts/campaign.sh kill PART     part 1, 2, ... of a campaign of more cycles, each with random numbers of its own
 #
 # A campaign is a filter on test names; the tests print their figures as lines that begin with `| `.
 set -euo pipefail
@@ -93,7 +94,7 @@ mkdir -p docs/campaigns target
 begin=$SECONDS
 result=passed
 read -ra place <<< "${places[$name]:---lib --tests}"
-MESHMEND_CAMPAIGN=1 cargo test --release --locked --no-fail-fast "${place[@]}" -- "$filter" --nocapture --test-threads=1 \
+MESHMEND_CAMPAIGN=${2:-1} cargo test --release --locked --no-fail-fast "${place[@]}" -- "$filter" --nocapture --test-threads=1 \
   2>&1 | tee "$log" || result=FAILED
 
 {

@@ -11,7 +11,7 @@ use serde_json::Value;
 use crate::meshes::{SOLID, long_job};
 use crate::processes::{all_children_of, children_of, until_gone};
 use crate::server::{Server, link, try_signal};
-use crate::support::cases;
+use crate::support::{campaign_part, cases};
 
 const SETTINGS: &[&str] = &["--slots", "2", "--lease", "2s", "--queue-max", "100000"];
 /// Pause of the client between a few requests and the next.
@@ -100,7 +100,7 @@ fn json(response: reqwest::Result<Response>) -> Option<Value> {
 #[test]
 fn a_server_killed_at_random_points_loses_no_accepted_job() {
     let cycles = cases(5, 500);
-    let mut dice = Dice(7);
+    let mut dice = Dice(6 + campaign_part());
     let mut account = Account::default();
     let mut server = Server::with(SETTINGS);
     let (mut server_kills, mut child_kills, mut processes_gone) = (0, 0, 0);

@@ -9,6 +9,11 @@ pub(crate) fn cases(small: usize, full: usize) -> usize {
     if std::env::var_os("MESHMEND_CAMPAIGN").is_some() { full } else { small }
 }
 
+/// Number of the part of a campaign that can be run in parts, from 1: the value of `MESHMEND_CAMPAIGN`.
+pub(crate) fn campaign_part() -> u64 {
+    std::env::var("MESHMEND_CAMPAIGN").ok().and_then(|part| part.parse().ok()).unwrap_or(1)
+}
+
 /// The corpus of real meshes, if it is there; otherwise says so and gives `None`, and the test has nothing to measure.
 #[allow(clippy::print_stderr, reason = "a test that measures nothing says so")]
 pub(crate) fn corpus() -> Option<PathBuf> {
