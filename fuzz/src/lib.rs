@@ -122,6 +122,30 @@ pub fn check_mesh(bytes: &[u8]) {
     }
 }
 
+/// Reads `bytes` as the JSON of a request, and as names and values of a query: no panic, and what is accepted becomes options of the
+/// engine. Run it with `cargo fuzz run --features requests read_request`.
+#[cfg(feature = "requests")]
+pub fn check_request(bytes: &[u8]) {
+    use meshmend::formats::ReadLimits;
+    use meshmend::wire::{JobRequest, Operation, Options};
+    let accept = |options: &Options| {
+        for &operation in Operation::ALL {
+            if options.check(operation).is_ok() {
+                let _ = options.to_engine(ReadLimits::default());
+            }
+        }
+    };
+    if let Ok(request) = JobRequest::from_json(bytes) {
+        accept(&request.options);
+    }
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let _ = JobRequest::labels_of_query(text);
+    let pairs = text.split('&').map(|pair| pair.split_once('=').unwrap_or((pair, "")));
+    if let Ok(options) = Options::from_pairs(pairs) {
+        accept(&options);
+    }
+}
+
 /// An OBJ of up to 512 triangles: the first byte says how far apart its coordinates are, the others are coordinates and corners.
 fn obj_of(bytes: &[u8]) -> Option<Vec<u8>> {
     let (&kind, rest) = bytes.split_first()?;

@@ -103,13 +103,21 @@ pub fn suits_expansions<'p>(points: impl IntoIterator<Item = &'p DVec3>) -> bool
 }
 
 thread_local! {
-    static SIGNS: Cell<u64> = const { Cell::new(0) };
+    static WORK: Cell<u64> = const { Cell::new(0) };
 }
 
-/// How many signs of determinants this thread has found so far by wide numbers: such a sign takes many times as long as others, so
-/// that work is counted by them.
-pub fn wide_signs() -> u64 {
-    SIGNS.get()
+/// Units of work that a sign takes by small integers, and by wider numbers.
+const SMALL_UNITS: u64 = 2;
+const WIDE_UNITS: u64 = 8;
+
+/// Units of work that this thread has spent on exact signs so far: whether a sign needs them is seen only when it is asked for, and such
+/// a sign takes many times as long as one that a filter gives.
+pub fn work_on_exact_signs() -> u64 {
+    WORK.get()
+}
+
+fn count(units: u64) {
+    WORK.set(WORK.get() + units);
 }
 
 /// Coordinates of at most 62 bits: differences fit 63 bits, products 126, the determinant 127, with its sign 128.
@@ -121,11 +129,12 @@ const ORIENT3D_BITS_MAX: i32 = 40;
 /// Sign of `det(b - a, c - a)`, exact for all finite coordinates.
 #[cold]
 pub(super) fn orient2d(points: [DVec2; 3]) -> Sign {
+    count(SMALL_UNITS);
     differences::orient2d(points).unwrap_or_else(|| wide_orient2d(points))
 }
 
 pub(super) fn wide_orient2d(points: [DVec2; 3]) -> Sign {
-    SIGNS.set(SIGNS.get() + 1);
+    count(WIDE_UNITS);
     let span = Span::of(points.iter().flat_map(DVec2::to_array));
     if span.bits() <= ORIENT2D_BITS_MAX {
         let [a, b, c] = points.map(|p| p.to_array().map(|x| span.to_i128(x)));
@@ -142,11 +151,12 @@ pub(super) fn wide_orient2d(points: [DVec2; 3]) -> Sign {
 /// Sign of `det(b - a, c - a, d - a)`, exact for all finite coordinates.
 #[cold]
 pub(super) fn orient3d(points: [DVec3; 4]) -> Sign {
+    count(SMALL_UNITS);
     differences::orient3d(points).unwrap_or_else(|| wide_orient3d(points))
 }
 
 pub(super) fn wide_orient3d(points: [DVec3; 4]) -> Sign {
-    SIGNS.set(SIGNS.get() + 1);
+    count(WIDE_UNITS);
     let span = Span::of(points.iter().flat_map(DVec3::to_array));
     if span.bits() <= ORIENT3D_BITS_MAX {
         let [a, b, c, d] = points.map(|p| p.to_array().map(|x| span.to_i128(x)));

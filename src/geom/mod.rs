@@ -17,7 +17,7 @@ mod volume;
 pub use closest::{closest_point_on_triangle, shares_of_corners};
 pub use directions::{Cone, arc_box, direction};
 pub(crate) use exact::Span;
-pub use exact::{suits_expansions, wide_signs};
+pub use exact::{suits_expansions, work_on_exact_signs};
 pub use glam::{DMat3, DVec2, DVec3};
 pub use pitch::{exponent_above, power_of_two, print_pitch};
 pub use predicates::{Plane, certain_turns, orient2d, orient3d};

@@ -117,11 +117,13 @@ impl<'m> NearestSearch<'m> {
             depth -= 1;
             let Place { gap, node: id, star } = stack[depth];
             if visited.is_multiple_of(CHECK_EVERY) {
-                budget.spend(if visited > 0 { BOX_UNITS * CHECK_EVERY as u64 } else { 0 })?;
+                let of_boxes = if visited > 0 { BOX_UNITS * CHECK_EVERY as u64 } else { 0 };
+                budget.spend(of_boxes + query.units_of_triangles())?;
             }
             if visited == boxes_max {
                 let (more, is_exact) = query.look_at_nearest(&stack[..=depth], boxes_max);
-                budget.spend(BOX_UNITS * (visited % CHECK_EVERY + more) as u64)?;
+                let of_boxes = BOX_UNITS * (visited % CHECK_EVERY + more) as u64;
+                budget.spend(of_boxes + query.units_of_triangles())?;
                 return Ok(Some(Found { nearest: query.best, is_exact, boxes: visited + more }));
             }
             visited += 1;
@@ -145,7 +147,7 @@ impl<'m> NearestSearch<'m> {
                 }
             }
         }
-        budget.spend(BOX_UNITS * (visited % CHECK_EVERY) as u64)?;
+        budget.spend(BOX_UNITS * (visited % CHECK_EVERY) as u64 + query.units_of_triangles())?;
         Ok(Some(Found { nearest: query.best, is_exact: true, boxes: visited }))
     }
 
@@ -162,8 +164,9 @@ impl<'m> NearestSearch<'m> {
     }
 }
 
-/// Units of work that a box counts.
+/// Units of work that a box counts, and a triangle.
 const BOX_UNITS: u64 = 2;
+const TRIANGLE_UNITS: u64 = 3;
 
 /// More than twice the relative error of a coordinate rounded to f32, and of the few f32 operations behind a gap.
 const ROUNDING_32: f32 = 1e-6;
@@ -192,15 +195,23 @@ struct Query<'q> {
     reach: f32,
     /// `p` as it is seen from the last star.
     sighting: Option<Sighting>,
+    /// Triangles whose distance was taken and that are not counted yet.
+    triangles: u64,
 }
 
 impl<'q> Query<'q> {
     fn new(search: &'q NearestSearch<'q>, p: DVec3, best: Nearest) -> Self {
         let place = search.bvh.frame().map(p);
         let blur = place.iter().fold(f32::MIN_POSITIVE, |most, x| most.max(x.abs())) * ROUNDING_32;
-        let mut query = Self { search, p, place, blur, best, reach: f32::INFINITY, sighting: None };
+        let mut query =
+            Self { search, p, place, blur, best, reach: f32::INFINITY, sighting: None, triangles: 0 };
         query.shrink();
         query
+    }
+
+    /// Units of work for the triangles since the last time.
+    fn units_of_triangles(&mut self) -> u64 {
+        TRIANGLE_UNITS * std::mem::take(&mut self.triangles)
     }
 
     fn shrink(&mut self) {
@@ -259,6 +270,7 @@ impl<'q> Query<'q> {
         let gaps = leaf.squared_gaps(self.place);
         for (k, &gap) in gaps.iter().enumerate().take(leaf.len()) {
             if gap <= self.reach {
+                self.triangles += 1;
                 let corners = leaf.corners(k).map(|v| self.search.positions[v as usize]);
                 let point = closest_point_on_triangle(self.p, corners);
                 let distance = point.distance(self.p);

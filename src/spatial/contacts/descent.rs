@@ -1,8 +1,8 @@
 //! Simultaneous descent of a tree with itself.
 
-use super::{COST_OF_CONTACT, COST_OF_WIDE_SIGN, Contact, Contacts, Gathered, Search, Surface};
+use super::{COST_OF_CONTACT, Contact, Contacts, Gathered, Search, Surface};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
-use crate::geom::{Plane, Shared, contact, wide_signs};
+use crate::geom::{Plane, Shared, contact, work_on_exact_signs};
 use crate::par;
 use crate::spatial::bvh::{Lanes, Leaf, Tree};
 use crate::spatial::pairs::{Pair, expand, tasks};
@@ -170,9 +170,9 @@ impl Descent<'_> {
         let plane = Plane::through(self.surface.points(corners).map(|p| *p));
         for j in meeting {
             self.count(self.surface.cost_of_pair(corners, y.corners(j)))?;
-            let signs_before = wide_signs();
+            let exact_before = work_on_exact_signs();
             let kind = contact(&plane, self.surface.points(y.corners(j)), Shared::by_pairs(pairs[j]));
-            self.count(COST_OF_WIDE_SIGN * (wide_signs() - signs_before))?;
+            self.count(work_on_exact_signs() - exact_before)?;
             if let Some(kind) = kind {
                 self.count(COST_OF_CONTACT)?;
                 let (a, b) = (x.id(i), y.id(j));

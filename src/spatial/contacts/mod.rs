@@ -71,9 +71,8 @@ pub enum Search {
 const WORK_PER_TRIANGLE: u64 = 1024;
 const WORK_MIN: u64 = 1 << 26;
 
-/// What a pair of triangles counts, what more it counts for each sign by wide numbers, and when they meet.
+/// What a pair of triangles counts beside its exact signs, and what more it counts when they meet.
 const COST: u64 = 4;
-const COST_OF_WIDE_SIGN: u64 = 6;
 const COST_OF_CONTACT: u64 = 16;
 
 /// What a pair of triangles counts whose coordinates are so far apart that their signs are those of big integers.
