@@ -112,6 +112,7 @@ const WIDE_UNITS: u64 = 8;
 
 /// Units of work that this thread has spent on exact signs so far: whether a sign needs them is seen only when it is asked for, and such
 /// a sign takes many times as long as one that a filter gives.
+#[inline]
 pub fn work_on_exact_signs() -> u64 {
     WORK.get()
 }

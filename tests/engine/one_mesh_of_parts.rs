@@ -3,7 +3,7 @@
 use crate::threemf::{box_with_pocket, cuboid, file, mesh, model, run};
 use meshmend::budget::Budget;
 use meshmend::formats::{Encoding, Format, ReadOptions, read};
-use meshmend::mesh::Soup;
+use meshmend::mesh::{NO_OBJECT, Soup};
 use meshmend::pipeline::{Answer, Operation, Options, Outcome, Parts};
 
 fn options(parts: Parts, output_format: Option<Format>) -> Options {
@@ -106,7 +106,7 @@ fn other_formats_get_each_part_as_an_object_with_its_name() {
     let [ranges, _] = box_with_pocket(["ModelPart", "normal_part"]);
     let obj = soup_of(&run(Operation::Convert, &ranges, &options(Parts::Separate, Some(Format::Obj))));
     let groups: Vec<&[u8]> = obj.objects.names.iter().map(|name| &name.group[..]).collect();
-    assert_eq!((groups, &obj.objects.of_face[11..13]), (vec![&b""[..], b"pocket"], &[0, 1][..]));
+    assert_eq!((groups, &obj.objects.of_face[11..13]), (vec![&b"pocket"[..]], &[NO_OBJECT, 0][..]));
     let one = file(&model(
         "",
         "<object id=\"1\"><mesh><vertices/><triangles/></mesh></object>",

@@ -169,12 +169,12 @@ impl Descent<'_> {
         }
         let plane = Plane::through(self.surface.points(corners).map(|p| *p));
         for j in meeting {
-            self.count(self.surface.cost_of_pair(corners, y.corners(j)))?;
+            let cost = self.surface.cost_of_pair(corners, y.corners(j));
             let exact_before = work_on_exact_signs();
             let kind = contact(&plane, self.surface.points(y.corners(j)), Shared::by_pairs(pairs[j]));
-            self.count(work_on_exact_signs() - exact_before)?;
+            let of_contact = if kind.is_some() { COST_OF_CONTACT } else { 0 };
+            self.count(cost + (work_on_exact_signs() - exact_before) + of_contact)?;
             if let Some(kind) = kind {
-                self.count(COST_OF_CONTACT)?;
                 let (a, b) = (x.id(i), y.id(j));
                 self.found.add(Contact { a: a.min(b), b: a.max(b), kind });
             }
