@@ -36,6 +36,9 @@ const WORK_PER_TRIANGLE: u64 = 512;
 /// And this much for any mesh.
 const WORK_MIN: u64 = 1 << 24;
 
+/// The search may use one such part of what is left of the bound of a run.
+const SHARE_OF_BOUND: u64 = 4;
+
 /// Beyond these sizes of a mesh squares of what is near leave the range of f64.
 const SIZES: std::ops::Range<f64> = 1e-100..1e100;
 
@@ -61,7 +64,8 @@ pub(super) fn search(cx: &Context<'_>, asked: NearSearch) -> Result<Option<NearP
         owned: &owned,
     };
     let work_max = (WORK_PER_TRIANGLE * ids.len() as u64).max(WORK_MIN);
-    near_pairs(input, |v, ends| is_face(mesh, v, ends), work_max, cx.budget)
+    let search = || near_pairs(input, |v, ends| is_face(mesh, v, ends), work_max, cx.budget);
+    Ok(cx.budget.within_part(SHARE_OF_BOUND, search)?.flatten())
 }
 
 /// How far the features of each vertex reach: epsilon, and at most half of its shortest edge.
