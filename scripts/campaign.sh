@@ -87,20 +87,23 @@ if [ -z "$filter" ]; then
   exit 2
 fi
 
+part=${2:-}
+[[ "$part" =~ ^([1-9][0-9]*)?$ ]] || { echo "PART is a number from 1 on, not $part" >&2; exit 2; }
+page=$name${part:+-$part}
 commit=$(git rev-parse --short HEAD)
 [ -z "$(git status --porcelain)" ] || commit="$commit with local changes"
-log=target/campaign-$name.log
+log=target/campaign-$page.log
 mkdir -p docs/campaigns target
 begin=$SECONDS
 result=passed
 read -ra place <<< "${places[$name]:---lib --tests}"
-MESHMEND_CAMPAIGN=${2:-1} cargo test --release --locked --no-fail-fast "${place[@]}" -- "$filter" --nocapture --test-threads=1 \
+MESHMEND_CAMPAIGN=${part:-1} cargo test --release --locked --no-fail-fast "${place[@]}" -- "$filter" --nocapture --test-threads=1 \
   2>&1 | tee "$log" || result=FAILED
 
 {
   echo "# Campaign \`$name\`"
   echo
-  echo "Made by \`scripts/campaign.sh $name\` at commit $commit: $result in $((SECONDS - begin)) s on $(nproc) cores."
+  echo "Made by \`scripts/campaign.sh $name${part:+ $part}\` at commit $commit: $result in $((SECONDS - begin)) s on $(nproc) cores."
   echo "Seeds are fixed in the tests."
   echo
   grep -h '^| ' "$log" || true
@@ -108,6 +111,6 @@ MESHMEND_CAMPAIGN=${2:-1} cargo test --release --locked --no-fail-fast "${place[
   echo '```'
   grep -hE '^test .* \.\.\. |^test result: .* [1-9][0-9]* passed|^test result: FAILED' "$log" | sed -E 's/; finished in .*//' || true
   echo '```'
-} > "docs/campaigns/$name.md"
-echo "wrote docs/campaigns/$name.md"
+} > "docs/campaigns/$page.md"
+echo "wrote docs/campaigns/$page.md"
 [ "$result" = passed ]

@@ -37,7 +37,7 @@ const WORK_PER_TRIANGLE: u64 = 512;
 const WORK_MIN: u64 = 1 << 24;
 
 /// The search may use one such part of what is left of the bound of a run.
-const SHARE_OF_BOUND: u64 = 4;
+const SHARE_OF_BOUND: u64 = 2;
 
 /// Beyond these sizes of a mesh squares of what is near leave the range of f64.
 const SIZES: std::ops::Range<f64> = 1e-100..1e100;

@@ -5,9 +5,9 @@ use crate::rebuild::rebuilding;
 use crate::repair::{answer, coarse, without};
 use crate::solids::cube;
 use meshmend::budget::Budget;
-use meshmend::formats::{Encoding, Format, ReadOptions, read, write};
+use meshmend::formats::{Encoding, Format, ReadOptions, color_faces, read, write};
 use meshmend::geom::DVec3;
-use meshmend::mesh::{Materials, NO_OBJECT, OBJECTS_MAX, ObjectName, Objects, Soup};
+use meshmend::mesh::{Color, Materials, NO_OBJECT, OBJECTS_MAX, ObjectName, Objects, Soup};
 use meshmend::pipeline::{Answer, Operation, Options, Outcome, SimplifyChoices, run};
 use meshmend::simplify::Target;
 use serde_json::Value;
@@ -184,6 +184,10 @@ fn objects_that_the_output_does_not_hold_and_too_many_are_counted() {
     let soup = soup_of(joined.as_bytes(), Encoding::Obj);
     assert_eq!((soup.positions.len(), &soup.triangles[..]), (3, &[[0, 1, 2]][..]));
     assert_eq!(soup.objects.names[0].group, b"C:\\dir");
+    let mut colored = soup;
+    let mtl = b"newmtl a\nKd 1 0 0\n";
+    color_faces(&mut colored, joined.as_bytes(), mtl, &Budget::unlimited()).unwrap();
+    assert_eq!(colored.face_colors, [Some(Color::Floats([1.0, 0.0, 0.0], None))]);
     // A long name is as none.
     let long = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\no {}\nf 1 2 3\n", "x".repeat(256));
     assert!(soup_of(long.as_bytes(), Encoding::Obj).objects.is_empty());

@@ -50,6 +50,17 @@ fn negative_parts_are_taken_away_where_parts_are_united() {
 
 /// Two cubes as build items, of which the first has a negative part from `low` to `high`.
 fn two_items(low: [f64; 3], high: [f64; 3]) -> Vec<u8> {
+    with_negative(cuboid(low, high))
+}
+
+/// The same with a negative part that lacks a triangle.
+fn open_negative() -> Vec<u8> {
+    let (points, mut triangles) = cuboid([5.0; 3], [15.0; 3]);
+    triangles.pop();
+    with_negative((points, triangles))
+}
+
+fn with_negative(negative: (Vec<[f64; 3]>, Vec<[u32; 3]>)) -> Vec<u8> {
     let part = |id: u32, (points, triangles): (Vec<[f64; 3]>, Vec<[u32; 3]>)| {
         format!(
             "<object id=\"{id}\" type=\"model\" name=\"part {id}\">{}</object>",
@@ -57,7 +68,7 @@ fn two_items(low: [f64; 3], high: [f64; 3]) -> Vec<u8> {
         )
     };
     let cube = || cuboid([0.0; 3], [10.0; 3]);
-    let objects = [part(1, cube()), part(2, cuboid(low, high)), part(4, cube())].concat()
+    let objects = [part(1, cube()), part(2, negative), part(4, cube())].concat()
         + "<object id=\"3\"><components><component objectid=\"1\"/><component objectid=\"2\"/></components></object>";
     let build = "<item objectid=\"3\"/><item objectid=\"4\" transform=\"1 0 0 0 1 0 0 0 1 20 0 0\"/>";
     let model = model("unit=\"millimeter\"", &objects, build);
@@ -81,6 +92,16 @@ fn a_negative_part_takes_nothing_from_items_that_it_does_not_belong_to() {
     // All that there is.
     let all = run(Operation::Repair, &two_items([-1.0; 3], [11.0; 3]), &options(Parts::Union, None));
     assert!((volume(&all) - 1000.0).abs() < 1e-6);
+    assert!(all.report.remarks.iter().all(|remark| !remark.contains("not taken away")));
+    // One that lacks a triangle is mended first, and the account says so.
+    let mended = run(Operation::Repair, &open_negative(), &options(Parts::Union, None));
+    assert!((volume(&mended) - 1875.0).abs() < 1e-6);
+    assert_eq!(mended.report.outcome, Some(Outcome::Repaired));
+    assert!(mended.report.actions.len() > near.report.actions.len(), "{:?}", mended.report.actions);
+    // What is no solid stays out of it.
+    let flat = two_items([5.0, 5.0, 5.0], [9.0, 9.0, 5.0]);
+    let kept = run(Operation::Repair, &flat, &options(Parts::Union, None));
+    assert!((volume(&kept) - 2000.0).abs() < 1e-6 || kept.report.refusal.is_some());
 }
 
 #[test]

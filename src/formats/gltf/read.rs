@@ -72,7 +72,8 @@ fn object_names<'b>(
     let list = root.list("meshes")?;
     let usable = |name: &str| if name.len() > NAME_BYTES_MAX { Vec::new() } else { name.as_bytes().to_vec() };
     let of_mesh = |place: &Placed<'_>| list.item(place.mesh).text("name").unwrap_or_default();
-    let bytes = |place: &Placed<'_>| size_of::<ObjectName>() + place.name.len() + of_mesh(place).len();
+    let kept = |name: &str| if name.len() > NAME_BYTES_MAX { 0 } else { name.len() };
+    let bytes = |place: &Placed<'_>| size_of::<ObjectName>() + kept(place.name) + kept(of_mesh(place));
     let charge = budget.charge(placed.iter().map(bytes).sum::<usize>() as u64)?;
     let name = |place: &Placed<'_>| ObjectName { object: usable(place.name), group: usable(of_mesh(place)) };
     let names: Vec<ObjectName> = placed.iter().map(name).collect();

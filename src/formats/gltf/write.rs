@@ -18,8 +18,9 @@ const U8: u32 = 5121;
 const U32: u32 = 5125;
 const F32: u32 = 5126;
 
-/// About what a primitive and what it belongs to take in the document, as values and as text.
-const PER_PRIMITIVE: u64 = 6 << 10;
+/// About what a primitive takes in the document, as values and as text, and what an object takes beside its primitives.
+const PER_PRIMITIVE: u64 = 1 << 10;
+const PER_OBJECT: u64 = 4 << 10;
 
 /// Most bytes that one byte of a name takes in the document, as a value and as text.
 const ESCAPED: usize = 9;
@@ -37,7 +38,8 @@ pub(in crate::formats) fn write(
     let primitives = triangles.chunk_by(|&a, &b| looks.primitive_of(soup, a) == looks.primitive_of(soup, b));
     let of_names: usize =
         soup.objects.names.iter().map(|name| ESCAPED * (name.object.len() + name.group.len())).sum();
-    let _charge = budget.charge(PER_PRIMITIVE * primitives.count() as u64 + of_names as u64)?;
+    let of_objects = PER_OBJECT * soup.objects.names.len() as u64 + of_names as u64;
+    let _charge = budget.charge(PER_PRIMITIVE * primitives.count() as u64 + of_objects)?;
     let (vertices, _charge) = Vertices::of(soup, &looks, &triangles, budget)?;
     let (mut file, _charge) = File::with_room(soup, &vertices, &looks, encoding, budget)?;
     if !soup.triangles.is_empty() {

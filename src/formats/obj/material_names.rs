@@ -77,12 +77,12 @@ pub(super) fn put_libraries(text: &mut Text<'_>, materials: &Materials) {
     }
 }
 
-/// Writes a name, which may be one of a format whose names hold anything, so that it stays in its line: control characters and a
+/// Writes a name, which may be one of a format whose names hold anything, so that it stays in its line: line breaks, zero bytes and a
 /// backslash at the end become `_`.
 pub(super) fn put_name(text: &mut Text<'_>, name: &[u8]) {
     let last = name.len().saturating_sub(1);
     for (i, &byte) in name.iter().enumerate() {
-        let would_end_line = byte < b' ' || byte == 0x7f || (i == last && byte == b'\\');
+        let would_end_line = matches!(byte, b'\n' | b'\r' | 0) || (i == last && byte == b'\\');
         text.bytes(if would_end_line { b"_" } else { std::slice::from_ref(&byte) });
     }
 }

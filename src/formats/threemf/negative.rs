@@ -30,11 +30,15 @@ pub fn read_negative_parts(
     if negative.soup.triangles.is_empty() {
         return Ok(None);
     }
-    let material = boxes(&assemble(&models, Extent::Material, options, budget)?);
-    let meets_other = |&(item, bounds): &(usize, Aabb)| {
-        material.iter().any(|&(other, of_other)| item != other && bounds.meets(of_other))
-    };
-    let reach_other_items = boxes(&negative).iter().any(meets_other);
+    let mut material = boxes(&assemble(&models, Extent::Material, options, budget)?);
+    material.sort_by(|(_, a), (_, b)| a.min.x.total_cmp(&b.min.x));
+    let mut reach_other_items = false;
+    for (item, bounds) in boxes(&negative) {
+        let begun = material.partition_point(|(_, of_other)| of_other.min.x <= bounds.max.x);
+        budget.spend(begun as u64)?;
+        reach_other_items |=
+            material[..begun].iter().any(|&(other, of_other)| item != other && bounds.meets(of_other));
+    }
     Ok(Some(NegativeParts { soup: negative.soup, reach_other_items }))
 }
 

@@ -6,8 +6,8 @@ use crate::formats::threemf::{NegativeParts, read_negative_parts};
 use crate::formats::{self, Encoding};
 use crate::pipeline::bounds::Bound;
 use crate::pipeline::{
-    Answer, Failure, Operation, Options, Outcome, Output, Parts, Report, Require, SetOperation,
-    SimplifyChoices, boolean, run_on_file,
+    Answer, Failure, Operation, Options, Outcome, Output, Parts, Refusal, Report, Require, SetOperation,
+    SimplifyChoices, boolean, demand_faithful, run_on_file,
 };
 
 /// The name under which one mesh leaves them out.
@@ -30,7 +30,9 @@ pub(in crate::pipeline) fn without_negative_parts(
         Ok(Some(cut)) => {
             let encoding = cut.answer.output.as_ref().map_or(Encoding::ThreeMf, |output| output.encoding);
             let remarks = merge::left_out(&super::read(bytes, options, budget)?, encoding);
-            return Ok(cut.after(answer, remarks));
+            let answer = cut.after(answer, remarks);
+            let must_be_faithful = options.require == Some(Require::Faithful);
+            return Ok(if must_be_faithful { demand_faithful(answer) } else { answer });
         }
         Err(NotCut::Because(why)) => why.to_owned(),
         Err(NotCut::Failed(failure @ Failure::Stopped(_))) => return Err(failure),
@@ -45,6 +47,8 @@ enum NotCut {
     Because(&'static str),
     Failed(Failure),
 }
+
+const OVER_BUDGET: NotCut = NotCut::Because("that takes more work than a file of this size may take");
 
 impl<E: Into<Failure>> From<E> for NotCut {
     fn from(error: E) -> Self {
@@ -96,8 +100,8 @@ fn take_away(
     let Some(output) = answer.output.as_ref().filter(|_| answer.report.refusal.is_none()) else {
         return Ok(None);
     };
-    let read = || read_negative_parts(bytes, &options.read, budget);
-    let Some(negative) = budget.stage(Stage::Read, read)? else { return Ok(None) };
+    let read = || Ok(read_negative_parts(bytes, &options.read, budget)?);
+    let Some(negative) = bound.reading(|| budget.stage(Stage::Read, read))? else { return Ok(None) };
     if !answer.levels.is_empty() {
         return Err(NotCut::Because("a simplification has several results"));
     }
@@ -135,6 +139,7 @@ fn take_away(
     };
     let answer = boolean::boolean(&both, &choices, bound, budget)?;
     match answer.report.refusal {
+        Some(Refusal::OverBudget { .. }) => Err(OVER_BUDGET),
         Some(_) => Err(NotCut::Because("the solid without it cannot be made")),
         None => Ok(Some(Cut { answer, negative: report })),
     }
@@ -147,7 +152,7 @@ fn mended(
     bound: &Bound<'_>,
     budget: &Budget,
 ) -> Result<(Vec<u8>, Report), NotCut> {
-    const NONE: NotCut = NotCut::Because("no valid solid can be made of it");
+    const NONE: NotCut = NotCut::Because("it is no valid solid and cannot be repaired");
     let write = || formats::write(&negative.soup, Encoding::ThreeMf, budget);
     let bytes = match budget.stage(Stage::Write, write) {
         Ok(bytes) => bytes,
@@ -156,6 +161,11 @@ fn mended(
     };
     let options = Options { units: None, require: Some(Require::Printable), ..options.clone() };
     let answer = run_on_file(Operation::Repair, &bytes, &options, bound, budget)?;
-    let Some(output) = answer.output.filter(|_| answer.report.refusal.is_none()) else { return Err(NONE) };
+    match answer.report.refusal {
+        Some(Refusal::OverBudget { .. }) => return Err(OVER_BUDGET),
+        Some(_) => return Err(NONE),
+        None => {}
+    }
+    let Some(output) = answer.output else { return Err(NONE) };
     Ok((output.bytes.unwrap_or(bytes), answer.report))
 }
