@@ -14,7 +14,7 @@ const SMALL_BYTES: u64 = 4 << 20;
 const LOOKING: u64 = 500_000_000;
 
 /// Units of work for a small file that is repaired.
-const REPAIRING: u64 = 2_500_000_000;
+const REPAIRING: u64 = 3_000_000_000;
 
 /// So many times as much when the caller asks for the finest lattices.
 const HIGH_EFFORT: u64 = 4;
