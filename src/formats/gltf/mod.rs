@@ -14,6 +14,7 @@ mod part;
 mod primitive;
 mod references;
 mod scene;
+mod vertices;
 
 pub(super) mod read;
 pub(super) mod write;

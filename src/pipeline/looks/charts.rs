@@ -89,7 +89,8 @@ impl<'s> Charts<'s> {
         Ok(Self { soup, of_triangle: (0..count).map(chart).collect() })
     }
 
-    /// Where a new triangle is in the chart that is nearest to its middle; `None` where the surface has none there. A corner beyond a seam has those of the last place before it on the way from the middle.
+    /// Where a new triangle is in the chart that is nearest to its middle; `None` where the surface has none there. A corner beyond
+    /// a seam has the coordinates of the last place before it on the way from the middle.
     ///
     /// # Errors
     /// When the budget stops the run.
