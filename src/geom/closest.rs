@@ -14,27 +14,60 @@ const SINE_MIN: f64 = 1e-10;
 ///
 /// Where `p` projects outside, the closest point is on an edge that separates the projection from the triangle
 /// (necessary condition of a nearest point of a convex set), so only those edges are looked at.
-pub fn closest_point_on_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
+pub fn closest_point_on_triangle(p: DVec3, corners: [DVec3; 3]) -> DVec3 {
+    closest_with_square(p, corners).0
+}
+
+/// As [`closest_point_on_triangle`], with the square of its distance.
+#[inline]
+pub(crate) fn closest_with_square(p: DVec3, [a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let normal = ab.cross(ac);
     let square = normal.length_squared();
+    let mut closest = Closest { to: p, point: DVec3::INFINITY, square: f64::INFINITY };
     if square <= SINE_MIN * SINE_MIN * ab.length_squared() * ac.length_squared() {
-        return closest_of([closest_on_edge(p, a, b), closest_on_edge(p, b, c), closest_on_edge(p, c, a)], p);
+        closest.first(on_edge(p, a, b));
+        closest.or(on_edge(p, b, c));
+        closest.or(on_edge(p, c, a));
+        return (closest.point, closest.square);
     }
     let of_c = normal.dot(ab.cross(ap));
     let of_b = normal.dot(ap.cross(ac));
     let of_a = normal.dot((c - b).cross(p - b));
     if of_a >= 0.0 && of_b >= 0.0 && of_c >= 0.0 {
         let sum = of_a + of_b + of_c;
-        return a + ab * (of_b / sum) + ac * (of_c / sum);
+        closest.first(a + ab * (of_b / sum) + ac * (of_c / sum));
+        return (closest.point, closest.square);
     }
-    let mut closest = DVec3::INFINITY;
     for (weight, from, to) in [(of_c, a, b), (of_a, b, c), (of_b, c, a)] {
         if weight < 0.0 {
-            closest = closest_of([closest, closest_on_edge(p, from, to), closest], p);
+            closest.or(on_edge(p, from, to));
         }
     }
-    closest
+    (closest.point, closest.square)
+}
+
+/// The closest of some points.
+struct Closest {
+    to: DVec3,
+    point: DVec3,
+    square: f64,
+}
+
+impl Closest {
+    #[inline]
+    fn first(&mut self, point: DVec3) {
+        (self.point, self.square) = (point, point.distance_squared(self.to));
+    }
+
+    /// Takes `point` where it is closer.
+    #[inline]
+    fn or(&mut self, point: DVec3) {
+        let square = point.distance_squared(self.to);
+        if square < self.square {
+            (self.point, self.square) = (point, square);
+        }
+    }
 }
 
 /// The shares of the corners of a triangle in the point `on` it: they are not negative and have the sum 1, and the mean of the
@@ -47,12 +80,8 @@ pub fn shares_of_corners(on: DVec3, [a, b, c]: [DVec3; 3]) -> Option<[f64; 3]> {
     (sum > 0.0 && sum.is_finite()).then(|| parts.map(|part| part / sum))
 }
 
-fn closest_of(points: [DVec3; 3], p: DVec3) -> DVec3 {
-    let nearer = |q: DVec3, r: DVec3| if r.distance_squared(p) < q.distance_squared(p) { r } else { q };
-    nearer(nearer(points[0], points[1]), points[2])
-}
-
-fn closest_on_edge(p: DVec3, from: DVec3, to: DVec3) -> DVec3 {
+#[inline]
+fn on_edge(p: DVec3, from: DVec3, to: DVec3) -> DVec3 {
     let along = to - from;
     let square = along.length_squared();
     let share = (p - from).dot(along) / square;

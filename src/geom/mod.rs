@@ -14,6 +14,7 @@ mod thinness;
 mod tri_tri;
 mod volume;
 
+pub(crate) use closest::closest_with_square;
 pub use closest::{closest_point_on_triangle, shares_of_corners};
 pub use directions::{Cone, arc_box, direction};
 pub(crate) use exact::Span;

@@ -20,9 +20,9 @@ const REPAIRING: u64 = 3_000_000_000;
 const HIGH_EFFORT: u64 = 4;
 
 /// Bytes for which each triangle counts at least: packed files, and files that place a mesh often, have fewer.
-const BYTES_OF_TRIANGLE: u64 = 16;
+const BYTES_OF_TRIANGLE: u64 = 5;
 
-/// Units of work that `operation` may use for files of so many `bytes` in all, where none of them has more than a triangle in 16
+/// Units of work that `operation` may use for files of so many `bytes` in all, where none of them has more than a triangle in 5
 /// bytes; `None`: no more than the caller says.
 pub fn work_units_max(operation: Operation, bytes: usize, options: &Options) -> Option<u64> {
     let of_small = match operation.facts().work {

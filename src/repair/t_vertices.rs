@@ -12,7 +12,7 @@
 
 use super::{Changes, Draft};
 use crate::budget::{Budget, Stopped};
-use crate::geom::{Aabb, are_collinear, is_on_segment};
+use crate::geom::{are_collinear, is_on_segment};
 use crate::mesh::{divide, edge_of, triangle_of};
 use crate::spatial::Bvh;
 
@@ -50,40 +50,47 @@ fn boundary_half_edges(draft: &Draft, budget: &Budget) -> Result<Vec<u32>, Stopp
     Ok(boundary.filter(is_proper).collect())
 }
 
+/// Units of work for a vertex that is compared with an edge.
+const COMPARING: u64 = 8;
+
 /// Boundary half-edges and the vertices inside them, by half-edge, then in its direction.
 fn vertices_inside(draft: &Draft, boundary: &[u32], budget: &Budget) -> Result<Vec<(u32, u32)>, Stopped> {
-    // An edge is searched as the triangle that is folded onto it.
-    let edges: Vec<[u32; 3]> =
-        boundary.iter().map(|&h| edge_of(&draft.triangles, h)).map(|[a, b]| [a, b, b]).collect();
-    let bvh = Bvh::build(&draft.positions, &edges, None, budget)?;
-    let mut vertices: Vec<u32> = edges.iter().flat_map(|&[a, b, _]| [a, b]).collect();
+    let edges: Vec<[u32; 2]> = boundary.iter().map(|&h| edge_of(&draft.triangles, h)).collect();
+    let mut vertices: Vec<u32> = edges.as_flattened().to_vec();
     vertices.sort_unstable();
     vertices.dedup();
+    // A vertex is searched as the triangle that is folded onto it.
+    let points: Vec<[u32; 3]> = vertices.iter().map(|&v| [v; 3]).collect();
+    let bvh = Bvh::build(&draft.positions, &points, None, budget)?;
     let mut inside = Vec::new();
-    for v in vertices {
-        budget.spend(1)?;
-        let p = draft.positions[v as usize];
-        bvh.visit_box(Aabb::of([p]), budget, |e| {
-            let [a, b, _] = edges[e as usize];
-            let [from, to] = [a, b].map(|v| draft.positions[v as usize]);
+    for (&h, edge) in boundary.iter().zip(edges) {
+        let [from, to] = edge.map(|v| draft.positions[v as usize]);
+        let mut compared = 0;
+        bvh.visit_segment([from, to], budget, |found| {
+            compared += 1;
+            let v = vertices[found as usize];
+            let p = draft.positions[v as usize];
             // By place: where vertices at one place stay apart, that of another is no vertex inside.
             if p != from && p != to && is_on_segment(p, from, to) {
-                inside.push((boundary[e as usize], v));
+                inside.push((h, v));
             }
+            true
         })?;
+        budget.spend(COMPARING * compared)?;
     }
     sort_along_edges(&mut inside, draft);
     inside.dedup_by(|(h, v), (g, u)| g == h && draft.positions[*u as usize] == draft.positions[*v as usize]);
     Ok(inside)
 }
 
-/// Sorts by half-edge, then along it. On a line, coordinates in the order x, y, z say where a point is.
+/// Sorts by half-edge, then along it, then by vertex. On a line, coordinates in the order x, y, z say where a point is.
 fn sort_along_edges(inside: &mut [(u32, u32)], draft: &Draft) {
     let place = |v: u32| draft.positions[v as usize].to_array();
-    inside.sort_by(|&(g, u), &(h, v)| {
+    inside.sort_unstable_by(|&(g, u), &(h, v)| {
         let [from, to] = edge_of(&draft.triangles, g);
-        let (u, v) = if place(from) < place(to) { (u, v) } else { (v, u) };
-        g.cmp(&h).then_with(|| place(u).partial_cmp(&place(v)).unwrap_or(std::cmp::Ordering::Equal))
+        let (near, far) = if place(from) < place(to) { (u, v) } else { (v, u) };
+        let along = || place(near).partial_cmp(&place(far)).unwrap_or(std::cmp::Ordering::Equal);
+        g.cmp(&h).then_with(along).then(u.cmp(&v))
     });
 }
 

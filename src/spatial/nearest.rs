@@ -4,7 +4,7 @@ use super::Bvh;
 use super::bvh::{Leaf, Tree};
 use super::star_gaps::{NO_STAR, Sighting, StarGaps};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
-use crate::geom::{DVec3, closest_point_on_triangle};
+use crate::geom::{DVec3, closest_point_on_triangle, closest_with_square};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -191,6 +191,8 @@ struct Query<'q> {
     /// other. What a box is farther away grows its rounding and its gap alike; the factor in [`Self::shrink`] covers it.
     blur: f32,
     best: Nearest,
+    /// The square of the distance of `best`, before its root was taken.
+    square: f64,
     /// Boxes with larger squared gaps hold nothing closer than `best`.
     reach: f32,
     /// `p` as it is seen from the last star.
@@ -203,8 +205,10 @@ impl<'q> Query<'q> {
     fn new(search: &'q NearestSearch<'q>, p: DVec3, best: Nearest) -> Self {
         let place = search.bvh.frame().map(p);
         let blur = place.iter().fold(f32::MIN_POSITIVE, |most, x| most.max(x.abs())) * ROUNDING_32;
-        let mut query =
-            Self { search, p, place, blur, best, reach: f32::INFINITY, sighting: None, triangles: 0 };
+        let square =
+            if best.distance < f64::INFINITY { best.point.distance_squared(p) } else { f64::INFINITY };
+        let reach = f32::INFINITY;
+        let mut query = Self { search, p, place, blur, best, square, reach, sighting: None, triangles: 0 };
         query.shrink();
         query
     }
@@ -272,11 +276,15 @@ impl<'q> Query<'q> {
             if gap <= self.reach {
                 self.triangles += 1;
                 let corners = leaf.corners(k).map(|v| self.search.positions[v as usize]);
-                let point = closest_point_on_triangle(self.p, corners);
-                let distance = point.distance(self.p);
-                if distance < self.best.distance {
-                    self.best = Nearest { triangle: leaf.id(k), point, distance };
-                    self.shrink();
+                let (point, square) = closest_with_square(self.p, corners);
+                // A root for those that may be closer only.
+                if square <= self.square {
+                    let distance = square.sqrt();
+                    if distance < self.best.distance {
+                        self.best = Nearest { triangle: leaf.id(k), point, distance };
+                        self.square = square;
+                        self.shrink();
+                    }
                 }
             }
         }

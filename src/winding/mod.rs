@@ -4,6 +4,7 @@
 //! An open surface S and a cone C over its rim are closed together, so the winding number of S is that of both, an integer
 //! which crossings of a line decide exactly, less that of C, which has as few triangles as S has rim edges.
 
+mod angles;
 mod outlook;
 mod shells;
 mod solid;

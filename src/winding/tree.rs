@@ -1,12 +1,10 @@
 //! Generalized winding numbers of open surfaces: near triangles exactly, far ones together (Barill, Dickson, Schmidt,
 //! Levin and Jacobson 2018, "Fast winding numbers for soups and clouds", with their first two terms).
 
+use super::angles::{AngleSum, BLOCK, Block};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 use crate::par;
-
-/// Triangles in a leaf.
-const LEAF: usize = 8;
 
 /// Triangles from which on the two halves of a group are divided at the same time.
 const APART_FROM: usize = 1 << 14;
@@ -53,8 +51,8 @@ struct Node {
 #[derive(Debug, Default)]
 pub struct WindingTree {
     nodes: Vec<Node>,
-    /// In the order of the leaves.
-    triangles: Vec<[DVec3; 3]>,
+    /// The triangles, a block for each leaf, in the order of the leaves.
+    blocks: Vec<Block>,
 }
 
 impl WindingTree {
@@ -69,7 +67,8 @@ impl WindingTree {
         let mut nodes = vec![Node::default(); node_count(triangles.len())];
         set_nodes(&mut nodes, &mut triangles, 0, 0, budget)?;
         budget.spend(triangles.len() as u64)?;
-        Ok(Self { nodes, triangles })
+        let blocks = triangles.chunks(BLOCK).map(Block::of).collect();
+        Ok(Self { nodes, blocks })
     }
 
     /// True when there is no triangle: nothing winds around anything.
@@ -135,13 +134,9 @@ impl WindingTree {
                 n = node.skip as usize;
                 continue;
             }
-            let is_leaf = node.len as usize <= LEAF;
-            if is_leaf {
-                let range = node.first as usize..(node.first + node.len) as usize;
+            if node.len as usize <= BLOCK {
                 visits += u64::from(node.len);
-                for &triangle in &self.triangles[range] {
-                    angles.add(half_solid_angle(p, triangle));
-                }
+                angles.add_halves(&self.blocks[node.first as usize / BLOCK], p);
             }
             n += 1;
         }
@@ -163,9 +158,14 @@ impl Node {
     }
 }
 
+/// Triangles in the first part of a group of so many: about half, and whole blocks, so that all leaves but the last are full.
+fn half_of(len: usize) -> usize {
+    (len / 2).next_multiple_of(BLOCK)
+}
+
 /// Nodes of a group of so many triangles.
 fn node_count(len: usize) -> usize {
-    if len <= LEAF { 1 } else { 1 + node_count(len / 2) + node_count(len - len / 2) }
+    if len <= BLOCK { 1 } else { 1 + node_count(half_of(len)) + node_count(len - half_of(len)) }
 }
 
 /// Sets the `nodes` of a group of triangles and sorts these; `first` and `begin` are the numbers of the first triangle and the
@@ -189,7 +189,7 @@ fn set_nodes(
     let Some((top, below)) = nodes.split_first_mut() else { return Ok(()) };
     *top = Node { skip: end as u32, ..summary(triangles, first) };
     split(triangles);
-    let half = triangles.len() / 2;
+    let half = half_of(triangles.len());
     let (near, far) = triangles.split_at_mut(half);
     let count = node_count(half);
     let (near_nodes, far_nodes) = below.split_at_mut(count);
@@ -214,14 +214,14 @@ fn nodes_in_turn(triangles: &mut [[DVec3; 3]], from: usize, budget: &Budget) -> 
         let range = &mut triangles[first..first + len];
         ends.push(nodes.len());
         nodes.push(summary(range, from + first));
-        if len <= LEAF {
+        if len <= BLOCK {
             for &n in &ends {
                 nodes[n].skip = nodes.len() as u32;
             }
             continue;
         }
         split(range);
-        let half = len / 2;
+        let half = half_of(len);
         open.push((first + half, len - half, ends));
         open.push((first, half, Vec::new()));
     }
@@ -269,7 +269,7 @@ fn summary(triangles: &[[DVec3; 3]], first: usize) -> Node {
     }
 }
 
-/// Puts the half with the smaller centres along the longest extent first.
+/// Puts the part with the smaller centres along the longest extent first.
 fn split(triangles: &mut [[DVec3; 3]]) {
     let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for &t in triangles.iter() {
@@ -277,61 +277,15 @@ fn split(triangles: &mut [[DVec3; 3]]) {
     }
     let extent = max - min;
     let axis = if extent.x >= extent.y.max(extent.z) { 0 } else { usize::from(extent.y < extent.z) + 1 };
-    let half = triangles.len() / 2;
+    let half = half_of(triangles.len());
     // That of the middle, for this axis alone.
     let key = |t: &[DVec3; 3]| (t[0][axis] + t[1][axis] + t[2][axis]) / 3.0;
     triangles.select_nth_unstable_by(half, |a, b| key(a).total_cmp(&key(b)));
 }
 
-/// Half the signed solid angle of a triangle seen from `p`, positive from behind (van Oosterom and Strackee 1983), as a complex
-/// number `[real, imaginary]` with that argument. No angle in its plane.
-fn half_solid_angle(p: DVec3, corners: [DVec3; 3]) -> [f64; 2] {
-    let [a, b, c] = corners.map(|q| q - p);
-    let (x, y, z) = (a.length(), b.length(), c.length());
-    let determinant = a.dot(b.cross(c));
-    if determinant == 0.0 {
-        return [1.0, 0.0];
-    }
-    [x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y, determinant]
-}
-
-/// A sum of angles between -pi and pi, as the product of complex numbers with these arguments: one arc tangent for all.
-#[derive(Debug, Clone, Copy)]
-struct AngleSum {
-    product: [f64; 2],
-    turns: i32,
-}
-
-impl Default for AngleSum {
-    fn default() -> Self {
-        Self { product: [1.0, 0.0], turns: 0 }
-    }
-}
-
-impl AngleSum {
-    /// Adds the argument of a complex number.
-    fn add(&mut self, [re, im]: [f64; 2]) {
-        let [x, y] = self.product;
-        let (u, v) = (x * re - y * im, x * im + y * re);
-        // Two angles of one sign come past half a turn where their sum seems to have the other one.
-        if y >= 0.0 && im > 0.0 && v < 0.0 {
-            self.turns += 1;
-        } else if y < 0.0 && im < 0.0 && v >= 0.0 {
-            self.turns -= 1;
-        }
-        let size = u.abs() + v.abs();
-        // Only the direction matters. Numbers too large or small for it say nothing.
-        self.product = if size.is_normal() { [u / size, v / size + 0.0] } else { [x, y] };
-    }
-
-    fn total(self) -> f64 {
-        let [x, y] = self.product;
-        libm::atan2(y, x) + f64::from(self.turns) * std::f64::consts::TAU
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::angles::tests::half_solid_angle;
     use super::*;
 
     /// A sphere of quarter degrees with the cap above `height` open.
@@ -366,41 +320,11 @@ mod tests {
         let mut worst = 0.0f64;
         for i in 0..1000 {
             let p = DVec3::new((i % 10) as f64, (i / 10 % 10) as f64, (i / 100) as f64) * 3.1 - 14.0;
-            let exact = triangles.iter().map(|&t| argument(half_solid_angle(p, t))).sum::<f64>()
-                / std::f64::consts::TAU;
+            let exact =
+                triangles.iter().map(|&t| half_solid_angle(p, t)).sum::<f64>() / std::f64::consts::TAU;
             worst = worst.max((tree.at(p, 0.0, &Budget::unlimited()).unwrap() - exact).abs());
         }
         assert!(worst < 0.02, "{worst}");
-    }
-
-    fn argument([re, im]: [f64; 2]) -> f64 {
-        libm::atan2(im, re)
-    }
-
-    #[test]
-    fn a_product_adds_up_angles_over_many_turns() {
-        let mut state = 5u64;
-        let mut random = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-        };
-        for case in 0..2000 {
-            // Mostly of one sign in half of the cases; sizes far apart.
-            let lean = if case % 2 == 0 { 0.0 } else { 0.9 };
-            let (mut sum, mut expected) = (AngleSum::default(), 0.0);
-            for _ in 0..200 {
-                let size = libm::exp2(100.0 * random());
-                let (re, im) = (random(), random() + lean);
-                sum.add([re * size, im * size]);
-                expected += argument([re, im]);
-            }
-            assert!((sum.total() - expected).abs() < 1e-9, "{} {expected}", sum.total());
-        }
-        let mut sum = AngleSum::default();
-        for number in [[-1.0, 0.0], [-1.0, 1e-300], [f64::INFINITY, 1.0], [0.0, 0.0]] {
-            sum.add(number);
-        }
-        assert!(sum.total().is_finite());
     }
 
     #[test]
