@@ -57,6 +57,7 @@ declare -A scripts=(
   [versions]="versions.py"
   [sleepers]="sleepers.py"
   [processors]="processors.py"
+  [fuzz]="fuzz.py"
 )
 
 # What a script needs beside the program.
@@ -73,7 +74,8 @@ if [ -n "$script" ]; then
   shift
   mkdir -p docs/campaigns target
   read -ra more <<< "${programs[$name]:-}"
-  cargo build --release --locked --bins "${more[@]}"
+  # The fuzz targets are built by their script.
+  [ "$name" = fuzz ] || cargo build --release --locked --bins "${more[@]}"
   result=0
   # A page that is begun and not ended is not kept.
   read -ra command <<< "$script"
