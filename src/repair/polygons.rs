@@ -6,20 +6,27 @@
 use super::{Changes, Draft};
 use crate::budget::{Budget, Stopped};
 use crate::formats::split_polygon;
+use crate::geom::triangle_area;
 use crate::mesh::{Soup, polygon_copies};
 use crate::spatial::coincident_f64;
+
+/// Areas whose difference is a smaller share of them are the same.
+const SAME_AREA: f64 = 1e-9;
 
 /// What becomes of a face that passes a vertex more than once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum DegenerateFaces {
-    /// The simple cycles that it is made of become faces of their own; what has fewer than three corners goes.
+    /// The simple cycles that it is made of become faces of their own, and what has fewer than three corners goes; where it
+    /// runs around a hole its triangles stay.
     #[default]
     Split,
     /// The whole face goes.
     Drop,
 }
 
-/// Replaces the triangles of each polygon of `soup` that has two corners at one position; those of a polygon with the
+/// Replaces the triangles of each polygon of `soup` that has two corners at one position by those of its simple cycles, unless
+/// these cover more: a polygon that runs there and back between its outline and a hole would become two over each other, so it
+/// keeps its triangles. Those of a polygon with the
 /// corners of an earlier one become triangles with the same diagonals, so that copies of polygons are copies of triangles
 /// from whichever corner they begin and whichever way they run. The draft must be as it was taken from `soup`.
 ///
@@ -55,21 +62,32 @@ pub fn split_polygons(
             continue;
         }
         let first = polygons.first_triangles[i];
-        is_kept[first as usize..first as usize + corners.len() - 2].fill(false);
         faces.push(polygons.faces[i]);
-        let before = parts.len();
+        let mut of_cycles = Vec::new();
         if how == DegenerateFaces::Split {
             for cycle in simple_cycles(corners, &places) {
                 let mut triangles = Vec::new();
                 split_polygon(&cycle, &soup.positions, &mut triangles, budget)?;
-                parts.push(Part { triangles, start: [cycle[0], cycle[1]], origin: first });
+                of_cycles.push(Part { triangles, start: [cycle[0], cycle[1]], origin: first });
             }
         }
-        if parts.len() > before {
+        let own = first as usize..first as usize + corners.len() - 2;
+        let covered: f64 = own.clone().map(|t| triangle_area(draft.corners(t))).sum();
+        let of_these = of_cycles.iter().flat_map(|part| &part.triangles);
+        let covered_by_cycles: f64 =
+            of_these.map(|t| triangle_area(t.map(|v| soup.positions[v as usize]))).sum();
+        if covered < covered_by_cycles * (1.0 - SAME_AREA) {
+            draft.polygons.split(first as usize);
             split += 1;
-        } else {
-            dropped += 1;
+            continue;
         }
+        is_kept[own].fill(false);
+        if of_cycles.is_empty() {
+            dropped += 1;
+        } else {
+            split += 1;
+        }
+        parts.extend(of_cycles);
     }
     if !faces.is_empty() {
         draft.retain_triangles(&is_kept);
@@ -234,6 +252,29 @@ mod tests {
         let soup = soup("f 1 2 3 1 4 5\nf 1 2 3\n");
         let (draft, changes) = split(&soup, DegenerateFaces::Drop);
         assert_eq!((changes.count("polygons_dropped"), draft.triangle_origin), (1, vec![4]));
+    }
+
+    #[test]
+    fn a_polygon_that_runs_around_a_hole_does_not_cover_it() {
+        let square = |z: i32| {
+            format!(
+                "v 0 0 {z}\nv 6 0 {z}\nv 6 6 {z}\nv 0 6 {z}\nv 2 2 {z}\nv 4 2 {z}\nv 4 4 {z}\nv 2 4 {z}\n"
+            )
+        };
+        // By a bridge between the outline and the hole, by one whose ends are vertices of their own, and through a common corner.
+        for (face, area) in [
+            ("f 1 2 3 4 1 5 8 7 6 5\n", 32.0),
+            ("f 4 3 2 1 5 6 7 8 5 1\n", 32.0),
+            ("f 1 2 3 4 9 13 8 7 6 5\n", 32.0),
+            ("f 1 2 3 4 1 8 7 6\n", 28.0),
+        ] {
+            let text = format!("{}{}{face}", square(0), square(0));
+            let soup =
+                read(text.as_bytes(), Encoding::Obj, &ReadOptions::default(), &Budget::unlimited()).unwrap();
+            let (draft, changes) = split(&soup, DegenerateFaces::Split);
+            let covered: f64 = (0..draft.triangles.len()).map(|t| triangle_area(draft.corners(t))).sum();
+            assert_eq!((changes.count("polygons_split"), covered), (1, area), "{face}");
+        }
     }
 
     #[test]
