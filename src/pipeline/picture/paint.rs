@@ -8,6 +8,7 @@ use crate::mesh::{EdgeGroups, Soup, Units, edge_of, triangle_of};
 use crate::par;
 use crate::pipeline::identical::fingerprint;
 use crate::render::{Line, Rgb, Scene, Spot, first_at_position};
+use std::cmp::Ordering;
 
 /// Which mesh of a run it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -271,12 +272,17 @@ fn vertices_of_meshes(drawn: &Drawn<'_>, budget: &Budget) -> Result<Vec<u32>, St
     Ok(vertices)
 }
 
-/// A number for each triangle that is the same for the same coordinates as float32, from whichever corner it starts.
+/// A number for each triangle that is the same for the same coordinates as float32, from whichever corner it starts and whichever
+/// way it runs: one that was turned is not new.
 fn fingerprints(soup: &Soup, budget: &Budget) -> Result<Vec<u128>, Stopped> {
-    let rounded = |p: DVec3| p.as_vec3().as_dvec3();
+    let print_of = |t: u32| {
+        let mut corners = soup.corners(t).map(|p: DVec3| p.as_vec3().as_dvec3());
+        corners.sort_unstable_by(|p, q| p.to_array().partial_cmp(&q.to_array()).unwrap_or(Ordering::Equal));
+        fingerprint(corners)
+    };
     let parts = par::try_map_ranges(soup.triangles.len(), CHECK_EVERY, |range| {
         budget.spend(range.len() as u64 / 4)?;
-        Ok(range.map(|t| fingerprint(soup.corners(t as u32).map(rounded))).collect::<Vec<_>>())
+        Ok(range.map(|t| print_of(t as u32)).collect::<Vec<_>>())
     })?;
     Ok(parts.concat())
 }

@@ -73,6 +73,26 @@ fn a_repair_shows_before_and_after_with_what_is_new() {
 }
 
 #[test]
+fn a_triangle_that_was_turned_is_not_new() {
+    let positions = vec![DVec3::ZERO, DVec3::new(1.0, 0.0, 0.0), DVec3::new(0.0, 2.0, 0.5)];
+    let soup = |triangle| Soup {
+        positions: positions.clone(),
+        triangles: vec![triangle],
+        face_count: 1,
+        ..Soup::default()
+    };
+    let after = |after: &Soup| {
+        let painted =
+            Painted::after(&soup([0, 1, 2]), after, Units::Millimetre, &Budget::unlimited()).unwrap();
+        painted.legend.into_iter().map(|(_, words)| words).collect::<Vec<_>>()
+    };
+    assert_eq!(after(&soup([2, 1, 0])), ["no new triangle"]);
+    let mut moved = soup([2, 1, 0]);
+    moved.positions[1].x = 1.5;
+    assert_eq!(after(&moved), ["all 1 triangles are new"]);
+}
+
+#[test]
 fn without_a_wish_there_is_no_picture_and_with_one_the_rest_is_as_it_was() {
     let budget = Budget::unlimited();
     let plain = run(Operation::Analyze, BOX, &Options::default(), &budget).unwrap();
