@@ -26,9 +26,9 @@ pub enum DegenerateFaces {
 
 /// Replaces the triangles of each polygon of `soup` that has two corners at one position by those of its simple cycles, unless
 /// these cover more: a polygon that runs there and back between its outline and a hole would become two over each other, so it
-/// keeps its triangles. Those of a polygon with the
-/// corners of an earlier one become triangles with the same diagonals, so that copies of polygons are copies of triangles
-/// from whichever corner they begin and whichever way they run. The draft must be as it was taken from `soup`.
+/// keeps its triangles. Those of a polygon with the corners of an earlier one become triangles with the same diagonals, so
+/// that copies of polygons are copies of triangles from whichever corner they begin and whichever way they run. The draft
+/// must be as it was taken from `soup`.
 ///
 /// ```text
 ///      b---c   f                  b---c   a'--f
