@@ -168,12 +168,10 @@ mod tests {
             };
             bound.running(triangles, body).unwrap_err()
         };
-        assert_eq!(
-            end(1 << 19, LOOKING + 1),
-            Failure::NoSuchHole { number: 0, holes: 0 },
-            "eight MiB for half a million"
-        );
-        assert_eq!(end(1 << 19, LOOKING), Failure::OverBudget { units: 2 * LOOKING });
+        let triangles = 2 * SMALL_BYTES;
+        assert_eq!(end(triangles, LOOKING + 1), Failure::NoSuchHole { number: 0, holes: 0 });
+        let share = 2 * BYTES_OF_TRIANGLE;
+        assert_eq!(end(triangles, (share - 1) * LOOKING), Failure::OverBudget { units: share * LOOKING });
     }
 
     #[test]
