@@ -4,7 +4,7 @@
 //! meet nothing; of a shell that meets another part, or perhaps lies in one that cannot be told inside from outside,
 //! nothing is said, except that it is inverted where the boxes show that nothing can be around it.
 
-use super::around::{Around, around, part_boxes};
+use super::around::{Enclosure, around, part_boxes};
 use super::shells::Shell;
 use super::{Context, DefectCode, Finding, Witness, double_skins};
 use crate::budget::{CHECK_EVERY, Stopped};
@@ -48,10 +48,10 @@ fn ways(cx: &Context<'_>) -> Result<Ways, Stopped> {
     }
     let is_free = free_shells(cx)?;
     let around = match cx.mesh.parts.len() {
-        1 => vec![Around::Nothing],
+        1 => vec![Enclosure::Nothing],
         _ => around(&part_boxes(&cx.mesh, &cx.members, cx.budget)?, &is_free, cx.budget)?,
     };
-    let is_nested = |s: &Shell| is_free[s.part as usize] && around[s.part as usize] == Around::Known;
+    let is_nested = |s: &Shell| is_free[s.part as usize] && around[s.part as usize] == Enclosure::Known;
     let free: Vec<Shell> = cx.shells.iter().copied().filter(|s| is_free[s.part as usize]).collect();
     let parents = if free.iter().any(is_nested) { parents(cx, &free)? } else { vec![None; free.len()] };
     let mut parent_of = vec![None; cx.mesh.parts.len()];
@@ -60,7 +60,7 @@ fn ways(cx: &Context<'_>) -> Result<Ways, Stopped> {
     }
     for &shell in &cx.shells {
         let parent = parent_of[shell.part as usize].filter(|_| is_nested(&shell));
-        let is_alone = around[shell.part as usize] == Around::Nothing || is_nested(&shell);
+        let is_alone = around[shell.part as usize] == Enclosure::Nothing || is_nested(&shell);
         ways.nested.extend(parent.map(|parent| (free[parent as usize], shell)));
         match parent {
             Some(parent) if shell.volume_sign == free[parent as usize].volume_sign => {

@@ -27,7 +27,7 @@ const LENGTH_SHARE: f64 = 1e-7;
 pub(super) struct Memoryless;
 
 /// Sums over the triangles around an edge, about its destination.
-struct Around {
+struct EdgeSums {
     quadric: Quadric,
     /// Sum of the normals, each twice as long as its triangle's area.
     normal: DVec3,
@@ -49,7 +49,7 @@ impl Criterion for Memoryless {
 
     fn place(&self, surface: &Surface<()>, h: u32, rule: Rule, placement: Placement) -> Placed {
         let [a, b] = surface.ends(h).map(|end| end.position);
-        let around = Around::edge(surface, h, b);
+        let around = EdgeSums::edge(surface, h, b);
         let to_a = a - b;
         let weight = around.quadric.weight();
         let placed = |offset: DVec3| {
@@ -73,7 +73,7 @@ impl Criterion for Memoryless {
     fn merged(&self, _: [&Vertex<()>; 2], _: DVec3) {}
 }
 
-impl Around {
+impl EdgeSums {
     const NOTHING: Self =
         Self { quadric: Quadric::ZERO, normal: DVec3::ZERO, volume: 0.0, area: 0.0, has_border: false };
 

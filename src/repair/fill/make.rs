@@ -4,7 +4,7 @@ use super::accept::Proposal;
 use super::caps::turn_caps;
 use super::coarsen::coarsen;
 use super::creased::{Division, creased};
-use super::fair::{Around, fair};
+use super::fair::{PatchSurroundings, fair};
 use super::options::{Extract, FillOptions, Method};
 use super::patch::PatchMesh;
 use super::refine::{Lengths, refine, turn_edges};
@@ -318,7 +318,7 @@ fn faired(
 pub(super) fn refine_and_fair(
     mesh: &mut PatchMesh,
     next: &[u32],
-    around: &Around,
+    around: &PatchSurroundings,
     is_free: &dyn Fn(u32, u32) -> bool,
     budget: &Budget,
 ) -> Result<bool, Stopped> {
@@ -347,7 +347,7 @@ pub(super) fn refine_and_fair(
 fn fair_within_reach(
     mesh: &mut PatchMesh,
     lengths: &Lengths,
-    around: &Around,
+    around: &PatchSurroundings,
     budget: &Budget,
 ) -> Result<bool, Stopped> {
     let before = mesh.points.clone();

@@ -1,6 +1,6 @@
 //! The mesh around the holes, with one vertex at each place.
 
-use super::fair::Around;
+use super::fair::PatchSurroundings;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::{EdgeGroups, edge_of, next_corner, prev_corner};
@@ -183,7 +183,7 @@ impl Surface {
         half_edges: &[Option<u32>],
         is_clamped: Vec<bool>,
         budget: &Budget,
-    ) -> Result<Around, Stopped> {
+    ) -> Result<PatchSurroundings, Stopped> {
         let rim = half_edges.len();
         let corners = || half_edges.iter().enumerate().filter_map(|(i, h)| Some((i, self.corner((*h)?))));
         let mut number: FxHashMap<u32, u32> = FxHashMap::default();
@@ -198,7 +198,7 @@ impl Surface {
         budget.spend(own.len() as u64 / 8 + 1)?;
         own.sort_unstable();
         own.dedup();
-        let mut around = Around { is_clamped, ..Around::default() };
+        let mut around = PatchSurroundings { is_clamped, ..PatchSurroundings::default() };
         for t in own {
             let corners = self.triangles[t as usize].map(|v| {
                 *number.entry(v).or_insert_with(|| {
