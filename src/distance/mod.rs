@@ -81,7 +81,7 @@ pub struct Sight<'v> {
 
 /// Shares of the area of a surface, by sampling.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Seen {
+pub struct AreaShares {
     /// What is hidden.
     pub hidden_share: f64,
     /// What is lost, of what can be seen.
@@ -117,7 +117,7 @@ pub struct DirectedDistance {
     /// The root of the mean square over the area of the first surface; `None` without samples.
     pub root_mean_square: Option<f64>,
     /// What is hidden and lost; `None` where everything counts.
-    pub seen: Option<Seen>,
+    pub seen: Option<AreaShares>,
 }
 
 /// The distance between two surfaces.

@@ -6,7 +6,7 @@ use super::samples::Areas;
 use super::scale::Common;
 use super::target::Target;
 use super::view::{View, Visible};
-use super::{DirectedDistance, DistanceOptions, Look, Seen, Surface};
+use super::{AreaShares, DirectedDistance, DistanceOptions, Look, Surface};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::par;
 use crate::spatial::Found;
@@ -117,7 +117,7 @@ impl Directed<'_, '_> {
         let farthest = self.refine_all(&vertices, &candidates, farthest, &mut upper)?;
         let share = |part: f64, all: u32| (all > 0).then(|| part / f64::from(all));
         let mean_of = |sum: f64| share(sum, sampled.count);
-        let seen = self.view.sight.map(|_| Seen {
+        let seen = self.view.sight.map(|_| AreaShares {
             hidden_share: share(f64::from(sampled.taken - sampled.count), sampled.taken).unwrap_or(0.0),
             lost_share: share(f64::from(sampled.lost), sampled.count).unwrap_or(0.0),
         });

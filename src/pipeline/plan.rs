@@ -225,7 +225,7 @@ pub(super) struct Attempt {
     /// True when no shell is turned before bodies are united: the draft was united as it points before.
     is_oriented: bool,
     /// Which triangles of the soup are known to be on the surface or inside of the solid.
-    coverage: Known,
+    coverage: KnownCoverage,
     /// True when walls or patches may hide what can be seen in the file.
     pub(super) hides_more: bool,
     /// True when patches close openings, behind which something may be seen in the file.
@@ -234,7 +234,7 @@ pub(super) struct Attempt {
 
 /// Which triangles of the soup are known to be on the surface or inside of the solid, as bodies are united.
 #[derive(Debug, Clone, PartialEq)]
-enum Known {
+enum KnownCoverage {
     /// Nothing was united yet.
     NotYet,
     /// All of `present` but `bare`.
@@ -266,7 +266,7 @@ impl Attempt {
             effects: Effects::default(),
             lists_stitches: false,
             is_oriented: false,
-            coverage: Known::NotYet,
+            coverage: KnownCoverage::NotYet,
             hides_more: false,
             closes_openings: false,
         }
@@ -316,13 +316,15 @@ impl Attempt {
 
     /// True when bodies were united.
     pub(super) fn has_united(&self) -> bool {
-        self.coverage != Known::NotYet
+        self.coverage != KnownCoverage::NotYet
     }
 
     /// What of the soup need not be looked for in the result, if bodies were united; nothing that is buried where that may be
     /// seen all the same.
     pub(super) fn covered(&self, looks_out: bool) -> Option<Covered> {
-        let Known::By(Coverage { present, bare, buried, buried_area }) = &self.coverage else { return None };
+        let KnownCoverage::By(Coverage { present, bare, buried, buried_area }) = &self.coverage else {
+            return None;
+        };
         let is_in = |list: &[u32], t: &u32| list.binary_search(t).is_ok();
         let is_covered = |t: &u32| !(is_in(bare, t) || looks_out && is_in(buried, t));
         Some(Covered {
@@ -333,7 +335,7 @@ impl Attempt {
     }
 }
 
-impl Known {
+impl KnownCoverage {
     /// Takes in what `step` did.
     fn go_on(&mut self, step: &Step, changes: &mut Changes) {
         let known = std::mem::replace(self, Self::No);

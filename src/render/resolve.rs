@@ -5,7 +5,7 @@ use super::camera::Camera;
 use super::canvas::{Canvas, Rgb};
 use super::model::Model;
 use super::normals::normal;
-use super::raster::{Seen, Visible};
+use super::raster::{Visible, VisibleElement};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 use crate::par;
@@ -161,16 +161,16 @@ impl Light<'_> {
         for y in row * SAMPLES..(row + 1) * SAMPLES {
             for x in column * SAMPLES..(column + 1) * SAMPLES {
                 let color = match self.seen.samples[y * self.seen.width + x].seen() {
-                    Seen::Nothing => self.style.background.map(f32::from),
-                    Seen::Triangle(t) => {
+                    VisibleElement::Nothing => self.style.background.map(f32::from),
+                    VisibleElement::Triangle(t) => {
                         is_empty = false;
                         self.inked(self.lit(t, x, y), t, x, y)
                     }
-                    Seen::Line(number) => {
+                    VisibleElement::Line(number) => {
                         is_empty = false;
                         self.model.marks.lines[number].color.map(f32::from)
                     }
-                    Seen::Spot(number) => {
+                    VisibleElement::Spot(number) => {
                         is_empty = false;
                         self.model.marks.spots[number].color.map(f32::from)
                     }
@@ -221,8 +221,8 @@ impl Light<'_> {
             let bend = before.near - 2.0 * own.near + after.near;
             for other in [before, after] {
                 match other.seen() {
-                    Seen::Nothing => ink = ink.max(CREASE_INK),
-                    Seen::Triangle(neighbour) if neighbour != t => {
+                    VisibleElement::Nothing => ink = ink.max(CREASE_INK),
+                    VisibleElement::Triangle(neighbour) if neighbour != t => {
                         let turn = dot(normal, self.faces.normals[self.faces.number(neighbour)]);
                         // Of the two sides of a jump the nearer one is inked.
                         let is_jump = bend.abs() > JUMP && own.near > other.near;

@@ -24,7 +24,7 @@ pub(super) fn model(sides: &[(&Soup, Painted)], units: Units, budget: &Budget) -
     let triangles: usize = sides.iter().map(|(soup, painted)| triangles_of(soup, painted)).sum();
     let vertices: usize = sides.iter().map(|(soup, _)| soup.positions.len()).sum();
     let _memory = budget.charge(vertices as u64 * 24 + triangles as u64 * (12 + 4 + 8 + 24))?;
-    let mut made = Made { size, metres: units.millimetres() / 1000.0, ..Made::default() };
+    let mut made = ModelBuilder { size, metres: units.millimetres() / 1000.0, ..ModelBuilder::default() };
     for ((soup, painted), bounds) in sides.iter().zip(&boxes) {
         // The second one begins where the first one ends.
         let shift = match (painted.side, boxes.first()) {
@@ -70,7 +70,7 @@ pub(super) fn rod_of_tests(ends: [DVec3; 2]) -> [[DVec3; 3]; 6] {
 
 /// The file on its way.
 #[derive(Default)]
-struct Made {
+struct ModelBuilder {
     /// Largest side of the boxes of all meshes.
     size: f64,
     /// Length of the unit of the meshes.
@@ -85,7 +85,7 @@ struct Made {
     numbers: FxHashMap<(&'static str, Rgb), u32>,
 }
 
-impl Made {
+impl ModelBuilder {
     fn put(&mut self, soup: &Soup, painted: &Painted, shift: DVec3, budget: &Budget) -> Result<(), Stopped> {
         let scene = painted.scene(soup);
         let first = self.positions.len() as u32;

@@ -55,7 +55,7 @@ pub(super) struct Scene<'a> {
 }
 
 /// A patch and, for each of its new vertices, the vertices that it was born between; none when it was made at once.
-pub(super) struct Made {
+pub(super) struct MadePatch {
     pub(super) proposal: Proposal,
     pub(super) parents: Vec<[u32; 2]>,
     /// The field on whose surface it is.
@@ -82,7 +82,7 @@ pub(super) fn make(
     scene: &Scene<'_>,
     rejected: &mut Vec<Rejection>,
     budget: &Budget,
-) -> Result<Result<Made, Rejection>, Stopped> {
+) -> Result<Result<MadePatch, Rejection>, Stopped> {
     let surface = scene.surface;
     budget.spend(region.rim().len() as u64)?;
     let made = match way {
@@ -96,10 +96,10 @@ pub(super) fn make(
         },
         Way::Rbf => return of_field(region, rings, scene, rejected, budget),
     };
-    Ok(made.map(|triangles| Made::plain(region, triangles)))
+    Ok(made.map(|triangles| MadePatch::plain(region, triangles)))
 }
 
-impl Made {
+impl MadePatch {
     fn plain(region: &Region, triangles: Vec<[usize; 3]>) -> Self {
         let triangles = triangles.into_iter().map(|t| t.map(|i| i as u32)).collect();
         Self { proposal: proposal(region, Vec::new(), triangles), parents: Vec::new(), field: None }
@@ -210,9 +210,13 @@ fn base(region: &Region, surface: &Surface, budget: &Budget) -> Result<Triangles
     }
 }
 
-fn smooth(region: &Region, surface: &Surface, budget: &Budget) -> Result<Result<Made, Rejection>, Stopped> {
+fn smooth(
+    region: &Region,
+    surface: &Surface,
+    budget: &Budget,
+) -> Result<Result<MadePatch, Rejection>, Stopped> {
     match faired(region, surface, budget)? {
-        Ok(mesh) => Made::refined(region, surface, mesh, budget),
+        Ok(mesh) => MadePatch::refined(region, surface, mesh, budget),
         Err(reason) => Ok(Err(reason)),
     }
 }
@@ -224,7 +228,7 @@ fn of_field(
     scene: &Scene<'_>,
     rejected: &mut Vec<Rejection>,
     budget: &Budget,
-) -> Result<Result<Made, Rejection>, Stopped> {
+) -> Result<Result<MadePatch, Rejection>, Stopped> {
     let Scene { surface, mesh: Some(mesh), options } = *scene else { return Ok(Err(Rejection::NoPatch)) };
     let mut fit = || rbf::field(region, rings, surface, mesh, options, rejected, budget);
     if options.extract == Extract::Project {
@@ -246,7 +250,7 @@ fn of_field(
             let points = &patch.points[region.rim().len()..];
             on_lattice(points, surface).map(|points| {
                 let proposal = proposal(region, points, patch.triangles);
-                Made { proposal, parents: Vec::new(), field: Some(*field.facts()) }
+                MadePatch { proposal, parents: Vec::new(), field: Some(*field.facts()) }
             })
         }
         Err(Unmeshed::TooFine { .. }) => Err(Rejection::TooLarge),
@@ -270,7 +274,7 @@ fn projected(
     fit: impl FnOnce() -> Result<Result<Field, Rejection>, Stopped>,
     surface: &Surface,
     budget: &Budget,
-) -> Result<Result<Made, Rejection>, Stopped> {
+) -> Result<Result<MadePatch, Rejection>, Stopped> {
     let mut patch = match faired(region, surface, budget)? {
         Ok(patch) => patch,
         Err(reason) => return Ok(Err(reason)),
@@ -279,7 +283,7 @@ fn projected(
     let is_free = |a: u32, b: u32| surface.is_free(rim[a as usize], rim[b as usize]);
     if patch.points.len() == patch.rim {
         turn_edges(&mut patch, &is_free, budget)?;
-        return Made::refined(region, surface, patch, budget);
+        return MadePatch::refined(region, surface, patch, budget);
     }
     let field = match fit()? {
         Ok(field) => field,
@@ -288,8 +292,8 @@ fn projected(
     if !rbf::project(&mut patch, &field, &is_free, budget)? {
         return Ok(Err(Rejection::NoZero));
     }
-    let made = Made::refined(region, surface, patch, budget)?;
-    Ok(made.map(|made| Made { field: Some(*field.facts()), ..made }))
+    let made = MadePatch::refined(region, surface, patch, budget)?;
+    Ok(made.map(|made| MadePatch { field: Some(*field.facts()), ..made }))
 }
 
 /// The smooth patch before its vertices are rounded.

@@ -36,7 +36,7 @@ mod surface;
 
 use self::accept::Proposal;
 use self::creased::Division;
-use self::make::{Made, Scene, Way, make};
+use self::make::{MadePatch, Scene, Way, make};
 pub use self::options::{Extract, FillOptions, HoleChoice, Method};
 use self::pinched::Walk;
 use self::regions::{Region, regions};
@@ -128,7 +128,7 @@ fn fill_loops(
     let triangles = if has_field { surface.triangles.clone() } else { Vec::new() };
     let mesh = if has_field { Some(rbf::Mesh::new(&positions, &triangles, budget)?) } else { None };
     let mut done = Vec::new();
-    let mut patches: Vec<(Made, u32)> = Vec::new();
+    let mut patches: Vec<(MadePatch, u32)> = Vec::new();
     while !open.is_empty() {
         let scene = Scene { surface: &surface, mesh: mesh.as_ref(), options };
         let offers = offer(&mut open, &scene, budget)?;
@@ -227,7 +227,11 @@ impl Ladder<'_> {
 }
 
 /// The next patch for each hole that has one, and the way it was made in.
-fn offer(open: &mut [Hole], scene: &Scene<'_>, budget: &Budget) -> Result<Vec<Option<(Way, Made)>>, Stopped> {
+fn offer(
+    open: &mut [Hole],
+    scene: &Scene<'_>,
+    budget: &Budget,
+) -> Result<Vec<Option<(Way, MadePatch)>>, Stopped> {
     let holes: Vec<&mut Hole> = open.iter_mut().collect();
     let chunks: Vec<Vec<&mut Hole>> = {
         let mut chunks = Vec::new();
@@ -248,7 +252,7 @@ fn offer(open: &mut [Hole], scene: &Scene<'_>, budget: &Budget) -> Result<Vec<Op
 }
 
 impl Hole {
-    fn next(&mut self, scene: &Scene<'_>, budget: &Budget) -> Result<Option<(Way, Made)>, Stopped> {
+    fn next(&mut self, scene: &Scene<'_>, budget: &Budget) -> Result<Option<(Way, MadePatch)>, Stopped> {
         while let Some(way) = self.ways.pop() {
             let (division, mut rejected) = (self.division.as_ref(), Vec::new());
             let made = make(&self.region, division, self.band_rings, way, scene, &mut rejected, budget)?;
@@ -264,7 +268,7 @@ impl Hole {
 }
 
 impl HoleReport {
-    fn take(&mut self, method: Method, made: &Made, surface: &Surface, first: u32) {
+    fn take(&mut self, method: Method, made: &MadePatch, surface: &Surface, first: u32) {
         let Proposal { rim, points, triangles, .. } = &made.proposal;
         let point = |v: u32| match rim.get(v as usize) {
             Some(&h) => surface.point(h),
@@ -322,7 +326,7 @@ fn append(
     draft: &mut Draft,
     soup: Option<&Soup>,
     surface: &Surface,
-    patches: &[(Made, u32)],
+    patches: &[(MadePatch, u32)],
     budget: &Budget,
 ) -> Result<(), Stopped> {
     for (made, first) in patches {

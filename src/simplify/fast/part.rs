@@ -93,13 +93,13 @@ struct Watch {
 }
 
 /// Why nothing is collapsed here and now.
-enum No {
+enum NotCollapsed {
     Refused(Refusal),
     /// It would leave the part's region: another round may do it.
     Elsewhere,
 }
 
-impl From<Refusal> for No {
+impl From<Refusal> for NotCollapsed {
     fn from(reason: Refusal) -> Self {
         Self::Refused(reason)
     }
@@ -223,8 +223,8 @@ impl<'r, C: Criterion> Part<'r, C> {
                 Ok((_, _, now)) if now > class => self.queue.push(h, now),
                 Ok((rule, placed, _)) => match self.attempt(h, rule, placed, budget) {
                     Ok(()) => {}
-                    Err(No::Refused(reason)) => self.set_aside(h, reason),
-                    Err(No::Elsewhere) => self.queue.set_aside(h),
+                    Err(NotCollapsed::Refused(reason)) => self.set_aside(h, reason),
+                    Err(NotCollapsed::Elsewhere) => self.queue.set_aside(h),
                 },
                 Err(reason) => self.set_aside(h, reason),
             }
@@ -238,14 +238,14 @@ impl<'r, C: Criterion> Part<'r, C> {
     }
 
     /// Collapses the edge of `h`, unless something speaks against it.
-    fn attempt(&mut self, h: u32, rule: Rule, placed: Placed, budget: &Budget) -> Result<(), No> {
+    fn attempt(&mut self, h: u32, rule: Rule, placed: Placed, budget: &Budget) -> Result<(), NotCollapsed> {
         let Rules { criterion, options, error_squared_limit, .. } = self.rules;
         if placed.error_squared > error_squared_limit {
             return Err(Refusal::Error.into());
         }
         let ends = [h, next(h)].map(|g| self.surface.table.origin(g));
         if !ends.into_iter().all(|end| self.allowance.lets(end)) {
-            return Err(No::Elsewhere);
+            return Err(NotCollapsed::Elsewhere);
         }
         let (position, origin) = self.surface.landing(h, rule, placed.position, options.round)?;
         self.rings.walk(&self.surface.table, h);
@@ -386,20 +386,20 @@ impl Watch {
         bounds: Aabb,
         allowance: &mut Allowance,
         budget: &Budget,
-    ) -> Result<(), No> {
+    ) -> Result<(), NotCollapsed> {
         let Self { room, space, sweep } = self;
         let table = &surface.table;
         if bounds.is_empty() {
             return Ok(());
         }
         if !room.region.holds(bounds) {
-            return Err(No::Elsewhere);
+            return Err(NotCollapsed::Elsewhere);
         }
         let ends = [table.origin(h), table.destination(h)];
         let mut answer = Ok(());
         let mut passes = |other: &Outside| match allowance.compares(sweep.len()) {
-            true => sweep.passes(other).map_err(No::Refused),
-            false => Err(No::Elsewhere),
+            true => sweep.passes(other).map_err(NotCollapsed::Refused),
+            false => Err(NotCollapsed::Elsewhere),
         };
         space.visit(bounds, sweep, ends, |t| {
             let Some(ids) = table.corners(t) else { return true };
@@ -418,7 +418,7 @@ impl Watch {
             }
         });
         // The caller will see that the run was stopped.
-        visited.map_err(|_| No::Elsewhere)?;
+        visited.map_err(|_| NotCollapsed::Elsewhere)?;
         answer
     }
 

@@ -10,7 +10,7 @@ mod ends;
 
 pub(in crate::repair::fill) use self::division::Division;
 use self::division::normal_beyond;
-use super::make::{Made, refine_and_fair};
+use super::make::{MadePatch, refine_and_fair};
 use super::minimal::{self, CORNERS_MAX};
 use super::patch::PatchMesh;
 use super::regions::Region;
@@ -26,7 +26,7 @@ pub(super) fn creased(
     division: &Division,
     surface: &Surface,
     budget: &Budget,
-) -> Result<Result<Made, Rejection>, Stopped> {
+) -> Result<Result<MadePatch, Rejection>, Stopped> {
     let Division { points, parents, .. } = division;
     let mut patch = Patch { points: points.clone(), parents: parents.clone(), triangles: Vec::new() };
     for corners in &division.sides {
@@ -39,7 +39,7 @@ pub(super) fn creased(
         return Ok(Err(Rejection::Topology));
     };
     (mesh.rim, mesh.parents) = (region.rim().len(), patch.parents);
-    Made::refined(region, surface, mesh, budget)
+    MadePatch::refined(region, surface, mesh, budget)
 }
 
 /// The sides that are closed so far.
