@@ -26,7 +26,7 @@ pub enum Contact {
 
 /// What of a file of several parts is one solid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Parts {
+pub enum SolidParts {
     /// Each part by itself, in its own coordinates and once however often it is there.
     #[default]
     Separate,

@@ -40,7 +40,7 @@ mod units;
 
 use self::bounds::Bound;
 pub use self::bounds::work_units_max;
-pub use self::choices::{ChosenHole, Contact, FillHoles, Limits, Parts, SimplifyChoices, VertexColors};
+pub use self::choices::{ChosenHole, Contact, FillHoles, Limits, SimplifyChoices, SolidParts, VertexColors};
 pub use self::cut_stitch::{CutStitchChoices, Stitching};
 pub use self::failure::Failure;
 pub use self::faithful::{Change, ChangeKind, Fidelity, FidelityVerdict};
@@ -84,7 +84,7 @@ pub struct Options {
     /// Format of the output; the input's own encoding when `None`.
     pub output_format: Option<Format>,
     /// What of a file of several parts is one solid.
-    pub parts: Parts,
+    pub parts: SolidParts,
     /// Limits and choice of reader.
     pub read: ReadOptions,
     /// Unit as the caller stated it, in which all lengths here are; `None`: lengths are in millimetres, and the file is in
@@ -413,7 +413,7 @@ fn run_on_file(
         let of_scene = project::remarks_on_scene(bytes, &answer, options, budget)?;
         answer.report.remarks.splice(0..0, of_scene);
     }
-    if encoding == Encoding::ThreeMf && operation == Operation::Repair && options.parts == Parts::Union {
+    if encoding == Encoding::ThreeMf && operation == Operation::Repair && options.parts == SolidParts::Union {
         return project::without_negative_parts(answer, bytes, options, bound, budget);
     }
     Ok(answer)

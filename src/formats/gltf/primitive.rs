@@ -2,7 +2,7 @@
 
 use super::accessor::{Accessor, Accessors, Component};
 use super::buffers::{compressed_by_draco, has_extension};
-use super::part::{List, Part};
+use super::part::{List, LocatedValue};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::formats::ReadError;
 use crate::par;
@@ -53,7 +53,7 @@ pub(super) struct Mesh {
 impl Mesh {
     /// Reads the mesh `part`. `uv_set_of` is the set of texture coordinates that each material takes.
     pub(super) fn read(
-        part: &Part<'_>,
+        part: &LocatedValue<'_>,
         accessors: &Accessors<'_>,
         materials: &List<'_>,
         uv_set_of: &[u64],
@@ -68,7 +68,7 @@ impl Mesh {
 
     fn add(
         &mut self,
-        part: &Part<'_>,
+        part: &LocatedValue<'_>,
         accessors: &Accessors<'_>,
         materials: &List<'_>,
         uv_set_of: &[u64],
@@ -174,7 +174,7 @@ impl Primitive {
 }
 
 /// Checks that indices are whole numbers without a sign.
-pub(super) fn check_indices(part: &Part<'_>, indices: &Accessor<'_>) -> Result<(), ReadError> {
+pub(super) fn check_indices(part: &LocatedValue<'_>, indices: &Accessor<'_>) -> Result<(), ReadError> {
     match indices.component {
         Component::U8 | Component::U16 | Component::U32 => Ok(()),
         _ => Err(part.need("componentType")?.wrong("5121, 5123 or 5125 for indices")),

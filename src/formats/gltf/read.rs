@@ -4,7 +4,7 @@ use super::accessor::{Accessor, Accessors, Component};
 use super::buffers::Buffers;
 use super::container::Content;
 use super::materials::FileMaterials;
-use super::part::Part;
+use super::part::LocatedValue;
 use super::primitive::{Mesh, VertexSet, check_indices};
 use super::scene::{Placed, placed_meshes};
 use crate::budget::{Budget, CHECK_EVERY, Charge, Stopped};
@@ -29,7 +29,7 @@ pub(in crate::formats) fn read(
 ) -> Result<Soup, ReadError> {
     let content = if encoding == Encoding::Glb { Content::of_glb(bytes)? } else { Content::of_text(bytes) };
     let (tree, _charge) = content.tree(budget)?;
-    let root = Part::root(&tree);
+    let root = LocatedValue::root(&tree);
     check_version(&root)?;
     let buffers = Buffers::of(&root, content.binary, budget)?;
     let materials = FileMaterials::read(&root, &buffers, budget)?;
@@ -62,7 +62,7 @@ pub(in crate::formats) fn read(
 
 /// The names of the nodes that place a mesh and of their meshes; `None` where one node without any name does, or too many.
 fn object_names<'b>(
-    root: &Part<'_>,
+    root: &LocatedValue<'_>,
     placed: &[Placed<'_>],
     budget: &'b Budget,
 ) -> Result<Option<(Vec<ObjectName>, Charge<'b>)>, ReadError> {
@@ -98,7 +98,7 @@ const KNOWN: &[&str] = &[
     "EXT_texture_avif",
 ];
 
-fn check_version(root: &Part<'_>) -> Result<(), ReadError> {
+fn check_version(root: &LocatedValue<'_>) -> Result<(), ReadError> {
     let asset = root.need("asset")?;
     let version = asset.text("version").unwrap_or_default();
     if !version.starts_with("2.") {
@@ -116,7 +116,7 @@ fn check_version(root: &Part<'_>) -> Result<(), ReadError> {
 
 /// The meshes that are placed, by number; the others are empty.
 fn read_meshes(
-    root: &Part<'_>,
+    root: &LocatedValue<'_>,
     placed: &[Placed<'_>],
     accessors: &Accessors<'_>,
     materials: &FileMaterials<'_>,
@@ -136,7 +136,7 @@ fn read_meshes(
 
 /// What the file has that the soup does not hold.
 fn left_out(
-    root: &Part<'_>,
+    root: &LocatedValue<'_>,
     placed: &[Placed<'_>],
     meshes: &[Mesh],
 ) -> Result<Vec<(&'static str, u64)>, ReadError> {

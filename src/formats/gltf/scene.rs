@@ -1,6 +1,6 @@
 //! The nodes of a scene: which meshes stand where.
 
-use super::part::{List, Part};
+use super::part::{List, LocatedValue};
 use crate::budget::{Budget, CHECK_EVERY};
 use crate::formats::ReadError;
 use crate::geom::DVec3;
@@ -21,7 +21,7 @@ pub(super) struct Placed<'a> {
 ///
 /// A document without nodes gives each of its meshes once.
 pub(super) fn placed_meshes<'a>(
-    root: &Part<'a>,
+    root: &LocatedValue<'a>,
     budget: &Budget,
 ) -> Result<(Vec<Placed<'a>>, u64), ReadError> {
     let (nodes, meshes, scenes) = (root.list("nodes")?, root.list("meshes")?, root.list("scenes")?);
@@ -53,7 +53,7 @@ pub(super) fn placed_meshes<'a>(
     Ok((walk.placed, left_out))
 }
 
-fn starts_of(scene: &Part<'_>, nodes: &List<'_>) -> Result<Vec<usize>, ReadError> {
+fn starts_of(scene: &LocatedValue<'_>, nodes: &List<'_>) -> Result<Vec<usize>, ReadError> {
     scene.list("nodes")?.items().map(|node| node.as_index(nodes)).collect()
 }
 
@@ -105,7 +105,7 @@ impl Walk<'_, '_> {
 }
 
 /// The transform of a node in the frame of its parent.
-fn transform_of(node: &Part<'_>) -> Result<DAffine3, ReadError> {
+fn transform_of(node: &LocatedValue<'_>) -> Result<DAffine3, ReadError> {
     if let Some(m) = node.numbers::<16>("matrix")? {
         let column = |k: usize| DVec3::new(m[4 * k], m[4 * k + 1], m[4 * k + 2]);
         let matrix3 = DMat3::from_cols(column(0), column(1), column(2));

@@ -6,8 +6,8 @@ use crate::formats::threemf::{NegativeParts, read_negative_parts};
 use crate::formats::{self, Encoding};
 use crate::pipeline::bounds::Bound;
 use crate::pipeline::{
-    Answer, Failure, Operation, Options, Outcome, Output, Parts, Refusal, Report, Require, SetOperation,
-    SimplifyChoices, boolean, demand_faithful, run_on_file,
+    Answer, Failure, Operation, Options, Outcome, Output, Refusal, Report, Require, SetOperation,
+    SimplifyChoices, SolidParts, boolean, demand_faithful, run_on_file,
 };
 
 /// The name under which one mesh leaves them out.
@@ -118,7 +118,7 @@ fn take_away(
         read: super::unlimited(),
         output_format: Some(encoding.format()),
         output_units: Some(result_units),
-        parts: Parts::Together,
+        parts: SolidParts::Together,
         plan: None,
         policy: None,
         simplify: SimplifyChoices::default(),

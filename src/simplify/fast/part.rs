@@ -106,7 +106,7 @@ impl From<Refusal> for NotCollapsed {
 }
 
 /// A part that is being simplified.
-pub(super) struct Part<'r, C: Criterion> {
+pub(super) struct PartSimplifier<'r, C: Criterion> {
     pub(super) surface: Surface<C::State>,
     /// Of the vertices; empty when the input has none.
     pub(super) colors: Vec<Option<Color>>,
@@ -123,7 +123,7 @@ pub(super) struct Part<'r, C: Criterion> {
     rules: Rules<'r, C>,
 }
 
-impl<'r, C: Criterion> Part<'r, C> {
+impl<'r, C: Criterion> PartSimplifier<'r, C> {
     /// A part of which nothing is collapsed yet, with all its edges between free vertices in the queue.
     pub(super) fn new(
         surface: Surface<C::State>,

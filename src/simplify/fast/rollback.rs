@@ -11,7 +11,7 @@
 use super::check::{Check, Found, Left};
 use super::guard::{Course, Guard};
 use super::mesh::Division;
-use super::part::Part;
+use super::part::PartSimplifier;
 use super::rounds::Rounds;
 use crate::budget::Stopped;
 use crate::par;
@@ -30,7 +30,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         &self,
         guard: &mut Guard,
         division: &Division,
-        parts: &mut [Part<'r, C>],
+        parts: &mut [PartSimplifier<'r, C>],
         course: &Course,
     ) -> Result<(), Stopped> {
         let left =
@@ -67,7 +67,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
     fn redo(
         &self,
         division: &Division,
-        parts: &mut [Part<'r, C>],
+        parts: &mut [PartSimplifier<'r, C>],
         again: &[(usize, u64)],
         locked: &[bool],
         course: &Course,
@@ -90,7 +90,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
     }
 
     /// What part `i` leaves.
-    fn left(&self, division: &Division, i: usize, part: &Part<'r, C>) -> Left {
+    fn left(&self, division: &Division, i: usize, part: &PartSimplifier<'r, C>) -> Left {
         let (first_vertex, first_triangle) = ((i * division.part_len) as u32, division.starts[i]);
         let mut left = Left::default();
         for (t, corners, _) in part.triangles() {
@@ -128,7 +128,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
 /// some tries also what was merged into their neighbours, then those of these, and in the end all of a part.
 fn lock<C: Criterion>(
     division: &Division,
-    parts: &[Part<'_, C>],
+    parts: &[PartSimplifier<'_, C>],
     offenders: &[u32],
     tries: usize,
     locked: &mut [bool],

@@ -11,7 +11,7 @@ mod vertices;
 
 use self::data::Data;
 use self::filters::Filter;
-use super::part::Part;
+use super::part::LocatedValue;
 use crate::budget::{Budget, Charge};
 use crate::formats::{Place, ReadError};
 
@@ -31,7 +31,7 @@ enum Mode {
 /// How a buffer view is compressed.
 pub(super) struct Compressed<'a> {
     /// The extension, which names the bytes of the stream as a buffer view does.
-    pub(super) part: Part<'a>,
+    pub(super) part: LocatedValue<'a>,
     mode: Mode,
     filter: Filter,
     count: u64,
@@ -43,7 +43,7 @@ pub(super) struct Compressed<'a> {
 
 impl<'a> Compressed<'a> {
     /// The compression of the buffer view `view`, if it has one, by the rules of the extension.
-    pub(super) fn of(view: &Part<'a>) -> Result<Option<Self>, ReadError> {
+    pub(super) fn of(view: &LocatedValue<'a>) -> Result<Option<Self>, ReadError> {
         let Some(part) = extension(view) else { return Ok(None) };
         let mode = part.need("mode")?;
         let mode = match mode.value.as_str() {
@@ -120,12 +120,12 @@ impl<'a> Compressed<'a> {
 }
 
 /// The extension of the buffer view `view` by which it is compressed.
-pub(super) fn extension<'a>(view: &Part<'a>) -> Option<Part<'a>> {
+pub(super) fn extension<'a>(view: &LocatedValue<'a>) -> Option<LocatedValue<'a>> {
     let extensions = view.get("extensions")?;
     NAMES.into_iter().find_map(|name| extensions.get(name))
 }
 
-fn number(part: &Part<'_>, key: &str) -> Result<u64, ReadError> {
+fn number(part: &LocatedValue<'_>, key: &str) -> Result<u64, ReadError> {
     let value = part.need(key)?;
     part.count(key)?.ok_or_else(|| value.wrong("a whole number of 0 or more"))
 }
