@@ -4,7 +4,7 @@ use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse as _, Response};
 use sha2::{Digest as _, Sha256};
 
-use super::both::{CombinedAnswer, Mesh};
+use super::both::{CombinedAnswer, OutgoingMesh};
 use super::mesh_file;
 use super::problem::{Handled, json};
 use super::representation::{OCTET_STREAM, Representation, media_type_of_picture};
@@ -150,7 +150,7 @@ impl Finished<'_> {
     async fn both(&self) -> Result<CombinedAnswer<tokio::fs::File>, Problem> {
         let stored = self.jobs.results(self.id).await?;
         let report = self.jobs.report(self.id).await?;
-        let mesh = |stored: StoredFile| Mesh {
+        let mesh = |stored: StoredFile| OutgoingMesh {
             media_type: mesh_file::media_type(&stored),
             len: stored.bytes,
             file_name: stored.file_name,

@@ -24,11 +24,11 @@ pub(super) struct CombinedAnswer<R> {
     /// The report, as JSON.
     pub(super) report: Vec<u8>,
     /// The meshes: one, or one for each target of a simplification.
-    pub(super) meshes: Vec<Mesh<R>>,
+    pub(super) meshes: Vec<OutgoingMesh<R>>,
 }
 
 /// A mesh to be sent.
-pub(super) struct Mesh<R> {
+pub(super) struct OutgoingMesh<R> {
     /// Its bytes.
     pub(super) content: R,
     /// Their number.
@@ -39,7 +39,7 @@ pub(super) struct Mesh<R> {
     pub(super) file_name: String,
 }
 
-impl<R> Mesh<R> {
+impl<R> OutgoingMesh<R> {
     /// What stands before it in a `multipart/mixed` body.
     fn head(&self, boundary: &str) -> String {
         format!(
@@ -111,7 +111,7 @@ struct Packer<R> {
     spill: Spill,
     /// The mesh that is being packed.
     mesh: Option<R>,
-    waiting: IntoIter<Mesh<R>>,
+    waiting: IntoIter<OutgoingMesh<R>>,
 }
 
 impl<R: AsyncRead + Unpin> Packer<R> {
@@ -159,7 +159,7 @@ mod tests {
     use std::io::Read as _;
 
     fn both(mesh: &[u8]) -> CombinedAnswer<io::Cursor<Vec<u8>>> {
-        let mesh = |file_name: &str| Mesh {
+        let mesh = |file_name: &str| OutgoingMesh {
             content: io::Cursor::new(mesh.to_vec()),
             len: mesh.len() as u64,
             media_type: "model/stl",

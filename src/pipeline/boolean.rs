@@ -37,14 +37,14 @@ pub(super) fn boolean(
 }
 
 /// A file that was read.
-struct Mesh<'b> {
+struct Operand<'b> {
     bytes: &'b [u8],
     encoding: Encoding,
     soup: Soup,
 }
 
 /// Describes the files and combines them.
-fn combine_all(meshes: Vec<Mesh<'_>>, mut reading: Reading, budget: &Budget) -> Result<Answer, Failure> {
+fn combine_all(meshes: Vec<Operand<'_>>, mut reading: Reading, budget: &Budget) -> Result<Answer, Failure> {
     let mut meshes = meshes.into_iter().zip(1..);
     let mut describe =
         |(mesh, number)| reading.describe(mesh, budget).map_err(|failure: Failure| failure.in_mesh(number));
@@ -89,7 +89,7 @@ struct Reading {
 }
 
 impl Reading {
-    fn next<'b>(&mut self, bytes: &'b [u8], budget: &Budget) -> Result<Mesh<'b>, Failure> {
+    fn next<'b>(&mut self, bytes: &'b [u8], budget: &Budget) -> Result<Operand<'b>, Failure> {
         let encoding = budget.stage(Stage::Read, || formats::sniff(bytes, self.options.format))?;
         let soup = Input::read_soup(bytes, encoding, &self.options, budget)?;
         self.triangles += soup.triangles.len() as u64;
@@ -104,12 +104,12 @@ impl Reading {
                 return Err(ReadError { kind, place: Place::Whole, expected: String::new() }.into());
             }
         }
-        Ok(Mesh { bytes, encoding, soup })
+        Ok(Operand { bytes, encoding, soup })
     }
 
     /// Judges and describes the next of the files that were read.
-    fn describe(&mut self, mesh: Mesh<'_>, budget: &Budget) -> Result<(Input, Report), Failure> {
-        let Mesh { bytes, encoding, soup } = mesh;
+    fn describe(&mut self, mesh: Operand<'_>, budget: &Budget) -> Result<(Input, Report), Failure> {
+        let Operand { bytes, encoding, soup } = mesh;
         let mut input = Input::examined(soup, bytes, encoding, &self.options, budget)?;
         self.options.output_format.get_or_insert(input.facts.encoding.format());
         let in_units_of_format = input.take_lengths(&self.options);

@@ -39,7 +39,7 @@ pub(super) struct Primitive {
 
 /// A mesh, without the primitives that have no triangle.
 #[derive(Debug, Default)]
-pub(super) struct Mesh {
+pub(super) struct GltfMesh {
     /// Each with its number of vertices as the file claims it.
     pub(super) sets: Vec<(VertexSet, u64)>,
     pub(super) primitives: Vec<Primitive>,
@@ -50,7 +50,7 @@ pub(super) struct Mesh {
     pub(super) further_attributes: u64,
 }
 
-impl Mesh {
+impl GltfMesh {
     /// Reads the mesh `part`. `uv_set_of` is the set of texture coordinates that each material takes.
     pub(super) fn read(
         part: &LocatedValue<'_>,

@@ -5,7 +5,7 @@ use super::buffers::Buffers;
 use super::container::Content;
 use super::materials::FileMaterials;
 use super::part::LocatedValue;
-use super::primitive::{Mesh, VertexSet, check_indices};
+use super::primitive::{GltfMesh, VertexSet, check_indices};
 use super::scene::{Placed, placed_meshes};
 use crate::budget::{Budget, CHECK_EVERY, Charge, Stopped};
 use crate::formats::faces::Faces;
@@ -120,15 +120,15 @@ fn read_meshes(
     placed: &[Placed<'_>],
     accessors: &Accessors<'_>,
     materials: &FileMaterials<'_>,
-) -> Result<Vec<Mesh>, ReadError> {
+) -> Result<Vec<GltfMesh>, ReadError> {
     let list = root.list("meshes")?;
     let material_list = root.list("materials")?;
-    let mut meshes: Vec<Option<Mesh>> = (0..list.len()).map(|_| None).collect();
+    let mut meshes: Vec<Option<GltfMesh>> = (0..list.len()).map(|_| None).collect();
     for place in placed.iter().map(|place| place.mesh) {
         accessors.budget.check()?;
         if meshes[place].is_none() {
             meshes[place] =
-                Some(Mesh::read(&list.item(place), accessors, &material_list, &materials.uv_set_of)?);
+                Some(GltfMesh::read(&list.item(place), accessors, &material_list, &materials.uv_set_of)?);
         }
     }
     Ok(meshes.into_iter().map(Option::unwrap_or_default).collect())
@@ -138,14 +138,14 @@ fn read_meshes(
 fn left_out(
     root: &LocatedValue<'_>,
     placed: &[Placed<'_>],
-    meshes: &[Mesh],
+    meshes: &[GltfMesh],
 ) -> Result<Vec<(&'static str, u64)>, ReadError> {
     let count = |name| root.list(name).map(|list| list.len() as u64);
     let lights = root.get("extensions").and_then(|all| all.get("KHR_lights_punctual"));
     let lights = lights.map_or(Ok(0), |lights| lights.list("lights").map(|list| list.len() as u64))?;
     let mut is_placed = vec![false; meshes.len()];
     placed.iter().for_each(|place| is_placed[place.mesh] = true);
-    let of = |f: fn(&Mesh) -> u64| {
+    let of = |f: fn(&GltfMesh) -> u64| {
         meshes.iter().zip(&is_placed).filter(|(_, is_placed)| **is_placed).map(|(m, _)| f(m)).sum::<u64>()
     };
     Ok(vec![
@@ -180,7 +180,7 @@ impl Raw {
     /// Room for everything that is placed, within the limits.
     fn with_room<'b>(
         placed: &[Placed<'_>],
-        meshes: &[Mesh],
+        meshes: &[GltfMesh],
         options: &ReadOptions,
         budget: &'b Budget,
     ) -> Result<(Self, Vec<Charge<'b>>), ReadError> {
@@ -223,7 +223,7 @@ impl Raw {
     /// Adds `mesh` where `transform` puts it.
     fn add(
         &mut self,
-        mesh: &Mesh,
+        mesh: &GltfMesh,
         transform: Option<&DAffine3>,
         accessors: &Accessors<'_>,
         precision: Precision,

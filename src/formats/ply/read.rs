@@ -35,7 +35,7 @@ fn read_body(
 ) -> Result<Soup, ReadError> {
     let (layout, charges) = (header.layout, Vec::new());
     let mut source = Source { values, layout, options, budget, charges, further_properties: 0 };
-    let mut mesh = Mesh::default();
+    let mut mesh = PlyMesh::default();
     for element in &header.elements {
         match element.name {
             _ if element.count == 0 => {}
@@ -48,7 +48,7 @@ fn read_body(
         }
     }
     let soup = mesh.faces.into_soup(mesh.positions, &options.limits, budget)?;
-    let Mesh { vertex_colors, face_colors, places, mut segments, .. } = mesh;
+    let PlyMesh { vertex_colors, face_colors, places, mut segments, .. } = mesh;
     segments.retain(|segment| segment.ends.iter().all(|&v| (v as usize) < soup.positions.len()));
     let further = source.further_properties;
     let left_out = if further > 0 { vec![("further_properties", further)] } else { Vec::new() };
@@ -57,7 +57,7 @@ fn read_body(
 
 /// What was read so far.
 #[derive(Default)]
-struct Mesh {
+struct PlyMesh {
     positions: Vec<DVec3>,
     vertex_colors: Vec<Option<Color>>,
     faces: Faces,
@@ -66,7 +66,7 @@ struct Mesh {
     segments: Vec<Segment>,
 }
 
-impl Mesh {
+impl PlyMesh {
     fn read_vertices<V: Values>(
         &mut self,
         element: &Element<'_>,

@@ -92,14 +92,14 @@ pub(super) struct Object {
 
 /// What an object consists of.
 pub(super) enum Content {
-    Mesh(Box<Mesh>),
+    Mesh(Box<ObjectMesh>),
     Components(Vec<Reference>),
     Nothing,
 }
 
 /// The mesh of an object.
 #[derive(Default)]
-pub(super) struct Mesh {
+pub(super) struct ObjectMesh {
     pub(super) soup: Soup,
     pub(super) attributes: FaceAttributes,
     /// Bytes of the elements of vertices and of triangles in the text of the part; empty when there is none.

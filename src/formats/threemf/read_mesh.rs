@@ -1,6 +1,6 @@
 //! The mesh of an object: vertices, triangles and what is said of triangles.
 
-use super::model::{FaceAttributes, Mesh, NO_NUMBER, Property};
+use super::model::{FaceAttributes, NO_NUMBER, ObjectMesh, Property};
 use super::model_reader::{ModelReader, number};
 use super::package::{shortened, too_large};
 use super::xml::{Attributes, Element, Namespace};
@@ -12,8 +12,8 @@ use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
 /// Reads the content of the element `mesh`.
-pub(super) fn mesh<'x>(reader: &mut ModelReader<'x>, element: &Element<'x>) -> Result<Mesh, ReadError> {
-    let mut mesh = Mesh::default();
+pub(super) fn mesh<'x>(reader: &mut ModelReader<'x>, element: &Element<'x>) -> Result<ObjectMesh, ReadError> {
+    let mut mesh = ObjectMesh::default();
     let mut triangles = Triangles::default();
     if element.is_empty {
         return Ok(mesh);
@@ -175,7 +175,7 @@ impl Triangles {
     }
 
     /// Checks the corners against the vertices.
-    fn put_into(self, mesh: &mut Mesh, reader: &ModelReader<'_>) -> Result<(), ReadError> {
+    fn put_into(self, mesh: &mut ObjectMesh, reader: &ModelReader<'_>) -> Result<(), ReadError> {
         let Self { corners, mut attributes, .. } = self;
         let count = corners.len();
         if !attributes.properties.is_empty() {

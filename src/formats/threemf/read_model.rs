@@ -1,6 +1,6 @@
 //! A model part: units, resources, objects and the build.
 
-use super::model::{Content, Group, Mesh, Model, NO_NUMBER, Object, ObjectKind, Property, Reference};
+use super::model::{Content, Group, Model, NO_NUMBER, Object, ObjectKind, ObjectMesh, Property, Reference};
 use super::model_reader::{ModelReader, number};
 use super::package::{resolve, shortened};
 use super::read_mesh;
@@ -370,7 +370,7 @@ impl<'x> ModelReader<'x> {
             self.remark(at, &format!("the object {} has {what}", object.id));
         }
         let Content::Mesh(mesh) = &object.content else { return };
-        let Mesh { attributes, .. } = &**mesh;
+        let ObjectMesh { attributes, .. } = &**mesh;
         let mut is_default_missing = false;
         for (f, &own) in attributes.properties.iter().enumerate() {
             if own == Property::NONE {

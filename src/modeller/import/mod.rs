@@ -106,7 +106,7 @@ pub fn import(
     };
     let exact = groups::exact_groups(points, triangles, &neighbours, budget)?;
     let tolerance = tolerance.unwrap_or_else(|| default_tolerance(points));
-    let mesh = Mesh { points, triangles, neighbours, exact, tolerance };
+    let mesh = ImportMesh { points, triangles, neighbours, exact, tolerance };
     if tolerance > 0.0
         && let Ok(imported) = mesh.import_tolerant(budget)?
     {
@@ -135,7 +135,7 @@ fn unreadable(points: &[DVec3], triangles: &[[u32; 3]]) -> Option<ImportRefusal>
     (span > EXPONENT_SPAN_MAX).then_some(ImportRefusal::ExponentSpan { span })
 }
 
-struct Mesh<'m> {
+struct ImportMesh<'m> {
     points: &'m [DVec3],
     triangles: &'m [[u32; 3]],
     neighbours: groups::Neighbours,
@@ -149,7 +149,7 @@ struct Failure {
     groups: Vec<u32>,
 }
 
-impl Mesh<'_> {
+impl ImportMesh<'_> {
     /// Tolerant faces, of which those that do not fit together are taken apart.
     fn import_tolerant(&self, budget: &Budget) -> Result<Result<Imported, ImportRefusal>, Stopped> {
         let mut group =

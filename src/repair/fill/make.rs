@@ -50,7 +50,7 @@ impl Way {
 pub(super) struct Scene<'a> {
     pub(super) surface: &'a Surface,
     /// `None`: no hole is to get the surface of a field.
-    pub(super) mesh: Option<&'a rbf::Mesh<'a>>,
+    pub(super) mesh: Option<&'a rbf::FieldMesh<'a>>,
     pub(super) options: &'a FillOptions,
 }
 

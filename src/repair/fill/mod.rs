@@ -126,14 +126,14 @@ fn fill_loops(
     // The surface grows by patches; what a field is halved by is the mesh as it was.
     let positions = if has_field { surface.positions.clone() } else { Vec::new() };
     let triangles = if has_field { surface.triangles.clone() } else { Vec::new() };
-    let mesh = if has_field { Some(rbf::Mesh::new(&positions, &triangles, budget)?) } else { None };
+    let mesh = if has_field { Some(rbf::FieldMesh::new(&positions, &triangles, budget)?) } else { None };
     let mut done = Vec::new();
     let mut patches: Vec<(MadePatch, u32)> = Vec::new();
     while !open.is_empty() {
         let scene = Scene { surface: &surface, mesh: mesh.as_ref(), options };
         let offers = offer(&mut open, &scene, budget)?;
         let proposals: Vec<&Proposal> = offers.iter().flatten().map(|(_, made)| &made.proposal).collect();
-        let bvh = mesh.as_ref().map(rbf::Mesh::bvh);
+        let bvh = mesh.as_ref().map(rbf::FieldMesh::bvh);
         let mut verdicts = surface.accept(&proposals, bvh, budget)?.into_iter();
         let mut left = Vec::new();
         for (mut hole, offered) in open.into_iter().zip(offers) {

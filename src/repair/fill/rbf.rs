@@ -23,12 +23,12 @@ const POINTS: usize = 16;
 const REACH: f64 = 0.5;
 
 /// The mesh as a field sees it: what is near, and how large it all is.
-pub(super) struct Mesh<'m> {
+pub(super) struct FieldMesh<'m> {
     nearest: NearestSearch<'m>,
     bounds: Aabb,
 }
 
-impl<'m> Mesh<'m> {
+impl<'m> FieldMesh<'m> {
     pub(super) fn new(
         positions: &'m [DVec3],
         triangles: &'m [[u32; 3]],
@@ -50,7 +50,7 @@ pub(super) fn field(
     region: &Region,
     rings: u32,
     surface: &Surface,
-    mesh: &Mesh<'_>,
+    mesh: &FieldMesh<'_>,
     options: &FillOptions,
     rejected: &mut Vec<Rejection>,
     budget: &Budget,
