@@ -33,7 +33,7 @@ pub(super) struct Cone {
 }
 
 /// The plane of a face around the vertex.
-pub(super) struct Side<'s> {
+pub(super) struct ConePlane<'s> {
     /// Its normal.
     pub(super) normal: &'s Direction,
     /// Its unit normal, rounded.
@@ -51,7 +51,7 @@ impl Cone {
     /// `sides`: the faces, clockwise. `rays`: the directions of the edges between each and the next. `vertices`: the new
     /// ones. `cells`: the faces around each, ascending.
     pub(super) fn of(
-        sides: &[Side<'_>],
+        sides: &[ConePlane<'_>],
         rays: &[Direction],
         vertices: Vec<Point>,
         cells: &[Vec<usize>],

@@ -14,7 +14,7 @@ use num_traits::{Signed, Zero};
 
 /// One side of the interval by which faces may move.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Side {
+pub enum IntervalSide {
     /// As far as one likes.
     Unbounded,
     /// By less than this.
@@ -36,13 +36,17 @@ pub enum Side {
 ///
 /// # Errors
 /// When the budget stops the run.
-pub fn range(solid: &Solid, shifts: &[(FaceId, Rational)], budget: &Budget) -> Result<[Side; 2], Stopped> {
+pub fn range(
+    solid: &Solid,
+    shifts: &[(FaceId, Rational)],
+    budget: &Budget,
+) -> Result<[IntervalSide; 2], Stopped> {
     let opposite: Vec<(FaceId, Rational)> = shifts.iter().map(|(f, t)| (*f, -t)).collect();
     Ok([one_side(solid, &opposite, budget)?, one_side(solid, shifts, budget)?])
 }
 
-fn one_side(solid: &Solid, shifts: &[(FaceId, Rational)], budget: &Budget) -> Result<Side, Stopped> {
-    let Some((motion, _)) = Motion::of(shifts) else { return Ok(Side::Unbounded) };
+fn one_side(solid: &Solid, shifts: &[(FaceId, Rational)], budget: &Budget) -> Result<IntervalSide, Stopped> {
+    let Some((motion, _)) = Motion::of(shifts) else { return Ok(IntervalSide::Unbounded) };
     let split;
     let mut solid = solid;
     let unsettled = Moving::unsettled(solid, &motion);
@@ -51,18 +55,18 @@ fn one_side(solid: &Solid, shifts: &[(FaceId, Rational)], budget: &Budget) -> Re
         let mut copy = solid.clone();
         for vertex in unsettled {
             if resolve::split(&mut copy, &motion, vertex).is_none() {
-                return Ok(Side::Blocked { vertex });
+                return Ok(IntervalSide::Blocked { vertex });
             }
         }
         split = copy;
         solid = &split;
     }
-    let Ok(moving) = Moving::of(solid, &motion) else { return Ok(Side::Unbounded) };
+    let Ok(moving) = Moving::of(solid, &motion) else { return Ok(IntervalSide::Unbounded) };
     Ok(match next_event(solid, &motion, &moving, budget)? {
-        None => Side::Unbounded,
+        None => IntervalSide::Unbounded,
         Some(event) => match limit(solid, &motion, &Rational::zero(), &event) {
-            Refusal::Limit { limits, blocking } => Side::Limit { limits, blocking },
-            _ => Side::Unbounded,
+            Refusal::Limit { limits, blocking } => IntervalSide::Limit { limits, blocking },
+            _ => IntervalSide::Unbounded,
         },
     })
 }

@@ -6,7 +6,7 @@
 //! the planes of every cell stay concurrent, every new edge has a length just after, around every new vertex the faces
 //! do not cross, and no edge at one new vertex meets a face at another ([`Cone`]). Of several good splits the first in a fixed order is taken.
 
-use super::cone::{Cone, Side};
+use super::cone::{Cone, ConePlane};
 use super::direction::{Direction, is_link_simple};
 use super::exact::{Vector, cross, dot, negative};
 use super::motion::Motion;
@@ -274,12 +274,12 @@ impl<'s> Star<'s> {
 
     /// Whether all edges and faces of the split meet in what they share only.
     fn is_embedded(&self, split: &Split, velocities: &[Rc<Velocity>]) -> bool {
-        let side = |i: usize| Side {
+        let side = |i: usize| ConePlane {
             normal: &self.normals[i],
             unit: self.solid.plane(self.faces[i]).unit,
             rate: self.rates[i].cloned().unwrap_or_default(),
         };
-        let sides: Vec<Side<'_>> = (0..self.faces.len()).map(side).collect();
+        let sides: Vec<ConePlane<'_>> = (0..self.faces.len()).map(side).collect();
         let vertices = velocities.iter().map(|v| Point::new(v.speed.clone(), v.w.clone())).collect();
         Cone::of(&sides, &self.rays, vertices, &split.cells).is_some_and(|cone| cone.is_embedded())
     }

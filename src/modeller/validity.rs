@@ -213,7 +213,7 @@ fn loops(solid: &Solid, f: FaceId, has_moved: &dyn Fn(VertexId) -> bool) -> Opti
         for h in topology.loop_of(start) {
             let moved = has_moved(topology.origin(h)) || has_moved(topology.destination(h));
             any |= moved;
-            sides.push(Side { h, in_loop: i, has_moved: moved });
+            sides.push(FaceSide { h, in_loop: i, has_moved: moved });
         }
         has_loop_moved.push(any);
     }
@@ -251,7 +251,7 @@ fn loops(solid: &Solid, f: FaceId, has_moved: &dyn Fn(VertexId) -> bool) -> Opti
 
 /// A side of a face.
 #[derive(Clone, Copy)]
-struct Side {
+struct FaceSide {
     h: HalfEdgeId,
     /// The loop, the exterior one first.
     in_loop: usize,
@@ -273,7 +273,7 @@ fn turns_counter_clockwise(solid: &Solid, f: FaceId, start: HalfEdgeId) -> bool 
 }
 
 /// Two sides of a face, one of them moved, that meet elsewhere than at the vertex between them.
-fn first_crossing(solid: &Solid, f: FaceId, sides: &[Side]) -> Option<[Side; 2]> {
+fn first_crossing(solid: &Solid, f: FaceId, sides: &[FaceSide]) -> Option<[FaceSide; 2]> {
     let view = solid.view(f);
     let range = |h: HalfEdgeId, axis: usize| {
         let [a, b] = solid.ends(h).map(|p| p.near[axis]);

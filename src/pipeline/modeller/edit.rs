@@ -7,7 +7,7 @@ use super::report::{
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::polyhedron::{FaceId, HalfEdgeId};
-use crate::modeller::{self, Applied, Change, Events, Imported, Operator, Rational, Side, Solid};
+use crate::modeller::{self, Applied, Change, Events, Imported, IntervalSide, Operator, Rational, Solid};
 use crate::repair::Draft;
 use crate::spatial::coincident_f64;
 
@@ -246,9 +246,9 @@ fn range_of(solid: &Solid, faces: &[(FaceId, f64)], budget: &Budget) -> Result<F
     let growths: Vec<(FaceId, Rational)> =
         faces.iter().map(|&(f, rate)| (f, modeller::offset_growth(solid, f, rate))).collect();
     let sides = modeller::range(solid, &growths, budget)?;
-    let told = |side: Side| match side {
-        Side::Unbounded => RangeSide { limit: None, blocking: Vec::new() },
-        Side::Blocked { vertex } => {
+    let told = |side: IntervalSide| match side {
+        IntervalSide::Unbounded => RangeSide { limit: None, blocking: Vec::new() },
+        IntervalSide::Blocked { vertex } => {
             let around: Vec<FaceId> = match vertex.index() < solid.topology().vertex_bound() {
                 true => solid.topology().faces_around(vertex).collect(),
                 false => Vec::new(),
@@ -256,7 +256,7 @@ fn range_of(solid: &Solid, faces: &[(FaceId, f64)], budget: &Budget) -> Result<F
             let blocker = Blocker::with(solid, BlockerKind::NoSplit, &around, &[vertex]);
             RangeSide { limit: Some(0.0), blocking: vec![blocker] }
         }
-        Side::Limit { limits, blocking } => RangeSide {
+        IntervalSide::Limit { limits, blocking } => RangeSide {
             limit: multiple(&growths, &limits),
             blocking: blocking.iter().map(|c| Blocker::of(solid, c)).collect(),
         },

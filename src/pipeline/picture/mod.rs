@@ -5,7 +5,7 @@ mod model;
 mod paint;
 
 use self::model::model;
-use self::paint::{Painted, Side};
+use self::paint::{MeshRole, Painted};
 use super::{Answer, Failure, Input, Operation, Options, Report, Units};
 use crate::analysis::{Element, Finding, Witness};
 use crate::budget::{Budget, Stage, Stopped};
@@ -311,9 +311,9 @@ fn scale_of(tile_width: usize) -> usize {
 fn entitle(canvas: &mut Canvas, painted: &Painted, view: Option<View>) {
     let scale = scale_of(canvas.width());
     let side = match painted.side {
-        Side::Only => "",
-        Side::Before => "before",
-        Side::After => "after",
+        MeshRole::Only => "",
+        MeshRole::Before => "before",
+        MeshRole::After => "after",
     };
     let title = [side, view.map_or("", View::name)].join(" ");
     canvas.write(title.trim(), MARGIN * scale, MARGIN * scale, scale, INK);

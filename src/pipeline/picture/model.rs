@@ -1,6 +1,6 @@
 //! The picture as a mesh (GLB) that any viewer turns: colours as materials, rims as thin rods, places of defects as small octahedra.
 
-use super::paint::{Painted, Side, meaning};
+use super::paint::{MeshRole, Painted, meaning};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::formats::{self, Encoding, WriteError};
 use crate::geom::{Aabb, DVec3};
@@ -28,7 +28,7 @@ pub(super) fn model(sides: &[(&Soup, Painted)], units: Units, budget: &Budget) -
     for ((soup, painted), bounds) in sides.iter().zip(&boxes) {
         // The second one begins where the first one ends.
         let shift = match (painted.side, boxes.first()) {
-            (Side::After, Some(first)) if !first.is_empty() && !bounds.is_empty() => {
+            (MeshRole::After, Some(first)) if !first.is_empty() && !bounds.is_empty() => {
                 first.max.x + ROOM * size - bounds.min.x
             }
             _ => 0.0,
@@ -92,9 +92,9 @@ impl ModelBuilder {
         let place = |p: DVec3| if p.is_finite() { p + shift } else { DVec3::ZERO };
         self.positions.extend(scene.positions.iter().map(|&p| place(p)));
         let side = match painted.side {
-            Side::Only => "",
-            Side::Before => "before: ",
-            Side::After => "after: ",
+            MeshRole::Only => "",
+            MeshRole::Before => "before: ",
+            MeshRole::After => "after: ",
         };
         for (t, corners) in scene.triangles.iter().enumerate() {
             if t.is_multiple_of(CHECK_EVERY) {

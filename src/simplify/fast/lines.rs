@@ -11,7 +11,7 @@ use crate::simplify::options::{Borders, SimplifyOptions};
 
 /// A half-edge of the sorted triangles, with its ends, the smaller first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Side {
+struct SortedHalfEdge {
     ends: [u32; 2],
     triangle: u32,
     corner: u32,
@@ -24,7 +24,7 @@ struct Inside {
     /// Half-edges on a border.
     borders: Vec<(u32, u32)>,
     /// Half-edges that have their twin, if there is one, elsewhere.
-    loose: Vec<Side>,
+    loose: Vec<SortedHalfEdge>,
 }
 
 pub(super) struct Lines<'l, S> {
@@ -68,7 +68,7 @@ impl<S: Copy + Send + Sync> Lines<'_, S> {
         Ok(Some(borders.into_iter().map(|(t, _)| self.mesh.numbers[t as usize]).collect()))
     }
 
-    fn from(&self, side: Side) -> u32 {
+    fn from(&self, side: SortedHalfEdge) -> u32 {
         self.mesh.triangles[side.triangle as usize][side.corner as usize]
     }
 
@@ -93,15 +93,15 @@ impl<S: Copy + Send + Sync> Lines<'_, S> {
     }
 
     /// The half-edges of the triangles between parts.
-    fn between(&self) -> Vec<Side> {
+    fn between(&self) -> Vec<SortedHalfEdge> {
         let triangles = self.division.first_between() as u32..self.mesh.triangles.len() as u32;
         triangles.flat_map(|t| [(t, 0), (t, 1), (t, 2)]).map(|place| self.side(place)).collect()
     }
 
-    fn side(&self, (triangle, corner): (u32, u32)) -> Side {
+    fn side(&self, (triangle, corner): (u32, u32)) -> SortedHalfEdge {
         let corners = self.mesh.triangles[triangle as usize];
         let [from, to] = [corners[corner as usize], corners[(corner as usize + 1) % 3]];
-        Side { ends: [from.min(to), from.max(to)], triangle, corner }
+        SortedHalfEdge { ends: [from.min(to), from.max(to)], triangle, corner }
     }
 
     /// True when an edge with two triangles is a line.

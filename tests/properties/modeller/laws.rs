@@ -9,8 +9,8 @@ use meshmend::budget::Budget;
 use meshmend::geom::DVec3;
 use meshmend::mesh::polyhedron::{FaceId, Polyhedron};
 use meshmend::modeller::{
-    Embedding, Events, Operator, Rational, Refusal, Side, Solid, apply, distance_of_growth, dual, dual_faces,
-    edge_between, import, offset_growth, range, rational, vertex_near,
+    Embedding, Events, IntervalSide, Operator, Rational, Refusal, Solid, apply, distance_of_growth, dual,
+    dual_faces, edge_between, import, offset_growth, range, rational, vertex_near,
 };
 use std::collections::BTreeMap;
 
@@ -23,9 +23,9 @@ fn shift(face: FaceId, by: Rational) -> Operator {
 }
 
 /// The limits of a side, if it has any.
-fn limit(side: &Side) -> Option<Rational> {
+fn limit(side: &IntervalSide) -> Option<Rational> {
     match side {
-        Side::Limit { limits, .. } => Some(limits[0].1.clone()),
+        IntervalSide::Limit { limits, .. } => Some(limits[0].1.clone()),
         _ => None,
     }
 }
@@ -453,9 +453,9 @@ fn a_shift_inside_the_interval_that_was_told_is_never_refused_where_several_vert
             let sides = range(&first, &[(face, rational(1.0))], &budget()).unwrap();
             for (side, far) in sides.iter().zip([-4.0, 4.0]) {
                 let reach = match side {
-                    Side::Limit { limits, .. } => limits[0].1.clone(),
-                    Side::Unbounded => offset_growth(&first, face, far),
-                    Side::Blocked { .. } => {
+                    IntervalSide::Limit { limits, .. } => limits[0].1.clone(),
+                    IntervalSide::Unbounded => offset_growth(&first, face, far),
+                    IntervalSide::Blocked { .. } => {
                         blocked += 1;
                         continue;
                     }
@@ -487,9 +487,9 @@ fn a_wall_by_its_two_sides_moves_as_far_as_one_likes() {
     );
     let together = [(outer, rational(1.0)), (inner, rational(-1.0))];
     let [to_the_right, to_the_left] = range(&solid, &together, &budget()).unwrap();
-    assert_eq!(to_the_left, Side::Unbounded);
+    assert_eq!(to_the_left, IntervalSide::Unbounded);
     // To the right the inner side meets the other prong after 30.
-    let Side::Limit { limits, .. } = &to_the_right else { panic!("a limit") };
+    let IntervalSide::Limit { limits, .. } = &to_the_right else { panic!("a limit") };
     assert!(limits.contains(&(inner, rational(30.0))) && limits.contains(&(outer, rational(-30.0))));
     let alone = range(&solid, &[(inner, rational(1.0))], &budget()).unwrap();
     assert_eq!(

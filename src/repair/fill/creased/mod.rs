@@ -30,7 +30,7 @@ pub(super) fn creased(
     let Division { points, parents, .. } = division;
     let mut patch = Patch { points: points.clone(), parents: parents.clone(), triangles: Vec::new() };
     for corners in &division.sides {
-        match (Side { corners, division, region, surface }).close(budget)? {
+        match (CreaseSide { corners, division, region, surface }).close(budget)? {
             Ok(mesh) => patch.sew(corners, &mesh),
             Err(reason) => return Ok(Err(reason)),
         }
@@ -64,7 +64,7 @@ impl Patch {
 }
 
 /// What is between curves and the rim.
-struct Side<'a> {
+struct CreaseSide<'a> {
     /// Points of the division, in the direction of the rim.
     corners: &'a [u32],
     division: &'a Division,
@@ -72,7 +72,7 @@ struct Side<'a> {
     surface: &'a Surface,
 }
 
-impl Side<'_> {
+impl CreaseSide<'_> {
     fn close(&self, budget: &Budget) -> Result<Result<PatchMesh, Rejection>, Stopped> {
         let points: Vec<DVec3> = self.corners.iter().map(|&v| self.division.points[v as usize]).collect();
         let plane = self.division.plane_of(self.corners, self.region, self.surface);
