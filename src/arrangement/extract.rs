@@ -15,14 +15,14 @@ pub struct Piece {
 
 /// The boundary of a solid.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Surface {
+pub struct SolidBoundary {
     /// Its pieces, in the order of the arrangement.
     pub pieces: Vec<Piece>,
 }
 
 impl Arrangement {
     /// The boundary of the cells that `is_inside` is true of, by the winding number of each operand there. Cavities stay.
-    pub fn boundary(&self, is_inside: impl Fn(&[i32]) -> bool) -> Surface {
+    pub fn boundary(&self, is_inside: impl Fn(&[i32]) -> bool) -> SolidBoundary {
         let mut pieces = Vec::new();
         for (f, &[a, b, c]) in self.pieces.iter().enumerate() {
             let [front, back] = self.windings(f).map(&is_inside);
@@ -37,6 +37,6 @@ impl Arrangement {
             let source = same.or(sources.first()).map_or(self.planes[f], |&(t, _)| t);
             pieces.push(Piece { corners, source, is_opposite: same.is_none() });
         }
-        Surface { pieces }
+        SolidBoundary { pieces }
     }
 }

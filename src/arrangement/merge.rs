@@ -6,7 +6,7 @@
 
 use super::constraints::{Constrained, Constraint, Line};
 use super::error::ArrangementError;
-use super::extract::Surface;
+use super::extract::SolidBoundary;
 use super::triangulation::{NONE, Sight, Triangulation};
 use super::{Arrangement, Cluster};
 use crate::budget::{Budget, CHECK_EVERY};
@@ -40,7 +40,7 @@ impl Arrangement {
     ///
     /// # Errors
     /// When the budget stops the run, or there is a fault.
-    pub fn merged(&self, surface: &Surface, budget: &Budget) -> Result<Merged, ArrangementError> {
+    pub fn merged(&self, surface: &SolidBoundary, budget: &Budget) -> Result<Merged, ArrangementError> {
         let clusters = self.cluster_of_triangles();
         let cluster_of = |t: u32| clusters.get(&t).copied();
         let corners: Vec<[u32; 3]> = surface.pieces.iter().map(|piece| piece.corners).collect();

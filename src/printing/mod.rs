@@ -35,7 +35,7 @@ use crate::geom::{Aabb, DVec3};
 use crate::mesh::{EdgeGroups, Soup};
 use crate::par;
 use crate::spatial::NearestSearch;
-use surface::Surface;
+use surface::WeldedSurface;
 use thickness::{Probe, Side};
 
 /// Corners 12, source 4, normal 24, area 8, boxes 64, edges 18, component 4, and 8 for lists that come and go.
@@ -135,7 +135,7 @@ pub fn measure(
     let _memory = budget.charge(
         soup.triangles.len() as u64 * BYTES_PER_TRIANGLE + soup.positions.len() as u64 * BYTES_PER_VERTEX,
     )?;
-    let Some(surface) = Surface::of(soup, budget)? else { return Ok(None) };
+    let Some(surface) = WeldedSurface::of(soup, budget)? else { return Ok(None) };
     let figures = figures(&surface, policy, is_solid, samples, budget)?;
     let up = policy.build_direction;
     let overhangs = overhang::witnesses(&surface, up, figures.overhang_limit, samples, budget)?;
@@ -150,7 +150,7 @@ pub fn measure(
 }
 
 fn figures(
-    surface: &Surface<'_>,
+    surface: &WeldedSurface<'_>,
     policy: &Policy,
     is_solid: bool,
     samples: usize,
@@ -180,7 +180,7 @@ fn figures(
 }
 
 fn quote(
-    surface: &Surface<'_>,
+    surface: &WeldedSurface<'_>,
     up: Direction,
     is_solid: bool,
     area: f64,

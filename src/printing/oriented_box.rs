@@ -9,7 +9,7 @@
 
 use super::calipers::least_rectangle;
 use super::hull::hull;
-use super::surface::Surface;
+use super::surface::WeldedSurface;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec2, DVec3};
 use crate::par;
@@ -49,7 +49,7 @@ impl OrientedBox {
 }
 
 /// A small box around `surface`.
-pub(super) fn oriented_box(surface: &Surface<'_>, budget: &Budget) -> Result<OrientedBox, Stopped> {
+pub(super) fn oriented_box(surface: &WeldedSurface<'_>, budget: &Budget) -> Result<OrientedBox, Stopped> {
     // About the middle, so that a part far from the origin keeps its digits.
     let middle = surface.bounds.min.midpoint(surface.bounds.max);
     let points = used_positions(surface, middle, budget)?;
@@ -110,7 +110,11 @@ impl Frame {
 }
 
 /// The positions that triangles use, seen from `origin`.
-fn used_positions(surface: &Surface<'_>, origin: DVec3, budget: &Budget) -> Result<Vec<DVec3>, Stopped> {
+fn used_positions(
+    surface: &WeldedSurface<'_>,
+    origin: DVec3,
+    budget: &Budget,
+) -> Result<Vec<DVec3>, Stopped> {
     let mut is_used = vec![false; surface.positions.len()];
     for block in surface.triangles.chunks(CHECK_EVERY) {
         budget.check()?;

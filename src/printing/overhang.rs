@@ -1,6 +1,6 @@
 //! What hangs over nothing in each orientation.
 
-use super::surface::Surface;
+use super::surface::WeldedSurface;
 use super::{Direction, Limit, Witness};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::triangle_area;
@@ -41,7 +41,7 @@ pub(super) fn angle_limit(limit: &Limit) -> f64 {
 
 /// The figures of one direction.
 pub(super) fn overhang(
-    surface: &Surface<'_>,
+    surface: &WeldedSurface<'_>,
     direction: Direction,
     angle_limit: f64,
     budget: &Budget,
@@ -85,7 +85,7 @@ pub(super) fn overhang(
 
 /// The faces with the smallest angles, at most `most`.
 pub(super) fn witnesses(
-    surface: &Surface<'_>,
+    surface: &WeldedSurface<'_>,
     direction: Direction,
     angle_limit: f64,
     most: usize,
@@ -122,7 +122,7 @@ enum Stand {
 
 /// The surface with one direction up.
 struct View<'v> {
-    surface: &'v Surface<'v>,
+    surface: &'v WeldedSurface<'v>,
     axis: usize,
     sign: f64,
     floor: f64,
@@ -131,7 +131,7 @@ struct View<'v> {
 }
 
 impl<'v> View<'v> {
-    fn new(surface: &'v Surface<'v>, direction: Direction, angle_limit: f64) -> Self {
+    fn new(surface: &'v WeldedSurface<'v>, direction: Direction, angle_limit: f64) -> Self {
         let (axis, sign) = direction.axis();
         let ends = [surface.bounds.min[axis] * sign, surface.bounds.max[axis] * sign];
         Self {

@@ -1,6 +1,6 @@
 //! Parts of their own, and cavities without a way out.
 
-use super::surface::Surface;
+use super::surface::WeldedSurface;
 use super::{Limit, Witness};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3};
@@ -47,7 +47,7 @@ pub struct Cavities {
 
 /// Finds the parts; with `is_solid`, which says that the mesh is certified to be one, also what is inside of what.
 pub(super) fn parts(
-    surface: &Surface<'_>,
+    surface: &WeldedSurface<'_>,
     groups: &EdgeGroups,
     bvh: &Bvh,
     limit: &Limit,
@@ -88,7 +88,7 @@ pub(super) fn parts(
     })
 }
 
-fn cavities(surface: &Surface<'_>, mut hollows: Vec<&MeshPart>, witnesses: usize) -> Cavities {
+fn cavities(surface: &WeldedSurface<'_>, mut hollows: Vec<&MeshPart>, witnesses: usize) -> Cavities {
     hollows.sort_by(|a, b| a.volume.total_cmp(&b.volume));
     let witness = |part: &&MeshPart| surface.witness_in_middle(part.first, -part.volume);
     Cavities {
@@ -99,7 +99,7 @@ fn cavities(surface: &Surface<'_>, mut hollows: Vec<&MeshPart>, witnesses: usize
 }
 
 fn describe(
-    surface: &Surface<'_>,
+    surface: &WeldedSurface<'_>,
     components: &Components,
     budget: &Budget,
 ) -> Result<Vec<MeshPart>, Stopped> {

@@ -4,7 +4,7 @@
 //! error is that of the midpoint rule: of the order of the outline's length times half a row.
 
 use super::Direction;
-use super::surface::Surface;
+use super::surface::WeldedSurface;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::par;
 use std::ops::Range;
@@ -17,7 +17,7 @@ const CROSSINGS_MAX: u64 = 1 << 22;
 
 /// The shadow along `direction`, in square units of the file. Of a solid only what faces the light is looked at.
 pub(super) fn shadow(
-    surface: &Surface<'_>,
+    surface: &WeldedSurface<'_>,
     direction: Direction,
     is_solid: bool,
     budget: &Budget,
@@ -69,7 +69,7 @@ fn covered(mut stretches: Vec<[f64; 2]>) -> f64 {
 
 /// The surface seen along an axis.
 struct View<'v> {
-    surface: &'v Surface<'v>,
+    surface: &'v WeldedSurface<'v>,
     axis: usize,
     sign: f64,
     is_solid: bool,
@@ -79,7 +79,7 @@ struct View<'v> {
 }
 
 impl<'v> View<'v> {
-    fn new(surface: &'v Surface<'v>, direction: Direction, is_solid: bool, rows: usize) -> Self {
+    fn new(surface: &'v WeldedSurface<'v>, direction: Direction, is_solid: bool, rows: usize) -> Self {
         let (axis, sign) = direction.axis();
         let up = (axis + 2) % 3;
         let (floor, height) = (surface.bounds.min[up], surface.bounds.max[up] - surface.bounds.min[up]);

@@ -15,7 +15,7 @@ const OPPOSITE_COSINE_MAX: f64 = -0.866_025_403_784_438_6;
 
 /// A mesh after the exact weld, without triangles whose normal cannot be told.
 #[derive(Debug)]
-pub(super) struct Surface<'s> {
+pub(super) struct WeldedSurface<'s> {
     pub(super) positions: &'s [DVec3],
     /// Corners are the first vertex at their position.
     pub(super) triangles: Vec<[u32; 3]>,
@@ -26,7 +26,7 @@ pub(super) struct Surface<'s> {
     pub(super) bounds: Aabb,
 }
 
-impl<'s> Surface<'s> {
+impl<'s> WeldedSurface<'s> {
     /// `None` when nothing is left, or when the size is out of range.
     pub(super) fn of(soup: &'s Soup, budget: &Budget) -> Result<Option<Self>, Stopped> {
         let group = coincident_f64(&soup.positions, budget)?.group;

@@ -6,7 +6,7 @@
 //! Where a sample must look at thousands of triangles, as below a disc that is a fan of very many, fewer are taken.
 
 use super::ray::Ray;
-use super::surface::Surface;
+use super::surface::WeldedSurface;
 use super::{Limit, Witness, ball};
 use crate::budget::{Budget, Stopped};
 use crate::distance::{self, Areas};
@@ -104,7 +104,7 @@ impl Reading {
 
 /// A surface prepared for being measured.
 pub(super) struct Probe<'p> {
-    surface: &'p Surface<'p>,
+    surface: &'p WeldedSurface<'p>,
     search: &'p NearestSearch<'p>,
     areas: &'p Areas,
     budget: &'p Budget,
@@ -112,7 +112,7 @@ pub(super) struct Probe<'p> {
 
 impl<'p> Probe<'p> {
     pub(super) fn new(
-        surface: &'p Surface<'p>,
+        surface: &'p WeldedSurface<'p>,
         search: &'p NearestSearch<'p>,
         areas: &'p Areas,
         budget: &'p Budget,

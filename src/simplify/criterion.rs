@@ -1,7 +1,7 @@
 //! What a collapse costs and where the merged vertex goes: the one trait of all criteria.
 
 use super::options::Placement;
-use super::surface::{Rule, Surface, Vertex};
+use super::surface::{CollapseSurface, Rule, Vertex};
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 
@@ -32,10 +32,16 @@ pub(super) trait Criterion: Sync {
     const REACH: Reach;
 
     /// Fills in the states of all vertices.
-    fn prepare(&self, surface: &mut Surface<Self::State>, budget: &Budget) -> Result<(), Stopped>;
+    fn prepare(&self, surface: &mut CollapseSurface<Self::State>, budget: &Budget) -> Result<(), Stopped>;
 
     /// The place for the edge of `h` under `rule`.
-    fn place(&self, surface: &Surface<Self::State>, h: u32, rule: Rule, placement: Placement) -> Placed;
+    fn place(
+        &self,
+        surface: &CollapseSurface<Self::State>,
+        h: u32,
+        rule: Rule,
+        placement: Placement,
+    ) -> Placed;
 
     /// The state of the vertex at `position` that `ends` became.
     fn merged(&self, ends: [&Vertex<Self::State>; 2], position: DVec3) -> Self::State;

@@ -2,7 +2,7 @@
 
 use super::criterion::{Criterion, Placed, Reach};
 use super::options::Placement;
-use super::surface::{Rule, Surface, Vertex};
+use super::surface::{CollapseSurface, Rule, Vertex};
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 
@@ -15,12 +15,12 @@ impl Criterion for Length {
 
     const REACH: Reach = Reach::Star;
 
-    fn prepare(&self, _: &mut Surface<()>, _: &Budget) -> Result<(), Stopped> {
+    fn prepare(&self, _: &mut CollapseSurface<()>, _: &Budget) -> Result<(), Stopped> {
         Ok(())
     }
 
     #[inline]
-    fn place(&self, surface: &Surface<()>, h: u32, rule: Rule, placement: Placement) -> Placed {
+    fn place(&self, surface: &CollapseSurface<()>, h: u32, rule: Rule, placement: Placement) -> Placed {
         let [a, b] = surface.ends(h).map(|end| end.position);
         let position = match (rule, placement) {
             (Rule::OntoOrigin, _) => a,

@@ -11,7 +11,7 @@
 use super::criterion::{Criterion, Placed, Reach, cheaper};
 use super::options::Placement;
 use super::quadric::Quadric;
-use super::surface::{Rule, Surface, Vertex};
+use super::surface::{CollapseSurface, Rule, Vertex};
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::corner_table::{NONE, next, prev, triangle_of};
@@ -43,11 +43,11 @@ impl Criterion for Memoryless {
 
     const REACH: Reach = Reach::Neighbours;
 
-    fn prepare(&self, _: &mut Surface<()>, _: &Budget) -> Result<(), Stopped> {
+    fn prepare(&self, _: &mut CollapseSurface<()>, _: &Budget) -> Result<(), Stopped> {
         Ok(())
     }
 
-    fn place(&self, surface: &Surface<()>, h: u32, rule: Rule, placement: Placement) -> Placed {
+    fn place(&self, surface: &CollapseSurface<()>, h: u32, rule: Rule, placement: Placement) -> Placed {
         let [a, b] = surface.ends(h).map(|end| end.position);
         let around = EdgeSums::edge(surface, h, b);
         let to_a = a - b;
@@ -77,12 +77,12 @@ impl EdgeSums {
     const NOTHING: Self =
         Self { quadric: Quadric::ZERO, normal: DVec3::ZERO, volume: 0.0, area: 0.0, has_border: false };
 
-    fn edge(surface: &Surface<()>, h: u32, about: DVec3) -> Self {
+    fn edge(surface: &CollapseSurface<()>, h: u32, about: DVec3) -> Self {
         Self::inside(surface, h, about).unwrap_or_else(|| Self::at_border(surface, h, about))
     }
 
     /// The sums for an edge whose ends are not on a border; nothing for another one. Each vertex around is read once.
-    fn inside(surface: &Surface<()>, h: u32, about: DVec3) -> Option<Self> {
+    fn inside(surface: &CollapseSurface<()>, h: u32, about: DVec3) -> Option<Self> {
         let table = &surface.table;
         let twin = table.twin(h);
         let mut sums = Self::NOTHING;
@@ -117,7 +117,7 @@ impl EdgeSums {
         Some(sums)
     }
 
-    fn at_border(surface: &Surface<()>, h: u32, about: DVec3) -> Self {
+    fn at_border(surface: &CollapseSurface<()>, h: u32, about: DVec3) -> Self {
         let mut sums = Self::NOTHING;
         let twin = surface.table.twin(h);
         for corner in surface.table.fan(h) {
@@ -135,7 +135,7 @@ impl EdgeSums {
         sums
     }
 
-    fn add_triangle(&mut self, surface: &Surface<()>, corner: u32, about: DVec3) {
+    fn add_triangle(&mut self, surface: &CollapseSurface<()>, corner: u32, about: DVec3) {
         let [p, q, r] = surface.corners(corner).map(|p| p - about);
         self.add_normal((q - p).cross(r - p), p);
     }
@@ -159,7 +159,7 @@ impl EdgeSums {
     }
 
     /// The border edges at the origin of `corner`, held by two planes each.
-    fn add_borders(&mut self, surface: &Surface<()>, corner: u32, about: DVec3) {
+    fn add_borders(&mut self, surface: &CollapseSurface<()>, corner: u32, about: DVec3) {
         for h in [corner, prev(corner)] {
             if surface.table.twin(h) == NONE {
                 let [p, q, r] = surface.corners(h).map(|p| p - about);

@@ -9,7 +9,7 @@ use super::criterion::{Criterion, Placed, Reach, cheaper};
 use super::marks::LINE;
 use super::options::Placement;
 use super::quadric::Quadric;
-use super::surface::{Rule, Surface, Vertex};
+use super::surface::{CollapseSurface, Rule, Vertex};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::corner_table::next;
@@ -30,7 +30,7 @@ impl Criterion for QuadricError {
 
     const REACH: Reach = Reach::Star;
 
-    fn prepare(&self, surface: &mut Surface<Quadric>, budget: &Budget) -> Result<(), Stopped> {
+    fn prepare(&self, surface: &mut CollapseSurface<Quadric>, budget: &Budget) -> Result<(), Stopped> {
         for t in 0..surface.table.triangle_bound() as u32 {
             if (t as usize).is_multiple_of(CHECK_EVERY) {
                 budget.check()?;
@@ -50,7 +50,7 @@ impl Criterion for QuadricError {
     }
 
     #[inline]
-    fn place(&self, surface: &Surface<Quadric>, h: u32, rule: Rule, placement: Placement) -> Placed {
+    fn place(&self, surface: &CollapseSurface<Quadric>, h: u32, rule: Rule, placement: Placement) -> Placed {
         let [a, b] = surface.ends(h);
         let to_a = a.position - b.position;
         let both = a.state.about(-to_a) + b.state;
@@ -84,7 +84,7 @@ impl Criterion for QuadricError {
 
 impl QuadricError {
     /// Adds the wall on the edge of `h`, across the triangle of `h`, to both ends.
-    fn add_wall(&self, surface: &mut Surface<Quadric>, h: u32) {
+    fn add_wall(&self, surface: &mut CollapseSurface<Quadric>, h: u32) {
         let [p, q, r] = surface.corners(h);
         let wall = Quadric::of_wall(p, q, (q - p).cross(r - p), self.wall_weight);
         for v in [h, next(h)].map(|g| surface.table.origin(g)) {

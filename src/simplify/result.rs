@@ -2,7 +2,7 @@
 
 use super::layout::Layout;
 use super::report::Report;
-use super::surface::{NEW, Surface};
+use super::surface::{CollapseSurface, NEW};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::Color;
@@ -88,7 +88,7 @@ impl Simplified {
     /// The state of `surface`, with the vertices that it uses in the order of the input and so the triangles. `colors`
     /// and `priorities` are those of all its vertices, or none.
     pub(super) fn snapshot<S: Copy + Default>(
-        surface: &Surface<S>,
+        surface: &CollapseSurface<S>,
         layout: &Layout,
         input: &Input<'_>,
         colors: &[Option<Color>],

@@ -1,7 +1,7 @@
 //! Which of the proposed patches may stay: those that add no defect of their own and meet nothing.
 
 use super::report::Rejection;
-use super::surface::Surface;
+use super::surface::FillSurface;
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3, are_collinear};
 use crate::mesh::next_corner;
@@ -47,7 +47,7 @@ pub(super) type Refused = (Rejection, Option<DVec3>);
 
 type Verdict = Result<(), Refused>;
 
-impl Surface {
+impl FillSurface {
     /// Accepts the proposals that are sound, and says of the others why they are not. For a sound one it gives the first
     /// of its new vertices in the surface.
     ///

@@ -10,7 +10,7 @@ use super::patch::PatchMesh;
 use super::refine::{Lengths, refine, turn_edges};
 use super::regions::Region;
 use super::report::Rejection;
-use super::surface::Surface;
+use super::surface::FillSurface;
 use super::{bridge, ears, large, minimal, planar, rbf};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec3, print_pitch};
@@ -48,7 +48,7 @@ impl Way {
 
 /// What patches are made from.
 pub(super) struct Scene<'a> {
-    pub(super) surface: &'a Surface,
+    pub(super) surface: &'a FillSurface,
     /// `None`: no hole is to get the surface of a field.
     pub(super) mesh: Option<&'a rbf::FieldMesh<'a>>,
     pub(super) options: &'a FillOptions,
@@ -108,7 +108,7 @@ impl MadePatch {
     /// A refined patch, its new vertices at places that float32 has.
     pub(super) fn refined(
         region: &Region,
-        surface: &Surface,
+        surface: &FillSurface,
         mut mesh: PatchMesh,
         budget: &Budget,
     ) -> Result<Result<Self, Rejection>, Stopped> {
@@ -125,7 +125,7 @@ impl MadePatch {
 }
 
 /// The places nearest to new vertices that float32 has.
-fn on_lattice(points: &[DVec3], surface: &Surface) -> Result<Vec<DVec3>, Rejection> {
+fn on_lattice(points: &[DVec3], surface: &FillSurface) -> Result<Vec<DVec3>, Rejection> {
     let reach = points.iter().fold(surface.reach, |reach, p| p.abs().max_element().max(reach));
     let pitch = print_pitch(reach).ok_or(Rejection::NotRepresentable)?;
     // A sum with 0 has no negative zero.
@@ -136,13 +136,13 @@ fn proposal(region: &Region, points: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Pr
     Proposal { rim: region.rim().to_vec(), loop_starts: region.loop_starts(), points, triangles }
 }
 
-fn rim_points(region: &Region, surface: &Surface) -> Vec<DVec3> {
+fn rim_points(region: &Region, surface: &FillSurface) -> Vec<DVec3> {
     region.rim().iter().map(|&h| surface.point(h)).collect()
 }
 
 type Triangles = Result<Vec<[usize; 3]>, Rejection>;
 
-fn planar_view(region: &Region, surface: &Surface) -> Triangles {
+fn planar_view(region: &Region, surface: &FillSurface) -> Triangles {
     if region.rim().len() > planar::CORNERS_MAX {
         return Err(Rejection::TooLarge);
     }
@@ -152,7 +152,7 @@ fn planar_view(region: &Region, surface: &Surface) -> Triangles {
 }
 
 /// The corners of the region as one polygon.
-fn polygon(region: &Region, surface: &Surface, budget: &Budget) -> Result<Option<Vec<usize>>, Stopped> {
+fn polygon(region: &Region, surface: &FillSurface, budget: &Budget) -> Result<Option<Vec<usize>>, Stopped> {
     if region.walks.len() == 1 {
         return Ok(Some((0..region.rim().len()).collect()));
     }
@@ -160,7 +160,7 @@ fn polygon(region: &Region, surface: &Surface, budget: &Budget) -> Result<Option
     bridge::one_polygon(&points, &region.ranges(), |i, k| surface.is_free(rim[i], rim[k]), budget)
 }
 
-fn least_bent(region: &Region, surface: &Surface, budget: &Budget) -> Result<Triangles, Stopped> {
+fn least_bent(region: &Region, surface: &FillSurface, budget: &Budget) -> Result<Triangles, Stopped> {
     if let [outer, inner] = &region.ranges()[..]
         && region.rim().len() > minimal::CORNERS_MAX
         && !region.is_flat
@@ -187,7 +187,7 @@ fn least_bent(region: &Region, surface: &Surface, budget: &Budget) -> Result<Tri
     Ok(corners.ok_or(Rejection::NoPatch))
 }
 
-fn corner_by_corner(region: &Region, surface: &Surface, budget: &Budget) -> Result<Triangles, Stopped> {
+fn corner_by_corner(region: &Region, surface: &FillSurface, budget: &Budget) -> Result<Triangles, Stopped> {
     let Some(polygon) = polygon(region, surface, budget)? else { return Ok(Err(Rejection::NoPatch)) };
     let rim = region.rim();
     let points: Vec<DVec3> = polygon.iter().map(|&i| surface.point(rim[i])).collect();
@@ -198,7 +198,7 @@ fn corner_by_corner(region: &Region, surface: &Surface, budget: &Budget) -> Resu
 }
 
 /// A triangulation without new vertices to begin with.
-fn base(region: &Region, surface: &Surface, budget: &Budget) -> Result<Triangles, Stopped> {
+fn base(region: &Region, surface: &FillSurface, budget: &Budget) -> Result<Triangles, Stopped> {
     if region.is_flat
         && let Ok(triangles) = planar_view(region, surface)
     {
@@ -212,7 +212,7 @@ fn base(region: &Region, surface: &Surface, budget: &Budget) -> Result<Triangles
 
 fn smooth(
     region: &Region,
-    surface: &Surface,
+    surface: &FillSurface,
     budget: &Budget,
 ) -> Result<Result<MadePatch, Rejection>, Stopped> {
     match faired(region, surface, budget)? {
@@ -272,7 +272,7 @@ fn edge_length(rims: &[Vec<DVec3>]) -> f64 {
 fn projected(
     region: &Region,
     fit: impl FnOnce() -> Result<Result<Field, Rejection>, Stopped>,
-    surface: &Surface,
+    surface: &FillSurface,
     budget: &Budget,
 ) -> Result<Result<MadePatch, Rejection>, Stopped> {
     let mut patch = match faired(region, surface, budget)? {
@@ -299,7 +299,7 @@ fn projected(
 /// The smooth patch before its vertices are rounded.
 fn faired(
     region: &Region,
-    surface: &Surface,
+    surface: &FillSurface,
     budget: &Budget,
 ) -> Result<Result<PatchMesh, Rejection>, Stopped> {
     let triangles = match base(region, surface, budget)? {

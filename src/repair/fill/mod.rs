@@ -42,7 +42,7 @@ use self::pinched::Walk;
 use self::regions::{Region, regions};
 pub use self::report::{Filled, HoleReport, Rejected, Rejection, Rim};
 pub use self::span::{span_odd_edges, span_rims};
-use self::surface::Surface;
+use self::surface::FillSurface;
 use super::{Changes, Draft, FIRST_BLEND, NEW, Selection};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec3, triangle_area};
@@ -176,7 +176,7 @@ impl Ladder<'_> {
         &self,
         region: Region,
         rejected: Vec<Rejected>,
-        surface: &Surface,
+        surface: &FillSurface,
         budget: &Budget,
     ) -> Result<Hole, Stopped> {
         let choice = self.soup.and_then(|soup| self.options.choice(region.rim(), self.draft, soup));
@@ -206,7 +206,7 @@ impl Ladder<'_> {
     fn give_up(
         &self,
         hole: Hole,
-        surface: &Surface,
+        surface: &FillSurface,
         left: &mut Vec<Hole>,
         done: &mut Vec<HoleReport>,
         budget: &Budget,
@@ -268,7 +268,7 @@ impl Hole {
 }
 
 impl HoleReport {
-    fn take(&mut self, method: Method, made: &MadePatch, surface: &Surface, first: u32) {
+    fn take(&mut self, method: Method, made: &MadePatch, surface: &FillSurface, first: u32) {
         let Proposal { rim, points, triangles, .. } = &made.proposal;
         let point = |v: u32| match rim.get(v as usize) {
             Some(&h) => surface.point(h),
@@ -314,18 +314,18 @@ fn reason(patches: Option<String>, left: u64, stray_edges: u64) -> String {
 }
 
 /// The draft with one vertex at each place.
-fn surface_of(draft: &Draft, budget: &Budget) -> Result<Surface, Stopped> {
+fn surface_of(draft: &Draft, budget: &Budget) -> Result<FillSurface, Stopped> {
     let places = coincident_f64(&draft.positions, budget)?;
     let positions = places.first.iter().map(|&v| draft.positions[v as usize]).collect();
     let triangles = draft.triangles.iter().map(|t| t.map(|v| places.group[v as usize])).collect();
-    Surface::new(positions, triangles, budget)
+    FillSurface::new(positions, triangles, budget)
 }
 
 /// Adds patches, in the order in which they were taken.
 fn append(
     draft: &mut Draft,
     soup: Option<&Soup>,
-    surface: &Surface,
+    surface: &FillSurface,
     patches: &[(MadePatch, u32)],
     budget: &Budget,
 ) -> Result<(), Stopped> {

@@ -8,7 +8,7 @@ use crate::spatial::Bvh;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// The mesh around the holes, and the patches it has got so far.
-pub(super) struct Surface {
+pub(super) struct FillSurface {
     /// Of the mesh, then of new vertices of patches, taken or not.
     pub(super) positions: Vec<DVec3>,
     pub(super) triangles: Vec<[u32; 3]>,
@@ -32,7 +32,7 @@ struct Stars {
     triangles: Vec<u32>,
 }
 
-impl Surface {
+impl FillSurface {
     pub(super) fn new(
         positions: Vec<DVec3>,
         triangles: Vec<[u32; 3]>,

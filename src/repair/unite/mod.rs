@@ -15,7 +15,7 @@ pub use combine::{NotCombined, NotSolid, SetOperation, combine};
 pub use enclose::{enclose, enclose_and_copy_bare};
 
 use super::{Changes, Draft, FIRST_BLEND, NEW};
-use crate::arrangement::{self, Arrangement, ArrangementError, Options, Placed, Surface, arrange};
+use crate::arrangement::{self, Arrangement, ArrangementError, Options, Placed, SolidBoundary, arrange};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3, Sign, print_pitch, triangle_area, upward_crossing, volume_sign};
 use crate::mesh::{EdgeGroups, edge_of};
@@ -96,7 +96,7 @@ pub fn unite_as_oriented(draft: &mut Draft, budget: &Budget) -> Result<Changes, 
 fn become_solid(
     draft: &mut Draft,
     arrangement: &Arrangement,
-    boundary: Surface,
+    boundary: SolidBoundary,
     budget: &Budget,
 ) -> Result<Changes, ArrangementError> {
     let coverage = Coverage::of(draft, arrangement);
@@ -130,7 +130,7 @@ fn pairs_max(draft: &Draft) -> usize {
 fn placed(
     draft: &Draft,
     arrangement: &Arrangement,
-    boundary: Surface,
+    boundary: SolidBoundary,
     budget: &Budget,
 ) -> Result<Option<Placed>, ArrangementError> {
     let merged = arrangement.merged(&boundary, budget)?;

@@ -24,7 +24,7 @@ use crate::simplify::guard::check_faces;
 use crate::simplify::marks::LINE;
 use crate::simplify::options::SimplifyOptions;
 use crate::simplify::report::{Refusal, Refusals};
-use crate::simplify::surface::{Rule, Surface};
+use crate::simplify::surface::{CollapseSurface, Rule};
 use std::sync::Arc;
 
 /// Units of work that an attempt to collapse an edge counts.
@@ -107,7 +107,7 @@ impl From<Refusal> for NotCollapsed {
 
 /// A part that is being simplified.
 pub(super) struct PartSimplifier<'r, C: Criterion> {
-    pub(super) surface: Surface<C::State>,
+    pub(super) surface: CollapseSurface<C::State>,
     /// Of the vertices; empty when the input has none.
     pub(super) colors: Vec<Option<Color>>,
     pub(super) tally: Tally,
@@ -126,7 +126,7 @@ pub(super) struct PartSimplifier<'r, C: Criterion> {
 impl<'r, C: Criterion> PartSimplifier<'r, C> {
     /// A part of which nothing is collapsed yet, with all its edges between free vertices in the queue.
     pub(super) fn new(
-        surface: Surface<C::State>,
+        surface: CollapseSurface<C::State>,
         is_free: Vec<bool>,
         colors: Vec<Option<Color>>,
         room: Option<Room>,
@@ -294,7 +294,7 @@ impl<'r, C: Criterion> PartSimplifier<'r, C> {
     fn look_around(&mut self) {
         let class = self.queue.lowest().min(CLASSES - 1);
         let Self { rings, queue, surface, allowance, .. } = self;
-        let Surface { table, vertices, .. } = surface;
+        let CollapseSurface { table, vertices, .. } = surface;
         for &corner in rings.origin.corners.iter().chain(&rings.destination.corners) {
             if table.corners(triangle_of(corner)).is_none() {
                 continue;
@@ -344,7 +344,7 @@ impl<'r, C: Criterion> PartSimplifier<'r, C> {
 }
 
 /// The space of the triangles of a part.
-fn space_of<S: Copy + Default>(surface: &Surface<S>) -> Space {
+fn space_of<S: Copy + Default>(surface: &CollapseSurface<S>) -> Space {
     let table = &surface.table;
     let corners = |t: u32| [4 * t, 4 * t + 1, 4 * t + 2].map(|h| table.origin(h));
     let triangles: Vec<[u32; 3]> = (0..table.triangle_bound() as u32).map(corners).collect();
@@ -355,7 +355,7 @@ impl Watch {
     /// Notes what the collapse of `h` to `position` sweeps; gives its box.
     fn sweep<S: Copy + Default>(
         &mut self,
-        surface: &Surface<S>,
+        surface: &CollapseSurface<S>,
         h: u32,
         rings: &EdgeRings,
         position: DVec3,
@@ -381,7 +381,7 @@ impl Watch {
     /// Whether what is swept is free.
     fn check<S: Copy + Default>(
         &self,
-        surface: &Surface<S>,
+        surface: &CollapseSurface<S>,
         h: u32,
         bounds: Aabb,
         allowance: &mut Allowance,
@@ -423,7 +423,12 @@ impl Watch {
     }
 
     /// Has the space follow the triangles around the vertex into which `ends` have been merged, the second one.
-    fn follow<S: Copy + Default>(&mut self, surface: &Surface<S>, rings: &EdgeRings, [from, into]: [u32; 2]) {
+    fn follow<S: Copy + Default>(
+        &mut self,
+        surface: &CollapseSurface<S>,
+        rings: &EdgeRings,
+        [from, into]: [u32; 2],
+    ) {
         let now = |t: u32| -> Option<Corners> {
             surface.table.corners(t).map(|ids| (ids, ids.map(|v| surface.position(v))))
         };

@@ -19,7 +19,7 @@ use crate::simplify::marks::LINE;
 use crate::simplify::options::{SimplifyOptions, Target};
 use crate::simplify::priority::costs_of_vertices;
 use crate::simplify::result::{Input, SimplifyError};
-use crate::simplify::surface::Surface;
+use crate::simplify::surface::CollapseSurface;
 use crate::spatial::Bvh;
 use std::sync::Arc;
 
@@ -44,7 +44,7 @@ pub(super) struct Rounds<'r, C: Criterion> {
     pub(super) mesh: Mesh<C::State>,
     pub(super) tally: Tally,
     /// A surface without triangles, for the working units.
-    pub(super) frame: Surface<C::State>,
+    pub(super) frame: CollapseSurface<C::State>,
     rules: Rules<'r, C>,
     pub(super) input: Input<'r>,
     /// Where vertices stay; `None`: nowhere.
@@ -67,7 +67,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         settings: Settings,
         budget: &'r Budget,
     ) -> Result<Self, Stopped> {
-        let mut frame = Surface::new(
+        let mut frame = CollapseSurface::new(
             input.positions,
             0..input.positions.len() as u32,
             CornerTable::unpaired(&[], 0),

@@ -16,7 +16,7 @@ use super::quadric_error::QuadricError;
 use super::queue::Queue;
 use super::report::{Refusal, Refusals, Report};
 use super::result::{Input, Simplified, SimplifyError};
-use super::surface::{Rule, Surface, Vertex};
+use super::surface::{CollapseSurface, Rule, Vertex};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::mesh::Color;
 use crate::mesh::corner_table::{CornerTable, EdgeRings};
@@ -54,7 +54,7 @@ fn run<C: Criterion>(
     let _charge = budget.charge(bytes_of::<C>(input))?;
     let (layout, table) = laid_out(input, budget)?;
     let order = layout.vertices.iter().copied();
-    let mut surface = Surface::<C::State>::new(input.positions, order, table, budget)?;
+    let mut surface = CollapseSurface::<C::State>::new(input.positions, order, table, budget)?;
     surface.wedges.0 = layout.of_triangles(input.texture);
     surface.has_regions = input.has_regions();
     mark_lines(&mut surface, &layout.of_triangles(input.face_groups), options, budget)?;
@@ -112,7 +112,7 @@ fn bytes_of<C: Criterion>(input: &Input<'_>) -> u64 {
 }
 
 struct Strict<'a, C: Criterion> {
-    surface: Surface<C::State>,
+    surface: CollapseSurface<C::State>,
     criterion: C,
     options: &'a SimplifyOptions<'a>,
     budget: &'a Budget,

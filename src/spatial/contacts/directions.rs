@@ -1,12 +1,12 @@
 //! Where the triangles of a star point, seen from its hub.
 
-use super::Surface;
+use super::SearchedSurface;
 use crate::geom::arc_box;
 use crate::spatial::bvh::{Box32, Elements, Star};
 
 /// The triangles of a star as directions from its hub.
 pub(super) struct Directions<'s> {
-    pub(super) surface: Surface<'s>,
+    pub(super) surface: SearchedSurface<'s>,
     pub(super) star: &'s Star,
 }
 

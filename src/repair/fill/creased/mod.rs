@@ -15,7 +15,7 @@ use super::minimal::{self, CORNERS_MAX};
 use super::patch::PatchMesh;
 use super::regions::Region;
 use super::report::Rejection;
-use super::surface::Surface;
+use super::surface::FillSurface;
 use super::{large, planar};
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
@@ -24,7 +24,7 @@ use crate::geom::DVec3;
 pub(super) fn creased(
     region: &Region,
     division: &Division,
-    surface: &Surface,
+    surface: &FillSurface,
     budget: &Budget,
 ) -> Result<Result<MadePatch, Rejection>, Stopped> {
     let Division { points, parents, .. } = division;
@@ -69,7 +69,7 @@ struct CreaseSide<'a> {
     corners: &'a [u32],
     division: &'a Division,
     region: &'a Region,
-    surface: &'a Surface,
+    surface: &'a FillSurface,
 }
 
 impl CreaseSide<'_> {
