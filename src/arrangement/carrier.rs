@@ -2,7 +2,7 @@
 
 use super::constraints::{Constrained, Constraint, Line, TagSets};
 use super::error::ArrangementError;
-use super::kernel::{EXACT, Kernel, View};
+use super::kernel::{EXACT, Kernel, PlaneView};
 use super::point::{Definition, Point};
 use super::triangulation::{NONE, Sight, Triangulation};
 use crate::budget::Budget;
@@ -166,7 +166,7 @@ fn covered(
 }
 
 /// Orders many points along a curve through the squares of a grid, so that walks from one to the next are short.
-fn sort_for_walks(points: &mut [u32], shared: &[Point], view: View) {
+fn sort_for_walks(points: &mut [u32], shared: &[Point], view: PlaneView) {
     if points.len() < 16 {
         return;
     }

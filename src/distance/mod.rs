@@ -24,7 +24,7 @@ pub use samples::{Areas, Sample};
 use scale::Common;
 use search::Directed;
 use target::Target;
-use view::View;
+use view::ScaledSight;
 
 /// The triangles of a surface, by reference. Triangles may be degenerate, open, or meet in any way.
 #[derive(Debug, Clone, Copy)]
@@ -165,7 +165,7 @@ pub fn surface_distance(
     let (a, b) = common.surfaces();
     let (to_a, to_b) = par::join(|| Target::of(a, &common, budget), || Target::of(b, &common, budget));
     let (to_a, to_b) = (to_a?, to_b?);
-    let view = View { sight: None, factor: common.factor, diagonal: common.diagonal };
+    let view = ScaledSight { sight: None, factor: common.factor, diagonal: common.diagonal };
     let directed = |from, to| Directed { from, to, view, common: &common, options, budget }.measure();
     let forward = directed(a, &to_b)?;
     let backward = directed(b, &to_a)?;
@@ -189,7 +189,7 @@ pub fn directed_distance(
     let common = Common::of(from, to, budget)?;
     let (from, to) = common.surfaces();
     let to = Target::of(to, &common, budget)?;
-    let view = View { sight, factor: common.factor, diagonal: common.diagonal };
+    let view = ScaledSight { sight, factor: common.factor, diagonal: common.diagonal };
     let found = Directed { from, to: &to, view, common: &common, options, budget }.measure()?;
     Ok(Some(common.unscale(found)))
 }

@@ -2,7 +2,7 @@
 
 use super::bound::{Corner, upper_bound};
 use super::target::Target;
-use super::view::{View, Visible};
+use super::view::{ScaledSight, Visible};
 use super::{FarPoint, Look};
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
@@ -91,7 +91,7 @@ const LONG: f64 = 1.5;
 /// How pieces are cut.
 pub(super) struct Refining<'r, 'v> {
     pub(super) to: &'r Target<'r>,
-    pub(super) view: &'r View<'v>,
+    pub(super) view: &'r ScaledSight<'v>,
     pub(super) tolerance: Tolerance,
     /// Bound at which a piece can wait until others are no farther.
     pub(super) goal: f64,

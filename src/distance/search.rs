@@ -5,7 +5,7 @@ use super::pieces::{Farthest, Piece, Refined, Refining, Tolerance, WORK_MAX};
 use super::samples::Areas;
 use super::scale::Common;
 use super::target::Target;
-use super::view::{View, Visible};
+use super::view::{ScaledSight, Visible};
 use super::{AreaShares, DirectedDistance, DistanceOptions, Look, Surface};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::par;
@@ -16,7 +16,7 @@ use std::collections::BinaryHeap;
 pub(super) struct Directed<'d, 'v> {
     pub(super) from: Surface<'d>,
     pub(super) to: &'d Target<'d>,
-    pub(super) view: View<'v>,
+    pub(super) view: ScaledSight<'v>,
     pub(super) common: &'d Common<'d>,
     pub(super) options: &'d DistanceOptions,
     pub(super) budget: &'d Budget,

@@ -7,7 +7,7 @@
 
 use super::direction::{Direction, Sector};
 use super::exact::{Vector, cross, dot, is_zero, negative, sign};
-use super::point::{Place, Point, View};
+use super::point::{AxisView, Place, Point};
 use crate::geom::DVec3;
 use num_bigint::BigInt;
 use num_traits::Zero;
@@ -17,7 +17,7 @@ use std::cmp::Ordering;
 struct Face {
     normal: Vector,
     rate: BigInt,
-    view: View,
+    view: AxisView,
     /// Its real edges, by their points, in their order: in from infinity and out again.
     edges: Vec<[usize; 2]>,
     /// The border of the region with corners at infinity between the last and the first.
@@ -82,7 +82,7 @@ impl Cone {
                     cone.points.push(at_infinity(direction.exact));
                 }
             }
-            let view = View::along(side.unit);
+            let view = AxisView::along(side.unit);
             cone.faces.push(Face {
                 normal: side.normal.exact.clone(),
                 rate: side.rate.clone(),
@@ -116,7 +116,7 @@ impl Cone {
     }
 
     /// Whether two edges in one plane meet in more than a common end. At most one end of each is at infinity.
-    fn do_meet(&self, view: View, g: [usize; 2], h: [usize; 2]) -> bool {
+    fn do_meet(&self, view: AxisView, g: [usize; 2], h: [usize; 2]) -> bool {
         let point = |p: usize| &self.points[p];
         let shared: Vec<usize> = g.into_iter().filter(|p| h.contains(p)).collect();
         if let &[common] = shared.as_slice() {

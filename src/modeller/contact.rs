@@ -1,6 +1,6 @@
 //! Whether an edge meets a face beyond what they share, and which pairs are near enough to ask.
 
-use super::point::{Place, Point, View};
+use super::point::{AxisView, Place, Point};
 use super::solid::Solid;
 use crate::budget::{Budget, Stopped};
 use crate::geom::Aabb;
@@ -9,7 +9,7 @@ use num_bigint::BigInt;
 use std::cmp::Ordering;
 
 /// Whether two segments of one plane meet in more than a common end.
-pub(super) fn do_segments_meet(solid: &Solid, view: View, g: [VertexId; 2], h: [VertexId; 2]) -> bool {
+pub(super) fn do_segments_meet(solid: &Solid, view: AxisView, g: [VertexId; 2], h: [VertexId; 2]) -> bool {
     let [a, b] = g.map(|v| solid.point(v));
     let [c, d] = h.map(|v| solid.point(v));
     let shared = g.iter().filter(|v| h.contains(v)).count();

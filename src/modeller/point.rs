@@ -67,7 +67,7 @@ impl Point {
 /// The view of a plane along the coordinate axis nearest to its normal, mirrored if need be so that what turns
 /// counter-clockwise around the normal does so in the view.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct View {
+pub(super) struct AxisView {
     pub(super) u: usize,
     pub(super) v: usize,
 }
@@ -80,7 +80,7 @@ pub(super) enum Place {
     Outside,
 }
 
-impl View {
+impl AxisView {
     /// The view of the plane with this unit normal.
     pub(super) fn along(normal: DVec3) -> Self {
         let size = normal.abs();

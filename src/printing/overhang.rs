@@ -46,7 +46,7 @@ pub(super) fn overhang(
     angle_limit: f64,
     budget: &Budget,
 ) -> Result<Overhang, Stopped> {
-    let view = View::new(surface, direction, angle_limit);
+    let view = OverhangView::new(surface, direction, angle_limit);
     let none = Overhang {
         direction,
         height: view.top - view.floor,
@@ -91,7 +91,7 @@ pub(super) fn witnesses(
     most: usize,
     budget: &Budget,
 ) -> Result<Vec<Witness>, Stopped> {
-    let view = View::new(surface, direction, angle_limit);
+    let view = OverhangView::new(surface, direction, angle_limit);
     let mut found: Vec<(f64, f64, u32)> = Vec::new();
     for t in 0..surface.triangles.len() as u32 {
         if (t as usize).is_multiple_of(CHECK_EVERY) {
@@ -121,7 +121,7 @@ enum Stand {
 }
 
 /// The surface with one direction up.
-struct View<'v> {
+struct OverhangView<'v> {
     surface: &'v WeldedSurface<'v>,
     axis: usize,
     sign: f64,
@@ -130,7 +130,7 @@ struct View<'v> {
     cosine_limit: f64,
 }
 
-impl<'v> View<'v> {
+impl<'v> OverhangView<'v> {
     fn new(surface: &'v WeldedSurface<'v>, direction: Direction, angle_limit: f64) -> Self {
         let (axis, sign) = direction.axis();
         let ends = [surface.bounds.min[axis] * sign, surface.bounds.max[axis] * sign];

@@ -22,11 +22,11 @@ pub(super) fn shadow(
     is_solid: bool,
     budget: &Budget,
 ) -> Result<f64, Stopped> {
-    let (mut view, mut rows) = (View::new(surface, direction, is_solid, ROWS), ROWS);
+    let (mut view, mut rows) = (ShadowView::new(surface, direction, is_solid, ROWS), ROWS);
     let mut starts = view.starts(budget)?;
     while starts[rows] > CROSSINGS_MAX && rows > 1 {
         rows /= 2;
-        view = View::new(surface, direction, is_solid, rows);
+        view = ShadowView::new(surface, direction, is_solid, rows);
         starts = view.starts(budget)?;
     }
     let total = starts[rows] as usize;
@@ -68,7 +68,7 @@ fn covered(mut stretches: Vec<[f64; 2]>) -> f64 {
 }
 
 /// The surface seen along an axis.
-struct View<'v> {
+struct ShadowView<'v> {
     surface: &'v WeldedSurface<'v>,
     axis: usize,
     sign: f64,
@@ -78,7 +78,7 @@ struct View<'v> {
     rows: usize,
 }
 
-impl<'v> View<'v> {
+impl<'v> ShadowView<'v> {
     fn new(surface: &'v WeldedSurface<'v>, direction: Direction, is_solid: bool, rows: usize) -> Self {
         let (axis, sign) = direction.axis();
         let up = (axis + 2) % 3;

@@ -1,6 +1,6 @@
 //! Typed elements of buffers, sparse and normalized ones among them.
 
-use super::buffers::{Buffers, View};
+use super::buffers::{BufferView, Buffers};
 use super::part::{List, LocatedValue};
 use crate::budget::{Budget, CHECK_EVERY, Charge};
 use crate::formats::{Place, ReadError};
@@ -144,7 +144,7 @@ impl Accessors<'_> {
         let component = component_of(&indices)?;
         let bytes_of = |part: &LocatedValue<'_>, element| {
             let view = self.buffers.view(&part.need("bufferView")?)?;
-            let packed = View { stride: None, ..view };
+            let packed = BufferView { stride: None, ..view };
             elements(packed, part.count("byteOffset")?.unwrap_or(0), len, element, &part.pointer)
         };
         let index_bytes = bytes_of(&indices, component.bytes())?;
@@ -179,7 +179,7 @@ fn component_of(part: &LocatedValue<'_>) -> Result<Component, ReadError> {
 
 /// The bytes of `len` elements from byte `begin` of `view` on.
 fn elements<'v>(
-    view: View<'v>,
+    view: BufferView<'v>,
     begin: u64,
     len: u64,
     element: usize,

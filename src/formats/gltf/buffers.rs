@@ -33,7 +33,7 @@ enum Buffer<'a> {
 
 /// Bytes of a buffer view.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct View<'v> {
+pub(super) struct BufferView<'v> {
     pub(super) bytes: &'v [u8],
     /// Bytes from one element to the next, where they are not packed.
     pub(super) stride: Option<usize>,
@@ -81,7 +81,7 @@ impl<'a> Buffers<'a> {
     }
 
     /// The view that `part` names by its number.
-    pub(super) fn view(&self, part: &LocatedValue<'_>) -> Result<View<'_>, ReadError> {
+    pub(super) fn view(&self, part: &LocatedValue<'_>) -> Result<BufferView<'_>, ReadError> {
         let number = part.as_index(&self.views)?;
         let view = self.views.item(number);
         let stride = view.count("byteStride")?.filter(|&stride| stride != 0).map(|stride| stride as usize);
@@ -89,7 +89,7 @@ impl<'a> Buffers<'a> {
             None => self.bytes_of(&view)?,
             Some(compressed) => self.decoded(number, &compressed)?,
         };
-        Ok(View { bytes, stride })
+        Ok(BufferView { bytes, stride })
     }
 
     /// What the view number `number` holds.

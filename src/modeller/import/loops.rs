@@ -3,7 +3,7 @@
 use super::groups::Neighbours;
 use crate::geom::DVec3;
 use crate::mesh::polyhedron::BuildFault;
-use crate::modeller::point::{Point, View};
+use crate::modeller::point::{AxisView, Point};
 use std::cmp::Ordering;
 
 /// Faces made of groups of triangles.
@@ -105,7 +105,7 @@ fn face_loops(
     points: &[DVec3],
 ) -> Option<Vec<Vec<u32>>> {
     let [a, b, c] = seed.map(|v| points[v as usize]);
-    let view = View::along((b - a).cross(c - a).try_normalize()?);
+    let view = AxisView::along((b - a).cross(c - a).try_normalize()?);
     let mut is_walked = vec![false; borders.len()];
     let (mut exterior, mut interior) = (Vec::new(), Vec::new());
     for first in 0..borders.len() {
@@ -130,7 +130,7 @@ fn face_loops(
     (exterior.len() == 1).then(|| exterior.into_iter().chain(interior).collect())
 }
 
-fn is_counter_clockwise(view: View, corners: &[u32], points: &[DVec3]) -> Option<bool> {
+fn is_counter_clockwise(view: AxisView, corners: &[u32], points: &[DVec3]) -> Option<bool> {
     let at: Vec<Point> = corners.iter().map(|&v| Point::of(points[v as usize])).collect();
     let first = (0..at.len())
         .min_by(|&i, &j| at[i].compare(&at[j], view.u).then_with(|| at[i].compare(&at[j], view.v)))?;
