@@ -1,6 +1,6 @@
 //! PLY input.
 
-use super::header::{Element, Header, Kind, Layout, Scalar};
+use super::header::{Header, Kind, Layout, PlyElement, Scalar};
 use super::roles::{ColorKind, Plan, Role};
 use super::values::{Ascii, Binary, Values};
 use crate::budget::{Budget, CHECK_EVERY, Charge};
@@ -69,7 +69,7 @@ struct PlyMesh {
 impl PlyMesh {
     fn read_vertices<V: Values>(
         &mut self,
-        element: &Element<'_>,
+        element: &PlyElement<'_>,
         source: &mut Source<'_, V>,
     ) -> Result<(), ReadError> {
         source.options.limits.check_vertices(element.count)?;
@@ -86,7 +86,7 @@ impl PlyMesh {
 
     fn read_faces<V: Values>(
         &mut self,
-        element: &Element<'_>,
+        element: &PlyElement<'_>,
         source: &mut Source<'_, V>,
     ) -> Result<(), ReadError> {
         source.options.limits.check_triangles(element.count)?;
@@ -113,7 +113,7 @@ impl PlyMesh {
     /// Edges that name no two vertices are skipped as other elements are.
     fn read_edges<V: Values>(
         &mut self,
-        element: &Element<'_>,
+        element: &PlyElement<'_>,
         source: &mut Source<'_, V>,
     ) -> Result<(), ReadError> {
         let Some(plan) = Plan::new(element).with_ends(element) else {
@@ -128,7 +128,7 @@ impl PlyMesh {
 
     fn read_strips<V: Values>(
         &mut self,
-        element: &Element<'_>,
+        element: &PlyElement<'_>,
         source: &mut Source<'_, V>,
     ) -> Result<(), ReadError> {
         let plan = Plan::new(element).with_vertices(element, Role::Strips)?;
@@ -168,7 +168,7 @@ struct Source<'a, V> {
 
 impl<'a, V: Values> Source<'a, V> {
     /// How many of `element` the rest of the file can hold, at most as many as are announced.
-    fn fitting(&self, element: &Element<'_>) -> usize {
+    fn fitting(&self, element: &PlyElement<'_>) -> usize {
         let held = self.values.remaining() / element.bytes_min(self.layout).max(1) + 1;
         element.count.min(held as u64) as usize
     }
@@ -176,7 +176,7 @@ impl<'a, V: Values> Source<'a, V> {
     /// Calls `take` with the line (in text) and the values of each item of `element`.
     fn read_items(
         &mut self,
-        element: &Element<'_>,
+        element: &PlyElement<'_>,
         plan: &Plan,
         mut take: impl FnMut(Option<u32>, &Item) -> Result<(), ReadError>,
     ) -> Result<(), ReadError> {
@@ -196,7 +196,7 @@ impl<'a, V: Values> Source<'a, V> {
     }
 
     /// Charges the lines and colours of the items of `element`.
-    fn charge_beside(&self, element: &Element<'_>, colors: ColorKind) -> Result<Charge<'a>, ReadError> {
+    fn charge_beside(&self, element: &PlyElement<'_>, colors: ColorKind) -> Result<Charge<'a>, ReadError> {
         let line = if self.layout == Layout::Ascii { size_of::<u32>() } else { 0 };
         let color = if colors == ColorKind::None { 0 } else { size_of::<Option<Color>>() };
         Ok(self.budget.charge(self.fitting(element) as u64 * (line + color) as u64)?)

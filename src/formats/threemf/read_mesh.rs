@@ -3,7 +3,7 @@
 use super::model::{FaceAttributes, NO_NUMBER, ObjectMesh, Property};
 use super::model_reader::{ModelReader, number};
 use super::package::{shortened, too_large};
-use super::xml::{Attributes, Element, Namespace};
+use super::xml::{Attributes, Namespace, XmlElement};
 use crate::budget::CHECK_EVERY;
 use crate::formats::{ReadError, numbers};
 use crate::geom::DVec3;
@@ -12,7 +12,10 @@ use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
 /// Reads the content of the element `mesh`.
-pub(super) fn mesh<'x>(reader: &mut ModelReader<'x>, element: &Element<'x>) -> Result<ObjectMesh, ReadError> {
+pub(super) fn mesh<'x>(
+    reader: &mut ModelReader<'x>,
+    element: &XmlElement<'x>,
+) -> Result<ObjectMesh, ReadError> {
     let mut mesh = ObjectMesh::default();
     let mut triangles = Triangles::default();
     if element.is_empty {
@@ -90,7 +93,7 @@ fn read_vertices(reader: &mut ModelReader<'_>, soup: &mut Soup) -> Result<(), Re
     Ok(())
 }
 
-fn bad(reader: &ModelReader<'_>, element: &Element<'_>) -> ReadError {
+fn bad(reader: &ModelReader<'_>, element: &XmlElement<'_>) -> ReadError {
     let found = format!("<{}{}>", element.name, shortened(element.attributes));
     let expected = match element.local {
         "vertex" => "x, y and z with a number each",
