@@ -31,12 +31,12 @@ pub(super) struct Divided {
     pub(super) points: Vec<Point>,
     /// Corners, as points of which no two are at one place, the triangle that names the plane and turns the same way, and the
     /// triangles that cover it, with `true` where they turn the other way.
-    pub(super) pieces: Vec<Piece>,
+    pub(super) pieces: Vec<PlanePiece>,
 }
 
 /// A piece of the triangles of one plane.
 #[derive(Debug)]
-pub(super) struct Piece {
+pub(super) struct PlanePiece {
     pub(super) corners: [u32; 3],
     pub(super) plane: u32,
     pub(super) sources: Vec<(u32, bool)>,
@@ -64,7 +64,8 @@ pub(super) fn divide_all(
         let shift = points.len() as u32 - shared;
         let moved = |p: u32| if p < shared { p } else { p + shift };
         let plane = carrier.triangles[0];
-        let piece = |(corners, sources): ([u32; 3], _)| Piece { corners: corners.map(moved), plane, sources };
+        let piece =
+            |(corners, sources): ([u32; 3], _)| PlanePiece { corners: corners.map(moved), plane, sources };
         pieces.extend(corners.into_iter().zip(sources).map(piece));
         points.extend(own);
     }
@@ -180,7 +181,7 @@ fn points_of_pairs(
 fn unite(
     kernel: &Kernel,
     points: &[Point],
-    pieces: &mut [Piece],
+    pieces: &mut [PlanePiece],
     shared: u32,
     budget: &Budget,
 ) -> Result<(), ArrangementError> {

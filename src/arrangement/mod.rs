@@ -36,7 +36,7 @@ mod triangulation;
 
 pub use build::{Options, arrange, arrange_enclosed};
 pub use error::ArrangementError;
-pub use extract::{Piece, SolidBoundary};
+pub use extract::{BoundaryPiece, SolidBoundary};
 pub use merge::Merged;
 pub use place::{Placed, place};
 

@@ -2,7 +2,7 @@
 //! face groups.
 
 use super::mesh::{Division, Mesh};
-use super::part::Piece;
+use super::part::PartTopology;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::corner_table::{NONE, triangle_of};
@@ -30,7 +30,7 @@ struct Inside {
 pub(super) struct Lines<'l, S> {
     pub(super) mesh: &'l mut Mesh<S>,
     pub(super) division: &'l Division,
-    pub(super) pieces: &'l [Piece],
+    pub(super) pieces: &'l [PartTopology],
     /// Of the input's triangles; empty when all are in one.
     pub(super) groups: &'l [u32],
     pub(super) options: &'l SimplifyOptions<'l>,
@@ -73,7 +73,7 @@ impl<S: Copy + Send + Sync> Lines<'_, S> {
     }
 
     fn inside(&self, part: usize) -> Inside {
-        let Piece { table, is_free } = &self.pieces[part];
+        let PartTopology { table, is_free } = &self.pieces[part];
         let first = self.division.starts[part] as u32;
         let mut found = Inside { seams: Vec::new(), borders: Vec::new(), loose: Vec::new() };
         let place = |h: u32| (first + triangle_of(h), h & 3);

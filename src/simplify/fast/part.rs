@@ -32,7 +32,7 @@ const ATTEMPT: u64 = 256;
 
 /// The topology of a part.
 #[derive(Debug)]
-pub(super) struct Piece {
+pub(super) struct PartTopology {
     pub(super) table: CornerTable,
     /// For each vertex, whether it is free.
     pub(super) is_free: Vec<bool>,

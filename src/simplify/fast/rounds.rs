@@ -6,7 +6,7 @@ use super::fans::are_fans_between;
 use super::guard::{Course, Guard};
 use super::lines::Lines;
 use super::mesh::{Division, Mesh};
-use super::part::{PartSimplifier, Piece, Room, Rules, Tally};
+use super::part::{PartSimplifier, PartTopology, Room, Rules, Tally};
 use super::shells::Shells;
 use super::space::Space;
 use super::strays::Strays;
@@ -191,12 +191,12 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         )
     }
 
-    fn pieces(&self, division: &Division) -> Result<Vec<Piece>, Stopped> {
+    fn pieces(&self, division: &Division) -> Result<Vec<PartTopology>, Stopped> {
         par::try_map_ranges(division.starts.len() - 1, 1, |range| self.piece(division, range.start))
     }
 
     /// The topology of part `i`.
-    pub(super) fn piece(&self, division: &Division, i: usize) -> Result<Piece, Stopped> {
+    pub(super) fn piece(&self, division: &Division, i: usize) -> Result<PartTopology, Stopped> {
         let triangles = division.starts[i]..division.starts[i + 1];
         let (first, count) = (i * division.part_len, division.vertices(i).len());
         let (mut table, mut is_free) = CornerTable::build_part(
@@ -209,11 +209,11 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         for (is_free, is_between) in is_free.iter_mut().zip(&division.is_between[first..]) {
             *is_free &= !is_between;
         }
-        Ok(Piece { table, is_free })
+        Ok(PartTopology { table, is_free })
     }
 
-    fn mark_lines(&mut self, division: &Division, pieces: &[Piece]) -> Result<(), SimplifyError> {
-        let free_or_between = |(i, piece): (usize, &Piece)| {
+    fn mark_lines(&mut self, division: &Division, pieces: &[PartTopology]) -> Result<(), SimplifyError> {
+        let free_or_between = |(i, piece): (usize, &PartTopology)| {
             let between = &division.is_between[i * division.part_len..];
             piece.is_free.iter().zip(between).all(|(is_free, is_between)| *is_free || *is_between)
         };
@@ -258,7 +258,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         &self,
         division: &Division,
         i: usize,
-        Piece { mut table, mut is_free }: Piece,
+        PartTopology { mut table, mut is_free }: PartTopology,
         strays: &Option<Arc<Strays>>,
         is_first: bool,
     ) -> Result<PartSimplifier<'r, C>, Stopped> {
