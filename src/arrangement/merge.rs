@@ -4,7 +4,7 @@
 //! An edge stays where the pieces beside it are of different triangles, or more than two. A point goes when no edge that
 //! stays ends there, or two that are on one line. The regions of all triangles then have the same points on common edges.
 
-use super::constraints::{Constrained, Constraint, Line};
+use super::constraints::{Constrained, Constraint, ConstraintLine};
 use super::error::ArrangementError;
 use super::extract::SolidBoundary;
 use super::triangulation::{NONE, Sight, Triangulation};
@@ -190,7 +190,7 @@ impl Arrangement {
         let mut constrained = Constrained::new(sight, mesh, budget);
         for ends in &region.border {
             let ends = ends.map(|p| vertices[&p]);
-            constrained.insert(Constraint { ends, line: Line::Plane(t as u32) })?;
+            constrained.insert(Constraint { ends, line: ConstraintLine::Plane(t as u32) })?;
         }
         constrained.improve()?;
         let Constrained { mesh, sight, .. } = constrained;

@@ -9,14 +9,14 @@ use super::rule::{Fault, Rule};
 use super::solid::Solid;
 use crate::budget::{Budget, Stopped};
 use crate::geom::Aabb;
-use crate::mesh::polyhedron::{Counts, FaceId, HalfEdgeId, TopologyFault, VertexId};
+use crate::mesh::polyhedron::{EulerCounts, FaceId, HalfEdgeId, TopologyFault, VertexId};
 use std::cmp::Ordering;
 
 /// What a check of the whole solid found.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Validity {
     /// V, E, F, R and S.
-    pub counts: Counts,
+    pub counts: EulerCounts,
     /// H, the number of through-holes, when Euler's formula has a solution.
     pub genus: Option<usize>,
     /// The first fault of each broken rule; none for a valid solid.
