@@ -27,7 +27,7 @@ pub(super) fn boolean(
     if !Operation::Boolean.meshes().contains(&files.len()) {
         return Err(Failure::MeshCount { operation: Operation::Boolean, count: files.len() });
     }
-    let mut reading = Reading { options: options.clone(), scaled: None, triangles: 0, vertices: 0 };
+    let mut reading = OperandReader { options: options.clone(), scaled: None, triangles: 0, vertices: 0 };
     let mut meshes = Vec::with_capacity(files.len());
     for (&bytes, number) in files.iter().zip(1..) {
         let read = bound.reading(|| reading.next(bytes, budget)).map_err(|failure| failure.in_mesh(number));
@@ -44,7 +44,11 @@ struct Operand<'b> {
 }
 
 /// Describes the files and combines them.
-fn combine_all(meshes: Vec<Operand<'_>>, mut reading: Reading, budget: &Budget) -> Result<Answer, Failure> {
+fn combine_all(
+    meshes: Vec<Operand<'_>>,
+    mut reading: OperandReader,
+    budget: &Budget,
+) -> Result<Answer, Failure> {
     let mut meshes = meshes.into_iter().zip(1..);
     let mut describe =
         |(mesh, number)| reading.describe(mesh, budget).map_err(|failure: Failure| failure.in_mesh(number));
@@ -79,7 +83,7 @@ fn combine_all(meshes: Vec<Operand<'_>>, mut reading: Reading, budget: &Budget) 
 }
 
 /// The files as they are read, under limits for all together.
-struct Reading {
+struct OperandReader {
     /// With the format of the output, which is that of the first file unless the caller says.
     options: Options,
     /// The same in the unit of the result, if that is another one.
@@ -88,7 +92,7 @@ struct Reading {
     vertices: u64,
 }
 
-impl Reading {
+impl OperandReader {
     fn next<'b>(&mut self, bytes: &'b [u8], budget: &Budget) -> Result<Operand<'b>, Failure> {
         let encoding = budget.stage(Stage::Read, || formats::sniff(bytes, self.options.format))?;
         let soup = Input::read_soup(bytes, encoding, &self.options, budget)?;

@@ -10,7 +10,7 @@ use crate::spatial::{Bvh, Search, self_contacts};
 const CONTACTS_KEPT: usize = 1 << 20;
 
 /// A way to read coordinates: as they are, or rounded to f32.
-pub(super) struct Reading {
+pub(super) struct CoordinateReading {
     /// By place in the division.
     pub(super) positions: Vec<DVec3>,
     /// Holds the triangles of the first try that have an area.
@@ -39,7 +39,7 @@ pub(super) struct Check<'c> {
     starts: Vec<usize>,
     /// What parts leave that were done again.
     again: Vec<Option<Left>>,
-    pub(super) readings: Vec<Reading>,
+    pub(super) readings: Vec<CoordinateReading>,
     /// There were more contacts than are kept.
     is_truncated: bool,
     budget: &'c Budget,
@@ -97,7 +97,7 @@ impl<'c> Check<'c> {
             let with_area = with_area(&positions, &check.first.triangles, budget)?;
             let ids = (with_area.len() < check.first.triangles.len()).then_some(&with_area[..]);
             let bvh = Bvh::build(&positions, &check.first.triangles, ids, budget)?;
-            check.readings.push(Reading { positions, bvh });
+            check.readings.push(CoordinateReading { positions, bvh });
         }
         Ok(check)
     }
@@ -185,7 +185,7 @@ impl<'c> Check<'c> {
         bvh: Option<&Bvh>,
         found: &mut Found,
     ) -> Result<bool, Stopped> {
-        let Reading { positions, bvh: first } = &self.readings[reading];
+        let CoordinateReading { positions, bvh: first } = &self.readings[reading];
         let flat = par::try_map_ranges(triangles.len(), CHECK_EVERY, |range| {
             self.budget.check()?;
             let is_flat = |t: &usize| {
@@ -213,7 +213,7 @@ impl<'c> Check<'c> {
         (triangles, numbers): &(Vec<[u32; 3]>, Vec<u32>),
         found: &mut Found,
     ) -> Result<(), Stopped> {
-        let Reading { positions, bvh } = &self.readings[reading];
+        let CoordinateReading { positions, bvh } = &self.readings[reading];
         let corners = |t: [u32; 3]| t.map(|v| positions[v as usize]);
         let pairs = par::try_map_ranges(triangles.len(), CHECK_EVERY / 16, |range| {
             let mut pairs = Vec::new();
