@@ -60,7 +60,7 @@ impl<'s> Cloth<'s> {
         seed: u32,
         most: f64,
     ) -> (Option<f64>, u64) {
-        let Some(view) = Frame::of(piece, along, self.slack) else { return (None, 0) };
+        let Some(view) = PieceFrame::of(piece, along, self.slack) else { return (None, 0) };
         let mut walk = Walk { view, covered: 0.0, rounding: 0.0, farthest: 0.0 };
         let mut signs = FxHashMap::default();
         let mut left = vec![(seed, 1.0)];
@@ -100,7 +100,7 @@ impl<'s> Cloth<'s> {
 }
 
 /// A piece as it is seen along a direction.
-struct Frame {
+struct PieceFrame {
     origin: DVec3,
     /// Across the direction.
     across: [DVec3; 2],
@@ -116,7 +116,7 @@ struct Frame {
     slack: f64,
 }
 
-impl Frame {
+impl PieceFrame {
     /// `None` for a piece that is too thin or too small to tell its area.
     fn of(piece: &[Corner; 3], along: DVec3, slack: f64) -> Option<Self> {
         let [a, b, c] = piece.each_ref().map(|corner| corner.place);
@@ -173,7 +173,7 @@ impl Frame {
 
 /// What was walked so far.
 struct Walk {
-    view: Frame,
+    view: PieceFrame,
     /// Area of the piece that is covered, as often as it is.
     covered: f64,
     /// More than the rounding of that.
@@ -210,7 +210,7 @@ impl Walk {
     }
 
     fn bound(&self) -> Option<f64> {
-        let Frame { area, longest, shrink, slack, .. } = self.view;
+        let PieceFrame { area, longest, shrink, slack, .. } = self.view;
         let times = (self.covered / area).abs();
         let is_certain =
             self.rounding <= ROUNDING_MAX * area && (times - times.round()).abs() <= 2.0 * ROUNDING_MAX;

@@ -1,6 +1,6 @@
 //! The field: a function that is zero on the surface, positive outside and negative inside.
 
-use super::centres::Frame;
+use super::centres::UnitFrame;
 use super::options::{ConstraintValues, Kernel};
 use super::partition::Partition;
 use super::polynomial::{dot, gradient, terms};
@@ -72,7 +72,7 @@ pub(super) enum FieldSolution {
 pub struct Field {
     pub(super) kernel: Kernel,
     pub(super) values: ConstraintValues,
-    pub(super) frame: Frame,
+    pub(super) frame: UnitFrame,
     /// What a value of the system is in the values of the field.
     pub(super) value_unit: f64,
     pub(super) parts: FieldSolution,

@@ -1,7 +1,7 @@
 //! From the points of a band to its field.
 
 use super::band::{Band, Surroundings};
-use super::centres::{Frame, Site, sites};
+use super::centres::{Site, UnitFrame, sites};
 use super::field::{Field, FieldSolution, FitFacts, SolveMethod};
 use super::offsets::{Offsets, offsets};
 use super::options::{ConstraintValues, Kernel, RbfOptions};
@@ -32,7 +32,7 @@ pub fn fit(
     if let Err(refusal) = band.check() {
         return Ok(Err(refusal));
     }
-    let frame = Frame::of(&band.points);
+    let frame = UnitFrame::of(&band.points);
     if !is_positive(frame.unit) {
         return Ok(Err(Unfit::NotFinite { point: 0 }));
     }

@@ -59,9 +59,9 @@ pub(super) fn oriented_box(surface: &WeldedSurface<'_>, budget: &Budget) -> Resu
     let sides = sides(&faces, &few, surface.normals[0]);
     let boxes = par::try_map_ranges(sides.len(), 16, |range| {
         budget.spend((range.len() * corners.len()) as u64 / 64 + 1)?;
-        Ok(range.filter_map(|i| Frame::along(sides[i], &corners)).collect::<Vec<_>>())
+        Ok(range.filter_map(|i| BoxAxes::along(sides[i], &corners)).collect::<Vec<_>>())
     })?;
-    let mut boxes: Vec<Frame> = boxes.into_iter().flatten().collect();
+    let mut boxes: Vec<BoxAxes> = boxes.into_iter().flatten().collect();
     boxes.sort_by(|a, b| a.volume.total_cmp(&b.volume));
     boxes.truncate(IMPROVED);
     let mut best = around(&points, [DVec3::X, DVec3::Y, DVec3::Z], budget)?;
@@ -77,12 +77,12 @@ pub(super) fn oriented_box(surface: &WeldedSurface<'_>, budget: &Budget) -> Resu
 
 /// Three directions at right angles, and the volume of the box along them.
 #[derive(Debug, Clone, Copy)]
-struct Frame {
+struct BoxAxes {
     axes: [DVec3; 3],
     volume: f64,
 }
 
-impl Frame {
+impl BoxAxes {
     /// The smallest box around `points` with a side at right angles to `normal`.
     fn along(normal: DVec3, points: &[DVec3]) -> Option<Self> {
         let (u, v) = normal.any_orthonormal_pair();

@@ -17,7 +17,7 @@ pub use camera::{Camera, Direction, Projection, View};
 pub use canvas::{Canvas, Rgb};
 pub use encode::{animation, picture};
 pub use letters::{LETTER_HEIGHT, LETTER_WIDTH};
-pub use model::{Frame, Line, Model, Scene, Shade, Spot};
+pub use model::{Line, Model, Scene, SceneFrame, Shade, Spot};
 pub use normals::first_at_position;
 pub use resolve::{Edges, Style};
 

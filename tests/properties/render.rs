@@ -6,7 +6,8 @@ use meshmend::budget::Budget;
 use meshmend::geom::DVec3;
 use meshmend::par;
 use meshmend::render::{
-    Camera, Direction, Edges, Frame, Model, Projection, Scene, Shade, Style, View, draw, visible_triangles,
+    Camera, Direction, Edges, Model, Projection, Scene, SceneFrame, Shade, Style, View, draw,
+    visible_triangles,
 };
 
 const SIDE: u32 = 48;
@@ -75,7 +76,7 @@ fn round(seed: u64, number: usize) -> (usize, usize) {
     let (positions, triangles) = soup(random);
     let scene = Scene { positions: &positions, triangles: &triangles, palette: &PALETTE, ..Scene::default() };
     let budget = Budget::unlimited();
-    let model = Model::of(scene, Frame::around([scene.bounds()]), Shade::Flat, &budget).unwrap();
+    let model = Model::of(scene, SceneFrame::around([scene.bounds()]), Shade::Flat, &budget).unwrap();
     let projection = random.pick(&[Projection::Orthographic, Projection::Perspective]);
     let camera = Camera::at(&[&model], direction(random), projection, 1.0, &budget).unwrap();
     let seen = visible_triangles(&model, &camera, SIDE, SIDE, &budget).unwrap();
@@ -130,7 +131,7 @@ fn pictures_of_random_soups_are_the_same_with_one_two_and_eight_threads() {
                     ..Scene::default()
                 };
                 let budget = Budget::unlimited();
-                let frame = Frame::around([scene.bounds()]);
+                let frame = SceneFrame::around([scene.bounds()]);
                 let model = Model::of(scene, frame, Shade::Smooth, &budget).unwrap();
                 let camera =
                     Camera::at(&[&model], direction(random), Projection::Perspective, 1.5, &budget).unwrap();

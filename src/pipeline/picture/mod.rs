@@ -13,8 +13,8 @@ use crate::formats::{self, ReadLimits, ReadOptions};
 use crate::geom::DVec3;
 use crate::mesh::Soup;
 use crate::render::{
-    Camera, Canvas, Edges, Frame, LETTER_HEIGHT, LETTER_WIDTH, Model, Projection, Rgb, SIDE_MAX, SIDE_MIN,
-    Shade, Style, View, animation, draw, picture,
+    Camera, Canvas, Edges, LETTER_HEIGHT, LETTER_WIDTH, Model, Projection, Rgb, SIDE_MAX, SIDE_MIN,
+    SceneFrame, Shade, Style, View, animation, draw, picture,
 };
 
 /// What kind of file a picture is.
@@ -235,7 +235,7 @@ fn scale(soup: &mut Soup, factor: f64) {
 /// All views of all sides, as PNG.
 fn sheet(sides: &[(&Soup, Painted)], choices: &PictureChoices, budget: &Budget) -> Result<Vec<u8>, Stopped> {
     let [width, height] = [choices.width, choices.height].map(|side| side.clamp(SIDE_MIN, SIDE_MAX));
-    let frame = Frame::around(sides.iter().map(|(soup, painted)| painted.scene(soup).bounds()));
+    let frame = SceneFrame::around(sides.iter().map(|(soup, painted)| painted.scene(soup).bounds()));
     let models = sides
         .iter()
         .map(|(soup, painted)| Model::of(painted.scene(soup), frame, choices.shade, budget))
