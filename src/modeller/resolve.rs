@@ -39,7 +39,7 @@ struct Velocity {
 
 /// A vertex and the faces around it, clockwise, with the directions of its edges: edge `i` is between the faces `i` and
 /// `i + 1`. What many splits ask for is kept.
-struct Star<'s> {
+struct VertexStar<'s> {
     solid: &'s Solid,
     faces: Vec<FaceId>,
     normals: Vec<Direction>,
@@ -75,7 +75,7 @@ pub(super) fn split(solid: &mut Solid, motion: &Motion, v: VertexId) -> Option<V
 /// The diagonals of the split, as pairs of faces that become neighbours.
 fn good_split(solid: &Solid, motion: &Motion, v: VertexId) -> Option<Vec<[FaceId; 2]>> {
     let h = solid.topology.leaving(v)?;
-    let star = Star::new(solid, motion, h);
+    let star = VertexStar::new(solid, motion, h);
     let degree = star.faces.len();
     let is_good = |split: &Split| star.is_good(split);
     let split = if degree <= DEGREE_OF_ALL_SPLITS_MAX {
@@ -163,7 +163,7 @@ fn splits_around(face: usize, degree: usize) -> impl Iterator<Item = Split> {
     std::iter::once(None).chain(gaps).map(build)
 }
 
-impl<'s> Star<'s> {
+impl<'s> VertexStar<'s> {
     fn new(solid: &'s Solid, motion: &'s Motion, h: HalfEdgeId) -> Self {
         let faces: Vec<FaceId> = solid.topology.around(h).map(|h| solid.topology.face(h)).collect();
         Self {

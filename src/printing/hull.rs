@@ -103,7 +103,7 @@ impl Growing<'_> {
         let (horizon, orphans) = self.remove_seen(face, eye, budget)?;
         budget.spend(orphans.len() as u64)?;
         let first = self.faces.len();
-        for (i, &Rim { edge: [from, to], behind }) in horizon.iter().enumerate() {
+        for (i, &HorizonEdge { edge: [from, to], behind }) in horizon.iter().enumerate() {
             let id = (first + i) as u32;
             self.faces.push(Face {
                 corners: [from, to, eye],
@@ -138,7 +138,7 @@ impl Growing<'_> {
         first: u32,
         eye: u32,
         budget: &Budget,
-    ) -> Result<(Vec<Rim>, Vec<u32>), Stopped> {
+    ) -> Result<(Vec<HorizonEdge>, Vec<u32>), Stopped> {
         let (mut horizon, mut orphans, mut stack) = (Vec::new(), Vec::new(), vec![first]);
         self.faces[first as usize].is_alive = false;
         while let Some(face) = stack.pop() {
@@ -154,7 +154,7 @@ impl Growing<'_> {
                     self.faces[behind as usize].is_alive = false;
                     stack.push(behind);
                 } else {
-                    horizon.push(Rim { edge: [corners[side], corners[(side + 1) % 3]], behind });
+                    horizon.push(HorizonEdge { edge: [corners[side], corners[(side + 1) % 3]], behind });
                 }
             }
         }
@@ -162,7 +162,7 @@ impl Growing<'_> {
     }
 
     /// Joins the new faces, one for each edge of the horizon, along the edges at the new corner.
-    fn join_around(&mut self, first: usize, horizon: &[Rim]) {
+    fn join_around(&mut self, first: usize, horizon: &[HorizonEdge]) {
         let mut by_start: Vec<(u32, usize)> =
             horizon.iter().enumerate().map(|(i, rim)| (rim.edge[0], first + i)).collect();
         by_start.sort_unstable();
@@ -179,7 +179,7 @@ impl Growing<'_> {
 
 /// An edge of the horizon, as the face that was removed ran through it, and the face that stays behind it.
 #[derive(Debug, Clone, Copy)]
-struct Rim {
+struct HorizonEdge {
     edge: [u32; 2],
     behind: u32,
 }

@@ -97,7 +97,7 @@ fn passes(loops: &[BoundaryLoop], surface: &FillSurface, budget: &Budget) -> Res
 }
 
 /// Where a fan ends that begins at a boundary half-edge, and its normal.
-struct Fan {
+struct BoundaryFan {
     /// The boundary half-edge that leaves the vertex; a loop comes along it.
     end: u32,
     normal: DVec3,
@@ -137,7 +137,7 @@ impl Joints<'_> {
 
     /// The fan whose border a loop leaves along `h`; `None` when it ends at an edge with several triangles, or with one
     /// that runs the other way.
-    fn fan(&self, h: u32, budget: &Budget) -> Result<Option<Fan>, Stopped> {
+    fn fan(&self, h: u32, budget: &Budget) -> Result<Option<BoundaryFan>, Stopped> {
         let FillSurface { triangles, groups, positions, .. } = self.surface;
         let vertex = self.surface.corner(h);
         let (mut at, mut normal) = (h, DVec3::ZERO);
@@ -151,7 +151,7 @@ impl Joints<'_> {
             let [a, b] = edge_of(triangles, exit);
             let Some(edge) = groups.find(triangles, [a.min(b), a.max(b)]) else { return Ok(None) };
             match *groups.group(edge) {
-                [_] => return Ok(Some(Fan { end: exit, normal: normal.normalize_or_zero() })),
+                [_] => return Ok(Some(BoundaryFan { end: exit, normal: normal.normalize_or_zero() })),
                 [g, twin] => at = if g == exit { twin } else { g },
                 _ => return Ok(None),
             }
@@ -165,7 +165,7 @@ impl Joints<'_> {
     fn best_exchange(
         &mut self,
         out: &[u32],
-        fans: &[Fan],
+        fans: &[BoundaryFan],
         budget: &Budget,
     ) -> Result<Option<[usize; 2]>, Stopped> {
         // A patch joins the end of fan `i` to the fan that the loop leaves along.
@@ -191,7 +191,7 @@ impl Joints<'_> {
     fn belong_together(
         &mut self,
         out: &[u32],
-        fans: &[Fan],
+        fans: &[BoundaryFan],
         [i, k]: [usize; 2],
         budget: &Budget,
     ) -> Result<bool, Stopped> {

@@ -20,14 +20,14 @@ pub(super) struct FillSurface {
     pub(super) patches: Vec<[u32; 3]>,
     /// Edges of patches between vertices of the mesh.
     pub(super) diagonals: FxHashSet<[u32; 2]>,
-    stars: Stars,
+    stars: VertexStars,
     /// Where the edges of each vertex begin in `groups`, of which it is the smaller end; empty until they are asked for.
     first_edge: Vec<u32>,
 }
 
 /// The triangles at each vertex: where those of each begin, and all of them. Empty until they are asked for.
 #[derive(Default)]
-struct Stars {
+struct VertexStars {
     start: Vec<u32>,
     triangles: Vec<u32>,
 }
@@ -48,7 +48,7 @@ impl FillSurface {
             bvh: None,
             patches: Vec::new(),
             diagonals: FxHashSet::default(),
-            stars: Stars::default(),
+            stars: VertexStars::default(),
             first_edge: Vec::new(),
         })
     }
@@ -149,13 +149,13 @@ impl FillSurface {
                 next[v as usize] += 1;
             }
         }
-        self.stars = Stars { start, triangles };
+        self.stars = VertexStars { start, triangles };
         Ok(())
     }
 
     /// The triangles of the mesh at vertex `v`, ascending.
     pub(super) fn star(&self, v: u32) -> &[u32] {
-        let Stars { start, triangles } = &self.stars;
+        let VertexStars { start, triangles } = &self.stars;
         match start.get(v as usize + 1) {
             Some(&end) => &triangles[start[v as usize] as usize..end as usize],
             None => &[],

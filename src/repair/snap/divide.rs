@@ -8,7 +8,7 @@
 //!
 //! No vertex moves: an edge that is divided goes through the vertex beside it.
 
-use super::Rim;
+use super::ManifoldRim;
 use super::beside::{Flank, NEAR_MAX, flank_of, vertex_beside};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3, are_collinear};
@@ -143,7 +143,7 @@ pub(super) fn slits(
 /// When the budget stops the run.
 pub(super) fn divide_beside(
     draft: &mut Draft,
-    rim: &Rim,
+    rim: &ManifoldRim,
     epsilon: f64,
     chosen: &ChosenEdges,
     budget: &Budget,
@@ -240,7 +240,7 @@ mod tests {
 
     fn divided(draft: &mut Draft, epsilon: f64) -> Divided {
         let budget = Budget::unlimited();
-        let rim = Rim::of(draft, &budget).unwrap();
+        let rim = ManifoldRim::of(draft, &budget).unwrap();
         let divided = divide_beside(draft, &rim, epsilon, &ChosenEdges::default(), &budget).unwrap();
         assert_eq!(draft.check(), Vec::<String>::new());
         divided
@@ -305,7 +305,7 @@ mod tests {
         ];
         let triangles = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 5], [3, 5, 4]];
         let before = Draft::of(&points, &triangles);
-        let rim = Rim::of(&before, &Budget::unlimited()).unwrap();
+        let rim = ManifoldRim::of(&before, &Budget::unlimited()).unwrap();
         assert_eq!(rim.slits(&before, 0.002), [false, true]);
         let mut draft = before.clone();
         assert_eq!((divided(&mut draft, 0.002), draft == before), (Divided::default(), true));

@@ -2,7 +2,7 @@
 //! they run in opposite directions, and how a sheet is wound says nothing about where it belongs.
 
 use super::beside::Reach;
-use super::{Rim, flank};
+use super::{ManifoldRim, flank};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::triangle_area;
 use crate::mesh::{ChosenEdges, Components, ParityUnionFind, edge_of, triangle_of};
@@ -20,7 +20,7 @@ const PARTNERS_MAX: usize = 32;
 /// When the budget stops the run.
 pub(super) fn turn_to_face(
     draft: &mut Draft,
-    rim: &Rim,
+    rim: &ManifoldRim,
     reach: Reach,
     chosen: &ChosenEdges,
     budget: &Budget,
@@ -67,7 +67,7 @@ struct Meeting {
 /// The meetings in an order that does not depend on how parts are wound: by distance, then by triangle.
 fn meetings(
     draft: &Draft,
-    rim: &Rim,
+    rim: &ManifoldRim,
     parts: &Components,
     reach: Reach,
     chosen: &ChosenEdges,

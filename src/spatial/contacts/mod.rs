@@ -5,7 +5,7 @@ mod directions;
 mod terrains;
 
 use super::Bvh;
-use super::bvh::{Frame, Leaf, Sliver, Star, Tree};
+use super::bvh::{Frame, HubStar, Leaf, Sliver, Tree};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{ContactKind, DVec3, suits_expansions};
 use crate::par;
@@ -138,7 +138,7 @@ const STARS_AT_A_TIME: usize = 64;
 /// common direction from it, so the boxes to compare are those of their directions. A flat fan of any size has few pairs of them.
 fn star_contacts(
     surface: SearchedSurface<'_>,
-    star: &Star,
+    star: &HubStar,
     search: Search,
     work_max: u64,
     budget: &Budget,
