@@ -4,7 +4,7 @@ use super::carrier::{Carrier, Pieces, divide};
 use super::error::ArrangementError;
 use super::intern::first_at_place;
 use super::kernel::{EXACT, Kernel};
-use super::pairs::{Meeting, meeting};
+use super::pairs::{TriangleMeeting, meeting};
 use super::point::{Definition, Point};
 use crate::budget::Budget;
 use crate::geom::DVec3;
@@ -102,7 +102,7 @@ fn points_of_pairs(
         pairs[range]
             .iter()
             .map(|pair| match pair.kind {
-                ContactKind::Overlap => Ok(Meeting::Nowhere),
+                ContactKind::Overlap => Ok(TriangleMeeting::Nowhere),
                 _ => meeting(kernel, pair.triangles, |t| plane_of[t as usize]),
             })
             .collect::<Result<Vec<_>, ArrangementError>>()
@@ -110,7 +110,7 @@ fn points_of_pairs(
     .concat();
     let mut names: Vec<Definition> = meetings
         .iter()
-        .filter_map(|meeting| if let Meeting::Ends(ends) = meeting { Some(*ends) } else { None })
+        .filter_map(|meeting| if let TriangleMeeting::Ends(ends) = meeting { Some(*ends) } else { None })
         .flatten()
         .filter(|name| !matches!(name, Definition::Vertex(_)))
         .collect();
@@ -141,13 +141,13 @@ fn points_of_pairs(
     for (pair, meeting) in pairs.iter().zip(&meetings) {
         let both = pair.triangles.map(|t| carrier_of[t as usize] as usize);
         match meeting {
-            Meeting::Nowhere => {}
-            Meeting::InPlane(vertices) => {
+            TriangleMeeting::Nowhere => {}
+            TriangleMeeting::InPlane(vertices) => {
                 for c in both {
                     carriers[c].points.extend(vertices.iter().map(|&v| first[v as usize]));
                 }
             }
-            Meeting::Ends(ends) => {
+            TriangleMeeting::Ends(ends) => {
                 let [Some(a), Some(b)] = ends.each_ref().map(find) else {
                     return Err(ArrangementError::Inconsistent("a point has no number"));
                 };
