@@ -38,7 +38,7 @@ pub use build::{Options, arrange, arrange_enclosed};
 pub use error::ArrangementError;
 pub use extract::{BoundaryPiece, SolidBoundary};
 pub use merge::Merged;
-pub use place::{Placed, place};
+pub use place::{PlacedBoundary, place};
 
 use crate::geom::DVec3;
 use kernel::Kernel;

@@ -14,7 +14,7 @@ use crate::spatial::{Bvh, Search, self_contacts};
 
 /// A boundary in numbers of a file.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Placed {
+pub struct PlacedBoundary {
     /// The position of each point of the arrangement; those that no triangle uses may be anywhere.
     pub positions: Vec<DVec3>,
     /// Corners, as points: of several at one position the first.
@@ -48,7 +48,7 @@ pub fn place(
     merged: &Merged,
     pitch: f64,
     budget: &Budget,
-) -> Result<Placed, ArrangementError> {
+) -> Result<PlacedBoundary, ArrangementError> {
     let first_new = arrangement.positions.len() as u32;
     let mut used: Vec<u32> =
         merged.triangles.as_flattened().iter().copied().filter(|&p| p >= first_new).collect();
@@ -66,11 +66,11 @@ pub fn place(
         positions[p as usize] = nearest(place, pitch);
     }
     let mut placing = Placing {
-        placed: Placed {
+        placed: PlacedBoundary {
             positions,
             triangles: merged.triangles.clone(),
             sources: merged.sources.clone(),
-            ..Placed::default()
+            ..PlacedBoundary::default()
         },
         is_near: Vec::new(),
         exact,
@@ -104,7 +104,7 @@ fn nearest(place: DVec3, pitch: f64) -> DVec3 {
 }
 
 struct Placing<'b> {
-    placed: Placed,
+    placed: PlacedBoundary,
     /// For each triangle, whether it is or may come to be on or through one with a new point.
     is_near: Vec<bool>,
     /// Where the new points are, to the last place.
@@ -171,7 +171,7 @@ impl Placing<'_> {
             return;
         }
         let near: Vec<u32> = self.near().collect();
-        let Placed { triangles, sources, .. } = &mut self.placed;
+        let PlacedBoundary { triangles, sources, .. } = &mut self.placed;
         let mut is_kept = vec![true; triangles.len()];
         for &t in &near {
             let corners = &mut triangles[t as usize];

@@ -1,6 +1,6 @@
 //! The commands and what they take.
 
-use super::files::Place;
+use super::files::FileOrStream;
 use super::flags::{EngineSettingFlags, OptionFlags, SettingFlags};
 use crate::config::Sources;
 use crate::jobs::LostStore;
@@ -60,7 +60,7 @@ pub(super) enum Command {
     Check {
         /// Mesh file, or - for standard input.
         #[arg(value_name = "IN")]
-        input: Place,
+        input: FileOrStream,
         /// Format of the input. Default: found from the content.
         #[arg(long, value_name = "WORD", value_parser = clap::builder::PossibleValuesParser::new(crate::wire::Format::WORDS))]
         format: Option<String>,
@@ -148,7 +148,7 @@ impl ServeArguments {
 struct InputArguments {
     /// Mesh file, or - for standard input, which needs --format. Several files are taken one after the other.
     #[arg(value_name = "IN", required = true, num_args = 1..)]
-    inputs: Vec<Place>,
+    inputs: Vec<FileOrStream>,
     /// Print the report as JSON on standard output; of several files one object a line, with the file's name as `input`.
     #[arg(long)]
     json: bool,
@@ -174,7 +174,7 @@ struct OutputArguments {
     /// File to write, or - for standard output, which needs --output-format. Its extension names the format unless
     /// --output-format does.
     #[arg(short, long, value_name = "OUT")]
-    output: Option<Place>,
+    output: Option<FileOrStream>,
     /// Folder to write results into, each under the name of its file; it is made where it is missing. With
     /// --output-format the extension follows the format.
     #[arg(short = 'd', long, value_name = "DIR")]
@@ -197,7 +197,7 @@ pub(super) enum Target {
     /// Nothing is written.
     None,
     /// The result of the only file.
-    Place(Place),
+    Place(FileOrStream),
     /// The result of each file, under its name.
     Folder(PathBuf),
 }
@@ -264,7 +264,7 @@ pub(super) struct ModellerArguments {
     /// File to write, or - for standard output, which needs --output-format. Its extension names the format unless
     /// --output-format does. Default: none is written, which is enough for --ranges and --list-faces.
     #[arg(short, long, value_name = "OUT")]
-    output: Option<Place>,
+    output: Option<FileOrStream>,
 }
 
 #[derive(Debug, Args)]
@@ -274,7 +274,7 @@ pub(super) struct BooleanArguments {
     /// File to write, or - for standard output, which needs --output-format. Its extension names the format unless
     /// --output-format does.
     #[arg(short, long, value_name = "OUT")]
-    output: Place,
+    output: FileOrStream,
 }
 
 #[derive(Debug, Args)]
@@ -284,7 +284,7 @@ pub(super) struct RenderArguments {
     given: InputArguments,
     /// Picture to write (PNG), or - for standard output.
     #[arg(short, long, value_name = "OUT")]
-    output: Option<Place>,
+    output: Option<FileOrStream>,
     /// Folder to write pictures into, each under the name of its file; it is made where it is missing.
     #[arg(short = 'd', long, value_name = "DIR")]
     out_dir: Option<PathBuf>,
@@ -298,7 +298,7 @@ pub(super) struct RenderArguments {
 pub(super) struct Request {
     pub operation: Operation,
     /// One or more.
-    pub inputs: Vec<Place>,
+    pub inputs: Vec<FileOrStream>,
     pub target: Target,
     pub is_json: bool,
     pub report_html: Option<PathBuf>,

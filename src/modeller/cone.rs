@@ -7,7 +7,7 @@
 
 use super::direction::{Direction, Sector};
 use super::exact::{Vector, cross, dot, is_zero, negative, sign};
-use super::point::{AxisView, Place, Point};
+use super::point::{AxisView, Point, PointLocation};
 use crate::geom::DVec3;
 use num_bigint::BigInt;
 use num_traits::Zero;
@@ -155,7 +155,7 @@ impl Cone {
     /// Whether an edge meets a face that is not beside it in more than a common vertex.
     fn meets_face(&self, ends: [usize; 2], face: &Face) -> bool {
         let heights = ends.map(|p| self.height(face, p));
-        let is_in = |p: &Point| self.locate(face, p) != Place::Outside;
+        let is_in = |p: &Point| self.locate(face, p) != PointLocation::Outside;
         match heights.each_ref().map(sign) {
             [Ordering::Equal, Ordering::Equal] => {
                 face.edges.iter().any(|&side| self.do_meet(face.view, ends, side)) || is_in(&self.inner(ends))
@@ -174,7 +174,9 @@ impl Cone {
 
     /// Whether a point of the plane of a face is in the face and no corner of it.
     fn touches(&self, p: usize, face: &Face) -> bool {
-        !self.is_far(p) && !face.border.contains(&p) && self.locate(face, &self.points[p]) != Place::Outside
+        !self.is_far(p)
+            && !face.border.contains(&p)
+            && self.locate(face, &self.points[p]) != PointLocation::Outside
     }
 
     /// A point inside an edge.
@@ -188,7 +190,7 @@ impl Cone {
         Point::new(x, (&p.w * &q.w) << 1)
     }
 
-    fn locate(&self, face: &Face, p: &Point) -> Place {
+    fn locate(&self, face: &Face, p: &Point) -> PointLocation {
         let count = face.border.len();
         let corner = |i: usize| &self.points[face.border[i % count]];
         // What is at infinity on one line is no border of anything at hand.

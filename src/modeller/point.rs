@@ -74,7 +74,7 @@ pub(super) struct AxisView {
 
 /// Where a point is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum PointLocation {
     Inside,
     Border,
     Outside,
@@ -128,7 +128,7 @@ impl AxisView {
     }
 
     /// Where `p` is in the region bounded by `edges`, which are those of simple disjoint loops.
-    pub(super) fn locate<'p>(self, p: &Point, edges: impl Iterator<Item = [&'p Point; 2]>) -> Place {
+    pub(super) fn locate<'p>(self, p: &Point, edges: impl Iterator<Item = [&'p Point; 2]>) -> PointLocation {
         let mut is_inside = false;
         for [a, b] in edges {
             let (from, to) = (a.compare(p, self.v), b.compare(p, self.v));
@@ -137,7 +137,7 @@ impl AxisView {
             }
             let turn = self.turn(a, b, p);
             if turn == Ordering::Equal && self.is_between(p, a, b) {
-                return Place::Border;
+                return PointLocation::Border;
             }
             // Upward edges count with their lower end and without their upper one.
             let is_upward = from != Ordering::Greater && to == Ordering::Greater;
@@ -146,6 +146,6 @@ impl AxisView {
                 is_inside = !is_inside;
             }
         }
-        if is_inside { Place::Inside } else { Place::Outside }
+        if is_inside { PointLocation::Inside } else { PointLocation::Outside }
     }
 }

@@ -6,7 +6,7 @@ use super::exact::{Rational, det, dot, quotient};
 use super::motion::{Motion, Moving, MovingPoint, root_after_zero};
 use super::near::faces_near;
 use super::plane::meeting_point;
-use super::point::{Place, Point};
+use super::point::{Point, PointLocation};
 use super::solid::Solid;
 use super::sweep::each_meeting;
 use crate::budget::{Budget, Stopped};
@@ -355,7 +355,7 @@ impl<'s> Search<'s> {
                     other => other.insert(self.face_at(face, s)),
                 };
                 let corners = sides.corners.iter().map(|[a, b]| [a, b]);
-                self.solid.view(face).locate(&p, corners) != Place::Outside
+                self.solid.view(face).locate(&p, corners) != PointLocation::Outside
             }
             Contact::EdgeEdge { first, second } => self.do_edges_meet(first, second, s),
             Contact::EdgeVanishes { .. } | Contact::LoopLoop { .. } => false,

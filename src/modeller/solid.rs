@@ -3,7 +3,7 @@
 use super::exact::{Vector, cross, dot, negative, sign};
 use super::index::Index;
 use super::plane::{Plane, meeting_point};
-use super::point::{AxisView, Place, Point};
+use super::point::{AxisView, Point, PointLocation};
 use crate::geom::DVec3;
 use crate::mesh::polyhedron::{FaceId, HalfEdgeId, Polyhedron, VertexId};
 use std::cmp::Ordering;
@@ -91,7 +91,7 @@ impl Solid {
     }
 
     /// Where `p`, a point of the plane of `f`, is in `f`.
-    pub(super) fn locate(&self, f: FaceId, p: &Point) -> Place {
+    pub(super) fn locate(&self, f: FaceId, p: &Point) -> PointLocation {
         self.view(f).locate(p, self.sides(f))
     }
 

@@ -4,7 +4,7 @@ use super::contact::{Boxes, do_meet, grown, meets_beyond_shared};
 use super::journal::Moves;
 use super::near::{face_box, faces_near};
 use super::nesting;
-use super::point::Place;
+use super::point::PointLocation;
 use super::rule::{Fault, Rule};
 use super::solid::Solid;
 use crate::budget::{Budget, Stopped};
@@ -226,7 +226,7 @@ fn loops(solid: &Solid, f: FaceId, has_moved: &dyn Fn(VertexId) -> bool) -> Opti
     let view = solid.view(f);
     let is_in = |inner: usize, outer: usize| {
         let at = solid.point(topology.origin(starts[inner]));
-        view.locate(at, topology.loop_of(starts[outer]).map(|h| solid.ends(h))) == Place::Inside
+        view.locate(at, topology.loop_of(starts[outer]).map(|h| solid.ends(h))) == PointLocation::Inside
     };
     let fault = |rule: Rule, i: usize| {
         Some(Fault { rule, faces: vec![f], vertices: vec![topology.origin(starts[i])] })

@@ -7,7 +7,7 @@ use crate::geom::DVec3;
 
 /// A place for the vertex that an edge becomes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Placed {
+pub(super) struct PlacedVertex {
     pub position: DVec3,
     /// Decides the order.
     pub cost: f64,
@@ -41,7 +41,7 @@ pub(super) trait Criterion: Sync {
         h: u32,
         rule: Rule,
         placement: Placement,
-    ) -> Placed;
+    ) -> PlacedVertex;
 
     /// The state of the vertex at `position` that `ends` became.
     fn merged(&self, ends: [&Vertex<Self::State>; 2], position: DVec3) -> Self::State;
@@ -49,6 +49,6 @@ pub(super) trait Criterion: Sync {
 
 /// The better of two places; the second when they cost the same.
 #[inline]
-pub(super) fn cheaper(a: Placed, b: Placed) -> Placed {
+pub(super) fn cheaper(a: PlacedVertex, b: PlacedVertex) -> PlacedVertex {
     if a.cost < b.cost { a } else { b }
 }

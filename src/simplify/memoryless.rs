@@ -8,7 +8,7 @@
 //! curved ones exactly. Where the paper's last tie-break, the triangles' shape, would decide, the place nearest to the
 //! middle of the edge is taken.
 
-use super::criterion::{Criterion, Placed, Reach, cheaper};
+use super::criterion::{Criterion, PlacedVertex, Reach, cheaper};
 use super::options::Placement;
 use super::quadric::Quadric;
 use super::surface::{CollapseSurface, Rule, Vertex};
@@ -47,20 +47,20 @@ impl Criterion for Memoryless {
         Ok(())
     }
 
-    fn place(&self, surface: &CollapseSurface<()>, h: u32, rule: Rule, placement: Placement) -> Placed {
+    fn place(&self, surface: &CollapseSurface<()>, h: u32, rule: Rule, placement: Placement) -> PlacedVertex {
         let [a, b] = surface.ends(h).map(|end| end.position);
         let around = EdgeSums::edge(surface, h, b);
         let to_a = a - b;
         let weight = around.quadric.weight();
         let placed = |offset: DVec3| {
             let value = around.quadric.value(offset);
-            Placed {
+            PlacedVertex {
                 position: b + offset,
                 cost: value + LENGTH_SHARE * weight * to_a.length_squared(),
                 error_squared: if weight > 0.0 { value / weight } else { 0.0 },
             }
         };
-        let onto_a = || Placed { position: a, ..placed(to_a) };
+        let onto_a = || PlacedVertex { position: a, ..placed(to_a) };
         let onto_b = || placed(DVec3::ZERO);
         match (rule, placement) {
             (Rule::OntoOrigin, _) => onto_a(),

@@ -5,7 +5,7 @@
 //! the corpus, at a tenth of the faces, this takes a tenth off the Hausdorff distance and adds a hundredth to the mean
 //! distance.
 
-use super::criterion::{Criterion, Placed, Reach, cheaper};
+use super::criterion::{Criterion, PlacedVertex, Reach, cheaper};
 use super::marks::LINE;
 use super::options::Placement;
 use super::quadric::Quadric;
@@ -50,14 +50,20 @@ impl Criterion for QuadricError {
     }
 
     #[inline]
-    fn place(&self, surface: &CollapseSurface<Quadric>, h: u32, rule: Rule, placement: Placement) -> Placed {
+    fn place(
+        &self,
+        surface: &CollapseSurface<Quadric>,
+        h: u32,
+        rule: Rule,
+        placement: Placement,
+    ) -> PlacedVertex {
         let [a, b] = surface.ends(h);
         let to_a = a.position - b.position;
         let both = a.state.about(-to_a) + b.state;
         let weight = both.weight();
         let length_cost = LENGTH_SHARE * weight * to_a.length_squared();
         let evenness = if weight > 0.0 { weight.sqrt().recip() } else { 0.0 };
-        let placed = |position: DVec3, value: f64| Placed {
+        let placed = |position: DVec3, value: f64| PlacedVertex {
             position,
             cost: (value + length_cost) * evenness,
             error_squared: if weight > 0.0 { value / weight } else { 0.0 },

@@ -3,7 +3,7 @@
 mod cases;
 mod oracle;
 
-use super::{Arrangement, ArrangementError, Options, Placed, arrange, arrange_enclosed};
+use super::{Arrangement, ArrangementError, Options, PlacedBoundary, arrange, arrange_enclosed};
 use crate::budget::{Budget, StopFlag, Stopped};
 use crate::geom::{DVec3, are_collinear};
 use crate::mesh::EdgeGroups;
@@ -283,7 +283,7 @@ fn what_nothing_passes_through_any_more_is_whole_again() {
 }
 
 /// Pairs of all triangles that meet, and triangles without an area.
-fn conflicts(Placed { positions, triangles, .. }: &Placed) -> u64 {
+fn conflicts(PlacedBoundary { positions, triangles, .. }: &PlacedBoundary) -> u64 {
     let budget = Budget::unlimited();
     let has_area = |&t: &u32| {
         let [a, b, c] = triangles[t as usize].map(|p| positions[p as usize]);

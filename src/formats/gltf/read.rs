@@ -6,7 +6,7 @@ use super::container::Content;
 use super::materials::FileMaterials;
 use super::part::LocatedValue;
 use super::primitive::{GltfMesh, VertexSet, check_indices};
-use super::scene::{Placed, placed_meshes};
+use super::scene::{PlacedMesh, placed_meshes};
 use crate::budget::{Budget, CHECK_EVERY, Charge, Stopped};
 use crate::formats::faces::Faces;
 use crate::formats::{Encoding, Precision, ReadError, ReadErrorKind, ReadOptions};
@@ -63,7 +63,7 @@ pub(in crate::formats) fn read(
 /// The names of the nodes that place a mesh and of their meshes; `None` where one node without any name does, or too many.
 fn object_names<'b>(
     root: &LocatedValue<'_>,
-    placed: &[Placed<'_>],
+    placed: &[PlacedMesh<'_>],
     budget: &'b Budget,
 ) -> Result<Option<(Vec<ObjectName>, Charge<'b>)>, ReadError> {
     if placed.len() > OBJECTS_MAX {
@@ -71,11 +71,12 @@ fn object_names<'b>(
     }
     let list = root.list("meshes")?;
     let usable = |name: &str| if name.len() > NAME_BYTES_MAX { Vec::new() } else { name.as_bytes().to_vec() };
-    let of_mesh = |place: &Placed<'_>| list.item(place.mesh).text("name").unwrap_or_default();
+    let of_mesh = |place: &PlacedMesh<'_>| list.item(place.mesh).text("name").unwrap_or_default();
     let kept = |name: &str| if name.len() > NAME_BYTES_MAX { 0 } else { name.len() };
-    let bytes = |place: &Placed<'_>| size_of::<ObjectName>() + kept(place.name) + kept(of_mesh(place));
+    let bytes = |place: &PlacedMesh<'_>| size_of::<ObjectName>() + kept(place.name) + kept(of_mesh(place));
     let charge = budget.charge(placed.iter().map(bytes).sum::<usize>() as u64)?;
-    let name = |place: &Placed<'_>| ObjectName { object: usable(place.name), group: usable(of_mesh(place)) };
+    let name =
+        |place: &PlacedMesh<'_>| ObjectName { object: usable(place.name), group: usable(of_mesh(place)) };
     let names: Vec<ObjectName> = placed.iter().map(name).collect();
     let has_names = names.len() > 1 || names.iter().any(|name| *name != ObjectName::default());
     Ok(has_names.then_some((names, charge)))
@@ -117,7 +118,7 @@ fn check_version(root: &LocatedValue<'_>) -> Result<(), ReadError> {
 /// The meshes that are placed, by number; the others are empty.
 fn read_meshes(
     root: &LocatedValue<'_>,
-    placed: &[Placed<'_>],
+    placed: &[PlacedMesh<'_>],
     accessors: &Accessors<'_>,
     materials: &FileMaterials<'_>,
 ) -> Result<Vec<GltfMesh>, ReadError> {
@@ -137,7 +138,7 @@ fn read_meshes(
 /// What the file has that the soup does not hold.
 fn left_out(
     root: &LocatedValue<'_>,
-    placed: &[Placed<'_>],
+    placed: &[PlacedMesh<'_>],
     meshes: &[GltfMesh],
 ) -> Result<Vec<(&'static str, u64)>, ReadError> {
     let count = |name| root.list(name).map(|list| list.len() as u64);
@@ -179,7 +180,7 @@ const ABSENT: [f64; 2] = [f64::NAN; 2];
 impl Raw {
     /// Room for everything that is placed, within the limits.
     fn with_room<'b>(
-        placed: &[Placed<'_>],
+        placed: &[PlacedMesh<'_>],
         meshes: &[GltfMesh],
         options: &ReadOptions,
         budget: &'b Budget,

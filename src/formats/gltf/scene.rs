@@ -7,7 +7,7 @@ use crate::geom::DVec3;
 use glam::{DAffine3, DMat3, DQuat};
 
 /// A mesh where a node puts it.
-pub(super) struct Placed<'a> {
+pub(super) struct PlacedMesh<'a> {
     /// Its number.
     pub(super) mesh: usize,
     /// Where its points go; `None`: they stay.
@@ -23,10 +23,13 @@ pub(super) struct Placed<'a> {
 pub(super) fn placed_meshes<'a>(
     root: &LocatedValue<'a>,
     budget: &Budget,
-) -> Result<(Vec<Placed<'a>>, u64), ReadError> {
+) -> Result<(Vec<PlacedMesh<'a>>, u64), ReadError> {
     let (nodes, meshes, scenes) = (root.list("nodes")?, root.list("meshes")?, root.list("scenes")?);
     if nodes.len() == 0 {
-        return Ok(((0..meshes.len()).map(|mesh| Placed { mesh, transform: None, name: "" }).collect(), 0));
+        return Ok((
+            (0..meshes.len()).map(|mesh| PlacedMesh { mesh, transform: None, name: "" }).collect(),
+            0,
+        ));
     }
     let starts = match root.index("scene", &scenes)? {
         Some(scene) => starts_of(&scenes.item(scene), &nodes)?,
@@ -72,7 +75,7 @@ struct Walk<'w, 'a> {
     nodes: &'w List<'a>,
     meshes: &'w List<'a>,
     is_visited: Vec<bool>,
-    placed: Vec<Placed<'a>>,
+    placed: Vec<PlacedMesh<'a>>,
 }
 
 impl Walk<'_, '_> {
@@ -93,7 +96,7 @@ impl Walk<'_, '_> {
             // A mesh with a skin is placed by its joints alone.
             let is_still = node.get("skin").is_some() || transform == DAffine3::IDENTITY;
             let transform = (!is_still).then_some(transform);
-            self.placed.push(Placed { mesh, transform, name: node.text("name").unwrap_or_default() });
+            self.placed.push(PlacedMesh { mesh, transform, name: node.text("name").unwrap_or_default() });
         }
         let children = node
             .list("children")?

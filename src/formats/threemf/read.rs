@@ -3,7 +3,7 @@
 use super::model::{Content, FaceAttributes, Groups, Model, Object, ObjectKind, ObjectMesh, Property};
 use super::models::Models;
 use super::read_volumes::{Volume, are_all, by_object};
-use super::scene::{self, Assembled, Extent, Placed};
+use super::scene::{self, Assembled, Extent, PlacedObject};
 use super::split::volume_of;
 use crate::budget::Budget;
 use crate::formats::{ReadError, ReadOptions};
@@ -123,7 +123,7 @@ pub fn read_scene(
     bytes: &[u8],
     options: &ReadOptions,
     budget: &Budget,
-) -> Result<(Soup, Vec<Placed>), ReadError> {
+) -> Result<(Soup, Vec<PlacedObject>), ReadError> {
     let models = Models::read(bytes, options, budget)?;
     let Assembled { soup, placed } = scene::assemble(&models, Extent::Everything, options, budget)?;
     Ok((soup, placed))

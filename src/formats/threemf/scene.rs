@@ -14,7 +14,7 @@ use crate::mesh::{Color, FaceFault, NAME_BYTES_MAX, OBJECTS_MAX, ObjectName, Obj
 
 /// An object at its place in the scene.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Placed {
+pub struct PlacedObject {
     /// Number of its model part and its own number there, as of [`Body`](super::Body).
     pub source: [usize; 2],
     /// Number of the build item that it belongs to.
@@ -28,7 +28,7 @@ pub struct Placed {
     transform: Transform,
 }
 
-impl Placed {
+impl PlacedObject {
     /// Where a point of the object lies in the scene.
     pub fn apply(&self, p: DVec3) -> DVec3 {
         self.transform.apply(p, Precision::F64)
@@ -39,7 +39,7 @@ impl Placed {
 pub(super) struct Assembled {
     pub(super) soup: Soup,
     /// The objects in it, in their order.
-    pub(super) placed: Vec<Placed>,
+    pub(super) placed: Vec<PlacedObject>,
 }
 
 /// Which parts are put together.
@@ -97,7 +97,7 @@ pub(super) fn assemble(
             scene.leave_out(placement.purpose);
             continue;
         }
-        placed.push(Placed {
+        placed.push(PlacedObject {
             source: placement.object,
             item: placement.item,
             first_vertex: scene.soup.positions.len() as u32,
@@ -200,7 +200,7 @@ impl Scene<'_> {
         if triangles > limits.triangles_max.into() {
             return Err(too_large("triangles", "triangles_max", limits.triangles_max.into(), triangles));
         }
-        let bytes = 64 * (soup.positions.len() + soup.triangles.len()) + size_of::<Placed>();
+        let bytes = 64 * (soup.positions.len() + soup.triangles.len()) + size_of::<PlacedObject>();
         self.charges.push(budget.charge(bytes as u64)?);
         let (first_vertex, first_face) = (scene.positions.len() as u32, scene.face_count);
         for (i, &p) in soup.positions.iter().enumerate() {

@@ -19,7 +19,7 @@ use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3};
 use crate::mesh::Color;
 use crate::mesh::corner_table::{CornerTable, EdgeRings, NONE, next, prev, triangle_of};
-use crate::simplify::criterion::{Criterion, Placed};
+use crate::simplify::criterion::{Criterion, PlacedVertex};
 use crate::simplify::guard::check_faces;
 use crate::simplify::marks::LINE;
 use crate::simplify::options::SimplifyOptions;
@@ -176,7 +176,7 @@ impl<'r, C: Criterion> PartSimplifier<'r, C> {
 
     /// The place for the edge of `h`, and the class of its cost.
     #[inline]
-    fn placed(&self, h: u32) -> Result<(Rule, Placed, usize), Refusal> {
+    fn placed(&self, h: u32) -> Result<(Rule, PlacedVertex, usize), Refusal> {
         let rule = self.surface.rule(h).ok_or(Refusal::Held)?;
         let placed = self.rules.criterion.place(&self.surface, h, rule, self.rules.options.placement);
         let class = class_of(placed.cost).ok_or(Refusal::NotFinite)?;
@@ -238,7 +238,13 @@ impl<'r, C: Criterion> PartSimplifier<'r, C> {
     }
 
     /// Collapses the edge of `h`, unless something speaks against it.
-    fn attempt(&mut self, h: u32, rule: Rule, placed: Placed, budget: &Budget) -> Result<(), NotCollapsed> {
+    fn attempt(
+        &mut self,
+        h: u32,
+        rule: Rule,
+        placed: PlacedVertex,
+        budget: &Budget,
+    ) -> Result<(), NotCollapsed> {
         let Rules { criterion, options, error_squared_limit, .. } = self.rules;
         if placed.error_squared > error_squared_limit {
             return Err(Refusal::Error.into());

@@ -3,7 +3,7 @@
 mod merge;
 mod near;
 
-use super::criterion::{Criterion, Placed};
+use super::criterion::{Criterion, PlacedVertex};
 use super::guard::check_faces;
 use super::key::Key;
 use super::layout::Layout;
@@ -188,7 +188,7 @@ impl<C: Criterion> Strict<'_, C> {
 
     /// The place for the edge of `h` and its key.
     #[inline]
-    fn placed(&self, h: u32) -> Result<(Rule, Placed, Key), Refusal> {
+    fn placed(&self, h: u32) -> Result<(Rule, PlacedVertex, Key), Refusal> {
         let rule = self.surface.rule(h).ok_or(Refusal::Held)?;
         let placed = self.criterion.place(&self.surface, h, rule, self.options.placement);
         let key = Key::of(placed.cost).ok_or(Refusal::NotFinite)?;
@@ -200,7 +200,7 @@ impl<C: Criterion> Strict<'_, C> {
     }
 
     /// Collapses the edge of `h`, unless something speaks against it.
-    fn attempt(&mut self, h: u32, rule: Rule, placed: Placed) -> Result<(), Refusal> {
+    fn attempt(&mut self, h: u32, rule: Rule, placed: PlacedVertex) -> Result<(), Refusal> {
         if placed.error_squared > self.error_squared_limit {
             return Err(Refusal::Error);
         }
