@@ -182,18 +182,18 @@ struct OutputArguments {
 }
 
 impl OutputArguments {
-    fn target(self) -> Target {
+    fn target(self) -> OutputTarget {
         match (self.output, self.out_dir) {
-            (Some(place), _) => Target::Place(place),
-            (None, Some(folder)) => Target::Folder(folder),
-            (None, None) => Target::None,
+            (Some(place), _) => OutputTarget::Place(place),
+            (None, Some(folder)) => OutputTarget::Folder(folder),
+            (None, None) => OutputTarget::None,
         }
     }
 }
 
 /// Where results go.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Target {
+pub(super) enum OutputTarget {
     /// Nothing is written.
     None,
     /// The result of the only file.
@@ -299,7 +299,7 @@ pub(super) struct Request {
     pub operation: Operation,
     /// One or more.
     pub inputs: Vec<FileOrStream>,
-    pub target: Target,
+    pub target: OutputTarget,
     pub is_json: bool,
     pub report_html: Option<PathBuf>,
     pub material: Option<PathBuf>,
@@ -311,7 +311,7 @@ pub(super) struct Request {
 }
 
 impl InputArguments {
-    fn request(self, operation: Operation, target: Target) -> Request {
+    fn request(self, operation: Operation, target: OutputTarget) -> Request {
         Request {
             operation,
             inputs: self.inputs,
@@ -328,13 +328,13 @@ impl InputArguments {
 
 impl AnalyzeArguments {
     pub(super) fn request(self, operation: Operation) -> Request {
-        self.given.request(operation, Target::None)
+        self.given.request(operation, OutputTarget::None)
     }
 }
 
 impl From<VerifyArguments> for Request {
     fn from(given: VerifyArguments) -> Self {
-        given.given.request(Operation::Verify, Target::None)
+        given.given.request(Operation::Verify, OutputTarget::None)
     }
 }
 
@@ -368,13 +368,13 @@ impl From<FillHolesArguments> for Request {
 
 impl From<ModellerArguments> for Request {
     fn from(given: ModellerArguments) -> Self {
-        given.given.request(Operation::Modeller, given.output.map_or(Target::None, Target::Place))
+        given.given.request(Operation::Modeller, given.output.map_or(OutputTarget::None, OutputTarget::Place))
     }
 }
 
 impl From<BooleanArguments> for Request {
     fn from(given: BooleanArguments) -> Self {
-        given.given.request(Operation::Boolean, Target::Place(given.output))
+        given.given.request(Operation::Boolean, OutputTarget::Place(given.output))
     }
 }
 

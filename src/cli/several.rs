@@ -1,6 +1,6 @@
 //! One file or several: where each result goes, and what is told of all.
 
-use super::arguments::{Request, Target};
+use super::arguments::{OutputTarget, Request};
 use super::colours::{BAD, DOUBTFUL, GOOD, aligned, painted};
 use super::exit::{Exit, print, say};
 use super::figures::counted;
@@ -36,7 +36,7 @@ pub(super) fn run(request: &Request) -> Exit {
 fn errands(request: &Request) -> Result<Vec<Errand<'_>>, Problem> {
     let each = if request.operation == Operation::Boolean { request.inputs.len() } else { 1 };
     let many = request.inputs.len() > each;
-    if many && matches!(request.target, Target::Place(_)) {
+    if many && matches!(request.target, OutputTarget::Place(_)) {
         return Err(wrong("one --output holds the result of one file; several files need --out-dir"));
     }
     if many && request.report_html.is_some() {
@@ -45,16 +45,16 @@ fn errands(request: &Request) -> Result<Vec<Errand<'_>>, Problem> {
     if request.inputs.len() > 1 && request.inputs.contains(&FileOrStream::Stream) {
         return Err(wrong("standard input cannot be one of several files"));
     }
-    if let Target::Folder(folder) = &request.target {
+    if let OutputTarget::Folder(folder) = &request.target {
         fs::create_dir_all(folder)
             .map_err(|e| wrong(format!("{} cannot be made: {}", folder.display(), told(&e))))?;
     }
     let mut taken = BTreeSet::new();
     let errand = |inputs| {
         let output = match &request.target {
-            Target::None => None,
-            Target::Place(place) => Some(place.clone()),
-            Target::Folder(folder) => Some(place_in(folder, inputs, request)?),
+            OutputTarget::None => None,
+            OutputTarget::Place(place) => Some(place.clone()),
+            OutputTarget::Folder(folder) => Some(place_in(folder, inputs, request)?),
         };
         match &output {
             Some(FileOrStream::File(path)) if !taken.insert(path.clone()) => Err(wrong(format!(
@@ -170,7 +170,7 @@ fn without_name<'t>(input: &str, told: &'t str) -> &'t str {
 fn sum(request: &Request, exits: &[Exit]) -> String {
     let count = |wanted: &[Exit]| exits.iter().filter(|exit| wanted.contains(exit)).count();
     let no = match request.target {
-        Target::None => "not valid",
+        OutputTarget::None => "not valid",
         _ => "without a result as asked",
     };
     let rows = [

@@ -23,7 +23,7 @@ use crate::par;
 pub use samples::{Areas, Sample};
 use scale::Common;
 use search::Directed;
-use target::Target;
+use target::DistanceTarget;
 use view::ScaledSight;
 
 /// The triangles of a surface, by reference. Triangles may be degenerate, open, or meet in any way.
@@ -163,7 +163,8 @@ pub fn surface_distance(
     }
     let common = Common::of(a, b, budget)?;
     let (a, b) = common.surfaces();
-    let (to_a, to_b) = par::join(|| Target::of(a, &common, budget), || Target::of(b, &common, budget));
+    let (to_a, to_b) =
+        par::join(|| DistanceTarget::of(a, &common, budget), || DistanceTarget::of(b, &common, budget));
     let (to_a, to_b) = (to_a?, to_b?);
     let view = ScaledSight { sight: None, factor: common.factor, diagonal: common.diagonal };
     let directed = |from, to| Directed { from, to, view, common: &common, options, budget }.measure();
@@ -188,7 +189,7 @@ pub fn directed_distance(
     }
     let common = Common::of(from, to, budget)?;
     let (from, to) = common.surfaces();
-    let to = Target::of(to, &common, budget)?;
+    let to = DistanceTarget::of(to, &common, budget)?;
     let view = ScaledSight { sight, factor: common.factor, diagonal: common.diagonal };
     let found = Directed { from, to: &to, view, common: &common, options, budget }.measure()?;
     Ok(Some(common.unscale(found)))

@@ -4,7 +4,7 @@ use super::bound::{Corner, upper_bound};
 use super::pieces::{Farthest, Piece, Refined, Refining, Tolerance, WORK_MAX};
 use super::samples::Areas;
 use super::scale::Common;
-use super::target::Target;
+use super::target::DistanceTarget;
 use super::view::{ScaledSight, Visible};
 use super::{AreaShares, DirectedDistance, DistanceOptions, Look, Surface};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
@@ -15,7 +15,7 @@ use std::collections::BinaryHeap;
 /// One direction.
 pub(super) struct Directed<'d, 'v> {
     pub(super) from: Surface<'d>,
-    pub(super) to: &'d Target<'d>,
+    pub(super) to: &'d DistanceTarget<'d>,
     pub(super) view: ScaledSight<'v>,
     pub(super) common: &'d Common<'d>,
     pub(super) options: &'d DistanceOptions,

@@ -87,6 +87,6 @@ pub use trace::TraceParent;
 pub use upload::{Upload, Uploaded};
 pub use view::StoredFile;
 pub use webhook::{
-    PrivateHosts, RetryPlan, SecretError, Target, TargetError, URL_BYTES_MAX, VaultError, WebhookSecret,
-    WebhookSettings,
+    PrivateHosts, RetryPlan, SecretError, TargetError, URL_BYTES_MAX, VaultError, WebhookSecret,
+    WebhookSettings, WebhookTarget,
 };
