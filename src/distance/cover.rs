@@ -61,7 +61,7 @@ impl<'s> Cloth<'s> {
         most: f64,
     ) -> (Option<f64>, u64) {
         let Some(view) = PieceFrame::of(piece, along, self.slack) else { return (None, 0) };
-        let mut walk = Walk { view, covered: 0.0, rounding: 0.0, farthest: 0.0 };
+        let mut walk = CoverWalk { view, covered: 0.0, rounding: 0.0, farthest: 0.0 };
         let mut signs = FxHashMap::default();
         let mut left = vec![(seed, 1.0)];
         signs.insert(seed, 1.0);
@@ -172,7 +172,7 @@ impl PieceFrame {
 }
 
 /// What was walked so far.
-struct Walk {
+struct CoverWalk {
     view: PieceFrame,
     /// Area of the piece that is covered, as often as it is.
     covered: f64,
@@ -182,7 +182,7 @@ struct Walk {
     farthest: f64,
 }
 
-impl Walk {
+impl CoverWalk {
     /// Adds what a triangle covers: the part of it that is seen in the piece (Sutherland and Hodgman 1974).
     fn cover(&mut self, corners: [(DVec2, f64); 3], sign: f64) {
         let reach = corners.iter().map(|(p, _)| p.length()).fold(self.view.longest, f64::max);

@@ -17,7 +17,7 @@ use super::conflict::Contact;
 use super::exact::{Rational, cross, dot, to_f64};
 use super::merged::Merged;
 use super::motion::{Motion, Moving, MovingPoint, root_after_zero};
-use super::search::Search;
+use super::search::EventSearch;
 use super::solid::Solid;
 use crate::budget::{Budget, Stopped};
 use crate::mesh::polyhedron::{HalfEdgeId, VertexId};
@@ -65,7 +65,7 @@ pub(super) fn next_event(
     let merged = Merged::of(solid, &vanishing);
     let is_explained =
         |s: &Rational, contact: &Contact| vanish_at.as_ref() == Some(s) && merged.explains(solid, contact);
-    let mut search = Search::new(solid, motion, moving);
+    let mut search = EventSearch::new(solid, motion, moving);
     let mut found = First::default();
     for span in search.spans(end) {
         found = first_contact(&mut search, span, vanish_at.as_ref(), &is_explained, budget)?;
@@ -87,7 +87,7 @@ pub(super) fn next_event(
 
 /// The first contacts until `end`; where there are none before it, those that were found to come later, or none.
 fn first_contact(
-    search: &mut Search<'_>,
+    search: &mut EventSearch<'_>,
     end: f64,
     vanish_at: Option<&Rational>,
     is_explained: &dyn Fn(&Rational, &Contact) -> bool,
@@ -97,7 +97,7 @@ fn first_contact(
     let mut found = First::default();
     let is_in_time = |s: &Rational| vanish_at.is_none_or(|end| s <= end);
     // What vertices find ends the time for edges.
-    for search_for in [Search::vertices_against_faces, Search::edges_against_edges] {
+    for search_for in [EventSearch::vertices_against_faces, EventSearch::edges_against_edges] {
         let mut candidates = Vec::new();
         search_for(search, budget, &mut candidates)?;
         candidates.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));

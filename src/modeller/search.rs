@@ -47,7 +47,7 @@ fn root_span([height, height_error]: [f64; 2], [growth, growth_error]: [f64; 2])
 }
 
 /// What moves, and until when.
-pub(super) struct Search<'s> {
+pub(super) struct EventSearch<'s> {
     solid: &'s Solid,
     motion: &'s Motion,
     moving: &'s Moving,
@@ -71,7 +71,7 @@ struct FaceAt {
 /// What may come to meet, and the earliest time at which it does.
 pub(super) type Candidates = Vec<(f64, Contact)>;
 
-impl<'s> Search<'s> {
+impl<'s> EventSearch<'s> {
     pub(super) fn new(solid: &'s Solid, motion: &'s Motion, moving: &'s Moving) -> Self {
         let speeds = moving.vertices.iter().map(|(_, m)| m.near_speed()).collect();
         let rate = |(f, r): &(FaceId, BigInt)| (*f, quotient(r, &BigInt::one()) / solid.plane(*f).length);

@@ -37,8 +37,12 @@ pub(super) fn placed_meshes<'a>(
         None => Vec::new(),
     };
     let starts = if starts.is_empty() { roots(&nodes)? } else { starts };
-    let mut walk =
-        Walk { nodes: &nodes, meshes: &meshes, is_visited: vec![false; nodes.len()], placed: Vec::new() };
+    let mut walk = SceneWalk {
+        nodes: &nodes,
+        meshes: &meshes,
+        is_visited: vec![false; nodes.len()],
+        placed: Vec::new(),
+    };
     // The last in the list is the next.
     let mut next: Vec<(usize, DAffine3)> =
         starts.into_iter().rev().map(|node| (node, DAffine3::IDENTITY)).collect();
@@ -71,14 +75,14 @@ fn roots(nodes: &List<'_>) -> Result<Vec<usize>, ReadError> {
     Ok((0..nodes.len()).filter(|&i| !is_child[i]).collect())
 }
 
-struct Walk<'w, 'a> {
+struct SceneWalk<'w, 'a> {
     nodes: &'w List<'a>,
     meshes: &'w List<'a>,
     is_visited: Vec<bool>,
     placed: Vec<PlacedMesh<'a>>,
 }
 
-impl Walk<'_, '_> {
+impl SceneWalk<'_, '_> {
     /// Notes the mesh of a node; gives where the node is and its children.
     fn visit(&mut self, number: usize, parent: DAffine3) -> Result<(DAffine3, Vec<usize>), ReadError> {
         let node = self.nodes.item(number);

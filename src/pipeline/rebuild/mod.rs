@@ -146,7 +146,7 @@ pub(super) fn rebuild(
                 Ok(attempt)
             }
         })?;
-    let search = Search { input, encoding, options, before, budget };
+    let search = LatticeSearch { input, encoding, options, before, budget };
     match search.run(&input.soup, &draft, &actions) {
         Err(NotRebuilt::Refused { refusal: Refusal::BeyondFloat32 { .. }, .. })
             if options.wrap.may_recenter =>
@@ -161,7 +161,7 @@ pub(super) fn rebuild(
 }
 
 /// The search for a lattice whose result is close enough.
-struct Search<'a> {
+struct LatticeSearch<'a> {
     input: &'a Input,
     encoding: Encoding,
     options: &'a Options,
@@ -169,7 +169,7 @@ struct Search<'a> {
     budget: &'a Budget,
 }
 
-impl Search<'_> {
+impl LatticeSearch<'_> {
     /// Tries ever finer lattices for a draft made of `soup` by `actions`.
     fn run(&self, soup: &Soup, draft: &Draft, actions: &[Action]) -> Result<Rebuilt, NotRebuilt> {
         let (choices, limits, budget) = (&self.options.wrap, &self.options.limits, self.budget);

@@ -66,7 +66,7 @@ pub(super) fn triangulate(
 }
 
 /// A triangulation, and how many of its triangles have no area.
-pub(super) struct Found {
+pub(super) struct MinimalTriangulation {
     pub(super) triangles: Vec<[usize; 3]>,
     caps: u32,
 }
@@ -80,7 +80,7 @@ pub(super) fn with_least_caps(
     least: Least,
     is_free: impl Fn(usize, usize) -> bool,
     budget: &Budget,
-) -> Result<Option<Found>, Stopped> {
+) -> Result<Option<MinimalTriangulation>, Stopped> {
     let n = points.len();
     if n < 3 {
         return Ok(None);
@@ -115,7 +115,7 @@ pub(super) fn with_least_caps(
     let Some(Weight(caps, ..)) = table.weight_of(0, n - 1).filter(|&weight| weight < IMPOSSIBLE) else {
         return Ok(None);
     };
-    Ok(Some(Found { triangles: table.triangles(), caps }))
+    Ok(Some(MinimalTriangulation { triangles: table.triangles(), caps }))
 }
 
 impl<C: Chords> Table<'_, C> {

@@ -48,7 +48,7 @@ pub(super) struct Check<'c> {
 
 /// What a look at the surface found.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Found {
+pub(super) struct SurfaceCheck {
     /// Merged vertices, by place, of triangles that meet others or have no area.
     pub(super) offenders: Vec<u32>,
     /// Numbers of triangles that are as in the input and meet others that are too.
@@ -138,8 +138,8 @@ impl<'c> Check<'c> {
     }
 
     /// Looks at what has changed since the last look.
-    pub(super) fn look(&mut self) -> Result<Found, Stopped> {
-        let mut found = Found::default();
+    pub(super) fn look(&mut self) -> Result<SurfaceCheck, Stopped> {
+        let mut found = SurfaceCheck::default();
         let is_first = self.again.iter().all(Option::is_none);
         let redone: (Vec<[u32; 3]>, Vec<u32>) = if is_first {
             (Vec::new(), Vec::new())
@@ -183,7 +183,7 @@ impl<'c> Check<'c> {
         triangles: &[[u32; 3]],
         numbers: &[u32],
         bvh: Option<&Bvh>,
-        found: &mut Found,
+        found: &mut SurfaceCheck,
     ) -> Result<bool, Stopped> {
         let CoordinateReading { positions, bvh: first } = &self.readings[reading];
         let flat = par::try_map_ranges(triangles.len(), CHECK_EVERY, |range| {
@@ -211,7 +211,7 @@ impl<'c> Check<'c> {
         &self,
         reading: usize,
         (triangles, numbers): &(Vec<[u32; 3]>, Vec<u32>),
-        found: &mut Found,
+        found: &mut SurfaceCheck,
     ) -> Result<(), Stopped> {
         let CoordinateReading { positions, bvh } = &self.readings[reading];
         let corners = |t: [u32; 3]| t.map(|v| positions[v as usize]);
@@ -244,7 +244,7 @@ impl<'c> Check<'c> {
     }
 
     /// Notes triangles that should not be as they are.
-    fn note(&self, triangles: &[([u32; 3], u32)], found: &mut Found) {
+    fn note(&self, triangles: &[([u32; 3], u32)], found: &mut SurfaceCheck) {
         let corners = triangles.iter().flat_map(|(corners, _)| corners);
         let before = found.offenders.len();
         found.offenders.extend(corners.filter(|&&v| self.first.is_merged[v as usize]));

@@ -8,7 +8,7 @@
 //!
 //! Where the input meets itself its triangles stay as they are.
 
-use super::check::{Check, Found, Left};
+use super::check::{Check, Left, SurfaceCheck};
 use super::guard::{Course, Guard};
 use super::mesh::Division;
 use super::part::PartSimplifier;
@@ -40,7 +40,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         let mut locked = vec![false; division.order.len()];
         let mut tries = 0;
         loop {
-            let Found { mut offenders, unsound } = check.look()?;
+            let SurfaceCheck { mut offenders, unsound } = check.look()?;
             guard.shells.exclude(&unsound);
             let mut reason = Refusal::SelfIntersection;
             if offenders.is_empty() {
