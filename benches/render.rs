@@ -8,7 +8,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use meshmend::budget::Budget;
 use meshmend::geom::DVec3;
 use meshmend::render::{
-    Camera, Edges, Model, Projection, Scene, SceneFrame, Shade, Style, View, draw, picture,
+    Camera, DrawnEdges, Model, Projection, Scene, SceneFrame, Shade, Style, View, draw, picture,
 };
 use std::hint::black_box;
 
@@ -22,7 +22,7 @@ fn png(mesh: &(Vec<DVec3>, Vec<[u32; 3]>), width: u32, height: u32) -> Vec<u8> {
     let aspect = f64::from(width) / f64::from(height);
     let camera = Camera::at(&[&model], View::Iso.direction(), Projection::Orthographic, aspect, &budget)
         .expect("no limit");
-    let style = Style { edges: Edges::Creases, background: [255; 3], back: Some([207, 63, 54]) };
+    let style = Style { edges: DrawnEdges::Creases, background: [255; 3], back: Some([207, 63, 54]) };
     picture(&draw(&model, &camera, width, height, &style, &budget).expect("no limit"))
 }
 

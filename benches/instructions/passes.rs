@@ -13,7 +13,7 @@ use meshmend::mesh::{Boundary, EdgeGroups, Soup, singular_vertices, twins};
 use meshmend::pipeline::{Operation, Options, Outcome, run};
 use meshmend::printing::{Policy, measure};
 use meshmend::render::{
-    Camera, Edges, Model, Projection, Scene, SceneFrame, Shade, Style, View, draw, picture,
+    Camera, DrawnEdges, Model, Projection, Scene, SceneFrame, Shade, Style, View, draw, picture,
 };
 use meshmend::repair::Draft;
 use meshmend::repair::fill::{FillOptions, Method, fill};
@@ -296,7 +296,7 @@ fn rendering() -> Body {
         let model = Model::of(scene, frame, Shade::Smooth, &budget).expect("no limit");
         let direction = View::Iso.direction();
         let camera = Camera::at(&[&model], direction, Projection::Orthographic, 4.0 / 3.0, &budget);
-        let style = Style { edges: Edges::Creases, background: [255; 3], back: Some([207, 63, 54]) };
+        let style = Style { edges: DrawnEdges::Creases, background: [255; 3], back: Some([207, 63, 54]) };
         let canvas = draw(&model, &camera.expect("no limit"), 320, 240, &style, &budget).expect("no limit");
         picture(&canvas)
     })

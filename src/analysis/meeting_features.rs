@@ -37,7 +37,7 @@ impl FeatureMeeting {
 
 /// What is compared with another triangle.
 #[derive(Clone, Copy)]
-struct Corners {
+struct ComparedTriangle {
     vertices: [u32; 3],
     at: [DVec3; 3],
     face: u32,
@@ -45,7 +45,7 @@ struct Corners {
     is_edge: [bool; 3],
 }
 
-impl Corners {
+impl ComparedTriangle {
     fn of(cx: &Context<'_>, sides: &PolygonSides, t: u32) -> Self {
         let written = cx.mesh.soup.triangles[t as usize];
         let vertices = written.map(|v| cx.mesh.first_at(v));
@@ -103,7 +103,7 @@ impl PolygonSides {
 
 /// The pairs of features, ascending, in which two triangles of the soup meet; nothing within one face.
 pub(super) fn meetings(cx: &Context<'_>, sides: &PolygonSides, contact: &Contact) -> Vec<FeatureMeeting> {
-    let [f, g] = [contact.a, contact.b].map(|t| Corners::of(cx, sides, t));
+    let [f, g] = [contact.a, contact.b].map(|t| ComparedTriangle::of(cx, sides, t));
     if f.face == g.face {
         return Vec::new();
     }
@@ -154,7 +154,7 @@ fn ascending([a, b]: [u32; 2]) -> [u32; 2] {
 }
 
 /// The meeting of vertex `v` at `p` with the triangle, of which it is no corner.
-fn vertex_on(v: u32, p: DVec3, g: &Corners) -> Option<FeatureMeeting> {
+fn vertex_on(v: u32, p: DVec3, g: &ComparedTriangle) -> Option<FeatureMeeting> {
     let a = [v, NONE];
     let in_face = FeatureMeeting { test: ProximityTest::VertexFace, a, b: g.face() };
     if let Some((ends, _, is_edge)) = g.sides().find(|(_, [from, to], _)| is_on_segment(p, *from, *to)) {
@@ -168,7 +168,7 @@ fn vertex_on(v: u32, p: DVec3, g: &Corners) -> Option<FeatureMeeting> {
 
 /// The meeting of an edge with the face of a triangle, a side of which inside that face it crosses; none where it runs along
 /// the face.
-fn through_face(ends: [u32; 2], at: [DVec3; 2], of: &Corners) -> Option<FeatureMeeting> {
+fn through_face(ends: [u32; 2], at: [DVec3; 2], of: &ComparedTriangle) -> Option<FeatureMeeting> {
     let [a, b, c] = of.at;
     let is_along = at.into_iter().all(|p| orient3d(a, b, c, p).is_zero());
     (!is_along).then(|| FeatureMeeting { test: ProximityTest::EdgeFace, a: ends, b: of.face() })

@@ -14,7 +14,7 @@ use num_traits::Zero;
 use std::cmp::Ordering;
 
 /// A face: its plane is `normal . x = rate`.
-struct Face {
+struct ConeFace {
     normal: Vector,
     rate: BigInt,
     view: AxisView,
@@ -27,7 +27,7 @@ struct Face {
 /// The picture.
 pub(super) struct Cone {
     points: Vec<Point>,
-    faces: Vec<Face>,
+    faces: Vec<ConeFace>,
     /// Each edge by its points, and the faces beside it.
     edges: Vec<([usize; 2], [usize; 2])>,
 }
@@ -83,7 +83,7 @@ impl Cone {
                 }
             }
             let view = AxisView::along(side.unit);
-            cone.faces.push(Face {
+            cone.faces.push(ConeFace {
                 normal: side.normal.exact.clone(),
                 rate: side.rate.clone(),
                 view,
@@ -96,7 +96,7 @@ impl Cone {
 
     /// True when edges and faces meet in what they share only.
     pub(super) fn is_embedded(&self) -> bool {
-        let is_simple = |face: &Face| {
+        let is_simple = |face: &ConeFace| {
             (0..face.edges.len())
                 .all(|i| (0..i).all(|j| !self.do_meet(face.view, face.edges[i], face.edges[j])))
         };
@@ -147,13 +147,13 @@ impl Cone {
         sign(&dot(&to_a, &to_b)) != Ordering::Greater
     }
 
-    fn height(&self, face: &Face, p: usize) -> BigInt {
+    fn height(&self, face: &ConeFace, p: usize) -> BigInt {
         let point = &self.points[p];
         dot(&face.normal, &point.x) - &face.rate * &point.w
     }
 
     /// Whether an edge meets a face that is not beside it in more than a common vertex.
-    fn meets_face(&self, ends: [usize; 2], face: &Face) -> bool {
+    fn meets_face(&self, ends: [usize; 2], face: &ConeFace) -> bool {
         let heights = ends.map(|p| self.height(face, p));
         let is_in = |p: &Point| self.locate(face, p) != PointLocation::Outside;
         match heights.each_ref().map(sign) {
@@ -173,7 +173,7 @@ impl Cone {
     }
 
     /// Whether a point of the plane of a face is in the face and no corner of it.
-    fn touches(&self, p: usize, face: &Face) -> bool {
+    fn touches(&self, p: usize, face: &ConeFace) -> bool {
         !self.is_far(p)
             && !face.border.contains(&p)
             && self.locate(face, &self.points[p]) != PointLocation::Outside
@@ -190,7 +190,7 @@ impl Cone {
         Point::new(x, (&p.w * &q.w) << 1)
     }
 
-    fn locate(&self, face: &Face, p: &Point) -> PointLocation {
+    fn locate(&self, face: &ConeFace, p: &Point) -> PointLocation {
         let count = face.border.len();
         let corner = |i: usize| &self.points[face.border[i % count]];
         // What is at infinity on one line is no border of anything at hand.

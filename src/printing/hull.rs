@@ -12,7 +12,7 @@ const UNSET: u32 = u32::MAX;
 
 /// A face of the hull.
 #[derive(Debug, Clone)]
-struct Face {
+struct HullFace {
     /// Counter-clockwise seen from outside.
     corners: [u32; 3],
     /// The face across the edge from each corner to the next.
@@ -72,7 +72,7 @@ fn is_above(points: &[DVec3], corners: [u32; 3], point: u32) -> bool {
 
 struct Growing<'p> {
     points: &'p [DVec3],
-    faces: Vec<Face>,
+    faces: Vec<HullFace>,
 }
 
 impl Growing<'_> {
@@ -80,7 +80,7 @@ impl Growing<'_> {
         for (corners, neighbours) in
             [([a, b, c], [1, 2, 3]), ([b, a, d], [0, 3, 2]), ([c, b, d], [0, 1, 3]), ([a, c, d], [0, 2, 1])]
         {
-            self.faces.push(Face { corners, neighbours, above: Vec::new(), is_alive: true });
+            self.faces.push(HullFace { corners, neighbours, above: Vec::new(), is_alive: true });
         }
         let others = (0..self.points.len() as u32).filter(|v| ![a, b, c, d].contains(v)).collect();
         self.hand_out(others, 0);
@@ -105,7 +105,7 @@ impl Growing<'_> {
         let first = self.faces.len();
         for (i, &HorizonEdge { edge: [from, to], behind }) in horizon.iter().enumerate() {
             let id = (first + i) as u32;
-            self.faces.push(Face {
+            self.faces.push(HullFace {
                 corners: [from, to, eye],
                 neighbours: [behind, UNSET, UNSET],
                 above: Vec::new(),
@@ -125,7 +125,7 @@ impl Growing<'_> {
     }
 
     fn farthest_above(&self, face: u32) -> Option<u32> {
-        let Face { corners, above, .. } = &self.faces[face as usize];
+        let HullFace { corners, above, .. } = &self.faces[face as usize];
         let [a, b, c] = corners.map(|v| self.points[v as usize]);
         let normal = (b - a).cross(c - a);
         let height = |v: u32| (self.points[v as usize] - a).dot(normal);
@@ -144,7 +144,7 @@ impl Growing<'_> {
         while let Some(face) = stack.pop() {
             budget.spend(1)?;
             orphans.append(&mut self.faces[face as usize].above);
-            let Face { corners, neighbours, .. } = self.faces[face as usize].clone();
+            let HullFace { corners, neighbours, .. } = self.faces[face as usize].clone();
             for side in 0..3 {
                 let behind = neighbours[side];
                 if self.faces.get(behind as usize).is_none_or(|face| !face.is_alive) {

@@ -19,7 +19,7 @@ pub use encode::{animation, picture};
 pub use letters::{LETTER_HEIGHT, LETTER_WIDTH};
 pub use model::{Line, Model, Scene, SceneFrame, Shade, Spot};
 pub use normals::first_at_position;
-pub use resolve::{Edges, Style};
+pub use resolve::{DrawnEdges, Style};
 
 use crate::budget::{Budget, Stopped};
 

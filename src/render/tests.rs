@@ -5,7 +5,7 @@ use crate::geom::DVec3;
 use crate::par;
 
 const PALETTE: [Rgb; 2] = [[200, 200, 200], [0, 200, 0]];
-const STYLE: Style = Style { edges: Edges::None, background: [255; 3], back: Some([220, 0, 0]) };
+const STYLE: Style = Style { edges: DrawnEdges::None, background: [255; 3], back: Some([220, 0, 0]) };
 
 /// A square in the plane z = `z`, of side 2 around the origin, its front above.
 fn square(z: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {

@@ -6,7 +6,7 @@ use meshmend::budget::Budget;
 use meshmend::geom::DVec3;
 use meshmend::par;
 use meshmend::render::{
-    Camera, Direction, Edges, Model, Projection, Scene, SceneFrame, Shade, Style, View, draw,
+    Camera, Direction, DrawnEdges, Model, Projection, Scene, SceneFrame, Shade, Style, View, draw,
     visible_triangles,
 };
 
@@ -118,7 +118,7 @@ fn at_the_middle_of_each_pixel_the_triangle_is_seen_that_a_ray_meets_first() {
 
 #[test]
 fn pictures_of_random_soups_are_the_same_with_one_two_and_eight_threads() {
-    let style = Style { edges: Edges::All, background: [255; 3], back: Some([200, 0, 0]) };
+    let style = Style { edges: DrawnEdges::All, background: [255; 3], back: Some([200, 0, 0]) };
     for number in 0..cases(10, 300) {
         let picture = |threads| {
             par::with_threads(threads, || {

@@ -25,7 +25,7 @@ impl CornerTable {
                 [a, b, c].into_iter().for_each(|v| is_regular[v as usize] = false);
             }
         }
-        let mut edges = Edges::of(&table, vertex_count);
+        let mut edges = HalfEdgeEntries::of(&table, vertex_count);
         for v in 0..vertex_count {
             if v.is_multiple_of(CHECK_EVERY) {
                 budget.check()?;
@@ -85,12 +85,12 @@ struct HalfEdgeEntry {
 }
 
 /// The half-edges by the smaller of their ends.
-struct Edges {
+struct HalfEdgeEntries {
     starts: Vec<u32>,
     sides: Vec<HalfEdgeEntry>,
 }
 
-impl Edges {
+impl HalfEdgeEntries {
     fn of(table: &CornerTable, vertex_count: usize) -> Self {
         let mut starts = vec![0u32; vertex_count + 2];
         for triangle in &table.triangles {

@@ -7,7 +7,7 @@ use crate::modeller::point::{AxisView, Point};
 use std::cmp::Ordering;
 
 /// Faces made of groups of triangles.
-pub(super) struct Faces {
+pub(super) struct GroupedFaces {
     /// The loops of each face, the exterior one first, of numbers of kept vertices.
     pub(super) loops: Vec<Vec<Vec<u32>>>,
     /// The group of each face.
@@ -37,7 +37,7 @@ pub(super) fn trace(
     neighbours: &Neighbours,
     group: &[u32],
     points: &[DVec3],
-) -> Result<Faces, Vec<u32>> {
+) -> Result<GroupedFaces, Vec<u32>> {
     let mut borders: Vec<(u32, u32, u32)> = Vec::new();
     for (t, corners) in triangles.iter().enumerate() {
         for c in 0..3 {
@@ -94,7 +94,7 @@ pub(super) fn trace(
         face.iter().flatten().for_each(|&v| around[v as usize].push(f as u32));
     }
     let face_of_triangle = group.iter().map(|&g| face_of_group[g as usize]).collect();
-    Ok(Faces { loops, groups, vertices, around, face_of_triangle })
+    Ok(GroupedFaces { loops, groups, vertices, around, face_of_triangle })
 }
 
 /// The loops of one group, the exterior one first; `None` when it is no face.

@@ -13,7 +13,7 @@ use crate::formats::{self, ReadLimits, ReadOptions};
 use crate::geom::DVec3;
 use crate::mesh::Soup;
 use crate::render::{
-    Camera, Canvas, Edges, LETTER_HEIGHT, LETTER_WIDTH, Model, Projection, Rgb, SIDE_MAX, SIDE_MIN,
+    Camera, Canvas, DrawnEdges, LETTER_HEIGHT, LETTER_WIDTH, Model, Projection, Rgb, SIDE_MAX, SIDE_MIN,
     SceneFrame, Shade, Style, View, animation, draw, picture,
 };
 
@@ -39,7 +39,7 @@ pub struct PictureChoices {
     /// How faces are shaded.
     pub shade: Shade,
     /// Which edges are drawn.
-    pub edges: Edges,
+    pub edges: DrawnEdges,
     /// How depth changes what is seen.
     pub projection: Projection,
     /// Whether defects are coloured and marked.
@@ -63,7 +63,7 @@ impl Default for PictureChoices {
             width: 480,
             height: 360,
             shade: Shade::Smooth,
-            edges: Edges::Creases,
+            edges: DrawnEdges::Creases,
             projection: Projection::Orthographic,
             shows_defects: true,
             turn_pictures: 0,
