@@ -188,7 +188,7 @@ fn group_by_parts<K: Key>(
     })?;
     count_earlier(&mut chunks, parts);
     let firsts = par::try_map_ranges(parts.count(), PARTS_AT_A_TIME, |range| {
-        let mut table = Table::default();
+        let mut table = HashTable::default();
         range.map(|part| first_points(&chunks, part, &mut table, budget)).collect::<Result<Vec<_>, _>>()
     })?;
     let firsts: Vec<Vec<u32>> = firsts.into_iter().flatten().collect();
@@ -271,7 +271,7 @@ fn count_earlier<K: Key>(chunks: &mut [Chunk<K>], parts: HashPartition) {
 fn first_points<K: Key>(
     chunks: &[Chunk<K>],
     part: usize,
-    table: &mut Table<K>,
+    table: &mut HashTable<K>,
     budget: &Budget,
 ) -> Result<Vec<u32>, Stopped> {
     let len = chunks.iter().map(|c| c.part(part).len()).sum();
@@ -314,13 +314,13 @@ fn first_points_by_sorting<K: Key>(
 
 /// Open addressing with linear probing, at most half full.
 #[derive(Default)]
-struct Table<K> {
+struct HashTable<K> {
     slots: Vec<Entry<K>>,
 }
 
 const EMPTY: u32 = u32::MAX;
 
-impl<K: Key> Table<K> {
+impl<K: Key> HashTable<K> {
     /// Empties it, with room for `len` keys.
     fn clear(&mut self, len: usize) {
         self.slots.clear();

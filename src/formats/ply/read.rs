@@ -1,7 +1,7 @@
 //! PLY input.
 
 use super::header::{Header, Kind, Layout, PlyElement, Scalar};
-use super::roles::{ColorKind, Plan, Role};
+use super::roles::{ColorKind, PropertyRoles, Role};
 use super::values::{Ascii, Binary, Values};
 use crate::budget::{Budget, CHECK_EVERY, Charge};
 use crate::formats::colors::note_color;
@@ -44,7 +44,7 @@ fn read_body(
             b"edge" => mesh.read_edges(element, &mut source)?,
             b"tristrips" => mesh.read_strips(element, &mut source)?,
             _ if element.properties.is_empty() => {}
-            _ => source.read_items(element, &Plan::new(element), |_, _| Ok(()))?,
+            _ => source.read_items(element, &PropertyRoles::new(element), |_, _| Ok(()))?,
         }
     }
     let soup = mesh.faces.into_soup(mesh.positions, &options.limits, budget)?;
@@ -73,7 +73,7 @@ impl PlyMesh {
         source: &mut Source<'_, V>,
     ) -> Result<(), ReadError> {
         source.options.limits.check_vertices(element.count)?;
-        let plan = Plan::new(element).with_coordinates(element)?.with_colors(element);
+        let plan = PropertyRoles::new(element).with_coordinates(element)?.with_colors(element);
         let _charged = source.budget.reserve(&mut self.positions, source.fitting(element))?;
         let _charged = source.charge_beside(element, plan.colors)?;
         source.read_items(element, &plan, |line, item| {
@@ -90,7 +90,7 @@ impl PlyMesh {
         source: &mut Source<'_, V>,
     ) -> Result<(), ReadError> {
         source.options.limits.check_triangles(element.count)?;
-        let plan = Plan::new(element)
+        let plan = PropertyRoles::new(element)
             .with_vertices(element, Role::Corners)?
             .with_colors(element)
             .with_color_index(element);
@@ -116,8 +116,8 @@ impl PlyMesh {
         element: &PlyElement<'_>,
         source: &mut Source<'_, V>,
     ) -> Result<(), ReadError> {
-        let Some(plan) = Plan::new(element).with_ends(element) else {
-            return source.read_items(element, &Plan::new(element), |_, _| Ok(()));
+        let Some(plan) = PropertyRoles::new(element).with_ends(element) else {
+            return source.read_items(element, &PropertyRoles::new(element), |_, _| Ok(()));
         };
         let _charged = source.budget.reserve(&mut self.segments, source.fitting(element))?;
         source.read_items(element, &plan, |line, item| {
@@ -131,7 +131,7 @@ impl PlyMesh {
         element: &PlyElement<'_>,
         source: &mut Source<'_, V>,
     ) -> Result<(), ReadError> {
-        let plan = Plan::new(element).with_vertices(element, Role::Strips)?;
+        let plan = PropertyRoles::new(element).with_vertices(element, Role::Strips)?;
         let (budget, limits) = (source.budget, &source.options.limits);
         let mut charges = Vec::new();
         source.read_items(element, &plan, |line, item| {
@@ -177,7 +177,7 @@ impl<'a, V: Values> Source<'a, V> {
     fn read_items(
         &mut self,
         element: &PlyElement<'_>,
-        plan: &Plan,
+        plan: &PropertyRoles,
         mut take: impl FnMut(Option<u32>, &Item) -> Result<(), ReadError>,
     ) -> Result<(), ReadError> {
         self.further_properties += plan.further_properties(element);

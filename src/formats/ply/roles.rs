@@ -22,7 +22,7 @@ pub(super) enum Role {
 }
 
 /// The properties of an element with their roles.
-pub(super) struct Plan {
+pub(super) struct PropertyRoles {
     pub(super) properties: Vec<(Role, Kind)>,
     pub(super) colors: ColorKind,
 }
@@ -35,7 +35,7 @@ pub(super) enum ColorKind {
     Floats { has_alpha: bool },
 }
 
-impl Plan {
+impl PropertyRoles {
     /// Nothing has a role yet.
     pub(super) fn new(element: &PlyElement<'_>) -> Self {
         let roles = element.properties.iter().map(|property| (Role::Other, property.kind));

@@ -36,7 +36,7 @@ pub(super) enum Least {
 }
 
 /// A table over chords: the best triangulation of the polygon from corner `i` to corner `k`.
-struct Table<'a, C> {
+struct ChordTable<'a, C> {
     points: &'a [DVec3],
     rim_normals: &'a [DVec3],
     chords: &'a C,
@@ -85,7 +85,7 @@ pub(super) fn with_least_caps(
     if n < 3 {
         return Ok(None);
     }
-    let mut table = Table {
+    let mut table = ChordTable {
         points,
         rim_normals,
         chords,
@@ -118,7 +118,7 @@ pub(super) fn with_least_caps(
     Ok(Some(MinimalTriangulation { triangles: table.triangles(), caps }))
 }
 
-impl<C: Chords> Table<'_, C> {
+impl<C: Chords> ChordTable<'_, C> {
     fn weight_of(&self, i: usize, k: usize) -> Option<Weight> {
         self.chords.find(i, k).map(|chord| self.weight[chord])
     }
