@@ -32,7 +32,7 @@ pub use exact::{Rational, rational, to_f64};
 pub use export::{ExportRefusal, Exported, export};
 pub use import::{ImportRefusal, Imported, PolygonFault, default_tolerance, from_polygons, import};
 pub use interval::{IntervalSide, distance_of_growth, offset_growth, range};
-pub use operator::{Applied, Change, Events, Operator, apply};
+pub use operator::{Applied, Events, Operator, TopologyChange, apply};
 pub use pick::{edge_between, face_by_normal, face_on_ray, vertex_near};
 pub use plane::Plane;
 pub use point::Point;

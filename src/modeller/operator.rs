@@ -80,7 +80,7 @@ pub enum Operator {
 
 /// A change of topology along the way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Change {
+pub enum TopologyChange {
     /// An edge became a vertex: the faces beside it.
     Merged([FaceId; 2]),
     /// A vertex became an edge: the faces beside it.
@@ -93,7 +93,7 @@ pub struct Applied {
     /// How much the offset of each face grew.
     pub shifts: Vec<(FaceId, Rational)>,
     /// The changes of topology, in their order.
-    pub changes: Vec<Change>,
+    pub changes: Vec<TopologyChange>,
     /// The faces that moved or have a vertex that did.
     pub changed_faces: Vec<FaceId>,
     journal: Journal,
@@ -349,7 +349,7 @@ fn run(
 
 struct Run {
     journal: Journal,
-    changes: Vec<Change>,
+    changes: Vec<TopologyChange>,
     passed: Rational,
 }
 
@@ -419,7 +419,7 @@ impl Run {
             let edges = resolve::split(solid, motion, vertex).ok_or_else(|| no_split(solid, vertex))?;
             let topology = &solid.topology;
             let beside = |h: HalfEdgeId| [topology.face(h), topology.face(topology.opposite(h))];
-            self.changes.extend(edges.into_iter().map(|h| Change::Split(beside(h))));
+            self.changes.extend(edges.into_iter().map(|h| TopologyChange::Split(beside(h))));
         }
         Ok(())
     }
@@ -441,7 +441,7 @@ impl Run {
                 ContractRefusal::FaceVanishes(face) => Refusal::FaceVanishes { face },
                 ContractRefusal::FaceAtBothEnds(face) => Refusal::LinkNotADisk { face },
             })?;
-            self.changes.push(Change::Merged(beside));
+            self.changes.push(TopologyChange::Merged(beside));
         }
         Ok(())
     }

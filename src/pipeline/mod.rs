@@ -43,7 +43,7 @@ pub use self::bounds::work_units_max;
 pub use self::choices::{ChosenHole, Contact, FillHoles, Limits, SimplifyChoices, SolidParts, VertexColors};
 pub use self::cut_stitch::{CutStitchChoices, Stitching};
 pub use self::failure::Failure;
-pub use self::faithful::{Change, ChangeKind, Fidelity, FidelityVerdict};
+pub use self::faithful::{ChangeKind, Fidelity, FidelityChange, FidelityVerdict};
 pub use self::fidelity::Losses;
 pub use self::fill_holes::{FillHolesChoices, Filling, HoleFate, HoleOutcome};
 use self::input::Input;
@@ -204,7 +204,7 @@ pub enum Refusal {
     /// A faithful result was demanded, and the closest one is changed.
     NotFaithful {
         /// What it changed.
-        changes: Vec<Change>,
+        changes: Vec<FidelityChange>,
         /// Unit of the distance among them.
         units: Units,
     },

@@ -7,7 +7,9 @@ use super::report::{
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::polyhedron::{FaceId, HalfEdgeId};
-use crate::modeller::{self, Applied, Change, Events, Imported, IntervalSide, Operator, Rational, Solid};
+use crate::modeller::{
+    self, Applied, Events, Imported, IntervalSide, Operator, Rational, Solid, TopologyChange,
+};
 use crate::repair::Draft;
 use crate::spatial::coincident_f64;
 
@@ -188,12 +190,13 @@ fn applied_step(
         }
         _ => None,
     });
-    let count = |is_counted: fn(&Change) -> bool| applied.changes.iter().filter(|c| is_counted(c)).count();
+    let count =
+        |is_counted: fn(&TopologyChange) -> bool| applied.changes.iter().filter(|c| is_counted(c)).count();
     Ok(ModellerStep {
         operator: asked.kind(),
         moved: asked_moves.unwrap_or_else(|| distances(solid, &applied.shifts)),
-        merged: count(|c| matches!(c, Change::Merged(_))),
-        split: count(|c| matches!(c, Change::Split(_))),
+        merged: count(|c| matches!(c, TopologyChange::Merged(_))),
+        split: count(|c| matches!(c, TopologyChange::Split(_))),
         validity: modeller::check(solid, budget)?,
         undo,
     })
@@ -202,8 +205,8 @@ fn applied_step(
 fn undone(solid: &mut Solid, applied: Applied, budget: &Budget) -> Result<ModellerStep, Stopped> {
     let moved = negative(&distances(solid, &applied.shifts));
     let (merged, split) = applied.changes.iter().fold((0, 0), |(merged, split), change| match change {
-        Change::Merged(_) => (merged, split + 1),
-        Change::Split(_) => (merged + 1, split),
+        TopologyChange::Merged(_) => (merged, split + 1),
+        TopologyChange::Split(_) => (merged + 1, split),
     });
     applied.undo(solid);
     let validity = modeller::check(solid, budget)?;

@@ -248,7 +248,7 @@ pub(super) fn fidelity(reports: &[&Report]) -> Option<FidelityVerdict> {
         Fidelity::Changed => 2,
     };
     let word = all.iter().map(|verdict| verdict.word).max_by_key(|&word| rank(word))?;
-    let mut changes: Vec<crate::pipeline::Change> = Vec::new();
+    let mut changes: Vec<crate::pipeline::FidelityChange> = Vec::new();
     for change in all.iter().flat_map(|verdict| &verdict.changes) {
         match changes.iter_mut().find(|known| known.kind == change.kind) {
             Some(known) if known.measured < change.measured => *known = *change,
