@@ -1,6 +1,6 @@
 //! The order of judgement: every reading, and in each the conditions that rest on one another.
 
-use super::solid::Solid;
+use super::solid::EmbeddedShells;
 use super::surface::ReadingSurface;
 use super::topology::{Census, Topology, degenerate, note_degenerate};
 use super::verdict::Verdict;
@@ -222,7 +222,7 @@ impl<'a> Judge<'a> {
 
     /// P2, where P0 and P1 hold.
     fn judge_solid(&mut self, surface: &ReadingSurface<'_>, bvh: &Bvh) -> Result<Vec<Shell>, Stopped> {
-        let solid = Solid::of(surface, bvh, self.budget)?;
+        let solid = EmbeddedShells::of(surface, bvh, self.budget)?;
         let shells = solid.describe(surface, self.budget)?;
         self.verdict.note(Condition::NotEmpty, u64::from(shells.is_empty()), |_| {
             let (condition, reading) = (Condition::NotEmpty, surface.reading);

@@ -9,7 +9,7 @@ use crate::par;
 use crate::spatial::{Bvh, Nesting, ShellTriangles, nest};
 
 /// The shells of a surface for which P0 and P1 hold.
-pub(super) struct Solid<'a> {
+pub(super) struct EmbeddedShells<'a> {
     shells: ShellTriangles,
     nesting: Nesting,
     /// Number of vertices of each shell.
@@ -17,7 +17,7 @@ pub(super) struct Solid<'a> {
     _charge: Charge<'a>,
 }
 
-impl<'a> Solid<'a> {
+impl<'a> EmbeddedShells<'a> {
     pub(super) fn of(surface: &ReadingSurface<'_>, bvh: &Bvh, budget: &'a Budget) -> Result<Self, Stopped> {
         let charge =
             budget.charge(surface.triangles.len() as u64 * 8 + surface.positions.len() as u64 * 8)?;

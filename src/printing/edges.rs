@@ -1,7 +1,7 @@
 //! Sharp edges and short ones.
 
 use super::surface::WeldedSurface;
-use super::{Limit, Witness};
+use super::{Limit, PrintingWitness};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::{EdgeGroups, edge_of, next_corner, triangle_of};
@@ -26,7 +26,7 @@ pub struct Edges {
     /// Length of the shortest edge.
     pub shortest: Option<f64>,
     /// The sharpest edges, with their angles.
-    pub witnesses: Vec<Witness>,
+    pub witnesses: Vec<PrintingWitness>,
 }
 
 /// Looks at every edge that two triangles share in opposite directions.
@@ -61,7 +61,7 @@ pub(super) fn edges(
     Ok(found)
 }
 
-fn witness(surface: &WeldedSurface<'_>, h: u32, angle: f64) -> Witness {
+fn witness(surface: &WeldedSurface<'_>, h: u32, angle: f64) -> PrintingWitness {
     let [from, to] = edge_of(&surface.triangles, h).map(|v| surface.positions[v as usize]);
     surface.witness(triangle_of(h), (from + to) / 2.0, angle)
 }

@@ -46,7 +46,7 @@ const BYTES_PER_VERTEX: u64 = 32;
 
 /// A place of the mesh, with what was measured there.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Witness {
+pub struct PrintingWitness {
     /// Triangle of the soup.
     pub triangle: u32,
     /// Where on it.

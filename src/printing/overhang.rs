@@ -1,7 +1,7 @@
 //! What hangs over nothing in each orientation.
 
 use super::surface::WeldedSurface;
-use super::{Direction, Limit, Witness};
+use super::{Direction, Limit, PrintingWitness};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::triangle_area;
 use crate::par;
@@ -90,7 +90,7 @@ pub(super) fn witnesses(
     angle_limit: f64,
     most: usize,
     budget: &Budget,
-) -> Result<Vec<Witness>, Stopped> {
+) -> Result<Vec<PrintingWitness>, Stopped> {
     let view = OverhangView::new(surface, direction, angle_limit);
     let mut found: Vec<(f64, f64, u32)> = Vec::new();
     for t in 0..surface.triangles.len() as u32 {

@@ -1,7 +1,7 @@
 //! Parts of their own, and cavities without a way out.
 
 use super::surface::WeldedSurface;
-use super::{Limit, Witness};
+use super::{Limit, PrintingWitness};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3};
 use crate::mesh::{Components, EdgeGroups};
@@ -29,7 +29,7 @@ pub struct Parts {
     /// Bodies whose longest side is below the limit.
     pub small_count: u64,
     /// Those bodies, with their longest sides.
-    pub small: Vec<Witness>,
+    pub small: Vec<PrintingWitness>,
     /// Cavities without a way out; `None`: not told, because the mesh is not a valid solid.
     pub cavities: Option<Cavities>,
 }
@@ -42,7 +42,7 @@ pub struct Cavities {
     /// Their volume, in cubic units of the file.
     pub volume: f64,
     /// The largest ones, with their volumes.
-    pub witnesses: Vec<Witness>,
+    pub witnesses: Vec<PrintingWitness>,
 }
 
 /// Finds the parts; with `is_solid`, which says that the mesh is certified to be one, also what is inside of what.

@@ -1,6 +1,6 @@
 //! The triangles that have a side, with their normals.
 
-use super::Witness;
+use super::PrintingWitness;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3};
 use crate::mesh::Soup;
@@ -91,12 +91,12 @@ impl<'s> WeldedSurface<'s> {
     }
 
     /// A place on triangle `t`, where something was measured.
-    pub(super) fn witness(&self, t: u32, place: DVec3, measured: f64) -> Witness {
-        Witness { triangle: self.source[t as usize], place, measured }
+    pub(super) fn witness(&self, t: u32, place: DVec3, measured: f64) -> PrintingWitness {
+        PrintingWitness { triangle: self.source[t as usize], place, measured }
     }
 
     /// The middle of triangle `t`, where something was measured.
-    pub(super) fn witness_in_middle(&self, t: u32, measured: f64) -> Witness {
+    pub(super) fn witness_in_middle(&self, t: u32, measured: f64) -> PrintingWitness {
         self.witness(t, self.corners(t).iter().sum::<DVec3>() / 3.0, measured)
     }
 }

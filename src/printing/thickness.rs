@@ -7,7 +7,7 @@
 
 use super::ray::Ray;
 use super::surface::WeldedSurface;
-use super::{Limit, Witness, ball};
+use super::{Limit, PrintingWitness, ball};
 use crate::budget::{Budget, Stopped};
 use crate::distance::{self, Areas};
 use crate::geom::DVec3;
@@ -69,7 +69,7 @@ pub struct Thickness {
     /// Area below the limit of an error, in square units of the file; `None`: no limit.
     pub area_below_error: Option<f64>,
     /// Samples below a limit, the thinnest first, apart from each other.
-    pub witnesses: Vec<Witness>,
+    pub witnesses: Vec<PrintingWitness>,
     /// Samples by area.
     pub samples: u64,
 }
@@ -192,13 +192,13 @@ impl<'p> Probe<'p> {
         readings: &[WallReading],
         limit: &Limit,
         most: usize,
-    ) -> Result<Vec<Witness>, Stopped> {
+    ) -> Result<Vec<PrintingWitness>, Stopped> {
         let Some(bound) = limit.first_below() else { return Ok(Vec::new()) };
         let measured = readings.iter().enumerate().filter_map(|(k, reading)| Some((reading.least()?, k)));
         let mut thin: Vec<(f64, usize)> = measured.filter(|&(least, _)| least < bound).collect();
         thin.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let apart = APART * self.surface.diagonal();
-        let mut chosen: Vec<Witness> = Vec::new();
+        let mut chosen: Vec<PrintingWitness> = Vec::new();
         for (least, k) in thin.into_iter().take(CANDIDATES_OF_WITNESS * most) {
             let WallReading { place, triangle, .. } = readings[k];
             self.budget.check()?;
