@@ -17,7 +17,7 @@ const CHUNK: usize = 32;
 
 /// A pair of triangles of a cluster, by their numbers in it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Pair {
+pub(super) struct ContactPair {
     pub(super) triangles: [u32; 2],
     /// How they meet; [`ContactKind::Overlap`] also for copies.
     pub(super) kind: ContactKind,
@@ -46,7 +46,7 @@ pub(super) struct PlanePiece {
 pub(super) fn divide_all(
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
-    pairs: &[Pair],
+    pairs: &[ContactPair],
     budget: &Budget,
 ) -> Result<Divided, ArrangementError> {
     let kernel = Kernel::new(positions, triangles);
@@ -74,7 +74,7 @@ pub(super) fn divide_all(
 }
 
 /// The plane of each triangle, by the lowest triangle that it is connected with by overlaps, and the carriers of these.
-fn group(kernel: &Kernel, pairs: &[Pair]) -> (Vec<u32>, Vec<Carrier>) {
+fn group(kernel: &Kernel, pairs: &[ContactPair]) -> (Vec<u32>, Vec<Carrier>) {
     let mut sets = UnionFind::new(kernel.triangles.len());
     for pair in pairs.iter().filter(|pair| pair.kind == ContactKind::Overlap) {
         sets.unite(pair.triangles[0], pair.triangles[1]);
@@ -92,7 +92,7 @@ fn group(kernel: &Kernel, pairs: &[Pair]) -> (Vec<u32>, Vec<Carrier>) {
 /// Finds where pairs meet, gives each carrier the points and segments in it, and the vertex that each vertex is.
 fn points_of_pairs(
     kernel: &Kernel,
-    pairs: &[Pair],
+    pairs: &[ContactPair],
     plane_of: &[u32],
     carriers: &mut [Carrier],
     budget: &Budget,

@@ -26,7 +26,7 @@ pub struct Merged {
 }
 
 /// What is left of a triangle of a cluster.
-struct Region {
+struct Remnant {
     source: u32,
     is_opposite: bool,
     /// Its border, directed, between points that stay; in the direction of the source.
@@ -154,7 +154,7 @@ impl Arrangement {
     /// The triangles of a region, which turn as its source.
     fn triangulated(
         &self,
-        region: &Region,
+        region: &Remnant,
         cluster: &Cluster,
         budget: &Budget,
     ) -> Result<Vec<[u32; 3]>, ArrangementError> {
@@ -214,7 +214,7 @@ fn regions(
     mut stays: Vec<(u32, bool, [u32; 2])>,
     mut inside: Vec<(u32, bool, u32)>,
     goes: &FxHashMap<u32, ()>,
-) -> Result<Vec<Region>, ArrangementError> {
+) -> Result<Vec<Remnant>, ArrangementError> {
     par::sort_unstable(&mut stays);
     par::sort_unstable(&mut inside);
     inside.dedup();
@@ -239,7 +239,7 @@ fn regions(
         let first = inside.partition_point(|&(s, o, _)| (s, o) < (source, is_opposite));
         let points = inside[first..].iter().take_while(|&&(s, o, _)| (s, o) == (source, is_opposite));
         let points = points.map(|&(.., p)| p).filter(|p| on_border.binary_search(p).is_err()).collect();
-        regions.push(Region { source, is_opposite, border, points });
+        regions.push(Remnant { source, is_opposite, border, points });
     }
     Ok(regions)
 }

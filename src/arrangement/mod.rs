@@ -34,7 +34,7 @@ mod ray;
 mod tests;
 mod triangulation;
 
-pub use build::{Options, arrange, arrange_enclosed};
+pub use build::{ArrangementOptions, arrange, arrange_enclosed};
 pub use error::ArrangementError;
 pub use extract::{BoundaryPiece, SolidBoundary};
 pub use merge::Merged;

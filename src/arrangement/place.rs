@@ -284,7 +284,7 @@ impl Placing<'_> {
         star: &[u32],
         places: &[DVec3],
         bvh: &Bvh,
-    ) -> Result<Option<Vec<Pair>>, ArrangementError> {
+    ) -> Result<Option<Vec<StarPair>>, ArrangementError> {
         let mut pairs = Vec::new();
         for (n, &t) in (0..).zip(star) {
             let names = self.placed.triangles[t as usize];
@@ -311,7 +311,7 @@ impl Placing<'_> {
                     return;
                 }
                 let shared = Shared::between(names, self.placed.triangles[other as usize]);
-                pairs.push(Pair { of_star: n, other, moves, shared });
+                pairs.push(StarPair { of_star: n, other, moves, shared });
             })?;
             self.budget.spend(1 + seen)?;
             if pairs.len() == NEIGHBORS_MAX {
@@ -323,7 +323,7 @@ impl Placing<'_> {
 
     /// How many of the `pairs` of a star meet beyond common vertices and edges, or `enough` and more; a triangle of it without an
     /// area counts for many.
-    fn meets(&self, star: &[u32], pairs: &[Pair], enough: u64) -> Result<u64, ArrangementError> {
+    fn meets(&self, star: &[u32], pairs: &[StarPair], enough: u64) -> Result<u64, ArrangementError> {
         let (mut count, mut looks) = (0, 0);
         let mut pairs = pairs.chunk_by(|a, b| a.of_star == b.of_star).peekable();
         for (n, &t) in (0..).zip(star) {
@@ -373,7 +373,7 @@ fn are_apart(a: [DVec3; 3], b: [DVec3; 3], gap: f64) -> bool {
 }
 
 /// A triangle of a star, and one near it.
-struct Pair {
+struct StarPair {
     /// Which of the star.
     of_star: u32,
     other: u32,

@@ -16,7 +16,7 @@ pub use enclose::{enclose, enclose_and_copy_bare};
 
 use super::{Changes, Draft, FIRST_BLEND, NEW};
 use crate::arrangement::{
-    self, Arrangement, ArrangementError, Options, PlacedBoundary, SolidBoundary, arrange,
+    self, Arrangement, ArrangementError, ArrangementOptions, PlacedBoundary, SolidBoundary, arrange,
 };
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3, Sign, print_pitch, triangle_area, upward_crossing, volume_sign};
@@ -119,7 +119,7 @@ fn arranged_by(
     operand_of: impl Fn(u32) -> u8 + Sync,
     budget: &Budget,
 ) -> Result<Arrangement, ArrangementError> {
-    let options = Options { pairs_max: pairs_max(draft), operands };
+    let options = ArrangementOptions { pairs_max: pairs_max(draft), operands };
     arrange(&draft.positions, &draft.triangles, operand_of, &options, budget)
 }
 

@@ -11,7 +11,7 @@
 use super::allowance::Allowance;
 use super::buckets::{Buckets, CLASSES, class_of};
 use super::hubs::Corners;
-use super::region::Region;
+use super::region::CodeRegion;
 use super::space::Space;
 use super::strays::Strays;
 use super::sweep::{Outside, Sweep};
@@ -80,7 +80,7 @@ pub(super) struct Room {
     /// Place of the part's first vertex.
     pub(super) first_vertex: u32,
     /// What is swept must be inside of it.
-    pub(super) region: Region,
+    pub(super) region: CodeRegion,
     /// Of all parts.
     pub(super) strays: Arc<Strays>,
 }
