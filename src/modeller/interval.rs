@@ -5,7 +5,7 @@ use super::events::next_event;
 use super::exact::Rational;
 use super::motion::{Motion, Moving};
 use super::operator::limit;
-use super::refusal::Refusal;
+use super::refusal::OperatorRefusal;
 use super::resolve;
 use super::solid::Solid;
 use crate::budget::{Budget, Stopped};
@@ -65,7 +65,7 @@ fn one_side(solid: &Solid, shifts: &[(FaceId, Rational)], budget: &Budget) -> Re
     Ok(match next_event(solid, &motion, &moving, budget)? {
         None => IntervalSide::Unbounded,
         Some(event) => match limit(solid, &motion, &Rational::zero(), &event) {
-            Refusal::Limit { limits, blocking } => IntervalSide::Limit { limits, blocking },
+            OperatorRefusal::Limit { limits, blocking } => IntervalSide::Limit { limits, blocking },
             _ => IntervalSide::Unbounded,
         },
     })

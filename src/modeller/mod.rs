@@ -36,7 +36,7 @@ pub use operator::{Applied, Events, Operator, TopologyChange, apply};
 pub use pick::{edge_between, face_by_normal, face_on_ray, vertex_near};
 pub use plane::Plane;
 pub use point::Point;
-pub use refusal::Refusal;
+pub use refusal::OperatorRefusal;
 pub use rule::{Fault, Rule};
 pub use solid::Solid;
 pub use validity::{Validity, check};

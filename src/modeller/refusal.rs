@@ -7,7 +7,7 @@ use crate::mesh::polyhedron::{FaceId, VertexId};
 
 /// Why an operator does nothing.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Refusal {
+pub enum OperatorRefusal {
     /// No plane moves.
     NothingMoves,
     /// An event is in the way; the offsets of the faces may grow by less than this.

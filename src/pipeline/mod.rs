@@ -74,7 +74,7 @@ pub use crate::mesh::Units;
 use crate::printing::Policy;
 use crate::repair::nest;
 pub use crate::repair::unite::{NotCombined, NotSolid, SetOperation};
-use crate::simplify::Report as SimplifyReport;
+use crate::simplify::TargetReport as SimplifyReport;
 
 /// Options of every operation; those that do not apply are ignored.
 #[derive(Debug, Clone, Default)]

@@ -1,7 +1,7 @@
 //! What goes in and what comes out.
 
 use super::layout::Layout;
-use super::report::Report;
+use super::report::TargetReport;
 use super::surface::{CollapseSurface, NEW};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
@@ -61,7 +61,7 @@ pub struct Simplified {
     /// Texture coordinates of each triangle's corners; empty when the input has none.
     pub texture: Vec<[[f64; 2]; 3]>,
     /// How it came to be.
-    pub report: Report,
+    pub report: TargetReport,
 }
 
 /// Why there is no result.
@@ -93,7 +93,7 @@ impl Simplified {
         input: &Input<'_>,
         colors: &[Option<Color>],
         priorities: &[f64],
-        report: Report,
+        report: TargetReport,
         budget: &Budget,
     ) -> Result<Self, Stopped> {
         let mut renumbered = vec![NONE; surface.vertices.len()];

@@ -224,11 +224,11 @@ impl Climb<'_> {
         }
         situation.fails_in_f32 |= judged.fails_in_f32();
         match judged {
-            Judged::Certified(candidate) => {
+            Judgement::Certified(candidate) => {
                 let certified = Certified::measured(attempt, *candidate, self)?;
                 Ok(Some(RungResult::Certified(Box::new(certified))))
             }
-            Judged::Not(refusal) => {
+            Judgement::Not(refusal) => {
                 situation.last = Some(Uncertified { attempt, mended, refusal });
                 Ok(None)
             }
@@ -297,20 +297,20 @@ impl Climb<'_> {
     }
 
     /// Writes what an attempt made, and judges the bytes.
-    pub(super) fn judge(&self, attempt: &Attempt) -> Result<Judged, Failure> {
+    pub(super) fn judge(&self, attempt: &Attempt) -> Result<Judgement, Failure> {
         if attempt.draft.triangles.is_empty() {
-            return Ok(Judged::Not(Refusal::NothingToRepair));
+            return Ok(Judgement::Not(Refusal::NothingToRepair));
         }
         let soup = looks::soup_of(&attempt.draft, &self.input.soup, self.budget)?;
         match Candidate::write(soup, self.input, self.encoding, Depth::FirstViolation, self.budget) {
             Ok(candidate) if candidate.certificate().is_printable() => {
-                Ok(Judged::Certified(Box::new(candidate)))
+                Ok(Judgement::Certified(Box::new(candidate)))
             }
             Ok(candidate) => {
                 let witness = candidate.certificate().witnesses.first().cloned();
-                Ok(Judged::Not(Refusal::NotRepairable { witness }))
+                Ok(Judgement::Not(Refusal::NotRepairable { witness }))
             }
-            Err(reason) => Ok(Judged::Not(reason.refusal()?)),
+            Err(reason) => Ok(Judgement::Not(reason.refusal()?)),
         }
     }
 
@@ -386,12 +386,12 @@ impl Climb<'_> {
 }
 
 /// The judgement on what an attempt made.
-pub(super) enum Judged {
+pub(super) enum Judgement {
     Certified(Box<Candidate>),
     Not(Refusal),
 }
 
-impl Judged {
+impl Judgement {
     /// True when it was written, and is no valid solid.
     fn is_broken(&self) -> bool {
         matches!(self, Self::Not(Refusal::NotRepairable { .. }))

@@ -1,6 +1,6 @@
 //! Bodies that pass through each other, as one: the exact arrangement.
 
-use super::climb::{Certified, Climb, Judged, Openness, RungResult, Situation};
+use super::climb::{Certified, Climb, Judgement, Openness, RungResult, Situation};
 use super::{Kind, Rung};
 use crate::analysis::DefectCode;
 use crate::geom::print_pitch;
@@ -227,11 +227,11 @@ impl Climb<'_> {
                 continue;
             }
             match judged {
-                Judged::Certified(candidate) => {
+                Judgement::Certified(candidate) => {
                     return Ok(Ok(Tried::Certified(Box::new((attempt, *candidate)))));
                 }
-                Judged::Not(Refusal::NotRepairable { .. }) => {}
-                Judged::Not(_) => return Ok(Ok(Tried::Nothing)),
+                Judgement::Not(Refusal::NotRepairable { .. }) => {}
+                Judgement::Not(_) => return Ok(Ok(Tried::Nothing)),
             }
             let Some(steps) = tries.next() else { return Ok(Err(Box::new(attempt))) };
             self.go_on(&mut attempt, &steps)?;

@@ -112,12 +112,12 @@ fn run(
     Ok(None)
 }
 
-fn refused(solid: &Solid, operator: usize, reason: modeller::Refusal) -> ModellerRefusal {
+fn refused(solid: &Solid, operator: usize, reason: modeller::OperatorRefusal) -> ModellerRefusal {
     let (limits, blocking) = match &reason {
-        modeller::Refusal::Limit { limits, blocking } => {
+        modeller::OperatorRefusal::Limit { limits, blocking } => {
             (limit_distances(solid, limits), blocking.iter().map(|c| Blocker::of(solid, c)).collect())
         }
-        modeller::Refusal::NoSplit { vertex, faces } => {
+        modeller::OperatorRefusal::NoSplit { vertex, faces } => {
             (Vec::new(), vec![Blocker::with(solid, BlockerKind::NoSplit, faces, &[*vertex])])
         }
         _ => (Vec::new(), Vec::new()),

@@ -163,7 +163,7 @@ pub enum ModellerRefusal {
         /// Which.
         operator: usize,
         /// Why.
-        reason: modeller::Refusal,
+        reason: modeller::OperatorRefusal,
         /// The distances of the limit, by face, where there is one.
         limits: Vec<(u32, f64)>,
         /// What would meet there.

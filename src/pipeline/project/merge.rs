@@ -314,7 +314,7 @@ fn levels(reports: &[&Report]) -> Vec<Level> {
     let level = |i: usize| {
         let of_parts: Vec<&Level> = reports.iter().filter_map(|report| report.levels.get(i)).collect();
         let first = of_parts.first()?;
-        let mut simplified: simplify::Report = first.simplified;
+        let mut simplified: simplify::TargetReport = first.simplified;
         for level in &of_parts[1..] {
             let more = &level.simplified;
             simplified.is_reached &= more.is_reached;

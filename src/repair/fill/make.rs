@@ -1,6 +1,6 @@
 //! Makes the patch of a region in one way.
 
-use super::accept::Proposal;
+use super::accept::PatchProposal;
 use super::caps::turn_caps;
 use super::coarsen::coarsen;
 use super::creased::{Division, creased};
@@ -56,7 +56,7 @@ pub(super) struct Scene<'a> {
 
 /// A patch and, for each of its new vertices, the vertices that it was born between; none when it was made at once.
 pub(super) struct MadePatch {
-    pub(super) proposal: Proposal,
+    pub(super) proposal: PatchProposal,
     pub(super) parents: Vec<[u32; 2]>,
     /// The field on whose surface it is.
     pub(super) field: Option<FitFacts>,
@@ -132,8 +132,8 @@ fn on_lattice(points: &[DVec3], surface: &FillSurface) -> Result<Vec<DVec3>, Rej
     Ok(points.iter().map(|&p| (p / pitch).round() * pitch + DVec3::ZERO).collect())
 }
 
-fn proposal(region: &Region, points: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Proposal {
-    Proposal { rim: region.rim().to_vec(), loop_starts: region.loop_starts(), points, triangles }
+fn proposal(region: &Region, points: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> PatchProposal {
+    PatchProposal { rim: region.rim().to_vec(), loop_starts: region.loop_starts(), points, triangles }
 }
 
 fn rim_points(region: &Region, surface: &FillSurface) -> Vec<DVec3> {

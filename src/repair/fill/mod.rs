@@ -34,7 +34,7 @@ mod span;
 mod sparse;
 mod surface;
 
-use self::accept::Proposal;
+use self::accept::PatchProposal;
 use self::creased::Division;
 use self::make::{MadePatch, Scene, Way, make};
 pub use self::options::{Extract, FillOptions, HoleChoice, Method};
@@ -132,7 +132,8 @@ fn fill_loops(
     while !open.is_empty() {
         let scene = Scene { surface: &surface, mesh: mesh.as_ref(), options };
         let offers = offer(&mut open, &scene, budget)?;
-        let proposals: Vec<&Proposal> = offers.iter().flatten().map(|(_, made)| &made.proposal).collect();
+        let proposals: Vec<&PatchProposal> =
+            offers.iter().flatten().map(|(_, made)| &made.proposal).collect();
         let bvh = mesh.as_ref().map(rbf::FieldMesh::bvh);
         let mut verdicts = surface.accept(&proposals, bvh, budget)?.into_iter();
         let mut left = Vec::new();
@@ -269,7 +270,7 @@ impl Hole {
 
 impl HoleReport {
     fn take(&mut self, method: Method, made: &MadePatch, surface: &FillSurface, first: u32) {
-        let Proposal { rim, points, triangles, .. } = &made.proposal;
+        let PatchProposal { rim, points, triangles, .. } = &made.proposal;
         let point = |v: u32| match rim.get(v as usize) {
             Some(&h) => surface.point(h),
             None => surface.positions[(first + v) as usize - rim.len()],
@@ -330,7 +331,7 @@ fn append(
     budget: &Budget,
 ) -> Result<(), Stopped> {
     for (made, first) in patches {
-        let Proposal { rim, points, triangles, .. } = &made.proposal;
+        let PatchProposal { rim, points, triangles, .. } = &made.proposal;
         let base = draft.positions.len() as u32;
         let corner = |h: u32| edge_of(&draft.triangles, h)[1];
         let corners: Vec<u32> =

@@ -14,7 +14,7 @@ mod gap;
 use self::beside::{Flank, Reach, flank_of};
 use self::divide::{Divided, divide_beside, slits};
 pub use self::gap::gap_between_rims;
-use super::{Changes, Draft, Effects, Stitches};
+use super::{Changes, Draft, Effects, Joins};
 use crate::budget::{Budget, Stopped};
 use crate::figures::figure;
 use crate::geom::{Aabb, DVec3, are_collinear};
@@ -89,7 +89,7 @@ pub fn snap(draft: &mut Draft, options: &SnapOptions, budget: &Budget) -> Result
         done.implicit.extend(stitched.implicit);
     }
     let (moved, moved_by) = rule.moves();
-    let stitches = Stitches::of(draft, &before, &done);
+    let stitches = Joins::of(draft, &before, &done);
     draft.drop_unused_vertices();
     let others = [("vertices_moved", moved), ("triangles_flipped", flipped)];
     let edges_divided = (divided.edges > 0).then_some(("edges_divided", divided.edges));

@@ -14,7 +14,7 @@ use super::options::{CriterionKind, SimplifyOptions, Target};
 use super::priority::costs_of_vertices;
 use super::quadric_error::QuadricError;
 use super::queue::Queue;
-use super::report::{Refusal, Refusals, Report};
+use super::report::{Refusal, Refusals, TargetReport};
 use super::result::{Input, Simplified, SimplifyError};
 use super::surface::{CollapseSurface, Rule, Vertex};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
@@ -132,7 +132,7 @@ struct Strict<'a, C: Criterion> {
 
 impl<C: Criterion> Strict<'_, C> {
     /// Collapses until `target` is reached or nothing more can be collapsed.
-    fn run_to(&mut self, target: Target, faces_before: usize) -> Result<Report, Stopped> {
+    fn run_to(&mut self, target: Target, faces_before: usize) -> Result<TargetReport, Stopped> {
         let faces_wanted = match target {
             Target::Faces(count) => count,
             Target::Ratio(share) => (faces_before as f64 * share.clamp(0.0, 1.0)) as usize,
@@ -149,7 +149,7 @@ impl<C: Criterion> Strict<'_, C> {
             }
             is_exhausted = !self.step();
         }
-        Ok(Report {
+        Ok(TargetReport {
             target,
             is_reached: !is_exhausted || matches!(target, Target::Error(_)),
             faces_before,

@@ -6,8 +6,8 @@ use crate::random::Random;
 use meshmend::budget::Budget;
 use meshmend::mesh::polyhedron::{FaceId, HalfEdgeId, VertexId};
 use meshmend::modeller::{
-    Applied, Events, IntervalSide, Operator, Rational, Refusal, Solid, apply, check, distance_of_growth,
-    offset_growth, range, rational,
+    Applied, Events, IntervalSide, Operator, OperatorRefusal, Rational, Solid, apply, check,
+    distance_of_growth, offset_growth, range, rational,
 };
 use std::collections::BTreeMap;
 
@@ -89,7 +89,7 @@ fn name(operator: &Operator) -> &'static str {
     }
 }
 
-fn reason(refusal: &Refusal) -> String {
+fn reason(refusal: &OperatorRefusal) -> String {
     let text = format!("{refusal:?}");
     text.split([' ', '(']).next().unwrap().to_owned()
 }
@@ -141,7 +141,7 @@ fn edit(shape: usize, seed: u64, count: usize, tally: &mut BTreeMap<String, usiz
                 let key = format!("{}: {}", name(&operator), reason(&refusal));
                 *tally.entry(key).or_default() += 1;
                 assert!(
-                    !matches!(refusal, Refusal::Invalid(_)),
+                    !matches!(refusal, OperatorRefusal::Invalid(_)),
                     "{shape} {seed} {k} {operator:?}: {refusal:?}"
                 );
             }

@@ -9,8 +9,8 @@ use meshmend::budget::Budget;
 use meshmend::geom::DVec3;
 use meshmend::mesh::polyhedron::{FaceId, Polyhedron};
 use meshmend::modeller::{
-    Embedding, Events, IntervalSide, Operator, Rational, Refusal, Solid, apply, distance_of_growth, dual,
-    dual_faces, edge_between, import, offset_growth, range, rational, vertex_near,
+    Embedding, Events, IntervalSide, Operator, OperatorRefusal, Rational, Solid, apply, distance_of_growth,
+    dual, dual_faces, edge_between, import, offset_growth, range, rational, vertex_near,
 };
 use std::collections::BTreeMap;
 
@@ -67,7 +67,9 @@ fn the_interval_is_open_just_inside_is_valid_and_its_end_is_refused_by_name() {
                 assert_eq!(Model::of(&solid).unwrap().fault(), None, "{name} {face:?}");
                 let refused =
                     apply(&mut first.clone(), &shift(face, end.clone()), &budget()).unwrap().unwrap_err();
-                let Refusal::Limit { limits, blocking } = refused else { panic!("{name}: {refused:?}") };
+                let OperatorRefusal::Limit { limits, blocking } = refused else {
+                    panic!("{name}: {refused:?}")
+                };
                 assert!(limits[0].1 == end && !blocking.is_empty(), "{name} {face:?}");
             }
         }
@@ -362,7 +364,7 @@ fn bad_flips_and_splits_are_refused_by_their_reasons() {
     let edge = edge_between(&solid, [left, front], None).unwrap();
     assert_eq!(
         refusal(&Operator::Flip { edge, face: front, by: None }, &solid),
-        Refusal::FaceHasThreeSides { face: left }
+        OperatorRefusal::FaceHasThreeSides { face: left }
     );
     // The edge between two walls of a box has parallel faces at its ends, which never meet.
     let cube = prism(&[vec![[0.0, 0.0], [60.0, 0.0], [60.0, 40.0], [0.0, 40.0]]], 0.0, 20.0).solid();
@@ -370,19 +372,19 @@ fn bad_flips_and_splits_are_refused_by_their_reasons() {
         [face(&cube, [1.0, 0.0, 0.0], [60.0, 20.0, 10.0]), face(&cube, [0.0, 1.0, 0.0], [30.0, 40.0, 10.0])];
     let edge = edge_between(&cube, walls, None).unwrap();
     let flip = Operator::Flip { edge, face: walls[0], by: None };
-    assert!(matches!(refusal(&flip, &cube), Refusal::DoesNotOpen { .. }));
+    assert!(matches!(refusal(&flip, &cube), OperatorRefusal::DoesNotOpen { .. }));
     let top = face(&cube, [0.0, 0.0, 1.0], [30.0, 20.0, 20.0]);
     let vertex = vertex_near(&cube, DVec3::new(60.0, 40.0, 20.0)).unwrap();
     let split = Operator::Split { vertex, face: top, by: offset_growth(&cube, top, 1.0) };
-    assert_eq!(refusal(&split, &cube), Refusal::VertexIsTrihedral { vertex });
+    assert_eq!(refusal(&split, &cube), OperatorRefusal::VertexIsTrihedral { vertex });
     // The top of a box meets the floor when all upright edges vanish together: no flip, no merge.
     let pass = Operator::Shift { faces: vec![(top, rational(-25.0))], events: Events::Pass };
-    assert!(matches!(refusal(&pass, &cube), Refusal::FaceVanishes { .. }));
+    assert!(matches!(refusal(&pass, &cube), OperatorRefusal::FaceVanishes { .. }));
     let tip = pyramid(&[[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0]], [10.0, 10.0, 30.0], 0.0).solid();
     let floor = face(&tip, [0.0, 0.0, -1.0], [10.0, 10.0, 0.0]);
     let vertex = vertex_near(&tip, DVec3::new(10.0, 10.0, 30.0)).unwrap();
     let split = Operator::Split { vertex, face: floor, by: rational(1.0) };
-    assert_eq!(refusal(&split, &tip), Refusal::NotThere { face: floor });
+    assert_eq!(refusal(&split, &tip), OperatorRefusal::NotThere { face: floor });
 }
 
 #[test]
