@@ -38,7 +38,7 @@ pub enum SolidParts {
 
 /// How far a result may be from the file.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Limits {
+pub struct FidelityLimits {
     /// Largest distance, in the unit of the file, of a place of the result from the file and of a visible place of the
     /// file from the result.
     pub deviation_max: Option<f64>,

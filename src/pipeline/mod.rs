@@ -40,7 +40,9 @@ mod units;
 
 use self::bounds::Bound;
 pub use self::bounds::work_units_max;
-pub use self::choices::{ChosenHole, Contact, FillHoles, Limits, SimplifyChoices, SolidParts, VertexColors};
+pub use self::choices::{
+    ChosenHole, Contact, FidelityLimits, FillHoles, SimplifyChoices, SolidParts, VertexColors,
+};
 pub use self::cut_stitch::{CutStitchChoices, Stitching};
 pub use self::failure::Failure;
 pub use self::faithful::{ChangeKind, Fidelity, FidelityChange, FidelityVerdict};
@@ -104,7 +106,7 @@ pub struct Options {
     /// What `repair` is to do about each defect; `None`: as proposed.
     pub plan: Option<ChosenPlan>,
     /// How far the result of a repair may be from the file.
-    pub limits: Limits,
+    pub limits: FidelityLimits,
     /// How a mesh is rebuilt that no step of `repair` makes a solid.
     pub wrap: WrapChoices,
     /// How `simplify` works, and how far; a repair ends with it when it has targets.
