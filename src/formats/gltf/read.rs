@@ -2,7 +2,7 @@
 
 use super::accessor::{Accessor, Accessors, Component};
 use super::buffers::Buffers;
-use super::container::Content;
+use super::container::ContainerContent;
 use super::materials::FileMaterials;
 use super::part::LocatedValue;
 use super::primitive::{GltfMesh, VertexSet, check_indices};
@@ -27,7 +27,11 @@ pub(in crate::formats) fn read(
     options: &ReadOptions,
     budget: &Budget,
 ) -> Result<Soup, ReadError> {
-    let content = if encoding == Encoding::Glb { Content::of_glb(bytes)? } else { Content::of_text(bytes) };
+    let content = if encoding == Encoding::Glb {
+        ContainerContent::of_glb(bytes)?
+    } else {
+        ContainerContent::of_text(bytes)
+    };
     let (tree, _charge) = content.tree(budget)?;
     let root = LocatedValue::root(&tree);
     check_version(&root)?;

@@ -87,11 +87,11 @@ pub(super) struct Object {
     pub(super) name: String,
     /// Property of triangles that state none.
     pub(super) property: Property,
-    pub(super) content: Content,
+    pub(super) content: ObjectContent,
 }
 
 /// What an object consists of.
-pub(super) enum Content {
+pub(super) enum ObjectContent {
     Mesh(Box<ObjectMesh>),
     Components(Vec<Reference>),
     Nothing,

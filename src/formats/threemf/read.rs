@@ -1,6 +1,6 @@
 //! A package read: its model, the parts that this refers to, and the meshes in all of them.
 
-use super::model::{Content, FaceAttributes, Groups, Model, Object, ObjectKind, ObjectMesh, Property};
+use super::model::{FaceAttributes, Groups, Model, Object, ObjectContent, ObjectKind, ObjectMesh, Property};
 use super::models::Models;
 use super::read_volumes::{Volume, are_all, by_object};
 use super::scene::{self, Assembled, Extent, PlacedObject};
@@ -148,7 +148,7 @@ fn project_of(models: Models) -> Project {
         }
         for (o, object) in objects.into_iter().enumerate() {
             let Object { id, kind, name, content, property } = object;
-            let Content::Mesh(mesh) = content else { continue };
+            let ObjectContent::Mesh(mesh) = content else { continue };
             let ObjectMesh { soup, attributes, spans, extras, extra_spans } = *mesh;
             let instances = instances.get(&[m, o]).copied().unwrap_or(0);
             let soup = Soup { units: Some(units), ..soup };

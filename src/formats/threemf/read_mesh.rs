@@ -17,7 +17,7 @@ pub(super) fn mesh<'x>(
     element: &XmlElement<'x>,
 ) -> Result<ObjectMesh, ReadError> {
     let mut mesh = ObjectMesh::default();
-    let mut triangles = Triangles::default();
+    let mut triangles = ListedTriangles::default();
     if element.is_empty {
         return Ok(mesh);
     }
@@ -104,13 +104,13 @@ fn bad(reader: &ModelReader<'_>, element: &XmlElement<'_>) -> ReadError {
 
 /// The triangles of a mesh as they are listed.
 #[derive(Default)]
-struct Triangles {
+struct ListedTriangles {
     corners: Vec<[u32; 3]>,
     attributes: FaceAttributes,
     numbers: FxHashMap<String, u32>,
 }
 
-impl Triangles {
+impl ListedTriangles {
     fn read(&mut self, reader: &mut ModelReader<'_>) -> Result<(), ReadError> {
         let limit = reader.options.limits.triangles_max;
         let depth = reader.scanner.depth;

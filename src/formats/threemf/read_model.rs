@@ -1,6 +1,8 @@
 //! A model part: units, resources, objects and the build.
 
-use super::model::{Content, Group, Model, NO_NUMBER, Object, ObjectKind, ObjectMesh, Property, Reference};
+use super::model::{
+    Group, Model, NO_NUMBER, Object, ObjectContent, ObjectKind, ObjectMesh, Property, Reference,
+};
 use super::model_reader::{ModelReader, number};
 use super::package::{resolve, shortened};
 use super::read_mesh;
@@ -269,24 +271,24 @@ impl<'x> ModelReader<'x> {
         if value_in(&attributes, Namespace::Slice, "slicestackid").is_some() {
             self.note_extension("slices", "where the parts stay apart");
         }
-        let mut content = Content::Nothing;
+        let mut content = ObjectContent::Nothing;
         if !element.is_empty {
             let depth = self.scanner.depth;
             while let Some(child) = self.next_child(depth)? {
                 match (child.namespace, child.local) {
                     (Namespace::Core, "mesh") => {
                         let mesh = read_mesh::mesh(self, &child)?;
-                        content = self.only(&content, Content::Mesh(Box::new(mesh)), &child)?;
+                        content = self.only(&content, ObjectContent::Mesh(Box::new(mesh)), &child)?;
                     }
                     (Namespace::Core, "components") => {
                         let all = self.read_references(&child, "component")?;
-                        content = self.only(&content, Content::Components(all), &child)?;
+                        content = self.only(&content, ObjectContent::Components(all), &child)?;
                     }
                     _ => self.scanner.skip(&child)?,
                 }
             }
         }
-        if let Content::Nothing = content {
+        if let ObjectContent::Nothing = content {
             self.remark(element.at, &format!("the object {id} has neither a mesh nor components"));
         }
         let object = Object { id, kind, name, property, content };
@@ -297,9 +299,14 @@ impl<'x> ModelReader<'x> {
     }
 
     /// `new`, where there was nothing before.
-    fn only(&self, old: &Content, new: Content, element: &XmlElement<'x>) -> Result<Content, ReadError> {
+    fn only(
+        &self,
+        old: &ObjectContent,
+        new: ObjectContent,
+        element: &XmlElement<'x>,
+    ) -> Result<ObjectContent, ReadError> {
         match old {
-            Content::Nothing => Ok(new),
+            ObjectContent::Nothing => Ok(new),
             _ => {
                 let found = format!("a second content <{}> of an object", element.name);
                 Err(self.error(element.at, &found, "one mesh, or one list of components"))
@@ -373,7 +380,7 @@ impl<'x> ModelReader<'x> {
         {
             self.remark(at, &format!("the object {} has {what}", object.id));
         }
-        let Content::Mesh(mesh) = &object.content else { return };
+        let ObjectContent::Mesh(mesh) = &object.content else { return };
         let ObjectMesh { attributes, .. } = &**mesh;
         let mut is_default_missing = false;
         for (f, &own) in attributes.properties.iter().enumerate() {

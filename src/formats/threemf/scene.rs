@@ -1,6 +1,6 @@
 //! What the build of a 3MF puts together, as one mesh.
 
-use super::model::Content;
+use super::model::ObjectContent;
 use super::models::Models;
 use super::package::too_large;
 use super::read_volumes::{Purpose, are_all, by_object};
@@ -75,13 +75,14 @@ pub(super) fn assemble(
     let units = models.all.first().map(|model| model.units);
     let soup = Soup { units, is_f32_exact: true, ..Soup::default() };
     let objects = Objects::default();
-    let mut scene = Scene { soup, objects, is_faulty: false, means: 0, charges: Vec::new(), options, budget };
+    let mut scene =
+        SceneBuilder { soup, objects, is_faulty: false, means: 0, charges: Vec::new(), options, budget };
     let of_object = by_object(&models.volumes);
     for placement in &models.placements {
         let [m, o] = placement.object;
         let model = &models.all[m];
         let object = &model.objects[o];
-        let Content::Mesh(mesh) = &object.content else { continue };
+        let ObjectContent::Mesh(mesh) = &object.content else { continue };
         let is_printed = object.kind.is_solid() || object.kind == super::ObjectKind::Surface;
         if !is_printed {
             continue;
@@ -124,7 +125,7 @@ pub(super) fn assemble(
             scene.name_faces(scene.soup.face_count, &object.name, &volume.name)?;
         }
     }
-    let Scene { mut soup, objects, is_faulty, means, .. } = scene;
+    let SceneBuilder { mut soup, objects, is_faulty, means, .. } = scene;
     match objects.names.len() {
         1 if objects.names[0] == ObjectName::default() => {}
         0..=OBJECTS_MAX => soup.objects = objects,
@@ -144,7 +145,7 @@ pub(super) fn assemble(
 }
 
 /// A mesh to which others are added.
-struct Scene<'s> {
+struct SceneBuilder<'s> {
     soup: Soup,
     objects: Objects,
     /// Some face has no triangle.
@@ -156,7 +157,7 @@ struct Scene<'s> {
     budget: &'s Budget,
 }
 
-impl Scene<'_> {
+impl SceneBuilder<'_> {
     /// Counts a part that is left out, unless it is material.
     fn leave_out(&mut self, purpose: Purpose) {
         let Some(name) = purpose.left_out_as() else { return };

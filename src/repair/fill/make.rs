@@ -47,7 +47,7 @@ impl Way {
 }
 
 /// What patches are made from.
-pub(super) struct Scene<'a> {
+pub(super) struct PatchInput<'a> {
     pub(super) surface: &'a FillSurface,
     /// `None`: no hole is to get the surface of a field.
     pub(super) mesh: Option<&'a rbf::FieldMesh<'a>>,
@@ -79,7 +79,7 @@ pub(super) fn make(
     division: Option<&Division>,
     rings: u32,
     way: Way,
-    scene: &Scene<'_>,
+    scene: &PatchInput<'_>,
     rejected: &mut Vec<Rejection>,
     budget: &Budget,
 ) -> Result<Result<MadePatch, Rejection>, Stopped> {
@@ -225,11 +225,13 @@ fn smooth(
 fn of_field(
     region: &Region,
     rings: u32,
-    scene: &Scene<'_>,
+    scene: &PatchInput<'_>,
     rejected: &mut Vec<Rejection>,
     budget: &Budget,
 ) -> Result<Result<MadePatch, Rejection>, Stopped> {
-    let Scene { surface, mesh: Some(mesh), options } = *scene else { return Ok(Err(Rejection::NoPatch)) };
+    let PatchInput { surface, mesh: Some(mesh), options } = *scene else {
+        return Ok(Err(Rejection::NoPatch));
+    };
     let mut fit = || rbf::field(region, rings, surface, mesh, options, rejected, budget);
     if options.extract == Extract::Project {
         return projected(region, fit, surface, budget);

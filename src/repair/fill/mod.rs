@@ -36,7 +36,7 @@ mod surface;
 
 use self::accept::PatchProposal;
 use self::creased::Division;
-use self::make::{MadePatch, Scene, Way, make};
+use self::make::{MadePatch, PatchInput, Way, make};
 pub use self::options::{Extract, FillOptions, HoleChoice, Method};
 use self::pinched::Walk;
 use self::regions::{Region, regions};
@@ -130,7 +130,7 @@ fn fill_loops(
     let mut done = Vec::new();
     let mut patches: Vec<(MadePatch, u32)> = Vec::new();
     while !open.is_empty() {
-        let scene = Scene { surface: &surface, mesh: mesh.as_ref(), options };
+        let scene = PatchInput { surface: &surface, mesh: mesh.as_ref(), options };
         let offers = offer(&mut open, &scene, budget)?;
         let proposals: Vec<&PatchProposal> =
             offers.iter().flatten().map(|(_, made)| &made.proposal).collect();
@@ -230,7 +230,7 @@ impl Ladder<'_> {
 /// The next patch for each hole that has one, and the way it was made in.
 fn offer(
     open: &mut [Hole],
-    scene: &Scene<'_>,
+    scene: &PatchInput<'_>,
     budget: &Budget,
 ) -> Result<Vec<Option<(Way, MadePatch)>>, Stopped> {
     let holes: Vec<&mut Hole> = open.iter_mut().collect();
@@ -253,7 +253,7 @@ fn offer(
 }
 
 impl Hole {
-    fn next(&mut self, scene: &Scene<'_>, budget: &Budget) -> Result<Option<(Way, MadePatch)>, Stopped> {
+    fn next(&mut self, scene: &PatchInput<'_>, budget: &Budget) -> Result<Option<(Way, MadePatch)>, Stopped> {
         while let Some(way) = self.ways.pop() {
             let (division, mut rejected) = (self.division.as_ref(), Vec::new());
             let made = make(&self.region, division, self.band_rings, way, scene, &mut rejected, budget)?;
