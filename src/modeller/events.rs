@@ -13,7 +13,7 @@
 //! plane with an end of one; so only edges with a moving plane are tried against edges, and only where the four planes
 //! are different.
 
-use super::conflict::Contact;
+use super::conflict::Conflict;
 use super::exact::{Rational, cross, dot, to_f64};
 use super::merged::Merged;
 use super::motion::{Motion, Moving, MovingPoint, root_after_zero};
@@ -34,14 +34,14 @@ pub(super) struct Event {
     /// The edges that lose their lengths then.
     pub(super) vanishing: Vec<HalfEdgeId>,
     /// What else comes to meet.
-    pub(super) contacts: Vec<Contact>,
+    pub(super) contacts: Vec<Conflict>,
 }
 
 impl Event {
     /// All elements that meet.
-    pub(super) fn blocking(&self, solid: &Solid) -> Vec<Contact> {
+    pub(super) fn blocking(&self, solid: &Solid) -> Vec<Conflict> {
         let topology = &solid.topology;
-        let vanish = |&h: &HalfEdgeId| Contact::EdgeVanishes {
+        let vanish = |&h: &HalfEdgeId| Conflict::EdgeVanishes {
             faces: [topology.face(h), topology.face(topology.opposite(h))],
             vertices: [topology.origin(h), topology.destination(h)],
         };
@@ -64,7 +64,7 @@ pub(super) fn next_event(
     let end = vanish_at.as_ref().map_or(f64::INFINITY, rounded_up);
     let merged = Merged::of(solid, &vanishing);
     let is_explained =
-        |s: &Rational, contact: &Contact| vanish_at.as_ref() == Some(s) && merged.explains(solid, contact);
+        |s: &Rational, contact: &Conflict| vanish_at.as_ref() == Some(s) && merged.explains(solid, contact);
     let mut search = EventSearch::new(solid, motion, moving);
     let mut found = First::default();
     for span in search.spans(end) {
@@ -90,7 +90,7 @@ fn first_contact(
     search: &mut EventSearch<'_>,
     end: f64,
     vanish_at: Option<&Rational>,
-    is_explained: &dyn Fn(&Rational, &Contact) -> bool,
+    is_explained: &dyn Fn(&Rational, &Conflict) -> bool,
     budget: &Budget,
 ) -> Result<First, Stopped> {
     search.end = end;
@@ -121,7 +121,7 @@ fn first_contact(
 #[derive(Default)]
 struct First {
     at: Option<Rational>,
-    contacts: Vec<Contact>,
+    contacts: Vec<Conflict>,
 }
 
 impl First {
@@ -132,7 +132,7 @@ impl First {
         }
     }
 
-    fn take(&mut self, s: Rational, contact: Contact) {
+    fn take(&mut self, s: Rational, contact: Conflict) {
         if self.at.as_ref().is_none_or(|at| s < *at) {
             self.contacts.clear();
             self.at = Some(s);

@@ -1,6 +1,6 @@
 //! The open interval by which faces may move without an event.
 
-use super::conflict::Contact;
+use super::conflict::Conflict;
 use super::events::next_event;
 use super::exact::Rational;
 use super::motion::{Motion, Moving};
@@ -22,7 +22,7 @@ pub enum IntervalSide {
         /// The growth of the offset of each moving face at the event.
         limits: Vec<(FaceId, Rational)>,
         /// What would meet.
-        blocking: Vec<Contact>,
+        blocking: Vec<Conflict>,
     },
     /// Not at all: a vertex has no good split in this direction.
     Blocked {

@@ -26,7 +26,7 @@ mod search;
 mod solid;
 mod sweep;
 mod validity;
-pub use conflict::Contact;
+pub use conflict::Conflict;
 pub use dual::{Dual, DualRefusal, Embedding, dual, dual_faces};
 pub use exact::{Rational, rational, to_f64};
 pub use export::{ExportRefusal, Exported, export};

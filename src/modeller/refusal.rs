@@ -1,6 +1,6 @@
 //! Why an operator does nothing.
 
-use super::conflict::Contact;
+use super::conflict::Conflict;
 use super::exact::Rational;
 use super::rule::Fault;
 use crate::mesh::polyhedron::{FaceId, VertexId};
@@ -15,7 +15,7 @@ pub enum OperatorRefusal {
         /// The growth of each moving face at the event.
         limits: Vec<(FaceId, Rational)>,
         /// What would meet.
-        blocking: Vec<Contact>,
+        blocking: Vec<Conflict>,
     },
     /// No split of the vertex opens every new edge and keeps its faces apart, in this direction.
     NoSplit {

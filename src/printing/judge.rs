@@ -1,6 +1,6 @@
 //! Figures against the limits of a process.
 
-use super::{BuildVolume, Direction, Figures, Limit, Policy, PrintingWitness, Thickness};
+use super::{BuildDirection, BuildVolume, Figures, Limit, Policy, PrintingWitness, Thickness};
 use crate::geom::DVec3;
 
 /// What is checked.
@@ -144,7 +144,7 @@ fn build_volume(figures: &Figures, policy: &Policy) -> Option<Check> {
 }
 
 /// How the part fits a box of these sides, the last one up.
-pub(super) fn fit(figures: &Figures, up: Direction, sides: [f64; 3]) -> Fit {
+pub(super) fn fit(figures: &Figures, up: BuildDirection, sides: [f64; 3]) -> Fit {
     let size: DVec3 = figures.quote.bounds.max - figures.quote.bounds.min;
     let (axis, _) = up.axis();
     let flat = sorted([size[(axis + 1) % 3], size[(axis + 2) % 3], 0.0]);

@@ -26,7 +26,7 @@ pub use judge::{Check, CheckCode, Fit, Status};
 pub use oriented_box::OrientedBox;
 pub use overhang::Overhang;
 pub use parts::{Cavities, Parts};
-pub use policy::{BuildVolume, Direction, Limit, Policy};
+pub use policy::{BuildDirection, BuildVolume, Limit, Policy};
 pub use thickness::{Spread, Thickness};
 
 use crate::budget::{Budget, Stopped};
@@ -77,7 +77,7 @@ pub struct Figures {
     pub walls: Thickness,
     /// Width of gaps between walls.
     pub gaps: Thickness,
-    /// What hangs over nothing, for each direction in the order of [`Direction::ALL`].
+    /// What hangs over nothing, for each direction in the order of [`BuildDirection::ALL`].
     pub overhangs: Vec<Overhang>,
     /// Angle below which a face needs support.
     pub overhang_limit: f64,
@@ -167,7 +167,7 @@ fn figures(
     let parts = || parts::parts(surface, &groups, search.bvh(), &policy.feature, is_solid, samples, budget);
     let (edges, parts) = par::join(edges, parts);
     let overhang_limit = overhang::angle_limit(&policy.overhang);
-    let overhangs = Direction::ALL.map(|up| overhang::overhang(surface, up, overhang_limit, budget));
+    let overhangs = BuildDirection::ALL.map(|up| overhang::overhang(surface, up, overhang_limit, budget));
     Ok(Figures {
         walls,
         gaps,
@@ -181,7 +181,7 @@ fn figures(
 
 fn quote(
     surface: &WeldedSurface<'_>,
-    up: Direction,
+    up: BuildDirection,
     is_solid: bool,
     area: f64,
     budget: &Budget,

@@ -159,7 +159,7 @@ fn farthest(points: &[DVec3], start: usize, direction: DVec3) -> (f64, usize) {
 
 fn direction(i: usize) -> DVec3 {
     if i >= DIRECTIONS {
-        let (axis, sign) = super::Direction::ALL[i - DIRECTIONS].axis();
+        let (axis, sign) = super::BuildDirection::ALL[i - DIRECTIONS].axis();
         return DVec3::AXES[axis] * sign;
     }
     let z = 1.0 - (2.0 * i as f64 + 1.0) / DIRECTIONS as f64;

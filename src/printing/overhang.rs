@@ -1,7 +1,7 @@
 //! What hangs over nothing in each orientation.
 
 use super::surface::WeldedSurface;
-use super::{Direction, Limit, PrintingWitness};
+use super::{BuildDirection, Limit, PrintingWitness};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::triangle_area;
 use crate::par;
@@ -21,7 +21,7 @@ const PLATE_SHARE: f64 = 1e-6;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Overhang {
     /// What is up.
-    pub direction: Direction,
+    pub direction: BuildDirection,
     /// Height of the part, in the unit of the file.
     pub height: f64,
     /// Area of the faces below the angle limit that do not lie on the plate, in square units of the file.
@@ -42,7 +42,7 @@ pub(super) fn angle_limit(limit: &Limit) -> f64 {
 /// The figures of one direction.
 pub(super) fn overhang(
     surface: &WeldedSurface<'_>,
-    direction: Direction,
+    direction: BuildDirection,
     angle_limit: f64,
     budget: &Budget,
 ) -> Result<Overhang, Stopped> {
@@ -86,7 +86,7 @@ pub(super) fn overhang(
 /// The faces with the smallest angles, at most `most`.
 pub(super) fn witnesses(
     surface: &WeldedSurface<'_>,
-    direction: Direction,
+    direction: BuildDirection,
     angle_limit: f64,
     most: usize,
     budget: &Budget,
@@ -131,7 +131,7 @@ struct OverhangView<'v> {
 }
 
 impl<'v> OverhangView<'v> {
-    fn new(surface: &'v WeldedSurface<'v>, direction: Direction, angle_limit: f64) -> Self {
+    fn new(surface: &'v WeldedSurface<'v>, direction: BuildDirection, angle_limit: f64) -> Self {
         let (axis, sign) = direction.axis();
         let ends = [surface.bounds.min[axis] * sign, surface.bounds.max[axis] * sign];
         Self {

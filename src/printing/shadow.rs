@@ -3,7 +3,7 @@
 //! Rows across the view; on the middle line of each the stretches that triangles cover are found exactly and joined. The
 //! error is that of the midpoint rule: of the order of the outline's length times half a row.
 
-use super::Direction;
+use super::BuildDirection;
 use super::surface::WeldedSurface;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::par;
@@ -18,7 +18,7 @@ const CROSSINGS_MAX: u64 = 1 << 22;
 /// The shadow along `direction`, in square units of the file. Of a solid only what faces the light is looked at.
 pub(super) fn shadow(
     surface: &WeldedSurface<'_>,
-    direction: Direction,
+    direction: BuildDirection,
     is_solid: bool,
     budget: &Budget,
 ) -> Result<f64, Stopped> {
@@ -79,7 +79,7 @@ struct ShadowView<'v> {
 }
 
 impl<'v> ShadowView<'v> {
-    fn new(surface: &'v WeldedSurface<'v>, direction: Direction, is_solid: bool, rows: usize) -> Self {
+    fn new(surface: &'v WeldedSurface<'v>, direction: BuildDirection, is_solid: bool, rows: usize) -> Self {
         let (axis, sign) = direction.axis();
         let up = (axis + 2) % 3;
         let (floor, height) = (surface.bounds.min[up], surface.bounds.max[up] - surface.bounds.min[up]);

@@ -13,7 +13,7 @@ mod normals;
 mod raster;
 mod resolve;
 
-pub use camera::{Camera, Direction, Projection, View};
+pub use camera::{Camera, PictureAxes, Projection, View};
 pub use canvas::{Canvas, Rgb};
 pub use encode::{animation, picture};
 pub use letters::{LETTER_HEIGHT, LETTER_WIDTH};

@@ -6,7 +6,7 @@ use meshmend::budget::Budget;
 use meshmend::geom::DVec3;
 use meshmend::par;
 use meshmend::render::{
-    Camera, Direction, DrawnEdges, Model, Projection, Scene, SceneFrame, Shade, Style, View, draw,
+    Camera, DrawnEdges, Model, PictureAxes, Projection, Scene, SceneFrame, Shade, Style, View, draw,
     visible_triangles,
 };
 
@@ -34,11 +34,11 @@ fn soup(random: &mut Random) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     (positions, triangles)
 }
 
-fn direction(random: &mut Random) -> Direction {
+fn direction(random: &mut Random) -> PictureAxes {
     if random.one_in(2) {
         return random.pick(&View::ALL).direction();
     }
-    Direction::around(360.0 * random.unit(), 170.0 * random.unit() - 85.0)
+    PictureAxes::around(360.0 * random.unit(), 170.0 * random.unit() - 85.0)
 }
 
 /// How far along the ray it meets the triangle.
