@@ -18,7 +18,7 @@ struct SortedHalfEdge {
 }
 
 /// The lines on the edges inside parts.
-struct Inside {
+struct InnerLines {
     /// Lines with two triangles, by one of their half-edges and its twin.
     seams: Vec<[(u32, u32); 2]>,
     /// Half-edges on a border.
@@ -72,10 +72,10 @@ impl<S: Copy + Send + Sync> Lines<'_, S> {
         self.mesh.triangles[side.triangle as usize][side.corner as usize]
     }
 
-    fn inside(&self, part: usize) -> Inside {
+    fn inside(&self, part: usize) -> InnerLines {
         let PartTopology { table, is_free } = &self.pieces[part];
         let first = self.division.starts[part] as u32;
-        let mut found = Inside { seams: Vec::new(), borders: Vec::new(), loose: Vec::new() };
+        let mut found = InnerLines { seams: Vec::new(), borders: Vec::new(), loose: Vec::new() };
         let place = |h: u32| (first + triangle_of(h), h & 3);
         for h in table.half_edges() {
             let twin = table.twin(h);
