@@ -5,8 +5,8 @@ use meshmend::budget::Budget;
 use meshmend::geom::DVec3;
 use meshmend::mesh::polyhedron::FaceId;
 use meshmend::modeller::{
-    Events, Operator, Side, Solid, apply, check, face_by_normal, from_polygons, import, offset_growth, range,
-    rational,
+    Events, IntervalSide, Operator, Solid, apply, check, face_by_normal, from_polygons, import,
+    offset_growth, range, rational,
 };
 use std::f64::consts::PI;
 use std::hint::black_box;
@@ -94,7 +94,7 @@ fn frustum() -> Solid {
 fn half_way(solid: &Solid, face: FaceId) -> Operator {
     let sides = range(solid, &[(face, rational(1.0))], &Budget::unlimited()).expect("nothing stops it");
     let limits = sides.iter().filter_map(|side| match side {
-        Side::Limit { limits, .. } => Some(limits[0].1.clone()),
+        IntervalSide::Limit { limits, .. } => Some(limits[0].1.clone()),
         _ => None,
     });
     let nearest = limits.min_by_key(|t| if *t < rational(0.0) { -t } else { t.clone() });

@@ -7,7 +7,9 @@ use self::dented_sphere::dented_sphere;
 use criterion::{Criterion, criterion_group, criterion_main};
 use meshmend::budget::Budget;
 use meshmend::geom::DVec3;
-use meshmend::render::{Camera, Edges, Frame, Model, Projection, Scene, Shade, Style, View, draw, picture};
+use meshmend::render::{
+    Camera, DrawnEdges, Model, Projection, Scene, SceneFrame, Shade, Style, View, draw, picture,
+};
 use std::hint::black_box;
 
 const PALETTE: [[u8; 3]; 1] = [[185, 194, 203]];
@@ -15,12 +17,12 @@ const PALETTE: [[u8; 3]; 1] = [[185, 194, 203]];
 fn png(mesh: &(Vec<DVec3>, Vec<[u32; 3]>), width: u32, height: u32) -> Vec<u8> {
     let budget = Budget::unlimited();
     let scene = Scene { positions: &mesh.0, triangles: &mesh.1, palette: &PALETTE, ..Scene::default() };
-    let frame = Frame::around([scene.bounds()]);
+    let frame = SceneFrame::around([scene.bounds()]);
     let model = Model::of(scene, frame, Shade::Smooth, &budget).expect("no limit");
     let aspect = f64::from(width) / f64::from(height);
     let camera = Camera::at(&[&model], View::Iso.direction(), Projection::Orthographic, aspect, &budget)
         .expect("no limit");
-    let style = Style { edges: Edges::Creases, background: [255; 3], back: Some([207, 63, 54]) };
+    let style = Style { edges: DrawnEdges::Creases, background: [255; 3], back: Some([207, 63, 54]) };
     picture(&draw(&model, &camera, width, height, &style, &budget).expect("no limit"))
 }
 

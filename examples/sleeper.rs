@@ -12,7 +12,7 @@ fn main() -> ExitCode {
     if std::env::args().nth(1).as_deref() == Some(jobs::RUN_JOB) {
         return jobs::run_job(run);
     }
-    let service = cli::Service {
+    let service = cli::ServiceHooks {
         serve: http::start,
         check: http::check,
         healthcheck: http::healthcheck,

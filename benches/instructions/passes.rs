@@ -12,7 +12,9 @@ use meshmend::geom::DVec3;
 use meshmend::mesh::{Boundary, EdgeGroups, Soup, singular_vertices, twins};
 use meshmend::pipeline::{Operation, Options, Outcome, run};
 use meshmend::printing::{Policy, measure};
-use meshmend::render::{Camera, Edges, Frame, Model, Projection, Scene, Shade, Style, View, draw, picture};
+use meshmend::render::{
+    Camera, DrawnEdges, Model, Projection, Scene, SceneFrame, Shade, Style, View, draw, picture,
+};
 use meshmend::repair::Draft;
 use meshmend::repair::fill::{FillOptions, Method, fill};
 use meshmend::repair::round::{round_to_coarser, round_where_it_matters};
@@ -290,11 +292,11 @@ fn rendering() -> Body {
             palette: &palette,
             ..Scene::default()
         };
-        let frame = Frame::around([scene.bounds()]);
+        let frame = SceneFrame::around([scene.bounds()]);
         let model = Model::of(scene, frame, Shade::Smooth, &budget).expect("no limit");
         let direction = View::Iso.direction();
         let camera = Camera::at(&[&model], direction, Projection::Orthographic, 4.0 / 3.0, &budget);
-        let style = Style { edges: Edges::Creases, background: [255; 3], back: Some([207, 63, 54]) };
+        let style = Style { edges: DrawnEdges::Creases, background: [255; 3], back: Some([207, 63, 54]) };
         let canvas = draw(&model, &camera.expect("no limit"), 320, 240, &style, &budget).expect("no limit");
         picture(&canvas)
     })

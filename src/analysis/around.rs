@@ -8,7 +8,7 @@ use crate::par;
 
 /// What may be around a part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Around {
+pub(super) enum Enclosure {
     /// No box of another part holds this part's box: nothing is around it.
     Nothing,
     /// Only boxes of parts that can be told inside from outside do.
@@ -34,12 +34,12 @@ pub(super) fn part_boxes(
 }
 
 /// What may be around each box; `is_clear` tells whose inside is known. A sweep along the widest axis.
-pub(super) fn around(boxes: &[Aabb], is_clear: &[bool], budget: &Budget) -> Result<Vec<Around>, Stopped> {
+pub(super) fn around(boxes: &[Aabb], is_clear: &[bool], budget: &Budget) -> Result<Vec<Enclosure>, Stopped> {
     let all = boxes.iter().copied().fold(Aabb::EMPTY, Aabb::union);
     let axis = (all.max / 2.0 - all.min / 2.0).max_position();
     let mut order: Vec<usize> = (0..boxes.len()).collect();
     order.sort_unstable_by(|&a, &b| boxes[a].min[axis].total_cmp(&boxes[b].min[axis]).then(a.cmp(&b)));
-    let mut around = vec![Around::Nothing; boxes.len()];
+    let mut around = vec![Enclosure::Nothing; boxes.len()];
     let mut begun = order.iter().copied().peekable();
     // Boxes that have begun along the axis and not yet ended.
     let mut open: Vec<usize> = Vec::new();
@@ -51,8 +51,8 @@ pub(super) fn around(boxes: &[Aabb], is_clear: &[bool], budget: &Budget) -> Resu
         }
         budget.spend(open.len() as u64)?;
         let outers = open.iter().filter(|&&outer| outer != inner && holds(boxes[outer], boxes[inner]));
-        let claims = outers.map(|&outer| if is_clear[outer] { Around::Known } else { Around::Unclear });
-        around[inner] = claims.max().unwrap_or(Around::Nothing);
+        let claims = outers.map(|&outer| if is_clear[outer] { Enclosure::Known } else { Enclosure::Unclear });
+        around[inner] = claims.max().unwrap_or(Enclosure::Nothing);
     }
     Ok(around)
 }
@@ -85,11 +85,12 @@ mod tests {
         for seed in 0..200 {
             let boxes = random_boxes(20, seed);
             let is_clear: Vec<bool> = (0..20).map(|i| i % 3 != 0).collect();
-            let wanted: Vec<Around> = (0..20)
+            let wanted: Vec<Enclosure> = (0..20)
                 .map(|i| {
                     let outers = (0..20).filter(|&o| o != i && holds(boxes[o], boxes[i]));
-                    let claims = outers.map(|o| if is_clear[o] { Around::Known } else { Around::Unclear });
-                    claims.max().unwrap_or(Around::Nothing)
+                    let claims =
+                        outers.map(|o| if is_clear[o] { Enclosure::Known } else { Enclosure::Unclear });
+                    claims.max().unwrap_or(Enclosure::Nothing)
                 })
                 .collect();
             assert_eq!(around(&boxes, &is_clear, &Budget::unlimited()).unwrap(), wanted, "seed {seed}");

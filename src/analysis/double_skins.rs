@@ -4,7 +4,7 @@
 //! the difference of their volumes by the area of the inner one. Where that is at most half of the epsilon for what is
 //! near, the sides are nearer than epsilon over at least half of the area (Markov's inequality).
 
-use super::shells::Shell;
+use super::shells::OrientedShell;
 use super::sum::CompensatedSum;
 use super::{Context, DefectCode, Finding, Witness};
 use crate::budget::{CHECK_EVERY, Stopped};
@@ -12,14 +12,17 @@ use crate::geom::triangle_area;
 
 /// A double skin: its outer shell, the inner one if there are two, and the mean distance of the sides.
 struct DoubleSkin {
-    outer: Shell,
-    inner: Option<Shell>,
+    outer: OrientedShell,
+    inner: Option<OrientedShell>,
     thickness: f64,
 }
 
 /// The double skins among the shells of the mesh and the pairs `nested` (outer, inner) of shells that are next to each
 /// other.
-pub(super) fn find(cx: &Context<'_>, nested: &[(Shell, Shell)]) -> Result<Vec<Finding>, Stopped> {
+pub(super) fn find(
+    cx: &Context<'_>,
+    nested: &[(OrientedShell, OrientedShell)],
+) -> Result<Vec<Finding>, Stopped> {
     let thick = cx.epsilon / 2.0;
     let mut found = Vec::new();
     for &outer in cx.shells.iter().filter(|shell| has_volume(shell)) {
@@ -51,7 +54,7 @@ fn witness(cx: &Context<'_>, skin: &DoubleSkin) -> Witness {
 }
 
 /// False for what is told as without volume, and where the volume is out of the range of f64.
-fn has_volume(shell: &Shell) -> bool {
+fn has_volume(shell: &OrientedShell) -> bool {
     !shell.volume_sign.is_zero() && shell.volume.is_normal()
 }
 

@@ -12,7 +12,7 @@ use crate::spatial::Contact;
 /// Two features, each by its vertices in ascending order (one vertex, or the ends of an edge, with [`NONE`] behind them) or
 /// by the number of a face in the file, [`NONE`] before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Meeting {
+pub(super) struct FeatureMeeting {
     /// What they are.
     pub(super) test: ProximityTest,
     /// The feature of the lower dimension.
@@ -24,7 +24,7 @@ pub(super) struct Meeting {
 /// In the place of a vertex of an edge.
 const NONE: u32 = u32::MAX;
 
-impl Meeting {
+impl FeatureMeeting {
     /// The vertices of both features that are no faces.
     pub(super) fn vertices(&self) -> impl Iterator<Item = u32> {
         let of = |[first, second]: [u32; 2]| match first {
@@ -37,7 +37,7 @@ impl Meeting {
 
 /// What is compared with another triangle.
 #[derive(Clone, Copy)]
-struct Corners {
+struct ComparedTriangle {
     vertices: [u32; 3],
     at: [DVec3; 3],
     face: u32,
@@ -45,7 +45,7 @@ struct Corners {
     is_edge: [bool; 3],
 }
 
-impl Corners {
+impl ComparedTriangle {
     fn of(cx: &Context<'_>, sides: &PolygonSides, t: u32) -> Self {
         let written = cx.mesh.soup.triangles[t as usize];
         let vertices = written.map(|v| cx.mesh.first_at(v));
@@ -102,8 +102,8 @@ impl PolygonSides {
 }
 
 /// The pairs of features, ascending, in which two triangles of the soup meet; nothing within one face.
-pub(super) fn meetings(cx: &Context<'_>, sides: &PolygonSides, contact: &Contact) -> Vec<Meeting> {
-    let [f, g] = [contact.a, contact.b].map(|t| Corners::of(cx, sides, t));
+pub(super) fn meetings(cx: &Context<'_>, sides: &PolygonSides, contact: &Contact) -> Vec<FeatureMeeting> {
+    let [f, g] = [contact.a, contact.b].map(|t| ComparedTriangle::of(cx, sides, t));
     if f.face == g.face {
         return Vec::new();
     }
@@ -115,7 +115,7 @@ pub(super) fn meetings(cx: &Context<'_>, sides: &PolygonSides, contact: &Contact
         for (ends, _, is_edge) in f.sides().filter(|side| passes_through(side.1, g.at)) {
             is_derived = true;
             if is_edge {
-                found.push(Meeting { test: ProximityTest::EdgeFace, a: ascending(ends), b: g.face() });
+                found.push(FeatureMeeting { test: ProximityTest::EdgeFace, a: ascending(ends), b: g.face() });
             }
         }
     }
@@ -125,7 +125,9 @@ pub(super) fn meetings(cx: &Context<'_>, sides: &PolygonSides, contact: &Contact
                 is_derived = true;
                 let (e, h) = (ascending(e), ascending(h));
                 found.extend(match (is_edge_e, is_edge_h) {
-                    (true, true) => Some(Meeting { test: ProximityTest::EdgeEdge, a: e.min(h), b: e.max(h) }),
+                    (true, true) => {
+                        Some(FeatureMeeting { test: ProximityTest::EdgeEdge, a: e.min(h), b: e.max(h) })
+                    }
                     (true, false) => through_face(e, at_e, &g),
                     (false, true) => through_face(h, at_h, &f),
                     (false, false) => None,
@@ -136,7 +138,11 @@ pub(super) fn meetings(cx: &Context<'_>, sides: &PolygonSides, contact: &Contact
     // What only meets sides inside a polygon goes on in its next triangle.
     if found.is_empty() && !is_derived {
         let [a, b] = [f.face, g.face];
-        found.push(Meeting { test: ProximityTest::FaceFace, a: [NONE, a.min(b)], b: [NONE, a.max(b)] });
+        found.push(FeatureMeeting {
+            test: ProximityTest::FaceFace,
+            a: [NONE, a.min(b)],
+            b: [NONE, a.max(b)],
+        });
     }
     found.sort_unstable();
     found.dedup();
@@ -148,12 +154,12 @@ fn ascending([a, b]: [u32; 2]) -> [u32; 2] {
 }
 
 /// The meeting of vertex `v` at `p` with the triangle, of which it is no corner.
-fn vertex_on(v: u32, p: DVec3, g: &Corners) -> Option<Meeting> {
+fn vertex_on(v: u32, p: DVec3, g: &ComparedTriangle) -> Option<FeatureMeeting> {
     let a = [v, NONE];
-    let in_face = Meeting { test: ProximityTest::VertexFace, a, b: g.face() };
+    let in_face = FeatureMeeting { test: ProximityTest::VertexFace, a, b: g.face() };
     if let Some((ends, _, is_edge)) = g.sides().find(|(_, [from, to], _)| is_on_segment(p, *from, *to)) {
         return Some(match is_edge {
-            true => Meeting { test: ProximityTest::VertexEdge, a, b: ascending(ends) },
+            true => FeatureMeeting { test: ProximityTest::VertexEdge, a, b: ascending(ends) },
             false => in_face,
         });
     }
@@ -162,10 +168,10 @@ fn vertex_on(v: u32, p: DVec3, g: &Corners) -> Option<Meeting> {
 
 /// The meeting of an edge with the face of a triangle, a side of which inside that face it crosses; none where it runs along
 /// the face.
-fn through_face(ends: [u32; 2], at: [DVec3; 2], of: &Corners) -> Option<Meeting> {
+fn through_face(ends: [u32; 2], at: [DVec3; 2], of: &ComparedTriangle) -> Option<FeatureMeeting> {
     let [a, b, c] = of.at;
     let is_along = at.into_iter().all(|p| orient3d(a, b, c, p).is_zero());
-    (!is_along).then(|| Meeting { test: ProximityTest::EdgeFace, a: ends, b: of.face() })
+    (!is_along).then(|| FeatureMeeting { test: ProximityTest::EdgeFace, a: ends, b: of.face() })
 }
 
 /// True when `p` is exactly in the triangle and on none of its edges.

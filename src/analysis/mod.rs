@@ -54,7 +54,7 @@ use boundary_loops::Loops;
 use duplicate_faces::{Repeat, repeats};
 use members::Members;
 use names::middle;
-use shells::{Shell, shells};
+use shells::{OrientedShell, shells};
 use std::borrow::Cow;
 use welded::{Welded, indices_where, used_vertices};
 
@@ -267,7 +267,7 @@ struct Context<'a> {
     /// Vertices of the mesh with more than one fan, ascending.
     singular: Vec<u32>,
     members: Members,
-    shells: Vec<Shell>,
+    shells: Vec<OrientedShell>,
     /// Parts with a rim that bound no volume, ascending.
     sheets: Vec<u32>,
     /// The boundary loops, classified.

@@ -4,8 +4,8 @@
 //! meet nothing; of a shell that meets another part, or perhaps lies in one that cannot be told inside from outside,
 //! nothing is said, except that it is inverted where the boxes show that nothing can be around it.
 
-use super::around::{Around, around, part_boxes};
-use super::shells::Shell;
+use super::around::{Enclosure, around, part_boxes};
+use super::shells::OrientedShell;
 use super::{Context, DefectCode, Finding, Witness, double_skins};
 use crate::budget::{CHECK_EVERY, Stopped};
 use crate::geom::Sign;
@@ -13,8 +13,9 @@ use crate::spatial::{Bvh, nest};
 
 pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
     let Ways { inverted, misnested, nested } = ways(cx)?;
-    let flat: Vec<Shell> = cx.shells.iter().copied().filter(|s| s.volume_sign.is_zero()).collect();
-    let finding = |code, shells: &[Shell]| Finding::of(code, shells, cx.samples, |shell| witness(cx, shell));
+    let flat: Vec<OrientedShell> = cx.shells.iter().copied().filter(|s| s.volume_sign.is_zero()).collect();
+    let finding =
+        |code, shells: &[OrientedShell]| Finding::of(code, shells, cx.samples, |shell| witness(cx, shell));
     Ok([
         finding(DefectCode::InvertedShell, &inverted),
         finding(DefectCode::MisnestedShell, &misnested),
@@ -24,7 +25,7 @@ pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
     .concat())
 }
 
-fn witness(cx: &Context<'_>, shell: &Shell) -> Witness {
+fn witness(cx: &Context<'_>, shell: &OrientedShell) -> Witness {
     let mut witness = cx.part_witness(shell.part);
     witness.figures.push(("volume", shell.volume));
     witness
@@ -34,11 +35,11 @@ fn witness(cx: &Context<'_>, shell: &Shell) -> Witness {
 #[derive(Debug, Default)]
 struct Ways {
     /// Shells that point inward with nothing around them.
-    inverted: Vec<Shell>,
+    inverted: Vec<OrientedShell>,
     /// Shells that point as the one around them does.
-    misnested: Vec<Shell>,
+    misnested: Vec<OrientedShell>,
     /// Shells and the next one inside each of them.
-    nested: Vec<(Shell, Shell)>,
+    nested: Vec<(OrientedShell, OrientedShell)>,
 }
 
 fn ways(cx: &Context<'_>) -> Result<Ways, Stopped> {
@@ -48,11 +49,12 @@ fn ways(cx: &Context<'_>) -> Result<Ways, Stopped> {
     }
     let is_free = free_shells(cx)?;
     let around = match cx.mesh.parts.len() {
-        1 => vec![Around::Nothing],
+        1 => vec![Enclosure::Nothing],
         _ => around(&part_boxes(&cx.mesh, &cx.members, cx.budget)?, &is_free, cx.budget)?,
     };
-    let is_nested = |s: &Shell| is_free[s.part as usize] && around[s.part as usize] == Around::Known;
-    let free: Vec<Shell> = cx.shells.iter().copied().filter(|s| is_free[s.part as usize]).collect();
+    let is_nested =
+        |s: &OrientedShell| is_free[s.part as usize] && around[s.part as usize] == Enclosure::Known;
+    let free: Vec<OrientedShell> = cx.shells.iter().copied().filter(|s| is_free[s.part as usize]).collect();
     let parents = if free.iter().any(is_nested) { parents(cx, &free)? } else { vec![None; free.len()] };
     let mut parent_of = vec![None; cx.mesh.parts.len()];
     for (shell, parent) in free.iter().zip(parents) {
@@ -60,7 +62,7 @@ fn ways(cx: &Context<'_>) -> Result<Ways, Stopped> {
     }
     for &shell in &cx.shells {
         let parent = parent_of[shell.part as usize].filter(|_| is_nested(&shell));
-        let is_alone = around[shell.part as usize] == Around::Nothing || is_nested(&shell);
+        let is_alone = around[shell.part as usize] == Enclosure::Nothing || is_nested(&shell);
         ways.nested.extend(parent.map(|parent| (free[parent as usize], shell)));
         match parent {
             Some(parent) if shell.volume_sign == free[parent as usize].volume_sign => {
@@ -109,7 +111,7 @@ fn free_shells(cx: &Context<'_>) -> Result<Vec<bool>, Stopped> {
 }
 
 /// The innermost shell around each of the `free` ones, as an index into them.
-fn parents(cx: &Context<'_>, free: &[Shell]) -> Result<Vec<Option<u32>>, Stopped> {
+fn parents(cx: &Context<'_>, free: &[OrientedShell]) -> Result<Vec<Option<u32>>, Stopped> {
     let members =
         || free.iter().enumerate().flat_map(|(i, s)| cx.members.part(s.part).iter().map(move |&t| (i, t)));
     let triangles: Vec<[u32; 3]> = members().map(|(_, t)| cx.mesh.triangles[t as usize]).collect();

@@ -6,7 +6,7 @@
 //! other. Features of one face or with a common vertex are no pair: when they are close, the face is a needle or a cap.
 
 use super::closed::is_closed;
-use super::meeting_features::{Meeting, PolygonSides, meetings};
+use super::meeting_features::{FeatureMeeting, PolygonSides, meetings};
 use super::welded::Welded;
 use super::{Context, DefectCode, Finding, NearSearch, ProximityTest};
 use crate::budget::{CHECK_EVERY, Stopped};
@@ -130,7 +130,7 @@ impl Proximity {
         let (mut intersect, mut touch) = ([0; 6], [0; 6]);
         if is_complete {
             let sides = PolygonSides::of(cx, list.iter());
-            let mut found: Vec<(Meeting, bool)> = Vec::new();
+            let mut found: Vec<(FeatureMeeting, bool)> = Vec::new();
             for (i, contact) in list.iter().enumerate() {
                 if i % CHECK_EVERY == 0 {
                     cx.budget.check()?;

@@ -2,7 +2,7 @@
 //! touch. Degenerate triangles and repeats of earlier ones are left out; they are told as such.
 
 use super::duplicate_faces::Repeat;
-use super::meeting_features::{Meeting, PolygonSides, meetings};
+use super::meeting_features::{FeatureMeeting, PolygonSides, meetings};
 use super::meeting_point::meeting_point;
 use super::welded::{Welded, indices_where};
 use super::{Context, DefectCode, Finding, ProximityTest};
@@ -48,9 +48,9 @@ pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
                 _ => soup.triangles[pair.a as usize].to_vec(),
             };
             let place = match lowest {
-                Some(Meeting { test: ProximityTest::VertexEdge | ProximityTest::VertexFace, .. }) => {
-                    soup.positions[vertices[0] as usize]
-                }
+                Some(FeatureMeeting {
+                    test: ProximityTest::VertexEdge | ProximityTest::VertexFace, ..
+                }) => soup.positions[vertices[0] as usize],
                 _ => meeting_point(soup.corners(pair.a), soup.corners(pair.b)),
             };
             let mut witness = cx.mesh.names().witness(faces, vertices, place);

@@ -9,7 +9,7 @@ use crate::par;
 
 /// A closed part whose triangles all agree on what is inside.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Shell {
+pub(super) struct OrientedShell {
     /// Number of the part.
     pub(super) part: u32,
     /// Rounded; positive when the shell points outward, infinite when out of range.
@@ -19,7 +19,11 @@ pub(super) struct Shell {
 }
 
 /// All shells of `mesh`, by part.
-pub(super) fn shells(mesh: &Welded<'_>, members: &Members, budget: &Budget) -> Result<Vec<Shell>, Stopped> {
+pub(super) fn shells(
+    mesh: &Welded<'_>,
+    members: &Members,
+    budget: &Budget,
+) -> Result<Vec<OrientedShell>, Stopped> {
     let is_shell = |p: usize| mesh.parts[p].is_closed && mesh.parts[p].is_oriented;
     let parts = indices_where(mesh.parts.len(), budget, is_shell)?;
     par::try_map_ranges(parts.len(), 1, |range| {
@@ -29,7 +33,7 @@ pub(super) fn shells(mesh: &Welded<'_>, members: &Members, budget: &Budget) -> R
             || volume(mesh, triangles, budget),
             || volume_sign(triangles.iter().map(|&t| mesh.corners(t)), || budget.check()),
         );
-        Ok(Shell { part, volume: volume?, volume_sign: sign? })
+        Ok(OrientedShell { part, volume: volume?, volume_sign: sign? })
     })
 }
 

@@ -34,12 +34,12 @@ pub(super) struct Welded<'s> {
     /// Parts of `triangles` connected by edges.
     pub(super) components: Components,
     /// What is known of each part.
-    pub(super) parts: Vec<Part>,
+    pub(super) parts: Vec<WeldedPart>,
 }
 
 /// A part connected by edges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Part {
+pub(super) struct WeldedPart {
     /// Its first triangle.
     pub(super) first: u32,
     /// Number of triangles.
@@ -197,8 +197,8 @@ fn parts(
     edges: &EdgeGroups,
     irregular: &[u32],
     budget: &Budget,
-) -> Result<Vec<Part>, Stopped> {
-    let unseen = Part { first: u32::MAX, len: 0, is_closed: true, is_oriented: true };
+) -> Result<Vec<WeldedPart>, Stopped> {
+    let unseen = WeldedPart { first: u32::MAX, len: 0, is_closed: true, is_oriented: true };
     let mut parts = vec![unseen; components.count as usize];
     for (t, &part) in components.of.iter().enumerate() {
         if t % CHECK_EVERY == 0 {

@@ -1,7 +1,7 @@
 //! From triangles to their arrangement: what meets, the clusters, their pieces, and the cells around them.
 
 use super::cells;
-use super::cluster::{self, Divided, Pair};
+use super::cluster::{self, ContactPair, Divided};
 use super::enclosed;
 use super::error::ArrangementError;
 use super::point::Definition;
@@ -14,14 +14,14 @@ use crate::spatial::{Bvh, ContactKind, Search, self_contacts};
 
 /// What an arrangement may cost, and of how many bodies it is.
 #[derive(Debug, Clone, Copy)]
-pub struct Options {
+pub struct ArrangementOptions {
     /// Most pairs of triangles that may meet beyond common vertices and edges.
     pub pairs_max: usize,
     /// Number of operands, each with its own winding numbers.
     pub operands: u8,
 }
 
-impl Default for Options {
+impl Default for ArrangementOptions {
     /// One operand, and two million pairs: about two gigabytes.
     fn default() -> Self {
         Self { pairs_max: 2_000_000, operands: 1 }
@@ -42,7 +42,7 @@ pub fn arrange(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
     operand_of: impl Fn(u32) -> u8 + Sync,
-    options: &Options,
+    options: &ArrangementOptions,
     budget: &Budget,
 ) -> Result<Arrangement, ArrangementError> {
     let Unwound { mut arrangement, triangles, bvh, _charge } = divide(positions, triangles, options, budget)?;
@@ -61,7 +61,7 @@ pub fn arrange_enclosed(
     pairs_max: usize,
     budget: &Budget,
 ) -> Result<Arrangement, ArrangementError> {
-    let options = Options { pairs_max, operands: 1 };
+    let options = ArrangementOptions { pairs_max, operands: 1 };
     let Unwound { mut arrangement, triangles, _charge, .. } = divide(positions, triangles, &options, budget)?;
     enclosed::enclose(&mut arrangement, &triangles, budget)?;
     Ok(arrangement)
@@ -79,7 +79,7 @@ struct Unwound<'b> {
 fn divide<'b>(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
-    options: &Options,
+    options: &ArrangementOptions,
     budget: &'b Budget,
 ) -> Result<Unwound<'b>, ArrangementError> {
     let welded = weld(positions, triangles, budget)?;
@@ -92,7 +92,7 @@ fn divide<'b>(
     if count > most as u64 {
         return Err(ArrangementError::TooManyPairs { count, limit: most as u64 });
     }
-    pairs.extend(contacts.list.iter().map(|c| Pair { triangles: [c.a, c.b], kind: c.kind }));
+    pairs.extend(contacts.list.iter().map(|c| ContactPair { triangles: [c.a, c.b], kind: c.kind }));
     let mut arrangement = Arrangement {
         positions: positions.to_vec(),
         clusters: Vec::new(),
@@ -153,7 +153,11 @@ fn sound(positions: &[DVec3], triangles: &[[u32; 3]], budget: &Budget) -> Result
 }
 
 /// Pairs of triangles with the same vertices: each with the first.
-fn copies(triangles: &[[u32; 3]], sound: &[u32], budget: &Budget) -> Result<Vec<Pair>, ArrangementError> {
+fn copies(
+    triangles: &[[u32; 3]],
+    sound: &[u32],
+    budget: &Budget,
+) -> Result<Vec<ContactPair>, ArrangementError> {
     budget.spend(sound.len() as u64)?;
     let key = |t: u32| {
         let mut corners = triangles[t as usize];
@@ -164,7 +168,8 @@ fn copies(triangles: &[[u32; 3]], sound: &[u32], budget: &Budget) -> Result<Vec<
     par::sort_unstable(&mut order);
     let mut pairs = Vec::new();
     for same in order.chunk_by(|a, b| a.0 == b.0) {
-        let pair = |&(_, t): &([u32; 3], u32)| Pair { triangles: [same[0].1, t], kind: ContactKind::Overlap };
+        let pair =
+            |&(_, t): &([u32; 3], u32)| ContactPair { triangles: [same[0].1, t], kind: ContactKind::Overlap };
         pairs.extend(same[1..].iter().map(pair));
     }
     Ok(pairs)
@@ -174,7 +179,7 @@ fn copies(triangles: &[[u32; 3]], sound: &[u32], budget: &Budget) -> Result<Vec<
 fn divide_clusters(
     arrangement: &mut Arrangement,
     triangles: &[[u32; 3]],
-    pairs: &[Pair],
+    pairs: &[ContactPair],
     budget: &Budget,
 ) -> Result<Vec<bool>, ArrangementError> {
     let mut is_met = vec![false; triangles.len()];
@@ -187,11 +192,11 @@ fn divide_clusters(
     let mut met: Vec<(u32, u32)> =
         (0..triangles.len() as u32).filter(|&t| is_met[t as usize]).map(|t| (sets.find(t), t)).collect();
     met.sort_unstable();
-    let mut of_cluster: Vec<(u32, Pair)> =
+    let mut of_cluster: Vec<(u32, ContactPair)> =
         pairs.iter().map(|&pair| (sets.find(pair.triangles[0]), pair)).collect();
     of_cluster.sort_by_key(|(cluster, pair)| (*cluster, pair.triangles));
     let groups: Vec<&[(u32, u32)]> = met.chunk_by(|a, b| a.0 == b.0).collect();
-    let pair_groups: Vec<&[(u32, Pair)]> = of_cluster.chunk_by(|a, b| a.0 == b.0).collect();
+    let pair_groups: Vec<&[(u32, ContactPair)]> = of_cluster.chunk_by(|a, b| a.0 == b.0).collect();
     let positions = &arrangement.positions;
     let divided = par::try_map_ranges(groups.len(), 4, |range| {
         let one = |i: usize| {
@@ -211,7 +216,7 @@ fn divide_cluster(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
     members: &[u32],
-    pairs: &[(u32, Pair)],
+    pairs: &[(u32, ContactPair)],
     budget: &Budget,
 ) -> Result<(Vec<u32>, Divided), ArrangementError> {
     let mut vertices: Vec<u32> = members.iter().flat_map(|&t| triangles[t as usize]).collect();
@@ -221,9 +226,9 @@ fn divide_cluster(
     let corners = |&t: &u32| triangles[t as usize].map(|v| own(&vertices, v));
     let own_triangles: Vec<[u32; 3]> = members.iter().map(corners).collect();
     let own_positions = vertices.iter().map(|&v| positions[v as usize]).collect();
-    let own_pairs: Vec<Pair> = pairs
+    let own_pairs: Vec<ContactPair> = pairs
         .iter()
-        .map(|(_, pair)| Pair { triangles: pair.triangles.map(|t| own(members, t)), kind: pair.kind })
+        .map(|(_, pair)| ContactPair { triangles: pair.triangles.map(|t| own(members, t)), kind: pair.kind })
         .collect();
     let divided = cluster::divide_all(own_positions, own_triangles, &own_pairs, budget)?;
     Ok((vertices, divided))

@@ -1,8 +1,8 @@
 //! Plane carriers: the triangles of one plane that overlap share one triangulation, so that copies agree by construction.
 
-use super::constraints::{Constrained, Constraint, Line, TagSets};
+use super::constraints::{Constrained, Constraint, ConstraintLine, TagSets};
 use super::error::ArrangementError;
-use super::kernel::{EXACT, Kernel, View};
+use super::kernel::{EXACT, Kernel, PlaneView};
 use super::point::{Definition, Point};
 use super::triangulation::{NONE, Sight, Triangulation};
 use crate::budget::Budget;
@@ -90,14 +90,14 @@ pub(super) fn divide(
         let [a, b, c] = if turn == Sign::Positive { [a, b, c] } else { [a, c, b] };
         for [from, to] in [[a, b], [b, c], [c, a]] {
             let ends = [find(vertex_of[from as usize])?, find(vertex_of[to as usize])?];
-            let line = Line::Edge([from.min(to), from.max(to)]);
+            let line = ConstraintLine::Edge([from.min(to), from.max(to)]);
             constrained.insert(Constraint { ends, line })?;
         }
         turns.push(turn == Sign::Negative);
     }
     for &([from, to], other) in &carrier.segments {
         let ends = [find(from)?, find(to)?];
-        constrained.insert(Constraint { ends, line: Line::Plane(other) })?;
+        constrained.insert(Constraint { ends, line: ConstraintLine::Plane(other) })?;
     }
     let Constrained { mesh, sets, sight, .. } = constrained;
     if is_single {
@@ -166,7 +166,7 @@ fn covered(
 }
 
 /// Orders many points along a curve through the squares of a grid, so that walks from one to the next are short.
-fn sort_for_walks(points: &mut [u32], shared: &[Point], view: View) {
+fn sort_for_walks(points: &mut [u32], shared: &[Point], view: PlaneView) {
     if points.len() < 16 {
         return;
     }

@@ -4,7 +4,7 @@ use super::carrier::{Carrier, Pieces, divide};
 use super::error::ArrangementError;
 use super::intern::first_at_place;
 use super::kernel::{EXACT, Kernel};
-use super::pairs::{Meeting, meeting};
+use super::pairs::{TriangleMeeting, meeting};
 use super::point::{Definition, Point};
 use crate::budget::Budget;
 use crate::geom::DVec3;
@@ -17,7 +17,7 @@ const CHUNK: usize = 32;
 
 /// A pair of triangles of a cluster, by their numbers in it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Pair {
+pub(super) struct ContactPair {
     pub(super) triangles: [u32; 2],
     /// How they meet; [`ContactKind::Overlap`] also for copies.
     pub(super) kind: ContactKind,
@@ -31,12 +31,12 @@ pub(super) struct Divided {
     pub(super) points: Vec<Point>,
     /// Corners, as points of which no two are at one place, the triangle that names the plane and turns the same way, and the
     /// triangles that cover it, with `true` where they turn the other way.
-    pub(super) pieces: Vec<Piece>,
+    pub(super) pieces: Vec<PlanePiece>,
 }
 
 /// A piece of the triangles of one plane.
 #[derive(Debug)]
-pub(super) struct Piece {
+pub(super) struct PlanePiece {
     pub(super) corners: [u32; 3],
     pub(super) plane: u32,
     pub(super) sources: Vec<(u32, bool)>,
@@ -46,7 +46,7 @@ pub(super) struct Piece {
 pub(super) fn divide_all(
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
-    pairs: &[Pair],
+    pairs: &[ContactPair],
     budget: &Budget,
 ) -> Result<Divided, ArrangementError> {
     let kernel = Kernel::new(positions, triangles);
@@ -64,7 +64,8 @@ pub(super) fn divide_all(
         let shift = points.len() as u32 - shared;
         let moved = |p: u32| if p < shared { p } else { p + shift };
         let plane = carrier.triangles[0];
-        let piece = |(corners, sources): ([u32; 3], _)| Piece { corners: corners.map(moved), plane, sources };
+        let piece =
+            |(corners, sources): ([u32; 3], _)| PlanePiece { corners: corners.map(moved), plane, sources };
         pieces.extend(corners.into_iter().zip(sources).map(piece));
         points.extend(own);
     }
@@ -73,7 +74,7 @@ pub(super) fn divide_all(
 }
 
 /// The plane of each triangle, by the lowest triangle that it is connected with by overlaps, and the carriers of these.
-fn group(kernel: &Kernel, pairs: &[Pair]) -> (Vec<u32>, Vec<Carrier>) {
+fn group(kernel: &Kernel, pairs: &[ContactPair]) -> (Vec<u32>, Vec<Carrier>) {
     let mut sets = UnionFind::new(kernel.triangles.len());
     for pair in pairs.iter().filter(|pair| pair.kind == ContactKind::Overlap) {
         sets.unite(pair.triangles[0], pair.triangles[1]);
@@ -91,7 +92,7 @@ fn group(kernel: &Kernel, pairs: &[Pair]) -> (Vec<u32>, Vec<Carrier>) {
 /// Finds where pairs meet, gives each carrier the points and segments in it, and the vertex that each vertex is.
 fn points_of_pairs(
     kernel: &Kernel,
-    pairs: &[Pair],
+    pairs: &[ContactPair],
     plane_of: &[u32],
     carriers: &mut [Carrier],
     budget: &Budget,
@@ -101,7 +102,7 @@ fn points_of_pairs(
         pairs[range]
             .iter()
             .map(|pair| match pair.kind {
-                ContactKind::Overlap => Ok(Meeting::Nowhere),
+                ContactKind::Overlap => Ok(TriangleMeeting::Nowhere),
                 _ => meeting(kernel, pair.triangles, |t| plane_of[t as usize]),
             })
             .collect::<Result<Vec<_>, ArrangementError>>()
@@ -109,7 +110,7 @@ fn points_of_pairs(
     .concat();
     let mut names: Vec<Definition> = meetings
         .iter()
-        .filter_map(|meeting| if let Meeting::Ends(ends) = meeting { Some(*ends) } else { None })
+        .filter_map(|meeting| if let TriangleMeeting::Ends(ends) = meeting { Some(*ends) } else { None })
         .flatten()
         .filter(|name| !matches!(name, Definition::Vertex(_)))
         .collect();
@@ -140,13 +141,13 @@ fn points_of_pairs(
     for (pair, meeting) in pairs.iter().zip(&meetings) {
         let both = pair.triangles.map(|t| carrier_of[t as usize] as usize);
         match meeting {
-            Meeting::Nowhere => {}
-            Meeting::InPlane(vertices) => {
+            TriangleMeeting::Nowhere => {}
+            TriangleMeeting::InPlane(vertices) => {
                 for c in both {
                     carriers[c].points.extend(vertices.iter().map(|&v| first[v as usize]));
                 }
             }
-            Meeting::Ends(ends) => {
+            TriangleMeeting::Ends(ends) => {
                 let [Some(a), Some(b)] = ends.each_ref().map(find) else {
                     return Err(ArrangementError::Inconsistent("a point has no number"));
                 };
@@ -180,7 +181,7 @@ fn points_of_pairs(
 fn unite(
     kernel: &Kernel,
     points: &[Point],
-    pieces: &mut [Piece],
+    pieces: &mut [PlanePiece],
     shared: u32,
     budget: &Budget,
 ) -> Result<(), ArrangementError> {

@@ -11,7 +11,7 @@ use std::collections::VecDeque;
 
 /// The line of a constraint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Line {
+pub(super) enum ConstraintLine {
     /// That of an edge of the input, which names its smaller vertex first.
     Edge([u32; 2]),
     /// Where the plane of a triangle passes through.
@@ -22,7 +22,7 @@ pub(super) enum Line {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Constraint {
     pub(super) ends: [u32; 2],
-    pub(super) line: Line,
+    pub(super) line: ConstraintLine,
 }
 
 /// Sets of constraints, numbered from 1.
@@ -68,7 +68,7 @@ pub(super) struct Constrained<'k, 'b> {
     pub(super) sight: Sight<'k>,
     pub(super) mesh: Triangulation,
     pub(super) sets: TagSets,
-    lines: Vec<Line>,
+    lines: Vec<ConstraintLine>,
     budget: &'b Budget,
 }
 
@@ -163,7 +163,7 @@ impl<'k, 'b> Constrained<'k, 'b> {
         from: u32,
         to: u32,
         h: u32,
-        line: Line,
+        line: ConstraintLine,
         crossed: &mut VecDeque<u32>,
     ) -> Result<u32, ArrangementError> {
         crossed.clear();
@@ -194,20 +194,21 @@ impl<'k, 'b> Constrained<'k, 'b> {
     }
 
     /// Where a line crosses the constraint on the edge of `h`.
-    fn crossing(&self, h: u32, line: Line) -> Definition {
+    fn crossing(&self, h: u32, line: ConstraintLine) -> Definition {
         let set = self.mesh.tags[h as usize];
         let set = if set == 0 { self.mesh.tags[self.mesh.twin(h) as usize] } else { set };
         // All of a set are on one line.
         let other = self.sets.of(set).iter().map(|&c| self.lines[c as usize]).min().unwrap_or(line);
         let view = self.sight.view;
         match (line.min(other), line.max(other)) {
-            (Line::Edge(a), Line::Edge(b)) => {
+            (ConstraintLine::Edge(a), ConstraintLine::Edge(b)) => {
                 Definition::EdgeEdge { edges: [a, b], axes: [view.u as u8, view.v as u8] }
             }
-            (Line::Edge(edge), Line::Plane(plane)) | (Line::Plane(plane), Line::Edge(edge)) => {
+            (ConstraintLine::Edge(edge), ConstraintLine::Plane(plane))
+            | (ConstraintLine::Plane(plane), ConstraintLine::Edge(edge)) => {
                 Definition::EdgePlane { edge, plane }
             }
-            (Line::Plane(a), Line::Plane(b)) => {
+            (ConstraintLine::Plane(a), ConstraintLine::Plane(b)) => {
                 let mut planes = [view.plane, a, b];
                 planes.sort_unstable();
                 Definition::Planes(planes)

@@ -19,7 +19,7 @@ pub(super) const EXACT: u64 = 64;
 /// The two coordinates of a plane that are looked at, mirrored so that the plane's own triangle turns counter-clockwise, and that
 /// triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct View {
+pub(super) struct PlaneView {
     pub(super) u: usize,
     pub(super) v: usize,
     pub(super) plane: u32,
@@ -92,7 +92,7 @@ impl Kernel {
     }
 
     /// A view of the plane of a triangle in which it turns counter-clockwise; `None` when it is degenerate.
-    pub(super) fn view(&self, triangle: u32) -> Option<View> {
+    pub(super) fn view(&self, triangle: u32) -> Option<PlaneView> {
         let corners = self.corners(triangle);
         // The axis along which it is seen largest; rounding may choose another one, never a wrong one.
         let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).abs();
@@ -102,15 +102,15 @@ impl Kernel {
             let [a, b, c] = corners;
             let (u, v) = ((k + 1) % 3, (k + 2) % 3);
             match Projection::ALL[k].turn(a, b, c) {
-                Sign::Positive => Some(View { u, v, plane: triangle }),
-                Sign::Negative => Some(View { u: v, v: u, plane: triangle }),
+                Sign::Positive => Some(PlaneView { u, v, plane: triangle }),
+                Sign::Negative => Some(PlaneView { u: v, v: u, plane: triangle }),
                 Sign::Zero => None,
             }
         })
     }
 
     /// How the corners of a triangle turn in a view.
-    pub(super) fn turn(&self, view: View, triangle: u32) -> Sign {
+    pub(super) fn turn(&self, view: PlaneView, triangle: u32) -> Sign {
         let [a, b, c] = self.corners(triangle);
         let k = 3 - view.u - view.v;
         let turn = Projection::ALL[k].turn(a, b, c);
@@ -211,7 +211,7 @@ impl Kernel {
     }
 
     /// How three points of a plane turn in its view; [`Definition::Far`] ones are corners of the view.
-    pub(super) fn orient(&self, view: View, a: &Point, b: &Point, c: &Point) -> Sign {
+    pub(super) fn orient(&self, view: PlaneView, a: &Point, b: &Point, c: &Point) -> Sign {
         let [a2, b2, c2] = [a, b, c].map(|p| seen(p, view));
         let det = (b2[0] - a2[0]) * (c2[1] - a2[1]) - (b2[1] - a2[1]) * (c2[0] - a2[0]);
         if let Some(sign) = det.sign() {
@@ -294,11 +294,11 @@ const FAR_CORNERS: [[i32; 3]; 3] = [[-1, -1, 0], [3, -1, 0], [-1, 3, 0]];
 
 /// Which coordinates of a point are seen.
 #[inline]
-fn axes_seen(point: &Point, view: View) -> [usize; 2] {
+fn axes_seen(point: &Point, view: PlaneView) -> [usize; 2] {
     if matches!(point.definition, Definition::Far(_)) { [0, 1] } else { [view.u, view.v] }
 }
 
 #[inline]
-fn seen(point: &Point, view: View) -> [Ball; 2] {
+fn seen(point: &Point, view: PlaneView) -> [Ball; 2] {
     axes_seen(point, view).map(|k| point.near[k])
 }

@@ -4,9 +4,9 @@
 //! An edge stays where the pieces beside it are of different triangles, or more than two. A point goes when no edge that
 //! stays ends there, or two that are on one line. The regions of all triangles then have the same points on common edges.
 
-use super::constraints::{Constrained, Constraint, Line};
+use super::constraints::{Constrained, Constraint, ConstraintLine};
 use super::error::ArrangementError;
-use super::extract::Surface;
+use super::extract::SolidBoundary;
 use super::triangulation::{NONE, Sight, Triangulation};
 use super::{Arrangement, Cluster};
 use crate::budget::{Budget, CHECK_EVERY};
@@ -26,7 +26,7 @@ pub struct Merged {
 }
 
 /// What is left of a triangle of a cluster.
-struct Region {
+struct Remnant {
     source: u32,
     is_opposite: bool,
     /// Its border, directed, between points that stay; in the direction of the source.
@@ -40,7 +40,7 @@ impl Arrangement {
     ///
     /// # Errors
     /// When the budget stops the run, or there is a fault.
-    pub fn merged(&self, surface: &Surface, budget: &Budget) -> Result<Merged, ArrangementError> {
+    pub fn merged(&self, surface: &SolidBoundary, budget: &Budget) -> Result<Merged, ArrangementError> {
         let clusters = self.cluster_of_triangles();
         let cluster_of = |t: u32| clusters.get(&t).copied();
         let corners: Vec<[u32; 3]> = surface.pieces.iter().map(|piece| piece.corners).collect();
@@ -154,7 +154,7 @@ impl Arrangement {
     /// The triangles of a region, which turn as its source.
     fn triangulated(
         &self,
-        region: &Region,
+        region: &Remnant,
         cluster: &Cluster,
         budget: &Budget,
     ) -> Result<Vec<[u32; 3]>, ArrangementError> {
@@ -190,7 +190,7 @@ impl Arrangement {
         let mut constrained = Constrained::new(sight, mesh, budget);
         for ends in &region.border {
             let ends = ends.map(|p| vertices[&p]);
-            constrained.insert(Constraint { ends, line: Line::Plane(t as u32) })?;
+            constrained.insert(Constraint { ends, line: ConstraintLine::Plane(t as u32) })?;
         }
         constrained.improve()?;
         let Constrained { mesh, sight, .. } = constrained;
@@ -214,7 +214,7 @@ fn regions(
     mut stays: Vec<(u32, bool, [u32; 2])>,
     mut inside: Vec<(u32, bool, u32)>,
     goes: &FxHashMap<u32, ()>,
-) -> Result<Vec<Region>, ArrangementError> {
+) -> Result<Vec<Remnant>, ArrangementError> {
     par::sort_unstable(&mut stays);
     par::sort_unstable(&mut inside);
     inside.dedup();
@@ -239,7 +239,7 @@ fn regions(
         let first = inside.partition_point(|&(s, o, _)| (s, o) < (source, is_opposite));
         let points = inside[first..].iter().take_while(|&&(s, o, _)| (s, o) == (source, is_opposite));
         let points = points.map(|&(.., p)| p).filter(|p| on_border.binary_search(p).is_err()).collect();
-        regions.push(Region { source, is_opposite, border, points });
+        regions.push(Remnant { source, is_opposite, border, points });
     }
     Ok(regions)
 }

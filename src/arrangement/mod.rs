@@ -34,11 +34,11 @@ mod ray;
 mod tests;
 mod triangulation;
 
-pub use build::{Options, arrange, arrange_enclosed};
+pub use build::{ArrangementOptions, arrange, arrange_enclosed};
 pub use error::ArrangementError;
-pub use extract::{Piece, Surface};
+pub use extract::{BoundaryPiece, SolidBoundary};
 pub use merge::Merged;
-pub use place::{Placed, place};
+pub use place::{PlacedBoundary, place};
 
 use crate::geom::DVec3;
 use kernel::Kernel;

@@ -11,7 +11,7 @@ use std::cmp::Ordering;
 
 /// How two triangles of a cluster meet.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Meeting {
+pub(super) enum TriangleMeeting {
     /// Nowhere.
     Nowhere,
     /// In a point or a segment.
@@ -25,18 +25,18 @@ pub(super) fn meeting(
     kernel: &Kernel,
     [s, t]: [u32; 2],
     plane_of: impl Fn(u32) -> u32,
-) -> Result<Meeting, ArrangementError> {
+) -> Result<TriangleMeeting, ArrangementError> {
     let sides = |of: u32, to: u32| {
         let plane = Plane::through(kernel.corners(to));
         kernel.corners(of).map(|p| plane.side(p))
     };
     let sides_s = sides(s, t);
     if sides_s == [Sign::Zero; 3] {
-        return Ok(Meeting::InPlane([touching(kernel, s, t), touching(kernel, t, s)].concat()));
+        return Ok(TriangleMeeting::InPlane([touching(kernel, s, t), touching(kernel, t, s)].concat()));
     }
     let ends_s = interval(kernel, s, sides_s, plane_of(t));
     let ends_t = interval(kernel, t, sides(t, s), plane_of(s));
-    let (Some(ends_s), Some(ends_t)) = (ends_s, ends_t) else { return Ok(Meeting::Nowhere) };
+    let (Some(ends_s), Some(ends_t)) = (ends_s, ends_t) else { return Ok(TriangleMeeting::Nowhere) };
     let axes = axes_by_extent(kernel, s, t);
     let compare = |a: &Point, b: &Point| {
         axes.iter().fold(Ordering::Equal, |order, &axis| order.then_with(|| kernel.compare(axis, a, b)))
@@ -68,9 +68,9 @@ pub(super) fn meeting(
     let low = inner(&a[0], &b[0], Ordering::Less);
     let high = inner(&a[1], &b[1], Ordering::Greater);
     Ok(match compare(low, high) {
-        Ordering::Less => Meeting::Ends([low.definition, high.definition]),
-        Ordering::Equal => Meeting::Ends([low.definition.min(high.definition); 2]),
-        Ordering::Greater => Meeting::Nowhere,
+        Ordering::Less => TriangleMeeting::Ends([low.definition, high.definition]),
+        Ordering::Equal => TriangleMeeting::Ends([low.definition.min(high.definition); 2]),
+        Ordering::Greater => TriangleMeeting::Nowhere,
     })
 }
 

@@ -14,7 +14,7 @@ use crate::spatial::{Bvh, Search, self_contacts};
 
 /// A boundary in numbers of a file.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Placed {
+pub struct PlacedBoundary {
     /// The position of each point of the arrangement; those that no triangle uses may be anywhere.
     pub positions: Vec<DVec3>,
     /// Corners, as points: of several at one position the first.
@@ -48,7 +48,7 @@ pub fn place(
     merged: &Merged,
     pitch: f64,
     budget: &Budget,
-) -> Result<Placed, ArrangementError> {
+) -> Result<PlacedBoundary, ArrangementError> {
     let first_new = arrangement.positions.len() as u32;
     let mut used: Vec<u32> =
         merged.triangles.as_flattened().iter().copied().filter(|&p| p >= first_new).collect();
@@ -66,11 +66,11 @@ pub fn place(
         positions[p as usize] = nearest(place, pitch);
     }
     let mut placing = Placing {
-        placed: Placed {
+        placed: PlacedBoundary {
             positions,
             triangles: merged.triangles.clone(),
             sources: merged.sources.clone(),
-            ..Placed::default()
+            ..PlacedBoundary::default()
         },
         is_near: Vec::new(),
         exact,
@@ -104,7 +104,7 @@ fn nearest(place: DVec3, pitch: f64) -> DVec3 {
 }
 
 struct Placing<'b> {
-    placed: Placed,
+    placed: PlacedBoundary,
     /// For each triangle, whether it is or may come to be on or through one with a new point.
     is_near: Vec<bool>,
     /// Where the new points are, to the last place.
@@ -171,7 +171,7 @@ impl Placing<'_> {
             return;
         }
         let near: Vec<u32> = self.near().collect();
-        let Placed { triangles, sources, .. } = &mut self.placed;
+        let PlacedBoundary { triangles, sources, .. } = &mut self.placed;
         let mut is_kept = vec![true; triangles.len()];
         for &t in &near {
             let corners = &mut triangles[t as usize];
@@ -284,7 +284,7 @@ impl Placing<'_> {
         star: &[u32],
         places: &[DVec3],
         bvh: &Bvh,
-    ) -> Result<Option<Vec<Pair>>, ArrangementError> {
+    ) -> Result<Option<Vec<StarPair>>, ArrangementError> {
         let mut pairs = Vec::new();
         for (n, &t) in (0..).zip(star) {
             let names = self.placed.triangles[t as usize];
@@ -311,7 +311,7 @@ impl Placing<'_> {
                     return;
                 }
                 let shared = Shared::between(names, self.placed.triangles[other as usize]);
-                pairs.push(Pair { of_star: n, other, moves, shared });
+                pairs.push(StarPair { of_star: n, other, moves, shared });
             })?;
             self.budget.spend(1 + seen)?;
             if pairs.len() == NEIGHBORS_MAX {
@@ -323,7 +323,7 @@ impl Placing<'_> {
 
     /// How many of the `pairs` of a star meet beyond common vertices and edges, or `enough` and more; a triangle of it without an
     /// area counts for many.
-    fn meets(&self, star: &[u32], pairs: &[Pair], enough: u64) -> Result<u64, ArrangementError> {
+    fn meets(&self, star: &[u32], pairs: &[StarPair], enough: u64) -> Result<u64, ArrangementError> {
         let (mut count, mut looks) = (0, 0);
         let mut pairs = pairs.chunk_by(|a, b| a.of_star == b.of_star).peekable();
         for (n, &t) in (0..).zip(star) {
@@ -373,7 +373,7 @@ fn are_apart(a: [DVec3; 3], b: [DVec3; 3], gap: f64) -> bool {
 }
 
 /// A triangle of a star, and one near it.
-struct Pair {
+struct StarPair {
     /// Which of the star.
     of_star: u32,
     other: u32,

@@ -7,7 +7,7 @@
 //! ```
 
 use super::error::ArrangementError;
-use super::kernel::{Kernel, View};
+use super::kernel::{Kernel, PlaneView};
 use super::point::Point;
 use crate::geom::Sign;
 
@@ -18,7 +18,7 @@ pub(super) const NONE: u32 = u32::MAX;
 #[derive(Debug)]
 pub(super) struct Sight<'k> {
     pub(super) kernel: &'k Kernel,
-    pub(super) view: View,
+    pub(super) view: PlaneView,
     pub(super) shared: &'k [Point],
     /// These are numbered after the shared ones.
     pub(super) own: Vec<Point>,

@@ -1,7 +1,7 @@
 //! The order of judgement: every reading, and in each the conditions that rest on one another.
 
-use super::solid::Solid;
-use super::surface::Surface;
+use super::solid::EmbeddedShells;
+use super::surface::ReadingSurface;
 use super::topology::{Census, Topology, degenerate, note_degenerate};
 use super::verdict::Verdict;
 use super::{CertifyError, Condition, Depth, Shell, Violation};
@@ -116,7 +116,7 @@ impl<'a> Judge<'a> {
     }
 
     fn judge_triangles(&mut self, soup: &'a Soup, is_f32: bool, is_fan: bool) -> Result<(), Stopped> {
-        let indexed = Surface::as_indexed(soup, is_f32, is_fan, self.budget)?;
+        let indexed = ReadingSurface::as_indexed(soup, is_f32, is_fan, self.budget)?;
         let (welded, split) = indexed.weld(self.budget)?;
         self.judge_surface(welded)?;
         match split {
@@ -127,7 +127,7 @@ impl<'a> Judge<'a> {
 
     /// P0 of the vertices as indexed. Their triangles are degenerate where the welded ones are, so what is left to
     /// judge is the list of indices.
-    fn judge_indices(&mut self, surface: Surface<'a>) -> Result<(), Stopped> {
+    fn judge_indices(&mut self, surface: ReadingSurface<'a>) -> Result<(), Stopped> {
         self.verdict.readings.push(surface.reading);
         let faults = self.judge_list(&surface)?;
         self.keep_list(surface, faults);
@@ -135,7 +135,7 @@ impl<'a> Judge<'a> {
     }
 
     /// P0, P1 and P2 of a welded reading.
-    fn judge_surface(&mut self, surface: Surface<'a>) -> Result<(), Stopped> {
+    fn judge_surface(&mut self, surface: ReadingSurface<'a>) -> Result<(), Stopped> {
         self.verdict.readings.push(surface.reading);
         note_unusable(&surface, &mut self.verdict);
         let degenerate = degenerate(&surface, self.budget)?;
@@ -155,7 +155,7 @@ impl<'a> Judge<'a> {
     }
 
     /// The conditions of P0 that the list of indices decides.
-    fn judge_list(&mut self, surface: &Surface<'_>) -> Result<ListFaults, Stopped> {
+    fn judge_list(&mut self, surface: &ReadingSurface<'_>) -> Result<ListFaults, Stopped> {
         if let Some((_, faults)) = self.known_lists.iter().find(|(list, _)| *list == surface.triangles) {
             return Ok(faults.clone());
         }
@@ -169,7 +169,7 @@ impl<'a> Judge<'a> {
         })
     }
 
-    fn keep_list(&mut self, surface: Surface<'a>, faults: ListFaults) {
+    fn keep_list(&mut self, surface: ReadingSurface<'a>, faults: ListFaults) {
         if !surface.reading.is_f32 {
             self.known_lists.push((surface.triangles, faults));
         }
@@ -178,7 +178,7 @@ impl<'a> Judge<'a> {
     /// P1, and P2 where P0 and P1 hold. P1 leaves out the triangles `left_out`.
     fn judge_embedding(
         &mut self,
-        surface: &Surface<'_>,
+        surface: &ReadingSurface<'_>,
         is_p0: bool,
         left_out: Vec<u32>,
         open_vertices: &[u32],
@@ -221,8 +221,8 @@ impl<'a> Judge<'a> {
     }
 
     /// P2, where P0 and P1 hold.
-    fn judge_solid(&mut self, surface: &Surface<'_>, bvh: &Bvh) -> Result<Vec<Shell>, Stopped> {
-        let solid = Solid::of(surface, bvh, self.budget)?;
+    fn judge_solid(&mut self, surface: &ReadingSurface<'_>, bvh: &Bvh) -> Result<Vec<Shell>, Stopped> {
+        let solid = EmbeddedShells::of(surface, bvh, self.budget)?;
         let shells = solid.describe(surface, self.budget)?;
         self.verdict.note(Condition::NotEmpty, u64::from(shells.is_empty()), |_| {
             let (condition, reading) = (Condition::NotEmpty, surface.reading);
@@ -239,7 +239,7 @@ impl<'a> Judge<'a> {
 }
 
 /// Notes the faces and vertices of the file that no triangle of the soup stands for.
-fn note_unusable(surface: &Surface<'_>, verdict: &mut Verdict) {
+fn note_unusable(surface: &ReadingSurface<'_>, verdict: &mut Verdict) {
     let (faces, vertices) = (&surface.soup.face_faults, &surface.soup.non_finite_vertices);
     verdict.note(Condition::Usable, (faces.len() + vertices.len()) as u64, |samples| {
         let (condition, reading) = (Condition::Usable, surface.reading);

@@ -1,7 +1,7 @@
 //! P2: which space a closed, embedded surface encloses.
 
 use super::Shell;
-use super::surface::Surface;
+use super::surface::ReadingSurface;
 use crate::budget::{Budget, CHECK_EVERY, Charge, Stopped};
 use crate::geom::signed_volume;
 use crate::mesh::UnionFind;
@@ -9,7 +9,7 @@ use crate::par;
 use crate::spatial::{Bvh, Nesting, ShellTriangles, nest};
 
 /// The shells of a surface for which P0 and P1 hold.
-pub(super) struct Solid<'a> {
+pub(super) struct EmbeddedShells<'a> {
     shells: ShellTriangles,
     nesting: Nesting,
     /// Number of vertices of each shell.
@@ -17,8 +17,8 @@ pub(super) struct Solid<'a> {
     _charge: Charge<'a>,
 }
 
-impl<'a> Solid<'a> {
-    pub(super) fn of(surface: &Surface<'_>, bvh: &Bvh, budget: &'a Budget) -> Result<Self, Stopped> {
+impl<'a> EmbeddedShells<'a> {
+    pub(super) fn of(surface: &ReadingSurface<'_>, bvh: &Bvh, budget: &'a Budget) -> Result<Self, Stopped> {
         let charge =
             budget.charge(surface.triangles.len() as u64 * 8 + surface.positions.len() as u64 * 8)?;
         let (shell_of, vertices) = shells(surface, budget)?;
@@ -38,7 +38,11 @@ impl<'a> Solid<'a> {
     }
 
     /// The description of every shell.
-    pub(super) fn describe(&self, surface: &Surface<'_>, budget: &Budget) -> Result<Vec<Shell>, Stopped> {
+    pub(super) fn describe(
+        &self,
+        surface: &ReadingSurface<'_>,
+        budget: &Budget,
+    ) -> Result<Vec<Shell>, Stopped> {
         par::try_map_ranges(self.vertices.len(), 1, |range| {
             budget.check()?;
             let s = range.start;
@@ -57,7 +61,7 @@ impl<'a> Solid<'a> {
 
 /// The shell of each triangle, shells numbered by first triangle, and the number of vertices of each. Where every
 /// vertex has one fan, triangles that share a vertex are connected by edges too, so uniting vertices finds the shells.
-fn shells(surface: &Surface<'_>, budget: &Budget) -> Result<(Vec<u32>, Vec<u32>), Stopped> {
+fn shells(surface: &ReadingSurface<'_>, budget: &Budget) -> Result<(Vec<u32>, Vec<u32>), Stopped> {
     const UNSEEN: u32 = u32::MAX;
     let mut parts = UnionFind::new(surface.positions.len());
     for block in surface.triangles.chunks(CHECK_EVERY) {

@@ -11,7 +11,7 @@ use std::borrow::Cow;
 const WITNESS_FACES_MAX: usize = 8;
 
 /// The triangles of one reading; triangle `t` is triangle `t` of the soup.
-pub(super) struct Surface<'a> {
+pub(super) struct ReadingSurface<'a> {
     pub(super) soup: &'a Soup,
     pub(super) reading: Reading,
     pub(super) positions: Cow<'a, [DVec3]>,
@@ -20,7 +20,7 @@ pub(super) struct Surface<'a> {
     _charges: Vec<Charge<'a>>,
 }
 
-impl<'a> Surface<'a> {
+impl<'a> ReadingSurface<'a> {
     /// The vertices as the file indexes them, the polygons as the soup splits them or as fans.
     pub(super) fn as_indexed(
         soup: &'a Soup,

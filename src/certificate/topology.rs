@@ -1,6 +1,6 @@
 //! P0: what the positions of each triangle and the index triples of all say.
 
-use super::surface::Surface;
+use super::surface::ReadingSurface;
 use super::verdict::Verdict;
 use super::{Condition, Violation};
 use crate::budget::{Budget, CHECK_EVERY, Charge, Stopped};
@@ -10,7 +10,7 @@ use crate::par;
 use std::borrow::Cow;
 
 /// The degenerate triangles, ascending: a repeated vertex, or corners exactly on one line.
-pub(super) fn degenerate(surface: &Surface<'_>, budget: &Budget) -> Result<Vec<u32>, Stopped> {
+pub(super) fn degenerate(surface: &ReadingSurface<'_>, budget: &Budget) -> Result<Vec<u32>, Stopped> {
     let parts = par::try_map_ranges(surface.triangles.len(), CHECK_EVERY, |range| {
         budget.check()?;
         let is_degenerate = |&t: &u32| {
@@ -23,7 +23,7 @@ pub(super) fn degenerate(surface: &Surface<'_>, budget: &Budget) -> Result<Vec<u
 }
 
 /// Notes the degenerate triangles of `surface`.
-pub(super) fn note_degenerate(surface: &Surface<'_>, degenerate: &[u32], verdict: &mut Verdict) {
+pub(super) fn note_degenerate(surface: &ReadingSurface<'_>, degenerate: &[u32], verdict: &mut Verdict) {
     verdict.note(Condition::NonDegenerate, degenerate.len() as u64, |samples| {
         let witness =
             |&t: &u32| surface.violation(Condition::NonDegenerate, &[t], &surface.triangles[t as usize]);
@@ -117,7 +117,7 @@ impl<'a> Topology<'a> {
     /// Notes every condition decided here; `surface` is the one whose triangles were given.
     pub(super) fn note(
         &self,
-        surface: &Surface<'_>,
+        surface: &ReadingSurface<'_>,
         verdict: &mut Verdict,
         budget: &Budget,
     ) -> Result<(), Stopped> {
@@ -149,7 +149,7 @@ impl<'a> Topology<'a> {
         Ok(())
     }
 
-    fn edge_violation(&self, surface: &Surface<'_>, condition: Condition, edge: u32) -> Violation {
+    fn edge_violation(&self, surface: &ReadingSurface<'_>, condition: Condition, edge: u32) -> Violation {
         let group = self.groups.group(edge as usize);
         surface.violation(condition, &self.ids_behind(group), &edge_of(&self.triangles, group[0]))
     }

@@ -1,6 +1,6 @@
 //! The commands and what they take.
 
-use super::files::Place;
+use super::files::FileOrStream;
 use super::flags::{EngineSettingFlags, OptionFlags, SettingFlags};
 use crate::config::Sources;
 use crate::jobs::LostStore;
@@ -60,7 +60,7 @@ pub(super) enum Command {
     Check {
         /// Mesh file, or - for standard input.
         #[arg(value_name = "IN")]
-        input: Place,
+        input: FileOrStream,
         /// Format of the input. Default: found from the content.
         #[arg(long, value_name = "WORD", value_parser = clap::builder::PossibleValuesParser::new(crate::wire::Format::WORDS))]
         format: Option<String>,
@@ -148,7 +148,7 @@ impl ServeArguments {
 struct InputArguments {
     /// Mesh file, or - for standard input, which needs --format. Several files are taken one after the other.
     #[arg(value_name = "IN", required = true, num_args = 1..)]
-    inputs: Vec<Place>,
+    inputs: Vec<FileOrStream>,
     /// Print the report as JSON on standard output; of several files one object a line, with the file's name as `input`.
     #[arg(long)]
     json: bool,
@@ -174,7 +174,7 @@ struct OutputArguments {
     /// File to write, or - for standard output, which needs --output-format. Its extension names the format unless
     /// --output-format does.
     #[arg(short, long, value_name = "OUT")]
-    output: Option<Place>,
+    output: Option<FileOrStream>,
     /// Folder to write results into, each under the name of its file; it is made where it is missing. With
     /// --output-format the extension follows the format.
     #[arg(short = 'd', long, value_name = "DIR")]
@@ -182,22 +182,22 @@ struct OutputArguments {
 }
 
 impl OutputArguments {
-    fn target(self) -> Target {
+    fn target(self) -> OutputTarget {
         match (self.output, self.out_dir) {
-            (Some(place), _) => Target::Place(place),
-            (None, Some(folder)) => Target::Folder(folder),
-            (None, None) => Target::None,
+            (Some(place), _) => OutputTarget::Place(place),
+            (None, Some(folder)) => OutputTarget::Folder(folder),
+            (None, None) => OutputTarget::None,
         }
     }
 }
 
 /// Where results go.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Target {
+pub(super) enum OutputTarget {
     /// Nothing is written.
     None,
     /// The result of the only file.
-    Place(Place),
+    Place(FileOrStream),
     /// The result of each file, under its name.
     Folder(PathBuf),
 }
@@ -264,7 +264,7 @@ pub(super) struct ModellerArguments {
     /// File to write, or - for standard output, which needs --output-format. Its extension names the format unless
     /// --output-format does. Default: none is written, which is enough for --ranges and --list-faces.
     #[arg(short, long, value_name = "OUT")]
-    output: Option<Place>,
+    output: Option<FileOrStream>,
 }
 
 #[derive(Debug, Args)]
@@ -274,7 +274,7 @@ pub(super) struct BooleanArguments {
     /// File to write, or - for standard output, which needs --output-format. Its extension names the format unless
     /// --output-format does.
     #[arg(short, long, value_name = "OUT")]
-    output: Place,
+    output: FileOrStream,
 }
 
 #[derive(Debug, Args)]
@@ -284,7 +284,7 @@ pub(super) struct RenderArguments {
     given: InputArguments,
     /// Picture to write (PNG), or - for standard output.
     #[arg(short, long, value_name = "OUT")]
-    output: Option<Place>,
+    output: Option<FileOrStream>,
     /// Folder to write pictures into, each under the name of its file; it is made where it is missing.
     #[arg(short = 'd', long, value_name = "DIR")]
     out_dir: Option<PathBuf>,
@@ -298,8 +298,8 @@ pub(super) struct RenderArguments {
 pub(super) struct Request {
     pub operation: Operation,
     /// One or more.
-    pub inputs: Vec<Place>,
-    pub target: Target,
+    pub inputs: Vec<FileOrStream>,
+    pub target: OutputTarget,
     pub is_json: bool,
     pub report_html: Option<PathBuf>,
     pub material: Option<PathBuf>,
@@ -311,7 +311,7 @@ pub(super) struct Request {
 }
 
 impl InputArguments {
-    fn request(self, operation: Operation, target: Target) -> Request {
+    fn request(self, operation: Operation, target: OutputTarget) -> Request {
         Request {
             operation,
             inputs: self.inputs,
@@ -328,13 +328,13 @@ impl InputArguments {
 
 impl AnalyzeArguments {
     pub(super) fn request(self, operation: Operation) -> Request {
-        self.given.request(operation, Target::None)
+        self.given.request(operation, OutputTarget::None)
     }
 }
 
 impl From<VerifyArguments> for Request {
     fn from(given: VerifyArguments) -> Self {
-        given.given.request(Operation::Verify, Target::None)
+        given.given.request(Operation::Verify, OutputTarget::None)
     }
 }
 
@@ -368,13 +368,13 @@ impl From<FillHolesArguments> for Request {
 
 impl From<ModellerArguments> for Request {
     fn from(given: ModellerArguments) -> Self {
-        given.given.request(Operation::Modeller, given.output.map_or(Target::None, Target::Place))
+        given.given.request(Operation::Modeller, given.output.map_or(OutputTarget::None, OutputTarget::Place))
     }
 }
 
 impl From<BooleanArguments> for Request {
     fn from(given: BooleanArguments) -> Self {
-        given.given.request(Operation::Boolean, Target::Place(given.output))
+        given.given.request(Operation::Boolean, OutputTarget::Place(given.output))
     }
 }
 

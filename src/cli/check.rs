@@ -2,7 +2,7 @@
 //! mesh can have, or a vertex that is nowhere, is a no.
 
 use super::exit::{Exit, print, say};
-use super::files::Place;
+use super::files::FileOrStream;
 use crate::budget::Budget;
 use crate::formats::{self, Format, ReadOptions};
 use crate::mesh::half_edge::{BuildError, Claims, HalfEdgeMesh};
@@ -10,7 +10,7 @@ use crate::mesh::{FaceFaultReason, Soup};
 use crate::wire::Problem;
 
 /// Says what the mesh is; [`Exit::Negative`] when it is no half-edge mesh.
-pub(super) fn run(input: &Place, format: Option<Format>) -> Exit {
+pub(super) fn run(input: &FileOrStream, format: Option<Format>) -> Exit {
     match described(input, format) {
         Ok((text, is_sound)) => {
             print(&text);
@@ -23,7 +23,7 @@ pub(super) fn run(input: &Place, format: Option<Format>) -> Exit {
     }
 }
 
-fn described(input: &Place, format: Option<Format>) -> Result<(String, bool), Problem> {
+fn described(input: &FileOrStream, format: Option<Format>) -> Result<(String, bool), Problem> {
     let budget = Budget::unlimited();
     let bytes = input.read().map_err(|error| {
         Problem::new(crate::wire::ProblemCode::NotFound, format!("it cannot be read: {error}"))
@@ -113,7 +113,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("mesh.off");
         std::fs::write(&path, text).unwrap();
-        described(&Place::File(path), None).unwrap()
+        described(&FileOrStream::File(path), None).unwrap()
     }
 
     #[test]

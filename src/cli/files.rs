@@ -9,12 +9,12 @@ use std::str::FromStr;
 
 /// A file, or `-` for standard input or output.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum FileOrStream {
     Stream,
     File(PathBuf),
 }
 
-impl FromStr for Place {
+impl FromStr for FileOrStream {
     type Err = std::convert::Infallible;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
@@ -22,7 +22,7 @@ impl FromStr for Place {
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for FileOrStream {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Stream => f.write_str("-"),
@@ -31,7 +31,7 @@ impl fmt::Display for Place {
     }
 }
 
-impl Place {
+impl FileOrStream {
     /// The format that the file's extension names.
     pub(super) fn format(&self) -> Option<Format> {
         match self {
@@ -141,7 +141,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("out.stl");
         for bytes in [&b"first"[..], b"second, longer"] {
-            Place::File(path.clone()).write(bytes).unwrap();
+            FileOrStream::File(path.clone()).write(bytes).unwrap();
             assert_eq!(fs::read(&path).unwrap(), bytes);
             assert_eq!(names(folder.path()), ["out.stl"]);
         }
@@ -156,7 +156,7 @@ mod tests {
         fs::write(&path, "old").unwrap();
         fs::set_permissions(&path, fs::Permissions::from_mode(0o640)).unwrap();
         std::os::unix::fs::symlink(&path, &link).unwrap();
-        Place::File(link.clone()).write(b"new").unwrap();
+        FileOrStream::File(link.clone()).write(b"new").unwrap();
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
         assert_eq!(fs::read(&path).unwrap(), b"new");
         assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o640);
@@ -165,10 +165,10 @@ mod tests {
     #[test]
     fn a_folder_or_a_place_without_one_is_told_before_the_work() {
         let folder = tempfile::tempdir().unwrap();
-        assert!(Place::File(folder.path().to_owned()).check_writable().is_err());
-        assert!(Place::File(folder.path().join("no/out.stl")).check_writable().is_err());
-        assert!(Place::File(folder.path().join("out.stl")).check_writable().is_ok());
-        assert!(Place::File("out.stl".into()).check_writable().is_ok());
+        assert!(FileOrStream::File(folder.path().to_owned()).check_writable().is_err());
+        assert!(FileOrStream::File(folder.path().join("no/out.stl")).check_writable().is_err());
+        assert!(FileOrStream::File(folder.path().join("out.stl")).check_writable().is_ok());
+        assert!(FileOrStream::File("out.stl".into()).check_writable().is_ok());
     }
 
     #[test]
@@ -179,15 +179,15 @@ mod tests {
 
     #[test]
     fn results_of_several_targets_are_numbered_before_the_extension() {
-        let numbered = |path: &str| Place::File(path.into()).numbered(2).to_string();
+        let numbered = |path: &str| FileOrStream::File(path.into()).numbered(2).to_string();
         assert_eq!(numbered("a.b/part.v1.stl"), "a.b/part.v1-2.stl");
         assert_eq!(numbered("part"), "part-2");
     }
 
     #[test]
     fn the_extension_names_the_format_in_any_case() {
-        assert_eq!("a/b.STL".parse::<Place>().unwrap().format(), Some(Format::Stl));
-        assert_eq!("a/b".parse::<Place>().unwrap().format(), None);
-        assert_eq!("-".parse::<Place>().unwrap(), Place::Stream);
+        assert_eq!("a/b.STL".parse::<FileOrStream>().unwrap().format(), Some(Format::Stl));
+        assert_eq!("a/b".parse::<FileOrStream>().unwrap().format(), None);
+        assert_eq!("-".parse::<FileOrStream>().unwrap(), FileOrStream::Stream);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::command;
 use super::exit::{Exit, print, say};
-use super::files::Place;
+use super::files::FileOrStream;
 use clap_complete::Shell;
 use clap_mangen::Man;
 use std::fs;
@@ -50,7 +50,7 @@ fn pages() -> io::Result<Vec<(String, Vec<u8>)>> {
 
 fn write_all(folder: &Path, pages: &[(String, Vec<u8>)]) -> io::Result<()> {
     fs::create_dir_all(folder)?;
-    pages.iter().try_for_each(|(name, page)| Place::File(folder.join(name)).write(page))
+    pages.iter().try_for_each(|(name, page)| FileOrStream::File(folder.join(name)).write(page))
 }
 
 #[cfg(test)]

@@ -29,7 +29,7 @@ use std::process::ExitCode;
 
 /// What `main` brings from the service, so that this module knows no HTTP.
 #[derive(Debug, Clone, Copy)]
-pub struct Service {
+pub struct ServiceHooks {
     /// Serves until it is told to stop.
     pub serve: fn(&Loaded, LostStore) -> anyhow::Result<()>,
     /// Finds the setting with which it would not serve.
@@ -44,7 +44,7 @@ pub struct Service {
 ///
 /// Exit codes: 0 did what was asked; 1 no certified result, or the file is not valid; 2 unreadable or wrong usage;
 /// 3 limit, deadline or cancelled; 4 internal.
-pub fn run(args: impl IntoIterator<Item = OsString>, service: Service) -> ExitCode {
+pub fn run(args: impl IntoIterator<Item = OsString>, service: ServiceHooks) -> ExitCode {
     let args: Vec<OsString> = args.into_iter().collect();
     if args.get(1).is_some_and(|command| command == RUN_JOB) {
         // Before anything else: a job's process has nothing to do with flags, settings and logs.
@@ -73,7 +73,7 @@ fn with_default_command(args: impl IntoIterator<Item = OsString>) -> Vec<OsStrin
     args
 }
 
-fn execute(command: Command, service: Service) -> Exit {
+fn execute(command: Command, service: ServiceHooks) -> Exit {
     match command {
         Command::Serve(given) => {
             let lost_store = given.lost_store();

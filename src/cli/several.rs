@@ -1,10 +1,10 @@
 //! One file or several: where each result goes, and what is told of all.
 
-use super::arguments::{Request, Target};
+use super::arguments::{OutputTarget, Request};
 use super::colours::{BAD, DOUBTFUL, GOOD, aligned, painted};
 use super::exit::{Exit, print, say};
 use super::figures::counted;
-use super::files::{Place, told};
+use super::files::{FileOrStream, told};
 use super::flags::with_flags;
 use super::summary::{Subject, summary};
 use super::work::{Done, Errand, run as run_one, wrong};
@@ -36,28 +36,28 @@ pub(super) fn run(request: &Request) -> Exit {
 fn errands(request: &Request) -> Result<Vec<Errand<'_>>, Problem> {
     let each = if request.operation == Operation::Boolean { request.inputs.len() } else { 1 };
     let many = request.inputs.len() > each;
-    if many && matches!(request.target, Target::Place(_)) {
+    if many && matches!(request.target, OutputTarget::Place(_)) {
         return Err(wrong("one --output holds the result of one file; several files need --out-dir"));
     }
     if many && request.report_html.is_some() {
         return Err(wrong("--report-html writes the page of one file; leave it out, or give one file"));
     }
-    if request.inputs.len() > 1 && request.inputs.contains(&Place::Stream) {
+    if request.inputs.len() > 1 && request.inputs.contains(&FileOrStream::Stream) {
         return Err(wrong("standard input cannot be one of several files"));
     }
-    if let Target::Folder(folder) = &request.target {
+    if let OutputTarget::Folder(folder) = &request.target {
         fs::create_dir_all(folder)
             .map_err(|e| wrong(format!("{} cannot be made: {}", folder.display(), told(&e))))?;
     }
     let mut taken = BTreeSet::new();
     let errand = |inputs| {
         let output = match &request.target {
-            Target::None => None,
-            Target::Place(place) => Some(place.clone()),
-            Target::Folder(folder) => Some(place_in(folder, inputs, request)?),
+            OutputTarget::None => None,
+            OutputTarget::Place(place) => Some(place.clone()),
+            OutputTarget::Folder(folder) => Some(place_in(folder, inputs, request)?),
         };
         match &output {
-            Some(Place::File(path)) if !taken.insert(path.clone()) => Err(wrong(format!(
+            Some(FileOrStream::File(path)) if !taken.insert(path.clone()) => Err(wrong(format!(
                 "two files have the name {}; give them one after the other",
                 path.display()
             ))),
@@ -68,8 +68,8 @@ fn errands(request: &Request) -> Result<Vec<Errand<'_>>, Problem> {
 }
 
 /// The file of this name in `folder`, with the extension of the format that is asked for.
-fn place_in(folder: &Path, inputs: &[Place], request: &Request) -> Result<Place, Problem> {
-    let [Place::File(input), ..] = inputs else {
+fn place_in(folder: &Path, inputs: &[FileOrStream], request: &Request) -> Result<FileOrStream, Problem> {
+    let [FileOrStream::File(input), ..] = inputs else {
         return Err(wrong("the result of standard input has no name in a folder; give --output"));
     };
     let name = input.file_name().ok_or_else(|| wrong(format!("{} names no file", input.display())))?;
@@ -85,7 +85,7 @@ fn place_in(folder: &Path, inputs: &[Place], request: &Request) -> Result<Place,
         fs::canonicalize(&path).ok().is_some_and(|path| fs::canonicalize(input).ok() == Some(path));
     match is_input {
         true => Err(wrong(format!("{} would be overwritten; choose another folder", input.display()))),
-        false => Ok(Place::File(path)),
+        false => Ok(FileOrStream::File(path)),
     }
 }
 
@@ -96,7 +96,7 @@ fn tell(errand: &Errand<'_>, done: &Done) -> Exit {
     } else {
         let subject = Subject { input: errand.subject(), written: done.written.clone() };
         let text = summary(&done.report, &subject);
-        if errand.output == Some(Place::Stream) {
+        if errand.output == Some(FileOrStream::Stream) {
             // The mesh has standard output for itself.
             let _ = anstream::stderr().write_all(text.as_bytes());
         } else {
@@ -170,7 +170,7 @@ fn without_name<'t>(input: &str, told: &'t str) -> &'t str {
 fn sum(request: &Request, exits: &[Exit]) -> String {
     let count = |wanted: &[Exit]| exits.iter().filter(|exit| wanted.contains(exit)).count();
     let no = match request.target {
-        Target::None => "not valid",
+        OutputTarget::None => "not valid",
         _ => "without a result as asked",
     };
     let rows = [

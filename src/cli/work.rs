@@ -2,7 +2,7 @@
 
 use super::arguments::Request;
 use super::exit::Exit;
-use super::files::{Place, told};
+use super::files::{FileOrStream, told};
 use super::flags::with_flags;
 use super::watch::{Share, watched};
 use crate::budget::{Budget, StopFlag};
@@ -21,20 +21,20 @@ use std::path::{MAIN_SEPARATOR, PathBuf};
 pub(super) struct Errand<'r> {
     pub request: &'r Request,
     /// At least one.
-    pub inputs: &'r [Place],
+    pub inputs: &'r [FileOrStream],
     /// `None`: nowhere.
-    pub output: Option<Place>,
+    pub output: Option<FileOrStream>,
 }
 
 impl Errand<'_> {
     /// Names of the files.
     pub(super) fn subject(&self) -> String {
-        self.inputs.iter().map(Place::to_string).collect::<Vec<_>>().join(", ")
+        self.inputs.iter().map(FileOrStream::to_string).collect::<Vec<_>>().join(", ")
     }
 
     /// The same without their folders.
     fn file_names(&self) -> String {
-        let last = |place: &Place| place.to_string().rsplit(MAIN_SEPARATOR).next().map(str::to_owned);
+        let last = |place: &FileOrStream| place.to_string().rsplit(MAIN_SEPARATOR).next().map(str::to_owned);
         self.inputs.iter().filter_map(last).collect::<Vec<_>>().join(", ")
     }
 }
@@ -63,12 +63,12 @@ fn attempt(errand: &Errand<'_>) -> Result<Done, Problem> {
         Options::from_pairs(request.options.iter().map(|(n, v)| (n, v))).map_err(|e| about_options(&e))?;
     // A picture has one format, whatever its name.
     let is_picture = request.operation == Operation::Render;
-    let by_name = output.as_ref().filter(|_| !is_picture).and_then(Place::format).map(Into::into);
-    let picture_name = output.as_ref().filter(|_| is_picture).and_then(Place::extension);
+    let by_name = output.as_ref().filter(|_| !is_picture).and_then(FileOrStream::format).map(Into::into);
+    let picture_name = output.as_ref().filter(|_| is_picture).and_then(FileOrStream::extension);
     let picture_format = picture_format(options.picture_format, picture_name)?;
     let options = Options { output_format: options.output_format.or(by_name), picture_format, ..options };
     options.check(request.operation.into()).map_err(|e| about_options(&e))?;
-    if *output == Some(Place::Stream) && options.targets.as_ref().is_some_and(|t| t.len() > 1) {
+    if *output == Some(FileOrStream::Stream) && options.targets.as_ref().is_some_and(|t| t.len() > 1) {
         return Err(wrong("standard output holds one mesh; several --targets need a file name"));
     }
     let loaded = request.sources.load().map_err(|e| wrong(e.to_string()))?;
@@ -76,7 +76,7 @@ fn attempt(errand: &Errand<'_>) -> Result<Done, Problem> {
         output.check_writable().map_err(|e| wrong(format!("{output} cannot be written: {}", told(&e))))?;
     }
     if let Some(page) = &request.report_html {
-        let place = Place::File(page.clone());
+        let place = FileOrStream::File(page.clone());
         place.check_writable().map_err(|e| wrong(format!("{place} cannot be written: {}", told(&e))))?;
     }
     // One behind the other.
@@ -123,28 +123,29 @@ fn picture_format(
 fn check_places(errand: &Errand<'_>) -> Result<(), Problem> {
     let &Errand { request, inputs, ref output } = errand;
     let is_named = |name: &str| request.options.iter().any(|(given, _)| given == name);
-    if inputs.contains(&Place::Stream) && !is_named("format") {
+    if inputs.contains(&FileOrStream::Stream) && !is_named("format") {
         return Err(wrong("standard input needs --format"));
     }
     let is_picture = request.operation == Operation::Render;
-    if *output == Some(Place::Stream) && !is_named("output_format") && !is_picture {
+    if *output == Some(FileOrStream::Stream) && !is_named("output_format") && !is_picture {
         return Err(wrong("standard output needs --output-format"));
     }
-    if *output == Some(Place::Stream) && request.is_json {
+    if *output == Some(FileOrStream::Stream) && request.is_json {
         return Err(wrong("--json and --output - both want standard output"));
     }
     let unnamed = output.as_ref().filter(|place| !is_picture && place.format().is_none());
-    if let Some(extension) = unnamed.and_then(Place::extension).filter(|_| !is_named("output_format")) {
+    if let Some(extension) = unnamed.and_then(FileOrStream::extension).filter(|_| !is_named("output_format"))
+    {
         return Err(wrong(format!(
             "no mesh format has the file extension .{extension}: --output-format names the format"
         )));
     }
-    let of_picture = output.as_ref().filter(|_| is_picture).and_then(Place::extension);
+    let of_picture = output.as_ref().filter(|_| is_picture).and_then(FileOrStream::extension);
     if let Some(extension) = of_picture.filter(|extension| !is_png(extension) && !is_glb(extension)) {
         let detail = format!("a picture is a PNG or GLB file, which cannot have the extension .{extension}");
         return Err(wrong(detail));
     }
-    let has_format = |place: &Place| place.format().is_some() || is_named("output_format");
+    let has_format = |place: &FileOrStream| place.format().is_some() || is_named("output_format");
     match output {
         Some(output) if request.operation == Operation::Convert && !has_format(output) => {
             Err(wrong(format!("{output} names no format: --output-format is needed")))
@@ -250,7 +251,7 @@ fn deliver(
     let report = Report::new(&answer.report, timing);
     if let Some(path) = &request.report_html {
         let value = serde_json::to_value(&report).unwrap_or_default();
-        let place = Place::File(path.clone());
+        let place = FileOrStream::File(path.clone());
         place.write(report_page(&value, answer.picture.as_deref()).as_bytes()).map_err(|e| {
             Problem::new(ProblemCode::StorageFull, format!("{place} cannot be written: {}", told(&e)))
         })?;

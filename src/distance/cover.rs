@@ -60,8 +60,8 @@ impl<'s> Cloth<'s> {
         seed: u32,
         most: f64,
     ) -> (Option<f64>, u64) {
-        let Some(view) = Frame::of(piece, along, self.slack) else { return (None, 0) };
-        let mut walk = Walk { view, covered: 0.0, rounding: 0.0, farthest: 0.0 };
+        let Some(view) = PieceFrame::of(piece, along, self.slack) else { return (None, 0) };
+        let mut walk = CoverWalk { view, covered: 0.0, rounding: 0.0, farthest: 0.0 };
         let mut signs = FxHashMap::default();
         let mut left = vec![(seed, 1.0)];
         signs.insert(seed, 1.0);
@@ -100,7 +100,7 @@ impl<'s> Cloth<'s> {
 }
 
 /// A piece as it is seen along a direction.
-struct Frame {
+struct PieceFrame {
     origin: DVec3,
     /// Across the direction.
     across: [DVec3; 2],
@@ -116,7 +116,7 @@ struct Frame {
     slack: f64,
 }
 
-impl Frame {
+impl PieceFrame {
     /// `None` for a piece that is too thin or too small to tell its area.
     fn of(piece: &[Corner; 3], along: DVec3, slack: f64) -> Option<Self> {
         let [a, b, c] = piece.each_ref().map(|corner| corner.place);
@@ -172,8 +172,8 @@ impl Frame {
 }
 
 /// What was walked so far.
-struct Walk {
-    view: Frame,
+struct CoverWalk {
+    view: PieceFrame,
     /// Area of the piece that is covered, as often as it is.
     covered: f64,
     /// More than the rounding of that.
@@ -182,7 +182,7 @@ struct Walk {
     farthest: f64,
 }
 
-impl Walk {
+impl CoverWalk {
     /// Adds what a triangle covers: the part of it that is seen in the piece (Sutherland and Hodgman 1974).
     fn cover(&mut self, corners: [(DVec2, f64); 3], sign: f64) {
         let reach = corners.iter().map(|(p, _)| p.length()).fold(self.view.longest, f64::max);
@@ -210,7 +210,7 @@ impl Walk {
     }
 
     fn bound(&self) -> Option<f64> {
-        let Frame { area, longest, shrink, slack, .. } = self.view;
+        let PieceFrame { area, longest, shrink, slack, .. } = self.view;
         let times = (self.covered / area).abs();
         let is_certain =
             self.rounding <= ROUNDING_MAX * area && (times - times.round()).abs() <= 2.0 * ROUNDING_MAX;

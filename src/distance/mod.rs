@@ -23,8 +23,8 @@ use crate::par;
 pub use samples::{Areas, Sample};
 use scale::Common;
 use search::Directed;
-use target::Target;
-use view::View;
+use target::DistanceTarget;
+use view::ScaledSight;
 
 /// The triangles of a surface, by reference. Triangles may be degenerate, open, or meet in any way.
 #[derive(Debug, Clone, Copy)]
@@ -81,7 +81,7 @@ pub struct Sight<'v> {
 
 /// Shares of the area of a surface, by sampling.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Seen {
+pub struct AreaShares {
     /// What is hidden.
     pub hidden_share: f64,
     /// What is lost, of what can be seen.
@@ -117,7 +117,7 @@ pub struct DirectedDistance {
     /// The root of the mean square over the area of the first surface; `None` without samples.
     pub root_mean_square: Option<f64>,
     /// What is hidden and lost; `None` where everything counts.
-    pub seen: Option<Seen>,
+    pub seen: Option<AreaShares>,
 }
 
 /// The distance between two surfaces.
@@ -163,9 +163,10 @@ pub fn surface_distance(
     }
     let common = Common::of(a, b, budget)?;
     let (a, b) = common.surfaces();
-    let (to_a, to_b) = par::join(|| Target::of(a, &common, budget), || Target::of(b, &common, budget));
+    let (to_a, to_b) =
+        par::join(|| DistanceTarget::of(a, &common, budget), || DistanceTarget::of(b, &common, budget));
     let (to_a, to_b) = (to_a?, to_b?);
-    let view = View { sight: None, factor: common.factor, diagonal: common.diagonal };
+    let view = ScaledSight { sight: None, factor: common.factor, diagonal: common.diagonal };
     let directed = |from, to| Directed { from, to, view, common: &common, options, budget }.measure();
     let forward = directed(a, &to_b)?;
     let backward = directed(b, &to_a)?;
@@ -188,8 +189,8 @@ pub fn directed_distance(
     }
     let common = Common::of(from, to, budget)?;
     let (from, to) = common.surfaces();
-    let to = Target::of(to, &common, budget)?;
-    let view = View { sight, factor: common.factor, diagonal: common.diagonal };
+    let to = DistanceTarget::of(to, &common, budget)?;
+    let view = ScaledSight { sight, factor: common.factor, diagonal: common.diagonal };
     let found = Directed { from, to: &to, view, common: &common, options, budget }.measure()?;
     Ok(Some(common.unscale(found)))
 }

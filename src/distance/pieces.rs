@@ -1,8 +1,8 @@
 //! Pieces of triangles that may hold the farthest point, cut smaller until they do not.
 
 use super::bound::{Corner, upper_bound};
-use super::target::Target;
-use super::view::{View, Visible};
+use super::target::DistanceTarget;
+use super::view::{ScaledSight, Visible};
 use super::{FarPoint, Look};
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
@@ -40,7 +40,7 @@ impl Farthest {
     /// A place on a triangle that can be seen, if it is farther than this. The search for what is closest begins at `hint`.
     pub(super) fn or_seen(
         self,
-        to: &Target<'_>,
+        to: &DistanceTarget<'_>,
         place: DVec3,
         triangle: u32,
         hint: u32,
@@ -90,8 +90,8 @@ const LONG: f64 = 1.5;
 
 /// How pieces are cut.
 pub(super) struct Refining<'r, 'v> {
-    pub(super) to: &'r Target<'r>,
-    pub(super) view: &'r View<'v>,
+    pub(super) to: &'r DistanceTarget<'r>,
+    pub(super) view: &'r ScaledSight<'v>,
     pub(super) tolerance: Tolerance,
     /// Bound at which a piece can wait until others are no farther.
     pub(super) goal: f64,
@@ -201,7 +201,7 @@ const WALKED_FOR_ONE: u64 = 4;
 
 /// The bound of what covers a piece, if it is less than `upper`, and the triangles that were walked over. The walk starts
 /// where a corner is closest, the farthest corner first, and looks along the way from there.
-fn covered(to: &Target<'_>, piece: &[Corner; 3], upper: f64) -> (f64, u64) {
+fn covered(to: &DistanceTarget<'_>, piece: &[Corner; 3], upper: f64) -> (f64, u64) {
     let mut corners = *piece;
     corners.sort_by(|a, b| b.distance.total_cmp(&a.distance));
     let along = to.near.on_triangle(corners[0].place, corners[0].closest_triangle).point - corners[0].place;

@@ -4,9 +4,9 @@ use super::bound::{Corner, upper_bound};
 use super::pieces::{Farthest, Piece, Refined, Refining, Tolerance, WORK_MAX};
 use super::samples::Areas;
 use super::scale::Common;
-use super::target::Target;
-use super::view::{View, Visible};
-use super::{DirectedDistance, DistanceOptions, Look, Seen, Surface};
+use super::target::DistanceTarget;
+use super::view::{ScaledSight, Visible};
+use super::{AreaShares, DirectedDistance, DistanceOptions, Look, Surface};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::par;
 use crate::spatial::Found;
@@ -15,8 +15,8 @@ use std::collections::BinaryHeap;
 /// One direction.
 pub(super) struct Directed<'d, 'v> {
     pub(super) from: Surface<'d>,
-    pub(super) to: &'d Target<'d>,
-    pub(super) view: View<'v>,
+    pub(super) to: &'d DistanceTarget<'d>,
+    pub(super) view: ScaledSight<'v>,
     pub(super) common: &'d Common<'d>,
     pub(super) options: &'d DistanceOptions,
     pub(super) budget: &'d Budget,
@@ -117,7 +117,7 @@ impl Directed<'_, '_> {
         let farthest = self.refine_all(&vertices, &candidates, farthest, &mut upper)?;
         let share = |part: f64, all: u32| (all > 0).then(|| part / f64::from(all));
         let mean_of = |sum: f64| share(sum, sampled.count);
-        let seen = self.view.sight.map(|_| Seen {
+        let seen = self.view.sight.map(|_| AreaShares {
             hidden_share: share(f64::from(sampled.taken - sampled.count), sampled.taken).unwrap_or(0.0),
             lost_share: share(f64::from(sampled.lost), sampled.count).unwrap_or(0.0),
         });

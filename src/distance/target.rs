@@ -8,12 +8,12 @@ use crate::geom::DVec3;
 use crate::spatial::{Found, NearestSearch};
 
 /// The surface to which distances are measured, prepared.
-pub(super) struct Target<'s> {
+pub(super) struct DistanceTarget<'s> {
     pub(super) near: NearestSearch<'s>,
     pub(super) cloth: Cloth<'s>,
 }
 
-impl<'s> Target<'s> {
+impl<'s> DistanceTarget<'s> {
     pub(super) fn of(surface: Surface<'s>, common: &Common<'_>, budget: &Budget) -> Result<Self, Stopped> {
         let near = NearestSearch::build(surface.positions, surface.triangles, budget)?;
         Ok(Self { near, cloth: Cloth::of(surface, common.slack, budget)? })

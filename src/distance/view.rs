@@ -13,7 +13,7 @@ const ROWS_MAX: usize = 3;
 
 /// A sight, in the coordinates of the search.
 #[derive(Clone, Copy)]
-pub(super) struct View<'v> {
+pub(super) struct ScaledSight<'v> {
     pub(super) sight: Option<Sight<'v>>,
     /// What the caller's coordinates were multiplied by.
     pub(super) factor: f64,
@@ -31,7 +31,7 @@ pub(super) enum Visible {
     All,
 }
 
-impl<'v> View<'v> {
+impl<'v> ScaledSight<'v> {
     /// A look for places that are near each other; `None`: nothing is hidden anywhere.
     pub(super) fn look(&self) -> Option<Look<'v>> {
         self.sight.and_then(|sight| sight.look).map(|look| look())

@@ -8,7 +8,7 @@ const LEAF: usize = 8;
 /// Points in boxes halved along the longer side. Which of them count changes.
 #[derive(Debug, Default)]
 pub(super) struct Obstacles {
-    nodes: Vec<Node>,
+    nodes: Vec<ObstacleNode>,
     /// The points' numbers, those of a box together.
     ids: Vec<u32>,
     /// The leaf of each point, by its number; [`NO_LEAF`] for what is no point here.
@@ -18,7 +18,7 @@ pub(super) struct Obstacles {
 const NO_LEAF: u32 = u32::MAX;
 
 #[derive(Debug)]
-struct Node {
+struct ObstacleNode {
     min: DVec2,
     max: DVec2,
     first: u32,
@@ -58,7 +58,7 @@ impl Obstacles {
             (min, max) = (min.min(points[id as usize]), max.max(points[id as usize]));
         }
         let len = range.len() as u32;
-        self.nodes.push(Node {
+        self.nodes.push(ObstacleNode {
             min,
             max,
             first: range.start as u32,
@@ -71,7 +71,7 @@ impl Obstacles {
 
     /// Gives node `n` its children, or notes what it holds.
     fn divide(&mut self, points: &[DVec2], n: usize) {
-        let Node { min, max, first, len, .. } = self.nodes[n];
+        let ObstacleNode { min, max, first, len, .. } = self.nodes[n];
         let (first, len) = (first as usize, len as usize);
         let ids = &mut self.ids[first..first + len];
         if len <= LEAF || min == max {
@@ -148,7 +148,7 @@ impl Obstacles {
     }
 }
 
-impl Node {
+impl ObstacleNode {
     /// True only when the box is certainly to the right of the line from `p` to `q`.
     fn is_right_of(&self, [p, q]: [DVec2; 2]) -> bool {
         let along = q - p;

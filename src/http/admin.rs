@@ -10,11 +10,11 @@ use axum::routing::get;
 use super::metrics;
 use super::problem::{Handled, ProblemAnswer};
 use super::router;
-use super::state::{Service, State};
+use super::state::{HttpService, State};
 use crate::wire::ProblemCode;
 
 /// The routes of the admin listener.
-pub(super) fn router(service: Arc<Service>) -> Router {
+pub(super) fn router(service: Arc<HttpService>) -> Router {
     let routes = Router::new()
         .route("/livez", get(live))
         .route("/readyz", get(ready))

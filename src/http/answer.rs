@@ -4,7 +4,7 @@ use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse as _, Response};
 use sha2::{Digest as _, Sha256};
 
-use super::both::{Both, Mesh};
+use super::both::{CombinedAnswer, OutgoingMesh};
 use super::mesh_file;
 use super::problem::{Handled, json};
 use super::representation::{OCTET_STREAM, Representation, media_type_of_picture};
@@ -147,16 +147,16 @@ impl Finished<'_> {
         Ok(report(self.jobs.report(self.id).await?))
     }
 
-    async fn both(&self) -> Result<Both<tokio::fs::File>, Problem> {
+    async fn both(&self) -> Result<CombinedAnswer<tokio::fs::File>, Problem> {
         let stored = self.jobs.results(self.id).await?;
         let report = self.jobs.report(self.id).await?;
-        let mesh = |stored: StoredFile| Mesh {
+        let mesh = |stored: StoredFile| OutgoingMesh {
             media_type: mesh_file::media_type(&stored),
             len: stored.bytes,
             file_name: stored.file_name,
             content: stored.file,
         };
-        Ok(Both { report, meshes: stored.into_iter().map(mesh).collect() })
+        Ok(CombinedAnswer { report, meshes: stored.into_iter().map(mesh).collect() })
     }
 
     /// Adds what is known about the job: its outcome, where its report is, and how long its passes took.

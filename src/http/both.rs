@@ -20,15 +20,15 @@ const PIECE_BYTES: usize = 64 << 10;
 const REPORT_NAME: &str = "report.json";
 
 /// What goes into the answer.
-pub(super) struct Both<R> {
+pub(super) struct CombinedAnswer<R> {
     /// The report, as JSON.
     pub(super) report: Vec<u8>,
     /// The meshes: one, or one for each target of a simplification.
-    pub(super) meshes: Vec<Mesh<R>>,
+    pub(super) meshes: Vec<OutgoingMesh<R>>,
 }
 
 /// A mesh to be sent.
-pub(super) struct Mesh<R> {
+pub(super) struct OutgoingMesh<R> {
     /// Its bytes.
     pub(super) content: R,
     /// Their number.
@@ -39,7 +39,7 @@ pub(super) struct Mesh<R> {
     pub(super) file_name: String,
 }
 
-impl<R> Mesh<R> {
+impl<R> OutgoingMesh<R> {
     /// What stands before it in a `multipart/mixed` body.
     fn head(&self, boundary: &str) -> String {
         format!(
@@ -50,7 +50,7 @@ impl<R> Mesh<R> {
     }
 }
 
-impl<R: AsyncRead + Send + Unpin + 'static> Both<R> {
+impl<R: AsyncRead + Send + Unpin + 'static> CombinedAnswer<R> {
     /// The parts as `multipart/mixed` with this boundary, which must occur in none; and the whole length.
     pub(super) fn into_multipart(self, boundary: &str) -> (Body, u64) {
         let report_head = format!("--{boundary}\r\nContent-Type: application/json\r\n\r\n");
@@ -111,7 +111,7 @@ struct Packer<R> {
     spill: Spill,
     /// The mesh that is being packed.
     mesh: Option<R>,
-    waiting: IntoIter<Mesh<R>>,
+    waiting: IntoIter<OutgoingMesh<R>>,
 }
 
 impl<R: AsyncRead + Unpin> Packer<R> {
@@ -158,14 +158,14 @@ mod tests {
     use http_body_util::BodyExt as _;
     use std::io::Read as _;
 
-    fn both(mesh: &[u8]) -> Both<io::Cursor<Vec<u8>>> {
-        let mesh = |file_name: &str| Mesh {
+    fn both(mesh: &[u8]) -> CombinedAnswer<io::Cursor<Vec<u8>>> {
+        let mesh = |file_name: &str| OutgoingMesh {
             content: io::Cursor::new(mesh.to_vec()),
             len: mesh.len() as u64,
             media_type: "model/stl",
             file_name: file_name.to_owned(),
         };
-        Both { report: b"{\"a\":1}".to_vec(), meshes: vec![mesh("one.stl"), mesh("two.stl")] }
+        CombinedAnswer { report: b"{\"a\":1}".to_vec(), meshes: vec![mesh("one.stl"), mesh("two.stl")] }
     }
 
     async fn bytes_of(body: Body) -> Vec<u8> {

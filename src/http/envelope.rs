@@ -14,7 +14,7 @@ use futures_util::FutureExt as _;
 use tracing::Instrument as _;
 use uuid::Uuid;
 
-use super::problem::{self, Told};
+use super::problem::{self, LoggedProblem};
 use super::sizes::HEAD_BYTES_MAX;
 use super::state::{AboutJob, Caller};
 use super::trace;
@@ -47,7 +47,7 @@ pub(super) struct Peer(pub(super) IpAddr);
 /// Wraps every route, the fallbacks included.
 pub(super) async fn envelop(mut request: Request, next: Next) -> Response {
     let started = Instant::now();
-    let seen = Seen::of(&request);
+    let seen = LoggedRequest::of(&request);
     let unread = Unread::watch(&mut request);
     request.extensions_mut().insert(seen.id.clone());
     let mut response = match head_too_large(&request) {
@@ -94,7 +94,7 @@ fn head_too_large(request: &Request) -> Option<Problem> {
 pub(super) struct RequestId(pub(super) String);
 
 /// What of a request its log line tells. Neither query nor body: they are the caller's own.
-struct Seen {
+struct LoggedRequest {
     id: RequestId,
     method: axum::http::Method,
     route: String,
@@ -105,7 +105,7 @@ struct Seen {
     bytes_in: Option<u64>,
 }
 
-impl Seen {
+impl LoggedRequest {
     fn of(request: &Request) -> Self {
         Self {
             id: request_id(request.headers()),
@@ -136,7 +136,7 @@ impl Seen {
             headers.insert(header::CONNECTION, HeaderValue::from_static("close"));
         }
         let bytes_out = response.body().size_hint().exact();
-        let told = response.extensions().get::<Told>();
+        let told = response.extensions().get::<LoggedProblem>();
         let caller = response.extensions().get::<Caller>().and_then(|caller| caller.owner.as_deref());
         let made = response.extensions().get::<AboutJob>().map(|about| about.0.as_str());
         super::metrics::count_request(&self.method, &self.route, status, elapsed);

@@ -8,7 +8,7 @@ use super::entrance::{Entrance, Intake, finish_if_any};
 use super::form;
 use super::multipart;
 use super::sizes::{FORM_EXTRA_BYTES_MAX, JSON_BYTES_MAX};
-use super::state::{Caller, Service};
+use super::state::{Caller, HttpService};
 use crate::jobs::Uploaded;
 use crate::wire::{Format, Operation, Problem, ProblemCode, format_of_media_type};
 
@@ -70,7 +70,7 @@ pub(super) fn check_encoding(headers: &HeaderMap) -> Result<(), Problem> {
 
 /// Receives the body. `operation` is what the path means; `None`: the body says it.
 pub(super) async fn receive(
-    service: &Service,
+    service: &HttpService,
     caller: &Caller,
     headers: &HeaderMap,
     body: Body,

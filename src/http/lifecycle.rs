@@ -8,7 +8,7 @@ use axum::response::IntoResponse as _;
 use super::prefer::Wait;
 use super::problem::{Handled, ProblemAnswer};
 use super::representation::{OCTET_STREAM, PNG, json_only, media_type_of_picture, one_of};
-use super::state::{Caller, Service, State};
+use super::state::{Caller, HttpService, State};
 use super::{answer, mesh_file, query};
 use crate::jobs::JobId;
 use crate::wire::{Format, Job, Problem, ProblemCode, Report, media_type_of};
@@ -153,7 +153,7 @@ pub(super) async fn result(state: State, caller: Extension<Caller>, id: Id, requ
 
 /// The job, if it is as the client saw it (`If-Match`).
 async fn unchanged(
-    service: &Service,
+    service: &HttpService,
     caller: &Caller,
     id: Id,
     headers: &HeaderMap,
@@ -165,7 +165,7 @@ async fn unchanged(
     Ok(id)
 }
 
-pub(super) async fn visible(service: &Service, caller: &Caller, id: Id) -> Result<JobId, ProblemAnswer> {
+pub(super) async fn visible(service: &HttpService, caller: &Caller, id: Id) -> Result<JobId, ProblemAnswer> {
     let Ok(Path(text)) = id else {
         return Err(ProblemAnswer::new(ProblemCode::NotFound, "there is no such job"));
     };

@@ -7,7 +7,7 @@ use tokio::io::{AsyncReadExt as _, AsyncSeekExt as _};
 use tokio_util::io::ReaderStream;
 
 use super::problem;
-use super::range::Part;
+use super::range::HttpRange;
 use crate::jobs::StoredFile;
 use crate::wire::{Format, Problem, ProblemCode, media_type_of};
 
@@ -42,9 +42,9 @@ pub(super) async fn asked_for(
         return (StatusCode::NOT_MODIFIED, headers).into_response();
     }
     match part(request, &etag, stored.bytes) {
-        Part::Whole => whole(stored, media_type),
-        Part::Beyond => beyond(stored.bytes),
-        Part::Bytes(range) => {
+        HttpRange::Whole => whole(stored, media_type),
+        HttpRange::Beyond => beyond(stored.bytes),
+        HttpRange::Bytes(range) => {
             let (first, last) = (*range.start(), *range.end());
             if let Err(error) = stored.file.seek(std::io::SeekFrom::Start(first)).await {
                 return problem::respond(Problem::new(ProblemCode::Internal, format!("result: {error}")));
@@ -61,10 +61,10 @@ pub(super) async fn asked_for(
 }
 
 /// The part that is asked for, unless it is one of another version (`If-Range`).
-fn part(request: &HeaderMap, etag: &str, len: u64) -> Part {
+fn part(request: &HeaderMap, etag: &str, len: u64) -> HttpRange {
     let is_other = request.get(header::IF_RANGE).is_some_and(|version| version.as_bytes() != etag.as_bytes());
     let asked = request.get(header::RANGE).filter(|_| !is_other).and_then(|value| value.to_str().ok());
-    Part::parse(asked, len)
+    HttpRange::parse(asked, len)
 }
 
 fn beyond(len: u64) -> Response {

@@ -16,7 +16,7 @@ use super::prefer::{Wait, seconds_of};
 use super::problem::Handled;
 use super::query;
 use super::representation::{PNG, Representation, json_only, one_of};
-use super::state::{Caller, Service, State};
+use super::state::{Caller, HttpService, State};
 use super::trace;
 use crate::jobs::{JobId, Jobs, NamedUpload, Submission};
 use crate::wire::{
@@ -170,7 +170,12 @@ pub(super) async fn create_job(state: State, caller: Extension<Caller>, request:
 }
 
 /// The answer of an operation whose product is its report.
-async fn report_of(service: &Service, caller: &Caller, operation: Operation, request: Request) -> Handled {
+async fn report_of(
+    service: &HttpService,
+    caller: &Caller,
+    operation: Operation,
+    request: Request,
+) -> Handled {
     let (head, body) = request.into_parts();
     json_only(&head.headers)?;
     let options = query::options(&head.uri, operation)?;
@@ -180,7 +185,12 @@ async fn report_of(service: &Service, caller: &Caller, operation: Operation, req
 }
 
 /// The answer of an operation whose product is a mesh.
-async fn result_of(service: &Service, caller: &Caller, operation: Operation, request: Request) -> Handled {
+async fn result_of(
+    service: &HttpService,
+    caller: &Caller,
+    operation: Operation,
+    request: Request,
+) -> Handled {
     let (head, body) = request.into_parts();
     let options = query::options(&head.uri, operation)?;
     // Asked before the upload, so that a client that cannot be served does not send it in vain.
@@ -196,7 +206,7 @@ async fn result_of(service: &Service, caller: &Caller, operation: Operation, req
 
 /// Submits the job, waits for it, and answers with what there is then.
 async fn finish(
-    service: &Service,
+    service: &HttpService,
     submission: Submission,
     representation: Representation,
     head: &request::Parts,
@@ -252,7 +262,7 @@ impl Drop for CancelWhenDropped<'_> {
 
 /// Joins what path, query, headers and body say.
 async fn submission(
-    service: &Service,
+    service: &HttpService,
     caller: &Caller,
     operation: Operation,
     in_query: Options,

@@ -9,7 +9,7 @@ use axum::routing::{MethodRouter, get};
 use sha2::{Digest as _, Sha256};
 
 use super::mesh_file;
-use super::state::Service;
+use super::state::HttpService;
 
 /// Paths of the page and of what it loads.
 pub(super) static ASSETS: [Asset; 8] = [
@@ -47,7 +47,7 @@ impl Asset {
     }
 
     /// The route that answers with it.
-    pub(super) fn route(at: usize) -> MethodRouter<std::sync::Arc<Service>> {
+    pub(super) fn route(at: usize) -> MethodRouter<std::sync::Arc<HttpService>> {
         get(move |request: HeaderMap| async move { ASSETS[at].answer(&TAGS[at], &request) })
     }
 

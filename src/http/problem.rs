@@ -17,7 +17,7 @@ pub(super) type Handled = Result<Response, ProblemAnswer>;
 
 /// Left in the answer's extensions for the request log.
 #[derive(Debug, Clone)]
-pub(super) struct Told {
+pub(super) struct LoggedProblem {
     pub(super) code: ProblemCode,
     pub(super) detail: String,
 }
@@ -43,7 +43,7 @@ impl IntoResponse for ProblemAnswer {
 
 /// The answer that tells `problem`.
 pub(super) fn respond(mut problem: Problem) -> Response {
-    let told = Told { code: problem.code, detail: problem.detail.clone() };
+    let told = LoggedProblem { code: problem.code, detail: problem.detail.clone() };
     if problem.code == ProblemCode::Internal {
         // What went wrong inside is for the log, where the request id leads.
         problem.detail = "a fault of the server".to_owned();

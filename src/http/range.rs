@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 /// What of a file of a known length is asked for.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) enum Part {
+pub(super) enum HttpRange {
     /// All of it.
     Whole,
     /// The bytes at these positions.
@@ -13,7 +13,7 @@ pub(super) enum Part {
     Beyond,
 }
 
-impl Part {
+impl HttpRange {
     /// Reads a `Range` header for a file of `len` bytes. Another unit, several ranges and malformed ones are answered
     /// with the whole file, which the standard allows.
     pub(super) fn parse(header: Option<&str>, len: u64) -> Self {
@@ -47,26 +47,26 @@ fn number(text: &str) -> Option<u64> {
 mod tests {
     use super::*;
 
-    fn part(header: &str) -> Part {
-        Part::parse(Some(header), 100)
+    fn part(header: &str) -> HttpRange {
+        HttpRange::parse(Some(header), 100)
     }
 
     #[test]
     fn a_range_is_cut_at_the_end_of_the_file() {
-        assert_eq!(part("bytes=0-9"), Part::Bytes(0..=9));
-        assert_eq!(part("bytes=90-"), Part::Bytes(90..=99));
-        assert_eq!(part("bytes=90-99999999999999999999999"), Part::Bytes(90..=99));
-        assert_eq!(part("bytes=-5"), Part::Bytes(95..=99));
-        assert_eq!(part("bytes=-500"), Part::Bytes(0..=99));
+        assert_eq!(part("bytes=0-9"), HttpRange::Bytes(0..=9));
+        assert_eq!(part("bytes=90-"), HttpRange::Bytes(90..=99));
+        assert_eq!(part("bytes=90-99999999999999999999999"), HttpRange::Bytes(90..=99));
+        assert_eq!(part("bytes=-5"), HttpRange::Bytes(95..=99));
+        assert_eq!(part("bytes=-500"), HttpRange::Bytes(0..=99));
     }
 
     #[test]
     fn a_range_after_the_end_is_beyond() {
-        assert_eq!(part("bytes=100-"), Part::Beyond);
-        assert_eq!(part("bytes=100-200"), Part::Beyond);
-        assert_eq!(part("bytes=-0"), Part::Beyond);
-        assert_eq!(Part::parse(Some("bytes=0-"), 0), Part::Beyond);
-        assert_eq!(Part::parse(Some("bytes=-1"), 0), Part::Beyond);
+        assert_eq!(part("bytes=100-"), HttpRange::Beyond);
+        assert_eq!(part("bytes=100-200"), HttpRange::Beyond);
+        assert_eq!(part("bytes=-0"), HttpRange::Beyond);
+        assert_eq!(HttpRange::parse(Some("bytes=0-"), 0), HttpRange::Beyond);
+        assert_eq!(HttpRange::parse(Some("bytes=-1"), 0), HttpRange::Beyond);
     }
 
     #[test]
@@ -81,8 +81,8 @@ mod tests {
             "bytes=-",
             "bytes",
         ] {
-            assert_eq!(part(header), Part::Whole, "{header}");
+            assert_eq!(part(header), HttpRange::Whole, "{header}");
         }
-        assert_eq!(Part::parse(None, 100), Part::Whole);
+        assert_eq!(HttpRange::parse(None, 100), HttpRange::Whole);
     }
 }

@@ -21,7 +21,7 @@ use super::problem::{self, ProblemAnswer};
 use super::rate::Rates;
 use super::scope::Scopes;
 use super::settings::HttpSettings;
-use super::state::{Caller, Service, State};
+use super::state::{Caller, HttpService, State};
 use super::tenant::{client, tenant};
 use super::{
     about, contract, cors, deliveries, docs, events, framing, lifecycle, listing, operations, page,
@@ -31,7 +31,7 @@ use crate::jobs::Jobs;
 use crate::wire::{Problem, ProblemCode};
 
 /// The API, with its contract.
-fn api() -> OpenApiRouter<Arc<Service>> {
+fn api() -> OpenApiRouter<Arc<HttpService>> {
     OpenApiRouter::new()
         .routes(routes!(operations::analyze))
         .routes(routes!(operations::repair))
@@ -64,7 +64,7 @@ fn api() -> OpenApiRouter<Arc<Service>> {
 }
 
 /// Uploads that come before their job.
-fn uploads() -> OpenApiRouter<Arc<Service>> {
+fn uploads() -> OpenApiRouter<Arc<HttpService>> {
     OpenApiRouter::new()
         .routes(routes!(uploads::create, uploads::protocol))
         .routes(routes!(uploads::stand, uploads::append, uploads::delete))
@@ -73,7 +73,7 @@ fn uploads() -> OpenApiRouter<Arc<Service>> {
 }
 
 /// The contract itself, compressed for clients that take that: nothing in it is secret and repeated by a caller.
-fn documents() -> OpenApiRouter<Arc<Service>> {
+fn documents() -> OpenApiRouter<Arc<HttpService>> {
     OpenApiRouter::new()
         .routes(routes!(about::openapi))
         .routes(routes!(about::openapi_json))
@@ -81,7 +81,7 @@ fn documents() -> OpenApiRouter<Arc<Service>> {
 }
 
 /// Pages and what they load: embedded, from no other host, compressed as the contract is.
-fn pages() -> Router<Arc<Service>> {
+fn pages() -> Router<Arc<HttpService>> {
     let assets = page::ASSETS.iter().enumerate();
     assets
         .fold(Router::new(), |router, (at, asset)| router.route(asset.path, page::Asset::route(at)))
@@ -95,10 +95,10 @@ pub(super) fn openapi() -> OpenApi {
 }
 
 /// What handlers share, with the contract made once.
-pub(super) fn service(settings: HttpSettings, jobs: Jobs) -> Arc<Service> {
+pub(super) fn service(settings: HttpSettings, jobs: Jobs) -> Arc<HttpService> {
     let document = openapi();
     let json = serde_json::to_vec(&document).unwrap_or_default();
-    Arc::new(Service {
+    Arc::new(HttpService {
         jobs,
         rates: settings.rate.map(Rates::new),
         settings,
@@ -109,7 +109,7 @@ pub(super) fn service(settings: HttpSettings, jobs: Jobs) -> Arc<Service> {
 }
 
 /// The router of the public listener.
-pub(super) fn router(service: Arc<Service>) -> Router {
+pub(super) fn router(service: Arc<HttpService>) -> Router {
     // Bodies of other encodings come in as they are, and are refused where they are read.
     let unpacked = RequestDecompressionLayer::new().pass_through_unaccepted(true);
     let (api, _) = api().layer(unpacked).split_for_parts();
@@ -169,7 +169,7 @@ async fn let_in(service: State, mut request: Request, next: Next) -> Response {
 
 /// The answer to one who has no valid key or comes from a foreign host. They are counted by their address, and their
 /// connection ends: it takes the place of one who may use the service.
-fn not_let_in(service: &Service, problem: Problem, address: Option<IpAddr>) -> Response {
+fn not_let_in(service: &HttpService, problem: Problem, address: Option<IpAddr>) -> Response {
     let counted = service.rates.as_ref().map(|rates| rates.count(&tenant(None, address)));
     let (standing, refusal) = counted.unzip();
     let mut response = problem::respond(refusal.flatten().unwrap_or(problem));

@@ -12,7 +12,7 @@ use super::connection::ConnectionLimits;
 use super::connection_shares::ConnectionShares;
 use super::settings::HttpSettings;
 use super::shutdown::Shutdown;
-use super::state::Service;
+use super::state::HttpService;
 use super::{admin, listen, metrics, router};
 use crate::jobs::Jobs;
 
@@ -117,7 +117,7 @@ impl Server {
 }
 
 /// Forgets callers that have not been heard of for long enough. Never ends.
-async fn forget_idle_callers(service: &Service) {
+async fn forget_idle_callers(service: &HttpService) {
     loop {
         tokio::time::sleep(FORGET_EVERY).await;
         if let Some(rates) = &service.rates {

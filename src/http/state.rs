@@ -13,11 +13,11 @@ use crate::jobs::{JobId, Jobs, Tenant, UPLOAD_PIECES_MAX};
 use crate::wire::{LABELS_MAX, Limits, Problem, ProblemCode};
 
 /// The state of the router.
-pub(super) type State = axum::extract::State<Arc<Service>>;
+pub(super) type State = axum::extract::State<Arc<HttpService>>;
 
 /// The service as handlers see it.
 #[derive(Debug)]
-pub(super) struct Service {
+pub(super) struct HttpService {
     pub(super) jobs: Jobs,
     pub(super) settings: HttpSettings,
     /// How many requests callers have made, if that is limited.
@@ -43,7 +43,7 @@ pub(super) struct Caller {
 #[derive(Debug, Clone)]
 pub(super) struct AboutJob(pub(super) String);
 
-impl Service {
+impl HttpService {
     /// Limits of a body that brings a mesh and `extra` bytes beside it.
     pub(super) fn upload_limits(&self, extra: u64) -> BodyLimits {
         BodyLimits {

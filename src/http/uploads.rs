@@ -15,7 +15,7 @@ use super::intake::check_encoding;
 use super::lifecycle::Id;
 use super::problem::{Handled, ProblemAnswer};
 use super::query;
-use super::state::{Caller, Service, State};
+use super::state::{Caller, HttpService, State};
 use crate::jobs::{AskedUpload, Jobs, Pieces, UploadId, UploadRow};
 use crate::wire::{Problem, ProblemCode, UploadInfo};
 
@@ -170,7 +170,7 @@ pub(super) async fn delete(state: State, caller: Extension<Caller>, id: Id, requ
 
 /// Receives what the body brings. Also when the client goes away meanwhile, which ends the request, what has come is stored.
 async fn received(
-    service: &Service,
+    service: &HttpService,
     mut pieces: Pieces,
     headers: &HeaderMap,
     body: Body,

@@ -39,12 +39,12 @@ impl Site {
 
 /// Where the origin of the system is and how long its unit is, so that the centres are within about a unit of 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Frame {
+pub(super) struct UnitFrame {
     pub origin: DVec3,
     pub unit: f64,
 }
 
-impl Frame {
+impl UnitFrame {
     pub(super) fn of(points: &[DVec3]) -> Self {
         let extent = Aabb::of(points.iter().copied());
         // Halves first: the sum of large coordinates may leave the range of f64.
@@ -61,7 +61,7 @@ pub(super) fn sites(
     band: &Band,
     offsets: &Offsets,
     options: &RbfOptions,
-    frame: &Frame,
+    frame: &UnitFrame,
     budget: &Budget,
 ) -> Result<Vec<Site>, Stopped> {
     let places: Vec<DVec3> = band.points.iter().map(|&p| frame.inward(p)).collect();
@@ -216,7 +216,7 @@ mod tests {
     }
 
     fn sites_of(band: &Band, share: f64) -> Vec<Site> {
-        let frame = Frame::of(&band.points);
+        let frame = UnitFrame::of(&band.points);
         let offsets = Offsets { first: 0.05, lambdas: vec![0.05; band.points.len()], halved: 0 };
         let options = RbfOptions { share, ..RbfOptions::default() };
         sites(band, &offsets, &options, &frame, &Budget::unlimited()).unwrap()
@@ -247,7 +247,7 @@ mod tests {
     #[test]
     fn points_without_room_take_no_offsets_from_others() {
         let band = circle(40);
-        let frame = Frame::of(&band.points);
+        let frame = UnitFrame::of(&band.points);
         let mut offsets = Offsets { first: 0.05, lambdas: vec![0.05; 40], halved: 7 };
         offsets.lambdas[..7].fill(0.0);
         for values in [ConstraintValues::Distance, ConstraintValues::Unit] {

@@ -1,6 +1,6 @@
 //! The field: a function that is zero on the surface, positive outside and negative inside.
 
-use super::centres::Frame;
+use super::centres::UnitFrame;
 use super::options::{ConstraintValues, Kernel};
 use super::partition::Partition;
 use super::polynomial::{dot, gradient, terms};
@@ -61,7 +61,7 @@ pub struct FitFacts {
 }
 
 #[derive(Debug, Clone)]
-pub(super) enum Parts {
+pub(super) enum FieldSolution {
     One(Box<Solution>),
     Many(Partition),
 }
@@ -72,10 +72,10 @@ pub(super) enum Parts {
 pub struct Field {
     pub(super) kernel: Kernel,
     pub(super) values: ConstraintValues,
-    pub(super) frame: Frame,
+    pub(super) frame: UnitFrame,
     /// What a value of the system is in the values of the field.
     pub(super) value_unit: f64,
-    pub(super) parts: Parts,
+    pub(super) parts: FieldSolution,
     pub(super) facts: FitFacts,
 }
 
@@ -85,8 +85,8 @@ impl Field {
         let p = self.frame.inward(p);
         let of = |s: &Solution| s.centres.sum(self.kernel, p) + dot(&terms(p), &s.polynomial);
         let value = match &self.parts {
-            Parts::One(solution) => of(solution),
-            Parts::Many(partition) => partition.value(p, of),
+            FieldSolution::One(solution) => of(solution),
+            FieldSolution::Many(partition) => partition.value(p, of),
         };
         value * self.value_unit
     }
@@ -99,8 +99,8 @@ impl Field {
             (value + dot(&terms(p), &s.polynomial), slope + gradient(&s.polynomial, p))
         };
         let (value, gradient) = match &self.parts {
-            Parts::One(solution) => of(solution),
-            Parts::Many(partition) => partition.value_and_gradient(p, of),
+            FieldSolution::One(solution) => of(solution),
+            FieldSolution::Many(partition) => partition.value_and_gradient(p, of),
         };
         (value * self.value_unit, gradient * (self.value_unit / self.frame.unit))
     }

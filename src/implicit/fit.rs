@@ -1,8 +1,8 @@
 //! From the points of a band to its field.
 
 use super::band::{Band, Surroundings};
-use super::centres::{Frame, Site, sites};
-use super::field::{Field, FitFacts, Parts, SolveMethod};
+use super::centres::{Site, UnitFrame, sites};
+use super::field::{Field, FieldSolution, FitFacts, SolveMethod};
 use super::offsets::{Offsets, offsets};
 use super::options::{ConstraintValues, Kernel, RbfOptions};
 use super::partition::Partition;
@@ -32,7 +32,7 @@ pub fn fit(
     if let Err(refusal) = band.check() {
         return Ok(Err(refusal));
     }
-    let frame = Frame::of(&band.points);
+    let frame = UnitFrame::of(&band.points);
     if !is_positive(frame.unit) {
         return Ok(Err(Unfit::NotFinite { point: 0 }));
     }
@@ -51,24 +51,29 @@ pub fn fit(
     Ok(Ok(Field { kernel: options.kernel, values: options.values, frame, value_unit, parts, facts }))
 }
 
-fn parts(sites: &[Site], options: &RbfOptions, budget: &Budget) -> Result<Result<Parts, Unfit>, Stopped> {
+fn parts(
+    sites: &[Site],
+    options: &RbfOptions,
+    budget: &Budget,
+) -> Result<Result<FieldSolution, Unfit>, Stopped> {
     let count = sites.iter().flat_map(Site::centres).count();
     if count > options.dense_centres_max {
-        return Ok(Partition::fit(options.kernel, sites, budget)?.map(Parts::Many));
+        return Ok(Partition::fit(options.kernel, sites, budget)?.map(FieldSolution::Many));
     }
     let (points, values): (Vec<DVec3>, Vec<f64>) = sites.iter().flat_map(Site::centres).unzip();
-    Ok(solve(options.kernel, &points, &values, budget)?.map(|solution| Parts::One(Box::new(solution))))
+    Ok(solve(options.kernel, &points, &values, budget)?
+        .map(|solution| FieldSolution::One(Box::new(solution))))
 }
 
-fn facts(band: &Band, kernel: Kernel, sites: &[Site], offsets: &Offsets, parts: &Parts) -> FitFacts {
+fn facts(band: &Band, kernel: Kernel, sites: &[Site], offsets: &Offsets, parts: &FieldSolution) -> FitFacts {
     let solutions: Vec<&Solution> = match parts {
-        Parts::One(solution) => vec![solution],
-        Parts::Many(partition) => partition.solutions().collect(),
+        FieldSolution::One(solution) => vec![solution],
+        FieldSolution::Many(partition) => partition.solutions().collect(),
     };
     let centres_max = solutions.iter().map(|s| s.centres.len()).max().unwrap_or(0);
     let method = match parts {
-        Parts::One(_) => SolveMethod::Dense,
-        Parts::Many(_) => SolveMethod::Partition { parts: solutions.len(), centres_max },
+        FieldSolution::One(_) => SolveMethod::Dense,
+        FieldSolution::Many(_) => SolveMethod::Partition { parts: solutions.len(), centres_max },
     };
     let centres = sites.iter().flat_map(Site::centres).count();
     let with_offsets = sites.iter().filter(|site| site.has != [false; 2]);

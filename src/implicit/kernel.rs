@@ -70,13 +70,13 @@ pub(super) struct WeightedCentres {
 
 /// phi between all centres, row by row, filled up to whole lanes.
 #[derive(Debug)]
-pub(super) struct Table {
+pub(super) struct KernelTable {
     values: Vec<[f64; LANES]>,
     /// Lanes of a row.
     blocks: usize,
 }
 
-impl Table {
+impl KernelTable {
     /// The row of centre `i`.
     pub(super) fn row(&self, i: usize) -> &[[f64; LANES]] {
         &self.values[i * self.blocks..(i + 1) * self.blocks]
@@ -183,7 +183,7 @@ impl WeightedCentres {
         points: &[DVec3],
         rows: usize,
         budget: &Budget,
-    ) -> Result<Table, Stopped> {
+    ) -> Result<KernelTable, Stopped> {
         let blocks = self.x.len();
         let mut values = vec![[0.0; LANES]; self.len * blocks];
         par::for_each_chunk_mut(&mut values, rows * blocks, |at, out| {
@@ -198,7 +198,7 @@ impl WeightedCentres {
             }
         });
         budget.check()?;
-        Ok(Table { values, blocks })
+        Ok(KernelTable { values, blocks })
     }
 
     /// The sum of weight times phi, given phi between a point and each centre.

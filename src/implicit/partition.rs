@@ -29,14 +29,14 @@ const ORDERED_MAX: usize = 2_048;
 
 /// A box with its margin, and the field of the sites in it.
 #[derive(Debug, Clone)]
-struct Part {
+struct Subdomain {
     middle: DVec3,
     /// From the middle to the ends of the widened box, below and above; infinite where nothing lies beyond.
     reach: [DVec3; 2],
     solution: Solution,
 }
 
-impl Part {
+impl Subdomain {
     /// The weight at `p` and its gradient: the product over the axes of (1 - t^2)^3.
     fn weight(&self, p: DVec3) -> Option<(f64, DVec3)> {
         let away = (p - self.middle).to_array();
@@ -60,7 +60,7 @@ impl Part {
 /// Fields of overlapping boxes.
 #[derive(Debug, Clone)]
 pub(super) struct Partition {
-    parts: Vec<Part>,
+    parts: Vec<Subdomain>,
 }
 
 impl Partition {
@@ -72,7 +72,7 @@ impl Partition {
     ) -> Result<Result<Self, Unfit>, Stopped> {
         let spacing = spacings(sites, budget)?;
         let boxes = boxes(sites, budget)?;
-        let fit = |_, cell: Cell| -> Result<Result<Part, Unfit>, Stopped> {
+        let fit = |_, cell: Cell| -> Result<Result<Subdomain, Unfit>, Stopped> {
             let (reach, mut chosen) = cell.choose(sites, &spacing);
             let middle = (cell.low + cell.high) * 0.5;
             let has_offsets = |&i: &u32| sites[i as usize].has != [false; 2];
@@ -85,7 +85,7 @@ impl Partition {
             let (points, values): (Vec<DVec3>, Vec<f64>) =
                 chosen.iter().flat_map(|&i| sites[i as usize].centres()).unzip();
             budget.spend(points.len() as u64)?;
-            Ok(solve(kernel, &points, &values, budget)?.map(|solution| Part { middle, reach, solution }))
+            Ok(solve(kernel, &points, &values, budget)?.map(|solution| Subdomain { middle, reach, solution }))
         };
         let parts: Result<Vec<_>, Stopped> = par::map_items(boxes, fit).into_iter().collect();
         Ok(parts?.into_iter().collect::<Result<Vec<_>, Unfit>>().map(|parts| Self { parts }))

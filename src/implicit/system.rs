@@ -6,7 +6,7 @@
 //! few centres only: the entries of Q^T Phi Q = Phi - V W^T - W V^T come from the compact form Q = I - V T V^T.
 
 use super::cholesky::Cholesky;
-use super::kernel::{Table, WeightedCentres};
+use super::kernel::{KernelTable, WeightedCentres};
 use super::options::Kernel;
 use super::polynomial::{LINEAR_TERMS, Reflections, TERMS, dot, rank, terms};
 use super::unfit::Unfit;
@@ -77,7 +77,7 @@ struct System<'p> {
     points: &'p [DVec3],
     centres: WeightedCentres,
     /// Phi, where there are few centres.
-    table: Option<Table>,
+    table: Option<KernelTable>,
     _charge: Charge<'p>,
     q: Reflections,
     /// W of Q^T Phi Q = Phi - V W^T - W V^T, by columns.

@@ -20,7 +20,7 @@ const PLACE_LASTS: Duration = Duration::from_secs(1);
 pub(super) struct Arrivals {
     store: Arc<dyn JobStore>,
     settings: Arc<JobsSettings>,
-    known: Mutex<Known>,
+    known: Mutex<ArrivalCounts>,
 }
 
 impl fmt::Debug for Arrivals {
@@ -30,7 +30,7 @@ impl fmt::Debug for Arrivals {
 }
 
 #[derive(Debug, Default)]
-struct Known {
+struct ArrivalCounts {
     /// How many jobs waited, and when that was.
     queued: Option<(Instant, usize)>,
     /// When places were taken by uploads that are not jobs yet, the earliest first, and whom they are charged to.
@@ -65,12 +65,12 @@ impl Arrivals {
         self.known().queued = None;
     }
 
-    fn known(&self) -> MutexGuard<'_, Known> {
+    fn known(&self) -> MutexGuard<'_, ArrivalCounts> {
         self.known.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl Known {
+impl ArrivalCounts {
     /// Places that count at `now`.
     fn taken(&mut self, now: Instant) -> usize {
         while self.places.front().is_some_and(|&(at, _)| now.duration_since(at) > PLACE_LASTS) {
@@ -104,7 +104,7 @@ impl Arrivals {
     async fn with_room<T>(
         &self,
         tenant: &Tenant,
-        then: impl FnOnce(&mut Known, Instant) -> T,
+        then: impl FnOnce(&mut ArrivalCounts, Instant) -> T,
     ) -> Result<T, StoreError> {
         let recent = self.known().queued.filter(|(at, _)| at.elapsed() < RECENT);
         let (at, queued) = match recent {
@@ -144,7 +144,7 @@ mod tests {
         let begun = Instant::now();
         let (first, second) = (Tenant::nobody(), Tenant::named("key:shop"));
         let places = [(begun, first.clone()), (begun + PLACE_LASTS, second.clone())].into();
-        let mut known = Known { queued: None, places };
+        let mut known = ArrivalCounts { queued: None, places };
         assert_eq!(known.taken(begun + PLACE_LASTS), 2);
         assert_eq!((known.taken_by(&first), known.taken_by(&second)), (1, 1));
         assert_eq!(known.taken(begun + PLACE_LASTS * 3 / 2), 1);

@@ -30,12 +30,12 @@ pub(super) struct Live {
     /// What is heard of the run.
     pub(super) clock: Option<StageClock>,
     /// Shared by all claims of the job in this process.
-    pub(super) job: Arc<Shared>,
+    pub(super) job: Arc<ClaimSignals>,
 }
 
 /// What all claims of a job share.
 #[derive(Debug, Default)]
-pub(super) struct Shared {
+pub(super) struct ClaimSignals {
     /// Raised when the job has ended or is gone.
     pub(super) ended: CancellationToken,
     /// Counts changes of the job's state.

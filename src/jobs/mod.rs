@@ -77,16 +77,16 @@ pub use shared::SharedStores;
 pub use sqlite::{OpenError as SqliteOpenError, SqliteStore, StoreClock, StoreFile};
 pub use start::StartError;
 pub use store::{
-    AfterLoss, BlobRef, Change, ClaimRef, ClaimRequest, Created, Delivery, DeliveryRequest, DeliveryState,
+    AfterLoss, BlobRef, ClaimRef, ClaimRequest, Created, Delivery, DeliveryRequest, DeliveryState,
     DeliveryTry, Ending, Hint, Hints, Holding, IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept,
-    Lane, Leases, ListQuery, NewJob, NewUpload, NextTry, ResultRef, Sealer, StoreError, StoreFuture, Tenant,
-    TryOutcome, UploadId, UploadRow, UploadStore, Webhook,
+    Lane, Leases, ListQuery, NewJob, NewUpload, NextTry, ResultRef, Sealer, StateChange, StoreError,
+    StoreFuture, Tenant, TryOutcome, UploadId, UploadRow, UploadStore, Webhook,
 };
 pub use stores::{Stores, StoresError};
 pub use trace::TraceParent;
 pub use upload::{Upload, Uploaded};
 pub use view::StoredFile;
 pub use webhook::{
-    PrivateHosts, RetryPlan, SecretError, Target, TargetError, URL_BYTES_MAX, VaultError, WebhookSecret,
-    WebhookSettings,
+    PrivateHosts, RetryPlan, SecretError, TargetError, URL_BYTES_MAX, VaultError, WebhookSecret,
+    WebhookSettings, WebhookTarget,
 };

@@ -34,7 +34,7 @@ impl Boundary {
         let half_edges: Vec<u32> =
             groups.iter().filter_map(|group| if let [h] = *group { Some(h) } else { None }).collect();
         let edges = by_start(triangles, vertex_count, &half_edges);
-        let mut walk = Walk::new(&edges, vertex_count);
+        let mut walk = EdgeWalk::new(&edges, vertex_count);
         for (i, (ends, _)) in edges.iter().enumerate() {
             if i % CHECK_EVERY == 0 {
                 budget.check()?;
@@ -68,7 +68,7 @@ fn by_start(triangles: &[[u32; 3]], vertex_count: usize, half_edges: &[u32]) -> 
 }
 
 /// A walk over directed edges, each taken once.
-struct Walk<'a> {
+struct EdgeWalk<'a> {
     /// Ends (from, to) and half-edge, ascending by from.
     edges: &'a [([u32; 2], u32)],
     /// Next edge to take at each vertex.
@@ -80,7 +80,7 @@ struct Walk<'a> {
     boundary: Boundary,
 }
 
-impl<'a> Walk<'a> {
+impl<'a> EdgeWalk<'a> {
     fn new(edges: &'a [([u32; 2], u32)], vertex_count: usize) -> Self {
         let mut next = vec![NOWHERE; vertex_count];
         for (i, (ends, _)) in edges.iter().enumerate().rev() {

@@ -94,12 +94,12 @@ pub fn singular_vertices(
     twins: &[u32],
     budget: &Budget,
 ) -> Result<Vec<u32>, Stopped> {
-    let _charge = budget.charge(vertex_count as u64 * size_of::<Star>() as u64)?;
+    let _charge = budget.charge(vertex_count as u64 * size_of::<VertexCorners>() as u64)?;
     let stars = stars(triangles, vertex_count, budget)?;
     let parts = par::try_map_ranges(vertex_count, CHECK_EVERY, |range| {
         budget.check()?;
         let is_singular = |&v: &u32| {
-            let Star { corner, valence } = stars[v as usize];
+            let VertexCorners { corner, valence } = stars[v as usize];
             valence > 1 && Fan::around(triangles, twins, corner).count() < valence as usize
         };
         Ok((range.start as u32..range.end as u32).filter(is_singular).collect::<Vec<_>>())
@@ -144,13 +144,17 @@ pub fn fan_heads(
 
 /// One corner at a vertex, and how many there are.
 #[derive(Clone, Copy, Default)]
-struct Star {
+struct VertexCorners {
     corner: u32,
     valence: u32,
 }
 
-fn stars(triangles: &[[u32; 3]], vertex_count: usize, budget: &Budget) -> Result<Vec<Star>, Stopped> {
-    let mut stars = vec![Star::default(); vertex_count];
+fn stars(
+    triangles: &[[u32; 3]],
+    vertex_count: usize,
+    budget: &Budget,
+) -> Result<Vec<VertexCorners>, Stopped> {
+    let mut stars = vec![VertexCorners::default(); vertex_count];
     for (t, corners) in triangles.iter().enumerate() {
         if t % CHECK_EVERY == 0 {
             budget.check()?;

@@ -7,17 +7,17 @@
 
 use super::direction::{Direction, Sector};
 use super::exact::{Vector, cross, dot, is_zero, negative, sign};
-use super::point::{Place, Point, View};
+use super::point::{AxisView, Point, PointLocation};
 use crate::geom::DVec3;
 use num_bigint::BigInt;
 use num_traits::Zero;
 use std::cmp::Ordering;
 
 /// A face: its plane is `normal . x = rate`.
-struct Face {
+struct ConeFace {
     normal: Vector,
     rate: BigInt,
-    view: View,
+    view: AxisView,
     /// Its real edges, by their points, in their order: in from infinity and out again.
     edges: Vec<[usize; 2]>,
     /// The border of the region with corners at infinity between the last and the first.
@@ -27,13 +27,13 @@ struct Face {
 /// The picture.
 pub(super) struct Cone {
     points: Vec<Point>,
-    faces: Vec<Face>,
+    faces: Vec<ConeFace>,
     /// Each edge by its points, and the faces beside it.
     edges: Vec<([usize; 2], [usize; 2])>,
 }
 
 /// The plane of a face around the vertex.
-pub(super) struct Side<'s> {
+pub(super) struct ConePlane<'s> {
     /// Its normal.
     pub(super) normal: &'s Direction,
     /// Its unit normal, rounded.
@@ -51,7 +51,7 @@ impl Cone {
     /// `sides`: the faces, clockwise. `rays`: the directions of the edges between each and the next. `vertices`: the new
     /// ones. `cells`: the faces around each, ascending.
     pub(super) fn of(
-        sides: &[Side<'_>],
+        sides: &[ConePlane<'_>],
         rays: &[Direction],
         vertices: Vec<Point>,
         cells: &[Vec<usize>],
@@ -82,8 +82,8 @@ impl Cone {
                     cone.points.push(at_infinity(direction.exact));
                 }
             }
-            let view = View::along(side.unit);
-            cone.faces.push(Face {
+            let view = AxisView::along(side.unit);
+            cone.faces.push(ConeFace {
                 normal: side.normal.exact.clone(),
                 rate: side.rate.clone(),
                 view,
@@ -96,7 +96,7 @@ impl Cone {
 
     /// True when edges and faces meet in what they share only.
     pub(super) fn is_embedded(&self) -> bool {
-        let is_simple = |face: &Face| {
+        let is_simple = |face: &ConeFace| {
             (0..face.edges.len())
                 .all(|i| (0..i).all(|j| !self.do_meet(face.view, face.edges[i], face.edges[j])))
         };
@@ -116,7 +116,7 @@ impl Cone {
     }
 
     /// Whether two edges in one plane meet in more than a common end. At most one end of each is at infinity.
-    fn do_meet(&self, view: View, g: [usize; 2], h: [usize; 2]) -> bool {
+    fn do_meet(&self, view: AxisView, g: [usize; 2], h: [usize; 2]) -> bool {
         let point = |p: usize| &self.points[p];
         let shared: Vec<usize> = g.into_iter().filter(|p| h.contains(p)).collect();
         if let &[common] = shared.as_slice() {
@@ -147,15 +147,15 @@ impl Cone {
         sign(&dot(&to_a, &to_b)) != Ordering::Greater
     }
 
-    fn height(&self, face: &Face, p: usize) -> BigInt {
+    fn height(&self, face: &ConeFace, p: usize) -> BigInt {
         let point = &self.points[p];
         dot(&face.normal, &point.x) - &face.rate * &point.w
     }
 
     /// Whether an edge meets a face that is not beside it in more than a common vertex.
-    fn meets_face(&self, ends: [usize; 2], face: &Face) -> bool {
+    fn meets_face(&self, ends: [usize; 2], face: &ConeFace) -> bool {
         let heights = ends.map(|p| self.height(face, p));
-        let is_in = |p: &Point| self.locate(face, p) != Place::Outside;
+        let is_in = |p: &Point| self.locate(face, p) != PointLocation::Outside;
         match heights.each_ref().map(sign) {
             [Ordering::Equal, Ordering::Equal] => {
                 face.edges.iter().any(|&side| self.do_meet(face.view, ends, side)) || is_in(&self.inner(ends))
@@ -173,8 +173,10 @@ impl Cone {
     }
 
     /// Whether a point of the plane of a face is in the face and no corner of it.
-    fn touches(&self, p: usize, face: &Face) -> bool {
-        !self.is_far(p) && !face.border.contains(&p) && self.locate(face, &self.points[p]) != Place::Outside
+    fn touches(&self, p: usize, face: &ConeFace) -> bool {
+        !self.is_far(p)
+            && !face.border.contains(&p)
+            && self.locate(face, &self.points[p]) != PointLocation::Outside
     }
 
     /// A point inside an edge.
@@ -188,7 +190,7 @@ impl Cone {
         Point::new(x, (&p.w * &q.w) << 1)
     }
 
-    fn locate(&self, face: &Face, p: &Point) -> Place {
+    fn locate(&self, face: &ConeFace, p: &Point) -> PointLocation {
         let count = face.border.len();
         let corner = |i: usize| &self.points[face.border[i % count]];
         // What is at infinity on one line is no border of anything at hand.

@@ -4,7 +4,7 @@ use crate::mesh::polyhedron::{FaceId, VertexId};
 
 /// Elements that would meet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Contact {
+pub enum Conflict {
     /// An edge loses its length.
     EdgeVanishes {
         /// The faces beside it.

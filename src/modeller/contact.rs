@@ -1,6 +1,6 @@
 //! Whether an edge meets a face beyond what they share, and which pairs are near enough to ask.
 
-use super::point::{Place, Point, View};
+use super::point::{AxisView, Point, PointLocation};
 use super::solid::Solid;
 use crate::budget::{Budget, Stopped};
 use crate::geom::Aabb;
@@ -9,7 +9,7 @@ use num_bigint::BigInt;
 use std::cmp::Ordering;
 
 /// Whether two segments of one plane meet in more than a common end.
-pub(super) fn do_segments_meet(solid: &Solid, view: View, g: [VertexId; 2], h: [VertexId; 2]) -> bool {
+pub(super) fn do_segments_meet(solid: &Solid, view: AxisView, g: [VertexId; 2], h: [VertexId; 2]) -> bool {
     let [a, b] = g.map(|v| solid.point(v));
     let [c, d] = h.map(|v| solid.point(v));
     let shared = g.iter().filter(|v| h.contains(v)).count();
@@ -44,10 +44,14 @@ pub(super) fn meets_beyond_shared(solid: &Solid, h: HalfEdgeId, f: FaceId) -> bo
     let sides = [side(0), side(1)];
     match sides {
         [Ordering::Equal, Ordering::Equal] => meets_in_plane(solid, ends, is_corner, f),
-        [Ordering::Equal, _] => !is_corner[0] && solid.locate(f, solid.point(ends[0])) != Place::Outside,
-        [_, Ordering::Equal] => !is_corner[1] && solid.locate(f, solid.point(ends[1])) != Place::Outside,
+        [Ordering::Equal, _] => {
+            !is_corner[0] && solid.locate(f, solid.point(ends[0])) != PointLocation::Outside
+        }
+        [_, Ordering::Equal] => {
+            !is_corner[1] && solid.locate(f, solid.point(ends[1])) != PointLocation::Outside
+        }
         [a, b] if a == b => false,
-        _ => solid.locate(f, &crossing(solid, h, f)) != Place::Outside,
+        _ => solid.locate(f, &crossing(solid, h, f)) != PointLocation::Outside,
     }
 }
 
@@ -76,7 +80,7 @@ fn meets_in_plane(solid: &Solid, ends: [VertexId; 2], is_corner: [bool; 2], f: F
         [_, false] => solid.point(ends[1]).clone(),
         _ => middle(solid.point(ends[0]), solid.point(ends[1])),
     };
-    solid.locate(f, &witness) != Place::Outside
+    solid.locate(f, &witness) != PointLocation::Outside
 }
 
 fn middle(a: &Point, b: &Point) -> Point {

@@ -13,11 +13,11 @@
 //! plane with an end of one; so only edges with a moving plane are tried against edges, and only where the four planes
 //! are different.
 
-use super::conflict::Contact;
+use super::conflict::Conflict;
 use super::exact::{Rational, cross, dot, to_f64};
 use super::merged::Merged;
 use super::motion::{Motion, Moving, MovingPoint, root_after_zero};
-use super::search::Search;
+use super::search::EventSearch;
 use super::solid::Solid;
 use crate::budget::{Budget, Stopped};
 use crate::mesh::polyhedron::{HalfEdgeId, VertexId};
@@ -34,14 +34,14 @@ pub(super) struct Event {
     /// The edges that lose their lengths then.
     pub(super) vanishing: Vec<HalfEdgeId>,
     /// What else comes to meet.
-    pub(super) contacts: Vec<Contact>,
+    pub(super) contacts: Vec<Conflict>,
 }
 
 impl Event {
     /// All elements that meet.
-    pub(super) fn blocking(&self, solid: &Solid) -> Vec<Contact> {
+    pub(super) fn blocking(&self, solid: &Solid) -> Vec<Conflict> {
         let topology = &solid.topology;
-        let vanish = |&h: &HalfEdgeId| Contact::EdgeVanishes {
+        let vanish = |&h: &HalfEdgeId| Conflict::EdgeVanishes {
             faces: [topology.face(h), topology.face(topology.opposite(h))],
             vertices: [topology.origin(h), topology.destination(h)],
         };
@@ -64,8 +64,8 @@ pub(super) fn next_event(
     let end = vanish_at.as_ref().map_or(f64::INFINITY, rounded_up);
     let merged = Merged::of(solid, &vanishing);
     let is_explained =
-        |s: &Rational, contact: &Contact| vanish_at.as_ref() == Some(s) && merged.explains(solid, contact);
-    let mut search = Search::new(solid, motion, moving);
+        |s: &Rational, contact: &Conflict| vanish_at.as_ref() == Some(s) && merged.explains(solid, contact);
+    let mut search = EventSearch::new(solid, motion, moving);
     let mut found = First::default();
     for span in search.spans(end) {
         found = first_contact(&mut search, span, vanish_at.as_ref(), &is_explained, budget)?;
@@ -87,17 +87,17 @@ pub(super) fn next_event(
 
 /// The first contacts until `end`; where there are none before it, those that were found to come later, or none.
 fn first_contact(
-    search: &mut Search<'_>,
+    search: &mut EventSearch<'_>,
     end: f64,
     vanish_at: Option<&Rational>,
-    is_explained: &dyn Fn(&Rational, &Contact) -> bool,
+    is_explained: &dyn Fn(&Rational, &Conflict) -> bool,
     budget: &Budget,
 ) -> Result<First, Stopped> {
     search.end = end;
     let mut found = First::default();
     let is_in_time = |s: &Rational| vanish_at.is_none_or(|end| s <= end);
     // What vertices find ends the time for edges.
-    for search_for in [Search::vertices_against_faces, Search::edges_against_edges] {
+    for search_for in [EventSearch::vertices_against_faces, EventSearch::edges_against_edges] {
         let mut candidates = Vec::new();
         search_for(search, budget, &mut candidates)?;
         candidates.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -121,7 +121,7 @@ fn first_contact(
 #[derive(Default)]
 struct First {
     at: Option<Rational>,
-    contacts: Vec<Contact>,
+    contacts: Vec<Conflict>,
 }
 
 impl First {
@@ -132,7 +132,7 @@ impl First {
         }
     }
 
-    fn take(&mut self, s: Rational, contact: Contact) {
+    fn take(&mut self, s: Rational, contact: Conflict) {
         if self.at.as_ref().is_none_or(|at| s < *at) {
             self.contacts.clear();
             self.at = Some(s);

@@ -1,11 +1,11 @@
 //! The open interval by which faces may move without an event.
 
-use super::conflict::Contact;
+use super::conflict::Conflict;
 use super::events::next_event;
 use super::exact::Rational;
 use super::motion::{Motion, Moving};
 use super::operator::limit;
-use super::refusal::Refusal;
+use super::refusal::OperatorRefusal;
 use super::resolve;
 use super::solid::Solid;
 use crate::budget::{Budget, Stopped};
@@ -14,7 +14,7 @@ use num_traits::{Signed, Zero};
 
 /// One side of the interval by which faces may move.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Side {
+pub enum IntervalSide {
     /// As far as one likes.
     Unbounded,
     /// By less than this.
@@ -22,7 +22,7 @@ pub enum Side {
         /// The growth of the offset of each moving face at the event.
         limits: Vec<(FaceId, Rational)>,
         /// What would meet.
-        blocking: Vec<Contact>,
+        blocking: Vec<Conflict>,
     },
     /// Not at all: a vertex has no good split in this direction.
     Blocked {
@@ -36,13 +36,17 @@ pub enum Side {
 ///
 /// # Errors
 /// When the budget stops the run.
-pub fn range(solid: &Solid, shifts: &[(FaceId, Rational)], budget: &Budget) -> Result<[Side; 2], Stopped> {
+pub fn range(
+    solid: &Solid,
+    shifts: &[(FaceId, Rational)],
+    budget: &Budget,
+) -> Result<[IntervalSide; 2], Stopped> {
     let opposite: Vec<(FaceId, Rational)> = shifts.iter().map(|(f, t)| (*f, -t)).collect();
     Ok([one_side(solid, &opposite, budget)?, one_side(solid, shifts, budget)?])
 }
 
-fn one_side(solid: &Solid, shifts: &[(FaceId, Rational)], budget: &Budget) -> Result<Side, Stopped> {
-    let Some((motion, _)) = Motion::of(shifts) else { return Ok(Side::Unbounded) };
+fn one_side(solid: &Solid, shifts: &[(FaceId, Rational)], budget: &Budget) -> Result<IntervalSide, Stopped> {
+    let Some((motion, _)) = Motion::of(shifts) else { return Ok(IntervalSide::Unbounded) };
     let split;
     let mut solid = solid;
     let unsettled = Moving::unsettled(solid, &motion);
@@ -51,18 +55,18 @@ fn one_side(solid: &Solid, shifts: &[(FaceId, Rational)], budget: &Budget) -> Re
         let mut copy = solid.clone();
         for vertex in unsettled {
             if resolve::split(&mut copy, &motion, vertex).is_none() {
-                return Ok(Side::Blocked { vertex });
+                return Ok(IntervalSide::Blocked { vertex });
             }
         }
         split = copy;
         solid = &split;
     }
-    let Ok(moving) = Moving::of(solid, &motion) else { return Ok(Side::Unbounded) };
+    let Ok(moving) = Moving::of(solid, &motion) else { return Ok(IntervalSide::Unbounded) };
     Ok(match next_event(solid, &motion, &moving, budget)? {
-        None => Side::Unbounded,
+        None => IntervalSide::Unbounded,
         Some(event) => match limit(solid, &motion, &Rational::zero(), &event) {
-            Refusal::Limit { limits, blocking } => Side::Limit { limits, blocking },
-            _ => Side::Unbounded,
+            OperatorRefusal::Limit { limits, blocking } => IntervalSide::Limit { limits, blocking },
+            _ => IntervalSide::Unbounded,
         },
     })
 }

@@ -1,6 +1,6 @@
 //! Which contacts of an event only say that edges vanish there.
 
-use super::conflict::Contact;
+use super::conflict::Conflict;
 use super::solid::Solid;
 use crate::mesh::UnionFind;
 use crate::mesh::polyhedron::{FaceId, HalfEdgeId, VertexId};
@@ -41,13 +41,13 @@ impl Merged {
     }
 
     /// Whether a contact only says that vertices become one: the elements share a vertex then.
-    pub(super) fn explains(&self, solid: &Solid, contact: &Contact) -> bool {
+    pub(super) fn explains(&self, solid: &Solid, contact: &Conflict) -> bool {
         let topology = &solid.topology;
         match *contact {
-            Contact::VertexFace { vertex, face } => {
+            Conflict::VertexFace { vertex, face } => {
                 self.class(vertex).is_some_and(|c| self.faces[c as usize].binary_search(&face).is_ok())
             }
-            Contact::EdgeEdge { first, second } => {
+            Conflict::EdgeEdge { first, second } => {
                 let classes = |[f, g]: [FaceId; 2]| -> Vec<u32> {
                     let sides = topology.sides(f).filter(|h| topology.face(topology.opposite(*h)) == g);
                     let ends = sides.flat_map(|h| [topology.origin(h), topology.destination(h)]);
@@ -56,7 +56,7 @@ impl Merged {
                 let others = classes(second);
                 classes(first).iter().any(|class| others.contains(class))
             }
-            Contact::EdgeVanishes { .. } | Contact::LoopLoop { .. } => true,
+            Conflict::EdgeVanishes { .. } | Conflict::LoopLoop { .. } => true,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Which shells lie inside which: one outward, all others cavities directly inside it.
 
 use super::exact::{cross, det, dot, sign};
-use super::point::{Place, Point};
+use super::point::{Point, PointLocation};
 use super::rule::{Fault, Rule};
 use super::solid::Solid;
 use crate::budget::{Budget, Stopped};
@@ -113,9 +113,9 @@ fn parity(solid: &Solid, p: &Point, direction: &[BigInt; 3], faces: &[FaceId]) -
         let (height, speed) = if speed < BigInt::ZERO { (-height, -speed) } else { (height, speed) };
         let x = std::array::from_fn(|k| &p.x[k] * &speed + &direction[k] * &height);
         match solid.locate(f, &Point::new(x, &p.w * &speed)) {
-            Place::Border => return None,
-            Place::Inside => is_odd = !is_odd,
-            Place::Outside => {}
+            PointLocation::Border => return None,
+            PointLocation::Inside => is_odd = !is_odd,
+            PointLocation::Outside => {}
         }
     }
     Some(is_odd)

@@ -17,7 +17,7 @@ use super::events::{Event, next_event, vanishing_time};
 use super::exact::{Rational, det, sign};
 use super::journal::Journal;
 use super::motion::{Motion, Moving};
-use super::refusal::Refusal;
+use super::refusal::OperatorRefusal;
 use super::resolve;
 use super::solid::Solid;
 use super::validity::check_changed;
@@ -80,7 +80,7 @@ pub enum Operator {
 
 /// A change of topology along the way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Change {
+pub enum TopologyChange {
     /// An edge became a vertex: the faces beside it.
     Merged([FaceId; 2]),
     /// A vertex became an edge: the faces beside it.
@@ -93,7 +93,7 @@ pub struct Applied {
     /// How much the offset of each face grew.
     pub shifts: Vec<(FaceId, Rational)>,
     /// The changes of topology, in their order.
-    pub changes: Vec<Change>,
+    pub changes: Vec<TopologyChange>,
     /// The faces that moved or have a vertex that did.
     pub changed_faces: Vec<FaceId>,
     journal: Journal,
@@ -141,16 +141,16 @@ pub fn apply(
     solid: &mut Solid,
     operator: &Operator,
     budget: &Budget,
-) -> Result<Result<Applied, Refusal>, Stopped> {
+) -> Result<Result<Applied, OperatorRefusal>, Stopped> {
     match operator {
         Operator::Shift { faces, events } => run_shift(solid, faces, *events, budget),
         Operator::Split { vertex, face, by } => {
             let around: Vec<FaceId> = solid.topology.faces_around(*vertex).collect();
             if !around.contains(face) {
-                return Ok(Err(Refusal::NotThere { face: *face }));
+                return Ok(Err(OperatorRefusal::NotThere { face: *face }));
             }
             if around.len() < 4 {
-                return Ok(Err(Refusal::VertexIsTrihedral { vertex: *vertex }));
+                return Ok(Err(OperatorRefusal::VertexIsTrihedral { vertex: *vertex }));
             }
             run_shift(solid, &[(*face, by.clone())], Events::Refuse, budget)
         }
@@ -168,21 +168,21 @@ fn run_shift(
     faces: &[(FaceId, Rational)],
     events: Events,
     budget: &Budget,
-) -> Result<Result<Applied, Refusal>, Stopped> {
+) -> Result<Result<Applied, OperatorRefusal>, Stopped> {
     match Motion::of(faces) {
         Some((motion, time)) => run(solid, &motion, &Until::Time(time), events, budget),
-        None => Ok(Err(Refusal::NothingMoves)),
+        None => Ok(Err(OperatorRefusal::NothingMoves)),
     }
 }
 
 /// The motion of `face` alone towards the time at which the edge of `h` has no length, and that time.
-fn towards(solid: &Solid, h: HalfEdgeId, face: FaceId) -> Result<(Motion, Rational), Refusal> {
+fn towards(solid: &Solid, h: HalfEdgeId, face: FaceId) -> Result<(Motion, Rational), OperatorRefusal> {
     let topology = &solid.topology;
     let is_at_an_end = [topology.origin(h), topology.destination(h)]
         .iter()
         .any(|&v| topology.faces_around(v).any(|f| f == face));
     if !is_at_an_end {
-        return Err(Refusal::NotThere { face });
+        return Err(OperatorRefusal::NotThere { face });
     }
     for rate in [1, -1] {
         let Some((motion, _)) = Motion::of(&[(face, Rational::from_integer(BigInt::from(rate)))]) else {
@@ -193,17 +193,17 @@ fn towards(solid: &Solid, h: HalfEdgeId, face: FaceId) -> Result<(Motion, Ration
             return Ok((motion, time));
         }
     }
-    Err(Refusal::EdgeStays)
+    Err(OperatorRefusal::EdgeStays)
 }
 
 /// A merge that stopped at another event is taken back.
-fn keep_if_merged(solid: &mut Solid, applied: Applied, edge: HalfEdgeId) -> Result<Applied, Refusal> {
+fn keep_if_merged(solid: &mut Solid, applied: Applied, edge: HalfEdgeId) -> Result<Applied, OperatorRefusal> {
     if !solid.topology.contains(edge) {
         return Ok(applied);
     }
     let limits = applied.shifts.clone();
     applied.undo(solid);
-    Err(Refusal::Limit { limits, blocking: Vec::new() })
+    Err(OperatorRefusal::Limit { limits, blocking: Vec::new() })
 }
 
 /// The flip of an edge between faces 1 and 2 whose ends are on faces 3 and 4.
@@ -213,7 +213,7 @@ fn flip(
     face: FaceId,
     by: Option<&Rational>,
     budget: &Budget,
-) -> Result<Result<Applied, Refusal>, Stopped> {
+) -> Result<Result<Applied, OperatorRefusal>, Stopped> {
     if let Some(refusal) = bad_flip(solid, h) {
         return Ok(Err(refusal));
     }
@@ -227,12 +227,12 @@ fn flip(
     };
     // The first event must be this edge's, alone.
     let event = next_event(solid, &motion, &moving, budget)?;
-    let Some(event) = event else { return Ok(Err(Refusal::EdgeStays)) };
+    let Some(event) = event else { return Ok(Err(OperatorRefusal::EdgeStays)) };
     if event.at != time || !event.contacts.is_empty() {
         return Ok(Err(limit(solid, &motion, &Rational::zero(), &event)));
     }
     if event.vanishing.len() != 1 {
-        return Ok(Err(Refusal::SeveralVanish { count: event.vanishing.len() }));
+        return Ok(Err(OperatorRefusal::SeveralVanish { count: event.vanishing.len() }));
     }
     let until = match by {
         None => Until::PastFirstEvent,
@@ -248,11 +248,11 @@ fn flip(
     let ends = end_faces(solid, h);
     let done = run(solid, &motion, &until, Events::Pass, budget)?;
     Ok(match done {
-        Err(Refusal::NoSplit { .. }) => Err(Refusal::DoesNotOpen { faces: ends }),
+        Err(OperatorRefusal::NoSplit { .. }) => Err(OperatorRefusal::DoesNotOpen { faces: ends }),
         // The merged vertex must not have opened the old way.
         Ok(applied) if applied.changes.len() != 2 => {
             applied.undo(solid);
-            Err(Refusal::DoesNotOpen { faces: ends })
+            Err(OperatorRefusal::DoesNotOpen { faces: ends })
         }
         other => other,
     })
@@ -266,21 +266,21 @@ fn end_faces(solid: &Solid, h: HalfEdgeId) -> [FaceId; 2] {
 }
 
 /// The reason why the edge of `h` cannot be flipped, as far as topology and normals tell it.
-fn bad_flip(solid: &Solid, h: HalfEdgeId) -> Option<Refusal> {
+fn bad_flip(solid: &Solid, h: HalfEdgeId) -> Option<OperatorRefusal> {
     let topology = &solid.topology;
     let beside = [h, topology.opposite(h)].map(|h| topology.face(h));
     for g in [h, topology.opposite(h)] {
         if topology.loop_of(g).count() == 3 {
-            return Some(Refusal::FaceHasThreeSides { face: topology.face(g) });
+            return Some(OperatorRefusal::FaceHasThreeSides { face: topology.face(g) });
         }
     }
     let ends = end_faces(solid, h);
     if ends[0] == ends[1] {
-        return Some(Refusal::EndsAreOneFace { face: ends[0] });
+        return Some(OperatorRefusal::EndsAreOneFace { face: ends[0] });
     }
     let [a, b] = [topology.origin(h), topology.destination(h)];
     if [a, b].iter().any(|&v| topology.edge_between_at(ends[0], ends[1], v).is_some()) {
-        return Some(Refusal::EndsAreNeighbours { faces: ends });
+        return Some(OperatorRefusal::EndsAreNeighbours { faces: ends });
     }
     let is_trihedral = [a, b].iter().all(|&v| topology.faces_around(v).count() == 3);
     let [n1, n2] = beside.map(|f| &solid.plane(f).normal);
@@ -288,7 +288,8 @@ fn bad_flip(solid: &Solid, h: HalfEdgeId) -> Option<Refusal> {
     let signs = [sign(&det(n3, n4, n1)), sign(&det(n3, n4, n2))];
     let opens = signs[0] != Ordering::Equal && signs[0] == signs[1].reverse();
     // At reflex edges the split itself is tried: the determinants alone do not decide it.
-    (is_trihedral && !opens && is_convex_around(solid, h)).then_some(Refusal::DoesNotOpen { faces: ends })
+    (is_trihedral && !opens && is_convex_around(solid, h))
+        .then_some(OperatorRefusal::DoesNotOpen { faces: ends })
 }
 
 /// True when the edge and all edges at its ends are convex.
@@ -301,14 +302,14 @@ fn is_convex_around(solid: &Solid, h: HalfEdgeId) -> bool {
     topology.around(h).chain(topology.around(topology.opposite(h))).all(is_convex)
 }
 
-fn no_split(solid: &Solid, vertex: VertexId) -> Refusal {
-    Refusal::NoSplit { vertex, faces: solid.topology.faces_around(vertex).collect() }
+fn no_split(solid: &Solid, vertex: VertexId) -> OperatorRefusal {
+    OperatorRefusal::NoSplit { vertex, faces: solid.topology.faces_around(vertex).collect() }
 }
 
-pub(super) fn limit(solid: &Solid, motion: &Motion, passed: &Rational, event: &Event) -> Refusal {
+pub(super) fn limit(solid: &Solid, motion: &Motion, passed: &Rational, event: &Event) -> OperatorRefusal {
     let time = passed + &event.at;
     let limits = motion.rates().iter().map(|(f, rate)| (*f, &time * rate)).collect();
-    Refusal::Limit { limits, blocking: event.blocking(solid) }
+    OperatorRefusal::Limit { limits, blocking: event.blocking(solid) }
 }
 
 /// Runs a motion, checks what it changed, and takes everything back when it is refused or stopped.
@@ -318,14 +319,14 @@ fn run(
     until: &Until,
     events: Events,
     budget: &Budget,
-) -> Result<Result<Applied, Refusal>, Stopped> {
+) -> Result<Result<Applied, OperatorRefusal>, Stopped> {
     let mut run = Run { journal: Journal::begin(solid), changes: Vec::new(), passed: Rational::zero() };
     let result = match run.advance(solid, motion, until, events, budget) {
         Ok(Ok(())) => {
             let moves = run.journal.moves(solid);
             check_changed(solid, &moves, budget).map(|faults| match faults.into_iter().next() {
                 None => Ok(moves.faces),
-                Some(fault) => Err(Refusal::Invalid(fault)),
+                Some(fault) => Err(OperatorRefusal::Invalid(fault)),
             })
         }
         Ok(Err(refusal)) => Ok(Err(refusal)),
@@ -349,7 +350,7 @@ fn run(
 
 struct Run {
     journal: Journal,
-    changes: Vec<Change>,
+    changes: Vec<TopologyChange>,
     passed: Rational,
 }
 
@@ -361,7 +362,7 @@ impl Run {
         until: &Until,
         events: Events,
         budget: &Budget,
-    ) -> Result<Result<(), Refusal>, Stopped> {
+    ) -> Result<Result<(), OperatorRefusal>, Stopped> {
         for count in 0..EVENTS_MAX {
             if let Err(refusal) = self.split_vertices(solid, motion) {
                 return Ok(Err(refusal));
@@ -378,7 +379,7 @@ impl Run {
                     self.passed += end;
                     return Ok(Ok(()));
                 }
-                (None, _) => return Ok(Err(Refusal::EdgeStays)),
+                (None, _) => return Ok(Err(OperatorRefusal::EdgeStays)),
                 (Some(event), end) => {
                     let must_stop = events == Events::Refuse || !event.contacts.is_empty();
                     if must_stop {
@@ -395,7 +396,7 @@ impl Run {
                 }
             }
         }
-        Ok(Err(Refusal::TooManyEvents { limit: EVENTS_MAX }))
+        Ok(Err(OperatorRefusal::TooManyEvents { limit: EVENTS_MAX }))
     }
 
     /// The time that is left, if the goal is a time.
@@ -413,13 +414,13 @@ impl Run {
     }
 
     /// Splits every vertex whose planes do not stay concurrent.
-    fn split_vertices(&mut self, solid: &mut Solid, motion: &Motion) -> Result<(), Refusal> {
+    fn split_vertices(&mut self, solid: &mut Solid, motion: &Motion) -> Result<(), OperatorRefusal> {
         for vertex in Moving::unsettled(solid, motion) {
             self.journal.keep_topology(solid);
             let edges = resolve::split(solid, motion, vertex).ok_or_else(|| no_split(solid, vertex))?;
             let topology = &solid.topology;
             let beside = |h: HalfEdgeId| [topology.face(h), topology.face(topology.opposite(h))];
-            self.changes.extend(edges.into_iter().map(|h| Change::Split(beside(h))));
+            self.changes.extend(edges.into_iter().map(|h| TopologyChange::Split(beside(h))));
         }
         Ok(())
     }
@@ -431,17 +432,17 @@ impl Run {
         motion: &Motion,
         moving: &Moving,
         event: &Event,
-    ) -> Result<(), Refusal> {
+    ) -> Result<(), OperatorRefusal> {
         self.journal.keep_topology(solid);
         self.journal.advance(solid, motion, moving, &event.at);
         self.passed += &event.at;
         for &h in &event.vanishing {
             let beside = [h, solid.topology.opposite(h)].map(|h| solid.topology.face(h));
             solid.topology.contract(h).map_err(|refusal| match refusal {
-                ContractRefusal::FaceVanishes(face) => Refusal::FaceVanishes { face },
-                ContractRefusal::FaceAtBothEnds(face) => Refusal::LinkNotADisk { face },
+                ContractRefusal::FaceVanishes(face) => OperatorRefusal::FaceVanishes { face },
+                ContractRefusal::FaceAtBothEnds(face) => OperatorRefusal::LinkNotADisk { face },
             })?;
-            self.changes.push(Change::Merged(beside));
+            self.changes.push(TopologyChange::Merged(beside));
         }
         Ok(())
     }

@@ -1,6 +1,6 @@
 //! Naming a face, a vertex or an edge by where it is.
 
-use super::point::{Place, Point};
+use super::point::{Point, PointLocation};
 use super::solid::Solid;
 use crate::geom::DVec3;
 use crate::mesh::polyhedron::{FaceId, HalfEdgeId, VertexId};
@@ -18,7 +18,7 @@ pub fn face_on_ray(solid: &Solid, from: DVec3, direction: DVec3) -> Option<FaceI
         if speed >= 0.0 || !time.is_finite() || time < 0.0 || best.is_some_and(|(t, _)| t <= time) {
             continue;
         }
-        if solid.locate(f, &Point::of(from + direction * time)) != Place::Outside {
+        if solid.locate(f, &Point::of(from + direction * time)) != PointLocation::Outside {
             best = Some((time, f));
         }
     }
@@ -40,7 +40,7 @@ pub fn face_by_normal(solid: &Solid, normal: DVec3, at: DVec3) -> Option<FaceId>
 fn distance_to_face(solid: &Solid, f: FaceId, p: DVec3) -> f64 {
     let plane = solid.plane(f);
     let height = plane.unit.dot(p) - plane.distance;
-    if solid.locate(f, &Point::of(p - plane.unit * height)) != Place::Outside {
+    if solid.locate(f, &Point::of(p - plane.unit * height)) != PointLocation::Outside {
         return height.abs();
     }
     let to_side = |[a, b]: [&Point; 2]| distance_to_segment(p, a.near, b.near);

@@ -67,20 +67,20 @@ impl Point {
 /// The view of a plane along the coordinate axis nearest to its normal, mirrored if need be so that what turns
 /// counter-clockwise around the normal does so in the view.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct View {
+pub(super) struct AxisView {
     pub(super) u: usize,
     pub(super) v: usize,
 }
 
 /// Where a point is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum PointLocation {
     Inside,
     Border,
     Outside,
 }
 
-impl View {
+impl AxisView {
     /// The view of the plane with this unit normal.
     pub(super) fn along(normal: DVec3) -> Self {
         let size = normal.abs();
@@ -128,7 +128,7 @@ impl View {
     }
 
     /// Where `p` is in the region bounded by `edges`, which are those of simple disjoint loops.
-    pub(super) fn locate<'p>(self, p: &Point, edges: impl Iterator<Item = [&'p Point; 2]>) -> Place {
+    pub(super) fn locate<'p>(self, p: &Point, edges: impl Iterator<Item = [&'p Point; 2]>) -> PointLocation {
         let mut is_inside = false;
         for [a, b] in edges {
             let (from, to) = (a.compare(p, self.v), b.compare(p, self.v));
@@ -137,7 +137,7 @@ impl View {
             }
             let turn = self.turn(a, b, p);
             if turn == Ordering::Equal && self.is_between(p, a, b) {
-                return Place::Border;
+                return PointLocation::Border;
             }
             // Upward edges count with their lower end and without their upper one.
             let is_upward = from != Ordering::Greater && to == Ordering::Greater;
@@ -146,6 +146,6 @@ impl View {
                 is_inside = !is_inside;
             }
         }
-        if is_inside { Place::Inside } else { Place::Outside }
+        if is_inside { PointLocation::Inside } else { PointLocation::Outside }
     }
 }

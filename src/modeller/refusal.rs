@@ -1,13 +1,13 @@
 //! Why an operator does nothing.
 
-use super::conflict::Contact;
+use super::conflict::Conflict;
 use super::exact::Rational;
 use super::rule::Fault;
 use crate::mesh::polyhedron::{FaceId, VertexId};
 
 /// Why an operator does nothing.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Refusal {
+pub enum OperatorRefusal {
     /// No plane moves.
     NothingMoves,
     /// An event is in the way; the offsets of the faces may grow by less than this.
@@ -15,7 +15,7 @@ pub enum Refusal {
         /// The growth of each moving face at the event.
         limits: Vec<(FaceId, Rational)>,
         /// What would meet.
-        blocking: Vec<Contact>,
+        blocking: Vec<Conflict>,
     },
     /// No split of the vertex opens every new edge and keeps its faces apart, in this direction.
     NoSplit {

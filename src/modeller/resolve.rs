@@ -6,7 +6,7 @@
 //! the planes of every cell stay concurrent, every new edge has a length just after, around every new vertex the faces
 //! do not cross, and no edge at one new vertex meets a face at another ([`Cone`]). Of several good splits the first in a fixed order is taken.
 
-use super::cone::{Cone, Side};
+use super::cone::{Cone, ConePlane};
 use super::direction::{Direction, is_link_simple};
 use super::exact::{Vector, cross, dot, negative};
 use super::motion::Motion;
@@ -39,7 +39,7 @@ struct Velocity {
 
 /// A vertex and the faces around it, clockwise, with the directions of its edges: edge `i` is between the faces `i` and
 /// `i + 1`. What many splits ask for is kept.
-struct Star<'s> {
+struct VertexStar<'s> {
     solid: &'s Solid,
     faces: Vec<FaceId>,
     normals: Vec<Direction>,
@@ -75,7 +75,7 @@ pub(super) fn split(solid: &mut Solid, motion: &Motion, v: VertexId) -> Option<V
 /// The diagonals of the split, as pairs of faces that become neighbours.
 fn good_split(solid: &Solid, motion: &Motion, v: VertexId) -> Option<Vec<[FaceId; 2]>> {
     let h = solid.topology.leaving(v)?;
-    let star = Star::new(solid, motion, h);
+    let star = VertexStar::new(solid, motion, h);
     let degree = star.faces.len();
     let is_good = |split: &Split| star.is_good(split);
     let split = if degree <= DEGREE_OF_ALL_SPLITS_MAX {
@@ -163,7 +163,7 @@ fn splits_around(face: usize, degree: usize) -> impl Iterator<Item = Split> {
     std::iter::once(None).chain(gaps).map(build)
 }
 
-impl<'s> Star<'s> {
+impl<'s> VertexStar<'s> {
     fn new(solid: &'s Solid, motion: &'s Motion, h: HalfEdgeId) -> Self {
         let faces: Vec<FaceId> = solid.topology.around(h).map(|h| solid.topology.face(h)).collect();
         Self {
@@ -274,12 +274,12 @@ impl<'s> Star<'s> {
 
     /// Whether all edges and faces of the split meet in what they share only.
     fn is_embedded(&self, split: &Split, velocities: &[Rc<Velocity>]) -> bool {
-        let side = |i: usize| Side {
+        let side = |i: usize| ConePlane {
             normal: &self.normals[i],
             unit: self.solid.plane(self.faces[i]).unit,
             rate: self.rates[i].cloned().unwrap_or_default(),
         };
-        let sides: Vec<Side<'_>> = (0..self.faces.len()).map(side).collect();
+        let sides: Vec<ConePlane<'_>> = (0..self.faces.len()).map(side).collect();
         let vertices = velocities.iter().map(|v| Point::new(v.speed.clone(), v.w.clone())).collect();
         Cone::of(&sides, &self.rays, vertices, &split.cells).is_some_and(|cone| cone.is_embedded())
     }

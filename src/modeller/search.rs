@@ -1,12 +1,12 @@
 //! What may come to meet while planes move, and whether it does: by rounded numbers with their errors first, then exactly.
 
-use super::conflict::Contact;
+use super::conflict::Conflict;
 use super::contact::{do_meet, grown};
 use super::exact::{Rational, det, dot, quotient};
 use super::motion::{Motion, Moving, MovingPoint, root_after_zero};
 use super::near::faces_near;
 use super::plane::meeting_point;
-use super::point::{Place, Point};
+use super::point::{Point, PointLocation};
 use super::solid::Solid;
 use super::sweep::each_meeting;
 use crate::budget::{Budget, Stopped};
@@ -47,7 +47,7 @@ fn root_span([height, height_error]: [f64; 2], [growth, growth_error]: [f64; 2])
 }
 
 /// What moves, and until when.
-pub(super) struct Search<'s> {
+pub(super) struct EventSearch<'s> {
     solid: &'s Solid,
     motion: &'s Motion,
     moving: &'s Moving,
@@ -69,9 +69,9 @@ struct FaceAt {
 }
 
 /// What may come to meet, and the earliest time at which it does.
-pub(super) type Candidates = Vec<(f64, Contact)>;
+pub(super) type Candidates = Vec<(f64, Conflict)>;
 
-impl<'s> Search<'s> {
+impl<'s> EventSearch<'s> {
     pub(super) fn new(solid: &'s Solid, motion: &'s Motion, moving: &'s Moving) -> Self {
         let speeds = moving.vertices.iter().map(|(_, m)| m.near_speed()).collect();
         let rate = |(f, r): &(FaceId, BigInt)| (*f, quotient(r, &BigInt::one()) / solid.plane(*f).length);
@@ -210,7 +210,7 @@ impl<'s> Search<'s> {
         let are_near = do_meet(&there, bounds)
             && self.swept_by_few(f, span).is_none_or(|bounds| do_meet(&there, &bounds));
         if are_near && !self.solid.topology.faces_around(v).any(|g| g == f) {
-            out.push((span.from, Contact::VertexFace { vertex: v, face: f }));
+            out.push((span.from, Conflict::VertexFace { vertex: v, face: f }));
         }
     }
 
@@ -226,9 +226,9 @@ impl<'s> Search<'s> {
     }
 
     /// The time after 0 at which what would meet is in one plane.
-    pub(super) fn root(&self, candidate: &Contact) -> Option<Rational> {
+    pub(super) fn root(&self, candidate: &Conflict) -> Option<Rational> {
         match *candidate {
-            Contact::VertexFace { vertex, face } => {
+            Conflict::VertexFace { vertex, face } => {
                 let still;
                 let point = match self.moving.get(vertex) {
                     Some(point) => point,
@@ -244,11 +244,11 @@ impl<'s> Search<'s> {
                 let c1 = dot(&normal, &point.speed) - rate * &point.w;
                 root_after_zero(&c0, &c1)
             }
-            Contact::EdgeEdge { first, second } => {
+            Conflict::EdgeEdge { first, second } => {
                 let (c0, c1) = self.coplanarity([first[0], first[1], second[0], second[1]]);
                 root_after_zero(&c0, &c1)
             }
-            Contact::EdgeVanishes { .. } | Contact::LoopLoop { .. } => None,
+            Conflict::EdgeVanishes { .. } | Conflict::LoopLoop { .. } => None,
         }
     }
 
@@ -292,7 +292,7 @@ impl<'s> Search<'s> {
         let Some(span) = self.in_time(coplanarity) else { return };
         let are_near = do_meet(&self.swept_by_edge(g, span), &self.swept_by_edge(h, span));
         if are_near && self.is_crossable(ends(h), first) {
-            out.push((span.from, Contact::EdgeEdge { first, second }));
+            out.push((span.from, Conflict::EdgeEdge { first, second }));
         }
     }
 
@@ -344,9 +344,9 @@ impl<'s> Search<'s> {
     }
 
     /// Whether the elements really meet at time `s`, when the function that was solved is zero.
-    pub(super) fn do_meet(&self, candidate: &Contact, s: &Rational) -> bool {
+    pub(super) fn do_meet(&self, candidate: &Conflict, s: &Rational) -> bool {
         match *candidate {
-            Contact::VertexFace { vertex, face } => {
+            Conflict::VertexFace { vertex, face } => {
                 let p = self.moving.at(self.solid, vertex, s);
                 let mut kept = self.sides.borrow_mut();
                 let is_kept = |kept: &FaceAt| kept.face == face && kept.time == *s;
@@ -355,10 +355,10 @@ impl<'s> Search<'s> {
                     other => other.insert(self.face_at(face, s)),
                 };
                 let corners = sides.corners.iter().map(|[a, b]| [a, b]);
-                self.solid.view(face).locate(&p, corners) != Place::Outside
+                self.solid.view(face).locate(&p, corners) != PointLocation::Outside
             }
-            Contact::EdgeEdge { first, second } => self.do_edges_meet(first, second, s),
-            Contact::EdgeVanishes { .. } | Contact::LoopLoop { .. } => false,
+            Conflict::EdgeEdge { first, second } => self.do_edges_meet(first, second, s),
+            Conflict::EdgeVanishes { .. } | Conflict::LoopLoop { .. } => false,
         }
     }
 
@@ -398,19 +398,19 @@ impl<'s> Search<'s> {
     }
 
     /// A vertex that reaches a moving face by way of a face on which both have loops is one loop touching another.
-    pub(super) fn told(&self, contacts: Vec<Contact>) -> Vec<Contact> {
+    pub(super) fn told(&self, contacts: Vec<Conflict>) -> Vec<Conflict> {
         let topology = &self.solid.topology;
-        let tell = |contact: Contact| {
-            let Contact::VertexFace { vertex, face } = contact else { return contact };
+        let tell = |contact: Conflict| {
+            let Conflict::VertexFace { vertex, face } = contact else { return contact };
             let beside: Vec<FaceId> =
                 topology.sides(face).map(|h| topology.face(topology.opposite(h))).collect();
             match topology.faces_around(vertex).find(|f| beside.contains(f)) {
                 Some(common) if topology.loops(common).interior.is_empty() => contact,
-                Some(common) => Contact::LoopLoop { face: common, vertex },
+                Some(common) => Conflict::LoopLoop { face: common, vertex },
                 None => contact,
             }
         };
-        let mut told: Vec<Contact> = contacts.into_iter().map(tell).collect();
+        let mut told: Vec<Conflict> = contacts.into_iter().map(tell).collect();
         told.sort_unstable();
         told.dedup();
         told

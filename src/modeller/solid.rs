@@ -3,7 +3,7 @@
 use super::exact::{Vector, cross, dot, negative, sign};
 use super::index::Index;
 use super::plane::{Plane, meeting_point};
-use super::point::{Place, Point, View};
+use super::point::{AxisView, Point, PointLocation};
 use crate::geom::DVec3;
 use crate::mesh::polyhedron::{FaceId, HalfEdgeId, Polyhedron, VertexId};
 use std::cmp::Ordering;
@@ -76,8 +76,8 @@ impl Solid {
     }
 
     /// How the plane of `f` is seen.
-    pub(super) fn view(&self, f: FaceId) -> View {
-        View::along(self.plane(f).unit)
+    pub(super) fn view(&self, f: FaceId) -> AxisView {
+        AxisView::along(self.plane(f).unit)
     }
 
     /// The ends of each side of `f`.
@@ -91,7 +91,7 @@ impl Solid {
     }
 
     /// Where `p`, a point of the plane of `f`, is in `f`.
-    pub(super) fn locate(&self, f: FaceId, p: &Point) -> Place {
+    pub(super) fn locate(&self, f: FaceId, p: &Point) -> PointLocation {
         self.view(f).locate(p, self.sides(f))
     }
 

@@ -4,19 +4,19 @@ use super::contact::{Boxes, do_meet, grown, meets_beyond_shared};
 use super::journal::Moves;
 use super::near::{face_box, faces_near};
 use super::nesting;
-use super::point::Place;
+use super::point::PointLocation;
 use super::rule::{Fault, Rule};
 use super::solid::Solid;
 use crate::budget::{Budget, Stopped};
 use crate::geom::Aabb;
-use crate::mesh::polyhedron::{Counts, FaceId, HalfEdgeId, TopologyFault, VertexId};
+use crate::mesh::polyhedron::{EulerCounts, FaceId, HalfEdgeId, TopologyFault, VertexId};
 use std::cmp::Ordering;
 
 /// What a check of the whole solid found.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Validity {
     /// V, E, F, R and S.
-    pub counts: Counts,
+    pub counts: EulerCounts,
     /// H, the number of through-holes, when Euler's formula has a solution.
     pub genus: Option<usize>,
     /// The first fault of each broken rule; none for a valid solid.
@@ -213,7 +213,7 @@ fn loops(solid: &Solid, f: FaceId, has_moved: &dyn Fn(VertexId) -> bool) -> Opti
         for h in topology.loop_of(start) {
             let moved = has_moved(topology.origin(h)) || has_moved(topology.destination(h));
             any |= moved;
-            sides.push(Side { h, in_loop: i, has_moved: moved });
+            sides.push(FaceSide { h, in_loop: i, has_moved: moved });
         }
         has_loop_moved.push(any);
     }
@@ -226,7 +226,7 @@ fn loops(solid: &Solid, f: FaceId, has_moved: &dyn Fn(VertexId) -> bool) -> Opti
     let view = solid.view(f);
     let is_in = |inner: usize, outer: usize| {
         let at = solid.point(topology.origin(starts[inner]));
-        view.locate(at, topology.loop_of(starts[outer]).map(|h| solid.ends(h))) == Place::Inside
+        view.locate(at, topology.loop_of(starts[outer]).map(|h| solid.ends(h))) == PointLocation::Inside
     };
     let fault = |rule: Rule, i: usize| {
         Some(Fault { rule, faces: vec![f], vertices: vec![topology.origin(starts[i])] })
@@ -251,7 +251,7 @@ fn loops(solid: &Solid, f: FaceId, has_moved: &dyn Fn(VertexId) -> bool) -> Opti
 
 /// A side of a face.
 #[derive(Clone, Copy)]
-struct Side {
+struct FaceSide {
     h: HalfEdgeId,
     /// The loop, the exterior one first.
     in_loop: usize,
@@ -273,7 +273,7 @@ fn turns_counter_clockwise(solid: &Solid, f: FaceId, start: HalfEdgeId) -> bool 
 }
 
 /// Two sides of a face, one of them moved, that meet elsewhere than at the vertex between them.
-fn first_crossing(solid: &Solid, f: FaceId, sides: &[Side]) -> Option<[Side; 2]> {
+fn first_crossing(solid: &Solid, f: FaceId, sides: &[FaceSide]) -> Option<[FaceSide; 2]> {
     let view = solid.view(f);
     let range = |h: HalfEdgeId, axis: usize| {
         let [a, b] = solid.ends(h).map(|p| p.near[axis]);

@@ -27,7 +27,7 @@ pub(super) fn boolean(
     if !Operation::Boolean.meshes().contains(&files.len()) {
         return Err(Failure::MeshCount { operation: Operation::Boolean, count: files.len() });
     }
-    let mut reading = Reading { options: options.clone(), scaled: None, triangles: 0, vertices: 0 };
+    let mut reading = OperandReader { options: options.clone(), scaled: None, triangles: 0, vertices: 0 };
     let mut meshes = Vec::with_capacity(files.len());
     for (&bytes, number) in files.iter().zip(1..) {
         let read = bound.reading(|| reading.next(bytes, budget)).map_err(|failure| failure.in_mesh(number));
@@ -37,14 +37,18 @@ pub(super) fn boolean(
 }
 
 /// A file that was read.
-struct Mesh<'b> {
+struct Operand<'b> {
     bytes: &'b [u8],
     encoding: Encoding,
     soup: Soup,
 }
 
 /// Describes the files and combines them.
-fn combine_all(meshes: Vec<Mesh<'_>>, mut reading: Reading, budget: &Budget) -> Result<Answer, Failure> {
+fn combine_all(
+    meshes: Vec<Operand<'_>>,
+    mut reading: OperandReader,
+    budget: &Budget,
+) -> Result<Answer, Failure> {
     let mut meshes = meshes.into_iter().zip(1..);
     let mut describe =
         |(mesh, number)| reading.describe(mesh, budget).map_err(|failure: Failure| failure.in_mesh(number));
@@ -79,7 +83,7 @@ fn combine_all(meshes: Vec<Mesh<'_>>, mut reading: Reading, budget: &Budget) -> 
 }
 
 /// The files as they are read, under limits for all together.
-struct Reading {
+struct OperandReader {
     /// With the format of the output, which is that of the first file unless the caller says.
     options: Options,
     /// The same in the unit of the result, if that is another one.
@@ -88,8 +92,8 @@ struct Reading {
     vertices: u64,
 }
 
-impl Reading {
-    fn next<'b>(&mut self, bytes: &'b [u8], budget: &Budget) -> Result<Mesh<'b>, Failure> {
+impl OperandReader {
+    fn next<'b>(&mut self, bytes: &'b [u8], budget: &Budget) -> Result<Operand<'b>, Failure> {
         let encoding = budget.stage(Stage::Read, || formats::sniff(bytes, self.options.format))?;
         let soup = Input::read_soup(bytes, encoding, &self.options, budget)?;
         self.triangles += soup.triangles.len() as u64;
@@ -104,12 +108,12 @@ impl Reading {
                 return Err(ReadError { kind, place: Place::Whole, expected: String::new() }.into());
             }
         }
-        Ok(Mesh { bytes, encoding, soup })
+        Ok(Operand { bytes, encoding, soup })
     }
 
     /// Judges and describes the next of the files that were read.
-    fn describe(&mut self, mesh: Mesh<'_>, budget: &Budget) -> Result<(Input, Report), Failure> {
-        let Mesh { bytes, encoding, soup } = mesh;
+    fn describe(&mut self, mesh: Operand<'_>, budget: &Budget) -> Result<(Input, Report), Failure> {
+        let Operand { bytes, encoding, soup } = mesh;
         let mut input = Input::examined(soup, bytes, encoding, &self.options, budget)?;
         self.options.output_format.get_or_insert(input.facts.encoding.format());
         let in_units_of_format = input.take_lengths(&self.options);

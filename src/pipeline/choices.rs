@@ -16,7 +16,7 @@ pub enum FillHoles {
 /// What becomes of bodies that touch in vertices or edges only, so that a reader that welds would make one of them that is
 /// no manifold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Contact {
+pub enum BodyContact {
     /// All but one are drawn back a little.
     #[default]
     Open,
@@ -26,7 +26,7 @@ pub enum Contact {
 
 /// What of a file of several parts is one solid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Parts {
+pub enum SolidParts {
     /// Each part by itself, in its own coordinates and once however often it is there.
     #[default]
     Separate,
@@ -38,7 +38,7 @@ pub enum Parts {
 
 /// How far a result may be from the file.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Limits {
+pub struct FidelityLimits {
     /// Largest distance, in the unit of the file, of a place of the result from the file and of a visible place of the
     /// file from the result.
     pub deviation_max: Option<f64>,

@@ -1,7 +1,7 @@
 //! The same mesh in another format.
 
 use super::input::Input;
-use super::output::{Made, unchanged};
+use super::output::{OperationMesh, unchanged};
 use super::{Answer, Failure, Operation, Options, Outcome};
 use crate::budget::Budget;
 use crate::repair::Draft;
@@ -14,6 +14,6 @@ pub(super) fn convert(input: &Input, options: &Options, budget: &Budget) -> Resu
     }
     let (draft, _) = Draft::from_soup(&input.soup);
     let outcome = |is_printable| if is_printable { Outcome::Converted } else { Outcome::Partial };
-    let made = Made { soup: draft.to_soup(&input.soup), origins: &draft.triangle_origin, outcome };
+    let made = OperationMesh { soup: draft.to_soup(&input.soup), origins: &draft.triangle_origin, outcome };
     made.returned(input, options, report, budget)
 }

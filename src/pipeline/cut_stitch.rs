@@ -1,7 +1,7 @@
 //! Cutting and stitching: a manifold with boundary from any mesh, written and judged as it is.
 
 use super::input::Input;
-use super::output::{Made, unchanged};
+use super::output::{OperationMesh, unchanged};
 use super::plan::Attempt;
 use super::step::Step;
 use super::{Action, Answer, Failure, Operation, Options, Outcome, Report};
@@ -165,7 +165,7 @@ fn written(
     if form != Form::Triangles {
         report.actions.push(restored(draft, &faced, reason, budget)?);
     }
-    let made = Made { soup: faced.soup, origins: &faced.origins, outcome: |_| Outcome::CutStitched };
+    let made = OperationMesh { soup: faced.soup, origins: &faced.origins, outcome: |_| Outcome::CutStitched };
     made.returned(input, options, report, budget)
 }
 

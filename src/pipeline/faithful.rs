@@ -55,7 +55,7 @@ pub enum ChangeKind {
 
 /// A bound that is exceeded.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Change {
+pub struct FidelityChange {
     /// What was measured.
     pub kind: ChangeKind,
     /// How much of it.
@@ -70,7 +70,7 @@ pub struct FidelityVerdict {
     /// In a word.
     pub word: Fidelity,
     /// The bounds that are exceeded, worst for a customer first; none unless the word is `Changed`.
-    pub changes: Vec<Change>,
+    pub changes: Vec<FidelityChange>,
 }
 
 impl super::fidelity::Fidelity {
@@ -94,10 +94,10 @@ impl FidelityVerdict {
             (ChangeKind::Moved, moved, MOVED_MAX * diagonal),
             (ChangeKind::Volume, losses.volume_change.map_or(0.0, f64::abs), VOLUME_CHANGE_MAX),
         ];
-        let changes: Vec<Change> = measured
+        let changes: Vec<FidelityChange> = measured
             .into_iter()
             .filter(|&(_, measured, limit)| measured > limit)
-            .map(|(kind, measured, limit)| Change { kind, measured, limit })
+            .map(|(kind, measured, limit)| FidelityChange { kind, measured, limit })
             .collect();
         let is_same = moved <= ROUNDING * diagonal && losses.visible_loss == 0.0 && losses.hidden_area == 0.0;
         let word = match (changes.is_empty(), is_same) {

@@ -3,7 +3,7 @@
 use super::changed::{Changed, area_of};
 use super::plan::Covered;
 use super::size::diagonal;
-use super::{Limits, Refusal};
+use super::{FidelityLimits, Refusal};
 use crate::analysis::{Analysis, DefectCode, Finding};
 use crate::budget::{Budget, CHECK_EVERY, Stage, Stopped};
 use crate::distance::{
@@ -67,7 +67,7 @@ pub struct Losses {
 
 impl Fidelity {
     /// What a result is chosen by, of what it is with patches over openings in the way and `as_seen` past them.
-    pub(super) fn to_choose_by(self, as_seen: Self, limits: &Limits) -> Self {
+    pub(super) fn to_choose_by(self, as_seen: Self, limits: &FidelityLimits) -> Self {
         if as_seen.loses_much() || limits.deviation_max.is_some() { as_seen } else { self }
     }
 
@@ -77,12 +77,12 @@ impl Fidelity {
     }
 
     /// True when no other result needs to be looked for.
-    pub(super) fn passes(&self, limits: &Limits) -> bool {
+    pub(super) fn passes(&self, limits: &FidelityLimits) -> bool {
         self.losses.visible_loss <= LOSS_MAX && self.losses.bodies_lost == 0 && self.breach(limits).is_none()
     }
 
     /// The limit of the caller that this exceeds.
-    pub(super) fn breach(&self, limits: &Limits) -> Option<Refusal> {
+    pub(super) fn breach(&self, limits: &FidelityLimits) -> Option<Refusal> {
         let deviation = self.distance.map_or(0.0, |distance| distance.upper());
         if let Some(limit) = limits.deviation_max.filter(|&limit| deviation > limit) {
             let found = self.distance.map_or(0.0, |distance| distance.lower());
@@ -93,13 +93,13 @@ impl Fidelity {
     }
 
     /// What makes one result worse than another, the first first.
-    fn rank(&self, limits: &Limits) -> (bool, u32, f64, f64) {
+    fn rank(&self, limits: &FidelityLimits) -> (bool, u32, f64, f64) {
         let deviation = self.distance.map_or(0.0, |distance| distance.upper());
         (self.breach(limits).is_some(), self.losses.bodies_lost, self.losses.visible_loss, deviation)
     }
 
     /// True when this is to be preferred to a later `other`.
-    pub(super) fn is_no_worse(&self, other: &Self, limits: &Limits) -> bool {
+    pub(super) fn is_no_worse(&self, other: &Self, limits: &FidelityLimits) -> bool {
         let (a, b) = (self.rank(limits), other.rank(limits));
         let order = a.0.cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.total_cmp(&b.2)).then(a.3.total_cmp(&b.3));
         order.is_le()
@@ -420,13 +420,13 @@ mod tests {
         let hidden = measured(&cubes(&[([0.0; 3], 10.0), ([4.0; 3], 2.0)]), &outer, &kept);
         assert_eq!((hidden.losses.visible_loss, hidden.losses.bodies_lost), (0.0, 0));
         assert!((hidden.losses.hidden_area - 24.0).abs() < 1e-9 && hidden.distance.unwrap().upper() < 1e-9);
-        assert!(hidden.passes(&Limits::default()));
+        assert!(hidden.passes(&FidelityLimits::default()));
         let visible = measured(&cubes(&[([0.0; 3], 10.0), ([14.0; 3], 2.0)]), &outer, &kept);
         assert!((visible.losses.visible_loss - 24.0 / 624.0).abs() < 1e-9, "{}", visible.losses.visible_loss);
         assert_eq!(visible.losses.bodies_lost, 1);
         let farthest = 6.0 * 3.0f64.sqrt();
         assert!((visible.distance.unwrap().upper() - farthest).abs() < 0.06 * farthest);
-        assert!(!visible.passes(&Limits::default()));
+        assert!(!visible.passes(&FidelityLimits::default()));
     }
 
     #[test]
@@ -445,11 +445,11 @@ mod tests {
         let (cube, larger) = (cubes(&[([0.0; 3], 10.0)]), cubes(&[([0.0; 3], 11.0)]));
         let found = measured(&cube, &larger, &[NEW; 12]);
         assert!((found.losses.volume_change.unwrap() - 0.331).abs() < 1e-9);
-        let far = Limits { deviation_max: Some(1.0), ..Limits::default() };
+        let far = FidelityLimits { deviation_max: Some(1.0), ..FidelityLimits::default() };
         assert!(matches!(found.breach(&far), Some(Refusal::DeviationBeyondLimit { limit: 1.0, .. })));
-        let more = Limits { volume_change_max: Some(0.1), ..Limits::default() };
+        let more = FidelityLimits { volume_change_max: Some(0.1), ..FidelityLimits::default() };
         assert!(matches!(found.breach(&more), Some(Refusal::VolumeChangeBeyondLimit { limit: 0.1, .. })));
-        let both = Limits { deviation_max: Some(2.0), volume_change_max: Some(0.4) };
+        let both = FidelityLimits { deviation_max: Some(2.0), volume_change_max: Some(0.4) };
         assert_eq!(found.breach(&both), None);
     }
 }

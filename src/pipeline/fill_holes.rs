@@ -1,7 +1,7 @@
 //! Holes closed and nothing else: every vertex and every triangle of the file stays, and patches are added.
 
 use super::input::Input;
-use super::output::{Made, unchanged};
+use super::output::{OperationMesh, unchanged};
 use super::plan::Attempt;
 use super::step::Step;
 use super::{Answer, ChosenHole, Failure, Operation, Options, Outcome, Report, looks};
@@ -96,7 +96,7 @@ pub(super) fn fill_holes(input: &Input, options: &Options, budget: &Budget) -> R
         false => |_| Outcome::Converted,
     };
     let soup = looks::soup_of(&draft, &input.soup, budget)?;
-    let made = Made { soup, origins: &draft.triangle_origin, outcome };
+    let made = OperationMesh { soup, origins: &draft.triangle_origin, outcome };
     made.returned(input, options, report, budget)
 }
 

@@ -40,10 +40,12 @@ mod units;
 
 use self::bounds::Bound;
 pub use self::bounds::work_units_max;
-pub use self::choices::{ChosenHole, Contact, FillHoles, Limits, Parts, SimplifyChoices, VertexColors};
+pub use self::choices::{
+    BodyContact, ChosenHole, FidelityLimits, FillHoles, SimplifyChoices, SolidParts, VertexColors,
+};
 pub use self::cut_stitch::{CutStitchChoices, Stitching};
 pub use self::failure::Failure;
-pub use self::faithful::{Change, ChangeKind, Fidelity, FidelityVerdict};
+pub use self::faithful::{ChangeKind, Fidelity, FidelityChange, FidelityVerdict};
 pub use self::fidelity::Losses;
 pub use self::fill_holes::{FillHolesChoices, Filling, HoleFate, HoleOutcome};
 use self::input::Input;
@@ -74,7 +76,7 @@ pub use crate::mesh::Units;
 use crate::printing::Policy;
 use crate::repair::nest;
 pub use crate::repair::unite::{NotCombined, NotSolid, SetOperation};
-use crate::simplify::Report as SimplifyReport;
+use crate::simplify::TargetReport as SimplifyReport;
 
 /// Options of every operation; those that do not apply are ignored.
 #[derive(Debug, Clone, Default)]
@@ -84,7 +86,7 @@ pub struct Options {
     /// Format of the output; the input's own encoding when `None`.
     pub output_format: Option<Format>,
     /// What of a file of several parts is one solid.
-    pub parts: Parts,
+    pub parts: SolidParts,
     /// Limits and choice of reader.
     pub read: ReadOptions,
     /// Unit as the caller stated it, in which all lengths here are; `None`: lengths are in millimetres, and the file is in
@@ -100,11 +102,11 @@ pub struct Options {
     /// What shells inside shells mean to `repair`.
     pub nesting: nest::Policy,
     /// What `repair` does with bodies that touch.
-    pub contact: Contact,
+    pub contact: BodyContact,
     /// What `repair` is to do about each defect; `None`: as proposed.
     pub plan: Option<ChosenPlan>,
     /// How far the result of a repair may be from the file.
-    pub limits: Limits,
+    pub limits: FidelityLimits,
     /// How a mesh is rebuilt that no step of `repair` makes a solid.
     pub wrap: WrapChoices,
     /// How `simplify` works, and how far; a repair ends with it when it has targets.
@@ -204,7 +206,7 @@ pub enum Refusal {
     /// A faithful result was demanded, and the closest one is changed.
     NotFaithful {
         /// What it changed.
-        changes: Vec<Change>,
+        changes: Vec<FidelityChange>,
         /// Unit of the distance among them.
         units: Units,
     },
@@ -413,7 +415,7 @@ fn run_on_file(
         let of_scene = project::remarks_on_scene(bytes, &answer, options, budget)?;
         answer.report.remarks.splice(0..0, of_scene);
     }
-    if encoding == Encoding::ThreeMf && operation == Operation::Repair && options.parts == Parts::Union {
+    if encoding == Encoding::ThreeMf && operation == Operation::Repair && options.parts == SolidParts::Union {
         return project::without_negative_parts(answer, bytes, options, bound, budget);
     }
     Ok(answer)

@@ -29,7 +29,7 @@ pub(super) fn unchanged(input: &Input, options: &Options, report: Report, otherw
 }
 
 /// A mesh that an operation has made which is no repair.
-pub(super) struct Made<'m> {
+pub(super) struct OperationMesh<'m> {
     pub(super) soup: Soup,
     /// The input's triangle behind each triangle ([`NEW`]: none).
     pub(super) origins: &'m [u32],
@@ -37,7 +37,7 @@ pub(super) struct Made<'m> {
     pub(super) outcome: fn(bool) -> Outcome,
 }
 
-impl Made<'_> {
+impl OperationMesh<'_> {
     /// Written and judged, as the answer.
     pub(super) fn returned(
         self,

@@ -3,7 +3,7 @@
 use super::repair_choices::Choices;
 use super::step::Step;
 use super::stitches::Stitches;
-use super::{Action, Contact};
+use super::{Action, BodyContact};
 use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stopped};
 use crate::mesh::{ChosenEdges, Soup, Validity};
@@ -34,7 +34,7 @@ pub(super) struct Variant {
     /// Triangles that meet others go first, with this many rings around them.
     pub(super) removes_crossing: Option<u32>,
     /// What becomes of bodies that touch; `None`: nothing.
-    pub(super) contact: Option<Contact>,
+    pub(super) contact: Option<BodyContact>,
     /// Open parts get walls, and no hole is filled.
     pub(super) thickens: bool,
     /// Needles and caps go, where that is chosen.
@@ -97,7 +97,7 @@ impl Variant {
 
     /// What may follow where the united bodies are no solid yet: what touches itself is joined or parted, what meets after that or
     /// after rounding is united once more.
-    pub(super) fn settling(contact: Contact, choices: &Choices) -> Vec<Vec<Step>> {
+    pub(super) fn settling(contact: BodyContact, choices: &Choices) -> Vec<Vec<Step>> {
         let parting = [Self::parting(contact, choices), vec![Step::Unite]];
         std::iter::once(vec![Step::Unite]).chain(vec![parting; PARTINGS].into_iter().flatten()).collect()
     }
@@ -113,10 +113,10 @@ impl Variant {
     }
 
     /// The steps that join what touches itself, or part it.
-    fn parting(contact: Contact, choices: &Choices) -> Vec<Step> {
+    fn parting(contact: BodyContact, choices: &Choices) -> Vec<Step> {
         let pinch = Step::Pinch(ChosenEdges::default(), Validity::Exact);
         let mut steps = vec![pairing(contact), Step::Cut(CutOptions::default()), pinch];
-        if contact == Contact::Join {
+        if contact == BodyContact::Join {
             steps.push(Step::JoinContacts { size: choices.wall });
         }
         steps.extend([Step::OpenContacts, Step::JoinCopies]);
@@ -189,7 +189,8 @@ impl Variant {
             || self.noise != Noise::Stays
             || self.contact.is_some()
             || choices.snap_epsilon.unwrap_or(self.snap_epsilon) > 0.0;
-        let join = (self.contact == Some(Contact::Join)).then_some(Step::JoinContacts { size: choices.wall });
+        let join =
+            (self.contact == Some(BodyContact::Join)).then_some(Step::JoinContacts { size: choices.wall });
         let open = self.contact.map(|_| Step::OpenContacts);
         let nest = Step::Nest(NestOptions {
             policy: choices.nesting,
@@ -201,10 +202,10 @@ impl Variant {
 }
 
 /// What decides which copies belong together where bodies touch.
-fn pairing(contact: Contact) -> Step {
+fn pairing(contact: BodyContact) -> Step {
     Step::PairSheets(match contact {
-        Contact::Open => Across::Solid,
-        Contact::Join => Across::Void,
+        BodyContact::Open => Across::Solid,
+        BodyContact::Join => Across::Void,
     })
 }
 
@@ -225,7 +226,7 @@ pub(super) struct Attempt {
     /// True when no shell is turned before bodies are united: the draft was united as it points before.
     is_oriented: bool,
     /// Which triangles of the soup are known to be on the surface or inside of the solid.
-    coverage: Known,
+    coverage: KnownCoverage,
     /// True when walls or patches may hide what can be seen in the file.
     pub(super) hides_more: bool,
     /// True when patches close openings, behind which something may be seen in the file.
@@ -234,7 +235,7 @@ pub(super) struct Attempt {
 
 /// Which triangles of the soup are known to be on the surface or inside of the solid, as bodies are united.
 #[derive(Debug, Clone, PartialEq)]
-enum Known {
+enum KnownCoverage {
     /// Nothing was united yet.
     NotYet,
     /// All of `present` but `bare`.
@@ -266,7 +267,7 @@ impl Attempt {
             effects: Effects::default(),
             lists_stitches: false,
             is_oriented: false,
-            coverage: Known::NotYet,
+            coverage: KnownCoverage::NotYet,
             hides_more: false,
             closes_openings: false,
         }
@@ -316,13 +317,15 @@ impl Attempt {
 
     /// True when bodies were united.
     pub(super) fn has_united(&self) -> bool {
-        self.coverage != Known::NotYet
+        self.coverage != KnownCoverage::NotYet
     }
 
     /// What of the soup need not be looked for in the result, if bodies were united; nothing that is buried where that may be
     /// seen all the same.
     pub(super) fn covered(&self, looks_out: bool) -> Option<Covered> {
-        let Known::By(Coverage { present, bare, buried, buried_area }) = &self.coverage else { return None };
+        let KnownCoverage::By(Coverage { present, bare, buried, buried_area }) = &self.coverage else {
+            return None;
+        };
         let is_in = |list: &[u32], t: &u32| list.binary_search(t).is_ok();
         let is_covered = |t: &u32| !(is_in(bare, t) || looks_out && is_in(buried, t));
         Some(Covered {
@@ -333,7 +336,7 @@ impl Attempt {
     }
 }
 
-impl Known {
+impl KnownCoverage {
     /// Takes in what `step` did.
     fn go_on(&mut self, step: &Step, changes: &mut Changes) {
         let known = std::mem::replace(self, Self::No);

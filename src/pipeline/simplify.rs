@@ -251,7 +251,7 @@ pub(super) fn of_certified(
 }
 
 /// What a simplification did, as a step of a plan.
-pub(super) fn action(report: &simplify::Report) -> Action {
+pub(super) fn action(report: &simplify::TargetReport) -> Action {
     let refused = CollapseRefusal::ALL.map(|reason| (reason.name(), report.refusals.count(reason)));
     let counts = [
         ("faces_removed", (report.faces_before - report.faces_after) as u64),

@@ -27,7 +27,7 @@ pub struct JoinedEdges {
 
 impl Stitches {
     /// What a step tells of a draft that was made of `soup`.
-    pub(super) fn of(inner: &repair::Stitches, soup: &Soup) -> Self {
+    pub(super) fn of(inner: &repair::Joins, soup: &Soup) -> Self {
         let stitch = |join: &repair::Join| JoinedEdges {
             edges: [0, 1].map(|i| join.edges[i].map(|v| number_in_face(soup, join.triangles[i], v))),
             faces: join.triangles.map(|t| soup.face_of(t)),
@@ -66,7 +66,7 @@ mod tests {
         let text = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nf 1 5 3 4\nf 2 3 1\n";
         let soup = read(text, Encoding::Obj, &ReadOptions::default(), &Budget::unlimited()).unwrap();
         let join = repair::Join { edges: [[1, 2], [2, 1]], triangles: [1, 2] };
-        let inner = repair::Stitches { explicit: vec![join], explicit_total: 7, ..Default::default() };
+        let inner = repair::Joins { explicit: vec![join], explicit_total: 7, ..Default::default() };
         let told = Stitches::of(&inner, &soup);
         assert_eq!(told.explicit, [JoinedEdges { edges: [[4, 2], [2, 1]], faces: [0, 1] }]);
         assert_eq!((told.explicit_total, told.implicit_total), (7, 0));

@@ -5,7 +5,8 @@
 
 use super::input::Input;
 use super::{
-    CutStitchChoices, FillHolesChoices, Limits, Operation, Options, SimplifyChoices, Units, WrapChoices,
+    CutStitchChoices, FidelityLimits, FillHolesChoices, Operation, Options, SimplifyChoices, Units,
+    WrapChoices,
 };
 use crate::figures::figure;
 use crate::formats::{Encoding, Format, Place, ReadError, ReadErrorKind};
@@ -82,7 +83,7 @@ impl Options {
             other => other,
         };
         Self {
-            limits: Limits { deviation_max: scaled(self.limits.deviation_max), ..self.limits },
+            limits: FidelityLimits { deviation_max: scaled(self.limits.deviation_max), ..self.limits },
             wrap: WrapChoices { wall: scaled(self.wrap.wall), ..self.wrap },
             simplify: SimplifyChoices {
                 targets: self.simplify.targets.iter().map(target).collect(),

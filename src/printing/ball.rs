@@ -5,7 +5,7 @@
 //! centre; the next one goes through that point.
 
 use super::ray::{Hit, Ray};
-use super::surface::Surface;
+use super::surface::WeldedSurface;
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use crate::spatial::NearestSearch;
@@ -31,7 +31,7 @@ const BOXES_MAX: usize = 192;
 pub(super) fn diameter(
     ray: &Ray,
     hit: Hit,
-    surface: &Surface<'_>,
+    surface: &WeldedSurface<'_>,
     search: &NearestSearch<'_>,
     budget: &Budget,
 ) -> Result<Option<f64>, Stopped> {

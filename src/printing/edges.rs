@@ -1,7 +1,7 @@
 //! Sharp edges and short ones.
 
-use super::surface::Surface;
-use super::{Limit, Witness};
+use super::surface::WeldedSurface;
+use super::{Limit, PrintingWitness};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::{EdgeGroups, edge_of, next_corner, triangle_of};
@@ -26,12 +26,12 @@ pub struct Edges {
     /// Length of the shortest edge.
     pub shortest: Option<f64>,
     /// The sharpest edges, with their angles.
-    pub witnesses: Vec<Witness>,
+    pub witnesses: Vec<PrintingWitness>,
 }
 
 /// Looks at every edge that two triangles share in opposite directions.
 pub(super) fn edges(
-    surface: &Surface<'_>,
+    surface: &WeldedSurface<'_>,
     groups: &EdgeGroups,
     limit: &Limit,
     witnesses: usize,
@@ -61,13 +61,13 @@ pub(super) fn edges(
     Ok(found)
 }
 
-fn witness(surface: &Surface<'_>, h: u32, angle: f64) -> Witness {
+fn witness(surface: &WeldedSurface<'_>, h: u32, angle: f64) -> PrintingWitness {
     let [from, to] = edge_of(&surface.triangles, h).map(|v| surface.positions[v as usize]);
     surface.witness(triangle_of(h), (from + to) / 2.0, angle)
 }
 
 /// Angle inside the material at an edge, from 0 (a knife) over 180 (flat) to 360 (a slit), in degrees.
-fn material_angle(surface: &Surface<'_>, group: &[u32]) -> Option<f64> {
+fn material_angle(surface: &WeldedSurface<'_>, group: &[u32]) -> Option<f64> {
     let &[h, other] = group else { return None };
     let [a, b] = edge_of(&surface.triangles, h);
     if edge_of(&surface.triangles, other) != [b, a] {
@@ -86,7 +86,7 @@ fn material_angle(surface: &Surface<'_>, group: &[u32]) -> Option<f64> {
 }
 
 /// How far the corner opposite of half-edge `h` is above the plane through `origin`.
-fn tip(surface: &Surface<'_>, h: u32, origin: DVec3, normal: DVec3) -> f64 {
+fn tip(surface: &WeldedSurface<'_>, h: u32, origin: DVec3, normal: DVec3) -> f64 {
     let corner = next_corner(next_corner(h));
     let v = surface.triangles[triangle_of(corner) as usize][(corner % 3) as usize];
     (surface.positions[v as usize] - origin).dot(normal)

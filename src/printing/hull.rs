@@ -12,7 +12,7 @@ const UNSET: u32 = u32::MAX;
 
 /// A face of the hull.
 #[derive(Debug, Clone)]
-struct Face {
+struct HullFace {
     /// Counter-clockwise seen from outside.
     corners: [u32; 3],
     /// The face across the edge from each corner to the next.
@@ -72,7 +72,7 @@ fn is_above(points: &[DVec3], corners: [u32; 3], point: u32) -> bool {
 
 struct Growing<'p> {
     points: &'p [DVec3],
-    faces: Vec<Face>,
+    faces: Vec<HullFace>,
 }
 
 impl Growing<'_> {
@@ -80,7 +80,7 @@ impl Growing<'_> {
         for (corners, neighbours) in
             [([a, b, c], [1, 2, 3]), ([b, a, d], [0, 3, 2]), ([c, b, d], [0, 1, 3]), ([a, c, d], [0, 2, 1])]
         {
-            self.faces.push(Face { corners, neighbours, above: Vec::new(), is_alive: true });
+            self.faces.push(HullFace { corners, neighbours, above: Vec::new(), is_alive: true });
         }
         let others = (0..self.points.len() as u32).filter(|v| ![a, b, c, d].contains(v)).collect();
         self.hand_out(others, 0);
@@ -103,9 +103,9 @@ impl Growing<'_> {
         let (horizon, orphans) = self.remove_seen(face, eye, budget)?;
         budget.spend(orphans.len() as u64)?;
         let first = self.faces.len();
-        for (i, &Rim { edge: [from, to], behind }) in horizon.iter().enumerate() {
+        for (i, &HorizonEdge { edge: [from, to], behind }) in horizon.iter().enumerate() {
             let id = (first + i) as u32;
-            self.faces.push(Face {
+            self.faces.push(HullFace {
                 corners: [from, to, eye],
                 neighbours: [behind, UNSET, UNSET],
                 above: Vec::new(),
@@ -125,7 +125,7 @@ impl Growing<'_> {
     }
 
     fn farthest_above(&self, face: u32) -> Option<u32> {
-        let Face { corners, above, .. } = &self.faces[face as usize];
+        let HullFace { corners, above, .. } = &self.faces[face as usize];
         let [a, b, c] = corners.map(|v| self.points[v as usize]);
         let normal = (b - a).cross(c - a);
         let height = |v: u32| (self.points[v as usize] - a).dot(normal);
@@ -138,13 +138,13 @@ impl Growing<'_> {
         first: u32,
         eye: u32,
         budget: &Budget,
-    ) -> Result<(Vec<Rim>, Vec<u32>), Stopped> {
+    ) -> Result<(Vec<HorizonEdge>, Vec<u32>), Stopped> {
         let (mut horizon, mut orphans, mut stack) = (Vec::new(), Vec::new(), vec![first]);
         self.faces[first as usize].is_alive = false;
         while let Some(face) = stack.pop() {
             budget.spend(1)?;
             orphans.append(&mut self.faces[face as usize].above);
-            let Face { corners, neighbours, .. } = self.faces[face as usize].clone();
+            let HullFace { corners, neighbours, .. } = self.faces[face as usize].clone();
             for side in 0..3 {
                 let behind = neighbours[side];
                 if self.faces.get(behind as usize).is_none_or(|face| !face.is_alive) {
@@ -154,7 +154,7 @@ impl Growing<'_> {
                     self.faces[behind as usize].is_alive = false;
                     stack.push(behind);
                 } else {
-                    horizon.push(Rim { edge: [corners[side], corners[(side + 1) % 3]], behind });
+                    horizon.push(HorizonEdge { edge: [corners[side], corners[(side + 1) % 3]], behind });
                 }
             }
         }
@@ -162,7 +162,7 @@ impl Growing<'_> {
     }
 
     /// Joins the new faces, one for each edge of the horizon, along the edges at the new corner.
-    fn join_around(&mut self, first: usize, horizon: &[Rim]) {
+    fn join_around(&mut self, first: usize, horizon: &[HorizonEdge]) {
         let mut by_start: Vec<(u32, usize)> =
             horizon.iter().enumerate().map(|(i, rim)| (rim.edge[0], first + i)).collect();
         by_start.sort_unstable();
@@ -179,7 +179,7 @@ impl Growing<'_> {
 
 /// An edge of the horizon, as the face that was removed ran through it, and the face that stays behind it.
 #[derive(Debug, Clone, Copy)]
-struct Rim {
+struct HorizonEdge {
     edge: [u32; 2],
     behind: u32,
 }

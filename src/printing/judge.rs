@@ -1,6 +1,6 @@
 //! Figures against the limits of a process.
 
-use super::{BuildVolume, Direction, Figures, Limit, Policy, Thickness, Witness};
+use super::{BuildDirection, BuildVolume, Figures, Limit, Policy, PrintingWitness, Thickness};
 use crate::geom::DVec3;
 
 /// What is checked.
@@ -58,11 +58,11 @@ pub struct Check {
     /// Its limits.
     pub limit: Limit,
     /// Where the mesh goes beyond them.
-    pub witnesses: Vec<Witness>,
+    pub witnesses: Vec<PrintingWitness>,
 }
 
 /// Every check for which the policy has a limit.
-pub(super) fn checks(figures: &Figures, policy: &Policy, overhangs: Vec<Witness>) -> Vec<Check> {
+pub(super) fn checks(figures: &Figures, policy: &Policy, overhangs: Vec<PrintingWitness>) -> Vec<Check> {
     let parts = &figures.parts;
     let all = [
         thin(CheckCode::Wall, &figures.walls, policy.wall, figures.quote.area),
@@ -87,7 +87,7 @@ fn overhang_angle(figures: &Figures, policy: &Policy) -> Option<f64> {
 }
 
 /// A figure that may not be small.
-fn below(code: CheckCode, measured: Option<f64>, limit: Limit, witnesses: Vec<Witness>) -> Check {
+fn below(code: CheckCode, measured: Option<f64>, limit: Limit, witnesses: Vec<PrintingWitness>) -> Check {
     let is_below = |bound: Option<f64>| matches!((measured, bound), (Some(m), Some(b)) if m < b);
     let status = status(is_below(limit.warning), is_below(limit.error));
     let witnesses = if status == Status::Ok { Vec::new() } else { witnesses };
@@ -144,7 +144,7 @@ fn build_volume(figures: &Figures, policy: &Policy) -> Option<Check> {
 }
 
 /// How the part fits a box of these sides, the last one up.
-pub(super) fn fit(figures: &Figures, up: Direction, sides: [f64; 3]) -> Fit {
+pub(super) fn fit(figures: &Figures, up: BuildDirection, sides: [f64; 3]) -> Fit {
     let size: DVec3 = figures.quote.bounds.max - figures.quote.bounds.min;
     let (axis, _) = up.axis();
     let flat = sorted([size[(axis + 1) % 3], size[(axis + 2) % 3], 0.0]);

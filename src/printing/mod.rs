@@ -26,7 +26,7 @@ pub use judge::{Check, CheckCode, Fit, Status};
 pub use oriented_box::OrientedBox;
 pub use overhang::Overhang;
 pub use parts::{Cavities, Parts};
-pub use policy::{BuildVolume, Direction, Limit, Policy};
+pub use policy::{BuildDirection, BuildVolume, Limit, Policy};
 pub use thickness::{Spread, Thickness};
 
 use crate::budget::{Budget, Stopped};
@@ -35,7 +35,7 @@ use crate::geom::{Aabb, DVec3};
 use crate::mesh::{EdgeGroups, Soup};
 use crate::par;
 use crate::spatial::NearestSearch;
-use surface::Surface;
+use surface::WeldedSurface;
 use thickness::{Probe, Side};
 
 /// Corners 12, source 4, normal 24, area 8, boxes 64, edges 18, component 4, and 8 for lists that come and go.
@@ -46,7 +46,7 @@ const BYTES_PER_VERTEX: u64 = 32;
 
 /// A place of the mesh, with what was measured there.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Witness {
+pub struct PrintingWitness {
     /// Triangle of the soup.
     pub triangle: u32,
     /// Where on it.
@@ -77,7 +77,7 @@ pub struct Figures {
     pub walls: Thickness,
     /// Width of gaps between walls.
     pub gaps: Thickness,
-    /// What hangs over nothing, for each direction in the order of [`Direction::ALL`].
+    /// What hangs over nothing, for each direction in the order of [`BuildDirection::ALL`].
     pub overhangs: Vec<Overhang>,
     /// Angle below which a face needs support.
     pub overhang_limit: f64,
@@ -135,7 +135,7 @@ pub fn measure(
     let _memory = budget.charge(
         soup.triangles.len() as u64 * BYTES_PER_TRIANGLE + soup.positions.len() as u64 * BYTES_PER_VERTEX,
     )?;
-    let Some(surface) = Surface::of(soup, budget)? else { return Ok(None) };
+    let Some(surface) = WeldedSurface::of(soup, budget)? else { return Ok(None) };
     let figures = figures(&surface, policy, is_solid, samples, budget)?;
     let up = policy.build_direction;
     let overhangs = overhang::witnesses(&surface, up, figures.overhang_limit, samples, budget)?;
@@ -150,7 +150,7 @@ pub fn measure(
 }
 
 fn figures(
-    surface: &Surface<'_>,
+    surface: &WeldedSurface<'_>,
     policy: &Policy,
     is_solid: bool,
     samples: usize,
@@ -167,7 +167,7 @@ fn figures(
     let parts = || parts::parts(surface, &groups, search.bvh(), &policy.feature, is_solid, samples, budget);
     let (edges, parts) = par::join(edges, parts);
     let overhang_limit = overhang::angle_limit(&policy.overhang);
-    let overhangs = Direction::ALL.map(|up| overhang::overhang(surface, up, overhang_limit, budget));
+    let overhangs = BuildDirection::ALL.map(|up| overhang::overhang(surface, up, overhang_limit, budget));
     Ok(Figures {
         walls,
         gaps,
@@ -180,8 +180,8 @@ fn figures(
 }
 
 fn quote(
-    surface: &Surface<'_>,
-    up: Direction,
+    surface: &WeldedSurface<'_>,
+    up: BuildDirection,
     is_solid: bool,
     area: f64,
     budget: &Budget,

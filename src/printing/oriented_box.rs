@@ -9,7 +9,7 @@
 
 use super::calipers::least_rectangle;
 use super::hull::hull;
-use super::surface::Surface;
+use super::surface::WeldedSurface;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec2, DVec3};
 use crate::par;
@@ -49,7 +49,7 @@ impl OrientedBox {
 }
 
 /// A small box around `surface`.
-pub(super) fn oriented_box(surface: &Surface<'_>, budget: &Budget) -> Result<OrientedBox, Stopped> {
+pub(super) fn oriented_box(surface: &WeldedSurface<'_>, budget: &Budget) -> Result<OrientedBox, Stopped> {
     // About the middle, so that a part far from the origin keeps its digits.
     let middle = surface.bounds.min.midpoint(surface.bounds.max);
     let points = used_positions(surface, middle, budget)?;
@@ -59,9 +59,9 @@ pub(super) fn oriented_box(surface: &Surface<'_>, budget: &Budget) -> Result<Ori
     let sides = sides(&faces, &few, surface.normals[0]);
     let boxes = par::try_map_ranges(sides.len(), 16, |range| {
         budget.spend((range.len() * corners.len()) as u64 / 64 + 1)?;
-        Ok(range.filter_map(|i| Frame::along(sides[i], &corners)).collect::<Vec<_>>())
+        Ok(range.filter_map(|i| BoxAxes::along(sides[i], &corners)).collect::<Vec<_>>())
     })?;
-    let mut boxes: Vec<Frame> = boxes.into_iter().flatten().collect();
+    let mut boxes: Vec<BoxAxes> = boxes.into_iter().flatten().collect();
     boxes.sort_by(|a, b| a.volume.total_cmp(&b.volume));
     boxes.truncate(IMPROVED);
     let mut best = around(&points, [DVec3::X, DVec3::Y, DVec3::Z], budget)?;
@@ -77,12 +77,12 @@ pub(super) fn oriented_box(surface: &Surface<'_>, budget: &Budget) -> Result<Ori
 
 /// Three directions at right angles, and the volume of the box along them.
 #[derive(Debug, Clone, Copy)]
-struct Frame {
+struct BoxAxes {
     axes: [DVec3; 3],
     volume: f64,
 }
 
-impl Frame {
+impl BoxAxes {
     /// The smallest box around `points` with a side at right angles to `normal`.
     fn along(normal: DVec3, points: &[DVec3]) -> Option<Self> {
         let (u, v) = normal.any_orthonormal_pair();
@@ -110,7 +110,11 @@ impl Frame {
 }
 
 /// The positions that triangles use, seen from `origin`.
-fn used_positions(surface: &Surface<'_>, origin: DVec3, budget: &Budget) -> Result<Vec<DVec3>, Stopped> {
+fn used_positions(
+    surface: &WeldedSurface<'_>,
+    origin: DVec3,
+    budget: &Budget,
+) -> Result<Vec<DVec3>, Stopped> {
     let mut is_used = vec![false; surface.positions.len()];
     for block in surface.triangles.chunks(CHECK_EVERY) {
         budget.check()?;
@@ -155,7 +159,7 @@ fn farthest(points: &[DVec3], start: usize, direction: DVec3) -> (f64, usize) {
 
 fn direction(i: usize) -> DVec3 {
     if i >= DIRECTIONS {
-        let (axis, sign) = super::Direction::ALL[i - DIRECTIONS].axis();
+        let (axis, sign) = super::BuildDirection::ALL[i - DIRECTIONS].axis();
         return DVec3::AXES[axis] * sign;
     }
     let z = 1.0 - (2.0 * i as f64 + 1.0) / DIRECTIONS as f64;

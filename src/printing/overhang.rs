@@ -1,7 +1,7 @@
 //! What hangs over nothing in each orientation.
 
-use super::surface::Surface;
-use super::{Direction, Limit, Witness};
+use super::surface::WeldedSurface;
+use super::{BuildDirection, Limit, PrintingWitness};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::triangle_area;
 use crate::par;
@@ -21,7 +21,7 @@ const PLATE_SHARE: f64 = 1e-6;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Overhang {
     /// What is up.
-    pub direction: Direction,
+    pub direction: BuildDirection,
     /// Height of the part, in the unit of the file.
     pub height: f64,
     /// Area of the faces below the angle limit that do not lie on the plate, in square units of the file.
@@ -41,12 +41,12 @@ pub(super) fn angle_limit(limit: &Limit) -> f64 {
 
 /// The figures of one direction.
 pub(super) fn overhang(
-    surface: &Surface<'_>,
-    direction: Direction,
+    surface: &WeldedSurface<'_>,
+    direction: BuildDirection,
     angle_limit: f64,
     budget: &Budget,
 ) -> Result<Overhang, Stopped> {
-    let view = View::new(surface, direction, angle_limit);
+    let view = OverhangView::new(surface, direction, angle_limit);
     let none = Overhang {
         direction,
         height: view.top - view.floor,
@@ -85,13 +85,13 @@ pub(super) fn overhang(
 
 /// The faces with the smallest angles, at most `most`.
 pub(super) fn witnesses(
-    surface: &Surface<'_>,
-    direction: Direction,
+    surface: &WeldedSurface<'_>,
+    direction: BuildDirection,
     angle_limit: f64,
     most: usize,
     budget: &Budget,
-) -> Result<Vec<Witness>, Stopped> {
-    let view = View::new(surface, direction, angle_limit);
+) -> Result<Vec<PrintingWitness>, Stopped> {
+    let view = OverhangView::new(surface, direction, angle_limit);
     let mut found: Vec<(f64, f64, u32)> = Vec::new();
     for t in 0..surface.triangles.len() as u32 {
         if (t as usize).is_multiple_of(CHECK_EVERY) {
@@ -121,8 +121,8 @@ enum Stand {
 }
 
 /// The surface with one direction up.
-struct View<'v> {
-    surface: &'v Surface<'v>,
+struct OverhangView<'v> {
+    surface: &'v WeldedSurface<'v>,
     axis: usize,
     sign: f64,
     floor: f64,
@@ -130,8 +130,8 @@ struct View<'v> {
     cosine_limit: f64,
 }
 
-impl<'v> View<'v> {
-    fn new(surface: &'v Surface<'v>, direction: Direction, angle_limit: f64) -> Self {
+impl<'v> OverhangView<'v> {
+    fn new(surface: &'v WeldedSurface<'v>, direction: BuildDirection, angle_limit: f64) -> Self {
         let (axis, sign) = direction.axis();
         let ends = [surface.bounds.min[axis] * sign, surface.bounds.max[axis] * sign];
         Self {

@@ -1,7 +1,7 @@
 //! Parts of their own, and cavities without a way out.
 
-use super::surface::Surface;
-use super::{Limit, Witness};
+use super::surface::WeldedSurface;
+use super::{Limit, PrintingWitness};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3};
 use crate::mesh::{Components, EdgeGroups};
@@ -9,7 +9,7 @@ use crate::spatial::{Bvh, nest};
 
 /// A part connected by edges.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Part {
+struct MeshPart {
     /// Its first triangle.
     first: u32,
     bounds: Aabb,
@@ -29,7 +29,7 @@ pub struct Parts {
     /// Bodies whose longest side is below the limit.
     pub small_count: u64,
     /// Those bodies, with their longest sides.
-    pub small: Vec<Witness>,
+    pub small: Vec<PrintingWitness>,
     /// Cavities without a way out; `None`: not told, because the mesh is not a valid solid.
     pub cavities: Option<Cavities>,
 }
@@ -42,12 +42,12 @@ pub struct Cavities {
     /// Their volume, in cubic units of the file.
     pub volume: f64,
     /// The largest ones, with their volumes.
-    pub witnesses: Vec<Witness>,
+    pub witnesses: Vec<PrintingWitness>,
 }
 
 /// Finds the parts; with `is_solid`, which says that the mesh is certified to be one, also what is inside of what.
 pub(super) fn parts(
-    surface: &Surface<'_>,
+    surface: &WeldedSurface<'_>,
     groups: &EdgeGroups,
     bvh: &Bvh,
     limit: &Limit,
@@ -65,11 +65,13 @@ pub(super) fn parts(
             *is_cavity = depth % 2 == 1;
         }
     }
-    let side = |part: &Part| (part.bounds.max - part.bounds.min).max_element();
-    let bodies: Vec<&Part> = parts.iter().zip(&is_cavity).filter(|(_, is)| !**is).map(|(p, _)| p).collect();
-    let hollows: Vec<&Part> = parts.iter().zip(&is_cavity).filter(|(_, is)| **is).map(|(p, _)| p).collect();
+    let side = |part: &MeshPart| (part.bounds.max - part.bounds.min).max_element();
+    let bodies: Vec<&MeshPart> =
+        parts.iter().zip(&is_cavity).filter(|(_, is)| !**is).map(|(p, _)| p).collect();
+    let hollows: Vec<&MeshPart> =
+        parts.iter().zip(&is_cavity).filter(|(_, is)| **is).map(|(p, _)| p).collect();
     let smallest = bodies.iter().min_by(|a, b| side(a).total_cmp(&side(b)));
-    let mut small: Vec<(f64, &Part)> = bodies.iter().map(|part| (side(part), *part)).collect();
+    let mut small: Vec<(f64, &MeshPart)> = bodies.iter().map(|part| (side(part), *part)).collect();
     small.retain(|(side, _)| limit.first_below().is_some_and(|bound| *side < bound));
     small.sort_by(|a, b| a.0.total_cmp(&b.0));
     Ok(Parts {
@@ -86,9 +88,9 @@ pub(super) fn parts(
     })
 }
 
-fn cavities(surface: &Surface<'_>, mut hollows: Vec<&Part>, witnesses: usize) -> Cavities {
+fn cavities(surface: &WeldedSurface<'_>, mut hollows: Vec<&MeshPart>, witnesses: usize) -> Cavities {
     hollows.sort_by(|a, b| a.volume.total_cmp(&b.volume));
-    let witness = |part: &&Part| surface.witness_in_middle(part.first, -part.volume);
+    let witness = |part: &&MeshPart| surface.witness_in_middle(part.first, -part.volume);
     Cavities {
         count: hollows.len() as u64,
         volume: hollows.iter().map(|part| -part.volume).sum(),
@@ -96,8 +98,12 @@ fn cavities(surface: &Surface<'_>, mut hollows: Vec<&Part>, witnesses: usize) ->
     }
 }
 
-fn describe(surface: &Surface<'_>, components: &Components, budget: &Budget) -> Result<Vec<Part>, Stopped> {
-    let unset = Part { first: u32::MAX, bounds: Aabb::EMPTY, volume: 0.0 };
+fn describe(
+    surface: &WeldedSurface<'_>,
+    components: &Components,
+    budget: &Budget,
+) -> Result<Vec<MeshPart>, Stopped> {
+    let unset = MeshPart { first: u32::MAX, bounds: Aabb::EMPTY, volume: 0.0 };
     let mut parts = vec![unset; components.count as usize];
     for (t, &component) in components.of.iter().enumerate() {
         if t % CHECK_EVERY == 0 {

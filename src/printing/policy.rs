@@ -30,7 +30,7 @@ pub struct BuildVolume {
 
 /// An axis of the file, in one of its two directions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Direction {
+pub enum BuildDirection {
     /// Along x.
     X,
     /// Against x.
@@ -46,7 +46,7 @@ pub enum Direction {
     MinusZ,
 }
 
-impl Direction {
+impl BuildDirection {
     /// Every direction.
     pub const ALL: [Self; 6] = [Self::X, Self::MinusX, Self::Y, Self::MinusY, Self::Z, Self::MinusZ];
 
@@ -85,7 +85,7 @@ pub struct Policy {
     /// Largest part.
     pub build_volume: BuildVolume,
     /// Where up is in the machine.
-    pub build_direction: Direction,
+    pub build_direction: BuildDirection,
 }
 
 impl Policy {

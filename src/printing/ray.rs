@@ -1,6 +1,6 @@
 //! The first wall that a ray meets.
 
-use super::surface::Surface;
+use super::surface::WeldedSurface;
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use crate::spatial::Bvh;
@@ -32,7 +32,7 @@ impl Ray {
     /// number of triangles that were looked at.
     pub(super) fn first_hit(
         &self,
-        surface: &Surface<'_>,
+        surface: &WeldedSurface<'_>,
         bvh: &Bvh,
         budget: &Budget,
     ) -> Result<(Option<Hit>, u64), Stopped> {

@@ -3,8 +3,8 @@
 //! Rows across the view; on the middle line of each the stretches that triangles cover are found exactly and joined. The
 //! error is that of the midpoint rule: of the order of the outline's length times half a row.
 
-use super::Direction;
-use super::surface::Surface;
+use super::BuildDirection;
+use super::surface::WeldedSurface;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::par;
 use std::ops::Range;
@@ -17,16 +17,16 @@ const CROSSINGS_MAX: u64 = 1 << 22;
 
 /// The shadow along `direction`, in square units of the file. Of a solid only what faces the light is looked at.
 pub(super) fn shadow(
-    surface: &Surface<'_>,
-    direction: Direction,
+    surface: &WeldedSurface<'_>,
+    direction: BuildDirection,
     is_solid: bool,
     budget: &Budget,
 ) -> Result<f64, Stopped> {
-    let (mut view, mut rows) = (View::new(surface, direction, is_solid, ROWS), ROWS);
+    let (mut view, mut rows) = (ShadowView::new(surface, direction, is_solid, ROWS), ROWS);
     let mut starts = view.starts(budget)?;
     while starts[rows] > CROSSINGS_MAX && rows > 1 {
         rows /= 2;
-        view = View::new(surface, direction, is_solid, rows);
+        view = ShadowView::new(surface, direction, is_solid, rows);
         starts = view.starts(budget)?;
     }
     let total = starts[rows] as usize;
@@ -68,8 +68,8 @@ fn covered(mut stretches: Vec<[f64; 2]>) -> f64 {
 }
 
 /// The surface seen along an axis.
-struct View<'v> {
-    surface: &'v Surface<'v>,
+struct ShadowView<'v> {
+    surface: &'v WeldedSurface<'v>,
     axis: usize,
     sign: f64,
     is_solid: bool,
@@ -78,8 +78,8 @@ struct View<'v> {
     rows: usize,
 }
 
-impl<'v> View<'v> {
-    fn new(surface: &'v Surface<'v>, direction: Direction, is_solid: bool, rows: usize) -> Self {
+impl<'v> ShadowView<'v> {
+    fn new(surface: &'v WeldedSurface<'v>, direction: BuildDirection, is_solid: bool, rows: usize) -> Self {
         let (axis, sign) = direction.axis();
         let up = (axis + 2) % 3;
         let (floor, height) = (surface.bounds.min[up], surface.bounds.max[up] - surface.bounds.min[up]);

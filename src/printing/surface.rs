@@ -1,6 +1,6 @@
 //! The triangles that have a side, with their normals.
 
-use super::Witness;
+use super::PrintingWitness;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3};
 use crate::mesh::Soup;
@@ -15,7 +15,7 @@ const OPPOSITE_COSINE_MAX: f64 = -0.866_025_403_784_438_6;
 
 /// A mesh after the exact weld, without triangles whose normal cannot be told.
 #[derive(Debug)]
-pub(super) struct Surface<'s> {
+pub(super) struct WeldedSurface<'s> {
     pub(super) positions: &'s [DVec3],
     /// Corners are the first vertex at their position.
     pub(super) triangles: Vec<[u32; 3]>,
@@ -26,7 +26,7 @@ pub(super) struct Surface<'s> {
     pub(super) bounds: Aabb,
 }
 
-impl<'s> Surface<'s> {
+impl<'s> WeldedSurface<'s> {
     /// `None` when nothing is left, or when the size is out of range.
     pub(super) fn of(soup: &'s Soup, budget: &Budget) -> Result<Option<Self>, Stopped> {
         let group = coincident_f64(&soup.positions, budget)?.group;
@@ -91,12 +91,12 @@ impl<'s> Surface<'s> {
     }
 
     /// A place on triangle `t`, where something was measured.
-    pub(super) fn witness(&self, t: u32, place: DVec3, measured: f64) -> Witness {
-        Witness { triangle: self.source[t as usize], place, measured }
+    pub(super) fn witness(&self, t: u32, place: DVec3, measured: f64) -> PrintingWitness {
+        PrintingWitness { triangle: self.source[t as usize], place, measured }
     }
 
     /// The middle of triangle `t`, where something was measured.
-    pub(super) fn witness_in_middle(&self, t: u32, measured: f64) -> Witness {
+    pub(super) fn witness_in_middle(&self, t: u32, measured: f64) -> PrintingWitness {
         self.witness(t, self.corners(t).iter().sum::<DVec3>() / 3.0, measured)
     }
 }

@@ -13,7 +13,7 @@ const LIMITS: Policy = Policy {
     sharp_edge: Limit { warning: Some(30.0), error: None },
     cavities: Limit { warning: None, error: Some(0.0) },
     build_volume: BuildVolume { warning: None, error: Some([100.0; 3]) },
-    build_direction: Direction::Z,
+    build_direction: BuildDirection::Z,
 };
 
 fn joined(parts: &[Soup]) -> Soup {
@@ -218,18 +218,19 @@ fn a_wedge_overhangs_in_some_orientations_and_lies_on_the_plate_in_others() {
     let profile = prism(&[[0.0, 0.0], [10.0, 0.0], [20.0, rise], [0.0, rise]], 5.0);
     let wedge = moved(profile, |p| DVec3::new(p.x, -p.z, p.y));
     let of = measured(&wedge);
-    let up = |direction: Direction| of.figures.overhangs.iter().find(|o| o.direction == direction).unwrap();
-    let z = up(Direction::Z);
+    let up =
+        |direction: BuildDirection| of.figures.overhangs.iter().find(|o| o.direction == direction).unwrap();
+    let z = up(BuildDirection::Z);
     near(Some(z.support_area), 50.0);
     near(Some(z.area), 50.0 / (30f64).to_radians().cos());
     near(Some(z.plate_area), 50.0);
     near(z.angle_min, 30.0);
     near(Some(z.height), rise);
-    let upside_down = up(Direction::MinusZ);
+    let upside_down = up(BuildDirection::MinusZ);
     assert_eq!((upside_down.area, upside_down.angle_min), (0.0, None));
     near(Some(upside_down.plate_area), 100.0);
     assert_eq!(status(&of, CheckCode::Overhang), Some(Status::Warning));
-    let policy = Policy { build_direction: Direction::MinusZ, ..LIMITS };
+    let policy = Policy { build_direction: BuildDirection::MinusZ, ..LIMITS };
     assert_eq!(status(&with(&wedge, &policy), CheckCode::Overhang), Some(Status::Ok));
     let steep = Policy { overhang: Limit { warning: Some(30.0), error: None }, ..LIMITS };
     assert_eq!(status(&with(&wedge, &steep), CheckCode::Overhang), Some(Status::Ok), "just steep enough");
@@ -246,7 +247,7 @@ fn an_l_has_its_shadow_its_box_and_no_sharp_edge() {
     near(of.figures.edges.angle_min, 90.0);
     assert_eq!(of.figures.edges.sharp_count, 0);
     near(of.figures.edges.shortest, 1.0);
-    let along_x = Policy { build_direction: Direction::X, ..LIMITS };
+    let along_x = Policy { build_direction: BuildDirection::X, ..LIMITS };
     near(Some(with(&l, &along_x).figures.quote.shadow_area), 6.0);
 }
 
@@ -326,7 +327,7 @@ fn meshes_of_any_kind_are_measured_without_harm() {
             (0..1 + random(12)).map(|_| [random(count), random(count), random(count)]).collect();
         let soup = Soup { face_count: triangles.len() as u32, positions, triangles, ..Soup::default() };
         for is_solid in [false, true] {
-            let policy = Policy { build_direction: Direction::ALL[round % 6], ..LIMITS };
+            let policy = Policy { build_direction: BuildDirection::ALL[round % 6], ..LIMITS };
             let found = measure(&soup, &policy, is_solid, 2, &Budget::unlimited()).unwrap();
             if let Some(found) = found {
                 let of = found.figures.quote;

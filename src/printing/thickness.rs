@@ -6,8 +6,8 @@
 //! Where a sample must look at thousands of triangles, as below a disc that is a fan of very many, fewer are taken.
 
 use super::ray::Ray;
-use super::surface::Surface;
-use super::{Limit, Witness, ball};
+use super::surface::WeldedSurface;
+use super::{Limit, PrintingWitness, ball};
 use crate::budget::{Budget, Stopped};
 use crate::distance::{self, Areas};
 use crate::geom::DVec3;
@@ -69,7 +69,7 @@ pub struct Thickness {
     /// Area below the limit of an error, in square units of the file; `None`: no limit.
     pub area_below_error: Option<f64>,
     /// Samples below a limit, the thinnest first, apart from each other.
-    pub witnesses: Vec<Witness>,
+    pub witnesses: Vec<PrintingWitness>,
     /// Samples by area.
     pub samples: u64,
 }
@@ -86,7 +86,7 @@ impl Thickness {
 
 /// What was measured at one place.
 #[derive(Debug, Clone, Copy)]
-struct Reading {
+struct WallReading {
     place: DVec3,
     triangle: u32,
     ray: Option<f64>,
@@ -95,7 +95,7 @@ struct Reading {
     looked_at: u64,
 }
 
-impl Reading {
+impl WallReading {
     fn least(&self) -> Option<f64> {
         let all = [self.ray, self.sphere].into_iter().flatten();
         all.min_by(f64::total_cmp)
@@ -104,7 +104,7 @@ impl Reading {
 
 /// A surface prepared for being measured.
 pub(super) struct Probe<'p> {
-    surface: &'p Surface<'p>,
+    surface: &'p WeldedSurface<'p>,
     search: &'p NearestSearch<'p>,
     areas: &'p Areas,
     budget: &'p Budget,
@@ -112,7 +112,7 @@ pub(super) struct Probe<'p> {
 
 impl<'p> Probe<'p> {
     pub(super) fn new(
-        surface: &'p Surface<'p>,
+        surface: &'p WeldedSurface<'p>,
         search: &'p NearestSearch<'p>,
         areas: &'p Areas,
         budget: &'p Budget,
@@ -135,7 +135,7 @@ impl<'p> Probe<'p> {
         let in_middles = self.readings(middles, side, |k| {
             (self.surface.corners(k as u32).iter().sum::<DVec3>() / 3.0, k as u32)
         })?;
-        let all: Vec<Reading> = by_area.iter().chain(&in_middles).copied().collect();
+        let all: Vec<WallReading> = by_area.iter().chain(&in_middles).copied().collect();
         let share_below = |bound: f64| {
             let below = by_area.iter().filter(|reading| reading.least().is_some_and(|least| least < bound));
             below.count() as f64 / count as f64
@@ -152,7 +152,7 @@ impl<'p> Probe<'p> {
     }
 
     /// What is measured at `count` places that are spread evenly over the surface.
-    fn by_area(&self, count: usize, side: Side) -> Result<Vec<Reading>, Stopped> {
+    fn by_area(&self, count: usize, side: Side) -> Result<Vec<WallReading>, Stopped> {
         let of = distance::Surface { positions: self.surface.positions, triangles: &self.surface.triangles };
         self.readings(count, side, |k| {
             let sample = self.areas.sample(of, k, count);
@@ -165,7 +165,7 @@ impl<'p> Probe<'p> {
         count: usize,
         side: Side,
         place: impl Fn(usize) -> (DVec3, u32) + Sync,
-    ) -> Result<Vec<Reading>, Stopped> {
+    ) -> Result<Vec<WallReading>, Stopped> {
         let parts = par::try_map_ranges(count, CHUNK, |range| {
             self.budget.spend(range.len() as u64)?;
             range.map(|k| self.read(place(k), side)).collect::<Result<Vec<_>, _>>()
@@ -173,29 +173,34 @@ impl<'p> Probe<'p> {
         Ok(parts.into_iter().flatten().collect())
     }
 
-    fn read(&self, (place, triangle): (DVec3, u32), side: Side) -> Result<Reading, Stopped> {
+    fn read(&self, (place, triangle): (DVec3, u32), side: Side) -> Result<WallReading, Stopped> {
         let normal = self.surface.normals[triangle as usize];
         let is_inside = side == Side::Inside;
         let along = if is_inside { -normal } else { normal };
         let ray = Ray { from: place, along, own: triangle, is_inside };
         let (hit, looked_at) = ray.first_hit(self.surface, self.search.bvh(), self.budget)?;
-        let nothing = Reading { place, triangle, ray: None, sphere: None, looked_at };
+        let nothing = WallReading { place, triangle, ray: None, sphere: None, looked_at };
         let Some(hit) = hit else { return Ok(nothing) };
         let is_opposite = self.surface.are_opposite(triangle, hit.triangle);
         let sphere = ball::diameter(&ray, hit, self.surface, self.search, self.budget)?;
-        Ok(Reading { ray: is_opposite.then_some(hit.distance), sphere, ..nothing })
+        Ok(WallReading { ray: is_opposite.then_some(hit.distance), sphere, ..nothing })
     }
 
     /// The thinnest places below the first limit, apart from each other.
-    fn witnesses(&self, readings: &[Reading], limit: &Limit, most: usize) -> Result<Vec<Witness>, Stopped> {
+    fn witnesses(
+        &self,
+        readings: &[WallReading],
+        limit: &Limit,
+        most: usize,
+    ) -> Result<Vec<PrintingWitness>, Stopped> {
         let Some(bound) = limit.first_below() else { return Ok(Vec::new()) };
         let measured = readings.iter().enumerate().filter_map(|(k, reading)| Some((reading.least()?, k)));
         let mut thin: Vec<(f64, usize)> = measured.filter(|&(least, _)| least < bound).collect();
         thin.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let apart = APART * self.surface.diagonal();
-        let mut chosen: Vec<Witness> = Vec::new();
+        let mut chosen: Vec<PrintingWitness> = Vec::new();
         for (least, k) in thin.into_iter().take(CANDIDATES_OF_WITNESS * most) {
-            let Reading { place, triangle, .. } = readings[k];
+            let WallReading { place, triangle, .. } = readings[k];
             self.budget.check()?;
             if chosen.len() == most {
                 break;
@@ -209,7 +214,7 @@ impl<'p> Probe<'p> {
 }
 
 /// Shares of the area from `by_area`, the smallest of `all`.
-fn spread(by_area: &[Reading], all: &[Reading], of: impl Fn(&Reading) -> Option<f64>) -> Spread {
+fn spread(by_area: &[WallReading], all: &[WallReading], of: impl Fn(&WallReading) -> Option<f64>) -> Spread {
     let mut values: Vec<f64> = by_area.iter().filter_map(&of).collect();
     values.sort_unstable_by(f64::total_cmp);
     let at = |share: f64| values.get((share * values.len() as f64) as usize).copied();

@@ -42,7 +42,7 @@ impl View {
     }
 
     /// The same as a direction.
-    pub fn direction(self) -> Direction {
+    pub fn direction(self) -> PictureAxes {
         let (toward, up) = match self {
             Self::Iso => (DVec3::new(1.0, -1.0, 1.0), DVec3::Z),
             Self::Front => (DVec3::NEG_Y, DVec3::Z),
@@ -52,20 +52,20 @@ impl View {
             Self::Top => (DVec3::Z, DVec3::Y),
             Self::Bottom => (DVec3::NEG_Z, DVec3::NEG_Y),
         };
-        Direction::of(toward, up)
+        PictureAxes::of(toward, up)
     }
 }
 
 /// The axes of a picture in the scene: unit vectors at right angles.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Direction {
+pub struct PictureAxes {
     right: DVec3,
     up: DVec3,
     /// From the scene to the eye.
     toward: DVec3,
 }
 
-impl Direction {
+impl PictureAxes {
     /// Seen from `toward`, with `up` above; they must not be parallel.
     fn of(toward: DVec3, up: DVec3) -> Self {
         let toward = toward.normalize();
@@ -105,7 +105,7 @@ const FILLED: f64 = 0.9;
 /// Where the points of a scene come to lie on a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
-    direction: Direction,
+    direction: PictureAxes,
     /// The middle of what is seen, along the axes of the picture.
     middle: [f64; 2],
     /// Half the height of the picture in units of the frame; of a perspective view at distance 1.
@@ -123,7 +123,7 @@ impl Camera {
     /// When the budget stops the run.
     pub fn at(
         models: &[&Model<'_>],
-        direction: Direction,
+        direction: PictureAxes,
         projection: Projection,
         aspect: f64,
         budget: &Budget,
@@ -195,7 +195,7 @@ impl Camera {
         let size = half.max(radius / aspect);
         let depth = radius * cos + high.abs().max(low.abs()) * sin;
         Ok(move |azimuth: f64| Self {
-            direction: Direction::around(azimuth, elevation),
+            direction: PictureAxes::around(azimuth, elevation),
             middle: [0.0, f64::midpoint(low, high) * cos],
             half_height: if size > 0.0 { size / FILLED } else { 1.0 },
             eye: None,
@@ -231,7 +231,7 @@ impl Camera {
         let step = 2.0 * self.half_height / height;
         let right = self.middle[0] + (x - 0.5 * width) * step;
         let up = self.middle[1] + (0.5 * height - y) * step;
-        let Direction { right: to_right, up: to_up, toward } = self.direction;
+        let PictureAxes { right: to_right, up: to_up, toward } = self.direction;
         match self.eye {
             // Begins before everything: the frame has half a diagonal of less than 2.
             None => (to_right * right + to_up * up + toward * 4.0, -toward),
@@ -246,7 +246,7 @@ impl Camera {
 
     /// True when a triangle with this normal at `corner` shows its front.
     pub(super) fn sees_front(&self, normal: DVec3, corner: DVec3) -> bool {
-        let Direction { toward, .. } = self.direction;
+        let PictureAxes { toward, .. } = self.direction;
         match self.eye {
             None => normal.dot(toward) >= 0.0,
             Some(eye) => normal.dot(toward * eye - corner) >= 0.0,

@@ -13,13 +13,13 @@ mod normals;
 mod raster;
 mod resolve;
 
-pub use camera::{Camera, Direction, Projection, View};
+pub use camera::{Camera, PictureAxes, Projection, View};
 pub use canvas::{Canvas, Rgb};
 pub use encode::{animation, picture};
 pub use letters::{LETTER_HEIGHT, LETTER_WIDTH};
-pub use model::{Frame, Line, Model, Scene, Shade, Spot};
+pub use model::{Line, Model, Scene, SceneFrame, Shade, Spot};
 pub use normals::first_at_position;
-pub use resolve::{Edges, Style};
+pub use resolve::{DrawnEdges, Style};
 
 use crate::budget::{Budget, Stopped};
 

@@ -63,12 +63,12 @@ impl Scene<'_> {
 /// A shift and a scale that bring scenes that are seen together into a box of at most 2 along each axis around the
 /// origin.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Frame {
+pub struct SceneFrame {
     middle: DVec3,
     half: f64,
 }
 
-impl Frame {
+impl SceneFrame {
     /// Around these boxes.
     pub fn around(boxes: impl IntoIterator<Item = Aabb>) -> Self {
         let all = boxes.into_iter().filter(|b| !b.is_empty()).fold(Aabb::EMPTY, Aabb::union);
@@ -107,7 +107,12 @@ impl<'s> Model<'s> {
     ///
     /// # Errors
     /// When the budget stops the run.
-    pub fn of(scene: Scene<'s>, frame: Frame, shade: Shade, budget: &'s Budget) -> Result<Self, Stopped> {
+    pub fn of(
+        scene: Scene<'s>,
+        frame: SceneFrame,
+        shade: Shade,
+        budget: &'s Budget,
+    ) -> Result<Self, Stopped> {
         let (vertices, triangles) = (scene.positions.len(), scene.triangles.len());
         let of_normals = if shade == Shade::Smooth { CornerNormals::bytes(vertices, triangles) } else { 0 };
         let memory = budget.charge((vertices * (size_of::<DVec3>() + 1) + of_normals) as u64)?;

@@ -43,7 +43,7 @@ pub(super) struct Sample {
 
 /// What may be seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Seen {
+pub(super) enum VisibleElement {
     Nothing,
     Triangle(u32),
     Line(usize),
@@ -53,18 +53,18 @@ pub(super) enum Seen {
 impl Sample {
     pub(super) const EMPTY: Self = Self { near: f32::NEG_INFINITY, what: NOTHING };
 
-    pub(super) fn seen(self) -> Seen {
+    pub(super) fn seen(self) -> VisibleElement {
         match self.what {
-            NOTHING => Seen::Nothing,
-            what if what & SPOT == SPOT => Seen::Spot((what & !SPOT) as usize),
-            what if what & LINE == LINE => Seen::Line((what & !LINE) as usize),
-            what => Seen::Triangle(what),
+            NOTHING => VisibleElement::Nothing,
+            what if what & SPOT == SPOT => VisibleElement::Spot((what & !SPOT) as usize),
+            what if what & LINE == LINE => VisibleElement::Line((what & !LINE) as usize),
+            what => VisibleElement::Triangle(what),
         }
     }
 
     pub(super) fn triangle(self) -> Option<u32> {
         match self.seen() {
-            Seen::Triangle(t) => Some(t),
+            VisibleElement::Triangle(t) => Some(t),
             _ => None,
         }
     }

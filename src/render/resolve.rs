@@ -5,14 +5,14 @@ use super::camera::Camera;
 use super::canvas::{Canvas, Rgb};
 use super::model::Model;
 use super::normals::normal;
-use super::raster::{Seen, Visible};
+use super::raster::{Visible, VisibleElement};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 use crate::par;
 
 /// Which edges are drawn dark, beside silhouettes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Edges {
+pub enum DrawnEdges {
     /// None, nor silhouettes.
     None,
     /// Those where the surface turns by more than 40 degrees, from which on shading does not round them.
@@ -26,7 +26,7 @@ pub enum Edges {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Style {
     /// Edges that are drawn.
-    pub edges: Edges,
+    pub edges: DrawnEdges,
     /// Colour behind everything.
     pub background: Rgb,
     /// Colour of backs; `None`: as their fronts.
@@ -54,7 +54,7 @@ const ROWS: usize = 8;
 
 /// The corners of a triangle whose normals are rounded.
 #[derive(Debug, Clone, Copy)]
-struct Corners {
+struct RoundedCorners {
     /// In parts of a sample.
     places: [[i32; 2]; 3],
     /// Toward the eye, along the axes of the picture.
@@ -63,22 +63,22 @@ struct Corners {
 
 /// What is known of a triangle that is seen.
 #[derive(Debug, Clone, Copy)]
-struct Face {
+struct VisibleFace {
     /// `None`: it is flat.
-    rounded: Option<Corners>,
+    rounded: Option<RoundedCorners>,
     is_back: bool,
 }
 
 /// What is known of the triangles that are seen.
-struct Faces {
+struct VisibleFaces {
     /// Number of each triangle in the other lists; `u32::MAX` where it is not seen.
     numbers: Vec<u32>,
     /// Toward the eye, along the axes of the picture; zero where a triangle has none.
     normals: Vec<[f32; 3]>,
-    list: Vec<Face>,
+    list: Vec<VisibleFace>,
 }
 
-impl Faces {
+impl VisibleFaces {
     fn of(model: &Model<'_>, camera: &Camera, seen: &Visible, budget: &Budget) -> Result<Self, Stopped> {
         let mut numbers = vec![u32::MAX; model.scene.triangles.len()];
         let mut triangles = Vec::new();
@@ -98,11 +98,11 @@ impl Faces {
                 (if is_back { -outward } else { outward }).as_vec3().to_array()
             };
             let corners = model.scene.triangles[t as usize];
-            let rounded = model.corner_normals.as_ref().map(|normals| Corners {
+            let rounded = model.corner_normals.as_ref().map(|normals| RoundedCorners {
                 places: seen.places(corners),
                 normals: normals.of_triangle(t, corners).map(toward),
             });
-            (toward(normal(model.corners(t)).normalize_or_zero()), Face { rounded, is_back })
+            (toward(normal(model.corners(t)).normalize_or_zero()), VisibleFace { rounded, is_back })
         };
         let made = par::try_map_ranges(triangles.len(), CHECK_EVERY, |range| {
             budget.spend(range.len() as u64)?;
@@ -127,10 +127,10 @@ pub(super) fn resolve(
 ) -> Result<Canvas, Stopped> {
     let (width, height) = (seen.width / SAMPLES, seen.height / SAMPLES);
     let triangles = model.scene.triangles.len();
-    let of_faces =
-        2 * triangles.min(seen.samples.len()) * (size_of::<Face>() + 12) + triangles * size_of::<u32>();
+    let of_faces = 2 * triangles.min(seen.samples.len()) * (size_of::<VisibleFace>() + 12)
+        + triangles * size_of::<u32>();
     let _memory = budget.charge((of_faces + width * height * 3) as u64)?;
-    let faces = Faces::of(model, camera, seen, budget)?;
+    let faces = VisibleFaces::of(model, camera, seen, budget)?;
     budget.spend((width * height) as u64 / 4)?;
     let light = Light { model, seen, style, faces: &faces };
     let mut canvas = Canvas::filled(width, height, style.background);
@@ -150,7 +150,7 @@ struct Light<'l> {
     model: &'l Model<'l>,
     seen: &'l Visible,
     style: &'l Style,
-    faces: &'l Faces,
+    faces: &'l VisibleFaces,
 }
 
 impl Light<'_> {
@@ -161,16 +161,16 @@ impl Light<'_> {
         for y in row * SAMPLES..(row + 1) * SAMPLES {
             for x in column * SAMPLES..(column + 1) * SAMPLES {
                 let color = match self.seen.samples[y * self.seen.width + x].seen() {
-                    Seen::Nothing => self.style.background.map(f32::from),
-                    Seen::Triangle(t) => {
+                    VisibleElement::Nothing => self.style.background.map(f32::from),
+                    VisibleElement::Triangle(t) => {
                         is_empty = false;
                         self.inked(self.lit(t, x, y), t, x, y)
                     }
-                    Seen::Line(number) => {
+                    VisibleElement::Line(number) => {
                         is_empty = false;
                         self.model.marks.lines[number].color.map(f32::from)
                     }
-                    Seen::Spot(number) => {
+                    VisibleElement::Spot(number) => {
                         is_empty = false;
                         self.model.marks.spots[number].color.map(f32::from)
                     }
@@ -200,7 +200,7 @@ impl Light<'_> {
 
     /// `color` with ink where an edge passes the sample.
     fn inked(&self, color: [f32; 3], t: u32, x: usize, y: usize) -> [f32; 3] {
-        let ink = if self.style.edges == Edges::None { 0.0 } else { self.ink(t, x, y) };
+        let ink = if self.style.edges == DrawnEdges::None { 0.0 } else { self.ink(t, x, y) };
         let mut inked = color;
         for (channel, dark) in inked.iter_mut().zip(INK) {
             *channel += (dark - *channel) * ink;
@@ -221,14 +221,14 @@ impl Light<'_> {
             let bend = before.near - 2.0 * own.near + after.near;
             for other in [before, after] {
                 match other.seen() {
-                    Seen::Nothing => ink = ink.max(CREASE_INK),
-                    Seen::Triangle(neighbour) if neighbour != t => {
+                    VisibleElement::Nothing => ink = ink.max(CREASE_INK),
+                    VisibleElement::Triangle(neighbour) if neighbour != t => {
                         let turn = dot(normal, self.faces.normals[self.faces.number(neighbour)]);
                         // Of the two sides of a jump the nearer one is inked.
                         let is_jump = bend.abs() > JUMP && own.near > other.near;
                         if turn < CREASE_COSINE || is_jump {
                             ink = ink.max(CREASE_INK);
-                        } else if self.style.edges == Edges::All {
+                        } else if self.style.edges == DrawnEdges::All {
                             ink = ink.max(OTHER_INK);
                         }
                     }
@@ -241,8 +241,8 @@ impl Light<'_> {
 }
 
 /// The normal between those of the corners at the middle of a sample.
-fn smooth(face: &Face, x: usize, y: usize) -> Option<[f32; 3]> {
-    let Corners { places, normals } = face.rounded.as_ref()?;
+fn smooth(face: &VisibleFace, x: usize, y: usize) -> Option<[f32; 3]> {
+    let RoundedCorners { places, normals } = face.rounded.as_ref()?;
     let weights = Visible::weights(*places, x, y)?;
     let between = [0, 1, 2]
         .map(|k| weights[0] * normals[0][k] + weights[1] * normals[1][k] + weights[2] * normals[2][k]);

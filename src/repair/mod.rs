@@ -35,7 +35,7 @@ pub mod weld;
 pub use draft::{Blend, Blends, Draft, FIRST_BLEND, Faced, NEW};
 pub use selection::Selection;
 pub use stars::Star;
-pub use stitches::{Join, Stitches};
+pub use stitches::{Join, Joins};
 
 /// What a step changed.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -49,7 +49,7 @@ pub struct Changes {
     /// A triangle of the soup out of each part that is gone as a whole.
     pub removed_parts: Vec<u32>,
     /// The boundary edges that became one.
-    pub stitches: Stitches,
+    pub stitches: Joins,
     /// What became of the triangles of the soup, where bodies were united.
     pub coverage: Option<unite::Coverage>,
     /// What later attempts of a repair depend on.

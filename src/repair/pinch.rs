@@ -3,7 +3,7 @@
 //!
 //! The pinching of Guéziec, Taubin, Lazarus and Horn, "Cutting and stitching" (2001).
 
-use super::{Changes, Draft, Stitches};
+use super::{Changes, Draft, Joins};
 use crate::budget::{Budget, Stopped};
 use crate::mesh::{self, Boundary, ChosenEdges, EdgeGroups, JoinRule, Validity, edge_of};
 
@@ -39,7 +39,7 @@ pub fn pinch(
     let stitched =
         mesh::stitch_faces(triangles, &outlines, vertex_count, &pairs, validity, &mut rule, budget)?;
     // Copies have one origin, so the edges have the ends that they had.
-    let stitches = Stitches::of(draft, &draft.triangles, &stitched);
+    let stitches = Joins::of(draft, &draft.triangles, &stitched);
     draft.drop_unused_vertices();
     Ok(Changes { counts: stitches.counts().to_vec(), stitches, ..Changes::default() })
 }

@@ -17,7 +17,7 @@ pub struct Join {
 
 /// The edges that a step joined: at most [`LISTED_MAX`] pairs of each kind, in the order in which they were joined.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Stitches {
+pub struct Joins {
     /// Pairs that were joined because they match.
     pub explicit: Vec<Join>,
     /// All such pairs, listed or not.
@@ -28,7 +28,7 @@ pub struct Stitches {
     pub implicit_total: u64,
 }
 
-impl Stitches {
+impl Joins {
     /// What was `stitched` of the half-edges of `triangles`, which were those of `draft` before.
     pub(super) fn of(draft: &Draft, triangles: &[[u32; 3]], stitched: &Stitched) -> Self {
         let join = |&(g, h): &(u32, u32)| Join {

@@ -1,13 +1,13 @@
 //! What a collapse costs and where the merged vertex goes: the one trait of all criteria.
 
 use super::options::Placement;
-use super::surface::{Rule, Surface, Vertex};
+use super::surface::{CollapseSurface, Rule, Vertex};
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 
 /// A place for the vertex that an edge becomes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Placed {
+pub(super) struct PlacedVertex {
     pub position: DVec3,
     /// Decides the order.
     pub cost: f64,
@@ -32,10 +32,16 @@ pub(super) trait Criterion: Sync {
     const REACH: Reach;
 
     /// Fills in the states of all vertices.
-    fn prepare(&self, surface: &mut Surface<Self::State>, budget: &Budget) -> Result<(), Stopped>;
+    fn prepare(&self, surface: &mut CollapseSurface<Self::State>, budget: &Budget) -> Result<(), Stopped>;
 
     /// The place for the edge of `h` under `rule`.
-    fn place(&self, surface: &Surface<Self::State>, h: u32, rule: Rule, placement: Placement) -> Placed;
+    fn place(
+        &self,
+        surface: &CollapseSurface<Self::State>,
+        h: u32,
+        rule: Rule,
+        placement: Placement,
+    ) -> PlacedVertex;
 
     /// The state of the vertex at `position` that `ends` became.
     fn merged(&self, ends: [&Vertex<Self::State>; 2], position: DVec3) -> Self::State;
@@ -43,6 +49,6 @@ pub(super) trait Criterion: Sync {
 
 /// The better of two places; the second when they cost the same.
 #[inline]
-pub(super) fn cheaper(a: Placed, b: Placed) -> Placed {
+pub(super) fn cheaper(a: PlacedVertex, b: PlacedVertex) -> PlacedVertex {
     if a.cost < b.cost { a } else { b }
 }

@@ -2,7 +2,7 @@
 
 use super::options::Guards;
 use super::report::Refusal;
-use super::surface::Surface;
+use super::surface::CollapseSurface;
 use crate::geom::{DVec3, are_collinear};
 use crate::mesh::corner_table::{EdgeRings, NONE, Ring, prev, triangle_of};
 
@@ -13,7 +13,7 @@ const SINE_OF_DOUBT: f64 = 1e-12;
 /// Whether the faces that stay around the edge of `h` remain sound when its ends move to `position`.
 #[inline]
 pub(super) fn check_faces<S: Copy + Default>(
-    surface: &Surface<S>,
+    surface: &CollapseSurface<S>,
     h: u32,
     rings: &EdgeRings,
     position: DVec3,
@@ -27,7 +27,7 @@ pub(super) fn check_faces<S: Copy + Default>(
 
 #[inline]
 fn check_ring<S: Copy + Default>(
-    surface: &Surface<S>,
+    surface: &CollapseSurface<S>,
     ring: &Ring,
     removed: [u32; 2],
     position: DVec3,

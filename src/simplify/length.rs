@@ -1,8 +1,8 @@
 //! The criterion of edge length: the shortest edge first.
 
-use super::criterion::{Criterion, Placed, Reach};
+use super::criterion::{Criterion, PlacedVertex, Reach};
 use super::options::Placement;
-use super::surface::{Rule, Surface, Vertex};
+use super::surface::{CollapseSurface, Rule, Vertex};
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 
@@ -15,12 +15,12 @@ impl Criterion for Length {
 
     const REACH: Reach = Reach::Star;
 
-    fn prepare(&self, _: &mut Surface<()>, _: &Budget) -> Result<(), Stopped> {
+    fn prepare(&self, _: &mut CollapseSurface<()>, _: &Budget) -> Result<(), Stopped> {
         Ok(())
     }
 
     #[inline]
-    fn place(&self, surface: &Surface<()>, h: u32, rule: Rule, placement: Placement) -> Placed {
+    fn place(&self, surface: &CollapseSurface<()>, h: u32, rule: Rule, placement: Placement) -> PlacedVertex {
         let [a, b] = surface.ends(h).map(|end| end.position);
         let position = match (rule, placement) {
             (Rule::OntoOrigin, _) => a,
@@ -28,7 +28,7 @@ impl Criterion for Length {
             (Rule::Anywhere, Placement::Optimal) => a + 0.5 * (b - a),
         };
         let cost = a.distance_squared(b);
-        Placed { position, cost, error_squared: cost }
+        PlacedVertex { position, cost, error_squared: cost }
     }
 
     #[inline]

@@ -2,13 +2,13 @@
 
 use super::marks::LINE;
 use super::options::{Borders, SimplifyOptions};
-use super::surface::Surface;
+use super::surface::CollapseSurface;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::mesh::corner_table::{NONE, triangle_of};
 
 /// Marks the lines of `surface`. `groups` has a number for each triangle, or is empty.
 pub(super) fn mark_lines<S: Copy + Default>(
-    surface: &mut Surface<S>,
+    surface: &mut CollapseSurface<S>,
     groups: &[u32],
     options: &SimplifyOptions<'_>,
     budget: &Budget,
@@ -35,7 +35,7 @@ pub(super) fn mark_lines<S: Copy + Default>(
 }
 
 fn is_line<S: Copy + Default>(
-    surface: &Surface<S>,
+    surface: &CollapseSurface<S>,
     h: u32,
     twin: u32,
     groups: &[u32],

@@ -8,10 +8,10 @@
 //! curved ones exactly. Where the paper's last tie-break, the triangles' shape, would decide, the place nearest to the
 //! middle of the edge is taken.
 
-use super::criterion::{Criterion, Placed, Reach, cheaper};
+use super::criterion::{Criterion, PlacedVertex, Reach, cheaper};
 use super::options::Placement;
 use super::quadric::Quadric;
-use super::surface::{Rule, Surface, Vertex};
+use super::surface::{CollapseSurface, Rule, Vertex};
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::corner_table::{NONE, next, prev, triangle_of};
@@ -27,7 +27,7 @@ const LENGTH_SHARE: f64 = 1e-7;
 pub(super) struct Memoryless;
 
 /// Sums over the triangles around an edge, about its destination.
-struct Around {
+struct EdgeSums {
     quadric: Quadric,
     /// Sum of the normals, each twice as long as its triangle's area.
     normal: DVec3,
@@ -43,24 +43,24 @@ impl Criterion for Memoryless {
 
     const REACH: Reach = Reach::Neighbours;
 
-    fn prepare(&self, _: &mut Surface<()>, _: &Budget) -> Result<(), Stopped> {
+    fn prepare(&self, _: &mut CollapseSurface<()>, _: &Budget) -> Result<(), Stopped> {
         Ok(())
     }
 
-    fn place(&self, surface: &Surface<()>, h: u32, rule: Rule, placement: Placement) -> Placed {
+    fn place(&self, surface: &CollapseSurface<()>, h: u32, rule: Rule, placement: Placement) -> PlacedVertex {
         let [a, b] = surface.ends(h).map(|end| end.position);
-        let around = Around::edge(surface, h, b);
+        let around = EdgeSums::edge(surface, h, b);
         let to_a = a - b;
         let weight = around.quadric.weight();
         let placed = |offset: DVec3| {
             let value = around.quadric.value(offset);
-            Placed {
+            PlacedVertex {
                 position: b + offset,
                 cost: value + LENGTH_SHARE * weight * to_a.length_squared(),
                 error_squared: if weight > 0.0 { value / weight } else { 0.0 },
             }
         };
-        let onto_a = || Placed { position: a, ..placed(to_a) };
+        let onto_a = || PlacedVertex { position: a, ..placed(to_a) };
         let onto_b = || placed(DVec3::ZERO);
         match (rule, placement) {
             (Rule::OntoOrigin, _) => onto_a(),
@@ -73,16 +73,16 @@ impl Criterion for Memoryless {
     fn merged(&self, _: [&Vertex<()>; 2], _: DVec3) {}
 }
 
-impl Around {
+impl EdgeSums {
     const NOTHING: Self =
         Self { quadric: Quadric::ZERO, normal: DVec3::ZERO, volume: 0.0, area: 0.0, has_border: false };
 
-    fn edge(surface: &Surface<()>, h: u32, about: DVec3) -> Self {
+    fn edge(surface: &CollapseSurface<()>, h: u32, about: DVec3) -> Self {
         Self::inside(surface, h, about).unwrap_or_else(|| Self::at_border(surface, h, about))
     }
 
     /// The sums for an edge whose ends are not on a border; nothing for another one. Each vertex around is read once.
-    fn inside(surface: &Surface<()>, h: u32, about: DVec3) -> Option<Self> {
+    fn inside(surface: &CollapseSurface<()>, h: u32, about: DVec3) -> Option<Self> {
         let table = &surface.table;
         let twin = table.twin(h);
         let mut sums = Self::NOTHING;
@@ -117,7 +117,7 @@ impl Around {
         Some(sums)
     }
 
-    fn at_border(surface: &Surface<()>, h: u32, about: DVec3) -> Self {
+    fn at_border(surface: &CollapseSurface<()>, h: u32, about: DVec3) -> Self {
         let mut sums = Self::NOTHING;
         let twin = surface.table.twin(h);
         for corner in surface.table.fan(h) {
@@ -135,7 +135,7 @@ impl Around {
         sums
     }
 
-    fn add_triangle(&mut self, surface: &Surface<()>, corner: u32, about: DVec3) {
+    fn add_triangle(&mut self, surface: &CollapseSurface<()>, corner: u32, about: DVec3) {
         let [p, q, r] = surface.corners(corner).map(|p| p - about);
         self.add_normal((q - p).cross(r - p), p);
     }
@@ -159,7 +159,7 @@ impl Around {
     }
 
     /// The border edges at the origin of `corner`, held by two planes each.
-    fn add_borders(&mut self, surface: &Surface<()>, corner: u32, about: DVec3) {
+    fn add_borders(&mut self, surface: &CollapseSurface<()>, corner: u32, about: DVec3) {
         for h in [corner, prev(corner)] {
             if surface.table.twin(h) == NONE {
                 let [p, q, r] = surface.corners(h).map(|p| p - about);

@@ -4,12 +4,12 @@ use super::blend::blend;
 use super::criterion::Criterion;
 use super::marks::LINE;
 use super::report::Refusal;
-use super::surface::{NEW, Rule, Surface};
+use super::surface::{CollapseSurface, NEW, Rule};
 use crate::geom::DVec3;
 use crate::mesh::Color;
 use crate::mesh::corner_table::{EdgeRings, NONE, next, prev};
 
-impl<S: Copy + Default> Surface<S> {
+impl<S: Copy + Default> CollapseSurface<S> {
     /// The very position for the vertex that the edge of `h` becomes, and the input's vertex there, if there is one.
     #[inline]
     pub(super) fn landing(

@@ -33,7 +33,7 @@ pub use fast::{simplify_fast, simplify_guarded};
 pub use mode::{Mode, simplify};
 pub use options::{Borders, CriterionKind, Envelope, Guards, Placement, SimplifyOptions, Target};
 pub use quadric::{Minimum, Quadric};
-pub use report::{Refusal, Refusals, Report};
+pub use report::{Refusal, Refusals, TargetReport};
 pub use result::{Input, Simplified, SimplifyError};
 pub use strict::simplify_strict;
 pub use surface::NEW;

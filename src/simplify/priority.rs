@@ -2,13 +2,13 @@
 
 use super::criterion::Criterion;
 use super::options::Placement;
-use super::surface::Surface;
+use super::surface::CollapseSurface;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 
 /// For each vertex of the surface the least cost of the collapses of its edges, as the criterion has it; infinite for a
 /// vertex that must stay or has no edge.
 pub(super) fn costs_of_vertices<C: Criterion>(
-    surface: &Surface<C::State>,
+    surface: &CollapseSurface<C::State>,
     criterion: &C,
     placement: Placement,
     budget: &Budget,

@@ -5,11 +5,11 @@
 //! the corpus, at a tenth of the faces, this takes a tenth off the Hausdorff distance and adds a hundredth to the mean
 //! distance.
 
-use super::criterion::{Criterion, Placed, Reach, cheaper};
+use super::criterion::{Criterion, PlacedVertex, Reach, cheaper};
 use super::marks::LINE;
 use super::options::Placement;
 use super::quadric::Quadric;
-use super::surface::{Rule, Surface, Vertex};
+use super::surface::{CollapseSurface, Rule, Vertex};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::corner_table::next;
@@ -30,7 +30,7 @@ impl Criterion for QuadricError {
 
     const REACH: Reach = Reach::Star;
 
-    fn prepare(&self, surface: &mut Surface<Quadric>, budget: &Budget) -> Result<(), Stopped> {
+    fn prepare(&self, surface: &mut CollapseSurface<Quadric>, budget: &Budget) -> Result<(), Stopped> {
         for t in 0..surface.table.triangle_bound() as u32 {
             if (t as usize).is_multiple_of(CHECK_EVERY) {
                 budget.check()?;
@@ -50,14 +50,20 @@ impl Criterion for QuadricError {
     }
 
     #[inline]
-    fn place(&self, surface: &Surface<Quadric>, h: u32, rule: Rule, placement: Placement) -> Placed {
+    fn place(
+        &self,
+        surface: &CollapseSurface<Quadric>,
+        h: u32,
+        rule: Rule,
+        placement: Placement,
+    ) -> PlacedVertex {
         let [a, b] = surface.ends(h);
         let to_a = a.position - b.position;
         let both = a.state.about(-to_a) + b.state;
         let weight = both.weight();
         let length_cost = LENGTH_SHARE * weight * to_a.length_squared();
         let evenness = if weight > 0.0 { weight.sqrt().recip() } else { 0.0 };
-        let placed = |position: DVec3, value: f64| Placed {
+        let placed = |position: DVec3, value: f64| PlacedVertex {
             position,
             cost: (value + length_cost) * evenness,
             error_squared: if weight > 0.0 { value / weight } else { 0.0 },
@@ -84,7 +90,7 @@ impl Criterion for QuadricError {
 
 impl QuadricError {
     /// Adds the wall on the edge of `h`, across the triangle of `h`, to both ends.
-    fn add_wall(&self, surface: &mut Surface<Quadric>, h: u32) {
+    fn add_wall(&self, surface: &mut CollapseSurface<Quadric>, h: u32) {
         let [p, q, r] = surface.corners(h);
         let wall = Quadric::of_wall(p, q, (q - p).cross(r - p), self.wall_weight);
         for v in [h, next(h)].map(|g| surface.table.origin(g)) {

@@ -129,7 +129,7 @@ impl Refusals {
 
 /// The state of a run at one of its targets.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Report {
+pub struct TargetReport {
     /// The target.
     pub target: Target,
     /// False when no more collapses were possible before it was reached.

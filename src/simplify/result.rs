@@ -1,8 +1,8 @@
 //! What goes in and what comes out.
 
 use super::layout::Layout;
-use super::report::Report;
-use super::surface::{NEW, Surface};
+use super::report::TargetReport;
+use super::surface::{CollapseSurface, NEW};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::Color;
@@ -61,7 +61,7 @@ pub struct Simplified {
     /// Texture coordinates of each triangle's corners; empty when the input has none.
     pub texture: Vec<[[f64; 2]; 3]>,
     /// How it came to be.
-    pub report: Report,
+    pub report: TargetReport,
 }
 
 /// Why there is no result.
@@ -88,12 +88,12 @@ impl Simplified {
     /// The state of `surface`, with the vertices that it uses in the order of the input and so the triangles. `colors`
     /// and `priorities` are those of all its vertices, or none.
     pub(super) fn snapshot<S: Copy + Default>(
-        surface: &Surface<S>,
+        surface: &CollapseSurface<S>,
         layout: &Layout,
         input: &Input<'_>,
         colors: &[Option<Color>],
         priorities: &[f64],
-        report: Report,
+        report: TargetReport,
         budget: &Budget,
     ) -> Result<Self, Stopped> {
         let mut renumbered = vec![NONE; surface.vertices.len()];

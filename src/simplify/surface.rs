@@ -13,7 +13,7 @@ pub const NEW: u32 = u32::MAX;
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
 pub(super) struct Vertex<S> {
-    /// In working units: the input's times [`Surface::scale`].
+    /// In working units: the input's times [`CollapseSurface::scale`].
     pub position: DVec3,
     pub state: S,
     /// The vertex of the input at this very position, or [`NEW`].
@@ -27,7 +27,7 @@ pub(super) struct Vertex<S> {
 }
 
 #[derive(Debug, Clone)]
-pub(super) struct Surface<S> {
+pub(super) struct CollapseSurface<S> {
     pub table: CornerTable,
     pub vertices: Vec<Vertex<S>>,
     pub wedges: Wedges,
@@ -48,7 +48,7 @@ pub(super) enum Rule {
     OntoDestination,
 }
 
-impl<S: Copy + Default> Surface<S> {
+impl<S: Copy + Default> CollapseSurface<S> {
     /// The vertices of `order`, one after the other.
     pub(super) fn new(
         positions: &[DVec3],

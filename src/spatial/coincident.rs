@@ -180,14 +180,15 @@ fn group_by_parts<K: Key>(
     budget: &Budget,
 ) -> Result<Coincident, Stopped> {
     let _charge = budget.charge(len as u64 * (size_of::<Entry<K>>() as u64 + 4 + 4 + 4))?;
-    let parts = Parts { bits: (len / PART_LEN).clamp(1, PARTS_MAX).next_power_of_two().trailing_zeros() };
+    let parts =
+        HashPartition { bits: (len / PART_LEN).clamp(1, PARTS_MAX).next_power_of_two().trailing_zeros() };
     let mut chunks = par::try_map_ranges(len, CHUNK, |range| {
         budget.check()?;
         Ok(Chunk::partition(range, &key, parts))
     })?;
     count_earlier(&mut chunks, parts);
     let firsts = par::try_map_ranges(parts.count(), PARTS_AT_A_TIME, |range| {
-        let mut table = Table::default();
+        let mut table = HashTable::default();
         range.map(|part| first_points(&chunks, part, &mut table, budget)).collect::<Result<Vec<_>, _>>()
     })?;
     let firsts: Vec<Vec<u32>> = firsts.into_iter().flatten().collect();
@@ -200,11 +201,11 @@ fn group_by_parts<K: Key>(
 }
 
 #[derive(Clone, Copy)]
-struct Parts {
+struct HashPartition {
     bits: u32,
 }
 
-impl Parts {
+impl HashPartition {
     fn count(self) -> usize {
         1 << self.bits
     }
@@ -231,7 +232,7 @@ struct Chunk<K> {
 }
 
 impl<K: Key> Chunk<K> {
-    fn partition(range: std::ops::Range<usize>, key: impl Fn(usize) -> K, parts: Parts) -> Self {
+    fn partition(range: std::ops::Range<usize>, key: impl Fn(usize) -> K, parts: HashPartition) -> Self {
         let entries: Vec<Entry<K>> = range.map(|i| Entry { key: key(i), id: i as u32 }).collect();
         let part_of: Vec<u16> = entries.iter().map(|e| parts.of(e.key.hash()) as u16).collect();
         let mut starts = vec![0u32; parts.count() + 1];
@@ -256,7 +257,7 @@ impl<K: Key> Chunk<K> {
     }
 }
 
-fn count_earlier<K: Key>(chunks: &mut [Chunk<K>], parts: Parts) {
+fn count_earlier<K: Key>(chunks: &mut [Chunk<K>], parts: HashPartition) {
     let mut earlier = vec![0; parts.count()];
     for chunk in chunks {
         chunk.earlier.clone_from(&earlier);
@@ -270,7 +271,7 @@ fn count_earlier<K: Key>(chunks: &mut [Chunk<K>], parts: Parts) {
 fn first_points<K: Key>(
     chunks: &[Chunk<K>],
     part: usize,
-    table: &mut Table<K>,
+    table: &mut HashTable<K>,
     budget: &Budget,
 ) -> Result<Vec<u32>, Stopped> {
     let len = chunks.iter().map(|c| c.part(part).len()).sum();
@@ -313,13 +314,13 @@ fn first_points_by_sorting<K: Key>(
 
 /// Open addressing with linear probing, at most half full.
 #[derive(Default)]
-struct Table<K> {
+struct HashTable<K> {
     slots: Vec<Entry<K>>,
 }
 
 const EMPTY: u32 = u32::MAX;
 
-impl<K: Key> Table<K> {
+impl<K: Key> HashTable<K> {
     /// Empties it, with room for `len` keys.
     fn clear(&mut self, len: usize) {
         self.slots.clear();

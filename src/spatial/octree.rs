@@ -7,13 +7,13 @@ use crate::geom::{Aabb, DVec3};
 #[derive(Debug)]
 pub struct Octree<'a> {
     points: &'a [DVec3],
-    nodes: Vec<Node>,
+    nodes: Vec<OctreeNode>,
     /// Ids of points, those of a leaf together.
     ids: Vec<u32>,
 }
 
 #[derive(Debug)]
-struct Node {
+struct OctreeNode {
     /// Tight around the points, so that what it says does not depend on rounded cube sides.
     bounds: Aabb,
     /// Its points in `ids`.
@@ -57,10 +57,10 @@ impl<'a> Octree<'a> {
         Ok(tree)
     }
 
-    fn leaf(&self, (from, to): (u32, u32)) -> Node {
+    fn leaf(&self, (from, to): (u32, u32)) -> OctreeNode {
         let bounds =
             Aabb::of(self.ids[from as usize..to as usize].iter().map(|&id| self.points[id as usize]));
-        Node { bounds, points: (from, to), children: (0, 0) }
+        OctreeNode { bounds, points: (from, to), children: (0, 0) }
     }
 
     /// Gives `node` a child for each octant about `center` that has points.
@@ -91,7 +91,7 @@ impl<'a> Octree<'a> {
         let mut open = vec![0];
         let mut steps = 0;
         while let Some(node) = open.pop() {
-            let Node { bounds, points: (from, to), children: (first, last) } = &self.nodes[node];
+            let OctreeNode { bounds, points: (from, to), children: (first, last) } = &self.nodes[node];
             if bounds.is_empty() || !is_within(p, p.clamp(bounds.min, bounds.max), distance) {
                 continue;
             }

@@ -25,7 +25,7 @@ pub struct FidelityChange {
 
 impl FidelityChange {
     /// `unit`: that of the file.
-    pub(super) fn new(inner: &pipeline::Change, unit: Units) -> Self {
+    pub(super) fn new(inner: &pipeline::FidelityChange, unit: Units) -> Self {
         let reason = ChangeKind::from(inner.kind);
         let percent = |share: f64| format!("{} %", short(share * 100.0));
         let (measured, limit) = (inner.measured, inner.limit);
@@ -72,12 +72,13 @@ fn short(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pipeline::{Change, ChangeKind as Kind};
+    use crate::pipeline::ChangeKind as Kind;
 
     #[test]
     fn a_change_says_how_much_and_how_much_may_be() {
         let message = |kind, measured, limit| {
-            FidelityChange::new(&Change { kind, measured, limit }, Units::Millimetre).message
+            FidelityChange::new(&pipeline::FidelityChange { kind, measured, limit }, Units::Millimetre)
+                .message
         };
         assert_eq!(
             message(Kind::Lost, 0.03512, 0.01),

@@ -9,8 +9,8 @@ use crate::formats::Encoding;
 use crate::geom::{Aabb, DVec3};
 use crate::mesh::Texture;
 use crate::pipeline::{
-    Action, Answer, Change, ChangeKind, Fidelity, FidelityVerdict, InputFacts, Operation, Outcome, Output,
-    Refusal, Report, Units,
+    Action, Answer, ChangeKind, Fidelity, FidelityChange, FidelityVerdict, InputFacts, Operation, Outcome,
+    Output, Refusal, Report, Units,
 };
 
 /// The certificate of a tetrahedron, or of one that lacks a face.
@@ -118,7 +118,7 @@ pub(crate) fn repaired() -> Answer {
         losses: None,
         fidelity: Some(FidelityVerdict {
             word: Fidelity::Changed,
-            changes: vec![Change { kind: ChangeKind::Invented, measured: 0.5, limit: 0.01 }],
+            changes: vec![FidelityChange { kind: ChangeKind::Invented, measured: 0.5, limit: 0.01 }],
         }),
         filling: None,
         modeller: None,

@@ -14,7 +14,7 @@ pub(super) const NONE: u32 = u32::MAX;
 
 /// Where an edge is cut.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Cut {
+pub(super) struct LatticeCut {
     /// Share of the edge before the cut, in steps of the lattice; clamped to 1/8 to 7/8.
     pub(super) steps: u16,
     /// The point of the input that the cut stands for, in lattice units; where there is none, the cut itself.
@@ -35,7 +35,7 @@ pub(super) fn cuts(
     surface: &InputSurface,
     edges: &[CutEdge],
     budget: &Budget,
-) -> Result<Vec<Cut>, Stopped> {
+) -> Result<Vec<LatticeCut>, Stopped> {
     let (thin_names, sheet_names) = (separate(signs.thin.len()), separate(surface.sheets().len()));
     let cutter = Cutter {
         lattice,
@@ -48,7 +48,10 @@ pub(super) fn cuts(
     let cuts = par::try_map_ranges(edges.len(), 1024, |range| {
         budget.spend(range.len() as u64 * 2)?;
         let mut found = Vec::new();
-        edges[range].iter().map(|&edge| cutter.cut(edge, &mut found)).collect::<Result<Vec<Cut>, Stopped>>()
+        edges[range]
+            .iter()
+            .map(|&edge| cutter.cut(edge, &mut found))
+            .collect::<Result<Vec<LatticeCut>, Stopped>>()
     })?;
     Ok(cuts.concat())
 }
@@ -63,7 +66,7 @@ struct Cutter<'a> {
 }
 
 impl Cutter<'_> {
-    fn cut(&self, edge: CutEdge, found: &mut Vec<Crossing>) -> Result<Cut, Stopped> {
+    fn cut(&self, edge: CutEdge, found: &mut Vec<Crossing>) -> Result<LatticeCut, Stopped> {
         let base = edge.base as usize;
         let along = [0, 1, 2].map(|a| isize::from(edge.direction >> a & 1 == 1));
         let end = base.wrapping_add_signed(self.lattice.stride(along));
@@ -92,7 +95,7 @@ impl Cutter<'_> {
         let upward = if is_up { share } else { 1.0 - share };
         let clamped = (upward * steps).round().clamp(steps / 8.0, steps * 0.875);
         let point = from.lerp(to, share);
-        Ok(Cut { steps: clamped as u16, point, triangle, why })
+        Ok(LatticeCut { steps: clamped as u16, point, triangle, why })
     }
 
     /// Share of the way from inside to outside where a value falls below its threshold, taken as linear.

@@ -23,7 +23,7 @@ mod tests;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3, triangle_area};
 use crate::winding::{self, OpenShells};
-use cut::Cut;
+use cut::LatticeCut;
 pub use fit::FitCounts;
 use lattice::Lattice;
 pub use lattice::TooCoarse;
@@ -224,8 +224,8 @@ fn choose(
 }
 
 /// The vertices where the lattice's edges are cut.
-fn places(lattice: &Lattice, patches: &Patches, cuts: &[Cut]) -> Vec<DVec3> {
-    let place = |(edge, cut): (&tetrahedra::CutEdge, &Cut)| {
+fn places(lattice: &Lattice, patches: &Patches, cuts: &[LatticeCut]) -> Vec<DVec3> {
+    let place = |(edge, cut): (&tetrahedra::CutEdge, &LatticeCut)| {
         let base = lattice.coordinates(edge.base as usize);
         lattice.place([0, 1, 2].map(|a| {
             let along = if edge.direction >> a & 1 == 1 { i64::from(cut.steps) } else { 0 };

@@ -64,7 +64,7 @@ pub(super) fn seams(sheets: &[[DVec3; 3]], budget: &Budget) -> Result<Vec<[DVec3
         pages.clear();
         pages.extend(group.iter().filter_map(|&h| {
             let apex = positions[triangles[triangle_of(h) as usize][prev_corner(h) as usize % 3] as usize];
-            Page::of(ends, apex, edge_of(&triangles, h) == [from, to])
+            SeamSheet::of(ends, apex, edge_of(&triangles, h) == [from, to])
         }));
         if pieces(&mut pages) > 1 {
             seams.push(ends);
@@ -75,14 +75,14 @@ pub(super) fn seams(sheets: &[[DVec3; 3]], budget: &Budget) -> Result<Vec<[DVec3
 
 /// A sheet that ends at an edge, seen along it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Page {
+struct SeamSheet {
     /// Its direction, in degrees from 0 to 360.
     angle: f64,
     /// Its wall is on the side of greater angles.
     is_wall_after: bool,
 }
 
-impl Page {
+impl SeamSheet {
     /// The page between the edge and `apex`, which runs along the edge or against it; `None` without an area.
     fn of([from, to]: [DVec3; 2], apex: DVec3, is_along: bool) -> Option<Self> {
         let along = (to - from).normalize_or_zero();
@@ -98,7 +98,7 @@ impl Page {
 }
 
 /// Number of pieces of the walls of `pages` around their edge. Sorts them.
-fn pieces(pages: &mut [Page]) -> usize {
+fn pieces(pages: &mut [SeamSheet]) -> usize {
     pages.sort_by(|p, q| p.angle.total_cmp(&q.angle));
     let count = pages.len();
     // Twice around, so that every wall is met on the way.
@@ -136,13 +136,13 @@ mod tests {
     use super::*;
 
     /// Walls of pages at these angles, in pieces of a degree each: behind the nearest page, or squarely behind any.
-    fn pieces_by_degrees(pages: &[Page]) -> usize {
-        let apart = |page: &Page, at: f64| (at - page.angle + 180.0).rem_euclid(360.0) - 180.0;
-        let is_behind = |page: &Page, at: f64| (apart(page, at) > 0.0) == page.is_wall_after;
+    fn pieces_by_degrees(pages: &[SeamSheet]) -> usize {
+        let apart = |page: &SeamSheet, at: f64| (at - page.angle + 180.0).rem_euclid(360.0) - 180.0;
+        let is_behind = |page: &SeamSheet, at: f64| (apart(page, at) > 0.0) == page.is_wall_after;
         let is_inside = |degree: usize| {
             let at = degree as f64 + 0.5;
             let nearest = pages.iter().min_by(|p, q| apart(p, at).abs().total_cmp(&apart(q, at).abs()));
-            let is_squarely = |page: &Page| is_behind(page, at) && apart(page, at).abs() < 90.0;
+            let is_squarely = |page: &SeamSheet| is_behind(page, at) && apart(page, at).abs() < 90.0;
             nearest.is_some_and(|page| is_behind(page, at)) || pages.iter().any(is_squarely)
         };
         // A piece begins after a gap that is not narrow.
@@ -152,7 +152,7 @@ mod tests {
 
     #[test]
     fn pieces_of_walls_are_those_of_the_definition() {
-        let page = |angle: usize, is_wall_after| Page { angle: angle as f64, is_wall_after };
+        let page = |angle: usize, is_wall_after| SeamSheet { angle: angle as f64, is_wall_after };
         let mut counts = [0; 4];
         for a in (0..360).step_by(45) {
             for b in (a + 10..a + 360).step_by(40) {

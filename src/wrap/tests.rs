@@ -282,7 +282,7 @@ fn any_signs_give_a_surface_that_is_certified() {
         let patches = tetrahedra::march(&lattice, &signs, &Budget::unlimited()).unwrap();
         let (least, most) =
             (1u64 << lattice.steps_log2 >> 3, (1u64 << lattice.steps_log2) - (1 << lattice.steps_log2 >> 3));
-        let cuts: Vec<Cut> = patches
+        let cuts: Vec<LatticeCut> = patches
             .edges
             .iter()
             .map(|_| {
@@ -290,7 +290,7 @@ fn any_signs_give_a_surface_that_is_certified() {
                     0 => [least, most][random.below(2) as usize],
                     _ => least + random.below(most - least + 1),
                 };
-                Cut {
+                LatticeCut {
                     steps: steps as u16,
                     point: DVec3::ZERO,
                     triangle: cut::NONE,

@@ -7,7 +7,8 @@ use meshmend::budget::Budget;
 use meshmend::formats::{self, Encoding, Format, ReadOptions};
 use meshmend::geom::{DVec3, closest_point_on_triangle};
 use meshmend::pipeline::{
-    Answer, ChangeKind, Fidelity, Limits, Operation, Options, Outcome, Refusal, Require, SimplifyChoices, run,
+    Answer, ChangeKind, Fidelity, FidelityLimits, Operation, Options, Outcome, Refusal, Require,
+    SimplifyChoices, run,
 };
 use meshmend::simplify::Target;
 use std::f64::consts::PI;
@@ -40,7 +41,7 @@ fn bodies_that_are_inside_out_are_exact_once_they_are_turned() {
     let inside_out = || cube().inside_out();
     let apart = inside_out().moved([5.0; 3]);
     for soup in [inside_out(), inside_out().with(&apart), cube().with(&apart)] {
-        let limits = Limits { volume_change_max: Some(1e-6), ..Limits::default() };
+        let limits = FidelityLimits { volume_change_max: Some(1e-6), ..FidelityLimits::default() };
         let options = Options { require: Some(Require::Faithful), limits, ..Options::default() };
         let turned = answer(Operation::Repair, &soup, &options);
         assert_eq!((turned.report.outcome, word(&turned)), (Some(Outcome::Repaired), Fidelity::Exact));
@@ -103,7 +104,7 @@ fn where_much_is_behind_patches_open_parts_become_walls() {
 
 #[test]
 fn a_limit_of_the_deviation_is_kept_by_what_patches_cover() {
-    let limits = Limits { deviation_max: Some(1.0), ..Limits::default() };
+    let limits = FidelityLimits { deviation_max: Some(1.0), ..FidelityLimits::default() };
     let options = Options { limits, require: Some(Require::Printable), ..Options::default() };
     let answer = answer(Operation::Repair, &cup_with_a_cube(2.0), &options);
     let distance = answer.report.distance;
@@ -179,7 +180,7 @@ fn with_fewer_triangles_volumes_are_compared_where_they_are_defined() {
 #[test]
 fn a_body_inside_another_that_turns_the_same_way_counts_for_no_volume() {
     let soup = cuboid([30.0; 3]).with(&ball(8).moved([15.0; 3]));
-    let limits = Limits { volume_change_max: Some(1e-6), ..Limits::default() };
+    let limits = FidelityLimits { volume_change_max: Some(1e-6), ..FidelityLimits::default() };
     let repaired = answer(Operation::Repair, &soup, &Options { limits, ..Options::default() });
     assert_eq!(repaired.report.outcome, Some(Outcome::Repaired), "{:?}", repaired.report.refusal);
     assert_ne!(word(&repaired), Fidelity::Changed, "{:?}", repaired.report.fidelity);

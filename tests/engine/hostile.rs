@@ -10,7 +10,7 @@ use meshmend::budget::{Budget, StopFlag};
 use meshmend::certificate::Certificate;
 use meshmend::formats::Encoding;
 use meshmend::par;
-use meshmend::pipeline::{Failure, Limits, Operation, Options, Outcome, run, work_units_max};
+use meshmend::pipeline::{Failure, FidelityLimits, Operation, Options, Outcome, run, work_units_max};
 use std::fmt::Write as _;
 
 /// Bytes that a small file may have charged at one time.
@@ -112,7 +112,7 @@ fn hostile_triangles_end_within_their_bound() {
     check_soup("copies", &soup_of(std::iter::repeat_n(one, 2000)), Encoding::StlBinary);
     let far = cube().with(&soup_of([[[20.0, 0.0, 0.0]; 3]]));
     check_soup("a degenerate triangle far away", &far, Encoding::StlBinary);
-    let limits = Limits { deviation_max: Some(1e-9), ..Limits::default() };
+    let limits = FidelityLimits { deviation_max: Some(1e-9), ..FidelityLimits::default() };
     let options = Options { limits, ..Options::default() };
     ended(Operation::Repair, "no deviation", &encode(&soup_of([one]), Encoding::StlBinary), &options);
 }

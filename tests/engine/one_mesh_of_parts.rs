@@ -4,9 +4,9 @@ use crate::threemf::{box_with_pocket, cuboid, file, mesh, model, run};
 use meshmend::budget::Budget;
 use meshmend::formats::{Encoding, Format, ReadOptions, read};
 use meshmend::mesh::{NO_OBJECT, Soup};
-use meshmend::pipeline::{Answer, Operation, Options, Outcome, Parts};
+use meshmend::pipeline::{Answer, Operation, Options, Outcome, SolidParts};
 
-fn options(parts: Parts, output_format: Option<Format>) -> Options {
+fn options(parts: SolidParts, output_format: Option<Format>) -> Options {
     Options { parts, output_format, ..Options::default() }
 }
 
@@ -33,7 +33,7 @@ fn negative_parts_are_taken_away_where_parts_are_united() {
     // A cube of 10 with a pocket of 2 inside of it.
     for bytes in box_with_pocket(["NegativeVolume", "negative_part"]) {
         for (format, per_millimetre) in [(None, 1.0), (Some(Format::Stl), 1.0), (Some(Format::Glb), 1e-3)] {
-            let answer = run(Operation::Repair, &bytes, &options(Parts::Union, format));
+            let answer = run(Operation::Repair, &bytes, &options(SolidParts::Union, format));
             assert_eq!(answer.report.outcome, Some(Outcome::Repaired), "{format:?}");
             let unit: f64 = per_millimetre;
             assert!((volume(&answer) / unit.powi(3) - 992.0).abs() < 1e-3, "{format:?}");
@@ -43,7 +43,7 @@ fn negative_parts_are_taken_away_where_parts_are_united() {
             assert!(answer.report.further_inputs.is_empty() && answer.report.operation == Operation::Repair);
         }
         // As one mesh they stay out of it, and that is told.
-        let together = run(Operation::Repair, &bytes, &options(Parts::Together, Some(Format::Stl)));
+        let together = run(Operation::Repair, &bytes, &options(SolidParts::Together, Some(Format::Stl)));
         assert_eq!((volume(&together), left_out(&together)), (1000.0, 1));
     }
 }
@@ -80,9 +80,11 @@ fn with_negative(negative: (Vec<[f64; 3]>, Vec<[u32; 3]>)) -> Vec<u8> {
 
 #[test]
 fn a_negative_part_takes_nothing_from_items_that_it_does_not_belong_to() {
-    let near = run(Operation::Repair, &two_items([5.0, 5.0, 5.0], [15.0; 3]), &options(Parts::Union, None));
+    let near =
+        run(Operation::Repair, &two_items([5.0, 5.0, 5.0], [15.0; 3]), &options(SolidParts::Union, None));
     assert!((volume(&near) - 1875.0).abs() < 1e-6);
-    let far = run(Operation::Repair, &two_items([5.0, 5.0, 5.0], [25.0; 3]), &options(Parts::Union, None));
+    let far =
+        run(Operation::Repair, &two_items([5.0, 5.0, 5.0], [25.0; 3]), &options(SolidParts::Union, None));
     assert!((volume(&far) - 2000.0).abs() < 1e-6, "it reaches the second item");
     assert!(
         far.report.remarks.iter().any(|remark| remark.contains("not taken away")),
@@ -90,11 +92,11 @@ fn a_negative_part_takes_nothing_from_items_that_it_does_not_belong_to() {
         far.report.remarks
     );
     // All that there is.
-    let all = run(Operation::Repair, &two_items([-1.0; 3], [11.0; 3]), &options(Parts::Union, None));
+    let all = run(Operation::Repair, &two_items([-1.0; 3], [11.0; 3]), &options(SolidParts::Union, None));
     assert!((volume(&all) - 1000.0).abs() < 1e-6);
     assert!(all.report.remarks.iter().all(|remark| !remark.contains("not taken away")));
     // One that lacks a triangle is mended first, and the account says so.
-    let mended = run(Operation::Repair, &open_negative(), &options(Parts::Union, None));
+    let mended = run(Operation::Repair, &open_negative(), &options(SolidParts::Union, None));
     assert!((volume(&mended) - 1875.0).abs() < 1e-6);
     assert_eq!(mended.report.outcome, Some(Outcome::Repaired));
     assert!(mended.report.actions.len() > near.report.actions.len(), "{:?}", mended.report.actions);
@@ -104,7 +106,7 @@ fn a_negative_part_takes_nothing_from_items_that_it_does_not_belong_to() {
 fn other_formats_get_each_part_as_an_object_with_its_name() {
     let bytes = two_items([4.0; 3], [6.0; 3]);
     for format in [Format::Obj, Format::Gltf] {
-        let answer = run(Operation::Convert, &bytes, &options(Parts::Separate, Some(format)));
+        let answer = run(Operation::Convert, &bytes, &options(SolidParts::Separate, Some(format)));
         let soup = soup_of(&answer);
         let names: Vec<&[u8]> = soup.objects.names.iter().map(|name| &name.object[..]).collect();
         assert_eq!(names, [b"part 1", b"part 4"], "{format:?}");
@@ -113,7 +115,7 @@ fn other_formats_get_each_part_as_an_object_with_its_name() {
         assert!((0..24).all(|t| (soup.objects.of(soup.face_of(t)) == Some(1)) == is_right(t)));
         assert!(!answer.report.remarks.iter().any(|remark| remark.contains("names of parts")));
     }
-    let stl = run(Operation::Convert, &bytes, &options(Parts::Separate, Some(Format::Stl)));
+    let stl = run(Operation::Convert, &bytes, &options(SolidParts::Separate, Some(Format::Stl)));
     assert!(
         stl.report.remarks.iter().any(|remark| remark.contains("names of parts (3)")),
         "{:?}",
@@ -121,7 +123,7 @@ fn other_formats_get_each_part_as_an_object_with_its_name() {
     );
     // One part with volumes: their names are those of groups.
     let [ranges, _] = box_with_pocket(["ModelPart", "normal_part"]);
-    let obj = soup_of(&run(Operation::Convert, &ranges, &options(Parts::Separate, Some(Format::Obj))));
+    let obj = soup_of(&run(Operation::Convert, &ranges, &options(SolidParts::Separate, Some(Format::Obj))));
     let groups: Vec<&[u8]> = obj.objects.names.iter().map(|name| &name.group[..]).collect();
     assert_eq!((groups, &obj.objects.of_face[11..13]), (vec![&b"pocket"[..]], &[NO_OBJECT, 0][..]));
     let one = file(&model(

@@ -8,8 +8,8 @@ use crate::solids::cube;
 use meshmend::analysis::{Analysis, DefectCode};
 use meshmend::formats::Encoding;
 use meshmend::pipeline::{
-    Answer, ChosenPlan, ChosenRemedy, Effort, FillHoles, Limits, Options, Outcome, Refusal, Remedy, Report,
-    SimplifyChoices, WrapChoices,
+    Answer, ChosenPlan, ChosenRemedy, Effort, FidelityLimits, FillHoles, Options, Outcome, Refusal, Remedy,
+    Report, SimplifyChoices, WrapChoices,
 };
 use meshmend::simplify::Target;
 use meshmend::winding::OpenShells;
@@ -113,7 +113,7 @@ fn what_is_too_far_away_is_moved_to_the_origin_where_that_is_allowed() {
 fn what_is_farther_than_the_caller_allows_is_refused_with_the_least_there_is() {
     let bytes = encode(&crossing(), Encoding::Obj);
     let with = |limits| answer(&bytes, &Options { limits, ..rebuilding() });
-    let deviation = |limit| with(Limits { deviation_max: Some(limit), ..Limits::default() });
+    let deviation = |limit| with(FidelityLimits { deviation_max: Some(limit), ..FidelityLimits::default() });
     let Refusal::DeviationBeyondLimit { deviation: least, found, limit } = *refused(&deviation(1e-6)) else {
         panic!("another refusal")
     };
@@ -127,7 +127,7 @@ fn a_change_of_a_defined_volume_beyond_the_limit_is_refused() {
     let bytes = encode(&ball(12), Encoding::Obj);
     let fewer = SimplifyChoices { targets: vec![Target::Faces(40)], ..SimplifyChoices::default() };
     let change = |limit| {
-        let limits = Limits { volume_change_max: Some(limit), ..Limits::default() };
+        let limits = FidelityLimits { volume_change_max: Some(limit), ..FidelityLimits::default() };
         answer(&bytes, &Options { limits, simplify: fewer.clone(), ..coarse() })
     };
     let made = change(0.9).report;
@@ -192,7 +192,7 @@ fn more_effort_comes_closer_where_the_caller_demands_it() {
     let bytes = encode(&crossing(), Encoding::Obj);
     let least = |effort| {
         let wrap = WrapChoices { effort, ..WrapChoices::default() };
-        let limits = Limits { deviation_max: Some(1e-9), ..Limits::default() };
+        let limits = FidelityLimits { deviation_max: Some(1e-9), ..FidelityLimits::default() };
         let answer = answer(&bytes, &Options { wrap, limits, ..rebuilding() });
         let Refusal::DeviationBeyondLimit { deviation, .. } = *refused(&answer) else {
             panic!("another refusal")

@@ -7,7 +7,8 @@ use meshmend::budget::Budget;
 use meshmend::formats::{self, Encoding, Format, ReadOptions};
 use meshmend::mesh::{Color, Soup};
 use meshmend::pipeline::{
-    Answer, Limits, Operation, Options, Outcome, Output, Refusal, Require, SimplifyChoices, VertexColors, run,
+    Answer, FidelityLimits, Operation, Options, Outcome, Output, Refusal, Require, SimplifyChoices,
+    VertexColors, run,
 };
 use meshmend::simplify::{Mode, Placement, Target};
 
@@ -207,7 +208,7 @@ fn a_simplified_repair_says_how_far_it_is_and_keeps_the_limits_of_the_caller() {
     let repaired = |targets: &[usize], limit| {
         let targets = targets.iter().map(|&count| Target::Faces(count)).collect();
         let simplify = SimplifyChoices { targets, ..SimplifyChoices::default() };
-        let limits = Limits { deviation_max: limit, ..Limits::default() };
+        let limits = FidelityLimits { deviation_max: limit, ..FidelityLimits::default() };
         let options = Options { simplify, limits, ..Options::default() };
         run(Operation::Repair, &bytes, &options, &Budget::unlimited()).unwrap()
     };

@@ -1,7 +1,7 @@
 //! Faces without area beside a valid body: they go, and nothing else happens.
 
 use crate::repair::{answer, count};
-use meshmend::pipeline::{Limits, Options, Outcome};
+use meshmend::pipeline::{FidelityLimits, Options, Outcome};
 
 /// A cube of side 10 of squares.
 const CUBE: &str = "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 10 10 0\nv 0 0 10\nv 10 0 10\nv 0 10 10\nv 10 10 10\n\
@@ -33,7 +33,7 @@ fn a_face_without_area_goes_and_the_cube_beside_it_keeps_every_bit() {
         for place in [[20.0, 5.0, 5.0], [2e4, -3e4, 5.0], [10.5, 10.5, 10.5], [3.0, 4.0, 5.0]] {
             let text = format!("{CUBE}{}{face}", row(place));
             // A limit that only a result at no distance meets.
-            let limits = Limits { deviation_max: Some(1e-3), volume_change_max: Some(0.0) };
+            let limits = FidelityLimits { deviation_max: Some(1e-3), volume_change_max: Some(0.0) };
             for options in [Options::default(), Options { limits, ..Options::default() }] {
                 let answer = answer(text.as_bytes(), &options);
                 let report = &answer.report;

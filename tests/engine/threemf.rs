@@ -7,7 +7,7 @@ use meshmend::formats::threemf::{ObjectKind, Project, read_project};
 use meshmend::formats::{self, Encoding, Format, Place, ReadErrorKind, ReadOptions, read, sniff};
 use meshmend::mesh::{Color, Units};
 use meshmend::pipeline::{
-    self, Answer, Failure, HoleOutcome, Operation, Options, Outcome, Parts, PictureChoices, Require,
+    self, Answer, Failure, HoleOutcome, Operation, Options, Outcome, PictureChoices, Require, SolidParts,
 };
 use meshmend::render::View;
 use std::fmt::Write as _;
@@ -343,7 +343,7 @@ fn a_transform_is_applied_once_and_a_mirror_keeps_the_outside_out() {
     let xs: Vec<f64> = scene.positions[..8].iter().map(|p| p.x).collect();
     assert!(xs.iter().all(|x| (-7.0..=-5.0).contains(x)), "{xs:?}");
     assert!(scene.positions[..8].iter().all(|p| (7.0..=9.0).contains(&p.y)));
-    let together = Options { parts: Parts::Together, ..Options::default() };
+    let together = Options { parts: SolidParts::Together, ..Options::default() };
     let verified = run(Operation::Verify, &bytes, &together);
     assert!(verified.report.input_certificate.is_printable());
     // STL names no unit: what it holds is millimetres.
@@ -709,10 +709,10 @@ fn parts_become_one_solid_only_when_that_is_asked() {
     let build = "<item objectid=\"1\"/><item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 1 1 1\"/>";
     let bytes = file(&model("", &cube, build));
     let of = |operation, parts| run(operation, &bytes, &Options { parts, ..Options::default() });
-    assert!(of(Operation::Verify, Parts::Separate).report.input_certificate.is_printable());
-    assert!(!of(Operation::Verify, Parts::Together).report.input_certificate.is_printable());
-    assert_eq!(of(Operation::Repair, Parts::Separate).report.outcome, Some(Outcome::Identical));
-    for parts in [Parts::Together, Parts::Union] {
+    assert!(of(Operation::Verify, SolidParts::Separate).report.input_certificate.is_printable());
+    assert!(!of(Operation::Verify, SolidParts::Together).report.input_certificate.is_printable());
+    assert_eq!(of(Operation::Repair, SolidParts::Separate).report.outcome, Some(Outcome::Identical));
+    for parts in [SolidParts::Together, SolidParts::Union] {
         let united = of(Operation::Repair, parts);
         let certificate = united.report.certificate.clone().unwrap();
         assert!(certificate.is_printable());
@@ -729,7 +729,7 @@ fn parts_that_were_mended_and_needed_no_union_are_told_as_mended() {
     let objects = format!("<object id=\"1\">{}</object>", mesh(&points, &open, |_| String::new()));
     let build = "<item objectid=\"1\"/><item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 5 0 0\"/>";
     let bytes = file(&model("", &objects, build));
-    let answer = run(Operation::Repair, &bytes, &Options { parts: Parts::Union, ..Options::default() });
+    let answer = run(Operation::Repair, &bytes, &Options { parts: SolidParts::Union, ..Options::default() });
     let report = &answer.report;
     assert_eq!(report.outcome, Some(Outcome::Repaired));
     assert_eq!(report.parts[0].report.outcome, Some(Outcome::Repaired));
@@ -742,7 +742,7 @@ fn parts_that_were_mended_and_needed_no_union_are_told_as_mended() {
     assert!(report.remarks.iter().all(|remark| !remark.contains("takes the place")), "{:?}", report.remarks);
     // A file whose parts are sound and apart is the very file that came.
     let sound = file(&model("", &format!("<object id=\"1\">{}</object>", plain_cuboid(1.0)), build));
-    let answer = run(Operation::Repair, &sound, &Options { parts: Parts::Union, ..Options::default() });
+    let answer = run(Operation::Repair, &sound, &Options { parts: SolidParts::Union, ..Options::default() });
     assert_eq!(answer.report.outcome, Some(Outcome::Identical));
     assert_eq!(answer.output.unwrap().bytes, None);
 }
@@ -909,13 +909,13 @@ fn a_picture_shows_every_part_at_its_places_with_the_defects_of_its_own() {
         |(id, x): (u32, f64)| format!("<item objectid=\"{id}\" transform=\"1 0 0 0 1 0 0 0 1 {x} 0 0\"/>");
     let build: String = [(1, 0.0), (2, 5.0), (3, 30.0), (3, 50.0)].map(item).concat();
     let bytes = file(&model("unit=\"millimeter\"", &objects, &build));
-    let picture = |operation: Operation, parts: Parts| {
+    let picture = |operation: Operation, parts: SolidParts| {
         let choices = PictureChoices { views: vec![View::Front], ..PictureChoices::default() };
         let options = Options { parts, picture: Some(choices), ..Options::default() };
         let answer = run(operation, &bytes, &options);
         pixels(&answer.picture.expect("a picture"))
     };
-    let (width, drawn) = picture(Operation::Render, Parts::Separate);
+    let (width, drawn) = picture(Operation::Render, SolidParts::Separate);
     assert_eq!((width, drawn.len()), (480, 480 * 360));
     let is_blue = |x: usize| matches!(drawn[180 * width + x], [r, _, b] if b > r.saturating_add(40));
     // 60 mm are nine tenths of the width: a box is 72 pixels wide, and the first begins 24 pixels from the left.
@@ -927,13 +927,13 @@ fn a_picture_shows_every_part_at_its_places_with_the_defects_of_its_own() {
     assert!(drawn[..180 * width].contains(&RIM));
     assert!(!drawn.contains(&CROSSING), "parts that meet are no defect of either");
     assert_eq!(
-        picture(Operation::Analyze, Parts::Separate),
+        picture(Operation::Analyze, SolidParts::Separate),
         (width, drawn),
         "the same beside another operation"
     );
-    let (_, together) = picture(Operation::Render, Parts::Together);
+    let (_, together) = picture(Operation::Render, SolidParts::Together);
     assert!(together.contains(&CROSSING) && together.contains(&RIM));
-    let (width, mended) = picture(Operation::Repair, Parts::Separate);
+    let (width, mended) = picture(Operation::Repair, SolidParts::Separate);
     assert_eq!(width, 960, "before and after");
     assert!(mended.iter().any(|&[r, g, b]| g > r.saturating_add(50) && g > b), "the new lid");
 }

@@ -36,7 +36,7 @@ fn main() -> ExitCode {
         Some(jobs::RUN_JOB) => jobs::run_job(engine::run),
         Some("serve") => cli::run(
             std::env::args_os(),
-            cli::Service {
+            cli::ServiceHooks {
                 serve: http::start,
                 check: http::check,
                 healthcheck: http::healthcheck,

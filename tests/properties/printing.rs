@@ -6,7 +6,7 @@ use meshmend::budget::Budget;
 use meshmend::distance::{Areas, Surface};
 use meshmend::geom::DVec3;
 use meshmend::mesh::Soup;
-use meshmend::printing::{Direction, Limit, Policy, Printing, measure};
+use meshmend::printing::{BuildDirection, Limit, Policy, Printing, measure};
 use std::f64::consts::{PI, TAU};
 
 /// A sphere with dents, anywhere.
@@ -130,8 +130,8 @@ fn shadow_and_support_are_what_points_and_faces_one_by_one_give() {
         let mut random = Random::new(seed as u64);
         let soup = dented_sphere(&mut random);
         let axis = random.below(3);
-        let direction = Direction::ALL[2 * axis + random.below(2)];
-        let sign = if direction == Direction::ALL[2 * axis] { 1.0 } else { -1.0 };
+        let direction = BuildDirection::ALL[2 * axis + random.below(2)];
+        let sign = if direction == BuildDirection::ALL[2 * axis] { 1.0 } else { -1.0 };
         let limit = Limit { warning: Some(20.0 + 40.0 * random.unit()), error: None };
         let policy = Policy { overhang: limit, build_direction: direction, ..Policy::default() };
         let of = measured(&soup, &policy).figures;

@@ -6,7 +6,8 @@ use meshmend::budget::Budget;
 use meshmend::geom::DVec3;
 use meshmend::par;
 use meshmend::render::{
-    Camera, Direction, Edges, Frame, Model, Projection, Scene, Shade, Style, View, draw, visible_triangles,
+    Camera, DrawnEdges, Model, PictureAxes, Projection, Scene, SceneFrame, Shade, Style, View, draw,
+    visible_triangles,
 };
 
 const SIDE: u32 = 48;
@@ -33,11 +34,11 @@ fn soup(random: &mut Random) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     (positions, triangles)
 }
 
-fn direction(random: &mut Random) -> Direction {
+fn direction(random: &mut Random) -> PictureAxes {
     if random.one_in(2) {
         return random.pick(&View::ALL).direction();
     }
-    Direction::around(360.0 * random.unit(), 170.0 * random.unit() - 85.0)
+    PictureAxes::around(360.0 * random.unit(), 170.0 * random.unit() - 85.0)
 }
 
 /// How far along the ray it meets the triangle.
@@ -75,7 +76,7 @@ fn round(seed: u64, number: usize) -> (usize, usize) {
     let (positions, triangles) = soup(random);
     let scene = Scene { positions: &positions, triangles: &triangles, palette: &PALETTE, ..Scene::default() };
     let budget = Budget::unlimited();
-    let model = Model::of(scene, Frame::around([scene.bounds()]), Shade::Flat, &budget).unwrap();
+    let model = Model::of(scene, SceneFrame::around([scene.bounds()]), Shade::Flat, &budget).unwrap();
     let projection = random.pick(&[Projection::Orthographic, Projection::Perspective]);
     let camera = Camera::at(&[&model], direction(random), projection, 1.0, &budget).unwrap();
     let seen = visible_triangles(&model, &camera, SIDE, SIDE, &budget).unwrap();
@@ -117,7 +118,7 @@ fn at_the_middle_of_each_pixel_the_triangle_is_seen_that_a_ray_meets_first() {
 
 #[test]
 fn pictures_of_random_soups_are_the_same_with_one_two_and_eight_threads() {
-    let style = Style { edges: Edges::All, background: [255; 3], back: Some([200, 0, 0]) };
+    let style = Style { edges: DrawnEdges::All, background: [255; 3], back: Some([200, 0, 0]) };
     for number in 0..cases(10, 300) {
         let picture = |threads| {
             par::with_threads(threads, || {
@@ -130,7 +131,7 @@ fn pictures_of_random_soups_are_the_same_with_one_two_and_eight_threads() {
                     ..Scene::default()
                 };
                 let budget = Budget::unlimited();
-                let frame = Frame::around([scene.bounds()]);
+                let frame = SceneFrame::around([scene.bounds()]);
                 let model = Model::of(scene, frame, Shade::Smooth, &budget).unwrap();
                 let camera =
                     Camera::at(&[&model], direction(random), Projection::Perspective, 1.5, &budget).unwrap();

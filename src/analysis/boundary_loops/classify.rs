@@ -75,7 +75,7 @@ pub(super) const MOUTH_SHARE_MIN: f64 = 0.5;
 
 /// What is known of the part that a loop belongs to.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Around {
+pub(super) struct LoopContext {
     /// It bounds no volume.
     pub(super) is_sheet: bool,
     /// Its area, in square units of the file.
@@ -97,7 +97,7 @@ pub(super) struct Around {
 }
 
 /// The class of a closed loop.
-pub(super) fn classify(shape: &Shape, around: &Around) -> HoleGuess {
+pub(super) fn classify(shape: &Shape, around: &LoopContext) -> HoleGuess {
     // Longer than the diagonal of the part is as large as a hole gets.
     let size = (shape.length / around.diagonal).min(1.0);
     let size = if size.is_nan() { 1.0 } else { size };
@@ -128,13 +128,13 @@ pub(super) fn classify(shape: &Shape, around: &Around) -> HoleGuess {
     HoleGuess { class, confidence: to_cents(confidence) }
 }
 
-fn is_face(shape: &Shape, around: &Around) -> bool {
+fn is_face(shape: &Shape, around: &LoopContext) -> bool {
     let edges_max = around.polygon_corners.clamp(FACE_EDGES_MAX, POLYGON_EDGES_MAX);
     shape.edges <= edges_max && shape.deviation <= FACE_WARP_MAX * shape.diameter
 }
 
 /// True for the mouth of a vessel or the end of a pipe, if it is flat.
-pub(super) fn is_mouth(around: &Around) -> bool {
+pub(super) fn is_mouth(around: &LoopContext) -> bool {
     around.mouth_share >= MOUTH_SHARE_MIN
 }
 
@@ -149,7 +149,7 @@ mod tests {
     use crate::geom::DVec3;
 
     /// A flat hexagon of diameter 2 and its part, a hundred times as large.
-    fn hexagon() -> (Shape, Around) {
+    fn hexagon() -> (Shape, LoopContext) {
         let shape = Shape {
             edges: 6,
             length: 6.0,
@@ -160,7 +160,7 @@ mod tests {
             width: 2.0,
             is_around: true,
         };
-        let around = Around {
+        let around = LoopContext {
             is_sheet: false,
             area: 1e4,
             diagonal: 200.0,
@@ -173,7 +173,7 @@ mod tests {
         (shape, around)
     }
 
-    fn class(change: impl Fn(&mut Shape, &mut Around)) -> HoleClass {
+    fn class(change: impl Fn(&mut Shape, &mut LoopContext)) -> HoleClass {
         let (mut shape, mut around) = hexagon();
         change(&mut shape, &mut around);
         let guess = classify(&shape, &around);
@@ -195,7 +195,7 @@ mod tests {
 
     #[test]
     fn a_small_loop_in_a_sheet_is_a_hole_in_it_and_a_strip_is_no_crack() {
-        let small = |_: &mut Shape, around: &mut Around| {
+        let small = |_: &mut Shape, around: &mut LoopContext| {
             (around.is_sheet, around.longest) = (true, 100.0);
         };
         assert_eq!(class(small), HoleClass::PlanarCut);

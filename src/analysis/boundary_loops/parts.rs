@@ -1,7 +1,7 @@
 //! The parts that loops belong to, as far as the class of a loop depends on them.
 
 use super::Loops;
-use super::classify::{Around, FLAT_SHARE_MAX, MOUTH_SHARE_MIN, classify, is_mouth};
+use super::classify::{FLAT_SHARE_MAX, LoopContext, MOUTH_SHARE_MIN, classify, is_mouth};
 use super::gaps::gaps;
 use super::shape::Shape;
 use crate::analysis::Context;
@@ -31,7 +31,7 @@ pub(super) fn classify_all(loops: &mut Loops, cx: &Context<'_>) -> Result<(), St
         // Longest first; the order of the file decides between equal ones.
         numbers.sort_by(|a, b| length(b).total_cmp(&length(a)));
         let (area, diagonal) = size(part, cx)?;
-        let around = Around {
+        let around = LoopContext {
             is_sheet: cx.sheets.binary_search(&part).is_ok(),
             area,
             diagonal,
@@ -45,11 +45,11 @@ pub(super) fn classify_all(loops: &mut Loops, cx: &Context<'_>) -> Result<(), St
         for (place, number) in numbers.iter().enumerate().take(MOUTHS_MAX) {
             mouths[place] = mouth_share(*number, part, loops, cx)?;
         }
-        let is_open = |share: f64| is_mouth(&Around { mouth_share: share, ..around });
+        let is_open = |share: f64| is_mouth(&LoopContext { mouth_share: share, ..around });
         let mouth_count = mouths.iter().filter(|&&share| is_open(share)).count();
         for (&number, mouth_share) in numbers.iter().zip(mouths) {
             let has_other_mouth = mouth_count > usize::from(is_open(mouth_share));
-            let around = Around { gap: gaps[number], mouth_share, has_other_mouth, ..around };
+            let around = LoopContext { gap: gaps[number], mouth_share, has_other_mouth, ..around };
             if let Some((shape, guess)) = &mut loops.known[number] {
                 if around.gap.is_finite() {
                     shape.width = shape.width.min(around.gap);

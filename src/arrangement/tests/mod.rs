@@ -3,7 +3,7 @@
 mod cases;
 mod oracle;
 
-use super::{Arrangement, ArrangementError, Options, Placed, arrange, arrange_enclosed};
+use super::{Arrangement, ArrangementError, ArrangementOptions, PlacedBoundary, arrange, arrange_enclosed};
 use crate::budget::{Budget, StopFlag, Stopped};
 use crate::geom::{DVec3, are_collinear};
 use crate::mesh::EdgeGroups;
@@ -12,7 +12,7 @@ use crate::spatial::{Bvh, Search, self_contacts};
 use cases::{Bodies, Random, cube, tetrahedron};
 
 fn arranged(bodies: &Bodies) -> Result<Arrangement, ArrangementError> {
-    let options = Options { operands: 2, ..Options::default() };
+    let options = ArrangementOptions { operands: 2, ..ArrangementOptions::default() };
     let operand_of = |t: u32| bodies.operands[t as usize];
     arrange(&bodies.positions, &bodies.triangles, operand_of, &options, &Budget::unlimited())
 }
@@ -185,8 +185,8 @@ fn what_is_open_too_much_or_stopped_is_refused_as_such() {
     let mut open = Bodies::default();
     open.add(cube([0, 0, 0], [2, 2, 2], 0), 0);
     open.add(cube([1, 1, 1], [3, 3, 3], 0), 0);
-    let pairs = Options { pairs_max: 3, operands: 2 };
-    let run = |bodies: &Bodies, options: &Options, budget: &Budget| {
+    let pairs = ArrangementOptions { pairs_max: 3, operands: 2 };
+    let run = |bodies: &Bodies, options: &ArrangementOptions, budget: &Budget| {
         let operand_of = |t: u32| bodies.operands[t as usize];
         arrange(&bodies.positions, &bodies.triangles, operand_of, options, budget).map(|_| ())
     };
@@ -196,16 +196,22 @@ fn what_is_open_too_much_or_stopped_is_refused_as_such() {
     let stopped = Budget::new(stop.clone(), u64::MAX, u64::MAX);
     stop.cancel();
     let cancelled = Err(ArrangementError::Stopped(Stopped::Cancelled));
-    assert_eq!(run(&open, &Options::default(), &stopped), cancelled);
+    assert_eq!(run(&open, &ArrangementOptions::default(), &stopped), cancelled);
     let little = Budget::new(StopFlag::default(), 100, u64::MAX);
     assert!(matches!(
-        run(&open, &Options::default(), &little),
+        run(&open, &ArrangementOptions::default(), &little),
         Err(ArrangementError::Stopped(Stopped::Work { .. }))
     ));
     open.triangles.pop();
-    assert!(matches!(run(&open, &Options::default(), &unlimited), Err(ArrangementError::NotClosed { .. })));
+    assert!(matches!(
+        run(&open, &ArrangementOptions::default(), &unlimited),
+        Err(ArrangementError::NotClosed { .. })
+    ));
     open.positions[0].x = f64::NAN;
-    assert!(matches!(run(&open, &Options::default(), &unlimited), Err(ArrangementError::NotFinite { .. })));
+    assert!(matches!(
+        run(&open, &ArrangementOptions::default(), &unlimited),
+        Err(ArrangementError::NotFinite { .. })
+    ));
 }
 
 #[test]
@@ -283,7 +289,7 @@ fn what_nothing_passes_through_any_more_is_whole_again() {
 }
 
 /// Pairs of all triangles that meet, and triangles without an area.
-fn conflicts(Placed { positions, triangles, .. }: &Placed) -> u64 {
+fn conflicts(PlacedBoundary { positions, triangles, .. }: &PlacedBoundary) -> u64 {
     let budget = Budget::unlimited();
     let has_area = |&t: &u32| {
         let [a, b, c] = triangles[t as usize].map(|p| positions[p as usize]);

@@ -1,7 +1,7 @@
 //! What must hold of an arrangement, decided naively in integers of the tests' own: all pairs of pieces, all sides of pieces.
 
 use super::cases::Bodies;
-use crate::arrangement::{Arrangement, Merged, Surface};
+use crate::arrangement::{Arrangement, Merged, SolidBoundary};
 use num_bigint::BigInt;
 use num_rational::Ratio;
 use num_traits::{ToPrimitive, Zero};
@@ -264,7 +264,7 @@ pub(super) fn volumes(arrangement: &Arrangement) -> Vec<String> {
 /// What must hold of a boundary after its pieces were merged.
 pub(super) fn breaches_of_merged(
     arrangement: &Arrangement,
-    boundary: &Surface,
+    boundary: &SolidBoundary,
     merged: &Merged,
 ) -> Vec<String> {
     let mut broken = Vec::new();

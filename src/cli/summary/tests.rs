@@ -91,7 +91,7 @@ fn a_refusal_says_why_and_that_nothing_was_written() {
 fn level(target: Target, refused: &[(Refusal, u64)], is_reached: bool) -> pipeline::Level {
     let mut refusals = Refusals::default();
     refused.iter().for_each(|&(reason, count)| refusals.add_times(reason, count));
-    let simplified = simplify::Report {
+    let simplified = simplify::TargetReport {
         target,
         is_reached,
         faces_before: 100,

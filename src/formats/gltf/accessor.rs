@@ -1,7 +1,7 @@
 //! Typed elements of buffers, sparse and normalized ones among them.
 
-use super::buffers::{Buffers, View};
-use super::part::{List, Part};
+use super::buffers::{BufferView, Buffers};
+use super::part::{List, LocatedValue};
 use crate::budget::{Budget, CHECK_EVERY, Charge};
 use crate::formats::{Place, ReadError};
 use std::borrow::Cow;
@@ -134,7 +134,7 @@ impl Accessors<'_> {
     fn with_sparse<'s>(
         &'s self,
         base: Accessor<'s>,
-        sparse: &Part<'_>,
+        sparse: &LocatedValue<'_>,
         element: usize,
     ) -> Result<Accessor<'s>, ReadError> {
         let count = sparse.need("count")?;
@@ -142,9 +142,9 @@ impl Accessors<'_> {
         let len = len.ok_or_else(|| count.wrong("no more than the accessor has elements"))?;
         let (indices, values) = (sparse.need("indices")?, sparse.need("values")?);
         let component = component_of(&indices)?;
-        let bytes_of = |part: &Part<'_>, element| {
+        let bytes_of = |part: &LocatedValue<'_>, element| {
             let view = self.buffers.view(&part.need("bufferView")?)?;
-            let packed = View { stride: None, ..view };
+            let packed = BufferView { stride: None, ..view };
             elements(packed, part.count("byteOffset")?.unwrap_or(0), len, element, &part.pointer)
         };
         let index_bytes = bytes_of(&indices, component.bytes())?;
@@ -171,7 +171,7 @@ impl Accessors<'_> {
     }
 }
 
-fn component_of(part: &Part<'_>) -> Result<Component, ReadError> {
+fn component_of(part: &LocatedValue<'_>) -> Result<Component, ReadError> {
     let code = part.need("componentType")?;
     let component = code.value.as_u64().and_then(Component::of);
     component.ok_or_else(|| code.wrong("5120, 5121, 5122, 5123, 5125 or 5126"))
@@ -179,7 +179,7 @@ fn component_of(part: &Part<'_>) -> Result<Component, ReadError> {
 
 /// The bytes of `len` elements from byte `begin` of `view` on.
 fn elements<'v>(
-    view: View<'v>,
+    view: BufferView<'v>,
     begin: u64,
     len: u64,
     element: usize,

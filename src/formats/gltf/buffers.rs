@@ -1,7 +1,7 @@
 //! The bytes behind a glTF document: buffers and the views into them.
 
 use super::meshopt::{self, Compressed};
-use super::part::{List, Part};
+use super::part::{List, LocatedValue};
 use crate::budget::{Budget, Charge, Stopped};
 use crate::formats::{Place, ReadError, ReadErrorKind};
 use base64::Engine as _;
@@ -33,7 +33,7 @@ enum Buffer<'a> {
 
 /// Bytes of a buffer view.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct View<'v> {
+pub(super) struct BufferView<'v> {
     pub(super) bytes: &'v [u8],
     /// Bytes from one element to the next, where they are not packed.
     pub(super) stride: Option<usize>,
@@ -42,7 +42,7 @@ pub(super) struct View<'v> {
 impl<'a> Buffers<'a> {
     /// The buffers of the document `root`, of which the first is `binary` if it names no other place.
     pub(super) fn of(
-        root: &Part<'a>,
+        root: &LocatedValue<'a>,
         binary: Option<&'a [u8]>,
         budget: &'a Budget,
     ) -> Result<Self, ReadError> {
@@ -73,7 +73,7 @@ impl<'a> Buffers<'a> {
 
     /// How many bytes the view that `part` names by its number is said to hold, if it is compressed: no more than its stream
     /// can make.
-    pub(super) fn decoded_bytes(&self, part: &Part<'_>) -> Result<Option<u64>, ReadError> {
+    pub(super) fn decoded_bytes(&self, part: &LocatedValue<'_>) -> Result<Option<u64>, ReadError> {
         let view = self.views.item(part.as_index(&self.views)?);
         let Some(compressed) = Compressed::of(&view)? else { return Ok(None) };
         compressed.check_length(self.bytes_of(&compressed.part)?)?;
@@ -81,7 +81,7 @@ impl<'a> Buffers<'a> {
     }
 
     /// The view that `part` names by its number.
-    pub(super) fn view(&self, part: &Part<'_>) -> Result<View<'_>, ReadError> {
+    pub(super) fn view(&self, part: &LocatedValue<'_>) -> Result<BufferView<'_>, ReadError> {
         let number = part.as_index(&self.views)?;
         let view = self.views.item(number);
         let stride = view.count("byteStride")?.filter(|&stride| stride != 0).map(|stride| stride as usize);
@@ -89,7 +89,7 @@ impl<'a> Buffers<'a> {
             None => self.bytes_of(&view)?,
             Some(compressed) => self.decoded(number, &compressed)?,
         };
-        Ok(View { bytes, stride })
+        Ok(BufferView { bytes, stride })
     }
 
     /// What the view number `number` holds.
@@ -102,7 +102,7 @@ impl<'a> Buffers<'a> {
     }
 
     /// The bytes of a buffer that `view` names.
-    fn bytes_of(&self, view: &Part<'_>) -> Result<&[u8], ReadError> {
+    fn bytes_of(&self, view: &LocatedValue<'_>) -> Result<&[u8], ReadError> {
         let buffer = view.need("buffer")?;
         let number = buffer.value.as_u64().filter(|&i| i < self.buffers.len() as u64);
         let number = number.ok_or_else(|| buffer.wrong("the number of a buffer"))?;
@@ -132,7 +132,7 @@ impl<'a> Buffers<'a> {
 const IN_THE_FILE: &str = "a file that holds all of its buffers: GLB, or data URIs in base64";
 
 /// True when `part` uses the extension.
-pub(super) fn has_extension(part: &Part<'_>, name: &str) -> bool {
+pub(super) fn has_extension(part: &LocatedValue<'_>, name: &str) -> bool {
     part.get("extensions").is_some_and(|extensions| extensions.get(name).is_some())
 }
 
@@ -146,7 +146,7 @@ pub(super) fn compressed_by_draco() -> ReadError {
 /// The bytes of a data URI; the inner error: it names something that is not in the file.
 #[allow(clippy::type_complexity, reason = "two ways to fail, of which one may not matter")]
 pub(super) fn decode<'b>(
-    uri: &Part<'_>,
+    uri: &LocatedValue<'_>,
     budget: &'b Budget,
 ) -> Result<Result<(Vec<u8>, Charge<'b>), ReadError>, Stopped> {
     budget.check()?;

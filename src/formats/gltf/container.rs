@@ -10,7 +10,7 @@ const JSON: u32 = 0x4E4F_534A;
 const BIN: u32 = 0x004E_4942;
 
 /// What a file consists of.
-pub(super) struct Content<'a> {
+pub(super) struct ContainerContent<'a> {
     json: &'a [u8],
     /// Where the JSON text begins in the file.
     json_begin: usize,
@@ -18,7 +18,7 @@ pub(super) struct Content<'a> {
     pub(super) binary: Option<&'a [u8]>,
 }
 
-impl<'a> Content<'a> {
+impl<'a> ContainerContent<'a> {
     /// The chunks of a GLB file; others than the two that are known are skipped, as well as bytes after the announced length.
     pub(super) fn of_glb(bytes: &'a [u8]) -> Result<Self, ReadError> {
         let word =

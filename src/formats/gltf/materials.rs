@@ -1,7 +1,7 @@
 //! The materials of a document with their textures and pictures, kept as they stand.
 
 use super::buffers::{Buffers, decode};
-use super::part::{List, Part};
+use super::part::{List, LocatedValue};
 use super::references::is_reference;
 use crate::budget::{Budget, Charge};
 use crate::formats::{ReadError, ReadErrorKind};
@@ -22,7 +22,7 @@ pub(super) struct FileMaterials<'b> {
 impl<'b> FileMaterials<'b> {
     /// Reads the materials of `root`.
     pub(super) fn read(
-        root: &Part<'_>,
+        root: &LocatedValue<'_>,
         buffers: &Buffers<'_>,
         budget: &'b Budget,
     ) -> Result<Self, ReadError> {
@@ -62,7 +62,7 @@ impl<'b> FileMaterials<'b> {
             let uv_set = main_uv_set(material.value);
             let mut value = material.value.clone();
             keep_textures(&mut value, uv_set, &is_usable, &mut left_out);
-            colors.push(color_of(&Part::root(&value))?);
+            colors.push(color_of(&LocatedValue::root(&value))?);
             uv_set_of.push(uv_set);
             kept.push(value);
         }
@@ -84,7 +84,7 @@ fn list_values(list: &List<'_>) -> Vec<Value> {
 /// The bytes and the media type of a picture; `None`: it is not in the file.
 #[allow(clippy::type_complexity, reason = "a picture with what it is charged")]
 fn picture_of<'b>(
-    image: &Part<'_>,
+    image: &LocatedValue<'_>,
     buffers: &Buffers<'_>,
     budget: &'b Budget,
 ) -> Result<Option<(Vec<u8>, Option<String>, Charge<'b>)>, ReadError> {
@@ -107,7 +107,7 @@ fn picture_of<'b>(
     Ok(Some((copy, stated, charge)))
 }
 
-fn image_entry(image: &Part<'_>, media_type: Option<String>, picture: usize) -> Value {
+fn image_entry(image: &LocatedValue<'_>, media_type: Option<String>, picture: usize) -> Value {
     let mut entry = Map::new();
     if let Some(name) = image.text("name") {
         entry.insert("name".into(), name.into());
@@ -193,7 +193,7 @@ fn keep_textures(value: &mut Value, set: u64, is_usable: &dyn Fn(u64) -> bool, l
 }
 
 /// The base colour that a material states, if it has no picture for it.
-fn color_of(material: &Part<'_>) -> Result<Option<Color>, ReadError> {
+fn color_of(material: &LocatedValue<'_>) -> Result<Option<Color>, ReadError> {
     let Some(pbr) = material.get("pbrMetallicRoughness") else { return Ok(None) };
     if pbr.get("baseColorTexture").is_some() {
         return Ok(None);

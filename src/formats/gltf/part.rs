@@ -5,7 +5,7 @@ use serde_json::Value;
 
 /// A value and its place.
 #[derive(Debug, Clone)]
-pub(super) struct Part<'a> {
+pub(super) struct LocatedValue<'a> {
     pub(super) value: &'a Value,
     pub(super) pointer: String,
 }
@@ -17,7 +17,7 @@ pub(super) struct List<'a> {
     pointer: String,
 }
 
-impl<'a> Part<'a> {
+impl<'a> LocatedValue<'a> {
     /// The whole document.
     pub(super) fn root(value: &'a Value) -> Self {
         Self { value, pointer: String::new() }
@@ -113,11 +113,11 @@ impl<'a> List<'a> {
     }
 
     /// Item `i`, which must be there.
-    pub(super) fn item(&self, i: usize) -> Part<'a> {
-        Part { value: &self.values[i], pointer: format!("{}/{i}", self.pointer) }
+    pub(super) fn item(&self, i: usize) -> LocatedValue<'a> {
+        LocatedValue { value: &self.values[i], pointer: format!("{}/{i}", self.pointer) }
     }
 
-    pub(super) fn items(&self) -> impl Iterator<Item = Part<'a>> {
+    pub(super) fn items(&self) -> impl Iterator<Item = LocatedValue<'a>> {
         (0..self.len()).map(|i| self.item(i))
     }
 }

@@ -2,7 +2,7 @@
 
 use super::accessor::{Accessor, Accessors, Component};
 use super::buffers::{compressed_by_draco, has_extension};
-use super::part::{List, Part};
+use super::part::{List, LocatedValue};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::formats::ReadError;
 use crate::par;
@@ -18,7 +18,7 @@ pub(super) struct VertexSet {
 
 /// What a primitive is made of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Mode {
+pub(super) enum PrimitiveMode {
     Triangles,
     Strip,
     Fan,
@@ -27,7 +27,7 @@ pub(super) enum Mode {
 /// Triangles of one material.
 #[derive(Debug)]
 pub(super) struct Primitive {
-    pub(super) mode: Mode,
+    pub(super) mode: PrimitiveMode,
     /// Which of the vertex sets of the mesh.
     pub(super) set: usize,
     /// Number of an accessor; `None`: the vertices in their order.
@@ -39,7 +39,7 @@ pub(super) struct Primitive {
 
 /// A mesh, without the primitives that have no triangle.
 #[derive(Debug, Default)]
-pub(super) struct Mesh {
+pub(super) struct GltfMesh {
     /// Each with its number of vertices as the file claims it.
     pub(super) sets: Vec<(VertexSet, u64)>,
     pub(super) primitives: Vec<Primitive>,
@@ -50,10 +50,10 @@ pub(super) struct Mesh {
     pub(super) further_attributes: u64,
 }
 
-impl Mesh {
+impl GltfMesh {
     /// Reads the mesh `part`. `uv_set_of` is the set of texture coordinates that each material takes.
     pub(super) fn read(
-        part: &Part<'_>,
+        part: &LocatedValue<'_>,
         accessors: &Accessors<'_>,
         materials: &List<'_>,
         uv_set_of: &[u64],
@@ -68,16 +68,16 @@ impl Mesh {
 
     fn add(
         &mut self,
-        part: &Part<'_>,
+        part: &LocatedValue<'_>,
         accessors: &Accessors<'_>,
         materials: &List<'_>,
         uv_set_of: &[u64],
         numbers: &mut FxHashMap<VertexSet, usize>,
     ) -> Result<(), ReadError> {
         let mode = match part.count("mode")? {
-            None | Some(4) => Mode::Triangles,
-            Some(5) => Mode::Strip,
-            Some(6) => Mode::Fan,
+            None | Some(4) => PrimitiveMode::Triangles,
+            Some(5) => PrimitiveMode::Strip,
+            Some(6) => PrimitiveMode::Fan,
             Some(0..=3) => {
                 self.points_and_lines += 1;
                 return Ok(());
@@ -103,7 +103,8 @@ impl Mesh {
         let indices = part.index("indices", list)?;
         let vertices = accessors.claimed(positions)?;
         let corners = indices.map_or(Ok(vertices), |indices| accessors.claimed(indices))?;
-        let triangles = if mode == Mode::Triangles { corners / 3 } else { corners.saturating_sub(2) };
+        let triangles =
+            if mode == PrimitiveMode::Triangles { corners / 3 } else { corners.saturating_sub(2) };
         self.morph_targets += part.list("targets")?.len() as u64;
         let is_further = |name: &&String| {
             name.starts_with('_')
@@ -143,7 +144,7 @@ impl Primitive {
         };
         let turned = |[a, b, c]: [u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
         let count = self.triangles as usize;
-        if self.mode == Mode::Triangles {
+        if self.mode == PrimitiveMode::Triangles {
             let begin = triangles.len();
             triangles.resize(begin + count, [0; 3]);
             budget.check()?;
@@ -159,7 +160,7 @@ impl Primitive {
                 budget.check()?;
             }
             let corners = match self.mode {
-                Mode::Fan => [t + 1, t + 2, 0],
+                PrimitiveMode::Fan => [t + 1, t + 2, 0],
                 _ => [t, t + 1 + t % 2, t + 2 - t % 2],
             };
             let [a, b, c] = corners.map(corner);
@@ -174,7 +175,7 @@ impl Primitive {
 }
 
 /// Checks that indices are whole numbers without a sign.
-pub(super) fn check_indices(part: &Part<'_>, indices: &Accessor<'_>) -> Result<(), ReadError> {
+pub(super) fn check_indices(part: &LocatedValue<'_>, indices: &Accessor<'_>) -> Result<(), ReadError> {
     match indices.component {
         Component::U8 | Component::U16 | Component::U32 => Ok(()),
         _ => Err(part.need("componentType")?.wrong("5121, 5123 or 5125 for indices")),

@@ -2,11 +2,11 @@
 
 use super::accessor::{Accessor, Accessors, Component};
 use super::buffers::Buffers;
-use super::container::Content;
+use super::container::ContainerContent;
 use super::materials::FileMaterials;
-use super::part::Part;
-use super::primitive::{Mesh, VertexSet, check_indices};
-use super::scene::{Placed, placed_meshes};
+use super::part::LocatedValue;
+use super::primitive::{GltfMesh, VertexSet, check_indices};
+use super::scene::{PlacedMesh, placed_meshes};
 use crate::budget::{Budget, CHECK_EVERY, Charge, Stopped};
 use crate::formats::faces::Faces;
 use crate::formats::{Encoding, Precision, ReadError, ReadErrorKind, ReadOptions};
@@ -27,9 +27,13 @@ pub(in crate::formats) fn read(
     options: &ReadOptions,
     budget: &Budget,
 ) -> Result<Soup, ReadError> {
-    let content = if encoding == Encoding::Glb { Content::of_glb(bytes)? } else { Content::of_text(bytes) };
+    let content = if encoding == Encoding::Glb {
+        ContainerContent::of_glb(bytes)?
+    } else {
+        ContainerContent::of_text(bytes)
+    };
     let (tree, _charge) = content.tree(budget)?;
-    let root = Part::root(&tree);
+    let root = LocatedValue::root(&tree);
     check_version(&root)?;
     let buffers = Buffers::of(&root, content.binary, budget)?;
     let materials = FileMaterials::read(&root, &buffers, budget)?;
@@ -62,8 +66,8 @@ pub(in crate::formats) fn read(
 
 /// The names of the nodes that place a mesh and of their meshes; `None` where one node without any name does, or too many.
 fn object_names<'b>(
-    root: &Part<'_>,
-    placed: &[Placed<'_>],
+    root: &LocatedValue<'_>,
+    placed: &[PlacedMesh<'_>],
     budget: &'b Budget,
 ) -> Result<Option<(Vec<ObjectName>, Charge<'b>)>, ReadError> {
     if placed.len() > OBJECTS_MAX {
@@ -71,11 +75,12 @@ fn object_names<'b>(
     }
     let list = root.list("meshes")?;
     let usable = |name: &str| if name.len() > NAME_BYTES_MAX { Vec::new() } else { name.as_bytes().to_vec() };
-    let of_mesh = |place: &Placed<'_>| list.item(place.mesh).text("name").unwrap_or_default();
+    let of_mesh = |place: &PlacedMesh<'_>| list.item(place.mesh).text("name").unwrap_or_default();
     let kept = |name: &str| if name.len() > NAME_BYTES_MAX { 0 } else { name.len() };
-    let bytes = |place: &Placed<'_>| size_of::<ObjectName>() + kept(place.name) + kept(of_mesh(place));
+    let bytes = |place: &PlacedMesh<'_>| size_of::<ObjectName>() + kept(place.name) + kept(of_mesh(place));
     let charge = budget.charge(placed.iter().map(bytes).sum::<usize>() as u64)?;
-    let name = |place: &Placed<'_>| ObjectName { object: usable(place.name), group: usable(of_mesh(place)) };
+    let name =
+        |place: &PlacedMesh<'_>| ObjectName { object: usable(place.name), group: usable(of_mesh(place)) };
     let names: Vec<ObjectName> = placed.iter().map(name).collect();
     let has_names = names.len() > 1 || names.iter().any(|name| *name != ObjectName::default());
     Ok(has_names.then_some((names, charge)))
@@ -98,7 +103,7 @@ const KNOWN: &[&str] = &[
     "EXT_texture_avif",
 ];
 
-fn check_version(root: &Part<'_>) -> Result<(), ReadError> {
+fn check_version(root: &LocatedValue<'_>) -> Result<(), ReadError> {
     let asset = root.need("asset")?;
     let version = asset.text("version").unwrap_or_default();
     if !version.starts_with("2.") {
@@ -116,19 +121,19 @@ fn check_version(root: &Part<'_>) -> Result<(), ReadError> {
 
 /// The meshes that are placed, by number; the others are empty.
 fn read_meshes(
-    root: &Part<'_>,
-    placed: &[Placed<'_>],
+    root: &LocatedValue<'_>,
+    placed: &[PlacedMesh<'_>],
     accessors: &Accessors<'_>,
     materials: &FileMaterials<'_>,
-) -> Result<Vec<Mesh>, ReadError> {
+) -> Result<Vec<GltfMesh>, ReadError> {
     let list = root.list("meshes")?;
     let material_list = root.list("materials")?;
-    let mut meshes: Vec<Option<Mesh>> = (0..list.len()).map(|_| None).collect();
+    let mut meshes: Vec<Option<GltfMesh>> = (0..list.len()).map(|_| None).collect();
     for place in placed.iter().map(|place| place.mesh) {
         accessors.budget.check()?;
         if meshes[place].is_none() {
             meshes[place] =
-                Some(Mesh::read(&list.item(place), accessors, &material_list, &materials.uv_set_of)?);
+                Some(GltfMesh::read(&list.item(place), accessors, &material_list, &materials.uv_set_of)?);
         }
     }
     Ok(meshes.into_iter().map(Option::unwrap_or_default).collect())
@@ -136,16 +141,16 @@ fn read_meshes(
 
 /// What the file has that the soup does not hold.
 fn left_out(
-    root: &Part<'_>,
-    placed: &[Placed<'_>],
-    meshes: &[Mesh],
+    root: &LocatedValue<'_>,
+    placed: &[PlacedMesh<'_>],
+    meshes: &[GltfMesh],
 ) -> Result<Vec<(&'static str, u64)>, ReadError> {
     let count = |name| root.list(name).map(|list| list.len() as u64);
     let lights = root.get("extensions").and_then(|all| all.get("KHR_lights_punctual"));
     let lights = lights.map_or(Ok(0), |lights| lights.list("lights").map(|list| list.len() as u64))?;
     let mut is_placed = vec![false; meshes.len()];
     placed.iter().for_each(|place| is_placed[place.mesh] = true);
-    let of = |f: fn(&Mesh) -> u64| {
+    let of = |f: fn(&GltfMesh) -> u64| {
         meshes.iter().zip(&is_placed).filter(|(_, is_placed)| **is_placed).map(|(m, _)| f(m)).sum::<u64>()
     };
     Ok(vec![
@@ -179,8 +184,8 @@ const ABSENT: [f64; 2] = [f64::NAN; 2];
 impl Raw {
     /// Room for everything that is placed, within the limits.
     fn with_room<'b>(
-        placed: &[Placed<'_>],
-        meshes: &[Mesh],
+        placed: &[PlacedMesh<'_>],
+        meshes: &[GltfMesh],
         options: &ReadOptions,
         budget: &'b Budget,
     ) -> Result<(Self, Vec<Charge<'b>>), ReadError> {
@@ -223,7 +228,7 @@ impl Raw {
     /// Adds `mesh` where `transform` puts it.
     fn add(
         &mut self,
-        mesh: &Mesh,
+        mesh: &GltfMesh,
         transform: Option<&DAffine3>,
         accessors: &Accessors<'_>,
         precision: Precision,

@@ -1,13 +1,13 @@
 //! The nodes of a scene: which meshes stand where.
 
-use super::part::{List, Part};
+use super::part::{List, LocatedValue};
 use crate::budget::{Budget, CHECK_EVERY};
 use crate::formats::ReadError;
 use crate::geom::DVec3;
 use glam::{DAffine3, DMat3, DQuat};
 
 /// A mesh where a node puts it.
-pub(super) struct Placed<'a> {
+pub(super) struct PlacedMesh<'a> {
     /// Its number.
     pub(super) mesh: usize,
     /// Where its points go; `None`: they stay.
@@ -21,12 +21,15 @@ pub(super) struct Placed<'a> {
 ///
 /// A document without nodes gives each of its meshes once.
 pub(super) fn placed_meshes<'a>(
-    root: &Part<'a>,
+    root: &LocatedValue<'a>,
     budget: &Budget,
-) -> Result<(Vec<Placed<'a>>, u64), ReadError> {
+) -> Result<(Vec<PlacedMesh<'a>>, u64), ReadError> {
     let (nodes, meshes, scenes) = (root.list("nodes")?, root.list("meshes")?, root.list("scenes")?);
     if nodes.len() == 0 {
-        return Ok(((0..meshes.len()).map(|mesh| Placed { mesh, transform: None, name: "" }).collect(), 0));
+        return Ok((
+            (0..meshes.len()).map(|mesh| PlacedMesh { mesh, transform: None, name: "" }).collect(),
+            0,
+        ));
     }
     let starts = match root.index("scene", &scenes)? {
         Some(scene) => starts_of(&scenes.item(scene), &nodes)?,
@@ -34,8 +37,12 @@ pub(super) fn placed_meshes<'a>(
         None => Vec::new(),
     };
     let starts = if starts.is_empty() { roots(&nodes)? } else { starts };
-    let mut walk =
-        Walk { nodes: &nodes, meshes: &meshes, is_visited: vec![false; nodes.len()], placed: Vec::new() };
+    let mut walk = SceneWalk {
+        nodes: &nodes,
+        meshes: &meshes,
+        is_visited: vec![false; nodes.len()],
+        placed: Vec::new(),
+    };
     // The last in the list is the next.
     let mut next: Vec<(usize, DAffine3)> =
         starts.into_iter().rev().map(|node| (node, DAffine3::IDENTITY)).collect();
@@ -53,7 +60,7 @@ pub(super) fn placed_meshes<'a>(
     Ok((walk.placed, left_out))
 }
 
-fn starts_of(scene: &Part<'_>, nodes: &List<'_>) -> Result<Vec<usize>, ReadError> {
+fn starts_of(scene: &LocatedValue<'_>, nodes: &List<'_>) -> Result<Vec<usize>, ReadError> {
     scene.list("nodes")?.items().map(|node| node.as_index(nodes)).collect()
 }
 
@@ -68,14 +75,14 @@ fn roots(nodes: &List<'_>) -> Result<Vec<usize>, ReadError> {
     Ok((0..nodes.len()).filter(|&i| !is_child[i]).collect())
 }
 
-struct Walk<'w, 'a> {
+struct SceneWalk<'w, 'a> {
     nodes: &'w List<'a>,
     meshes: &'w List<'a>,
     is_visited: Vec<bool>,
-    placed: Vec<Placed<'a>>,
+    placed: Vec<PlacedMesh<'a>>,
 }
 
-impl Walk<'_, '_> {
+impl SceneWalk<'_, '_> {
     /// Notes the mesh of a node; gives where the node is and its children.
     fn visit(&mut self, number: usize, parent: DAffine3) -> Result<(DAffine3, Vec<usize>), ReadError> {
         let node = self.nodes.item(number);
@@ -93,7 +100,7 @@ impl Walk<'_, '_> {
             // A mesh with a skin is placed by its joints alone.
             let is_still = node.get("skin").is_some() || transform == DAffine3::IDENTITY;
             let transform = (!is_still).then_some(transform);
-            self.placed.push(Placed { mesh, transform, name: node.text("name").unwrap_or_default() });
+            self.placed.push(PlacedMesh { mesh, transform, name: node.text("name").unwrap_or_default() });
         }
         let children = node
             .list("children")?
@@ -105,7 +112,7 @@ impl Walk<'_, '_> {
 }
 
 /// The transform of a node in the frame of its parent.
-fn transform_of(node: &Part<'_>) -> Result<DAffine3, ReadError> {
+fn transform_of(node: &LocatedValue<'_>) -> Result<DAffine3, ReadError> {
     if let Some(m) = node.numbers::<16>("matrix")? {
         let column = |k: usize| DVec3::new(m[4 * k], m[4 * k + 1], m[4 * k + 2]);
         let matrix3 = DMat3::from_cols(column(0), column(1), column(2));

@@ -2,7 +2,7 @@
 
 use super::material_names::MaterialsOfFile;
 use super::object_names::ObjectsOfFile;
-use super::statements::{Counts, Statements};
+use super::statements::{StatementCounts, Statements};
 use super::texture::TextureOfFile;
 use crate::budget::Budget;
 use crate::formats::faces::Faces;
@@ -56,9 +56,9 @@ fn line_start(bytes: &[u8], mut from: usize) -> usize {
 }
 
 fn read_parts(parts: &[&[u8]], options: &ReadOptions, budget: &Budget) -> Result<Soup, ReadError> {
-    let counts = par::try_map_ranges(parts.len(), 1, |i| Counts::of(parts[i.start], budget))?;
+    let counts = par::try_map_ranges(parts.len(), 1, |i| StatementCounts::of(parts[i.start], budget))?;
     let mut before = Vec::with_capacity(parts.len());
-    let mut total = Counts::default();
+    let mut total = StatementCounts::default();
     for &inside in &counts {
         before.push(total);
         total = total.plus(inside);
@@ -87,7 +87,7 @@ fn read_parts(parts: &[&[u8]], options: &ReadOptions, budget: &Budget) -> Result
 
 fn join(
     parts: Vec<Statements<'_>>,
-    total: Counts,
+    total: StatementCounts,
     options: &ReadOptions,
     budget: &Budget,
 ) -> Result<Soup, ReadError> {

@@ -1,6 +1,6 @@
 //! OBJ input as other Rust programs see it.
 
-use super::statements::Counts;
+use super::statements::StatementCounts;
 use crate::budget::Budget;
 use crate::formats::faces::Faces;
 use crate::formats::{Place, ReadError, ReadOptions};
@@ -26,7 +26,7 @@ pub(in crate::formats) fn read(
     options: &ReadOptions,
     budget: &Budget,
 ) -> Result<Soup, ReadError> {
-    let counts = Counts::of(bytes, budget)?;
+    let counts = StatementCounts::of(bytes, budget)?;
     options.limits.check_vertices(counts.vertices)?;
     options.limits.check_triangles(counts.faces)?;
     let bytes_of_crate = counts.vertices * BYTES_OF_VERTEX

@@ -19,7 +19,7 @@ pub(super) const DIALECT: Dialect = Dialect { comments: true, continued_lines: t
 
 /// Lines, vertices and faces of a part of a file, or of all parts before one.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) struct Counts {
+pub(super) struct StatementCounts {
     pub(super) lines: u64,
     pub(super) vertices: u64,
     pub(super) faces: u64,
@@ -34,7 +34,7 @@ pub(super) struct Counts {
     pub(super) objects: u64,
 }
 
-impl Counts {
+impl StatementCounts {
     /// Counts what stands in `part`, which begins at the start of a line and ends with a line break or the file.
     pub(super) fn of(part: &[u8], budget: &Budget) -> Result<Self, Stopped> {
         let mut counts = Self::default();
@@ -123,8 +123,8 @@ impl<'a> Statements<'a> {
     /// are texture coordinates.
     pub(super) fn read(
         part: &'a [u8],
-        before: Counts,
-        inside: Counts,
+        before: StatementCounts,
+        inside: StatementCounts,
         has_texture: bool,
         options: &ReadOptions,
         budget: &Budget,

@@ -70,7 +70,7 @@ pub(super) struct Property<'a> {
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Element<'a> {
+pub(super) struct PlyElement<'a> {
     pub(super) name: &'a [u8],
     pub(super) count: u64,
     pub(super) properties: Vec<Property<'a>>,
@@ -78,7 +78,7 @@ pub(super) struct Element<'a> {
     pub(super) line: u64,
 }
 
-impl Element<'_> {
+impl PlyElement<'_> {
     /// Fewest bytes that one of it takes in any layout.
     pub(super) fn bytes_min(&self, layout: Layout) -> usize {
         let bytes = |property: &Property<'_>| match (layout, property.kind) {
@@ -98,7 +98,7 @@ impl Element<'_> {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Header<'a> {
     pub(super) layout: Layout,
-    pub(super) elements: Vec<Element<'a>>,
+    pub(super) elements: Vec<PlyElement<'a>>,
     /// Where the values begin.
     pub(super) end: usize,
     /// The line on which they begin, if they are text.
@@ -116,7 +116,7 @@ impl<'a> Header<'a> {
             return Err(words.wrong(magic, "ply"));
         }
         let mut layout = None;
-        let mut elements: Vec<Element<'a>> = Vec::new();
+        let mut elements: Vec<PlyElement<'a>> = Vec::new();
         let mut properties = 0;
         while words.next_line() {
             match words.next_in_line() {
@@ -164,12 +164,12 @@ fn read_layout(words: &mut Words<'_>) -> Result<Layout, ReadError> {
     }
 }
 
-fn read_element<'a>(words: &mut Words<'a>) -> Result<Element<'a>, ReadError> {
+fn read_element<'a>(words: &mut Words<'a>) -> Result<PlyElement<'a>, ReadError> {
     let name = words.next_in_line().ok_or_else(|| words.wrong(None, "the element's name"))?;
     let word = words.next_in_line();
     let count = word.and_then(integer).and_then(|count| u64::try_from(count).ok());
     let count = count.ok_or_else(|| words.wrong(word, "the number of elements"))?;
-    Ok(Element { name, count, properties: Vec::new(), line: words.line() })
+    Ok(PlyElement { name, count, properties: Vec::new(), line: words.line() })
 }
 
 fn read_property<'a>(words: &mut Words<'a>) -> Result<Property<'a>, ReadError> {

@@ -1,7 +1,7 @@
 //! PLY input.
 
-use super::header::{Element, Header, Kind, Layout, Scalar};
-use super::roles::{ColorKind, Plan, Role};
+use super::header::{Header, Kind, Layout, PlyElement, Scalar};
+use super::roles::{ColorKind, PropertyRoles, Role};
 use super::values::{Ascii, Binary, Values};
 use crate::budget::{Budget, CHECK_EVERY, Charge};
 use crate::formats::colors::note_color;
@@ -35,7 +35,7 @@ fn read_body(
 ) -> Result<Soup, ReadError> {
     let (layout, charges) = (header.layout, Vec::new());
     let mut source = Source { values, layout, options, budget, charges, further_properties: 0 };
-    let mut mesh = Mesh::default();
+    let mut mesh = PlyMesh::default();
     for element in &header.elements {
         match element.name {
             _ if element.count == 0 => {}
@@ -44,11 +44,11 @@ fn read_body(
             b"edge" => mesh.read_edges(element, &mut source)?,
             b"tristrips" => mesh.read_strips(element, &mut source)?,
             _ if element.properties.is_empty() => {}
-            _ => source.read_items(element, &Plan::new(element), |_, _| Ok(()))?,
+            _ => source.read_items(element, &PropertyRoles::new(element), |_, _| Ok(()))?,
         }
     }
     let soup = mesh.faces.into_soup(mesh.positions, &options.limits, budget)?;
-    let Mesh { vertex_colors, face_colors, places, mut segments, .. } = mesh;
+    let PlyMesh { vertex_colors, face_colors, places, mut segments, .. } = mesh;
     segments.retain(|segment| segment.ends.iter().all(|&v| (v as usize) < soup.positions.len()));
     let further = source.further_properties;
     let left_out = if further > 0 { vec![("further_properties", further)] } else { Vec::new() };
@@ -57,7 +57,7 @@ fn read_body(
 
 /// What was read so far.
 #[derive(Default)]
-struct Mesh {
+struct PlyMesh {
     positions: Vec<DVec3>,
     vertex_colors: Vec<Option<Color>>,
     faces: Faces,
@@ -66,14 +66,14 @@ struct Mesh {
     segments: Vec<Segment>,
 }
 
-impl Mesh {
+impl PlyMesh {
     fn read_vertices<V: Values>(
         &mut self,
-        element: &Element<'_>,
+        element: &PlyElement<'_>,
         source: &mut Source<'_, V>,
     ) -> Result<(), ReadError> {
         source.options.limits.check_vertices(element.count)?;
-        let plan = Plan::new(element).with_coordinates(element)?.with_colors(element);
+        let plan = PropertyRoles::new(element).with_coordinates(element)?.with_colors(element);
         let _charged = source.budget.reserve(&mut self.positions, source.fitting(element))?;
         let _charged = source.charge_beside(element, plan.colors)?;
         source.read_items(element, &plan, |line, item| {
@@ -86,11 +86,11 @@ impl Mesh {
 
     fn read_faces<V: Values>(
         &mut self,
-        element: &Element<'_>,
+        element: &PlyElement<'_>,
         source: &mut Source<'_, V>,
     ) -> Result<(), ReadError> {
         source.options.limits.check_triangles(element.count)?;
-        let plan = Plan::new(element)
+        let plan = PropertyRoles::new(element)
             .with_vertices(element, Role::Corners)?
             .with_colors(element)
             .with_color_index(element);
@@ -113,11 +113,11 @@ impl Mesh {
     /// Edges that name no two vertices are skipped as other elements are.
     fn read_edges<V: Values>(
         &mut self,
-        element: &Element<'_>,
+        element: &PlyElement<'_>,
         source: &mut Source<'_, V>,
     ) -> Result<(), ReadError> {
-        let Some(plan) = Plan::new(element).with_ends(element) else {
-            return source.read_items(element, &Plan::new(element), |_, _| Ok(()));
+        let Some(plan) = PropertyRoles::new(element).with_ends(element) else {
+            return source.read_items(element, &PropertyRoles::new(element), |_, _| Ok(()));
         };
         let _charged = source.budget.reserve(&mut self.segments, source.fitting(element))?;
         source.read_items(element, &plan, |line, item| {
@@ -128,10 +128,10 @@ impl Mesh {
 
     fn read_strips<V: Values>(
         &mut self,
-        element: &Element<'_>,
+        element: &PlyElement<'_>,
         source: &mut Source<'_, V>,
     ) -> Result<(), ReadError> {
-        let plan = Plan::new(element).with_vertices(element, Role::Strips)?;
+        let plan = PropertyRoles::new(element).with_vertices(element, Role::Strips)?;
         let (budget, limits) = (source.budget, &source.options.limits);
         let mut charges = Vec::new();
         source.read_items(element, &plan, |line, item| {
@@ -168,7 +168,7 @@ struct Source<'a, V> {
 
 impl<'a, V: Values> Source<'a, V> {
     /// How many of `element` the rest of the file can hold, at most as many as are announced.
-    fn fitting(&self, element: &Element<'_>) -> usize {
+    fn fitting(&self, element: &PlyElement<'_>) -> usize {
         let held = self.values.remaining() / element.bytes_min(self.layout).max(1) + 1;
         element.count.min(held as u64) as usize
     }
@@ -176,8 +176,8 @@ impl<'a, V: Values> Source<'a, V> {
     /// Calls `take` with the line (in text) and the values of each item of `element`.
     fn read_items(
         &mut self,
-        element: &Element<'_>,
-        plan: &Plan,
+        element: &PlyElement<'_>,
+        plan: &PropertyRoles,
         mut take: impl FnMut(Option<u32>, &Item) -> Result<(), ReadError>,
     ) -> Result<(), ReadError> {
         self.further_properties += plan.further_properties(element);
@@ -196,7 +196,7 @@ impl<'a, V: Values> Source<'a, V> {
     }
 
     /// Charges the lines and colours of the items of `element`.
-    fn charge_beside(&self, element: &Element<'_>, colors: ColorKind) -> Result<Charge<'a>, ReadError> {
+    fn charge_beside(&self, element: &PlyElement<'_>, colors: ColorKind) -> Result<Charge<'a>, ReadError> {
         let line = if self.layout == Layout::Ascii { size_of::<u32>() } else { 0 };
         let color = if colors == ColorKind::None { 0 } else { size_of::<Option<Color>>() };
         Ok(self.budget.charge(self.fitting(element) as u64 * (line + color) as u64)?)

@@ -1,6 +1,6 @@
 //! Which properties of a PLY file mean something to us.
 
-use super::header::{Element, Kind, Property, Scalar};
+use super::header::{Kind, PlyElement, Property, Scalar};
 use crate::formats::{Place, ReadError};
 
 /// What a property means to us.
@@ -22,7 +22,7 @@ pub(super) enum Role {
 }
 
 /// The properties of an element with their roles.
-pub(super) struct Plan {
+pub(super) struct PropertyRoles {
     pub(super) properties: Vec<(Role, Kind)>,
     pub(super) colors: ColorKind,
 }
@@ -35,15 +35,15 @@ pub(super) enum ColorKind {
     Floats { has_alpha: bool },
 }
 
-impl Plan {
+impl PropertyRoles {
     /// Nothing has a role yet.
-    pub(super) fn new(element: &Element<'_>) -> Self {
+    pub(super) fn new(element: &PlyElement<'_>) -> Self {
         let roles = element.properties.iter().map(|property| (Role::Other, property.kind));
         Self { properties: roles.collect(), colors: ColorKind::None }
     }
 
     /// Number of properties that mean nothing to us; normals are no loss, as a changed surface has others.
-    pub(super) fn further_properties(&self, element: &Element<'_>) -> u64 {
+    pub(super) fn further_properties(&self, element: &PlyElement<'_>) -> u64 {
         let is_further = |(property, (role, _)): &(&Property<'_>, &(Role, Kind))| {
             *role == Role::Other && !matches!(property.name, b"nx" | b"ny" | b"nz")
         };
@@ -51,7 +51,7 @@ impl Plan {
     }
 
     /// Notes x, y and z.
-    pub(super) fn with_coordinates(mut self, element: &Element<'_>) -> Result<Self, ReadError> {
+    pub(super) fn with_coordinates(mut self, element: &PlyElement<'_>) -> Result<Self, ReadError> {
         for (k, name) in ["x", "y", "z"].into_iter().enumerate() {
             match element.find(&[name]) {
                 Some(i) if matches!(self.properties[i].1, Kind::One(_)) => {
@@ -64,7 +64,7 @@ impl Plan {
     }
 
     /// Notes the list of vertices as `role`.
-    pub(super) fn with_vertices(mut self, element: &Element<'_>, role: Role) -> Result<Self, ReadError> {
+    pub(super) fn with_vertices(mut self, element: &PlyElement<'_>, role: Role) -> Result<Self, ReadError> {
         match element.find(&["vertex_indices", "vertex_index"]) {
             Some(i) if matches!(self.properties[i].1, Kind::List { item, .. } if item.is_integer()) => {
                 self.properties[i].0 = role;
@@ -75,7 +75,7 @@ impl Plan {
     }
 
     /// Notes the number of a colour.
-    pub(super) fn with_color_index(mut self, element: &Element<'_>) -> Self {
+    pub(super) fn with_color_index(mut self, element: &PlyElement<'_>) -> Self {
         if let Some(i) = element.find(&["color_index"])
             && matches!(self.properties[i].1, Kind::One(scalar) if scalar.is_integer())
         {
@@ -85,7 +85,7 @@ impl Plan {
     }
 
     /// Notes both ends of an edge, if they are there.
-    pub(super) fn with_ends(mut self, element: &Element<'_>) -> Option<Self> {
+    pub(super) fn with_ends(mut self, element: &PlyElement<'_>) -> Option<Self> {
         for (k, name) in ["vertex1", "vertex2"].into_iter().enumerate() {
             let i = element.find(&[name])?;
             if !matches!(self.properties[i].1, Kind::One(scalar) if scalar.is_integer()) {
@@ -97,7 +97,7 @@ impl Plan {
     }
 
     /// Notes the colour channels, if red, green and blue are there and all channels are bytes or all are floats.
-    pub(super) fn with_colors(mut self, element: &Element<'_>) -> Self {
+    pub(super) fn with_colors(mut self, element: &PlyElement<'_>) -> Self {
         const NAMES: [[&str; 2]; 4] = [
             ["red", "diffuse_red"],
             ["green", "diffuse_green"],
@@ -127,7 +127,7 @@ impl Plan {
     }
 }
 
-fn lacks(element: &Element<'_>, expected: &str) -> ReadError {
+fn lacks(element: &PlyElement<'_>, expected: &str) -> ReadError {
     let found = format!("element {} without", String::from_utf8_lossy(element.name));
     ReadError::unparseable(Place::Line(element.line), found, expected)
 }

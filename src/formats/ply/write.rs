@@ -13,7 +13,7 @@ pub(in crate::formats) fn write(
     encoding: Encoding,
     budget: &Budget,
 ) -> Result<Vec<u8>, WriteError> {
-    let plan = Plan::new(soup);
+    let plan = PropertyTypes::new(soup);
     match encoding {
         Encoding::PlyBinaryLittleEndian => binary::<false>(soup, &plan, encoding, budget),
         Encoding::PlyBinaryBigEndian => binary::<true>(soup, &plan, encoding, budget),
@@ -22,7 +22,7 @@ pub(in crate::formats) fn write(
 }
 
 /// The types of all properties.
-struct Plan {
+struct PropertyTypes {
     is_float32: bool,
     is_signed_index: bool,
     /// The number of corners of a face takes one byte, as older readers expect.
@@ -35,7 +35,7 @@ struct Plan {
     has_color_index: bool,
 }
 
-impl Plan {
+impl PropertyTypes {
     fn new(soup: &Soup) -> Self {
         let is_exact = |&c: &f64| f64::from(c as f32) == c;
         let sizes = || soup.faces().map(|(_, corners)| corners.len());
@@ -98,7 +98,12 @@ fn color_index(soup: &Soup, triangle: usize) -> i32 {
     }
 }
 
-fn text(soup: &Soup, plan: &Plan, encoding: Encoding, budget: &Budget) -> Result<Vec<u8>, WriteError> {
+fn text(
+    soup: &Soup,
+    plan: &PropertyTypes,
+    encoding: Encoding,
+    budget: &Budget,
+) -> Result<Vec<u8>, WriteError> {
     const VERTEX_BYTES_MAX: usize = 160;
     /// A number, and a third of what stands around those of a triangle, which may have a colour.
     const CORNER_BYTES_MAX: usize = 52;
@@ -135,7 +140,7 @@ fn text(soup: &Soup, plan: &Plan, encoding: Encoding, budget: &Budget) -> Result
 
 fn binary<const BIG: bool>(
     soup: &Soup,
-    plan: &Plan,
+    plan: &PropertyTypes,
     encoding: Encoding,
     budget: &Budget,
 ) -> Result<Vec<u8>, WriteError> {

@@ -29,4 +29,4 @@ pub use negative::{NegativeParts, read_negative_parts};
 pub use new_members::Between;
 pub use read::{Body, Project, read_project, read_scene};
 pub use rewrite::{FaceSource, NewBody, RewriteError, rewrite_project};
-pub use scene::Placed;
+pub use scene::PlacedObject;

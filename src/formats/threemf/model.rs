@@ -87,19 +87,19 @@ pub(super) struct Object {
     pub(super) name: String,
     /// Property of triangles that state none.
     pub(super) property: Property,
-    pub(super) content: Content,
+    pub(super) content: ObjectContent,
 }
 
 /// What an object consists of.
-pub(super) enum Content {
-    Mesh(Box<Mesh>),
+pub(super) enum ObjectContent {
+    Mesh(Box<ObjectMesh>),
     Components(Vec<Reference>),
     Nothing,
 }
 
 /// The mesh of an object.
 #[derive(Default)]
-pub(super) struct Mesh {
+pub(super) struct ObjectMesh {
     pub(super) soup: Soup,
     pub(super) attributes: FaceAttributes,
     /// Bytes of the elements of vertices and of triangles in the text of the part; empty when there is none.

@@ -1,7 +1,7 @@
 //! What the readers of a model part share: the scanner, the model so far, errors and remarks with their place.
 
 use super::model::{Groups, Model, NO_NUMBER};
-use super::xml::{Document, Element, Node, Scanner};
+use super::xml::{Document, Scanner, XmlElement, XmlEvent};
 use crate::budget::Budget;
 use crate::formats::{ReadError, ReadOptions};
 use crate::mesh::Units;
@@ -54,13 +54,13 @@ impl<'x> ModelReader<'x> {
     }
 
     /// The next element at `depth`, whose parent is open; `None` at the end of the parent.
-    pub(super) fn next_child(&mut self, depth: usize) -> Result<Option<Element<'x>>, ReadError> {
+    pub(super) fn next_child(&mut self, depth: usize) -> Result<Option<XmlElement<'x>>, ReadError> {
         loop {
             match self.scanner.next()? {
-                Node::Open(element) => return Ok(Some(element)),
-                Node::Close if self.scanner.depth < depth => return Ok(None),
-                Node::Close => {}
-                Node::End => return Ok(None),
+                XmlEvent::Open(element) => return Ok(Some(element)),
+                XmlEvent::Close if self.scanner.depth < depth => return Ok(None),
+                XmlEvent::Close => {}
+                XmlEvent::End => return Ok(None),
             }
         }
     }

@@ -1,6 +1,6 @@
 //! The model of a package with the parts that it refers to, and where the build puts their objects.
 
-use super::model::{Content, Model, ObjectKind, Reference};
+use super::model::{Model, ObjectContent, ObjectKind, Reference};
 use super::package::{Package, shortened, too_large};
 use super::read_model::read_model;
 use super::read_purposes::{Purposes, read_purposes};
@@ -80,7 +80,7 @@ impl Models {
             let _meshes = budget.charge(3 * bytes.len() as u64)?;
             let model = read_model(&Document::of(&part, &bytes)?, options, budget)?;
             for object in &model.objects {
-                if let Content::Mesh(mesh) = &object.content {
+                if let ObjectContent::Mesh(mesh) = &object.content {
                     let own =
                         [mesh.soup.triangles.len(), mesh.soup.positions.len()].map(|count| count as u64);
                     charges.push(budget.charge(32 * own[0] + 24 * own[1])?);
@@ -100,7 +100,7 @@ impl Models {
                 return Err(too_large("vertices", "vertices_max", limits.vertices_max.into(), vertices));
             }
             let references = model.objects.iter().filter_map(|object| match &object.content {
-                Content::Components(all) => Some(all),
+                ObjectContent::Components(all) => Some(all),
                 _ => None,
             });
             let items = if models.all.is_empty() { &model.items[..] } else { &[] };
@@ -152,15 +152,15 @@ impl Models {
             let object = &self.all[target[0]].objects[target[1]];
             let transform = transform.after(&reference.transform);
             match &object.content {
-                Content::Components(all) => way.push((target[0], all, transform, target)),
-                Content::Mesh(_) => {
+                ObjectContent::Components(all) => way.push((target[0], all, transform, target)),
+                ObjectContent::Mesh(_) => {
                     let id = |[m, o]: [usize; 2]| self.all[m].objects[o].id;
                     let component = way.get(2).map_or(reference.object, |&(.., object)| id(object));
                     let noted = way.get(1).and_then(|&(.., item)| self.purposes.get(&[id(item), component]));
                     let purpose = noted.copied().unwrap_or(Purpose::Material);
                     placements.push(Placement { object: target, item: items - 1, transform, purpose });
                 }
-                Content::Nothing => {}
+                ObjectContent::Nothing => {}
             }
             if is_item && object.kind == ObjectKind::Other {
                 let text = format!(
@@ -179,7 +179,7 @@ impl Models {
     fn check_loose_components(&self, numbers: &FxHashMap<String, usize>) -> Result<(), ReadError> {
         for (m, model) in self.all.iter().enumerate() {
             for object in &model.objects {
-                let Content::Components(all) = &object.content else { continue };
+                let ObjectContent::Components(all) = &object.content else { continue };
                 for reference in all {
                     self.target(m, reference, numbers)?;
                 }

@@ -1,9 +1,9 @@
 //! A package read: its model, the parts that this refers to, and the meshes in all of them.
 
-use super::model::{Content, FaceAttributes, Groups, Mesh, Model, Object, ObjectKind, Property};
+use super::model::{FaceAttributes, Groups, Model, Object, ObjectContent, ObjectKind, ObjectMesh, Property};
 use super::models::Models;
 use super::read_volumes::{Volume, are_all, by_object};
-use super::scene::{self, Assembled, Extent, Placed};
+use super::scene::{self, Assembled, Extent, PlacedObject};
 use super::split::volume_of;
 use crate::budget::Budget;
 use crate::formats::{ReadError, ReadOptions};
@@ -123,7 +123,7 @@ pub fn read_scene(
     bytes: &[u8],
     options: &ReadOptions,
     budget: &Budget,
-) -> Result<(Soup, Vec<Placed>), ReadError> {
+) -> Result<(Soup, Vec<PlacedObject>), ReadError> {
     let models = Models::read(bytes, options, budget)?;
     let Assembled { soup, placed } = scene::assemble(&models, Extent::Everything, options, budget)?;
     Ok((soup, placed))
@@ -148,8 +148,8 @@ fn project_of(models: Models) -> Project {
         }
         for (o, object) in objects.into_iter().enumerate() {
             let Object { id, kind, name, content, property } = object;
-            let Content::Mesh(mesh) = content else { continue };
-            let Mesh { soup, attributes, spans, extras, extra_spans } = *mesh;
+            let ObjectContent::Mesh(mesh) = content else { continue };
+            let ObjectMesh { soup, attributes, spans, extras, extra_spans } = *mesh;
             let instances = instances.get(&[m, o]).copied().unwrap_or(0);
             let soup = Soup { units: Some(units), ..soup };
             let body = Body {

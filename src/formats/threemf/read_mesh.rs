@@ -1,9 +1,9 @@
 //! The mesh of an object: vertices, triangles and what is said of triangles.
 
-use super::model::{FaceAttributes, Mesh, NO_NUMBER, Property};
+use super::model::{FaceAttributes, NO_NUMBER, ObjectMesh, Property};
 use super::model_reader::{ModelReader, number};
 use super::package::{shortened, too_large};
-use super::xml::{Attributes, Element, Namespace};
+use super::xml::{Attributes, Namespace, XmlElement};
 use crate::budget::CHECK_EVERY;
 use crate::formats::{ReadError, numbers};
 use crate::geom::DVec3;
@@ -12,9 +12,12 @@ use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
 /// Reads the content of the element `mesh`.
-pub(super) fn mesh<'x>(reader: &mut ModelReader<'x>, element: &Element<'x>) -> Result<Mesh, ReadError> {
-    let mut mesh = Mesh::default();
-    let mut triangles = Triangles::default();
+pub(super) fn mesh<'x>(
+    reader: &mut ModelReader<'x>,
+    element: &XmlElement<'x>,
+) -> Result<ObjectMesh, ReadError> {
+    let mut mesh = ObjectMesh::default();
+    let mut triangles = ListedTriangles::default();
     if element.is_empty {
         return Ok(mesh);
     }
@@ -90,7 +93,7 @@ fn read_vertices(reader: &mut ModelReader<'_>, soup: &mut Soup) -> Result<(), Re
     Ok(())
 }
 
-fn bad(reader: &ModelReader<'_>, element: &Element<'_>) -> ReadError {
+fn bad(reader: &ModelReader<'_>, element: &XmlElement<'_>) -> ReadError {
     let found = format!("<{}{}>", element.name, shortened(element.attributes));
     let expected = match element.local {
         "vertex" => "x, y and z with a number each",
@@ -101,13 +104,13 @@ fn bad(reader: &ModelReader<'_>, element: &Element<'_>) -> ReadError {
 
 /// The triangles of a mesh as they are listed.
 #[derive(Default)]
-struct Triangles {
+struct ListedTriangles {
     corners: Vec<[u32; 3]>,
     attributes: FaceAttributes,
     numbers: FxHashMap<String, u32>,
 }
 
-impl Triangles {
+impl ListedTriangles {
     fn read(&mut self, reader: &mut ModelReader<'_>) -> Result<(), ReadError> {
         let limit = reader.options.limits.triangles_max;
         let depth = reader.scanner.depth;
@@ -175,7 +178,7 @@ impl Triangles {
     }
 
     /// Checks the corners against the vertices.
-    fn put_into(self, mesh: &mut Mesh, reader: &ModelReader<'_>) -> Result<(), ReadError> {
+    fn put_into(self, mesh: &mut ObjectMesh, reader: &ModelReader<'_>) -> Result<(), ReadError> {
         let Self { corners, mut attributes, .. } = self;
         let count = corners.len();
         if !attributes.properties.is_empty() {

@@ -1,12 +1,14 @@
 //! A model part: units, resources, objects and the build.
 
-use super::model::{Content, Group, Mesh, Model, NO_NUMBER, Object, ObjectKind, Property, Reference};
+use super::model::{
+    Group, Model, NO_NUMBER, Object, ObjectContent, ObjectKind, ObjectMesh, Property, Reference,
+};
 use super::model_reader::{ModelReader, number};
 use super::package::{resolve, shortened};
 use super::read_mesh;
 use super::read_properties;
 use super::transform::Transform;
-use super::xml::{Attribute, Document, Element, Namespace, Node, value, value_in};
+use super::xml::{Attribute, Document, Namespace, XmlElement, XmlEvent, value, value_in};
 use crate::budget::Budget;
 use crate::formats::{ReadError, ReadOptions};
 use crate::mesh::Units;
@@ -45,7 +47,7 @@ pub(super) fn read_model(
 
 impl<'x> ModelReader<'x> {
     fn read(&mut self) -> Result<(), ReadError> {
-        let Node::Open(root) = self.scanner.next()? else {
+        let XmlEvent::Open(root) = self.scanner.next()? else {
             return Err(self.error(0, "no element", "<model>"));
         };
         if (root.namespace, root.local) != (Namespace::Core, "model") {
@@ -77,13 +79,13 @@ impl<'x> ModelReader<'x> {
             }
         }
         match self.scanner.next()? {
-            Node::End => Ok(()),
-            Node::Open(second) => Err(self.error(second.at, "a second root element", "one <model>")),
-            Node::Close => Err(self.error(self.scanner.position(), "an end tag", "the end of the part")),
+            XmlEvent::End => Ok(()),
+            XmlEvent::Open(second) => Err(self.error(second.at, "a second root element", "one <model>")),
+            XmlEvent::Close => Err(self.error(self.scanner.position(), "an end tag", "the end of the part")),
         }
     }
 
-    fn take_root(&mut self, root: &Element<'x>) -> Result<(), ReadError> {
+    fn take_root(&mut self, root: &XmlElement<'x>) -> Result<(), ReadError> {
         let attributes = self.scanner.attributes(root)?;
         self.model.units = match value(&attributes, "unit") {
             None | Some("millimeter") => Units::Millimetre,
@@ -112,7 +114,7 @@ impl<'x> ModelReader<'x> {
 
     fn take_extension(
         &mut self,
-        root: &Element<'x>,
+        root: &XmlElement<'x>,
         prefix: &str,
         is_required: bool,
     ) -> Result<(), ReadError> {
@@ -158,7 +160,7 @@ impl<'x> ModelReader<'x> {
         self.model.remarks.push(text);
     }
 
-    fn take_metadata(&mut self, element: &Element<'x>) -> Result<(), ReadError> {
+    fn take_metadata(&mut self, element: &XmlElement<'x>) -> Result<(), ReadError> {
         let attributes = self.scanner.attributes(element)?;
         let name = value(&attributes, "name").unwrap_or_default().to_owned();
         if name.is_empty() {
@@ -171,7 +173,7 @@ impl<'x> ModelReader<'x> {
         self.scanner.skip(element)
     }
 
-    fn read_resources(&mut self, resources: &Element<'x>) -> Result<(), ReadError> {
+    fn read_resources(&mut self, resources: &XmlElement<'x>) -> Result<(), ReadError> {
         if resources.is_empty {
             return Ok(());
         }
@@ -206,7 +208,7 @@ impl<'x> ModelReader<'x> {
     }
 
     /// The id of a resource, which no other one may have.
-    fn id_of(&mut self, element: &Element<'x>) -> Result<Option<u32>, ReadError> {
+    fn id_of(&mut self, element: &XmlElement<'x>) -> Result<Option<u32>, ReadError> {
         let attributes = self.scanner.attributes(element)?;
         let Some(text) = value(&attributes, "id") else { return Ok(None) };
         let Some(id) = number(text) else {
@@ -226,7 +228,7 @@ impl<'x> ModelReader<'x> {
         Ok(Some(id))
     }
 
-    fn read_group(&mut self, element: &Element<'x>) -> Result<Option<Group>, ReadError> {
+    fn read_group(&mut self, element: &XmlElement<'x>) -> Result<Option<Group>, ReadError> {
         match (element.namespace, element.local) {
             (Namespace::Core, "basematerials") => {
                 read_properties::colors(self, element, "base", "displaycolor").map(Some)
@@ -249,7 +251,7 @@ impl<'x> ModelReader<'x> {
         }
     }
 
-    fn read_object(&mut self, element: &Element<'x>) -> Result<(), ReadError> {
+    fn read_object(&mut self, element: &XmlElement<'x>) -> Result<(), ReadError> {
         let Some(id) = self.id_of(element)? else {
             return Err(self.error(element.at, "an object without an id", "an id"));
         };
@@ -269,24 +271,24 @@ impl<'x> ModelReader<'x> {
         if value_in(&attributes, Namespace::Slice, "slicestackid").is_some() {
             self.note_extension("slices", "where the parts stay apart");
         }
-        let mut content = Content::Nothing;
+        let mut content = ObjectContent::Nothing;
         if !element.is_empty {
             let depth = self.scanner.depth;
             while let Some(child) = self.next_child(depth)? {
                 match (child.namespace, child.local) {
                     (Namespace::Core, "mesh") => {
                         let mesh = read_mesh::mesh(self, &child)?;
-                        content = self.only(&content, Content::Mesh(Box::new(mesh)), &child)?;
+                        content = self.only(&content, ObjectContent::Mesh(Box::new(mesh)), &child)?;
                     }
                     (Namespace::Core, "components") => {
                         let all = self.read_references(&child, "component")?;
-                        content = self.only(&content, Content::Components(all), &child)?;
+                        content = self.only(&content, ObjectContent::Components(all), &child)?;
                     }
                     _ => self.scanner.skip(&child)?,
                 }
             }
         }
-        if let Content::Nothing = content {
+        if let ObjectContent::Nothing = content {
             self.remark(element.at, &format!("the object {id} has neither a mesh nor components"));
         }
         let object = Object { id, kind, name, property, content };
@@ -297,9 +299,14 @@ impl<'x> ModelReader<'x> {
     }
 
     /// `new`, where there was nothing before.
-    fn only(&self, old: &Content, new: Content, element: &Element<'x>) -> Result<Content, ReadError> {
+    fn only(
+        &self,
+        old: &ObjectContent,
+        new: ObjectContent,
+        element: &XmlElement<'x>,
+    ) -> Result<ObjectContent, ReadError> {
         match old {
-            Content::Nothing => Ok(new),
+            ObjectContent::Nothing => Ok(new),
             _ => {
                 let found = format!("a second content <{}> of an object", element.name);
                 Err(self.error(element.at, &found, "one mesh, or one list of components"))
@@ -307,13 +314,13 @@ impl<'x> ModelReader<'x> {
         }
     }
 
-    fn read_build(&mut self, build: &Element<'x>) -> Result<(), ReadError> {
+    fn read_build(&mut self, build: &XmlElement<'x>) -> Result<(), ReadError> {
         let items = self.read_references(build, "item")?;
         self.model.items.extend(items);
         Ok(())
     }
 
-    fn read_references(&mut self, list: &Element<'x>, name: &str) -> Result<Vec<Reference>, ReadError> {
+    fn read_references(&mut self, list: &XmlElement<'x>, name: &str) -> Result<Vec<Reference>, ReadError> {
         let mut all = Vec::new();
         if list.is_empty {
             return Ok(all);
@@ -329,7 +336,11 @@ impl<'x> ModelReader<'x> {
         Ok(all)
     }
 
-    fn reference(&self, element: &Element<'x>, attributes: &[Attribute<'_>]) -> Result<Reference, ReadError> {
+    fn reference(
+        &self,
+        element: &XmlElement<'x>,
+        attributes: &[Attribute<'_>],
+    ) -> Result<Reference, ReadError> {
         let Some(object) = value(attributes, "objectid").and_then(number) else {
             let found = format!("<{}> without the id of an object", element.name);
             return Err(self.error(element.at, &found, "objectid=\"N\""));
@@ -369,8 +380,8 @@ impl<'x> ModelReader<'x> {
         {
             self.remark(at, &format!("the object {} has {what}", object.id));
         }
-        let Content::Mesh(mesh) = &object.content else { return };
-        let Mesh { attributes, .. } = &**mesh;
+        let ObjectContent::Mesh(mesh) = &object.content else { return };
+        let ObjectMesh { attributes, .. } = &**mesh;
         let mut is_default_missing = false;
         for (f, &own) in attributes.properties.iter().enumerate() {
             if own == Property::NONE {

@@ -3,13 +3,13 @@
 use super::model::Group;
 use super::model_reader::{ModelReader, number};
 use super::package::{resolve, shortened};
-use super::xml::{Element, Namespace, value};
+use super::xml::{Namespace, XmlElement, value};
 use crate::formats::{Precision, ReadError, numbers};
 
 /// A group whose members `<member …>` have a colour in the attribute `key`.
 pub(super) fn colors<'x>(
     reader: &mut ModelReader<'x>,
-    group: &Element<'x>,
+    group: &XmlElement<'x>,
     member: &str,
     key: &str,
 ) -> Result<Group, ReadError> {
@@ -30,7 +30,7 @@ pub(super) fn colors<'x>(
 }
 
 /// Places in a picture.
-pub(super) fn places<'x>(reader: &mut ModelReader<'x>, group: &Element<'x>) -> Result<Group, ReadError> {
+pub(super) fn places<'x>(reader: &mut ModelReader<'x>, group: &XmlElement<'x>) -> Result<Group, ReadError> {
     let attributes = reader.scanner.attributes(group)?;
     if value(&attributes, "texid").and_then(number).is_none() {
         reader.remark(group.at, &format!("<{}> names no texture", group.name));
@@ -52,7 +52,7 @@ pub(super) fn places<'x>(reader: &mut ModelReader<'x>, group: &Element<'x>) -> R
 /// That a texture names a picture that may be one; whether it is there, the package knows.
 pub(super) fn check_texture<'x>(
     reader: &mut ModelReader<'x>,
-    texture: &Element<'x>,
+    texture: &XmlElement<'x>,
 ) -> Result<(), ReadError> {
     let attributes = reader.scanner.attributes(texture)?;
     match value(&attributes, "path") {
@@ -70,7 +70,7 @@ pub(super) fn check_texture<'x>(
 }
 
 /// Mixtures of base materials.
-pub(super) fn mixtures<'x>(reader: &mut ModelReader<'x>, group: &Element<'x>) -> Result<Group, ReadError> {
+pub(super) fn mixtures<'x>(reader: &mut ModelReader<'x>, group: &XmlElement<'x>) -> Result<Group, ReadError> {
     let attributes = reader.scanner.attributes(group)?;
     let of = value(&attributes, "matid").and_then(number);
     let members = value(&attributes, "matindices").map(indices).unwrap_or_default();
@@ -106,7 +106,7 @@ pub(super) fn mixtures<'x>(reader: &mut ModelReader<'x>, group: &Element<'x>) ->
 }
 
 /// Members of several groups on each other.
-pub(super) fn layers<'x>(reader: &mut ModelReader<'x>, group: &Element<'x>) -> Result<Group, ReadError> {
+pub(super) fn layers<'x>(reader: &mut ModelReader<'x>, group: &XmlElement<'x>) -> Result<Group, ReadError> {
     let attributes = reader.scanner.attributes(group)?;
     let of = value(&attributes, "pids").map(indices).unwrap_or_default();
     if of.is_empty() {
@@ -148,9 +148,9 @@ pub(super) fn layers<'x>(reader: &mut ModelReader<'x>, group: &Element<'x>) -> R
 /// Runs `body` on each element `name` in `group`, and passes over all others.
 fn each<'x>(
     reader: &mut ModelReader<'x>,
-    group: &Element<'x>,
+    group: &XmlElement<'x>,
     name: &str,
-    mut body: impl FnMut(&mut ModelReader<'x>, &Element<'x>) -> Result<(), ReadError>,
+    mut body: impl FnMut(&mut ModelReader<'x>, &XmlElement<'x>) -> Result<(), ReadError>,
 ) -> Result<(), ReadError> {
     if group.is_empty {
         return Ok(());

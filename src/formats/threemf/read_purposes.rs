@@ -3,7 +3,7 @@
 use super::model_reader::number;
 use super::package::Package;
 use super::read_volumes::Purpose;
-use super::xml::{Document, Node, Scanner, value};
+use super::xml::{Document, Scanner, XmlEvent, value};
 use crate::budget::Budget;
 use crate::formats::{ReadError, ReadErrorKind};
 use rustc_hash::FxHashMap;
@@ -41,10 +41,10 @@ fn purposes_in(bytes: &[u8], budget: &Budget) -> Result<Purposes, ReadError> {
     let (mut purposes, mut object) = (Purposes::default(), None);
     loop {
         match scanner.next()? {
-            Node::Open(element) if element.local == "object" => {
+            XmlEvent::Open(element) if element.local == "object" => {
                 object = value(&scanner.attributes(&element)?, "id").and_then(number);
             }
-            Node::Open(element) if element.local == "part" => {
+            XmlEvent::Open(element) if element.local == "part" => {
                 let attributes = scanner.attributes(&element)?;
                 let part = value(&attributes, "id").and_then(number);
                 let purpose = value(&attributes, "subtype").map_or(Purpose::Material, Purpose::of_word);
@@ -52,8 +52,8 @@ fn purposes_in(bytes: &[u8], budget: &Budget) -> Result<Purposes, ReadError> {
                     purposes.insert([object, part], purpose);
                 }
             }
-            Node::Open(_) | Node::Close => {}
-            Node::End => return Ok(purposes),
+            XmlEvent::Open(_) | XmlEvent::Close => {}
+            XmlEvent::End => return Ok(purposes),
         }
     }
 }

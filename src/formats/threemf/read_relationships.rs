@@ -1,7 +1,7 @@
 //! What the parts of a package are for: the relationships of the package.
 
 use super::package::{Package, resolve, shortened};
-use super::xml::{Document, Node, Scanner, value};
+use super::xml::{Document, Scanner, XmlEvent, value};
 use crate::budget::Budget;
 use crate::formats::{Place, ReadError};
 
@@ -138,14 +138,14 @@ fn relationships(document: &Document<'_>, budget: &Budget) -> Result<Vec<Relatio
     let mut all = Vec::new();
     loop {
         match scanner.next()? {
-            Node::Open(element) if element.local == "Relationship" => {
+            XmlEvent::Open(element) if element.local == "Relationship" => {
                 let attributes = scanner.attributes(&element)?;
                 let of = |name| value(&attributes, name).unwrap_or_default().to_owned();
                 let is_external = of("TargetMode").eq_ignore_ascii_case("external");
                 all.push(Relationship { kind: of("Type"), target: of("Target"), is_external });
             }
-            Node::Open(_) | Node::Close => {}
-            Node::End => return Ok(all),
+            XmlEvent::Open(_) | XmlEvent::Close => {}
+            XmlEvent::End => return Ok(all),
         }
     }
 }

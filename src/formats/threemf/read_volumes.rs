@@ -2,7 +2,7 @@
 
 use super::model_reader::number;
 use super::package::Package;
-use super::xml::{Document, Element, Node, Scanner, value};
+use super::xml::{Document, Scanner, XmlElement, XmlEvent, value};
 use crate::budget::Budget;
 use crate::formats::ReadError;
 use rustc_hash::FxHashMap;
@@ -75,7 +75,7 @@ pub(super) fn read_volumes(package: &mut Package<'_>, budget: &Budget) -> Result
     let (mut object, mut is_in_volume) = (None, false);
     loop {
         match scanner.next()? {
-            Node::Open(element) => match element.local {
+            XmlEvent::Open(element) => match element.local {
                 "object" => object = value(&scanner.attributes(&element)?, "id").and_then(number),
                 "volume" => {
                     let tag = element.at..scanner.position();
@@ -99,15 +99,15 @@ pub(super) fn read_volumes(package: &mut Package<'_>, budget: &Budget) -> Result
                 _ => {}
             },
             // `config` is at depth 1, objects at 2, volumes at 3.
-            Node::Close => is_in_volume &= scanner.depth >= 3,
-            Node::End => return Ok(volumes),
+            XmlEvent::Close => is_in_volume &= scanner.depth >= 3,
+            XmlEvent::End => return Ok(volumes),
         }
     }
 }
 
 fn volume(
     scanner: &Scanner<'_>,
-    element: &Element<'_>,
+    element: &XmlElement<'_>,
     object: u32,
     tag: Range<usize>,
 ) -> Result<Option<Volume>, ReadError> {

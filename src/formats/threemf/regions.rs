@@ -126,7 +126,7 @@ impl Body {
         if attributes.properties.is_empty() && attributes.others.is_empty() {
             return Ok(regions);
         }
-        let mut numbers = Numbers::default();
+        let mut numbers = ValueNumbers::default();
         let mut of_key: FxHashMap<[u32; 4], u32> = FxHashMap::default();
         let is_divided: Vec<bool> =
             (0..attributes.texts.len() as u32).map(|number| attributes.is_divided(number)).collect();
@@ -168,12 +168,12 @@ pub(super) const VALUE_BYTES: usize = 1024;
 
 /// Numbers of values: the same for members of a group that are alike.
 #[derive(Default)]
-struct Numbers {
+struct ValueNumbers {
     of_member: FxHashMap<[u32; 2], u32>,
     of_value: FxHashMap<(u32, Value), u32>,
 }
 
-impl Numbers {
+impl ValueNumbers {
     fn of(&mut self, groups: &Groups, group: u32, member: u32) -> u32 {
         let Self { of_member, of_value } = self;
         *of_member.entry([group, member]).or_insert_with(|| {

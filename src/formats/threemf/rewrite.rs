@@ -202,10 +202,10 @@ fn edited(old: &[u8], document: &Document<'_>, mut edits: Vec<(Range<usize>, Vec
 
 /// The mesh of an object as it is written: one piece, or one for each of its volumes.
 struct NewObject<'a> {
-    pieces: Vec<Piece<'a>>,
+    pieces: Vec<VolumePiece<'a>>,
 }
 
-struct Piece<'a> {
+struct VolumePiece<'a> {
     body: &'a Body,
     soup: &'a Soup,
     /// `None`: its faces stay as they are.
@@ -215,7 +215,7 @@ struct Piece<'a> {
     members: Vec<[u32; 3]>,
 }
 
-impl Piece<'_> {
+impl VolumePiece<'_> {
     /// Finds the members at corners that are between others, in the order of triangles.
     fn find_members<'g>(&mut self, members: &mut NewMembers<'g>, budget: &'g Budget) -> Result<(), Stopped> {
         self.members = vec![[NO_NUMBER; 3]; self.between.len()];
@@ -245,14 +245,14 @@ fn objects<'a>(project: &'a Project, new: &[&NewBody<'a>]) -> Vec<NewObject<'a>>
         let of = |i: usize| by_body.get(&i);
         if (at..end).any(|i| of(i).is_some()) {
             let piece = |i: usize| match of(i) {
-                Some(new) => Piece {
+                Some(new) => VolumePiece {
                     body: &bodies[i],
                     soup: new.soup,
                     sources: Some(new.sources),
                     between: new.between,
                     members: Vec::new(),
                 },
-                None => Piece {
+                None => VolumePiece {
                     body: &bodies[i],
                     soup: &bodies[i].soup,
                     sources: None,
@@ -325,7 +325,7 @@ fn start_tag<'x>(text: &'x str, span: &Range<usize>) -> StartTag<'x> {
 /// Writes the triangles of a piece; `longest`: bytes of the longest text of other attributes.
 fn triangles(
     text: &mut Text<'_>,
-    piece: &Piece<'_>,
+    piece: &VolumePiece<'_>,
     first_vertex: u32,
     prefix: &str,
     longest: usize,

@@ -1,6 +1,6 @@
 //! What the build of a 3MF puts together, as one mesh.
 
-use super::model::Content;
+use super::model::ObjectContent;
 use super::models::Models;
 use super::package::too_large;
 use super::read_volumes::{Purpose, are_all, by_object};
@@ -14,7 +14,7 @@ use crate::mesh::{Color, FaceFault, NAME_BYTES_MAX, OBJECTS_MAX, ObjectName, Obj
 
 /// An object at its place in the scene.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Placed {
+pub struct PlacedObject {
     /// Number of its model part and its own number there, as of [`Body`](super::Body).
     pub source: [usize; 2],
     /// Number of the build item that it belongs to.
@@ -28,7 +28,7 @@ pub struct Placed {
     transform: Transform,
 }
 
-impl Placed {
+impl PlacedObject {
     /// Where a point of the object lies in the scene.
     pub fn apply(&self, p: DVec3) -> DVec3 {
         self.transform.apply(p, Precision::F64)
@@ -39,7 +39,7 @@ impl Placed {
 pub(super) struct Assembled {
     pub(super) soup: Soup,
     /// The objects in it, in their order.
-    pub(super) placed: Vec<Placed>,
+    pub(super) placed: Vec<PlacedObject>,
 }
 
 /// Which parts are put together.
@@ -75,13 +75,14 @@ pub(super) fn assemble(
     let units = models.all.first().map(|model| model.units);
     let soup = Soup { units, is_f32_exact: true, ..Soup::default() };
     let objects = Objects::default();
-    let mut scene = Scene { soup, objects, is_faulty: false, means: 0, charges: Vec::new(), options, budget };
+    let mut scene =
+        SceneBuilder { soup, objects, is_faulty: false, means: 0, charges: Vec::new(), options, budget };
     let of_object = by_object(&models.volumes);
     for placement in &models.placements {
         let [m, o] = placement.object;
         let model = &models.all[m];
         let object = &model.objects[o];
-        let Content::Mesh(mesh) = &object.content else { continue };
+        let ObjectContent::Mesh(mesh) = &object.content else { continue };
         let is_printed = object.kind.is_solid() || object.kind == super::ObjectKind::Surface;
         if !is_printed {
             continue;
@@ -97,7 +98,7 @@ pub(super) fn assemble(
             scene.leave_out(placement.purpose);
             continue;
         }
-        placed.push(Placed {
+        placed.push(PlacedObject {
             source: placement.object,
             item: placement.item,
             first_vertex: scene.soup.positions.len() as u32,
@@ -124,7 +125,7 @@ pub(super) fn assemble(
             scene.name_faces(scene.soup.face_count, &object.name, &volume.name)?;
         }
     }
-    let Scene { mut soup, objects, is_faulty, means, .. } = scene;
+    let SceneBuilder { mut soup, objects, is_faulty, means, .. } = scene;
     match objects.names.len() {
         1 if objects.names[0] == ObjectName::default() => {}
         0..=OBJECTS_MAX => soup.objects = objects,
@@ -144,7 +145,7 @@ pub(super) fn assemble(
 }
 
 /// A mesh to which others are added.
-struct Scene<'s> {
+struct SceneBuilder<'s> {
     soup: Soup,
     objects: Objects,
     /// Some face has no triangle.
@@ -156,7 +157,7 @@ struct Scene<'s> {
     budget: &'s Budget,
 }
 
-impl Scene<'_> {
+impl SceneBuilder<'_> {
     /// Counts a part that is left out, unless it is material.
     fn leave_out(&mut self, purpose: Purpose) {
         let Some(name) = purpose.left_out_as() else { return };
@@ -200,7 +201,7 @@ impl Scene<'_> {
         if triangles > limits.triangles_max.into() {
             return Err(too_large("triangles", "triangles_max", limits.triangles_max.into(), triangles));
         }
-        let bytes = 64 * (soup.positions.len() + soup.triangles.len()) + size_of::<Placed>();
+        let bytes = 64 * (soup.positions.len() + soup.triangles.len()) + size_of::<PlacedObject>();
         self.charges.push(budget.charge(bytes as u64)?);
         let (first_vertex, first_face) = (scene.positions.len() as u32, scene.face_count);
         for (i, &p) in soup.positions.iter().enumerate() {

@@ -83,7 +83,7 @@ impl<'x> Document<'x> {
 
 /// An element as it begins.
 #[derive(Clone, Copy)]
-pub(super) struct Element<'x> {
+pub(super) struct XmlElement<'x> {
     pub(super) namespace: Namespace,
     /// Name without its prefix.
     pub(super) local: &'x str,
@@ -98,8 +98,8 @@ pub(super) struct Element<'x> {
 }
 
 /// What stands in a document.
-pub(super) enum Node<'x> {
-    Open(Element<'x>),
+pub(super) enum XmlEvent<'x> {
+    Open(XmlElement<'x>),
     Close,
     End,
 }
@@ -130,7 +130,7 @@ impl<'x> Scanner<'x> {
     ///
     /// # Errors
     /// What is no XML, a document type, an encoding other than UTF-8, or too many levels.
-    pub(super) fn next(&mut self) -> Result<Node<'x>, ReadError> {
+    pub(super) fn next(&mut self) -> Result<XmlEvent<'x>, ReadError> {
         loop {
             self.budget.spend(1)?;
             let from = self.position();
@@ -142,14 +142,14 @@ impl<'x> Scanner<'x> {
                 }
             };
             match event {
-                Event::Start(_) => return self.open(from, false).map(Node::Open),
-                Event::Empty(_) => return self.open(from, true).map(Node::Open),
+                Event::Start(_) => return self.open(from, false).map(XmlEvent::Open),
+                Event::Empty(_) => return self.open(from, true).map(XmlEvent::Open),
                 Event::End(_) => {
                     while self.bindings.last().is_some_and(|&(depth, ..)| depth == self.depth) {
                         self.bindings.pop();
                     }
                     self.depth = self.depth.saturating_sub(1);
-                    return Ok(Node::Close);
+                    return Ok(XmlEvent::Close);
                 }
                 Event::DocType(_) => {
                     return Err(self.document.error(from, "a document type definition", "XML without one"));
@@ -166,14 +166,14 @@ impl<'x> Scanner<'x> {
                         format!("the end tags of {} elements in {}", self.depth, self.document.part);
                     return Err(ReadError::truncated(Place::Byte(from as u64), expected));
                 }
-                Event::Eof => return Ok(Node::End),
+                Event::Eof => return Ok(XmlEvent::End),
                 _ => {}
             }
         }
     }
 
     /// The element whose tag was read last, from byte `from` on, with what it declares.
-    fn open(&mut self, from: usize, is_empty: bool) -> Result<Element<'x>, ReadError> {
+    fn open(&mut self, from: usize, is_empty: bool) -> Result<XmlElement<'x>, ReadError> {
         let text = self.document.text;
         let end = self.position();
         let at = from + memchr::memchr(b'<', &text.as_bytes()[from..end]).unwrap_or(0);
@@ -207,7 +207,7 @@ impl<'x> Scanner<'x> {
         } else {
             self.depth = depth;
         }
-        Ok(Element { namespace, local, name, attributes, at, is_empty })
+        Ok(XmlElement { namespace, local, name, attributes, at, is_empty })
     }
 
     fn bad_attributes(&self, at: usize, name: &str) -> ReadError {
@@ -226,7 +226,7 @@ impl<'x> Scanner<'x> {
     }
 
     /// Passes over the content of `element`, to its end.
-    pub(super) fn skip(&mut self, element: &Element<'x>) -> Result<(), ReadError> {
+    pub(super) fn skip(&mut self, element: &XmlElement<'x>) -> Result<(), ReadError> {
         if element.is_empty {
             return Ok(());
         }
@@ -241,7 +241,7 @@ impl<'x> Scanner<'x> {
     ///
     /// # Errors
     /// What is no list of attributes, a name that comes twice, a reference that XML does not define.
-    pub(super) fn attributes(&self, element: &Element<'x>) -> Result<Vec<Attribute<'x>>, ReadError> {
+    pub(super) fn attributes(&self, element: &XmlElement<'x>) -> Result<Vec<Attribute<'x>>, ReadError> {
         let mut all: Vec<Attribute<'x>> = Vec::new();
         for attribute in Attributes::of(element.attributes) {
             let (key, raw) = attribute.map_err(|()| self.bad_attributes(element.at, element.name))?;

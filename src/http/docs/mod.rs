@@ -49,7 +49,7 @@ const GROUPS: [(&str, &str, &str); 4] = [
 pub(super) fn render(document: &OpenApi) -> String {
     // The document is made of types that all have a form in JSON.
     let document = serde_json::to_value(document).unwrap_or_default();
-    let mut page = Page { html: String::new(), document: &document };
+    let mut page = DocsPage { html: String::new(), document: &document };
     page.add(format_args!(
         "<!doctype html><html lang=en><head><meta charset=utf-8>\
          <meta name=viewport content=\"width=device-width, initial-scale=1\"><title>Meshmend API</title>\
@@ -74,12 +74,12 @@ pub(super) fn render(document: &OpenApi) -> String {
     page.html
 }
 
-struct Page<'d> {
+struct DocsPage<'d> {
     html: String,
     document: &'d Value,
 }
 
-impl<'d> Page<'d> {
+impl<'d> DocsPage<'d> {
     fn add(&mut self, arguments: Arguments<'_>) {
         // Writing to a String cannot fail.
         let _ = self.html.write_fmt(arguments);

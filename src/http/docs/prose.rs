@@ -18,7 +18,7 @@ impl Display for Prose<'_> {
             }
             is_list = is_item;
             let tag = if is_item { "li" } else { "p" };
-            write!(f, "<{tag}>{}</{tag}>", Line(&text))?;
+            write!(f, "<{tag}>{}</{tag}>", ProseLine(&text))?;
         }
         if is_list { f.write_str("</ul>") } else { Ok(()) }
     }
@@ -41,9 +41,9 @@ fn blocks(text: &str) -> Vec<(bool, String)> {
     blocks
 }
 
-struct Line<'t>(&'t str);
+struct ProseLine<'t>(&'t str);
 
-impl Display for Line<'_> {
+impl Display for ProseLine<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         let mut parts = self.0.split('`');
         if let Some(first) = parts.next() {

@@ -6,7 +6,7 @@ use std::process::ExitStatus;
 
 use libc::c_int;
 
-use super::limits::Limits;
+use super::limits::ProcessLimits;
 use crate::budget::Stopped;
 use crate::wire::{Problem, ProblemCode, Stage};
 
@@ -84,7 +84,7 @@ impl Death {
     pub(in crate::jobs) fn problem(
         &self,
         stage: Option<Stage>,
-        limits: &Limits,
+        limits: &ProcessLimits,
         engine_bytes_max: u64,
     ) -> Problem {
         let place = match stage {
@@ -167,7 +167,7 @@ mod tests {
             (3 << 8, "", "no-answer", ProblemCode::EngineCrashed),
             (0, "", "no-answer", ProblemCode::EngineCrashed),
         ];
-        let limits = Limits::new(1 << 30, 1 << 30, Duration::from_secs(1), 1);
+        let limits = ProcessLimits::new(1 << 30, 1 << 30, Duration::from_secs(1), 1);
         for (status, words, kind, code) in rows {
             let death = Death::of(ExitStatus::from_raw(status), words, false);
             let problem = death.problem(Some(Stage::Repair), &limits, 1 << 30);
@@ -185,7 +185,7 @@ mod tests {
 
     #[test]
     fn a_signal_is_told_by_its_name() {
-        let limits = Limits::new(1 << 30, 1 << 30, Duration::from_secs(1), 1);
+        let limits = ProcessLimits::new(1 << 30, 1 << 30, Duration::from_secs(1), 1);
         let detail = |signal| Death::Killed(signal).problem(None, &limits, 1 << 30).detail;
         assert!(detail(libc::SIGKILL).contains("killed from outside with SIGKILL"));
         assert!(detail(libc::SIGUSR1).contains(&format!("signal {}", libc::SIGUSR1)));

@@ -19,7 +19,7 @@ const OOM_SCORE: &str = "500";
 
 /// What the kernel holds a child to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub(in crate::jobs) struct Limits {
+pub(in crate::jobs) struct ProcessLimits {
     /// Private writable memory, in bytes.
     pub(in crate::jobs) memory_bytes: u64,
     /// CPU time of all threads, in seconds.
@@ -34,7 +34,7 @@ fn memory_max(engine_bytes_max: u64) -> u64 {
     engine_bytes_max.saturating_mul(2).saturating_add(MEMORY_ALLOWANCE_BYTES)
 }
 
-impl Limits {
+impl ProcessLimits {
     /// Limits of a child with these settings and this many engine threads.
     pub(in crate::jobs) fn new(
         engine_bytes_max: u64,
@@ -87,16 +87,16 @@ mod tests {
 
     #[test]
     fn the_kernel_gives_more_than_the_engine_may_use() {
-        let limits = Limits::new(4 << 30, 20 << 30, Duration::from_secs(10), 2);
+        let limits = ProcessLimits::new(4 << 30, 20 << 30, Duration::from_secs(10), 2);
         assert!(limits.memory_bytes > 4 << 30);
         assert!(limits.cpu_s > 2 * 10, "a deadline on every core comes first");
         assert_eq!(limits.file_bytes, limits.memory_bytes);
-        assert_eq!(Limits::new(4 << 30, 1000, Duration::from_secs(10), 2).file_bytes, 1000);
+        assert_eq!(ProcessLimits::new(4 << 30, 1000, Duration::from_secs(10), 2).file_bytes, 1000);
     }
 
     #[test]
     fn limits_without_bounds_do_not_overflow() {
-        let limits = Limits::new(u64::MAX, u64::MAX, Duration::MAX, usize::MAX);
+        let limits = ProcessLimits::new(u64::MAX, u64::MAX, Duration::MAX, usize::MAX);
         assert_eq!((limits.memory_bytes, limits.cpu_s), (u64::MAX, u64::MAX));
     }
 }

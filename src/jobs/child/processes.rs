@@ -5,7 +5,7 @@ use std::num::NonZero;
 use std::time::{Duration, Instant};
 
 use super::death::Death;
-use super::limits::Limits;
+use super::limits::ProcessLimits;
 use super::memory_kills;
 use super::sandbox::Protections;
 use super::starter::Starter;
@@ -146,7 +146,7 @@ fn setting(settings: &JobsSettings) -> Setting {
     Setting {
         parent: std::process::id() as i32,
         threads,
-        limits: Limits::new(
+        limits: ProcessLimits::new(
             settings.engine_bytes_max,
             settings.data_bytes_max,
             settings.deadline_max,
@@ -156,8 +156,8 @@ fn setting(settings: &JobsSettings) -> Setting {
     }
 }
 
-fn tell(protections: Protections, limits: &Limits) {
-    let Limits { memory_bytes, cpu_s, file_bytes } = limits;
+fn tell(protections: Protections, limits: &ProcessLimits) {
+    let ProcessLimits { memory_bytes, cpu_s, file_bytes } = limits;
     tracing::info!(
         "jobs run in processes of their own: {protections}, memory {memory_bytes} B, CPU {cpu_s} s, files {file_bytes} B"
     );

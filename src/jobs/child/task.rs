@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::limits::Limits;
+use super::limits::ProcessLimits;
 use super::sandbox::{Protections, Sandbox};
 use crate::formats::ReadLimits;
 use crate::jobs::product::Product;
@@ -16,7 +16,7 @@ pub(super) struct Setting {
     /// Engine threads, at least one.
     pub(super) threads: usize,
     /// What the kernel holds the process to.
-    pub(super) limits: Limits,
+    pub(super) limits: ProcessLimits,
     /// How much of the sandbox there must be.
     pub(super) sandbox: Sandbox,
 }

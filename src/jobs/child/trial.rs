@@ -4,7 +4,7 @@ use std::io;
 use std::time::Duration;
 
 use super::launch::Running;
-use super::limits::Limits;
+use super::limits::ProcessLimits;
 use super::sandbox::{Protections, Sandbox};
 use super::task::{Setting, Task};
 use super::watch::watch;
@@ -44,7 +44,7 @@ pub(super) fn try_out(workspaces: &Workspaces, setting: &Setting) -> Result<Prot
     let setting = Setting {
         // What is missing is to be told, not to end the trial.
         sandbox: if required { Sandbox::Auto } else { setting.sandbox },
-        limits: Limits { file_bytes: TRIAL_BYTES, ..setting.limits },
+        limits: ProcessLimits { file_bytes: TRIAL_BYTES, ..setting.limits },
         ..*setting
     };
     let ReadLimits { triangles_max, vertices_max, polygon_corners_max } = ReadLimits::default();

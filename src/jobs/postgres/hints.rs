@@ -31,12 +31,12 @@ const PAUSE: Duration = Duration::from_secs(1);
 
 /// What goes to other servers and comes from them.
 pub(super) struct HintLine {
-    shared: Arc<Shared>,
+    shared: Arc<HintChannel>,
     /// Ends the connection.
     _open: DropGuard,
 }
 
-struct Shared {
+struct HintChannel {
     /// What is to be told.
     waiting: Mutex<HashSet<Hint>>,
     has_some: Notify,
@@ -49,7 +49,7 @@ struct Shared {
 impl HintLine {
     /// Opens the line and keeps it open until it is dropped.
     pub(super) fn open(access: DatabaseAccess) -> Self {
-        let shared = Arc::new(Shared {
+        let shared = Arc::new(HintChannel {
             waiting: Mutex::default(),
             has_some: Notify::new(),
             heard: broadcast::channel(HINTS_MAX).0,
@@ -75,7 +75,7 @@ impl HintLine {
     }
 }
 
-impl Shared {
+impl HintChannel {
     fn waiting(&self) -> MutexGuard<'_, HashSet<Hint>> {
         self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -7,7 +7,9 @@ use uuid::Uuid;
 
 use super::rows::{COLUMNS, get, id as id_of, job, number, state, time, to_json, value};
 use super::session::Session;
-use crate::jobs::store::{Change, IdempotencyKey, JobCounts, JobId, JobRow, ListQuery, NewJob, StoreError};
+use crate::jobs::store::{
+    IdempotencyKey, JobCounts, JobId, JobRow, ListQuery, NewJob, StateChange, StoreError,
+};
 use crate::wire::ENGINE_VERSION;
 
 pub(super) async fn find_keyed(
@@ -81,12 +83,16 @@ pub(super) async fn deadlines(session: &Session) -> Result<Vec<(JobId, Duration)
     rows.iter().map(|row| Ok((id_of(row, 0)?, Duration::from_millis(number(row, 1)?)))).collect()
 }
 
-pub(super) async fn changes(session: &Session, id: JobId, after: u64) -> Result<Vec<Change>, StoreError> {
+pub(super) async fn changes(
+    session: &Session,
+    id: JobId,
+    after: u64,
+) -> Result<Vec<StateChange>, StoreError> {
     let sql = "SELECT number, state, epoch, at FROM changes WHERE job = $1 AND number > $2 ORDER BY number";
     let after = i64::try_from(after).unwrap_or(i64::MAX);
     let rows = session.rows(sql, &[&Uuid::from(id), &after]).await?;
     let change = |row| {
-        Ok(Change {
+        Ok(StateChange {
             number: number(row, 0)?,
             state: state(row, 1)?,
             epoch: number(row, 2)?,

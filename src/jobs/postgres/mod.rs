@@ -27,9 +27,9 @@ use jiff::Timestamp;
 use tokio_postgres::error::SqlState;
 
 use super::store::{
-    AfterLoss, BlobRef, Change, ClaimRef, ClaimRequest, Created, Delivery, DeliveryRequest, Ending, Hint,
-    Hints, Holding, IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept, Leases, ListQuery, NewJob,
-    NextTry, Sealer, StoreError, StoreFuture, Tenant, TryOutcome,
+    AfterLoss, BlobRef, ClaimRef, ClaimRequest, Created, Delivery, DeliveryRequest, Ending, Hint, Hints,
+    Holding, IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept, Leases, ListQuery, NewJob, NextTry,
+    Sealer, StateChange, StoreError, StoreFuture, Tenant, TryOutcome,
 };
 use crate::wire::{JobState, Problem};
 pub use access::DatabaseAccess;
@@ -210,7 +210,7 @@ impl JobStore for PostgresStore {
         self.read(|session| Box::pin(listing::deadlines(session)))
     }
 
-    fn changes(&self, id: JobId, after: u64) -> StoreFuture<'_, Vec<Change>> {
+    fn changes(&self, id: JobId, after: u64) -> StoreFuture<'_, Vec<StateChange>> {
         self.read(move |session| Box::pin(listing::changes(session, id, after)))
     }
 

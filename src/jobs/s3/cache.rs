@@ -19,11 +19,11 @@ const STAYS: Duration = Duration::from_secs(5 * 60);
 pub(super) struct Cache {
     dir: PathBuf,
     bytes_max: u64,
-    known: Mutex<Known>,
+    known: Mutex<CacheIndex>,
 }
 
 #[derive(Debug, Default)]
-struct Known {
+struct CacheIndex {
     copies: HashMap<String, Copy>,
     bytes: u64,
     /// Files that are being removed from the bucket.
@@ -115,7 +115,7 @@ impl Cache {
         Some(disk.f_bavail.saturating_mul(disk.f_frsize))
     }
 
-    fn forget(&self, known: &mut Known, key: &str) {
+    fn forget(&self, known: &mut CacheIndex, key: &str) {
         if let Some(copy) = known.copies.remove(key) {
             known.bytes -= copy.bytes;
             // One that is gone already fills no room.
@@ -123,7 +123,7 @@ impl Cache {
         }
     }
 
-    fn known(&self) -> MutexGuard<'_, Known> {
+    fn known(&self) -> MutexGuard<'_, CacheIndex> {
         self.known.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -36,13 +36,13 @@ const MARK: &str = "store.mark";
 
 /// Files in a bucket.
 pub struct S3Blobs {
-    parts: Arc<Parts>,
+    parts: Arc<SharedBucket>,
     /// `None` once it is dropped.
     runtime: Option<Runtime>,
 }
 
 /// What writers and removals share with the store.
-struct Parts {
+struct SharedBucket {
     bucket: Box<dyn ObjectStore>,
     /// The same bucket, by the address that clients know.
     signer: AmazonS3,
@@ -79,7 +79,7 @@ impl S3Blobs {
             .enable_all()
             .build()
             .map_err(BucketError::Disk)?;
-        let parts = Parts {
+        let parts = SharedBucket {
             bucket: Box::new(bucket),
             signer,
             prefix,
@@ -147,7 +147,7 @@ impl S3Blobs {
     }
 }
 
-impl Parts {
+impl SharedBucket {
     /// Where the bucket has the file.
     fn place(&self, key: &str) -> Path {
         self.prefix.parts().chain(Path::from(key).parts()).collect()
@@ -237,7 +237,7 @@ impl BlobStore for S3Blobs {
 
 /// A file on its way to the bucket, on this machine until then.
 struct S3Writer {
-    parts: Arc<Parts>,
+    parts: Arc<SharedBucket>,
     key: String,
     /// `None` once it is committed.
     file: Option<File>,

@@ -13,7 +13,7 @@ use object_store::{MultipartUpload, ObjectStoreExt as _, PutMode, PutOptions};
 use tokio::io::AsyncWriteExt as _;
 use tokio::task::JoinSet;
 
-use super::Parts;
+use super::SharedBucket;
 
 /// Files up to this size are sent in one request.
 const ONE_REQUEST_BYTES_MAX: u64 = 16 << 20;
@@ -22,7 +22,7 @@ const PART_BYTES: u64 = 16 << 20;
 /// Most parts on their way at one time, which is the memory that a file takes.
 const PARTS_AT_ONCE: usize = 3;
 
-impl Parts {
+impl SharedBucket {
     /// Brings a complete file into the bucket, where there must be none of that name. Blocks.
     pub(super) fn upload(self: &Arc<Self>, file: &FilePath, key: &str) -> io::Result<()> {
         let mut content = File::open(file)?;

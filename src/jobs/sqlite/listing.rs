@@ -6,7 +6,9 @@ use rusqlite::types::Value;
 use rusqlite::{Connection, OptionalExtension as _, params, params_from_iter};
 
 use super::rows::{COLUMNS, get, job, parsed, state, time, time_left, word};
-use crate::jobs::store::{Change, IdempotencyKey, JobCounts, JobId, JobRow, ListQuery, NewJob, StoreError};
+use crate::jobs::store::{
+    IdempotencyKey, JobCounts, JobId, JobRow, ListQuery, NewJob, StateChange, StoreError,
+};
 use crate::wire::{ENGINE_VERSION, JobState};
 
 pub(super) fn find_keyed(
@@ -84,14 +86,18 @@ pub(super) fn deadlines(connection: &Connection, now: i64) -> Result<Vec<(JobId,
     Ok(rows.collect::<rusqlite::Result<_>>()?)
 }
 
-pub(super) fn changes(connection: &Connection, id: JobId, after: u64) -> Result<Vec<Change>, StoreError> {
+pub(super) fn changes(
+    connection: &Connection,
+    id: JobId,
+    after: u64,
+) -> Result<Vec<StateChange>, StoreError> {
     let mut statement = connection.prepare_cached(
         "SELECT number, state, epoch, at FROM changes WHERE job = ?1 AND number > ?2 ORDER BY number",
     )?;
     let after = i64::try_from(after).unwrap_or(i64::MAX);
     let rows = statement.query_map(params![id.to_string(), after], |row| {
         let number: i64 = row.get(0)?;
-        Ok(Change {
+        Ok(StateChange {
             number: number.unsigned_abs(),
             state: state(row, 1)?,
             epoch: row.get(2)?,

@@ -29,9 +29,9 @@ use jiff::Timestamp;
 use rusqlite::{Connection, ErrorCode, OpenFlags};
 
 use super::store::{
-    AfterLoss, BlobRef, Change, ClaimRef, ClaimRequest, Created, Delivery, DeliveryRequest, Ending, Holding,
+    AfterLoss, BlobRef, ClaimRef, ClaimRequest, Created, Delivery, DeliveryRequest, Ending, Holding,
     IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept, Leases, ListQuery, NewJob, NextTry, Sealer,
-    StoreError, StoreFuture, Tenant, TryOutcome,
+    StateChange, StoreError, StoreFuture, Tenant, TryOutcome,
 };
 use crate::wire::Problem;
 pub(super) use export::Export;
@@ -259,7 +259,7 @@ impl JobStore for SqliteStore {
         self.read(listing::deadlines)
     }
 
-    fn changes(&self, id: JobId, after: u64) -> StoreFuture<'_, Vec<Change>> {
+    fn changes(&self, id: JobId, after: u64) -> StoreFuture<'_, Vec<StateChange>> {
         self.read(move |connection, _| listing::changes(connection, id, after))
     }
 

@@ -158,7 +158,7 @@ pub struct ListQuery {
 
 /// A change of a job's state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Change {
+pub struct StateChange {
     /// Which of the job's changes, from 1.
     pub number: u64,
     /// The state that the job came into.
@@ -205,7 +205,7 @@ pub trait JobStore: UploadStore {
     fn deadlines(&self) -> StoreFuture<'_, Vec<(JobId, Duration)>>;
 
     /// Changes of a job's state after the one of that number, the first one first.
-    fn changes(&self, id: JobId, after: u64) -> StoreFuture<'_, Vec<Change>>;
+    fn changes(&self, id: JobId, after: u64) -> StoreFuture<'_, Vec<StateChange>>;
 
     /// Those of the jobs that have ended or are gone.
     fn ended(&self, jobs: Vec<JobId>) -> StoreFuture<'_, Vec<JobId>>;

@@ -12,7 +12,7 @@ use reqwest::redirect::Policy;
 use reqwest::{Client, header};
 
 use super::address;
-use super::target::Target;
+use super::target::WebhookTarget;
 
 /// Time for a connection with its handshake.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(5);
@@ -79,7 +79,7 @@ impl Dialer {
     ///
     /// # Errors
     /// Why there was no answer, in words that name no address.
-    pub(super) async fn call(&self, target: &Target, message: Message) -> Result<Reply, String> {
+    pub(super) async fn call(&self, target: &WebhookTarget, message: Message) -> Result<Reply, String> {
         let client = if target.is_private() { &self.private } else { &self.public };
         let request = client
             .post(target.url().clone())
@@ -176,7 +176,7 @@ mod tests {
     /// What a call to a host with these addresses gives.
     async fn called(addresses: &[&str]) -> String {
         let dialer = Dialer::with_lookup(PATIENCE, lookup(addresses)).unwrap();
-        let target = Target::parse("https://rebinding.example/", &PrivateHosts::default()).unwrap();
+        let target = WebhookTarget::parse("https://rebinding.example/", &PrivateHosts::default()).unwrap();
         dialer.call(&target, message()).await.unwrap_err()
     }
 
@@ -212,7 +212,7 @@ mod tests {
 
     async fn call(host: &str) -> Result<Reply, String> {
         let private = PrivateHosts::parse(&[host.to_owned()]).unwrap();
-        let target = Target::parse(&format!("http://{host}/hook?token=7"), &private).unwrap();
+        let target = WebhookTarget::parse(&format!("http://{host}/hook?token=7"), &private).unwrap();
         Dialer::new(PATIENCE).unwrap().call(&target, message()).await
     }
 

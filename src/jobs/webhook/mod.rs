@@ -18,7 +18,7 @@ pub use retry::RetryPlan;
 pub(super) use sender::Sender;
 pub use settings::WebhookSettings;
 pub use signature::{SecretError, WebhookSecret};
-pub use target::{PrivateHosts, Target, TargetError, URL_BYTES_MAX};
+pub use target::{PrivateHosts, TargetError, URL_BYTES_MAX, WebhookTarget};
 pub(super) use vault::Vault;
 pub use vault::VaultError;
 pub(super) use view::view;

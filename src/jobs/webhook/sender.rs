@@ -12,7 +12,7 @@ use super::dial::{Dialer, Message};
 use super::retry::{Next, RetryPlan};
 use super::settings::WebhookSettings;
 use super::signature::{self, WebhookSecret};
-use super::target::Target;
+use super::target::WebhookTarget;
 use super::vault::Vault;
 use crate::jobs::meters;
 use crate::jobs::store::{Delivery, DeliveryRequest, JobRow, JobStore, NextTry, TryOutcome, Webhook};
@@ -119,7 +119,7 @@ impl Sender {
 
     async fn call(&self, row: &JobRow, delivery: &Delivery) -> Result<super::dial::Reply, String> {
         // The settings may have changed since the job was taken.
-        let target = Target::parse(&delivery.webhook.url, &self.settings.private_hosts)
+        let target = WebhookTarget::parse(&delivery.webhook.url, &self.settings.private_hosts)
             .map_err(|error| error.to_string())?;
         let secrets = self.secrets(&delivery.webhook)?;
         let payload = payload(row, delivery.created_at)?;

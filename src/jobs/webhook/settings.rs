@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::retry::RetryPlan;
 use super::signature::WebhookSecret;
-use super::target::{PrivateHosts, Target};
+use super::target::{PrivateHosts, WebhookTarget};
 use crate::jobs::store::Webhook;
 use crate::wire::{Problem, ProblemCode, WebhookRequest};
 
@@ -34,7 +34,7 @@ impl WebhookSettings {
         let Some(settings) = this else {
             return Err(refused("this server sends no webhooks (`webhooks` is off)".to_owned()));
         };
-        Target::parse(&asked.url, &settings.private_hosts)
+        WebhookTarget::parse(&asked.url, &settings.private_hosts)
             .map_err(|error| refused(format!("`url` is not called: {error}")))?;
         match &asked.secret {
             Some(secret) => {

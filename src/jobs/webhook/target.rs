@@ -72,12 +72,12 @@ impl PrivateHosts {
 
 /// A URL that may be called, as far as it tells by itself. A name may still resolve to an address that may not.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Target {
+pub struct WebhookTarget {
     url: Url,
     is_private: bool,
 }
 
-impl Target {
+impl WebhookTarget {
     /// Checks a URL.
     ///
     /// # Errors
@@ -243,13 +243,13 @@ mod tests {
     #[test]
     fn no_spelling_of_a_place_that_is_not_public_is_taken() {
         for text in REFUSED {
-            assert!(Target::parse(text, &PrivateHosts::default()).is_err(), "{text}");
+            assert!(WebhookTarget::parse(text, &PrivateHosts::default()).is_err(), "{text}");
         }
     }
 
     #[test]
     fn what_is_no_place_to_call_is_refused_with_its_reason() {
-        let error = |text: &str| Target::parse(text, &PrivateHosts::default()).unwrap_err();
+        let error = |text: &str| WebhookTarget::parse(text, &PrivateHosts::default()).unwrap_err();
         assert_eq!(error("gopher://example.com/"), TargetError::NotHttps);
         assert_eq!(error("https://example.com/#a"), TargetError::Fragment);
         assert_eq!(error("https://example.com/ @[::1]/#a"), TargetError::Fragment);
@@ -265,7 +265,7 @@ mod tests {
     #[test]
     fn a_public_host_is_taken() {
         for text in ["https://example.com/hook?token=1", "https://EXAMPLE.com:8443/", "https://8.8.8.8/"] {
-            assert!(Target::parse(text, &PrivateHosts::default()).is_ok(), "{text}");
+            assert!(WebhookTarget::parse(text, &PrivateHosts::default()).is_ok(), "{text}");
         }
     }
 
@@ -273,7 +273,7 @@ mod tests {
     fn a_listed_host_may_be_private_and_without_encryption_at_its_port_only() {
         let items = ["127.0.0.1:9000".to_owned(), "orders.internal:80".to_owned()];
         let private = PrivateHosts::parse(&items).unwrap();
-        let is_taken = |text: &str| Target::parse(text, &private).is_ok();
+        let is_taken = |text: &str| WebhookTarget::parse(text, &private).is_ok();
         assert!(is_taken("http://127.0.0.1:9000/hook") && is_taken("http://orders.internal/hook"));
         assert!(is_taken("http://2130706433:9000/"), "the same address in another spelling");
         assert!(!is_taken("http://127.0.0.1:9001/") && !is_taken("http://127.0.0.2:9000/"));

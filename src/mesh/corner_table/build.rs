@@ -7,7 +7,7 @@ use crate::mesh::next_corner;
 use crate::par;
 
 /// An edge that was met, in the list of its smaller end.
-struct Node {
+struct EdgeEntry {
     larger_end: u32,
     first_half_edge: u32,
     following: u32,
@@ -39,8 +39,8 @@ impl CornerTable {
     /// Pairs half-edges, by a list of the edges met at each smaller end.
     fn find_twins(&mut self, vertex_count: usize, budget: &Budget) -> Result<(), BuildError> {
         let edges = self.triangles.len() * 3 / 2 + 1;
-        let _charge = budget.charge((edges * size_of::<Node>() + vertex_count * 4) as u64)?;
-        let mut nodes: Vec<Node> = Vec::with_capacity(edges);
+        let _charge = budget.charge((edges * size_of::<EdgeEntry>() + vertex_count * 4) as u64)?;
+        let mut nodes: Vec<EdgeEntry> = Vec::with_capacity(edges);
         let mut heads = vec![NONE; vertex_count];
         for t in 0..self.triangles.len() as u32 {
             if (t as usize).is_multiple_of(CHECK_EVERY) {
@@ -55,7 +55,7 @@ impl CornerTable {
                 }
                 if at == NONE {
                     let following = std::mem::replace(&mut heads[smaller as usize], nodes.len() as u32);
-                    nodes.push(Node { larger_end: larger, first_half_edge: h, following });
+                    nodes.push(EdgeEntry { larger_end: larger, first_half_edge: h, following });
                 } else {
                     self.pair_with(nodes[at as usize].first_half_edge, h)?;
                 }

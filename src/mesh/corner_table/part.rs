@@ -25,7 +25,7 @@ impl CornerTable {
                 [a, b, c].into_iter().for_each(|v| is_regular[v as usize] = false);
             }
         }
-        let mut edges = Edges::of(&table, vertex_count);
+        let mut edges = HalfEdgeEntries::of(&table, vertex_count);
         for v in 0..vertex_count {
             if v.is_multiple_of(CHECK_EVERY) {
                 budget.check()?;
@@ -46,7 +46,7 @@ impl CornerTable {
     }
 
     /// Pairs the half-edges between `v` and larger vertices.
-    fn pair_above(&mut self, v: usize, edges: &mut [Side], is_regular: &mut [bool]) {
+    fn pair_above(&mut self, v: usize, edges: &mut [HalfEdgeEntry], is_regular: &mut [bool]) {
         edges.sort_unstable();
         for edge in edges.chunk_by(|a, b| a.larger == b.larger) {
             match *edge {
@@ -78,19 +78,19 @@ impl CornerTable {
 
 /// A half-edge seen from the smaller of its ends.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
-struct Side {
+struct HalfEdgeEntry {
     larger: u32,
     half_edge: u32,
     is_upward: bool,
 }
 
 /// The half-edges by the smaller of their ends.
-struct Edges {
+struct HalfEdgeEntries {
     starts: Vec<u32>,
-    sides: Vec<Side>,
+    sides: Vec<HalfEdgeEntry>,
 }
 
-impl Edges {
+impl HalfEdgeEntries {
     fn of(table: &CornerTable, vertex_count: usize) -> Self {
         let mut starts = vec![0u32; vertex_count + 2];
         for triangle in &table.triangles {
@@ -102,20 +102,21 @@ impl Edges {
         for v in 0..vertex_count {
             starts[v + 2] += starts[v + 1];
         }
-        let mut sides = vec![Side::default(); table.triangles.len() * 3];
+        let mut sides = vec![HalfEdgeEntry::default(); table.triangles.len() * 3];
         for (t, triangle) in table.triangles.iter().enumerate() {
             let [a, b, c, _] = triangle.corners;
             for (k, (from, to)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
                 let place = &mut starts[from.min(to) as usize + 1];
                 let half_edge = (4 * t + k) as u32;
-                sides[*place as usize] = Side { larger: from.max(to), half_edge, is_upward: from < to };
+                sides[*place as usize] =
+                    HalfEdgeEntry { larger: from.max(to), half_edge, is_upward: from < to };
                 *place += 1;
             }
         }
         Self { starts, sides }
     }
 
-    fn above(&mut self, v: usize) -> &mut [Side] {
+    fn above(&mut self, v: usize) -> &mut [HalfEdgeEntry] {
         &mut self.sides[self.starts[v] as usize..self.starts[v + 1] as usize]
     }
 }

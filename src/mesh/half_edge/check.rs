@@ -1,6 +1,6 @@
 //! The invariants of a half-edge mesh, as a function that names every breach.
 
-use super::fault::{Claims, Element, FAULTS_MAX, Fault, Field};
+use super::fault::{Claims, FAULTS_MAX, Fault, FaultElement, Field};
 use super::{FaceId, HalfEdgeId, HalfEdgeMesh, VertexId};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 
@@ -29,7 +29,7 @@ impl HalfEdgeMesh {
     fn check_ranges(&self, faults: &mut Faults<'_>) -> Result<(), Stopped> {
         for h in self.half_edges() {
             faults.tick(h.index())?;
-            let of = Element::HalfEdge(h);
+            let of = FaultElement::HalfEdge(h);
             for (field, other) in
                 [(Field::Next, self.next(h)), (Field::Prev, self.prev(h)), (Field::Twin, self.twin(h))]
             {
@@ -43,13 +43,13 @@ impl HalfEdgeMesh {
         }
         for (v, &h) in self.leaving.iter().enumerate() {
             faults.tick(v)?;
-            let of = Element::Vertex(VertexId::new(v));
+            let of = FaultElement::Vertex(VertexId::new(v));
             let is_there = h == HalfEdgeId::NONE || self.contains(h);
             faults.require(is_there, || Fault::OutOfRange { of, field: Field::Leaving });
         }
         for (f, &h) in self.side.iter().enumerate() {
             faults.tick(f)?;
-            let of = Element::Face(FaceId::new(f));
+            let of = FaultElement::Face(FaceId::new(f));
             let is_there = h == HalfEdgeId::NONE || self.contains(h);
             faults.require(is_there, || Fault::OutOfRange { of, field: Field::Side });
         }
@@ -197,26 +197,28 @@ mod tests {
 
     #[test]
     fn references_out_of_range_or_to_removed_elements() {
-        let of_half_edge = |field| vec![Fault::OutOfRange { of: Element::HalfEdge(h(5)), field }];
+        let of_half_edge = |field| vec![Fault::OutOfRange { of: FaultElement::HalfEdge(h(5)), field }];
         assert_eq!(planted(tetrahedron(), |m| m.next[5] = h(99)), of_half_edge(Field::Next));
         assert_eq!(planted(tetrahedron(), |m| m.prev[5] = HalfEdgeId::NONE), of_half_edge(Field::Prev));
         assert_eq!(planted(tetrahedron(), |m| m.twin[5] = h(12)), of_half_edge(Field::Twin));
         assert_eq!(planted(tetrahedron(), |m| m.origin[5] = v(4)), of_half_edge(Field::Origin));
         assert_eq!(planted(tetrahedron(), |m| m.face[5] = f(4)), of_half_edge(Field::Face));
-        let of = Element::Vertex(v(2));
+        let of = FaultElement::Vertex(v(2));
         assert_eq!(
             planted(tetrahedron(), |m| m.leaving[2] = h(12)),
             [Fault::OutOfRange { of, field: Field::Leaving }]
         );
-        let of = Element::Face(f(3));
+        let of = FaultElement::Face(f(3));
         assert_eq!(
             planted(tetrahedron(), |m| m.side[3] = h(12)),
             [Fault::OutOfRange { of, field: Field::Side }]
         );
         let removed = planted(tetrahedron(), |m| m.remove_half_edge(h(5)));
-        assert!(removed.contains(&Fault::OutOfRange { of: Element::HalfEdge(h(4)), field: Field::Next }));
+        assert!(
+            removed.contains(&Fault::OutOfRange { of: FaultElement::HalfEdge(h(4)), field: Field::Next })
+        );
         let gone = planted(tetrahedron(), |m| m.side[1] = HalfEdgeId::NONE);
-        assert!(gone.contains(&Fault::OutOfRange { of: Element::HalfEdge(h(3)), field: Field::Face }));
+        assert!(gone.contains(&Fault::OutOfRange { of: FaultElement::HalfEdge(h(3)), field: Field::Face }));
     }
 
     #[test]

@@ -18,7 +18,7 @@ pub struct Claims {
 
 /// An element that a fault is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Element {
+pub enum FaultElement {
     /// A vertex.
     Vertex(VertexId),
     /// A half-edge.
@@ -53,7 +53,7 @@ pub enum Fault {
     #[error("{of:?}: its {field:?} is not there")]
     OutOfRange {
         /// Whose reference.
-        of: Element,
+        of: FaultElement,
         /// Which one.
         field: Field,
     },

@@ -27,7 +27,7 @@ pub use build::BuildError;
 pub use collapse::{CollapseRefusal, Collapsed, SplitAt, SplitRefusal};
 pub use edge::FlipRefusal;
 pub use face::{MergeRefusal, SplitFaceRefusal};
-pub use fault::{Claims, Element, FAULTS_MAX, Fault, Field};
+pub use fault::{Claims, FAULTS_MAX, Fault, FaultElement, Field};
 pub use handles::{FaceId, HalfEdgeId, VertexId};
 
 /// A manifold mesh of polygons, with or without boundary. See the module for the structure and
@@ -48,7 +48,7 @@ pub struct HalfEdgeMesh {
 
 /// Numbers of elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Counts {
+pub struct MeshCounts {
     /// Vertices with an edge.
     pub vertices: usize,
     /// Edges (pairs of half-edges).
@@ -59,7 +59,7 @@ pub struct Counts {
     pub boundary_loops: usize,
 }
 
-impl Counts {
+impl MeshCounts {
     /// Vertices minus edges plus faces.
     pub fn euler(&self) -> i64 {
         self.vertices as i64 - self.edges as i64 + self.faces as i64
@@ -175,8 +175,8 @@ impl HalfEdgeMesh {
     }
 
     /// How many elements there are. O(n).
-    pub fn counts(&self) -> Counts {
-        Counts {
+    pub fn counts(&self) -> MeshCounts {
+        MeshCounts {
             vertices: self.vertices().count(),
             edges: self.edges().count(),
             faces: self.faces().count(),

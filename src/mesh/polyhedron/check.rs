@@ -24,7 +24,7 @@ pub enum TopologyFault {
 
 /// Numbers of elements, as Euler's formula has them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Counts {
+pub struct EulerCounts {
     /// Vertices, V.
     pub vertices: usize,
     /// Edges, E.
@@ -37,7 +37,7 @@ pub struct Counts {
     pub shells: usize,
 }
 
-impl Counts {
+impl EulerCounts {
     /// H of V - E + F - R = 2 (S - H), the number of through-holes; none when no whole number not below 0 solves it.
     pub fn genus(&self) -> Option<usize> {
         let left = self.vertices as i64 - self.edges as i64 + self.faces as i64 - self.interior_loops as i64;
@@ -67,8 +67,8 @@ impl Polyhedron {
     }
 
     /// How many elements there are. O(n).
-    pub fn counts(&self) -> Counts {
-        Counts {
+    pub fn counts(&self) -> EulerCounts {
+        EulerCounts {
             vertices: self.vertices().count(),
             edges: self.edges().count(),
             faces: self.face_count(),

@@ -11,7 +11,7 @@ mod edit;
 
 pub use super::half_edge::{FaceId, HalfEdgeId, VertexId};
 pub use build::BuildFault;
-pub use check::{Counts, TopologyFault};
+pub use check::{EulerCounts, TopologyFault};
 pub use edit::{ContractRefusal, SplitVertexRefusal};
 
 /// The loops of a face, each by one of its half-edges.

@@ -6,7 +6,7 @@
 
 mod stars;
 
-use self::stars::Stars;
+use self::stars::PairStars;
 use super::{Outlines, edge_of};
 use crate::budget::{Budget, Stopped};
 
@@ -101,7 +101,7 @@ pub fn stitch_faces(
     budget: &Budget,
 ) -> Result<Stitched, Stopped> {
     let _charge = budget.charge(vertex_count as u64 * 4 + pairs.len() as u64 * 16)?;
-    let stars = Stars::of_ends(triangles, vertex_count, pairs);
+    let stars = PairStars::of_ends(triangles, vertex_count, pairs);
     let mut seam = Seam { triangles, outlines, stars, validity, rule, done: Stitched::default() };
     let mut open = pairs.to_vec();
     loop {
@@ -126,7 +126,7 @@ type Merge = (u32, u32);
 struct Seam<'a> {
     triangles: &'a mut [[u32; 3]],
     outlines: &'a Outlines,
-    stars: Stars,
+    stars: PairStars,
     validity: Validity,
     rule: &'a mut dyn JoinRule,
     done: Stitched,

@@ -3,14 +3,14 @@
 use crate::mesh::{Outlines, edge_of, prev_corner};
 
 /// The triangles around each vertex that a pair could join; other vertices have none here.
-pub(super) struct Stars {
+pub(super) struct PairStars {
     slot: Vec<u32>,
     stars: Vec<Vec<u32>>,
 }
 
 const NO_SLOT: u32 = u32::MAX;
 
-impl Stars {
+impl PairStars {
     pub(super) fn of_ends(triangles: &[[u32; 3]], vertex_count: usize, pairs: &[(u32, u32)]) -> Self {
         let mut slot = vec![NO_SLOT; vertex_count];
         let mut stars = Vec::new();

@@ -3,11 +3,11 @@
 use super::groups::Neighbours;
 use crate::geom::DVec3;
 use crate::mesh::polyhedron::BuildFault;
-use crate::modeller::point::{Point, View};
+use crate::modeller::point::{AxisView, Point};
 use std::cmp::Ordering;
 
 /// Faces made of groups of triangles.
-pub(super) struct Faces {
+pub(super) struct GroupedFaces {
     /// The loops of each face, the exterior one first, of numbers of kept vertices.
     pub(super) loops: Vec<Vec<Vec<u32>>>,
     /// The group of each face.
@@ -37,7 +37,7 @@ pub(super) fn trace(
     neighbours: &Neighbours,
     group: &[u32],
     points: &[DVec3],
-) -> Result<Faces, Vec<u32>> {
+) -> Result<GroupedFaces, Vec<u32>> {
     let mut borders: Vec<(u32, u32, u32)> = Vec::new();
     for (t, corners) in triangles.iter().enumerate() {
         for c in 0..3 {
@@ -94,7 +94,7 @@ pub(super) fn trace(
         face.iter().flatten().for_each(|&v| around[v as usize].push(f as u32));
     }
     let face_of_triangle = group.iter().map(|&g| face_of_group[g as usize]).collect();
-    Ok(Faces { loops, groups, vertices, around, face_of_triangle })
+    Ok(GroupedFaces { loops, groups, vertices, around, face_of_triangle })
 }
 
 /// The loops of one group, the exterior one first; `None` when it is no face.
@@ -105,7 +105,7 @@ fn face_loops(
     points: &[DVec3],
 ) -> Option<Vec<Vec<u32>>> {
     let [a, b, c] = seed.map(|v| points[v as usize]);
-    let view = View::along((b - a).cross(c - a).try_normalize()?);
+    let view = AxisView::along((b - a).cross(c - a).try_normalize()?);
     let mut is_walked = vec![false; borders.len()];
     let (mut exterior, mut interior) = (Vec::new(), Vec::new());
     for first in 0..borders.len() {
@@ -130,7 +130,7 @@ fn face_loops(
     (exterior.len() == 1).then(|| exterior.into_iter().chain(interior).collect())
 }
 
-fn is_counter_clockwise(view: View, corners: &[u32], points: &[DVec3]) -> Option<bool> {
+fn is_counter_clockwise(view: AxisView, corners: &[u32], points: &[DVec3]) -> Option<bool> {
     let at: Vec<Point> = corners.iter().map(|&v| Point::of(points[v as usize])).collect();
     let first = (0..at.len())
         .min_by(|&i, &j| at[i].compare(&at[j], view.u).then_with(|| at[i].compare(&at[j], view.v)))?;

@@ -24,7 +24,7 @@ use super::validity::{Validity, check};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3};
 use crate::mesh::polyhedron::{BuildFault, Polyhedron, VertexId};
-use loops::Faces;
+use loops::GroupedFaces;
 pub use polygons::{PolygonFault, from_polygons};
 use std::cmp::Ordering;
 
@@ -106,7 +106,7 @@ pub fn import(
     };
     let exact = groups::exact_groups(points, triangles, &neighbours, budget)?;
     let tolerance = tolerance.unwrap_or_else(|| default_tolerance(points));
-    let mesh = Mesh { points, triangles, neighbours, exact, tolerance };
+    let mesh = ImportMesh { points, triangles, neighbours, exact, tolerance };
     if tolerance > 0.0
         && let Ok(imported) = mesh.import_tolerant(budget)?
     {
@@ -135,7 +135,7 @@ fn unreadable(points: &[DVec3], triangles: &[[u32; 3]]) -> Option<ImportRefusal>
     (span > EXPONENT_SPAN_MAX).then_some(ImportRefusal::ExponentSpan { span })
 }
 
-struct Mesh<'m> {
+struct ImportMesh<'m> {
     points: &'m [DVec3],
     triangles: &'m [[u32; 3]],
     neighbours: groups::Neighbours,
@@ -149,7 +149,7 @@ struct Failure {
     groups: Vec<u32>,
 }
 
-impl Mesh<'_> {
+impl ImportMesh<'_> {
     /// Tolerant faces, of which those that do not fit together are taken apart.
     fn import_tolerant(&self, budget: &Budget) -> Result<Result<Imported, ImportRefusal>, Stopped> {
         let mut group =
@@ -232,7 +232,7 @@ impl Mesh<'_> {
 
     fn finish(
         &self,
-        faces: &Faces,
+        faces: &GroupedFaces,
         topology: Polyhedron,
         planes: Vec<Plane>,
         is_tolerant: &dyn Fn(u32) -> bool,
@@ -277,7 +277,7 @@ impl Mesh<'_> {
         }))
     }
 
-    fn tolerant_around(faces: &Faces, is_tolerant: &dyn Fn(u32) -> bool, corners: &[u32]) -> Vec<u32> {
+    fn tolerant_around(faces: &GroupedFaces, is_tolerant: &dyn Fn(u32) -> bool, corners: &[u32]) -> Vec<u32> {
         let around = corners.iter().flat_map(|&v| faces.around[v as usize].iter());
         around.map(|&f| faces.groups[f as usize]).filter(|&g| is_tolerant(g)).collect()
     }
@@ -285,7 +285,7 @@ impl Mesh<'_> {
     /// The planes of faces that are not free, and which are those.
     fn fixed_planes(
         &self,
-        faces: &Faces,
+        faces: &GroupedFaces,
         is_tolerant: &dyn Fn(u32) -> bool,
     ) -> (Vec<Option<Plane>>, Vec<bool>) {
         let mut area = vec![DVec3::ZERO; faces.loops.len()];
@@ -313,7 +313,7 @@ impl Mesh<'_> {
     /// Each corner at the nearest point of its fixed planes.
     fn place_corners(
         &self,
-        faces: &Faces,
+        faces: &GroupedFaces,
         planes: &[Option<Plane>],
         fixed: &[bool],
     ) -> Result<Vec<Point>, Failure> {

@@ -57,7 +57,7 @@ pub(in crate::pipeline) struct Certified {
 }
 
 /// What a rung found.
-pub(super) enum Found {
+pub(super) enum RungResult {
     Certified(Box<Certified>),
     Rebuilt(Box<Rebuilt>),
 }
@@ -153,11 +153,11 @@ impl Situation {
     }
 
     /// Takes in what a rung found.
-    pub(super) fn keep_closest(&mut self, found: Option<Found>, climb: &Climb<'_>) {
+    pub(super) fn keep_closest(&mut self, found: Option<RungResult>, climb: &Climb<'_>) {
         match found {
             None => {}
-            Some(Found::Certified(certified)) => self.certified = Some(certified),
-            Some(Found::Rebuilt(rebuilt)) => {
+            Some(RungResult::Certified(certified)) => self.certified = Some(certified),
+            Some(RungResult::Rebuilt(rebuilt)) => {
                 let limits = &climb.options.limits;
                 let is_closer =
                     |certified: &Certified| !certified.fidelity.is_no_worse(&rebuilt.fidelity, limits);
@@ -202,7 +202,7 @@ impl Climb<'_> {
         &self,
         variant: Variant,
         situation: &mut Situation,
-    ) -> Result<Option<Found>, Failure> {
+    ) -> Result<Option<RungResult>, Failure> {
         situation.variant = variant;
         let run = |variant| self.budget.within_part(ATTEMPT_PART, || self.run(variant));
         let Some((mut mended, mut attempt)) = run(variant)? else {
@@ -224,11 +224,11 @@ impl Climb<'_> {
         }
         situation.fails_in_f32 |= judged.fails_in_f32();
         match judged {
-            Judged::Certified(candidate) => {
+            Judgement::Certified(candidate) => {
                 let certified = Certified::measured(attempt, *candidate, self)?;
-                Ok(Some(Found::Certified(Box::new(certified))))
+                Ok(Some(RungResult::Certified(Box::new(certified))))
             }
-            Judged::Not(refusal) => {
+            Judgement::Not(refusal) => {
                 situation.last = Some(Uncertified { attempt, mended, refusal });
                 Ok(None)
             }
@@ -240,23 +240,23 @@ impl Climb<'_> {
         &self,
         closed: Box<Certified>,
         situation: &mut Situation,
-    ) -> Result<Found, Failure> {
+    ) -> Result<RungResult, Failure> {
         let may_wall = self.choices.walls == Walls::ForSheets
             && self.options.wrap.open_shells != OpenShells::Close
             && self.options.require != Some(Require::None);
         if !may_wall || !closed.attempt.closes_openings || !closed.as_seen.loses_much() {
-            return Ok(Found::Certified(closed));
+            return Ok(RungResult::Certified(closed));
         }
         let variant = Variant { thickens: true, ..situation.variant };
         // What is certified already is kept where walls take too much work.
         let walled = self.budget.within_part(WALLS_PART, || self.try_plan(variant, situation))?;
         Ok(match walled.flatten() {
-            Some(Found::Certified(walled))
+            Some(RungResult::Certified(walled))
                 if !closed.fidelity.is_no_worse(&walled.fidelity, &self.options.limits) =>
             {
-                Found::Certified(walled)
+                RungResult::Certified(walled)
             }
-            _ => Found::Certified(closed),
+            _ => RungResult::Certified(closed),
         })
     }
 
@@ -297,20 +297,20 @@ impl Climb<'_> {
     }
 
     /// Writes what an attempt made, and judges the bytes.
-    pub(super) fn judge(&self, attempt: &Attempt) -> Result<Judged, Failure> {
+    pub(super) fn judge(&self, attempt: &Attempt) -> Result<Judgement, Failure> {
         if attempt.draft.triangles.is_empty() {
-            return Ok(Judged::Not(Refusal::NothingToRepair));
+            return Ok(Judgement::Not(Refusal::NothingToRepair));
         }
         let soup = looks::soup_of(&attempt.draft, &self.input.soup, self.budget)?;
         match Candidate::write(soup, self.input, self.encoding, Depth::FirstViolation, self.budget) {
             Ok(candidate) if candidate.certificate().is_printable() => {
-                Ok(Judged::Certified(Box::new(candidate)))
+                Ok(Judgement::Certified(Box::new(candidate)))
             }
             Ok(candidate) => {
                 let witness = candidate.certificate().witnesses.first().cloned();
-                Ok(Judged::Not(Refusal::NotRepairable { witness }))
+                Ok(Judgement::Not(Refusal::NotRepairable { witness }))
             }
-            Err(reason) => Ok(Judged::Not(reason.refusal()?)),
+            Err(reason) => Ok(Judgement::Not(reason.refusal()?)),
         }
     }
 
@@ -386,12 +386,12 @@ impl Climb<'_> {
 }
 
 /// The judgement on what an attempt made.
-pub(super) enum Judged {
+pub(super) enum Judgement {
     Certified(Box<Candidate>),
     Not(Refusal),
 }
 
-impl Judged {
+impl Judgement {
     /// True when it was written, and is no valid solid.
     fn is_broken(&self) -> bool {
         matches!(self, Self::Not(Refusal::NotRepairable { .. }))

@@ -13,7 +13,7 @@ mod unite;
 mod unsnapped;
 
 pub(super) use self::climb::{Certified, Climb};
-use self::climb::{Found, Situation};
+use self::climb::{RungResult, Situation};
 pub(super) use self::unite::Tried;
 use super::plan::Attempt;
 use super::rebuild::Rebuilt;
@@ -42,7 +42,7 @@ struct Rung {
     /// Whether it can make a difference.
     applies: fn(&Climb<'_>, &Situation) -> Result<bool, Stopped>,
     /// Tries it and notes in the situation what it left.
-    tries: fn(&Climb<'_>, &mut Situation) -> Result<Option<Found>, Failure>,
+    tries: fn(&Climb<'_>, &mut Situation) -> Result<Option<RungResult>, Failure>,
 }
 
 /// After each attempt that fails, the first of these that applies comes next.

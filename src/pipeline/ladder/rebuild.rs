@@ -1,6 +1,6 @@
 //! A new surface on a lattice around what no other rung could make a solid, or where what they made lost much.
 
-use super::climb::{Climb, Found, Situation};
+use super::climb::{Climb, RungResult, Situation};
 use super::{Kind, Rung};
 use crate::pipeline::{Refusal, Require};
 
@@ -13,7 +13,7 @@ pub(super) const RUNG: Rung = Rung {
         // Beside a certified result it takes no more than half of what is left, which the result needs too.
         let part = if situation.certified.is_some() { 2 } else { 1 };
         match climb.budget.within_part(part, || climb.rebuild()) {
-            Ok(rebuilt) => Ok(rebuilt.map(|rebuilt| Found::Rebuilt(Box::new(rebuilt)))),
+            Ok(rebuilt) => Ok(rebuilt.map(|rebuilt| RungResult::Rebuilt(Box::new(rebuilt)))),
             Err(reason) => {
                 situation.not_rebuilt = Some(reason.refusal()?);
                 Ok(None)

@@ -1,6 +1,6 @@
 //! Bodies that pass through each other, as one: the exact arrangement.
 
-use super::climb::{Certified, Climb, Found, Judged, Openness, Situation};
+use super::climb::{Certified, Climb, Judgement, Openness, RungResult, Situation};
 use super::{Kind, Rung};
 use crate::analysis::DefectCode;
 use crate::geom::print_pitch;
@@ -64,7 +64,7 @@ fn may_unite(climb: &Climb<'_>, situation: &Situation) -> bool {
 
 /// The bodies that pass through each other as one, if that leads to certified bytes: as they are drawn, as the steps of the
 /// last plan mend them, or with walls. The first that loses little, or else the one that loses least.
-fn unite(climb: &Climb<'_>, situation: &mut Situation) -> Result<Option<Found>, Failure> {
+fn unite(climb: &Climb<'_>, situation: &mut Situation) -> Result<Option<RungResult>, Failure> {
     situation.has_tried_uniting = true;
     // A wall behind a sheet without two sides changes sides somewhere; the lattice gives it both.
     let openness = climb.openness(situation)?;
@@ -97,7 +97,7 @@ fn unite(climb: &Climb<'_>, situation: &mut Situation) -> Result<Option<Found>, 
             break;
         }
     }
-    Ok(best.map(|best| Found::Certified(Box::new(best))))
+    Ok(best.map(|best| RungResult::Certified(Box::new(best))))
 }
 
 impl Climb<'_> {
@@ -227,11 +227,11 @@ impl Climb<'_> {
                 continue;
             }
             match judged {
-                Judged::Certified(candidate) => {
+                Judgement::Certified(candidate) => {
                     return Ok(Ok(Tried::Certified(Box::new((attempt, *candidate)))));
                 }
-                Judged::Not(Refusal::NotRepairable { .. }) => {}
-                Judged::Not(_) => return Ok(Ok(Tried::Nothing)),
+                Judgement::Not(Refusal::NotRepairable { .. }) => {}
+                Judgement::Not(_) => return Ok(Ok(Tried::Nothing)),
             }
             let Some(steps) = tries.next() else { return Ok(Err(Box::new(attempt))) };
             self.go_on(&mut attempt, &steps)?;

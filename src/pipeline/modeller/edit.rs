@@ -7,7 +7,9 @@ use super::report::{
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::polyhedron::{FaceId, HalfEdgeId};
-use crate::modeller::{self, Applied, Change, Events, Imported, Operator, Rational, Side, Solid};
+use crate::modeller::{
+    self, Applied, Events, Imported, IntervalSide, Operator, Rational, Solid, TopologyChange,
+};
 use crate::repair::Draft;
 use crate::spatial::coincident_f64;
 
@@ -110,12 +112,12 @@ fn run(
     Ok(None)
 }
 
-fn refused(solid: &Solid, operator: usize, reason: modeller::Refusal) -> ModellerRefusal {
+fn refused(solid: &Solid, operator: usize, reason: modeller::OperatorRefusal) -> ModellerRefusal {
     let (limits, blocking) = match &reason {
-        modeller::Refusal::Limit { limits, blocking } => {
+        modeller::OperatorRefusal::Limit { limits, blocking } => {
             (limit_distances(solid, limits), blocking.iter().map(|c| Blocker::of(solid, c)).collect())
         }
-        modeller::Refusal::NoSplit { vertex, faces } => {
+        modeller::OperatorRefusal::NoSplit { vertex, faces } => {
             (Vec::new(), vec![Blocker::with(solid, BlockerKind::NoSplit, faces, &[*vertex])])
         }
         _ => (Vec::new(), Vec::new()),
@@ -188,12 +190,13 @@ fn applied_step(
         }
         _ => None,
     });
-    let count = |is_counted: fn(&Change) -> bool| applied.changes.iter().filter(|c| is_counted(c)).count();
+    let count =
+        |is_counted: fn(&TopologyChange) -> bool| applied.changes.iter().filter(|c| is_counted(c)).count();
     Ok(ModellerStep {
         operator: asked.kind(),
         moved: asked_moves.unwrap_or_else(|| distances(solid, &applied.shifts)),
-        merged: count(|c| matches!(c, Change::Merged(_))),
-        split: count(|c| matches!(c, Change::Split(_))),
+        merged: count(|c| matches!(c, TopologyChange::Merged(_))),
+        split: count(|c| matches!(c, TopologyChange::Split(_))),
         validity: modeller::check(solid, budget)?,
         undo,
     })
@@ -202,8 +205,8 @@ fn applied_step(
 fn undone(solid: &mut Solid, applied: Applied, budget: &Budget) -> Result<ModellerStep, Stopped> {
     let moved = negative(&distances(solid, &applied.shifts));
     let (merged, split) = applied.changes.iter().fold((0, 0), |(merged, split), change| match change {
-        Change::Merged(_) => (merged, split + 1),
-        Change::Split(_) => (merged + 1, split),
+        TopologyChange::Merged(_) => (merged, split + 1),
+        TopologyChange::Split(_) => (merged + 1, split),
     });
     applied.undo(solid);
     let validity = modeller::check(solid, budget)?;
@@ -246,9 +249,9 @@ fn range_of(solid: &Solid, faces: &[(FaceId, f64)], budget: &Budget) -> Result<F
     let growths: Vec<(FaceId, Rational)> =
         faces.iter().map(|&(f, rate)| (f, modeller::offset_growth(solid, f, rate))).collect();
     let sides = modeller::range(solid, &growths, budget)?;
-    let told = |side: Side| match side {
-        Side::Unbounded => RangeSide { limit: None, blocking: Vec::new() },
-        Side::Blocked { vertex } => {
+    let told = |side: IntervalSide| match side {
+        IntervalSide::Unbounded => RangeSide { limit: None, blocking: Vec::new() },
+        IntervalSide::Blocked { vertex } => {
             let around: Vec<FaceId> = match vertex.index() < solid.topology().vertex_bound() {
                 true => solid.topology().faces_around(vertex).collect(),
                 false => Vec::new(),
@@ -256,7 +259,7 @@ fn range_of(solid: &Solid, faces: &[(FaceId, f64)], budget: &Budget) -> Result<F
             let blocker = Blocker::with(solid, BlockerKind::NoSplit, &around, &[vertex]);
             RangeSide { limit: Some(0.0), blocking: vec![blocker] }
         }
-        Side::Limit { limits, blocking } => RangeSide {
+        IntervalSide::Limit { limits, blocking } => RangeSide {
             limit: multiple(&growths, &limits),
             blocking: blocking.iter().map(|c| Blocker::of(solid, c)).collect(),
         },

@@ -11,7 +11,7 @@ pub use report::{
 };
 
 use super::input::Input;
-use super::output::{Made, unchanged};
+use super::output::{OperationMesh, unchanged};
 use super::{Answer, Failure, Operation, Options, Outcome, Refusal, Report};
 use crate::budget::{Budget, Stage};
 use crate::formats::Format;
@@ -53,6 +53,6 @@ pub(super) fn model(input: &Input, options: &Options, budget: &Budget) -> Result
     };
     report.modeller = Some(Box::new(told));
     let origins = vec![NEW; soup.triangles.len()];
-    let made = Made { soup, origins: &origins, outcome: |_| Outcome::Modelled };
+    let made = OperationMesh { soup, origins: &origins, outcome: |_| Outcome::Modelled };
     made.returned(input, options, report, budget)
 }

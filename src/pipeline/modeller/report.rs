@@ -2,7 +2,7 @@
 
 use crate::geom::DVec3;
 use crate::mesh::polyhedron::{FaceId, VertexId};
-use crate::modeller::{self, Contact, ImportRefusal, Solid, Validity};
+use crate::modeller::{self, Conflict, ImportRefusal, Solid, Validity};
 
 use super::choices::EditKind;
 
@@ -111,16 +111,16 @@ pub struct Blocker {
 }
 
 impl Blocker {
-    pub(super) fn of(solid: &Solid, contact: &Contact) -> Self {
+    pub(super) fn of(solid: &Solid, contact: &Conflict) -> Self {
         let (kind, faces, vertices) = match contact {
-            Contact::EdgeVanishes { faces, vertices } => {
+            Conflict::EdgeVanishes { faces, vertices } => {
                 (BlockerKind::EdgeVanishes, faces.to_vec(), vertices.to_vec())
             }
-            Contact::VertexFace { vertex, face } => (BlockerKind::VertexFace, vec![*face], vec![*vertex]),
-            Contact::EdgeEdge { first, second } => {
+            Conflict::VertexFace { vertex, face } => (BlockerKind::VertexFace, vec![*face], vec![*vertex]),
+            Conflict::EdgeEdge { first, second } => {
                 (BlockerKind::EdgeEdge, [*first, *second].concat(), Vec::new())
             }
-            Contact::LoopLoop { face, vertex } => (BlockerKind::LoopLoop, vec![*face], vec![*vertex]),
+            Conflict::LoopLoop { face, vertex } => (BlockerKind::LoopLoop, vec![*face], vec![*vertex]),
         };
         Self::with(solid, kind, &faces, &vertices)
     }
@@ -163,7 +163,7 @@ pub enum ModellerRefusal {
         /// Which.
         operator: usize,
         /// Why.
-        reason: modeller::Refusal,
+        reason: modeller::OperatorRefusal,
         /// The distances of the limit, by face, where there is one.
         limits: Vec<(u32, f64)>,
         /// What would meet there.

@@ -9,7 +9,7 @@ use crate::modeller::{self, Imported, Rational, Solid};
 
 /// Corners, triangles, and faces that may stay polygons, each with the triangles that it is as the fan around its first
 /// corner.
-struct Parts {
+struct WrittenMesh {
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     /// First triangle and corners.
@@ -48,9 +48,9 @@ fn middle(solid: &Solid) -> [Rational; 3] {
     ((bounds.min + bounds.max) * 0.5).to_array().map(modeller::rational)
 }
 
-fn of_dual(dual: modeller::Dual) -> Parts {
+fn of_dual(dual: modeller::Dual) -> WrittenMesh {
     let positions = dual.positions.iter().map(|p| p.as_vec3().as_dvec3()).collect();
-    let mut parts = Parts { positions, triangles: Vec::new(), polygons: Vec::new() };
+    let mut parts = WrittenMesh { positions, triangles: Vec::new(), polygons: Vec::new() };
     for corners in dual.faces {
         let first = parts.triangles.len() as u32;
         parts.triangles.extend((1..corners.len() - 1).map(|i| [corners[0], corners[i], corners[i + 1]]));
@@ -61,15 +61,15 @@ fn of_dual(dual: modeller::Dual) -> Parts {
     parts
 }
 
-fn of_export(exported: modeller::Exported) -> Parts {
+fn of_export(exported: modeller::Exported) -> WrittenMesh {
     // The triangles of a face follow each other.
     let first = |face: u32| exported.face_of_triangle.partition_point(|&f| f < face) as u32;
     let polygons = exported.polygons.iter().map(|(face, corners)| (first(*face), corners.clone())).collect();
-    Parts { positions: exported.positions, triangles: exported.triangles, polygons }
+    WrittenMesh { positions: exported.positions, triangles: exported.triangles, polygons }
 }
 
-fn soup(parts: Parts, has_polygons: bool) -> Soup {
-    let Parts { positions, triangles, polygons } = parts;
+fn soup(parts: WrittenMesh, has_polygons: bool) -> Soup {
+    let WrittenMesh { positions, triangles, polygons } = parts;
     let is_f32_exact = positions.iter().all(|p| p.as_vec3().as_dvec3() == *p);
     let face_count = triangles.len() as u32;
     let soup = Soup { positions, triangles, face_count, is_f32_exact, ..Soup::default() };

@@ -5,7 +5,7 @@ mod model;
 mod paint;
 
 use self::model::model;
-use self::paint::{Painted, Side};
+use self::paint::{MeshRole, Painted};
 use super::{Answer, Failure, Input, Operation, Options, Report, Units};
 use crate::analysis::{Element, Finding, Witness};
 use crate::budget::{Budget, Stage, Stopped};
@@ -13,8 +13,8 @@ use crate::formats::{self, ReadLimits, ReadOptions};
 use crate::geom::DVec3;
 use crate::mesh::Soup;
 use crate::render::{
-    Camera, Canvas, Edges, Frame, LETTER_HEIGHT, LETTER_WIDTH, Model, Projection, Rgb, SIDE_MAX, SIDE_MIN,
-    Shade, Style, View, animation, draw, picture,
+    Camera, Canvas, DrawnEdges, LETTER_HEIGHT, LETTER_WIDTH, Model, Projection, Rgb, SIDE_MAX, SIDE_MIN,
+    SceneFrame, Shade, Style, View, animation, draw, picture,
 };
 
 /// What kind of file a picture is.
@@ -39,7 +39,7 @@ pub struct PictureChoices {
     /// How faces are shaded.
     pub shade: Shade,
     /// Which edges are drawn.
-    pub edges: Edges,
+    pub edges: DrawnEdges,
     /// How depth changes what is seen.
     pub projection: Projection,
     /// Whether defects are coloured and marked.
@@ -63,7 +63,7 @@ impl Default for PictureChoices {
             width: 480,
             height: 360,
             shade: Shade::Smooth,
-            edges: Edges::Creases,
+            edges: DrawnEdges::Creases,
             projection: Projection::Orthographic,
             shows_defects: true,
             turn_pictures: 0,
@@ -235,7 +235,7 @@ fn scale(soup: &mut Soup, factor: f64) {
 /// All views of all sides, as PNG.
 fn sheet(sides: &[(&Soup, Painted)], choices: &PictureChoices, budget: &Budget) -> Result<Vec<u8>, Stopped> {
     let [width, height] = [choices.width, choices.height].map(|side| side.clamp(SIDE_MIN, SIDE_MAX));
-    let frame = Frame::around(sides.iter().map(|(soup, painted)| painted.scene(soup).bounds()));
+    let frame = SceneFrame::around(sides.iter().map(|(soup, painted)| painted.scene(soup).bounds()));
     let models = sides
         .iter()
         .map(|(soup, painted)| Model::of(painted.scene(soup), frame, choices.shade, budget))
@@ -311,9 +311,9 @@ fn scale_of(tile_width: usize) -> usize {
 fn entitle(canvas: &mut Canvas, painted: &Painted, view: Option<View>) {
     let scale = scale_of(canvas.width());
     let side = match painted.side {
-        Side::Only => "",
-        Side::Before => "before",
-        Side::After => "after",
+        MeshRole::Only => "",
+        MeshRole::Before => "before",
+        MeshRole::After => "after",
     };
     let title = [side, view.map_or("", View::name)].join(" ");
     canvas.write(title.trim(), MARGIN * scale, MARGIN * scale, scale, INK);

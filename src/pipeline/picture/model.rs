@@ -1,6 +1,6 @@
 //! The picture as a mesh (GLB) that any viewer turns: colours as materials, rims as thin rods, places of defects as small octahedra.
 
-use super::paint::{Painted, Side, meaning};
+use super::paint::{MeshRole, Painted, meaning};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::formats::{self, Encoding, WriteError};
 use crate::geom::{Aabb, DVec3};
@@ -24,11 +24,11 @@ pub(super) fn model(sides: &[(&Soup, Painted)], units: Units, budget: &Budget) -
     let triangles: usize = sides.iter().map(|(soup, painted)| triangles_of(soup, painted)).sum();
     let vertices: usize = sides.iter().map(|(soup, _)| soup.positions.len()).sum();
     let _memory = budget.charge(vertices as u64 * 24 + triangles as u64 * (12 + 4 + 8 + 24))?;
-    let mut made = Made { size, metres: units.millimetres() / 1000.0, ..Made::default() };
+    let mut made = ModelBuilder { size, metres: units.millimetres() / 1000.0, ..ModelBuilder::default() };
     for ((soup, painted), bounds) in sides.iter().zip(&boxes) {
         // The second one begins where the first one ends.
         let shift = match (painted.side, boxes.first()) {
-            (Side::After, Some(first)) if !first.is_empty() && !bounds.is_empty() => {
+            (MeshRole::After, Some(first)) if !first.is_empty() && !bounds.is_empty() => {
                 first.max.x + ROOM * size - bounds.min.x
             }
             _ => 0.0,
@@ -70,7 +70,7 @@ pub(super) fn rod_of_tests(ends: [DVec3; 2]) -> [[DVec3; 3]; 6] {
 
 /// The file on its way.
 #[derive(Default)]
-struct Made {
+struct ModelBuilder {
     /// Largest side of the boxes of all meshes.
     size: f64,
     /// Length of the unit of the meshes.
@@ -85,16 +85,16 @@ struct Made {
     numbers: FxHashMap<(&'static str, Rgb), u32>,
 }
 
-impl Made {
+impl ModelBuilder {
     fn put(&mut self, soup: &Soup, painted: &Painted, shift: DVec3, budget: &Budget) -> Result<(), Stopped> {
         let scene = painted.scene(soup);
         let first = self.positions.len() as u32;
         let place = |p: DVec3| if p.is_finite() { p + shift } else { DVec3::ZERO };
         self.positions.extend(scene.positions.iter().map(|&p| place(p)));
         let side = match painted.side {
-            Side::Only => "",
-            Side::Before => "before: ",
-            Side::After => "after: ",
+            MeshRole::Only => "",
+            MeshRole::Before => "before: ",
+            MeshRole::After => "after: ",
         };
         for (t, corners) in scene.triangles.iter().enumerate() {
             if t.is_multiple_of(CHECK_EVERY) {

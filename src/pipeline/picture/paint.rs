@@ -12,7 +12,7 @@ use std::cmp::Ordering;
 
 /// Which mesh of a run it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Side {
+pub(super) enum MeshRole {
     /// There is no other.
     Only,
     /// As uploaded.
@@ -24,7 +24,7 @@ pub(super) enum Side {
 /// Colours and marks of one mesh.
 #[derive(Debug)]
 pub(super) struct Painted {
-    pub(super) side: Side,
+    pub(super) side: MeshRole,
     paints: Vec<u8>,
     lines: Vec<Line>,
     spots: Vec<Spot>,
@@ -114,7 +114,7 @@ impl Painted {
         units: Units,
         budget: &Budget,
     ) -> Result<Self, Stopped> {
-        let side = if has_other { Side::Before } else { Side::Only };
+        let side = if has_other { MeshRole::Before } else { MeshRole::Only };
         let mut painted = Self::plain(drawn.soup, side, units);
         let is_defect = |finding: &&Finding| finding.severity != Severity::Info;
         let findings: Vec<&Finding> =
@@ -138,7 +138,7 @@ impl Painted {
 
     /// The mesh as returned, with the triangles that `before` has not.
     pub(super) fn after(before: &Soup, after: &Soup, units: Units, budget: &Budget) -> Result<Self, Stopped> {
-        let mut painted = Self::plain(after, Side::After, units);
+        let mut painted = Self::plain(after, MeshRole::After, units);
         let _memory = budget.charge((before.triangles.len() as u64 + after.triangles.len() as u64) * 16)?;
         let mut known = fingerprints(before, budget)?;
         par::sort_unstable(&mut known);
@@ -158,7 +158,7 @@ impl Painted {
         Ok(painted)
     }
 
-    fn plain(soup: &Soup, side: Side, units: Units) -> Self {
+    fn plain(soup: &Soup, side: MeshRole, units: Units) -> Self {
         let bounds =
             Scene { positions: &soup.positions, triangles: &soup.triangles, ..Scene::default() }.bounds();
         let size = if bounds.is_empty() {

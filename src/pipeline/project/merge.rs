@@ -248,7 +248,7 @@ pub(super) fn fidelity(reports: &[&Report]) -> Option<FidelityVerdict> {
         Fidelity::Changed => 2,
     };
     let word = all.iter().map(|verdict| verdict.word).max_by_key(|&word| rank(word))?;
-    let mut changes: Vec<crate::pipeline::Change> = Vec::new();
+    let mut changes: Vec<crate::pipeline::FidelityChange> = Vec::new();
     for change in all.iter().flat_map(|verdict| &verdict.changes) {
         match changes.iter_mut().find(|known| known.kind == change.kind) {
             Some(known) if known.measured < change.measured => *known = *change,
@@ -314,7 +314,7 @@ fn levels(reports: &[&Report]) -> Vec<Level> {
     let level = |i: usize| {
         let of_parts: Vec<&Level> = reports.iter().filter_map(|report| report.levels.get(i)).collect();
         let first = of_parts.first()?;
-        let mut simplified: simplify::Report = first.simplified;
+        let mut simplified: simplify::TargetReport = first.simplified;
         for level in &of_parts[1..] {
             let more = &level.simplified;
             simplified.is_reached &= more.is_reached;

@@ -16,7 +16,7 @@ use super::bounds;
 use super::input::{Input, samples_of, units_of_file};
 use super::output::refusal;
 use super::{
-    Answer, Failure, Level, Operation, Options, Outcome, Output, Parts, Refusal, Report, Require, run_on,
+    Answer, Failure, Level, Operation, Options, Outcome, Output, Refusal, Report, Require, SolidParts, run_on,
 };
 use crate::budget::{Budget, Charge, Stage};
 use crate::certificate::{self, Certificate, Depth, Examination, PartsExamination};
@@ -63,9 +63,9 @@ pub(super) fn is_by_parts(encoding: Encoding, operation: Operation, options: &Op
     encoding == Encoding::ThreeMf
         && stays
         && match options.parts {
-            Parts::Separate => true,
-            Parts::Union => operation == Operation::Repair,
-            Parts::Together => false,
+            SolidParts::Separate => true,
+            SolidParts::Union => operation == Operation::Repair,
+            SolidParts::Together => false,
         }
 }
 
@@ -77,7 +77,7 @@ pub(super) fn read(bytes: &[u8], options: &Options, budget: &Budget) -> Result<P
 /// Triangles that a run looks at: those of each part once, and of all at their places where they are united or
 /// drawn.
 pub(super) fn triangles_of(project: &Project, operation: Operation, options: &Options) -> u64 {
-    let has_all = options.parts == Parts::Union || operation == Operation::Render;
+    let has_all = options.parts == SolidParts::Union || operation == Operation::Render;
     let at_places = |body: &Body| if has_all { u64::from(body.instances) } else { 0 };
     let of = |body: &Body| (body.soup.triangles.len() as u64).saturating_mul(1 + at_places(body));
     project.bodies.iter().map(of).fold(0, u64::saturating_add)
@@ -98,7 +98,7 @@ pub(super) fn run_by_parts(
     run.check_options()?;
     let answer = run.answer()?;
     let answer = match options.parts {
-        Parts::Union if answer.report.refusal.is_none() => run.unite(answer)?,
+        SolidParts::Union if answer.report.refusal.is_none() => run.unite(answer)?,
         _ => answer,
     };
     let mut too_large = None;

@@ -6,8 +6,8 @@ use crate::formats::threemf::{NegativeParts, read_negative_parts};
 use crate::formats::{self, Encoding};
 use crate::pipeline::bounds::Bound;
 use crate::pipeline::{
-    Answer, Failure, Operation, Options, Outcome, Output, Parts, Refusal, Report, Require, SetOperation,
-    SimplifyChoices, boolean, demand_faithful, run_on_file,
+    Answer, Failure, Operation, Options, Outcome, Output, Refusal, Report, Require, SetOperation,
+    SimplifyChoices, SolidParts, boolean, demand_faithful, run_on_file,
 };
 
 /// The name under which one mesh leaves them out.
@@ -57,13 +57,13 @@ impl<E: Into<Failure>> From<E> for NotCut {
 }
 
 /// The solid without the negative parts.
-struct Cut {
+struct NegativeCut {
     answer: Answer,
     /// What was done with the negative parts before.
     negative: Report,
 }
 
-impl Cut {
+impl NegativeCut {
     /// The account of the repair that gave `before`, and of this.
     fn after(self, before: Answer, remarks: Vec<String>) -> Answer {
         let Self { answer, negative } = self;
@@ -96,7 +96,7 @@ fn take_away(
     options: &Options,
     bound: &Bound<'_>,
     budget: &Budget,
-) -> Result<Option<Cut>, NotCut> {
+) -> Result<Option<NegativeCut>, NotCut> {
     let Some(output) = answer.output.as_ref().filter(|_| answer.report.refusal.is_none()) else {
         return Ok(None);
     };
@@ -118,7 +118,7 @@ fn take_away(
         read: super::unlimited(),
         output_format: Some(encoding.format()),
         output_units: Some(result_units),
-        parts: Parts::Together,
+        parts: SolidParts::Together,
         plan: None,
         policy: None,
         simplify: SimplifyChoices::default(),
@@ -141,7 +141,7 @@ fn take_away(
     match answer.report.refusal {
         Some(Refusal::OverBudget { .. }) => Err(OVER_BUDGET),
         Some(_) => Err(NotCut::Because("the solid without it cannot be made")),
-        None => Ok(Some(Cut { answer, negative: report })),
+        None => Ok(Some(NegativeCut { answer, negative: report })),
     }
 }
 

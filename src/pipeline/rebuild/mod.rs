@@ -146,7 +146,7 @@ pub(super) fn rebuild(
                 Ok(attempt)
             }
         })?;
-    let search = Search { input, encoding, options, before, budget };
+    let search = LatticeSearch { input, encoding, options, before, budget };
     match search.run(&input.soup, &draft, &actions) {
         Err(NotRebuilt::Refused { refusal: Refusal::BeyondFloat32 { .. }, .. })
             if options.wrap.may_recenter =>
@@ -161,7 +161,7 @@ pub(super) fn rebuild(
 }
 
 /// The search for a lattice whose result is close enough.
-struct Search<'a> {
+struct LatticeSearch<'a> {
     input: &'a Input,
     encoding: Encoding,
     options: &'a Options,
@@ -169,7 +169,7 @@ struct Search<'a> {
     budget: &'a Budget,
 }
 
-impl Search<'_> {
+impl LatticeSearch<'_> {
     /// Tries ever finer lattices for a draft made of `soup` by `actions`.
     fn run(&self, soup: &Soup, draft: &Draft, actions: &[Action]) -> Result<Rebuilt, NotRebuilt> {
         let (choices, limits, budget) = (&self.options.wrap, &self.options.limits, self.budget);
@@ -230,7 +230,7 @@ impl Search<'_> {
             if best.as_ref().is_none_or(is_better) {
                 let wrap = action(&made, choices.open_shells, self.before);
                 let actions = actions.iter().cloned().chain([wrap]).chain(made.simplified).collect();
-                let Made { candidate, origins, .. } = made;
+                let RebuiltMesh { candidate, origins, .. } = made;
                 best = Some(Rebuilt { candidate, origins, fidelity, as_seen: fidelity, actions });
             }
             if fidelity.passes(limits) || is_coarser {
@@ -328,7 +328,7 @@ impl<E: Into<Failure>> From<E> for NotRebuilt {
 }
 
 /// A certified mesh, and how it came to be.
-struct Made {
+struct RebuiltMesh {
     candidate: Candidate,
     /// The triangle of the input that each triangle is, or [`NEW`].
     origins: Vec<u32>,
@@ -353,7 +353,7 @@ struct Rebuilding<'a> {
 
 impl Rebuilding<'_> {
     /// Beside the parts that can keep their bits, or without them.
-    fn run(&self, draft: &Draft, split: Option<&parts::Split>) -> Result<Made, NoCandidate> {
+    fn run(&self, draft: &Draft, split: Option<&parts::Split>) -> Result<RebuiltMesh, NoCandidate> {
         match split.map(|split| self.beside(split)) {
             None | Some(Err(NoCandidate::Refused(_))) => self.all(draft),
             Some(made) => made,
@@ -361,13 +361,13 @@ impl Rebuilding<'_> {
     }
 
     /// Everything is rebuilt.
-    fn all(&self, draft: &Draft) -> Result<Made, NoCandidate> {
+    fn all(&self, draft: &Draft) -> Result<RebuiltMesh, NoCandidate> {
         let wrapped = self.wrap(draft)?;
         self.certified(&wrapped, &Draft::default())
     }
 
     /// Some parts keep their bits.
-    fn beside(&self, split: &parts::Split) -> Result<Made, NoCandidate> {
+    fn beside(&self, split: &parts::Split) -> Result<RebuiltMesh, NoCandidate> {
         let mut kept = split.kept.clone();
         let nesting =
             NestOptions { policy: self.options.nesting, is_embedded: true, ..NestOptions::default() };
@@ -390,7 +390,7 @@ impl Rebuilding<'_> {
     }
 
     /// The first of the simplified, the fitted and the bare surface whose bytes are certified, beside `kept`.
-    fn certified(&self, wrapped: &Wrapped, kept: &Draft) -> Result<Made, NoCandidate> {
+    fn certified(&self, wrapped: &Wrapped, kept: &Draft) -> Result<RebuiltMesh, NoCandidate> {
         let origins = |count: usize| {
             kept.triangle_origin.iter().copied().chain(std::iter::repeat_n(NEW, count)).collect()
         };
@@ -409,7 +409,7 @@ impl Rebuilding<'_> {
             let candidate = self.write(&simplified.positions, &simplified.triangles, kept)?;
             if candidate.certificate().is_printable() {
                 let origins = origins(simplified.triangles.len());
-                return Ok(Made { candidate, origins, account, simplified: Some(action) });
+                return Ok(RebuiltMesh { candidate, origins, account, simplified: Some(action) });
             }
         }
         let mut witness = None;
@@ -417,7 +417,7 @@ impl Rebuilding<'_> {
             let candidate = self.write(positions, &wrapped.triangles, kept)?;
             if candidate.certificate().is_printable() {
                 let origins = origins(wrapped.triangles.len());
-                return Ok(Made { candidate, origins, account, simplified: None });
+                return Ok(RebuiltMesh { candidate, origins, account, simplified: None });
             }
             witness = candidate.certificate().witnesses.first().cloned();
         }
@@ -441,7 +441,7 @@ impl Rebuilding<'_> {
 }
 
 /// The wrap as a step of the plan, with the reading that it took.
-fn action(made: &Made, open_shells: OpenShells, before: Option<&Analysis>) -> Action {
+fn action(made: &RebuiltMesh, open_shells: OpenShells, before: Option<&Analysis>) -> Action {
     let account = &made.account;
     let kept = made.origins.iter().filter(|&&origin| origin != NEW).count() as u64;
     let findings = before.map_or(&[][..], |analysis| &analysis.findings);

@@ -1,7 +1,7 @@
 //! Which of the proposed patches may stay: those that add no defect of their own and meet nothing.
 
 use super::report::Rejection;
-use super::surface::Surface;
+use super::surface::FillSurface;
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3, are_collinear};
 use crate::mesh::next_corner;
@@ -22,7 +22,7 @@ const TRIANGLES: usize = 2048;
 
 /// A patch for one hole.
 #[derive(Debug, Clone)]
-pub(super) struct Proposal {
+pub(super) struct PatchProposal {
     /// The boundary half-edges whose corners are its rim.
     pub(super) rim: Vec<u32>,
     /// Where the loops of the rim begin.
@@ -37,7 +37,7 @@ pub(super) struct Proposal {
 const PROPOSALS: usize = 16;
 
 /// The triangles of proposals by vertices of the surface, and what is wrong with each.
-struct Judged {
+struct JudgedProposals {
     triangles: Vec<Vec<[u32; 3]>>,
     verdicts: Vec<Verdict>,
 }
@@ -47,7 +47,7 @@ pub(super) type Refused = (Rejection, Option<DVec3>);
 
 type Verdict = Result<(), Refused>;
 
-impl Surface {
+impl FillSurface {
     /// Accepts the proposals that are sound, and says of the others why they are not. For a sound one it gives the first
     /// of its new vertices in the surface.
     ///
@@ -57,7 +57,7 @@ impl Surface {
     /// another; and exactly no contact with the mesh, with other patches or in itself. `bvh`: that of the mesh, if there is one.
     pub(super) fn accept(
         &mut self,
-        proposals: &[&Proposal],
+        proposals: &[&PatchProposal],
         bvh: Option<&Bvh>,
         budget: &Budget,
     ) -> Result<Vec<Result<u32, Refused>>, Stopped> {
@@ -75,9 +75,9 @@ impl Surface {
             triangles.push(patch);
         }
         let verdicts = self.judge_each(proposals, &triangles, budget)?;
-        let mut judged = Judged { triangles, verdicts };
+        let mut judged = JudgedProposals { triangles, verdicts };
         self.reject_contacts(&mut judged, &firsts, bvh, budget)?;
-        let Judged { triangles, verdicts } = judged;
+        let JudgedProposals { triangles, verdicts } = judged;
         for ((patch, verdict), proposal) in triangles.into_iter().zip(&verdicts).zip(proposals) {
             if verdict.is_ok() {
                 self.diagonals.extend(self.diagonals_of(proposal));
@@ -90,7 +90,7 @@ impl Surface {
     /// Judges the `patches` of proposals but for contacts with anything else.
     fn judge_each(
         &self,
-        proposals: &[&Proposal],
+        proposals: &[&PatchProposal],
         patches: &[Vec<[u32; 3]>],
         budget: &Budget,
     ) -> Result<Vec<Verdict>, Stopped> {
@@ -119,7 +119,7 @@ impl Surface {
     }
 
     /// Judges a patch but for contacts and other patches; gives its diagonals.
-    fn judge_shape(&self, proposal: &Proposal, patch: &[[u32; 3]]) -> Result<Vec<[u32; 2]>, Rejection> {
+    fn judge_shape(&self, proposal: &PatchProposal, patch: &[[u32; 3]]) -> Result<Vec<[u32; 2]>, Rejection> {
         let is_degenerate = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|v| self.positions[v as usize]);
             are_collinear(a, b, c)
@@ -143,7 +143,7 @@ impl Surface {
     }
 
     /// True when a patch, whose rim passes a vertex several times, reaches another vertex from two of these corners.
-    fn has_edge_twice(&self, proposal: &Proposal, patch: &[[u32; 3]]) -> bool {
+    fn has_edge_twice(&self, proposal: &PatchProposal, patch: &[[u32; 3]]) -> bool {
         let mut corners: Vec<u32> = proposal.rim.iter().map(|&h| self.corner(h)).collect();
         corners.sort_unstable();
         if corners.windows(2).all(|pair| pair[0] != pair[1]) {
@@ -162,7 +162,7 @@ impl Surface {
     }
 
     /// The edges inside a patch that are between corners of its rim, by vertices of the surface.
-    fn diagonals_of(&self, proposal: &Proposal) -> Vec<[u32; 2]> {
+    fn diagonals_of(&self, proposal: &PatchProposal) -> Vec<[u32; 2]> {
         let rim = proposal.rim.len() as u32;
         let is_side = |a: u32, b: u32| proposal.next(a) == b || proposal.next(b) == a;
         let mut edges = Vec::new();
@@ -180,7 +180,7 @@ impl Surface {
 
     /// True for a single triangle that has the vertices of the one beyond its rim. A patch of several triangles has a new
     /// edge in each of them, so none can be the double of another triangle.
-    fn is_double_of_neighbour(&self, proposal: &Proposal) -> bool {
+    fn is_double_of_neighbour(&self, proposal: &PatchProposal) -> bool {
         if proposal.triangles.len() != 1 {
             return false;
         }
@@ -213,7 +213,7 @@ impl Surface {
     /// Rejects proposals that meet the mesh, an accepted patch, themselves, or an earlier proposal that stays.
     fn reject_contacts(
         &mut self,
-        judged: &mut Judged,
+        judged: &mut JudgedProposals,
         firsts: &[u32],
         bvh: Option<&Bvh>,
         budget: &Budget,
@@ -352,7 +352,7 @@ fn between(triangles: [[DVec3; 3]; 2]) -> DVec3 {
     (a.min.max(b.min) + a.max.min(b.max)) / 2.0
 }
 
-impl Proposal {
+impl PatchProposal {
     /// The corner of the rim after `corner` in its loop.
     fn next(&self, corner: u32) -> u32 {
         let i = self.loop_starts.partition_point(|&start| start <= corner as usize);
@@ -363,7 +363,7 @@ impl Proposal {
 
 /// Euler: a sphere without so many disks, with n corners at their rims and m other vertices, has n + 2 m + 2 h - 4
 /// triangles.
-fn check_topology(proposal: &Proposal) -> Result<(), Rejection> {
+fn check_topology(proposal: &PatchProposal) -> Result<(), Rejection> {
     let (rim, inner, loops) = (proposal.rim.len(), proposal.points.len(), proposal.loop_starts.len());
     if proposal.triangles.len() + 4 != rim + 2 * inner + 2 * loops {
         return Err(Rejection::Topology);

@@ -1,6 +1,6 @@
 //! What the new vertices of a patch are between: the corners of its rim, each with a share.
 
-use super::make::Made;
+use super::make::MadePatch;
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::{Soup, edge_of, triangle_of};
@@ -16,7 +16,7 @@ const VERTICES: usize = 64;
 /// of what each end has, so that a linear texture of the triangulation that was refined stays so;
 /// of a patch that was made at once, shares are by distance.
 pub(super) fn shares(
-    made: &Made,
+    made: &MadePatch,
     rim_points: &[DVec3],
     budget: &Budget,
 ) -> Result<Vec<Vec<(u32, f64)>>, Stopped> {

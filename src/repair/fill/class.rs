@@ -4,7 +4,7 @@ use super::creased::Division;
 use super::make::Way;
 use super::options::{FillOptions, Method};
 use super::regions::Region;
-use super::surface::Surface;
+use super::surface::FillSurface;
 use crate::budget::{Budget, Stopped};
 
 /// The surface goes on in the plane of a flat loop when it leaves it by less, as the sine of the angle (about a degree).
@@ -24,7 +24,7 @@ pub(super) fn ways(
     region: &Region,
     method: Method,
     refines: bool,
-    surface: &Surface,
+    surface: &FillSurface,
     options: &FillOptions,
     budget: &Budget,
 ) -> Result<(Vec<Way>, Option<Division>), Stopped> {
@@ -63,7 +63,7 @@ pub(super) fn ways(
 }
 
 /// True when new vertices would not make a better patch.
-fn is_to_be_plain(region: &Region, surface: &Surface) -> bool {
+fn is_to_be_plain(region: &Region, surface: &FillSurface) -> bool {
     if region.rim().len() < CORNERS_TO_REFINE {
         return true;
     }

@@ -16,7 +16,7 @@ const WEIGHT_MIN: f64 = 1e-3;
 
 /// What is around a patch: the triangles at its rim that are not of it.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Around {
+pub(super) struct PatchSurroundings {
     /// Vertices of those triangles that are not in the rim.
     pub(super) points: Vec<DVec3>,
     /// Below the number of corners of the rim: that corner; from there on: one of `points`.
@@ -33,7 +33,7 @@ pub(super) struct Around {
 /// narrow as a triangle when it is 1.
 pub(super) fn fair(
     mesh: &mut PatchMesh,
-    around: &Around,
+    around: &PatchSurroundings,
     tension: f64,
     budget: &Budget,
 ) -> Result<bool, Stopped> {
@@ -66,7 +66,7 @@ struct Plate {
 }
 
 impl Plate {
-    fn new(mesh: &PatchMesh, around: &Around, budget: &Budget) -> Result<Self, Stopped> {
+    fn new(mesh: &PatchMesh, around: &PatchSurroundings, budget: &Budget) -> Result<Self, Stopped> {
         let (rim, own) = (mesh.rim, mesh.points.len());
         let points: Vec<DVec3> = mesh.points.iter().chain(&around.points).copied().collect();
         let shifted = |v: u32| if (v as usize) < rim { v } else { v + (own - rim) as u32 };
@@ -185,7 +185,7 @@ mod tests {
     use super::*;
 
     /// A square of `n` by `n` cells whose rim is clamped to a surface that rises steeply around it.
-    fn basin(n: u32) -> (PatchMesh, Around) {
+    fn basin(n: u32) -> (PatchMesh, PatchSurroundings) {
         let rim: Vec<[u32; 2]> = (0..n)
             .map(|i| [i, 0])
             .chain((0..n).map(|i| [n, i]))
@@ -208,7 +208,8 @@ mod tests {
         // Beyond each side of the rim a triangle that stands upright.
         let middle = DVec3::new(f64::from(n), f64::from(n), 0.0) / 2.0;
         let corners = rim.len() as u32;
-        let mut around = Around { is_clamped: vec![true; rim.len()], ..Around::default() };
+        let mut around =
+            PatchSurroundings { is_clamped: vec![true; rim.len()], ..PatchSurroundings::default() };
         for i in 0..corners {
             let [p, q] = [i, (i + 1) % corners].map(|i| at(rim[i as usize]));
             around.points.push((p + q) / 2.0 + ((p + q) / 2.0 - middle) * 0.02 + 3.0 * DVec3::Z);

@@ -144,7 +144,7 @@ fn without_crossings(
         let Some(found) = minimal::with_least_caps(points, rim_normals, chords, least, may, budget)? else {
             break;
         };
-        let Meeting { pairs, piercing } = meeting(points, &found.triangles, budget)?;
+        let SelfMeeting { pairs, piercing } = meeting(points, &found.triangles, budget)?;
         if best.as_ref().is_none_or(|&(least, _)| pairs < least) {
             best = Some((pairs, found.triangles));
         }
@@ -157,14 +157,14 @@ fn without_crossings(
 }
 
 /// How a triangulation meets itself.
-struct Meeting {
+struct SelfMeeting {
     /// Pairs of triangles.
     pairs: u64,
     /// The chords that go through a triangle.
     piercing: Vec<[usize; 2]>,
 }
 
-fn meeting(points: &[DVec3], triangles: &[[usize; 3]], budget: &Budget) -> Result<Meeting, Stopped> {
+fn meeting(points: &[DVec3], triangles: &[[usize; 3]], budget: &Budget) -> Result<SelfMeeting, Stopped> {
     // A loop may pass a place several times.
     let Coincident { group, first } = coincident_f64(points, budget)?;
     let places: Vec<DVec3> = first.iter().map(|&i| points[i as usize]).collect();
@@ -187,7 +187,7 @@ fn meeting(points: &[DVec3], triangles: &[[usize; 3]], budget: &Budget) -> Resul
             piercing.extend(all.max_by(|a, b| length(a).total_cmp(&length(b))));
         }
     }
-    Ok(Meeting { pairs: contacts.count, piercing })
+    Ok(SelfMeeting { pairs: contacts.count, piercing })
 }
 
 /// The edges of a triangle, each from its first to its second corner.

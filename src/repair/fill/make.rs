@@ -1,16 +1,16 @@
 //! Makes the patch of a region in one way.
 
-use super::accept::Proposal;
+use super::accept::PatchProposal;
 use super::caps::turn_caps;
 use super::coarsen::coarsen;
 use super::creased::{Division, creased};
-use super::fair::{Around, fair};
+use super::fair::{PatchSurroundings, fair};
 use super::options::{Extract, FillOptions, Method};
 use super::patch::PatchMesh;
 use super::refine::{Lengths, refine, turn_edges};
 use super::regions::Region;
 use super::report::Rejection;
-use super::surface::Surface;
+use super::surface::FillSurface;
 use super::{bridge, ears, large, minimal, planar, rbf};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec3, print_pitch};
@@ -47,16 +47,16 @@ impl Way {
 }
 
 /// What patches are made from.
-pub(super) struct Scene<'a> {
-    pub(super) surface: &'a Surface,
+pub(super) struct PatchInput<'a> {
+    pub(super) surface: &'a FillSurface,
     /// `None`: no hole is to get the surface of a field.
-    pub(super) mesh: Option<&'a rbf::Mesh<'a>>,
+    pub(super) mesh: Option<&'a rbf::FieldMesh<'a>>,
     pub(super) options: &'a FillOptions,
 }
 
 /// A patch and, for each of its new vertices, the vertices that it was born between; none when it was made at once.
-pub(super) struct Made {
-    pub(super) proposal: Proposal,
+pub(super) struct MadePatch {
+    pub(super) proposal: PatchProposal,
     pub(super) parents: Vec<[u32; 2]>,
     /// The field on whose surface it is.
     pub(super) field: Option<FitFacts>,
@@ -79,10 +79,10 @@ pub(super) fn make(
     division: Option<&Division>,
     rings: u32,
     way: Way,
-    scene: &Scene<'_>,
+    scene: &PatchInput<'_>,
     rejected: &mut Vec<Rejection>,
     budget: &Budget,
-) -> Result<Result<Made, Rejection>, Stopped> {
+) -> Result<Result<MadePatch, Rejection>, Stopped> {
     let surface = scene.surface;
     budget.spend(region.rim().len() as u64)?;
     let made = match way {
@@ -96,10 +96,10 @@ pub(super) fn make(
         },
         Way::Rbf => return of_field(region, rings, scene, rejected, budget),
     };
-    Ok(made.map(|triangles| Made::plain(region, triangles)))
+    Ok(made.map(|triangles| MadePatch::plain(region, triangles)))
 }
 
-impl Made {
+impl MadePatch {
     fn plain(region: &Region, triangles: Vec<[usize; 3]>) -> Self {
         let triangles = triangles.into_iter().map(|t| t.map(|i| i as u32)).collect();
         Self { proposal: proposal(region, Vec::new(), triangles), parents: Vec::new(), field: None }
@@ -108,7 +108,7 @@ impl Made {
     /// A refined patch, its new vertices at places that float32 has.
     pub(super) fn refined(
         region: &Region,
-        surface: &Surface,
+        surface: &FillSurface,
         mut mesh: PatchMesh,
         budget: &Budget,
     ) -> Result<Result<Self, Rejection>, Stopped> {
@@ -125,24 +125,24 @@ impl Made {
 }
 
 /// The places nearest to new vertices that float32 has.
-fn on_lattice(points: &[DVec3], surface: &Surface) -> Result<Vec<DVec3>, Rejection> {
+fn on_lattice(points: &[DVec3], surface: &FillSurface) -> Result<Vec<DVec3>, Rejection> {
     let reach = points.iter().fold(surface.reach, |reach, p| p.abs().max_element().max(reach));
     let pitch = print_pitch(reach).ok_or(Rejection::NotRepresentable)?;
     // A sum with 0 has no negative zero.
     Ok(points.iter().map(|&p| (p / pitch).round() * pitch + DVec3::ZERO).collect())
 }
 
-fn proposal(region: &Region, points: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Proposal {
-    Proposal { rim: region.rim().to_vec(), loop_starts: region.loop_starts(), points, triangles }
+fn proposal(region: &Region, points: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> PatchProposal {
+    PatchProposal { rim: region.rim().to_vec(), loop_starts: region.loop_starts(), points, triangles }
 }
 
-fn rim_points(region: &Region, surface: &Surface) -> Vec<DVec3> {
+fn rim_points(region: &Region, surface: &FillSurface) -> Vec<DVec3> {
     region.rim().iter().map(|&h| surface.point(h)).collect()
 }
 
 type Triangles = Result<Vec<[usize; 3]>, Rejection>;
 
-fn planar_view(region: &Region, surface: &Surface) -> Triangles {
+fn planar_view(region: &Region, surface: &FillSurface) -> Triangles {
     if region.rim().len() > planar::CORNERS_MAX {
         return Err(Rejection::TooLarge);
     }
@@ -152,7 +152,7 @@ fn planar_view(region: &Region, surface: &Surface) -> Triangles {
 }
 
 /// The corners of the region as one polygon.
-fn polygon(region: &Region, surface: &Surface, budget: &Budget) -> Result<Option<Vec<usize>>, Stopped> {
+fn polygon(region: &Region, surface: &FillSurface, budget: &Budget) -> Result<Option<Vec<usize>>, Stopped> {
     if region.walks.len() == 1 {
         return Ok(Some((0..region.rim().len()).collect()));
     }
@@ -160,7 +160,7 @@ fn polygon(region: &Region, surface: &Surface, budget: &Budget) -> Result<Option
     bridge::one_polygon(&points, &region.ranges(), |i, k| surface.is_free(rim[i], rim[k]), budget)
 }
 
-fn least_bent(region: &Region, surface: &Surface, budget: &Budget) -> Result<Triangles, Stopped> {
+fn least_bent(region: &Region, surface: &FillSurface, budget: &Budget) -> Result<Triangles, Stopped> {
     if let [outer, inner] = &region.ranges()[..]
         && region.rim().len() > minimal::CORNERS_MAX
         && !region.is_flat
@@ -187,7 +187,7 @@ fn least_bent(region: &Region, surface: &Surface, budget: &Budget) -> Result<Tri
     Ok(corners.ok_or(Rejection::NoPatch))
 }
 
-fn corner_by_corner(region: &Region, surface: &Surface, budget: &Budget) -> Result<Triangles, Stopped> {
+fn corner_by_corner(region: &Region, surface: &FillSurface, budget: &Budget) -> Result<Triangles, Stopped> {
     let Some(polygon) = polygon(region, surface, budget)? else { return Ok(Err(Rejection::NoPatch)) };
     let rim = region.rim();
     let points: Vec<DVec3> = polygon.iter().map(|&i| surface.point(rim[i])).collect();
@@ -198,7 +198,7 @@ fn corner_by_corner(region: &Region, surface: &Surface, budget: &Budget) -> Resu
 }
 
 /// A triangulation without new vertices to begin with.
-fn base(region: &Region, surface: &Surface, budget: &Budget) -> Result<Triangles, Stopped> {
+fn base(region: &Region, surface: &FillSurface, budget: &Budget) -> Result<Triangles, Stopped> {
     if region.is_flat
         && let Ok(triangles) = planar_view(region, surface)
     {
@@ -210,9 +210,13 @@ fn base(region: &Region, surface: &Surface, budget: &Budget) -> Result<Triangles
     }
 }
 
-fn smooth(region: &Region, surface: &Surface, budget: &Budget) -> Result<Result<Made, Rejection>, Stopped> {
+fn smooth(
+    region: &Region,
+    surface: &FillSurface,
+    budget: &Budget,
+) -> Result<Result<MadePatch, Rejection>, Stopped> {
     match faired(region, surface, budget)? {
-        Ok(mesh) => Made::refined(region, surface, mesh, budget),
+        Ok(mesh) => MadePatch::refined(region, surface, mesh, budget),
         Err(reason) => Ok(Err(reason)),
     }
 }
@@ -221,11 +225,13 @@ fn smooth(region: &Region, surface: &Surface, budget: &Budget) -> Result<Result<
 fn of_field(
     region: &Region,
     rings: u32,
-    scene: &Scene<'_>,
+    scene: &PatchInput<'_>,
     rejected: &mut Vec<Rejection>,
     budget: &Budget,
-) -> Result<Result<Made, Rejection>, Stopped> {
-    let Scene { surface, mesh: Some(mesh), options } = *scene else { return Ok(Err(Rejection::NoPatch)) };
+) -> Result<Result<MadePatch, Rejection>, Stopped> {
+    let PatchInput { surface, mesh: Some(mesh), options } = *scene else {
+        return Ok(Err(Rejection::NoPatch));
+    };
     let mut fit = || rbf::field(region, rings, surface, mesh, options, rejected, budget);
     if options.extract == Extract::Project {
         return projected(region, fit, surface, budget);
@@ -246,7 +252,7 @@ fn of_field(
             let points = &patch.points[region.rim().len()..];
             on_lattice(points, surface).map(|points| {
                 let proposal = proposal(region, points, patch.triangles);
-                Made { proposal, parents: Vec::new(), field: Some(*field.facts()) }
+                MadePatch { proposal, parents: Vec::new(), field: Some(*field.facts()) }
             })
         }
         Err(Unmeshed::TooFine { .. }) => Err(Rejection::TooLarge),
@@ -268,9 +274,9 @@ fn edge_length(rims: &[Vec<DVec3>]) -> f64 {
 fn projected(
     region: &Region,
     fit: impl FnOnce() -> Result<Result<Field, Rejection>, Stopped>,
-    surface: &Surface,
+    surface: &FillSurface,
     budget: &Budget,
-) -> Result<Result<Made, Rejection>, Stopped> {
+) -> Result<Result<MadePatch, Rejection>, Stopped> {
     let mut patch = match faired(region, surface, budget)? {
         Ok(patch) => patch,
         Err(reason) => return Ok(Err(reason)),
@@ -279,7 +285,7 @@ fn projected(
     let is_free = |a: u32, b: u32| surface.is_free(rim[a as usize], rim[b as usize]);
     if patch.points.len() == patch.rim {
         turn_edges(&mut patch, &is_free, budget)?;
-        return Made::refined(region, surface, patch, budget);
+        return MadePatch::refined(region, surface, patch, budget);
     }
     let field = match fit()? {
         Ok(field) => field,
@@ -288,14 +294,14 @@ fn projected(
     if !rbf::project(&mut patch, &field, &is_free, budget)? {
         return Ok(Err(Rejection::NoZero));
     }
-    let made = Made::refined(region, surface, patch, budget)?;
-    Ok(made.map(|made| Made { field: Some(*field.facts()), ..made }))
+    let made = MadePatch::refined(region, surface, patch, budget)?;
+    Ok(made.map(|made| MadePatch { field: Some(*field.facts()), ..made }))
 }
 
 /// The smooth patch before its vertices are rounded.
 fn faired(
     region: &Region,
-    surface: &Surface,
+    surface: &FillSurface,
     budget: &Budget,
 ) -> Result<Result<PatchMesh, Rejection>, Stopped> {
     let triangles = match base(region, surface, budget)? {
@@ -318,7 +324,7 @@ fn faired(
 pub(super) fn refine_and_fair(
     mesh: &mut PatchMesh,
     next: &[u32],
-    around: &Around,
+    around: &PatchSurroundings,
     is_free: &dyn Fn(u32, u32) -> bool,
     budget: &Budget,
 ) -> Result<bool, Stopped> {
@@ -347,7 +353,7 @@ pub(super) fn refine_and_fair(
 fn fair_within_reach(
     mesh: &mut PatchMesh,
     lengths: &Lengths,
-    around: &Around,
+    around: &PatchSurroundings,
     budget: &Budget,
 ) -> Result<bool, Stopped> {
     let before = mesh.points.clone();

@@ -36,7 +36,7 @@ pub(super) enum Least {
 }
 
 /// A table over chords: the best triangulation of the polygon from corner `i` to corner `k`.
-struct Table<'a, C> {
+struct ChordTable<'a, C> {
     points: &'a [DVec3],
     rim_normals: &'a [DVec3],
     chords: &'a C,
@@ -66,7 +66,7 @@ pub(super) fn triangulate(
 }
 
 /// A triangulation, and how many of its triangles have no area.
-pub(super) struct Found {
+pub(super) struct MinimalTriangulation {
     pub(super) triangles: Vec<[usize; 3]>,
     caps: u32,
 }
@@ -80,12 +80,12 @@ pub(super) fn with_least_caps(
     least: Least,
     is_free: impl Fn(usize, usize) -> bool,
     budget: &Budget,
-) -> Result<Option<Found>, Stopped> {
+) -> Result<Option<MinimalTriangulation>, Stopped> {
     let n = points.len();
     if n < 3 {
         return Ok(None);
     }
-    let mut table = Table {
+    let mut table = ChordTable {
         points,
         rim_normals,
         chords,
@@ -115,10 +115,10 @@ pub(super) fn with_least_caps(
     let Some(Weight(caps, ..)) = table.weight_of(0, n - 1).filter(|&weight| weight < IMPOSSIBLE) else {
         return Ok(None);
     };
-    Ok(Some(Found { triangles: table.triangles(), caps }))
+    Ok(Some(MinimalTriangulation { triangles: table.triangles(), caps }))
 }
 
-impl<C: Chords> Table<'_, C> {
+impl<C: Chords> ChordTable<'_, C> {
     fn weight_of(&self, i: usize, k: usize) -> Option<Weight> {
         self.chords.find(i, k).map(|chord| self.weight[chord])
     }

@@ -34,15 +34,15 @@ mod span;
 mod sparse;
 mod surface;
 
-use self::accept::Proposal;
+use self::accept::PatchProposal;
 use self::creased::Division;
-use self::make::{Made, Scene, Way, make};
+use self::make::{MadePatch, PatchInput, Way, make};
 pub use self::options::{Extract, FillOptions, HoleChoice, Method};
 use self::pinched::Walk;
 use self::regions::{Region, regions};
 pub use self::report::{Filled, HoleReport, Rejected, Rejection, Rim};
 pub use self::span::{span_odd_edges, span_rims};
-use self::surface::Surface;
+use self::surface::FillSurface;
 use super::{Changes, Draft, FIRST_BLEND, NEW, Selection};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec3, triangle_area};
@@ -126,14 +126,15 @@ fn fill_loops(
     // The surface grows by patches; what a field is halved by is the mesh as it was.
     let positions = if has_field { surface.positions.clone() } else { Vec::new() };
     let triangles = if has_field { surface.triangles.clone() } else { Vec::new() };
-    let mesh = if has_field { Some(rbf::Mesh::new(&positions, &triangles, budget)?) } else { None };
+    let mesh = if has_field { Some(rbf::FieldMesh::new(&positions, &triangles, budget)?) } else { None };
     let mut done = Vec::new();
-    let mut patches: Vec<(Made, u32)> = Vec::new();
+    let mut patches: Vec<(MadePatch, u32)> = Vec::new();
     while !open.is_empty() {
-        let scene = Scene { surface: &surface, mesh: mesh.as_ref(), options };
+        let scene = PatchInput { surface: &surface, mesh: mesh.as_ref(), options };
         let offers = offer(&mut open, &scene, budget)?;
-        let proposals: Vec<&Proposal> = offers.iter().flatten().map(|(_, made)| &made.proposal).collect();
-        let bvh = mesh.as_ref().map(rbf::Mesh::bvh);
+        let proposals: Vec<&PatchProposal> =
+            offers.iter().flatten().map(|(_, made)| &made.proposal).collect();
+        let bvh = mesh.as_ref().map(rbf::FieldMesh::bvh);
         let mut verdicts = surface.accept(&proposals, bvh, budget)?.into_iter();
         let mut left = Vec::new();
         for (mut hole, offered) in open.into_iter().zip(offers) {
@@ -176,7 +177,7 @@ impl Ladder<'_> {
         &self,
         region: Region,
         rejected: Vec<Rejected>,
-        surface: &Surface,
+        surface: &FillSurface,
         budget: &Budget,
     ) -> Result<Hole, Stopped> {
         let choice = self.soup.and_then(|soup| self.options.choice(region.rim(), self.draft, soup));
@@ -206,7 +207,7 @@ impl Ladder<'_> {
     fn give_up(
         &self,
         hole: Hole,
-        surface: &Surface,
+        surface: &FillSurface,
         left: &mut Vec<Hole>,
         done: &mut Vec<HoleReport>,
         budget: &Budget,
@@ -227,7 +228,11 @@ impl Ladder<'_> {
 }
 
 /// The next patch for each hole that has one, and the way it was made in.
-fn offer(open: &mut [Hole], scene: &Scene<'_>, budget: &Budget) -> Result<Vec<Option<(Way, Made)>>, Stopped> {
+fn offer(
+    open: &mut [Hole],
+    scene: &PatchInput<'_>,
+    budget: &Budget,
+) -> Result<Vec<Option<(Way, MadePatch)>>, Stopped> {
     let holes: Vec<&mut Hole> = open.iter_mut().collect();
     let chunks: Vec<Vec<&mut Hole>> = {
         let mut chunks = Vec::new();
@@ -248,7 +253,7 @@ fn offer(open: &mut [Hole], scene: &Scene<'_>, budget: &Budget) -> Result<Vec<Op
 }
 
 impl Hole {
-    fn next(&mut self, scene: &Scene<'_>, budget: &Budget) -> Result<Option<(Way, Made)>, Stopped> {
+    fn next(&mut self, scene: &PatchInput<'_>, budget: &Budget) -> Result<Option<(Way, MadePatch)>, Stopped> {
         while let Some(way) = self.ways.pop() {
             let (division, mut rejected) = (self.division.as_ref(), Vec::new());
             let made = make(&self.region, division, self.band_rings, way, scene, &mut rejected, budget)?;
@@ -264,8 +269,8 @@ impl Hole {
 }
 
 impl HoleReport {
-    fn take(&mut self, method: Method, made: &Made, surface: &Surface, first: u32) {
-        let Proposal { rim, points, triangles, .. } = &made.proposal;
+    fn take(&mut self, method: Method, made: &MadePatch, surface: &FillSurface, first: u32) {
+        let PatchProposal { rim, points, triangles, .. } = &made.proposal;
         let point = |v: u32| match rim.get(v as usize) {
             Some(&h) => surface.point(h),
             None => surface.positions[(first + v) as usize - rim.len()],
@@ -310,23 +315,23 @@ fn reason(patches: Option<String>, left: u64, stray_edges: u64) -> String {
 }
 
 /// The draft with one vertex at each place.
-fn surface_of(draft: &Draft, budget: &Budget) -> Result<Surface, Stopped> {
+fn surface_of(draft: &Draft, budget: &Budget) -> Result<FillSurface, Stopped> {
     let places = coincident_f64(&draft.positions, budget)?;
     let positions = places.first.iter().map(|&v| draft.positions[v as usize]).collect();
     let triangles = draft.triangles.iter().map(|t| t.map(|v| places.group[v as usize])).collect();
-    Surface::new(positions, triangles, budget)
+    FillSurface::new(positions, triangles, budget)
 }
 
 /// Adds patches, in the order in which they were taken.
 fn append(
     draft: &mut Draft,
     soup: Option<&Soup>,
-    surface: &Surface,
-    patches: &[(Made, u32)],
+    surface: &FillSurface,
+    patches: &[(MadePatch, u32)],
     budget: &Budget,
 ) -> Result<(), Stopped> {
     for (made, first) in patches {
-        let Proposal { rim, points, triangles, .. } = &made.proposal;
+        let PatchProposal { rim, points, triangles, .. } = &made.proposal;
         let base = draft.positions.len() as u32;
         let corner = |h: u32| edge_of(&draft.triangles, h)[1];
         let corners: Vec<u32> =

@@ -13,7 +13,7 @@
 //!      fan 2                fan 2
 //! ```
 
-use super::surface::Surface;
+use super::surface::FillSurface;
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::{BoundaryLoop, Components, edge_of, next_corner, prev_corner, triangle_of};
@@ -62,7 +62,7 @@ impl Walk {
 /// are joined.
 pub(super) fn join(
     loops: Vec<BoundaryLoop>,
-    surface: &Surface,
+    surface: &FillSurface,
     budget: &Budget,
 ) -> Result<Vec<Walk>, Stopped> {
     let passes = passes(&loops, surface, budget)?;
@@ -88,7 +88,7 @@ pub(super) fn join(
 }
 
 /// For each vertex that loops pass several times: the half-edges along which they leave it.
-fn passes(loops: &[BoundaryLoop], surface: &Surface, budget: &Budget) -> Result<Vec<Vec<u32>>, Stopped> {
+fn passes(loops: &[BoundaryLoop], surface: &FillSurface, budget: &Budget) -> Result<Vec<Vec<u32>>, Stopped> {
     let mut corners: Vec<(u32, u32)> = loops.iter().flatten().map(|&h| (surface.corner(h), h)).collect();
     budget.spend(corners.len() as u64 / 16 + 1)?;
     corners.sort_unstable();
@@ -97,14 +97,14 @@ fn passes(loops: &[BoundaryLoop], surface: &Surface, budget: &Budget) -> Result<
 }
 
 /// Where a fan ends that begins at a boundary half-edge, and its normal.
-struct Fan {
+struct BoundaryFan {
     /// The boundary half-edge that leaves the vertex; a loop comes along it.
     end: u32,
     normal: DVec3,
 }
 
 struct Joints<'a> {
-    surface: &'a Surface,
+    surface: &'a FillSurface,
     /// For each half-edge of the loops the one after it.
     next: FxHashMap<u32, u32>,
     is_changed: bool,
@@ -137,8 +137,8 @@ impl Joints<'_> {
 
     /// The fan whose border a loop leaves along `h`; `None` when it ends at an edge with several triangles, or with one
     /// that runs the other way.
-    fn fan(&self, h: u32, budget: &Budget) -> Result<Option<Fan>, Stopped> {
-        let Surface { triangles, groups, positions, .. } = self.surface;
+    fn fan(&self, h: u32, budget: &Budget) -> Result<Option<BoundaryFan>, Stopped> {
+        let FillSurface { triangles, groups, positions, .. } = self.surface;
         let vertex = self.surface.corner(h);
         let (mut at, mut normal) = (h, DVec3::ZERO);
         loop {
@@ -151,7 +151,7 @@ impl Joints<'_> {
             let [a, b] = edge_of(triangles, exit);
             let Some(edge) = groups.find(triangles, [a.min(b), a.max(b)]) else { return Ok(None) };
             match *groups.group(edge) {
-                [_] => return Ok(Some(Fan { end: exit, normal: normal.normalize_or_zero() })),
+                [_] => return Ok(Some(BoundaryFan { end: exit, normal: normal.normalize_or_zero() })),
                 [g, twin] => at = if g == exit { twin } else { g },
                 _ => return Ok(None),
             }
@@ -165,7 +165,7 @@ impl Joints<'_> {
     fn best_exchange(
         &mut self,
         out: &[u32],
-        fans: &[Fan],
+        fans: &[BoundaryFan],
         budget: &Budget,
     ) -> Result<Option<[usize; 2]>, Stopped> {
         // A patch joins the end of fan `i` to the fan that the loop leaves along.
@@ -191,7 +191,7 @@ impl Joints<'_> {
     fn belong_together(
         &mut self,
         out: &[u32],
-        fans: &[Fan],
+        fans: &[BoundaryFan],
         [i, k]: [usize; 2],
         budget: &Budget,
     ) -> Result<bool, Stopped> {
@@ -278,15 +278,15 @@ mod tests {
     use crate::mesh::Boundary;
 
     /// Three triangles in a plane that share the vertex 0, counter-clockwise, the last one the other way around if it is `turned`.
-    fn blades(is_turned: bool) -> Surface {
+    fn blades(is_turned: bool) -> FillSurface {
         let angle = |k: f64| k * std::f64::consts::FRAC_PI_3;
         let rim = (0..6).map(|k| DVec3::new(angle(f64::from(k)).cos(), angle(f64::from(k)).sin(), 0.0));
         let positions = std::iter::once(DVec3::ZERO).chain(rim).collect();
         let last = if is_turned { [0, 6, 5] } else { [0, 5, 6] };
-        Surface::new(positions, vec![[0, 1, 2], [0, 3, 4], last], &Budget::unlimited()).unwrap()
+        FillSurface::new(positions, vec![[0, 1, 2], [0, 3, 4], last], &Budget::unlimited()).unwrap()
     }
 
-    fn walks(surface: &Surface) -> Vec<Walk> {
+    fn walks(surface: &FillSurface) -> Vec<Walk> {
         let budget = Budget::unlimited();
         let boundary =
             Boundary::trace(&surface.triangles, surface.positions.len(), &surface.groups, &budget).unwrap();

@@ -5,7 +5,7 @@ use super::patch::PatchMesh;
 use super::refine::turn_edges;
 use super::regions::Region;
 use super::report::Rejection;
-use super::surface::Surface;
+use super::surface::FillSurface;
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3};
 use crate::implicit::{self, Band, Field, Kernel, RbfOptions, Surroundings, Unfit};
@@ -23,12 +23,12 @@ const POINTS: usize = 16;
 const REACH: f64 = 0.5;
 
 /// The mesh as a field sees it: what is near, and how large it all is.
-pub(super) struct Mesh<'m> {
+pub(super) struct FieldMesh<'m> {
     nearest: NearestSearch<'m>,
     bounds: Aabb,
 }
 
-impl<'m> Mesh<'m> {
+impl<'m> FieldMesh<'m> {
     pub(super) fn new(
         positions: &'m [DVec3],
         triangles: &'m [[u32; 3]],
@@ -49,8 +49,8 @@ impl<'m> Mesh<'m> {
 pub(super) fn field(
     region: &Region,
     rings: u32,
-    surface: &Surface,
-    mesh: &Mesh<'_>,
+    surface: &FillSurface,
+    mesh: &FieldMesh<'_>,
     options: &FillOptions,
     rejected: &mut Vec<Rejection>,
     budget: &Budget,
@@ -82,7 +82,7 @@ fn reason(unfit: Unfit) -> Rejection {
 }
 
 /// The vertices of the rim, then those of the rings around it, each once, with the normals that the mesh has there.
-fn band(region: &Region, rings: u32, surface: &Surface, budget: &Budget) -> Result<Band, Stopped> {
+fn band(region: &Region, rings: u32, surface: &FillSurface, budget: &Budget) -> Result<Band, Stopped> {
     let mut seen = FxHashSet::default();
     let mut points: Vec<u32> =
         region.rim().iter().map(|&h| surface.corner(h)).filter(|&v| seen.insert(v)).collect();

@@ -1,6 +1,6 @@
 //! The mesh around the holes, with one vertex at each place.
 
-use super::fair::Around;
+use super::fair::PatchSurroundings;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::{EdgeGroups, edge_of, next_corner, prev_corner};
@@ -8,7 +8,7 @@ use crate::spatial::Bvh;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// The mesh around the holes, and the patches it has got so far.
-pub(super) struct Surface {
+pub(super) struct FillSurface {
     /// Of the mesh, then of new vertices of patches, taken or not.
     pub(super) positions: Vec<DVec3>,
     pub(super) triangles: Vec<[u32; 3]>,
@@ -20,19 +20,19 @@ pub(super) struct Surface {
     pub(super) patches: Vec<[u32; 3]>,
     /// Edges of patches between vertices of the mesh.
     pub(super) diagonals: FxHashSet<[u32; 2]>,
-    stars: Stars,
+    stars: VertexStars,
     /// Where the edges of each vertex begin in `groups`, of which it is the smaller end; empty until they are asked for.
     first_edge: Vec<u32>,
 }
 
 /// The triangles at each vertex: where those of each begin, and all of them. Empty until they are asked for.
 #[derive(Default)]
-struct Stars {
+struct VertexStars {
     start: Vec<u32>,
     triangles: Vec<u32>,
 }
 
-impl Surface {
+impl FillSurface {
     pub(super) fn new(
         positions: Vec<DVec3>,
         triangles: Vec<[u32; 3]>,
@@ -48,7 +48,7 @@ impl Surface {
             bvh: None,
             patches: Vec::new(),
             diagonals: FxHashSet::default(),
-            stars: Stars::default(),
+            stars: VertexStars::default(),
             first_edge: Vec::new(),
         })
     }
@@ -149,13 +149,13 @@ impl Surface {
                 next[v as usize] += 1;
             }
         }
-        self.stars = Stars { start, triangles };
+        self.stars = VertexStars { start, triangles };
         Ok(())
     }
 
     /// The triangles of the mesh at vertex `v`, ascending.
     pub(super) fn star(&self, v: u32) -> &[u32] {
-        let Stars { start, triangles } = &self.stars;
+        let VertexStars { start, triangles } = &self.stars;
         match start.get(v as usize + 1) {
             Some(&end) => &triangles[start[v as usize] as usize..end as usize],
             None => &[],
@@ -183,7 +183,7 @@ impl Surface {
         half_edges: &[Option<u32>],
         is_clamped: Vec<bool>,
         budget: &Budget,
-    ) -> Result<Around, Stopped> {
+    ) -> Result<PatchSurroundings, Stopped> {
         let rim = half_edges.len();
         let corners = || half_edges.iter().enumerate().filter_map(|(i, h)| Some((i, self.corner((*h)?))));
         let mut number: FxHashMap<u32, u32> = FxHashMap::default();
@@ -198,7 +198,7 @@ impl Surface {
         budget.spend(own.len() as u64 / 8 + 1)?;
         own.sort_unstable();
         own.dedup();
-        let mut around = Around { is_clamped, ..Around::default() };
+        let mut around = PatchSurroundings { is_clamped, ..PatchSurroundings::default() };
         for t in own {
             let corners = self.triangles[t as usize].map(|v| {
                 *number.entry(v).or_insert_with(|| {

@@ -8,7 +8,7 @@
 //!
 //! No vertex moves: an edge that is divided goes through the vertex beside it.
 
-use super::Rim;
+use super::ManifoldRim;
 use super::beside::{Flank, NEAR_MAX, flank_of, vertex_beside};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3, are_collinear};
@@ -143,14 +143,14 @@ pub(super) fn slits(
 /// When the budget stops the run.
 pub(super) fn divide_beside(
     draft: &mut Draft,
-    rim: &Rim,
+    rim: &ManifoldRim,
     epsilon: f64,
     chosen: &ChosenEdges,
     budget: &Budget,
 ) -> Result<Divided, Stopped> {
     let search = RimSearch::of(&draft.positions, &draft.triangles, &rim.half_edges, budget)?;
     let is_slit = rim.slits(draft, epsilon);
-    let mut inside: Vec<Inside> = Vec::new();
+    let mut inside: Vec<InnerVertex> = Vec::new();
     for (v, own) in search.vertices() {
         let may_divide = |h: u32| {
             let ends = flank_of(&draft.triangles, h);
@@ -162,7 +162,7 @@ pub(super) fn divide_beside(
         {
             let [from, to, _] = search.flank(half_edge);
             let along = (draft.positions[v as usize] - from).dot((to - from).normalize_or_zero());
-            inside.push(Inside { half_edge, along, v, apart });
+            inside.push(InnerVertex { half_edge, along, v, apart });
         }
     }
     inside.sort_unstable_by(|a, b| {
@@ -185,7 +185,7 @@ pub(super) fn divide_beside(
 }
 
 /// A vertex beside a half-edge, and where along it.
-struct Inside {
+struct InnerVertex {
     half_edge: u32,
     along: f64,
     v: u32,
@@ -193,11 +193,11 @@ struct Inside {
 }
 
 /// Divides a triangle at new vertices beside its half-edges; leaves it as it is where a part would turn.
-fn divide_at(draft: &mut Draft, of_triangle: &[Inside]) -> bool {
+fn divide_at(draft: &mut Draft, of_triangle: &[InnerVertex]) -> bool {
     let t = triangle_of(of_triangle[0].half_edge);
     let first = draft.positions.len();
     let mut on: [Vec<u32>; 3] = Default::default();
-    for &Inside { half_edge, v, .. } in of_triangle {
+    for &InnerVertex { half_edge, v, .. } in of_triangle {
         on[half_edge as usize % 3].push(draft.positions.len() as u32);
         draft.positions.push(draft.positions[v as usize]);
         draft.vertex_origin.push(draft.vertex_origin[v as usize]);
@@ -240,7 +240,7 @@ mod tests {
 
     fn divided(draft: &mut Draft, epsilon: f64) -> Divided {
         let budget = Budget::unlimited();
-        let rim = Rim::of(draft, &budget).unwrap();
+        let rim = ManifoldRim::of(draft, &budget).unwrap();
         let divided = divide_beside(draft, &rim, epsilon, &ChosenEdges::default(), &budget).unwrap();
         assert_eq!(draft.check(), Vec::<String>::new());
         divided
@@ -305,7 +305,7 @@ mod tests {
         ];
         let triangles = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 5], [3, 5, 4]];
         let before = Draft::of(&points, &triangles);
-        let rim = Rim::of(&before, &Budget::unlimited()).unwrap();
+        let rim = ManifoldRim::of(&before, &Budget::unlimited()).unwrap();
         assert_eq!(rim.slits(&before, 0.002), [false, true]);
         let mut draft = before.clone();
         assert_eq!((divided(&mut draft, 0.002), draft == before), (Divided::default(), true));

@@ -2,7 +2,7 @@
 //! they run in opposite directions, and how a sheet is wound says nothing about where it belongs.
 
 use super::beside::Reach;
-use super::{Rim, flank};
+use super::{ManifoldRim, flank};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::triangle_area;
 use crate::mesh::{ChosenEdges, Components, ParityUnionFind, edge_of, triangle_of};
@@ -20,7 +20,7 @@ const PARTNERS_MAX: usize = 32;
 /// When the budget stops the run.
 pub(super) fn turn_to_face(
     draft: &mut Draft,
-    rim: &Rim,
+    rim: &ManifoldRim,
     reach: Reach,
     chosen: &ChosenEdges,
     budget: &Budget,
@@ -38,7 +38,7 @@ pub(super) fn turn_to_face(
     }
     let mut sides = ParityUnionFind::new(parts.count as usize);
     let mut is_used = vec![false; rim.half_edges.len()];
-    for (i, Meeting { edges: [g, h], run_alike, .. }) in meetings.into_iter().enumerate() {
+    for (i, FacingEdges { edges: [g, h], run_alike, .. }) in meetings.into_iter().enumerate() {
         if i % CHECK_EVERY == 0 {
             budget.check()?;
         }
@@ -55,7 +55,7 @@ pub(super) fn turn_to_face(
 }
 
 /// Two boundary edges of different parts that lie within epsilon of each other.
-struct Meeting {
+struct FacingEdges {
     /// The larger distance of their ends.
     apart: f64,
     /// Places in the rim, the smaller first.
@@ -67,12 +67,12 @@ struct Meeting {
 /// The meetings in an order that does not depend on how parts are wound: by distance, then by triangle.
 fn meetings(
     draft: &Draft,
-    rim: &Rim,
+    rim: &ManifoldRim,
     parts: &Components,
     reach: Reach,
     chosen: &ChosenEdges,
     budget: &Budget,
-) -> Result<Vec<Meeting>, Stopped> {
+) -> Result<Vec<FacingEdges>, Stopped> {
     let at = |v: u32| draft.positions[v as usize];
     let part = |h: u32| parts.of[triangle_of(h) as usize];
     let mut out_of: Vec<(u32, usize)> =
@@ -106,7 +106,7 @@ fn meetings(
                 let is_elsewhere = j > i && part(rim.half_edges[j]) != part(g);
                 if is_elsewhere && is_within(at(other), at(to), reach.epsilon) && may_join() {
                     let apart = at(end).distance(at(from)).max(at(other).distance(at(to)));
-                    partners.push(Meeting { apart, edges: [i, j], run_alike });
+                    partners.push(FacingEdges { apart, edges: [i, j], run_alike });
                 }
             }
         }
@@ -114,7 +114,7 @@ fn meetings(
         partners.truncate(PARTNERS_MAX);
         found.append(&mut partners);
     }
-    let triangles = |meeting: &Meeting| meeting.edges.map(|i| triangle_of(rim.half_edges[i]));
+    let triangles = |meeting: &FacingEdges| meeting.edges.map(|i| triangle_of(rim.half_edges[i]));
     found.sort_by(|a, b| {
         let by_place = a.apart.total_cmp(&b.apart).then(triangles(a).cmp(&triangles(b)));
         by_place.then(a.run_alike.cmp(&b.run_alike)).then(a.edges.cmp(&b.edges))

@@ -14,7 +14,7 @@ mod gap;
 use self::beside::{Flank, Reach, flank_of};
 use self::divide::{Divided, divide_beside, slits};
 pub use self::gap::gap_between_rims;
-use super::{Changes, Draft, Effects, Stitches};
+use super::{Changes, Draft, Effects, Joins};
 use crate::budget::{Budget, Stopped};
 use crate::figures::figure;
 use crate::geom::{Aabb, DVec3, are_collinear};
@@ -54,7 +54,7 @@ const PARTNERS_MAX: usize = 32;
 /// # Errors
 /// When the budget stops the run.
 pub fn snap(draft: &mut Draft, options: &SnapOptions, budget: &Budget) -> Result<Changes, Stopped> {
-    let mut rim = Rim::of(draft, budget)?;
+    let mut rim = ManifoldRim::of(draft, budget)?;
     let epsilon = match options.epsilon {
         Some(epsilon) if options.by_edge => epsilon,
         asked => epsilon(draft, &rim, asked),
@@ -64,7 +64,7 @@ pub fn snap(draft: &mut Draft, options: &SnapOptions, budget: &Budget) -> Result
     if options.by_edge && epsilon > 0.0 {
         divided = divide_beside(draft, &rim, epsilon, &options.chosen, budget)?;
         if divided.edges > 0 {
-            rim = Rim::of(draft, budget)?;
+            rim = ManifoldRim::of(draft, budget)?;
         }
     }
     let flipped = match options.keeps_winding {
@@ -72,7 +72,7 @@ pub fn snap(draft: &mut Draft, options: &SnapOptions, budget: &Budget) -> Result
         false => facing::turn_to_face(draft, &rim, reach, &options.chosen, budget)?,
     };
     if flipped > 0 {
-        rim = Rim::of(draft, budget)?;
+        rim = ManifoldRim::of(draft, budget)?;
     }
     let [apart, same] = rim.pairs(draft, reach, &options.chosen, budget)?;
     let outlines = draft.outlines(budget)?;
@@ -89,7 +89,7 @@ pub fn snap(draft: &mut Draft, options: &SnapOptions, budget: &Budget) -> Result
         done.implicit.extend(stitched.implicit);
     }
     let (moved, moved_by) = rule.moves();
-    let stitches = Stitches::of(draft, &before, &done);
+    let stitches = Joins::of(draft, &before, &done);
     draft.drop_unused_vertices();
     let others = [("vertices_moved", moved), ("triangles_flipped", flipped)];
     let edges_divided = (divided.edges > 0).then_some(("edges_divided", divided.edges));
@@ -108,7 +108,7 @@ fn flank(draft: &Draft, h: u32) -> Flank {
     flank_of(&draft.triangles, h).map(|v| draft.positions[v as usize])
 }
 
-fn epsilon(draft: &Draft, rim: &Rim, asked: Option<f64>) -> f64 {
+fn epsilon(draft: &Draft, rim: &ManifoldRim, asked: Option<f64>) -> f64 {
     let diagonal = || Aabb::of(draft.positions.iter().copied()).diagonal();
     let wanted = asked.unwrap_or_else(|| EPSILON_SHARE * diagonal());
     let length = |&h: &u32| {
@@ -119,7 +119,7 @@ fn epsilon(draft: &Draft, rim: &Rim, asked: Option<f64>) -> f64 {
 }
 
 /// The boundary half-edges of a manifold.
-struct Rim {
+struct ManifoldRim {
     /// Ascending.
     half_edges: Vec<u32>,
     /// The loop of each.
@@ -128,7 +128,7 @@ struct Rim {
     into: Vec<(u32, u32)>,
 }
 
-impl Rim {
+impl ManifoldRim {
     fn of(draft: &Draft, budget: &Budget) -> Result<Self, Stopped> {
         let groups = draft.edge_groups(budget)?;
         let boundary = Boundary::trace(&draft.triangles, draft.positions.len(), &groups, budget)?;

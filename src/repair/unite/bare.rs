@@ -1,7 +1,7 @@
 //! Unites bodies and keeps a copy of what that would lose: triangles of which a part has void on both sides.
 
 use super::{arranged, become_solid, left_alone, turn_inverted};
-use crate::arrangement::{Arrangement, ArrangementError, Surface};
+use crate::arrangement::{Arrangement, ArrangementError, SolidBoundary};
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::cut_singular;
@@ -27,7 +27,7 @@ pub fn unite_and_copy_bare(draft: &mut Draft, budget: &Budget) -> Result<Changes
 pub(super) fn become_solid_and_copy_bare(
     draft: &mut Draft,
     arrangement: &Arrangement,
-    boundary: Surface,
+    boundary: SolidBoundary,
     budget: &Budget,
 ) -> Result<Changes, ArrangementError> {
     let copies = Copies::of_bare(draft, arrangement, budget)?;

@@ -2,7 +2,7 @@
 
 use super::bare::become_solid_and_copy_bare;
 use super::{become_solid, left_alone, pairs_max};
-use crate::arrangement::{Arrangement, ArrangementError, Surface, arrange_enclosed};
+use crate::arrangement::{Arrangement, ArrangementError, SolidBoundary, arrange_enclosed};
 use crate::budget::{Budget, Stopped};
 use crate::geom::triangle_area;
 use crate::mesh::EdgeGroups;
@@ -32,7 +32,7 @@ pub fn enclose_and_copy_bare(draft: &mut Draft, budget: &Budget) -> Result<Chang
 
 fn enclose_by(
     draft: &mut Draft,
-    become_solid: impl Fn(&mut Draft, &Arrangement, Surface, &Budget) -> Result<Changes, ArrangementError>,
+    become_solid: impl Fn(&mut Draft, &Arrangement, SolidBoundary, &Budget) -> Result<Changes, ArrangementError>,
     budget: &Budget,
 ) -> Result<Changes, Stopped> {
     let arranged = arrange_enclosed(&draft.positions, &draft.triangles, pairs_max(draft), budget);
@@ -46,7 +46,7 @@ fn enclose_by(
 
 /// Turns the connected parts of a boundary that point inward as they were drawn.
 fn turn_inward(
-    boundary: &mut Surface,
+    boundary: &mut SolidBoundary,
     arrangement: &Arrangement,
     budget: &Budget,
 ) -> Result<(), ArrangementError> {

@@ -15,7 +15,9 @@ pub use combine::{NotCombined, NotSolid, SetOperation, combine};
 pub use enclose::{enclose, enclose_and_copy_bare};
 
 use super::{Changes, Draft, FIRST_BLEND, NEW};
-use crate::arrangement::{self, Arrangement, ArrangementError, Options, Placed, Surface, arrange};
+use crate::arrangement::{
+    self, Arrangement, ArrangementError, ArrangementOptions, PlacedBoundary, SolidBoundary, arrange,
+};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3, Sign, print_pitch, triangle_area, upward_crossing, volume_sign};
 use crate::mesh::{EdgeGroups, edge_of};
@@ -96,7 +98,7 @@ pub fn unite_as_oriented(draft: &mut Draft, budget: &Budget) -> Result<Changes, 
 fn become_solid(
     draft: &mut Draft,
     arrangement: &Arrangement,
-    boundary: Surface,
+    boundary: SolidBoundary,
     budget: &Budget,
 ) -> Result<Changes, ArrangementError> {
     let coverage = Coverage::of(draft, arrangement);
@@ -117,7 +119,7 @@ fn arranged_by(
     operand_of: impl Fn(u32) -> u8 + Sync,
     budget: &Budget,
 ) -> Result<Arrangement, ArrangementError> {
-    let options = Options { pairs_max: pairs_max(draft), operands };
+    let options = ArrangementOptions { pairs_max: pairs_max(draft), operands };
     arrange(&draft.positions, &draft.triangles, operand_of, &options, budget)
 }
 
@@ -130,9 +132,9 @@ fn pairs_max(draft: &Draft) -> usize {
 fn placed(
     draft: &Draft,
     arrangement: &Arrangement,
-    boundary: Surface,
+    boundary: SolidBoundary,
     budget: &Budget,
-) -> Result<Option<Placed>, ArrangementError> {
+) -> Result<Option<PlacedBoundary>, ArrangementError> {
     let merged = arrangement.merged(&boundary, budget)?;
     drop(boundary);
     let reach = draft.positions.iter().fold(0.0f64, |reach, p| reach.max(p.abs().max_element()));
@@ -141,7 +143,7 @@ fn placed(
 }
 
 /// Puts what is placed into the draft.
-fn replace(draft: &mut Draft, placed: Placed) -> Changes {
+fn replace(draft: &mut Draft, placed: PlacedBoundary) -> Changes {
     let before = draft.triangles.len() as u64;
     let points_before = draft.positions.len();
     let move_max = placed.move_max;
@@ -188,7 +190,7 @@ fn first_of_each(triangles: &[[u32; 3]], points: usize) -> Vec<u32> {
 }
 
 /// The origins of the points that are new: blends of the corners of the triangle that they are on.
-fn new_vertices(draft: &mut Draft, placed: &Placed, is_first: &[u32]) -> Vec<u32> {
+fn new_vertices(draft: &mut Draft, placed: &PlacedBoundary, is_first: &[u32]) -> Vec<u32> {
     let old = draft.positions.len();
     let mut origins = Vec::with_capacity(placed.positions.len() - old);
     for (&place, &t) in placed.positions[old..].iter().zip(&is_first[old..]) {

@@ -10,7 +10,7 @@ use crate::spatial::{Bvh, Search, self_contacts};
 const CONTACTS_KEPT: usize = 1 << 20;
 
 /// A way to read coordinates: as they are, or rounded to f32.
-pub(super) struct Reading {
+pub(super) struct CoordinateReading {
     /// By place in the division.
     pub(super) positions: Vec<DVec3>,
     /// Holds the triangles of the first try that have an area.
@@ -39,7 +39,7 @@ pub(super) struct Check<'c> {
     starts: Vec<usize>,
     /// What parts leave that were done again.
     again: Vec<Option<Left>>,
-    pub(super) readings: Vec<Reading>,
+    pub(super) readings: Vec<CoordinateReading>,
     /// There were more contacts than are kept.
     is_truncated: bool,
     budget: &'c Budget,
@@ -48,7 +48,7 @@ pub(super) struct Check<'c> {
 
 /// What a look at the surface found.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Found {
+pub(super) struct SurfaceCheck {
     /// Merged vertices, by place, of triangles that meet others or have no area.
     pub(super) offenders: Vec<u32>,
     /// Numbers of triangles that are as in the input and meet others that are too.
@@ -97,7 +97,7 @@ impl<'c> Check<'c> {
             let with_area = with_area(&positions, &check.first.triangles, budget)?;
             let ids = (with_area.len() < check.first.triangles.len()).then_some(&with_area[..]);
             let bvh = Bvh::build(&positions, &check.first.triangles, ids, budget)?;
-            check.readings.push(Reading { positions, bvh });
+            check.readings.push(CoordinateReading { positions, bvh });
         }
         Ok(check)
     }
@@ -138,8 +138,8 @@ impl<'c> Check<'c> {
     }
 
     /// Looks at what has changed since the last look.
-    pub(super) fn look(&mut self) -> Result<Found, Stopped> {
-        let mut found = Found::default();
+    pub(super) fn look(&mut self) -> Result<SurfaceCheck, Stopped> {
+        let mut found = SurfaceCheck::default();
         let is_first = self.again.iter().all(Option::is_none);
         let redone: (Vec<[u32; 3]>, Vec<u32>) = if is_first {
             (Vec::new(), Vec::new())
@@ -183,9 +183,9 @@ impl<'c> Check<'c> {
         triangles: &[[u32; 3]],
         numbers: &[u32],
         bvh: Option<&Bvh>,
-        found: &mut Found,
+        found: &mut SurfaceCheck,
     ) -> Result<bool, Stopped> {
-        let Reading { positions, bvh: first } = &self.readings[reading];
+        let CoordinateReading { positions, bvh: first } = &self.readings[reading];
         let flat = par::try_map_ranges(triangles.len(), CHECK_EVERY, |range| {
             self.budget.check()?;
             let is_flat = |t: &usize| {
@@ -211,9 +211,9 @@ impl<'c> Check<'c> {
         &self,
         reading: usize,
         (triangles, numbers): &(Vec<[u32; 3]>, Vec<u32>),
-        found: &mut Found,
+        found: &mut SurfaceCheck,
     ) -> Result<(), Stopped> {
-        let Reading { positions, bvh } = &self.readings[reading];
+        let CoordinateReading { positions, bvh } = &self.readings[reading];
         let corners = |t: [u32; 3]| t.map(|v| positions[v as usize]);
         let pairs = par::try_map_ranges(triangles.len(), CHECK_EVERY / 16, |range| {
             let mut pairs = Vec::new();
@@ -244,7 +244,7 @@ impl<'c> Check<'c> {
     }
 
     /// Notes triangles that should not be as they are.
-    fn note(&self, triangles: &[([u32; 3], u32)], found: &mut Found) {
+    fn note(&self, triangles: &[([u32; 3], u32)], found: &mut SurfaceCheck) {
         let corners = triangles.iter().flat_map(|(corners, _)| corners);
         let before = found.offenders.len();
         found.offenders.extend(corners.filter(|&&v| self.first.is_merged[v as usize]));

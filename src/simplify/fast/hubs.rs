@@ -23,12 +23,12 @@ pub(super) struct Hubs {
     place: Vec<u32>,
     /// The first fan of each vertex.
     fan_at: Vec<u32>,
-    pub(super) fans: Vec<Fan>,
+    pub(super) fans: Vec<HubFan>,
 }
 
 /// The triangles of a hub.
 #[derive(Debug)]
-pub(super) struct Fan {
+pub(super) struct HubFan {
     /// The hub, or what it was merged into.
     pub(super) vertex: u32,
     at: DVec3,
@@ -56,7 +56,7 @@ impl Hubs {
             let Some(hub) = hub_of(corners, &valence) else { continue };
             if fan_at[hub as usize] == NO_FAN {
                 fan_at[hub as usize] = fans.len() as u32;
-                fans.push(Fan::at(hub, position(hub)));
+                fans.push(HubFan::at(hub, position(hub)));
             }
             fan_of[t as usize] = fan_at[hub as usize];
             fans[fan_at[hub as usize] as usize].triangles.push(t);
@@ -143,7 +143,7 @@ impl Hubs {
     }
 }
 
-impl Fan {
+impl HubFan {
     fn at(vertex: u32, at: DVec3) -> Self {
         Self { vertex, at, next: NO_FAN, bounds: Aabb::EMPTY, triangles: Vec::new(), nodes: Vec::new() }
     }

@@ -2,7 +2,7 @@
 //! face groups.
 
 use super::mesh::{Division, Mesh};
-use super::part::Piece;
+use super::part::PartTopology;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::corner_table::{NONE, triangle_of};
@@ -11,26 +11,26 @@ use crate::simplify::options::{Borders, SimplifyOptions};
 
 /// A half-edge of the sorted triangles, with its ends, the smaller first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Side {
+struct SortedHalfEdge {
     ends: [u32; 2],
     triangle: u32,
     corner: u32,
 }
 
 /// The lines on the edges inside parts.
-struct Inside {
+struct InnerLines {
     /// Lines with two triangles, by one of their half-edges and its twin.
     seams: Vec<[(u32, u32); 2]>,
     /// Half-edges on a border.
     borders: Vec<(u32, u32)>,
     /// Half-edges that have their twin, if there is one, elsewhere.
-    loose: Vec<Side>,
+    loose: Vec<SortedHalfEdge>,
 }
 
 pub(super) struct Lines<'l, S> {
     pub(super) mesh: &'l mut Mesh<S>,
     pub(super) division: &'l Division,
-    pub(super) pieces: &'l [Piece],
+    pub(super) pieces: &'l [PartTopology],
     /// Of the input's triangles; empty when all are in one.
     pub(super) groups: &'l [u32],
     pub(super) options: &'l SimplifyOptions<'l>,
@@ -68,14 +68,14 @@ impl<S: Copy + Send + Sync> Lines<'_, S> {
         Ok(Some(borders.into_iter().map(|(t, _)| self.mesh.numbers[t as usize]).collect()))
     }
 
-    fn from(&self, side: Side) -> u32 {
+    fn from(&self, side: SortedHalfEdge) -> u32 {
         self.mesh.triangles[side.triangle as usize][side.corner as usize]
     }
 
-    fn inside(&self, part: usize) -> Inside {
-        let Piece { table, is_free } = &self.pieces[part];
+    fn inside(&self, part: usize) -> InnerLines {
+        let PartTopology { table, is_free } = &self.pieces[part];
         let first = self.division.starts[part] as u32;
-        let mut found = Inside { seams: Vec::new(), borders: Vec::new(), loose: Vec::new() };
+        let mut found = InnerLines { seams: Vec::new(), borders: Vec::new(), loose: Vec::new() };
         let place = |h: u32| (first + triangle_of(h), h & 3);
         for h in table.half_edges() {
             let twin = table.twin(h);
@@ -93,15 +93,15 @@ impl<S: Copy + Send + Sync> Lines<'_, S> {
     }
 
     /// The half-edges of the triangles between parts.
-    fn between(&self) -> Vec<Side> {
+    fn between(&self) -> Vec<SortedHalfEdge> {
         let triangles = self.division.first_between() as u32..self.mesh.triangles.len() as u32;
         triangles.flat_map(|t| [(t, 0), (t, 1), (t, 2)]).map(|place| self.side(place)).collect()
     }
 
-    fn side(&self, (triangle, corner): (u32, u32)) -> Side {
+    fn side(&self, (triangle, corner): (u32, u32)) -> SortedHalfEdge {
         let corners = self.mesh.triangles[triangle as usize];
         let [from, to] = [corners[corner as usize], corners[(corner as usize + 1) % 3]];
-        Side { ends: [from.min(to), from.max(to)], triangle, corner }
+        SortedHalfEdge { ends: [from.min(to), from.max(to)], triangle, corner }
     }
 
     /// True when an edge with two triangles is a line.

@@ -1,6 +1,6 @@
 //! The mesh between two rounds: compact arrays, cut in parts along a space-filling curve.
 
-use super::region::Region;
+use super::region::CodeRegion;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::Color;
@@ -51,9 +51,9 @@ impl Division {
     }
 
     /// The space of part `i`.
-    pub(super) fn region(&self, i: usize) -> Region {
+    pub(super) fn region(&self, i: usize) -> CodeRegion {
         let before = |i: usize| i.checked_sub(1).and_then(|i| self.codes.get(i));
-        Region {
+        CodeRegion {
             curve: self.curve,
             after: before(i).map(|codes| codes[1]),
             before: self.codes.get(i + 1).map(|codes| codes[0]),

@@ -31,7 +31,7 @@ use super::length::Length;
 use super::memoryless::Memoryless;
 use super::options::{CriterionKind, SimplifyOptions};
 use super::quadric_error::QuadricError;
-use super::report::Report;
+use super::report::TargetReport;
 use super::result::{Input, Simplified, SimplifyError};
 use super::surface::NEW;
 use crate::budget::Budget;
@@ -113,7 +113,7 @@ fn run<C: Criterion>(
     let mut levels = Vec::with_capacity(options.targets.len());
     for &target in &options.targets {
         let is_reached = rounds.reach(target, input.triangles.len())?;
-        let report = Report {
+        let report = TargetReport {
             target,
             is_reached,
             faces_before: input.triangles.len(),
@@ -143,7 +143,7 @@ fn snapshot<S>(
     scale: f64,
     priorities: &[f64],
     input: &Input<'_>,
-    report: Report,
+    report: TargetReport,
 ) -> Simplified {
     let mut order: Vec<(u32, u32)> = mesh.numbers.iter().copied().zip(0..).collect();
     order.sort_unstable();

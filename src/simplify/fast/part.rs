@@ -11,7 +11,7 @@
 use super::allowance::Allowance;
 use super::buckets::{Buckets, CLASSES, class_of};
 use super::hubs::Corners;
-use super::region::Region;
+use super::region::CodeRegion;
 use super::space::Space;
 use super::strays::Strays;
 use super::sweep::{Outside, Sweep};
@@ -19,12 +19,12 @@ use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3};
 use crate::mesh::Color;
 use crate::mesh::corner_table::{CornerTable, EdgeRings, NONE, next, prev, triangle_of};
-use crate::simplify::criterion::{Criterion, Placed};
+use crate::simplify::criterion::{Criterion, PlacedVertex};
 use crate::simplify::guard::check_faces;
 use crate::simplify::marks::LINE;
 use crate::simplify::options::SimplifyOptions;
 use crate::simplify::report::{Refusal, Refusals};
-use crate::simplify::surface::{Rule, Surface};
+use crate::simplify::surface::{CollapseSurface, Rule};
 use std::sync::Arc;
 
 /// Units of work that an attempt to collapse an edge counts.
@@ -32,7 +32,7 @@ const ATTEMPT: u64 = 256;
 
 /// The topology of a part.
 #[derive(Debug)]
-pub(super) struct Piece {
+pub(super) struct PartTopology {
     pub(super) table: CornerTable,
     /// For each vertex, whether it is free.
     pub(super) is_free: Vec<bool>,
@@ -80,7 +80,7 @@ pub(super) struct Room {
     /// Place of the part's first vertex.
     pub(super) first_vertex: u32,
     /// What is swept must be inside of it.
-    pub(super) region: Region,
+    pub(super) region: CodeRegion,
     /// Of all parts.
     pub(super) strays: Arc<Strays>,
 }
@@ -93,21 +93,21 @@ struct Watch {
 }
 
 /// Why nothing is collapsed here and now.
-enum No {
+enum NotCollapsed {
     Refused(Refusal),
     /// It would leave the part's region: another round may do it.
     Elsewhere,
 }
 
-impl From<Refusal> for No {
+impl From<Refusal> for NotCollapsed {
     fn from(reason: Refusal) -> Self {
         Self::Refused(reason)
     }
 }
 
 /// A part that is being simplified.
-pub(super) struct Part<'r, C: Criterion> {
-    pub(super) surface: Surface<C::State>,
+pub(super) struct PartSimplifier<'r, C: Criterion> {
+    pub(super) surface: CollapseSurface<C::State>,
     /// Of the vertices; empty when the input has none.
     pub(super) colors: Vec<Option<Color>>,
     pub(super) tally: Tally,
@@ -123,10 +123,10 @@ pub(super) struct Part<'r, C: Criterion> {
     rules: Rules<'r, C>,
 }
 
-impl<'r, C: Criterion> Part<'r, C> {
+impl<'r, C: Criterion> PartSimplifier<'r, C> {
     /// A part of which nothing is collapsed yet, with all its edges between free vertices in the queue.
     pub(super) fn new(
-        surface: Surface<C::State>,
+        surface: CollapseSurface<C::State>,
         is_free: Vec<bool>,
         colors: Vec<Option<Color>>,
         room: Option<Room>,
@@ -176,7 +176,7 @@ impl<'r, C: Criterion> Part<'r, C> {
 
     /// The place for the edge of `h`, and the class of its cost.
     #[inline]
-    fn placed(&self, h: u32) -> Result<(Rule, Placed, usize), Refusal> {
+    fn placed(&self, h: u32) -> Result<(Rule, PlacedVertex, usize), Refusal> {
         let rule = self.surface.rule(h).ok_or(Refusal::Held)?;
         let placed = self.rules.criterion.place(&self.surface, h, rule, self.rules.options.placement);
         let class = class_of(placed.cost).ok_or(Refusal::NotFinite)?;
@@ -223,8 +223,8 @@ impl<'r, C: Criterion> Part<'r, C> {
                 Ok((_, _, now)) if now > class => self.queue.push(h, now),
                 Ok((rule, placed, _)) => match self.attempt(h, rule, placed, budget) {
                     Ok(()) => {}
-                    Err(No::Refused(reason)) => self.set_aside(h, reason),
-                    Err(No::Elsewhere) => self.queue.set_aside(h),
+                    Err(NotCollapsed::Refused(reason)) => self.set_aside(h, reason),
+                    Err(NotCollapsed::Elsewhere) => self.queue.set_aside(h),
                 },
                 Err(reason) => self.set_aside(h, reason),
             }
@@ -238,14 +238,20 @@ impl<'r, C: Criterion> Part<'r, C> {
     }
 
     /// Collapses the edge of `h`, unless something speaks against it.
-    fn attempt(&mut self, h: u32, rule: Rule, placed: Placed, budget: &Budget) -> Result<(), No> {
+    fn attempt(
+        &mut self,
+        h: u32,
+        rule: Rule,
+        placed: PlacedVertex,
+        budget: &Budget,
+    ) -> Result<(), NotCollapsed> {
         let Rules { criterion, options, error_squared_limit, .. } = self.rules;
         if placed.error_squared > error_squared_limit {
             return Err(Refusal::Error.into());
         }
         let ends = [h, next(h)].map(|g| self.surface.table.origin(g));
         if !ends.into_iter().all(|end| self.allowance.lets(end)) {
-            return Err(No::Elsewhere);
+            return Err(NotCollapsed::Elsewhere);
         }
         let (position, origin) = self.surface.landing(h, rule, placed.position, options.round)?;
         self.rings.walk(&self.surface.table, h);
@@ -294,7 +300,7 @@ impl<'r, C: Criterion> Part<'r, C> {
     fn look_around(&mut self) {
         let class = self.queue.lowest().min(CLASSES - 1);
         let Self { rings, queue, surface, allowance, .. } = self;
-        let Surface { table, vertices, .. } = surface;
+        let CollapseSurface { table, vertices, .. } = surface;
         for &corner in rings.origin.corners.iter().chain(&rings.destination.corners) {
             if table.corners(triangle_of(corner)).is_none() {
                 continue;
@@ -344,7 +350,7 @@ impl<'r, C: Criterion> Part<'r, C> {
 }
 
 /// The space of the triangles of a part.
-fn space_of<S: Copy + Default>(surface: &Surface<S>) -> Space {
+fn space_of<S: Copy + Default>(surface: &CollapseSurface<S>) -> Space {
     let table = &surface.table;
     let corners = |t: u32| [4 * t, 4 * t + 1, 4 * t + 2].map(|h| table.origin(h));
     let triangles: Vec<[u32; 3]> = (0..table.triangle_bound() as u32).map(corners).collect();
@@ -355,7 +361,7 @@ impl Watch {
     /// Notes what the collapse of `h` to `position` sweeps; gives its box.
     fn sweep<S: Copy + Default>(
         &mut self,
-        surface: &Surface<S>,
+        surface: &CollapseSurface<S>,
         h: u32,
         rings: &EdgeRings,
         position: DVec3,
@@ -381,25 +387,25 @@ impl Watch {
     /// Whether what is swept is free.
     fn check<S: Copy + Default>(
         &self,
-        surface: &Surface<S>,
+        surface: &CollapseSurface<S>,
         h: u32,
         bounds: Aabb,
         allowance: &mut Allowance,
         budget: &Budget,
-    ) -> Result<(), No> {
+    ) -> Result<(), NotCollapsed> {
         let Self { room, space, sweep } = self;
         let table = &surface.table;
         if bounds.is_empty() {
             return Ok(());
         }
         if !room.region.holds(bounds) {
-            return Err(No::Elsewhere);
+            return Err(NotCollapsed::Elsewhere);
         }
         let ends = [table.origin(h), table.destination(h)];
         let mut answer = Ok(());
         let mut passes = |other: &Outside| match allowance.compares(sweep.len()) {
-            true => sweep.passes(other).map_err(No::Refused),
-            false => Err(No::Elsewhere),
+            true => sweep.passes(other).map_err(NotCollapsed::Refused),
+            false => Err(NotCollapsed::Elsewhere),
         };
         space.visit(bounds, sweep, ends, |t| {
             let Some(ids) = table.corners(t) else { return true };
@@ -418,12 +424,17 @@ impl Watch {
             }
         });
         // The caller will see that the run was stopped.
-        visited.map_err(|_| No::Elsewhere)?;
+        visited.map_err(|_| NotCollapsed::Elsewhere)?;
         answer
     }
 
     /// Has the space follow the triangles around the vertex into which `ends` have been merged, the second one.
-    fn follow<S: Copy + Default>(&mut self, surface: &Surface<S>, rings: &EdgeRings, [from, into]: [u32; 2]) {
+    fn follow<S: Copy + Default>(
+        &mut self,
+        surface: &CollapseSurface<S>,
+        rings: &EdgeRings,
+        [from, into]: [u32; 2],
+    ) {
         let now = |t: u32| -> Option<Corners> {
             surface.table.corners(t).map(|ids| (ids, ids.map(|v| surface.position(v))))
         };

@@ -8,7 +8,7 @@ use crate::simplify::order::Curve;
 
 /// The space whose codes are between those of the parts before and after: no two parts have a point in common.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Region {
+pub(super) struct CodeRegion {
     pub(super) curve: Curve,
     /// The last code of the part before.
     pub(super) after: Option<u32>,
@@ -16,7 +16,7 @@ pub(super) struct Region {
     pub(super) before: Option<u32>,
 }
 
-impl Region {
+impl CodeRegion {
     /// True when all of the box is in the region.
     #[inline]
     pub(super) fn holds(&self, bounds: Aabb) -> bool {
@@ -42,8 +42,11 @@ mod tests {
         for _ in 0..2_000 {
             let mut point = |size: f64| DVec3::new(number(size), number(size), number(size));
             let codes = [point(16.0), point(16.0)].map(|p| curve.code(p));
-            let region =
-                Region { curve, after: Some(codes[0].min(codes[1])), before: Some(codes[0].max(codes[1])) };
+            let region = CodeRegion {
+                curve,
+                after: Some(codes[0].min(codes[1])),
+                before: Some(codes[0].max(codes[1])),
+            };
             let min = point(16.0);
             let bounds = Aabb { min, max: min + point(2.0) };
             if region.holds(bounds) {

@@ -8,10 +8,10 @@
 //!
 //! Where the input meets itself its triangles stay as they are.
 
-use super::check::{Check, Found, Left};
+use super::check::{Check, Left, SurfaceCheck};
 use super::guard::{Course, Guard};
 use super::mesh::Division;
-use super::part::Part;
+use super::part::PartSimplifier;
 use super::rounds::Rounds;
 use crate::budget::Stopped;
 use crate::par;
@@ -30,7 +30,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         &self,
         guard: &mut Guard,
         division: &Division,
-        parts: &mut [Part<'r, C>],
+        parts: &mut [PartSimplifier<'r, C>],
         course: &Course,
     ) -> Result<(), Stopped> {
         let left =
@@ -40,7 +40,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         let mut locked = vec![false; division.order.len()];
         let mut tries = 0;
         loop {
-            let Found { mut offenders, unsound } = check.look()?;
+            let SurfaceCheck { mut offenders, unsound } = check.look()?;
             guard.shells.exclude(&unsound);
             let mut reason = Refusal::SelfIntersection;
             if offenders.is_empty() {
@@ -67,7 +67,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
     fn redo(
         &self,
         division: &Division,
-        parts: &mut [Part<'r, C>],
+        parts: &mut [PartSimplifier<'r, C>],
         again: &[(usize, u64)],
         locked: &[bool],
         course: &Course,
@@ -90,7 +90,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
     }
 
     /// What part `i` leaves.
-    fn left(&self, division: &Division, i: usize, part: &Part<'r, C>) -> Left {
+    fn left(&self, division: &Division, i: usize, part: &PartSimplifier<'r, C>) -> Left {
         let (first_vertex, first_triangle) = ((i * division.part_len) as u32, division.starts[i]);
         let mut left = Left::default();
         for (t, corners, _) in part.triangles() {
@@ -128,7 +128,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
 /// some tries also what was merged into their neighbours, then those of these, and in the end all of a part.
 fn lock<C: Criterion>(
     division: &Division,
-    parts: &[Part<'_, C>],
+    parts: &[PartSimplifier<'_, C>],
     offenders: &[u32],
     tries: usize,
     locked: &mut [bool],

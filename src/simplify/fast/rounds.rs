@@ -6,7 +6,7 @@ use super::fans::are_fans_between;
 use super::guard::{Course, Guard};
 use super::lines::Lines;
 use super::mesh::{Division, Mesh};
-use super::part::{Part, Piece, Room, Rules, Tally};
+use super::part::{PartSimplifier, PartTopology, Room, Rules, Tally};
 use super::shells::Shells;
 use super::space::Space;
 use super::strays::Strays;
@@ -19,7 +19,7 @@ use crate::simplify::marks::LINE;
 use crate::simplify::options::{SimplifyOptions, Target};
 use crate::simplify::priority::costs_of_vertices;
 use crate::simplify::result::{Input, SimplifyError};
-use crate::simplify::surface::Surface;
+use crate::simplify::surface::CollapseSurface;
 use crate::spatial::Bvh;
 use std::sync::Arc;
 
@@ -44,7 +44,7 @@ pub(super) struct Rounds<'r, C: Criterion> {
     pub(super) mesh: Mesh<C::State>,
     pub(super) tally: Tally,
     /// A surface without triangles, for the working units.
-    pub(super) frame: Surface<C::State>,
+    pub(super) frame: CollapseSurface<C::State>,
     rules: Rules<'r, C>,
     pub(super) input: Input<'r>,
     /// Where vertices stay; `None`: nowhere.
@@ -67,7 +67,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         settings: Settings,
         budget: &'r Budget,
     ) -> Result<Self, Stopped> {
-        let mut frame = Surface::new(
+        let mut frame = CollapseSurface::new(
             input.positions,
             0..input.positions.len() as u32,
             CornerTable::unpaired(&[], 0),
@@ -170,7 +170,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         let mut parts = parts.into_iter().collect::<Result<Vec<_>, Stopped>>()?;
         let between = self.mesh.triangles.len() - division.first_between();
         let class_max = advance(&mut parts, between, goal, self.budget)?;
-        parts.iter_mut().for_each(Part::leave_room);
+        parts.iter_mut().for_each(PartSimplifier::leave_room);
         drop(charge);
         if let Some(mut guard) = self.guard.take() {
             self.roll_back(&mut guard, &division, &mut parts, &Course { is_first, class_max, strays })?;
@@ -191,12 +191,12 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         )
     }
 
-    fn pieces(&self, division: &Division) -> Result<Vec<Piece>, Stopped> {
+    fn pieces(&self, division: &Division) -> Result<Vec<PartTopology>, Stopped> {
         par::try_map_ranges(division.starts.len() - 1, 1, |range| self.piece(division, range.start))
     }
 
     /// The topology of part `i`.
-    pub(super) fn piece(&self, division: &Division, i: usize) -> Result<Piece, Stopped> {
+    pub(super) fn piece(&self, division: &Division, i: usize) -> Result<PartTopology, Stopped> {
         let triangles = division.starts[i]..division.starts[i + 1];
         let (first, count) = (i * division.part_len, division.vertices(i).len());
         let (mut table, mut is_free) = CornerTable::build_part(
@@ -209,11 +209,11 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         for (is_free, is_between) in is_free.iter_mut().zip(&division.is_between[first..]) {
             *is_free &= !is_between;
         }
-        Ok(Piece { table, is_free })
+        Ok(PartTopology { table, is_free })
     }
 
-    fn mark_lines(&mut self, division: &Division, pieces: &[Piece]) -> Result<(), SimplifyError> {
-        let free_or_between = |(i, piece): (usize, &Piece)| {
+    fn mark_lines(&mut self, division: &Division, pieces: &[PartTopology]) -> Result<(), SimplifyError> {
+        let free_or_between = |(i, piece): (usize, &PartTopology)| {
             let between = &division.is_between[i * division.part_len..];
             piece.is_free.iter().zip(between).all(|(is_free, is_between)| *is_free || *is_between)
         };
@@ -258,10 +258,10 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         &self,
         division: &Division,
         i: usize,
-        Piece { mut table, mut is_free }: Piece,
+        PartTopology { mut table, mut is_free }: PartTopology,
         strays: &Option<Arc<Strays>>,
         is_first: bool,
-    ) -> Result<Part<'r, C>, Stopped> {
+    ) -> Result<PartSimplifier<'r, C>, Stopped> {
         self.budget.check()?;
         if is_first {
             mark(&mut table, &self.mesh.lines[division.starts[i]..division.starts[i + 1]]);
@@ -290,10 +290,10 @@ impl<'r, C: Criterion> Rounds<'r, C> {
             region: division.region(i),
             strays: Arc::clone(strays),
         });
-        Part::new(surface, is_free, colors, room, self.rules, self.budget)
+        PartSimplifier::new(surface, is_free, colors, room, self.rules, self.budget)
     }
 
-    fn collect(&mut self, division: &Division, parts: Vec<Part<'r, C>>) {
+    fn collect(&mut self, division: &Division, parts: Vec<PartSimplifier<'r, C>>) {
         let mut left = Mesh::default();
         for (i, part) in parts.into_iter().enumerate() {
             let (first_vertex, first_triangle) = ((i * division.part_len) as u32, division.starts[i]);
@@ -326,18 +326,21 @@ fn mark(table: &mut CornerTable, lines: &[u8]) {
 /// Collapses edges class by class, in all parts before the next, until at most `goal` are left with the
 /// `between` ones that are in no part. At each look a part may take its share of what is above the goal.
 fn advance<C: Criterion>(
-    parts: &mut [Part<'_, C>],
+    parts: &mut [PartSimplifier<'_, C>],
     between: usize,
     goal: usize,
     budget: &Budget,
 ) -> Result<usize, Stopped> {
-    let lowest = |parts: &[Part<'_, C>]| parts.iter().map(Part::lowest).min().unwrap_or(CLASSES);
-    let total = |parts: &[Part<'_, C>]| between + parts.iter().map(Part::triangle_count).sum::<usize>();
+    let lowest =
+        |parts: &[PartSimplifier<'_, C>]| parts.iter().map(PartSimplifier::lowest).min().unwrap_or(CLASSES);
+    let total = |parts: &[PartSimplifier<'_, C>]| {
+        between + parts.iter().map(PartSimplifier::triangle_count).sum::<usize>()
+    };
     let mut class_max = first_stop(parts, total(parts).saturating_sub(goal));
     while total(parts) > goal && lowest(parts) < CLASSES {
         let all = total(parts);
         let above = all - goal;
-        let advanced = par::map_items(parts.iter_mut().collect(), |_, part: &mut Part<'_, C>| {
+        let advanced = par::map_items(parts.iter_mut().collect(), |_, part: &mut PartSimplifier<'_, C>| {
             let triangles = part.triangle_count();
             let share = (above * triangles).div_ceil(all - between);
             part.advance(class_max, triangles.saturating_sub(share), budget)
@@ -352,7 +355,7 @@ fn advance<C: Criterion>(
 
 /// A class at which certainly no more than `triangles` are gone, so that the parts can go there without a look at one
 /// another: a collapse takes two triangles and three edges, most of them dear ones.
-fn first_stop<C: Criterion>(parts: &[Part<'_, C>], triangles: usize) -> usize {
+fn first_stop<C: Criterion>(parts: &[PartSimplifier<'_, C>], triangles: usize) -> usize {
     let mut edges = 0;
     let mut class = 0;
     while class < CLASSES && edges < triangles {

@@ -3,7 +3,7 @@
 mod merge;
 mod near;
 
-use super::criterion::{Criterion, Placed};
+use super::criterion::{Criterion, PlacedVertex};
 use super::guard::check_faces;
 use super::key::Key;
 use super::layout::Layout;
@@ -14,9 +14,9 @@ use super::options::{CriterionKind, SimplifyOptions, Target};
 use super::priority::costs_of_vertices;
 use super::quadric_error::QuadricError;
 use super::queue::Queue;
-use super::report::{Refusal, Refusals, Report};
+use super::report::{Refusal, Refusals, TargetReport};
 use super::result::{Input, Simplified, SimplifyError};
-use super::surface::{Rule, Surface, Vertex};
+use super::surface::{CollapseSurface, Rule, Vertex};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::mesh::Color;
 use crate::mesh::corner_table::{CornerTable, EdgeRings};
@@ -54,7 +54,7 @@ fn run<C: Criterion>(
     let _charge = budget.charge(bytes_of::<C>(input))?;
     let (layout, table) = laid_out(input, budget)?;
     let order = layout.vertices.iter().copied();
-    let mut surface = Surface::<C::State>::new(input.positions, order, table, budget)?;
+    let mut surface = CollapseSurface::<C::State>::new(input.positions, order, table, budget)?;
     surface.wedges.0 = layout.of_triangles(input.texture);
     surface.has_regions = input.has_regions();
     mark_lines(&mut surface, &layout.of_triangles(input.face_groups), options, budget)?;
@@ -112,7 +112,7 @@ fn bytes_of<C: Criterion>(input: &Input<'_>) -> u64 {
 }
 
 struct Strict<'a, C: Criterion> {
-    surface: Surface<C::State>,
+    surface: CollapseSurface<C::State>,
     criterion: C,
     options: &'a SimplifyOptions<'a>,
     budget: &'a Budget,
@@ -132,7 +132,7 @@ struct Strict<'a, C: Criterion> {
 
 impl<C: Criterion> Strict<'_, C> {
     /// Collapses until `target` is reached or nothing more can be collapsed.
-    fn run_to(&mut self, target: Target, faces_before: usize) -> Result<Report, Stopped> {
+    fn run_to(&mut self, target: Target, faces_before: usize) -> Result<TargetReport, Stopped> {
         let faces_wanted = match target {
             Target::Faces(count) => count,
             Target::Ratio(share) => (faces_before as f64 * share.clamp(0.0, 1.0)) as usize,
@@ -149,7 +149,7 @@ impl<C: Criterion> Strict<'_, C> {
             }
             is_exhausted = !self.step();
         }
-        Ok(Report {
+        Ok(TargetReport {
             target,
             is_reached: !is_exhausted || matches!(target, Target::Error(_)),
             faces_before,
@@ -188,7 +188,7 @@ impl<C: Criterion> Strict<'_, C> {
 
     /// The place for the edge of `h` and its key.
     #[inline]
-    fn placed(&self, h: u32) -> Result<(Rule, Placed, Key), Refusal> {
+    fn placed(&self, h: u32) -> Result<(Rule, PlacedVertex, Key), Refusal> {
         let rule = self.surface.rule(h).ok_or(Refusal::Held)?;
         let placed = self.criterion.place(&self.surface, h, rule, self.options.placement);
         let key = Key::of(placed.cost).ok_or(Refusal::NotFinite)?;
@@ -200,7 +200,7 @@ impl<C: Criterion> Strict<'_, C> {
     }
 
     /// Collapses the edge of `h`, unless something speaks against it.
-    fn attempt(&mut self, h: u32, rule: Rule, placed: Placed) -> Result<(), Refusal> {
+    fn attempt(&mut self, h: u32, rule: Rule, placed: PlacedVertex) -> Result<(), Refusal> {
         if placed.error_squared > self.error_squared_limit {
             return Err(Refusal::Error);
         }

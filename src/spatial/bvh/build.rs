@@ -51,7 +51,7 @@ pub(super) fn tree(elements: &impl Elements, leaf_len: usize, budget: &Budget) -
     budget.check()?;
     let mut nodes = vec![Node::UNSET; 2 * leaf_count - 1];
     let mut leaves = vec![Leaf::EMPTY; leaf_count];
-    let part = Part { nodes: &mut nodes, leaves: &mut leaves, first_node: 0, first_leaf: 0 };
+    let part = SubtreeSlices { nodes: &mut nodes, leaves: &mut leaves, first_node: 0, first_leaf: 0 };
     Builder { elements, leaf_len, budget }.split(&mut items, part)?;
     Ok(Tree { nodes, leaves })
 }
@@ -86,7 +86,7 @@ fn in_order(bits: i32) -> i32 {
 }
 
 /// The places of a subtree in the flat lists: its root first, then the left subtree, then the right one.
-struct Part<'t> {
+struct SubtreeSlices<'t> {
     nodes: &'t mut [Node],
     leaves: &'t mut [Leaf],
     first_node: u32,
@@ -101,8 +101,8 @@ struct Builder<'b, E> {
 
 impl<E: Elements> Builder<'_, E> {
     /// Builds the subtree of `items`. Recursive: each level halves the number of leaves, so at most 32 deep.
-    fn split(&self, items: &mut [Item], part: Part<'_>) -> Result<Box32, Stopped> {
-        let Part { nodes, leaves, first_node, first_leaf } = part;
+    fn split(&self, items: &mut [Item], part: SubtreeSlices<'_>) -> Result<Box32, Stopped> {
+        let SubtreeSlices { nodes, leaves, first_node, first_leaf } = part;
         if let [leaf] = leaves {
             let bounds = self.fill(items, leaf);
             nodes[0] = Node::leaf(bounds, first_leaf);
@@ -116,8 +116,9 @@ impl<E: Elements> Builder<'_, E> {
         let (root, below) = nodes.split_at_mut(1);
         let (nodes_left, nodes_right) = below.split_at_mut(2 * leaves_left - 1);
         let (leaves_left, leaves_right) = leaves.split_at_mut(leaves_left);
-        let left = Part { first_node: first_node + 1, first_leaf, nodes: nodes_left, leaves: leaves_left };
-        let right = Part {
+        let left =
+            SubtreeSlices { first_node: first_node + 1, first_leaf, nodes: nodes_left, leaves: leaves_left };
+        let right = SubtreeSlices {
             first_node: left.first_node + left.nodes.len() as u32,
             first_leaf: first_leaf + left.leaves.len() as u32,
             nodes: nodes_right,

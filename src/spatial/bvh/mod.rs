@@ -20,7 +20,7 @@ pub(super) use frame::{Box32, Frame};
 pub(super) use leaf::{Lanes, Leaf};
 use line::Line;
 pub(super) use sliver::Sliver;
-pub(super) use stars::{Star, find as stars_of, tree as tree_with_stars};
+pub(super) use stars::{HubStar, find as stars_of, tree as tree_with_stars};
 pub(super) use tree::Tree;
 
 /// Boxes of triangles in a balanced tree: small flat nodes, f32 boxes that hold the exact ones.
@@ -28,7 +28,7 @@ pub(super) use tree::Tree;
 pub struct Bvh {
     frame: Frame,
     tree: Tree,
-    stars: Vec<Star>,
+    stars: Vec<HubStar>,
     /// The node at which each star begins.
     star_roots: Vec<u32>,
 }
@@ -159,7 +159,7 @@ impl Bvh {
         self.frame
     }
 
-    pub(super) fn stars(&self) -> &[Star] {
+    pub(super) fn stars(&self) -> &[HubStar] {
         &self.stars
     }
 

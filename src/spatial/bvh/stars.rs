@@ -12,7 +12,7 @@ const VALENCE_MAX: u32 = 64;
 /// The triangles of a subtree that all have one vertex in common. A triangle is in one star at most: that of its
 /// corner with the most triangles.
 #[derive(Debug, Clone)]
-pub(in crate::spatial) struct Star {
+pub(in crate::spatial) struct HubStar {
     /// The common vertex.
     pub(in crate::spatial) hub: u32,
     /// In the order they were given.
@@ -24,7 +24,7 @@ pub(in crate::spatial) fn find(
     vertex_count: usize,
     triangles: &impl Elements,
     budget: &Budget,
-) -> Result<Vec<Star>, Stopped> {
+) -> Result<Vec<HubStar>, Stopped> {
     let count = triangles.len();
     if count <= VALENCE_MAX as usize {
         return Ok(Vec::new());
@@ -45,7 +45,7 @@ pub(in crate::spatial) fn find(
         return Ok(Vec::new());
     }
     let hubs: Vec<u32> = (0..vertex_count as u32).filter(|&v| valence[v as usize] > VALENCE_MAX).collect();
-    let mut stars: Vec<Star> = hubs.iter().map(|&hub| Star { hub, triangles: Vec::new() }).collect();
+    let mut stars: Vec<HubStar> = hubs.iter().map(|&hub| HubStar { hub, triangles: Vec::new() }).collect();
     for i in 0..count {
         if i.is_multiple_of(CHECK_EVERY) {
             budget.check()?;
@@ -69,7 +69,7 @@ fn hub_of(corners: [u32; 3], valence: &[u32]) -> u32 {
 /// The tree of all `triangles`, with each star in a subtree of its own, and the nodes at which they begin. All ids are below
 /// `id_end`.
 pub(in crate::spatial) fn tree(
-    stars: &[Star],
+    stars: &[HubStar],
     id_end: usize,
     positions: &[DVec3],
     triangles: &impl Elements,
@@ -92,7 +92,7 @@ pub(in crate::spatial) fn tree(
 }
 
 /// The triangles that are in no star; all ids are below `id_end`.
-pub(super) fn all_others(stars: &[Star], id_end: usize, triangles: &impl Elements) -> Vec<u32> {
+pub(super) fn all_others(stars: &[HubStar], id_end: usize, triangles: &impl Elements) -> Vec<u32> {
     let mut is_in_star = vec![false; id_end];
     for &id in stars.iter().flat_map(|s| &s.triangles) {
         is_in_star[id as usize] = true;

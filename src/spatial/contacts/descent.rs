@@ -1,6 +1,6 @@
 //! Simultaneous descent of a tree with itself.
 
-use super::{COST_OF_CONTACT, Contact, Contacts, Gathered, Search, Surface};
+use super::{COST_OF_CONTACT, Contact, Contacts, Gathered, Search, SearchedSurface};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Plane, Shared, contact, work_on_exact_signs};
 use crate::par;
@@ -25,7 +25,7 @@ const SHARE_OF_TASK: u64 = 64;
 /// The contacts between the triangles of `tree`, except those inside one star.
 pub(super) fn pairs(
     tree: &Tree,
-    surface: Surface<'_>,
+    surface: SearchedSurface<'_>,
     search: Search,
     work_max: u64,
     budget: &Budget,
@@ -64,7 +64,7 @@ pub(super) fn pairs(
 /// The search below one pair of nodes.
 struct Descent<'d> {
     tree: &'d Tree,
-    surface: Surface<'d>,
+    surface: SearchedSurface<'d>,
     budget: &'d Budget,
     found: Gathered,
     /// Units not yet spent.

@@ -1,13 +1,13 @@
 //! Where the triangles of a star point, seen from its hub.
 
-use super::Surface;
+use super::SearchedSurface;
 use crate::geom::arc_box;
-use crate::spatial::bvh::{Box32, Elements, Star};
+use crate::spatial::bvh::{Box32, Elements, HubStar};
 
 /// The triangles of a star as directions from its hub.
 pub(super) struct Directions<'s> {
-    pub(super) surface: Surface<'s>,
-    pub(super) star: &'s Star,
+    pub(super) surface: SearchedSurface<'s>,
+    pub(super) star: &'s HubStar,
 }
 
 impl Elements for Directions<'_> {

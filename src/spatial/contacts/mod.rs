@@ -5,7 +5,7 @@ mod directions;
 mod terrains;
 
 use super::Bvh;
-use super::bvh::{Frame, Leaf, Sliver, Star, Tree};
+use super::bvh::{Frame, HubStar, Leaf, Sliver, Tree};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{ContactKind, DVec3, suits_expansions};
 use crate::par;
@@ -96,7 +96,8 @@ pub fn self_contacts(
     budget: &Budget,
 ) -> Result<Contacts, Stopped> {
     let may_take_big_integers = !suits_expansions(positions);
-    let surface = Surface { positions, triangles, terrains, frame: bvh.frame(), may_take_big_integers };
+    let surface =
+        SearchedSurface { positions, triangles, terrains, frame: bvh.frame(), may_take_big_integers };
     let work_max = match search {
         Search::Most { .. } => WORK_MIN + WORK_PER_TRIANGLE * triangles.len() as u64,
         Search::First | Search::All { .. } | Search::UpTo { .. } => u64::MAX,
@@ -136,8 +137,8 @@ const STARS_AT_A_TIME: usize = 64;
 /// The contacts inside a star, and the units of work they took: two triangles of one hub meet beyond it exactly when they have a
 /// common direction from it, so the boxes to compare are those of their directions. A flat fan of any size has few pairs of them.
 fn star_contacts(
-    surface: Surface<'_>,
-    star: &Star,
+    surface: SearchedSurface<'_>,
+    star: &HubStar,
     search: Search,
     work_max: u64,
     budget: &Budget,
@@ -151,7 +152,7 @@ fn star_contacts(
 
 /// The triangles that are searched.
 #[derive(Clone, Copy)]
-struct Surface<'s> {
+struct SearchedSurface<'s> {
     positions: &'s [DVec3],
     triangles: &'s [[u32; 3]],
     terrains: Option<&'s Terrains>,
@@ -160,7 +161,7 @@ struct Surface<'s> {
     may_take_big_integers: bool,
 }
 
-impl<'s> Surface<'s> {
+impl<'s> SearchedSurface<'s> {
     #[inline]
     fn points(&self, corners: [u32; 3]) -> [&'s DVec3; 3] {
         corners.map(|v| &self.positions[v as usize])

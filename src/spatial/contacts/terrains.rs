@@ -21,7 +21,7 @@ pub struct Terrains {
 
 /// What is known of the triangles around a vertex.
 #[derive(Debug, Clone, Copy)]
-struct Star {
+struct TerrainStar {
     /// Bit `2 k` while all turn counter-clockwise seen along axis `k`, bit `2 k + 1` while all turn clockwise.
     turns: u8,
     /// How often the first direction of each view is covered, 2 for more.
@@ -40,8 +40,8 @@ impl Terrains {
         open: &[u32],
         budget: &Budget,
     ) -> Result<Self, Stopped> {
-        let _charge = budget.charge((positions.len() * (size_of::<Star>() + 1)) as u64)?;
-        let mut stars = vec![Star { turns: 0b11_11_11, covers: [0; 3] }; positions.len()];
+        let _charge = budget.charge((positions.len() * (size_of::<TerrainStar>() + 1)) as u64)?;
+        let mut stars = vec![TerrainStar { turns: 0b11_11_11, covers: [0; 3] }; positions.len()];
         for block in triangles.chunks(CHECK_EVERY) {
             budget.check()?;
             for &corners in block {
@@ -57,7 +57,7 @@ impl Terrains {
                 }
             }
         }
-        let mut is_terrain: Vec<bool> = stars.iter().map(Star::is_terrain).collect();
+        let mut is_terrain: Vec<bool> = stars.iter().map(TerrainStar::is_terrain).collect();
         open.iter().for_each(|&v| is_terrain[v as usize] = false);
         Ok(Self { is_terrain })
     }
@@ -69,7 +69,7 @@ impl Terrains {
     }
 }
 
-impl Star {
+impl TerrainStar {
     fn is_terrain(&self) -> bool {
         (0..3).any(|k| self.turns >> (2 * k) & 3 != 0 && self.covers[k] == 1)
     }

@@ -1,6 +1,6 @@
 //! Simultaneous descent of a tree of grown boxes with itself.
 
-use super::features::Faces;
+use super::features::SearchedFaces;
 use super::{NearPair, NearPairs};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::par;
@@ -28,7 +28,7 @@ pub(super) type Searched = (NearPairs, u64);
 /// All near features of the triangles of `tree` but those inside one star; `None` after `work_max` pairs of boxes.
 pub(super) fn search<F: Fn(u32, [u32; 2]) -> bool + Sync>(
     tree: &Tree,
-    faces: &Faces<'_, F>,
+    faces: &SearchedFaces<'_, F>,
     work_max: u64,
     budget: &Budget,
 ) -> Result<Option<Searched>, Stopped> {
@@ -53,7 +53,7 @@ pub(super) fn search<F: Fn(u32, [u32; 2]) -> bool + Sync>(
 /// The search below one pair of nodes.
 struct Descent<'d, F> {
     tree: &'d Tree,
-    faces: &'d Faces<'d, F>,
+    faces: &'d SearchedFaces<'d, F>,
     work_max: u64,
     budget: &'d Budget,
 }

@@ -6,12 +6,12 @@
 
 use super::NearInput;
 use crate::geom::{Aabb, DVec3, arc_box, closest_point_on_triangle};
-use crate::spatial::bvh::{Box32, Elements, Star};
+use crate::spatial::bvh::{Box32, Elements, HubStar};
 
 /// The triangles of a star as directions from its hub.
 pub(super) struct Directions<'s> {
     pub(super) input: NearInput<'s>,
-    pub(super) star: &'s Star,
+    pub(super) star: &'s HubStar,
 }
 
 /// Beyond this share of its distance from the hub, what is near an edge may be anywhere.

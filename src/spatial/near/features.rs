@@ -5,7 +5,7 @@ use crate::geom::{DVec3, Sign, closest_point_on_triangle, is_on_segment, orient3
 use crate::spatial::bvh::{Frame, Leaf, Sliver};
 
 /// The triangles that are searched.
-pub(super) struct Faces<'m, F> {
+pub(super) struct SearchedFaces<'m, F> {
     pub(super) input: NearInput<'m>,
     /// Whether a vertex and the ends of an edge are the corners of one triangle.
     pub(super) is_face: &'m F,
@@ -13,7 +13,7 @@ pub(super) struct Faces<'m, F> {
     pub(super) frame: Frame,
 }
 
-impl<F: Fn(u32, [u32; 2]) -> bool> Faces<'_, F> {
+impl<F: Fn(u32, [u32; 2]) -> bool> SearchedFaces<'_, F> {
     /// Triangle `i` of a leaf, which meets the boxes of all triangles that have features near its own.
     pub(super) fn sliver(&self, leaf: &Leaf, i: usize) -> Sliver {
         let corners = leaf.corners(i);

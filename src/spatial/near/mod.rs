@@ -17,7 +17,7 @@ use super::bvh::{Box32, Elements, Frame, Tree, stars_of, tree_with_stars};
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use directions::Directions;
-use features::Faces;
+use features::SearchedFaces;
 
 /// Which kinds of features are near each other. The closest points of triangles that do not meet are always of one of
 /// the first four; an edge and a face, or two faces, are near only where two of their smaller features are.
@@ -96,7 +96,7 @@ pub fn near_pairs(
     let grown = Grown { input, frame };
     let stars = stars_of(input.positions.len(), &grown, budget)?;
     let (tree, _) = tree_with_stars(&stars, input.triangles.len(), input.positions, &grown, budget)?;
-    let faces = Faces { input, is_face: &is_face, frame };
+    let faces = SearchedFaces { input, is_face: &is_face, frame };
     let Some((mut all, mut work)) = descent::search(&tree, &faces, work_max, budget)? else {
         return Ok(None);
     };

@@ -6,7 +6,7 @@ use utoipa::ToSchema;
 use super::blocker::{Blocker, MovedFace};
 use super::words::OperatorReason;
 use crate::mesh::polyhedron::FaceId;
-use crate::modeller::{DualRefusal, ExportRefusal, ImportRefusal, Refusal, Rule};
+use crate::modeller::{DualRefusal, ExportRefusal, ImportRefusal, OperatorRefusal, Rule};
 use crate::pipeline::ModellerRefusal;
 
 /// An operator that was refused.
@@ -131,14 +131,14 @@ fn without_rounding(value: f64) -> f64 {
 }
 
 fn because(
-    refusal: &Refusal,
+    refusal: &OperatorRefusal,
     limits: &[(u32, f64)],
     blocking: &[crate::pipeline::Blocker],
     millimetres: f64,
 ) -> String {
     match refusal {
-        Refusal::NothingMoves => "no face moves".to_owned(),
-        Refusal::Limit { .. } => {
+        OperatorRefusal::NothingMoves => "no face moves".to_owned(),
+        OperatorRefusal::Limit { .. } => {
             let limits: Vec<String> = limits
                 .iter()
                 .map(|(f, distance)| {
@@ -148,34 +148,40 @@ fn because(
             let meeting = blocking.first().map(|b| format!("; there {}", Blocker::from(b).sentence()));
             format!("an event is in the way: move {}{}", limits.join(", "), meeting.unwrap_or_default())
         }
-        Refusal::NoSplit { faces, .. } => format!(
+        OperatorRefusal::NoSplit { faces, .. } => format!(
             "the vertex of the {} has no split for this direction that opens every new edge and keeps its faces apart",
             named("face", faces)
         ),
-        Refusal::FaceVanishes { face } => {
+        OperatorRefusal::FaceVanishes { face } => {
             format!("face {} would shrink to a segment or a point", face.index())
         }
-        Refusal::LinkNotADisk { face } => {
+        OperatorRefusal::LinkNotADisk { face } => {
             format!("face {} would touch itself at the merged vertex", face.index())
         }
-        Refusal::VertexIsTrihedral { .. } => "the vertex has three faces only".to_owned(),
-        Refusal::NotThere { face } => {
+        OperatorRefusal::VertexIsTrihedral { .. } => "the vertex has three faces only".to_owned(),
+        OperatorRefusal::NotThere { face } => {
             format!("face {} is not at the vertex or edge that is named", face.index())
         }
-        Refusal::EdgeStays => "the edge never loses its length, however far the face moves".to_owned(),
-        Refusal::EndsAreOneFace { face } => format!("both ends of the edge are on face {}", face.index()),
-        Refusal::EndsAreNeighbours { faces } => {
+        OperatorRefusal::EdgeStays => {
+            "the edge never loses its length, however far the face moves".to_owned()
+        }
+        OperatorRefusal::EndsAreOneFace { face } => {
+            format!("both ends of the edge are on face {}", face.index())
+        }
+        OperatorRefusal::EndsAreNeighbours { faces } => {
             format!("the {} at the ends of the edge have an edge there already", named("face", faces))
         }
-        Refusal::FaceHasThreeSides { face } => {
+        OperatorRefusal::FaceHasThreeSides { face } => {
             format!("face {} has three sides, which vanish together: a merge, no flip", face.index())
         }
-        Refusal::DoesNotOpen { faces } => {
+        OperatorRefusal::DoesNotOpen { faces } => {
             format!("the flipped edge between the {} would have no positive length", named("face", faces))
         }
-        Refusal::SeveralVanish { count } => format!("{count} edges lose their lengths at the same time"),
-        Refusal::TooManyEvents { limit } => format!("more than {limit} events are in the way"),
-        Refusal::Invalid(fault) => {
+        OperatorRefusal::SeveralVanish { count } => {
+            format!("{count} edges lose their lengths at the same time")
+        }
+        OperatorRefusal::TooManyEvents { limit } => format!("more than {limit} events are in the way"),
+        OperatorRefusal::Invalid(fault) => {
             format!("the rule `{}` would be broken at {}", fault.rule.name(), named("face", &fault.faces))
         }
     }

@@ -113,25 +113,25 @@ words! {
     }
 }
 
-impl From<&modeller::Refusal> for OperatorReason {
-    fn from(refusal: &modeller::Refusal) -> Self {
-        use modeller::Refusal;
+impl From<&modeller::OperatorRefusal> for OperatorReason {
+    fn from(refusal: &modeller::OperatorRefusal) -> Self {
+        use modeller::OperatorRefusal;
         match refusal {
-            Refusal::NothingMoves => Self::NothingMoves,
-            Refusal::Limit { .. } => Self::Limit,
-            Refusal::NoSplit { .. } => Self::NoSplit,
-            Refusal::FaceVanishes { .. } => Self::FaceVanishes,
-            Refusal::LinkNotADisk { .. } => Self::LinkNotADisk,
-            Refusal::VertexIsTrihedral { .. } => Self::VertexIsTrihedral,
-            Refusal::NotThere { .. } => Self::NotThere,
-            Refusal::EdgeStays => Self::EdgeStays,
-            Refusal::EndsAreOneFace { .. } => Self::EndsAreOneFace,
-            Refusal::EndsAreNeighbours { .. } => Self::EndsAreNeighbours,
-            Refusal::FaceHasThreeSides { .. } => Self::FaceHasThreeSides,
-            Refusal::DoesNotOpen { .. } => Self::DoesNotOpen,
-            Refusal::SeveralVanish { .. } => Self::SeveralVanish,
-            Refusal::TooManyEvents { .. } => Self::TooManyEvents,
-            Refusal::Invalid(_) => Self::Invalid,
+            OperatorRefusal::NothingMoves => Self::NothingMoves,
+            OperatorRefusal::Limit { .. } => Self::Limit,
+            OperatorRefusal::NoSplit { .. } => Self::NoSplit,
+            OperatorRefusal::FaceVanishes { .. } => Self::FaceVanishes,
+            OperatorRefusal::LinkNotADisk { .. } => Self::LinkNotADisk,
+            OperatorRefusal::VertexIsTrihedral { .. } => Self::VertexIsTrihedral,
+            OperatorRefusal::NotThere { .. } => Self::NotThere,
+            OperatorRefusal::EdgeStays => Self::EdgeStays,
+            OperatorRefusal::EndsAreOneFace { .. } => Self::EndsAreOneFace,
+            OperatorRefusal::EndsAreNeighbours { .. } => Self::EndsAreNeighbours,
+            OperatorRefusal::FaceHasThreeSides { .. } => Self::FaceHasThreeSides,
+            OperatorRefusal::DoesNotOpen { .. } => Self::DoesNotOpen,
+            OperatorRefusal::SeveralVanish { .. } => Self::SeveralVanish,
+            OperatorRefusal::TooManyEvents { .. } => Self::TooManyEvents,
+            OperatorRefusal::Invalid(_) => Self::Invalid,
         }
     }
 }

@@ -427,7 +427,7 @@ impl Options {
             nesting: self.nesting.map(Into::into).unwrap_or_default(),
             contact: self.contact.map(Into::into).unwrap_or_default(),
             plan: self.plan.as_ref().map(PlanRequest::to_engine),
-            limits: pipeline::Limits {
+            limits: pipeline::FidelityLimits {
                 deviation_max: self.max_deviation_mm.map(|length| length / millimetres),
                 volume_change_max: self.max_volume_change,
             },

@@ -125,7 +125,7 @@ impl PrintingCheck {
         let code = CheckCode::from(inner.code);
         let factor = if code.unit() == PrintingUnit::Millimetres { millimetres } else { 1.0 };
         let of_witness = if code == CheckCode::Cavity { millimetres.powi(3) } else { factor };
-        let witness = |witness: &printing::Witness| PrintingWitness {
+        let witness = |witness: &printing::PrintingWitness| PrintingWitness {
             face: report.face_of(witness.triangle),
             position: point(&witness.place),
             measured: finite(witness.measured * of_witness),

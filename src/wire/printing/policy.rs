@@ -191,7 +191,7 @@ mod tests {
         assert_eq!(fdm.wall.error, Some(0.8 / 25.4));
         assert_eq!(fdm.overhang.warning, Some(45.0));
         assert_eq!(fdm.build_volume.warning, Some([200.0 / 25.4; 3]));
-        assert_eq!(fdm.build_direction, printing::Direction::MinusY);
+        assert_eq!(fdm.build_direction, printing::BuildDirection::MinusY);
         assert_eq!(fdm.cavities, printing::Limit::default());
     }
 }

@@ -19,7 +19,7 @@ words! {
     }
 }
 
-mirror! { printing::Direction =>
+mirror! { printing::BuildDirection =>
     /// The direction of the file that is up in the machine.
     BuildDirection {
         /// Along x.

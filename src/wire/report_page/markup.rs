@@ -61,9 +61,9 @@ impl Display for Cell {
 }
 
 /// The page so far.
-pub(super) struct Page(pub(super) String);
+pub(super) struct HtmlPage(pub(super) String);
 
-impl Page {
+impl HtmlPage {
     pub(super) fn add(&mut self, arguments: std::fmt::Arguments<'_>) {
         // Writing to a String cannot fail.
         let _ = self.0.write_fmt(arguments);

@@ -10,7 +10,7 @@ pub use markup::Escaped;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD as BASE64;
-use markup::{Cell, Page, Tone, figure, items, measured, text};
+use markup::{Cell, HtmlPage, Tone, figure, items, measured, text};
 use serde_json::Value;
 
 const STYLE: &str = include_str!("style.css");
@@ -24,7 +24,7 @@ const PLACES: usize = 3;
 /// The page of a report, which is `report` as JSON; `picture`: one of the mesh, and of the result beside it if there is one, which
 /// is shown if it is a PNG.
 pub fn report_page(report: &Value, picture: Option<&[u8]>) -> String {
-    let mut page = Page(String::new());
+    let mut page = HtmlPage(String::new());
     page.add(format_args!(
         "<!doctype html><html lang=en><head><meta charset=utf-8>\
          <meta name=viewport content=\"width=device-width\">\
@@ -46,7 +46,7 @@ pub fn report_page(report: &Value, picture: Option<&[u8]>) -> String {
     page.0
 }
 
-fn head(page: &mut Page, report: &Value) {
+fn head(page: &mut HtmlPage, report: &Value) {
     let input = &report["input"];
     let known = if input["units"]["is_stated"] == true { "" } else { " (assumed)" };
     page.add(format_args!("<h1>Report on your 3D file</h1>"));
@@ -65,7 +65,7 @@ fn head(page: &mut Page, report: &Value) {
     }
 }
 
-fn verdict(page: &mut Page, report: &Value) {
+fn verdict(page: &mut HtmlPage, report: &Value) {
     let verdict = &report["verdict"];
     let printing = &report["printing"];
     let is_printable = verdict["printable"] == true;
@@ -93,7 +93,7 @@ fn verdict(page: &mut Page, report: &Value) {
 }
 
 /// The picture, with what its colours mean.
-fn show(page: &mut Page, report: &Value, picture: &[u8]) {
+fn show(page: &mut HtmlPage, report: &Value, picture: &[u8]) {
     let has_other = report["after"].is_object();
     let is_drawing = text(&report["operation"]) == "render";
     let several = !items(&report["further_inputs"]).is_empty();
@@ -139,7 +139,7 @@ fn sentence(text: &str) -> String {
     letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
 }
 
-fn found(page: &mut Page, report: &Value) {
+fn found(page: &mut HtmlPage, report: &Value) {
     let before = &report["before"];
     if before.is_null() {
         return;
@@ -191,7 +191,7 @@ fn found(page: &mut Page, report: &Value) {
 }
 
 /// The boundary loops that are listed, counted from 1.
-fn holes(page: &mut Page, defects: &[&Value]) {
+fn holes(page: &mut HtmlPage, defects: &[&Value]) {
     let loops = defects.iter().filter(|defect| defect["code"] == "boundary-loop");
     let row = |(number, witness): (usize, &Value)| {
         let figure_of = |name: &str| {
@@ -236,7 +236,7 @@ fn coordinates(position: &Value) -> Option<String> {
     (numbers.len() == 3).then(|| numbers.iter().map(told).collect::<Vec<_>>().join(", "))
 }
 
-fn done(page: &mut Page, report: &Value) {
+fn done(page: &mut HtmlPage, report: &Value) {
     let changed = |action: &&Value| items(&action["changes"]).iter().any(|change| change["count"] != 0);
     let actions: Vec<&Value> = items(&report["actions"]).iter().filter(changed).collect();
     if actions.is_empty() {
@@ -282,7 +282,7 @@ fn words(code: &str) -> String {
 /// Holes of which the page tells what became of them.
 const HOLES: usize = 100;
 
-fn filled(page: &mut Page, report: &Value) {
+fn filled(page: &mut HtmlPage, report: &Value) {
     let holes = items(&report["holes"]);
     if holes.is_empty() {
         return;
@@ -314,7 +314,7 @@ fn filled(page: &mut Page, report: &Value) {
     page.table(&["Hole", "Most likely", "", "By", "Triangles", "Patches that were not taken"], rows);
 }
 
-fn moved(page: &mut Page, report: &Value) {
+fn moved(page: &mut HtmlPage, report: &Value) {
     let deviation = &report["deviation"];
     if report["certificate"].is_null() {
         return;
@@ -337,7 +337,7 @@ fn moved(page: &mut Page, report: &Value) {
     page.table(&[], rows.into_iter().map(row).collect());
 }
 
-fn certificate(page: &mut Page, report: &Value) {
+fn certificate(page: &mut HtmlPage, report: &Value) {
     let (judged, about) = match &report["certificate"] {
         Value::Null => (&report["input_certificate"], "your file"),
         certificate => (certificate, "the returned file"),

@@ -1,11 +1,11 @@
 //! The part of the page about printing.
 
-use super::markup::{Cell, Page, Tone, figure, items, measured, text};
+use super::markup::{Cell, HtmlPage, Tone, figure, items, measured, text};
 use super::{coordinates, plain};
 use serde_json::Value;
 
 /// Checks and the figures of a quote; nothing without a policy.
-pub(super) fn add(page: &mut Page, printing: &Value) {
+pub(super) fn add(page: &mut HtmlPage, printing: &Value) {
     if printing.is_null() {
         return;
     }
@@ -38,7 +38,7 @@ fn check(check: &Value) -> Vec<Cell> {
     ]
 }
 
-fn quote(page: &mut Page, printing: &Value) {
+fn quote(page: &mut HtmlPage, printing: &Value) {
     let quote = &printing["quote"];
     page.heading("Figures for a quote");
     let up = &printing["build_direction"];

@@ -54,7 +54,7 @@ mirror! { render::Shade =>
     }
 }
 
-mirror! { render::Edges =>
+mirror! { render::DrawnEdges =>
     /// Which edges are drawn.
     DrawnEdges {
         /// None.

@@ -162,7 +162,7 @@ impl Units {
     }
 }
 
-mirror! { pipeline::Parts =>
+mirror! { pipeline::SolidParts =>
     /// What of a file of several parts is one solid.
     SolidParts {
         /// Each part by itself, in its own coordinates; the file keeps everything around them.

@@ -8,7 +8,7 @@
 mod normals;
 mod undo;
 
-use super::cut::{Cut, NONE};
+use super::cut::{LatticeCut, NONE};
 use super::lattice::Lattice;
 use super::signs::{Inside, Signs, THIN};
 use super::surface::{InputSurface, separate};
@@ -50,7 +50,7 @@ pub(super) fn fit(
     lattice: &Lattice,
     signs: &Signs<'_>,
     surface: &InputSurface,
-    cuts: &[Cut],
+    cuts: &[LatticeCut],
     positions: &mut [DVec3],
     triangles: &[[u32; 3]],
     budget: &Budget,
@@ -82,7 +82,7 @@ pub(super) fn fit(
 fn plain_goals(
     signs: &Signs<'_>,
     surface: &InputSurface,
-    cuts: &[Cut],
+    cuts: &[LatticeCut],
     places: &[DVec3],
     budget: &Budget,
 ) -> Result<Vec<Option<DVec3>>, Stopped> {
@@ -129,7 +129,7 @@ fn onto_thin(thin: &NearestSearch<'_>, place: DVec3, budget: &Budget) -> Result<
 /// Where vertices beside creases belong.
 fn crease_goals(
     surface: &InputSurface,
-    cuts: &[Cut],
+    cuts: &[LatticeCut],
     stars: &Stars,
     triangles: &[[u32; 3]],
     places: &[DVec3],

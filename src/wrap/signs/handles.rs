@@ -26,7 +26,7 @@ impl Signs<'_> {
         let mut counts = [0; 2];
         let mut changed = Vec::new();
         let mut steps = 0u64;
-        let mut search = Search::default();
+        let mut search = HandleSearch::default();
         while let Some(v) = work.pop() {
             let v = v as usize;
             let Some((is_inside, pieces)) = self.fork(v) else { continue };
@@ -65,7 +65,7 @@ impl Signs<'_> {
     }
 
     /// Whether pieces around a vertex are connected with each other on their side near it, but not by it.
-    fn are_connected(&self, v: usize, is_inside: bool, pieces: &[u16], search: &mut Search) -> bool {
+    fn are_connected(&self, v: usize, is_inside: bool, pieces: &[u16], search: &mut HandleSearch) -> bool {
         let center = self.lattice.coordinates(v).map(|n| n as isize);
         let side = if is_inside { KNOWN | INSIDE } else { KNOWN };
         let number = |at: [isize; 3]| {
@@ -109,18 +109,18 @@ impl Signs<'_> {
 
 /// The vertices that a search has reached, as steps from its beginning.
 #[derive(Debug)]
-struct Search {
+struct HandleSearch {
     is_seen: Vec<bool>,
     reached: Vec<[isize; 3]>,
 }
 
-impl Default for Search {
+impl Default for HandleSearch {
     fn default() -> Self {
         Self { is_seen: vec![false; SIDE * SIDE * SIDE], reached: Vec::new() }
     }
 }
 
-impl Search {
+impl HandleSearch {
     fn begin(&mut self) {
         self.is_seen.fill(false);
         self.reached.clear();

@@ -6,8 +6,8 @@ use crate::random::Random;
 use meshmend::budget::Budget;
 use meshmend::mesh::polyhedron::{FaceId, HalfEdgeId, VertexId};
 use meshmend::modeller::{
-    Applied, Events, Operator, Rational, Refusal, Side, Solid, apply, check, distance_of_growth,
-    offset_growth, range, rational,
+    Applied, Events, IntervalSide, Operator, OperatorRefusal, Rational, Solid, apply, check,
+    distance_of_growth, offset_growth, range, rational,
 };
 use std::collections::BTreeMap;
 
@@ -30,11 +30,11 @@ fn some<T: Copy>(random: &mut Random, items: &[T]) -> T {
 }
 
 /// A growth inside the side's interval, or now and then beyond it.
-fn growth(random: &mut Random, solid: &Solid, face: FaceId, side: &Side, sign: f64) -> Rational {
+fn growth(random: &mut Random, solid: &Solid, face: FaceId, side: &IntervalSide, sign: f64) -> Rational {
     let reach = match side {
-        Side::Unbounded => 30.0,
-        Side::Limit { limits, .. } => distance_of_growth(solid, face, &limits[0].1).abs(),
-        Side::Blocked { .. } => 1.0,
+        IntervalSide::Unbounded => 30.0,
+        IntervalSide::Limit { limits, .. } => distance_of_growth(solid, face, &limits[0].1).abs(),
+        IntervalSide::Blocked { .. } => 1.0,
     };
     let share = (1 + random.below(20)) as f64 / 16.0;
     offset_growth(solid, face, sign * (reach * share).min(60.0))
@@ -89,7 +89,7 @@ fn name(operator: &Operator) -> &'static str {
     }
 }
 
-fn reason(refusal: &Refusal) -> String {
+fn reason(refusal: &OperatorRefusal) -> String {
     let text = format!("{refusal:?}");
     text.split([' ', '(']).next().unwrap().to_owned()
 }
@@ -141,7 +141,7 @@ fn edit(shape: usize, seed: u64, count: usize, tally: &mut BTreeMap<String, usiz
                 let key = format!("{}: {}", name(&operator), reason(&refusal));
                 *tally.entry(key).or_default() += 1;
                 assert!(
-                    !matches!(refusal, Refusal::Invalid(_)),
+                    !matches!(refusal, OperatorRefusal::Invalid(_)),
                     "{shape} {seed} {k} {operator:?}: {refusal:?}"
                 );
             }

@@ -9,8 +9,8 @@ use meshmend::budget::Budget;
 use meshmend::geom::DVec3;
 use meshmend::mesh::polyhedron::{FaceId, Polyhedron};
 use meshmend::modeller::{
-    Embedding, Events, Operator, Rational, Refusal, Side, Solid, apply, distance_of_growth, dual, dual_faces,
-    edge_between, import, offset_growth, range, rational, vertex_near,
+    Embedding, Events, IntervalSide, Operator, OperatorRefusal, Rational, Solid, apply, distance_of_growth,
+    dual, dual_faces, edge_between, import, offset_growth, range, rational, vertex_near,
 };
 use std::collections::BTreeMap;
 
@@ -23,9 +23,9 @@ fn shift(face: FaceId, by: Rational) -> Operator {
 }
 
 /// The limits of a side, if it has any.
-fn limit(side: &Side) -> Option<Rational> {
+fn limit(side: &IntervalSide) -> Option<Rational> {
     match side {
-        Side::Limit { limits, .. } => Some(limits[0].1.clone()),
+        IntervalSide::Limit { limits, .. } => Some(limits[0].1.clone()),
         _ => None,
     }
 }
@@ -67,7 +67,9 @@ fn the_interval_is_open_just_inside_is_valid_and_its_end_is_refused_by_name() {
                 assert_eq!(Model::of(&solid).unwrap().fault(), None, "{name} {face:?}");
                 let refused =
                     apply(&mut first.clone(), &shift(face, end.clone()), &budget()).unwrap().unwrap_err();
-                let Refusal::Limit { limits, blocking } = refused else { panic!("{name}: {refused:?}") };
+                let OperatorRefusal::Limit { limits, blocking } = refused else {
+                    panic!("{name}: {refused:?}")
+                };
                 assert!(limits[0].1 == end && !blocking.is_empty(), "{name} {face:?}");
             }
         }
@@ -362,7 +364,7 @@ fn bad_flips_and_splits_are_refused_by_their_reasons() {
     let edge = edge_between(&solid, [left, front], None).unwrap();
     assert_eq!(
         refusal(&Operator::Flip { edge, face: front, by: None }, &solid),
-        Refusal::FaceHasThreeSides { face: left }
+        OperatorRefusal::FaceHasThreeSides { face: left }
     );
     // The edge between two walls of a box has parallel faces at its ends, which never meet.
     let cube = prism(&[vec![[0.0, 0.0], [60.0, 0.0], [60.0, 40.0], [0.0, 40.0]]], 0.0, 20.0).solid();
@@ -370,19 +372,19 @@ fn bad_flips_and_splits_are_refused_by_their_reasons() {
         [face(&cube, [1.0, 0.0, 0.0], [60.0, 20.0, 10.0]), face(&cube, [0.0, 1.0, 0.0], [30.0, 40.0, 10.0])];
     let edge = edge_between(&cube, walls, None).unwrap();
     let flip = Operator::Flip { edge, face: walls[0], by: None };
-    assert!(matches!(refusal(&flip, &cube), Refusal::DoesNotOpen { .. }));
+    assert!(matches!(refusal(&flip, &cube), OperatorRefusal::DoesNotOpen { .. }));
     let top = face(&cube, [0.0, 0.0, 1.0], [30.0, 20.0, 20.0]);
     let vertex = vertex_near(&cube, DVec3::new(60.0, 40.0, 20.0)).unwrap();
     let split = Operator::Split { vertex, face: top, by: offset_growth(&cube, top, 1.0) };
-    assert_eq!(refusal(&split, &cube), Refusal::VertexIsTrihedral { vertex });
+    assert_eq!(refusal(&split, &cube), OperatorRefusal::VertexIsTrihedral { vertex });
     // The top of a box meets the floor when all upright edges vanish together: no flip, no merge.
     let pass = Operator::Shift { faces: vec![(top, rational(-25.0))], events: Events::Pass };
-    assert!(matches!(refusal(&pass, &cube), Refusal::FaceVanishes { .. }));
+    assert!(matches!(refusal(&pass, &cube), OperatorRefusal::FaceVanishes { .. }));
     let tip = pyramid(&[[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0]], [10.0, 10.0, 30.0], 0.0).solid();
     let floor = face(&tip, [0.0, 0.0, -1.0], [10.0, 10.0, 0.0]);
     let vertex = vertex_near(&tip, DVec3::new(10.0, 10.0, 30.0)).unwrap();
     let split = Operator::Split { vertex, face: floor, by: rational(1.0) };
-    assert_eq!(refusal(&split, &tip), Refusal::NotThere { face: floor });
+    assert_eq!(refusal(&split, &tip), OperatorRefusal::NotThere { face: floor });
 }
 
 #[test]
@@ -453,9 +455,9 @@ fn a_shift_inside_the_interval_that_was_told_is_never_refused_where_several_vert
             let sides = range(&first, &[(face, rational(1.0))], &budget()).unwrap();
             for (side, far) in sides.iter().zip([-4.0, 4.0]) {
                 let reach = match side {
-                    Side::Limit { limits, .. } => limits[0].1.clone(),
-                    Side::Unbounded => offset_growth(&first, face, far),
-                    Side::Blocked { .. } => {
+                    IntervalSide::Limit { limits, .. } => limits[0].1.clone(),
+                    IntervalSide::Unbounded => offset_growth(&first, face, far),
+                    IntervalSide::Blocked { .. } => {
                         blocked += 1;
                         continue;
                     }
@@ -487,9 +489,9 @@ fn a_wall_by_its_two_sides_moves_as_far_as_one_likes() {
     );
     let together = [(outer, rational(1.0)), (inner, rational(-1.0))];
     let [to_the_right, to_the_left] = range(&solid, &together, &budget()).unwrap();
-    assert_eq!(to_the_left, Side::Unbounded);
+    assert_eq!(to_the_left, IntervalSide::Unbounded);
     // To the right the inner side meets the other prong after 30.
-    let Side::Limit { limits, .. } = &to_the_right else { panic!("a limit") };
+    let IntervalSide::Limit { limits, .. } = &to_the_right else { panic!("a limit") };
     assert!(limits.contains(&(inner, rational(30.0))) && limits.contains(&(outer, rational(-30.0))));
     let alone = range(&solid, &[(inner, rational(1.0))], &budget()).unwrap();
     assert_eq!(

@@ -7,7 +7,7 @@ use meshmend::formats::{ReadOptions, read, sniff};
 use meshmend::geom::DVec3;
 use meshmend::mesh::polyhedron::FaceId;
 use meshmend::modeller::{
-    Events, Imported, Operator, Side, apply, check, distance_of_growth, import, offset_growth, range,
+    Events, Imported, IntervalSide, Operator, apply, check, distance_of_growth, import, offset_growth, range,
     rational,
 };
 use meshmend::spatial::coincident_f64;
@@ -85,9 +85,9 @@ fn edit(path: &Path, seed: u64, shifts: usize) -> Tally {
         let outward = random.below(2);
         let side = &range(&solid, &[(face, rational(1.0))], &budget).unwrap()[outward];
         let reach = match side {
-            Side::Limit { limits, .. } => distance_of_growth(&solid, face, &limits[0].1),
-            Side::Unbounded => solid.diagonal() * if outward == 1 { 0.1 } else { -0.1 },
-            Side::Blocked { .. } => {
+            IntervalSide::Limit { limits, .. } => distance_of_growth(&solid, face, &limits[0].1),
+            IntervalSide::Unbounded => solid.diagonal() * if outward == 1 { 0.1 } else { -0.1 },
+            IntervalSide::Blocked { .. } => {
                 tally.stopped += 1;
                 continue;
             }

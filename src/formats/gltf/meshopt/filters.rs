@@ -6,7 +6,7 @@
 use super::BYTES_OF_WORK;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::formats::ReadError;
-use crate::formats::gltf::part::Part;
+use crate::formats::gltf::part::LocatedValue;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Filter {
@@ -19,7 +19,11 @@ pub(super) enum Filter {
 
 impl Filter {
     /// The filter that `part` names, for elements of `stride` bytes.
-    pub(super) fn of(part: &Part<'_>, is_for_attributes: bool, stride: u64) -> Result<Self, ReadError> {
+    pub(super) fn of(
+        part: &LocatedValue<'_>,
+        is_for_attributes: bool,
+        stride: u64,
+    ) -> Result<Self, ReadError> {
         let filter = match part.value.as_str() {
             Some("NONE") => return Ok(Self::None),
             Some("OCTAHEDRAL") => Self::Octahedral,

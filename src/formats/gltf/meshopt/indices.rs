@@ -51,7 +51,7 @@ impl<T: Copy> Latest<T> {
 }
 
 /// What is known of the triangles so far.
-struct Triangles<'s> {
+struct TriangleDecoder<'s> {
     data: Data<'s>,
     edges: Latest<[u32; 2]>,
     vertices: Latest<u32>,
@@ -77,7 +77,8 @@ pub(super) fn triangles_into(
         return Err(data.wrong_in_tail(at, &format!("{:#04x}", table[at]), expected));
     }
     let codes = data.take((count / 3) as usize)?;
-    let mut state = Triangles { data, edges: Latest::of([0; 2]), vertices: Latest::of(0), next: 0, last: 0 };
+    let mut state =
+        TriangleDecoder { data, edges: Latest::of([0; 2]), vertices: Latest::of(0), next: 0, last: 0 };
     for part in codes.chunks(CHECK_EVERY) {
         budget.spend((3 * stride * part.len() / BYTES_OF_WORK) as u64)?;
         for &code in part {
@@ -90,7 +91,7 @@ pub(super) fn triangles_into(
     state.data.finish()
 }
 
-impl Triangles<'_> {
+impl TriangleDecoder<'_> {
     #[inline]
     fn triangle(&mut self, code: u8, table: &[u8]) -> Result<[u32; 3], ReadError> {
         let (edge, vertex) = (usize::from(code >> 4), code & 15);

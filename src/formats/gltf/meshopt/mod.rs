@@ -11,7 +11,7 @@ mod vertices;
 
 use self::data::Data;
 use self::filters::Filter;
-use super::part::Part;
+use super::part::LocatedValue;
 use crate::budget::{Budget, Charge};
 use crate::formats::{Place, ReadError};
 
@@ -22,7 +22,7 @@ const NAMES: [&str; 2] = ["KHR_meshopt_compression", "EXT_meshopt_compression"];
 const BYTES_OF_WORK: usize = 16;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Mode {
+enum CompressionMode {
     Attributes,
     Triangles,
     Indices,
@@ -31,8 +31,8 @@ enum Mode {
 /// How a buffer view is compressed.
 pub(super) struct Compressed<'a> {
     /// The extension, which names the bytes of the stream as a buffer view does.
-    pub(super) part: Part<'a>,
-    mode: Mode,
+    pub(super) part: LocatedValue<'a>,
+    mode: CompressionMode,
     filter: Filter,
     count: u64,
     /// Bytes of an element.
@@ -43,30 +43,30 @@ pub(super) struct Compressed<'a> {
 
 impl<'a> Compressed<'a> {
     /// The compression of the buffer view `view`, if it has one, by the rules of the extension.
-    pub(super) fn of(view: &Part<'a>) -> Result<Option<Self>, ReadError> {
+    pub(super) fn of(view: &LocatedValue<'a>) -> Result<Option<Self>, ReadError> {
         let Some(part) = extension(view) else { return Ok(None) };
         let mode = part.need("mode")?;
         let mode = match mode.value.as_str() {
-            Some("ATTRIBUTES") => Mode::Attributes,
-            Some("TRIANGLES") => Mode::Triangles,
-            Some("INDICES") => Mode::Indices,
+            Some("ATTRIBUTES") => CompressionMode::Attributes,
+            Some("TRIANGLES") => CompressionMode::Triangles,
+            Some("INDICES") => CompressionMode::Indices,
             _ => return Err(mode.wrong("ATTRIBUTES, TRIANGLES or INDICES")),
         };
         let stride = number(&part, "byteStride")?;
         let is_for_mode = match mode {
-            Mode::Attributes => stride.is_multiple_of(4) && (4..=256).contains(&stride),
-            Mode::Triangles | Mode::Indices => matches!(stride, 2 | 4),
+            CompressionMode::Attributes => stride.is_multiple_of(4) && (4..=256).contains(&stride),
+            CompressionMode::Triangles | CompressionMode::Indices => matches!(stride, 2 | 4),
         };
         if !is_for_mode {
             let expected = "a multiple of 4 up to 256 for ATTRIBUTES, and 2 or 4 for TRIANGLES and INDICES";
             return Err(part.need("byteStride")?.wrong(expected));
         }
         let filter = match part.get("filter") {
-            Some(filter) => Filter::of(&filter, mode == Mode::Attributes, stride)?,
+            Some(filter) => Filter::of(&filter, mode == CompressionMode::Attributes, stride)?,
             None => Filter::None,
         };
         let count = number(&part, "count")?;
-        if mode == Mode::Triangles && !count.is_multiple_of(3) {
+        if mode == CompressionMode::Triangles && !count.is_multiple_of(3) {
             return Err(part.need("count")?.wrong("three indices for each triangle"));
         }
         let (length, decoded) = (number(view, "byteLength")?, count.checked_mul(stride));
@@ -80,9 +80,9 @@ impl<'a> Compressed<'a> {
     /// Checks that `stream` is no shorter than any stream of so many elements: what a small file claims is not believed.
     pub(super) fn check_length(&self, stream: &[u8]) -> Result<(), ReadError> {
         let bytes_min = match self.mode {
-            Mode::Attributes => vertices::stream_bytes_min(stream, self.count, self.stride as u64),
-            Mode::Triangles => indices::triangles_bytes_min(self.count),
-            Mode::Indices => indices::sequence_bytes_min(self.count),
+            CompressionMode::Attributes => vertices::stream_bytes_min(stream, self.count, self.stride as u64),
+            CompressionMode::Triangles => indices::triangles_bytes_min(self.count),
+            CompressionMode::Indices => indices::sequence_bytes_min(self.count),
         };
         if stream.len() as u64 >= bytes_min {
             return Ok(());
@@ -107,25 +107,29 @@ impl<'a> Compressed<'a> {
         let (mut elements, charge) = budget.vec::<u8>(len)?;
         let data = Data::of(stream, &self.part.pointer);
         match self.mode {
-            Mode::Attributes => {
+            CompressionMode::Attributes => {
                 elements.resize(len, 0);
                 vertices::decode(data, self.stride, &mut elements, budget)?;
                 filters::apply(self.filter, self.stride, &mut elements, budget)?;
             }
-            Mode::Triangles => indices::triangles_into(&mut elements, data, self.count, self.stride, budget)?,
-            Mode::Indices => indices::sequence_into(&mut elements, data, self.count, self.stride, budget)?,
+            CompressionMode::Triangles => {
+                indices::triangles_into(&mut elements, data, self.count, self.stride, budget)?;
+            }
+            CompressionMode::Indices => {
+                indices::sequence_into(&mut elements, data, self.count, self.stride, budget)?;
+            }
         }
         Ok((elements, charge))
     }
 }
 
 /// The extension of the buffer view `view` by which it is compressed.
-pub(super) fn extension<'a>(view: &Part<'a>) -> Option<Part<'a>> {
+pub(super) fn extension<'a>(view: &LocatedValue<'a>) -> Option<LocatedValue<'a>> {
     let extensions = view.get("extensions")?;
     NAMES.into_iter().find_map(|name| extensions.get(name))
 }
 
-fn number(part: &Part<'_>, key: &str) -> Result<u64, ReadError> {
+fn number(part: &LocatedValue<'_>, key: &str) -> Result<u64, ReadError> {
     let value = part.need(key)?;
     part.count(key)?.ok_or_else(|| value.wrong("a whole number of 0 or more"))
 }

@@ -2,7 +2,7 @@
 
 use super::super::regions::Region;
 use super::super::shape::shape;
-use super::super::surface::Surface;
+use super::super::surface::FillSurface;
 use super::ends::{End, ends};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3};
@@ -48,7 +48,7 @@ impl Division {
     /// `None`: no sharp edge ends at the rim, or nothing tells how they go on.
     pub(in crate::repair::fill) fn of(
         region: &Region,
-        surface: &Surface,
+        surface: &FillSurface,
         budget: &Budget,
     ) -> Result<Option<Self>, Stopped> {
         let ends = ends(region, surface, budget)?;
@@ -56,7 +56,7 @@ impl Division {
     }
 
     /// How these ends divide the region.
-    fn of_ends(ends: &[End], region: &Region, surface: &Surface) -> Option<Self> {
+    fn of_ends(ends: &[End], region: &Region, surface: &FillSurface) -> Option<Self> {
         let points: Vec<DVec3> = region.rim().iter().map(|&h| surface.point(h)).collect();
         let n = points.len() as u32;
         let all: Vec<u32> = (0..n).collect();
@@ -244,7 +244,7 @@ impl Division {
     }
 
     /// The normal of the plane of a side, if it lies in one in which the surface goes on.
-    pub(super) fn plane_of(&self, side: &[u32], region: &Region, surface: &Surface) -> Option<DVec3> {
+    pub(super) fn plane_of(&self, side: &[u32], region: &Region, surface: &FillSurface) -> Option<DVec3> {
         let seen = shape(side.iter().map(|&v| self.points[v as usize]).collect());
         let mut normals = (0..side.len()).map(|i| normal_beyond(side, i, region, surface));
         let goes_on = |n: DVec3| n == DVec3::ZERO || n.dot(seen.normal) >= COPLANAR_COS_MIN;
@@ -283,7 +283,7 @@ fn between(side: &[u32], from: u32, to: u32) -> Vec<u32> {
 }
 
 /// The unit normal of the surface beyond the `i`th edge of a side; zero beyond a curve.
-pub(super) fn normal_beyond(side: &[u32], i: usize, region: &Region, surface: &Surface) -> DVec3 {
+pub(super) fn normal_beyond(side: &[u32], i: usize, region: &Region, surface: &FillSurface) -> DVec3 {
     let (from, to) = (side[i], side[(i + 1) % side.len()]);
     let rim = region.rim();
     let is_of_rim = (from as usize) < rim.len() && (from as usize + 1) % rim.len() == to as usize;

@@ -1,7 +1,7 @@
 //! Where sharp edges of the mesh end at the rim of a hole, and in which direction they would go on.
 
 use super::super::regions::Region;
-use super::super::surface::Surface;
+use super::super::surface::FillSurface;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 
@@ -28,7 +28,7 @@ pub(super) struct End {
 }
 
 /// The ends in the order of the rim; none for a rim that passes a place twice or that very many sharp edges come to.
-pub(super) fn ends(region: &Region, surface: &Surface, budget: &Budget) -> Result<Vec<End>, Stopped> {
+pub(super) fn ends(region: &Region, surface: &FillSurface, budget: &Budget) -> Result<Vec<End>, Stopped> {
     let rim = region.rim();
     let n = rim.len();
     let point = |i: usize| surface.point(rim[i % n]);
@@ -72,7 +72,7 @@ pub(super) fn ends(region: &Region, surface: &Surface, budget: &Budget) -> Resul
 
 /// The direction in which the sharp edges at the corner between two half-edges of the rim go on; `None` when there is none,
 /// or nothing tells how.
-fn direction(surface: &Surface, [before, after]: [u32; 2], mean: f64) -> Option<DVec3> {
+fn direction(surface: &FillSurface, [before, after]: [u32; 2], mean: f64) -> Option<DVec3> {
     let v = surface.corner(after);
     let [p, q] = match sharp_neighbours(surface, v)[..] {
         [w] => return onward(surface, v, w, mean),
@@ -93,7 +93,7 @@ fn direction(surface: &Surface, [before, after]: [u32; 2], mean: f64) -> Option<
 }
 
 /// The direction in which the sharp edge from vertex `w` to `v` goes on; `None` for one that is short and alone.
-fn onward(surface: &Surface, v: u32, w: u32, mean: f64) -> Option<DVec3> {
+fn onward(surface: &FillSurface, v: u32, w: u32, mean: f64) -> Option<DVec3> {
     let [at, from] = [v, w].map(|v| surface.positions[v as usize]);
     let (length, last) = ((at - from).length(), (at - from).normalize_or_zero());
     let before = sharp_neighbours(surface, w)
@@ -113,7 +113,7 @@ fn onward(surface: &Surface, v: u32, w: u32, mean: f64) -> Option<DVec3> {
 }
 
 /// The vertices to which sharp edges go from `v`; none for a vertex of very many triangles.
-fn sharp_neighbours(surface: &Surface, v: u32) -> Vec<u32> {
+fn sharp_neighbours(surface: &FillSurface, v: u32) -> Vec<u32> {
     let star = surface.star(v);
     if star.len() > STAR_MAX {
         return Vec::new();

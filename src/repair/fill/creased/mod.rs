@@ -10,12 +10,12 @@ mod ends;
 
 pub(in crate::repair::fill) use self::division::Division;
 use self::division::normal_beyond;
-use super::make::{Made, refine_and_fair};
+use super::make::{MadePatch, refine_and_fair};
 use super::minimal::{self, CORNERS_MAX};
 use super::patch::PatchMesh;
 use super::regions::Region;
 use super::report::Rejection;
-use super::surface::Surface;
+use super::surface::FillSurface;
 use super::{large, planar};
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
@@ -24,13 +24,13 @@ use crate::geom::DVec3;
 pub(super) fn creased(
     region: &Region,
     division: &Division,
-    surface: &Surface,
+    surface: &FillSurface,
     budget: &Budget,
-) -> Result<Result<Made, Rejection>, Stopped> {
+) -> Result<Result<MadePatch, Rejection>, Stopped> {
     let Division { points, parents, .. } = division;
     let mut patch = Patch { points: points.clone(), parents: parents.clone(), triangles: Vec::new() };
     for corners in &division.sides {
-        match (Side { corners, division, region, surface }).close(budget)? {
+        match (CreaseSide { corners, division, region, surface }).close(budget)? {
             Ok(mesh) => patch.sew(corners, &mesh),
             Err(reason) => return Ok(Err(reason)),
         }
@@ -39,7 +39,7 @@ pub(super) fn creased(
         return Ok(Err(Rejection::Topology));
     };
     (mesh.rim, mesh.parents) = (region.rim().len(), patch.parents);
-    Made::refined(region, surface, mesh, budget)
+    MadePatch::refined(region, surface, mesh, budget)
 }
 
 /// The sides that are closed so far.
@@ -64,15 +64,15 @@ impl Patch {
 }
 
 /// What is between curves and the rim.
-struct Side<'a> {
+struct CreaseSide<'a> {
     /// Points of the division, in the direction of the rim.
     corners: &'a [u32],
     division: &'a Division,
     region: &'a Region,
-    surface: &'a Surface,
+    surface: &'a FillSurface,
 }
 
-impl Side<'_> {
+impl CreaseSide<'_> {
     fn close(&self, budget: &Budget) -> Result<Result<PatchMesh, Rejection>, Stopped> {
         let points: Vec<DVec3> = self.corners.iter().map(|&v| self.division.points[v as usize]).collect();
         let plane = self.division.plane_of(self.corners, self.region, self.surface);
