@@ -16,7 +16,7 @@ pub enum FillHoles {
 /// What becomes of bodies that touch in vertices or edges only, so that a reader that welds would make one of them that is
 /// no manifold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum BodyContact {
+pub enum Contact {
     /// All but one are drawn back a little.
     #[default]
     Open,

@@ -41,7 +41,7 @@ mod units;
 use self::bounds::Bound;
 pub use self::bounds::work_units_max;
 pub use self::choices::{
-    BodyContact, ChosenHole, FidelityLimits, FillHoles, SimplifyChoices, SolidParts, VertexColors,
+    ChosenHole, Contact, FidelityLimits, FillHoles, SimplifyChoices, SolidParts, VertexColors,
 };
 pub use self::cut_stitch::{CutStitchChoices, Stitching};
 pub use self::failure::Failure;
@@ -102,7 +102,7 @@ pub struct Options {
     /// What shells inside shells mean to `repair`.
     pub nesting: nest::Policy,
     /// What `repair` does with bodies that touch.
-    pub contact: BodyContact,
+    pub contact: Contact,
     /// What `repair` is to do about each defect; `None`: as proposed.
     pub plan: Option<ChosenPlan>,
     /// How far the result of a repair may be from the file.

@@ -3,7 +3,7 @@
 use super::repair_choices::Choices;
 use super::step::Step;
 use super::stitches::Stitches;
-use super::{Action, BodyContact};
+use super::{Action, Contact};
 use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stopped};
 use crate::mesh::{ChosenEdges, Soup, Validity};
@@ -34,7 +34,7 @@ pub(super) struct Variant {
     /// Triangles that meet others go first, with this many rings around them.
     pub(super) removes_crossing: Option<u32>,
     /// What becomes of bodies that touch; `None`: nothing.
-    pub(super) contact: Option<BodyContact>,
+    pub(super) contact: Option<Contact>,
     /// Open parts get walls, and no hole is filled.
     pub(super) thickens: bool,
     /// Needles and caps go, where that is chosen.
@@ -97,7 +97,7 @@ impl Variant {
 
     /// What may follow where the united bodies are no solid yet: what touches itself is joined or parted, what meets after that or
     /// after rounding is united once more.
-    pub(super) fn settling(contact: BodyContact, choices: &Choices) -> Vec<Vec<Step>> {
+    pub(super) fn settling(contact: Contact, choices: &Choices) -> Vec<Vec<Step>> {
         let parting = [Self::parting(contact, choices), vec![Step::Unite]];
         std::iter::once(vec![Step::Unite]).chain(vec![parting; PARTINGS].into_iter().flatten()).collect()
     }
@@ -113,10 +113,10 @@ impl Variant {
     }
 
     /// The steps that join what touches itself, or part it.
-    fn parting(contact: BodyContact, choices: &Choices) -> Vec<Step> {
+    fn parting(contact: Contact, choices: &Choices) -> Vec<Step> {
         let pinch = Step::Pinch(ChosenEdges::default(), Validity::Exact);
         let mut steps = vec![pairing(contact), Step::Cut(CutOptions::default()), pinch];
-        if contact == BodyContact::Join {
+        if contact == Contact::Join {
             steps.push(Step::JoinContacts { size: choices.wall });
         }
         steps.extend([Step::OpenContacts, Step::JoinCopies]);
@@ -189,8 +189,7 @@ impl Variant {
             || self.noise != Noise::Stays
             || self.contact.is_some()
             || choices.snap_epsilon.unwrap_or(self.snap_epsilon) > 0.0;
-        let join =
-            (self.contact == Some(BodyContact::Join)).then_some(Step::JoinContacts { size: choices.wall });
+        let join = (self.contact == Some(Contact::Join)).then_some(Step::JoinContacts { size: choices.wall });
         let open = self.contact.map(|_| Step::OpenContacts);
         let nest = Step::Nest(NestOptions {
             policy: choices.nesting,
@@ -202,10 +201,10 @@ impl Variant {
 }
 
 /// What decides which copies belong together where bodies touch.
-fn pairing(contact: BodyContact) -> Step {
+fn pairing(contact: Contact) -> Step {
     Step::PairSheets(match contact {
-        BodyContact::Open => Across::Solid,
-        BodyContact::Join => Across::Void,
+        Contact::Open => Across::Solid,
+        Contact::Join => Across::Void,
     })
 }
 

@@ -9,8 +9,8 @@ use meshmend::formats::{self, Encoding, Format, ReadOptions};
 use meshmend::mesh::{Color, Soup};
 use meshmend::par;
 use meshmend::pipeline::{
-    Answer, BodyContact, BooleanRefusal, Failure, Fidelity, NotCombined, NotSolid, Operation, Options,
-    Outcome, PictureChoices, Refusal, Require, SetOperation, Units, run,
+    Answer, BooleanRefusal, Contact, Failure, Fidelity, NotCombined, NotSolid, Operation, Options, Outcome,
+    PictureChoices, Refusal, Require, SetOperation, Units, run,
 };
 
 fn try_files(files: &[Vec<u8>], options: &Options) -> Result<Answer, Failure> {
@@ -112,8 +112,7 @@ fn cubes_that_touch_in_an_edge_or_a_vertex_are_parted_or_joined() {
         let (volume, shells) = made(Union, &two);
         assert!((volume - 2.0).abs() < 1e-4 && shells == 2, "{at:?} {volume} {shells}");
         let files: Vec<_> = two.iter().map(|mesh| encode(mesh, Encoding::Obj)).collect();
-        let joined =
-            try_files(&files, &Options { contact: BodyContact::Join, ..Options::default() }).unwrap();
+        let joined = try_files(&files, &Options { contact: Contact::Join, ..Options::default() }).unwrap();
         certified(&joined);
         assert_eq!(joined.report.certificate.unwrap().shells.len(), 1, "{at:?}");
     }

@@ -8,7 +8,7 @@ use crate::support::cases;
 use meshmend::budget::Budget;
 use meshmend::formats::Encoding;
 use meshmend::mesh::UnionFind;
-use meshmend::pipeline::{Answer, BodyContact, Operation, Options, Outcome, WrapChoices, run};
+use meshmend::pipeline::{Answer, Contact, Operation, Options, Outcome, WrapChoices, run};
 use std::collections::{BTreeMap, BTreeSet};
 
 type Cell = [i32; 3];
@@ -109,7 +109,7 @@ fn cells(size: Cell) -> impl Iterator<Item = Cell> {
     (0..=x).flat_map(move |i| (0..=y).flat_map(move |j| (0..=z).map(move |k| [i, j, k])))
 }
 
-fn repaired(soup: &RawSoup, contact: BodyContact, encoding: Encoding) -> Answer {
+fn repaired(soup: &RawSoup, contact: Contact, encoding: Encoding) -> Answer {
     let wrap = WrapChoices { cells: Some(16), ..WrapChoices::default() };
     let options = Options { contact, wrap, ..Options::default() };
     run(Operation::Repair, &encode(soup, encoding), &options, &Budget::unlimited()).unwrap()
@@ -137,7 +137,7 @@ fn touching_bodies_of_a_grid_come_apart_into_its_parts() {
     for _ in 0..count {
         let grid = Grid::random(&mut random);
         let soup = sheared(&grid.surface(), &mut random);
-        let answer = repaired(&soup, BodyContact::Open, random.pick(&[Encoding::StlBinary, Encoding::Obj]));
+        let answer = repaired(&soup, Contact::Open, random.pick(&[Encoding::StlBinary, Encoding::Obj]));
         let expected = grid.surfaces(false);
         assert_eq!(shells(&answer), Some(expected), "{grid:?} {:?}", answer.report.actions);
     }
@@ -152,7 +152,7 @@ fn touching_bodies_of_a_grid_become_one_where_they_meet() {
     for _ in 0..count {
         let grid = Grid::random(&mut random);
         let soup = sheared(&grid.surface(), &mut random);
-        let answer = repaired(&soup, BodyContact::Join, random.pick(&[Encoding::StlBinary, Encoding::Obj]));
+        let answer = repaired(&soup, Contact::Join, random.pick(&[Encoding::StlBinary, Encoding::Obj]));
         let got = shells(&answer);
         assert!(got.is_some(), "{grid:?} {:?}", answer.report.actions);
         let is_whole = got <= Some(grid.surfaces(true));
@@ -171,8 +171,8 @@ fn two_touching_cubes_become_one_solid_or_two() {
     for other in [[2, 2, 1], [2, 2, 2]] {
         let soup = pair(other).surface();
         for encoding in [Encoding::StlBinary, Encoding::Off] {
-            assert_eq!(shells(&repaired(&soup, BodyContact::Open, encoding)), Some(2), "{other:?}");
-            let joined = repaired(&soup, BodyContact::Join, encoding);
+            assert_eq!(shells(&repaired(&soup, Contact::Open, encoding)), Some(2), "{other:?}");
+            let joined = repaired(&soup, Contact::Join, encoding);
             assert_eq!(shells(&joined), Some(1), "{other:?} {:?}", joined.report.actions);
         }
     }
@@ -183,7 +183,7 @@ fn a_ring_that_touches_itself_along_an_edge_stays_one_body_either_way() {
     // Cubes in a plane, two of which meet in an edge although they hang together around it.
     let solid = BTreeSet::from([[1, 1, 1], [2, 1, 1], [3, 1, 1], [3, 2, 1], [2, 3, 1], [3, 3, 1], [1, 2, 1]]);
     let grid = Grid { solid };
-    for contact in [BodyContact::Open, BodyContact::Join] {
+    for contact in [Contact::Open, Contact::Join] {
         let answer = repaired(&grid.surface(), contact, Encoding::StlBinary);
         assert_eq!(shells(&answer), Some(1), "{contact:?} {:?}", answer.report.actions);
     }

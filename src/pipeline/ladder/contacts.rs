@@ -2,7 +2,7 @@
 
 use super::climb::{Climb, Situation};
 use super::{Kind, Rung};
-use crate::pipeline::BodyContact;
+use crate::pipeline::Contact;
 use crate::pipeline::plan::Variant;
 
 pub(super) const RUNG: Rung = Rung {
@@ -22,13 +22,13 @@ pub(super) const RUNG: Rung = Rung {
 };
 
 /// What to do next about bodies that touch.
-fn contact(climb: &Climb<'_>, situation: &Situation) -> Option<BodyContact> {
+fn contact(climb: &Climb<'_>, situation: &Situation) -> Option<Contact> {
     // Bodies that lie on each other would be parted by a gap that nobody wants.
     let only_touches = climb.before.is_some_and(|before| before.properties.is_embedded == Some(true));
     let has_copied = || situation.last.as_ref().is_some_and(|last| last.attempt.effects.copied_vertices);
     match situation.variant.contact {
         None => (only_touches && has_copied()).then_some(climb.options.contact),
-        Some(BodyContact::Join) => Some(BodyContact::Open),
-        Some(BodyContact::Open) => None,
+        Some(Contact::Join) => Some(Contact::Open),
+        Some(Contact::Open) => None,
     }
 }

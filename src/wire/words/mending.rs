@@ -126,7 +126,7 @@ mirror! { pipeline::SetOperation =>
     }
 }
 
-mirror! { pipeline::BodyContact =>
+mirror! { pipeline::Contact =>
     /// What becomes of bodies that touch in vertices or edges only.
     Contact {
         /// All but one are drawn back a little.
