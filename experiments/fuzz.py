@@ -33,19 +33,23 @@ def folder_of(kind, target):
 
 
 def run(binary, target, part):
-    """Processor time in seconds, number of executions, peak in MiB, and the inputs that failed."""
+    """Processor time in seconds, number of executions, peak in MiB, and the inputs that failed, or how the target ended without one."""
     corpus, failed = folder_of("corpus", target), folder_of("artifacts", target)
     for ending in SEEDS.get(target, []):
         for seed in glob.glob(os.path.join(root, f"fixtures/**/*.{ending}"), recursive=True):
             if os.path.getsize(seed) <= LARGEST:
                 shutil.copy(seed, corpus)
-    before = set(os.listdir(failed))
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    limits = [f"-max_total_time={o.seconds}", f"-timeout={HANG_SECONDS}", f"-rss_limit_mb={MEMORY_MIB}", f"-max_len={LARGEST}", f"-seed={part}"]
-    told = subprocess.run([binary, corpus, *limits, "-print_final_stats=1", f"-artifact_prefix={failed}/"], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace").stderr
+    limits = [f"-max_total_time={o.seconds}", f"-timeout={HANG_SECONDS}", f"-report_slow_units={HANG_SECONDS}", f"-rss_limit_mb={MEMORY_MIB}", f"-max_len={LARGEST}", f"-seed={part}"]
+    ended = subprocess.run([binary, corpus, *limits, "-print_final_stats=1", f"-artifact_prefix={failed}/"], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace")
+    told = ended.stderr
     now = resource.getrusage(resource.RUSAGE_CHILDREN)
+    # One that failed in an earlier part fails again, under the same name.
+    inputs = sorted({os.path.basename(path) for path in re.findall(r"Test unit written to (\S+)", told)})
+    if ended.returncode and not inputs:
+        inputs = [f"ended with {ended.returncode}"]
     stat = lambda name: int((re.findall(rf"stat::{name}:\s+(\d+)", told) or ["0"])[-1])
-    return now.ru_utime + now.ru_stime - used.ru_utime - used.ru_stime, stat("number_of_executed_units"), stat("peak_rss_mb"), sorted(set(os.listdir(failed)) - before)
+    return now.ru_utime + now.ru_stime - used.ru_utime - used.ru_stime, stat("number_of_executed_units"), stat("peak_rss_mb"), inputs
 
 
 earlier = [line for line in open(PAGE) if re.match(r"\| \d", line)] if os.path.exists(PAGE) else []

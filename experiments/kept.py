@@ -4,7 +4,8 @@
 usage: kept.py [--binary PATH] [--only ID ...]    with MESHMEND_SHARED; needs numpy and meshlib
 
 A triangle is kept when the result has its three corners as 32-bit coordinates, whichever way it runs. It meets another when MeshLib finds them
-colliding and they have no corner in common. It is inside when the winding number of the result is 1 on both sides of it, a ten-thousandth of the diagonal away.
+colliding and they have no corner in common. It is inside when the result winds around both of its sides, a ten-thousandth of the diagonal away; up to 300 of the others of each file are looked at, and
+those without area count as inside.
 """
 import argparse, json, os, subprocess, sys, tempfile
 import numpy as np
@@ -111,6 +112,8 @@ for line in open(manifest):
         print(*rows[-1], sep="\t", file=sys.stderr, flush=True)
 
 commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=root, capture_output=True, text=True).stdout.strip()
+if not rows:
+    sys.exit("no file was repaired")
 could = lambda row: row[2] / (row[2] + row[5]) if row[2] + row[5] > 0 else 1.0
 most = sum(row[2] > 0.9 for row in rows)
 most_of_those = sum(could(row) > 0.9 for row in rows)
@@ -118,7 +121,7 @@ print(f"""# Which triangles stay
 
 Made by `experiments/kept.py` at commit {commit}: the broken STL, OBJ, OFF and PLY files of the corpus that are repaired. A triangle is kept when the result has
 its three corners, whichever way it runs. Of the others, some meet triangles of the file with which they have no corner in common, so they had to be divided or
-go; some are inside other bodies of the result, which nobody sees and a valid solid cannot have; the rest is on the surface and was divided or replaced.
+go; some are inside other bodies of the result, which nobody sees and a valid solid cannot have; the rest is on the surface and was divided or replaced. What is inside is told by up to {SAMPLES} triangles of each file.
 
 | | files |
 |---|---:|

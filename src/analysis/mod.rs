@@ -268,8 +268,8 @@ struct Context<'a> {
     singular: Vec<u32>,
     members: Members,
     shells: Vec<OrientedShell>,
-    /// Parts with a rim that bound no volume, ascending.
-    sheets: Vec<u32>,
+    /// Parts with a rim that bound no volume, ascending; `None`: not known.
+    sheets: Option<Vec<u32>>,
     /// The boundary loops, classified.
     loops: Loops,
     /// Box of the used vertices.
@@ -331,7 +331,7 @@ impl<'a> Context<'a> {
             singular,
             members,
             shells,
-            sheets: Vec::new(),
+            sheets: None,
             loops: Loops::default(),
             bounds,
             epsilon,
@@ -345,6 +345,11 @@ impl<'a> Context<'a> {
         cx.loops = boundary_loops::search(&cx)?;
         cx.near = proximity::search(&cx, options.near)?;
         Ok(cx)
+    }
+
+    /// Whether part `p` is known to be an open sheet.
+    fn is_sheet(&self, p: u32) -> bool {
+        self.sheets.as_ref().is_some_and(|sheets| sheets.binary_search(&p).is_ok())
     }
 
     /// A witness of part `p`: its first faces, and how many triangles it has.

@@ -15,8 +15,8 @@ const BESIDE: f64 = 1e-6;
 /// The share of the work left that the search may take: very many open parts all through each other would take hours.
 const SHARE_OF_BOUND: u64 = 4;
 
-/// The parts that are open sheets, ascending; none where telling them takes too much work.
-pub(super) fn search(cx: &Context<'_>) -> Result<Vec<u32>, Stopped> {
+/// The parts that are open sheets, ascending; `None` where telling them takes too much work.
+pub(super) fn search(cx: &Context<'_>) -> Result<Option<Vec<u32>>, Stopped> {
     let mesh = &cx.mesh;
     let mut has_rim = vec![false; mesh.parts.len()];
     for (i, e) in mesh.irregular_where(|triangles| triangles == 1).into_iter().enumerate() {
@@ -27,7 +27,7 @@ pub(super) fn search(cx: &Context<'_>) -> Result<Vec<u32>, Stopped> {
     }
     let open: Vec<u32> = (0..mesh.parts.len() as u32).filter(|&p| has_rim[p as usize]).collect();
     if open.is_empty() {
-        return Ok(open);
+        return Ok(Some(open));
     }
     let triangles =
         || open.iter().enumerate().flat_map(|(i, &p)| cx.members.part(p).iter().map(move |&t| (i, t)));
@@ -35,12 +35,12 @@ pub(super) fn search(cx: &Context<'_>) -> Result<Vec<u32>, Stopped> {
     let (center, half) = (bounds.min / 2.0 + bounds.max / 2.0, bounds.max / 2.0 - bounds.min / 2.0);
     let size = half.max_element();
     let in_unit = |p: DVec3| if size > 0.0 && size.is_finite() { (p - center) / size } else { p };
-    let _charge = cx.budget.charge(triangles().count() as u64 * 160)?;
+    let _charge = cx.budget.charge(triangles().count() as u64 * 270)?;
     let corners = triangles().map(|(_, t)| mesh.corners(t).map(in_unit)).collect();
     let part: Vec<u32> = triangles().map(|(i, _)| i as u32).collect();
     let told = || are_sheets(corners, &part, open.len(), BESIDE, cx.budget);
-    let Some(is_sheet) = cx.budget.within_part(SHARE_OF_BOUND, told)? else { return Ok(Vec::new()) };
-    Ok(open.into_iter().zip(is_sheet).filter(|&(_, is_sheet)| is_sheet).map(|(p, _)| p).collect())
+    let Some(is_sheet) = cx.budget.within_part(SHARE_OF_BOUND, told)? else { return Ok(None) };
+    Ok(Some(open.into_iter().zip(is_sheet).filter(|&(_, is_sheet)| is_sheet).map(|(p, _)| p).collect()))
 }
 
 pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
@@ -49,7 +49,7 @@ pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
         let members = cx.members.part(*p);
         members.iter().any(|&t| cx.mesh.face_of(t) != cx.mesh.face_of(members[0]))
     };
-    let sheets: Vec<u32> = cx.sheets.iter().copied().filter(is_told).collect();
+    let sheets: Vec<u32> = cx.sheets.iter().flatten().copied().filter(is_told).collect();
     Ok(Finding::of(DefectCode::OpenSheet, &sheets, cx.samples, |&p| cx.part_witness(p)))
 }
 

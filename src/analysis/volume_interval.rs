@@ -52,10 +52,14 @@ pub(super) fn volume_interval(
     if !(size.is_normal() && scale.is_normal()) {
         return Ok(None);
     }
+    // Nobody knows what is a sheet.
+    if cx.sheets.is_none() {
+        return Ok(None);
+    }
     let is_counted = |t: &u32| {
         let is_copy =
             cx.repeats.binary_search_by_key(t, |r| r.triangle).is_ok_and(|i| !cx.repeats[i].is_opposite);
-        !is_copy && cx.sheets.binary_search(&cx.mesh.components.of[*t as usize]).is_err()
+        !is_copy && !cx.is_sheet(cx.mesh.components.of[*t as usize])
     };
     let meant = (0..cx.mesh.triangles.len() as u32).filter(is_counted);
     let is_turned = turned(cx)?;
@@ -67,7 +71,7 @@ pub(super) fn volume_interval(
     if triangles.is_empty() {
         return Ok(None);
     }
-    let _charge = cx.budget.charge(triangles.len() as u64 * 160)?;
+    let _charge = cx.budget.charge(triangles.len() as u64 * 190)?;
     let tree = WindingTree::build(triangles, cx.budget)?;
     let box_in_unit = Aabb { min: -half / scale, max: half / scale };
     let [low, high] = shares(&tree, box_in_unit, cx)?;

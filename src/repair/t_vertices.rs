@@ -11,7 +11,7 @@
 //! ```
 
 use super::{Changes, Draft};
-use crate::budget::{Budget, Stopped};
+use crate::budget::{Budget, Charge, Stopped};
 use crate::geom::{are_collinear, is_on_segment};
 use crate::mesh::{divide, edge_of, triangle_of};
 use crate::spatial::Bvh;
@@ -23,7 +23,7 @@ use crate::spatial::Bvh;
 /// When the budget stops the run.
 pub fn split_t_vertices(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
     let boundary = boundary_half_edges(draft, budget)?;
-    let inside = vertices_inside(draft, &boundary, budget)?;
+    let VerticesInside { pairs: inside, _charges } = vertices_inside(draft, &boundary, budget)?;
     let polygons = split_polygons_of(draft, &inside);
     let split = replace(draft, &inside, budget)?;
     let changes = Changes::counted([("edges_divided", count_edges(&inside)), ("triangles_split", split)]);
@@ -53,8 +53,24 @@ fn boundary_half_edges(draft: &Draft, budget: &Budget) -> Result<Vec<u32>, Stopp
 /// Units of work for a vertex that is compared with an edge.
 const COMPARING: u64 = 8;
 
-/// Boundary half-edges and the vertices inside them, by half-edge, then in its direction.
-fn vertices_inside(draft: &Draft, boundary: &[u32], budget: &Budget) -> Result<Vec<(u32, u32)>, Stopped> {
+/// Bytes for a vertex inside an edge: its place in the list, and the triangle that it makes.
+const BYTES_OF_INSIDE: u64 = 48;
+
+/// So many vertices inside edges are charged before more are looked for.
+const CHARGED_AT_ONCE: usize = 1 << 12;
+
+/// Boundary half-edges with the vertices inside them, by half-edge, then in its direction. Edges that lie on each other have the
+/// square of their number, so they are charged.
+struct VerticesInside<'b> {
+    pairs: Vec<(u32, u32)>,
+    _charges: Vec<Charge<'b>>,
+}
+
+fn vertices_inside<'b>(
+    draft: &Draft,
+    boundary: &[u32],
+    budget: &'b Budget,
+) -> Result<VerticesInside<'b>, Stopped> {
     let edges: Vec<[u32; 2]> = boundary.iter().map(|&h| edge_of(&draft.triangles, h)).collect();
     let mut vertices: Vec<u32> = edges.as_flattened().to_vec();
     vertices.sort_unstable();
@@ -62,7 +78,7 @@ fn vertices_inside(draft: &Draft, boundary: &[u32], budget: &Budget) -> Result<V
     // A vertex is searched as the triangle that is folded onto it.
     let points: Vec<[u32; 3]> = vertices.iter().map(|&v| [v; 3]).collect();
     let bvh = Bvh::build(&draft.positions, &points, None, budget)?;
-    let mut inside = Vec::new();
+    let (mut inside, mut charges) = (Vec::new(), Vec::new());
     for (&h, edge) in boundary.iter().zip(edges) {
         let [from, to] = edge.map(|v| draft.positions[v as usize]);
         let mut compared = 0;
@@ -77,10 +93,13 @@ fn vertices_inside(draft: &Draft, boundary: &[u32], budget: &Budget) -> Result<V
             true
         })?;
         budget.spend(COMPARING * compared)?;
+        while inside.len() > charges.len() * CHARGED_AT_ONCE {
+            charges.push(budget.charge(BYTES_OF_INSIDE * CHARGED_AT_ONCE as u64)?);
+        }
     }
     sort_along_edges(&mut inside, draft);
     inside.dedup_by(|(h, v), (g, u)| g == h && draft.positions[*u as usize] == draft.positions[*v as usize]);
-    Ok(inside)
+    Ok(VerticesInside { pairs: inside, _charges: charges })
 }
 
 /// Sorts by half-edge, then along it, then by vertex. On a line, coordinates in the order x, y, z say where a point is.

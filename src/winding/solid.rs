@@ -35,7 +35,7 @@ impl Solid {
         budget: &Budget,
     ) -> Result<Self, Stopped> {
         let unit = Unit::around(triangles.as_flattened().iter().map(|&v| positions[v as usize]));
-        let _charge = budget.charge((positions.len() * 24 + triangles.len() * 160) as u64)?;
+        let _charge = budget.charge((positions.len() * 24 + triangles.len() * 190) as u64)?;
         let places: Vec<DVec3> = positions.iter().map(|&p| unit.of(p)).collect();
         let Shells { closed: mut corners, closed_part: part, open, cones, sheets, .. } =
             sort(&places, triangles, open_shells, BESIDE, budget)?;

@@ -559,7 +559,7 @@ export interface components {
         Defects: boolean;
         /**
          * @description What becomes of faces that pass a vertex more than once.
-         *     - `split`: The simple cycles that they are made of become faces of their own; one that runs around a hole keeps its triangles.
+         *     - `split`: The simple cycles that they are made of become faces of their own; one whose own triangles cover less, as around a hole, keeps them.
          *     - `drop`: They go.
          * @enum {string}
          */

@@ -32,7 +32,7 @@ pub(super) fn classify_all(loops: &mut Loops, cx: &Context<'_>) -> Result<(), St
         numbers.sort_by(|a, b| length(b).total_cmp(&length(a)));
         let (area, diagonal) = size(part, cx)?;
         let around = LoopContext {
-            is_sheet: cx.sheets.binary_search(&part).is_ok(),
+            is_sheet: cx.is_sheet(part),
             area,
             diagonal,
             longest: length(&numbers[0]),

@@ -45,7 +45,7 @@ impl Line {
                 (min - slack - self.from[k]) * self.reciprocal[k],
                 (max + slack - self.from[k]) * self.reciprocal[k],
             );
-            // What is not a number, where the segment runs along a side of the box, does not count.
+            // Neither is a number, and neither counts, where the segment runs within a box without extent.
             enters = enters.max(a.min(b));
             leaves = leaves.min(a.max(b));
         }

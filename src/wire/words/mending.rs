@@ -83,7 +83,7 @@ mirror! { mesh::Validity =>
 mirror! { repair::polygons::DegenerateFaces =>
     /// What becomes of faces that pass a vertex more than once.
     Degenerate {
-        /// The simple cycles that they are made of become faces of their own; one that runs around a hole keeps its triangles.
+        /// The simple cycles that they are made of become faces of their own; one whose own triangles cover less, as around a hole, keeps them.
         Split = "split",
         /// They go.
         Drop = "drop",
