@@ -21,7 +21,7 @@ fn main() -> ExitCode {
     cli::run(std::env::args_os(), service)
 }
 
-fn run(operation: Operation, bytes: &[u8], options: &Options, budget: &Budget) -> Result<Answer, Failure> {
+fn run(operation: Operation, bytes: Vec<u8>, options: &Options, budget: &Budget) -> Result<Answer, Failure> {
     let sleep =
         || std::str::from_utf8(bytes.strip_prefix(b"sleep ")?).ok()?.split_whitespace().next()?.parse().ok();
     let Some(ms) = sleep() else { return pipeline::run(operation, bytes, options, budget) };

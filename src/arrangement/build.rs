@@ -46,7 +46,7 @@ pub fn arrange(
     budget: &Budget,
 ) -> Result<Arrangement, ArrangementError> {
     let Unwound { mut arrangement, triangles, bvh, _charge } = divide(positions, triangles, options, budget)?;
-    cells::wind(&mut arrangement, &triangles, operand_of, &bvh, budget)?;
+    cells::wind(&mut arrangement, &triangles, operand_of, bvh, budget)?;
     Ok(arrangement)
 }
 

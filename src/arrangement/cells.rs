@@ -22,7 +22,7 @@ pub(super) fn wind(
     arrangement: &mut Arrangement,
     triangles: &[[u32; 3]],
     operand_of: impl Fn(u32) -> u8 + Sync,
-    bvh: &Bvh,
+    bvh: Bvh,
     budget: &Budget,
 ) -> Result<(), ArrangementError> {
     let operands = arrangement.operands;
@@ -31,13 +31,15 @@ pub(super) fn wind(
     let jumps = jumps(arrangement, &operand_of);
     let groups = EdgeGroups::build(&arrangement.pieces, arrangement.point_count(), budget)?;
     check_closed(arrangement, &groups, &jumps, budget)?;
-    let links = links(arrangement, triangles, &groups, budget)?;
     let anchors = anchors(arrangement, &groups, budget)?;
     let starts = par::try_map_ranges(anchors.len(), 4, |range| {
         range
-            .map(|i| ray::beside(arrangement, anchors[i] as usize, triangles, &operand_of, bvh, budget))
+            .map(|i| ray::beside(arrangement, anchors[i] as usize, triangles, &operand_of, &bvh, budget))
             .collect::<Result<Vec<_>, _>>()
     })?;
+    drop(bvh);
+    let links = links(arrangement, triangles, &groups, budget)?;
+    drop(groups);
     let mut windings = vec![UNKNOWN; 2 * count * operands];
     for (&anchor, (is_front, start)) in anchors.iter().zip(starts.into_iter().flatten()) {
         let side = 2 * anchor + u32::from(!is_front);

@@ -23,7 +23,7 @@ pub struct SolidBoundary {
 impl Arrangement {
     /// The boundary of the cells that `is_inside` is true of, by the winding number of each operand there. Cavities stay.
     pub fn boundary(&self, is_inside: impl Fn(&[i32]) -> bool) -> SolidBoundary {
-        let mut pieces = Vec::new();
+        let mut pieces = Vec::with_capacity(self.pieces.len());
         for (f, &[a, b, c]) in self.pieces.iter().enumerate() {
             let [front, back] = self.windings(f).map(&is_inside);
             if front == back {

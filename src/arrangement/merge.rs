@@ -6,7 +6,7 @@
 
 use super::constraints::{Constrained, Constraint, ConstraintLine};
 use super::error::ArrangementError;
-use super::extract::SolidBoundary;
+use super::extract::{BoundaryPiece, SolidBoundary};
 use super::triangulation::{NONE, Sight, Triangulation};
 use super::{Arrangement, Cluster};
 use crate::budget::{Budget, CHECK_EVERY};
@@ -45,7 +45,14 @@ impl Arrangement {
         let cluster_of = |t: u32| clusters.get(&t).copied();
         let corners: Vec<[u32; 3]> = surface.pieces.iter().map(|piece| piece.corners).collect();
         let groups = EdgeGroups::build(&corners, self.point_count(), budget)?;
-        let mut merged = Merged::default();
+        let is_whole = |piece: &BoundaryPiece| cluster_of(piece.source).is_none();
+        let mut merged = Merged::with_capacity(surface.pieces.iter().filter(|piece| is_whole(piece)).count());
+        // Where a whole triangle ends, two of its edges do, which are not on one line.
+        let mut stays_for_triangle = vec![false; self.point_count()];
+        for piece in surface.pieces.iter().filter(|piece| is_whole(piece)) {
+            merged.push(piece.corners, piece.source, true);
+            piece.corners.iter().for_each(|&p| stays_for_triangle[p as usize] = true);
+        }
         // For each triangle of a cluster, either way round, the half-edges of its pieces that stay.
         let mut stays: Vec<(u32, bool, [u32; 2])> = Vec::new();
         let mut ends: Vec<(u32, u32, u32)> = Vec::new();
@@ -68,18 +75,18 @@ impl Arrangement {
                     stays.push((source, is_opposite, if is_opposite { [to, from] } else { [from, to] }));
                 }
                 let cluster = cluster.unwrap_or(NONE);
-                ends.extend([(from, to, cluster), (to, from, cluster)]);
+                let both = [(from, to, cluster), (to, from, cluster)];
+                ends.extend(both.into_iter().filter(|&(point, ..)| !stays_for_triangle[point as usize]));
             }
         }
-        for piece in surface.pieces.iter().filter(|piece| cluster_of(piece.source).is_none()) {
-            merged.push(piece.corners, piece.source, true);
-        }
+        drop((groups, corners));
         let (needed, goes) = self.needless(ends, budget)?;
         let mut inside: Vec<(u32, bool, u32)> = Vec::new();
         for piece in &surface.pieces {
             budget.spend(1)?;
             if cluster_of(piece.source).is_some() {
-                let needed = piece.corners.into_iter().filter(|p| needed.binary_search(p).is_ok());
+                let is_needed = |p: &u32| stays_for_triangle[*p as usize] || needed.binary_search(p).is_ok();
+                let needed = piece.corners.into_iter().filter(is_needed);
                 inside.extend(needed.map(|p| (piece.source, piece.is_opposite, p)));
             }
         }
@@ -118,8 +125,8 @@ impl Arrangement {
         }
     }
 
-    /// The points where edges end, ascending, and of those the ones where just two end that are on one line, which go. `ends` are points with another end of an edge that stays and the
-    /// cluster of a triangle there.
+    /// Of the points where edges end those that stay, ascending, and those where just two end that are on one line, which go. `ends`
+    /// are points with another end of an edge that stays and the cluster of a triangle there.
     fn needless(
         &self,
         mut ends: Vec<(u32, u32, u32)>,
@@ -202,6 +209,14 @@ impl Arrangement {
 }
 
 impl Merged {
+    fn with_capacity(triangles: usize) -> Self {
+        Self {
+            triangles: Vec::with_capacity(triangles),
+            sources: Vec::with_capacity(triangles),
+            is_whole: Vec::with_capacity(triangles),
+        }
+    }
+
     fn push(&mut self, corners: [u32; 3], source: u32, is_whole: bool) {
         self.triangles.push(corners);
         self.sources.push(source);

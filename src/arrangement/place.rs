@@ -45,7 +45,7 @@ const REACH: f64 = 4.0;
 /// When the budget stops the run.
 pub fn place(
     arrangement: &Arrangement,
-    merged: &Merged,
+    merged: Merged,
     pitch: f64,
     budget: &Budget,
 ) -> Result<PlacedBoundary, ArrangementError> {
@@ -55,7 +55,8 @@ pub fn place(
     used.sort_unstable();
     used.dedup();
     let mut exact = vec![DVec3::ZERO; arrangement.new_points.len()];
-    let mut positions = arrangement.positions.clone();
+    let mut positions = Vec::with_capacity(arrangement.point_count());
+    positions.extend_from_slice(&arrangement.positions);
     positions.resize(arrangement.point_count(), DVec3::ZERO);
     for (i, &p) in used.iter().enumerate() {
         if i % 256 == 0 {
@@ -68,8 +69,8 @@ pub fn place(
     let mut placing = Placing {
         placed: PlacedBoundary {
             positions,
-            triangles: merged.triangles.clone(),
-            sources: merged.sources.clone(),
+            triangles: merged.triangles,
+            sources: merged.sources,
             ..PlacedBoundary::default()
         },
         is_near: Vec::new(),

@@ -52,7 +52,7 @@ pub(super) fn judge_read(
     rounded: Option<&Soup>,
     depth: Depth,
     budget: &Budget,
-) -> Result<Judged, CertifyError> {
+) -> Result<Judged, Stopped> {
     let mut judge = Judge::new(depth, budget);
     judge.judge_soup(soup, false)?;
     if !soup.is_f32_exact && !judge.verdict.has_ended() {
@@ -253,5 +253,7 @@ fn note_unusable(surface: &ReadingSurface<'_>, verdict: &mut Verdict) {
 /// The numbers below `count` without those `left_out`, which may be in any order and repeat.
 fn all_but(count: u32, mut left_out: Vec<u32>) -> Vec<u32> {
     left_out.sort_unstable();
-    (0..count).filter(|t| left_out.binary_search(t).is_err()).collect()
+    let mut others = Vec::with_capacity(count as usize);
+    others.extend((0..count).filter(|t| left_out.binary_search(t).is_err()));
+    others
 }

@@ -104,16 +104,31 @@ pub fn examine(
     depth: Depth,
     budget: &Budget,
 ) -> Result<Examination, CertifyError> {
-    let (sha256, judged) =
-        par::join(|| digest(bytes, budget), || judge::judge(soup, bytes, encoding, options, depth, budget));
-    let (sha256, judged) = (sha256?, judged?);
-    Ok(judged.into_examination(sha256, bytes.len() as u64, encoding, soup))
+    let judge = || judge::judge(soup, bytes, encoding, options, depth, budget);
+    let (file, judged) = par::join(|| Fingerprint::of(bytes, budget), judge);
+    Ok(judged?.into_examination(file?, encoding, soup))
+}
+
+/// As [`examine`] where the bytes of `file` are gone, of which `soup` must be the f64 reading. Where the f32 reading is another one
+/// ([`Soup::is_f32_exact`]) no condition is decided.
+///
+/// # Errors
+/// When the budget stops the run.
+pub fn examine_read(
+    soup: &Soup,
+    file: Fingerprint,
+    encoding: Encoding,
+    depth: Depth,
+    budget: &Budget,
+) -> Result<Examination, Stopped> {
+    Ok(judge::judge_read(soup, None, depth, budget)?.into_examination(file, encoding, soup))
 }
 
 impl judge::Judged {
     /// As what is told of the file, or the part of one, that was read as `soup`.
-    fn into_examination(self, sha256: [u8; 32], bytes: u64, encoding: Encoding, soup: &Soup) -> Examination {
+    fn into_examination(self, file: Fingerprint, encoding: Encoding, soup: &Soup) -> Examination {
         let Self { census, verdict, contacts, shells } = self;
+        let Fingerprint { sha256, bytes } = file;
         let certificate = Certificate {
             sha256,
             bytes,
@@ -137,11 +152,26 @@ impl judge::Judged {
 /// Bytes hashed between two looks at the budget: about a millisecond.
 const HASH_BLOCK_BYTES: usize = 1 << 18;
 
-fn digest(bytes: &[u8], budget: &Budget) -> Result<[u8; 32], Stopped> {
-    let mut hasher = Sha256::new();
-    for block in bytes.chunks(HASH_BLOCK_BYTES) {
-        budget.check()?;
-        hasher.update(block);
+/// What tells a file from all others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Fingerprint {
+    /// SHA-256 of its bytes.
+    pub sha256: [u8; 32],
+    /// Number of its bytes.
+    pub bytes: u64,
+}
+
+impl Fingerprint {
+    /// That of `bytes`.
+    ///
+    /// # Errors
+    /// When the budget stops the run.
+    pub fn of(bytes: &[u8], budget: &Budget) -> Result<Self, Stopped> {
+        let mut hasher = Sha256::new();
+        for block in bytes.chunks(HASH_BLOCK_BYTES) {
+            budget.check()?;
+            hasher.update(block);
+        }
+        Ok(Self { sha256: hasher.finalize().into(), bytes: bytes.len() as u64 })
     }
-    Ok(hasher.finalize().into())
 }

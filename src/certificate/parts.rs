@@ -1,7 +1,9 @@
 //! A file of several parts, each of which has to be a solid by itself, in its own coordinates.
 
 use super::verdict::sum_of;
-use super::{Certificate, CertifyError, Condition, Depth, Examination, Reading, Violation, digest, judge};
+use super::{
+    Certificate, CertifyError, Condition, Depth, Examination, Fingerprint, Reading, Violation, judge,
+};
 use crate::budget::Budget;
 use crate::formats::{self, Encoding, Precision, ReadOptions};
 use crate::mesh::Soup;
@@ -43,7 +45,7 @@ pub fn examine_parts(
     depth: Depth,
     budget: &Budget,
 ) -> Result<PartsExamination, CertifyError> {
-    let sha256 = digest(bytes, budget)?;
+    let file = Fingerprint::of(bytes, budget)?;
     let is_exact = soups.iter().all(|soup| soup.is_f32_exact);
     let rounded = match is_exact {
         true => Vec::new(),
@@ -55,11 +57,11 @@ pub fn examine_parts(
     let mut parts = Vec::with_capacity(soups.len());
     for (i, &soup) in soups.iter().enumerate() {
         let judged = judge::judge_read(soup, rounded.get(i), depth, budget)?;
-        parts.push(judged.into_examination(sha256, bytes.len() as u64, encoding, soup));
+        parts.push(judged.into_examination(file, encoding, soup));
     }
     let faces: Vec<u32> = soups.iter().map(|soup| soup.face_count).collect();
     let certificates: Vec<&Certificate> = parts.iter().map(|part| &part.certificate).collect();
-    let certificate = whole(&certificates, &faces, sha256, bytes.len() as u64, encoding, depth);
+    let certificate = whole(&certificates, &faces, file, encoding, depth);
     Ok(PartsExamination { certificate, parts })
 }
 
@@ -67,8 +69,7 @@ pub fn examine_parts(
 fn whole(
     parts: &[&Certificate],
     faces: &[u32],
-    sha256: [u8; 32],
-    bytes: u64,
+    file: Fingerprint,
     encoding: Encoding,
     depth: Depth,
 ) -> Certificate {
@@ -105,8 +106,8 @@ fn whole(
     let sum = |of: fn(&Certificate) -> u64| parts.iter().map(|part| of(part)).sum();
     let is_valid = p0 && parts.iter().all(|part| part.is_printable());
     Certificate {
-        sha256,
-        bytes,
+        sha256: file.sha256,
+        bytes: file.bytes,
         encoding,
         parts: Some(parts.len() as u32),
         p0,
@@ -150,7 +151,8 @@ mod tests {
     #[test]
     fn a_file_without_a_part_is_no_solid() {
         let depth = Depth::Count { samples: 1 };
-        let certificate = whole(&[], &[], [0; 32], 0, Encoding::ThreeMf, depth);
+        let certificate =
+            whole(&[], &[], Fingerprint { sha256: [0; 32], bytes: 0 }, Encoding::ThreeMf, depth);
         assert!(!certificate.is_printable());
         assert_eq!(certificate.witnesses[0].condition, Condition::NotEmpty);
     }

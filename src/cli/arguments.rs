@@ -155,7 +155,7 @@ struct InputArguments {
     /// Write the report for people to this file: one page that loads nothing.
     #[arg(long, value_name = "FILE")]
     report_html: Option<PathBuf>,
-    /// Material file (MTL) of an OBJ: its diffuse colours become face colours, which OFF, PLY and glTF hold.
+    /// Material file (MTL) of an OBJ: its diffuse colours become face colours, which OFF, PLY, 3MF and glTF hold.
     #[arg(long, value_name = "FILE")]
     material: Option<PathBuf>,
     #[command(flatten)]
@@ -282,7 +282,7 @@ pub(super) struct BooleanArguments {
 pub(super) struct RenderArguments {
     #[command(flatten)]
     given: InputArguments,
-    /// Picture to write (PNG), or - for standard output.
+    /// Picture to write, or - for standard output: a PNG, or with the extension .glb a mesh to turn.
     #[arg(short, long, value_name = "OUT")]
     output: Option<FileOrStream>,
     /// Folder to write pictures into, each under the name of its file; it is made where it is missing.

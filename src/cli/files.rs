@@ -72,6 +72,11 @@ impl FileOrStream {
         }
     }
 
+    /// Whether it can be read again: streams and pipes give their bytes once.
+    pub(super) fn is_regular_file(&self) -> bool {
+        matches!(self, Self::File(path) if path.is_file())
+    }
+
     /// Fails early where `write` would fail for want of a folder.
     pub(super) fn check_writable(&self) -> io::Result<()> {
         let Self::File(path) = self else { return Ok(()) };

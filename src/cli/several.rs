@@ -4,10 +4,10 @@ use super::arguments::{OutputTarget, Request};
 use super::colours::{BAD, DOUBTFUL, GOOD, aligned, painted};
 use super::exit::{Exit, print, say};
 use super::figures::counted;
-use super::files::{FileOrStream, told};
+use super::files::FileOrStream;
 use super::flags::with_flags;
 use super::summary::{Subject, summary};
-use super::work::{Done, Errand, run as run_one, wrong};
+use super::work::{Done, Errand, run as run_one, unwritable, wrong};
 use crate::pipeline::Operation;
 use crate::wire::{Fidelity, Problem};
 use anstyle::Style;
@@ -37,7 +37,10 @@ fn errands(request: &Request) -> Result<Vec<Errand<'_>>, Problem> {
     let each = if request.operation == Operation::Boolean { request.inputs.len() } else { 1 };
     let many = request.inputs.len() > each;
     if many && matches!(request.target, OutputTarget::Place(_)) {
-        return Err(wrong("one --output holds the result of one file; several files need --out-dir"));
+        return Err(wrong(match request.operation {
+            Operation::Modeller => "modeller takes one file",
+            _ => "one --output holds the result of one file; several files need --out-dir",
+        }));
     }
     if many && request.report_html.is_some() {
         return Err(wrong("--report-html writes the page of one file; leave it out, or give one file"));
@@ -46,8 +49,7 @@ fn errands(request: &Request) -> Result<Vec<Errand<'_>>, Problem> {
         return Err(wrong("standard input cannot be one of several files"));
     }
     if let OutputTarget::Folder(folder) = &request.target {
-        fs::create_dir_all(folder)
-            .map_err(|e| wrong(format!("{} cannot be made: {}", folder.display(), told(&e))))?;
+        fs::create_dir_all(folder).map_err(|e| unwritable(&folder.display(), &e))?;
     }
     let mut taken = BTreeSet::new();
     let errand = |inputs| {
@@ -58,7 +60,7 @@ fn errands(request: &Request) -> Result<Vec<Errand<'_>>, Problem> {
         };
         match &output {
             Some(FileOrStream::File(path)) if !taken.insert(path.clone()) => Err(wrong(format!(
-                "two files have the name {}; give them one after the other",
+                "two results would be {}; write them into different folders",
                 path.display()
             ))),
             _ => Ok(Errand { request, inputs, output }),

@@ -6,12 +6,14 @@ use super::files::{FileOrStream, told};
 use super::flags::with_flags;
 use super::watch::{Share, watched};
 use crate::budget::{Budget, StopFlag};
+use crate::certificate::{Certificate, Fingerprint};
 use crate::config::{Config, Loaded};
 use crate::formats::{self, ReadLimits};
 use crate::jobs::StageClock;
 use crate::par;
-use crate::pipeline::{self, Answer, Operation, PictureChoices, Product, Require};
+use crate::pipeline::{self, Answer, Operation, Output, PictureChoices, Product, Require};
 use crate::wire::{OptionError, Options, PictureFormat, Problem, ProblemCode, Report, TimingMs, report_page};
+use std::borrow::Cow;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{MAIN_SEPARATOR, PathBuf};
@@ -73,11 +75,11 @@ fn attempt(errand: &Errand<'_>) -> Result<Done, Problem> {
     }
     let loaded = request.sources.load().map_err(|e| wrong(e.to_string()))?;
     if let Some(output) = output {
-        output.check_writable().map_err(|e| wrong(format!("{output} cannot be written: {}", told(&e))))?;
+        output.check_writable().map_err(|e| unwritable(output, &e))?;
     }
     if let Some(page) = &request.report_html {
         let place = FileOrStream::File(page.clone());
-        place.check_writable().map_err(|e| wrong(format!("{place} cannot be written: {}", told(&e))))?;
+        place.check_writable().map_err(|e| unwritable(&place, &e))?;
     }
     // One behind the other.
     let mut bytes = Vec::new();
@@ -97,11 +99,16 @@ fn attempt(errand: &Errand<'_>) -> Result<Done, Problem> {
     let page_picture = request.report_html.is_some().then(PictureChoices::default);
     let picture = options.picture.clone().or(page_picture.filter(|_| !is_picture));
     let options = pipeline::Options { material, after, picture, file_sizes, ..options };
-    let (answer, timing) = execute(errand, &bytes, &options, &loaded).map_err(|problem| Problem {
+    // A mesh that is as it was is written from its bytes, which are kept unless they can be read again.
+    let is_there = matches!(inputs, [input] if input.is_regular_file());
+    let (kept, given) =
+        if request.operation.only_reports() || is_there { (None, Some(bytes)) } else { (Some(bytes), None) };
+    let given = given.map_or_else(|| Cow::Borrowed(kept.as_deref().unwrap_or_default()), Cow::Owned);
+    let (answer, timing) = execute(errand, given, &options, &loaded).map_err(|problem| Problem {
         detail: format!("{}: {}", errand.subject(), problem.detail),
         ..problem
     })?;
-    deliver(errand, options.require, &bytes, &answer, timing)
+    deliver(errand, options.require, kept, &answer, timing)
 }
 
 /// The format of a picture: that which is `asked` for, or else that of the extension of its name, with which the other must go.
@@ -176,6 +183,10 @@ fn about_options(error: &OptionError) -> Problem {
     }
 }
 
+pub(super) fn unwritable(place: &dyn std::fmt::Display, error: &io::Error) -> Problem {
+    Problem::new(ProblemCode::StorageFull, format!("{place} cannot be written: {}", told(error)))
+}
+
 fn unreadable(input: &dyn std::fmt::Display, error: &io::Error) -> Problem {
     Problem::new(ProblemCode::NotFound, format!("{input} cannot be read: {}", told(error)))
 }
@@ -205,7 +216,7 @@ fn engine_options(
 /// Runs the engine under the configured limits.
 fn execute(
     errand: &Errand<'_>,
-    bytes: &[u8],
+    bytes: Cow<'_, [u8]>,
     options: &pipeline::Options,
     loaded: &Loaded,
 ) -> Result<(Answer, TimingMs), Problem> {
@@ -223,38 +234,53 @@ fn execute(
     Ok((answer, clock.timing_ms()))
 }
 
+/// The bytes of the file that was certified.
+fn read_again(errand: &Errand<'_>, certificate: &Certificate) -> Result<Vec<u8>, Problem> {
+    let [input] = errand.inputs else { return Ok(Vec::new()) };
+    let bytes = input.read().map_err(|e| unreadable(input, &e))?;
+    match Fingerprint::of(&bytes, &Budget::unlimited()) {
+        Ok(file) if file.sha256 == certificate.sha256 => Ok(bytes),
+        _ => Err(wrong(format!(
+            "{input} was changed by another program while it was repaired: nothing is written"
+        ))),
+    }
+}
+
 /// Writes the result, if there is one, and the page.
 fn deliver(
     errand: &Errand<'_>,
     require: Option<Require>,
-    bytes: &[u8],
+    kept: Option<Vec<u8>>,
     answer: &Answer,
     timing: TimingMs,
 ) -> Result<Done, Problem> {
     let request = errand.request;
+    let is_as_it_was = |output: &Output| output.bytes.is_none();
+    let as_it_was = match (&errand.output, kept) {
+        (Some(_), None) if answer.output.iter().chain(&answer.levels).any(is_as_it_was) => {
+            read_again(errand, &answer.report.input_certificate)?
+        }
+        (_, kept) => kept.unwrap_or_default(),
+    };
     let mut written = Vec::new();
     for (i, output) in answer.output.iter().chain(&answer.levels).enumerate() {
         let Some(place) = &errand.output else { continue };
         let place = if answer.levels.is_empty() { place.clone() } else { place.numbered(i + 1) };
-        place.write(output.bytes.as_deref().unwrap_or(bytes)).map_err(|e| {
-            Problem::new(ProblemCode::StorageFull, format!("{place} cannot be written: {}", told(&e)))
-        })?;
+        place.write(output.bytes.as_deref().unwrap_or(&as_it_was)).map_err(|e| unwritable(&place, &e))?;
         written.push(place.to_string());
     }
     let drawn = answer.picture.as_ref().filter(|_| request.operation == Operation::Render);
     if let (Some(place), Some(picture)) = (&errand.output, drawn) {
-        place.write(picture).map_err(|e| {
-            Problem::new(ProblemCode::StorageFull, format!("{place} cannot be written: {}", told(&e)))
-        })?;
+        place.write(picture).map_err(|e| unwritable(&place, &e))?;
         written.push(place.to_string());
     }
     let report = Report::new(&answer.report, timing);
     if let Some(path) = &request.report_html {
         let value = serde_json::to_value(&report).unwrap_or_default();
         let place = FileOrStream::File(path.clone());
-        place.write(report_page(&value, answer.picture.as_deref()).as_bytes()).map_err(|e| {
-            Problem::new(ProblemCode::StorageFull, format!("{place} cannot be written: {}", told(&e)))
-        })?;
+        place
+            .write(report_page(&value, answer.picture.as_deref()).as_bytes())
+            .map_err(|e| unwritable(&place, &e))?;
     }
     let exit = verdict(request.operation, require, &report, answer.output.is_some());
     Ok(Done { report, written: (!written.is_empty()).then(|| written.join(", ")), exit })

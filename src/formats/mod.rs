@@ -30,6 +30,7 @@ pub use gltf::two_sided_materials;
 pub use obj::materials::color_faces;
 pub use polygons::split_polygon;
 pub use sniff::sniff;
+pub(crate) use stl::read_binary::BYTES_BEHIND;
 
 use crate::budget::{Budget, Stopped};
 use crate::mesh::Soup;

@@ -14,7 +14,7 @@ const LOOKED_AT_BYTES: usize = 4096;
 /// content leaves it open and is contradicted only by content that certainly is another format (then the error says so).
 ///
 /// In this order: the letters `glTF`; the exact length of a binary STL, whatever its header says (in text the four bytes that count would
-/// announce gigabytes); a JSON object with an `asset`; the word `ply`; the header word of OFF; `solid` followed by `facet`; a binary STL with extra bytes at its end, fewer than its own; a statement of OBJ.
+/// announce gigabytes); a JSON object with an `asset`; the word `ply`; the header word of OFF; `solid` followed by `facet` or `endsolid`; a binary STL with extra bytes at its end, fewer than its own; a statement of OBJ.
 ///
 /// # Errors
 /// Empty or unrecognisable bytes; content that contradicts `named`.
@@ -51,7 +51,7 @@ fn certain(bytes: &[u8]) -> Option<Encoding> {
         Some(ply_layout(bytes))
     } else if HeaderWord::parse(first).is_some() {
         Some(off_layout(bytes))
-    } else if first.eq_ignore_ascii_case(b"solid") && is_text(bytes) && has_facet(bytes) {
+    } else if first.eq_ignore_ascii_case(b"solid") && is_text(bytes) && has_word_of_stl(bytes) {
         Some(Encoding::StlAscii)
     } else {
         None
@@ -135,7 +135,16 @@ fn start(bytes: &[u8]) -> &[u8] {
 }
 
 fn has_facet(bytes: &[u8]) -> bool {
-    start(bytes).windows(5).any(|window| window.eq_ignore_ascii_case(b"facet"))
+    has_word(bytes, b"facet")
+}
+
+/// Whether a word comes that follows `solid` in an STL; where there are no facets it ends at once.
+fn has_word_of_stl(bytes: &[u8]) -> bool {
+    has_facet(bytes) || has_word(bytes, b"endsolid")
+}
+
+fn has_word(bytes: &[u8], word: &[u8]) -> bool {
+    start(bytes).windows(word.len()).any(|window| window.eq_ignore_ascii_case(word))
 }
 
 /// The layout that the header's `format` line names; text if there is none, for the reader to complain about.

@@ -36,8 +36,11 @@ pub(super) fn layer(origins: &[String]) -> Option<CorsLayer> {
         .allow_headers([
             header::ACCEPT,
             header::AUTHORIZATION,
+            header::CONTENT_ENCODING,
             header::CONTENT_TYPE,
+            header::IF_MATCH,
             header::IF_NONE_MATCH,
+            header::IF_RANGE,
             header::RANGE,
             named("cancel-after"),
             named("idempotency-key"),
@@ -52,7 +55,9 @@ pub(super) fn layer(origins: &[String]) -> Option<CorsLayer> {
             named("x-request-id"),
         ])
         .expose_headers([
+            header::ACCEPT_RANGES,
             header::CONTENT_DISPOSITION,
+            header::CONTENT_RANGE,
             header::ETAG,
             header::LINK,
             header::LOCATION,

@@ -20,14 +20,13 @@ use super::state::{Caller, HttpService, State};
 use super::trace;
 use crate::jobs::{JobId, Jobs, NamedUpload, Submission};
 use crate::wire::{
-    Format, InputRef, Job, Operation, Options, PictureFormat, Problem, ProblemCode, Report, media_type_of,
+    Format, InputRef, Job, Operation, Options, PictureFormat, Problem, ProblemCode, media_type_of,
 };
 
 /// Describe a mesh.
 ///
 /// Mesh in, report out: counts, measures, defects with witnesses, and the certificate of the file as it is.
-#[utoipa::path(post, path = "/v1/analyze", tag = "operations", responses(
-    (status = 200, description = "The report.", body = Report)))]
+#[utoipa::path(post, path = "/v1/analyze", tag = "operations")]
 pub(super) async fn analyze(state: State, caller: Extension<Caller>, request: Request) -> Handled {
     report_of(&state, &caller, Operation::Analyze, request).await
 }
@@ -35,8 +34,7 @@ pub(super) async fn analyze(state: State, caller: Extension<Caller>, request: Re
 /// Judge a mesh as it is.
 ///
 /// Mesh in, report with its certificate out: which of P0, P1 and P2 hold, and the first violations.
-#[utoipa::path(post, path = "/v1/verify", tag = "operations", responses(
-    (status = 200, description = "The report.", body = Report)))]
+#[utoipa::path(post, path = "/v1/verify", tag = "operations")]
 pub(super) async fn verify(state: State, caller: Extension<Caller>, request: Request) -> Handled {
     report_of(&state, &caller, Operation::Verify, request).await
 }
@@ -45,8 +43,7 @@ pub(super) async fn verify(state: State, caller: Extension<Caller>, request: Req
 ///
 /// Mesh in, report out, with a `plan`: what a repair would do about each defect, what else could be done, and how sure
 /// that is. Edit it and send it to `/v1/repair` as `plan`.
-#[utoipa::path(post, path = "/v1/plan", tag = "operations", responses(
-    (status = 200, description = "The report.", body = Report)))]
+#[utoipa::path(post, path = "/v1/plan", tag = "operations")]
 pub(super) async fn plan(state: State, caller: Extension<Caller>, request: Request) -> Handled {
     report_of(&state, &caller, Operation::Plan, request).await
 }

@@ -70,7 +70,13 @@ pub(super) fn page(uri: &Uri, limit_max: usize) -> Result<Page, Problem> {
             _ => return Err(unknown(&name, &["cursor", "limit", "state", "label"])),
         };
         if taken.is_none() {
-            let problem = invalid(&name, &format!("`{name}` cannot be `{value}`, or it is given too often"));
+            let expected = match name.as_str() {
+                "cursor" => "once the `next` of an earlier page".to_owned(),
+                "limit" => format!("once a whole number from 1 to {limit_max}"),
+                "state" => format!("once one of {}", JobState::WORDS.join(", ")),
+                _ => format!("NAME:VALUE, at most {LABELS_MAX} times"),
+            };
+            let problem = invalid(&name, &format!("`{name}` cannot be `{value}`; expected {expected}"));
             let states = if name == "state" { JobState::WORDS } else { &[] };
             return Err(problem.with_allowed(states.iter().copied()));
         }

@@ -20,7 +20,9 @@ use crate::wire::{Problem, ProblemCode};
 
 /// The function that runs a job's bytes: [`pipeline::run`], or another one in tests.
 pub type Engine = Arc<
-    dyn Fn(pipeline::Operation, &[u8], &pipeline::Options, &Budget) -> Result<Answer, Failure> + Send + Sync,
+    dyn Fn(pipeline::Operation, Vec<u8>, &pipeline::Options, &Budget) -> Result<Answer, Failure>
+        + Send
+        + Sync,
 >;
 
 /// Runs jobs.
@@ -121,7 +123,7 @@ impl Executor {
                     .map_err(|error| disk_problem(&error))?;
                 options.material =
                     material_path.map(std::fs::read).transpose().map_err(|error| disk_problem(&error))?;
-                engine(operation, &content, &options, &budget).map_err(|failure| Problem::from(&failure))
+                engine(operation, content, &options, &budget).map_err(|failure| Problem::from(&failure))
             })
         });
         let joined = tokio::select! {

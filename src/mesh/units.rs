@@ -19,6 +19,18 @@ pub enum Units {
 }
 
 impl Units {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Micrometre => "micrometre",
+            Self::Millimetre => "millimetre",
+            Self::Centimetre => "centimetre",
+            Self::Metre => "metre",
+            Self::Inch => "inch",
+            Self::Foot => "foot",
+        }
+    }
+
     /// Length of the unit in millimetres.
     pub fn millimetres(self) -> f64 {
         match self {

@@ -114,7 +114,7 @@ impl OperandReader {
     /// Judges and describes the next of the files that were read.
     fn describe(&mut self, mesh: Operand<'_>, budget: &Budget) -> Result<(Input, Report), Failure> {
         let Operand { bytes, encoding, soup } = mesh;
-        let mut input = Input::examined(soup, bytes, encoding, &self.options, budget)?;
+        let mut input = Input::examined(soup, bytes.into(), encoding, &self.options, budget)?;
         self.options.output_format.get_or_insert(input.facts.encoding.format());
         let in_units_of_format = input.take_lengths(&self.options);
         let options = in_units_of_format.as_ref().unwrap_or(&self.options);

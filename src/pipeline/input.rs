@@ -8,9 +8,10 @@ use super::{
 };
 use crate::analysis::{Analysis, AnalyzeOptions, NearSearch};
 use crate::budget::{Budget, Stage, Stopped};
-use crate::certificate::{self, CertifyError, Depth, Examination};
+use crate::certificate::{self, CertifyError, Depth, Examination, Fingerprint};
 use crate::formats::{self, Encoding, Place, ReadError, ReadErrorKind};
 use crate::mesh::{Regions, Soup, Texture};
+use std::borrow::Cow;
 
 /// Witnesses to keep of each defect when the caller does not say.
 const SAMPLES_DEFAULT: usize = 16;
@@ -40,7 +41,7 @@ impl Input {
         budget: &Budget,
     ) -> Result<Self, Failure> {
         let soup = Self::read_soup(bytes, encoding, options, budget)?;
-        Self::examined(soup, bytes, encoding, options, budget)
+        Self::examined(soup, bytes.into(), encoding, options, budget)
     }
 
     /// Reads `bytes`.
@@ -60,17 +61,23 @@ impl Input {
         Ok(soup)
     }
 
-    /// Judges `bytes`, which were read as `soup`.
+    /// Judges `bytes`, which were read as `soup`. Those that are owned are released before that, where no other reading needs them:
+    /// of most files they are as large as everything else that the judge has.
     pub(super) fn examined(
         soup: Soup,
-        bytes: &[u8],
+        bytes: Cow<'_, [u8]>,
         encoding: Encoding,
         options: &Options,
         budget: &Budget,
     ) -> Result<Self, Failure> {
-        let samples = samples_of(options);
-        let examination = budget.stage(Stage::Certify, || {
-            certificate::examine(&soup, bytes, encoding, &options.read, Depth::Count { samples }, budget)
+        let depth = Depth::Count { samples: samples_of(options) };
+        let examination = budget.stage(Stage::Certify, || match bytes {
+            Cow::Owned(bytes) if soup.is_f32_exact => {
+                let file = Fingerprint::of(&bytes, budget)?;
+                drop(bytes);
+                Ok(certificate::examine_read(&soup, file, encoding, depth, budget)?)
+            }
+            bytes => certificate::examine(&soup, &bytes, encoding, &options.read, depth, budget),
         })?;
         Self::of(soup, examination, options)
     }
@@ -218,9 +225,10 @@ pub(super) fn samples_of(options: &Options) -> usize {
 pub(super) fn units_of_file(of_file: Option<Units>, options: &Options) -> Result<Option<Units>, Failure> {
     match (of_file, options.units) {
         (Some(stated), Some(asked)) if stated != asked => {
-            let of = |units: Units| format!("units of {} mm", units.millimetres());
-            let kind = ReadErrorKind::Unparseable { found: of(stated) };
-            let expected = format!("{} as the request says", of(asked));
+            let kind =
+                ReadErrorKind::Unparseable { found: format!("the unit {} in the file", stated.name()) };
+            let expected =
+                format!("{}, as the request says; leave `units` out to take the file's word", asked.name());
             Err(Failure::Unreadable(ReadError { kind, place: Place::Whole, expected }))
         }
         (stated, asked) => Ok(stated.or(asked)),

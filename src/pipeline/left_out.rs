@@ -1,7 +1,7 @@
 //! What the file has beside its shape and a new file has not.
 
 use super::Action;
-use crate::formats::Encoding;
+use crate::formats::{BYTES_BEHIND, Encoding};
 use crate::mesh::{Color, Soup};
 use crate::repair::NEW;
 
@@ -26,6 +26,15 @@ pub(super) fn left_out(
     let reason = "what the file has beside its mesh is not in the output".to_owned();
     let (step, causes) = ("left_out", Vec::new());
     Some(Action { step, causes, changes, move_max: 0.0, reason, stitches: None })
+}
+
+/// What is said of a file that goes on where its mesh has ended.
+pub(super) fn remark_on_end(soup: &Soup) -> Option<String> {
+    let (_, bytes) = soup.left_out.iter().find(|(what, _)| *what == BYTES_BEHIND)?;
+    let triangles = soup.triangles.len();
+    Some(format!(
+        "{bytes} bytes come after the {triangles} triangles that the header of the STL announces; they were not read"
+    ))
 }
 
 /// What is said of new triangles with the colours, texture and materials of faces of the file. `origins` name the triangles of `before`

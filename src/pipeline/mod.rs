@@ -77,6 +77,7 @@ use crate::printing::Policy;
 use crate::repair::nest;
 pub use crate::repair::unite::{NotCombined, NotSolid, SetOperation};
 use crate::simplify::TargetReport as SimplifyReport;
+use std::borrow::Cow;
 
 /// Options of every operation; those that do not apply are ignored.
 #[derive(Debug, Clone, Default)]
@@ -348,7 +349,8 @@ pub struct Answer {
     pub picture: Option<Vec<u8>>,
 }
 
-/// Runs `operation` on `bytes`. A pure function: the same arguments give the same answer, whatever the thread count.
+/// Runs `operation` on `bytes`. A pure function: the same arguments give the same answer, whatever the thread count. Bytes that are
+/// given away (`Vec<u8>`) are released once they are read, mostly.
 ///
 /// ```
 /// use meshmend::budget::Budget;
@@ -367,18 +369,19 @@ pub struct Answer {
 /// # Errors
 /// Only unreadable input, options that do not go with it, a stopped budget, and a mesh that takes more work than its file may; a
 /// broken mesh is a successful analysis, a refusal part of the report.
-pub fn run(
+pub fn run<'b>(
     operation: Operation,
-    bytes: &[u8],
+    bytes: impl Into<Cow<'b, [u8]>>,
     options: &Options,
     budget: &Budget,
 ) -> Result<Answer, Failure> {
+    let bytes = bytes.into();
     if operation != Operation::Boolean && options.file_sizes.len() > 1 {
         return Err(Failure::MeshCount { operation, count: options.file_sizes.len() });
     }
     let bound = Bound::of(operation, bytes.len(), options, budget);
     let mut answer = match operation {
-        Operation::Boolean => boolean::boolean(bytes, options, &bound, budget)?,
+        Operation::Boolean => boolean::boolean(&bytes, options, &bound, budget)?,
         _ => run_on_file(operation, bytes, options, &bound, budget)?,
     };
     answer.report.work_used = budget.work_used();
@@ -389,35 +392,64 @@ pub fn run(
 /// Runs `operation` on one file.
 fn run_on_file(
     operation: Operation,
+    bytes: Cow<'_, [u8]>,
+    options: &Options,
+    bound: &Bound<'_>,
+    budget: &Budget,
+) -> Result<Answer, Failure> {
+    match budget.stage(Stage::Read, || formats::sniff(&bytes, options.format))? {
+        Encoding::ThreeMf => run_on_package(operation, &bytes, options, bound, budget),
+        encoding => run_on_mesh(operation, bytes, encoding, options, bound, budget),
+    }
+}
+
+/// Runs `operation` on a 3MF.
+fn run_on_package(
+    operation: Operation,
     bytes: &[u8],
     options: &Options,
     bound: &Bound<'_>,
     budget: &Budget,
 ) -> Result<Answer, Failure> {
-    let encoding = budget.stage(Stage::Read, || formats::sniff(bytes, options.format))?;
+    let encoding = Encoding::ThreeMf;
     let is_by_parts = project::is_by_parts(encoding, operation, options);
     let mut answer = if is_by_parts {
         let project = bound.reading(|| project::read(bytes, options, budget))?;
         let triangles = project::triangles_of(&project, operation, options);
         bound.running(triangles, || project::run_by_parts(operation, bytes, &project, options, budget))?
     } else {
-        let soup = bound.reading(|| Input::read_soup(bytes, encoding, options, budget))?;
-        bound.running(soup.triangles.len() as u64, || {
-            let mut input = Input::examined(soup, bytes, encoding, options, budget)?;
-            let answer = run_on(operation, &mut input, options, budget)?;
-            bounds::with_picture(operation, answer, budget, |answer| {
-                picture::of_mesh(operation, &input, answer, options, budget)
-            })
-        })?
+        run_on_mesh(operation, bytes.into(), encoding, options, bound, budget)?
     };
     let Report { remarks, parts, .. } = &answer.report;
-    if encoding == Encoding::ThreeMf && parts.is_empty() && (remarks.is_empty() || !is_by_parts) {
+    if parts.is_empty() && (remarks.is_empty() || !is_by_parts) {
         let of_scene = project::remarks_on_scene(bytes, &answer, options, budget)?;
         answer.report.remarks.splice(0..0, of_scene);
     }
-    if encoding == Encoding::ThreeMf && operation == Operation::Repair && options.parts == SolidParts::Union {
+    if operation == Operation::Repair && options.parts == SolidParts::Union {
         return project::without_negative_parts(answer, bytes, options, bound, budget);
     }
+    Ok(answer)
+}
+
+/// Runs `operation` on a file as one mesh.
+fn run_on_mesh(
+    operation: Operation,
+    bytes: Cow<'_, [u8]>,
+    encoding: Encoding,
+    options: &Options,
+    bound: &Bound<'_>,
+    budget: &Budget,
+) -> Result<Answer, Failure> {
+    let soup = bound.reading(|| Input::read_soup(&bytes, encoding, options, budget))?;
+    let remark_on_end = left_out::remark_on_end(&soup);
+    let mut answer = bound.running(soup.triangles.len() as u64, || {
+        let mut input = Input::examined(soup, bytes, encoding, options, budget)?;
+        let answer = run_on(operation, &mut input, options, budget)?;
+        bounds::with_picture(operation, answer, budget, |answer| {
+            picture::of_mesh(operation, &input, answer, options, budget)
+        })
+    })?;
+    answer.report.remarks.extend(remark_on_end);
     Ok(answer)
 }
 

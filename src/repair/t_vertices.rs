@@ -136,6 +136,7 @@ fn replace(draft: &mut Draft, inside: &[(u32, u32)], budget: &Budget) -> Result<
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::budget::StopFlag;
     use crate::geom::DVec3;
     use crate::mesh::EdgeGroups;
 
@@ -179,5 +180,40 @@ mod tests {
         let before = draft.clone();
         let changes = split_t_vertices(&mut draft, &Budget::unlimited()).unwrap();
         assert_eq!((changes.count("edges_divided"), draft), (0, before));
+    }
+
+    /// Triangles whose longest edges lie on one line, each with ends of its own.
+    fn edges_on_each_other(count: u32) -> Draft {
+        let points = (0..count).flat_map(|i| {
+            let (i, n) = (f64::from(i), f64::from(count));
+            [DVec3::new(i, 0.0, 0.0), DVec3::new(n + i, 0.0, 0.0), DVec3::new(n, 1.0 + i, 1.0)]
+        });
+        Draft {
+            positions: points.collect(),
+            vertex_origin: (0..3 * count).collect(),
+            triangles: (0..count).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect(),
+            triangle_origin: (0..count).collect(),
+            two_sided: Vec::new(),
+            blends: Default::default(),
+            polygons: Default::default(),
+        }
+    }
+
+    #[test]
+    fn vertices_inside_many_edges_on_each_other_are_charged() {
+        let count = 200;
+        let limited = |bytes| Budget::new(StopFlag::default(), u64::MAX, bytes);
+        let mut draft = edges_on_each_other(count);
+        let before = draft.clone();
+        let pairs = u64::from(count) * u64::from(count - 1);
+        // Of two edges that overlap each has an end of the other.
+        let stopped = split_t_vertices(&mut draft, &limited(pairs * BYTES_OF_INSIDE / 2)).unwrap_err();
+        assert!(matches!(stopped, Stopped::Memory { .. }), "{stopped}");
+        assert_eq!(draft, before);
+        let enough = limited(4 * pairs * BYTES_OF_INSIDE);
+        let changes = split_t_vertices(&mut draft, &enough).unwrap();
+        assert_eq!(changes.count("edges_divided"), u64::from(count));
+        assert_eq!(draft.triangles.len() as u64, u64::from(count) + pairs);
+        assert!(enough.bytes_peak() > pairs * BYTES_OF_INSIDE);
     }
 }

@@ -16,7 +16,7 @@ use meshmend::pipeline::{
 fn try_files(files: &[Vec<u8>], options: &Options) -> Result<Answer, Failure> {
     let file_sizes = files.iter().map(|file| file.len() as u64).collect();
     let options = Options { file_sizes, ..options.clone() };
-    run(Operation::Boolean, &files.concat(), &options, &Budget::unlimited())
+    run(Operation::Boolean, files.concat(), &options, &Budget::unlimited())
 }
 
 fn answer(set_operation: SetOperation, meshes: &[RawSoup], encoding: Encoding) -> Answer {

@@ -14,7 +14,7 @@ use meshmend::simplify::Target;
 use std::f64::consts::PI;
 
 fn answer(operation: Operation, soup: &RawSoup, options: &Options) -> Answer {
-    run(operation, &encode(soup, Encoding::Obj), options, &Budget::unlimited()).unwrap()
+    run(operation, encode(soup, Encoding::Obj), options, &Budget::unlimited()).unwrap()
 }
 
 fn word(answer: &Answer) -> Fidelity {

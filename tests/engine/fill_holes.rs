@@ -128,7 +128,7 @@ fn smooth_patches_follow_the_sphere_where_flat_ones_cut_across() {
         answer.report.after.unwrap().measures.volume.unwrap()
     };
     let whole =
-        run(Operation::Analyze, &sphere(24, false, |_, _| false), &Options::default(), &Budget::unlimited());
+        run(Operation::Analyze, sphere(24, false, |_, _| false), &Options::default(), &Budget::unlimited());
     let whole = whole.unwrap().report.before.unwrap().measures.volume.unwrap();
     let lost = |method| (volume(method) - whole).abs();
     assert!(lost(Method::Smooth) < lost(Method::Flat) / 2.0);
@@ -400,7 +400,7 @@ fn the_result_is_written_in_another_format_where_that_is_asked() {
     let solid = sphere(8, false, |_, _| false);
     let answer = run(Operation::FillHoles, &solid, &options, &Budget::unlimited()).unwrap();
     assert_eq!(answer.report.outcome, Some(Outcome::Converted));
-    let answer = run(Operation::FillHoles, &with_two_holes(), &options, &Budget::unlimited()).unwrap();
+    let answer = run(Operation::FillHoles, with_two_holes(), &options, &Budget::unlimited()).unwrap();
     assert_eq!(answer.report.outcome, Some(Outcome::Filled));
     assert!(answer.report.certificate.unwrap().is_printable());
 }

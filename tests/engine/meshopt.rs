@@ -246,7 +246,7 @@ fn a_field_of_89_blocks_is_the_field() {
 #[test]
 fn documents_of_gltfpack_are_the_torus_within_a_step_of_their_coordinates() {
     let answer =
-        |name: &str| run(Operation::Analyze, &bytes_of(name), &Options::default(), &Budget::unlimited());
+        |name: &str| run(Operation::Analyze, bytes_of(name), &Options::default(), &Budget::unlimited());
     let want = answer("torus.glb").unwrap().report;
     for name in ["gltfpack-ext.glb", "gltfpack-khr.glb", "gltfpack-floats.glb"] {
         let found = answer(name).unwrap().report;

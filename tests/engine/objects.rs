@@ -146,7 +146,7 @@ fn united_rebuilt_and_simplified_bodies_belong_where_they_did() {
     let (soup, line) = mixed();
     let simplify = SimplifyChoices { targets: vec![Target::Faces(20)], ..SimplifyChoices::default() };
     let options = Options { simplify, ..Options::default() };
-    let simplified = run(Operation::Simplify, &obj(&soup, line), &options, &Budget::unlimited()).unwrap();
+    let simplified = run(Operation::Simplify, obj(&soup, line), &options, &Budget::unlimited()).unwrap();
     let bytes = simplified.output.as_ref().and_then(|output| output.bytes.as_deref()).unwrap();
     let of_x = |(name, middle): &(String, DVec3)| (middle.x > 2.0) == (name == "right/");
     assert!(objects(&soup_of(bytes, Encoding::Obj)).iter().all(of_x));

@@ -151,7 +151,7 @@ fn every_stage_is_entered_and_left() {
         move |event| heard.lock().unwrap().push(event)
     }));
     for operation in [Operation::Repair, Operation::Simplify, Operation::Render] {
-        run(operation, &encode(&open_cube(), Encoding::Obj), &Options::default(), &budget).unwrap();
+        run(operation, encode(&open_cube(), Encoding::Obj), &Options::default(), &budget).unwrap();
     }
     let heard = heard.lock().unwrap();
     for stage in Stage::ALL {

@@ -129,13 +129,13 @@ fn a_repair_with_a_target_ends_with_a_simplification_that_stays_certified() {
     let simplify = SimplifyChoices { targets: vec![Target::Faces(12)], ..SimplifyChoices::default() };
     let options = Options { simplify, output_format: Some(Format::Stl), ..Options::default() };
     let answer =
-        run(Operation::Repair, &encode(&soup, Encoding::Off), &options, &Budget::unlimited()).unwrap();
+        run(Operation::Repair, encode(&soup, Encoding::Off), &options, &Budget::unlimited()).unwrap();
     assert_eq!(answer.report.outcome, Some(Outcome::Repaired));
     assert!(answer.report.certificate.as_ref().unwrap().is_printable());
     assert_eq!(answer.report.actions.last().unwrap().step, "simplify");
     assert_eq!(read(answer.output.as_ref().unwrap()).triangles.len(), 12);
     let whole =
-        run(Operation::Repair, &encode(&cube(), Encoding::Off), &Options::default(), &Budget::unlimited());
+        run(Operation::Repair, encode(&cube(), Encoding::Off), &Options::default(), &Budget::unlimited());
     assert_eq!(
         whole.unwrap().report.outcome,
         Some(Outcome::Identical),
@@ -192,7 +192,7 @@ fn an_error_is_kept_beside_a_count_that_goes_past_it() {
             let simplify = SimplifyChoices { targets, mode: Some(mode), ..SimplifyChoices::default() };
             let options = Options { simplify, ..Options::default() };
             let answer =
-                run(Operation::Simplify, &encode(&ball(), Encoding::Off), &options, &Budget::unlimited());
+                run(Operation::Simplify, encode(&ball(), Encoding::Off), &options, &Budget::unlimited());
             answer.unwrap().report.levels.iter().map(|l| l.simplified.faces_after).collect::<Vec<_>>()
         };
         let alone = levels(vec![Target::Error(0.005)]);
@@ -294,7 +294,7 @@ fn priorities_are_colours_from_blue_to_red() {
         };
         let options = Options { simplify: choices, output_format: Some(format), ..Options::default() };
         let answer =
-            run(Operation::Simplify, &encode(&soup, Encoding::StlBinary), &options, &Budget::unlimited());
+            run(Operation::Simplify, encode(&soup, Encoding::StlBinary), &options, &Budget::unlimited());
         let answer = answer.unwrap();
         for output in answer.output.iter().chain(&answer.levels) {
             let colors = read(output).vertex_colors;

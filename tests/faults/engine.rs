@@ -16,7 +16,7 @@ const OPEN: &[u8] = b"OFF\n4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n
 /// The engine of the tests.
 pub(crate) fn run(
     operation: Operation,
-    bytes: &[u8],
+    bytes: Vec<u8>,
     options: &Options,
     budget: &Budget,
 ) -> Result<Answer, Failure> {

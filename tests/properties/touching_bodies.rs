@@ -112,7 +112,7 @@ fn cells(size: Cell) -> impl Iterator<Item = Cell> {
 fn repaired(soup: &RawSoup, contact: Contact, encoding: Encoding) -> Answer {
     let wrap = WrapChoices { cells: Some(16), ..WrapChoices::default() };
     let options = Options { contact, wrap, ..Options::default() };
-    run(Operation::Repair, &encode(soup, encoding), &options, &Budget::unlimited()).unwrap()
+    run(Operation::Repair, encode(soup, encoding), &options, &Budget::unlimited()).unwrap()
 }
 
 /// Number of shells of a result that was certified without being rebuilt.

@@ -284,7 +284,7 @@ fn what_nothing_passes_through_any_more_is_whole_again() {
     assert!([0, 1, 4, 5, 6, 7, 8, 9, 10, 11, 14, 15].into_iter().all(whole), "{merged:?}");
     assert!((2..4).chain(24..36).all(|source| !whole(source)));
     let pitch = 2f64.powi(-20);
-    let placed = super::place(&arrangement, &merged, pitch, &Budget::unlimited()).unwrap();
+    let placed = super::place(&arrangement, merged, pitch, &Budget::unlimited()).unwrap();
     assert_eq!((placed.conflicts, placed.move_max), (0, 0.0));
 }
 
@@ -314,7 +314,7 @@ fn placed_boundaries_are_on_the_lattice_and_conflicts_are_counted() {
         let merged = arrangement.merged(&boundary, &Budget::unlimited()).unwrap();
         // On the coarsest, what is left of bodies that are a few steps large meets itself in places.
         for pitch in [2f64.powi(-19), 2f64.powi(-5), 2f64.powi(-3), 2f64.powi(-1)] {
-            let placed = super::place(&arrangement, &merged, pitch, &Budget::unlimited()).unwrap();
+            let placed = super::place(&arrangement, merged.clone(), pitch, &Budget::unlimited()).unwrap();
             assert_eq!(placed.triangles.len(), placed.sources.len());
             assert!(placed.move_max <= pitch * 3.0, "{} of {pitch}", placed.move_max);
             for &p in placed.triangles.as_flattened() {

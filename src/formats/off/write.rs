@@ -12,7 +12,9 @@ pub(in crate::formats) fn text(soup: &Soup, budget: &Budget) -> Result<Vec<u8>, 
     /// A number, and a third of what stands around those of a triangle, which may have a colour.
     const CORNER_BYTES_MAX: usize = 52;
     let mut text = Text::new(budget);
-    let vertex_layout = ColorLayout::of(&soup.vertex_colors);
+    // Readers take four channels from each vertex of a COFF.
+    let with_alpha = |layout| ColorLayout { has_alpha: true, ..layout };
+    let vertex_layout = ColorLayout::of(&soup.vertex_colors).map(with_alpha);
     text.before_item(0, VERTEX_BYTES_MAX)?;
     text.word(if vertex_layout.is_some() { "COFF\n" } else { "OFF\n" });
     text.integer(soup.positions.len() as i64);

@@ -14,6 +14,9 @@ const TRIANGLE_BYTES: usize = 50;
 const NORMAL_BYTES: usize = 12;
 const CORNER_BYTES: usize = 12;
 
+/// What is left out of a file that goes on behind the triangles that its header announces: so many bytes.
+pub(crate) const BYTES_BEHIND: &str = "bytes_behind_triangles";
+
 /// Length of the file that the header of `bytes` announces, if there is a whole header.
 pub(in crate::formats) fn announced_length(bytes: &[u8]) -> Option<u64> {
     announced_triangles(bytes).map(|count| HEADER_BYTES as u64 + TRIANGLE_BYTES as u64 * u64::from(count))
@@ -27,8 +30,8 @@ pub(in crate::formats) fn announced_triangles(bytes: &[u8]) -> Option<u32> {
         .filter(|_| bytes.len() >= HEADER_BYTES)
 }
 
-/// Reads as many triangles as the header announces and welds bit-equal corners. Attribute bytes are counted;
-/// normals and whatever follows the last triangle are ignored.
+/// Reads as many triangles as the header announces and welds bit-equal corners. Attribute bytes and whatever follows the last
+/// triangle are counted; normals are ignored.
 pub(in crate::formats) fn read(
     bytes: &[u8],
     options: &ReadOptions,
@@ -63,7 +66,9 @@ pub(in crate::formats) fn read(
 
     let soup = Faces::of_triangles(triangles).into_soup(positions, &options.limits, budget)?;
     let marked = count_attributes(records, budget)?;
-    let left_out = if marked > 0 { vec![("attribute_bytes", marked)] } else { Vec::new() };
+    let behind = bytes.len() as u64 - length;
+    let left_out = [("attribute_bytes", marked), (BYTES_BEHIND, behind)];
+    let left_out = left_out.into_iter().filter(|&(_, count)| count > 0).collect();
     Ok(Soup { is_welded_by_format: true, left_out, ..soup })
 }
 

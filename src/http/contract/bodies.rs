@@ -71,7 +71,7 @@ fn form(parts: &[&str], schema: &str, about: &str, meshes: usize) -> ObjectBuild
     parts.iter().fold(begun, part).property(
         "material",
         bytes(
-            "The MTL file of an OBJ: its diffuse colours become face colours, which OFF, PLY and glTF hold.",
+            "The MTL file of an OBJ: its diffuse colours become face colours, which OFF, PLY, 3MF and glTF hold.",
         ),
     )
 }

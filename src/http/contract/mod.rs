@@ -238,11 +238,14 @@ fn complete_run(operation: &mut Operation, on_mesh: wire::Operation) {
         let types = [PNG, wire::media_type_of(Format::Glb)];
         let answer = picture_answer("The picture, or the report, as `Accept` asks for.", &types);
         let answer = answer.content("application/json", Content::new(Some(reference::<Report>())));
-        add_answer(operation, "200", answer.build());
-    }
-    if on_mesh.makes_mesh() {
+        add_answer(operation, "200", with_headers_of_run(answer).build());
+    } else if on_mesh.makes_mesh() {
         add_problems(operation, MESH_OUT);
         add_answer(operation, "200", mesh_answer().build());
+    } else {
+        let report = Content::new(Some(reference::<Report>()));
+        let answer = ResponseBuilder::new().description("The report.").content("application/json", report);
+        add_answer(operation, "200", with_headers_of_run(answer).build());
     }
 }
 
@@ -277,12 +280,20 @@ fn mesh_answer() -> ResponseBuilder {
         .description(Some("How true the result is to the file."))
         .schema(Some(RefOr::from(reference::<Fidelity>())))
         .build();
-    mesh_contents(ResponseBuilder::new().description("The mesh, its report, or both, as `Accept` asks for."))
-        .content("application/json", Content::new(Some(reference::<Report>())))
-        .content("multipart/mixed", Content::new(Some(binary())))
-        .content("application/zip", Content::new(Some(binary())))
-        .header("Meshmend-Outcome", outcome)
-        .header("Meshmend-Fidelity", fidelity)
+    let answer = mesh_contents(
+        ResponseBuilder::new().description("The mesh, its report, or both, as `Accept` asks for."),
+    )
+    .content("application/json", Content::new(Some(reference::<Report>())))
+    .content("multipart/mixed", Content::new(Some(binary())))
+    .content("application/zip", Content::new(Some(binary())))
+    .header("Meshmend-Outcome", outcome)
+    .header("Meshmend-Fidelity", fidelity);
+    with_headers_of_run(answer)
+}
+
+/// With the headers of every answer about a run that has ended.
+fn with_headers_of_run(answer: ResponseBuilder) -> ResponseBuilder {
+    answer
         .header("Link", header("The report, as `describedby`."))
         .header("Preference-Applied", header("Which preferences were followed."))
         .header("Server-Timing", header("Time of each pass."))

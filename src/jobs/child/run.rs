@@ -29,12 +29,12 @@ const WORKING: &CStr = c"meshmend-job";
 
 /// The function that runs a job's bytes.
 type Engine =
-    dyn Fn(pipeline::Operation, &[u8], &pipeline::Options, &Budget) -> Result<Answer, Failure> + Sync;
+    dyn Fn(pipeline::Operation, Vec<u8>, &pipeline::Options, &Budget) -> Result<Answer, Failure> + Sync;
 
 /// Runs the job that standard input describes with `engine`, and ends with the server. To be called first in `main` when
 /// the first argument is [`RUN_JOB`], before any thread is started: all are to be confined.
 pub fn run_job(
-    engine: impl Fn(pipeline::Operation, &[u8], &pipeline::Options, &Budget) -> Result<Answer, Failure>
+    engine: impl Fn(pipeline::Operation, Vec<u8>, &pipeline::Options, &Budget) -> Result<Answer, Failure>
     + Sync
     + 'static,
 ) -> ExitCode {
@@ -103,7 +103,7 @@ fn run(task: &Task, files: &Files, engine: &Engine) -> Result<Product<FileMade>,
         .map_err(|error| disk_problem(&error))?;
     let material = task.has_material.then(|| std::fs::read(files.rooms.material()));
     options.material = material.transpose().map_err(|error| disk_problem(&error))?;
-    let answer = engine(task.operation.into(), &content, &options, &budget)
+    let answer = engine(task.operation.into(), content, &options, &budget)
         .map_err(|failure| Problem::from(&failure))?;
     files.write(Product::of(answer, clock.timing_ms())?)
 }

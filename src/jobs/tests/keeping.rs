@@ -253,7 +253,7 @@ async fn a_disk_that_is_nearly_full_takes_no_upload_and_no_result_goes_for_it() 
     jobs.drain().await;
     drop(jobs);
     let settings = JobsSettings { disk_free_bytes_min: u64::MAX, ..JobsSettings::new(&dir) };
-    let engine: Engine = Arc::new(|_: Asked, bytes: &[u8], _: &_, budget: &Budget| mend(bytes, budget));
+    let engine: Engine = Arc::new(|_: Asked, bytes: Vec<u8>, _: &_, budget: &Budget| mend(&bytes, budget));
     let jobs = restarting::started(settings, engine).await;
     let problem = jobs.upload(Some(5)).await.unwrap_err();
     assert_eq!(

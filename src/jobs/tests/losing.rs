@@ -146,7 +146,7 @@ async fn with_another_store(
     let settings = JobsSettings { lost_store, ..jobs.settings().clone() };
     jobs.drain().await;
     drop(jobs);
-    let engine: Engine = Arc::new(|_: Asked, bytes: &[u8], _: &_, budget: &Budget| mend(bytes, budget));
+    let engine: Engine = Arc::new(|_: Asked, bytes: Vec<u8>, _: &_, budget: &Budget| mend(&bytes, budget));
     // With the last connection goes the file beside the store.
     while settings.data_dir.join("jobs.sqlite3-wal").exists() {
         tokio::time::sleep(Duration::from_millis(5)).await;
@@ -231,7 +231,7 @@ async fn a_store_that_is_put_back_is_the_store_of_its_files() {
     let (_, dir) = with_another_store(house, take, LostStore::Refuse).await.unwrap_err();
     remove_store(dir.path());
     fs::copy(&saved, dir.path().join("jobs.sqlite3")).unwrap();
-    let engine: Engine = Arc::new(|_: Asked, bytes: &[u8], _: &_, budget: &Budget| mend(bytes, budget));
+    let engine: Engine = Arc::new(|_: Asked, bytes: Vec<u8>, _: &_, budget: &Budget| mend(&bytes, budget));
     let house = House { jobs: started(JobsSettings::new(dir.path()), engine).await, dir };
     assert_eq!(content(house.result(id(&job)).await.unwrap()).await, b"mended");
 }

@@ -46,7 +46,7 @@ async fn house(
     let dir = tempfile::tempdir().unwrap();
     let mut settings = JobsSettings { slots: 1, queue_max: 4, ..JobsSettings::new(dir.path()) };
     change(&mut settings);
-    let engine: Engine = Arc::new(move |_: Asked, bytes, _, budget| engine(bytes, budget));
+    let engine: Engine = Arc::new(move |_: Asked, bytes, _, budget| engine(&bytes, budget));
     let jobs = Jobs::start_with(settings, engine).await.unwrap();
     House { jobs, dir }
 }

@@ -16,7 +16,7 @@ async fn crash_and_restart(
     jobs.service().draining.cancel();
     stop_until_slots_are_free(&jobs).await;
     drop(jobs);
-    let engine: Engine = Arc::new(move |_: Asked, bytes, _, budget| engine(bytes, budget));
+    let engine: Engine = Arc::new(move |_: Asked, bytes, _, budget| engine(&bytes, budget));
     House { jobs: started(settings, engine).await, dir }
 }
 

@@ -160,7 +160,7 @@ fn mended(
         Err(_) => return Err(NONE),
     };
     let options = Options { units: None, require: Some(Require::Printable), ..options.clone() };
-    let answer = run_on_file(Operation::Repair, &bytes, &options, bound, budget)?;
+    let answer = run_on_file(Operation::Repair, bytes.as_slice().into(), &options, bound, budget)?;
     match answer.report.refusal {
         Some(Refusal::OverBudget { .. }) => return Err(OVER_BUDGET),
         Some(_) => return Err(NONE),

@@ -117,6 +117,12 @@ impl Draft {
         }
     }
 
+    /// Makes room for just so many more vertices: a few more than there is room for would double the room.
+    pub(in crate::repair) fn reserve_vertices(&mut self, count: usize) {
+        self.positions.reserve_exact(count);
+        self.vertex_origin.reserve_exact(count);
+    }
+
     /// Drops vertices that no triangle uses and gives their number; the others keep their order.
     pub fn drop_unused_vertices(&mut self) -> u64 {
         let mut is_used = vec![false; self.positions.len()];

@@ -51,6 +51,7 @@ pub fn pair_sheets(draft: &mut Draft, across: Across, budget: &Budget) -> Result
     }
     let edges = paired.edges.len() as u64;
     draft.triangles = cut.triangles;
+    draft.reserve_vertices(cut.copies.len());
     for &v in &cut.copies {
         draft.positions.push(draft.positions[v as usize]);
         draft.vertex_origin.push(draft.vertex_origin[v as usize]);
@@ -156,6 +157,7 @@ fn divide_edges(draft: &mut Draft, groups: &[Vec<u32>], budget: &Budget) -> Resu
     let Some(pitch) = print_pitch(reach) else { return Ok(0) };
     let mut middles = Vec::new();
     let mut divided = 0;
+    draft.reserve_vertices(groups.len());
     for group in groups {
         let ends = edge_of(&draft.triangles, group[0]).map(|v| draft.positions[v as usize]);
         let middle = ((ends[0] + ends[1]) / 2.0).map(|x| (x / pitch).round_ties_even() * pitch);

@@ -45,7 +45,7 @@ pub struct Coverage {
 impl Coverage {
     fn of(draft: &Draft, arrangement: &Arrangement) -> Self {
         let of_file = |t: u32| Some(draft.triangle_origin[t as usize]).filter(|&origin| origin != NEW);
-        let mut coverage = Self::default();
+        let mut coverage = Self { present: Vec::with_capacity(draft.triangles.len()), ..Self::default() };
         coverage.present.extend((0..draft.triangles.len() as u32).filter_map(of_file));
         for (f, corners) in arrangement.pieces().iter().enumerate() {
             let [front, back] = arrangement.windings(f).map(|winding| winding[0] > 0);
@@ -139,7 +139,7 @@ fn placed(
     drop(boundary);
     let reach = draft.positions.iter().fold(0.0f64, |reach, p| reach.max(p.abs().max_element()));
     let pitch = print_pitch(reach);
-    pitch.map(|pitch| arrangement::place(arrangement, &merged, pitch, budget)).transpose()
+    pitch.map(|pitch| arrangement::place(arrangement, merged, pitch, budget)).transpose()
 }
 
 /// Puts what is placed into the draft.

@@ -49,6 +49,11 @@ pub enum OptionError {
         /// The other one.
         by: &'static str,
     },
+    /// It is about a picture of pixels, and a mesh is asked for in its place.
+    OfPixels {
+        /// The option.
+        spec: &'static OptionSpec,
+    },
     /// It has no meaning without something else.
     Lacking {
         /// The option.
@@ -83,6 +88,7 @@ impl fmt::Display for OptionError {
                 write!(f, "`{operation}` takes no `{}`; it is an option of {}", spec.name, takers.join(", "))
             }
             Self::Excluded { spec, by } => write!(f, "`{}` does not go with `{by}`", spec.name),
+            Self::OfPixels { spec } => write!(f, "a GLB to turn has no `{}`", spec.name),
             Self::Lacking { spec, needs } => write!(f, "this `{}` needs {needs}", spec.name),
             Self::Contradictory { spec } => write!(f, "`{}` is given twice with different values", spec.name),
         }
@@ -115,6 +121,7 @@ impl From<&OptionError> for Problem {
             OptionError::NotTaken { spec, .. } => of(ProblemCode::UnknownParameter, spec.name),
             OptionError::Contradictory { spec }
             | OptionError::Excluded { spec, .. }
+            | OptionError::OfPixels { spec }
             | OptionError::Lacking { spec, .. } => of(ProblemCode::InvalidParameter, spec.name),
         }
     }

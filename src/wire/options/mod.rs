@@ -287,7 +287,7 @@ impl Options {
         }
         let of_pixels = ["views", "width", "height", "shade", "edges", "projection", "turntable"];
         match self.given().find(|spec| of_pixels.contains(&spec.name)) {
-            Some(spec) => Err(OptionError::Excluded { spec, by: "picture_format" }),
+            Some(spec) => Err(OptionError::OfPixels { spec }),
             None => Ok(()),
         }
     }
