@@ -70,7 +70,7 @@ def run(binary, target, part):
         if not inputs:
             return used() - before, executions, peak, [f"ended with {ended.returncode}"]
         for path in inputs:
-            if not os.path.basename(path).startswith("timeout-") or is_slow(binary, path):
+            if not os.path.basename(path).startswith(("timeout-", "slow-unit-")) or is_slow(binary, path):
                 return used() - before, executions, peak, sorted(map(os.path.basename, inputs))
             # It is no hang, and would not be one in the next run.
             os.remove(path)

@@ -58,6 +58,7 @@ declare -A scripts=(
   [sleepers]="sleepers.py"
   [processors]="processors.py"
   [fuzz]="fuzz.py"
+  [migration-kill]="migration_kill.py"
 )
 
 # What a script needs beside the program.
@@ -66,6 +67,7 @@ declare -A programs=(
   [stores-cut]="--example s3_server"
   [versions]="--example s3_server"
   [sleepers]="--example s3_server --example sleeper"
+  [migration-kill]="--example s3_server"
 )
 
 name=${1:-}

@@ -322,7 +322,7 @@ impl Attempt {
     /// What of the soup need not be looked for in the result, if bodies were united; nothing that is buried where that may be
     /// seen all the same.
     pub(super) fn covered(&self, looks_out: bool) -> Option<Covered> {
-        let KnownCoverage::By(Coverage { present, bare, buried, buried_area }) = &self.coverage else {
+        let KnownCoverage::By(Coverage { present, bare, buried, buried_area, .. }) = &self.coverage else {
             return None;
         };
         let is_in = |list: &[u32], t: &u32| list.binary_search(t).is_ok();

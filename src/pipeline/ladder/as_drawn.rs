@@ -1,4 +1,5 @@
-//! The steps that mend the surface, on the file as it is drawn; with walls where patches would hide much of it.
+//! The steps that mend the surface, on the file as it is drawn; with walls where patches would hide much of it, and with one of two
+//! copies of opposite direction where much was lost without both.
 
 use super::climb::RungResult;
 use super::{Kind, Rung};
@@ -8,7 +9,10 @@ pub(super) const RUNG: Rung = Rung {
     kind: Kind::Plan,
     applies: |_, situation| Ok(situation.last.is_none()),
     tries: |climb, situation| match climb.try_plan(situation.variant, situation)? {
-        Some(RungResult::Certified(closed)) => climb.with_walls_if_closer(closed, situation).map(Some),
+        Some(RungResult::Certified(closed)) => {
+            let closed = climb.with_copies_if_closer(closed, situation)?;
+            climb.with_walls_if_closer(closed, situation).map(Some)
+        }
         found => Ok(found),
     },
 };

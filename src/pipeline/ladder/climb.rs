@@ -16,6 +16,7 @@ use crate::pipeline::repair_choices::{Choices, Walls};
 use crate::pipeline::size::diagonal;
 use crate::pipeline::step::Step;
 use crate::pipeline::{Action, Failure, Options, Refusal, Require};
+use crate::repair::duplicates::OppositePairs;
 use crate::repair::noise::Noise;
 use crate::repair::snap::gap_between_rims;
 use crate::repair::{Draft, noise};
@@ -233,6 +234,28 @@ impl Climb<'_> {
                 Ok(None)
             }
         }
+    }
+
+    /// Tries to keep one of two copies of opposite direction beside a result that lost much and has neither, and gives the closer one.
+    pub(super) fn with_copies_if_closer(
+        &self,
+        closed: Box<Certified>,
+        situation: &mut Situation,
+    ) -> Result<Box<Certified>, Failure> {
+        let has_lost = !closed.fidelity.passes(&self.options.limits);
+        if !has_lost || !closed.attempt.effects.cancelled_opposite_pairs {
+            return Ok(closed);
+        }
+        let variant = Variant { opposite: OppositePairs::KeepFirst, ..situation.variant };
+        let kept = self.budget.within_part(WALLS_PART, || self.try_plan(variant, situation))?;
+        Ok(match kept.flatten() {
+            Some(RungResult::Certified(kept))
+                if !closed.fidelity.is_no_worse(&kept.fidelity, &self.options.limits) =>
+            {
+                kept
+            }
+            _ => closed,
+        })
     }
 
     /// Tries walls beside a result that patches over openings take much from, and gives the closer one.

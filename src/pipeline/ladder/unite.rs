@@ -119,7 +119,6 @@ impl Climb<'_> {
         if walls != Walls::First {
             filled.push(Uniting::Mended);
             filled.extend(self.choices.fills_all_holes().then_some(Uniting::Spanned));
-            filled.extend((is_open && may_wall && !is_sheets).then_some(Uniting::Thickened));
         }
         // Whichever way triangles turn: after all that goes by their directions, except that walls come last for what is no sheet.
         let encloses = walls != Walls::First && self.choices.fills_all_holes() && !is_open;
@@ -128,6 +127,7 @@ impl Climb<'_> {
         kinds.extend(by_direction.into_iter().chain(enclosed(Uniting::Enclosed)));
         if !is_sheets {
             kinds.extend(may_wall.then_some(Uniting::Walled));
+            kinds.extend((is_open && may_wall && walls != Walls::First).then_some(Uniting::Thickened));
         }
         kinds.extend(enclosed(Uniting::EnclosedAndWalled).filter(|_| may_wall));
         kinds

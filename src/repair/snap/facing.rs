@@ -64,7 +64,8 @@ struct FacingEdges {
     run_alike: bool,
 }
 
-/// The meetings in an order that does not depend on how parts are wound: by distance, then by triangle.
+/// The meetings by distance; of those at one distance, where several edges lie on each other, first those for which nothing has to
+/// turn, then by triangle. Where only two edges meet everywhere, the order does not matter.
 fn meetings(
     draft: &Draft,
     rim: &ManifoldRim,
@@ -116,8 +117,8 @@ fn meetings(
     }
     let triangles = |meeting: &FacingEdges| meeting.edges.map(|i| triangle_of(rim.half_edges[i]));
     found.sort_by(|a, b| {
-        let by_place = a.apart.total_cmp(&b.apart).then(triangles(a).cmp(&triangles(b)));
-        by_place.then(a.run_alike.cmp(&b.run_alike)).then(a.edges.cmp(&b.edges))
+        let by_place = a.apart.total_cmp(&b.apart).then(a.run_alike.cmp(&b.run_alike));
+        by_place.then(triangles(a).cmp(&triangles(b))).then(a.edges.cmp(&b.edges))
     });
     Ok(found)
 }

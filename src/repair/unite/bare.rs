@@ -1,6 +1,7 @@
 //! Unites bodies and keeps a copy of what that would lose: triangles of which a part has void on both sides.
 
-use super::{arranged, become_solid, left_alone, turn_inverted};
+use super::cavities::{Mouths, turn_inverted};
+use super::{arranged, become_solid, left_alone};
 use crate::arrangement::{Arrangement, ArrangementError, SolidBoundary};
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
@@ -52,9 +53,14 @@ struct Copies {
 impl Copies {
     /// Of the triangles of which a piece has void on both sides.
     fn of_bare(draft: &Draft, arrangement: &Arrangement, budget: &Budget) -> Result<Self, Stopped> {
-        let is_bare = |f: &usize| arrangement.windings(*f).iter().all(|winding| winding[0] <= 0);
-        let pieces = (0..arrangement.pieces().len()).filter(is_bare);
-        let mut bare: Vec<u32> = pieces.map(|f| source(draft, arrangement, f)).collect();
+        let mouths = Mouths::of(draft, budget);
+        let mut bare = Vec::new();
+        for f in 0..arrangement.pieces().len() {
+            let is_bare = arrangement.windings(f).iter().all(|winding| winding[0] <= 0);
+            if is_bare && !mouths.have(arrangement.sources(f))? {
+                bare.push(source(draft, arrangement, f));
+            }
+        }
         bare.sort_unstable();
         bare.dedup();
         let mut corners: Vec<u32> = bare.iter().flat_map(|&t| draft.triangles[t as usize]).collect();

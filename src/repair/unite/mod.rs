@@ -6,6 +6,7 @@
 
 mod bare;
 mod bore;
+mod cavities;
 mod combine;
 mod enclose;
 
@@ -14,14 +15,13 @@ pub use bore::bore_contacts;
 pub use combine::{NotCombined, NotSolid, SetOperation, combine};
 pub use enclose::{enclose, enclose_and_copy_bare};
 
+use self::cavities::{Mouths, turn_inverted};
 use super::{Changes, Draft, FIRST_BLEND, NEW};
 use crate::arrangement::{
     self, Arrangement, ArrangementError, ArrangementOptions, PlacedBoundary, SolidBoundary, arrange,
 };
-use crate::budget::{Budget, CHECK_EVERY, Stopped};
-use crate::geom::{Aabb, DVec3, Sign, print_pitch, triangle_area, upward_crossing, volume_sign};
-use crate::mesh::{EdgeGroups, edge_of};
-use crate::spatial::{Bvh, ShellTriangles};
+use crate::budget::{Budget, Stopped};
+use crate::geom::{DVec3, print_pitch, triangle_area};
 
 /// Most pairs of triangles that may meet, for each triangle of the draft and in all.
 const PAIRS_PER_TRIANGLE: usize = 64;
@@ -29,7 +29,8 @@ const PAIRS_MIN: usize = 1 << 16;
 const PAIRS_MAX: usize = 1 << 21;
 
 /// What became of the triangles of the soup when bodies were united. Every place of one that is `present` and not `bare` is on the
-/// surface of the solid or inside of it, up to what the rounding of new vertices moves.
+/// surface of the solid or inside of it, up to what the rounding of new vertices moves, or on a mouth: where a cavity reaches the
+/// surface of its body, triangles of both lie on each other, turn opposite ways and bound nothing.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Coverage {
     /// Triangles of the soup that were in the draft, ascending.
@@ -40,10 +41,13 @@ pub struct Coverage {
     pub buried: Vec<u32>,
     /// Area of the pieces inside the solid, in square units of the file.
     pub buried_area: f64,
+    /// Pieces that are mouths of cavities.
+    pub mouths: u64,
 }
 
 impl Coverage {
-    fn of(draft: &Draft, arrangement: &Arrangement) -> Self {
+    fn of(draft: &Draft, arrangement: &Arrangement, budget: &Budget) -> Result<Self, Stopped> {
+        let mouths = Mouths::of(draft, budget);
         let of_file = |t: u32| Some(draft.triangle_origin[t as usize]).filter(|&origin| origin != NEW);
         let mut coverage = Self { present: Vec::with_capacity(draft.triangles.len()), ..Self::default() };
         coverage.present.extend((0..draft.triangles.len() as u32).filter_map(of_file));
@@ -55,7 +59,11 @@ impl Coverage {
                 let area = triangle_area(corners.map(|p| arrangement.position(p)));
                 coverage.buried_area += area * count as f64;
             } else if !front && !back {
-                coverage.bare.extend(sources());
+                if mouths.have(arrangement.sources(f))? {
+                    coverage.mouths += 1;
+                } else {
+                    coverage.bare.extend(sources());
+                }
             }
             // Of several on each other, one stands for all from here on.
             if front && back || count > 1 {
@@ -66,7 +74,7 @@ impl Coverage {
             list.sort_unstable();
             list.dedup();
         }
-        coverage
+        Ok(coverage)
     }
 }
 
@@ -101,9 +109,20 @@ fn become_solid(
     boundary: SolidBoundary,
     budget: &Budget,
 ) -> Result<Changes, ArrangementError> {
-    let coverage = Coverage::of(draft, arrangement);
+    let coverage = Coverage::of(draft, arrangement, budget)?;
     Ok(match placed(draft, arrangement, boundary, budget)? {
-        Some(placed) => Changes { coverage: Some(coverage), ..replace(draft, placed) },
+        Some(placed) => {
+            let mut changes = replace(draft, placed);
+            if coverage.mouths > 0 {
+                let why = "a cavity reaches the surface of its body and stays open there";
+                changes.reason = [why, &changes.reason]
+                    .into_iter()
+                    .filter(|why| !why.is_empty())
+                    .collect::<Vec<_>>()
+                    .join("; ");
+            }
+            Changes { coverage: Some(coverage), ..changes }
+        }
         None => not_united("float32 does not go so far"),
     })
 }
@@ -221,68 +240,10 @@ fn shares([a, b, c]: [DVec3; 3], place: DVec3) -> [f64; 3] {
     if sum > 0.0 && sum.is_finite() { parts.map(|part| part / sum) } else { [1.0, 0.0, 0.0] }
 }
 
-/// Turns the closed shells that point inward and of which the highest vertex is in no other shell; gives their number. The shells
-/// are those connected by edges, so that bodies that share an edge count as one.
-fn turn_inverted(draft: &mut Draft, budget: &Budget) -> Result<u64, Stopped> {
-    let groups = EdgeGroups::build(&draft.triangles, draft.positions.len(), budget)?;
-    let parts = groups.components(budget)?;
-    let mut is_closed = vec![true; parts.count as usize];
-    for (e, group) in groups.iter().enumerate() {
-        if e % CHECK_EVERY == 0 {
-            budget.spend(CHECK_EVERY as u64)?;
-        }
-        let forward = |&&h: &&u32| {
-            let [from, to] = edge_of(&draft.triangles, h);
-            from < to
-        };
-        if 2 * group.iter().filter(forward).count() != group.len() {
-            is_closed[parts.of[(group[0] / 3) as usize] as usize] = false;
-        }
-    }
-    drop(groups);
-    let members = ShellTriangles::group(&parts.of, parts.count, budget)?;
-    let mut inverted = Vec::new();
-    for part in (0..parts.count as usize).filter(|&part| is_closed[part]) {
-        let corners = members.of(part).iter().map(|&t| draft.corners(t as usize));
-        if volume_sign(corners, || budget.check())? == Sign::Negative {
-            inverted.push(part);
-        }
-    }
-    if inverted.is_empty() {
-        return Ok(0);
-    }
-    let bvh = Bvh::build(&draft.positions, &draft.triangles, None, budget)?;
-    let mut turned = Vec::new();
-    for part in inverted {
-        let own = members.of(part);
-        let bounds = Aabb::of(own.iter().flat_map(|&t| draft.corners(t as usize)));
-        let points = own.iter().flat_map(|&t| draft.corners(t as usize));
-        let top = points.fold(bounds.min, |top, p| if p.z > top.z { p } else { top });
-        let mut winding = 0;
-        bvh.visit_upward_ray(top, budget, |t| {
-            if parts.of[t as usize] as usize != part {
-                winding += match upward_crossing(top, draft.corners(t as usize)) {
-                    Some(Sign::Positive) => 1,
-                    Some(_) => -1,
-                    None => 0,
-                };
-            }
-        })?;
-        if winding <= 0 {
-            turned.push(part);
-        }
-    }
-    for &part in &turned {
-        for &t in members.of(part) {
-            draft.flip(t as usize);
-        }
-    }
-    Ok(turned.len() as u64)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::EdgeGroups;
 
     /// Cubes of these sides from these corners on; `true`: turned inside out.
     pub(super) fn cubes(of: &[(DVec3, f64, bool)]) -> Draft {

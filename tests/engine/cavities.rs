@@ -1,0 +1,117 @@
+//! Cavities that reach the surface of their body from within, lids that lie loose, and faces that are there twice: what people draw
+//! where a hole in the surface would be right.
+
+use crate::oracle::{RawSoup, weld};
+use crate::repair::repaired;
+use crate::solids::cuboid;
+use meshmend::pipeline::{Answer, Outcome};
+
+/// A closed cylinder around the z axis with `n` sides; the discs at its ends have a vertex in their middle.
+fn cylinder(n: u32, radius: f64, [low, high]: [f64; 2]) -> RawSoup {
+    let angle = |i: u32| f64::from(i) * std::f64::consts::TAU / f64::from(n);
+    let ring = |z: f64| (0..n).map(move |i| [radius * angle(i).cos(), radius * angle(i).sin(), z]);
+    let positions = ring(low).chain(ring(high)).chain([[0.0, 0.0, low], [0.0, 0.0, high]]).collect();
+    let sides = (0..n).flat_map(|i| {
+        let j = (i + 1) % n;
+        [[i, j, n + j], [i, n + j, n + i], [j, i, 2 * n], [n + i, n + j, 2 * n + 1]]
+    });
+    RawSoup { positions, triangles: sides.collect() }
+}
+
+/// Volume of such a cylinder.
+fn volume(n: u32, radius: f64, height: f64) -> f64 {
+    let n = f64::from(n);
+    n / 2.0 * (std::f64::consts::TAU / n).sin() * radius * radius * height
+}
+
+/// Shells and volume of the result.
+fn figures(answer: &Answer) -> (usize, f64) {
+    assert_eq!(answer.report.outcome, Some(Outcome::Repaired), "{:?}", answer.report.refusal);
+    let shells = answer.report.certificate.as_ref().unwrap().shells.len();
+    (shells, answer.report.after.as_ref().unwrap().measures.volume.unwrap())
+}
+
+fn assert_faithful(answer: &Answer) {
+    let fidelity = answer.report.fidelity.as_ref().unwrap();
+    assert!(fidelity.changes.is_empty(), "{:?}", fidelity.changes);
+}
+
+#[test]
+fn a_tube_of_two_cylinders_whose_ends_are_flush_is_open_at_both() {
+    let (outer, inner) = (cylinder(32, 10.0, [0.0, 20.0]), cylinder(32, 6.0, [0.0, 20.0]).inside_out());
+    let answer = repaired(&outer.with(&inner));
+    let (shells, found) = figures(&answer);
+    let expected = volume(32, 10.0, 20.0) - volume(32, 6.0, 20.0);
+    assert!(
+        shells == 1 && (found - expected).abs() < 1e-3 * expected,
+        "{shells} shells of {found}, not {expected}"
+    );
+    assert_faithful(&answer);
+    let reasons: Vec<&str> = answer.report.actions.iter().map(|action| action.reason.as_str()).collect();
+    assert!(reasons.iter().any(|why| why.contains("stays open there")), "{reasons:?}");
+}
+
+#[test]
+fn a_cup_of_two_cylinders_whose_tops_are_flush_is_open_there() {
+    let (outer, inner) = (cylinder(32, 10.0, [0.0, 20.0]), cylinder(24, 8.0, [2.0, 20.0]).inside_out());
+    let answer = repaired(&outer.with(&inner));
+    let (shells, found) = figures(&answer);
+    let expected = volume(32, 10.0, 20.0) - volume(24, 8.0, 18.0);
+    assert!(
+        shells == 1 && (found - expected).abs() < 1e-3 * expected,
+        "{shells} shells of {found}, not {expected}"
+    );
+    assert_faithful(&answer);
+}
+
+#[test]
+fn a_lid_that_lies_loose_above_its_opening_does_not_make_the_part_hollow() {
+    let n = 32;
+    let mut part = cylinder(n, 8.0, [0.0, 20.0]);
+    // The disc at the top has vertices of its own, a little higher.
+    let base = part.positions.len() as u32;
+    let lid: Vec<[u32; 3]> = part.triangles.iter().copied().filter(|t| t.contains(&(2 * n + 1))).collect();
+    part.triangles.retain(|t| !t.contains(&(2 * n + 1)));
+    let raised: Vec<[f64; 3]> = part.positions.iter().map(|&[x, y, z]| [x, y, z + 0.3]).collect();
+    part.positions.extend(raised);
+    part.triangles.extend(lid.iter().map(|t| t.map(|v| v + base)));
+    let (_, found) = figures(&repaired(&part));
+    let expected = volume(n, 8.0, 20.0);
+    assert!(found > 0.99 * expected && found < 1.05 * expected, "{found}, not about {expected}");
+}
+
+#[test]
+fn faces_around_a_corner_that_are_there_in_both_directions_stay_once() {
+    let solid = weld(&cuboid([10.0; 3]).with(&cuboid([10.0; 3]).moved([20.0, 0.0, 0.0])));
+    let corner: Vec<[u32; 3]> = solid
+        .triangles
+        .iter()
+        .copied()
+        .filter(|t| t.iter().any(|&v| solid.positions[v as usize] == [10.0, 10.0, 10.0]))
+        .map(|[a, b, c]| [a, c, b])
+        .collect();
+    assert!(corner.len() >= 3);
+    let doubled = RawSoup { triangles: [solid.triangles.clone(), corner].concat(), ..solid };
+    let answer = repaired(&doubled);
+    let (shells, found) = figures(&answer);
+    assert!(shells == 2 && (found - 2000.0).abs() < 1e-3, "{shells} shells of {found}");
+    assert_faithful(&answer);
+    assert!(answer.report.identical_triangle_share.is_some_and(|share| share > 0.6));
+}
+
+#[test]
+fn a_ball_at_the_end_of_an_open_tube_is_not_turned() {
+    // Two cuboids at the ends of four walls that share their edges.
+    let (low, high) = (cuboid([10.0; 3]), cuboid([10.0; 3]).moved([0.0, 0.0, 30.0]));
+    let walls = cuboid([10.0, 10.0, 20.0]).moved([0.0, 0.0, 10.0]);
+    let is_wall = |t: &[u32; 3]| {
+        let z = t.map(|v| walls.positions[v as usize][2]);
+        z.iter().any(|&z| z == 10.0) && z.iter().any(|&z| z == 30.0)
+    };
+    let walls =
+        RawSoup { triangles: walls.triangles.iter().copied().filter(is_wall).collect(), ..walls.clone() };
+    assert_eq!(walls.triangles.len(), 8);
+    let answer = repaired(&weld(&low.with(&high).with(&walls)));
+    let (shells, found) = figures(&answer);
+    assert!(shells == 1 && (found - 4000.0).abs() < 1.0, "{shells} shells of {found}");
+}
