@@ -101,18 +101,19 @@ mod tests {
         holed.face_count -= 1;
         let squares = (0..300).map(|i| square(place(i), 1.0));
         let mesh = joined(&squares.chain([holed]).collect::<Vec<_>>());
-        let options = AnalyzeOptions { volume_interval: true, ..AnalyzeOptions::default() };
-        let told = |budget: &Budget| {
+        let told = |volume_interval: bool, budget: &Budget| {
+            let options = AnalyzeOptions { volume_interval, ..AnalyzeOptions::default() };
             let told = analyze(&mesh, Some(&Contacts::default()), &options, budget).unwrap();
             let sheets =
                 told.findings.iter().find(|f| f.code == DefectCode::OpenSheet).map_or(0, |f| f.count);
             (sheets, told.volume_interval.is_some())
         };
-        let unlimited = Budget::unlimited();
-        let (sheets, has_volume) = told(&unlimited);
+        let (sheets, has_volume) = told(true, &Budget::unlimited());
         assert!(sheets > 100 && has_volume, "{sheets}");
-        // All that it took: a quarter of that is not enough for the search, and the rest is for the others.
+        let unlimited = Budget::unlimited();
+        assert_eq!(told(false, &unlimited), (sheets, false));
+        // A quarter of all that it took is not enough for the search, and the rest is for the others.
         let limited = Budget::new(StopFlag::default(), unlimited.work_used(), u64::MAX);
-        assert_eq!(told(&limited), (0, false));
+        assert_eq!(told(true, &limited), (0, false));
     }
 }

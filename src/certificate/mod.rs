@@ -114,7 +114,7 @@ pub fn examine(
 ///
 /// # Errors
 /// When the budget stops the run.
-pub fn examine_read(
+pub(crate) fn examine_read(
     soup: &Soup,
     file: Fingerprint,
     encoding: Encoding,

@@ -236,14 +236,16 @@ fn execute(
 
 /// The bytes of the file that was certified.
 fn read_again(errand: &Errand<'_>, certificate: &Certificate) -> Result<Vec<u8>, Problem> {
-    let [input] = errand.inputs else { return Ok(Vec::new()) };
-    let bytes = input.read().map_err(|e| unreadable(input, &e))?;
-    match Fingerprint::of(&bytes, &Budget::unlimited()) {
-        Ok(file) if file.sha256 == certificate.sha256 => Ok(bytes),
-        _ => Err(wrong(format!(
-            "{input} was changed by another program while it was repaired: nothing is written"
-        ))),
+    for input in errand.inputs {
+        let bytes = input.read().map_err(|e| unreadable(input, &e))?;
+        let file = Fingerprint::of(&bytes, &Budget::unlimited());
+        if file.is_ok_and(|file| file.sha256 == certificate.sha256) {
+            return Ok(bytes);
+        }
     }
+    let detail =
+        "the file was changed by another program in the meantime: nothing is written; run this again";
+    Err(Problem::new(ProblemCode::Internal, format!("{}: {detail}", errand.subject())))
 }
 
 /// Writes the result, if there is one, and the page.

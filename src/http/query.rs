@@ -71,9 +71,9 @@ pub(super) fn page(uri: &Uri, limit_max: usize) -> Result<Page, Problem> {
         };
         if taken.is_none() {
             let expected = match name.as_str() {
-                "cursor" => "once the `next` of an earlier page".to_owned(),
-                "limit" => format!("once a whole number from 1 to {limit_max}"),
-                "state" => format!("once one of {}", JobState::WORDS.join(", ")),
+                "cursor" => "the `next` of an earlier page, once".to_owned(),
+                "limit" => format!("a whole number from 1 to {limit_max}, once"),
+                "state" => format!("one of {}, once", JobState::WORDS.join(", ")),
                 _ => format!("NAME:VALUE, at most {LABELS_MAX} times"),
             };
             let problem = invalid(&name, &format!("`{name}` cannot be `{value}`; expected {expected}"));

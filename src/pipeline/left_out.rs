@@ -33,7 +33,7 @@ pub(super) fn remark_on_end(soup: &Soup) -> Option<String> {
     let (_, bytes) = soup.left_out.iter().find(|(what, _)| *what == BYTES_BEHIND)?;
     let triangles = soup.triangles.len();
     Some(format!(
-        "{bytes} bytes come after the {triangles} triangles that the header of the STL announces; they were not read"
+        "the file goes on after the triangles that the header of the STL announces ({triangles}); what follows was not read ({bytes} bytes)"
     ))
 }
 

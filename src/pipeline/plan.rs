@@ -322,16 +322,26 @@ impl Attempt {
     /// What of the soup need not be looked for in the result, if bodies were united; nothing that is buried where that may be
     /// seen all the same.
     pub(super) fn covered(&self, looks_out: bool) -> Option<Covered> {
-        let KnownCoverage::By(Coverage { present, bare, buried, buried_area, .. }) = &self.coverage else {
-            return None;
-        };
+        let KnownCoverage::By(coverage) = &self.coverage else { return None };
+        Some(self.covered_but(&coverage.bare, coverage, looks_out))
+    }
+
+    /// As [`covered`](Self::covered), if cavities are open where they reach the surface of their body: nor that surface there.
+    pub(super) fn covered_but_for_mouths(&self, looks_out: bool) -> Option<Covered> {
+        let KnownCoverage::By(coverage) = &self.coverage else { return None };
+        let covered = || self.covered_but(&coverage.bare_beside_mouths, coverage, looks_out);
+        (coverage.mouths > 0).then(covered)
+    }
+
+    fn covered_but(&self, bare: &[u32], coverage: &Coverage, looks_out: bool) -> Covered {
+        let Coverage { present, buried, buried_area, .. } = coverage;
         let is_in = |list: &[u32], t: &u32| list.binary_search(t).is_ok();
         let is_covered = |t: &u32| !(is_in(bare, t) || looks_out && is_in(buried, t));
-        Some(Covered {
+        Covered {
             triangles: present.iter().copied().filter(is_covered).collect(),
             buried_area: if looks_out { 0.0 } else { *buried_area },
             moved: self.actions.iter().map(|action| action.move_max).sum(),
-        })
+        }
     }
 }
 
@@ -344,7 +354,11 @@ impl KnownCoverage {
             (_, _, Step::BoreContacts { .. } | Step::MendThinFaces(_)) => Self::No,
             (Self::NotYet, Some(coverage), _) => Self::By(coverage),
             (Self::By(mut known), Some(coverage), _) => {
-                let more = [(&mut known.bare, coverage.bare), (&mut known.buried, coverage.buried)];
+                let more = [
+                    (&mut known.bare, coverage.bare),
+                    (&mut known.buried, coverage.buried),
+                    (&mut known.bare_beside_mouths, coverage.bare_beside_mouths),
+                ];
                 for (known, more) in more {
                     known.extend(more);
                     known.sort_unstable();

@@ -299,7 +299,7 @@ fn priorities_are_colours_from_blue_to_red() {
         for output in answer.output.iter().chain(&answer.levels) {
             let colors = read(output).vertex_colors;
             let red = |color: &Option<Color>| match color {
-                Some(Color::Bytes([r, 0, b], None)) if r + b == 255 => *r,
+                Some(Color::Bytes([r, 0, b], None | Some(255))) if r + b == 255 => *r,
                 other => panic!("{mode:?}: {other:?}"),
             };
             let reds: Vec<u8> = colors.iter().map(red).collect();

@@ -119,6 +119,10 @@ fn color_kinds(random: &mut Random, encoding: Encoding) -> (Kind, Kind) {
     match encoding {
         Encoding::StlBinary | Encoding::StlAscii => (Kind::None, Kind::None),
         Encoding::Obj => (random.pick(&[Kind::None, Kind::Floats(false)]), Kind::None),
+        // Vertices of a COFF have four channels.
+        Encoding::Off => {
+            (random.pick(&[Kind::None, Kind::Bytes(true), Kind::Floats(true)]), random.pick(&any))
+        }
         Encoding::OffBinary => (
             random.pick(&[Kind::None, Kind::Floats(true)]),
             random.pick(&[Kind::None, Kind::Floats(false), Kind::Floats(true)]),

@@ -151,7 +151,7 @@ mod tests {
         soup.vertex_colors =
             vec![Some(Color::Floats([1.0, 0.5, 0.0], None)), None, Some(Color::Bytes([0, 51, 255], None))];
         let colored = String::from_utf8(text(&soup, &Budget::unlimited()).unwrap()).unwrap();
-        let vertices = "0 0 0 1.0 0.5 0.0\n1 0 0 1.0 1.0 1.0\n0 0.1 0 0.0 0.2 1.0\n";
+        let vertices = "0 0 0 1.0 0.5 0.0 1.0\n1 0 0 1.0 1.0 1.0 1.0\n0 0.1 0 0.0 0.2 1.0 1.0\n";
         assert!(colored.starts_with(&format!("COFF\n3 3 0\n{vertices}3 0 1 2")), "{colored}");
     }
 

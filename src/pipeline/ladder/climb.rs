@@ -10,7 +10,7 @@ use crate::pipeline::fidelity::{Fidelity, LOST_BEYOND, Original, defined_volume}
 use crate::pipeline::input::Input;
 use crate::pipeline::looks;
 use crate::pipeline::output::Candidate;
-use crate::pipeline::plan::{Attempt, Variant};
+use crate::pipeline::plan::{Attempt, Covered, Variant};
 use crate::pipeline::rebuild::{self, NotRebuilt, Rebuilt};
 use crate::pipeline::repair_choices::{Choices, Walls};
 use crate::pipeline::size::diagonal;
@@ -29,8 +29,8 @@ const ATTEMPT_PART: u64 = 4;
 /// What is hidden, the same.
 const HIDDEN_PART: u64 = 4;
 
-/// Walls beside a result that patches take much from, the same.
-const WALLS_PART: u64 = 2;
+/// Another plan beside a result that lost much, the same.
+const BESIDE_PART: u64 = 2;
 
 /// Steps of the print lattice by which rounding may take rims apart.
 const ROUNDING_STEPS: f64 = 4.0;
@@ -247,15 +247,19 @@ impl Climb<'_> {
             return Ok(closed);
         }
         let variant = Variant { opposite: OppositePairs::KeepFirst, ..situation.variant };
-        let kept = self.budget.within_part(WALLS_PART, || self.try_plan(variant, situation))?;
-        Ok(match kept.flatten() {
+        let before = situation.variant;
+        let kept = self.budget.within_part(BESIDE_PART, || self.try_plan(variant, situation))?;
+        match kept.flatten() {
             Some(RungResult::Certified(kept))
                 if !closed.fidelity.is_no_worse(&kept.fidelity, &self.options.limits) =>
             {
-                kept
+                Ok(kept)
             }
-            _ => closed,
-        })
+            _ => {
+                situation.variant = before;
+                Ok(closed)
+            }
+        }
     }
 
     /// Tries walls beside a result that patches over openings take much from, and gives the closer one.
@@ -272,7 +276,7 @@ impl Climb<'_> {
         }
         let variant = Variant { thickens: true, ..situation.variant };
         // What is certified already is kept where walls take too much work.
-        let walled = self.budget.within_part(WALLS_PART, || self.try_plan(variant, situation))?;
+        let walled = self.budget.within_part(BESIDE_PART, || self.try_plan(variant, situation))?;
         Ok(match walled.flatten() {
             Some(RungResult::Certified(walled))
                 if !closed.fidelity.is_no_worse(&walled.fidelity, &self.options.limits) =>
@@ -433,31 +437,51 @@ impl Certified {
         candidate: Candidate,
         climb: &Climb<'_>,
     ) -> Result<Self, Failure> {
-        let measure = |looks_out| fidelity(&attempt, &candidate, looks_out, climb);
+        let measure =
+            |looks_out| fidelity(&attempt, &candidate, looks_out, attempt.covered(looks_out).as_ref(), climb);
         let fidelity = measure(attempt.hides_more)?;
         let may_be_seen = attempt.closes_openings && !attempt.hides_more && fidelity.losses.hidden_area > 0.0;
         // Where that is too much work, patches stay in the way.
         let seen_past = || if may_be_seen { measure(true) } else { Ok(fidelity) };
         let as_seen = climb.budget.within_part(HIDDEN_PART, seen_past)?.unwrap_or(fidelity);
-        let fidelity = fidelity.to_choose_by(as_seen, &climb.options.limits);
+        let limits = &climb.options.limits;
+        let chosen = fidelity.to_choose_by(as_seen, limits);
+        let fidelity = chosen_past_mouths(&attempt, &candidate, chosen, as_seen, climb)?;
         Ok(Self { attempt, candidate, fidelity, as_seen })
     }
 }
 
-/// How far a candidate is from the file. What a straight line leads to from outside of the file is not hidden when it
+/// What a candidate is chosen by where cavities are open: what is lost there is told, and no reason to fill them.
+fn chosen_past_mouths(
+    attempt: &Attempt,
+    candidate: &Candidate,
+    chosen: Fidelity,
+    as_seen: Fidelity,
+    climb: &Climb<'_>,
+) -> Result<Fidelity, Stopped> {
+    let (limits, looks_out) = (&climb.options.limits, attempt.hides_more);
+    if chosen.passes(limits) || as_seen.breach(limits).is_some() {
+        return Ok(chosen);
+    }
+    let Some(covered) = attempt.covered_but_for_mouths(looks_out) else { return Ok(chosen) };
+    let past = fidelity(attempt, candidate, looks_out, Some(&covered), climb)?;
+    Ok(if past.passes(limits) { past } else { chosen })
+}
+
+/// How far a candidate is from the file, of which what is `covered` need not be looked for. What a straight line leads to from outside of the file is not hidden when it
 /// `looks_out`.
 fn fidelity(
     attempt: &Attempt,
     candidate: &Candidate,
     looks_out: bool,
+    covered: Option<&Covered>,
     climb: &Climb<'_>,
 ) -> Result<Fidelity, Stopped> {
     let Climb { input, options, before, budget, .. } = *climb;
     let (draft, volume) = (&attempt.draft, defined_volume(before));
-    let covered = attempt.covered(looks_out);
     let origins = candidate.origins(&draft.triangle_origin);
     let measure =
-        |original: &Original<'_>| original.measure_rest(candidate.soup(), &origins, covered.as_ref(), budget);
+        |original: &Original<'_>| original.measure_rest(candidate.soup(), &origins, covered, budget);
     // Mostly nothing is gone, and what is hidden does not matter.
     let all_seen = measure(&Original::new(&input.soup, volume, None))?;
     if all_seen.passes(&options.limits) {

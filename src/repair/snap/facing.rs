@@ -65,7 +65,7 @@ struct FacingEdges {
 }
 
 /// The meetings by distance; of those at one distance, where several edges lie on each other, first those for which nothing has to
-/// turn, then by triangle. Where only two edges meet everywhere, the order does not matter.
+/// turn, then by triangle.
 fn meetings(
     draft: &Draft,
     rim: &ManifoldRim,
@@ -111,7 +111,9 @@ fn meetings(
                 }
             }
         }
-        partners.sort_unstable_by(|a, b| a.apart.total_cmp(&b.apart).then(a.edges.cmp(&b.edges)));
+        partners.sort_unstable_by(|a, b| {
+            a.apart.total_cmp(&b.apart).then(a.run_alike.cmp(&b.run_alike)).then(a.edges.cmp(&b.edges))
+        });
         partners.truncate(PARTNERS_MAX);
         found.append(&mut partners);
     }

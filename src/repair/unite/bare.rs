@@ -1,6 +1,6 @@
 //! Unites bodies and keeps a copy of what that would lose: triangles of which a part has void on both sides.
 
-use super::cavities::{Mouths, turn_inverted};
+use super::cavities::turn_inverted;
 use super::{arranged, become_solid, left_alone};
 use crate::arrangement::{Arrangement, ArrangementError, SolidBoundary};
 use crate::budget::{Budget, Stopped};
@@ -14,7 +14,7 @@ use crate::repair::{Changes, Draft, NEW};
 /// # Errors
 /// When the budget stops the run.
 pub fn unite_and_copy_bare(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
-    let turned = turn_inverted(draft, budget)?;
+    let turned = turn_inverted(draft, budget)?.count;
     let united = arranged(draft, budget).and_then(|arrangement| {
         let boundary = arrangement.boundary(|winding| winding[0] > 0);
         become_solid_and_copy_bare(draft, &arrangement, boundary, budget)
@@ -53,14 +53,9 @@ struct Copies {
 impl Copies {
     /// Of the triangles of which a piece has void on both sides.
     fn of_bare(draft: &Draft, arrangement: &Arrangement, budget: &Budget) -> Result<Self, Stopped> {
-        let mouths = Mouths::of(draft, budget);
-        let mut bare = Vec::new();
-        for f in 0..arrangement.pieces().len() {
-            let is_bare = arrangement.windings(f).iter().all(|winding| winding[0] <= 0);
-            if is_bare && !mouths.have(arrangement.sources(f))? {
-                bare.push(source(draft, arrangement, f));
-            }
-        }
+        let is_bare = |f: &usize| arrangement.windings(*f).iter().all(|winding| winding[0] <= 0);
+        let pieces = (0..arrangement.pieces().len()).filter(is_bare);
+        let mut bare: Vec<u32> = pieces.map(|f| source(draft, arrangement, f)).collect();
         bare.sort_unstable();
         bare.dedup();
         let mut corners: Vec<u32> = bare.iter().flat_map(|&t| draft.triangles[t as usize]).collect();

@@ -6,7 +6,6 @@ use crate::geom::{Aabb, DVec3, Sign, upward_crossing, volume_sign};
 use crate::mesh::{EdgeGroups, edge_of};
 use crate::repair::Draft;
 use crate::spatial::{Bvh, ShellTriangles};
-use std::cell::OnceCell;
 
 /// Places in a shell that are looked at, at most.
 const PLACES_MAX: usize = 64;
@@ -15,9 +14,21 @@ const PLACES_MAX: usize = 64;
 /// its body is within this.
 const DEPTH: f64 = 1.0 / 4096.0;
 
-/// Turns the closed shells that point inward, unless they are cavities; gives their number. A shell that is nowhere outside of the
-/// bodies around it is a cavity of theirs, also where it reaches their surface from within; one in a cavity is a body again.
-pub(super) fn turn_inverted(draft: &mut Draft, budget: &Budget) -> Result<u64, Stopped> {
+/// A shell that another one may be in is larger by this factor at least.
+const LARGER: f64 = 1.000_001;
+
+/// What was turned, and what was not.
+pub(super) struct TurnedShells {
+    /// Shells that were turned.
+    pub(super) count: u64,
+    /// All shells, where some are cavities.
+    pub(super) with_cavities: Option<CavityShells>,
+}
+
+/// Turns the closed shells that point inward, unless they are cavities. A shell that is nowhere outside of the bodies around it is a
+/// cavity of theirs, also where it reaches their surface from within; one in a larger cavity is a body again. Shells are those
+/// connected by edges, so that bodies that share an edge count as one.
+pub(super) fn turn_inverted(draft: &mut Draft, budget: &Budget) -> Result<TurnedShells, Stopped> {
     let groups = EdgeGroups::build(&draft.triangles, draft.positions.len(), budget)?;
     let parts = groups.components(budget)?;
     let mut is_closed = vec![true; parts.count as usize];
@@ -41,14 +52,33 @@ pub(super) fn turn_inverted(draft: &mut Draft, budget: &Budget) -> Result<u64, S
         is_inverted[part] = volume_sign(corners, || budget.check())? == Sign::Negative;
     }
     if !is_inverted.contains(&true) {
-        return Ok(0);
+        return Ok(TurnedShells { count: 0, with_cavities: None });
     }
     let bvh = Bvh::build(&draft.positions, &draft.triangles, None, budget)?;
-    let shells =
-        Shells { draft, of: &parts.of, members: &members, is_inverted: &is_inverted, bvh: &bvh, budget };
+    let size = |part: usize| {
+        let bounds = Aabb::of(members.of(part).iter().flat_map(|&t| draft.corners(t as usize)));
+        (bounds.max - bounds.min).length()
+    };
+    let sizes: Vec<f64> =
+        (0..parts.count as usize).map(|part| if is_inverted[part] { size(part) } else { 0.0 }).collect();
+    let shells = Shells {
+        draft,
+        of: &parts.of,
+        members: &members,
+        is_inverted: &is_inverted,
+        sizes: &sizes,
+        bvh: &bvh,
+        budget,
+    };
+    let mut kinds: Vec<ShellKind> = is_closed
+        .iter()
+        .map(|&is_closed| if is_closed { ShellKind::Body } else { ShellKind::Open })
+        .collect();
     let mut turned = Vec::new();
     for part in (0..parts.count as usize).filter(|&part| is_inverted[part]) {
-        if !shells.is_cavity(part)? {
+        if shells.is_cavity(part)? {
+            kinds[part] = ShellKind::Cavity;
+        } else {
             turned.push(part);
         }
     }
@@ -57,7 +87,48 @@ pub(super) fn turn_inverted(draft: &mut Draft, budget: &Budget) -> Result<u64, S
             draft.flip(t as usize);
         }
     }
-    Ok(turned.len() as u64)
+    let has_cavities = kinds.contains(&ShellKind::Cavity);
+    let with_cavities = has_cavities.then_some(CavityShells { of: parts.of, kinds });
+    Ok(TurnedShells { count: turned.len() as u64, with_cavities })
+}
+
+/// What a shell is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum ShellKind {
+    /// It has a rim, or edges with more triangles one way than the other.
+    Open,
+    /// It points outward, now.
+    Body,
+    /// It points inward and is in bodies.
+    Cavity,
+}
+
+/// Shells some of which are cavities.
+pub(super) struct CavityShells {
+    /// The shell of each triangle.
+    of: Vec<u32>,
+    kinds: Vec<ShellKind>,
+}
+
+impl CavityShells {
+    /// Number of shells.
+    pub(super) fn count(&self) -> usize {
+        self.kinds.len()
+    }
+
+    /// The shell of a triangle.
+    pub(super) fn of(&self, triangle: u32) -> usize {
+        self.of[triangle as usize] as usize
+    }
+
+    /// Whether a piece with void on both sides is a mouth, where a cavity reaches the surface of its body: of the triangles that
+    /// cover it as many turn one way as the other, those of bodies and those of cavities. `sources` tell which turn around.
+    pub(super) fn have_mouth(&self, sources: &[(u32, bool)]) -> bool {
+        let turned = sources.iter().filter(|&&(_, is_turned)| is_turned).count();
+        let count = |kind| sources.iter().filter(|&&(t, _)| self.kinds[self.of(t)] == kind).count();
+        let (bodies, cavities) = (count(ShellKind::Body), count(ShellKind::Cavity));
+        2 * turned == sources.len() && bodies == cavities && bodies + cavities == sources.len()
+    }
 }
 
 struct Shells<'s> {
@@ -66,6 +137,8 @@ struct Shells<'s> {
     of: &'s [u32],
     members: &'s ShellTriangles,
     is_inverted: &'s [bool],
+    /// The diagonal of the box of each shell that points inward.
+    sizes: &'s [f64],
     bvh: &'s Bvh,
     budget: &'s Budget,
 }
@@ -76,7 +149,7 @@ struct Around {
     own: i32,
     /// By the other shells that point outward.
     outward: i32,
-    /// By the other shells that point inward.
+    /// By those of the other shells that point inward that are larger: of two that lie on each other none is in the other.
     inward: i32,
 }
 
@@ -85,15 +158,14 @@ impl Shells<'_> {
     fn is_cavity(&self, part: usize) -> Result<bool, Stopped> {
         let own = self.members.of(part);
         let corners = || own.iter().flat_map(|&t| self.draft.corners(t as usize));
-        let bounds = Aabb::of(corners());
-        let depth = (bounds.max - bounds.min).length() * DEPTH;
+        let depth = self.sizes[part] * DEPTH;
         let (mut is_in_any, mut is_in_material) = (false, false);
         for &t in own.iter().step_by(own.len().div_ceil(PLACES_MAX)) {
             let [a, b, c] = self.draft.corners(t as usize);
             // The inside is where its triangles turn to.
             let Some(normal) = (b - a).cross(c - a).try_normalize() else { continue };
             let around = self.around(a / 3.0 + b / 3.0 + c / 3.0 + depth * normal, part)?;
-            if around.own == -1 {
+            if around.own < 0 {
                 if around.outward <= 0 {
                     return Ok(false);
                 }
@@ -105,12 +177,13 @@ impl Shells<'_> {
             return Ok(is_in_material);
         }
         // It is thinner than that everywhere.
-        let top = corners().fold(bounds.min, |top, p| if p.z > top.z { p } else { top });
+        let lowest = DVec3::splat(f64::NEG_INFINITY);
+        let top = corners().fold(lowest, |top, p| if p.z > top.z { p } else { top });
         let around = self.around(top, part)?;
         Ok(around.outward + around.inward > 0)
     }
 
-    /// What winds around a place that is on no other shell than `part`.
+    /// What winds around a place.
     fn around(&self, place: DVec3, part: usize) -> Result<Around, Stopped> {
         let mut around = Around::default();
         self.bvh.visit_upward_ray(place, self.budget, |t| {
@@ -120,53 +193,22 @@ impl Shells<'_> {
                 Some(_) => -1,
                 None => 0,
             };
-            *match () {
-                () if shell == part => &mut around.own,
-                () if self.is_inverted[shell] => &mut around.inward,
-                () => &mut around.outward,
-            } += side;
+            if shell == part {
+                around.own += side;
+            } else if !self.is_inverted[shell] {
+                around.outward += side;
+            } else if self.sizes[shell] > self.sizes[part] * LARGER {
+                around.inward += side;
+            }
         })?;
         Ok(around)
-    }
-}
-
-/// Tells mouths of cavities from sheets with two sides.
-pub(super) struct Mouths<'d> {
-    draft: &'d Draft,
-    budget: &'d Budget,
-    /// The shell of each triangle, once it is asked for: shells are those connected by edges.
-    shells: OnceCell<Vec<u32>>,
-}
-
-impl<'d> Mouths<'d> {
-    pub(super) fn of(draft: &'d Draft, budget: &'d Budget) -> Self {
-        Self { draft, budget, shells: OnceCell::new() }
-    }
-
-    /// Whether a piece with void on both sides is a mouth: of the triangles that cover it as many turn one way as the other, and they
-    /// are of several shells. `sources` tell which turn around.
-    pub(super) fn have(&self, sources: &[(u32, bool)]) -> Result<bool, Stopped> {
-        let turned = sources.iter().filter(|&&(_, is_turned)| is_turned).count();
-        if 2 * turned != sources.len() {
-            return Ok(false);
-        }
-        let shells = match self.shells.get() {
-            Some(shells) => shells,
-            None => {
-                let Draft { triangles, positions, .. } = self.draft;
-                let groups = EdgeGroups::build(triangles, positions.len(), self.budget)?;
-                let shells = groups.components(self.budget)?.of;
-                self.shells.get_or_init(|| shells)
-            }
-        };
-        Ok(sources.iter().any(|&(t, _)| shells[t as usize] != shells[sources[0].0 as usize]))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::tests::{cubes, volume_times_6};
-    use super::super::{unite, unite_as_oriented};
+    use super::super::unite;
     use super::*;
     use crate::repair::Changes;
 
@@ -186,7 +228,7 @@ mod tests {
             let (volume, changes) = united(&[body, (DVec3::from_array(low), 1.0, true)]);
             assert_eq!((volume, changes.count("shells_turned")), (63.0, 0), "{low:?}");
             let coverage = changes.coverage.unwrap();
-            assert_eq!((coverage.mouths > 0, coverage.bare.len()), (mouths > 0, 0), "{low:?}");
+            assert_eq!((coverage.mouths > 0, coverage.bare_beside_mouths.len()), (mouths > 0, 0), "{low:?}");
         }
     }
 
@@ -217,14 +259,25 @@ mod tests {
     }
 
     #[test]
+    fn a_cavity_that_is_there_twice_is_a_cavity_and_a_body_inside_out_on_itself_stays() {
+        let (body, cavity) = ((DVec3::ZERO, 4.0, false), (DVec3::ONE, 2.0, true));
+        assert_eq!(united(&[body, cavity, cavity]).0, 64.0 - 8.0);
+        let (_, changes) = united(&[(DVec3::splat(9.0), 1.0, false), body, (DVec3::ZERO, 4.0, true)]);
+        let coverage = changes.coverage.unwrap();
+        assert_eq!((coverage.mouths, coverage.bare_beside_mouths.len()), (0, 24));
+    }
+
+    #[test]
     fn a_sheet_with_two_sides_is_no_mouth() {
-        let mut draft = cubes(&[(DVec3::ZERO, 1.0, false)]);
+        let mut draft = cubes(&[(DVec3::ZERO, 4.0, false), (DVec3::new(1.0, 1.0, 0.0), 1.0, true)]);
         let first = draft.positions.len() as u32;
-        draft.positions.extend([DVec3::splat(3.0), DVec3::new(4.0, 3.0, 3.0), DVec3::new(3.0, 4.0, 3.0)]);
-        draft.vertex_origin.extend([8, 9, 10]);
-        draft.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 1]]);
-        draft.triangle_origin.extend([12, 13]);
-        let coverage = unite_as_oriented(&mut draft, &Budget::unlimited()).unwrap().coverage.unwrap();
-        assert_eq!((coverage.mouths, coverage.bare), (0, vec![12, 13]));
+        draft.positions.extend([DVec3::splat(6.0), DVec3::new(7.0, 6.0, 6.0), DVec3::new(6.0, 7.0, 6.0)]);
+        draft.positions.extend([DVec3::splat(6.0), DVec3::new(7.0, 6.0, 6.0), DVec3::new(6.0, 7.0, 6.0)]);
+        draft.vertex_origin.extend(0..6);
+        draft.triangles.extend([[first, first + 1, first + 2], [first + 3, first + 5, first + 4]]);
+        draft.triangle_origin.extend([30, 31]);
+        let coverage = unite(&mut draft, &Budget::unlimited()).unwrap().coverage.unwrap();
+        assert!(coverage.mouths > 0);
+        assert_eq!(coverage.bare_beside_mouths, [30, 31]);
     }
 }

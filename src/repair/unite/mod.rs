@@ -15,7 +15,7 @@ pub use bore::bore_contacts;
 pub use combine::{NotCombined, NotSolid, SetOperation, combine};
 pub use enclose::{enclose, enclose_and_copy_bare};
 
-use self::cavities::{Mouths, turn_inverted};
+use self::cavities::{CavityShells, TurnedShells, turn_inverted};
 use super::{Changes, Draft, FIRST_BLEND, NEW};
 use crate::arrangement::{
     self, Arrangement, ArrangementError, ArrangementOptions, PlacedBoundary, SolidBoundary, arrange,
@@ -28,9 +28,11 @@ const PAIRS_PER_TRIANGLE: usize = 64;
 const PAIRS_MIN: usize = 1 << 16;
 const PAIRS_MAX: usize = 1 << 21;
 
+/// Share of a shell that may be mouths.
+const MOUTHS_MAX: f64 = 0.5;
+
 /// What became of the triangles of the soup when bodies were united. Every place of one that is `present` and not `bare` is on the
-/// surface of the solid or inside of it, up to what the rounding of new vertices moves, or on a mouth: where a cavity reaches the
-/// surface of its body, triangles of both lie on each other, turn opposite ways and bound nothing.
+/// surface of the solid or inside of it, up to what the rounding of new vertices moves.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Coverage {
     /// Triangles of the soup that were in the draft, ascending.
@@ -41,13 +43,17 @@ pub struct Coverage {
     pub buried: Vec<u32>,
     /// Area of the pieces inside the solid, in square units of the file.
     pub buried_area: f64,
-    /// Pieces that are mouths of cavities.
+    /// Pieces that are mouths: where a cavity reaches the surface of its body, triangles of both lie on each other, turn opposite ways
+    /// and bound nothing.
     pub mouths: u64,
+    /// Those of `bare` of which a piece is gone that is no mouth, ascending.
+    pub bare_beside_mouths: Vec<u32>,
 }
 
 impl Coverage {
-    fn of(draft: &Draft, arrangement: &Arrangement, budget: &Budget) -> Result<Self, Stopped> {
-        let mouths = Mouths::of(draft, budget);
+    fn of(draft: &Draft, arrangement: &Arrangement, shells: Option<&CavityShells>) -> Self {
+        // Area of each shell, and that of its mouths.
+        let mut areas = vec![[0.0; 2]; shells.map_or(0, CavityShells::count)];
         let of_file = |t: u32| Some(draft.triangle_origin[t as usize]).filter(|&origin| origin != NEW);
         let mut coverage = Self { present: Vec::with_capacity(draft.triangles.len()), ..Self::default() };
         coverage.present.extend((0..draft.triangles.len() as u32).filter_map(of_file));
@@ -59,10 +65,20 @@ impl Coverage {
                 let area = triangle_area(corners.map(|p| arrangement.position(p)));
                 coverage.buried_area += area * count as f64;
             } else if !front && !back {
-                if mouths.have(arrangement.sources(f))? {
+                coverage.bare.extend(sources());
+            }
+            if let Some(shells) = shells {
+                let is_mouth = !front && !back && shells.have_mouth(arrangement.sources(f));
+                if is_mouth {
                     coverage.mouths += 1;
-                } else {
-                    coverage.bare.extend(sources());
+                } else if !front && !back {
+                    coverage.bare_beside_mouths.extend(sources());
+                }
+                let area = triangle_area(corners.map(|p| arrangement.position(p)));
+                for &(t, _) in arrangement.sources(f) {
+                    let [of_shell, of_mouths] = &mut areas[shells.of(t)];
+                    *of_shell += area;
+                    *of_mouths += if is_mouth { area } else { 0.0 };
                 }
             }
             // Of several on each other, one stands for all from here on.
@@ -70,23 +86,29 @@ impl Coverage {
                 coverage.buried.extend(sources());
             }
         }
-        for list in [&mut coverage.present, &mut coverage.bare, &mut coverage.buried] {
+        // What is mostly mouth is no body with a cavity.
+        if areas.iter().any(|[of_shell, of_mouths]| *of_mouths > MOUTHS_MAX * of_shell) {
+            coverage.mouths = 0;
+            coverage.bare_beside_mouths.clone_from(&coverage.bare);
+        }
+        let Self { present, bare, buried, bare_beside_mouths, .. } = &mut coverage;
+        for list in [present, bare, buried, bare_beside_mouths] {
             list.sort_unstable();
             list.dedup();
         }
-        Ok(coverage)
+        coverage
     }
 }
 
-/// Unites the bodies of a draft whose surface is closed. Shells that point inward and are in no body are turned first. A draft that
+/// Unites the bodies of a draft whose surface is closed. Shells that point inward and are no cavities are turned first. A draft that
 /// is open, or of which too many triangles meet, is left as it is.
 ///
 /// # Errors
 /// When the budget stops the run.
 pub fn unite(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
-    let turned = turn_inverted(draft, budget)?;
-    let united = unite_as_oriented(draft, budget)?;
-    let counts = [("shells_turned", turned)].into_iter().chain(united.counts).collect();
+    let TurnedShells { count, with_cavities } = turn_inverted(draft, budget)?;
+    let united = unite_shells(draft, with_cavities.as_ref(), budget)?;
+    let counts = [("shells_turned", count)].into_iter().chain(united.counts).collect();
     Ok(Changes { counts, ..united })
 }
 
@@ -95,9 +117,19 @@ pub fn unite(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
 /// # Errors
 /// When the budget stops the run.
 pub fn unite_as_oriented(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
+    unite_shells(draft, None, budget)
+}
+
+/// As [`unite_as_oriented`]; `shells` tell what is a cavity.
+fn unite_shells(
+    draft: &mut Draft,
+    shells: Option<&CavityShells>,
+    budget: &Budget,
+) -> Result<Changes, Stopped> {
     let united = arranged(draft, budget).and_then(|arrangement| {
         let boundary = arrangement.boundary(|winding| winding[0] > 0);
-        become_solid(draft, &arrangement, boundary, budget)
+        let coverage = Coverage::of(draft, &arrangement, shells);
+        become_covered(draft, &arrangement, boundary, coverage, budget)
     });
     united.or_else(left_alone)
 }
@@ -109,7 +141,18 @@ fn become_solid(
     boundary: SolidBoundary,
     budget: &Budget,
 ) -> Result<Changes, ArrangementError> {
-    let coverage = Coverage::of(draft, arrangement, budget)?;
+    let coverage = Coverage::of(draft, arrangement, None);
+    become_covered(draft, arrangement, boundary, coverage, budget)
+}
+
+/// As [`become_solid`], where it is known what becomes of the triangles.
+fn become_covered(
+    draft: &mut Draft,
+    arrangement: &Arrangement,
+    boundary: SolidBoundary,
+    coverage: Coverage,
+    budget: &Budget,
+) -> Result<Changes, ArrangementError> {
     Ok(match placed(draft, arrangement, boundary, budget)? {
         Some(placed) => {
             let mut changes = replace(draft, placed);

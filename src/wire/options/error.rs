@@ -88,7 +88,11 @@ impl fmt::Display for OptionError {
                 write!(f, "`{operation}` takes no `{}`; it is an option of {}", spec.name, takers.join(", "))
             }
             Self::Excluded { spec, by } => write!(f, "`{}` does not go with `{by}`", spec.name),
-            Self::OfPixels { spec } => write!(f, "a GLB to turn has no `{}`", spec.name),
+            Self::OfPixels { spec } => write!(
+                f,
+                "`{}` is about pictures of pixels, and a GLB has none; leave it out, or ask for a PNG",
+                spec.name
+            ),
             Self::Lacking { spec, needs } => write!(f, "this `{}` needs {needs}", spec.name),
             Self::Contradictory { spec } => write!(f, "`{}` is given twice with different values", spec.name),
         }
