@@ -55,12 +55,10 @@ pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
 
 #[cfg(test)]
 mod tests {
+    use crate::analysis::DefectCode;
     use crate::analysis::tests::{found, joined, soup, tetrahedron};
-    use crate::analysis::{AnalyzeOptions, DefectCode, analyze};
-    use crate::budget::{Budget, StopFlag};
     use crate::geom::DVec3;
     use crate::mesh::Soup;
-    use crate::spatial::Contacts;
 
     fn sheet_count(mesh: &Soup) -> u64 {
         found(mesh, DefectCode::OpenSheet).map_or(0, |f| f.count)
@@ -90,30 +88,5 @@ mod tests {
         assert_eq!(sheet_count(&roof), 1);
         assert_eq!(sheet_count(&soup(3, &[[0, 1, 2]])), 0);
         assert_eq!(found(&soup(3, &[[0, 1, 2]]), DefectCode::IsolatedFace).unwrap().count, 1);
-    }
-
-    #[test]
-    fn where_telling_sheets_takes_too_much_there_is_no_sheet_and_no_volume() {
-        // Squares all over a cube, and a body that lacks a face.
-        let place = |i: i32| DVec3::new(0.7549, 0.5698, 0.4302).map(|step| (step * f64::from(i)).fract());
-        let mut holed = tetrahedron(DVec3::splat(9.0), 1.0);
-        holed.triangles.pop();
-        holed.face_count -= 1;
-        let squares = (0..300).map(|i| square(place(i), 1.0));
-        let mesh = joined(&squares.chain([holed]).collect::<Vec<_>>());
-        let told = |volume_interval: bool, budget: &Budget| {
-            let options = AnalyzeOptions { volume_interval, ..AnalyzeOptions::default() };
-            let told = analyze(&mesh, Some(&Contacts::default()), &options, budget).unwrap();
-            let sheets =
-                told.findings.iter().find(|f| f.code == DefectCode::OpenSheet).map_or(0, |f| f.count);
-            (sheets, told.volume_interval.is_some())
-        };
-        let (sheets, has_volume) = told(true, &Budget::unlimited());
-        assert!(sheets > 100 && has_volume, "{sheets}");
-        let unlimited = Budget::unlimited();
-        assert_eq!(told(false, &unlimited), (sheets, false));
-        // A quarter of all that it took is not enough for the search, and the rest is for the others.
-        let limited = Budget::new(StopFlag::default(), unlimited.work_used(), u64::MAX);
-        assert_eq!(told(true, &limited), (0, false));
     }
 }

@@ -2,9 +2,12 @@
 //! where a hole in the surface would be right.
 
 use crate::oracle::{RawSoup, weld};
+use crate::raw_files::encode;
 use crate::repair::repaired;
 use crate::solids::cuboid;
-use meshmend::pipeline::{Answer, Outcome};
+use meshmend::budget::Budget;
+use meshmend::formats::Encoding;
+use meshmend::pipeline::{Answer, Operation, Options, Outcome, Require, run};
 
 /// A closed cylinder around the z axis with `n` sides; the discs at its ends have a vertex in their middle.
 fn cylinder(n: u32, radius: f64, [low, high]: [f64; 2]) -> RawSoup {
@@ -59,6 +62,19 @@ fn a_tube_of_two_cylinders_whose_ends_are_flush_is_open_at_both() {
     );
     // The discs of both, at both ends.
     assert_open_cavity(&answer, 4.0 * volume(32, 6.0, 1.0));
+}
+
+#[test]
+fn a_low_ring_is_open_and_filled_where_a_faithful_result_is_demanded() {
+    let ring = cylinder(32, 10.0, [0.0, 4.0]).with(&cylinder(32, 6.0, [0.0, 4.0]).inside_out());
+    let answer = repaired(&ring);
+    let (_, found) = figures(&answer);
+    let expected = volume(32, 10.0, 4.0) - volume(32, 6.0, 4.0);
+    assert!((found - expected).abs() < 1e-3 * expected, "{found}, not {expected}");
+    let options = Options { require: Some(Require::Faithful), ..Options::default() };
+    let bytes = encode(&ring, Encoding::StlBinary);
+    let (_, found) = figures(&run(Operation::Repair, bytes, &options, &Budget::unlimited()).unwrap());
+    assert!((found - volume(32, 10.0, 4.0)).abs() < 1e-3 * expected, "{found}");
 }
 
 #[test]

@@ -280,7 +280,7 @@ fn several_files_are_repaired_into_a_folder_and_told_line_by_line() {
     desk.run(&["convert", "solid.off", "open.off", "-d", "out", "--output-format", "stl"]);
     assert!(desk.path().join("out/solid.stl").exists() && desk.path().join("out/open.stl").exists());
     let twice = desk.run(&["repair", "solid.off", "./solid.off", "-d", "twice"]);
-    assert!(stderr(&twice).contains("two files have the name twice/solid.off"), "{}", stderr(&twice));
+    assert!(stderr(&twice).contains("two results would be twice/solid.off"), "{}", stderr(&twice));
     let over = desk.run(&["repair", "solid.off", "-d", "."]);
     assert!(stderr(&over).contains("solid.off would be overwritten"), "{}", stderr(&over));
 }
@@ -643,7 +643,7 @@ fn a_policy_is_told_in_text_and_json_and_the_page_is_written() {
     let printing = &json(&output)["printing"];
     assert_eq!((&printing["policy"], &printing["build_direction"]), (&"sla".into(), &"minus_x".into()));
     let nowhere = desk.run(&["analyze", "solid.off", "--report-html", "no/such/folder/page.html"]);
-    assert_eq!(nowhere.status.code(), Some(2), "{}", stderr(&nowhere));
+    assert_eq!(nowhere.status.code(), Some(4), "{}", stderr(&nowhere));
 }
 
 #[test]

@@ -460,7 +460,8 @@ fn chosen_past_mouths(
     climb: &Climb<'_>,
 ) -> Result<Fidelity, Stopped> {
     let (limits, looks_out) = (&climb.options.limits, attempt.hides_more);
-    if chosen.passes(limits) || as_seen.breach(limits).is_some() {
+    let demands_all = climb.options.require == Some(Require::Faithful) || as_seen.breach(limits).is_some();
+    if chosen.passes(limits) || demands_all {
         return Ok(chosen);
     }
     let Some(covered) = attempt.covered_but_for_mouths(looks_out) else { return Ok(chosen) };

@@ -124,10 +124,20 @@ impl CavityShells {
     /// Whether a piece with void on both sides is a mouth, where a cavity reaches the surface of its body: of the triangles that
     /// cover it as many turn one way as the other, those of bodies and those of cavities. `sources` tell which turn around.
     pub(super) fn have_mouth(&self, sources: &[(u32, bool)]) -> bool {
-        let turned = sources.iter().filter(|&&(_, is_turned)| is_turned).count();
-        let count = |kind| sources.iter().filter(|&&(t, _)| self.kinds[self.of(t)] == kind).count();
-        let (bodies, cavities) = (count(ShellKind::Body), count(ShellKind::Cavity));
-        2 * turned == sources.len() && bodies == cavities && bodies + cavities == sources.len()
+        let count = |kind: ShellKind, is_turned: bool| {
+            let is_one = |&&(t, turns): &&(u32, bool)| self.kinds[self.of(t)] == kind && turns == is_turned;
+            sources.iter().filter(is_one).count()
+        };
+        let half = |is_turned| {
+            let bodies = count(ShellKind::Body, is_turned);
+            bodies > 0 && 2 * bodies == sources.len() && bodies == count(ShellKind::Cavity, !is_turned)
+        };
+        half(true) || half(false)
+    }
+
+    /// Whether the shell of a triangle is a body.
+    pub(super) fn is_body(&self, triangle: u32) -> bool {
+        self.kinds[self.of(triangle)] == ShellKind::Body
     }
 }
 

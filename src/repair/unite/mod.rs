@@ -28,7 +28,7 @@ const PAIRS_PER_TRIANGLE: usize = 64;
 const PAIRS_MIN: usize = 1 << 16;
 const PAIRS_MAX: usize = 1 << 21;
 
-/// Share of a shell that may be mouths.
+/// Share of the surface of a body that may be mouths.
 const MOUTHS_MAX: f64 = 0.5;
 
 /// What became of the triangles of the soup when bodies were united. Every place of one that is `present` and not `bare` is on the
@@ -54,6 +54,7 @@ impl Coverage {
     fn of(draft: &Draft, arrangement: &Arrangement, shells: Option<&CavityShells>) -> Self {
         // Area of each shell, and that of its mouths.
         let mut areas = vec![[0.0; 2]; shells.map_or(0, CavityShells::count)];
+        let mut mouths = Vec::new();
         let of_file = |t: u32| Some(draft.triangle_origin[t as usize]).filter(|&origin| origin != NEW);
         let mut coverage = Self { present: Vec::with_capacity(draft.triangles.len()), ..Self::default() };
         coverage.present.extend((0..draft.triangles.len() as u32).filter_map(of_file));
@@ -70,7 +71,7 @@ impl Coverage {
             if let Some(shells) = shells {
                 let is_mouth = !front && !back && shells.have_mouth(arrangement.sources(f));
                 if is_mouth {
-                    coverage.mouths += 1;
+                    mouths.push(f);
                 } else if !front && !back {
                     coverage.bare_beside_mouths.extend(sources());
                 }
@@ -87,9 +88,17 @@ impl Coverage {
             }
         }
         // What is mostly mouth is no body with a cavity.
-        if areas.iter().any(|[of_shell, of_mouths]| *of_mouths > MOUTHS_MAX * of_shell) {
-            coverage.mouths = 0;
-            coverage.bare_beside_mouths.clone_from(&coverage.bare);
+        let is_left = |shells: &CavityShells, t: u32| {
+            let [of_shell, of_mouths] = areas[shells.of(t)];
+            !shells.is_body(t) || of_mouths <= MOUTHS_MAX * of_shell
+        };
+        for (f, shells) in mouths.into_iter().zip(shells.into_iter().cycle()) {
+            let sources = arrangement.sources(f);
+            if sources.iter().all(|&(t, _)| is_left(shells, t)) {
+                coverage.mouths += 1;
+            } else {
+                coverage.bare_beside_mouths.extend(sources.iter().filter_map(|&(t, _)| of_file(t)));
+            }
         }
         let Self { present, bare, buried, bare_beside_mouths, .. } = &mut coverage;
         for list in [present, bare, buried, bare_beside_mouths] {
