@@ -257,6 +257,7 @@ mod tests {
         assert!(error.expected.ends_with("534 bytes instead of 184"), "{error}");
         assert_eq!(sniff(b"8 6 0\n", Some(Format::Off)), Ok(Encoding::Off));
         assert_eq!(sniff(b"solid\n", Some(Format::Stl)), Ok(Encoding::StlAscii));
+        assert_eq!(sniff(b"solid x\nendsolid x\n", None), Ok(Encoding::StlAscii));
         assert_eq!(sniff(b"hello", Some(Format::Obj)), Ok(Encoding::Obj));
         assert_eq!(sniff(b"<xml>", None).unwrap_err().kind, ReadErrorKind::UnknownFormat);
         let page = sniff(b"<html>", Some(Format::Stl)).unwrap_err();

@@ -7,7 +7,7 @@
 use super::changed::area_of;
 use super::fidelity::{LOSS_MAX, LOST_BEYOND, Losses, Original, defined_volume};
 use super::size::diagonal;
-use super::{Outcome, Report};
+use super::{Answer, Outcome, Refusal, Report};
 use crate::budget::{Budget, CHECK_EVERY, Stage, Stopped};
 use crate::distance::SurfaceDistance;
 use crate::geom::DVec3;
@@ -215,6 +215,26 @@ impl Report {
     /// True when there is a result.
     pub(super) fn has_result(&self) -> bool {
         self.outcome.is_some_and(|outcome| outcome != Outcome::Refused)
+    }
+}
+
+/// The answer, or a refusal where its result is changed.
+pub(super) fn demand_faithful(answer: Answer) -> Answer {
+    let changes = answer.report.first_change().map(|fidelity| fidelity.changes.clone());
+    match changes.filter(|_| answer.report.has_result()) {
+        // What was measured stays, so that the report shows what the result would have been.
+        Some(changes) => {
+            let units = answer.report.input.result_units;
+            Report {
+                certificate: None,
+                after: None,
+                levels: Vec::new(),
+                identical_triangle_share: None,
+                ..answer.report
+            }
+            .refused(Refusal::NotFaithful { changes, units })
+        }
+        None => answer,
     }
 }
 

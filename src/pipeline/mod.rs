@@ -487,7 +487,7 @@ fn finished(
     budget: &Budget,
 ) -> Result<Answer, Failure> {
     if options.require == Some(Require::Faithful) {
-        answer = demand_faithful(answer);
+        answer = faithful::demand_faithful(answer);
     }
     // What is over budget has nothing left to measure with.
     let is_over_budget = matches!(answer.report.refusal, Some(Refusal::OverBudget { .. }));
@@ -495,24 +495,4 @@ fn finished(
         answer.report.printing = printing::measure(input, &answer, policy, budget)?;
     }
     Ok(answer)
-}
-
-/// The answer, or a refusal where its result is changed.
-fn demand_faithful(answer: Answer) -> Answer {
-    let changes = answer.report.first_change().map(|fidelity| fidelity.changes.clone());
-    match changes.filter(|_| answer.report.has_result()) {
-        // What was measured stays, so that the report shows what the result would have been.
-        Some(changes) => {
-            let units = answer.report.input.result_units;
-            Report {
-                certificate: None,
-                after: None,
-                levels: Vec::new(),
-                identical_triangle_share: None,
-                ..answer.report
-            }
-            .refused(Refusal::NotFaithful { changes, units })
-        }
-        None => answer,
-    }
 }

@@ -163,7 +163,7 @@ fn a_sheet_with_two_sides_beside_a_body_and_a_body_drawn_twice_inside_out_are_no
     assert!(answer.report.losses.as_ref().unwrap().visible_loss < 0.01, "{:?}", answer.report.losses);
 
     let body = cuboid([10.0; 3]).moved([20.0, 0.0, 0.0]);
-    let turned = body.clone().map(|p| p).inside_out();
+    let turned = body.clone().inside_out();
     let answer = repaired(&cuboid([10.0; 3]).with(&body).with(&turned));
     let (_, found) = figures(&answer);
     assert!((found - 2000.0).abs() < 10.0, "{found}");

@@ -153,10 +153,11 @@ mod tests {
     }
 
     #[test]
-    fn a_missing_byte_is_an_error_at_the_end_and_a_byte_too_many_is_ignored() {
+    fn a_missing_byte_is_an_error_at_the_end_and_a_byte_too_many_is_counted() {
         let mut bytes = file(&[[A, B, C]]);
         bytes.push(0);
-        assert_eq!(read(&bytes).unwrap().triangles.len(), 1);
+        let soup = read(&bytes).unwrap();
+        assert_eq!((soup.triangles.len(), soup.left_out.last()), (1, Some(&(BYTES_BEHIND, 1))));
         let error = read(&bytes[..133]).unwrap_err().to_string();
         assert!(error.starts_with("byte 133: the file ends here; expected 134 bytes"), "{error}");
         assert!(read(&bytes[..83]).is_err());

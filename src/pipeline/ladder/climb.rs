@@ -469,8 +469,8 @@ fn chosen_past_mouths(
     Ok(if past.passes(limits) { past } else { chosen })
 }
 
-/// How far a candidate is from the file, of which what is `covered` need not be looked for. What a straight line leads to from outside of the file is not hidden when it
-/// `looks_out`.
+/// How far a candidate is from the file, of which what is `covered` need not be looked for. What a straight line leads to from outside
+/// of the file is not hidden when it `looks_out`.
 fn fidelity(
     attempt: &Attempt,
     candidate: &Candidate,

@@ -5,9 +5,10 @@ use crate::budget::{Budget, Stage};
 use crate::formats::threemf::{NegativeParts, read_negative_parts};
 use crate::formats::{self, Encoding};
 use crate::pipeline::bounds::Bound;
+use crate::pipeline::faithful::demand_faithful;
 use crate::pipeline::{
     Answer, Failure, Operation, Options, Outcome, Output, Refusal, Report, Require, SetOperation,
-    SimplifyChoices, SolidParts, boolean, demand_faithful, run_on_file,
+    SimplifyChoices, SolidParts, boolean, run_on_file,
 };
 
 /// The name under which one mesh leaves them out.

@@ -222,7 +222,7 @@ mod tests {
     use super::*;
     use crate::repair::Changes;
 
-    /// What uniting these cubes gives: eight times the volume of each, whether it is a cavity.
+    /// The volume that uniting these cubes gives, and what was done. Each has a lowest corner, a side, and `true` where it is inside out.
     fn united(of: &[(DVec3, f64, bool)]) -> (f64, Changes) {
         let mut draft = cubes(of);
         let changes = unite(&mut draft, &Budget::unlimited()).unwrap();
