@@ -39,6 +39,8 @@ pub(super) struct Variant {
     pub(super) thickens: bool,
     /// Needles and caps go, where that is chosen.
     pub(super) mends_thin_faces: bool,
+    /// Rims that face each other across a gap get one patch between them.
+    pub(super) bridges: bool,
 }
 
 /// What bodies are made of that are to be united.
@@ -172,7 +174,7 @@ impl Variant {
         });
         let fill = match self.thickens {
             true => Some(Step::Thicken { wall: choices.wall }),
-            false => choices.fills_holes.then(|| Step::FillHoles(choices.filling())),
+            false => choices.fills_holes.then(|| Step::FillHoles(choices.filling(self.bridges))),
         };
         let thin = (self.mends_thin_faces && choices.mends_thin_faces())
             .then_some(Step::MendThinFaces(choices.thin_faces));

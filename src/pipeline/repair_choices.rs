@@ -117,9 +117,9 @@ impl Choices {
         Ok(choices)
     }
 
-    /// How holes are filled.
-    pub(super) fn filling(&self) -> FillOptions {
-        FillOptions { choices: self.hole_choices.clone(), ..FillOptions::plain(self.holes.clone()) }
+    /// How holes are filled; with one patch between rims that face each other when it `bridges`.
+    pub(super) fn filling(&self, bridges: bool) -> FillOptions {
+        FillOptions { choices: self.hole_choices.clone(), bridges, ..FillOptions::plain(self.holes.clone()) }
     }
 
     /// True unless a hole is to stay.

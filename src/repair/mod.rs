@@ -67,6 +67,8 @@ pub struct Effects {
     pub removed_crossing: bool,
     /// Needles, caps or folds went.
     pub mended_thin_faces: bool,
+    /// Rims that face each other got one patch between them.
+    pub bridged_rims: bool,
     /// Triangles that were turned.
     pub turned_triangles: u64,
     /// Vertices and edges in which the solid touched itself when that was bored last.
@@ -80,6 +82,7 @@ impl Effects {
         self.copied_vertices |= other.copied_vertices;
         self.removed_crossing |= other.removed_crossing;
         self.mended_thin_faces |= other.mended_thin_faces;
+        self.bridged_rims |= other.bridged_rims;
         self.turned_triangles += other.turned_triangles;
         self.bored_contacts = other.bored_contacts.or(self.bored_contacts);
     }

@@ -11,7 +11,9 @@ pub(super) const RUNG: Rung = Rung {
     tries: |climb, situation| match climb.try_plan(situation.variant, situation)? {
         Some(RungResult::Certified(closed)) => {
             let closed = climb.with_copies_if_closer(closed, situation)?;
-            climb.with_walls_if_closer(closed, situation).map(Some)
+            let closed = climb.with_bridges_if_closer(closed, situation)?;
+            let closed = climb.with_walls_if_closer(closed, situation)?;
+            Ok(Some(RungResult::Certified(closed)))
         }
         found => Ok(found),
     },

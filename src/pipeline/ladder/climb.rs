@@ -16,7 +16,6 @@ use crate::pipeline::repair_choices::{Choices, Walls};
 use crate::pipeline::size::diagonal;
 use crate::pipeline::step::Step;
 use crate::pipeline::{Action, Failure, Options, Refusal, Require};
-use crate::repair::duplicates::OppositePairs;
 use crate::repair::noise::Noise;
 use crate::repair::snap::gap_between_rims;
 use crate::repair::{Draft, noise};
@@ -28,9 +27,6 @@ const ATTEMPT_PART: u64 = 4;
 
 /// What is hidden, the same.
 const HIDDEN_PART: u64 = 4;
-
-/// Another plan beside a result that lost much, the same.
-const BESIDE_PART: u64 = 2;
 
 /// Steps of the print lattice by which rounding may take rims apart.
 const ROUNDING_STEPS: f64 = 4.0;
@@ -77,6 +73,8 @@ pub(super) struct Situation {
     pub(super) has_run_out: bool,
     /// Bodies were to be united.
     pub(super) has_tried_uniting: bool,
+    /// Rims that face each other were to get one patch.
+    pub(super) has_tried_bridging: bool,
     /// A surface was to be rebuilt.
     pub(super) has_tried_rebuilding: bool,
     /// The closest certified result.
@@ -130,6 +128,7 @@ impl Situation {
             fails_in_f32: false,
             has_run_out: false,
             has_tried_uniting: false,
+            has_tried_bridging: false,
             has_tried_rebuilding: false,
             certified: None,
             rebuilt: None,
@@ -210,6 +209,10 @@ impl Climb<'_> {
             situation.has_run_out = true;
             return Ok(None);
         };
+        // Without a bridge it is the plan that was tried before.
+        if variant.bridges && !attempt.effects.bridged_rims {
+            return Ok(None);
+        }
         let mut judged = self.judge(&attempt)?;
         let has_mended = |attempt: &Attempt| attempt.effects.mended_thin_faces;
         if variant.mends_thin_faces && judged.is_broken() && has_mended(&attempt) {
@@ -234,57 +237,6 @@ impl Climb<'_> {
                 Ok(None)
             }
         }
-    }
-
-    /// Tries to keep one of two copies of opposite direction beside a result that lost much and has neither, and gives the closer one.
-    pub(super) fn with_copies_if_closer(
-        &self,
-        closed: Box<Certified>,
-        situation: &mut Situation,
-    ) -> Result<Box<Certified>, Failure> {
-        let has_lost = !closed.fidelity.passes(&self.options.limits);
-        if !has_lost || !closed.attempt.effects.cancelled_opposite_pairs {
-            return Ok(closed);
-        }
-        let variant = Variant { opposite: OppositePairs::KeepFirst, ..situation.variant };
-        let before = situation.variant;
-        let kept = self.budget.within_part(BESIDE_PART, || self.try_plan(variant, situation))?;
-        match kept.flatten() {
-            Some(RungResult::Certified(kept))
-                if !closed.fidelity.is_no_worse(&kept.fidelity, &self.options.limits) =>
-            {
-                Ok(kept)
-            }
-            _ => {
-                situation.variant = before;
-                Ok(closed)
-            }
-        }
-    }
-
-    /// Tries walls beside a result that patches over openings take much from, and gives the closer one.
-    pub(super) fn with_walls_if_closer(
-        &self,
-        closed: Box<Certified>,
-        situation: &mut Situation,
-    ) -> Result<RungResult, Failure> {
-        let may_wall = self.choices.walls == Walls::ForSheets
-            && self.options.wrap.open_shells != OpenShells::Close
-            && self.options.require != Some(Require::None);
-        if !may_wall || !closed.attempt.closes_openings || !closed.as_seen.loses_much() {
-            return Ok(RungResult::Certified(closed));
-        }
-        let variant = Variant { thickens: true, ..situation.variant };
-        // What is certified already is kept where walls take too much work.
-        let walled = self.budget.within_part(BESIDE_PART, || self.try_plan(variant, situation))?;
-        Ok(match walled.flatten() {
-            Some(RungResult::Certified(walled))
-                if !closed.fidelity.is_no_worse(&walled.fidelity, &self.options.limits) =>
-            {
-                RungResult::Certified(walled)
-            }
-            _ => RungResult::Certified(closed),
-        })
     }
 
     /// How far apart rims of the file lie that should be one, at most what counts as lost; 0 where none do, or where that was

@@ -1,6 +1,8 @@
 //! The ladder: what is tried to make a certified solid of a broken file, least invasive first.
 
 mod as_drawn;
+mod beside;
+mod bridges;
 mod climb;
 mod contacts;
 mod crossing;
@@ -46,10 +48,11 @@ struct Rung {
 }
 
 /// After each attempt that fails, the first of these that applies comes next.
-const RUNGS: [&Rung; 11] = [
+const RUNGS: [&Rung; 12] = [
     &as_drawn::RUNG,
     &unite::WHERE_BODIES_MEET,
     &keep_first::RUNG,
+    &bridges::RUNG,
     &unsnapped::RUNG,
     &float32::RUNG,
     &noise::RUNG,

@@ -363,7 +363,7 @@ impl PatchProposal {
 
 /// Euler: a sphere without so many disks, with n corners at their rims and m other vertices, has n + 2 m + 2 h - 4
 /// triangles.
-fn check_topology(proposal: &PatchProposal) -> Result<(), Rejection> {
+pub(super) fn check_topology(proposal: &PatchProposal) -> Result<(), Rejection> {
     let (rim, inner, loops) = (proposal.rim.len(), proposal.points.len(), proposal.loop_starts.len());
     if proposal.triangles.len() + 4 != rim + 2 * inner + 2 * loops {
         return Err(Rejection::Topology);

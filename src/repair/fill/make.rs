@@ -1,6 +1,6 @@
 //! Makes the patch of a region in one way.
 
-use super::accept::PatchProposal;
+use super::accept::{PatchProposal, check_topology};
 use super::caps::turn_caps;
 use super::coarsen::coarsen;
 use super::creased::{Division, creased};
@@ -161,13 +161,32 @@ fn polygon(region: &Region, surface: &FillSurface, budget: &Budget) -> Result<Op
 }
 
 fn least_bent(region: &Region, surface: &FillSurface, budget: &Budget) -> Result<Triangles, Stopped> {
-    if let [outer, inner] = &region.ranges()[..]
-        && region.rim().len() > minimal::CORNERS_MAX
-        && !region.is_flat
-    {
-        let points = rim_points(region, surface);
-        return Ok(Ok(bridge::zip(&points, [outer.clone(), inner.clone()], budget)?));
+    let ranges = region.ranges();
+    let pair = match &ranges[..] {
+        [outer, inner] if !region.is_flat => Some([outer.clone(), inner.clone()]),
+        _ => None,
+    };
+    let zipped = |pair| bridge::zip(&rim_points(region, surface), pair, budget);
+    let is_large = region.rim().len() > minimal::CORNERS_MAX;
+    let least = match pair.clone().filter(|_| is_large) {
+        Some(pair) => return Ok(Ok(zipped(pair)?)),
+        None => of_one_polygon(region, surface, budget)?,
+    };
+    // The cut between two loops has two sides, and what is least between them may pass a corner at both.
+    match (least, pair) {
+        (Ok(triangles), Some(pair)) if !closes(region, &triangles) => Ok(Ok(zipped(pair)?)),
+        (least, _) => Ok(least),
     }
+}
+
+/// True when triangles between the corners of the region are a surface with just its loops as boundary.
+fn closes(region: &Region, triangles: &[[usize; 3]]) -> bool {
+    let triangles = triangles.iter().map(|t| t.map(|i| i as u32)).collect();
+    check_topology(&proposal(region, Vec::new(), triangles)).is_ok()
+}
+
+/// The triangulation that bends least of the polygon that passes all loops.
+fn of_one_polygon(region: &Region, surface: &FillSurface, budget: &Budget) -> Result<Triangles, Stopped> {
     let Some(polygon) = polygon(region, surface, budget)? else { return Ok(Err(Rejection::NoPatch)) };
     let (rim, next) = (region.rim(), region.next_corners());
     let points: Vec<DVec3> = polygon.iter().map(|&i| surface.point(rim[i])).collect();

@@ -30,6 +30,7 @@ mod refine;
 mod regions;
 mod report;
 mod shape;
+mod sheets;
 mod span;
 mod sparse;
 mod surface;
@@ -43,7 +44,7 @@ use self::regions::{Region, regions};
 pub use self::report::{Filled, HoleReport, Rejected, Rejection, Rim};
 pub use self::span::{span_odd_edges, span_rims};
 use self::surface::FillSurface;
-use super::{Changes, Draft, FIRST_BLEND, NEW, Selection};
+use super::{Changes, Draft, Effects, FIRST_BLEND, NEW, Selection};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec3, triangle_area};
 use crate::mesh::{Boundary, Soup, edge_of};
@@ -119,7 +120,9 @@ fn fill_loops(
     let ladder = Ladder { draft, soup, options };
     let outward = |h: u32| surface.outward(h);
     let outward: Option<&dyn Fn(u32) -> DVec3> = if options.bridges { Some(&outward) } else { None };
-    let regions = regions(pinched::join(loops, &surface, budget)?, |h| surface.point(h), outward, budget)?;
+    let walks = pinched::join(loops, &surface, budget)?;
+    let sheets = sheets::of_flat_sheets(&walks, &surface, budget)?;
+    let regions = regions(walks, &sheets, |h| surface.point(h), outward, budget)?;
     let start = |_, region| ladder.start(region, Vec::new(), &surface, budget);
     let mut open = par::map_items(regions, start).into_iter().collect::<Result<Vec<Hole>, Stopped>>()?;
     let has_field = open.iter().any(|hole| hole.ways.contains(&Way::Rbf));
@@ -127,6 +130,7 @@ fn fill_loops(
     let positions = if has_field { surface.positions.clone() } else { Vec::new() };
     let triangles = if has_field { surface.triangles.clone() } else { Vec::new() };
     let mesh = if has_field { Some(rbf::FieldMesh::new(&positions, &triangles, budget)?) } else { None };
+    let mut effects = Effects::default();
     let mut done = Vec::new();
     let mut patches: Vec<(MadePatch, u32)> = Vec::new();
     while !open.is_empty() {
@@ -144,6 +148,7 @@ fn fill_loops(
             };
             match verdicts.next() {
                 Some(Ok(first)) => {
+                    effects.bridged_rims |= hole.region.is_bridge;
                     hole.report.take(way.method(), &made, &surface, first);
                     patches.push((made, first));
                     done.push(hole.report);
@@ -161,7 +166,7 @@ fn fill_loops(
     done.sort_by_key(|report| report.order);
     let first = draft.triangles.len();
     append(draft, soup, &surface, &patches, budget)?;
-    let changes = changes(draft, first, &done, boundary.stray_edges);
+    let changes = changes(draft, first, &done, boundary.stray_edges).with(effects);
     Ok(Filled { changes, holes: done })
 }
 
@@ -176,7 +181,7 @@ impl Ladder<'_> {
     fn start(
         &self,
         region: Region,
-        rejected: Vec<Rejected>,
+        mut rejected: Vec<Rejected>,
         surface: &FillSurface,
         budget: &Budget,
     ) -> Result<Hole, Stopped> {
@@ -185,8 +190,14 @@ impl Ladder<'_> {
         let band_rings = choice.and_then(|choice| choice.band_rings).unwrap_or(self.options.band_rings);
         let is_own = choice.is_some_and(|choice| choice.method.is_some() || choice.band_rings.is_some());
         let refines = self.options.refines || is_own;
-        let (mut ways, division) = class::ways(&region, asked, refines, surface, self.options, budget)?;
+        let (mut ways, division) = match region.is_on_sheet {
+            true => (Vec::new(), None),
+            false => class::ways(&region, asked, refines, surface, self.options, budget)?,
+        };
         ways.reverse();
+        if region.is_on_sheet {
+            rejected.push(Rejected::alone(asked, Rejection::FlatSheet));
+        }
         let rim = |own: &Vec<u32>| {
             let of_soup = |&h: &u32| self.soup.and_then(|soup| options::soup_half_edge(h, self.draft, soup));
             Rim { half_edges: own.iter().filter_map(of_soup).collect(), edges: own.len() as u32 }

@@ -22,18 +22,28 @@ pub(super) struct Region {
     pub(super) normal: DVec3,
     /// True when all loops lie in one plane, as nearly as float32 can say.
     pub(super) is_flat: bool,
+    /// True when the outer loop is the rim of a flat sheet on which a patch would lie.
+    pub(super) is_on_sheet: bool,
+    /// True when the loops face each other across a gap.
+    pub(super) is_bridge: bool,
     /// The half-edges of all loops.
     rim: Vec<u32>,
+    /// For each loop the unit normal of the flat sheet of which it is a rim.
+    sheets: Vec<Option<DVec3>>,
 }
 
 impl Region {
-    fn new(outer: Walk, normal: DVec3, is_flat: bool) -> Self {
-        Self { rim: outer.half_edges.clone(), walks: vec![outer], normal, is_flat }
+    fn new(outer: Walk, shape: &Shape, sheet: Option<DVec3>) -> Self {
+        let Shape { normal, is_flat, .. } = *shape;
+        let is_on_sheet = lies_on(sheet, normal);
+        let rim = outer.half_edges.clone();
+        Self { rim, walks: vec![outer], normal, is_flat, is_on_sheet, is_bridge: false, sheets: vec![sheet] }
     }
 
-    fn add(&mut self, island: Walk) {
+    fn add(&mut self, island: Walk, sheet: Option<DVec3>) {
         self.rim.extend(&island.half_edges);
         self.walks.push(island);
+        self.sheets.push(sheet);
     }
 
     /// The half-edges of all loops, one after the other.
@@ -81,28 +91,33 @@ impl Region {
             [only] => only.joined().iter().cloned().map(Walk::of_one).collect(),
             several => several.to_vec(),
         };
-        let region = |walk: Walk| {
-            let Shape { normal, is_flat, .. } = shape(walk.half_edges.iter().map(|&h| corner(h)).collect());
-            Self::new(walk, normal, is_flat)
+        let region = |(walk, sheet): (Walk, Option<DVec3>)| {
+            let shape = shape(walk.half_edges.iter().map(|&h| corner(h)).collect());
+            Self::new(walk, &shape, sheet)
         };
-        walks.into_iter().map(region).collect()
+        // Loops that are joined are of no flat sheet, or all of the same one.
+        let sheets = self.sheets.iter().copied().cycle();
+        walks.into_iter().zip(sheets).map(region).collect()
     }
 }
 
-/// Groups the walks into regions, in their order. `corner(h)` is the corner of a loop at half-edge `h`.
+/// Groups the walks into regions, in their order. `corner(h)` is the corner of a loop at half-edge `h`, `sheets` gives for each walk
+/// the unit normal of the flat sheet of which it is a rim.
 /// `outward(h)`, if it is given, is the unit direction in which the surface would go on there; loops that face each other
 /// across a gap are then grouped, flat or not.
 pub(super) fn regions(
     walks: Vec<Walk>,
+    sheets: &[Option<DVec3>],
     corner: impl Fn(u32) -> DVec3,
     outward: Option<&dyn Fn(u32) -> DVec3>,
     budget: &Budget,
 ) -> Result<Vec<Region>, Stopped> {
     let loops: Vec<&BoundaryLoop> = walks.iter().map(|walk| &walk.half_edges).collect();
     let shapes: Vec<Shape> = loops.iter().map(|l| shape(l.iter().map(|&h| corner(h)).collect())).collect();
-    let in_plane = containers(&shapes, budget)?;
+    let is_on_sheet = |i: usize| lies_on(sheets[i], shapes[i].normal);
+    let in_plane = containers(&shapes, is_on_sheet, budget)?;
     let across = match outward {
-        Some(outward) => facing::partners(&shapes, &loops, outward, &in_plane, budget)?,
+        Some(outward) => facing::partners(&shapes, &loops, sheets, outward, &in_plane, budget)?,
         None => vec![None; loops.len()],
     };
     let is_outer = |i: usize| in_plane[i].is_none() && across[i].is_none();
@@ -110,22 +125,31 @@ pub(super) fn regions(
         .iter()
         .zip(&shapes)
         .enumerate()
-        .map(|(i, (outer, shape))| {
-            is_outer(i).then(|| Region::new(outer.clone(), shape.normal, shape.is_flat))
-        })
+        .map(|(i, (outer, shape))| is_outer(i).then(|| Region::new(outer.clone(), shape, sheets[i])))
         .collect();
     for (i, island) in walks.into_iter().enumerate() {
         if let Some(region) = in_plane[i].or(across[i]).and_then(|c| regions[c].as_mut()) {
-            region.is_flat &= across[i].is_none();
-            region.add(island);
+            if across[i].is_some() {
+                (region.is_bridge, region.is_flat, region.is_on_sheet) = (true, false, false);
+            }
+            region.add(island, sheets[i]);
         }
     }
     Ok(regions.into_iter().flatten().collect())
 }
 
+/// True when a loop with this normal is the outer rim of a flat sheet, if it is one of a `sheet` with such a normal.
+fn lies_on(sheet: Option<DVec3>, normal: DVec3) -> bool {
+    sheet.is_some_and(|sheet| sheet.dot(normal) <= 0.0)
+}
+
 /// For each loop the one whose island it is: the smallest flat loop around it, if that is not an island itself and runs
-/// the other way around.
-fn containers(shapes: &[Shape], budget: &Budget) -> Result<Vec<Option<usize>>, Stopped> {
+/// the other way around. What is inside of a rim that `is_on_sheet` is a hole in the sheet.
+fn containers(
+    shapes: &[Shape],
+    is_on_sheet: impl Fn(usize) -> bool,
+    budget: &Budget,
+) -> Result<Vec<Option<usize>>, Stopped> {
     let mut container = vec![None; shapes.len()];
     let mut flat: Vec<usize> = (0..shapes.len()).filter(|&i| shapes[i].is_flat).collect();
     if flat.len() > FLAT_LOOPS_MAX {
@@ -136,7 +160,9 @@ fn containers(shapes: &[Shape], budget: &Budget) -> Result<Vec<Option<usize>>, S
         budget.spend(rank as u64 / 64)?;
         let around = flat[..rank].iter().rev().find(|&&outer| contains(&shapes[outer], &shapes[inner]));
         container[inner] = around.copied().filter(|&outer| {
-            container[outer].is_none() && shapes[outer].normal.dot(shapes[inner].normal) < 0.0
+            container[outer].is_none()
+                && shapes[outer].normal.dot(shapes[inner].normal) < 0.0
+                && !is_on_sheet(outer)
         });
     }
     Ok(container)
@@ -182,7 +208,7 @@ mod tests {
             })
             .collect();
         let walks = (0..squares.len() as u32).map(|s| Walk::of_one((4 * s..4 * s + 4).collect())).collect();
-        regions(walks, |h| corners[h as usize], None, &Budget::unlimited())
+        regions(walks, &vec![None; squares.len()], |h| corners[h as usize], None, &Budget::unlimited())
             .unwrap()
             .into_iter()
             .map(|region| region.loops().map(|l| l[0] / 4).collect())

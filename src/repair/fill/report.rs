@@ -25,6 +25,8 @@ pub enum Rejection {
     Inexact,
     /// A vertex finds no zero of the field within half the diagonal of the rim.
     NoZero,
+    /// The rim is that of a flat sheet, on which every patch would lie.
+    FlatSheet,
     /// A triangle without area.
     DegenerateTriangle,
     /// It is not a surface with exactly the rim as its boundary.

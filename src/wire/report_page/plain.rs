@@ -96,6 +96,7 @@ pub(super) fn rejection(reason: &str) -> &'static str {
         "no-room" => "another wall lies in the same place",
         "singular" | "inexact" => "the surface could not be computed well enough",
         "no-zero" => "the surface does not span the hole",
+        "flat-sheet" => "it would lie on the flat surface that the hole is the rim of",
         "degenerate-triangle" => "a face without area",
         "topology" => "its edge would not be exactly that of the hole",
         "edge-in-use" => "it would double an edge or a face",

@@ -83,6 +83,8 @@ mirror! { repair::fill::Rejection =>
         Inexact = "inexact",
         /// A vertex finds no zero of the field within half the diagonal of the rim.
         NoZero = "no-zero",
+        /// The rim is that of a flat sheet, on which every patch would lie.
+        FlatSheet = "flat-sheet",
         /// A triangle without area.
         DegenerateTriangle = "degenerate-triangle",
         /// It is not a surface with exactly the rim as its boundary.

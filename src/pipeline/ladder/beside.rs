@@ -1,0 +1,101 @@
+//! Other plans that are tried beside a certified result which lost much; the closer result is kept.
+
+use super::climb::{Certified, Climb, RungResult, Situation};
+use crate::pipeline::plan::{Attempt, Variant};
+use crate::pipeline::repair_choices::Walls;
+use crate::pipeline::{Failure, Require};
+use crate::repair::duplicates::OppositePairs;
+use crate::winding::OpenShells;
+
+/// Such a plan may take one of so many parts of the work that is left.
+const BESIDE_PART: u64 = 2;
+
+/// Share of a result's surface that may be far from the file without bridges being tried.
+const INVENTED_MAX: f64 = 0.01;
+
+impl Climb<'_> {
+    /// Keeps one of two copies of opposite direction where much is lost without both.
+    pub(super) fn with_copies_if_closer(
+        &self,
+        closed: Box<Certified>,
+        situation: &mut Situation,
+    ) -> Result<Box<Certified>, Failure> {
+        let has_lost = !closed.fidelity.passes(&self.options.limits);
+        if !has_lost || !closed.attempt.effects.cancelled_opposite_pairs {
+            return Ok(closed);
+        }
+        let variant = Variant { opposite: OppositePairs::KeepFirst, ..situation.variant };
+        self.closer_of(closed, variant, situation)
+    }
+
+    /// Closes rims that face each other by one patch between them where that invents less surface than one for each.
+    pub(super) fn with_bridges_if_closer(
+        &self,
+        closed: Box<Certified>,
+        situation: &mut Situation,
+    ) -> Result<Box<Certified>, Failure> {
+        if closed.fidelity.losses.invented <= INVENTED_MAX || !has_several_rims(&closed.attempt) {
+            return Ok(closed);
+        }
+        situation.has_tried_bridging = true;
+        let limits = &self.options.limits;
+        let invents_less = |closed: &Certified, bridged: &Certified| {
+            bridged.fidelity.passes(limits)
+                && bridged.fidelity.losses.invented < closed.fidelity.losses.invented
+        };
+        let variant = Variant { bridges: true, ..situation.variant };
+        self.better_of(closed, variant, invents_less, situation)
+    }
+
+    /// Gives open parts walls where patches over their openings take much from them.
+    pub(super) fn with_walls_if_closer(
+        &self,
+        closed: Box<Certified>,
+        situation: &mut Situation,
+    ) -> Result<Box<Certified>, Failure> {
+        let may_wall = self.choices.walls == Walls::ForSheets
+            && self.options.wrap.open_shells != OpenShells::Close
+            && self.options.require != Some(Require::None);
+        if !may_wall || !closed.attempt.closes_openings || !closed.as_seen.loses_much() {
+            return Ok(closed);
+        }
+        self.closer_of(closed, Variant { thickens: true, ..situation.variant }, situation)
+    }
+
+    /// Tries a plan beside a certified result that lost much, and gives the closer one.
+    fn closer_of(
+        &self,
+        known: Box<Certified>,
+        variant: Variant,
+        situation: &mut Situation,
+    ) -> Result<Box<Certified>, Failure> {
+        self.better_of(known, variant, |_, _| false, situation)
+    }
+
+    /// Tries a plan beside a certified result, which stays where that takes too much work, and gives the one that is closer or
+    /// `is_better` than the known one.
+    fn better_of(
+        &self,
+        known: Box<Certified>,
+        variant: Variant,
+        is_better: impl Fn(&Certified, &Certified) -> bool,
+        situation: &mut Situation,
+    ) -> Result<Box<Certified>, Failure> {
+        let before = situation.variant;
+        let tried = self.budget.within_part(BESIDE_PART, || self.try_plan(variant, situation))?;
+        let is_closer =
+            |tried: &Certified| !known.fidelity.is_no_worse(&tried.fidelity, &self.options.limits);
+        match tried.flatten() {
+            Some(RungResult::Certified(tried)) if is_closer(&tried) || is_better(&known, &tried) => Ok(tried),
+            _ => {
+                situation.variant = before;
+                Ok(known)
+            }
+        }
+    }
+}
+
+/// True when more than one rim was to be closed.
+pub(super) fn has_several_rims(attempt: &Attempt) -> bool {
+    attempt.holes.iter().map(|hole| hole.loops).sum::<u64>() > 1
+}

@@ -1,0 +1,21 @@
+//! Rims that face each other get one patch between them.
+
+use super::climb::Uncertified;
+use super::{Kind, Rung, beside};
+use crate::pipeline::plan::Variant;
+
+pub(super) const RUNG: Rung = Rung {
+    name: "bridges",
+    kind: Kind::Plan,
+    applies: |_, situation| {
+        let has_several_rims = |last: &Uncertified| beside::has_several_rims(&last.attempt);
+        Ok(!situation.has_tried_bridging && situation.last.as_ref().is_some_and(has_several_rims))
+    },
+    tries: |climb, situation| {
+        situation.has_tried_bridging = true;
+        let before = situation.variant;
+        let found = climb.try_plan(Variant { bridges: true, ..before }, situation);
+        situation.variant = before;
+        found
+    },
+};

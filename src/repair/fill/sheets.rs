@@ -1,0 +1,76 @@
+//! Flat sheets: parts of the surface that lie in one plane. A patch within the rim of one would lie on it, and what the two
+//! enclose would be nothing but the rounding of coordinates.
+
+use super::pinched::Walk;
+use super::surface::FillSurface;
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::geom::{Aabb, DVec3};
+use crate::mesh::triangle_of;
+
+/// How far from its plane a part may be to be flat, as a share of its diagonal: a twentieth of what counts as lost.
+const FLAT_SHARE_MAX: f64 = 1e-4;
+
+/// A part of the surface.
+#[derive(Clone, Copy)]
+struct Part {
+    bounds: Aabb,
+    /// Any of its corners.
+    origin: DVec3,
+    /// The sum of its triangles' normals, by their area; then of unit length, or zero.
+    normal: DVec3,
+    is_flat: bool,
+}
+
+/// For each walk the unit normal of the flat sheet of which it is a rim; `None` where it is one of something else.
+pub(super) fn of_flat_sheets(
+    walks: &[Walk],
+    surface: &FillSurface,
+    budget: &Budget,
+) -> Result<Vec<Option<DVec3>>, Stopped> {
+    if walks.is_empty() {
+        return Ok(Vec::new());
+    }
+    let parts = surface.groups.components(budget)?;
+    let _charge = budget.charge(u64::from(parts.count) * size_of::<Part>() as u64)?;
+    budget.spend(surface.triangles.len() as u64 / 8)?;
+    let unseen = Part { bounds: Aabb::EMPTY, origin: DVec3::ZERO, normal: DVec3::ZERO, is_flat: false };
+    let mut found = vec![unseen; parts.count as usize];
+    let part_of = |h: u32| parts.of[triangle_of(h) as usize] as usize;
+    for h in walks.iter().flat_map(|walk| &walk.half_edges) {
+        found[part_of(*h)].is_flat = true;
+    }
+    let corners = |t: usize| surface.triangles[t].map(|v| surface.positions[v as usize]);
+    for (t, &part) in parts.of.iter().enumerate() {
+        if t % CHECK_EVERY == 0 {
+            budget.check()?;
+        }
+        let part = &mut found[part as usize];
+        if part.is_flat {
+            let [a, b, c] = corners(t);
+            part.origin = a;
+            part.normal += (b - a).cross(c - a);
+            part.bounds = part.bounds.union(Aabb::of([a, b, c]));
+        }
+    }
+    found.iter_mut().for_each(|part| part.normal = part.normal.normalize_or_zero());
+    for (t, &part) in parts.of.iter().enumerate() {
+        if t % CHECK_EVERY == 0 {
+            budget.check()?;
+        }
+        let part = &mut found[part as usize];
+        if part.is_flat {
+            let [a, b, c] = corners(t);
+            let height = |p: DVec3| (p - part.origin).dot(part.normal).abs();
+            let size = part.bounds.diagonal();
+            // A needle may point anywhere.
+            let turns_back = (b - a).cross(c - a).dot(part.normal) < -FLAT_SHARE_MAX * size * size;
+            part.is_flat = [a, b, c].into_iter().all(|p| height(p) <= FLAT_SHARE_MAX * size) && !turns_back;
+        }
+    }
+    let sheet = |walk: &Walk| {
+        let part = part_of(walk.half_edges[0]);
+        let is_of_one = walk.half_edges.iter().all(|&h| part_of(h) == part);
+        (is_of_one && found[part].is_flat).then_some(found[part].normal)
+    };
+    Ok(walks.iter().map(sheet).collect())
+}
