@@ -10,7 +10,7 @@ use meshmend::analysis::{AnalyzeOptions, NearSearch, analyze};
 use meshmend::budget::Budget;
 use meshmend::distance::{DistanceOptions, Surface, surface_distance};
 use meshmend::printing::{Policy, measure};
-use meshmend::simplify::{Input, SimplifyOptions, Target, simplify_guarded};
+use meshmend::simplify::{SimplifyInput, SimplifyOptions, Target, simplify_guarded};
 use std::hint::black_box;
 
 fn benches(criterion: &mut Criterion) {
@@ -25,7 +25,7 @@ fn benches(criterion: &mut Criterion) {
             b.iter(|| analyze(black_box(&soup), None, &options, &Budget::unlimited()));
         });
         group.bench_function(format!("simplify: {name}"), |b| {
-            let input = Input::new(&soup.positions, &soup.triangles);
+            let input = SimplifyInput::new(&soup.positions, &soup.triangles);
             let options = SimplifyOptions { targets: vec![Target::Ratio(0.1)], ..SimplifyOptions::default() };
             b.iter(|| simplify_guarded(black_box(&input), &options, &Budget::unlimited()));
         });

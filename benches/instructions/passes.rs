@@ -21,7 +21,7 @@ use meshmend::repair::round::{round_to_coarser, round_where_it_matters};
 use meshmend::repair::snap::{SnapOptions, gap_between_rims, snap};
 use meshmend::repair::unite::unite;
 use meshmend::repair::weld::weld;
-use meshmend::simplify::{Input, Mode, SimplifyOptions, Target, simplify};
+use meshmend::simplify::{Mode, SimplifyInput, SimplifyOptions, Target, simplify};
 use meshmend::spatial::{Bvh, Search, self_contacts};
 use meshmend::wrap::{WrapOptions, wrap};
 use std::any::Any;
@@ -193,7 +193,7 @@ fn repair(mesh: &Soup) -> Body {
 fn simplifying(mode: Mode) -> Body {
     let mesh = sphere(64, 26);
     body(move || {
-        let input = Input::new(&mesh.positions, &mesh.triangles);
+        let input = SimplifyInput::new(&mesh.positions, &mesh.triangles);
         let options = SimplifyOptions { targets: vec![Target::Ratio(0.25)], ..SimplifyOptions::default() };
         let levels = simplify(&input, mode, &options, &unlimited()).expect("a manifold");
         assert!(levels[0].triangles.len() < mesh.triangles.len() / 3, "few triangles are left");

@@ -101,7 +101,7 @@ pub struct Options {
     /// Hole filling of `repair`.
     pub fill_holes: FillHoles,
     /// What shells inside shells mean to `repair`.
-    pub nesting: nest::Policy,
+    pub nesting: nest::NestingPolicy,
     /// What `repair` does with bodies that touch.
     pub contact: Contact,
     /// What `repair` is to do about each defect; `None`: as proposed.

@@ -15,7 +15,7 @@ use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::Depth;
 use crate::formats::Encoding;
 use crate::repair::Draft;
-use crate::repair::nest::Policy;
+use crate::repair::nest::NestingPolicy;
 
 /// Repairs `input`. A valid one comes back as it is, or converted.
 pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Result<Answer, Failure> {
@@ -48,7 +48,7 @@ fn planned(
     let is_as_asked = || {
         !choices.removes()
             && !choices.mends_thin_faces()
-            && (choices.nesting != Policy::Fill || !has_cavities(input))
+            && (choices.nesting != NestingPolicy::Fill || !has_cavities(input))
     };
     if input.examination.certificate.is_printable() && is_as_asked() {
         let (draft, _) = Draft::from_soup(&input.soup);

@@ -19,9 +19,9 @@ use crate::repair::Draft;
 use crate::repair::cut::CutOptions;
 use crate::repair::duplicates::OppositePairs;
 use crate::simplify::{
-    self, Guards, Mode, Refusal as CollapseRefusal, Simplified, SimplifyError, SimplifyOptions, Target,
+    self, Guards, Mode, Simplified, SimplifyError, SimplifyOptions, SimplifyRefusal, Target,
 };
-use crate::winding::Solid;
+use crate::winding::WindingSolid;
 
 /// What makes a manifold of any mesh, without moving a vertex.
 fn manifold() -> [Step; 5] {
@@ -172,7 +172,7 @@ impl Fewer {
         let origins = of_input(&origins);
         let volume = defined_volume(report.before.as_ref());
         let solid = budget.stage(Stage::Measure, || {
-            Solid::of(&draft.positions, &draft.triangles, options.wrap.open_shells, budget)
+            WindingSolid::of(&draft.positions, &draft.triangles, options.wrap.open_shells, budget)
         })?;
         let original = Original::new(&input.soup, volume, Some(solid));
         let fidelity = original.measure(candidate.soup(), &candidate.origins(&origins), budget)?;
@@ -252,7 +252,7 @@ pub(super) fn of_certified(
 
 /// What a simplification did, as a step of a plan.
 pub(super) fn action(report: &simplify::TargetReport) -> Action {
-    let refused = CollapseRefusal::ALL.map(|reason| (reason.name(), report.refusals.count(reason)));
+    let refused = SimplifyRefusal::ALL.map(|reason| (reason.name(), report.refusals.count(reason)));
     let counts = [
         ("faces_removed", (report.faces_before - report.faces_after) as u64),
         ("edges_collapsed", report.collapses),
@@ -288,7 +288,7 @@ fn run(
     };
     let Seams { groups, points } = seams;
     let _charge = budget.charge((size_of_val(&points[..]) + size_of_val(&groups[..])) as u64)?;
-    let input = simplify::Input {
+    let input = simplify::SimplifyInput {
         positions: &mesh.positions,
         triangles: &mesh.triangles,
         face_groups: groups,

@@ -20,7 +20,7 @@ use crate::repair::duplicates::OppositePairs;
 use crate::repair::noise::Noise;
 use crate::repair::snap::gap_between_rims;
 use crate::repair::{Draft, noise};
-use crate::winding::{OpenShells, Solid};
+use crate::winding::{OpenShells, WindingSolid};
 use std::cell::OnceCell;
 
 /// A plan may take one of so many parts of the work that is left.
@@ -489,7 +489,7 @@ fn fidelity(
         return Ok(all_seen);
     }
     let read = || {
-        let solid = Solid::of(&draft.positions, &draft.triangles, options.wrap.open_shells, budget)?;
+        let solid = WindingSolid::of(&draft.positions, &draft.triangles, options.wrap.open_shells, budget)?;
         let original = Original::new(&input.soup, volume, Some(solid));
         if looks_out { original.with_outlook(budget) } else { Ok(original) }
     };

@@ -10,7 +10,7 @@ use crate::pipeline::repair_choices::Walls;
 use crate::pipeline::size::diagonal;
 use crate::pipeline::step::Step;
 use crate::pipeline::{Failure, Refusal, Require};
-use crate::repair::nest::Policy;
+use crate::repair::nest::NestingPolicy;
 use crate::winding::OpenShells;
 
 /// Where triangles of the file meet.
@@ -58,7 +58,7 @@ fn may_unite(climb: &Climb<'_>, situation: &Situation) -> bool {
     let choices = climb.choices;
     !situation.has_tried_uniting
         && choices.unites
-        && choices.nesting == Policy::AsOriented
+        && choices.nesting == NestingPolicy::AsOriented
         && choices.shells.is_empty()
 }
 

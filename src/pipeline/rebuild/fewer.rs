@@ -65,7 +65,7 @@ impl Fewer<'_> {
 
     fn run(&self, mode: Mode, held: &[Aabb]) -> Result<Option<(Simplified, Action)>, Stopped> {
         let Wrapped { positions, triangles, account, .. } = self.wrapped;
-        let input = simplify::Input::new(positions, triangles);
+        let input = simplify::SimplifyInput::new(positions, triangles);
         let target = self.choices.targets.first().copied();
         let settings = SimplifyOptions {
             targets: vec![target.unwrap_or(Target::Error(account.spacing * ERROR_OF_CELL))],
@@ -97,7 +97,7 @@ impl Fewer<'_> {
             spatial::self_contacts(positions, triangles, &bvh, Some(&terrains), search, self.budget)?;
         let room = DVec3::splat(ROOM * self.wrapped.account.spacing);
         let bounds = |t: u32| Aabb::of(triangles[t as usize].map(|v| positions[v as usize]));
-        let place = |contact: &spatial::Contact| {
+        let place = |contact: &spatial::TriangleContact| {
             let (a, b) = (bounds(contact.a), bounds(contact.b));
             Aabb { min: a.min.max(b.min) - room, max: a.max.min(b.max) + room }
         };

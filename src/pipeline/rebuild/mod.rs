@@ -23,7 +23,7 @@ use crate::repair::fill::FillOptions;
 use crate::repair::nest::{self, NestOptions};
 use crate::repair::{Draft, NEW, Selection, weld};
 use crate::simplify::Mode;
-use crate::winding::{OpenShells, Solid};
+use crate::winding::{OpenShells, WindingSolid};
 use crate::wrap::{self, Account, WrapError, WrapOptions, Wrapped};
 
 /// How a broken mesh is rebuilt.
@@ -179,7 +179,7 @@ impl LatticeSearch<'_> {
         // Where it is too much work to say what is hidden, everything counts as seen.
         let solid = budget.within_part(4, || {
             budget.stage(Stage::Measure, || {
-                Solid::of(&draft.positions, &draft.triangles, choices.open_shells, budget)
+                WindingSolid::of(&draft.positions, &draft.triangles, choices.open_shells, budget)
             })
         })?;
         let volume = defined_volume(self.before);
@@ -259,7 +259,7 @@ impl LatticeSearch<'_> {
 pub(super) fn is_mostly_sheets(draft: &Draft, options: &Options, budget: &Budget) -> Result<bool, Stopped> {
     let mut welded = draft.clone();
     weld::weld(&mut welded, budget)?;
-    let solid = Solid::of(&welded.positions, &welded.triangles, options.wrap.open_shells, budget)?;
+    let solid = WindingSolid::of(&welded.positions, &welded.triangles, options.wrap.open_shells, budget)?;
     Ok(solid.is_mostly_sheets())
 }
 

@@ -2,7 +2,7 @@
 //! where a band is missing of a tube, and an island and the hole around it; the rims at the ends of a tube look away from
 //! each other, and those of two holes on both sides of a wall past each other.
 
-use super::shape::Shape;
+use super::shape::LoopPolyline;
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::BoundaryLoop;
@@ -20,7 +20,7 @@ const LOOPS_MAX: usize = 4096;
 
 /// For each loop the larger one that it shares a patch with. Loops that are islands in a plane, or hold one, have none.
 pub(super) fn partners(
-    shapes: &[Shape],
+    shapes: &[LoopPolyline],
     loops: &[&BoundaryLoop],
     outward: &dyn Fn(u32) -> DVec3,
     in_plane: &[Option<usize>],
@@ -58,7 +58,7 @@ pub(super) fn partners(
 }
 
 /// True when the boxes are no farther apart than a gap may be, and the loops run against each other.
-fn is_near(inner: &Shape, outer: &Shape) -> bool {
+fn is_near(inner: &LoopPolyline, outer: &LoopPolyline) -> bool {
     let apart =
         (outer.bounds.min - inner.bounds.max).max(inner.bounds.min - outer.bounds.max).max(DVec3::ZERO);
     apart.length() <= GAP_SHARE_MAX * outer.bounds.diagonal()
@@ -67,7 +67,12 @@ fn is_near(inner: &Shape, outer: &Shape) -> bool {
 
 /// The mean cosine between where the surface would go on and the nearest corner of the other loop, and the mean distance
 /// of that.
-fn facing(from: &Shape, half_edges: &BoundaryLoop, to: &Shape, outward: &dyn Fn(u32) -> DVec3) -> (f64, f64) {
+fn facing(
+    from: &LoopPolyline,
+    half_edges: &BoundaryLoop,
+    to: &LoopPolyline,
+    outward: &dyn Fn(u32) -> DVec3,
+) -> (f64, f64) {
     let n = half_edges.len();
     let stride = n.div_ceil(SAMPLES);
     let (mut cos, mut gap, mut count) = (0.0, 0.0, 0.0);

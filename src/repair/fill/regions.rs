@@ -2,7 +2,7 @@
 //! that face each other across a gap.
 
 use super::pinched::Walk;
-use super::shape::{FLAT_SHARE_MAX, Shape, shape};
+use super::shape::{FLAT_SHARE_MAX, LoopPolyline, shape};
 use super::{facing, planar};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec2, DVec3, Sign, orient2d};
@@ -82,7 +82,8 @@ impl Region {
             several => several.to_vec(),
         };
         let region = |walk: Walk| {
-            let Shape { normal, is_flat, .. } = shape(walk.half_edges.iter().map(|&h| corner(h)).collect());
+            let LoopPolyline { normal, is_flat, .. } =
+                shape(walk.half_edges.iter().map(|&h| corner(h)).collect());
             Self::new(walk, normal, is_flat)
         };
         walks.into_iter().map(region).collect()
@@ -99,7 +100,8 @@ pub(super) fn regions(
     budget: &Budget,
 ) -> Result<Vec<Region>, Stopped> {
     let loops: Vec<&BoundaryLoop> = walks.iter().map(|walk| &walk.half_edges).collect();
-    let shapes: Vec<Shape> = loops.iter().map(|l| shape(l.iter().map(|&h| corner(h)).collect())).collect();
+    let shapes: Vec<LoopPolyline> =
+        loops.iter().map(|l| shape(l.iter().map(|&h| corner(h)).collect())).collect();
     let in_plane = containers(&shapes, budget)?;
     let across = match outward {
         Some(outward) => facing::partners(&shapes, &loops, outward, &in_plane, budget)?,
@@ -125,7 +127,7 @@ pub(super) fn regions(
 
 /// For each loop the one whose island it is: the smallest flat loop around it, if that is not an island itself and runs
 /// the other way around.
-fn containers(shapes: &[Shape], budget: &Budget) -> Result<Vec<Option<usize>>, Stopped> {
+fn containers(shapes: &[LoopPolyline], budget: &Budget) -> Result<Vec<Option<usize>>, Stopped> {
     let mut container = vec![None; shapes.len()];
     let mut flat: Vec<usize> = (0..shapes.len()).filter(|&i| shapes[i].is_flat).collect();
     if flat.len() > FLAT_LOOPS_MAX {
@@ -143,7 +145,7 @@ fn containers(shapes: &[Shape], budget: &Budget) -> Result<Vec<Option<usize>>, S
 }
 
 /// True when `inner` lies in the plane of `outer` and inside it.
-fn contains(outer: &Shape, inner: &Shape) -> bool {
+fn contains(outer: &LoopPolyline, inner: &LoopPolyline) -> bool {
     let tolerance = FLAT_SHARE_MAX * outer.bounds.diagonal();
     outer.normal.dot(inner.normal).abs() >= PARALLEL_COS_MIN
         && inner.bounds.min.cmpge(outer.bounds.min - tolerance).all()
@@ -153,7 +155,7 @@ fn contains(outer: &Shape, inner: &Shape) -> bool {
 }
 
 /// Crossing test of a point in the view of the loop; exact but for points on the loop itself.
-fn is_inside(point: DVec3, outer: &Shape) -> bool {
+fn is_inside(point: DVec3, outer: &LoopPolyline) -> bool {
     let view = planar::view(outer.normal);
     let p = view(point);
     let crosses = |a: DVec2, b: DVec2| {
