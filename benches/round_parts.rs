@@ -9,7 +9,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use meshmend::analysis::{AnalyzeOptions, NearSearch, analyze};
 use meshmend::budget::Budget;
 use meshmend::distance::{DistanceOptions, Surface, surface_distance};
-use meshmend::printing::{Policy, measure};
+use meshmend::printing::{PrintingPolicy, measure};
 use meshmend::simplify::{SimplifyInput, SimplifyOptions, Target, simplify_guarded};
 use std::hint::black_box;
 
@@ -18,7 +18,7 @@ fn benches(criterion: &mut Criterion) {
     group.sample_size(10);
     for (name, soup) in shapes::all(100_000) {
         group.bench_function(format!("printing: {name}"), |b| {
-            b.iter(|| measure(black_box(&soup), &Policy::default(), true, 16, &Budget::unlimited()));
+            b.iter(|| measure(black_box(&soup), &PrintingPolicy::default(), true, 16, &Budget::unlimited()));
         });
         group.bench_function(format!("analysis: {name}"), |b| {
             let options = AnalyzeOptions { near: NearSearch::ByDiagonal, ..AnalyzeOptions::default() };

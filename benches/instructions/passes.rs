@@ -11,9 +11,9 @@ use meshmend::formats::{Encoding, ReadOptions, read, write};
 use meshmend::geom::DVec3;
 use meshmend::mesh::{Boundary, EdgeGroups, Soup, singular_vertices, twins};
 use meshmend::pipeline::{Operation, Options, Outcome, run};
-use meshmend::printing::{Policy, measure};
+use meshmend::printing::{PrintingPolicy, measure};
 use meshmend::render::{
-    Camera, DrawnEdges, Model, Projection, Scene, SceneFrame, Shade, Style, View, draw, picture,
+    Camera, DrawnEdges, FramedScene, Projection, Scene, SceneFrame, Shade, Style, View, draw, picture,
 };
 use meshmend::repair::Draft;
 use meshmend::repair::fill::{FillOptions, Method, fill};
@@ -165,7 +165,7 @@ fn volume_interval() -> Body {
 fn printing() -> Body {
     let mesh = sphere(32, 26);
     body(move || {
-        measure(&mesh, &Policy::default(), true, 16, &unlimited()).expect("no limit").expect("a mesh")
+        measure(&mesh, &PrintingPolicy::default(), true, 16, &unlimited()).expect("no limit").expect("a mesh")
     })
 }
 
@@ -293,7 +293,7 @@ fn rendering() -> Body {
             ..Scene::default()
         };
         let frame = SceneFrame::around([scene.bounds()]);
-        let model = Model::of(scene, frame, Shade::Smooth, &budget).expect("no limit");
+        let model = FramedScene::of(scene, frame, Shade::Smooth, &budget).expect("no limit");
         let direction = View::Iso.direction();
         let camera = Camera::at(&[&model], direction, Projection::Orthographic, 4.0 / 3.0, &budget);
         let style = Style { edges: DrawnEdges::Creases, background: [255; 3], back: Some([207, 63, 54]) };

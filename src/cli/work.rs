@@ -11,7 +11,7 @@ use crate::config::{Config, Loaded};
 use crate::formats::{self, ReadLimits};
 use crate::jobs::StageClock;
 use crate::par;
-use crate::pipeline::{self, Answer, Operation, Output, PictureChoices, Product, Require};
+use crate::pipeline::{self, Answer, Operation, Output, PictureChoices, ProductKind, Require};
 use crate::wire::{OptionError, Options, PictureFormat, Problem, ProblemCode, Report, TimingMs, report_page};
 use std::borrow::Cow;
 use std::io;
@@ -290,10 +290,10 @@ fn deliver(
 
 fn verdict(operation: Operation, require: Option<Require>, report: &Report, has_result: bool) -> Exit {
     let is_done = match operation.facts().product {
-        Product::Solid => has_result && report.verdict.printable,
-        Product::Report => operation != Operation::Verify || report.verdict.printable,
-        Product::Picture => true,
-        Product::Mesh => has_result && (require != Some(Require::Printable) || report.verdict.printable),
+        ProductKind::Solid => has_result && report.verdict.printable,
+        ProductKind::Report => operation != Operation::Verify || report.verdict.printable,
+        ProductKind::Picture => true,
+        ProductKind::Mesh => has_result && (require != Some(Require::Printable) || report.verdict.printable),
     };
     if is_done { Exit::Done } else { Exit::Negative }
 }

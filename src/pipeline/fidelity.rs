@@ -45,7 +45,7 @@ const PLACES_OF_BODY: usize = 8;
 
 /// How far a result is from its input, and what it lost.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Fidelity {
+pub(super) struct FidelityMeasurement {
     /// Of what can be seen of the input to the result, and back. `None`: one of them has no triangle.
     pub(super) distance: Option<SurfaceDistance>,
     pub(super) losses: Losses,
@@ -66,7 +66,7 @@ pub struct Losses {
     pub volume_change: Option<f64>,
 }
 
-impl Fidelity {
+impl FidelityMeasurement {
     /// What a result is chosen by, of what it is with patches over openings in the way and `as_seen` past them.
     pub(super) fn to_choose_by(self, as_seen: Self, limits: &FidelityLimits) -> Self {
         if as_seen.loses_much() || limits.deviation_max.is_some() { as_seen } else { self }
@@ -163,7 +163,7 @@ impl<'i> Original<'i> {
         result: &Soup,
         origins: &[u32],
         budget: &Budget,
-    ) -> Result<Fidelity, Stopped> {
+    ) -> Result<FidelityMeasurement, Stopped> {
         self.measure_rest(result, origins, None, budget)
     }
 
@@ -174,7 +174,7 @@ impl<'i> Original<'i> {
         origins: &[u32],
         covered: Option<&Covered>,
         budget: &Budget,
-    ) -> Result<Fidelity, Stopped> {
+    ) -> Result<FidelityMeasurement, Stopped> {
         let care = DistanceOptions { refining_work_max: budget.work_left() / REFINING_PART, ..DISTANCE };
         budget.stage(Stage::Measure, || {
             let mut changed = Changed::of(self.input, result, origins, budget)?;
@@ -217,7 +217,7 @@ impl<'i> Original<'i> {
                 forward: at_least(forward, moved[0]),
                 backward: at_least(backward, moved[1]),
             });
-            Ok(Fidelity { distance, losses })
+            Ok(FidelityMeasurement { distance, losses })
         })
     }
 
@@ -394,7 +394,7 @@ mod tests {
         soup
     }
 
-    fn measured(input: &Soup, result: &Soup, origins: &[u32]) -> Fidelity {
+    fn measured(input: &Soup, result: &Soup, origins: &[u32]) -> FidelityMeasurement {
         let budget = Budget::unlimited();
         let solid = WindingSolid::of(&input.positions, &input.triangles, OpenShells::Auto, &budget).unwrap();
         let volume = signed_volume((0..input.triangles.len() as u32).map(|t| input.corners(t)));

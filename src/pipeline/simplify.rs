@@ -57,11 +57,11 @@ pub(super) fn simplify(input: &Input, options: &Options, budget: &Budget) -> Res
             return Ok(report.refused(Refusal::NotRepairable { witness: None }));
         }
     };
-    Writer { input, options, draft: &draft, mesh: &mesh, budget }.answer(results, report)
+    ResultWriter { input, options, draft: &draft, mesh: &mesh, budget }.answer(results, report)
 }
 
 /// Writes results and gives the account of them.
-struct Writer<'a> {
+struct ResultWriter<'a> {
     input: &'a Input,
     options: &'a Options,
     draft: &'a Draft,
@@ -69,7 +69,7 @@ struct Writer<'a> {
     budget: &'a Budget,
 }
 
-impl Writer<'_> {
+impl ResultWriter<'_> {
     fn answer(&self, results: Vec<Simplified>, mut report: Report) -> Result<Answer, Failure> {
         let mut first = None;
         let mut others = Vec::new();
@@ -140,7 +140,7 @@ impl Writer<'_> {
 }
 
 /// A certified mesh with fewer triangles, the end of a repair.
-pub(super) struct Fewer {
+pub(super) struct ReducedMesh {
     /// That of the first target.
     candidate: Candidate,
     /// The triangle of the draft that each of its triangles was.
@@ -153,7 +153,7 @@ pub(super) struct Fewer {
     others: Vec<(Candidate, Vec<u32>)>,
 }
 
-impl Fewer {
+impl ReducedMesh {
     /// The answer of a repair whose `report` so far is about the certified `draft`, unless a result is farther from the
     /// input than `limits` allow.
     pub(super) fn returned(
@@ -208,7 +208,7 @@ pub(super) fn of_certified(
     input: &Input,
     options: &Options,
     budget: &Budget,
-) -> Result<Option<Fewer>, Failure> {
+) -> Result<Option<ReducedMesh>, Failure> {
     if options.simplify.targets.is_empty() {
         return Ok(None);
     }
@@ -221,7 +221,7 @@ pub(super) fn of_certified(
         Err(SimplifyError::NotManifold(_)) => return Ok(None),
     };
     let encoding = input.output_encoding(options);
-    let mut fewer: Option<Fewer> = None;
+    let mut fewer: Option<ReducedMesh> = None;
     for result in results {
         let soup = soup_of(&result, &mesh);
         let candidate = match Candidate::write(soup, input, encoding, Depth::FirstViolation, budget) {
@@ -239,7 +239,8 @@ pub(super) fn of_certified(
         match &mut fewer {
             None => {
                 let (action, origins) = (action(&result.report), result.triangle_origin);
-                fewer = Some(Fewer { candidate, origins, action, levels: vec![level], others: Vec::new() });
+                fewer =
+                    Some(ReducedMesh { candidate, origins, action, levels: vec![level], others: Vec::new() });
             }
             Some(fewer) => {
                 fewer.levels.push(level);

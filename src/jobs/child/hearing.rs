@@ -2,7 +2,7 @@
 
 use super::sandbox::Protections;
 use super::task::{FileMade, Message};
-use crate::budget::Event;
+use crate::budget::ProgressEvent;
 use crate::jobs::product::Product;
 use crate::wire::Problem;
 
@@ -33,7 +33,7 @@ pub(super) struct Hearing {
 
 impl Hearing {
     /// Takes the next bytes; passes go to `hear`.
-    pub(super) fn take(&mut self, mut bytes: &[u8], hear: &dyn Fn(Event)) -> Result<(), Garbled> {
+    pub(super) fn take(&mut self, mut bytes: &[u8], hear: &dyn Fn(ProgressEvent)) -> Result<(), Garbled> {
         while let Some(end) = bytes.iter().position(|&byte| byte == b'\n') {
             self.grow(&bytes[..end])?;
             let message = serde_json::from_slice(&self.line).map_err(|_| Garbled)?;
@@ -57,16 +57,16 @@ impl Hearing {
         Ok(())
     }
 
-    fn understand(&mut self, message: Message, hear: &dyn Fn(Event)) -> Result<(), Garbled> {
+    fn understand(&mut self, message: Message, hear: &dyn Fn(ProgressEvent)) -> Result<(), Garbled> {
         match message {
             Message::Confined(protections) if self.protections.is_none() => {
                 self.protections = Some(protections);
             }
             Message::Taken if !self.has_task => self.has_task = true,
             Message::Confined(_) | Message::Taken => return Err(Garbled),
-            Message::Enter(stage) => hear(Event::Enter(stage.into())),
-            Message::Leave(stage) => hear(Event::Leave(stage.into())),
-            Message::Work(units) => hear(Event::Work(units)),
+            Message::Enter(stage) => hear(ProgressEvent::Enter(stage.into())),
+            Message::Leave(stage) => hear(ProgressEvent::Leave(stage.into())),
+            Message::Work(units) => hear(ProgressEvent::Work(units)),
             Message::Made(product) => self.last = Some(Last::Made(product)),
             Message::Failed(problem) => self.last = Some(Last::Failed(problem)),
         }
@@ -105,7 +105,7 @@ mod tests {
                 hearing.take(bytes, &|event| heard.borrow_mut().push(event)).unwrap();
             }
             let read = budget::Stage::Read;
-            assert_eq!(*heard.borrow(), [Event::Enter(read), Event::Leave(read)]);
+            assert_eq!(*heard.borrow(), [ProgressEvent::Enter(read), ProgressEvent::Leave(read)]);
             assert_eq!(hearing.protections.unwrap().landlock_abi, Some(7));
             assert!(hearing.has_task);
             assert_eq!(hearing.last(), Some(Last::Failed(Box::new(problem.clone()))));

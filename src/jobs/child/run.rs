@@ -11,7 +11,7 @@ use rustix::process::{Signal, getppid, set_parent_process_death_signal};
 use super::answer::Files;
 use super::task::{FileMade, Message, Setting, Task};
 use super::workspace::Rooms;
-use crate::budget::{Budget, Event, StopFlag};
+use crate::budget::{Budget, ProgressEvent, StopFlag};
 use crate::jobs::clock::StageClock;
 use crate::jobs::problems::{disk_problem, engine_crashed};
 use crate::jobs::product::Product;
@@ -88,9 +88,9 @@ fn run(task: &Task, files: &Files, engine: &Engine) -> Result<Product<FileMade>,
             stamp(event);
             // A server that does not listen ends this process anyway.
             let _ = say(&match event {
-                Event::Enter(stage) => Message::Enter(stage.into()),
-                Event::Leave(stage) => Message::Leave(stage.into()),
-                Event::Work(units) => Message::Work(units),
+                ProgressEvent::Enter(stage) => Message::Enter(stage.into()),
+                ProgressEvent::Leave(stage) => Message::Leave(stage.into()),
+                ProgressEvent::Work(units) => Message::Work(units),
             });
         }),
     );

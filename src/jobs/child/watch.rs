@@ -13,7 +13,7 @@ use super::memory_kills;
 use super::sandbox::Protections;
 use super::task::{FileMade, Task};
 use super::workspace::{MadeFile, Workspace};
-use crate::budget::{Event, StopFlag};
+use crate::budget::{ProgressEvent, StopFlag};
 use crate::jobs::product::Product;
 use crate::wire::Problem;
 
@@ -38,7 +38,7 @@ pub(super) fn watch(
     task: &Task,
     stop: &StopFlag,
     patience: Duration,
-    hear: &dyn Fn(Event),
+    hear: &dyn Fn(ProgressEvent),
 ) -> Result<Answered, Death> {
     let begun = Instant::now();
     running.give(task).map_err(Death::NotStarted)?;

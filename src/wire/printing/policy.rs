@@ -132,7 +132,7 @@ impl PolicyInfo {
     }
 
     /// The engine's policy, lengths in the unit of a file of which one unit is so many millimetres.
-    pub fn to_engine(&self, millimetres: f64, build_direction: BuildDirection) -> printing::Policy {
+    pub fn to_engine(&self, millimetres: f64, build_direction: BuildDirection) -> printing::PrintingPolicy {
         let limit = |check: CheckCode| {
             let unit = if check.unit() == PrintingUnit::Millimetres { millimetres } else { 1.0 };
             let row = self.limits.iter().find(|limit| limit.check == check);
@@ -142,7 +142,7 @@ impl PolicyInfo {
             })
         };
         let sides = |sides: Option<[f64; 3]>| sides.map(|sides| sides.map(|side| side / millimetres));
-        printing::Policy {
+        printing::PrintingPolicy {
             name: self.name.word(),
             version: self.version,
             wall: limit(CheckCode::Wall),
