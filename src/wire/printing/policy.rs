@@ -56,7 +56,7 @@ pub struct PolicyVolume {
 /// A policy as its file has it.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct PolicyFile {
     name: String,
     title: String,
     version: u32,
@@ -66,7 +66,7 @@ struct File {
     overhang: Option<Row>,
     sharp_edge: Option<Row>,
     cavities: Option<Row>,
-    build_volume: Volume,
+    build_volume: VolumeLimitRow,
 }
 
 #[derive(Debug, Deserialize)]
@@ -79,7 +79,7 @@ struct Row {
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Volume {
+struct VolumeLimitRow {
     warning: Option<[f64; 3]>,
     error: Option<[f64; 3]>,
     source: String,
@@ -100,7 +100,7 @@ pub fn policies() -> Vec<PolicyInfo> {
 }
 
 fn read(text: &str) -> Result<PolicyInfo, String> {
-    let file: File = toml::from_str(text).map_err(|error| error.to_string())?;
+    let file: PolicyFile = toml::from_str(text).map_err(|error| error.to_string())?;
     let name = PolicyName::from_word(&file.name).ok_or("no such policy")?;
     let rows = [
         (CheckCode::Wall, file.wall),
@@ -115,7 +115,7 @@ fn read(text: &str) -> Result<PolicyInfo, String> {
         let bound = if check == CheckCode::Cavity { BoundKind::AtMost } else { BoundKind::AtLeast };
         Some(PolicyLimit { check, bound, unit: check.unit(), warning, error, source })
     };
-    let Volume { warning, error, source } = file.build_volume;
+    let VolumeLimitRow { warning, error, source } = file.build_volume;
     Ok(PolicyInfo {
         name,
         title: file.title,
