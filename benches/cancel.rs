@@ -10,7 +10,7 @@
 
 #![allow(clippy::print_stdout, reason = "a bench prints its figures")]
 
-use meshmend::budget::{Budget, Event, Stage, StopFlag, Stopped};
+use meshmend::budget::{Budget, ProgressEvent, Stage, StopFlag, Stopped};
 use meshmend::pipeline::{Failure, FillHolesChoices, Operation, Options, run};
 use meshmend::repair::fill::{Extract, FillOptions, Method};
 use std::sync::{Arc, Mutex, OnceLock};
@@ -95,7 +95,7 @@ fn cancel_after(case: &Case, delay: Duration) -> Option<Return> {
     let stage = Arc::new(Mutex::new(Stage::Read));
     let entered = Arc::clone(&stage);
     let observer = Box::new(move |event| {
-        if let Event::Enter(stage) = event {
+        if let ProgressEvent::Enter(stage) = event {
             *entered.lock().expect("not poisoned") = stage;
         }
     });

@@ -3,7 +3,7 @@
 
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use meshmend::budget::Budget;
-use meshmend::mesh::{ChosenEdges, CutMethod, EdgeGroups, Marks, cut};
+use meshmend::mesh::{ChosenEdges, CutMarks, CutMethod, EdgeGroups, cut};
 use std::hint::black_box;
 
 /// A grid of `2 n n` triangles over `(n + 1)²` vertices, in which `fins` vertices inside, evenly spread, have one more
@@ -33,7 +33,7 @@ fn benches(c: &mut Criterion) {
     let mut measure = |group: &str, label: String, n: u32, fins: u32| {
         let (triangles, count) = sheet(n, fins);
         let groups = EdgeGroups::build(&triangles, count, &budget).expect("no budget to stop it");
-        let marks = Marks::find(&triangles, count, &groups, &ChosenEdges::default(), &budget)
+        let marks = CutMarks::find(&triangles, count, &groups, &ChosenEdges::default(), &budget)
             .expect("no budget to stop it");
         assert_eq!(marks.vertices().len() as u32, fins);
         let mut group = c.benchmark_group(group);

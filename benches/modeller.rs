@@ -5,7 +5,7 @@ use meshmend::budget::Budget;
 use meshmend::geom::DVec3;
 use meshmend::mesh::polyhedron::FaceId;
 use meshmend::modeller::{
-    Events, IntervalSide, Operator, Solid, apply, check, face_by_normal, from_polygons, import,
+    EventPolicy, IntervalSide, Operator, Solid, apply, check, face_by_normal, from_polygons, import,
     offset_growth, range, rational,
 };
 use std::f64::consts::PI;
@@ -99,7 +99,7 @@ fn half_way(solid: &Solid, face: FaceId) -> Operator {
     });
     let nearest = limits.min_by_key(|t| if *t < rational(0.0) { -t } else { t.clone() });
     let by = nearest.map_or_else(|| offset_growth(solid, face, 0.5), |t| t * rational(0.5));
-    Operator::Shift { faces: vec![(face, by)], events: Events::Refuse }
+    Operator::Shift { faces: vec![(face, by)], events: EventPolicy::Refuse }
 }
 
 fn benches(c: &mut Criterion) {

@@ -7,7 +7,7 @@ use self::dented_sphere::dented_sphere;
 use criterion::{Criterion, criterion_group, criterion_main};
 use meshmend::budget::Budget;
 use meshmend::mesh::Soup;
-use meshmend::printing::{Policy, Printing, measure};
+use meshmend::printing::{Printing, PrintingPolicy, measure};
 use std::hint::black_box;
 
 /// The dented sphere with a radius of 50 mm.
@@ -18,7 +18,7 @@ fn sphere(columns: u32, rows: u32) -> Soup {
 }
 
 fn measured(soup: &Soup) -> Printing {
-    let found = measure(soup, &Policy::default(), true, 16, &Budget::unlimited());
+    let found = measure(soup, &PrintingPolicy::default(), true, 16, &Budget::unlimited());
     found.expect("no limit").expect("there are triangles")
 }
 

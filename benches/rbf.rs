@@ -3,7 +3,7 @@
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use meshmend::budget::Budget;
 use meshmend::geom::{Aabb, DVec3};
-use meshmend::implicit::{Band, RbfOptions, Surroundings, fit, march, mesh_surface};
+use meshmend::implicit::{Band, BandSurroundings, RbfOptions, fit, march, mesh_surface};
 use std::f64::consts::TAU;
 use std::hint::black_box;
 
@@ -23,7 +23,7 @@ fn band(count: usize) -> Band {
 
 fn benches(c: &mut Criterion) {
     let (budget, options) = (Budget::unlimited(), RbfOptions::default());
-    let around = Surroundings { surface: None, mesh_box: Aabb::EMPTY };
+    let around = BandSurroundings { surface: None, mesh_box: Aabb::EMPTY };
     for constraints in [100, 1_000, 3_000, 20_000] {
         let band = band(constraints / 9);
         let fitted = || fit(&band, &around, &options, &budget).expect("nothing stops it").expect("a field");

@@ -8,7 +8,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use meshmend::budget::Budget;
 use meshmend::geom::DVec3;
 use meshmend::render::{
-    Camera, DrawnEdges, Model, Projection, Scene, SceneFrame, Shade, Style, View, draw, picture,
+    Camera, DrawnEdges, FramedScene, Projection, Scene, SceneFrame, Shade, Style, View, draw, picture,
 };
 use std::hint::black_box;
 
@@ -18,7 +18,7 @@ fn png(mesh: &(Vec<DVec3>, Vec<[u32; 3]>), width: u32, height: u32) -> Vec<u8> {
     let budget = Budget::unlimited();
     let scene = Scene { positions: &mesh.0, triangles: &mesh.1, palette: &PALETTE, ..Scene::default() };
     let frame = SceneFrame::around([scene.bounds()]);
-    let model = Model::of(scene, frame, Shade::Smooth, &budget).expect("no limit");
+    let model = FramedScene::of(scene, frame, Shade::Smooth, &budget).expect("no limit");
     let aspect = f64::from(width) / f64::from(height);
     let camera = Camera::at(&[&model], View::Iso.direction(), Projection::Orthographic, aspect, &budget)
         .expect("no limit");

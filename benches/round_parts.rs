@@ -9,8 +9,8 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use meshmend::analysis::{AnalyzeOptions, NearSearch, analyze};
 use meshmend::budget::Budget;
 use meshmend::distance::{DistanceOptions, Surface, surface_distance};
-use meshmend::printing::{Policy, measure};
-use meshmend::simplify::{Input, SimplifyOptions, Target, simplify_guarded};
+use meshmend::printing::{PrintingPolicy, measure};
+use meshmend::simplify::{SimplifyInput, SimplifyOptions, Target, simplify_guarded};
 use std::hint::black_box;
 
 fn benches(criterion: &mut Criterion) {
@@ -18,14 +18,14 @@ fn benches(criterion: &mut Criterion) {
     group.sample_size(10);
     for (name, soup) in shapes::all(100_000) {
         group.bench_function(format!("printing: {name}"), |b| {
-            b.iter(|| measure(black_box(&soup), &Policy::default(), true, 16, &Budget::unlimited()));
+            b.iter(|| measure(black_box(&soup), &PrintingPolicy::default(), true, 16, &Budget::unlimited()));
         });
         group.bench_function(format!("analysis: {name}"), |b| {
             let options = AnalyzeOptions { near: NearSearch::ByDiagonal, ..AnalyzeOptions::default() };
             b.iter(|| analyze(black_box(&soup), None, &options, &Budget::unlimited()));
         });
         group.bench_function(format!("simplify: {name}"), |b| {
-            let input = Input::new(&soup.positions, &soup.triangles);
+            let input = SimplifyInput::new(&soup.positions, &soup.triangles);
             let options = SimplifyOptions { targets: vec![Target::Ratio(0.1)], ..SimplifyOptions::default() };
             b.iter(|| simplify_guarded(black_box(&input), &options, &Budget::unlimited()));
         });

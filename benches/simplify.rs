@@ -12,7 +12,7 @@ use meshmend::budget::Budget;
 use meshmend::formats::{ReadOptions, read, sniff};
 use meshmend::mesh::{Soup, cut_singular};
 use meshmend::simplify::{
-    CriterionKind, Input, Mode, Placement, Simplified, SimplifyOptions, Target, simplify,
+    CriterionKind, Mode, Placement, Simplified, SimplifyInput, SimplifyOptions, Target, simplify,
 };
 use std::fmt::Write;
 use std::time::Instant;
@@ -68,7 +68,7 @@ fn main() {
         "guarded" => Mode::Guarded,
         _ => Mode::Strict,
     };
-    let input = Input::new(&soup.positions, &soup.triangles);
+    let input = SimplifyInput::new(&soup.positions, &soup.triangles);
     let mut best = f64::INFINITY;
     let mut last = None;
     for _ in 0..3 {

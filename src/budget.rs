@@ -98,7 +98,7 @@ impl Stage {
 
 /// What an observer hears.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Event {
+pub enum ProgressEvent {
     /// A stage begins.
     Enter(Stage),
     /// The stage ends (also when it failed).
@@ -108,7 +108,7 @@ pub enum Event {
 }
 
 /// Hears events and may stamp them with times. Stages are told from the thread that runs the engine, work from any.
-pub type Observer = Box<dyn Fn(Event) + Send + Sync>;
+pub type Observer = Box<dyn Fn(ProgressEvent) + Send + Sync>;
 
 /// Work units of which the observer is told first: a millisecond or so.
 const WORK_TOLD_FIRST: u64 = 1 << 12;
@@ -304,7 +304,7 @@ impl Budget {
         let before = self.work_told_at.fetch_max(used.saturating_add(1 + used / 32), Ordering::Relaxed);
         // One of the threads that came here at once.
         if before <= used {
-            self.tell(Event::Work(used));
+            self.tell(ProgressEvent::Work(used));
         }
     }
 
@@ -344,13 +344,13 @@ impl Budget {
 
     /// Runs `body` as `stage`: the observer hears when it begins and ends.
     pub fn stage<T>(&self, stage: Stage, body: impl FnOnce() -> T) -> T {
-        self.tell(Event::Enter(stage));
+        self.tell(ProgressEvent::Enter(stage));
         let result = body();
-        self.tell(Event::Leave(stage));
+        self.tell(ProgressEvent::Leave(stage));
         result
     }
 
-    fn tell(&self, event: Event) {
+    fn tell(&self, event: ProgressEvent) {
         if let Some(observer) = &self.observer {
             observer(event);
         }

@@ -11,9 +11,9 @@ use meshmend::formats::{Encoding, ReadOptions, read, write};
 use meshmend::geom::DVec3;
 use meshmend::mesh::{Boundary, EdgeGroups, Soup, singular_vertices, twins};
 use meshmend::pipeline::{Operation, Options, Outcome, run};
-use meshmend::printing::{Policy, measure};
+use meshmend::printing::{PrintingPolicy, measure};
 use meshmend::render::{
-    Camera, DrawnEdges, Model, Projection, Scene, SceneFrame, Shade, Style, View, draw, picture,
+    Camera, DrawnEdges, FramedScene, Projection, Scene, SceneFrame, Shade, Style, View, draw, picture,
 };
 use meshmend::repair::Draft;
 use meshmend::repair::fill::{FillOptions, Method, fill};
@@ -21,7 +21,7 @@ use meshmend::repair::round::{round_to_coarser, round_where_it_matters};
 use meshmend::repair::snap::{SnapOptions, gap_between_rims, snap};
 use meshmend::repair::unite::unite;
 use meshmend::repair::weld::weld;
-use meshmend::simplify::{Input, Mode, SimplifyOptions, Target, simplify};
+use meshmend::simplify::{Mode, SimplifyInput, SimplifyOptions, Target, simplify};
 use meshmend::spatial::{Bvh, Search, self_contacts};
 use meshmend::wrap::{WrapOptions, wrap};
 use std::any::Any;
@@ -165,7 +165,7 @@ fn volume_interval() -> Body {
 fn printing() -> Body {
     let mesh = sphere(32, 26);
     body(move || {
-        measure(&mesh, &Policy::default(), true, 16, &unlimited()).expect("no limit").expect("a mesh")
+        measure(&mesh, &PrintingPolicy::default(), true, 16, &unlimited()).expect("no limit").expect("a mesh")
     })
 }
 
@@ -193,7 +193,7 @@ fn repair(mesh: &Soup) -> Body {
 fn simplifying(mode: Mode) -> Body {
     let mesh = sphere(64, 26);
     body(move || {
-        let input = Input::new(&mesh.positions, &mesh.triangles);
+        let input = SimplifyInput::new(&mesh.positions, &mesh.triangles);
         let options = SimplifyOptions { targets: vec![Target::Ratio(0.25)], ..SimplifyOptions::default() };
         let levels = simplify(&input, mode, &options, &unlimited()).expect("a manifold");
         assert!(levels[0].triangles.len() < mesh.triangles.len() / 3, "few triangles are left");
@@ -293,7 +293,7 @@ fn rendering() -> Body {
             ..Scene::default()
         };
         let frame = SceneFrame::around([scene.bounds()]);
-        let model = Model::of(scene, frame, Shade::Smooth, &budget).expect("no limit");
+        let model = FramedScene::of(scene, frame, Shade::Smooth, &budget).expect("no limit");
         let direction = View::Iso.direction();
         let camera = Camera::at(&[&model], direction, Projection::Orthographic, 4.0 / 3.0, &budget);
         let style = Style { edges: DrawnEdges::Creases, background: [255; 3], back: Some([207, 63, 54]) };

@@ -11,7 +11,7 @@ use super::{Context, DefectCode, Finding};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::mesh::{PolygonCopy, edge_of, polygon_copies, prev_corner, triangle_of};
 use crate::par;
-use crate::spatial::{Contact, Contacts};
+use crate::spatial::{Contacts, TriangleContact};
 use std::borrow::Cow;
 
 /// A triangle that has the vertices of an earlier one, or is a part of a polygon that has.
@@ -95,8 +95,9 @@ pub(super) fn without_copies<'c>(
         let of = repeat_of(t).unwrap_or(t);
         mesh.soup.face_of(repeat_of(of).unwrap_or(of))
     };
-    let is_copy =
-        |c: &Contact| stands_for(c.a) == stands_for(c.b) && mesh.soup.face_of(c.a) != mesh.soup.face_of(c.b);
+    let is_copy = |c: &TriangleContact| {
+        stands_for(c.a) == stands_for(c.b) && mesh.soup.face_of(c.a) != mesh.soup.face_of(c.b)
+    };
     if !contacts.list.iter().any(is_copy) {
         return contacts;
     }

@@ -6,8 +6,8 @@
 //! triangles of one polygon are inside its face and no edges.
 
 use super::{Context, ProximityTest};
-use crate::geom::{DVec3, Projection, Sign, is_on_segment, orient3d};
-use crate::spatial::Contact;
+use crate::geom::{AxisProjection, DVec3, Sign, is_on_segment, orient3d};
+use crate::spatial::TriangleContact;
 
 /// Two features, each by its vertices in ascending order (one vertex, or the ends of an edge, with [`NONE`] behind them) or
 /// by the number of a face in the file, [`NONE`] before it.
@@ -75,7 +75,7 @@ pub(super) struct PolygonSides {
 
 impl PolygonSides {
     /// Those of the faces of `contacts`.
-    pub(super) fn of<'c>(cx: &Context<'_>, contacts: impl Iterator<Item = &'c Contact>) -> Self {
+    pub(super) fn of<'c>(cx: &Context<'_>, contacts: impl Iterator<Item = &'c TriangleContact>) -> Self {
         let (soup, polygons) = (cx.mesh.soup, &cx.mesh.soup.polygons);
         if polygons.faces.is_empty() {
             return Self { sides: Vec::new() };
@@ -102,7 +102,11 @@ impl PolygonSides {
 }
 
 /// The pairs of features, ascending, in which two triangles of the soup meet; nothing within one face.
-pub(super) fn meetings(cx: &Context<'_>, sides: &PolygonSides, contact: &Contact) -> Vec<FeatureMeeting> {
+pub(super) fn meetings(
+    cx: &Context<'_>,
+    sides: &PolygonSides,
+    contact: &TriangleContact,
+) -> Vec<FeatureMeeting> {
     let [f, g] = [contact.a, contact.b].map(|t| ComparedTriangle::of(cx, sides, t));
     if f.face == g.face {
         return Vec::new();
@@ -176,15 +180,16 @@ fn through_face(ends: [u32; 2], at: [DVec3; 2], of: &ComparedTriangle) -> Option
 
 /// True when `p` is exactly in the triangle and on none of its edges.
 fn is_inside(p: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
-    let turns = |(view, turn): (Projection, Sign)| {
+    let turns = |(view, turn): (AxisProjection, Sign)| {
         [(a, b), (b, c), (c, a)].into_iter().all(|(from, to)| view.turn(from, to, p) == turn)
     };
-    orient3d(a, b, c, p).is_zero() && Projection::showing([a, b, c]).is_some_and(turns)
+    orient3d(a, b, c, p).is_zero() && AxisProjection::showing([a, b, c]).is_some_and(turns)
 }
 
 /// True when two segments meet exactly in a point inside both.
 fn are_crossing([[a, b], [c, d]]: [[DVec3; 2]; 2]) -> bool {
-    let Some((view, _)) = Projection::showing([a, b, c]).filter(|_| orient3d(a, b, c, d).is_zero()) else {
+    let Some((view, _)) = AxisProjection::showing([a, b, c]).filter(|_| orient3d(a, b, c, d).is_zero())
+    else {
         return false;
     };
     are_apart(view.turn(a, b, c), view.turn(a, b, d)) && are_apart(view.turn(c, d, a), view.turn(c, d, b))

@@ -50,7 +50,7 @@ use crate::geom::{Aabb, are_collinear};
 use crate::mesh::{Soup, singular_vertices};
 use crate::par;
 use crate::spatial::{Contacts, NearPairs};
-use boundary_loops::Loops;
+use boundary_loops::BoundaryLoops;
 use duplicate_faces::{Repeat, repeats};
 use members::Members;
 use names::middle;
@@ -228,10 +228,10 @@ const BYTES_PER_VERTEX: u64 = 17;
 const NEAR_SHARE: f64 = 1e-5;
 
 /// Looks for defects of one kind, or a few that go together.
-type Check = fn(&Context<'_>) -> Result<Vec<Finding>, Stopped>;
+type DefectDetector = fn(&Context<'_>) -> Result<Vec<Finding>, Stopped>;
 
 /// Every check, in the order of [`DefectCode`].
-const CHECKS: [Check; 21] = [
+const CHECKS: [DefectDetector; 21] = [
     unusable::find,
     polygons::find,
     coincident_corners::find,
@@ -271,7 +271,7 @@ struct Context<'a> {
     /// Parts with a rim that bound no volume, ascending; `None`: not known.
     sheets: Option<Vec<u32>>,
     /// The boundary loops, classified.
-    loops: Loops,
+    loops: BoundaryLoops,
     /// Box of the used vertices.
     bounds: Option<Aabb>,
     /// Sides and features closer than this are near, in the unit of the file.
@@ -332,7 +332,7 @@ impl<'a> Context<'a> {
             members,
             shells,
             sheets: None,
-            loops: Loops::default(),
+            loops: BoundaryLoops::default(),
             bounds,
             epsilon,
             contacts,

@@ -9,11 +9,11 @@ const ELEMENTS_MAX: usize = 8;
 
 /// Names the elements of a soup as its file does.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Names<'s> {
+pub(super) struct ElementNames<'s> {
     soup: &'s Soup,
 }
 
-impl<'s> Names<'s> {
+impl<'s> ElementNames<'s> {
     pub(super) fn of(soup: &'s Soup) -> Self {
         Self { soup }
     }
@@ -48,7 +48,7 @@ impl<'s> Names<'s> {
 impl Witness {
     /// The witness that shows the `faces` of the file of `soup`, without a position.
     pub fn of_faces(soup: &Soup, faces: &[u32]) -> Self {
-        Names::of(soup).witness(faces.iter().copied(), [], DVec3::NAN)
+        ElementNames::of(soup).witness(faces.iter().copied(), [], DVec3::NAN)
     }
 }
 
@@ -87,7 +87,7 @@ mod tests {
             places: Places { face_lines: vec![10, 11], vertex_lines: vec![1, 2, 3] },
             ..Soup::default()
         };
-        let witness = Names::of(&soup).witness([1, 1, 0], [2], DVec3::NAN);
+        let witness = ElementNames::of(&soup).witness([1, 1, 0], [2], DVec3::NAN);
         assert_eq!(
             witness.faces,
             [Element { index: 1, line: Some(11) }, Element { index: 0, line: Some(10) }]
@@ -99,7 +99,7 @@ mod tests {
     #[test]
     fn a_format_without_vertices_names_none() {
         let soup = Soup { is_welded_by_format: true, ..Soup::default() };
-        assert!(Names::of(&soup).witness([], [0, 1], DVec3::ZERO).vertices.is_empty());
+        assert!(ElementNames::of(&soup).witness([], [0, 1], DVec3::ZERO).vertices.is_empty());
     }
 
     #[test]

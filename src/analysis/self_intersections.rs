@@ -7,7 +7,7 @@ use super::meeting_point::meeting_point;
 use super::welded::{Welded, indices_where};
 use super::{Context, DefectCode, Finding, ProximityTest};
 use crate::budget::{Budget, Stopped};
-use crate::spatial::{Bvh, Contact, ContactKind, Contacts, Search, self_contacts};
+use crate::spatial::{Bvh, ContactKind, Contacts, Search, TriangleContact, self_contacts};
 
 /// Most pairs kept of a search, 12 bytes each; more are counted.
 const KEEP: usize = 1 << 16;
@@ -39,7 +39,7 @@ pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
     let found = |code, kind| {
         let pairs = || cx.contacts.list.iter().filter(|c| c.kind == kind).take(cx.samples);
         let sides = PolygonSides::of(cx, pairs());
-        let witness = |pair: &Contact| {
+        let witness = |pair: &TriangleContact| {
             let faces = [pair.a, pair.b].map(|t| soup.face_of(t));
             // The lowest one in which they meet.
             let lowest = meetings(cx, &sides, pair).into_iter().next();

@@ -1,7 +1,7 @@
 //! What cannot be used: coordinates that are not finite, faces with vertices that are not there or with too few corners,
 //! which the readers found and which here get their names; and files in which no triangle is left at all.
 
-use super::names::Names;
+use super::names::ElementNames;
 use super::{Context, DefectCode, Finding};
 use crate::budget::Stopped;
 use crate::geom::DVec3;
@@ -9,7 +9,7 @@ use crate::mesh::{FaceFault, FaceFaultReason};
 
 pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
     let soup = cx.mesh.soup;
-    let names = Names::of(soup);
+    let names = ElementNames::of(soup);
     let nothing = Finding::with(DefectCode::NoTriangle, u64::from(cx.mesh.triangles.is_empty()), Vec::new());
     let vertices = Finding::of(DefectCode::NonFiniteVertex, &soup.non_finite_vertices, cx.samples, |&v| {
         names.witness([], [v], DVec3::NAN)

@@ -1,6 +1,6 @@
 //! The mesh as every defect sees it: bit-equal positions joined, edges grouped, parts told apart.
 
-use super::names::{Names, middle};
+use super::names::{ElementNames, middle};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::{Components, EdgeGroups, Soup, edge_of, prev_corner, triangle_of, twins};
@@ -97,8 +97,8 @@ impl<'s> Welded<'s> {
         self.first_at.is_empty()
     }
 
-    pub(super) fn names(&self) -> Names<'s> {
-        Names::of(self.soup)
+    pub(super) fn names(&self) -> ElementNames<'s> {
+        ElementNames::of(self.soup)
     }
 
     /// The face of the file behind triangle `t`.

@@ -1,7 +1,7 @@
 //! From triangles to their arrangement: what meets, the clusters, their pieces, and the cells around them.
 
 use super::cells;
-use super::cluster::{self, ContactPair, Divided};
+use super::cluster::{self, ContactPair, DividedCluster};
 use super::enclosed;
 use super::error::ArrangementError;
 use super::point::Definition;
@@ -218,7 +218,7 @@ fn divide_cluster(
     members: &[u32],
     pairs: &[(u32, ContactPair)],
     budget: &Budget,
-) -> Result<(Vec<u32>, Divided), ArrangementError> {
+) -> Result<(Vec<u32>, DividedCluster), ArrangementError> {
     let mut vertices: Vec<u32> = members.iter().flat_map(|&t| triangles[t as usize]).collect();
     vertices.sort_unstable();
     vertices.dedup();
@@ -243,8 +243,8 @@ impl Arrangement {
     }
 
     /// Adds the pieces of a cluster, whose new points are numbered in the order in which they are used.
-    fn add(&mut self, members: &[(u32, u32)], vertices: Vec<u32>, divided: Divided) {
-        let Divided { kernel, points, pieces } = divided;
+    fn add(&mut self, members: &[(u32, u32)], vertices: Vec<u32>, divided: DividedCluster) {
+        let DividedCluster { kernel, points, pieces } = divided;
         let cluster = self.clusters.len() as u32;
         let mut number = vec![u32::MAX; points.len()];
         for piece in pieces {

@@ -2,9 +2,9 @@
 
 use super::constraints::{Constrained, Constraint, ConstraintLine, TagSets};
 use super::error::ArrangementError;
-use super::kernel::{EXACT, Kernel, PlaneView};
-use super::point::{Definition, Point};
-use super::triangulation::{NONE, Sight, Triangulation};
+use super::kernel::{ClusterKernel, EXACT, PlaneView};
+use super::point::{ArrangementPoint, Definition};
+use super::triangulation::{CarrierView, NONE, Triangulation};
 use crate::budget::Budget;
 use crate::geom::Sign;
 use rustc_hash::FxHashMap;
@@ -22,28 +22,28 @@ pub(super) struct Carrier {
 
 /// The pieces of one carrier.
 #[derive(Debug, Default)]
-pub(super) struct Pieces {
+pub(super) struct CarrierPieces {
     /// Corners of each, as points; counter-clockwise as the first triangle of the carrier.
     pub(super) corners: Vec<[u32; 3]>,
     /// The triangles that cover each, with `true` for those that turn the other way.
     pub(super) sources: Vec<Vec<(u32, bool)>>,
     /// The points that are new, numbered after those of the cluster.
-    pub(super) own: Vec<Point>,
+    pub(super) own: Vec<ArrangementPoint>,
 }
 
 /// Divides the triangles of a carrier.
 pub(super) fn divide(
     carrier: &Carrier,
-    kernel: &Kernel,
-    shared: &[Point],
+    kernel: &ClusterKernel,
+    shared: &[ArrangementPoint],
     vertex_of: &[u32],
     budget: &Budget,
-) -> Result<Pieces, ArrangementError> {
+) -> Result<CarrierPieces, ArrangementError> {
     let rep = carrier.triangles[0];
     let corners = |t: u32| kernel.triangles[t as usize].map(|v| vertex_of[v as usize]);
     let is_single = carrier.triangles.len() == 1;
     if is_single && carrier.points.is_empty() && carrier.segments.is_empty() {
-        return Ok(Pieces {
+        return Ok(CarrierPieces {
             corners: vec![corners(rep)],
             sources: vec![vec![(rep, false)]],
             own: Vec::new(),
@@ -51,7 +51,7 @@ pub(super) fn divide(
     }
     let view =
         kernel.view(rep).ok_or(ArrangementError::Inconsistent("a degenerate triangle in a cluster"))?;
-    let mut sight = Sight { kernel, view, shared, own: Vec::new() };
+    let mut sight = CarrierView { kernel, view, shared, own: Vec::new() };
     let start = if is_single {
         corners(rep)
     } else {
@@ -103,7 +103,7 @@ pub(super) fn divide(
     if is_single {
         let corners = mesh.faces();
         let sources = vec![vec![(rep, false)]; corners.len()];
-        return Ok(Pieces { corners, sources, own: sight.own });
+        return Ok(CarrierPieces { corners, sources, own: sight.own });
     }
     let mut pieces = covered(&mesh, &sets, carrier, &turns, budget)?;
     pieces.own = sight.own;
@@ -117,7 +117,7 @@ fn covered(
     carrier: &Carrier,
     turns: &[bool],
     budget: &Budget,
-) -> Result<Pieces, ArrangementError> {
+) -> Result<CarrierPieces, ArrangementError> {
     let count = mesh.half_edges();
     let is_border = |set: u32, t: usize| sets.of(set).iter().any(|&tag| tag as usize / 3 == t);
     // The lowest half-edge of each face stands for it.
@@ -155,7 +155,7 @@ fn covered(
             }
         }
     }
-    let mut pieces = Pieces::default();
+    let mut pieces = CarrierPieces::default();
     for (f, sources) in covers.into_iter().enumerate().filter(|(_, sources)| !sources.is_empty()) {
         let f = f as u32;
         let face = [f, mesh.next(f), mesh.prev(f)];
@@ -166,7 +166,7 @@ fn covered(
 }
 
 /// Orders many points along a curve through the squares of a grid, so that walks from one to the next are short.
-fn sort_for_walks(points: &mut [u32], shared: &[Point], view: PlaneView) {
+fn sort_for_walks(points: &mut [u32], shared: &[ArrangementPoint], view: PlaneView) {
     if points.len() < 16 {
         return;
     }

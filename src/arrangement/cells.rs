@@ -13,7 +13,7 @@ use crate::par;
 use crate::spatial::Bvh;
 
 /// A side of a piece is `2 f` where the piece `f` turns counter-clockwise, `2 f + 1` on the other.
-pub(super) type Side = u32;
+pub(super) type PieceSide = u32;
 
 const UNKNOWN: i32 = i32::MIN;
 
@@ -101,7 +101,7 @@ pub(super) fn links(
     triangles: &[[u32; 3]],
     groups: &EdgeGroups,
     budget: &Budget,
-) -> Result<Vec<Side>, ArrangementError> {
+) -> Result<Vec<PieceSide>, ArrangementError> {
     let mut links = vec![0; arrangement.pieces.len() * 6];
     for (e, group) in groups.iter().enumerate() {
         if e % CHECK_EVERY == 0 {
@@ -153,8 +153,8 @@ fn anchors(
 
 /// Gives every side that is connected with `start` its winding numbers.
 fn spread(
-    start: Side,
-    links: &[Side],
+    start: PieceSide,
+    links: &[PieceSide],
     jumps: &[i32],
     operands: usize,
     windings: &mut [i32],
@@ -180,10 +180,10 @@ fn spread(
 
 /// Notes that these are the winding numbers of a side.
 fn reach(
-    side: Side,
+    side: PieceSide,
     current: &[i32],
     windings: &mut [i32],
-    stack: &mut Vec<Side>,
+    stack: &mut Vec<PieceSide>,
 ) -> Result<(), ArrangementError> {
     let known = &mut windings[side as usize * current.len()..][..current.len()];
     if known[0] == UNKNOWN {

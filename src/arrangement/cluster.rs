@@ -1,11 +1,11 @@
 //! One cluster of triangles that meet: its points, its carriers and their pieces.
 
-use super::carrier::{Carrier, Pieces, divide};
+use super::carrier::{Carrier, CarrierPieces, divide};
 use super::error::ArrangementError;
 use super::intern::first_at_place;
-use super::kernel::{EXACT, Kernel};
+use super::kernel::{ClusterKernel, EXACT};
 use super::pairs::{TriangleMeeting, meeting};
-use super::point::{Definition, Point};
+use super::point::{ArrangementPoint, Definition};
 use crate::budget::Budget;
 use crate::geom::DVec3;
 use crate::mesh::UnionFind;
@@ -25,10 +25,10 @@ pub(super) struct ContactPair {
 
 /// The pieces of the triangles of a cluster.
 #[derive(Debug)]
-pub(super) struct Divided {
-    pub(super) kernel: Kernel,
+pub(super) struct DividedCluster {
+    pub(super) kernel: ClusterKernel,
     /// The points; the first are the vertices of the kernel.
-    pub(super) points: Vec<Point>,
+    pub(super) points: Vec<ArrangementPoint>,
     /// Corners, as points of which no two are at one place, the triangle that names the plane and turns the same way, and the
     /// triangles that cover it, with `true` where they turn the other way.
     pub(super) pieces: Vec<PlanePiece>,
@@ -48,8 +48,8 @@ pub(super) fn divide_all(
     triangles: Vec<[u32; 3]>,
     pairs: &[ContactPair],
     budget: &Budget,
-) -> Result<Divided, ArrangementError> {
-    let kernel = Kernel::new(positions, triangles);
+) -> Result<DividedCluster, ArrangementError> {
+    let kernel = ClusterKernel::new(positions, triangles);
     let (plane_of, mut carriers) = group(&kernel, pairs);
     let (mut points, vertex_of) = points_of_pairs(&kernel, pairs, &plane_of, &mut carriers, budget)?;
     let parts = par::try_map_ranges(carriers.len(), CHUNK, |range| {
@@ -60,7 +60,7 @@ pub(super) fn divide_all(
     let shared = points.len() as u32;
     let mut pieces = Vec::new();
     for (carrier, part) in carriers.iter().zip(parts.into_iter().flatten()) {
-        let Pieces { corners, sources, own } = part;
+        let CarrierPieces { corners, sources, own } = part;
         let shift = points.len() as u32 - shared;
         let moved = |p: u32| if p < shared { p } else { p + shift };
         let plane = carrier.triangles[0];
@@ -70,11 +70,11 @@ pub(super) fn divide_all(
         points.extend(own);
     }
     unite(&kernel, &points, &mut pieces, shared, budget)?;
-    Ok(Divided { kernel, points, pieces })
+    Ok(DividedCluster { kernel, points, pieces })
 }
 
 /// The plane of each triangle, by the lowest triangle that it is connected with by overlaps, and the carriers of these.
-fn group(kernel: &Kernel, pairs: &[ContactPair]) -> (Vec<u32>, Vec<Carrier>) {
+fn group(kernel: &ClusterKernel, pairs: &[ContactPair]) -> (Vec<u32>, Vec<Carrier>) {
     let mut sets = UnionFind::new(kernel.triangles.len());
     for pair in pairs.iter().filter(|pair| pair.kind == ContactKind::Overlap) {
         sets.unite(pair.triangles[0], pair.triangles[1]);
@@ -91,12 +91,12 @@ fn group(kernel: &Kernel, pairs: &[ContactPair]) -> (Vec<u32>, Vec<Carrier>) {
 
 /// Finds where pairs meet, gives each carrier the points and segments in it, and the vertex that each vertex is.
 fn points_of_pairs(
-    kernel: &Kernel,
+    kernel: &ClusterKernel,
     pairs: &[ContactPair],
     plane_of: &[u32],
     carriers: &mut [Carrier],
     budget: &Budget,
-) -> Result<(Vec<Point>, Vec<u32>), ArrangementError> {
+) -> Result<(Vec<ArrangementPoint>, Vec<u32>), ArrangementError> {
     let meetings = par::try_map_ranges(pairs.len(), CHUNK, |range| {
         budget.spend(4 * EXACT * range.len() as u64)?;
         pairs[range]
@@ -117,7 +117,8 @@ fn points_of_pairs(
     par::sort_unstable(&mut names);
     names.dedup();
     let vertex_count = kernel.positions.len() as u32;
-    let mut points: Vec<Point> = (0..vertex_count).map(|v| kernel.point(Definition::Vertex(v))).collect();
+    let mut points: Vec<ArrangementPoint> =
+        (0..vertex_count).map(|v| kernel.point(Definition::Vertex(v))).collect();
     for (i, &name) in names.iter().enumerate() {
         if i % 1024 == 0 {
             // Most clusters have a few.
@@ -179,8 +180,8 @@ fn points_of_pairs(
 
 /// Gives points at one place that different carriers made one number: that of the first.
 fn unite(
-    kernel: &Kernel,
-    points: &[Point],
+    kernel: &ClusterKernel,
+    points: &[ArrangementPoint],
     pieces: &mut [PlanePiece],
     shared: u32,
     budget: &Budget,

@@ -3,7 +3,7 @@
 use super::error::ArrangementError;
 use super::kernel::EXACT;
 use super::point::Definition;
-use super::triangulation::{NONE, Sight, Triangulation};
+use super::triangulation::{CarrierView, NONE, Triangulation};
 use crate::budget::Budget;
 use crate::geom::{DVec3, Sign};
 use std::cmp::Ordering;
@@ -65,7 +65,7 @@ enum Leaving {
 /// A triangulation and the constraints that are put into it one by one.
 #[derive(Debug)]
 pub(super) struct Constrained<'k, 'b> {
-    pub(super) sight: Sight<'k>,
+    pub(super) sight: CarrierView<'k>,
     pub(super) mesh: Triangulation,
     pub(super) sets: TagSets,
     lines: Vec<ConstraintLine>,
@@ -73,7 +73,7 @@ pub(super) struct Constrained<'k, 'b> {
 }
 
 impl<'k, 'b> Constrained<'k, 'b> {
-    pub(super) fn new(sight: Sight<'k>, mesh: Triangulation, budget: &'b Budget) -> Self {
+    pub(super) fn new(sight: CarrierView<'k>, mesh: Triangulation, budget: &'b Budget) -> Self {
         Self { sight, mesh, sets: TagSets::default(), lines: Vec::new(), budget }
     }
 

@@ -5,7 +5,7 @@
 //! all others. At an open edge a piece looks at its own back, so that an open part encloses nothing.
 
 use super::Arrangement;
-use super::cells::{self, Side};
+use super::cells::{self, PieceSide};
 use super::error::ArrangementError;
 use crate::budget::{Budget, CHECK_EVERY};
 use crate::mesh::EdgeGroups;
@@ -14,7 +14,7 @@ use num_rational::Ratio;
 use num_traits::{Signed, Zero};
 
 type Number = Ratio<BigInt>;
-type Vector = [Number; 3];
+type RationalVector = [Number; 3];
 
 /// Sets the winding numbers of `arrangement`, which has one operand and was made of `triangles`: 0 on the sides that can be reached
 /// from outside of the connected part that they are of, 1 on the others.
@@ -100,12 +100,12 @@ impl Top {
         &self,
         arrangement: &Arrangement,
         budget: &Budget,
-    ) -> Result<Vec<Side>, ArrangementError> {
+    ) -> Result<Vec<PieceSide>, ArrangementError> {
         let Self { vertex: top, pieces } = self;
         let top = *top;
         budget.spend(32 * pieces.len() as u64)?;
         let origin = arrangement.coordinates(top);
-        let from_top = |p: u32| -> Vector {
+        let from_top = |p: u32| -> RationalVector {
             let place = arrangement.coordinates(p);
             std::array::from_fn(|k| &place[k] - &origin[k])
         };
@@ -113,7 +113,7 @@ impl Top {
         ends.sort_unstable();
         ends.dedup();
         // Squares of how far an edge goes down for how far it goes aside.
-        let steepness = |d: &Vector| {
+        let steepness = |d: &RationalVector| {
             let aside = &d[0] * &d[0] + &d[1] * &d[1];
             (!aside.is_zero()).then(|| &d[2] * &d[2] / aside)
         };
@@ -126,12 +126,12 @@ impl Top {
             flattest.ok_or(ArrangementError::Inconsistent("all edges at a vertex are vertical"))?;
         // Seen along the edge, x is upward and y aside; `e x z` and `z |e|^2 - e (e . z)` without their lengths.
         let square = along.iter().map(|x| x * x).sum::<Number>();
-        let seen = |d: &Vector| {
+        let seen = |d: &RationalVector| {
             let y = &d[0] * &along[1] - &d[1] * &along[0];
             let x = &d[2] * &square - d.iter().zip(&along).map(|(d, e)| d * e).sum::<Number>() * &along[2];
             (x, y)
         };
-        let mut next: [Option<(Number, Side)>; 2] = [None, None];
+        let mut next: [Option<(Number, PieceSide)>; 2] = [None, None];
         let mut below = Vec::new();
         for &f in pieces {
             let corners = arrangement.pieces[f as usize];
@@ -154,7 +154,7 @@ impl Top {
                 *next = Some((height, 2 * f + u32::from(!is_front)));
             }
         }
-        let shown: Vec<Side> = next.into_iter().flatten().map(|(_, side)| side).collect();
+        let shown: Vec<PieceSide> = next.into_iter().flatten().map(|(_, side)| side).collect();
         Ok(if shown.is_empty() { below } else { shown })
     }
 }

@@ -1,22 +1,21 @@
 //! Integers of any size for points and planes whose filter cannot decide.
 
-use crate::geom::{DVec3, Sign, Span, power_of_two};
+pub(super) use crate::geom::IntegerVector;
+
+use crate::geom::{BitSpan, DVec3, Sign, power_of_two};
 use num_bigint::BigInt;
 use num_traits::{ToPrimitive, Zero};
-
-/// A vector of integers.
-pub(super) type Vector = [BigInt; 3];
 
 /// The point `x / w`, with a positive `w`.
 #[derive(Debug, Clone)]
 pub(super) struct Homogeneous {
-    pub(super) x: Vector,
+    pub(super) x: IntegerVector,
     pub(super) w: BigInt,
 }
 
 impl Homogeneous {
     /// The point `x / w`; `w` must not be zero.
-    pub(super) fn new(x: Vector, w: BigInt) -> Self {
+    pub(super) fn new(x: IntegerVector, w: BigInt) -> Self {
         if w.sign() == num_bigint::Sign::Minus { Self { x: x.map(|x| -x), w: -w } } else { Self { x, w } }
     }
 }
@@ -24,7 +23,7 @@ impl Homogeneous {
 /// The plane `n . x = d`.
 #[derive(Debug, Clone)]
 pub(super) struct ExactPlane {
-    pub(super) n: Vector,
+    pub(super) n: IntegerVector,
     pub(super) d: BigInt,
 }
 
@@ -36,16 +35,16 @@ pub(super) fn sign_of(x: &BigInt) -> Sign {
     }
 }
 
-pub(super) fn cross(a: &Vector, b: &Vector) -> Vector {
+pub(super) fn cross(a: &IntegerVector, b: &IntegerVector) -> IntegerVector {
     let part = |i: usize, j: usize| &a[i] * &b[j] - &a[j] * &b[i];
     [part(1, 2), part(2, 0), part(0, 1)]
 }
 
-pub(super) fn dot(a: &Vector, b: &Vector) -> BigInt {
+pub(super) fn dot(a: &IntegerVector, b: &IntegerVector) -> BigInt {
     &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
 }
 
-pub(super) fn minus(a: &Vector, b: &Vector) -> Vector {
+pub(super) fn minus(a: &IntegerVector, b: &IntegerVector) -> IntegerVector {
     std::array::from_fn(|k| &a[k] - &b[k])
 }
 
@@ -76,7 +75,7 @@ pub(super) fn quotient(numerator: &BigInt, denominator: &BigInt, exponent: i32) 
 }
 
 /// Points in integers, in units of two to the power that is given with them.
-pub(super) fn integers<const N: usize>(points: [DVec3; N]) -> ([Vector; N], i32) {
-    let span = points.iter().flat_map(DVec3::to_array).fold(Span::ZERO, Span::with);
+pub(super) fn integers<const N: usize>(points: [DVec3; N]) -> ([IntegerVector; N], i32) {
+    let span = points.iter().flat_map(DVec3::to_array).fold(BitSpan::ZERO, BitSpan::with);
     (points.map(|p| p.to_array().map(|x| span.to_big(x))), span.low())
 }

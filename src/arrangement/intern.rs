@@ -5,8 +5,8 @@
 
 use super::ball::Ball;
 use super::error::ArrangementError;
-use super::kernel::{EXACT, Kernel};
-use super::point::Point;
+use super::kernel::{ClusterKernel, EXACT};
+use super::point::ArrangementPoint;
 use crate::budget::Budget;
 
 /// Uneven, so that points of a common coordinate are apart.
@@ -14,8 +14,8 @@ const FACTORS: [f64; 3] = [0.732_050_807_568_877, 0.414_213_562_373_095, 0.541_1
 
 /// The first of the points of `candidates` (ascending) at the place of each, in their order.
 pub(super) fn first_at_place(
-    kernel: &Kernel,
-    points: &[Point],
+    kernel: &ClusterKernel,
+    points: &[ArrangementPoint],
     candidates: &[u32],
     budget: &Budget,
 ) -> Result<Vec<u32>, ArrangementError> {

@@ -6,9 +6,9 @@
 //! `6 b + 12`. The exact tier is integers of any size, so no width can be too small; the test of the widths shows these.
 
 use super::ball::{self, Ball};
-use super::exact::{self, ExactPlane, Homogeneous, Vector, sign_of};
-use super::point::{Definition, Point};
-use crate::geom::{DVec3, Projection, Sign, Span, power_of_two};
+use super::exact::{self, ExactPlane, Homogeneous, IntegerVector, sign_of};
+use super::point::{ArrangementPoint, Definition};
+use crate::geom::{AxisProjection, BitSpan, DVec3, Sign, power_of_two};
 use num_bigint::BigInt;
 use std::cmp::Ordering;
 use std::sync::OnceLock;
@@ -27,24 +27,24 @@ pub(super) struct PlaneView {
 
 /// The triangles of a cluster and its numbers. Vertices and triangles are numbered within the cluster.
 #[derive(Debug)]
-pub(super) struct Kernel {
+pub(super) struct ClusterKernel {
     pub(super) positions: Vec<DVec3>,
     pub(super) triangles: Vec<[u32; 3]>,
-    span: Span,
-    origin: Vector,
+    span: BitSpan,
+    origin: IntegerVector,
     /// A power of two in the integers of the kernel, well beyond every coordinate: its exponent.
     far: u32,
     /// Beyond this error the near coordinates of a point are rounded from the exact ones.
     error_max: f64,
     near: Vec<[Ball; 3]>,
-    integers: Vec<OnceLock<Box<Vector>>>,
+    integers: Vec<OnceLock<Box<IntegerVector>>>,
     planes: Vec<OnceLock<Box<ExactPlane>>>,
 }
 
-impl Kernel {
+impl ClusterKernel {
     /// The numbers for these triangles, whose positions must be finite.
     pub(super) fn new(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Self {
-        let span = positions.iter().flat_map(DVec3::to_array).fold(Span::ZERO, Span::with);
+        let span = positions.iter().flat_map(DVec3::to_array).fold(BitSpan::ZERO, BitSpan::with);
         let start = positions.first().copied().unwrap_or_default();
         let origin = start.to_array().map(|x| span.to_big(x));
         let relative =
@@ -70,7 +70,7 @@ impl Kernel {
         self.span.bits() as u32
     }
 
-    fn integers(&self, vertex: u32) -> &Vector {
+    fn integers(&self, vertex: u32) -> &IntegerVector {
         self.integers[vertex as usize].get_or_init(|| {
             let p = self.positions[vertex as usize].to_array();
             Box::new(std::array::from_fn(|k| self.span.to_big(p[k]) - &self.origin[k]))
@@ -101,7 +101,7 @@ impl Kernel {
         axes.into_iter().find_map(|k| {
             let [a, b, c] = corners;
             let (u, v) = ((k + 1) % 3, (k + 2) % 3);
-            match Projection::ALL[k].turn(a, b, c) {
+            match AxisProjection::ALL[k].turn(a, b, c) {
                 Sign::Positive => Some(PlaneView { u, v, plane: triangle }),
                 Sign::Negative => Some(PlaneView { u: v, v: u, plane: triangle }),
                 Sign::Zero => None,
@@ -113,13 +113,14 @@ impl Kernel {
     pub(super) fn turn(&self, view: PlaneView, triangle: u32) -> Sign {
         let [a, b, c] = self.corners(triangle);
         let k = 3 - view.u - view.v;
-        let turn = Projection::ALL[k].turn(a, b, c);
+        let turn = AxisProjection::ALL[k].turn(a, b, c);
         if (view.u + 1) % 3 == view.v { turn } else { -turn }
     }
 
     /// The point that `definition` names.
-    pub(super) fn point(&self, definition: Definition) -> Point {
-        let mut point = Point { definition, near: self.nearby(definition), exact: OnceLock::new() };
+    pub(super) fn point(&self, definition: Definition) -> ArrangementPoint {
+        let mut point =
+            ArrangementPoint { definition, near: self.nearby(definition), exact: OnceLock::new() };
         let is_poor = |x: &Ball| x.rad.is_nan() || x.rad > self.error_max;
         if !matches!(definition, Definition::Vertex(_) | Definition::Far(_)) && point.near.iter().any(is_poor)
         {
@@ -174,7 +175,7 @@ impl Kernel {
     }
 
     /// The place of a point in integers.
-    pub(super) fn exact<'p>(&self, point: &'p Point) -> &'p Homogeneous {
+    pub(super) fn exact<'p>(&self, point: &'p ArrangementPoint) -> &'p Homogeneous {
         point.exact.get_or_init(|| Box::new(self.evaluated(point.definition)))
     }
 
@@ -190,7 +191,7 @@ impl Kernel {
             Definition::EdgeEdge { edges: [[a, b], [c, d]], axes } => {
                 let [a, b, c, d] = [a, b, c, d].map(|v| self.integers(v));
                 let [u, v] = axes.map(usize::from);
-                let cross = |x: &Vector, y: &Vector| &x[u] * &y[v] - &x[v] * &y[u];
+                let cross = |x: &IntegerVector, y: &IntegerVector| &x[u] * &y[v] - &x[v] * &y[u];
                 let (ab, cd) = (exact::minus(b, a), exact::minus(d, c));
                 let (share, w) = (cross(&exact::minus(c, a), &cd), cross(&ab, &cd));
                 Homogeneous::new(std::array::from_fn(|k| &a[k] * &w + &ab[k] * &share), w)
@@ -211,7 +212,13 @@ impl Kernel {
     }
 
     /// How three points of a plane turn in its view; [`Definition::Far`] ones are corners of the view.
-    pub(super) fn orient(&self, view: PlaneView, a: &Point, b: &Point, c: &Point) -> Sign {
+    pub(super) fn orient(
+        &self,
+        view: PlaneView,
+        a: &ArrangementPoint,
+        b: &ArrangementPoint,
+        c: &ArrangementPoint,
+    ) -> Sign {
         let [a2, b2, c2] = [a, b, c].map(|p| seen(p, view));
         let det = (b2[0] - a2[0]) * (c2[1] - a2[1]) - (b2[1] - a2[1]) * (c2[0] - a2[0]);
         if let Some(sign) = det.sign() {
@@ -229,7 +236,7 @@ impl Kernel {
     }
 
     /// How coordinate `axis` of two points compares.
-    pub(super) fn compare(&self, axis: usize, a: &Point, b: &Point) -> Ordering {
+    pub(super) fn compare(&self, axis: usize, a: &ArrangementPoint, b: &ArrangementPoint) -> Ordering {
         match (a.near[axis] - b.near[axis]).sign() {
             Some(Sign::Positive) => return Ordering::Greater,
             Some(_) => return Ordering::Less,
@@ -243,13 +250,13 @@ impl Kernel {
     }
 
     /// True when two points are at one place.
-    pub(super) fn is_same(&self, a: &Point, b: &Point) -> bool {
+    pub(super) fn is_same(&self, a: &ArrangementPoint, b: &ArrangementPoint) -> bool {
         (0..3).all(|k| a.near[k].may_equal(b.near[k]))
             && (0..3).all(|k| self.compare(k, a, b) == Ordering::Equal)
     }
 
     /// True when three points lie on one line.
-    pub(super) fn are_collinear(&self, [a, b, c]: [&Point; 3]) -> bool {
+    pub(super) fn are_collinear(&self, [a, b, c]: [&ArrangementPoint; 3]) -> bool {
         let (u, v) = (ball::minus(b.near, a.near), ball::minus(c.near, a.near));
         if ball::cross(u, v).iter().any(|x| x.sign().is_some()) {
             return false;
@@ -258,12 +265,13 @@ impl Kernel {
             return true;
         }
         let [a, b, c] = [a, b, c].map(|p| self.exact(p));
-        let to = |p: &Homogeneous| -> Vector { std::array::from_fn(|k| &p.x[k] * &a.w - &a.x[k] * &p.w) };
+        let to =
+            |p: &Homogeneous| -> IntegerVector { std::array::from_fn(|k| &p.x[k] * &a.w - &a.x[k] * &p.w) };
         exact::cross(&to(b), &to(c)).iter().all(|x| sign_of(x).is_zero())
     }
 
     /// The coordinates of a point, rounded.
-    pub(super) fn rounded(&self, point: &Point) -> DVec3 {
+    pub(super) fn rounded(&self, point: &ArrangementPoint) -> DVec3 {
         match point.definition {
             Definition::Vertex(v) => self.positions[v as usize],
             _ => {
@@ -277,7 +285,7 @@ impl Kernel {
     }
 
     /// The place of a point as `x / w` times two to a power, from the origin of the file.
-    pub(super) fn absolute(&self, point: &Point) -> (Homogeneous, i32) {
+    pub(super) fn absolute(&self, point: &ArrangementPoint) -> (Homogeneous, i32) {
         let exact = self.exact(point);
         let x = std::array::from_fn(|k| &exact.x[k] + &self.origin[k] * &exact.w);
         (Homogeneous { x, w: exact.w.clone() }, self.span.low())
@@ -294,11 +302,11 @@ const FAR_CORNERS: [[i32; 3]; 3] = [[-1, -1, 0], [3, -1, 0], [-1, 3, 0]];
 
 /// Which coordinates of a point are seen.
 #[inline]
-fn axes_seen(point: &Point, view: PlaneView) -> [usize; 2] {
+fn axes_seen(point: &ArrangementPoint, view: PlaneView) -> [usize; 2] {
     if matches!(point.definition, Definition::Far(_)) { [0, 1] } else { [view.u, view.v] }
 }
 
 #[inline]
-fn seen(point: &Point, view: PlaneView) -> [Ball; 2] {
+fn seen(point: &ArrangementPoint, view: PlaneView) -> [Ball; 2] {
     axes_seen(point, view).map(|k| point.near[k])
 }

@@ -7,7 +7,7 @@
 use super::constraints::{Constrained, Constraint, ConstraintLine};
 use super::error::ArrangementError;
 use super::extract::{BoundaryPiece, SolidBoundary};
-use super::triangulation::{NONE, Sight, Triangulation};
+use super::triangulation::{CarrierView, NONE, Triangulation};
 use super::{Arrangement, Cluster};
 use crate::budget::{Budget, CHECK_EVERY};
 use crate::mesh::{EdgeGroups, edge_of, triangle_of};
@@ -16,7 +16,7 @@ use rustc_hash::FxHashMap;
 
 /// A boundary as triangles over the points of an arrangement.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Merged {
+pub struct MergedBoundary {
     /// Corners, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
     /// The triangle of the input that each is a part of.
@@ -40,13 +40,18 @@ impl Arrangement {
     ///
     /// # Errors
     /// When the budget stops the run, or there is a fault.
-    pub fn merged(&self, surface: &SolidBoundary, budget: &Budget) -> Result<Merged, ArrangementError> {
+    pub fn merged(
+        &self,
+        surface: &SolidBoundary,
+        budget: &Budget,
+    ) -> Result<MergedBoundary, ArrangementError> {
         let clusters = self.cluster_of_triangles();
         let cluster_of = |t: u32| clusters.get(&t).copied();
         let corners: Vec<[u32; 3]> = surface.pieces.iter().map(|piece| piece.corners).collect();
         let groups = EdgeGroups::build(&corners, self.point_count(), budget)?;
         let is_whole = |piece: &BoundaryPiece| cluster_of(piece.source).is_none();
-        let mut merged = Merged::with_capacity(surface.pieces.iter().filter(|piece| is_whole(piece)).count());
+        let mut merged =
+            MergedBoundary::with_capacity(surface.pieces.iter().filter(|piece| is_whole(piece)).count());
         // Where a whole triangle ends, two of its edges do, which are not on one line.
         let mut stays_for_triangle = vec![false; self.point_count()];
         for piece in surface.pieces.iter().filter(|piece| is_whole(piece)) {
@@ -175,7 +180,7 @@ impl Arrangement {
             return Ok(vec![corners]);
         }
         let view = cluster.kernel.view(t as u32).ok_or(fault)?;
-        let sight = Sight { kernel: &cluster.kernel, view, shared: &cluster.points, own: Vec::new() };
+        let sight = CarrierView { kernel: &cluster.kernel, view, shared: &cluster.points, own: Vec::new() };
         let mut mesh = Triangulation::of_triangle(source);
         let mut vertices: FxHashMap<u32, u32> = (0..3).map(|k| (corners[k as usize], k)).collect();
         let mut numbers: Vec<u32> = corners.to_vec();
@@ -208,7 +213,7 @@ impl Arrangement {
     }
 }
 
-impl Merged {
+impl MergedBoundary {
     fn with_capacity(triangles: usize) -> Self {
         Self {
             triangles: Vec::with_capacity(triangles),

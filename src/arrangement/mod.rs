@@ -37,14 +37,14 @@ mod triangulation;
 pub use build::{ArrangementOptions, arrange, arrange_enclosed};
 pub use error::ArrangementError;
 pub use extract::{BoundaryPiece, SolidBoundary};
-pub use merge::Merged;
+pub use merge::MergedBoundary;
 pub use place::{PlacedBoundary, place};
 
 use crate::geom::DVec3;
-use kernel::Kernel;
+use kernel::ClusterKernel;
 use num_bigint::BigInt;
 use num_rational::Ratio;
-use point::Point;
+use point::ArrangementPoint;
 use std::cmp::Ordering;
 
 /// Triangles divided where they meet, with winding numbers. Made by [`arrange`].
@@ -74,8 +74,8 @@ pub struct Arrangement {
 /// The numbers of a cluster and its points.
 #[derive(Debug)]
 struct Cluster {
-    kernel: Kernel,
-    points: Vec<Point>,
+    kernel: ClusterKernel,
+    points: Vec<ArrangementPoint>,
     /// The vertex of the input that each vertex of the kernel is, ascending.
     vertices: Vec<u32>,
     /// The triangle of the input that each triangle of the kernel is, ascending.
@@ -128,7 +128,7 @@ impl Arrangement {
         self.clusters.iter().map(|cluster| cluster.kernel.bits()).max().unwrap_or(0)
     }
 
-    fn new_point(&self, point: u32) -> Option<(&Cluster, &Point)> {
+    fn new_point(&self, point: u32) -> Option<(&Cluster, &ArrangementPoint)> {
         let [cluster, point] = *self.new_points.get((point as usize).checked_sub(self.positions.len())?)?;
         let cluster = &self.clusters[cluster as usize];
         Some((cluster, &cluster.points[point as usize]))

@@ -4,9 +4,9 @@
 //! pass through it. What is common to both intervals is where the triangles meet.
 
 use super::error::ArrangementError;
-use super::kernel::Kernel;
-use super::point::{Definition, Point};
-use crate::geom::{Plane, Projection, Sign};
+use super::kernel::ClusterKernel;
+use super::point::{ArrangementPoint, Definition};
+use crate::geom::{AxisProjection, Sign, ThreePointPlane};
 use std::cmp::Ordering;
 
 /// How two triangles of a cluster meet.
@@ -22,12 +22,12 @@ pub(super) enum TriangleMeeting {
 
 /// How triangles `s` and `t`, which do not overlap in one plane, meet. `plane_of` names the plane of a triangle.
 pub(super) fn meeting(
-    kernel: &Kernel,
+    kernel: &ClusterKernel,
     [s, t]: [u32; 2],
     plane_of: impl Fn(u32) -> u32,
 ) -> Result<TriangleMeeting, ArrangementError> {
     let sides = |of: u32, to: u32| {
-        let plane = Plane::through(kernel.corners(to));
+        let plane = ThreePointPlane::through(kernel.corners(to));
         kernel.corners(of).map(|p| plane.side(p))
     };
     let sides_s = sides(s, t);
@@ -38,7 +38,7 @@ pub(super) fn meeting(
     let ends_t = interval(kernel, t, sides(t, s), plane_of(s));
     let (Some(ends_s), Some(ends_t)) = (ends_s, ends_t) else { return Ok(TriangleMeeting::Nowhere) };
     let axes = axes_by_extent(kernel, s, t);
-    let compare = |a: &Point, b: &Point| {
+    let compare = |a: &ArrangementPoint, b: &ArrangementPoint| {
         axes.iter().fold(Ordering::Equal, |order, &axis| order.then_with(|| kernel.compare(axis, a, b)))
     };
     let [a, b] = [ends_s, ends_t].map(|ends| {
@@ -76,7 +76,7 @@ pub(super) fn meeting(
 
 /// The interval of the line of both planes that triangle `t` holds, if it meets the other `plane`; its corners are on these
 /// sides of that, not all on it.
-fn interval(kernel: &Kernel, t: u32, sides: [Sign; 3], plane: u32) -> Option<[Definition; 2]> {
+fn interval(kernel: &ClusterKernel, t: u32, sides: [Sign; 3], plane: u32) -> Option<[Definition; 2]> {
     let corners = kernel.triangles[t as usize];
     let mut ends = Vec::with_capacity(2);
     for k in 0..3 {
@@ -92,9 +92,9 @@ fn interval(kernel: &Kernel, t: u32, sides: [Sign; 3], plane: u32) -> Option<[De
 }
 
 /// The vertices of triangle `s` on triangle `t` of the same plane, other than its corners.
-fn touching(kernel: &Kernel, s: u32, t: u32) -> Vec<u32> {
+fn touching(kernel: &ClusterKernel, s: u32, t: u32) -> Vec<u32> {
     let [a, b, c] = kernel.corners(t);
-    let Some((view, turn)) = Projection::showing([a, b, c]) else { return Vec::new() };
+    let Some((view, turn)) = AxisProjection::showing([a, b, c]) else { return Vec::new() };
     let is_on = |v: &u32| {
         let p = kernel.positions[*v as usize];
         [[a, b], [b, c], [c, a]].into_iter().all(|[from, to]| view.turn(from, to, p) != -turn)
@@ -104,7 +104,7 @@ fn touching(kernel: &Kernel, s: u32, t: u32) -> Vec<u32> {
 }
 
 /// The coordinate axes, the one along which the line of two planes is longest first, as far as f64 can tell.
-fn axes_by_extent(kernel: &Kernel, s: u32, t: u32) -> [usize; 3] {
+fn axes_by_extent(kernel: &ClusterKernel, s: u32, t: u32) -> [usize; 3] {
     let [n, m] = [s, t].map(|t| {
         let [a, b, c] = kernel.corners(t);
         (b - a).cross(c - a).normalize_or_zero()

@@ -6,9 +6,9 @@
 //! move meet nowhere in an arrangement, so that only those that it moves are looked at, and what is near them.
 
 use super::error::ArrangementError;
-use super::{Arrangement, Merged};
+use super::{Arrangement, MergedBoundary};
 use crate::budget::{Budget, CHECK_EVERY};
-use crate::geom::{Aabb, DVec3, Plane, Shared, are_collinear, contact};
+use crate::geom::{Aabb, DVec3, Shared, ThreePointPlane, are_collinear, contact};
 use crate::par;
 use crate::spatial::{Bvh, Search, self_contacts};
 
@@ -45,7 +45,7 @@ const REACH: f64 = 4.0;
 /// When the budget stops the run.
 pub fn place(
     arrangement: &Arrangement,
-    merged: Merged,
+    merged: MergedBoundary,
     pitch: f64,
     budget: &Budget,
 ) -> Result<PlacedBoundary, ArrangementError> {
@@ -334,7 +334,7 @@ impl Placing<'_> {
                 count += 1 << 20;
                 continue;
             }
-            let (bounds, plane) = (Aabb::of(corners), Plane::through(corners));
+            let (bounds, plane) = (Aabb::of(corners), ThreePointPlane::through(corners));
             for pair in near {
                 if count >= enough {
                     break;
@@ -399,8 +399,9 @@ mod tests {
         let (mut apart, mut near) = (0, 0);
         for _ in 0..4000 {
             let (a, b) = (triangle(), triangle());
-            let contact =
-                |a: [DVec3; 3]| contact(&Plane::through(a), b.each_ref(), Shared::Nothing).is_some();
+            let contact = |a: [DVec3; 3]| {
+                contact(&ThreePointPlane::through(a), b.each_ref(), Shared::Nothing).is_some()
+            };
             let moved = |k: usize| {
                 let step = DVec3::new((k % 3) as f64, (k / 3 % 3) as f64, (k / 9) as f64) - 1.0;
                 [a[0] + step, a[1], a[2]]

@@ -4,7 +4,8 @@ use super::ball::Ball;
 use super::exact::Homogeneous;
 use std::sync::OnceLock;
 
-/// What a point is. Vertices and triangles are those of the [`Kernel`](super::kernel::Kernel). Edges name their smaller vertex first.
+/// What a point is. Vertices and triangles are those of the [`ClusterKernel`](super::kernel::ClusterKernel).
+/// Edges name their smaller vertex first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Definition {
     /// A vertex of the input.
@@ -31,7 +32,7 @@ pub(super) enum Definition {
 
 /// A point with what is known of its place.
 #[derive(Debug, Clone)]
-pub(super) struct Point {
+pub(super) struct ArrangementPoint {
     pub(super) definition: Definition,
     /// The coordinates from the origin of the kernel, in the unit of the file.
     pub(super) near: [Ball; 3],

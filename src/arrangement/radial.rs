@@ -8,7 +8,7 @@
 
 use super::Arrangement;
 use super::ball::{self, Ball};
-use super::exact::{self, Vector, sign_of};
+use super::exact::{self, IntegerVector, sign_of};
 use crate::geom::{DVec3, Sign};
 use std::cell::OnceCell;
 use std::cmp::Ordering;
@@ -19,7 +19,7 @@ pub(super) struct Normal {
     corners: [DVec3; 3],
     is_turned: bool,
     near: [Ball; 3],
-    exact: OnceCell<Box<Vector>>,
+    exact: OnceCell<Box<IntegerVector>>,
 }
 
 impl Normal {
@@ -32,7 +32,7 @@ impl Normal {
     }
 
     /// A positive multiple of it in integers.
-    fn exact(&self) -> &Vector {
+    fn exact(&self) -> &IntegerVector {
         self.exact.get_or_init(|| {
             let ([a, b, c], _) = exact::integers(self.corners);
             let (u, v) = (exact::minus(&b, &a), exact::minus(&c, &a));

@@ -2,14 +2,14 @@
 
 use super::Arrangement;
 use super::ball::Ball;
-use super::exact::{self, Homogeneous, Vector, sign_of};
+use super::exact::{self, Homogeneous, IntegerVector, sign_of};
 use crate::budget::{Budget, Stopped};
-use crate::geom::{Aabb, DVec3, Projection, Sign};
+use crate::geom::{Aabb, AxisProjection, DVec3, Sign};
 use crate::spatial::Bvh;
 use num_bigint::BigInt;
 
 /// The middle of a piece.
-struct Start {
+struct RayStart {
     near: DVec3,
     /// How far the middle is from `near` at most, in each coordinate.
     error: f64,
@@ -32,10 +32,10 @@ pub(super) fn beside(
     bvh: &Bvh,
     budget: &Budget,
 ) -> Result<(bool, Vec<i32>), Stopped> {
-    let start = Start::middle(arrangement, arrangement.pieces[piece]);
+    let start = RayStart::middle(arrangement, arrangement.pieces[piece]);
     let corners = |t: u32| triangles[t as usize].map(|v| arrangement.positions[v as usize]);
     let [a, b, c] = corners(arrangement.planes[piece]);
-    let [along_x, along_y, along_z] = Projection::ALL.map(|view| view.turn(a, b, c));
+    let [along_x, along_y, along_z] = AxisProjection::ALL.map(|view| view.turn(a, b, c));
     let is_front = along_z.or_else(|| along_x).or_else(|| along_y) == Sign::Positive;
     let margin = DVec3::splat(start.error);
     let (min, max) = (start.near - margin, start.near + margin);
@@ -58,14 +58,14 @@ pub(super) fn beside(
     Ok((is_front, windings))
 }
 
-impl Start {
+impl RayStart {
     fn middle(arrangement: &Arrangement, corners: [u32; 3]) -> Self {
         let places = corners.map(|p| arrangement.absolute(p));
         let low = places.iter().map(|(_, low)| *low).min().unwrap_or(0);
         let [a, b, c] =
             places.map(|(place, own)| Homogeneous { x: place.x.map(|x| x << (own - low)), w: place.w });
         let (bc, ca, ab) = (&b.w * &c.w, &c.w * &a.w, &a.w * &b.w);
-        let x: Vector = std::array::from_fn(|k| &a.x[k] * &bc + &b.x[k] * &ca + &c.x[k] * &ab);
+        let x: IntegerVector = std::array::from_fn(|k| &a.x[k] * &bc + &b.x[k] * &ca + &c.x[k] * &ab);
         let w = BigInt::from(3) * &a.w * &bc;
         let near = DVec3::from_array(x.each_ref().map(|x| exact::quotient(x, &w, low)));
         let error = near.abs().max_element() * (8.0 * f64::EPSILON) + f64::MIN_POSITIVE;
@@ -114,7 +114,7 @@ impl Start {
     }
 
     /// Points of the input and the start in one unit.
-    fn with<const N: usize>(&self, points: [DVec3; N]) -> ([Vector; N], Homogeneous) {
+    fn with<const N: usize>(&self, points: [DVec3; N]) -> ([IntegerVector; N], Homogeneous) {
         let (points, own) = exact::integers(points);
         let low = own.min(self.low);
         let points = points.map(|p| p.map(|x| x << (own - low)));

@@ -7,8 +7,8 @@
 //! ```
 
 use super::error::ArrangementError;
-use super::kernel::{Kernel, PlaneView};
-use super::point::Point;
+use super::kernel::{ClusterKernel, PlaneView};
+use super::point::ArrangementPoint;
 use crate::geom::Sign;
 
 /// In the place of a half-edge: there is none.
@@ -16,23 +16,23 @@ pub(super) const NONE: u32 = u32::MAX;
 
 /// Points that a carrier sees: those of the cluster, and the ones that it makes itself.
 #[derive(Debug)]
-pub(super) struct Sight<'k> {
-    pub(super) kernel: &'k Kernel,
+pub(super) struct CarrierView<'k> {
+    pub(super) kernel: &'k ClusterKernel,
     pub(super) view: PlaneView,
-    pub(super) shared: &'k [Point],
+    pub(super) shared: &'k [ArrangementPoint],
     /// These are numbered after the shared ones.
-    pub(super) own: Vec<Point>,
+    pub(super) own: Vec<ArrangementPoint>,
 }
 
-impl Sight<'_> {
-    pub(super) fn point(&self, id: u32) -> &Point {
+impl CarrierView<'_> {
+    pub(super) fn point(&self, id: u32) -> &ArrangementPoint {
         match self.shared.get(id as usize) {
             Some(point) => point,
             None => &self.own[id as usize - self.shared.len()],
         }
     }
 
-    pub(super) fn push(&mut self, point: Point) -> u32 {
+    pub(super) fn push(&mut self, point: ArrangementPoint) -> u32 {
         self.own.push(point);
         (self.shared.len() + self.own.len() - 1) as u32
     }
@@ -160,7 +160,7 @@ impl Triangulation {
     }
 
     /// How the points of three vertices turn.
-    pub(super) fn orient(&self, sight: &Sight<'_>, vertices: [u32; 3]) -> Sign {
+    pub(super) fn orient(&self, sight: &CarrierView<'_>, vertices: [u32; 3]) -> Sign {
         let [a, b, c] = vertices.map(|v| sight.point(self.points[v as usize]));
         sight.kernel.orient(sight.view, a, b, c)
     }
@@ -168,7 +168,7 @@ impl Triangulation {
     /// Where a point is, by a walk from half-edge `start`; the steps are added to `steps`.
     pub(super) fn locate(
         &mut self,
-        sight: &Sight<'_>,
+        sight: &CarrierView<'_>,
         point: u32,
         start: u32,
         steps: &mut u64,
@@ -228,7 +228,7 @@ impl Triangulation {
     /// Puts a point where it is and gives its vertex: an existing one if the point is on one.
     pub(super) fn insert(
         &mut self,
-        sight: &Sight<'_>,
+        sight: &CarrierView<'_>,
         point: u32,
         start: u32,
         steps: &mut u64,

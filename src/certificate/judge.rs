@@ -2,8 +2,8 @@
 
 use super::solid::EmbeddedShells;
 use super::surface::ReadingSurface;
-use super::topology::{Census, Topology, degenerate, note_degenerate};
-use super::verdict::Verdict;
+use super::topology::{Census, IndexTopology, degenerate, note_degenerate};
+use super::verdict::ConditionCounts;
 use super::{CertifyError, Condition, Depth, Shell, Violation};
 use crate::budget::{Budget, Stopped};
 use crate::formats::{self, Encoding, Precision, ReadOptions};
@@ -17,7 +17,7 @@ const CONTACTS_KEPT_MIN: usize = 1 << 16;
 
 /// What was found.
 pub(super) struct Judged {
-    pub(super) verdict: Verdict,
+    pub(super) verdict: ConditionCounts,
     /// Of the first reading.
     pub(super) census: Census,
     /// Of the first reading.
@@ -66,7 +66,7 @@ pub(super) fn judge_read(
 
 /// What is kept of the first reading.
 #[derive(Default)]
-struct First {
+struct FirstReading {
     census: Census,
     contacts: Option<Contacts>,
     shells: Vec<Shell>,
@@ -83,15 +83,15 @@ struct ListFaults {
 
 struct Judge<'a> {
     budget: &'a Budget,
-    verdict: Verdict,
-    first: Option<First>,
+    verdict: ConditionCounts,
+    first: Option<FirstReading>,
     /// The lists of the f64 readings; those of the f32 readings are the same unless rounding welds more.
     known_lists: Vec<(Cow<'a, [[u32; 3]]>, ListFaults)>,
 }
 
 impl<'a> Judge<'a> {
     fn new(depth: Depth, budget: &'a Budget) -> Self {
-        Self { budget, verdict: Verdict::new(depth), first: None, known_lists: Vec::new() }
+        Self { budget, verdict: ConditionCounts::new(depth), first: None, known_lists: Vec::new() }
     }
 
     /// Leaves every condition open: a reading is missing.
@@ -103,7 +103,7 @@ impl<'a> Judge<'a> {
 
     fn into_judged(self) -> Judged {
         let Self { verdict, first, .. } = self;
-        let First { census, contacts, shells } = first.unwrap_or_default();
+        let FirstReading { census, contacts, shells } = first.unwrap_or_default();
         Judged { verdict, census, contacts, shells }
     }
 
@@ -159,9 +159,10 @@ impl<'a> Judge<'a> {
         if let Some((_, faults)) = self.known_lists.iter().find(|(list, _)| *list == surface.triangles) {
             return Ok(faults.clone());
         }
-        let topology = Topology::of(&surface.triangles, surface.positions.len(), self.budget)?;
+        let topology = IndexTopology::of(&surface.triangles, surface.positions.len(), self.budget)?;
         topology.note(surface, &mut self.verdict, self.budget)?;
-        self.first.get_or_insert_with(|| First { census: topology.census(), ..First::default() });
+        self.first
+            .get_or_insert_with(|| FirstReading { census: topology.census(), ..FirstReading::default() });
         Ok(ListFaults {
             is_clean: topology.is_clean(),
             duplicates: topology.duplicates(),
@@ -239,7 +240,7 @@ impl<'a> Judge<'a> {
 }
 
 /// Notes the faces and vertices of the file that no triangle of the soup stands for.
-fn note_unusable(surface: &ReadingSurface<'_>, verdict: &mut Verdict) {
+fn note_unusable(surface: &ReadingSurface<'_>, verdict: &mut ConditionCounts) {
     let (faces, vertices) = (&surface.soup.face_faults, &surface.soup.non_finite_vertices);
     verdict.note(Condition::Usable, (faces.len() + vertices.len()) as u64, |samples| {
         let (condition, reading) = (Condition::Usable, surface.reading);

@@ -6,12 +6,12 @@ use crate::budget::{Budget, CHECK_EVERY, Charge, Stopped};
 use crate::geom::signed_volume;
 use crate::mesh::UnionFind;
 use crate::par;
-use crate::spatial::{Bvh, Nesting, ShellTriangles, nest};
+use crate::spatial::{Bvh, ShellNesting, ShellTriangles, nest};
 
 /// The shells of a surface for which P0 and P1 hold.
 pub(super) struct EmbeddedShells<'a> {
     shells: ShellTriangles,
-    nesting: Nesting,
+    nesting: ShellNesting,
     /// Number of vertices of each shell.
     vertices: Vec<u32>,
     _charge: Charge<'a>,

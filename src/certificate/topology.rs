@@ -1,7 +1,7 @@
 //! P0: what the positions of each triangle and the index triples of all say.
 
 use super::surface::ReadingSurface;
-use super::verdict::Verdict;
+use super::verdict::ConditionCounts;
 use super::{Condition, Violation};
 use crate::budget::{Budget, CHECK_EVERY, Charge, Stopped};
 use crate::geom;
@@ -23,7 +23,11 @@ pub(super) fn degenerate(surface: &ReadingSurface<'_>, budget: &Budget) -> Resul
 }
 
 /// Notes the degenerate triangles of `surface`.
-pub(super) fn note_degenerate(surface: &ReadingSurface<'_>, degenerate: &[u32], verdict: &mut Verdict) {
+pub(super) fn note_degenerate(
+    surface: &ReadingSurface<'_>,
+    degenerate: &[u32],
+    verdict: &mut ConditionCounts,
+) {
     verdict.note(Condition::NonDegenerate, degenerate.len() as u64, |samples| {
         let witness =
             |&t: &u32| surface.violation(Condition::NonDegenerate, &[t], &surface.triangles[t as usize]);
@@ -46,7 +50,7 @@ impl Census {
 }
 
 /// What the index triples with three distinct vertices say, whatever the positions.
-pub(super) struct Topology<'a> {
+pub(super) struct IndexTopology<'a> {
     triangles: Cow<'a, [[u32; 3]]>,
     /// Triangle of the surface behind each of `triangles`, where some were left out.
     ids: Option<Vec<u32>>,
@@ -73,7 +77,7 @@ struct Duplicate {
     first: u32,
 }
 
-impl<'a> Topology<'a> {
+impl<'a> IndexTopology<'a> {
     pub(super) fn of(
         triangles: &'a [[u32; 3]],
         vertex_count: usize,
@@ -118,7 +122,7 @@ impl<'a> Topology<'a> {
     pub(super) fn note(
         &self,
         surface: &ReadingSurface<'_>,
-        verdict: &mut Verdict,
+        verdict: &mut ConditionCounts,
         budget: &Budget,
     ) -> Result<(), Stopped> {
         let faults = &self.faults;
@@ -164,9 +168,12 @@ impl<'a> Topology<'a> {
 }
 
 /// Triangles, and their ids if some were left out.
-type Kept<'a> = (Cow<'a, [[u32; 3]]>, Option<Vec<u32>>);
+type KeptTriangles<'a> = (Cow<'a, [[u32; 3]]>, Option<Vec<u32>>);
 
-fn with_distinct_vertices<'a>(triangles: &'a [[u32; 3]], budget: &Budget) -> Result<Kept<'a>, Stopped> {
+fn with_distinct_vertices<'a>(
+    triangles: &'a [[u32; 3]],
+    budget: &Budget,
+) -> Result<KeptTriangles<'a>, Stopped> {
     let is_distinct = |[a, b, c]: [u32; 3]| a != b && b != c && c != a;
     let parts = par::try_map_ranges(triangles.len(), CHECK_EVERY, |range| {
         budget.check()?;
@@ -252,7 +259,7 @@ mod tests {
 
     fn faults(triangles: &[[u32; 3]]) -> [usize; 4] {
         let budget = Budget::unlimited();
-        let topology = Topology::of(triangles, 8, &budget).unwrap();
+        let topology = IndexTopology::of(triangles, 8, &budget).unwrap();
         let faults = &topology.faults;
         let counts = [
             faults.duplicates.len(),
@@ -268,7 +275,7 @@ mod tests {
     fn a_tetrahedron_is_clean_and_has_the_euler_characteristic_of_a_sphere() {
         assert_eq!(faults(&TETRAHEDRON), [0; 4]);
         let budget = Budget::unlimited();
-        assert_eq!(Topology::of(&TETRAHEDRON, 8, &budget).unwrap().census().euler_characteristic(), 2);
+        assert_eq!(IndexTopology::of(&TETRAHEDRON, 8, &budget).unwrap().census().euler_characteristic(), 2);
     }
 
     #[test]
@@ -289,7 +296,7 @@ mod tests {
         triangles.extend([[3, 1, 2], [2, 1, 3], [3, 0, 2]]);
         assert_eq!(faults(&triangles)[0], 3);
         let budget = Budget::unlimited();
-        assert_eq!(Topology::of(&triangles, 8, &budget).unwrap().duplicates(), [4, 5, 6]);
+        assert_eq!(IndexTopology::of(&triangles, 8, &budget).unwrap().duplicates(), [4, 5, 6]);
         assert_eq!(faults(&[[0, 1, 2], [2, 1, 0]]), [1, 0, 0, 0], "a pillow of two faces is closed");
     }
 
@@ -297,7 +304,7 @@ mod tests {
     fn triangles_that_name_a_vertex_twice_are_left_out_and_the_ids_of_others_stay() {
         let triangles = [[1, 1, 2], [0, 1, 2], [3, 3, 3], [0, 1, 2]];
         let budget = Budget::unlimited();
-        let topology = Topology::of(&triangles, 4, &budget).unwrap();
+        let topology = IndexTopology::of(&triangles, 4, &budget).unwrap();
         assert_eq!(topology.duplicates(), [3]);
         assert_eq!(topology.census().euler_characteristic(), 2);
     }

@@ -14,7 +14,7 @@ const P0: [Condition; 6] = [
 ];
 
 /// Counts of every condition and the witnesses of those that are broken.
-pub(super) struct Verdict {
+pub(super) struct ConditionCounts {
     /// Witnesses to keep of each condition.
     samples: usize,
     /// Whether the first violation ends the check.
@@ -29,7 +29,7 @@ pub(super) struct Verdict {
     pub(super) readings: Vec<Reading>,
 }
 
-impl Verdict {
+impl ConditionCounts {
     pub(super) fn new(depth: Depth) -> Self {
         let (samples, is_brief) = match depth {
             Depth::FirstViolation => (1, true),
@@ -153,7 +153,7 @@ mod tests {
 
     #[test]
     fn a_condition_left_open_in_one_reading_is_not_proved_by_another() {
-        let mut verdict = Verdict::new(Depth::Count { samples: 1 });
+        let mut verdict = ConditionCounts::new(Depth::Count { samples: 1 });
         verdict.note(Condition::NotEmpty, 0, |_| Vec::new());
         verdict.note(Condition::Alternating, 0, |_| Vec::new());
         assert_eq!(verdict.p2(), Some(true));

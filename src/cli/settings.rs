@@ -39,7 +39,8 @@ pub(super) fn show(sources: &Sources) -> Exit {
 }
 
 fn table(loaded: &Loaded) -> String {
-    let width = |of: fn(&crate::config::Entry) -> usize| loaded.entries.iter().map(of).max().unwrap_or(0);
+    let width =
+        |of: fn(&crate::config::ResolvedSetting) -> usize| loaded.entries.iter().map(of).max().unwrap_or(0);
     let (name_width, value_width) = (width(|e| e.setting.name.len()), width(|e| e.value.chars().count()));
     let mut text = String::new();
     for entry in &loaded.entries {

@@ -7,7 +7,7 @@ use super::figures::counted;
 use super::files::FileOrStream;
 use super::flags::with_flags;
 use super::summary::{Subject, summary};
-use super::work::{Done, Errand, run as run_one, unwritable, wrong};
+use super::work::{Errand, FinishedFile, run as run_one, unwritable, wrong};
 use crate::pipeline::Operation;
 use crate::wire::{Fidelity, Problem};
 use anstyle::Style;
@@ -92,7 +92,7 @@ fn place_in(folder: &Path, inputs: &[FileOrStream], request: &Request) -> Result
 }
 
 /// The whole report of the only file.
-fn tell(errand: &Errand<'_>, done: &Done) -> Exit {
+fn tell(errand: &Errand<'_>, done: &FinishedFile) -> Exit {
     if errand.request.is_json {
         print_json(&done.report);
     } else {
@@ -138,7 +138,7 @@ fn run_all(request: &Request, errands: &[Errand<'_>]) -> Exit {
 }
 
 /// What became of a file, in a line that begins with its name.
-fn row(input: &str, result: &Result<Done, Problem>) -> (Style, String) {
+fn row(input: &str, result: &Result<FinishedFile, Problem>) -> (Style, String) {
     let done = match result {
         Ok(done) => done,
         Err(problem) => return (BAD, without_name(input, &problem.detail).to_owned()),
@@ -191,7 +191,7 @@ fn sum(request: &Request, exits: &[Exit]) -> String {
 }
 
 /// A file's report or problem as one line.
-fn json_line(input: &str, result: &Result<Done, Problem>) -> Value {
+fn json_line(input: &str, result: &Result<FinishedFile, Problem>) -> Value {
     match result {
         Ok(done) => json!({"input": input, "written": done.written, "report": done.report}),
         Err(problem) => json!({"input": input, "problem": problem}),

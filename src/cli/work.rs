@@ -11,7 +11,7 @@ use crate::config::{Config, Loaded};
 use crate::formats::{self, ReadLimits};
 use crate::jobs::StageClock;
 use crate::par;
-use crate::pipeline::{self, Answer, Operation, Output, PictureChoices, Product, Require};
+use crate::pipeline::{self, Answer, Operation, Output, PictureChoices, ProductKind, Require};
 use crate::wire::{OptionError, Options, PictureFormat, Problem, ProblemCode, Report, TimingMs, report_page};
 use std::borrow::Cow;
 use std::io;
@@ -43,7 +43,7 @@ impl Errand<'_> {
 
 /// What came of one file.
 #[derive(Debug)]
-pub(super) struct Done {
+pub(super) struct FinishedFile {
     pub report: Report,
     /// Where the result was written; `None`: it was not.
     pub written: Option<String>,
@@ -51,14 +51,14 @@ pub(super) struct Done {
 }
 
 /// Does what was asked and writes the result. A failure of the engine is a problem like any other.
-pub(super) fn run(errand: &Errand<'_>) -> Result<Done, Problem> {
+pub(super) fn run(errand: &Errand<'_>) -> Result<FinishedFile, Problem> {
     let crashed = |_| {
         Err(Problem::new(ProblemCode::EngineCrashed, "the engine failed on this file; that is our error"))
     };
     catch_unwind(AssertUnwindSafe(|| attempt(errand))).unwrap_or_else(crashed)
 }
 
-fn attempt(errand: &Errand<'_>) -> Result<Done, Problem> {
+fn attempt(errand: &Errand<'_>) -> Result<FinishedFile, Problem> {
     let &Errand { request, inputs, ref output } = errand;
     check_places(errand)?;
     let options =
@@ -255,7 +255,7 @@ fn deliver(
     kept: Option<Vec<u8>>,
     answer: &Answer,
     timing: TimingMs,
-) -> Result<Done, Problem> {
+) -> Result<FinishedFile, Problem> {
     let request = errand.request;
     let is_as_it_was = |output: &Output| output.bytes.is_none();
     let as_it_was = match (&errand.output, kept) {
@@ -285,15 +285,15 @@ fn deliver(
             .map_err(|e| unwritable(&place, &e))?;
     }
     let exit = verdict(request.operation, require, &report, answer.output.is_some());
-    Ok(Done { report, written: (!written.is_empty()).then(|| written.join(", ")), exit })
+    Ok(FinishedFile { report, written: (!written.is_empty()).then(|| written.join(", ")), exit })
 }
 
 fn verdict(operation: Operation, require: Option<Require>, report: &Report, has_result: bool) -> Exit {
     let is_done = match operation.facts().product {
-        Product::Solid => has_result && report.verdict.printable,
-        Product::Report => operation != Operation::Verify || report.verdict.printable,
-        Product::Picture => true,
-        Product::Mesh => has_result && (require != Some(Require::Printable) || report.verdict.printable),
+        ProductKind::Solid => has_result && report.verdict.printable,
+        ProductKind::Report => operation != Operation::Verify || report.verdict.printable,
+        ProductKind::Picture => true,
+        ProductKind::Mesh => has_result && (require != Some(Require::Printable) || report.verdict.printable),
     };
     if is_done { Exit::Done } else { Exit::Negative }
 }

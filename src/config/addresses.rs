@@ -1,12 +1,12 @@
 //! Addresses with a password in them, which everybody would read who sees the settings.
 
-use super::settings::Entry;
+use super::settings::ResolvedSetting;
 
 /// Settings that name a database: their passwords may also stand in a parameter.
 const OF_DATABASES: [&str; 1] = ["database_url"];
 
 /// Whether the value of the setting has a password in it, also where it is no address that can be used.
-pub(super) fn has_password(entry: &Entry) -> bool {
+pub(super) fn has_password(entry: &ResolvedSetting) -> bool {
     let is_of_database = OF_DATABASES.contains(&entry.setting.name);
     let after_scheme = entry.value.split_once("://").map(|(_, rest)| rest);
     after_scheme.or(is_of_database.then_some(&*entry.value)).is_some_and(has_credentials)
@@ -35,7 +35,7 @@ mod tests {
 
     fn is_found(name: &str, value: &str) -> bool {
         let setting = SETTINGS.iter().find(|setting| setting.name == name).unwrap();
-        has_password(&Entry { setting, value: value.to_owned(), origin: Origin::Default })
+        has_password(&ResolvedSetting { setting, value: value.to_owned(), origin: Origin::Default })
     }
 
     #[test]

@@ -12,9 +12,9 @@ mod values;
 
 pub use error::ConfigError;
 pub use origin::Origin;
-pub use settings::{Config, Entry, SETTINGS, Setting};
+pub use settings::{Config, ResolvedSetting, SETTINGS, Setting};
 pub use sources::{Loaded, Sources};
-pub use values::{Bytes, IsolationChoice, LogFormat, Role, SandboxChoice};
+pub use values::{Bytes, IsolationChoice, LogFormat, SandboxChoice, ServerRole};
 
 impl Config {
     /// Whether the API may be used without a key.
@@ -25,7 +25,7 @@ impl Config {
         match (&self.api_keys_file, self.allow_anonymous) {
             (Some(_), true) => Err(ConfigError::KeysAndAnonymous),
             (Some(_), false) => Ok(false),
-            (None, false) if self.role != Role::Worker && !self.listen.ip().is_loopback() => {
+            (None, false) if self.role != ServerRole::Worker && !self.listen.ip().is_loopback() => {
                 Err(ConfigError::OpenWithoutKeys { listen: self.listen })
             }
             (None, _) => Ok(true),

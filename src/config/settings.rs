@@ -4,7 +4,7 @@
 
 use super::error::ConfigError;
 use super::origin::Origin;
-use super::values::{Bytes, IsolationChoice, LogFormat, Role, SandboxChoice, Value};
+use super::values::{Bytes, IsolationChoice, LogFormat, SandboxChoice, ServerRole, SettingValue};
 use std::net::{IpAddr, SocketAddr};
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::PathBuf;
@@ -37,7 +37,7 @@ impl Setting {
 
 /// A setting with its value as text and where that is from.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Entry {
+pub struct ResolvedSetting {
     /// The setting.
     pub setting: &'static Setting,
     /// The value as it was given.
@@ -60,12 +60,12 @@ macro_rules! settings {
             name: stringify!($name),
             about: concat!($($about),+).trim_ascii_start(),
             default: $default,
-            expected: <$type as Value>::EXPECTED,
+            expected: <$type as SettingValue>::EXPECTED,
         },)*];
 
         impl Config {
             /// The values of `entries`, which are in the order of [`SETTINGS`].
-            pub(super) fn from_entries(entries: &[Entry]) -> Result<Self, ConfigError> {
+            pub(super) fn from_entries(entries: &[ResolvedSetting]) -> Result<Self, ConfigError> {
                 let mut entries = entries.iter();
                 Ok(Self { $($name: value(entries.next(), stringify!($name))?,)* })
             }
@@ -73,7 +73,7 @@ macro_rules! settings {
     };
 }
 
-fn value<T: Value>(entry: Option<&Entry>, name: &'static str) -> Result<T, ConfigError> {
+fn value<T: SettingValue>(entry: Option<&ResolvedSetting>, name: &'static str) -> Result<T, ConfigError> {
     let entry = entry.filter(|e| e.setting.name == name).expect("one entry for each setting, in order");
     T::parse(entry.value.trim()).ok_or_else(|| ConfigError::Invalid {
         name,
@@ -85,7 +85,7 @@ fn value<T: Value>(entry: Option<&Entry>, name: &'static str) -> Result<T, Confi
 
 settings! {
     /// What this server does among several that share their stores: all, only take requests (api), or only run jobs (worker).
-    role: Role = "all",
+    role: ServerRole = "all",
     /// Where the API listens.
     listen: SocketAddr = "127.0.0.1:8080",
     /// Where health and metrics listen; off: nowhere.

@@ -3,7 +3,7 @@
 use super::addresses::has_password;
 use super::error::{ConfigError, did_you_mean};
 use super::origin::Origin;
-use super::settings::{Config, Entry, SETTINGS};
+use super::settings::{Config, ResolvedSetting, SETTINGS};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -18,7 +18,7 @@ pub struct Loaded {
     /// The values.
     pub config: Config,
     /// The same as text, in the order of [`SETTINGS`].
-    pub entries: Vec<Entry>,
+    pub entries: Vec<ResolvedSetting>,
     /// What is odd but no error.
     pub warnings: Vec<String>,
 }
@@ -66,9 +66,13 @@ impl Sources {
     /// # Errors
     /// A file that cannot be read, a key or flag that does not exist, a value that its setting does not take.
     pub fn load(&self) -> Result<Loaded, ConfigError> {
-        let mut entries: Vec<Entry> = SETTINGS
+        let mut entries: Vec<ResolvedSetting> = SETTINGS
             .iter()
-            .map(|setting| Entry { setting, value: setting.default.to_owned(), origin: Origin::Default })
+            .map(|setting| ResolvedSetting {
+                setting,
+                value: setting.default.to_owned(),
+                origin: Origin::Default,
+            })
             .collect();
         let mut put = |name: &str, value: String, origin: Origin| match entries
             .iter_mut()

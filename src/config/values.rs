@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 /// A type of setting.
-pub(super) trait Value: Sized {
+pub(super) trait SettingValue: Sized {
     /// What it takes, to end the sentence "expected …".
     const EXPECTED: &'static str;
 
@@ -32,7 +32,7 @@ pub enum LogFormat {
 
 /// What a server does among several.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Role {
+pub enum ServerRole {
     /// Takes requests and runs jobs.
     #[default]
     All,
@@ -42,7 +42,7 @@ pub enum Role {
     Worker,
 }
 
-impl Role {
+impl ServerRole {
     /// The word of the setting.
     pub fn word(self) -> &'static str {
         match self {
@@ -73,7 +73,7 @@ pub enum SandboxChoice {
     Off,
 }
 
-impl Value for SocketAddr {
+impl SettingValue for SocketAddr {
     const EXPECTED: &'static str = "an IP address and a port, such as 127.0.0.1:8080";
 
     fn parse(text: &str) -> Option<Self> {
@@ -81,7 +81,7 @@ impl Value for SocketAddr {
     }
 }
 
-impl Value for Option<SocketAddr> {
+impl SettingValue for Option<SocketAddr> {
     const EXPECTED: &'static str = "an IP address and a port, such as 127.0.0.1:8081, or off";
 
     fn parse(text: &str) -> Option<Self> {
@@ -89,7 +89,7 @@ impl Value for Option<SocketAddr> {
     }
 }
 
-impl Value for PathBuf {
+impl SettingValue for PathBuf {
     const EXPECTED: &'static str = "a path";
 
     fn parse(text: &str) -> Option<Self> {
@@ -97,7 +97,7 @@ impl Value for PathBuf {
     }
 }
 
-impl Value for Option<PathBuf> {
+impl SettingValue for Option<PathBuf> {
     const EXPECTED: &'static str = "a path, or nothing";
 
     fn parse(text: &str) -> Option<Self> {
@@ -105,7 +105,7 @@ impl Value for Option<PathBuf> {
     }
 }
 
-impl Value for bool {
+impl SettingValue for bool {
     const EXPECTED: &'static str = "true or false";
 
     fn parse(text: &str) -> Option<Self> {
@@ -113,7 +113,7 @@ impl Value for bool {
     }
 }
 
-impl Value for String {
+impl SettingValue for String {
     const EXPECTED: &'static str = "a text";
 
     fn parse(text: &str) -> Option<Self> {
@@ -121,7 +121,7 @@ impl Value for String {
     }
 }
 
-impl Value for u64 {
+impl SettingValue for u64 {
     const EXPECTED: &'static str = "a whole number";
 
     fn parse(text: &str) -> Option<Self> {
@@ -129,7 +129,7 @@ impl Value for u64 {
     }
 }
 
-impl Value for u32 {
+impl SettingValue for u32 {
     const EXPECTED: &'static str = "a whole number up to 4294967295";
 
     fn parse(text: &str) -> Option<Self> {
@@ -137,7 +137,7 @@ impl Value for u32 {
     }
 }
 
-impl Value for usize {
+impl SettingValue for usize {
     const EXPECTED: &'static str = "a whole number";
 
     fn parse(text: &str) -> Option<Self> {
@@ -145,7 +145,7 @@ impl Value for usize {
     }
 }
 
-impl Value for NonZeroUsize {
+impl SettingValue for NonZeroUsize {
     const EXPECTED: &'static str = "a whole number from 1 on";
 
     fn parse(text: &str) -> Option<Self> {
@@ -153,7 +153,7 @@ impl Value for NonZeroUsize {
     }
 }
 
-impl Value for NonZeroU32 {
+impl SettingValue for NonZeroU32 {
     const EXPECTED: &'static str = "a whole number from 1 to 4294967295";
 
     fn parse(text: &str) -> Option<Self> {
@@ -161,7 +161,7 @@ impl Value for NonZeroU32 {
     }
 }
 
-impl Value for Option<NonZeroUsize> {
+impl SettingValue for Option<NonZeroUsize> {
     const EXPECTED: &'static str = "a whole number from 1 on, or auto";
 
     fn parse(text: &str) -> Option<Self> {
@@ -169,7 +169,7 @@ impl Value for Option<NonZeroUsize> {
     }
 }
 
-impl Value for Vec<String> {
+impl SettingValue for Vec<String> {
     const EXPECTED: &'static str = "a list with commas";
 
     fn parse(text: &str) -> Option<Self> {
@@ -177,15 +177,15 @@ impl Value for Vec<String> {
     }
 }
 
-impl Value for Vec<IpAddr> {
+impl SettingValue for Vec<IpAddr> {
     const EXPECTED: &'static str = "a list of IP addresses with commas";
 
     fn parse(text: &str) -> Option<Self> {
-        <Vec<String> as Value>::parse(text)?.iter().map(|item| item.parse().ok()).collect()
+        <Vec<String> as SettingValue>::parse(text)?.iter().map(|item| item.parse().ok()).collect()
     }
 }
 
-impl Value for Bytes {
+impl SettingValue for Bytes {
     const EXPECTED: &'static str = "a number of bytes, such as 512MiB (units: B, KiB, MiB, GiB, TiB)";
 
     fn parse(text: &str) -> Option<Self> {
@@ -202,7 +202,7 @@ impl Value for Bytes {
     }
 }
 
-impl Value for Option<Bytes> {
+impl SettingValue for Option<Bytes> {
     const EXPECTED: &'static str = "a number of bytes, such as 16GiB (units: B, KiB, MiB, GiB, TiB), or auto";
 
     fn parse(text: &str) -> Option<Self> {
@@ -210,7 +210,7 @@ impl Value for Option<Bytes> {
     }
 }
 
-impl Value for Duration {
+impl SettingValue for Duration {
     const EXPECTED: &'static str =
         "a time from 1 ms to 1000 d, such as 24h (units: ms, s, min, h, d; none: seconds)";
 
@@ -230,7 +230,7 @@ impl Value for Duration {
     }
 }
 
-impl Value for Option<Duration> {
+impl SettingValue for Option<Duration> {
     const EXPECTED: &'static str =
         "a time from 1 ms to 1000 d, such as 15min (units: ms, s, min, h, d; none: seconds), or off";
 
@@ -239,7 +239,7 @@ impl Value for Option<Duration> {
     }
 }
 
-impl Value for Role {
+impl SettingValue for ServerRole {
     const EXPECTED: &'static str = "all, api or worker";
 
     fn parse(text: &str) -> Option<Self> {
@@ -247,7 +247,7 @@ impl Value for Role {
     }
 }
 
-impl Value for IsolationChoice {
+impl SettingValue for IsolationChoice {
     const EXPECTED: &'static str = "process or thread";
 
     fn parse(text: &str) -> Option<Self> {
@@ -259,7 +259,7 @@ impl Value for IsolationChoice {
     }
 }
 
-impl Value for SandboxChoice {
+impl SettingValue for SandboxChoice {
     const EXPECTED: &'static str = "auto, require or off";
 
     fn parse(text: &str) -> Option<Self> {
@@ -272,7 +272,7 @@ impl Value for SandboxChoice {
     }
 }
 
-impl Value for LogFormat {
+impl SettingValue for LogFormat {
     const EXPECTED: &'static str = "text or json";
 
     fn parse(text: &str) -> Option<Self> {
@@ -322,13 +322,16 @@ mod tests {
     #[test]
     fn counts_that_must_not_be_zero_are_not() {
         assert_eq!(NonZeroUsize::parse("0"), None);
-        assert_eq!(<Option<NonZeroUsize> as Value>::parse("auto"), Some(None));
-        assert_eq!(<Option<NonZeroUsize> as Value>::parse("many"), None);
+        assert_eq!(<Option<NonZeroUsize> as SettingValue>::parse("auto"), Some(None));
+        assert_eq!(<Option<NonZeroUsize> as SettingValue>::parse("many"), None);
     }
 
     #[test]
     fn lists_are_split_at_commas() {
-        assert_eq!(<Vec<String> as Value>::parse(" a, b,,"), Some(vec!["a".to_owned(), "b".to_owned()]));
-        assert_eq!(<Vec<IpAddr> as Value>::parse("10.0.0.1,x"), None);
+        assert_eq!(
+            <Vec<String> as SettingValue>::parse(" a, b,,"),
+            Some(vec!["a".to_owned(), "b".to_owned()])
+        );
+        assert_eq!(<Vec<IpAddr> as SettingValue>::parse("10.0.0.1,x"), None);
     }
 }

@@ -20,7 +20,7 @@ mod view;
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use crate::par;
-pub use samples::{Areas, Sample};
+pub use samples::{Areas, SurfaceSample};
 use scale::Common;
 use search::Directed;
 use target::DistanceTarget;
@@ -65,16 +65,16 @@ impl Default for DistanceOptions {
 
 /// Gives the first of these places on a triangle, which is named, that can be seen. It may keep what hid one place to look at it
 /// first for the next.
-pub type Look<'v> =
+pub type VisibilitySearch<'v> =
     Box<dyn FnMut(&mut dyn Iterator<Item = DVec3>, u32) -> Result<Option<DVec3>, Stopped> + 'v>;
 
 /// What of a surface counts. The distance is then that of the places that can be seen: of a piece of a triangle that is
 /// farther than others some places are asked about, and it counts unless all are hidden.
 #[derive(Clone, Copy)]
-pub struct Sight<'v> {
+pub struct VisibilityFilter<'v> {
     /// Makes a look at places on triangles of the first surface, whose answers do not depend on earlier ones; `None`: all of it
     /// can be seen.
-    pub look: Option<&'v (dyn Fn() -> Look<'v> + Sync)>,
+    pub look: Option<&'v (dyn Fn() -> VisibilitySearch<'v> + Sync)>,
     /// What can be seen and is farther than this from the second surface is lost, in the unit of the coordinates.
     pub lost_beyond: f64,
 }
@@ -180,7 +180,7 @@ pub fn surface_distance(
 pub fn directed_distance(
     from: Surface<'_>,
     to: Surface<'_>,
-    sight: Option<Sight<'_>>,
+    sight: Option<VisibilityFilter<'_>>,
     options: &DistanceOptions,
     budget: &Budget,
 ) -> Result<Option<DirectedDistance>, Stopped> {

@@ -2,8 +2,8 @@
 
 use super::bound::{Corner, upper_bound};
 use super::target::DistanceTarget;
-use super::view::{ScaledSight, Visible};
-use super::{FarPoint, Look};
+use super::view::{ScaledSight, VisiblePart};
+use super::{FarPoint, VisibilitySearch};
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use crate::spatial::Nearest;
@@ -103,7 +103,7 @@ impl Refining<'_, '_> {
     /// farthest point, or the work is used up.
     pub(super) fn refine(
         &self,
-        look: &mut Option<Look<'_>>,
+        look: &mut Option<VisibilitySearch<'_>>,
         piece: Piece,
         farthest: Farthest,
     ) -> Result<Refined, Stopped> {
@@ -129,16 +129,21 @@ impl Refining<'_, '_> {
     }
 
     /// Leaves a piece out when nothing of it can be seen. Asking takes long: a piece is asked about only when it is to be cut.
-    fn ask(&self, look: &mut Option<Look<'_>>, piece: Piece, refined: &mut Refined) -> Result<(), Stopped> {
+    fn ask(
+        &self,
+        look: &mut Option<VisibilitySearch<'_>>,
+        piece: Piece,
+        refined: &mut Refined,
+    ) -> Result<(), Stopped> {
         match self.view.visible(look, &piece.corners, piece.triangle)? {
-            Visible::Nothing => return Ok(()),
-            Visible::At(place) => {
+            VisiblePart::Nothing => return Ok(()),
+            VisiblePart::At(place) => {
                 refined.work += 1;
                 let hint = piece.corners[0].closest_triangle;
                 refined.farthest =
                     refined.farthest.or_seen(self.to, place, piece.triangle, hint, self.budget)?;
             }
-            Visible::All => {}
+            VisiblePart::All => {}
         }
         refined.left.push(Piece { is_seen: true, ..piece });
         Ok(())
@@ -147,7 +152,7 @@ impl Refining<'_, '_> {
     /// Cuts a piece at the middles of its edges in four, a long one at the middle of its longest edge in two.
     fn split(
         &self,
-        look: &mut Option<Look<'_>>,
+        look: &mut Option<VisibilitySearch<'_>>,
         piece: &Piece,
         refined: &mut Refined,
     ) -> Result<(), Stopped> {
@@ -222,15 +227,15 @@ fn covered(to: &DistanceTarget<'_>, piece: &[Corner; 3], upper: f64) -> (f64, u6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::distance::{DistanceOptions, Sight, Surface, directed_distance};
+    use crate::distance::{DistanceOptions, Surface, VisibilityFilter, directed_distance};
 
     /// The directed distance from a triangle to the ground, of what is no higher than `seen_below`, with so many refinements.
     fn from_ground(corners: &[DVec3; 3], seen_below: f64, refinements_max: u64) -> [f64; 2] {
         let ground = [[-100.0, -100.0], [200.0, -100.0], [-100.0, 200.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
-        let look = || -> Look<'_> {
+        let look = || -> VisibilitySearch<'_> {
             Box::new(move |mut places, _| Ok(Iterator::find(&mut places, |place| place.z <= seen_below)))
         };
-        let sight = Sight { look: Some(&look), lost_beyond: 1.0 };
+        let sight = VisibilityFilter { look: Some(&look), lost_beyond: 1.0 };
         let options = DistanceOptions { samples: 0, refinements_max, ..DistanceOptions::default() };
         let [from, to] = [corners, &ground].map(|positions| Surface { positions, triangles: &[[0, 1, 2]] });
         let budget = Budget::unlimited();

@@ -16,7 +16,7 @@ pub struct Areas {
 
 /// A point of a surface.
 #[derive(Debug, Clone, Copy)]
-pub struct Sample {
+pub struct SurfaceSample {
     /// Where it is.
     pub place: DVec3,
     /// A triangle that it is on.
@@ -48,7 +48,7 @@ impl Areas {
     }
 
     /// Sample `k` of `count` on the same surface, which must have a triangle.
-    pub fn sample(&self, surface: Surface<'_>, k: usize, count: usize) -> Sample {
+    pub fn sample(&self, surface: Surface<'_>, k: usize, count: usize) -> SurfaceSample {
         let share = self.total() * ((k as f64 + 0.5) / count as f64);
         let triangle = self.sums.partition_point(|&sum| sum <= share).min(self.sums.len() - 1);
         let [a, b, c] = surface.triangles[triangle].map(|v| surface.positions[v as usize]);
@@ -56,7 +56,7 @@ impl Areas {
         let fraction = |step: f64| (k as f64 * step).fract();
         let (s, t) = (fraction(0.754_877_666_246_692_8), fraction(0.569_840_290_998_053_2));
         let (s, t) = if s + t > 1.0 { (1.0 - s, 1.0 - t) } else { (s, t) };
-        Sample { place: a + (b - a) * s + (c - a) * t, triangle: triangle as u32 }
+        SurfaceSample { place: a + (b - a) * s + (c - a) * t, triangle: triangle as u32 }
     }
 }
 

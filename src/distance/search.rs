@@ -5,8 +5,8 @@ use super::pieces::{Farthest, Piece, Refined, Refining, Tolerance, WORK_MAX};
 use super::samples::Areas;
 use super::scale::Common;
 use super::target::DistanceTarget;
-use super::view::{ScaledSight, Visible};
-use super::{AreaShares, DirectedDistance, DistanceOptions, Look, Surface};
+use super::view::{ScaledSight, VisiblePart};
+use super::{AreaShares, DirectedDistance, DistanceOptions, Surface, VisibilitySearch};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::par;
 use crate::spatial::Found;
@@ -269,7 +269,7 @@ impl Directed<'_, '_> {
     fn triangle_bound(
         &self,
         vertices: &[AtVertex],
-        look: &mut Option<Look<'_>>,
+        look: &mut Option<VisibilitySearch<'_>>,
         t: u32,
         farthest: &mut Farthest,
     ) -> Result<f64, Stopped> {
@@ -285,11 +285,11 @@ impl Directed<'_, '_> {
             return Ok(bound);
         };
         match self.view.visible(look, &corners, t)? {
-            Visible::Nothing => return Ok(0.0),
-            Visible::At(place) => {
+            VisiblePart::Nothing => return Ok(0.0),
+            VisiblePart::At(place) => {
                 *farthest = farthest.or_seen(self.to, place, t, found.nearest.triangle, self.budget)?;
             }
-            Visible::All => {}
+            VisiblePart::All => {}
         }
         let nearest = found.nearest;
         let is_farther = found.is_exact && nearest.distance > farthest.distance;

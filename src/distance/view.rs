@@ -1,7 +1,7 @@
 //! What of the first surface counts.
 
 use super::bound::Corner;
-use super::{Look, Sight};
+use super::{VisibilityFilter, VisibilitySearch};
 use crate::budget::Stopped;
 use crate::geom::DVec3;
 
@@ -14,7 +14,7 @@ const ROWS_MAX: usize = 3;
 /// A sight, in the coordinates of the search.
 #[derive(Clone, Copy)]
 pub(super) struct ScaledSight<'v> {
-    pub(super) sight: Option<Sight<'v>>,
+    pub(super) sight: Option<VisibilityFilter<'v>>,
     /// What the caller's coordinates were multiplied by.
     pub(super) factor: f64,
     /// Diagonal of the box around both surfaces.
@@ -22,7 +22,7 @@ pub(super) struct ScaledSight<'v> {
 }
 
 /// What of a piece can be seen.
-pub(super) enum Visible {
+pub(super) enum VisiblePart {
     /// No place that was asked about.
     Nothing,
     /// This place.
@@ -33,28 +33,28 @@ pub(super) enum Visible {
 
 impl<'v> ScaledSight<'v> {
     /// A look for places that are near each other; `None`: nothing is hidden anywhere.
-    pub(super) fn look(&self) -> Option<Look<'v>> {
+    pub(super) fn look(&self) -> Option<VisibilitySearch<'v>> {
         self.sight.and_then(|sight| sight.look).map(|look| look())
     }
 
     /// Whether a place of a triangle counts.
     pub(super) fn counts(
         &self,
-        look: &mut Option<Look<'_>>,
+        look: &mut Option<VisibilitySearch<'_>>,
         place: DVec3,
         triangle: u32,
     ) -> Result<bool, Stopped> {
         let visible = self.first_visible(look, std::iter::once(place), triangle)?;
-        Ok(!matches!(visible, Visible::Nothing))
+        Ok(!matches!(visible, VisiblePart::Nothing))
     }
 
     /// What of the places of a piece that are asked about can be seen.
     pub(super) fn visible(
         &self,
-        look: &mut Option<Look<'_>>,
+        look: &mut Option<VisibilitySearch<'_>>,
         corners: &[Corner; 3],
         triangle: u32,
-    ) -> Result<Visible, Stopped> {
+    ) -> Result<VisiblePart, Stopped> {
         let [a, b, c] = corners.map(|corner| corner.place);
         let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
         let rows = ((longest / (RESOLUTION * self.diagonal)).ceil() as usize).clamp(1, ROWS_MAX);
@@ -73,13 +73,13 @@ impl<'v> ScaledSight<'v> {
 
     fn first_visible(
         &self,
-        look: &mut Option<Look<'_>>,
+        look: &mut Option<VisibilitySearch<'_>>,
         places: impl Iterator<Item = DVec3>,
         triangle: u32,
-    ) -> Result<Visible, Stopped> {
-        let Some(look) = look else { return Ok(Visible::All) };
+    ) -> Result<VisiblePart, Stopped> {
+        let Some(look) = look else { return Ok(VisiblePart::All) };
         let first = look(&mut places.map(|place| place / self.factor), triangle)?;
-        Ok(first.map_or(Visible::Nothing, |place| Visible::At(place * self.factor)))
+        Ok(first.map_or(VisiblePart::Nothing, |place| VisiblePart::At(place * self.factor)))
     }
 
     /// Whether something at this distance is lost.
@@ -102,7 +102,7 @@ mod tests {
         let ground =
             [DVec3::new(-20.0, -20.0, 0.0), DVec3::new(40.0, -20.0, 0.0), DVec3::new(-20.0, 40.0, 0.0)];
         let found = |sees: &(dyn Fn(DVec3) -> bool + Sync)| {
-            let look = || -> Look<'_> {
+            let look = || -> VisibilitySearch<'_> {
                 Box::new(|places, _| {
                     for place in places {
                         if sees(place) {
@@ -112,7 +112,7 @@ mod tests {
                     Ok(None)
                 })
             };
-            let sight = Sight { look: Some(&look), lost_beyond: 1.0 };
+            let sight = VisibilityFilter { look: Some(&look), lost_beyond: 1.0 };
             let options = DistanceOptions { samples: 0, refinements_max: 0, ..DistanceOptions::default() };
             let [from, to] =
                 [&corners, &ground].map(|positions| Surface { positions, triangles: &[[0, 1, 2]] });

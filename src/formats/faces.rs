@@ -239,13 +239,13 @@ impl Polygons {
 }
 
 /// What the coordinates of a range of vertices are like.
-struct Look {
+struct CoordinateProperties {
     is_f32_exact: bool,
     non_finite: Vec<u32>,
 }
 
-fn look_at(positions: &[DVec3], first: u32) -> Look {
-    let mut look = Look { is_f32_exact: true, non_finite: Vec::new() };
+fn look_at(positions: &[DVec3], first: u32) -> CoordinateProperties {
+    let mut look = CoordinateProperties { is_f32_exact: true, non_finite: Vec::new() };
     for (id, p) in (first..).zip(positions) {
         if !p.is_finite() {
             look.non_finite.push(id);

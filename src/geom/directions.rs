@@ -38,14 +38,14 @@ pub fn arc_box(hub: DVec3, q: DVec3, r: DVec3) -> Aabb {
 
 /// The directions from a point to the convex hull of a few others.
 #[derive(Debug, Clone, Copy)]
-pub struct Cone {
+pub struct DirectionCone {
     bounds: Aabb,
     /// All directions of the cone are behind the planes across these, within rounding.
     normals: [DVec3; 6],
     count: usize,
 }
 
-impl Cone {
+impl DirectionCone {
     /// The cone over two to four points; `None` when they may be seen all around the hub.
     pub fn over(hub: DVec3, points: impl Iterator<Item = DVec3>) -> Option<Self> {
         let mut units = [DVec3::ZERO; 4];
@@ -150,7 +150,7 @@ mod tests {
             let points = points.map(|p| (hub + p) * scale);
             let hub = hub * scale;
             let count = 2 + case % 3;
-            let Some(cone) = Cone::over(hub, points[..count].iter().copied()) else { continue };
+            let Some(cone) = DirectionCone::over(hub, points[..count].iter().copied()) else { continue };
             cones += 1;
             let shares = [(); 4].map(|()| numbers.next().abs());
             let sum: f64 = shares[..count].iter().sum();
@@ -168,11 +168,11 @@ mod tests {
     #[test]
     fn what_is_all_around_has_no_cone_and_a_thin_one_misses_its_neighbours() {
         let around = [DVec3::X, DVec3::new(-1.0, 1.0, 0.0), DVec3::new(-1.0, -1.0, 0.0)];
-        assert!(Cone::over(DVec3::ZERO, around.into_iter()).is_none());
-        assert!(Cone::over(DVec3::X, around.into_iter()).is_none(), "the hub is one of the points");
+        assert!(DirectionCone::over(DVec3::ZERO, around.into_iter()).is_none());
+        assert!(DirectionCone::over(DVec3::X, around.into_iter()).is_none(), "the hub is one of the points");
         // From the axis to a rim, in a diagonal half-plane.
         let rim = |angle: f64| DVec3::new(angle.cos(), angle.sin(), 0.0);
-        let cone = Cone::over(DVec3::ZERO, [rim(0.8), rim(0.801), DVec3::Z].into_iter());
+        let cone = DirectionCone::over(DVec3::ZERO, [rim(0.8), rim(0.801), DVec3::Z].into_iter());
         let meets = |angle: f64| {
             cone.is_none_or(|c| c.may_meet(&arc_box(DVec3::ZERO, rim(angle), rim(angle + 1e-3))))
         };

@@ -1,6 +1,6 @@
 //! Determinants of f64 coordinates without any rounding: the slow tiers behind the filters.
 //!
-//! Every finite f64 is an integer times a power of two. [`Span`] finds the bits that a set of coordinates uses, and
+//! Every finite f64 is an integer times a power of two. [`BitSpan`] finds the bits that a set of coordinates uses, and
 //! the narrowest arithmetic that holds the determinant then evaluates it: small integers where differences are such
 //! ([`differences`]), 128-bit integers, floating-point expansions (Shewchuk 1997, crate `robust`), or big integers.
 
@@ -9,14 +9,17 @@ use num_bigint::BigInt;
 use std::cell::Cell;
 use std::ops::{Add, Mul, Sub};
 
+/// A vector of integers of any size.
+pub(crate) type IntegerVector = [BigInt; 3];
+
 /// The bits that a set of finite numbers uses: each is a multiple of `2^low` and smaller than `2^high` in magnitude.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Span {
+pub(crate) struct BitSpan {
     low: i32,
     high: i32,
 }
 
-impl Span {
+impl BitSpan {
     /// The span of zero alone.
     pub(crate) const ZERO: Self = Self { low: i32::MAX, high: i32::MIN };
 
@@ -99,7 +102,7 @@ pub fn suits_expansions<'p>(points: impl IntoIterator<Item = &'p DVec3>) -> bool
             least = least.min(x);
         }
     }
-    least == f64::INFINITY || Span { low: decompose(least).1, high: 0 }.with(most).suits_expansions()
+    least == f64::INFINITY || BitSpan { low: decompose(least).1, high: 0 }.with(most).suits_expansions()
 }
 
 thread_local! {
@@ -136,7 +139,7 @@ pub(super) fn orient2d(points: [DVec2; 3]) -> Sign {
 
 pub(super) fn wide_orient2d(points: [DVec2; 3]) -> Sign {
     count(WIDE_UNITS);
-    let span = Span::of(points.iter().flat_map(DVec2::to_array));
+    let span = BitSpan::of(points.iter().flat_map(DVec2::to_array));
     if span.bits() <= ORIENT2D_BITS_MAX {
         let [a, b, c] = points.map(|p| p.to_array().map(|x| span.to_i128(x)));
         return Sign::of(&det2(&minus(&b, &a), &minus(&c, &a)));
@@ -158,7 +161,7 @@ pub(super) fn orient3d(points: [DVec3; 4]) -> Sign {
 
 pub(super) fn wide_orient3d(points: [DVec3; 4]) -> Sign {
     count(WIDE_UNITS);
-    let span = Span::of(points.iter().flat_map(DVec3::to_array));
+    let span = BitSpan::of(points.iter().flat_map(DVec3::to_array));
     if span.bits() <= ORIENT3D_BITS_MAX {
         let [a, b, c, d] = points.map(|p| p.to_array().map(|x| span.to_i128(x)));
         return Sign::of(&det3(&minus(&b, &a), &minus(&c, &a), &minus(&d, &a)));
@@ -203,20 +206,20 @@ mod tests {
 
     #[test]
     fn a_span_is_the_bits_in_use() {
-        assert_eq!(Span::of([0.0, -0.0]), Span::ZERO);
-        assert_eq!(Span::of([6.0]), Span { low: 1, high: 3 });
-        assert_eq!(Span::of([1.0, -0.375]), Span { low: -3, high: 1 });
-        assert_eq!(Span::of([f64::from_bits(1), f64::MAX]), Span { low: -1074, high: 1024 });
-        assert_eq!(Span::ZERO.bits(), 0);
+        assert_eq!(BitSpan::of([0.0, -0.0]), BitSpan::ZERO);
+        assert_eq!(BitSpan::of([6.0]), BitSpan { low: 1, high: 3 });
+        assert_eq!(BitSpan::of([1.0, -0.375]), BitSpan { low: -3, high: 1 });
+        assert_eq!(BitSpan::of([f64::from_bits(1), f64::MAX]), BitSpan { low: -1074, high: 1024 });
+        assert_eq!(BitSpan::ZERO.bits(), 0);
     }
 
     #[test]
     fn numbers_become_integers_of_their_span() {
-        let span = Span::of([0.375, -20.0]);
+        let span = BitSpan::of([0.375, -20.0]);
         assert_eq!(span.to_i128(0.375), 3);
         assert_eq!(span.to_i128(-20.0), -160);
         assert_eq!(span.to_i128(0.0), 0);
-        let wide = Span::of([f64::from_bits(1), -1e300]);
+        let wide = BitSpan::of([f64::from_bits(1), -1e300]);
         assert_eq!(wide.to_big(f64::from_bits(1)), BigInt::from(1));
         assert_eq!(Sign::of(&wide.to_big(-1e300)), Sign::Negative);
     }
@@ -224,13 +227,13 @@ mod tests {
     #[test]
     fn the_widest_integers_of_each_tier_do_not_overflow() {
         let big = f64::from(1u32 << 31) * 512.0 - 1.0;
-        assert_eq!(Span::of([big, 1.0]).bits(), ORIENT3D_BITS_MAX);
+        assert_eq!(BitSpan::of([big, 1.0]).bits(), ORIENT3D_BITS_MAX);
         let signs = [[-1.0, -1.0, -1.0], [1.0, 1.0, -1.0], [1.0, -1.0, 1.0], [-1.0, 1.0, 1.0]];
         let [a, b, c, d] = signs.map(|s| DVec3::from_array(s) * big);
         assert_eq!(wide_orient3d([a, b, c, d]), Sign::Negative);
         assert_eq!(wide_orient3d([a, c, b, d]), Sign::Positive);
         let side = f64::from_bits((2f64.powi(62)).to_bits() - 1);
-        assert_eq!(Span::of([side, 1.0]).bits(), ORIENT2D_BITS_MAX);
+        assert_eq!(BitSpan::of([side, 1.0]).bits(), ORIENT2D_BITS_MAX);
         let [a, b, c] = [DVec2::new(-side, -side), DVec2::new(side, -side), DVec2::new(-side, side)];
         assert_eq!(wide_orient2d([a, b, c]), Sign::Positive);
         assert_eq!(wide_orient2d([b, a, c]), Sign::Negative);

@@ -16,13 +16,13 @@ mod volume;
 
 pub(crate) use closest::closest_with_square;
 pub use closest::{closest_point_on_triangle, shares_of_corners};
-pub use directions::{Cone, arc_box, direction};
-pub(crate) use exact::Span;
+pub use directions::{DirectionCone, arc_box, direction};
+pub(crate) use exact::{BitSpan, IntegerVector};
 pub use exact::{suits_expansions, work_on_exact_signs};
 pub use glam::{DMat3, DVec2, DVec3};
 pub use pitch::{exponent_above, power_of_two, print_pitch};
-pub use predicates::{Plane, certain_turns, orient2d, orient3d};
-pub use projection::{Projection, are_collinear, is_on_segment};
+pub use predicates::{ThreePointPlane, certain_turns, orient2d, orient3d};
+pub use projection::{AxisProjection, are_collinear, is_on_segment};
 pub use radial::radial_order;
 pub use ray::upward_crossing;
 pub use sign::Sign;

@@ -55,7 +55,7 @@ pub fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> Sign {
 /// positive component `k`, bit `2 k + 1` when it has a negative one, neither when it may be zero.
 #[inline]
 pub fn certain_turns(corners: [DVec3; 3]) -> u8 {
-    let Plane { normal, spread, .. } = Plane::through(corners);
+    let ThreePointPlane { normal, spread, .. } = ThreePointPlane::through(corners);
     (0..3).fold(0, |turns, k| {
         let error = BOUND_2D * spread[k] + UNDERFLOW;
         let (is_positive, is_negative) = (normal[k] > error, -normal[k] > error);
@@ -67,19 +67,19 @@ pub fn certain_turns(corners: [DVec3; 3]) -> u8 {
 /// counter-clockwise, zero when the four are coplanar.
 #[inline]
 pub fn orient3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Sign {
-    Plane::through([a, b, c]).side(d)
+    ThreePointPlane::through([a, b, c]).side(d)
 }
 
 /// The plane through three points, prepared for many questions. The points may be collinear; then every side is zero.
 #[derive(Debug, Clone, Copy)]
-pub struct Plane {
+pub struct ThreePointPlane {
     corners: [DVec3; 3],
     normal: [f64; 3],
     /// Sums of the magnitudes that each component of `normal` is the difference of.
     spread: [f64; 3],
 }
 
-impl Plane {
+impl ThreePointPlane {
     /// The plane through `corners`; its positive side is the one from which they are seen counter-clockwise.
     #[inline]
     pub fn through(corners: [DVec3; 3]) -> Self {

@@ -5,11 +5,11 @@ use super::{DVec2, DVec3, Sign, orient2d};
 /// The view along a coordinate axis. The two coordinates that remain keep their cyclic order, so a triangle turns
 /// counter-clockwise in the view exactly when its normal has a positive component along the axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Projection {
+pub struct AxisProjection {
     axis: usize,
 }
 
-impl Projection {
+impl AxisProjection {
     /// The three views: along x, y and z.
     pub const ALL: [Self; 3] = [Self { axis: 0 }, Self { axis: 1 }, Self { axis: 2 }];
 
@@ -43,7 +43,7 @@ impl Projection {
 
 /// True when the three points lie exactly on one line (or coincide).
 pub fn are_collinear(a: DVec3, b: DVec3, c: DVec3) -> bool {
-    Projection::showing([a, b, c]).is_none()
+    AxisProjection::showing([a, b, c]).is_none()
 }
 
 /// True when `p` lies exactly on the closed segment from `a` to `b`.
@@ -59,8 +59,8 @@ mod tests {
     #[test]
     fn a_triangle_is_shown_along_an_axis_that_its_plane_does_not_contain() {
         let vertical = [DVec3::ZERO, DVec3::Z, DVec3::X];
-        let (view, turn) = Projection::showing(vertical).unwrap();
-        assert_eq!((view, turn), (Projection::ALL[1], Sign::Positive));
+        let (view, turn) = AxisProjection::showing(vertical).unwrap();
+        assert_eq!((view, turn), (AxisProjection::ALL[1], Sign::Positive));
     }
 
     #[test]

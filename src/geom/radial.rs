@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::{DVec3, Plane, Projection, Sign};
+use super::{AxisProjection, DVec3, Sign, ThreePointPlane};
 
 /// The places of `apexes` in the order in which a half-plane that turns about the line from `a` to `b` passes them,
 /// counter-clockwise for whoever looks from `b` to `a`, starting with the first. `None` when two lie in one half-plane
@@ -17,8 +17,8 @@ use super::{DVec3, Plane, Projection, Sign};
 /// ```
 pub fn radial_order(a: DVec3, b: DVec3, apexes: &[DVec3]) -> Option<Vec<usize>> {
     let &start = apexes.first()?;
-    let (view, turn) = Projection::showing([a, b, start])?;
-    let plane = Plane::through([a, b, start]);
+    let (view, turn) = AxisProjection::showing([a, b, start])?;
+    let plane = ThreePointPlane::through([a, b, start]);
     // Which part of the turn an apex is in: the half-plane of the first, the half before its opposite, the opposite one,
     // the half after it.
     let part = |p: DVec3| match plane.side(p) {
@@ -34,7 +34,7 @@ pub fn radial_order(a: DVec3, b: DVec3, apexes: &[DVec3]) -> Option<Vec<usize>> 
     for (i, &p) in apexes.iter().enumerate() {
         placed.push((part(p)?, i));
     }
-    let after = |i: usize, j: usize| Plane::through([a, b, apexes[i]]).side(apexes[j]);
+    let after = |i: usize, j: usize| ThreePointPlane::through([a, b, apexes[i]]).side(apexes[j]);
     placed.sort_by(|&(s, i), &(t, j)| {
         let within = || match after(i, j) {
             Sign::Positive => Ordering::Less,

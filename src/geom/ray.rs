@@ -1,6 +1,6 @@
 //! Crossings of vertical rays with triangles, for exact containment.
 
-use super::{DVec3, Projection, Sign, orient3d};
+use super::{AxisProjection, DVec3, Sign, orient3d};
 
 /// Whether the ray from `p` towards +z crosses the triangle, and how: `Positive` through its back (the normal points
 /// along the ray: the ray leaves a solid whose normals point outward), `Negative` through its front (the ray enters).
@@ -26,7 +26,7 @@ pub fn upward_crossing(p: DVec3, [a, b, c]: [DVec3; 3]) -> Option<Sign> {
 /// derivative by `p.x`, else by `p.y`. Zero only when `a` and `b` are at one place in this view; then no turn of the
 /// triangle decides, because the three turns sum up to twice its area, which is zero.
 fn moved_turn(a: DVec3, b: DVec3, p: DVec3) -> Sign {
-    Projection::ALONG_Z
+    AxisProjection::ALONG_Z
         .turn(a, b, p)
         .or_else(|| Sign::of_difference(a.y, b.y))
         .or_else(|| Sign::of_difference(b.x, a.x))

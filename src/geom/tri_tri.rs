@@ -5,7 +5,7 @@
 //! elsewhere. Every answer depends on the two point sets alone, so it is the same after swapping the triangles or
 //! reordering their corners.
 
-use super::{DVec3, Plane, Projection, Sign, are_collinear, orient3d};
+use super::{AxisProjection, DVec3, Sign, ThreePointPlane, are_collinear, orient3d};
 
 /// How two triangles meet beyond a common vertex or edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -70,13 +70,13 @@ const fn shared_by_pairs(pairs: u32) -> Shared {
 }
 
 /// The corners of a triangle where they are stored; rotating them moves no coordinates.
-type Corners<'p> = [&'p DVec3; 3];
+type TriangleCorners<'p> = [&'p DVec3; 3];
 
 /// How two triangles meet beyond what they share; `None` when they do not. The first is given with its plane, which
 /// many questions can use. Triangles with the same three vertices give `None`: they are duplicates, which is another
 /// defect.
 #[inline]
-pub fn contact(a: &Plane, b: [&DVec3; 3], shared: Shared) -> Option<ContactKind> {
+pub fn contact(a: &ThreePointPlane, b: [&DVec3; 3], shared: Shared) -> Option<ContactKind> {
     match shared {
         Shared::Nothing => apart(a, b),
         Shared::Vertex(i, j) => at_vertex(a, from_corner(a.corners(), i), from_corner(b, j)),
@@ -87,7 +87,7 @@ pub fn contact(a: &Plane, b: [&DVec3; 3], shared: Shared) -> Option<ContactKind>
 
 /// The corners in the same cyclic order, starting with corner `i`.
 #[inline]
-fn from_corner(corners: Corners<'_>, i: u8) -> Corners<'_> {
+fn from_corner(corners: TriangleCorners<'_>, i: u8) -> TriangleCorners<'_> {
     let i = usize::from(i) % 3;
     [corners[i], corners[[1, 2, 0][i]], corners[[2, 0, 1][i]]]
 }
@@ -111,13 +111,13 @@ fn has_both_sides<const N: usize>(signs: [Sign; N]) -> bool {
 /// ends. So the intervals are disjoint exactly when the four signs are equal and not zero, and their insides, if both
 /// have one, meet exactly when both strict signs occur. The inside of a triangle reaches the line in the inside of its
 /// interval when its corners are strictly on both sides, and otherwise not at all.
-fn apart(plane_a: &Plane, b: Corners<'_>) -> Option<ContactKind> {
+fn apart(plane_a: &ThreePointPlane, b: TriangleCorners<'_>) -> Option<ContactKind> {
     let a = plane_a.corners();
     let sides_b = b.map(|&p| plane_a.side(p));
     if on_one_side(sides_b) {
         return None;
     }
-    let plane_b = Plane::through(b.map(|p| *p));
+    let plane_b = ThreePointPlane::through(b.map(|p| *p));
     let sides_a = a.map(|&p| plane_b.side(p));
     if on_one_side(sides_a) {
         return None;
@@ -159,12 +159,16 @@ fn lone_corner(sides: [Sign; 3]) -> u8 {
 /// is on the positive side (`m.u > 0 >= m.v`), both factors are not negative: the ray of `a` is the direction `n x m`;
 /// when `q` is on the negative side it is the opposite. Likewise the ray of `b` is `m x n` when `s` is on the positive
 /// side. So the rays agree exactly when [`ray_direction`] differs.
-fn at_vertex(plane_a: &Plane, [p, q, r]: Corners<'_>, [_, s, t]: Corners<'_>) -> Option<ContactKind> {
+fn at_vertex(
+    plane_a: &ThreePointPlane,
+    [p, q, r]: TriangleCorners<'_>,
+    [_, s, t]: TriangleCorners<'_>,
+) -> Option<ContactKind> {
     let sides_b = [plane_a.side(*s), plane_a.side(*t)];
     if on_one_side(sides_b) {
         return None;
     }
-    let plane_b = Plane::through([*p, *s, *t]);
+    let plane_b = ThreePointPlane::through([*p, *s, *t]);
     let sides_a = [plane_b.side(*q), plane_b.side(*r)];
     if on_one_side(sides_a) {
         return None;
@@ -197,11 +201,11 @@ fn shares_ray(p: DVec3, a: [DVec3; 2], b: [DVec3; 2]) -> bool {
 ///
 /// In different planes they have only the line through `p` and `q` in common, on which both are the edge. In one plane
 /// they lie on different sides of it and meet in the edge alone, or on the same side and overlap.
-fn at_edge(plane_a: &Plane, [_, p, q]: Corners<'_>, s: &DVec3) -> Option<ContactKind> {
+fn at_edge(plane_a: &ThreePointPlane, [_, p, q]: TriangleCorners<'_>, s: &DVec3) -> Option<ContactKind> {
     if !plane_a.side(*s).is_zero() {
         return None;
     }
-    let (view, turn) = Projection::showing(plane_a.corners().map(|p| *p))?;
+    let (view, turn) = AxisProjection::showing(plane_a.corners().map(|p| *p))?;
     (view.turn(*p, *q, *s) == turn).then_some(ContactKind::Overlap)
 }
 
@@ -209,8 +213,8 @@ fn at_edge(plane_a: &Plane, [_, p, q]: Corners<'_>, s: &DVec3) -> Option<Contact
 ///
 /// Two convex polygons are disjoint, or only their insides are, exactly when an edge of one of them has the other
 /// polygon strictly, or weakly, on its outer side: the edges of their Minkowski difference are parallel to theirs.
-fn in_one_plane(a: Corners<'_>, b: Corners<'_>) -> Option<ContactKind> {
-    let (view, turn_a) = Projection::showing(a.map(|p| *p))?;
+fn in_one_plane(a: TriangleCorners<'_>, b: TriangleCorners<'_>) -> Option<ContactKind> {
+    let (view, turn_a) = AxisProjection::showing(a.map(|p| *p))?;
     let turn_b = view.turn(*b[0], *b[1], *b[2]);
     let mut kind = ContactKind::Overlap;
     for (corners, turn, others) in [(a, turn_a, b), (b, turn_b, a)] {
@@ -244,8 +248,13 @@ mod tests {
         const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];
         let all: Vec<[i32; 3]> = [a, b].concat();
         let ids = |t: [[i32; 3]; 3]| t.map(|p| all.iter().position(|&q| q == p).unwrap() as u32);
-        let kind_in_order =
-            |a, b| contact(&Plane::through(points(a)), points(b).each_ref(), Shared::between(ids(a), ids(b)));
+        let kind_in_order = |a, b| {
+            contact(
+                &ThreePointPlane::through(points(a)),
+                points(b).each_ref(),
+                Shared::between(ids(a), ids(b)),
+            )
+        };
         let mut kinds = Vec::new();
         for order_a in ORDERS {
             for order_b in ORDERS {

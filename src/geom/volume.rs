@@ -1,6 +1,6 @@
 //! Area and volume: rounded figures for reports, and the exact sign of a volume for decisions.
 
-use super::exact::{Span, det3};
+use super::exact::{BitSpan, det3};
 use super::{DVec3, Sign};
 use num_bigint::BigInt;
 
@@ -116,12 +116,12 @@ fn exact_sign<E>(
     triangles: impl Iterator<Item = [DVec3; 3]> + Clone,
     check: &mut impl FnMut() -> Result<(), E>,
 ) -> Result<Sign, E> {
-    let mut span = Span::ZERO;
+    let mut span = BitSpan::ZERO;
     for (i, corners) in triangles.clone().enumerate() {
         if i.is_multiple_of(CHECK_EVERY) {
             check()?;
         }
-        span = corners.iter().flat_map(DVec3::to_array).fold(span, Span::with);
+        span = corners.iter().flat_map(DVec3::to_array).fold(span, BitSpan::with);
     }
     let mut total = BigInt::ZERO;
     let mut part = 0i128;

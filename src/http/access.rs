@@ -27,12 +27,12 @@ pub enum Access {
     /// Holders of one of these keys.
     Keys(ApiKeys),
     /// Everybody who reaches the service, under the rules of this module.
-    Anonymous(Neighbours),
+    Anonymous(TrustedPeers),
 }
 
 /// The hosts and proxies that anonymous access trusts.
 #[derive(Debug, Clone, Default)]
-pub struct Neighbours {
+pub struct TrustedPeers {
     /// Host names or addresses, without port and besides loopback, that requests may name, and whose pages may send them.
     /// `*` allows any.
     pub allowed_hosts: Vec<String>,
@@ -69,7 +69,7 @@ fn presented_key(headers: &HeaderMap) -> Option<&[u8]> {
     Some(headers.get("x-api-key")?.as_bytes().trim_ascii())
 }
 
-impl Neighbours {
+impl TrustedPeers {
     fn check(&self, headers: &HeaderMap, peer: Option<IpAddr>) -> Result<(), Problem> {
         let host = text(headers, &header::HOST).unwrap_or_default();
         if !self.knows(host_of(host)) {
@@ -146,7 +146,7 @@ mod tests {
     use axum::http::HeaderValue;
 
     fn answer(headers: &[(&'static str, &'static str)]) -> Result<(), ProblemCode> {
-        let neighbours = Neighbours {
+        let neighbours = TrustedPeers {
             allowed_hosts: vec!["mesh.example".into()],
             allowed_origins: vec!["https://shop.example".into()],
             trusted_proxies: vec!["10.0.0.7".parse().unwrap()],
@@ -220,9 +220,9 @@ mod tests {
     #[test]
     fn forwarding_headers_are_taken_from_a_trusted_proxy_only() {
         let access = |proxies: &[&str]| {
-            Access::Anonymous(Neighbours {
+            Access::Anonymous(TrustedPeers {
                 trusted_proxies: proxies.iter().map(|p| p.parse().unwrap()).collect(),
-                ..Neighbours::default()
+                ..TrustedPeers::default()
             })
         };
         let headers = [("host", "localhost"), ("x-forwarded-for", "8.8.8.8")];

@@ -58,7 +58,7 @@ mod trace;
 mod unread;
 mod uploads;
 
-pub use access::{Access, Neighbours};
+pub use access::{Access, TrustedPeers};
 pub use healthcheck::healthcheck;
 pub use keys::{ApiKeys, KeyFileError};
 pub use migrate::migrate;

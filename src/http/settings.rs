@@ -3,7 +3,7 @@
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
-use super::access::{Access, Neighbours};
+use super::access::{Access, TrustedPeers};
 use super::rate::RateSettings;
 
 /// Addresses, access and limits of the HTTP side. The names are those of the configuration.
@@ -43,7 +43,7 @@ impl Default for HttpSettings {
         Self {
             listen: Some((Ipv4Addr::LOCALHOST, 8080).into()),
             admin_listen: None,
-            access: Access::Anonymous(Neighbours::default()),
+            access: Access::Anonymous(TrustedPeers::default()),
             cors_origins: Vec::new(),
             rate: Some(RateSettings::default()),
             connections_max: 4096,

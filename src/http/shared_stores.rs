@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use crate::config::{ConfigError, Loaded, Role};
+use crate::config::{ConfigError, Loaded, ServerRole};
 use crate::jobs::{BucketAccess, DatabaseAccess, SharedStores};
 
 /// Longest validity of a presigned URL that S3 takes.
@@ -14,7 +14,7 @@ pub(super) fn shared_stores(loaded: &Loaded) -> Result<Option<SharedStores>, Con
     let config = &loaded.config;
     let (database_url, blobs_url) = (config.database_url.trim(), config.blobs_url.trim());
     match (database_url.is_empty(), blobs_url.is_empty()) {
-        (true, true) if config.role == Role::All => return Ok(None),
+        (true, true) if config.role == ServerRole::All => return Ok(None),
         (true, true) => {
             let why = "takes jobs to or from other servers, so it needs database_url and blobs_url";
             return Err(loaded.refused("role", &format!("`{}` {why}", config.role.word())));

@@ -9,7 +9,7 @@ use tracing_subscriber::layer::SubscriberExt as _;
 use tracing_subscriber::util::SubscriberInitExt as _;
 use tracing_subscriber::{EnvFilter, Layer as _};
 
-use super::access::{Access, Neighbours};
+use super::access::{Access, TrustedPeers};
 use super::keys::ApiKeys;
 use super::rate::RateSettings;
 use super::server::Server;
@@ -17,7 +17,7 @@ use super::settings::HttpSettings;
 use super::shared_stores::{presigned_ttl, shared_stores};
 use super::shutdown::Shutdown;
 use super::{cors, descriptors};
-use crate::config::{ConfigError, IsolationChoice, Loaded, LogFormat, Role, SandboxChoice};
+use crate::config::{ConfigError, IsolationChoice, Loaded, LogFormat, SandboxChoice, ServerRole};
 use crate::formats::ReadLimits;
 use crate::jobs::{
     Isolation, Jobs, JobsSettings, LostStore, PrivateHosts, RetryPlan, Sandbox, StartError, StoresError,
@@ -147,7 +147,7 @@ fn log_as(loaded: &Loaded) -> Result<(), ConfigError> {
 fn http_settings(loaded: &Loaded) -> Result<HttpSettings, ConfigError> {
     let config = &loaded.config;
     Ok(HttpSettings {
-        listen: (config.role != Role::Worker).then_some(config.listen),
+        listen: (config.role != ServerRole::Worker).then_some(config.listen),
         admin_listen: config.admin_listen,
         access: access(loaded)?,
         cors_origins: cors_origins(loaded)?,
@@ -165,8 +165,8 @@ fn http_settings(loaded: &Loaded) -> Result<HttpSettings, ConfigError> {
 
 fn access(loaded: &Loaded) -> Result<Access, ConfigError> {
     let config = &loaded.config;
-    if config.role == Role::Worker || config.is_anonymous()? {
-        return Ok(Access::Anonymous(Neighbours {
+    if config.role == ServerRole::Worker || config.is_anonymous()? {
+        return Ok(Access::Anonymous(TrustedPeers {
             allowed_hosts: config.allowed_hosts.clone(),
             allowed_origins: cors_origins(loaded)?,
             trusted_proxies: config.trusted_proxies.clone(),
@@ -193,7 +193,7 @@ fn rate(loaded: &Loaded) -> Result<Option<RateSettings>, ConfigError> {
 
 fn webhooks(loaded: &Loaded) -> Result<Option<WebhookSettings>, ConfigError> {
     let config = &loaded.config;
-    if !config.webhooks || config.role == Role::Worker {
+    if !config.webhooks || config.role == ServerRole::Worker {
         return Ok(None);
     }
     let refused = |why: &dyn Display| loaded.refused("webhook_secret_file", why);
@@ -221,8 +221,8 @@ fn jobs_settings(loaded: &Loaded) -> Result<JobsSettings, ConfigError> {
     let defaults = JobsSettings::new(&config.data_dir);
     Ok(JobsSettings {
         slots: match config.role {
-            Role::Api => 0,
-            Role::All | Role::Worker => config.slots.map_or(defaults.slots, NonZero::get),
+            ServerRole::Api => 0,
+            ServerRole::All | ServerRole::Worker => config.slots.map_or(defaults.slots, NonZero::get),
         },
         queue_max: config.queue_max.get(),
         jobs_max: config.jobs_max.get(),

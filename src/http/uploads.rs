@@ -16,7 +16,7 @@ use super::lifecycle::Id;
 use super::problem::{Handled, ProblemAnswer};
 use super::query;
 use super::state::{Caller, HttpService, State};
-use crate::jobs::{AskedUpload, Jobs, Pieces, UploadId, UploadRow};
+use crate::jobs::{AskedUpload, Jobs, UploadId, UploadPieces, UploadRow};
 use crate::wire::{Problem, ProblemCode, UploadInfo};
 
 /// The version of the protocol.
@@ -171,10 +171,10 @@ pub(super) async fn delete(state: State, caller: Extension<Caller>, id: Id, requ
 /// Receives what the body brings. Also when the client goes away meanwhile, which ends the request, what has come is stored.
 async fn received(
     service: &HttpService,
-    mut pieces: Pieces,
+    mut pieces: UploadPieces,
     headers: &HeaderMap,
     body: Body,
-) -> Result<Pieces, Problem> {
+) -> Result<UploadPieces, Problem> {
     let limits = BodyLimits {
         bytes_max: pieces.length() - pieces.received(),
         bytes_max_name: "upload_length",
@@ -197,7 +197,7 @@ async fn received(
 
 /// Takes what comes until the body or the service ends. The rest of an upload may take longer than a server that ends has; the client
 /// sends it to another one.
-async fn take_all(jobs: &Jobs, pieces: &mut Pieces, body: &mut IncomingBody) -> Result<(), Problem> {
+async fn take_all(jobs: &Jobs, pieces: &mut UploadPieces, body: &mut IncomingBody) -> Result<(), Problem> {
     loop {
         tokio::select! {
             bytes = body.next() => match bytes? {

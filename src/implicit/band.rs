@@ -33,7 +33,7 @@ impl Band {
 
 /// The surface around a band, which bounds how far offset centres may be from it.
 #[derive(Debug, Clone, Copy)]
-pub struct Surroundings<'s, 'm> {
+pub struct BandSurroundings<'s, 'm> {
     /// The triangles of the mesh. `None`: lambda is never halved.
     pub surface: Option<&'s NearestSearch<'m>>,
     /// The box of the whole mesh.

@@ -11,14 +11,14 @@ const NEAR_MAX: usize = 512;
 pub(super) const QUESTIONS: usize = 256;
 
 /// Points in cells of one size; sorted, so that no order of a hash map can reach a result.
-pub(super) struct Cells<'p> {
+pub(super) struct PointCells<'p> {
     points: &'p [DVec3],
     size: f64,
     /// The cell of each point and the point, sorted.
     entries: Vec<([i64; 3], u32)>,
 }
 
-impl<'p> Cells<'p> {
+impl<'p> PointCells<'p> {
     /// Sorts `points`, which must be finite, into cells with sides of `size` or, where that is too small to be told
     /// from the coordinates, larger ones.
     pub(super) fn new(points: &'p [DVec3], size: f64) -> Self {
@@ -84,7 +84,7 @@ mod tests {
                 DVec3::new(f64::from(i * 37 % 101), f64::from(i * 53 % 97), f64::from(i * 7 % 11)) * 0.1 - 3.0
             })
             .collect();
-        let cells = Cells::new(&points, 1.0);
+        let cells = PointCells::new(&points, 1.0);
         for &p in &points {
             let mut found: Vec<u32> =
                 cells.near(p).filter(|&j| points[j as usize].distance(p) <= 1.0).collect();
@@ -97,7 +97,7 @@ mod tests {
     #[test]
     fn equal_points_name_the_first() {
         let points = [DVec3::X, DVec3::Y, DVec3::X, DVec3::Y + DVec3::splat(1e-12), DVec3::X];
-        let first = Cells::new(&points, 1e-9).first_within(1e-9, &Budget::unlimited()).unwrap();
+        let first = PointCells::new(&points, 1e-9).first_within(1e-9, &Budget::unlimited()).unwrap();
         assert_eq!(first, [0, 1, 0, 1, 0]);
     }
 }

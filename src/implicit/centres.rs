@@ -1,7 +1,7 @@
 //! The centres of the system, from the points of a band: moved and scaled, without those that coincide.
 
 use super::band::Band;
-use super::cells::{Cells, QUESTIONS};
+use super::cells::{PointCells, QUESTIONS};
 use super::offsets::Offsets;
 use super::options::{ConstraintValues, RbfOptions};
 use super::polynomial::{TERMS, dot, rank, terms};
@@ -65,7 +65,7 @@ pub(super) fn sites(
     budget: &Budget,
 ) -> Result<Vec<Site>, Stopped> {
     let places: Vec<DVec3> = band.points.iter().map(|&p| frame.inward(p)).collect();
-    let first_at = Cells::new(&places, SAME_SHARE).first_within(SAME_SHARE, budget)?;
+    let first_at = PointCells::new(&places, SAME_SHARE).first_within(SAME_SHARE, budget)?;
     let mut sites = Vec::with_capacity(places.len());
     let mut with_room = 0;
     for (i, &point) in places.iter().enumerate() {
@@ -183,7 +183,7 @@ fn part(sites: &mut [Site], budget: &Budget) -> Result<Vec<usize>, Stopped> {
             }
         }
     }
-    let cells = Cells::new(&points, longest * APART_SHARE);
+    let cells = PointCells::new(&points, longest * APART_SHARE);
     let mut is_gone = vec![false; points.len()];
     let mut parted = Vec::new();
     for at in sites.len()..points.len() {

@@ -1,6 +1,6 @@
 //! From the points of a band to its field.
 
-use super::band::{Band, Surroundings};
+use super::band::{Band, BandSurroundings};
 use super::centres::{Site, UnitFrame, sites};
 use super::field::{Field, FieldSolution, FitFacts, SolveMethod};
 use super::offsets::{Offsets, offsets};
@@ -21,7 +21,7 @@ use crate::geom::DVec3;
 /// When the budget stops the run; inside, why there is no field.
 pub fn fit(
     band: &Band,
-    around: &Surroundings<'_, '_>,
+    around: &BandSurroundings<'_, '_>,
     options: &RbfOptions,
     budget: &Budget,
 ) -> Result<Result<Field, Unfit>, Stopped> {

@@ -26,7 +26,7 @@ mod track;
 mod unfit;
 mod zip;
 
-pub use band::{Band, Surroundings};
+pub use band::{Band, BandSurroundings};
 pub use field::{Field, FitFacts, SolveMethod};
 pub use fit::fit;
 pub use march::march;

@@ -1,6 +1,6 @@
 //! How far the offset centres of each point are from it.
 
-use super::band::{Band, Surroundings};
+use super::band::{Band, BandSurroundings};
 use super::options::{ConstraintValues, LAMBDA_SHARE, LambdaFrom, RbfOptions};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3};
@@ -38,7 +38,7 @@ pub(super) struct Offsets {
 /// triangles are smaller than lambda, beside x. What must not happen is that it is behind x, on another wall.
 pub(super) fn offsets(
     band: &Band,
-    around: &Surroundings<'_, '_>,
+    around: &BandSurroundings<'_, '_>,
     options: &RbfOptions,
     budget: &Budget,
 ) -> Result<Offsets, Stopped> {
@@ -140,7 +140,8 @@ mod tests {
         let (positions, triangles) = wall(gap);
         let budget = Budget::unlimited();
         let surface = NearestSearch::build(&positions, &triangles, &budget).unwrap();
-        let around = Surroundings { surface: Some(&surface), mesh_box: Aabb::of(positions.iter().copied()) };
+        let around =
+            BandSurroundings { surface: Some(&surface), mesh_box: Aabb::of(positions.iter().copied()) };
         let band = Band {
             points: vec![positions[0], positions[1], positions[2], positions[3]],
             normals: vec![DVec3::Z; 4],
@@ -178,7 +179,7 @@ mod tests {
         let triangles = [[0, 1, 2], [0, 2, 3], [0, 3, 1]];
         let budget = Budget::unlimited();
         let surface = NearestSearch::build(&positions, &triangles, &budget).unwrap();
-        let around = Surroundings { surface: Some(&surface), mesh_box: Aabb::of(positions) };
+        let around = BandSurroundings { surface: Some(&surface), mesh_box: Aabb::of(positions) };
         let band = Band { points: vec![DVec3::ZERO; 3], normals: vec![DVec3::ONE; 3] };
         let options = RbfOptions { lambda: Some(0.5), ..RbfOptions::default() };
         assert_eq!(offsets(&band, &around, &options, &budget).unwrap().halved, 0);
@@ -189,7 +190,7 @@ mod tests {
         let band =
             Band { points: vec![DVec3::ZERO, DVec3::X * 3.0, DVec3::Y * 4.0], normals: vec![DVec3::Z; 3] };
         let mesh_box = Aabb { min: DVec3::ZERO, max: DVec3::new(30.0, 40.0, 0.0) };
-        let around = Surroundings { surface: None, mesh_box };
+        let around = BandSurroundings { surface: None, mesh_box };
         let mut options = RbfOptions::default();
         let found =
             |options: &RbfOptions| offsets(&band, &around, options, &Budget::unlimited()).unwrap().first;

@@ -72,7 +72,7 @@ impl Partition {
     ) -> Result<Result<Self, Unfit>, Stopped> {
         let spacing = spacings(sites, budget)?;
         let boxes = boxes(sites, budget)?;
-        let fit = |_, cell: Cell| -> Result<Result<Subdomain, Unfit>, Stopped> {
+        let fit = |_, cell: PartitionCell| -> Result<Result<Subdomain, Unfit>, Stopped> {
             let (reach, mut chosen) = cell.choose(sites, &spacing);
             let middle = (cell.low + cell.high) * 0.5;
             let has_offsets = |&i: &u32| sites[i as usize].has != [false; 2];
@@ -130,7 +130,7 @@ impl Partition {
 }
 
 /// A box of the division of space, and the sites in it.
-struct Cell {
+struct PartitionCell {
     low: DVec3,
     high: DVec3,
     sites: Vec<u32>,
@@ -138,7 +138,7 @@ struct Cell {
     is_end: [[bool; 3]; 2],
 }
 
-impl Cell {
+impl PartitionCell {
     /// How far the widened box reaches from the middle, and the sites of its field.
     fn choose(&self, sites: &[Site], spacing: &[f64]) -> ([DVec3; 2], Vec<u32>) {
         let extent = self.high - self.low;
@@ -178,9 +178,9 @@ impl Cell {
 }
 
 /// Space cut at medians of sites into boxes with few of them.
-fn boxes(sites: &[Site], budget: &Budget) -> Result<Vec<Cell>, Stopped> {
+fn boxes(sites: &[Site], budget: &Budget) -> Result<Vec<PartitionCell>, Stopped> {
     let extent = Aabb::of(sites.iter().map(|site| site.point));
-    let all = Cell {
+    let all = PartitionCell {
         low: extent.min,
         high: extent.max,
         sites: (0..sites.len() as u32).collect(),
@@ -198,7 +198,7 @@ fn boxes(sites: &[Site], budget: &Budget) -> Result<Vec<Cell>, Stopped> {
     Ok(done)
 }
 
-fn halves(mut cell: Cell, sites: &[Site]) -> [Cell; 2] {
+fn halves(mut cell: PartitionCell, sites: &[Site]) -> [PartitionCell; 2] {
     let tight = Aabb::of(cell.sites.iter().map(|&i| sites[i as usize].point));
     let size = tight.max - tight.min;
     let axis = (0..3).fold(0, |best, axis| if size[axis] > size[best] { axis } else { best });
@@ -206,7 +206,7 @@ fn halves(mut cell: Cell, sites: &[Site]) -> [Cell; 2] {
     cell.sites.sort_by(|&a, &b| at(a).total_cmp(&at(b)).then(a.cmp(&b)));
     let above = cell.sites.split_off(cell.sites.len() / 2);
     let cut = 0.5 * (at(cell.sites[cell.sites.len() - 1]) + at(above[0]));
-    let mut other = Cell { low: cell.low, high: cell.high, sites: above, is_end: cell.is_end };
+    let mut other = PartitionCell { low: cell.low, high: cell.high, sites: above, is_end: cell.is_end };
     other.low[axis] = cut;
     other.is_end[0][axis] = false;
     cell.high[axis] = cut;

@@ -51,7 +51,7 @@ pub fn mesh_surface(
     budget.check()?;
     let Ok(mesh) = built else { return Ok(Err(Unmeshed::Topology { rims: rims.len() })) };
     let search = lines.search(budget)?;
-    let mut work = Work {
+    let mut work = RemeshState {
         field,
         lines: &lines,
         search: &search,
@@ -76,7 +76,7 @@ pub fn mesh_surface(
     Ok(Ok(work.patch()))
 }
 
-struct Work<'w> {
+struct RemeshState<'w> {
     field: &'w Field,
     lines: &'w RimLines,
     search: &'w NearestSearch<'w>,
@@ -88,7 +88,7 @@ struct Work<'w> {
     wanted: Vec<f64>,
 }
 
-impl Work<'_> {
+impl RemeshState<'_> {
     fn at(&self, v: VertexId) -> DVec3 {
         self.points[v.index()]
     }

@@ -21,7 +21,7 @@ const END_SHARE: f64 = 0.05;
 /// Points handled between two checks of the budget.
 const POINTS: usize = 32;
 
-type Place = [i32; 3];
+type GridCell = [i32; 3];
 
 /// A mesh of the zero set.
 #[derive(Debug, Default)]
@@ -30,17 +30,17 @@ pub(super) struct Tracked {
     pub triangles: Vec<[u32; 3]>,
 }
 
-struct Grid {
+struct TrackingGrid {
     origin: DVec3,
     cell: f64,
 }
 
-impl Grid {
-    fn point(&self, p: Place) -> DVec3 {
+impl TrackingGrid {
+    fn point(&self, p: GridCell) -> DVec3 {
         self.origin + DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2])) * self.cell
     }
 
-    fn place(&self, p: DVec3) -> Place {
+    fn place(&self, p: DVec3) -> GridCell {
         ((p - self.origin) / self.cell).floor().to_array().map(|x| x as i32)
     }
 }
@@ -58,9 +58,9 @@ pub(super) fn track(
         return Ok(Err(Unmeshed::TooFine { cells_max: CELLS_MAX }));
     }
     // Off the coordinates of the rim, which often lie in planes of a grid.
-    let grid = Grid { origin: extent.min - DVec3::new(0.317, 0.411, 0.373) * cell, cell };
-    let mut values: FxHashMap<Place, f64> = FxHashMap::default();
-    let mut seen: FxHashSet<Place> = FxHashSet::default();
+    let grid = TrackingGrid { origin: extent.min - DVec3::new(0.317, 0.411, 0.373) * cell, cell };
+    let mut values: FxHashMap<GridCell, f64> = FxHashMap::default();
+    let mut seen: FxHashSet<GridCell> = FxHashSet::default();
     let mut layer = Vec::new();
     for (n, place) in seeds(&grid, lines).enumerate() {
         if n.is_multiple_of(CHECK_EVERY) {
@@ -73,7 +73,7 @@ pub(super) fn track(
             layer.push(place);
         }
     }
-    let mut crossed: Vec<(Place, u8)> = Vec::new();
+    let mut crossed: Vec<(GridCell, u8)> = Vec::new();
     while !layer.is_empty() {
         if seen.len() > CELLS_MAX {
             return Ok(Err(Unmeshed::TooFine { cells_max: CELLS_MAX }));
@@ -103,12 +103,12 @@ pub(super) fn track(
     mesh(field, &grid, &crossed, &values, budget).map(Ok)
 }
 
-fn corner(place: Place, k: u8) -> Place {
+fn corner(place: GridCell, k: u8) -> GridCell {
     std::array::from_fn(|a| place[a] + i32::from(k >> a & 1))
 }
 
 /// The cubes along the rims and around them, in the order of the rims.
-fn seeds<'l>(grid: &'l Grid, lines: &'l RimLines) -> impl Iterator<Item = Place> + 'l {
+fn seeds<'l>(grid: &'l TrackingGrid, lines: &'l RimLines) -> impl Iterator<Item = GridCell> + 'l {
     lines.segments.iter().flat_map(move |s| {
         let [a, b] = [lines.points[s[0] as usize], lines.points[s[1] as usize]];
         let steps = ((a.distance(b) / grid.cell * 2.0).ceil()).clamp(1.0, 1e6) as usize;
@@ -120,7 +120,7 @@ fn seeds<'l>(grid: &'l Grid, lines: &'l RimLines) -> impl Iterator<Item = Place>
 }
 
 /// Cubes behind those faces of a cube that the surface crosses.
-fn crossed_neighbours(place: Place, mask: u8) -> impl Iterator<Item = Place> {
+fn crossed_neighbours(place: GridCell, mask: u8) -> impl Iterator<Item = GridCell> {
     (0..3).flat_map(move |axis| (0..2).map(move |side| (axis, side))).filter_map(move |(axis, side)| {
         let of_face = (0..8u8).filter(|k| k >> axis & 1 == side).fold(0u8, |m, k| m | 1 << k);
         let is_crossed = mask & of_face != 0 && mask & of_face != of_face;
@@ -132,14 +132,14 @@ fn crossed_neighbours(place: Place, mask: u8) -> impl Iterator<Item = Place> {
 
 /// Those of `places` that are not beyond the rims.
 fn enterable(
-    grid: &Grid,
+    grid: &TrackingGrid,
     lines: &RimLines,
     search: &NearestSearch<'_>,
-    places: &[Place],
+    places: &[GridCell],
     budget: &Budget,
-) -> Result<Vec<Place>, Stopped> {
+) -> Result<Vec<GridCell>, Stopped> {
     let is_in = |range: std::ops::Range<usize>| -> Result<Vec<bool>, Stopped> {
-        let of = |place: &Place| {
+        let of = |place: &GridCell| {
             let middle = grid.point(*place) + DVec3::splat(0.5 * grid.cell);
             let side = lines.side(search, middle, budget)? / grid.cell;
             Ok(!(-BEYOND_MAX..-BEYOND_MIN).contains(&side))
@@ -153,12 +153,12 @@ fn enterable(
 /// Adds the values at the corners of the cubes.
 fn evaluate(
     field: &Field,
-    grid: &Grid,
-    places: &[Place],
-    values: &mut FxHashMap<Place, f64>,
+    grid: &TrackingGrid,
+    places: &[GridCell],
+    values: &mut FxHashMap<GridCell, f64>,
     budget: &Budget,
 ) -> Result<(), Stopped> {
-    let mut missing: Vec<Place> = places
+    let mut missing: Vec<GridCell> = places
         .iter()
         .flat_map(|&place| (0..8).map(move |k| corner(place, k)))
         .filter(|corner| !values.contains_key(corner))
@@ -178,13 +178,13 @@ fn evaluate(
 /// The triangles of the cubes, with every vertex moved onto the zero set.
 fn mesh(
     field: &Field,
-    grid: &Grid,
-    crossed: &[(Place, u8)],
-    values: &FxHashMap<Place, f64>,
+    grid: &TrackingGrid,
+    crossed: &[(GridCell, u8)],
+    values: &FxHashMap<GridCell, f64>,
     budget: &Budget,
 ) -> Result<Tracked, Stopped> {
     let mut mesh = Tracked::default();
-    let mut on_edge: FxHashMap<(Place, usize), u32> = FxHashMap::default();
+    let mut on_edge: FxHashMap<(GridCell, usize), u32> = FxHashMap::default();
     for (n, &(place, mask)) in crossed.iter().enumerate() {
         if n.is_multiple_of(CHECK_EVERY) {
             budget.check()?;

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use uuid::Uuid;
 
 use super::blobs::{BlobStore, StoredBlob, make_private_dir};
-use super::sqlite::{OpenError, SqliteStore, StoreFile};
+use super::sqlite::{SqliteOpenError, SqliteStore, StoreFile};
 
 /// The file of the mark, which goes with the files of uploads and results.
 const MARK_FILE: &str = "spool.mark";
@@ -48,7 +48,7 @@ pub(super) enum BelongingError {
     #[error(transparent)]
     NotTogether(#[from] NotTogether),
     #[error(transparent)]
-    Store(#[from] OpenError),
+    Store(#[from] SqliteOpenError),
     #[error(transparent)]
     Disk(#[from] io::Error),
 }

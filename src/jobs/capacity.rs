@@ -42,7 +42,7 @@ pub(super) struct Capacity {
 
 /// Memory that a run has been given, until dropped.
 #[derive(Debug)]
-pub(super) struct Room {
+pub(super) struct MemoryGrant {
     /// How much it may charge.
     pub(super) bytes: u64,
     /// What is held is given back on drop.
@@ -74,18 +74,23 @@ impl Capacity {
     /// Waits for room; a small job is given what is kept for it at once. `reserved` is what a large one will probably take
     /// at most; `None`: it took more than that already, and is given all that a job may have. One that is thought to take
     /// more than there is waits until no other large one runs.
-    async fn room(&self, lane: Lane, reserved: Option<u64>) -> Room {
+    async fn room(&self, lane: Lane, reserved: Option<u64>) -> MemoryGrant {
         let bytes = reserved.unwrap_or(self.bytes_max).min(self.bytes_max);
         if lane == Lane::Interactive {
-            return Room { bytes: self.small_bytes, _held: None };
+            return MemoryGrant { bytes: self.small_bytes, _held: None };
         }
         let wanted = units(bytes).clamp(1, self.large_units);
         // Never closed, so there is always a permit in the end.
-        Room { bytes, _held: Arc::clone(&self.large).acquire_many_owned(wanted).await.ok() }
+        MemoryGrant { bytes, _held: Arc::clone(&self.large).acquire_many_owned(wanted).await.ok() }
     }
 
     /// Waits for the memory of a run; `None`: the run is to stop before there is any.
-    pub(super) async fn room_for(&self, row: &JobRow, live: &Live, spool: &Arc<Spool>) -> Option<Room> {
+    pub(super) async fn room_for(
+        &self,
+        row: &JobRow,
+        live: &Live,
+        spool: &Arc<Spool>,
+    ) -> Option<MemoryGrant> {
         let is_known = row.is_outgrown || row.lane == Lane::Interactive;
         let reserved = if is_known { None } else { Some(reserved_bytes(row, spool).await) };
         let room = self.room(row.lane, reserved);

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use tokio::sync::watch;
 
-use crate::budget::{Event, Observer};
+use crate::budget::{Observer, ProgressEvent};
 use crate::pipeline;
 use crate::wire::{Operation, Progress, Stage, TimingMs};
 
@@ -122,18 +122,18 @@ impl Heard {
     }
 
     /// The pass, and whether it has ended; `None`: it is about work, or a pass has ended that had not begun.
-    fn hear(&mut self, event: Event, now: Instant, passes: f64) -> Option<(Stage, bool)> {
+    fn hear(&mut self, event: ProgressEvent, now: Instant, passes: f64) -> Option<(Stage, bool)> {
         match event {
-            Event::Work(units) => {
+            ProgressEvent::Work(units) => {
                 self.work = self.work.max(units);
                 None
             }
-            Event::Enter(stage) => {
+            ProgressEvent::Enter(stage) => {
                 self.open.push((stage.into(), now));
                 self.last = Some(stage.into());
                 Some((stage.into(), false))
             }
-            Event::Leave(stage) => {
+            ProgressEvent::Leave(stage) => {
                 let position = self.open.iter().rposition(|&(open, _)| open == stage.into())?;
                 let (stage, since) = self.open.remove(position);
                 let time = milliseconds(now.duration_since(since));
@@ -196,8 +196,8 @@ mod tests {
         let mut heard = Heard::default();
         let begun = Instant::now();
         for _ in 0..10 {
-            heard.hear(Event::Enter(budget::Stage::Certify), begun, 5.0);
-            heard.hear(Event::Leave(budget::Stage::Certify), begun + Duration::from_micros(21), 5.0);
+            heard.hear(ProgressEvent::Enter(budget::Stage::Certify), begun, 5.0);
+            heard.hear(ProgressEvent::Leave(budget::Stage::Certify), begun + Duration::from_micros(21), 5.0);
         }
         assert_eq!(serde_json::to_value(heard.timing).unwrap()["certify"].to_string(), "0.21");
     }
@@ -214,15 +214,15 @@ mod tests {
         };
         for pass in 0..100 {
             let stage = [budget::Stage::Repair, budget::Stage::Certify][pass % 2];
-            hear(Event::Enter(stage));
+            hear(ProgressEvent::Enter(stage));
             for _ in 0..10 {
                 work += 1 << 20;
-                hear(Event::Work(work));
+                hear(ProgressEvent::Work(work));
                 farther();
             }
             // Threads may tell it late.
-            hear(Event::Work(work / 2));
-            hear(Event::Leave(stage));
+            hear(ProgressEvent::Work(work / 2));
+            hear(ProgressEvent::Leave(stage));
             farther();
         }
         assert!(last > 0.99);

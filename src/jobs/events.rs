@@ -95,7 +95,7 @@ pub struct JobEvent {
 
 /// The events of a job from some place on.
 #[derive(Debug)]
-pub struct Events {
+pub struct JobEventStream {
     service: Arc<Service>,
     job: JobId,
     last: EventId,
@@ -111,9 +111,9 @@ impl Jobs {
     ///
     /// # Errors
     /// `not-found`, `store-unavailable`.
-    pub async fn events(&self, job: JobId, last: EventId) -> Result<Option<Events>, Problem> {
+    pub async fn events(&self, job: JobId, last: EventId) -> Result<Option<JobEventStream>, Problem> {
         let row = self.0.row(job).await?;
-        let mut events = Events {
+        let mut events = JobEventStream {
             service: Arc::clone(&self.0),
             job,
             last,
@@ -128,7 +128,7 @@ impl Jobs {
     }
 }
 
-impl Events {
+impl JobEventStream {
     /// The next event; `None` after the one that tells the end of the job, when the job is gone, and when the server ends.
     pub async fn next(&mut self) -> Option<JobEvent> {
         loop {

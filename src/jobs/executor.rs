@@ -9,7 +9,7 @@ use super::clock::StageClock;
 use super::disk::on_disk;
 use super::live::Live;
 use super::problems::{disk_problem, engine_crashed};
-use super::product::{Content, Product};
+use super::product::{Content, RunProduct};
 use super::settings::{Isolation, JobsSettings};
 use super::spool::Spool;
 use super::store::{BlobRef, JobRow};
@@ -65,7 +65,7 @@ impl Executor {
         live: &Arc<Live>,
         clock: &StageClock,
         bytes_max: u64,
-    ) -> Result<Product<Content>, Problem> {
+    ) -> Result<RunProduct<Content>, Problem> {
         match &self.runner {
             Runner::Process(processes) => self.in_process(processes, row, live, clock, bytes_max).await,
             Runner::Thread(engine) => self.in_thread(engine, row, live, clock, bytes_max).await,
@@ -79,7 +79,7 @@ impl Executor {
         live: &Arc<Live>,
         clock: &StageClock,
         bytes_max: u64,
-    ) -> Result<Product<Content>, Problem> {
+    ) -> Result<RunProduct<Content>, Problem> {
         let (processes, spool, settings) =
             (Arc::clone(processes), Arc::clone(&self.spool), Arc::clone(&self.settings));
         let (row, live, clock) = (row.clone(), Arc::clone(live), clock.clone());
@@ -100,7 +100,7 @@ impl Executor {
         live: &Live,
         clock: &StageClock,
         bytes_max: u64,
-    ) -> Result<Product<Content>, Problem> {
+    ) -> Result<RunProduct<Content>, Problem> {
         let settings = &self.settings;
         let (spool, input, material) = (Arc::clone(&self.spool), row.input.clone(), row.material.clone());
         let (path, material_path) = on_disk(move || {
@@ -137,7 +137,7 @@ impl Executor {
             tracing::error!(job = %row.id, %error, "the engine crashed");
             Err(engine_crashed())
         })?;
-        Product::of(answer, clock.timing_ms())?.try_map(|bytes| Ok(Content::Bytes(bytes)))
+        RunProduct::of(answer, clock.timing_ms())?.try_map(|bytes| Ok(Content::Bytes(bytes)))
     }
 }
 

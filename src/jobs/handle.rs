@@ -7,7 +7,7 @@ use super::meters;
 use super::problems::store_problem;
 use super::service::Service;
 use super::store::{Ending, JobId, ListQuery, StoreError, Tenant, Webhook};
-use super::upload::{Purpose, Upload};
+use super::upload::{Upload, UploadPurpose};
 use super::webhook::{self, WebhookSettings};
 use super::{settings::JobsSettings, view};
 use crate::budget::Stopped;
@@ -46,7 +46,7 @@ impl Jobs {
     pub async fn upload_beside(&self, tenant: Tenant) -> Result<Upload, Problem> {
         let begin = async {
             self.0.check_open()?;
-            Upload::begin(Arc::clone(&self.0), tenant, Purpose::of_mesh(false)).await
+            Upload::begin(Arc::clone(&self.0), tenant, UploadPurpose::of_mesh(false)).await
         };
         begin.await.inspect_err(meters::refused)
     }
@@ -63,7 +63,7 @@ impl Jobs {
             }
             self.0.incoming.check(&tenant, 0, 0, bytes).await?;
         }
-        Upload::begin(Arc::clone(&self.0), tenant, Purpose::of_mesh(true)).await
+        Upload::begin(Arc::clone(&self.0), tenant, UploadPurpose::of_mesh(true)).await
     }
 
     /// Who submitted the job. Callers see only their own jobs.

@@ -116,7 +116,7 @@ pub async fn migrate(data_dir: &Path, shared: &SharedStores) -> Result<Migrated,
     if jobs > 0 {
         return Err(MigrateError::RowsInTarget { jobs });
     }
-    let sending = Sending { spool: data_dir.join(BLOBS_DIR), bucket, done: Migrated::default() };
+    let sending = FileTransfer { spool: data_dir.join(BLOBS_DIR), bucket, done: Migrated::default() };
     let sent = tokio::task::spawn_blocking(move || sending.all(&blobs)).await.map_err(|e| target(&e))?;
     let done = sent?;
     let jobs = carry_rows(source, &rows).await.map_err(|e| target(&e))?;
@@ -124,13 +124,13 @@ pub async fn migrate(data_dir: &Path, shared: &SharedStores) -> Result<Migrated,
 }
 
 /// Files on their way.
-struct Sending {
+struct FileTransfer {
     spool: PathBuf,
     bucket: Arc<S3Blobs>,
     done: Migrated,
 }
 
-impl Sending {
+impl FileTransfer {
     /// Sends every file that is not there yet. Blocks.
     fn all(mut self, blobs: &[BlobRef]) -> Result<Migrated, MigrateError> {
         let told = |error: &io::Error| MigrateError::Target { why: format!("the bucket: {error}") };

@@ -63,22 +63,22 @@ pub use blobs::{BlobStore, BlobWriter, LocalBlobs, PresignedPut, PresignedUrls, 
 pub use child::{RUN_JOB, Sandbox, TrialError, run_job};
 pub use clock::StageClock;
 pub use data_dir::DataDirLock;
-pub use events::{EventId, Events, Happened, JobEvent, NoEventId};
+pub use events::{EventId, Happened, JobEvent, JobEventStream, NoEventId};
 pub use executor::Engine;
 pub use handle::Jobs;
 pub use load::Load;
 pub use meters::describe as describe_metrics;
 pub use migrate::{MigrateError, Migrated, migrate};
-pub use pieces::{AskedUpload, NamedUpload, Pieces, UPLOAD_PIECES_MAX};
-pub use postgres::{DatabaseAccess, OpenError as PostgresOpenError, PostgresStore};
+pub use pieces::{AskedUpload, NamedUpload, UPLOAD_PIECES_MAX, UploadPieces};
+pub use postgres::{DatabaseAccess, PostgresOpenError, PostgresStore};
 pub use s3::{BucketAccess, BucketError, S3Blobs};
 pub use settings::{Isolation, JobsSettings};
 pub use shared::SharedStores;
-pub use sqlite::{OpenError as SqliteOpenError, SqliteStore, StoreClock, StoreFile};
+pub use sqlite::{SqliteOpenError, SqliteStore, StoreClock, StoreFile};
 pub use start::StartError;
 pub use store::{
     AfterLoss, BlobRef, ClaimRef, ClaimRequest, Created, Delivery, DeliveryRequest, DeliveryState,
-    DeliveryTry, Ending, Hint, Hints, Holding, IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept,
+    DeliveryTry, EndedJobs, Ending, Hint, Hints, Holding, IdempotencyKey, JobCounts, JobId, JobRow, JobStore,
     Lane, Leases, ListQuery, NewJob, NewUpload, NextTry, ResultRef, Sealer, StateChange, StoreError,
     StoreFuture, Tenant, TryOutcome, UploadId, UploadRow, UploadStore, Webhook,
 };

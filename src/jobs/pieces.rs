@@ -19,7 +19,7 @@ use super::problems::{disk_problem, store_problem, upload_gone};
 use super::service::Service;
 use super::soundness::Unsound;
 use super::store::{BlobRef, JobId, NewUpload, StoreError, Tenant, UploadId, UploadRow};
-use super::upload::{Purpose, Taken, Upload, Uploaded};
+use super::upload::{ClaimedUpload, Upload, UploadPurpose, Uploaded};
 use crate::wire::{Problem, ProblemCode};
 
 /// Most pieces of one upload.
@@ -112,7 +112,7 @@ impl Jobs {
         id: UploadId,
         owner: Option<&str>,
         at: u64,
-    ) -> Result<Pieces, Problem> {
+    ) -> Result<UploadPieces, Problem> {
         self.0.check_open()?;
         let row = self.0.upload_of(id, owner).await?;
         if row.is_presigned {
@@ -131,7 +131,7 @@ impl Jobs {
                 None,
             ));
         }
-        Ok(Pieces {
+        Ok(UploadPieces {
             service: Arc::clone(&self.0),
             id,
             tenant: row.tenant,
@@ -249,7 +249,7 @@ impl Service {
             return Err(Problem::new(ProblemCode::MeshEmpty, "the upload has no byte"));
         }
         self.check_open()?;
-        let purpose = Purpose { instead_of: row.length, ..Purpose::of_mesh(needs_place) };
+        let purpose = UploadPurpose { instead_of: row.length, ..UploadPurpose::of_mesh(needs_place) };
         let mut upload = Upload::begin(Arc::clone(self), row.tenant.clone(), purpose).await?;
         for piece in &pieces {
             let mut file = match self.open_sound(piece).await {
@@ -280,7 +280,7 @@ impl Service {
             tracing::error!(upload = %row.id, bytes = upload.bytes(), "the pieces of an upload are not all of it");
             return Err(upload_gone());
         }
-        let taken = Taken { id: row.id, pieces, spool: Arc::clone(&self.spool) };
+        let taken = ClaimedUpload { id: row.id, pieces, spool: Arc::clone(&self.spool) };
         Ok(upload.finish().await?.made_of(taken))
     }
 }
@@ -297,7 +297,7 @@ impl Drop for MaybeNamed {
 
 /// Bytes of an upload on their way to it. Dropped before [`keep`](Self::keep), the last piece is lost.
 #[derive(Debug)]
-pub struct Pieces {
+pub struct UploadPieces {
     service: Arc<Service>,
     id: UploadId,
     tenant: Tenant,
@@ -308,7 +308,7 @@ pub struct Pieces {
     open: Option<(Upload, Instant)>,
 }
 
-impl Pieces {
+impl UploadPieces {
     /// Bytes that are stored, from the first one on.
     pub fn received(&self) -> u64 {
         self.received
@@ -332,7 +332,7 @@ impl Pieces {
     pub async fn write(&mut self, mut bytes: &[u8]) -> Result<(), Problem> {
         while !bytes.is_empty() {
             if self.open.is_none() {
-                let purpose = Purpose { folder: PIECES, ..Purpose::of_mesh(false) };
+                let purpose = UploadPurpose { folder: PIECES, ..UploadPurpose::of_mesh(false) };
                 let piece = Upload::begin(Arc::clone(&self.service), self.tenant.clone(), purpose).await?;
                 self.open = Some((piece, Instant::now()));
             }

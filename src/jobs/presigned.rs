@@ -12,7 +12,7 @@ use super::problems::upload_gone;
 use super::service::Service;
 use super::spool::Written;
 use super::store::{BlobRef, JobId, UploadId, UploadRow};
-use super::upload::{Taken, Uploaded};
+use super::upload::{ClaimedUpload, Uploaded};
 use crate::wire::{Problem, ProblemCode};
 
 fn refused(detail: &str) -> Problem {
@@ -125,7 +125,7 @@ impl Service {
         if copied.await? != Some(file.bytes) {
             return Err(unfinished("the bucket has other bytes than it had a moment ago".to_owned()));
         }
-        let taken = Taken { id: row.id, pieces: vec![file], spool: Arc::clone(&self.spool) };
+        let taken = ClaimedUpload { id: row.id, pieces: vec![file], spool: Arc::clone(&self.spool) };
         Ok(Uploaded::of_bucket(written).made_of(taken))
     }
 }

@@ -13,7 +13,7 @@ use crate::wire::{self, Encoding, Fidelity, Outcome, Problem, TimingMs};
 
 /// What a run made; `C` is where the bytes are.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct Product<C> {
+pub(super) struct RunProduct<C> {
     /// What became of the file.
     pub(super) outcome: Option<Outcome>,
     /// How true the result is to the file.
@@ -49,7 +49,7 @@ pub(super) enum Content {
     Kept(Written),
 }
 
-impl Product<Vec<u8>> {
+impl RunProduct<Vec<u8>> {
     /// What is kept of the engine's answer.
     pub(super) fn of(answer: Answer, timing_ms: TimingMs) -> Result<Self, Problem> {
         let Answer { report, output, levels, picture } = answer;
@@ -72,10 +72,10 @@ impl Product<Vec<u8>> {
     }
 }
 
-impl<C> Product<C> {
+impl<C> RunProduct<C> {
     /// The same with its contents elsewhere; report first, then the meshes in their order, then the
     /// picture.
-    pub(super) fn try_map<D, E>(self, mut place: impl FnMut(C) -> Result<D, E>) -> Result<Product<D>, E> {
+    pub(super) fn try_map<D, E>(self, mut place: impl FnMut(C) -> Result<D, E>) -> Result<RunProduct<D>, E> {
         let report = place(self.report)?;
         let mut moved = |made: MadeMesh<C>| {
             Ok(MadeMesh { content: made.content.map(&mut place).transpose()?, encoding: made.encoding })
@@ -84,7 +84,7 @@ impl<C> Product<C> {
             self.result.map(&mut moved).transpose()?,
             self.levels.into_iter().map(moved).collect::<Result<_, E>>()?,
         );
-        Ok(Product {
+        Ok(RunProduct {
             outcome: self.outcome,
             fidelity: self.fidelity,
             problem: self.problem,
@@ -97,9 +97,13 @@ impl<C> Product<C> {
     }
 }
 
-impl Product<MadeFile> {
+impl RunProduct<MadeFile> {
     /// Takes the files over for which there is room now. Blocks.
-    pub(super) fn take_over(self, claim: ClaimRef, spool: &Arc<Spool>) -> Result<Product<Content>, Problem> {
+    pub(super) fn take_over(
+        self,
+        claim: ClaimRef,
+        spool: &Arc<Spool>,
+    ) -> Result<RunProduct<Content>, Problem> {
         self.try_map(|file| {
             let room = spool.reserve(file.bytes).filter(|_| !spool.is_disk_short_of(file.bytes));
             let Some(space) = room else { return Ok(Content::File(file)) };

@@ -6,8 +6,8 @@ use super::disk::on_disk;
 use super::problems::{internal, store_problem};
 use super::product::Content;
 use super::service::Service;
-use super::spool::{Space, Written};
-use super::store::{BlobRef, Holding, JobRow, Kept, StoreError, Tenant};
+use super::spool::{ReservedSpace, Written};
+use super::store::{BlobRef, EndedJobs, Holding, JobRow, StoreError, Tenant};
 use crate::wire::{Problem, ProblemCode};
 
 impl Service {
@@ -38,7 +38,7 @@ impl Service {
 
     /// Room for files of a tenant, made by expiring jobs that have ended. When the disk itself is short of room no result
     /// goes for it: whatever fills the disk would take them all, one after the other.
-    pub(super) async fn make_room(&self, tenant: &Tenant, bytes: u64) -> Result<Space, Problem> {
+    pub(super) async fn make_room(&self, tenant: &Tenant, bytes: u64) -> Result<ReservedSpace, Problem> {
         loop {
             if bytes > 0 && self.spool.is_disk_short_of(bytes) {
                 return Err(self.storage_full(bytes));
@@ -50,7 +50,11 @@ impl Service {
     }
 
     /// The same for a file that does not come to the disk of this machine.
-    pub(super) async fn make_room_in_store(&self, tenant: &Tenant, bytes: u64) -> Result<Space, Problem> {
+    pub(super) async fn make_room_in_store(
+        &self,
+        tenant: &Tenant,
+        bytes: u64,
+    ) -> Result<ReservedSpace, Problem> {
         loop {
             if let Some(space) = self.room_or_one_fewer(tenant, bytes).await? {
                 return Ok(space);
@@ -59,13 +63,13 @@ impl Service {
     }
 
     /// Room, if there is; otherwise a job that has ended has expired.
-    async fn room_or_one_fewer(&self, tenant: &Tenant, bytes: u64) -> Result<Option<Space>, Problem> {
+    async fn room_or_one_fewer(&self, tenant: &Tenant, bytes: u64) -> Result<Option<ReservedSpace>, Problem> {
         let first = if self.is_over_own_bytes(tenant, bytes).await? {
-            self.store.first_to_go_of(Kept::WithFiles, tenant.clone()).await
+            self.store.first_to_go_of(EndedJobs::WithFiles, tenant.clone()).await
         } else if let Some(space) = self.spool.reserve(bytes) {
             return Ok(Some(space));
         } else {
-            self.store.first_to_go(Kept::WithFiles, tenant.clone()).await
+            self.store.first_to_go(EndedJobs::WithFiles, tenant.clone()).await
         };
         let first = first.map_err(|error| store_problem(&error))?;
         let Some(first) = first else { return Err(self.storage_full(bytes)) };
@@ -106,11 +110,11 @@ impl Service {
         loop {
             let counts = self.store.counts().await.map_err(|error| store_problem(&error))?;
             let first = if self.is_over_own_jobs(tenant).await? {
-                self.store.first_to_go_of(Kept::Any, tenant.clone()).await
+                self.store.first_to_go_of(EndedJobs::Any, tenant.clone()).await
             } else if counts.all < self.settings.jobs_max {
                 return Ok(());
             } else {
-                self.store.first_to_go(Kept::Any, tenant.clone()).await
+                self.store.first_to_go(EndedJobs::Any, tenant.clone()).await
             };
             // Where none has ended that may go, rows wait or run or are within the share of others: the queue, slots and
             // shares bound them.

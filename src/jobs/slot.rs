@@ -9,7 +9,7 @@ use tracing::{Instrument as _, Span};
 use super::clock::StageClock;
 use super::heartbeat::beat;
 use super::live::Live;
-use super::product::{Content, MadeMesh, Product};
+use super::product::{Content, MadeMesh, RunProduct};
 use super::service::Service;
 use super::settle::{Conclusion, STORE_PAUSE, settle};
 use super::spool::Written;
@@ -144,7 +144,7 @@ async fn conclude(
     row: &JobRow,
     live: &Live,
     clock: &StageClock,
-    ended: Result<Product<Content>, Problem>,
+    ended: Result<RunProduct<Content>, Problem>,
 ) -> Conclusion {
     let kept = match ended {
         Ok(product) => keep_files(service, row, product).await,
@@ -181,9 +181,9 @@ async fn conclude(
 async fn keep_files(
     service: &Service,
     row: &JobRow,
-    product: Product<Content>,
+    product: RunProduct<Content>,
 ) -> Result<(Ending, Vec<Written>), Problem> {
-    let Product { outcome, fidelity, problem, timing_ms, report, result, levels, picture } = product;
+    let RunProduct { outcome, fidelity, problem, timing_ms, report, result, levels, picture } = product;
     // Should one file fail, those before it go with this list.
     let mut written = Vec::new();
     let has_result = result.is_some();

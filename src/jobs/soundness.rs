@@ -42,17 +42,17 @@ impl From<io::Error> for Unsound {
 
 /// Files that were found sound, by their keys.
 #[derive(Debug, Default)]
-pub(super) struct KnownSound(Mutex<HashMap<String, (Instant, Version)>>);
+pub(super) struct KnownSound(Mutex<HashMap<String, (Instant, FileVersion)>>);
 
 /// By what the file system tells one version of a file from another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Version {
+struct FileVersion {
     inode: u64,
     bytes: u64,
     modified: (i64, i64),
 }
 
-impl Version {
+impl FileVersion {
     fn of(facts: &Metadata) -> Self {
         Self { inode: facts.ino(), bytes: facts.len(), modified: (facts.mtime(), facts.mtime_nsec()) }
     }
@@ -75,7 +75,7 @@ impl KnownSound {
     /// Opens the file, from its beginning.
     pub(super) fn open(&self, path: &Path, blob: &BlobRef) -> Result<File, Unsound> {
         let mut file = File::open(path)?;
-        let version = Version::of(&file.metadata()?);
+        let version = FileVersion::of(&file.metadata()?);
         if version.bytes != blob.bytes {
             return Err(Unsound::Damaged);
         }
@@ -92,11 +92,11 @@ impl KnownSound {
     pub(super) fn note(&self, path: &Path, key: &str) {
         // Where the facts cannot be had, the bytes are looked at later.
         if let Ok(facts) = path.metadata() {
-            self.keep(key, Version::of(&facts));
+            self.keep(key, FileVersion::of(&facts));
         }
     }
 
-    fn keep(&self, key: &str, version: Version) {
+    fn keep(&self, key: &str, version: FileVersion) {
         let mut known = self.lock();
         if known.len() >= KNOWN_MAX {
             known.retain(|_, (at, _)| at.elapsed() < LASTS);
@@ -106,7 +106,7 @@ impl KnownSound {
         }
     }
 
-    fn lock(&self) -> MutexGuard<'_, HashMap<String, (Instant, Version)>> {
+    fn lock(&self) -> MutexGuard<'_, HashMap<String, (Instant, FileVersion)>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

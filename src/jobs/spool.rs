@@ -96,11 +96,11 @@ impl Spool {
     }
 
     /// Room for `bytes`, if there is.
-    pub(super) fn reserve(self: &Arc<Self>, bytes: u64) -> Option<Space> {
+    pub(super) fn reserve(self: &Arc<Self>, bytes: u64) -> Option<ReservedSpace> {
         let grown = |used: u64| used.checked_add(bytes).filter(|&total| total <= self.bytes_max);
         self.bytes.fetch_update(Ordering::Relaxed, Ordering::Relaxed, grown).ok()?;
         self.reserved.fetch_add(bytes, Ordering::Relaxed);
-        Some(Space { spool: Arc::clone(self), bytes })
+        Some(ReservedSpace { spool: Arc::clone(self), bytes })
     }
 
     /// Begins an upload, in this folder. Blocks.
@@ -119,7 +119,7 @@ impl Spool {
         claim: ClaimRef,
         name: &str,
         content: &[u8],
-        space: Space,
+        space: ReservedSpace,
     ) -> io::Result<Written> {
         let unnamed = self.unnamed(key_of(claim, name));
         let mut writer = self.blobs.create(&unnamed.key)?;
@@ -141,7 +141,7 @@ impl Spool {
         self: &Arc<Self>,
         claim: ClaimRef,
         file: &MadeFile,
-        space: Space,
+        space: ReservedSpace,
     ) -> io::Result<Written> {
         let name = file.path.file_name().unwrap_or_default().to_string_lossy();
         let unnamed = self.unnamed(key_of(claim, &name));
@@ -254,14 +254,14 @@ pub(super) struct Written {
 
 impl Written {
     /// The upload that is complete, in room that was reserved for it.
-    pub(super) fn upload(unnamed: Unnamed, blob: BlobRef, space: Space) -> Self {
+    pub(super) fn upload(unnamed: Unnamed, blob: BlobRef, space: ReservedSpace) -> Self {
         space.hand_over(&blob);
         unnamed.spool.note_sound(&unnamed.key);
         Self { blob: Some(blob), unnamed }
     }
 
     /// A file that comes to be in the store without this process, whose bytes nobody has looked at.
-    pub(super) fn unseen(unnamed: Unnamed, blob: BlobRef, space: Space) -> Self {
+    pub(super) fn unseen(unnamed: Unnamed, blob: BlobRef, space: ReservedSpace) -> Self {
         space.hand_over(&blob);
         Self { blob: Some(blob), unnamed }
     }
@@ -287,12 +287,12 @@ impl Drop for Written {
 
 /// Reserved room; given back on drop.
 #[derive(Debug)]
-pub(super) struct Space {
+pub(super) struct ReservedSpace {
     spool: Arc<Spool>,
     bytes: u64,
 }
 
-impl Space {
+impl ReservedSpace {
     /// One room of both.
     pub(super) fn absorb(&mut self, mut other: Self) {
         self.bytes += std::mem::take(&mut other.bytes);
@@ -305,7 +305,7 @@ impl Space {
     }
 }
 
-impl Drop for Space {
+impl Drop for ReservedSpace {
     fn drop(&mut self) {
         self.spool.reserved.fetch_sub(self.bytes, Ordering::Relaxed);
         self.spool.give_back(self.bytes);

@@ -51,10 +51,10 @@ pub enum StartError {
 const KEY_FILE: &str = "store.key";
 
 /// What seals secrets, and what sends webhooks.
-type Sending = (Arc<Vault>, Arc<Sender>);
+type WebhookSending = (Arc<Vault>, Arc<Sender>);
 
 /// What webhooks need; `None`: none are sent.
-fn webhooks(settings: &JobsSettings, store: &Arc<dyn JobStore>) -> Result<Option<Sending>, String> {
+fn webhooks(settings: &JobsSettings, store: &Arc<dyn JobStore>) -> Result<Option<WebhookSending>, String> {
     let Some(webhooks) = settings.webhooks.clone() else { return Ok(None) };
     if settings.shared.is_some() && settings.store_key_file.is_none() {
         // Each server would seal with a key of its own, which the others do not have.

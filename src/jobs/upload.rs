@@ -13,7 +13,7 @@ use super::disk::{joined, on_disk};
 use super::meters;
 use super::service::Service;
 use super::shares::IncomingBytes;
-use super::spool::{Space, Spool, Unnamed, Written};
+use super::spool::{ReservedSpace, Spool, Unnamed, Written};
 use super::store::{BlobRef, Tenant, UploadId};
 use crate::wire::Problem;
 
@@ -28,7 +28,7 @@ pub struct Upload {
     bytes: u64,
     /// Sizes of the files that have ended.
     files: Vec<u64>,
-    space: Space,
+    space: ReservedSpace,
     /// Where its file is put.
     folder: &'static str,
     /// It becomes a job, and has no place in the queue yet.
@@ -45,7 +45,7 @@ impl std::fmt::Debug for Upload {
 
 /// What the bytes are for.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Purpose {
+pub(super) struct UploadPurpose {
     /// Where the file is put.
     pub(super) folder: &'static str,
     /// It becomes a job, which needs a place in the queue.
@@ -54,7 +54,7 @@ pub(super) struct Purpose {
     pub(super) instead_of: u64,
 }
 
-impl Purpose {
+impl UploadPurpose {
     /// The mesh of a job, or what comes beside it and needs no place of its own.
     pub(super) fn of_mesh(needs_place: bool) -> Self {
         Self { folder: MESHES, needs_place, instead_of: 0 }
@@ -103,10 +103,10 @@ impl Upload {
     pub(super) async fn begin(
         service: Arc<Service>,
         tenant: Tenant,
-        purpose: Purpose,
+        purpose: UploadPurpose,
     ) -> Result<Self, Problem> {
         let space = service.make_room(&tenant, 0).await?;
-        let Purpose { folder, needs_place, instead_of } = purpose;
+        let UploadPurpose { folder, needs_place, instead_of } = purpose;
         Ok(Self {
             incoming: IncomingBytes::none(Arc::clone(&service.incoming), tenant, instead_of),
             folder,
@@ -209,7 +209,7 @@ impl Upload {
 pub struct Uploaded {
     written: Written,
     /// The upload that it was made of, which goes when it is a job's.
-    taken: Option<Taken>,
+    taken: Option<ClaimedUpload>,
     /// Given up when this is dropped, as are its bytes among those that come in.
     _place: Option<QueuePlace>,
     _incoming: Option<IncomingBytes>,
@@ -217,14 +217,14 @@ pub struct Uploaded {
 
 /// An upload whose bytes become a job's.
 #[derive(Debug)]
-pub(super) struct Taken {
+pub(super) struct ClaimedUpload {
     pub(super) id: UploadId,
     /// Its files, which nobody names once a job has taken it.
     pub(super) pieces: Vec<BlobRef>,
     pub(super) spool: Arc<Spool>,
 }
 
-impl Taken {
+impl ClaimedUpload {
     /// Removes its files, which may be many, off the threads that serve connections. What a process that ends before leaves goes as
     /// orphans.
     fn remove(self) {
@@ -239,7 +239,7 @@ impl Uploaded {
     }
 
     /// The same, made of the pieces of an upload.
-    pub(super) fn made_of(self, taken: Taken) -> Self {
+    pub(super) fn made_of(self, taken: ClaimedUpload) -> Self {
         Self { taken: Some(taken), ..self }
     }
 
@@ -251,7 +251,7 @@ impl Uploaded {
     /// A row names the file now.
     pub(super) fn named(self) {
         self.written.named();
-        self.taken.into_iter().for_each(Taken::remove);
+        self.taken.into_iter().for_each(ClaimedUpload::remove);
     }
 
     /// A row may name the file now, and have taken the upload: what it was made of stays as well.
@@ -261,7 +261,7 @@ impl Uploaded {
 
     /// A row was made that has taken the upload and names another file with the same bytes.
     pub(super) fn not_needed(self) {
-        self.taken.into_iter().for_each(Taken::remove);
+        self.taken.into_iter().for_each(ClaimedUpload::remove);
     }
 
     pub(super) fn blob(&self) -> Option<&BlobRef> {

@@ -6,7 +6,7 @@
 //! zero, for which the determinants that decide are the same.
 
 use super::direction::{Direction, Sector};
-use super::exact::{Vector, cross, dot, is_zero, negative, sign};
+use super::exact::{IntegerVector, cross, dot, is_zero, negative, sign};
 use super::point::{AxisView, Point, PointLocation};
 use crate::geom::DVec3;
 use num_bigint::BigInt;
@@ -15,7 +15,7 @@ use std::cmp::Ordering;
 
 /// A face: its plane is `normal . x = rate`.
 struct ConeFace {
-    normal: Vector,
+    normal: IntegerVector,
     rate: BigInt,
     view: AxisView,
     /// Its real edges, by their points, in their order: in from infinity and out again.
@@ -42,7 +42,7 @@ pub(super) struct ConePlane<'s> {
     pub(super) rate: BigInt,
 }
 
-fn at_infinity(direction: Vector) -> Point {
+fn at_infinity(direction: IntegerVector) -> Point {
     // Rounded coordinates that decide nothing.
     Point { x: direction, w: BigInt::zero(), near: DVec3::NAN }
 }
@@ -111,7 +111,7 @@ impl Cone {
     }
 
     /// From a point at hand to any other: the direction, with a positive factor.
-    fn direction(&self, from: usize, to: usize) -> Vector {
+    fn direction(&self, from: usize, to: usize) -> IntegerVector {
         if self.is_far(to) { self.points[to].x.clone() } else { self.points[from].to(&self.points[to]) }
     }
 

@@ -1,6 +1,6 @@
 //! Directions, and how they turn around a normal: signs by rounded numbers where these are sure, by integers otherwise.
 
-use super::exact::{Vector, cross, dot, is_zero, sign};
+use super::exact::{IntegerVector, cross, dot, is_zero, sign};
 use crate::geom::DVec3;
 use num_bigint::BigInt;
 use num_traits::ToPrimitive;
@@ -16,13 +16,13 @@ const DET_ERROR: f64 = 50.0 * ROUNDING;
 /// A vector of integers and what it is near to. Its length means nothing.
 #[derive(Debug, Clone)]
 pub(super) struct Direction {
-    pub(super) exact: Vector,
+    pub(super) exact: IntegerVector,
     /// The vector divided by a power of two that no component is larger than, rounded.
     near: DVec3,
 }
 
 impl Direction {
-    pub(super) fn new(exact: Vector) -> Self {
+    pub(super) fn new(exact: IntegerVector) -> Self {
         let bits = exact.iter().map(BigInt::bits).max().unwrap_or(0);
         // What is cut off is below 2^-61 of the largest.
         let cut = bits.saturating_sub(62);

@@ -15,7 +15,7 @@
 
 use super::conflict::Conflict;
 use super::exact::{Rational, cross, dot, to_f64};
-use super::merged::Merged;
+use super::merged::MergedVertices;
 use super::motion::{Motion, Moving, MovingPoint, root_after_zero};
 use super::search::EventSearch;
 use super::solid::Solid;
@@ -28,7 +28,7 @@ const BLOCKING_MAX: usize = 16;
 
 /// What happens next.
 #[derive(Debug, Clone)]
-pub(super) struct Event {
+pub(super) struct MotionEvent {
     /// When, after 0.
     pub(super) at: Rational,
     /// The edges that lose their lengths then.
@@ -37,7 +37,7 @@ pub(super) struct Event {
     pub(super) contacts: Vec<Conflict>,
 }
 
-impl Event {
+impl MotionEvent {
     /// All elements that meet.
     pub(super) fn blocking(&self, solid: &Solid) -> Vec<Conflict> {
         let topology = &solid.topology;
@@ -59,14 +59,14 @@ pub(super) fn next_event(
     motion: &Motion,
     moving: &Moving,
     budget: &Budget,
-) -> Result<Option<Event>, Stopped> {
+) -> Result<Option<MotionEvent>, Stopped> {
     let (vanish_at, vanishing) = first_vanishing(solid, motion, moving);
     let end = vanish_at.as_ref().map_or(f64::INFINITY, rounded_up);
-    let merged = Merged::of(solid, &vanishing);
+    let merged = MergedVertices::of(solid, &vanishing);
     let is_explained =
         |s: &Rational, contact: &Conflict| vanish_at.as_ref() == Some(s) && merged.explains(solid, contact);
     let mut search = EventSearch::new(solid, motion, moving);
-    let mut found = First::default();
+    let mut found = FirstContacts::default();
     for span in search.spans(end) {
         found = first_contact(&mut search, span, vanish_at.as_ref(), &is_explained, budget)?;
         // What meets later than the span ends may not be the first that does.
@@ -74,14 +74,16 @@ pub(super) fn next_event(
             break;
         }
     }
-    let First { at: first, mut contacts } = found;
+    let FirstContacts { at: first, mut contacts } = found;
     contacts.sort_unstable();
     contacts.dedup();
     Ok(match (first, vanish_at) {
         (None, None) => None,
-        (Some(at), Some(end)) if at == end => Some(Event { at, vanishing, contacts: search.told(contacts) }),
-        (Some(at), _) => Some(Event { at, vanishing: Vec::new(), contacts: search.told(contacts) }),
-        (None, Some(at)) => Some(Event { at, vanishing, contacts }),
+        (Some(at), Some(end)) if at == end => {
+            Some(MotionEvent { at, vanishing, contacts: search.told(contacts) })
+        }
+        (Some(at), _) => Some(MotionEvent { at, vanishing: Vec::new(), contacts: search.told(contacts) }),
+        (None, Some(at)) => Some(MotionEvent { at, vanishing, contacts }),
     })
 }
 
@@ -92,9 +94,9 @@ fn first_contact(
     vanish_at: Option<&Rational>,
     is_explained: &dyn Fn(&Rational, &Conflict) -> bool,
     budget: &Budget,
-) -> Result<First, Stopped> {
+) -> Result<FirstContacts, Stopped> {
     search.end = end;
-    let mut found = First::default();
+    let mut found = FirstContacts::default();
     let is_in_time = |s: &Rational| vanish_at.is_none_or(|end| s <= end);
     // What vertices find ends the time for edges.
     for search_for in [EventSearch::vertices_against_faces, EventSearch::edges_against_edges] {
@@ -119,12 +121,12 @@ fn first_contact(
 
 /// The first contacts that are known.
 #[derive(Default)]
-struct First {
+struct FirstContacts {
     at: Option<Rational>,
     contacts: Vec<Conflict>,
 }
 
-impl First {
+impl FirstContacts {
     fn is_before(&self, s: &Rational) -> bool {
         match &self.at {
             Some(at) => at < s || (at == s && self.contacts.len() >= BLOCKING_MAX),

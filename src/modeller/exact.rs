@@ -1,5 +1,7 @@
 //! Numbers without rounding: integers as large as needed, their quotients, and the f64 nearby.
 
+pub(super) use crate::geom::IntegerVector;
+
 use crate::geom::power_of_two;
 use num_bigint::{BigInt, Sign};
 use num_rational::Ratio;
@@ -8,8 +10,6 @@ use std::cmp::Ordering;
 
 /// A quotient of integers of any size.
 pub type Rational = Ratio<BigInt>;
-/// A vector of integers.
-pub(super) type Vector = [BigInt; 3];
 
 /// The quotient that `x` is; `x` must be finite.
 pub fn rational(x: f64) -> Rational {
@@ -86,24 +86,24 @@ pub(super) fn sign(x: &BigInt) -> Ordering {
     }
 }
 
-pub(super) fn cross(a: &Vector, b: &Vector) -> Vector {
+pub(super) fn cross(a: &IntegerVector, b: &IntegerVector) -> IntegerVector {
     let part = |i: usize, j: usize| &a[i] * &b[j] - &a[j] * &b[i];
     [part(1, 2), part(2, 0), part(0, 1)]
 }
 
-pub(super) fn dot(a: &Vector, b: &Vector) -> BigInt {
+pub(super) fn dot(a: &IntegerVector, b: &IntegerVector) -> BigInt {
     &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
 }
 
-pub(super) fn det(a: &Vector, b: &Vector, c: &Vector) -> BigInt {
+pub(super) fn det(a: &IntegerVector, b: &IntegerVector, c: &IntegerVector) -> BigInt {
     dot(&cross(a, b), c)
 }
 
-pub(super) fn negative(a: &Vector) -> Vector {
+pub(super) fn negative(a: &IntegerVector) -> IntegerVector {
     a.each_ref().map(|x| -x)
 }
 
-pub(super) fn is_zero(a: &Vector) -> bool {
+pub(super) fn is_zero(a: &IntegerVector) -> bool {
     a.iter().all(Zero::is_zero)
 }
 

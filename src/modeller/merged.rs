@@ -6,14 +6,14 @@ use crate::mesh::UnionFind;
 use crate::mesh::polyhedron::{FaceId, HalfEdgeId, VertexId};
 
 /// Vertices that become one because edges between them vanish.
-pub(super) struct Merged {
+pub(super) struct MergedVertices {
     /// The class of each such vertex, ascending.
     class_of: Vec<(VertexId, u32)>,
     /// The faces at the vertices of each class, ascending.
     faces: Vec<Vec<FaceId>>,
 }
 
-impl Merged {
+impl MergedVertices {
     pub(super) fn of(solid: &Solid, vanishing: &[HalfEdgeId]) -> Self {
         let topology = &solid.topology;
         let ends = |h: &HalfEdgeId| [topology.origin(*h), topology.destination(*h)];

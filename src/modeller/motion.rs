@@ -1,6 +1,6 @@
 //! How vertices move when planes do: linearly, because offsets grow linearly and normals stay.
 
-use super::exact::{Rational, Vector, cross, dot, negative};
+use super::exact::{IntegerVector, Rational, cross, dot, negative};
 use super::plane::Plane;
 use super::point::Point;
 use super::solid::Solid;
@@ -64,8 +64,8 @@ impl Motion {
 /// A vertex at time `s`: `(start + s speed) / w`, with a positive `w`.
 #[derive(Debug, Clone)]
 pub(super) struct MovingPoint {
-    pub(super) start: Vector,
-    pub(super) speed: Vector,
+    pub(super) start: IntegerVector,
+    pub(super) speed: IntegerVector,
     pub(super) w: BigInt,
 }
 
@@ -82,7 +82,7 @@ impl MovingPoint {
         let common = planes.iter().fold(BigInt::one(), |lcm, p| lcm.lcm(p.offset.denom()));
         let starts = planes.map(|p| p.offset.numer() * (&common / p.offset.denom()));
         let rates = faces.map(|f| motion.rate_or_zero(f) * &common);
-        let sum = |weights: &[BigInt; 3]| -> Vector {
+        let sum = |weights: &[BigInt; 3]| -> IntegerVector {
             std::array::from_fn(|k| {
                 &weights[0] * &crossed[0][k] + &weights[1] * &crossed[1][k] + &weights[2] * &crossed[2][k]
             })

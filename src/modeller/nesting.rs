@@ -2,7 +2,7 @@
 
 use super::exact::{cross, det, dot, sign};
 use super::point::{Point, PointLocation};
-use super::rule::{Fault, Rule};
+use super::rule::{BrokenRule, Rule};
 use super::solid::Solid;
 use crate::budget::{Budget, Stopped};
 use crate::mesh::polyhedron::FaceId;
@@ -23,7 +23,7 @@ const DIRECTIONS: [[i64; 3]; 8] = [
 ];
 
 /// The fault of the rule of one volume, if it is broken.
-pub(super) fn check(solid: &Solid, budget: &Budget) -> Result<Option<Fault>, Stopped> {
+pub(super) fn check(solid: &Solid, budget: &Budget) -> Result<Option<BrokenRule>, Stopped> {
     let (shell_of, count) = solid.topology.shell_of_faces();
     let mut faces = vec![Vec::new(); count];
     for f in solid.topology.faces() {
@@ -35,8 +35,9 @@ pub(super) fn check(solid: &Solid, budget: &Budget) -> Result<Option<Fault>, Sto
             outer.push(shell);
         }
     }
-    let fault =
-        |shell: usize| Some(Fault { rule: Rule::OneVolume, faces: vec![faces[shell][0]], vertices: vec![] });
+    let fault = |shell: usize| {
+        Some(BrokenRule { rule: Rule::OneVolume, faces: vec![faces[shell][0]], vertices: vec![] })
+    };
     let &[outer] = outer.as_slice() else {
         return Ok(fault(outer.get(1).copied().unwrap_or(0)));
     };

@@ -13,7 +13,7 @@
 //! Edges that lose their lengths are contracted (a merge), and a vertex whose planes do not stay concurrent is split for
 //! what comes just after. So an edge flip is a merge and a split.
 
-use super::events::{Event, next_event, vanishing_time};
+use super::events::{MotionEvent, next_event, vanishing_time};
 use super::exact::{Rational, det, sign};
 use super::journal::Journal;
 use super::motion::{Motion, Moving};
@@ -32,7 +32,7 @@ const EVENTS_MAX: usize = 1000;
 
 /// What a shift does at an event that edges which lose their lengths make.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Events {
+pub enum EventPolicy {
     /// It is refused: the shift must stay inside the open interval.
     #[default]
     Refuse,
@@ -48,7 +48,7 @@ pub enum Operator {
         /// Each face and how much its offset grows.
         faces: Vec<(FaceId, Rational)>,
         /// What is done at events.
-        events: Events,
+        events: EventPolicy,
     },
     /// A vertex of degree above three becomes several because one of its faces moves.
     Split {
@@ -112,7 +112,7 @@ impl Applied {
     /// When the budget stops the run.
     pub fn inverse(&self, solid: &Solid, budget: &Budget) -> Result<Option<Operator>, Stopped> {
         let faces: Vec<(FaceId, Rational)> = self.shifts.iter().map(|(f, t)| (*f, -t)).collect();
-        let events = if self.changes.is_empty() { Events::Refuse } else { Events::Pass };
+        let events = if self.changes.is_empty() { EventPolicy::Refuse } else { EventPolicy::Pass };
         let inverse = Operator::Shift { faces, events };
         if self.changes.is_empty() {
             return Ok(Some(inverse));
@@ -152,10 +152,10 @@ pub fn apply(
             if around.len() < 4 {
                 return Ok(Err(OperatorRefusal::VertexIsTrihedral { vertex: *vertex }));
             }
-            run_shift(solid, &[(*face, by.clone())], Events::Refuse, budget)
+            run_shift(solid, &[(*face, by.clone())], EventPolicy::Refuse, budget)
         }
         Operator::Merge { edge, face } => match towards(solid, *edge, *face) {
-            Ok((motion, _)) => run(solid, &motion, &Until::FirstEvent, Events::Pass, budget)
+            Ok((motion, _)) => run(solid, &motion, &Until::FirstEvent, EventPolicy::Pass, budget)
                 .map(|done| done.and_then(|applied| keep_if_merged(solid, applied, *edge))),
             Err(refusal) => Ok(Err(refusal)),
         },
@@ -166,7 +166,7 @@ pub fn apply(
 fn run_shift(
     solid: &mut Solid,
     faces: &[(FaceId, Rational)],
-    events: Events,
+    events: EventPolicy,
     budget: &Budget,
 ) -> Result<Result<Applied, OperatorRefusal>, Stopped> {
     match Motion::of(faces) {
@@ -246,7 +246,7 @@ fn flip(
         }
     };
     let ends = end_faces(solid, h);
-    let done = run(solid, &motion, &until, Events::Pass, budget)?;
+    let done = run(solid, &motion, &until, EventPolicy::Pass, budget)?;
     Ok(match done {
         Err(OperatorRefusal::NoSplit { .. }) => Err(OperatorRefusal::DoesNotOpen { faces: ends }),
         // The merged vertex must not have opened the old way.
@@ -306,7 +306,12 @@ fn no_split(solid: &Solid, vertex: VertexId) -> OperatorRefusal {
     OperatorRefusal::NoSplit { vertex, faces: solid.topology.faces_around(vertex).collect() }
 }
 
-pub(super) fn limit(solid: &Solid, motion: &Motion, passed: &Rational, event: &Event) -> OperatorRefusal {
+pub(super) fn limit(
+    solid: &Solid,
+    motion: &Motion,
+    passed: &Rational,
+    event: &MotionEvent,
+) -> OperatorRefusal {
     let time = passed + &event.at;
     let limits = motion.rates().iter().map(|(f, rate)| (*f, &time * rate)).collect();
     OperatorRefusal::Limit { limits, blocking: event.blocking(solid) }
@@ -317,10 +322,10 @@ fn run(
     solid: &mut Solid,
     motion: &Motion,
     until: &Until,
-    events: Events,
+    events: EventPolicy,
     budget: &Budget,
 ) -> Result<Result<Applied, OperatorRefusal>, Stopped> {
-    let mut run = Run { journal: Journal::begin(solid), changes: Vec::new(), passed: Rational::zero() };
+    let mut run = ShiftRun { journal: Journal::begin(solid), changes: Vec::new(), passed: Rational::zero() };
     let result = match run.advance(solid, motion, until, events, budget) {
         Ok(Ok(())) => {
             let moves = run.journal.moves(solid);
@@ -348,19 +353,19 @@ fn run(
     }
 }
 
-struct Run {
+struct ShiftRun {
     journal: Journal,
     changes: Vec<TopologyChange>,
     passed: Rational,
 }
 
-impl Run {
+impl ShiftRun {
     fn advance(
         &mut self,
         solid: &mut Solid,
         motion: &Motion,
         until: &Until,
-        events: Events,
+        events: EventPolicy,
         budget: &Budget,
     ) -> Result<Result<(), OperatorRefusal>, Stopped> {
         for count in 0..EVENTS_MAX {
@@ -381,7 +386,7 @@ impl Run {
                 }
                 (None, _) => return Ok(Err(OperatorRefusal::EdgeStays)),
                 (Some(event), end) => {
-                    let must_stop = events == Events::Refuse || !event.contacts.is_empty();
+                    let must_stop = events == EventPolicy::Refuse || !event.contacts.is_empty();
                     if must_stop {
                         return Ok(Err(limit(solid, motion, &self.passed, &event)));
                     }
@@ -400,7 +405,7 @@ impl Run {
     }
 
     /// The time that is left, if the goal is a time.
-    fn end(&self, until: &Until, count: usize, event: Option<&Event>) -> Option<Rational> {
+    fn end(&self, until: &Until, count: usize, event: Option<&MotionEvent>) -> Option<Rational> {
         match until {
             Until::Time(time) => Some(time - &self.passed),
             Until::FirstEvent => None,
@@ -431,7 +436,7 @@ impl Run {
         solid: &mut Solid,
         motion: &Motion,
         moving: &Moving,
-        event: &Event,
+        event: &MotionEvent,
     ) -> Result<(), OperatorRefusal> {
         self.journal.keep_topology(solid);
         self.journal.advance(solid, motion, moving, &event.at);

@@ -1,6 +1,6 @@
 //! The plane of a face: `n . x = d` with a normal of integers that never changes and a rational offset.
 
-use super::exact::{Rational, Vector, cross, quotient};
+use super::exact::{IntegerVector, Rational, cross, quotient};
 use super::point::Point;
 use crate::geom::DVec3;
 use num_bigint::BigInt;
@@ -11,7 +11,7 @@ use std::cmp::Ordering;
 /// A plane `n . x = d`. The normal points out of the solid and is primitive: its integers have no common divisor.
 #[derive(Debug, Clone)]
 pub struct Plane {
-    pub(super) normal: Vector,
+    pub(super) normal: IntegerVector,
     pub(super) offset: Rational,
     /// `normal` divided by `length`, within 2^-51 of each component.
     pub(super) unit: DVec3,
@@ -30,7 +30,7 @@ impl PartialEq for Plane {
 impl Plane {
     /// The plane with this normal, which must not be zero, and offset. Both are divided by the common divisor of the
     /// normal.
-    pub(super) fn new(normal: Vector, offset: Rational) -> Self {
+    pub(super) fn new(normal: IntegerVector, offset: Rational) -> Self {
         let divisor = normal[0].gcd(&normal[1]).gcd(&normal[2]);
         let normal = normal.map(|n| n / &divisor);
         // A scale for all three, so that large integers do not leave the range of f64.
@@ -45,7 +45,7 @@ impl Plane {
     }
 
     /// The plane through a point of integers over `w`, which must be positive.
-    pub(super) fn through(normal: Vector, point: &Point) -> Self {
+    pub(super) fn through(normal: IntegerVector, point: &Point) -> Self {
         let offset = Rational::new(super::exact::dot(&normal, &point.x), point.w.clone());
         Self::new(normal, offset)
     }
@@ -97,7 +97,7 @@ impl Plane {
     }
 
     /// The row `(n, d)` with integers: all four times the denominator of the offset.
-    pub(super) fn row(&self) -> (Vector, BigInt) {
+    pub(super) fn row(&self) -> (IntegerVector, BigInt) {
         let denominator = self.offset.denom();
         (self.normal.each_ref().map(|n| n * denominator), self.offset.numer().clone())
     }

@@ -1,6 +1,6 @@
 //! A point where planes meet, exactly, and questions about such points in the plane of a face.
 
-use super::exact::{Rational, Vector, decompose, quotient, sign};
+use super::exact::{IntegerVector, Rational, decompose, quotient, sign};
 use crate::geom::DVec3;
 use num_bigint::BigInt;
 use std::cmp::Ordering;
@@ -8,7 +8,7 @@ use std::cmp::Ordering;
 /// The point `x / w` with integers and a positive `w`.
 #[derive(Debug, Clone)]
 pub struct Point {
-    pub(super) x: Vector,
+    pub(super) x: IntegerVector,
     pub(super) w: BigInt,
     /// Each coordinate within one unit in the last place.
     pub(super) near: DVec3,
@@ -26,7 +26,7 @@ impl PartialEq for Point {
 }
 
 impl Point {
-    pub(super) fn new(x: Vector, w: BigInt) -> Self {
+    pub(super) fn new(x: IntegerVector, w: BigInt) -> Self {
         let near = DVec3::from_array(x.each_ref().map(|x| quotient(x, &w)));
         Self { x, w, near }
     }
@@ -59,7 +59,7 @@ impl Point {
     }
 
     /// Twice the difference to `other` is not needed; this is `other - self` times both denominators.
-    pub(super) fn to(&self, other: &Self) -> Vector {
+    pub(super) fn to(&self, other: &Self) -> IntegerVector {
         std::array::from_fn(|k| &other.x[k] * &self.w - &self.x[k] * &other.w)
     }
 }

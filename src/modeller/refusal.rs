@@ -2,7 +2,7 @@
 
 use super::conflict::Conflict;
 use super::exact::Rational;
-use super::rule::Fault;
+use super::rule::BrokenRule;
 use crate::mesh::polyhedron::{FaceId, VertexId};
 
 /// Why an operator does nothing.
@@ -78,5 +78,5 @@ pub enum OperatorRefusal {
         limit: usize,
     },
     /// The check after the edit found a broken rule.
-    Invalid(Fault),
+    Invalid(BrokenRule),
 }

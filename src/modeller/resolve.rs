@@ -8,7 +8,7 @@
 
 use super::cone::{Cone, ConePlane};
 use super::direction::{Direction, is_link_simple};
-use super::exact::{Vector, cross, dot, negative};
+use super::exact::{IntegerVector, cross, dot, negative};
 use super::motion::Motion;
 use super::point::Point;
 use super::solid::Solid;
@@ -26,14 +26,14 @@ const DEGREE_OF_ALL_SPLITS_MAX: usize = 8;
 
 /// Cells as ascending corners, and the diagonals between them.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-struct Split {
+struct PolygonSplit {
     cells: Vec<Vec<usize>>,
     diagonals: Vec<[usize; 2]>,
 }
 
 /// How a point moves: by `speed / w` in a unit of time, with a positive `w`.
 struct Velocity {
-    speed: Vector,
+    speed: IntegerVector,
     w: BigInt,
 }
 
@@ -77,7 +77,7 @@ fn good_split(solid: &Solid, motion: &Motion, v: VertexId) -> Option<Vec<[FaceId
     let h = solid.topology.leaving(v)?;
     let star = VertexStar::new(solid, motion, h);
     let degree = star.faces.len();
-    let is_good = |split: &Split| star.is_good(split);
+    let is_good = |split: &PolygonSplit| star.is_good(split);
     let split = if degree <= DEGREE_OF_ALL_SPLITS_MAX {
         let corners: Vec<usize> = (0..degree).collect();
         let may_be = |cell: &[usize]| star.velocity(cell).is_some();
@@ -93,9 +93,9 @@ fn good_split(solid: &Solid, motion: &Motion, v: VertexId) -> Option<Vec<[FaceId
 }
 
 /// All splits of a polygon into cells that may be, those with the largest first cells first.
-fn all_splits(corners: &[usize], may_be: &impl Fn(&[usize]) -> bool) -> Vec<Split> {
+fn all_splits(corners: &[usize], may_be: &impl Fn(&[usize]) -> bool) -> Vec<PolygonSplit> {
     if corners.len() < 3 {
-        return vec![Split::default()];
+        return vec![PolygonSplit::default()];
     }
     let (first, last) = (corners[0], corners[corners.len() - 1]);
     let middle = &corners[1..corners.len() - 1];
@@ -107,7 +107,7 @@ fn all_splits(corners: &[usize], may_be: &impl Fn(&[usize]) -> bool) -> Vec<Spli
         if !may_be(&cell) {
             continue;
         }
-        let mut partial = vec![Split { cells: vec![cell.clone()], diagonals: vec![] }];
+        let mut partial = vec![PolygonSplit { cells: vec![cell.clone()], diagonals: vec![] }];
         for pair in cell.windows(2) {
             let beyond: Vec<usize> =
                 corners.iter().copied().filter(|c| (pair[0]..=pair[1]).contains(c)).collect();
@@ -118,7 +118,7 @@ fn all_splits(corners: &[usize], may_be: &impl Fn(&[usize]) -> bool) -> Vec<Spli
             partial = partial
                 .iter()
                 .flat_map(|whole| {
-                    parts.iter().map(|part| Split {
+                    parts.iter().map(|part| PolygonSplit {
                         cells: [&whole.cells[..], &part.cells].concat(),
                         diagonals: [&whole.diagonals[..], &[[pair[0], pair[1]]], &part.diagonals].concat(),
                     })
@@ -132,7 +132,7 @@ fn all_splits(corners: &[usize], may_be: &impl Fn(&[usize]) -> bool) -> Vec<Spli
 
 /// The splits of a vertex where one face moves and all others stay: the moving face becomes a neighbour of all, or of
 /// all but those between two of them, whose planes keep meeting in the old point.
-fn splits_around(face: usize, degree: usize) -> impl Iterator<Item = Split> {
+fn splits_around(face: usize, degree: usize) -> impl Iterator<Item = PolygonSplit> {
     let others: Vec<usize> = (1..degree).map(|k| (face + k) % degree).collect();
     let count = others.len();
     let sorted = |mut cell: Vec<usize>| {
@@ -140,7 +140,7 @@ fn splits_around(face: usize, degree: usize) -> impl Iterator<Item = Split> {
         cell
     };
     let build = move |gap: Option<(usize, usize)>| {
-        let mut split = Split::default();
+        let mut split = PolygonSplit::default();
         let mut k = 0;
         while k + 1 < count {
             let to = match gap {
@@ -211,7 +211,7 @@ impl<'s> VertexStar<'s> {
             return Some(Velocity { speed: Default::default(), w: BigInt::one() });
         }
         let w = dot(&line.exact, &self.normals[k].exact);
-        let mut speed = Vector::default();
+        let mut speed = IntegerVector::default();
         for (moved, [p, q]) in [(i, [j, k]), (j, [k, i]), (k, [i, j])] {
             let Some(rate) = self.rates[moved] else { continue };
             let line = self.line(p, q);
@@ -240,14 +240,14 @@ impl<'s> VertexStar<'s> {
         }
     }
 
-    fn is_good(&self, split: &Split) -> bool {
+    fn is_good(&self, split: &PolygonSplit) -> bool {
         let velocities: Option<Vec<Rc<Velocity>>> = split.cells.iter().map(|c| self.velocity(c)).collect();
         let Some(velocities) = velocities else { return false };
         (0..split.cells.len()).all(|c| self.has_simple_link(split, c)) && self.is_embedded(split, &velocities)
     }
 
     /// Whether the faces around the vertex of a cell meet in their common edges only.
-    fn has_simple_link(&self, split: &Split, c: usize) -> bool {
+    fn has_simple_link(&self, split: &PolygonSplit, c: usize) -> bool {
         let cell = &split.cells[c];
         let mut new_rays: Vec<Option<Rc<Direction>>> = Vec::with_capacity(cell.len());
         for k in 0..cell.len() {
@@ -273,7 +273,7 @@ impl<'s> VertexStar<'s> {
     }
 
     /// Whether all edges and faces of the split meet in what they share only.
-    fn is_embedded(&self, split: &Split, velocities: &[Rc<Velocity>]) -> bool {
+    fn is_embedded(&self, split: &PolygonSplit, velocities: &[Rc<Velocity>]) -> bool {
         let side = |i: usize| ConePlane {
             normal: &self.normals[i],
             unit: self.solid.plane(self.faces[i]).unit,

@@ -58,7 +58,7 @@ impl Rule {
 
 /// A broken rule, with the first elements that show it.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Fault {
+pub struct BrokenRule {
     /// The rule.
     pub rule: Rule,
     /// Faces that show it.

@@ -27,13 +27,13 @@ const FEW_SIDES: usize = 8;
 
 /// A span of time.
 #[derive(Debug, Clone, Copy)]
-struct Span {
+struct TimeSpan {
     from: f64,
     to: f64,
 }
 
 /// When `height + time growth` may be zero, when both are known within these errors; none when it surely never is after 0.
-fn root_span([height, height_error]: [f64; 2], [growth, growth_error]: [f64; 2]) -> Option<Span> {
+fn root_span([height, height_error]: [f64; 2], [growth, growth_error]: [f64; 2]) -> Option<TimeSpan> {
     let is_sure = height.abs() > height_error && growth.abs() > growth_error;
     if is_sure && (height > 0.0) == (growth > 0.0) {
         return None;
@@ -43,7 +43,7 @@ fn root_span([height, height_error]: [f64; 2], [growth, growth_error]: [f64; 2])
     // What is not a number is 0 / 0.
     let from = if from.is_nan() { 0.0 } else { from * (1.0 - 1e-14) };
     let to = if to.is_nan() { f64::INFINITY } else { to * (1.0 + 1e-14) };
-    Some(Span { from, to })
+    Some(TimeSpan { from, to })
 }
 
 /// What moves, and until when.
@@ -100,11 +100,11 @@ impl<'s> EventSearch<'s> {
 
     /// The box that a vertex sweeps until the end; everything when there is no end.
     fn swept(&self, v: VertexId) -> Aabb {
-        self.swept_in(v, Span { from: 0.0, to: self.end })
+        self.swept_in(v, TimeSpan { from: 0.0, to: self.end })
     }
 
     /// The box that a vertex sweeps in a span of time.
-    fn swept_in(&self, v: VertexId, span: Span) -> Aabb {
+    fn swept_in(&self, v: VertexId, span: TimeSpan) -> Aabb {
         let (start, speed) = (self.solid.point(v).near, self.speed(v));
         let from = start + speed * span.from;
         if span.to.is_finite() {
@@ -127,7 +127,7 @@ impl<'s> EventSearch<'s> {
         Aabb { min: reach(true), max: reach(false) }
     }
 
-    fn swept_by_edge(&self, h: HalfEdgeId, span: Span) -> Aabb {
+    fn swept_by_edge(&self, h: HalfEdgeId, span: TimeSpan) -> Aabb {
         let topology = &self.solid.topology;
         grown(self.swept_in(topology.origin(h), span).union(self.swept_in(topology.destination(h), span)))
     }
@@ -140,7 +140,7 @@ impl<'s> EventSearch<'s> {
     }
 
     /// The box of a face of few sides in a span of time; none for others.
-    fn swept_by_few(&self, f: FaceId, span: Span) -> Option<Aabb> {
+    fn swept_by_few(&self, f: FaceId, span: TimeSpan) -> Option<Aabb> {
         let topology = &self.solid.topology;
         let mut bounds = Aabb::EMPTY;
         for (k, h) in topology.loop_of(topology.loops(f).exterior).enumerate() {
@@ -215,9 +215,9 @@ impl<'s> EventSearch<'s> {
     }
 
     /// The part of a span that is not after the end.
-    fn in_time(&self, span: Option<Span>) -> Option<Span> {
-        let Span { from, to } = span?;
-        (from <= self.end).then_some(Span { from, to: to.min(self.end) })
+    fn in_time(&self, span: Option<TimeSpan>) -> Option<TimeSpan> {
+        let TimeSpan { from, to } = span?;
+        (from <= self.end).then_some(TimeSpan { from, to: to.min(self.end) })
     }
 
     /// How fast the plane of `f` moves, rounded.
@@ -261,7 +261,7 @@ impl<'s> EventSearch<'s> {
             edges.dedup();
             edges
         };
-        let until_end = Span { from: 0.0, to: self.end };
+        let until_end = TimeSpan { from: 0.0, to: self.end };
         let moved = each_once(&mut self.motion.faces().flat_map(|f| topology.sides(f)));
         let sweeps: Vec<Aabb> = moved.iter().map(|&h| self.swept_by_edge(h, until_end)).collect();
         let all = sweeps.iter().fold(Aabb::EMPTY, |b, s| b.union(*s));
@@ -307,7 +307,7 @@ impl<'s> EventSearch<'s> {
     }
 
     /// When four planes may meet in one point.
-    fn near_coplanarity(&self, faces: [FaceId; 4]) -> Option<Span> {
+    fn near_coplanarity(&self, faces: [FaceId; 4]) -> Option<TimeSpan> {
         let planes = faces.map(|f| self.solid.plane(f));
         let ([mut height, mut height_error], [mut growth, mut growth_error]) = ([0.0; 2], [0.0; 2]);
         for k in 0..4 {
@@ -329,7 +329,7 @@ impl<'s> EventSearch<'s> {
         let common = planes.iter().fold(BigInt::one(), |lcm, p| lcm.lcm(p.offset.denom()));
         let (mut c0, mut c1) = (BigInt::ZERO, BigInt::ZERO);
         for k in 0..4 {
-            let others: Vec<&super::exact::Vector> =
+            let others: Vec<&super::exact::IntegerVector> =
                 (0..4).filter(|&j| j != k).map(|j| &planes[j].normal).collect();
             let mut minor = det(others[0], others[1], others[2]);
             if k % 2 == 1 {

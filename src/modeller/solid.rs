@@ -1,6 +1,6 @@
 //! A polyhedron as the planes of its faces and its topology; the vertices are where planes meet.
 
-use super::exact::{Vector, cross, dot, negative, sign};
+use super::exact::{IntegerVector, cross, dot, negative, sign};
 use super::index::Index;
 use super::plane::{Plane, meeting_point};
 use super::point::{AxisView, Point, PointLocation};
@@ -96,7 +96,7 @@ impl Solid {
     }
 
     /// The direction of `h`: the cross product of the normals on its left and right, or its opposite at a reflex edge.
-    pub(super) fn direction(&self, h: HalfEdgeId) -> Vector {
+    pub(super) fn direction(&self, h: HalfEdgeId) -> IntegerVector {
         let [left, right] = [h, self.topology.opposite(h)].map(|h| self.plane(self.topology.face(h)));
         let line = cross(&left.normal, &right.normal);
         let [from, to] = self.ends(h);

@@ -5,7 +5,7 @@ use super::journal::Moves;
 use super::near::{face_box, faces_near};
 use super::nesting;
 use super::point::PointLocation;
-use super::rule::{Fault, Rule};
+use super::rule::{BrokenRule, Rule};
 use super::solid::Solid;
 use crate::budget::{Budget, Stopped};
 use crate::geom::Aabb;
@@ -20,7 +20,7 @@ pub struct Validity {
     /// H, the number of through-holes, when Euler's formula has a solution.
     pub genus: Option<usize>,
     /// The first fault of each broken rule; none for a valid solid.
-    pub faults: Vec<Fault>,
+    pub faults: Vec<BrokenRule>,
 }
 
 impl Validity {
@@ -42,7 +42,7 @@ pub fn check(solid: &Solid, budget: &Budget) -> Result<Validity, Stopped> {
         faults.push(topology_fault(solid, *fault));
     } else {
         if genus.is_none() {
-            faults.push(Fault { rule: Rule::Euler, faces: Vec::new(), vertices: Vec::new() });
+            faults.push(BrokenRule { rule: Rule::Euler, faces: Vec::new(), vertices: Vec::new() });
         }
         let all: Vec<FaceId> = solid.topology.faces().collect();
         faults.extend(check_faces(solid, &all, budget)?);
@@ -54,7 +54,7 @@ pub fn check(solid: &Solid, budget: &Budget) -> Result<Validity, Stopped> {
 }
 
 /// Checks the rules of `faces`, all of their vertices taken as moved, and that none of them meets any face.
-fn check_faces(solid: &Solid, faces: &[FaceId], budget: &Budget) -> Result<Vec<Fault>, Stopped> {
+fn check_faces(solid: &Solid, faces: &[FaceId], budget: &Budget) -> Result<Vec<BrokenRule>, Stopped> {
     if let Some(fault) = rules_of_faces(solid, faces, &|_| true, budget)? {
         return Ok(vec![fault]);
     }
@@ -63,7 +63,11 @@ fn check_faces(solid: &Solid, faces: &[FaceId], budget: &Budget) -> Result<Vec<F
 
 /// Checks the rules that can be broken by what moved. Edges and loops without a moved vertex are as they were, and so are
 /// faces without one that no moved edge comes near.
-pub(super) fn check_changed(solid: &Solid, moves: &Moves, budget: &Budget) -> Result<Vec<Fault>, Stopped> {
+pub(super) fn check_changed(
+    solid: &Solid,
+    moves: &Moves,
+    budget: &Budget,
+) -> Result<Vec<BrokenRule>, Stopped> {
     let has_moved = |v: VertexId| moves.of(v).is_some();
     if let Some(fault) = rules_of_faces(solid, &moves.faces, &has_moved, budget)? {
         return Ok(vec![fault]);
@@ -82,15 +86,15 @@ fn edge_box(solid: &Solid, h: HalfEdgeId) -> Aabb {
     grown(Aabb::of(solid.ends(h).map(|p| p.near)))
 }
 
-fn not_disjoint(solid: &Solid, h: HalfEdgeId, f: FaceId) -> Fault {
+fn not_disjoint(solid: &Solid, h: HalfEdgeId, f: FaceId) -> BrokenRule {
     let topology = &solid.topology;
     let vertices = vec![topology.origin(h), topology.destination(h)];
     let faces = vec![f, topology.face(h), topology.face(topology.opposite(h))];
-    Fault { rule: Rule::Disjoint, faces, vertices }
+    BrokenRule { rule: Rule::Disjoint, faces, vertices }
 }
 
 /// An edge with a moved end that meets a face which it is not beside.
-fn moved_edge_on_face(solid: &Solid, moves: &Moves, budget: &Budget) -> Result<Option<Fault>, Stopped> {
+fn moved_edge_on_face(solid: &Solid, moves: &Moves, budget: &Budget) -> Result<Option<BrokenRule>, Stopped> {
     let topology = &solid.topology;
     let mut edges: Vec<HalfEdgeId> = moves
         .reach
@@ -114,7 +118,7 @@ fn moved_edge_on_face(solid: &Solid, moves: &Moves, budget: &Budget) -> Result<O
 }
 
 /// An edge that stayed and meets a face that moved, or one that has grown by the move of its border.
-fn edge_on_moved_face(solid: &Solid, moves: &Moves, budget: &Budget) -> Result<Option<Fault>, Stopped> {
+fn edge_on_moved_face(solid: &Solid, moves: &Moves, budget: &Budget) -> Result<Option<BrokenRule>, Stopped> {
     let topology = &solid.topology;
     let everywhere = moves.reach.iter().fold(Aabb::EMPTY, |all, (_, reach)| all.union(*reach));
     for &f in &moves.faces {
@@ -160,7 +164,7 @@ fn rules_of_faces(
     faces: &[FaceId],
     has_moved: &dyn Fn(VertexId) -> bool,
     budget: &Budget,
-) -> Result<Option<Fault>, Stopped> {
+) -> Result<Option<BrokenRule>, Stopped> {
     for &f in faces {
         budget.spend(solid.topology.sides(f).count() as u64)?;
         let fault = edges_and_vertices(solid, f, has_moved).or_else(|| loops(solid, f, has_moved));
@@ -171,7 +175,7 @@ fn rules_of_faces(
     Ok(None)
 }
 
-fn topology_fault(solid: &Solid, fault: TopologyFault) -> Fault {
+fn topology_fault(solid: &Solid, fault: TopologyFault) -> BrokenRule {
     let (faces, vertices) = match fault {
         TopologyFault::Opposite(h) | TopologyFault::Origin(h) | TopologyFault::Loop(h) => {
             (vec![solid.topology.face(h)], vec![])
@@ -180,10 +184,10 @@ fn topology_fault(solid: &Solid, fault: TopologyFault) -> Fault {
         TopologyFault::RepeatedVertex(f, v) => (vec![f], vec![v]),
         TopologyFault::Fan(v) | TopologyFault::FewFaces(v) => (vec![], vec![v]),
     };
-    Fault { rule: Rule::Closed, faces, vertices }
+    BrokenRule { rule: Rule::Closed, faces, vertices }
 }
 
-fn edges_and_vertices(solid: &Solid, f: FaceId, has_moved: &dyn Fn(VertexId) -> bool) -> Option<Fault> {
+fn edges_and_vertices(solid: &Solid, f: FaceId, has_moved: &dyn Fn(VertexId) -> bool) -> Option<BrokenRule> {
     let topology = &solid.topology;
     for h in topology.sides(f) {
         let other = topology.face(topology.opposite(h));
@@ -192,19 +196,19 @@ fn edges_and_vertices(solid: &Solid, f: FaceId, has_moved: &dyn Fn(VertexId) -> 
             continue;
         }
         if solid.plane(f).side(solid.point(v)) != Ordering::Equal {
-            return Some(Fault { rule: Rule::Vertices, faces: vec![f], vertices: vec![v] });
+            return Some(BrokenRule { rule: Rule::Vertices, faces: vec![f], vertices: vec![v] });
         }
         let [from, to] = solid.ends(h);
         if from == to || solid.plane(f).is_parallel(solid.plane(other)) {
             let vertices = vec![v, topology.destination(h)];
-            return Some(Fault { rule: Rule::Edges, faces: vec![f, other], vertices });
+            return Some(BrokenRule { rule: Rule::Edges, faces: vec![f, other], vertices });
         }
     }
     None
 }
 
 /// The rules of the loops of one face.
-fn loops(solid: &Solid, f: FaceId, has_moved: &dyn Fn(VertexId) -> bool) -> Option<Fault> {
+fn loops(solid: &Solid, f: FaceId, has_moved: &dyn Fn(VertexId) -> bool) -> Option<BrokenRule> {
     let topology = &solid.topology;
     let mut sides = Vec::new();
     let mut has_loop_moved = Vec::new();
@@ -220,7 +224,7 @@ fn loops(solid: &Solid, f: FaceId, has_moved: &dyn Fn(VertexId) -> bool) -> Opti
     if let Some([a, b]) = first_crossing(solid, f, &sides) {
         let rule = if a.in_loop == b.in_loop { Rule::LoopsSimple } else { Rule::LoopsNested };
         let vertices = vec![topology.origin(a.h), topology.origin(b.h)];
-        return Some(Fault { rule, faces: vec![f], vertices });
+        return Some(BrokenRule { rule, faces: vec![f], vertices });
     }
     let starts: Vec<HalfEdgeId> = topology.loop_starts(f).collect();
     let view = solid.view(f);
@@ -229,7 +233,7 @@ fn loops(solid: &Solid, f: FaceId, has_moved: &dyn Fn(VertexId) -> bool) -> Opti
         view.locate(at, topology.loop_of(starts[outer]).map(|h| solid.ends(h))) == PointLocation::Inside
     };
     let fault = |rule: Rule, i: usize| {
-        Some(Fault { rule, faces: vec![f], vertices: vec![topology.origin(starts[i])] })
+        Some(BrokenRule { rule, faces: vec![f], vertices: vec![topology.origin(starts[i])] })
     };
     for i in (0..starts.len()).filter(|&i| has_loop_moved[i]) {
         if turns_counter_clockwise(solid, f, starts[i]) != (i == 0) {
@@ -314,7 +318,7 @@ fn do_sides_meet(solid: &Solid, f: FaceId, g: HalfEdgeId, h: HalfEdgeId) -> bool
 
 /// The first pair of faces, one of them changed, that meet in more than common vertices and edges: an edge of one meets
 /// the other.
-fn disjoint(solid: &Solid, changed: &[FaceId], budget: &Budget) -> Result<Option<Fault>, Stopped> {
+fn disjoint(solid: &Solid, changed: &[FaceId], budget: &Budget) -> Result<Option<BrokenRule>, Stopped> {
     let topology = &solid.topology;
     let boxes = Boxes::of(solid, budget)?;
     let mut is_changed = vec![false; topology.face_count()];
@@ -324,7 +328,7 @@ fn disjoint(solid: &Solid, changed: &[FaceId], budget: &Budget) -> Result<Option
         if found.is_none() && meets_beyond_shared(solid, h, f) {
             let vertices = vec![topology.origin(h), topology.destination(h)];
             let faces = vec![f, topology.face(h), topology.face(topology.opposite(h))];
-            found = Some(Fault { rule: Rule::Disjoint, faces, vertices });
+            found = Some(BrokenRule { rule: Rule::Disjoint, faces, vertices });
         }
         found.is_none()
     })?;

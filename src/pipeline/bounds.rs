@@ -4,7 +4,7 @@
 //! instead: the next plan, a coarser lattice, a surface with more triangles, a distance enclosed more widely. Where nothing
 //! is left the run ends over its bound. `docs/bounds.md` lists what is bounded by what.
 
-use super::{Answer, Effort, Failure, Operation, Options, Refusal, Report, Work};
+use super::{Answer, Effort, Failure, Operation, Options, Refusal, Report, WorkBound};
 use crate::budget::{AsStopped, Budget, Stopped};
 
 /// Files of fewer bytes may take as much as one of so many.
@@ -26,10 +26,10 @@ const BYTES_OF_TRIANGLE: u64 = 5;
 /// bytes; `None`: no more than the caller says.
 pub fn work_units_max(operation: Operation, bytes: usize, options: &Options) -> Option<u64> {
     let of_small = match operation.facts().work {
-        Work::Looking => LOOKING,
-        Work::Repairing if options.wrap.effort == Effort::High => REPAIRING * HIGH_EFFORT,
-        Work::Repairing => REPAIRING,
-        Work::Unbounded => return None,
+        WorkBound::Looking => LOOKING,
+        WorkBound::Repairing if options.wrap.effort == Effort::High => REPAIRING * HIGH_EFFORT,
+        WorkBound::Repairing => REPAIRING,
+        WorkBound::Unbounded => return None,
     };
     let bytes = (bytes as u64).max(SMALL_BYTES);
     Some((u128::from(of_small) * u128::from(bytes) / u128::from(SMALL_BYTES)).min(u128::from(u64::MAX)) as u64)

@@ -7,7 +7,7 @@ use super::step::Step;
 use super::{Action, Answer, Failure, Operation, Options, Outcome, Report};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::formats::Format;
-use crate::mesh::{ChosenEdges, CutMethod, Validity};
+use crate::mesh::{ChosenEdges, CutMethod, StitchValidity};
 use crate::repair::cut::CutOptions;
 use crate::repair::duplicates::OppositePairs;
 use crate::repair::polygons::DegenerateFaces;
@@ -27,7 +27,7 @@ pub struct CutStitchChoices {
     /// Largest distance of vertices that snapping joins, in the unit of the file; `None`: 1e-5 of the diagonal.
     pub epsilon: Option<f64>,
     /// When two edges may be joined.
-    pub validity: Validity,
+    pub validity: StitchValidity,
     /// What becomes of faces that pass a vertex more than once.
     pub degenerate: DegenerateFaces,
     /// Edges to be cut besides those that must be, by the numbers of their vertices in the file. They stay cut.

@@ -73,7 +73,7 @@ pub struct FidelityVerdict {
     pub changes: Vec<FidelityChange>,
 }
 
-impl super::fidelity::Fidelity {
+impl super::fidelity::FidelityMeasurement {
     /// How true a result is to `input` that was measured so.
     pub(super) fn verdict(&self, input: &Soup) -> FidelityVerdict {
         let moved = self.distance.map_or(0.0, |distance| distance.upper());

@@ -7,12 +7,13 @@ use super::{FidelityLimits, Refusal};
 use crate::analysis::{Analysis, DefectCode, Finding};
 use crate::budget::{Budget, CHECK_EVERY, Stage, Stopped};
 use crate::distance::{
-    DirectedDistance, DistanceOptions, FarPoint, Look, Sight, Surface, SurfaceDistance, directed_distance,
+    DirectedDistance, DistanceOptions, FarPoint, Surface, SurfaceDistance, VisibilityFilter,
+    VisibilitySearch, directed_distance,
 };
 use crate::geom::{DVec3, signed_volume};
 use crate::mesh::{Components, Soup, UnionFind};
 use crate::spatial::{NearestSearch, coincident_f64};
-use crate::winding::{LookedFrom, Outlook, Solid};
+use crate::winding::{LookedFrom, Outlook, WindingSolid};
 
 /// Visible surface farther than this from the result is lost, as a share of the diagonal of the input.
 pub(super) const LOST_BEYOND: f64 = 2e-3;
@@ -44,7 +45,7 @@ const PLACES_OF_BODY: usize = 8;
 
 /// How far a result is from its input, and what it lost.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Fidelity {
+pub(super) struct FidelityMeasurement {
     /// Of what can be seen of the input to the result, and back. `None`: one of them has no triangle.
     pub(super) distance: Option<SurfaceDistance>,
     pub(super) losses: Losses,
@@ -65,7 +66,7 @@ pub struct Losses {
     pub volume_change: Option<f64>,
 }
 
-impl Fidelity {
+impl FidelityMeasurement {
     /// What a result is chosen by, of what it is with patches over openings in the way and `as_seen` past them.
     pub(super) fn to_choose_by(self, as_seen: Self, limits: &FidelityLimits) -> Self {
         if as_seen.loses_much() || limits.deviation_max.is_some() { as_seen } else { self }
@@ -128,7 +129,7 @@ pub(super) struct Original<'i> {
     /// Volume, where it is defined.
     volume: Option<f64>,
     /// What hides parts of it; `None`: nothing does.
-    solid: Option<Solid>,
+    solid: Option<WindingSolid>,
     /// What is seen all the same.
     outlook: Option<Outlook>,
     /// Visible surface farther away than this is lost, surface of a result farther away than this invented.
@@ -136,7 +137,7 @@ pub(super) struct Original<'i> {
 }
 
 impl<'i> Original<'i> {
-    pub(super) fn new(input: &'i Soup, volume: Option<f64>, solid: Option<Solid>) -> Self {
+    pub(super) fn new(input: &'i Soup, volume: Option<f64>, solid: Option<WindingSolid>) -> Self {
         Self::with_diagonal(input, volume, solid, diagonal(input))
     }
 
@@ -144,7 +145,7 @@ impl<'i> Original<'i> {
     pub(super) fn with_diagonal(
         input: &'i Soup,
         volume: Option<f64>,
-        solid: Option<Solid>,
+        solid: Option<WindingSolid>,
         diagonal: f64,
     ) -> Self {
         Self { input, volume, solid, outlook: None, lost_beyond: LOST_BEYOND * diagonal }
@@ -162,7 +163,7 @@ impl<'i> Original<'i> {
         result: &Soup,
         origins: &[u32],
         budget: &Budget,
-    ) -> Result<Fidelity, Stopped> {
+    ) -> Result<FidelityMeasurement, Stopped> {
         self.measure_rest(result, origins, None, budget)
     }
 
@@ -173,7 +174,7 @@ impl<'i> Original<'i> {
         origins: &[u32],
         covered: Option<&Covered>,
         budget: &Budget,
-    ) -> Result<Fidelity, Stopped> {
+    ) -> Result<FidelityMeasurement, Stopped> {
         let care = DistanceOptions { refining_work_max: budget.work_left() / REFINING_PART, ..DISTANCE };
         budget.stage(Stage::Measure, || {
             let mut changed = Changed::of(self.input, result, origins, budget)?;
@@ -216,7 +217,7 @@ impl<'i> Original<'i> {
                 forward: at_least(forward, moved[0]),
                 backward: at_least(backward, moved[1]),
             });
-            Ok(Fidelity { distance, losses })
+            Ok(FidelityMeasurement { distance, losses })
         })
     }
 
@@ -249,14 +250,15 @@ impl<'i> Original<'i> {
         budget: &Budget,
     ) -> Result<Option<DirectedDistance>, Stopped> {
         let triangles: Vec<[u32; 3]> = gone.iter().map(|&t| self.input.triangles[t as usize]).collect();
-        let look = || -> Look<'_> {
+        let look = || -> VisibilitySearch<'_> {
             let mut nearby = LookedFrom::default();
             Box::new(move |places, triangle| {
                 self.first_visible(places, gone[triangle as usize], &mut nearby, budget)
             })
         };
         let hides = self.solid.is_some();
-        let sight = Sight { look: if hides { Some(&look) } else { None }, lost_beyond: self.lost_beyond };
+        let sight =
+            VisibilityFilter { look: if hides { Some(&look) } else { None }, lost_beyond: self.lost_beyond };
         let from = Surface { positions: &self.input.positions, triangles: &triangles };
         directed_distance(from, surface(result), Some(sight), care, budget)
     }
@@ -270,7 +272,7 @@ impl<'i> Original<'i> {
         budget: &Budget,
     ) -> Result<Option<DirectedDistance>, Stopped> {
         let triangles: Vec<[u32; 3]> = new.iter().map(|&t| result.triangles[t as usize]).collect();
-        let sight = Sight { look: None, lost_beyond: self.lost_beyond };
+        let sight = VisibilityFilter { look: None, lost_beyond: self.lost_beyond };
         let from = Surface { positions: &result.positions, triangles: &triangles };
         directed_distance(from, surface(self.input), Some(sight), care, budget)
     }
@@ -392,9 +394,9 @@ mod tests {
         soup
     }
 
-    fn measured(input: &Soup, result: &Soup, origins: &[u32]) -> Fidelity {
+    fn measured(input: &Soup, result: &Soup, origins: &[u32]) -> FidelityMeasurement {
         let budget = Budget::unlimited();
-        let solid = Solid::of(&input.positions, &input.triangles, OpenShells::Auto, &budget).unwrap();
+        let solid = WindingSolid::of(&input.positions, &input.triangles, OpenShells::Auto, &budget).unwrap();
         let volume = signed_volume((0..input.triangles.len() as u32).map(|t| input.corners(t)));
         Original::new(input, Some(volume), Some(solid)).measure(result, origins, &budget).unwrap()
     }

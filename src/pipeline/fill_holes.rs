@@ -63,7 +63,7 @@ pub enum HoleFate {
 }
 
 /// The loops of the file, as they are listed.
-pub(super) struct Loops {
+pub(super) struct ListedLoops {
     /// The first ones.
     witnesses: Vec<Witness>,
     /// Half-edges of the soup and the number of the loop that each is in, ascending.
@@ -74,13 +74,13 @@ pub(super) struct Loops {
 /// Fills holes of `input`; one without holes, or without one that can be filled, comes back as it is.
 pub(super) fn fill_holes(input: &Input, options: &Options, budget: &Budget) -> Result<Answer, Failure> {
     let mut report = input.report(Operation::FillHoles, budget)?;
-    let loops = Loops::take(&mut report, input.samples);
+    let loops = ListedLoops::take(&mut report, input.samples);
     let fill = loops.chosen(&options.filling)?;
     let before = report.before.as_ref();
     let mut attempt = Attempt::start(&input.soup, before);
     let _charge = budget.charge(3 * attempt.draft.bytes())?;
     let filled = budget.stage(Stage::Repair, || run(&mut attempt, &fill, input, before, budget))?;
-    let Filled { draft, holes } = filled;
+    let FilledFile { draft, holes } = filled;
     let Attempt { actions, .. } = attempt;
     let has_patch = draft.triangle_origin.contains(&NEW);
     let filling = Filling {
@@ -101,7 +101,7 @@ pub(super) fn fill_holes(input: &Input, options: &Options, budget: &Budget) -> R
 }
 
 /// The file with patches, and what is told of each hole.
-struct Filled {
+struct FilledFile {
     draft: Draft,
     holes: Vec<HoleReport>,
 }
@@ -113,7 +113,7 @@ fn run(
     input: &Input,
     before: Option<&Analysis>,
     budget: &Budget,
-) -> Result<Filled, Stopped> {
+) -> Result<FilledFile, Stopped> {
     let soup = &input.soup;
     attempt.run(&[Step::Weld], soup, before, budget)?;
     let whole = attempt.draft.clone();
@@ -136,7 +136,7 @@ fn run(
         two_sided: whole.two_sided,
         ..made
     };
-    Ok(Filled { draft, holes: std::mem::take(&mut attempt.holes) })
+    Ok(FilledFile { draft, holes: std::mem::take(&mut attempt.holes) })
 }
 
 /// Share of the area that new triangles make up; 0 where nothing has an area.
@@ -150,7 +150,7 @@ fn interpolated_share(draft: &Draft, budget: &Budget) -> Result<f64, Stopped> {
     Ok(if all > 0.0 { new / all } else { 0.0 })
 }
 
-impl Loops {
+impl ListedLoops {
     /// The loops of the file of `report`, which keeps `samples` witnesses of them.
     pub(super) fn take(report: &mut Report, samples: usize) -> Self {
         let analysis = report.before.as_mut();

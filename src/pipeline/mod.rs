@@ -54,7 +54,7 @@ pub use self::modeller::{
     Blocker, BlockerKind, EdgeName, Edit, EditKind, FaceName, FaceRange, ModelFace, ModellerChoices,
     ModellerRefusal, ModellerReport, ModellerStep, RangeName, RangeSide,
 };
-pub use self::operation::{Facts, MESHES_MAX, Operation, Product, Require, Work};
+pub use self::operation::{Facts, MESHES_MAX, Operation, ProductKind, Require, WorkBound};
 pub use self::outcome::Outcome;
 pub use self::picture::{PictureChoices, PictureFormat};
 pub use self::printing::PrintingReport;
@@ -73,7 +73,7 @@ use crate::distance::SurfaceDistance;
 use crate::formats::{self, Encoding, Format, ReadOptions, WriteError};
 use crate::mesh::Texture;
 pub use crate::mesh::Units;
-use crate::printing::Policy;
+use crate::printing::PrintingPolicy;
 use crate::repair::nest;
 pub use crate::repair::unite::{NotCombined, NotSolid, SetOperation};
 use crate::simplify::TargetReport as SimplifyReport;
@@ -101,7 +101,7 @@ pub struct Options {
     /// Hole filling of `repair`.
     pub fill_holes: FillHoles,
     /// What shells inside shells mean to `repair`.
-    pub nesting: nest::Policy,
+    pub nesting: nest::NestingPolicy,
     /// What `repair` does with bodies that touch.
     pub contact: Contact,
     /// What `repair` is to do about each defect; `None`: as proposed.
@@ -128,7 +128,7 @@ pub struct Options {
     /// Witnesses to keep of each defect; `None`: 16.
     pub samples: Option<usize>,
     /// What the process can do that the mesh is to be printed with; `None`: the mesh is not measured for printing.
-    pub policy: Option<Policy>,
+    pub policy: Option<PrintingPolicy>,
     /// The MTL file of an OBJ: its diffuse colours become face colours, which OFF, PLY and glTF can hold.
     pub material: Option<Vec<u8>>,
     /// The picture that is made beside everything else; `None`: none, and of `render` the usual one.

@@ -39,7 +39,7 @@ const CHANGED: u64 = 256 << 20;
 
 /// What an operation gives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Product {
+pub enum ProductKind {
     /// Its report.
     Report,
     /// A mesh; the certificate says what holds.
@@ -52,7 +52,7 @@ pub enum Product {
 
 /// What bounds the work of a run, in proportion to its files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Work {
+pub enum WorkBound {
     /// As much as looking at a mesh takes.
     Looking,
     /// As much as a repair takes.
@@ -67,9 +67,9 @@ pub struct Facts {
     /// Name in paths, options and reports.
     pub name: &'static str,
     /// What it gives.
-    pub product: Product,
+    pub product: ProductKind,
     /// What bounds its work.
-    pub work: Work,
+    pub work: WorkBound,
     /// Passes of a usual run, by which progress is told.
     pub passes: f64,
     /// Bytes that it takes for each triangle, measured as peaks of a whole process (`docs/campaigns/speed.md`) or estimated from its
@@ -109,8 +109,8 @@ impl Operation {
             bytes_min,
             meshes: 1..=1,
         };
-        use Product::{Mesh, Picture, Report, Solid};
-        use Work::{Looking, Repairing, Unbounded};
+        use ProductKind::{Mesh, Picture, Report, Solid};
+        use WorkBound::{Looking, Repairing, Unbounded};
         match self {
             Self::Analyze => row("analyze", Report, Looking, 3.0, 170, CHANGED),
             Self::Plan => row("plan", Report, Looking, 3.0, 410, REBUILT),
@@ -137,7 +137,7 @@ impl Operation {
 
     /// True when its answer has no mesh.
     pub(crate) fn only_reports(self) -> bool {
-        matches!(self.facts().product, Product::Report | Product::Picture)
+        matches!(self.facts().product, ProductKind::Report | ProductKind::Picture)
     }
 
     /// Numbers of files that it takes.

@@ -6,7 +6,7 @@ use super::stitches::Stitches;
 use super::{Action, Contact};
 use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stopped};
-use crate::mesh::{ChosenEdges, Soup, Validity};
+use crate::mesh::{ChosenEdges, Soup, StitchValidity};
 use crate::repair::cut::CutOptions;
 use crate::repair::duplicates::OppositePairs;
 use crate::repair::fill::HoleReport;
@@ -116,7 +116,7 @@ impl Variant {
 
     /// The steps that join what touches itself, or part it.
     fn parting(contact: Contact, choices: &Choices) -> Vec<Step> {
-        let pinch = Step::Pinch(ChosenEdges::default(), Validity::Exact);
+        let pinch = Step::Pinch(ChosenEdges::default(), StitchValidity::Exact);
         let mut steps = vec![pairing(contact), Step::Cut(CutOptions::default()), pinch];
         if contact == Contact::Join {
             steps.push(Step::JoinContacts { size: choices.wall });
@@ -163,7 +163,7 @@ impl Variant {
         let join = choices.cuts.then(|| {
             // Which copies belong together matters only where they come apart for good.
             let pair = self.contact.map(pairing);
-            let pinch = self.contact.map(|_| Step::Pinch(ChosenEdges::default(), Validity::Exact));
+            let pinch = self.contact.map(|_| Step::Pinch(ChosenEdges::default(), StitchValidity::Exact));
             let snap = Step::Snap(SnapOptions {
                 epsilon: Some(choices.snap_epsilon.unwrap_or(self.snap_epsilon)),
                 by_edge: choices.snap_epsilon.is_none(),

@@ -5,7 +5,7 @@ use super::{Answer, Failure};
 use crate::budget::{Budget, Stage};
 use crate::formats::{self, Encoding, ReadError, ReadLimits, ReadOptions};
 use crate::mesh::Soup;
-use crate::printing::{self, Policy};
+use crate::printing::{self, PrintingPolicy};
 
 /// Figures of a mesh and how they stand to a policy.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,7 +39,7 @@ impl PrintingReport {
 pub(super) fn measure(
     input: &Input,
     answer: &Answer,
-    policy: &Policy,
+    policy: &PrintingPolicy,
     budget: &Budget,
 ) -> Result<Option<PrintingReport>, Failure> {
     let judged = answer.report.certificate.as_ref().unwrap_or(&answer.report.input_certificate);

@@ -1,6 +1,6 @@
 //! A broken file to a certified one: valid already, or a plan that is replayed, or a climb of the ladder.
 
-use super::fill_holes::Loops;
+use super::fill_holes::ListedLoops;
 use super::input::Input;
 use super::ladder::{self, Certified, Climb, Climbed};
 use super::output::{Candidate, NoCandidate};
@@ -15,12 +15,12 @@ use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::Depth;
 use crate::formats::Encoding;
 use crate::repair::Draft;
-use crate::repair::nest::Policy;
+use crate::repair::nest::NestingPolicy;
 
 /// Repairs `input`. A valid one comes back as it is, or converted.
 pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Result<Answer, Failure> {
     let mut report = input.planned(Operation::Repair, budget)?;
-    let loops = Loops::take(&mut report, input.samples);
+    let loops = ListedLoops::take(&mut report, input.samples);
     let plan = options.plan.as_ref();
     if plan.and_then(|plan| plan.input_sha256).is_some_and(|asked| asked != input.facts.sha256) {
         return Err(PlanMismatch::OtherFile.into());
@@ -38,7 +38,7 @@ pub(super) fn repair(input: &Input, options: &Options, budget: &Budget) -> Resul
 fn planned(
     input: &Input,
     choices: &Choices,
-    loops: &Loops,
+    loops: &ListedLoops,
     options: &Options,
     report: Report,
     budget: &Budget,
@@ -48,7 +48,7 @@ fn planned(
     let is_as_asked = || {
         !choices.removes()
             && !choices.mends_thin_faces()
-            && (choices.nesting != Policy::Fill || !has_cavities(input))
+            && (choices.nesting != NestingPolicy::Fill || !has_cavities(input))
     };
     if input.examination.certificate.is_printable() && is_as_asked() {
         let (draft, _) = Draft::from_soup(&input.soup);
@@ -89,7 +89,7 @@ fn finished(
     certified: Certified,
     outcome: Outcome,
     climb: &Climb<'_>,
-    loops: &Loops,
+    loops: &ListedLoops,
     report: Report,
 ) -> Result<Answer, Failure> {
     let Climb { input, options, budget, .. } = *climb;
@@ -112,7 +112,7 @@ fn finished(
 fn replay(
     input: &Input,
     steps: &[Step],
-    loops: &Loops,
+    loops: &ListedLoops,
     options: &Options,
     report: Report,
     budget: &Budget,
@@ -210,7 +210,7 @@ fn write(
 fn partial(
     input: &Input,
     encoding: Encoding,
-    loops: &Loops,
+    loops: &ListedLoops,
     report: Report,
     mended: Attempt,
     budget: &Budget,

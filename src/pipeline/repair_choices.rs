@@ -9,7 +9,7 @@ use crate::mesh::Soup;
 use crate::repair::Selection;
 use crate::repair::duplicates::OppositePairs;
 use crate::repair::fill::{FillOptions, HoleChoice};
-use crate::repair::nest::{Fate, Policy};
+use crate::repair::nest::{NestingPolicy, ShellFate};
 use crate::repair::thin_faces::ThinFaces;
 use crate::wrap::WALL_OF_DIAGONAL;
 
@@ -37,7 +37,7 @@ pub(super) struct Choices {
     pub(super) holes: Selection,
     /// Holes that are filled in a way of their own, ascending by half-edge.
     pub(super) hole_choices: Vec<HoleChoice>,
-    pub(super) nesting: Policy,
+    pub(super) nesting: NestingPolicy,
     /// Whether open parts get walls.
     pub(super) walls: Walls,
     /// Thickness of such walls, in the unit of the file.
@@ -47,7 +47,7 @@ pub(super) struct Choices {
     /// How far apart vertices of rims may be that are joined, in the unit of the file; `None`: as the rims suggest.
     pub(super) snap_epsilon: Option<f64>,
     /// Shells whose fate is chosen, each by a triangle of the soup.
-    pub(super) shells: Vec<(u32, Fate)>,
+    pub(super) shells: Vec<(u32, ShellFate)>,
     /// What becomes of opposite duplicates first.
     pub(super) opposite: OppositePairs,
     /// Bodies that pass through each other may become one.
@@ -70,7 +70,7 @@ impl Default for Choices {
             fills_holes: true,
             holes: Selection::default(),
             hole_choices: Vec::new(),
-            nesting: Policy::default(),
+            nesting: NestingPolicy::default(),
             walls: Walls::default(),
             wall: 0.0,
             thin_faces: ThinFaces::default(),
@@ -129,7 +129,7 @@ impl Choices {
 
     /// True when whole parts are removed as chosen.
     pub(super) fn removes(&self) -> bool {
-        !self.removed_parts.is_empty() || self.shells.iter().any(|&(_, fate)| fate == Fate::Goes)
+        !self.removed_parts.is_empty() || self.shells.iter().any(|&(_, fate)| fate == ShellFate::Goes)
     }
 
     /// True when thin faces go.
@@ -139,7 +139,8 @@ impl Choices {
 
     /// The choices for a surface that is to be rebuilt: what is removed goes before, and holes are looked at later.
     pub(super) fn before_rebuilding(&self) -> Self {
-        let gone = self.shells.iter().filter(|&&(_, fate)| fate == Fate::Goes).map(|&(triangle, _)| triangle);
+        let gone =
+            self.shells.iter().filter(|&&(_, fate)| fate == ShellFate::Goes).map(|&(triangle, _)| triangle);
         let mut removed_parts: Vec<u32> = self.removed_parts.iter().copied().chain(gone).collect();
         removed_parts.sort_unstable();
         Self { removed_parts, fills_holes: false, ..Self::default() }
@@ -249,10 +250,12 @@ impl Choices {
         let is_shell = matches!(code, DefectCode::InvertedShell | DefectCode::MisnestedShell);
         match remedy {
             // A wall inside a solid is dropped by the nesting, which lists it.
-            Remedy::Remove if code == DefectCode::MisnestedShell => self.shells.push((triangle, Fate::Goes)),
+            Remedy::Remove if code == DefectCode::MisnestedShell => {
+                self.shells.push((triangle, ShellFate::Goes))
+            }
             Remedy::Remove => self.removed_parts.push(triangle),
-            Remedy::Turn => self.shells.push((triangle, Fate::Turns)),
-            Remedy::Keep if is_shell => self.shells.push((triangle, Fate::Stays)),
+            Remedy::Turn => self.shells.push((triangle, ShellFate::Turns)),
+            Remedy::Keep if is_shell => self.shells.push((triangle, ShellFate::Stays)),
             // Walls are for all open parts or for none.
             Remedy::Keep if code == DefectCode::IsolatedFace => self.walls = Walls::Never,
             _ => {}

@@ -19,9 +19,9 @@ use crate::repair::Draft;
 use crate::repair::cut::CutOptions;
 use crate::repair::duplicates::OppositePairs;
 use crate::simplify::{
-    self, Guards, Mode, Refusal as CollapseRefusal, Simplified, SimplifyError, SimplifyOptions, Target,
+    self, Guards, Mode, Simplified, SimplifyError, SimplifyOptions, SimplifyRefusal, Target,
 };
-use crate::winding::Solid;
+use crate::winding::WindingSolid;
 
 /// What makes a manifold of any mesh, without moving a vertex.
 fn manifold() -> [Step; 5] {
@@ -57,11 +57,11 @@ pub(super) fn simplify(input: &Input, options: &Options, budget: &Budget) -> Res
             return Ok(report.refused(Refusal::NotRepairable { witness: None }));
         }
     };
-    Writer { input, options, draft: &draft, mesh: &mesh, budget }.answer(results, report)
+    ResultWriter { input, options, draft: &draft, mesh: &mesh, budget }.answer(results, report)
 }
 
 /// Writes results and gives the account of them.
-struct Writer<'a> {
+struct ResultWriter<'a> {
     input: &'a Input,
     options: &'a Options,
     draft: &'a Draft,
@@ -69,7 +69,7 @@ struct Writer<'a> {
     budget: &'a Budget,
 }
 
-impl Writer<'_> {
+impl ResultWriter<'_> {
     fn answer(&self, results: Vec<Simplified>, mut report: Report) -> Result<Answer, Failure> {
         let mut first = None;
         let mut others = Vec::new();
@@ -140,7 +140,7 @@ impl Writer<'_> {
 }
 
 /// A certified mesh with fewer triangles, the end of a repair.
-pub(super) struct Fewer {
+pub(super) struct ReducedMesh {
     /// That of the first target.
     candidate: Candidate,
     /// The triangle of the draft that each of its triangles was.
@@ -153,7 +153,7 @@ pub(super) struct Fewer {
     others: Vec<(Candidate, Vec<u32>)>,
 }
 
-impl Fewer {
+impl ReducedMesh {
     /// The answer of a repair whose `report` so far is about the certified `draft`, unless a result is farther from the
     /// input than `limits` allow.
     pub(super) fn returned(
@@ -172,7 +172,7 @@ impl Fewer {
         let origins = of_input(&origins);
         let volume = defined_volume(report.before.as_ref());
         let solid = budget.stage(Stage::Measure, || {
-            Solid::of(&draft.positions, &draft.triangles, options.wrap.open_shells, budget)
+            WindingSolid::of(&draft.positions, &draft.triangles, options.wrap.open_shells, budget)
         })?;
         let original = Original::new(&input.soup, volume, Some(solid));
         let fidelity = original.measure(candidate.soup(), &candidate.origins(&origins), budget)?;
@@ -208,7 +208,7 @@ pub(super) fn of_certified(
     input: &Input,
     options: &Options,
     budget: &Budget,
-) -> Result<Option<Fewer>, Failure> {
+) -> Result<Option<ReducedMesh>, Failure> {
     if options.simplify.targets.is_empty() {
         return Ok(None);
     }
@@ -221,7 +221,7 @@ pub(super) fn of_certified(
         Err(SimplifyError::NotManifold(_)) => return Ok(None),
     };
     let encoding = input.output_encoding(options);
-    let mut fewer: Option<Fewer> = None;
+    let mut fewer: Option<ReducedMesh> = None;
     for result in results {
         let soup = soup_of(&result, &mesh);
         let candidate = match Candidate::write(soup, input, encoding, Depth::FirstViolation, budget) {
@@ -239,7 +239,8 @@ pub(super) fn of_certified(
         match &mut fewer {
             None => {
                 let (action, origins) = (action(&result.report), result.triangle_origin);
-                fewer = Some(Fewer { candidate, origins, action, levels: vec![level], others: Vec::new() });
+                fewer =
+                    Some(ReducedMesh { candidate, origins, action, levels: vec![level], others: Vec::new() });
             }
             Some(fewer) => {
                 fewer.levels.push(level);
@@ -252,7 +253,7 @@ pub(super) fn of_certified(
 
 /// What a simplification did, as a step of a plan.
 pub(super) fn action(report: &simplify::TargetReport) -> Action {
-    let refused = CollapseRefusal::ALL.map(|reason| (reason.name(), report.refusals.count(reason)));
+    let refused = SimplifyRefusal::ALL.map(|reason| (reason.name(), report.refusals.count(reason)));
     let counts = [
         ("faces_removed", (report.faces_before - report.faces_after) as u64),
         ("edges_collapsed", report.collapses),
@@ -288,7 +289,7 @@ fn run(
     };
     let Seams { groups, points } = seams;
     let _charge = budget.charge((size_of_val(&points[..]) + size_of_val(&groups[..])) as u64)?;
-    let input = simplify::Input {
+    let input = simplify::SimplifyInput {
         positions: &mesh.positions,
         triangles: &mesh.triangles,
         face_groups: groups,

@@ -2,7 +2,7 @@
 
 use crate::analysis::DefectCode;
 use crate::budget::{Budget, Stopped};
-use crate::mesh::{ChosenEdges, Soup, Validity};
+use crate::mesh::{ChosenEdges, Soup, StitchValidity};
 use crate::repair::cut::CutOptions;
 use crate::repair::duplicates::OppositePairs;
 use crate::repair::fill::{FillOptions, HoleReport};
@@ -55,7 +55,7 @@ pub enum Step {
     /// Singular edges and vertices are cut.
     Cut(CutOptions),
     /// Edges that the cut has parted are joined from where boundaries turn back on themselves.
-    Pinch(ChosenEdges, Validity),
+    Pinch(ChosenEdges, StitchValidity),
     /// Boundary edges that are close are joined.
     Snap(SnapOptions),
     /// Holes are closed.

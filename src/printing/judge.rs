@@ -1,6 +1,6 @@
 //! Figures against the limits of a process.
 
-use super::{BuildDirection, BuildVolume, Figures, Limit, Policy, PrintingWitness, Thickness};
+use super::{BuildDirection, BuildVolume, Figures, Limit, PrintingPolicy, PrintingWitness, Thickness};
 use crate::geom::DVec3;
 
 /// What is checked.
@@ -62,7 +62,11 @@ pub struct Check {
 }
 
 /// Every check for which the policy has a limit.
-pub(super) fn checks(figures: &Figures, policy: &Policy, overhangs: Vec<PrintingWitness>) -> Vec<Check> {
+pub(super) fn checks(
+    figures: &Figures,
+    policy: &PrintingPolicy,
+    overhangs: Vec<PrintingWitness>,
+) -> Vec<Check> {
     let parts = &figures.parts;
     let all = [
         thin(CheckCode::Wall, &figures.walls, policy.wall, figures.quote.area),
@@ -81,7 +85,7 @@ pub(super) fn checks(figures: &Figures, policy: &Policy, overhangs: Vec<Printing
     limited.chain(build_volume(figures, policy)).collect()
 }
 
-fn overhang_angle(figures: &Figures, policy: &Policy) -> Option<f64> {
+fn overhang_angle(figures: &Figures, policy: &PrintingPolicy) -> Option<f64> {
     let placed = figures.overhangs.iter().find(|overhang| overhang.direction == policy.build_direction);
     placed.and_then(|overhang| overhang.angle_min)
 }
@@ -130,7 +134,7 @@ fn status(is_warned: bool, is_wrong: bool) -> Status {
     }
 }
 
-fn build_volume(figures: &Figures, policy: &Policy) -> Option<Check> {
+fn build_volume(figures: &Figures, policy: &PrintingPolicy) -> Option<Check> {
     let BuildVolume { warning, error } = policy.build_volume;
     let largest = error.or(warning)?;
     let fits = |sides: Option<[f64; 3]>| sides.map(|sides| fit(figures, policy.build_direction, sides));

@@ -26,7 +26,7 @@ pub use judge::{Check, CheckCode, Fit, Status};
 pub use oriented_box::OrientedBox;
 pub use overhang::Overhang;
 pub use parts::{Cavities, Parts};
-pub use policy::{BuildDirection, BuildVolume, Limit, Policy};
+pub use policy::{BuildDirection, BuildVolume, Limit, PrintingPolicy};
 pub use thickness::{Spread, Thickness};
 
 use crate::budget::{Budget, Stopped};
@@ -36,7 +36,7 @@ use crate::mesh::{EdgeGroups, Soup};
 use crate::par;
 use crate::spatial::NearestSearch;
 use surface::WeldedSurface;
-use thickness::{Probe, Side};
+use thickness::{Probe, SurfaceSide};
 
 /// Corners 12, source 4, normal 24, area 8, boxes 64, edges 18, component 4, and 8 for lists that come and go.
 const BYTES_PER_TRIANGLE: u64 = 142;
@@ -93,7 +93,7 @@ pub struct Figures {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Printing {
     /// The limits.
-    pub policy: Policy,
+    pub policy: PrintingPolicy,
     /// The mesh is certified to be a valid solid.
     pub is_solid: bool,
     /// One for each limit.
@@ -127,7 +127,7 @@ impl Printing {
 /// When the budget stops the run.
 pub fn measure(
     soup: &Soup,
-    policy: &Policy,
+    policy: &PrintingPolicy,
     is_solid: bool,
     samples: usize,
     budget: &Budget,
@@ -151,7 +151,7 @@ pub fn measure(
 
 fn figures(
     surface: &WeldedSurface<'_>,
-    policy: &Policy,
+    policy: &PrintingPolicy,
     is_solid: bool,
     samples: usize,
     budget: &Budget,
@@ -160,8 +160,8 @@ fn figures(
     let areas = Areas::of(of, budget)?;
     let search = NearestSearch::build(surface.positions, &surface.triangles, budget)?;
     let probe = Probe::new(surface, &search, &areas, budget);
-    let walls = probe.measure(Side::Inside, &policy.wall, samples)?;
-    let gaps = probe.measure(Side::Outside, &policy.gap, samples)?;
+    let walls = probe.measure(SurfaceSide::Inside, &policy.wall, samples)?;
+    let gaps = probe.measure(SurfaceSide::Outside, &policy.gap, samples)?;
     let groups = EdgeGroups::build(&surface.triangles, surface.positions.len(), budget)?;
     let edges = || edges::edges(surface, &groups, &policy.sharp_edge, samples, budget);
     let parts = || parts::parts(surface, &groups, search.bvh(), &policy.feature, is_solid, samples, budget);

@@ -65,7 +65,7 @@ impl BuildDirection {
 
 /// The limits of a process. Lengths are in the unit of the file, angles in degrees.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Policy {
+pub struct PrintingPolicy {
     /// Name of the process, for reports.
     pub name: &'static str,
     /// Version of the limits, for reports.
@@ -88,7 +88,7 @@ pub struct Policy {
     pub build_direction: BuildDirection,
 }
 
-impl Policy {
+impl PrintingPolicy {
     /// The same limits where a length has `factor` times as many units.
     pub fn scaled(&self, factor: f64) -> Self {
         let limit = |limit: Limit| Limit {

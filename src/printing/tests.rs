@@ -3,7 +3,7 @@
 use super::*;
 use crate::par;
 
-const LIMITS: Policy = Policy {
+const LIMITS: PrintingPolicy = PrintingPolicy {
     name: "test",
     version: 1,
     wall: Limit { warning: Some(1.0), error: Some(0.5) },
@@ -78,7 +78,7 @@ fn tube(inner: f64, outer: f64, height: f64, sides: u32) -> Soup {
     Soup { face_count: triangles.len() as u32, positions, triangles, ..Soup::default() }
 }
 
-fn with(soup: &Soup, policy: &Policy) -> Printing {
+fn with(soup: &Soup, policy: &PrintingPolicy) -> Printing {
     measure(soup, policy, true, 4, &Budget::unlimited()).unwrap().unwrap()
 }
 
@@ -230,9 +230,9 @@ fn a_wedge_overhangs_in_some_orientations_and_lies_on_the_plate_in_others() {
     assert_eq!((upside_down.area, upside_down.angle_min), (0.0, None));
     near(Some(upside_down.plate_area), 100.0);
     assert_eq!(status(&of, CheckCode::Overhang), Some(Status::Warning));
-    let policy = Policy { build_direction: BuildDirection::MinusZ, ..LIMITS };
+    let policy = PrintingPolicy { build_direction: BuildDirection::MinusZ, ..LIMITS };
     assert_eq!(status(&with(&wedge, &policy), CheckCode::Overhang), Some(Status::Ok));
-    let steep = Policy { overhang: Limit { warning: Some(30.0), error: None }, ..LIMITS };
+    let steep = PrintingPolicy { overhang: Limit { warning: Some(30.0), error: None }, ..LIMITS };
     assert_eq!(status(&with(&wedge, &steep), CheckCode::Overhang), Some(Status::Ok), "just steep enough");
 }
 
@@ -247,7 +247,7 @@ fn an_l_has_its_shadow_its_box_and_no_sharp_edge() {
     near(of.figures.edges.angle_min, 90.0);
     assert_eq!(of.figures.edges.sharp_count, 0);
     near(of.figures.edges.shortest, 1.0);
-    let along_x = Policy { build_direction: BuildDirection::X, ..LIMITS };
+    let along_x = PrintingPolicy { build_direction: BuildDirection::X, ..LIMITS };
     near(Some(with(&l, &along_x).figures.quote.shadow_area), 6.0);
 }
 
@@ -281,7 +281,7 @@ fn the_box_around_a_regular_tetrahedron_has_edges_as_diagonals_of_its_sides() {
 fn a_long_part_fits_as_placed_turned_tilted_or_not() {
     let fit = |soup: &Soup, sides| {
         let volume = BuildVolume { warning: None, error: Some(sides) };
-        let of = with(soup, &Policy { build_volume: volume, ..LIMITS });
+        let of = with(soup, &PrintingPolicy { build_volume: volume, ..LIMITS });
         (of.fit.unwrap(), status(&of, CheckCode::BuildVolume).unwrap())
     };
     let rod = cuboid([90.0, 10.0, 10.0], [0.0; 3]);
@@ -300,7 +300,7 @@ fn figures_scale_with_the_mesh_and_do_not_depend_on_threads_or_places() {
     let of = measured(&tube);
     let scaled = |by: f64| {
         let limit = |l: Limit| Limit { warning: l.warning.map(|w| w * by), error: l.error.map(|e| e * by) };
-        let policy = Policy { wall: limit(LIMITS.wall), gap: limit(LIMITS.gap), ..LIMITS };
+        let policy = PrintingPolicy { wall: limit(LIMITS.wall), gap: limit(LIMITS.gap), ..LIMITS };
         with(&moved(tube.clone(), |p| p * by), &policy)
     };
     for by in [1e-20, 1.0 / 1024.0, 1e20] {
@@ -327,7 +327,7 @@ fn meshes_of_any_kind_are_measured_without_harm() {
             (0..1 + random(12)).map(|_| [random(count), random(count), random(count)]).collect();
         let soup = Soup { face_count: triangles.len() as u32, positions, triangles, ..Soup::default() };
         for is_solid in [false, true] {
-            let policy = Policy { build_direction: BuildDirection::ALL[round % 6], ..LIMITS };
+            let policy = PrintingPolicy { build_direction: BuildDirection::ALL[round % 6], ..LIMITS };
             let found = measure(&soup, &policy, is_solid, 2, &Budget::unlimited()).unwrap();
             if let Some(found) = found {
                 let of = found.figures.quote;

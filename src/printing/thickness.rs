@@ -37,7 +37,7 @@ const CANDIDATES_OF_WITNESS: usize = 512;
 
 /// Which side of the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Side {
+pub(super) enum SurfaceSide {
     /// Walls.
     Inside,
     /// Gaps.
@@ -121,7 +121,12 @@ impl<'p> Probe<'p> {
     }
 
     /// Measures one side of the surface, with at most `witnesses` witnesses.
-    pub(super) fn measure(&self, side: Side, limit: &Limit, witnesses: usize) -> Result<Thickness, Stopped> {
+    pub(super) fn measure(
+        &self,
+        side: SurfaceSide,
+        limit: &Limit,
+        witnesses: usize,
+    ) -> Result<Thickness, Stopped> {
         let len = self.surface.triangles.len();
         let wanted = (4 * len).clamp(SAMPLES_MIN, SAMPLES_MAX);
         let middles = if len <= MIDDLES_MAX { len } else { 0 };
@@ -152,7 +157,7 @@ impl<'p> Probe<'p> {
     }
 
     /// What is measured at `count` places that are spread evenly over the surface.
-    fn by_area(&self, count: usize, side: Side) -> Result<Vec<WallReading>, Stopped> {
+    fn by_area(&self, count: usize, side: SurfaceSide) -> Result<Vec<WallReading>, Stopped> {
         let of = distance::Surface { positions: self.surface.positions, triangles: &self.surface.triangles };
         self.readings(count, side, |k| {
             let sample = self.areas.sample(of, k, count);
@@ -163,7 +168,7 @@ impl<'p> Probe<'p> {
     fn readings(
         &self,
         count: usize,
-        side: Side,
+        side: SurfaceSide,
         place: impl Fn(usize) -> (DVec3, u32) + Sync,
     ) -> Result<Vec<WallReading>, Stopped> {
         let parts = par::try_map_ranges(count, CHUNK, |range| {
@@ -173,9 +178,9 @@ impl<'p> Probe<'p> {
         Ok(parts.into_iter().flatten().collect())
     }
 
-    fn read(&self, (place, triangle): (DVec3, u32), side: Side) -> Result<WallReading, Stopped> {
+    fn read(&self, (place, triangle): (DVec3, u32), side: SurfaceSide) -> Result<WallReading, Stopped> {
         let normal = self.surface.normals[triangle as usize];
-        let is_inside = side == Side::Inside;
+        let is_inside = side == SurfaceSide::Inside;
         let along = if is_inside { -normal } else { normal };
         let ray = Ray { from: place, along, own: triangle, is_inside };
         let (hit, looked_at) = ray.first_hit(self.surface, self.search.bvh(), self.budget)?;

@@ -1,6 +1,6 @@
 //! From where a scene is seen, and where its points come to lie on the picture.
 
-use super::model::Model;
+use super::model::FramedScene;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 
@@ -122,7 +122,7 @@ impl Camera {
     /// # Errors
     /// When the budget stops the run.
     pub fn at(
-        models: &[&Model<'_>],
+        models: &[&FramedScene<'_>],
         direction: PictureAxes,
         projection: Projection,
         aspect: f64,
@@ -172,7 +172,7 @@ impl Camera {
     /// # Errors
     /// When the budget stops the run.
     pub fn turning(
-        models: &[&Model<'_>],
+        models: &[&FramedScene<'_>],
         elevation: f64,
         aspect: f64,
         budget: &Budget,

@@ -17,7 +17,7 @@ pub use camera::{Camera, PictureAxes, Projection, View};
 pub use canvas::{Canvas, Rgb};
 pub use encode::{animation, picture};
 pub use letters::{LETTER_HEIGHT, LETTER_WIDTH};
-pub use model::{Line, Model, Scene, SceneFrame, Shade, Spot};
+pub use model::{FramedScene, Line, Scene, SceneFrame, Shade, Spot};
 pub use normals::first_at_position;
 pub use resolve::{DrawnEdges, Style};
 
@@ -37,7 +37,7 @@ pub const SIDE_MAX: u32 = 4096;
 /// # Errors
 /// When the budget stops the run.
 pub fn draw(
-    model: &Model<'_>,
+    model: &FramedScene<'_>,
     camera: &Camera,
     width: u32,
     height: u32,
@@ -55,7 +55,7 @@ pub fn draw(
 /// # Errors
 /// When the budget stops the run.
 pub fn visible_triangles(
-    model: &Model<'_>,
+    model: &FramedScene<'_>,
     camera: &Camera,
     width: u32,
     height: u32,

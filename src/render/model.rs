@@ -87,22 +87,22 @@ impl SceneFrame {
 
 /// A scene in its frame.
 #[derive(Debug)]
-pub struct Model<'s> {
+pub struct FramedScene<'s> {
     pub(super) scene: Scene<'s>,
     points: Cow<'s, [DVec3]>,
-    pub(super) marks: Marks,
+    pub(super) marks: FrameMarks,
     pub(super) corner_normals: Option<CornerNormals>,
     _memory: Option<Charge<'s>>,
 }
 
 /// Marks in the frame.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Marks {
+pub(super) struct FrameMarks {
     pub(super) lines: Vec<Line>,
     pub(super) spots: Vec<Spot>,
 }
 
-impl<'s> Model<'s> {
+impl<'s> FramedScene<'s> {
     /// Brings `scene` into `frame`.
     ///
     /// # Errors
@@ -134,7 +134,7 @@ impl<'s> Model<'s> {
         };
         let line = |line: &Line| Line { ends: line.ends.map(|end| frame.place(end)), ..*line };
         let spot = |spot: &Spot| Spot { at: frame.place(spot.at), ..*spot };
-        let marks = Marks {
+        let marks = FrameMarks {
             lines: scene
                 .lines
                 .iter()
@@ -147,11 +147,11 @@ impl<'s> Model<'s> {
     }
 
     /// The same without lines and spots.
-    pub(super) fn without_marks(&self) -> Model<'_> {
-        Model {
+    pub(super) fn without_marks(&self) -> FramedScene<'_> {
+        FramedScene {
             scene: self.scene,
             points: Cow::Borrowed(&self.points),
-            marks: Marks::default(),
+            marks: FrameMarks::default(),
             corner_normals: None,
             _memory: None,
         }

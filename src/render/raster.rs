@@ -5,7 +5,7 @@
 //! 1988), so that of triangles that share an edge one at least takes each sample on it.
 
 use super::camera::Camera;
-use super::model::{Line, Model, Spot};
+use super::model::{FramedScene, Line, Spot};
 use super::normals::normal;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
@@ -35,7 +35,7 @@ const SPOT: u32 = 3 << 30;
 
 /// What is seen at a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Sample {
+pub(super) struct PixelSample {
     /// How near it is, from 0 to 1.
     pub(super) near: f32,
     what: u32,
@@ -50,7 +50,7 @@ pub(super) enum VisibleElement {
     Spot(usize),
 }
 
-impl Sample {
+impl PixelSample {
     pub(super) const EMPTY: Self = Self { near: f32::NEG_INFINITY, what: NOTHING };
 
     pub(super) fn seen(self) -> VisibleElement {
@@ -72,18 +72,18 @@ impl Sample {
 
 /// What is seen of a scene.
 #[derive(Debug)]
-pub(super) struct Visible {
+pub(super) struct SampledScene {
     pub(super) width: usize,
     pub(super) height: usize,
     /// Row by row from the top left.
-    pub(super) samples: Vec<Sample>,
+    pub(super) samples: Vec<PixelSample>,
     /// Vertices in parts of a sample.
     pub(super) corners: Vec<[i32; 2]>,
     /// By triangle, true when its back is toward the eye.
     pub(super) is_back: Vec<bool>,
 }
 
-impl Visible {
+impl SampledScene {
     /// The places of the corners of a triangle, in parts of a sample.
     pub(super) fn places(&self, corners: [u32; 3]) -> [[i32; 2]; 3] {
         corners.map(|v| self.corners[v as usize])
@@ -103,14 +103,14 @@ impl Visible {
 
 /// Fills a picture of so many samples.
 pub(super) fn fill(
-    model: &Model<'_>,
+    model: &FramedScene<'_>,
     camera: &Camera,
     width: usize,
     height: usize,
     budget: &Budget,
-) -> Result<Visible, Stopped> {
+) -> Result<SampledScene, Stopped> {
     let triangles = model.scene.triangles;
-    let bytes = width * height * size_of::<Sample>() + model.points().len() * 12 + triangles.len() * 5;
+    let bytes = width * height * size_of::<PixelSample>() + model.points().len() * 12 + triangles.len() * 5;
     let _memory = budget.charge(bytes as u64)?;
     let points = model.points();
     let projected = par::try_map_ranges(points.len(), CHECK_EVERY, |range| {
@@ -129,10 +129,10 @@ pub(super) fn fill(
     })?;
     let (rows, is_back): (Vec<[u16; 2]>, Vec<bool>) = facts.into_iter().flatten().unzip();
     let filling =
-        Filling { triangles, corners: &corners, depths: &depths, rows: &rows, is_back: &is_back, width };
+        TriangleFill { triangles, corners: &corners, depths: &depths, rows: &rows, is_back: &is_back, width };
     let bands: Vec<_> = (0..height).step_by(BAND).map(|row| row..(row + BAND).min(height)).collect();
     let filled = par::map_items(bands, |_, band| {
-        let mut samples = vec![Sample::EMPTY; band.len() * width];
+        let mut samples = vec![PixelSample::EMPTY; band.len() * width];
         filling.fill(&mut samples, &band, budget)?;
         for (number, line) in model.marks.lines.iter().enumerate() {
             if number % CHECK_EVERY == 0 {
@@ -163,7 +163,7 @@ pub(super) fn fill(
     for band in filled {
         samples.extend(band?);
     }
-    Ok(Visible { width, height, samples, corners, is_back })
+    Ok(SampledScene { width, height, samples, corners, is_back })
 }
 
 /// A point in parts of a sample, and how near it is.
@@ -235,7 +235,7 @@ impl Flat {
     }
 }
 
-struct Filling<'f> {
+struct TriangleFill<'f> {
     triangles: &'f [[u32; 3]],
     corners: &'f [[i32; 2]],
     depths: &'f [f32],
@@ -244,8 +244,8 @@ struct Filling<'f> {
     width: usize,
 }
 
-impl Filling<'_> {
-    fn fill(&self, samples: &mut [Sample], band: &Range<usize>, budget: &Budget) -> Result<(), Stopped> {
+impl TriangleFill<'_> {
+    fn fill(&self, samples: &mut [PixelSample], band: &Range<usize>, budget: &Budget) -> Result<(), Stopped> {
         let mut work = 0;
         for (part, rows) in self.rows.chunks(CHECK_EVERY).enumerate() {
             budget.check()?;
@@ -267,7 +267,7 @@ impl Filling<'_> {
     /// Puts a triangle into the rows `first` to `last`; the number of samples that were asked.
     fn fill_triangle(
         &self,
-        samples: &mut [Sample],
+        samples: &mut [PixelSample],
         top: usize,
         t: usize,
         [first, last]: [usize; 2],
@@ -286,7 +286,7 @@ impl Filling<'_> {
         let scale = 1.0 / flat.area as f64;
         let behind = if self.is_back[t] { BACK_BEHIND } else { 0.0 };
         let steps = [0, 1, 2].map(|i| flat.step(i));
-        // Weights as in `Visible::weights`: corner 0 by edge 1, corner 1 by edge 2, corner 2 by edge 0.
+        // Weights as in `SampledScene::weights`: corner 0 by edge 1, corner 1 by edge 2, corner 2 by edge 0.
         let depth = |edges: [i64; 3]| {
             (near_a * edges[1] as f64 + near_b * edges[2] as f64 + near_c * edges[0] as f64) * scale
         };
@@ -306,7 +306,7 @@ impl Filling<'_> {
             let begin = (row - top) * self.width;
             for sample in &mut samples[begin + from as usize..=begin + to as usize] {
                 if edges[0] | edges[1] | edges[2] >= 0 && near as f32 > sample.near {
-                    *sample = Sample { near: near as f32, what: t as u32 };
+                    *sample = PixelSample { near: near as f32, what: t as u32 };
                 }
                 edges = [edges[0] + steps[0], edges[1] + steps[1], edges[2] + steps[2]];
                 near += along;
@@ -316,17 +316,17 @@ impl Filling<'_> {
     }
 }
 
-type Project<'p> = &'p dyn Fn(DVec3) -> (f64, f64, f64);
+type ProjectionFunction<'p> = &'p dyn Fn(DVec3) -> (f64, f64, f64);
 
 /// Half the width of a line in samples.
 const LINE_HALF_WIDTH: f64 = 2.2;
 
 fn draw_line(
-    samples: &mut [Sample],
+    samples: &mut [PixelSample],
     band: &Range<usize>,
     line: &Line,
     number: usize,
-    project: Project<'_>,
+    project: ProjectionFunction<'_>,
     width: usize,
 ) {
     let [(ax, ay, a_near), (bx, by, b_near)] = line.ends.map(project);
@@ -349,7 +349,7 @@ fn draw_line(
             let sample = &mut samples[(row - band.start) * width + column];
             let is_within = off_x * off_x + off_y * off_y <= LINE_HALF_WIDTH * LINE_HALF_WIDTH;
             if is_within && near + LINE_BEFORE >= sample.near {
-                *sample = Sample { near: near.max(sample.near), what: LINE | number as u32 };
+                *sample = PixelSample { near: near.max(sample.near), what: LINE | number as u32 };
             }
         }
     }
@@ -361,11 +361,11 @@ const SPOT_RADIUS: (f64, f64) = (0.009, 4.0);
 const RING: f64 = 0.7;
 
 fn draw_spot(
-    samples: &mut [Sample],
+    samples: &mut [PixelSample],
     band: &Range<usize>,
     spot: &Spot,
     number: usize,
-    project: Project<'_>,
+    project: ProjectionFunction<'_>,
     [width, height]: [usize; 2],
 ) {
     let (x, y, near) = project(spot.at);
@@ -383,7 +383,8 @@ fn draw_spot(
             let off = (off_x * off_x + off_y * off_y).sqrt();
             if off <= radius && (!is_hidden || off >= RING * radius) {
                 let near = near as f32 + SPOT_BEFORE;
-                samples[(row - band.start) * width + column] = Sample { near, what: SPOT | number as u32 };
+                samples[(row - band.start) * width + column] =
+                    PixelSample { near, what: SPOT | number as u32 };
             }
         }
     }

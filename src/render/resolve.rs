@@ -3,9 +3,9 @@
 use super::SAMPLES;
 use super::camera::Camera;
 use super::canvas::{Canvas, Rgb};
-use super::model::Model;
+use super::model::FramedScene;
 use super::normals::normal;
-use super::raster::{Visible, VisibleElement};
+use super::raster::{SampledScene, VisibleElement};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 use crate::par;
@@ -79,7 +79,12 @@ struct VisibleFaces {
 }
 
 impl VisibleFaces {
-    fn of(model: &Model<'_>, camera: &Camera, seen: &Visible, budget: &Budget) -> Result<Self, Stopped> {
+    fn of(
+        model: &FramedScene<'_>,
+        camera: &Camera,
+        seen: &SampledScene,
+        budget: &Budget,
+    ) -> Result<Self, Stopped> {
         let mut numbers = vec![u32::MAX; model.scene.triangles.len()];
         let mut triangles = Vec::new();
         for samples in seen.samples.chunks(CHECK_EVERY) {
@@ -119,9 +124,9 @@ impl VisibleFaces {
 }
 
 pub(super) fn resolve(
-    model: &Model<'_>,
+    model: &FramedScene<'_>,
     camera: &Camera,
-    seen: &Visible,
+    seen: &SampledScene,
     style: &Style,
     budget: &Budget,
 ) -> Result<Canvas, Stopped> {
@@ -147,8 +152,8 @@ pub(super) fn resolve(
 }
 
 struct Light<'l> {
-    model: &'l Model<'l>,
-    seen: &'l Visible,
+    model: &'l FramedScene<'l>,
+    seen: &'l SampledScene,
     style: &'l Style,
     faces: &'l VisibleFaces,
 }
@@ -209,7 +214,7 @@ impl Light<'_> {
     }
 
     fn ink(&self, t: u32, x: usize, y: usize) -> f32 {
-        let Visible { width, height, samples, .. } = self.seen;
+        let SampledScene { width, height, samples, .. } = self.seen;
         let own = samples[y * width + x];
         let normal = self.faces.normals[self.faces.number(t)];
         let mut ink: f32 = 0.0;
@@ -243,7 +248,7 @@ impl Light<'_> {
 /// The normal between those of the corners at the middle of a sample.
 fn smooth(face: &VisibleFace, x: usize, y: usize) -> Option<[f32; 3]> {
     let RoundedCorners { places, normals } = face.rounded.as_ref()?;
-    let weights = Visible::weights(*places, x, y)?;
+    let weights = SampledScene::weights(*places, x, y)?;
     let between = [0, 1, 2]
         .map(|k| weights[0] * normals[0][k] + weights[1] * normals[1][k] + weights[2] * normals[2][k]);
     let length = dot(between, between).sqrt();

@@ -15,7 +15,7 @@ fn square(z: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
 
 fn picture_of(scene: Scene<'_>, view: View, style: &Style) -> Canvas {
     let budget = Budget::unlimited();
-    let model = Model::of(scene, SceneFrame::around([scene.bounds()]), Shade::Flat, &budget).unwrap();
+    let model = FramedScene::of(scene, SceneFrame::around([scene.bounds()]), Shade::Flat, &budget).unwrap();
     let camera = Camera::at(&[&model], view.direction(), Projection::Orthographic, 1.0, &budget).unwrap();
     draw(&model, &camera, 40, 40, style, &budget).unwrap()
 }
@@ -45,7 +45,7 @@ fn of_two_the_nearer_one_is_seen_from_either_side() {
     triangles.extend(more.iter().map(|corners| corners.map(|v| v + 4)));
     let budget = Budget::unlimited();
     let scene = Scene { positions: &positions, triangles: &triangles, palette: &PALETTE, ..Scene::default() };
-    let model = Model::of(scene, SceneFrame::around([scene.bounds()]), Shade::Flat, &budget).unwrap();
+    let model = FramedScene::of(scene, SceneFrame::around([scene.bounds()]), Shade::Flat, &budget).unwrap();
     for (view, nearer) in [(View::Top, [2, 3]), (View::Bottom, [0, 1])] {
         for projection in [Projection::Orthographic, Projection::Perspective] {
             let camera = Camera::at(&[&model], view.direction(), projection, 1.0, &budget).unwrap();
@@ -67,7 +67,7 @@ fn triangles_that_share_edges_leave_no_gap() {
     let triangles: Vec<_> = (0..rim).map(|i| [0, 1 + i, 1 + (i + 1) % rim]).collect();
     let budget = Budget::unlimited();
     let scene = Scene { positions: &positions, triangles: &triangles, palette: &PALETTE, ..Scene::default() };
-    let model = Model::of(scene, SceneFrame::around([scene.bounds()]), Shade::Flat, &budget).unwrap();
+    let model = FramedScene::of(scene, SceneFrame::around([scene.bounds()]), Shade::Flat, &budget).unwrap();
     let camera =
         Camera::at(&[&model], View::Top.direction(), Projection::Orthographic, 1.0, &budget).unwrap();
     let side = 501_i32;
@@ -120,7 +120,8 @@ fn a_spot_behind_the_eye_is_not_seen() {
             ..Scene::default()
         };
         let budget = Budget::unlimited();
-        let model = Model::of(scene, SceneFrame::around([scene.bounds()]), Shade::Flat, &budget).unwrap();
+        let model =
+            FramedScene::of(scene, SceneFrame::around([scene.bounds()]), Shade::Flat, &budget).unwrap();
         let camera =
             Camera::at(&[&model], View::Top.direction(), Projection::Perspective, 1.0, &budget).unwrap();
         let canvas = draw(&model, &camera, 40, 40, &STYLE, &budget).unwrap();
@@ -167,7 +168,7 @@ fn a_run_that_is_to_end_ends() {
     let budget = Budget::new(crate::budget::StopFlag::default(), u64::MAX, 1000);
     let (positions, triangles) = square(0.0);
     let scene = Scene { positions: &positions, triangles: &triangles, palette: &PALETTE, ..Scene::default() };
-    let model = Model::of(scene, SceneFrame::around([scene.bounds()]), Shade::Flat, &budget).unwrap();
+    let model = FramedScene::of(scene, SceneFrame::around([scene.bounds()]), Shade::Flat, &budget).unwrap();
     let camera = Camera::turning(&[&model], 20.0, 1.0, &budget).unwrap()(30.0);
     assert!(matches!(draw(&model, &camera, 640, 480, &STYLE, &budget), Err(Stopped::Memory { .. })));
 }

@@ -30,7 +30,7 @@ pub fn split_collinear(draft: &mut Draft, budget: &Budget) -> Result<Changes, St
     let collinear = collinear_triangles(draft, budget)?;
     let mut split = 0;
     if !collinear.is_empty() {
-        let lines = Lines::of(draft, &collinear);
+        let lines = CollinearLines::of(draft, &collinear);
         split = replace(draft, &collinear, &lines, budget)?;
         draft.drop_unused_vertices();
     }
@@ -50,14 +50,14 @@ fn collinear_triangles(draft: &Draft, budget: &Budget) -> Result<Vec<u32>, Stopp
 }
 
 /// The edges of collinear triangles, and for each cluster its vertices along the line.
-struct Lines {
+struct CollinearLines {
     /// Edge (smaller vertex first) and cluster, ascending.
     edges: Vec<([u32; 2], u32)>,
     /// Vertices of each cluster in the order of the line.
     vertices: Vec<Vec<u32>>,
 }
 
-impl Lines {
+impl CollinearLines {
     fn of(draft: &Draft, collinear: &[u32]) -> Self {
         let mut edges: Vec<([u32; 2], u32)> = collinear
             .iter()
@@ -118,7 +118,12 @@ fn sort_along_line(line: &mut Vec<u32>, draft: &Draft) {
 }
 
 /// Drops the collinear triangles and divides their neighbours; gives the number of those.
-fn replace(draft: &mut Draft, collinear: &[u32], lines: &Lines, budget: &Budget) -> Result<u64, Stopped> {
+fn replace(
+    draft: &mut Draft,
+    collinear: &[u32],
+    lines: &CollinearLines,
+    budget: &Budget,
+) -> Result<u64, Stopped> {
     let mut is_on_line = vec![false; draft.positions.len()];
     for &v in lines.vertices.iter().flatten() {
         is_on_line[v as usize] = true;

@@ -2,7 +2,7 @@
 
 use super::{Changes, Draft, Effects};
 use crate::budget::{Budget, Stopped};
-use crate::mesh::{self, ChosenEdges, CutMethod, Marks};
+use crate::mesh::{self, ChosenEdges, CutMarks, CutMethod};
 
 /// How to cut.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -21,7 +21,7 @@ pub fn cut(draft: &mut Draft, options: &CutOptions, budget: &Budget) -> Result<C
     let vertex_count = draft.positions.len();
     let groups = draft.edge_groups(budget)?;
     let chosen = chosen_in(draft, &options.chosen);
-    let marks = Marks::find(&draft.triangles, vertex_count, &groups, &chosen, budget)?;
+    let marks = CutMarks::find(&draft.triangles, vertex_count, &groups, &chosen, budget)?;
     drop(groups);
     let method = options.method.unwrap_or_else(|| CutMethod::cheaper(&marks, draft.triangles.len()));
     let copies = mesh::cut(&mut draft.triangles, vertex_count, &marks, method, budget)?;
@@ -54,7 +54,7 @@ fn chosen_in(draft: &Draft, chosen: &ChosenEdges) -> ChosenEdges {
     ChosenEdges::of(chosen.iter().filter_map(|[a, b]| Some([find(a)?, find(b)?])))
 }
 
-fn reason(marks: &Marks, method: CutMethod, is_asked: bool, vertex_count: usize) -> String {
+fn reason(marks: &CutMarks, method: CutMethod, is_asked: bool, vertex_count: usize) -> String {
     let singular = marks.vertices().len();
     if singular == 0 {
         return String::new();

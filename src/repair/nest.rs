@@ -15,11 +15,11 @@
 use super::{Changes, Draft};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::mesh::{Components, EdgeGroups, UnionFind, edge_of, triangle_of};
-use crate::spatial::{self, Bvh, Nesting, Search};
+use crate::spatial::{self, Bvh, Search, ShellNesting};
 
 /// What shells inside shells mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Policy {
+pub enum NestingPolicy {
     /// What their directions say.
     #[default]
     AsOriented,
@@ -31,7 +31,7 @@ pub enum Policy {
 
 /// What becomes of a shell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Fate {
+pub enum ShellFate {
     /// It stays as it is.
     Stays,
     /// Its triangles are turned.
@@ -44,11 +44,11 @@ pub enum Fate {
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct NestOptions {
     /// What shells inside shells mean.
-    pub policy: Policy,
+    pub policy: NestingPolicy,
     /// It is known that no two triangles meet beyond common vertices and edges, so that need not be tested.
     pub is_embedded: bool,
     /// Shells whose fate the caller chose, each by a triangle of the soup in it.
-    pub chosen: Vec<(u32, Fate)>,
+    pub chosen: Vec<(u32, ShellFate)>,
 }
 
 /// Turns inverted trees of shells and drops hidden walls. Needs a welded draft of closed, oriented shells that do not
@@ -71,8 +71,8 @@ pub fn nest(draft: &mut Draft, options: &NestOptions, budget: &Budget) -> Result
     }
     let nesting = spatial::nest(&draft.positions, &draft.triangles, &shells.of, shells.count, &bvh, budget)?;
     let mut fates = match options.policy {
-        Policy::AsOriented => decide(&nesting, &two_sided_shells(draft, &shells)),
-        Policy::Alternate | Policy::Fill => by_place(&nesting, options.policy),
+        NestingPolicy::AsOriented => decide(&nesting, &two_sided_shells(draft, &shells)),
+        NestingPolicy::Alternate | NestingPolicy::Fill => by_place(&nesting, options.policy),
     };
     for &(triangle, fate) in &options.chosen {
         let part_of = draft.triangle_origin.iter().zip(&shells.of).filter(|&(&origin, _)| origin == triangle);
@@ -84,15 +84,15 @@ pub fn nest(draft: &mut Draft, options: &NestOptions, budget: &Budget) -> Result
 }
 
 /// What becomes of each shell where only places count.
-fn by_place(nesting: &Nesting, policy: Policy) -> Vec<Fate> {
+fn by_place(nesting: &ShellNesting, policy: NestingPolicy) -> Vec<ShellFate> {
     let fate = |(&depth, &is_outward): (&u32, &bool)| {
         let is_cavity = depth % 2 == 1;
-        if policy == Policy::Fill && depth > 0 {
-            Fate::Goes
+        if policy == NestingPolicy::Fill && depth > 0 {
+            ShellFate::Goes
         } else if is_outward == is_cavity {
-            Fate::Turns
+            ShellFate::Turns
         } else {
-            Fate::Stays
+            ShellFate::Stays
         }
     };
     nesting.depth.iter().zip(&nesting.is_outward).map(fate).collect()
@@ -144,14 +144,14 @@ fn two_sided_shells(draft: &Draft, shells: &Components) -> Vec<bool> {
 }
 
 /// What becomes of each shell.
-fn decide(nesting: &Nesting, says_nothing: &[bool]) -> Vec<Fate> {
+fn decide(nesting: &ShellNesting, says_nothing: &[bool]) -> Vec<ShellFate> {
     let shell_count = nesting.parent.len();
     let mut from_outside_in: Vec<usize> = (0..shell_count).collect();
     from_outside_in.sort_by_key(|&s| nesting.depth[s]);
     let mut root: Vec<usize> = (0..shell_count).collect();
     let mut is_solid_inside = vec![true; shell_count];
     let mut is_contradictory = vec![false; shell_count];
-    let mut fates = vec![Fate::Stays; shell_count];
+    let mut fates = vec![ShellFate::Stays; shell_count];
     for s in from_outside_in {
         let is_met_in_solid = nesting.parent[s].is_some_and(|p| is_solid_inside[p as usize]);
         root[s] = nesting.parent[s].map_or(s, |p| root[p as usize]);
@@ -160,28 +160,28 @@ fn decide(nesting: &Nesting, says_nothing: &[bool]) -> Vec<Fate> {
         is_contradictory[root[s]] |= !is_outward && !is_met_in_solid;
         is_solid_inside[s] = is_outward;
         fates[s] = match (is_met_in_solid, is_outward) {
-            (true, true) => Fate::Goes,
-            _ if is_outward != nesting.is_outward[s] => Fate::Turns,
-            _ => Fate::Stays,
+            (true, true) => ShellFate::Goes,
+            _ if is_outward != nesting.is_outward[s] => ShellFate::Turns,
+            _ => ShellFate::Stays,
         };
     }
     for s in 0..shell_count {
         if is_contradictory[root[s]] {
-            fates[s] = Fate::Stays;
+            fates[s] = ShellFate::Stays;
         }
     }
     fates
 }
 
 fn apply(
-    fates: &[Fate],
-    policy: Policy,
+    fates: &[ShellFate],
+    policy: NestingPolicy,
     draft: &mut Draft,
     shells: &Components,
     budget: &Budget,
 ) -> Result<Changes, Stopped> {
-    let count = |fate: Fate| fates.iter().filter(|&&f| f == fate).count() as u64;
-    let (turned, dropped) = (count(Fate::Turns), count(Fate::Goes));
+    let count = |fate: ShellFate| fates.iter().filter(|&&f| f == fate).count() as u64;
+    let (turned, dropped) = (count(ShellFate::Turns), count(ShellFate::Goes));
     let fate_of = |t: usize| fates[shells.of[t] as usize];
     let mut removed_parts = Vec::new();
     let mut is_listed = vec![false; fates.len()];
@@ -191,9 +191,9 @@ fn apply(
             budget.check()?;
         }
         match fate_of(t) {
-            Fate::Stays => {}
-            Fate::Turns => draft.flip(t),
-            Fate::Goes => {
+            ShellFate::Stays => {}
+            ShellFate::Turns => draft.flip(t),
+            ShellFate::Goes => {
                 is_kept[t] = false;
                 if !std::mem::replace(&mut is_listed[shells.of[t] as usize], true) {
                     removed_parts.push(draft.triangle_origin[t]);
@@ -206,11 +206,11 @@ fn apply(
     Ok(Changes { reason: reason(policy, turned, dropped), removed_parts, ..counted(turned, dropped) })
 }
 
-fn reason(policy: Policy, turned: u64, dropped: u64) -> String {
+fn reason(policy: NestingPolicy, turned: u64, dropped: u64) -> String {
     let (why_turned, why_dropped) = match policy {
-        Policy::AsOriented => ("were inside out and turned", "were walls inside a solid and dropped"),
-        Policy::Alternate => ("were turned, so that they alternate", "were dropped as chosen"),
-        Policy::Fill => {
+        NestingPolicy::AsOriented => ("were inside out and turned", "were walls inside a solid and dropped"),
+        NestingPolicy::Alternate => ("were turned, so that they alternate", "were dropped as chosen"),
+        NestingPolicy::Fill => {
             ("were inside out and turned", "were inside others and dropped, so that these are filled")
         }
     };
@@ -224,39 +224,39 @@ mod tests {
     use super::*;
 
     /// Shells in a row, each inside the one before.
-    fn nested(is_outward: &[bool]) -> Nesting {
+    fn nested(is_outward: &[bool]) -> ShellNesting {
         let n = is_outward.len() as u32;
-        Nesting {
+        ShellNesting {
             is_outward: is_outward.to_vec(),
             parent: (0..n).map(|s| s.checked_sub(1)).collect(),
             depth: (0..n).collect(),
         }
     }
 
-    fn fates(is_outward: &[bool]) -> Vec<Fate> {
+    fn fates(is_outward: &[bool]) -> Vec<ShellFate> {
         decide(&nested(is_outward), &vec![false; is_outward.len()])
     }
 
     #[test]
     fn a_body_with_a_cavity_and_a_body_in_it_stays() {
-        assert_eq!(fates(&[true, false, true]), [Fate::Stays; 3]);
+        assert_eq!(fates(&[true, false, true]), [ShellFate::Stays; 3]);
     }
 
     #[test]
     fn an_inverted_body_turns_together_with_its_cavity() {
-        assert_eq!(fates(&[false, true]), [Fate::Turns; 2]);
+        assert_eq!(fates(&[false, true]), [ShellFate::Turns; 2]);
     }
 
     #[test]
     fn an_outward_shell_inside_a_solid_is_dropped_and_its_cavity_stays() {
-        assert_eq!(fates(&[true, true]), [Fate::Stays, Fate::Goes]);
-        assert_eq!(fates(&[true, true, false]), [Fate::Stays, Fate::Goes, Fate::Stays]);
+        assert_eq!(fates(&[true, true]), [ShellFate::Stays, ShellFate::Goes]);
+        assert_eq!(fates(&[true, true, false]), [ShellFate::Stays, ShellFate::Goes, ShellFate::Stays]);
     }
 
     #[test]
     fn a_cavity_inside_a_cavity_is_a_contradiction_and_left_alone() {
-        assert_eq!(fates(&[true, false, false]), [Fate::Stays; 3]);
-        assert_eq!(fates(&[false, true, true]), [Fate::Stays; 3]);
+        assert_eq!(fates(&[true, false, false]), [ShellFate::Stays; 3]);
+        assert_eq!(fates(&[false, true, true]), [ShellFate::Stays; 3]);
     }
 
     #[test]
@@ -264,20 +264,29 @@ mod tests {
         let mut two_trees = nested(&[true, false, false, false]);
         two_trees.parent[3] = None;
         two_trees.depth[3] = 0;
-        assert_eq!(decide(&two_trees, &[false; 4]), [Fate::Stays, Fate::Stays, Fate::Stays, Fate::Turns]);
+        assert_eq!(
+            decide(&two_trees, &[false; 4]),
+            [ShellFate::Stays, ShellFate::Stays, ShellFate::Stays, ShellFate::Turns]
+        );
     }
 
     #[test]
     fn by_place_alone_every_second_shell_is_a_cavity_or_all_inner_ones_go() {
         let three = nested(&[true, true, false]);
-        assert_eq!(by_place(&three, Policy::Alternate), [Fate::Stays, Fate::Turns, Fate::Turns]);
-        assert_eq!(by_place(&three, Policy::Fill), [Fate::Stays, Fate::Goes, Fate::Goes]);
-        assert_eq!(by_place(&nested(&[false]), Policy::Fill), [Fate::Turns]);
+        assert_eq!(
+            by_place(&three, NestingPolicy::Alternate),
+            [ShellFate::Stays, ShellFate::Turns, ShellFate::Turns]
+        );
+        assert_eq!(
+            by_place(&three, NestingPolicy::Fill),
+            [ShellFate::Stays, ShellFate::Goes, ShellFate::Goes]
+        );
+        assert_eq!(by_place(&nested(&[false]), NestingPolicy::Fill), [ShellFate::Turns]);
     }
 
     #[test]
     fn a_shell_given_in_both_directions_is_a_body_in_the_void_and_a_wall_in_the_solid() {
-        assert_eq!(decide(&nested(&[false, false]), &[true, true]), [Fate::Turns, Fate::Goes]);
-        assert_eq!(decide(&nested(&[true, false]), &[false, true]), [Fate::Stays, Fate::Goes]);
+        assert_eq!(decide(&nested(&[false, false]), &[true, true]), [ShellFate::Turns, ShellFate::Goes]);
+        assert_eq!(decide(&nested(&[true, false]), &[false, true]), [ShellFate::Stays, ShellFate::Goes]);
     }
 }

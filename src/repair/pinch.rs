@@ -5,7 +5,7 @@
 
 use super::{Changes, Draft, Joins};
 use crate::budget::{Budget, Stopped};
-use crate::mesh::{self, Boundary, ChosenEdges, EdgeGroups, JoinRule, Validity, edge_of};
+use crate::mesh::{self, Boundary, ChosenEdges, EdgeGroups, JoinRule, StitchValidity, edge_of};
 
 /// Joins boundary edges that were one edge of the file and follow each other along a boundary, then their neighbours on
 /// both sides while these match too. Edges that the caller chose to cut stay cut. The draft must be a manifold (see
@@ -22,7 +22,7 @@ use crate::mesh::{self, Boundary, ChosenEdges, EdgeGroups, JoinRule, Validity, e
 pub fn pinch(
     draft: &mut Draft,
     chosen: &ChosenEdges,
-    validity: Validity,
+    validity: StitchValidity,
     budget: &Budget,
 ) -> Result<Changes, Stopped> {
     let outlines = draft.outlines(budget)?;
@@ -127,7 +127,7 @@ mod tests {
             "6 twice, 5 and 10 once for the triangles that stand"
         );
         let changes =
-            pinch(&mut mesh, &ChosenEdges::default(), Validity::Exact, &Budget::unlimited()).unwrap();
+            pinch(&mut mesh, &ChosenEdges::default(), StitchValidity::Exact, &Budget::unlimited()).unwrap();
         assert_eq!(changes.count("edges_joined") + changes.count("edges_joined_with_others"), 2);
         assert_eq!(mesh.positions.len(), 17 + 3, "the sheet is whole; what stood on it has its own vertices");
     }
@@ -140,9 +140,9 @@ mod tests {
         let changes = cut(&mut mesh, &options, &Budget::unlimited()).unwrap();
         assert_eq!((changes.count("chosen_edges"), changes.count("vertices_copied")), (2, 1));
         let before = mesh.clone();
-        pinch(&mut mesh, &chosen, Validity::Exact, &Budget::unlimited()).unwrap();
+        pinch(&mut mesh, &chosen, StitchValidity::Exact, &Budget::unlimited()).unwrap();
         assert_eq!(mesh, before);
-        pinch(&mut mesh, &ChosenEdges::default(), Validity::Exact, &Budget::unlimited()).unwrap();
+        pinch(&mut mesh, &ChosenEdges::default(), StitchValidity::Exact, &Budget::unlimited()).unwrap();
         assert_eq!(mesh, draft(&grid()));
     }
 }

@@ -67,7 +67,7 @@ pub fn split_polygons(
             for cycle in simple_cycles(corners, &places) {
                 let mut triangles = Vec::new();
                 split_polygon(&cycle, &soup.positions, &mut triangles, budget)?;
-                of_cycles.push(Part { triangles, start: [cycle[0], cycle[1]], origin: first });
+                of_cycles.push(SimpleCycle { triangles, start: [cycle[0], cycle[1]], origin: first });
             }
         }
         let own = first as usize..first as usize + corners.len() - 2;
@@ -157,7 +157,7 @@ fn has_the_same(a: &[[u32; 3]], b: &[[u32; 3]]) -> bool {
 }
 
 /// A simple cycle out of a polygon, over vertices of the soup.
-struct Part {
+struct SimpleCycle {
     triangles: Vec<[u32; 3]>,
     /// Its first two corners.
     start: [u32; 2],
@@ -166,8 +166,8 @@ struct Part {
 }
 
 /// Adds what polygons are made of, as polygons or as triangles.
-fn append(draft: &mut Draft, parts: Vec<Part>, as_polygons: bool) {
-    for Part { mut triangles, start, origin } in parts {
+fn append(draft: &mut Draft, parts: Vec<SimpleCycle>, as_polygons: bool) {
+    for SimpleCycle { mut triangles, start, origin } in parts {
         // Ascending, as the draft was taken from the soup and vertices keep their order.
         let vertex = |v: u32| draft.vertex_origin.partition_point(|&o| o < v) as u32;
         triangles.iter_mut().for_each(|t| *t = t.map(vertex));

@@ -1,7 +1,7 @@
 //! What a collapse costs and where the merged vertex goes: the one trait of all criteria.
 
 use super::options::Placement;
-use super::surface::{CollapseSurface, Rule, Vertex};
+use super::surface::{CollapseSurface, MergeRule, Vertex};
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 
@@ -17,7 +17,7 @@ pub(super) struct PlacedVertex {
 
 /// Which edges cost something else after a collapse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Reach {
+pub(super) enum CostReach {
     /// Those of the merged vertex.
     Star,
     /// Those of the merged vertex and of its neighbours.
@@ -25,11 +25,11 @@ pub(super) enum Reach {
 }
 
 /// Costs of collapses. `Sync` because the first costs are computed on all cores.
-pub(super) trait Criterion: Sync {
+pub(super) trait CollapseCriterion: Sync {
     /// What the criterion keeps at each vertex.
     type State: Copy + Default + Send + Sync;
 
-    const REACH: Reach;
+    const REACH: CostReach;
 
     /// Fills in the states of all vertices.
     fn prepare(&self, surface: &mut CollapseSurface<Self::State>, budget: &Budget) -> Result<(), Stopped>;
@@ -39,7 +39,7 @@ pub(super) trait Criterion: Sync {
         &self,
         surface: &CollapseSurface<Self::State>,
         h: u32,
-        rule: Rule,
+        rule: MergeRule,
         placement: Placement,
     ) -> PlacedVertex;
 

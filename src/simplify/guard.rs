@@ -1,10 +1,10 @@
 //! What a collapse must not do to the faces around it.
 
 use super::options::Guards;
-use super::report::Refusal;
+use super::report::SimplifyRefusal;
 use super::surface::CollapseSurface;
 use crate::geom::{DVec3, are_collinear};
-use crate::mesh::corner_table::{EdgeRings, NONE, Ring, prev, triangle_of};
+use crate::mesh::corner_table::{EdgeRings, NONE, VertexRing, prev, triangle_of};
 
 /// Twice the area of a triangle over the product of two of its sides is their sine; above this the rounded value
 /// cannot come from collinear corners (its error is a few times 2^-53).
@@ -18,7 +18,7 @@ pub(super) fn check_faces<S: Copy + Default>(
     rings: &EdgeRings,
     position: DVec3,
     guards: &Guards<'_>,
-) -> Result<(), Refusal> {
+) -> Result<(), SimplifyRefusal> {
     let twin = surface.table.twin(h);
     let removed = [triangle_of(h), if twin == NONE { NONE } else { triangle_of(twin) }];
     check_ring(surface, &rings.origin, removed, position, guards)?;
@@ -28,11 +28,11 @@ pub(super) fn check_faces<S: Copy + Default>(
 #[inline]
 fn check_ring<S: Copy + Default>(
     surface: &CollapseSurface<S>,
-    ring: &Ring,
+    ring: &VertexRing,
     removed: [u32; 2],
     position: DVec3,
     guards: &Guards<'_>,
-) -> Result<(), Refusal> {
+) -> Result<(), SimplifyRefusal> {
     let Some(&first) = ring.corners.first() else { return Ok(()) };
     let before = surface.position(surface.table.origin(first));
     for (&corner, &neighbour) in ring.corners.iter().zip(&ring.neighbours) {
@@ -53,14 +53,14 @@ fn check_face(
     [q, r]: [DVec3; 2],
     guards: &Guards<'_>,
     scale: f64,
-) -> Result<(), Refusal> {
+) -> Result<(), SimplifyRefusal> {
     let (old_q, old_r, new_q, new_r, side) = (q - from, r - from, q - to, r - to, r - q);
     let (old, new) = (old_q.cross(old_r), new_q.cross(new_r));
     let (old_squared, new_squared) = (old.length_squared(), new.length_squared());
     let (q_squared, r_squared) = (new_q.length_squared(), new_r.length_squared());
     let doubt = SINE_OF_DOUBT * SINE_OF_DOUBT * q_squared * r_squared;
     if new_squared.is_nan() || (new_squared <= doubt && are_collinear(to, q, r)) {
-        return Err(Refusal::Degenerate);
+        return Err(SimplifyRefusal::Degenerate);
     }
     // A face without a normal has none to turn.
     if old_squared > 0.0 {
@@ -73,7 +73,7 @@ fn check_face(
             product >= 0.0 || product * product <= limit
         };
         if !is_within {
-            return Err(Refusal::NormalTurns);
+            return Err(SimplifyRefusal::NormalTurns);
         }
     }
     let side_squared = side.length_squared();
@@ -85,11 +85,11 @@ fn check_face(
         let new_sides = q_squared + r_squared + side_squared;
         let is_better = new_squared * old_sides * old_sides > old_squared * new_sides * new_sides;
         if !is_better {
-            return Err(Refusal::Aspect);
+            return Err(SimplifyRefusal::Aspect);
         }
     }
     match guards.envelope {
-        Some(envelope) if !envelope.holds([to, q, r].map(|p| p / scale)) => Err(Refusal::Envelope),
+        Some(envelope) if !envelope.holds([to, q, r].map(|p| p / scale)) => Err(SimplifyRefusal::Envelope),
         _ => Ok(()),
     }
 }
@@ -102,7 +102,7 @@ mod tests {
     const Q: DVec3 = DVec3::new(1.0, 0.0, 0.0);
     const R: DVec3 = DVec3::new(0.0, 1.0, 0.0);
 
-    fn moved(to: [f64; 3], guards: &Guards<'_>) -> Result<(), Refusal> {
+    fn moved(to: [f64; 3], guards: &Guards<'_>) -> Result<(), SimplifyRefusal> {
         check_face(DVec3::ZERO, DVec3::from_array(to), [Q, R], guards, 1.0)
     }
 
@@ -113,26 +113,26 @@ mod tests {
         let half = 0.5f64.sqrt();
         for (height, cosine) in [(half, half), (half * 3.0f64.sqrt(), 0.5)] {
             assert_eq!(moved([0.0, 0.0, height], &guards(cosine - 1e-9)), Ok(()));
-            assert_eq!(moved([0.0, 0.0, height], &guards(cosine + 1e-9)), Err(Refusal::NormalTurns));
+            assert_eq!(moved([0.0, 0.0, height], &guards(cosine + 1e-9)), Err(SimplifyRefusal::NormalTurns));
         }
-        assert_eq!(moved([1.0, 1.0, 0.0], &guards(0.0)), Err(Refusal::NormalTurns));
+        assert_eq!(moved([1.0, 1.0, 0.0], &guards(0.0)), Err(SimplifyRefusal::NormalTurns));
         assert_eq!(moved([1.0, 1.0, 0.0], &guards(-1.0)), Ok(()));
-        assert_eq!(moved([1.0, 1.0, 0.1], &guards(-0.5)), Err(Refusal::NormalTurns));
+        assert_eq!(moved([1.0, 1.0, 0.1], &guards(-0.5)), Err(SimplifyRefusal::NormalTurns));
     }
 
     #[test]
     fn a_face_is_degenerate_only_when_its_corners_are_exactly_collinear() {
         let guards = Guards { normal_cos_min: -1.0, aspect_min: 0.0, envelope: None };
-        assert_eq!(moved([0.5, 0.5, 0.0], &guards), Err(Refusal::Degenerate));
+        assert_eq!(moved([0.5, 0.5, 0.0], &guards), Err(SimplifyRefusal::Degenerate));
         assert_eq!(moved([0.5, 0.5 - 2f64.powi(-54), 0.0], &guards), Ok(()));
-        assert_eq!(moved([1.0, 0.0, 0.0], &guards), Err(Refusal::Degenerate));
-        assert_eq!(moved([f64::NAN, 0.0, 0.0], &guards), Err(Refusal::Degenerate));
+        assert_eq!(moved([1.0, 0.0, 0.0], &guards), Err(SimplifyRefusal::Degenerate));
+        assert_eq!(moved([f64::NAN, 0.0, 0.0], &guards), Err(SimplifyRefusal::Degenerate));
     }
 
     #[test]
     fn a_face_may_be_thin_when_it_was_thinner() {
         let guards = Guards { aspect_min: 0.5, normal_cos_min: -1.0, envelope: None };
-        assert_eq!(moved([0.4, 0.4, 0.0], &guards), Err(Refusal::Aspect));
+        assert_eq!(moved([0.4, 0.4, 0.0], &guards), Err(SimplifyRefusal::Aspect));
         let from = DVec3::new(0.45, 0.45, 0.0);
         assert_eq!(check_face(from, DVec3::new(0.4, 0.4, 0.0), [Q, R], &guards, 1.0), Ok(()));
     }
@@ -147,6 +147,6 @@ mod tests {
         }
         let guards = Guards { envelope: Some(&Below(0.25)), ..Guards::default() };
         assert_eq!(moved([0.0, 0.0, 0.25], &guards), Ok(()));
-        assert_eq!(moved([0.0, 0.0, 0.26], &guards), Err(Refusal::Envelope));
+        assert_eq!(moved([0.0, 0.0, 0.26], &guards), Err(SimplifyRefusal::Envelope));
     }
 }

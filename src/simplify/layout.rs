@@ -8,14 +8,14 @@ use crate::mesh::corner_table::NONE;
 
 /// The numbers that vertices and triangles have in the input.
 #[derive(Debug, Clone)]
-pub(super) struct Layout {
+pub(super) struct InputNumbers {
     /// Of the vertices that triangles use, along the curve.
     pub(super) vertices: Vec<u32>,
     /// Of the triangles, by the first of their vertices along the curve.
     pub(super) triangles: Vec<u32>,
 }
 
-impl Layout {
+impl InputNumbers {
     /// Bytes that the layout of a mesh takes.
     pub(super) const fn bytes(positions: usize, triangles: usize) -> u64 {
         (4 * positions + 4 * triangles) as u64
@@ -84,7 +84,7 @@ mod tests {
         let positions: Vec<DVec3> =
             [3.0, 0.0, 2.0, 9.0, 1.0].into_iter().map(|x| DVec3::new(x, x * x, 0.0)).collect();
         let triangles = [[0, 2, 4], [2, 1, 4]];
-        let (layout, sorted) = Layout::of(&positions, &triangles, &Budget::unlimited()).unwrap();
+        let (layout, sorted) = InputNumbers::of(&positions, &triangles, &Budget::unlimited()).unwrap();
         assert_eq!(layout.vertices, [1, 4, 2, 0], "3 is not used");
         assert_eq!(layout.triangles, [1, 0]);
         assert_eq!(sorted, [[2, 0, 1], [3, 2, 1]]);

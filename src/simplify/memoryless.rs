@@ -8,10 +8,10 @@
 //! curved ones exactly. Where the paper's last tie-break, the triangles' shape, would decide, the place nearest to the
 //! middle of the edge is taken.
 
-use super::criterion::{Criterion, PlacedVertex, Reach, cheaper};
+use super::criterion::{CollapseCriterion, CostReach, PlacedVertex, cheaper};
 use super::options::Placement;
 use super::quadric::Quadric;
-use super::surface::{CollapseSurface, Rule, Vertex};
+use super::surface::{CollapseSurface, MergeRule, Vertex};
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::corner_table::{NONE, next, prev, triangle_of};
@@ -38,16 +38,22 @@ struct EdgeSums {
     has_border: bool,
 }
 
-impl Criterion for Memoryless {
+impl CollapseCriterion for Memoryless {
     type State = ();
 
-    const REACH: Reach = Reach::Neighbours;
+    const REACH: CostReach = CostReach::Neighbours;
 
     fn prepare(&self, _: &mut CollapseSurface<()>, _: &Budget) -> Result<(), Stopped> {
         Ok(())
     }
 
-    fn place(&self, surface: &CollapseSurface<()>, h: u32, rule: Rule, placement: Placement) -> PlacedVertex {
+    fn place(
+        &self,
+        surface: &CollapseSurface<()>,
+        h: u32,
+        rule: MergeRule,
+        placement: Placement,
+    ) -> PlacedVertex {
         let [a, b] = surface.ends(h).map(|end| end.position);
         let around = EdgeSums::edge(surface, h, b);
         let to_a = a - b;
@@ -63,10 +69,10 @@ impl Criterion for Memoryless {
         let onto_a = || PlacedVertex { position: a, ..placed(to_a) };
         let onto_b = || placed(DVec3::ZERO);
         match (rule, placement) {
-            (Rule::OntoOrigin, _) => onto_a(),
-            (Rule::OntoDestination, _) => onto_b(),
-            (Rule::Anywhere, Placement::OntoEnd) => cheaper(onto_a(), onto_b()),
-            (Rule::Anywhere, Placement::Optimal) => placed(around.best(0.5 * to_a)),
+            (MergeRule::OntoOrigin, _) => onto_a(),
+            (MergeRule::OntoDestination, _) => onto_b(),
+            (MergeRule::Anywhere, Placement::OntoEnd) => cheaper(onto_a(), onto_b()),
+            (MergeRule::Anywhere, Placement::Optimal) => placed(around.best(0.5 * to_a)),
         }
     }
 

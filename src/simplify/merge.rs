@@ -1,10 +1,10 @@
 //! What becomes of the two ends of a collapsed edge.
 
 use super::blend::blend;
-use super::criterion::Criterion;
+use super::criterion::CollapseCriterion;
 use super::marks::LINE;
-use super::report::Refusal;
-use super::surface::{CollapseSurface, NEW, Rule};
+use super::report::SimplifyRefusal;
+use super::surface::{CollapseSurface, MergeRule, NEW};
 use crate::geom::DVec3;
 use crate::mesh::Color;
 use crate::mesh::corner_table::{EdgeRings, NONE, next, prev};
@@ -15,21 +15,21 @@ impl<S: Copy + Default> CollapseSurface<S> {
     pub(super) fn landing(
         &self,
         h: u32,
-        rule: Rule,
+        rule: MergeRule,
         position: DVec3,
         round: bool,
-    ) -> Result<(DVec3, u32), Refusal> {
+    ) -> Result<(DVec3, u32), SimplifyRefusal> {
         let [a, b] = self.ends(h);
         let kept = match rule {
-            Rule::OntoOrigin => Some(a),
-            Rule::OntoDestination => Some(b),
-            Rule::Anywhere => [b, a].into_iter().find(|end| end.position == position),
+            MergeRule::OntoOrigin => Some(a),
+            MergeRule::OntoDestination => Some(b),
+            MergeRule::Anywhere => [b, a].into_iter().find(|end| end.position == position),
         };
         if let Some(end) = kept {
             return Ok((end.position, end.origin));
         }
         let position = if round { self.on_lattice(position) } else { position };
-        if position.is_finite() { Ok((position, NEW)) } else { Err(Refusal::NotFinite) }
+        if position.is_finite() { Ok((position, NEW)) } else { Err(SimplifyRefusal::NotFinite) }
     }
 
     /// Gives the destination of `h` the colour of both ends, mixed as near as `position` is to them. `colors` are those
@@ -61,7 +61,7 @@ impl<S: Copy + Default> CollapseSurface<S> {
 
     /// Makes the destination of `h` what both ends become.
     #[inline]
-    pub(super) fn merge_vertices<C: Criterion<State = S>>(
+    pub(super) fn merge_vertices<C: CollapseCriterion<State = S>>(
         &mut self,
         criterion: &C,
         h: u32,

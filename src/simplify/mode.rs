@@ -2,7 +2,7 @@
 
 use super::fast::{simplify_fast, simplify_guarded};
 use super::options::SimplifyOptions;
-use super::result::{Input, Simplified, SimplifyError};
+use super::result::{Simplified, SimplifyError, SimplifyInput};
 use super::strict::simplify_strict;
 use crate::budget::Budget;
 
@@ -43,7 +43,7 @@ pub enum Mode {
 /// # Errors
 /// When the input is not a manifold, or the budget stops the run.
 pub fn simplify(
-    input: &Input<'_>,
+    input: &SimplifyInput<'_>,
     mode: Mode,
     options: &SimplifyOptions<'_>,
     budget: &Budget,

@@ -1,13 +1,13 @@
 //! Which vertices would go next.
 
-use super::criterion::Criterion;
+use super::criterion::CollapseCriterion;
 use super::options::Placement;
 use super::surface::CollapseSurface;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 
 /// For each vertex of the surface the least cost of the collapses of its edges, as the criterion has it; infinite for a
 /// vertex that must stay or has no edge.
-pub(super) fn costs_of_vertices<C: Criterion>(
+pub(super) fn costs_of_vertices<C: CollapseCriterion>(
     surface: &CollapseSurface<C::State>,
     criterion: &C,
     placement: Placement,

@@ -5,11 +5,11 @@
 //! the corpus, at a tenth of the faces, this takes a tenth off the Hausdorff distance and adds a hundredth to the mean
 //! distance.
 
-use super::criterion::{Criterion, PlacedVertex, Reach, cheaper};
+use super::criterion::{CollapseCriterion, CostReach, PlacedVertex, cheaper};
 use super::marks::LINE;
 use super::options::Placement;
 use super::quadric::Quadric;
-use super::surface::{CollapseSurface, Rule, Vertex};
+use super::surface::{CollapseSurface, MergeRule, Vertex};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::corner_table::next;
@@ -25,10 +25,10 @@ pub(super) struct QuadricError {
     pub wall_weight: f64,
 }
 
-impl Criterion for QuadricError {
+impl CollapseCriterion for QuadricError {
     type State = Quadric;
 
-    const REACH: Reach = Reach::Star;
+    const REACH: CostReach = CostReach::Star;
 
     fn prepare(&self, surface: &mut CollapseSurface<Quadric>, budget: &Budget) -> Result<(), Stopped> {
         for t in 0..surface.table.triangle_bound() as u32 {
@@ -54,7 +54,7 @@ impl Criterion for QuadricError {
         &self,
         surface: &CollapseSurface<Quadric>,
         h: u32,
-        rule: Rule,
+        rule: MergeRule,
         placement: Placement,
     ) -> PlacedVertex {
         let [a, b] = surface.ends(h);
@@ -71,10 +71,10 @@ impl Criterion for QuadricError {
         let onto_a = || placed(a.position, both.value(to_a));
         let onto_b = || placed(b.position, both.value_here());
         match (rule, placement) {
-            (Rule::OntoOrigin, _) => onto_a(),
-            (Rule::OntoDestination, _) => onto_b(),
-            (Rule::Anywhere, Placement::OntoEnd) => cheaper(onto_a(), onto_b()),
-            (Rule::Anywhere, Placement::Optimal) => {
+            (MergeRule::OntoOrigin, _) => onto_a(),
+            (MergeRule::OntoDestination, _) => onto_b(),
+            (MergeRule::Anywhere, Placement::OntoEnd) => cheaper(onto_a(), onto_b()),
+            (MergeRule::Anywhere, Placement::Optimal) => {
                 let offset = both.minimum(0.5 * to_a).position;
                 placed(b.position + offset, both.value(offset))
             }

@@ -6,7 +6,7 @@
 //! and old entries are dropped when they are met. The usual indexed heap holds millions of entries, and each of its steps
 //! writes to another cache line of the index (`docs/decisions/0012-bucketed-queue.md`).
 
-use super::key::Key;
+use super::key::CostKey;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -31,17 +31,17 @@ pub(super) struct Queue {
     buckets: Vec<Vec<u32>>,
     next_bucket: usize,
     /// What was in the bucket before, descending; entries whose key is not the item's valid one do not count.
-    sorted: Vec<Entry>,
+    sorted: Vec<QueueEntry>,
     /// The first so many of `sorted` have not been named ahead.
     unnamed: usize,
     /// What came to earlier buckets when their turn had come; entries whose key is not the item's valid one do not count.
-    near: BinaryHeap<Reverse<Entry>>,
+    near: BinaryHeap<Reverse<QueueEntry>>,
 }
 
 /// A key and, in the lower half, its item.
-type Entry = u64;
+type QueueEntry = u64;
 
-fn entry(key: u32, item: u32) -> Entry {
+fn entry(key: u32, item: u32) -> QueueEntry {
     u64::from(key) << 32 | u64::from(item)
 }
 
@@ -51,7 +51,7 @@ fn bucket_of(key: u32) -> usize {
 
 impl Queue {
     /// A queue of `items`, each at most once and below `bound`. O(n).
-    pub(super) fn new(items: &[(u32, Key)], bound: usize) -> Self {
+    pub(super) fn new(items: &[(u32, CostKey)], bound: usize) -> Self {
         let mut sizes = vec![0usize; BUCKETS];
         items.iter().for_each(|&(_, key)| sizes[bucket_of(key.bits())] += 1);
         let mut queue = Self {
@@ -71,7 +71,7 @@ impl Queue {
 
     /// Takes the smallest entry out; nothing when the queue is empty.
     #[inline]
-    pub(super) fn pop(&mut self) -> Option<(u32, Key)> {
+    pub(super) fn pop(&mut self) -> Option<(u32, CostKey)> {
         loop {
             let first = match (self.sorted.last(), self.near.peek()) {
                 (None, None) => {
@@ -86,7 +86,7 @@ impl Queue {
             let valid = &mut self.keys[item as usize];
             if *valid == key {
                 *valid = OUT;
-                return Some((item, Key::from_bits(key)));
+                return Some((item, CostKey::from_bits(key)));
             }
         }
     }
@@ -125,13 +125,13 @@ impl Queue {
 
     /// The key of an item, if it is in the queue.
     #[inline]
-    pub(super) fn key(&self, item: u32) -> Option<Key> {
-        Some(self.keys[item as usize]).filter(|&key| key < ASIDE).map(Key::from_bits)
+    pub(super) fn key(&self, item: u32) -> Option<CostKey> {
+        Some(self.keys[item as usize]).filter(|&key| key < ASIDE).map(CostKey::from_bits)
     }
 
     /// Puts an item in, or gives it another key.
     #[inline]
-    pub(super) fn set(&mut self, item: u32, key: Key) {
+    pub(super) fn set(&mut self, item: u32, key: CostKey) {
         let new = key.bits();
         if std::mem::replace(&mut self.keys[item as usize], new) == new {
             return;
@@ -173,11 +173,11 @@ mod tests {
     use super::*;
     use std::collections::BTreeMap;
 
-    fn key(x: f64) -> Key {
-        Key::of(x).unwrap()
+    fn key(x: f64) -> CostKey {
+        CostKey::of(x).unwrap()
     }
 
-    fn smallest(model: &BTreeMap<u32, Key>) -> Option<(u32, Key)> {
+    fn smallest(model: &BTreeMap<u32, CostKey>) -> Option<(u32, CostKey)> {
         model.iter().map(|(&item, &key)| (item, key)).min_by_key(|&(item, key)| (key, item))
     }
 
@@ -198,7 +198,7 @@ mod tests {
                     items.push((item, key(1.0 + step * f64::from(random(9)))));
                 }
             }
-            let mut model: BTreeMap<u32, Key> = items.iter().copied().collect();
+            let mut model: BTreeMap<u32, CostKey> = items.iter().copied().collect();
             let mut queue = Queue::new(&items, bound as usize);
             for _ in 0..300 {
                 let item = random(bound);

@@ -5,7 +5,7 @@ use crate::mesh::corner_table::LinkRefusal;
 
 /// Why a collapse was refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Refusal {
+pub enum SimplifyRefusal {
     /// The surface would change its topology or be no simplicial complex.
     Link(LinkRefusal),
     /// Both ends are held: by borders, creases, borders between groups, or by their position.
@@ -33,7 +33,7 @@ pub enum Refusal {
     Nesting,
 }
 
-impl Refusal {
+impl SimplifyRefusal {
     /// Every reason, in the order of the report.
     pub const ALL: [Self; 15] = [
         Self::Link(LinkRefusal::InnerEdgeBetweenBoundaries),
@@ -97,17 +97,17 @@ impl Refusal {
 
 /// How often each reason refused a collapse; an edge that is tried again and refused again counts again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Refusals([u64; Refusal::ALL.len()]);
+pub struct Refusals([u64; SimplifyRefusal::ALL.len()]);
 
 impl Refusals {
     /// Counts one more.
     #[inline]
-    pub fn add(&mut self, reason: Refusal) {
+    pub fn add(&mut self, reason: SimplifyRefusal) {
         self.0[reason.index()] += 1;
     }
 
     /// Counts `times` more.
-    pub fn add_times(&mut self, reason: Refusal, times: u64) {
+    pub fn add_times(&mut self, reason: SimplifyRefusal, times: u64) {
         self.0[reason.index()] += times;
     }
 
@@ -117,7 +117,7 @@ impl Refusals {
     }
 
     /// How often for this reason.
-    pub fn count(&self, reason: Refusal) -> u64 {
+    pub fn count(&self, reason: SimplifyRefusal) -> u64 {
         self.0[reason.index()]
     }
 
@@ -153,12 +153,12 @@ mod tests {
     #[test]
     fn each_reason_has_its_own_name_and_count() {
         let mut refusals = Refusals::default();
-        for (i, reason) in Refusal::ALL.into_iter().enumerate() {
+        for (i, reason) in SimplifyRefusal::ALL.into_iter().enumerate() {
             (0..=i).for_each(|_| refusals.add(reason));
         }
-        for (i, reason) in Refusal::ALL.into_iter().enumerate() {
+        for (i, reason) in SimplifyRefusal::ALL.into_iter().enumerate() {
             assert_eq!(refusals.count(reason), i as u64 + 1);
-            assert_eq!(Refusal::ALL.iter().filter(|r| r.name() == reason.name()).count(), 1);
+            assert_eq!(SimplifyRefusal::ALL.iter().filter(|r| r.name() == reason.name()).count(), 1);
         }
         assert_eq!(refusals.total(), 120);
     }

@@ -1,6 +1,6 @@
 //! What goes in and what comes out.
 
-use super::layout::Layout;
+use super::layout::InputNumbers;
 use super::report::TargetReport;
 use super::surface::{CollapseSurface, NEW};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
@@ -12,7 +12,7 @@ use crate::par;
 
 /// A manifold mesh to simplify.
 #[derive(Debug, Clone, Copy)]
-pub struct Input<'a> {
+pub struct SimplifyInput<'a> {
     /// Vertex positions.
     pub positions: &'a [DVec3],
     /// Vertex ids of each triangle's corners; a coherently oriented manifold with or without boundary. Positions that
@@ -28,14 +28,14 @@ pub struct Input<'a> {
     pub texture: &'a [[[f64; 2]; 3]],
 }
 
-impl<'a> Input<'a> {
+impl<'a> SimplifyInput<'a> {
     /// Without groups, colours and texture.
     pub fn new(positions: &'a [DVec3], triangles: &'a [[u32; 3]]) -> Self {
         Self { positions, triangles, face_groups: &[], vertex_colors: &[], texture: &[] }
     }
 }
 
-impl Input<'_> {
+impl SimplifyInput<'_> {
     /// True when lines may part it into regions.
     pub(super) fn has_regions(&self) -> bool {
         !self.face_groups.is_empty() || !self.texture.is_empty()
@@ -89,8 +89,8 @@ impl Simplified {
     /// and `priorities` are those of all its vertices, or none.
     pub(super) fn snapshot<S: Copy + Default>(
         surface: &CollapseSurface<S>,
-        layout: &Layout,
-        input: &Input<'_>,
+        layout: &InputNumbers,
+        input: &SimplifyInput<'_>,
         colors: &[Option<Color>],
         priorities: &[f64],
         report: TargetReport,

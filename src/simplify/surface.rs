@@ -42,7 +42,7 @@ pub(super) struct CollapseSurface<S> {
 
 /// Where the vertex that an edge becomes may go.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Rule {
+pub(super) enum MergeRule {
     Anywhere,
     OntoOrigin,
     OntoDestination,
@@ -114,17 +114,17 @@ impl<S: Copy + Default> CollapseSurface<S> {
     /// Where the edge of `h` may be collapsed to: a vertex on a line stays on it, one where lines end or meet stays
     /// where it is. Nothing when that cannot be.
     #[inline]
-    pub(super) fn rule(&self, h: u32) -> Option<Rule> {
+    pub(super) fn rule(&self, h: u32) -> Option<MergeRule> {
         let [a, b] = self.ends(h);
         if a.lines == 0 && b.lines == 0 && !a.is_held && !b.is_held {
-            return Some(Rule::Anywhere);
+            return Some(MergeRule::Anywhere);
         }
         let is_line = self.table.marks(h) & LINE != 0;
         let stays = |v: &Vertex<S>| v.is_held || (v.lines != 0 && (!is_line || v.lines != 2));
         match (stays(a), stays(b)) {
-            (false, false) => Some(Rule::Anywhere),
-            (true, false) => Some(Rule::OntoOrigin),
-            (false, true) => Some(Rule::OntoDestination),
+            (false, false) => Some(MergeRule::Anywhere),
+            (true, false) => Some(MergeRule::OntoOrigin),
+            (false, true) => Some(MergeRule::OntoDestination),
             (true, true) => None,
         }
     }

@@ -8,17 +8,17 @@ use super::marks::LINE;
 use crate::mesh::corner_table::{CornerTable, EdgeRings, NONE, next, prev, triangle_of};
 
 /// Across and up in the picture.
-pub(super) type Point = [f64; 2];
+pub(super) type PicturePoint = [f64; 2];
 
 /// The point of a corner without one: of its triangle no corner has one.
-pub const NO_TEXTURE: Point = [f64::INFINITY; 2];
+pub const NO_TEXTURE: PicturePoint = [f64::INFINITY; 2];
 
 /// The points of all corners by triangle; empty when there are none.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Wedges(pub(super) Vec<[Point; 3]>);
+pub(super) struct Wedges(pub(super) Vec<[PicturePoint; 3]>);
 
 impl Wedges {
-    fn at(&self, corner: u32) -> Point {
+    fn at(&self, corner: u32) -> PicturePoint {
         self.0[triangle_of(corner) as usize][(corner & 3) as usize]
     }
 
@@ -56,7 +56,7 @@ impl Wedges {
 
     /// Gives the triangles between the edge of `twin` and the next line around its destination (`end` 0) or its origin,
     /// on the side of its own triangle, a point there. There are at most `count`.
-    fn set_right(&mut self, table: &CornerTable, twin: u32, end: usize, count: usize, new: Point) {
+    fn set_right(&mut self, table: &CornerTable, twin: u32, end: usize, count: usize, new: PicturePoint) {
         let mut corner = if end == 0 { next(twin) } else { twin };
         for _ in 0..count {
             self.0[triangle_of(corner) as usize][(corner & 3) as usize] = new;
@@ -70,7 +70,7 @@ impl Wedges {
     }
 }
 
-fn between(a: Point, b: Point, share: f64) -> Point {
+fn between(a: PicturePoint, b: PicturePoint, share: f64) -> PicturePoint {
     match share {
         0.0 => a,
         1.0 => b,
@@ -116,7 +116,7 @@ mod tests {
         wedges.merge(table, &rings, 0, share);
     }
 
-    fn of(table: &CornerTable, point: impl Fn(u32, u32) -> Point) -> Wedges {
+    fn of(table: &CornerTable, point: impl Fn(u32, u32) -> PicturePoint) -> Wedges {
         let corners = |t: u32| [0, 1, 2].map(|k| point(t, table.origin(4 * t + k)));
         Wedges((0..table.triangle_bound() as u32).map(corners).collect())
     }

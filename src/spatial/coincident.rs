@@ -58,7 +58,7 @@ fn without_sign_of_zero<T: Copy + PartialEq + Default>(bits: T, negative_zero: T
 }
 
 /// Coordinates as bits; equal points have equal keys.
-trait Key: Copy + Ord + Default + Send + Sync {
+trait CoordinateKey: Copy + Ord + Default + Send + Sync {
     /// Depends on every bit; equal keys have equal hashes.
     fn hash(self) -> u64;
 
@@ -66,7 +66,7 @@ trait Key: Copy + Ord + Default + Send + Sync {
     fn quick_hash(self) -> u64;
 }
 
-impl Key for [u32; 3] {
+impl CoordinateKey for [u32; 3] {
     fn hash(self) -> u64 {
         let [x, y, z] = self;
         fold(fold(u64::from(x) << 32 | u64::from(y), SEEDS[0]) ^ u64::from(z), SEEDS[1])
@@ -79,7 +79,7 @@ impl Key for [u32; 3] {
     }
 }
 
-impl Key for [u64; 3] {
+impl CoordinateKey for [u64; 3] {
     fn hash(self) -> u64 {
         let [x, y, z] = self;
         fold(fold(fold(x, SEEDS[0]) ^ y, SEEDS[1]) ^ z, SEEDS[2])
@@ -130,7 +130,7 @@ const RECENT_CHUNK: usize = 1 << 17;
 /// Recent points that are remembered: as many as fit the second-level cache.
 const RECENT_LEN: usize = 1 << 14;
 
-fn group_by_key<K: Key>(
+fn group_by_key<K: CoordinateKey>(
     key: impl Fn(usize) -> K + Sync,
     group: &mut [u32],
     budget: &Budget,
@@ -157,16 +157,20 @@ fn group_by_key<K: Key>(
 
 /// The points from `begin` on that repeat none of the range which is remembered, among them the first of every group.
 /// `new_of` is told for each point of the range which of them has its key.
-fn points_not_repeated<K: Key>(begin: usize, key: impl Fn(usize) -> K, new_of: &mut [u32]) -> Vec<u32> {
+fn points_not_repeated<K: CoordinateKey>(
+    begin: usize,
+    key: impl Fn(usize) -> K,
+    new_of: &mut [u32],
+) -> Vec<u32> {
     // On the heap: a worker's stack may be small.
     let mut slots = Vec::new();
-    slots.resize(RECENT_LEN, Entry { key: K::default(), id: EMPTY });
+    slots.resize(RECENT_LEN, KeyedPoint { key: K::default(), id: EMPTY });
     let mut news = Vec::with_capacity(new_of.len() / 4);
     for (i, new_of) in (begin..).zip(new_of) {
         let key = key(i);
         let slot = &mut slots[key.quick_hash() as usize % RECENT_LEN];
         if slot.key != key || slot.id == EMPTY {
-            *slot = Entry { key, id: news.len() as u32 };
+            *slot = KeyedPoint { key, id: news.len() as u32 };
             news.push(i as u32);
         }
         *new_of = slot.id;
@@ -174,12 +178,12 @@ fn points_not_repeated<K: Key>(begin: usize, key: impl Fn(usize) -> K, new_of: &
     news
 }
 
-fn group_by_parts<K: Key>(
+fn group_by_parts<K: CoordinateKey>(
     len: usize,
     key: impl Fn(usize) -> K + Sync,
     budget: &Budget,
 ) -> Result<Coincident, Stopped> {
-    let _charge = budget.charge(len as u64 * (size_of::<Entry<K>>() as u64 + 4 + 4 + 4))?;
+    let _charge = budget.charge(len as u64 * (size_of::<KeyedPoint<K>>() as u64 + 4 + 4 + 4))?;
     let parts =
         HashPartition { bits: (len / PART_LEN).clamp(1, PARTS_MAX).next_power_of_two().trailing_zeros() };
     let mut chunks = par::try_map_ranges(len, CHUNK, |range| {
@@ -217,23 +221,23 @@ impl HashPartition {
 }
 
 #[derive(Clone, Copy, Default)]
-struct Entry<K> {
+struct KeyedPoint<K> {
     key: K,
     id: u32,
 }
 
 /// A range of points, sorted by part.
 struct Chunk<K> {
-    entries: Vec<Entry<K>>,
+    entries: Vec<KeyedPoint<K>>,
     /// Where each part begins, and the end.
     starts: Vec<u32>,
     /// How many points of each part earlier ranges have.
     earlier: Vec<u32>,
 }
 
-impl<K: Key> Chunk<K> {
+impl<K: CoordinateKey> Chunk<K> {
     fn partition(range: std::ops::Range<usize>, key: impl Fn(usize) -> K, parts: HashPartition) -> Self {
-        let entries: Vec<Entry<K>> = range.map(|i| Entry { key: key(i), id: i as u32 }).collect();
+        let entries: Vec<KeyedPoint<K>> = range.map(|i| KeyedPoint { key: key(i), id: i as u32 }).collect();
         let part_of: Vec<u16> = entries.iter().map(|e| parts.of(e.key.hash()) as u16).collect();
         let mut starts = vec![0u32; parts.count() + 1];
         for &part in &part_of {
@@ -243,7 +247,7 @@ impl<K: Key> Chunk<K> {
             starts[part + 1] += starts[part];
         }
         let mut cursor = starts.clone();
-        let mut sorted = vec![Entry::default(); entries.len()];
+        let mut sorted = vec![KeyedPoint::default(); entries.len()];
         for (entry, &part) in entries.iter().zip(&part_of) {
             let place = &mut cursor[part as usize];
             sorted[*place as usize] = *entry;
@@ -252,12 +256,12 @@ impl<K: Key> Chunk<K> {
         Self { entries: sorted, starts, earlier: Vec::new() }
     }
 
-    fn part(&self, part: usize) -> &[Entry<K>] {
+    fn part(&self, part: usize) -> &[KeyedPoint<K>] {
         &self.entries[self.starts[part] as usize..self.starts[part + 1] as usize]
     }
 }
 
-fn count_earlier<K: Key>(chunks: &mut [Chunk<K>], parts: HashPartition) {
+fn count_earlier<K: CoordinateKey>(chunks: &mut [Chunk<K>], parts: HashPartition) {
     let mut earlier = vec![0; parts.count()];
     for chunk in chunks {
         chunk.earlier.clone_from(&earlier);
@@ -268,7 +272,7 @@ fn count_earlier<K: Key>(chunks: &mut [Chunk<K>], parts: HashPartition) {
 }
 
 /// For each point of the part, in order, the first point with the same key.
-fn first_points<K: Key>(
+fn first_points<K: CoordinateKey>(
     chunks: &[Chunk<K>],
     part: usize,
     table: &mut HashTable<K>,
@@ -292,7 +296,7 @@ fn first_points<K: Key>(
 }
 
 /// As [`first_points`] for keys whose hashes collide: O(n log n) whatever the keys.
-fn first_points_by_sorting<K: Key>(
+fn first_points_by_sorting<K: CoordinateKey>(
     chunks: &[Chunk<K>],
     part: usize,
     budget: &Budget,
@@ -315,20 +319,20 @@ fn first_points_by_sorting<K: Key>(
 /// Open addressing with linear probing, at most half full.
 #[derive(Default)]
 struct HashTable<K> {
-    slots: Vec<Entry<K>>,
+    slots: Vec<KeyedPoint<K>>,
 }
 
 const EMPTY: u32 = u32::MAX;
 
-impl<K: Key> HashTable<K> {
+impl<K: CoordinateKey> HashTable<K> {
     /// Empties it, with room for `len` keys.
     fn clear(&mut self, len: usize) {
         self.slots.clear();
-        self.slots.resize((len * 2).next_power_of_two(), Entry { key: K::default(), id: EMPTY });
+        self.slots.resize((len * 2).next_power_of_two(), KeyedPoint { key: K::default(), id: EMPTY });
     }
 
     /// The id that came first with the entry's key; `None` when the search takes too long.
-    fn first_with_key_of(&mut self, entry: Entry<K>) -> Option<u32> {
+    fn first_with_key_of(&mut self, entry: KeyedPoint<K>) -> Option<u32> {
         let mask = self.slots.len() - 1;
         let home = entry.key.hash() as usize;
         for step in 0..PROBES_MAX {
@@ -345,7 +349,7 @@ impl<K: Key> HashTable<K> {
 }
 
 /// Puts what the parts found for the points of a chunk in the order of the points.
-fn collect_firsts<K: Key>(chunk: &Chunk<K>, firsts: &[Vec<u32>], begin: usize, out: &mut [u32]) {
+fn collect_firsts<K: CoordinateKey>(chunk: &Chunk<K>, firsts: &[Vec<u32>], begin: usize, out: &mut [u32]) {
     for (part, firsts) in firsts.iter().enumerate() {
         let firsts = &firsts[chunk.earlier[part] as usize..];
         for (entry, &first) in chunk.part(part).iter().zip(firsts) {
@@ -377,7 +381,7 @@ mod tests {
     use super::*;
     use std::collections::HashMap;
 
-    fn by_map<K: Key + std::hash::Hash>(keys: &[K]) -> Coincident {
+    fn by_map<K: CoordinateKey + std::hash::Hash>(keys: &[K]) -> Coincident {
         let mut seen = HashMap::new();
         let mut first = Vec::new();
         let group = (0..keys.len() as u32)
@@ -433,7 +437,7 @@ mod tests {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
     struct Colliding(u32);
 
-    impl Key for Colliding {
+    impl CoordinateKey for Colliding {
         fn hash(self) -> u64 {
             7
         }

@@ -115,7 +115,7 @@ impl<'m> NearestSearch<'m> {
         let (mut depth, mut visited) = (1, 0usize);
         while depth > 0 {
             depth -= 1;
-            let Place { gap, node: id, star } = stack[depth];
+            let QueuedNode { gap, node: id, star } = stack[depth];
             if visited.is_multiple_of(CHECK_EVERY) {
                 let of_boxes = if visited > 0 { BOX_UNITS * CHECK_EVERY as u64 } else { 0 };
                 budget.spend(of_boxes + query.units_of_triangles())?;
@@ -173,7 +173,7 @@ const ROUNDING_32: f32 = 1e-6;
 
 /// A node that may be looked into.
 #[derive(Debug, Clone, Copy)]
-struct Place {
+struct QueuedNode {
     /// The squared distance of what it holds is at least this, in the coordinates of the boxes.
     gap: f32,
     node: u32,
@@ -226,11 +226,11 @@ impl<'q> Query<'q> {
 
     /// A node below one of `star`, if that is one.
     #[inline]
-    fn place_of(&mut self, node: u32, star: u32) -> Place {
+    fn place_of(&mut self, node: u32, star: u32) -> QueuedNode {
         let of = self.search.bvh.tree().node(node);
         let gap = of.bounds.squared_gap(self.place);
         if star == NO_STAR && !of.is_star() {
-            return Place { gap, node, star };
+            return QueuedNode { gap, node, star };
         }
         let stars = &self.search.stars;
         let star = if star == NO_STAR { stars.star_at(node) } else { star };
@@ -239,15 +239,15 @@ impl<'q> Query<'q> {
             None => *self.sighting.insert(Sighting::new(stars, star, self.p)),
         };
         let by_direction = self.search.bvh.frame().scaled(sighting.gap(stars, node)) as f32;
-        Place { gap: gap.max(by_direction * by_direction), node, star }
+        QueuedNode { gap: gap.max(by_direction * by_direction), node, star }
     }
 
     /// Looks into the `boxes`, each with its squared gap, the nearest first, and into at most `boxes_max` of what they hold:
     /// how many it looked at, and whether nothing closer can be in the others.
-    fn look_at_nearest(&mut self, boxes: &[Place], boxes_max: usize) -> (usize, bool) {
+    fn look_at_nearest(&mut self, boxes: &[QueuedNode], boxes_max: usize) -> (usize, bool) {
         let tree = self.search.bvh.tree();
         // Squares are not negative, so that their bits are in the order of the numbers.
-        let entry = |place: &Place| Reverse((place.gap.to_bits(), place.node, place.star));
+        let entry = |place: &QueuedNode| Reverse((place.gap.to_bits(), place.node, place.star));
         let mut left: BinaryHeap<Reverse<(u32, u32, u32)>> = boxes.iter().map(entry).collect();
         for looked_at in 0..boxes_max {
             let Some(Reverse((gap, id, star))) = left.pop() else { return (looked_at, true) };

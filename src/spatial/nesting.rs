@@ -10,7 +10,7 @@ pub const NO_SHELL: u32 = u32::MAX;
 
 /// How disjoint closed shells lie in each other.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Nesting {
+pub struct ShellNesting {
     /// True when the shell's exact signed volume is positive: its triangles are counter-clockwise seen from outside.
     pub is_outward: Vec<bool>,
     /// The innermost shell around each shell.
@@ -35,15 +35,15 @@ pub fn nest(
     shell_count: u32,
     bvh: &Bvh,
     budget: &Budget,
-) -> Result<Nesting, Stopped> {
+) -> Result<ShellNesting, Stopped> {
     let members = ShellTriangles::group(shell_of, shell_count, budget)?;
     let corners = |t: u32| triangles[t as usize].map(|v| positions[v as usize]);
     let shells = par::try_map_ranges(shell_count as usize, 1, |range| {
         let own = members.of(range.start);
         let sign = volume_sign(own.iter().map(|&t| corners(t)), || budget.check())?;
-        Ok(Extent {
+        Ok(ShellExtent {
             is_outward: sign == Sign::Positive,
-            ..Extent::of(own.iter().map(|&t| corners(t)), budget)?
+            ..ShellExtent::of(own.iter().map(|&t| corners(t)), budget)?
         })
     })?;
     let nested = par::try_map_ranges(shell_count as usize, 1, |range| {
@@ -62,7 +62,7 @@ pub fn nest(
         }
         Ok(around(crossed, |s| shells[s as usize].bounds.max.x))
     })?;
-    Ok(Nesting {
+    Ok(ShellNesting {
         is_outward: shells.iter().map(|s| s.is_outward).collect(),
         parent: nested.iter().map(|&(parent, _)| parent).collect(),
         depth: nested.iter().map(|&(_, depth)| depth).collect(),
@@ -78,14 +78,14 @@ fn around(mut crossed: Vec<u32>, reach: impl Fn(u32) -> f64) -> (Option<u32>, u3
 }
 
 /// What is to be known of a shell as a whole.
-struct Extent {
+struct ShellExtent {
     is_outward: bool,
     bounds: Aabb,
     /// The highest vertex; of several the one met first.
     top: DVec3,
 }
 
-impl Extent {
+impl ShellExtent {
     fn of(triangles: impl Iterator<Item = [DVec3; 3]>, budget: &Budget) -> Result<Self, Stopped> {
         let (mut bounds, mut top) = (Aabb::EMPTY, DVec3::NEG_INFINITY);
         for (i, corners) in triangles.enumerate() {

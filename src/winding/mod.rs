@@ -12,7 +12,7 @@ mod tree;
 
 pub use outlook::{LookedFrom, Outlook};
 pub use shells::{Shells, are_sheets, sort};
-pub use solid::Solid;
+pub use solid::WindingSolid;
 pub use tree::{WindingTree, turned};
 
 /// How open shells are read.

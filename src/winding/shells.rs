@@ -52,7 +52,7 @@ pub fn sort(
     beside: f64,
     budget: &Budget,
 ) -> Result<Shells, Stopped> {
-    let Parts { parts, is_closed, rims } = parts(positions.len(), triangles, budget)?;
+    let ConnectedParts { parts, is_closed, rims } = parts(positions.len(), triangles, budget)?;
     let corners = |t: usize| triangles[t].map(|v| positions[v as usize]);
     let turns = turned(positions, triangles, &parts, &is_closed, budget)?;
     let mut shells = Shells::default();
@@ -79,17 +79,17 @@ pub fn sort(
 }
 
 /// Parts connected by edges.
-struct Parts {
+struct ConnectedParts {
     parts: Components,
     /// Whether each edge of a part is run through as often one way as the other.
     is_closed: Vec<bool>,
     /// The edges that are not.
-    rims: Vec<Rim>,
+    rims: Vec<UnbalancedEdge>,
 }
 
 /// An edge that its triangles run through more often one way than the other.
 #[derive(Debug, Clone, Copy)]
-struct Rim {
+struct UnbalancedEdge {
     from: u32,
     to: u32,
     /// How much more often.
@@ -97,7 +97,7 @@ struct Rim {
     part: u32,
 }
 
-fn parts(vertex_count: usize, triangles: &[[u32; 3]], budget: &Budget) -> Result<Parts, Stopped> {
+fn parts(vertex_count: usize, triangles: &[[u32; 3]], budget: &Budget) -> Result<ConnectedParts, Stopped> {
     let groups = EdgeGroups::build(triangles, vertex_count, budget)?;
     let parts = groups.components(budget)?;
     let mut is_closed = vec![true; parts.count as usize];
@@ -116,17 +116,23 @@ fn parts(vertex_count: usize, triangles: &[[u32; 3]], budget: &Budget) -> Result
             let (from, to) = if balance > 0 { (a.min(b), a.max(b)) } else { (a.max(b), a.min(b)) };
             let part = parts.of[triangle_of(group[0]) as usize];
             is_closed[part as usize] = false;
-            rims.push(Rim { from, to, times: balance.unsigned_abs() as u32, part });
+            rims.push(UnbalancedEdge { from, to, times: balance.unsigned_abs() as u32, part });
         }
     }
-    Ok(Parts { parts, is_closed, rims })
+    Ok(ConnectedParts { parts, is_closed, rims })
 }
 
 /// Triangles that close the parts that bound a volume: from each rim edge to a place in the middle of the rim edges that
 /// it is connected with, which form a cycle of their own. `is_volume` says which parts, and whether inside out.
-fn cones(positions: &[DVec3], rims: &[Rim], is_volume: &[Option<bool>], beside: f64) -> Vec<[DVec3; 3]> {
+fn cones(
+    positions: &[DVec3],
+    rims: &[UnbalancedEdge],
+    is_volume: &[Option<bool>],
+    beside: f64,
+) -> Vec<[DVec3; 3]> {
     let mut sets = UnionFind::new(positions.len());
-    let rims: Vec<&Rim> = rims.iter().filter(|rim| is_volume[rim.part as usize].is_some()).collect();
+    let rims: Vec<&UnbalancedEdge> =
+        rims.iter().filter(|rim| is_volume[rim.part as usize].is_some()).collect();
     for rim in &rims {
         sets.unite(rim.from, rim.to);
     }

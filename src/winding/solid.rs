@@ -8,7 +8,7 @@ use crate::spatial::Bvh;
 
 /// The solid that triangles stand for: what their closed shells and those that nearly bound a volume wind around.
 #[derive(Debug)]
-pub struct Solid {
+pub struct WindingSolid {
     /// All that bounds a volume, closed by cones.
     corners: Vec<[DVec3; 3]>,
     /// The part of each triangle of a closed shell; these come first.
@@ -23,7 +23,7 @@ pub struct Solid {
     open_areas: [f64; 2],
 }
 
-impl Solid {
+impl WindingSolid {
     /// Reads `triangles`, whose corners are finite; positions that are equal must be one.
     ///
     /// # Errors
@@ -83,9 +83,9 @@ impl Solid {
         let mut has_sides = false;
         for (n, [beside, side]) in self.unit.both_sides(place, corners).enumerate() {
             let is_hidden = match self.surroundings(beside, &above, budget)? {
-                Surroundings::Inside => true,
-                Surroundings::Cavity => false,
-                Surroundings::Outside => {
+                Containment::Inside => true,
+                Containment::Cavity => false,
+                Containment::Outside => {
                     let known = (&mut nearby.opposite[n], &mut nearby.in_the_gap[n]);
                     self.is_in_gap(beside, side, known, budget)?
                 }
@@ -99,7 +99,7 @@ impl Solid {
     }
 
     /// Where a place is that these triangles may be `above`.
-    fn surroundings(&self, place: DVec3, above: &[u32], budget: &Budget) -> Result<Surroundings, Stopped> {
+    fn surroundings(&self, place: DVec3, above: &[u32], budget: &Budget) -> Result<Containment, Stopped> {
         let (mut count, mut of_parts) = (0, Vec::new());
         for &t in above {
             if let Some(turn) = upward_crossing(place, self.corners[t as usize]) {
@@ -109,12 +109,12 @@ impl Solid {
             }
         }
         if self.cones.is_inside(place, f64::from(count), budget)? {
-            return Ok(Surroundings::Inside);
+            return Ok(Containment::Inside);
         }
         of_parts.sort_unstable();
         let is_around = |part: &[(u32, i32)]| part.iter().map(|&(_, turn)| turn).sum::<i32>() != 0;
         let is_cavity = of_parts.chunk_by(|a, b| a.0 == b.0).any(is_around);
-        Ok(if is_cavity { Surroundings::Cavity } else { Surroundings::Outside })
+        Ok(if is_cavity { Containment::Cavity } else { Containment::Outside })
     }
 
     /// Whether what is opposite is near and something is in the way in all directions.
@@ -138,7 +138,7 @@ impl Solid {
 
 /// Where a place is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Surroundings {
+enum Containment {
     Inside,
     /// Outside, but a closed shell winds around it and another one back.
     Cavity,
@@ -167,12 +167,12 @@ mod tests {
         (positions, triangles)
     }
 
-    fn hides(solid: &Solid, place: DVec3, corners: [DVec3; 3]) -> bool {
+    fn hides(solid: &WindingSolid, place: DVec3, corners: [DVec3; 3]) -> bool {
         solid.hides(place, corners, &mut LookedFrom::default(), &Budget::unlimited()).unwrap()
     }
 
     fn hidden(mesh: &(Vec<DVec3>, Vec<[u32; 3]>)) -> Vec<u32> {
-        let solid = Solid::of(&mesh.0, &mesh.1, OpenShells::Auto, &Budget::unlimited()).unwrap();
+        let solid = WindingSolid::of(&mesh.0, &mesh.1, OpenShells::Auto, &Budget::unlimited()).unwrap();
         let corners = |t: usize| mesh.1[t].map(|v| mesh.0[v as usize]);
         let is_hidden = |t: &usize| hides(&solid, corners(*t).iter().sum::<DVec3>() / 3.0, corners(*t));
         (0..mesh.1.len()).filter(is_hidden).map(|t| t as u32).collect()
@@ -190,7 +190,8 @@ mod tests {
     #[test]
     fn what_goes_into_another_body_is_hidden_there_only() {
         let crossing = both(cube(0.0, 10.0), cube(5.0, 10.0));
-        let solid = Solid::of(&crossing.0, &crossing.1, OpenShells::Auto, &Budget::unlimited()).unwrap();
+        let solid =
+            WindingSolid::of(&crossing.0, &crossing.1, OpenShells::Auto, &Budget::unlimited()).unwrap();
         // The bottom of the second cube, at z = 5.
         let bottom =
             (12..24).find(|&t| crossing.1[t].iter().all(|&v| crossing.0[v as usize].z == 5.0)).unwrap();
@@ -207,7 +208,7 @@ mod tests {
             both(cube(0.0, 10.0), (positions, triangles))
         };
         let top = |mesh: &(Vec<DVec3>, Vec<[u32; 3]>), place: DVec3| {
-            let solid = Solid::of(&mesh.0, &mesh.1, OpenShells::Auto, &Budget::unlimited()).unwrap();
+            let solid = WindingSolid::of(&mesh.0, &mesh.1, OpenShells::Auto, &Budget::unlimited()).unwrap();
             hides(&solid, place, mesh.1[2].map(|v| mesh.0[v as usize]))
         };
         let (middle, rim) = (DVec3::new(6.0, 5.0, 10.0), DVec3::new(6.0, 0.004, 10.0));
@@ -222,7 +223,7 @@ mod tests {
         let mut upper = cube(0.0, 10.0);
         upper.0.iter_mut().for_each(|p| *p += DVec3::new(5.0, 0.0, 10.01));
         let mesh = both(cube(0.0, 10.0), upper);
-        let solid = Solid::of(&mesh.0, &mesh.1, OpenShells::Auto, &Budget::unlimited()).unwrap();
+        let solid = WindingSolid::of(&mesh.0, &mesh.1, OpenShells::Auto, &Budget::unlimited()).unwrap();
         let (mut nearby, alone, after_others) =
             (LookedFrom::default(), Budget::unlimited(), Budget::unlimited());
         let mut hidden = 0;

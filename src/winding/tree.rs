@@ -34,7 +34,7 @@ const FAR_LEAST: f64 = 1.0 / 64.0;
 
 /// What a group of triangles is from afar.
 #[derive(Debug, Clone, Copy, Default)]
-struct Node {
+struct DipoleNode {
     center: DVec3,
     radius: f64,
     /// Sum of the area vectors.
@@ -50,7 +50,7 @@ struct Node {
 /// Triangles prepared for questions about how often they wind around a point.
 #[derive(Debug, Default)]
 pub struct WindingTree {
-    nodes: Vec<Node>,
+    nodes: Vec<DipoleNode>,
     /// The triangles, a block for each leaf, in the order of the leaves.
     blocks: Vec<Block>,
 }
@@ -64,7 +64,7 @@ impl WindingTree {
         if triangles.is_empty() {
             return Ok(Self::default());
         }
-        let mut nodes = vec![Node::default(); node_count(triangles.len())];
+        let mut nodes = vec![DipoleNode::default(); node_count(triangles.len())];
         set_nodes(&mut nodes, &mut triangles, 0, 0, budget)?;
         budget.spend(triangles.len() as u64)?;
         let blocks = triangles.chunks(BLOCK).map(Block::of).collect();
@@ -145,7 +145,7 @@ impl WindingTree {
     }
 }
 
-impl Node {
+impl DipoleNode {
     /// Solid angle of the group's first two terms; `r` goes from the place to the centre.
     fn seen_from(&self, r: DVec3, square: f64) -> f64 {
         let by_square = 1.0 / square;
@@ -171,7 +171,7 @@ fn node_count(len: usize) -> usize {
 /// Sets the `nodes` of a group of triangles and sorts these; `first` and `begin` are the numbers of the first triangle and the
 /// first node.
 fn set_nodes(
-    nodes: &mut [Node],
+    nodes: &mut [DipoleNode],
     triangles: &mut [[DVec3; 3]],
     first: usize,
     begin: usize,
@@ -180,14 +180,14 @@ fn set_nodes(
     if triangles.len() < APART_FROM {
         let own = nodes_in_turn(triangles, first, budget)?;
         for (node, own) in nodes.iter_mut().zip(own) {
-            *node = Node { skip: own.skip + begin as u32, ..own };
+            *node = DipoleNode { skip: own.skip + begin as u32, ..own };
         }
         return Ok(());
     }
     budget.check()?;
     let end = begin + nodes.len();
     let Some((top, below)) = nodes.split_first_mut() else { return Ok(()) };
-    *top = Node { skip: end as u32, ..summary(triangles, first) };
+    *top = DipoleNode { skip: end as u32, ..summary(triangles, first) };
     split(triangles);
     let half = half_of(triangles.len());
     let (near, far) = triangles.split_at_mut(half);
@@ -201,7 +201,11 @@ fn set_nodes(
 }
 
 /// The nodes of a group of triangles one after the other, numbered from 0; `from` is the number of the first triangle.
-fn nodes_in_turn(triangles: &mut [[DVec3; 3]], from: usize, budget: &Budget) -> Result<Vec<Node>, Stopped> {
+fn nodes_in_turn(
+    triangles: &mut [[DVec3; 3]],
+    from: usize,
+    budget: &Budget,
+) -> Result<Vec<DipoleNode>, Stopped> {
     let mut nodes = Vec::new();
     // Ranges still to be split, each with the nodes whose subtree ends with it.
     let mut open = vec![(0, triangles.len(), Vec::new())];
@@ -241,7 +245,7 @@ fn middle([a, b, c]: [DVec3; 3]) -> DVec3 {
     (a + b + c) / 3.0
 }
 
-fn summary(triangles: &[[DVec3; 3]], first: usize) -> Node {
+fn summary(triangles: &[[DVec3; 3]], first: usize) -> DipoleNode {
     let (mut weighted, mut weight) = (DVec3::ZERO, 0.0);
     for &t in triangles {
         let area = area_vector(t).length() + f64::MIN_POSITIVE;
@@ -258,7 +262,7 @@ fn summary(triangles: &[[DVec3; 3]], first: usize) -> Node {
         }
         square = t.into_iter().fold(square, |most, p| most.max(p.distance_squared(center)));
     }
-    Node {
+    DipoleNode {
         center,
         radius: square.sqrt(),
         dipole,
@@ -356,7 +360,7 @@ mod tests {
         let mut triangles = bowl(110, 9.0);
         assert!(triangles.len() > APART_FROM);
         let mut again = triangles.clone();
-        let mut nodes = vec![Node::default(); node_count(triangles.len())];
+        let mut nodes = vec![DipoleNode::default(); node_count(triangles.len())];
         set_nodes(&mut nodes, &mut triangles, 0, 0, &Budget::unlimited()).unwrap();
         let in_turn = nodes_in_turn(&mut again, 0, &Budget::unlimited()).unwrap();
         assert_eq!(format!("{nodes:?}"), format!("{in_turn:?}"));

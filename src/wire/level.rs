@@ -45,8 +45,8 @@ pub struct Level {
 impl Level {
     pub(super) fn new(inner: &pipeline::Level, units: Units) -> Self {
         let report = &inner.simplified;
-        let refusals =
-            simplify::Refusal::ALL.map(|r| Change { name: r.name(), count: report.refusals.count(r) });
+        let refusals = simplify::SimplifyRefusal::ALL
+            .map(|r| Change { name: r.name(), count: report.refusals.count(r) });
         let (fidelity, changes) = fidelity_of(inner.fidelity.as_ref(), units);
         Self {
             target: TargetSpec::of(report.target, units.millimetres()),

@@ -374,7 +374,7 @@ impl PlanStep {
             Self::Orient {} => Step::Orient,
             Self::PairSheets { across } => Step::PairSheets((*across).into()),
             Self::Cut {} => Step::Cut(CutOptions::default()),
-            Self::Pinch {} => Step::Pinch(mesh::ChosenEdges::default(), mesh::Validity::Exact),
+            Self::Pinch {} => Step::Pinch(mesh::ChosenEdges::default(), mesh::StitchValidity::Exact),
             &Self::Snap { epsilon, keeps_winding, by_edge } => {
                 let epsilon = Some(epsilon);
                 Step::Snap(SnapOptions { epsilon, keeps_winding, by_edge, ..SnapOptions::default() })
@@ -465,7 +465,7 @@ impl From<&Step> for PlanStep {
             Step::OpenContacts => Self::OpenContacts {},
             Step::JoinCopies => Self::JoinCopies {},
             Step::Nest(repair::nest::NestOptions { policy, chosen, .. }) => {
-                let shell = |&(triangle, fate): &(u32, repair::nest::Fate)| ChosenShell {
+                let shell = |&(triangle, fate): &(u32, repair::nest::ShellFate)| ChosenShell {
                     triangle,
                     fate: fate.into(),
                 };

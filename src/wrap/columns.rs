@@ -58,7 +58,7 @@ pub(super) fn winding(
 
 /// A crossing of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Crossing {
+struct ColumnCrossing {
     column: u32,
     /// Vertices of the column below the crossing.
     end: u16,
@@ -67,7 +67,7 @@ struct Crossing {
 }
 
 /// Adds the crossings of one triangle.
-fn cross(lattice: &Lattice, corners: [DVec3; 3], crossings: &mut Vec<Crossing>) {
+fn cross(lattice: &Lattice, corners: [DVec3; 3], crossings: &mut Vec<ColumnCrossing>) {
     let [a, b, c] = corners;
     let normal = (b - a).cross(c - a);
     let low = a.z.min(b.z).min(c.z).floor().max(0.0) as usize;
@@ -90,7 +90,7 @@ fn cross(lattice: &Lattice, corners: [DVec3; 3], crossings: &mut Vec<Crossing>) 
             }
             first
         };
-        crossings.push(Crossing {
+        crossings.push(ColumnCrossing {
             column: (i * lattice.dims[1] + j) as u32,
             end: end.min(lattice.dims[2]) as u16,
             turn: if turn == Sign::Positive { 1 } else { -1 },

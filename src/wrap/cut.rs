@@ -2,7 +2,7 @@
 
 use super::lattice::Lattice;
 use super::signs::{Inside, Signs, THIN};
-use super::surface::{Crossing, InputSurface, Says, separate};
+use super::surface::{InputSurface, Says, SegmentHit, separate};
 use super::tetrahedra::CutEdge;
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
@@ -66,7 +66,7 @@ struct Cutter<'a> {
 }
 
 impl Cutter<'_> {
-    fn cut(&self, edge: CutEdge, found: &mut Vec<Crossing>) -> Result<LatticeCut, Stopped> {
+    fn cut(&self, edge: CutEdge, found: &mut Vec<SegmentHit>) -> Result<LatticeCut, Stopped> {
         let base = edge.base as usize;
         let along = [0, 1, 2].map(|a| isize::from(edge.direction >> a & 1 == 1));
         let end = base.wrapping_add_signed(self.lattice.stride(along));
@@ -78,7 +78,7 @@ impl Cutter<'_> {
         let why = self.signs.why(inside);
         let says = if why == Inside::NearSheet { Says::Sheet } else { Says::Boundary };
         let fits =
-            |c: &&Crossing| self.surface.says(c.triangle) == says && (says == Says::Sheet || c.is_exit);
+            |c: &&SegmentHit| self.surface.says(c.triangle) == says && (says == Says::Sheet || c.is_exit);
         // The one nearest to the outside is what can be seen.
         let crossing = match why {
             Inside::NearThin => None,

@@ -30,9 +30,9 @@ pub(super) struct InputSurface {
 
 /// How many triangles searches may still look at.
 #[derive(Debug)]
-pub(super) struct Looks(pub(super) u64);
+pub(super) struct SearchAllowance(pub(super) u64);
 
-impl Looks {
+impl SearchAllowance {
     /// Takes one; false when there is none left.
     fn take(&mut self) -> bool {
         let is_left = self.0 > 0;
@@ -43,7 +43,7 @@ impl Looks {
 
 /// Where a segment meets a triangle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Crossing {
+pub(super) struct SegmentHit {
     /// Share of the segment before it.
     pub(super) share: f64,
     /// Triangle.
@@ -99,7 +99,7 @@ impl InputSurface {
     pub(super) fn may_have_part(
         &self,
         bounds: Aabb,
-        looks: &mut Looks,
+        looks: &mut SearchAllowance,
         budget: &Budget,
         is_wanted: impl Fn(u32) -> bool,
     ) -> Result<bool, Stopped> {
@@ -117,7 +117,7 @@ impl InputSurface {
     pub(super) fn may_cross(
         &self,
         [from, to]: [DVec3; 2],
-        looks: &mut Looks,
+        looks: &mut SearchAllowance,
         budget: &Budget,
     ) -> Result<bool, Stopped> {
         let may_meet =
@@ -131,12 +131,12 @@ impl InputSurface {
         from: DVec3,
         to: DVec3,
         budget: &Budget,
-        found: &mut Vec<Crossing>,
+        found: &mut Vec<SegmentHit>,
     ) -> Result<(), Stopped> {
         found.clear();
         self.bvh.visit_box(Aabb::of([from, to]), budget, |triangle| {
             if let Some((share, is_exit)) = crossing(from, to, self.corners[triangle as usize]) {
-                found.push(Crossing { share, triangle, is_exit });
+                found.push(SegmentHit { share, triangle, is_exit });
             }
         })
     }

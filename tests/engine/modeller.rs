@@ -6,7 +6,7 @@ use crate::solids::{cube, cuboid};
 use meshmend::budget::Budget;
 use meshmend::formats::{Encoding, Format, ReadOptions, read};
 use meshmend::geom::DVec3;
-use meshmend::modeller::{self, Embedding, Events};
+use meshmend::modeller::{self, Embedding, EventPolicy};
 use meshmend::pipeline::{
     Answer, BlockerKind, Edit, EditKind, FaceName, ModellerChoices, ModellerRefusal, ModellerReport,
     Operation, Options, Outcome, Refusal, Require, Units, run,
@@ -34,7 +34,7 @@ fn refusal(answer: &Answer) -> &ModellerRefusal {
 }
 
 fn shift(face: FaceName, by: f64) -> Edit {
-    Edit::Shift { faces: vec![(face, by)], events: Events::Refuse }
+    Edit::Shift { faces: vec![(face, by)], events: EventPolicy::Refuse }
 }
 
 fn by_normal(normal: [f64; 3]) -> FaceName {
@@ -97,7 +97,7 @@ fn a_step_is_taken_back_by_what_it_tells_and_by_an_undo() {
     assert!(!passes);
     let back = Edit::Shift {
         faces: moves.iter().map(|&(face, by)| (FaceName::Id(face), by)).collect(),
-        events: Events::Refuse,
+        events: EventPolicy::Refuse,
     };
     let second = shift(by_normal([0.0, 1.0, 0.0]), -0.3);
     for operators in [

@@ -3,7 +3,7 @@
 use crate::oracle::RawSoup;
 use crate::raw_files::encode;
 use crate::solids::{cube, cuboid, prism};
-use meshmend::budget::{Budget, Event, Stage, StopFlag, Stopped};
+use meshmend::budget::{Budget, ProgressEvent, Stage, StopFlag, Stopped};
 use meshmend::formats::{Encoding, Format};
 use meshmend::pipeline::{
     Answer, Failure, Operation, Options, Outcome, Refusal, Require, Units, WrapChoices, run,
@@ -155,14 +155,14 @@ fn every_stage_is_entered_and_left() {
     }
     let heard = heard.lock().unwrap();
     for stage in Stage::ALL {
-        assert!(heard.contains(&Event::Enter(stage)), "{stage:?}");
+        assert!(heard.contains(&ProgressEvent::Enter(stage)), "{stage:?}");
     }
     let mut open = Vec::new();
     for &event in heard.iter() {
         match event {
-            Event::Enter(stage) => open.push(stage),
-            Event::Leave(stage) => assert_eq!(open.pop(), Some(stage)),
-            Event::Work(_) => {}
+            ProgressEvent::Enter(stage) => open.push(stage),
+            ProgressEvent::Leave(stage) => assert_eq!(open.pop(), Some(stage)),
+            ProgressEvent::Work(_) => {}
         }
     }
     assert!(open.is_empty());

@@ -12,7 +12,7 @@ use meshmend::pipeline::{
     Answer, ChosenPlan, ChosenRemedy, CutStitchChoices, Failure, Operation, Options, Outcome, PlanMismatch,
     Proposal, Refusal, Remedy, Require, SimplifyChoices, Step, run,
 };
-use meshmend::repair::nest::Policy;
+use meshmend::repair::nest::NestingPolicy;
 use meshmend::simplify::Target;
 use std::fs;
 
@@ -123,10 +123,10 @@ fn a_shell_in_a_shell_becomes_a_cavity_where_the_caller_says_so() {
         assert_eq!(answer.report.outcome, Some(Outcome::Repaired));
         answer.report.after.unwrap().measures.volume.unwrap()
     };
-    let with = |nesting: Policy| Options { nesting, ..coarse() };
-    assert_eq!(volume(&with(Policy::AsOriented)), 27.0);
-    assert_eq!(volume(&with(Policy::Alternate)), 26.0);
-    assert_eq!(volume(&with(Policy::Fill)), 27.0);
+    let with = |nesting: NestingPolicy| Options { nesting, ..coarse() };
+    assert_eq!(volume(&with(NestingPolicy::AsOriented)), 27.0);
+    assert_eq!(volume(&with(NestingPolicy::Alternate)), 26.0);
+    assert_eq!(volume(&with(NestingPolicy::Fill)), 27.0);
     let turn = chosen(DefectCode::MisnestedShell, None, &[(0, Remedy::Turn)]);
     assert_eq!(volume(&with_plan(turn, None)), 26.0);
 }
@@ -135,11 +135,11 @@ fn a_shell_in_a_shell_becomes_a_cavity_where_the_caller_says_so() {
 fn a_cavity_of_a_valid_solid_is_filled_only_when_that_is_asked() {
     let hollow = cuboid([3.0; 3]).with(&cube().moved([1.0; 3]).inside_out());
     let bytes = encode(&hollow, Encoding::Obj);
-    for nesting in [Policy::AsOriented, Policy::Alternate] {
+    for nesting in [NestingPolicy::AsOriented, NestingPolicy::Alternate] {
         let answer = repair(&bytes, &Options { nesting, ..coarse() }).unwrap();
         assert_eq!(answer.report.outcome, Some(Outcome::Identical));
     }
-    let answer = repair(&bytes, &Options { nesting: Policy::Fill, ..coarse() }).unwrap();
+    let answer = repair(&bytes, &Options { nesting: NestingPolicy::Fill, ..coarse() }).unwrap();
     assert_eq!(answer.report.outcome, Some(Outcome::Repaired));
     assert_eq!(answer.report.certificate.as_ref().unwrap().shells.len(), 1);
     assert_eq!(answer.report.after.unwrap().measures.volume, Some(27.0));

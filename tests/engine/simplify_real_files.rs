@@ -7,7 +7,7 @@ use meshmend::certificate::{Depth, certify};
 use meshmend::formats::{Encoding, Format, ReadOptions, read, sniff, write};
 use meshmend::mesh::half_edge::{Claims, HalfEdgeMesh};
 use meshmend::mesh::{Soup, UnionFind, cut_singular};
-use meshmend::simplify::{Input, Mode, Simplified, SimplifyOptions, Target, simplify};
+use meshmend::simplify::{Mode, Simplified, SimplifyInput, SimplifyOptions, Target, simplify};
 use std::path::Path;
 
 const MODES: [(Mode, &str); 3] = [(Mode::Strict, "strict"), (Mode::Fast, "fast"), (Mode::Guarded, "guarded")];
@@ -93,7 +93,7 @@ struct Tally {
 
 /// What is wrong with the results of one file in one mode.
 fn look_at(soup: &Soup, is_valid: bool, mode: Mode) -> Result<Tally, String> {
-    let input = Input::new(&soup.positions, &soup.triangles);
+    let input = SimplifyInput::new(&soup.positions, &soup.triangles);
     let targets = RATIOS.map(Target::Ratio).to_vec();
     let options = SimplifyOptions { targets, ..SimplifyOptions::default() };
     let before = Shape::of(&soup.triangles, soup.positions.len())?;

@@ -7,7 +7,7 @@ use crate::support::cases;
 use meshmend::budget::Budget;
 use meshmend::geom::DVec3;
 use meshmend::par::with_threads;
-use meshmend::spatial::{Bvh, Nesting, nest};
+use meshmend::spatial::{Bvh, ShellNesting, nest};
 
 /// Whole numbers: the low and the high corner of a box.
 type Box = [[i64; 3]; 2];
@@ -44,14 +44,14 @@ fn contains([a_low, a_high]: &Box, [b_low, b_high]: &Box) -> bool {
 }
 
 /// What the boxes say, by comparing all pairs.
-fn expected(boxes: &[Box], is_outward: Vec<bool>) -> Nesting {
+fn expected(boxes: &[Box], is_outward: Vec<bool>) -> ShellNesting {
     let around = |inner: &Box| (0..boxes.len()).filter(|&o| contains(&boxes[o], inner)).collect::<Vec<_>>();
     let depth: Vec<u32> = boxes.iter().map(|b| around(b).len() as u32).collect();
     let innermost = |b: &Box| around(b).into_iter().max_by_key(|&o| depth[o]).map(|o| o as u32);
-    Nesting { is_outward, parent: boxes.iter().map(innermost).collect(), depth }
+    ShellNesting { is_outward, parent: boxes.iter().map(innermost).collect(), depth }
 }
 
-fn nesting_of(soups: &[RawSoup]) -> Nesting {
+fn nesting_of(soups: &[RawSoup]) -> ShellNesting {
     let mut positions = Vec::new();
     let mut triangles = Vec::new();
     let mut shell_of = Vec::new();

@@ -10,7 +10,7 @@ use dashu_ratio::RBig;
 use meshmend::budget::Budget;
 use meshmend::geom::{ContactKind, DVec3, Sign, are_collinear};
 use meshmend::par;
-use meshmend::spatial::{Bvh, Contact, Contacts, Search, Terrains, self_contacts};
+use meshmend::spatial::{Bvh, Contacts, Search, Terrains, TriangleContact, self_contacts};
 
 struct Soup {
     positions: Vec<DVec3>,
@@ -82,14 +82,14 @@ impl Soup {
     }
 
     /// The truth, for every pair.
-    fn all_pairs(&self) -> Vec<Contact> {
+    fn all_pairs(&self) -> Vec<TriangleContact> {
         let corners: Vec<[Point; 3]> =
             self.triangles.iter().map(|t| t.map(|v| point(self.positions[v as usize]))).collect();
         let mut contacts = Vec::new();
         for b in 0..corners.len() {
             for a in 0..b {
                 if let Some(kind) = kind(&corners[a], &corners[b]) {
-                    contacts.push(Contact { a: a as u32, b: b as u32, kind });
+                    contacts.push(TriangleContact { a: a as u32, b: b as u32, kind });
                 }
             }
         }

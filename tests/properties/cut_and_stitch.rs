@@ -4,7 +4,7 @@ use crate::random::Random;
 use crate::support::cases;
 use meshmend::budget::Budget;
 use meshmend::mesh::{
-    AnyJoin, ChosenEdges, CutMethod, EdgeGroups, JoinRule, Marks, Stitched, Validity, cut as cut_at,
+    AnyJoin, ChosenEdges, CutMarks, CutMethod, EdgeGroups, JoinRule, StitchValidity, Stitched, cut as cut_at,
     cut_singular, stitch,
 };
 use std::collections::{BTreeMap, BTreeSet};
@@ -138,13 +138,14 @@ fn pairs_of_copies(after: &[Triangle], original: impl Fn(u32) -> u32) -> Vec<(u3
 }
 
 fn stitched(mesh: &mut [Triangle], vertex_count: usize, pairs: &[(u32, u32)]) -> Stitched {
-    stitch(mesh, vertex_count, pairs, Validity::Exact, &mut AnyJoin, &Budget::unlimited()).unwrap()
+    stitch(mesh, vertex_count, pairs, StitchValidity::Exact, &mut AnyJoin, &Budget::unlimited()).unwrap()
 }
 
-fn marks(triangles: &[Triangle], vertex_count: usize, chosen: &[[u32; 2]]) -> Marks {
+fn marks(triangles: &[Triangle], vertex_count: usize, chosen: &[[u32; 2]]) -> CutMarks {
     let budget = Budget::unlimited();
     let groups = EdgeGroups::build(triangles, vertex_count, &budget).unwrap();
-    Marks::find(triangles, vertex_count, &groups, &ChosenEdges::of(chosen.iter().copied()), &budget).unwrap()
+    CutMarks::find(triangles, vertex_count, &groups, &ChosenEdges::of(chosen.iter().copied()), &budget)
+        .unwrap()
 }
 
 fn cut_by(
@@ -262,7 +263,7 @@ fn every_edge_that_a_stitch_closes_is_recorded_once_by_either_rule() {
             let edges = directed(mesh);
             edges.keys().filter(|&&(a, b)| !edges.contains_key(&(b, a))).count()
         };
-        let joined = [Validity::Exact, Validity::Paper].map(|validity| {
+        let joined = [StitchValidity::Exact, StitchValidity::Paper].map(|validity| {
             let mut after = mesh.clone();
             let (count, budget) = (vertex_count + copies.len(), Budget::unlimited());
             let mut rule = CopiesOnly(&original);
@@ -336,7 +337,7 @@ fn the_published_conditions_refuse_some_pairs_that_the_exact_test_takes_and_take
             );
         }
         for pair in pairs {
-            let joins = [Validity::Exact, Validity::Paper].map(|validity| {
+            let joins = [StitchValidity::Exact, StitchValidity::Paper].map(|validity| {
                 let mut after = mesh.clone();
                 let (count, budget) = (vertex_count + copies.len(), Budget::unlimited());
                 let done = stitch(&mut after, count, &[pair], validity, &mut AnyJoin, &budget).unwrap();

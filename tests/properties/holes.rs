@@ -7,7 +7,7 @@ use meshmend::budget::Budget;
 use meshmend::geom::DVec3;
 use meshmend::implicit::Kernel;
 use meshmend::mesh::Soup;
-use meshmend::repair::fill::{Extract, FillOptions, Filled, HoleReport, Method, fill};
+use meshmend::repair::fill::{Extract, FillOptions, FillReport, HoleReport, Method, fill};
 use meshmend::repair::{Draft, Selection};
 use std::collections::BTreeMap;
 
@@ -41,11 +41,11 @@ fn as_soup(raw: &RawSoup) -> Soup {
     }
 }
 
-fn filled(raw: &RawSoup, method: Method) -> (Draft, Filled) {
+fn filled(raw: &RawSoup, method: Method) -> (Draft, FillReport) {
     filled_as(raw, &FillOptions { method, ..FillOptions::default() })
 }
 
-fn filled_as(raw: &RawSoup, options: &FillOptions) -> (Draft, Filled) {
+fn filled_as(raw: &RawSoup, options: &FillOptions) -> (Draft, FillReport) {
     let soup = as_soup(raw);
     let (mut draft, _) = Draft::from_soup(&soup);
     let before = draft.clone();

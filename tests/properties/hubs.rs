@@ -5,9 +5,9 @@ use crate::random::Random;
 use crate::support::{cases, on_all_cores};
 use meshmend::analysis::{AnalyzeOptions, NearSearch, analyze};
 use meshmend::budget::Budget;
-use meshmend::geom::{DVec3, Plane, Shared, are_collinear, contact};
+use meshmend::geom::{DVec3, Shared, ThreePointPlane, are_collinear, contact};
 use meshmend::mesh::Soup;
-use meshmend::spatial::{Bvh, Contact, NearestSearch, Search, self_contacts};
+use meshmend::spatial::{Bvh, NearestSearch, Search, TriangleContact, self_contacts};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
@@ -89,15 +89,15 @@ fn fans_on_a_grid(random: &mut Random) -> Soup {
     mesh.done()
 }
 
-fn all_pairs(Soup { positions, triangles, .. }: &Soup) -> Vec<Contact> {
+fn all_pairs(Soup { positions, triangles, .. }: &Soup) -> Vec<TriangleContact> {
     let corners = |t: usize| triangles[t].map(|v| positions[v as usize]);
     let mut found = Vec::new();
     for a in 0..triangles.len() {
-        let plane = Plane::through(corners(a));
+        let plane = ThreePointPlane::through(corners(a));
         for b in a + 1..triangles.len() {
             let shared = Shared::between(triangles[a], triangles[b]);
             if let Some(kind) = contact(&plane, corners(b).each_ref(), shared) {
-                found.push(Contact { a: a as u32, b: b as u32, kind });
+                found.push(TriangleContact { a: a as u32, b: b as u32, kind });
             }
         }
     }

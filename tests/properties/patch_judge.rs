@@ -4,7 +4,7 @@
 
 use crate::oracle::{Doubt, RawSoup, weld};
 use meshmend::geom::DVec3;
-use meshmend::repair::fill::Filled;
+use meshmend::repair::fill::FillReport;
 use std::collections::{BTreeMap, BTreeSet};
 
 type Edge = (u32, u32);
@@ -90,7 +90,7 @@ impl<'a> Torn<'a> {
 
     /// Everything that is wrong with `filled`, in sentences. `filled` has the triangles of this mesh first; the rest are
     /// patches, of which `report` says how they are planned.
-    pub(crate) fn faults(&self, filled: &RawSoup, report: &Filled) -> Vec<String> {
+    pub(crate) fn faults(&self, filled: &RawSoup, report: &FillReport) -> Vec<String> {
         let first = self.soup.triangles.len();
         let mut faults = Vec::new();
         let bits = |p: &[f64; 3]| p.map(f64::to_bits);
@@ -132,7 +132,7 @@ impl<'a> Torn<'a> {
 
     /// Of each patch: a surface with exactly loops of the boundary as its own, with as many triangles, vertices and loops
     /// as planned. A sphere with so many holes has the Euler characteristic 2 less their number.
-    fn plan_faults(&self, surface: &Surface, report: &Filled) -> Vec<String> {
+    fn plan_faults(&self, surface: &Surface, report: &FillReport) -> Vec<String> {
         let first = self.soup.triangles.len();
         let mut faults = Vec::new();
         let mut left: BTreeSet<usize> = (first..surface.soup.triangles.len()).collect();
@@ -257,7 +257,7 @@ fn is_beyond(soup: &RawSoup, base: [u32; 3], of: [u32; 3]) -> bool {
 mod tests {
     use super::*;
     use crate::random::Random;
-    use meshmend::repair::fill::{HoleReport, Method, Rim};
+    use meshmend::repair::fill::{HoleReport, HoleRim, Method};
 
     #[test]
     fn no_pair_that_is_surely_apart_meets_in_rational_arithmetic() {
@@ -291,18 +291,18 @@ mod tests {
     }
 
     /// A tetrahedron without a face, and that face as a patch.
-    fn patched() -> (RawSoup, RawSoup, Filled) {
+    fn patched() -> (RawSoup, RawSoup, FillReport) {
         let whole = crate::solids::tetrahedron();
         let mut torn = whole.clone();
         torn.triangles.pop();
         let hole = HoleReport {
             used: Some(Method::Flat),
-            rims: vec![Rim { half_edges: Vec::new(), edges: 3 }],
+            rims: vec![HoleRim { half_edges: Vec::new(), edges: 3 }],
             borders: 1,
             triangles: 1,
             ..HoleReport::default()
         };
-        (torn, whole, Filled { holes: vec![hole], ..Filled::default() })
+        (torn, whole, FillReport { holes: vec![hole], ..FillReport::default() })
     }
 
     #[test]

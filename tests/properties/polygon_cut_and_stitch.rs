@@ -6,8 +6,8 @@ use crate::random::Random;
 use crate::support::cases;
 use meshmend::budget::Budget;
 use meshmend::mesh::{
-    AnyJoin, ChosenEdges, CutMethod, EdgeGroups, JoinRule, Marks, Outlines, PolygonRuns, Stitched, Validity,
-    cut as cut_at, edge_of, stitch_faces,
+    AnyJoin, ChosenEdges, CutMarks, CutMethod, EdgeGroups, JoinRule, Outlines, PolygonRuns, StitchValidity,
+    Stitched, cut as cut_at, edge_of, stitch_faces,
 };
 use meshmend::repair::cut::{CutOptions, cut};
 use meshmend::repair::duplicates::{OppositePairs, drop_duplicates};
@@ -168,11 +168,11 @@ impl Split {
         self.half_edges().iter().map(|face| face.iter().map(start).collect()).collect()
     }
 
-    fn marks(&self, vertex_count: usize, chosen: &[[u32; 2]]) -> Marks {
+    fn marks(&self, vertex_count: usize, chosen: &[[u32; 2]]) -> CutMarks {
         let budget = Budget::unlimited();
         let groups = EdgeGroups::of_faces(&self.triangles, &self.outlines(), vertex_count, &budget).unwrap();
         let chosen = ChosenEdges::of(chosen.iter().copied());
-        Marks::find(&self.triangles, vertex_count, &groups, &chosen, &budget).unwrap()
+        CutMarks::find(&self.triangles, vertex_count, &groups, &chosen, &budget).unwrap()
     }
 
     fn cut(&mut self, vertex_count: usize, chosen: &[[u32; 2]], method: CutMethod) -> Vec<u32> {
@@ -184,7 +184,7 @@ impl Split {
         &mut self,
         count: usize,
         pairs: &[(u32, u32)],
-        validity: Validity,
+        validity: StitchValidity,
         rule: &mut dyn JoinRule,
     ) -> Stitched {
         let outlines = self.outlines();
@@ -345,8 +345,12 @@ fn stitched_polygons_are_a_manifold_and_what_is_left_could_not_be_joined() {
             |v: u32| if (v as usize) < vertex_count { v } else { copies[v as usize - vertex_count] };
         let pairs = mesh.pairs_of_copies(original);
         let cut = mesh.clone();
-        let done =
-            mesh.stitch(vertex_count + copies.len(), &pairs, Validity::Exact, &mut CopiesOnly(&original));
+        let done = mesh.stitch(
+            vertex_count + copies.len(),
+            &pairs,
+            StitchValidity::Exact,
+            &mut CopiesOnly(&original),
+        );
         let after = mesh.faces();
         assert!(is_manifold(&after), "case {case}: {before:?} became {after:?}");
         let recorded: Vec<(u32, u32)> = [done.explicit, done.implicit.clone()].concat();
@@ -405,7 +409,7 @@ fn a_manifold_of_polygons_that_is_cut_anywhere_and_stitched_is_itself_again() {
         parted += copies.len();
         let original = |v: u32| if (v as usize) < count { v } else { copies[v as usize - count] };
         let pairs = mesh.pairs_of_copies(original);
-        mesh.stitch(count + copies.len(), &pairs, Validity::Exact, &mut AnyJoin);
+        mesh.stitch(count + copies.len(), &pairs, StitchValidity::Exact, &mut AnyJoin);
         assert_eq!(mesh.triangles, whole.triangles, "case {case}: {:?} along {chosen:?}", whole.faces());
     }
     assert!(parted > 1_000, "only {parted} vertices came apart");
@@ -475,7 +479,7 @@ fn the_steps_of_cut_stitch_leave_polygons_whole_and_part_them_as_the_oracle_does
         assert_same_partition(&before, &faces_of(&draft), &want, original, &text);
         assert!(is_manifold(&faces_of(&draft)), "{text}");
         let parts = oracle(&faces_of(&draft), &[]).components;
-        pinch::pinch(&mut draft, &ChosenEdges::default(), Validity::Exact, &budget).unwrap();
+        pinch::pinch(&mut draft, &ChosenEdges::default(), StitchValidity::Exact, &budget).unwrap();
         assert!(is_manifold(&faces_of(&draft)), "{text}");
         assert_eq!(oracle(&faces_of(&draft), &[]).components, parts, "{text}");
         snap(&mut draft, &SnapOptions { epsilon: Some(0.0), ..SnapOptions::default() }, &budget).unwrap();

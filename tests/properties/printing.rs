@@ -6,7 +6,7 @@ use meshmend::budget::Budget;
 use meshmend::distance::{Areas, Surface};
 use meshmend::geom::DVec3;
 use meshmend::mesh::Soup;
-use meshmend::printing::{BuildDirection, Limit, Policy, Printing, measure};
+use meshmend::printing::{BuildDirection, Limit, Printing, PrintingPolicy, measure};
 use std::f64::consts::{PI, TAU};
 
 /// A sphere with dents, anywhere.
@@ -40,7 +40,7 @@ fn dented_sphere(random: &mut Random) -> Soup {
     Soup { face_count: triangles.len() as u32, positions, triangles, ..Soup::default() }
 }
 
-fn measured(soup: &Soup, policy: &Policy) -> Printing {
+fn measured(soup: &Soup, policy: &PrintingPolicy) -> Printing {
     measure(soup, policy, true, 8, &Budget::unlimited()).unwrap().unwrap()
 }
 
@@ -67,7 +67,7 @@ fn met(from: DVec3, along: DVec3, [a, b, c]: [DVec3; 3]) -> Option<f64> {
 fn walls_by_rays_are_those_that_looking_at_every_triangle_finds() {
     for seed in 0..cases(12, 200) {
         let soup = dented_sphere(&mut Random::new(seed as u64));
-        let walls = measured(&soup, &Policy::default()).figures.walls;
+        let walls = measured(&soup, &PrintingPolicy::default()).figures.walls;
         let surface = Surface { positions: &soup.positions, triangles: &soup.triangles };
         let areas = Areas::of(surface, &Budget::unlimited()).unwrap();
         let all: Vec<[DVec3; 3]> = corners(&soup).collect();
@@ -101,7 +101,7 @@ fn no_box_turned_at_random_is_smaller_and_every_point_is_inside() {
     for seed in 0..cases(30, 400) {
         let mut random = Random::new(seed as u64);
         let soup = dented_sphere(&mut random);
-        let found = measured(&soup, &Policy::default()).figures.quote.oriented_box;
+        let found = measured(&soup, &PrintingPolicy::default()).figures.quote.oriented_box;
         for &p in &soup.positions {
             for k in 0..3 {
                 let off = (p - found.centre).dot(found.axes[k]).abs();
@@ -133,7 +133,8 @@ fn shadow_and_support_are_what_points_and_faces_one_by_one_give() {
         let direction = BuildDirection::ALL[2 * axis + random.below(2)];
         let sign = if direction == BuildDirection::ALL[2 * axis] { 1.0 } else { -1.0 };
         let limit = Limit { warning: Some(20.0 + 40.0 * random.unit()), error: None };
-        let policy = Policy { overhang: limit, build_direction: direction, ..Policy::default() };
+        let policy =
+            PrintingPolicy { overhang: limit, build_direction: direction, ..PrintingPolicy::default() };
         let of = measured(&soup, &policy).figures;
         let view = |p: DVec3| [p[(axis + 1) % 3], p[(axis + 2) % 3]];
         let (low, high) = (view(of.quote.bounds.min), view(of.quote.bounds.max));

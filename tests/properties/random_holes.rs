@@ -12,7 +12,7 @@ use meshmend::formats::Encoding;
 use meshmend::geom::DVec3;
 use meshmend::mesh::Soup;
 use meshmend::repair::Draft;
-use meshmend::repair::fill::{FillOptions, Filled, Method, fill};
+use meshmend::repair::fill::{FillOptions, FillReport, Method, fill};
 use std::collections::{BTreeMap, BTreeSet};
 
 const METHODS: [Method; 6] =
@@ -225,7 +225,7 @@ fn sharp_vertex(solid: &RawSoup, random: &mut Random) -> u32 {
     vertex
 }
 
-fn filled(torn: &RawSoup, method: Method) -> (RawSoup, Filled) {
+fn filled(torn: &RawSoup, method: Method) -> (RawSoup, FillReport) {
     let soup = Soup {
         positions: torn.positions.iter().copied().map(DVec3::from_array).collect(),
         triangles: torn.triangles.clone(),

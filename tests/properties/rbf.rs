@@ -3,8 +3,8 @@
 use meshmend::budget::{Budget, StopFlag, Stopped};
 use meshmend::geom::{Aabb, DVec3};
 use meshmend::implicit::{
-    Band, ConstraintValues, Field, Kernel, Patch, RbfOptions, SolveMethod, Surroundings, Unfit, fit, march,
-    mesh_surface,
+    Band, BandSurroundings, ConstraintValues, Field, Kernel, Patch, RbfOptions, SolveMethod, Unfit, fit,
+    march, mesh_surface,
 };
 use meshmend::par;
 use meshmend::spatial::NearestSearch;
@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 const KERNELS: [Kernel; 3] = [Kernel::ThinPlate, Kernel::Cubic, Kernel::Linear];
-const ALONE: Surroundings<'static, 'static> = Surroundings { surface: None, mesh_box: Aabb::EMPTY };
+const ALONE: BandSurroundings<'static, 'static> = BandSurroundings { surface: None, mesh_box: Aabb::EMPTY };
 
 fn fitted(band: &Band, options: &RbfOptions) -> Field {
     fit(band, &ALONE, options, &Budget::unlimited()).unwrap().unwrap()
@@ -233,7 +233,7 @@ fn a_thin_wall_with_a_hole_on_each_side_stays_two_surfaces() {
     let budget = Budget::unlimited();
     let (points, triangles, both) = thin_wall(0.5);
     let surface = NearestSearch::build(&points, &triangles, &budget).unwrap();
-    let around = Surroundings { surface: Some(&surface), mesh_box: Aabb::of(points.iter().copied()) };
+    let around = BandSurroundings { surface: Some(&surface), mesh_box: Aabb::of(points.iter().copied()) };
     for options in every_way() {
         let field = match fit(&both, &around, &options, &budget).unwrap() {
             Ok(field) => field,
@@ -344,7 +344,7 @@ fn points_on_another_wall_have_no_offsets_and_where_all_are_there_is_no_field() 
             triangles.push([first, first + 1, first + 2]);
         }
         let surface = NearestSearch::build(&positions, &triangles, &budget).unwrap();
-        let around = Surroundings { surface: Some(&surface), mesh_box: Aabb::EMPTY };
+        let around = BandSurroundings { surface: Some(&surface), mesh_box: Aabb::EMPTY };
         fit(&flat, &around, &RbfOptions::default(), &budget).unwrap()
     };
     assert_eq!(fit_over(-9.0).unwrap_err(), Unfit::NoRoom);

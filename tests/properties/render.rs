@@ -6,7 +6,7 @@ use meshmend::budget::Budget;
 use meshmend::geom::DVec3;
 use meshmend::par;
 use meshmend::render::{
-    Camera, DrawnEdges, Model, PictureAxes, Projection, Scene, SceneFrame, Shade, Style, View, draw,
+    Camera, DrawnEdges, FramedScene, PictureAxes, Projection, Scene, SceneFrame, Shade, Style, View, draw,
     visible_triangles,
 };
 
@@ -57,7 +57,7 @@ fn meeting([a, b, c]: [DVec3; 3], (from, along): (DVec3, DVec3)) -> Option<f64> 
 }
 
 /// The triangles that are nearest along a ray, with all that are hardly farther; none where there is none.
-fn nearest(model: &Model<'_>, triangles: &[[u32; 3]], ray: (DVec3, DVec3)) -> Vec<u32> {
+fn nearest(model: &FramedScene<'_>, triangles: &[[u32; 3]], ray: (DVec3, DVec3)) -> Vec<u32> {
     let corners = |t: &[u32; 3]| t.map(|v| model.points()[v as usize]);
     let met: Vec<(u32, f64)> = (0..)
         .zip(triangles)
@@ -76,7 +76,7 @@ fn round(seed: u64, number: usize) -> (usize, usize) {
     let (positions, triangles) = soup(random);
     let scene = Scene { positions: &positions, triangles: &triangles, palette: &PALETTE, ..Scene::default() };
     let budget = Budget::unlimited();
-    let model = Model::of(scene, SceneFrame::around([scene.bounds()]), Shade::Flat, &budget).unwrap();
+    let model = FramedScene::of(scene, SceneFrame::around([scene.bounds()]), Shade::Flat, &budget).unwrap();
     let projection = random.pick(&[Projection::Orthographic, Projection::Perspective]);
     let camera = Camera::at(&[&model], direction(random), projection, 1.0, &budget).unwrap();
     let seen = visible_triangles(&model, &camera, SIDE, SIDE, &budget).unwrap();
@@ -132,7 +132,7 @@ fn pictures_of_random_soups_are_the_same_with_one_two_and_eight_threads() {
                 };
                 let budget = Budget::unlimited();
                 let frame = SceneFrame::around([scene.bounds()]);
-                let model = Model::of(scene, frame, Shade::Smooth, &budget).unwrap();
+                let model = FramedScene::of(scene, frame, Shade::Smooth, &budget).unwrap();
                 let camera =
                     Camera::at(&[&model], direction(random), Projection::Perspective, 1.5, &budget).unwrap();
                 draw(&model, &camera, 96, 64, &style, &budget).unwrap()

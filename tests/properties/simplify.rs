@@ -10,8 +10,8 @@ use meshmend::mesh::half_edge::{Claims, HalfEdgeMesh};
 use meshmend::mesh::{Color, Soup, cut_singular};
 use meshmend::par;
 use meshmend::simplify::{
-    Borders, CriterionKind, Guards, Input, NEW, Placement, Refusal, Simplified, SimplifyError,
-    SimplifyOptions, Target, simplify_strict,
+    Borders, CriterionKind, Guards, NEW, Placement, Simplified, SimplifyError, SimplifyInput,
+    SimplifyOptions, SimplifyRefusal, Target, simplify_strict,
 };
 
 type Triangle = [u32; 3];
@@ -23,7 +23,7 @@ const PLACEMENTS: [Placement; 2] = [Placement::Optimal, Placement::OntoEnd];
 /// No guard but the one against degenerate faces.
 const UNGUARDED: Guards<'static> = Guards { normal_cos_min: -1.0, aspect_min: 0.0, envelope: None };
 
-fn strict(input: &Input<'_>, options: &SimplifyOptions<'_>) -> Vec<Simplified> {
+fn strict(input: &SimplifyInput<'_>, options: &SimplifyOptions<'_>) -> Vec<Simplified> {
     simplify_strict(input, options, &Budget::unlimited()).unwrap()
 }
 
@@ -75,7 +75,7 @@ fn sphere(n: u32) -> (Vec<DVec3>, Vec<Triangle>) {
 
 /// Fails unless `result` is a manifold with the topology of `triangles`, without degenerate faces, and its origins are
 /// true.
-fn assert_kept(input: &Input<'_>, result: &Simplified) {
+fn assert_kept(input: &SimplifyInput<'_>, result: &Simplified) {
     let budget = Budget::unlimited();
     let mesh =
         |positions: usize, list: &[Triangle]| HalfEdgeMesh::from_triangles(list, positions, &budget).unwrap();
@@ -112,7 +112,7 @@ fn random_manifolds_keep_their_topology_down_to_the_last_collapse() {
             borders: if random.one_in(4) { Borders::Keep } else { Borders::Follow },
             ..SimplifyOptions::default()
         };
-        let input = Input::new(&positions, &triangles);
+        let input = SimplifyInput::new(&positions, &triangles);
         let before = topology(&triangles).unwrap();
         for level in strict(&input, &options) {
             assert_kept(&input, &level);
@@ -137,7 +137,7 @@ fn a_run_ends_only_when_no_edge_of_a_closed_mesh_can_be_collapsed() {
             guards: UNGUARDED,
             ..SimplifyOptions::default()
         };
-        let level = strict(&Input::new(&positions, &triangles), &options).remove(0);
+        let level = strict(&SimplifyInput::new(&positions, &triangles), &options).remove(0);
         let budget = Budget::unlimited();
         let mesh = HalfEdgeMesh::from_triangles(&level.triangles, level.positions.len(), &budget).unwrap();
         let left = mesh.half_edges().find(|&h| mesh.can_collapse(h).is_ok());
@@ -150,7 +150,7 @@ fn a_sphere_and_a_terrain_reach_their_targets_in_every_criterion() {
     let mut random = Random::new(52);
     let shapes = [sphere(24), terrain(&mut random, 20)];
     for (positions, triangles) in &shapes {
-        let input = Input::new(positions, triangles);
+        let input = SimplifyInput::new(positions, triangles);
         for criterion in CRITERIA {
             for placement in PLACEMENTS {
                 let targets = [0.5, 0.1].map(Target::Ratio).to_vec();
@@ -178,7 +178,7 @@ fn a_sphere_and_a_terrain_reach_their_targets_in_every_criterion() {
 #[test]
 fn levels_of_one_run_are_what_separate_runs_give() {
     let (positions, triangles) = sphere(20);
-    let input = Input::new(&positions, &triangles);
+    let input = SimplifyInput::new(&positions, &triangles);
     let options =
         |targets: &[Target]| SimplifyOptions { targets: targets.to_vec(), ..SimplifyOptions::default() };
     let targets = [Target::Faces(500), Target::Ratio(0.3), Target::Faces(60)];
@@ -193,7 +193,7 @@ fn levels_of_one_run_are_what_separate_runs_give() {
 #[test]
 fn the_result_does_not_depend_on_the_number_of_threads() {
     let (positions, triangles) = terrain(&mut Random::new(53), 130);
-    let input = Input::new(&positions, &triangles);
+    let input = SimplifyInput::new(&positions, &triangles);
     let options = SimplifyOptions { targets: vec![Target::Ratio(0.2)], ..SimplifyOptions::default() };
     let results = [1, 2, 5].map(|threads| par::with_threads(threads, || strict(&input, &options)));
     assert!(results[0] == results[1] && results[1] == results[2]);
@@ -202,7 +202,7 @@ fn the_result_does_not_depend_on_the_number_of_threads() {
 #[test]
 fn an_error_target_stops_before_the_error_and_a_larger_one_goes_on() {
     let (positions, triangles) = sphere(24);
-    let input = Input::new(&positions, &triangles);
+    let input = SimplifyInput::new(&positions, &triangles);
     for criterion in CRITERIA {
         let targets = [1e-3, 1e-2, 1e-1].map(Target::Error).to_vec();
         let options = SimplifyOptions { targets, criterion, ..SimplifyOptions::default() };
@@ -225,7 +225,7 @@ fn an_error_target_stops_before_the_error_and_a_larger_one_goes_on() {
 #[test]
 fn borders_that_are_kept_do_not_move_and_others_stay_on_their_line() {
     let (positions, triangles) = terrain(&mut Random::new(54), 16);
-    let input = Input::new(&positions, &triangles);
+    let input = SimplifyInput::new(&positions, &triangles);
     let is_border = |p: &DVec3| [p.x, p.y].iter().any(|&x| x == 0.0 || x == 16.0);
     for borders in [Borders::Keep, Borders::Follow] {
         let options =
@@ -260,7 +260,7 @@ fn colors_of_faces_keep_their_borders_and_colors_of_vertices_are_mixed() {
     let shade = |p: DVec3| Some(Color::Floats([p.x as f32 / 16.0, 0.5, 0.0], None));
     let colors: Vec<Option<Color>> = positions.iter().map(|&p| shade(p)).collect();
     let flat: Vec<DVec3> = positions.iter().map(|p| DVec3::new(p.x, p.y, 0.0)).collect();
-    let input = Input {
+    let input = SimplifyInput {
         positions: &flat,
         triangles: &triangles,
         face_groups: &groups,
@@ -310,7 +310,7 @@ fn a_cube_of_many_faces_comes_down_to_twelve_and_stays_a_cube() {
             soup.triangles.extend(faces);
         }
     }
-    let input = Input::new(&soup.positions, &soup.triangles);
+    let input = SimplifyInput::new(&soup.positions, &soup.triangles);
     for criterion in [CriterionKind::Quadric, CriterionKind::Memoryless] {
         let options =
             SimplifyOptions { targets: vec![Target::Faces(12)], criterion, ..SimplifyOptions::default() };
@@ -328,13 +328,13 @@ fn what_is_no_manifold_is_refused_and_a_tetrahedron_stays() {
     let positions = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE];
     let book = [[0, 1, 2], [1, 0, 3], [0, 1, 4]];
     let options = SimplifyOptions { targets: vec![Target::Faces(2)], ..SimplifyOptions::default() };
-    let refused = simplify_strict(&Input::new(&positions, &book), &options, &Budget::unlimited());
+    let refused = simplify_strict(&SimplifyInput::new(&positions, &book), &options, &Budget::unlimited());
     assert!(matches!(refused, Err(SimplifyError::NotManifold(_))));
     let tetrahedron = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
-    let level = &strict(&Input::new(&positions, &tetrahedron), &options)[0];
+    let level = &strict(&SimplifyInput::new(&positions, &tetrahedron), &options)[0];
     assert_eq!(level.triangles, tetrahedron);
     assert!(!level.report.is_reached && level.report.refusals.total() > 0);
-    let link = Refusal::ALL.iter().filter(|r| matches!(r, Refusal::Link(_)));
+    let link = SimplifyRefusal::ALL.iter().filter(|r| matches!(r, SimplifyRefusal::Link(_)));
     assert!(link.map(|&r| level.report.refusals.count(r)).sum::<u64>() > 0);
 }
 
@@ -345,7 +345,7 @@ fn huge_tiny_and_far_coordinates_give_the_same_mesh() {
         let moved: Vec<DVec3> = positions.iter().map(|&p| map(p)).collect();
         let options =
             SimplifyOptions { targets: vec![Target::Ratio(0.3)], round: false, ..SimplifyOptions::default() };
-        strict(&Input::new(&moved, &triangles), &options).remove(0)
+        strict(&SimplifyInput::new(&moved, &triangles), &options).remove(0)
     };
     let plain = run(&|p| p);
     for exponent in [-900, -100, 100, 900] {
@@ -386,7 +386,7 @@ fn real_meshes_keep_their_topology_at_a_half_a_tenth_and_a_hundredth() {
     let mut reached = 0;
     let meshes = corpus_meshes(cases(20_000, 3_000_000));
     for (name, soup) in &meshes {
-        let input = Input::new(&soup.positions, &soup.triangles);
+        let input = SimplifyInput::new(&soup.positions, &soup.triangles);
         for criterion in if soup.triangles.len() < 5_000 { &CRITERIA[..] } else { &CRITERIA[..1] } {
             let targets = [0.5, 0.1, 0.01].map(Target::Ratio).to_vec();
             let options = SimplifyOptions { targets, criterion: *criterion, ..SimplifyOptions::default() };

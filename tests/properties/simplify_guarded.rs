@@ -11,7 +11,7 @@ use meshmend::formats::Encoding;
 use meshmend::geom::{DVec3, upward_crossing};
 use meshmend::mesh::UnionFind;
 use meshmend::simplify::{
-    CriterionKind, Guards, Input, Placement, Simplified, SimplifyOptions, Target, simplify_fast,
+    CriterionKind, Guards, Placement, Simplified, SimplifyInput, SimplifyOptions, Target, simplify_fast,
     simplify_guarded,
 };
 use std::collections::BTreeMap;
@@ -227,7 +227,7 @@ fn certified_solids_stay_certified_and_keep_their_shells() {
         solids.fetch_add(1, Ordering::Relaxed);
         let mut options = options(random);
         options.round |= is_float32;
-        let input = Input::new(&positions, &soup.triangles);
+        let input = SimplifyInput::new(&positions, &soup.triangles);
         let judge = |level: &Simplified| certified(&level.positions, &level.triangles, is_float32);
         for level in simplify_guarded(&input, &options, &Budget::unlimited()).unwrap() {
             let after = judge(&level);
@@ -291,7 +291,7 @@ fn a_pebble_in_the_dent_of_a_thin_plate_stays_on_its_side() {
         // By length alone a plate folds and shrinks so much that it goes around the pebble.
         let criterion = random.pick(&[CriterionKind::Quadric, CriterionKind::Memoryless]);
         let options = SimplifyOptions { round: true, criterion, ..options(random) };
-        let input = Input::new(&positions, &soup.triangles);
+        let input = SimplifyInput::new(&positions, &soup.triangles);
         for level in simplify_guarded(&input, &options, &Budget::unlimited()).unwrap() {
             assert!(is_valid(&certified(&level.positions, &level.triangles, true)), "{case}");
             // A plate may fold above it, and one that shrinks past it may come to lie below by its rim.

@@ -7,7 +7,7 @@ use meshmend::geom::DVec3;
 use meshmend::mesh::UnionFind;
 use meshmend::mesh::half_edge::HalfEdgeMesh;
 use meshmend::simplify::{
-    CriterionKind, Input, Mode, NO_TEXTURE, Placement, SimplifyOptions, Target, simplify,
+    CriterionKind, Mode, NO_TEXTURE, Placement, SimplifyInput, SimplifyOptions, Target, simplify,
 };
 use std::collections::BTreeMap;
 
@@ -97,7 +97,7 @@ fn regions_stay_apart_and_none_is_lost_in_any_mode() {
             }
         };
         let groups: Vec<u32> = triangles.iter().map(&mut group_of).collect();
-        let input = Input { face_groups: &groups, ..Input::new(&positions, &triangles) };
+        let input = SimplifyInput { face_groups: &groups, ..SimplifyInput::new(&positions, &triangles) };
         let options = SimplifyOptions {
             targets: [0.5, 0.2, 0.0].map(Target::Ratio).to_vec(),
             criterion: random.pick(&[
@@ -153,7 +153,7 @@ fn charts_stay_apart_and_none_is_lost_in_any_mode() {
             }),
         };
         let texture: Vec<Corners> = triangles.iter().zip(&chart).map(points).collect();
-        let input = Input {
+        let input = SimplifyInput {
             positions: &positions,
             triangles: &triangles,
             face_groups: &[],

@@ -6,13 +6,13 @@ use crate::raw_files::{ENCODINGS, encode};
 use crate::repair_pipeline::broken;
 use crate::support::cases;
 use meshmend::budget::Budget;
-use meshmend::mesh::{ChosenEdges, Validity};
+use meshmend::mesh::{ChosenEdges, StitchValidity};
 use meshmend::pipeline::{ChosenPlan, Failure, Operation, Options, Outcome, Require, Step, run};
 use meshmend::repair::Selection;
 use meshmend::repair::cut::CutOptions;
 use meshmend::repair::duplicates::OppositePairs;
 use meshmend::repair::fill::{FillOptions, Method};
-use meshmend::repair::nest::{Fate, NestOptions, Policy};
+use meshmend::repair::nest::{NestOptions, NestingPolicy, ShellFate};
 use meshmend::repair::pair_sheets::Across;
 use meshmend::repair::polygons::DegenerateFaces;
 use meshmend::repair::snap::SnapOptions;
@@ -40,7 +40,7 @@ fn any_step(random: &mut Random, soup: &RawSoup) -> Step {
         9 => Step::RemoveCrossing { rings: random.below(4) as u32 },
         10 => Step::Orient,
         11 => Step::Cut(CutOptions::default()),
-        12 => Step::Pinch(ChosenEdges::default(), Validity::Exact),
+        12 => Step::Pinch(ChosenEdges::default(), StitchValidity::Exact),
         13 => Step::Snap(SnapOptions { epsilon: Some(length), ..SnapOptions::default() }),
         14 => {
             let holes = match random.one_in(2) {
@@ -70,9 +70,10 @@ fn any_step(random: &mut Random, soup: &RawSoup) -> Step {
         _ => match random.one_in(2) {
             true => Step::JoinCopies,
             false => {
-                let fate = random.pick(&[Fate::Stays, Fate::Turns, Fate::Goes]);
+                let fate = random.pick(&[ShellFate::Stays, ShellFate::Turns, ShellFate::Goes]);
                 let chosen = numbers(random, count).into_iter().map(|t| (t, fate)).collect();
-                let policy = random.pick(&[Policy::AsOriented, Policy::Alternate, Policy::Fill]);
+                let policy =
+                    random.pick(&[NestingPolicy::AsOriented, NestingPolicy::Alternate, NestingPolicy::Fill]);
                 Step::Nest(NestOptions { policy, is_embedded: false, chosen })
             }
         },

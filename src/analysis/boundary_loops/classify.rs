@@ -13,7 +13,7 @@
 //!
 //! None of this can be known from a file; the confidence says how clearly the measures are on their side of the limits.
 
-use super::shape::Shape;
+use super::shape::LoopShape;
 
 /// What a boundary loop most likely is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -97,7 +97,7 @@ pub(super) struct LoopContext {
 }
 
 /// The class of a closed loop.
-pub(super) fn classify(shape: &Shape, around: &LoopContext) -> HoleGuess {
+pub(super) fn classify(shape: &LoopShape, around: &LoopContext) -> HoleGuess {
     // Longer than the diagonal of the part is as large as a hole gets.
     let size = (shape.length / around.diagonal).min(1.0);
     let size = if size.is_nan() { 1.0 } else { size };
@@ -128,7 +128,7 @@ pub(super) fn classify(shape: &Shape, around: &LoopContext) -> HoleGuess {
     HoleGuess { class, confidence: to_cents(confidence) }
 }
 
-fn is_face(shape: &Shape, around: &LoopContext) -> bool {
+fn is_face(shape: &LoopShape, around: &LoopContext) -> bool {
     let edges_max = around.polygon_corners.clamp(FACE_EDGES_MAX, POLYGON_EDGES_MAX);
     shape.edges <= edges_max && shape.deviation <= FACE_WARP_MAX * shape.diameter
 }
@@ -149,8 +149,8 @@ mod tests {
     use crate::geom::DVec3;
 
     /// A flat hexagon of diameter 2 and its part, a hundred times as large.
-    fn hexagon() -> (Shape, LoopContext) {
-        let shape = Shape {
+    fn hexagon() -> (LoopShape, LoopContext) {
+        let shape = LoopShape {
             edges: 6,
             length: 6.0,
             area: 2.6,
@@ -173,7 +173,7 @@ mod tests {
         (shape, around)
     }
 
-    fn class(change: impl Fn(&mut Shape, &mut LoopContext)) -> HoleClass {
+    fn class(change: impl Fn(&mut LoopShape, &mut LoopContext)) -> HoleClass {
         let (mut shape, mut around) = hexagon();
         change(&mut shape, &mut around);
         let guess = classify(&shape, &around);
@@ -195,7 +195,7 @@ mod tests {
 
     #[test]
     fn a_small_loop_in_a_sheet_is_a_hole_in_it_and_a_strip_is_no_crack() {
-        let small = |_: &mut Shape, around: &mut LoopContext| {
+        let small = |_: &mut LoopShape, around: &mut LoopContext| {
             (around.is_sheet, around.longest) = (true, 100.0);
         };
         assert_eq!(class(small), HoleClass::PlanarCut);

@@ -1,6 +1,6 @@
 //! Rims that run along another rim: a crack between two parts, or between two places of one, that were never joined.
 
-use super::Loops;
+use super::BoundaryLoops;
 use super::shape::inward;
 use crate::analysis::Context;
 use crate::budget::{CHECK_EVERY, Stopped};
@@ -18,7 +18,7 @@ const VISITS_MIN: u64 = 1 << 20;
 
 /// For each loop, the largest distance of its vertices from other loops where all are near one whose faces are on the
 /// other side; infinite for other loops.
-pub(super) fn gaps(loops: &Loops, cx: &Context<'_>) -> Result<Vec<f64>, Stopped> {
+pub(super) fn gaps(loops: &BoundaryLoops, cx: &Context<'_>) -> Result<Vec<f64>, Stopped> {
     let mut gaps = vec![f64::INFINITY; loops.len()];
     if loops.len() < 2 {
         return Ok(gaps);

@@ -7,8 +7,8 @@ mod rims;
 mod shape;
 
 pub use self::classify::{HoleClass, HoleGuess};
-use self::rims::Rims;
-use self::shape::Shape;
+use self::rims::BoundaryEdges;
+use self::shape::LoopShape;
 use super::best_plane::BestPlane;
 use super::{Context, DefectCode, Finding, Witness};
 use crate::budget::{CHECK_EVERY, Stopped};
@@ -34,25 +34,25 @@ pub struct HoleCounts {
 
 /// All loops of a mesh, in the order in which they are told.
 #[derive(Debug, Default)]
-pub(super) struct Loops {
-    rims: Rims,
+pub(super) struct BoundaryLoops {
+    rims: BoundaryEdges,
     /// The ends through which each loop enters its edges, one loop after the other.
     ends: Vec<u32>,
     /// Where each loop begins in `ends`; one more entry than loops, or none at all.
     starts: Vec<u32>,
     /// What is known of each; `None`: the chain does not close.
-    known: Vec<Option<(Shape, HoleGuess)>>,
+    known: Vec<Option<(LoopShape, HoleGuess)>>,
 }
 
 /// Bytes for each boundary edge: ends, partners and what comes and goes; and for each loop.
 const BYTES_PER_EDGE: u64 = 80;
 
 /// Finds and classifies the loops.
-pub(super) fn search(cx: &Context<'_>) -> Result<Loops, Stopped> {
+pub(super) fn search(cx: &Context<'_>) -> Result<BoundaryLoops, Stopped> {
     let count = cx.mesh.irregular_where(|triangles| triangles == 1).len();
     let _charge = cx.budget.charge(count as u64 * BYTES_PER_EDGE)?;
-    let rims = Rims::of(&cx.mesh, cx.budget)?;
-    let mut loops = Loops { rims, starts: vec![0], ..Loops::default() };
+    let rims = BoundaryEdges::of(&cx.mesh, cx.budget)?;
+    let mut loops = BoundaryLoops { rims, starts: vec![0], ..BoundaryLoops::default() };
     let mut is_seen = vec![false; loops.rims.half_edges.len()];
     for i in 0..is_seen.len() {
         if i % CHECK_EVERY == 0 {
@@ -79,7 +79,7 @@ pub(super) fn find(cx: &Context<'_>) -> Result<Vec<Finding>, Stopped> {
     Ok(Finding::with(DefectCode::BoundaryLoop, loops.len() as u64, witnesses))
 }
 
-impl Loops {
+impl BoundaryLoops {
     fn len(&self) -> usize {
         self.known.len()
     }
@@ -90,7 +90,7 @@ impl Loops {
     }
 
     /// The measures of loop `number`; `None`: it does not close.
-    fn shape(&self, number: usize) -> Option<&Shape> {
+    fn shape(&self, number: usize) -> Option<&LoopShape> {
         self.known[number].as_ref().map(|(shape, _)| shape)
     }
 
@@ -115,10 +115,10 @@ impl Loops {
         self.chain(number).iter().map(place).collect()
     }
 
-    fn measure(&self, number: usize, cx: &Context<'_>) -> Shape {
+    fn measure(&self, number: usize, cx: &Context<'_>) -> LoopShape {
         let apex = |&end: &u32| cx.mesh.apex(self.rims.half_edge(end));
         let apexes: Vec<DVec3> = self.chain(number).iter().map(apex).collect();
-        Shape::of(&self.points(number, cx), &apexes)
+        LoopShape::of(&self.points(number, cx), &apexes)
     }
 
     /// The half-edges of the soup in loops, each with the number of its loop, ascending.
@@ -169,7 +169,7 @@ impl Loops {
     }
 }
 
-fn figures(shape: &Shape, guess: HoleGuess) -> Vec<(&'static str, f64)> {
+fn figures(shape: &LoopShape, guess: HoleGuess) -> Vec<(&'static str, f64)> {
     vec![
         ("edges", f64::from(shape.edges)),
         ("length", shape.length),

@@ -1,9 +1,9 @@
 //! The parts that loops belong to, as far as the class of a loop depends on them.
 
-use super::Loops;
+use super::BoundaryLoops;
 use super::classify::{FLAT_SHARE_MAX, LoopContext, MOUTH_SHARE_MIN, classify, is_mouth};
 use super::gaps::gaps;
-use super::shape::Shape;
+use super::shape::LoopShape;
 use crate::analysis::Context;
 use crate::budget::{CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3, triangle_area};
@@ -16,7 +16,7 @@ const MOUTHS_MAX: usize = 8;
 const BEYOND_MAX: f64 = 0.01;
 
 /// Gives each closed loop its class.
-pub(super) fn classify_all(loops: &mut Loops, cx: &Context<'_>) -> Result<(), Stopped> {
+pub(super) fn classify_all(loops: &mut BoundaryLoops, cx: &Context<'_>) -> Result<(), Stopped> {
     let gaps = gaps(loops, cx)?;
     let mut of_parts: Vec<(u32, u32)> = (0..loops.len())
         .filter(|&i| loops.known[i].is_some())
@@ -86,8 +86,8 @@ fn size(part: u32, cx: &Context<'_>) -> Result<(f64, f64), Stopped> {
 
 /// Radius of loop `number` by that of its part, both about the axis of the loop, where the loop is flat and the part lies on
 /// one side of its plane; 0 elsewhere, and where it is too small for a mouth.
-fn mouth_share(number: usize, part: u32, loops: &Loops, cx: &Context<'_>) -> Result<f64, Stopped> {
-    let Some(&Shape { normal, deviation, length, .. }) = loops.shape(number) else { return Ok(0.0) };
+fn mouth_share(number: usize, part: u32, loops: &BoundaryLoops, cx: &Context<'_>) -> Result<f64, Stopped> {
+    let Some(&LoopShape { normal, deviation, length, .. }) = loops.shape(number) else { return Ok(0.0) };
     if deviation > FLAT_SHARE_MAX * length {
         return Ok(0.0);
     }

@@ -15,14 +15,14 @@ const OPEN: u32 = u32::MAX;
 /// The boundary edges and how they hang together. Edge `i` has the ends `2 i`, where its half-edge starts, and
 /// `2 i + 1`, where it goes.
 #[derive(Debug, Default)]
-pub(super) struct Rims {
+pub(super) struct BoundaryEdges {
     /// Half-edges with an edge of their own, ascending.
     pub(super) half_edges: Vec<u32>,
     /// The end at which the rim goes on from each end, or [`OPEN`].
     partner: Vec<u32>,
 }
 
-impl Rims {
+impl BoundaryEdges {
     pub(super) fn of(mesh: &Welded<'_>, budget: &Budget) -> Result<Self, Stopped> {
         let edges = mesh.irregular_where(|triangles| triangles == 1);
         let mut half_edges: Vec<u32> = edges.iter().map(|&e| mesh.edges.group(e as usize)[0]).collect();

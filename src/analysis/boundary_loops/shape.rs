@@ -5,7 +5,7 @@ use crate::geom::{Aabb, DVec3};
 
 /// How large and how flat a loop is, in the unit of the coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Shape {
+pub(super) struct LoopShape {
     /// Number of edges.
     pub(super) edges: u32,
     /// Sum of their lengths.
@@ -35,7 +35,7 @@ struct Sides<'p> {
     far: usize,
 }
 
-impl Shape {
+impl LoopShape {
     /// The measures of the closed chain through `points`; `apexes[i]` is the third corner of the triangle at the edge from
     /// point `i` on.
     pub(super) fn of(points: &[DVec3], apexes: &[DVec3]) -> Self {
@@ -169,11 +169,11 @@ mod tests {
     use super::*;
 
     /// The shape of a loop whose triangles all have their third corner at `apex`.
-    fn shape(points: &[[f64; 2]], apex: impl Fn(DVec3) -> DVec3) -> Shape {
+    fn shape(points: &[[f64; 2]], apex: impl Fn(DVec3) -> DVec3) -> LoopShape {
         let points: Vec<DVec3> = points.iter().map(|&[x, y]| DVec3::new(x, y, 0.0)).collect();
         let middle = |i: usize| (points[i] + points[(i + 1) % points.len()]) / 2.0;
         let apexes: Vec<DVec3> = (0..points.len()).map(|i| apex(middle(i))).collect();
-        Shape::of(&points, &apexes)
+        LoopShape::of(&points, &apexes)
     }
 
     #[test]
@@ -206,7 +206,7 @@ mod tests {
 
     #[test]
     fn a_loop_at_one_place_has_no_size() {
-        let of = Shape::of(&[DVec3::ONE; 3], &[DVec3::ZERO; 3]);
+        let of = LoopShape::of(&[DVec3::ONE; 3], &[DVec3::ZERO; 3]);
         assert_eq!((of.length, of.area, of.diameter, of.width), (0.0, 0.0, 0.0, 0.0));
     }
 }

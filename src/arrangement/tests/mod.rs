@@ -217,8 +217,8 @@ fn what_is_open_too_much_or_stopped_is_refused_as_such() {
 #[test]
 fn integers_are_as_wide_as_the_analysis_says() {
     use super::ball::Ball;
-    use super::kernel::Kernel;
-    use super::point::{Definition, Point};
+    use super::kernel::ClusterKernel;
+    use super::point::{ArrangementPoint, Definition};
     use std::sync::OnceLock;
     // The largest coordinates of 20 bits at the corners of a cube around the origin, and their odd neighbours.
     let m = f64::from((1 << 20) - 1);
@@ -229,11 +229,11 @@ fn integers_are_as_wide_as_the_analysis_says() {
             DVec3::new(sign(random), sign(random), sign(random) - 2.0 * (random.below(3) as f64))
         };
         let positions: Vec<DVec3> = (0..9).map(|_| corner(&mut random)).collect();
-        let kernel = Kernel::new(positions, vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]]);
+        let kernel = ClusterKernel::new(positions, vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]]);
         // Differences to the origin have one bit more.
         let b = u64::from(kernel.bits()) + 1;
         let width = |definition| {
-            let point = Point { definition, near: [Ball::UNKNOWN; 3], exact: OnceLock::new() };
+            let point = ArrangementPoint { definition, near: [Ball::UNKNOWN; 3], exact: OnceLock::new() };
             let exact = kernel.exact(&point);
             [exact.x.iter().map(num_bigint::BigInt::bits).max().unwrap(), exact.w.bits()]
         };

@@ -1,7 +1,7 @@
 //! What must hold of an arrangement, decided naively in integers of the tests' own: all pairs of pieces, all sides of pieces.
 
 use super::cases::Bodies;
-use crate::arrangement::{Arrangement, Merged, SolidBoundary};
+use crate::arrangement::{Arrangement, MergedBoundary, SolidBoundary};
 use num_bigint::BigInt;
 use num_rational::Ratio;
 use num_traits::{ToPrimitive, Zero};
@@ -265,7 +265,7 @@ pub(super) fn volumes(arrangement: &Arrangement) -> Vec<String> {
 pub(super) fn breaches_of_merged(
     arrangement: &Arrangement,
     boundary: &SolidBoundary,
-    merged: &Merged,
+    merged: &MergedBoundary,
 ) -> Vec<String> {
     let mut broken = Vec::new();
     let place = |p: u32| place(arrangement, p);

@@ -4,7 +4,7 @@ use super::*;
 use crate::distance::{DirectedDistance, FarPoint, SurfaceDistance};
 use crate::geom::DVec3;
 use crate::pipeline::{self, Answer, Losses};
-use crate::simplify::{self, Refusal, Refusals, Target};
+use crate::simplify::{self, Refusals, SimplifyRefusal, Target};
 use crate::wire::{TimingMs, sample};
 
 fn of(answer: &Answer, written: Option<&str>) -> String {
@@ -88,7 +88,7 @@ fn a_refusal_says_why_and_that_nothing_was_written() {
 }
 
 /// A result with 40 of 100 faces.
-fn level(target: Target, refused: &[(Refusal, u64)], is_reached: bool) -> pipeline::Level {
+fn level(target: Target, refused: &[(SimplifyRefusal, u64)], is_reached: bool) -> pipeline::Level {
     let mut refusals = Refusals::default();
     refused.iter().for_each(|&(reason, count)| refusals.add_times(reason, count));
     let simplified = simplify::TargetReport {
@@ -110,7 +110,7 @@ fn a_target_that_was_not_reached_is_told_with_the_reasons() {
     let mut answer = sample::repaired();
     answer.report.levels = vec![
         level(Target::Faces(50), &[], true),
-        level(Target::Faces(10), &[(Refusal::Held, 2), (Refusal::NormalTurns, 7)], false),
+        level(Target::Faces(10), &[(SimplifyRefusal::Held, 2), (SimplifyRefusal::NormalTurns, 7)], false),
         level(Target::Ratio(0.25), &[], false),
     ];
     let want = "\

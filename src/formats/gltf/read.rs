@@ -345,12 +345,12 @@ impl Raw {
         soup.texture = of_triangles(texture, &soup);
         let mut descriptions = materials.descriptions;
         match colors {
-            Colors::None => {}
-            Colors::OfVertices { colors, lost } => {
+            ColorSource::None => {}
+            ColorSource::OfVertices { colors, lost } => {
                 soup.vertex_colors = colors;
                 left_out.push(("colors_at_seams", lost));
             }
-            Colors::OfFaces(colors) => {
+            ColorSource::OfFaces(colors) => {
                 soup.face_colors = colors;
                 // These are beside the colours of the materials.
                 descriptions.colors.iter_mut().for_each(|color| *color = None);
@@ -387,10 +387,10 @@ impl Raw {
     }
 
     /// The colours of the welded vertices, or of the faces, if positions have several colours and each face has one.
-    fn weld_colors(&mut self, groups: &Coincident, budget: &Budget) -> Result<Colors, Stopped> {
+    fn weld_colors(&mut self, groups: &Coincident, budget: &Budget) -> Result<ColorSource, Stopped> {
         let colors = std::mem::take(&mut self.colors);
         if colors.iter().all(Option::is_none) {
-            return Ok(Colors::None);
+            return Ok(ColorSource::None);
         }
         let mut lost = 0;
         for (begin, block) in (0..).step_by(CHECK_EVERY).zip(colors.chunks(CHECK_EVERY)) {
@@ -405,15 +405,18 @@ impl Raw {
             let is_of_one = |t: &[u32; 3]| color(t[0]) == color(t[1]) && color(t[0]) == color(t[2]);
             budget.check()?;
             if self.triangles.iter().all(is_of_one) {
-                return Ok(Colors::OfFaces(self.triangles.iter().map(|t| color(t[0])).collect()));
+                return Ok(ColorSource::OfFaces(self.triangles.iter().map(|t| color(t[0])).collect()));
             }
         }
-        Ok(Colors::OfVertices { colors: groups.first.iter().map(|&v| colors[v as usize]).collect(), lost })
+        Ok(ColorSource::OfVertices {
+            colors: groups.first.iter().map(|&v| colors[v as usize]).collect(),
+            lost,
+        })
     }
 }
 
 /// What has the colours of a file.
-enum Colors {
+enum ColorSource {
     None,
     /// `lost`: vertices whose colour differs from that of another one at their place.
     OfVertices {

@@ -41,7 +41,7 @@ pub(in crate::formats) fn write(
     let of_objects = PER_OBJECT * soup.objects.names.len() as u64 + of_names as u64;
     let _charge = budget.charge(PER_PRIMITIVE * primitives.count() as u64 + of_objects)?;
     let (vertices, _charge) = Vertices::of(soup, &looks, &triangles, budget)?;
-    let (mut file, _charge) = File::with_room(soup, &vertices, &looks, encoding, budget)?;
+    let (mut file, _charge) = GltfBuilder::with_room(soup, &vertices, &looks, encoding, budget)?;
     if !soup.triangles.is_empty() {
         file.put_meshes(soup, &vertices, &looks, &triangles, encoding, budget)?;
     }
@@ -52,7 +52,7 @@ pub(in crate::formats) fn write(
 }
 
 /// A file under way.
-struct File {
+struct GltfBuilder {
     /// The header of a GLB if it is one, then the buffer.
     bytes: Vec<u8>,
     /// Where the buffer begins.
@@ -63,7 +63,7 @@ struct File {
     members: Map<String, Value>,
 }
 
-impl File {
+impl GltfBuilder {
     fn with_room<'b>(
         soup: &Soup,
         vertices: &Vertices,

@@ -10,7 +10,7 @@ use std::collections::HashMap;
 
 /// What `o` and `g` say, each until it comes again.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
-struct Names<'a> {
+struct CurrentNames<'a> {
     object: &'a [u8],
     group: &'a [u8],
 }
@@ -50,9 +50,9 @@ fn usable(name: &[u8]) -> &[u8] {
 #[derive(Debug, Default)]
 pub(super) struct ObjectsOfFile<'a> {
     /// Seeded, since the file chooses the names.
-    numbers: HashMap<Names<'a>, u32>,
+    numbers: HashMap<CurrentNames<'a>, u32>,
     of_face: Vec<u32>,
-    current: Names<'a>,
+    current: CurrentNames<'a>,
 }
 
 impl<'a> ObjectsOfFile<'a> {
@@ -71,7 +71,7 @@ impl<'a> ObjectsOfFile<'a> {
     fn go_on_to(&mut self, end: usize) {
         if end > self.of_face.len() {
             let next = self.numbers.len() as u32;
-            let is_none = self.current == Names::default();
+            let is_none = self.current == CurrentNames::default();
             let number = if is_none { NO_OBJECT } else { *self.numbers.entry(self.current).or_insert(next) };
             self.of_face.resize(end, number);
         }
@@ -83,13 +83,15 @@ impl<'a> ObjectsOfFile<'a> {
         if count == 0 || count > OBJECTS_MAX {
             return Ok((Objects::default(), count as u64));
         }
-        let bytes = |names: &Names<'_>| names.object.len() + names.group.len();
+        let bytes = |names: &CurrentNames<'_>| names.object.len() + names.group.len();
         let _charge = budget.charge(self.numbers.keys().map(bytes).sum::<usize>() as u64)?;
-        let mut names: Vec<(u32, Names<'_>)> =
+        let mut names: Vec<(u32, CurrentNames<'_>)> =
             self.numbers.into_iter().map(|(names, number)| (number, names)).collect();
         names.sort_unstable_by_key(|&(number, _)| number);
-        let name =
-            |names: Names<'_>| ObjectName { object: names.object.to_vec(), group: names.group.to_vec() };
+        let name = |names: CurrentNames<'_>| ObjectName {
+            object: names.object.to_vec(),
+            group: names.group.to_vec(),
+        };
         let names = names.into_iter().map(|(_, names)| name(names)).collect();
         Ok((Objects { names, of_face: self.of_face }, 0))
     }
@@ -128,7 +130,7 @@ fn rank(soup: &Soup, t: u32) -> u32 {
 #[derive(Default)]
 pub(super) struct ObjectWriter<'s> {
     current: Option<u32>,
-    names: Names<'s>,
+    names: CurrentNames<'s>,
     changes: usize,
 }
 
@@ -149,7 +151,7 @@ impl<'s> ObjectWriter<'s> {
         text.before_item(self.changes, NAME_LINES_BYTES_MAX)?;
         self.changes += 1;
         self.current = object;
-        let names = Names { object: &names.object, group: &names.group };
+        let names = CurrentNames { object: &names.object, group: &names.group };
         for (word, name, was) in
             [("o", names.object, self.names.object), ("g", names.group, self.names.group)]
         {

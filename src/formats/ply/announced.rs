@@ -1,6 +1,6 @@
 //! How many triangles the header of a PLY file leaves room for.
 
-use super::header::{Header, Kind, Layout, PlyElement};
+use super::header::{DataEncoding, Header, PlyElement, PropertyType};
 
 /// The most triangles of a file of `file_bytes` bytes with the header at the beginning of `start`. `None`: it has none, or
 /// its values are text whose length says little.
@@ -21,12 +21,12 @@ pub(in crate::formats) fn header_triangles_at_most(start: &[u8], file_bytes: u64
 }
 
 /// Bytes of an index in the element's list, unless values are text.
-fn index_width(element: &PlyElement<'_>, layout: Layout) -> Option<u64> {
-    if layout == Layout::Ascii {
+fn index_width(element: &PlyElement<'_>, layout: DataEncoding) -> Option<u64> {
+    if layout == DataEncoding::Ascii {
         return None;
     }
     element.properties.iter().find_map(|property| match property.kind {
-        Kind::List { item, .. } => Some(item.width() as u64),
-        Kind::One(_) => None,
+        PropertyType::List { item, .. } => Some(item.width() as u64),
+        PropertyType::One(_) => None,
     })
 }

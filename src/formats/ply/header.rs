@@ -6,7 +6,7 @@ use crate::formats::words::{Dialect, Words};
 
 /// How values are laid out after the header.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Layout {
+pub(super) enum DataEncoding {
     Ascii,
     LittleEndian,
     BigEndian,
@@ -58,33 +58,33 @@ impl Scalar {
 
 /// Type of a property.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum PropertyType {
     One(Scalar),
     List { count: Scalar, item: Scalar },
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Property<'a> {
+pub(super) struct HeaderProperty<'a> {
     pub(super) name: &'a [u8],
-    pub(super) kind: Kind,
+    pub(super) kind: PropertyType,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct PlyElement<'a> {
     pub(super) name: &'a [u8],
     pub(super) count: u64,
-    pub(super) properties: Vec<Property<'a>>,
+    pub(super) properties: Vec<HeaderProperty<'a>>,
     /// Line of the header.
     pub(super) line: u64,
 }
 
 impl PlyElement<'_> {
     /// Fewest bytes that one of it takes in any layout.
-    pub(super) fn bytes_min(&self, layout: Layout) -> usize {
-        let bytes = |property: &Property<'_>| match (layout, property.kind) {
+    pub(super) fn bytes_min(&self, layout: DataEncoding) -> usize {
+        let bytes = |property: &HeaderProperty<'_>| match (layout, property.kind) {
             // A digit and a blank.
-            (Layout::Ascii, _) => 2,
-            (_, Kind::One(scalar) | Kind::List { count: scalar, .. }) => scalar.width(),
+            (DataEncoding::Ascii, _) => 2,
+            (_, PropertyType::One(scalar) | PropertyType::List { count: scalar, .. }) => scalar.width(),
         };
         self.properties.iter().map(bytes).sum()
     }
@@ -97,7 +97,7 @@ impl PlyElement<'_> {
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Header<'a> {
-    pub(super) layout: Layout,
+    pub(super) layout: DataEncoding,
     pub(super) elements: Vec<PlyElement<'a>>,
     /// Where the values begin.
     pub(super) end: usize,
@@ -155,11 +155,11 @@ fn break_width(bytes: &[u8], rest: &[u8]) -> usize {
     if bytes[first..].starts_with(b"\r\n") && rest.starts_with(b"\r\n") { 2 } else { rest.len().min(1) }
 }
 
-fn read_layout(words: &mut Words<'_>) -> Result<Layout, ReadError> {
+fn read_layout(words: &mut Words<'_>) -> Result<DataEncoding, ReadError> {
     match words.next_in_line() {
-        Some(b"ascii") => Ok(Layout::Ascii),
-        Some(b"binary_little_endian") => Ok(Layout::LittleEndian),
-        Some(b"binary_big_endian") => Ok(Layout::BigEndian),
+        Some(b"ascii") => Ok(DataEncoding::Ascii),
+        Some(b"binary_little_endian") => Ok(DataEncoding::LittleEndian),
+        Some(b"binary_big_endian") => Ok(DataEncoding::BigEndian),
         found => Err(words.wrong(found, "ascii, binary_little_endian or binary_big_endian")),
     }
 }
@@ -172,19 +172,19 @@ fn read_element<'a>(words: &mut Words<'a>) -> Result<PlyElement<'a>, ReadError> 
     Ok(PlyElement { name, count, properties: Vec::new(), line: words.line() })
 }
 
-fn read_property<'a>(words: &mut Words<'a>) -> Result<Property<'a>, ReadError> {
+fn read_property<'a>(words: &mut Words<'a>) -> Result<HeaderProperty<'a>, ReadError> {
     let word = words.next_in_line();
     let kind = if word == Some(b"list") {
         let count = read_scalar(words)?;
         if !count.is_integer() {
             return Err(words.wrong(Some(b"a list counted in floats"), "an integer type"));
         }
-        Kind::List { count, item: read_scalar(words)? }
+        PropertyType::List { count, item: read_scalar(words)? }
     } else {
-        Kind::One(scalar(words, word)?)
+        PropertyType::One(scalar(words, word)?)
     };
     let name = words.next_in_line().ok_or_else(|| words.wrong(None, "the property's name"))?;
-    Ok(Property { name, kind })
+    Ok(HeaderProperty { name, kind })
 }
 
 fn read_scalar(words: &mut Words<'_>) -> Result<Scalar, ReadError> {
@@ -207,11 +207,11 @@ mod tests {
     #[test]
     fn elements_and_their_properties_are_listed_whatever_stands_between() {
         let header = Header::read(HEADER.as_bytes()).unwrap();
-        assert_eq!((header.layout, header.end, header.end_line), (Layout::Ascii, HEADER.len(), 12));
+        assert_eq!((header.layout, header.end, header.end_line), (DataEncoding::Ascii, HEADER.len(), 12));
         let [vertex, face] = &header.elements[..] else { panic!("two elements") };
         assert_eq!((vertex.name, vertex.count, vertex.line), (&b"vertex"[..], 8, 6));
-        assert_eq!(vertex.properties[1], Property { name: b"y", kind: Kind::One(Scalar::F64) });
-        assert_eq!(face.properties[0].kind, Kind::List { count: Scalar::U8, item: Scalar::I32 });
+        assert_eq!(vertex.properties[1], HeaderProperty { name: b"y", kind: PropertyType::One(Scalar::F64) });
+        assert_eq!(face.properties[0].kind, PropertyType::List { count: Scalar::U8, item: Scalar::I32 });
         assert_eq!((vertex.find(&["a", "y"]), vertex.find(&["z"])), (Some(1), None));
     }
 

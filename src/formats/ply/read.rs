@@ -1,8 +1,8 @@
 //! PLY input.
 
-use super::header::{Header, Kind, Layout, PlyElement, Scalar};
-use super::roles::{ColorKind, PropertyRoles, Role};
-use super::values::{Ascii, Binary, Values};
+use super::header::{DataEncoding, Header, PlyElement, PropertyType, Scalar};
+use super::roles::{ColorKind, PropertyRole, PropertyRoles};
+use super::values::{Ascii, Binary, ValueReader};
 use crate::budget::{Budget, CHECK_EVERY, Charge};
 use crate::formats::colors::note_color;
 use crate::formats::faces::Faces;
@@ -21,20 +21,20 @@ pub(in crate::formats) fn read(
     let header = Header::read(bytes)?;
     let (begin, line) = (header.end, header.end_line);
     match header.layout {
-        Layout::Ascii => read_body(&header, Ascii::new(&bytes[begin..], line, budget), options, budget),
-        Layout::LittleEndian => read_body(&header, Binary::<false>::new(bytes, begin), options, budget),
-        Layout::BigEndian => read_body(&header, Binary::<true>::new(bytes, begin), options, budget),
+        DataEncoding::Ascii => read_body(&header, Ascii::new(&bytes[begin..], line, budget), options, budget),
+        DataEncoding::LittleEndian => read_body(&header, Binary::<false>::new(bytes, begin), options, budget),
+        DataEncoding::BigEndian => read_body(&header, Binary::<true>::new(bytes, begin), options, budget),
     }
 }
 
 fn read_body(
     header: &Header<'_>,
-    values: impl Values,
+    values: impl ValueReader,
     options: &ReadOptions,
     budget: &Budget,
 ) -> Result<Soup, ReadError> {
     let (layout, charges) = (header.layout, Vec::new());
-    let mut source = Source { values, layout, options, budget, charges, further_properties: 0 };
+    let mut source = ValueSource { values, layout, options, budget, charges, further_properties: 0 };
     let mut mesh = PlyMesh::default();
     for element in &header.elements {
         match element.name {
@@ -67,10 +67,10 @@ struct PlyMesh {
 }
 
 impl PlyMesh {
-    fn read_vertices<V: Values>(
+    fn read_vertices<V: ValueReader>(
         &mut self,
         element: &PlyElement<'_>,
-        source: &mut Source<'_, V>,
+        source: &mut ValueSource<'_, V>,
     ) -> Result<(), ReadError> {
         source.options.limits.check_vertices(element.count)?;
         let plan = PropertyRoles::new(element).with_coordinates(element)?.with_colors(element);
@@ -84,14 +84,14 @@ impl PlyMesh {
         })
     }
 
-    fn read_faces<V: Values>(
+    fn read_faces<V: ValueReader>(
         &mut self,
         element: &PlyElement<'_>,
-        source: &mut Source<'_, V>,
+        source: &mut ValueSource<'_, V>,
     ) -> Result<(), ReadError> {
         source.options.limits.check_triangles(element.count)?;
         let plan = PropertyRoles::new(element)
-            .with_vertices(element, Role::Corners)?
+            .with_vertices(element, PropertyRole::Corners)?
             .with_colors(element)
             .with_color_index(element);
         let _charged = self.faces.reserve(source.fitting(element), source.budget)?;
@@ -111,10 +111,10 @@ impl PlyMesh {
     }
 
     /// Edges that name no two vertices are skipped as other elements are.
-    fn read_edges<V: Values>(
+    fn read_edges<V: ValueReader>(
         &mut self,
         element: &PlyElement<'_>,
-        source: &mut Source<'_, V>,
+        source: &mut ValueSource<'_, V>,
     ) -> Result<(), ReadError> {
         let Some(plan) = PropertyRoles::new(element).with_ends(element) else {
             return source.read_items(element, &PropertyRoles::new(element), |_, _| Ok(()));
@@ -126,12 +126,12 @@ impl PlyMesh {
         })
     }
 
-    fn read_strips<V: Values>(
+    fn read_strips<V: ValueReader>(
         &mut self,
         element: &PlyElement<'_>,
-        source: &mut Source<'_, V>,
+        source: &mut ValueSource<'_, V>,
     ) -> Result<(), ReadError> {
-        let plan = PropertyRoles::new(element).with_vertices(element, Role::Strips)?;
+        let plan = PropertyRoles::new(element).with_vertices(element, PropertyRole::Strips)?;
         let (budget, limits) = (source.budget, &source.options.limits);
         let mut charges = Vec::new();
         source.read_items(element, &plan, |line, item| {
@@ -155,9 +155,9 @@ impl PlyMesh {
 }
 
 /// The values of a file and what reading them is subject to.
-struct Source<'a, V> {
+struct ValueSource<'a, V> {
     values: V,
-    layout: Layout,
+    layout: DataEncoding,
     options: &'a ReadOptions,
     budget: &'a Budget,
     /// For lists that are longer than others.
@@ -166,7 +166,7 @@ struct Source<'a, V> {
     further_properties: u64,
 }
 
-impl<'a, V: Values> Source<'a, V> {
+impl<'a, V: ValueReader> ValueSource<'a, V> {
     /// How many of `element` the rest of the file can hold, at most as many as are announced.
     fn fitting(&self, element: &PlyElement<'_>) -> usize {
         let held = self.values.remaining() / element.bytes_min(self.layout).max(1) + 1;
@@ -178,10 +178,10 @@ impl<'a, V: Values> Source<'a, V> {
         &mut self,
         element: &PlyElement<'_>,
         plan: &PropertyRoles,
-        mut take: impl FnMut(Option<u32>, &Item) -> Result<(), ReadError>,
+        mut take: impl FnMut(Option<u32>, &ElementValues) -> Result<(), ReadError>,
     ) -> Result<(), ReadError> {
         self.further_properties += plan.further_properties(element);
-        let mut item = Item::default();
+        let mut item = ElementValues::default();
         for i in 0..element.count {
             if i.is_multiple_of(CHECK_EVERY as u64) {
                 self.budget.check()?;
@@ -197,37 +197,44 @@ impl<'a, V: Values> Source<'a, V> {
 
     /// Charges the lines and colours of the items of `element`.
     fn charge_beside(&self, element: &PlyElement<'_>, colors: ColorKind) -> Result<Charge<'a>, ReadError> {
-        let line = if self.layout == Layout::Ascii { size_of::<u32>() } else { 0 };
+        let line = if self.layout == DataEncoding::Ascii { size_of::<u32>() } else { 0 };
         let color = if colors == ColorKind::None { 0 } else { size_of::<Option<Color>>() };
         Ok(self.budget.charge(self.fitting(element) as u64 * (line + color) as u64)?)
     }
 
     #[inline]
-    fn read_property(&mut self, role: Role, kind: Kind, item: &mut Item) -> Result<(), ReadError> {
+    fn read_property(
+        &mut self,
+        role: PropertyRole,
+        kind: PropertyType,
+        item: &mut ElementValues,
+    ) -> Result<(), ReadError> {
         match (role, kind) {
-            (Role::Coordinate(k), Kind::One(scalar)) => {
+            (PropertyRole::Coordinate(k), PropertyType::One(scalar)) => {
                 item.xyz[k] = self.values.number(scalar, self.options.precision)?;
             }
-            (Role::Channel(k), Kind::One(scalar)) => {
+            (PropertyRole::Channel(k), PropertyType::One(scalar)) => {
                 item.channels[k] = self.values.number(scalar, Precision::F32)? as f32;
             }
-            (Role::ColorIndex, Kind::One(scalar)) => {
+            (PropertyRole::ColorIndex, PropertyType::One(scalar)) => {
                 let index = i32::try_from(self.values.integer(scalar)?).ok();
                 item.color_index = index.filter(|&index| index >= 0);
             }
-            (Role::End(k), Kind::One(scalar)) => item.ends[k] = index(self.values.integer(scalar)?),
-            (_, Kind::One(scalar)) => self.values.skip(scalar, 1)?,
-            (_, Kind::List { count, item: scalar }) => {
+            (PropertyRole::End(k), PropertyType::One(scalar)) => {
+                item.ends[k] = index(self.values.integer(scalar)?)
+            }
+            (_, PropertyType::One(scalar)) => self.values.skip(scalar, 1)?,
+            (_, PropertyType::List { count, item: scalar }) => {
                 let place = self.values.place();
                 let length = self.values.integer(count)?;
                 let length = u64::try_from(length)
                     .map_err(|_| ReadError::unparseable(place, length.to_string(), "the length of a list"))?;
                 match role {
-                    Role::Corners => {
+                    PropertyRole::Corners => {
                         self.options.limits.check_polygon(length, place)?;
                         self.read_vertices(length, scalar, &mut item.vertices)?;
                     }
-                    Role::Strips => self.read_vertices(length, scalar, &mut item.vertices)?,
+                    PropertyRole::Strips => self.read_vertices(length, scalar, &mut item.vertices)?,
                     _ => self.values.skip(scalar, length)?,
                 }
             }
@@ -249,7 +256,7 @@ impl<'a, V: Values> Source<'a, V> {
 
 /// The values of one item that have a role.
 #[derive(Default)]
-struct Item {
+struct ElementValues {
     xyz: [f64; 3],
     channels: [f32; 4],
     vertices: Vec<u32>,
@@ -257,7 +264,7 @@ struct Item {
     color_index: Option<i32>,
 }
 
-impl Item {
+impl ElementValues {
     fn color(&self, kind: ColorKind) -> Option<Color> {
         let [r, g, b, a] = self.channels;
         match kind {

@@ -1,11 +1,11 @@
 //! Which properties of a PLY file mean something to us.
 
-use super::header::{Kind, PlyElement, Property, Scalar};
+use super::header::{HeaderProperty, PlyElement, PropertyType, Scalar};
 use crate::formats::{Place, ReadError};
 
 /// What a property means to us.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Role {
+pub(super) enum PropertyRole {
     /// x, y or z.
     Coordinate(usize),
     /// Red, green, blue or alpha.
@@ -23,7 +23,7 @@ pub(super) enum Role {
 
 /// The properties of an element with their roles.
 pub(super) struct PropertyRoles {
-    pub(super) properties: Vec<(Role, Kind)>,
+    pub(super) properties: Vec<(PropertyRole, PropertyType)>,
     pub(super) colors: ColorKind,
 }
 
@@ -38,14 +38,14 @@ pub(super) enum ColorKind {
 impl PropertyRoles {
     /// Nothing has a role yet.
     pub(super) fn new(element: &PlyElement<'_>) -> Self {
-        let roles = element.properties.iter().map(|property| (Role::Other, property.kind));
+        let roles = element.properties.iter().map(|property| (PropertyRole::Other, property.kind));
         Self { properties: roles.collect(), colors: ColorKind::None }
     }
 
     /// Number of properties that mean nothing to us; normals are no loss, as a changed surface has others.
     pub(super) fn further_properties(&self, element: &PlyElement<'_>) -> u64 {
-        let is_further = |(property, (role, _)): &(&Property<'_>, &(Role, Kind))| {
-            *role == Role::Other && !matches!(property.name, b"nx" | b"ny" | b"nz")
+        let is_further = |(property, (role, _)): &(&HeaderProperty<'_>, &(PropertyRole, PropertyType))| {
+            *role == PropertyRole::Other && !matches!(property.name, b"nx" | b"ny" | b"nz")
         };
         element.properties.iter().zip(&self.properties).filter(is_further).count() as u64
     }
@@ -54,8 +54,8 @@ impl PropertyRoles {
     pub(super) fn with_coordinates(mut self, element: &PlyElement<'_>) -> Result<Self, ReadError> {
         for (k, name) in ["x", "y", "z"].into_iter().enumerate() {
             match element.find(&[name]) {
-                Some(i) if matches!(self.properties[i].1, Kind::One(_)) => {
-                    self.properties[i].0 = Role::Coordinate(k);
+                Some(i) if matches!(self.properties[i].1, PropertyType::One(_)) => {
+                    self.properties[i].0 = PropertyRole::Coordinate(k);
                 }
                 _ => return Err(lacks(element, "the properties x, y and z")),
             }
@@ -64,9 +64,14 @@ impl PropertyRoles {
     }
 
     /// Notes the list of vertices as `role`.
-    pub(super) fn with_vertices(mut self, element: &PlyElement<'_>, role: Role) -> Result<Self, ReadError> {
+    pub(super) fn with_vertices(
+        mut self,
+        element: &PlyElement<'_>,
+        role: PropertyRole,
+    ) -> Result<Self, ReadError> {
         match element.find(&["vertex_indices", "vertex_index"]) {
-            Some(i) if matches!(self.properties[i].1, Kind::List { item, .. } if item.is_integer()) => {
+            Some(i) if matches!(self.properties[i].1, PropertyType::List { item, .. } if item.is_integer()) =>
+            {
                 self.properties[i].0 = role;
                 Ok(self)
             }
@@ -77,9 +82,9 @@ impl PropertyRoles {
     /// Notes the number of a colour.
     pub(super) fn with_color_index(mut self, element: &PlyElement<'_>) -> Self {
         if let Some(i) = element.find(&["color_index"])
-            && matches!(self.properties[i].1, Kind::One(scalar) if scalar.is_integer())
+            && matches!(self.properties[i].1, PropertyType::One(scalar) if scalar.is_integer())
         {
-            self.properties[i].0 = Role::ColorIndex;
+            self.properties[i].0 = PropertyRole::ColorIndex;
         }
         self
     }
@@ -88,10 +93,10 @@ impl PropertyRoles {
     pub(super) fn with_ends(mut self, element: &PlyElement<'_>) -> Option<Self> {
         for (k, name) in ["vertex1", "vertex2"].into_iter().enumerate() {
             let i = element.find(&[name])?;
-            if !matches!(self.properties[i].1, Kind::One(scalar) if scalar.is_integer()) {
+            if !matches!(self.properties[i].1, PropertyType::One(scalar) if scalar.is_integer()) {
                 return None;
             }
-            self.properties[i].0 = Role::End(k);
+            self.properties[i].0 = PropertyRole::End(k);
         }
         Some(self)
     }
@@ -105,13 +110,13 @@ impl PropertyRoles {
             ["alpha", "diffuse_alpha"],
         ];
         let found = NAMES.map(|names| element.find(&names));
-        let kinds: Vec<Kind> = found.iter().flatten().map(|&i| self.properties[i].1).collect();
+        let kinds: Vec<PropertyType> = found.iter().flatten().map(|&i| self.properties[i].1).collect();
         let has_alpha = found[3].is_some();
         self.colors = if found[..3].iter().any(Option::is_none) {
             ColorKind::None
-        } else if kinds.iter().all(|&kind| kind == Kind::One(Scalar::U8)) {
+        } else if kinds.iter().all(|&kind| kind == PropertyType::One(Scalar::U8)) {
             ColorKind::Bytes { has_alpha }
-        } else if kinds.iter().all(|kind| matches!(kind, Kind::One(Scalar::F32 | Scalar::F64))) {
+        } else if kinds.iter().all(|kind| matches!(kind, PropertyType::One(Scalar::F32 | Scalar::F64))) {
             ColorKind::Floats { has_alpha }
         } else {
             ColorKind::None
@@ -119,7 +124,7 @@ impl PropertyRoles {
         if self.colors != ColorKind::None {
             for (channel, i) in found.into_iter().enumerate() {
                 if let Some(i) = i {
-                    self.properties[i].0 = Role::Channel(channel);
+                    self.properties[i].0 = PropertyRole::Channel(channel);
                 }
             }
         }

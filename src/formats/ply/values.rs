@@ -8,7 +8,7 @@ use crate::formats::words::{Dialect, Words};
 use crate::formats::{Place, Precision, ReadError};
 
 /// Values in file order, whatever their layout.
-pub(super) trait Values {
+pub(super) trait ValueReader {
     /// The next value, of type `kind`.
     fn number(&mut self, kind: Scalar, precision: Precision) -> Result<f64, ReadError>;
     /// The next value, of the integer type `kind`.
@@ -50,7 +50,7 @@ impl<'a> Ascii<'a> {
     }
 }
 
-impl Values for Ascii<'_> {
+impl ValueReader for Ascii<'_> {
     #[inline]
     fn number(&mut self, _kind: Scalar, precision: Precision) -> Result<f64, ReadError> {
         let word = self.word();
@@ -112,7 +112,7 @@ impl<'a, const BIG: bool> Binary<'a, BIG> {
     }
 }
 
-impl<const BIG: bool> Values for Binary<'_, BIG> {
+impl<const BIG: bool> ValueReader for Binary<'_, BIG> {
     #[inline]
     fn number(&mut self, kind: Scalar, precision: Precision) -> Result<f64, ReadError> {
         match kind {

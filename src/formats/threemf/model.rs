@@ -213,7 +213,7 @@ impl Groups {
 }
 
 /// A model part.
-pub(super) struct Model {
+pub(super) struct ModelDocument {
     pub(super) part: String,
     pub(super) units: Units,
     pub(super) objects: Vec<Object>,
@@ -225,7 +225,7 @@ pub(super) struct Model {
     pub(super) remarks: Vec<String>,
 }
 
-impl Model {
+impl ModelDocument {
     /// The colour of a member of a group, if it has one: of mixtures the mean, of layers that of the uppermost.
     pub(super) fn color(&self, group: u32, member: u32) -> Option<[u8; 4]> {
         match self.groups.get(group)? {

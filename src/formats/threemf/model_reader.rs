@@ -1,6 +1,6 @@
 //! What the readers of a model part share: the scanner, the model so far, errors and remarks with their place.
 
-use super::model::{Groups, Model, NO_NUMBER};
+use super::model::{Groups, ModelDocument, NO_NUMBER};
 use super::xml::{Document, Scanner, XmlElement, XmlEvent};
 use crate::budget::Budget;
 use crate::formats::{ReadError, ReadOptions};
@@ -13,7 +13,7 @@ const REMARKS_MAX: usize = 20;
 /// A model part that is being read.
 pub(super) struct ModelReader<'x> {
     pub(super) scanner: Scanner<'x>,
-    pub(super) model: Model,
+    pub(super) model: ModelDocument,
     /// Ids of resources that are neither objects nor groups.
     pub(super) other_ids: FxHashSet<u32>,
     /// Names of metadata so far.
@@ -25,7 +25,7 @@ pub(super) struct ModelReader<'x> {
 
 impl<'x> ModelReader<'x> {
     pub(super) fn new(document: &'x Document<'x>, options: &'x ReadOptions, budget: &'x Budget) -> Self {
-        let model = Model {
+        let model = ModelDocument {
             part: document.part.to_owned(),
             units: Units::Millimetre,
             objects: Vec::new(),
@@ -45,7 +45,7 @@ impl<'x> ModelReader<'x> {
         }
     }
 
-    pub(super) fn into_model(self) -> Model {
+    pub(super) fn into_model(self) -> ModelDocument {
         let (mut model, more) = (self.model, self.more_remarks);
         if more > 0 {
             model.remarks.push(format!("{more} more breaches of rules in {}.", model.part));

@@ -1,11 +1,11 @@
 //! The model of a package with the parts that it refers to, and where the build puts their objects.
 
-use super::model::{Model, ObjectContent, ObjectKind, Reference};
+use super::model::{ModelDocument, ObjectContent, ObjectKind, Reference};
 use super::package::{Package, shortened, too_large};
 use super::read_model::read_model;
 use super::read_purposes::{Purposes, read_purposes};
 use super::read_relationships::read_start;
-use super::read_volumes::{Purpose, Volume, read_volumes};
+use super::read_volumes::{ObjectVolume, VolumePurpose, read_volumes};
 use super::transform::Transform;
 use super::xml::Document;
 use crate::budget::Budget;
@@ -22,23 +22,23 @@ const LEVELS_MAX: usize = 64;
 const PLACEMENTS_MAX: u64 = 1_000_000;
 
 /// An object at a place of the scene.
-pub(super) struct Placement {
+pub(super) struct ObjectPlacement {
     /// Number of the model and of the object in it.
     pub(super) object: [usize; 2],
     /// Number of the build item.
     pub(super) item: usize,
     pub(super) transform: Transform,
-    pub(super) purpose: Purpose,
+    pub(super) purpose: VolumePurpose,
 }
 
 /// All model parts that are needed.
 pub(super) struct Models {
     /// The first is the model of the package.
-    pub(super) all: Vec<Model>,
+    pub(super) all: Vec<ModelDocument>,
     /// What the build holds, in its order.
-    pub(super) placements: Vec<Placement>,
+    pub(super) placements: Vec<ObjectPlacement>,
     pub(super) remarks: Vec<String>,
-    pub(super) volumes: Vec<Volume>,
+    pub(super) volumes: Vec<ObjectVolume>,
     /// What components are for, by the ids of the objects of their build item and of themselves, where they are no material.
     purposes: Purposes,
 }
@@ -157,8 +157,8 @@ impl Models {
                     let id = |[m, o]: [usize; 2]| self.all[m].objects[o].id;
                     let component = way.get(2).map_or(reference.object, |&(.., object)| id(object));
                     let noted = way.get(1).and_then(|&(.., item)| self.purposes.get(&[id(item), component]));
-                    let purpose = noted.copied().unwrap_or(Purpose::Material);
-                    placements.push(Placement { object: target, item: items - 1, transform, purpose });
+                    let purpose = noted.copied().unwrap_or(VolumePurpose::Material);
+                    placements.push(ObjectPlacement { object: target, item: items - 1, transform, purpose });
                 }
                 ObjectContent::Nothing => {}
             }

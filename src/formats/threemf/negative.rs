@@ -1,7 +1,7 @@
 //! Parts that are taken away from what is printed.
 
 use super::models::Models;
-use super::scene::{Assembled, Extent, assemble};
+use super::scene::{Assembled, PartSelection, assemble};
 use crate::budget::Budget;
 use crate::formats::{ReadError, ReadOptions};
 use crate::geom::Aabb;
@@ -26,11 +26,11 @@ pub fn read_negative_parts(
     budget: &Budget,
 ) -> Result<Option<NegativeParts>, ReadError> {
     let models = Models::read(bytes, options, budget)?;
-    let negative = assemble(&models, Extent::Negative, options, budget)?;
+    let negative = assemble(&models, PartSelection::Negative, options, budget)?;
     if negative.soup.triangles.is_empty() {
         return Ok(None);
     }
-    let mut material = boxes(&assemble(&models, Extent::Material, options, budget)?);
+    let mut material = boxes(&assemble(&models, PartSelection::Material, options, budget)?);
     material.sort_by(|(_, a), (_, b)| a.min.x.total_cmp(&b.min.x));
     let mut reach_other_items = false;
     for (item, bounds) in boxes(&negative) {

@@ -2,7 +2,7 @@
 
 use super::model::{Group, Groups, MIXED_MAX, Property};
 use super::read::Body;
-use super::regions::{VALUE_BYTES, Value};
+use super::regions::{MemberValue, VALUE_BYTES};
 use crate::budget::{Budget, Charge, Stopped};
 use crate::formats::decimals::Text;
 use rustc_hash::FxHashMap;
@@ -26,8 +26,8 @@ pub enum Between {
 pub(super) struct NewMembers<'g> {
     groups: &'g Groups,
     /// Numbers of members by what they are, of groups that were asked for.
-    known: FxHashMap<u32, FxHashMap<Value, u32>>,
-    new: BTreeMap<u32, Vec<Value>>,
+    known: FxHashMap<u32, FxHashMap<MemberValue, u32>>,
+    new: BTreeMap<u32, Vec<MemberValue>>,
     charges: Vec<Charge<'g>>,
     /// Bytes that are not charged yet.
     uncharged: usize,
@@ -58,7 +58,7 @@ impl<'g> NewMembers<'g> {
         let Property { group, .. } = body.property_of(face);
         match between {
             Between::Points(points) => {
-                points.map(|point| self.number(group, Value::Point(point.map(f64::to_bits))))
+                points.map(|point| self.number(group, MemberValue::Point(point.map(f64::to_bits))))
             }
             Between::Shares(corners) => corners.map(|(face, shares)| {
                 let members = body.property_of(face).members;
@@ -87,9 +87,9 @@ impl<'g> NewMembers<'g> {
                     let index = |member: u32| members.get(member as usize)?.get(i).copied();
                     let of_layer: Vec<(u32, f64)> =
                         parts.iter().map(|&(member, share)| (index(member).unwrap_or(0), share)).collect();
-                    Value::Member(self.mixed(group, &of_layer, false))
+                    MemberValue::Member(self.mixed(group, &of_layer, false))
                 };
-                Some(Value::Layers(of.iter().enumerate().map(layer).collect()))
+                Some(MemberValue::Layers(of.iter().enumerate().map(layer).collect()))
             }
             _ => None,
         };
@@ -97,7 +97,7 @@ impl<'g> NewMembers<'g> {
     }
 
     /// The number of the member that is `value`, a new one if there is none yet.
-    fn number(&mut self, group: u32, value: Value) -> u32 {
+    fn number(&mut self, group: u32, value: MemberValue) -> u32 {
         let groups = self.groups;
         let count = groups.get(group).map_or(0, Group::len);
         let known = self.known.entry(group).or_insert_with(|| {
@@ -139,15 +139,15 @@ impl<'g> NewMembers<'g> {
 }
 
 /// The members of a group, by what they are as [`NewMembers`] sees it: layers by the numbers of their members.
-fn members_of(groups: &Groups, group: u32) -> FxHashMap<Value, u32> {
+fn members_of(groups: &Groups, group: u32) -> FxHashMap<MemberValue, u32> {
     let count = groups.get(group).map_or(0, Group::len) as u32;
     let mut known = FxHashMap::default();
     for member in 0..count {
         let value = match groups.mixable(group) {
             Some(Group::Layers { of, members }) => {
                 let indices = &members[member as usize];
-                let index = |i: usize| Value::Member(indices.get(i).copied().unwrap_or(0));
-                Value::Layers((0..of.len()).map(index).collect())
+                let index = |i: usize| MemberValue::Member(indices.get(i).copied().unwrap_or(0));
+                MemberValue::Layers((0..of.len()).map(index).collect())
             }
             _ => groups.value(group, member),
         };
@@ -156,7 +156,7 @@ fn members_of(groups: &Groups, group: u32) -> FxHashMap<Value, u32> {
     known
 }
 
-fn mean_color(colors: &[Option<[u8; 4]>], parts: &[(u32, f64)]) -> Option<Value> {
+fn mean_color(colors: &[Option<[u8; 4]>], parts: &[(u32, f64)]) -> Option<MemberValue> {
     let mut mean = [0.0; 4];
     for &(member, share) in parts {
         let color = (*colors.get(member as usize)?)?;
@@ -164,20 +164,20 @@ fn mean_color(colors: &[Option<[u8; 4]>], parts: &[(u32, f64)]) -> Option<Value>
             *sum += share * f64::from(channel);
         }
     }
-    Some(Value::Color(mean.map(|channel| channel.round() as u8)))
+    Some(MemberValue::Color(mean.map(|channel| channel.round() as u8)))
 }
 
-fn mean_point(points: &[[f64; 2]], parts: &[(u32, f64)]) -> Option<Value> {
+fn mean_point(points: &[[f64; 2]], parts: &[(u32, f64)]) -> Option<MemberValue> {
     let mut mean = [0.0; 2];
     for &(member, share) in parts {
         let [u, v] = *points.get(member as usize)?;
         mean = [mean[0] + share * u, mean[1] + share * v];
     }
-    mean.iter().all(|x| x.is_finite()).then(|| Value::Point(mean.map(f64::to_bits)))
+    mean.iter().all(|x| x.is_finite()).then(|| MemberValue::Point(mean.map(f64::to_bits)))
 }
 
 /// Members state shares of what sum they like, so that each counts by its own.
-fn mean_shares(all: &[Vec<f64>], parts: &[(u32, f64)]) -> Option<Value> {
+fn mean_shares(all: &[Vec<f64>], parts: &[(u32, f64)]) -> Option<MemberValue> {
     let mut mean: Vec<f64> = Vec::new();
     for &(member, share) in parts {
         let shares = all.get(member as usize)?;
@@ -190,36 +190,36 @@ fn mean_shares(all: &[Vec<f64>], parts: &[(u32, f64)]) -> Option<Value> {
             *sum += share * of_material / whole;
         }
     }
-    Some(Value::Shares(mean.into_iter().map(f64::to_bits).collect()))
+    Some(MemberValue::Shares(mean.into_iter().map(f64::to_bits).collect()))
 }
 
-fn write_member(text: &mut Text<'_>, prefix: &str, value: &Value) {
+fn write_member(text: &mut Text<'_>, prefix: &str, value: &MemberValue) {
     let mut begin = |words: [&str; 2]| ["<", prefix, words[0], words[1]].map(|word| text.word(word));
     match value {
         // Those that cannot be mixed are never new.
-        Value::Member(_) => return,
-        Value::Color([r, g, b, a]) => {
+        MemberValue::Member(_) => return,
+        MemberValue::Color([r, g, b, a]) => {
             begin(["color", " color=\"#"]);
             text.word(&format!("{r:02X}{g:02X}{b:02X}{a:02X}"));
         }
-        Value::Point([u, v]) => {
+        MemberValue::Point([u, v]) => {
             begin(["tex2coord", " u=\""]);
             text.coordinate(f64::from_bits(*u));
             text.word("\" v=\"");
             text.coordinate(f64::from_bits(*v));
         }
-        Value::Shares(shares) => {
+        MemberValue::Shares(shares) => {
             begin(["composite", " values=\""]);
             for (i, share) in shares.iter().enumerate() {
                 text.word(if i > 0 { " " } else { "" });
                 text.coordinate(f64::from_bits(*share));
             }
         }
-        Value::Layers(layers) => {
+        MemberValue::Layers(layers) => {
             begin(["multi", " pindices=\""]);
             for (i, layer) in layers.iter().enumerate() {
                 text.word(if i > 0 { " " } else { "" });
-                if let Value::Member(member) = layer {
+                if let MemberValue::Member(member) = layer {
                     text.integer((*member).into());
                 }
             }
@@ -260,9 +260,9 @@ mod tests {
         assert_eq!(new.mixed(1, &[(0, 0.25), (1, 0.75)], true), 1, "materials are not mixed");
         assert_eq!(new.mixed(1, &[(0, 0.3), (1, 0.4), (0, 0.3)], true), 0, "both shares of a material count");
         assert_eq!(new.mixed(5, &[(0, 0.25), (1, 0.75)], true), 2);
-        assert_eq!(new.new[&5], [Value::Shares([0.25f64, 0.75].map(f64::to_bits).to_vec())]);
+        assert_eq!(new.new[&5], [MemberValue::Shares([0.25f64, 0.75].map(f64::to_bits).to_vec())]);
         assert_eq!(new.mixed(4, &[(0, 0.5), (1, 0.5)], true), 2);
-        assert_eq!(new.new[&4], [Value::Layers([0, 3, 1].map(Value::Member).to_vec())]);
+        assert_eq!(new.new[&4], [MemberValue::Layers([0, 3, 1].map(MemberValue::Member).to_vec())]);
     }
 
     #[test]

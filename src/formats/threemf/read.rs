@@ -1,9 +1,11 @@
 //! A package read: its model, the parts that this refers to, and the meshes in all of them.
 
-use super::model::{FaceAttributes, Groups, Model, Object, ObjectContent, ObjectKind, ObjectMesh, Property};
+use super::model::{
+    FaceAttributes, Groups, ModelDocument, Object, ObjectContent, ObjectKind, ObjectMesh, Property,
+};
 use super::models::Models;
-use super::read_volumes::{Volume, are_all, by_object};
-use super::scene::{self, Assembled, Extent, PlacedObject};
+use super::read_volumes::{ObjectVolume, are_all, by_object};
+use super::scene::{self, Assembled, PartSelection, PlacedObject};
 use super::split::volume_of;
 use crate::budget::Budget;
 use crate::formats::{ReadError, ReadOptions};
@@ -52,7 +54,7 @@ impl Body {
     }
 
     /// One volume of it, as a body of its own.
-    fn volume(&self, number: u32, volume: &Volume) -> Self {
+    fn volume(&self, number: u32, volume: &ObjectVolume) -> Self {
         let (soup, attributes) = volume_of(&self.soup, &self.attributes, volume);
         let name = if volume.name.is_empty() { self.name.clone() } else { volume.name.clone() };
         let (part, extras, extra_spans) = (self.part.clone(), self.extras.clone(), self.extra_spans.clone());
@@ -73,7 +75,7 @@ pub struct Project {
     /// Name of the first model part.
     pub(super) root: String,
     /// Volumes as ranges of triangles of its objects.
-    pub(super) volumes: Vec<Volume>,
+    pub(super) volumes: Vec<ObjectVolume>,
 }
 
 /// Reads all meshes of a 3MF.
@@ -112,7 +114,7 @@ pub(in crate::formats) fn read(
     budget: &Budget,
 ) -> Result<Soup, ReadError> {
     let models = Models::read(bytes, options, budget)?;
-    Ok(scene::assemble(&models, Extent::Material, options, budget)?.soup)
+    Ok(scene::assemble(&models, PartSelection::Material, options, budget)?.soup)
 }
 
 /// The same with parts that are no material, and with the places of objects in it.
@@ -125,7 +127,7 @@ pub fn read_scene(
     budget: &Budget,
 ) -> Result<(Soup, Vec<PlacedObject>), ReadError> {
     let models = Models::read(bytes, options, budget)?;
-    let Assembled { soup, placed } = scene::assemble(&models, Extent::Everything, options, budget)?;
+    let Assembled { soup, placed } = scene::assemble(&models, PartSelection::Everything, options, budget)?;
     Ok((soup, placed))
 }
 
@@ -140,7 +142,7 @@ fn project_of(models: Models) -> Project {
     let root = models.all.first().map(|model| model.part.clone()).unwrap_or_default();
     let (mut bodies, mut remarks): (Vec<Body>, _) = (Vec::new(), models.remarks);
     for (m, model) in models.all.into_iter().enumerate() {
-        let Model { part, objects, remarks: more, units: own, groups, .. } = model;
+        let ModelDocument { part, objects, remarks: more, units: own, groups, .. } = model;
         let groups = Arc::new(groups);
         remarks.extend(more);
         if own != units {

@@ -3,7 +3,7 @@
 use super::model::{FaceAttributes, NO_NUMBER, ObjectMesh, Property};
 use super::model_reader::{ModelReader, number};
 use super::package::{shortened, too_large};
-use super::xml::{Attributes, Namespace, XmlElement};
+use super::xml::{Namespace, RawAttributes, XmlElement};
 use crate::budget::CHECK_EVERY;
 use crate::formats::{ReadError, numbers};
 use crate::geom::DVec3;
@@ -65,7 +65,7 @@ fn read_vertices(reader: &mut ModelReader<'_>, soup: &mut Soup) -> Result<(), Re
             continue;
         }
         let mut point = [None; 3];
-        for attribute in Attributes::of(element.attributes) {
+        for attribute in RawAttributes::of(element.attributes) {
             let Ok((key, value)) = attribute else {
                 return Err(bad(reader, &element));
             };
@@ -122,7 +122,7 @@ impl ListedTriangles {
             }
             let (mut corners, mut property) = ([None; 3], Property::NONE);
             text.clear();
-            for attribute in Attributes::of(element.attributes) {
+            for attribute in RawAttributes::of(element.attributes) {
                 let Ok((key, value)) = attribute else { return Err(bad(reader, &element)) };
                 match key {
                     "v1" => corners[0] = corner(value),

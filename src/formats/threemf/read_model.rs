@@ -1,7 +1,7 @@
 //! A model part: units, resources, objects and the build.
 
 use super::model::{
-    Group, Model, NO_NUMBER, Object, ObjectContent, ObjectKind, ObjectMesh, Property, Reference,
+    Group, ModelDocument, NO_NUMBER, Object, ObjectContent, ObjectKind, ObjectMesh, Property, Reference,
 };
 use super::model_reader::{ModelReader, number};
 use super::package::{resolve, shortened};
@@ -39,7 +39,7 @@ pub(super) fn read_model(
     document: &Document<'_>,
     options: &ReadOptions,
     budget: &Budget,
-) -> Result<Model, ReadError> {
+) -> Result<ModelDocument, ReadError> {
     let mut reader = ModelReader::new(document, options, budget);
     reader.read()?;
     Ok(reader.into_model())
@@ -366,15 +366,16 @@ impl<'x> ModelReader<'x> {
     /// Remarks on properties of an object and its triangles that are not there.
     fn check_properties(&mut self, object: &Object, at: usize) {
         let default = object.property;
-        let names = |model: &Model, Property { group, members }: Property| match model.groups.get(group) {
-            None => Some(format!("the property group {group}, which is not there")),
-            Some(found) => {
-                let count = found.len();
-                let is_beyond = |&&member: &&u32| member != NO_NUMBER && member as usize >= count;
-                let beyond = members.iter().find(is_beyond)?;
-                Some(format!("the member {beyond} of the property group {group}, which has {count}"))
-            }
-        };
+        let names =
+            |model: &ModelDocument, Property { group, members }: Property| match model.groups.get(group) {
+                None => Some(format!("the property group {group}, which is not there")),
+                Some(found) => {
+                    let count = found.len();
+                    let is_beyond = |&&member: &&u32| member != NO_NUMBER && member as usize >= count;
+                    let beyond = members.iter().find(is_beyond)?;
+                    Some(format!("the member {beyond} of the property group {group}, which has {count}"))
+                }
+            };
         if default.group != NO_NUMBER
             && let Some(what) = names(&self.model, default)
         {
@@ -388,7 +389,7 @@ impl<'x> ModelReader<'x> {
                 continue;
             }
             is_default_missing |= default.group == NO_NUMBER;
-            let effective = Model::property_of(object, attributes, f);
+            let effective = ModelDocument::property_of(object, attributes, f);
             let Some(what) = names(&self.model, effective) else { continue };
             self.remark(at, &format!("triangle {f} of the object {} has {what}", object.id));
             break;

@@ -2,7 +2,7 @@
 
 use super::model_reader::number;
 use super::package::Package;
-use super::read_volumes::Purpose;
+use super::read_volumes::VolumePurpose;
 use super::xml::{Document, Scanner, XmlEvent, value};
 use crate::budget::Budget;
 use crate::formats::{ReadError, ReadErrorKind};
@@ -12,7 +12,7 @@ use rustc_hash::FxHashMap;
 const SETTINGS: &str = "/Metadata/model_settings.config";
 
 /// By the ids of the object of a build item and of a component of it: what the component is for.
-pub(super) type Purposes = FxHashMap<[u32; 2], Purpose>;
+pub(super) type Purposes = FxHashMap<[u32; 2], VolumePurpose>;
 
 /// The purposes of components, as far as they are no material. A part that cannot be read, which is none of the model, says nothing
 /// of them, and `remarks` tell that.
@@ -47,8 +47,9 @@ fn purposes_in(bytes: &[u8], budget: &Budget) -> Result<Purposes, ReadError> {
             XmlEvent::Open(element) if element.local == "part" => {
                 let attributes = scanner.attributes(&element)?;
                 let part = value(&attributes, "id").and_then(number);
-                let purpose = value(&attributes, "subtype").map_or(Purpose::Material, Purpose::of_word);
-                if let (Some(object), Some(part), true) = (object, part, purpose != Purpose::Material) {
+                let purpose =
+                    value(&attributes, "subtype").map_or(VolumePurpose::Material, VolumePurpose::of_word);
+                if let (Some(object), Some(part), true) = (object, part, purpose != VolumePurpose::Material) {
                     purposes.insert([object, part], purpose);
                 }
             }

@@ -12,7 +12,7 @@ const MODEL: &str = "/3dmodel";
 const PRINT_TICKET: &str = "/printticket";
 
 /// Where the model of a package begins.
-pub(super) struct Start {
+pub(super) struct RootModel {
     /// Name of the model part.
     pub(super) part: String,
     /// Rules that the package breaks, as sentences.
@@ -30,14 +30,14 @@ struct Relationship {
 ///
 /// # Errors
 /// No model part, more than one, one that is elsewhere, or a package that is signed or encrypted.
-pub(super) fn read_start(package: &mut Package<'_>, budget: &Budget) -> Result<Start, ReadError> {
+pub(super) fn read_start(package: &mut Package<'_>, budget: &Budget) -> Result<RootModel, ReadError> {
     let mut remarks = Vec::new();
     let Some(number) = package.find(PACKAGE_RELATIONSHIPS) else {
         let part = only_model(package)?;
         remarks.push(
             "The file breaks a rule of 3MF: the package has no relationships (_rels/.rels).".to_owned(),
         );
-        return Ok(Start { part, remarks });
+        return Ok(RootModel { part, remarks });
     };
     let (bytes, _charge) = package.inflate(number, budget)?;
     let document = Document::of(PACKAGE_RELATIONSHIPS, &bytes)?;
@@ -64,7 +64,7 @@ pub(super) fn read_start(package: &mut Package<'_>, budget: &Budget) -> Result<S
             remarks.push(
                 "The file breaks a rule of 3MF: no relationship of the package names the model.".to_owned(),
             );
-            return Ok(Start { part, remarks });
+            return Ok(RootModel { part, remarks });
         }
         _ => return Err(whole(format!("{} models in the package", models.len()), "one")),
     };
@@ -109,7 +109,7 @@ pub(super) fn read_start(package: &mut Package<'_>, budget: &Budget) -> Result<S
     if tickets > 1 {
         remarks.push(format!("The file breaks a rule of 3MF: there are {tickets} print tickets."));
     }
-    Ok(Start { part, remarks })
+    Ok(RootModel { part, remarks })
 }
 
 /// The only part that can be the model, where nothing names it.

@@ -13,7 +13,7 @@ pub(super) const VOLUMES: &str = "/Metadata/Slic3r_PE_model.config";
 
 /// What a part of an object is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Purpose {
+pub(super) enum VolumePurpose {
     /// It is printed.
     Material,
     /// It is taken away from what is printed.
@@ -24,7 +24,7 @@ pub(super) enum Purpose {
     Support,
 }
 
-impl Purpose {
+impl VolumePurpose {
     /// By its word in the files of PrusaSlicer, or of Bambu Studio and OrcaSlicer.
     pub(super) fn of_word(word: &str) -> Self {
         match word {
@@ -48,7 +48,7 @@ impl Purpose {
 
 /// A range of triangles of an object of the first model.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Volume {
+pub(super) struct ObjectVolume {
     /// Id of the object.
     pub(super) object: u32,
     /// Its triangles.
@@ -56,7 +56,7 @@ pub(super) struct Volume {
     /// Its name; empty when it has none.
     pub(super) name: String,
     /// What it is for.
-    pub(super) purpose: Purpose,
+    pub(super) purpose: VolumePurpose,
     /// Bytes of its start tag in the text of the part.
     pub(super) tag: Range<usize>,
 }
@@ -65,12 +65,15 @@ pub(super) struct Volume {
 ///
 /// # Errors
 /// A part that is no XML.
-pub(super) fn read_volumes(package: &mut Package<'_>, budget: &Budget) -> Result<Vec<Volume>, ReadError> {
+pub(super) fn read_volumes(
+    package: &mut Package<'_>,
+    budget: &Budget,
+) -> Result<Vec<ObjectVolume>, ReadError> {
     let Some(entry) = package.find(VOLUMES) else { return Ok(Vec::new()) };
     let (bytes, _charge) = package.inflate(entry, budget)?;
     let document = Document::of(VOLUMES, &bytes)?;
     let mut scanner = Scanner::new(&document, budget);
-    let mut volumes: Vec<Volume> = Vec::new();
+    let mut volumes: Vec<ObjectVolume> = Vec::new();
     // The object and the volume that are open, by their depths.
     let (mut object, mut is_in_volume) = (None, false);
     loop {
@@ -89,9 +92,9 @@ pub(super) fn read_volumes(package: &mut Package<'_>, budget: &Budget) -> Result
                     if let (Some(volume), (Some(key), Some(value))) = (volumes.last_mut(), noted) {
                         match (key, value) {
                             ("name", name) => volume.name = name.to_owned(),
-                            ("volume_type", word) => volume.purpose = Purpose::of_word(word),
+                            ("volume_type", word) => volume.purpose = VolumePurpose::of_word(word),
                             // As older programs note it.
-                            ("modifier", "1") => volume.purpose = Purpose::Modifier,
+                            ("modifier", "1") => volume.purpose = VolumePurpose::Modifier,
                             _ => {}
                         }
                     }
@@ -110,17 +113,17 @@ fn volume(
     element: &XmlElement<'_>,
     object: u32,
     tag: Range<usize>,
-) -> Result<Option<Volume>, ReadError> {
+) -> Result<Option<ObjectVolume>, ReadError> {
     let attributes = scanner.attributes(element)?;
     let of = |name| value(&attributes, name).and_then(number);
     let (Some(first), Some(last)) = (of("firstid"), of("lastid")) else { return Ok(None) };
     let triangles = first..last.saturating_add(1);
-    Ok(Some(Volume { object, triangles, name: String::new(), purpose: Purpose::Material, tag }))
+    Ok(Some(ObjectVolume { object, triangles, name: String::new(), purpose: VolumePurpose::Material, tag }))
 }
 
 /// The volumes of each object, in their order.
-pub(super) fn by_object(volumes: &[Volume]) -> FxHashMap<u32, Vec<&Volume>> {
-    let mut by_object: FxHashMap<u32, Vec<&Volume>> = FxHashMap::default();
+pub(super) fn by_object(volumes: &[ObjectVolume]) -> FxHashMap<u32, Vec<&ObjectVolume>> {
+    let mut by_object: FxHashMap<u32, Vec<&ObjectVolume>> = FxHashMap::default();
     for volume in volumes {
         by_object.entry(volume.object).or_default().push(volume);
     }
@@ -128,9 +131,9 @@ pub(super) fn by_object(volumes: &[Volume]) -> FxHashMap<u32, Vec<&Volume>> {
 }
 
 /// True when `volumes`, in their order, are all of `count` triangles.
-pub(super) fn are_all(volumes: &[&Volume], count: u32) -> bool {
+pub(super) fn are_all(volumes: &[&ObjectVolume], count: u32) -> bool {
     let mut next = 0;
-    let goes_on = |volume: &&Volume| {
+    let goes_on = |volume: &&ObjectVolume| {
         let follows = volume.triangles.start == next && volume.triangles.end > next;
         next = volume.triangles.end;
         follows

@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 
 /// What a member of a property group is. Members that are alike in it are the same.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub(super) enum Value {
+pub(super) enum MemberValue {
     /// One that cannot be mixed with others, by its number.
     Member(u32),
     Color([u8; 4]),
@@ -16,38 +16,40 @@ pub(super) enum Value {
     Point([u64; 2]),
     /// The bits of the shares of materials.
     Shares(Vec<u64>),
-    Layers(Vec<Value>),
+    Layers(Vec<MemberValue>),
 }
 
 impl Groups {
     /// What a member of a group is; layers may lie on each other once.
-    pub(super) fn value(&self, group: u32, member: u32) -> Value {
+    pub(super) fn value(&self, group: u32, member: u32) -> MemberValue {
         match self.mixable(group) {
             Some(Group::Layers { of, members }) => match members.get(member as usize) {
                 Some(indices) => {
                     let of_layer = |(i, &group): (usize, &u32)| {
                         self.plain_value(group, indices.get(i).copied().unwrap_or(0))
                     };
-                    Value::Layers(of.iter().enumerate().map(of_layer).collect())
+                    MemberValue::Layers(of.iter().enumerate().map(of_layer).collect())
                 }
-                None => Value::Member(member),
+                None => MemberValue::Member(member),
             },
             _ => self.plain_value(group, member),
         }
     }
 
-    fn plain_value(&self, group: u32, member: u32) -> Value {
+    fn plain_value(&self, group: u32, member: u32) -> MemberValue {
         let value = match self.mixable(group) {
-            Some(Group::Colors(colors)) => colors.get(member as usize).copied().flatten().map(Value::Color),
+            Some(Group::Colors(colors)) => {
+                colors.get(member as usize).copied().flatten().map(MemberValue::Color)
+            }
             Some(Group::Places(points)) => {
-                points.get(member as usize).map(|point| Value::Point(point.map(f64::to_bits)))
+                points.get(member as usize).map(|point| MemberValue::Point(point.map(f64::to_bits)))
             }
             Some(Group::Mixtures { shares, .. }) => shares
                 .get(member as usize)
-                .map(|shares| Value::Shares(shares.iter().map(|share| share.to_bits()).collect())),
+                .map(|shares| MemberValue::Shares(shares.iter().map(|share| share.to_bits()).collect())),
             _ => None,
         };
-        value.unwrap_or(Value::Member(member))
+        value.unwrap_or(MemberValue::Member(member))
     }
 }
 
@@ -170,7 +172,7 @@ pub(super) const VALUE_BYTES: usize = 1024;
 #[derive(Default)]
 struct ValueNumbers {
     of_member: FxHashMap<[u32; 2], u32>,
-    of_value: FxHashMap<(u32, Value), u32>,
+    of_value: FxHashMap<(u32, MemberValue), u32>,
 }
 
 impl ValueNumbers {

@@ -6,7 +6,7 @@ use super::package::Package;
 use super::read::{Body, Project};
 use super::read_volumes::{VOLUMES, by_object};
 use super::write::{add_entry, not_packed, triangle, vertices};
-use super::xml::{Attributes, Document};
+use super::xml::{Document, RawAttributes};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::formats::decimals::Text;
 use crate::formats::{ReadError, WriteError};
@@ -287,7 +287,7 @@ fn renumbered(old: &[u8], project: &Project, new: &[&NewBody<'_>]) -> Result<Vec
             };
             let name_length = inside.find(|c: char| c.is_ascii_whitespace()).unwrap_or(inside.len());
             let mut text = inside[..name_length].to_owned();
-            for (key, value) in Attributes::of(&inside[name_length..]).flatten() {
+            for (key, value) in RawAttributes::of(&inside[name_length..]).flatten() {
                 let quote = if value.contains('"') { '\'' } else { '"' };
                 let number = match key {
                     "firstid" => Some(first),
@@ -359,7 +359,8 @@ fn triangles(
                 text.word(" ");
                 text.word(other);
             } else {
-                for (key, value) in Attributes::of(other).flatten().filter(|&(k, v)| !is_of_corners(k, v)) {
+                for (key, value) in RawAttributes::of(other).flatten().filter(|&(k, v)| !is_of_corners(k, v))
+                {
                     let quote = if value.contains('"') { "'" } else { "\"" };
                     for piece in [" ", key, "=", quote, value, quote] {
                         text.word(piece);
@@ -423,7 +424,9 @@ fn is_of_corners(key: &str, value: &str) -> bool {
 impl FaceAttributes {
     /// True when the other attributes of this number hold paint that is stated by corners.
     pub fn is_divided(&self, number: u32) -> bool {
-        Attributes::of(&self.texts[number as usize]).flatten().any(|(key, value)| is_of_corners(key, value))
+        RawAttributes::of(&self.texts[number as usize])
+            .flatten()
+            .any(|(key, value)| is_of_corners(key, value))
     }
 }
 

@@ -3,7 +3,7 @@
 use super::model::ObjectContent;
 use super::models::Models;
 use super::package::too_large;
-use super::read_volumes::{Purpose, are_all, by_object};
+use super::read_volumes::{VolumePurpose, are_all, by_object};
 use super::split::volume_of;
 use super::transform::Transform;
 use crate::budget::{Budget, CHECK_EVERY, Charge};
@@ -44,7 +44,7 @@ pub(super) struct Assembled {
 
 /// Which parts are put together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Extent {
+pub(super) enum PartSelection {
     /// All that are printed or are for what is.
     Everything,
     /// Those that are printed.
@@ -53,13 +53,13 @@ pub(super) enum Extent {
     Negative,
 }
 
-impl Extent {
+impl PartSelection {
     /// True when it has parts for `purpose`.
-    fn has(self, purpose: Purpose) -> bool {
+    fn has(self, purpose: VolumePurpose) -> bool {
         match self {
             Self::Everything => true,
-            Self::Material => purpose == Purpose::Material,
-            Self::Negative => purpose == Purpose::Negative,
+            Self::Material => purpose == VolumePurpose::Material,
+            Self::Negative => purpose == VolumePurpose::Negative,
         }
     }
 }
@@ -67,7 +67,7 @@ impl Extent {
 /// All placements in one mesh, in the order of the build. Each is an object of it, and so is each volume.
 pub(super) fn assemble(
     models: &Models,
-    extent: Extent,
+    extent: PartSelection,
     options: &ReadOptions,
     budget: &Budget,
 ) -> Result<Assembled, ReadError> {
@@ -90,9 +90,9 @@ pub(super) fn assemble(
         let color = |face: usize| model.color_of_face(object, &mesh.attributes, face);
         let volumes = of_object.get(&object.id).filter(|_| m == 0).map(Vec::as_slice).unwrap_or_default();
         let has_volumes = are_all(volumes, mesh.soup.face_count);
-        let is_apart = extent != Extent::Everything
-            && placement.purpose == Purpose::Material
-            && volumes.iter().any(|volume| volume.purpose != Purpose::Material)
+        let is_apart = extent != PartSelection::Everything
+            && placement.purpose == VolumePurpose::Material
+            && volumes.iter().any(|volume| volume.purpose != VolumePurpose::Material)
             && has_volumes;
         if !extent.has(placement.purpose) && !is_apart {
             scene.leave_out(placement.purpose);
@@ -159,7 +159,7 @@ struct SceneBuilder<'s> {
 
 impl SceneBuilder<'_> {
     /// Counts a part that is left out, unless it is material.
-    fn leave_out(&mut self, purpose: Purpose) {
+    fn leave_out(&mut self, purpose: VolumePurpose) {
         let Some(name) = purpose.left_out_as() else { return };
         match self.soup.left_out.iter_mut().find(|(known, _)| *known == name) {
             Some((_, count)) => *count += 1,

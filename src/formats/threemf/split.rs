@@ -1,12 +1,16 @@
 //! A mesh parted into its volumes.
 
 use super::model::{FaceAttributes, NO_NUMBER};
-use super::read_volumes::Volume;
+use super::read_volumes::ObjectVolume;
 use crate::mesh::{FaceFault, Soup};
 use std::sync::Arc;
 
 /// The faces of one volume, with the vertices that they use in their order.
-pub(super) fn volume_of(soup: &Soup, attributes: &FaceAttributes, volume: &Volume) -> (Soup, FaceAttributes) {
+pub(super) fn volume_of(
+    soup: &Soup,
+    attributes: &FaceAttributes,
+    volume: &ObjectVolume,
+) -> (Soup, FaceAttributes) {
     let range = volume.triangles.start as usize..volume.triangles.end as usize;
     let is_inside = |face: u32| volume.triangles.contains(&face);
     let first = soup.face_faults.partition_point(|fault| fault.face < volume.triangles.start);

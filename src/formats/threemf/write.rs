@@ -74,12 +74,12 @@ pub(super) fn not_packed(error: &zip::result::ZipError) -> WriteError {
 
 /// The colours of a mesh as members of a group.
 #[derive(Default)]
-struct Colors {
+struct ColorGroup {
     list: Vec<[u8; 4]>,
     numbers: FxHashMap<[u8; 4], u32>,
 }
 
-impl Colors {
+impl ColorGroup {
     fn number(&mut self, color: [u8; 4]) -> u32 {
         *self.numbers.entry(color).or_insert_with(|| {
             self.list.push(color);
@@ -89,7 +89,7 @@ impl Colors {
 }
 
 /// The members at the corners of each triangle, or `None` where it has no colour; empty when none has.
-fn members(soup: &Soup, colors: &mut Colors) -> Vec<Option<[u32; 3]>> {
+fn members(soup: &Soup, colors: &mut ColorGroup) -> Vec<Option<[u32; 3]>> {
     let is_color = |color: &Option<Color>| !matches!(color, None | Some(Color::Index(_)));
     let of_face = |t: usize| soup.face_colors.get(soup.face_of(t as u32) as usize).copied().flatten();
     if soup.face_colors.iter().any(is_color) {
@@ -110,7 +110,7 @@ fn members(soup: &Soup, colors: &mut Colors) -> Vec<Option<[u32; 3]>> {
 }
 
 fn model(soup: &Soup, budget: &Budget) -> Result<Vec<u8>, WriteError> {
-    let mut colors = Colors::default();
+    let mut colors = ColorGroup::default();
     let members = members(soup, &mut colors);
     let mut text = Text::new(budget);
     text.word("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"");

@@ -187,7 +187,7 @@ impl<'x> Scanner<'x> {
         }
         let mut declared = Vec::new();
         if memchr::memmem::find(attributes.as_bytes(), b"xmlns").is_some() {
-            for attribute in Attributes::of(attributes) {
+            for attribute in RawAttributes::of(attributes) {
                 let (key, value) = attribute.map_err(|()| self.bad_attributes(at, name))?;
                 if key == "xmlns" {
                     declared.push((depth, "", Namespace::of(value)));
@@ -243,7 +243,7 @@ impl<'x> Scanner<'x> {
     /// What is no list of attributes, a name that comes twice, a reference that XML does not define.
     pub(super) fn attributes(&self, element: &XmlElement<'x>) -> Result<Vec<Attribute<'x>>, ReadError> {
         let mut all: Vec<Attribute<'x>> = Vec::new();
-        for attribute in Attributes::of(element.attributes) {
+        for attribute in RawAttributes::of(element.attributes) {
             let (key, raw) = attribute.map_err(|()| self.bad_attributes(element.at, element.name))?;
             if all.len() >= ATTRIBUTES_MAX {
                 let found = format!("more than {ATTRIBUTES_MAX} attributes in <{}>", element.name);
@@ -299,17 +299,17 @@ pub(super) fn value_in<'a>(
 }
 
 /// The attributes in a tag as written, one by one: names and values with their references.
-pub(super) struct Attributes<'x> {
+pub(super) struct RawAttributes<'x> {
     rest: &'x str,
 }
 
-impl<'x> Attributes<'x> {
+impl<'x> RawAttributes<'x> {
     pub(super) fn of(raw: &'x str) -> Self {
         Self { rest: raw }
     }
 }
 
-impl<'x> Iterator for Attributes<'x> {
+impl<'x> Iterator for RawAttributes<'x> {
     type Item = Result<(&'x str, &'x str), ()>;
 
     #[inline]

@@ -6,7 +6,7 @@ pub(super) const LANGUAGES: [(&str, &str); 3] =
 
 /// What is done with an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Answer {
+enum ResponseUse {
     /// Written to this file.
     Saved(&'static str),
     /// Shown.
@@ -24,30 +24,32 @@ pub(super) struct Call {
     /// Files of meshes that it sends: one as the body, several as a form.
     meshes: &'static [&'static str],
     accept: Option<&'static str>,
-    answer: Answer,
+    answer: ResponseUse,
 }
 
 impl Call {
     /// The call of `path` by `method`.
     pub(super) fn of(path: &str, method: &'static str) -> Self {
         let (query, answer) = match (method, path) {
-            ("POST", "/v1/convert") => ("?output_format=obj", Answer::Saved("part.obj")),
-            ("POST", "/v1/simplify") => ("?ratio=0.5", Answer::Saved("small.stl")),
-            ("POST", "/v1/cut-stitch") => ("?output_format=off", Answer::Saved("sheets.off")),
-            ("POST", "/v1/fill-holes") => ("?method=auto", Answer::Saved("closed.stl")),
-            ("POST", "/v1/modeller") => ("?list_faces=true", Answer::Told),
-            ("POST", "/v1/boolean") => ("?set_operation=union", Answer::Saved("both.stl")),
-            ("POST", "/v1/render") => ("?views=four", Answer::Saved("part.png")),
-            ("POST", "/v1/jobs") => ("?operation=repair&thumbnail=true", Answer::Told),
-            ("GET", "/v1/jobs") => ("?limit=20", Answer::Told),
-            ("GET", "/v1/jobs/{id}") => ("?wait=60", Answer::Told),
-            ("POST", "/v1/repair") | ("GET", "/v1/jobs/{id}/result") => ("", Answer::Saved("repaired.stl")),
-            ("GET", "/v1/jobs/{id}/thumbnail.png") => ("", Answer::Saved("part.png")),
-            ("GET", "/v1/jobs/{id}/thumbnail.glb") => ("", Answer::Saved("part.glb")),
-            ("GET", "/openapi.yaml") => ("", Answer::Saved("openapi.yaml")),
-            ("GET", "/openapi.json") => ("", Answer::Saved("openapi.json")),
-            ("DELETE", _) => ("", Answer::None),
-            _ => ("", Answer::Told),
+            ("POST", "/v1/convert") => ("?output_format=obj", ResponseUse::Saved("part.obj")),
+            ("POST", "/v1/simplify") => ("?ratio=0.5", ResponseUse::Saved("small.stl")),
+            ("POST", "/v1/cut-stitch") => ("?output_format=off", ResponseUse::Saved("sheets.off")),
+            ("POST", "/v1/fill-holes") => ("?method=auto", ResponseUse::Saved("closed.stl")),
+            ("POST", "/v1/modeller") => ("?list_faces=true", ResponseUse::Told),
+            ("POST", "/v1/boolean") => ("?set_operation=union", ResponseUse::Saved("both.stl")),
+            ("POST", "/v1/render") => ("?views=four", ResponseUse::Saved("part.png")),
+            ("POST", "/v1/jobs") => ("?operation=repair&thumbnail=true", ResponseUse::Told),
+            ("GET", "/v1/jobs") => ("?limit=20", ResponseUse::Told),
+            ("GET", "/v1/jobs/{id}") => ("?wait=60", ResponseUse::Told),
+            ("POST", "/v1/repair") | ("GET", "/v1/jobs/{id}/result") => {
+                ("", ResponseUse::Saved("repaired.stl"))
+            }
+            ("GET", "/v1/jobs/{id}/thumbnail.png") => ("", ResponseUse::Saved("part.png")),
+            ("GET", "/v1/jobs/{id}/thumbnail.glb") => ("", ResponseUse::Saved("part.glb")),
+            ("GET", "/openapi.yaml") => ("", ResponseUse::Saved("openapi.yaml")),
+            ("GET", "/openapi.json") => ("", ResponseUse::Saved("openapi.json")),
+            ("DELETE", _) => ("", ResponseUse::None),
+            _ => ("", ResponseUse::Told),
         };
         let accept = match path {
             "/v1/modeller" => Some("application/json"),
@@ -85,14 +87,14 @@ impl Call {
         if let Some(accept) = self.accept {
             line.push_str(&format!(" -H 'Accept: {accept}'"));
         }
-        if let Answer::Saved(file) = self.answer {
+        if let ResponseUse::Saved(file) = self.answer {
             line.push_str(&format!(" -o {file}"));
         }
         line
     }
 
     fn python(&self) -> String {
-        let uses_path = !self.meshes.is_empty() || matches!(self.answer, Answer::Saved(_));
+        let uses_path = !self.meshes.is_empty() || matches!(self.answer, ResponseUse::Saved(_));
         let mut lines = Vec::new();
         if uses_path {
             lines.push("from pathlib import Path".to_owned());
@@ -129,11 +131,11 @@ impl Call {
             all => format!("request = Request(\n    {},\n)", all.join(",\n    ")),
         });
         match self.answer {
-            Answer::None => lines.push("urlopen(request).close()".to_owned()),
-            Answer::Told => {
+            ResponseUse::None => lines.push("urlopen(request).close()".to_owned()),
+            ResponseUse::Told => {
                 lines.push("with urlopen(request) as answer:\n    print(answer.read().decode())".to_owned());
             }
-            Answer::Saved(file) => lines.push(format!(
+            ResponseUse::Saved(file) => lines.push(format!(
                 "with urlopen(request) as answer:\n    Path(\"{file}\").write_bytes(answer.read())"
             )),
         }
@@ -141,7 +143,7 @@ impl Call {
     }
 
     fn typescript(&self) -> String {
-        let saves = matches!(self.answer, Answer::Saved(_));
+        let saves = matches!(self.answer, ResponseUse::Saved(_));
         let names: Vec<_> = [("readFile", !self.meshes.is_empty()), ("writeFile", saves)]
             .into_iter()
             .filter_map(|(name, is_used)| is_used.then_some(name))
@@ -173,9 +175,9 @@ impl Call {
         });
         lines.push("if (!answer.ok) throw new Error((await answer.json()).detail);".to_owned());
         match self.answer {
-            Answer::None => {}
-            Answer::Told => lines.push("console.log(await answer.text());".to_owned()),
-            Answer::Saved(file) => {
+            ResponseUse::None => {}
+            ResponseUse::Told => lines.push("console.log(await answer.text());".to_owned()),
+            ResponseUse::Saved(file) => {
                 lines.push(format!("await writeFile(\"{file}\", Buffer.from(await answer.arrayBuffer()));"));
             }
         }

@@ -8,7 +8,7 @@ use sha2::{Digest as _, Sha256};
 use super::task::FileMade;
 use super::workspace::Rooms;
 use crate::jobs::problems::disk_problem;
-use crate::jobs::product::Product;
+use crate::jobs::product::RunProduct;
 use crate::par;
 use crate::wire::{Problem, ProblemCode};
 
@@ -22,7 +22,7 @@ pub(super) struct Files {
 
 impl Files {
     /// The product with its contents in files.
-    pub(super) fn write(&self, product: Product<Vec<u8>>) -> Result<Product<FileMade>, Problem> {
+    pub(super) fn write(&self, product: RunProduct<Vec<u8>>) -> Result<RunProduct<FileMade>, Problem> {
         let mut number = 0;
         product.try_map(|content| {
             let made = self.make(number, &content)?;

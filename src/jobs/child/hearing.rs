@@ -1,9 +1,9 @@
 //! What a child says, heard piece by piece: it may be late, broken off or not a word of the language.
 
 use super::sandbox::Protections;
-use super::task::{FileMade, Message};
-use crate::budget::Event;
-use crate::jobs::product::Product;
+use super::task::{ChildMessage, FileMade};
+use crate::budget::ProgressEvent;
+use crate::jobs::product::RunProduct;
 use crate::wire::Problem;
 
 /// Longest line. The answer of a run with many results has some kilobytes.
@@ -12,7 +12,7 @@ const LINE_BYTES_MAX: usize = 256 << 10;
 /// The last word of a child.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Last {
-    Made(Box<Product<FileMade>>),
+    Made(Box<RunProduct<FileMade>>),
     Failed(Box<Problem>),
 }
 
@@ -33,7 +33,7 @@ pub(super) struct Hearing {
 
 impl Hearing {
     /// Takes the next bytes; passes go to `hear`.
-    pub(super) fn take(&mut self, mut bytes: &[u8], hear: &dyn Fn(Event)) -> Result<(), Garbled> {
+    pub(super) fn take(&mut self, mut bytes: &[u8], hear: &dyn Fn(ProgressEvent)) -> Result<(), Garbled> {
         while let Some(end) = bytes.iter().position(|&byte| byte == b'\n') {
             self.grow(&bytes[..end])?;
             let message = serde_json::from_slice(&self.line).map_err(|_| Garbled)?;
@@ -57,18 +57,18 @@ impl Hearing {
         Ok(())
     }
 
-    fn understand(&mut self, message: Message, hear: &dyn Fn(Event)) -> Result<(), Garbled> {
+    fn understand(&mut self, message: ChildMessage, hear: &dyn Fn(ProgressEvent)) -> Result<(), Garbled> {
         match message {
-            Message::Confined(protections) if self.protections.is_none() => {
+            ChildMessage::Confined(protections) if self.protections.is_none() => {
                 self.protections = Some(protections);
             }
-            Message::Taken if !self.has_task => self.has_task = true,
-            Message::Confined(_) | Message::Taken => return Err(Garbled),
-            Message::Enter(stage) => hear(Event::Enter(stage.into())),
-            Message::Leave(stage) => hear(Event::Leave(stage.into())),
-            Message::Work(units) => hear(Event::Work(units)),
-            Message::Made(product) => self.last = Some(Last::Made(product)),
-            Message::Failed(problem) => self.last = Some(Last::Failed(problem)),
+            ChildMessage::Taken if !self.has_task => self.has_task = true,
+            ChildMessage::Confined(_) | ChildMessage::Taken => return Err(Garbled),
+            ChildMessage::Enter(stage) => hear(ProgressEvent::Enter(stage.into())),
+            ChildMessage::Leave(stage) => hear(ProgressEvent::Leave(stage.into())),
+            ChildMessage::Work(units) => hear(ProgressEvent::Work(units)),
+            ChildMessage::Made(product) => self.last = Some(Last::Made(product)),
+            ChildMessage::Failed(problem) => self.last = Some(Last::Failed(problem)),
         }
         Ok(())
     }
@@ -81,7 +81,7 @@ mod tests {
     use crate::wire::{ProblemCode, Stage};
     use std::cell::RefCell;
 
-    fn line(message: &Message) -> Vec<u8> {
+    fn line(message: &ChildMessage) -> Vec<u8> {
         let mut line = serde_json::to_vec(message).unwrap();
         line.push(b'\n');
         line
@@ -91,11 +91,11 @@ mod tests {
     fn words_are_heard_however_the_pipe_cuts_them() {
         let problem = Problem::new(ProblemCode::MeshEmpty, "empty");
         let said = [
-            line(&Message::Confined(Protections { landlock_abi: Some(7), is_filtered: true })),
-            line(&Message::Taken),
-            line(&Message::Enter(Stage::Read)),
-            line(&Message::Leave(Stage::Read)),
-            line(&Message::Failed(Box::new(problem.clone()))),
+            line(&ChildMessage::Confined(Protections { landlock_abi: Some(7), is_filtered: true })),
+            line(&ChildMessage::Taken),
+            line(&ChildMessage::Enter(Stage::Read)),
+            line(&ChildMessage::Leave(Stage::Read)),
+            line(&ChildMessage::Failed(Box::new(problem.clone()))),
         ]
         .concat();
         for piece in [1, 7, said.len()] {
@@ -105,7 +105,7 @@ mod tests {
                 hearing.take(bytes, &|event| heard.borrow_mut().push(event)).unwrap();
             }
             let read = budget::Stage::Read;
-            assert_eq!(*heard.borrow(), [Event::Enter(read), Event::Leave(read)]);
+            assert_eq!(*heard.borrow(), [ProgressEvent::Enter(read), ProgressEvent::Leave(read)]);
             assert_eq!(hearing.protections.unwrap().landlock_abi, Some(7));
             assert!(hearing.has_task);
             assert_eq!(hearing.last(), Some(Last::Failed(Box::new(problem.clone()))));
@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn a_last_word_that_is_broken_off_is_none() {
-        let said = line(&Message::Failed(Box::new(Problem::new(ProblemCode::MeshEmpty, "empty"))));
+        let said = line(&ChildMessage::Failed(Box::new(Problem::new(ProblemCode::MeshEmpty, "empty"))));
         let mut hearing = Hearing::default();
         hearing.take(&said[..said.len() - 1], &|_| {}).unwrap();
         assert_eq!(hearing.last(), None);
@@ -122,8 +122,8 @@ mod tests {
 
     #[test]
     fn noise_a_word_after_the_last_one_and_a_line_without_end_are_garbled() {
-        let last = line(&Message::Failed(Box::new(Problem::new(ProblemCode::MeshEmpty, "empty"))));
-        let taken = line(&Message::Taken);
+        let last = line(&ChildMessage::Failed(Box::new(Problem::new(ProblemCode::MeshEmpty, "empty"))));
+        let taken = line(&ChildMessage::Taken);
         let endless = vec![b'1'; LINE_BYTES_MAX + 1];
         for said in [&b"panic!\n"[..], b"\n", b"{\"made\":{}}\n", &last.repeat(2), &taken.repeat(2), &endless]
         {

@@ -13,7 +13,7 @@ use rustix::io::ioctl_fionbio;
 use rustix::process::{Pid, PidfdFlags, Signal, kill_process_group, pidfd_open};
 
 use super::run::RUN_JOB;
-use super::task::{Setting, Task};
+use super::task::{ChildSetup, Task};
 use super::workspace::{Workspace, Workspaces};
 
 /// The binary that this process runs, also when the file has been replaced since: versions do not mix.
@@ -52,7 +52,7 @@ pub(super) struct Untold {
 
 impl Running {
     /// Starts a child, which waits for its task. It dies with the calling thread.
-    pub(super) fn start(setting: &Setting, workspaces: &Workspaces) -> io::Result<Self> {
+    pub(super) fn start(setting: &ChildSetup, workspaces: &Workspaces) -> io::Result<Self> {
         let workspace = Arc::new(workspaces.make()?);
         let (source, pipe) = io::pipe()?;
         // A child that does not listen must not hold up whoever speaks to it.

@@ -3,8 +3,8 @@
 //! Parent: [`starter::Starter`] starts children, [`watch::watch`] gives one its task, hears it, ends it when it must end,
 //! and says how it ended. Child:
 //! [`run_job`] limits itself, opens what it needs, gives up the rest, runs the engine and leaves files in a folder that
-//! the parent takes over. They speak JSON: a [`task::Task`] on standard input, a line for each [`task::Message`] on
-//! standard output. No mesh goes through a pipe. `docs/isolation.md` says what is limited.
+//! the parent takes over. They speak JSON: a [`task::Task`] on standard input, a line for each
+//! [`task::ChildMessage`] on standard output. No mesh goes through a pipe. `docs/isolation.md` says what is limited.
 
 mod answer;
 mod calls;

@@ -9,7 +9,7 @@ use super::limits::ProcessLimits;
 use super::memory_kills;
 use super::sandbox::Protections;
 use super::starter::Starter;
-use super::task::{Setting, Task};
+use super::task::{ChildSetup, Task};
 use super::trial::{TrialError, try_out};
 use super::watch::{Answered, watch};
 use super::workspace::{MadeFile, Workspaces};
@@ -17,7 +17,7 @@ use crate::jobs::clock::StageClock;
 use crate::jobs::live::Live;
 use crate::jobs::meters;
 use crate::jobs::problems::disk_problem;
-use crate::jobs::product::Product;
+use crate::jobs::product::RunProduct;
 use crate::jobs::settings::JobsSettings;
 use crate::jobs::spool::Spool;
 use crate::jobs::store::{BlobRef, JobRow};
@@ -30,7 +30,7 @@ const GIVEN_MAX: u32 = 3;
 #[derive(Debug)]
 pub(in crate::jobs) struct Processes {
     starter: Starter,
-    setting: Setting,
+    setting: ChildSetup,
 }
 
 impl Processes {
@@ -59,7 +59,7 @@ impl Processes {
         live: &Live,
         settings: &JobsSettings,
         clock: &StageClock,
-    ) -> Result<Product<MadeFile>, Problem> {
+    ) -> Result<RunProduct<MadeFile>, Problem> {
         let task = Task {
             operation: row.operation,
             options: row.options.clone(),
@@ -136,14 +136,14 @@ impl Processes {
     }
 }
 
-fn setting(settings: &JobsSettings) -> Setting {
+fn setting(settings: &JobsSettings) -> ChildSetup {
     let cores = || std::thread::available_parallelism().map_or(1, NonZero::get);
     let threads = match settings.engine_threads {
         // Asked here: a child in its sandbox does not see how many cores its group of processes may use.
         0 => cores(),
         threads => threads,
     };
-    Setting {
+    ChildSetup {
         parent: std::process::id() as i32,
         threads,
         limits: ProcessLimits::new(

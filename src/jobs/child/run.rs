@@ -9,17 +9,17 @@ use std::process::ExitCode;
 use rustix::process::{Signal, getppid, set_parent_process_death_signal};
 
 use super::answer::Files;
-use super::task::{FileMade, Message, Setting, Task};
+use super::task::{ChildMessage, ChildSetup, FileMade, Task};
 use super::workspace::Rooms;
-use crate::budget::{Budget, Event, StopFlag};
+use crate::budget::{Budget, ProgressEvent, StopFlag};
 use crate::jobs::clock::StageClock;
 use crate::jobs::problems::{disk_problem, engine_crashed};
-use crate::jobs::product::Product;
+use crate::jobs::product::RunProduct;
 use crate::par;
 use crate::pipeline::{self, Answer, Failure};
 use crate::wire::Problem;
 
-/// The command that makes a process a child: its arguments are a folder and a `Setting` as JSON. For servers only: a
+/// The command that makes a process a child: its arguments are a folder and a `ChildSetup` as JSON. For servers only: a
 /// person has no use for it.
 pub const RUN_JOB: &str = "run-job";
 /// How a process is called, as `ps` and `top` show it, while it waits for a task.
@@ -28,7 +28,7 @@ const WAITING: &CStr = c"meshmend-waits";
 const WORKING: &CStr = c"meshmend-job";
 
 /// The function that runs a job's bytes.
-type Engine =
+type EngineFunction =
     dyn Fn(pipeline::Operation, Vec<u8>, &pipeline::Options, &Budget) -> Result<Answer, Failure> + Sync;
 
 /// Runs the job that standard input describes with `engine`, and ends with the server. To be called first in `main` when
@@ -47,12 +47,12 @@ pub fn run_job(
     }
 }
 
-fn wait_and_obey(engine: &Engine) -> io::Result<()> {
+fn wait_and_obey(engine: &EngineFunction) -> io::Result<()> {
     set_parent_process_death_signal(Some(Signal::KILL))?;
     let (Some(folder), Some(setting)) = (std::env::args_os().nth(2), std::env::args().nth(3)) else {
         return Err(io::Error::other("only a server runs this"));
     };
-    let setting: Setting = serde_json::from_str(&setting)?;
+    let setting: ChildSetup = serde_json::from_str(&setting)?;
     if getppid().map(|pid| pid.as_raw_nonzero().get()) != Some(setting.parent) {
         return Err(io::Error::other("the server has gone"));
     }
@@ -64,23 +64,23 @@ fn wait_and_obey(engine: &Engine) -> io::Result<()> {
     let threads = par::Threads::start(setting.threads);
     // Whatever it is called, it works.
     let _ = rustix::thread::set_name(WAITING);
-    say(&Message::Confined(protections))?;
+    say(&ChildMessage::Confined(protections))?;
     let task = serde_json::from_reader(io::stdin().lock())?;
     let _ = rustix::thread::set_name(WORKING);
-    say(&Message::Taken)?;
+    say(&ChildMessage::Taken)?;
     threads.run(|| obey(&task, &files, engine))
 }
 
-fn obey(task: &Task, files: &Files, engine: &Engine) -> io::Result<()> {
+fn obey(task: &Task, files: &Files, engine: &EngineFunction) -> io::Result<()> {
     let outcome = catch_unwind(AssertUnwindSafe(|| run(task, files, engine)));
     let outcome = outcome.unwrap_or_else(|_| Err(engine_crashed()));
     say(&match outcome {
-        Ok(product) => Message::Made(Box::new(product)),
-        Err(problem) => Message::Failed(Box::new(problem)),
+        Ok(product) => ChildMessage::Made(Box::new(product)),
+        Err(problem) => ChildMessage::Failed(Box::new(problem)),
     })
 }
 
-fn run(task: &Task, files: &Files, engine: &Engine) -> Result<Product<FileMade>, Problem> {
+fn run(task: &Task, files: &Files, engine: &EngineFunction) -> Result<RunProduct<FileMade>, Problem> {
     let clock = StageClock::start(task.operation);
     let stamp = clock.observer();
     let budget = Budget::new(StopFlag::default(), task.engine_work_max, task.engine_bytes_max).observed_by(
@@ -88,9 +88,9 @@ fn run(task: &Task, files: &Files, engine: &Engine) -> Result<Product<FileMade>,
             stamp(event);
             // A server that does not listen ends this process anyway.
             let _ = say(&match event {
-                Event::Enter(stage) => Message::Enter(stage.into()),
-                Event::Leave(stage) => Message::Leave(stage.into()),
-                Event::Work(units) => Message::Work(units),
+                ProgressEvent::Enter(stage) => ChildMessage::Enter(stage.into()),
+                ProgressEvent::Leave(stage) => ChildMessage::Leave(stage.into()),
+                ProgressEvent::Work(units) => ChildMessage::Work(units),
             });
         }),
     );
@@ -105,11 +105,11 @@ fn run(task: &Task, files: &Files, engine: &Engine) -> Result<Product<FileMade>,
     options.material = material.transpose().map_err(|error| disk_problem(&error))?;
     let answer = engine(task.operation.into(), content, &options, &budget)
         .map_err(|failure| Problem::from(&failure))?;
-    files.write(Product::of(answer, clock.timing_ms())?)
+    files.write(RunProduct::of(answer, clock.timing_ms())?)
 }
 
 /// A line to the server.
-fn say(message: &Message) -> io::Result<()> {
+fn say(message: &ChildMessage) -> io::Result<()> {
     let mut line = serde_json::to_vec(message)?;
     line.push(b'\n');
     let mut output = io::stdout().lock();

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 use std::thread;
 
 use super::launch::Running;
-use super::task::Setting;
+use super::task::ChildSetup;
 use super::workspace::Workspaces;
 
 /// How much children step back behind the server, from 0 to 19: also while they start.
@@ -22,10 +22,10 @@ pub(super) struct Starter {
 
 /// The child that waits for a task. Held while one is started: who comes meanwhile waits for that one.
 #[derive(Debug, Default)]
-struct Spare(Mutex<State>);
+struct Spare(Mutex<StarterState>);
 
 #[derive(Debug, Default)]
-struct State {
+struct StarterState {
     child: Option<Running>,
     /// No more children are wanted.
     is_over: bool,
@@ -36,7 +36,7 @@ type Ask = Option<mpsc::SyncSender<io::Result<Running>>>;
 
 impl Starter {
     /// Starts the thread, and the first child.
-    pub(super) fn open(setting: Setting, workspaces: Workspaces) -> io::Result<Self> {
+    pub(super) fn open(setting: ChildSetup, workspaces: Workspaces) -> io::Result<Self> {
         let (asks, asked) = mpsc::channel();
         let spare = Arc::new(Spare::default());
         let shared = Arc::clone(&spare);
@@ -75,7 +75,7 @@ impl Starter {
 }
 
 impl Spare {
-    fn lock(&self) -> MutexGuard<'_, State> {
+    fn lock(&self) -> MutexGuard<'_, StarterState> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

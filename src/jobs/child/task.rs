@@ -5,12 +5,12 @@ use serde::{Deserialize, Serialize};
 use super::limits::ProcessLimits;
 use super::sandbox::{Protections, Sandbox};
 use crate::formats::ReadLimits;
-use crate::jobs::product::Product;
+use crate::jobs::product::RunProduct;
 use crate::wire::{Operation, Options, Problem, Stage};
 
 /// What a child is told when it is started; its task comes later.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct Setting {
+pub(super) struct ChildSetup {
     /// Process id of the server; the child ends when that is not its parent.
     pub(super) parent: i32,
     /// Engine threads, at least one.
@@ -59,7 +59,7 @@ impl Task {
 /// What a child says, a line each.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub(super) enum Message {
+pub(super) enum ChildMessage {
     /// It is confined and waits for its task.
     Confined(Protections),
     /// It has its task.
@@ -71,7 +71,7 @@ pub(super) enum Message {
     /// So many work units are used by now.
     Work(u64),
     /// It is done; the last word.
-    Made(Box<Product<FileMade>>),
+    Made(Box<RunProduct<FileMade>>),
     /// It has nothing to show; the last word.
     Failed(Box<Problem>),
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::launch::Running;
 use super::limits::ProcessLimits;
 use super::sandbox::{Protections, Sandbox};
-use super::task::{Setting, Task};
+use super::task::{ChildSetup, Task};
 use super::watch::watch;
 use super::workspace::Workspaces;
 use crate::budget::StopFlag;
@@ -39,9 +39,9 @@ pub enum TrialError {
 }
 
 /// Runs a small job in a child of that setting.
-pub(super) fn try_out(workspaces: &Workspaces, setting: &Setting) -> Result<Protections, TrialError> {
+pub(super) fn try_out(workspaces: &Workspaces, setting: &ChildSetup) -> Result<Protections, TrialError> {
     let required = setting.sandbox == Sandbox::Require;
-    let setting = Setting {
+    let setting = ChildSetup {
         // What is missing is to be told, not to end the trial.
         sandbox: if required { Sandbox::Auto } else { setting.sandbox },
         limits: ProcessLimits { file_bytes: TRIAL_BYTES, ..setting.limits },

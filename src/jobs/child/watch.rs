@@ -13,8 +13,8 @@ use super::memory_kills;
 use super::sandbox::Protections;
 use super::task::{FileMade, Task};
 use super::workspace::{MadeFile, Workspace};
-use crate::budget::{Event, StopFlag};
-use crate::jobs::product::Product;
+use crate::budget::{ProgressEvent, StopFlag};
+use crate::jobs::product::RunProduct;
 use crate::wire::Problem;
 
 /// Time between two looks at the stop flag. What the child says and its end are heard at once.
@@ -28,7 +28,7 @@ pub(in crate::jobs) struct Answered {
     /// Where in the sources the engine panicked, if it did.
     pub(in crate::jobs) panicked_at: Option<String>,
     /// What it made, or why it made nothing.
-    pub(in crate::jobs) outcome: Result<Product<MadeFile>, Problem>,
+    pub(in crate::jobs) outcome: Result<RunProduct<MadeFile>, Problem>,
 }
 
 /// Gives a child its task and hears it to its end. Passes go to `hear`. When `stop` is raised the child ends within moments;
@@ -38,7 +38,7 @@ pub(super) fn watch(
     task: &Task,
     stop: &StopFlag,
     patience: Duration,
-    hear: &dyn Fn(Event),
+    hear: &dyn Fn(ProgressEvent),
 ) -> Result<Answered, Death> {
     let begun = Instant::now();
     running.give(task).map_err(Death::NotStarted)?;

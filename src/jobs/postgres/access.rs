@@ -11,7 +11,7 @@ use tokio_postgres::tls::MakeTlsConnect;
 use tokio_postgres::{Client, Config, Connection, Socket};
 use tokio_postgres_rustls::MakeRustlsConnect;
 
-use super::OpenError;
+use super::PostgresOpenError;
 
 /// Longest time for a connection to be made, and for one of the pool to be free.
 const CONNECTION_PATIENCE: Duration = Duration::from_secs(10);
@@ -52,18 +52,18 @@ impl DatabaseAccess {
     ///
     /// # Errors
     /// It cannot be read, or there is a password in it.
-    pub fn check(&self) -> Result<(), OpenError> {
+    pub fn check(&self) -> Result<(), PostgresOpenError> {
         self.config().map(drop)
     }
 
-    fn config(&self) -> Result<Config, OpenError> {
+    fn config(&self) -> Result<Config, PostgresOpenError> {
         let mut config: Config = self.url.parse().map_err(|error: tokio_postgres::Error| {
             use std::error::Error as _;
-            OpenError::Address(error.source().map_or_else(|| error.to_string(), ToString::to_string))
+            PostgresOpenError::Address(error.source().map_or_else(|| error.to_string(), ToString::to_string))
         })?;
         if config.get_password().is_some() {
             let why = "it has a password, which would be shown with the settings: name a file of it instead";
-            return Err(OpenError::Address(why.to_owned()));
+            return Err(PostgresOpenError::Address(why.to_owned()));
         }
         if let Some(password) = &self.password {
             config.password(password);
@@ -92,12 +92,12 @@ fn is_this_machine(host: &Host) -> bool {
 }
 
 /// What connections are encrypted with, where they are.
-fn tls() -> Result<MakeRustlsConnect, OpenError> {
+fn tls() -> Result<MakeRustlsConnect, PostgresOpenError> {
     let config =
         rustls::ClientConfig::builder_with_provider(Arc::new(rustls::crypto::ring::default_provider()))
             .with_safe_default_protocol_versions()
             .and_then(BuilderVerifierExt::with_platform_verifier)
-            .map_err(|error| OpenError::Database(format!("TLS cannot be used: {error}")))?
+            .map_err(|error| PostgresOpenError::Database(format!("TLS cannot be used: {error}")))?
             .with_no_client_auth();
     Ok(MakeRustlsConnect::new(config))
 }
@@ -105,13 +105,13 @@ fn tls() -> Result<MakeRustlsConnect, OpenError> {
 /// A connection beside the pool, which goes on as long as both are kept.
 pub(super) async fn connect(
     access: &DatabaseAccess,
-) -> Result<(Client, Connection<Socket, TlsStream>), OpenError> {
+) -> Result<(Client, Connection<Socket, TlsStream>), PostgresOpenError> {
     let mut config = access.config()?;
     Ok(config.application_name("meshmend hints").connect(tls()?).await?)
 }
 
 /// The pool; no connection is made yet.
-pub(super) fn pool(access: &DatabaseAccess) -> Result<Pool, OpenError> {
+pub(super) fn pool(access: &DatabaseAccess) -> Result<Pool, PostgresOpenError> {
     let how = ManagerConfig { recycling_method: RecyclingMethod::Fast };
     let manager = Manager::from_config(access.config()?, tls()?, how);
     let set_up = Hook::async_fn(|client, _| {
@@ -124,7 +124,7 @@ pub(super) fn pool(access: &DatabaseAccess) -> Result<Pool, OpenError> {
         .create_timeout(Some(CONNECTION_PATIENCE))
         .post_create(set_up)
         .build()
-        .map_err(|error| OpenError::Database(error.to_string()))
+        .map_err(|error| PostgresOpenError::Database(error.to_string()))
 }
 
 #[cfg(test)]

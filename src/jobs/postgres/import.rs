@@ -6,12 +6,12 @@ use tokio_postgres::types::ToSql;
 
 use super::{PostgresStore, failure};
 use crate::jobs::store::StoreError;
-use crate::jobs::store::tables::{Cells, Column, TABLES, Table};
+use crate::jobs::store::tables::{Column, ColumnTexts, TABLES, Table};
 
 /// Some rows of one table.
 pub(in crate::jobs) struct Rows {
     pub(in crate::jobs) table: &'static Table,
-    pub(in crate::jobs) rows: Vec<Cells>,
+    pub(in crate::jobs) rows: Vec<ColumnTexts>,
 }
 
 impl PostgresStore {

@@ -27,8 +27,8 @@ use jiff::Timestamp;
 use tokio_postgres::error::SqlState;
 
 use super::store::{
-    AfterLoss, BlobRef, ClaimRef, ClaimRequest, Created, Delivery, DeliveryRequest, Ending, Hint, Hints,
-    Holding, IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept, Leases, ListQuery, NewJob, NextTry,
+    AfterLoss, BlobRef, ClaimRef, ClaimRequest, Created, Delivery, DeliveryRequest, EndedJobs, Ending, Hint,
+    Hints, Holding, IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Leases, ListQuery, NewJob, NextTry,
     Sealer, StateChange, StoreError, StoreFuture, Tenant, TryOutcome,
 };
 use crate::wire::{JobState, Problem};
@@ -37,7 +37,7 @@ use hints::HintLine;
 pub(super) use import::Rows;
 #[cfg(test)]
 pub(super) use schema::schema_steps;
-use session::{Body, Session};
+use session::{Session, TransactionFuture};
 
 /// A store in a database.
 pub struct PostgresStore {
@@ -54,7 +54,7 @@ impl fmt::Debug for PostgresStore {
 
 /// A database that cannot be used.
 #[derive(Debug, thiserror::Error)]
-pub enum OpenError {
+pub enum PostgresOpenError {
     /// It is not named as a database is.
     #[error("the address cannot be read: {0}")]
     Address(String),
@@ -75,7 +75,7 @@ pub enum OpenError {
     },
 }
 
-impl From<tokio_postgres::Error> for OpenError {
+impl From<tokio_postgres::Error> for PostgresOpenError {
     fn from(error: tokio_postgres::Error) -> Self {
         Self::Database(told(&error))
     }
@@ -86,11 +86,11 @@ impl PostgresStore {
     ///
     /// # Errors
     /// The database cannot be reached or used, or a newer program made its tables.
-    pub async fn open(access: &DatabaseAccess) -> Result<Self, OpenError> {
+    pub async fn open(access: &DatabaseAccess) -> Result<Self, PostgresOpenError> {
         let pool = access::pool(access)?;
         let client = pool.get().await.map_err(|error| match error {
-            deadpool_postgres::PoolError::Backend(error) => OpenError::from(error),
-            other => OpenError::Database(other.to_string()),
+            deadpool_postgres::PoolError::Backend(error) => PostgresOpenError::from(error),
+            other => PostgresOpenError::Database(other.to_string()),
         })?;
         schema::migrate(&client).await?;
         let mark = client.query_one("SELECT mark FROM identity", &[]).await?.try_get(0)?;
@@ -106,7 +106,7 @@ impl PostgresStore {
     /// Makes a change that no other server waits for.
     fn write<T: Send + 'static>(
         &self,
-        body: impl for<'s> FnOnce(&'s Session) -> Body<'s, T> + Send + 'static,
+        body: impl for<'s> FnOnce(&'s Session) -> TransactionFuture<'s, T> + Send + 'static,
     ) -> StoreFuture<'_, T> {
         self.write_and_tell(body, |_| Vec::new())
     }
@@ -114,7 +114,7 @@ impl PostgresStore {
     /// Makes a change, and tells other servers of it.
     fn write_and_tell<T: Send + 'static>(
         &self,
-        body: impl for<'s> FnOnce(&'s Session) -> Body<'s, T> + Send + 'static,
+        body: impl for<'s> FnOnce(&'s Session) -> TransactionFuture<'s, T> + Send + 'static,
         hints: impl FnOnce(&T) -> Vec<Hint> + Send + 'static,
     ) -> StoreFuture<'_, T> {
         let (pool, line) = (self.pool.clone(), Arc::clone(&self.line));
@@ -129,7 +129,7 @@ impl PostgresStore {
     /// Makes a change of one statement, which is a transaction by itself, and tells other servers of it.
     fn write_at_once<T: Send + 'static>(
         &self,
-        body: impl for<'s> FnOnce(&'s Session) -> Body<'s, T> + Send + 'static,
+        body: impl for<'s> FnOnce(&'s Session) -> TransactionFuture<'s, T> + Send + 'static,
         hint: Option<Hint>,
     ) -> StoreFuture<'_, T> {
         let (pool, line) = (self.pool.clone(), Arc::clone(&self.line));
@@ -143,7 +143,7 @@ impl PostgresStore {
     /// Looks into the tables.
     fn read<T: Send + 'static>(
         &self,
-        body: impl for<'s> FnOnce(&'s Session) -> Body<'s, T> + Send + 'static,
+        body: impl for<'s> FnOnce(&'s Session) -> TransactionFuture<'s, T> + Send + 'static,
     ) -> StoreFuture<'_, T> {
         Box::pin(Session::look(&self.pool, body))
     }
@@ -336,11 +336,11 @@ impl JobStore for PostgresStore {
         self.read(|session| Box::pin(keeping::due(session)))
     }
 
-    fn first_to_go(&self, kept: Kept, asker: Tenant) -> StoreFuture<'_, Option<JobId>> {
+    fn first_to_go(&self, kept: EndedJobs, asker: Tenant) -> StoreFuture<'_, Option<JobId>> {
         self.read(move |session| Box::pin(tenants::first_to_go(session, kept, asker)))
     }
 
-    fn first_to_go_of(&self, kept: Kept, tenant: Tenant) -> StoreFuture<'_, Option<JobId>> {
+    fn first_to_go_of(&self, kept: EndedJobs, tenant: Tenant) -> StoreFuture<'_, Option<JobId>> {
         self.read(move |session| {
             Box::pin(async move { tenants::first_to_go_of(session, kept, &tenant).await })
         })

@@ -3,11 +3,11 @@
 
 use deadpool_postgres::Client;
 
-use super::OpenError;
+use super::PostgresOpenError;
 use super::locks::SCHEMA;
 
 /// What makes version `n + 1` out of version `n`.
-struct Step {
+struct SchemaMigration {
     sql: &'static str,
     /// The oldest version whose programs work with the tables after this step: a step adds what older programs do not see,
     /// and a later one, when none of them runs any more, takes away what they needed.
@@ -15,9 +15,9 @@ struct Step {
 }
 
 /// Steps are added, never changed.
-const STEPS: &[Step] = &[
-    Step { sql: include_str!("schema.sql"), oldest: 1 },
-    Step { sql: include_str!("uploads.sql"), oldest: 1 },
+const STEPS: &[SchemaMigration] = &[
+    SchemaMigration { sql: include_str!("schema.sql"), oldest: 1 },
+    SchemaMigration { sql: include_str!("uploads.sql"), oldest: 1 },
 ];
 
 /// The SQL of each step and the oldest version whose programs work after it.
@@ -27,14 +27,14 @@ pub(in crate::jobs) fn schema_steps() -> impl Iterator<Item = (&'static str, i64
 }
 
 /// Brings the tables to the newest version, all steps or none.
-pub(super) async fn migrate(client: &Client) -> Result<(), OpenError> {
+pub(super) async fn migrate(client: &Client) -> Result<(), PostgresOpenError> {
     client.batch_execute("BEGIN").await?;
     let migrated = migrate_within(client).await;
     let end = if migrated.is_ok() { "COMMIT" } else { "ROLLBACK" };
-    client.batch_execute(end).await.map_err(OpenError::from).and(migrated)
+    client.batch_execute(end).await.map_err(PostgresOpenError::from).and(migrated)
 }
 
-async fn migrate_within(client: &Client) -> Result<(), OpenError> {
+async fn migrate_within(client: &Client) -> Result<(), PostgresOpenError> {
     let known = i64::try_from(STEPS.len()).unwrap_or(i64::MAX);
     client.execute("SELECT pg_advisory_xact_lock($1, 0)", &[&SCHEMA]).await?;
     let has_versions = client.query_one("SELECT to_regclass('versions') IS NOT NULL", &[]).await?;
@@ -49,7 +49,7 @@ async fn migrate_within(client: &Client) -> Result<(), OpenError> {
         (0, 0)
     };
     if oldest > known {
-        return Err(OpenError::TooNew { found, oldest, known });
+        return Err(PostgresOpenError::TooNew { found, oldest, known });
     }
     for (number, step) in (1..).zip(STEPS).skip_while(|&(number, _)| number <= found) {
         let number: i64 = number;

@@ -11,9 +11,9 @@ use super::failure;
 use crate::jobs::store::StoreError;
 
 /// Values of a statement.
-pub(super) type Values<'v> = &'v [&'v (dyn ToSql + Sync)];
+pub(super) type StatementValues<'v> = &'v [&'v (dyn ToSql + Sync)];
 /// What is done in a transaction, or beside one.
-pub(super) type Body<'s, T> = Pin<Box<dyn Future<Output = Result<T, StoreError>> + Send + 's>>;
+pub(super) type TransactionFuture<'s, T> = Pin<Box<dyn Future<Output = Result<T, StoreError>> + Send + 's>>;
 
 /// Longest time for a whole call: longer than any statement or wait for a lock may take.
 const CALL_MAX: Duration = Duration::from_secs(40);
@@ -29,7 +29,7 @@ impl Session {
     /// Looks into the tables.
     pub(super) async fn look<T>(
         pool: &Pool,
-        body: impl for<'s> FnOnce(&'s Self) -> Body<'s, T>,
+        body: impl for<'s> FnOnce(&'s Self) -> TransactionFuture<'s, T>,
     ) -> Result<T, StoreError> {
         let looking = async {
             let client = connection(pool).await?;
@@ -41,7 +41,7 @@ impl Session {
     /// Makes a change, all of it or nothing.
     pub(super) async fn transact<T>(
         pool: &Pool,
-        body: impl for<'s> FnOnce(&'s Self) -> Body<'s, T>,
+        body: impl for<'s> FnOnce(&'s Self) -> TransactionFuture<'s, T>,
     ) -> Result<T, StoreError> {
         let mut open = Open(None);
         let changing = async {
@@ -73,24 +73,28 @@ impl Session {
     }
 
     /// Every row.
-    pub(super) async fn rows(&self, sql: &str, values: Values<'_>) -> Result<Vec<Row>, StoreError> {
+    pub(super) async fn rows(&self, sql: &str, values: StatementValues<'_>) -> Result<Vec<Row>, StoreError> {
         let rows = async { self.client.query(&self.client.prepare_cached(sql).await?, values).await };
         rows.await.map_err(|error| failure(&error))
     }
 
     /// The one row, if there is one.
-    pub(super) async fn row_if_any(&self, sql: &str, values: Values<'_>) -> Result<Option<Row>, StoreError> {
+    pub(super) async fn row_if_any(
+        &self,
+        sql: &str,
+        values: StatementValues<'_>,
+    ) -> Result<Option<Row>, StoreError> {
         let row = async { self.client.query_opt(&self.client.prepare_cached(sql).await?, values).await };
         row.await.map_err(|error| failure(&error))
     }
 
     /// The one row; [`StoreError::NotFound`] when there is none.
-    pub(super) async fn row(&self, sql: &str, values: Values<'_>) -> Result<Row, StoreError> {
+    pub(super) async fn row(&self, sql: &str, values: StatementValues<'_>) -> Result<Row, StoreError> {
         self.row_if_any(sql, values).await?.ok_or(StoreError::NotFound)
     }
 
     /// How many rows were changed.
-    pub(super) async fn change(&self, sql: &str, values: Values<'_>) -> Result<u64, StoreError> {
+    pub(super) async fn change(&self, sql: &str, values: StatementValues<'_>) -> Result<u64, StoreError> {
         let changed = async { self.client.execute(&self.client.prepare_cached(sql).await?, values).await };
         changed.await.map_err(|error| failure(&error))
     }

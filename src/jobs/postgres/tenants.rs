@@ -5,7 +5,7 @@ use super::locks;
 use super::rows::{id as id_of, lane, number, number_of, value};
 use super::session::Session;
 use super::uploads;
-use crate::jobs::store::{ClaimRequest, Holding, JobId, Kept, Lane, StoreError, Tenant};
+use crate::jobs::store::{ClaimRequest, EndedJobs, Holding, JobId, Lane, StoreError, Tenant};
 
 /// Refuses when the tenant has as many jobs in the queue as there are `free` places.
 pub(super) async fn check_share(session: &Session, tenant: &Tenant, free: usize) -> Result<(), StoreError> {
@@ -115,12 +115,12 @@ pub(super) async fn take(
 /// The ended job that makes room for one of `asker`.
 pub(super) async fn first_to_go(
     session: &Session,
-    kept: Kept,
+    kept: EndedJobs,
     asker: Tenant,
 ) -> Result<Option<JobId>, StoreError> {
     let what = match kept {
-        Kept::WithFiles => "sum(file_bytes)",
-        Kept::Any => "count(*)",
+        EndedJobs::WithFiles => "sum(file_bytes)",
+        EndedJobs::Any => "count(*)",
     };
     let held = format!("WITH held AS (SELECT tenant, {what} AS n FROM jobs GROUP BY tenant)");
     let sql = format!(
@@ -149,14 +149,14 @@ pub(super) async fn first_to_go(
 /// The ended job of a tenant that is to go first.
 pub(super) async fn first_to_go_of(
     session: &Session,
-    kept: Kept,
+    kept: EndedJobs,
     tenant: &Tenant,
 ) -> Result<Option<JobId>, StoreError> {
     let statements = match kept {
         // Webhooks stay with their row.
-        Kept::WithFiles => &["SELECT id FROM jobs
+        EndedJobs::WithFiles => &["SELECT id FROM jobs
              WHERE tenant = $1 AND finished_at IS NOT NULL AND state <> 'expired' ORDER BY finished_at, id LIMIT 1"][..],
-        Kept::Any => &[
+        EndedJobs::Any => &[
             "SELECT id FROM jobs AS own
              WHERE tenant = $1 AND finished_at IS NOT NULL AND NOT EXISTS
                  (SELECT 1 FROM deliveries WHERE deliveries.job = own.id AND next_at IS NOT NULL)

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use rusqlite::Connection;
 use rusqlite::types::ValueRef;
 
-use super::schema::{self, OpenError};
-use crate::jobs::store::tables::{Cells, Column, Table};
+use super::schema::{self, SqliteOpenError};
+use crate::jobs::store::tables::{Column, ColumnTexts, Table};
 use crate::jobs::store::{BlobRef, StoreError};
 
 /// What stands beside the file of a store while it is used, or after its server was killed.
@@ -22,14 +22,14 @@ pub(in crate::jobs) struct Export {
 impl Export {
     /// Opens a copy, in `folder`, of the store at `path`, which stays as it is, also where it is of an older version or its
     /// server was killed. Nobody may write to it meanwhile. Blocks.
-    pub(in crate::jobs) fn of_copy(path: &Path, folder: &Path) -> Result<Self, OpenError> {
+    pub(in crate::jobs) fn of_copy(path: &Path, folder: &Path) -> Result<Self, SqliteOpenError> {
         let copy = folder.join("rows");
         for suffix in ["", LOG_SUFFIX] {
             let (from, to) = (with_suffix(path, suffix), with_suffix(&copy, suffix));
             match fs::copy(&from, &to) {
                 Ok(_) => {}
                 Err(error) if error.kind() == std::io::ErrorKind::NotFound && !suffix.is_empty() => {}
-                Err(error) => return Err(OpenError::File(error)),
+                Err(error) => return Err(SqliteOpenError::File(error)),
             }
         }
         let mut connection = Connection::open(copy)?;
@@ -49,7 +49,7 @@ impl Export {
     pub(in crate::jobs) fn rows(
         &self,
         table: &Table,
-        mut take: impl FnMut(Cells) -> bool,
+        mut take: impl FnMut(ColumnTexts) -> bool,
     ) -> Result<(), StoreError> {
         let mut list = String::new();
         for (number, column) in table.columns.iter().enumerate() {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use rusqlite::{Connection, OpenFlags, OptionalExtension as _};
 
-use super::schema::OpenError;
+use super::schema::SqliteOpenError;
 
 /// What a file is as a store.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -17,8 +17,8 @@ pub enum StoreFile {
     Marked(String),
 }
 
-pub(super) fn look_at(path: &Path) -> Result<StoreFile, OpenError> {
-    if !path.try_exists().map_err(OpenError::File)? {
+pub(super) fn look_at(path: &Path) -> Result<StoreFile, SqliteOpenError> {
+    if !path.try_exists().map_err(SqliteOpenError::File)? {
         return Ok(StoreFile::Empty);
     }
     // Not to read only: what a killed server left beside the file is taken in.
@@ -34,14 +34,14 @@ pub(super) fn look_at(path: &Path) -> Result<StoreFile, OpenError> {
 }
 
 /// Whether there is such a table, which an older program may not have made.
-fn has_table(connection: &Connection, name: &str) -> Result<bool, OpenError> {
+fn has_table(connection: &Connection, name: &str) -> Result<bool, SqliteOpenError> {
     let mut statement =
         connection.prepare("SELECT 1 FROM sqlite_schema WHERE type = 'table' AND name = ?1")?;
     Ok(statement.exists([name])?)
 }
 
 /// Whether a row of the store at `path` names one of these files.
-pub(super) fn names_any(path: &Path, keys: &[&str]) -> Result<bool, OpenError> {
+pub(super) fn names_any(path: &Path, keys: &[&str]) -> Result<bool, SqliteOpenError> {
     let connection = Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_WRITE)?;
     for table in ["names", "pieces"] {
         if !has_table(&connection, table)? {
@@ -57,7 +57,7 @@ pub(super) fn names_any(path: &Path, keys: &[&str]) -> Result<bool, OpenError> {
     Ok(false)
 }
 
-pub(super) fn set_mark(path: &Path, mark: &str) -> Result<(), OpenError> {
+pub(super) fn set_mark(path: &Path, mark: &str) -> Result<(), SqliteOpenError> {
     let connection = Connection::open(path)?;
     connection.execute_batch("BEGIN IMMEDIATE; DELETE FROM identity")?;
     connection.execute("INSERT INTO identity VALUES (?1)", [mark])?;

@@ -29,15 +29,15 @@ use jiff::Timestamp;
 use rusqlite::{Connection, ErrorCode, OpenFlags};
 
 use super::store::{
-    AfterLoss, BlobRef, ClaimRef, ClaimRequest, Created, Delivery, DeliveryRequest, Ending, Holding,
-    IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Kept, Leases, ListQuery, NewJob, NextTry, Sealer,
+    AfterLoss, BlobRef, ClaimRef, ClaimRequest, Created, Delivery, DeliveryRequest, EndedJobs, Ending,
+    Holding, IdempotencyKey, JobCounts, JobId, JobRow, JobStore, Leases, ListQuery, NewJob, NextTry, Sealer,
     StateChange, StoreError, StoreFuture, Tenant, TryOutcome,
 };
 use crate::wire::Problem;
 pub(super) use export::Export;
 pub use identity::StoreFile;
-pub use schema::OpenError;
-use writer::Writer;
+pub use schema::SqliteOpenError;
+use writer::WriterHandle;
 
 /// Time for which a connection waits for another process that looks into the file.
 const BUSY_PATIENCE: Duration = Duration::from_secs(5);
@@ -61,7 +61,7 @@ pub struct SqliteStore {
 struct Connections {
     // Dropped in this order.
     readers: Readers,
-    writer: Writer,
+    writer: WriterHandle,
 }
 
 impl fmt::Debug for SqliteStore {
@@ -76,7 +76,7 @@ impl SqliteStore {
     ///
     /// # Errors
     /// The file cannot be used, or a newer program made it.
-    pub fn open(path: &Path) -> Result<Self, OpenError> {
+    pub fn open(path: &Path) -> Result<Self, SqliteOpenError> {
         let connection = connect(path)?;
         claims::end_leases(&connection)?;
         Self::over(path, connection, Arc::new(wall::now_ms), Arc::new(wall::even_ms))
@@ -86,7 +86,7 @@ impl SqliteStore {
     ///
     /// # Errors
     /// As [`open`](Self::open).
-    pub fn open_with(path: &Path, clock: StoreClock) -> Result<Self, OpenError> {
+    pub fn open_with(path: &Path, clock: StoreClock) -> Result<Self, SqliteOpenError> {
         Self::over(path, connect(path)?, Arc::clone(&clock), clock)
     }
 
@@ -95,8 +95,8 @@ impl SqliteStore {
         connection: Connection,
         clock: StoreClock,
         lease_clock: StoreClock,
-    ) -> Result<Self, OpenError> {
-        let writer = Writer::start(connection)
+    ) -> Result<Self, SqliteOpenError> {
+        let writer = WriterHandle::start(connection)
             .map_err(|error| rusqlite::Error::ToSqlConversionFailure(Box::new(error)))?;
         let readers = Readers { path: path.to_owned(), idle: Mutex::default() };
         Ok(Self { clock, lease_clock, connections: Arc::new(Connections { readers, writer }) })
@@ -106,7 +106,7 @@ impl SqliteStore {
     ///
     /// # Errors
     /// It cannot be read.
-    pub fn look_at(path: &Path) -> Result<StoreFile, OpenError> {
+    pub fn look_at(path: &Path) -> Result<StoreFile, SqliteOpenError> {
         identity::look_at(path)
     }
 
@@ -114,7 +114,7 @@ impl SqliteStore {
     ///
     /// # Errors
     /// It cannot be read.
-    pub fn names_any(path: &Path, keys: &[&str]) -> Result<bool, OpenError> {
+    pub fn names_any(path: &Path, keys: &[&str]) -> Result<bool, SqliteOpenError> {
         identity::names_any(path, keys)
     }
 
@@ -122,7 +122,7 @@ impl SqliteStore {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn set_mark(path: &Path, mark: &str) -> Result<(), OpenError> {
+    pub fn set_mark(path: &Path, mark: &str) -> Result<(), SqliteOpenError> {
         identity::set_mark(path, mark)
     }
 
@@ -188,7 +188,7 @@ impl Readers {
 }
 
 /// The connection that writes, to a file of this version.
-fn connect(path: &Path) -> Result<Connection, OpenError> {
+fn connect(path: &Path) -> Result<Connection, SqliteOpenError> {
     make_private(path)?;
     let mut connection = Connection::open(path)?;
     connection.busy_timeout(BUSY_PATIENCE)?;
@@ -201,8 +201,9 @@ fn connect(path: &Path) -> Result<Connection, OpenError> {
 }
 
 /// Makes the file for this user alone, if there is none; SQLite gives the files beside it the same rights.
-fn make_private(path: &Path) -> Result<(), OpenError> {
-    let file = File::options().create(true).append(true).mode(0o600).open(path).map_err(OpenError::File)?;
+fn make_private(path: &Path) -> Result<(), SqliteOpenError> {
+    let file =
+        File::options().create(true).append(true).mode(0o600).open(path).map_err(SqliteOpenError::File)?;
     // The file of another user, who lets this one write, stays as it is.
     let _ = file.set_permissions(Permissions::from_mode(0o600));
     Ok(())
@@ -337,11 +338,11 @@ impl JobStore for SqliteStore {
         self.read(keeping::due)
     }
 
-    fn first_to_go(&self, kept: Kept, asker: Tenant) -> StoreFuture<'_, Option<JobId>> {
+    fn first_to_go(&self, kept: EndedJobs, asker: Tenant) -> StoreFuture<'_, Option<JobId>> {
         self.read(move |connection, _| tenants::first_to_go(connection, kept, &asker))
     }
 
-    fn first_to_go_of(&self, kept: Kept, tenant: Tenant) -> StoreFuture<'_, Option<JobId>> {
+    fn first_to_go_of(&self, kept: EndedJobs, tenant: Tenant) -> StoreFuture<'_, Option<JobId>> {
         self.read(move |connection, _| tenants::first_to_go_of(connection, kept, &tenant))
     }
 

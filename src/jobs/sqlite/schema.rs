@@ -121,7 +121,7 @@ const MIGRATIONS: &[&str] = &[
 
 /// A file that cannot be used.
 #[derive(Debug, thiserror::Error)]
-pub enum OpenError {
+pub enum SqliteOpenError {
     /// SQLite says why.
     #[error(transparent)]
     Sqlite(#[from] rusqlite::Error),
@@ -139,13 +139,13 @@ pub enum OpenError {
 }
 
 /// Brings the file to the newest version, all steps or none.
-pub(super) fn migrate(connection: &mut Connection) -> Result<(), OpenError> {
+pub(super) fn migrate(connection: &mut Connection) -> Result<(), SqliteOpenError> {
     let known = MIGRATIONS.len();
     let transaction = connection.transaction()?;
     let found: i64 = transaction.pragma_query_value(None, "user_version", |row| row.get(0))?;
     let found = usize::try_from(found).unwrap_or_default();
     if found > known {
-        return Err(OpenError::TooNew { found, known });
+        return Err(SqliteOpenError::TooNew { found, known });
     }
     if found == known {
         // Nothing is written: also a full disk lets a server start.
@@ -203,6 +203,6 @@ mod tests {
         let mut connection = Connection::open_in_memory().unwrap();
         connection.pragma_update(None, "user_version", 1000).unwrap();
         let error = migrate(&mut connection).unwrap_err();
-        assert!(matches!(error, OpenError::TooNew { found: 1000, .. }), "{error}");
+        assert!(matches!(error, SqliteOpenError::TooNew { found: 1000, .. }), "{error}");
     }
 }

@@ -4,7 +4,7 @@ use rusqlite::{Connection, OptionalExtension as _, params};
 
 use super::rows::{number_of, parsed};
 use super::uploads;
-use crate::jobs::store::{ClaimRequest, Holding, JobId, Kept, Lane, StoreError, Tenant};
+use crate::jobs::store::{ClaimRequest, EndedJobs, Holding, JobId, Lane, StoreError, Tenant};
 
 /// Refuses when the tenant has as many jobs in the queue as there are `free` places.
 pub(super) fn check_share(connection: &Connection, tenant: &Tenant, free: usize) -> Result<(), StoreError> {
@@ -88,17 +88,17 @@ pub(super) fn next_job(connection: &Connection, request: &ClaimRequest) -> Resul
 /// The ended job that makes room for one of `asker`.
 pub(super) fn first_to_go(
     connection: &Connection,
-    kept: Kept,
+    kept: EndedJobs,
     asker: &Tenant,
 ) -> Result<Option<JobId>, StoreError> {
     let (has_share, over_share) = match kept {
-        Kept::WithFiles => (
+        EndedJobs::WithFiles => (
             "SELECT bytes * (SELECT count(*) FROM holdings) >= (SELECT sum(bytes) FROM holdings)
              FROM holdings WHERE tenant = ?1",
             "SELECT tenant FROM holdings WHERE bytes * (SELECT count(*) FROM holdings) > (SELECT sum(bytes) FROM holdings)
              ORDER BY bytes DESC, tenant",
         ),
-        Kept::Any => (
+        EndedJobs::Any => (
             "SELECT jobs * (SELECT count(*) FROM holdings) >= (SELECT sum(jobs) FROM holdings)
              FROM holdings WHERE tenant = ?1",
             "SELECT tenant FROM holdings WHERE jobs * (SELECT count(*) FROM holdings) > (SELECT sum(jobs) FROM holdings)
@@ -126,14 +126,14 @@ pub(super) fn first_to_go(
 /// The ended job of a tenant that is to go first.
 pub(super) fn first_to_go_of(
     connection: &Connection,
-    kept: Kept,
+    kept: EndedJobs,
     tenant: &Tenant,
 ) -> Result<Option<JobId>, StoreError> {
     let statements = match kept {
         // Webhooks stay with their row.
-        Kept::WithFiles => &["SELECT id FROM jobs INDEXED BY jobs_with_files_by_tenant
+        EndedJobs::WithFiles => &["SELECT id FROM jobs INDEXED BY jobs_with_files_by_tenant
              WHERE tenant = ?1 AND finished_at IS NOT NULL AND state <> 'expired' ORDER BY finished_at, id LIMIT 1"][..],
-        Kept::Any => &[
+        EndedJobs::Any => &[
             "SELECT id FROM jobs AS own INDEXED BY jobs_ended_by_tenant
              WHERE tenant = ?1 AND finished_at IS NOT NULL AND NOT EXISTS
                  (SELECT 1 FROM deliveries WHERE deliveries.job = own.id AND next_at IS NOT NULL)

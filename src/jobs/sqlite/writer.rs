@@ -17,15 +17,15 @@ const TOGETHER_MAX: usize = 64;
 const WAITING_MAX: usize = 1024;
 
 /// A change, told whether there is a transaction to make it in.
-type Change = Box<dyn FnOnce(Result<&Connection, StoreError>) -> Answer + Send>;
+type WriteRequest = Box<dyn FnOnce(Result<&Connection, StoreError>) -> CommitReply + Send>;
 /// Gives the answer, once it is known whether the transaction is durable.
-type Answer = Box<dyn FnOnce(Result<(), StoreError>)>;
+type CommitReply = Box<dyn FnOnce(Result<(), StoreError>)>;
 
 /// The way to the thread, which ends when this is dropped.
 #[derive(Debug)]
-pub(super) struct Writer(mpsc::Sender<Change>);
+pub(super) struct WriterHandle(mpsc::Sender<WriteRequest>);
 
-impl Writer {
+impl WriterHandle {
     /// Starts the thread.
     pub(super) fn start(connection: Connection) -> std::io::Result<Self> {
         let (send, receive) = mpsc::channel(WAITING_MAX);
@@ -39,7 +39,7 @@ impl Writer {
         body: impl FnOnce(&Connection) -> Result<T, StoreError> + Send + 'static,
     ) -> StoreFuture<'_, T> {
         let (tell, told) = oneshot::channel();
-        let change: Change = Box::new(move |connection| {
+        let change: WriteRequest = Box::new(move |connection| {
             let result = connection.and_then(|connection| in_savepoint(connection, body));
             // Nobody may wait for the answer any more.
             Box::new(move |committed| drop(tell.send(committed.and(result))))
@@ -54,7 +54,7 @@ impl Writer {
 
 /// Makes changes until nobody can ask for more.
 #[allow(clippy::needless_pass_by_value, reason = "the thread owns both")]
-fn serve(connection: Connection, mut changes: mpsc::Receiver<Change>) {
+fn serve(connection: Connection, mut changes: mpsc::Receiver<WriteRequest>) {
     while let Some(first) = changes.blocking_recv() {
         let begun = connection.execute_batch("BEGIN IMMEDIATE").map_err(|error| failure(&error));
         let mut answers = Vec::new();
@@ -105,10 +105,10 @@ fn undo(connection: &Connection) {
 mod tests {
     use super::*;
 
-    fn counter() -> Writer {
+    fn counter() -> WriterHandle {
         let connection = Connection::open_in_memory().unwrap();
         connection.execute_batch("CREATE TABLE n (n INTEGER PRIMARY KEY)").unwrap();
-        Writer::start(connection).unwrap()
+        WriterHandle::start(connection).unwrap()
     }
 
     fn insert(connection: &Connection, number: i64) -> Result<(), StoreError> {
@@ -116,7 +116,7 @@ mod tests {
         Ok(())
     }
 
-    async fn numbers(writer: &Writer) -> i64 {
+    async fn numbers(writer: &WriterHandle) -> i64 {
         let count = |connection: &Connection| {
             Ok(connection.query_row("SELECT count(*) FROM n", [], |row| row.get(0))?)
         };

@@ -134,7 +134,7 @@ pub enum Leases {
 
 /// Which ended jobs are meant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kept {
+pub enum EndedJobs {
     /// Those that still keep files.
     WithFiles,
     /// Those, and the expired ones.
@@ -274,10 +274,10 @@ pub trait JobStore: UploadStore {
     /// has its share (the same for all tenants) or more, otherwise of the tenant that has most: nobody loses what is within
     /// its share to others. By number of jobs, or of bytes when only jobs with files are meant. Jobs whose webhook is still
     /// to be sent come last.
-    fn first_to_go(&self, kept: Kept, asker: Tenant) -> StoreFuture<'_, Option<JobId>>;
+    fn first_to_go(&self, kept: EndedJobs, asker: Tenant) -> StoreFuture<'_, Option<JobId>>;
 
     /// The ended job of this tenant that is to go first.
-    fn first_to_go_of(&self, kept: Kept, tenant: Tenant) -> StoreFuture<'_, Option<JobId>>;
+    fn first_to_go_of(&self, kept: EndedJobs, tenant: Tenant) -> StoreFuture<'_, Option<JobId>>;
 
     /// Those of the claims by which a job runs now.
     fn current(&self, claims: Vec<ClaimRef>) -> StoreFuture<'_, HashSet<ClaimRef>>;

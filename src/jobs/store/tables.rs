@@ -47,7 +47,7 @@ pub(in crate::jobs) struct Table {
 }
 
 /// A row on its way: a text for each column of its table, where there is a value.
-pub(in crate::jobs) type Cells = Vec<Option<String>>;
+pub(in crate::jobs) type ColumnTexts = Vec<Option<String>>;
 
 use Column::{Bytes, Flag, Id, Number, Quoted, Small, Text, Wide};
 

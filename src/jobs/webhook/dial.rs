@@ -33,7 +33,7 @@ pub(super) struct Dialer {
 
 /// A message to deliver.
 #[derive(Debug)]
-pub(super) struct Message {
+pub(super) struct SignedMessage {
     pub(super) id: String,
     pub(super) timestamp: i64,
     pub(super) signature: String,
@@ -79,7 +79,7 @@ impl Dialer {
     ///
     /// # Errors
     /// Why there was no answer, in words that name no address.
-    pub(super) async fn call(&self, target: &WebhookTarget, message: Message) -> Result<Reply, String> {
+    pub(super) async fn call(&self, target: &WebhookTarget, message: SignedMessage) -> Result<Reply, String> {
         let client = if target.is_private() { &self.private } else { &self.public };
         let request = client
             .post(target.url().clone())
@@ -154,8 +154,8 @@ mod tests {
 
     const PATIENCE: Duration = Duration::from_secs(20);
 
-    fn message() -> Message {
-        Message { id: "msg_1".into(), timestamp: 7, signature: "v1,x".into(), payload: b"{}".to_vec() }
+    fn message() -> SignedMessage {
+        SignedMessage { id: "msg_1".into(), timestamp: 7, signature: "v1,x".into(), payload: b"{}".to_vec() }
     }
 
     fn lookup(addresses: &[&str]) -> Lookup {

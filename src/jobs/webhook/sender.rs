@@ -8,7 +8,7 @@ use jiff::Timestamp;
 use tokio::task::JoinSet;
 use tokio_util::sync::CancellationToken;
 
-use super::dial::{Dialer, Message};
+use super::dial::{Dialer, SignedMessage};
 use super::retry::{Next, RetryPlan};
 use super::settings::WebhookSettings;
 use super::signature::{self, WebhookSecret};
@@ -125,7 +125,9 @@ impl Sender {
         let payload = payload(row, delivery.created_at)?;
         let timestamp = Timestamp::now().as_second();
         let signature = signature::signatures(&secrets, &delivery.id, timestamp, &payload);
-        self.dialer.call(&target, Message { id: delivery.id.clone(), timestamp, signature, payload }).await
+        self.dialer
+            .call(&target, SignedMessage { id: delivery.id.clone(), timestamp, signature, payload })
+            .await
     }
 
     fn secrets(&self, webhook: &Webhook) -> Result<Vec<WebhookSecret>, String> {

@@ -1,6 +1,6 @@
 //! Edge collapse under the full link condition, on rings that are already walked.
 
-use super::{CornerTable, EdgeRings, NONE, Ring, next, prev, triangle_of};
+use super::{CornerTable, EdgeRings, NONE, VertexRing, next, prev, triangle_of};
 
 /// Why an edge may not be collapsed; as [`CollapseRefusal`](crate::mesh::half_edge::CollapseRefusal).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -44,7 +44,7 @@ impl CornerTable {
             return Err(LinkRefusal::CommonNeighbour);
         }
         // A face of one end on the two apexes closes its star with the two faces of the edge: three in all.
-        let is_triple = |ring: &Ring| ring.corners.len() == 3 && !ring.is_boundary;
+        let is_triple = |ring: &VertexRing| ring.corners.len() == 3 && !ring.is_boundary;
         if twin != NONE && is_triple(origin) && is_triple(destination) {
             return Err(LinkRefusal::Tetrahedron);
         }

@@ -12,7 +12,7 @@ mod part;
 mod ring;
 
 pub use collapse::LinkRefusal;
-pub use ring::{EdgeRings, Ring};
+pub use ring::{EdgeRings, VertexRing};
 
 /// In the place of a half-edge or a vertex that is not there.
 pub const NONE: u32 = u32::MAX;

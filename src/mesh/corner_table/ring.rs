@@ -4,7 +4,7 @@ use super::{CornerTable, NONE, next, prev};
 
 /// What is around one vertex.
 #[derive(Debug, Clone, Default)]
-pub struct Ring {
+pub struct VertexRing {
     /// The half-edges of triangles that leave the vertex, counter-clockwise from the one the walk began with; at a
     /// boundary those clockwise of it follow, clockwise.
     pub corners: Vec<u32>,
@@ -19,12 +19,12 @@ pub struct Ring {
 #[derive(Debug, Clone, Default)]
 pub struct EdgeRings {
     /// Around the origin; begins with the half-edge itself.
-    pub origin: Ring,
+    pub origin: VertexRing,
     /// Around the destination; begins with the half-edge after it.
-    pub destination: Ring,
+    pub destination: VertexRing,
 }
 
-impl Ring {
+impl VertexRing {
     /// Fills in what is around the origin of `h`.
     #[inline]
     pub fn walk(&mut self, table: &CornerTable, h: u32) {
@@ -71,7 +71,7 @@ impl EdgeRings {
 }
 
 impl CornerTable {
-    /// The half-edges of triangles that leave the origin of `h`, in the order of [`Ring::corners`].
+    /// The half-edges of triangles that leave the origin of `h`, in the order of [`VertexRing::corners`].
     pub fn fan(&self, h: u32) -> impl Iterator<Item = u32> {
         let mut is_clockwise = false;
         std::iter::successors(Some(h), move |&corner| {
@@ -100,7 +100,7 @@ mod tests {
             [&[[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]], &[[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]];
         for list in lists {
             let table = CornerTable::build(list, 6, &Budget::unlimited()).unwrap();
-            let mut ring = Ring::default();
+            let mut ring = VertexRing::default();
             for h in table.half_edges() {
                 ring.walk(&table, h);
                 assert_eq!(ring.corners, table.fan(h).collect::<Vec<_>>());

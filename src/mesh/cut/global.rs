@@ -1,13 +1,13 @@
 //! The global cut: all corners start apart and are united across every edge that is not marked.
 
-use super::Marks;
+use super::CutMarks;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::mesh::{NO_TWIN, UnionFind, next_corner};
 
 pub(super) fn cut(
     triangles: &mut [[u32; 3]],
     vertex_count: usize,
-    marks: &Marks,
+    marks: &CutMarks,
     budget: &Budget,
 ) -> Result<Vec<u32>, Stopped> {
     let _charge = budget.charge(triangles.len() as u64 * 3 * 8)?;

@@ -1,13 +1,13 @@
 //! The local cut: the star of each vertex with more than one fan is taken apart, and nothing else is looked at.
 
-use super::Marks;
+use super::CutMarks;
 use crate::budget::{Budget, Stopped};
 use crate::mesh::Fan;
 
 pub(super) fn cut(
     triangles: &mut [[u32; 3]],
     vertex_count: usize,
-    marks: &Marks,
+    marks: &CutMarks,
     budget: &Budget,
 ) -> Result<Vec<u32>, Stopped> {
     let _charge = budget.charge(marks.corner_count() as u64 * 8)?;

@@ -6,7 +6,7 @@ use crate::mesh::{EdgeGroups, NO_TWIN, edge_of, singular_vertices};
 
 /// The edges of a triangle list across which a cut goes, and the stars that come apart by it.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Marks {
+pub struct CutMarks {
     /// Edges with more than two triangles.
     pub singular_edges: u64,
     /// Edges whose two triangles run in the same direction.
@@ -15,7 +15,7 @@ pub struct Marks {
     pub chosen_edges: u64,
     /// Vertices with more than one fan at which no marked edge ends.
     pub isolated_vertices: u64,
-    /// Across the edges that stay: see [`Marks::twins`].
+    /// Across the edges that stay: see [`CutMarks::twins`].
     twins: Vec<u32>,
     /// Vertices with more than one fan, ascending.
     vertices: Vec<u32>,
@@ -25,7 +25,7 @@ pub struct Marks {
     corners: Vec<u32>,
 }
 
-impl Marks {
+impl CutMarks {
     /// Marks the edges of `triangles` that have more than two triangles, those with two in the same direction, and the
     /// `chosen` ones, of which those that are not there are passed over. No triangle may have a repeated vertex.
     ///

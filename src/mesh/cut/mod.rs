@@ -11,7 +11,7 @@ mod local;
 mod marks;
 
 pub use chosen::ChosenEdges;
-pub use marks::Marks;
+pub use marks::CutMarks;
 
 use super::EdgeGroups;
 use crate::budget::{Budget, Stopped};
@@ -28,7 +28,7 @@ pub enum CutMethod {
 impl CutMethod {
     /// The method that costs less for these marks. The global one has to go through all corners whatever is marked, so
     /// the local one wins unless a large share of the corners is at singular vertices.
-    pub fn cheaper(marks: &Marks, triangle_count: usize) -> Self {
+    pub fn cheaper(marks: &CutMarks, triangle_count: usize) -> Self {
         let is_local = marks.corner_count() * LOCAL_OF <= triangle_count * 3 * LOCAL_MAX;
         if is_local { Self::Local } else { Self::Global }
     }
@@ -43,7 +43,7 @@ const LOCAL_OF: usize = 3;
 
 /// What [`cut_singular`] did.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Cut {
+pub struct CutResult {
     /// For each new vertex, numbered from the old vertex count on, the old vertex of which it is a copy.
     pub copies: Vec<u32>,
     /// Edges with more than two triangles, or with two in the same direction.
@@ -65,13 +65,13 @@ pub fn cut_singular(
     triangles: &mut [[u32; 3]],
     vertex_count: usize,
     budget: &Budget,
-) -> Result<Cut, Stopped> {
+) -> Result<CutResult, Stopped> {
     let groups = EdgeGroups::build(triangles, vertex_count, budget)?;
-    let marks = Marks::find(triangles, vertex_count, &groups, &ChosenEdges::default(), budget)?;
+    let marks = CutMarks::find(triangles, vertex_count, &groups, &ChosenEdges::default(), budget)?;
     drop(groups);
     let method = CutMethod::cheaper(&marks, triangles.len());
     let copies = cut(triangles, vertex_count, &marks, method, budget)?;
-    Ok(Cut { copies, singular_edges: marks.singular_edges + marks.conflicting_edges })
+    Ok(CutResult { copies, singular_edges: marks.singular_edges + marks.conflicting_edges })
 }
 
 /// Cuts `triangles` at the `marks` that were found in them. Of the fans that are left around a vertex, the one with the
@@ -83,7 +83,7 @@ pub fn cut_singular(
 pub fn cut(
     triangles: &mut [[u32; 3]],
     vertex_count: usize,
-    marks: &Marks,
+    marks: &CutMarks,
     method: CutMethod,
     budget: &Budget,
 ) -> Result<Vec<u32>, Stopped> {
@@ -107,7 +107,7 @@ mod tests {
         let mut after = triangles.to_vec();
         let groups = EdgeGroups::build(triangles, vertex_count, &budget).unwrap();
         let chosen = ChosenEdges::of(chosen.iter().copied());
-        let marks = Marks::find(triangles, vertex_count, &groups, &chosen, &budget).unwrap();
+        let marks = CutMarks::find(triangles, vertex_count, &groups, &chosen, &budget).unwrap();
         let copies = cut(&mut after, vertex_count, &marks, method, &budget).unwrap();
         (after, copies)
     }
@@ -163,11 +163,11 @@ mod tests {
         // A book of three pages on 0-1, a pair in one direction on 5-6, and 2 shared with a triangle of its own.
         let soup = [[0, 1, 2], [1, 0, 3], [0, 1, 4], [5, 6, 7], [5, 6, 8], [2, 9, 10]];
         let groups = EdgeGroups::build(&soup, 11, &budget).unwrap();
-        let marks = Marks::find(&soup, 11, &groups, &ChosenEdges::of([[2, 9]]), &budget).unwrap();
+        let marks = CutMarks::find(&soup, 11, &groups, &ChosenEdges::of([[2, 9]]), &budget).unwrap();
         assert_eq!((marks.singular_edges, marks.conflicting_edges, marks.chosen_edges), (1, 1, 1));
         assert_eq!(marks.vertices(), [0, 1, 2, 5, 6]);
         assert_eq!(marks.isolated_vertices, 0, "2 is the end of a chosen edge");
-        let marks = Marks::find(&soup, 11, &groups, &ChosenEdges::default(), &budget).unwrap();
+        let marks = CutMarks::find(&soup, 11, &groups, &ChosenEdges::default(), &budget).unwrap();
         assert_eq!((marks.chosen_edges, marks.isolated_vertices), (0, 1));
     }
 }

@@ -1,6 +1,6 @@
 //! The invariants of a half-edge mesh, as a function that names every breach.
 
-use super::fault::{Claims, FAULTS_MAX, Fault, FaultElement, Field};
+use super::fault::{Claims, FAULTS_MAX, Fault, FaultElement, ReferenceField};
 use super::{FaceId, HalfEdgeId, HalfEdgeMesh, VertexId};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 
@@ -30,28 +30,30 @@ impl HalfEdgeMesh {
         for h in self.half_edges() {
             faults.tick(h.index())?;
             let of = FaultElement::HalfEdge(h);
-            for (field, other) in
-                [(Field::Next, self.next(h)), (Field::Prev, self.prev(h)), (Field::Twin, self.twin(h))]
-            {
+            for (field, other) in [
+                (ReferenceField::Next, self.next(h)),
+                (ReferenceField::Prev, self.prev(h)),
+                (ReferenceField::Twin, self.twin(h)),
+            ] {
                 faults.require(self.contains(other), || Fault::OutOfRange { of, field });
             }
             let is_there = self.origin(h).index() < self.vertex_bound();
-            faults.require(is_there, || Fault::OutOfRange { of, field: Field::Origin });
+            faults.require(is_there, || Fault::OutOfRange { of, field: ReferenceField::Origin });
             let is_there =
                 self.face(h).is_none_or(|f| f.index() < self.face_bound() && self.side(f).is_some());
-            faults.require(is_there, || Fault::OutOfRange { of, field: Field::Face });
+            faults.require(is_there, || Fault::OutOfRange { of, field: ReferenceField::Face });
         }
         for (v, &h) in self.leaving.iter().enumerate() {
             faults.tick(v)?;
             let of = FaultElement::Vertex(VertexId::new(v));
             let is_there = h == HalfEdgeId::NONE || self.contains(h);
-            faults.require(is_there, || Fault::OutOfRange { of, field: Field::Leaving });
+            faults.require(is_there, || Fault::OutOfRange { of, field: ReferenceField::Leaving });
         }
         for (f, &h) in self.side.iter().enumerate() {
             faults.tick(f)?;
             let of = FaultElement::Face(FaceId::new(f));
             let is_there = h == HalfEdgeId::NONE || self.contains(h);
-            faults.require(is_there, || Fault::OutOfRange { of, field: Field::Side });
+            faults.require(is_there, || Fault::OutOfRange { of, field: ReferenceField::Side });
         }
         Ok(())
     }
@@ -198,27 +200,38 @@ mod tests {
     #[test]
     fn references_out_of_range_or_to_removed_elements() {
         let of_half_edge = |field| vec![Fault::OutOfRange { of: FaultElement::HalfEdge(h(5)), field }];
-        assert_eq!(planted(tetrahedron(), |m| m.next[5] = h(99)), of_half_edge(Field::Next));
-        assert_eq!(planted(tetrahedron(), |m| m.prev[5] = HalfEdgeId::NONE), of_half_edge(Field::Prev));
-        assert_eq!(planted(tetrahedron(), |m| m.twin[5] = h(12)), of_half_edge(Field::Twin));
-        assert_eq!(planted(tetrahedron(), |m| m.origin[5] = v(4)), of_half_edge(Field::Origin));
-        assert_eq!(planted(tetrahedron(), |m| m.face[5] = f(4)), of_half_edge(Field::Face));
+        assert_eq!(planted(tetrahedron(), |m| m.next[5] = h(99)), of_half_edge(ReferenceField::Next));
+        assert_eq!(
+            planted(tetrahedron(), |m| m.prev[5] = HalfEdgeId::NONE),
+            of_half_edge(ReferenceField::Prev)
+        );
+        assert_eq!(planted(tetrahedron(), |m| m.twin[5] = h(12)), of_half_edge(ReferenceField::Twin));
+        assert_eq!(planted(tetrahedron(), |m| m.origin[5] = v(4)), of_half_edge(ReferenceField::Origin));
+        assert_eq!(planted(tetrahedron(), |m| m.face[5] = f(4)), of_half_edge(ReferenceField::Face));
         let of = FaultElement::Vertex(v(2));
         assert_eq!(
             planted(tetrahedron(), |m| m.leaving[2] = h(12)),
-            [Fault::OutOfRange { of, field: Field::Leaving }]
+            [Fault::OutOfRange { of, field: ReferenceField::Leaving }]
         );
         let of = FaultElement::Face(f(3));
         assert_eq!(
             planted(tetrahedron(), |m| m.side[3] = h(12)),
-            [Fault::OutOfRange { of, field: Field::Side }]
+            [Fault::OutOfRange { of, field: ReferenceField::Side }]
         );
         let removed = planted(tetrahedron(), |m| m.remove_half_edge(h(5)));
         assert!(
-            removed.contains(&Fault::OutOfRange { of: FaultElement::HalfEdge(h(4)), field: Field::Next })
+            removed.contains(&Fault::OutOfRange {
+                of: FaultElement::HalfEdge(h(4)),
+                field: ReferenceField::Next
+            })
         );
         let gone = planted(tetrahedron(), |m| m.side[1] = HalfEdgeId::NONE);
-        assert!(gone.contains(&Fault::OutOfRange { of: FaultElement::HalfEdge(h(3)), field: Field::Face }));
+        assert!(
+            gone.contains(&Fault::OutOfRange {
+                of: FaultElement::HalfEdge(h(3)),
+                field: ReferenceField::Face
+            })
+        );
     }
 
     #[test]

@@ -29,7 +29,7 @@ pub enum FaultElement {
 
 /// What an element refers to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Field {
+pub enum ReferenceField {
     /// The half-edge after.
     Next,
     /// The half-edge before.
@@ -55,7 +55,7 @@ pub enum Fault {
         /// Whose reference.
         of: FaultElement,
         /// Which one.
-        field: Field,
+        field: ReferenceField,
     },
     /// A half-edge is its own twin.
     #[error("half-edge {} is its own twin", .half_edge.index())]

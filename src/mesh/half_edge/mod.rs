@@ -27,7 +27,7 @@ pub use build::BuildError;
 pub use collapse::{CollapseRefusal, Collapsed, SplitAt, SplitRefusal};
 pub use edge::FlipRefusal;
 pub use face::{MergeRefusal, SplitFaceRefusal};
-pub use fault::{Claims, FAULTS_MAX, Fault, FaultElement, Field};
+pub use fault::{Claims, FAULTS_MAX, Fault, FaultElement, ReferenceField};
 pub use handles::{FaceId, HalfEdgeId, VertexId};
 
 /// A manifold mesh of polygons, with or without boundary. See the module for the structure and

@@ -12,7 +12,7 @@ use crate::budget::{Budget, Stopped};
 
 /// When two boundary edges may be joined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Validity {
+pub enum StitchValidity {
     /// When the mesh is a manifold afterwards and no two faces have the same outline.
     #[default]
     Exact,
@@ -79,7 +79,7 @@ pub fn stitch(
     triangles: &mut [[u32; 3]],
     vertex_count: usize,
     pairs: &[(u32, u32)],
-    validity: Validity,
+    validity: StitchValidity,
     rule: &mut dyn JoinRule,
     budget: &Budget,
 ) -> Result<Stitched, Stopped> {
@@ -96,7 +96,7 @@ pub fn stitch_faces(
     outlines: &Outlines,
     vertex_count: usize,
     pairs: &[(u32, u32)],
-    validity: Validity,
+    validity: StitchValidity,
     rule: &mut dyn JoinRule,
     budget: &Budget,
 ) -> Result<Stitched, Stopped> {
@@ -127,7 +127,7 @@ struct Seam<'a> {
     triangles: &'a mut [[u32; 3]],
     outlines: &'a Outlines,
     stars: PairStars,
-    validity: Validity,
+    validity: StitchValidity,
     rule: &'a mut dyn JoinRule,
     done: Stitched,
 }
@@ -147,7 +147,7 @@ impl Seam<'_> {
             merges.iter().map(|&(a, b)| self.stars.of(a).len() + self.stars.of(b).len()).sum::<usize>();
         budget.spend(reach as u64 / 8)?;
         let is_valid = merges.iter().all(|&(kept, gone)| self.is_valid_after(kept, gone, merges))
-            && (self.validity == Validity::Exact || self.take_turns(merges));
+            && (self.validity == StitchValidity::Exact || self.take_turns(merges));
         if !is_valid {
             return Ok(false);
         }
@@ -163,8 +163,8 @@ impl Seam<'_> {
         Ok(true)
     }
 
-    /// True when both pairs of vertices can merge by the published conditions, which [`Validity::Paper`] tells: the one that
-    /// folds around a vertex of its own first, the other around the merged one.
+    /// True when both pairs of vertices can merge by the published conditions, which [`StitchValidity::Paper`] tells:
+    /// the one that folds around a vertex of its own first, the other around the merged one.
     fn take_turns(&self, merges: [Merge; 2]) -> bool {
         let shared = merges.map(|(kept, gone)| match kept == gone {
             true => 0,
@@ -311,7 +311,7 @@ mod tests {
     use super::*;
 
     fn stitch_by(
-        validity: Validity,
+        validity: StitchValidity,
         triangles: &mut [[u32; 3]],
         vertex_count: usize,
         pairs: &[(u32, u32)],
@@ -325,7 +325,7 @@ mod tests {
         pairs: &[(u32, u32)],
     ) -> (Vec<[u32; 3]>, Stitched) {
         let mut triangles = triangles.to_vec();
-        let done = stitch_by(Validity::Exact, &mut triangles, vertex_count, pairs);
+        let done = stitch_by(StitchValidity::Exact, &mut triangles, vertex_count, pairs);
         (triangles, done)
     }
 
@@ -374,7 +374,7 @@ mod tests {
         let mut mesh = frame();
         let [from, to, opposite, after] =
             [[6, 5], [5, 9], [9, 10], [10, 6]].map(|ends| half_edge(&mesh, ends));
-        let done = stitch_by(Validity::Exact, &mut mesh, 16, &[(from, to)]);
+        let done = stitch_by(StitchValidity::Exact, &mut mesh, 16, &[(from, to)]);
         let implicit = vec![(opposite.min(after), opposite.max(after))];
         assert_eq!(done, Stitched { explicit: vec![(from, to)], implicit });
         assert!(mesh.iter().flatten().all(|&v| v != 9), "it is 6 now");
@@ -388,12 +388,12 @@ mod tests {
         // The four rims of the frame: a pinch at 5 would make 6 and 9 one, which 10 is joined to as well.
         let mut mesh = frame();
         let rims = half_edges(&mesh, &[[6, 5], [5, 9]]);
-        let done = stitch_by(Validity::Paper, &mut mesh, 16, &[(rims[0], rims[1])]);
+        let done = stitch_by(StitchValidity::Paper, &mut mesh, 16, &[(rims[0], rims[1])]);
         assert_eq!((done, mesh), (Stitched::default(), frame()));
         // Six triangles around a hole of six edges, 0 to 5: of opposite edges both pairs of ends have a vertex to fold around.
         let ring: Vec<[u32; 3]> =
             (0..6).flat_map(|i| [[(i + 1) % 6, i, i + 6], [(i + 1) % 6, i + 6, (i + 1) % 6 + 6]]).collect();
-        for (validity, joins) in [(Validity::Exact, 1), (Validity::Paper, 0)] {
+        for (validity, joins) in [(StitchValidity::Exact, 1), (StitchValidity::Paper, 0)] {
             let mut mesh = ring.clone();
             let pair = half_edges(&mesh, &[[1, 0], [4, 3]]);
             let done = stitch_by(validity, &mut mesh, 12, &[(pair[0], pair[1])]);
@@ -407,7 +407,7 @@ mod tests {
         let mesh = [[0, 1, 2], [1, 3, 2], [0, 5, 4], [4, 5, 6], [0, 2, 5]];
         let mut joined = mesh.to_vec();
         let pair = (half_edge(&mesh, [1, 3]), half_edge(&mesh, [6, 4]));
-        let done = stitch_by(Validity::Paper, &mut joined, 7, &[pair]);
+        let done = stitch_by(StitchValidity::Paper, &mut joined, 7, &[pair]);
         assert_eq!((done.explicit, done.implicit.len()), (vec![pair], 1));
         assert_eq!(joined, [[0, 1, 2], [1, 3, 2], [0, 5, 1], [1, 5, 3], [0, 2, 5]]);
     }
@@ -432,7 +432,7 @@ mod tests {
         for (pair, joins) in [((1, 5), 1), ((0, 4), 0), ((0, 3), 1)] {
             let mut mesh = vec![[0, 2, 1], [5, 3, 4]];
             let budget = Budget::unlimited();
-            let done = stitch(&mut mesh, 6, &[pair], Validity::Exact, &mut OddSum, &budget).unwrap();
+            let done = stitch(&mut mesh, 6, &[pair], StitchValidity::Exact, &mut OddSum, &budget).unwrap();
             assert_eq!(done.explicit.len(), joins, "{pair:?}");
         }
     }
@@ -450,7 +450,7 @@ mod tests {
         pairs: &[(u32, u32)],
     ) -> Stitched {
         let (outlines, budget) = (outlines(triangles, polygons), Budget::unlimited());
-        let validity = Validity::Exact;
+        let validity = StitchValidity::Exact;
         stitch_faces(triangles, &outlines, vertex_count, pairs, validity, &mut AnyJoin, &budget).unwrap()
     }
 

@@ -5,13 +5,13 @@ use crate::geom::{DVec3, Sign, orient3d};
 use crate::mesh::UnionFind;
 
 /// For each triangle the triangles beyond its three edges, edge `c` from corner `c` on.
-pub(super) type Neighbours = Vec<[u32; 3]>;
+pub(super) type TriangleNeighbours = Vec<[u32; 3]>;
 
 /// The groups of triangles that are exactly coplanar with a neighbour and look to the same side.
 pub(super) fn exact_groups(
     points: &[DVec3],
     triangles: &[[u32; 3]],
-    neighbours: &Neighbours,
+    neighbours: &TriangleNeighbours,
     budget: &Budget,
 ) -> Result<Vec<u32>, Stopped> {
     let mut joined = UnionFind::new(triangles.len());
@@ -35,7 +35,7 @@ pub(super) fn exact_groups(
 pub(super) fn tolerant_groups(
     points: &[DVec3],
     triangles: &[[u32; 3]],
-    neighbours: &Neighbours,
+    neighbours: &TriangleNeighbours,
     tolerance: f64,
     budget: &Budget,
 ) -> Result<Vec<u32>, Stopped> {

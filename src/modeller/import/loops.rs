@@ -1,6 +1,6 @@
 //! The borders of groups of triangles as loops of corners.
 
-use super::groups::Neighbours;
+use super::groups::TriangleNeighbours;
 use crate::geom::DVec3;
 use crate::mesh::polyhedron::BuildFault;
 use crate::modeller::point::{AxisView, Point};
@@ -20,7 +20,10 @@ pub(super) struct GroupedFaces {
 }
 
 /// The triangle beyond each edge.
-pub(super) fn neighbours(triangles: &[[u32; 3]], vertex_count: usize) -> Result<Neighbours, BuildFault> {
+pub(super) fn neighbours(
+    triangles: &[[u32; 3]],
+    vertex_count: usize,
+) -> Result<TriangleNeighbours, BuildFault> {
     let loops: Vec<Vec<Vec<u32>>> = triangles.iter().map(|t| vec![t.to_vec()]).collect();
     let mesh = crate::mesh::polyhedron::Polyhedron::from_loops(&loops, vertex_count)?;
     let beyond = |t: usize, c: usize| {
@@ -34,7 +37,7 @@ pub(super) fn neighbours(triangles: &[[u32; 3]], vertex_count: usize) -> Result<
 /// borders, or too few corners.
 pub(super) fn trace(
     triangles: &[[u32; 3]],
-    neighbours: &Neighbours,
+    neighbours: &TriangleNeighbours,
     group: &[u32],
     points: &[DVec3],
 ) -> Result<GroupedFaces, Vec<u32>> {

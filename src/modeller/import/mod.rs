@@ -16,7 +16,7 @@ mod groups;
 mod loops;
 mod polygons;
 
-use super::exact::{Vector, cross, dot};
+use super::exact::{IntegerVector, cross, dot};
 use super::plane::{Plane, meeting_point};
 use super::point::Point;
 use super::solid::Solid;
@@ -138,13 +138,13 @@ fn unreadable(points: &[DVec3], triangles: &[[u32; 3]]) -> Option<ImportRefusal>
 struct ImportMesh<'m> {
     points: &'m [DVec3],
     triangles: &'m [[u32; 3]],
-    neighbours: groups::Neighbours,
+    neighbours: groups::TriangleNeighbours,
     exact: Vec<u32>,
     tolerance: f64,
 }
 
 /// A build that did not succeed, and the groups that are to blame, if that is known.
-struct Failure {
+struct ImportFailure {
     refusal: ImportRefusal,
     groups: Vec<u32>,
 }
@@ -193,11 +193,11 @@ impl ImportMesh<'_> {
         group: &[u32],
         is_tolerant: &dyn Fn(u32) -> bool,
         budget: &Budget,
-    ) -> Result<Result<Imported, Failure>, Stopped> {
+    ) -> Result<Result<Imported, ImportFailure>, Stopped> {
         let faces = match loops::trace(self.triangles, &self.neighbours, group, self.points) {
             Ok(faces) => faces,
             Err(groups) => {
-                return Ok(Err(Failure { refusal: ImportRefusal::Empty, groups }));
+                return Ok(Err(ImportFailure { refusal: ImportRefusal::Empty, groups }));
             }
         };
         budget.spend(self.triangles.len() as u64)?;
@@ -209,10 +209,10 @@ impl ImportMesh<'_> {
         for (f, plane) in planes.iter_mut().enumerate().filter(|(f, _)| !fixed[*f]) {
             let corners = &faces.loops[f][0];
             let [a, b, c] = [0, 1, 2].map(|i| &points[corners[i] as usize]);
-            let normal: Vector = cross(&a.to(b), &a.to(c));
+            let normal: IntegerVector = cross(&a.to(b), &a.to(c));
             if super::exact::is_zero(&normal) {
                 let groups = Self::tolerant_around(&faces, is_tolerant, corners);
-                return Ok(Err(Failure { refusal: ImportRefusal::Empty, groups }));
+                return Ok(Err(ImportFailure { refusal: ImportRefusal::Empty, groups }));
             }
             *plane = Some(Plane::through(normal, a));
         }
@@ -220,12 +220,12 @@ impl ImportMesh<'_> {
             Ok(topology) => topology,
             Err(fault) => {
                 let groups = faces.groups.iter().copied().filter(|&g| is_tolerant(g)).collect();
-                return Ok(Err(Failure { refusal: ImportRefusal::NotClosed(fault), groups }));
+                return Ok(Err(ImportFailure { refusal: ImportRefusal::NotClosed(fault), groups }));
             }
         };
         let planes: Option<Vec<Plane>> = planes.into_iter().collect();
         let Some(planes) = planes else {
-            return Ok(Err(Failure { refusal: ImportRefusal::Empty, groups: faces.groups }));
+            return Ok(Err(ImportFailure { refusal: ImportRefusal::Empty, groups: faces.groups }));
         };
         self.finish(&faces, topology, planes, is_tolerant, budget)
     }
@@ -237,14 +237,14 @@ impl ImportMesh<'_> {
         planes: Vec<Plane>,
         is_tolerant: &dyn Fn(u32) -> bool,
         budget: &Budget,
-    ) -> Result<Result<Imported, Failure>, Stopped> {
+    ) -> Result<Result<Imported, ImportFailure>, Stopped> {
         let positions: Vec<DVec3> = faces.vertices.iter().map(|&v| self.points[v as usize]).collect();
         let solid = match Solid::new(topology, planes) {
             Ok(solid) => solid,
             Err(v) => {
                 let refusal = ImportRefusal::VertexNotOnPlanes { position: positions[v.index()] };
                 let groups = Self::tolerant_around(faces, is_tolerant, &[v.index() as u32]);
-                return Ok(Err(Failure { refusal, groups }));
+                return Ok(Err(ImportFailure { refusal, groups }));
             }
         };
         let validity = check(&solid, budget)?;
@@ -254,7 +254,7 @@ impl ImportMesh<'_> {
                 f.faces.iter().copied().chain(around)
             });
             let groups = blamed.map(|f| faces.groups[f.index()]).filter(|&g| is_tolerant(g)).collect();
-            return Ok(Err(Failure { refusal: ImportRefusal::Invalid(validity), groups }));
+            return Ok(Err(ImportFailure { refusal: ImportRefusal::Invalid(validity), groups }));
         }
         let moves = positions.iter().enumerate().map(|(v, p)| {
             let q = solid.point(VertexId::new(v));
@@ -316,7 +316,7 @@ impl ImportMesh<'_> {
         faces: &GroupedFaces,
         planes: &[Option<Plane>],
         fixed: &[bool],
-    ) -> Result<Vec<Point>, Failure> {
+    ) -> Result<Vec<Point>, ImportFailure> {
         let mut points = Vec::with_capacity(faces.vertices.len());
         let mut failed: Vec<u32> = Vec::new();
         for (v, &source) in faces.vertices.iter().enumerate() {
@@ -341,7 +341,7 @@ impl ImportMesh<'_> {
             return Ok(points);
         }
         let position = Aabb::of(self.points.iter().copied()).min;
-        Err(Failure { refusal: ImportRefusal::VertexNotOnPlanes { position }, groups: failed })
+        Err(ImportFailure { refusal: ImportRefusal::VertexNotOnPlanes { position }, groups: failed })
     }
 }
 

@@ -2,11 +2,11 @@
 //! copies of opposite direction where much was lost without both.
 
 use super::climb::RungResult;
-use super::{Kind, Rung};
+use super::{Rung, RungKind};
 
 pub(super) const RUNG: Rung = Rung {
     name: "as-drawn",
-    kind: Kind::Plan,
+    kind: RungKind::Plan,
     applies: |_, situation| Ok(situation.last.is_none()),
     tries: |climb, situation| match climb.try_plan(situation.variant, situation)? {
         Some(RungResult::Certified(closed)) => {

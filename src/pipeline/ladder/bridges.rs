@@ -1,12 +1,12 @@
 //! Rims that face each other get one patch between them.
 
 use super::climb::Uncertified;
-use super::{Kind, Rung, beside};
+use super::{Rung, RungKind, beside};
 use crate::pipeline::plan::Variant;
 
 pub(super) const RUNG: Rung = Rung {
     name: "bridges",
-    kind: Kind::Plan,
+    kind: RungKind::Plan,
     applies: |_, situation| {
         let has_several_rims = |last: &Uncertified| beside::has_several_rims(&last.attempt);
         Ok(!situation.has_tried_bridging && situation.last.as_ref().is_some_and(has_several_rims))

@@ -1,12 +1,12 @@
 //! What a rung sees of the file and of the attempts before it, and how it runs one.
 
-use super::{Climbed, Kind};
+use super::{Climbed, RungKind};
 use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::Depth;
 use crate::formats::Encoding;
 use crate::geom::print_pitch;
-use crate::pipeline::fidelity::{Fidelity, LOST_BEYOND, Original, defined_volume};
+use crate::pipeline::fidelity::{FidelityMeasurement, LOST_BEYOND, Original, defined_volume};
 use crate::pipeline::input::Input;
 use crate::pipeline::looks;
 use crate::pipeline::output::Candidate;
@@ -19,7 +19,7 @@ use crate::pipeline::{Action, Failure, Options, Refusal, Require};
 use crate::repair::noise::Noise;
 use crate::repair::snap::gap_between_rims;
 use crate::repair::{Draft, noise};
-use crate::winding::{OpenShells, Solid};
+use crate::winding::{OpenShells, WindingSolid};
 use std::cell::OnceCell;
 
 /// A plan may take one of so many parts of the work that is left.
@@ -48,9 +48,9 @@ pub(in crate::pipeline) struct Certified {
     pub(in crate::pipeline) attempt: Attempt,
     pub(in crate::pipeline) candidate: Candidate,
     /// What it is chosen by: what patches over openings cover is hidden, unless it is much.
-    pub(in crate::pipeline) fidelity: Fidelity,
+    pub(in crate::pipeline) fidelity: FidelityMeasurement,
     /// What is told of it: nothing of the file is hidden that a straight line leads to.
-    pub(in crate::pipeline) as_seen: Fidelity,
+    pub(in crate::pipeline) as_seen: FidelityMeasurement,
 }
 
 /// What a rung found.
@@ -138,11 +138,11 @@ impl Situation {
     }
 
     /// Whether a rung of this kind may still come. Another plan takes as much as one that took too much.
-    pub(super) fn may_try(&self, kind: Kind) -> bool {
+    pub(super) fn may_try(&self, kind: RungKind) -> bool {
         match kind {
-            Kind::Plan => !self.has_run_out && self.may_change_the_surface(),
-            Kind::Union => self.may_change_the_surface(),
-            Kind::NewSurface => true,
+            RungKind::Plan => !self.has_run_out && self.may_change_the_surface(),
+            RungKind::Union => self.may_change_the_surface(),
+            RungKind::NewSurface => true,
         }
     }
 
@@ -407,10 +407,10 @@ impl Certified {
 fn chosen_past_mouths(
     attempt: &Attempt,
     candidate: &Candidate,
-    chosen: Fidelity,
-    as_seen: Fidelity,
+    chosen: FidelityMeasurement,
+    as_seen: FidelityMeasurement,
     climb: &Climb<'_>,
-) -> Result<Fidelity, Stopped> {
+) -> Result<FidelityMeasurement, Stopped> {
     let (limits, looks_out) = (&climb.options.limits, attempt.hides_more);
     let demands_all = climb.options.require == Some(Require::Faithful) || as_seen.breach(limits).is_some();
     if chosen.passes(limits) || demands_all {
@@ -429,7 +429,7 @@ fn fidelity(
     looks_out: bool,
     covered: Option<&Covered>,
     climb: &Climb<'_>,
-) -> Result<Fidelity, Stopped> {
+) -> Result<FidelityMeasurement, Stopped> {
     let Climb { input, options, before, budget, .. } = *climb;
     let (draft, volume) = (&attempt.draft, defined_volume(before));
     let origins = candidate.origins(&draft.triangle_origin);
@@ -441,7 +441,7 @@ fn fidelity(
         return Ok(all_seen);
     }
     let read = || {
-        let solid = Solid::of(&draft.positions, &draft.triangles, options.wrap.open_shells, budget)?;
+        let solid = WindingSolid::of(&draft.positions, &draft.triangles, options.wrap.open_shells, budget)?;
         let original = Original::new(&input.soup, volume, Some(solid));
         if looks_out { original.with_outlook(budget) } else { Ok(original) }
     };

@@ -1,13 +1,13 @@
 //! Bodies that touch are joined or drawn apart, as the option `contact` says; where joining fails they are drawn apart.
 
 use super::climb::{Climb, Situation};
-use super::{Kind, Rung};
+use super::{Rung, RungKind};
 use crate::pipeline::Contact;
 use crate::pipeline::plan::Variant;
 
 pub(super) const RUNG: Rung = Rung {
     name: "contacts",
-    kind: Kind::Plan,
+    kind: RungKind::Plan,
     applies: |climb, situation| Ok(contact(climb, situation).is_some()),
     tries: |climb, situation| {
         let variant = Variant {

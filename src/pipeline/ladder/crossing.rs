@@ -1,7 +1,7 @@
 //! Few triangles that meet others go, with ever more rings around them, and what they leave is filled.
 
 use super::climb::Climb;
-use super::{Kind, Rung};
+use super::{Rung, RungKind};
 use crate::pipeline::plan::Variant;
 
 /// Rings that are removed around triangles that meet others, at most.
@@ -12,7 +12,7 @@ const ONE_IN_MIN: u64 = 20;
 
 pub(super) const RUNG: Rung = Rung {
     name: "crossing",
-    kind: Kind::Plan,
+    kind: RungKind::Plan,
     applies: |climb, situation| Ok(situation.variant.removes_crossing.is_none() && may_remove(climb)),
     tries: |climb, situation| {
         let variant = Variant {
@@ -28,7 +28,7 @@ pub(super) const RUNG: Rung = Rung {
                 climb.try_plan(Variant { removes_crossing, mends_thin_faces, ..variant }, situation)?;
             let has_removed =
                 situation.last.as_ref().is_some_and(|last| last.attempt.effects.removed_crossing);
-            if found.is_some() || !situation.may_try(Kind::Plan) || !has_removed {
+            if found.is_some() || !situation.may_try(RungKind::Plan) || !has_removed {
                 return Ok(found);
             }
         }

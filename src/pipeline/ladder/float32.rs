@@ -1,11 +1,11 @@
 //! Coordinates become float32 first, where the result was no solid when it was read so.
 
-use super::{Kind, Rung};
+use super::{Rung, RungKind};
 use crate::pipeline::plan::Variant;
 
 pub(super) const RUNG: Rung = Rung {
     name: "float32",
-    kind: Kind::Plan,
+    kind: RungKind::Plan,
     applies: |climb, situation| {
         let may_round = climb.choices.rounds && !climb.input.soup.is_f32_exact;
         Ok(situation.fails_in_f32 && may_round && !situation.variant.rounds)

@@ -1,12 +1,12 @@
 //! Of two copies of opposite direction one stays.
 
-use super::{Kind, Rung};
+use super::{Rung, RungKind};
 use crate::pipeline::plan::Variant;
 use crate::repair::duplicates::OppositePairs;
 
 pub(super) const RUNG: Rung = Rung {
     name: "keep-first",
-    kind: Kind::Plan,
+    kind: RungKind::Plan,
     applies: |_, situation| {
         Ok(situation.last.as_ref().is_some_and(|last| last.attempt.effects.cancelled_opposite_pairs))
     },

@@ -27,7 +27,7 @@ const CHANGES_PART: u64 = 2;
 
 /// What a rung does to the surface of the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum RungKind {
     /// Changes it by the steps of a plan.
     Plan,
     /// Unites its bodies.
@@ -40,7 +40,7 @@ enum Kind {
 struct Rung {
     /// As in reports and `docs/ladder.md`.
     name: &'static str,
-    kind: Kind,
+    kind: RungKind,
     /// Whether it can make a difference.
     applies: fn(&Climb<'_>, &Situation) -> Result<bool, Stopped>,
     /// Tries it and notes in the situation what it left.
@@ -80,7 +80,7 @@ pub(super) enum Climbed {
 pub(super) fn climb(climb: &Climb<'_>) -> Result<(Climbed, Vec<&'static str>), Failure> {
     let mut situation = Situation::at_the_foot(climb)?;
     let mut tried = Vec::new();
-    let changes = |kind| kind != Kind::NewSurface;
+    let changes = |kind| kind != RungKind::NewSurface;
     let changing = || climb_by(changes, climb, &mut situation, &mut tried);
     let has_run_out = climb.budget.within_part(CHANGES_PART, changing)?.is_none();
     situation.has_run_out |= has_run_out;
@@ -90,7 +90,7 @@ pub(super) fn climb(climb: &Climb<'_>) -> Result<(Climbed, Vec<&'static str>), F
 
 /// Climbs by the rungs of these kinds until none applies.
 fn climb_by(
-    is_one: impl Fn(Kind) -> bool,
+    is_one: impl Fn(RungKind) -> bool,
     climb: &Climb<'_>,
     situation: &mut Situation,
     tried: &mut Vec<&'static str>,
@@ -105,7 +105,7 @@ fn climb_by(
 
 /// The first of those rungs that applies.
 fn next(
-    is_one: impl Fn(Kind) -> bool,
+    is_one: impl Fn(RungKind) -> bool,
     climb: &Climb<'_>,
     situation: &Situation,
 ) -> Result<Option<&'static Rung>, Stopped> {
@@ -124,6 +124,8 @@ mod tests {
     #[test]
     fn only_the_last_rung_makes_a_new_surface() {
         let last = RUNGS.len() - 1;
-        assert!(RUNGS.iter().enumerate().all(|(at, rung)| (rung.kind == Kind::NewSurface) == (at == last)));
+        assert!(
+            RUNGS.iter().enumerate().all(|(at, rung)| (rung.kind == RungKind::NewSurface) == (at == last))
+        );
     }
 }

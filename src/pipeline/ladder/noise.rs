@@ -1,12 +1,12 @@
 //! Coordinates that are all but zero become zero.
 
-use super::{Kind, Rung};
+use super::{Rung, RungKind};
 use crate::pipeline::plan::Variant;
 use crate::repair::noise::{self, Noise};
 
 pub(super) const RUNG: Rung = Rung {
     name: "noise",
-    kind: Kind::Plan,
+    kind: RungKind::Plan,
     applies: |climb, situation| {
         let is_left = situation.variant.noise != Noise::Cleared;
         Ok(is_left && noise::has_noise(&climb.input.soup.positions))

@@ -1,12 +1,12 @@
 //! A new surface on a lattice around what no other rung could make a solid, or where what they made lost much.
 
 use super::climb::{Climb, RungResult, Situation};
-use super::{Kind, Rung};
+use super::{Rung, RungKind};
 use crate::pipeline::{Refusal, Require};
 
 pub(super) const RUNG: Rung = Rung {
     name: "rebuild",
-    kind: Kind::NewSurface,
+    kind: RungKind::NewSurface,
     applies: |climb, situation| Ok(climb.choices.rebuilds && is_wanted(climb, situation)),
     tries: |climb, situation| {
         situation.has_tried_rebuilding = true;

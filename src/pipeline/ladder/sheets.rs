@@ -1,11 +1,11 @@
 //! Open parts that are read as sheets get walls, and no hole is filled.
 
-use super::{Kind, Rung};
+use super::{Rung, RungKind};
 use crate::pipeline::plan::Variant;
 
 pub(super) const RUNG: Rung = Rung {
     name: "sheets",
-    kind: Kind::Plan,
+    kind: RungKind::Plan,
     applies: |climb, situation| {
         let Variant { thickens, contact, .. } = situation.variant;
         Ok(!thickens && contact.is_none() && climb.openness(situation)?.is_sheets)

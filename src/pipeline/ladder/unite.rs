@@ -1,7 +1,7 @@
 //! Bodies that pass through each other, as one: the exact arrangement.
 
 use super::climb::{Certified, Climb, Judgement, Openness, RungResult, Situation};
-use super::{Kind, Rung};
+use super::{Rung, RungKind};
 use crate::analysis::DefectCode;
 use crate::geom::print_pitch;
 use crate::pipeline::output::Candidate;
@@ -10,13 +10,13 @@ use crate::pipeline::repair_choices::Walls;
 use crate::pipeline::size::diagonal;
 use crate::pipeline::step::Step;
 use crate::pipeline::{Failure, Refusal, Require};
-use crate::repair::nest::Policy;
+use crate::repair::nest::NestingPolicy;
 use crate::winding::OpenShells;
 
 /// Where triangles of the file meet.
 pub(super) const WHERE_BODIES_MEET: Rung = Rung {
     name: "unite",
-    kind: Kind::Union,
+    kind: RungKind::Union,
     applies: |climb, situation| Ok(climb.has_contacts() && may_unite(climb, situation)),
     tries: |climb, situation| unite(climb, situation),
 };
@@ -24,7 +24,7 @@ pub(super) const WHERE_BODIES_MEET: Rung = Rung {
 /// Where they do not, after all that moves no triangle through another.
 pub(super) const BEFORE_TRIANGLES_GO: Rung = Rung {
     name: "unite-what-mending-made",
-    kind: Kind::Union,
+    kind: RungKind::Union,
     applies: |climb, situation| Ok(may_unite(climb, situation)),
     tries: |climb, situation| unite(climb, situation),
 };
@@ -58,7 +58,7 @@ fn may_unite(climb: &Climb<'_>, situation: &Situation) -> bool {
     let choices = climb.choices;
     !situation.has_tried_uniting
         && choices.unites
-        && choices.nesting == Policy::AsOriented
+        && choices.nesting == NestingPolicy::AsOriented
         && choices.shells.is_empty()
 }
 

@@ -38,7 +38,7 @@ pub(super) struct OnChart {
 
 /// A place of a chart.
 #[derive(Clone, Copy)]
-struct Spot {
+struct ChartPlace {
     chart: u32,
     triangle: u32,
     place: DVec3,
@@ -128,16 +128,16 @@ impl<'s> Charts<'s> {
         Ok(Some(OnChart { triangle: start.triangle, points }))
     }
 
-    fn spot(&self, at: Nearest, search: &NearestSearch<'_>) -> Option<Spot> {
+    fn spot(&self, at: Nearest, search: &NearestSearch<'_>) -> Option<ChartPlace> {
         let chart = *self.of_triangle.get(at.triangle as usize)?;
         let points = self.soup.texture.of_triangle(at.triangle as usize)?;
         let shares = shares_of_corners(at.point, search.corners(at.triangle)).unwrap_or([1.0, 0.0, 0.0]);
         let along = |k: usize| (0..3).map(|corner| shares[corner] * points[corner][k]).sum();
-        Some(Spot { chart, triangle: at.triangle, place: at.point, point: [along(0), along(1)] })
+        Some(ChartPlace { chart, triangle: at.triangle, place: at.point, point: [along(0), along(1)] })
     }
 
     /// True when both are of one chart and no seam of it is between them.
-    fn are_connected(&self, a: &Spot, b: &Spot, search: &NearestSearch<'_>) -> bool {
+    fn are_connected(&self, a: &ChartPlace, b: &ChartPlace, search: &NearestSearch<'_>) -> bool {
         if a.chart != b.chart || a.triangle == b.triangle {
             return a.chart == b.chart;
         }

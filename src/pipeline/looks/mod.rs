@@ -12,13 +12,13 @@ use crate::spatial::{Nearest, NearestSearch};
 use rustc_hash::FxHashMap;
 
 /// A mesh whose colours, texture, materials and objects are looked up by place.
-pub(super) struct Source<'s> {
+pub(super) struct AppearanceSource<'s> {
     soup: &'s Soup,
     search: NearestSearch<'s>,
     charts: Charts<'s>,
 }
 
-impl<'s> Source<'s> {
+impl<'s> AppearanceSource<'s> {
     /// `None` where `soup` has no colours, no texture, no materials and no objects.
     ///
     /// # Errors
@@ -175,7 +175,7 @@ pub(super) fn soup_of(draft: &Draft, source: &Soup, budget: &Budget) -> Result<S
     if bare.is_empty() {
         return Ok(made);
     }
-    let Some(looks) = Source::of(source, budget)? else { return Ok(made) };
+    let Some(looks) = AppearanceSource::of(source, budget)? else { return Ok(made) };
     let behind = looks.put_texture(&mut made, &bare, budget)?;
     for (&t, behind) in bare.iter().zip(behind) {
         let Some(face) = behind.map(|behind| source.face_of(behind)) else { continue };
@@ -216,11 +216,11 @@ mod tests {
         let points =
             [[2.0, 0.0, 1.0], [1.0, 1.0, -1.0], [0.0, 5.0, 0.0], [9.0, 0.0, 0.0]].map(DVec3::from_array);
         made.add_plain(&points, &[[0, 1, 2], [0, 3, 3]]);
-        Source::of(&source, &budget).unwrap().unwrap().put_on(&mut made, 4, 2, &budget).unwrap();
+        AppearanceSource::of(&source, &budget).unwrap().unwrap().put_on(&mut made, 4, 2, &budget).unwrap();
         assert_eq!(made.check(), Vec::<String>::new());
         assert_eq!(made.vertex_colors, [gray(50), gray(75), gray(200), None]);
         assert_eq!(made.face_colors, [gray(7), None]);
         assert_eq!(made.materials.of_face, [NO_MATERIAL, 0]);
-        assert!(Source::of(&Soup::default(), &budget).unwrap().is_none());
+        assert!(AppearanceSource::of(&Soup::default(), &budget).unwrap().is_none());
     }
 }

@@ -1,7 +1,7 @@
 //! What the modeller is asked to do. Lengths and places are in the unit of the mesh.
 
 use crate::geom::DVec3;
-use crate::modeller::{Embedding, Events};
+use crate::modeller::{Embedding, EventPolicy};
 
 /// What the modeller is to do.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -63,7 +63,7 @@ pub enum Edit {
         /// Each face and how far it moves outward.
         faces: Vec<(FaceName, f64)>,
         /// Go on past events where that is good.
-        events: Events,
+        events: EventPolicy,
     },
     /// Point Split.
     Split {

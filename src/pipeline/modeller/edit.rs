@@ -8,7 +8,7 @@ use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::polyhedron::{FaceId, HalfEdgeId};
 use crate::modeller::{
-    self, Applied, Events, Imported, IntervalSide, Operator, Rational, Solid, TopologyChange,
+    self, Applied, EventPolicy, Imported, IntervalSide, Operator, Rational, Solid, TopologyChange,
 };
 use crate::repair::Draft;
 use crate::spatial::coincident_f64;
@@ -186,7 +186,7 @@ fn applied_step(
                 Some(moves) => negative(moves),
                 None => distances(solid, &faces),
             };
-            Some((back, events == Events::Pass))
+            Some((back, events == EventPolicy::Pass))
         }
         _ => None,
     });
@@ -298,7 +298,7 @@ mod tests {
 
     #[test]
     fn an_undo_takes_back_the_last_operator_that_is_left() {
-        let shift = Edit::Shift { faces: vec![(FaceName::Id(0), 1.0)], events: Events::Refuse };
+        let shift = Edit::Shift { faces: vec![(FaceName::Id(0), 1.0)], events: EventPolicy::Refuse };
         let list = [shift.clone(), shift.clone(), Edit::Undo, shift, Edit::Undo, Edit::Undo, Edit::Undo];
         assert_eq!(are_undone(&list), [true, true, false, true, false, false, false]);
     }

@@ -13,8 +13,8 @@ use crate::formats::{self, ReadLimits, ReadOptions};
 use crate::geom::DVec3;
 use crate::mesh::Soup;
 use crate::render::{
-    Camera, Canvas, DrawnEdges, LETTER_HEIGHT, LETTER_WIDTH, Model, Projection, Rgb, SIDE_MAX, SIDE_MIN,
-    SceneFrame, Shade, Style, View, animation, draw, picture,
+    Camera, Canvas, DrawnEdges, FramedScene, LETTER_HEIGHT, LETTER_WIDTH, Projection, Rgb, SIDE_MAX,
+    SIDE_MIN, SceneFrame, Shade, Style, View, animation, draw, picture,
 };
 
 /// What kind of file a picture is.
@@ -238,9 +238,9 @@ fn sheet(sides: &[(&Soup, Painted)], choices: &PictureChoices, budget: &Budget) 
     let frame = SceneFrame::around(sides.iter().map(|(soup, painted)| painted.scene(soup).bounds()));
     let models = sides
         .iter()
-        .map(|(soup, painted)| Model::of(painted.scene(soup), frame, choices.shade, budget))
+        .map(|(soup, painted)| FramedScene::of(painted.scene(soup), frame, choices.shade, budget))
         .collect::<Result<Vec<_>, _>>()?;
-    let all: Vec<&Model<'_>> = models.iter().collect();
+    let all: Vec<&FramedScene<'_>> = models.iter().collect();
     let columns = if sides.len() > 1 { sides.len() } else { columns_of(choices.views.len()) };
     let views = if choices.turn_pictures > 0 { 1 } else { choices.views.len() };
     let footer = Footer::of(sides, [width, height], (views * sides.len()).div_ceil(columns));
@@ -320,12 +320,12 @@ fn entitle(canvas: &mut Canvas, painted: &Painted, view: Option<View>) {
 }
 
 /// A line of text; a colour that it explains stands before it.
-type Line<'p> = (Option<Rgb>, &'p str);
+type LegendLine<'p> = (Option<Rgb>, &'p str);
 
 /// What the colours mean and the size of each side, below all tiles.
 struct Footer<'p> {
     /// Of each side.
-    columns: Vec<Vec<Line<'p>>>,
+    columns: Vec<Vec<LegendLine<'p>>>,
     column_width: usize,
     /// Pixels for each dot.
     scale: usize,
@@ -343,7 +343,8 @@ impl<'p> Footer<'p> {
         let scale = scale_of(tile_width);
         let line_height = LINE_HEIGHT * scale;
         let room = (rows * tile_height * 2 / 5).saturating_sub(MARGIN * scale) / line_height;
-        let columns: Vec<Vec<Line<'p>>> = sides.iter().map(|(_, painted)| lines_of(painted, room)).collect();
+        let columns: Vec<Vec<LegendLine<'p>>> =
+            sides.iter().map(|(_, painted)| lines_of(painted, room)).collect();
         let lines = columns.iter().map(Vec::len).max().unwrap_or(0);
         let height = if lines > 0 { lines * line_height + MARGIN * scale } else { 0 };
         let taken = height.div_ceil(rows);
@@ -366,7 +367,7 @@ impl<'p> Footer<'p> {
     }
 
     /// Writes `line` into a column that begins at `x` and is `width` wide.
-    fn write(&self, canvas: &mut Canvas, (color, text): &Line<'_>, [x, y]: [usize; 2], width: usize) {
+    fn write(&self, canvas: &mut Canvas, (color, text): &LegendLine<'_>, [x, y]: [usize; 2], width: usize) {
         let Self { scale, .. } = *self;
         let (mut left, right) = (x + MARGIN * scale, x + width.saturating_sub(MARGIN * scale));
         if let Some(color) = color {
@@ -379,7 +380,7 @@ impl<'p> Footer<'p> {
 }
 
 /// What the colours of a side mean and its size, in `room` lines at most; the size is told before further colours.
-fn lines_of(painted: &Painted, room: usize) -> Vec<Line<'_>> {
+fn lines_of(painted: &Painted, room: usize) -> Vec<LegendLine<'_>> {
     let size = (!painted.size.is_empty() && room > 0).then_some((None, painted.size.as_str()));
     let legend = painted.legend.iter().map(|(color, text)| (Some(*color), text.as_str()));
     legend.take(room - usize::from(size.is_some())).chain(size).collect()

@@ -1,6 +1,6 @@
 //! The picture of a project: every part at each of its places, with the defects that were found of it by itself.
 
-use super::{Failure, Run, Stage};
+use super::{Failure, ProjectRun, Stage};
 use crate::analysis::Finding;
 use crate::formats::threemf::read_scene;
 use crate::pipeline::Answer;
@@ -10,7 +10,7 @@ use crate::pipeline::picture::{self, Drawn, Shift};
 const WITNESSES_MAX: usize = 20_000;
 
 /// The picture of the file of `run`, and of the result beside it; `None`: none is asked for.
-pub(super) fn picture(run: &Run<'_>, answer: &Answer) -> Result<Option<Vec<u8>>, Failure> {
+pub(super) fn picture(run: &ProjectRun<'_>, answer: &Answer) -> Result<Option<Vec<u8>>, Failure> {
     let Some(choices) = picture::choices(run.operation, run.options) else { return Ok(None) };
     let budget = run.budget;
     let (soup, placed) = budget.stage(Stage::Read, || read_scene(run.bytes, &run.options.read, budget))?;

@@ -1,7 +1,7 @@
 //! The account of a file out of those of its parts.
 
 use super::merged_analysis::merged_analysis;
-use super::{Done, PartFacts, PartReport};
+use super::{FinishedPart, PartFacts, PartReport};
 use crate::distance::{DirectedDistance, SurfaceDistance};
 use crate::formats::threemf::{Body, NO_NUMBER, Project, Property};
 use crate::formats::{Encoding, Format};
@@ -13,7 +13,7 @@ use crate::pipeline::{
 use crate::simplify;
 
 /// The account of all parts, with so many `samples` of each defect; `whole` says what is known of the file.
-pub(super) fn merged(project: &Project, done: &[Done], whole: Report, samples: usize) -> Report {
+pub(super) fn merged(project: &Project, done: &[FinishedPart], whole: Report, samples: usize) -> Report {
     let remarks = remarks(project, done);
     let parts = parts(project, done);
     let reports: Vec<&Report> = parts.iter().map(|part| &part.report).collect();
@@ -46,7 +46,7 @@ pub(super) fn merged(project: &Project, done: &[Done], whole: Report, samples: u
     Report { parts, remarks, filling, ..merged }
 }
 
-fn parts(project: &Project, done: &[Done]) -> Vec<PartReport> {
+fn parts(project: &Project, done: &[FinishedPart]) -> Vec<PartReport> {
     let mut first_face = 0;
     done.iter()
         .map(|done| {
@@ -66,7 +66,7 @@ fn parts(project: &Project, done: &[Done]) -> Vec<PartReport> {
 }
 
 /// What is said of the file, and of what is not a part or is lost with one.
-fn remarks(project: &Project, done: &[Done]) -> Vec<String> {
+fn remarks(project: &Project, done: &[FinishedPart]) -> Vec<String> {
     let mut remarks = project.remarks.clone();
     for body in project.bodies.iter().filter(|body| !body.is_solid()) {
         let why = match (super::is_model(body) || body.kind.is_solid(), body.extras.is_empty()) {

@@ -94,7 +94,7 @@ pub(super) fn run_by_parts(
     units_of_file(Some(project.units), options)?;
     let triangles =
         project.bodies.iter().filter(|body| body.is_solid()).map(|body| body.soup.triangles.len()).sum();
-    let run = Run { operation, bytes, project, triangles, options, budget };
+    let run = ProjectRun { operation, bytes, project, triangles, options, budget };
     run.check_options()?;
     let answer = run.answer()?;
     let answer = match options.parts {
@@ -131,7 +131,7 @@ pub(super) fn remarks_on_scene(
     })
 }
 
-struct Run<'a> {
+struct ProjectRun<'a> {
     operation: Operation,
     bytes: &'a [u8],
     project: &'a Project,
@@ -142,7 +142,7 @@ struct Run<'a> {
 }
 
 /// What came of one part.
-struct Done {
+struct FinishedPart {
     /// Number of the part among the bodies of the project.
     body: usize,
     answer: Answer,
@@ -158,7 +158,7 @@ struct Remade<'b> {
     _charges: Vec<Charge<'b>>,
 }
 
-impl Run<'_> {
+impl ProjectRun<'_> {
     /// Numbers of the bodies that have to be solids.
     fn solids(&self) -> Vec<usize> {
         let bodies = &self.project.bodies;
@@ -211,7 +211,7 @@ impl Run<'_> {
         self.finish(done, certificate)
     }
 
-    fn run_one(&self, number: usize, examination: Examination) -> Result<Done, Failure> {
+    fn run_one(&self, number: usize, examination: Examination) -> Result<FinishedPart, Failure> {
         let body = &self.project.bodies[number];
         let mut input = Input::of(body.soup.clone(), examination, self.options)?;
         let is_simplified =
@@ -219,7 +219,7 @@ impl Run<'_> {
         input.regions = Some(if is_simplified { body.regions(self.budget)? } else { Regions::default() });
         let options = &self.options_of(body);
         let answer = run_on(self.operation, &mut input, options, self.budget)?;
-        Ok(Done { body: number, answer, attributes: None })
+        Ok(FinishedPart { body: number, answer, attributes: None })
     }
 
     /// The options for one part: its share of the faces that a simplification may leave.
@@ -235,7 +235,7 @@ impl Run<'_> {
     }
 
     /// The file with all new parts in it, and the account of all.
-    fn finish(&self, mut done: Vec<Done>, input_certificate: Certificate) -> Result<Answer, Failure> {
+    fn finish(&self, mut done: Vec<FinishedPart>, input_certificate: Certificate) -> Result<Answer, Failure> {
         let refused = done.iter().position(|done| done.answer.report.refusal.is_some());
         let mut outputs = Vec::new();
         let has_results = !done.is_empty() && done.iter().all(|done| done.answer.output.is_some());
@@ -292,7 +292,7 @@ impl Run<'_> {
     }
 
     /// The file with the results of a level: 0 is the main one.
-    fn write(&self, done: &mut [Done], level: usize) -> Result<(Output, Certificate), Failure> {
+    fn write(&self, done: &mut [FinishedPart], level: usize) -> Result<(Output, Certificate), Failure> {
         let budget = self.budget;
         let mut remade = Vec::new();
         for done in done.iter_mut() {

@@ -91,17 +91,17 @@ pub(super) fn taken_over<'b>(
         area += size;
         let (source, fate) = look.source(t)?;
         match fate {
-            Fate::Kept => {
+            AttributeFate::Kept => {
                 counts.kept += 1;
                 kept_area += size;
             }
-            Fate::FromFace => counts.from_face += 1,
-            Fate::FromNearest => counts.from_nearest += 1,
-            Fate::Lost => {
+            AttributeFate::FromFace => counts.from_face += 1,
+            AttributeFate::FromNearest => counts.from_nearest += 1,
+            AttributeFate::Lost => {
                 counts.lost += 1;
                 lost_area += size;
             }
-            Fate::Nothing => {}
+            AttributeFate::Nothing => {}
         }
         sources.push(source);
     }
@@ -112,7 +112,7 @@ pub(super) fn taken_over<'b>(
 }
 
 /// What becomes of the attributes of a triangle.
-enum Fate {
+enum AttributeFate {
     Kept,
     FromFace,
     FromNearest,
@@ -129,7 +129,7 @@ struct LookUp<'l> {
 }
 
 impl LookUp<'_> {
-    fn source(&mut self, t: usize) -> Result<(FaceSource, Fate), Stopped> {
+    fn source(&mut self, t: usize) -> Result<(FaceSource, AttributeFate), Stopped> {
         let (body, new) = (self.body, self.new);
         let corners = new.soup.corners(t as u32);
         let middle = corners.iter().sum::<DVec3>() / 3.0;
@@ -138,19 +138,19 @@ impl LookUp<'_> {
             Some(origin) => Some(origin),
             None => self.find_nearest(middle)?,
         };
-        let Some(behind) = behind else { return Ok((FaceSource::Nothing, Fate::Nothing)) };
+        let Some(behind) = behind else { return Ok((FaceSource::Nothing, AttributeFate::Nothing)) };
         let face = body.soup.face_of(behind);
         let was = body.soup.corners(behind);
         let is_divided = has_divided_paint(body, face);
         if let Some(order) = origin.is_some().then(|| whole(was, corners)).flatten() {
             let keeps_all = is_turned(order) || !is_divided;
-            let fate = if keeps_all { Fate::Kept } else { Fate::Lost };
+            let fate = if keeps_all { AttributeFate::Kept } else { AttributeFate::Lost };
             return Ok((FaceSource::Whole { face, corners: order }, fate));
         }
         let fate = match origin {
-            _ if is_divided => Fate::Lost,
-            Some(_) => Fate::FromFace,
-            None => Fate::FromNearest,
+            _ if is_divided => AttributeFate::Lost,
+            Some(_) => AttributeFate::FromFace,
+            None => AttributeFate::FromNearest,
         };
         if !body.is_mixed(face) {
             return Ok((FaceSource::Corner { face, corner: nearest_corner(was, middle) }, fate));

@@ -25,18 +25,19 @@ const ROOM: f64 = 2.0;
 const CONTACTS: usize = 1 << 14;
 
 /// The surface to simplify, to the caller's first target, or as far as it does not show.
-pub(super) struct Fewer<'f> {
+pub(super) struct WrapReduction<'f> {
     pub(super) wrapped: &'f Wrapped,
     pub(super) choices: &'f SimplifyChoices,
     pub(super) budget: &'f Budget,
 }
 
-impl Fewer<'_> {
+impl WrapReduction<'_> {
     /// What the mode gives. `None`: contacts remained, or there are not as many shells and handles as before.
     pub(super) fn triangles(&self, mode: Mode) -> Result<Option<(Simplified, Action)>, Stopped> {
         let Some(found) = self.embedded(mode)? else { return Ok(None) };
-        let before = Topology::of(&self.wrapped.triangles, self.wrapped.positions.len(), self.budget)?;
-        let after = Topology::of(&found.0.triangles, found.0.positions.len(), self.budget)?;
+        let before =
+            TopologicalInvariants::of(&self.wrapped.triangles, self.wrapped.positions.len(), self.budget)?;
+        let after = TopologicalInvariants::of(&found.0.triangles, found.0.positions.len(), self.budget)?;
         Ok((before == after).then_some(found))
     }
 
@@ -65,7 +66,7 @@ impl Fewer<'_> {
 
     fn run(&self, mode: Mode, held: &[Aabb]) -> Result<Option<(Simplified, Action)>, Stopped> {
         let Wrapped { positions, triangles, account, .. } = self.wrapped;
-        let input = simplify::Input::new(positions, triangles);
+        let input = simplify::SimplifyInput::new(positions, triangles);
         let target = self.choices.targets.first().copied();
         let settings = SimplifyOptions {
             targets: vec![target.unwrap_or(Target::Error(account.spacing * ERROR_OF_CELL))],
@@ -97,7 +98,7 @@ impl Fewer<'_> {
             spatial::self_contacts(positions, triangles, &bvh, Some(&terrains), search, self.budget)?;
         let room = DVec3::splat(ROOM * self.wrapped.account.spacing);
         let bounds = |t: u32| Aabb::of(triangles[t as usize].map(|v| positions[v as usize]));
-        let place = |contact: &spatial::Contact| {
+        let place = |contact: &spatial::TriangleContact| {
             let (a, b) = (bounds(contact.a), bounds(contact.b));
             Aabb { min: a.min.max(b.min) - room, max: a.max.min(b.max) + room }
         };
@@ -107,13 +108,13 @@ impl Fewer<'_> {
 
 /// What collapses must not change of a closed surface.
 #[derive(Debug, PartialEq, Eq)]
-struct Topology {
+struct TopologicalInvariants {
     shells: u32,
     /// Vertices less edges plus triangles: 2 for each shell less 2 for each handle.
     euler_characteristic: i64,
 }
 
-impl Topology {
+impl TopologicalInvariants {
     /// That of closed `triangles`, whose indices are below `vertex_count`.
     fn of(triangles: &[[u32; 3]], vertex_count: usize, budget: &Budget) -> Result<Self, Stopped> {
         let mut sets = UnionFind::new(vertex_count);
@@ -141,7 +142,7 @@ mod tests {
     const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
 
     fn topology(triangles: &[[u32; 3]], vertex_count: usize) -> (u32, i64) {
-        let found = Topology::of(triangles, vertex_count, &Budget::unlimited()).unwrap();
+        let found = TopologicalInvariants::of(triangles, vertex_count, &Budget::unlimited()).unwrap();
         (found.shells, found.euler_characteristic)
     }
 

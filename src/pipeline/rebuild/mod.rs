@@ -3,8 +3,8 @@
 mod fewer;
 mod parts;
 
-use self::fewer::Fewer;
-use super::fidelity::{Fidelity, Original, defined_volume};
+use self::fewer::WrapReduction;
+use super::fidelity::{FidelityMeasurement, Original, defined_volume};
 use super::input::Input;
 use super::output::{Candidate, NoCandidate};
 use super::plan::{Attempt, Variant};
@@ -23,7 +23,7 @@ use crate::repair::fill::FillOptions;
 use crate::repair::nest::{self, NestOptions};
 use crate::repair::{Draft, NEW, Selection, weld};
 use crate::simplify::Mode;
-use crate::winding::{OpenShells, Solid};
+use crate::winding::{OpenShells, WindingSolid};
 use crate::wrap::{self, Account, WrapError, WrapOptions, Wrapped};
 
 /// How a broken mesh is rebuilt.
@@ -93,15 +93,15 @@ pub(super) struct Rebuilt {
     /// The triangle of the input that each triangle is, or [`NEW`].
     origins: Vec<u32>,
     /// What it is chosen by, with patches over openings in the way.
-    pub(super) fidelity: Fidelity,
+    pub(super) fidelity: FidelityMeasurement,
     /// What is told of it: nothing of the file is hidden that a straight line leads to.
-    as_seen: Fidelity,
+    as_seen: FidelityMeasurement,
     actions: Vec<Action>,
 }
 
 impl Rebuilt {
     pub(super) fn returned(self, input: &Input, report: Report, budget: &Budget) -> Result<Answer, Stopped> {
-        let Fidelity { distance, losses } = self.as_seen;
+        let FidelityMeasurement { distance, losses } = self.as_seen;
         let report = Report { actions: self.actions, distance, losses: Some(losses), ..report };
         self.candidate.returned(input, &self.origins, report, Outcome::Rebuilt, budget)
     }
@@ -179,12 +179,12 @@ impl LatticeSearch<'_> {
         // Where it is too much work to say what is hidden, everything counts as seen.
         let solid = budget.within_part(4, || {
             budget.stage(Stage::Measure, || {
-                Solid::of(&draft.positions, &draft.triangles, choices.open_shells, budget)
+                WindingSolid::of(&draft.positions, &draft.triangles, choices.open_shells, budget)
             })
         })?;
         let volume = defined_volume(self.before);
         let original = Original::new(soup, volume, solid);
-        let looks = budget.stage(Stage::Repair, || looks::Source::of(soup, budget))?;
+        let looks = budget.stage(Stage::Repair, || looks::AppearanceSource::of(soup, budget))?;
         let asked = choices.cells.map(|cells| [(cells, f64::INFINITY)]);
         let mut lattices: &[(u32, f64)] = match &asked {
             Some(one) => one,
@@ -259,7 +259,7 @@ impl LatticeSearch<'_> {
 pub(super) fn is_mostly_sheets(draft: &Draft, options: &Options, budget: &Budget) -> Result<bool, Stopped> {
     let mut welded = draft.clone();
     weld::weld(&mut welded, budget)?;
-    let solid = Solid::of(&welded.positions, &welded.triangles, options.wrap.open_shells, budget)?;
+    let solid = WindingSolid::of(&welded.positions, &welded.triangles, options.wrap.open_shells, budget)?;
     Ok(solid.is_mostly_sheets())
 }
 
@@ -342,7 +342,7 @@ struct Rebuilding<'a> {
     /// The mesh of the input, where it is rebuilt.
     source: &'a Soup,
     /// What a new surface takes over.
-    looks: Option<&'a looks::Source<'a>>,
+    looks: Option<&'a looks::AppearanceSource<'a>>,
     encoding: Encoding,
     options: &'a Options,
     wrap_options: WrapOptions,
@@ -353,7 +353,7 @@ struct Rebuilding<'a> {
 
 impl Rebuilding<'_> {
     /// Beside the parts that can keep their bits, or without them.
-    fn run(&self, draft: &Draft, split: Option<&parts::Split>) -> Result<RebuiltMesh, NoCandidate> {
+    fn run(&self, draft: &Draft, split: Option<&parts::SplitMesh>) -> Result<RebuiltMesh, NoCandidate> {
         match split.map(|split| self.beside(split)) {
             None | Some(Err(NoCandidate::Refused(_))) => self.all(draft),
             Some(made) => made,
@@ -367,7 +367,7 @@ impl Rebuilding<'_> {
     }
 
     /// Some parts keep their bits.
-    fn beside(&self, split: &parts::Split) -> Result<RebuiltMesh, NoCandidate> {
+    fn beside(&self, split: &parts::SplitMesh) -> Result<RebuiltMesh, NoCandidate> {
         let mut kept = split.kept.clone();
         let nesting =
             NestOptions { policy: self.options.nesting, is_embedded: true, ..NestOptions::default() };
@@ -395,7 +395,7 @@ impl Rebuilding<'_> {
             kept.triangle_origin.iter().copied().chain(std::iter::repeat_n(NEW, count)).collect()
         };
         let account = wrapped.account;
-        let fewer = Fewer { wrapped, choices: &self.options.simplify, budget: self.budget };
+        let fewer = WrapReduction { wrapped, choices: &self.options.simplify, budget: self.budget };
         for mode in [Mode::Fast, Mode::Guarded] {
             // What takes too much work keeps its triangles, all of which are judged and measured then: that is dear too.
             let Some(found) = self.budget.within_all_but(5, || fewer.triangles(mode))? else {

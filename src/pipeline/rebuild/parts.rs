@@ -17,7 +17,7 @@ const PARTS_MAX: usize = 4096;
 const CONTACTS: usize = 1 << 20;
 
 /// A mesh in two.
-pub(super) struct Split {
+pub(super) struct SplitMesh {
     /// Sound parts, away from the others.
     pub(super) kept: Draft,
     /// The rest.
@@ -30,7 +30,7 @@ pub(super) struct Split {
 ///
 /// # Errors
 /// When the budget stops the run.
-pub(super) fn split(draft: &Draft, budget: &Budget) -> Result<Option<Split>, Stopped> {
+pub(super) fn split(draft: &Draft, budget: &Budget) -> Result<Option<SplitMesh>, Stopped> {
     let parts = parts(draft, budget)?;
     if parts.count < 2 || parts.count as usize > PARTS_MAX {
         return Ok(None);
@@ -55,7 +55,7 @@ pub(super) fn split(draft: &Draft, budget: &Budget) -> Result<Option<Split>, Sto
         side.drop_unused_vertices();
         side
     };
-    Ok(Some(Split { kept: side(false), broken: side(true) }))
+    Ok(Some(SplitMesh { kept: side(false), broken: side(true) }))
 }
 
 /// Triangles connected by vertices.

@@ -6,7 +6,7 @@ use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3, are_collinear};
 use crate::mesh::next_corner;
 use crate::par;
-use crate::spatial::{self, Bvh, Contact, Search};
+use crate::spatial::{self, Bvh, Search, TriangleContact};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -39,13 +39,13 @@ const PROPOSALS: usize = 16;
 /// The triangles of proposals by vertices of the surface, and what is wrong with each.
 struct JudgedProposals {
     triangles: Vec<Vec<[u32; 3]>>,
-    verdicts: Vec<Verdict>,
+    verdicts: Vec<Acceptance>,
 }
 
 /// Why a proposal does not stay, and near where it meets something.
 pub(super) type Refused = (Rejection, Option<DVec3>);
 
-type Verdict = Result<(), Refused>;
+type Acceptance = Result<(), Refused>;
 
 impl FillSurface {
     /// Accepts the proposals that are sound, and says of the others why they are not. For a sound one it gives the first
@@ -93,7 +93,7 @@ impl FillSurface {
         proposals: &[&PatchProposal],
         patches: &[Vec<[u32; 3]>],
         budget: &Budget,
-    ) -> Result<Vec<Verdict>, Stopped> {
+    ) -> Result<Vec<Acceptance>, Stopped> {
         let shapes = par::try_map_ranges(proposals.len(), PROPOSALS, |range| {
             budget.check()?;
             Ok(range.map(|i| self.judge_shape(proposals[i], &patches[i])).collect::<Vec<_>>())
@@ -190,7 +190,7 @@ impl FillSurface {
     }
 
     /// Looks for a contact of a patch in itself, and for new vertices of it in one place.
-    fn alone(&self, patch: &[[u32; 3]], budget: &Budget) -> Result<Verdict, Stopped> {
+    fn alone(&self, patch: &[[u32; 3]], budget: &Budget) -> Result<Acceptance, Stopped> {
         // Numbered by themselves, so that the work does not depend on how large the mesh is.
         let mut own = patch.as_flattened().to_vec();
         own.sort_unstable();
@@ -200,7 +200,7 @@ impl FillSurface {
         let patch: Vec<[u32; 3]> = patch.iter().map(|t| t.map(number)).collect();
         let bvh = Bvh::build(&points, &patch, None, budget)?;
         let found = spatial::self_contacts(&points, &patch, &bvh, None, Search::First, budget)?;
-        let place = |contact: &Contact| {
+        let place = |contact: &TriangleContact| {
             between([contact.a, contact.b].map(|t| patch[t as usize].map(|v| points[v as usize])))
         };
         Ok(if found.count > 0 {
@@ -237,7 +237,7 @@ impl FillSurface {
         let contacts = spatial::self_contacts(&self.positions, &triangles, &bvh, None, search, budget)?;
         let corners = |t: u32| triangles[t as usize].map(|v| self.positions[v as usize]);
         let mut pairs = Vec::new();
-        let reject = |verdict: &mut Verdict, reason: Rejection, at: Option<DVec3>| {
+        let reject = |verdict: &mut Acceptance, reason: Rejection, at: Option<DVec3>| {
             if verdict.is_ok() {
                 *verdict = Err((reason, at));
             }
@@ -277,7 +277,7 @@ impl FillSurface {
         &self,
         triangles: &[[u32; 3]],
         firsts: &[u32],
-        verdicts: &mut [Verdict],
+        verdicts: &mut [Acceptance],
         budget: &Budget,
     ) -> Result<(), Stopped> {
         let Some(&first) = firsts.first() else { return Ok(()) };

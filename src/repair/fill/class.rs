@@ -1,6 +1,6 @@
 //! Which ways of filling a hole are tried, and in which order.
 
-use super::creased::Division;
+use super::creased::HoleDivision;
 use super::make::Way;
 use super::options::{FillOptions, Method};
 use super::regions::Region;
@@ -27,7 +27,7 @@ pub(super) fn ways(
     surface: &FillSurface,
     options: &FillOptions,
     budget: &Budget,
-) -> Result<(Vec<Way>, Option<Division>), Stopped> {
+) -> Result<(Vec<Way>, Option<HoleDivision>), Stopped> {
     budget.spend(region.rim().len() as u64)?;
     let plain: &[Way] = match (region.walks.len(), region.is_flat) {
         (1, true) => &[Way::Planar, Way::Minimal, Way::Ears],
@@ -38,7 +38,7 @@ pub(super) fn ways(
     };
     let is_plain = method == Method::Auto && (!refines || is_to_be_plain(region, surface));
     let may_be_creased = method == Method::Creased || (method == Method::Auto && !is_plain);
-    let division = if may_be_creased { Division::of(region, surface, budget)? } else { None };
+    let division = if may_be_creased { HoleDivision::of(region, surface, budget)? } else { None };
     let is_small = region.rim().len() < CORNERS_TO_FIT;
     let own: &[Way] = match method {
         Method::Auto if is_plain => &[],

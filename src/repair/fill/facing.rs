@@ -3,7 +3,7 @@
 //! each other, and those of two holes on both sides of a wall past each other. The lips of two skins, as of a cup, and the rims
 //! of two flat sheets back to back, as of a plate without its sides, belong together too.
 
-use super::shape::Shape;
+use super::shape::LoopPolyline;
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec3, closest_point_on_triangle};
 use crate::mesh::BoundaryLoop;
@@ -28,7 +28,7 @@ const LOOPS_MAX: usize = 4096;
 
 /// For each rim of a flat sheet that is `free`, the larger one of another sheet that it shares a patch with.
 fn sheet_partners(
-    shapes: &[Shape],
+    shapes: &[LoopPolyline],
     sheets: &[Option<DVec3>],
     free: &[bool],
     budget: &Budget,
@@ -60,7 +60,7 @@ fn sheet_partners(
 }
 
 /// The loops that are `wanted`, the largest first; none where there are too many.
-fn by_area(shapes: &[Shape], wanted: impl Fn(usize) -> bool) -> Vec<usize> {
+fn by_area(shapes: &[LoopPolyline], wanted: impl Fn(usize) -> bool) -> Vec<usize> {
     let mut order: Vec<usize> = (0..shapes.len()).filter(|&i| wanted(i)).collect();
     if order.len() > LOOPS_MAX {
         return Vec::new();
@@ -71,9 +71,9 @@ fn by_area(shapes: &[Shape], wanted: impl Fn(usize) -> bool) -> Vec<usize> {
 
 /// True when both loops are outer rims of their sheets or both are rims of holes in them, and both sheets look away from each other,
 /// or both at each other where they are inside out.
-fn are_back_to_back([a, b]: [&Shape; 2], [of_a, of_b]: [Option<DVec3>; 2]) -> bool {
+fn are_back_to_back([a, b]: [&LoopPolyline; 2], [of_a, of_b]: [Option<DVec3>; 2]) -> bool {
     let (Some(of_a), Some(of_b)) = (of_a, of_b) else { return false };
-    let is_hole = |shape: &Shape, sheet: DVec3| shape.normal.dot(sheet) > 0.0;
+    let is_hole = |shape: &LoopPolyline, sheet: DVec3| shape.normal.dot(sheet) > 0.0;
     let way = (b.bounds.min + b.bounds.max) / 2.0 - (a.bounds.min + a.bounds.max) / 2.0;
     is_hole(a, of_a) == is_hole(b, of_b) && of_a.dot(way) * of_b.dot(way) < 0.0
 }
@@ -81,7 +81,7 @@ fn are_back_to_back([a, b]: [&Shape; 2], [of_a, of_b]: [Option<DVec3>; 2]) -> bo
 /// For each loop the larger one that it shares a patch with; `sheets` gives the normals of flat sheets of which loops are rims. Loops that
 /// are islands in a plane, or hold one, have none.
 pub(super) fn partners(
-    shapes: &[Shape],
+    shapes: &[LoopPolyline],
     loops: &[&BoundaryLoop],
     sheets: &[Option<DVec3>],
     outward: &dyn Fn(u32) -> DVec3,
@@ -130,7 +130,7 @@ pub(super) fn partners(
 }
 
 /// True when the boxes are no farther apart than a gap may be, and the loops run against each other.
-fn is_near(inner: &Shape, outer: &Shape) -> bool {
+fn is_near(inner: &LoopPolyline, outer: &LoopPolyline) -> bool {
     let apart =
         (outer.bounds.min - inner.bounds.max).max(inner.bounds.min - outer.bounds.max).max(DVec3::ZERO);
     apart.length() <= GAP_SHARE_MAX * outer.bounds.diagonal()
@@ -139,7 +139,7 @@ fn is_near(inner: &Shape, outer: &Shape) -> bool {
 
 /// The mean cosine between where the surface would go on from the sides of a loop, by their number, and the nearest place on the
 /// other one, and the mean distance of that.
-fn facing(from: &Shape, to: &Shape, outward: impl Fn(usize) -> DVec3) -> (f64, f64) {
+fn facing(from: &LoopPolyline, to: &LoopPolyline, outward: impl Fn(usize) -> DVec3) -> (f64, f64) {
     let n = from.points.len();
     let stride = n.div_ceil(SAMPLES);
     let (mut cos, mut gap, mut count) = (0.0, 0.0, 0.0);
@@ -157,7 +157,7 @@ fn facing(from: &Shape, to: &Shape, outward: impl Fn(usize) -> DVec3) -> (f64, f
 }
 
 /// The mean cosine between the normal of a loop and where the surface would go on from its sides, by their number.
-fn lift(shape: &Shape, outward: impl Fn(usize) -> DVec3) -> f64 {
+fn lift(shape: &LoopPolyline, outward: impl Fn(usize) -> DVec3) -> f64 {
     let n = shape.points.len();
     let sides = (0..n).step_by(n.div_ceil(SAMPLES));
     let count = sides.clone().count() as f64;

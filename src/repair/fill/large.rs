@@ -103,7 +103,7 @@ fn coarse_to_fine(
             .collect();
         // The rim between two corners that are left out for now is no side of the loop yet, so nothing is in its way.
         let may = |i: usize, k: usize| is_free(chosen[i], chosen[k]);
-        let corners = Corners { points: &at, rim_normals: &normals };
+        let corners = LoopCorners { points: &at, rim_normals: &normals };
         let found = match &coarser {
             None => without_crossings(corners, &All { corners: chosen.len() }, may, budget)?,
             Some(triangles) => {
@@ -123,7 +123,7 @@ fn coarse_to_fine(
 
 /// The corners of a loop, and the normal of the surface beyond each side.
 #[derive(Clone, Copy)]
-struct Corners<'a> {
+struct LoopCorners<'a> {
     points: &'a [DVec3],
     rim_normals: &'a [DVec3],
 }
@@ -131,12 +131,12 @@ struct Corners<'a> {
 /// The best triangulation that does not meet itself: chords that go through triangles are barred, and it is searched again.
 /// Of several that meet themselves the one that does so least.
 fn without_crossings(
-    corners: Corners<'_>,
+    corners: LoopCorners<'_>,
     chords: &impl Chords,
     is_free: impl Fn(usize, usize) -> bool,
     budget: &Budget,
 ) -> Result<Option<Vec<[usize; 3]>>, Stopped> {
-    let Corners { points, rim_normals } = corners;
+    let LoopCorners { points, rim_normals } = corners;
     let mut barred: FxHashSet<[usize; 2]> = FxHashSet::default();
     let mut best: Option<(u64, Vec<[usize; 3]>)> = None;
     for least in [Least::Bend, Least::Area].into_iter().flat_map(|least| [least; SEARCHES]) {

@@ -3,7 +3,7 @@
 use super::accept::{PatchProposal, check_topology};
 use super::caps::turn_caps;
 use super::coarsen::coarsen;
-use super::creased::{Division, creased};
+use super::creased::{HoleDivision, creased};
 use super::fair::{PatchSurroundings, fair};
 use super::options::{Extract, FillOptions, Method};
 use super::patch::PatchMesh;
@@ -76,7 +76,7 @@ const COARSENINGS: usize = 3;
 /// creases divide it, if they do.
 pub(super) fn make(
     region: &Region,
-    division: Option<&Division>,
+    division: Option<&HoleDivision>,
     rings: u32,
     way: Way,
     scene: &PatchInput<'_>,
@@ -140,9 +140,9 @@ fn rim_points(region: &Region, surface: &FillSurface) -> Vec<DVec3> {
     region.rim().iter().map(|&h| surface.point(h)).collect()
 }
 
-type Triangles = Result<Vec<[usize; 3]>, Rejection>;
+type TriangulationResult = Result<Vec<[usize; 3]>, Rejection>;
 
-fn planar_view(region: &Region, surface: &FillSurface) -> Triangles {
+fn planar_view(region: &Region, surface: &FillSurface) -> TriangulationResult {
     if region.rim().len() > planar::CORNERS_MAX {
         return Err(Rejection::TooLarge);
     }
@@ -160,7 +160,11 @@ fn polygon(region: &Region, surface: &FillSurface, budget: &Budget) -> Result<Op
     bridge::one_polygon(&points, &region.ranges(), |i, k| surface.is_free(rim[i], rim[k]), budget)
 }
 
-fn least_bent(region: &Region, surface: &FillSurface, budget: &Budget) -> Result<Triangles, Stopped> {
+fn least_bent(
+    region: &Region,
+    surface: &FillSurface,
+    budget: &Budget,
+) -> Result<TriangulationResult, Stopped> {
     let ranges = region.ranges();
     let pair = match &ranges[..] {
         [outer, inner] if !region.is_flat => Some([outer.clone(), inner.clone()]),
@@ -186,7 +190,11 @@ fn closes(region: &Region, triangles: &[[usize; 3]]) -> bool {
 }
 
 /// The triangulation that bends least of the polygon that passes all loops.
-fn of_one_polygon(region: &Region, surface: &FillSurface, budget: &Budget) -> Result<Triangles, Stopped> {
+fn of_one_polygon(
+    region: &Region,
+    surface: &FillSurface,
+    budget: &Budget,
+) -> Result<TriangulationResult, Stopped> {
     let Some(polygon) = polygon(region, surface, budget)? else { return Ok(Err(Rejection::NoPatch)) };
     let (rim, next) = (region.rim(), region.next_corners());
     let points: Vec<DVec3> = polygon.iter().map(|&i| surface.point(rim[i])).collect();
@@ -206,7 +214,11 @@ fn of_one_polygon(region: &Region, surface: &FillSurface, budget: &Budget) -> Re
     Ok(corners.ok_or(Rejection::NoPatch))
 }
 
-fn corner_by_corner(region: &Region, surface: &FillSurface, budget: &Budget) -> Result<Triangles, Stopped> {
+fn corner_by_corner(
+    region: &Region,
+    surface: &FillSurface,
+    budget: &Budget,
+) -> Result<TriangulationResult, Stopped> {
     let Some(polygon) = polygon(region, surface, budget)? else { return Ok(Err(Rejection::NoPatch)) };
     let rim = region.rim();
     let points: Vec<DVec3> = polygon.iter().map(|&i| surface.point(rim[i])).collect();
@@ -217,7 +229,7 @@ fn corner_by_corner(region: &Region, surface: &FillSurface, budget: &Budget) -> 
 }
 
 /// A triangulation without new vertices to begin with.
-fn base(region: &Region, surface: &FillSurface, budget: &Budget) -> Result<Triangles, Stopped> {
+fn base(region: &Region, surface: &FillSurface, budget: &Budget) -> Result<TriangulationResult, Stopped> {
     if region.is_flat
         && let Ok(triangles) = planar_view(region, surface)
     {

@@ -36,12 +36,12 @@ mod sparse;
 mod surface;
 
 use self::accept::PatchProposal;
-use self::creased::Division;
+use self::creased::HoleDivision;
 use self::make::{MadePatch, PatchInput, Way, make};
 pub use self::options::{Extract, FillOptions, HoleChoice, Method};
 use self::pinched::Walk;
 use self::regions::{Region, regions};
-pub use self::report::{Filled, HoleReport, Rejected, Rejection, Rim};
+pub use self::report::{FillReport, HoleReport, HoleRim, Rejected, Rejection};
 pub use self::span::{span_odd_edges, span_rims};
 use self::surface::FillSurface;
 use super::{Changes, Draft, Effects, FIRST_BLEND, NEW, Selection};
@@ -83,15 +83,15 @@ pub fn fill(
     soup: &Soup,
     options: &FillOptions,
     budget: &Budget,
-) -> Result<Filled, Stopped> {
+) -> Result<FillReport, Stopped> {
     fill_loops(draft, Some(soup), options, budget)
 }
 
 /// A hole, and the ways that it has not been offered yet.
-struct Hole {
+struct PendingHole {
     region: Region,
     /// How creases divide it; `None` when they do not or it is not to be seen.
-    division: Option<Division>,
+    division: Option<HoleDivision>,
     band_rings: u32,
     /// In the reverse of their order.
     ways: Vec<Way>,
@@ -106,7 +106,7 @@ fn fill_loops(
     soup: Option<&Soup>,
     options: &FillOptions,
     budget: &Budget,
-) -> Result<Filled, Stopped> {
+) -> Result<FillReport, Stopped> {
     let mut surface = surface_of(draft, budget)?;
     let boundary = Boundary::trace(&surface.triangles, surface.positions.len(), &surface.groups, budget)?;
     let is_chosen = |hole: &[u32]| soup.is_none_or(|soup| options.holes.takes(hole, draft, soup));
@@ -124,7 +124,8 @@ fn fill_loops(
     let sheets = sheets::of_flat_sheets(&walks, &surface, budget)?;
     let regions = regions(walks, &sheets, |h| surface.point(h), outward, budget)?;
     let start = |_, region| ladder.start(region, Vec::new(), &surface, budget);
-    let mut open = par::map_items(regions, start).into_iter().collect::<Result<Vec<Hole>, Stopped>>()?;
+    let mut open =
+        par::map_items(regions, start).into_iter().collect::<Result<Vec<PendingHole>, Stopped>>()?;
     let has_field = open.iter().any(|hole| hole.ways.contains(&Way::Rbf));
     // The surface grows by patches; what a field is halved by is the mesh as it was.
     let positions = if has_field { surface.positions.clone() } else { Vec::new() };
@@ -167,7 +168,7 @@ fn fill_loops(
     let first = draft.triangles.len();
     append(draft, soup, &surface, &patches, budget)?;
     let changes = changes(draft, first, &done, boundary.stray_edges).with(effects);
-    Ok(Filled { changes, holes: done })
+    Ok(FillReport { changes, holes: done })
 }
 
 /// What decides how holes are filled.
@@ -184,7 +185,7 @@ impl Ladder<'_> {
         mut rejected: Vec<Rejected>,
         surface: &FillSurface,
         budget: &Budget,
-    ) -> Result<Hole, Stopped> {
+    ) -> Result<PendingHole, Stopped> {
         let choice = self.soup.and_then(|soup| self.options.choice(region.rim(), self.draft, soup));
         let asked = choice.and_then(|choice| choice.method).unwrap_or(self.options.method);
         let band_rings = choice.and_then(|choice| choice.band_rings).unwrap_or(self.options.band_rings);
@@ -200,7 +201,7 @@ impl Ladder<'_> {
         }
         let rim = |own: &Vec<u32>| {
             let of_soup = |&h: &u32| self.soup.and_then(|soup| options::soup_half_edge(h, self.draft, soup));
-            Rim { half_edges: own.iter().filter_map(of_soup).collect(), edges: own.len() as u32 }
+            HoleRim { half_edges: own.iter().filter_map(of_soup).collect(), edges: own.len() as u32 }
         };
         let report = HoleReport {
             order: region.rim()[0],
@@ -211,19 +212,19 @@ impl Ladder<'_> {
             rejected,
             ..HoleReport::default()
         };
-        Ok(Hole { region, division, band_rings, ways, report })
+        Ok(PendingHole { region, division, band_rings, ways, report })
     }
 
     /// A hole that ran out of ways stays open. If it has several loops, or one that joins several, they are tried alone.
     fn give_up(
         &self,
-        hole: Hole,
+        hole: PendingHole,
         surface: &FillSurface,
-        left: &mut Vec<Hole>,
+        left: &mut Vec<PendingHole>,
         done: &mut Vec<HoleReport>,
         budget: &Budget,
     ) -> Result<(), Stopped> {
-        let Hole { region, report, .. } = hole;
+        let PendingHole { region, report, .. } = hole;
         for part in region.parts_alone(|h| surface.point(h)) {
             left.push(self.start(part, report.rejected.clone(), surface, budget)?);
         }
@@ -240,12 +241,12 @@ impl Ladder<'_> {
 
 /// The next patch for each hole that has one, and the way it was made in.
 fn offer(
-    open: &mut [Hole],
+    open: &mut [PendingHole],
     scene: &PatchInput<'_>,
     budget: &Budget,
 ) -> Result<Vec<Option<(Way, MadePatch)>>, Stopped> {
-    let holes: Vec<&mut Hole> = open.iter_mut().collect();
-    let chunks: Vec<Vec<&mut Hole>> = {
+    let holes: Vec<&mut PendingHole> = open.iter_mut().collect();
+    let chunks: Vec<Vec<&mut PendingHole>> = {
         let mut chunks = Vec::new();
         let mut rest = holes.into_iter().peekable();
         while rest.peek().is_some() {
@@ -263,7 +264,7 @@ fn offer(
     Ok(offers)
 }
 
-impl Hole {
+impl PendingHole {
     fn next(&mut self, scene: &PatchInput<'_>, budget: &Budget) -> Result<Option<(Way, MadePatch)>, Stopped> {
         while let Some(way) = self.ways.pop() {
             let (division, mut rejected) = (self.division.as_ref(), Vec::new());

@@ -25,7 +25,7 @@ pub(super) struct Smoothed {
 }
 
 /// A loop whose corners go one after the other.
-struct Ring<'a> {
+struct LinkedLoop<'a> {
     points: &'a [DVec3],
     rim_normals: Vec<DVec3>,
     next: Vec<usize>,
@@ -42,7 +42,7 @@ pub(super) fn close_notches(
     budget: &Budget,
 ) -> Result<Smoothed, Stopped> {
     let n = points.len();
-    let mut ring = Ring {
+    let mut ring = LinkedLoop {
         points,
         rim_normals: rim_normals.to_vec(),
         next: (0..n).map(|i| (i + 1) % n).collect(),
@@ -73,7 +73,7 @@ pub(super) fn close_notches(
     Ok(Smoothed { triangles, corners, rim_normals })
 }
 
-impl Ring<'_> {
+impl LinkedLoop<'_> {
     /// Unit normal of a triangle; zero when it has no area.
     fn normal(&self, ear: [usize; 3]) -> DVec3 {
         let [a, b, c] = ear.map(|i| self.points[i]);

@@ -8,7 +8,7 @@ use super::report::Rejection;
 use super::surface::FillSurface;
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3};
-use crate::implicit::{self, Band, Field, Kernel, RbfOptions, Surroundings, Unfit};
+use crate::implicit::{self, Band, BandSurroundings, Field, Kernel, RbfOptions, Unfit};
 use crate::par;
 use crate::spatial::{Bvh, NearestSearch};
 use rustc_hash::FxHashSet;
@@ -56,7 +56,7 @@ pub(super) fn field(
     budget: &Budget,
 ) -> Result<Result<Field, Rejection>, Stopped> {
     let band = band(region, rings, surface, budget)?;
-    let around = Surroundings { surface: Some(&mesh.nearest), mesh_box: mesh.bounds };
+    let around = BandSurroundings { surface: Some(&mesh.nearest), mesh_box: mesh.bounds };
     let unfit = match implicit::fit(&band, &around, &options.rbf, budget)? {
         Ok(field) => return Ok(Ok(field)),
         Err(unfit) => unfit,

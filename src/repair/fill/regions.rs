@@ -2,7 +2,7 @@
 //! that face each other across a gap.
 
 use super::pinched::Walk;
-use super::shape::{FLAT_SHARE_MAX, Shape, shape};
+use super::shape::{FLAT_SHARE_MAX, LoopPolyline, shape};
 use super::{facing, planar};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec2, DVec3, Sign, orient2d};
@@ -33,8 +33,8 @@ pub(super) struct Region {
 }
 
 impl Region {
-    fn new(outer: Walk, shape: &Shape, sheet: Option<DVec3>) -> Self {
-        let Shape { normal, is_flat, .. } = *shape;
+    fn new(outer: Walk, shape: &LoopPolyline, sheet: Option<DVec3>) -> Self {
+        let LoopPolyline { normal, is_flat, .. } = *shape;
         let is_on_sheet = lies_on(sheet, normal);
         let rim = outer.half_edges.clone();
         Self { rim, walks: vec![outer], normal, is_flat, is_on_sheet, is_bridge: false, sheets: vec![sheet] }
@@ -113,7 +113,8 @@ pub(super) fn regions(
     budget: &Budget,
 ) -> Result<Vec<Region>, Stopped> {
     let loops: Vec<&BoundaryLoop> = walks.iter().map(|walk| &walk.half_edges).collect();
-    let shapes: Vec<Shape> = loops.iter().map(|l| shape(l.iter().map(|&h| corner(h)).collect())).collect();
+    let shapes: Vec<LoopPolyline> =
+        loops.iter().map(|l| shape(l.iter().map(|&h| corner(h)).collect())).collect();
     let is_on_sheet = |i: usize| lies_on(sheets[i], shapes[i].normal);
     let in_plane = containers(&shapes, is_on_sheet, budget)?;
     let across = match outward {
@@ -146,7 +147,7 @@ fn lies_on(sheet: Option<DVec3>, normal: DVec3) -> bool {
 /// For each loop the one whose island it is: the smallest flat loop around it, if that is not an island itself and runs
 /// the other way around. What is inside of a rim that `is_on_sheet` is a hole in the sheet.
 fn containers(
-    shapes: &[Shape],
+    shapes: &[LoopPolyline],
     is_on_sheet: impl Fn(usize) -> bool,
     budget: &Budget,
 ) -> Result<Vec<Option<usize>>, Stopped> {
@@ -169,7 +170,7 @@ fn containers(
 }
 
 /// True when `inner` lies in the plane of `outer` and inside it.
-fn contains(outer: &Shape, inner: &Shape) -> bool {
+fn contains(outer: &LoopPolyline, inner: &LoopPolyline) -> bool {
     let tolerance = FLAT_SHARE_MAX * outer.bounds.diagonal();
     outer.normal.dot(inner.normal).abs() >= PARALLEL_COS_MIN
         && inner.bounds.min.cmpge(outer.bounds.min - tolerance).all()
@@ -179,7 +180,7 @@ fn contains(outer: &Shape, inner: &Shape) -> bool {
 }
 
 /// Crossing test of a point in the view of the loop; exact but for points on the loop itself.
-fn is_inside(point: DVec3, outer: &Shape) -> bool {
+fn is_inside(point: DVec3, outer: &LoopPolyline) -> bool {
     let view = planar::view(outer.normal);
     let p = view(point);
     let crosses = |a: DVec2, b: DVec2| {

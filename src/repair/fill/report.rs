@@ -62,7 +62,7 @@ impl Rejected {
 /// A boundary loop of a hole, or the part of it that is at the hole: where loops meet in several vertices, each gap between
 /// them may be closed by itself.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Rim {
+pub struct HoleRim {
     /// The half-edges of the soup that are in it; those of new triangles are none.
     pub half_edges: Vec<u32>,
     /// Its edges.
@@ -75,7 +75,7 @@ pub struct HoleReport {
     /// The first half-edge of the draft in its first loop, which is what reports are sorted by.
     pub order: u32,
     /// Its loops, the outer one first.
-    pub rims: Vec<Rim>,
+    pub rims: Vec<HoleRim>,
     /// Loops that count as closed with it: whole ones, and one for all that it has only parts of.
     pub loops: u64,
     /// The number of closed walks that its rim is: fewer where loops that meet in a vertex are joined.
@@ -98,7 +98,7 @@ pub struct HoleReport {
 
 /// What a fill did.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Filled {
+pub struct FillReport {
     /// The sum, as every step tells it.
     pub changes: Changes,
     /// One for each hole that was to be filled, in the order of their first loops.

@@ -7,7 +7,7 @@ use crate::geom::{Aabb, DVec3};
 pub(super) const FLAT_SHARE_MAX: f64 = 1e-5;
 
 /// A boundary loop as a closed polyline.
-pub(super) struct Shape {
+pub(super) struct LoopPolyline {
     pub(super) normal: DVec3,
     pub(super) area: f64,
     pub(super) bounds: Aabb,
@@ -16,7 +16,7 @@ pub(super) struct Shape {
 }
 
 /// Newell's normal and what else is asked of a loop.
-pub(super) fn shape(points: Vec<DVec3>) -> Shape {
+pub(super) fn shape(points: Vec<DVec3>) -> LoopPolyline {
     let bounds = Aabb::of(points.iter().copied());
     let (origin, size) = (points[0], bounds.diagonal());
     let next = points.iter().cycle().skip(1);
@@ -25,5 +25,5 @@ pub(super) fn shape(points: Vec<DVec3>) -> Shape {
     let normal = cross.try_normalize().unwrap_or(DVec3::ZERO);
     let is_flat = normal != DVec3::ZERO
         && points.iter().all(|p| (p - origin).dot(normal).abs() <= FLAT_SHARE_MAX * size);
-    Shape { normal, area: cross.length() * size * size, bounds, is_flat, points }
+    LoopPolyline { normal, area: cross.length() * size * size, bounds, is_flat, points }
 }

@@ -12,7 +12,7 @@ const FLAT_SHARE_MAX: f64 = 1e-4;
 
 /// A part of the surface.
 #[derive(Clone, Copy)]
-struct Part {
+struct SheetCandidate {
     bounds: Aabb,
     /// Any of its corners.
     origin: DVec3,
@@ -31,9 +31,10 @@ pub(super) fn of_flat_sheets(
         return Ok(Vec::new());
     }
     let parts = surface.groups.components(budget)?;
-    let _charge = budget.charge(u64::from(parts.count) * size_of::<Part>() as u64)?;
+    let _charge = budget.charge(u64::from(parts.count) * size_of::<SheetCandidate>() as u64)?;
     budget.spend(surface.triangles.len() as u64 / 8)?;
-    let unseen = Part { bounds: Aabb::EMPTY, origin: DVec3::ZERO, normal: DVec3::ZERO, is_flat: false };
+    let unseen =
+        SheetCandidate { bounds: Aabb::EMPTY, origin: DVec3::ZERO, normal: DVec3::ZERO, is_flat: false };
     let mut found = vec![unseen; parts.count as usize];
     let part_of = |h: u32| parts.of[triangle_of(h) as usize] as usize;
     for h in walks.iter().flat_map(|walk| &walk.half_edges) {

@@ -69,7 +69,7 @@ struct Section {
 }
 
 /// A direction from the axis in which one of the cuts, or each, has a corner.
-struct Ray {
+struct CutDirection {
     angle: f64,
     /// The corner of the lower cut and that of the upper.
     corners: [Option<usize>; 2],
@@ -148,20 +148,20 @@ impl Section {
 }
 
 /// All directions in which a cut has a corner, counter-clockwise.
-fn rays(sections: &[Section; 2]) -> Vec<Ray> {
+fn rays(sections: &[Section; 2]) -> Vec<CutDirection> {
     let of = |which: usize| {
         sections[which].flat.iter().enumerate().map(move |(i, p)| (libm::atan2(p.y, p.x), which, i))
     };
     let mut corners: Vec<(f64, usize, usize)> = of(0).chain(of(1)).collect();
     corners.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let mut rays: Vec<Ray> = Vec::with_capacity(corners.len());
+    let mut rays: Vec<CutDirection> = Vec::with_capacity(corners.len());
     for (angle, which, i) in corners {
         match rays.last_mut() {
             Some(last) if angle - last.angle < SAME_ANGLE && last.corners[which].is_none() => {
                 last.corners[which] = Some(i);
             }
             _ => {
-                let mut ray = Ray { angle, corners: [None; 2] };
+                let mut ray = CutDirection { angle, corners: [None; 2] };
                 ray.corners[which] = Some(i);
                 rays.push(ray);
             }
@@ -171,7 +171,7 @@ fn rays(sections: &[Section; 2]) -> Vec<Ray> {
 }
 
 /// Puts the cuts and the belt in the place of the tips.
-fn build(draft: &mut Draft, sections: &[Section; 2], rays: &[Ray], pitch: f64) {
+fn build(draft: &mut Draft, sections: &[Section; 2], rays: &[CutDirection], pitch: f64) {
     let [lower, upper] = [0, 1].map(|which| cut_off(draft, &sections[which], which, rays, pitch));
     for k in 0..rays.len() as u32 {
         let next = (k + 1) % rays.len() as u32;
@@ -182,7 +182,7 @@ fn build(draft: &mut Draft, sections: &[Section; 2], rays: &[Ray], pitch: f64) {
 }
 
 /// Cuts a tip off; the rim gets a vertex on each ray. Gives the first of these vertices.
-fn cut_off(draft: &mut Draft, section: &Section, which: usize, rays: &[Ray], pitch: f64) -> u32 {
+fn cut_off(draft: &mut Draft, section: &Section, which: usize, rays: &[CutDirection], pitch: f64) -> u32 {
     let base = draft.positions.len() as u32;
     let origin = draft.vertex_origin[section.tip as usize];
     draft.positions.resize(draft.positions.len() + rays.len(), DVec3::ZERO);

@@ -13,7 +13,7 @@ mod inside_out;
 use super::{Changes, Draft, Effects};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{print_pitch, radial_order};
-use crate::mesh::{self, CutMethod, EdgeGroups, Marks, NO_TWIN, divide, edge_of, prev_corner};
+use crate::mesh::{self, CutMarks, CutMethod, EdgeGroups, NO_TWIN, divide, edge_of, prev_corner};
 
 /// What lies between the triangles that are paired.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -117,7 +117,7 @@ impl Pairing {
 
     fn cut(&self, draft: &Draft, budget: &Budget) -> Result<Parted, Stopped> {
         let (mut triangles, vertex_count) = (draft.triangles.clone(), draft.positions.len());
-        let marks = Marks::across(&triangles, vertex_count, self.twins.clone(), budget)?;
+        let marks = CutMarks::across(&triangles, vertex_count, self.twins.clone(), budget)?;
         let copies = mesh::cut(&mut triangles, vertex_count, &marks, CutMethod::Local, budget)?;
         Ok(Parted { triangles, copies })
     }

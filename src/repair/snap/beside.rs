@@ -21,7 +21,7 @@ pub(super) const NEAR_MAX: usize = 256;
 
 /// Which boundary edges may be joined.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Reach {
+pub(super) struct JoinReach {
     /// Largest distance of ends.
     pub(super) epsilon: f64,
     /// Only edges that lie side by side, unless they coincide.
@@ -31,7 +31,7 @@ pub(super) struct Reach {
 /// A boundary edge from its first end to its second, and the third corner of its triangle.
 pub(super) type Flank = [DVec3; 3];
 
-impl Reach {
+impl JoinReach {
     /// How far from an end of an edge to look.
     pub(super) fn of_edge(self, [from, to]: [DVec3; 2]) -> f64 {
         if self.by_edge { self.epsilon.min(SHARE_OF_EDGE * from.distance(to)) } else { self.epsilon }
@@ -130,11 +130,11 @@ mod tests {
         let first = flank(0.0, [0.5, -1.0, 0.0]);
         assert!(lie_side_by_side(first, flank(0.125, [0.5, 1.0, 0.0])));
         assert!(!lie_side_by_side(first, flank(0.126, [0.5, 1.0, 0.0])));
-        let by_edge = Reach { epsilon: 1.0, by_edge: true };
+        let by_edge = JoinReach { epsilon: 1.0, by_edge: true };
         assert_eq!(by_edge.of_edge([DVec3::ZERO, DVec3::X]), 0.125);
         assert!(by_edge.may_join(first, first), "edges that coincide are one");
         assert!(!by_edge.may_join(first, flank(0.01, [0.5, -1.0, 0.01])));
-        assert!(Reach { epsilon: 1.0, by_edge: false }.may_join(first, flank(0.01, [0.5, -1.0, 0.01])));
+        assert!(JoinReach { epsilon: 1.0, by_edge: false }.may_join(first, flank(0.01, [0.5, -1.0, 0.01])));
     }
 
     #[test]

@@ -21,7 +21,7 @@ const PART_TURNS: f64 = 0.5;
 
 /// What was divided.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Divided {
+pub(super) struct DivisionSummary {
     pub(super) edges: u64,
     pub(super) triangles: u64,
     /// Largest distance of a vertex from the edge that goes through it now, in the unit of the file.
@@ -147,7 +147,7 @@ pub(super) fn divide_beside(
     epsilon: f64,
     chosen: &ChosenEdges,
     budget: &Budget,
-) -> Result<Divided, Stopped> {
+) -> Result<DivisionSummary, Stopped> {
     let search = RimSearch::of(&draft.positions, &draft.triangles, &rim.half_edges, budget)?;
     let is_slit = rim.slits(draft, epsilon);
     let mut inside: Vec<InnerVertex> = Vec::new();
@@ -172,7 +172,7 @@ pub(super) fn divide_beside(
     inside.dedup_by(|next, last| {
         next.half_edge == last.half_edge && next.along - last.along <= 2.0 * next.apart.max(last.apart)
     });
-    let mut divided = Divided::default();
+    let mut divided = DivisionSummary::default();
     for of_triangle in inside.chunk_by(|a, b| triangle_of(a.half_edge) == triangle_of(b.half_edge)) {
         budget.spend(of_triangle.len() as u64)?;
         if divide_at(draft, of_triangle) {
@@ -238,7 +238,7 @@ mod tests {
         Draft::of(&points, &triangles)
     }
 
-    fn divided(draft: &mut Draft, epsilon: f64) -> Divided {
+    fn divided(draft: &mut Draft, epsilon: f64) -> DivisionSummary {
         let budget = Budget::unlimited();
         let rim = ManifoldRim::of(draft, &budget).unwrap();
         let divided = divide_beside(draft, &rim, epsilon, &ChosenEdges::default(), &budget).unwrap();
@@ -273,10 +273,10 @@ mod tests {
     fn vertices_beyond_epsilon_or_beside_an_end_divide_nothing() {
         let before = strips(&[0.0, 1.0, 2.0], &[0.0, 0.5, 2.0], 0.01);
         let mut draft = before.clone();
-        assert_eq!((divided(&mut draft, 0.009), draft == before), (Divided::default(), true));
+        assert_eq!((divided(&mut draft, 0.009), draft == before), (DivisionSummary::default(), true));
         let before = strips(&[0.0, 1.0, 2.0], &[0.0, 1.001, 2.0], 0.01);
         let mut draft = before.clone();
-        assert_eq!((divided(&mut draft, 0.02), draft == before), (Divided::default(), true));
+        assert_eq!((divided(&mut draft, 0.02), draft == before), (DivisionSummary::default(), true));
     }
 
     #[test]
@@ -287,7 +287,7 @@ mod tests {
         flat.positions[1].y = -0.02;
         flat.positions[3].y = -0.02;
         let mut draft = flat.clone();
-        assert_eq!((divided(&mut draft, 0.02), draft == flat), (Divided::default(), true));
+        assert_eq!((divided(&mut draft, 0.02), draft == flat), (DivisionSummary::default(), true));
         let mut draft = before.clone();
         assert_eq!(divided(&mut draft, 0.02).edges, 1);
     }
@@ -308,6 +308,6 @@ mod tests {
         let rim = ManifoldRim::of(&before, &Budget::unlimited()).unwrap();
         assert_eq!(rim.slits(&before, 0.002), [false, true]);
         let mut draft = before.clone();
-        assert_eq!((divided(&mut draft, 0.002), draft == before), (Divided::default(), true));
+        assert_eq!((divided(&mut draft, 0.002), draft == before), (DivisionSummary::default(), true));
     }
 }

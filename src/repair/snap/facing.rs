@@ -1,7 +1,7 @@
 //! Which parts to turn so that their boundaries can be joined: two edges that lie on each other are joined only where
 //! they run in opposite directions, and how a sheet is wound says nothing about where it belongs.
 
-use super::beside::Reach;
+use super::beside::JoinReach;
 use super::{ManifoldRim, flank};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::triangle_area;
@@ -21,7 +21,7 @@ const PARTNERS_MAX: usize = 32;
 pub(super) fn turn_to_face(
     draft: &mut Draft,
     rim: &ManifoldRim,
-    reach: Reach,
+    reach: JoinReach,
     chosen: &ChosenEdges,
     budget: &Budget,
 ) -> Result<u64, Stopped> {
@@ -70,7 +70,7 @@ fn meetings(
     draft: &Draft,
     rim: &ManifoldRim,
     parts: &Components,
-    reach: Reach,
+    reach: JoinReach,
     chosen: &ChosenEdges,
     budget: &Budget,
 ) -> Result<Vec<FacingEdges>, Stopped> {

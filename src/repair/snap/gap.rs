@@ -1,6 +1,6 @@
 //! How far apart rims lie that should be one.
 
-use super::beside::{Flank, NEAR_MAX, Reach, flank_of, lie_side_by_side};
+use super::beside::{Flank, JoinReach, NEAR_MAX, flank_of, lie_side_by_side};
 use super::divide::{Beside, RimSearch, slits};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec3, is_on_segment};
@@ -16,7 +16,7 @@ use rustc_hash::FxHashMap;
 /// # Errors
 /// When the budget stops the run.
 pub fn gap_between_rims(draft: &Draft, most: f64, budget: &Budget) -> Result<Option<f64>, Stopped> {
-    let rims = Rims::of(draft, budget)?;
+    let rims = WeldedBoundary::of(draft, budget)?;
     let [between, beside] =
         [rims.widest_between_edges(most, budget)?, rims.widest_beside_vertices(most, budget)?];
     let widest = beside.map_or(between, |apart| larger(between, apart));
@@ -24,7 +24,7 @@ pub fn gap_between_rims(draft: &Draft, most: f64, budget: &Budget) -> Result<Opt
 }
 
 /// The edges with one triangle, where vertices at one place are one.
-struct Rims {
+struct WeldedBoundary {
     places: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     half_edges: Vec<u32>,
@@ -33,7 +33,7 @@ struct Rims {
     boundary: Boundary,
 }
 
-impl Rims {
+impl WeldedBoundary {
     fn of(draft: &Draft, budget: &Budget) -> Result<Self, Stopped> {
         let at = coincident_f64(&draft.positions, budget)?;
         let placed = |t: &[u32; 3]| t.map(|v| at.group[v as usize]);
@@ -69,7 +69,7 @@ impl Rims {
         let mut widest = None;
         for &h in &self.half_edges {
             let [from, to, third] = self.flank(h);
-            let reach = Reach { epsilon: most, by_edge: true }.of_edge([from, to]);
+            let reach = JoinReach { epsilon: most, by_edge: true }.of_edge([from, to]);
             let near = octree.near(from, reach, budget)?;
             let compared = near.iter().map(|beside| edges_at[beside].len()).sum::<usize>();
             budget.spend(near.len() as u64 + compared.min(NEAR_MAX) as u64)?;
@@ -116,7 +116,8 @@ impl Rims {
                 own.iter().all(|&(_, g)| is_other(g))
             };
             // What is nearer to an end is compared with it, as the end of an edge.
-            let off_ends = |[from, to, _]: Flank| Reach { epsilon: most, by_edge: true }.of_edge([from, to]);
+            let off_ends =
+                |[from, to, _]: Flank| JoinReach { epsilon: most, by_edge: true }.of_edge([from, to]);
             let nearest = search.nearest_beside(v, own, most, off_ends, may_divide, budget)?;
             let Some(Beside { half_edge, apart }) = nearest else { continue };
             let [from, to, _] = self.flank(half_edge);

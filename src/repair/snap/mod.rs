@@ -11,14 +11,14 @@ mod divide;
 mod facing;
 mod gap;
 
-use self::beside::{Flank, Reach, flank_of};
-use self::divide::{Divided, divide_beside, slits};
+use self::beside::{Flank, JoinReach, flank_of};
+use self::divide::{DivisionSummary, divide_beside, slits};
 pub use self::gap::gap_between_rims;
 use super::{Changes, Draft, Effects, Joins};
 use crate::budget::{Budget, Stopped};
 use crate::figures::figure;
 use crate::geom::{Aabb, DVec3, are_collinear};
-use crate::mesh::{self, Boundary, ChosenEdges, JoinRule, Stitched, Validity, edge_of};
+use crate::mesh::{self, Boundary, ChosenEdges, JoinRule, StitchValidity, Stitched, edge_of};
 use crate::spatial::{Octree, is_within};
 use rustc_hash::FxHashMap;
 
@@ -29,7 +29,7 @@ pub struct SnapOptions {
     /// boundary edge. `None`: 1e-5 of the diagonal.
     pub epsilon: Option<f64>,
     /// When two edges may be joined.
-    pub validity: Validity,
+    pub validity: StitchValidity,
     /// Edges that stay apart.
     pub chosen: ChosenEdges,
     /// No part is turned to be joined.
@@ -59,8 +59,8 @@ pub fn snap(draft: &mut Draft, options: &SnapOptions, budget: &Budget) -> Result
         Some(epsilon) if options.by_edge => epsilon,
         asked => epsilon(draft, &rim, asked),
     };
-    let reach = Reach { epsilon, by_edge: options.by_edge };
-    let mut divided = Divided::default();
+    let reach = JoinReach { epsilon, by_edge: options.by_edge };
+    let mut divided = DivisionSummary::default();
     if options.by_edge && epsilon > 0.0 {
         divided = divide_beside(draft, &rim, epsilon, &options.chosen, budget)?;
         if divided.edges > 0 {
@@ -172,7 +172,7 @@ impl ManifoldRim {
     fn pairs(
         &self,
         draft: &Draft,
-        reach: Reach,
+        reach: JoinReach,
         chosen: &ChosenEdges,
         budget: &Budget,
     ) -> Result<[Vec<(u32, u32)>; 2], Stopped> {

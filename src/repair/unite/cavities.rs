@@ -61,7 +61,7 @@ pub(super) fn turn_inverted(draft: &mut Draft, budget: &Budget) -> Result<Turned
     };
     let sizes: Vec<f64> =
         (0..parts.count as usize).map(|part| if is_inverted[part] { size(part) } else { 0.0 }).collect();
-    let shells = Shells {
+    let shells = DraftShells {
         draft,
         of: &parts.of,
         members: &members,
@@ -141,7 +141,7 @@ impl CavityShells {
     }
 }
 
-struct Shells<'s> {
+struct DraftShells<'s> {
     draft: &'s Draft,
     /// The shell of each triangle.
     of: &'s [u32],
@@ -163,7 +163,7 @@ struct Around {
     inward: i32,
 }
 
-impl Shells<'_> {
+impl DraftShells<'_> {
     /// True when all that is in `part`, which points inward, is in bodies, and not all of it in their cavities.
     fn is_cavity(&self, part: usize) -> Result<bool, Stopped> {
         let own = self.members.of(part);

@@ -30,13 +30,13 @@ impl GridBox {
 
 /// Cubes over the box of all triangles at the start; what is beyond counts to the ends.
 #[derive(Debug, Clone, Copy)]
-struct Grid {
+struct CubeGrid {
     min: DVec3,
     /// Steps to a unit of length.
     scale: f64,
 }
 
-impl Grid {
+impl CubeGrid {
     fn over(bounds: Aabb) -> Self {
         let size = (bounds.max - bounds.min).max_element();
         Self { min: bounds.min, scale: if size > 0.0 { f64::from(u16::MAX) / size } else { 0.0 } }
@@ -55,7 +55,7 @@ impl Grid {
 /// for each triangle.
 #[derive(Debug, Clone)]
 pub(super) struct MovingBoxes {
-    grid: Grid,
+    grid: CubeGrid,
     nodes: Vec<GridBox>,
     /// The triangle of each leaf.
     order: Vec<u32>,
@@ -83,7 +83,7 @@ impl MovingBoxes {
             })
             .collect();
         let leaves = triangles.len();
-        let grid = Grid::over(Aabb::of(triangles.as_flattened().iter().map(|&v| position(v))));
+        let grid = CubeGrid::over(Aabb::of(triangles.as_flattened().iter().map(|&v| position(v))));
         let mut nodes = vec![GridBox::EMPTY; 2 * leaves];
         for (leaf, &t) in order.iter().enumerate() {
             let [a, b, c] = triangles[t as usize];

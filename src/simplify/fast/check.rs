@@ -1,8 +1,8 @@
 //! Whether the surface that a round would leave meets itself.
 
-use super::mesh::Division;
+use super::mesh::MeshDivision;
 use crate::budget::{Budget, CHECK_EVERY, Charge, Stopped};
-use crate::geom::{Aabb, DVec3, Plane, Shared, are_collinear, contact};
+use crate::geom::{Aabb, DVec3, Shared, ThreePointPlane, are_collinear, contact};
 use crate::par;
 use crate::spatial::{Bvh, Search, self_contacts};
 
@@ -31,8 +31,8 @@ pub(super) struct Left {
 }
 
 /// The surface of a round: that of the first try, and what was done again.
-pub(super) struct Check<'c> {
-    division: &'c Division,
+pub(super) struct RoundCheck<'c> {
+    division: &'c MeshDivision,
     /// The first try: triangles of each part, then those between parts.
     pub(super) first: Left,
     /// Where the triangles of each part begin in `first`.
@@ -55,10 +55,10 @@ pub(super) struct SurfaceCheck {
     pub(super) unsound: Vec<u32>,
 }
 
-impl<'c> Check<'c> {
+impl<'c> RoundCheck<'c> {
     /// The surface that `parts` leave, and `between` as it is. `roundings`: for each reading, whether it is rounded.
     pub(super) fn new(
-        division: &'c Division,
+        division: &'c MeshDivision,
         parts: Vec<Left>,
         between: Left,
         roundings: &[bool],
@@ -219,7 +219,7 @@ impl<'c> Check<'c> {
             let mut pairs = Vec::new();
             for t in range {
                 let own = corners(triangles[t]);
-                let plane = Plane::through(own);
+                let plane = ThreePointPlane::through(own);
                 bvh.visit_box(Aabb::of(own), self.budget, |other| {
                     let its = self.first.triangles[other as usize];
                     let do_meet = || {

@@ -3,7 +3,7 @@
 //! Inside a part the corner table says so. The triangles between parts are in no table in the round in which the input
 //! is judged.
 
-use super::mesh::{Division, Mesh};
+use super::mesh::{Mesh, MeshDivision};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::par;
 
@@ -14,7 +14,7 @@ type Spoke = [u32; 3];
 /// in opposite directions.
 pub(super) fn are_fans_between<S: Copy + Send + Sync>(
     mesh: &Mesh<S>,
-    division: &Division,
+    division: &MeshDivision,
     budget: &Budget,
 ) -> Result<bool, Stopped> {
     let of_range = par::try_map_ranges(mesh.triangles.len(), CHECK_EVERY, |range| {

@@ -4,7 +4,7 @@
 //! them is seen from the hub in a common direction. So each hub has a tree of directions that is built once and follows
 //! its triangles; only when the hub itself moves, whose collapse looks at all of them anyway, it is built again.
 
-use crate::geom::{Aabb, Cone, DVec3, arc_box, direction};
+use crate::geom::{Aabb, DVec3, DirectionCone, arc_box, direction};
 
 /// Triangles around one vertex up to which it is no hub.
 const VALENCE_MAX: u32 = 64;
@@ -12,7 +12,7 @@ const VALENCE_MAX: u32 = 64;
 const NO_FAN: u32 = u32::MAX;
 
 /// A triangle as it is now: the numbers of its corners and where they are.
-pub(super) type Corners = ([u32; 3], [DVec3; 3]);
+pub(super) type PlacedTriangle = ([u32; 3], [DVec3; 3]);
 
 /// The hubs of a part. Each triangle belongs to one at most, for good.
 #[derive(Debug, Default)]
@@ -81,7 +81,7 @@ impl Hubs {
     }
 
     /// Sorts the triangles of a fan by their directions and builds its tree. O(n log n).
-    fn build(&mut self, fan: usize, corners: impl Fn(u32) -> Corners) {
+    fn build(&mut self, fan: usize, corners: impl Fn(u32) -> PlacedTriangle) {
         let fan = &mut self.fans[fan];
         let (hub, at) = (fan.vertex, fan.at);
         let key = |&t: &u32| {
@@ -103,7 +103,7 @@ impl Hubs {
     }
 
     /// Says where a triangle of a fan is now.
-    pub(super) fn set(&mut self, fan: usize, triangle: u32, now: Corners) {
+    pub(super) fn set(&mut self, fan: usize, triangle: u32, now: PlacedTriangle) {
         let leaf = self.place[triangle as usize];
         let fan = &mut self.fans[fan];
         fan.bounds = fan.bounds.union(Aabb::of(now.1));
@@ -117,7 +117,13 @@ impl Hubs {
 
     /// Says that vertices `from` and `into` have become one, which is at `position`. After the triangles around them are
     /// set or forgotten. O(n log n) for the triangles of hubs among them.
-    pub(super) fn merge(&mut self, from: u32, into: u32, position: DVec3, corners: impl Fn(u32) -> Corners) {
+    pub(super) fn merge(
+        &mut self,
+        from: u32,
+        into: u32,
+        position: DVec3,
+        corners: impl Fn(u32) -> PlacedTriangle,
+    ) {
         let first = |fan_at: &[u32], v: u32| fan_at.get(v as usize).copied().unwrap_or(NO_FAN);
         let [gone, kept] = [from, into].map(|v| first(&self.fan_at, v));
         if gone != NO_FAN && from != into {
@@ -169,7 +175,7 @@ impl HubFan {
 
     /// Calls `visit` with all triangles that may be seen in a direction of one of the cones, until it says false. Gives the
     /// number of nodes that were looked at.
-    pub(super) fn visit(&self, cones: &[Cone], mut visit: impl FnMut(u32) -> bool) -> usize {
+    pub(super) fn visit(&self, cones: &[DirectionCone], mut visit: impl FnMut(u32) -> bool) -> usize {
         let leaves = self.triangles.len();
         let may_meet = |node: usize| cones.iter().any(|cone| cone.may_meet(&self.nodes[node]));
         let mut stack = [0usize; 64];
@@ -209,7 +215,7 @@ fn hub_of(corners: [u32; 3], valence: &[u32]) -> Option<u32> {
 }
 
 /// The directions of a triangle from the hub, one of its corners.
-fn directions((ids, [a, b, c]): Corners, hub: u32, at: DVec3) -> Aabb {
+fn directions((ids, [a, b, c]): PlacedTriangle, hub: u32, at: DVec3) -> Aabb {
     match ids.map(|v| v == hub) {
         [true, _, _] => arc_box(at, b, c),
         [_, true, _] => arc_box(at, c, a),

@@ -1,7 +1,7 @@
 //! Finds the lines of the whole mesh when it is cut in parts for the first time: borders, creases and borders between
 //! face groups.
 
-use super::mesh::{Division, Mesh};
+use super::mesh::{Mesh, MeshDivision};
 use super::part::PartTopology;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::DVec3;
@@ -27,9 +27,9 @@ struct InnerLines {
     loose: Vec<SortedHalfEdge>,
 }
 
-pub(super) struct Lines<'l, S> {
+pub(super) struct LineMarking<'l, S> {
     pub(super) mesh: &'l mut Mesh<S>,
-    pub(super) division: &'l Division,
+    pub(super) division: &'l MeshDivision,
     pub(super) pieces: &'l [PartTopology],
     /// Of the input's triangles; empty when all are in one.
     pub(super) groups: &'l [u32],
@@ -37,7 +37,7 @@ pub(super) struct Lines<'l, S> {
     pub(super) budget: &'l Budget,
 }
 
-impl<S: Copy + Send + Sync> Lines<'_, S> {
+impl<S: Copy + Send + Sync> LineMarking<'_, S> {
     /// Marks the lines of the mesh, and at its vertices how many there are; gives the numbers of the triangles on a
     /// border. Nothing when an edge has more than two triangles, or two in the same direction.
     pub(super) fn mark(mut self) -> Result<Option<Vec<u32>>, Stopped> {

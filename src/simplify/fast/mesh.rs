@@ -24,7 +24,7 @@ pub(super) struct Mesh<S> {
 }
 
 /// A mesh cut in parts.
-pub(super) struct Division {
+pub(super) struct MeshDivision {
     /// Vertices of a part; the last has fewer.
     pub(super) part_len: usize,
     /// The vertices of all parts, one part after the other. Triangles name vertices by their place here.
@@ -39,7 +39,7 @@ pub(super) struct Division {
     codes: Vec<[u32; 2]>,
 }
 
-impl Division {
+impl MeshDivision {
     /// The first triangle between parts.
     pub(super) fn first_between(&self) -> usize {
         self.starts.last().copied().unwrap_or(0)
@@ -69,7 +69,7 @@ impl<S: Copy + Send + Sync> Mesh<S> {
         part_len: usize,
         shift: DVec3,
         budget: &Budget,
-    ) -> Result<Division, Stopped> {
+    ) -> Result<MeshDivision, Stopped> {
         let mut used = vec![false; self.vertices.len()];
         for block in self.triangles.chunks(CHECK_EVERY) {
             budget.check()?;
@@ -90,7 +90,7 @@ impl<S: Copy + Send + Sync> Mesh<S> {
         let code = |&v: &u32| curve.code(self.vertices[v as usize].position);
         let ends = |part: &[u32]| [part.first().map_or(0, code), part.last().map_or(0, code)];
         let codes = order.chunks(part_len).map(ends).collect();
-        Ok(Division { part_len, order, starts, is_between, curve, codes })
+        Ok(MeshDivision { part_len, order, starts, is_between, curve, codes })
     }
 
     fn sort_triangles(

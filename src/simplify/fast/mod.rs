@@ -26,13 +26,13 @@ mod sweep;
 #[cfg(test)]
 mod tests;
 
-use super::criterion::Criterion;
-use super::length::Length;
+use super::criterion::CollapseCriterion;
+use super::length::SquaredLength;
 use super::memoryless::Memoryless;
 use super::options::{CriterionKind, SimplifyOptions};
 use super::quadric_error::QuadricError;
 use super::report::TargetReport;
-use super::result::{Input, Simplified, SimplifyError};
+use super::result::{Simplified, SimplifyError, SimplifyInput};
 use super::surface::NEW;
 use crate::budget::Budget;
 use crate::mesh::corner_table::NONE;
@@ -49,7 +49,7 @@ use rounds::Rounds;
 /// # Errors
 /// When the input is not a manifold, or the budget stops the run.
 pub fn simplify_fast(
-    input: &Input<'_>,
+    input: &SimplifyInput<'_>,
     options: &SimplifyOptions<'_>,
     budget: &Budget,
 ) -> Result<Vec<Simplified>, SimplifyError> {
@@ -65,7 +65,7 @@ pub fn simplify_fast(
 /// # Errors
 /// When the input is not a manifold, or the budget stops the run.
 pub fn simplify_guarded(
-    input: &Input<'_>,
+    input: &SimplifyInput<'_>,
     options: &SimplifyOptions<'_>,
     budget: &Budget,
 ) -> Result<Vec<Simplified>, SimplifyError> {
@@ -85,7 +85,7 @@ struct Settings {
 const PART_LEN: usize = 6144;
 
 fn by_criterion(
-    input: &Input<'_>,
+    input: &SimplifyInput<'_>,
     options: &SimplifyOptions<'_>,
     settings: Settings,
     budget: &Budget,
@@ -95,12 +95,12 @@ fn by_criterion(
             run(input, options, &QuadricError { wall_weight: options.wall_weight }, settings, budget)
         }
         CriterionKind::Memoryless => run(input, options, &Memoryless, settings, budget),
-        CriterionKind::Length => run(input, options, &Length, settings, budget),
+        CriterionKind::Length => run(input, options, &SquaredLength, settings, budget),
     }
 }
 
-fn run<C: Criterion>(
-    input: &Input<'_>,
+fn run<C: CollapseCriterion>(
+    input: &SimplifyInput<'_>,
     options: &SimplifyOptions<'_>,
     criterion: &C,
     settings: Settings,
@@ -130,7 +130,7 @@ fn run<C: Criterion>(
 
 /// What a run takes beside its input and its results: vertices before and in parts; triangles before and after they are
 /// sorted, in corner tables, and their places in the queue.
-fn bytes_of<C: Criterion>(input: &Input<'_>) -> u64 {
+fn bytes_of<C: CollapseCriterion>(input: &SimplifyInput<'_>) -> u64 {
     let per_triangle = 2 * (12 + 4 + 1) + 32 + 16;
     let per_vertex = 2 * size_of::<super::surface::Vertex<C::State>>() + 4 + 8;
     let texture = 3 * size_of_val(input.texture);
@@ -142,7 +142,7 @@ fn snapshot<S>(
     mesh: &Mesh<S>,
     scale: f64,
     priorities: &[f64],
-    input: &Input<'_>,
+    input: &SimplifyInput<'_>,
     report: TargetReport,
 ) -> Simplified {
     let mut order: Vec<(u32, u32)> = mesh.numbers.iter().copied().zip(0..).collect();

@@ -10,21 +10,21 @@
 
 use super::allowance::Allowance;
 use super::buckets::{Buckets, CLASSES, class_of};
-use super::hubs::Corners;
+use super::hubs::PlacedTriangle;
 use super::region::CodeRegion;
-use super::space::Space;
+use super::space::PartBoxes;
 use super::strays::Strays;
 use super::sweep::{Outside, Sweep};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3};
 use crate::mesh::Color;
 use crate::mesh::corner_table::{CornerTable, EdgeRings, NONE, next, prev, triangle_of};
-use crate::simplify::criterion::{Criterion, PlacedVertex};
+use crate::simplify::criterion::{CollapseCriterion, PlacedVertex};
 use crate::simplify::guard::check_faces;
 use crate::simplify::marks::LINE;
 use crate::simplify::options::SimplifyOptions;
-use crate::simplify::report::{Refusal, Refusals};
-use crate::simplify::surface::{CollapseSurface, Rule};
+use crate::simplify::report::{Refusals, SimplifyRefusal};
+use crate::simplify::surface::{CollapseSurface, MergeRule};
 use std::sync::Arc;
 
 /// Units of work that an attempt to collapse an edge counts.
@@ -74,7 +74,7 @@ impl<C> Clone for Rules<'_, C> {
 impl<C> Copy for Rules<'_, C> {}
 
 /// What a part in the guarded mode knows of space.
-pub(super) struct Room {
+pub(super) struct GuardedRegion {
     /// Number of the part.
     pub(super) part: u32,
     /// Place of the part's first vertex.
@@ -85,28 +85,28 @@ pub(super) struct Room {
     pub(super) strays: Arc<Strays>,
 }
 
-/// [`Room`], with the part's own triangles.
+/// [`GuardedRegion`], with the part's own triangles.
 struct Watch {
-    room: Room,
-    space: Space,
+    room: GuardedRegion,
+    space: PartBoxes,
     sweep: Sweep,
 }
 
 /// Why nothing is collapsed here and now.
 enum NotCollapsed {
-    Refused(Refusal),
+    Refused(SimplifyRefusal),
     /// It would leave the part's region: another round may do it.
     Elsewhere,
 }
 
-impl From<Refusal> for NotCollapsed {
-    fn from(reason: Refusal) -> Self {
+impl From<SimplifyRefusal> for NotCollapsed {
+    fn from(reason: SimplifyRefusal) -> Self {
         Self::Refused(reason)
     }
 }
 
 /// A part that is being simplified.
-pub(super) struct PartSimplifier<'r, C: Criterion> {
+pub(super) struct PartSimplifier<'r, C: CollapseCriterion> {
     pub(super) surface: CollapseSurface<C::State>,
     /// Of the vertices; empty when the input has none.
     pub(super) colors: Vec<Option<Color>>,
@@ -123,13 +123,13 @@ pub(super) struct PartSimplifier<'r, C: Criterion> {
     rules: Rules<'r, C>,
 }
 
-impl<'r, C: Criterion> PartSimplifier<'r, C> {
+impl<'r, C: CollapseCriterion> PartSimplifier<'r, C> {
     /// A part of which nothing is collapsed yet, with all its edges between free vertices in the queue.
     pub(super) fn new(
         surface: CollapseSurface<C::State>,
         is_free: Vec<bool>,
         colors: Vec<Option<Color>>,
-        room: Option<Room>,
+        room: Option<GuardedRegion>,
         rules: Rules<'r, C>,
         budget: &Budget,
     ) -> Result<Self, Stopped> {
@@ -176,14 +176,14 @@ impl<'r, C: Criterion> PartSimplifier<'r, C> {
 
     /// The place for the edge of `h`, and the class of its cost.
     #[inline]
-    fn placed(&self, h: u32) -> Result<(Rule, PlacedVertex, usize), Refusal> {
-        let rule = self.surface.rule(h).ok_or(Refusal::Held)?;
+    fn placed(&self, h: u32) -> Result<(MergeRule, PlacedVertex, usize), SimplifyRefusal> {
+        let rule = self.surface.rule(h).ok_or(SimplifyRefusal::Held)?;
         let placed = self.rules.criterion.place(&self.surface, h, rule, self.rules.options.placement);
-        let class = class_of(placed.cost).ok_or(Refusal::NotFinite)?;
+        let class = class_of(placed.cost).ok_or(SimplifyRefusal::NotFinite)?;
         Ok((rule, placed, class))
     }
 
-    fn set_aside(&mut self, h: u32, reason: Refusal) {
+    fn set_aside(&mut self, h: u32, reason: SimplifyRefusal) {
         self.tally.refusals.add(reason);
         self.queue.set_aside(h);
         for v in [h, next(h)].map(|g| self.surface.table.origin(g)) {
@@ -241,13 +241,13 @@ impl<'r, C: Criterion> PartSimplifier<'r, C> {
     fn attempt(
         &mut self,
         h: u32,
-        rule: Rule,
+        rule: MergeRule,
         placed: PlacedVertex,
         budget: &Budget,
     ) -> Result<(), NotCollapsed> {
         let Rules { criterion, options, error_squared_limit, .. } = self.rules;
         if placed.error_squared > error_squared_limit {
-            return Err(Refusal::Error.into());
+            return Err(SimplifyRefusal::Error.into());
         }
         let ends = [h, next(h)].map(|g| self.surface.table.origin(g));
         if !ends.into_iter().all(|end| self.allowance.lets(end)) {
@@ -257,9 +257,9 @@ impl<'r, C: Criterion> PartSimplifier<'r, C> {
         self.rings.walk(&self.surface.table, h);
         self.allowance.walked(ends[0], self.rings.origin.corners.len());
         self.allowance.walked(ends[1], self.rings.destination.corners.len());
-        self.surface.table.link_condition(h, &self.rings).map_err(Refusal::Link)?;
+        self.surface.table.link_condition(h, &self.rings).map_err(SimplifyRefusal::Link)?;
         if !self.surface.keeps_regions(h) {
-            return Err(Refusal::Held.into());
+            return Err(SimplifyRefusal::Held.into());
         }
         check_faces(&self.surface, h, &self.rings, position, &options.guards)?;
         if let Some(watch) = &mut self.watch {
@@ -350,11 +350,11 @@ impl<'r, C: Criterion> PartSimplifier<'r, C> {
 }
 
 /// The space of the triangles of a part.
-fn space_of<S: Copy + Default>(surface: &CollapseSurface<S>) -> Space {
+fn space_of<S: Copy + Default>(surface: &CollapseSurface<S>) -> PartBoxes {
     let table = &surface.table;
     let corners = |t: u32| [4 * t, 4 * t + 1, 4 * t + 2].map(|h| table.origin(h));
     let triangles: Vec<[u32; 3]> = (0..table.triangle_bound() as u32).map(corners).collect();
-    Space::new(triangles, |v| surface.position(v))
+    PartBoxes::new(triangles, |v| surface.position(v))
 }
 
 impl Watch {
@@ -435,7 +435,7 @@ impl Watch {
         rings: &EdgeRings,
         [from, into]: [u32; 2],
     ) {
-        let now = |t: u32| -> Option<Corners> {
+        let now = |t: u32| -> Option<PlacedTriangle> {
             surface.table.corners(t).map(|ids| (ids, ids.map(|v| surface.position(v))))
         };
         for &corner in rings.origin.corners.iter().chain(&rings.destination.corners) {

@@ -8,15 +8,15 @@
 //!
 //! Where the input meets itself its triangles stay as they are.
 
-use super::check::{Check, Left, SurfaceCheck};
-use super::guard::{Course, Guard};
-use super::mesh::Division;
+use super::check::{Left, RoundCheck, SurfaceCheck};
+use super::guard::{Guard, RoundConditions};
+use super::mesh::MeshDivision;
 use super::part::PartSimplifier;
 use super::rounds::Rounds;
 use crate::budget::Stopped;
 use crate::par;
-use crate::simplify::criterion::Criterion;
-use crate::simplify::report::Refusal;
+use crate::simplify::criterion::CollapseCriterion;
+use crate::simplify::report::SimplifyRefusal;
 use crate::simplify::surface::NEW;
 
 /// Tries after which one more ring around what must be locked is locked too.
@@ -24,30 +24,30 @@ const TRIES_TO_RING: usize = 4;
 /// Tries after which whole parts are locked.
 const TRIES_MAX: usize = 40;
 
-impl<'r, C: Criterion> Rounds<'r, C> {
+impl<'r, C: CollapseCriterion> Rounds<'r, C> {
     /// Does parts again until the surface they leave is sound.
     pub(super) fn roll_back(
         &self,
         guard: &mut Guard,
-        division: &Division,
+        division: &MeshDivision,
         parts: &mut [PartSimplifier<'r, C>],
-        course: &Course,
+        course: &RoundConditions,
     ) -> Result<(), Stopped> {
         let left =
             par::map_ranges(parts.len(), 1, |range| self.left(division, range.start, &parts[range.start]));
         let between = self.between(division);
-        let mut check = Check::new(division, left, between, &guard.roundings, self.budget)?;
+        let mut check = RoundCheck::new(division, left, between, &guard.roundings, self.budget)?;
         let mut locked = vec![false; division.order.len()];
         let mut tries = 0;
         loop {
             let SurfaceCheck { mut offenders, unsound } = check.look()?;
             guard.shells.exclude(&unsound);
-            let mut reason = Refusal::SelfIntersection;
+            let mut reason = SimplifyRefusal::SelfIntersection;
             if offenders.is_empty() {
                 let moved = guard.shells.moved(&self.input, &check, &guard.roundings, self.budget)?;
                 if !moved.is_empty() {
                     offenders = guard.shells.offenders(&moved, &check);
-                    reason = Refusal::Nesting;
+                    reason = SimplifyRefusal::Nesting;
                 }
             }
             if offenders.is_empty() {
@@ -66,11 +66,11 @@ impl<'r, C: Criterion> Rounds<'r, C> {
     /// Does parts again, without the locked vertices and no further than before.
     fn redo(
         &self,
-        division: &Division,
+        division: &MeshDivision,
         parts: &mut [PartSimplifier<'r, C>],
         again: &[(usize, u64)],
         locked: &[bool],
-        course: &Course,
+        course: &RoundConditions,
     ) -> Result<(), Stopped> {
         let done = par::try_map_ranges(again.len(), 1, |range| {
             let i = again[range.start].0;
@@ -90,7 +90,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
     }
 
     /// What part `i` leaves.
-    fn left(&self, division: &Division, i: usize, part: &PartSimplifier<'r, C>) -> Left {
+    fn left(&self, division: &MeshDivision, i: usize, part: &PartSimplifier<'r, C>) -> Left {
         let (first_vertex, first_triangle) = ((i * division.part_len) as u32, division.starts[i]);
         let mut left = Left::default();
         for (t, corners, _) in part.triangles() {
@@ -114,7 +114,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
     }
 
     /// The triangles between parts.
-    fn between(&self, division: &Division) -> Left {
+    fn between(&self, division: &MeshDivision) -> Left {
         let first = division.first_between();
         Left {
             triangles: self.mesh.triangles[first..].to_vec(),
@@ -126,8 +126,8 @@ impl<'r, C: Criterion> Rounds<'r, C> {
 
 /// Locks what was merged into the offenders; gives the parts in which it is, with the number of vertices. After
 /// some tries also what was merged into their neighbours, then those of these, and in the end all of a part.
-fn lock<C: Criterion>(
-    division: &Division,
+fn lock<C: CollapseCriterion>(
+    division: &MeshDivision,
     parts: &[PartSimplifier<'_, C>],
     offenders: &[u32],
     tries: usize,

@@ -3,22 +3,22 @@
 use super::Settings;
 use super::buckets::CLASSES;
 use super::fans::are_fans_between;
-use super::guard::{Course, Guard};
-use super::lines::Lines;
-use super::mesh::{Division, Mesh};
-use super::part::{PartSimplifier, PartTopology, Room, Rules, Tally};
-use super::shells::Shells;
-use super::space::Space;
+use super::guard::{Guard, RoundConditions};
+use super::lines::LineMarking;
+use super::mesh::{Mesh, MeshDivision};
+use super::part::{GuardedRegion, PartSimplifier, PartTopology, Rules, Tally};
+use super::shells::ClosedShells;
+use super::space::PartBoxes;
 use super::strays::Strays;
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3};
 use crate::mesh::corner_table::CornerTable;
 use crate::par;
-use crate::simplify::criterion::Criterion;
+use crate::simplify::criterion::CollapseCriterion;
 use crate::simplify::marks::LINE;
 use crate::simplify::options::{SimplifyOptions, Target};
 use crate::simplify::priority::costs_of_vertices;
-use crate::simplify::result::{Input, SimplifyError};
+use crate::simplify::result::{SimplifyError, SimplifyInput};
 use crate::simplify::surface::CollapseSurface;
 use crate::spatial::Bvh;
 use std::sync::Arc;
@@ -40,13 +40,13 @@ const LAST_ROUNDS_GUARDED: usize = 4;
 const CLASSES_AT_A_TIME: usize = 8;
 
 /// A run of rounds.
-pub(super) struct Rounds<'r, C: Criterion> {
+pub(super) struct Rounds<'r, C: CollapseCriterion> {
     pub(super) mesh: Mesh<C::State>,
     pub(super) tally: Tally,
     /// A surface without triangles, for the working units.
     pub(super) frame: CollapseSurface<C::State>,
     rules: Rules<'r, C>,
-    pub(super) input: Input<'r>,
+    pub(super) input: SimplifyInput<'r>,
     /// Where vertices stay; `None`: nowhere.
     held: Option<Bvh>,
     /// Vertices of a part.
@@ -58,10 +58,10 @@ pub(super) struct Rounds<'r, C: Criterion> {
     pub(super) budget: &'r Budget,
 }
 
-impl<'r, C: Criterion> Rounds<'r, C> {
+impl<'r, C: CollapseCriterion> Rounds<'r, C> {
     /// Prepares a run.
     pub(super) fn begin(
-        input: &Input<'r>,
+        input: &SimplifyInput<'r>,
         options: &'r SimplifyOptions<'r>,
         criterion: &'r C,
         settings: Settings,
@@ -163,7 +163,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
             true => Some(Arc::new(Strays::of(&self.mesh, &division, self.budget)?)),
             false => None,
         };
-        let of_boxes = if strays.is_some() { Space::bytes(&self.mesh.triangles) } else { 0 };
+        let of_boxes = if strays.is_some() { PartBoxes::bytes(&self.mesh.triangles) } else { 0 };
         let of_strays = strays.as_ref().map_or(0, |strays| strays.bytes());
         let charge = self.budget.charge(of_boxes + of_strays)?;
         let parts = par::map_items(pieces, |i, piece| self.part(&division, i, piece, &strays, is_first));
@@ -173,7 +173,12 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         parts.iter_mut().for_each(PartSimplifier::leave_room);
         drop(charge);
         if let Some(mut guard) = self.guard.take() {
-            self.roll_back(&mut guard, &division, &mut parts, &Course { is_first, class_max, strays })?;
+            self.roll_back(
+                &mut guard,
+                &division,
+                &mut parts,
+                &RoundConditions { is_first, class_max, strays },
+            )?;
             self.guard = Some(guard);
         }
         self.collect(&division, parts);
@@ -191,12 +196,12 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         )
     }
 
-    fn pieces(&self, division: &Division) -> Result<Vec<PartTopology>, Stopped> {
+    fn pieces(&self, division: &MeshDivision) -> Result<Vec<PartTopology>, Stopped> {
         par::try_map_ranges(division.starts.len() - 1, 1, |range| self.piece(division, range.start))
     }
 
     /// The topology of part `i`.
-    pub(super) fn piece(&self, division: &Division, i: usize) -> Result<PartTopology, Stopped> {
+    pub(super) fn piece(&self, division: &MeshDivision, i: usize) -> Result<PartTopology, Stopped> {
         let triangles = division.starts[i]..division.starts[i + 1];
         let (first, count) = (i * division.part_len, division.vertices(i).len());
         let (mut table, mut is_free) = CornerTable::build_part(
@@ -212,12 +217,12 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         Ok(PartTopology { table, is_free })
     }
 
-    fn mark_lines(&mut self, division: &Division, pieces: &[PartTopology]) -> Result<(), SimplifyError> {
+    fn mark_lines(&mut self, division: &MeshDivision, pieces: &[PartTopology]) -> Result<(), SimplifyError> {
         let free_or_between = |(i, piece): (usize, &PartTopology)| {
             let between = &division.is_between[i * division.part_len..];
             piece.is_free.iter().zip(between).all(|(is_free, is_between)| *is_free || *is_between)
         };
-        let lines = Lines {
+        let lines = LineMarking {
             mesh: &mut self.mesh,
             division,
             pieces,
@@ -232,7 +237,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
             CornerTable::build(self.input.triangles, self.input.positions.len(), self.budget)?;
         }
         if self.rules.is_guarded {
-            let shells = Shells::of(&self.input, &borders.unwrap_or_default(), self.budget)?;
+            let shells = ClosedShells::of(&self.input, &borders.unwrap_or_default(), self.budget)?;
             let is_f32 = |p: &DVec3| p.as_vec3().as_dvec3() == *p || !p.is_finite();
             let is_f32_exact = self.rules.options.round && self.input.positions.iter().all(is_f32);
             self.guard = Some(Guard::new(shells, is_f32_exact));
@@ -241,7 +246,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
     }
 
     /// Gives the vertices of triangles between parts what these triangles add to their states.
-    fn prepare_between(&mut self, division: &Division) -> Result<(), Stopped> {
+    fn prepare_between(&mut self, division: &MeshDivision) -> Result<(), Stopped> {
         let first = division.first_between();
         let triangles: Vec<[u32; 3]> =
             self.mesh.triangles[first..].iter().map(|t| t.map(|v| division.order[v as usize])).collect();
@@ -256,7 +261,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
 
     pub(super) fn part(
         &self,
-        division: &Division,
+        division: &MeshDivision,
         i: usize,
         PartTopology { mut table, mut is_free }: PartTopology,
         strays: &Option<Arc<Strays>>,
@@ -284,7 +289,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         if is_first {
             self.rules.criterion.prepare(&mut surface, self.budget)?;
         }
-        let room = strays.as_ref().map(|strays| Room {
+        let room = strays.as_ref().map(|strays| GuardedRegion {
             part: i as u32,
             first_vertex: (i * division.part_len) as u32,
             region: division.region(i),
@@ -293,7 +298,7 @@ impl<'r, C: Criterion> Rounds<'r, C> {
         PartSimplifier::new(surface, is_free, colors, room, self.rules, self.budget)
     }
 
-    fn collect(&mut self, division: &Division, parts: Vec<PartSimplifier<'r, C>>) {
+    fn collect(&mut self, division: &MeshDivision, parts: Vec<PartSimplifier<'r, C>>) {
         let mut left = Mesh::default();
         for (i, part) in parts.into_iter().enumerate() {
             let (first_vertex, first_triangle) = ((i * division.part_len) as u32, division.starts[i]);
@@ -325,7 +330,7 @@ fn mark(table: &mut CornerTable, lines: &[u8]) {
 
 /// Collapses edges class by class, in all parts before the next, until at most `goal` are left with the
 /// `between` ones that are in no part. At each look a part may take its share of what is above the goal.
-fn advance<C: Criterion>(
+fn advance<C: CollapseCriterion>(
     parts: &mut [PartSimplifier<'_, C>],
     between: usize,
     goal: usize,
@@ -355,7 +360,7 @@ fn advance<C: Criterion>(
 
 /// A class at which certainly no more than `triangles` are gone, so that the parts can go there without a look at one
 /// another: a collapse takes two triangles and three edges, most of them dear ones.
-fn first_stop<C: Criterion>(parts: &[PartSimplifier<'_, C>], triangles: usize) -> usize {
+fn first_stop<C: CollapseCriterion>(parts: &[PartSimplifier<'_, C>], triangles: usize) -> usize {
     let mut edges = 0;
     let mut class = 0;
     while class < CLASSES && edges < triangles {

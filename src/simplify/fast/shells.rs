@@ -1,20 +1,20 @@
 //! Whether closed shells still lie in each other as they did, and none is inside out.
 
-use super::check::{Check, rounded, with_area};
+use super::check::{RoundCheck, rounded, with_area};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3};
 use crate::mesh::UnionFind;
-use crate::simplify::result::Input;
-use crate::spatial::{Bvh, NO_SHELL, Nesting, nest};
+use crate::simplify::result::SimplifyInput;
+use crate::spatial::{Bvh, NO_SHELL, ShellNesting, nest};
 
 /// The closed components of the input that meet nothing.
-pub(super) struct Shells {
+pub(super) struct ClosedShells {
     /// The component of each triangle of the input.
     component: Vec<u32>,
     /// For each component, whether it is closed and meets nothing.
     is_sound: Vec<bool>,
     /// How the sound components lie in the input, in each reading; none before it is asked for.
-    reference: Option<Vec<Nesting>>,
+    reference: Option<Vec<ShellNesting>>,
 }
 
 /// Sound components that do not lie as they did.
@@ -27,9 +27,9 @@ pub(super) struct Moved {
     is_inside_out: bool,
 }
 
-impl Shells {
+impl ClosedShells {
     /// The components of the input; those of the triangles `open` are not closed.
-    pub(super) fn of(input: &Input<'_>, open: &[u32], budget: &Budget) -> Result<Self, Stopped> {
+    pub(super) fn of(input: &SimplifyInput<'_>, open: &[u32], budget: &Budget) -> Result<Self, Stopped> {
         let mut parts = UnionFind::new(input.positions.len());
         for block in input.triangles.chunks(CHECK_EVERY) {
             budget.check()?;
@@ -73,8 +73,8 @@ impl Shells {
     /// The components that do not lie as in the input.
     pub(super) fn moved(
         &mut self,
-        input: &Input<'_>,
-        check: &Check<'_>,
+        input: &SimplifyInput<'_>,
+        check: &RoundCheck<'_>,
         roundings: &[bool],
         budget: &Budget,
     ) -> Result<Vec<Moved>, Stopped> {
@@ -104,10 +104,10 @@ impl Shells {
 
     fn lie_in_input(
         &self,
-        input: &Input<'_>,
+        input: &SimplifyInput<'_>,
         roundings: &[bool],
         budget: &Budget,
-    ) -> Result<Vec<Nesting>, Stopped> {
+    ) -> Result<Vec<ShellNesting>, Stopped> {
         let (shell_of, components) = self.shell_of(0..input.triangles.len() as u32);
         let lie = |&is_rounded: &bool| {
             let own;
@@ -131,7 +131,7 @@ impl Shells {
 
     /// The merged vertices, by place, that may have moved components where they are: of a component that is inside out
     /// all; of the others those near the one that has others around it, or all of them, or all that there are.
-    pub(super) fn offenders(&self, moved: &[Moved], check: &Check<'_>) -> Vec<u32> {
+    pub(super) fn offenders(&self, moved: &[Moved], check: &RoundCheck<'_>) -> Vec<u32> {
         let (triangles, numbers) = check.triangles();
         let component: Vec<u32> = numbers.into_iter().map(|number| self.component[number as usize]).collect();
         let positions = &check.readings[0].positions;
@@ -164,8 +164,8 @@ impl Shells {
 }
 
 fn differences<'d>(
-    before: &'d Nesting,
-    now: &'d Nesting,
+    before: &'d ShellNesting,
+    now: &'d ShellNesting,
     components: &'d [u32],
 ) -> impl Iterator<Item = Moved> + 'd {
     let component = |shell: Option<u32>| shell.map(|s| components[s as usize]);

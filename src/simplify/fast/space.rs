@@ -1,20 +1,20 @@
 //! Where the triangles of a part are, to find those that a collapse may meet.
 
 use super::boxes::MovingBoxes;
-use super::hubs::{Corners, Hubs};
+use super::hubs::{Hubs, PlacedTriangle};
 use super::sweep::Sweep;
-use crate::geom::{Aabb, Cone, DVec3};
+use crate::geom::{Aabb, DVec3, DirectionCone};
 
 /// The boxes of a part's triangles. Those around a hub have one box together, and are found by their directions.
 #[derive(Debug)]
-pub(super) struct Space {
+pub(super) struct PartBoxes {
     boxes: MovingBoxes,
     hubs: Hubs,
     /// Number of triangles; the numbers after them are the fans' in `boxes`.
     triangle_count: u32,
 }
 
-impl Space {
+impl PartBoxes {
     /// The space of `triangles` whose vertices are numbered along a space-filling curve.
     pub(super) fn new(mut triangles: Vec<[u32; 3]>, position: impl Fn(u32) -> DVec3) -> Self {
         let hubs = Hubs::of(&triangles, &position);
@@ -43,7 +43,7 @@ impl Space {
         ends: [u32; 2],
         mut visit: impl FnMut(u32) -> bool,
     ) -> usize {
-        let (mut cones, mut looked_at): (Vec<Cone>, usize) = (Vec::new(), 0);
+        let (mut cones, mut looked_at): (Vec<DirectionCone>, usize) = (Vec::new(), 0);
         self.boxes.visit(bounds, |element| {
             looked_at += 1;
             let Some(fan) = element.checked_sub(self.triangle_count) else { return visit(element) };
@@ -67,7 +67,7 @@ impl Space {
     }
 
     /// Says where a triangle is now.
-    pub(super) fn set(&mut self, triangle: u32, now: Corners) {
+    pub(super) fn set(&mut self, triangle: u32, now: PlacedTriangle) {
         match self.hubs.fan_of(triangle) {
             Some(fan) => {
                 self.hubs.set(fan, triangle, now);
@@ -86,7 +86,13 @@ impl Space {
     }
 
     /// Says that two vertices have become one; see [`Hubs::merge`].
-    pub(super) fn merge(&mut self, from: u32, into: u32, position: DVec3, corners: impl Fn(u32) -> Corners) {
+    pub(super) fn merge(
+        &mut self,
+        from: u32,
+        into: u32,
+        position: DVec3,
+        corners: impl Fn(u32) -> PlacedTriangle,
+    ) {
         self.hubs.merge(from, into, position, corners);
     }
 }
@@ -132,11 +138,11 @@ mod tests {
         })
     }
 
-    fn space_of((positions, triangles): &Mesh) -> Space {
-        Space::new(triangles.clone(), |v| positions[v as usize])
+    fn space_of((positions, triangles): &Mesh) -> PartBoxes {
+        PartBoxes::new(triangles.clone(), |v| positions[v as usize])
     }
 
-    fn corners_of((positions, triangles): &Mesh, t: u32) -> Corners {
+    fn corners_of((positions, triangles): &Mesh, t: u32) -> PlacedTriangle {
         (triangles[t as usize], triangles[t as usize].map(|v| positions[v as usize]))
     }
 
@@ -159,7 +165,7 @@ mod tests {
     }
 
     /// Fails when a triangle is left out that the collapse must not be made for; how many there are.
-    fn none_is_left_out(mesh: &Mesh, space: &Space, ends: [u32; 2], to: DVec3) -> usize {
+    fn none_is_left_out(mesh: &Mesh, space: &PartBoxes, ends: [u32; 2], to: DVec3) -> usize {
         let (sweep, bounds) = sweep(mesh, ends, to);
         let mut visited = vec![false; mesh.1.len()];
         space.visit(bounds, &sweep, ends, |t| {

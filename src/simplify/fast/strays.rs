@@ -4,7 +4,7 @@
 //! parts are these triangles alone, and they stay as they are for the whole round: a collapse that changes one would
 //! leave its region.
 
-use super::mesh::{Division, Mesh};
+use super::mesh::{Mesh, MeshDivision};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3};
 use crate::par;
@@ -39,7 +39,7 @@ impl Strays {
 
     pub(super) fn of<S: Copy + Send + Sync>(
         mesh: &Mesh<S>,
-        division: &Division,
+        division: &MeshDivision,
         budget: &Budget,
     ) -> Result<Self, Stopped> {
         let parts = division.starts.len() - 1;

@@ -7,12 +7,14 @@
 //! of it decides.
 
 use super::allowance::FREE_MAX;
-use crate::geom::{Aabb, Cone, DVec3, Plane, Shared, Sign, are_collinear, contact, orient3d};
-use crate::simplify::report::Refusal;
+use crate::geom::{
+    Aabb, DVec3, DirectionCone, Shared, Sign, ThreePointPlane, are_collinear, contact, orient3d,
+};
+use crate::simplify::report::SimplifyRefusal;
 
 /// One triangle of the star before: its vertex that moves, and the side that stays.
 #[derive(Debug, Clone, Copy)]
-struct Sector {
+struct MovingTriangle {
     from: DVec3,
     /// The other two corners, in the order of the triangle.
     side: [DVec3; 2],
@@ -25,7 +27,7 @@ struct Sector {
 /// The two moves of a collapse. Kept from one to the next, so that nothing is allocated.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Sweep {
-    sectors: Vec<Sector>,
+    sectors: Vec<MovingTriangle>,
     to: DVec3,
     /// Number of the merged vertex.
     merged: u32,
@@ -60,7 +62,7 @@ impl Sweep {
         if from == self.to {
             return;
         }
-        self.sectors.push(Sector { from, side, ids, stays });
+        self.sectors.push(MovingTriangle { from, side, ids, stays });
         // Most triangles follow one another around their vertex.
         if self.rim.last() != Some(&ids[0]) {
             self.rim.push(ids[0]);
@@ -89,7 +91,7 @@ impl Sweep {
 
     /// The directions from vertex `hub`, which does not move and is at `place`, to all that is swept; false where they
     /// may be all, or are many.
-    pub(super) fn seen_from(&self, hub: u32, place: DVec3, cones: &mut Vec<Cone>) -> bool {
+    pub(super) fn seen_from(&self, hub: u32, place: DVec3, cones: &mut Vec<DirectionCone>) -> bool {
         cones.clear();
         if self.sectors.len() > FREE_MAX {
             return false;
@@ -97,7 +99,7 @@ impl Sweep {
         // What has the hub as a corner is seen from there as its other corners are.
         cones.extend(self.sectors.iter().map_while(|sector| {
             let side = sector.side.into_iter().zip(sector.ids).filter(|(_, id)| *id != hub);
-            Cone::over(place, [sector.from, self.to].into_iter().chain(side.map(|(p, _)| p)))
+            DirectionCone::over(place, [sector.from, self.to].into_iter().chain(side.map(|(p, _)| p)))
         }));
         cones.len() == self.sectors.len()
     }
@@ -110,7 +112,7 @@ impl Sweep {
 
     /// Whether `other` stays untouched.
     #[inline]
-    pub(super) fn passes(&self, other: &Outside) -> Result<(), Refusal> {
+    pub(super) fn passes(&self, other: &Outside) -> Result<(), SimplifyRefusal> {
         if self.is_beside(other) { Ok(()) } else { self.meets_nothing_of(other) }
     }
 
@@ -170,7 +172,7 @@ impl Sweep {
         self.points.iter().all(|&p| nearest - beyond(p) > doubt(p))
     }
 
-    fn meets_nothing_of(&self, other: &Outside) -> Result<(), Refusal> {
+    fn meets_nothing_of(&self, other: &Outside) -> Result<(), SimplifyRefusal> {
         let bounds = Aabb::of(other.corners);
         // A point of it that does not move with the star, and what the star is multiplied with to match.
         let on_rim = |id: &u32| self.rim.contains(id);
@@ -186,9 +188,9 @@ impl Sweep {
             }
             if sector.stays && has_area(other.corners) {
                 let ids = [self.merged, sector.ids[0], sector.ids[1]];
-                let plane = Plane::through([self.to, q, r]);
+                let plane = ThreePointPlane::through([self.to, q, r]);
                 if contact(&plane, other.corners.each_ref(), Shared::between(ids, other.ids)).is_some() {
-                    return Err(Refusal::SelfIntersection);
+                    return Err(SimplifyRefusal::SelfIntersection);
                 }
             }
             for (q, id) in sector.side.into_iter().zip(sector.ids) {
@@ -197,14 +199,14 @@ impl Sweep {
                 let shared = Shared::between([self.merged, self.merged, id], other.ids);
                 if has_area(wall)
                     && has_area(other.corners)
-                    && contact(&Plane::through(wall), other.corners.each_ref(), shared).is_some()
+                    && contact(&ThreePointPlane::through(wall), other.corners.each_ref(), shared).is_some()
                 {
-                    return Err(Refusal::Swept);
+                    return Err(SimplifyRefusal::Swept);
                 }
             }
             let tetrahedron = [sector.from * factor, self.to * factor, q * factor, r * factor];
             if is_inside(point, tetrahedron) {
-                return Err(Refusal::Swept);
+                return Err(SimplifyRefusal::Swept);
             }
         }
         Ok(())
@@ -275,14 +277,17 @@ mod tests {
     #[test]
     fn what_lies_in_the_swept_volume_is_swept_and_what_is_cut_is_met() {
         let down = pyramid(-1.0);
-        assert_eq!(down.passes(&triangle(DVec3::new(0.1, 0.1, 0.0), 0.1)), Err(Refusal::Swept));
-        assert_eq!(down.passes(&triangle(DVec3::new(0.1, 0.1, -0.3), 9.0)), Err(Refusal::SelfIntersection));
+        assert_eq!(down.passes(&triangle(DVec3::new(0.1, 0.1, 0.0), 0.1)), Err(SimplifyRefusal::Swept));
+        assert_eq!(
+            down.passes(&triangle(DVec3::new(0.1, 0.1, -0.3), 9.0)),
+            Err(SimplifyRefusal::SelfIntersection)
+        );
         assert_eq!(down.passes(&triangle(DVec3::new(0.0, 0.0, 1.1), 9.0)), Ok(()));
         assert_eq!(down.passes(&triangle(DVec3::new(0.5, 0.5, -0.6), 0.1)), Ok(()));
         // The same above what remains.
         let little = pyramid(0.9);
         assert_eq!(little.passes(&triangle(DVec3::new(0.1, 0.1, 0.0), 0.1)), Ok(()));
-        assert_eq!(little.passes(&triangle(DVec3::new(0.0, 0.0, 0.95), 0.001)), Err(Refusal::Swept));
+        assert_eq!(little.passes(&triangle(DVec3::new(0.0, 0.0, 0.95), 0.001)), Err(SimplifyRefusal::Swept));
     }
 
     #[test]
@@ -296,9 +301,13 @@ mod tests {
             assert_eq!(sweep.passes(&neighbour(-5.0)), Ok(()));
             assert_eq!(sweep.passes(&floor), Ok(()));
         }
-        assert_eq!(pyramid(-1.0).passes(&floor), Err(Refusal::Swept), "all its corners are on the rim");
+        assert_eq!(
+            pyramid(-1.0).passes(&floor),
+            Err(SimplifyRefusal::Swept),
+            "all its corners are on the rim"
+        );
         let inner = Outside { ids: [1, 0, 30], corners: [DVec3::Y, DVec3::X, DVec3::ZERO] };
-        assert_eq!(pyramid(-0.5).passes(&inner), Err(Refusal::Swept));
+        assert_eq!(pyramid(-0.5).passes(&inner), Err(SimplifyRefusal::Swept));
         assert_eq!(pyramid(0.5).passes(&inner), Ok(()));
     }
 
@@ -314,7 +323,7 @@ mod tests {
         assert!(!sweep.finish().is_empty());
         // A pole across the way of the apex, between the places that the pyramid has before and after.
         let at = [DVec3::new(0.0, -9.0, 1.5), DVec3::new(0.0, 9.0, 1.5), DVec3::new(0.0, 9.0, 1.6)];
-        assert_eq!(sweep.passes(&Outside { ids: [20, 21, 22], corners: at }), Err(Refusal::Swept));
+        assert_eq!(sweep.passes(&Outside { ids: [20, 21, 22], corners: at }), Err(SimplifyRefusal::Swept));
         let above = at.map(|p| p + DVec3::Z);
         assert_eq!(sweep.passes(&Outside { ids: [20, 21, 22], corners: above }), Ok(()));
     }

@@ -6,7 +6,7 @@ use crate::geom::{Aabb, DVec3};
 use crate::mesh::corner_table::CornerTable;
 use crate::mesh::{EdgeGroups, UnionFind};
 use crate::par::with_threads;
-use crate::simplify::{CriterionKind, Input, Simplified, SimplifyError, SimplifyOptions, Target};
+use crate::simplify::{CriterionKind, Simplified, SimplifyError, SimplifyInput, SimplifyOptions, Target};
 use crate::spatial::{Bvh, Search, self_contacts};
 
 type Triangles = Vec<[u32; 3]>;
@@ -82,7 +82,7 @@ fn run(
     targets: &[Target],
     settings: Settings,
 ) -> Vec<Simplified> {
-    let input = Input::new(positions, triangles);
+    let input = SimplifyInput::new(positions, triangles);
     let options = SimplifyOptions { targets: targets.to_vec(), ..SimplifyOptions::default() };
     by_criterion(&input, &options, settings, &Budget::unlimited()).unwrap()
 }
@@ -160,7 +160,7 @@ fn where_the_input_meets_itself_the_guarded_mode_leaves_it_and_simplifies_the_re
 fn vertices_in_held_boxes_stay_and_others_go() {
     let torus = torus(40, 1.0, 0.1, DVec3::ZERO);
     let held = [Aabb { min: DVec3::splat(-9.0), max: DVec3::new(-1.0, 9.0, 9.0) }];
-    let input = Input::new(&torus.0, &torus.1);
+    let input = SimplifyInput::new(&torus.0, &torus.1);
     let targets = vec![Target::Ratio(0.05)];
     let options = SimplifyOptions { targets, held: &held, ..SimplifyOptions::default() };
     let in_box = |positions: &[DVec3]| -> Vec<[u64; 3]> {
@@ -188,7 +188,7 @@ fn an_error_target_holds_in_parts_and_goes_on_with_a_larger_one() {
             criterion,
             ..SimplifyOptions::default()
         };
-        let input = Input::new(&mesh.0, &mesh.1);
+        let input = SimplifyInput::new(&mesh.0, &mesh.1);
         let levels = by_criterion(&input, &options, FAST, &Budget::unlimited()).unwrap();
         for (level, limit) in levels.iter().zip(limits) {
             assert!(level.report.is_reached && level.report.error_max <= limit, "{:?}", level.report);
@@ -205,7 +205,7 @@ fn what_is_no_manifold_is_refused_wherever_it_is_cut() {
         let mut bad = good.clone();
         let again = bad.1[t];
         bad.1.push(again);
-        let input = Input::new(&bad.0, &bad.1);
+        let input = SimplifyInput::new(&bad.0, &bad.1);
         let options = SimplifyOptions::default();
         let refused = by_criterion(&input, &options, FAST, &Budget::unlimited());
         assert!(matches!(refused, Err(SimplifyError::NotManifold(_))), "{t}");
@@ -219,7 +219,7 @@ fn two_fans_at_a_vertex_are_refused_wherever_it_is_cut() {
         let mut bad = joined(&[good.clone(), torus(12, 0.5, 0.0, DVec3::X * 9.0)]);
         let other = good.0.len() as u32 + v % 100;
         bad.1.as_flattened_mut().iter_mut().filter(|u| **u == other).for_each(|u| *u = v);
-        let input = Input::new(&bad.0, &bad.1);
+        let input = SimplifyInput::new(&bad.0, &bad.1);
         for settings in [FAST, GUARDED, Settings { part_len: 6144, ..FAST }] {
             let options = SimplifyOptions::default();
             let refused = by_criterion(&input, &options, settings, &Budget::unlimited());
@@ -231,7 +231,7 @@ fn two_fans_at_a_vertex_are_refused_wherever_it_is_cut() {
 #[test]
 fn a_raised_stop_flag_and_a_small_memory_limit_end_the_run() {
     let mesh = torus(24, 1.0, 0.0, DVec3::ZERO);
-    let input = Input::new(&mesh.0, &mesh.1);
+    let input = SimplifyInput::new(&mesh.0, &mesh.1);
     let options = SimplifyOptions::default();
     let stop = StopFlag::default();
     stop.cancel();

@@ -2,10 +2,10 @@
 
 use super::Strict;
 use crate::mesh::corner_table::{NONE, next, prev, triangle_of};
-use crate::simplify::criterion::{Criterion, Reach};
-use crate::simplify::report::Refusal;
+use crate::simplify::criterion::{CollapseCriterion, CostReach};
+use crate::simplify::report::SimplifyRefusal;
 
-impl<C: Criterion> Strict<'_, C> {
+impl<C: CollapseCriterion> Strict<'_, C> {
     /// Collapses the edge of `h` in the table; in the queue, the edges that become one become one entry.
     #[inline]
     pub(super) fn merge_edges(&mut self, h: u32) {
@@ -49,7 +49,7 @@ impl<C: Criterion> Strict<'_, C> {
                 self.list_affected(last, last, &mut affected);
             }
         }
-        if C::REACH == Reach::Neighbours {
+        if C::REACH == CostReach::Neighbours {
             affected.sort_unstable();
             affected.dedup();
         }
@@ -63,14 +63,14 @@ impl<C: Criterion> Strict<'_, C> {
     /// of its other end, which `outer` leaves.
     #[inline]
     fn list_affected(&mut self, spoke: u32, outer: u32, affected: &mut Vec<u32>) {
-        if C::REACH == Reach::Star {
+        if C::REACH == CostReach::Star {
             affected.push(self.surface.table.edge(spoke));
         }
         // Both ends of an edge that is set aside say so.
         let neighbour = self.surface.table.origin(outer) as usize;
         let has_aside = std::mem::replace(&mut self.surface.vertices[neighbour].has_aside, false);
-        if has_aside || C::REACH == Reach::Neighbours {
-            let is_due = |edge: &u32| C::REACH == Reach::Neighbours || self.queue.is_aside(*edge);
+        if has_aside || C::REACH == CostReach::Neighbours {
+            let is_due = |edge: &u32| C::REACH == CostReach::Neighbours || self.queue.is_aside(*edge);
             affected.extend(self.surface.star(outer).filter(is_due));
         }
     }
@@ -84,7 +84,7 @@ impl<C: Criterion> Strict<'_, C> {
     }
 
     /// Sets an edge aside.
-    pub(super) fn set_aside(&mut self, edge: u32, reason: Refusal) {
+    pub(super) fn set_aside(&mut self, edge: u32, reason: SimplifyRefusal) {
         self.refusals.add(reason);
         self.queue.set_aside(edge);
         for v in [edge, next(edge)].map(|g| self.surface.table.origin(g)) {

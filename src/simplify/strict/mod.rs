@@ -3,20 +3,20 @@
 mod merge;
 mod near;
 
-use super::criterion::{Criterion, PlacedVertex};
+use super::criterion::{CollapseCriterion, PlacedVertex};
 use super::guard::check_faces;
-use super::key::Key;
-use super::layout::Layout;
-use super::length::Length;
+use super::key::CostKey;
+use super::layout::InputNumbers;
+use super::length::SquaredLength;
 use super::lines::mark_lines;
 use super::memoryless::Memoryless;
 use super::options::{CriterionKind, SimplifyOptions, Target};
 use super::priority::costs_of_vertices;
 use super::quadric_error::QuadricError;
 use super::queue::Queue;
-use super::report::{Refusal, Refusals, TargetReport};
-use super::result::{Input, Simplified, SimplifyError};
-use super::surface::{CollapseSurface, Rule, Vertex};
+use super::report::{Refusals, SimplifyRefusal, TargetReport};
+use super::result::{Simplified, SimplifyError, SimplifyInput};
+use super::surface::{CollapseSurface, MergeRule, Vertex};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::mesh::Color;
 use crate::mesh::corner_table::{CornerTable, EdgeRings};
@@ -32,7 +32,7 @@ const STEP: u64 = 256;
 /// # Errors
 /// When the input is not a manifold, or the budget stops the run.
 pub fn simplify_strict(
-    input: &Input<'_>,
+    input: &SimplifyInput<'_>,
     options: &SimplifyOptions<'_>,
     budget: &Budget,
 ) -> Result<Vec<Simplified>, SimplifyError> {
@@ -41,12 +41,12 @@ pub fn simplify_strict(
             run(input, options, QuadricError { wall_weight: options.wall_weight }, budget)
         }
         CriterionKind::Memoryless => run(input, options, Memoryless, budget),
-        CriterionKind::Length => run(input, options, Length, budget),
+        CriterionKind::Length => run(input, options, SquaredLength, budget),
     }
 }
 
-fn run<C: Criterion>(
-    input: &Input<'_>,
+fn run<C: CollapseCriterion>(
+    input: &SimplifyInput<'_>,
     options: &SimplifyOptions<'_>,
     criterion: C,
     budget: &Budget,
@@ -86,14 +86,17 @@ fn run<C: Criterion>(
 }
 
 /// The table of the input's triangles along a curve.
-fn laid_out(input: &Input<'_>, budget: &Budget) -> Result<(Layout, CornerTable), SimplifyError> {
-    let Input { positions, triangles, .. } = *input;
+fn laid_out(
+    input: &SimplifyInput<'_>,
+    budget: &Budget,
+) -> Result<(InputNumbers, CornerTable), SimplifyError> {
+    let SimplifyInput { positions, triangles, .. } = *input;
     let in_input = || CornerTable::build(triangles, positions.len(), budget);
     if triangles.as_flattened().iter().any(|&v| v as usize >= positions.len()) {
         in_input()?;
     }
     let _charge = budget.charge(size_of_val(triangles) as u64)?;
-    let (layout, sorted) = Layout::of(positions, triangles, budget)?;
+    let (layout, sorted) = InputNumbers::of(positions, triangles, budget)?;
     match CornerTable::build(&sorted, layout.vertices.len(), budget) {
         Ok(table) => Ok((layout, table)),
         // Said with the numbers of the input.
@@ -102,16 +105,17 @@ fn laid_out(input: &Input<'_>, budget: &Budget) -> Result<(Layout, CornerTable),
 }
 
 /// What a run takes beside its input and its results.
-fn bytes_of<C: Criterion>(input: &Input<'_>) -> u64 {
+fn bytes_of<C: CollapseCriterion>(input: &SimplifyInput<'_>) -> u64 {
     // The table and the keys; for each edge a place in a bucket, and its first cost, listed twice.
-    let per_triangle = 32 + 4 * size_of::<u32>() + 3 * (size_of::<u32>() + 2 * size_of::<(u32, Key)>()) / 2;
+    let per_triangle =
+        32 + 4 * size_of::<u32>() + 3 * (size_of::<u32>() + 2 * size_of::<(u32, CostKey)>()) / 2;
     let per_vertex = size_of::<Vertex<C::State>>();
-    let layout = Layout::bytes(input.positions.len(), input.triangles.len());
+    let layout = InputNumbers::bytes(input.positions.len(), input.triangles.len());
     let own = input.triangles.len() * per_triangle + input.positions.len() * per_vertex;
     layout + own as u64 + size_of_val(input.texture) as u64
 }
 
-struct Strict<'a, C: Criterion> {
+struct Strict<'a, C: CollapseCriterion> {
     surface: CollapseSurface<C::State>,
     criterion: C,
     options: &'a SimplifyOptions<'a>,
@@ -130,7 +134,7 @@ struct Strict<'a, C: Criterion> {
     colors: Vec<Option<Color>>,
 }
 
-impl<C: Criterion> Strict<'_, C> {
+impl<C: CollapseCriterion> Strict<'_, C> {
     /// Collapses until `target` is reached or nothing more can be collapsed.
     fn run_to(&mut self, target: Target, faces_before: usize) -> Result<TargetReport, Stopped> {
         let faces_wanted = match target {
@@ -188,27 +192,27 @@ impl<C: Criterion> Strict<'_, C> {
 
     /// The place for the edge of `h` and its key.
     #[inline]
-    fn placed(&self, h: u32) -> Result<(Rule, PlacedVertex, Key), Refusal> {
-        let rule = self.surface.rule(h).ok_or(Refusal::Held)?;
+    fn placed(&self, h: u32) -> Result<(MergeRule, PlacedVertex, CostKey), SimplifyRefusal> {
+        let rule = self.surface.rule(h).ok_or(SimplifyRefusal::Held)?;
         let placed = self.criterion.place(&self.surface, h, rule, self.options.placement);
-        let key = Key::of(placed.cost).ok_or(Refusal::NotFinite)?;
+        let key = CostKey::of(placed.cost).ok_or(SimplifyRefusal::NotFinite)?;
         Ok((rule, placed, key))
     }
 
-    fn cost(&self, h: u32) -> Result<Key, Refusal> {
+    fn cost(&self, h: u32) -> Result<CostKey, SimplifyRefusal> {
         self.placed(h).map(|(_, _, key)| key)
     }
 
     /// Collapses the edge of `h`, unless something speaks against it.
-    fn attempt(&mut self, h: u32, rule: Rule, placed: PlacedVertex) -> Result<(), Refusal> {
+    fn attempt(&mut self, h: u32, rule: MergeRule, placed: PlacedVertex) -> Result<(), SimplifyRefusal> {
         if placed.error_squared > self.error_squared_limit {
-            return Err(Refusal::Error);
+            return Err(SimplifyRefusal::Error);
         }
         let (position, origin) = self.surface.landing(h, rule, placed.position, self.options.round)?;
         self.rings.walk(&self.surface.table, h);
-        self.surface.table.link_condition(h, &self.rings).map_err(Refusal::Link)?;
+        self.surface.table.link_condition(h, &self.rings).map_err(SimplifyRefusal::Link)?;
         if !self.surface.keeps_regions(h) {
-            return Err(Refusal::Held);
+            return Err(SimplifyRefusal::Held);
         }
         check_faces(&self.surface, h, &self.rings, position, &self.options.guards)?;
         self.error_squared_max = self.error_squared_max.max(placed.error_squared);

@@ -4,13 +4,13 @@ use super::Strict;
 use crate::budget::{CHECK_EVERY, Stopped};
 use crate::mesh::corner_table::{NONE, next, prev};
 use crate::par;
-use crate::simplify::criterion::Criterion;
+use crate::simplify::criterion::CollapseCriterion;
 use crate::simplify::queue::{AHEAD, Queue};
 
 /// Steps around each end of an edge that are fetched; most vertices have six triangles.
 const RING: usize = 6;
 
-impl<C: Criterion> Strict<'_, C> {
+impl<C: CollapseCriterion> Strict<'_, C> {
     /// Computes the costs of all edges, on all cores.
     pub(super) fn fill_queue(&mut self) -> Result<(), Stopped> {
         let count = self.surface.table.triangle_bound();

@@ -6,7 +6,7 @@
 
 use super::frame::Box32;
 use super::leaf::Leaf;
-use super::tree::{Node, Tree};
+use super::tree::{BoxNode, Tree};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::par;
 
@@ -36,20 +36,20 @@ pub(super) fn tree(elements: &impl Elements, leaf_len: usize, budget: &Budget) -
         return Ok(Tree::default());
     }
     let leaf_count = count.div_ceil(leaf_len);
-    let per_leaf = leaf_len * size_of::<Item>() + 2 * size_of::<Node>() + size_of::<Leaf>();
+    let per_leaf = leaf_len * size_of::<BuildItem>() + 2 * size_of::<BoxNode>() + size_of::<Leaf>();
     let _charge = budget.charge(leaf_count as u64 * per_leaf as u64)?;
-    let mut items = vec![Item::default(); count];
+    let mut items = vec![BuildItem::default(); count];
     par::for_each_chunk_mut(&mut items, CHECK_EVERY, |begin, items| {
         // A stop is noticed again, and passed on, below.
         if budget.check().is_ok() {
             for (i, item) in items.iter_mut().enumerate() {
                 let id = elements.id(begin + i);
-                *item = Item::new(id, elements.center(id));
+                *item = BuildItem::new(id, elements.center(id));
             }
         }
     });
     budget.check()?;
-    let mut nodes = vec![Node::UNSET; 2 * leaf_count - 1];
+    let mut nodes = vec![BoxNode::UNSET; 2 * leaf_count - 1];
     let mut leaves = vec![Leaf::EMPTY; leaf_count];
     let part = SubtreeSlices { nodes: &mut nodes, leaves: &mut leaves, first_node: 0, first_leaf: 0 };
     Builder { elements, leaf_len, budget }.split(&mut items, part)?;
@@ -58,13 +58,13 @@ pub(super) fn tree(elements: &impl Elements, leaf_len: usize, budget: &Budget) -
 
 /// An element while the tree is built.
 #[derive(Clone, Copy, Default)]
-struct Item {
+struct BuildItem {
     /// Centre of its box, as integers in the order of the numbers.
     center: [i32; 3],
     id: i32,
 }
 
-impl Item {
+impl BuildItem {
     fn new(id: u32, center: [f32; 3]) -> Self {
         Self { center: center.map(|x| in_order(x.to_bits() as i32)), id: id as i32 }
     }
@@ -87,7 +87,7 @@ fn in_order(bits: i32) -> i32 {
 
 /// The places of a subtree in the flat lists: its root first, then the left subtree, then the right one.
 struct SubtreeSlices<'t> {
-    nodes: &'t mut [Node],
+    nodes: &'t mut [BoxNode],
     leaves: &'t mut [Leaf],
     first_node: u32,
     first_leaf: u32,
@@ -101,11 +101,11 @@ struct Builder<'b, E> {
 
 impl<E: Elements> Builder<'_, E> {
     /// Builds the subtree of `items`. Recursive: each level halves the number of leaves, so at most 32 deep.
-    fn split(&self, items: &mut [Item], part: SubtreeSlices<'_>) -> Result<Box32, Stopped> {
+    fn split(&self, items: &mut [BuildItem], part: SubtreeSlices<'_>) -> Result<Box32, Stopped> {
         let SubtreeSlices { nodes, leaves, first_node, first_leaf } = part;
         if let [leaf] = leaves {
             let bounds = self.fill(items, leaf);
-            nodes[0] = Node::leaf(bounds, first_leaf);
+            nodes[0] = BoxNode::leaf(bounds, first_leaf);
             return Ok(bounds);
         }
         let is_serial = leaves.len() <= SERIAL_LEAVES_MAX;
@@ -132,14 +132,14 @@ impl<E: Elements> Builder<'_, E> {
             par::join(|| self.split(items_left, left), || self.split(items_right, right))
         };
         let bounds = left?.union(&right?);
-        root[0] = Node::inner(bounds, children);
+        root[0] = BoxNode::inner(bounds, children);
         Ok(bounds)
     }
 
-    fn fill(&self, items: &mut [Item], leaf: &mut Leaf) -> Box32 {
-        items.sort_unstable_by_key(Item::id);
+    fn fill(&self, items: &mut [BuildItem], leaf: &mut Leaf) -> Box32 {
+        items.sort_unstable_by_key(BuildItem::id);
         let mut bounds = Box32::EMPTY;
-        for (k, id) in items.iter().map(Item::id).enumerate() {
+        for (k, id) in items.iter().map(BuildItem::id).enumerate() {
             let item_bounds = self.elements.bounds(id);
             leaf.set(k, id, &item_bounds, self.elements.corners(id));
             bounds = bounds.union(&item_bounds);
@@ -149,15 +149,15 @@ impl<E: Elements> Builder<'_, E> {
 }
 
 /// Moves the items with the smallest centres, along the longest extent of all centres, before `middle`.
-fn partition(items: &mut [Item], middle: usize) {
+fn partition(items: &mut [BuildItem], middle: usize) {
     match longest_extent(items) {
-        0 => items.select_nth_unstable_by_key(middle, Item::key::<0>),
-        1 => items.select_nth_unstable_by_key(middle, Item::key::<1>),
-        _ => items.select_nth_unstable_by_key(middle, Item::key::<2>),
+        0 => items.select_nth_unstable_by_key(middle, BuildItem::key::<0>),
+        1 => items.select_nth_unstable_by_key(middle, BuildItem::key::<1>),
+        _ => items.select_nth_unstable_by_key(middle, BuildItem::key::<2>),
     };
 }
 
-fn longest_extent(items: &[Item]) -> usize {
+fn longest_extent(items: &[BuildItem]) -> usize {
     let (mut min, mut max) = ([i32::MAX; 4], [i32::MIN; 4]);
     for item in items {
         // The id rides along: four lanes are one instruction, three are not.

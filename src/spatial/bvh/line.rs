@@ -6,7 +6,7 @@ use crate::geom::DVec3;
 
 /// A segment in the coordinates of the boxes, without their rounding.
 #[derive(Debug)]
-pub(super) struct Line {
+pub(super) struct BoxSegment {
     from: DVec3,
     /// Reciprocals of what it extends along each axis.
     reciprocal: DVec3,
@@ -26,7 +26,7 @@ const SMALLEST: f64 = 1e-44;
 /// Coordinates of a box beyond about the largest number of f32 are not those of what it holds.
 const LARGEST: f64 = 1e38;
 
-impl Line {
+impl BoxSegment {
     pub(super) fn new(frame: &Frame, [from, to]: [DVec3; 2]) -> Self {
         let [from, to] = [from, to].map(|p| frame.unrounded(p));
         let is_in_range = from.abs().max(to.abs()).max_element() < LARGEST;
@@ -61,7 +61,7 @@ mod tests {
     fn a_segment_meets_the_boxes_that_it_goes_through() {
         let bounds = Box32 { min: [1.0, 1.0, 1.0], max: [2.0, 3.0, 4.0] };
         let meets = |from: [f64; 3], to: [f64; 3]| {
-            Line::new(&Frame::UNIT, [from, to].map(DVec3::from_array)).may_meet(&bounds)
+            BoxSegment::new(&Frame::UNIT, [from, to].map(DVec3::from_array)).may_meet(&bounds)
         };
         assert!(meets([0.0; 3], [3.0; 3]));
         assert!(meets([1.5, 2.0, 2.0], [1.6, 2.0, 2.0]), "inside");
@@ -75,7 +75,7 @@ mod tests {
     fn a_segment_meets_the_boxes_of_points_on_it_at_every_scale() {
         let meets = |from: DVec3, to: DVec3, p: DVec3| {
             let at = p.to_array().map(|x| (x as f32).clamp(f32::MIN, f32::MAX));
-            Line::new(&Frame::UNIT, [from, to]).may_meet(&Box32 { min: at, max: at })
+            BoxSegment::new(&Frame::UNIT, [from, to]).may_meet(&Box32 { min: at, max: at })
         };
         // Beyond f32, nearer to zero than f32, and where one coordinate of the point is zero.
         for (from, to) in [

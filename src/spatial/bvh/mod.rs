@@ -18,7 +18,7 @@ use crate::geom::{Aabb, DVec3};
 pub(super) use build::Elements;
 pub(super) use frame::{Box32, Frame};
 pub(super) use leaf::{Lanes, Leaf};
-use line::Line;
+use line::BoxSegment;
 pub(super) use sliver::Sliver;
 pub(super) use stars::{HubStar, find as stars_of, tree as tree_with_stars};
 pub(super) use tree::Tree;
@@ -48,7 +48,7 @@ impl Bvh {
         budget: &Budget,
     ) -> Result<Self, Stopped> {
         let frame = Frame::UNIT;
-        let mut all = Triangles { positions, triangles, ids, frame };
+        let mut all = IndexedTriangles { positions, triangles, ids, frame };
         all.frame = Frame::around(all.len(), |place| positions[all.corners(all.id(place))[0] as usize]);
         let stars = stars::find(positions.len(), &all, budget)?;
         let (tree, star_roots) = stars::tree(&stars, triangles.len(), positions, &all, budget)?;
@@ -95,7 +95,7 @@ impl Bvh {
         budget: &Budget,
         visit: impl FnMut(u32) -> bool,
     ) -> Result<(), Stopped> {
-        let (query, line) = (self.frame.box_of([from, to]), Line::new(&self.frame, [from, to]));
+        let (query, line) = (self.frame.box_of([from, to]), BoxSegment::new(&self.frame, [from, to]));
         self.visit(|bounds| bounds.meets(&query) && line.may_meet(bounds), query, budget, visit)
     }
 
@@ -179,14 +179,14 @@ fn all(mut visit: impl FnMut(u32)) -> impl FnMut(u32) -> bool {
 
 /// The triangles a hierarchy is built over.
 #[derive(Clone, Copy)]
-struct Triangles<'t> {
+struct IndexedTriangles<'t> {
     positions: &'t [DVec3],
     triangles: &'t [[u32; 3]],
     ids: Option<&'t [u32]>,
     frame: Frame,
 }
 
-impl Elements for Triangles<'_> {
+impl Elements for IndexedTriangles<'_> {
     fn len(&self) -> usize {
         self.ids.map_or(self.triangles.len(), <[u32]>::len)
     }

@@ -4,7 +4,7 @@ use super::{Box32, Leaf};
 
 /// A box and what is inside it.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::spatial) struct Node {
+pub(in crate::spatial) struct BoxNode {
     pub(in crate::spatial) bounds: Box32,
     /// Left child, or `NO_CHILD` in a leaf.
     left: u32,
@@ -17,7 +17,7 @@ const NO_CHILD: u32 = u32::MAX;
 /// Mark on the top node of a star. There are fewer nodes than triangles, hence fewer than 2^31.
 const STAR: u32 = 1 << 31;
 
-impl Node {
+impl BoxNode {
     pub(super) const UNSET: Self = Self::leaf(Box32::EMPTY, 0);
 
     pub(super) const fn leaf(bounds: Box32, number: u32) -> Self {
@@ -61,7 +61,7 @@ impl Node {
 /// Boxes of elements with ids. The root, if there is one, is node 0.
 #[derive(Debug, Clone, Default)]
 pub(in crate::spatial) struct Tree {
-    pub(super) nodes: Vec<Node>,
+    pub(super) nodes: Vec<BoxNode>,
     pub(super) leaves: Vec<Leaf>,
 }
 
@@ -75,20 +75,20 @@ impl Tree {
         if first.is_empty() {
             return (second.clone(), 0);
         }
-        let mut joint = Self { nodes: vec![Node::UNSET], leaves: Vec::new() };
+        let mut joint = Self { nodes: vec![BoxNode::UNSET], leaves: Vec::new() };
         let children = [joint.append(first), joint.append(second)];
         let bounds = first.nodes[0].bounds.union(&second.nodes[0].bounds);
-        joint.nodes[0] = Node::inner(bounds, children);
+        joint.nodes[0] = BoxNode::inner(bounds, children);
         (joint, children[1])
     }
 
     /// Adds the nodes of another tree; gives the place of its root.
     pub(super) fn append(&mut self, tree: &Self) -> u32 {
         let (nodes_by, leaves_by) = (self.nodes.len() as u32, self.leaves.len() as u32);
-        let is_star = |node: &Node| if node.is_star() { STAR } else { 0 };
+        let is_star = |node: &BoxNode| if node.is_star() { STAR } else { 0 };
         self.nodes.extend(tree.nodes.iter().map(|node| {
             let moved = node.moved(nodes_by, leaves_by);
-            Node { right: moved.right | is_star(node), ..moved }
+            BoxNode { right: moved.right | is_star(node), ..moved }
         }));
         self.leaves.extend(&tree.leaves);
         nodes_by
@@ -113,13 +113,13 @@ impl Tree {
     }
 
     #[inline]
-    pub(in crate::spatial) fn node(&self, id: u32) -> &Node {
+    pub(in crate::spatial) fn node(&self, id: u32) -> &BoxNode {
         &self.nodes[id as usize]
     }
 
     /// The triangles of a node without children.
     #[inline]
-    pub(in crate::spatial) fn leaf(&self, node: &Node) -> &Leaf {
+    pub(in crate::spatial) fn leaf(&self, node: &BoxNode) -> &Leaf {
         &self.leaves[node.right as usize]
     }
 }

@@ -1,8 +1,8 @@
 //! Simultaneous descent of a tree with itself.
 
-use super::{COST_OF_CONTACT, Contact, Contacts, Gathered, Search, SearchedSurface};
+use super::{COST_OF_CONTACT, Contacts, Gathered, Search, SearchedSurface, TriangleContact};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
-use crate::geom::{Plane, Shared, contact, work_on_exact_signs};
+use crate::geom::{Shared, ThreePointPlane, contact, work_on_exact_signs};
 use crate::par;
 use crate::spatial::bvh::{Lanes, Leaf, Tree};
 use crate::spatial::pairs::{Pair, expand, tasks};
@@ -43,8 +43,16 @@ pub(super) fn pairs(
         // All of them end before an error is passed on: whether the work limit is reached depends on their sum alone.
         let found = par::try_map_ranges(tasks.len(), 1, |i| {
             let found = Gathered::new(search);
-            Descent { tree, surface, budget, found, unpaid: 0, work: 0, work_max: work_max / SHARE_OF_TASK }
-                .run(tasks[i.start])
+            ContactDescent {
+                tree,
+                surface,
+                budget,
+                found,
+                unpaid: 0,
+                work: 0,
+                work_max: work_max / SHARE_OF_TASK,
+            }
+            .run(tasks[i.start])
         })?;
         for (contacts, its_work) in found {
             all.merge(contacts);
@@ -62,7 +70,7 @@ pub(super) fn pairs(
 }
 
 /// The search below one pair of nodes.
-struct Descent<'d> {
+struct ContactDescent<'d> {
     tree: &'d Tree,
     surface: SearchedSurface<'d>,
     budget: &'d Budget,
@@ -75,7 +83,7 @@ struct Descent<'d> {
     work_max: u64,
 }
 
-impl Descent<'_> {
+impl ContactDescent<'_> {
     /// What it found, and the units that took.
     fn run(mut self, start: Pair) -> Result<(Contacts, u64), Stopped> {
         let mut stack = vec![start];
@@ -167,7 +175,7 @@ impl Descent<'_> {
         if meeting.is_empty() {
             return Ok(());
         }
-        let plane = Plane::through(self.surface.points(corners).map(|p| *p));
+        let plane = ThreePointPlane::through(self.surface.points(corners).map(|p| *p));
         for j in meeting {
             let cost = self.surface.cost_of_pair(corners, y.corners(j));
             let exact_before = work_on_exact_signs();
@@ -176,7 +184,7 @@ impl Descent<'_> {
             self.count(cost + (work_on_exact_signs() - exact_before) + of_contact)?;
             if let Some(kind) = kind {
                 let (a, b) = (x.id(i), y.id(j));
-                self.found.add(Contact { a: a.min(b), b: a.max(b), kind });
+                self.found.add(TriangleContact { a: a.min(b), b: a.max(b), kind });
             }
         }
         Ok(())

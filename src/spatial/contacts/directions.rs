@@ -5,12 +5,12 @@ use crate::geom::arc_box;
 use crate::spatial::bvh::{Box32, Elements, HubStar};
 
 /// The triangles of a star as directions from its hub.
-pub(super) struct Directions<'s> {
+pub(super) struct ContactDirections<'s> {
     pub(super) surface: SearchedSurface<'s>,
     pub(super) star: &'s HubStar,
 }
 
-impl Elements for Directions<'_> {
+impl Elements for ContactDirections<'_> {
     fn len(&self) -> usize {
         self.star.triangles.len()
     }

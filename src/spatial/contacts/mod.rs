@@ -9,12 +9,12 @@ use super::bvh::{Frame, HubStar, Leaf, Sliver, Tree};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{ContactKind, DVec3, suits_expansions};
 use crate::par;
-use directions::Directions;
+use directions::ContactDirections;
 pub use terrains::Terrains;
 
 /// A pair of triangles that meet beyond what they share by their indices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Contact {
+pub struct TriangleContact {
     /// The triangle with the smaller id.
     pub a: u32,
     /// The triangle with the larger id.
@@ -31,7 +31,7 @@ pub struct Contacts {
     /// How many of them are of each kind, in the order of [`ContactKind`].
     pub count_by_kind: [u64; 3],
     /// The pairs, sorted; the first ones when there are more than were asked for.
-    pub list: Vec<Contact>,
+    pub list: Vec<TriangleContact>,
     /// The search ended before it had looked everywhere: there may be more pairs than `count`.
     pub is_cut_short: bool,
 }
@@ -146,7 +146,7 @@ fn star_contacts(
     if surface.terrains.is_some_and(|terrains| terrains.holds(star.hub)) {
         return Ok((Contacts::default(), 0));
     }
-    let directions = Tree::build(&Directions { surface, star }, budget)?;
+    let directions = Tree::build(&ContactDirections { surface, star }, budget)?;
     descent::pairs(&directions, surface, search, work_max, budget)
 }
 
@@ -220,7 +220,7 @@ impl Gathered {
         self.contacts.is_cut_short = true;
     }
 
-    fn add(&mut self, contact: Contact) {
+    fn add(&mut self, contact: TriangleContact) {
         self.contacts.count += 1;
         self.contacts.count_by_kind[contact.kind as usize] += 1;
         self.contacts.list.push(contact);

@@ -36,7 +36,8 @@ pub(super) fn search<F: Fn(u32, [u32; 2]) -> bool + Sync>(
     let (mut all, mut work) = (NearPairs::default(), 0);
     for tasks in tasks.chunks(TASKS_AT_A_TIME) {
         let found = par::try_map_ranges(tasks.len(), 1, |i| {
-            Descent { tree, faces, work_max: work_max.div_ceil(SHARE_OF_TASK), budget }.run(tasks[i.start])
+            NearDescent { tree, faces, work_max: work_max.div_ceil(SHARE_OF_TASK), budget }
+                .run(tasks[i.start])
         })?;
         for of_task in found {
             let Some((found, its_work)) = of_task else { return Ok(None) };
@@ -51,14 +52,14 @@ pub(super) fn search<F: Fn(u32, [u32; 2]) -> bool + Sync>(
 }
 
 /// The search below one pair of nodes.
-struct Descent<'d, F> {
+struct NearDescent<'d, F> {
     tree: &'d Tree,
     faces: &'d SearchedFaces<'d, F>,
     work_max: u64,
     budget: &'d Budget,
 }
 
-impl<F: Fn(u32, [u32; 2]) -> bool + Sync> Descent<'_, F> {
+impl<F: Fn(u32, [u32; 2]) -> bool + Sync> NearDescent<'_, F> {
     /// What was found and how many pairs of boxes were looked at; `None` when those were too many.
     fn run(&self, start: Pair) -> Result<Option<Searched>, Stopped> {
         let mut stack = vec![start];

@@ -9,7 +9,7 @@ use crate::geom::{Aabb, DVec3, arc_box, closest_point_on_triangle};
 use crate::spatial::bvh::{Box32, Elements, HubStar};
 
 /// The triangles of a star as directions from its hub.
-pub(super) struct Directions<'s> {
+pub(super) struct NearDirections<'s> {
     pub(super) input: NearInput<'s>,
     pub(super) star: &'s HubStar,
 }
@@ -17,7 +17,7 @@ pub(super) struct Directions<'s> {
 /// Beyond this share of its distance from the hub, what is near an edge may be anywhere.
 const SINE_MAX: f64 = 0.5;
 
-impl Elements for Directions<'_> {
+impl Elements for NearDirections<'_> {
     fn len(&self) -> usize {
         self.star.triangles.len()
     }

@@ -16,7 +16,7 @@ use super::Bvh;
 use super::bvh::{Box32, Elements, Frame, Tree, stars_of, tree_with_stars};
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
-use directions::Directions;
+use directions::NearDirections;
 use features::SearchedFaces;
 
 /// Which kinds of features are near each other. The closest points of triangles that do not meet are always of one of
@@ -101,7 +101,7 @@ pub fn near_pairs(
         return Ok(None);
     };
     for star in &stars {
-        let directions = Tree::build(&Directions { input, star }, budget)?;
+        let directions = Tree::build(&NearDirections { input, star }, budget)?;
         let Some((found, more)) = descent::search(&directions, &faces, work_max - work, budget)? else {
             return Ok(None);
         };

@@ -6,7 +6,7 @@ use utoipa::openapi::schema::{ArrayBuilder, Schema};
 use utoipa::openapi::{Ref, RefOr};
 
 use super::names::{EdgeRef, FaceRef, Length, Vector};
-use crate::modeller::Events;
+use crate::modeller::EventPolicy;
 use crate::pipeline::{Edit, RangeName};
 
 /// Most operators, ranges, and faces of one of them.
@@ -139,7 +139,7 @@ impl EditSpec {
         match self {
             Self::Shift(spec) => Edit::Shift {
                 faces: spec.faces.iter().map(|m| (m.face.to_engine(), length(m.by_mm))).collect(),
-                events: if spec.pass_events { Events::Pass } else { Events::Refuse },
+                events: if spec.pass_events { EventPolicy::Pass } else { EventPolicy::Refuse },
             },
             Self::Split(spec) => {
                 Edit::Split { at: spec.at.to_engine(), face: spec.face.to_engine(), by: length(spec.by_mm) }
@@ -214,7 +214,7 @@ mod tests {
         let edits = edits_from_json(text).unwrap();
         assert_eq!(edits.len(), 5);
         let Edit::Shift { faces, events } = edits[0].to_engine(10.0) else { panic!("a shift") };
-        assert_eq!((faces[0], events), ((FaceName::Id(3), 0.02), Events::Refuse));
+        assert_eq!((faces[0], events), ((FaceName::Id(3), 0.02), EventPolicy::Refuse));
         assert_eq!(edits[4].to_engine(1.0), Edit::Undo);
         assert_eq!(edits_from_json("[]"), Some(vec![]));
         let again: Vec<EditSpec> = serde_json::from_value(serde_json::to_value(&edits).unwrap()).unwrap();

@@ -360,7 +360,7 @@ impl Options {
     }
 
     /// The limits of the process, in the unit of the file.
-    fn policy(&self, millimetres: f64) -> Option<crate::printing::Policy> {
+    fn policy(&self, millimetres: f64) -> Option<crate::printing::PrintingPolicy> {
         let up = self.build_direction.unwrap_or(BuildDirection::Z);
         Some(PolicyInfo::of(self.policy?)?.to_engine(millimetres, up))
     }

@@ -49,7 +49,7 @@ impl Options {
             }
             _ => true,
         };
-        let taken = if is_in_range { self.take(name, value) } else { Taken::Invalid };
+        let taken = if is_in_range { self.take(name, value) } else { ValueOutcome::Invalid };
         taken.into_result(spec, value)
     }
 
@@ -82,13 +82,13 @@ impl Options {
 }
 
 /// What became of a value.
-pub(super) enum Taken {
+pub(super) enum ValueOutcome {
     Yes,
     Invalid,
     Contradictory,
 }
 
-impl Taken {
+impl ValueOutcome {
     pub(super) fn into_result(self, spec: &'static OptionSpec, value: &str) -> Result<(), OptionError> {
         match self {
             Self::Yes => Ok(()),
@@ -104,17 +104,17 @@ impl Taken {
     }
 }
 
-pub(super) fn put<T: PartialEq>(place: &mut Option<T>, value: Option<T>) -> Taken {
+pub(super) fn put<T: PartialEq>(place: &mut Option<T>, value: Option<T>) -> ValueOutcome {
     match (&place, &value) {
-        (_, None) => return Taken::Invalid,
-        (Some(old), Some(new)) if old != new => return Taken::Contradictory,
+        (_, None) => return ValueOutcome::Invalid,
+        (Some(old), Some(new)) if old != new => return ValueOutcome::Contradictory,
         _ => *place = value,
     }
-    Taken::Yes
+    ValueOutcome::Yes
 }
 
-pub(super) fn put_if_given<T: PartialEq>(place: &mut Option<T>, value: Option<T>) -> Taken {
-    if value.is_none() { Taken::Yes } else { put(place, value) }
+pub(super) fn put_if_given<T: PartialEq>(place: &mut Option<T>, value: Option<T>) -> ValueOutcome {
+    if value.is_none() { ValueOutcome::Yes } else { put(place, value) }
 }
 
 /// A plain decimal number: no sign, no blank, no words such as `inf`.

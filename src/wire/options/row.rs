@@ -38,12 +38,12 @@ macro_rules! options {
             }
 
             /// Takes the value of an option that is in its range.
-            fn take(&mut self, name: &str, text: &str) -> parse::Taken {
+            fn take(&mut self, name: &str, text: &str) -> parse::ValueOutcome {
                 match name {
                     $(stringify!($name) => {
                         parse::put(&mut self.$name, <$value as value::OptionValue>::from_text(text))
                     })+
-                    _ => parse::Taken::Invalid,
+                    _ => parse::ValueOutcome::Invalid,
                 }
             }
 

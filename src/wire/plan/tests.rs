@@ -27,7 +27,7 @@ fn all_steps() -> Vec<Step> {
         Step::PairSheets(repair::pair_sheets::Across::Void),
         Step::JoinContacts { size: 0.5 },
         Step::Cut(CutOptions::default()),
-        Step::Pinch(mesh::ChosenEdges::default(), mesh::Validity::Exact),
+        Step::Pinch(mesh::ChosenEdges::default(), mesh::StitchValidity::Exact),
         Step::Snap(SnapOptions {
             epsilon: Some(0.5),
             keeps_winding: true,
@@ -59,9 +59,9 @@ fn all_steps() -> Vec<Step> {
         Step::OpenContacts,
         Step::JoinCopies,
         Step::Nest(NestOptions {
-            policy: repair::nest::Policy::Fill,
+            policy: repair::nest::NestingPolicy::Fill,
             is_embedded: false,
-            chosen: vec![(4, repair::nest::Fate::Goes)],
+            chosen: vec![(4, repair::nest::ShellFate::Goes)],
         }),
         Step::Rebuild,
         Step::Simplify,

@@ -56,7 +56,7 @@ pub struct PolicyVolume {
 /// A policy as its file has it.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct PolicyFile {
     name: String,
     title: String,
     version: u32,
@@ -66,7 +66,7 @@ struct File {
     overhang: Option<Row>,
     sharp_edge: Option<Row>,
     cavities: Option<Row>,
-    build_volume: Volume,
+    build_volume: VolumeLimitRow,
 }
 
 #[derive(Debug, Deserialize)]
@@ -79,7 +79,7 @@ struct Row {
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Volume {
+struct VolumeLimitRow {
     warning: Option<[f64; 3]>,
     error: Option<[f64; 3]>,
     source: String,
@@ -100,7 +100,7 @@ pub fn policies() -> Vec<PolicyInfo> {
 }
 
 fn read(text: &str) -> Result<PolicyInfo, String> {
-    let file: File = toml::from_str(text).map_err(|error| error.to_string())?;
+    let file: PolicyFile = toml::from_str(text).map_err(|error| error.to_string())?;
     let name = PolicyName::from_word(&file.name).ok_or("no such policy")?;
     let rows = [
         (CheckCode::Wall, file.wall),
@@ -115,7 +115,7 @@ fn read(text: &str) -> Result<PolicyInfo, String> {
         let bound = if check == CheckCode::Cavity { BoundKind::AtMost } else { BoundKind::AtLeast };
         Some(PolicyLimit { check, bound, unit: check.unit(), warning, error, source })
     };
-    let Volume { warning, error, source } = file.build_volume;
+    let VolumeLimitRow { warning, error, source } = file.build_volume;
     Ok(PolicyInfo {
         name,
         title: file.title,
@@ -132,7 +132,7 @@ impl PolicyInfo {
     }
 
     /// The engine's policy, lengths in the unit of a file of which one unit is so many millimetres.
-    pub fn to_engine(&self, millimetres: f64, build_direction: BuildDirection) -> printing::Policy {
+    pub fn to_engine(&self, millimetres: f64, build_direction: BuildDirection) -> printing::PrintingPolicy {
         let limit = |check: CheckCode| {
             let unit = if check.unit() == PrintingUnit::Millimetres { millimetres } else { 1.0 };
             let row = self.limits.iter().find(|limit| limit.check == check);
@@ -142,7 +142,7 @@ impl PolicyInfo {
             })
         };
         let sides = |sides: Option<[f64; 3]>| sides.map(|sides| sides.map(|side| side / millimetres));
-        printing::Policy {
+        printing::PrintingPolicy {
             name: self.name.word(),
             version: self.version,
             wall: limit(CheckCode::Wall),

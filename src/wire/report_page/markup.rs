@@ -42,13 +42,13 @@ impl Tone {
 }
 
 /// One cell of a table.
-pub(super) enum Cell {
+pub(super) enum TableCell {
     Text(String),
     Number(String),
     Mark(Tone, &'static str),
 }
 
-impl Display for Cell {
+impl Display for TableCell {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match self {
             Self::Text(text) => write!(f, "<td>{}</td>", Escaped(text)),
@@ -78,7 +78,7 @@ impl HtmlPage {
     }
 
     /// A table with a line of headings, in a box of its own that scrolls where it is too wide for the page; nothing without rows.
-    pub(super) fn table(&mut self, headings: &[&str], rows: Vec<Vec<Cell>>) {
+    pub(super) fn table(&mut self, headings: &[&str], rows: Vec<Vec<TableCell>>) {
         if rows.is_empty() {
             return;
         }

@@ -10,7 +10,7 @@ pub use markup::Escaped;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD as BASE64;
-use markup::{Cell, HtmlPage, Tone, figure, items, measured, text};
+use markup::{HtmlPage, TableCell, Tone, figure, items, measured, text};
 use serde_json::Value;
 
 const STYLE: &str = include_str!("style.css");
@@ -179,10 +179,10 @@ fn found(page: &mut HtmlPage, report: &Value) {
         };
         let places: Vec<String> = items(&defect["witnesses"]).iter().take(PLACES).map(place).collect();
         vec![
-            Cell::Mark(tone, word),
-            Cell::Text(plain::defect(text(&defect["code"])).to_owned()),
-            Cell::Number(format!("{}{}", defect["count"], or_more(defect))),
-            Cell::Text(places.join("; ")),
+            TableCell::Mark(tone, word),
+            TableCell::Text(plain::defect(text(&defect["code"])).to_owned()),
+            TableCell::Number(format!("{}{}", defect["count"], or_more(defect))),
+            TableCell::Text(places.join("; ")),
         ]
     };
     let rows = defects.iter().copied().map(row).collect();
@@ -201,12 +201,12 @@ fn holes(page: &mut HtmlPage, defects: &[&Value]) {
         let number_of = |name: &str| figure_of(name).map_or_else(String::new, figure);
         let sure = figure_of("confidence").map(|share| format!("{} %", figure(share * 100.0)));
         vec![
-            Cell::Number((number + 1).to_string()),
-            Cell::Text(plain::hole(text(&witness["hole"])).to_owned()),
-            Cell::Number(sure.unwrap_or_default()),
-            Cell::Number(number_of("edges")),
-            Cell::Number(number_of("length")),
-            Cell::Text(place(witness)),
+            TableCell::Number((number + 1).to_string()),
+            TableCell::Text(plain::hole(text(&witness["hole"])).to_owned()),
+            TableCell::Number(sure.unwrap_or_default()),
+            TableCell::Number(number_of("edges")),
+            TableCell::Number(number_of("length")),
+            TableCell::Text(place(witness)),
         ]
     };
     let rows = loops.flat_map(|defect| items(&defect["witnesses"]).iter().enumerate()).map(row).collect();
@@ -248,10 +248,10 @@ fn done(page: &mut HtmlPage, report: &Value) {
         let changes = changes.map(|change| format!("{}: {}", words(text(&change["name"])), change["count"]));
         let causes = items(&action["causes"]).iter().map(|cause| plain::cause(text(cause)));
         vec![
-            Cell::Text(plain::step(text(&action["step"]))),
-            Cell::Text(changes.collect::<Vec<_>>().join(", ")),
-            Cell::Text(each_once(causes).join(", ")),
-            Cell::Text(text(&action["reason"]).to_owned()),
+            TableCell::Text(plain::step(text(&action["step"]))),
+            TableCell::Text(changes.collect::<Vec<_>>().join(", ")),
+            TableCell::Text(each_once(causes).join(", ")),
+            TableCell::Text(text(&action["reason"]).to_owned()),
         ]
     };
     let rows = actions.iter().map(row).collect();
@@ -302,12 +302,12 @@ fn filled(page: &mut HtmlPage, report: &Value) {
         };
         let rejected = items(&hole["rejected"]).iter().map(why);
         vec![
-            Cell::Number(loops.join(", ")),
-            Cell::Text(plain::hole(text(&hole["class"])).to_owned()),
-            Cell::Mark(tone, word),
-            Cell::Text(text(&hole["used"]).to_owned()),
-            Cell::Number(hole["triangles"].to_string()),
-            Cell::Text(rejected.collect::<Vec<_>>().join(", ")),
+            TableCell::Number(loops.join(", ")),
+            TableCell::Text(plain::hole(text(&hole["class"])).to_owned()),
+            TableCell::Mark(tone, word),
+            TableCell::Text(text(&hole["used"]).to_owned()),
+            TableCell::Number(hole["triangles"].to_string()),
+            TableCell::Text(rejected.collect::<Vec<_>>().join(", ")),
         ]
     };
     let rows = holes.iter().take(HOLES).map(row).collect();
@@ -333,7 +333,8 @@ fn moved(page: &mut HtmlPage, report: &Value) {
         ("Surface that your file does not have", percent(&deviation["invented"])),
         ("Bodies that were lost", measured(&deviation["bodies_lost"], "")),
     ];
-    let row = |(name, value): (&str, String)| vec![Cell::Text(name.to_owned()), Cell::Number(value)];
+    let row =
+        |(name, value): (&str, String)| vec![TableCell::Text(name.to_owned()), TableCell::Number(value)];
     page.table(&[], rows.into_iter().map(row).collect());
 }
 
@@ -352,16 +353,17 @@ fn certificate(page: &mut HtmlPage, report: &Value) {
         ("p2", "Solid: every point is clearly inside or outside."),
     ];
     let mark = |holds: &Value| match holds.as_bool() {
-        Some(true) => Cell::Mark(Tone::Good, "holds"),
-        Some(false) => Cell::Mark(Tone::Bad, "broken"),
-        None => Cell::Mark(Tone::Open, "not told"),
+        Some(true) => TableCell::Mark(Tone::Good, "holds"),
+        Some(false) => TableCell::Mark(Tone::Bad, "broken"),
+        None => TableCell::Mark(Tone::Open, "not told"),
     };
-    let row =
-        |(name, meaning): (&str, &str)| vec![mark(&judged[name]["holds"]), Cell::Text(meaning.to_owned())];
-    let mut rows: Vec<Vec<Cell>> = claims.into_iter().map(row).collect();
+    let row = |(name, meaning): (&str, &str)| {
+        vec![mark(&judged[name]["holds"]), TableCell::Text(meaning.to_owned())]
+    };
+    let mut rows: Vec<Vec<TableCell>> = claims.into_iter().map(row).collect();
     if report["printing"].is_object() {
         let meaning = "Manufacturable: within the limits of the process. Measured, not proved.";
-        rows.push(vec![mark(&report["printing"]["p3_holds"]), Cell::Text(meaning.to_owned())]);
+        rows.push(vec![mark(&report["printing"]["p3_holds"]), TableCell::Text(meaning.to_owned())]);
     }
     page.table(&[], rows);
     page.add(format_args!(

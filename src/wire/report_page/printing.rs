@@ -1,6 +1,6 @@
 //! The part of the page about printing.
 
-use super::markup::{Cell, HtmlPage, Tone, figure, items, measured, text};
+use super::markup::{HtmlPage, TableCell, Tone, figure, items, measured, text};
 use super::{coordinates, plain};
 use serde_json::Value;
 
@@ -21,7 +21,7 @@ pub(super) fn add(page: &mut HtmlPage, printing: &Value) {
     quote(page, printing);
 }
 
-fn check(check: &Value) -> Vec<Cell> {
+fn check(check: &Value) -> Vec<TableCell> {
     let (tone, word) = match text(&check["status"]) {
         "ok" => (Tone::Good, "ok"),
         "warning" => (Tone::Fair, "warning"),
@@ -31,10 +31,10 @@ fn check(check: &Value) -> Vec<Cell> {
     let places = items(&check["witnesses"]).iter().take(super::PLACES);
     let places = places.filter_map(|witness| Some(format!("at {}", coordinates(&witness["position"])?)));
     vec![
-        Cell::Mark(tone, word),
-        Cell::Text(plain::check(text(&check["code"])).to_owned()),
-        Cell::Text(text(&check["message"]).to_owned()),
-        Cell::Text(places.collect::<Vec<_>>().join("; ")),
+        TableCell::Mark(tone, word),
+        TableCell::Text(plain::check(text(&check["code"])).to_owned()),
+        TableCell::Text(text(&check["message"]).to_owned()),
+        TableCell::Text(places.collect::<Vec<_>>().join("; ")),
     ]
 }
 
@@ -56,7 +56,8 @@ fn quote(page: &mut HtmlPage, printing: &Value) {
         ("Area covered on the plate", measured(&quote["shadow_area"], " mm\u{b2}")),
         ("Area that needs support, seen from above", measured(support, " mm\u{b2}")),
     ];
-    let row = |(name, value): (&str, String)| vec![Cell::Text(name.to_owned()), Cell::Number(value)];
+    let row =
+        |(name, value): (&str, String)| vec![TableCell::Text(name.to_owned()), TableCell::Number(value)];
     page.table(&[], rows.into_iter().map(row).collect());
     let safe =
         if quote["price_safe"] == true { "A price can rest on these figures" } else { "Not for a price" };

@@ -70,7 +70,7 @@ words! {
     }
 }
 
-mirror! { mesh::Validity =>
+mirror! { mesh::StitchValidity =>
     /// When two boundary edges may be joined.
     StitchValidity {
         /// When the mesh is a manifold afterwards.
@@ -146,7 +146,7 @@ mirror! { repair::pair_sheets::Across =>
     }
 }
 
-mirror! { repair::nest::Policy =>
+mirror! { repair::nest::NestingPolicy =>
     /// How shells inside shells are taken.
     Nesting {
         /// As they point: only a globally consistent inversion is flipped, cavities stay.
@@ -158,7 +158,7 @@ mirror! { repair::nest::Policy =>
     }
 }
 
-mirror! { repair::nest::Fate =>
+mirror! { repair::nest::ShellFate =>
     /// What becomes of a shell.
     ShellFate {
         /// It stays as it is.

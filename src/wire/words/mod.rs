@@ -192,13 +192,13 @@ mod tests {
 
     #[test]
     fn the_lists_of_operations_are_those_of_the_table() {
-        let of = |holds: &dyn Fn(pipeline::Product) -> bool| -> Vec<Operation> {
+        let of = |holds: &dyn Fn(pipeline::ProductKind) -> bool| -> Vec<Operation> {
             let product = |operation: Operation| pipeline::Operation::from(operation).facts().product;
             Operation::ALL.iter().copied().filter(|&operation| holds(product(operation))).collect()
         };
-        let is_mesh = |product| matches!(product, pipeline::Product::Mesh | pipeline::Product::Solid);
+        let is_mesh = |product| matches!(product, pipeline::ProductKind::Mesh | pipeline::ProductKind::Solid);
         assert_eq!(Operation::WITH_MESH, of(&is_mesh));
-        assert_eq!(Operation::BESIDE_PICTURE, of(&|product| product != pipeline::Product::Picture));
+        assert_eq!(Operation::BESIDE_PICTURE, of(&|product| product != pipeline::ProductKind::Picture));
     }
 
     #[test]

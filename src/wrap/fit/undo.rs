@@ -2,7 +2,7 @@
 
 use super::normals::Stars;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
-use crate::geom::{Aabb, DVec3, Plane, Shared, are_collinear, contact};
+use crate::geom::{Aabb, DVec3, Shared, ThreePointPlane, are_collinear, contact};
 use crate::par;
 use crate::spatial::{self, Bvh, Search, Terrains, coincident_f64};
 
@@ -155,7 +155,7 @@ fn of_these(
         let mut found = Vec::new();
         for &t in &these[range] {
             let corners = triangles[t as usize];
-            let plane = Plane::through(corners.map(|v| positions[v as usize]));
+            let plane = ThreePointPlane::through(corners.map(|v| positions[v as usize]));
             let bounds = Aabb::of(corners.map(|v| positions[v as usize]));
             bvh.visit_box(bounds, budget, |other| {
                 let others = triangles[other as usize];

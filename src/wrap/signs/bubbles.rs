@@ -6,7 +6,7 @@
 //! A bubble that is a whole part of the input stays.
 
 use super::super::link;
-use super::super::surface::{InputSurface, Looks};
+use super::super::surface::{InputSurface, SearchAllowance};
 use super::crumbs::Small;
 use super::{INSIDE, KNOWN, LISTED, Signs};
 use crate::budget::{Budget, Stopped};
@@ -77,7 +77,7 @@ impl Signs<'_> {
         mut bubbles: Vec<Vec<usize>>,
         surface: &InputSurface,
         turned: &mut Vec<u32>,
-        looks: &mut Looks,
+        looks: &mut SearchAllowance,
         budget: &Budget,
     ) -> Result<Vec<Vec<usize>>, Stopped> {
         let ways = ways();
@@ -114,7 +114,7 @@ impl Signs<'_> {
         bubble: &[usize],
         ways: &[[isize; 3]],
         surface: &InputSurface,
-        looks: &mut Looks,
+        looks: &mut SearchAllowance,
         budget: &Budget,
     ) -> Result<Option<Vec<usize>>, Stopped> {
         budget.spend(bubble.len() as u64 * 16)?;
@@ -169,7 +169,7 @@ impl Signs<'_> {
         &self,
         bubble: &[usize],
         surface: &InputSurface,
-        looks: &mut Looks,
+        looks: &mut SearchAllowance,
         budget: &Budget,
     ) -> Result<Option<usize>, Stopped> {
         let beside = |v: usize| link::STEPS.map(|step| v.wrapping_add_signed(self.lattice.stride(step)));

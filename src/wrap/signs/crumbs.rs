@@ -4,7 +4,7 @@
 //! the input is there: then it is that part. Crumbs go before thin walls grow, so that a wall grows where they were.
 
 use super::super::link;
-use super::super::surface::{InputSurface, Looks};
+use super::super::surface::{InputSurface, SearchAllowance};
 use super::{INSIDE, KNOWN, LISTED, Signs};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3};
@@ -51,8 +51,8 @@ impl Signs<'_> {
     }
 
     /// What a search for the own defects of the lattice may look at. What is left then stays as it is.
-    pub(super) fn looks(&self) -> Looks {
-        Looks(LOOKS_OF_VERTICES * self.state.len() as u64)
+    pub(super) fn looks(&self) -> SearchAllowance {
+        SearchAllowance(LOOKS_OF_VERTICES * self.state.len() as u64)
     }
 
     /// Whether a whole part of the input, whose boxes are given, is or may be where a piece is.
@@ -61,7 +61,7 @@ impl Signs<'_> {
         piece: &[usize],
         surface: &InputSurface,
         boxes: &[Aabb],
-        looks: &mut Looks,
+        looks: &mut SearchAllowance,
         budget: &Budget,
     ) -> Result<bool, Stopped> {
         let bounds = Aabb::of(piece.iter().map(|&v| self.lattice.units(v)));

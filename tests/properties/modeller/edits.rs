@@ -6,7 +6,7 @@ use crate::random::Random;
 use meshmend::budget::Budget;
 use meshmend::mesh::polyhedron::{FaceId, HalfEdgeId, VertexId};
 use meshmend::modeller::{
-    Applied, Events, IntervalSide, Operator, OperatorRefusal, Rational, Solid, apply, check,
+    Applied, EventPolicy, IntervalSide, Operator, OperatorRefusal, Rational, Solid, apply, check,
     distance_of_growth, offset_growth, range, rational,
 };
 use std::collections::BTreeMap;
@@ -55,13 +55,13 @@ fn random_operator(random: &mut Random, solid: &Solid) -> Operator {
         0..=3 => {
             let sides = range(solid, &[(face, rational(1.0))], &budget()).unwrap();
             let by = growth(random, solid, face, &sides[usize::from(sign > 0.0)], sign);
-            let events = if random.below(3) == 0 { Events::Pass } else { Events::Refuse };
+            let events = if random.below(3) == 0 { EventPolicy::Pass } else { EventPolicy::Refuse };
             Operator::Shift { faces: vec![(face, by)], events }
         }
         4 => {
             let other = some(random, &faces);
             let by = |f| offset_growth(solid, f, sign * 0.5);
-            Operator::Shift { faces: vec![(face, by(face)), (other, by(other))], events: Events::Refuse }
+            Operator::Shift { faces: vec![(face, by(face)), (other, by(other))], events: EventPolicy::Refuse }
         }
         5 | 6 => {
             let high: Vec<VertexId> =
@@ -81,7 +81,7 @@ fn random_operator(random: &mut Random, solid: &Solid) -> Operator {
 
 fn name(operator: &Operator) -> &'static str {
     match operator {
-        Operator::Shift { events: Events::Refuse, .. } => "shift",
+        Operator::Shift { events: EventPolicy::Refuse, .. } => "shift",
         Operator::Shift { .. } => "shift past events",
         Operator::Split { .. } => "split",
         Operator::Merge { .. } => "merge",

@@ -9,8 +9,8 @@ use meshmend::budget::Budget;
 use meshmend::geom::DVec3;
 use meshmend::mesh::polyhedron::{FaceId, Polyhedron};
 use meshmend::modeller::{
-    Embedding, Events, IntervalSide, Operator, OperatorRefusal, Rational, Solid, apply, distance_of_growth,
-    dual, dual_faces, edge_between, import, offset_growth, range, rational, vertex_near,
+    Embedding, EventPolicy, IntervalSide, Operator, OperatorRefusal, Rational, Solid, apply,
+    distance_of_growth, dual, dual_faces, edge_between, import, offset_growth, range, rational, vertex_near,
 };
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ fn budget() -> Budget {
 }
 
 fn shift(face: FaceId, by: Rational) -> Operator {
-    Operator::Shift { faces: vec![(face, by)], events: Events::Refuse }
+    Operator::Shift { faces: vec![(face, by)], events: EventPolicy::Refuse }
 }
 
 /// The limits of a side, if it has any.
@@ -45,7 +45,7 @@ fn a_shift_by_a_and_then_by_b_is_one_by_their_sum_and_back_again_is_nothing() {
                 let whole = apply(&mut once, &shift(face, &a + &b), &budget()).unwrap().unwrap();
                 apply(&mut twice, &shift(face, b.clone()), &budget()).unwrap().unwrap();
                 assert!(twice.is_same_as(&once), "{name}");
-                let events = if whole.changes.is_empty() { Events::Refuse } else { Events::Pass };
+                let events = if whole.changes.is_empty() { EventPolicy::Refuse } else { EventPolicy::Pass };
                 let back = Operator::Shift { faces: vec![(face, -(&a + &b))], events };
                 apply(&mut once, &back, &budget()).unwrap().unwrap();
                 assert!(once.is_same_as(&first), "{name} {face:?}");
@@ -378,7 +378,7 @@ fn bad_flips_and_splits_are_refused_by_their_reasons() {
     let split = Operator::Split { vertex, face: top, by: offset_growth(&cube, top, 1.0) };
     assert_eq!(refusal(&split, &cube), OperatorRefusal::VertexIsTrihedral { vertex });
     // The top of a box meets the floor when all upright edges vanish together: no flip, no merge.
-    let pass = Operator::Shift { faces: vec![(top, rational(-25.0))], events: Events::Pass };
+    let pass = Operator::Shift { faces: vec![(top, rational(-25.0))], events: EventPolicy::Pass };
     assert!(matches!(refusal(&pass, &cube), OperatorRefusal::FaceVanishes { .. }));
     let tip = pyramid(&[[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0]], [10.0, 10.0, 30.0], 0.0).solid();
     let floor = face(&tip, [0.0, 0.0, -1.0], [10.0, 10.0, 0.0]);

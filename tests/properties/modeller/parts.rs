@@ -7,8 +7,8 @@ use meshmend::formats::{ReadOptions, read, sniff};
 use meshmend::geom::DVec3;
 use meshmend::mesh::polyhedron::FaceId;
 use meshmend::modeller::{
-    Events, Imported, IntervalSide, Operator, apply, check, distance_of_growth, import, offset_growth, range,
-    rational,
+    EventPolicy, Imported, IntervalSide, Operator, apply, check, distance_of_growth, import, offset_growth,
+    range, rational,
 };
 use meshmend::spatial::coincident_f64;
 use std::path::Path;
@@ -94,7 +94,7 @@ fn edit(path: &Path, seed: u64, shifts: usize) -> Tally {
         };
         let share = (1 + random.below(7)) as f64 / 8.0;
         let by = offset_growth(&solid, face, reach * share);
-        let shift = Operator::Shift { faces: vec![(face, by)], events: Events::Refuse };
+        let shift = Operator::Shift { faces: vec![(face, by)], events: EventPolicy::Refuse };
         let applied = apply(&mut solid, &shift, &budget)
             .unwrap()
             .unwrap_or_else(|refusal| panic!("{path:?} {shift:?}: {refusal:?}"));

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use super::*;
-use crate::jobs::{ClaimRef, Kept, Leases, Tenant};
+use crate::jobs::{ClaimRef, EndedJobs, Leases, Tenant};
 
 pub(super) async fn an_ended_job_is_due_after_its_time<H: StoreHouse>() {
     let house = H::open().await;
@@ -44,7 +44,7 @@ pub(super) async fn a_running_job_does_not_expire<H: StoreHouse>() {
         assert!(store.expire(id).await.unwrap().is_empty());
     }
     assert_eq!(state(&*store, row.id).await, JobState::Running);
-    assert_eq!(store.first_to_go(Kept::Any, Tenant::nobody()).await.unwrap(), None);
+    assert_eq!(store.first_to_go(EndedJobs::Any, Tenant::nobody()).await.unwrap(), None);
 }
 
 pub(super) async fn a_file_that_two_jobs_name_goes_with_the_second<H: StoreHouse>() {
@@ -82,10 +82,10 @@ pub(super) async fn the_job_that_ended_first_is_the_oldest<H: StoreHouse>() {
     store.finish(b.claim(), success(&b)).await.unwrap();
     house.advance_ms(1).await;
     store.finish(a.claim(), success(&a)).await.unwrap();
-    assert_eq!(store.first_to_go(Kept::WithFiles, Tenant::nobody()).await.unwrap(), Some(b.id));
+    assert_eq!(store.first_to_go(EndedJobs::WithFiles, Tenant::nobody()).await.unwrap(), Some(b.id));
     store.expire(b.id).await.unwrap();
-    assert_eq!(store.first_to_go(Kept::WithFiles, Tenant::nobody()).await.unwrap(), Some(a.id));
-    assert_eq!(store.first_to_go(Kept::Any, Tenant::nobody()).await.unwrap(), Some(b.id));
+    assert_eq!(store.first_to_go(EndedJobs::WithFiles, Tenant::nobody()).await.unwrap(), Some(a.id));
+    assert_eq!(store.first_to_go(EndedJobs::Any, Tenant::nobody()).await.unwrap(), Some(b.id));
 }
 
 pub(super) async fn files_are_known_by_their_names_and_runs_by_their_claims<H: StoreHouse>() {

@@ -1,7 +1,7 @@
 //! What several tenants share.
 
 use super::*;
-use crate::jobs::{AfterLoss, Holding, Kept};
+use crate::jobs::{AfterLoss, EndedJobs, Holding};
 
 fn of(tenant: &str) -> NewJob {
     NewJob { tenant: Tenant::named(tenant), ..job() }
@@ -95,7 +95,7 @@ pub(super) async fn nobody_loses_what_is_within_its_share<H: StoreHouse>() {
         loud.push(succeeded(&*store, of("loud")).await.id);
     }
     let first = async |kept, asker: &str| store.first_to_go(kept, Tenant::named(asker)).await.unwrap();
-    for kept in [Kept::Any, Kept::WithFiles] {
+    for kept in [EndedJobs::Any, EndedJobs::WithFiles] {
         assert_eq!(first(kept, "loud").await, Some(loud[0]), "who has its share makes room by itself");
         assert_eq!(first(kept, "quiet").await, Some(loud[0]), "who has less takes it from who has more");
         assert_eq!(first(kept, "new").await, Some(loud[0]));
@@ -106,7 +106,7 @@ pub(super) async fn nobody_loses_what_is_within_its_share<H: StoreHouse>() {
         store.expire(id).await.unwrap();
     }
     assert_eq!(
-        first(Kept::WithFiles, "loud").await,
+        first(EndedJobs::WithFiles, "loud").await,
         Some(oldest),
         "by bytes it is the other one that has more"
     );
@@ -118,11 +118,11 @@ pub(super) async fn nobody_loses_what_is_within_its_share<H: StoreHouse>() {
     }
     let small = succeeded(&*store, of("small")).await.id;
     assert_eq!(
-        first(Kept::Any, "busy").await,
+        first(EndedJobs::Any, "busy").await,
         None,
         "nothing of its own has ended, and others have their share"
     );
-    assert!(first(Kept::Any, "small").await != Some(small));
+    assert!(first(EndedJobs::Any, "small").await != Some(small));
 }
 
 pub(super) async fn a_job_whose_webhook_is_still_to_be_sent_goes_last<H: StoreHouse>() {
@@ -130,7 +130,7 @@ pub(super) async fn a_job_whose_webhook_is_still_to_be_sent_goes_last<H: StoreHo
     let store = house.store();
     let told = succeeded(&*store, NewJob { webhook: webhook(), ..of("a") }).await.id;
     let plain = succeeded(&*store, of("a")).await.id;
-    let first = async || store.first_to_go(Kept::Any, Tenant::named("a")).await.unwrap();
+    let first = async || store.first_to_go(EndedJobs::Any, Tenant::named("a")).await.unwrap();
     assert_eq!(first().await, Some(plain));
     store.delete(plain).await.unwrap();
     assert_eq!(first().await, Some(told));

@@ -27,7 +27,7 @@ const COPLANAR_COS_MIN: f64 = 0.9995;
 const POINTS_MAX: f64 = 256.0;
 
 /// A hole divided by curves. Points are numbered: the corners of the rim, then those of curves.
-pub(in crate::repair::fill) struct Division {
+pub(in crate::repair::fill) struct HoleDivision {
     pub(super) points: Vec<DVec3>,
     /// For each point of a curve two points that it was born between.
     pub(super) parents: Vec<[u32; 2]>,
@@ -39,12 +39,12 @@ pub(in crate::repair::fill) struct Division {
 
 /// Two ends that are one edge, or one that goes to the point that others go to as well.
 #[derive(Clone, Copy)]
-enum Course {
+enum CurveEnds {
     Join(End, End),
     Meet(End, u32),
 }
 
-impl Division {
+impl HoleDivision {
     /// `None`: no sharp edge ends at the rim, or nothing tells how they go on.
     pub(in crate::repair::fill) fn of(
         region: &Region,
@@ -61,14 +61,14 @@ impl Division {
         let n = points.len() as u32;
         let all: Vec<u32> = (0..n).collect();
         let mut division = Self { points, parents: Vec::new(), sides: vec![all], curves_at: Vec::new() };
-        let meeting = |ends: &[End], apex: u32| ends.iter().map(|&end| Course::Meet(end, apex)).collect();
-        let courses: Vec<Course> = match division.apex(ends, MISS_OF_CORNER_MAX) {
+        let meeting = |ends: &[End], apex: u32| ends.iter().map(|&end| CurveEnds::Meet(end, apex)).collect();
+        let courses: Vec<CurveEnds> = match division.apex(ends, MISS_OF_CORNER_MAX) {
             Some(apex) => meeting(ends, apex),
             None => {
                 let (joined, left) = division.matched(ends);
                 let apex = division.apex(&left, MISS_MAX);
                 let met = apex.map_or_else(Vec::new, |apex| meeting(&left, apex));
-                joined.into_iter().map(|[a, b]| Course::Join(a, b)).chain(met).collect()
+                joined.into_iter().map(|[a, b]| CurveEnds::Join(a, b)).chain(met).collect()
             }
         };
         if courses.is_empty() {
@@ -176,22 +176,22 @@ impl Division {
         Some(self.points.len() as u32 - 1)
     }
 
-    fn is_straight(&self, course: &Course) -> bool {
+    fn is_straight(&self, course: &CurveEnds) -> bool {
         match *course {
-            Course::Join(a, b) => self.towards(a, b) >= STRAIGHT_COS_MIN,
-            Course::Meet(..) => true,
+            CurveEnds::Join(a, b) => self.towards(a, b) >= STRAIGHT_COS_MIN,
+            CurveEnds::Meet(..) => true,
         }
     }
 
     /// Adds the points of a curve, at about `length` from each other; gives all from end to end.
-    fn draw(&mut self, course: &Course, length: f64) -> Vec<u32> {
+    fn draw(&mut self, course: &CurveEnds, length: f64) -> Vec<u32> {
         let [from, to] = course.ends();
         let [p, q] = [from, to].map(|v| self.points[v as usize]);
         let chord = p.distance(q);
         let steps = (chord / length).round().clamp(1.0, POINTS_MAX) as u32;
         let [leaving, arriving] = match *course {
-            Course::Join(a, b) => [a.direction, -b.direction].map(|d| d * chord),
-            Course::Meet(..) => [q - p; 2],
+            CurveEnds::Join(a, b) => [a.direction, -b.direction].map(|d| d * chord),
+            CurveEnds::Meet(..) => [q - p; 2],
         };
         let mut curve = vec![from];
         for step in 1..steps {
@@ -209,10 +209,10 @@ impl Division {
     }
 
     /// The sides that `curves` divide the rim into; `None` when one has fewer than three points.
-    fn divided(&self, curves: &[Vec<u32>], courses: &[Course]) -> Option<Vec<Vec<u32>>> {
+    fn divided(&self, curves: &[Vec<u32>], courses: &[CurveEnds]) -> Option<Vec<Vec<u32>>> {
         let mut sides = vec![self.sides[0].clone()];
         let (joins, spokes): (Vec<_>, Vec<_>) =
-            curves.iter().zip(courses).partition(|(_, course)| matches!(course, Course::Join(..)));
+            curves.iter().zip(courses).partition(|(_, course)| matches!(course, CurveEnds::Join(..)));
         for (curve, _) in joins {
             let (from, to) = (curve[0], curve[curve.len() - 1]);
             let which = sides.iter().position(|side| side.contains(&from) && side.contains(&to))?;
@@ -260,7 +260,7 @@ impl Division {
     }
 }
 
-impl Course {
+impl CurveEnds {
     fn ends(&self) -> [u32; 2] {
         match *self {
             Self::Join(a, b) => [a.corner, b.corner],
@@ -295,13 +295,13 @@ mod tests {
     use super::*;
 
     /// A round rim of 12 corners, the first at the right.
-    fn rim() -> Division {
+    fn rim() -> HoleDivision {
         let corner = |i: u32| {
             let (y, x) = (f64::from(i) * std::f64::consts::TAU / 12.0).sin_cos();
             DVec3::new(x, y, 0.0)
         };
         let points = (0..12).map(corner).collect();
-        Division { points, parents: Vec::new(), sides: vec![(0..12).collect()], curves_at: Vec::new() }
+        HoleDivision { points, parents: Vec::new(), sides: vec![(0..12).collect()], curves_at: Vec::new() }
     }
 
     fn end(corner: u32, x: f64, y: f64) -> End {

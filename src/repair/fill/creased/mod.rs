@@ -8,7 +8,7 @@
 mod division;
 mod ends;
 
-pub(in crate::repair::fill) use self::division::Division;
+pub(in crate::repair::fill) use self::division::HoleDivision;
 use self::division::normal_beyond;
 use super::make::{MadePatch, refine_and_fair};
 use super::minimal::{self, CORNERS_MAX};
@@ -23,12 +23,12 @@ use crate::geom::DVec3;
 /// The patch of a region that creases divide, or why there is none.
 pub(super) fn creased(
     region: &Region,
-    division: &Division,
+    division: &HoleDivision,
     surface: &FillSurface,
     budget: &Budget,
 ) -> Result<Result<MadePatch, Rejection>, Stopped> {
-    let Division { points, parents, .. } = division;
-    let mut patch = Patch { points: points.clone(), parents: parents.clone(), triangles: Vec::new() };
+    let HoleDivision { points, parents, .. } = division;
+    let mut patch = PartialPatch { points: points.clone(), parents: parents.clone(), triangles: Vec::new() };
     for corners in &division.sides {
         match (CreaseSide { corners, division, region, surface }).close(budget)? {
             Ok(mesh) => patch.sew(corners, &mesh),
@@ -43,14 +43,14 @@ pub(super) fn creased(
 }
 
 /// The sides that are closed so far.
-struct Patch {
+struct PartialPatch {
     /// Those of the rim's corners, of curves, then of sides.
     points: Vec<DVec3>,
     parents: Vec<[u32; 2]>,
     triangles: Vec<[u32; 3]>,
 }
 
-impl Patch {
+impl PartialPatch {
     fn sew(&mut self, corners: &[u32], side: &PatchMesh) {
         let first = self.points.len() as u32;
         let id = |v: u32| match corners.get(v as usize) {
@@ -67,7 +67,7 @@ impl Patch {
 struct CreaseSide<'a> {
     /// Points of the division, in the direction of the rim.
     corners: &'a [u32],
-    division: &'a Division,
+    division: &'a HoleDivision,
     region: &'a Region,
     surface: &'a FillSurface,
 }
