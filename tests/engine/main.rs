@@ -23,6 +23,7 @@ mod solids;
 mod attributes;
 mod bad_input;
 mod boolean;
+mod bridges;
 mod cavities;
 mod cut_stitch;
 mod enclosed;
