@@ -172,6 +172,7 @@ impl Variant {
             });
             pair.into_iter().chain([Step::Cut(CutOptions::default())]).chain(pinch).chain([snap])
         });
+        let turn = (self.bridges && choices.orients).then_some(Step::TurnToBridge);
         let fill = match self.thickens {
             true => Some(Step::Thicken { wall: choices.wall }),
             false => choices.fills_holes.then(|| Step::FillHoles(choices.filling(self.bridges))),
@@ -179,7 +180,8 @@ impl Variant {
         let thin = (self.mends_thin_faces && choices.mends_thin_faces())
             .then_some(Step::MendThinFaces(choices.thin_faces));
         let start = self.welding(choices).into_iter().chain(single).chain(near);
-        start.chain(remove).chain(orient).chain(join.into_iter().flatten()).chain(thin).chain(fill).collect()
+        let joined = start.chain(remove).chain(orient).chain(join.into_iter().flatten());
+        joined.chain(thin).chain(turn).chain(fill).collect()
     }
 
     /// The steps that make it a solid. Readers weld, so that copies of a vertex would be one again: what is to be

@@ -58,6 +58,8 @@ pub enum Step {
     Pinch(ChosenEdges, StitchValidity),
     /// Boundary edges that are close are joined.
     Snap(SnapOptions),
+    /// Parts are turned so that rims which belong together run in opposite directions.
+    TurnToBridge,
     /// Holes are closed.
     FillHoles(FillOptions),
     /// Needles, caps and folds go.
@@ -137,6 +139,7 @@ impl Step {
             Self::RoundToCoarser { .. } => "round-to-coarser",
             Self::DropNearDuplicates { .. } => "drop-near-duplicates",
             Self::OpenContacts => "open-contacts",
+            Self::TurnToBridge => "turn-to-bridge",
             Self::FillHoles(_) => "fill-holes",
             Self::MendThinFaces(_) => "mend-thin-faces",
             Self::Thicken { .. } => "thicken",
@@ -198,6 +201,7 @@ impl Step {
             | Self::SplitTVertices
             | Self::Pinch(..)
             | Self::Snap(_)
+            | Self::TurnToBridge
             | Self::FillHoles(_)
             | Self::SpanRims => &[DefectCode::BoundaryLoop],
             Self::Nest(_) => &[DefectCode::InvertedShell, DefectCode::MisnestedShell],
@@ -242,6 +246,7 @@ impl Step {
             Self::DropNearDuplicates { epsilon } => {
                 repair::near_duplicates::drop_near_duplicates(draft, *epsilon, budget)
             }
+            Self::TurnToBridge => repair::fill::turn_to_bridge(draft, budget),
             Self::FillHoles(options) => {
                 let filled = repair::fill::fill(draft, soup, options, budget)?;
                 holes.extend(filled.holes);

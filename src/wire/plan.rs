@@ -197,6 +197,8 @@ pub enum PlanStep {
         /// Folds go.
         folds: bool,
     },
+    /// Parts are turned so that rims which belong together run in opposite directions.
+    TurnToBridge {},
     /// Holes are closed.
     FillHoles {
         /// All but `except`; false: only `except`.
@@ -382,6 +384,7 @@ impl PlanStep {
             Self::MendThinFaces { needles, caps, folds } => {
                 Step::MendThinFaces(ThinFaces { needles: *needles, caps: *caps, folds: *folds })
             }
+            Self::TurnToBridge {} => Step::TurnToBridge,
             Self::FillHoles { all: true, except, how } => {
                 Step::FillHoles(how.to_engine(Selection::AllBut(sorted(except))))
             }
@@ -445,6 +448,7 @@ impl From<&Step> for PlanStep {
             Step::MendThinFaces(which) => {
                 Self::MendThinFaces { needles: which.needles, caps: which.caps, folds: which.folds }
             }
+            Step::TurnToBridge => Self::TurnToBridge {},
             Step::FillHoles(options) => {
                 let (all, except) = match &options.holes {
                     Selection::AllBut(except) => (true, except.clone()),

@@ -15,8 +15,8 @@ const FACING_COS_MIN: f64 = 0.6;
 const LIP_COS_MIN: f64 = 0.6;
 /// Width of the gap between the lips of two skins, at most, as a share of the diagonal of the larger loop.
 const LIP_GAP_SHARE_MAX: f64 = 0.25;
-/// Loops run against each other when the cosine of the angle between their normals is below this.
-const AGAINST_COS_MAX: f64 = -0.3;
+/// Loops run with or against each other when the cosine of the angle between their normals is above this, or below its opposite.
+const AGAINST_COS_MIN: f64 = 0.3;
 /// Width of a gap, at most, as a share of the diagonal of the larger loop.
 const GAP_SHARE_MAX: f64 = 0.5;
 /// Of the rims of two sheets, the smaller one bounds at least this share of the area of the larger one.
@@ -26,120 +26,174 @@ const SAMPLES: usize = 64;
 /// Most loops among which partners are searched, in time that grows with their square.
 const LOOPS_MAX: usize = 4096;
 
-/// For each rim of a flat sheet that is `free`, the larger one of another sheet that it shares a patch with.
-fn sheet_partners(
-    shapes: &[LoopPolyline],
-    sheets: &[Option<DVec3>],
-    free: &[bool],
-    budget: &Budget,
-) -> Result<Vec<Option<usize>>, Stopped> {
-    let mut partner = vec![None; shapes.len()];
-    let mut is_free = free.to_vec();
-    let order = by_area(shapes, |i| is_free[i] && sheets[i].is_some());
-    for (rank, &inner) in order.iter().enumerate() {
-        budget.spend(rank as u64 / 16 + 1)?;
-        let mut best: Option<(f64, usize)> = None;
-        for &outer in order[..rank].iter().filter(|&&outer| is_free[outer]) {
-            let (a, b) = (&shapes[inner], &shapes[outer]);
-            let is_like = a.area >= SHEET_AREA_SHARE_MIN * b.area && is_near(a, b);
-            if !is_like || !are_back_to_back([a, b], [inner, outer].map(|i| sheets[i])) {
-                continue;
+/// The loops among which partners are searched.
+pub(super) struct Rims<'a> {
+    pub(super) shapes: &'a [LoopPolyline],
+    pub(super) loops: &'a [&'a BoundaryLoop],
+    /// The unit normals of the flat sheets of which loops are rims.
+    pub(super) sheets: &'a [Option<DVec3>],
+    /// The unit direction in which the surface would go on beyond a half-edge.
+    pub(super) outward: &'a dyn Fn(u32) -> DVec3,
+}
+
+/// Two loops that belong together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct RimPair {
+    pub(super) inner: usize,
+    pub(super) outer: usize,
+    /// They run the same way, so that one of their parts has to turn.
+    pub(super) run_alike: bool,
+}
+
+impl Rims<'_> {
+    /// For each loop the larger one that it shares a patch with. Loops that are islands in a plane, or hold one, have none.
+    pub(super) fn partners(
+        &self,
+        in_plane: &[Option<usize>],
+        budget: &Budget,
+    ) -> Result<Vec<Option<usize>>, Stopped> {
+        let mut is_free: Vec<bool> = in_plane.iter().map(Option::is_none).collect();
+        for &outer in in_plane.iter().flatten() {
+            is_free[outer] = false;
+        }
+        let mut partner = vec![None; self.shapes.len()];
+        for pair in self.pairs(is_free, |[inner, outer]| !self.run_alike(inner, outer), budget)? {
+            partner[pair.inner] = Some(pair.outer);
+        }
+        Ok(partner)
+    }
+
+    /// Loops of different parts that would belong together if one of the parts turned, and those that do as they are; `part` tells of
+    /// which part a loop is.
+    pub(super) fn pairs_of_parts(
+        &self,
+        part: impl Fn(usize) -> u32,
+        budget: &Budget,
+    ) -> Result<Vec<RimPair>, Stopped> {
+        let are_apart = |[inner, outer]: [usize; 2]| part(inner) != part(outer);
+        self.pairs(vec![true; self.shapes.len()], are_apart, budget)
+    }
+
+    /// Pairs of free loops that belong together and `may`: loops that face each other and lips of two skins first, then rims of sheets
+    /// that are left. A loop may be the larger one of several pairs but for those of sheets.
+    fn pairs(
+        &self,
+        mut is_free: Vec<bool>,
+        may: impl Fn([usize; 2]) -> bool,
+        budget: &Budget,
+    ) -> Result<Vec<RimPair>, Stopped> {
+        let mut pairs = Vec::new();
+        let mut is_inner = vec![false; self.shapes.len()];
+        let order = self.by_area(|i| is_free[i] && self.shapes[i].area > 0.0);
+        for (rank, &inner) in order.iter().enumerate() {
+            budget.spend(rank as u64 / 16 + 1)?;
+            let mut best: Option<(f64, usize)> = None;
+            for &outer in order[..rank].iter().filter(|&&outer| !is_inner[outer] && may([inner, outer])) {
+                if let Some(cos) = self.facing(inner, outer, budget)?
+                    && best.is_none_or(|best| cos > best.0)
+                {
+                    best = Some((cos, outer));
+                }
             }
-            budget.spend(((a.points.len() + b.points.len()) * SAMPLES) as u64 / 16)?;
-            let gap = facing(a, b, |_| DVec3::ZERO).1.max(facing(b, a, |_| DVec3::ZERO).1);
-            if gap <= GAP_SHARE_MAX * b.bounds.diagonal() && best.is_none_or(|best| gap < best.0) {
-                best = Some((gap, outer));
+            if let Some((_, outer)) = best {
+                is_inner[inner] = true;
+                pairs.push(RimPair { inner, outer, run_alike: self.run_alike(inner, outer) });
             }
         }
-        if let Some((_, outer)) = best {
-            partner[inner] = Some(outer);
-            (is_free[inner], is_free[outer]) = (false, false);
+        for pair in &pairs {
+            (is_free[pair.inner], is_free[pair.outer]) = (false, false);
         }
-    }
-    Ok(partner)
-}
-
-/// The loops that are `wanted`, the largest first; none where there are too many.
-fn by_area(shapes: &[LoopPolyline], wanted: impl Fn(usize) -> bool) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..shapes.len()).filter(|&i| wanted(i)).collect();
-    if order.len() > LOOPS_MAX {
-        return Vec::new();
-    }
-    order.sort_by(|&a, &b| shapes[b].area.total_cmp(&shapes[a].area).then(a.cmp(&b)));
-    order
-}
-
-/// True when both loops are outer rims of their sheets or both are rims of holes in them, and both sheets look away from each other,
-/// or both at each other where they are inside out.
-fn are_back_to_back([a, b]: [&LoopPolyline; 2], [of_a, of_b]: [Option<DVec3>; 2]) -> bool {
-    let (Some(of_a), Some(of_b)) = (of_a, of_b) else { return false };
-    let is_hole = |shape: &LoopPolyline, sheet: DVec3| shape.normal.dot(sheet) > 0.0;
-    let way = (b.bounds.min + b.bounds.max) / 2.0 - (a.bounds.min + a.bounds.max) / 2.0;
-    is_hole(a, of_a) == is_hole(b, of_b) && of_a.dot(way) * of_b.dot(way) < 0.0
-}
-
-/// For each loop the larger one that it shares a patch with; `sheets` gives the normals of flat sheets of which loops are rims. Loops that
-/// are islands in a plane, or hold one, have none.
-pub(super) fn partners(
-    shapes: &[LoopPolyline],
-    loops: &[&BoundaryLoop],
-    sheets: &[Option<DVec3>],
-    outward: &dyn Fn(u32) -> DVec3,
-    in_plane: &[Option<usize>],
-    budget: &Budget,
-) -> Result<Vec<Option<usize>>, Stopped> {
-    let mut partner: Vec<Option<usize>> = vec![None; shapes.len()];
-    let mut is_free: Vec<bool> = in_plane.iter().map(Option::is_none).collect();
-    for &outer in in_plane.iter().flatten() {
-        is_free[outer] = false;
-    }
-    let order = by_area(shapes, |i| is_free[i] && shapes[i].area > 0.0);
-    for (rank, &inner) in order.iter().enumerate() {
-        budget.spend(rank as u64 / 16 + 1)?;
-        let mut best: Option<(f64, usize)> = None;
-        for &outer in order[..rank].iter().filter(|&&outer| partner[outer].is_none()) {
-            if !is_near(&shapes[inner], &shapes[outer]) {
-                continue;
+        let order = self.by_area(|i| is_free[i] && self.sheets[i].is_some());
+        for (rank, &inner) in order.iter().enumerate() {
+            budget.spend(rank as u64 / 16 + 1)?;
+            let mut best: Option<(f64, usize)> = None;
+            for &outer in order[..rank].iter().filter(|&&outer| is_free[outer] && may([inner, outer])) {
+                if let Some(gap) = self.back_to_back(inner, outer, budget)?
+                    && best.is_none_or(|best| gap < best.0)
+                {
+                    best = Some((gap, outer));
+                }
             }
-            budget.spend(((loops[inner].len() + loops[outer].len()) * SAMPLES) as u64 / 16)?;
-            let toward = |from: usize, to: usize| {
-                facing(&shapes[from], &shapes[to], |side| outward(loops[from][side]))
-            };
-            let limit = GAP_SHARE_MAX * shapes[outer].bounds.diagonal();
-            let ((a, gap), (b, _)) = (toward(inner, outer), toward(outer, inner));
-            let cos = a.min(b);
-            let is_facing = gap <= limit && cos >= FACING_COS_MIN;
-            let are_lips = || {
-                let [a, b] = [inner, outer].map(|i| lift(&shapes[i], |side| outward(loops[i][side])));
-                // The normals of the loops point against each other.
-                gap <= LIP_GAP_SHARE_MAX * shapes[outer].bounds.diagonal()
-                    && a.abs().min(b.abs()) >= LIP_COS_MIN
-                    && a * b < 0.0
-            };
-            if (is_facing || are_lips()) && best.is_none_or(|best| cos > best.0) {
-                best = Some((cos, outer));
+            if let Some((_, outer)) = best {
+                (is_free[inner], is_free[outer]) = (false, false);
+                pairs.push(RimPair { inner, outer, run_alike: self.run_alike(inner, outer) });
             }
         }
-        partner[inner] = best.map(|(_, outer)| outer);
+        Ok(pairs)
     }
-    for (inner, outer) in partner.iter().enumerate().filter_map(|(inner, outer)| Some((inner, (*outer)?))) {
-        (is_free[inner], is_free[outer]) = (false, false);
+
+    /// The loops that are `wanted`, the largest first; none where there are too many.
+    fn by_area(&self, wanted: impl Fn(usize) -> bool) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.shapes.len()).filter(|&i| wanted(i)).collect();
+        if order.len() > LOOPS_MAX {
+            return Vec::new();
+        }
+        let area = |i: usize| self.shapes[i].area;
+        order.sort_by(|&a, &b| area(b).total_cmp(&area(a)).then(a.cmp(&b)));
+        order
     }
-    let back_to_back = sheet_partners(shapes, sheets, &is_free, budget)?;
-    Ok(partner.into_iter().zip(back_to_back).map(|(facing, sheet)| facing.or(sheet)).collect())
+
+    /// True when the loops run the same way around.
+    fn run_alike(&self, inner: usize, outer: usize) -> bool {
+        self.shapes[inner].normal.dot(self.shapes[outer].normal) > 0.0
+    }
+
+    /// How well the loops face each other, as a cosine, if they do, or are the lips of two skins; where they run alike, once one of
+    /// their parts has turned.
+    fn facing(&self, inner: usize, outer: usize, budget: &Budget) -> Result<Option<f64>, Stopped> {
+        let [a, b] = [inner, outer].map(|i| &self.shapes[i]);
+        if !are_near(a, b) {
+            return Ok(None);
+        }
+        budget.spend(((a.points.len() + b.points.len()) * SAMPLES) as u64 / 16)?;
+        let outward = |of: usize| move |side: usize| (self.outward)(self.loops[of][side]);
+        let ([cos_a, gap], [cos_b, _]) = (facing(a, b, outward(inner)), facing(b, a, outward(outer)));
+        let size = b.bounds.diagonal();
+        let cos = cos_a.min(cos_b);
+        let are_lips = || {
+            let [lift_a, lift_b] = [lift(a, outward(inner)), lift(b, outward(outer))];
+            // The normals of loops that run against each other do so too.
+            let one_way = (lift_a * lift_b < 0.0) != self.run_alike(inner, outer);
+            gap <= LIP_GAP_SHARE_MAX * size && lift_a.abs().min(lift_b.abs()) >= LIP_COS_MIN && one_way
+        };
+        let belong = gap <= GAP_SHARE_MAX * size && cos >= FACING_COS_MIN || are_lips();
+        Ok(belong.then_some(cos))
+    }
+
+    /// The gap between the rims of two flat sheets back to back, both outer rims or both rims of holes; where they run alike, once one
+    /// of the sheets has turned. Sheets that look at each other are inside out.
+    fn back_to_back(&self, inner: usize, outer: usize, budget: &Budget) -> Result<Option<f64>, Stopped> {
+        let [a, b] = [inner, outer].map(|i| &self.shapes[i]);
+        let (Some(sheet_a), Some(sheet_b)) = (self.sheets[inner], self.sheets[outer]) else {
+            return Ok(None);
+        };
+        if a.area < SHEET_AREA_SHARE_MIN * b.area || !are_near(a, b) {
+            return Ok(None);
+        }
+        let is_hole = |shape: &LoopPolyline, sheet: DVec3| shape.normal.dot(sheet) > 0.0;
+        let way = (b.bounds.min + b.bounds.max - a.bounds.min - a.bounds.max) / 2.0;
+        let looks = [sheet_a, sheet_b].map(|sheet| sheet.dot(way));
+        let are_opposite = (looks[0] * looks[1] < 0.0) != self.run_alike(inner, outer);
+        if is_hole(a, sheet_a) != is_hole(b, sheet_b) || looks.contains(&0.0) || !are_opposite {
+            return Ok(None);
+        }
+        budget.spend(((a.points.len() + b.points.len()) * SAMPLES) as u64 / 16)?;
+        let gap = facing(a, b, |_| DVec3::ZERO)[1].max(facing(b, a, |_| DVec3::ZERO)[1]);
+        Ok((gap <= GAP_SHARE_MAX * b.bounds.diagonal()).then_some(gap))
+    }
 }
 
-/// True when the boxes are no farther apart than a gap may be, and the loops run against each other.
-fn is_near(inner: &LoopPolyline, outer: &LoopPolyline) -> bool {
+/// True when the boxes are no farther apart than a gap may be, and the loops run with or against each other.
+fn are_near(inner: &LoopPolyline, outer: &LoopPolyline) -> bool {
     let apart =
         (outer.bounds.min - inner.bounds.max).max(inner.bounds.min - outer.bounds.max).max(DVec3::ZERO);
     apart.length() <= GAP_SHARE_MAX * outer.bounds.diagonal()
-        && inner.normal.dot(outer.normal) <= AGAINST_COS_MAX
+        && inner.normal.dot(outer.normal).abs() >= AGAINST_COS_MIN
 }
 
 /// The mean cosine between where the surface would go on from the sides of a loop, by their number, and the nearest place on the
 /// other one, and the mean distance of that.
-fn facing(from: &LoopPolyline, to: &LoopPolyline, outward: impl Fn(usize) -> DVec3) -> (f64, f64) {
+fn facing(from: &LoopPolyline, to: &LoopPolyline, outward: impl Fn(usize) -> DVec3) -> [f64; 2] {
     let n = from.points.len();
     let stride = n.div_ceil(SAMPLES);
     let (mut cos, mut gap, mut count) = (0.0, 0.0, 0.0);
@@ -153,7 +207,7 @@ fn facing(from: &LoopPolyline, to: &LoopPolyline, outward: impl Fn(usize) -> DVe
         gap += nearest.distance(middle);
         count += 1.0;
     }
-    (cos / count, gap / count)
+    [cos / count, gap / count]
 }
 
 /// The mean cosine between the normal of a loop and where the surface would go on from its sides, by their number.

@@ -34,6 +34,7 @@ mod sheets;
 mod span;
 mod sparse;
 mod surface;
+mod turn;
 
 use self::accept::PatchProposal;
 use self::creased::HoleDivision;
@@ -44,6 +45,7 @@ use self::regions::{Region, regions};
 pub use self::report::{FillReport, HoleReport, HoleRim, Rejected, Rejection};
 pub use self::span::{span_odd_edges, span_rims};
 use self::surface::FillSurface;
+pub use self::turn::turn_to_bridge;
 use super::{Changes, Draft, Effects, FIRST_BLEND, NEW, Selection};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec3, triangle_area};

@@ -1,9 +1,10 @@
 //! What a patch has to cover: a boundary loop, flat loops that lie in each other like the rims of a pipe's end, or loops
 //! that face each other across a gap.
 
+use super::facing::Rims;
 use super::pinched::Walk;
+use super::planar;
 use super::shape::{FLAT_SHARE_MAX, LoopPolyline, shape};
-use super::{facing, planar};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec2, DVec3, Sign, orient2d};
 use crate::mesh::BoundaryLoop;
@@ -118,7 +119,9 @@ pub(super) fn regions(
     let is_on_sheet = |i: usize| lies_on(sheets[i], shapes[i].normal);
     let in_plane = containers(&shapes, is_on_sheet, budget)?;
     let across = match outward {
-        Some(outward) => facing::partners(&shapes, &loops, sheets, outward, &in_plane, budget)?,
+        Some(outward) => {
+            Rims { shapes: &shapes, loops: &loops, sheets, outward }.partners(&in_plane, budget)?
+        }
         None => vec![None; loops.len()],
     };
     let is_outer = |i: usize| in_plane[i].is_none() && across[i].is_none();

@@ -4,9 +4,9 @@
 use super::beside::JoinReach;
 use super::{ManifoldRim, flank};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
-use crate::geom::triangle_area;
 use crate::mesh::{ChosenEdges, Components, ParityUnionFind, edge_of, triangle_of};
 use crate::repair::Draft;
+use crate::repair::orient::turn_smaller;
 use crate::spatial::{Octree, is_within};
 
 /// Partners that are looked at for each edge, in each direction.
@@ -123,36 +123,4 @@ fn meetings(
         by_place.then(triangles(a).cmp(&triangles(b))).then(a.edges.cmp(&b.edges))
     });
     Ok(found)
-}
-
-/// Of each set of related parts turns those on the side with less area; at equal areas the first part stays.
-fn turn_smaller(
-    draft: &mut Draft,
-    parts: &Components,
-    sides: &mut ParityUnionFind,
-    budget: &Budget,
-) -> Result<u64, Stopped> {
-    let side: Vec<(u32, bool)> = (0..parts.count).map(|part| sides.find(part)).collect();
-    // Area on the side of the first part, less that on the other.
-    let mut balance = vec![0.0; parts.count as usize];
-    for t in 0..draft.triangles.len() {
-        if t % CHECK_EVERY == 0 {
-            budget.check()?;
-        }
-        let (first, is_against) = side[parts.of[t] as usize];
-        let area = triangle_area(draft.corners(t));
-        balance[first as usize] += if is_against { -area } else { area };
-    }
-    let mut turned = 0;
-    for t in 0..draft.triangles.len() {
-        if t % CHECK_EVERY == 0 {
-            budget.check()?;
-        }
-        let (first, is_against) = side[parts.of[t] as usize];
-        if is_against == (balance[first as usize] >= 0.0) {
-            draft.flip(t);
-            turned += 1;
-        }
-    }
-    Ok(turned)
 }
