@@ -25,6 +25,10 @@ pub(super) const LOSS_MAX: f64 = 0.01;
 /// these patches in the way. Where results were always chosen by what is seen past them, some lost more by an independent judge.
 const LOSS_BEHIND_PATCHES_MAX: f64 = 0.1;
 
+/// Patches that are at most this share of the surface close defects, not openings that are meant: what is seen through them is no
+/// feature of the part. Bodies that pass through each other are all seen through a hole of one triangle.
+const DEFECTS_MAX: f64 = 0.1;
+
 /// What a measurement may cost, and how close it encloses a distance.
 const DISTANCE: DistanceOptions = DistanceOptions {
     tolerance_relative: 0.05,
@@ -67,14 +71,16 @@ pub struct Losses {
 }
 
 impl FidelityMeasurement {
-    /// What a result is chosen by, of what it is with patches over openings in the way and `as_seen` past them.
-    pub(super) fn to_choose_by(self, as_seen: Self, limits: &FidelityLimits) -> Self {
-        if as_seen.loses_much() || limits.deviation_max.is_some() { as_seen } else { self }
+    /// What a result is chosen by, of what it is with patches over openings in the way and `as_seen` past them; `openings` is the
+    /// share of its surface that these patches are.
+    pub(super) fn to_choose_by(self, as_seen: Self, openings: f64, limits: &FidelityLimits) -> Self {
+        let sees_past = as_seen.loses_much_behind(openings) || limits.deviation_max.is_some();
+        if sees_past { as_seen } else { self }
     }
 
-    /// True when so much is lost behind patches that the opening was better left open.
-    pub(super) fn loses_much(&self) -> bool {
-        self.losses.visible_loss > LOSS_BEHIND_PATCHES_MAX
+    /// True when so much is lost behind patches that the openings were better left open: they are that share of the surface.
+    pub(super) fn loses_much_behind(&self, openings: f64) -> bool {
+        self.losses.visible_loss > LOSS_BEHIND_PATCHES_MAX && openings > DEFECTS_MAX
     }
 
     /// True when no other result needs to be looked for.

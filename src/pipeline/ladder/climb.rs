@@ -5,7 +5,8 @@ use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::Depth;
 use crate::formats::Encoding;
-use crate::geom::print_pitch;
+use crate::geom::{print_pitch, triangle_area};
+use crate::mesh::Soup;
 use crate::pipeline::fidelity::{FidelityMeasurement, LOST_BEYOND, Original, defined_volume};
 use crate::pipeline::input::Input;
 use crate::pipeline::looks;
@@ -16,6 +17,7 @@ use crate::pipeline::repair_choices::{Choices, Walls};
 use crate::pipeline::size::diagonal;
 use crate::pipeline::step::Step;
 use crate::pipeline::{Action, Failure, Options, Refusal, Require};
+use crate::repair::fill::HoleReport;
 use crate::repair::noise::Noise;
 use crate::repair::snap::gap_between_rims;
 use crate::repair::{Draft, noise};
@@ -51,6 +53,8 @@ pub(in crate::pipeline) struct Certified {
     pub(in crate::pipeline) fidelity: FidelityMeasurement,
     /// What is told of it: nothing of the file is hidden that a straight line leads to.
     pub(in crate::pipeline) as_seen: FidelityMeasurement,
+    /// The share of its surface that patches over openings are.
+    openings: f64,
 }
 
 /// What a rung found.
@@ -397,10 +401,28 @@ impl Certified {
         let seen_past = || if may_be_seen { measure(true) } else { Ok(fidelity) };
         let as_seen = climb.budget.within_part(HIDDEN_PART, seen_past)?.unwrap_or(fidelity);
         let limits = &climb.options.limits;
-        let chosen = fidelity.to_choose_by(as_seen, limits);
+        let openings = openings(&attempt, fidelity.losses.invented, candidate.soup());
+        let chosen = fidelity.to_choose_by(as_seen, openings, limits);
         let fidelity = chosen_past_mouths(&attempt, &candidate, chosen, as_seen, climb)?;
-        Ok(Self { attempt, candidate, fidelity, as_seen })
+        Ok(Self { attempt, candidate, fidelity, as_seen, openings })
     }
+
+    /// True when so much is lost behind patches that the openings were better left open.
+    pub(super) fn covers_much(&self) -> bool {
+        self.attempt.closes_openings && self.as_seen.loses_much_behind(self.openings)
+    }
+}
+
+/// The share of the surface of a result that patches over openings are, where a missing triangle is no opening; `invented`, where it
+/// is not known what patches there are.
+fn openings(attempt: &Attempt, invented: f64, result: &Soup) -> f64 {
+    if attempt.holes.is_empty() {
+        return invented;
+    }
+    let is_opening = |hole: &&HoleReport| hole.rims.iter().map(|rim| rim.edges).sum::<u32>() > 3;
+    let patches: f64 = attempt.holes.iter().filter(is_opening).map(|hole| hole.area).sum();
+    let area: f64 = (0..result.triangles.len() as u32).map(|t| triangle_area(result.corners(t))).sum();
+    if area > 0.0 { patches / area } else { 0.0 }
 }
 
 /// What a candidate is chosen by where cavities are open: what is lost there is told, and no reason to fill them.

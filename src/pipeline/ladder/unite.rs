@@ -76,8 +76,7 @@ fn unite(climb: &Climb<'_>, situation: &mut Situation) -> Result<Option<RungResu
     for uniting in climb.kinds(openness) {
         // Parts that seem to bound a volume become walls only where patches over their openings cover much that is seen.
         let is_last_resort = uniting == Uniting::Thickened && !climb.reads_sheets(openness);
-        let covers_much = |best: &Certified| best.attempt.closes_openings && best.as_seen.loses_much();
-        if is_last_resort && !best.as_ref().is_some_and(covers_much) {
+        if is_last_resort && !best.as_ref().is_some_and(Certified::covers_much) {
             continue;
         }
         // What takes too much work is left to the next kind. Walls as the last resort may take more; the rest measures them.

@@ -245,7 +245,7 @@ impl LatticeSearch<'_> {
             // Where it is too much work, patches stay in the way.
             if let Some(as_seen) = budget.within_part(4, look)? {
                 best.as_seen = as_seen;
-                best.fidelity = best.fidelity.to_choose_by(as_seen, limits);
+                best.fidelity = best.fidelity.to_choose_by(as_seen, best.fidelity.losses.invented, limits);
             }
         }
         match best.as_seen.breach(limits) {
