@@ -8,7 +8,7 @@
 use super::ball::{self, Ball};
 use super::exact::{self, ExactPlane, Homogeneous, IntegerVector, sign_of};
 use super::point::{ArrangementPoint, Definition};
-use crate::geom::{AxisProjection, BitSpan, DVec3, Sign, power_of_two};
+use crate::geom::{AxisProjection, BitSpan, DVec3, Sign, ThreePointPlane, power_of_two};
 use num_bigint::BigInt;
 use std::cmp::Ordering;
 use std::sync::OnceLock;
@@ -224,7 +224,8 @@ impl ClusterKernel {
         if let Some(sign) = det.sign() {
             return sign;
         }
-        if Definition::are_collinear([&a.definition, &b.definition, &c.definition], view.plane) {
+        let crosses = |other: u32| !self.are_coplanar(other, view.plane);
+        if Definition::are_collinear([&a.definition, &b.definition, &c.definition], crosses) {
             return Sign::Zero;
         }
         let [a, b, c] = [a, b, c].map(|p| (self.exact(p), axes_seen(p, view)));
@@ -233,6 +234,12 @@ impl ClusterKernel {
         let (cu, cv, cw) = (&c.0.x[c.1[0]], &c.0.x[c.1[1]], &c.0.w);
         let det = (bu * aw - au * bw) * (cv * aw - av * cw) - (bv * aw - av * bw) * (cu * aw - au * cw);
         sign_of(&det)
+    }
+
+    /// True when two triangles lie in one plane.
+    fn are_coplanar(&self, s: u32, t: u32) -> bool {
+        let plane = ThreePointPlane::through(self.corners(t));
+        s == t || self.corners(s).into_iter().all(|p| plane.side(p).is_zero())
     }
 
     /// How coordinate `axis` of two points compares.

@@ -75,10 +75,11 @@ impl Definition {
         points.iter().any(|p| on_one_edge(p))
     }
 
-    /// True when three points in the plane of triangle `plane` lie on one line by their names.
-    pub(super) fn are_collinear(points: [&Self; 3], plane: u32) -> bool {
+    /// True when three points in a plane lie on one line by their names; `crosses` tells whether the plane of a triangle is another
+    /// one. Triangles in one plane that do not overlap have planes of different names.
+    pub(super) fn are_collinear(points: [&Self; 3], crosses: impl Fn(u32) -> bool) -> bool {
         let on_another_plane =
-            |other: u32| other != plane && points.iter().all(|point| point.is_on_plane(other));
+            |other: u32| points.iter().all(|point| point.is_on_plane(other)) && crosses(other);
         let on_one_line = |p: &Self| match p {
             Self::EdgePlane { plane: own, .. } => on_another_plane(*own),
             Self::Planes(planes) => planes.iter().any(|&other| on_another_plane(other)),

@@ -335,9 +335,30 @@ fn placed_boundaries_are_on_the_lattice_and_conflicts_are_counted() {
 }
 
 #[test]
+fn a_plane_with_two_names_is_no_line() {
+    use super::kernel::ClusterKernel;
+    use super::point::Definition::EdgePlane;
+    // Two triangles side by side in the plane z = 0, and three edges through it, whose points there are named by the second one.
+    let mut positions: Vec<DVec3> = [[0, 0, 0], [9, 0, 0], [0, 9, 0], [30, 0, 0], [39, 0, 0], [30, 9, 0]]
+        .map(|p: [i32; 3]| DVec3::from_array(p.map(f64::from)))
+        .to_vec();
+    let mut triangles = vec![[0, 1, 2], [3, 4, 5]];
+    for [x, y] in [[1.0, 1.0], [2.0, 1.0], [1.0, 1.0 + f64::EPSILON]] {
+        let first = positions.len() as u32;
+        positions.extend([DVec3::new(x, y, -1.0), DVec3::new(x, y, 1.0), DVec3::new(50.0, 50.0, 1.0)]);
+        triangles.push([first, first + 1, first + 2]);
+    }
+    let kernel = ClusterKernel::new(positions, triangles);
+    let point = |first: u32| kernel.point(EdgePlane { edge: [first, first + 1], plane: 1 });
+    let view = kernel.view(0).unwrap();
+    let sign = kernel.orient(view, &point(6), &point(9), &point(12));
+    assert_eq!(sign, Sign::Positive);
+}
+
+#[test]
 fn names_say_collinear_only_of_points_on_one_line() {
     use super::point::Definition::{self, EdgePlane, Planes, Vertex};
-    let is = |points: [Definition; 3]| Definition::are_collinear(points.each_ref(), 0);
+    let is = |points: [Definition; 3]| Definition::are_collinear(points.each_ref(), |plane| plane != 0);
     assert!(is([Planes([0, 1, 2]), Planes([0, 2, 3]), Planes([0, 2, 5])]));
     assert!(!is([Planes([0, 1, 2]), Planes([0, 2, 3]), Planes([0, 1, 3])]));
     assert!(is([Planes([0, 1, 2]), EdgePlane { edge: [4, 5], plane: 2 }, Planes([0, 2, 5])]));
