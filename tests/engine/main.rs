@@ -49,6 +49,7 @@ mod rebuild;
 mod repair;
 mod simplify;
 mod simplify_real_files;
+mod small_holes;
 mod stray_faces;
 mod threemf;
 mod units;

@@ -56,7 +56,7 @@ impl Climb<'_> {
         let may_wall = self.choices.walls == Walls::ForSheets
             && self.options.wrap.open_shells != OpenShells::Close
             && self.options.require != Some(Require::None);
-        if !may_wall || !closed.covers_much() {
+        if !may_wall || !closed.covers_much(&self.options.limits) {
             return Ok(closed);
         }
         self.closer_of(closed, Variant { thickens: true, ..situation.variant }, situation)

@@ -1,5 +1,6 @@
 //! What a rung sees of the file and of the attempts before it, and how it runs one.
 
+use super::flat_shells::flat_shells;
 use super::{Climbed, RungKind};
 use crate::analysis::{Analysis, DefectCode};
 use crate::budget::{Budget, Stage, Stopped};
@@ -16,7 +17,7 @@ use crate::pipeline::rebuild::{self, NotRebuilt, Rebuilt};
 use crate::pipeline::repair_choices::{Choices, Walls};
 use crate::pipeline::size::diagonal;
 use crate::pipeline::step::Step;
-use crate::pipeline::{Action, Failure, Options, Refusal, Require};
+use crate::pipeline::{Action, Failure, FidelityLimits, Options, Refusal, Require};
 use crate::repair::fill::HoleReport;
 use crate::repair::noise::Noise;
 use crate::repair::snap::gap_between_rims;
@@ -403,13 +404,23 @@ impl Certified {
         let limits = &climb.options.limits;
         let openings = openings(&attempt, fidelity.losses.invented, candidate.soup());
         let chosen = fidelity.to_choose_by(as_seen, openings, limits);
-        let fidelity = chosen_past_mouths(&attempt, &candidate, chosen, as_seen, climb)?;
+        let mut fidelity = chosen_past_mouths(&attempt, &candidate, chosen, as_seen, climb)?;
+        let mut as_seen = as_seen;
+        if attempt.closes_openings {
+            // What was a sheet is no body by a patch that lies on it.
+            let origins = candidate.origins(&attempt.draft.triangle_origin);
+            let flat = flat_shells(candidate.soup(), &origins, diagonal(&climb.input.soup));
+            fidelity.losses.bodies_lost += flat;
+            as_seen.losses.bodies_lost += flat;
+        }
         Ok(Self { attempt, candidate, fidelity, as_seen, openings })
     }
 
-    /// True when so much is lost behind patches that the openings were better left open.
-    pub(super) fn covers_much(&self) -> bool {
-        self.attempt.closes_openings && self.as_seen.loses_much_behind(self.openings)
+    /// True when so much is lost behind patches that the openings may have been better left open.
+    pub(super) fn covers_much(&self, limits: &FidelityLimits) -> bool {
+        // Where more is lost than patches cover, they may cover more than defects too.
+        let openings = if self.fidelity.passes(limits) { self.openings } else { 1.0 };
+        self.attempt.closes_openings && self.as_seen.loses_much_behind(openings)
     }
 }
 

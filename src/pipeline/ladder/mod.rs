@@ -6,6 +6,7 @@ mod bridges;
 mod climb;
 mod contacts;
 mod crossing;
+mod flat_shells;
 mod float32;
 mod keep_first;
 mod noise;

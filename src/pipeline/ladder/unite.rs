@@ -76,7 +76,7 @@ fn unite(climb: &Climb<'_>, situation: &mut Situation) -> Result<Option<RungResu
     for uniting in climb.kinds(openness) {
         // Parts that seem to bound a volume become walls only where patches over their openings cover much that is seen.
         let is_last_resort = uniting == Uniting::Thickened && !climb.reads_sheets(openness);
-        if is_last_resort && !best.as_ref().is_some_and(Certified::covers_much) {
+        if is_last_resort && !best.as_ref().is_some_and(|best| best.covers_much(limits)) {
             continue;
         }
         // What takes too much work is left to the next kind. Walls as the last resort may take more; the rest measures them.
