@@ -8,7 +8,7 @@ use meshmend::pipeline::Outcome;
 
 /// Two boxes that share a corner of 8 x 6 x 4.
 fn boxes() -> RawSoup {
-    cuboid([0.0; 3], [12.0, 10.0, 8.0]).with(&cuboid([4.0, 4.0, 4.0], [16.0, 14.0, 12.0]))
+    cuboid([12.0, 10.0, 8.0]).with(&cuboid([12.0, 10.0, 8.0]).moved([4.0; 3]))
 }
 
 const VOLUME: f64 = 2.0 * 960.0 - 8.0 * 6.0 * 4.0;

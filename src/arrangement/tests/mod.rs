@@ -5,7 +5,7 @@ mod oracle;
 
 use super::{Arrangement, ArrangementError, ArrangementOptions, PlacedBoundary, arrange, arrange_enclosed};
 use crate::budget::{Budget, StopFlag, Stopped};
-use crate::geom::{DVec3, are_collinear};
+use crate::geom::{DVec3, Sign, are_collinear};
 use crate::mesh::EdgeGroups;
 use crate::par;
 use crate::spatial::{Bvh, Search, self_contacts};
