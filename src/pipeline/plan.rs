@@ -41,6 +41,8 @@ pub(super) struct Variant {
     pub(super) mends_thin_faces: bool,
     /// Rims that face each other across a gap get one patch between them.
     pub(super) bridges: bool,
+    /// Gaps between an arc and its chord over which a surface lies are closed.
+    pub(super) closes_chordal_gaps: bool,
 }
 
 /// What bodies are made of that are to be united.
@@ -172,6 +174,7 @@ impl Variant {
             });
             pair.into_iter().chain([Step::Cut(CutOptions::default())]).chain(pinch).chain([snap])
         });
+        let chordal = self.closes_chordal_gaps.then_some(Step::CloseChordalGaps);
         let turn = (self.bridges && choices.orients).then_some(Step::TurnToBridge);
         let fill = match self.thickens {
             true => Some(Step::Thicken { wall: choices.wall }),
@@ -181,7 +184,7 @@ impl Variant {
             .then_some(Step::MendThinFaces(choices.thin_faces));
         let start = self.welding(choices).into_iter().chain(single).chain(near);
         let joined = start.chain(remove).chain(orient).chain(join.into_iter().flatten());
-        joined.chain(thin).chain(turn).chain(fill).collect()
+        joined.chain(chordal).chain(thin).chain(turn).chain(fill).collect()
     }
 
     /// The steps that make it a solid. Readers weld, so that copies of a vertex would be one again: what is to be

@@ -58,6 +58,8 @@ pub enum Step {
     Pinch(ChosenEdges, StitchValidity),
     /// Boundary edges that are close are joined.
     Snap(SnapOptions),
+    /// Gaps between an arc and its chord over which a surface lies are closed.
+    CloseChordalGaps,
     /// Parts are turned so that rims which belong together run in opposite directions.
     TurnToBridge,
     /// Holes are closed.
@@ -139,6 +141,7 @@ impl Step {
             Self::RoundToCoarser { .. } => "round-to-coarser",
             Self::DropNearDuplicates { .. } => "drop-near-duplicates",
             Self::OpenContacts => "open-contacts",
+            Self::CloseChordalGaps => "close-chordal-gaps",
             Self::TurnToBridge => "turn-to-bridge",
             Self::FillHoles(_) => "fill-holes",
             Self::MendThinFaces(_) => "mend-thin-faces",
@@ -201,6 +204,7 @@ impl Step {
             | Self::SplitTVertices
             | Self::Pinch(..)
             | Self::Snap(_)
+            | Self::CloseChordalGaps
             | Self::TurnToBridge
             | Self::FillHoles(_)
             | Self::SpanRims => &[DefectCode::BoundaryLoop],
@@ -246,6 +250,7 @@ impl Step {
             Self::DropNearDuplicates { epsilon } => {
                 repair::near_duplicates::drop_near_duplicates(draft, *epsilon, budget)
             }
+            Self::CloseChordalGaps => repair::chordal_gaps::close_chordal_gaps(draft, budget),
             Self::TurnToBridge => repair::fill::turn_to_bridge(draft, budget),
             Self::FillHoles(options) => {
                 let filled = repair::fill::fill(draft, soup, options, budget)?;

@@ -4,6 +4,7 @@
 //! [`noise`], [`snap`], [`contact`] and [`joint`], which say how far; [`unite`] says how far its new ones are from where
 //! they are exactly.
 
+pub mod chordal_gaps;
 pub mod collinear;
 pub mod contact;
 pub mod crossing;
@@ -69,6 +70,8 @@ pub struct Effects {
     pub mended_thin_faces: bool,
     /// Rims that face each other got one patch between them.
     pub bridged_rims: bool,
+    /// Gaps between arcs and chords were closed.
+    pub closed_chordal_gaps: bool,
     /// Triangles that were turned.
     pub turned_triangles: u64,
     /// Vertices and edges in which the solid touched itself when that was bored last.
@@ -83,6 +86,7 @@ impl Effects {
         self.removed_crossing |= other.removed_crossing;
         self.mended_thin_faces |= other.mended_thin_faces;
         self.bridged_rims |= other.bridged_rims;
+        self.closed_chordal_gaps |= other.closed_chordal_gaps;
         self.turned_triangles += other.turned_triangles;
         self.bored_contacts = other.bored_contacts.or(self.bored_contacts);
     }

@@ -3,7 +3,7 @@
 use super::{Changes, Draft, Effects};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::triangle_area;
-use crate::mesh::{Components, EdgeGroups, ParityUnionFind, edge_of, triangle_of};
+use crate::mesh::{EdgeGroups, ParityUnionFind, edge_of, triangle_of};
 
 /// Orients each part that is connected across edges of exactly two triangles. The direction that holds the larger area
 /// of a part stays; at equal areas that of its first triangle. Edges where a part contradicts itself (Möbius band) keep
@@ -73,38 +73,6 @@ fn flip_minorities(draft: &mut Draft, parts: &mut ParityUnionFind, budget: &Budg
         }
     }
     Ok(flipped)
-}
-
-/// Of each set of related parts turns those on the side with less area; at equal areas the first part stays.
-pub(super) fn turn_smaller(
-    draft: &mut Draft,
-    parts: &Components,
-    sides: &mut ParityUnionFind,
-    budget: &Budget,
-) -> Result<u64, Stopped> {
-    let side: Vec<(u32, bool)> = (0..parts.count).map(|part| sides.find(part)).collect();
-    // Area on the side of the first part, less that on the other.
-    let mut balance = vec![0.0; parts.count as usize];
-    for t in 0..draft.triangles.len() {
-        if t % CHECK_EVERY == 0 {
-            budget.check()?;
-        }
-        let (first, is_against) = side[parts.of[t] as usize];
-        let area = triangle_area(draft.corners(t));
-        balance[first as usize] += if is_against { -area } else { area };
-    }
-    let mut turned = 0;
-    for t in 0..draft.triangles.len() {
-        if t % CHECK_EVERY == 0 {
-            budget.check()?;
-        }
-        let (first, is_against) = side[parts.of[t] as usize];
-        if is_against == (balance[first as usize] >= 0.0) {
-            draft.flip(t);
-            turned += 1;
-        }
-    }
-    Ok(turned)
 }
 
 #[cfg(test)]

@@ -197,6 +197,8 @@ pub enum PlanStep {
         /// Folds go.
         folds: bool,
     },
+    /// Gaps between an arc and its chord over which a surface lies are closed.
+    CloseChordalGaps {},
     /// Parts are turned so that rims which belong together run in opposite directions.
     TurnToBridge {},
     /// Holes are closed.
@@ -384,6 +386,7 @@ impl PlanStep {
             Self::MendThinFaces { needles, caps, folds } => {
                 Step::MendThinFaces(ThinFaces { needles: *needles, caps: *caps, folds: *folds })
             }
+            Self::CloseChordalGaps {} => Step::CloseChordalGaps,
             Self::TurnToBridge {} => Step::TurnToBridge,
             Self::FillHoles { all: true, except, how } => {
                 Step::FillHoles(how.to_engine(Selection::AllBut(sorted(except))))
@@ -448,6 +451,7 @@ impl From<&Step> for PlanStep {
             Step::MendThinFaces(which) => {
                 Self::MendThinFaces { needles: which.needles, caps: which.caps, folds: which.folds }
             }
+            Step::CloseChordalGaps => Self::CloseChordalGaps {},
             Step::TurnToBridge => Self::TurnToBridge {},
             Step::FillHoles(options) => {
                 let (all, except) = match &options.holes {

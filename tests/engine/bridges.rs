@@ -7,10 +7,10 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 /// Polygons, each by its corners.
-type Polygons = Vec<Vec<[f64; 3]>>;
+pub(crate) type Polygons = Vec<Vec<[f64; 3]>>;
 
 /// As OBJ, turned about two axes and moved, so that no face is parallel to an axis; each polygon has vertices of its own.
-fn obj(polygons: &Polygons) -> String {
+pub(crate) fn obj(polygons: &Polygons) -> String {
     let mut text = String::new();
     for [x, y, z] in polygons.iter().flatten() {
         let ([sin, cos], [sin2, cos2]) = (sin_cos(0.37), sin_cos(0.71));
@@ -31,7 +31,7 @@ fn sin_cos(angle: f64) -> [f64; 2] {
     [angle.sin(), angle.cos()]
 }
 
-fn turned(polygons: &Polygons) -> Polygons {
+pub(crate) fn turned(polygons: &Polygons) -> Polygons {
     polygons.iter().map(|polygon| polygon.iter().rev().copied().collect()).collect()
 }
 
@@ -76,7 +76,7 @@ fn frustum(a: f64, b: f64, height: f64) -> f64 {
     height / 3.0 * (a + b + (a * b).sqrt())
 }
 
-fn repaired(text: &str) -> Answer {
+pub(crate) fn repaired(text: &str) -> Answer {
     let answer = run(Operation::Repair, text.as_bytes(), &Options::default(), &Budget::unlimited()).unwrap();
     assert_eq!(answer.report.outcome, Some(Outcome::Repaired), "{:?}", answer.report.refusal);
     answer

@@ -25,6 +25,7 @@ mod bad_input;
 mod boolean;
 mod bridges;
 mod cavities;
+mod chordal_gaps;
 mod cut_stitch;
 mod enclosed;
 mod fidelity;

@@ -29,7 +29,9 @@ fn any_step(random: &mut Random, soup: &RawSoup) -> Step {
     let length = random.pick(&[0.0, 1e-3, 0.3, 1.0, 1e300]);
     match random.below(25) {
         0 => Step::SplitPolygons(random.pick(&[DegenerateFaces::Split, DegenerateFaces::Drop])),
-        1 => [Step::ClearNoise, Step::JoinOverNoise, Step::TurnToBridge][random.below(3)].clone(),
+        1 => {
+            random.pick(&[Step::ClearNoise, Step::JoinOverNoise, Step::TurnToBridge, Step::CloseChordalGaps])
+        }
         2 => Step::RoundToF32,
         3 => Step::Weld,
         4 => Step::DropDegenerate,

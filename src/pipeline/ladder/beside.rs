@@ -39,12 +39,12 @@ impl Climb<'_> {
         }
         situation.has_tried_bridging = true;
         let limits = &self.options.limits;
-        let invents_less = |closed: &Certified, bridged: &Certified| {
-            bridged.fidelity.passes(limits)
-                && bridged.fidelity.losses.invented < closed.fidelity.losses.invented
+        let invented = |of: &Certified| of.fidelity.losses.invented;
+        let is_better = |closed: &Certified, bridged: &Certified| match closed.fidelity.passes(limits) {
+            true => bridged.fidelity.passes(limits) && invented(bridged) < invented(closed),
+            false => !closed.fidelity.is_no_worse(&bridged.fidelity, limits),
         };
-        let variant = Variant { bridges: true, ..situation.variant };
-        self.better_of(closed, variant, invents_less, situation)
+        self.better_of(closed, Variant { bridges: true, ..situation.variant }, is_better, situation)
     }
 
     /// Gives open parts walls where patches over their openings take much from them.
@@ -69,11 +69,14 @@ impl Climb<'_> {
         variant: Variant,
         situation: &mut Situation,
     ) -> Result<Box<Certified>, Failure> {
-        self.better_of(known, variant, |_, _| false, situation)
+        let limits = &self.options.limits;
+        let is_closer =
+            |known: &Certified, tried: &Certified| !known.fidelity.is_no_worse(&tried.fidelity, limits);
+        self.better_of(known, variant, is_closer, situation)
     }
 
-    /// Tries a plan beside a certified result, which stays where that takes too much work, and gives the one that is closer or
-    /// `is_better` than the known one.
+    /// Tries a plan beside a certified result, which stays where that takes too much work, and gives the one that
+    /// `is_better`.
     fn better_of(
         &self,
         known: Box<Certified>,
@@ -83,10 +86,8 @@ impl Climb<'_> {
     ) -> Result<Box<Certified>, Failure> {
         let before = situation.variant;
         let tried = self.budget.within_part(BESIDE_PART, || self.try_plan(variant, situation))?;
-        let is_closer =
-            |tried: &Certified| !known.fidelity.is_no_worse(&tried.fidelity, &self.options.limits);
         match tried.flatten() {
-            Some(RungResult::Certified(tried)) if is_closer(&tried) || is_better(&known, &tried) => Ok(tried),
+            Some(RungResult::Certified(tried)) if is_better(&known, &tried) => Ok(tried),
             _ => {
                 situation.variant = before;
                 Ok(known)

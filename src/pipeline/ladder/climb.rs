@@ -21,7 +21,7 @@ use crate::pipeline::{Action, Failure, FidelityLimits, Options, Refusal, Require
 use crate::repair::fill::HoleReport;
 use crate::repair::noise::Noise;
 use crate::repair::snap::gap_between_rims;
-use crate::repair::{Draft, noise};
+use crate::repair::{Draft, Effects, noise};
 use crate::winding::{OpenShells, WindingSolid};
 use std::cell::OnceCell;
 
@@ -78,6 +78,8 @@ pub(super) struct Situation {
     pub(super) has_run_out: bool,
     /// Bodies were to be united.
     pub(super) has_tried_uniting: bool,
+    /// Gaps between arcs and chords were to be closed.
+    pub(super) has_tried_chordal_gaps: bool,
     /// Rims that face each other were to get one patch.
     pub(super) has_tried_bridging: bool,
     /// A surface was to be rebuilt.
@@ -133,6 +135,7 @@ impl Situation {
             fails_in_f32: false,
             has_run_out: false,
             has_tried_uniting: false,
+            has_tried_chordal_gaps: false,
             has_tried_bridging: false,
             has_tried_rebuilding: false,
             certified: None,
@@ -214,8 +217,9 @@ impl Climb<'_> {
             situation.has_run_out = true;
             return Ok(None);
         };
-        // Without a bridge it is the plan that was tried before.
-        if variant.bridges && !attempt.effects.bridged_rims {
+        // Without a bridge or a gap that was closed it is the plan that was tried before.
+        let Effects { bridged_rims, closed_chordal_gaps, .. } = attempt.effects;
+        if variant.bridges && !bridged_rims || variant.closes_chordal_gaps && !closed_chordal_gaps {
             return Ok(None);
         }
         let mut judged = self.judge(&attempt)?;

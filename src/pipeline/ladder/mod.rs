@@ -3,6 +3,7 @@
 mod as_drawn;
 mod beside;
 mod bridges;
+mod chordal_gaps;
 mod climb;
 mod contacts;
 mod crossing;
@@ -49,8 +50,9 @@ struct Rung {
 }
 
 /// After each attempt that fails, the first of these that applies comes next.
-const RUNGS: [&Rung; 12] = [
+const RUNGS: [&Rung; 13] = [
     &as_drawn::RUNG,
+    &chordal_gaps::RUNG,
     &unite::WHERE_BODIES_MEET,
     &keep_first::RUNG,
     &bridges::RUNG,

@@ -4,6 +4,7 @@ mod behind;
 mod faces;
 mod seams;
 mod texture;
+mod turn;
 
 pub use faces::Faced;
 

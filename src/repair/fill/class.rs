@@ -34,6 +34,7 @@ pub(super) fn ways(
         (1, false) => &[Way::Minimal, Way::Planar, Way::Ears],
         (_, true) if !options.bridges => &[Way::Planar],
         (_, true) => &[Way::Planar, Way::Minimal],
+        (2, false) => &[Way::Zipped, Way::Minimal, Way::Planar],
         (_, false) => &[Way::Minimal, Way::Planar],
     };
     let is_plain = method == Method::Auto && (!refines || is_to_be_plain(region, surface));
@@ -43,6 +44,7 @@ pub(super) fn ways(
     let own: &[Way] = match method {
         Method::Auto if is_plain => &[],
         Method::Flat => &[Way::Planar],
+        Method::Minimal if region.is_bridge => &[Way::Zipped, Way::Minimal, Way::Ears],
         Method::Minimal => &[Way::Minimal, Way::Ears],
         Method::Smooth => &[Way::Smooth],
         Method::Creased => &[Way::Creased, Way::Smooth],

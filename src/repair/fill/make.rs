@@ -23,6 +23,8 @@ pub(super) enum Way {
     Planar,
     /// The triangulation that bends least.
     Minimal,
+    /// Between two loops, from the nearest pair of corners on.
+    Zipped,
     /// Corner by corner, the shortest diagonal first.
     Ears,
     /// The minimal one, refined and faired.
@@ -38,7 +40,7 @@ impl Way {
     pub(super) fn method(self) -> Method {
         match self {
             Self::Planar => Method::Flat,
-            Self::Minimal | Self::Ears => Method::Minimal,
+            Self::Minimal | Self::Zipped | Self::Ears => Method::Minimal,
             Self::Smooth => Method::Smooth,
             Self::Creased => Method::Creased,
             Self::Rbf => Method::Rbf,
@@ -88,6 +90,7 @@ pub(super) fn make(
     let made = match way {
         Way::Planar => planar_view(region, surface),
         Way::Minimal => least_bent(region, surface, budget)?,
+        Way::Zipped => zipped(region, surface, budget)?,
         Way::Ears => corner_by_corner(region, surface, budget)?,
         Way::Smooth => return smooth(region, surface, budget),
         Way::Creased => match division {
@@ -160,27 +163,27 @@ fn polygon(region: &Region, surface: &FillSurface, budget: &Budget) -> Result<Op
     bridge::one_polygon(&points, &region.ranges(), |i, k| surface.is_free(rim[i], rim[k]), budget)
 }
 
+/// The triangles between two loops that are no region of a plane, from the nearest pair of corners on.
+fn zipped(region: &Region, surface: &FillSurface, budget: &Budget) -> Result<TriangulationResult, Stopped> {
+    match &region.ranges()[..] {
+        [outer, inner] if !region.is_flat => {
+            Ok(Ok(bridge::zip(&rim_points(region, surface), [outer.clone(), inner.clone()], budget)?))
+        }
+        _ => Ok(Err(Rejection::NoPatch)),
+    }
+}
+
 fn least_bent(
     region: &Region,
     surface: &FillSurface,
     budget: &Budget,
 ) -> Result<TriangulationResult, Stopped> {
-    let ranges = region.ranges();
-    let pair = match &ranges[..] {
-        [outer, inner] if !region.is_flat => Some([outer.clone(), inner.clone()]),
-        _ => None,
-    };
-    let zipped = |pair| bridge::zip(&rim_points(region, surface), pair, budget);
-    let is_large = region.rim().len() > minimal::CORNERS_MAX;
-    let least = match pair.clone().filter(|_| is_large) {
-        Some(pair) => return Ok(Ok(zipped(pair)?)),
-        None => of_one_polygon(region, surface, budget)?,
-    };
-    // The cut between two loops has two sides, and what is least between them may pass a corner at both.
-    match (least, pair) {
-        (Ok(triangles), Some(pair)) if !closes(region, &triangles) => Ok(Ok(zipped(pair)?)),
-        (least, _) => Ok(least),
+    if region.rim().len() > minimal::CORNERS_MAX
+        && let Ok(triangles) = zipped(region, surface, budget)?
+    {
+        return Ok(Ok(triangles));
     }
+    of_one_polygon(region, surface, budget)
 }
 
 /// True when triangles between the corners of the region are a surface with just its loops as boundary.
@@ -232,6 +235,12 @@ fn corner_by_corner(
 fn base(region: &Region, surface: &FillSurface, budget: &Budget) -> Result<TriangulationResult, Stopped> {
     if region.is_flat
         && let Ok(triangles) = planar_view(region, surface)
+    {
+        return Ok(Ok(triangles));
+    }
+    // Between two loops, what bends least is bent at the rims most, and twists for that.
+    if let Ok(triangles) = zipped(region, surface, budget)?
+        && closes(region, &triangles)
     {
         return Ok(Ok(triangles));
     }

@@ -53,7 +53,11 @@ pub(super) fn of_flat_sheets(
             part.bounds = part.bounds.union(Aabb::of([a, b, c]));
         }
     }
-    found.iter_mut().for_each(|part| part.normal = part.normal.normalize_or_zero());
+    for part in &mut found {
+        // Where the normals of all triangles cancel, there is no plane.
+        part.normal = part.normal.normalize_or_zero();
+        part.is_flat &= part.normal != DVec3::ZERO;
+    }
     for (t, &part) in parts.of.iter().enumerate() {
         if t % CHECK_EVERY == 0 {
             budget.check()?;
@@ -74,4 +78,45 @@ pub(super) fn of_flat_sheets(
         (is_of_one && found[part].is_flat).then_some(found[part].normal)
     };
     Ok(walks.iter().map(sheet).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Boundary;
+
+    fn normals(points: &[[f64; 3]], triangles: &[[u32; 3]]) -> Vec<Option<DVec3>> {
+        let positions: Vec<DVec3> = points.iter().map(|&p| DVec3::from_array(p)).collect();
+        let budget = Budget::unlimited();
+        let surface = FillSurface::new(positions, triangles.to_vec(), &budget).unwrap();
+        let boundary =
+            Boundary::trace(&surface.triangles, surface.positions.len(), &surface.groups, &budget).unwrap();
+        let walks: Vec<Walk> = boundary.loops.into_iter().map(Walk::of_one).collect();
+        of_flat_sheets(&walks, &surface, &budget).unwrap()
+    }
+
+    #[test]
+    fn a_sheet_is_flat_by_its_corners_and_a_box_whose_normals_cancel_is_none() {
+        let square = |z: f64| [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, z], [0.0, 1.0, 0.0]];
+        let halves = [[0, 1, 2], [0, 2, 3]];
+        assert_eq!(normals(&square(0.0), &halves), [Some(DVec3::Z)]);
+        assert!(normals(&square(1e-5), &halves)[0].is_some_and(|normal| normal.z > 0.999));
+        assert_eq!(normals(&square(0.01), &halves), [None]);
+        // A triangle is missing of two opposite sides.
+        let corner = |i: u32| [0, 1, 2].map(|k| f64::from(i >> k & 1));
+        let corners: Vec<[f64; 3]> = (0..8).map(corner).collect();
+        let open = [
+            [0, 3, 1],
+            [4, 7, 6],
+            [0, 1, 5],
+            [0, 5, 4],
+            [2, 6, 7],
+            [2, 7, 3],
+            [0, 4, 6],
+            [0, 6, 2],
+            [1, 3, 7],
+            [1, 7, 5],
+        ];
+        assert_eq!(normals(&corners, &open), [None, None]);
+    }
 }

@@ -8,7 +8,6 @@ use super::{sheets, surface_of};
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::{Boundary, BoundaryLoop, ParityUnionFind, triangle_of};
-use crate::repair::orient::turn_smaller;
 use crate::repair::{Changes, Draft, Effects};
 
 /// Turns whole parts (triangles connected by edges) so that rims which face each other, lips of two skins and rims of flat sheets
@@ -36,7 +35,7 @@ pub fn turn_to_bridge(draft: &mut Draft, budget: &Budget) -> Result<Changes, Sto
         for RimPair { inner, outer, run_alike } in pairs {
             sides.relate(part(inner), part(outer), run_alike);
         }
-        turned = turn_smaller(draft, &parts, &mut sides, budget)?;
+        turned = draft.turn_smaller(&parts, &mut sides, budget)?;
     }
     let changes = Changes::counted([("triangles_flipped", turned)]);
     Ok(changes.with(Effects { turned_triangles: turned, ..Effects::default() }))

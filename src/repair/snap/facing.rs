@@ -6,7 +6,6 @@ use super::{ManifoldRim, flank};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::mesh::{ChosenEdges, Components, ParityUnionFind, edge_of, triangle_of};
 use crate::repair::Draft;
-use crate::repair::orient::turn_smaller;
 use crate::spatial::{Octree, is_within};
 
 /// Partners that are looked at for each edge, in each direction.
@@ -51,7 +50,7 @@ pub(super) fn turn_to_face(
             is_used[h] = true;
         }
     }
-    turn_smaller(draft, &parts, &mut sides, budget)
+    draft.turn_smaller(&parts, &mut sides, budget)
 }
 
 /// Two boundary edges of different parts that lie within epsilon of each other.

@@ -35,6 +35,7 @@ fn all_steps() -> Vec<Step> {
             ..SnapOptions::default()
         }),
         Step::MendThinFaces(ThinFaces { needles: true, caps: false, folds: true }),
+        Step::CloseChordalGaps,
         Step::TurnToBridge,
         Step::FillHoles(FillOptions::plain(Selection::Only(vec![5]))),
         Step::FillHoles(FillOptions {

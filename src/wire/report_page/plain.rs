@@ -163,6 +163,7 @@ pub(super) fn step(code: &str) -> String {
         "enclose" | "enclose-and-copy-bare" => "What the surface encloses became solid.",
         "bore-contacts" | "open-contacts" => "Parts that touch were drawn apart a little.",
         "round-to-coarser" => "Corners where parts touch were moved a little.",
+        "close-chordal-gaps" => "Narrow gaps beside round edges were closed.",
         "turn-to-bridge" => "Parts were turned so that their open edges fit those of others.",
         "fill-holes" => "Holes were closed.",
         "mend-thin-faces" => "Faces as thin as needles were mended.",

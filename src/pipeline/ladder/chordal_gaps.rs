@@ -1,0 +1,29 @@
+//! Gaps between an arc and its chord over which a surface lies, such as the lid of a cylinder whose wall has fewer sides, are closed.
+
+use super::climb::Uncertified;
+use super::{Rung, RungKind};
+use crate::pipeline::plan::Variant;
+use crate::repair::fill::Rejection;
+
+pub(super) const RUNG: Rung = Rung {
+    name: "chordal-gaps",
+    kind: RungKind::Plan,
+    applies: |climb, situation| {
+        // Patches over such gaps meet the surface that lies over them.
+        let has_gaps = |last: &Uncertified| {
+            let met = |reason| matches!(reason, Rejection::MeetsOther | Rejection::EdgeInUse);
+            let mut open = last.attempt.holes.iter().filter(|hole| hole.used.is_none());
+            open.any(|hole| hole.rejected.iter().any(|rejected| met(rejected.reason)))
+        };
+        let choices = climb.choices;
+        let may = choices.snap_epsilon.is_none() && choices.cuts && choices.fills_all_holes();
+        Ok(may && !situation.has_tried_chordal_gaps && situation.last.as_ref().is_some_and(has_gaps))
+    },
+    tries: |climb, situation| {
+        situation.has_tried_chordal_gaps = true;
+        let before = situation.variant;
+        let found = climb.try_plan(Variant { closes_chordal_gaps: true, ..before }, situation);
+        situation.variant = before;
+        found
+    },
+};
