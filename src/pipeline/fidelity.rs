@@ -27,7 +27,7 @@ const LOSS_BEHIND_PATCHES_MAX: f64 = 0.1;
 
 /// Patches that are at most this share of the surface close defects, not openings that are meant: what is seen through them is no
 /// feature of the part. Bodies that pass through each other are all seen through a hole of one triangle.
-const DEFECTS_MAX: f64 = 0.1;
+pub(super) const DEFECTS_MAX: f64 = 0.1;
 
 /// What a measurement may cost, and how close it encloses a distance.
 const DISTANCE: DistanceOptions = DistanceOptions {
@@ -78,9 +78,11 @@ impl FidelityMeasurement {
         if sees_past { as_seen } else { self }
     }
 
-    /// True when so much is lost behind patches that the openings were better left open: they are that share of the surface.
+    /// True when so much is lost behind patches that the openings were better left open: they are that share of the surface, or hide
+    /// whole bodies.
     pub(super) fn loses_much_behind(&self, openings: f64) -> bool {
-        self.losses.visible_loss > LOSS_BEHIND_PATCHES_MAX && openings > DEFECTS_MAX
+        let closes_much = openings > DEFECTS_MAX || self.losses.bodies_lost > 0;
+        self.losses.visible_loss > LOSS_BEHIND_PATCHES_MAX && closes_much
     }
 
     /// True when no other result needs to be looked for.

@@ -43,6 +43,8 @@ pub(super) struct Variant {
     pub(super) bridges: bool,
     /// Gaps between an arc and its chord over which a surface lies are closed.
     pub(super) closes_chordal_gaps: bool,
+    /// What is open after holes are filled gets walls.
+    pub(super) thickens_rest: bool,
 }
 
 /// What bodies are made of that are to be united.
@@ -184,7 +186,8 @@ impl Variant {
             .then_some(Step::MendThinFaces(choices.thin_faces));
         let start = self.welding(choices).into_iter().chain(single).chain(near);
         let joined = start.chain(remove).chain(orient).chain(join.into_iter().flatten());
-        joined.chain(chordal).chain(thin).chain(turn).chain(fill).collect()
+        let rest = self.thickens_rest.then_some(Step::Thicken { wall: choices.wall });
+        joined.chain(chordal).chain(thin).chain(turn).chain(fill).chain(rest).collect()
     }
 
     /// The steps that make it a solid. Readers weld, so that copies of a vertex would be one again: what is to be
@@ -192,6 +195,7 @@ impl Variant {
     /// mends adds a contact, but moving vertices can.
     pub(super) fn solidifying(self, choices: &Choices, has_contacts: bool) -> Vec<Step> {
         let moves = self.thickens
+            || self.thickens_rest
             || self.rounds
             || self.noise != Noise::Stays
             || self.contact.is_some()

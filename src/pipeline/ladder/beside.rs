@@ -1,4 +1,4 @@
-//! Other plans that are tried beside a certified result which lost much; the closer result is kept.
+//! Other plans that are tried beside a result of the first one: where it is certified and lost much the closer result is kept.
 
 use super::climb::{Certified, Climb, RungResult, Situation};
 use crate::pipeline::plan::{Attempt, Variant};
@@ -60,6 +60,21 @@ impl Climb<'_> {
             return Ok(closed);
         }
         self.closer_of(closed, Variant { thickens: true, ..situation.variant }, situation)
+    }
+
+    /// Tries a plan that closes more than the last one did; where it leads to nothing, it leaves no trace for further rungs.
+    pub(super) fn try_closing(
+        &self,
+        variant: Variant,
+        situation: &mut Situation,
+    ) -> Result<Option<RungResult>, Failure> {
+        let before =
+            (situation.variant, situation.last.take(), situation.fails_in_f32, situation.has_run_out);
+        let found = self.try_plan(variant, situation)?;
+        if found.is_none() {
+            (situation.variant, situation.last, situation.fails_in_f32, situation.has_run_out) = before;
+        }
+        Ok(found)
     }
 
     /// Tries a plan beside a certified result that lost much, and gives the closer one.

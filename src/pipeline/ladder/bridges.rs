@@ -13,9 +13,6 @@ pub(super) const RUNG: Rung = Rung {
     },
     tries: |climb, situation| {
         situation.has_tried_bridging = true;
-        let before = situation.variant;
-        let found = climb.try_plan(Variant { bridges: true, ..before }, situation);
-        situation.variant = before;
-        found
+        climb.try_closing(Variant { bridges: true, ..situation.variant }, situation)
     },
 };

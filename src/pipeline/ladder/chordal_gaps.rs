@@ -21,9 +21,6 @@ pub(super) const RUNG: Rung = Rung {
     },
     tries: |climb, situation| {
         situation.has_tried_chordal_gaps = true;
-        let before = situation.variant;
-        let found = climb.try_plan(Variant { closes_chordal_gaps: true, ..before }, situation);
-        situation.variant = before;
-        found
+        climb.try_closing(Variant { closes_chordal_gaps: true, ..situation.variant }, situation)
     },
 };

@@ -8,7 +8,7 @@ use crate::certificate::Depth;
 use crate::formats::Encoding;
 use crate::geom::{print_pitch, triangle_area};
 use crate::mesh::Soup;
-use crate::pipeline::fidelity::{FidelityMeasurement, LOST_BEYOND, Original, defined_volume};
+use crate::pipeline::fidelity::{DEFECTS_MAX, FidelityMeasurement, LOST_BEYOND, Original, defined_volume};
 use crate::pipeline::input::Input;
 use crate::pipeline::looks;
 use crate::pipeline::output::Candidate;
@@ -82,6 +82,8 @@ pub(super) struct Situation {
     pub(super) has_tried_chordal_gaps: bool,
     /// Rims that face each other were to get one patch.
     pub(super) has_tried_bridging: bool,
+    /// Sheets beside bodies were to get walls.
+    pub(super) has_tried_sheets_left: bool,
     /// A surface was to be rebuilt.
     pub(super) has_tried_rebuilding: bool,
     /// The closest certified result.
@@ -137,6 +139,7 @@ impl Situation {
             has_tried_uniting: false,
             has_tried_chordal_gaps: false,
             has_tried_bridging: false,
+            has_tried_sheets_left: false,
             has_tried_rebuilding: false,
             certified: None,
             rebuilt: None,
@@ -219,7 +222,9 @@ impl Climb<'_> {
         };
         // Without a bridge or a gap that was closed it is the plan that was tried before.
         let Effects { bridged_rims, closed_chordal_gaps, .. } = attempt.effects;
-        if variant.bridges && !bridged_rims || variant.closes_chordal_gaps && !closed_chordal_gaps {
+        if variant.bridges && !bridged_rims && !variant.thickens_rest
+            || variant.closes_chordal_gaps && !closed_chordal_gaps
+        {
             return Ok(None);
         }
         let mut judged = self.judge(&attempt)?;
@@ -428,15 +433,18 @@ impl Certified {
     }
 }
 
-/// The share of the surface of a result that patches over openings are, where a missing triangle is no opening; `invented`, where it
-/// is not known what patches there are.
+/// The share of the surface of a result that patches over openings are, where a missing triangle is no opening unless it is large;
+/// `invented`, where it is not known what patches there are.
 fn openings(attempt: &Attempt, invented: f64, result: &Soup) -> f64 {
     if attempt.holes.is_empty() {
         return invented;
     }
-    let is_opening = |hole: &&HoleReport| hole.rims.iter().map(|rim| rim.edges).sum::<u32>() > 3;
-    let patches: f64 = attempt.holes.iter().filter(is_opening).map(|hole| hole.area).sum();
     let area: f64 = (0..result.triangles.len() as u32).map(|t| triangle_area(result.corners(t))).sum();
+    let is_opening = |hole: &&HoleReport| {
+        let edges: u32 = hole.rims.iter().map(|rim| rim.edges).sum();
+        edges > 3 || hole.area > DEFECTS_MAX * area
+    };
+    let patches: f64 = attempt.holes.iter().filter(is_opening).map(|hole| hole.area).sum();
     if area > 0.0 { patches / area } else { 0.0 }
 }
 

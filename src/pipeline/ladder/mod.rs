@@ -13,6 +13,7 @@ mod keep_first;
 mod noise;
 mod rebuild;
 mod sheets;
+mod sheets_left;
 mod unite;
 mod unsnapped;
 
@@ -50,12 +51,13 @@ struct Rung {
 }
 
 /// After each attempt that fails, the first of these that applies comes next.
-const RUNGS: [&Rung; 13] = [
+const RUNGS: [&Rung; 14] = [
     &as_drawn::RUNG,
     &chordal_gaps::RUNG,
     &unite::WHERE_BODIES_MEET,
     &keep_first::RUNG,
     &bridges::RUNG,
+    &sheets_left::RUNG,
     &unsnapped::RUNG,
     &float32::RUNG,
     &noise::RUNG,

@@ -19,12 +19,16 @@ const LIP_GAP_SHARE_MAX: f64 = 0.25;
 const AGAINST_COS_MIN: f64 = 0.3;
 /// Width of a gap, at most, as a share of the diagonal of the larger loop.
 const GAP_SHARE_MAX: f64 = 0.5;
+/// Width of the gap between the rims of two sheets, at most, in the same way: sheets farther apart are shelves, no plate.
+const SHEET_GAP_SHARE_MAX: f64 = 0.2;
+/// Each of two sheets looks along the way between their middles with at least this cosine; others lie beside each other.
+const SHEET_LOOKS_MIN: f64 = 0.5;
 /// Of the rims of two sheets, the smaller one bounds at least this share of the area of the larger one.
 const SHEET_AREA_SHARE_MIN: f64 = 0.25;
 /// Sides of a loop that are looked at.
-const SAMPLES: usize = 64;
+const SAMPLES: usize = 16;
 /// Most loops among which partners are searched, in time that grows with their square.
-const LOOPS_MAX: usize = 4096;
+const LOOPS_MAX: usize = 1024;
 
 /// The loops among which partners are searched.
 pub(super) struct Rims<'a> {
@@ -103,18 +107,20 @@ impl Rims<'_> {
         for pair in &pairs {
             (is_free[pair.inner], is_free[pair.outer]) = (false, false);
         }
+        // Sheets that look away from each other first, then those that are nearest.
+        let mut found = Vec::new();
         let order = self.by_area(|i| is_free[i] && self.sheets[i].is_some());
         for (rank, &inner) in order.iter().enumerate() {
             budget.spend(rank as u64 / 16 + 1)?;
-            let mut best: Option<(f64, usize)> = None;
-            for &outer in order[..rank].iter().filter(|&&outer| is_free[outer] && may([inner, outer])) {
-                if let Some(gap) = self.back_to_back(inner, outer, budget)?
-                    && best.is_none_or(|best| gap < best.0)
-                {
-                    best = Some((gap, outer));
+            for &outer in order[..rank].iter().filter(|&&outer| may([inner, outer])) {
+                if let Some((looks_in, gap)) = self.back_to_back(inner, outer, budget)? {
+                    found.push((looks_in, gap, inner, outer));
                 }
             }
-            if let Some((_, outer)) = best {
+        }
+        found.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then((a.2, a.3).cmp(&(b.2, b.3))));
+        for (_, _, inner, outer) in found {
+            if is_free[inner] && is_free[outer] {
                 (is_free[inner], is_free[outer]) = (false, false);
                 pairs.push(RimPair { inner, outer, run_alike: self.run_alike(inner, outer) });
             }
@@ -147,7 +153,8 @@ impl Rims<'_> {
         }
         budget.spend(((a.points.len() + b.points.len()) * SAMPLES) as u64 / 16)?;
         let outward = |of: usize| move |side: usize| (self.outward)(self.loops[of][side]);
-        let ([cos_a, gap], [cos_b, _]) = (facing(a, b, outward(inner)), facing(b, a, outward(outer)));
+        let ([cos_a, gap_a], [cos_b, gap_b]) = (facing(a, b, outward(inner)), facing(b, a, outward(outer)));
+        let gap = gap_a.max(gap_b);
         let size = b.bounds.diagonal();
         let cos = cos_a.min(cos_b);
         let are_lips = || {
@@ -160,9 +167,14 @@ impl Rims<'_> {
         Ok(belong.then_some(cos))
     }
 
-    /// The gap between the rims of two flat sheets back to back, both outer rims or both rims of holes; where they run alike, once one
-    /// of the sheets has turned. Sheets that look at each other are inside out.
-    fn back_to_back(&self, inner: usize, outer: usize, budget: &Budget) -> Result<Option<f64>, Stopped> {
+    /// Whether two flat sheets back to back look at each other, as where they are inside out, and the gap between their rims, both outer
+    /// rims or both rims of holes; where they run alike, once one of the sheets has turned.
+    fn back_to_back(
+        &self,
+        inner: usize,
+        outer: usize,
+        budget: &Budget,
+    ) -> Result<Option<(bool, f64)>, Stopped> {
         let [a, b] = [inner, outer].map(|i| &self.shapes[i]);
         let (Some(sheet_a), Some(sheet_b)) = (self.sheets[inner], self.sheets[outer]) else {
             return Ok(None);
@@ -171,15 +183,18 @@ impl Rims<'_> {
             return Ok(None);
         }
         let is_hole = |shape: &LoopPolyline, sheet: DVec3| shape.normal.dot(sheet) > 0.0;
-        let way = (b.bounds.min + b.bounds.max - a.bounds.min - a.bounds.max) / 2.0;
-        let looks = [sheet_a, sheet_b].map(|sheet| sheet.dot(way));
-        let are_opposite = (looks[0] * looks[1] < 0.0) != self.run_alike(inner, outer);
-        if is_hole(a, sheet_a) != is_hole(b, sheet_b) || looks.contains(&0.0) || !are_opposite {
+        let way = (b.bounds.min + b.bounds.max - a.bounds.min - a.bounds.max).normalize_or_zero();
+        let [look_a, look_b] = [sheet_a, sheet_b].map(|sheet| sheet.dot(way));
+        let runs_alike = self.run_alike(inner, outer);
+        let are_opposite = (look_a * look_b < 0.0) != runs_alike;
+        let look_along = look_a.abs().min(look_b.abs()) >= SHEET_LOOKS_MIN;
+        if is_hole(a, sheet_a) != is_hole(b, sheet_b) || !look_along || !are_opposite {
             return Ok(None);
         }
         budget.spend(((a.points.len() + b.points.len()) * SAMPLES) as u64 / 16)?;
         let gap = facing(a, b, |_| DVec3::ZERO)[1].max(facing(b, a, |_| DVec3::ZERO)[1]);
-        Ok((gap <= GAP_SHARE_MAX * b.bounds.diagonal()).then_some(gap))
+        let is_near = gap <= SHEET_GAP_SHARE_MAX * b.bounds.diagonal();
+        Ok(is_near.then_some((!runs_alike && look_a > 0.0, gap)))
     }
 }
 

@@ -1,0 +1,36 @@
+//! Flat sheets beside bodies get walls, and all other holes are filled.
+
+use super::climb::Uncertified;
+use super::{Rung, RungKind};
+use crate::pipeline::Require;
+use crate::pipeline::plan::Variant;
+use crate::pipeline::repair_choices::Walls;
+use crate::repair::fill::{HoleReport, Rejection};
+use crate::winding::OpenShells;
+
+pub(super) const RUNG: Rung = Rung {
+    name: "sheets-left",
+    kind: RungKind::Plan,
+    applies: |climb, situation| {
+        let is_flat = |hole: &HoleReport| {
+            hole.rejected.last().is_some_and(|rejected| rejected.reason == Rejection::FlatSheet)
+        };
+        let leaves_sheets = |last: &Uncertified| {
+            let (filled, left): (Vec<_>, Vec<_>) =
+                last.attempt.holes.iter().partition(|hole| hole.used.is_some());
+            !left.is_empty() && left.iter().all(|hole| is_flat(hole)) && !filled.is_empty()
+        };
+        let may_wall = climb.choices.walls == Walls::ForSheets
+            && climb.choices.fills_all_holes()
+            && climb.options.wrap.open_shells != OpenShells::Close
+            && climb.options.require != Some(Require::None);
+        let variant = situation.variant;
+        let was_tried = situation.has_tried_sheets_left || variant.thickens || variant.contact.is_some();
+        Ok(may_wall && !was_tried && situation.last.as_ref().is_some_and(leaves_sheets))
+    },
+    tries: |climb, situation| {
+        situation.has_tried_sheets_left = true;
+        let variant = Variant { bridges: true, thickens_rest: true, ..situation.variant };
+        climb.try_closing(variant, situation)
+    },
+};
