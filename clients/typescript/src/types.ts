@@ -2511,6 +2511,12 @@ export interface components {
             /** @enum {string} */
             step: "mend-thin-faces";
         } | {
+            /** @enum {string} */
+            step: "close-chordal-gaps";
+        } | {
+            /** @enum {string} */
+            step: "turn-to-bridge";
+        } | {
             /** @description All but `except`; false: only `except`. */
             all: boolean;
             /** @description A half-edge of each hole: three times the number of its triangle, plus the place of its corner in it. */
@@ -3068,6 +3074,7 @@ export interface components {
          *     - `singular`: The equations of the field are singular to working precision.
          *     - `inexact`: The field misses the values that it should take.
          *     - `no-zero`: A vertex finds no zero of the field within half the diagonal of the rim.
+         *     - `flat-sheet`: The rim is that of a flat sheet, on which every patch would lie.
          *     - `degenerate-triangle`: A triangle without area.
          *     - `topology`: It is not a surface with exactly the rim as its boundary.
          *     - `edge-in-use`: An edge of it is in use already, or a triangle is the double of another.
@@ -3076,7 +3083,7 @@ export interface components {
          *     - `not-representable`: Its new vertices have no place among the numbers of float32.
          * @enum {string}
          */
-        Rejection: "no-patch" | "too-large" | "no-fit" | "too-few-points" | "no-room" | "singular" | "inexact" | "no-zero" | "degenerate-triangle" | "topology" | "edge-in-use" | "meets-other" | "meets-itself" | "not-representable";
+        Rejection: "no-patch" | "too-large" | "no-fit" | "too-few-points" | "no-room" | "singular" | "inexact" | "no-zero" | "flat-sheet" | "degenerate-triangle" | "topology" | "edge-in-use" | "meets-other" | "meets-itself" | "not-representable";
         /**
          * @description What is done about a defect.
          *     - `drop`: What is defect goes; what is around it meets.

@@ -1693,10 +1693,26 @@ class PlanStep19(TypedDict):
     step: Literal["mend-thin-faces"]
 
 
-ExceptItem: TypeAlias = int
+class PlanStep20(TypedDict):
+    """
+    Gaps between an arc and its chord over which a surface lies are closed.
+    """
+
+    step: Literal["close-chordal-gaps"]
 
 
 class PlanStep21(TypedDict):
+    """
+    Parts are turned so that rims which belong together run in opposite directions.
+    """
+
+    step: Literal["turn-to-bridge"]
+
+
+ExceptItem: TypeAlias = int
+
+
+class PlanStep23(TypedDict):
     """
     Open parts get a wall behind them.
     """
@@ -1708,7 +1724,7 @@ class PlanStep21(TypedDict):
     step: Literal["thicken"]
 
 
-class PlanStep22(TypedDict):
+class PlanStep24(TypedDict):
     """
     Bodies that touch become one.
     """
@@ -1720,7 +1736,7 @@ class PlanStep22(TypedDict):
     step: Literal["join-contacts"]
 
 
-class PlanStep23(TypedDict):
+class PlanStep25(TypedDict):
     """
     Bodies that pass through each other or overlap become one.
     """
@@ -1728,7 +1744,7 @@ class PlanStep23(TypedDict):
     step: Literal["unite"]
 
 
-class PlanStep24(TypedDict):
+class PlanStep26(TypedDict):
     """
     As `unite`; triangles with void on both sides, which go then, leave copies that are open parts of their own, for `thicken` to
     put walls behind.
@@ -1737,7 +1753,7 @@ class PlanStep24(TypedDict):
     step: Literal["unite-and-copy-bare"]
 
 
-class PlanStep25(TypedDict):
+class PlanStep27(TypedDict):
     """
     Edges that an odd number of triangles have are closed as by `span-rims`, whichever way these turn.
     """
@@ -1745,7 +1761,7 @@ class PlanStep25(TypedDict):
     step: Literal["span-odd-edges"]
 
 
-class PlanStep26(TypedDict):
+class PlanStep28(TypedDict):
     """
     What the triangles of each connected part enclose becomes solid, whichever way they turn.
     """
@@ -1753,7 +1769,7 @@ class PlanStep26(TypedDict):
     step: Literal["enclose"]
 
 
-class PlanStep27(TypedDict):
+class PlanStep29(TypedDict):
     """
     As `enclose`; triangles that enclose nothing, which go then, leave copies that are open parts of their own, for `thicken` to put
     walls behind.
@@ -1762,7 +1778,7 @@ class PlanStep27(TypedDict):
     step: Literal["enclose-and-copy-bare"]
 
 
-class PlanStep28(TypedDict):
+class PlanStep30(TypedDict):
     """
     Where the solid touches itself, a body of some steps of the print lattice is taken out of it.
     """
@@ -1774,7 +1790,7 @@ class PlanStep28(TypedDict):
     step: Literal["bore-contacts"]
 
 
-class PlanStep29(TypedDict):
+class PlanStep31(TypedDict):
     """
     Corners of triangles that meet others when all coordinates are read on a coarser lattice go to it.
     """
@@ -1786,7 +1802,7 @@ class PlanStep29(TypedDict):
     step: Literal["round-to-coarser"]
 
 
-class PlanStep30(TypedDict):
+class PlanStep32(TypedDict):
     """
     What is still open is closed by triangles between its rims that may pass through others; `unite` resolves that.
     """
@@ -1794,7 +1810,7 @@ class PlanStep30(TypedDict):
     step: Literal["span-rims"]
 
 
-class PlanStep31(TypedDict):
+class PlanStep33(TypedDict):
     """
     Bodies that touch are drawn apart.
     """
@@ -1802,7 +1818,7 @@ class PlanStep31(TypedDict):
     step: Literal["open-contacts"]
 
 
-class PlanStep32(TypedDict):
+class PlanStep34(TypedDict):
     """
     Vertices at one position become one again.
     """
@@ -1810,7 +1826,7 @@ class PlanStep32(TypedDict):
     step: Literal["join-copies"]
 
 
-class PlanStep34(TypedDict):
+class PlanStep36(TypedDict):
     """
     The surface is rebuilt, by the options of the request; local steps do not count then.
     """
@@ -1818,7 +1834,7 @@ class PlanStep34(TypedDict):
     step: Literal["rebuild"]
 
 
-class PlanStep35(TypedDict):
+class PlanStep37(TypedDict):
     """
     The certified mesh gets fewer triangles, by the options of the request.
     """
@@ -2186,6 +2202,7 @@ Rejection: TypeAlias = Literal[
     "singular",
     "inexact",
     "no-zero",
+    "flat-sheet",
     "degenerate-triangle",
     "topology",
     "edge-in-use",
@@ -2203,6 +2220,7 @@ Why a patch was not taken.
 - `singular`: The equations of the field are singular to working precision.
 - `inexact`: The field misses the values that it should take.
 - `no-zero`: A vertex finds no zero of the field within half the diagonal of the rim.
+- `flat-sheet`: The rim is that of a flat sheet, on which every patch would lie.
 - `degenerate-triangle`: A triangle without area.
 - `topology`: It is not a surface with exactly the rim as its boundary.
 - `edge-in-use`: An edge of it is in use already, or a triangle is the double of another.
@@ -3595,8 +3613,8 @@ class PlanOptionsWithInput(TypedDict):
     input: InputRef
 
 
-PlanStep20 = TypedDict(
-    "PlanStep20",
+PlanStep22 = TypedDict(
+    "PlanStep22",
     {
         "all": bool,
         "except": list[ExceptItem],
@@ -3606,7 +3624,7 @@ PlanStep20 = TypedDict(
 )
 
 
-class PlanStep33(TypedDict):
+class PlanStep35(TypedDict):
     """
     Shells are turned and dropped so that they alternate.
     """
@@ -3658,6 +3676,8 @@ PlanStep: TypeAlias = (
     | PlanStep33
     | PlanStep34
     | PlanStep35
+    | PlanStep36
+    | PlanStep37
 )
 """
 One step of a repair, with its parameters.
