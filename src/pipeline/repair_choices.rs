@@ -251,7 +251,7 @@ impl Choices {
         match remedy {
             // A wall inside a solid is dropped by the nesting, which lists it.
             Remedy::Remove if code == DefectCode::MisnestedShell => {
-                self.shells.push((triangle, ShellFate::Goes))
+                self.shells.push((triangle, ShellFate::Goes));
             }
             Remedy::Remove => self.removed_parts.push(triangle),
             Remedy::Turn => self.shells.push((triangle, ShellFate::Turns)),

@@ -221,7 +221,7 @@ impl<'a, V: ValueReader> ValueSource<'a, V> {
                 item.color_index = index.filter(|&index| index >= 0);
             }
             (PropertyRole::End(k), PropertyType::One(scalar)) => {
-                item.ends[k] = index(self.values.integer(scalar)?)
+                item.ends[k] = index(self.values.integer(scalar)?);
             }
             (_, PropertyType::One(scalar)) => self.values.skip(scalar, 1)?,
             (_, PropertyType::List { count, item: scalar }) => {

@@ -26,7 +26,9 @@ pub(super) const RUNG: Rung = Rung {
             && climb.options.require != Some(Require::None);
         let variant = situation.variant;
         let was_tried = situation.has_tried_sheets_left || variant.thickens || variant.contact.is_some();
-        Ok(may_wall && !was_tried && situation.last.as_ref().is_some_and(leaves_sheets))
+        // Where all is sheets, holes in them are a part of their shape.
+        let may_apply = may_wall && !was_tried && situation.last.as_ref().is_some_and(leaves_sheets);
+        Ok(may_apply && !climb.openness(situation)?.is_sheets)
     },
     tries: |climb, situation| {
         situation.has_tried_sheets_left = true;
