@@ -127,6 +127,11 @@ impl Choices {
         self.fills_holes && self.holes == Selection::default()
     }
 
+    /// True when rims may be joined as they suggest: nothing else was chosen about them.
+    pub(super) fn may_join_rims(&self) -> bool {
+        self.snap_epsilon.is_none() && self.cuts && self.fills_all_holes()
+    }
+
     /// True when whole parts are removed as chosen.
     pub(super) fn removes(&self) -> bool {
         !self.removed_parts.is_empty() || self.shells.iter().any(|&(_, fate)| fate == ShellFate::Goes)

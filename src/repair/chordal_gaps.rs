@@ -10,23 +10,26 @@
 //! chord go and vertices of the arc go to the chord, whose triangle is divided there; where it is the one with the chord, its triangle is
 //! divided so that its rim goes over the vertices of the arc.
 
+use super::draft::{VertexBeside, goes_on};
 use super::{Changes, Draft, Effects};
-use crate::budget::{Budget, Stopped};
-use crate::geom::{Aabb, DVec3, are_collinear, print_pitch};
-use crate::mesh::{EdgeGroups, divide, edge_of, triangle_of};
+use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::geom::{Aabb, DVec3, print_pitch};
+use crate::mesh::{EdgeGroups, edge_of, triangle_of};
 use crate::spatial::coincident_f64;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Sides of such a gap, at most.
 const SIDES_MAX: usize = 64;
-/// Height of an arc over its chord, at most, as a share of the chord: that of a sixth of a turn.
-const HEIGHT_SHARE_MAX: f64 = 0.17;
+/// Height of an arc over its chord, at most, as a share of the chord: a little more than that of a sixth of a turn (0.134).
+const HEIGHT_SHARE_MAX: f64 = 0.14;
+/// Boundary edges that begin at a place, at most; where there are more, they do not say which belong together.
+const LEAVING_MAX: usize = 16;
+/// Bytes that a round takes for each triangle.
+const BYTES_PER_TRIANGLE: u64 = 96;
 /// Height of an arc, at least, as a share of the diagonal; lower ones are slits, which are filled.
 const HEIGHT_MIN: f64 = 1e-4;
 /// A surface lies over a gap when it looks the other way than a patch would, as the cosine of the angle (20 degrees).
 const OVER_COS_MIN: f64 = 0.94;
-/// Cosine of the angle between a triangle and what becomes of it, at least (60 degrees).
-const TURN_COS_MIN: f64 = 0.5;
 /// Rounds: a triangle is changed once in each.
 const ROUNDS_MAX: usize = 16;
 
@@ -47,6 +50,7 @@ struct Closed {
 /// When the budget stops the run.
 pub fn close_chordal_gaps(draft: &mut Draft, budget: &Budget) -> Result<Changes, Stopped> {
     let mut closed = Closed::default();
+    let _charge = budget.charge(draft.triangles.len() as u64 * BYTES_PER_TRIANGLE)?;
     for _ in 0..ROUNDS_MAX {
         let before = closed.gaps;
         Round::of(draft, budget)?.run(draft, &mut closed, budget)?;
@@ -108,7 +112,10 @@ impl Round {
         let mut stars: FxHashMap<u32, Vec<u32>> = leaving.iter().map(|&(v, _)| (v, Vec::new())).collect();
         budget.spend(triangles.len() as u64 / 4)?;
         if !stars.is_empty() {
-            for (corners, t) in triangles.iter().zip(0..) {
+            for (corners, t) in triangles.iter().zip(0u32..) {
+                if (t as usize).is_multiple_of(CHECK_EVERY) {
+                    budget.check()?;
+                }
                 corners.iter().for_each(|v| {
                     if let Some(star) = stars.get_mut(v) {
                         star.push(t);
@@ -164,9 +171,13 @@ impl Round {
         // Of three triangles at an edge, one may lie over the gap as a whole.
         let three = self.groups.iter().filter(|group| group.len() == 3).flatten();
         for &chord in self.rim.iter().chain(three) {
-            budget.spend(1)?;
             let [_, to] = edge_of(&self.triangles, chord);
-            let found = self.leaving(to).iter().find_map(|&(_, first)| self.gap(chord, first));
+            let leaving = self.leaving(to);
+            if leaving.len() > LEAVING_MAX {
+                continue;
+            }
+            budget.spend(1 + 4 * leaving.len() as u64)?;
+            let found = leaving.iter().find_map(|&(_, first)| self.gap(chord, first));
             if let Some(gap) = found.filter(|gap| !gap.sides.iter().any(|h| is_used.contains(h))) {
                 is_used.extend(&gap.sides);
                 gaps.push(gap);
@@ -250,7 +261,8 @@ impl Round {
             sides.splice(i - 1..=i, [beyond]);
             arc.remove(i);
         }
-        if goes.iter().any(|t| self.is_changed.contains(t)) {
+        let t = triangle_of(chord);
+        if goes.iter().any(|gone| *gone == t || self.is_changed.contains(gone)) {
             return false;
         }
         let [a, b] = self.ends(chord);
@@ -269,12 +281,12 @@ impl Round {
             goes_on(before, after)
         };
         let is_free = |t: &u32| !self.is_changed.contains(t);
-        let t = triangle_of(chord);
         if !is_free(&t) || !stars.iter().filter(|t| !goes.contains(t)).all(|t| is_free(t) && keeps(t)) {
             return false;
         }
-        let ends: Vec<(u32, DVec3)> = inner.iter().map(|&v| (self.copy(v), moved[&v])).collect();
-        if !ends.is_empty() && !divide_at(draft, chord, &ends) {
+        let ends =
+            inner.iter().map(|v| VertexBeside { half_edge: chord, place: moved[v], like: self.copy(*v) });
+        if !inner.is_empty() && !draft.divide_beside(t, ends) {
             return false;
         }
         for (&v, &place) in &moved {
@@ -286,7 +298,7 @@ impl Round {
         }
         closed.vertices += moved.len() as u64;
         closed.dropped += goes.len() as u64;
-        closed.divided += u64::from(!ends.is_empty());
+        closed.divided += u64::from(!inner.is_empty());
         self.is_changed.extend(stars);
         self.is_changed.extend(goes.iter().copied().chain([t]));
         self.goes.extend(goes);
@@ -299,9 +311,12 @@ impl Round {
         if self.is_changed.contains(&t) {
             return false;
         }
-        let inner = gap.arc[1..gap.arc.len() - 1].iter();
-        let inner: Vec<(u32, DVec3)> = inner.map(|&v| (self.copy(v), self.places[v as usize])).collect();
-        if !divide_at(draft, gap.chord, &inner) {
+        let beside = |&v: &u32| VertexBeside {
+            half_edge: gap.chord,
+            place: self.places[v as usize],
+            like: self.copy(v),
+        };
+        if !draft.divide_beside(t, gap.arc[1..gap.arc.len() - 1].iter().map(beside)) {
             return false;
         }
         let [a, b] = self.ends(gap.chord);
@@ -332,32 +347,4 @@ impl Round {
 enum LiesOver {
     Arc,
     Chord,
-}
-
-/// True when a triangle that is moved keeps its side and its area.
-fn goes_on([a, b, c]: [DVec3; 3], [d, e, f]: [DVec3; 3]) -> bool {
-    let normal = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).normalize_or_zero();
-    !are_collinear(d, e, f) && normal([a, b, c]).dot(normal([d, e, f])) > TURN_COS_MIN
-}
-
-/// Divides a triangle at new vertices at these places, which its edge `h` is to pass in their order, each with the origin of a vertex of
-/// the draft; `false`, and nothing is changed, where a part would turn.
-fn divide_at(draft: &mut Draft, h: u32, inner: &[(u32, DVec3)]) -> bool {
-    let t = triangle_of(h);
-    let whole = draft.corners(t as usize);
-    let first = draft.positions.len();
-    let mut on: [Vec<u32>; 3] = Default::default();
-    for &(copy, place) in inner {
-        on[h as usize % 3].push(draft.positions.len() as u32);
-        draft.positions.push(place);
-        draft.vertex_origin.push(draft.vertex_origin[copy as usize]);
-    }
-    let parts = divide(draft.triangles[t as usize], on.each_ref().map(Vec::as_slice));
-    if !parts.iter().all(|part| goes_on(whole, part.map(|v| draft.positions[v as usize]))) {
-        draft.positions.truncate(first);
-        draft.vertex_origin.truncate(first);
-        return false;
-    }
-    draft.replace(t, &parts);
-    true
 }

@@ -1,7 +1,7 @@
 //! Operations that change a mesh: one operation, one file; options in, what changed out. No step calls another.
 //!
 //! The steps work on a [`Draft`]. None of them moves a vertex except [`round`],
-//! [`noise`], [`snap`], [`contact`] and [`joint`], which say how far; [`unite`] says how far its new ones are from where
+//! [`noise`], [`snap`], [`chordal_gaps`], [`contact`] and [`joint`], which say how far; [`unite`] says how far its new ones are from where
 //! they are exactly.
 
 pub mod chordal_gaps;

@@ -93,10 +93,20 @@ fn assert_bridged(name: &str, text: &str, bodies: usize, volume: f64) {
     assert!(!report.fidelity.unwrap().changes.is_empty(), "{name}");
 }
 
-/// As it is, with all faces the other way around, and with a body far away.
+/// Every third face the other way around.
+fn partly_turned(polygons: &Polygons) -> Polygons {
+    let turns = |i: usize, polygon: &Vec<[f64; 3]>| match i % 3 {
+        0 => polygon.iter().rev().copied().collect(),
+        _ => polygon.clone(),
+    };
+    polygons.iter().enumerate().map(|(i, polygon)| turns(i, polygon)).collect()
+}
+
+/// As it is, with all or some faces the other way around, and with a body far away.
 fn assert_bridged_however_drawn(name: &str, polygons: &Polygons, volume: f64) {
     assert_bridged(name, &obj(polygons), 1, volume);
     assert_bridged(name, &obj(&turned(polygons)), 1, volume);
+    assert_bridged(name, &obj(&partly_turned(polygons)), 1, volume);
     let mut away = polygons.clone();
     let [a, b, c, d] = [[99.0; 3], [100.0, 99.0, 99.0], [99.0, 100.0, 99.0], [99.0, 99.0, 100.0]];
     away.extend([vec![a, c, b], vec![a, b, d], vec![a, d, c], vec![b, c, d]]);
@@ -181,4 +191,41 @@ fn a_flat_sheet_is_not_closed_by_a_patch_on_it() {
     assert_eq!(holes.len(), 1);
     let reasons: Vec<_> = holes[0].rejected.iter().map(|rejected| rejected.reason).collect();
     assert_eq!(reasons, [meshmend::repair::fill::Rejection::FlatSheet]);
+}
+
+/// The upper and the lower side of a plate of 30 by 30 by 2.
+fn plate(bottom: f64) -> Polygons {
+    vec![square([0.0, 30.0], bottom + 2.0), square([0.0, 30.0], bottom).into_iter().rev().collect()]
+}
+
+#[test]
+fn plates_are_plates_whatever_the_order_of_their_sides() {
+    let sides = [plate(0.0), plate(4.0)].concat();
+    for order in [[0, 1, 2, 3], [0, 2, 1, 3], [3, 1, 0, 2], [2, 0, 3, 1]] {
+        let polygons = order.map(|i| sides[i].clone()).to_vec();
+        assert_bridged(&format!("{order:?}"), &obj(&polygons), 2, 3600.0);
+    }
+}
+
+#[test]
+fn sheets_far_apart_for_their_size_are_walls() {
+    let signs = vec![square([0.0, 30.0], 20.0), square([0.0, 30.0], 0.0).into_iter().rev().collect()];
+    let Answer { report, .. } = repaired(&obj(&signs));
+    assert_eq!(report.certificate.unwrap().shells.len(), 2);
+    assert_eq!(report.identical_triangle_share, Some(1.0));
+}
+
+#[test]
+fn a_sheet_beside_a_body_gets_a_wall_and_the_body_its_patch() {
+    let open: Polygons =
+        [sides(20.0, [0.0, 10.0]), vec![square([0.0, 20.0], 0.0).into_iter().rev().collect()]].concat();
+    for (name, body, volume) in [("box", open, 4000.0), ("plate", plate(0.0), 1800.0)] {
+        let sheet: Vec<[f64; 3]> =
+            square([0.0, 10.0], 0.0).iter().map(|[x, y, z]| [x + 50.0, *y, *z]).collect();
+        let Answer { report, .. } = repaired(&obj(&[body, vec![sheet]].concat()));
+        let found = report.after.unwrap().measures.volume.unwrap();
+        assert!((volume + 1.0..volume + 40.0).contains(&found), "{name}: {found}");
+        assert_eq!(report.certificate.unwrap().shells.len(), 2, "{name}");
+        assert_eq!(report.identical_triangle_share, Some(1.0), "{name}");
+    }
 }

@@ -64,3 +64,50 @@ fn a_coarse_lid_on_a_fine_wall_is_completed_and_all_triangles_stay() {
     assert!((found - volume(32)).abs() < 1e-4 * found, "{found}, not {}", volume(32));
     assert_eq!(report.identical_triangle_share, Some(1.0));
 }
+
+#[test]
+fn a_coarse_rim_of_a_bore_follows_its_fine_wall() {
+    // A block whose faces have a hole of 12 sides and whose bore has 24; the faces lie over what is between.
+    let (radius, coarse, fine) = (6.0, 12, 24);
+    let at = |i: u32, sides: u32| {
+        let angle = (f64::from(i) / f64::from(sides) + 0.125) * TAU;
+        [angle.cos(), angle.sin()]
+    };
+    let corner = |i: u32, z: f64| {
+        let [x, y] = at(i, coarse);
+        let far = RADIUS / x.abs().max(y.abs());
+        [x * far, y * far, z]
+    };
+    let rim = |i: u32, sides: u32, z: f64| {
+        let [x, y] = at(i, sides);
+        [x * radius, y * radius, z]
+    };
+    let face = |z: f64| -> Polygons {
+        (0..coarse)
+            .map(|i| vec![rim(i, coarse, z), corner(i, z), corner(i + 1, z), rim(i + 1, coarse, z)])
+            .collect()
+    };
+    let outside = (0..coarse)
+        .map(|i| vec![corner(i, 0.0), corner(i + 1, 0.0), corner(i + 1, HEIGHT), corner(i, HEIGHT)]);
+    let bore = (0..fine).map(|i| {
+        vec![rim(i, fine, HEIGHT), rim(i + 1, fine, HEIGHT), rim(i + 1, fine, 0.0), rim(i, fine, 0.0)]
+    });
+    let block = [face(HEIGHT), turned(&face(0.0)), outside.collect(), bore.collect()].concat();
+    let square: f64 = (0..coarse)
+        .map(|i| {
+            let ([a, b, _], [c, d, _]) = (corner(i, 0.0), corner(i + 1, 0.0));
+            (a * d - b * c) / 2.0
+        })
+        .sum();
+    let bored = f64::from(fine) / 2.0 * (TAU / f64::from(fine)).sin() * radius * radius;
+    let report = repaired(&obj(&block)).report;
+    let found = report.after.unwrap().measures.volume.unwrap();
+    let expected = (square - bored) * HEIGHT;
+    assert!((found - expected).abs() < 1e-4 * expected, "{found}, not {expected}");
+    assert!(report.fidelity.unwrap().changes.is_empty(), "{:?}", report.losses);
+    let told = report.actions.iter().find(|action| action.step == "close-chordal-gaps").unwrap();
+    assert_eq!(
+        told.changes.iter().find(|change| change.0 == "gaps_closed"),
+        Some(&("gaps_closed", 2 * u64::from(coarse)))
+    );
+}

@@ -43,3 +43,22 @@ fn so_they_do_where_both_miss_one_and_where_all_faces_turn_inward() {
         assert_united(&open.inside_out(), &format!("inside out, without triangles {a} and {b}"));
     }
 }
+
+#[test]
+fn a_body_that_is_seen_through_a_hole_is_not_filled_over() {
+    // A tent of triangles whose one end is open, and a box in it that touches nothing.
+    let positions = [
+        [0.0, 0.0, 0.0],
+        [20.0, 0.0, 0.0],
+        [10.0, 0.0, 18.0],
+        [0.0, 8.0, 0.0],
+        [20.0, 8.0, 0.0],
+        [10.0, 8.0, 18.0],
+    ];
+    let triangles = vec![[0, 3, 4], [0, 4, 1], [1, 4, 5], [1, 5, 2], [2, 5, 3], [2, 3, 0], [3, 5, 4]];
+    let open = RawSoup { positions: positions.to_vec(), triangles };
+    let report = repaired(&open.with(&cuboid([10.0, 4.0, 6.0]).moved([5.0, 2.0, 1.0]))).report;
+    assert_eq!(report.outcome, Some(Outcome::Repaired));
+    let losses = report.losses.unwrap();
+    assert_eq!((losses.bodies_lost, losses.visible_loss < 0.01), (0, true), "{losses:?}");
+}

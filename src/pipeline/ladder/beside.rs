@@ -53,13 +53,17 @@ impl Climb<'_> {
         closed: Box<Certified>,
         situation: &mut Situation,
     ) -> Result<Box<Certified>, Failure> {
-        let may_wall = self.choices.walls == Walls::ForSheets
-            && self.options.wrap.open_shells != OpenShells::Close
-            && self.options.require != Some(Require::None);
-        if !may_wall || !closed.covers_much(&self.options.limits) {
+        if !self.may_wall_sheets() || !closed.covers_much(&self.options.limits) {
             return Ok(closed);
         }
         self.closer_of(closed, Variant { thickens: true, ..situation.variant }, situation)
+    }
+
+    /// True when open parts that are read as sheets may get walls.
+    pub(super) fn may_wall_sheets(&self) -> bool {
+        self.choices.walls == Walls::ForSheets
+            && self.options.wrap.open_shells != OpenShells::Close
+            && self.options.require != Some(Require::None)
     }
 
     /// Tries a plan that closes more than the last one did; where it leads to nothing, it leaves no trace for further rungs.

@@ -15,9 +15,9 @@ pub(super) const RUNG: Rung = Rung {
             let mut open = last.attempt.holes.iter().filter(|hole| hole.used.is_none());
             open.any(|hole| hole.rejected.iter().any(|rejected| met(rejected.reason)))
         };
-        let choices = climb.choices;
-        let may = choices.snap_epsilon.is_none() && choices.cuts && choices.fills_all_holes();
-        Ok(may && !situation.has_tried_chordal_gaps && situation.last.as_ref().is_some_and(has_gaps))
+        Ok(climb.choices.may_join_rims()
+            && !situation.has_tried_chordal_gaps
+            && situation.last.as_ref().is_some_and(has_gaps))
     },
     tries: |climb, situation| {
         situation.has_tried_chordal_gaps = true;

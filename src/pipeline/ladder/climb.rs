@@ -257,8 +257,10 @@ impl Climb<'_> {
     /// chosen.
     fn gap_between_rims(&self, draft: &Draft) -> Result<f64, Stopped> {
         let choices = self.choices;
-        let is_free = choices.snap_epsilon.is_none() && choices.cuts && choices.fills_all_holes();
-        if !is_free || !self.has_found(DefectCode::BoundaryLoop) || choices.walls == Walls::First {
+        if !choices.may_join_rims()
+            || !self.has_found(DefectCode::BoundaryLoop)
+            || choices.walls == Walls::First
+        {
             return Ok(0.0);
         }
         let most = LOST_BEYOND * diagonal(&self.input.soup);
@@ -409,16 +411,15 @@ impl Certified {
         let may_be_seen = attempt.closes_openings && !attempt.hides_more && fidelity.losses.hidden_area > 0.0;
         // Where that is too much work, patches stay in the way.
         let seen_past = || if may_be_seen { measure(true) } else { Ok(fidelity) };
-        let as_seen = climb.budget.within_part(HIDDEN_PART, seen_past)?.unwrap_or(fidelity);
+        let mut as_seen = climb.budget.within_part(HIDDEN_PART, seen_past)?.unwrap_or(fidelity);
         let limits = &climb.options.limits;
         let openings = openings(&attempt, fidelity.losses.invented, candidate.soup());
         let chosen = fidelity.to_choose_by(as_seen, openings, limits);
         let mut fidelity = chosen_past_mouths(&attempt, &candidate, chosen, as_seen, climb)?;
-        let mut as_seen = as_seen;
         if attempt.closes_openings {
             // What was a sheet is no body by a patch that lies on it.
             let origins = candidate.origins(&attempt.draft.triangle_origin);
-            let flat = flat_shells(candidate.soup(), &origins, diagonal(&climb.input.soup));
+            let flat = flat_shells(candidate.soup(), &origins, diagonal(&climb.input.soup), climb.budget)?;
             fidelity.losses.bodies_lost += flat;
             as_seen.losses.bodies_lost += flat;
         }

@@ -2,11 +2,8 @@
 
 use super::climb::Uncertified;
 use super::{Rung, RungKind};
-use crate::pipeline::Require;
 use crate::pipeline::plan::Variant;
-use crate::pipeline::repair_choices::Walls;
 use crate::repair::fill::{HoleReport, Rejection};
-use crate::winding::OpenShells;
 
 pub(super) const RUNG: Rung = Rung {
     name: "sheets-left",
@@ -16,14 +13,10 @@ pub(super) const RUNG: Rung = Rung {
             hole.rejected.last().is_some_and(|rejected| rejected.reason == Rejection::FlatSheet)
         };
         let leaves_sheets = |last: &Uncertified| {
-            let (filled, left): (Vec<_>, Vec<_>) =
-                last.attempt.holes.iter().partition(|hole| hole.used.is_some());
-            !left.is_empty() && left.iter().all(|hole| is_flat(hole)) && !filled.is_empty()
+            let mut left = last.attempt.holes.iter().filter(|hole| hole.used.is_none()).peekable();
+            left.peek().is_some() && left.all(is_flat)
         };
-        let may_wall = climb.choices.walls == Walls::ForSheets
-            && climb.choices.fills_all_holes()
-            && climb.options.wrap.open_shells != OpenShells::Close
-            && climb.options.require != Some(Require::None);
+        let may_wall = climb.may_wall_sheets() && climb.choices.fills_all_holes();
         let variant = situation.variant;
         let was_tried = situation.has_tried_sheets_left || variant.thickens || variant.contact.is_some();
         // Where all is sheets, holes in them are a part of their shape.

@@ -1,11 +1,13 @@
 //! The mesh that repair steps work on: a plain triangle list that remembers where everything came from.
 
 mod behind;
+mod divide;
 mod faces;
 mod seams;
 mod texture;
 mod turn;
 
+pub(in crate::repair) use divide::{VertexBeside, goes_on};
 pub use faces::Faced;
 
 use super::Changes;

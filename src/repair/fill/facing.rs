@@ -151,9 +151,10 @@ impl Rims<'_> {
         if !are_near(a, b) {
             return Ok(None);
         }
-        budget.spend(((a.points.len() + b.points.len()) * SAMPLES) as u64 / 16)?;
+        budget.spend(((a.points.len() + b.points.len()) * SAMPLES) as u64)?;
         let outward = |of: usize| move |side: usize| (self.outward)(self.loops[of][side]);
-        let ([cos_a, gap_a], [cos_b, gap_b]) = (facing(a, b, outward(inner)), facing(b, a, outward(outer)));
+        let ([cos_a, gap_a], [cos_b, gap_b]) =
+            (cosine_and_gap(a, b, outward(inner)), cosine_and_gap(b, a, outward(outer)));
         let gap = gap_a.max(gap_b);
         let size = b.bounds.diagonal();
         let cos = cos_a.min(cos_b);
@@ -191,8 +192,9 @@ impl Rims<'_> {
         if is_hole(a, sheet_a) != is_hole(b, sheet_b) || !look_along || !are_opposite {
             return Ok(None);
         }
-        budget.spend(((a.points.len() + b.points.len()) * SAMPLES) as u64 / 16)?;
-        let gap = facing(a, b, |_| DVec3::ZERO)[1].max(facing(b, a, |_| DVec3::ZERO)[1]);
+        budget.spend(((a.points.len() + b.points.len()) * SAMPLES) as u64)?;
+        let [gap_a, gap_b] = [(a, b), (b, a)].map(|(from, to)| cosine_and_gap(from, to, |_| DVec3::ZERO)[1]);
+        let gap = gap_a.max(gap_b);
         let is_near = gap <= SHEET_GAP_SHARE_MAX * b.bounds.diagonal();
         Ok(is_near.then_some((!runs_alike && look_a > 0.0, gap)))
     }
@@ -208,7 +210,7 @@ fn are_near(inner: &LoopPolyline, outer: &LoopPolyline) -> bool {
 
 /// The mean cosine between where the surface would go on from the sides of a loop, by their number, and the nearest place on the
 /// other one, and the mean distance of that.
-fn facing(from: &LoopPolyline, to: &LoopPolyline, outward: impl Fn(usize) -> DVec3) -> [f64; 2] {
+fn cosine_and_gap(from: &LoopPolyline, to: &LoopPolyline, outward: impl Fn(usize) -> DVec3) -> [f64; 2] {
     let n = from.points.len();
     let stride = n.div_ceil(SAMPLES);
     let (mut cos, mut gap, mut count) = (0.0, 0.0, 0.0);

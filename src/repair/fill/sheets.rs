@@ -40,38 +40,35 @@ pub(super) fn of_flat_sheets(
     for h in walks.iter().flat_map(|walk| &walk.half_edges) {
         found[part_of(*h)].is_flat = true;
     }
-    let corners = |t: usize| surface.triangles[t].map(|v| surface.positions[v as usize]);
-    for (t, &part) in parts.of.iter().enumerate() {
-        if t % CHECK_EVERY == 0 {
-            budget.check()?;
+    let visit = |found: &mut [SheetCandidate], look: fn(&mut SheetCandidate, [DVec3; 3])| {
+        for (t, (corners, &part)) in surface.triangles.iter().zip(&parts.of).enumerate() {
+            if t % CHECK_EVERY == 0 {
+                budget.check()?;
+            }
+            let part = &mut found[part as usize];
+            if part.is_flat {
+                look(part, corners.map(|v| surface.positions[v as usize]));
+            }
         }
-        let part = &mut found[part as usize];
-        if part.is_flat {
-            let [a, b, c] = corners(t);
-            part.origin = a;
-            part.normal += (b - a).cross(c - a);
-            part.bounds = part.bounds.union(Aabb::of([a, b, c]));
-        }
-    }
+        Ok::<(), Stopped>(())
+    };
+    visit(&mut found, |part, [a, b, c]| {
+        part.origin = a;
+        part.normal += (b - a).cross(c - a);
+        part.bounds = part.bounds.union(Aabb::of([a, b, c]));
+    })?;
     for part in &mut found {
         // Where the normals of all triangles cancel, there is no plane.
         part.normal = part.normal.normalize_or_zero();
         part.is_flat &= part.normal != DVec3::ZERO;
     }
-    for (t, &part) in parts.of.iter().enumerate() {
-        if t % CHECK_EVERY == 0 {
-            budget.check()?;
-        }
-        let part = &mut found[part as usize];
-        if part.is_flat {
-            let [a, b, c] = corners(t);
-            let height = |p: DVec3| (p - part.origin).dot(part.normal).abs();
-            let size = part.bounds.diagonal();
-            // A needle may point anywhere.
-            let turns_back = (b - a).cross(c - a).dot(part.normal) < -FLAT_SHARE_MAX * size * size;
-            part.is_flat = [a, b, c].into_iter().all(|p| height(p) <= FLAT_SHARE_MAX * size) && !turns_back;
-        }
-    }
+    visit(&mut found, |part, [a, b, c]| {
+        let height = |p: DVec3| (p - part.origin).dot(part.normal).abs();
+        let size = part.bounds.diagonal();
+        // A needle may point anywhere.
+        let turns_back = (b - a).cross(c - a).dot(part.normal) < -FLAT_SHARE_MAX * size * size;
+        part.is_flat = [a, b, c].into_iter().all(|p| height(p) <= FLAT_SHARE_MAX * size) && !turns_back;
+    })?;
     let sheet = |walk: &Walk| {
         let part = part_of(walk.half_edges[0]);
         let is_of_one = walk.half_edges.iter().all(|&h| part_of(h) == part);

@@ -11,13 +11,11 @@
 use super::ManifoldRim;
 use super::beside::{Flank, NEAR_MAX, flank_of, vertex_beside};
 use crate::budget::{Budget, Stopped};
-use crate::geom::{Aabb, DVec3, are_collinear};
-use crate::mesh::{ChosenEdges, divide, triangle_of};
+use crate::geom::{Aabb, DVec3};
+use crate::mesh::{ChosenEdges, triangle_of};
 use crate::repair::Draft;
+use crate::repair::draft::VertexBeside;
 use crate::spatial::Bvh;
-
-/// Cosine of the angle between a triangle and its parts above which it is divided: 60 degrees.
-const PART_TURNS: f64 = 0.5;
 
 /// What was divided.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -175,7 +173,13 @@ pub(super) fn divide_beside(
     let mut divided = DivisionSummary::default();
     for of_triangle in inside.chunk_by(|a, b| triangle_of(a.half_edge) == triangle_of(b.half_edge)) {
         budget.spend(of_triangle.len() as u64)?;
-        if divide_at(draft, of_triangle) {
+        let beside = |&InnerVertex { half_edge, v, .. }: &InnerVertex| VertexBeside {
+            half_edge,
+            place: draft.positions[v as usize],
+            like: v,
+        };
+        let inside: Vec<VertexBeside> = of_triangle.iter().map(beside).collect();
+        if draft.divide_beside(triangle_of(of_triangle[0].half_edge), inside) {
             divided.triangles += 1;
             divided.edges += of_triangle.chunk_by(|a, b| a.half_edge == b.half_edge).count() as u64;
             divided.move_max = of_triangle.iter().fold(divided.move_max, |most, at| most.max(at.apart));
@@ -190,33 +194,6 @@ struct InnerVertex {
     along: f64,
     v: u32,
     apart: f64,
-}
-
-/// Divides a triangle at new vertices beside its half-edges; leaves it as it is where a part would turn.
-fn divide_at(draft: &mut Draft, of_triangle: &[InnerVertex]) -> bool {
-    let t = triangle_of(of_triangle[0].half_edge);
-    let first = draft.positions.len();
-    let mut on: [Vec<u32>; 3] = Default::default();
-    for &InnerVertex { half_edge, v, .. } in of_triangle {
-        on[half_edge as usize % 3].push(draft.positions.len() as u32);
-        draft.positions.push(draft.positions[v as usize]);
-        draft.vertex_origin.push(draft.vertex_origin[v as usize]);
-    }
-    let parts = divide(draft.triangles[t as usize], on.each_ref().map(Vec::as_slice));
-    let normal = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).normalize_or_zero();
-    let whole = normal(draft.corners(t as usize));
-    let goes_on = |part: &[u32; 3]| {
-        let [a, b, c] = part.map(|v| draft.positions[v as usize]);
-        !are_collinear(a, b, c) && normal([a, b, c]).dot(whole) > PART_TURNS
-    };
-    if !parts.iter().all(goes_on) {
-        draft.positions.truncate(first);
-        draft.vertex_origin.truncate(first);
-        return false;
-    }
-    draft.polygons.split(t as usize);
-    draft.replace(t, &parts);
-    true
 }
 
 #[cfg(test)]
