@@ -10,8 +10,7 @@
 //! chord go and vertices of the arc go to the chord, whose triangle is divided there; where it is the one with the chord, its triangle is
 //! divided so that its rim goes over the vertices of the arc.
 
-use super::draft::{VertexBeside, goes_on};
-use super::{Changes, Draft, Effects};
+use super::{Changes, Draft, Effects, VertexBeside, goes_on};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3, print_pitch};
 use crate::mesh::{EdgeGroups, edge_of, triangle_of};

@@ -34,6 +34,7 @@ pub mod unite;
 pub mod weld;
 
 pub use draft::{Blend, Blends, Draft, FIRST_BLEND, Faced, NEW};
+use draft::{VertexBeside, goes_on};
 pub use selection::Selection;
 pub use stars::Star;
 pub use stitches::{Join, Joins};

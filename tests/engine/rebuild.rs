@@ -172,7 +172,7 @@ fn a_sheet_on_both_sides_beside_a_cube_is_not_dropped_with_its_copies() {
     let answer = repaired(&cube().with(&sheet));
     let shells = answer.report.certificate.as_ref().unwrap().shells.len();
     assert_eq!((answer.report.outcome, shells), (Some(Outcome::Repaired), 2));
-    assert_eq!(count(&answer, "triangles_copied"), 2);
+    assert_eq!(count(&answer, "sheets_thickened"), 1);
     let losses = answer.report.losses.unwrap();
     assert!(losses.visible_loss < 0.01 && losses.bodies_lost == 0, "{losses:?}");
 }

@@ -13,8 +13,7 @@ use super::beside::{Flank, NEAR_MAX, flank_of, vertex_beside};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{Aabb, DVec3};
 use crate::mesh::{ChosenEdges, triangle_of};
-use crate::repair::Draft;
-use crate::repair::draft::VertexBeside;
+use crate::repair::{Draft, VertexBeside};
 use crate::spatial::Bvh;
 
 /// What was divided.
