@@ -10,7 +10,7 @@
 //! chord go and vertices of the arc go to the chord, whose triangle is divided there; where it is the one with the chord, its triangle is
 //! divided so that its rim goes over the vertices of the arc.
 
-use super::{Changes, Draft, Effects, VertexBeside, goes_on};
+use super::{Changes, Draft, Effects, VertexBeside};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3, print_pitch};
 use crate::mesh::{EdgeGroups, edge_of, triangle_of};
@@ -277,7 +277,7 @@ impl Round {
             let corners = self.triangles[t as usize];
             let before = corners.map(|v| self.places[v as usize]);
             let after = corners.map(|v| moved.get(&v).copied().unwrap_or(self.places[v as usize]));
-            goes_on(before, after)
+            Draft::goes_on(before, after)
         };
         let is_free = |t: &u32| !self.is_changed.contains(t);
         if !is_free(&t) || !stars.iter().filter(|t| !goes.contains(t)).all(|t| is_free(t) && keeps(t)) {

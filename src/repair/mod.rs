@@ -33,8 +33,8 @@ pub mod thin_faces;
 pub mod unite;
 pub mod weld;
 
+use draft::VertexBeside;
 pub use draft::{Blend, Blends, Draft, FIRST_BLEND, Faced, NEW};
-use draft::{VertexBeside, goes_on};
 pub use selection::Selection;
 pub use stars::Star;
 pub use stitches::{Join, Joins};

@@ -34,7 +34,7 @@ impl Draft {
             self.vertex_origin.push(self.vertex_origin[like as usize]);
         }
         let parts = divide(self.triangles[t as usize], on.each_ref().map(Vec::as_slice));
-        if !parts.iter().all(|part| goes_on(whole, part.map(|v| self.positions[v as usize]))) {
+        if !parts.iter().all(|part| Self::goes_on(whole, part.map(|v| self.positions[v as usize]))) {
             self.positions.truncate(first);
             self.vertex_origin.truncate(first);
             return false;
@@ -42,11 +42,11 @@ impl Draft {
         self.replace(t, &parts);
         true
     }
-}
 
-/// True when what becomes of a triangle has an area and looks the way that it did.
-pub(in crate::repair) fn goes_on(before: [DVec3; 3], after: [DVec3; 3]) -> bool {
-    let normal = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).normalize_or_zero();
-    let [a, b, c] = after;
-    !are_collinear(a, b, c) && normal(before).dot(normal(after)) > TURN_COS_MIN
+    /// True when what becomes of a triangle has an area and looks the way that it did.
+    pub(in crate::repair) fn goes_on(before: [DVec3; 3], after: [DVec3; 3]) -> bool {
+        let normal = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).normalize_or_zero();
+        let [a, b, c] = after;
+        !are_collinear(a, b, c) && normal(before).dot(normal(after)) > TURN_COS_MIN
+    }
 }

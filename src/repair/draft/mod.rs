@@ -7,7 +7,7 @@ mod seams;
 mod texture;
 mod turn;
 
-pub(in crate::repair) use divide::{VertexBeside, goes_on};
+pub(in crate::repair) use divide::VertexBeside;
 pub use faces::Faced;
 
 use super::Changes;
