@@ -2,6 +2,7 @@
 //! enclose would be nothing but the rounding of coordinates.
 
 use super::pinched::Walk;
+use super::shape::{LoopPolyline, shape};
 use super::surface::FillSurface;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3};
@@ -27,8 +28,10 @@ pub(super) fn of_flat_sheets(
     surface: &FillSurface,
     budget: &Budget,
 ) -> Result<Vec<Option<DVec3>>, Stopped> {
-    if walks.is_empty() {
-        return Ok(Vec::new());
+    // Mostly no rim is one of a sheet, and the rest of the surface need not be looked at.
+    budget.spend(walks.iter().map(|walk| walk.half_edges.len() as u64).sum::<u64>() / 4)?;
+    if !walks.iter().any(|walk| may_be_outer_rim(walk, surface)) {
+        return Ok(vec![None; walks.len()]);
     }
     let parts = surface.groups.components(budget)?;
     let _charge = budget.charge(u64::from(parts.count) * size_of::<SheetCandidate>() as u64)?;
@@ -75,6 +78,18 @@ pub(super) fn of_flat_sheets(
         (is_of_one && found[part].is_flat).then_some(found[part].normal)
     };
     Ok(walks.iter().map(sheet).collect())
+}
+
+/// True when the triangles along a walk lie in its plane, as those of a flat sheet do whose outer rim it is.
+fn may_be_outer_rim(walk: &Walk, surface: &FillSurface) -> bool {
+    let LoopPolyline { normal, bounds, points, .. } =
+        shape(walk.half_edges.iter().map(|&h| surface.point(h)).collect());
+    let most = 2.0 * FLAT_SHARE_MAX * bounds.diagonal();
+    let is_in_plane = |&h: &u32| {
+        let corners = surface.triangles[triangle_of(h) as usize].map(|v| surface.positions[v as usize]);
+        corners.into_iter().all(|p| (p - points[0]).dot(normal).abs() <= most)
+    };
+    normal != DVec3::ZERO && walk.half_edges.iter().all(is_in_plane)
 }
 
 #[cfg(test)]
