@@ -3,12 +3,14 @@
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{DVec3, triangle_area};
 use crate::mesh::{Soup, UnionFind};
+use crate::pipeline::fidelity::LOSS_MAX;
 use crate::repair::NEW;
 
 /// A shell encloses nothing when its two sides are nearer to each other, on average, than this share of the diagonal of all.
 const FLAT_SHARE_MAX: f64 = 5e-6;
 
-/// Counts the shells with new triangles whose sides lie on each other: sheets that were closed by patches on them. `origins` names the
+/// Counts the shells with new triangles whose sides lie on each other: sheets that were closed by patches on them. What is less than
+/// 1 % of the surface is dust where bodies all but meet, and no sheet that anybody would miss. `origins` names the
 /// triangle of the file that each triangle is, or [`NEW`].
 ///
 /// # Errors
@@ -46,8 +48,9 @@ pub(super) fn flat_shells(
         *area += triangle_area(corners);
         *has_new |= *origin == NEW;
     }
+    let all: f64 = shells.iter().map(|(_, area, _)| area).sum();
     let is_flat = |&&(volume, area, has_new): &&(f64, f64, bool)| {
-        has_new && volume.abs() / 3.0 <= FLAT_SHARE_MAX * diagonal * area
+        has_new && area >= LOSS_MAX * all && volume.abs() / 3.0 <= FLAT_SHARE_MAX * diagonal * area
     };
     Ok(shells.iter().filter(is_flat).count() as u32)
 }
