@@ -22,7 +22,7 @@ pub enum Mode {
 /// ```
 /// use meshmend::budget::Budget;
 /// use meshmend::geom::DVec3;
-/// use meshmend::simplify::{Input, Mode, SimplifyOptions, Target, simplify};
+/// use meshmend::simplify::{Mode, SimplifyInput, SimplifyOptions, Target, simplify};
 ///
 /// // A flat square of four by four cells, two triangles each.
 /// let place = |x: u32, y: u32| DVec3::new(f64::from(x), f64::from(y), 0.0);
@@ -34,7 +34,7 @@ pub enum Mode {
 /// let triangles: Vec<[u32; 3]> = (0..4).flat_map(|y| (0..4).flat_map(move |x| cell(x, y))).collect();
 ///
 /// let options = SimplifyOptions { targets: vec![Target::Faces(8)], ..SimplifyOptions::default() };
-/// let input = Input::new(&positions, &triangles);
+/// let input = SimplifyInput::new(&positions, &triangles);
 /// let results = simplify(&input, Mode::Strict, &options, &Budget::unlimited())?;
 /// assert!(results[0].triangles.len() <= 8);
 /// # Ok::<(), meshmend::simplify::SimplifyError>(())

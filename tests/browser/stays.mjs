@@ -438,10 +438,10 @@ export async function languageOfAResult(browser) {
     await page.waitForSelector("#legend .new");
     assert.match(await page.textContent("#legend"), /behalten [\d.]+neu/);
     await page.click("text=Was getan wurde");
-    assert.match(await page.textContent(".result .steps"), /Ränder überspannt: 11/);
+    assert.match(await page.textContent(".result .steps"), /Löcher geschlossen: 4/);
     await page.selectOption("#language", "fr");
     await page.waitForFunction(() => document.querySelector("#legend").textContent.startsWith("gardé"));
-    assert.match(await page.textContent(".result .steps"), /bords reliés\u00a0: 11/);
+    assert.match(await page.textContent(".result .steps"), /trous bouchés\u00a0: 4/);
     assert.match(await page.textContent("#triangles"), /^10\s309$/);
     assert.match(await page.textContent("#verdict"), /permis\u00a0: /);
 
