@@ -2,7 +2,7 @@
 //!
 //! Where a surface bounds a volume, the winding numbers on its two sides are near 0 and 1, so their mean is near 1/2; for
 //! a sheet they are near -1/2 and 1/2. The rule, and the threshold of 1/4 between both, are those by which a repair reads
-//! open shells: [`are_sheets`].
+//! open shells: [`are_sheets`]. A repair closes a part whose openings other bodies cover all the same.
 
 use super::{Context, DefectCode, Finding};
 use crate::budget::{CHECK_EVERY, Stopped};

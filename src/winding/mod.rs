@@ -5,6 +5,7 @@
 //! which crossings of a line decide exactly, less that of C, which has as few triangles as S has rim edges.
 
 mod angles;
+mod covered;
 mod outlook;
 mod shells;
 mod solid;

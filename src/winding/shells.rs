@@ -3,6 +3,7 @@
 
 use super::OpenShells;
 use super::WindingTree;
+use super::covered::are_covered;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{DVec3, Sign, upward_crossing};
 use crate::mesh::{Components, EdgeGroups, UnionFind, edge_of, triangle_of};
@@ -13,7 +14,8 @@ use rustc_hash::FxHashMap;
 /// Triangles by what they say.
 #[derive(Debug, Default)]
 pub struct Shells {
-    /// Closed, outward where they bound a body and inward where a cavity.
+    /// Closed, outward where they bound a body and inward where a cavity. With them, open ones whose openings closed ones cover, and
+    /// cones over these.
     pub closed: Vec<[DVec3; 3]>,
     /// The part of each.
     pub closed_part: Vec<u32>,
@@ -36,6 +38,10 @@ pub struct Shells {
 /// An open part is the boundary of a volume when on average the winding numbers of both of its sides are not around
 /// zero, as for a sheet (-1/2 and 1/2), but nearer to 0 and 1.
 const BOUNDS_A_VOLUME: f64 = 0.25;
+
+/// From this mean on, an open part is no flat sheet: where closed bodies cover its openings it stands on them, and bounds a volume
+/// with them.
+const BULGES: f64 = 1e-3;
 
 /// Samples of an open part.
 const SAMPLES_OF_PART: usize = 64;
@@ -72,9 +78,19 @@ pub fn sort(
         }
     }
     shells.parts[0] = is_closed.iter().filter(|&&is_closed| is_closed).count() as u32;
-    let is_volume =
-        read_open(open, &open_part, parts.count as usize, (open_shells, beside), &mut shells, budget)?;
-    shells.cones = cones(positions, &rims, &is_volume, beside);
+    let covered = |is_asked: &[bool], closed: &[[DVec3; 3]]| {
+        are_covered(positions, &rims, is_asked, (closed, beside), budget)
+    };
+    let reading = (open_shells, beside);
+    let readings = read_open(open, &open_part, parts.count as usize, reading, covered, &mut shells, budget)?;
+    for (part, cone) in cones(positions, &rims, &readings, beside) {
+        if readings[part as usize].is_covered {
+            shells.closed.push(cone);
+            shells.closed_part.push(part);
+        } else {
+            shells.cones.push(cone);
+        }
+    }
     Ok(shells)
 }
 
@@ -89,12 +105,12 @@ struct ConnectedParts {
 
 /// An edge that its triangles run through more often one way than the other.
 #[derive(Debug, Clone, Copy)]
-struct UnbalancedEdge {
-    from: u32,
-    to: u32,
+pub(super) struct UnbalancedEdge {
+    pub(super) from: u32,
+    pub(super) to: u32,
     /// How much more often.
     times: u32,
-    part: u32,
+    pub(super) part: u32,
 }
 
 fn parts(vertex_count: usize, triangles: &[[u32; 3]], budget: &Budget) -> Result<ConnectedParts, Stopped> {
@@ -122,17 +138,26 @@ fn parts(vertex_count: usize, triangles: &[[u32; 3]], budget: &Budget) -> Result
     Ok(ConnectedParts { parts, is_closed, rims })
 }
 
-/// Triangles that close the parts that bound a volume: from each rim edge to a place in the middle of the rim edges that
-/// it is connected with, which form a cycle of their own. `is_volume` says which parts, and whether inside out.
+/// How an open part is read; as a sheet at first.
+#[derive(Debug, Clone, Copy, Default)]
+struct PartReading {
+    bounds_a_volume: bool,
+    is_turned: bool,
+    /// Closed bodies cover all of its openings.
+    is_covered: bool,
+}
+
+/// Triangles that close the parts that bound a volume, with the part of each: from each rim edge to a place in the middle of the rim
+/// edges that it is connected with, which form a cycle of their own.
 fn cones(
     positions: &[DVec3],
     rims: &[UnbalancedEdge],
-    is_volume: &[Option<bool>],
+    readings: &[PartReading],
     beside: f64,
-) -> Vec<[DVec3; 3]> {
+) -> Vec<(u32, [DVec3; 3])> {
     let mut sets = UnionFind::new(positions.len());
     let rims: Vec<&UnbalancedEdge> =
-        rims.iter().filter(|rim| is_volume[rim.part as usize].is_some()).collect();
+        rims.iter().filter(|rim| readings[rim.part as usize].bounds_a_volume).collect();
     for rim in &rims {
         sets.unite(rim.from, rim.to);
     }
@@ -149,9 +174,8 @@ fn cones(
         // Off every plane that others are likely to lie in.
         let apex = sum / weight + DVec3::new(0.37, 0.61, 0.47) * beside;
         let [a, b] = [rim.from, rim.to].map(|v| positions[v as usize]);
-        let is_turned = is_volume[rim.part as usize] == Some(true);
-        let cone = if is_turned { [a, b, apex] } else { [b, a, apex] };
-        cones.extend(std::iter::repeat_n(cone, rim.times as usize));
+        let cone = if readings[rim.part as usize].is_turned { [a, b, apex] } else { [b, a, apex] };
+        cones.extend(std::iter::repeat_n((rim.part, cone), rim.times as usize));
     }
     cones
 }
@@ -207,18 +231,19 @@ fn turned(
     Ok((0..count).map(|part| volume[root(part)] < 0.0).collect())
 }
 
-/// Sorts the open parts into those that bound a volume and sheets. Says of each part whether it bounds one, and if so
-/// whether it was turned.
+/// Sorts the open parts into those that bound a volume and sheets, and says how each part is read. `covered` says of which parts
+/// closed bodies cover all openings: these are closed with their cones.
 fn read_open(
     open: Vec<[DVec3; 3]>,
     part: &[u32],
     part_count: usize,
     (open_shells, beside): (OpenShells, f64),
+    covered: impl FnOnce(&[bool], &[[DVec3; 3]]) -> Result<Vec<bool>, Stopped>,
     shells: &mut Shells,
     budget: &Budget,
-) -> Result<Vec<Option<bool>>, Stopped> {
+) -> Result<Vec<PartReading>, Stopped> {
     if open.is_empty() {
-        return Ok(vec![None; part_count]);
+        return Ok(vec![PartReading::default(); part_count]);
     }
     let tree = WindingTree::build(open.clone(), budget)?;
     let mut taken = vec![0usize; part_count];
@@ -249,30 +274,54 @@ fn read_open(
     // As a whole inside out.
     let is_turned = overall < -BOUNDS_A_VOLUME;
     let sign = if is_turned { -1.0 } else { 1.0 };
+    let is_from = |p: usize, mean: f64| sign * sum[p] / area[p].max(f64::MIN_POSITIVE) >= mean;
     let of_volume = |p: usize| match open_shells {
         OpenShells::Close => true,
         OpenShells::Thicken => false,
-        OpenShells::Auto => sign * sum[p] / area[p].max(f64::MIN_POSITIVE) >= BOUNDS_A_VOLUME,
+        OpenShells::Auto => is_from(p, BOUNDS_A_VOLUME),
     };
-    let bounds: Vec<bool> = (0..part_count).map(of_volume).collect();
-    for p in (0..part_count).filter(|&p| of_part[p] > 0) {
-        shells.parts[if bounds[p] { 1 } else { 2 }] += 1;
-    }
-    for ([a, b, c], &p) in open.into_iter().zip(part) {
-        if bounds[p as usize] {
-            shells.open.push(if is_turned { [a, c, b] } else { [a, b, c] });
-            shells.open_part.push(p);
-        } else {
-            shells.sheets.push([a, b, c]);
-            shells.sheet_part.push(p);
+    let mut readings: Vec<PartReading> = (0..part_count)
+        .map(|p| PartReading { bounds_a_volume: of_volume(p), is_turned, is_covered: false })
+        .collect();
+    let may_stand = |p: usize| {
+        let is_asked = open_shells == OpenShells::Auto && of_part[p] > 0;
+        is_asked && !readings[p].bounds_a_volume && is_from(p, BULGES)
+    };
+    let may_stand: Vec<bool> = (0..part_count).map(may_stand).collect();
+    if may_stand.contains(&true) {
+        for (reading, is_covered) in readings.iter_mut().zip(covered(&may_stand, &shells.closed)?) {
+            reading.is_covered = is_covered;
+            reading.bounds_a_volume |= is_covered;
         }
     }
+    for p in (0..part_count).filter(|&p| of_part[p] > 0) {
+        let PartReading { bounds_a_volume, is_covered, .. } = readings[p];
+        shells.parts[if is_covered {
+            0
+        } else if bounds_a_volume {
+            1
+        } else {
+            2
+        }] += 1;
+    }
+    for ([a, b, c], &p) in open.into_iter().zip(part) {
+        let PartReading { bounds_a_volume, is_covered, .. } = readings[p as usize];
+        let turned = if is_turned { [a, c, b] } else { [a, b, c] };
+        let (list, part, corners) = match (is_covered, bounds_a_volume) {
+            (true, _) => (&mut shells.closed, &mut shells.closed_part, turned),
+            (_, true) => (&mut shells.open, &mut shells.open_part, turned),
+            _ => (&mut shells.sheets, &mut shells.sheet_part, [a, b, c]),
+        };
+        list.push(corners);
+        part.push(p);
+    }
     shells.closedness = Some((2.0 * overall.abs()).clamp(0.0, 1.0));
-    Ok(bounds.into_iter().map(|is_volume| is_volume.then_some(is_turned)).collect())
+    Ok(readings)
 }
 
-/// Which parts of an open surface are sheets rather than boundaries of a volume, by the rule of [`OpenShells::Auto`]; `part`
-/// names the part of each triangle, below `part_count`. The sides of a triangle are looked at `beside` it.
+/// Which parts of an open surface are sheets rather than boundaries of a volume by themselves, by the rule of
+/// [`OpenShells::Auto`]; `part` names the part of each triangle, below `part_count`. The sides of a triangle are looked at `beside`
+/// it.
 ///
 /// # Errors
 /// When the budget stops the run.
@@ -283,9 +332,10 @@ pub fn are_sheets(
     beside: f64,
     budget: &Budget,
 ) -> Result<Vec<bool>, Stopped> {
-    let bounds =
-        read_open(triangles, part, part_count, (OpenShells::Auto, beside), &mut Shells::default(), budget)?;
-    Ok(bounds.into_iter().map(|is_volume| is_volume.is_none()).collect())
+    let reading = (OpenShells::Auto, beside);
+    let nothing = |_: &[bool], _: &[[DVec3; 3]]| Ok(vec![false; part_count]);
+    let readings = read_open(triangles, part, part_count, reading, nothing, &mut Shells::default(), budget)?;
+    Ok(readings.into_iter().map(|reading| !reading.bounds_a_volume).collect())
 }
 
 /// The mean of the winding numbers on both sides of a triangle, and its area.
