@@ -79,6 +79,11 @@ impl super::fidelity::FidelityMeasurement {
         let moved = self.distance.map_or(0.0, |distance| distance.upper());
         FidelityVerdict::of(&self.losses, moved, diagonal(input))
     }
+
+    /// True when a place of `input` is farther from the result than those of a faithful one may be that can be seen.
+    pub(super) fn is_far_from(&self, input: &Soup) -> bool {
+        self.distance.is_some_and(|distance| distance.forward.upper > MOVED_MAX * diagonal(input))
+    }
 }
 
 impl FidelityVerdict {

@@ -483,7 +483,7 @@ fn fidelity(
         |original: &Original<'_>| original.measure_rest(candidate.soup(), &origins, covered, budget);
     // Mostly nothing is gone, and what is hidden does not matter.
     let all_seen = measure(&Original::new(&input.soup, volume, None))?;
-    if all_seen.passes(&options.limits) {
+    if all_seen.passes(&options.limits) && !all_seen.is_far_from(&input.soup) {
         return Ok(all_seen);
     }
     let read = || {
