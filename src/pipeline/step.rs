@@ -258,7 +258,9 @@ impl Step {
                 Ok(filled.changes)
             }
             Self::MendThinFaces(which) => repair::thin_faces::mend_thin_faces(draft, *which, budget),
-            Self::Thicken { wall } => repair::thicken::thicken(draft, *wall, budget),
+            Self::Thicken { wall } => {
+                repair::thicken::thicken(draft, *wall, repair::unite::unite_as_oriented, budget)
+            }
             Self::Nest(options) => repair::nest::nest(draft, options, budget),
             Self::RemoveParts(triangles) => repair::parts::remove_parts(draft, triangles, budget),
             // These make new meshes and are not for a draft; see `replay`.

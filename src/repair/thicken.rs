@@ -21,13 +21,22 @@ const MITRE_MAX: f64 = 3.0;
 ///     a'─────── b'
 /// ```
 ///
+/// Where a sheet is narrower than its wall, the copy behind it is folded: it turns around what it bounds, which would be taken out of
+/// a body that is there. So folded walls beside closed parts are made sound by themselves, with `unite`: they become what they
+/// wind around at least once.
+///
 /// # Errors
 /// When the budget stops the run.
-pub fn thicken(draft: &mut Draft, wall: f64, budget: &Budget) -> Result<Changes, Stopped> {
+pub fn thicken(
+    draft: &mut Draft,
+    wall: f64,
+    unite: impl Fn(&mut Draft, &Budget) -> Result<Changes, Stopped>,
+    budget: &Budget,
+) -> Result<Changes, Stopped> {
     let reach = draft.positions.iter().fold(0.0, |reach, p| p.abs().max_element().max(reach)) + wall;
     let pitch = print_pitch(reach).filter(|pitch| wall >= STEPS_MIN * pitch);
     let groups = EdgeGroups::build(&draft.triangles, draft.positions.len(), budget)?;
-    let (is_open, count) = open_parts(&groups, budget)?;
+    let (mut is_open, count) = open_parts(&groups, budget)?;
     let (Some(pitch), false) = (pitch, count == 0) else {
         return Ok(counted(0, 0));
     };
@@ -53,8 +62,45 @@ pub fn thicken(draft: &mut Draft, wall: f64, budget: &Budget) -> Result<Changes,
     let triangles = added.len();
     draft.triangles.extend(added);
     draft.triangle_origin.extend(std::iter::repeat_n(NEW, triangles));
+    if is_open.contains(&false) && has_folds(draft, &is_open) {
+        is_open.resize(draft.triangles.len(), true);
+        unite_apart(draft, &is_open, unite, budget)?;
+    }
     let reason = format!("open parts are read as sheets and given walls of {} behind them", figure(wall));
     Ok(Changes { reason, ..counted(count, triangles as u64) })
+}
+
+/// Whether the copy of a marked triangle turns the other way than the triangle. The copies come after all triangles that
+/// `is_marked` knows, in their order.
+fn has_folds(draft: &Draft, is_marked: &[bool]) -> bool {
+    let normal_of = |t: usize| {
+        let [a, b, c] = draft.corners(t);
+        (b - a).cross(c - a)
+    };
+    let marked = (0..is_marked.len()).filter(|&t| is_marked[t]);
+    marked.zip(is_marked.len()..).any(|(t, copy)| normal_of(t).dot(normal_of(copy)) >= 0.0)
+}
+
+/// Unites the marked triangles as if there were no others.
+fn unite_apart(
+    draft: &mut Draft,
+    is_marked: &[bool],
+    unite: impl Fn(&mut Draft, &Budget) -> Result<Changes, Stopped>,
+    budget: &Budget,
+) -> Result<(), Stopped> {
+    let _charge = budget.charge(draft.bytes())?;
+    let mut marked = draft.clone();
+    marked.retain_triangles(is_marked);
+    unite(&mut marked, budget)?;
+    draft.retain_triangles(&is_marked.iter().map(|is_marked| !is_marked).collect::<Vec<bool>>());
+    draft.drop_unused_vertices();
+    let first = draft.positions.len() as u32;
+    draft.positions.extend(marked.positions);
+    draft.vertex_origin.extend(marked.vertex_origin);
+    draft.triangles.extend(marked.triangles.into_iter().map(|corners| corners.map(|v| v + first)));
+    draft.triangle_origin.extend(marked.triangle_origin);
+    draft.blends = marked.blends;
+    Ok(())
 }
 
 fn counted(sheets: u64, triangles: u64) -> Changes {
@@ -139,6 +185,10 @@ mod tests {
             .sum::<f64>()
     }
 
+    fn leave(_: &mut Draft, _: &Budget) -> Result<Changes, Stopped> {
+        Ok(Changes::default())
+    }
+
     fn is_closed(draft: &Draft) -> bool {
         let groups =
             EdgeGroups::build(&draft.triangles, draft.positions.len(), &Budget::unlimited()).unwrap();
@@ -151,7 +201,7 @@ mod tests {
     #[test]
     fn a_triangle_becomes_a_prism_whose_top_is_the_triangle() {
         let mut mesh = Draft::of(&[[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]], &[[0, 1, 2]]);
-        let changes = thicken(&mut mesh, 0.25, &Budget::unlimited()).unwrap();
+        let changes = thicken(&mut mesh, 0.25, leave, &Budget::unlimited()).unwrap();
         assert_eq!((changes.count("sheets_thickened"), changes.count("triangles_added")), (1, 7));
         assert_eq!((mesh.triangles[0], mesh.triangles.len()), ([0, 1, 2], 8));
         assert!(is_closed(&mesh) && mesh.check().is_empty());
@@ -170,7 +220,7 @@ mod tests {
         ];
         // The floor points up, the back points to +x: behind them is the outside of the corner.
         let mut mesh = Draft::of(&points, &[[0, 1, 2], [0, 2, 3], [0, 3, 5], [0, 5, 4]]);
-        thicken(&mut mesh, 0.125, &Budget::unlimited()).unwrap();
+        thicken(&mut mesh, 0.125, leave, &Budget::unlimited()).unwrap();
         assert!(is_closed(&mesh));
         let corner = mesh.positions[6];
         assert!((corner - DVec3::new(-0.125, 0.0, -0.125)).length() < 1e-6, "{corner}");
@@ -180,7 +230,7 @@ mod tests {
     fn a_triangle_with_a_repeated_or_no_own_side_does_not_matter() {
         let points = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [2.0, 0.0, 0.0], [3.0, 0.0, 0.0]];
         let mut mesh = Draft::of(&points, &[[0, 1, 2], [1, 3, 4], [2, 2, 0]]);
-        thicken(&mut mesh, 0.25, &Budget::unlimited()).unwrap();
+        thicken(&mut mesh, 0.25, leave, &Budget::unlimited()).unwrap();
         assert!(mesh.check().is_empty());
     }
 
@@ -189,9 +239,48 @@ mod tests {
         let tetrahedron = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
         let points = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let mut closed = Draft::of(&points, &tetrahedron);
-        assert_eq!(thicken(&mut closed, 0.1, &Budget::unlimited()).unwrap().count("sheets_thickened"), 0);
+        assert_eq!(
+            thicken(&mut closed, 0.1, leave, &Budget::unlimited()).unwrap().count("sheets_thickened"),
+            0
+        );
         assert_eq!(closed.triangles, tetrahedron);
         let mut thin = Draft::of(&points, &[[0, 2, 1]]);
-        assert_eq!(thicken(&mut thin, 1e-7, &Budget::unlimited()).unwrap().count("sheets_thickened"), 0);
+        assert_eq!(
+            thicken(&mut thin, 1e-7, leave, &Budget::unlimited()).unwrap().count("sheets_thickened"),
+            0
+        );
+    }
+
+    #[test]
+    fn only_walls_that_are_folded_beside_closed_parts_are_united_by_themselves() {
+        // A tetrahedron, and a lid of two steep sides, each 0.1 from the ridge between them.
+        let points = [
+            [5.0, 0.0, 0.0],
+            [6.0, 0.0, 0.0],
+            [5.0, 1.0, 0.0],
+            [5.0, 0.0, 1.0],
+            [-0.1, 0.0, 0.0],
+            [0.1, 0.0, 0.0],
+            [-0.1, 1.0, 0.0],
+            [0.1, 1.0, 0.0],
+            [0.0, 0.0, 0.2],
+            [0.0, 1.0, 0.2],
+        ];
+        let tetrahedron = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+        let lid = [[4, 8, 9], [4, 9, 6], [5, 7, 9], [5, 9, 8], [4, 5, 8], [6, 9, 7]];
+        let united = std::cell::Cell::new(0);
+        let count = |walls: &mut Draft, _: &Budget| {
+            united.set(walls.triangles.len());
+            Ok(Changes::default())
+        };
+        let mut beside = Draft::of(&points, &[&tetrahedron[..], &lid].concat());
+        thicken(&mut beside, 0.5, count, &Budget::unlimited()).unwrap();
+        assert_eq!(united.take(), beside.triangles.len() - 4, "the walls and nothing else");
+        assert!(is_closed(&beside) && beside.check().is_empty());
+        let mut thin = Draft::of(&points, &[&tetrahedron[..], &lid].concat());
+        thicken(&mut thin, 0.01, count, &Budget::unlimited()).unwrap();
+        let mut alone = Draft::of(&points, &lid);
+        thicken(&mut alone, 0.5, count, &Budget::unlimited()).unwrap();
+        assert_eq!(united.get(), 0, "no fold, or nothing beside");
     }
 }

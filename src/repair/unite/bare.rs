@@ -95,7 +95,7 @@ fn source(draft: &Draft, arrangement: &Arrangement, piece: usize) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::super::tests::{cubes, volume_times_6};
-    use super::super::unite;
+    use super::super::{unite, unite_as_oriented};
     use super::*;
     use crate::repair::thicken::thicken;
 
@@ -117,7 +117,7 @@ mod tests {
         assert_eq!((changes.count("triangles_copied"), draft.triangles.len()), (1, 13));
         assert_eq!(draft.triangle_origin[12..], [12]);
         assert_eq!(draft.check(), Vec::<String>::new());
-        thicken(&mut draft, 0.125, &budget).unwrap();
+        thicken(&mut draft, 0.125, unite_as_oriented, &budget).unwrap();
         unite(&mut draft, &budget).unwrap();
         // The wall has its whole thickness outside of the cube.
         let fin = (0.5 - 0.5 / 9.0) / 2.0 * 0.125;
