@@ -1,6 +1,8 @@
 //! Set operations on several files: one exact arrangement of all of them, settled until its bytes are certified.
 
 use super::bounds::{self, Bound};
+use super::faithful::NO_LOSSES;
+use super::fidelity::Losses;
 use super::input::Input;
 use super::ladder::{Climb, Tried};
 use super::plan::Attempt;
@@ -13,8 +15,10 @@ use super::{
 };
 use crate::budget::{Budget, Stage};
 use crate::formats::{self, Encoding, Place, ReadError, ReadErrorKind};
+use crate::geom::signed_volume;
 use crate::mesh::Soup;
 use crate::repair::unite::{NotCombined, combine};
+use crate::repair::{Draft, NEW};
 
 /// Combines the files that stand one behind the other in `bytes`.
 pub(super) fn boolean(
@@ -137,8 +141,8 @@ fn combined(
     let _charge = budget.charge(3 * attempt.draft.bytes())?;
     let operation = options.set_operation;
     let changes = budget.stage(Stage::Repair, || combine(&mut attempt.draft, firsts, operation, budget));
-    let changes = match changes {
-        Ok(changes) => changes,
+    let (changes, exact_volume) = match changes {
+        Ok(combined) => combined,
         Err(NotCombined::Stopped(stopped)) => return Err(stopped.into()),
         Err(reason) => {
             let reason = BooleanRefusal { operation, reason };
@@ -181,7 +185,26 @@ fn combined(
     };
     let (Attempt { draft, actions, .. }, candidate) = *found;
     let moved = actions.iter().map(|action| action.move_max).sum();
-    let fidelity = FidelityVerdict::of_move(moved, diagonal(&input.soup));
+    let losses = Losses {
+        invented: share_of_new(&draft),
+        volume_change: change_of_volume(&draft, exact_volume),
+        ..NO_LOSSES
+    };
+    let fidelity = FidelityVerdict::of(&losses, moved, diagonal(&input.soup));
     let report = Report { actions, fidelity: Some(fidelity), ..report };
     Ok(candidate.returned(input, &draft.triangle_origin, report, Outcome::Combined, budget)?)
+}
+
+/// The share of the surface that no file has: necks between what touched.
+fn share_of_new(draft: &Draft) -> f64 {
+    let areas = draft.areas();
+    let new = areas.iter().zip(&draft.triangle_origin).filter(|&(_, &origin)| origin == NEW);
+    let all: f64 = areas.iter().sum();
+    if all > 0.0 { new.map(|(area, _)| area).sum::<f64>().max(0.0) / all } else { 0.0 }
+}
+
+/// The share by which the volume is not the `exact` one, where that is more than rounding of it.
+fn change_of_volume(draft: &Draft, exact: f64) -> Option<f64> {
+    let volume = signed_volume((0..draft.triangles.len()).map(|t| draft.corners(t)));
+    (exact.is_normal() && volume.is_finite()).then(|| (volume - exact) / exact.abs())
 }

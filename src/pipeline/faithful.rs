@@ -10,7 +10,7 @@ use super::size::diagonal;
 use super::{Answer, Outcome, Refusal, Report};
 use crate::budget::{Budget, CHECK_EVERY, Stage, Stopped};
 use crate::distance::SurfaceDistance;
-use crate::geom::DVec3;
+use crate::geom::{Aabb, DVec3};
 use crate::mesh::Soup;
 use crate::repair::NEW;
 
@@ -104,18 +104,14 @@ impl FidelityVerdict {
             .filter(|&(_, measured, limit)| measured > limit)
             .map(|(kind, measured, limit)| FidelityChange { kind, measured, limit })
             .collect();
-        let is_same = moved <= ROUNDING * diagonal && losses.visible_loss == 0.0 && losses.hidden_area == 0.0;
+        let nothing_else = [losses.visible_loss, losses.hidden_area, losses.invented] == [0.0; 3];
+        let is_same = moved <= ROUNDING * diagonal && nothing_else;
         let word = match (changes.is_empty(), is_same) {
             (true, true) => Fidelity::Exact,
             (true, false) => Fidelity::Faithful,
             (false, _) => Fidelity::Changed,
         };
         Self { word, changes }
-    }
-
-    /// That of a result which is what was asked for up to moves by so much.
-    pub(super) fn of_move(moved: f64, diagonal: f64) -> Self {
-        Self::of(&NO_LOSSES, moved, diagonal)
     }
 
     /// True when a bound is exceeded.
@@ -125,7 +121,7 @@ impl FidelityVerdict {
 }
 
 /// Nothing is lost or invented.
-const NO_LOSSES: Losses =
+pub(super) const NO_LOSSES: Losses =
     Losses { visible_loss: 0.0, hidden_area: 0.0, invented: 0.0, bodies_lost: 0, volume_change: None };
 
 /// Judges `result`, made from `input`; `origins` name the triangle behind each of its own ([`NEW`]: none). What `report`
@@ -138,7 +134,7 @@ pub(super) fn judge(
     budget: &Budget,
 ) -> Result<FidelityVerdict, Stopped> {
     if let (Some(distance), Some(losses)) = (&report.distance, &report.losses) {
-        return Ok(FidelityVerdict::of(losses, distance.upper(), diagonal(input)));
+        return Ok(FidelityVerdict::of(losses, distance.upper(), size_of_both(input, result)));
     }
     let volume = defined_volume(report.before.as_ref());
     let (verdict, measured) = judge_alone(input, result, origins, report.distance.as_ref(), volume, budget)?;
@@ -147,6 +143,13 @@ pub(super) fn judge(
         report.distance = report.distance.or(distance);
     }
     Ok(verdict)
+}
+
+/// The size of which moves are shares: that of the input, or of a result that is less than half as large. A corner that lies far away
+/// makes a file so large that moves as large as the rest would not count.
+fn size_of_both(input: &Soup, result: &Soup) -> f64 {
+    let (before, after) = (diagonal(input), Aabb::of(result.positions.iter().copied()).diagonal());
+    if after < before / 2.0 { after } else { before }
 }
 
 /// What was measured for a verdict.
@@ -167,12 +170,12 @@ pub(super) fn judge_alone(
         None => largest_move(input, result, origins, budget)?,
     };
     if let Some(moved) = moved {
-        return Ok((FidelityVerdict::of(&NO_LOSSES, moved, diagonal), None));
+        return Ok((FidelityVerdict::of(&NO_LOSSES, moved, size_of_both(input, result)), None));
     }
     let original = Original::with_diagonal(input, volume, None, diagonal);
     let fidelity = original.measure(result, origins, budget)?;
     let moved = fidelity.distance.map_or(0.0, |distance| distance.upper());
-    let verdict = FidelityVerdict::of(&fidelity.losses, moved, diagonal);
+    let verdict = FidelityVerdict::of(&fidelity.losses, moved, size_of_both(input, result));
     Ok((verdict, Some((fidelity.distance, fidelity.losses))))
 }
 

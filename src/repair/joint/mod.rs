@@ -50,8 +50,8 @@ pub fn join_contacts(draft: &mut Draft, size: f64, budget: &Budget) -> Result<Ch
     }
     let mut tips = 0;
     for _ in 0..ROUNDS {
-        let joined = tips::join_tips(draft, size, pitch, budget)?;
-        tips += joined;
+        let (joined, reach) = tips::join_tips(draft, size, pitch, budget)?;
+        (tips, move_max) = (tips + joined, move_max.max(reach));
         if joined == 0 {
             break;
         }

@@ -25,8 +25,14 @@ const ALONG_MIN: f64 = 0.1;
 /// Angle, in radians, below which corners of the two cuts count as in one direction.
 const SAME_ANGLE: f64 = 1e-4;
 
-/// Joins pairs of tips that are alone at their place and share no triangle; gives the number of pairs.
-pub(super) fn join_tips(draft: &mut Draft, size: f64, pitch: f64, budget: &Budget) -> Result<u64, Stopped> {
+/// Joins pairs of tips that are alone at their place and share no triangle; gives the number of pairs, and how far the farthest corner
+/// of a cut is from its tip.
+pub(super) fn join_tips(
+    draft: &mut Draft,
+    size: f64,
+    pitch: f64,
+    budget: &Budget,
+) -> Result<(u64, f64), Stopped> {
     let places = coincident_f64(&draft.positions, budget)?;
     let mut at_place: Vec<(u32, u32)> = places.group.iter().copied().zip(0..).collect();
     at_place.sort_unstable();
@@ -39,7 +45,7 @@ pub(super) fn join_tips(draft: &mut Draft, size: f64, pitch: f64, budget: &Budge
     let stars = Star::of_each(draft, &vertices, budget)?;
     let star_of = |v: u32| vertices.binary_search(&v).ok().map(|i| &stars[i]);
     let mut is_touched = vec![false; draft.triangles.len()];
-    let mut joined = 0;
+    let (mut joined, mut move_max) = (0, 0.0f64);
     for [v, w] in pairs {
         let (Some(a), Some(b)) = (star_of(v), star_of(w)) else { continue };
         budget.spend((a.triangles.len() + b.triangles.len()) as u64)?;
@@ -47,13 +53,14 @@ pub(super) fn join_tips(draft: &mut Draft, size: f64, pitch: f64, budget: &Budge
         if both.clone().any(|&t| is_touched[t as usize]) {
             continue;
         }
-        if join(draft, [a, b], size, pitch).is_some() {
+        if let Some(reach) = join(draft, [a, b], size, pitch) {
+            move_max = move_max.max(reach);
             both.by_ref().for_each(|&t| is_touched[t as usize] = true);
             joined += 1;
         }
     }
     draft.drop_unused_vertices();
-    Ok(joined)
+    Ok((joined, move_max))
 }
 
 /// One cut: the corners of the polygon that it makes, counter-clockwise about the axis from the lower tip to the upper.
@@ -75,8 +82,8 @@ struct CutDirection {
     corners: [Option<usize>; 2],
 }
 
-/// `None` when they cannot be joined by cuts; then nothing has changed.
-fn join(draft: &mut Draft, tips: [&Star; 2], size: f64, pitch: f64) -> Option<()> {
+/// How far the corners of the cuts are from the tips; `None` when they cannot be joined by cuts: then nothing has changed.
+fn join(draft: &mut Draft, tips: [&Star; 2], size: f64, pitch: f64) -> Option<f64> {
     let rings = [tips[0].ring(draft)?, tips[1].ring(draft)?];
     let tip = draft.positions[tips[0].vertex as usize];
     let along = |ring: &[(u32, u32)], sign: f64| -> Vec<DVec3> {
@@ -98,7 +105,8 @@ fn join(draft: &mut Draft, tips: [&Star; 2], size: f64, pitch: f64) -> Option<()
     let sections = [lower, upper];
     let rays = rays(&sections);
     build(draft, &sections, &rays, pitch);
-    Some(())
+    let corners = sections.iter().flat_map(|section| &section.corners);
+    Some(corners.map(|corner| corner.distance(tip)).fold(0.0, f64::max))
 }
 
 impl Section {
@@ -259,7 +267,7 @@ mod tests {
             pyramid(&lower, -2.0, &mut draft);
             pyramid(&upper, 1.5, &mut draft);
             let pitch = 2f64.powi(-20);
-            let joined = join_tips(&mut draft, 0.2, pitch, &Budget::unlimited()).unwrap();
+            let (joined, _) = join_tips(&mut draft, 0.2, pitch, &Budget::unlimited()).unwrap();
             assert_eq!(joined, 1, "{} and {} corners", lower.len(), upper.len());
             assert!(draft.check().is_empty());
             let groups =
@@ -278,7 +286,7 @@ mod tests {
         pyramid(&polygon(4, 0.0), 2.0, &mut draft);
         draft.triangles.iter_mut().take(8).for_each(|t| t.swap(0, 1));
         let before = draft.clone();
-        assert_eq!(join_tips(&mut draft, 0.2, 1e-6, &Budget::unlimited()).unwrap(), 0);
+        assert_eq!(join_tips(&mut draft, 0.2, 1e-6, &Budget::unlimited()).unwrap(), (0, 0.0));
         assert_eq!(draft, before);
     }
 }

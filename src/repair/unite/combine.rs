@@ -4,6 +4,7 @@
 use super::{arranged_by, placed, replace};
 use crate::arrangement::{Arrangement, ArrangementError};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
+use crate::geom::signed_volume;
 use crate::repair::{Changes, Draft};
 
 /// What becomes of several solids.
@@ -103,7 +104,8 @@ impl SetOperation {
 }
 
 /// Makes one solid of the inputs of which the triangles of `draft` are. `firsts`: the first triangle of the soup of each input,
-/// ascending, at most 255. Inputs may overlap themselves, but each must be closed and nowhere inside out.
+/// ascending, at most 255. Inputs may overlap themselves, but each must be closed and nowhere inside out. Gives the volume before
+/// the new vertices were rounded, too, in cubic units of the file.
 ///
 /// # Errors
 /// See [`NotCombined`]; the draft is then as it was.
@@ -112,7 +114,7 @@ pub fn combine(
     firsts: &[u32],
     operation: SetOperation,
     budget: &Budget,
-) -> Result<Changes, NotCombined> {
+) -> Result<(Changes, f64), NotCombined> {
     let origins = &draft.triangle_origin;
     let input_of =
         |t: u32| firsts.partition_point(|&first| first <= origins[t as usize]).saturating_sub(1) as u8;
@@ -122,9 +124,12 @@ pub fn combine(
     if boundary.pieces.is_empty() {
         return Err(NotCombined::Empty);
     }
+    budget.spend(boundary.pieces.len() as u64)?;
+    let corners = boundary.pieces.iter().map(|piece| piece.corners.map(|p| arrangement.position(p)));
+    let volume = signed_volume(corners);
     let placed = placed(draft, &arrangement, boundary, budget)?.ok_or(NotCombined::BeyondFloat32)?;
     drop(arrangement);
-    Ok(replace(draft, placed))
+    Ok((replace(draft, placed), volume))
 }
 
 /// Every input must have an inside and no place with a negative winding number. Every cell has a piece beside it, so that looking at both
