@@ -60,3 +60,64 @@ pub(super) fn are_covered(
     }
     Ok(are_covered)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{OpenShells, sort};
+    use crate::budget::Budget;
+    use crate::geom::DVec3;
+
+    type Mesh = (Vec<DVec3>, Vec<[u32; 3]>);
+
+    /// A box from a corner on, with or without its bottom.
+    fn block(corner: [f64; 3], size: [f64; 3], has_bottom: bool) -> Mesh {
+        let [corner, size] = [corner, size].map(DVec3::from_array);
+        let place =
+            |i: usize| corner + DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64) * size;
+        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let triangles =
+            quads[usize::from(!has_bottom)..].iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+        ((0..8).map(place).collect(), triangles.collect())
+    }
+
+    /// The numbers of closed parts, of those that bound a volume, and of sheets.
+    fn parts(of: &[Mesh]) -> [u32; 3] {
+        let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+        for (places, corners) in of {
+            let first = positions.len() as u32;
+            positions.extend(places);
+            triangles.extend(corners.iter().map(|t| t.map(|v| v + first)));
+        }
+        sort(&positions, &triangles, OpenShells::Auto, 1e-6, &Budget::unlimited()).unwrap().parts
+    }
+
+    #[test]
+    fn a_shallow_box_without_a_bottom_stands_on_a_plate_or_in_it_and_is_a_sheet_elsewhere() {
+        let plate = || block([0.0; 3], [1.0, 1.0, 0.125], true);
+        let shallow = |z: f64| block([0.25, 0.25, z], [0.5, 0.5, 0.0625], false);
+        for z in [0.125, 0.1, 0.125 + 1e-6] {
+            assert_eq!(parts(&[plate(), shallow(z)]), [2, 0, 0], "{z}");
+        }
+        assert_eq!(parts(&[plate(), shallow(0.25)]), [1, 0, 1], "above");
+        assert_eq!(parts(&[shallow(0.125)]), [0, 0, 1], "alone");
+        let mut inward = shallow(0.125);
+        inward.1.iter_mut().for_each(|corners| corners.swap(0, 1));
+        assert_eq!(parts(&[plate(), inward]), [1, 0, 1], "a dish");
+    }
+
+    #[test]
+    fn a_part_over_a_bore_or_with_a_second_opening_does_not_stand() {
+        let bars = [
+            block([0.0, 0.0, 0.0], [1.0, 0.375, 0.125], true),
+            block([0.0, 0.625, 0.0], [1.0, 0.375, 0.125], true),
+            block([0.0, 0.375, 0.0], [0.375, 0.25, 0.125], true),
+            block([0.625, 0.375, 0.0], [0.375, 0.25, 0.125], true),
+        ];
+        let cover = block([0.25, 0.25, 0.125], [0.5, 0.5, 0.0625], false);
+        assert_eq!(parts(&[bars.to_vec(), vec![cover.clone()]].concat()), [4, 0, 1]);
+        let plate = block([0.0; 3], [1.0, 1.0, 0.125], true);
+        let (places, mut corners) = cover;
+        corners.drain(..2);
+        assert_eq!(parts(&[plate, (places, corners)]), [1, 0, 1], "open at the top");
+    }
+}

@@ -9,8 +9,8 @@ use meshmend::formats::{self, Encoding, Format, ReadOptions};
 use meshmend::mesh::{Color, Soup};
 use meshmend::par;
 use meshmend::pipeline::{
-    Answer, BooleanRefusal, Contact, Failure, Fidelity, NotCombined, NotSolid, Operation, Options, Outcome,
-    PictureChoices, Refusal, Require, SetOperation, Units, run,
+    Answer, BooleanRefusal, ChangeKind, Contact, Failure, Fidelity, NotCombined, NotSolid, Operation,
+    Options, Outcome, PictureChoices, Refusal, Require, SetOperation, Units, run,
 };
 
 fn try_files(files: &[Vec<u8>], options: &Options) -> Result<Answer, Failure> {
@@ -115,7 +115,27 @@ fn cubes_that_touch_in_an_edge_or_a_vertex_are_parted_or_joined() {
         let joined = try_files(&files, &Options { contact: Contact::Join, ..Options::default() }).unwrap();
         certified(&joined);
         assert_eq!(joined.report.certificate.unwrap().shells.len(), 1, "{at:?}");
+        assert_eq!(joined.report.fidelity.unwrap().word, Fidelity::Faithful, "{at:?}: a neck was made");
     }
+}
+
+#[test]
+fn a_wide_neck_and_a_volume_that_rounding_multiplies_are_told() {
+    let files = [cube(), cube().moved([1.0; 3])].map(|mesh| encode(&mesh, Encoding::Obj));
+    let mut options = Options { contact: Contact::Join, ..Options::default() };
+    options.wrap.wall = Some(0.6);
+    let joined = try_files(&files, &options).unwrap();
+    certified(&joined);
+    let changes = joined.report.fidelity.unwrap().changes;
+    assert!(changes.iter().any(|change| change.kind == ChangeKind::Invented), "{changes:?}");
+
+    // Cubes that share one and a half steps of the lattice.
+    let thin = 1.5 * 2f64.powi(-24);
+    let sheet = answer(Intersection, &[cube(), cube().moved([1.0 - thin, 0.0, 0.0])], Encoding::Obj);
+    certified(&sheet);
+    let changes = sheet.report.fidelity.unwrap().changes;
+    assert!(changes.iter().all(|change| change.kind == ChangeKind::Volume), "{changes:?}");
+    assert_eq!(changes.len(), 1);
 }
 
 #[test]

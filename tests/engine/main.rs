@@ -51,6 +51,7 @@ mod repair;
 mod simplify;
 mod simplify_real_files;
 mod small_holes;
+mod standing_parts;
 mod stray_faces;
 mod threemf;
 mod units;

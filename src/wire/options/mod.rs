@@ -73,7 +73,7 @@ options! {
     fill_holes: FillHoles, in REPAIR,
         "Whether repair fills simple holes. Default: simple.";
     open_shells: OpenShells, in REPAIR,
-        "How open shells are read where repair must rebuild the surface. Default: auto.";
+        "Whether open surfaces are closed or become walls; auto goes by whether each of them mostly bounds a volume. Default: auto.";
     wrap_cells: u32 = OptionKind::Integer { min: 16, max: 1024 }, in REPAIR,
         "Cells along the longest side of a surface that repair must rebuild. Default: by the effort and its area.";
     effort: Effort, in REPAIR,
