@@ -312,4 +312,17 @@ mod tests {
         assert_eq!((volume[0].kind, volume[0].measured), (ChangeKind::Volume, 0.02));
         assert!(of(Losses { volume_change: Some(0.01), visible_loss: 0.01, ..NO_LOSSES }).is_empty());
     }
+
+    #[test]
+    fn a_result_that_is_far_smaller_than_its_file_is_what_moves_are_shares_of() {
+        let of = |far: f64| {
+            let positions = [DVec3::ZERO, DVec3::X * far, DVec3::Y * far, DVec3::Z * far].to_vec();
+            Soup { positions, triangles: vec![[0, 2, 1], [0, 1, 3]], ..Soup::default() }
+        };
+        let size = |soup: &Soup| Aabb::of(soup.positions.iter().copied()).diagonal();
+        let (file, most, rest) = (of(1e12), of(0.6e12), of(1.0));
+        assert_eq!(size_of_both(&file, &most), size(&file));
+        assert_eq!(size_of_both(&file, &rest), size(&rest));
+        assert_eq!(size_of_both(&rest, &file), size(&rest));
+    }
 }
