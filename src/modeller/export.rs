@@ -1,5 +1,6 @@
 //! From a polyhedron to the corners and triangles that a file can hold.
 
+use super::exact::rational;
 use super::point::Point;
 use super::solid::Solid;
 use crate::budget::{Budget, Stopped};
@@ -54,27 +55,31 @@ pub enum ExportRefusal {
 }
 
 /// Rounds the vertices and triangulates the faces. `originals` are the corners of the file, by the first numbers of
-/// vertices: a vertex that is still exactly there keeps its bits.
+/// vertices, and the solid is `factor` times as large: a vertex that is still exactly there keeps its bits, times `factor`.
 ///
 /// # Errors
 /// When the budget stops the run.
 pub fn export(
     solid: &Solid,
     originals: &[DVec3],
+    factor: f64,
     budget: &Budget,
 ) -> Result<Result<Exported, ExportRefusal>, Stopped> {
     let topology = solid.topology();
     let mut number = vec![u32::MAX; topology.vertex_bound()];
+    let scale = rational(factor);
     let (mut positions, mut rounded_by) = (Vec::new(), 0.0f64);
     for v in topology.vertices() {
         let point = solid.point(v);
-        let kept = originals.get(v.index()).filter(|p| *point == Point::of(**p));
-        let position = kept.copied().unwrap_or_else(|| point.near.as_vec3().as_dvec3());
+        let kept = originals.get(v.index()).filter(|p| *point == Point::of(**p).scaled(&scale));
+        let position = kept.map_or_else(|| point.near.as_vec3().as_dvec3(), |p| *p * factor);
         if !position.is_finite() {
             return Ok(Err(ExportRefusal::BeyondFloat32 { vertex: v }));
         }
         number[v.index()] = positions.len() as u32;
-        rounded_by = rounded_by.max(position.distance(point.near));
+        if kept.is_none() {
+            rounded_by = rounded_by.max(position.distance(point.near));
+        }
         positions.push(position);
     }
     let mut exported = Exported {

@@ -55,6 +55,11 @@ impl Plane {
         Self::new(self.normal.clone(), &self.offset + t)
     }
 
+    /// The plane that is so many times as far from the origin, for a positive factor.
+    pub(super) fn scaled(&self, factor: &Rational) -> Self {
+        Self::new(self.normal.clone(), &self.offset * factor)
+    }
+
     /// The unit normal, rounded.
     pub fn unit_normal(&self) -> DVec3 {
         self.unit

@@ -3,6 +3,7 @@
 use super::exact::{IntegerVector, Rational, decompose, quotient, sign};
 use crate::geom::DVec3;
 use num_bigint::BigInt;
+use num_traits::One;
 use std::cmp::Ordering;
 
 /// The point `x / w` with integers and a positive `w`.
@@ -37,6 +38,14 @@ impl Point {
         let low = parts.iter().filter(|(m, _)| *m != 0).map(|(_, e)| *e).min().unwrap_or(0).min(0);
         let x = parts.map(|(m, e)| if m == 0 { BigInt::ZERO } else { BigInt::from(m) << (e - low) });
         Self { x, w: BigInt::from(1) << -low, near: p }
+    }
+
+    /// The point that is so many times as far from the origin, for a positive factor.
+    pub(super) fn scaled(&self, factor: &Rational) -> Self {
+        if factor.is_one() {
+            return self.clone();
+        }
+        Self::new(self.x.each_ref().map(|x| x * factor.numer()), &self.w * factor.denom())
     }
 
     /// The coordinates, rounded to within one unit in the last place.

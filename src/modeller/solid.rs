@@ -1,6 +1,6 @@
 //! A polyhedron as the planes of its faces and its topology; the vertices are where planes meet.
 
-use super::exact::{IntegerVector, cross, dot, negative, sign};
+use super::exact::{IntegerVector, Rational, cross, dot, negative, sign};
 use super::index::Index;
 use super::plane::{Plane, meeting_point};
 use super::point::{AxisView, Point, PointLocation};
@@ -34,6 +34,16 @@ impl Solid {
             solid.points.push(point);
         }
         Ok(solid)
+    }
+
+    /// The same solid, so many times as large, for a positive factor.
+    pub(super) fn scaled(&self, factor: &Rational) -> Self {
+        Self {
+            topology: self.topology.clone(),
+            planes: self.planes.iter().map(|plane| Arc::new(plane.scaled(factor))).collect(),
+            points: self.points.iter().map(|point| Arc::new(point.scaled(factor))).collect(),
+            index: Index::default(),
+        }
     }
 
     /// Its topology.

@@ -10,6 +10,7 @@ use crate::analysis::{Analysis, AnalyzeOptions, NearSearch};
 use crate::budget::{Budget, Stage, Stopped};
 use crate::certificate::{self, CertifyError, Depth, Examination, Fingerprint};
 use crate::formats::{self, Encoding, Place, ReadError, ReadErrorKind};
+use crate::geom::DVec3;
 use crate::mesh::{Regions, Soup, Texture};
 use std::borrow::Cow;
 
@@ -28,8 +29,18 @@ pub(super) struct Input {
     /// The regions of a part of a project, which keeps what is said of faces, where the run simplifies it; `None`: the mesh is no
     /// part of one.
     pub(super) regions: Option<Regions>,
+    /// The coordinates of the file, where the mesh has another unit by now and the operation needs both.
+    pub(super) of_file: Option<FileCoordinates>,
     /// What is near, where the caller said so.
     near: Option<f64>,
+}
+
+/// The coordinates as the file has them.
+pub(super) struct FileCoordinates {
+    /// The positions, one for each of the mesh.
+    pub(super) positions: Vec<DVec3>,
+    /// How many times as large the mesh is by now.
+    pub(super) factor: f64,
 }
 
 impl Input {
@@ -100,7 +111,7 @@ impl Input {
             result_units: units.unwrap_or_default(),
         };
         let (samples, near) = (samples_of(options), options.near);
-        Ok(Self { facts, soup, examination, samples, regions: None, near })
+        Ok(Self { facts, soup, examination, samples, regions: None, of_file: None, near })
     }
 
     /// Takes the length of what is near in another unit.

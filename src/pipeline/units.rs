@@ -3,7 +3,7 @@
 //! The mesh takes the unit of the result before anything is done to it, so that what is certified is what was made, and
 //! not a rounding of it.
 
-use super::input::Input;
+use super::input::{FileCoordinates, Input};
 use super::{
     CutStitchChoices, FidelityLimits, FillHolesChoices, Operation, Options, SimplifyChoices, Units,
     WrapChoices,
@@ -64,13 +64,20 @@ impl Input {
             let expected = "coordinates that have a number in the unit of the result".to_owned();
             return Err(ReadError { kind, place: Place::Whole, expected });
         }
+        if operation == Operation::Modeller {
+            let positions = self.soup.positions.clone();
+            self.of_file = Some(FileCoordinates { positions, factor });
+        }
         for position in &mut self.soup.positions {
             *position *= factor;
         }
         self.soup.is_f32_exact = self.soup.positions.iter().all(|p| p.as_vec3().as_dvec3() == *p);
         self.facts.result_units = result_units;
         self.scale_near(factor);
-        Ok(Some(options.scaled(factor)))
+        let mut scaled = options.scaled(factor);
+        // The modeller finds faces on the coordinates of the file.
+        scaled.modeller.tolerance = options.modeller.tolerance;
+        Ok(Some(scaled))
     }
 }
 

@@ -279,3 +279,35 @@ fn what_cannot_be_rounded_to_a_solid_is_refused_where_a_solid_is_demanded_and_ne
     let refused = answer(&bytes, choices, strict);
     assert_eq!((refused.report.outcome, refused.output), (Some(Outcome::Refused), None));
 }
+
+/// The faces of a list in another unit than that of the file.
+fn faces_in(bytes: &[u8], options: Options) -> Vec<(u32, [i64; 3], usize)> {
+    let choices = ModellerChoices { lists_faces: true, tolerance: Some(0.0), ..ModellerChoices::default() };
+    let answer = answer(bytes, choices, options);
+    let turned = |normal: DVec3| normal.to_array().map(|x| (x * 1e9).round() as i64);
+    told(&answer).faces.iter().map(|f| (f.face, turned(f.normal), f.sides)).collect()
+}
+
+#[test]
+fn faces_have_the_same_numbers_in_every_unit_and_format_of_the_result() {
+    // Parallelograms of short binary fractions lie in one plane exactly; 25.4 times as large they do not, because of rounding.
+    let sheared = cuboid([3.0, 2.0, 1.0]).map(|[x, y, z]| {
+        [
+            x + y * 0.328_125 + z * 0.703_125,
+            y + x * 0.171_875 + z * 0.109_375,
+            z + x * 0.453_125 + y * 0.890_625,
+        ]
+    });
+    let bytes = encode(&sheared, Encoding::Off);
+    let first = faces_in(&bytes, Options::default());
+    assert_eq!(first.len(), 6);
+    for (units, output_format, output_units) in [
+        (Units::Inch, Some(Format::Stl), None),
+        (Units::Inch, None, Some(Units::Millimetre)),
+        (Units::Metre, Some(Format::Stl), None),
+        (Units::Millimetre, Some(Format::Glb), None),
+    ] {
+        let options = Options { units: Some(units), output_format, output_units, ..Options::default() };
+        assert_eq!(faces_in(&bytes, options), first, "{units:?} {output_format:?}");
+    }
+}

@@ -16,7 +16,7 @@ mod groups;
 mod loops;
 mod polygons;
 
-use super::exact::{IntegerVector, cross, dot};
+use super::exact::{IntegerVector, cross, dot, rational};
 use super::plane::{Plane, meeting_point};
 use super::point::Point;
 use super::solid::Solid;
@@ -42,8 +42,10 @@ pub struct Imported {
     pub solid: Solid,
     /// What the check of the whole solid found: no fault.
     pub validity: Validity,
-    /// Where the file has each vertex of the polyhedron.
+    /// Where the file has each vertex of the polyhedron, in the unit of the file.
     pub positions: Vec<DVec3>,
+    /// How many times as large as in the file the polyhedron is.
+    pub factor: f64,
     /// Within which distance neighbours were taken to be coplanar, in the unit of the coordinates.
     pub tolerance: f64,
     /// Faces that were joined within the tolerance, not exactly.
@@ -52,6 +54,23 @@ pub struct Imported {
     pub moved: (usize, f64),
     /// For each triangle the face it became a part of.
     pub face_of_triangle: Vec<u32>,
+}
+
+impl Imported {
+    /// The same in another unit, in which lengths have `factor` times the number, a positive one: exactly, so that faces and
+    /// their numbers stay.
+    pub fn scaled(self, factor: f64) -> Self {
+        if factor == 1.0 {
+            return self;
+        }
+        Self {
+            solid: self.solid.scaled(&rational(factor)),
+            factor: self.factor * factor,
+            tolerance: self.tolerance * factor,
+            moved: (self.moved.0, self.moved.1 * factor),
+            ..self
+        }
+    }
 }
 
 /// Why triangles cannot be read as a polyhedron.
@@ -78,6 +97,16 @@ pub enum ImportRefusal {
     },
     /// The polyhedron is not a valid solid.
     Invalid(Validity),
+}
+
+impl ImportRefusal {
+    /// The same with places in another unit, in which lengths have `factor` times the number.
+    pub fn scaled(self, factor: f64) -> Self {
+        match self {
+            Self::VertexNotOnPlanes { position } => Self::VertexNotOnPlanes { position: position * factor },
+            other => other,
+        }
+    }
 }
 
 /// How near to one plane neighbours must be to become one face, when nothing else is said: eight float32 steps at the
@@ -270,6 +299,7 @@ impl ImportMesh<'_> {
             solid,
             validity,
             positions,
+            factor: 1.0,
             tolerance: if tolerant_faces == 0 { 0.0 } else { self.tolerance },
             tolerant_faces,
             moved: (count, largest),

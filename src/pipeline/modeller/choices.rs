@@ -1,4 +1,4 @@
-//! What the modeller is asked to do. Lengths and places are in the unit of the mesh.
+//! What the modeller is asked to do. Lengths and places are in the unit of the result, but the tolerance in that of the file.
 
 use crate::geom::DVec3;
 use crate::modeller::{Embedding, EventPolicy};
@@ -10,7 +10,8 @@ pub struct ModellerChoices {
     pub operators: Vec<Edit>,
     /// Faces whose allowed intervals are told, after the operators.
     pub ranges: Vec<RangeName>,
-    /// Within which distance of one plane neighbours are one face; `None`: eight float32 steps at the largest coordinate.
+    /// Within which distance of one plane neighbours are one face, in the unit of the file; `None`: eight float32 steps at the
+    /// largest coordinate.
     pub tolerance: Option<f64>,
     /// Tell the faces with their numbers, after the operators.
     pub lists_faces: bool,

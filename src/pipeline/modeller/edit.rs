@@ -23,15 +23,21 @@ pub(super) struct Edited {
 /// The polyhedron of the triangles of `draft`, welded and edited; a refusal with the account as far as it went.
 type EditResult = (Result<Edited, ModellerRefusal>, Option<ModellerReport>);
 
-/// Reads `draft` as a polyhedron and does what is asked.
-pub(super) fn edit(draft: &Draft, choices: &ModellerChoices, budget: &Budget) -> Result<EditResult, Stopped> {
+/// Reads `draft`, in the unit of the file, as a polyhedron, makes it `factor` times as large, which is the unit of the result,
+/// and does what is asked.
+pub(super) fn edit(
+    draft: &Draft,
+    factor: f64,
+    choices: &ModellerChoices,
+    budget: &Budget,
+) -> Result<EditResult, Stopped> {
     let places = coincident_f64(&draft.positions, budget)?;
     let welded = |t: &[u32; 3]| t.map(|v| places.group[v as usize]);
     let triangles: Vec<[u32; 3]> = draft.triangles.iter().map(welded).collect();
     let points: Vec<DVec3> = places.first.iter().map(|&v| draft.positions[v as usize]).collect();
     let mut imported = match modeller::import(&points, &triangles, choices.tolerance, budget)? {
-        Ok(imported) => imported,
-        Err(refusal) => return Ok((Err(ModellerRefusal::Import(refusal)), None)),
+        Ok(imported) => imported.scaled(factor),
+        Err(refusal) => return Ok((Err(ModellerRefusal::Import(refusal.scaled(factor))), None)),
     };
     let mut report = ModellerReport {
         validity: imported.validity.clone(),

@@ -27,9 +27,14 @@ const BYTES_PER_DRAFT_BYTE: u64 = 48;
 pub(super) fn model(input: &Input, options: &Options, budget: &Budget) -> Result<Answer, Failure> {
     let mut report = input.report(Operation::Modeller, budget)?;
     let choices = &options.modeller;
-    let (draft, _) = Draft::from_soup(&input.soup);
+    let (mut draft, _) = Draft::from_soup(&input.soup);
+    // Faces are found on the coordinates of the file: their numbers do not depend on the unit of the result.
+    let factor = input.of_file.as_ref().map_or(1.0, |of_file| {
+        draft.positions = draft.vertex_origin.iter().map(|&v| of_file.positions[v as usize]).collect();
+        of_file.factor
+    });
     let _charge = budget.charge(draft.bytes().saturating_mul(BYTES_PER_DRAFT_BYTE))?;
-    let (edited, told) = budget.stage(Stage::Repair, || edit(&draft, choices, budget))?;
+    let (edited, told) = budget.stage(Stage::Repair, || edit(&draft, factor, choices, budget))?;
     let refused = |report: Report, told: Option<ModellerReport>, reason: ModellerRefusal| {
         let report = Report { modeller: told.map(Box::new), ..report };
         let units = report.input.result_units;

@@ -31,7 +31,7 @@ pub(super) fn written(
                 Err(refusal) => return Ok(Err(ModellerRefusal::Dual(refusal))),
             }
         }
-        None => match modeller::export(&imported.solid, &imported.positions, budget)? {
+        None => match modeller::export(&imported.solid, &imported.positions, imported.factor, budget)? {
             Ok(exported) => {
                 told.rounded_by = Some(exported.rounded_by);
                 of_export(exported)
