@@ -6,7 +6,7 @@ use super::exact::Rational;
 use super::motion::{Motion, Moving};
 use super::operator::limit;
 use super::refusal::OperatorRefusal;
-use super::resolve;
+use super::settle::settle;
 use super::solid::Solid;
 use crate::budget::{Budget, Stopped};
 use crate::mesh::polyhedron::{FaceId, VertexId};
@@ -47,20 +47,11 @@ pub fn range(
 
 fn one_side(solid: &Solid, shifts: &[(FaceId, Rational)], budget: &Budget) -> Result<IntervalSide, Stopped> {
     let Some((motion, _)) = Motion::of(shifts) else { return Ok(IntervalSide::Unbounded) };
-    let split;
-    let mut solid = solid;
-    let unsettled = Moving::unsettled(solid, &motion);
-    if !unsettled.is_empty() {
-        super::near::tree(solid, budget)?;
-        let mut copy = solid.clone();
-        for vertex in unsettled {
-            if resolve::split(&mut copy, &motion, vertex).is_none() {
-                return Ok(IntervalSide::Blocked { vertex });
-            }
-        }
-        split = copy;
-        solid = &split;
-    }
+    let settled = match settle(solid, &motion, budget)? {
+        Ok(settled) => settled,
+        Err(vertex) => return Ok(IntervalSide::Blocked { vertex }),
+    };
+    let solid = settled.as_ref();
     let Ok(moving) = Moving::of(solid, &motion) else { return Ok(IntervalSide::Unbounded) };
     Ok(match next_event(solid, &motion, &moving, budget)? {
         None => IntervalSide::Unbounded,

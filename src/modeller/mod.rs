@@ -1,4 +1,5 @@
 //! Editing closed polyhedra by their planes.
+mod approach;
 mod cone;
 mod conflict;
 mod contact;
@@ -23,6 +24,7 @@ mod refusal;
 mod resolve;
 mod rule;
 mod search;
+mod settle;
 mod solid;
 mod sweep;
 mod validity;

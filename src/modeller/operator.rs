@@ -13,7 +13,8 @@
 //! Edges that lose their lengths are contracted (a merge), and a vertex whose planes do not stay concurrent is split for
 //! what comes just after. So an edge flip is a merge and a split.
 
-use super::events::{MotionEvent, next_event, vanishing_time};
+use super::approach::{Approach, approaches, no_split};
+use super::events::{MotionEvent, next_event};
 use super::exact::{Rational, det, sign};
 use super::journal::Journal;
 use super::motion::{Motion, Moving};
@@ -24,7 +25,7 @@ use super::validity::check_changed;
 use crate::budget::{Budget, Stopped};
 use crate::mesh::polyhedron::{ContractRefusal, FaceId, HalfEdgeId, VertexId};
 use num_bigint::BigInt;
-use num_traits::Zero;
+use num_traits::{Signed, Zero};
 use std::cmp::Ordering;
 
 /// Most events that one operator passes.
@@ -154,11 +155,7 @@ pub fn apply(
             }
             run_shift(solid, &[(*face, by.clone())], EventPolicy::Refuse, budget)
         }
-        Operator::Merge { edge, face } => match towards(solid, *edge, *face) {
-            Ok((motion, _)) => run(solid, &motion, &Until::FirstEvent, EventPolicy::Pass, budget)
-                .map(|done| done.and_then(|applied| keep_if_merged(solid, applied, *edge))),
-            Err(refusal) => Ok(Err(refusal)),
-        },
+        Operator::Merge { edge, face } => merge(solid, *edge, *face, budget),
         Operator::Flip { edge, face, by } => flip(solid, *edge, *face, by.as_ref(), budget),
     }
 }
@@ -175,25 +172,26 @@ fn run_shift(
     }
 }
 
-/// The motion of `face` alone towards the time at which the edge of `h` has no length, and that time.
-fn towards(solid: &Solid, h: HalfEdgeId, face: FaceId) -> Result<(Motion, Rational), OperatorRefusal> {
-    let topology = &solid.topology;
-    let is_at_an_end = [topology.origin(h), topology.destination(h)]
-        .iter()
-        .any(|&v| topology.faces_around(v).any(|f| f == face));
-    if !is_at_an_end {
-        return Err(OperatorRefusal::NotThere { face });
-    }
-    for rate in [1, -1] {
-        let Some((motion, _)) = Motion::of(&[(face, Rational::from_integer(BigInt::from(rate)))]) else {
-            continue;
-        };
-        let Ok(moving) = Moving::of(solid, &motion) else { continue };
-        if let Some(time) = vanishing_time(solid, &motion, &moving, h) {
-            return Ok((motion, time));
+/// Moves `face` until the edge of `h` has no length, in the first direction in which that is good.
+fn merge(
+    solid: &mut Solid,
+    h: HalfEdgeId,
+    face: FaceId,
+    budget: &Budget,
+) -> Result<Result<Applied, OperatorRefusal>, Stopped> {
+    let motions: Vec<Motion> = match approaches(solid, h, face, budget)? {
+        Ok(found) => found.into_iter().map(|approach| approach.motion).collect(),
+        Err(refusal) => return Ok(Err(refusal)),
+    };
+    let mut first = None;
+    for motion in motions {
+        let done = run(solid, &motion, &Until::FirstEvent, EventPolicy::Pass, budget)?;
+        match done.and_then(|applied| keep_if_merged(solid, applied, h)) {
+            Ok(applied) => return Ok(Ok(applied)),
+            Err(refusal) => first = first.or(Some(refusal)),
         }
     }
-    Err(OperatorRefusal::EdgeStays)
+    Ok(Err(first.unwrap_or(OperatorRefusal::EdgeStays)))
 }
 
 /// A merge that stopped at another event is taken back.
@@ -214,47 +212,67 @@ fn flip(
     by: Option<&Rational>,
     budget: &Budget,
 ) -> Result<Result<Applied, OperatorRefusal>, Stopped> {
-    if let Some(refusal) = bad_flip(solid, h) {
+    let mut found = match approaches(solid, h, face, budget)? {
+        Ok(found) => found,
+        Err(refusal) => return Ok(Err(bad_flip(solid, h).unwrap_or(refusal))),
+    };
+    // The direction that is asked for goes first.
+    found
+        .sort_by_key(|approach| by.is_some_and(|by| (by / approach.motion.rate_or_zero(face)).is_negative()));
+    let mut plans = Vec::new();
+    let mut first = None;
+    for approach in &found {
+        match flip_plan(approach, h, face, by, budget)? {
+            Ok(until) => {
+                let splits = approach.settled.topology.vertices().count() - solid.topology.vertices().count();
+                plans.push((approach.motion.clone(), until, end_faces(&approach.settled, h), splits));
+            }
+            Err(refusal) => first = first.or(Some(refusal)),
+        }
+    }
+    drop(found);
+    for (motion, until, ends, splits) in plans {
+        let refusal = match run(solid, &motion, &until, EventPolicy::Pass, budget)? {
+            Err(OperatorRefusal::NoSplit { .. }) => OperatorRefusal::DoesNotOpen { faces: ends },
+            // The merged vertex must not have opened the old way.
+            Ok(applied) if applied.changes.len() != splits + 2 => {
+                applied.undo(solid);
+                OperatorRefusal::DoesNotOpen { faces: ends }
+            }
+            Ok(applied) => return Ok(Ok(applied)),
+            Err(refusal) => refusal,
+        };
+        first = first.or(Some(refusal));
+    }
+    Ok(Err(first.unwrap_or(OperatorRefusal::EdgeStays)))
+}
+
+/// How far a flip goes on one approach.
+fn flip_plan(
+    approach: &Approach<'_>,
+    h: HalfEdgeId,
+    face: FaceId,
+    by: Option<&Rational>,
+    budget: &Budget,
+) -> Result<Result<Until, OperatorRefusal>, Stopped> {
+    let Approach { motion, settled, moving, time } = approach;
+    if let Some(refusal) = bad_flip(settled, h) {
         return Ok(Err(refusal));
     }
-    let (motion, time) = match towards(solid, h, face) {
-        Ok(found) => found,
-        Err(refusal) => return Ok(Err(refusal)),
-    };
-    let moving = match Moving::of(solid, &motion) {
-        Ok(moving) => moving,
-        Err(vertex) => return Ok(Err(no_split(solid, vertex))),
-    };
     // The first event must be this edge's, alone.
-    let event = next_event(solid, &motion, &moving, budget)?;
+    let event = next_event(settled, motion, moving, budget)?;
     let Some(event) = event else { return Ok(Err(OperatorRefusal::EdgeStays)) };
-    if event.at != time || !event.contacts.is_empty() {
-        return Ok(Err(limit(solid, &motion, &Rational::zero(), &event)));
+    let too_early = limit(settled, motion, &Rational::zero(), &event);
+    if event.at != *time || !event.contacts.is_empty() {
+        return Ok(Err(too_early));
     }
     if event.vanishing.len() != 1 {
         return Ok(Err(OperatorRefusal::SeveralVanish { count: event.vanishing.len() }));
     }
-    let until = match by {
-        None => Until::PastFirstEvent,
-        Some(by) => {
-            let rate = motion.rate_or_zero(face);
-            let asked = by / rate;
-            if asked <= time {
-                return Ok(Err(limit(solid, &motion, &Rational::zero(), &event)));
-            }
-            Until::Time(asked)
-        }
-    };
-    let ends = end_faces(solid, h);
-    let done = run(solid, &motion, &until, EventPolicy::Pass, budget)?;
-    Ok(match done {
-        Err(OperatorRefusal::NoSplit { .. }) => Err(OperatorRefusal::DoesNotOpen { faces: ends }),
-        // The merged vertex must not have opened the old way.
-        Ok(applied) if applied.changes.len() != 2 => {
-            applied.undo(solid);
-            Err(OperatorRefusal::DoesNotOpen { faces: ends })
-        }
-        other => other,
+    Ok(match by.map(|by| by / motion.rate_or_zero(face)) {
+        None => Ok(Until::PastFirstEvent),
+        Some(asked) if asked <= *time => Err(too_early),
+        Some(asked) => Ok(Until::Time(asked)),
     })
 }
 
@@ -300,10 +318,6 @@ fn is_convex_around(solid: &Solid, h: HalfEdgeId) -> bool {
         sign(&det(left, right, &solid.direction(h))) == Ordering::Greater
     };
     topology.around(h).chain(topology.around(topology.opposite(h))).all(is_convex)
-}
-
-fn no_split(solid: &Solid, vertex: VertexId) -> OperatorRefusal {
-    OperatorRefusal::NoSplit { vertex, faces: solid.topology.faces_around(vertex).collect() }
 }
 
 pub(super) fn limit(

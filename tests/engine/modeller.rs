@@ -8,8 +8,8 @@ use meshmend::formats::{Encoding, Format, ReadOptions, read};
 use meshmend::geom::DVec3;
 use meshmend::modeller::{self, Embedding, EventPolicy};
 use meshmend::pipeline::{
-    Answer, BlockerKind, Edit, EditKind, FaceName, ModellerChoices, ModellerRefusal, ModellerReport,
-    Operation, Options, Outcome, Refusal, Require, Units, run,
+    Answer, BlockerKind, EdgeName, Edit, EditKind, FaceName, ModellerChoices, ModellerRefusal,
+    ModellerReport, Operation, Options, Outcome, Refusal, Require, Units, run,
 };
 
 fn answer(bytes: &[u8], modeller: ModellerChoices, options: Options) -> Answer {
@@ -310,4 +310,60 @@ fn faces_have_the_same_numbers_in_every_unit_and_format_of_the_result() {
         let options = Options { units: Some(units), output_format, output_units, ..Options::default() };
         assert_eq!(faces_in(&bytes, options), first, "{units:?} {output_format:?}");
     }
+}
+
+/// A roof of four slopes that ends at corners of four faces: its hips begin at the corners of the walls.
+fn hip_house() -> RawSoup {
+    let positions = vec![
+        [0.0, 0.0, 0.0],
+        [12.0, 0.0, 0.0],
+        [12.0, 8.0, 0.0],
+        [0.0, 8.0, 0.0],
+        [0.0, 0.0, 5.0],
+        [12.0, 0.0, 5.0],
+        [12.0, 8.0, 5.0],
+        [0.0, 8.0, 5.0],
+        [4.0, 4.0, 9.0],
+        [8.0, 4.0, 9.0],
+    ];
+    let triangles = vec![
+        [9, 5, 6],
+        [7, 4, 8],
+        [0, 3, 2],
+        [2, 1, 0],
+        [0, 1, 4],
+        [1, 5, 4],
+        [4, 3, 0],
+        [4, 7, 3],
+        [6, 2, 3],
+        [3, 7, 6],
+        [1, 2, 6],
+        [6, 5, 1],
+        [8, 6, 7],
+        [9, 6, 8],
+        [8, 4, 5],
+        [8, 5, 9],
+    ];
+    RawSoup { positions, triangles }
+}
+
+#[test]
+fn an_edge_merges_and_flips_where_corners_of_four_faces_split_first() {
+    let bytes = encode(&hip_house(), Encoding::Off);
+    let ridge = EdgeName { faces: [FaceName::Id(7), FaceName::Id(8)], at: None };
+    let face = FaceName::Id(1);
+    let merged = edited(&bytes, vec![Edit::Merge { edge: ridge, face }]);
+    let step = &told(&merged).steps[0];
+    assert!((step.moved[0].1 + 8.0f64.sqrt()).abs() < 1e-9 && step.validity.is_valid(), "{step:?}");
+    for (by, volume) in [(-2.9, 496.4339), (-3.0, 489.4523)] {
+        let flipped = edited(&bytes, vec![Edit::Flip { edge: ridge, face, by: Some(by) }]);
+        let told = flipped.report.after.as_ref().and_then(|mesh| mesh.measures.volume).unwrap();
+        assert!((told - volume).abs() < 1e-3, "{told} instead of {volume}");
+    }
+    // The ends of the ridge do not reach each other as early as that.
+    let early = edited(&bytes, vec![Edit::Flip { edge: ridge, face, by: Some(-2.0) }]);
+    let ModellerRefusal::Operator { limits, .. } = refusal(&early) else {
+        panic!("{:?}", early.report.refusal)
+    };
+    assert!((limits[0].1 + 8.0f64.sqrt()).abs() < 1e-9, "{limits:?}");
 }
