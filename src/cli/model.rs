@@ -1,11 +1,14 @@
 //! What the modeller found and did, as tables for people.
 
 use super::figures::counted;
-use crate::figures::figure;
+use crate::figures::{figure, significant};
 use crate::wire::{FaceInfo, FaceRangeInfo, Modeller, ModellerStep, RangeSideInfo};
 
 /// Most faces of which a screen tells.
 const FACES_TOLD: usize = 64;
+
+/// Digits of how far a face moved: with fewer a move just inside an open interval reads as its end.
+const LENGTH_DIGITS: usize = 12;
 
 /// The polyhedron in a line; none where the mesh is none.
 pub(super) fn size(model: &Modeller) -> Option<String> {
@@ -38,8 +41,11 @@ pub(super) fn size(model: &Modeller) -> Option<String> {
 
 /// An operator that was applied.
 pub(super) fn step_row(step: &ModellerStep) -> [String; 3] {
-    let moved: Vec<String> =
-        step.moved.iter().map(|m| format!("face {} by {} mm", m.face, figure(m.by_mm))).collect();
+    let moved: Vec<String> = step
+        .moved
+        .iter()
+        .map(|m| format!("face {} by {} mm", m.face, significant(m.by_mm, LENGTH_DIGITS)))
+        .collect();
     let changes = [(step.merged, "merged"), (step.split, "split")];
     let changes: Vec<String> = changes
         .iter()

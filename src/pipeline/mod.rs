@@ -52,7 +52,7 @@ use self::input::Input;
 pub use self::input_facts::InputFacts;
 pub use self::modeller::{
     Blocker, BlockerKind, EdgeName, Edit, EditKind, FaceName, FaceRange, ModelFace, ModellerChoices,
-    ModellerRefusal, ModellerReport, ModellerStep, RangeName, RangeSide,
+    ModellerRefusal, ModellerReport, ModellerStep, NameFault, RangeName, RangeSide,
 };
 pub use self::operation::{Facts, MESHES_MAX, Operation, ProductKind, Require, WorkBound};
 pub use self::outcome::Outcome;

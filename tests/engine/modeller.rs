@@ -9,7 +9,7 @@ use meshmend::geom::DVec3;
 use meshmend::modeller::{self, Embedding, EventPolicy};
 use meshmend::pipeline::{
     Answer, BlockerKind, EdgeName, Edit, EditKind, FaceName, ModellerChoices, ModellerRefusal,
-    ModellerReport, Operation, Options, Outcome, Refusal, Require, Units, run,
+    ModellerReport, NameFault, Operation, Options, Outcome, Refusal, Require, Units, run,
 };
 
 fn answer(bytes: &[u8], modeller: ModellerChoices, options: Options) -> Answer {
@@ -126,10 +126,27 @@ fn what_is_in_the_way_is_told_and_the_steps_before_it_too() {
     assert!(distance <= 0.0 && (distance + 1.5).abs() < 1e-12, "{distance}");
     assert!(blocking.iter().all(|b| b.kind == BlockerKind::EdgeVanishes && b.places.len() == 2));
     assert_eq!(told(&answer).steps.len(), 1);
-    for name in [FaceName::Id(6), by_normal([0.0; 3])] {
+    let away = FaceName::Ray { from: DVec3::splat(9.0), direction: DVec3::X };
+    for (name, fault) in [
+        (FaceName::Id(6), NameFault::NoFace(6)),
+        (by_normal([0.0; 3]), NameFault::NoNormal),
+        (away, NameFault::RayMisses),
+    ] {
         let answer = edited(&bytes, vec![shift(name, 0.5)]);
-        assert_eq!(refusal(&answer), &ModellerRefusal::Name { operator: Some(0), what: "face" });
+        assert_eq!(refusal(&answer), &ModellerRefusal::Name { operator: Some(0), fault });
     }
+}
+
+#[test]
+fn a_shift_that_names_one_face_twice_is_refused() {
+    let bytes = encode(&cuboid([3.0, 2.0, 1.0]), Encoding::Off);
+    let top = by_normal([0.0, 0.0, 1.0]);
+    let faces = vec![(top, 0.5), (top, 0.25)];
+    let answer = edited(&bytes, vec![Edit::Shift { faces, events: EventPolicy::Refuse }]);
+    let ModellerRefusal::Name { operator: Some(0), fault } = refusal(&answer) else {
+        panic!("{:?}", answer.report.refusal)
+    };
+    assert!(matches!(fault, NameFault::FaceTwice(_)), "{fault:?}");
 }
 
 #[test]

@@ -2,7 +2,8 @@
 
 use super::choices::{EdgeName, Edit, FaceName, ModellerChoices, RangeName};
 use super::report::{
-    Blocker, BlockerKind, FaceRange, ModelFace, ModellerRefusal, ModellerReport, ModellerStep, RangeSide,
+    Blocker, BlockerKind, FaceRange, ModelFace, ModellerRefusal, ModellerReport, ModellerStep, NameFault,
+    RangeSide,
 };
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
@@ -12,6 +13,7 @@ use crate::modeller::{
 };
 use crate::repair::Draft;
 use crate::spatial::coincident_f64;
+use std::collections::BTreeSet;
 
 /// The edited polyhedron.
 pub(super) struct Edited {
@@ -100,7 +102,7 @@ fn run(
         } else {
             let operator = match operator(solid, asked) {
                 Ok(operator) => operator,
-                Err(what) => return Ok(Some(ModellerRefusal::Name { operator: Some(k), what })),
+                Err(fault) => return Ok(Some(ModellerRefusal::Name { operator: Some(k), fault })),
             };
             match modeller::apply(solid, &operator, budget)? {
                 Ok(applied) => {
@@ -131,32 +133,53 @@ fn refused(solid: &Solid, operator: usize, reason: modeller::OperatorRefusal) ->
     ModellerRefusal::Operator { operator, reason, limits, blocking }
 }
 
-fn find_face(solid: &Solid, name: FaceName) -> Option<FaceId> {
+fn find_face(solid: &Solid, name: FaceName) -> Result<FaceId, NameFault> {
     match name {
-        FaceName::Id(id) => ((id as usize) < solid.topology().face_count()).then(|| FaceId::new(id as usize)),
-        FaceName::Normal { normal, at } => modeller::face_by_normal(solid, normal, at),
-        FaceName::Ray { from, direction } => modeller::face_on_ray(solid, from, direction),
+        FaceName::Id(id) if (id as usize) < solid.topology().face_count() => Ok(FaceId::new(id as usize)),
+        FaceName::Id(id) => Err(NameFault::NoFace(id)),
+        FaceName::Normal { normal, .. } if normal.try_normalize().is_none() => Err(NameFault::NoNormal),
+        FaceName::Normal { normal, at } => {
+            modeller::face_by_normal(solid, normal, at).ok_or(NameFault::NoFaces)
+        }
+        FaceName::Ray { direction, .. } if direction == DVec3::ZERO => Err(NameFault::NoDirection),
+        FaceName::Ray { from, direction } => {
+            modeller::face_on_ray(solid, from, direction).ok_or(NameFault::RayMisses)
+        }
     }
 }
 
-fn find_edge(solid: &Solid, name: EdgeName) -> Option<HalfEdgeId> {
+fn find_edge(solid: &Solid, name: EdgeName) -> Result<HalfEdgeId, NameFault> {
     let [a, b] = name.faces;
-    modeller::edge_between(solid, [find_face(solid, a)?, find_face(solid, b)?], name.at)
+    let faces = [find_face(solid, a)?, find_face(solid, b)?];
+    let numbers = faces.map(|f| f.index() as u32);
+    modeller::edge_between(solid, faces, name.at).ok_or(NameFault::NoEdge(numbers))
 }
 
-/// The operator that an edit means; what it names and the polyhedron does not have otherwise.
-fn operator(solid: &Solid, asked: &Edit) -> Result<Operator, &'static str> {
-    let face = |name: FaceName| find_face(solid, name).ok_or("face");
-    let edge = |name: EdgeName| find_edge(solid, name).ok_or("edge");
+/// The faces of a shift, each once, and how much their offsets grow.
+fn shifted_faces(solid: &Solid, asked: &[(FaceName, f64)]) -> Result<Vec<(FaceId, Rational)>, NameFault> {
+    let mut named = BTreeSet::new();
+    let growth = |&(name, by): &(FaceName, f64)| {
+        let face = find_face(solid, name)?;
+        match named.insert(face) {
+            true => Ok((face, modeller::offset_growth(solid, face, by))),
+            false => Err(NameFault::FaceTwice(face.index() as u32)),
+        }
+    };
+    asked.iter().map(growth).collect()
+}
+
+/// The operator that an edit means.
+fn operator(solid: &Solid, asked: &Edit) -> Result<Operator, NameFault> {
+    let face = |name: FaceName| find_face(solid, name);
+    let edge = |name: EdgeName| find_edge(solid, name);
     let growth = |f: FaceId, by: f64| modeller::offset_growth(solid, f, by);
     Ok(match asked {
         Edit::Shift { faces, events } => {
-            let moved = |&(name, by): &(FaceName, f64)| face(name).map(|f| (f, growth(f, by)));
-            Operator::Shift { faces: faces.iter().map(moved).collect::<Result<_, _>>()?, events: *events }
+            Operator::Shift { faces: shifted_faces(solid, faces)?, events: *events }
         }
         Edit::Split { at, face: name, by } => {
             let f = face(*name)?;
-            let vertex = modeller::vertex_near(solid, *at).ok_or("vertex")?;
+            let vertex = modeller::vertex_near(solid, *at).ok_or(NameFault::NoVertex)?;
             Operator::Split { vertex, face: f, by: growth(f, *by) }
         }
         Edit::Merge { edge: between, face: name } => {
@@ -166,7 +189,7 @@ fn operator(solid: &Solid, asked: &Edit) -> Result<Operator, &'static str> {
             let f = face(*name)?;
             Operator::Flip { edge: edge(*between)?, face: f, by: by.map(|by| growth(f, by)) }
         }
-        Edit::Undo => return Err("operator"),
+        Edit::Undo => return Err(NameFault::NoOperator),
     })
 }
 
@@ -242,9 +265,10 @@ fn ranges(
     budget: &Budget,
 ) -> Result<Option<ModellerRefusal>, Stopped> {
     for names in asked {
-        let found = |&(name, rate): &(FaceName, f64)| Some((find_face(solid, name)?, rate));
-        let Some(faces) = names.iter().map(found).collect::<Option<Vec<_>>>() else {
-            return Ok(Some(ModellerRefusal::Name { operator: None, what: "face" }));
+        let found = |&(name, rate): &(FaceName, f64)| Ok((find_face(solid, name)?, rate));
+        let faces = match names.iter().map(found).collect::<Result<Vec<_>, NameFault>>() {
+            Ok(faces) => faces,
+            Err(fault) => return Ok(Some(ModellerRefusal::Name { operator: None, fault })),
         };
         report.ranges.push(range_of(solid, &faces, budget)?);
     }

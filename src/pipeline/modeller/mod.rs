@@ -7,7 +7,8 @@ mod written;
 
 pub use choices::{EdgeName, Edit, EditKind, FaceName, ModellerChoices, RangeName};
 pub use report::{
-    Blocker, BlockerKind, FaceRange, ModelFace, ModellerRefusal, ModellerReport, ModellerStep, RangeSide,
+    Blocker, BlockerKind, FaceRange, ModelFace, ModellerRefusal, ModellerReport, ModellerStep, NameFault,
+    RangeSide,
 };
 
 use super::input::Input;

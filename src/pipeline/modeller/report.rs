@@ -141,6 +141,29 @@ pub(super) fn numbers(faces: &[FaceId]) -> Vec<u32> {
     faces.iter().map(|f| f.index() as u32).collect()
 }
 
+/// Why a name names nothing that can be edited.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NameFault {
+    /// There is no face of this number.
+    NoFace(u32),
+    /// The polyhedron has no face.
+    NoFaces,
+    /// A normal is zero.
+    NoNormal,
+    /// A ray has no direction.
+    NoDirection,
+    /// A ray meets no face from outside.
+    RayMisses,
+    /// The two faces have no edge in common.
+    NoEdge([u32; 2]),
+    /// The polyhedron has no vertex.
+    NoVertex,
+    /// One face is named twice.
+    FaceTwice(u32),
+    /// An operator is named that takes back and does nothing by itself.
+    NoOperator,
+}
+
 /// Why the modeller has no result.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ModellerRefusal {
@@ -150,8 +173,8 @@ pub enum ModellerRefusal {
     Name {
         /// Which operator; `None`: one of the ranges.
         operator: Option<usize>,
-        /// What is not there: `face`, `edge` or `vertex`.
-        what: &'static str,
+        /// What is wrong with it.
+        fault: NameFault,
     },
     /// There is no operator left to take back.
     NothingToUndo {

@@ -7,7 +7,7 @@ use super::blocker::{Blocker, MovedFace};
 use super::words::OperatorReason;
 use crate::mesh::polyhedron::FaceId;
 use crate::modeller::{DualRefusal, ExportRefusal, ImportRefusal, OperatorRefusal, Rule};
-use crate::pipeline::ModellerRefusal;
+use crate::pipeline::{ModellerRefusal, NameFault};
 
 /// An operator that was refused.
 #[derive(Debug, Clone, Serialize, ToSchema)]
@@ -53,12 +53,10 @@ pub(in crate::wire) fn sentence(refusal: &ModellerRefusal, millimetres: f64) -> 
         ModellerRefusal::Import(reason) => {
             format!("the mesh cannot be read as a polyhedron: {}", import(reason))
         }
-        ModellerRefusal::Name { operator: Some(k), what } => {
-            format!("operator {k} names a {what} that the polyhedron does not have")
+        ModellerRefusal::Name { operator: Some(k), fault } => {
+            format!("operator {k} names {}", misnamed(*fault))
         }
-        ModellerRefusal::Name { operator: None, what } => {
-            format!("`ranges` names a {what} that the polyhedron does not have")
-        }
+        ModellerRefusal::Name { operator: None, fault } => format!("`ranges` names {}", misnamed(*fault)),
         ModellerRefusal::NothingToUndo { operator } => {
             format!("operator {operator} takes an operator back, and there is none left")
         }
@@ -78,6 +76,31 @@ pub(in crate::wire) fn sentence(refusal: &ModellerRefusal, millimetres: f64) -> 
         ModellerRefusal::Dual(DualRefusal::InteriorLoops { face }) => {
             format!("face {} has interior loops, so the polyhedron has no dual", face.index())
         }
+    }
+}
+
+fn misnamed(fault: NameFault) -> String {
+    match fault {
+        NameFault::NoFace(id) => format!("face {id}, which the polyhedron does not have"),
+        NameFault::NoFaces => "a face that the polyhedron does not have".to_owned(),
+        NameFault::NoNormal => "a face by a normal that is zero and so has no direction".to_owned(),
+        NameFault::NoDirection => "a face by a ray whose direction is zero".to_owned(),
+        NameFault::RayMisses => "a face by a ray that meets no face from outside".to_owned(),
+        NameFault::NoEdge([a, b]) => {
+            format!("an edge between faces {a} and {b}, which have none in common")
+        }
+        NameFault::NoVertex => "a vertex that the polyhedron does not have".to_owned(),
+        NameFault::FaceTwice(id) => format!("face {id} twice: each face once, with the whole distance"),
+        NameFault::NoOperator => "an operator that is none".to_owned(),
+    }
+}
+
+/// How far a face may move: between where it is and a limit that it must not reach.
+fn within(distance: f64) -> String {
+    match distance {
+        d if d < 0.0 => format!("by more than {d} mm and less than 0 mm"),
+        d if d > 0.0 => format!("by more than 0 mm and less than {d} mm"),
+        _ => "not at all in this direction".to_owned(),
     }
 }
 
@@ -141,9 +164,7 @@ fn because(
         OperatorRefusal::Limit { .. } => {
             let limits: Vec<String> = limits
                 .iter()
-                .map(|(f, distance)| {
-                    format!("face {f} by less than {} mm", without_rounding(distance * millimetres))
-                })
+                .map(|(f, distance)| format!("face {f} {}", within(without_rounding(distance * millimetres))))
                 .collect();
             let meeting = blocking.first().map(|b| format!("; there {}", Blocker::from(b).sentence()));
             format!("an event is in the way: move {}{}", limits.join(", "), meeting.unwrap_or_default())
@@ -190,6 +211,27 @@ fn because(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_limit_inward_is_told_as_an_interval_of_numbers() {
+        assert_eq!(within(-30.0), "by more than -30 mm and less than 0 mm");
+        assert_eq!(within(2.5), "by more than 0 mm and less than 2.5 mm");
+        assert_eq!(within(0.0), "not at all in this direction");
+    }
+
+    #[test]
+    fn a_name_that_names_nothing_is_told_with_what_is_wrong() {
+        for (fault, said) in [
+            (NameFault::NoFace(9), "face 9, which the polyhedron does not have"),
+            (NameFault::NoNormal, "a normal that is zero"),
+            (NameFault::RayMisses, "a ray that meets no face"),
+            (NameFault::FaceTwice(3), "face 3 twice"),
+        ] {
+            let refusal = ModellerRefusal::Name { operator: Some(1), fault };
+            let told = sentence(&refusal, 1.0);
+            assert!(told.starts_with("operator 1 names ") && told.contains(said), "{told}");
+        }
+    }
 
     #[test]
     fn lengths_are_told_without_the_last_digits_that_rounding_leaves() {
