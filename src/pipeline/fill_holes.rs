@@ -88,12 +88,13 @@ pub(super) fn fill_holes(input: &Input, options: &Options, budget: &Budget) -> R
         interpolated_area_share: interpolated_share(&draft, budget)?,
     };
     let report = Report { actions, filling: Some(filling), ..report };
+    // Without a patch this is what a conversion gives.
     if !has_patch && input.may_come_back_as(input.output_encoding(options)) {
-        return Ok(unchanged(input, options, report, Outcome::Filled));
+        return Ok(unchanged(input, options, report, Outcome::Partial));
     }
-    let outcome: fn(bool) -> Outcome = match has_patch || !input.examination.certificate.is_printable() {
+    let outcome: fn(bool) -> Outcome = match has_patch {
         true => |_| Outcome::Filled,
-        false => |_| Outcome::Converted,
+        false => |is_printable| if is_printable { Outcome::Converted } else { Outcome::Partial },
     };
     let soup = looks::soup_of(&draft, &input.soup, budget)?;
     let made = OperationMesh { soup, origins: &draft.triangle_origin, outcome };

@@ -168,11 +168,14 @@ fn a_file_without_holes_comes_back_as_it_is_and_one_that_cannot_be_filled_too() 
     // Every patch of a flat sheet would lie on it.
     let sheet = b"OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
     let answer = filled(sheet, FillHolesChoices::default()).unwrap();
-    assert_eq!(answer.report.outcome, Some(Outcome::Filled));
+    assert_eq!(answer.report.outcome, Some(Outcome::Partial), "nothing was filled, and it is no solid");
     let [hole] = holes(&answer) else { panic!("one hole") };
     assert_eq!(hole.fate, HoleFate::Rejected);
     assert!(!hole.rejected.is_empty(), "with its reasons");
     assert_eq!(answer.output.unwrap().bytes, None);
+    let stl = Options { output_format: Some(Format::Stl), ..Options::default() };
+    let answer = run(Operation::FillHoles, sheet, &stl, &Budget::unlimited()).unwrap();
+    assert_eq!(answer.report.outcome, Some(Outcome::Partial));
     for require in [Require::Printable, Require::Faithful] {
         for output_format in [None, Some(Format::Stl)] {
             let strict = Options { require: Some(require), output_format, ..Options::default() };
