@@ -68,38 +68,78 @@ pub(super) struct MadePatch {
 const FAIRINGS: usize = 2;
 /// Tensions of the plate that are tried, the least first.
 const TENSIONS: [f64; 3] = [0.0, 0.1, 10.0];
+/// Tension of a plate that is too large whatever was tried: all but a membrane.
+const TENSION_MAX: f64 = 1000.0;
 /// A plate swings out when an edge of it becomes longer than so many of the lengths wanted at its ends. Edges are divided
 /// from 4/3 on, and a dome as high as it is wide stretches them by half. What is longer before may double.
 const STRETCH_MAX: f64 = 4.0;
 /// Times that vertices which came together are taken out after each.
 const COARSENINGS: usize = 3;
 
-/// The patch of `region`, or why there is none; what was tried before and not taken is put among `rejected`. `division`: how
-/// creases divide it, if they do.
+/// A hole as a patch is made for it.
+pub(super) struct HoleInput<'a> {
+    pub(super) region: &'a Region,
+    /// How creases divide it, if they do.
+    pub(super) division: Option<&'a HoleDivision>,
+    /// Rings of neighbours that a field is fitted to.
+    pub(super) rings: u32,
+    /// No method was asked for, so a patch that swings out is not wanted.
+    pub(super) is_auto: bool,
+    /// The smooth patch that a field was to move, so that it need not be made again.
+    pub(super) faired: &'a mut Option<FairedPatch>,
+}
+
+/// The patch of a hole, or why there is none; what was tried before and not taken is put among `rejected`.
 pub(super) fn make(
-    region: &Region,
-    division: Option<&HoleDivision>,
-    rings: u32,
+    hole: &mut HoleInput<'_>,
     way: Way,
     scene: &PatchInput<'_>,
     rejected: &mut Vec<Rejection>,
     budget: &Budget,
 ) -> Result<Result<MadePatch, Rejection>, Stopped> {
-    let surface = scene.surface;
+    let (region, surface) = (hole.region, scene.surface);
     budget.spend(region.rim().len() as u64)?;
     let made = match way {
         Way::Planar => planar_view(region, surface),
         Way::Minimal => least_bent(region, surface, budget)?,
         Way::Zipped => zipped(region, surface, budget)?,
         Way::Ears => corner_by_corner(region, surface, budget)?,
-        Way::Smooth => return smooth(region, surface, budget),
-        Way::Creased => match division {
-            Some(division) => return creased(region, division, surface, budget),
+        Way::Smooth => return smooth(hole, surface, budget),
+        Way::Creased => match hole.division {
+            Some(division) => return creased(region, division, hole.area_limits(), surface, budget),
             None => Err(Rejection::NoPatch),
         },
-        Way::Rbf => return of_field(region, rings, scene, rejected, budget),
+        Way::Rbf => return of_field(hole, scene, rejected, budget),
     };
     Ok(made.map(|triangles| MadePatch::plain(region, triangles)))
+}
+
+impl HoleInput<'_> {
+    fn area_limits(&self) -> AreaLimits {
+        if self.is_auto { AreaLimits::OF_AUTO } else { AreaLimits::NONE }
+    }
+}
+
+/// How large a patch with new vertices may be, as shares of the area of the triangulation that it is made of. Unlike an edge
+/// that became too long, this tells also at a rim of long edges that a patch swings out.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct AreaLimits {
+    /// Beyond this the plate is put under tension. Plates over half a ball stay below: they are flatter than it.
+    pub(super) plate: f64,
+    /// Beyond this the patch is not taken.
+    patch: f64,
+}
+
+impl AreaLimits {
+    /// Half a ball has twice the area of the disk that closes it, and its rim may be ragged.
+    const OF_AUTO: Self = Self { plate: 1.5, patch: 2.2 };
+    /// Who asks for a method gets its patch however large it is.
+    const NONE: Self = Self { plate: f64::INFINITY, patch: f64::INFINITY };
+
+    /// False for a patch that swings out from a triangulation with this area.
+    pub(super) fn admit(self, mesh: &PatchMesh, base_area: f64) -> bool {
+        mesh.area() <= self.patch * base_area
+    }
 }
 
 impl MadePatch {
@@ -251,20 +291,22 @@ fn base(region: &Region, surface: &FillSurface, budget: &Budget) -> Result<Trian
 }
 
 fn smooth(
-    region: &Region,
+    hole: &mut HoleInput<'_>,
     surface: &FillSurface,
     budget: &Budget,
 ) -> Result<Result<MadePatch, Rejection>, Stopped> {
-    match faired(region, surface, budget)? {
-        Ok(mesh) => MadePatch::refined(region, surface, mesh, budget),
+    match faired(hole, surface, budget)? {
+        Ok(FairedPatch { mesh, base_area }) if hole.area_limits().admit(&mesh, base_area) => {
+            MadePatch::refined(hole.region, surface, mesh, budget)
+        }
+        Ok(_) => Ok(Err(Rejection::NoFit)),
         Err(reason) => Ok(Err(reason)),
     }
 }
 
 /// A patch on the surface of a field.
 fn of_field(
-    region: &Region,
-    rings: u32,
+    hole: &mut HoleInput<'_>,
     scene: &PatchInput<'_>,
     rejected: &mut Vec<Rejection>,
     budget: &Budget,
@@ -272,9 +314,10 @@ fn of_field(
     let PatchInput { surface, mesh: Some(mesh), options } = *scene else {
         return Ok(Err(Rejection::NoPatch));
     };
+    let (region, rings) = (hole.region, hole.rings);
     let mut fit = || rbf::field(region, rings, surface, mesh, options, rejected, budget);
     if options.extract == Extract::Project {
-        return projected(region, fit, surface, budget);
+        return projected(hole, fit, surface, budget);
     }
     let field = match fit()? {
         Ok(field) => field,
@@ -312,21 +355,22 @@ fn edge_length(rims: &[Vec<DVec3>]) -> f64 {
 /// The smooth patch with its vertices moved to the zeros of the field that `fit` gives. A patch without new vertices, as at a
 /// rim of few corners, needs none.
 fn projected(
-    region: &Region,
+    hole: &mut HoleInput<'_>,
     fit: impl FnOnce() -> Result<Result<Field, Rejection>, Stopped>,
     surface: &FillSurface,
     budget: &Budget,
 ) -> Result<Result<MadePatch, Rejection>, Stopped> {
-    let mut patch = match faired(region, surface, budget)? {
+    let FairedPatch { mesh: mut patch, base_area } = match faired(hole, surface, budget)? {
         Ok(patch) => patch,
         Err(reason) => return Ok(Err(reason)),
     };
-    let rim = region.rim();
+    let (region, rim) = (hole.region, hole.region.rim());
     let is_free = |a: u32, b: u32| surface.is_free(rim[a as usize], rim[b as usize]);
     if patch.points.len() == patch.rim {
         turn_edges(&mut patch, &is_free, budget)?;
         return MadePatch::refined(region, surface, patch, budget);
     }
+    *hole.faired = Some(FairedPatch { mesh: patch.clone(), base_area });
     let field = match fit()? {
         Ok(field) => field,
         Err(reason) => return Ok(Err(reason)),
@@ -334,16 +378,31 @@ fn projected(
     if !rbf::project(&mut patch, &field, &is_free, budget)? {
         return Ok(Err(Rejection::NoZero));
     }
+    if !hole.area_limits().admit(&patch, base_area) {
+        return Ok(Err(Rejection::NoFit));
+    }
     let made = MadePatch::refined(region, surface, patch, budget)?;
     Ok(made.map(|made| MadePatch { field: Some(*field.facts()), ..made }))
 }
 
-/// The smooth patch before its vertices are rounded.
+/// A smooth patch before its vertices are rounded.
+pub(super) struct FairedPatch {
+    mesh: PatchMesh,
+    /// Area of the triangulation that it was made of.
+    base_area: f64,
+}
+
+/// The smooth patch, which is that of the last call where the mesh has not got an edge of it since.
 fn faired(
-    region: &Region,
+    hole: &mut HoleInput<'_>,
     surface: &FillSurface,
     budget: &Budget,
-) -> Result<Result<PatchMesh, Rejection>, Stopped> {
+) -> Result<Result<FairedPatch, Rejection>, Stopped> {
+    let (region, rim) = (hole.region, hole.region.rim());
+    let is_free = |a: u32, b: u32| surface.is_free(rim[a as usize], rim[b as usize]);
+    if let Some(patch) = hole.faired.take().filter(|patch| patch.mesh.chords().all(|[a, b]| is_free(a, b))) {
+        return Ok(Ok(patch));
+    }
     let triangles = match base(region, surface, budget)? {
         Ok(triangles) => triangles.into_iter().map(|t| t.map(|i| i as u32)).collect(),
         Err(reason) => return Ok(Err(reason)),
@@ -351,20 +410,22 @@ fn faired(
     let Some(mut mesh) = PatchMesh::new(rim_points(region, surface), triangles) else {
         return Ok(Err(Rejection::Topology));
     };
-    let rim = region.rim();
-    let is_free = |a: u32, b: u32| surface.is_free(rim[a as usize], rim[b as usize]);
+    let base_area = mesh.area();
+    let area_max = hole.area_limits().plate * base_area;
     let half_edges: Vec<Option<u32>> = rim.iter().copied().map(Some).collect();
     let around = surface.around(&half_edges, vec![true; rim.len()], budget)?;
-    let is_fair = refine_and_fair(&mut mesh, &region.next_corners(), &around, &is_free, budget)?;
-    Ok(if is_fair { Ok(mesh) } else { Err(Rejection::NoFit) })
+    let is_fair = refine_and_fair(&mut mesh, &region.next_corners(), &around, area_max, &is_free, budget)?;
+    Ok(if is_fair { Ok(FairedPatch { mesh, base_area }) } else { Err(Rejection::NoFit) })
 }
 
-/// Divides what is longer than the edges of the rim, whose next corners are `next`, and fairs; `false`: the system has no
-/// solution. `is_free(a, b)` says whether there may be an edge between two corners of the rim.
+/// Divides what is longer than the edges of the rim, whose next corners are `next`, and fairs, if possible to an area of at
+/// most `area_max`; `false`: the system has no solution. `is_free(a, b)` says whether there may be an edge between two corners
+/// of the rim.
 pub(super) fn refine_and_fair(
     mesh: &mut PatchMesh,
     next: &[u32],
     around: &PatchSurroundings,
+    area_max: f64,
     is_free: &dyn Fn(u32, u32) -> bool,
     budget: &Budget,
 ) -> Result<bool, Stopped> {
@@ -373,7 +434,7 @@ pub(super) fn refine_and_fair(
         if !refine(mesh, &mut lengths, is_free, budget)? && round > 0 {
             break;
         }
-        if !fair_within_reach(mesh, &lengths, around, budget)? {
+        if !fair_within_reach(mesh, &lengths, around, area_max, budget)? {
             return Ok(false);
         }
         for _ in 0..COARSENINGS {
@@ -381,7 +442,7 @@ pub(super) fn refine_and_fair(
                 break;
             }
             turn_edges(mesh, is_free, budget)?;
-            if !fair_within_reach(mesh, &lengths, around, budget)? {
+            if !fair_within_reach(mesh, &lengths, around, area_max, budget)? {
                 return Ok(false);
             }
         }
@@ -389,11 +450,13 @@ pub(super) fn refine_and_fair(
     Ok(true)
 }
 
-/// Fairs with the least tension with which no edge becomes far too long; with the largest whatever becomes of edges.
+/// Fairs with the least tension with which no edge becomes far too long and the patch not too large; with the largest whatever
+/// becomes of it.
 fn fair_within_reach(
     mesh: &mut PatchMesh,
     lengths: &Lengths,
     around: &PatchSurroundings,
+    area_max: f64,
     budget: &Budget,
 ) -> Result<bool, Stopped> {
     let before = mesh.points.clone();
@@ -402,9 +465,54 @@ fn fair_within_reach(
     for tension in TENSIONS {
         mesh.points.clone_from(&before);
         is_fair = fair(mesh, around, tension, budget)?;
-        if is_fair && lengths.largest_stretch(mesh) <= reach {
-            break;
+        if is_fair && lengths.largest_stretch(mesh) <= reach && mesh.area() <= area_max {
+            return Ok(true);
         }
     }
+    // What is only long in one place is not drawn in any further, as that would bend it at the rim.
+    if is_fair && mesh.area() > area_max {
+        mesh.points.clone_from(&before);
+        is_fair = fair(mesh, around, TENSION_MAX, budget)?;
+    }
     Ok(is_fair)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The area of the faired patch in a round rim, as a share of the disk, where the surface around stands `height` above
+    /// the middles of the rim's edges.
+    fn share(height: f64, limit: f64) -> f64 {
+        let corners = 24u32;
+        let at = |i: f64, radius: f64, z: f64| {
+            let turn = i * std::f64::consts::TAU / f64::from(corners);
+            DVec3::new(radius * turn.cos(), radius * turn.sin(), z)
+        };
+        let rim = (0..corners).map(|i| at(f64::from(i), 1.0, 0.0)).collect();
+        let mut mesh = PatchMesh::new(rim, (1..corners - 1).map(|i| [0, i, i + 1]).collect()).unwrap();
+        let disk = mesh.area();
+        let next: Vec<u32> = (0..corners).map(|i| (i + 1) % corners).collect();
+        let around = PatchSurroundings {
+            points: (0..corners).map(|i| at(f64::from(i) + 0.5, 1.02, height)).collect(),
+            triangles: (0..corners).map(|i| [(i + 1) % corners, i, corners + i]).collect(),
+            is_clamped: vec![true; corners as usize],
+        };
+        let unlimited = Budget::unlimited();
+        assert!(refine_and_fair(&mut mesh, &next, &around, limit * disk, &|_, _| true, &unlimited).unwrap());
+        mesh.area() / disk
+    }
+
+    #[test]
+    fn a_plate_that_swings_out_without_long_edges_is_drawn_in_where_its_area_tells() {
+        let [free, drawn] = [f64::INFINITY, 1.02].map(|limit| share(1.0, limit));
+        assert!(free > 1.04, "{free}");
+        assert!(drawn < 0.99 * free, "{drawn}");
+    }
+
+    #[test]
+    fn a_plate_that_stays_small_is_the_same_with_and_without_a_limit() {
+        let [free, drawn] = [f64::INFINITY, AreaLimits::OF_AUTO.plate].map(|limit| share(0.2, limit));
+        assert_eq!(free, drawn);
+    }
 }

@@ -38,7 +38,7 @@ mod turn;
 
 use self::accept::PatchProposal;
 use self::creased::HoleDivision;
-use self::make::{MadePatch, PatchInput, Way, make};
+use self::make::{FairedPatch, HoleInput, MadePatch, PatchInput, Way, make};
 pub use self::options::{Extract, FillOptions, HoleChoice, Method};
 use self::pinched::Walk;
 use self::regions::{Region, regions};
@@ -97,6 +97,8 @@ struct PendingHole {
     band_rings: u32,
     /// In the reverse of their order.
     ways: Vec<Way>,
+    /// The smooth patch that a field was to move.
+    faired: Option<FairedPatch>,
     report: HoleReport,
 }
 
@@ -214,7 +216,7 @@ impl Ladder<'_> {
             rejected,
             ..HoleReport::default()
         };
-        Ok(PendingHole { region, division, band_rings, ways, report })
+        Ok(PendingHole { region, division, band_rings, ways, faired: None, report })
     }
 
     /// A hole that ran out of ways stays open. If it has several loops, or one that joins several, they are tried alone.
@@ -269,8 +271,15 @@ fn offer(
 impl PendingHole {
     fn next(&mut self, scene: &PatchInput<'_>, budget: &Budget) -> Result<Option<(Way, MadePatch)>, Stopped> {
         while let Some(way) = self.ways.pop() {
-            let (division, mut rejected) = (self.division.as_ref(), Vec::new());
-            let made = make(&self.region, division, self.band_rings, way, scene, &mut rejected, budget)?;
+            let mut hole = HoleInput {
+                region: &self.region,
+                division: self.division.as_ref(),
+                rings: self.band_rings,
+                is_auto: self.report.asked == Method::Auto,
+                faired: &mut self.faired,
+            };
+            let mut rejected = Vec::new();
+            let made = make(&mut hole, way, scene, &mut rejected, budget)?;
             rejected.extend(made.as_ref().err());
             let alone = |reason| Rejected::alone(way.method(), reason);
             self.report.rejected.extend(rejected.into_iter().map(alone));

@@ -3,7 +3,7 @@
 //! A corner of the rim is a step of a loop, so that a place that loops pass twice is two corners here, and every edge has
 //! two triangles or is in the rim.
 
-use crate::geom::DVec3;
+use crate::geom::{DVec3, triangle_area};
 use crate::mesh::{edge_of, next_corner, prev_corner, triangle_of};
 use rustc_hash::FxHashSet;
 
@@ -94,6 +94,18 @@ impl PatchMesh {
 
     pub(super) fn point(&self, v: u32) -> DVec3 {
         self.points[v as usize]
+    }
+
+    /// Area of all triangles, in square units of the file.
+    pub(super) fn area(&self) -> f64 {
+        self.triangles.iter().map(|t| triangle_area(t.map(|v| self.point(v)))).sum()
+    }
+
+    /// The edges inside that have both ends in the rim.
+    pub(super) fn chords(&self) -> impl Iterator<Item = [u32; 2]> {
+        let half_edges = 0..self.twin.len() as u32;
+        let inside = half_edges.filter(|&h| self.twin(h).is_some_and(|twin| h < twin));
+        inside.map(|h| self.ends(h)).filter(|ends| ends.iter().all(|&v| (v as usize) < self.rim))
     }
 
     pub(super) fn has_edge(&self, a: u32, b: u32) -> bool {

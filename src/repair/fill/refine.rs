@@ -6,7 +6,7 @@
 
 use super::patch::PatchMesh;
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
-use crate::geom::{DVec3, triangle_area};
+use crate::geom::DVec3;
 use crate::mesh::triangle_of;
 use std::f64::consts::PI;
 
@@ -23,6 +23,12 @@ const GROWTHS: [f64; 7] = [0.0, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6];
 /// thousand vertices already bend as smoothly as their rim.
 const VERTICES_PER_CORNER: f64 = 32.0;
 const VERTICES_EXPECTED_MAX: f64 = 6_000.0;
+/// New vertices that a patch may have at most, for each that it would have if all edges of its rim were equally long: the
+/// patch may become a dome, and its triangles are not all alike.
+const VERTICES_PER_EXPECTED: f64 = 4.0;
+/// As above for each corner of the rim, where that is more: between edges of very different lengths triangles have to
+/// grow from the shortest on.
+const VERTICES_PER_UNEVEN_CORNER: f64 = 8.0;
 /// Beyond this nothing is divided, whatever was expected.
 pub(super) const VERTICES_MAX: usize = 16_384;
 /// Neighbouring triangles that bend more than they do (or 60 degrees) are not made by turning an edge.
@@ -32,30 +38,70 @@ const SURE_SINE: f64 = 1e-6;
 /// Turns for each edge, at most. Delaunay turns of a flat patch end by themselves.
 const TURNS_PER_EDGE: usize = 8;
 
-/// Divides what is too long; `false` when nothing had to be. `is_free(a, b)` says whether there may be an edge between
-/// two corners of the rim.
+/// Divides what is too long; `false` when nothing had to be, or what is divided already would become too many vertices.
+/// `is_free(a, b)` says whether there may be an edge between two corners of the rim.
 pub(super) fn refine(
     mesh: &mut PatchMesh,
     lengths: &mut Lengths,
     is_free: &dyn Fn(u32, u32) -> bool,
     budget: &Budget,
 ) -> Result<bool, Stopped> {
+    loop {
+        let (before, known) = (mesh.clone(), lengths.at.len());
+        if let Some(has_divided) = divide_all(mesh, lengths, is_free, budget)? {
+            return Ok(has_divided);
+        }
+        let is_divided = before.points.len() > before.rim;
+        let growth = GROWTHS.into_iter().find(|&growth| growth > lengths.growth);
+        if growth.is_none() && !is_divided {
+            // As many as there may be.
+            spread_and_turn(mesh, is_free, budget)?;
+            return Ok(true);
+        }
+        *mesh = before;
+        lengths.at.truncate(known);
+        match growth {
+            Some(growth) if !is_divided => lengths.growth = growth,
+            _ => return Ok(false),
+        }
+    }
+}
+
+/// Whether something was divided; `None`: there would be too many vertices, and as many as there may be are there.
+fn divide_all(
+    mesh: &mut PatchMesh,
+    lengths: &mut Lengths,
+    is_free: &dyn Fn(u32, u32) -> bool,
+    budget: &Budget,
+) -> Result<Option<bool>, Stopped> {
     turn_edges(mesh, is_free, budget)?;
     for round in 0..ROUNDS_MAX {
-        if divide(mesh, lengths, budget)? == 0 {
-            return Ok(round > 0);
+        match divide(mesh, lengths, budget)? {
+            Some(0) => return Ok(Some(round > 0)),
+            Some(_) => spread_and_turn(mesh, is_free, budget)?,
+            None => return Ok(None),
         }
-        turn_edges(mesh, is_free, budget)?;
-        spread(mesh, SPREADINGS, budget)?;
-        turn_edges(mesh, is_free, budget)?;
     }
-    Ok(true)
+    Ok(Some(true))
+}
+
+fn spread_and_turn(
+    mesh: &mut PatchMesh,
+    is_free: &dyn Fn(u32, u32) -> bool,
+    budget: &Budget,
+) -> Result<(), Stopped> {
+    turn_edges(mesh, is_free, budget)?;
+    spread(mesh, SPREADINGS, budget)?;
+    turn_edges(mesh, is_free, budget)
 }
 
 /// The edge length wanted at each vertex.
 pub(super) struct Lengths {
     at: Vec<f64>,
+    /// How much longer an edge may be for each unit of distance from the rim.
     growth: f64,
+    /// New vertices that there may be.
+    vertices_max: usize,
 }
 
 impl Lengths {
@@ -69,9 +115,11 @@ impl Lengths {
             at[i] += length / 2.0;
             at[j as usize] += length / 2.0;
         }
-        let area: f64 = mesh.triangles.iter().map(|t| triangle_area(t.map(|v| mesh.point(v)))).sum();
-        let growth = growth(area, perimeter, perimeter / mesh.rim as f64, mesh.rim);
-        Self { at, growth }
+        let (growth, expected) = growth(mesh.area(), perimeter, mesh.rim);
+        let corners = mesh.rim as f64;
+        let most = (VERTICES_PER_EXPECTED * expected).max(VERTICES_PER_UNEVEN_CORNER * corners);
+        let vertices_max = (most.min(VERTICES_PER_CORNER * corners) as usize).min(VERTICES_MAX);
+        Self { at, growth, vertices_max }
     }
 
     /// True for an edge that is to be divided.
@@ -112,9 +160,10 @@ impl Lengths {
     }
 }
 
-/// The least growth with which a patch of this area gets a fair number of vertices. Seen as a disk with the same ratio
-/// of area to perimeter, unrolled along its rim.
-fn growth(area: f64, perimeter: f64, length: f64, corners: usize) -> f64 {
+/// The least growth with which a patch of this area gets a fair number of vertices, and that number. Seen as a disk with the
+/// same ratio of area to perimeter, unrolled along its rim, whose edges are equally long.
+fn growth(area: f64, perimeter: f64, corners: usize) -> (f64, f64) {
+    let length = perimeter / corners as f64;
     let most = (VERTICES_PER_CORNER * corners as f64).min(VERTICES_EXPECTED_MAX);
     let radius = 2.0 * area / perimeter;
     let expected = |growth: f64| {
@@ -127,11 +176,13 @@ fn growth(area: f64, perimeter: f64, length: f64, corners: usize) -> f64 {
         };
         (0..STEPS).map(ring).sum::<f64>()
     };
-    GROWTHS.into_iter().find(|&growth| expected(growth) <= most).unwrap_or(GROWTHS[GROWTHS.len() - 1])
+    let mut all = GROWTHS.into_iter().map(|growth| (growth, expected(growth)));
+    let last = GROWTHS[GROWTHS.len() - 1];
+    all.find(|&(_, expected)| expected <= most).unwrap_or((last, most))
 }
 
-/// Divides every long edge once; gives how many.
-fn divide(mesh: &mut PatchMesh, lengths: &mut Lengths, budget: &Budget) -> Result<usize, Stopped> {
+/// Divides every long edge once; gives how many. `None`: there are as many vertices as there may be, and more is long.
+fn divide(mesh: &mut PatchMesh, lengths: &mut Lengths, budget: &Budget) -> Result<Option<usize>, Stopped> {
     let mut divided = 0;
     for h in 0..3 * mesh.triangles.len() as u32 {
         if h.is_multiple_of(CHECK_EVERY as u32) {
@@ -139,8 +190,11 @@ fn divide(mesh: &mut PatchMesh, lengths: &mut Lengths, budget: &Budget) -> Resul
         }
         let ends = mesh.ends(h);
         let is_first = mesh.twin(h).is_some_and(|twin| h < twin);
-        if !is_first || !lengths.is_long(mesh, ends) || mesh.points.len() - mesh.rim >= VERTICES_MAX {
+        if !is_first || !lengths.is_long(mesh, ends) {
             continue;
+        }
+        if mesh.points.len() - mesh.rim >= lengths.vertices_max {
+            return Ok(None);
         }
         let length = lengths.between(mesh, ends);
         let [a, b] = ends.map(|v| mesh.point(v));
@@ -149,7 +203,7 @@ fn divide(mesh: &mut PatchMesh, lengths: &mut Lengths, budget: &Budget) -> Resul
             divided += 1;
         }
     }
-    Ok(divided)
+    Ok(Some(divided))
 }
 
 /// Turns edges until each triangle's circle is empty of the neighbour's corner, as far as that bends nothing.
@@ -290,5 +344,46 @@ mod tests {
         refine(&mut mesh, &mut lengths, &|_, _| true, &Budget::unlimited()).unwrap();
         let inner = mesh.points.len() - mesh.rim;
         assert!((2_000..VERTICES_MAX).contains(&inner), "{inner} new vertices");
+    }
+
+    /// A round rim of which each third corner is next to no way from the two beside it.
+    fn crowded(groups: u32) -> (PatchMesh, Vec<u32>) {
+        let corner = |i: u32| {
+            let turn = f64::from(i / 3) + 0.01 * f64::from(i % 3);
+            let turn = turn * std::f64::consts::TAU / f64::from(groups);
+            DVec3::new(turn.cos(), turn.sin(), 0.0)
+        };
+        let n = 3 * groups;
+        let triangles = (1..n - 1).map(|i| [0, i, i + 1]).collect();
+        let mesh = PatchMesh::new((0..n).map(corner).collect(), triangles).unwrap();
+        (mesh, (0..n).map(|i| (i + 1) % n).collect())
+    }
+
+    #[test]
+    fn a_rim_of_uneven_edges_gets_no_more_vertices_than_its_corners_allow() {
+        let inner = |vertices_max: Option<usize>| {
+            let (mut mesh, next) = crowded(25);
+            let mut lengths = Lengths::of_rim(&mesh, &next);
+            lengths.vertices_max = vertices_max.unwrap_or(lengths.vertices_max);
+            assert!(refine(&mut mesh, &mut lengths, &|_, _| true, &Budget::unlimited()).unwrap());
+            assert_eq!(mesh.check(), Vec::<String>::new());
+            mesh.points.len() - mesh.rim
+        };
+        let (free, bounded) = (inner(Some(VERTICES_MAX)), inner(None));
+        assert!(free > 32 * 75, "{free} new vertices");
+        assert!((50..=32 * 75).contains(&bounded), "{bounded} new vertices");
+    }
+
+    #[test]
+    fn a_patch_that_would_get_too_many_vertices_when_it_is_divided_again_stays_as_it_is() {
+        let (mut mesh, next) = fan(48);
+        let mut lengths = Lengths::of_rim(&mesh, &next);
+        refine(&mut mesh, &mut lengths, &|_, _| true, &Budget::unlimited()).unwrap();
+        let before = mesh.triangles.clone();
+        for v in mesh.rim..mesh.points.len() {
+            mesh.points[v].z = 100.0 * f64::from(v as u32 % 2);
+        }
+        assert!(!refine(&mut mesh, &mut lengths, &|_, _| true, &Budget::unlimited()).unwrap());
+        assert_eq!((&mesh.triangles, lengths.at.len()), (&before, mesh.points.len()));
     }
 }

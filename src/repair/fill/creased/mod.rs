@@ -10,7 +10,7 @@ mod ends;
 
 pub(in crate::repair::fill) use self::division::HoleDivision;
 use self::division::normal_beyond;
-use super::make::{MadePatch, refine_and_fair};
+use super::make::{AreaLimits, MadePatch, refine_and_fair};
 use super::minimal::{self, CORNERS_MAX};
 use super::patch::PatchMesh;
 use super::regions::Region;
@@ -20,17 +20,19 @@ use super::{large, planar};
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 
-/// The patch of a region that creases divide, or why there is none.
+/// The patch of a region that creases divide, or why there is none. No side is larger than `limits` say.
 pub(super) fn creased(
     region: &Region,
     division: &HoleDivision,
+    limits: AreaLimits,
     surface: &FillSurface,
     budget: &Budget,
 ) -> Result<Result<MadePatch, Rejection>, Stopped> {
     let HoleDivision { points, parents, .. } = division;
     let mut patch = PartialPatch { points: points.clone(), parents: parents.clone(), triangles: Vec::new() };
     for corners in &division.sides {
-        match (CreaseSide { corners, division, region, surface }).close(budget)? {
+        let side = CreaseSide { corners, division, region, limits, surface };
+        match side.close(budget)? {
             Ok(mesh) => patch.sew(corners, &mesh),
             Err(reason) => return Ok(Err(reason)),
         }
@@ -69,6 +71,7 @@ struct CreaseSide<'a> {
     corners: &'a [u32],
     division: &'a HoleDivision,
     region: &'a Region,
+    limits: AreaLimits,
     surface: &'a FillSurface,
 }
 
@@ -89,10 +92,13 @@ impl CreaseSide<'_> {
         if is_flat {
             return Ok(Ok(mesh));
         }
+        let base_area = mesh.area();
+        let area_max = self.limits.plate * base_area;
         let around = self.surface.around(&self.half_edges(), self.is_clamped(), budget)?;
         let is_free = |a: u32, b: u32| self.is_free(a as usize, b as usize);
-        let is_fair = refine_and_fair(&mut mesh, &next, &around, &is_free, budget)?;
-        Ok(if is_fair { Ok(mesh) } else { Err(Rejection::NoFit) })
+        let is_fair = refine_and_fair(&mut mesh, &next, &around, area_max, &is_free, budget)?;
+        let is_fit = is_fair && self.limits.admit(&mesh, base_area);
+        Ok(if is_fit { Ok(mesh) } else { Err(Rejection::NoFit) })
     }
 
     fn least_bent(&self, points: &[DVec3], budget: &Budget) -> Result<Option<Vec<[usize; 3]>>, Stopped> {
