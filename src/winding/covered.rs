@@ -1,7 +1,7 @@
 //! Openings that closed bodies cover: a boss without a bottom that stands on a plate is no sheet.
 
 use super::WindingTree;
-use super::shells::UnbalancedEdge;
+use super::rims::UnbalancedEdge;
 use crate::budget::{Budget, Stopped};
 use crate::geom::DVec3;
 use crate::mesh::UnionFind;

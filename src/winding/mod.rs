@@ -7,6 +7,7 @@
 mod angles;
 mod covered;
 mod outlook;
+mod rims;
 mod shells;
 mod solid;
 mod tree;
