@@ -13,7 +13,7 @@ pub enum Rejection {
     NoPatch,
     /// The rim has more corners, or the patch more vertices, than the method takes.
     TooLarge,
-    /// The equations of a smooth patch have no solution.
+    /// The equations of a smooth patch have no solution, or it swings out far beyond the hole.
     NoFit,
     /// The rim and the rings around it have too few points for a field, or all its centres lie in one plane.
     TooFewPoints,

@@ -71,7 +71,7 @@ mirror! { repair::fill::Rejection =>
         NoPatch = "no-patch",
         /// The rim has more corners, or the patch more vertices, than the method takes.
         TooLarge = "too-large",
-        /// The equations of a smooth patch have no solution.
+        /// The equations of a smooth patch have no solution, or it swings out far beyond the hole.
         NoFit = "no-fit",
         /// The rim and the rings around it have too few points for a field, or all its centres lie in one plane.
         TooFewPoints = "too-few-points",

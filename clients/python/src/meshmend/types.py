@@ -2214,7 +2214,7 @@ Rejection: TypeAlias = Literal[
 Why a patch was not taken.
 - `no-patch`: The method makes no patch for such a hole.
 - `too-large`: The rim has more corners, or the patch more vertices, than the method takes.
-- `no-fit`: The equations of a smooth patch have no solution.
+- `no-fit`: The equations of a smooth patch have no solution, or it swings out far beyond the hole.
 - `too-few-points`: The rim and the rings around it have too few points for a field, or all its centres lie in one plane.
 - `no-room`: Other parts of the surface are at the rim everywhere, so that no side of it can be told from the other.
 - `singular`: The equations of the field are singular to working precision.
