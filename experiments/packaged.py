@@ -69,7 +69,10 @@ def look(path, judge):
     try:
         report = json.loads(ended.stdout)
     except ValueError:
-        return {"path": path, "outcome": "unreadable" if ended.returncode == 2 else "none"}
+        report = {}
+    # A file that cannot be read has an error in place of a report.
+    if "verdict" not in report:
+        return {"path": path, "outcome": "unreadable" if 0 < ended.returncode < 128 and ended.stderr + ended.stdout else "none"}
     verdict, deviation = report["verdict"], report["deviation"] or {}
     found = {"path": path, "outcome": verdict["outcome"], "fidelity": verdict["fidelity"], "seconds": seconds}
     if verdict["outcome"] == "refused":
