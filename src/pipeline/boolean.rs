@@ -200,10 +200,10 @@ fn share_of_new(draft: &Draft) -> f64 {
     let areas = draft.areas();
     let new = areas.iter().zip(&draft.triangle_origin).filter(|&(_, &origin)| origin == NEW);
     let all: f64 = areas.iter().sum();
-    if all > 0.0 { new.map(|(area, _)| area).sum::<f64>().max(0.0) / all } else { 0.0 }
+    if all > 0.0 { new.map(|(area, _)| area).sum::<f64>() / all } else { 0.0 }
 }
 
-/// The share by which the volume is not the `exact` one, where that is more than rounding of it.
+/// The share by which the volume is not the `exact` one; `None` where one of them has no number that can be compared.
 fn change_of_volume(draft: &Draft, exact: f64) -> Option<f64> {
     let volume = signed_volume((0..draft.triangles.len()).map(|t| draft.corners(t)));
     (exact.is_normal() && volume.is_finite()).then(|| (volume - exact) / exact.abs())

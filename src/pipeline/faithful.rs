@@ -74,10 +74,10 @@ pub struct FidelityVerdict {
 }
 
 impl super::fidelity::FidelityMeasurement {
-    /// How true a result is to `input` that was measured so.
-    pub(super) fn verdict(&self, input: &Soup) -> FidelityVerdict {
+    /// How true a `result` is to `input` that was measured so.
+    pub(super) fn verdict(&self, input: &Soup, result: &Soup) -> FidelityVerdict {
         let moved = self.distance.map_or(0.0, |distance| distance.upper());
-        FidelityVerdict::of(&self.losses, moved, diagonal(input))
+        FidelityVerdict::of(&self.losses, moved, size_of_both(diagonal(input), result))
     }
 
     /// True when a place of `input` is farther from the result than those of a faithful one may be that can be seen.
@@ -104,8 +104,8 @@ impl FidelityVerdict {
             .filter(|&(_, measured, limit)| measured > limit)
             .map(|(kind, measured, limit)| FidelityChange { kind, measured, limit })
             .collect();
-        let nothing_else = [losses.visible_loss, losses.hidden_area, losses.invented] == [0.0; 3];
-        let is_same = moved <= ROUNDING * diagonal && nothing_else;
+        let has_losses = [losses.visible_loss, losses.hidden_area, losses.invented] != [0.0; 3];
+        let is_same = moved <= ROUNDING * diagonal && !has_losses;
         let word = match (changes.is_empty(), is_same) {
             (true, true) => Fidelity::Exact,
             (true, false) => Fidelity::Faithful,
@@ -134,7 +134,8 @@ pub(super) fn judge(
     budget: &Budget,
 ) -> Result<FidelityVerdict, Stopped> {
     if let (Some(distance), Some(losses)) = (&report.distance, &report.losses) {
-        return Ok(FidelityVerdict::of(losses, distance.upper(), size_of_both(input, result)));
+        let size = size_of_both(diagonal(input), result);
+        return Ok(FidelityVerdict::of(losses, distance.upper(), size));
     }
     let volume = defined_volume(report.before.as_ref());
     let (verdict, measured) = judge_alone(input, result, origins, report.distance.as_ref(), volume, budget)?;
@@ -145,11 +146,11 @@ pub(super) fn judge(
     Ok(verdict)
 }
 
-/// The size of which moves are shares: that of the input, or of a result that is less than half as large. A corner that lies far away
-/// makes a file so large that moves as large as the rest would not count.
-fn size_of_both(input: &Soup, result: &Soup) -> f64 {
-    let (before, after) = (diagonal(input), Aabb::of(result.positions.iter().copied()).diagonal());
-    if after < before / 2.0 { after } else { before }
+/// The size of which moves are shares: the `diagonal` of the input, or that of a result which is less than half as large. A corner that
+/// lies far away makes a file so large that moves as large as the rest would not count.
+fn size_of_both(diagonal: f64, result: &Soup) -> f64 {
+    let after = Aabb::of(result.positions.iter().copied()).diagonal();
+    if after < diagonal / 2.0 { after } else { diagonal }
 }
 
 /// What was measured for a verdict.
@@ -165,17 +166,18 @@ pub(super) fn judge_alone(
     budget: &Budget,
 ) -> Result<(FidelityVerdict, Option<Measured>), Stopped> {
     let diagonal = diagonal(input);
+    let size = size_of_both(diagonal, result);
     let moved = match distance {
         Some(distance) => Some(distance.upper()).filter(|&upper| upper <= LOST_BEYOND * diagonal),
         None => largest_move(input, result, origins, budget)?,
     };
     if let Some(moved) = moved {
-        return Ok((FidelityVerdict::of(&NO_LOSSES, moved, size_of_both(input, result)), None));
+        return Ok((FidelityVerdict::of(&NO_LOSSES, moved, size), None));
     }
     let original = Original::with_diagonal(input, volume, None, diagonal);
     let fidelity = original.measure(result, origins, budget)?;
     let moved = fidelity.distance.map_or(0.0, |distance| distance.upper());
-    let verdict = FidelityVerdict::of(&fidelity.losses, moved, size_of_both(input, result));
+    let verdict = FidelityVerdict::of(&fidelity.losses, moved, size);
     Ok((verdict, Some((fidelity.distance, fidelity.losses))))
 }
 
@@ -321,8 +323,8 @@ mod tests {
         };
         let size = |soup: &Soup| Aabb::of(soup.positions.iter().copied()).diagonal();
         let (file, most, rest) = (of(1e12), of(0.6e12), of(1.0));
-        assert_eq!(size_of_both(&file, &most), size(&file));
-        assert_eq!(size_of_both(&file, &rest), size(&rest));
-        assert_eq!(size_of_both(&rest, &file), size(&rest));
+        assert_eq!(size_of_both(size(&file), &most), size(&file));
+        assert_eq!(size_of_both(size(&file), &rest), size(&rest));
+        assert_eq!(size_of_both(size(&rest), &file), size(&rest));
     }
 }

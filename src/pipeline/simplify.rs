@@ -179,7 +179,7 @@ impl ReducedMesh {
         for (level, (candidate, origins)) in levels.iter_mut().skip(1).zip(&others) {
             let of_level =
                 original.measure(candidate.soup(), &candidate.origins(&of_input(origins)), budget)?;
-            level.fidelity = Some(of_level.verdict(&input.soup));
+            level.fidelity = Some(of_level.verdict(&input.soup, candidate.soup()));
         }
         let of_draft = report.distance.map_or(0.0, |distance| distance.upper());
         let actions = [report.actions, vec![action]].concat();

@@ -85,23 +85,32 @@ pub fn sort(
     let reading = (open_shells, beside);
     let readings = read_open(open, &open_part, parts.count as usize, reading, covered, &mut shells, budget)?;
     for (part, cone) in cones(positions, &rims, &readings, beside) {
-        if readings[part as usize].is_covered {
-            shells.closed.push(cone);
-            shells.closed_part.push(part);
-        } else {
-            shells.cones.push(cone);
+        match readings.of_part[part as usize] {
+            PartReading::Covered => {
+                shells.closed.push(cone);
+                shells.closed_part.push(part);
+            }
+            PartReading::Volume | PartReading::Sheet => shells.cones.push(cone),
         }
     }
     Ok(shells)
 }
 
-/// How an open part is read; as a sheet at first.
-#[derive(Debug, Clone, Copy, Default)]
-struct PartReading {
-    bounds_a_volume: bool,
-    is_turned: bool,
-    /// Closed bodies cover all of its openings.
-    is_covered: bool,
+/// How an open part is read, in the order of the lists of [`Shells::parts`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum PartReading {
+    /// As the boundary of a volume, with the closed bodies that cover all of its openings.
+    Covered,
+    /// As the boundary of a volume by itself.
+    Volume,
+    Sheet,
+}
+
+/// How the open parts are read.
+struct OpenReadings {
+    of_part: Vec<PartReading>,
+    /// Together they are inside out.
+    are_turned: bool,
 }
 
 /// Triangles that close the parts that bound a volume, with the part of each: from each rim edge to a place in the middle of the rim
@@ -109,12 +118,12 @@ struct PartReading {
 fn cones(
     positions: &[DVec3],
     rims: &[UnbalancedEdge],
-    readings: &[PartReading],
+    readings: &OpenReadings,
     beside: f64,
 ) -> Vec<(u32, [DVec3; 3])> {
     let mut sets = UnionFind::new(positions.len());
-    let rims: Vec<&UnbalancedEdge> =
-        rims.iter().filter(|rim| readings[rim.part as usize].bounds_a_volume).collect();
+    let is_sheet = |part: u32| readings.of_part[part as usize] == PartReading::Sheet;
+    let rims: Vec<&UnbalancedEdge> = rims.iter().filter(|rim| !is_sheet(rim.part)).collect();
     for rim in &rims {
         sets.unite(rim.from, rim.to);
     }
@@ -131,7 +140,7 @@ fn cones(
         // Off every plane that others are likely to lie in.
         let apex = sum / weight + DVec3::new(0.37, 0.61, 0.47) * beside;
         let [a, b] = [rim.from, rim.to].map(|v| positions[v as usize]);
-        let cone = if readings[rim.part as usize].is_turned { [a, b, apex] } else { [b, a, apex] };
+        let cone = if readings.are_turned { [a, b, apex] } else { [b, a, apex] };
         cones.extend(std::iter::repeat_n((rim.part, cone), rim.times as usize));
     }
     cones
@@ -198,18 +207,18 @@ fn read_open(
     covered: impl FnOnce(&[bool], &[[DVec3; 3]]) -> Result<Vec<bool>, Stopped>,
     shells: &mut Shells,
     budget: &Budget,
-) -> Result<Vec<PartReading>, Stopped> {
+) -> Result<OpenReadings, Stopped> {
     if open.is_empty() {
-        return Ok(vec![PartReading::default(); part_count]);
+        return Ok(OpenReadings { of_part: vec![PartReading::Sheet; part_count], are_turned: false });
     }
     let tree = WindingTree::build(open.clone(), budget)?;
     let mut taken = vec![0usize; part_count];
-    let mut of_part = vec![0usize; part_count];
-    part.iter().for_each(|&p| of_part[p as usize] += 1);
+    let mut of_open = vec![0usize; part_count];
+    part.iter().for_each(|&p| of_open[p as usize] += 1);
     // Every n-th triangle of a part.
     let mut samples = Vec::new();
     for (t, &p) in part.iter().enumerate() {
-        let step = of_part[p as usize].div_ceil(SAMPLES_OF_PART);
+        let step = of_open[p as usize].div_ceil(SAMPLES_OF_PART);
         if taken[p as usize].is_multiple_of(step) {
             samples.push(t);
         }
@@ -229,51 +238,38 @@ fn read_open(
     }
     let overall = sum.iter().sum::<f64>() / area.iter().sum::<f64>().max(f64::MIN_POSITIVE);
     // As a whole inside out.
-    let is_turned = overall < -BOUNDS_A_VOLUME;
-    let sign = if is_turned { -1.0 } else { 1.0 };
+    let are_turned = overall < -BOUNDS_A_VOLUME;
+    let sign = if are_turned { -1.0 } else { 1.0 };
     let is_from = |p: usize, mean: f64| sign * sum[p] / area[p].max(f64::MIN_POSITIVE) >= mean;
-    let of_volume = |p: usize| match open_shells {
-        OpenShells::Close => true,
-        OpenShells::Thicken => false,
-        OpenShells::Auto => is_from(p, BOUNDS_A_VOLUME),
+    let by_itself = |p: usize| match open_shells {
+        OpenShells::Close => PartReading::Volume,
+        OpenShells::Auto if is_from(p, BOUNDS_A_VOLUME) => PartReading::Volume,
+        OpenShells::Auto | OpenShells::Thicken => PartReading::Sheet,
     };
-    let mut readings: Vec<PartReading> = (0..part_count)
-        .map(|p| PartReading { bounds_a_volume: of_volume(p), is_turned, is_covered: false })
-        .collect();
-    let may_stand = |p: usize| {
-        let is_asked = open_shells == OpenShells::Auto && of_part[p] > 0;
-        is_asked && !readings[p].bounds_a_volume && is_from(p, BULGES)
-    };
-    let may_stand: Vec<bool> = (0..part_count).map(may_stand).collect();
-    if may_stand.contains(&true) {
-        for (reading, is_covered) in readings.iter_mut().zip(covered(&may_stand, &shells.closed)?) {
-            reading.is_covered = is_covered;
-            reading.bounds_a_volume |= is_covered;
+    let mut of_part: Vec<PartReading> = (0..part_count).map(by_itself).collect();
+    if open_shells == OpenShells::Auto {
+        let may_stand = |p: usize| of_part[p] == PartReading::Sheet && of_open[p] > 0 && is_from(p, BULGES);
+        let may_stand: Vec<bool> = (0..part_count).map(may_stand).collect();
+        let is_covered =
+            if may_stand.contains(&true) { covered(&may_stand, &shells.closed)? } else { may_stand };
+        for (reading, _) in of_part.iter_mut().zip(is_covered).filter(|&(_, is_covered)| is_covered) {
+            *reading = PartReading::Covered;
         }
     }
-    for p in (0..part_count).filter(|&p| of_part[p] > 0) {
-        let PartReading { bounds_a_volume, is_covered, .. } = readings[p];
-        shells.parts[if is_covered {
-            0
-        } else if bounds_a_volume {
-            1
-        } else {
-            2
-        }] += 1;
+    for p in (0..part_count).filter(|&p| of_open[p] > 0) {
+        shells.parts[of_part[p] as usize] += 1;
     }
     for ([a, b, c], &p) in open.into_iter().zip(part) {
-        let PartReading { bounds_a_volume, is_covered, .. } = readings[p as usize];
-        let turned = if is_turned { [a, c, b] } else { [a, b, c] };
-        let (list, part, corners) = match (is_covered, bounds_a_volume) {
-            (true, _) => (&mut shells.closed, &mut shells.closed_part, turned),
-            (_, true) => (&mut shells.open, &mut shells.open_part, turned),
-            _ => (&mut shells.sheets, &mut shells.sheet_part, [a, b, c]),
+        let (list, part, is_turned) = match of_part[p as usize] {
+            PartReading::Covered => (&mut shells.closed, &mut shells.closed_part, are_turned),
+            PartReading::Volume => (&mut shells.open, &mut shells.open_part, are_turned),
+            PartReading::Sheet => (&mut shells.sheets, &mut shells.sheet_part, false),
         };
-        list.push(corners);
+        list.push(if is_turned { [a, c, b] } else { [a, b, c] });
         part.push(p);
     }
     shells.closedness = Some((2.0 * overall.abs()).clamp(0.0, 1.0));
-    Ok(readings)
+    Ok(OpenReadings { of_part, are_turned })
 }
 
 /// Which parts of an open surface are sheets rather than boundaries of a volume by themselves, by the rule of
@@ -292,7 +288,7 @@ pub fn are_sheets(
     let reading = (OpenShells::Auto, beside);
     let nothing = |_: &[bool], _: &[[DVec3; 3]]| Ok(vec![false; part_count]);
     let readings = read_open(triangles, part, part_count, reading, nothing, &mut Shells::default(), budget)?;
-    Ok(readings.into_iter().map(|reading| !reading.bounds_a_volume).collect())
+    Ok(readings.of_part.into_iter().map(|reading| reading == PartReading::Sheet).collect())
 }
 
 /// The mean of the winding numbers on both sides of a triangle, and its area.

@@ -36,3 +36,21 @@ fn a_plate_that_stays_small_is_the_same_with_and_without_a_limit() {
     let [free, drawn] = [f64::INFINITY, AreaLimits::OF_AUTO.plate].map(|limit| share(0.2, limit));
     assert_eq!(free, drawn);
 }
+
+#[test]
+fn auto_takes_half_a_ball_and_no_balloon_and_who_asks_gets_both() {
+    // A cone over a square with an apex at this height, beside the square.
+    let admit = |limits: AreaLimits, height: f64| {
+        let rim = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
+        let mut mesh = PatchMesh::new(rim.to_vec(), vec![[0, 1, 2], [0, 2, 3]]).unwrap();
+        let base_area = mesh.area();
+        let diagonal = (0..6).find(|&h| mesh.twin(h).is_some()).unwrap();
+        mesh.split(diagonal, DVec3::new(0.0, 0.0, height)).unwrap();
+        limits.admit(&mesh, base_area)
+    };
+    // The area is that of the square times the root of 1 + 2 h².
+    for (height, is_taken) in [(0.0, true), (1.2, true), (1.45, false), (5.0, false)] {
+        assert_eq!(admit(AreaLimits::OF_AUTO, height), is_taken, "{height}");
+        assert!(admit(AreaLimits::NONE, height), "{height}");
+    }
+}
