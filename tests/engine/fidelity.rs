@@ -111,34 +111,9 @@ fn a_limit_of_the_deviation_is_kept_by_what_patches_cover() {
     assert!(answer.output.is_none() || distance.unwrap().upper() <= 1.0, "{distance:?}");
 }
 
-/// A ball of 10 with so many rings of twice as many places.
-fn ball(rings: u32) -> RawSoup {
-    let around = 2 * rings;
-    let mut positions = vec![[0.0, 0.0, 10.0], [0.0, 0.0, -10.0]];
-    for (ring, i) in (1..rings).flat_map(|ring| (0..around).map(move |i| (ring, i))) {
-        let (polar, turn) = (PI * f64::from(ring) / f64::from(rings), PI * f64::from(i) / f64::from(rings));
-        let place = [polar.sin() * turn.cos(), polar.sin() * turn.sin(), polar.cos()];
-        positions.push(place.map(|x| (10.0 * x) as f32).map(f64::from));
-    }
-    let id = |ring: u32, i: u32| match ring {
-        0 => 0,
-        ring if ring == rings => 1,
-        ring => 2 + (ring - 1) * around + i % around,
-    };
-    let quads = (0..rings).flat_map(|ring| (0..around).map(move |i| (ring, i)));
-    let triangles = quads
-        .flat_map(|(ring, i)| {
-            let [a, b, c, d] = [id(ring, i), id(ring + 1, i), id(ring + 1, i + 1), id(ring, i + 1)];
-            [[a, b, c], [a, c, d]]
-        })
-        .filter(|[a, b, c]| a != b && b != c && c != a)
-        .collect();
-    RawSoup { positions, triangles }
-}
-
 #[test]
 fn a_corner_that_lies_far_away_makes_no_damage_small() {
-    let mut file = ball(6);
+    let mut file = ball(6).scaled(10.0).map(|place| place.map(|x| f64::from(x as f32)));
     let sum = |p: &[f64; 3]| p.iter().sum::<f64>();
     let lowest = file.positions.iter_mut().min_by(|a, b| sum(a).total_cmp(&sum(b))).unwrap();
     *lowest = [1e13; 3];
