@@ -2,7 +2,7 @@
 
 use super::constraints::{Constrained, Constraint, ConstraintLine, TagSets};
 use super::error::ArrangementError;
-use super::kernel::{ClusterKernel, EXACT, PlaneView};
+use super::kernel::{ClusterKernel, PlaneView};
 use super::point::{ArrangementPoint, Definition};
 use super::triangulation::{CarrierView, NONE, Triangulation};
 use crate::budget::Budget;
@@ -51,7 +51,7 @@ pub(super) fn divide(
     }
     let view =
         kernel.view(rep).ok_or(ArrangementError::Inconsistent("a degenerate triangle in a cluster"))?;
-    let mut sight = CarrierView { kernel, view, shared, own: Vec::new() };
+    let mut sight = CarrierView::new(kernel, view, shared);
     let start = if is_single {
         corners(rep)
     } else {
@@ -66,15 +66,14 @@ pub(super) fn divide(
         to_insert.dedup();
     }
     sort_for_walks(&mut to_insert, shared, view);
-    let mut steps = 0;
     for point in to_insert {
         if vertices.contains_key(&point) {
             continue;
         }
         let last = mesh.half_edges() - 1;
-        let v = mesh.insert(&sight, point, last, &mut steps)?;
+        let v = mesh.insert(&sight, point, last)?;
         vertices.insert(point, v);
-        budget.spend((std::mem::take(&mut steps) + 1) * EXACT)?;
+        budget.spend(sight.take_units() + 1)?;
     }
     let mut constrained = Constrained::new(sight, mesh, budget);
     let find = |point: u32| {

@@ -4,7 +4,7 @@ use super::error::ArrangementError;
 use super::kernel::EXACT;
 use super::point::Definition;
 use super::triangulation::{CarrierView, NONE, Triangulation};
-use crate::budget::Budget;
+use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec3, Sign};
 use std::cmp::Ordering;
 use std::collections::VecDeque;
@@ -85,7 +85,6 @@ impl<'k, 'b> Constrained<'k, 'b> {
         let [mut from, to] = constraint.ends;
         let mut crossed = VecDeque::new();
         while from != to {
-            self.budget.spend(EXACT)?;
             match self.leaving(from, to)? {
                 Leaving::Along(h) => {
                     self.tag(h, tag)?;
@@ -106,6 +105,11 @@ impl<'k, 'b> Constrained<'k, 'b> {
         Ok(tag)
     }
 
+    /// Counts a step, and what was looked at since the last one.
+    fn spend(&self) -> Result<(), Stopped> {
+        self.budget.spend(2 + self.sight.take_units())
+    }
+
     fn tag(&mut self, h: u32, tag: u32) -> Result<(), ArrangementError> {
         let set = &mut self.mesh.tags[h as usize];
         // A set is copied for each member that it gets: many copies of a triangle are dear.
@@ -117,7 +121,7 @@ impl<'k, 'b> Constrained<'k, 'b> {
     fn leaving(&self, from: u32, to: u32) -> Result<Leaving, ArrangementError> {
         let mesh = &self.mesh;
         for h in mesh.around(from) {
-            self.budget.spend(EXACT / 4)?;
+            self.spend()?;
             let (x, y) = (mesh.to(h), mesh.apex(h));
             if x == to {
                 return Ok(Leaving::Along(h));
@@ -169,9 +173,10 @@ impl<'k, 'b> Constrained<'k, 'b> {
         crossed.clear();
         let mut h = h;
         loop {
-            self.budget.spend(EXACT)?;
+            self.spend()?;
             if self.mesh.is_constrained(h) {
                 let definition = self.crossing(h, line);
+                self.budget.spend(EXACT)?;
                 let point = self.sight.kernel.point(definition);
                 let point = self.sight.push(point);
                 return Ok(self.mesh.split_edge(h, point));
@@ -220,7 +225,7 @@ impl<'k, 'b> Constrained<'k, 'b> {
     fn clear(&mut self, from: u32, to: u32, crossed: &mut VecDeque<u32>) -> Result<u32, ArrangementError> {
         let mut left = (crossed.len() as u64 + 4).pow(2) * 4;
         while let Some(h) = crossed.pop_front() {
-            self.budget.spend(EXACT)?;
+            self.spend()?;
             left -= 1;
             if left == 0 {
                 return Err(ArrangementError::Inconsistent("flips do not end"));
@@ -253,7 +258,7 @@ impl Constrained<'_, '_> {
         for _ in 0..ROUNDS_MAX {
             let mut is_changed = false;
             for h in 0..self.mesh.half_edges() {
-                self.budget.spend(8)?;
+                self.spend()?;
                 let g = self.mesh.twin(h);
                 if g == NONE || g < h || self.mesh.is_constrained(h) {
                     continue;

@@ -13,7 +13,7 @@ use num_bigint::BigInt;
 use std::cmp::Ordering;
 use std::sync::OnceLock;
 
-/// Units of work that a step counts which decides with exact points: most of them are decided by balls, some by integers.
+/// Units of work of a step that decides with exact points.
 pub(super) const EXACT: u64 = 64;
 
 /// The two coordinates of a plane that are looked at, mirrored so that the plane's own triangle turns counter-clockwise, and that
@@ -211,19 +211,26 @@ impl ClusterKernel {
         }
     }
 
-    /// How three points of a plane turn in its view; [`Definition::Far`] ones are corners of the view.
-    pub(super) fn orient(
+    /// How three points of a plane turn in its view; [`Definition::Far`] ones are corners of the view. `None`: balls do not tell.
+    pub(super) fn orient_near(
+        &self,
+        view: PlaneView,
+        a: &ArrangementPoint,
+        b: &ArrangementPoint,
+        c: &ArrangementPoint,
+    ) -> Option<Sign> {
+        let [a, b, c] = [a, b, c].map(|p| seen(p, view));
+        ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).sign()
+    }
+
+    /// As [`orient_near`](Self::orient_near), by definitions and integers.
+    pub(super) fn orient_exact(
         &self,
         view: PlaneView,
         a: &ArrangementPoint,
         b: &ArrangementPoint,
         c: &ArrangementPoint,
     ) -> Sign {
-        let [a2, b2, c2] = [a, b, c].map(|p| seen(p, view));
-        let det = (b2[0] - a2[0]) * (c2[1] - a2[1]) - (b2[1] - a2[1]) * (c2[0] - a2[0]);
-        if let Some(sign) = det.sign() {
-            return sign;
-        }
         let crosses = |other: u32| !self.are_coplanar(other, view.plane);
         if Definition::are_collinear([&a.definition, &b.definition, &c.definition], crosses) {
             return Sign::Zero;

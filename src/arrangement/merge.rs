@@ -180,24 +180,23 @@ impl Arrangement {
             return Ok(vec![corners]);
         }
         let view = cluster.kernel.view(t as u32).ok_or(fault)?;
-        let sight = CarrierView { kernel: &cluster.kernel, view, shared: &cluster.points, own: Vec::new() };
+        let sight = CarrierView::new(&cluster.kernel, view, &cluster.points);
         let mut mesh = Triangulation::of_triangle(source);
         let mut vertices: FxHashMap<u32, u32> = (0..3).map(|k| (corners[k as usize], k)).collect();
         let mut numbers: Vec<u32> = corners.to_vec();
-        let mut steps = 0;
         for &point in region.border.as_flattened().iter().chain(&region.points) {
             if vertices.contains_key(&point) {
                 continue;
             }
             let own = self.point_in(cluster, point).ok_or(fault)?;
             let last = mesh.half_edges() - 1;
-            let v = mesh.insert(&sight, own, last, &mut steps)?;
+            let v = mesh.insert(&sight, own, last)?;
             if v as usize != numbers.len() {
                 return Err(ArrangementError::Inconsistent("a point of a border is there twice"));
             }
             numbers.push(point);
             vertices.insert(point, v);
-            budget.spend(std::mem::take(&mut steps) + 1)?;
+            budget.spend(sight.take_units() + 1)?;
         }
         let mut constrained = Constrained::new(sight, mesh, budget);
         for ends in &region.border {

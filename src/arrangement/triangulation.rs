@@ -7,9 +7,10 @@
 //! ```
 
 use super::error::ArrangementError;
-use super::kernel::{ClusterKernel, PlaneView};
+use super::kernel::{ClusterKernel, EXACT, PlaneView};
 use super::point::ArrangementPoint;
 use crate::geom::Sign;
+use std::cell::Cell;
 
 /// In the place of a half-edge: there is none.
 pub(super) const NONE: u32 = u32::MAX;
@@ -22,9 +23,15 @@ pub(super) struct CarrierView<'k> {
     pub(super) shared: &'k [ArrangementPoint],
     /// These are numbered after the shared ones.
     pub(super) own: Vec<ArrangementPoint>,
+    /// Work that has not been taken.
+    units: Cell<u64>,
 }
 
-impl CarrierView<'_> {
+impl<'k> CarrierView<'k> {
+    pub(super) fn new(kernel: &'k ClusterKernel, view: PlaneView, shared: &'k [ArrangementPoint]) -> Self {
+        Self { kernel, view, shared, own: Vec::new(), units: Cell::new(0) }
+    }
+
     pub(super) fn point(&self, id: u32) -> &ArrangementPoint {
         match self.shared.get(id as usize) {
             Some(point) => point,
@@ -35,6 +42,18 @@ impl CarrierView<'_> {
     pub(super) fn push(&mut self, point: ArrangementPoint) -> u32 {
         self.own.push(point);
         (self.shared.len() + self.own.len() - 1) as u32
+    }
+
+    /// How three points turn.
+    fn orient(&self, a: &ArrangementPoint, b: &ArrangementPoint, c: &ArrangementPoint) -> Sign {
+        let near = self.kernel.orient_near(self.view, a, b, c);
+        self.units.set(self.units.get() + if near.is_some() { 1 } else { EXACT });
+        near.unwrap_or_else(|| self.kernel.orient_exact(self.view, a, b, c))
+    }
+
+    /// The units of work since this was last asked.
+    pub(super) fn take_units(&self) -> u64 {
+        self.units.take()
     }
 }
 
@@ -162,26 +181,24 @@ impl Triangulation {
     /// How the points of three vertices turn.
     pub(super) fn orient(&self, sight: &CarrierView<'_>, vertices: [u32; 3]) -> Sign {
         let [a, b, c] = vertices.map(|v| sight.point(self.points[v as usize]));
-        sight.kernel.orient(sight.view, a, b, c)
+        sight.orient(a, b, c)
     }
 
-    /// Where a point is, by a walk from half-edge `start`; the steps are added to `steps`.
+    /// Where a point is, by a walk from half-edge `start`.
     pub(super) fn locate(
         &mut self,
         sight: &CarrierView<'_>,
         point: u32,
         start: u32,
-        steps: &mut u64,
     ) -> Result<Location, ArrangementError> {
         let p = sight.point(point);
         let turn = |t: &Self, h: u32| {
             let [a, b] = [t.from(h), t.to(h)].map(|v| sight.point(t.points[v as usize]));
-            sight.kernel.orient(sight.view, a, b, p)
+            sight.orient(a, b, p)
         };
         let mut h = start;
         let mut came = NONE;
         for _ in 0..4 * u64::from(self.half_edges()) + 64 {
-            *steps += 1;
             self.dice = self.dice.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             for _ in 0..self.dice >> 30 {
                 h = self.next(h);
@@ -231,9 +248,8 @@ impl Triangulation {
         sight: &CarrierView<'_>,
         point: u32,
         start: u32,
-        steps: &mut u64,
     ) -> Result<u32, ArrangementError> {
-        Ok(match self.locate(sight, point, start, steps)? {
+        Ok(match self.locate(sight, point, start)? {
             Location::Vertex(v) => v,
             Location::Edge(h) => self.split_edge(h, point),
             Location::Face(h) => self.split_face(h, point),

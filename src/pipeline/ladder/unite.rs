@@ -42,7 +42,7 @@ const CONTACTS_MAX: u64 = 8;
 /// What encloses something has at least so many triangles for each open edge: what spans many rims would hide what can be seen.
 const TRIANGLES_PER_OPEN_EDGE: u64 = 20;
 
-/// One kind of bodies may take one of so many parts of the work that is left.
+/// One kind of bodies may take one of so many parts of the work that is left; of a closed surface, all but that.
 const KIND_PART: u64 = 3;
 
 /// What uniting bodies led to.
@@ -71,6 +71,7 @@ fn unite(climb: &Climb<'_>, situation: &mut Situation) -> Result<Option<RungResu
     if climb.has_found(DefectCode::NonOrientable) && openness.is_sheets {
         return Ok(None);
     }
+    let is_closed = openness.boundary_edges == 0;
     let limits = &climb.options.limits;
     let mut best: Option<Certified> = None;
     for uniting in climb.kinds(openness) {
@@ -79,12 +80,16 @@ fn unite(climb: &Climb<'_>, situation: &mut Situation) -> Result<Option<RungResu
         if is_last_resort && !best.as_ref().is_some_and(|best| best.covers_much(limits)) {
             continue;
         }
-        // What takes too much work is left to the next kind. Walls as the last resort may take more; the rest measures them.
+        // What takes too much work is left to the next kind, but of a closed surface all kinds take as much. Walls as the last
+        // resort may take more; the rest measures them.
         let united = || climb.united_from(uniting, situation.variant);
-        let tried = match is_last_resort {
+        let tried = match is_last_resort || is_closed {
             true => climb.budget.within_all_but(KIND_PART, united)?,
             false => climb.budget.within_part(KIND_PART, united)?,
         };
+        if tried.is_none() && is_closed {
+            break;
+        }
         let Some((attempt, candidate)) = tried.flatten() else { continue };
         let certified = Certified::measured(attempt, candidate, climb)?;
         let passes = certified.fidelity.passes(limits);
