@@ -223,7 +223,13 @@ impl ClusterKernel {
         ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).sign()
     }
 
-    /// As [`orient_near`](Self::orient_near), by definitions and integers.
+    /// True when three points of a plane lie on one line by their names.
+    pub(super) fn are_collinear_by_name(&self, view: PlaneView, points: [&ArrangementPoint; 3]) -> bool {
+        let crosses = |other: u32| !self.are_coplanar(other, view.plane);
+        Definition::are_collinear(points.map(|p| &p.definition), crosses)
+    }
+
+    /// As [`orient_near`](Self::orient_near), by integers.
     pub(super) fn orient_exact(
         &self,
         view: PlaneView,
@@ -231,10 +237,6 @@ impl ClusterKernel {
         b: &ArrangementPoint,
         c: &ArrangementPoint,
     ) -> Sign {
-        let crosses = |other: u32| !self.are_coplanar(other, view.plane);
-        if Definition::are_collinear([&a.definition, &b.definition, &c.definition], crosses) {
-            return Sign::Zero;
-        }
         let [a, b, c] = [a, b, c].map(|p| (self.exact(p), axes_seen(p, view)));
         let (au, av, aw) = (&a.0.x[a.1[0]], &a.0.x[a.1[1]], &a.0.w);
         let (bu, bv, bw) = (&b.0.x[b.1[0]], &b.0.x[b.1[1]], &b.0.w);

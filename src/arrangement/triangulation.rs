@@ -12,6 +12,9 @@ use super::point::ArrangementPoint;
 use crate::geom::Sign;
 use std::cell::Cell;
 
+/// Units of work of a comparison of names.
+const NAMES: u64 = 4;
+
 /// In the place of a half-edge: there is none.
 pub(super) const NONE: u32 = u32::MAX;
 
@@ -46,9 +49,13 @@ impl<'k> CarrierView<'k> {
 
     /// How three points turn.
     fn orient(&self, a: &ArrangementPoint, b: &ArrangementPoint, c: &ArrangementPoint) -> Sign {
-        let near = self.kernel.orient_near(self.view, a, b, c);
-        self.units.set(self.units.get() + if near.is_some() { 1 } else { EXACT });
-        near.unwrap_or_else(|| self.kernel.orient_exact(self.view, a, b, c))
+        let (units, sign) = match self.kernel.orient_near(self.view, a, b, c) {
+            Some(sign) => (1, sign),
+            None if self.kernel.are_collinear_by_name(self.view, [a, b, c]) => (NAMES, Sign::Zero),
+            None => (EXACT, self.kernel.orient_exact(self.view, a, b, c)),
+        };
+        self.units.set(self.units.get() + units);
+        sign
     }
 
     /// The units of work since this was last asked.
