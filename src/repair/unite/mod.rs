@@ -24,7 +24,7 @@ use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec3, print_pitch, triangle_area};
 
 /// Most pairs of triangles that may meet, for each triangle of the draft and in all.
-const PAIRS_PER_TRIANGLE: usize = 64;
+const PAIRS_PER_TRIANGLE: usize = 128;
 const PAIRS_MIN: usize = 1 << 16;
 const PAIRS_MAX: usize = 1 << 21;
 
