@@ -4,7 +4,7 @@ use super::constraints::{Constrained, Constraint, ConstraintLine, TagSets};
 use super::error::ArrangementError;
 use super::kernel::{ClusterKernel, PlaneView};
 use super::point::{ArrangementPoint, Definition};
-use super::triangulation::{CarrierView, NONE, Triangulation};
+use super::triangulation::{CarrierView, MANY, NONE, Triangulation};
 use crate::budget::Budget;
 use crate::geom::Sign;
 use rustc_hash::FxHashMap;
@@ -65,13 +65,19 @@ pub(super) fn divide(
         to_insert.sort_unstable();
         to_insert.dedup();
     }
-    sort_for_walks(&mut to_insert, shared, view);
+    let are_many = to_insert.len() >= MANY;
+    if are_many {
+        sort_for_walks(&mut to_insert, shared, view);
+    }
     for point in to_insert {
         if vertices.contains_key(&point) {
             continue;
         }
         let last = mesh.half_edges() - 1;
         let v = mesh.insert(&sight, point, last)?;
+        if are_many {
+            mesh.flip_around(&sight, v);
+        }
         vertices.insert(point, v);
         budget.spend(sight.take_units() + 1)?;
     }
@@ -166,9 +172,6 @@ fn covered(
 
 /// Orders many points along a curve through the squares of a grid, so that walks from one to the next are short.
 fn sort_for_walks(points: &mut [u32], shared: &[ArrangementPoint], view: PlaneView) {
-    if points.len() < 16 {
-        return;
-    }
     let place = |p: u32| [view.u, view.v].map(|k| shared[p as usize].near[k].mid);
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for &p in points.iter() {

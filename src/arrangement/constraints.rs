@@ -5,7 +5,7 @@ use super::kernel::EXACT;
 use super::point::Definition;
 use super::triangulation::{CarrierView, NONE, Triangulation};
 use crate::budget::{Budget, Stopped};
-use crate::geom::{DVec3, Sign};
+use crate::geom::Sign;
 use std::cmp::Ordering;
 use std::collections::VecDeque;
 
@@ -252,8 +252,7 @@ impl<'k, 'b> Constrained<'k, 'b> {
 const ROUNDS_MAX: usize = 8;
 
 impl Constrained<'_, '_> {
-    /// Flips edges that no constraint holds while that makes triangles rounder, as f64 sees it: what is flipped is exactly
-    /// convex, whatever the rounding.
+    /// Flips edges that no constraint holds while that makes triangles rounder.
     pub(super) fn improve(&mut self) -> Result<(), ArrangementError> {
         for _ in 0..ROUNDS_MAX {
             let mut is_changed = false;
@@ -263,10 +262,7 @@ impl Constrained<'_, '_> {
                 if g == NONE || g < h || self.mesh.is_constrained(h) {
                     continue;
                 }
-                let (a, b) = (self.mesh.from(h), self.mesh.to(h));
-                let (c, d) = (self.mesh.apex(h), self.mesh.apex(g));
-                let side = |x: u32| self.mesh.orient(&self.sight, [d, c, x]);
-                if self.is_rounder([a, b, c, d]) && side(a) * side(b) == Sign::Negative {
+                if self.mesh.is_rounder_flipped(&self.sight, h) {
                     self.mesh.flip(h);
                     is_changed = true;
                 }
@@ -276,19 +272,5 @@ impl Constrained<'_, '_> {
             }
         }
         Ok(())
-    }
-
-    /// True when `d` is well inside the circle through `a`, `b`, `c`: the angles at `c` and `d` over `a b` are more than half a
-    /// turn together.
-    fn is_rounder(&self, corners: [u32; 4]) -> bool {
-        let [a, b, c, d] = corners.map(|v| {
-            let near = self.sight.point(self.mesh.points[v as usize]).near;
-            DVec3::from_array(near.map(|x| x.mid))
-        });
-        let cotangent = |at: DVec3| {
-            let (u, v) = (a - at, b - at);
-            u.dot(v) / u.cross(v).length()
-        };
-        cotangent(c) + cotangent(d) < -1e-9
     }
 }

@@ -7,7 +7,7 @@
 use super::constraints::{Constrained, Constraint, ConstraintLine};
 use super::error::ArrangementError;
 use super::extract::{BoundaryPiece, SolidBoundary};
-use super::triangulation::{CarrierView, NONE, Triangulation};
+use super::triangulation::{CarrierView, MANY, NONE, Triangulation};
 use super::{Arrangement, Cluster};
 use crate::budget::{Budget, CHECK_EVERY};
 use crate::mesh::{EdgeGroups, edge_of, triangle_of};
@@ -184,6 +184,7 @@ impl Arrangement {
         let mut mesh = Triangulation::of_triangle(source);
         let mut vertices: FxHashMap<u32, u32> = (0..3).map(|k| (corners[k as usize], k)).collect();
         let mut numbers: Vec<u32> = corners.to_vec();
+        let are_many = region.border.len() + region.points.len() >= MANY;
         for &point in region.border.as_flattened().iter().chain(&region.points) {
             if vertices.contains_key(&point) {
                 continue;
@@ -191,6 +192,9 @@ impl Arrangement {
             let own = self.point_in(cluster, point).ok_or(fault)?;
             let last = mesh.half_edges() - 1;
             let v = mesh.insert(&sight, own, last)?;
+            if are_many {
+                mesh.flip_around(&sight, v);
+            }
             if v as usize != numbers.len() {
                 return Err(ArrangementError::Inconsistent("a point of a border is there twice"));
             }

@@ -9,11 +9,14 @@
 use super::error::ArrangementError;
 use super::kernel::{ClusterKernel, EXACT, PlaneView};
 use super::point::ArrangementPoint;
-use crate::geom::Sign;
+use crate::geom::{DVec3, Sign};
 use std::cell::Cell;
 
 /// Units of work of a comparison of names.
 const NAMES: u64 = 4;
+
+/// With so many points, triangles are kept round while they are put in.
+pub(super) const MANY: usize = 16;
 
 /// In the place of a half-edge: there is none.
 pub(super) const NONE: u32 = u32::MAX;
@@ -335,6 +338,35 @@ impl Triangulation {
         self.origin[g as usize] = c;
         self.link([h, n2, m1]);
         self.link([g, m2, n1]);
+    }
+
+    /// True when flipping the edge of `h`, which is not at the rim, makes triangles rounder as f64 sees it: the angles opposite to it
+    /// are more than half a turn together. What is flipped is exactly convex, whatever the rounding.
+    pub(super) fn is_rounder_flipped(&self, sight: &CarrierView<'_>, h: u32) -> bool {
+        let [a, b, c, d] = [self.from(h), self.to(h), self.apex(h), self.apex(self.twin(h))];
+        let place = |v: u32| DVec3::from_array(sight.point(self.points[v as usize]).near.map(|x| x.mid));
+        let cotangent_at = |v: u32| {
+            let (to_a, to_b) = (place(a) - place(v), place(b) - place(v));
+            to_a.dot(to_b) / to_a.cross(to_b).length()
+        };
+        let side = |v: u32| self.orient(sight, [d, c, v]);
+        cotangent_at(c) + cotangent_at(d) < -1e-9 && side(a) * side(b) == Sign::Negative
+    }
+
+    /// Flips edges around a vertex while that makes triangles rounder (Lawson 1977), so that few edges end in one vertex where
+    /// many points are put in.
+    pub(super) fn flip_around(&mut self, sight: &CarrierView<'_>, vertex: u32) {
+        let mut opposite: Vec<u32> = self.around(vertex).map(|h| self.next(h)).collect();
+        // Rounding could make flips go round in circles.
+        let mut left = 64;
+        while let Some(h) = opposite.pop().filter(|_| left > 0) {
+            let g = self.twin(h);
+            if g != NONE && !self.is_constrained(h) && self.is_rounder_flipped(sight, h) {
+                opposite.extend([self.next(g), self.prev(g)]);
+                self.flip(h);
+                left -= 1;
+            }
+        }
     }
 
     /// The corners of every triangle, as points.
