@@ -79,7 +79,7 @@ pub fn place(
         pitch,
         budget,
     };
-    placing.is_near = placing.near_new_points()?;
+    placing.is_near = placing.near(|p| p >= first_new)?;
     placing.weld(&used);
     let mut best = u64::MAX;
     for round in 0..=ROUNDS_MAX {
@@ -90,6 +90,8 @@ pub fn place(
         }
         best = conflicts;
         placing.mend(&points)?;
+        // All others meet nowhere, and have not moved.
+        placing.is_near = placing.near(|p| points.binary_search(&p).is_ok())?;
         placing.weld(&used);
     }
     let mut placed = placing.placed;
@@ -106,7 +108,7 @@ fn nearest(place: DVec3, pitch: f64) -> DVec3 {
 
 struct Placing<'b> {
     placed: PlacedBoundary,
-    /// For each triangle, whether it is or may come to be on or through one with a new point.
+    /// For each triangle, whether it is or may come to be on or through one that may meet others.
     is_near: Vec<bool>,
     /// Where the new points are, to the last place.
     exact: Vec<DVec3>,
@@ -120,12 +122,12 @@ impl Placing<'_> {
         self.placed.triangles[t as usize].map(|p| self.placed.positions[p as usize])
     }
 
-    /// The triangles with a new point, wherever mending may put it, and those whose boxes come near theirs.
-    fn near_new_points(&self) -> Result<Vec<bool>, ArrangementError> {
+    /// The triangles with such a point, wherever mending may put it, and those whose boxes come near theirs.
+    fn near(&self, is_one: impl Fn(u32) -> bool) -> Result<Vec<bool>, ArrangementError> {
         let triangles = &self.placed.triangles;
-        let has_new = |t: &u32| triangles[*t as usize].iter().any(|&p| p >= self.first_new);
-        let new: Vec<u32> = (0..triangles.len() as u32).filter(has_new).collect();
-        let bvh = Bvh::build(&self.placed.positions, triangles, Some(&new), self.budget)?;
+        let has_one = |t: &u32| triangles[*t as usize].iter().any(|&p| is_one(p));
+        let with_one: Vec<u32> = (0..triangles.len() as u32).filter(has_one).collect();
+        let bvh = Bvh::build(&self.placed.positions, triangles, Some(&with_one), self.budget)?;
         let parts = par::try_map_ranges(triangles.len(), CHECK_EVERY, |range| {
             let is_near = |t: usize| {
                 let bounds = self.with_margin(Aabb::of(self.corners(t as u32)), 2.0 * REACH);
@@ -143,8 +145,8 @@ impl Placing<'_> {
         Aabb { min: bounds.min - margin, max: bounds.max + margin }
     }
 
-    /// The triangles that are near new points, ascending.
-    fn near(&self) -> impl Iterator<Item = u32> {
+    /// The triangles that may meet others, ascending.
+    fn may_meet(&self) -> impl Iterator<Item = u32> {
         (0..).zip(&self.is_near).filter_map(|(t, &is_near)| is_near.then_some(t))
     }
 
@@ -154,7 +156,7 @@ impl Placing<'_> {
         let key = |p: DVec3| (p + DVec3::ZERO).to_array().map(f64::to_bits);
         let positions = &self.placed.positions;
         let corners = |t: u32| self.placed.triangles[t as usize];
-        let mut points: Vec<u32> = self.near().flat_map(corners).collect();
+        let mut points: Vec<u32> = self.may_meet().flat_map(corners).collect();
         points.sort_unstable();
         points.dedup();
         let mut order: Vec<([u64; 3], u32)> =
@@ -171,7 +173,7 @@ impl Placing<'_> {
         if !is_any {
             return;
         }
-        let near: Vec<u32> = self.near().collect();
+        let near: Vec<u32> = self.may_meet().collect();
         let PlacedBoundary { triangles, sources, .. } = &mut self.placed;
         let mut is_kept = vec![true; triangles.len()];
         for &t in &near {
@@ -207,7 +209,7 @@ impl Placing<'_> {
         self.is_near.retain(|_| marks.next() == Some(&true));
     }
 
-    /// How many pairs of triangles near new points meet or have no area, and the new points of these, ascending.
+    /// How many pairs of triangles meet or have no area, and the new points of these, ascending.
     fn conflicts(&self) -> Result<(u64, Vec<u32>), ArrangementError> {
         let triangles = &self.placed.triangles;
         let has_area = |&t: &u32| {
@@ -215,7 +217,7 @@ impl Placing<'_> {
             !are_collinear(a, b, c)
         };
         self.budget.spend(triangles.len() as u64)?;
-        let (sound, flat): (Vec<u32>, Vec<u32>) = self.near().partition(has_area);
+        let (sound, flat): (Vec<u32>, Vec<u32>) = self.may_meet().partition(has_area);
         let bvh = Bvh::build(&self.placed.positions, triangles, Some(&sound), self.budget)?;
         let search = Search::All { keep: CONFLICTS_MAX };
         let found = self_contacts(&self.placed.positions, triangles, &bvh, None, search, self.budget)?;
@@ -239,7 +241,7 @@ impl Placing<'_> {
     /// Moves each of `points` to where its triangles meet the fewest others.
     fn mend(&mut self, points: &[u32]) -> Result<(), ArrangementError> {
         let mut stars: Vec<(u32, u32)> = Vec::new();
-        let near: Vec<u32> = self.near().collect();
+        let near: Vec<u32> = self.may_meet().collect();
         for &t in &near {
             let corners = self.placed.triangles[t as usize];
             stars.extend(corners.into_iter().filter(|p| points.binary_search(p).is_ok()).map(|p| (p, t)));
