@@ -100,6 +100,29 @@ pub(super) fn wedge(random: &mut Random) -> Body {
     tetrahedron([a, b, random.place(5), random.place(5)])
 }
 
+/// A plate with tetrahedra through it.
+pub(super) fn pierced_plate(random: &mut Random, tetrahedra: usize) -> Bodies {
+    let mut bodies = Bodies::default();
+    bodies.add(cube([0, 0, 2], [16, 16, 4], random.below(64)), 0);
+    for _ in 0..tetrahedra {
+        let (x, y) = (random.below(13), random.below(13));
+        let mut corner = |z: i64| [x + random.below(5), y + random.below(5), z];
+        let (below, above) = ([corner(0), corner(1)], [corner(5), corner(6)]);
+        bodies.add(tetrahedron([below[0], below[1], above[0], above[1]]), 1);
+    }
+    bodies
+}
+
+/// A long beam with so many across it, in equal steps.
+pub(super) fn crossed_beam(beams: i64) -> Bodies {
+    let mut bodies = Bodies::default();
+    bodies.add(cube([-1, 0, 0], [4 * beams, 4, 4], 0), 0);
+    for x in (0..beams).map(|i| 4 * i) {
+        bodies.add(cube([x, -4, 1], [x + 2, 8, 3], 0), 1);
+    }
+    bodies
+}
+
 /// A few bodies of one or two operands.
 pub(super) fn random(random: &mut Random) -> Bodies {
     let mut bodies = Bodies::default();

@@ -81,6 +81,39 @@ fn random_small_bodies_agree_with_the_oracle() {
 }
 
 #[test]
+fn faces_that_many_bodies_pass_through_agree_with_the_oracle() {
+    let count = cases(60, 4_000) as usize;
+    let pieces = par::map_ranges(count, 4, |range| {
+        let mut pieces = usize::MAX;
+        for seed in range {
+            let bodies = cases::pierced_plate(&mut Random::new(seed as u64 + 3_000_000), 8);
+            check(&bodies, &format!("seed {seed}"));
+            pieces = pieces.min(arranged(&bodies).unwrap().pieces().len());
+        }
+        pieces
+    });
+    let fewest = pieces.into_iter().min().unwrap();
+    assert!(fewest > 150, "{fewest} pieces");
+}
+
+#[test]
+fn work_on_a_face_is_in_proportion_to_what_passes_through_it() {
+    let work = |beams| {
+        let bodies = cases::crossed_beam(beams);
+        let budget = Budget::unlimited();
+        let options = ArrangementOptions { operands: 2, ..ArrangementOptions::default() };
+        let operand_of = |t: u32| bodies.operands[t as usize];
+        let arrangement =
+            arrange(&bodies.positions, &bodies.triangles, operand_of, &options, &budget).unwrap();
+        let boundary = arrangement.boundary(|w| w[0] > 0 || w[1] > 0);
+        assert!(arrangement.merged(&boundary, &budget).unwrap().triangles.len() > 32 * beams as usize);
+        budget.work_used()
+    };
+    let (few, many) = (work(25), work(200));
+    assert!(many < 12 * few, "{few} and {many} units");
+}
+
+#[test]
 fn volumes_of_random_pairs_of_solids_add_up_exactly() {
     let count = cases(100, 10_000) as usize;
     let meeting = par::map_ranges(count, 16, |range| {
@@ -338,6 +371,7 @@ fn placed_boundaries_are_on_the_lattice_and_conflicts_are_counted() {
 fn a_plane_with_two_names_is_no_line() {
     use super::kernel::ClusterKernel;
     use super::point::Definition::EdgePlane;
+    use super::triangulation::CarrierView;
     // Two triangles side by side in the plane z = 0, and three edges through it, whose points there are named by the second one.
     let mut positions: Vec<DVec3> = [[0, 0, 0], [9, 0, 0], [0, 9, 0], [30, 0, 0], [39, 0, 0], [30, 9, 0]]
         .map(|p: [i32; 3]| DVec3::from_array(p.map(f64::from)))
@@ -351,8 +385,10 @@ fn a_plane_with_two_names_is_no_line() {
     let kernel = ClusterKernel::new(positions, triangles);
     let point = |first: u32| kernel.point(EdgePlane { edge: [first, first + 1], plane: 1 });
     let view = kernel.view(0).unwrap();
-    let sign = kernel.orient(view, &point(6), &point(9), &point(12));
-    assert_eq!(sign, Sign::Positive);
+    let [a, b, c] = [6, 9, 12].map(point);
+    let sight = CarrierView::new(&kernel, view, &[]);
+    assert_eq!(sight.orient(&a, &b, &c), Sign::Positive);
+    assert!(sight.take_units() > 1, "decided by balls");
 }
 
 #[test]
