@@ -357,14 +357,12 @@ impl Triangulation {
     /// many points are put in.
     pub(super) fn flip_around(&mut self, sight: &CarrierView<'_>, vertex: u32) {
         let mut opposite: Vec<u32> = self.around(vertex).map(|h| self.next(h)).collect();
-        // Rounding could make flips go round in circles.
-        let mut left = 64;
-        while let Some(h) = opposite.pop().filter(|_| left > 0) {
+        // Each flip joins the vertex to another one, so there are no more of them than vertices, whatever the rounding.
+        while let Some(h) = opposite.pop() {
             let g = self.twin(h);
             if g != NONE && !self.is_constrained(h) && self.is_rounder_flipped(sight, h) {
                 opposite.extend([self.next(g), self.prev(g)]);
                 self.flip(h);
-                left -= 1;
             }
         }
     }
