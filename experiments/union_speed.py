@@ -6,7 +6,7 @@ usage: union_speed.py --manifold-rust PATH --autorefine PATH [--binary PATH] [--
 manifold-rust's program is `manifold_rust` of the peers' scripts; CGAL's is `autorefine.cpp` beside this script, which needs CGAL 6.1 or later.
 CGAL's only divides and rounds triangles, and leaves what lies inside. Needs numpy.
 """
-import argparse, json, os, statistics, subprocess, sys, tempfile, time
+import argparse, json, os, re, statistics, subprocess, sys, tempfile, time
 import numpy as np
 
 root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
@@ -67,17 +67,18 @@ def write_msh(path, stl):
 
 def run(*words):
     """Standard output, seconds, and peak of memory in MiB, of a process; no output where it fails."""
+    peak = 0
     with tempfile.NamedTemporaryFile("r") as out:
         begin = time.monotonic()
         process = subprocess.Popen(words, stdout=open(out.name, "w"), stderr=subprocess.DEVNULL)
-        while True:
-            ended, status, usage = os.wait4(process.pid, os.WNOHANG)
-            if ended:
-                break
+        while process.poll() is None:
+            # What the system counts for a child begins with the memory of this process.
+            found = re.search(r"VmHWM:\s+(\d+)", open(f"/proc/{process.pid}/status").read())
+            peak = max(peak, int(found[1]) if found else 0)
             if time.monotonic() - begin > SECONDS:
                 process.kill()
             time.sleep(0.001)
-        return (out.read() if not status else None), time.monotonic() - begin, usage.ru_maxrss / 1024
+        return (out.read() if process.returncode == 0 else None), time.monotonic() - begin, peak / 1024
 
 
 def judged(path):
