@@ -42,8 +42,11 @@ const CONTACTS_MAX: u64 = 8;
 /// What encloses something has at least so many triangles for each open edge: what spans many rims would hide what can be seen.
 const TRIANGLES_PER_OPEN_EDGE: u64 = 20;
 
-/// One kind of bodies may take one of so many parts of the work that is left; of a closed surface, all but that.
+/// One kind of bodies may take one of so many parts of the work that is left.
 const KIND_PART: u64 = 3;
+
+/// Bodies of a closed surface may take all but one of so many parts of it.
+const CLOSED_PART: u64 = 8;
 
 /// What uniting bodies led to.
 pub(in crate::pipeline) enum Tried {
@@ -83,9 +86,10 @@ fn unite(climb: &Climb<'_>, situation: &mut Situation) -> Result<Option<RungResu
         // What takes too much work is left to the next kind, but of a closed surface all kinds take as much. Walls as the last
         // resort may take more; the rest measures them.
         let united = || climb.united_from(uniting, situation.variant);
-        let tried = match is_last_resort || is_closed {
-            true => climb.budget.within_all_but(KIND_PART, united)?,
-            false => climb.budget.within_part(KIND_PART, united)?,
+        let tried = match (is_closed, is_last_resort) {
+            (true, _) => climb.budget.within_all_but(CLOSED_PART, united)?,
+            (_, true) => climb.budget.within_all_but(KIND_PART, united)?,
+            _ => climb.budget.within_part(KIND_PART, united)?,
         };
         if tried.is_none() && is_closed {
             break;
