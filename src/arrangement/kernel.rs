@@ -213,7 +213,6 @@ impl ClusterKernel {
 
     /// How three points of a plane turn in its view; [`Definition::Far`] ones are corners of the view. `None`: balls do not tell.
     pub(super) fn orient_near(
-        &self,
         view: PlaneView,
         a: &ArrangementPoint,
         b: &ArrangementPoint,

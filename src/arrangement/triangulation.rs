@@ -52,7 +52,7 @@ impl<'k> CarrierView<'k> {
 
     /// How three points turn.
     pub(super) fn orient(&self, a: &ArrangementPoint, b: &ArrangementPoint, c: &ArrangementPoint) -> Sign {
-        let (units, sign) = match self.kernel.orient_near(self.view, a, b, c) {
+        let (units, sign) = match ClusterKernel::orient_near(self.view, a, b, c) {
             Some(sign) => (1, sign),
             None if self.kernel.are_collinear_by_name(self.view, [a, b, c]) => (NAMES, Sign::Zero),
             None => (EXACT, self.kernel.orient_exact(self.view, a, b, c)),
