@@ -12,6 +12,9 @@ use crate::mesh::UnionFind;
 use crate::par;
 use crate::spatial::{Bvh, ContactKind, Search, self_contacts};
 
+/// Units of work of rounding a new point.
+const ROUNDING: u64 = 4;
+
 /// What an arrangement may cost, and of how many bodies it is.
 #[derive(Debug, Clone, Copy)]
 pub struct ArrangementOptions {
@@ -97,6 +100,7 @@ fn divide<'b>(
         positions: positions.to_vec(),
         clusters: Vec::new(),
         new_points: Vec::new(),
+        new_positions: Vec::new(),
         pieces: Vec::with_capacity(sound.len()),
         planes: Vec::with_capacity(sound.len()),
         source_starts: vec![0],
@@ -109,7 +113,21 @@ fn divide<'b>(
     for &t in sound.iter().filter(|&&t| !is_met[t as usize]) {
         arrangement.push(welded[t as usize], t, [(t, false)]);
     }
+    arrangement.new_positions = rounded(&arrangement, budget)?;
     Ok(Unwound { arrangement, triangles: welded, bvh, _charge })
+}
+
+/// The positions of the new points.
+fn rounded(arrangement: &Arrangement, budget: &Budget) -> Result<Vec<DVec3>, ArrangementError> {
+    let parts = par::try_map_ranges(arrangement.new_points.len(), CHECK_EVERY / 16, |range| {
+        budget.spend(ROUNDING * range.len() as u64)?;
+        let rounded = |&[cluster, point]: &[u32; 2]| {
+            let Cluster { kernel, points, .. } = &arrangement.clusters[cluster as usize];
+            kernel.rounded(&points[point as usize])
+        };
+        Ok::<_, ArrangementError>(arrangement.new_points[range].iter().map(rounded).collect::<Vec<_>>())
+    })?;
+    Ok(parts.concat())
 }
 
 /// The triangles with the first of all vertices at one position in the place of each.

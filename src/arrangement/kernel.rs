@@ -290,7 +290,15 @@ impl ClusterKernel {
         match point.definition {
             Definition::Vertex(v) => self.positions[v as usize],
             _ => {
-                let exact = self.exact(point);
+                // Not kept: most points need it once.
+                let evaluated;
+                let exact = match point.exact.get() {
+                    Some(exact) => exact,
+                    None => {
+                        evaluated = self.evaluated(point.definition);
+                        &evaluated
+                    }
+                };
                 let absolute = |k: usize| {
                     exact::quotient(&(&exact.x[k] + &self.origin[k] * &exact.w), &exact.w, self.span.low())
                 };

@@ -56,6 +56,8 @@ pub struct Arrangement {
     clusters: Vec<Cluster>,
     /// Cluster, and number in it, of each new point.
     new_points: Vec<[u32; 2]>,
+    /// The rounded positions of the new points.
+    new_positions: Vec<DVec3>,
     /// Corners of each piece.
     pieces: Vec<[u32; 3]>,
     /// An input triangle in the plane of each piece that turns the same way.
@@ -107,9 +109,9 @@ impl Arrangement {
 
     /// The position of a point; that of a new one is rounded.
     pub fn position(&self, point: u32) -> DVec3 {
-        match self.new_point(point) {
+        match (point as usize).checked_sub(self.positions.len()) {
             None => self.positions[point as usize],
-            Some((cluster, point)) => cluster.kernel.rounded(point),
+            Some(new) => self.new_positions[new],
         }
     }
 

@@ -54,17 +54,11 @@ pub fn place(
         merged.triangles.as_flattened().iter().copied().filter(|&p| p >= first_new).collect();
     used.sort_unstable();
     used.dedup();
-    let mut exact = vec![DVec3::ZERO; arrangement.new_points.len()];
     let mut positions = Vec::with_capacity(arrangement.point_count());
     positions.extend_from_slice(&arrangement.positions);
     positions.resize(arrangement.point_count(), DVec3::ZERO);
-    for (i, &p) in used.iter().enumerate() {
-        if i % 256 == 0 {
-            budget.spend(1024)?;
-        }
-        let place = arrangement.position(p);
-        exact[(p - first_new) as usize] = place;
-        positions[p as usize] = nearest(place, pitch);
+    for &p in &used {
+        positions[p as usize] = nearest(arrangement.position(p), pitch);
     }
     let mut placing = Placing {
         placed: PlacedBoundary {
@@ -74,7 +68,7 @@ pub fn place(
             ..PlacedBoundary::default()
         },
         is_near: Vec::new(),
-        exact,
+        exact: &arrangement.new_positions,
         first_new,
         pitch,
         budget,
@@ -111,7 +105,7 @@ struct Placing<'b> {
     /// For each triangle, whether it is or may come to be on or through one that may meet others.
     is_near: Vec<bool>,
     /// Where the new points are, to the last place.
-    exact: Vec<DVec3>,
+    exact: &'b [DVec3],
     first_new: u32,
     pitch: f64,
     budget: &'b Budget,

@@ -139,6 +139,49 @@ fn hostile_bodies_end_within_their_bound() {
     check_soup("nested shells", &nested, Encoding::StlBinary);
 }
 
+/// An OBJ of the quads of cuboids.
+fn quads(cuboids: &RawSoup, is_inside_out: bool) -> Vec<u8> {
+    let mut text = String::new();
+    for [x, y, z] in &cuboids.positions {
+        writeln!(text, "v {x} {y} {z}").unwrap();
+    }
+    for halves in cuboids.triangles.chunks_exact(2) {
+        let ([a, b, c], [_, _, d]) = (halves[0], halves[1]);
+        let [a, b, c, d] = if is_inside_out { [d, c, b, a] } else { [a, b, c, d] }.map(|v| v + 1);
+        writeln!(text, "f {a} {b} {c} {d}").unwrap();
+    }
+    text.into_bytes()
+}
+
+#[test]
+fn grids_of_beams_are_united_with_a_small_part_of_their_bound() {
+    let n = 20;
+    let size = n as f64;
+    let volume = 2.0 * size * (2.0 * size + 1.0) - 0.75 * size * size;
+    let crumb = cube().scaled(0.5).moved([500.0, 300.0, 100.0]);
+    for is_turned in [false, true] {
+        let grid = beams(n, is_turned);
+        let files = [
+            ("triangles", encode(&grid, Encoding::StlBinary), volume),
+            ("quads", quads(&grid, false), volume),
+            ("quads inside out", quads(&grid, true), volume),
+            ("a crumb away from it", quads(&grid.with(&crumb), false), volume + 0.125),
+        ];
+        for (name, bytes, volume) in files {
+            let options = Options::default();
+            let units = work_units_max(Operation::Repair, bytes.len(), &options).unwrap();
+            let budget = Budget::new(StopFlag::default(), units / 20, BYTES_MAX);
+            let report = run(Operation::Repair, &bytes, &options, &budget).unwrap().report;
+            assert_eq!(report.outcome, Some(Outcome::Repaired), "{name}, {is_turned}: {:?}", report.tried);
+            let enclosed: f64 = report.certificate.unwrap().shells.iter().map(|shell| shell.volume).sum();
+            assert!(
+                (enclosed - volume).abs() < 1e-5 * volume,
+                "{name}, {is_turned}: {enclosed}, not {volume}"
+            );
+        }
+    }
+}
+
 #[test]
 fn hostile_hubs_end_within_their_bound() {
     let mut random = Random::new(9);
