@@ -17,7 +17,7 @@ const RINGS: usize = 1 << 12;
 const TRIANGLES: usize = 1 << 14;
 
 /// Triangles that are looked at to say where the body is.
-const SAMPLE: usize = 1 << 16;
+const SAMPLE: usize = 1 << 14;
 
 /// The diagonal of the box around the triangles of `mesh`, in the unit of the file; 0 without any. Where something lies more
 /// than twice as far from the middle of the surface as nine tenths of it, the box is around the rest: a single triangle far away
