@@ -190,6 +190,10 @@ impl Triangulation {
 
     /// How the points of three vertices turn.
     pub(super) fn orient(&self, sight: &CarrierView<'_>, vertices: [u32; 3]) -> Sign {
+        let [i, j, k] = vertices;
+        if i == j || j == k || k == i {
+            return Sign::Zero;
+        }
         let [a, b, c] = vertices.map(|v| sight.point(self.points[v as usize]));
         sight.orient(a, b, c)
     }
