@@ -31,20 +31,23 @@ pub(super) fn wind(
     let jumps = jumps(arrangement, &operand_of);
     let groups = EdgeGroups::build(&arrangement.pieces, arrangement.point_count(), budget)?;
     check_closed(arrangement, &groups, &jumps, budget)?;
-    let anchors = anchors(arrangement, &groups, budget)?;
-    let starts = par::try_map_ranges(anchors.len(), 4, |range| {
-        range
-            .map(|i| ray::beside(arrangement, anchors[i] as usize, triangles, &operand_of, &bvh, budget))
-            .collect::<Result<Vec<_>, _>>()
-    })?;
-    drop(bvh);
-    let links = links(arrangement, triangles, &groups, budget)?;
+    let rays = || {
+        let anchors = anchors(arrangement, &groups, budget)?;
+        let starts = par::try_map_ranges(anchors.len(), 4, |range| {
+            range
+                .map(|i| ray::beside(arrangement, anchors[i] as usize, triangles, &operand_of, &bvh, budget))
+                .collect::<Result<Vec<_>, _>>()
+        })?;
+        drop(bvh);
+        Ok::<_, ArrangementError>((anchors, starts))
+    };
+    let (rays, links) = par::join(rays, || links(arrangement, triangles, &groups, budget));
+    let ((anchors, starts), links) = (rays?, links?);
     drop(groups);
     let mut windings = vec![UNKNOWN; 2 * count * operands];
     for (&anchor, (is_front, start)) in anchors.iter().zip(starts.into_iter().flatten()) {
         let side = 2 * anchor + u32::from(!is_front);
-        windings[side as usize * operands..][..operands].copy_from_slice(&start);
-        spread(side, &links, &jumps, operands, &mut windings, budget)?;
+        spread(side, start, &links, &jumps, &mut windings, budget)?;
     }
     arrangement.windings = windings;
     Ok(())
@@ -151,44 +154,48 @@ fn anchors(
     Ok(anchors.into_iter().map(|(_, f)| f).collect())
 }
 
-/// Gives every side that is connected with `start` its winding numbers.
+/// Gives every side that is connected with `start`, of which these are the winding numbers, its own.
 fn spread(
     start: PieceSide,
+    mut current: Vec<i32>,
     links: &[PieceSide],
     jumps: &[i32],
-    operands: usize,
     windings: &mut [i32],
     budget: &Budget,
 ) -> Result<(), ArrangementError> {
-    let mut stack = vec![start];
-    let mut current = vec![0; operands];
-    while let Some(side) = stack.pop() {
-        budget.spend(1)?;
-        let piece = (side / 2) as usize;
-        let first = side as usize * operands;
-        current.copy_from_slice(&windings[first..first + operands]);
-        for h in 3 * piece as u32..3 * piece as u32 + 3 {
-            reach(links[(2 * h + side % 2) as usize], &current, windings, &mut stack)?;
+    let operands = current.len();
+    let mut stack = Vec::new();
+    reach(start, &current, jumps, windings, &mut stack)?;
+    while let Some(piece) = stack.pop() {
+        budget.spend(2)?;
+        for side in [2 * piece, 2 * piece + 1] {
+            current.copy_from_slice(&windings[side as usize * operands..][..operands]);
+            for h in 3 * piece..3 * piece + 3 {
+                reach(links[(2 * h + side % 2) as usize], &current, jumps, windings, &mut stack)?;
+            }
         }
-        for (winding, jump) in current.iter_mut().zip(&jumps[piece * operands..]) {
-            *winding += if side % 2 == 0 { *jump } else { -*jump };
-        }
-        reach(side ^ 1, &current, windings, &mut stack)?;
     }
     Ok(())
 }
 
-/// Notes that these are the winding numbers of a side.
+/// Notes that these are the winding numbers of a side, and with it those of the other side of its piece.
 fn reach(
     side: PieceSide,
     current: &[i32],
+    jumps: &[i32],
     windings: &mut [i32],
-    stack: &mut Vec<PieceSide>,
+    stack: &mut Vec<u32>,
 ) -> Result<(), ArrangementError> {
-    let known = &mut windings[side as usize * current.len()..][..current.len()];
+    let (operands, piece, is_behind) = (current.len(), side / 2, side % 2 == 1);
+    let first = piece as usize * operands;
+    let (front, behind) = windings[2 * first..2 * (first + operands)].split_at_mut(operands);
+    let (known, other) = if is_behind { (behind, front) } else { (front, behind) };
     if known[0] == UNKNOWN {
         known.copy_from_slice(current);
-        stack.push(side);
+        for ((other, &known), &jump) in other.iter_mut().zip(current).zip(&jumps[first..]) {
+            *other = if is_behind { known - jump } else { known + jump };
+        }
+        stack.push(piece);
     } else if *known != *current {
         return Err(ArrangementError::Inconsistent("the sides of a wall do not differ by its jump"));
     }

@@ -5,6 +5,7 @@ use crate::formats::decimals::Text;
 use crate::formats::{WriteError, float32};
 use crate::geom::DVec3;
 use crate::mesh::Soup;
+use crate::par;
 
 /// Must not begin with "solid", which some readers take for ASCII.
 const HEADER: &[u8; 80] = b"Binary STL by Meshmend                                                          ";
@@ -14,24 +15,27 @@ pub(in crate::formats) fn binary(soup: &Soup, budget: &Budget) -> Result<Vec<u8>
     let (mut out, _charged) = budget.vec::<u8>(84 + 50 * soup.triangles.len())?;
     out.extend_from_slice(HEADER);
     out.extend_from_slice(&(soup.triangles.len() as u32).to_le_bytes());
-    for t in 0..soup.triangles.len() {
-        if t.is_multiple_of(CHECK_EVERY) {
-            budget.check()?;
-        }
-        let corners = soup.corners(t as u32);
-        put(&mut out, normal(corners).to_array().map(|c| c as f32));
-        for (v, p) in soup.triangles[t].into_iter().zip(corners) {
-            put(&mut out, float32::rounded(v, p, "stl-binary")?);
-        }
-        out.extend_from_slice(&[0; 2]);
-    }
+    out.resize(84 + 50 * soup.triangles.len(), 0);
+    let records = out[84..].chunks_mut(50 * CHECK_EVERY).collect();
+    let written = par::map_items(records, |i, records: &mut [u8]| {
+        budget.check()?;
+        (i * CHECK_EVERY..).zip(records.chunks_exact_mut(50)).try_for_each(|(t, record)| put(record, soup, t))
+    });
+    written.into_iter().collect::<Result<(), _>>()?;
     Ok(out)
 }
 
-fn put(out: &mut Vec<u8>, values: [f32; 3]) {
-    for value in values {
-        out.extend_from_slice(&value.to_le_bytes());
+/// Writes the normal and the corners of a triangle.
+fn put(record: &mut [u8], soup: &Soup, t: usize) -> Result<(), WriteError> {
+    let corners = soup.corners(t as u32);
+    let mut points = [normal(corners).to_array().map(|c| c as f32); 4];
+    for ((point, v), p) in points[1..].iter_mut().zip(soup.triangles[t]).zip(corners) {
+        *point = float32::rounded(v, p, "stl-binary")?;
     }
+    for (place, value) in record.chunks_exact_mut(4).zip(points.as_flattened()) {
+        place.copy_from_slice(&value.to_le_bytes());
+    }
+    Ok(())
 }
 
 /// ASCII STL as one solid without a name. The coordinates are within the range of float32 here too, because STL knows
