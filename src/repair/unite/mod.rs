@@ -23,9 +23,17 @@ use crate::arrangement::{
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec3, print_pitch, triangle_area};
 
-/// Most pairs of triangles that may meet, for each triangle of the draft and in all.
+/// Most pairs of triangles that may meet, for each triangle of the draft.
 const PAIRS_PER_TRIANGLE: usize = 128;
+
+/// That many pairs always may.
 const PAIRS_MIN: usize = 1 << 16;
+
+/// No more than that, which takes less than a gigabyte, and in a large draft no more than so many for each triangle.
+const PAIRS_OF_SMALL_MAX: usize = 3 << 18;
+const PAIRS_PER_TRIANGLE_OF_LARGE: usize = 8;
+
+/// No more than that in any draft.
 const PAIRS_MAX: usize = 1 << 21;
 
 /// Share of the surface of a body that may be mouths.
@@ -196,7 +204,9 @@ fn arranged_by(
 
 /// Most pairs of triangles of a draft that may meet.
 fn pairs_max(draft: &Draft) -> usize {
-    (draft.triangles.len() * PAIRS_PER_TRIANGLE).clamp(PAIRS_MIN, PAIRS_MAX)
+    let triangles = draft.triangles.len();
+    let most = (triangles * PAIRS_PER_TRIANGLE_OF_LARGE).clamp(PAIRS_OF_SMALL_MAX, PAIRS_MAX);
+    (triangles * PAIRS_PER_TRIANGLE).clamp(PAIRS_MIN, most)
 }
 
 /// A boundary on the print lattice; `None`: float32 does not go so far.
