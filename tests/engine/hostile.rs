@@ -169,8 +169,9 @@ fn grids_of_beams_are_united_with_a_small_part_of_their_bound() {
         ];
         for (name, bytes, volume) in files {
             let options = Options::default();
-            let units = work_units_max(Operation::Repair, bytes.len(), &options).unwrap();
-            let budget = Budget::new(StopFlag::default(), units / 20, BYTES_MAX);
+            // They take about a half of it, and twice of it where each decision counts as one by integers.
+            let units = work_units_max(Operation::Repair, bytes.len(), &options).unwrap() / 50;
+            let budget = Budget::new(StopFlag::default(), units, BYTES_MAX);
             let report = run(Operation::Repair, &bytes, &options, &budget).unwrap().report;
             assert_eq!(report.outcome, Some(Outcome::Repaired), "{name}, {is_turned}: {:?}", report.tried);
             let enclosed: f64 = report.certificate.unwrap().shells.iter().map(|shell| shell.volume).sum();

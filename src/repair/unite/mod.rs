@@ -23,18 +23,16 @@ use crate::arrangement::{
 use crate::budget::{Budget, Stopped};
 use crate::geom::{DVec3, print_pitch, triangle_area};
 
-/// Most pairs of triangles that may meet, for each triangle of the draft.
+/// Most pairs of triangles that may meet, for each triangle of the draft, and the least that a draft of any size may have.
 const PAIRS_PER_TRIANGLE: usize = 128;
-
-/// That many pairs always may.
 const PAIRS_MIN: usize = 1 << 16;
 
-/// No more than that, which takes less than a gigabyte, and in a large draft no more than so many for each triangle.
+/// Most pairs in drafts of up to about 100,000 triangles: each pair takes about a kilobyte, and files of 4 MB should do with a gibibyte.
 const PAIRS_OF_SMALL_MAX: usize = 3 << 18;
-const PAIRS_PER_TRIANGLE_OF_LARGE: usize = 8;
 
-/// No more than that in any draft.
-const PAIRS_MAX: usize = 1 << 21;
+/// Most pairs in larger drafts: for each triangle, and in all.
+const PAIRS_PER_TRIANGLE_OF_LARGE: usize = 8;
+const PAIRS_OF_LARGE_MAX: usize = 1 << 21;
 
 /// Share of the surface of a body that may be mouths.
 const MOUTHS_MAX: f64 = 0.5;
@@ -204,8 +202,11 @@ fn arranged_by(
 
 /// Most pairs of triangles of a draft that may meet.
 fn pairs_max(draft: &Draft) -> usize {
-    let triangles = draft.triangles.len();
-    let most = (triangles * PAIRS_PER_TRIANGLE_OF_LARGE).clamp(PAIRS_OF_SMALL_MAX, PAIRS_MAX);
+    pairs_of(draft.triangles.len())
+}
+
+fn pairs_of(triangles: usize) -> usize {
+    let most = (triangles * PAIRS_PER_TRIANGLE_OF_LARGE).clamp(PAIRS_OF_SMALL_MAX, PAIRS_OF_LARGE_MAX);
     (triangles * PAIRS_PER_TRIANGLE).clamp(PAIRS_MIN, most)
 }
 
@@ -379,6 +380,21 @@ mod tests {
             assert_eq!(before.len(), 24);
             assert!(first.triangles.iter().filter(kept).count() >= 12);
             assert_eq!(draft.check(), Vec::<String>::new());
+        }
+    }
+
+    #[test]
+    fn small_drafts_may_have_no_more_pairs_than_fit_in_a_gibibyte() {
+        let expected = [
+            (12, 65_536),
+            (1_000, 128_000),
+            (7_200, 786_432),
+            (83_000, 786_432),
+            (200_000, 1_600_000),
+            (1_000_000, 2_097_152),
+        ];
+        for (triangles, pairs) in expected {
+            assert_eq!(pairs_of(triangles), pairs, "{triangles} triangles");
         }
     }
 
