@@ -12,6 +12,7 @@ mod line;
 mod sliver;
 mod stars;
 mod tree;
+mod turned;
 
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Aabb, DVec3};
@@ -22,6 +23,7 @@ use line::BoxSegment;
 pub(super) use sliver::Sliver;
 pub(super) use stars::{HubStar, find as stars_of, tree as tree_with_stars};
 pub(super) use tree::Tree;
+pub(super) use turned::TurnedTree;
 
 /// Boxes of triangles in a balanced tree: small flat nodes, f32 boxes that hold the exact ones.
 #[derive(Debug, Clone)]

@@ -1,6 +1,7 @@
 //! A tree of boxes, stored flat.
 
 use super::{Box32, Leaf};
+use crate::par;
 
 /// A box and what is inside it.
 #[derive(Debug, Clone, Copy)]
@@ -92,6 +93,14 @@ impl Tree {
         }));
         self.leaves.extend(&tree.leaves);
         nodes_by
+    }
+
+    /// The triangles in it, ascending.
+    pub(super) fn ids(&self) -> Vec<u32> {
+        let mut ids: Vec<u32> =
+            self.leaves.iter().flat_map(|leaf| (0..leaf.len()).map(|k| leaf.id(k))).collect();
+        par::sort_unstable(&mut ids);
+        ids
     }
 
     pub(in crate::spatial) fn is_empty(&self) -> bool {

@@ -1,6 +1,6 @@
 //! Simultaneous descent of a tree with itself.
 
-use super::{COST_OF_CONTACT, Contacts, Gathered, Search, SearchedSurface, TriangleContact};
+use super::{COST_OF_CONTACT, Contacts, Effort, Gathered, Search, SearchedSurface, TriangleContact};
 use crate::budget::{Budget, CHECK_EVERY, Stopped};
 use crate::geom::{Shared, ThreePointPlane, contact, work_on_exact_signs};
 use crate::par;
@@ -19,17 +19,15 @@ const TASKS_AT_A_TIME_OF_ALL: usize = 64;
 /// The same up to a number, all of which each of them may keep.
 const TASKS_AT_A_TIME_UP_TO: usize = 8;
 
-/// A task that has found something may use this share of all work.
-const SHARE_OF_TASK: u64 = 64;
-
-/// The contacts between the triangles of `tree`, except those inside one star.
+/// The contacts between the triangles of `tree`, except those inside one star, and the units of work they took; `None`: that is too
+/// dear.
 pub(super) fn pairs(
     tree: &Tree,
     surface: SearchedSurface<'_>,
     search: Search,
-    work_max: u64,
+    effort: Effort,
     budget: &Budget,
-) -> Result<(Contacts, u64), Stopped> {
+) -> Result<Option<(Contacts, u64)>, Stopped> {
     let tasks = tasks(tree, TASKS_AIM, &|leaf, i| surface.sliver(leaf, i));
     let mut all = Gathered::new(search);
     let at_a_time = match search {
@@ -43,30 +41,26 @@ pub(super) fn pairs(
         // All of them end before an error is passed on: whether the work limit is reached depends on their sum alone.
         let found = par::try_map_ranges(tasks.len(), 1, |i| {
             let found = Gathered::new(search);
-            ContactDescent {
-                tree,
-                surface,
-                budget,
-                found,
-                unpaid: 0,
-                work: 0,
-                work_max: work_max / SHARE_OF_TASK,
-            }
-            .run(tasks[i.start])
+            ContactDescent { tree, surface, budget, found, unpaid: 0, work: 0, effort: effort.of_task() }
+                .run(tasks[i.start])
         })?;
-        for (contacts, its_work) in found {
+        for found in found {
+            let Some((contacts, its_work)) = found else { return Ok(None) };
             all.merge(contacts);
             work += its_work;
             if all.is_enough() {
-                return Ok((all.finish(), work));
+                return Ok(Some((all.finish(), work)));
             }
         }
-        if work > work_max && all.has_any() && (n + 1) * at_a_time < count {
+        if effort.is_too_dear(work, all.contacts.count) {
+            return Ok(None);
+        }
+        if work > effort.work_max && all.has_any() && (n + 1) * at_a_time < count {
             all.cut_short();
             break;
         }
     }
-    Ok((all.finish(), work))
+    Ok(Some((all.finish(), work)))
 }
 
 /// The search below one pair of nodes.
@@ -79,13 +73,12 @@ struct ContactDescent<'d> {
     unpaid: u64,
     /// Units used.
     work: u64,
-    /// Units after which it ends if it has found something.
-    work_max: u64,
+    effort: Effort,
 }
 
 impl ContactDescent<'_> {
-    /// What it found, and the units that took.
-    fn run(mut self, start: Pair) -> Result<(Contacts, u64), Stopped> {
+    /// What it found, and the units that took; `None`: that is too dear.
+    fn run(mut self, start: Pair) -> Result<Option<(Contacts, u64)>, Stopped> {
         let mut stack = vec![start];
         while let Some(pair) = stack.pop() {
             self.count(1)?;
@@ -101,13 +94,17 @@ impl ContactDescent<'_> {
             if self.found.is_enough() {
                 break;
             }
-            if self.work > self.work_max && self.found.has_any() && !stack.is_empty() {
+            if self.effort.is_too_dear(self.work, self.found.contacts.count) {
+                self.budget.spend(self.unpaid)?;
+                return Ok(None);
+            }
+            if self.work > self.effort.work_max && self.found.has_any() && !stack.is_empty() {
                 self.found.cut_short();
                 break;
             }
         }
         self.budget.spend(self.unpaid)?;
-        Ok((self.found.finish(), self.work))
+        Ok(Some((self.found.finish(), self.work)))
     }
 
     fn count(&mut self, units: u64) -> Result<(), Stopped> {

@@ -5,7 +5,7 @@ mod directions;
 mod terrains;
 
 use super::Bvh;
-use super::bvh::{Frame, HubStar, Leaf, Sliver, Tree};
+use super::bvh::{Frame, HubStar, Leaf, Sliver, Tree, TurnedTree};
 use crate::budget::{Budget, Stopped};
 use crate::geom::{ContactKind, DVec3, suits_expansions};
 use crate::par;
@@ -78,6 +78,14 @@ const COST_OF_CONTACT: u64 = 16;
 /// What a pair of triangles counts whose coordinates are so far apart that their signs are those of big integers.
 const COST_IN_BIG_INTEGERS: u64 = 2048;
 
+/// A search that takes more units of work than this, for each triangle and whatever their number, and finds little, looks at the boxes of
+/// long triangles in vain; it begins again in coordinates in which they lie along axes, if there are such.
+const DEAR_PER_TRIANGLE: u64 = 256;
+const DEAR_MIN: u64 = 1 << 20;
+
+/// Units of work for each contact found that are not in vain.
+const DEAR_PER_CONTACT: u64 = 64;
+
 /// Finds the pairs of triangles in `bvh` that meet in more than a common vertex or a common edge, exactly.
 ///
 /// Equal positions must have equal indices, triangles must not be degenerate. Two triangles with the same three
@@ -96,13 +104,18 @@ pub fn self_contacts(
     budget: &Budget,
 ) -> Result<Contacts, Stopped> {
     let may_take_big_integers = !suits_expansions(positions);
-    let surface =
-        SearchedSurface { positions, triangles, terrains, frame: bvh.frame(), may_take_big_integers };
+    let surface = SearchedSurface {
+        positions,
+        triangles,
+        terrains,
+        seen: Seen::as_it_is(positions, bvh),
+        may_take_big_integers,
+    };
     let work_max = match search {
         Search::Most { .. } => WORK_MIN + WORK_PER_TRIANGLE * triangles.len() as u64,
         Search::First | Search::All { .. } | Search::UpTo { .. } => u64::MAX,
     };
-    let (found, mut work) = descent::pairs(bvh.tree(), surface, search, work_max, budget)?;
+    let (found, mut work) = pairs_beside_stars(bvh, surface, search, work_max, budget)?;
     let mut all = Gathered::new(search);
     all.merge(found);
     if all.is_enough() {
@@ -128,6 +141,55 @@ pub fn self_contacts(
     Ok(all.finish())
 }
 
+/// The contacts of triangles that are not of one star, and the units of work they took.
+fn pairs_beside_stars(
+    bvh: &Bvh,
+    surface: SearchedSurface<'_>,
+    search: Search,
+    work_max: u64,
+    budget: &Budget,
+) -> Result<(Contacts, u64), Stopped> {
+    let dear = DEAR_MIN + DEAR_PER_TRIANGLE * surface.triangles.len() as u64;
+    let found = descent::pairs(bvh.tree(), surface, search, Effort { work_max, dear }, budget)?;
+    if let Some(found) = found {
+        return Ok(found);
+    }
+    let effort = Effort { work_max, dear: u64::MAX };
+    let turned = bvh.turned(surface.positions, surface.triangles, budget)?;
+    let (tree, seen) = match &turned {
+        Some(turned) => (&turned.tree, Seen::turned(turned)),
+        None => (bvh.tree(), surface.seen),
+    };
+    let found = descent::pairs(tree, SearchedSurface { seen, ..surface }, search, effort, budget)?;
+    Ok(found.unwrap_or_default())
+}
+
+/// What a descent may take.
+#[derive(Debug, Clone, Copy)]
+struct Effort {
+    /// Units of work after which it ends, if it has found something.
+    work_max: u64,
+    /// Units after which it is too dear, if it has found little.
+    dear: u64,
+}
+
+impl Effort {
+    fn is_too_dear(self, work: u64, contacts: u64) -> bool {
+        work > self.dear && work > contacts.saturating_mul(DEAR_PER_CONTACT)
+    }
+
+    /// That of one of several tasks.
+    fn of_task(self) -> Self {
+        Self { work_max: self.work_max / SHARE_OF_TASK, dear: self.dear / DEAR_SHARE_OF_TASK }
+    }
+}
+
+/// A task that has found something may use this share of all work.
+const SHARE_OF_TASK: u64 = 64;
+
+/// A task that has found little is too dear beyond this share of what is for all.
+const DEAR_SHARE_OF_TASK: u64 = 16;
+
 /// A star may use this share of the work that is left, once it has found something.
 const SHARE_OF_STAR: u64 = 8;
 
@@ -147,7 +209,27 @@ fn star_contacts(
         return Ok((Contacts::default(), 0));
     }
     let directions = Tree::build(&ContactDirections { surface, star }, budget)?;
-    descent::pairs(&directions, surface, search, work_max, budget)
+    let effort = Effort { work_max, dear: u64::MAX };
+    Ok(descent::pairs(&directions, surface, search, effort, budget)?.unwrap_or_default())
+}
+
+/// The coordinates of the boxes.
+#[derive(Clone, Copy)]
+struct Seen<'s> {
+    positions: &'s [DVec3],
+    /// How far these may be from where they should be, in each coordinate.
+    margin: f64,
+    frame: Frame,
+}
+
+impl<'s> Seen<'s> {
+    fn as_it_is(positions: &'s [DVec3], bvh: &Bvh) -> Self {
+        Self { positions, margin: 0.0, frame: bvh.frame() }
+    }
+
+    fn turned(turned: &'s TurnedTree) -> Self {
+        Self { positions: &turned.positions, margin: turned.margin, frame: turned.frame }
+    }
 }
 
 /// The triangles that are searched.
@@ -156,7 +238,7 @@ struct SearchedSurface<'s> {
     positions: &'s [DVec3],
     triangles: &'s [[u32; 3]],
     terrains: Option<&'s Terrains>,
-    frame: Frame,
+    seen: Seen<'s>,
     /// Coordinates of some triangles are so far apart that signs are those of big integers.
     may_take_big_integers: bool,
 }
@@ -177,7 +259,9 @@ impl<'s> SearchedSurface<'s> {
 
     /// Triangle `i` of a leaf, to be compared with boxes.
     fn sliver(&self, leaf: &Leaf, i: usize) -> Sliver {
-        Sliver::new(&self.frame, self.points(leaf.corners(i)))
+        let Seen { positions, margin, frame } = self.seen;
+        let corners = leaf.corners(i).map(|v| &positions[v as usize]);
+        Sliver::new(&frame, corners).with_reach(frame.scaled(margin))
     }
 
     /// The pairs of equal corners, see [`crate::geom::Shared::by_pairs`], that say of another triangle that it meets
@@ -255,6 +339,7 @@ impl Gathered {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DQuat;
 
     /// Triangles all through each other.
     fn tangle(count: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
@@ -265,6 +350,40 @@ mod tests {
         };
         let positions = (0..3 * count).map(|_| DVec3::new(random(), random(), random())).collect();
         (positions, (0..count).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect())
+    }
+
+    /// Fans of long thin triangles in planes one above the other, and a triangle through some of them.
+    fn plates(turn: DQuat) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+        for plate in 0..50u32 {
+            let first = positions.len() as u32;
+            positions.push(DVec3::new(0.0, 0.0, f64::from(plate)));
+            positions.extend((0..=60).map(|i| DVec3::new(f64::from(i), 1.0, f64::from(plate))));
+            triangles.extend((1..=60).map(|i| [first, first + i, first + i + 1]));
+        }
+        let first = positions.len() as u32;
+        positions.extend([(20.3, 0.4, 7.5), (21.1, 0.6, 10.5), (20.7, 0.9, 10.4)].map(DVec3::from));
+        triangles.push([first, first + 1, first + 2]);
+        (positions.into_iter().map(|p| turn * p).collect(), triangles)
+    }
+
+    #[test]
+    fn long_thin_triangles_are_searched_in_coordinates_along_them() {
+        let found = |turn, search| {
+            let (positions, triangles) = plates(turn);
+            let budget = Budget::unlimited();
+            let bvh = Bvh::build(&positions, &triangles, None, &budget).unwrap();
+            let found = self_contacts(&positions, &triangles, &bvh, None, search, &budget).unwrap();
+            (found, budget.work_used())
+        };
+        let turn = DQuat::from_scaled_axis(DVec3::new(0.5, -0.7, 0.4));
+        for search in [Search::All { keep: 99 }, Search::Most { keep: 99 }, Search::UpTo { most: 99 }] {
+            let (as_it_is, _) = found(DQuat::IDENTITY, search);
+            let (turned, work) = found(turn, search);
+            assert!(as_it_is.count > 2 && as_it_is == turned, "{as_it_is:?} {turned:?}");
+            // All pairs would be four million.
+            assert!(work < 4_000_000, "{work}");
+        }
     }
 
     #[test]
