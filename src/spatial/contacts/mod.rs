@@ -369,20 +369,26 @@ mod tests {
 
     #[test]
     fn long_thin_triangles_are_searched_in_coordinates_along_them() {
-        let found = |turn, search| {
-            let (positions, triangles) = plates(turn);
-            let budget = Budget::unlimited();
-            let bvh = Bvh::build(&positions, &triangles, None, &budget).unwrap();
-            let found = self_contacts(&positions, &triangles, &bvh, None, search, &budget).unwrap();
-            (found, budget.work_used())
-        };
         let turn = DQuat::from_scaled_axis(DVec3::new(0.5, -0.7, 0.4));
+        let (positions, triangles) = plates(turn);
+        let unlimited = Budget::unlimited();
+        let bvh = Bvh::build(&positions, &triangles, None, &unlimited).unwrap();
+        let seen = Seen::as_it_is(&positions, &bvh);
+        let surface = SearchedSurface {
+            positions: &positions,
+            triangles: &triangles,
+            terrains: None,
+            seen,
+            may_take_big_integers: false,
+        };
+        let effort = Effort { work_max: u64::MAX, dear: u64::MAX };
         for search in [Search::All { keep: 99 }, Search::Most { keep: 99 }, Search::UpTo { most: 99 }] {
-            let (as_it_is, _) = found(DQuat::IDENTITY, search);
-            let (turned, work) = found(turn, search);
-            assert!(as_it_is.count > 2 && as_it_is == turned, "{as_it_is:?} {turned:?}");
-            // All pairs would be four million.
-            assert!(work < 4_000_000, "{work}");
+            let plain = descent::pairs(bvh.tree(), surface, search, effort, &unlimited).unwrap();
+            let (plain, plain_work) = plain.unwrap();
+            let budget = Budget::unlimited();
+            let found = self_contacts(&positions, &triangles, &bvh, None, search, &budget).unwrap();
+            assert!(found.count > 9 && found == plain, "{found:?} {plain:?}");
+            assert!(2 * budget.work_used() < plain_work, "{} {plain_work}", budget.work_used());
         }
     }
 
