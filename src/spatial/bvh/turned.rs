@@ -63,7 +63,8 @@ impl Bvh {
         if reach >= REACH_MAX {
             return Ok(None);
         }
-        let margin = reach * ROUNDING;
+        // Products below the smallest normal number are off by less than it, whatever their magnitude.
+        let margin = reach * ROUNDING + f64::MIN_POSITIVE;
         let positions = parts.into_iter().flat_map(|(_, turned)| turned).collect::<Vec<_>>();
         let mut elements = Turned {
             triangles: IndexedTriangles {
@@ -193,21 +194,19 @@ mod tests {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             f64::from(state >> 8) / f64::from(1 << 24)
         };
-        for offset in [0.0, 1e3, 1e9] {
-            // Corners of each triangle, beside the one that stands on the edge of the next.
-            let mut place = || turn() * DVec3::new(100.0 * random(), random(), random()) + offset;
-            let mut positions = Vec::new();
-            let mut triangles = Vec::new();
-            for t in 0..300u32 {
+        // On a grid, so that middles are exact.
+        let smallest = f64::MIN_POSITIVE / f64::from(1 << 30);
+        for (scale, offset) in [(1.0, 0.0), (1.0, 1e3), (1.0, 1e9), (smallest, 0.0)] {
+            let mut place = || {
+                let place = turn() * DVec3::new(100.0 * random(), random(), random()) * f64::from(1 << 20);
+                (place.round() / f64::from(1 << 20) + offset) * scale
+            };
+            let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+            for _ in 0..300 {
                 let [a, b, c] = [place(), place(), place()];
-                let on_edge = (a + b) / 2.0;
-                if (a + b) - on_edge * 2.0 != DVec3::ZERO {
-                    continue;
-                }
-                positions.extend([a, b, c, on_edge, place(), place()]);
-                let first = positions.len() as u32 - 6;
-                triangles.extend([[first, first + 1, first + 2], [first + 3, first + 4, first + 5]]);
-                assert_eq!(triangles.len() as u32, 2 * (t + 1));
+                let first = positions.len() as u32;
+                positions.extend([a, b, c, (a + b) / 2.0, place(), place()]);
+                triangles.extend([0, 3].map(|k| [first + k, first + k + 1, first + k + 2]));
             }
             let budget = Budget::unlimited();
             let bvh = Bvh::build(&positions, &triangles, None, &budget).unwrap();
@@ -216,7 +215,7 @@ mod tests {
             for leaf in &turned.tree.leaves {
                 (0..leaf.len()).for_each(|k| boxes[leaf.id(k) as usize] = leaf.bounds(k));
             }
-            assert!(boxes.chunks(2).all(|pair| pair[0].meets(&pair[1])), "{offset}");
+            assert!(boxes.chunks(2).all(|pair| pair[0].meets(&pair[1])), "{scale} {offset}");
         }
     }
 }
