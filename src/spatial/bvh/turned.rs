@@ -63,8 +63,8 @@ impl Bvh {
         if reach >= REACH_MAX {
             return Ok(None);
         }
-        // Products below the smallest normal number are off by less than it, whatever their magnitude.
-        let margin = reach * ROUNDING + f64::MIN_POSITIVE;
+        // This never vanishes: the weights of directions are fourth powers of edges, and do so long before.
+        let margin = reach * ROUNDING;
         let positions = parts.into_iter().flat_map(|(_, turned)| turned).collect::<Vec<_>>();
         let mut elements = Turned {
             triangles: IndexedTriangles {
@@ -195,8 +195,9 @@ mod tests {
             f64::from(state >> 8) / f64::from(1 << 24)
         };
         // On a grid, so that middles are exact.
-        let smallest = f64::MIN_POSITIVE / f64::from(1 << 30);
-        for (scale, offset) in [(1.0, 0.0), (1.0, 1e3), (1.0, 1e9), (smallest, 0.0)] {
+        for (scale, offset) in
+            [(1.0, 0.0), (1.0, 1e3), (1.0, 1e9), (2f64.powi(-260), 0.0), (2f64.powi(-1050), 0.0)]
+        {
             let mut place = || {
                 let place = turn() * DVec3::new(100.0 * random(), random(), random()) * f64::from(1 << 20);
                 (place.round() / f64::from(1 << 20) + offset) * scale
@@ -210,7 +211,9 @@ mod tests {
             }
             let budget = Budget::unlimited();
             let bvh = Bvh::build(&positions, &triangles, None, &budget).unwrap();
-            let turned = bvh.turned(&positions, &triangles, &budget).unwrap().unwrap();
+            let turned = bvh.turned(&positions, &triangles, &budget).unwrap();
+            assert_eq!(turned.is_some(), scale > 1e-100, "{scale} {offset}");
+            let Some(turned) = turned else { continue };
             let mut boxes = vec![Box32::EMPTY; triangles.len()];
             for leaf in &turned.tree.leaves {
                 (0..leaf.len()).for_each(|k| boxes[leaf.id(k) as usize] = leaf.bounds(k));
